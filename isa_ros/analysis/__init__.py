@@ -1,0 +1,1 @@
+"""Measurements on finished runs and on the code itself."""

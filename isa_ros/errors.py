@@ -1,0 +1,43 @@
+"""Every error a user can cause or meet, each with the exit code it ends a command with."""
+
+
+class IsaError(Exception):
+    """Base of all errors of this package; the message is one line for the user."""
+
+    exit_code = 2
+
+
+class ConfigError(IsaError):
+    """A configuration, scenario or command line that cannot be run."""
+
+
+class ParameterError(ConfigError):
+    """A parameter outside its declared range."""
+
+
+class SetpointError(IsaError):
+    """A setpoint that is rejected as a whole; the actuator keeps its last one."""
+
+
+class BagError(IsaError):
+    """A bag that cannot be read, or a directory that cannot take one."""
+
+
+class RunError(IsaError):
+    """A run that could not be completed: a participant or the recorder was lost or late."""
+
+    exit_code = 3
+
+
+class SimulationDiverged(IsaError):
+    """A state that is no longer finite."""
+
+    exit_code = 4
+
+    def __init__(self, t_ns: int, field: str, value: float) -> None:
+        super().__init__(
+            f'{field} = {value} at t = {t_ns * 1e-9:.6f} s, must be finite: '
+            'the simulation diverged')
+        self.t_ns = t_ns
+        self.field = field
+        self.value = value

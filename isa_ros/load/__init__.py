@@ -1,0 +1,1 @@
+"""What an actuator moves, and the port between the two."""

@@ -1,0 +1,79 @@
+"""One declaration per parameter: its unit, its range and its meaning."""
+
+from collections.abc import Iterator
+from dataclasses import dataclass, field, fields
+import math
+from typing import Any
+
+from isa_ros.errors import ParameterError
+
+_RELATIONS = {
+    'gt': ('>', lambda value, bound: value > bound),
+    'ge': ('>=', lambda value, bound: value >= bound),
+    'lt': ('<', lambda value, bound: value < bound),
+    'le': ('<=', lambda value, bound: value <= bound),
+}
+
+
+def parameter(doc: str, unit: str, **bounds: float) -> Any:
+    """Declare one number; ``bounds`` are any of ``gt``, ``ge``, ``lt``, ``le``."""
+    unknown = set(bounds) - set(_RELATIONS)
+    if unknown:
+        raise TypeError(f'unknown bounds {sorted(unknown)}; use {sorted(_RELATIONS)}')
+    return field(metadata={'doc': doc, 'unit': unit, 'bounds': bounds})
+
+
+def choice(doc: str, *names: str) -> Any:
+    """Declare one name out of a fixed list."""
+    return field(metadata={'doc': doc, 'unit': '', 'names': names})
+
+
+@dataclass(frozen=True, kw_only=True)
+class Parameters:
+    """
+    Base of every parameter set: checked on construction, immutable afterwards.
+
+    Fields are floats in the unit their declaration (and their name's suffix) states,
+    names out of a list, or nested parameter sets.
+
+    Raises:
+        ParameterError: a value is not finite, outside its range or not in its list.
+
+    """
+
+    def __post_init__(self) -> None:
+        for f in fields(self):
+            value = getattr(self, f.name)
+            if not isinstance(value, Parameters):
+                check(f'{type(self).__name__}.{f.name}', value, f.metadata)
+
+
+def check(where: str, value: Any, declared: Any) -> None:
+    """Refuse a value that breaks its declaration, naming what, value, unit and bound."""
+    if 'names' in declared:
+        if value not in declared['names']:
+            raise ParameterError(
+                f'{where} = {value!r}, must be one of {", ".join(declared["names"])}')
+        return
+    unit = declared['unit']
+    if isinstance(value, bool) or not isinstance(value, (int, float)):
+        raise ParameterError(f'{where} = {value!r}, must be a number in {unit}')
+    if not math.isfinite(value):
+        raise ParameterError(f'{where} = {value} {unit}, must be finite')
+    for name, bound in declared['bounds'].items():
+        symbol, holds = _RELATIONS[name]
+        if not holds(value, bound):
+            raise ParameterError(
+                f'{where} = {value:g} {unit}, must be {symbol} {bound:g} {unit} '
+                f'({declared["doc"]})')
+
+
+def walk(parameters: Parameters, prefix: str = '') -> Iterator[tuple[str, Any, Any]]:
+    """Yield (dotted path, value, declaration) of every parameter, in declaration order."""
+    for f in fields(parameters):
+        value = getattr(parameters, f.name)
+        path = f'{prefix}{f.name}'
+        if isinstance(value, Parameters):
+            yield from walk(value, f'{path}.')
+        else:
+            yield path, value, f.metadata

@@ -1,0 +1,1 @@
+"""The hydraulic and mechanical parts of one actuator, one component a file."""

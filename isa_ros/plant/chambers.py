@@ -1,0 +1,129 @@
+"""
+The two oil chambers: volumes, pressures, and the force they make.
+
+Chamber A is the cap side: its pressure extends. ``s`` is the piston position in m (rotor
+angle in rad), 0 at the retracted end, ``area`` the piston area in m2 (displacement D_m in
+m3/rad). Pressures are gauge. Each swept volume is counted once (errata 16).
+"""
+
+from dataclasses import dataclass
+import math
+
+from isa_ros.kernel import kernel
+from isa_ros.parameter import parameter, Parameters
+from isa_ros.plant.units import MILLI, MILLILITRE
+import numpy as np
+
+
+@dataclass(frozen=True, kw_only=True)
+class Cylinder(Parameters):
+    """Differential cylinder."""
+
+    bore_mm: float = parameter('piston diameter', 'mm', gt=0.0, le=500.0)
+    rod_mm: float = parameter('rod diameter', 'mm', gt=0.0, le=500.0)
+    stroke_mm: float = parameter('stroke', 'mm', gt=0.0, le=5000.0)
+
+    @property
+    def areas(self) -> tuple[float, float]:
+        """Return (A_A, A_B) in m2."""
+        bore, rod = self.bore_mm * MILLI, self.rod_mm * MILLI
+        return math.pi / 4.0 * bore * bore, math.pi / 4.0 * (bore * bore - rod * rod)
+
+    @property
+    def stroke(self) -> float:
+        """Return the stroke in m."""
+        return self.stroke_mm * MILLI
+
+
+@dataclass(frozen=True, kw_only=True)
+class Vane(Parameters):
+    """Rotary vane actuator with equal displacement both ways."""
+
+    displacement_cc_per_rad: float = parameter(
+        'displacement D_m', 'cc/rad', gt=0.0, le=1000.0)
+    range: float = parameter('angular range L_m', 'rad', gt=0.0, le=6.2)
+
+    @property
+    def areas(self) -> tuple[float, float]:
+        """Return (D_m, D_m) in m3/rad."""
+        displacement = self.displacement_cc_per_rad * MILLILITRE
+        return displacement, displacement
+
+    @property
+    def stroke(self) -> float:
+        """Return the range in rad."""
+        return self.range
+
+
+@dataclass(frozen=True, kw_only=True)
+class Oil(Parameters):
+    """The enclosed oil and the ways around the piston."""
+
+    effective_bulk_modulus: float = parameter('beta_eff', 'Pa', gt=0.0, le=2.0e9)
+    dead_volume_ml: float = parameter('V_p of each chamber', 'ml', gt=0.0, le=1000.0)
+    cross_port_leakage: float = parameter('C_li', 'm3/s/Pa', ge=0.0, le=1e-11)
+    aeration_pressure_kpa: float = parameter(
+        'pressure below return at which released air halves the bulk modulus',
+        'kPa', gt=0.0, le=100.0)
+
+
+CHAMBERS = np.dtype([
+    ('area_a', 'f8'), ('area_b', 'f8'), ('stroke', 'f8'),
+    ('dead_volume', 'f8'), ('beta', 'f8'), ('c_li', 'f8'), ('p_air', 'f8')])
+CHAMBERS_STATE = np.dtype([('p_a', 'f8'), ('p_b', 'f8')])
+
+
+def chambers_record(drive: Cylinder | Vane, oil: Oil) -> tuple[float, ...]:
+    """Return the `CHAMBERS` record."""
+    return (
+        *drive.areas, drive.stroke, oil.dead_volume_ml * MILLILITRE,
+        oil.effective_bulk_modulus, oil.cross_port_leakage, oil.aeration_pressure_kpa * 1e3)
+
+
+@kernel
+def volumes(s, chambers):
+    """Return (V_A, V_B) = (V_p + A_A s, V_p + A_B (L - s)) in m3  (C1)."""
+    return (chambers.dead_volume + chambers.area_a * s,
+            chambers.dead_volume + chambers.area_b * (chambers.stroke - s))
+
+
+@kernel
+def stiffening(p, p_t, chambers):
+    """
+    Return the bulk modulus at pressure ``p``, in Pa  (C5).
+
+    beta_eff above the return pressure; below it released air softens the oil:
+    beta_eff / (1 + (P_T - p)/p_air).
+    """
+    if p >= p_t:
+        return chambers.beta
+    return chambers.beta / (1.0 + (p_t - p) / chambers.p_air)
+
+
+@kernel
+def pressure_rates(q_a, q_b, p_a, p_b, s, v, p_t, chambers):
+    """
+    Return (dP_A/dt, dP_B/dt) in Pa/s  (C2, equations 3 and 4 of the paper).
+
+    ``q_a`` and ``q_b`` (m3/s) are all flows into a chamber but the cross-port leakage.
+    The volumes are positive within the range of the end stops.
+    """
+    v_a, v_b = volumes(s, chambers)
+    q_li = chambers.c_li * (p_a - p_b)
+    rate_a = stiffening(p_a, p_t, chambers) / v_a * (q_a - chambers.area_a * v - q_li)
+    rate_b = stiffening(p_b, p_t, chambers) / v_b * (q_b + chambers.area_b * v + q_li)
+    return rate_a, rate_b
+
+
+@kernel
+def hydraulic_force(p_a, p_b, chambers):
+    """Return f_h = A_A P_A - A_B P_B in N or Nm  (C3, equations 5 and 6 of the paper)."""
+    return chambers.area_a * p_a - chambers.area_b * p_b
+
+
+def oil_stiffness(s: float, chambers: np.void) -> float:
+    """Return the stiffness beta (A_A^2/V_A + A_B^2/V_B) of the trapped oil, N/m  (C4)."""
+    v_a, v_b = volumes.py_func(s, chambers)
+    return float(chambers['beta'] * (
+        chambers['area_a'] * chambers['area_a'] / v_a
+        + chambers['area_b'] * chambers['area_b'] / v_b))

@@ -1,0 +1,56 @@
+"""
+LuGre friction of the seals.
+
+The force opposes motion: it is subtracted from the hydraulic force. Units N, m (linear)
+or Nm, rad (rotary).
+"""
+
+from dataclasses import dataclass
+import math
+
+from isa_ros.kernel import kernel
+from isa_ros.parameter import parameter, Parameters
+import numpy as np
+
+
+@dataclass(frozen=True, kw_only=True)
+class Friction(Parameters):
+    """LuGre friction."""
+
+    stiction: float = parameter('force that breaks away', 'N | Nm', gt=0.0, le=1e5)
+    coulomb: float = parameter('force at higher speed', 'N | Nm', gt=0.0, le=1e5)
+    bristle_stiffness: float = parameter('sigma0', 'N/m | Nm/rad', gt=0.0, le=1e9)
+    bristle_damping: float = parameter('sigma1', 'Ns/m | Nms/rad', ge=0.0, le=1e6)
+    viscous: float = parameter('sigma2', 'Ns/m | Nms/rad', ge=0.0, le=1e6)
+    stribeck_speed: float = parameter('v_s', 'm/s | rad/s', gt=0.0, le=10.0)
+
+
+FRICTION = np.dtype([
+    ('stiction', 'f8'), ('coulomb', 'f8'), ('sigma0', 'f8'), ('sigma1', 'f8'),
+    ('sigma2', 'f8'), ('v_s', 'f8')])
+FRICTION_STATE = np.dtype([('bristle', 'f8')])
+
+
+def friction_record(sheet: Friction) -> tuple[float, ...]:
+    """Return the `FRICTION` record of a sheet."""
+    return (sheet.stiction, sheet.coulomb, sheet.bristle_stiffness, sheet.bristle_damping,
+            sheet.viscous, sheet.stribeck_speed)
+
+
+@kernel
+def stribeck(v, friction):
+    """Return g(v) = F_c + (F_s - F_c) exp(-(v/v_s)^2), in N or Nm  (F1)."""
+    ratio = v / friction.v_s
+    return friction.coulomb + (friction.stiction - friction.coulomb) * math.exp(-ratio * ratio)
+
+
+@kernel
+def bristle_rate(v, z, friction):
+    """Return dz/dt = v - sigma0 |v| z / g(v)  (F2), in m/s or rad/s."""
+    return v - friction.sigma0 * abs(v) * z / stribeck(v, friction)
+
+
+@kernel
+def friction_force(v, z, z_rate, friction):
+    """Return sigma0 z + sigma1 dz/dt + sigma2 v  (F3), in N or Nm."""
+    return friction.sigma0 * z + friction.sigma1 * z_rate + friction.sigma2 * v

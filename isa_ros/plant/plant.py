@@ -1,0 +1,158 @@
+"""
+One actuator's plant: valve, oil, moving part and sensors composed.
+
+State, rates and parameters are nested records of floats, one row per actuator
+(`PLANT_STATE`, `PLANT`); signs as in the components' headers.
+"""
+
+from dataclasses import dataclass
+import math
+
+from isa_ros.errors import ParameterError
+from isa_ros.kernel import kernel
+from isa_ros.parameter import Parameters
+from isa_ros.plant import chambers, coil, friction, mechanics, relief, sensors, servo_valve
+from isa_ros.timebase import PLANT_STEP
+import numpy as np
+
+STABLE_RATE = 2.5 / PLANT_STEP  # 1/s; RK4 is stable to 2.78 on the real axis
+
+PLANT = np.dtype([
+    ('coil', coil.COIL),
+    ('valve', servo_valve.VALVE),
+    ('chambers', chambers.CHAMBERS),
+    ('relief', relief.RELIEF),
+    ('friction', friction.FRICTION),
+    ('mechanics', mechanics.MECHANICS),
+    ('sensors', sensors.SENSORS),
+])
+PLANT_STATE = np.dtype([
+    ('coil', coil.COIL_STATE),
+    ('valve', servo_valve.VALVE_STATE),
+    ('chambers', chambers.CHAMBERS_STATE),
+    ('friction', friction.FRICTION_STATE),
+    ('mechanics', mechanics.MECHANICS_STATE),
+])
+
+
+@dataclass(frozen=True, kw_only=True)
+class PlantSheet(Parameters):
+    """The data sheet of one actuator's hydraulics, mechanics and sensors."""
+
+    coil: coil.Coil
+    valve: servo_valve.ServoValve
+    oil: chambers.Oil
+    relief: relief.Relief
+    friction: friction.Friction
+    mechanics: mechanics.Mechanics
+    sensors: sensors.Sensors
+
+
+@dataclass(frozen=True, kw_only=True)
+class LinearPlant(PlantSheet):
+    """A cylinder; generalised units N, m."""
+
+    drive: chambers.Cylinder
+
+
+@dataclass(frozen=True, kw_only=True)
+class RotaryPlant(PlantSheet):
+    """A vane actuator; generalised units Nm, rad."""
+
+    drive: chambers.Vane
+
+
+def plant_record(sheet: LinearPlant | RotaryPlant) -> np.ndarray:
+    """
+    Return the `PLANT` record of a sheet, shape (1,).
+
+    Raises:
+        ParameterError: a valve on the smallest chamber is too stiff for the plant step.
+
+    """
+    area_a, area_b = sheet.drive.areas
+    record = np.array([(
+        coil.coil_record(sheet.coil),
+        servo_valve.valve_record(sheet.valve, area_a / area_b),
+        chambers.chambers_record(sheet.drive, sheet.oil),
+        relief.relief_record(sheet.relief),
+        friction.friction_record(sheet.friction),
+        mechanics.mechanics_record(sheet.mechanics),
+        sensors.sensors_record(sheet.sensors),
+    )], dtype=PLANT)
+    _refuse_stiff_relief(record[0], sheet)
+    return record
+
+
+def _refuse_stiff_relief(plant: np.void, sheet: PlantSheet) -> None:
+    rate = (plant['relief']['slope'] * plant['chambers']['beta']
+            / plant['chambers']['dead_volume'])
+    if rate > STABLE_RATE:
+        raise ParameterError(
+            f'relief.slope_lpm_per_mpa = {sheet.relief.slope_lpm_per_mpa:g} l/min/MPa on a dead '
+            f'volume of {sheet.oil.dead_volume_ml:g} ml decays at {rate:.3g} 1/s, '
+            f'must be <= {STABLE_RATE:.3g} 1/s for the plant step')
+
+
+def rest_pressures(plant: np.void, supply: float, back: float, force: float) -> tuple[float, float]:
+    """
+    Return the gauge pressures (Pa) that hold ``force`` (N or Nm) with the valve near null.
+
+    At null the leaking lands divide the supply pressure so that f_h = 0 (equal flows through
+    P-A, A-T and P-B, B-T); half of the force comes from each chamber.
+    """
+    valve, oil = plant['valve'], plant['chambers']
+    share_a = valve['f_pa'] ** 2 / (valve['f_pa'] ** 2 + valve['f_at'] ** 2)
+    share_b = valve['f_pb'] ** 2 / (valve['f_pb'] ** 2 + valve['f_bt'] ** 2)
+    span = supply - back
+    return (back + span * share_a + 0.5 * force / oil['area_a'],
+            back + span * share_b - 0.5 * force / oil['area_b'])
+
+
+@kernel
+def plant_rates(y, x_load, v_load, current_reference, p_s, p_t, plant, rates):
+    """
+    Write dy/dt of one `PLANT_STATE` into ``rates``; return (sensor force, q_p, q_t).
+
+    ``x_load`` and ``v_load`` are the load's side of the force sensor. Forces in N or Nm,
+    flows in m3/s (equation M4: inertia * s'' = f_h - f_friction - f_sensor + f_stop).
+    """
+    p_a, p_b = y.chambers.p_a, y.chambers.p_b
+    s, v = y.mechanics.position, y.mechanics.velocity
+
+    rates.coil.current = coil.current_rate(y.coil.current, current_reference, plant.coil)
+    spool_reference = plant.valve.k_spool * y.coil.current / plant.coil.parallel
+    rates.valve.spool = y.valve.velocity
+    rates.valve.velocity = y.valve.acceleration
+    rates.valve.acceleration = servo_valve.spool_jerk(spool_reference, y.valve, plant.valve)
+
+    q_a, q_b, q_p, q_t = servo_valve.port_flows(y.valve.spool, p_a, p_b, p_s, p_t, plant.valve)
+    out_a = relief.relief_flow(p_a, p_t, plant.relief)
+    out_b = relief.relief_flow(p_b, p_t, plant.relief)
+    rate_a, rate_b = chambers.pressure_rates(
+        q_a - out_a, q_b - out_b, p_a, p_b, s, v, p_t, plant.chambers)
+    rates.chambers.p_a = rate_a
+    rates.chambers.p_b = rate_b
+
+    z = y.friction.bristle
+    z_rate = friction.bristle_rate(v, z, plant.friction)
+    rates.friction.bristle = z_rate
+    f_sensor = mechanics.sensor_force(s, v, x_load, v_load, plant.mechanics)
+    rates.mechanics.position = v
+    rates.mechanics.velocity = (
+        chambers.hydraulic_force(p_a, p_b, plant.chambers)
+        - friction.friction_force(v, z, z_rate, plant.friction)
+        - f_sensor
+        + mechanics.stop_force(s, v, plant.chambers.stroke, plant.mechanics)
+    ) / plant.mechanics.inertia
+    return f_sensor, q_p, q_t + out_a + out_b
+
+
+@kernel
+def stop_spool(y, plant):
+    """Hold the spool at its mechanical stop; a plastic stop takes its speed."""
+    if abs(y.valve.spool) > plant.valve.x_max:
+        y.valve.spool = math.copysign(plant.valve.x_max, y.valve.spool)
+        if y.valve.velocity * y.valve.spool > 0.0:
+            y.valve.velocity = 0.0
+            y.valve.acceleration = 0.0

@@ -1,0 +1,50 @@
+"""
+Overload protection of each chamber: relief to return, refill from return.
+
+Flows are positive OUT OF the chamber. Both valves are static.
+"""
+
+from dataclasses import dataclass
+
+from isa_ros.kernel import kernel
+from isa_ros.parameter import parameter, Parameters
+from isa_ros.plant.units import LPM, MPA
+import numpy as np
+
+
+@dataclass(frozen=True, kw_only=True)
+class Relief(Parameters):
+    """Relief and anti-cavitation valves of one chamber."""
+
+    opening_pressure_mpa: float = parameter('gauge pressure that opens it', 'MPa', gt=0.0, le=70.0)
+    slope_lpm_per_mpa: float = parameter(
+        'relief flow per pressure above opening', 'l/min/MPa', gt=0.0, le=1000.0)
+    refill_lpm: float = parameter(
+        'anti-cavitation flow at 0.1 MPa below return', 'l/min', gt=0.0, le=100.0)
+
+
+RELIEF = np.dtype([('p_open', 'f8'), ('slope', 'f8'), ('c_refill', 'f8')])
+_REFILL_DROP = 1e5  # Pa below return at which `refill_lpm` is stated
+
+
+def relief_record(sheet: Relief) -> tuple[float, ...]:
+    """Return the `RELIEF` record of a sheet."""
+    return (
+        sheet.opening_pressure_mpa * MPA,
+        sheet.slope_lpm_per_mpa * LPM / MPA,
+        sheet.refill_lpm * LPM / (_REFILL_DROP * _REFILL_DROP))
+
+
+@kernel
+def relief_flow(p, p_t, relief):
+    """
+    Return the flow from the chamber to return, in m3/s  (C6).
+
+    Linear above the opening pressure; below the return pressure the check valve lets
+    c (P_T - p)^2 back in, its opening growing with the drop.
+    """
+    if p > relief.p_open:
+        return relief.slope * (p - relief.p_open)
+    if p < p_t:
+        return -relief.c_refill * (p_t - p) * (p_t - p)
+    return 0.0

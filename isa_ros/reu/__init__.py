@@ -1,0 +1,1 @@
+"""The control loops of the Remote Electronics Unit, one loop a file."""
