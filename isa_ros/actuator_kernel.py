@@ -5,10 +5,11 @@ Composes plant, REU and load copy into one kernel. The continuous states live in
 of floats (`BODY`), so that the integrator sees the same memory as a flat array.
 """
 
+import math
+
 from isa_ros.kernel import kernel
 from isa_ros.load.port import load_acceleration, LOAD_STATE, load_stop_force, LOAD_STOPS
-from isa_ros.plant.plant import PLANT, plant_rates, PLANT_STATE, stop_spool
-from isa_ros.plant.sensors import convert, encode
+from isa_ros.plant.plant import PLANT, plant_rates, PLANT_STATE, read_sensors, stop_spool
 from isa_ros.reu.cascade import cascade_step, REU, REU_STATE
 from isa_ros.timebase import FORCE_WINDOWS, PLANT_STEP
 import numpy as np
@@ -38,9 +39,20 @@ def flat(rows: np.ndarray) -> np.ndarray:
     return np.asarray(rows).view(np.float64).reshape(len(rows), STATE_SIZE)
 
 
+def state_name(index: int) -> str:
+    """Return the dotted name of one state of `BODY` by its place in the flat array."""
+    names = [f'{part}.{component}.{state}'
+             for part in ('plant',)
+             for component in PLANT_STATE.names
+             for state in PLANT_STATE[component].names]
+    names += [f'load.{state}' for state in LOAD_STATE.names]
+    names += [f'totals.{state}' for state in TOTALS.names]
+    return names[index]
+
+
 @kernel
 def body_rates(tau, y, current_reference, port, actuator, rates):
-    """Write the derivative of one `BODY` into ``rates``; return the sensor force."""
+    """Write the derivative of one `BODY` into ``rates``."""
     force, q_p, q_t = plant_rates(
         y.plant, y.load.position, y.load.velocity, current_reference,
         port.supply_pressure, port.return_pressure, actuator.plant, rates.plant)
@@ -51,18 +63,17 @@ def body_rates(tau, y, current_reference, port, actuator, rates):
     rates.totals.impulse = force
     rates.totals.supply_volume = q_p
     rates.totals.return_volume = q_t
-    return force
 
 
 @kernel
 def body_step(tau, current_reference, port, actuator, bodies, rates, y, k):
     """
-    Advance ``bodies[0]`` by one classical Runge-Kutta step; return the force at its start.
+    Advance ``bodies[0]`` by one classical Runge-Kutta step.
 
     ``bodies[1]`` holds the stage; ``y`` and ``k`` are the flat views of ``bodies``, ``rates``.
     """
     h = PLANT_STEP
-    force = body_rates(tau, bodies[0], current_reference, port, actuator, rates[0])
+    body_rates(tau, bodies[0], current_reference, port, actuator, rates[0])
     for j in range(STATE_SIZE):
         y[1, j] = y[0, j] + 0.5 * h * k[0, j]
     body_rates(tau + 0.5 * h, bodies[1], current_reference, port, actuator, rates[1])
@@ -75,23 +86,6 @@ def body_step(tau, current_reference, port, actuator, bodies, rates, y, k):
     for j in range(STATE_SIZE):
         y[0, j] += h / 6.0 * (k[0, j] + 2.0 * (k[1, j] + k[2, j]) + k[3, j])
     stop_spool(bodies[0].plant, actuator.plant)
-    return force
-
-
-@kernel
-def measure(force, plant, sensors, measured):
-    """Write what the sensors give at one instant into ``measured``  (S1, S2)."""
-    measured.position = encode(plant.mechanics.position, sensors.encoder)
-    measured.force = convert(
-        force, -sensors.force_range, sensors.force_range, sensors.force_step)
-    measured.pressure_a = convert(
-        plant.chambers.p_a, 0.0, sensors.pressure_range, sensors.pressure_step)
-    measured.pressure_b = convert(
-        plant.chambers.p_b, 0.0, sensors.pressure_range, sensors.pressure_step)
-    measured.spool = convert(
-        plant.valve.spool, -sensors.spool_range, sensors.spool_range, sensors.spool_step)
-    measured.current = convert(
-        plant.coil.current, -sensors.current_range, sensors.current_range, sensors.current_step)
 
 
 @kernel
@@ -112,40 +106,55 @@ def write_sample(measured, plant, reu, sample):
 
 
 @kernel
-def actuator_tick(
-        first_step, window_steps, port, actuator, bodies, rates, y, k,
-        reu_state, read_out, reply, sample):
-    """
-    Advance one actuator by ``FORCE_WINDOWS * window_steps`` plant steps from ``first_step``.
+def loops_and_plant(step, tau, port, actuator, bodies, rates, y, k, reu_state):
+    """Run the loops that are due at plant step ``step``, then the plant over that step."""
+    body, reu = bodies[0], actuator.reu
+    if (step - reu.offset_steps) % reu.current_steps == 0:
+        read_sensors(body.plant, body.load.position, body.load.velocity,
+                     actuator.plant, reu_state.measured)
+        cascade_step(step, reu, reu_state)
+    body_step(tau, reu_state.current_reference, port, actuator, bodies, rates, y, k)
 
-    Fills the `LOAD_REPLY` and the `SAMPLE` at the end of the tick. ``port`` is constant over
-    the tick; ``read_out`` is a `MEASURED` row for the end of the tick's reading.
+
+@kernel
+def first_broken(y):
+    """Return the index of the first state that is not finite, or -1."""
+    for j in range(STATE_SIZE):
+        if not math.isfinite(y[0, j]):
+            return j
+    return -1
+
+
+@kernel
+def actuator_tick(
+        first_step, steps, is_shared, ports, actuators, bodies, rates, y, k,
+        reu_states, read_outs, replies, samples):
     """
-    reu = actuator.reu
-    body = bodies[0]
-    steps = 0
+    Advance one actuator by ``steps`` plant steps; return the index of a broken state or -1.
+
+    All arrays have one row but ``bodies`` and ``rates`` (`scratch`). A shared load's state
+    overwrites the load copy first. Fills the `LOAD_REPLY` (mean force of each of the tick's
+    windows from its impulse) and the `SAMPLE` at the end of the tick.
+    """
+    port, actuator, body, reply = ports[0], actuators[0], bodies[0], replies[0]
+    reu_state, read_out = reu_states[0], read_outs[0]
+    if is_shared:
+        body.load.position = port.x0
+        body.load.velocity = port.v0
     body.totals.supply_volume = 0.0
     body.totals.return_volume = 0.0
+    window_steps = steps // FORCE_WINDOWS
     for window in range(FORCE_WINDOWS):
         body.totals.impulse = 0.0
-        for _ in range(window_steps):
-            step = first_step + steps
-            tau = steps * PLANT_STEP
-            if (step - reu.offset_steps) % reu.current_steps == 0:
-                force = body_rates(
-                    tau, body, reu_state.current_reference, port, actuator, rates[0])
-                measure(force, body.plant, actuator.plant.sensors, reu_state.measured)
-                cascade_step(step, reu, reu_state)
-            body_step(
-                tau, reu_state.current_reference, port, actuator, bodies, rates, y, k)
-            steps += 1
+        for i in range(window * window_steps, (window + 1) * window_steps):
+            loops_and_plant(first_step + i, i * PLANT_STEP, port, actuator,
+                            bodies, rates, y, k, reu_state)
         reply.mean_forces[window] = body.totals.impulse / (window_steps * PLANT_STEP)
-    end_force = body_rates(
-        steps * PLANT_STEP, body, reu_state.current_reference, port, actuator, rates[0])
-    reply.force = end_force
+    reply.force = read_sensors(
+        body.plant, body.load.position, body.load.velocity, actuator.plant, read_out)
     reply.position = body.plant.mechanics.position
     reply.velocity = body.plant.mechanics.velocity
     reply.supply_volume = body.totals.supply_volume
     reply.return_volume = body.totals.return_volume
-    measure(end_force, body.plant, actuator.plant.sensors, read_out)
-    write_sample(read_out, body.plant, reu_state, sample)
+    write_sample(read_out, body.plant, reu_state, samples[0])
+    return first_broken(y)

@@ -12,6 +12,7 @@ from isa_ros.errors import ParameterError
 from isa_ros.kernel import kernel
 from isa_ros.parameter import Parameters
 from isa_ros.plant import chambers, coil, friction, mechanics, relief, sensors, servo_valve
+from isa_ros.plant.sensors import convert, encode
 from isa_ros.timebase import PLANT_STEP
 import numpy as np
 
@@ -156,3 +157,23 @@ def stop_spool(y, plant):
         if y.valve.velocity * y.valve.spool > 0.0:
             y.valve.velocity = 0.0
             y.valve.acceleration = 0.0
+
+
+@kernel
+def read_sensors(y, x_load, v_load, plant, measured):
+    """
+    Write what every sensor gives at one instant; return the exact sensor force  (S1, S2).
+
+    ``measured`` has the fields position, force, pressure_a, pressure_b, spool, current.
+    """
+    own = plant.sensors
+    force = mechanics.sensor_force(
+        y.mechanics.position, y.mechanics.velocity, x_load, v_load, plant.mechanics)
+    measured.position = encode(y.mechanics.position, own.encoder)
+    measured.force = convert(force, -own.force_range, own.force_range, own.force_step)
+    measured.pressure_a = convert(y.chambers.p_a, 0.0, own.pressure_range, own.pressure_step)
+    measured.pressure_b = convert(y.chambers.p_b, 0.0, own.pressure_range, own.pressure_step)
+    measured.spool = convert(y.valve.spool, -own.spool_range, own.spool_range, own.spool_step)
+    measured.current = convert(
+        y.coil.current, -own.current_range, own.current_range, own.current_step)
+    return force

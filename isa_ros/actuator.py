@@ -1,0 +1,236 @@
+"""
+One smart actuator: setpoints in, one tick, samples out. Free of ROS.
+
+The same object serves a node of its own, many nodes in one process, and replay.
+"""
+
+from dataclasses import dataclass
+import hashlib
+from typing import Protocol
+
+from isa_ros import actuator_kernel as kernels
+from isa_ros.actuator_sheet import actuator_record, ActuatorSheet
+from isa_ros.errors import SimulationDiverged
+from isa_ros.load.local import local_port, local_stops, LocalLoad, static_force
+from isa_ros.plant.plant import read_sensors, rest_pressures
+from isa_ros.reu.cascade import MEASURED, REU_STATE
+from isa_ros.signals import COMMAND, HAS_ENABLE, HAS_SETPOINT, LOAD_PORT, LOAD_REPLY, SAMPLE
+from isa_ros.timebase import FORCE_WINDOWS, PLANT_STEP_NS, steps_in
+import numpy as np
+
+
+@dataclass(frozen=True)
+class Timing:
+    """The macro step and the offset of the REU's instants from it, in nanoseconds."""
+
+    step_ns: int
+    controller_offset_ns: int
+
+    @property
+    def steps(self) -> int:
+        """Return the plant steps of one tick, a multiple of the force windows."""
+        return steps_in(self.step_ns // FORCE_WINDOWS, 'a fifth of step_ms') * FORCE_WINDOWS
+
+
+class ActuatorConfig(Protocol):
+    """What an actuator is made from; `isa_ros.config` provides it."""
+
+    @property
+    def name(self) -> str:
+        """Return the actuator's name, which is its node's."""
+
+    @property
+    def sheet(self) -> ActuatorSheet:
+        """Return its data sheet."""
+
+    @property
+    def load(self) -> LocalLoad | None:
+        """Return its own load, or None at a joint of a shared load."""
+
+    @property
+    def initial_position(self) -> float:
+        """Return the position at t = 0, m or rad."""
+
+
+class SmartActuator:
+    """
+    Valve, oil, piston or rotor, sensors and REU of one actuator.
+
+    Before the first setpoint it holds the position it measured at t = 0, enabled.
+    """
+
+    def __init__(self, config: ActuatorConfig, timing: Timing) -> None:
+        self.name = config.name
+        self.is_rotary = config.sheet.is_rotary
+        self._config = config
+        self._timing = timing
+        self._steps = timing.steps
+        self._is_shared = config.load is None
+        offset_steps = timing.controller_offset_ns // PLANT_STEP_NS
+        self._constants = actuator_record(config.sheet, offset_steps)
+        self._constants['stops'] = local_stops(config.load)
+        self._bodies, self._rates = kernels.scratch()
+        self._y, self._k = kernels.flat(self._bodies), kernels.flat(self._rates)
+        self._reu = np.zeros(1, REU_STATE).view(np.recarray)
+        self._read_out = np.zeros(1, MEASURED).view(np.recarray)
+        self._reply = np.zeros(1, LOAD_REPLY).view(np.recarray)
+        self._sample = np.zeros(1, SAMPLE).view(np.recarray)
+        self._port = np.zeros(1, LOAD_PORT).view(np.recarray)
+        self._pending = np.zeros(1, COMMAND)
+        self._applied = np.zeros(1, COMMAND)
+        self.start(config.initial_position, static_force(config.load), 20.7e6, 0.0)
+
+    @property
+    def digest(self) -> str:
+        """Return a hash of every resolved parameter: equal digests, equal actuators."""
+        constants = self._constants.tobytes() + self._port.tobytes()
+        gains = self._config.sheet.reu.position
+        text = f'{self._timing} {self._is_shared} {gains.stiffness!r} {gains.damping!r}'
+        return hashlib.sha256(constants + text.encode()).hexdigest()[:16]
+
+    def start(
+            self, position: float, force: float,
+            supply_pressure: float, return_pressure: float) -> None:
+        """
+        Put the actuator at rest at ``position`` (m | rad), t = 0, holding ``force`` (N | Nm).
+
+        Pressures are gauge, Pa. The first sample is what the sensors read then.
+        """
+        self.t_ns = 0
+        self._bodies.fill(0)
+        self._reu.fill(0)
+        self._pending.fill(0)
+        if self._config.load is not None:
+            self._port[:] = local_port(self._config.load, position)
+        self._port['supply_pressure'] = supply_pressure
+        self._port['return_pressure'] = return_pressure
+        body, constants = self._bodies[0], self._constants[0]
+        body.plant.mechanics.position = position
+        body.load.position = position - force / constants.plant.mechanics.k_s
+        body.plant.chambers.p_a, body.plant.chambers.p_b = rest_pressures(
+            constants.plant, supply_pressure, return_pressure, force)
+        self._start_loops()
+        self._note_applied(HAS_SETPOINT | HAS_ENABLE)
+        self._reply['position'] = position
+
+    def _start_loops(self) -> None:
+        body, reu, plant = self._bodies[0], self._reu[0], self._constants[0].plant
+        gains = self._config.sheet.reu.position
+        for measured in (reu.measured, self._read_out[0]):
+            self._reply[0].force = read_sensors(
+                body.plant, body.load.position, body.load.velocity, plant, measured)
+        reu.position.position = reu.measured.position
+        reu.force.force = reu.measured.force
+        reu.setpoint.position = reu.measured.position
+        reu.setpoint.stiffness, reu.setpoint.damping = gains.stiffness, gains.damping
+        reu.setpoint.is_enabled = 1.0
+        kernels.write_sample(self._read_out[0], body.plant, reu, self._sample[0])
+
+    @property
+    def sample(self) -> np.void:
+        """Return the `SAMPLE` at the end of the last tick."""
+        return self._sample[0]
+
+    @property
+    def reply(self) -> np.void:
+        """Return the `LOAD_REPLY` of the last tick."""
+        return self._reply[0]
+
+    @property
+    def applied(self) -> np.void | None:
+        """
+        Return what took effect at the start of the last tick, or None.
+
+        A `COMMAND` row with the gains in force and the enable state; at t = 0 the state the
+        actuator starts with.
+        """
+        return self._applied[0] if self._applied['kinds'][0] else None
+
+    def accept(self, command: np.void) -> None:
+        """
+        Take a valid `COMMAND`; it takes effect at the next tick.
+
+        Of several before one tick the last wins, and a gain left NaN keeps the one before.
+        """
+        pending = self._pending[0]
+        kinds = int(command['kinds'])
+        if kinds & HAS_SETPOINT:
+            was_pending = int(pending['kinds']) & HAS_SETPOINT
+            for name in ('position', 'velocity', 'effort'):
+                pending[name] = command[name]
+            for name in ('stiffness', 'damping'):
+                if not (was_pending and np.isnan(command[name])):
+                    pending[name] = command[name]
+        if kinds & HAS_ENABLE:
+            pending['is_enabled'] = command['is_enabled']
+        pending['kinds'] |= kinds
+
+    def tick(self, port: np.void | None = None) -> None:
+        """
+        Advance one macro step; ``port`` is this tick's `LOAD_PORT` row.
+
+        An actuator with its own load reads only the pressures of the port; None keeps the
+        pressures it has.
+
+        Raises:
+            SimulationDiverged: a state is no longer finite.
+
+        """
+        self._take_pending()
+        if port is not None:
+            if self._is_shared:
+                self._port[0] = port
+            else:
+                self._port['supply_pressure'] = port['supply_pressure']
+                self._port['return_pressure'] = port['return_pressure']
+        first_step = self.t_ns // PLANT_STEP_NS
+        broken = kernels.actuator_tick(
+            first_step, self._steps, self._is_shared, self._port, self._constants,
+            self._bodies, self._rates, self._y, self._k,
+            self._reu, self._read_out, self._reply, self._sample)
+        self.t_ns += self._timing.step_ns
+        if broken >= 0:
+            raise SimulationDiverged(
+                self.t_ns, f'{self.name}: {kernels.state_name(broken)}', self._y[0, broken])
+
+    def _take_pending(self) -> None:
+        kinds = int(self._pending['kinds'][0])
+        if not kinds:
+            self._applied['kinds'] = 0
+            return
+        pending, reu = self._pending[0], self._reu[0]
+        setpoint = reu.setpoint
+        if kinds & HAS_ENABLE:
+            if pending['is_enabled'] and not setpoint.is_enabled:
+                setpoint.position = reu.measured.position
+                setpoint.velocity = setpoint.effort = 0.0
+            setpoint.is_enabled = float(pending['is_enabled'])
+        if kinds & HAS_SETPOINT:
+            for name in ('position', 'velocity', 'effort'):
+                setattr(setpoint, name, pending[name])
+            for name in ('stiffness', 'damping'):
+                if not np.isnan(pending[name]):
+                    setattr(setpoint, name, pending[name])
+        self._pending['kinds'] = 0
+        self._note_applied(kinds)
+
+    def _note_applied(self, kinds: int) -> None:
+        setpoint = self._reu[0].setpoint
+        self._applied[0] = (
+            kinds, int(setpoint.is_enabled), setpoint.position, setpoint.velocity,
+            setpoint.effort, setpoint.stiffness, setpoint.damping)
+
+    def snapshot(self) -> bytes:
+        """Return the whole state; `restore` continues from it byte for byte."""
+        parts = (self._bodies[:1], self._reu, self._port, self._pending, self._applied,
+                 self._reply, self._sample)
+        return self.t_ns.to_bytes(8, 'little') + b''.join(part.tobytes() for part in parts)
+
+    def restore(self, snapshot: bytes) -> None:
+        """Continue from a `snapshot` of an actuator with the same digest."""
+        self.t_ns = int.from_bytes(snapshot[:8], 'little')
+        offset = 8
+        for part in (self._bodies[:1], self._reu, self._port, self._pending, self._applied,
+                     self._reply, self._sample):
+            part[:] = np.frombuffer(snapshot, part.dtype, len(part), offset)
+            offset += part.nbytes
