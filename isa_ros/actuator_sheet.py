@@ -27,7 +27,7 @@ class ActuatorSheet(Parameters):
         return isinstance(self.plant, RotaryPlant)
 
 
-def gain_schedule(plant: np.void, name: str) -> np.ndarray:
+def gain_schedule(plant: np.record, name: str) -> np.ndarray:
     """
     Return the factor on the force gains at `POINTS` equal distances, shape (POINTS,)  (R6).
 
@@ -37,23 +37,23 @@ def gain_schedule(plant: np.void, name: str) -> np.ndarray:
     """
     if name == 'constant':
         return np.ones(POINTS)
-    k_s = plant['mechanics']['k_s']
+    k_s = plant.mechanics.k_s
     stiffness = np.array([
-        1.0 / (1.0 / oil_stiffness(s, plant['chambers']) + 1.0 / k_s)
-        for s in np.linspace(0.0, plant['chambers']['stroke'], POINTS)])
+        1.0 / (1.0 / oil_stiffness(s, plant.chambers) + 1.0 / k_s)
+        for s in np.linspace(0.0, plant.chambers.stroke, POINTS)])
     return stiffness.min() / stiffness
 
 
 def actuator_record(sheet: ActuatorSheet, offset_steps: int) -> np.recarray:
     """Return the `ACTUATOR` record of a sheet without load stops, shape (1,)."""
     plant = plant_record(sheet.plant)
-    valve, coil = plant[0]['valve'], plant[0]['coil']
+    valve, coil = plant[0].valve, plant[0].coil
     is_electric = sheet.spool_feedback == 'electric'
     reu = reu_record(
-        sheet.reu, offset_steps, float(plant[0]['chambers']['stroke']),
+        sheet.reu, offset_steps, plant[0].chambers.stroke,
         gain_schedule(plant[0], sheet.reu.force.gain_schedule),
-        spool_per_output=1.0 if is_electric else float(valve['k_spool']),
-        current_per_spool=float(coil['parallel'] / valve['k_spool']))
+        spool_per_output=1.0 if is_electric else valve.k_spool,
+        current_per_spool=coil.parallel / valve.k_spool)
     record = np.zeros(1, ACTUATOR).view(np.recarray)
     record['plant'], record['reu'] = plant, reu
     return record

@@ -121,9 +121,9 @@ def hydraulic_force(p_a, p_b, chambers):
     return chambers.area_a * p_a - chambers.area_b * p_b
 
 
-def oil_stiffness(s: float, chambers: np.void) -> float:
-    """Return the stiffness beta (A_A^2/V_A + A_B^2/V_B) of the trapped oil, N/m  (C4)."""
-    v_a, v_b = volumes.py_func(s, chambers)
-    return float(chambers['beta'] * (
-        chambers['area_a'] * chambers['area_a'] / v_a
-        + chambers['area_b'] * chambers['area_b'] / v_b))
+@kernel
+def oil_stiffness(s, chambers):
+    """Return beta (A_A^2/V_A + A_B^2/V_B) of the trapped oil, in N/m or Nm/rad  (C4)."""
+    v_a, v_b = volumes(s, chambers)
+    return chambers.beta * (chambers.area_a * chambers.area_a / v_a
+                            + chambers.area_b * chambers.area_b / v_b)

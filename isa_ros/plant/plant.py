@@ -63,7 +63,7 @@ class RotaryPlant(PlantSheet):
     drive: chambers.Vane
 
 
-def plant_record(sheet: LinearPlant | RotaryPlant) -> np.ndarray:
+def plant_record(sheet: LinearPlant | RotaryPlant) -> np.recarray:
     """
     Return the `PLANT` record of a sheet, shape (1,).
 
@@ -80,14 +80,13 @@ def plant_record(sheet: LinearPlant | RotaryPlant) -> np.ndarray:
         friction.friction_record(sheet.friction),
         mechanics.mechanics_record(sheet.mechanics),
         sensors.sensors_record(sheet.sensors),
-    )], dtype=PLANT)
+    )], dtype=PLANT).view(np.recarray)
     _refuse_stiff_relief(record[0], sheet)
     return record
 
 
-def _refuse_stiff_relief(plant: np.void, sheet: PlantSheet) -> None:
-    rate = (plant['relief']['slope'] * plant['chambers']['beta']
-            / plant['chambers']['dead_volume'])
+def _refuse_stiff_relief(plant: np.record, sheet: PlantSheet) -> None:
+    rate = plant.relief.slope * plant.chambers.beta / plant.chambers.dead_volume
     if rate > STABLE_RATE:
         raise ParameterError(
             f'relief.slope_lpm_per_mpa = {sheet.relief.slope_lpm_per_mpa:g} l/min/MPa on a dead '
@@ -95,19 +94,20 @@ def _refuse_stiff_relief(plant: np.void, sheet: PlantSheet) -> None:
             f'must be <= {STABLE_RATE:.3g} 1/s for the plant step')
 
 
-def rest_pressures(plant: np.void, supply: float, back: float, force: float) -> tuple[float, float]:
+def rest_pressures(
+        plant: np.record, supply: float, back: float, force: float) -> tuple[float, float]:
     """
     Return the gauge pressures (Pa) that hold ``force`` (N or Nm) with the valve near null.
 
     At null the leaking lands divide the supply pressure so that f_h = 0 (equal flows through
     P-A, A-T and P-B, B-T); half of the force comes from each chamber.
     """
-    valve, oil = plant['valve'], plant['chambers']
-    share_a = valve['f_pa'] ** 2 / (valve['f_pa'] ** 2 + valve['f_at'] ** 2)
-    share_b = valve['f_pb'] ** 2 / (valve['f_pb'] ** 2 + valve['f_bt'] ** 2)
+    lands, oil = plant.valve, plant.chambers
+    share_a = lands.f_pa * lands.f_pa / (lands.f_pa * lands.f_pa + lands.f_at * lands.f_at)
+    share_b = lands.f_pb * lands.f_pb / (lands.f_pb * lands.f_pb + lands.f_bt * lands.f_bt)
     span = supply - back
-    return (back + span * share_a + 0.5 * force / oil['area_a'],
-            back + span * share_b - 0.5 * force / oil['area_b'])
+    return (back + span * share_a + 0.5 * force / oil.area_a,
+            back + span * share_b - 0.5 * force / oil.area_b)
 
 
 @kernel
