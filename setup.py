@@ -1,0 +1,62 @@
+"""The only source of the package's metadata; package.xml repeats the version for ROS."""
+
+from pathlib import Path
+
+from setuptools import find_packages, setup
+
+NAME = 'isa_ros'
+ROOT = Path(__file__).parent
+
+
+def shared(directory: str, pattern: str) -> tuple[str, list[str]]:
+    """Return the data_files row that puts the matching files under share/isa_ros."""
+    files = sorted((ROOT / directory).glob(pattern))
+    return f'share/{NAME}/{directory}', [str(path.relative_to(ROOT)) for path in files]
+
+
+setup(
+    name=NAME,
+    version='0.1.0',
+    description='Hydraulic integrated smart actuators as ROS 2 nodes stepped in lockstep',
+    long_description=(ROOT / 'README.md').read_text(encoding='utf-8')
+    if (ROOT / 'README.md').exists() else '',
+    long_description_content_type='text/markdown',
+    maintainer='isa_ros maintainers',
+    maintainer_email='isa_ros@users.noreply.github.com',
+    license='Apache-2.0',
+    python_requires='>=3.10',
+    packages=find_packages(include=['isa_ros', 'isa_ros.*', 'msg_adapters', 'msg_adapters.*']),
+    package_data={
+        'isa_ros': ['py.typed', 'models/*.yaml', 'load/**/*.yaml', 'nodes/*.xml'],
+        'msg_adapters': ['py.typed'],
+    },
+    data_files=[
+        ('share/ament_index/resource_index/packages', [f'resource/{NAME}']),
+        (f'share/{NAME}', ['package.xml']),
+        shared('config', '*.yaml'),
+        shared('config/bad', '*.yaml'),
+        shared('config/scenarios', '*.yaml'),
+        shared('launch', '*.launch.py'),
+        shared('urdf', '*.urdf'),
+    ],
+    # The ROS wheels never stand here: a machine with apt's ROS must not pull them.
+    install_requires=[
+        'matplotlib>=3.6',
+        'mcap>=1.1',
+        'numba>=0.58',
+        'numpy>=1.26',
+        'PyYAML>=6.0',
+        'scipy>=1.11',
+    ],
+    extras_require={'test': ['hypothesis', 'pytest']},
+    zip_safe=False,
+    entry_points={
+        'console_scripts': [
+            'actuator = isa_ros.nodes.actuator_node:main',
+            'isa_v5 = isa_ros.nodes.actuator_node:main_isa_v5',
+            'smart_manifold = isa_ros.nodes.actuator_node:main_smart_manifold',
+            'coordinator = isa_ros.nodes.coordinator_node:main',
+            'isa = isa_ros.cli:main',
+        ],
+    },
+)
