@@ -201,11 +201,11 @@ def leg_terms(q_z, q_haa, q_hfe, q_kfe, v_z, v_haa, v_hfe, v_kfe, body):
             - 2*c_calf_y*s23*t1 + c_calf_z*c_calf_z*m_calf + c_hip_x*c_hip_x*m_hip
             + c_hip_y*c_hip_y*m_hip + c_thigh_z*c_thigh_z*m_thigh + i_calf_xx + i_hip_zz
             + i_thigh_xx + m_calf*t12 + m_thigh*t12 + t11 + t13*(-i_thigh_xx + i_thigh_yy - t14
-            + t15) + t17*t7 + t17*t8 + t22),
+                                                                 + t15) + t17*t7 + t17*t8 + t22),
         m_z_hfe=c1*c2*t3 + c1*s2*t6 + t23,
         m_haa_hfe=(
             c2*(-c_thigh_y*t10 - c_thigh_y*t8) + s2*(-c_thigh_x*t10 - c_thigh_x*t8 - l_thigh*t7
-            - l_thigh*t9) + t24),
+                                                     - l_thigh*t9) + t24),
         m_hfe_hfe=i_thigh_zz + t15 + t22 + 2*t25 + 2*t26 + t27,
         m_z_kfe=t23,
         m_haa_kfe=t24,
@@ -214,8 +214,9 @@ def leg_terms(q_z, q_haa, q_hfe, q_kfe, v_z, v_haa, v_hfe, v_kfe, body):
         h_z=-c1*(m_hip*t57 + t74) + gravity*m_slider + s1*(m_hip*t31 - t42 - t55),
         h_haa=(
             c2*(c3*t79 + i_thigh_xx*t80 - i_thigh_yy*t80 - i_thigh_zz*t80 + s3*t77 - t4*t41
-            - t5*t54 + t72*t8) + c_hip_x*m_hip*t31 - c_hip_y*m_hip*t57 + l_hip*t74 + s2*(c3*t77
-            + c_thigh_y*t42 + i_thigh_xx*t75 - i_thigh_yy*t75 + i_thigh_zz*t75 - s3*t79 - t60*t8)),
+                - t5*t54 + t72*t8) + c_hip_x*m_hip*t31 - c_hip_y*m_hip*t57 + l_hip*t74
+            + s2*(c3*t77 + c_thigh_y*t42 + i_thigh_xx*t75 - i_thigh_yy*t75 + i_thigh_zz*t75
+                  - s3*t79 - t60*t8)),
         h_hfe=-c_thigh_y*t73 - i_thigh_xx*t81 + i_thigh_yy*t81 + l_thigh*t71 + t4*t60 + t83,
         h_kfe=t83,
         foot_x=-t61 - t84,
@@ -231,4 +232,4 @@ def leg_terms(q_z, q_haa, q_hfe, q_kfe, v_z, v_haa, v_hfe, v_kfe, body):
         j_z_hfe=t95 + t97,
         j_x_kfe=-t87,
         j_y_kfe=t96,
-        j_z_kfe=t97))
+        j_z_kfe=t97)
