@@ -44,7 +44,7 @@ def gain_schedule(plant: np.record, name: str) -> np.ndarray:
     return stiffness.min() / stiffness
 
 
-def actuator_record(sheet: ActuatorSheet, offset_steps: int) -> np.recarray:
+def actuator_record(sheet: ActuatorSheet, offset_steps: int) -> np.ndarray:
     """Return the `ACTUATOR` record of a sheet without load stops, shape (1,)."""
     plant = plant_record(sheet.plant)
     valve, coil = plant[0].valve, plant[0].coil
@@ -54,6 +54,6 @@ def actuator_record(sheet: ActuatorSheet, offset_steps: int) -> np.recarray:
         gain_schedule(plant[0], sheet.reu.force.gain_schedule),
         spool_per_output=1.0 if is_electric else valve.k_spool,
         current_per_spool=coil.parallel / valve.k_spool)
-    record = np.zeros(1, ACTUATOR).view(np.recarray)
+    record = np.zeros(1, ACTUATOR)
     record['plant'], record['reu'] = plant, reu
     return record

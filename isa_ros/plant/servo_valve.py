@@ -52,7 +52,7 @@ VALVE = np.dtype([
     ('k_spool', 'f8'),      # m/A, series scale
     ('k_low', 'f8'), ('k_high', 'f8'),          # m3/s per m of spool at dp_ref
     ('x_dg', 'f8'), ('x_max', 'f8'),            # m
-    ('root_dp_ref', 'f8'),                      # sqrt(Pa)
+    ('per_root_drop', 'f8'),                    # 1/sqrt(dp_ref), 1/sqrt(Pa)
     ('q_0', 'f8'), ('x_l', 'f8'),               # m3/s, m
     ('c_tare', 'f8'),                           # m3/s/sqrt(Pa)
     ('delta', 'f8'),                            # Pa
@@ -85,7 +85,7 @@ def valve_record(sheet: ServoValve, area_ratio: float) -> tuple[float, ...]:
         flow_slope(sheet.high_gain_lpm_per_ma, sheet.spool_gain_mm_per_ma),
         sheet.dual_gain_point_mm * MILLI,
         sheet.spool_stop_mm * MILLI,
-        math.sqrt(sheet.land_drop_mpa * MPA),
+        1.0 / math.sqrt(sheet.land_drop_mpa * MPA),
         sheet.null_leakage_lpm * LPM,
         sheet.leakage_travel_um * 1e-6,
         sheet.tare_leakage_lpm * LPM / math.sqrt(sheet.tare_pressure_mpa * MPA),
@@ -150,12 +150,11 @@ def port_flows(x, p_a, p_b, p_s, p_t, valve):
     travel = abs(x)
     leak = leakage(travel, valve)
     opened = flow_curve(travel, valve) + leak
-    extending = opened if x > 0.0 else leak
-    retracting = opened if x < 0.0 else leak
-    root = valve.root_dp_ref
-    q_pa = valve.f_pa * extending * (signed_sqrt(p_s - p_a, valve.delta) / root)
-    q_at = valve.f_at * retracting * (signed_sqrt(p_a - p_t, valve.delta) / root)
-    q_bt = valve.f_bt * extending * (signed_sqrt(p_b - p_t, valve.delta) / root)
-    q_pb = valve.f_pb * retracting * (signed_sqrt(p_s - p_b, valve.delta) / root)
+    extending = (opened if x > 0.0 else leak) * valve.per_root_drop
+    retracting = (opened if x < 0.0 else leak) * valve.per_root_drop
+    q_pa = valve.f_pa * extending * signed_sqrt(p_s - p_a, valve.delta)
+    q_at = valve.f_at * retracting * signed_sqrt(p_a - p_t, valve.delta)
+    q_bt = valve.f_bt * extending * signed_sqrt(p_b - p_t, valve.delta)
+    q_pb = valve.f_pb * retracting * signed_sqrt(p_s - p_b, valve.delta)
     q_tare = valve.c_tare * signed_sqrt(p_s - p_t, valve.delta)
     return q_pa - q_at, q_pb - q_bt, q_pa + q_pb + q_tare, q_at + q_bt + q_tare
