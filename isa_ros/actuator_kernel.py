@@ -67,13 +67,12 @@ def body_rates(tau, y, current_reference, port, actuator, rates):
 
 
 @kernel
-def body_step(tau, current_reference, port, actuator, bodies, rates, y, k):
+def body_step(h, tau, current_reference, port, actuator, bodies, rates, y, k):
     """
-    Advance ``bodies[0]`` by one classical Runge-Kutta step.
+    Advance ``bodies[0]`` by one classical Runge-Kutta step of ``h`` seconds.
 
     ``bodies[1]`` holds the stage; ``y`` and ``k`` are the flat views of ``bodies``, ``rates``.
     """
-    h = PLANT_STEP
     body_rates(tau, bodies[0], current_reference, port, actuator, rates[0])
     for j in range(STATE_SIZE):
         y[1, j] = y[0, j] + 0.5 * h * k[0, j]
@@ -115,7 +114,8 @@ def loops_and_plant(step, tau, port, actuator, bodies, rates, y, k, reu_state):
         read_sensors(body.plant, body.load.position, body.load.velocity,
                      actuator.plant, reu_state.measured)
         cascade_step(step, reu, reu_state)
-    body_step(tau, reu_state.current_reference, port, actuator, bodies, rates, y, k)
+    body_step(PLANT_STEP, tau, reu_state.current_reference, port, actuator,
+              bodies, rates, y, k)
 
 
 @kernel
