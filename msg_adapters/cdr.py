@@ -1,0 +1,163 @@
+"""
+Canonical CDR: the one byte string of a message.
+
+XCDR1, little endian, as ROS 2 middlewares write it, with every padding byte zero:
+``rclpy.serialize_message`` leaves padding uninitialised, and a bag that is compared by its
+bytes cannot. Alignment counts from the end of the 4-byte encapsulation header; an empty
+sequence does not align its (absent) elements.
+"""
+
+from collections.abc import Iterable, Sequence
+import re
+import struct
+from typing import Any, NamedTuple, Protocol
+
+from isa_ros.errors import IsaError
+import numpy as np
+
+ENCAPSULATION = b'\x00\x01\x00\x00'  # CDR_LE, no options
+PRIMITIVES = {
+    'boolean': '?', 'octet': 'B', 'char': 'B', 'int8': 'b', 'uint8': 'B',
+    'int16': 'h', 'uint16': 'H', 'int32': 'i', 'uint32': 'I',
+    'int64': 'q', 'uint64': 'Q', 'float': 'f', 'double': 'd',
+}
+"""Field type of a message class -> struct format character; the size is the alignment."""
+
+_SEQUENCE = re.compile(r'sequence<(.+?)(?:, \d+)?>')
+_ARRAY = re.compile(r'(.+)\[(\d+)\]')
+_STRING = re.compile(r'string(<\d+>)?')
+
+
+class CdrError(IsaError):
+    """A message that cannot be encoded, or bytes that are no message of their type."""
+
+
+class Message(Protocol):
+    """A ROS 2 message, as the generated Python classes declare themselves."""
+
+    @classmethod
+    def get_fields_and_field_types(cls) -> dict[str, str]:
+        """Return the field types by field name, in wire order."""
+
+
+class FieldType(NamedTuple):
+    """Type of one field: its element type and how many of them."""
+
+    item: str
+    is_sequence: bool
+    length: int | None  # of a fixed array
+
+
+class Slot(NamedTuple):
+    """Where one primitive stands in the bytes, and its struct format character."""
+
+    offset: int
+    code: str
+
+
+def field_type(declared: str) -> FieldType:
+    """Return the parsed form of a field type such as ``sequence<double, 3>``."""
+    if match := _SEQUENCE.fullmatch(declared):
+        return FieldType(match[1], True, None)
+    if match := _ARRAY.fullmatch(declared):
+        return FieldType(match[1], False, int(match[2]))
+    return FieldType(declared, False, None)
+
+
+def is_string(item: str) -> bool:
+    """Tell whether an element type is a (bounded) 8-bit string."""
+    return _STRING.fullmatch(item) is not None
+
+
+def encode(message: Message) -> bytes:
+    """
+    Return the canonical bytes of a message, encapsulation header included.
+
+    Raises:
+        CdrError: a fixed array of the wrong length, or a field type without canonical form.
+
+    """
+    encoder = _Encoder()
+    encoder.add_message(message, '')
+    return bytes(encoder.buffer)
+
+
+def encode_with_slots(message: Message) -> tuple[bytes, dict[str, Slot]]:
+    """
+    Return the canonical bytes and where each primitive stands in them.
+
+    Slots are named by their path: ``header.stamp.sec``, ``position[0]``.
+
+    Raises:
+        CdrError: as `encode`.
+
+    """
+    encoder = _Encoder()
+    encoder.add_message(message, '')
+    return bytes(encoder.buffer), encoder.slots()
+
+
+class _Encoder:
+    """Bytes of one message under construction, and the runs of primitives in them."""
+
+    def __init__(self) -> None:
+        self.buffer = bytearray(ENCAPSULATION)
+        self._runs: list[tuple[str, int, str, int | None]] = []
+
+    def slots(self) -> dict[str, Slot]:
+        """Return the slot of every primitive, one per element of an array."""
+        slots = {}
+        for path, offset, code, count in self._runs:
+            if count is None:
+                slots[path] = Slot(offset, code)
+                continue
+            size = struct.calcsize(f'<{code}')
+            for k in range(count):
+                slots[f'{path}[{k}]'] = Slot(offset + k * size, code)
+        return slots
+
+    def add_message(self, message: Message, prefix: str) -> None:
+        """Append every field in wire order; a message without fields is one zero byte."""
+        declared = message.get_fields_and_field_types()
+        if not declared:
+            self.buffer.append(0)
+        for name, text in declared.items():
+            self._add_field(field_type(text), getattr(message, name), f'{prefix}{name}')
+
+    def _add_field(self, declared: FieldType, value: Any, path: str) -> None:
+        if declared.is_sequence:
+            self._add_primitives('I', [len(value)], path, is_listed=False)
+        elif declared.length is None:
+            self._add_items(declared.item, [value], path, is_array=False)
+            return
+        elif len(value) != declared.length:
+            raise CdrError(f'{path} has {len(value)} elements, must have {declared.length}')
+        self._add_items(declared.item, value, path, is_array=True)
+
+    def _add_items(self, item: str, values: Sequence[Any], path: str, is_array: bool) -> None:
+        if item in PRIMITIVES:
+            if item == 'octet':
+                values = [value[0] for value in values]
+            self._add_primitives(PRIMITIVES[item], values, path, True, is_array)
+            return
+        if not is_string(item) and '/' not in item:
+            raise CdrError(f'{path} is a {item}, which has no canonical encoding here')
+        for k, value in enumerate(values):
+            if is_string(item):
+                text = value.encode() + b'\0'
+                self._add_primitives('I', [len(text)], path, is_listed=False)
+                self.buffer += text
+            else:
+                self.add_message(value, f'{path}[{k}].' if is_array else f'{path}.')
+
+    def _add_primitives(
+            self, code: str, values: Iterable[Any], path: str,
+            is_listed: bool, is_array: bool = False) -> None:
+        native = np.asarray(values, dtype=f'<{code}')
+        if native.size == 0:
+            return
+        self.buffer += bytes(-(len(self.buffer) - len(ENCAPSULATION)) % native.itemsize)
+        if is_listed:
+            count = native.size if is_array else None
+            self._runs.append((path, len(self.buffer), code, count))
+        self.buffer += native.tobytes()

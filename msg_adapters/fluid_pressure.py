@@ -1,0 +1,19 @@
+"""sensor_msgs/FluidPressure: absolute pressures, while everything inside is gauge."""
+
+from msg_adapters.template import Fields, STAMP
+from sensor_msgs.msg import FluidPressure
+
+TYPE = 'sensor_msgs/msg/FluidPressure'
+ATMOSPHERE = 101325.0  # Pa, ISO 2533 standard atmosphere
+
+
+def absolute(gauge: float) -> float:
+    """Return the absolute pressure (Pa) of a gauge pressure (Pa)."""
+    return gauge + ATMOSPHERE
+
+
+def fluid_pressure(frame_id: str, column: int) -> tuple[FluidPressure, Fields]:
+    """Return a pressure message whose value (Pa absolute) is value number ``column``."""
+    message = FluidPressure()
+    message.header.frame_id = frame_id
+    return message, {**STAMP, 'fluid_pressure': column}

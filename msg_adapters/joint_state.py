@@ -1,0 +1,55 @@
+"""sensor_msgs/JointState: joints and named scalars, arrays always full length."""
+
+from collections.abc import Mapping, Sequence
+
+from msg_adapters.template import Fields, STAMP
+from sensor_msgs.msg import JointState
+
+TYPE = 'sensor_msgs/msg/JointState'
+ARRAYS = ('position', 'velocity', 'effort')
+
+
+def joint_state(frame_id: str, names: Sequence[str]) -> JointState:
+    """Return the message of these entries, in this order, all values zero."""
+    zeros = [0.0] * len(names)
+    message = JointState(name=list(names), position=zeros, velocity=zeros, effort=zeros)
+    message.header.frame_id = frame_id
+    return message
+
+
+def entries(n: int, **columns: Sequence[int]) -> Fields:
+    """
+    Return the template fields of ``n`` entries.
+
+    ``columns`` maps position, velocity, effort to value indices, (n,) or fewer: an array
+    that is shorter leaves the entries behind it zero.
+    """
+    fields = dict(STAMP)
+    for array, indices in columns.items():
+        if array not in ARRAYS or len(indices) > n:
+            raise ValueError(f'{array} of {len(indices)} values, must be in {ARRAYS}, <= {n}')
+        fields |= {f'{array}[{k}]': index for k, index in enumerate(indices)}
+    return fields
+
+
+def actuator_joint_state(name: str, columns: Mapping[str, int]) -> tuple[JointState, Fields]:
+    """Return encoder position (m | rad), estimated speed and measured force (N | Nm)."""
+    fields = entries(
+        1, position=[columns['position']], velocity=[columns['velocity']],
+        effort=[columns['force']])
+    return joint_state(name, [name]), fields
+
+
+def valve(name: str, columns: Mapping[str, int]) -> tuple[JointState, Fields]:
+    """Return spool position (m) and speed (m/s), with the coil current (A) as effort."""
+    fields = entries(
+        1, position=[columns['spool']], velocity=[columns['spool_velocity']],
+        effort=[columns['current']])
+    return joint_state(name, [f'{name}/spool']), fields
+
+
+def references(name: str, columns: Mapping[str, int]) -> tuple[JointState, Fields]:
+    """Return the cascade's references, outermost first, each in its unit, in ``position``."""
+    loops = ('position', 'force', 'spool', 'current')
+    fields = entries(4, position=[columns[f'{loop}_reference'] for loop in loops])
+    return joint_state(name, [f'{name}/{loop}' for loop in loops]), fields

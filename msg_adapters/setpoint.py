@@ -1,0 +1,107 @@
+"""Setpoints in, applied setpoints out: JointState <-> COMMAND row."""
+
+from collections.abc import Sequence
+import math
+
+from isa_ros.errors import SetpointError
+from isa_ros.signals import COMMAND, HAS_ENABLE, HAS_SETPOINT
+from msg_adapters.cdr_reader import decode
+from msg_adapters.joint_state import ARRAYS, entries, joint_state
+from msg_adapters.template import stamp, Template
+import numpy as np
+from sensor_msgs.msg import JointState
+
+GAINS = ('stiffness', 'damping')
+
+
+class AppliedSetpoint:
+    """Prepared ``~/applied_setpoint`` of one actuator: everything that took effect at a tick."""
+
+    def __init__(self, name: str) -> None:
+        names = [name, f'{name}/stiffness', f'{name}/damping', f'{name}/enabled']
+        fields = entries(4, position=[2, 5, 6, 7], velocity=[3], effort=[4])
+        self._template = Template([(joint_state(name, names), fields)], n_values=8)
+
+    def pack(self, command: np.void, t_ns: int) -> bytes:
+        """Return the CDR bytes of a COMMAND row with gains resolved, in force from ``t_ns``."""
+        _, is_enabled, position, velocity, effort, stiffness, damping = command.item()
+        return self._template.pack((
+            *stamp(t_ns), position, velocity, effort, stiffness, damping, float(is_enabled)))[0]
+
+
+def msg_to_command(message: JointState, name: str) -> np.void:
+    """
+    Return the COMMAND row of a setpoint for actuator ``name``.
+
+    Entry NAME holds position, velocity and effort; the optional entries NAME/stiffness and
+    NAME/damping a gain in ``position``. Missing velocity or effort is zero, a missing gain
+    is NaN: it keeps the gain in force.
+
+    Raises:
+        SetpointError: the message is rejected as a whole: a name that is not one of these
+            or comes twice, no position, a value that is not finite, a negative gain.
+
+    """
+    return _command(message, name, [name, *(f'{name}/{gain}' for gain in GAINS)])
+
+
+def applied_to_command(data: bytes, name: str) -> np.void:
+    """
+    Return the COMMAND row of a recorded applied setpoint; inverse of `AppliedSetpoint.pack`.
+
+    Raises:
+        SetpointError: not an applied setpoint of ``name``, or a value that is not finite.
+        CdrError: the bytes are no JointState.
+
+    """
+    message = decode(data, JointState)
+    enabled = f'{name}/enabled'
+    names = [name, *(f'{name}/{gain}' for gain in GAINS), enabled]
+    if list(message.name) != names:
+        raise SetpointError(
+            f'{name}: applied setpoint names {list(message.name)}, must name {names}')
+    command = _command(message, name, names)
+    value = message.position[names.index(enabled)]
+    if value not in (0.0, 1.0):
+        raise SetpointError(f'{enabled} = {value}, must be 0.0 or 1.0')
+    command['kinds'] |= HAS_ENABLE
+    command['is_enabled'] = int(value)
+    return command
+
+
+def _command(message: JointState, name: str, known: Sequence[str]) -> np.void:
+    names = list(message.name)
+    if name not in names:
+        raise SetpointError(f'{name}: no such joint in the setpoint, which names {names}')
+    _check(message, name, names, known)
+    command: np.void = np.zeros(1, dtype=COMMAND)[0]
+    k = names.index(name)
+    command['kinds'] = HAS_SETPOINT
+    for field in ARRAYS:
+        values = getattr(message, field)
+        command[field] = values[k] if k < len(values) else 0.0
+    for gain in GAINS:
+        entry = f'{name}/{gain}'
+        command[gain] = message.position[names.index(entry)] if entry in names else math.nan
+        if command[gain] < 0.0:
+            raise SetpointError(f'{entry} = {command[gain]}, must be >= 0')
+    return command
+
+
+def _check(message: JointState, name: str, names: list[str], known: Sequence[str]) -> None:
+    unknown = [entry for entry in names if entry not in known]
+    if unknown:
+        raise SetpointError(f'{name}: unknown setpoint entries {unknown}, must be of {known}')
+    if len(set(names)) != len(names):
+        raise SetpointError(f'{name}: setpoint names an entry twice: {names}')
+    if len(message.position) != len(names):
+        raise SetpointError(
+            f'{name}: setpoint has {len(message.position)} positions for {len(names)} names')
+    for field in ARRAYS:
+        values = getattr(message, field)
+        if len(values) > len(names):
+            raise SetpointError(
+                f'{name}: setpoint has {len(values)} values of {field} for {len(names)} names')
+        for k, value in enumerate(values):
+            if not math.isfinite(value):
+                raise SetpointError(f'{names[k]}: setpoint {field} = {value}, must be finite')

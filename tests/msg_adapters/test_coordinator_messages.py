@@ -1,0 +1,42 @@
+"""What the coordinator publishes."""
+
+from geometry_msgs.msg import WrenchStamped
+from msg_adapters.cdr_reader import decode
+from msg_adapters.coordinator_messages import ClockMessage, GroundContactMessage
+from msg_adapters.coordinator_messages import LegJointStateMessage, SupplyPressureMessage
+import numpy as np
+from rosgraph_msgs.msg import Clock
+from sensor_msgs.msg import FluidPressure, JointState
+
+T_NS = 7_000_000_008
+
+
+def test_clock_is_simulation_time():
+    message = decode(ClockMessage().pack(T_NS), Clock)
+    assert (message.clock.sec, message.clock.nanosec) == (7, 8)
+
+
+def test_leg_joints_come_in_fixed_order():
+    template = LegJointStateMessage(['haa', 'hfe', 'kfe'])
+    data = template.pack(np.array([1.0, 2.0, 3.0]), [4.0, 5.0, 6.0], (7.0, 8.0, 9.0), T_NS)
+    message = decode(data, JointState)
+    assert message.name == ['haa', 'hfe', 'kfe']
+    assert list(message.position) == [1.0, 2.0, 3.0]
+    assert list(message.velocity) == [4.0, 5.0, 6.0]
+    assert list(message.effort) == [7.0, 8.0, 9.0]
+    assert (message.header.stamp.sec, message.header.stamp.nanosec) == (7, 8)
+    assert message.header.frame_id == 'world'
+
+
+def test_ground_contact_is_a_force_in_the_world():
+    message = decode(GroundContactMessage().pack([1.0, 2.0, 3.0], T_NS), WrenchStamped)
+    force, torque = message.wrench.force, message.wrench.torque
+    assert (force.x, force.y, force.z) == (1.0, 2.0, 3.0)
+    assert (torque.x, torque.y, torque.z) == (0.0, 0.0, 0.0)
+    assert message.header.frame_id == 'world'
+
+
+def test_supply_pressure_is_absolute():
+    message = decode(SupplyPressureMessage().pack(20.7e6, T_NS), FluidPressure)
+    assert message.fluid_pressure == 20.7e6 + 101325.0
+    assert message.header.frame_id == 'supply'

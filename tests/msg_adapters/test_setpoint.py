@@ -1,0 +1,116 @@
+"""Setpoints: what is accepted, what it means, and what is refused by name."""
+
+import math
+
+from hypothesis import given, settings, strategies as st
+from isa_ros.errors import SetpointError
+from isa_ros.signals import COMMAND, HAS_ENABLE, HAS_SETPOINT
+from msg_adapters.cdr import encode
+from msg_adapters.cdr_reader import decode
+from msg_adapters.setpoint import applied_to_command, AppliedSetpoint, msg_to_command
+import numpy as np
+import pytest
+from sensor_msgs.msg import JointState
+
+finite = st.floats(allow_nan=False, allow_infinity=False)
+positive = st.floats(0.0, allow_infinity=False)
+
+
+def command(**values):
+    """Return a COMMAND row, unnamed fields zero."""
+    row = np.zeros(1, dtype=COMMAND)[0]
+    for name, value in values.items():
+        row[name] = value
+    return row
+
+
+def test_plain_joint_state_keeps_the_gains():
+    row = msg_to_command(JointState(name=['hip'], position=[0.5]), 'hip')
+    assert row['kinds'] == HAS_SETPOINT
+    assert (row['position'], row['velocity'], row['effort']) == (0.5, 0.0, 0.0)
+    assert math.isnan(row['stiffness']) and math.isnan(row['damping'])
+
+
+def test_velocity_and_effort_are_taken():
+    message = JointState(name=['hip'], position=[0.5], velocity=[-1.0], effort=[20.0])
+    row = msg_to_command(message, 'hip')
+    assert (row['velocity'], row['effort']) == (-1.0, 20.0)
+
+
+def test_gains_are_entries_in_any_order():
+    message = JointState(
+        name=['hip/damping', 'hip', 'hip/stiffness'], position=[20.0, 0.5, 300.0],
+        velocity=[0.0, 1.0, 0.0])
+    row = msg_to_command(message, 'hip')
+    assert (row['position'], row['velocity']) == (0.5, 1.0)
+    assert (row['stiffness'], row['damping']) == (300.0, 20.0)
+
+
+def test_one_gain_alone_keeps_the_other():
+    message = JointState(name=['hip', 'hip/stiffness'], position=[0.5, 300.0])
+    row = msg_to_command(message, 'hip')
+    assert row['stiffness'] == 300.0 and math.isnan(row['damping'])
+
+
+@pytest.mark.parametrize('value', [math.nan, math.inf, -math.inf])
+@pytest.mark.parametrize('array', ['position', 'velocity', 'effort'])
+@pytest.mark.parametrize('entry', [0, 1])
+def test_any_value_that_is_not_finite_rejects_the_whole_message(value, array, entry):
+    columns = {name: [0.0, 0.0] for name in ('position', 'velocity', 'effort')}
+    columns[array][entry] = value
+    message = JointState(name=['hip', 'hip/stiffness'], **columns)
+    with pytest.raises(SetpointError, match=rf'hip.*: setpoint {array} = -?(nan|inf), must be'):
+        msg_to_command(message, 'hip')
+
+
+@pytest.mark.parametrize('message, said', [
+    (JointState(name=['knee'], position=[0.0]),
+     r"hip: no such joint in the setpoint, which names \['knee'\]"),
+    (JointState(), r'hip: no such joint in the setpoint, which names \[\]'),
+    (JointState(name=['hip', 'hip/stifness'], position=[0.0, 1.0]),
+     r"unknown setpoint entries \['hip/stifness'\]"),
+    (JointState(name=['hip', 'hip'], position=[0.0, 1.0]), 'names an entry twice'),
+    (JointState(name=['hip']), '0 positions for 1 names'),
+    (JointState(name=['hip'], position=[0.0, 1.0]), '2 positions for 1 names'),
+    (JointState(name=['hip'], position=[0.0], effort=[1.0, 2.0]), '2 values of effort for 1'),
+    (JointState(name=['hip', 'hip/damping'], position=[0.0, -1.0]),
+     'hip/damping = -1.0, must be >= 0'),
+])
+def test_malformed_setpoint_is_refused(message, said):
+    with pytest.raises(SetpointError, match=said):
+        msg_to_command(message, 'hip')
+
+
+@given(position=finite, velocity=finite, effort=finite, stiffness=positive, damping=positive,
+       is_enabled=st.integers(0, 1), t_ns=st.integers(0, 10**12))
+@settings(deadline=None)
+def test_applied_setpoint_comes_back_bit_for_bit(t_ns, **values):
+    """Replay feeds the recorded applied setpoints, so the round trip must be exact."""
+    row = command(kinds=HAS_SETPOINT | HAS_ENABLE, **values)
+    data = AppliedSetpoint('hip').pack(row, t_ns)
+    assert applied_to_command(data, 'hip').tobytes() == row.tobytes()
+
+
+def test_applied_setpoint_names_all_that_took_effect():
+    row = command(position=0.5, velocity=1.0, effort=2.0, stiffness=300.0, damping=20.0,
+                  is_enabled=1)
+    message = decode(AppliedSetpoint('hip').pack(row, 3_000_000_004), JointState)
+    assert message.name == ['hip', 'hip/stiffness', 'hip/damping', 'hip/enabled']
+    assert list(message.position) == [0.5, 300.0, 20.0, 1.0]
+    assert list(message.velocity) == [1.0, 0.0, 0.0, 0.0]
+    assert list(message.effort) == [2.0, 0.0, 0.0, 0.0]
+    assert (message.header.stamp.sec, message.header.stamp.nanosec) == (3, 4)
+    assert message.header.frame_id == 'hip'
+
+
+def test_applied_setpoint_of_another_actuator_is_refused():
+    data = AppliedSetpoint('knee').pack(command(), 0)
+    with pytest.raises(SetpointError, match="hip: applied setpoint names .'knee'"):
+        applied_to_command(data, 'hip')
+
+
+def test_applied_enable_is_zero_or_one():
+    message = decode(AppliedSetpoint('hip').pack(command(), 0), JointState)
+    message.position[3] = 0.5
+    with pytest.raises(SetpointError, match='hip/enabled = 0.5, must be 0.0 or 1.0'):
+        applied_to_command(encode(message), 'hip')

@@ -1,0 +1,56 @@
+"""Prepared messages: patching equals encoding the message anew."""
+
+from hypothesis import given, settings, strategies as st
+from msg_adapters.cdr import CdrError, encode
+from msg_adapters.template import STAMP, stamp, Template
+import pytest
+from sensor_msgs.msg import FluidPressure, JointState
+
+numbers = st.floats()
+names = st.lists(st.text('abcdefgh/_', min_size=1, max_size=9), max_size=4)
+
+
+def joints(entries, frame, values, t_ns):
+    """Return a JointState whose three arrays take the values one after another."""
+    n = len(entries)
+    message = JointState(
+        name=entries, position=values[:n], velocity=values[n:2 * n], effort=values[2 * n:])
+    message.header.frame_id = frame
+    message.header.stamp.sec, message.header.stamp.nanosec = stamp(t_ns)
+    return message
+
+
+@given(entries=names, frame=st.text('xyz', max_size=5), t_ns=st.integers(0, 2**31 * 10**9 - 1),
+       drawn=st.data())
+@settings(deadline=None)
+def test_packing_equals_encoding(entries, frame, t_ns, drawn):
+    """Every alignment of names and arrays, every float: the same bytes."""
+    n = 3 * len(entries)
+    values = drawn.draw(st.lists(numbers, min_size=n, max_size=n))
+    paths = [f'{array}[{k}]' for array in ('position', 'velocity', 'effort')
+             for k in range(len(entries))]
+    fields = {**STAMP, **{path: 2 + k for k, path in enumerate(paths)}}
+    template = Template([(joints(entries, frame, [0.0] * n, 0), fields)], 2 + n)
+    assert template.pack((*stamp(t_ns), *values)) == [
+        encode(joints(entries, frame, values, t_ns))]
+
+
+def test_messages_of_one_template_share_their_values():
+    first, second = FluidPressure(variance=3.0), JointState(name=['a'], position=[9.0])
+    template = Template([(first, {**STAMP, 'fluid_pressure': 2}), (second, STAMP)], 3)
+    packed = template.pack((*stamp(1_000_000_002), 5.0))
+    for message in (first, second):
+        message.header.stamp.sec, message.header.stamp.nanosec = 1, 2
+    first.fluid_pressure = 5.0
+    assert packed == [encode(first), encode(second)]
+
+
+def test_unknown_field_is_refused_naming_those_there_are():
+    with pytest.raises(CdrError, match=r"no number 'presure'; it has header.stamp.sec, .*, "
+                                       'fluid_pressure, variance'):
+        Template([(FluidPressure(), {'presure': 0})], 1)
+
+
+def test_time_is_split_without_a_float():
+    """2^53 ns is 104 days: beyond it a double would lose nanoseconds."""
+    assert stamp(2**53 + 1) == (9007199, 254740993)
