@@ -1,0 +1,294 @@
+"""
+One leg under three actuators: accelerations, load ports, and one tick of motion.
+
+Continuous states are one flat row of floats (`LEG_STATE`); inside a kernel they travel as a
+tuple y = (z, q_haa, q_hfe, q_kfe, their speeds, bristle x, bristle y). Joints are in the order
+HAA, HFE, KFE. Equations L6 and L12-L16 of docs/equations.md.
+
+Neglected: friction of joints and rail, compliance of links and joints.
+"""
+
+import math
+from typing import NamedTuple
+
+from isa_ros.kernel import kernel
+from isa_ros.load.ground import bristle_rates, contact
+from isa_ros.load.leg_dynamics import leg_terms
+from isa_ros.load.linkage import actuator_coordinate
+from isa_ros.signals import LOAD_REPLY
+from isa_ros.timebase import FORCE_WINDOWS, NS_PER_SECOND
+import numpy as np
+
+LEG_STATE = np.dtype([(name, '<f8') for name in (
+    'z', 'q_haa', 'q_hfe', 'q_kfe',      # m, rad
+    'v_z', 'v_haa', 'v_hfe', 'v_kfe',    # m/s, rad/s
+    'bristle_x', 'bristle_y',            # m
+    'force_haa', 'force_hfe', 'force_kfe',  # estimated at the tick's end, N | Nm
+    'slope_haa', 'slope_hfe', 'slope_kfe',  # its slope, N/s | Nm/s
+    'is_held',                           # 1.0: the slider is locked
+)])
+"""Everything a leg carries from tick to tick."""
+
+LEG_SAMPLE = np.dtype([
+    ('position', '<f8', (3,)),        # joint angles, rad
+    ('velocity', '<f8', (3,)),        # rad/s
+    ('torque', '<f8', (3,)),          # lever times sensor force, Nm
+    ('foot_force', '<f8', (3,)),      # from the ground, base axes, N
+    ('foot_position', '<f8', (3,)),   # base axes, z above the ground, m
+    ('height', '<f8'),                # HAA axis above the ground, m
+    ('height_velocity', '<f8'),       # m/s
+])
+"""What a leg shows at the end of a tick."""
+
+N_STATES = 10
+FORCE = N_STATES            # place of the force estimates in the flat state
+SLOPE = FORCE + 3
+HELD = SLOPE + 3
+REPLY_WIDTH = LOAD_REPLY.itemsize // 8
+MEANS = LOAD_REPLY.fields['mean_forces'][1] // 8
+END_FORCE = LOAD_REPLY.fields['force'][1] // 8
+SUBSTEP_NS = 100_000        # longest Runge-Kutta step of the leg, coupling.md
+PROBE_DISPLACEMENT = 1e-7   # m | rad: 1e-3 of the smallest depth at which the ground matters
+PROBE_SPEED = 1e-5          # m/s | rad/s: as small against impact speeds
+
+
+class Motion(NamedTuple):
+    """Accelerations, the factor L D L^T of the mass matrix, levers and the foot."""
+
+    a_z: float
+    a_haa: float
+    a_hfe: float
+    a_kfe: float
+    rate_x: float
+    rate_y: float
+    d: tuple
+    l: tuple
+    r: tuple
+    dr: tuple
+    foot: tuple
+
+
+@kernel
+def factor(m, is_held):
+    """
+    Return D (4) and L (6: 10 20 21 30 31 32) of M = L D L^T.
+
+    A held slider is the constraint z'' = 0: its row and column become those of a unit mass
+    on which nothing acts. D > 0 because M is positive definite.
+    """
+    m_zz, m_z1, m_z2, m_z3 = m.m_z_z, m.m_z_haa, m.m_z_hfe, m.m_z_kfe
+    if is_held:
+        m_zz, m_z1, m_z2, m_z3 = 1.0, 0.0, 0.0, 0.0
+    l10, l20, l30 = m_z1 / m_zz, m_z2 / m_zz, m_z3 / m_zz
+    d1 = m.m_haa_haa - l10 * m_z1
+    e21, e31 = m.m_haa_hfe - l20 * m_z1, m.m_haa_kfe - l30 * m_z1
+    l21, l31 = e21 / d1, e31 / d1
+    d2 = m.m_hfe_hfe - l20 * m_z2 - l21 * e21
+    e32 = m.m_hfe_kfe - l30 * m_z2 - l31 * e21
+    l32 = e32 / d2
+    d3 = m.m_kfe_kfe - l30 * m_z3 - l31 * e31 - l32 * e32
+    return (m_zz, d1, d2, d3), (l10, l20, l21, l30, l31, l32)
+
+
+@kernel
+def solve(d, l, b0, b1, b2, b3):  # noqa: E741, the symbol of the factorisation
+    """Return the solution of L D L^T x = b."""
+    b1 -= l[0] * b0
+    b2 -= l[1] * b0 + l[2] * b1
+    b3 -= l[3] * b0 + l[4] * b1 + l[5] * b2
+    x3 = b3 / d[3]
+    x2 = b2 / d[2] - l[5] * x3
+    x1 = b1 / d[1] - l[2] * x2 - l[4] * x3
+    x0 = b0 / d[0] - l[0] * x1 - l[1] * x2 - l[3] * x3
+    return x0, x1, x2, x3
+
+
+@kernel
+def leg_motion(y, f, is_held, body, linkages, ground):
+    """Return the `Motion` under actuator forces ``f``: M q'' = r F + J^T f_foot - h  (L6)."""
+    m = leg_terms(y[0], y[1], y[2], y[3], y[4], y[5], y[6], y[7], body)
+    _, r1, dr1 = actuator_coordinate(y[1], linkages[0])
+    _, r2, dr2 = actuator_coordinate(y[2], linkages[1])
+    _, r3, dr3 = actuator_coordinate(y[3], linkages[2])
+    f_x, f_y, f_z, rate_x, rate_y = contact(
+        m.foot_z, m.foot_v_x, m.foot_v_y, m.foot_v_z, y[8], y[9], ground)
+    d, l = factor(m, is_held)  # noqa: E741
+    b0 = 0.0 if is_held else f_z - m.h_z
+    b1 = r1 * f[0] + m.j_y_haa * f_y + m.j_z_haa * f_z - m.h_haa
+    b2 = r2 * f[1] + m.j_x_hfe * f_x + m.j_y_hfe * f_y + m.j_z_hfe * f_z - m.h_hfe
+    b3 = r3 * f[2] + m.j_x_kfe * f_x + m.j_y_kfe * f_y + m.j_z_kfe * f_z - m.h_kfe
+    a = solve(d, l, b0, b1, b2, b3)
+    return Motion(a[0], a[1], a[2], a[3], rate_x, rate_y, d, l, (r1, r2, r3), (dr1, dr2, dr3),
+                  (m.foot_x, m.foot_y, m.foot_z, f_x, f_y, f_z))
+
+
+@kernel
+def leg_rates(y, f, is_held, body, linkages, ground):
+    """Return dy/dt, a tuple of `N_STATES`."""
+    a = leg_motion(y, f, is_held, body, linkages, ground)
+    return (y[4], y[5], y[6], y[7], a.a_z, a.a_haa, a.a_hfe, a.a_kfe, a.rate_x, a.rate_y)
+
+
+@kernel
+def shifted(y, h, k):
+    """Return y + h k."""
+    return (y[0] + h * k[0], y[1] + h * k[1], y[2] + h * k[2], y[3] + h * k[3],
+            y[4] + h * k[4], y[5] + h * k[5], y[6] + h * k[6], y[7] + h * k[7],
+            y[8] + h * k[8], y[9] + h * k[9])
+
+
+@kernel
+def leg_step(y, h, f, is_held, body, linkages, ground):
+    """Return y after one classical Runge-Kutta step under constant forces."""
+    k1 = leg_rates(y, f, is_held, body, linkages, ground)
+    k2 = leg_rates(shifted(y, 0.5 * h, k1), f, is_held, body, linkages, ground)
+    k3 = leg_rates(shifted(y, 0.5 * h, k2), f, is_held, body, linkages, ground)
+    k4 = leg_rates(shifted(y, h, k3), f, is_held, body, linkages, ground)
+    y = shifted(shifted(y, h / 6.0, k1), h / 6.0, k4)
+    return shifted(shifted(y, h / 3.0, k2), h / 3.0, k3)
+
+
+@kernel
+def actuator_accelerations(y, f, is_held, body, linkages, ground):
+    """Return x'' = r q'' + (dr/dq) q'^2 of the three actuators  (L12), in m/s2 or rad/s2."""
+    a = leg_motion(y, f, is_held, body, linkages, ground)
+    return (a.r[0] * a.a_haa + a.dr[0] * y[5] * y[5],
+            a.r[1] * a.a_hfe + a.dr[1] * y[6] * y[6],
+            a.r[2] * a.a_kfe + a.dr[2] * y[7] * y[7])
+
+
+@kernel
+def unpacked(flat):
+    """Return (y, forces, slopes, is_held) of the flat state."""
+    y = (flat[0], flat[1], flat[2], flat[3], flat[4], flat[5], flat[6], flat[7], flat[8], flat[9])
+    return (y, (flat[FORCE], flat[FORCE + 1], flat[FORCE + 2]),
+            (flat[SLOPE], flat[SLOPE + 1], flat[SLOPE + 2]), flat[HELD] != 0.0)
+
+
+@kernel
+def response(j, a):
+    """
+    Return (u, 1/m_eff) of a force at actuator ``j``  (L13).
+
+    u is the direction in which the leg gives way, scaled to one unit of x_j: M^-1 e_j / (r
+    (M^-1)_jj); 1/m_eff = r^2 (M^-1)_jj.
+    """
+    e = (1.0 if j == 0 else 0.0, 1.0 if j == 1 else 0.0, 1.0 if j == 2 else 0.0)
+    c = solve(a.d, a.l, 0.0, e[0], e[1], e[2])
+    scale = 1.0 / (a.r[j] * c[j + 1])
+    return (c[0] * scale, c[1] * scale, c[2] * scale, c[3] * scale), a.r[j] * a.r[j] * c[j + 1]
+
+
+@kernel
+def bristle_follow(y, u, body, ground):
+    """Return how far the bristles follow a displacement u of the leg: (dz'/dv) J u  (L14)."""
+    m = leg_terms(y[0], y[1], y[2], y[3], y[4], y[5], y[6], y[7], body)
+    if m.foot_z >= 0.0:
+        return 0.0, 0.0
+    w_x = m.j_x_hfe * u[2] + m.j_x_kfe * u[3]
+    w_y = m.j_y_haa * u[1] + m.j_y_hfe * u[2] + m.j_y_kfe * u[3]
+    s = PROBE_SPEED
+    before = bristle_rates(y[8], y[9], m.foot_v_x, m.foot_v_y, True, ground)
+    after = bristle_rates(
+        y[8], y[9], m.foot_v_x + s * w_x, m.foot_v_y + s * w_y, True, ground)
+    return (after[0] - before[0]) / s, (after[1] - before[1]) / s
+
+
+@kernel
+def leg_ports(flat, look_ahead, rows, body_rows, linkages, ground_rows, ports):
+    """
+    Fill the `LOAD_PORT` of the three actuators, rows ``rows`` of ``ports``  (L1, L12-L15).
+
+    Pressures are left as they are. ``look_ahead`` (s) is the distance of the jerk's
+    finite difference.
+    """
+    body, ground = body_rows[0], ground_rows[0]
+    y, f, slope, is_held = unpacked(flat)
+    a = leg_motion(y, f, is_held, body, linkages, ground)
+    now = actuator_accelerations(y, f, is_held, body, linkages, ground)
+    h = look_ahead
+    speed = (y[4] + 0.5 * h * a.a_z, y[5] + 0.5 * h * a.a_haa, y[6] + 0.5 * h * a.a_hfe,
+             y[7] + 0.5 * h * a.a_kfe)
+    ahead = shifted(y, h, (speed[0], speed[1], speed[2], speed[3], a.a_z, a.a_haa, a.a_hfe,
+                           a.a_kfe, a.rate_x, a.rate_y))
+    later = actuator_accelerations(
+        ahead, (f[0] + h * slope[0], f[1] + h * slope[1], f[2] + h * slope[2]),
+        is_held, body, linkages, ground)
+    for j in range(3):
+        port = ports[rows[j]]
+        u, inverse_mass = response(j, a)
+        x, r, _ = actuator_coordinate(y[j + 1], linkages[j])
+        port.x0, port.v0, port.a0 = x, r * y[j + 5], now[j]
+        port.inverse_mass = inverse_mass
+        port.a_bias = now[j] - f[j] * inverse_mass
+        port.jerk = (later[j] - now[j]) / h - slope[j] * inverse_mass
+        z_x, z_y = bristle_follow(y, u, body, ground)
+        moved = shifted(y, PROBE_DISPLACEMENT,
+                        (u[0], u[1], u[2], u[3], 0.0, 0.0, 0.0, 0.0, z_x, z_y))
+        faster = shifted(y, PROBE_SPEED,
+                         (0.0, 0.0, 0.0, 0.0, u[0], u[1], u[2], u[3], 0.0, 0.0))
+        port.stiffness = (now[j] - actuator_accelerations(
+            moved, f, is_held, body, linkages, ground)[j]) / PROBE_DISPLACEMENT
+        port.damping = (now[j] - actuator_accelerations(
+            faster, f, is_held, body, linkages, ground)[j]) / PROBE_SPEED
+
+
+@kernel
+def fill_sample(y, f, is_held, body, linkages, ground, sample):
+    """Fill one `LEG_SAMPLE`, a flat row; ``f`` are the sensor forces."""
+    a = leg_motion(y, f, is_held, body, linkages, ground)
+    for j in range(3):
+        sample[j] = y[j + 1]
+        sample[j + 3] = y[j + 5]
+        sample[j + 6] = a.r[j] * f[j]
+        sample[j + 9] = a.foot[j + 3]
+        sample[j + 12] = a.foot[j]
+    sample[15], sample[16] = y[0], y[4]
+
+
+@kernel
+def reply_column(replies, rows, column):
+    """Return one column of the three actuators' rows of the flat replies."""
+    return replies[rows[0], column], replies[rows[1], column], replies[rows[2], column]
+
+
+@kernel
+def leg_tick(flat, step_ns, rows, body_rows, linkages, ground_rows, replies, sample):
+    """
+    Advance by one macro step under the mean forces of its windows; return a broken state or -1.
+
+    ``replies`` are the `LOAD_REPLY` rows as floats, shape (n_actuators, REPLY_WIDTH). Each
+    window is divided into equal Runge-Kutta steps of at most `SUBSTEP_NS`.
+    """
+    body, ground = body_rows[0], ground_rows[0]
+    y, _, _, is_held = unpacked(flat)
+    window_ns = step_ns // FORCE_WINDOWS
+    substeps = (window_ns + SUBSTEP_NS - 1) // SUBSTEP_NS
+    h = window_ns / NS_PER_SECOND / substeps
+    for window in range(FORCE_WINDOWS):
+        f = reply_column(replies, rows, MEANS + window)
+        for _ in range(substeps):
+            y = leg_step(y, h, f, is_held, body, linkages, ground)
+    for i in range(N_STATES):
+        flat[i] = y[i]
+        if not math.isfinite(y[i]):
+            return i
+    keep_forces(flat, step_ns / NS_PER_SECOND, rows, replies)
+    fill_sample(y, reply_column(replies, rows, END_FORCE), is_held, body, linkages, ground,
+                sample)
+    return -1
+
+
+@kernel
+def keep_forces(flat, step, rows, replies):
+    """Keep the least-squares line through the window means, at the tick's end  (L16)."""
+    n = float(FORCE_WINDOWS)
+    for j in range(3):
+        moment, mean = 0.0, 0.0
+        for window in range(FORCE_WINDOWS):
+            force = replies[rows[j], MEANS + window]
+            moment += (window - 0.5 * (n - 1.0)) * force
+            mean += force / n
+        slope = 12.0 * moment / ((n * n - 1.0) * step)
+        flat[SLOPE + j] = slope
+        flat[FORCE + j] = mean + 0.5 * step * slope
