@@ -1,0 +1,101 @@
+"""The data that comes with the package: actuator models with their presets and loads, legs."""
+
+from dataclasses import dataclass
+from pathlib import Path
+
+from isa_ros.errors import ConfigError
+from isa_ros.resolve import (
+    alternatives, Entry, merge, Place, refuse_unknown, Section, section_at, sourced)
+from isa_ros.strict_yaml import read, Tree
+
+_PACKAGE = Path(__file__).parent
+_MODELS = _PACKAGE / 'models'
+_LEGS = _PACKAGE / 'load' / 'legs'
+
+
+@dataclass(frozen=True)
+class Model:
+    """One actuator model: its sheet without REU gains, named gain sets, and own loads."""
+
+    name: str
+    place: Place
+    sheet: Section
+    presets: dict[str, Section]
+    loads: dict[str, Section]
+    default_load: str
+
+    def with_preset(self, preset: str, where: str) -> Section:
+        """
+        Return the whole sheet with the gains of a preset.
+
+        Raises
+        ------
+        ConfigError
+            The model has no preset of this name; ``where`` is the key that named it.
+
+        """
+        if preset not in self.presets:
+            raise ConfigError(
+                f'{where} = {preset!r} is no preset of {self.name}; '
+                f'{alternatives(preset, self.presets)}')
+        return merge(self.sheet, {'reu': self.presets[preset]})
+
+
+def model_names() -> list[str]:
+    """Return the names of the packaged actuator models, sorted."""
+    return _names(_MODELS)
+
+
+def leg_names() -> list[str]:
+    """Return the names of the packaged legs, sorted."""
+    return _names(_LEGS)
+
+
+def actuator_model(name: str, where: str) -> Model:
+    """
+    Return a packaged actuator model; ``where`` is the key that named it.
+
+    Raises
+    ------
+    ConfigError
+        There is no such model, or its file is not as it must be.
+
+    """
+    path = _packaged(_MODELS, name, where, 'model')
+    tree, place = read(path), Place(path.name)
+    refuse_unknown(
+        tree, ('model', 'kind', 'spool_feedback', 'plant', 'reu', 'presets', 'loads'), place)
+    sheet = sourced(
+        {key: tree[key] for key in ('spool_feedback', 'plant', 'reu') if key in tree}, place)
+    plant = sheet.get('plant')
+    if isinstance(plant, dict):
+        plant['kind'] = Entry(str(tree.get('kind')), str(place / 'kind'), '')
+    presets = {
+        preset: sourced(section_at(below, place / 'presets' / preset), place / 'presets' / preset)
+        for preset, below in section_at(tree.get('presets'), place / 'presets').items()}
+    loads = section_at(tree.get('loads'), place / 'loads')
+    default = loads.pop('default', None)
+    if default not in loads:
+        raise ConfigError(f'{place}: loads.default = {default!r}; {alternatives("", loads)}')
+    return Model(
+        name, place, sheet, presets, {
+            kind: sourced(section_at(below, place / 'loads' / kind), place / 'loads' / kind)
+            for kind, below in loads.items()}, str(default))
+
+
+def leg_section(name: str, where: str) -> tuple[Section, Place]:
+    """Return the sheet of a packaged leg; as `actuator_model`."""
+    path = _packaged(_LEGS, name, where, 'leg')
+    tree: Tree = read(path)
+    return sourced(tree, Place(path.name)), Place(path.name)
+
+
+def _names(directory: Path) -> list[str]:
+    return sorted(path.stem for path in directory.glob('*.yaml'))
+
+
+def _packaged(directory: Path, name: object, where: str, what: str) -> Path:
+    names = _names(directory)
+    if not isinstance(name, str) or name not in names:
+        raise ConfigError(f'{where} = {name!r} is no {what}; {alternatives(str(name), names)}')
+    return directory / f'{name}.yaml'

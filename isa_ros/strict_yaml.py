@@ -1,0 +1,142 @@
+"""
+YAML for people, strictly: duplicate keys, aliases and oversized files are refused.
+
+Scalars follow the JSON schema of YAML 1.2, so that `1e5` is a number and `on` is a name.
+"""
+
+from collections.abc import Mapping
+from pathlib import Path
+import re
+from typing import Any, NoReturn
+
+from isa_ros.errors import ConfigError
+import yaml
+
+Scalar = str | int | float | bool | None
+Tree = dict[str, 'Scalar | Tree | list[Any]']
+
+MAX_BYTES = 1 << 20   # of one file; the largest shipped one has 8 kB
+MAX_NODES = 20_000    # of one file
+MAX_DEPTH = 16        # of nested sections
+
+
+_SCALARS = (
+    ('tag:yaml.org,2002:null', re.compile(r'^(?:~|null|)$'), ['~', 'n', '']),
+    ('tag:yaml.org,2002:bool', re.compile(r'^(?:true|false)$'), list('tf')),
+    ('tag:yaml.org,2002:int', re.compile(r'^[-+]?(?:0|[1-9][0-9]*)$'), list('-+0123456789')),
+    ('tag:yaml.org,2002:float', re.compile(
+        r'^(?:[-+]?(?:\.[0-9]+|[0-9]+(?:\.[0-9]*)?)(?:[eE][-+]?[0-9]+)?|[-+]?\.inf|\.nan)$'),
+        list('-+.0123456789')),
+)
+
+
+class _Loader(yaml.SafeLoader):
+    """Scalars of YAML 1.2, no aliases, bounded size."""
+
+    yaml_implicit_resolvers: dict[str, list[tuple[str, re.Pattern[str]]]] = {}
+    nodes = 0
+    depth = 0
+
+    def compose_node(self, parent: yaml.Node | None, index: Any) -> yaml.Node | None:
+        if self.check_event(yaml.AliasEvent):
+            self._refuse('aliases (*name) are not read')
+        self.nodes += 1
+        if self.nodes > MAX_NODES:
+            self._refuse(f'more than {MAX_NODES} values')
+        self.depth += 1
+        if self.depth > MAX_DEPTH:
+            self._refuse(f'nested deeper than {MAX_DEPTH} sections')
+        node = super().compose_node(parent, index)
+        self.depth -= 1
+        return node
+
+    def _refuse(self, problem: str) -> NoReturn:
+        mark = self.peek_event().start_mark  # type: ignore[no-untyped-call]
+        raise yaml.composer.ComposerError(None, None, problem, mark)
+
+
+class _Dumper(yaml.SafeDumper):
+    """Quotes whatever YAML 1.1 or 1.2 would take for something else than a text."""
+
+
+for _scalar in _SCALARS:
+    _Loader.add_implicit_resolver(*_scalar)
+    _Dumper.add_implicit_resolver(*_scalar)
+
+
+def _plain(node: yaml.Node, loader: _Loader, name: str) -> Any:
+    """Return a composed node as dictionaries, lists and scalars."""
+    if isinstance(node, yaml.SequenceNode):
+        return [_plain(child, loader, name) for child in node.value]
+    if isinstance(node, yaml.MappingNode):
+        tree: Tree = {}
+        for key_node, value_node in node.value:
+            key = _plain(key_node, loader, name)
+            if not isinstance(key, str):
+                raise _error(key_node, name, f'key {key!r} must be a name')
+            if key in tree:
+                raise _error(key_node, name, f'duplicate key {key}')
+            tree[key] = _plain(value_node, loader, name)
+        return tree
+    try:
+        return loader.construct_object(node)
+    except (yaml.YAMLError, ValueError) as error:
+        raise _error(node, name, f'cannot read {node.value!r}') from error
+
+
+def _error(node: yaml.Node, name: str, what: str) -> ConfigError:
+    return ConfigError(f'{name}: line {node.start_mark.line + 1}: {what}')
+
+
+def parse(text: str, name: str) -> Tree:
+    """
+    Return the top-level section of a YAML text; ``name`` is its file's, for messages.
+
+    Raises
+    ------
+    ConfigError
+        Not YAML, not one section, too large, an alias, or a duplicate key with its line.
+
+    """
+    if len(text.encode('utf-8', 'replace')) > MAX_BYTES:
+        raise ConfigError(f'{name}: larger than {MAX_BYTES} bytes, must be smaller')
+    try:
+        loader = _Loader(text)
+        node = loader.get_single_node()
+    except yaml.MarkedYAMLError as error:
+        line = error.problem_mark.line + 1 if error.problem_mark else 1
+        raise ConfigError(f'{name}: line {line}: {error.problem or error.context}') from error
+    except yaml.YAMLError as error:
+        raise ConfigError(f'{name}: is not YAML: {str(error).splitlines()[0]}') from error
+    if not isinstance(node, yaml.MappingNode):
+        raise ConfigError(f'{name}: must be sections of `key: value`')
+    tree: Tree = _plain(node, loader, name)
+    return tree
+
+
+def read(path: Path) -> Tree:
+    """
+    Return the top-level section of a file.
+
+    Raises
+    ------
+    ConfigError
+        The file cannot be read, or as `parse`.
+
+    """
+    try:
+        with path.open('rb') as file:
+            raw = file.read(MAX_BYTES + 1)
+        return parse(raw.decode('utf-8'), path.name)
+    except OSError as error:
+        raise ConfigError(f'{path}: cannot be read: {error.strerror}') from error
+    except UnicodeDecodeError as error:
+        raise ConfigError(f'{path.name}: byte {error.start}: is not UTF-8') from error
+
+
+def dump(tree: Mapping[str, Any]) -> str:
+    """Return the YAML text of a tree in its own order; floats keep every bit."""
+    text: str = yaml.dump(
+        dict(tree), Dumper=_Dumper, sort_keys=False, default_flow_style=None, width=99,
+        allow_unicode=True)
+    return text

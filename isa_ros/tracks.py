@@ -1,0 +1,178 @@
+"""
+Tracks: the setpoints one actuator is given, by tick, SI, with the setpoint topic's words.
+
+A setpoint without velocity or effort has zero there; without a gain the gain in force stays.
+"""
+
+from bisect import bisect_right
+from collections.abc import Mapping
+from dataclasses import dataclass, fields
+import math
+from typing import Any
+
+from isa_ros.config import ticks_in
+from isa_ros.errors import ConfigError
+from isa_ros.parameter import check, parameter, Parameters
+from isa_ros.resolve import as_tree, build, Place, refuse_unknown, section_at, written
+from isa_ros.run_config import ActuatorConfig
+from isa_ros.signals import HAS_ENABLE, HAS_SETPOINT
+from isa_ros.strict_yaml import Tree
+from isa_ros.timebase import NS_PER_SECOND
+import numpy as np
+
+MAX_DURATION = 1e6  # s, a bound against slips of the pen
+HOLD = 'hold'       # position: where the actuator starts
+
+
+@dataclass(frozen=True, kw_only=True)
+class Sine(Parameters):
+    """A sine on the position from its setpoint on; the velocity follows it."""
+
+    amplitude: float = parameter('amplitude', 'm | rad', ge=-10.0, le=10.0)
+    frequency_hz: float = parameter('frequency', 'Hz', gt=0.0, le=500.0)
+
+
+@dataclass(frozen=True, kw_only=True)
+class Setpoint(Parameters):
+    """One impedance setpoint, SI."""
+
+    position: float = parameter('equilibrium', 'm | rad', ge=-100.0, le=100.0)
+    velocity: float = parameter('of the equilibrium', 'm/s | rad/s', ge=-1e3, le=1e3)
+    effort: float = parameter('feed-forward', 'N | Nm', ge=-1e6, le=1e6)
+
+
+_GAINS: Mapping[str, Mapping[str, Any]] = {
+    'stiffness': {'doc': 'gain', 'unit': 'N/m | Nm/rad', 'bounds': {'ge': 0.0, 'le': 1e9}},
+    'damping': {'doc': 'gain', 'unit': 'Ns/m | Nms/rad', 'bounds': {'ge': 0.0, 'le': 1e9}},
+}
+
+
+@dataclass(frozen=True)
+class Event:
+    """What one actuator is told at one tick; None leaves it as it is."""
+
+    tick: int
+    setpoint: Setpoint | None
+    stiffness: float | None
+    damping: float | None
+    is_enabled: bool | None
+    sine: Sine | None
+
+    def write(self, tick: int, step_ns: int, row: np.void) -> None:
+        """Fill the `COMMAND` row of ``tick``, this event's own or a later one of its sine."""
+        kinds = 0
+        if self.setpoint is not None:
+            kinds = HAS_SETPOINT
+            position, velocity = self.setpoint.position, self.setpoint.velocity
+            if self.sine is not None:
+                omega = 2.0 * math.pi * self.sine.frequency_hz
+                phase = omega * ((tick - self.tick) * step_ns / NS_PER_SECOND)
+                position += self.sine.amplitude * math.sin(phase)
+                velocity += self.sine.amplitude * omega * math.cos(phase)
+            row['position'], row['velocity'] = position, velocity
+            row['effort'] = self.setpoint.effort
+            for name in _GAINS:
+                value = getattr(self, name)
+                row[name] = math.nan if value is None else value
+        if self.is_enabled is not None and tick == self.tick:
+            kinds |= HAS_ENABLE
+            row['is_enabled'] = int(self.is_enabled)
+        row['kinds'] = kinds
+
+
+@dataclass(frozen=True)
+class Track:
+    """The events of one actuator, in ascending order of time."""
+
+    actuator: str
+    events: tuple[Event, ...]
+
+    def at(self, tick: int) -> Event | None:
+        """Return the event that speaks at ``tick``: its own one, or a sine going on."""
+        k = bisect_right(self.events, tick, key=lambda event: event.tick) - 1
+        if k < 0:
+            return None
+        event = self.events[k]
+        return event if event.tick == tick or event.sine is not None else None
+
+
+def read_track(
+        actuator: ActuatorConfig, points: Any, place: Place, step_ns: int, n_ticks: int) -> Track:
+    """
+    Return the track of a list of setpoints.
+
+    Raises
+    ------
+    ConfigError
+        A setpoint is not as it must be, not on a tick, out of order or after the end.
+
+    """
+    if not isinstance(points, list) or not points:
+        raise ConfigError(f'{place} = {points!r}, must be a list of setpoints')
+    events: list[Event] = []
+    for k, point in enumerate(points):
+        below = Place(place.file, f'{place.key}[{k}]')
+        event = _event(section_at(point, below), below, actuator, step_ns)
+        if event.tick >= n_ticks:
+            raise ConfigError(
+                f'{below}.t_s = {event.tick * step_ns / NS_PER_SECOND:g} s, must be < '
+                f'duration_s = {n_ticks * step_ns / NS_PER_SECOND:g} s')
+        if events and event.tick <= events[-1].tick:
+            raise ConfigError(
+                f'{below}.t_s = {event.tick * step_ns / NS_PER_SECOND:g} s, must be > the '
+                f'one before it, {events[-1].tick * step_ns / NS_PER_SECOND:g} s')
+        events.append(event)
+    return Track(actuator.name, tuple(events))
+
+
+def _event(tree: Tree, place: Place, actuator: ActuatorConfig, step_ns: int) -> Event:
+    refuse_unknown(tree, (
+        't_s', 'position', 'velocity', 'effort', 'stiffness', 'damping', 'enabled', 'sine'), place)
+    check(f'{place}.t_s', tree.get('t_s'), {
+        'doc': 'time', 'unit': 's', 'bounds': {'ge': 0.0, 'le': MAX_DURATION}})
+    tick = ticks_in(float(tree['t_s']), step_ns, f'{place}.t_s')  # type: ignore[arg-type]
+    is_enabled = tree.get('enabled')
+    if is_enabled is not None and not isinstance(is_enabled, bool):
+        raise ConfigError(f'{place}.enabled = {is_enabled!r}, must be true or false')
+    for name in set(tree) - {'t_s', 'enabled', 'position'}:
+        if 'position' not in tree:
+            raise ConfigError(
+                f'{place}.{name} is not used: a setpoint needs its position (or {HOLD!r})')
+    if 'position' not in tree and is_enabled is None:
+        raise ConfigError(place.has('needs a position or enabled'))
+    gains = {name: _gain(tree, name, place) for name in _GAINS}
+    sine = build(Sine, written(section_at(tree['sine'], place / 'sine'), place / 'sine'),
+                 place / 'sine') if 'sine' in tree else None
+    return Event(
+        tick, _setpoint(tree, place, actuator) if 'position' in tree else None,
+        gains['stiffness'], gains['damping'], is_enabled, sine)
+
+
+def _setpoint(tree: Tree, place: Place, actuator: ActuatorConfig) -> Setpoint:
+    given: Tree = {'velocity': 0.0, 'effort': 0.0}
+    given.update({f.name: tree[f.name] for f in fields(Setpoint) if f.name in tree})
+    if given['position'] == HOLD:
+        given['position'] = actuator.initial_position
+    return build(Setpoint, written(given, place), place)
+
+
+def _gain(tree: Tree, name: str, place: Place) -> float | None:
+    if name not in tree:
+        return None
+    check(f'{place}.{name}', tree[name], _GAINS[name])
+    return float(tree[name])  # type: ignore[arg-type]
+
+
+def event_tree(event: Event, step_ns: int) -> Tree:
+    """Return an event as a scenario file has it, with its position as a number."""
+    tree: Tree = {'t_s': event.tick * step_ns / NS_PER_SECOND}
+    if event.setpoint is not None:
+        tree |= as_tree(event.setpoint)
+    for name in _GAINS:
+        if getattr(event, name) is not None:
+            tree[name] = getattr(event, name)
+    if event.is_enabled is not None:
+        tree['enabled'] = event.is_enabled
+    if event.sine is not None:
+        tree['sine'] = as_tree(event.sine)
+    return tree
