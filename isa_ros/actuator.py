@@ -176,8 +176,10 @@ class SmartActuator:
         An actuator with its own load reads only the pressures of the port; None keeps the
         pressures it has.
 
-        Raises:
-            SimulationDiverged: a state is no longer finite.
+        Raises
+        ------
+        SimulationDiverged
+            A state is no longer finite.
 
         """
         self._take_pending()

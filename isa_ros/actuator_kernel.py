@@ -10,7 +10,7 @@ import math
 from isa_ros.kernel import kernel
 from isa_ros.load.port import load_acceleration, LOAD_STATE, load_stop_force, LOAD_STOPS
 from isa_ros.plant.plant import PLANT, plant_rates, PLANT_STATE, read_sensors, stop_spool
-from isa_ros.reu.cascade import cascade_step, REU, REU_STATE
+from isa_ros.reu.cascade import cascade_step, REU
 from isa_ros.timebase import FORCE_WINDOWS, PLANT_STEP
 import numpy as np
 
@@ -85,7 +85,7 @@ def body_step(h, tau, current_reference, port, actuator, bodies, rates, y, k):
     body_rates(tau + h, bodies[1], current_reference, port, actuator, rates[3])
     for j in range(STATE_SIZE):
         value = y[0, j] + h / 6.0 * (k[0, j] + 2.0 * (k[1, j] + k[2, j]) + k[3, j])
-        y[0, j] = value if abs(value) > NOTHING else 0.0
+        y[0, j] = 0.0 if abs(value) < NOTHING else value
     stop_spool(bodies[0].plant, actuator.plant)
 
 

@@ -36,8 +36,10 @@ class Parameters:
     Fields are floats in the unit their declaration (and their name's suffix) states,
     names out of a list, or nested parameter sets.
 
-    Raises:
-        ParameterError: a value is not finite, outside its range or not in its list.
+    Raises
+    ------
+    ParameterError
+        A value is not finite, outside its range or not in its list.
 
     """
 

@@ -16,8 +16,10 @@ def steps_in(period_ns: int, name: str) -> int:
     """
     Return how many plant steps one period holds.
 
-    Raises:
-        ConfigError: the period is not a positive whole number of plant steps.
+    Raises
+    ------
+    ConfigError
+        The period is not a positive whole number of plant steps.
 
     """
     if period_ns <= 0 or period_ns % PLANT_STEP_NS:

@@ -41,7 +41,7 @@ class Vane(Parameters):
 
     displacement_cc_per_rad: float = parameter(
         'displacement D_m', 'cc/rad', gt=0.0, le=1000.0)
-    range: float = parameter('angular range L_m', 'rad', gt=0.0, le=6.2)
+    rotation: float = parameter('angular range L_m', 'rad', gt=0.0, le=6.2)
 
     @property
     def areas(self) -> tuple[float, float]:
@@ -52,7 +52,7 @@ class Vane(Parameters):
     @property
     def stroke(self) -> float:
         """Return the range in rad."""
-        return self.range
+        return self.rotation
 
 
 @dataclass(frozen=True, kw_only=True)

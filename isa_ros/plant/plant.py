@@ -67,8 +67,10 @@ def plant_record(sheet: LinearPlant | RotaryPlant) -> np.recarray:
     """
     Return the `PLANT` record of a sheet, shape (1,).
 
-    Raises:
-        ParameterError: a valve on the smallest chamber is too stiff for the plant step.
+    Raises
+    ------
+    ParameterError
+        A valve on the smallest chamber is too stiff for the plant step.
 
     """
     area_a, area_b = sheet.drive.areas
@@ -122,7 +124,8 @@ def plant_rates(y, x_load, v_load, current_reference, p_s, p_t, plant, rates):
     s, v = y.mechanics.position, y.mechanics.velocity
 
     rates.coil.current = coil.current_rate(y.coil.current, current_reference, plant.coil)
-    spool_reference = plant.valve.k_spool * y.coil.current / plant.coil.parallel
+    spool_reference = servo_valve.spool_reference(
+        y.coil.current, plant.coil.parallel, plant.valve)
     rates.valve.spool = y.valve.velocity
     rates.valve.velocity = y.valve.acceleration
     rates.valve.acceleration = servo_valve.spool_jerk(spool_reference, y.valve, plant.valve)

@@ -104,6 +104,12 @@ def largest_flow_slope(valve: np.record, span: float) -> float:
 
 
 @kernel
+def spool_reference(current, parallel, valve):
+    """Return K_spool i / n of an amplifier current (A) over ``parallel`` coils  (V2), in m."""
+    return valve.k_spool * current / parallel
+
+
+@kernel
 def spool_jerk(reference, spool, valve):
     """
     Return w_n^2 K_loop (x_r - x) - w_n^2 x' - 2 zeta w_n x''  (V3), in m/s3.

@@ -112,8 +112,10 @@ class Supply:
 
     ``flow_slope`` is the sum of the valves' largest dQ/dP in m3/s/Pa.
 
-    Raises:
-        ParameterError: the supply is too small to hold its pressure over one tick.
+    Raises
+    ------
+    ParameterError
+        The supply is too small to hold its pressure over one tick.
 
     """
 
@@ -132,7 +134,7 @@ class Supply:
         bound = _SLOWEST_TICKS * self._step
         if holds < bound:
             raise ParameterError(
-                f'supply: capacitance over the valves\' flow slope = {holds * 1e3:.3g} ms, '
+                f'supply: capacitance over flow slope = {holds * 1e3:.3g} ms, '
                 f'must be >= {bound * 1e3:.3g} ms (ten ticks); enlarge gas_volume_l')
 
     @property

@@ -71,9 +71,11 @@ def loop_steps(reu: Reu) -> tuple[int, int, int, int]:
     """
     Return the periods of position, force, spool and current loop in plant steps.
 
-    Raises:
-        ConfigError: a rate is not a whole number of plant steps, or an outer period not a
-            whole number of the next inner one; both are named.
+    Raises
+    ------
+    ConfigError
+        A rate is not a whole number of plant steps, or an outer period not a
+        whole number of the next inner one; both are named.
 
     """
     names = ('position', 'force', 'spool', 'current')

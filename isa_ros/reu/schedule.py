@@ -9,7 +9,7 @@ POINTS = 21
 
 @kernel
 def scheduled(position, stroke, table):
-    """Return the factor at ``position``, clamped to [0, ``stroke``]; table shape (POINTS,)  (R6)."""
+    """Return the factor at ``position`` in [0, ``stroke``]; table shape (POINTS,)  (R6)."""
     place = max(0.0, min(1.0, position / stroke)) * (POINTS - 1)
     left = min(int(math.floor(place)), POINTS - 2)
     return table[left] + (place - left) * (table[left + 1] - table[left])

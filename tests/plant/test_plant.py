@@ -1,0 +1,170 @@
+"""The composed plant: energy, order of convergence, oil spring, relief pressure."""
+
+import math
+
+from hypothesis import given, strategies as st
+from isa_ros import actuator_kernel as kernels
+from isa_ros.actuator_sheet import actuator_record, ActuatorSheet
+from isa_ros.plant import chambers, servo_valve
+from isa_ros.plant.plant import rest_pressures
+from isa_ros.signals import LOAD_PORT
+from isa_ros.timebase import PLANT_STEP
+import numpy as np
+import pytest
+from tests.sheets import actuator_sheet, override, plant_row
+
+SUPPLY = 20.7e6  # Pa
+
+
+class Body:
+    """One actuator's continuous states with a constant current reference."""
+
+    def __init__(self, sheet: ActuatorSheet, position: float, current: float = 0.0) -> None:
+        self.constants = actuator_record(sheet, 0)
+        self.bodies, self.rates = kernels.scratch()
+        self.row = self.bodies.view(np.recarray)[0]
+        self.port = np.zeros(1, LOAD_PORT)
+        self.port['supply_pressure'] = SUPPLY
+        self.current = current
+        self.row.plant.mechanics.position = self.row.load.position = position
+        plant = self.constants.view(np.recarray)[0].plant
+        self.row.plant.chambers.p_a, self.row.plant.chambers.p_b = rest_pressures(
+            plant, SUPPLY, 0.0, 0.0)
+
+    def run(self, duration: float, h: float = PLANT_STEP) -> None:
+        """Advance by ``duration`` (s)."""
+        y, k = kernels.flat(self.bodies), kernels.flat(self.rates)
+        for _ in range(round(duration / h)):
+            kernels.body_step(h, 0.0, self.current, self.port[0], self.constants[0],
+                              self.bodies, self.rates, y, k)
+
+    @property
+    def states(self) -> np.ndarray:
+        """Return all states, scaled to order one."""
+        chamber = self.row.plant.chambers
+        return np.array([
+            chamber.p_a / 1e7, chamber.p_b / 1e7, self.row.plant.valve.spool / 1e-4,
+            self.row.plant.mechanics.position, self.row.load.velocity])
+
+
+def lossless(model: str) -> ActuatorSheet:
+    """Return the sheet without leakage, friction and sensor damping."""
+    sheet = actuator_sheet(model)
+    for path, value in (
+            ('plant.valve.null_leakage_lpm', 0.0), ('plant.oil.cross_port_leakage', 0.0),
+            ('plant.friction.stiction', 1e-12), ('plant.friction.coulomb', 1e-12),
+            ('plant.friction.bristle_stiffness', 1e-9), ('plant.friction.bristle_damping', 0.0),
+            ('plant.friction.viscous', 0.0), ('plant.mechanics.sensor_damping', 0.0)):
+        sheet = override(sheet, path, value)
+    return sheet
+
+
+def compression_energy(volume: float, start: float, p_start: float, beta: float) -> float:
+    """Return the work stored in trapped oil, -int P dV with P = P_0 - beta ln(V/V_0)."""
+    swing = volume * math.log(volume / start) - volume + start
+    return -p_start * (volume - start) + beta * swing
+
+
+@pytest.mark.parametrize('model', ['smart_manifold', 'isa_v5'])
+def test_trapped_oil_conserves_energy(model):
+    """C2, C3, M2, M4: a shut valve and no friction keep kinetic plus stored energy."""
+    body = Body(lossless(model), 0.4 * plant_row(model).chambers.stroke)
+    plant, oil = body.constants.view(np.recarray)[0].plant, plant_row(model).chambers
+    load_inertia = 100.0 * plant.mechanics.inertia
+    body.port['inverse_mass'] = 1.0 / load_inertia
+    start = chambers.volumes(body.row.plant.mechanics.position, oil)
+    pressures = (body.row.plant.chambers.p_a, body.row.plant.chambers.p_b)
+    body.row.load.velocity = body.row.plant.mechanics.velocity = 1e-3 * oil.stroke
+
+    def energy() -> float:
+        moving, load = body.row.plant.mechanics, body.row.load
+        volumes = chambers.volumes(moving.position, oil)
+        stored = sum(compression_energy(v, v_0, p, oil.beta)
+                     for v, v_0, p in zip(volumes, start, pressures))
+        stretch = moving.position - load.position
+        return (stored + 0.5 * plant.mechanics.inertia * moving.velocity ** 2
+                + 0.5 * load_inertia * load.velocity ** 2
+                + 0.5 * plant.mechanics.k_s * stretch ** 2)
+
+    before = energy()
+    body.run(0.05)
+    # RK4 loses (w h)^6/72 of a mode's energy per step; the stiff sensor mode (10 krad/s,
+    # 1e-4 of the energy) loses it all, the slow modes 1e-9 in 2500 steps
+    assert energy() == pytest.approx(before, rel=2e-3)
+
+
+@given(x=st.floats(-178e-6, 178e-6), p_a=st.floats(0.0, 22e6), p_b=st.floats(0.0, 22e6),
+       v=st.floats(-1.0, 1.0), fraction=st.floats(0.0, 1.0))
+def test_hydraulic_power_is_work_storage_and_leakage(x, p_a, p_b, v, fraction):
+    """P_A Q_A + P_B Q_B = f_h v + sum(V/beta P dP/dt) + C_li (P_A - P_B)^2, exactly."""
+    plant = plant_row('isa_v5')
+    oil, s = plant.chambers, fraction * plant.chambers.stroke
+    q_a, q_b, _, _ = servo_valve.port_flows(x, p_a, p_b, SUPPLY, 0.0, plant.valve)
+    rates = chambers.pressure_rates(q_a, q_b, p_a, p_b, s, v, 0.0, oil)
+    volumes = chambers.volumes(s, oil)
+    work = chambers.hydraulic_force(p_a, p_b, oil) * v
+    stored = sum(vol / oil.beta * p * rate for vol, p, rate in zip(volumes, (p_a, p_b), rates))
+    leaked = oil.c_li * (p_a - p_b) ** 2
+    scale = 22e6 * (abs(q_a) + abs(q_b) + (oil.area_a + oil.area_b) * abs(v)) + leaked
+    assert p_a * q_a + p_b * q_b == pytest.approx(work + stored + leaked, abs=1e-14 * scale)
+
+
+@pytest.mark.parametrize('model', ['smart_manifold', 'isa_v5'])
+def test_runge_kutta_converges_with_fourth_order(model):
+    """Halving the step divides the error of a smooth segment by about 2^4."""
+    def solve(h: float) -> np.ndarray:
+        body = Body(actuator_sheet(model), 0.5 * plant_row(model).chambers.stroke, current=4e-4)
+        inertia = float(body.constants['plant']['mechanics']['inertia'][0])
+        body.port['inverse_mass'] = 0.02 / inertia
+        body.run(4e-3, h)
+        return body.states
+    exact = solve(1.25e-6)
+    errors = [np.abs(solve(h) - exact).max() for h in (40e-6, 20e-6)]
+    assert 12.0 < errors[0] / errors[1] < 22.0
+    assert errors[1] < 1e-7
+
+
+@pytest.mark.parametrize('model', ['smart_manifold', 'isa_v5'])
+def test_oil_spring_sets_the_natural_frequency(model):
+    """C4: against a fixed sensor the rotor swings at sqrt((k_oil + K_s)/I)."""
+    body = Body(lossless(model), 0.5 * plant_row(model).chambers.stroke)
+    plant = body.constants.view(np.recarray)[0].plant
+    moving = body.row.plant.mechanics
+    rest = moving.position
+    stiffness = chambers.oil_stiffness(rest, plant.chambers) + plant.mechanics.k_s
+    expected = math.sqrt(stiffness / plant.mechanics.inertia)
+    moving.velocity = 1e-4
+    crossings, before, t = [], 0.0, 0.0
+    while len(crossings) < 9:
+        body.run(PLANT_STEP)
+        t += PLANT_STEP
+        now = moving.position - rest
+        if before * now < 0.0:
+            crossings.append(t - PLANT_STEP * now / (now - before))
+        before = now
+    measured = math.pi * (len(crossings) - 1) / (crossings[-1] - crossings[0])
+    # straight-line crossings err by (w h)^2/8 of a step each, RK4's phase by (w h)^4/120
+    assert measured == pytest.approx(expected, rel=2e-3)
+
+
+@pytest.mark.parametrize(('model', 'speed'), [('smart_manifold', 8.0), ('isa_v5', 0.4)])
+def test_relief_holds_22_to_22_5_mpa(model, speed):
+    """Section 2.7: driven in at up to the relief's flow, the cap side stays at 22 MPa."""
+    body = Body(actuator_sheet(model), 0.8 * plant_row(model).chambers.stroke)
+    body.row.load.velocity = -speed  # inverse mass 0: a load that nothing slows
+    body.row.plant.mechanics.velocity = -speed
+    stroke = plant_row(model).chambers.stroke
+    peak = 0.0
+    while body.row.plant.mechanics.position > 0.3 * stroke:
+        body.run(1e-3)
+        peak = max(peak, body.row.plant.chambers.p_a)
+        assert body.row.plant.chambers.p_b > -0.1e6, 'the refill stays above vacuum'
+    assert 22.0e6 <= peak <= 22.5e6
+
+
+def test_the_spool_stays_within_its_stops():
+    """A current beyond the range ends at the stop, at rest."""
+    body = Body(actuator_sheet('isa_v5'), 0.05, current=0.0108)
+    body.run(0.1)
+    assert body.row.plant.valve.spool <= 178e-6
+    assert body.row.plant.valve.spool == pytest.approx(178e-6, rel=0.01)

@@ -1,0 +1,69 @@
+"""The shipped actuators as the tests need them."""
+
+from dataclasses import replace
+from typing import Any
+
+from isa_ros.actuator import SmartActuator, Timing
+from isa_ros.actuator_sheet import ActuatorSheet
+from isa_ros.catalogue import actuator_model
+from isa_ros.load.local import LocalLoad
+from isa_ros.parameter import Parameters
+from isa_ros.plant.plant import plant_record
+from isa_ros.resolve import build, build_one_of, Entry
+from isa_ros.run_config import ActuatorConfig
+from isa_ros.signals import COMMAND, HAS_SETPOINT
+import numpy as np
+
+MODELS = ('smart_manifold', 'isa_v5')
+FINE = Timing(step_ns=100_000, controller_offset_ns=20_000)
+"""A tick as short as the current loop's period, for looking at transients."""
+
+
+def actuator_sheet(model: str, preset: str = 'default') -> ActuatorSheet:
+    """Return a shipped sheet."""
+    found = actuator_model(model, 'test')
+    return build(ActuatorSheet, found.with_preset(preset, 'test'), found.place)
+
+
+def own_load(model: str, kind: str) -> LocalLoad:
+    """Return one of the model's own loads."""
+    found = actuator_model(model, 'test')
+    section = {'kind': Entry(kind, 'test', '')} | found.loads[kind]
+    return build_one_of(LocalLoad, section, found.place)
+
+
+def plant_row(model: str) -> np.record:
+    """Return the `PLANT` record of a shipped sheet."""
+    return plant_record(actuator_sheet(model).plant)[0]
+
+
+def override(sheet: Any, path: str, value: float) -> Any:
+    """Return the sheet with one parameter replaced, ``path`` dotted."""
+    head, _, rest = path.partition('.')
+    below = getattr(sheet, head)
+    changed = override(below, rest, value) if isinstance(below, Parameters) else value
+    return replace(sheet, **{head: changed})
+
+
+def smart_actuator(
+        model: str, load: str | LocalLoad | None, *, preset: str = 'default',
+        position: float | None = None, timing: Timing = FINE,
+        sheet: ActuatorSheet | None = None) -> SmartActuator:
+    """Return an actuator on one of its own loads, at mid stroke unless told otherwise."""
+    sheet = sheet or actuator_sheet(model, preset)
+    if isinstance(load, str):
+        load = own_load(model, load)
+    if position is None:
+        position = 0.5 * sheet.plant.drive.stroke
+    return SmartActuator(
+        ActuatorConfig(model, model, preset, sheet, load, position), timing)
+
+
+def setpoint(**values: float) -> np.void:
+    """Return a `COMMAND` row; gains that are not named keep."""
+    command = np.zeros(1, COMMAND)[0]
+    command['kinds'] = HAS_SETPOINT
+    command['stiffness'] = command['damping'] = np.nan
+    for name, value in values.items():
+        command[name] = value
+    return command
