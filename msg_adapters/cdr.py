@@ -73,8 +73,10 @@ def encode(message: Message) -> bytes:
     """
     Return the canonical bytes of a message, encapsulation header included.
 
-    Raises:
-        CdrError: a fixed array of the wrong length, or a field type without canonical form.
+    Raises
+    ------
+    CdrError
+        a fixed array of the wrong length, or a field type without canonical form.
 
     """
     encoder = _Encoder()
@@ -88,8 +90,10 @@ def encode_with_slots(message: Message) -> tuple[bytes, dict[str, Slot]]:
 
     Slots are named by their path: ``header.stamp.sec``, ``position[0]``.
 
-    Raises:
-        CdrError: as `encode`.
+    Raises
+    ------
+    CdrError
+        as `encode`.
 
     """
     encoder = _Encoder()

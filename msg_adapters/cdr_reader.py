@@ -15,8 +15,10 @@ def message_class(type_name: str) -> type[Message]:
     """
     Return the message class of ``sensor_msgs/msg/JointState`` or ``sensor_msgs/JointState``.
 
-    Raises:
-        CdrError: no such message package or type is installed.
+    Raises
+    ------
+    CdrError
+        no such message package or type is installed.
 
     """
     package, *_, name = type_name.split('/')
@@ -31,8 +33,10 @@ def decode(data: bytes, cls: type[M]) -> M:
     """
     Return the message whose CDR bytes these are; what follows its last field is ignored.
 
-    Raises:
-        CdrError: the bytes are no message of this class.
+    Raises
+    ------
+    CdrError
+        the bytes are no message of this class.
 
     """
     if data[:2] != ENCAPSULATION[:2]:

@@ -38,8 +38,10 @@ def definition(type_name: str) -> Definition:
     """
     Return the definition of a type such as ``sensor_msgs/msg/JointState``.
 
-    Raises:
-        DefinitionError: its package, or one it depends on, is not installed.
+    Raises
+    ------
+    DefinitionError
+        its package, or one it depends on, is not installed.
 
     """
     text = _with_dependencies(type_name, set())

@@ -37,9 +37,11 @@ def msg_to_command(message: JointState, name: str) -> np.void:
     NAME/damping a gain in ``position``. Missing velocity or effort is zero, a missing gain
     is NaN: it keeps the gain in force.
 
-    Raises:
-        SetpointError: the message is rejected as a whole: a name that is not one of these
-            or comes twice, no position, a value that is not finite, a negative gain.
+    Raises
+    ------
+    SetpointError
+        the message is rejected as a whole: a name that is not one of these
+        or comes twice, no position, a value that is not finite, a negative gain.
 
     """
     return _command(message, name, [name, *(f'{name}/{gain}' for gain in GAINS)])
@@ -49,9 +51,12 @@ def applied_to_command(data: bytes, name: str) -> np.void:
     """
     Return the COMMAND row of a recorded applied setpoint; inverse of `AppliedSetpoint.pack`.
 
-    Raises:
-        SetpointError: not an applied setpoint of ``name``, or a value that is not finite.
-        CdrError: the bytes are no JointState.
+    Raises
+    ------
+    SetpointError
+        not an applied setpoint of ``name``, or a value that is not finite.
+    CdrError
+        the bytes are no JointState.
 
     """
     message = decode(data, JointState)

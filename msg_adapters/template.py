@@ -22,8 +22,10 @@ class Template:
     Every message is encoded once; the constant bytes between the fields that change become
     string arguments of one struct format. Layout cannot change: arrays keep their length.
 
-    Raises:
-        CdrError: a field path that the message does not have, naming those it has.
+    Raises
+    ------
+    CdrError
+        a field path that the message does not have, naming those it has.
 
     """
 

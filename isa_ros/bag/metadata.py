@@ -1,0 +1,133 @@
+"""metadata.yaml of a rosbag2 directory, version 9, in the order and form rosbag2 writes it."""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+import json
+from typing import NamedTuple
+
+VERSION = 9
+FILE_NAME = 'metadata.yaml'
+ROS_DISTRO = 'jazzy'
+NO_START = 2**63 - 1  # rosbag2's starting time of a bag without messages
+
+_INFINITE = (9223372036, 854775807)  # RMW_DURATION_INFINITE (s, ns)
+
+
+@dataclass(frozen=True)
+class Qos:
+    """What a publisher offers; deadline, lifespan and lease are infinite."""
+
+    history: str = 'keep_last'
+    depth: int = 10
+    reliability: str = 'reliable'
+    durability: str = 'volatile'
+
+    def to_yaml(self) -> str:
+        """Return the list of this one profile, without a final newline."""
+        lines = [
+            f'- history: {self.history}', f'  depth: {self.depth}',
+            f'  reliability: {self.reliability}', f'  durability: {self.durability}',
+            *_duration('deadline'), *_duration('lifespan'),
+            '  liveliness: automatic', *_duration('liveliness_lease_duration'),
+            '  avoid_ros_namespace_conventions: false']
+        return '\n'.join(lines)
+
+
+@dataclass(frozen=True)
+class Topic:
+    """One topic of a bag: fully qualified name, message type, offered quality of service."""
+
+    name: str
+    type_name: str
+    qos: Qos = Qos()
+
+
+class Counts(NamedTuple):
+    """What has been written so far."""
+
+    start_ns: int
+    end_ns: int
+    messages: Sequence[int]  # by topic, (n_topics,)
+
+    @property
+    def total(self) -> int:
+        """Return the number of messages of all topics."""
+        return sum(self.messages)
+
+    @property
+    def duration_ns(self) -> int:
+        """Return the time from the first message to the last, 0 without messages."""
+        return self.end_ns - self.start_ns if self.total else 0
+
+
+def metadata_yaml(
+        file_name: str, topics: Sequence[tuple[Topic, str]], counts: Counts,
+        custom: Mapping[str, str]) -> str:
+    """Return the text of metadata.yaml; ``topics`` are (topic, type hash)."""
+    lines = _information(file_name, topics, counts, custom)
+    return '\n'.join(['rosbag2_bagfile_information:', *_indent(lines, 2), ''])
+
+
+def storage_metadata(custom: Mapping[str, str]) -> str:
+    """
+    Return what the MCAP file itself says to rosbag2 where metadata.yaml is lost.
+
+    It names no file and counts nothing: rosbag2 takes both from the file.
+    """
+    return '\n'.join(_information(None, (), Counts(NO_START, NO_START, ()), custom))
+
+
+def _information(
+        file_name: str | None, topics: Sequence[tuple[Topic, str]], counts: Counts,
+        custom: Mapping[str, str]) -> list[str]:
+    duration = ['duration:', f'  nanoseconds: {counts.duration_ns}']
+    start = ['starting_time:', f'  nanoseconds_since_epoch: {counts.start_ns}']
+    total = f'message_count: {counts.total}'
+    paths = [] if file_name is None else [_quote(file_name)]
+    described = [
+        line for (topic, type_hash), count in zip(topics, counts.messages)
+        for line in _topic(topic, type_hash, count)]
+    files = [
+        line for path in paths
+        for line in _item([f'path: {path}', *start, *duration, total])]
+    return [
+        f'version: {VERSION}', 'storage_identifier: mcap', *duration, *start, total,
+        *_list('topics_with_message_count', described),
+        'compression_format: ""', 'compression_mode: ""',
+        *_list('relative_file_paths', [f'- {path}' for path in paths]),
+        *_list('files', files),
+        *(['custom_data:'] if custom else ['custom_data: ~']),
+        *(f'  {_quote(key)}: {_quote(value)}' for key, value in custom.items()),
+        f'ros_distro: {ROS_DISTRO}']
+
+
+def _topic(topic: Topic, type_hash: str, count: int) -> list[str]:
+    return _item([
+        'topic_metadata:',
+        *_indent([
+            f'name: {topic.name}', f'type: {topic.type_name}', 'serialization_format: cdr',
+            'offered_qos_profiles:', *_indent(topic.qos.to_yaml().split('\n'), 2),
+            f'type_description_hash: {type_hash}'], 2),
+        f'message_count: {count}'])
+
+
+def _duration(name: str) -> list[str]:
+    sec, nsec = _INFINITE
+    return [f'  {name}:', f'    sec: {sec}', f'    nsec: {nsec}']
+
+
+def _list(name: str, lines: Sequence[str]) -> list[str]:
+    return [f'{name}:', *_indent(lines, 2)] if lines else [f'{name}: []']
+
+
+def _item(lines: Sequence[str]) -> list[str]:
+    return [f'- {lines[0]}', *_indent(lines[1:], 2)]
+
+
+def _indent(lines: Sequence[str], n: int) -> list[str]:
+    return [' ' * n + line for line in lines]
+
+
+def _quote(text: str) -> str:
+    """Return a double-quoted YAML scalar; JSON's escapes are YAML's."""
+    return json.dumps(text)

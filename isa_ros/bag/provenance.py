@@ -1,0 +1,102 @@
+"""
+What a bag says about its own making, so that a replay needs nothing else.
+
+Nothing of the host: no wall time, path, user, process mode or number of processes.
+"""
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+import hashlib
+from importlib.metadata import PackageNotFoundError, version
+from pathlib import Path
+import platform
+from xml.etree import ElementTree
+
+from isa_ros.errors import BagError
+
+CONFIGURATION = 'configuration.yaml'
+SCENARIO = 'scenario.yaml'
+MEDIA_TYPE = 'application/yaml'
+RECORD = 'isa_ros'
+FORMAT = '1'
+
+_VERSION = 'version.'
+_RESULT_DEPENDS_ON = ('llvmlite', 'numba', 'numpy')
+
+
+@dataclass(frozen=True)
+class Provenance:
+    """Resolved configuration, scenario (YAML texts), seed, and versions by package name."""
+
+    configuration: str
+    scenario: str
+    seed: int
+    versions: Mapping[str, str]
+
+    def attachments(self) -> dict[str, bytes]:
+        """Return the attachments by name."""
+        return {CONFIGURATION: self.configuration.encode(), SCENARIO: self.scenario.encode()}
+
+    def record(self) -> dict[str, str]:
+        """Return the key-value metadata record, in fixed order."""
+        digests = {f'{name}.sha256': _sha256(data) for name, data in self.attachments().items()}
+        versions = {f'{_VERSION}{name}': self.versions[name] for name in sorted(self.versions)}
+        return {'format': FORMAT, 'seed': str(self.seed), **digests, **versions}
+
+    @classmethod
+    def of_records(
+            cls, attachments: Mapping[str, bytes], record: Mapping[str, str],
+            where: str) -> 'Provenance':
+        """
+        Return the provenance that a bag carries; inverse of `attachments` and `record`.
+
+        Raises
+        ------
+        BagError
+            a part is missing, altered, or of a later format.
+
+        """
+        if record.get('format') != FORMAT:
+            raise BagError(
+                f'{where}: provenance format {record.get("format")!r}, must be {FORMAT!r}')
+        for name in (CONFIGURATION, SCENARIO):
+            if name not in attachments:
+                raise BagError(f'{where}: attachment {name} is missing')
+            if record.get(f'{name}.sha256') != _sha256(attachments[name]):
+                raise BagError(f'{where}: attachment {name} does not match its sha256')
+        try:
+            seed = int(record.get('seed', ''))
+        except ValueError:
+            raise BagError(f'{where}: seed {record.get("seed")!r}, must be an integer') from None
+        return cls(
+            configuration=attachments[CONFIGURATION].decode(),
+            scenario=attachments[SCENARIO].decode(),
+            seed=seed,
+            versions={
+                key.removeprefix(_VERSION): value
+                for key, value in record.items() if key.startswith(_VERSION)})
+
+
+def installed_versions() -> dict[str, str]:
+    """Return the versions of what a run's numbers depend on, by package name."""
+    versions = {name: version(name) for name in _RESULT_DEPENDS_ON}
+    return {'isa_ros': _own_version(), 'python': platform.python_version(), **versions}
+
+
+def _own_version() -> str:
+    """Return the installed version, or the source tree's where nothing is installed."""
+    try:
+        return version('isa_ros')
+    except PackageNotFoundError:
+        manifest = Path(__file__).parents[2] / 'package.xml'
+    try:
+        text = ElementTree.parse(manifest).findtext('version')
+    except OSError:
+        text = None
+    if not text:
+        raise BagError(f'{manifest}: no version of isa_ros is installed or declared')
+    return text
+
+
+def _sha256(data: bytes) -> str:
+    return hashlib.sha256(data).hexdigest()

@@ -1,0 +1,188 @@
+"""
+Reading a bag, whole or cut short by a killed recorder.
+
+Opening reads the file once and checks every checksum and every message record; what was
+opened can be iterated without surprises. A file that was cut short is read up to its last
+complete chunk, which the writer ends with a whole tick.
+"""
+
+from collections.abc import Iterator
+from itertools import groupby
+from operator import attrgetter
+from pathlib import Path
+from typing import NamedTuple
+
+from isa_ros.bag.mcap_file import MESSAGE_HEADER
+from isa_ros.bag.provenance import Provenance, RECORD
+from isa_ros.bag.records import chunk_content, End, parse_record, read_records, Record
+from isa_ros.errors import BagError
+from mcap.opcode import Opcode
+from mcap.records import Attachment, Channel, Chunk, McapRecord, Metadata, Schema
+
+_HEAD_BYTES = 9  # opcode, length
+_PREFIX_BYTES = MESSAGE_HEADER.size
+
+
+class BagMessage(NamedTuple):
+    """One recorded message."""
+
+    t_ns: int
+    sequence: int
+    topic: str
+    data: bytes
+
+
+class Tick(NamedTuple):
+    """All messages of one instant, sorted by topic."""
+
+    t_ns: int
+    sequence: int
+    messages: tuple[BagMessage, ...]
+
+
+class Bag:
+    """
+    One recorded run.
+
+    ``path`` is a rosbag2 directory with one MCAP file, or the file itself. ``types`` are the
+    message types by topic, ``n_messages`` counts them; ``is_whole`` tells whether the
+    recorder came to its end. ``start_ns`` and ``end_ns`` are None without messages.
+
+    Raises
+    ------
+    BagError
+        not a bag, or damaged: the file, the place and what is wrong.
+
+    """
+
+    def __init__(self, path: Path) -> None:
+        self.path = _mcap_file(path)
+        self.types: dict[str, str] = {}
+        self.n_messages = 0
+        self.start_ns: int | None = None
+        self.end_ns: int | None = None
+        self.is_whole = False
+        self._attachments: dict[str, bytes] = {}
+        self._metadata: dict[str, dict[str, str]] = {}
+        self._schemas: dict[int, Schema] = {}
+        self._channels: dict[int, Channel] = {}
+        self._scan()
+
+    @property
+    def provenance(self) -> Provenance:
+        """
+        Return what the bag says about its making.
+
+        Raises
+        ------
+        BagError
+            it was not recorded by this package, or a part is missing or altered.
+
+        """
+        if RECORD not in self._metadata:
+            raise BagError(f'{self.path}: has no provenance (metadata record {RECORD})')
+        return Provenance.of_records(
+            self._attachments, self._metadata[RECORD], str(self.path))
+
+    def messages(self) -> Iterator[BagMessage]:
+        """Yield every message in file order."""
+        for record in self._records():
+            if isinstance(record, Record) and isinstance(record.parsed, Chunk):
+                yield from self._chunk_messages(record.parsed, self._where(record))
+
+    def ticks(self) -> Iterator[Tick]:
+        """Yield the messages of each instant together."""
+        for t_ns, group in groupby(self.messages(), key=attrgetter('t_ns')):
+            messages = tuple(sorted(group, key=attrgetter('topic')))
+            yield Tick(t_ns, messages[0].sequence, messages)
+
+    def _records(self) -> Iterator[Record | End]:
+        try:
+            with self.path.open('rb') as file:
+                yield from read_records(file, str(self.path))
+        except OSError as error:
+            raise BagError(f'{self.path}: cannot be read, {error.strerror}') from None
+
+    def _scan(self) -> None:
+        for record in self._records():
+            if isinstance(record, End):
+                self.is_whole = record.is_whole
+            elif isinstance(record.parsed, Chunk):
+                self._scan_chunk(record.parsed, self._where(record))
+            elif isinstance(record.parsed, Attachment):
+                self._attachments[record.parsed.name] = record.parsed.data
+            elif isinstance(record.parsed, Metadata):
+                self._metadata[record.parsed.name] = record.parsed.metadata
+            elif isinstance(record.parsed, (Schema, Channel)):
+                self._register(record.parsed, self._where(record))
+            elif record.opcode == Opcode.MESSAGE:
+                raise BagError(f'{self._where(record)}: a message outside chunks, not supported')
+
+    def _scan_chunk(self, chunk: Chunk, where: str) -> None:
+        for message in self._chunk_messages(chunk, where):
+            if self.start_ns is None:
+                self.start_ns = self.end_ns = message.t_ns
+            if self.end_ns is not None and message.t_ns < self.end_ns:
+                raise BagError(
+                    f'{where}: time runs back on {message.topic}, from {self.end_ns} to '
+                    f'{message.t_ns} ns')
+            self.end_ns = message.t_ns
+            self.n_messages += 1
+
+    def _chunk_messages(self, chunk: Chunk, where: str) -> Iterator[BagMessage]:
+        data = chunk_content(chunk, where)
+        position = 0
+        while position < len(data):
+            head = data[position:position + _HEAD_BYTES]
+            end = position + _HEAD_BYTES + int.from_bytes(head[1:], 'little')
+            if len(head) < _HEAD_BYTES or end > len(data):
+                raise BagError(f'{where}: a record reaches beyond its chunk')
+            if head[0] == Opcode.MESSAGE:
+                yield self._message(data[position:end], where)
+            elif head[0] in (Opcode.SCHEMA, Opcode.CHANNEL):
+                self._register(
+                    parse_record(head[0], data[position + _HEAD_BYTES:end], where), where)
+            position = end
+
+    def _message(self, record: bytes, where: str) -> BagMessage:
+        if len(record) < _PREFIX_BYTES:
+            raise BagError(f'{where}: a message record of {len(record)} bytes')
+        _, _, channel, sequence, t_ns, _ = MESSAGE_HEADER.unpack_from(record)
+        if channel not in self._channels:
+            raise BagError(f'{where}: a message on channel {channel}, which is not declared')
+        return BagMessage(t_ns, sequence, self._channels[channel].topic, record[_PREFIX_BYTES:])
+
+    def _register(self, declared: McapRecord | None, where: str) -> None:
+        """Take note of a schema or channel; a second declaration must be the same."""
+        if isinstance(declared, Schema):
+            if self._schemas.setdefault(declared.id, declared) != declared:
+                raise BagError(f'{where}: schema {declared.id} is declared twice')
+        elif isinstance(declared, Channel):
+            if self._channels.setdefault(declared.id, declared) != declared:
+                raise BagError(f'{where}: channel {declared.id} is declared twice')
+            if declared.schema_id not in self._schemas or declared.message_encoding != 'cdr':
+                raise BagError(
+                    f'{where}: {declared.topic} is {declared.message_encoding!r} with schema '
+                    f"{declared.schema_id}, must be 'cdr' with a schema declared before it")
+            type_name = self._schemas[declared.schema_id].name
+            if self.types.setdefault(declared.topic, type_name) != type_name:
+                raise BagError(
+                    f'{where}: {declared.topic} has two types, {self.types[declared.topic]} '
+                    f'and {type_name}')
+
+    def _where(self, record: Record) -> str:
+        return f'{self.path}: damaged at byte {record.offset}'
+
+
+def _mcap_file(path: Path) -> Path:
+    """Return the one MCAP file of a bag directory, or the file itself."""
+    if not path.is_dir():
+        if not path.is_file():
+            raise BagError(f'{path}: no such bag')
+        return path
+    files = sorted(path.glob('*.mcap'))
+    if len(files) != 1:
+        raise BagError(
+            f'{path} holds {len(files)} MCAP files, must hold one: '
+            f'{", ".join(file.name for file in files) or "none"}')
+    return files[0]

@@ -1,0 +1,213 @@
+"""
+Records of an MCAP file, in file order, each checked before it is used.
+
+A record that the file ends in is where a killed recorder stopped. Anything else that does
+not fit is damage: an unknown record, a checksum, a length beyond the end of a file that
+has its closing magic, or beyond what a bag may hold.
+"""
+
+from collections.abc import Iterator
+import io
+import os
+import struct
+from typing import Any, BinaryIO, NamedTuple
+import zlib
+
+from isa_ros.errors import BagError
+import lz4.frame  # type: ignore[import-untyped]
+from mcap.data_stream import ReadDataStream
+from mcap.exceptions import EndOfFile
+from mcap.opcode import Opcode
+from mcap.records import Attachment, Channel, Chunk, DataEnd, Footer, Header, McapRecord
+from mcap.records import Metadata, Schema
+from mcap.writer import MCAP0_MAGIC
+import zstandard
+
+MAX_RECORD_BYTES = 256 * 1024 * 1024
+"""Largest record, and largest content of a chunk, that is read."""
+
+_HEAD_BYTES = 9  # opcode, length
+_FOOTER_CRC_BYTES = 4
+_PARSED: dict[int, Any] = {
+    Opcode.CHANNEL: Channel, Opcode.DATA_END: DataEnd, Opcode.FOOTER: Footer,
+    Opcode.HEADER: Header, Opcode.METADATA: Metadata, Opcode.SCHEMA: Schema,
+    Opcode.ATTACHMENT: Attachment, Opcode.CHUNK: Chunk,
+}
+_PRIVATE = 0x80  # opcodes from here on are the writer's own, to be skipped
+
+
+class Record(NamedTuple):
+    """One record: where it starts, what it is, and its parsed form where that is needed."""
+
+    offset: int
+    opcode: int
+    parsed: McapRecord | None
+
+
+class End(NamedTuple):
+    """How a file ends: whole, or cut short at an offset."""
+
+    is_whole: bool
+    offset: int
+
+
+def read_records(file: BinaryIO, where: str) -> Iterator[Record | End]:
+    """
+    Yield every complete record, then the `End`.
+
+    Raises
+    ------
+    BagError
+        the file is no MCAP file, or damaged, naming the offset and what.
+
+    """
+    reader = _Reader(file, where)
+    reader.check_magic()
+    while True:
+        record = reader.next_record()
+        yield record
+        if isinstance(record, End):
+            return
+        if record.opcode == Opcode.FOOTER:
+            yield reader.closing()
+            return
+
+
+def chunk_content(chunk: Chunk, where: str) -> bytes:
+    """
+    Return the uncompressed content of a chunk.
+
+    Raises
+    ------
+    BagError
+        unknown compression, a size that is not the declared one, a wrong CRC.
+
+    """
+    limit = chunk.uncompressed_size
+    if limit > MAX_RECORD_BYTES:
+        raise BagError(f'{where}: {limit} bytes in a chunk, must be <= {MAX_RECORD_BYTES}')
+    try:
+        if chunk.compression == 'zstd':
+            stream = zstandard.ZstdDecompressor().stream_reader(chunk.data)
+            data = stream.read(limit + 1)
+        elif chunk.compression == 'lz4':
+            data = lz4.frame.LZ4FrameDecompressor().decompress(chunk.data, limit + 1)
+        elif chunk.compression == '':
+            data = chunk.data
+        else:
+            raise BagError(f'{where}: compression {chunk.compression!r}, must be zstd or lz4')
+    except (zstandard.ZstdError, RuntimeError) as error:
+        raise BagError(f'{where}: a chunk that cannot be decompressed ({error})') from None
+    if len(data) != limit:
+        raise BagError(f'{where}: {len(data)} bytes in a chunk, must be {limit}')
+    if chunk.uncompressed_crc and zlib.crc32(data) != chunk.uncompressed_crc:
+        raise BagError(f'{where}: CRC of a chunk is wrong, its data are damaged')
+    return data
+
+
+def parse_record(opcode: int, content: bytes, where: str) -> McapRecord | None:
+    """
+    Return the parsed form of a record, None for one that is not needed.
+
+    Raises
+    ------
+    BagError
+        the content is not what the opcode says.
+
+    """
+    cls = _PARSED.get(opcode)
+    if cls is None:
+        return None
+    try:
+        parsed: McapRecord = cls.read(ReadDataStream(io.BytesIO(content)))
+    except (EndOfFile, ValueError, struct.error) as error:
+        raise BagError(f'{where}: a malformed {cls.__name__} ({error})') from None
+    return parsed
+
+
+class _Reader:
+    """Position in one file, and the running checksum of what was read."""
+
+    def __init__(self, file: BinaryIO, where: str) -> None:
+        self._file = file
+        self._where = where
+        self._size = file.seek(0, os.SEEK_END)
+        file.seek(max(self._size - len(MCAP0_MAGIC), len(MCAP0_MAGIC)))  # not the opening one
+        self._is_closed = file.read() == MCAP0_MAGIC
+        file.seek(0)
+        self._position = 0
+        self._crc = 0  # of the data section, from the start of the file
+        self._summary_crc: int | None = None
+
+    def check_magic(self) -> None:
+        """Refuse what is no MCAP file."""
+        if self._read(len(MCAP0_MAGIC)) != MCAP0_MAGIC:
+            raise BagError(f'{self._where}: is no MCAP file (opening magic)')
+
+    def next_record(self) -> Record | End:
+        """Return the next complete record, or the end of a file that was cut short."""
+        offset = self._position
+        head = self._file.read(_HEAD_BYTES)
+        if len(head) < _HEAD_BYTES:
+            return self._cut(offset)
+        opcode, length = head[0], int.from_bytes(head[1:], 'little')
+        if opcode == 0 or max(Opcode) < opcode < _PRIVATE:
+            raise self._damage(offset, f'unknown record {opcode:#04x}')
+        if length > MAX_RECORD_BYTES:
+            raise self._damage(
+                offset, f'a record of {length} bytes, must be <= {MAX_RECORD_BYTES}')
+        if offset + _HEAD_BYTES + length > self._size:
+            return self._cut(offset)
+        self._file.seek(offset)
+        before = self._crc
+        content = self._read(_HEAD_BYTES + length)[_HEAD_BYTES:]
+        parsed = self._parse(opcode, content, offset)
+        if isinstance(parsed, DataEnd):
+            self._check(offset, 'the data section', parsed.data_section_crc, before)
+            self._summary_crc = 0
+        if isinstance(parsed, Footer):
+            if self._summary_crc is None:
+                raise self._damage(offset, 'a footer without the end of the data')
+            self._check(offset, 'the summary', parsed.summary_crc, self._summary_crc)
+        return Record(offset, opcode, parsed)
+
+    def closing(self) -> End:
+        """Return the end behind the footer."""
+        offset = self._position
+        magic = self._file.read(len(MCAP0_MAGIC) + 1)
+        if magic == MCAP0_MAGIC:
+            return End(True, offset)
+        if MCAP0_MAGIC.startswith(magic):
+            return End(False, offset)
+        raise self._damage(offset, 'no closing magic')
+
+    def _read(self, size: int) -> bytes:
+        """Read on, the running checksums too; the footer's own CRC is left out of them."""
+        data = self._file.read(size)
+        self._position += len(data)
+        if self._summary_crc is None:
+            self._crc = zlib.crc32(data, self._crc)
+        else:
+            is_footer = data[:1] == bytes([Opcode.FOOTER])
+            covered = data[:-_FOOTER_CRC_BYTES] if is_footer else data
+            self._summary_crc = zlib.crc32(covered, self._summary_crc)
+        return data
+
+    def _parse(self, opcode: int, content: bytes, offset: int) -> McapRecord | None:
+        parsed = parse_record(opcode, content, f'{self._where}: damaged at byte {offset}')
+        if isinstance(parsed, Attachment):
+            crc = int.from_bytes(content[-4:], 'little')
+            self._check(offset, f'attachment {parsed.name}', crc, zlib.crc32(content[:-4]))
+        return parsed
+
+    def _check(self, offset: int, what: str, expected: int, actual: int) -> None:
+        if expected not in (0, actual):  # 0: not written
+            raise self._damage(offset, f'CRC of {what} is {actual:#010x}, not {expected:#010x}')
+
+    def _cut(self, offset: int) -> End:
+        if self._is_closed:
+            raise self._damage(offset, 'a record that reaches beyond the end')
+        return End(False, offset)
+
+    def _damage(self, offset: int, what: str) -> BagError:
+        return BagError(f'{self._where}: damaged at byte {offset}: {what}')

@@ -1,0 +1,49 @@
+"""A small recorded run for the bag tests: one actuator, a clock, exact numbers."""
+
+from pathlib import Path
+
+from isa_ros.bag.metadata import Topic
+from isa_ros.bag.provenance import Provenance
+from isa_ros.bag.writer import BagWriter
+from isa_ros.signals import COMMAND, SAMPLE
+from msg_adapters.actuator_messages import ActuatorMessages, APPLIED_SETPOINT, STATE_TOPICS
+from msg_adapters.clock import TYPE as CLOCK
+from msg_adapters.coordinator_messages import ClockMessage
+import numpy as np
+
+STEP_NS = 1_000_000
+PROVENANCE = Provenance(
+    configuration='name: rig\n', scenario='name: step\n', seed=7,
+    versions={'isa_ros': '0.1.0', 'numpy': '2.0'})
+TOPICS = tuple(sorted(
+    [Topic('/clock', CLOCK), Topic('/hip/applied_setpoint', APPLIED_SETPOINT[1])]
+    + [Topic(f'/hip/{suffix}', type_name) for suffix, type_name in STATE_TOPICS],
+    key=lambda topic: topic.name))
+NAMES = [topic.name for topic in TOPICS]
+MESSAGES = ActuatorMessages('hip', is_rotary=True)
+CLOCK_MESSAGE = ClockMessage()
+
+
+def tick_messages(tick, **changed):
+    """Return (topic index, bytes) of tick 0, 1, ...; ``changed`` replaces sample fields."""
+    t_ns = tick * STEP_NS
+    sample = np.zeros(1, dtype=SAMPLE)[0]
+    for k, field in enumerate(SAMPLE.names):
+        sample[field] = np.sin(0.1 * tick + k)
+    for field, value in changed.items():
+        sample[field] = value
+    produced = {'/clock': CLOCK_MESSAGE.pack(t_ns)}
+    produced |= {f'/hip/{suffix}': data for suffix, data in MESSAGES.state(sample, t_ns)}
+    if tick % 100 == 0:
+        suffix, data = MESSAGES.applied_setpoint(np.zeros(1, dtype=COMMAND)[0], t_ns)
+        produced[f'/hip/{suffix}'] = data
+    return [(NAMES.index(name), produced[name]) for name in sorted(produced)]
+
+
+def record(directory: Path, n_ticks: int, changed=None, **options) -> Path:
+    """Record ``n_ticks`` and return the MCAP file; ``changed`` maps ticks to fields."""
+    with BagWriter(directory, TOPICS, PROVENANCE, **options) as writer:
+        for tick in range(n_ticks):
+            fields = (changed or {}).get(tick, {})
+            writer.write_tick(tick * STEP_NS, tick, tick_messages(tick, **fields))
+    return writer.path
