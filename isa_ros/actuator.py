@@ -133,12 +133,14 @@ class SmartActuator:
     @property
     def sample(self) -> np.void:
         """Return the `SAMPLE` at the end of the last tick."""
-        return self._sample[0]
+        sample: np.void = self._sample[0]
+        return sample
 
     @property
     def reply(self) -> np.void:
         """Return the `LOAD_REPLY` of the last tick."""
-        return self._reply[0]
+        reply: np.void = self._reply[0]
+        return reply
 
     @property
     def applied(self) -> np.void | None:

@@ -42,13 +42,12 @@ def flat(rows: np.ndarray) -> np.ndarray:
 
 def state_name(index: int) -> str:
     """Return the dotted name of one state of `BODY` by its place in the flat array."""
-    names = [f'{part}.{component}.{state}'
-             for part in ('plant',)
-             for component in PLANT_STATE.names
-             for state in PLANT_STATE[component].names]
-    names += [f'load.{state}' for state in LOAD_STATE.names]
-    names += [f'totals.{state}' for state in TOTALS.names]
-    return names[index]
+    def walk(record: np.dtype, prefix: str) -> list[str]:
+        if record.names is None:
+            return [prefix]
+        return [name for field in record.names
+                for name in walk(record[field], f'{prefix}.{field}' if prefix else field)]
+    return walk(BODY, '')[index]
 
 
 @kernel

@@ -41,7 +41,8 @@ def gain_schedule(plant: np.record, name: str) -> np.ndarray:
     stiffness = np.array([
         1.0 / (1.0 / oil_stiffness(s, plant.chambers) + 1.0 / k_s)
         for s in np.linspace(0.0, plant.chambers.stroke, POINTS)])
-    return stiffness.min() / stiffness
+    schedule: np.ndarray = stiffness.min() / stiffness
+    return schedule
 
 
 def actuator_record(sheet: ActuatorSheet, offset_steps: int) -> np.ndarray:

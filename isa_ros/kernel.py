@@ -17,7 +17,8 @@ _SOURCES = sorted(p for p in _PACKAGE.rglob('*.py') if b'@kernel' in p.read_byte
 _DIGEST = hashlib.sha256(b'\0'.join(p.read_bytes() for p in _SOURCES)).hexdigest()[:16]
 
 if 'NUMBA_CACHE_DIR' not in os.environ:
-    numba.config.CACHE_DIR = str(Path.home() / '.cache' / 'isa_ros' / _DIGEST)
+    numba.config.CACHE_DIR = str(  # type: ignore[attr-defined]
+        Path.home() / '.cache' / 'isa_ros' / _DIGEST)
 
 # No fastmath, no parallel: both may reorder roundings, and replay compares bytes.
 kernel = numba.njit(cache=True, nogil=True, error_model='numpy')

@@ -1,13 +1,13 @@
 """One declaration per parameter: its unit, its range and its meaning."""
 
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass, field, fields
 import math
 from typing import Any
 
 from isa_ros.errors import ParameterError
 
-_RELATIONS = {
+_RELATIONS: dict[str, tuple[str, Callable[[float, float], bool]]] = {
     'gt': ('>', lambda value, bound: value > bound),
     'ge': ('>=', lambda value, bound: value >= bound),
     'lt': ('<', lambda value, bound: value < bound),

@@ -100,7 +100,7 @@ def valve_record(sheet: ServoValve, area_ratio: float) -> tuple[float, ...]:
 def largest_flow_slope(valve: np.record, span: float) -> float:
     """Return dQ/dP of the wide-open valve with ``span`` (Pa) over two lands, in m3/s/Pa."""
     flow = flow_curve(valve.x_max, valve) * math.sqrt(0.5 * span) * valve.per_root_drop
-    return 0.5 * flow / span
+    return float(0.5 * flow / span)
 
 
 @kernel

@@ -122,15 +122,15 @@ class Supply:
     def __init__(self, sheet: SupplySheet, step_ns: int, flow_slope: float) -> None:
         self.return_pressure = sheet.return_pressure_mpa * MPA
         self._step = step_ns * 1e-9
-        self._record = None
+        self._record: np.ndarray | None = None
         self._state = np.zeros(1, SUPPLY_STATE)
         self._state['pressure'] = sheet.pressure_mpa * MPA
         if isinstance(sheet, AccumulatorSupply):
             self._record = supply_record(sheet)
-            self._refuse_small(flow_slope)
+            self._refuse_small(self._record, flow_slope)
 
-    def _refuse_small(self, flow_slope: float) -> None:
-        holds = capacitance(self.pressure, self._record[0]) / flow_slope
+    def _refuse_small(self, record: np.ndarray, flow_slope: float) -> None:
+        holds = capacitance(self.pressure, record[0]) / flow_slope
         bound = _SLOWEST_TICKS * self._step
         if holds < bound:
             raise ParameterError(
