@@ -37,10 +37,18 @@ _TICK_GRID_NS = FORCE_WINDOWS * PLANT_STEP_NS
 
 
 @dataclass(frozen=True)
+class ActuatorOrigin:
+    """The layered sections an actuator was built from."""
+
+    sheet: Section
+    load: Section
+
+
+@dataclass(frozen=True)
 class Origins:
     """The layered sections a run was built from, for whoever shows where values come from."""
 
-    actuators: Mapping[str, Section]
+    actuators: Mapping[str, ActuatorOrigin]
     leg: Section | None
 
 
@@ -171,7 +179,7 @@ def refuse_start(start: LegStart, sheet: LegSheet, step_ns: int, place: Place) -
 
 def _actuators(
         tree: Tree, place: Place, leg: LegConfig | None
-        ) -> tuple[tuple[ActuatorConfig, ...], dict[str, Section]]:
+        ) -> tuple[tuple[ActuatorConfig, ...], dict[str, ActuatorOrigin]]:
     below = place / 'actuators'
     section = _section(tree, 'actuators', place)
     joint_of: dict[str, str] = {}
@@ -199,7 +207,7 @@ def _actuators(
 
 def _actuator(
         name: str, tree: Tree, place: Place, leg: LegConfig | None, joint: str | None
-        ) -> tuple[ActuatorConfig, Section]:
+        ) -> tuple[ActuatorConfig, ActuatorOrigin]:
     refuse_unknown(tree, (
         'model', 'preset', 'parameters', 'load', 'initial_position_mm', 'initial_position_deg'),
         place)
@@ -212,11 +220,13 @@ def _actuator(
     _refuse_sheet(sheet, place)
     if joint is not None and leg is not None:
         position = _joint_position(tree, place, leg, joint, sheet)
-        load = None
+        load, load_section = None, {}
     else:
         position = _initial_position(tree, place, sheet)
-        load = _own_load(tree, place, model)
-    return ActuatorConfig(name, model.name, str(preset), sheet, load, position), section
+        load_section = _own_load(tree, place, model)
+        load = build_one_of(LocalLoad, load_section, place / 'load')
+    return (ActuatorConfig(name, model.name, str(preset), sheet, load, position),
+            ActuatorOrigin(section, load_section))
 
 
 def _parameters(tree: Tree, place: Place) -> Section:
@@ -274,19 +284,22 @@ def _initial_position(tree: Tree, place: Place, sheet: ActuatorSheet) -> float:
     return float(tree[key]) * scale  # type: ignore[arg-type]
 
 
-def _own_load(tree: Tree, place: Place, model: Model) -> LocalLoad:
+def _own_load(tree: Tree, place: Place, model: Model) -> Section:
     if 'load' not in tree:
         raise ConfigError(
             f'{place} is neither a joint of the leg nor has a load; valid kinds of '
             f'load: {", ".join(model.loads)}')
-    return own_load(section_at(tree['load'], place / 'load'), place / 'load', model)
+    return _load_section(section_at(tree['load'], place / 'load'), place / 'load', model)
 
 
 def own_load(tree: Tree, place: Place, model: Model) -> LocalLoad:
     """Return a load of one actuator: the model's of that kind with single values replaced."""
+    load: LocalLoad = build_one_of(LocalLoad, _load_section(tree, place, model), place)
+    return load
+
+
+def _load_section(tree: Tree, place: Place, model: Model) -> Section:
     kind: Any = tree.get('kind')
     if kind not in model.loads:
         raise ConfigError(f'{place}.kind = {kind!r}, must be one of {", ".join(model.loads)}')
-    load: LocalLoad = build_one_of(
-        LocalLoad, merge(model.loads[kind], written(tree, place)), place)
-    return load
+    return merge(model.loads[kind], written(tree, place))

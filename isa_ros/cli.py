@@ -1,0 +1,163 @@
+"""
+The command `isa`: arguments and exit codes. What a command does is in `isa_ros.commands`.
+
+Nothing here imports ROS or numba, so that `isa --help` answers at once.
+"""
+
+import argparse
+from collections.abc import Sequence
+import errno
+import math
+import os
+from pathlib import Path
+import signal
+import sys
+import traceback
+from types import FrameType
+from typing import NoReturn
+
+from isa_ros import commands
+from isa_ros.errors import IsaError
+
+DONE, ANSWER_IS_NO, WRONG_INPUT, NOT_COMPLETED, INTERRUPTED = 0, 1, 2, 3, 130
+"""Exit codes; `IsaError` children carry theirs, a diverged simulation 4 among them."""
+
+_DISK_IS_FULL = (errno.ENOSPC, errno.EDQUOT)
+
+
+class _Parser(argparse.ArgumentParser):
+    """Says what is wrong in one line."""
+
+    def error(self, message: str) -> NoReturn:
+        self.exit(WRONG_INPUT, f'{self.prog}: {message}; see {self.prog} --help\n')
+
+
+def main(arguments: Sequence[str] | None = None) -> int:
+    """Run one command and return its exit code."""
+    options = make_parser().parse_args(arguments)
+    # Ctrl-C and SIGTERM end a command alike; a run replaces both to stop between two ticks.
+    before = signal.signal(signal.SIGTERM, _interrupt)
+    try:
+        return DONE if options.command(options) else ANSWER_IS_NO
+    except (IsaError, OSError, KeyboardInterrupt) as error:
+        if options.debug:
+            traceback.print_exc()
+        return _end(error)
+    finally:
+        signal.signal(signal.SIGTERM, before)
+
+
+def _end(error: IsaError | OSError | KeyboardInterrupt) -> int:
+    """Say in one line why a command ended, and return its exit code."""
+    if isinstance(error, KeyboardInterrupt):
+        print('isa: interrupted', file=sys.stderr)
+        return INTERRUPTED
+    if isinstance(error, IsaError):
+        print(f'isa: {error}', file=sys.stderr)
+        return error.exit_code
+    if isinstance(error, BrokenPipeError):  # the reader of a pipe had enough
+        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+        return DONE
+    where = f'{error.filename}: ' if error.filename else ''
+    print(f'isa: {where}{error.strerror or error}', file=sys.stderr)
+    return NOT_COMPLETED if error.errno in _DISK_IS_FULL else WRONG_INPUT
+
+
+def _interrupt(number: int, frame: FrameType | None) -> NoReturn:
+    raise KeyboardInterrupt
+
+
+def make_parser() -> argparse.ArgumentParser:
+    """Return the parser of all commands."""
+    common = _Parser(add_help=False)
+    common.add_argument(
+        '--debug', action='store_true', default=argparse.SUPPRESS,
+        help='show the traceback of an error')
+    parser = _Parser(
+        prog='isa', parents=[common],
+        description='Hydraulic integrated smart actuators, simulated in lockstep.')
+    parser.set_defaults(debug=False)
+    subparsers = parser.add_subparsers(metavar='COMMAND', required=True)
+    for name, (add_arguments, command, summary) in _COMMANDS.items():
+        below = subparsers.add_parser(name, parents=[common], help=summary, description=summary)
+        add_arguments(below)
+        below.set_defaults(command=command)
+    return parser
+
+
+def _demo(parser: argparse.ArgumentParser) -> None:
+    parser.add_argument(
+        '--out', type=Path, metavar='DIR', help='new directory (default: a new one in runs/)')
+
+
+def _bringup(parser: argparse.ArgumentParser) -> None:
+    parser.add_argument('config', metavar='CONFIG', help='a run file, or a shipped one by name')
+    parser.add_argument(
+        '--scenario', metavar='FILE', help='what is commanded: a file, or a shipped one by name')
+    parser.add_argument(
+        '--duration', type=_positive, metavar='S',
+        help='simulated time (default: that of the scenario, else until Ctrl-C)')
+    parser.add_argument(
+        '--out', type=Path, metavar='DIR',
+        help='directory of the bag (default: a new one in runs/)')
+    parser.add_argument(
+        '--overwrite', action='store_true', help='replace the bag in an existing directory')
+    parser.add_argument(
+        '--real-time-factor', type=_positive, metavar='X',
+        help='not faster than X times real time (default: as fast as it goes)')
+    parser.add_argument(
+        '--in-process', action='store_true',
+        help='all nodes in one process: faster, and the same bytes in the bag')
+
+
+def _replay(parser: argparse.ArgumentParser) -> None:
+    parser.add_argument('bag', type=Path, metavar='BAG')
+    _tolerance(parser)
+
+
+def _compare(parser: argparse.ArgumentParser) -> None:
+    parser.add_argument('expected', type=Path, metavar='BAG')
+    parser.add_argument('actual', type=Path, metavar='BAG')
+    _tolerance(parser)
+
+
+def _tolerance(parser: argparse.ArgumentParser) -> None:
+    parser.add_argument(
+        '--tolerance', type=Path, metavar='FILE', help='bounds by topic and field (default: none)')
+
+
+def _report(parser: argparse.ArgumentParser) -> None:
+    parser.add_argument('bag', type=Path, metavar='BAG')
+    parser.add_argument(
+        '--out', type=Path, metavar='FILE.html', help='the page (default: beside the bag)')
+
+
+def _params(parser: argparse.ArgumentParser) -> None:
+    parser.add_argument('name', metavar='MODEL|CONFIG', help='isa_v5, hyq_real, leg.yaml, ...')
+    parser.add_argument(
+        '--preset', default='default', metavar='NAME', help='gains of a model (default: default)')
+
+
+def _bench(parser: argparse.ArgumentParser) -> None:
+    parser.add_argument('--json', type=Path, metavar='FILE', help='write the numbers there too')
+
+
+_COMMANDS = {
+    'demo': (_demo, commands.demo, 'drop the leg by 10 cm, record it, and draw a report'),
+    'bringup': (_bringup, commands.bringup, 'run and record a configuration'),
+    'replay': (_replay, commands.replay, 'simulate a bag again from itself, and compare'),
+    'compare': (_compare, commands.compare, 'find the first difference of two bags'),
+    'report': (_report, commands.report, 'draw the figures of a bag, one page'),
+    'params': (_params, commands.params, 'list every parameter with unit, range and source'),
+    'bench': (_bench, commands.bench, 'measure how fast this machine simulates'),
+}
+
+
+def _positive(text: str) -> float:
+    try:
+        value = float(text)
+    except ValueError:
+        value = math.nan
+    if not (math.isfinite(value) and value > 0.0):
+        raise argparse.ArgumentTypeError(f'{text!r} must be a number > 0')
+    return value

@@ -1,0 +1,101 @@
+"""`isa params`: every parameter of a model, a leg or a run with unit, range and source."""
+
+from collections.abc import Iterator
+from typing import Any, NamedTuple
+
+from isa_ros.actuator_sheet import ActuatorSheet
+from isa_ros.catalogue import actuator_model, leg_names, leg_section, model_names
+from isa_ros.config import read_run
+from isa_ros.errors import ConfigError
+from isa_ros.load.leg_sheet import LegSheet
+from isa_ros.parameter import Parameters, walk
+from isa_ros.paths import CONFIG, find
+from isa_ros.resolve import build, Section, sources
+
+_SYMBOLS = {'gt': '>', 'ge': '>=', 'lt': '<', 'le': '<='}
+
+
+class Row(NamedTuple):
+    """One parameter, as text."""
+
+    parameter: str
+    value: str
+    unit: str
+    bounds: str
+    source: str
+    meaning: str
+
+
+HEADER = Row('parameter', 'value', 'unit', 'range', 'source', 'meaning')
+
+
+def describe(name: str, preset: str) -> str:
+    """
+    Return the table of a packaged model or leg, or of a run file.
+
+    Raises
+    ------
+    ConfigError
+        There is nothing of this name, or the run file cannot be run.
+
+    """
+    if name in model_names():
+        model = actuator_model(name, 'model')
+        section = model.with_preset(preset, 'preset')
+        return _table(f'{name}, preset {preset}', rows(
+            build(ActuatorSheet, section, model.place), section))
+    if name in leg_names():
+        section, place = leg_section(name, 'leg')
+        return _table(name, rows(build(LegSheet, section, place), section))
+    try:
+        path = find(name, CONFIG)
+    except ConfigError as error:
+        known = ', '.join([*model_names(), *leg_names()])
+        raise ConfigError(f'{error}; models and legs: {known}') from error
+    return '\n\n'.join(_run_tables(str(path)))
+
+
+def rows(parameters: Parameters, section: Section) -> list[Row]:
+    """Return a row for each parameter of a set, in the order of declaration."""
+    source_of = sources(section)
+    return [
+        Row(path, _value(value), declared.get('unit', ''), _range(declared),
+            source_of.get(path, ''), declared['doc'])
+        for path, value, declared in walk(parameters)]
+
+
+def _run_tables(path: str) -> Iterator[str]:
+    run, origins = read_run(path)
+    given = f'{run.source}'
+    yield _table(f'supply of {given}', [
+        row._replace(source=given) for row in rows(run.supply, {})])
+    for actuator in run.actuators:
+        title = f'actuators.{actuator.name}: {actuator.model}, preset {actuator.preset}'
+        origin = origins.actuators[actuator.name]
+        yield _table(title, rows(actuator.sheet, origin.sheet))
+        if actuator.load is not None:
+            kind = type(actuator.load).__name__.lower()
+            yield _table(
+                f'actuators.{actuator.name}.load: {kind}', rows(actuator.load, origin.load))
+    if run.leg is not None and origins.leg is not None:
+        yield _table('leg.start', [
+            row._replace(source=given) for row in rows(run.leg.start, {})])
+        yield _table(f'leg: {run.leg.model}', rows(run.leg.sheet, origins.leg))
+
+
+def _value(value: Any) -> str:
+    return f'{value:.10g}' if isinstance(value, float) else str(value)
+
+
+def _range(declared: Any) -> str:
+    if 'names' in declared:
+        return ' | '.join(declared['names'])
+    return ', '.join(f'{_SYMBOLS[name]} {bound:g}' for name, bound in declared['bounds'].items())
+
+
+def _table(title: str, body: list[Row]) -> str:
+    lines = [HEADER, *body]
+    widths = [max(len(line[k]) for line in lines) for k in range(len(HEADER))]
+    texts = ['  '.join(cell.ljust(width) for cell, width in zip(line, widths)).rstrip()
+             for line in lines]
+    return '\n'.join([title, *texts])
