@@ -52,6 +52,15 @@ class Report:
         """Tell whether the runs are equal within the tolerances."""
         return self.difference is None
 
+    def __str__(self) -> str:
+        """Return the one line for the user."""
+        if self.difference is not None:
+            return f'differ: {self.difference}'
+        end = 'nothing to compare' if self.end_ns is None else (
+            f'{self.ticks} ticks, {self.messages} messages, '
+            f'up to t = {self.end_ns / NS_PER_SECOND:.6f} s')
+        return f'equal: {end}'
+
 
 class Comparer:
     """

@@ -3,8 +3,9 @@ The recorder: a rosbag2 directory that can be read at any moment of the run.
 
 Provenance and metadata.yaml are written before the first message. A chunk ends with the
 tick that reaches 1 MiB or 500 ticks, and is in the operating system's hands when
-`BagWriter.write_tick` returns: a killed run loses 500 ticks at most, and what is left ends with a whole tick. Nothing is
-compressed, nothing is taken from the host: the same run gives the same bytes.
+`BagWriter.write_tick` returns: a killed run loses 500 ticks at most, and what is left ends
+with a whole tick. Nothing is compressed, nothing is taken from the host: the same run gives
+the same bytes.
 """
 
 from collections.abc import Sequence

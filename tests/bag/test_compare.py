@@ -39,6 +39,7 @@ def test_equal_runs_are_reported_with_what_was_compared(bag, tmp_path):
     assert report.is_equal
     assert (report.ticks, report.messages, report.end_ns) == (
         N, bag.n_messages, (N - 1) * STEP_NS)
+    assert str(report) == 'equal: 20 ticks, 141 messages, up to t = 0.019000 s'
 
 
 def test_first_difference_names_tick_topic_field_and_both_values(bag):
@@ -54,6 +55,12 @@ def test_difference_of_one_bit_counts(bag):
     value = float(np.nextafter(np.sin(0.7 + 5), 1.0))
     found = difference(bag, produced(spool=value))
     assert (found.topic, found.field, found.actual) == ('/hip/valve', 'position[0]', value)
+
+
+def test_report_says_that_runs_differ_and_where(bag, tmp_path):
+    report = compare_bags(bag, Bag(record(tmp_path / 'other', N, {3: {'spool': 1.0}})))
+    assert not report.is_equal
+    assert str(report).startswith('differ: tick 3 (t = 0.003000 s), /hip/valve, position[0]: ')
 
 
 def test_earlier_tick_wins_over_earlier_topic(tmp_path, bag):
@@ -168,7 +175,7 @@ def test_tolerance_of_one_topic_leaves_the_others_strict(bag):
 def test_cut_bag_compares_up_to_its_end(tmp_path):
     """What replay does with a bag cut short: it stops where the bag stops."""
     path = record(tmp_path / 'rig', 700)
-    path.write_bytes(path.read_bytes()[:-1000])
+    path.write_bytes(path.read_bytes()[:-100_000])
     bag = Bag(path)
     ticks = [tick for tick in produced(700) if tick[0] <= bag.end_ns]
     comparer = Comparer(bag, [topic.name for topic in TOPICS])
