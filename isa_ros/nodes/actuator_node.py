@@ -1,0 +1,139 @@
+"""ROS 2 face of one smart actuator: setpoints in, one tick, messages out."""
+
+from collections.abc import Callable, Sequence
+from typing import Any, NamedTuple
+
+from isa_ros.actuator import ActuatorConfig, Timing
+from isa_ros.coordinator import Messages
+from isa_ros.errors import SetpointError
+from isa_ros.nodes.prepared import PreparedPublishers
+from isa_ros.nodes.qos import SETPOINT
+from isa_ros.nodes.setpoint_publishers import IncompatiblePublishers
+from isa_ros.nodes.waiting import open_server
+from isa_ros.signals import COMMAND, HAS_ENABLE
+from isa_ros.stepping import SteppedActuator
+from msg_adapters.setpoint import msg_to_command
+import numpy as np
+from rclpy.node import Node
+from sensor_msgs.msg import JointState
+from std_srvs.srv import SetBool
+
+WARNING_PERIOD_S = 1.0
+
+
+class Setup(NamedTuple):
+    """What a node simulates, and on what grid of time."""
+
+    config: ActuatorConfig
+    timing: Timing
+
+
+class ActuatorNode(Node):
+    """
+    One actuator on ROS topics; the node's name is the actuator's.
+
+    It owns neither physics nor clock: a `Participant`, a `LocalTransport` or the standalone
+    loop calls `start` and `advance`. Setpoints and requests that arrive between two ticks take
+    effect at the next one; at the same tick a command of the scenario wins.
+
+    ``resolve`` says what actuator it is, once the node's own name and parameters are known.
+    ``has_mailbox``: a `Participant` of this node waits for its steps.
+    """
+
+    def __init__(
+            self, resolve: Callable[[Node], Setup], name: str = 'actuator', *,
+            has_mailbox: bool, **kwargs: Any) -> None:
+        super().__init__(name, start_parameter_services=False, **kwargs)
+        self.setup = resolve(self)
+        self._stepped = SteppedActuator(*self.setup)
+        self._prepared = PreparedPublishers(
+            self, [(f'~/{suffix}', type_) for suffix, type_ in self._stepped.topics])
+        setpoints = self.create_subscription(
+            JointState, '~/setpoint', self._on_setpoint, SETPOINT)
+        enable = self.create_service(SetBool, '~/enable', self._on_enable)
+        self._incompatible = IncompatiblePublishers(self, setpoints)
+        self._inputs = open_server(self, [setpoints], [enable], has_mailbox)
+
+    @property
+    def digest(self) -> str:
+        """Return a hash of the resolved parameters."""
+        return self._stepped.digest
+
+    @property
+    def t_ns(self) -> int:
+        """Return the simulated time reached."""
+        return self._stepped.actuator.t_ns
+
+    @property
+    def reply(self) -> np.void:
+        """Return the `LOAD_REPLY` of the last tick."""
+        return self._stepped.actuator.reply
+
+    def start(self, start: np.void | None) -> Messages:
+        """Begin anew at t = 0 from a `START` row; None: as the configuration says."""
+        return self._stepped.start(start)
+
+    def advance(
+            self, tick: int, port: np.void | None = None,
+            command: np.void | None = None) -> Messages:
+        """
+        Advance one tick and return its messages.
+
+        Raises
+        ------
+        SimulationDiverged
+            A state is no longer finite.
+
+        """
+        if command is not None and command['kinds']:
+            self._stepped.actuator.accept(command)
+        return self._stepped.advance(port)
+
+    def publish(self, messages: Messages) -> None:
+        """Publish messages of `start` or `advance` to whoever listens."""
+        self._prepared.publish(messages)
+
+    def serve(self) -> None:
+        """Take the setpoints and requests that have arrived; do not wait."""
+        self._inputs.serve()
+        self._incompatible.check()
+
+    def check_publishers(self) -> None:
+        """Name publishers whose setpoints cannot be received."""
+        self._incompatible.check()
+
+    def _on_setpoint(self, message: JointState) -> None:
+        try:
+            command = msg_to_command(message, self.get_name())
+        except SetpointError as error:
+            self.get_logger().warning(
+                f'setpoint rejected: {error}', throttle_duration_sec=WARNING_PERIOD_S)
+            return
+        self._stepped.actuator.accept(command)
+
+    def _on_enable(
+            self, request: SetBool.Request, response: SetBool.Response) -> SetBool.Response:
+        command = np.zeros(1, COMMAND)[0]
+        command['kinds'] = HAS_ENABLE
+        command['is_enabled'] = request.data
+        self._stepped.actuator.accept(command)
+        response.success = True
+        response.message = (
+            f'{"enabled" if request.data else "disabled"} from t = {self.t_ns * 1e-9:.6f} s')
+        return response
+
+
+def main(args: Sequence[str] | None = None, model: str = '') -> None:
+    """Run one actuator node; the model is the parameter ``model`` unless it is given."""
+    from isa_ros.nodes.actuator_process import run
+    raise SystemExit(run(args, model))
+
+
+def main_isa_v5(args: Sequence[str] | None = None) -> None:
+    """Run one ISA v5."""
+    main(args, 'isa_v5')
+
+
+def main_smart_manifold(args: Sequence[str] | None = None) -> None:
+    """Run one smart manifold on its rotary actuator."""
+    main(args, 'smart_manifold')

@@ -1,0 +1,117 @@
+"""ROS 2 face of the run: time, leg and supply on topics."""
+
+from collections.abc import Sequence
+from pathlib import Path
+import sys
+from typing import Any
+
+from isa_ros.coordinator import Messages
+from isa_ros.errors import ConfigError, IsaError
+from isa_ros.nodes.environment import set_defaults
+from isa_ros.nodes.prepared import PreparedPublishers
+from isa_ros.run import JOIN_TIMEOUT_S, prepare, Request
+from isa_ros.shared_load import CLOCK_TOPIC
+from isa_ros.stopping import StopRequest
+from isa_ros.terminal import terminal_report
+from rcl_interfaces.msg import ParameterDescriptor
+import rclpy
+from rclpy.node import Node
+from rclpy.signals import SignalHandlerOptions
+from rclpy.utilities import try_shutdown
+
+NAME = 'coordinator'
+_OWN = f'/{NAME}/'
+
+
+class CoordinatorNode(Node):
+    """Publish what the coordinator of a run has to say."""
+
+    def __init__(self, **kwargs: Any) -> None:
+        super().__init__(NAME, start_parameter_services=False, **kwargs)
+        self._time = PreparedPublishers(self, [CLOCK_TOPIC])
+        self._shown: PreparedPublishers | None = None
+
+    def advertise(self, topics: Sequence[tuple[str, str]]) -> None:
+        """Advertise the topics of the shared load, (name in the bag, type) each."""
+        self._shown = PreparedPublishers(
+            self, [(_relative(name), type_) for name, type_ in topics])
+
+    def publish(self, messages: Messages) -> None:
+        """Publish the messages of the shared load to whoever listens."""
+        if self._shown is not None:
+            self._shown.publish(messages)
+
+    def publish_clock(self, clock: bytes) -> None:
+        """Publish `/clock`."""
+        self._time.publish((clock,))
+
+    def request(self) -> Request:
+        """
+        Declare the parameters of a run and return what they ask for.
+
+        Raises
+        ------
+        ConfigError
+            No configuration is named.
+
+        """
+        defaults = {
+            'config_file': ('', 'run file'),
+            'scenario_file': ('', 'what is commanded; empty: nothing'),
+            'out': ('', 'directory of the bag; empty: a new one in runs/'),
+            'duration': (0.0, 'simulated time, s; 0: that of the scenario'),
+            'real_time_factor': (0.0, 'not faster than this; 0: as fast as it can'),
+            'overwrite': (False, 'replace the bag in an existing directory'),
+            'in_process': (False, 'all nodes in this process'),
+            'join_timeout_s': (JOIN_TIMEOUT_S, 'how long participants are waited for, s'),
+        }
+        values: dict[str, Any] = {
+            name: self.declare_parameter(
+                name, default, ParameterDescriptor(description=text, read_only=True)).value
+            for name, (default, text) in defaults.items()}
+        if not values['config_file']:
+            raise ConfigError(f'{NAME}: set the parameter config_file')
+        return Request(
+            config=Path(values['config_file']),
+            scenario=Path(values['scenario_file']) if values['scenario_file'] else None,
+            out=Path(values['out']) if values['out'] else None,
+            duration_s=values['duration'] or None,
+            real_time_factor=values['real_time_factor'],
+            overwrite=values['overwrite'], in_process=values['in_process'],
+            namespace=self.get_namespace().strip('/'),
+            join_timeout_s=values['join_timeout_s'])
+
+
+def _relative(name: str) -> str:
+    """Return a topic of the bag as the node names it, so that namespaces work."""
+    return f'~/{name.removeprefix(_OWN)}' if name.startswith(_OWN) else name.removeprefix('/')
+
+
+def main(args: Sequence[str] | None = None) -> None:
+    """Coordinate participants that were started by someone else."""
+    sys.exit(_main(args))
+
+
+def _main(args: Sequence[str] | None) -> int:
+    from isa_ros.nodes.session import coordinate, coordinate_locally
+    set_defaults()
+    with StopRequest() as should_stop:
+        rclpy.init(
+            args=None if args is None else list(args),
+            signal_handler_options=SignalHandlerOptions.NO)
+        node = CoordinatorNode()
+        try:
+            session = prepare(node.request())
+            run = coordinate_locally if session.request.in_process else coordinate
+            run(node, session, terminal_report(), should_stop)
+        except IsaError as error:
+            print(f'{NAME}: {error}', file=sys.stderr)
+            return error.exit_code
+        finally:
+            node.destroy_node()
+            try_shutdown()
+    return 0
+
+
+if __name__ == '__main__':
+    main()

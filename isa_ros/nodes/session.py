@@ -1,0 +1,129 @@
+"""One run on ROS nodes: actuators in processes of their own, or all in this one."""
+
+from collections.abc import Callable, Iterator, Sequence
+from contextlib import contextmanager
+
+from isa_ros.errors import ConfigError
+from isa_ros.nodes.actuator_node import ActuatorNode, Setup
+from isa_ros.nodes.coordinator_node import CoordinatorNode
+from isa_ros.nodes.environment import set_defaults
+from isa_ros.nodes.lockstep import Expected, Limits, LockstepTransport
+from isa_ros.processes import actuator_processes, Children
+from isa_ros.run import record, Report, Session
+from isa_ros.shared_load import SharedLoad
+from isa_ros.stepping import LocalTransport, SteppedActuator
+from isa_ros.stopping import StopRequest
+import rclpy
+from rclpy.node import Node
+from rclpy.parameter import Parameter
+from rclpy.signals import SignalHandlerOptions
+from rclpy.utilities import try_shutdown
+
+_QUIET = {
+    'use_global_arguments': False, 'enable_rosout': False,
+    'parameter_overrides': [Parameter('start_type_description_service', value=False)],
+}
+"""Nodes of a bring-up have nothing a user could set from outside."""
+
+
+def in_processes(session: Session, report: Report | None, should_stop: StopRequest) -> None:
+    """Start one process per actuator, coordinate them from here, and end them."""
+    set_defaults()
+    load = SharedLoad(session.run)
+    expected = _expected(session, load)
+    request = session.request
+    processes = actuator_processes(session.run, request.config, request.scenario)
+    with Children(processes, request.namespace) as children:
+        with _node(request.namespace) as node:
+            _coordinate(node, session, load, expected, report, should_stop, children.lost)
+
+
+def in_one_process(session: Session, report: Report | None, should_stop: StopRequest) -> None:
+    """Call the nodes of all actuators from here."""
+    set_defaults()
+    with _node(session.request.namespace) as node:
+        coordinate_locally(node, session, report, should_stop)
+
+
+@contextmanager
+def _node(namespace: str) -> Iterator[CoordinatorNode]:
+    rclpy.init(args=[], signal_handler_options=SignalHandlerOptions.NO)
+    try:
+        node = CoordinatorNode(namespace=namespace, **_QUIET)
+        try:
+            yield node
+        finally:
+            node.destroy_node()
+    finally:
+        try_shutdown()
+
+
+def coordinate(
+        node: CoordinatorNode, session: Session, report: Report | None,
+        should_stop: StopRequest) -> None:
+    """Run with participants that someone else starts."""
+    load = SharedLoad(session.run)
+    _coordinate(node, session, load, _expected(session, load), report, should_stop, _nobody)
+
+
+def _nobody() -> None:
+    """Know nothing of the participants' processes."""
+
+
+def _expected(session: Session, load: SharedLoad) -> list[Expected]:
+    """
+    Return the participants with the digests they must have.
+
+    Ticks copies of the actuators once, so that a first run does not compile the kernels in
+    every child at once.
+    """
+    ports, starts = load.ports(), load.starts(session.run)
+    participants = []
+    for k, config in enumerate(session.run.actuators):
+        stepped = SteppedActuator(config, session.timing)
+        stepped.start(starts[k])
+        stepped.advance(ports[k])
+        participants.append(Expected(config.name, stepped.digest))
+    return participants
+
+
+def _coordinate(
+        node: CoordinatorNode, session: Session, load: SharedLoad, expected: Sequence[Expected],
+        report: Report | None, should_stop: StopRequest,
+        lost: Callable[[], str | None]) -> None:
+    node.advertise(load.topics)
+    transport = LockstepTransport(
+        node, expected, load.starts(session.run),
+        Limits(session.request.join_timeout_s, session.run.tick_timeout_s),
+        node.publish, node.publish_clock, watch=lost, should_stop=should_stop)
+    try:
+        record(session, transport, load, report, should_stop)
+    finally:
+        transport.close()
+
+
+def coordinate_locally(
+        node: CoordinatorNode, session: Session, report: Report | None,
+        should_stop: StopRequest) -> None:
+    """Run with the nodes of all actuators in this process."""
+    load = SharedLoad(session.run)
+    node.advertise(load.topics)
+    if node.count_publishers('/clock') > 1:
+        raise ConfigError(
+            f'another coordinator runs in ROS_DOMAIN_ID {node.context.get_domain_id()}, must '
+            'be the only one; end it or set another ROS_DOMAIN_ID')
+    actuators = [
+        ActuatorNode(_resolver(Setup(config, session.timing)), config.name, has_mailbox=False,
+                     namespace=session.request.namespace, **_QUIET)
+        for config in session.run.actuators]
+    try:
+        transport = LocalTransport(
+            actuators, load.starts(session.run), node.publish, node.publish_clock)
+        record(session, transport, load, report, should_stop)
+    finally:
+        for actuator in actuators:
+            actuator.destroy_node()
+
+
+def _resolver(setup: Setup) -> Callable[[Node], Setup]:
+    return lambda node: setup

@@ -1,0 +1,96 @@
+"""Host time: how fast a run goes and how far it is. Nothing of it reaches a result."""
+
+from collections.abc import Callable
+import time
+from typing import NamedTuple
+
+from isa_ros.errors import ConfigError
+from isa_ros.timebase import NS_PER_SECOND
+
+SLICE_S = 0.1  # longest sleep between two looks at a signal
+REPORT_PERIOD_S = 0.2
+
+
+class Progress(NamedTuple):
+    """How far a run is."""
+
+    t_ns: int
+    real_time_factor: float
+    """Simulated over elapsed time since the start."""
+    time_left_s: float | None
+    """None where the end is not known."""
+    is_last: bool
+
+
+class Pace:
+    """
+    Hold the run back to ``real_time_factor``; None or 0 runs as fast as it can.
+
+    Raises
+    ------
+    ConfigError
+        The factor is negative or not finite.
+
+    """
+
+    def __init__(
+            self, real_time_factor: float | None = None,
+            now: Callable[[], float] = time.monotonic,
+            sleep: Callable[[float], None] = time.sleep) -> None:
+        factor = real_time_factor or 0.0
+        if not 0.0 <= factor < float('inf'):
+            raise ConfigError(
+                f'real_time_factor = {factor:g}, must be finite and >= 0 (0: as fast as it can)')
+        self._seconds_per_ns = 1.0 / (NS_PER_SECOND * factor) if factor else 0.0
+        self._now = now
+        self._sleep = sleep
+        self._start = 0.0
+
+    def start(self) -> None:
+        """Let t = 0 be now."""
+        self._start = self._now()
+
+    def wait(self, t_ns: int, should_stop: Callable[[], bool]) -> None:
+        """Sleep until ``t_ns`` is due; return early when a stop is asked for."""
+        if not self._seconds_per_ns:
+            return
+        due = self._start + t_ns * self._seconds_per_ns
+        while (left := due - self._now()) > 0.0 and not should_stop():
+            self._sleep(min(left, SLICE_S))
+
+
+class ProgressMeter:
+    """Report the progress of a run of ``duration_ns`` (None: open end) now and then."""
+
+    def __init__(
+            self, duration_ns: int | None, report: Callable[[Progress], None] | None,
+            now: Callable[[], float] = time.monotonic) -> None:
+        self._duration_ns = duration_ns
+        self._report = report
+        self._now = now
+        self._start = 0.0
+        self._next = 0.0
+
+    def start(self) -> None:
+        """Let t = 0 be now."""
+        self._start = self._now()
+        self._next = self._start + REPORT_PERIOD_S
+
+    def update(self, t_ns: int) -> None:
+        """Report if the last report is old enough."""
+        if self._report is not None and self._now() >= self._next:
+            self._next = self._now() + REPORT_PERIOD_S
+            self._report(self._progress(t_ns, is_last=False))
+
+    def end(self, t_ns: int) -> None:
+        """Report the end of the run."""
+        if self._report is not None:
+            self._report(self._progress(t_ns, is_last=True))
+
+    def _progress(self, t_ns: int, is_last: bool) -> Progress:
+        elapsed = self._now() - self._start
+        factor = t_ns / (NS_PER_SECOND * elapsed) if elapsed > 0.0 else 0.0
+        left = None
+        if self._duration_ns is not None and factor > 0.0:
+            left = (self._duration_ns - t_ns) / (NS_PER_SECOND * factor)
+        return Progress(t_ns, factor, left, is_last)

@@ -1,0 +1,116 @@
+"""The processes of one run: one list for bring-up and launch, and the children of the former."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+import json
+import os
+from pathlib import Path
+import signal
+import subprocess
+import sys
+import time
+
+import isa_ros
+from isa_ros.run_config import RunConfig
+from isa_ros.stopping import PARENT_VARIABLE
+
+MODULES = {
+    'actuator': 'isa_ros.nodes.actuator_process',
+    'coordinator': 'isa_ros.nodes.coordinator_node',
+}
+"""Module of each executable."""
+
+_END_S = 3.0  # from SIGTERM to SIGKILL
+_POLL_S = 0.01
+_ROOT = Path(isa_ros.__file__).parents[1]
+
+ParameterValue = bool | float | str
+
+
+@dataclass(frozen=True)
+class Process:
+    """One node in a process of its own."""
+
+    name: str
+    executable: str
+    parameters: tuple[tuple[str, ParameterValue], ...]
+
+    def ros_arguments(self, namespace: str = '') -> list[str]:
+        """Return the arguments that set name, namespace and parameters."""
+        arguments = ['--ros-args', '-r', f'__node:={self.name}']
+        if namespace:
+            arguments += ['-r', f'__ns:=/{namespace.strip("/")}']
+        for key, value in self.parameters:
+            arguments += ['-p', f'{key}:={json.dumps(value)}']
+        return arguments
+
+
+def actuator_processes(
+        run: RunConfig, config: Path, scenario: Path | None) -> tuple[Process, ...]:
+    """Return the actuators of a run, in the order of the file."""
+    files = [('config_file', str(config.resolve()))]
+    if scenario is not None:
+        files.append(('scenario_file', str(scenario.resolve())))
+    return tuple(
+        Process(actuator.name, 'actuator', (('lockstep', True), *files))
+        for actuator in run.actuators)
+
+
+def coordinator_process(
+        config: Path, scenario: Path | None,
+        options: Sequence[tuple[str, ParameterValue]]) -> Process:
+    """Return the coordinator of a run; ``options`` as its parameters are named."""
+    files = [('config_file', str(config.resolve()))]
+    if scenario is not None:
+        files.append(('scenario_file', str(scenario.resolve())))
+    return Process('coordinator', 'coordinator', (*files, *options))
+
+
+class Children:
+    """Processes that end with this one; a context manager."""
+
+    def __init__(self, processes: Sequence[Process], namespace: str = '') -> None:
+        self._processes = processes
+        self._namespace = namespace
+        self._running: dict[str, subprocess.Popen[bytes]] = {}
+
+    def __enter__(self) -> 'Children':
+        environment = os.environ | {
+            PARENT_VARIABLE: str(os.getpid()),
+            'PYTHONPATH': os.pathsep.join(
+                [str(_ROOT), *filter(None, [os.environ.get('PYTHONPATH')])]),
+        }
+        for process in self._processes:
+            # A session of its own: Ctrl-C reaches the coordinator alone, which ends the tick.
+            self._running[process.name] = subprocess.Popen(
+                [sys.executable, '-m', MODULES[process.executable],
+                 *process.ros_arguments(self._namespace),
+                 '-p', 'start_type_description_service:=false', '--disable-rosout-logs'],
+                env=environment, stdin=subprocess.DEVNULL, start_new_session=True)
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        for process in self._running.values():
+            process.terminate()
+        deadline = time.monotonic() + _END_S
+        for process in self._running.values():
+            try:
+                process.wait(max(_POLL_S, deadline - time.monotonic()))
+            except subprocess.TimeoutExpired:
+                process.kill()
+                process.wait()
+
+    @property
+    def pids(self) -> dict[str, int]:
+        """Return the process ids by name."""
+        return {name: process.pid for name, process in self._running.items()}
+
+    def lost(self) -> str | None:
+        """Say which child has ended, and how; None: all run."""
+        for name, process in self._running.items():
+            code = process.poll()
+            if code is not None:
+                how = (f'was ended by {signal.Signals(-code).name}' if code < 0
+                       else f'ended with exit code {code}')
+                return f'{name}: its process {process.pid} {how}'
+        return None

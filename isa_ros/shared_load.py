@@ -1,0 +1,123 @@
+"""
+What the actuators of one run have in common: the supply, and the leg where there is one.
+
+The coordinator's side of the load port (equation L1), and the messages that show it.
+"""
+
+from isa_ros.coordinator import Messages, Records
+from isa_ros.load.leg import Leg, Pose
+from isa_ros.load.leg_sheet import JOINTS
+from isa_ros.load.local import static_force
+from isa_ros.plant.plant import plant_record
+from isa_ros.plant.servo_valve import largest_flow_slope
+from isa_ros.plant.supply import Supply
+from isa_ros.plant.units import MPA
+from isa_ros.run_config import LegConfig, RunConfig
+from isa_ros.signals import LOAD_PORT
+from isa_ros.stepping import START
+from isa_ros.timebase import NS_PER_SECOND
+from msg_adapters import clock, fluid_pressure, joint_state, wrench
+from msg_adapters.coordinator_messages import (
+    ClockMessage, GroundContactMessage, LegJointStateMessage, SupplyPressureMessage)
+import numpy as np
+
+CLOCK_TOPIC = ('/clock', clock.TYPE)
+SUPPLY_TOPIC = ('/coordinator/supply_pressure', fluid_pressure.TYPE)
+JOINT_TOPIC = ('/joint_states', joint_state.TYPE)
+CONTACT_TOPIC = ('/coordinator/ground_contact', wrench.TYPE)
+
+
+class SharedLoad:
+    """Supply and leg of a run; see `isa_ros.coordinator.SharedLoad`."""
+
+    def __init__(self, run: RunConfig) -> None:
+        self._step_ns = run.step_ns
+        span = (run.supply.pressure_mpa - run.supply.return_pressure_mpa) * MPA
+        slope = sum(largest_flow_slope(plant_record(a.sheet.plant)[0].valve, span)
+                    for a in run.actuators)
+        self._supply = Supply(run.supply, run.step_ns, slope)
+        self._ports = np.zeros(len(run.actuators), LOAD_PORT)
+        self._leg: Leg | None = None
+        self._release_ns = 0
+        self._t_ns = 0
+        if run.leg is not None:
+            self._leg = _leg(run, run.leg)
+            self._release_ns = round(run.leg.start.release_s * NS_PER_SECOND)
+        self._clock = ClockMessage()
+        self._pressure = SupplyPressureMessage()
+        self._joints = LegJointStateMessage(JOINTS)
+        self._contact = GroundContactMessage()
+
+    @property
+    def topics(self) -> tuple[tuple[str, str], ...]:
+        """Return (name, type) of what `messages` gives, in its order."""
+        if self._leg is None:
+            return (SUPPLY_TOPIC,)
+        return SUPPLY_TOPIC, JOINT_TOPIC, CONTACT_TOPIC
+
+    def ports(self) -> Records:
+        """Return the `LOAD_PORT` of every actuator for the next tick, shape (n_actuators,)."""
+        self._ports['supply_pressure'] = self._supply.pressure
+        self._ports['return_pressure'] = self._supply.return_pressure
+        if self._leg is not None:
+            if self._leg.is_held and self._t_ns >= self._release_ns:
+                self._leg.release()
+            self._leg.ports(self._ports)
+        return self._ports
+
+    def advance(self, replies: Records) -> None:
+        """
+        Advance leg and supply by one tick under the `LOAD_REPLY` of every actuator.
+
+        Raises
+        ------
+        SimulationDiverged
+            A state of the leg is no longer finite.
+
+        """
+        if self._leg is not None:
+            self._leg.advance(replies)
+        self._supply.advance(float(replies['supply_volume'].sum()))
+        self._t_ns += self._step_ns
+
+    def clock(self, t_ns: int) -> bytes:
+        """Return the `/clock` message of ``t_ns``."""
+        return self._clock.pack(t_ns)
+
+    def messages(self, t_ns: int) -> Messages:
+        """Return the messages of this instant in the order of `topics`."""
+        pressure = self._pressure.pack(self._supply.pressure, t_ns)
+        if self._leg is None:
+            return (pressure,)
+        sample = self._leg.sample
+        joints = self._joints.pack(
+            sample['position'], sample['velocity'], sample['torque'], t_ns)
+        return pressure, joints, self._contact.pack(sample['foot_force'], t_ns)
+
+    def starts(self, run: RunConfig) -> Records:
+        """
+        Return the `START` of every actuator, shape (n_actuators,).
+
+        At a joint of the leg the actuator carries it: its sensor is strained by the force
+        it holds, so the piston or rotor stands beside the load by force over stiffness (S1).
+        """
+        starts = np.zeros(len(run.actuators), START)
+        starts['position'] = [actuator.initial_position for actuator in run.actuators]
+        starts['force'] = [static_force(actuator.load) for actuator in run.actuators]
+        starts['supply_pressure'] = self._supply.pressure
+        starts['return_pressure'] = self._supply.return_pressure
+        if self._leg is not None and run.leg is not None:
+            rows = [run.index(name) for _, name in run.leg.joints]
+            for row, x, force in zip(
+                    rows, self._leg.actuator_positions, self._leg.actuator_forces):
+                k_s = plant_record(run.actuators[row].sheet.plant)[0].mechanics.k_s
+                starts[row]['position'] = x + force / k_s
+                starts[row]['force'] = force
+        return starts
+
+
+def _leg(run: RunConfig, leg: LegConfig) -> Leg:
+    start = leg.start
+    pose = Pose(haa=start.angle('haa'), hfe=start.angle('hfe'), kfe=start.angle('kfe'),
+                foot_height=start.foot_height_mm * 1e-3)
+    return Leg(leg.sheet, pose, run.step_ns, [run.index(name) for _, name in leg.joints])
