@@ -21,6 +21,8 @@ from mcap.records import Attachment, Channel, Chunk, McapRecord, Metadata, Schem
 
 _HEAD_BYTES = 9  # opcode, length
 _PREFIX_BYTES = MESSAGE_HEADER.size
+_MESSAGE = int(Opcode.MESSAGE)  # comparing with the enum itself takes three times as long
+_DECLARATIONS = (int(Opcode.SCHEMA), int(Opcode.CHANNEL))
 
 
 class BagMessage(NamedTuple):
@@ -133,24 +135,24 @@ class Bag:
         data = chunk_content(chunk, where)
         position = 0
         while position < len(data):
-            head = data[position:position + _HEAD_BYTES]
-            end = position + _HEAD_BYTES + int.from_bytes(head[1:], 'little')
-            if len(head) < _HEAD_BYTES or end > len(data):
+            start = position + _HEAD_BYTES
+            position = start + int.from_bytes(data[position + 1:start], 'little')
+            if start > len(data) or position > len(data):
                 raise BagError(f'{where}: a record reaches beyond its chunk')
-            if head[0] == Opcode.MESSAGE:
-                yield self._message(data[position:end], where)
-            elif head[0] in (Opcode.SCHEMA, Opcode.CHANNEL):
-                self._register(
-                    parse_record(head[0], data[position + _HEAD_BYTES:end], where), where)
-            position = end
+            opcode = data[start - _HEAD_BYTES]
+            if opcode == _MESSAGE:
+                yield self._message(data, start - _HEAD_BYTES, position, where)
+            elif opcode in _DECLARATIONS:
+                self._register(parse_record(opcode, data[start:position], where), where)
 
-    def _message(self, record: bytes, where: str) -> BagMessage:
-        if len(record) < _PREFIX_BYTES:
-            raise BagError(f'{where}: a message record of {len(record)} bytes')
-        _, _, channel, sequence, t_ns, _ = MESSAGE_HEADER.unpack_from(record)
+    def _message(self, data: bytes, start: int, end: int, where: str) -> BagMessage:
+        if end - start < _PREFIX_BYTES:
+            raise BagError(f'{where}: a message record of {end - start} bytes')
+        _, _, channel, sequence, t_ns, _ = MESSAGE_HEADER.unpack_from(data, start)
         if channel not in self._channels:
             raise BagError(f'{where}: a message on channel {channel}, which is not declared')
-        return BagMessage(t_ns, sequence, self._channels[channel].topic, record[_PREFIX_BYTES:])
+        topic = self._channels[channel].topic
+        return BagMessage(t_ns, sequence, topic, data[start + _PREFIX_BYTES:end])
 
     def _register(self, declared: McapRecord | None, where: str) -> None:
         """Take note of a schema or channel; a second declaration must be the same."""
