@@ -52,7 +52,7 @@ class Leg:
         self._flat = self._state.view(np.float64)
         self._sample = np.zeros(1, kernels.LEG_SAMPLE)
         self._flat_sample = self._sample.view(np.float64)
-        self._look_ahead = step_ns / NS_PER_SECOND
+        self._look_ahead = 0.5 * step_ns / NS_PER_SECOND
         self._t_ns = 0
         self._start(pose)
 
@@ -78,7 +78,8 @@ class Leg:
         for k, name in enumerate(JOINTS):
             _, lever, _ = actuator_coordinate(pose.joints[k], self._linkages[k])
             state[f'q_{name}'] = pose.joints[k]
-            state[f'force_{name}'] = getattr(terms, f'h_{name}') / lever
+            for force in ('force', 'mean', 'older'):
+                state[f'{force}_{name}'] = getattr(terms, f'h_{name}') / lever
         y, force, _, is_held = kernels.unpacked(self._flat)
         kernels.fill_sample(y, force, is_held, self._body[0], self._linkages, self._ground[0],
                             self._flat_sample)

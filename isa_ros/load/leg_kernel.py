@@ -20,12 +20,14 @@ from isa_ros.timebase import FORCE_WINDOWS, NS_PER_SECOND
 import numpy as np
 
 LEG_STATE = np.dtype([(name, '<f8') for name in (
-    'z', 'q_haa', 'q_hfe', 'q_kfe',      # m, rad
-    'v_z', 'v_haa', 'v_hfe', 'v_kfe',    # m/s, rad/s
-    'bristle_x', 'bristle_y',            # m
+    'z', 'q_haa', 'q_hfe', 'q_kfe',         # m, rad
+    'v_z', 'v_haa', 'v_hfe', 'v_kfe',       # m/s, rad/s
+    'bristle_x', 'bristle_y',               # m
     'force_haa', 'force_hfe', 'force_kfe',  # estimated at the tick's end, N | Nm
     'slope_haa', 'slope_hfe', 'slope_kfe',  # its slope, N/s | Nm/s
-    'is_held',                           # 1.0: the slider is locked
+    'mean_haa', 'mean_hfe', 'mean_kfe',     # over the last tick, N | Nm
+    'older_haa', 'older_hfe', 'older_kfe',  # over the tick before, N | Nm
+    'is_held',                              # 1.0: the slider is locked
 )])
 """Everything a leg carries from tick to tick."""
 
@@ -43,7 +45,9 @@ LEG_SAMPLE = np.dtype([
 N_STATES = 10
 FORCE = N_STATES            # place of the force estimates in the flat state
 SLOPE = FORCE + 3
-HELD = SLOPE + 3
+MEAN = SLOPE + 3            # place of the last tick's mean forces
+OLDER = MEAN + 3           # and of the one before
+HELD = OLDER + 3
 REPLY_WIDTH = LOAD_REPLY.itemsize // 8
 MEANS = LOAD_REPLY.fields['mean_forces'][1] // 8
 END_FORCE = LOAD_REPLY.fields['force'][1] // 8
@@ -280,15 +284,40 @@ def leg_tick(flat, step_ns, rows, body_rows, linkages, ground_rows, replies, sam
 
 
 @kernel
-def keep_forces(flat, step, rows, replies):
-    """Keep the least-squares line through the window means, at the tick's end  (L16)."""
+def window_line(replies, row):
+    """
+    Return (mean, slope per window, R^2) of the line through a tick's window means.
+
+    R^2, the share of their spread that is a trend, is 0 for equal means.
+    """
     n = float(FORCE_WINDOWS)
+    mean, moment, spread = 0.0, 0.0, 0.0
+    for window in range(FORCE_WINDOWS):
+        mean += replies[row, MEANS + window] / n
+    for window in range(FORCE_WINDOWS):
+        departure = replies[row, MEANS + window] - mean
+        moment += (window - 0.5 * (n - 1.0)) * departure
+        spread += departure * departure
+    slope = 12.0 * moment / (n * (n * n - 1.0))
+    return mean, slope, slope * moment / spread if spread > 0.0 else 0.0
+
+
+@kernel
+def keep_forces(flat, step, rows, replies):
+    """
+    Keep the force each other actuator will be assumed to have, and its slope  (L16).
+
+    Mean of the tick, slope F' = R^8 F'_line + (1 - R^8) (mean - mean two ticks ago) / (2 H),
+    force at the tick's end = mean + F' H / 2. A trend within the tick counts as far as it
+    is one: the ringing of a load cell must not reach the other actuators as a trend, or
+    the exchange feeds it (with a damping ratio of 0.01 it grows when it beats with the ticks).
+    """
     for j in range(3):
-        moment, mean = 0.0, 0.0
-        for window in range(FORCE_WINDOWS):
-            force = replies[rows[j], MEANS + window]
-            moment += (window - 0.5 * (n - 1.0)) * force
-            mean += force / n
-        slope = 12.0 * moment / ((n * n - 1.0) * step)
+        mean, rise, r_2 = window_line(replies, rows[j])
+        trust = r_2 * r_2 * r_2 * r_2
+        slope = (trust * rise * FORCE_WINDOWS / step
+                 + (1.0 - trust) * (mean - flat[OLDER + j]) / (2.0 * step))
+        flat[OLDER + j] = flat[MEAN + j]
+        flat[MEAN + j] = mean
         flat[SLOPE + j] = slope
         flat[FORCE + j] = mean + 0.5 * step * slope

@@ -6,14 +6,14 @@ from pathlib import Path
 
 from hypothesis import given, settings, strategies as st
 from isa_ros.load.leg_dynamics import LEG_BODY, leg_terms
-from isa_ros.load.leg_file import packaged_leg
 from isa_ros.load.leg_sheet import body_record, STANDARD_GRAVITY
 import numpy as np
 import pytest
+from tests.legs import leg_sheet
 
 ROOT = Path(__file__).resolve().parents[2]
 URDF = ROOT / 'urdf' / 'hyq_real_leg.urdf'
-BODY = body_record(packaged_leg('hyq_real').body)[0]
+BODY = body_record(leg_sheet().body)[0]
 NAMES = ('z', 'haa', 'hfe', 'kfe')
 # Sums of a few hundred products of numbers up to 200 N (or 15 kg): a few hundred ulps.
 ROUNDING = 1e-13
@@ -145,7 +145,7 @@ def test_generated_file_is_what_the_script_writes():
 def test_urdf_limits_are_the_data_sheet_s(oracle):
     """Joint ranges of URDF (six decimals) and data sheet."""
     _, model, _ = oracle
-    sheet = packaged_leg('hyq_real')
+    sheet = leg_sheet()
     for k, name in enumerate(NAMES[1:], 1):
         joint = getattr(sheet, name)
         assert math.degrees(model.lowerPositionLimit[k]) == pytest.approx(joint.low_deg, abs=3e-5)
