@@ -40,7 +40,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
     try:
         return DONE if options.command(options) else ANSWER_IS_NO
     except (IsaError, OSError, KeyboardInterrupt) as error:
-        if options.debug:
+        if 'debug' in options:
             traceback.print_exc()
         return _end(error)
     finally:
@@ -76,7 +76,6 @@ def make_parser() -> argparse.ArgumentParser:
     parser = _Parser(
         prog='isa', parents=[common],
         description='Hydraulic integrated smart actuators, simulated in lockstep.')
-    parser.set_defaults(debug=False)
     subparsers = parser.add_subparsers(metavar='COMMAND', required=True)
     for name, (add_arguments, command, summary) in _COMMANDS.items():
         below = subparsers.add_parser(name, parents=[common], help=summary, description=summary)

@@ -1,60 +1,52 @@
 """
 What each command of `isa` does; a command returns whether its answer is yes.
 
-Imports are late on purpose: `isa --help` has no time for numba, a wrong configuration none for
-rclpy.
+Imports are late on purpose: `isa --help` has no time for numba.
 """
 
 from argparse import Namespace
+from collections.abc import Iterator
+from itertools import count
 from pathlib import Path
+import sys
 
 from isa_ros.errors import BagError
 from isa_ros.paths import CONFIG, find, SCENARIOS
 
-RUNS = Path('runs')  # where runs go that say nothing else
+RUNS = Path('runs')  # where a demo goes that says nothing else
 
 
 def demo(options: Namespace) -> bool:
     """Drop the leg, four processes, and draw the report of it."""
-    from isa_ros.analysis.report import write_report
-    from isa_ros.config import load_run
-    from isa_ros.scenario import load_scenario
-    run = load_run(find('leg.yaml', CONFIG))
-    scenario = load_scenario(find('drop.yaml', SCENARIOS), run)
-    out = options.out or free_directory('demo')
-    from isa_ros.run import bringup as run_bringup
-    run_bringup(scenario, out / 'bag')
-    for path in write_report(out / 'bag', out / 'report.html'):
-        print(path)
+    from isa_ros.run import bringup as run_bringup, Request
+    from isa_ros.terminal import terminal_report
+    out = options.out or next(path for path in _demo_directories() if not path.exists())
+    if out.exists():
+        raise BagError(f'{out} exists, must not')
+    bag = run_bringup(Request(
+        config=find('leg.yaml', CONFIG), scenario=find('drop.yaml', SCENARIOS),
+        out=out / 'bag'), terminal_report(sys.stderr))
+    print(bag)
+    _draw(bag, out / 'report.html')
     return True
+
+
+def _demo_directories() -> Iterator[Path]:
+    yield RUNS / 'demo'
+    for number in count(2):
+        yield RUNS / f'demo_{number}'
 
 
 def bringup(options: Namespace) -> bool:
     """Run and record a configuration."""
-    from isa_ros.config import load_run
-    from isa_ros.scenario import idle, load_scenario
-    run = load_run(find(options.config, CONFIG))
-    scenario = (
-        idle(run) if options.scenario is None
-        else load_scenario(find(options.scenario, SCENARIOS), run))
-    if options.duration is not None:
-        scenario = scenario.lasting(options.duration)
-    out = options.out or free_directory(scenario.run.name)
-    from isa_ros.run import bringup as run_bringup
-    run_bringup(
-        scenario, out, overwrite=options.overwrite, real_time_factor=options.real_time_factor,
-        in_process=options.in_process)
-    print(out)
+    from isa_ros.run import bringup as run_bringup, Request
+    from isa_ros.terminal import terminal_report
+    scenario = None if options.scenario is None else find(options.scenario, SCENARIOS)
+    print(run_bringup(Request(
+        config=find(options.config, CONFIG), scenario=scenario, out=options.out,
+        duration_s=options.duration, real_time_factor=options.real_time_factor,
+        overwrite=options.overwrite, in_process=options.in_process), terminal_report(sys.stderr)))
     return True
-
-
-def free_directory(name: str) -> Path:
-    """Return runs/NAME, or the first of runs/NAME_2, runs/NAME_3 ... that is free."""
-    path, k = RUNS / name, 1
-    while path.exists():
-        k += 1
-        path = RUNS / f'{name}_{k}'
-    return path
 
 
 def replay(options: Namespace) -> bool:
@@ -83,12 +75,15 @@ def compare(options: Namespace) -> bool:
 
 def report(options: Namespace) -> bool:
     """Draw the figures of a bag."""
-    from isa_ros.analysis.report import write_report
-    if not options.bag.exists():
-        raise BagError(f'{options.bag}: no such bag')
-    for path in write_report(options.bag, options.out or options.bag / 'report.html'):
-        print(path)
+    bag: Path = options.bag
+    _draw(bag, options.out or (bag if bag.is_dir() else bag.parent) / 'report.html')
     return True
+
+
+def _draw(bag: Path, page: Path) -> None:
+    from isa_ros.analysis.report import write_report
+    for path in write_report(bag, page):
+        print(path)
 
 
 def params(options: Namespace) -> bool:

@@ -1,0 +1,18 @@
+"""The code style that `colcon test` checks."""
+
+from pathlib import Path
+
+from ament_flake8.main import main_with_errors
+import pytest
+
+ROOT = Path(__file__).parents[2]
+CODE = ('isa_ros', 'msg_adapters', 'launch', 'scripts', 'tests', 'setup.py')
+
+
+@pytest.mark.linter
+@pytest.mark.flake8
+def test_flake8_finds_nothing(monkeypatch: pytest.MonkeyPatch) -> None:
+    """As ament_flake8 configures it: 99 columns, single quotes, google import order."""
+    monkeypatch.chdir(ROOT)
+    return_code, errors = main_with_errors(argv=[p for p in CODE if (ROOT / p).exists()])
+    assert return_code == 0, '\n'.join(errors)

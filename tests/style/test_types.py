@@ -1,0 +1,19 @@
+"""Types: mypy --strict on both packages, relaxed for kernels only (pyproject.toml)."""
+
+from pathlib import Path
+import subprocess
+import sys
+
+import pytest
+
+pytest.importorskip('mypy')
+ROOT = Path(__file__).parents[2]
+
+
+@pytest.mark.linter
+@pytest.mark.slow
+def test_mypy_strict_finds_nothing() -> None:
+    """The configuration and the packages it names stand in pyproject.toml."""
+    result = subprocess.run(
+        [sys.executable, '-m', 'mypy'], cwd=ROOT, capture_output=True, text=True, check=False)
+    assert result.returncode == 0, result.stdout + result.stderr

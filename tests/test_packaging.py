@@ -1,0 +1,81 @@
+"""What an installation needs: one version, real entry points, pinned requirements."""
+
+from importlib import import_module
+from pathlib import Path
+import re
+import shutil
+import subprocess
+import sys
+from xml.etree import ElementTree
+
+import pytest
+
+ROOT = Path(__file__).parents[1]
+SETUP = (ROOT / 'setup.py').read_text(encoding='utf-8')
+ENTRY_POINTS = re.findall(r"'(\w+) = ([\w.]+):(\w+)'", SETUP)
+
+
+def test_the_version_is_the_same_for_python_and_ros() -> None:
+    version = ElementTree.parse(ROOT / 'package.xml').findtext('version')
+    assert f"version='{version}'" in SETUP
+
+
+def test_the_executables_of_the_interface_are_there() -> None:
+    assert [name for name, _, _ in ENTRY_POINTS] == [
+        'actuator', 'isa_v5', 'smart_manifold', 'coordinator', 'isa']
+
+
+@pytest.mark.parametrize('name, module, function', ENTRY_POINTS)
+def test_an_executable_can_be_called(name: str, module: str, function: str) -> None:
+    if '.nodes.' in module:
+        pytest.importorskip('rclpy')
+    assert callable(getattr(import_module(module), function))
+
+
+@pytest.mark.parametrize('file', ['requirements.txt', 'requirements-test.txt'])
+def test_requirements_are_pinned(file: str) -> None:
+    """The same clone gives the same environment; ROS only there, never in setup.py."""
+    lines = [line for line in (ROOT / file).read_text(encoding='utf-8').splitlines()
+             if line and not line.startswith('#')]
+    assert lines and all(re.match(r'[\w.-]+==[\d.]+(; python_version [<>]=? "[\d.]+")?$', line)
+                         for line in lines)
+    assert 'ros-jazzy' not in SETUP
+
+
+def test_pyproject_holds_no_metadata() -> None:
+    """A literal requires-python in [project] breaks colcon."""
+    text = (ROOT / 'pyproject.toml').read_text(encoding='utf-8')
+    assert '[project' not in text and '[build-system]' in text
+
+
+@pytest.mark.slow
+def test_an_installed_package_finds_its_data(tmp_path: Path) -> None:
+    """A wheel carries the models, and share/isa_ros the configurations."""
+    pytest.importorskip('setuptools', minversion='70.1')  # the first one that makes wheels
+    subprocess.run(
+        [sys.executable, '-m', 'pip', 'install', '--quiet', '--no-deps', '--no-build-isolation',
+         '--no-index', '--disable-pip-version-check', '--prefix', str(tmp_path / 'prefix'),
+         str(copy_of_clone(tmp_path))], check=True, capture_output=True, timeout=120)
+    purelib = next((tmp_path / 'prefix').glob('lib/python3*/site-packages'))
+    program = (
+        'from isa_ros.config import load_run; from isa_ros.paths import find\n'
+        'import isa_ros; print(isa_ros.__file__, load_run(find("leg", "config")).name)')
+    result = subprocess.run(
+        [sys.executable, '-c', program], cwd=tmp_path, check=True, capture_output=True, text=True,
+        env={'PYTHONPATH': str(purelib), 'PATH': '', 'HOME': str(tmp_path)}, timeout=120)
+    assert result.stdout == f'{purelib}/isa_ros/__init__.py leg\n'
+    scripts = {path.name for path in (tmp_path / 'prefix' / 'bin').iterdir()}
+    assert {name for name, _, _ in ENTRY_POINTS} <= scripts
+
+
+def copy_of_clone(tmp_path: Path) -> Path:
+    """Return a copy of what the build reads: the build writes beside its sources."""
+    copy = tmp_path / 'clone'
+    copy.mkdir()
+    for name in ('isa_ros', 'msg_adapters', 'config', 'launch', 'urdf', 'resource'):
+        if (ROOT / name).is_dir():
+            shutil.copytree(ROOT / name, copy / name, ignore=shutil.ignore_patterns('__pycache__'))
+    for name in ('setup.py', 'setup.cfg', 'pyproject.toml', 'package.xml', 'README.md', 'LICENSE'):
+        if (ROOT / name).is_file():
+            shutil.copy(ROOT / name, copy / name)
+    return copy

@@ -1,0 +1,45 @@
+"""`isa params`: every parameter once, with its source."""
+
+from isa_ros.actuator_sheet import ActuatorSheet
+from isa_ros.catalogue import actuator_model, leg_names, leg_section, model_names
+from isa_ros.load.leg_sheet import LegSheet
+from isa_ros.params import describe, rows
+from isa_ros.resolve import build
+import pytest
+
+SOURCES = ('paper', 'derived', 'assumed', 'public model')
+
+
+@pytest.mark.parametrize('name', model_names())
+def test_every_value_of_a_model_has_its_source(name: str) -> None:
+    """Every preset of a model is a whole sheet, and no value is without a source."""
+    model = actuator_model(name, 'model')
+    assert {'default', 'table_4'} <= set(model.presets)
+    for preset in model.presets:
+        section = model.with_preset(preset, 'preset')
+        table = rows(build(ActuatorSheet, section, model.place), section)
+        assert table and all(row.source.startswith(SOURCES) for row in table)
+        assert len({row.parameter for row in table}) == len(table)
+
+
+@pytest.mark.parametrize('name', leg_names())
+def test_every_value_of_a_leg_has_its_source(name: str) -> None:
+    section, place = leg_section(name, 'leg')
+    assert all(row.source.startswith(SOURCES)
+               for row in rows(build(LegSheet, section, place), section))
+
+
+def test_a_row_shows_value_unit_range_and_source() -> None:
+    """The paper's Table 2: bore 21.5 mm."""
+    line = next(line for line in describe('isa_v5', 'default').splitlines()
+                if line.startswith('plant.drive.bore_mm '))
+    assert line.split('  ')[0] == 'plant.drive.bore_mm'
+    for cell in ('21.5', 'mm', '> 0, <= 500', 'paper Table 2', 'piston diameter'):
+        assert cell in line
+
+
+def test_a_run_shows_each_actuator_and_where_its_values_come_from() -> None:
+    text = describe('rig_rotary', 'default')
+    assert 'actuators.rotor: smart_manifold, preset table_4' in text
+    assert 'actuators.rotor.load: wheel' in text
+    assert '20.7   MPa' in text.replace('    ', '   ') and 'rig_rotary.yaml' in text
