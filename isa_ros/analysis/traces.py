@@ -1,11 +1,14 @@
 """The signals of a bag as arrays over time."""
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
 from isa_ros.bag.reader import Bag
+from isa_ros.errors import BagError
 from isa_ros.run_config import RunConfig
-from msg_adapters.cdr_reader import decode, flatten, message_class
+from msg_adapters.cdr import encode_with_slots
+from msg_adapters.cdr_reader import decode, message_class
 import numpy as np
 
 
@@ -14,7 +17,7 @@ class Trace:
     """One topic: times (n,) in s and its numeric fields by path, each of shape (n,)."""
 
     t: np.ndarray
-    fields: dict[str, np.ndarray]
+    fields: np.ndarray
 
     def __getitem__(self, path: str) -> np.ndarray:
         return self.fields[path]
@@ -27,21 +30,35 @@ def read_traces(path: Path) -> tuple[RunConfig, dict[str, Trace]]:
     Raises
     ------
     BagError
-        Not a bag, or damaged.
+        Not a bag, damaged, or a topic whose messages change their layout.
 
     """
     bag = Bag(path)
     times: dict[str, list[int]] = {}
-    columns: dict[str, dict[str, list[float]]] = {}
-    classes = {topic: message_class(name) for topic, name in bag.types.items()}
+    messages: dict[str, list[bytes]] = {}
     for message in bag.messages():
-        fields = columns.setdefault(message.topic, {})
         times.setdefault(message.topic, []).append(message.t_ns)
-        for field, value in flatten(decode(message.data, classes[message.topic])):
-            if not isinstance(value, str):
-                fields.setdefault(field, []).append(float(value))
+        messages.setdefault(message.topic, []).append(message.data)
     return RunConfig.from_yaml(bag.provenance.configuration), {
-        topic: Trace(
-            np.array(times[topic]) * 1e-9,
-            {field: np.array(values) for field, values in columns[topic].items()})
+        topic: Trace(np.array(times[topic]) * 1e-9,
+                     columns(messages[topic], bag.types[topic], f'{path}: {topic}'))
         for topic in times}
+
+
+def columns(messages: Sequence[bytes], type_name: str, where: str) -> np.ndarray:
+    """
+    Return the numbers of messages of one layout as a structured view, shape (n,).
+
+    The first message is decoded; where its numbers lie, those of the others do too as long
+    as names and array lengths stay, which the recorder's prepared messages guarantee.
+    """
+    first = messages[0]
+    encoded, slots = encode_with_slots(decode(first, message_class(type_name)))
+    if encoded != first or any(len(message) != len(first) for message in messages):
+        raise BagError(f'{where}: the messages change their layout, cannot be drawn')
+    record = np.dtype({
+        'names': list(slots),
+        'formats': [f'<{slot.code}' for slot in slots.values()],
+        'offsets': [slot.offset for slot in slots.values()],
+        'itemsize': len(first)})
+    return np.frombuffer(b''.join(messages), record)

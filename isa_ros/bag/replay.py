@@ -1,0 +1,170 @@
+"""
+Replay: simulate a recorded run again from the bag alone, and compare every message.
+
+Inputs are the configuration the bag carries and the applied setpoints recorded in it, each
+at the tick it took effect; the scenario is provenance only. No ROS is needed.
+"""
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+
+from isa_ros.actuator import Timing
+from isa_ros.bag.compare import Comparer, Report
+from isa_ros.bag.provenance import installed_versions
+from isa_ros.bag.reader import Bag
+from isa_ros.bag.tolerances import Tolerances
+from isa_ros.coordinator import (
+    Coordinator, Interrupted, Messages, Plan, Recorder, Records)
+from isa_ros.errors import BagError, SetpointError
+from isa_ros.pacing import Pace, ProgressMeter
+from isa_ros.run import topics_of
+from isa_ros.run_config import ActuatorConfig, RunConfig
+from isa_ros.shared_load import SharedLoad
+from isa_ros.stepping import LocalTransport, SteppedActuator
+from msg_adapters.setpoint import applied_to_command
+import numpy as np
+
+APPLIED = 'applied_setpoint'
+
+
+@dataclass(frozen=True)
+class ReplayReport:
+    """How a replay compares with its bag."""
+
+    report: Report
+    is_whole: bool
+    changed_versions: Mapping[str, tuple[str, str]]
+    """Version in the bag and here, of whatever differs."""
+
+    @property
+    def is_equal(self) -> bool:
+        """Tell whether the replay gave the bag within the tolerances."""
+        return self.report.is_equal
+
+    def __str__(self) -> str:
+        """Return what a user wants to know, a line each."""
+        lines = [str(self.report)]
+        if not self.is_whole:
+            lines.append('the bag was cut short there')
+        lines += [f'{name} is {here} here, was {there}'
+                  for name, (there, here) in self.changed_versions.items()]
+        return '\n'.join(lines)
+
+
+def replay(bag: Bag, tolerances: Tolerances | None = None) -> ReplayReport:
+    """
+    Simulate a bag again and compare, up to the first difference.
+
+    Raises
+    ------
+    BagError
+        The bag is damaged or has nothing to simulate.
+    ConfigError
+        The configuration in it cannot be run by this version.
+
+    """
+    again = Rerun(bag)
+    comparer = Comparer(bag, [topic.name for topic in again.topics], tolerances)
+    again.simulate(comparer, lambda: comparer.difference is not None)
+    here, there = installed_versions(), bag.provenance.versions
+    changed = {name: (was, here.get(name, 'missing'))
+               for name, was in there.items() if here.get(name) != was}
+    return ReplayReport(comparer.finish(), bag.is_whole, changed)
+
+
+class Rerun:
+    """
+    A bag's run, ready to be simulated anew; ``topics`` are what it records, in order.
+
+    Raises as `replay`.
+    """
+
+    def __init__(self, bag: Bag) -> None:
+        self._run = RunConfig.from_yaml(
+            bag.provenance.configuration, f'{bag.path.name}: configuration.yaml')
+        self._commands, self._n_ticks = recorded_commands(bag, self._run)
+        self._load = SharedLoad(self._run)
+        self._order, self.topics = topics_of(self._run, self._load)
+
+    def simulate(
+            self, recorder: Recorder, should_stop: Callable[[], bool] = lambda: False) -> None:
+        """Hand every sample to ``recorder`` until the end of the bag or ``should_stop``."""
+        run = self._run
+        timing = Timing(run.step_ns, run.controller_offset_ns)
+        transport = LocalTransport(
+            [Replayed(actuator, timing) for actuator in run.actuators],
+            self._load.starts(run), _nobody_listens, _nobody_listens)
+        plan = Plan(step_ns=run.step_ns, n_actuators=len(run.actuators),
+                    n_ticks=self._n_ticks, commands=self._fill)
+        coordinator = Coordinator(
+            plan, self._order, transport, self._load, recorder, pace=Pace(),
+            progress=ProgressMeter(None, None), should_stop=should_stop)
+        try:
+            coordinator.run(transport.join())
+        except Interrupted:
+            pass  # should_stop has seen enough
+
+    def _fill(self, tick: int, rows: Records) -> None:
+        for row, command in self._commands.get(tick, ()):
+            rows[row] = command
+
+
+def recorded_commands(
+        bag: Bag, run: RunConfig) -> tuple[dict[int, list[tuple[int, np.void]]], int]:
+    """
+    Return (row, `COMMAND`) of every applied setpoint by its tick, and the number of ticks.
+
+    Sample k + 1 holds what took effect at tick k; that of t = 0 is where the run starts.
+    """
+    rows = {f'/{a.name}/{APPLIED}': (k, a.name) for k, a in enumerate(run.actuators)}
+    commands: dict[int, list[tuple[int, np.void]]] = {}
+    last = -1
+    for message in bag.messages():
+        last = message.sequence
+        if message.topic in rows and message.sequence:
+            row, name = rows[message.topic]
+            try:
+                command = applied_to_command(message.data, name)
+            except SetpointError as error:
+                raise BagError(f'{bag.path}: {message.topic}: {error}') from error
+            commands.setdefault(message.sequence - 1, []).append((row, command))
+    if last < 0:
+        raise BagError(f'{bag.path}: holds no sample, there is nothing to replay')
+    return commands, last
+
+
+class Replayed:
+    """One actuator that is told everything and tells nobody."""
+
+    def __init__(self, config: ActuatorConfig, timing: Timing) -> None:
+        self._stepped = SteppedActuator(config, timing)
+
+    @property
+    def digest(self) -> str:
+        """Return the digest of its parameters."""
+        return self._stepped.digest
+
+    @property
+    def reply(self) -> np.void:
+        """Return the `LOAD_REPLY` of the last tick."""
+        return self._stepped.actuator.reply
+
+    def start(self, start: np.void | None) -> Messages:
+        """Begin anew at t = 0."""
+        return self._stepped.start(start)
+
+    def advance(self, tick: int, port: np.void | None, command: np.void | None) -> Messages:
+        """Take the recorded command and advance one tick."""
+        if command is not None and command['kinds']:
+            self._stepped.actuator.accept(command)
+        return self._stepped.advance(port)
+
+    def publish(self, messages: Messages) -> None:
+        """Tell nobody."""
+
+    def serve(self) -> None:
+        """Listen to nobody."""
+
+
+def _nobody_listens(message: object) -> None:
+    """Drop what a run would publish."""
