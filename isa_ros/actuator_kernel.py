@@ -89,6 +89,13 @@ def body_step(h, tau, current_reference, port, actuator, bodies, rates, y, k):
 
 
 @kernel
+def body_steps(n, h, current_reference, port, actuator, bodies, rates, y, k):
+    """Take ``n`` steps of `body_step` under a constant current reference and port."""
+    for i in range(n):
+        body_step(h, i * h, current_reference, port, actuator, bodies, rates, y, k)
+
+
+@kernel
 def write_sample(measured, plant, reu, sample):
     """Fill one `SAMPLE` from what the sensors read and the loops hold."""
     sample.position = measured.position

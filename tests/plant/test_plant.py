@@ -34,9 +34,8 @@ class Body:
     def run(self, duration: float, h: float = PLANT_STEP) -> None:
         """Advance by ``duration`` (s)."""
         y, k = kernels.flat(self.bodies), kernels.flat(self.rates)
-        for _ in range(round(duration / h)):
-            kernels.body_step(h, 0.0, self.current, self.port[0], self.constants[0],
-                              self.bodies, self.rates, y, k)
+        kernels.body_steps(round(duration / h), h, self.current, self.port[0],
+                           self.constants[0], self.bodies, self.rates, y, k)
 
     @property
     def states(self) -> np.ndarray:

@@ -1,0 +1,212 @@
+"""
+How fast this machine simulates: medians, each beside a floor measured in the same run.
+
+A ratio holds when the machine's speed drifts; a time alone is this machine's, now.
+"""
+
+from collections.abc import Callable, Sequence
+from dataclasses import asdict, dataclass
+import json
+from multiprocessing import get_context
+from multiprocessing.connection import Connection
+from pathlib import Path
+from statistics import median
+import tempfile
+import time
+
+from isa_ros import actuator_kernel as kernels
+from isa_ros.actuator import SmartActuator
+from isa_ros.actuator_sheet import actuator_record
+from isa_ros.bag.writer import BagWriter
+from isa_ros.config import load_run
+from isa_ros.default_actuator import default_actuator, DEFAULT_TIMING
+from isa_ros.pacing import Progress
+from isa_ros.paths import CONFIG, find, SCENARIOS
+from isa_ros.run import bringup, prepare, provenance, Request, topics_of
+from isa_ros.scenario import load_scenario
+from isa_ros.shared_load import SharedLoad
+from isa_ros.signals import LOAD_PORT, LOAD_REPLY
+from isa_ros.stepping import SteppedActuator
+from isa_ros.timebase import NS_PER_SECOND, PLANT_STEP
+import numpy as np
+
+REPEATS = 7
+PLANT_STEPS = 20_000
+TICKS = 500
+RUN_SECONDS = 3.0       # simulated time of each lockstep run
+WORKERS = 3             # of the pipe floor, as many as the leg has actuators
+PIPE_BYTES = 1500       # about one actuator's acknowledgement
+
+
+@dataclass(frozen=True)
+class Row:
+    """One measurement; ``ratio`` is in the direction in which more is better."""
+
+    name: str
+    value: float
+    unit: str
+    floor: str
+    ratio: float
+
+
+def bench(json_file: Path | None = None) -> list[Row]:
+    """Measure everything, print a table as it grows, and write it as JSON if asked."""
+    rows: list[Row] = []
+    print(f'{"measurement":44} {"median":>10} {"unit":8} {"ratio":>8}  to')
+    for measure in (plant_rows, tick_parts, lockstep_rows):
+        for row in measure():
+            rows.append(row)
+            print(f'{row.name:44} {row.value:10.4g} {row.unit:8} {row.ratio:8.3g}  {row.floor}')
+    if json_file is not None:
+        json_file.write_text(json.dumps([asdict(row) for row in rows], indent=2) + '\n')
+    return rows
+
+
+def seconds(work: Callable[[], object], per: int) -> float:
+    """Return the median time of one of the ``per`` pieces of ``work`` in s, after a warm-up."""
+    work()
+    times = []
+    for _ in range(REPEATS):
+        start = time.perf_counter()
+        work()
+        times.append((time.perf_counter() - start) / per)
+    return median(times)
+
+
+def plant_rows() -> list[Row]:
+    """Measure plant alone and plant with REU, on one core, against real time."""
+    rows = []
+    for model in ('smart_manifold', 'isa_v5'):
+        config = default_actuator(model, model)
+        bodies, rates = kernels.scratch()
+        port = np.zeros(1, LOAD_PORT)
+        constants = actuator_record(config.sheet, 0)
+        flats = kernels.flat(bodies), kernels.flat(rates)
+        step = seconds(
+            lambda: kernels.body_steps(
+                PLANT_STEPS, PLANT_STEP, 0.0, port[0], constants[0], bodies, rates, *flats),
+            PLANT_STEPS)
+        rows.append(Row(f'{model}: plant, a step of 20 us', step * 1e6, 'us',
+                        'real time', PLANT_STEP / step))
+        actuator = SmartActuator(config, DEFAULT_TIMING)
+
+        def ticks(actuator: SmartActuator = actuator) -> None:
+            for _ in range(TICKS):
+                actuator.tick()
+        tick = seconds(ticks, TICKS)
+        rows.append(Row(f'{model}: plant + REU, a tick of 1 ms', tick * 1e6, 'us',
+                        'real time', DEFAULT_TIMING.step_ns / NS_PER_SECOND / tick))
+    return rows
+
+
+def tick_parts() -> list[Row]:
+    """Measure what the leg's tick is made of, without ROS; the ratio is to a whole tick."""
+    run = load_scenario(find('drop.yaml', SCENARIOS), load_run(find('leg.yaml', CONFIG))).run
+    timing = DEFAULT_TIMING
+    load = SharedLoad(run)
+    starts, ports = load.starts(run), load.ports()
+    replies = np.zeros(len(run.actuators), LOAD_REPLY)
+    parts = {}
+    stepped = [SteppedActuator(config, timing) for config in run.actuators]
+    for actuator, start in zip(stepped, starts):
+        actuator.start(start)
+
+    def kernels_only() -> None:
+        for _ in range(TICKS):
+            for k, actuator in enumerate(stepped):
+                actuator.actuator.tick(ports[k])
+
+    def with_messages() -> None:
+        for _ in range(TICKS):
+            for k, actuator in enumerate(stepped):
+                actuator.advance(ports[k])
+    parts['three actuators: plant + REU'] = seconds(kernels_only, TICKS)
+    for k, actuator in enumerate(stepped):
+        actuator.start(starts[k])
+    parts['three actuators: their messages'] = (
+        seconds(with_messages, TICKS) - parts['three actuators: plant + REU'])
+
+    def leg() -> None:
+        for _ in range(TICKS):
+            load.ports()
+            load.advance(replies)
+    replies['mean_forces'] = starts['force'][:, None]
+    parts['leg and supply'] = seconds(leg, TICKS)
+    parts['leg and supply: their messages'] = seconds(
+        lambda: [(load.messages(k), load.clock(k)) for k in range(TICKS)], TICKS)
+    parts['recorder'] = _recorder_seconds(load, stepped)
+    whole = sum(parts.values())
+    return [Row(f'tick of the leg: {name}', value * 1e6, 'us', 'sum of the parts', value / whole)
+            for name, value in parts.items()]
+
+
+def _recorder_seconds(load: SharedLoad, stepped: Sequence[SteppedActuator]) -> float:
+    request = Request(
+        config=find('leg.yaml', CONFIG), scenario=find('drop.yaml', SCENARIOS),
+        out=Path(tempfile.mkdtemp()) / 'bag')
+    session = prepare(request)
+    order, topics = topics_of(session.run, load)
+    sources = [s.advance(None) for s in stepped] + [[load.clock(0)], load.messages(0)]
+    messages = order.merge(sources)
+    with BagWriter(session.out, topics, provenance(session)) as bag:
+        count = iter(range(1_000_000_000))
+
+        def work() -> None:
+            for _ in range(TICKS):
+                k = next(count)
+                bag.write_tick(k * 1_000_000, k, messages)
+        return seconds(work, TICKS)
+
+
+def lockstep_rows() -> list[Row]:
+    """Measure the leg's drop with recording, in processes and in one, and the pipe floor."""
+    pipe = pipe_exchange()
+    rows = [Row(f'floor: {WORKERS} workers on pipes, no work', pipe * 1e6, 'us', 'itself', 1.0)]
+    for in_process in (False, True):
+        tick = 1e-3 / leg_run(in_process)
+        name = 'one process' if in_process else 'a process per actuator'
+        rows += [
+            Row(f'leg, recording, {name}', 1.0 / tick, 'ticks/s', 'real time', 1e-3 / tick),
+            Row(f'leg, recording, {name}: a tick', tick * 1e6, 'us', 'pipe floor', pipe / tick)]
+    return rows
+
+
+def leg_run(in_process: bool) -> float:
+    """Return the real-time factor of the leg's drop, start-up not counted."""
+    factors: list[float] = []
+
+    def report(progress: Progress) -> None:
+        if progress.is_last:
+            factors.append(progress.real_time_factor)
+    with tempfile.TemporaryDirectory() as directory:
+        bringup(Request(
+            config=find('leg.yaml', CONFIG), scenario=find('drop.yaml', SCENARIOS),
+            out=Path(directory) / 'bag', duration_s=RUN_SECONDS, in_process=in_process), report)
+    return factors[0]
+
+
+def pipe_exchange() -> float:
+    """Return the time of one exchange with `WORKERS` processes that do nothing, in s."""
+    context = get_context('spawn')
+    pipes = [context.Pipe() for _ in range(WORKERS)]
+    workers = [context.Process(target=_answer, args=(theirs,)) for _, theirs in pipes]
+    for worker in workers:
+        worker.start()
+    payload = bytes(PIPE_BYTES)
+
+    def exchange() -> None:
+        for _ in range(TICKS):
+            for ours, _ in pipes:
+                ours.send_bytes(payload)
+            for ours, _ in pipes:
+                ours.recv_bytes()
+    result = seconds(exchange, TICKS)
+    for (ours, _), worker in zip(pipes, workers):
+        ours.send_bytes(b'')
+        worker.join()
+    return result
+
+
+def _answer(pipe: Connection) -> None:
+    while message := pipe.recv_bytes():
+        pipe.send_bytes(message)

@@ -1,0 +1,44 @@
+"""
+Send one position setpoint to an actuator node and print what took effect.
+
+    python scripts/move_actuator.py NAME POSITION     (m, or rad for a rotary actuator)
+"""
+
+import sys
+import time
+
+import rclpy
+from rclpy.qos import QoSProfile
+from sensor_msgs.msg import JointState
+
+PATIENCE_S = 10.0
+
+
+def main() -> int:
+    """Publish once a subscriber is there, wait for the echo."""
+    name, position = sys.argv[1], float(sys.argv[2])
+    rclpy.init()
+    node = rclpy.create_node('move_actuator')
+    applied: list[JointState] = []
+    node.create_subscription(
+        JointState, f'/{name}/applied_setpoint', applied.append, QoSProfile(depth=10))
+    publisher = node.create_publisher(JointState, f'/{name}/setpoint', QoSProfile(depth=1))
+    deadline = time.monotonic() + PATIENCE_S
+    has_sent = False
+    while not applied and time.monotonic() < deadline:
+        ready = publisher.get_subscription_count() and node.count_publishers(
+            f'/{name}/applied_setpoint')
+        if ready and not has_sent:
+            publisher.publish(JointState(name=[name], position=[position]))
+            has_sent = True
+        rclpy.spin_once(node, timeout_sec=0.1)
+    if not applied:
+        print(f'no answer from /{name}', file=sys.stderr)
+        return 3
+    stamp = applied[0].header.stamp
+    print(f'{name} = {applied[0].position[0]} since t = {stamp.sec}.{stamp.nanosec:09d} s')
+    return 0
+
+
+if __name__ == '__main__':
+    sys.exit(main())
