@@ -23,7 +23,7 @@ class Ground(Parameters):
     stiffness: float = parameter(
         'k of k d^1.5', 'N/m^1.5', gt=0.0, le=1e9)
     damping: float = parameter(
-        'c of the factor 1 + c d\' of Hunt and Crossley', 's/m', ge=0.0, le=100.0)
+        "c of the factor 1 + c d' of Hunt and Crossley", 's/m', ge=0.0, le=100.0)
     friction: float = parameter('coefficient of friction', '1', ge=0.01, le=5.0)
     bristle_travel_mm: float = parameter(
         'deflection of the bristles at full friction', 'mm', ge=0.05, le=100.0)

@@ -105,7 +105,8 @@ class Leg:
     @property
     def sample(self) -> np.void:
         """Return the `LEG_SAMPLE` at the end of the last tick; overwritten by the next."""
-        return self._sample[0]
+        row: np.void = self._sample[0]
+        return row
 
     @property
     def is_held(self) -> bool:
@@ -134,8 +135,10 @@ class Leg:
         """
         Advance by one tick under ``replies`` (`LOAD_REPLY`, shape (n_actuators,)).
 
-        Raises:
-            SimulationDiverged: a state is no longer finite.
+        Raises
+        ------
+        SimulationDiverged
+            A state is no longer finite.
 
         """
         broken = kernels.leg_tick(
@@ -144,7 +147,7 @@ class Leg:
         self._t_ns += self._step_ns
         if broken >= 0:
             raise SimulationDiverged(
-                self._t_ns, f'leg.{kernels.LEG_STATE.names[broken]}', self._flat[broken])
+                self._t_ns, f'leg.{kernels.STATE_NAMES[broken]}', float(self._flat[broken]))
 
     def state(self) -> bytes:
         """Return the whole state; `restore` continues from it byte for byte."""

@@ -19,7 +19,7 @@ from isa_ros.signals import LOAD_REPLY
 from isa_ros.timebase import FORCE_WINDOWS, NS_PER_SECOND
 import numpy as np
 
-LEG_STATE = np.dtype([(name, '<f8') for name in (
+STATE_NAMES = (
     'z', 'q_haa', 'q_hfe', 'q_kfe',         # m, rad
     'v_z', 'v_haa', 'v_hfe', 'v_kfe',       # m/s, rad/s
     'bristle_x', 'bristle_y',               # m
@@ -28,7 +28,8 @@ LEG_STATE = np.dtype([(name, '<f8') for name in (
     'mean_haa', 'mean_hfe', 'mean_kfe',     # over the last tick, N | Nm
     'older_haa', 'older_hfe', 'older_kfe',  # over the tick before, N | Nm
     'is_held',                              # 1.0: the slider is locked
-)])
+)
+LEG_STATE = np.dtype([(name, '<f8') for name in STATE_NAMES])
 """Everything a leg carries from tick to tick."""
 
 LEG_SAMPLE = np.dtype([
@@ -49,8 +50,8 @@ MEAN = SLOPE + 3            # place of the last tick's mean forces
 OLDER = MEAN + 3           # and of the one before
 HELD = OLDER + 3
 REPLY_WIDTH = LOAD_REPLY.itemsize // 8
-MEANS = LOAD_REPLY.fields['mean_forces'][1] // 8
-END_FORCE = LOAD_REPLY.fields['force'][1] // 8
+MEANS = 0                   # places in a reply's row of floats
+END_FORCE = FORCE_WINDOWS
 SUBSTEP_NS = 100_000        # longest Runge-Kutta step of the leg, coupling.md
 PROBE_DISPLACEMENT = 1e-7   # m | rad: 1e-3 of the smallest depth at which the ground matters
 PROBE_SPEED = 1e-5          # m/s | rad/s: as small against impact speeds
@@ -65,11 +66,11 @@ class Motion(NamedTuple):
     a_kfe: float
     rate_x: float
     rate_y: float
-    d: tuple
-    l: tuple
-    r: tuple
-    dr: tuple
-    foot: tuple
+    d: tuple[float, ...]     # (4,)
+    l: tuple[float, ...]     # (6,), see `factor`
+    r: tuple[float, ...]     # (3,), lever arms
+    dr: tuple[float, ...]    # (3,), their derivatives
+    foot: tuple[float, ...]  # position and force from the ground, x y z each
 
 
 @kernel

@@ -11,7 +11,7 @@ import math
 
 from isa_ros.errors import ParameterError
 from isa_ros.load import linkage as kernels
-from isa_ros.load.ground import Ground, GROUND, ground_record
+from isa_ros.load.ground import GROUND, Ground, ground_record
 from isa_ros.load.leg_dynamics import LEG_BODY
 from isa_ros.parameter import parameter, Parameters
 import numpy as np
@@ -19,6 +19,7 @@ import numpy as np
 JOINTS = ('haa', 'hfe', 'kfe')
 MILLI = 1e-3
 STANDARD_GRAVITY = 9.80665  # m/s2
+SHORTEST_LEVER = 2e-3  # m (or 1 of a rotary actuator): ports divide by it
 CHECKED_ANGLES = 257  # samples of a joint's range in which a linkage must be regular
 
 
@@ -59,8 +60,8 @@ class Body(Parameters):
 class Joint(Parameters):
     """The range of a joint, and how its angle is counted along its linkage."""
 
-    low_deg: float = parameter('lower end of the joint\'s range', 'deg', ge=-360.0, le=360.0)
-    high_deg: float = parameter('upper end of the joint\'s range', 'deg', ge=-360.0, le=360.0)
+    low_deg: float = parameter("lower end of the joint's range", 'deg', ge=-360.0, le=360.0)
+    high_deg: float = parameter("upper end of the joint's range", 'deg', ge=-360.0, le=360.0)
     sense: float = parameter('+1 or -1: sign of the angle in the linkage', '1', ge=-1.0, le=1.0)
     offset_deg: float = parameter('added to sense * angle', 'deg', ge=-720.0, le=720.0)
 
@@ -75,11 +76,17 @@ class Joint(Parameters):
         if abs(self.sense) != 1.0:
             raise ParameterError(f'{where}.sense = {self.sense:g}, must be 1 or -1')
         row = linkage_record(self)
-        for angle in np.linspace(self.low_deg, self.high_deg, CHECKED_ANGLES):
-            if not all(map(math.isfinite, kernels.actuator_coordinate(math.radians(angle), row))):
+        angles = np.linspace(self.low_deg, self.high_deg, CHECKED_ANGLES)
+        levers = [kernels.actuator_coordinate(math.radians(angle), row)[1] for angle in angles]
+        for angle, lever in zip(angles, levers):
+            if not math.isfinite(lever):
                 raise ParameterError(
                     f'{where} cannot be assembled at joint angle {angle:.2f} deg, must close from '
                     f'{self.low_deg:g} to {self.high_deg:g} deg')
+            if lever * levers[0] < SHORTEST_LEVER * SHORTEST_LEVER:
+                raise ParameterError(
+                    f'{where}: lever = {1e3 * lever:.2f} mm at joint angle {angle:.2f} deg, must '
+                    f'keep its sign and >= {1e3 * SHORTEST_LEVER:g} mm over the whole range')
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -101,12 +108,12 @@ class FourBar(Joint):
     """The knee K: links A-R (thigh) and B-R (shank) meet the cylinder C-R at the rod eye R."""
 
     ak_mm: float = parameter('K to pin A on the thigh', 'mm', gt=0.0, le=1e3)
-    akh_deg: float = parameter('A off the thigh\'s axis', 'deg', ge=-180.0, le=180.0)
+    akh_deg: float = parameter("A off the thigh's axis", 'deg', ge=-180.0, le=180.0)
     bk_mm: float = parameter('K to pin B on the shank', 'mm', gt=0.0, le=1e3)
     ar_mm: float = parameter('link A-R', 'mm', gt=0.0, le=1e3)
     br_mm: float = parameter('link B-R', 'mm', gt=0.0, le=1e3)
-    jk_mm: float = parameter('K to the cylinder\'s pin C along the thigh', 'mm', gt=0.0, le=2e3)
-    cj_mm: float = parameter('C off the thigh\'s axis', 'mm', ge=-1e3, le=1e3)
+    jk_mm: float = parameter("K to the cylinder's pin C along the thigh", 'mm', gt=0.0, le=2e3)
+    cj_mm: float = parameter("C off the thigh's axis", 'mm', ge=-1e3, le=1e3)
     retracted_length_mm: float = parameter('pin to pin at piston 0', 'mm', gt=0.0, le=2e3)
 
 
@@ -121,9 +128,18 @@ class LegSheet(Parameters):
     ground: Ground
 
 
+def _rows(n: int, dtype: np.dtype[np.void]) -> np.ndarray:
+    """
+    Return zeros whose rows have attributes, so that kernels also run as plain Python.
+
+    The array itself stays a plain one: a numpy subclass as argument slows every call.
+    """
+    return np.asarray(np.zeros(n, dtype).view(np.recarray))
+
+
 def linkage_record(joint: Direct | SliderCrank | FourBar | Joint) -> np.void:
     """Return the `LINKAGE` record of a joint's sheet, SI."""
-    row = np.zeros(1, kernels.LINKAGE)
+    row = _rows(1, kernels.LINKAGE)
     row['sense'] = joint.sense
     row['offset'] = math.radians(joint.offset_deg)
     if isinstance(joint, SliderCrank):
@@ -139,12 +155,13 @@ def linkage_record(joint: Direct | SliderCrank | FourBar | Joint) -> np.void:
         row['retracted_length'] = joint.retracted_length_mm * MILLI
         for name in ('bk', 'ar', 'br'):
             row[name] = getattr(joint, f'{name}_mm') * MILLI
-    return row[0]
+    record: np.void = row[0]
+    return record
 
 
 def body_record(body: Body) -> np.ndarray:
     """Return the `LEG_BODY` record of a leg with its mass scale applied, shape (1,)."""
-    row = np.zeros(1, LEG_BODY)
+    row = _rows(1, LEG_BODY)
     row['m_slider'] = body.slider.mass_kg
     row['gravity'] = STANDARD_GRAVITY
     for name in ('hip', 'thigh', 'calf'):
@@ -160,8 +177,9 @@ def body_record(body: Body) -> np.ndarray:
 
 def leg_records(sheet: LegSheet) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     """Return the records of body (1,), linkages in the order of `JOINTS` (3,), ground (1,)."""
-    linkages = np.zeros(len(JOINTS), kernels.LINKAGE)
+    linkages = _rows(len(JOINTS), kernels.LINKAGE)
     for k, name in enumerate(JOINTS):
         linkages[k] = linkage_record(getattr(sheet, name))
-    ground = np.array([ground_record(sheet.ground)], GROUND)
+    ground = _rows(1, GROUND)
+    ground[0] = ground_record(sheet.ground)
     return body_record(sheet.body), linkages, ground
