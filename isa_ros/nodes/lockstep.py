@@ -70,6 +70,9 @@ class LockstepTransport:
         """
         Say hello until all participants have answered the same one; return their messages.
 
+        One more hello is left its whole period, in which a second node of a name or another
+        coordinator that was discovered a little later makes itself known.
+
         Raises
         ------
         ConfigError
@@ -83,14 +86,18 @@ class LockstepTransport:
         start = time.monotonic()
         names = [participant.name for participant in self._participants]
         identities: dict[int, bytes] = {}
+        complete: dict[int, Answer] = {}
         count = 0
         while True:
             count += 1
             self._send(encode_hello(self._run_id, count, self._starts, names))
-            answers = self._hello_answers(count, identities)
-            self._refuse_other_coordinator()
+            answers = self._hello_answers(count, identities, is_last=bool(complete))
+            refuse_other_coordinator(self._node)
+            if complete:
+                return [complete[k].parts[_FIRST:] for k in range(len(names))]
             if len(answers) == len(names):
-                return [answers[k].parts[_FIRST:] for k in range(len(names))]
+                complete = answers
+                continue
             self._refuse_lost('before tick 0')
             if self._should_stop():
                 raise Interrupted('stopped before tick 0')
@@ -101,11 +108,12 @@ class LockstepTransport:
                     f'{self._limits.join_s:g} s; start it with lockstep:=true in this '
                     'ROS_DOMAIN_ID')
 
-    def _hello_answers(self, count: int, identities: dict[int, bytes]) -> dict[int, Answer]:
-        """Return the answers to the ``count``-th hello by participant."""
+    def _hello_answers(
+            self, count: int, identities: dict[int, bytes], is_last: bool) -> dict[int, Answer]:
+        """Return the answers to the ``count``-th hello; the last one takes its whole period."""
         answers: dict[int, Answer] = {}
         end = time.monotonic() + HELLO_PERIOD_S
-        while len(answers) < len(self._participants):
+        while is_last or len(answers) < len(self._participants):
             left = end - time.monotonic()
             if left <= 0.0:
                 break
@@ -120,14 +128,14 @@ class LockstepTransport:
 
     def _check_ready(self, answer: Answer, identities: dict[int, bytes]) -> None:
         if answer.run_id != self._run_id or answer.kind is AnswerKind.BUSY:
-            raise ConfigError(self._other_coordinator())
+            raise ConfigError(_other_coordinator(self._node))
         name, expected = self._participants[answer.participant]
         identity, digest = answer.parts[_IDENTITY], answer.parts[_DIGEST]
         assert identity is not None and digest is not None
         if identities.setdefault(answer.participant, identity) != identity:
             raise ConfigError(
                 f'{name}: two nodes of this name answer in ROS_DOMAIN_ID '
-                f'{self._domain()}, must be one')
+                f'{self._node.context.get_domain_id()}, must be one')
         if expected and digest.decode() != expected:
             raise ConfigError(
                 f'{name}: digest of its parameters = {digest.decode()}, must be {expected} as '
@@ -137,17 +145,6 @@ class LockstepTransport:
         lost = self._watch()
         if lost is not None:
             raise RunError(f'{lost} {when}')
-
-    def _refuse_other_coordinator(self) -> None:
-        if self._node.count_publishers(_CLOCK_TOPIC) > 1:
-            raise ConfigError(self._other_coordinator())
-
-    def _other_coordinator(self) -> str:
-        return (f'another coordinator runs in ROS_DOMAIN_ID {self._domain()}, must be the only '
-                'one; end it or set another ROS_DOMAIN_ID')
-
-    def _domain(self) -> int:
-        return int(self._node.context.get_domain_id())
 
     def send(self, tick: int, ports: Records, commands: Records) -> None:
         """Broadcast the step."""
@@ -202,3 +199,23 @@ class LockstepTransport:
         """Tell the participants that the run is over."""
         self._send(encode_end(self._run_id))
         self._publisher.wait_for_all_acked(Duration(seconds=HELLO_PERIOD_S))
+
+
+def refuse_other_coordinator(node: Node) -> None:
+    """
+    Refuse to be the second one that publishes the time.
+
+    Raises
+    ------
+    ConfigError
+        Another node publishes `/clock`, as far as it was discovered.
+
+    """
+    if node.count_publishers(_CLOCK_TOPIC) > 1:
+        raise ConfigError(_other_coordinator(node))
+
+
+def _other_coordinator(node: Node) -> str:
+    return (
+        f'another coordinator runs in ROS_DOMAIN_ID {node.context.get_domain_id()}, must be the '
+        'only one; end it or set another ROS_DOMAIN_ID')

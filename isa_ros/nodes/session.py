@@ -3,11 +3,10 @@
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
 
-from isa_ros.errors import ConfigError
 from isa_ros.nodes.actuator_node import ActuatorNode, Setup
 from isa_ros.nodes.coordinator_node import CoordinatorNode
 from isa_ros.nodes.environment import set_defaults
-from isa_ros.nodes.lockstep import Expected, Limits, LockstepTransport
+from isa_ros.nodes.lockstep import Expected, Limits, LockstepTransport, refuse_other_coordinator
 from isa_ros.processes import actuator_processes, Children
 from isa_ros.run import record, Report, Session
 from isa_ros.shared_load import SharedLoad
@@ -108,15 +107,12 @@ def coordinate_locally(
     """Run with the nodes of all actuators in this process."""
     load = SharedLoad(session.run)
     node.advertise(load.topics)
-    if node.count_publishers('/clock') > 1:
-        raise ConfigError(
-            f'another coordinator runs in ROS_DOMAIN_ID {node.context.get_domain_id()}, must '
-            'be the only one; end it or set another ROS_DOMAIN_ID')
     actuators = [
         ActuatorNode(_resolver(Setup(config, session.timing)), config.name, has_mailbox=False,
                      namespace=session.request.namespace, **_QUIET)
         for config in session.run.actuators]
     try:
+        refuse_other_coordinator(node)
         transport = LocalTransport(
             actuators, load.starts(session.run), node.publish, node.publish_clock)
         record(session, transport, load, report, should_stop)

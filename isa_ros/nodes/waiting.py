@@ -102,9 +102,12 @@ class ExecutorMailbox:
     def __init__(self, node: Node, topic: str) -> None:
         self._messages: deque[bytes] = deque()
         self._subscription = node.create_subscription(
-            UInt8MultiArray, topic, self._messages.append, LOCKSTEP, raw=True)
+            UInt8MultiArray, topic, self._on_message, LOCKSTEP, raw=True)
         self._executor: Any = EventsExecutor(context=node.context)
         self._executor.add_node(node)
+
+    def _on_message(self, message: bytes) -> None:
+        self._messages.append(message)
 
     def wait(self, timeout_s: float) -> bytes | None:
         """Return the next message, or None if none arrives within ``timeout_s``."""

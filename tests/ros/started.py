@@ -1,0 +1,125 @@
+"""Processes that a test starts, waits for with a deadline, and ends by their id."""
+
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+import os
+from pathlib import Path
+import subprocess
+import sys
+import time
+from typing import TypeVar
+
+import isa_ros
+
+ROOT = Path(isa_ros.__file__).parents[1]
+LEG = ROOT / 'config' / 'leg.yaml'
+RIG = ROOT / 'config' / 'rig_rotary.yaml'
+DROP = ROOT / 'config' / 'scenarios' / 'drop.yaml'
+DEADLINE_S = 120.0  # a first run compiles every kernel
+
+T = TypeVar('T')
+
+
+def wait_for(condition: Callable[[], T], what: str = '') -> T:
+    """Return the first true value of ``condition``; fail after `DEADLINE_S`."""
+    deadline = time.monotonic() + DEADLINE_S
+    while not (value := condition()):
+        assert time.monotonic() < deadline, f'{what or condition} did not happen'
+    return value
+
+
+class Started:
+    """One process under test; its standard error goes to a file."""
+
+    def __init__(self, arguments: list[str], log: Path) -> None:
+        self._log = log
+        environment = os.environ | {'PYTHONPATH': str(ROOT)}
+        with log.open('w') as stderr:
+            self._process = subprocess.Popen(
+                [sys.executable, '-m', *arguments], stderr=stderr, stdin=subprocess.DEVNULL,
+                stdout=subprocess.DEVNULL, env=environment)
+
+    @property
+    def errors(self) -> str:
+        """Return what it has written to standard error."""
+        return self._log.read_text()
+
+    @property
+    def pid(self) -> int:
+        """Return its process id."""
+        return self._process.pid
+
+    def signal(self, number: int) -> None:
+        """Send a signal."""
+        self._process.send_signal(number)
+
+    def is_running(self) -> bool:
+        """Return whether it has not ended."""
+        return self._process.poll() is None
+
+    def exit_code(self) -> int:
+        """Wait for its end and return the exit code."""
+        return self._process.wait(DEADLINE_S)
+
+    def children(self) -> dict[str, int]:
+        """Return its children's process ids by node name."""
+        found = {}
+        text = Path(f'/proc/{self.pid}/task/{self.pid}/children').read_text()
+        for pid in text.split():
+            arguments = Path(f'/proc/{pid}/cmdline').read_text().split('\0')
+            for argument in arguments:
+                if argument.startswith('__node:='):
+                    found[argument.removeprefix('__node:=')] = int(pid)
+        return found
+
+    def end(self) -> None:
+        """End it, whatever it does."""
+        if self.is_running():
+            self._process.kill()
+        self._process.wait()
+
+
+@contextmanager
+def started(log: Path, *arguments: str) -> Iterator[Started]:
+    """Run ``python -m ARGUMENTS`` while the context lasts."""
+    process = Started(list(arguments), log)
+    try:
+        yield process
+    finally:
+        process.end()
+
+
+@contextmanager
+def bringup(out: Path, *arguments: str, config: Path = LEG) -> Iterator[Started]:
+    """Run ``isa bringup``; its standard error goes beside the bag."""
+    with started(out.with_suffix('.log'), 'isa_ros', 'bringup', str(config),
+                 '--out', str(out), *arguments) as process:
+        yield process
+
+
+@contextmanager
+def actuator(log: Path, name: str, **parameters: object) -> Iterator[Started]:
+    """Run an actuator node."""
+    arguments = ['--ros-args', '-r', f'__node:={name}']
+    for key, value in parameters.items():
+        arguments += ['-p', f'{key}:={str(value).lower() if value is True else value}']
+    with started(log, 'isa_ros.nodes.actuator_process', *arguments) as process:
+        yield process
+
+
+@contextmanager
+def coordinator(log: Path, **parameters: object) -> Iterator[Started]:
+    """Run a coordinator that starts no one."""
+    arguments = ['--ros-args']
+    for key, value in parameters.items():
+        arguments += ['-p', f'{key}:={value}']
+    with started(log, 'isa_ros.nodes.coordinator_node', *arguments) as process:
+        yield process
+
+
+def is_alive(pid: int) -> bool:
+    """Return whether a process runs; one that only waits for its parent does not."""
+    try:
+        return ') Z ' not in Path(f'/proc/{pid}/stat').read_text()
+    except FileNotFoundError:
+        return False

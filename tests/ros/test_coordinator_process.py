@@ -1,0 +1,69 @@
+"""The coordinator executable, which waits for participants that someone else starts."""
+
+import signal
+
+from isa_ros.nodes.wire import ACKNOWLEDGEMENT_TOPIC
+import pytest
+from tests.ros.started import actuator, bringup, coordinator, RIG, wait_for
+
+pytestmark = pytest.mark.ros
+
+
+def test_missing_participant_is_named(domain, tmp_path):
+    bag = tmp_path / 'bag'
+    with coordinator(tmp_path / 'coordinator.log', config_file=RIG, out=bag,
+                     join_timeout_s=0.5) as run:
+        assert run.exit_code() == 3
+    assert 'rotor: no answer before tick 0 after 0.5 s' in run.errors
+    assert not bag.exists()
+
+
+def test_participants_may_be_started_by_hand_and_used_again(domain, tmp_path):
+    """After one run a participant begins the next at t = 0: both bags are equal."""
+    bags = [tmp_path / name / 'bag' for name in ('first', 'second')]
+    with actuator(tmp_path / 'rotor.log', 'rotor', config_file=RIG, lockstep=True) as rotor:
+        for bag in bags:
+            with coordinator(bag.parent.with_suffix('.log'), config_file=RIG, out=bag,
+                             duration=0.05) as run:
+                assert run.exit_code() == 0, run.errors
+        assert rotor.is_running()
+        rotor.signal(signal.SIGTERM)
+        assert rotor.exit_code() == 130
+    first, second = ((bag / 'bag_0.mcap').read_bytes() for bag in bags)
+    assert first == second
+
+
+def test_other_parameters_are_refused(domain, tmp_path):
+    other = tmp_path / 'other.yaml'
+    other.write_text(RIG.read_text().replace('preset: table_4', 'preset: default'))
+    with actuator(tmp_path / 'rotor.log', 'rotor', config_file=other, lockstep=True):
+        with coordinator(tmp_path / 'coordinator.log', config_file=RIG,
+                         out=tmp_path / 'bag') as run:
+            assert run.exit_code() == 2
+    assert 'rotor: digest of its parameters' in run.errors
+    assert not (tmp_path / 'bag').exists()
+
+
+def test_second_coordinator_is_refused_and_the_first_goes_on(domain, tmp_path):
+    first_bag = tmp_path / 'first'
+    with bringup(first_bag, '--real-time-factor', '1', config=RIG) as first:
+        wait_for(lambda: (first_bag / 'metadata.yaml').exists(), 'tick 0')
+        with coordinator(tmp_path / 'second.log', config_file=RIG,
+                         out=tmp_path / 'second') as second:
+            assert second.exit_code() == 2
+        assert f'another coordinator runs in ROS_DOMAIN_ID {domain}' in second.errors
+        assert not (tmp_path / 'second').exists()
+        assert first.is_running()
+        first.signal(signal.SIGTERM)
+        assert first.exit_code() == 130
+
+
+def test_two_nodes_of_one_name_are_refused(domain, tmp_path, observer):
+    """Nothing says which of the two is the actuator."""
+    arguments = {'config_file': RIG, 'lockstep': True}
+    with actuator(tmp_path / 'a.log', 'rotor', **arguments), \
+            actuator(tmp_path / 'b.log', 'rotor', **arguments):
+        wait_for(lambda: observer.count_publishers(ACKNOWLEDGEMENT_TOPIC) == 2, 'both')
+        with coordinator(tmp_path / 'c.log', config_file=RIG, out=tmp_path / 'bag') as run:
+            assert run.exit_code() == 2
+    assert 'rotor: two nodes of this name answer' in run.errors

@@ -1,0 +1,144 @@
+"""Setpoints and requests of a user, to an actuator alone and in a run."""
+
+from pathlib import Path
+import signal
+from typing import Any
+
+from isa_ros.bag.reader import Bag
+from msg_adapters.cdr_reader import decode
+import pytest
+from rclpy.executors import SingleThreadedExecutor
+from rclpy.node import Node
+from rclpy.qos import QoSProfile, ReliabilityPolicy
+from sensor_msgs.msg import JointState
+from std_srvs.srv import SetBool
+from tests.ros.started import actuator, bringup, RIG, wait_for
+
+pytestmark = pytest.mark.ros
+ARRIVAL = 1e-3  # m: a tenth of the way
+
+
+class User:
+    """What a user of one actuator has: its topics and its service."""
+
+    def __init__(self, node: Node, name: str) -> None:
+        self.name = name
+        self.node = node
+        self.state: list[JointState] = []
+        self.applied: list[JointState] = []
+        node.create_subscription(JointState, f'/{name}/joint_states', self.state.append, 10)
+        node.create_subscription(
+            JointState, f'/{name}/applied_setpoint', self.applied.append, 10)
+        self._setpoints = node.create_publisher(JointState, f'/{name}/setpoint', 1)
+        self._enable = node.create_client(SetBool, f'/{name}/enable')
+        self._executor = SingleThreadedExecutor(context=node.context)
+        self._executor.add_node(node)
+
+    def wait_for(self, condition: Any, what: str) -> None:
+        """Spin until ``condition``."""
+        def spin() -> bool:
+            self._executor.spin_once(0.01)
+            return bool(condition())
+        wait_for(spin, what)
+
+    def connect(self) -> None:
+        """Wait until everything is matched, both ways."""
+        self.wait_for(lambda: self.state and self._setpoints.get_subscription_count()
+                      and self._enable.service_is_ready(), 'connection')
+        self.wait_for(lambda: self.node.count_subscribers(f'/{self.name}/applied_setpoint'), '')
+
+    def command(self, position: float) -> None:
+        self._setpoints.publish(JointState(name=[self.name], position=[position]))
+
+    def go_to(self, position: float) -> None:
+        """Repeat a setpoint until it is echoed: matched here is not yet matched there."""
+        def repeat() -> bool:
+            self.command(position)
+            self._executor.spin_once(0.01)
+            return bool(self.applied) and self.applied[-1].position[0] == position
+        wait_for(repeat, 'the setpoint')
+
+    def enable(self, on: bool) -> SetBool.Response:
+        future = self._enable.call_async(SetBool.Request(data=on))
+        self.wait_for(future.done, 'the answer')
+        return future.result()
+
+    def position(self) -> float:
+        return self.state[-1].position[0]
+
+
+def test_actuator_alone_obeys(observer, tmp_path):
+    """The first experience: one process, 1 kHz topics, a setpoint that it goes to."""
+    with actuator(tmp_path / 'log', 'knee', model='isa_v5') as process:
+        user = User(observer, 'knee')
+        user.connect()
+        target = user.position() + 0.01
+        user.go_to(target)
+        user.wait_for(lambda: abs(user.position() - target) < ARRIVAL, 'the arrival')
+        stamps = [m.header.stamp.sec * 10**9 + m.header.stamp.nanosec for m in user.state[-5:]]
+        assert all(stamp % 1_000_000 == 0 for stamp in stamps)
+        response = user.enable(False)
+        assert response.success and response.message.startswith('disabled from t = ')
+        user.wait_for(lambda: user.applied[-1].position[3] == 0.0, 'the disabling')
+        process.signal(signal.SIGTERM)
+        assert process.exit_code() == 130
+    assert 'Traceback' not in process.errors
+
+
+def test_nan_is_rejected_and_the_last_setpoint_kept(observer, tmp_path):
+    with actuator(tmp_path / 'log', 'knee', model='isa_v5') as process:
+        user = User(observer, 'knee')
+        user.connect()
+        user.go_to(0.03)
+        user.command(float('nan'))
+        wait_for(lambda: 'setpoint rejected: knee: setpoint position = nan' in process.errors)
+        user.go_to(0.031)
+    later = [m for m in user.applied if m.header.stamp.sec or m.header.stamp.nanosec]
+    assert {m.position[0] for m in later} == {0.03, 0.031}
+
+
+def test_incompatible_publisher_is_named(observer, tmp_path):
+    """A best-effort publisher cannot serve a reliable subscription."""
+    observer.create_publisher(
+        JointState, '/knee/setpoint',
+        QoSProfile(depth=1, reliability=ReliabilityPolicy.BEST_EFFORT))
+    with actuator(tmp_path / 'log', 'knee', model='isa_v5') as process:
+        wait_for(lambda: '/observer: its /knee/setpoint cannot be received' in process.errors)
+
+
+def test_unknown_model_is_refused(domain, tmp_path):
+    with actuator(tmp_path / 'log', 'knee', model='isa_v9') as process:
+        assert process.exit_code() == 2
+    assert "model = 'isa_v9'" in process.errors
+    assert len(process.errors.splitlines()) == 1
+
+
+def recorded_setpoints(bag: Path, name: str) -> list[tuple[int, JointState]]:
+    """Return (tick of the sample, message) of the applied setpoints."""
+    return [
+        (tick.sequence, decode(message.data, JointState))
+        for tick in Bag(bag).ticks() for message in tick.messages
+        if message.topic == f'/{name}/applied_setpoint']
+
+
+@pytest.mark.parametrize('options', [(), ('--in-process',)])
+def test_setpoint_during_a_run_is_applied_and_recorded(observer, tmp_path, options):
+    """It takes effect at one tick k, is echoed with stamp t_k and recorded at sample k + 1."""
+    bag = tmp_path / 'bag'
+    with bringup(bag, '--real-time-factor', '1', *options, config=RIG) as run:
+        user = User(observer, 'rotor')
+        user.connect()
+        target = user.position() + 0.01
+        user.go_to(target)
+        user.enable(False)
+        user.wait_for(lambda: user.applied[-1].position[3] == 0.0, 'the disabling')
+        run.signal(signal.SIGTERM)
+        assert run.exit_code() == 130
+    first, *later = recorded_setpoints(bag, 'rotor')
+    assert first[0] == 0
+    for sequence, message in later:
+        stamp = message.header.stamp.sec * 10**9 + message.header.stamp.nanosec
+        assert stamp == (sequence - 1) * 1_000_000
+        assert message.position[0] == target
+    assert later[0][1].position[3] == 1.0
+    assert later[-1][1].position[3] == 0.0

@@ -1,0 +1,87 @@
+"""The process list of a run, and what becomes of its processes."""
+
+import os
+from pathlib import Path
+import signal
+import time
+
+from isa_ros import processes
+from isa_ros.config import load_run
+from isa_ros.processes import actuator_processes, Children, coordinator_process, Process
+import pytest
+
+CONFIG = Path(__file__).parents[1] / 'config' / 'leg.yaml'
+DEADLINE_S = 30.0
+SLEEPER = 'import signal; signal.pause()'
+
+
+@pytest.fixture
+def sleeper(monkeypatch, tmp_path):
+    """Return the process of a module that waits for a signal."""
+    (tmp_path / 'sleeper.py').write_text(SLEEPER)
+    monkeypatch.setenv('PYTHONPATH', str(tmp_path))
+    monkeypatch.setitem(processes.MODULES, 'sleeper', 'sleeper')
+    return Process('haa', 'sleeper', ())
+
+
+def wait_for(condition):
+    """Return the first true value of ``condition``."""
+    deadline = time.monotonic() + DEADLINE_S
+    while not (value := condition()):
+        assert time.monotonic() < deadline
+    return value
+
+
+def test_one_process_per_actuator():
+    found = actuator_processes(load_run(CONFIG), CONFIG, None)
+    assert [(p.name, p.executable) for p in found] == [
+        ('haa', 'actuator'), ('hfe', 'actuator'), ('kfe', 'actuator')]
+    assert found[0].parameters == (('lockstep', True), ('config_file', str(CONFIG)))
+
+
+def test_arguments_are_yaml_that_keeps_its_type():
+    """A path with blanks and a text that looks like a number stay strings."""
+    process = Process('haa', 'actuator', (
+        ('config_file', '/my files/1.5'), ('out', '7'), ('lockstep', True), ('duration', 2.0)))
+    assert process.ros_arguments('left') == [
+        '--ros-args', '-r', '__node:=haa', '-r', '__ns:=/left',
+        '-p', 'config_file:="/my files/1.5"', '-p', 'out:="7"', '-p', 'lockstep:=true',
+        '-p', 'duration:=2.0']
+
+
+def test_coordinator_gets_the_same_files():
+    process = coordinator_process(CONFIG, Path('/drop.yaml'), [('in_process', True)])
+    assert process.parameters == (
+        ('config_file', str(CONFIG)), ('scenario_file', '/drop.yaml'), ('in_process', True))
+
+
+def test_children_end_with_the_context(sleeper):
+    with Children([sleeper]) as children:
+        pid = children.pids['haa']
+        assert children.lost() is None
+    with pytest.raises(ProcessLookupError):
+        os.kill(pid, 0)
+
+
+def test_a_killed_child_is_named_with_its_signal(sleeper):
+    with Children([sleeper]) as children:
+        pid = children.pids['haa']
+        os.kill(pid, signal.SIGKILL)
+        lost = wait_for(children.lost)
+    assert lost == f'haa: its process {pid} was ended by SIGKILL'
+
+
+def test_a_child_that_does_not_end_is_killed(monkeypatch, tmp_path, sleeper):
+    """SIGTERM is ignored; after the grace the process is gone all the same."""
+    ready = tmp_path / 'ready'
+    (tmp_path / 'sleeper.py').write_text(
+        'import pathlib, signal\n'
+        'signal.signal(signal.SIGTERM, signal.SIG_IGN)\n'
+        f'pathlib.Path({str(ready)!r}).touch()\n'
+        'while True:\n    signal.pause()\n')
+    monkeypatch.setattr(processes, '_END_S', 0.1)
+    with Children([sleeper]) as children:
+        pid = children.pids['haa']
+        wait_for(ready.exists)
+    with pytest.raises(ProcessLookupError):
+        os.kill(pid, 0)

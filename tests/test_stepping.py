@@ -1,0 +1,108 @@
+"""Actuators with their messages, called directly."""
+
+from isa_ros.coordinator import Messages
+from isa_ros.default_actuator import default_actuator, DEFAULT_TIMING
+from isa_ros.signals import COMMAND, HAS_ENABLE, HAS_SETPOINT, LOAD_PORT, LOAD_REPLY
+from isa_ros.stepping import LocalTransport, START, SteppedActuator
+from msg_adapters.cdr_reader import decode
+import numpy as np
+import pytest
+from sensor_msgs.msg import JointState
+
+APPLIED, JOINT_STATES = 0, 1  # places in the sorted topics
+
+
+@pytest.fixture
+def stepped() -> SteppedActuator:
+    """Return an ISA v5 on its default load."""
+    return SteppedActuator(default_actuator('isa_v5', 'knee'), DEFAULT_TIMING)
+
+
+def stamp_ns(message: JointState) -> int:
+    return message.header.stamp.sec * 10**9 + message.header.stamp.nanosec
+
+
+def test_topics_are_sorted(stepped):
+    names = [name for name, _ in stepped.topics]
+    assert names == sorted(names)
+    assert (names[APPLIED], names[JOINT_STATES]) == ('applied_setpoint', 'joint_states')
+
+
+def test_first_messages_are_of_t_0(stepped):
+    """The state and the initial setpoint, both stamped 0."""
+    messages = stepped.start(None)
+    assert all(message is not None for message in messages)
+    assert stamp_ns(decode(messages[JOINT_STATES], JointState)) == 0
+    assert decode(messages[APPLIED], JointState).name[0] == 'knee'
+
+
+def test_applied_setpoint_carries_the_tick_it_took_effect_at(stepped):
+    """Accepted after tick 0: acts on [1 ms, 2 ms), so stamped 1 ms; the state carries 2 ms."""
+    stepped.start(None)
+    assert stepped.advance(None)[APPLIED] is None
+    command = np.zeros(1, COMMAND)[0]
+    command['kinds'], command['position'] = HAS_SETPOINT, 0.03
+    command['stiffness'] = command['damping'] = np.nan
+    stepped.actuator.accept(command)
+    messages = stepped.advance(None)
+    applied = decode(messages[APPLIED], JointState)
+    assert stamp_ns(applied) == 1_000_000
+    assert applied.position[0] == 0.03
+    assert stamp_ns(decode(messages[JOINT_STATES], JointState)) == 2_000_000
+    assert stepped.advance(None)[APPLIED] is None
+
+
+def test_start_begins_anew(stepped):
+    """A second run in the same object gives the first one's bytes."""
+    start = np.zeros(1, START)[0]
+    start['position'], start['supply_pressure'] = 0.02, 20.7e6
+
+    def run() -> list[Messages]:
+        messages = [stepped.start(start)]
+        command = np.zeros(1, COMMAND)[0]
+        command['kinds'] = HAS_ENABLE
+        stepped.actuator.accept(command)
+        return messages + [stepped.advance(None) for _ in range(3)]
+    assert run() == run()
+
+
+class Scripted:
+    """A participant that says when it was called."""
+
+    digest = ''
+
+    def __init__(self, name: str, log: list[str]) -> None:
+        self.name, self.log = name, log
+        self.reply = np.zeros(1, LOAD_REPLY)[0]
+
+    def start(self, start: np.void | None) -> Messages:
+        self.log.append(f'{self.name} starts at {start["position"]:g}')
+        return [b'first']
+
+    def advance(self, tick: int, port: np.void | None, command: np.void | None) -> Messages:
+        self.log.append(f'{self.name} {tick} {port["x0"]:g} {command["kinds"]}')
+        self.reply['force'] = port['x0']
+        return [b'%d' % tick]
+
+    def publish(self, messages: Messages) -> None:
+        self.log.append(f'{self.name} publishes {messages[0].decode()}')
+
+    def serve(self) -> None:
+        self.log.append(f'{self.name} serves')
+
+
+def test_local_transport_calls_in_order():
+    """Each serves its inputs, advances and publishes before the next one does."""
+    log: list[str] = []
+    starts, ports, commands = np.zeros(2, START), np.zeros(2, LOAD_PORT), np.zeros(2, COMMAND)
+    starts['position'], ports['x0'], commands['kinds'] = (1.0, 2.0), (3.0, 4.0), (0, 1)
+    transport = LocalTransport(
+        [Scripted('b', log), Scripted('a', log)], starts, log.append, log.append)
+    assert transport.join() == [[b'first'], [b'first']]
+    transport.send(5, ports, commands)
+    replies = np.zeros(2, LOAD_REPLY)
+    assert transport.receive(replies) == [[b'5'], [b'5']]
+    assert replies['force'].tolist() == [3.0, 4.0]
+    assert log == [
+        'b starts at 1', 'a starts at 2', 'b publishes first', 'a publishes first',
+        'b serves', 'b 5 3 0', 'b publishes 5', 'a serves', 'a 5 4 1', 'a publishes 5']
