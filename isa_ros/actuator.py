@@ -73,21 +73,27 @@ class SmartActuator:
         self._y = kernels.flat(bodies)
         rows = [np.zeros(1, dtype) for dtype in (
             LOAD_PORT, REU_STATE, MEASURED, LOAD_REPLY, SAMPLE)]
-        port, reu, read_out, reply, sample = rows
+        self._port_rows, reu, read_out, reply, sample = rows
         # The kernel takes the plain arrays: a recarray costs numba 4 us of dispatch each.
         self._kernel_arguments = (
-            port, constants, bodies, rates, self._y, kernels.flat(rates),
+            self._port_rows, constants, bodies, rates, self._y, kernels.flat(rates),
             reu, read_out, reply, sample)
-        self._constants, self._bodies = _records(constants), _records(bodies)
-        self._port, self._reu, self._read_out, self._reply, self._sample = map(_records, rows)
-        self._pending = np.zeros(1, COMMAND)
-        self._applied = np.zeros(1, COMMAND)
+        self._pending_rows, self._applied_rows = np.zeros(1, COMMAND), np.zeros(1, COMMAND)
+        self._memory = (
+            bodies[:1], reu, self._port_rows, self._pending_rows, self._applied_rows,
+            reply, sample)
+        # Rows with their fields as attributes, on the same memory.
+        self._constants, self._body = _record(constants), _record(bodies)
+        self._reu, self._read_out = _record(reu), _record(read_out)
+        self._reply, self._sample = _record(reply), _record(sample)
+        self._port = _record(self._port_rows)
+        self._pending, self._applied = _record(self._pending_rows), _record(self._applied_rows)
         self.start(config.initial_position, static_force(config.load), 20.7e6, 0.0)
 
     @property
     def digest(self) -> str:
         """Return a hash of every resolved parameter: equal digests, equal actuators."""
-        constants = self._constants.tobytes() + self._port.tobytes()
+        constants = self._constants.tobytes() + self._port_rows.tobytes()
         gains = self._config.sheet.reu.position
         text = f'{self._timing} {self._is_shared} {gains.stiffness!r} {gains.damping!r}'
         return hashlib.sha256(constants + text.encode()).hexdigest()[:16]
@@ -101,56 +107,54 @@ class SmartActuator:
         Pressures are gauge, Pa. The first sample is what the sensors read then.
         """
         self.t_ns = 0
-        self._bodies.fill(0)
-        self._reu.fill(0)
-        self._pending.fill(0)
+        for rows in self._memory:
+            rows.fill(0)
         if self._config.load is not None:
-            self._port[:] = local_port(self._config.load, position)
-        self._port['supply_pressure'] = supply_pressure
-        self._port['return_pressure'] = return_pressure
-        body, constants = self._bodies[0], self._constants[0]
+            self._port_rows[:] = local_port(self._config.load, position)
+        self._port.supply_pressure = supply_pressure
+        self._port.return_pressure = return_pressure
+        body, plant = self._body, self._constants.plant
         body.plant.mechanics.position = position
-        body.load.position = position - force / constants.plant.mechanics.k_s
+        body.load.position = position - force / plant.mechanics.k_s
         body.plant.chambers.p_a, body.plant.chambers.p_b = rest_pressures(
-            constants.plant, supply_pressure, return_pressure, force)
+            plant, supply_pressure, return_pressure, force)
         self._start_loops()
         self._note_applied(HAS_SETPOINT | HAS_ENABLE)
-        self._reply['position'] = position
+        self._reply.position = position
 
     def _start_loops(self) -> None:
-        body, reu, plant = self._bodies[0], self._reu[0], self._constants[0].plant
+        body, reu = self._body, self._reu
         gains = self._config.sheet.reu.position
-        for measured in (reu.measured, self._read_out[0]):
-            self._reply[0].force = read_sensors(
-                body.plant, body.load.position, body.load.velocity, plant, measured)
+        for measured in (reu.measured, self._read_out):
+            self._reply.force = read_sensors(
+                body.plant, body.load.position, body.load.velocity, self._constants.plant,
+                measured)
         reu.position.position = reu.measured.position
         reu.force.force = reu.measured.force
         reu.setpoint.position = reu.measured.position
         reu.setpoint.stiffness, reu.setpoint.damping = gains.stiffness, gains.damping
         reu.setpoint.is_enabled = 1.0
-        kernels.write_sample(self._read_out[0], body.plant, reu, self._sample[0])
+        kernels.write_sample(self._read_out, body.plant, reu, self._sample)
 
     @property
-    def sample(self) -> np.void:
-        """Return the `SAMPLE` at the end of the last tick."""
-        sample: np.void = self._sample[0]
-        return sample
+    def sample(self) -> np.record:
+        """Return the `SAMPLE` at the end of the last tick; the next tick overwrites it."""
+        return self._sample
 
     @property
-    def reply(self) -> np.void:
-        """Return the `LOAD_REPLY` of the last tick."""
-        reply: np.void = self._reply[0]
-        return reply
+    def reply(self) -> np.record:
+        """Return the `LOAD_REPLY` of the last tick; the next tick overwrites it."""
+        return self._reply
 
     @property
-    def applied(self) -> np.void | None:
+    def applied(self) -> np.record | None:
         """
         Return what took effect at the start of the last tick, or None.
 
         A `COMMAND` row with the gains in force and the enable state; at t = 0 the state the
         actuator starts with.
         """
-        return self._applied[0] if self._applied['kinds'][0] else None
+        return self._applied if self._applied.kinds else None
 
     def accept(self, command: np.void) -> None:
         """
@@ -158,18 +162,18 @@ class SmartActuator:
 
         Of several before one tick the last wins, and a gain left NaN keeps the one before.
         """
-        pending = self._pending[0]
+        pending = self._pending
         kinds = int(command['kinds'])
         if kinds & HAS_SETPOINT:
-            was_pending = int(pending['kinds']) & HAS_SETPOINT
+            was_pending = int(pending.kinds) & HAS_SETPOINT
             for name in ('position', 'velocity', 'effort'):
                 pending[name] = command[name]
             for name in ('stiffness', 'damping'):
                 if not (was_pending and np.isnan(command[name])):
                     pending[name] = command[name]
         if kinds & HAS_ENABLE:
-            pending['is_enabled'] = command['is_enabled']
-        pending['kinds'] |= kinds
+            pending.is_enabled = command['is_enabled']
+        pending.kinds |= kinds
 
     def tick(self, port: np.void | None = None) -> None:
         """
@@ -187,61 +191,58 @@ class SmartActuator:
         self._take_pending()
         if port is not None:
             if self._is_shared:
-                self._port[0] = port
+                self._port_rows[0] = port
             else:
-                self._port['supply_pressure'] = port['supply_pressure']
-                self._port['return_pressure'] = port['return_pressure']
-        first_step = self.t_ns // PLANT_STEP_NS
+                self._port.supply_pressure = port['supply_pressure']
+                self._port.return_pressure = port['return_pressure']
         broken = kernels.actuator_tick(
-            first_step, self._steps, self._is_shared, *self._kernel_arguments)
+            self.t_ns // PLANT_STEP_NS, self._steps, self._is_shared, *self._kernel_arguments)
         self.t_ns += self._timing.step_ns
         if broken >= 0:
             raise SimulationDiverged(
                 self.t_ns, f'{self.name}: {kernels.state_name(broken)}', self._y[0, broken])
 
     def _take_pending(self) -> None:
-        kinds = int(self._pending['kinds'][0])
+        kinds = int(self._pending_rows['kinds'][0])
         if not kinds:
-            self._applied['kinds'] = 0
+            self._applied_rows['kinds'] = 0
             return
-        pending, reu = self._pending[0], self._reu[0]
-        setpoint = reu.setpoint
+        pending, setpoint = self._pending, self._reu.setpoint
         if kinds & HAS_ENABLE:
-            if pending['is_enabled'] and not setpoint.is_enabled:
-                setpoint.position = reu.measured.position
+            if pending.is_enabled and not setpoint.is_enabled:
+                setpoint.position = self._reu.measured.position
                 setpoint.velocity = setpoint.effort = 0.0
-            setpoint.is_enabled = float(pending['is_enabled'])
+            setpoint.is_enabled = float(pending.is_enabled)
         if kinds & HAS_SETPOINT:
             for name in ('position', 'velocity', 'effort'):
-                setattr(setpoint, name, pending[name])
+                setpoint[name] = pending[name]
             for name in ('stiffness', 'damping'):
                 if not np.isnan(pending[name]):
-                    setattr(setpoint, name, pending[name])
-        self._pending['kinds'] = 0
+                    setpoint[name] = pending[name]
+        pending.kinds = 0
         self._note_applied(kinds)
 
     def _note_applied(self, kinds: int) -> None:
-        setpoint = self._reu[0].setpoint
-        self._applied[0] = (
+        setpoint = self._reu.setpoint
+        self._applied_rows[0] = (
             kinds, int(setpoint.is_enabled), setpoint.position, setpoint.velocity,
             setpoint.effort, setpoint.stiffness, setpoint.damping)
 
     def snapshot(self) -> bytes:
         """Return the whole state; `restore` continues from it byte for byte."""
-        parts = (self._bodies[:1], self._reu, self._port, self._pending, self._applied,
-                 self._reply, self._sample)
-        return self.t_ns.to_bytes(8, 'little') + b''.join(part.tobytes() for part in parts)
+        return self.t_ns.to_bytes(8, 'little') + b''.join(
+            rows.tobytes() for rows in self._memory)
 
     def restore(self, snapshot: bytes) -> None:
         """Continue from a `snapshot` of an actuator with the same digest."""
         self.t_ns = int.from_bytes(snapshot[:8], 'little')
         offset = 8
-        for part in (self._bodies[:1], self._reu, self._port, self._pending, self._applied,
-                     self._reply, self._sample):
-            part[:] = np.frombuffer(snapshot, part.dtype, len(part), offset)
-            offset += part.nbytes
+        for rows in self._memory:
+            rows[:] = np.frombuffer(snapshot, rows.dtype, len(rows), offset)
+            offset += rows.nbytes
 
 
-def _records(rows: np.ndarray) -> np.recarray:
-    """Return the same memory with fields as attributes."""
-    return rows.view(np.recarray)
+def _record(rows: np.ndarray) -> np.record:
+    """Return the first row with its fields as attributes, on the same memory."""
+    row: np.record = rows.view(np.recarray)[0]
+    return row
