@@ -308,14 +308,14 @@ def keep_forces(flat, step, rows, replies):
     """
     Keep the force each other actuator will be assumed to have, and its slope  (L16).
 
-    Mean of the tick, slope F' = R^8 F'_line + (1 - R^8) (mean - mean two ticks ago) / (2 H),
+    Mean of the tick, slope F' = R^4 F'_line + (1 - R^4) (mean - mean two ticks ago) / (2 H),
     force at the tick's end = mean + F' H / 2. A trend within the tick counts as far as it
     is one: the ringing of a load cell must not reach the other actuators as a trend, or
     the exchange feeds it (with a damping ratio of 0.01 it grows when it beats with the ticks).
     """
     for j in range(3):
         mean, rise, r_2 = window_line(replies, rows[j])
-        trust = r_2 * r_2 * r_2 * r_2
+        trust = r_2 * r_2
         slope = (trust * rise * FORCE_WINDOWS / step
                  + (1.0 - trust) * (mean - flat[OLDER + j]) / (2.0 * step))
         flat[OLDER + j] = flat[MEAN + j]

@@ -15,8 +15,8 @@ ROOT = Path(__file__).resolve().parents[2]
 URDF = ROOT / 'urdf' / 'hyq_real_leg.urdf'
 BODY = body_record(leg_sheet().body)[0]
 NAMES = ('z', 'haa', 'hfe', 'kfe')
-# Sums of a few hundred products of numbers up to 200 N (or 15 kg): a few hundred ulps.
-ROUNDING = 1e-13
+# Sums of up to a hundred products: tens of ulps of the largest, more where forces cancel (h).
+ROUNDING = 1e-14
 
 angles = st.tuples(st.floats(-0.8, 0.5), st.floats(0.0, 2.2), st.floats(-2.8, 0.0))
 speeds = st.tuples(*[st.floats(-8.0, 8.0)] * 4)
@@ -72,7 +72,7 @@ def test_dynamics_equal_pinocchio(oracle, q, v):
     pin.framesForwardKinematics(model, data, q_all)
     size = max(1.0, np.abs(h).max())
     assert np.abs(mass_matrix(terms) - reference).max() < ROUNDING * 15.2
-    assert np.abs(bias(terms) - h).max() < 10.0 * ROUNDING * size
+    assert np.abs(bias(terms) - h).max() < 100.0 * ROUNDING * size
     position = np.array([terms.foot_x, terms.foot_y, terms.foot_z])
     velocity = np.array([terms.foot_v_x, terms.foot_v_y, terms.foot_v_z])
     assert np.abs(position - data.oMf[foot].translation).max() < ROUNDING

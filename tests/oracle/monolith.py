@@ -7,10 +7,12 @@ package; ports, mean forces, ticks and the leg's own step do not occur here.
 """
 
 from isa_ros.actuator_kernel import ACTUATOR, BODY, STATE_SIZE
+from isa_ros.actuator_sheet import actuator_record
 from isa_ros.kernel import kernel
 from isa_ros.load.ground import normal_force
 from isa_ros.load.leg_dynamics import leg_terms
-from isa_ros.load.leg_kernel import leg_rates, shifted
+from isa_ros.load.leg_kernel import leg_rates, N_STATES, shifted
+from isa_ros.load.leg_sheet import leg_records
 from isa_ros.load.linkage import actuator_coordinate
 from isa_ros.plant.plant import plant_rates, read_sensors, stop_spool
 from isa_ros.reu.cascade import cascade_step, REU_STATE
@@ -20,12 +22,14 @@ import numpy as np
 TRACE = np.dtype([
     ('force', '<f8', (3,)),     # sensor forces at the end of the interval, N | Nm
     ('mean', '<f8', (3,)),      # their means over the interval
-    ('leg', '<f8', (10,)),      # the leg's continuous states
+    ('leg', '<f8', (N_STATES,)),      # the leg's continuous states
     ('normal', '<f8'),          # ground force, N
     ('work', '<f8', (3,)),      # done by the sensors on the leg since t = 0, J
 ])
 """One row per interval of the recording."""
-WORK = 10  # place of the work integrals behind the leg's states
+ROW_NS = 100_000  # that interval: the smallest window of the tests
+TIME_BYTES = 8  # a snapshot begins with the time
+IMPULSE = STATE_SIZE - 3  # its place in a flat `BODY`
 
 
 @kernel
@@ -115,30 +119,32 @@ def run(n_rows, steps_per_row, command_steps, release_step, commands, y0, pressu
                      ground, rates[0])
         for j in range(3):
             trace[row].mean[j] = bodies[0][j].totals.impulse / (steps_per_row * PLANT_STEP)
-            trace[row].force[j] = flat_rates[0, j, STATE_SIZE - 3]
+            trace[row].force[j] = flat_rates[0, j, IMPULSE]
             trace[row].work[j] = w[j]
-        for i in range(10):
+        for i in range(N_STATES):
             trace[row].leg[i] = y[i]
 
 
-def monolith(rig, actuators, leg, commands, n_rows, row_ns, release_ns):
+def monolith(rig, actuators, leg, commands, n_rows, release_ns, aside):
     """
-    Run the one ODE from where the three `SmartActuator` and the `Leg` stand.
+    Run the one ODE from where the three `SmartActuator` and the `Leg` stand at t = 0.
 
-    Returns the `TRACE`, shape (n_rows,).
+    Pistons and rotor start ``aside`` (m | rad). Returns the `TRACE`, shape (n_rows,).
     """
-    bodies = np.zeros((2, 3), BODY)
-    rates = np.zeros((4, 3), BODY)
+    bodies, rates = np.zeros((2, 3), BODY), np.zeros((4, 3), BODY)
     constants, reus = np.zeros(3, ACTUATOR), np.zeros(3, REU_STATE)
-    for j, actuator in enumerate(actuators):
-        bodies[0, j] = actuator._bodies[0]
-        constants[j] = actuator._constants[0]
-        reus[j] = actuator._reu[0]
+    offset_steps = rig.controller_offset_ns // PLANT_STEP_NS
+    for j, (actuator, sheet) in enumerate(zip(actuators, rig.sheets)):
+        snapshot = actuator.snapshot()
+        bodies[0, j] = np.frombuffer(snapshot, BODY, 1, TIME_BYTES)[0]
+        reus[j] = np.frombuffer(snapshot, REU_STATE, 1, TIME_BYTES + BODY.itemsize)[0]
+        constants[j] = actuator_record(sheet, offset_steps)[0]
+    bodies['plant']['mechanics']['position'][0] += aside
     trace = np.zeros(n_rows, TRACE)
-    y0 = tuple(float(v) for v in leg._flat[:10])
-    run(n_rows, row_ns // PLANT_STEP_NS, rig.command_ns // PLANT_STEP_NS,
+    y0 = tuple(np.frombuffer(leg.state(), np.float64, N_STATES, TIME_BYTES).tolist())
+    run(n_rows, ROW_NS // PLANT_STEP_NS, rig.command_ns // PLANT_STEP_NS,
         release_ns // PLANT_STEP_NS, commands, y0, np.array([rig.supply_pressure, 0.0]), bodies,
         bodies.view(np.float64).reshape(2, 3, STATE_SIZE), rates,
-        rates.view(np.float64).reshape(4, 3, STATE_SIZE), constants, reus, leg._body,
-        leg._linkages, leg._ground, np.zeros(3), trace)
+        rates.view(np.float64).reshape(4, 3, STATE_SIZE), constants, reus, *leg_records(rig.leg),
+        np.zeros(3), trace)
     return trace

@@ -6,21 +6,21 @@ import math
 from isa_ros.actuator import SmartActuator, Timing
 from isa_ros.actuator_sheet import ActuatorSheet
 from isa_ros.load.leg import Leg, Pose
+from isa_ros.load.leg_kernel import N_STATES
 from isa_ros.load.leg_sheet import LegSheet
 from isa_ros.run_config import ActuatorConfig
 from isa_ros.signals import LOAD_PORT, LOAD_REPLY
 import numpy as np
 from tests.legs import leg_sheet
-from tests.oracle.monolith import monolith, TRACE
+from tests.oracle.monolith import monolith, ROW_NS, TIME_BYTES, TRACE
 from tests.sheets import actuator_sheet, setpoint
 
 WINDOWS = 5
-ROW_NS = 20_000
 
 
-def standing(foot_height: float) -> Pose:
-    """Return the leg with its foot below the HAA axis, 0.1 m of knee stroke left."""
-    return Pose(haa=math.radians(13.0), hfe=math.radians(48.0), kfe=math.radians(-95.0),
+def hanging(foot_height: float) -> Pose:
+    """Return the pose of the shipped drop with the foot elsewhere above the ground (m)."""
+    return Pose(haa=0.0, hfe=math.radians(41.3), kfe=math.radians(-80.0),
                 foot_height=foot_height)
 
 
@@ -61,10 +61,16 @@ class Rig:
             commands[:, j, 3], commands[:, j, 4] = gains.stiffness, gains.damping
         return commands
 
-    def one_ode(self, commands: np.ndarray, duration_ns: int, release_ns: int) -> np.ndarray:
-        """Return the oracle's `TRACE`, one row per `ROW_NS`."""
+    def one_ode(self, commands: np.ndarray, duration_ns: int, release_ns: int,
+                aside: float = 0.0) -> np.ndarray:
+        """
+        Return the oracle's `TRACE`, one row per `ROW_NS`.
+
+        ``aside`` (m | rad) displaces pistons and rotor at the start.
+        """
         actuators, leg = self.start(1_000_000)
-        return monolith(self, actuators, leg, commands, duration_ns // ROW_NS, ROW_NS, release_ns)
+        return monolith(
+            self, actuators, leg, commands, duration_ns // ROW_NS, release_ns, aside)
 
     def coupled(self, commands: np.ndarray, duration_ns: int, release_ns: int,
                 step_ns: int) -> np.ndarray:
@@ -101,6 +107,6 @@ class Rig:
             rows['mean'] = replies['mean_forces'].T
             work += replies['mean_forces'].mean(axis=1) * (np.array(leg.actuator_positions) - x)
             last = rows[-1:]
-            last['force'], last['leg'] = replies['force'], leg._flat[:10]
+            last['force'], last['leg'] = replies['force'], np.frombuffer(leg.state(), np.float64, N_STATES, TIME_BYTES)
             last['normal'], last['work'] = leg.sample['foot_force'][2], work
         return trace
