@@ -13,6 +13,7 @@ import math
 from isa_ros.errors import ConfigError, SimulationDiverged
 from isa_ros.load import leg_kernel as kernels
 from isa_ros.load.leg_dynamics import leg_terms
+from isa_ros.load.leg_motion import LEG_STATE, STATE_NAMES, unpacked
 from isa_ros.load.leg_sheet import JOINTS, leg_records, LegSheet
 from isa_ros.load.linkage import actuator_coordinate
 from isa_ros.timebase import FORCE_WINDOWS, NS_PER_SECOND, steps_in
@@ -48,7 +49,7 @@ class Leg:
         self._step_ns = step_ns
         self._rows = np.array(rows, np.int64)
         self._body, self._linkages, self._ground = leg_records(sheet)
-        self._state = np.zeros(1, kernels.LEG_STATE)
+        self._state = np.zeros(1, LEG_STATE)
         self._flat = self._state.view(np.float64)
         self._sample = np.zeros(1, kernels.LEG_SAMPLE)
         self._flat_sample = self._sample.view(np.float64)
@@ -80,7 +81,7 @@ class Leg:
             state[f'q_{name}'] = pose.joints[k]
             for force in ('force', 'mean', 'older'):
                 state[f'{force}_{name}'] = getattr(terms, f'h_{name}') / lever
-        y, force, _, is_held = kernels.unpacked(self._flat)
+        y, force, _, is_held = unpacked(self._flat)
         kernels.fill_sample(y, force, is_held, self._body[0], self._linkages, self._ground[0],
                             self._flat_sample)
 
@@ -147,7 +148,7 @@ class Leg:
         self._t_ns += self._step_ns
         if broken >= 0:
             raise SimulationDiverged(
-                self._t_ns, f'leg.{kernels.STATE_NAMES[broken]}', float(self._flat[broken]))
+                self._t_ns, f'leg.{STATE_NAMES[broken]}', float(self._flat[broken]))
 
     def state(self) -> bytes:
         """Return the whole state; `restore` continues from it byte for byte."""
@@ -157,6 +158,6 @@ class Leg:
     def restore(self, state: bytes) -> None:
         """Continue from a `state` of a leg with the same sheet and step."""
         self._t_ns = int.from_bytes(state[:8], 'little')
-        self._state[:] = np.frombuffer(state, kernels.LEG_STATE, 1, 8)
+        self._state[:] = np.frombuffer(state, LEG_STATE, 1, 8)
         self._sample[:] = np.frombuffer(
             state, kernels.LEG_SAMPLE, 1, 8 + self._state.nbytes)

@@ -7,7 +7,7 @@ import subprocess
 import sys
 
 from isa_ros.errors import ConfigError, SimulationDiverged
-from isa_ros.load import leg_kernel as kernels
+from isa_ros.load import leg_motion as kernels
 from isa_ros.load.leg import Leg, Pose
 from isa_ros.load.leg_dynamics import leg_terms
 from isa_ros.load.leg_sheet import body_record, STANDARD_GRAVITY
@@ -334,7 +334,7 @@ def test_a_macro_step_that_does_not_divide_is_refused():
         hanging(step_ns=1_010_000)
 
 
-PURE = '''
+PURE = """
 import sys
 import numpy as np
 import tests.load.test_leg as t
@@ -353,7 +353,7 @@ for k in range(40):
     normal = max(normal, leg.sample['foot_force'][2])
 assert normal > 10.0, normal
 sys.stdout.write((leg.state() + ports.tobytes()).hex())
-'''
+"""
 
 
 def test_compiled_leg_equals_its_python_source():

@@ -11,7 +11,7 @@ from isa_ros.actuator_sheet import actuator_record
 from isa_ros.kernel import kernel
 from isa_ros.load.ground import normal_force
 from isa_ros.load.leg_dynamics import leg_terms
-from isa_ros.load.leg_kernel import leg_rates, N_STATES, shifted
+from isa_ros.load.leg_motion import leg_rates, N_STATES, shifted
 from isa_ros.load.leg_sheet import leg_records
 from isa_ros.load.linkage import actuator_coordinate
 from isa_ros.plant.plant import plant_rates, read_sensors, stop_spool

@@ -6,7 +6,7 @@ import math
 from isa_ros.actuator import SmartActuator, Timing
 from isa_ros.actuator_sheet import ActuatorSheet
 from isa_ros.load.leg import Leg, Pose
-from isa_ros.load.leg_kernel import N_STATES
+from isa_ros.load.leg_motion import N_STATES
 from isa_ros.load.leg_sheet import LegSheet
 from isa_ros.run_config import ActuatorConfig
 from isa_ros.signals import LOAD_PORT, LOAD_REPLY
@@ -107,6 +107,7 @@ class Rig:
             rows['mean'] = replies['mean_forces'].T
             work += replies['mean_forces'].mean(axis=1) * (np.array(leg.actuator_positions) - x)
             last = rows[-1:]
-            last['force'], last['leg'] = replies['force'], np.frombuffer(leg.state(), np.float64, N_STATES, TIME_BYTES)
+            last['force'] = replies['force']
+            last['leg'] = np.frombuffer(leg.state(), np.float64, N_STATES, TIME_BYTES)
             last['normal'], last['work'] = leg.sample['foot_force'][2], work
         return trace
