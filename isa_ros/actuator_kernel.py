@@ -10,7 +10,7 @@ import math
 from isa_ros.kernel import kernel
 from isa_ros.load.port import load_acceleration, LOAD_STATE, load_stop_force, LOAD_STOPS
 from isa_ros.plant.plant import PLANT, plant_rates, PLANT_STATE, read_sensors, stop_spool
-from isa_ros.reu.cascade import cascade_step, REU
+from isa_ros.reu.cascade import cascade_step, is_due, REU
 from isa_ros.timebase import FORCE_WINDOWS, PLANT_STEP
 import numpy as np
 
@@ -116,11 +116,13 @@ def write_sample(measured, plant, reu, sample):
 def loops_and_plant(step, tau, port, actuator, bodies, rates, y, k, reu_state):
     """Run the loops that are due at plant step ``step``, then the plant over that step."""
     body, reu = bodies[0], actuator.reu
-    if (step - reu.offset_steps) % reu.current_steps == 0:
+    if is_due(step, reu.current_steps, reu.offset_steps):
         read_sensors(body.plant, body.load.position, body.load.velocity,
                      actuator.plant, reu_state.measured)
         cascade_step(step, reu, reu_state)
-    body_step(PLANT_STEP, tau, reu_state.current_reference, port, actuator,
+    if is_due(step, reu.current_steps, reu.offset_steps + reu.delay_steps):
+        reu_state.current_output = reu_state.current_reference
+    body_step(PLANT_STEP, tau, reu_state.current_output, port, actuator,
               bodies, rates, y, k)
 
 

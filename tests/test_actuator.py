@@ -5,7 +5,7 @@ from isa_ros.errors import SimulationDiverged
 from isa_ros.signals import COMMAND, HAS_ENABLE, LOAD_PORT
 import numpy as np
 import pytest
-from tests.sheets import FINE, MODELS, setpoint, smart_actuator
+from tests.sheets import actuator_sheet, FINE, MODELS, override, setpoint, smart_actuator
 
 TICK = Timing(step_ns=1_000_000, controller_offset_ns=120_000)
 OVER_STROKE = (0.02, 0.1, 0.3, 0.5, 0.7, 0.9, 0.98)
@@ -183,3 +183,20 @@ def test_a_state_that_is_not_finite_ends_the_run_by_name():
     port['x0'], port['supply_pressure'] = np.nan, 20.7e6
     with pytest.raises(SimulationDiverged, match=r'isa_v5: plant\.\w+\.\w+ = nan at t = 0.001'):
         actuator.tick(port)
+
+
+def test_computational_delay_holds_the_current_back():
+    """The amplifier follows 40 us later."""
+    sheet = actuator_sheet('smart_manifold', 'table_4')
+    currents = []
+    for delay_us in (0.0, 40.0):
+        actuator = smart_actuator(
+            'smart_manifold', 'blocked',
+            sheet=override(sheet, 'reu.computation_delay_us', delay_us),
+            timing=Timing(step_ns=100_000, controller_offset_ns=0))
+        actuator.accept(setpoint(effort=10.0, stiffness=0.0, damping=0.0))
+        actuator.tick()
+        currents.append(float(actuator._body.plant.coil.current))
+    # eq 10 after 100 and 60 us: 1 - exp(-p_c t), p_c = 2000 rad/s, below the voltage limit
+    ratio = (1.0 - np.exp(-2000.0 * 60e-6)) / (1.0 - np.exp(-2000.0 * 100e-6))
+    assert currents[1] / currents[0] == pytest.approx(ratio, rel=1e-6)

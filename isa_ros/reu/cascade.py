@@ -2,9 +2,9 @@
 The nested loops of figure 7 A and B at their rates.
 
 One period of a loop is always: measure, feed back, output, update. Loops that coincide run
-outermost first in the same instant, without computational delay. The inner loops
-whose closed form is the plant's own (spool: equation 8, current: equation 10) sample and
-hold their reference here.
+outermost first in the same instant; the current reference they give reaches the amplifier
+after the computational delay, none by default. The inner loops whose closed form is the
+plant's own (spool: equation 8, current: equation 10) sample and hold their reference here.
 
     position 1 kHz -> force 5 kHz -> [spool 5 kHz ->] current 10 kHz
 """
@@ -21,7 +21,7 @@ from isa_ros.reu.position_loop import (
     POSITION_LOOP, position_loop_record, position_loop_step, POSITION_STATE, PositionLoop,
     SETPOINT)
 from isa_ros.reu.schedule import POINTS, scheduled
-from isa_ros.timebase import NS_PER_SECOND, steps_in
+from isa_ros.timebase import NS_PER_SECOND, PLANT_STEP_NS, steps_in
 import numpy as np
 
 
@@ -41,13 +41,15 @@ class Reu(Parameters):
     compensation: DualGainCompensation
     spool: InnerLoop
     current: InnerLoop
+    computation_delay_us: float = parameter(
+        'from an instant of the loops to the current reference it gives', 'us', ge=0.0, le=1e3)
 
 
 REU = np.dtype([
     ('position', POSITION_LOOP),
     ('force', FORCE_LOOP),
     ('position_steps', 'i8'), ('force_steps', 'i8'), ('spool_steps', 'i8'),
-    ('current_steps', 'i8'), ('offset_steps', 'i8'),
+    ('current_steps', 'i8'), ('offset_steps', 'i8'), ('delay_steps', 'i8'),
     ('stroke', 'f8'), ('schedule', 'f8', (POINTS,)),
     ('spool_per_output', 'f8'),    # m per unit of the force loop's output
     ('current_per_spool', 'f8'),   # amplifier A per m of spool
@@ -64,6 +66,7 @@ REU_STATE = np.dtype([
     ('force', FORCE_STATE),
     ('spool_reference', 'f8'),
     ('current_reference', 'f8'),
+    ('current_output', 'f8'),      # the current reference the amplifier has
 ])
 
 
@@ -95,14 +98,34 @@ def loop_steps(reu: Reu) -> tuple[int, int, int, int]:
     return steps[0], steps[1], steps[2], steps[3]
 
 
+def delay_steps(reu: Reu, current_steps: int) -> int:
+    """
+    Return the computational delay in plant steps.
+
+    Raises
+    ------
+    ConfigError
+        It is not a whole number of plant steps, or as long as the current loop's period.
+
+    """
+    steps = reu.computation_delay_us * 1e3 / PLANT_STEP_NS
+    if steps != int(steps) or steps >= current_steps:
+        raise ConfigError(
+            f'computation_delay_us = {reu.computation_delay_us:g} us, must be a multiple of '
+            f'{PLANT_STEP_NS / 1e3:g} us below {current_steps * PLANT_STEP_NS / 1e3:g} us, '
+            'the period of the current loop')
+    return int(steps)
+
+
 def reu_record(
         reu: Reu, offset_steps: int, stroke: float, schedule: np.ndarray,
         spool_per_output: float, current_per_spool: float) -> np.ndarray:
     """Return the `REU` record, shape (1,); ``schedule`` has shape (POINTS,)."""
+    steps = loop_steps(reu)
     return np.array([(
         position_loop_record(reu.position), force_loop_record(reu.force, reu.compensation),
-        *loop_steps(reu), offset_steps, stroke, schedule, spool_per_output, current_per_spool,
-    )], dtype=REU)
+        *steps, offset_steps, delay_steps(reu, steps[-1]), stroke, schedule,
+        spool_per_output, current_per_spool)], dtype=REU)
 
 
 @kernel

@@ -65,6 +65,14 @@ def test_a_disabled_actuator_commands_null():
     assert (state.current_reference, state.spool_reference, state.force.integral) == (0, 0, 0)
 
 
+@pytest.mark.parametrize('delay_us', [100.0, 30.0])
+def test_a_delay_the_loops_cannot_have_is_refused(delay_us):
+    """A whole number of plant steps below the period of the current loop."""
+    reu = override(actuator_sheet('isa_v5').reu, 'computation_delay_us', delay_us)
+    with pytest.raises(ConfigError, match='multiple of 20 us below 100 us'):
+        cascade.delay_steps(reu, 5)
+
+
 @pytest.mark.parametrize(('rates', 'message'), [
     ({'position': 3000.0}, r'position.rate_hz = 3000 Hz, .* whole nanoseconds'),
     ({'current': 8000.0}, r'current.rate_hz = 8000 Hz = 0.125 ms, .* plant step 0.02 ms'),
