@@ -11,8 +11,8 @@ from isa_ros.kernel import kernel
 from isa_ros.load.ground import bristle_rates
 from isa_ros.load.leg_dynamics import leg_terms
 from isa_ros.load.leg_motion import (
-    actuator_accelerations, FORCE, leg_motion, leg_step, MEAN, N_STATES, OLDER, shifted, SLOPE, solve,
-    unpacked)
+    actuator_accelerations, FORCE, leg_motion, leg_step, MEAN, N_STATES, OLDER, shifted, SLOPE,
+    solve, unpacked)
 from isa_ros.load.linkage import actuator_coordinate
 from isa_ros.signals import LOAD_REPLY
 from isa_ros.timebase import FORCE_WINDOWS, NS_PER_SECOND
