@@ -1,6 +1,6 @@
 """The processes of one run: one list for bring-up and launch, and the children of the former."""
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 import json
 import os
@@ -56,14 +56,21 @@ def actuator_processes(
         for actuator in run.actuators)
 
 
-def coordinator_process(
-        config: Path, scenario: Path | None,
-        options: Sequence[tuple[str, ParameterValue]]) -> Process:
-    """Return the coordinator of a run; ``options`` as its parameters are named."""
+def run_processes(
+        run: RunConfig, config: Path, scenario: Path | None,
+        options: Mapping[str, ParameterValue]) -> tuple[Process, ...]:
+    """
+    Return every process of a run, the coordinator last.
+
+    ``options`` are parameters of the coordinator; with ``in_process`` it is alone.
+    """
     files = [('config_file', str(config.resolve()))]
     if scenario is not None:
         files.append(('scenario_file', str(scenario.resolve())))
-    return Process('coordinator', 'coordinator', (*files, *options))
+    coordinator = Process('coordinator', 'coordinator', (*files, *options.items()))
+    if options.get('in_process'):
+        return (coordinator,)
+    return (*actuator_processes(run, config, scenario), coordinator)
 
 
 class Children:

@@ -7,7 +7,7 @@ import time
 
 from isa_ros import processes
 from isa_ros.config import load_run
-from isa_ros.processes import actuator_processes, Children, coordinator_process, Process
+from isa_ros.processes import actuator_processes, Children, Process, run_processes
 import pytest
 
 CONFIG = Path(__file__).parents[1] / 'config' / 'leg.yaml'
@@ -49,10 +49,18 @@ def test_arguments_are_yaml_that_keeps_its_type():
         '-p', 'duration:=2.0']
 
 
-def test_coordinator_gets_the_same_files():
-    process = coordinator_process(CONFIG, Path('/drop.yaml'), [('in_process', True)])
-    assert process.parameters == (
-        ('config_file', str(CONFIG)), ('scenario_file', '/drop.yaml'), ('in_process', True))
+def test_all_processes_of_a_run_have_the_same_files():
+    found = run_processes(load_run(CONFIG), CONFIG, Path('/drop.yaml'), {'duration': 2.0})
+    assert [p.name for p in found] == ['haa', 'hfe', 'kfe', 'coordinator']
+    files = (('config_file', str(CONFIG)), ('scenario_file', '/drop.yaml'))
+    assert found[-1].parameters == (*files, ('duration', 2.0))
+    assert all(p.parameters == (('lockstep', True), *files) for p in found[:-1])
+
+
+def test_in_process_the_coordinator_is_alone():
+    found = run_processes(load_run(CONFIG), CONFIG, None, {'in_process': True})
+    assert [p.executable for p in found] == ['coordinator']
+    assert found[0].parameters == (('config_file', str(CONFIG)), ('in_process', True))
 
 
 def test_children_end_with_the_context(sleeper):

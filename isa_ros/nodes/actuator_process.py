@@ -23,11 +23,13 @@ from rclpy.parameter_service import ParameterService
 from rclpy.signals import SignalHandlerOptions
 from rclpy.utilities import try_shutdown
 
-INTERRUPTED = 130
-
 
 def run(args: Sequence[str] | None, model: str) -> int:
-    """Run one actuator until it is told to stop and return the exit code."""
+    """
+    Run one actuator until it is told to stop and return the exit code.
+
+    It has no end of its own, so a signal is its normal one: 0, as launch expects it.
+    """
     set_defaults()
     with StopRequest() as should_stop:
         end_with_parent()
@@ -41,7 +43,7 @@ def run(args: Sequence[str] | None, model: str) -> int:
             return error.exit_code
         finally:
             try_shutdown()
-    return INTERRUPTED
+    return 0
 
 
 def _run(model: str, should_stop: StopRequest) -> None:

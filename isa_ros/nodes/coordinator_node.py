@@ -7,6 +7,7 @@ from typing import Any
 
 from isa_ros.coordinator import Messages
 from isa_ros.errors import ConfigError, IsaError
+from isa_ros.nodes.domain import sole_coordinator
 from isa_ros.nodes.environment import set_defaults
 from isa_ros.nodes.prepared import PreparedPublishers
 from isa_ros.run import JOIN_TIMEOUT_S, prepare, Request
@@ -103,7 +104,8 @@ def _main(args: Sequence[str] | None) -> int:
         try:
             session = prepare(node.request())
             run = coordinate_locally if session.request.in_process else coordinate
-            run(node, session, terminal_report(), should_stop)
+            with sole_coordinator():
+                run(node, session, terminal_report(), should_stop)
         except IsaError as error:
             print(f'{NAME}: {error}', file=sys.stderr)
             return error.exit_code

@@ -7,6 +7,7 @@ from typing import Any, NamedTuple
 
 from isa_ros.coordinator import Interrupted, Messages, Records
 from isa_ros.errors import ConfigError, RunError, SimulationDiverged
+from isa_ros.nodes.domain import another_coordinator, refuse_other_coordinator
 from isa_ros.nodes.qos import LOCKSTEP
 from isa_ros.nodes.waiting import open_mailbox, SLICE_S
 from isa_ros.nodes.wire import (
@@ -20,7 +21,6 @@ from std_msgs.msg import UInt8MultiArray
 
 HELLO_PERIOD_S = 0.05
 STOP_GRACE_S = 1.0  # how long a tick may still take once a stop is asked for
-_CLOCK_TOPIC = '/clock'
 _IDENTITY, _DIGEST, _FIRST = 0, 1, 2  # parts of a READY answer
 
 
@@ -128,7 +128,7 @@ class LockstepTransport:
 
     def _check_ready(self, answer: Answer, identities: dict[int, bytes]) -> None:
         if answer.run_id != self._run_id or answer.kind is AnswerKind.BUSY:
-            raise ConfigError(_other_coordinator(self._node))
+            raise another_coordinator(self._node.context.get_domain_id())
         name, expected = self._participants[answer.participant]
         identity, digest = answer.parts[_IDENTITY], answer.parts[_DIGEST]
         assert identity is not None and digest is not None
@@ -199,23 +199,3 @@ class LockstepTransport:
         """Tell the participants that the run is over."""
         self._send(encode_end(self._run_id))
         self._publisher.wait_for_all_acked(Duration(seconds=HELLO_PERIOD_S))
-
-
-def refuse_other_coordinator(node: Node) -> None:
-    """
-    Refuse to be the second one that publishes the time.
-
-    Raises
-    ------
-    ConfigError
-        Another node publishes `/clock`, as far as it was discovered.
-
-    """
-    if node.count_publishers(_CLOCK_TOPIC) > 1:
-        raise ConfigError(_other_coordinator(node))
-
-
-def _other_coordinator(node: Node) -> str:
-    return (
-        f'another coordinator runs in ROS_DOMAIN_ID {node.context.get_domain_id()}, must be the '
-        'only one; end it or set another ROS_DOMAIN_ID')

@@ -5,8 +5,9 @@ from contextlib import contextmanager
 
 from isa_ros.nodes.actuator_node import ActuatorNode, Setup
 from isa_ros.nodes.coordinator_node import CoordinatorNode
+from isa_ros.nodes.domain import refuse_other_coordinator, sole_coordinator
 from isa_ros.nodes.environment import set_defaults
-from isa_ros.nodes.lockstep import Expected, Limits, LockstepTransport, refuse_other_coordinator
+from isa_ros.nodes.lockstep import Expected, Limits, LockstepTransport
 from isa_ros.processes import actuator_processes, Children
 from isa_ros.run import record, Report, Session
 from isa_ros.shared_load import SharedLoad
@@ -32,7 +33,7 @@ def in_processes(session: Session, report: Report | None, should_stop: StopReque
     expected = _expected(session, load)
     request = session.request
     processes = actuator_processes(session.run, request.config, request.scenario)
-    with Children(processes, request.namespace) as children:
+    with sole_coordinator(), Children(processes, request.namespace) as children:
         with _node(request.namespace) as node:
             _coordinate(node, session, load, expected, report, should_stop, children.lost)
 
@@ -40,7 +41,7 @@ def in_processes(session: Session, report: Report | None, should_stop: StopReque
 def in_one_process(session: Session, report: Report | None, should_stop: StopRequest) -> None:
     """Call the nodes of all actuators from here."""
     set_defaults()
-    with _node(session.request.namespace) as node:
+    with sole_coordinator(), _node(session.request.namespace) as node:
         coordinate_locally(node, session, report, should_stop)
 
 

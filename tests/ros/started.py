@@ -102,7 +102,7 @@ def actuator(log: Path, name: str, **parameters: object) -> Iterator[Started]:
     """Run an actuator node."""
     arguments = ['--ros-args', '-r', f'__node:={name}']
     for key, value in parameters.items():
-        arguments += ['-p', f'{key}:={str(value).lower() if value is True else value}']
+        arguments += ['-p', f'{key}:={_yaml(value)}']
     with started(log, 'isa_ros.nodes.actuator_process', *arguments) as process:
         yield process
 
@@ -112,7 +112,7 @@ def coordinator(log: Path, **parameters: object) -> Iterator[Started]:
     """Run a coordinator that starts no one."""
     arguments = ['--ros-args']
     for key, value in parameters.items():
-        arguments += ['-p', f'{key}:={value}']
+        arguments += ['-p', f'{key}:={_yaml(value)}']
     with started(log, 'isa_ros.nodes.coordinator_node', *arguments) as process:
         yield process
 
@@ -123,3 +123,7 @@ def is_alive(pid: int) -> bool:
         return ') Z ' not in Path(f'/proc/{pid}/stat').read_text()
     except FileNotFoundError:
         return False
+
+
+def _yaml(value: object) -> str:
+    return str(value).lower() if isinstance(value, bool) else str(value)

@@ -81,7 +81,7 @@ def test_actuator_alone_obeys(observer, tmp_path):
         assert response.success and response.message.startswith('disabled from t = ')
         user.wait_for(lambda: user.applied[-1].position[3] == 0.0, 'the disabling')
         process.signal(signal.SIGTERM)
-        assert process.exit_code() == 130
+        assert process.exit_code() == 0
     assert 'Traceback' not in process.errors
 
 

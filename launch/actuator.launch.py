@@ -1,0 +1,25 @@
+"""One actuator alone, at real time on its default load."""
+
+from launch import LaunchDescription
+from launch.actions import DeclareLaunchArgument
+from launch.substitutions import LaunchConfiguration
+from launch_ros.actions import Node
+from launch_ros.parameter_descriptions import ParameterValue
+
+
+def generate_launch_description() -> LaunchDescription:
+    """Return the arguments and the node."""
+    return LaunchDescription([
+        DeclareLaunchArgument('model', default_value='isa_v5', description='of the actuator'),
+        DeclareLaunchArgument('name', default_value='actuator', description='of the node'),
+        DeclareLaunchArgument('namespace', default_value='', description='of the node'),
+        DeclareLaunchArgument(
+            'real_time_factor', default_value='1.0', description='0: as fast as it goes'),
+        Node(
+            package='isa_ros', executable='actuator', name=LaunchConfiguration('name'),
+            namespace=LaunchConfiguration('namespace'), output='screen',
+            parameters=[{
+                'model': LaunchConfiguration('model'),
+                'real_time_factor': ParameterValue(
+                    LaunchConfiguration('real_time_factor'), value_type=float),
+            }])])

@@ -1,0 +1,53 @@
+"""One run of lockstep nodes: every actuator of a configuration, and the coordinator."""
+
+from isa_ros.config import load_run
+from isa_ros.paths import CONFIG, find, SCENARIOS
+from isa_ros.processes import Process, run_processes
+from launch import LaunchContext, LaunchDescription
+from launch.actions import DeclareLaunchArgument, OpaqueFunction, Shutdown
+from launch.substitutions import LaunchConfiguration
+from launch_ros.actions import Node
+from launch_ros.parameter_descriptions import ParameterValue
+
+ARGUMENTS = {
+    'config': ('leg.yaml', 'a run file, or a shipped one by name'),
+    'scenario': ('', 'what is commanded: a file, or a shipped one by name; empty: nothing'),
+    'out': ('', 'directory of the bag; empty: a new one in runs/'),
+    'duration': ('0.0', 'simulated time in s; 0: that of the scenario, else until Ctrl-C'),
+    'in_process': ('false', 'all nodes in one process: faster, and the same bytes in the bag'),
+    'real_time_factor': ('0.0', 'not faster than this times real time; 0: as fast as it goes'),
+    'namespace': ('', 'of all nodes'),
+}
+
+
+def generate_launch_description() -> LaunchDescription:
+    """Return the arguments and the nodes."""
+    return LaunchDescription([
+        *(DeclareLaunchArgument(name, default_value=default, description=description)
+          for name, (default, description) in ARGUMENTS.items()),
+        OpaqueFunction(function=_nodes)])
+
+
+def _nodes(context: LaunchContext) -> list[Node]:
+    values = {name: LaunchConfiguration(name).perform(context) for name in ARGUMENTS}
+    config = find(values['config'], CONFIG)
+    scenario = find(values['scenario'], SCENARIOS) if values['scenario'] else None
+    options = {
+        'out': values['out'],
+        'duration': float(values['duration']),
+        'in_process': values['in_process'].lower() in ('true', '1'),
+        'real_time_factor': float(values['real_time_factor'])}
+    return [_node(process, values['namespace'])
+            for process in run_processes(load_run(config), config, scenario, options)]
+
+
+def _node(process: Process, namespace: str) -> Node:
+    is_coordinator = process.executable == 'coordinator'
+    return Node(
+        package='isa_ros', executable=process.executable, name=process.name,
+        namespace=namespace, output='screen',
+        parameters=[{
+            key: ParameterValue(value, value_type=type(value))
+            for key, value in process.parameters}],
+        # The end of the run is the end of its actuators.
+        on_exit=[Shutdown(reason='the run is over')] if is_coordinator else None)
