@@ -15,7 +15,7 @@ from isa_ros.load.leg_motion import leg_rates, N_STATES, shifted
 from isa_ros.load.leg_sheet import leg_records
 from isa_ros.load.linkage import actuator_coordinate
 from isa_ros.plant.plant import plant_rates, read_sensors, stop_spool
-from isa_ros.reu.cascade import cascade_step, REU_STATE
+from isa_ros.reu.cascade import cascade_step, is_due, REU_STATE
 from isa_ros.timebase import PLANT_STEP, PLANT_STEP_NS
 import numpy as np
 
@@ -106,11 +106,13 @@ def run(n_rows, steps_per_row, command_steps, release_step, commands, y0, pressu
                     setpoint = reus[j].setpoint
                     setpoint.position, setpoint.velocity, setpoint.effort = c[0], c[1], c[2]
                     setpoint.stiffness, setpoint.damping = c[3], c[4]
-                if (step - reu.offset_steps) % reu.current_steps == 0:
+                if is_due(step, reu.current_steps, reu.offset_steps):
                     read_sensors(bodies[0][j].plant, x, r * y[j + 5], actuators[j].plant,
                                  reus[j].measured)
                     cascade_step(step, reu, reus[j])
-                references[j] = reus[j].current_reference
+                if is_due(step, reu.current_steps, reu.offset_steps + reu.delay_steps):
+                    reus[j].current_output = reus[j].current_reference
+                references[j] = reus[j].current_output
             y, w = system_step(PLANT_STEP, bodies, flat, rates, flat_rates, y, w, references,
                                pressures, actuators, step < release_step, body, linkages, ground)
         m = leg_terms(y[0], y[1], y[2], y[3], y[4], y[5], y[6], y[7], body)
