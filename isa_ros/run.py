@@ -7,18 +7,18 @@ import os
 from pathlib import Path
 
 from isa_ros.actuator import Timing
-from isa_ros.bag.metadata import FILE_NAME, Topic
+from isa_ros.bag.metadata import FILE_NAME
 from isa_ros.bag.provenance import installed_versions, Provenance
 from isa_ros.bag.writer import BagWriter
 from isa_ros.config import load_run
-from isa_ros.coordinator import Coordinator, Order, Plan, Transport
+from isa_ros.coordinator import Coordinator, Plan, Transport
 from isa_ros.errors import BagError
 from isa_ros.pacing import Pace, Progress, ProgressMeter
 from isa_ros.run_config import RunConfig
 from isa_ros.scenario import idle, load_scenario, Scenario
-from isa_ros.shared_load import CLOCK_TOPIC, SharedLoad
+from isa_ros.shared_load import SharedLoad
 from isa_ros.stopping import StopRequest
-from msg_adapters import actuator_messages
+from isa_ros.topics import topics_of
 
 RUNS = Path('runs')
 JOIN_TIMEOUT_S = 30.0
@@ -143,17 +143,6 @@ def record(
         Coordinator(
             plan, order, transport, load, bag, pace=session.pace,
             progress=ProgressMeter(duration_ns, report), should_stop=should_stop).run(first)
-
-
-def topics_of(run: RunConfig, load: SharedLoad) -> tuple[Order, list[Topic]]:
-    """Return the canonical order of a run's topics, and the topics in it."""
-    sources = [
-        *([(f'/{actuator.name}/{suffix}', type_) for suffix, type_ in actuator_messages.TOPICS]
-          for actuator in run.actuators),
-        [CLOCK_TOPIC], list(load.topics)]
-    types = dict(topic for source in sources for topic in source)
-    order = Order([[name for name, _ in source] for source in sources])
-    return order, [Topic(name, types[name]) for name in order.topics]
 
 
 def provenance(session: Session) -> Provenance:

@@ -22,12 +22,13 @@ from isa_ros.config import load_run
 from isa_ros.default_actuator import default_actuator, DEFAULT_TIMING
 from isa_ros.pacing import Progress
 from isa_ros.paths import CONFIG, find, SCENARIOS
-from isa_ros.run import bringup, prepare, provenance, Request, topics_of
+from isa_ros.run import bringup, prepare, provenance, Request
 from isa_ros.scenario import load_scenario
 from isa_ros.shared_load import SharedLoad
 from isa_ros.signals import LOAD_PORT, LOAD_REPLY
 from isa_ros.stepping import SteppedActuator
 from isa_ros.timebase import NS_PER_SECOND, PLANT_STEP
+from isa_ros.topics import topics_of
 import numpy as np
 
 REPEATS = 7

@@ -17,10 +17,10 @@ from isa_ros.coordinator import (
     Coordinator, Interrupted, Messages, Plan, Recorder, Records)
 from isa_ros.errors import BagError, SetpointError
 from isa_ros.pacing import Pace, ProgressMeter
-from isa_ros.run import topics_of
 from isa_ros.run_config import ActuatorConfig, RunConfig
 from isa_ros.shared_load import SharedLoad
 from isa_ros.stepping import LocalTransport, SteppedActuator
+from isa_ros.topics import topics_of
 from msg_adapters.setpoint import applied_to_command
 import numpy as np
 

@@ -1,5 +1,6 @@
 """The recorder: what other readers make of its bags, determinism, loss, and refusals."""
 
+from contextlib import contextmanager, ExitStack
 import hashlib
 from pathlib import Path
 import resource
@@ -200,34 +201,37 @@ def test_kill_leaves_all_but_the_last_500_ticks(tmp_path):
     assert bag.provenance == PROVENANCE
 
 
-@pytest.fixture
-def limited_files():
-    """Return a function that bounds the size of files, as a full disk does."""
+@contextmanager
+def limited_files(size):
+    """Bound the size of files, as a full disk does; not one moment longer than the block."""
     soft, hard = resource.getrlimit(resource.RLIMIT_FSIZE)
     handler = signal.signal(signal.SIGXFSZ, signal.SIG_IGN)
-    yield lambda size: resource.setrlimit(resource.RLIMIT_FSIZE, (size, hard))
-    resource.setrlimit(resource.RLIMIT_FSIZE, (soft, hard))
-    signal.signal(signal.SIGXFSZ, handler)
+    resource.setrlimit(resource.RLIMIT_FSIZE, (size, hard))
+    try:
+        yield
+    finally:
+        resource.setrlimit(resource.RLIMIT_FSIZE, (soft, hard))
+        signal.signal(signal.SIGXFSZ, handler)
 
 
-def test_full_disk_is_a_run_error_and_leaves_a_readable_bag(tmp_path, limited_files):
+def test_full_disk_is_a_run_error_and_leaves_a_readable_bag(tmp_path):
     writer = BagWriter(tmp_path / 'rig', TOPICS, PROVENANCE)
-    limited_files(1_000_000)
-    with pytest.raises(RunError, match=r'rig_0.mcap: cannot record, File too large'):
-        for tick in range(2000):
+    with limited_files(1_000_000):
+        with pytest.raises(RunError, match=r'rig_0.mcap: cannot record, File too large'):
+            for tick in range(2000):
+                writer.write_tick(tick * STEP_NS, tick, tick_messages(tick))
+        with pytest.raises(RunError, match='cannot record'):
             writer.write_tick(tick * STEP_NS, tick, tick_messages(tick))
-    with pytest.raises(RunError, match='cannot record'):
-        writer.write_tick(tick * STEP_NS, tick, tick_messages(tick))
-    writer.close()
+        writer.close()
     bag = Bag(tmp_path / 'rig')
     assert bag.is_whole
     assert [t.sequence for t in bag.ticks()] == list(range(tick + 1 - CHUNK_TICKS))
 
 
-def test_error_of_the_run_is_not_replaced_by_one_of_closing(tmp_path, limited_files):
-    with pytest.raises(KeyError):
+def test_error_of_the_run_is_not_replaced_by_one_of_closing(tmp_path):
+    with ExitStack() as limit, pytest.raises(KeyError):
         with BagWriter(tmp_path / 'rig', TOPICS, PROVENANCE):
-            limited_files(100)
+            limit.enter_context(limited_files(100))
             raise KeyError('the run')
 
 
