@@ -15,6 +15,7 @@ from isa_ros.nodes.qos import LOCKSTEP
 from rclpy.experimental.events_executor import EventsExecutor
 from rclpy.impl.implementation_singleton import rclpy_implementation as _rclpy
 from rclpy.node import Node
+from rclpy.serialization import deserialize_message
 from rclpy.service import Service
 from rclpy.subscription import Subscription
 from std_msgs.msg import UInt8MultiArray
@@ -85,8 +86,9 @@ class DirectServer:
     def serve(self) -> None:
         """Run the callbacks of everything that has arrived; do not wait."""
         for take_message, message_type, callback in self._subscriptions:
-            while (taken := take_message(message_type, False)) is not None:
-                callback(taken[0])
+            # As bytes: an empty take would cost a message object all the same.
+            while (taken := take_message(message_type, True)) is not None:
+                callback(deserialize_message(taken[0], message_type))
         for take_request, service_type, service in self._services:
             while True:
                 request, header = take_request(service_type.Request)
