@@ -56,7 +56,8 @@ class SmartActuator:
     """
     Valve, oil, piston or rotor, sensors and REU of one actuator.
 
-    Before the first setpoint it holds the position it measured at t = 0, enabled.
+    Before the first setpoint it holds the position it measured at t = 0, enabled. Equal
+    `digest`, equal parameters.
     """
 
     def __init__(self, config: ActuatorConfig, timing: Timing) -> None:
@@ -88,15 +89,15 @@ class SmartActuator:
         self._reply, self._sample = _record(reply), _record(sample)
         self._port = _record(self._port_rows)
         self._pending, self._applied = _record(self._pending_rows), _record(self._applied_rows)
+        self.digest = self._hash(constants)
         self.start(config.initial_position, static_force(config.load), 20.7e6, 0.0)
 
-    @property
-    def digest(self) -> str:
+    def _hash(self, constants: np.ndarray) -> str:
         """Return a hash of every resolved parameter: equal digests, equal actuators."""
-        constants = self._constants.tobytes() + self._port_rows.tobytes()
-        gains = self._config.sheet.reu.position
-        text = f'{self._timing} {self._is_shared} {gains.stiffness!r} {gains.damping!r}'
-        return hashlib.sha256(constants + text.encode()).hexdigest()[:16]
+        own = self._config
+        gains = own.sheet.reu.position
+        text = f'{self._timing} {own.load} {gains.stiffness!r} {gains.damping!r}'
+        return hashlib.sha256(constants.tobytes() + text.encode()).hexdigest()[:16]
 
     def start(
             self, position: float, force: float,
