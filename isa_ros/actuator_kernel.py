@@ -96,6 +96,15 @@ def body_steps(n, h, current_reference, port, actuator, bodies, rates, y, k):
 
 
 @kernel
+def square_roots(n):
+    """Take ``n`` square roots, each of the last: what `isa bench` holds a plant step against."""
+    x = 2.0
+    for _ in range(n):
+        x = math.sqrt(x + 1.0)
+    return x
+
+
+@kernel
 def write_sample(measured, plant, reu, sample):
     """Fill one `SAMPLE` from what the sensors read and the loops hold."""
     sample.position = measured.position

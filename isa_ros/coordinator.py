@@ -12,7 +12,7 @@ from dataclasses import dataclass
 from typing import NamedTuple, Protocol
 
 from isa_ros.errors import IsaError
-from isa_ros.pacing import Pace, ProgressMeter
+from isa_ros.pacing import Laps, Pace, ProgressMeter
 from isa_ros.signals import COMMAND, LOAD_REPLY
 import numpy as np
 from numpy.typing import NDArray
@@ -162,8 +162,9 @@ class Coordinator:
     def __init__(
             self, plan: Plan, order: Order, transport: Transport, load: SharedLoad,
             recorder: Recorder, *, pace: Pace, progress: ProgressMeter,
-            should_stop: Callable[[], bool]) -> None:
+            should_stop: Callable[[], bool], laps: Laps | None = None) -> None:
         self._plan = plan
+        self._lap: Callable[[str], None] = _no_lap if laps is None else laps.lap
         self._order = order
         self._transport = transport
         self._load = load
@@ -208,14 +209,22 @@ class Coordinator:
             self._progress.end(self.ticks * self._plan.step_ns)
 
     def _tick(self, tick: int) -> None:
+        self._lap('between ticks')
         self._commands['kinds'] = 0
         self._plan.commands(tick, self._commands)
+        ports = self._load.ports()
+        self._lap('commands and ports')
         clock = self._publish_clock(tick + 1)
-        self._transport.send(tick, self._load.ports(), self._commands)
+        self._transport.send(tick, ports, self._commands)
+        self._lap('clock and step out')
         self._record()
+        self._lap('recorder')
         answers = self._transport.receive(self._replies)
+        self._lap('actuators')
         self._load.advance(self._replies)
+        self._lap('leg and supply')
         self._end_tick(tick + 1, clock, answers)
+        self._lap('messages of the leg')
 
     def _publish_clock(self, sequence: int) -> bytes:
         clock = self._load.clock(sequence * self._plan.step_ns)
@@ -237,3 +246,7 @@ class Coordinator:
     def _stopped(self) -> str:
         t = self.ticks * self._plan.step_ns * 1e-9
         return f'stopped at t = {t:.6f} s after {self.ticks} ticks'
+
+
+def _no_lap(phase: str) -> None:
+    """Measure nothing."""

@@ -59,6 +59,22 @@ class Pace:
             self._sleep(min(left, SLICE_S))
 
 
+class Laps:
+    """Host time that each phase of the ticks has taken, for whoever measures it."""
+
+    def __init__(self, now: Callable[[], float] = time.perf_counter) -> None:
+        self.spent: dict[str, float] = {}
+        """Seconds by phase."""
+        self._now = now
+        self._last = now()
+
+    def lap(self, phase: str) -> None:
+        """Charge the time since the last call to ``phase``."""
+        now = self._now()
+        self.spent[phase] = self.spent.get(phase, 0.0) + now - self._last
+        self._last = now
+
+
 class ProgressMeter:
     """Report the progress of a run of ``duration_ns`` (None: open end) now and then."""
 

@@ -13,7 +13,7 @@ from isa_ros.bag.writer import BagWriter
 from isa_ros.config import load_run
 from isa_ros.coordinator import Coordinator, Plan, Transport
 from isa_ros.errors import BagError
-from isa_ros.pacing import Pace, Progress, ProgressMeter
+from isa_ros.pacing import Laps, Pace, Progress, ProgressMeter
 from isa_ros.run_config import RunConfig
 from isa_ros.scenario import idle, load_scenario, Scenario
 from isa_ros.shared_load import SharedLoad
@@ -42,6 +42,8 @@ class Request:
     in_process: bool = False
     namespace: str = ''
     join_timeout_s: float = JOIN_TIMEOUT_S
+    laps: Laps | None = None
+    """Takes the host time of every phase of the ticks."""
 
 
 @dataclass(frozen=True)
@@ -142,7 +144,8 @@ def record(
     with BagWriter(session.out, topics, provenance(session), session.request.overwrite) as bag:
         Coordinator(
             plan, order, transport, load, bag, pace=session.pace,
-            progress=ProgressMeter(duration_ns, report), should_stop=should_stop).run(first)
+            progress=ProgressMeter(duration_ns, report), should_stop=should_stop,
+            laps=session.request.laps).run(first)
 
 
 def provenance(session: Session) -> Provenance:

@@ -1,7 +1,7 @@
 """Host time: pace and progress, on a clock of the test's own."""
 
 from isa_ros.errors import ConfigError
-from isa_ros.pacing import Pace, Progress, ProgressMeter, SLICE_S
+from isa_ros.pacing import Laps, Pace, Progress, ProgressMeter, SLICE_S
 import pytest
 
 
@@ -93,3 +93,12 @@ def test_open_end_has_no_time_left():
     host.now += 1.0
     meter.update(1_000_000_000)
     assert reports == [Progress(1_000_000_000, 1.0, None, False)]
+
+
+def test_laps_charge_the_time_since_the_last_one():
+    """Host time by phase, summed over the ticks."""
+    clock = iter([0.0, 1.0, 3.0, 3.5, 7.5])
+    laps = Laps(now=lambda: next(clock))
+    for phase in ('send', 'wait', 'send', 'wait'):
+        laps.lap(phase)
+    assert laps.spent == {'send': 1.5, 'wait': 6.0}

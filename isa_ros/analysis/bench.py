@@ -6,6 +6,7 @@ A ratio holds when the machine's speed drifts; a time alone is this machine's, n
 
 from collections.abc import Callable, Sequence
 from dataclasses import asdict, dataclass
+from itertools import count, islice
 import json
 from multiprocessing import get_context
 from multiprocessing.connection import Connection
@@ -20,7 +21,7 @@ from isa_ros.actuator_sheet import actuator_record
 from isa_ros.bag.writer import BagWriter
 from isa_ros.config import load_run
 from isa_ros.default_actuator import default_actuator, DEFAULT_TIMING
-from isa_ros.pacing import Progress
+from isa_ros.pacing import Laps, Progress
 from isa_ros.paths import CONFIG, find, SCENARIOS
 from isa_ros.run import bringup, prepare, provenance, Request
 from isa_ros.scenario import load_scenario
@@ -33,6 +34,7 @@ import numpy as np
 
 REPEATS = 7
 PLANT_STEPS = 20_000
+ROOTS = 40               # in a plant step
 TICKS = 500
 RUN_SECONDS = 3.0       # simulated time of each lockstep run
 WORKERS = 3             # of the pipe floor, as many as the leg has actuators
@@ -75,8 +77,14 @@ def seconds(work: Callable[[], object], per: int) -> float:
 
 
 def plant_rows() -> list[Row]:
-    """Measure plant alone and plant with REU, on one core, against real time."""
-    rows = []
+    """
+    Measure plant alone and plant with REU on one core, against real time.
+
+    The machine's own speed stands beside them: the 40 square roots of a plant step (four
+    evaluations, five orifices, two each), one after the other.
+    """
+    roots = seconds(lambda: kernels.square_roots(PLANT_STEPS * ROOTS), PLANT_STEPS)
+    rows = [Row(f'floor: {ROOTS} square roots', roots * 1e6, 'us', 'itself', 1.0)]
     for model in ('smart_manifold', 'isa_v5'):
         config = default_actuator(model, model)
         bodies, rates = kernels.scratch()
@@ -87,8 +95,10 @@ def plant_rows() -> list[Row]:
             lambda: kernels.body_steps(
                 PLANT_STEPS, PLANT_STEP, 0.0, port[0], constants[0], bodies, rates, *flats),
             PLANT_STEPS)
-        rows.append(Row(f'{model}: plant, a step of 20 us', step * 1e6, 'us',
-                        'real time', PLANT_STEP / step))
+        rows += [
+            Row(f'{model}: plant, a step of 20 us', step * 1e6, 'us', 'real time',
+                PLANT_STEP / step),
+            Row(f'{model}: plant, the same', step * 1e6, 'us', 'square roots', roots / step)]
         actuator = SmartActuator(config, DEFAULT_TIMING)
 
         def ticks(actuator: SmartActuator = actuator) -> None:
@@ -142,48 +152,62 @@ def tick_parts() -> list[Row]:
 
 
 def _recorder_seconds(load: SharedLoad, stepped: Sequence[SteppedActuator]) -> float:
-    request = Request(
-        config=find('leg.yaml', CONFIG), scenario=find('drop.yaml', SCENARIOS),
-        out=Path(tempfile.mkdtemp()) / 'bag')
-    session = prepare(request)
-    order, topics = topics_of(session.run, load)
-    sources = [s.advance(None) for s in stepped] + [[load.clock(0)], load.messages(0)]
-    messages = order.merge(sources)
-    with BagWriter(session.out, topics, provenance(session)) as bag:
-        count = iter(range(1_000_000_000))
+    """Return the time of one tick's 22 messages in the recorder, in s."""
+    with tempfile.TemporaryDirectory() as directory:
+        session = prepare(_request(Path(directory)))
+        order, topics = topics_of(session.run, load)
+        messages = order.merge(
+            [*(actuator.advance(None) for actuator in stepped), [load.clock(0)],
+             load.messages(0)])
+        ticks = count()
+        with BagWriter(session.out, topics, provenance(session)) as bag:
+            def work() -> None:
+                for tick in islice(ticks, TICKS):
+                    bag.write_tick(tick * session.run.step_ns, tick, messages)
+            return seconds(work, TICKS)
 
-        def work() -> None:
-            for _ in range(TICKS):
-                k = next(count)
-                bag.write_tick(k * 1_000_000, k, messages)
-        return seconds(work, TICKS)
+
+def _request(directory: Path, in_process: bool = True, laps: Laps | None = None) -> Request:
+    """Return the leg's drop, recorded below a directory."""
+    return Request(
+        config=find('leg.yaml', CONFIG), scenario=find('drop.yaml', SCENARIOS),
+        out=directory / 'bag', duration_s=RUN_SECONDS, in_process=in_process, laps=laps)
 
 
 def lockstep_rows() -> list[Row]:
-    """Measure the leg's drop with recording, in processes and in one, and the pipe floor."""
+    """
+    Measure the leg's drop with recording, in processes and in one, and the pipe floor.
+
+    Below each, where the coordinator spends a tick; in processes the recorder works while the
+    actuators do, and ``actuators`` is the wait for them.
+    """
     pipe = pipe_exchange()
     rows = [Row(f'floor: {WORKERS} workers on pipes, no work', pipe * 1e6, 'us', 'itself', 1.0)]
     for in_process in (False, True):
-        tick = 1e-3 / leg_run(in_process)
+        factor, phases = leg_run(in_process)
+        tick = 1e-3 / factor
         name = 'one process' if in_process else 'a process per actuator'
         rows += [
-            Row(f'leg, recording, {name}', 1.0 / tick, 'ticks/s', 'real time', 1e-3 / tick),
+            Row(f'leg, recording, {name}', 1.0 / tick, 'ticks/s', 'real time', factor),
             Row(f'leg, recording, {name}: a tick', tick * 1e6, 'us', 'pipe floor', pipe / tick)]
+        rows += [Row(f'  {phase}', spent * 1e6, 'us', 'that tick', spent / tick)
+                 for phase, spent in phases.items()]
     return rows
 
 
-def leg_run(in_process: bool) -> float:
-    """Return the real-time factor of the leg's drop, start-up not counted."""
+def leg_run(in_process: bool) -> tuple[float, dict[str, float]]:
+    """Return the real-time factor of the leg's drop without start-up, and s a tick by phase."""
     factors: list[float] = []
+    laps = Laps()
 
     def report(progress: Progress) -> None:
         if progress.is_last:
             factors.append(progress.real_time_factor)
     with tempfile.TemporaryDirectory() as directory:
-        bringup(Request(
-            config=find('leg.yaml', CONFIG), scenario=find('drop.yaml', SCENARIOS),
-            out=Path(directory) / 'bag', duration_s=RUN_SECONDS, in_process=in_process), report)
-    return factors[0]
+        bringup(_request(Path(directory), in_process, laps), report)
+    ticks = RUN_SECONDS * 1e3
+    return factors[0], {
+        phase: spent / ticks for phase, spent in laps.spent.items() if phase != 'between ticks'}
 
 
 def pipe_exchange() -> float:
