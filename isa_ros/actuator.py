@@ -155,7 +155,7 @@ class SmartActuator:
         A `COMMAND` row with the gains in force and the enable state; at t = 0 the state the
         actuator starts with.
         """
-        return self._applied if self._applied.kinds else None
+        return self._applied if self._applied_rows['kinds'][0] else None
 
     def accept(self, command: np.void) -> None:
         """
