@@ -24,7 +24,6 @@ class Coil(Parameters):
     supply_voltage: float = parameter('amplifier saturation', 'V', gt=0.0, le=100.0)
     resistance: float = parameter('coil resistance', 'ohm', gt=0.0, le=1.0e5)
     inductance: float = parameter('coil inductance', 'H', gt=0.0, le=100.0)
-    current_limit_ma: float = parameter('largest amplifier current', 'mA', gt=0.0, le=100.0)
     parallel_coils: float = parameter(
         'amplifier current per series-scale current', '1', ge=1.0, le=2.0)
 
