@@ -10,6 +10,7 @@ from isa_ros.config import load_run
 from isa_ros.default_actuator import default_actuator, default_load, DEFAULT_TIMING
 from isa_ros.errors import ConfigError, IsaError
 from isa_ros.nodes.actuator_node import ActuatorNode, Setup
+from isa_ros.nodes.arguments import init_ros
 from isa_ros.nodes.environment import set_defaults
 from isa_ros.nodes.participant import Participant
 from isa_ros.nodes.standalone import run_alone
@@ -17,11 +18,13 @@ from isa_ros.run_config import RunConfig
 from isa_ros.scenario import load_scenario
 from isa_ros.stopping import end_with_parent, StopRequest
 from rcl_interfaces.msg import ParameterDescriptor
-import rclpy
 from rclpy.node import Node
 from rclpy.parameter_service import ParameterService
-from rclpy.signals import SignalHandlerOptions
 from rclpy.utilities import try_shutdown
+
+USAGE = (
+    'one actuator: ros2 run isa_ros actuator --ros-args -p model:=isa_v5 '
+    '[-r __node:=NAME] [-p real_time_factor:=1.0] [-p config_file:=leg.yaml -p lockstep:=true]')
 
 
 def run(args: Sequence[str] | None, model: str) -> int:
@@ -33,10 +36,8 @@ def run(args: Sequence[str] | None, model: str) -> int:
     set_defaults()
     with StopRequest() as should_stop:
         end_with_parent()
-        rclpy.init(
-            args=None if args is None else list(args),
-            signal_handler_options=SignalHandlerOptions.NO)
         try:
+            init_ros(args, USAGE)
             _run(model, should_stop)
         except IsaError as error:
             print(f'actuator: {error}', file=sys.stderr)

@@ -7,6 +7,7 @@ from typing import Any
 
 from isa_ros.coordinator import Messages
 from isa_ros.errors import ConfigError, IsaError
+from isa_ros.nodes.arguments import init_ros
 from isa_ros.nodes.domain import sole_coordinator
 from isa_ros.nodes.environment import set_defaults
 from isa_ros.nodes.prepared import PreparedPublishers
@@ -15,13 +16,14 @@ from isa_ros.shared_load import CLOCK_TOPIC
 from isa_ros.stopping import StopRequest
 from isa_ros.terminal import terminal_report
 from rcl_interfaces.msg import ParameterDescriptor
-import rclpy
 from rclpy.node import Node
-from rclpy.signals import SignalHandlerOptions
 from rclpy.utilities import try_shutdown
 
 NAME = 'coordinator'
 _OWN = f'/{NAME}/'
+USAGE = (
+    'the coordinator of a run: ros2 run isa_ros coordinator --ros-args -p config_file:=leg.yaml '
+    '[-p scenario_file:=drop.yaml] [-p out:=DIR] [-p duration:=S] [-p in_process:=true]')
 
 
 class CoordinatorNode(Node):
@@ -97,20 +99,20 @@ def _main(args: Sequence[str] | None) -> int:
     from isa_ros.nodes.session import coordinate, coordinate_locally
     set_defaults()
     with StopRequest() as should_stop:
-        rclpy.init(
-            args=None if args is None else list(args),
-            signal_handler_options=SignalHandlerOptions.NO)
-        node = CoordinatorNode()
         try:
-            session = prepare(node.request())
-            run = coordinate_locally if session.request.in_process else coordinate
-            with sole_coordinator():
-                run(node, session, terminal_report(), should_stop)
+            init_ros(args, USAGE)
+            node = CoordinatorNode()
+            try:
+                session = prepare(node.request())
+                run = coordinate_locally if session.request.in_process else coordinate
+                with sole_coordinator():
+                    run(node, session, terminal_report(), should_stop)
+            finally:
+                node.destroy_node()
         except IsaError as error:
             print(f'{NAME}: {error}', file=sys.stderr)
             return error.exit_code
         finally:
-            node.destroy_node()
             try_shutdown()
     return 0
 
