@@ -62,9 +62,12 @@ def test_second_coordinator_is_refused_and_the_first_goes_on(domain, tmp_path, i
 def test_two_nodes_of_one_name_are_refused(domain, tmp_path, observer):
     """Nothing says which of the two is the actuator."""
     arguments = {'config_file': RIG, 'lockstep': True}
-    with actuator(tmp_path / 'a.log', 'rotor', **arguments), \
-            actuator(tmp_path / 'b.log', 'rotor', **arguments):
-        wait_for(lambda: observer.count_publishers(ACKNOWLEDGEMENT_TOPIC) == 2, 'both')
+    with actuator(tmp_path / 'a.log', 'rotor', **arguments) as a, \
+            actuator(tmp_path / 'b.log', 'rotor', **arguments) as b:
+        def are_there() -> bool:
+            assert a.is_running() and b.is_running(), a.errors + b.errors
+            return observer.count_publishers(ACKNOWLEDGEMENT_TOPIC) == 2
+        wait_for(are_there, 'both')
         with coordinator(tmp_path / 'c.log', config_file=RIG, out=tmp_path / 'bag') as run:
             assert run.exit_code() == 2
     assert 'rotor: two nodes of this name answer' in run.errors
