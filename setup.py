@@ -41,12 +41,14 @@ setup(
     ],
     # The ROS wheels never stand here: a machine with apt's ROS must not pull them.
     install_requires=[
+        'lz4>=4.0',
         'matplotlib>=3.6',
         'mcap>=1.1',
         'numba>=0.58',
         'numpy>=1.26',
         'PyYAML>=6.0',
         'scipy>=1.11',
+        'zstandard>=0.19',
     ],
     extras_require={'test': ['hypothesis', 'pytest']},
     zip_safe=False,
