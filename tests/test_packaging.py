@@ -54,7 +54,8 @@ def test_an_installed_package_finds_its_data(tmp_path: Path) -> None:
     pytest.importorskip('setuptools', minversion='70.1')  # the first one that makes wheels
     subprocess.run(
         [sys.executable, '-m', 'pip', 'install', '--quiet', '--no-deps', '--no-build-isolation',
-         '--no-index', '--disable-pip-version-check', '--prefix', str(tmp_path / 'prefix'),
+         '--no-index', '--disable-pip-version-check', '--ignore-installed',  # leaves the clone's
+         '--prefix', str(tmp_path / 'prefix'),
          str(copy_of_clone(tmp_path))], check=True, capture_output=True, timeout=120)
     purelib = next((tmp_path / 'prefix').glob('lib/python3*/site-packages'))
     program = (
