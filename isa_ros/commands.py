@@ -9,26 +9,40 @@ from collections.abc import Iterator
 from itertools import count
 from pathlib import Path
 import sys
+from typing import TYPE_CHECKING
 
 from isa_ros.errors import BagError
 from isa_ros.paths import CONFIG, find, SCENARIOS
+
+if TYPE_CHECKING:
+    from isa_ros.run import Request
 
 RUNS = Path('runs')  # where a demo goes that says nothing else
 
 
 def demo(options: Namespace) -> bool:
     """Drop the leg, four processes, and draw the report of it."""
-    from isa_ros.run import bringup as run_bringup, Request
-    from isa_ros.terminal import terminal_report
+    from isa_ros.run import Request
     out = options.out or next(path for path in _demo_directories() if not path.exists())
     if out.exists():
-        raise BagError(f'{out} exists, must not')
-    bag = run_bringup(Request(
+        raise BagError(f'{out} exists, must not; a demo never overwrites')
+    bag = _record(Request(
         config=find('leg.yaml', CONFIG), scenario=find('drop.yaml', SCENARIOS),
-        out=out / 'bag'), terminal_report(sys.stderr))
-    print(bag)
+        out=out / 'bag'))
     _draw(bag, out / 'report.html')
     return True
+
+
+def _record(request: 'Request') -> Path:
+    """Run, and say where the bag is, however the run ends; return its directory."""
+    from isa_ros.run import prepare, run_session
+    from isa_ros.terminal import terminal_report
+    session = prepare(request)
+    try:
+        return run_session(session, terminal_report(sys.stderr))
+    finally:
+        if session.out.exists():
+            print(session.out)
 
 
 def _demo_directories() -> Iterator[Path]:
@@ -39,13 +53,12 @@ def _demo_directories() -> Iterator[Path]:
 
 def bringup(options: Namespace) -> bool:
     """Run and record a configuration."""
-    from isa_ros.run import bringup as run_bringup, Request
-    from isa_ros.terminal import terminal_report
+    from isa_ros.run import Request
     scenario = None if options.scenario is None else find(options.scenario, SCENARIOS)
-    print(run_bringup(Request(
+    _record(Request(
         config=find(options.config, CONFIG), scenario=scenario, out=options.out,
         duration_s=options.duration, real_time_factor=options.real_time_factor,
-        overwrite=options.overwrite, in_process=options.in_process), terminal_report(sys.stderr)))
+        overwrite=options.overwrite, in_process=options.in_process))
     return True
 
 

@@ -79,6 +79,8 @@ def alternatives(name: str, names: Iterable[str]) -> str:
     stem = _UNIT_SUFFIX.sub('', name)
     for known in names:
         if _UNIT_SUFFIX.sub('', known) == stem:
+            if known == stem:
+                return f'the key is {known}, in SI'
             return f'the key is {known} (the unit belongs to the key)'
     near = difflib.get_close_matches(name, names, n=3, cutoff=0.6)
     if near:

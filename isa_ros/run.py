@@ -97,7 +97,7 @@ def _candidates(name: str) -> Iterator[Path]:
 def _check_output(out: Path, overwrite: bool) -> None:
     if out.exists():
         if not overwrite:
-            raise BagError(f'{out} exists, must not (or ask to overwrite it)')
+            raise BagError(f'{out} exists, must not; --overwrite replaces the bag in it')
         if not out.is_dir() or (any(out.iterdir()) and not (out / FILE_NAME).is_file()):
             raise BagError(f'{out} holds no bag ({FILE_NAME}), so it is not overwritten')
     parent = next(path for path in [out, *out.absolute().parents] if path.exists())
@@ -123,11 +123,16 @@ def bringup(request: Request, report: Report | None = None) -> Path:
         Stopped by a signal; the bag is readable.
 
     """
-    session = prepare(request)
+    return run_session(prepare(request), report)
+
+
+def run_session(session: Session, report: Report | None = None) -> Path:
+    """Run what was prepared; as `bringup`."""
     # rclpy takes a third of a second to import, which a wrong option should not cost.
     from isa_ros.nodes.session import in_one_process, in_processes
     with StopRequest() as should_stop:
-        (in_one_process if request.in_process else in_processes)(session, report, should_stop)
+        in_one = session.request.in_process
+        (in_one_process if in_one else in_processes)(session, report, should_stop)
     return session.out
 
 

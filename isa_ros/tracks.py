@@ -153,6 +153,7 @@ def _setpoint(tree: Tree, place: Place, actuator: ActuatorConfig) -> Setpoint:
     given.update({f.name: tree[f.name] for f in fields(Setpoint) if f.name in tree})
     if given['position'] == HOLD:
         given['position'] = actuator.initial_position
+    _refuse_far(given['position'], place, actuator)
     return build(Setpoint, written(given, place), place)
 
 
@@ -161,6 +162,15 @@ def _gain(tree: Tree, name: str, place: Place) -> float | None:
         return None
     check(f'{place}.{name}', tree[name], _GAINS[name])
     return float(tree[name])  # type: ignore[arg-type]
+
+
+def _refuse_far(position: Any, place: Place, actuator: ActuatorConfig) -> None:
+    """Refuse an equilibrium a whole stroke beyond the range: most likely another unit."""
+    stroke = actuator.sheet.plant.drive.stroke
+    check(f'{place}.position', position, {
+        'doc': 'at most a stroke beyond the range',
+        'unit': 'rad' if actuator.sheet.is_rotary else 'm',
+        'bounds': {'ge': -stroke, 'le': 2.0 * stroke}})
 
 
 def event_tree(event: Event, step_ns: int) -> Tree:

@@ -4,6 +4,7 @@ Send one position setpoint to an actuator node and print what took effect.
     python scripts/move_actuator.py NAME POSITION     (m, or rad for a rotary actuator)
 """
 
+import argparse
 import sys
 import time
 
@@ -16,12 +17,20 @@ PATIENCE_S = 10.0
 
 def main() -> int:
     """Publish once a subscriber is there, wait for the echo."""
-    name, position = sys.argv[1], float(sys.argv[2])
+    parser = argparse.ArgumentParser(description='Send one position setpoint.')
+    parser.add_argument('name')
+    parser.add_argument('position', type=float, help='m, or rad for a rotary actuator')
+    options = parser.parse_args()
+    name, position = options.name, options.position
     rclpy.init()
     node = rclpy.create_node('move_actuator')
     applied: list[JointState] = []
+
+    def on_echo(message: JointState) -> None:
+        if message.position[0] == position:  # not the place it started from
+            applied.append(message)
     node.create_subscription(
-        JointState, f'/{name}/applied_setpoint', applied.append, QoSProfile(depth=10))
+        JointState, f'/{name}/applied_setpoint', on_echo, QoSProfile(depth=10))
     publisher = node.create_publisher(JointState, f'/{name}/setpoint', QoSProfile(depth=1))
     deadline = time.monotonic() + PATIENCE_S
     has_sent = False

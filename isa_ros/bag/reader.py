@@ -184,7 +184,9 @@ def _mcap_file(path: Path) -> Path:
         return path
     files = sorted(path.glob('*.mcap'))
     if len(files) != 1:
+        below = path / 'bag'
+        hint = f'; did you mean {below}?' if not files and below.is_dir() else ''
         raise BagError(
             f'{path} holds {len(files)} MCAP files, must hold one: '
-            f'{", ".join(file.name for file in files) or "none"}')
+            f'{", ".join(file.name for file in files) or "none"}{hint}')
     return files[0]

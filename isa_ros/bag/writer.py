@@ -178,7 +178,7 @@ def _make_directory(directory: Path, overwrite: bool) -> None:
             _remove_bag(directory)
         directory.mkdir(parents=True, exist_ok=overwrite)
     except FileExistsError:
-        raise BagError(f'{directory} exists, must not (or ask to overwrite it)') from None
+        raise BagError(f'{directory} exists, must not, unless asked to overwrite') from None
     except OSError as error:
         raise BagError(f'{directory}: cannot be made, {error.strerror}') from None
 
