@@ -122,6 +122,12 @@ def spool_jerk(reference, spool, valve):
 
 
 @kernel
+def spool_acceleration(reference, spool, velocity, w_n, zeta):
+    """Return w_n^2 (x_r - x) - 2 zeta w_n x'  (V10, equation 7 of the paper), in m/s2."""
+    return w_n * w_n * (reference - spool) - 2.0 * zeta * w_n * velocity
+
+
+@kernel
 def signed_sqrt(dp, delta):
     """
     Return dp / (dp^2 + delta^2)^(1/4)  (V5), in sqrt(Pa).
