@@ -55,6 +55,7 @@ setup(
     entry_points={
         'console_scripts': [
             'actuator = isa_ros.nodes.actuator_node:main',
+            'isa_v2 = isa_ros.nodes.actuator_node:main_isa_v2',
             'isa_v5 = isa_ros.nodes.actuator_node:main_isa_v5',
             'smart_manifold = isa_ros.nodes.actuator_node:main_smart_manifold',
             'coordinator = isa_ros.nodes.coordinator_node:main',

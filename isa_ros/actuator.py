@@ -13,7 +13,7 @@ from isa_ros.actuator_sheet import actuator_record, ActuatorSheet
 from isa_ros.errors import SimulationDiverged
 from isa_ros.load.local import local_port, local_stops, LocalLoad, static_force
 from isa_ros.plant.plant import read_sensors, rest_pressures
-from isa_ros.reu.cascade import MEASURED, REU_STATE
+from isa_ros.reu.cascade import initial_gains, MEASURED, REU_STATE
 from isa_ros.signals import COMMAND, HAS_ENABLE, HAS_SETPOINT, LOAD_PORT, LOAD_REPLY, SAMPLE
 from isa_ros.timebase import FORCE_WINDOWS, PLANT_STEP_NS, steps_in
 import numpy as np
@@ -95,8 +95,7 @@ class SmartActuator:
     def _hash(self, constants: np.ndarray) -> str:
         """Return a hash of every resolved parameter: equal digests, equal actuators."""
         own = self._config
-        gains = own.sheet.reu.position
-        text = f'{self._timing} {own.load} {gains.stiffness!r} {gains.damping!r}'
+        text = f'{self._timing} {own.load} {initial_gains(own.sheet.reu)}'
         return hashlib.sha256(constants.tobytes() + text.encode()).hexdigest()[:16]
 
     def start(
@@ -125,15 +124,17 @@ class SmartActuator:
 
     def _start_loops(self) -> None:
         body, reu = self._body, self._reu
-        gains = self._config.sheet.reu.position
         for measured in (reu.measured, self._read_out):
             self._reply.force = read_sensors(
                 body.plant, body.load.position, body.load.velocity, self._constants.plant,
                 measured)
-        reu.position.position = reu.measured.position
-        reu.force.force = reu.measured.force
+        at, reu.speed.position = reu.measured, reu.measured.position
+        for block, value in (
+                (reu.position, at.position), (reu.force, at.force), (reu.spool, at.spool),
+                (reu.pressure, at.pressure_a - at.pressure_b)):
+            block.measured = value
         reu.setpoint.position = reu.measured.position
-        reu.setpoint.stiffness, reu.setpoint.damping = gains.stiffness, gains.damping
+        reu.setpoint.stiffness, reu.setpoint.damping = initial_gains(self._config.sheet.reu)
         reu.setpoint.is_enabled = 1.0
         kernels.write_sample(self._read_out, body.plant, reu, self._sample)
 

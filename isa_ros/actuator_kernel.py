@@ -9,7 +9,8 @@ import math
 
 from isa_ros.kernel import kernel
 from isa_ros.load.port import load_acceleration, LOAD_STATE, load_stop_force, LOAD_STOPS
-from isa_ros.plant.plant import PLANT, plant_rates, PLANT_STATE, read_sensors, stop_spool
+from isa_ros.plant.plant import PLANT, plant_rates, PLANT_STATE, read_sensors
+from isa_ros.plant.spool import stop_spool
 from isa_ros.reu.cascade import cascade_step, is_due, REU
 from isa_ros.timebase import FORCE_WINDOWS, PLANT_STEP
 import numpy as np
@@ -51,10 +52,10 @@ def state_name(index: int) -> str:
 
 
 @kernel
-def body_rates(tau, y, current_reference, port, actuator, rates):
+def body_rates(tau, y, drive, port, actuator, rates):
     """Write the derivative of one `BODY` into ``rates``."""
     force, q_p, q_t = plant_rates(
-        y.plant, y.load.position, y.load.velocity, current_reference,
+        y.plant, y.load.position, y.load.velocity, drive,
         port.supply_pressure, port.return_pressure, actuator.plant, rates.plant)
     stop = load_stop_force(y.load.position, y.load.velocity, actuator.stops)
     rates.load.position = y.load.velocity
@@ -66,33 +67,33 @@ def body_rates(tau, y, current_reference, port, actuator, rates):
 
 
 @kernel
-def body_step(h, tau, current_reference, port, actuator, bodies, rates, y, k):
+def body_step(h, tau, drive, port, actuator, bodies, rates, y, k):
     """
     Advance ``bodies[0]`` by one classical Runge-Kutta step of ``h`` seconds.
 
     ``bodies[1]`` holds the stage; ``y`` and ``k`` are the flat views of ``bodies``, ``rates``.
     """
-    body_rates(tau, bodies[0], current_reference, port, actuator, rates[0])
+    body_rates(tau, bodies[0], drive, port, actuator, rates[0])
     for j in range(STATE_SIZE):
         y[1, j] = y[0, j] + 0.5 * h * k[0, j]
-    body_rates(tau + 0.5 * h, bodies[1], current_reference, port, actuator, rates[1])
+    body_rates(tau + 0.5 * h, bodies[1], drive, port, actuator, rates[1])
     for j in range(STATE_SIZE):
         y[1, j] = y[0, j] + 0.5 * h * k[1, j]
-    body_rates(tau + 0.5 * h, bodies[1], current_reference, port, actuator, rates[2])
+    body_rates(tau + 0.5 * h, bodies[1], drive, port, actuator, rates[2])
     for j in range(STATE_SIZE):
         y[1, j] = y[0, j] + h * k[2, j]
-    body_rates(tau + h, bodies[1], current_reference, port, actuator, rates[3])
+    body_rates(tau + h, bodies[1], drive, port, actuator, rates[3])
     for j in range(STATE_SIZE):
         value = y[0, j] + h / 6.0 * (k[0, j] + 2.0 * (k[1, j] + k[2, j]) + k[3, j])
         y[0, j] = 0.0 if abs(value) < NOTHING else value
-    stop_spool(bodies[0].plant, actuator.plant)
+    stop_spool(bodies[0].plant.valve, actuator.plant.valve.x_max)
 
 
 @kernel
-def body_steps(n, h, current_reference, port, actuator, bodies, rates, y, k):
-    """Take ``n`` steps of `body_step` under a constant current reference and port."""
+def body_steps(n, h, drive, port, actuator, bodies, rates, y, k):
+    """Take ``n`` steps of `body_step` under a constant drive and port."""
     for i in range(n):
-        body_step(h, i * h, current_reference, port, actuator, bodies, rates, y, k)
+        body_step(h, i * h, drive, port, actuator, bodies, rates, y, k)
 
 
 @kernel
@@ -108,7 +109,7 @@ def square_roots(n):
 def write_sample(measured, plant, reu, sample):
     """Fill one `SAMPLE` from what the sensors read and the loops hold."""
     sample.position = measured.position
-    sample.velocity = reu.position.velocity
+    sample.velocity = reu.speed.velocity
     sample.force = measured.force
     sample.pressure_a = measured.pressure_a
     sample.pressure_b = measured.pressure_b
@@ -116,7 +117,7 @@ def write_sample(measured, plant, reu, sample):
     sample.spool_velocity = plant.valve.velocity
     sample.current = measured.current
     sample.position_reference = reu.setpoint.position
-    sample.force_reference = reu.position.force_reference
+    sample.force_reference = reu.force_reference
     sample.spool_reference = reu.spool_reference
     sample.current_reference = reu.current_reference
 
@@ -130,8 +131,8 @@ def loops_and_plant(step, tau, port, actuator, bodies, rates, y, k, reu_state):
                      actuator.plant, reu_state.measured)
         cascade_step(step, reu, reu_state)
     if is_due(step, reu.current_steps, reu.offset_steps + reu.delay_steps):
-        reu_state.current_output = reu_state.current_reference
-    body_step(PLANT_STEP, tau, reu_state.current_output, port, actuator,
+        reu_state.amplifier = reu_state.drive
+    body_step(PLANT_STEP, tau, reu_state.amplifier, port, actuator,
               bodies, rates, y, k)
 
 

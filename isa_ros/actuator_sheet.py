@@ -3,11 +3,17 @@
 from dataclasses import dataclass
 
 from isa_ros.actuator_kernel import ACTUATOR
+from isa_ros.errors import ConfigError
 from isa_ros.parameter import choice, Parameters
 from isa_ros.plant.chambers import oil_stiffness
+from isa_ros.plant.coil import ExplicitCoil
 from isa_ros.plant.plant import LinearPlant, plant_record, RotaryPlant
-from isa_ros.reu.cascade import Reu, reu_record
+from isa_ros.plant.spool import DirectSpool, PilotedSpool
+from isa_ros.reu.block import Pid
+from isa_ros.reu.cascade import reu_record
+from isa_ros.reu.lead_lag import LeadLag
 from isa_ros.reu.schedule import POINTS
+from isa_ros.reu.wiring import Held, Off, refuse_nonsense, Reu
 import numpy as np
 
 
@@ -16,8 +22,7 @@ class ActuatorSheet(Parameters):
     """Everything that makes one actuator: plant, REU and how the two are wired."""
 
     spool_feedback: str = choice(
-        'electric: the force loop commands the spool; mechanic: it commands the current',
-        'electric', 'mechanic')
+        "the valve's spool sensor; a mechanical feedback has none", 'electric', 'mechanic')
     plant: LinearPlant | RotaryPlant
     reu: Reu
 
@@ -27,34 +32,72 @@ class ActuatorSheet(Parameters):
         return isinstance(self.plant, RotaryPlant)
 
 
-def gain_schedule(plant: np.record, name: str) -> np.ndarray:
+def refuse_wiring(sheet: ActuatorSheet) -> None:
     """
-    Return the factor on the force gains at `POINTS` equal distances, shape (POINTS,)  (R6).
+    Refuse control blocks that do not fit their actuator.
 
-    ``oil_stiffness`` divides by the stiffness the loop works against, the trapped oil in
-    series with the force sensor, relative to its least over the stroke: the gain of the force
-    plant is proportional to it.
+    Raises
+    ------
+    ConfigError
+        A spool block without a spool sensor, a loop that would be closed twice or not at
+        all, or what `refuse_nonsense` refuses.
+
     """
-    if name == 'constant':
-        return np.ones(POINTS)
+    reu, plant = sheet.reu, sheet.plant
+    refuse_nonsense(reu)
+    if sheet.spool_feedback == 'mechanic' and not isinstance(reu.spool, Off):
+        raise ConfigError(
+            f'reu.spool.kind = {_kind(reu.spool)}: a valve with mechanical feedback has no spool '
+            'sensor; set reu.spool.kind: off')
+    if isinstance(plant.spool, PilotedSpool) and isinstance(reu.spool, Held):
+        raise ConfigError(
+            'reu.spool.kind = held and plant.spool.kind = piloted: nobody closes the loop of the '
+            'spool; set reu.spool.kind: pid, or plant.spool.kind: closed_loop')
+    if isinstance(reu.spool, Pid) and not isinstance(plant.spool, (PilotedSpool, DirectSpool)):
+        raise ConfigError(
+            'reu.spool.kind = pid and plant.spool.kind = closed_loop: equation 8 already is the '
+            'closed loop of the spool; set plant.spool.kind: piloted, or reu.spool.kind: held')
+    if isinstance(reu.current, LeadLag) != isinstance(plant.coil, ExplicitCoil):
+        raise ConfigError(
+            f'reu.current.kind = {_kind(reu.current)} and plant.coil.kind = '
+            f'{_kind(plant.coil)}: lead_lag needs an explicit coil, held the closed_loop one')
+
+
+def _kind(part: Parameters) -> str:
+    return {Held: 'held', LeadLag: 'lead_lag', Pid: 'pid', ExplicitCoil: 'explicit'}.get(
+        type(part), 'closed_loop')
+
+
+def force_stiffness(plant: np.record) -> np.ndarray:
+    """
+    Return what the force block works against at `POINTS` equal distances, shape (POINTS,).
+
+    The trapped oil in series with the force sensor, in N/m or Nm/rad.
+    """
     k_s = plant.mechanics.k_s
-    stiffness = np.array([
+    return np.array([
         1.0 / (1.0 / oil_stiffness(s, plant.chambers) + 1.0 / k_s)
         for s in np.linspace(0.0, plant.chambers.stroke, POINTS)])
-    schedule: np.ndarray = stiffness.min() / stiffness
-    return schedule
+
+
+def known_model(plant: np.record, output_per_spool: float) -> tuple[float, ...]:
+    """Return the `LINEARISED` record: what a linearising block knows of its actuator."""
+    oil, valve = plant.chambers, plant.valve
+    return (
+        oil.area_a, oil.area_b, oil.stroke, oil.dead_volume, oil.beta, oil.c_li,
+        valve.k_low, valve.k_high, valve.q_rest, valve.x_dg, valve.x_max, valve.per_root_drop,
+        valve.f_pa, valve.f_at, valve.f_bt, valve.f_pb, output_per_spool)
 
 
 def actuator_record(sheet: ActuatorSheet, offset_steps: int) -> np.ndarray:
     """Return the `ACTUATOR` record of a sheet without load stops, shape (1,)."""
     plant = plant_record(sheet.plant)
-    valve, coil = plant[0].valve, plant[0].coil
-    is_electric = sheet.spool_feedback == 'electric'
+    k_spool = plant[0].valve.k_spool
+    commands_spool = not isinstance(sheet.reu.spool, Off)
     reu = reu_record(
-        sheet.reu, offset_steps, plant[0].chambers.stroke,
-        gain_schedule(plant[0], sheet.reu.force.gain_schedule),
-        spool_per_output=1.0 if is_electric else valve.k_spool,
-        current_per_spool=coil.parallel / valve.k_spool)
+        sheet.reu, offset_steps, plant[0].chambers.stroke, force_stiffness(plant[0]),
+        known_model(plant[0], 1.0 if commands_spool else 1.0 / k_spool),
+        k_spool, plant[0].coil.parallel)
     record = np.zeros(1, ACTUATOR)
     record['plant'], record['reu'] = plant, reu
     return record

@@ -1,5 +1,6 @@
 """The data that comes with the package: actuator models with their presets and loads, legs."""
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -15,12 +16,14 @@ _LEGS = _PACKAGE / 'load' / 'legs'
 
 @dataclass(frozen=True)
 class Model:
-    """One actuator model: its sheet without REU gains, named gain sets, and own loads."""
+    """One actuator model: its sheet without REU gains, gain sets, variants and own loads."""
 
     name: str
     place: Place
     sheet: Section
     presets: dict[str, Section]
+    variants: dict[str, Section]
+    """Other ways to model or to wire it: sections of the sheet in the place of its own."""
     loads: dict[str, Section]
     default_load: str
 
@@ -39,6 +42,24 @@ class Model:
                 f'{where} = {preset!r} is no preset of {self.name}; '
                 f'{alternatives(preset, self.presets)}')
         return merge(self.sheet, {'reu': self.presets[preset]})
+
+    def with_variants(self, section: Section, variants: Sequence[str], where: str) -> Section:
+        """
+        Return a sheet with the sections of variants in the place of its own, in their order.
+
+        Raises
+        ------
+        ConfigError
+            The model has no variant of a name; ``where`` is the key that named it.
+
+        """
+        for variant in variants:
+            if variant not in self.variants:
+                raise ConfigError(
+                    f'{where} = {variant!r} is no variant of {self.name}; '
+                    f'{alternatives(str(variant), self.variants)}')
+            section = merge(section, self.variants[variant])
+        return section
 
 
 def model_names() -> list[str]:
@@ -64,23 +85,27 @@ def actuator_model(name: str, where: str) -> Model:
     path = _packaged(_MODELS, name, where, 'model')
     tree, place = read(path), Place(path.name)
     refuse_unknown(
-        tree, ('model', 'kind', 'spool_feedback', 'plant', 'reu', 'presets', 'loads'), place)
+        tree, ('model', 'kind', 'spool_feedback', 'plant', 'reu', 'presets', 'variants', 'loads'),
+        place)
     sheet = sourced(
         {key: tree[key] for key in ('spool_feedback', 'plant', 'reu') if key in tree}, place)
     plant = sheet.get('plant')
     if isinstance(plant, dict):
         plant['kind'] = Entry(str(tree.get('kind')), str(place / 'kind'), '')
-    presets = {
-        preset: sourced(section_at(below, place / 'presets' / preset), place / 'presets' / preset)
-        for preset, below in section_at(tree.get('presets'), place / 'presets').items()}
     loads = section_at(tree.get('loads'), place / 'loads')
     default = loads.pop('default', None)
     if default not in loads:
         raise ConfigError(f'{place}: loads.default = {default!r}; {alternatives("", loads)}')
     return Model(
-        name, place, sheet, presets, {
-            kind: sourced(section_at(below, place / 'loads' / kind), place / 'loads' / kind)
-            for kind, below in loads.items()}, str(default))
+        name, place, sheet,
+        _sections(section_at(tree.get('presets'), place / 'presets'), place / 'presets'),
+        _sections(section_at(tree.get('variants', {}), place / 'variants'), place / 'variants'),
+        _sections(loads, place / 'loads'), str(default))
+
+
+def _sections(tree: Tree, place: Place) -> dict[str, Section]:
+    return {name: sourced(section_at(below, place / name), place / name)
+            for name, below in tree.items()}
 
 
 def leg_section(name: str, where: str) -> tuple[Section, Place]:

@@ -11,7 +11,7 @@ from pathlib import Path
 import re
 from typing import Any
 
-from isa_ros.actuator_sheet import ActuatorSheet
+from isa_ros.actuator_sheet import ActuatorSheet, refuse_wiring
 from isa_ros.catalogue import actuator_model, leg_section, Model
 from isa_ros.errors import ConfigError, ParameterError
 from isa_ros.load.leg_sheet import JOINTS, LegSheet
@@ -23,7 +23,6 @@ from isa_ros.plant.units import MILLI
 from isa_ros.resolve import (
     alternatives, build, build_one_of, Entry, merge, Place, refuse_unknown, Section, section_at,
     written)
-from isa_ros.reu.cascade import loop_steps
 from isa_ros.run_config import ActuatorConfig, LegConfig, LegStart, RunConfig, Times
 from isa_ros.strict_yaml import read, Tree
 from isa_ros.timebase import FORCE_WINDOWS, PLANT_STEP_NS
@@ -209,13 +208,16 @@ def _actuator(
         name: str, tree: Tree, place: Place, leg: LegConfig | None, joint: str | None
         ) -> tuple[ActuatorConfig, ActuatorOrigin]:
     refuse_unknown(tree, (
-        'model', 'preset', 'parameters', 'load', 'initial_position_mm', 'initial_position_deg'),
+        'model', 'preset', 'variants', 'parameters', 'load', 'initial_position_mm',
+        'initial_position_deg'),
         place)
     model = actuator_model(tree.get('model'), f'{place}.model')  # type: ignore[arg-type]
     preset = tree.get('preset', 'default')
-    section = merge(
+    variants = _names(tree.get('variants', []), place / 'variants')
+    section = model.with_variants(
         model.with_preset(preset, f'{place}.preset'),  # type: ignore[arg-type]
-        _parameters(tree, place))
+        variants, f'{place}.variants')
+    section = merge(section, _parameters(tree, place))
     sheet = build(ActuatorSheet, section, model.place)
     _refuse_sheet(sheet, place)
     if joint is not None and leg is not None:
@@ -225,8 +227,15 @@ def _actuator(
         position = _initial_position(tree, place, sheet)
         load_section = _own_load(tree, place, model)
         load = build_one_of(LocalLoad, load_section, place / 'load')
-    return (ActuatorConfig(name, model.name, str(preset), sheet, load, position),
+    label = ' + '.join([str(preset), *variants])
+    return (ActuatorConfig(name, model.name, label, sheet, load, position),
             ActuatorOrigin(section, load_section))
+
+
+def _names(value: Any, place: Place) -> list[str]:
+    if not isinstance(value, list) or not all(isinstance(name, str) for name in value):
+        raise ConfigError(f'{place} = {value!r}, must be a list of names')
+    return value
 
 
 def _parameters(tree: Tree, place: Place) -> Section:
@@ -237,9 +246,9 @@ def _parameters(tree: Tree, place: Place) -> Section:
 
 
 def _refuse_sheet(sheet: ActuatorSheet, place: Place) -> None:
-    """Refuse rates that do not divide, and a plant too stiff for its step."""
+    """Refuse control blocks that do not fit, and a plant too stiff for its step."""
     try:
-        loop_steps(sheet.reu)
+        refuse_wiring(sheet)
         plant_record(sheet.plant)
     except (ConfigError, ParameterError) as error:
         raise ConfigError(f'{place}: {error}') from error

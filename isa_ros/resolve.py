@@ -150,15 +150,27 @@ def sourced(tree: Tree, place: Place) -> Section:
 
 
 def merge(base: Section, over: Section) -> Section:
-    """Return ``base`` with the single values of ``over`` in place of its own."""
+    """
+    Return ``base`` with the single values of ``over`` in place of its own.
+
+    A section of another kind replaces the one before it whole.
+    """
     merged = dict(base)
     for key, value in over.items():
         below = merged.get(key)
-        if isinstance(value, dict) and isinstance(below, dict):
+        if (isinstance(value, dict) and isinstance(below, dict)
+                and _kind(value) in (None, _kind(below))):
             merged[key] = merge(below, value)
         else:
             merged[key] = value
     return merged
+
+
+def _kind(section: Section) -> Scalar:
+    """Return the kind a section names, None where it names none."""
+    named = [entry.value for key in KIND_KEYS
+             if isinstance(entry := section.get(key), Entry)]
+    return named[0] if named else None
 
 
 def build(cls: type[P], section: Section, place: Place) -> P:

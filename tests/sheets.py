@@ -14,15 +14,16 @@ from isa_ros.run_config import ActuatorConfig
 from isa_ros.signals import COMMAND, HAS_SETPOINT
 import numpy as np
 
-MODELS = ('smart_manifold', 'isa_v5')
+MODELS = ('smart_manifold', 'isa_v2', 'isa_v5')
 FINE = Timing(step_ns=100_000, controller_offset_ns=20_000)
 """A tick as short as the current loop's period, for looking at transients."""
 
 
-def actuator_sheet(model: str, preset: str = 'default') -> ActuatorSheet:
+def actuator_sheet(model: str, preset: str = 'default', *variants: str) -> ActuatorSheet:
     """Return a shipped sheet."""
     found = actuator_model(model, 'test')
-    return build(ActuatorSheet, found.with_preset(preset, 'test'), found.place)
+    section = found.with_variants(found.with_preset(preset, 'test'), variants, 'test')
+    return build(ActuatorSheet, section, found.place)
 
 
 def own_load(model: str, kind: str) -> LocalLoad:

@@ -5,7 +5,8 @@ from isa_ros.errors import SimulationDiverged
 from isa_ros.signals import COMMAND, HAS_ENABLE, LOAD_PORT
 import numpy as np
 import pytest
-from tests.sheets import actuator_sheet, FINE, MODELS, override, setpoint, smart_actuator
+from tests.sheets import (
+    actuator_sheet, FINE, MODELS, override, plant_row, setpoint, smart_actuator)
 
 TICK = Timing(step_ns=1_000_000, controller_offset_ns=120_000)
 OVER_STROKE = (0.02, 0.1, 0.3, 0.5, 0.7, 0.9, 0.98)
@@ -90,7 +91,7 @@ def test_it_holds_where_it_started_before_the_first_setpoint(model):
 def test_it_reaches_a_position_setpoint(model):
     """Stiffness and damping of the sheet bring the load to the setpoint."""
     actuator = smart_actuator(model, 'mass', timing=TICK)
-    stroke = {'isa_v5': 0.1}.get(model, 1.745)
+    stroke = plant_row(model).chambers.stroke
     actuator.accept(setpoint(position=0.6 * stroke))
     for _ in range(3000):
         actuator.tick()

@@ -22,7 +22,7 @@ def test_the_version_is_the_same_for_python_and_ros() -> None:
 
 def test_the_executables_of_the_interface_are_there() -> None:
     assert [name for name, _, _ in ENTRY_POINTS] == [
-        'actuator', 'isa_v5', 'smart_manifold', 'coordinator', 'isa']
+        'actuator', 'isa_v2', 'isa_v5', 'smart_manifold', 'coordinator', 'isa']
 
 
 @pytest.mark.parametrize('name, module, function', ENTRY_POINTS)

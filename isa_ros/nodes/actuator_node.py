@@ -129,6 +129,11 @@ def main(args: Sequence[str] | None = None, model: str = '') -> None:
     raise SystemExit(run(args, model))
 
 
+def main_isa_v2(args: Sequence[str] | None = None) -> None:
+    """Run one ISA v2."""
+    main(args, 'isa_v2')
+
+
 def main_isa_v5(args: Sequence[str] | None = None) -> None:
     """Run one ISA v5."""
     main(args, 'isa_v5')

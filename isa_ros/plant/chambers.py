@@ -65,6 +65,8 @@ class Oil(Parameters):
     aeration_pressure_kpa: float = parameter(
         'pressure below return at which released air halves the bulk modulus',
         'kPa', gt=0.0, le=100.0)
+    temperature_celsius: float = parameter(
+        'of the oil, which shifts the null of the valve', 'celsius', ge=-30.0, le=80.0)
 
 
 CHAMBERS = np.dtype([

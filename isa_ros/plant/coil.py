@@ -1,43 +1,85 @@
 """
-Coil current behind the closed current loop of the amplifier.
+Coil current behind the amplifier: the closed current loop of the paper, or the coil itself.
 
-Equation 10 of the paper IS the closed current loop: never nest it in another one. Currents
-are the amplifier's, in A: two redundant coils in parallel each carry half of it, so the
-valve curves' series scale is half of the amplifier's. Positive current extends.
+Equation 10 of the paper IS the closed current loop: it never stands with an explicit coil.
+Currents are the amplifier's, in A. The valve curves' series scale is the current through
+both coils in series that moves the valve as far. Positive current extends.
 
-Neglected by this default: the 1.8 kHz mode and the sampling of the current loop.
+Neglected: the mutual inductance of the two coils; by `ClosedLoopCoil` also the 1.8 kHz mode
+and the sampling of the current loop.
 """
 
 from dataclasses import dataclass
+import math
 
 from isa_ros.kernel import kernel
-from isa_ros.parameter import parameter, Parameters
+from isa_ros.parameter import choice, parameter, Parameters
 import numpy as np
+
+_COILS = ('parallel', 'series', 'one_open')
+CLOSED_LOOP = 0
+EXPLICIT = 1
 
 
 @dataclass(frozen=True, kw_only=True)
 class Coil(Parameters):
-    """The amplifier and its two coils in parallel."""
+    """The amplifier and the valve's two redundant coils."""
+
+    coils: str = choice(
+        'how the two coils are wired; one_open: parallel, with one of them broken', *_COILS)
+    supply_voltage: float = parameter('amplifier saturation', 'V', gt=0.0, le=100.0)
+    coil_resistance: float = parameter('of one coil', 'ohm', gt=0.0, le=1.0e5)
+    coil_inductance: float = parameter('of one coil', 'H', gt=0.0, le=200.0)
+
+
+@dataclass(frozen=True, kw_only=True)
+class ClosedLoopCoil(Coil):
+    """The closed current loop as one pole (eq 10)."""
 
     bandwidth_rad_per_s: float = parameter(
         'pole p_c of the closed current loop (eq 10)', 'rad/s', gt=0.0, le=5.0e4)
-    supply_voltage: float = parameter('amplifier saturation', 'V', gt=0.0, le=100.0)
-    resistance: float = parameter('coil resistance', 'ohm', gt=0.0, le=1.0e5)
-    inductance: float = parameter('coil inductance', 'H', gt=0.0, le=100.0)
-    parallel_coils: float = parameter(
-        'amplifier current per series-scale current', '1', ge=1.0, le=2.0)
+
+
+@dataclass(frozen=True, kw_only=True)
+class ExplicitCoil(Coil):
+    """The coil under the amplifier's voltage, with the resonance of the paper's figure 8 B."""
+
+    mode_frequency_hz: float = parameter('of the resonance', 'Hz', gt=0.0, le=5.0e3)
+    mode_strength: float = parameter("its share of the coil's gain", '1', ge=0.0, le=0.5)
+    mode_damping: float = parameter('its damping ratio', '1', gt=0.0, le=1.0)
 
 
 COIL = np.dtype([
-    ('p_c', 'f8'), ('voltage', 'f8'), ('resistance', 'f8'), ('inductance', 'f8'),
-    ('parallel', 'f8')])
-COIL_STATE = np.dtype([('current', 'f8')])
+    ('kind', 'i8'), ('voltage', 'f8'), ('resistance', 'f8'), ('inductance', 'f8'),
+    ('parallel', 'f8'),         # amplifier current per series-scale current
+    ('p_c', 'f8'),              # closed loop
+    ('mode_w', 'f8'), ('mode_share', 'f8'), ('mode_zeta', 'f8'),  # explicit
+])
+COIL_STATE = np.dtype([('current', 'f8'), ('mode', 'f8'), ('mode_rate', 'f8')])
+
+
+def circuit(sheet: Coil) -> tuple[float, float, float]:
+    """
+    Return resistance (ohm), inductance (H) and amplifier current per series-scale current.
+
+    Two coils in parallel share the current; a single one moves the valve half as far with it.
+    """
+    coils_in_row, branches = {
+        'parallel': (1.0, 2.0), 'series': (2.0, 1.0), 'one_open': (1.0, 1.0)}[sheet.coils]
+    per_series = 1.0 if sheet.coils == 'series' else 2.0
+    return (sheet.coil_resistance * coils_in_row / branches,
+            sheet.coil_inductance * coils_in_row / branches, per_series)
 
 
 def coil_record(sheet: Coil) -> tuple[float, ...]:
     """Return the `COIL` record of a sheet."""
-    return (sheet.bandwidth_rad_per_s, sheet.supply_voltage, sheet.resistance, sheet.inductance,
-            sheet.parallel_coils)
+    resistance, inductance, per_series = circuit(sheet)
+    common = (sheet.supply_voltage, resistance, inductance, per_series)
+    if isinstance(sheet, ExplicitCoil):
+        return (EXPLICIT, *common, 0.0, 2.0 * math.pi * sheet.mode_frequency_hz,
+                sheet.mode_strength, sheet.mode_damping)
+    assert isinstance(sheet, ClosedLoopCoil)
+    return (CLOSED_LOOP, *common, sheet.bandwidth_rad_per_s, 0.0, 0.0, 0.0)
 
 
 @kernel
@@ -50,3 +92,34 @@ def current_rate(current, reference, coil):
     highest = (coil.voltage - coil.resistance * current) / coil.inductance
     lowest = (-coil.voltage - coil.resistance * current) / coil.inductance
     return max(lowest, min(highest, coil.p_c * (reference - current)))
+
+
+@kernel
+def explicit_rates(y, voltage, coil):
+    """
+    Return the rates of the explicit coil under ``voltage``  (V11), in A/s, A/s, A/s2.
+
+    L di/dt = (1 - k) U - R i and m'' = w^2 (k U/R - m) - 2 zeta w m'; the current is i + m.
+    """
+    u = max(-coil.voltage, min(coil.voltage, voltage))
+    first = ((1.0 - coil.mode_share) * u - coil.resistance * y.current) / coil.inductance
+    w = coil.mode_w
+    second = (w * w * (coil.mode_share * u / coil.resistance - y.mode)
+              - 2.0 * coil.mode_zeta * w * y.mode_rate)
+    return first, y.mode_rate, second
+
+
+@kernel
+def coil_current(y):
+    """Return the current through the coil, resonance included, in A  (V11)."""
+    return y.current + y.mode
+
+
+@kernel
+def coil_rates(y, drive, coil, rates):
+    """Write the rates of one `COIL_STATE`; ``drive`` is a reference in A, or explicit: in V."""
+    if coil.kind == EXPLICIT:
+        rates.current, rates.mode, rates.mode_rate = explicit_rates(y, drive, coil)
+    else:
+        rates.current = current_rate(y.current, drive, coil)
+        rates.mode, rates.mode_rate = 0.0, 0.0

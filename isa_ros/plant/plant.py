@@ -6,12 +6,12 @@ State, rates and parameters are nested records of floats, one row per actuator
 """
 
 from dataclasses import dataclass
-import math
 
 from isa_ros.errors import ParameterError
 from isa_ros.kernel import kernel
 from isa_ros.parameter import Parameters
-from isa_ros.plant import chambers, coil, friction, mechanics, relief, sensors, servo_valve
+from isa_ros.plant import (
+    chambers, coil, friction, mechanics, relief, sensors, servo_valve, spool)
 from isa_ros.plant.sensors import convert, encode
 from isa_ros.timebase import PLANT_STEP
 import numpy as np
@@ -20,6 +20,7 @@ STABLE_RATE = 2.5 / PLANT_STEP  # 1/s; RK4 is stable to 2.78 on the real axis
 
 PLANT = np.dtype([
     ('coil', coil.COIL),
+    ('spool', spool.SPOOL),
     ('valve', servo_valve.VALVE),
     ('chambers', chambers.CHAMBERS),
     ('relief', relief.RELIEF),
@@ -29,7 +30,7 @@ PLANT = np.dtype([
 ])
 PLANT_STATE = np.dtype([
     ('coil', coil.COIL_STATE),
-    ('valve', servo_valve.VALVE_STATE),
+    ('valve', spool.VALVE_STATE),
     ('chambers', chambers.CHAMBERS_STATE),
     ('friction', friction.FRICTION_STATE),
     ('mechanics', mechanics.MECHANICS_STATE),
@@ -40,8 +41,9 @@ PLANT_STATE = np.dtype([
 class PlantSheet(Parameters):
     """The data sheet of one actuator's hydraulics, mechanics and sensors."""
 
-    coil: coil.Coil
-    valve: servo_valve.ServoValve
+    coil: coil.ClosedLoopCoil | coil.ExplicitCoil
+    spool: spool.ClosedLoopSpool | spool.DirectSpool | spool.PilotedSpool
+    valve: servo_valve.DualGainValve | servo_valve.HighResponseValve
     oil: chambers.Oil
     relief: relief.Relief
     friction: friction.Friction
@@ -76,6 +78,7 @@ def plant_record(sheet: LinearPlant | RotaryPlant) -> np.recarray:
     area_a, area_b = sheet.drive.areas
     record = np.array([(
         coil.coil_record(sheet.coil),
+        spool.spool_record(sheet.spool, sheet.oil.temperature_celsius),
         servo_valve.valve_record(sheet.valve, area_a / area_b),
         chambers.chambers_record(sheet.drive, sheet.oil),
         relief.relief_record(sheet.relief),
@@ -101,34 +104,35 @@ def rest_pressures(
     """
     Return the gauge pressures (Pa) that hold ``force`` (N or Nm) with the valve near null.
 
-    At null the leaking lands divide the supply pressure so that f_h = 0 (equal flows through
-    P-A, A-T and P-B, B-T); half of the force comes from each chamber.
+    At null the leaking lands divide the supply pressure; what that lacks in force comes in
+    equal parts from each chamber.
     """
     lands, oil = plant.valve, plant.chambers
     share_a = lands.f_pa * lands.f_pa / (lands.f_pa * lands.f_pa + lands.f_at * lands.f_at)
     share_b = lands.f_pb * lands.f_pb / (lands.f_pb * lands.f_pb + lands.f_bt * lands.f_bt)
     span = supply - back
-    return (back + span * share_a + 0.5 * force / oil.area_a,
-            back + span * share_b - 0.5 * force / oil.area_b)
+    p_a, p_b = back + span * share_a, back + span * share_b
+    lacking = force - chambers.hydraulic_force(p_a, p_b, oil)
+    return p_a + 0.5 * lacking / oil.area_a, p_b - 0.5 * lacking / oil.area_b
 
 
 @kernel
-def plant_rates(y, x_load, v_load, current_reference, p_s, p_t, plant, rates):
+def plant_rates(y, x_load, v_load, drive, p_s, p_t, plant, rates):
     """
     Write dy/dt of one `PLANT_STATE` into ``rates``; return (sensor force, q_p, q_t).
 
-    ``x_load`` and ``v_load`` are the load's side of the force sensor. Forces in N or Nm,
-    flows in m3/s (equation M4: inertia * s'' = f_h - f_friction - f_sensor + f_stop).
+    ``drive`` is what the amplifier gives: a current reference (A), or a voltage (V) to an
+    explicit coil. ``x_load`` and ``v_load`` are the load's side of the force sensor. Forces
+    in N or Nm, flows in m3/s (equation M4: inertia * s'' = f_h - f_friction - f_sensor +
+    f_stop).
     """
     p_a, p_b = y.chambers.p_a, y.chambers.p_b
     s, v = y.mechanics.position, y.mechanics.velocity
 
-    rates.coil.current = coil.current_rate(y.coil.current, current_reference, plant.coil)
-    spool_reference = servo_valve.spool_reference(
-        y.coil.current, plant.coil.parallel, plant.valve)
-    rates.valve.spool = y.valve.velocity
-    rates.valve.velocity = y.valve.acceleration
-    rates.valve.acceleration = servo_valve.spool_jerk(spool_reference, y.valve, plant.valve)
+    coil.coil_rates(y.coil, drive, plant.coil, rates.coil)
+    current = (coil.coil_current(y.coil) / plant.coil.parallel
+               + spool.null_bias(p_s, p_t, plant.spool))
+    spool.spool_rates(y.valve, current, plant.valve.k_spool, plant.spool, rates.valve)
 
     q_a, q_b, q_p, q_t = servo_valve.port_flows(y.valve.spool, p_a, p_b, p_s, p_t, plant.valve)
     out_a = relief.relief_flow(p_a, p_t, plant.relief)
@@ -153,16 +157,6 @@ def plant_rates(y, x_load, v_load, current_reference, p_s, p_t, plant, rates):
 
 
 @kernel
-def stop_spool(y, plant):
-    """Hold the spool at its mechanical stop; a plastic stop takes its speed."""
-    if abs(y.valve.spool) > plant.valve.x_max:
-        y.valve.spool = math.copysign(plant.valve.x_max, y.valve.spool)
-        if y.valve.velocity * y.valve.spool > 0.0:
-            y.valve.velocity = 0.0
-            y.valve.acceleration = 0.0
-
-
-@kernel
 def read_sensors(y, x_load, v_load, plant, measured):
     """
     Write what every sensor gives at one instant; return the exact sensor force  (S1, S2).
@@ -178,5 +172,5 @@ def read_sensors(y, x_load, v_load, plant, measured):
     measured.pressure_b = convert(y.chambers.p_b, 0.0, own.pressure_range, own.pressure_step)
     measured.spool = convert(y.valve.spool, -own.spool_range, own.spool_range, own.spool_step)
     measured.current = convert(
-        y.coil.current, -own.current_range, own.current_range, own.current_step)
+        coil.coil_current(y.coil), -own.current_range, own.current_range, own.current_step)
     return force

@@ -1,58 +1,48 @@
 """
-The nested loops of figure 7 A and B at their rates.
+The control blocks at their rates, outermost first: figure 7 A and B, and whatever is wired.
 
-One period of a loop is always: measure, feed back, output, update. Loops that coincide run
-outermost first in the same instant; the current reference they give reaches the amplifier
-after the computational delay, none by default. The inner loops whose closed form is the
-plant's own (spool: equation 8, current: equation 10) sample and hold their reference here.
+One period of a block is always: measure, feed back, output, update. Blocks that coincide run
+outermost first in the same instant; what they give reaches the amplifier after the
+computational delay, none by default. A held block's loop is closed in the plant (spool:
+equation 8, current: equation 10): it only samples and holds its reference.
 
     position 1 kHz -> force 5 kHz -> [spool 5 kHz ->] current 10 kHz
 """
 
-from dataclasses import dataclass
-
-from isa_ros.errors import ConfigError
 from isa_ros.kernel import kernel
-from isa_ros.parameter import parameter, Parameters
-from isa_ros.reu.force_loop import (
-    DualGainCompensation, FORCE_LOOP, force_loop_record,
-    force_loop_step, FORCE_STATE, ForceLoop)
-from isa_ros.reu.position_loop import (
-    POSITION_LOOP, position_loop_record, position_loop_step, POSITION_STATE, PositionLoop,
-    SETPOINT)
-from isa_ros.reu.schedule import POINTS, scheduled
-from isa_ros.timebase import NS_PER_SECOND, PLANT_STEP_NS, steps_in
+from isa_ros.reu.block import BLOCK, block_record, BLOCK_STATE, block_step, Pid, rest
+from isa_ros.reu.feedback_linearisation import (
+    FeedbackLinearisation, LINEARISATION, linearisation_record, linearising_step)
+from isa_ros.reu.impedance import (
+    force_reference, IMPEDANCE, Impedance, impedance_record, SETPOINT)
+from isa_ros.reu.lead_lag import LEAD_LAG, lead_lag_record, LEAD_LAG_STATE, lead_lag_step, LeadLag
+from isa_ros.reu.schedule import schedule_table
+from isa_ros.reu.speed import SPEED, speed_record, SPEED_STATE, speed_step
+from isa_ros.reu.wiring import delay_steps, Held, loop_steps, Off, Reu
 import numpy as np
 
-
-@dataclass(frozen=True, kw_only=True)
-class InnerLoop(Parameters):
-    """A loop that samples and holds the reference of a closed inner loop."""
-
-    rate_hz: float = parameter('loop rate', 'Hz', gt=0.0, le=50e3)
-
-
-@dataclass(frozen=True, kw_only=True)
-class Reu(Parameters):
-    """The cascade's loops, outermost first."""
-
-    position: PositionLoop
-    force: ForceLoop
-    compensation: DualGainCompensation
-    spool: InnerLoop
-    current: InnerLoop
-    computation_delay_us: float = parameter(
-        'from an instant of the loops to the current reference it gives', 'us', ge=0.0, le=1e3)
-
+OFF = 0
+HELD = 1
+PID = 2
+IMPEDES = 3
+LINEARISES = 4
+LEADS_AND_LAGS = 5
+_KINDS: dict[type, int] = {
+    Off: OFF, Held: HELD, Pid: PID, Impedance: IMPEDES, FeedbackLinearisation: LINEARISES,
+    LeadLag: LEADS_AND_LAGS}
 
 REU = np.dtype([
-    ('position', POSITION_LOOP),
-    ('force', FORCE_LOOP),
-    ('position_steps', 'i8'), ('force_steps', 'i8'), ('spool_steps', 'i8'),
-    ('current_steps', 'i8'), ('offset_steps', 'i8'), ('delay_steps', 'i8'),
-    ('stroke', 'f8'), ('schedule', 'f8', (POINTS,)),
-    ('spool_per_output', 'f8'),    # m per unit of the force loop's output
-    ('current_per_spool', 'f8'),   # amplifier A per m of spool
+    ('speed', SPEED), ('impedance', IMPEDANCE), ('position', BLOCK), ('force', BLOCK),
+    ('linearisation', LINEARISATION), ('pressure', BLOCK), ('spool', BLOCK),
+    ('lead_lag', LEAD_LAG),
+    ('position_kind', 'i8'), ('force_kind', 'i8'), ('pressure_kind', 'i8'),
+    ('spool_kind', 'i8'), ('current_kind', 'i8'),
+    ('speed_steps', 'i8'), ('position_steps', 'i8'), ('force_steps', 'i8'),
+    ('pressure_steps', 'i8'), ('spool_steps', 'i8'), ('current_steps', 'i8'),
+    ('offset_steps', 'i8'), ('delay_steps', 'i8'),
+    ('stroke', 'f8'),
+    ('k_spool', 'f8'),    # m of spool per series-scale A
+    ('parallel', 'f8'),   # amplifier A per series-scale A
 ])
 MEASURED = np.dtype([
     ('position', 'f8'), ('force', 'f8'), ('pressure_a', 'f8'), ('pressure_b', 'f8'),
@@ -62,90 +52,137 @@ MEASURED = np.dtype([
 REU_STATE = np.dtype([
     ('measured', MEASURED),
     ('setpoint', SETPOINT),
-    ('position', POSITION_STATE),
-    ('force', FORCE_STATE),
-    ('spool_reference', 'f8'),
-    ('current_reference', 'f8'),
-    ('current_output', 'f8'),      # the current reference the amplifier has
+    ('speed', SPEED_STATE),
+    ('position', BLOCK_STATE),
+    ('force', BLOCK_STATE),
+    ('pressure', BLOCK_STATE),
+    ('spool', BLOCK_STATE),
+    ('lead_lag', LEAD_LAG_STATE),
+    ('force_reference', 'f8'),     # N | Nm; 0 without a force block
+    ('spool_reference', 'f8'),     # m
+    ('current_reference', 'f8'),   # amplifier A
+    ('drive', 'f8'),               # what the blocks give the amplifier: A, or V
+    ('amplifier', 'f8'),           # what the amplifier has of it
 ])
 
 
-def loop_steps(reu: Reu) -> tuple[int, int, int, int]:
-    """
-    Return the periods of position, force, spool and current loop in plant steps.
-
-    Raises
-    ------
-    ConfigError
-        A rate is not a whole number of plant steps, or an outer period not a
-        whole number of the next inner one; both are named.
-
-    """
-    names = ('position', 'force', 'spool', 'current')
-    rates = [getattr(reu, name).rate_hz for name in names]
-    steps = []
-    for name, rate in zip(names, rates):
-        period_ns = NS_PER_SECOND / rate
-        if period_ns != int(period_ns):
-            raise ConfigError(
-                f'{name}.rate_hz = {rate:g} Hz, its period must be whole nanoseconds')
-        steps.append(steps_in(int(period_ns), f'period of {name}.rate_hz = {rate:g} Hz'))
-    for k in range(3):
-        if steps[k] % steps[k + 1]:
-            raise ConfigError(
-                f'{names[k]}.rate_hz = {rates[k]:g} Hz does not divide '
-                f'{names[k + 1]}.rate_hz = {rates[k + 1]:g} Hz')
-    return steps[0], steps[1], steps[2], steps[3]
-
-
-def delay_steps(reu: Reu, current_steps: int) -> int:
-    """
-    Return the computational delay in plant steps.
-
-    Raises
-    ------
-    ConfigError
-        It is not a whole number of plant steps, or as long as the current loop's period.
-
-    """
-    steps = reu.computation_delay_us * 1e3 / PLANT_STEP_NS
-    if steps != int(steps) or steps >= current_steps:
-        raise ConfigError(
-            f'computation_delay_us = {reu.computation_delay_us:g} us, must be a multiple of '
-            f'{PLANT_STEP_NS / 1e3:g} us below {current_steps * PLANT_STEP_NS / 1e3:g} us, '
-            'the period of the current loop')
-    return int(steps)
-
-
 def reu_record(
-        reu: Reu, offset_steps: int, stroke: float, schedule: np.ndarray,
-        spool_per_output: float, current_per_spool: float) -> np.ndarray:
-    """Return the `REU` record, shape (1,); ``schedule`` has shape (POINTS,)."""
+        reu: Reu, offset_steps: int, stroke: float, stiffness: np.ndarray,
+        model: tuple[float, ...], k_spool: float, parallel: float) -> np.ndarray:
+    """
+    Return the `REU` record, shape (1,).
+
+    ``stiffness`` (POINTS,) is what the force block works against over the stroke, ``model``
+    the actuator as a linearising block knows it.
+    """
+    record = np.zeros(1, REU)
+    row = record[0]
     steps = loop_steps(reu)
-    return np.array([(
-        position_loop_record(reu.position), force_loop_record(reu.force, reu.compensation),
-        *steps, offset_steps, delay_steps(reu, steps[-1]), stroke, schedule,
-        spool_per_output, current_per_spool)], dtype=REU)
+    row['speed'] = speed_record(reu.speed)
+    for name in ('position', 'force', 'pressure', 'spool', 'current'):
+        sheet = getattr(reu, name)
+        row[f'{name}_kind'] = _KINDS[type(sheet)]
+        if isinstance(sheet, Pid):
+            row[name] = block_record(sheet, schedule_table(sheet.gain_schedule, stiffness))
+    if isinstance(reu.position, Impedance):
+        row['impedance'] = impedance_record(reu.position)
+    if isinstance(reu.force, FeedbackLinearisation):
+        row['linearisation'] = linearisation_record(reu.force, model)
+    if isinstance(reu.current, LeadLag):
+        row['lead_lag'] = lead_lag_record(reu.current)
+    for name, period in steps.items():
+        row[f'{name}_steps'] = period
+    row['offset_steps'], row['delay_steps'] = offset_steps, delay_steps(reu, steps['current'])
+    row['stroke'], row['k_spool'], row['parallel'] = stroke, k_spool, parallel
+    return record
+
+
+def initial_gains(reu: Reu) -> tuple[float, float]:
+    """Return the impedance's (stiffness, damping) before the first setpoint, else zeros."""
+    if isinstance(reu.position, Impedance):
+        return reu.position.stiffness, reu.position.damping
+    return 0.0, 0.0
 
 
 @kernel
 def is_due(step, period_steps, offset_steps):
-    """Return whether a loop samples at plant step ``step``."""
+    """Return whether a block samples at plant step ``step``."""
     return (step - offset_steps) % period_steps == 0
 
 
 @kernel
-def cascade_step(step, reu, state):
-    """Run every loop that is due at plant step ``step`` on ``state.measured``."""
+def position_reference_inwards(step, reu, state):
+    """Run the position block if it is on and due; return the reference it gives inwards."""
+    if reu.position_kind == OFF:
+        return state.setpoint.effort
     if is_due(step, reu.position_steps, reu.offset_steps):
-        position_loop_step(state.measured.position, state.setpoint, reu.position, state.position)
-    if is_due(step, reu.force_steps, reu.offset_steps):
-        gain = scheduled(state.measured.position, reu.stroke, reu.schedule)
-        force_loop_step(state.position.force_reference, state.measured.force,
-                        state.position.velocity, gain, reu.force, state.force)
-    if state.setpoint.is_enabled == 0.0:
-        state.force.integral = 0.0
-        state.force.output = 0.0
+        measured, velocity = state.measured.position, state.speed.velocity
+        if reu.position_kind == IMPEDES:
+            state.position.output = force_reference(
+                state.setpoint, measured, velocity, reu.impedance)
+        else:
+            block_step(state.setpoint.position, measured, state.setpoint.velocity, measured,
+                       reu.stroke, reu.position, state.position)
+    return state.position.output
+
+
+@kernel
+def force_reference_inwards(step, reference, reu, state):
+    """Run the force and pressure blocks that are on and due; return what they give inwards."""
+    place, velocity = state.measured.position, state.speed.velocity
+    if reu.force_kind != OFF:
+        state.force_reference = reference
+        if is_due(step, reu.force_steps, reu.offset_steps):
+            if reu.force_kind == LINEARISES:
+                linearising_step(reference, state.measured, velocity, reu.linearisation,
+                                 state.force)
+            else:
+                block_step(reference, state.measured.force, velocity, place, reu.stroke,
+                           reu.force, state.force)
+        reference = state.force.output
+    if reu.pressure_kind != OFF:
+        if is_due(step, reu.pressure_steps, reu.offset_steps):
+            block_step(reference, state.measured.pressure_a - state.measured.pressure_b,
+                       velocity, place, reu.stroke, reu.pressure, state.pressure)
+        reference = state.pressure.output
+    return reference
+
+
+@kernel
+def spool_block(step, reference, reu, state):
+    """
+    Run the spool block if it is on and due; return the series-scale current, in A.
+
+    ``reference`` is the spool's in m, or that current if the block is off.
+    """
+    if reu.spool_kind == OFF:
+        state.spool_reference = reu.k_spool * reference
+        return reference
     if is_due(step, reu.spool_steps, reu.offset_steps):
-        state.spool_reference = reu.spool_per_output * state.force.output
-    state.current_reference = reu.current_per_spool * state.spool_reference
+        state.spool_reference = reference
+        if reu.spool_kind == PID:
+            block_step(reference, state.measured.spool, state.speed.velocity,
+                       state.measured.position, reu.stroke, reu.spool, state.spool)
+    if reu.spool_kind == PID:
+        return state.spool.output
+    return state.spool_reference / reu.k_spool
+
+
+@kernel
+def cascade_step(step, reu, state):
+    """Run every block that is due at plant step ``step`` on ``state.measured``."""
+    if is_due(step, reu.speed_steps, reu.offset_steps):
+        speed_step(state.measured.position, reu.speed, state.speed)
+    reference = position_reference_inwards(step, reu, state)
+    reference = force_reference_inwards(step, reference, reu, state)
+    if state.setpoint.is_enabled == 0.0:
+        rest(state.position)
+        rest(state.force)
+        rest(state.pressure)
+        reference = 0.0
+    state.current_reference = reu.parallel * spool_block(step, reference, reu, state)
+    if reu.current_kind == LEADS_AND_LAGS:
+        state.drive = lead_lag_step(
+            state.current_reference, state.measured.current, reu.lead_lag, state.lead_lag)
+    else:
+        state.drive = state.current_reference

@@ -1,10 +1,55 @@
-"""Gain scheduling over the stroke: a table at equal distances, straight lines between."""
+"""
+Gain scheduling: a factor over the stroke, and one on demands that retract.
 
+The factor over the stroke is a table at equal distances with straight lines between.
+"""
+
+from dataclasses import dataclass
 import math
 
 from isa_ros.kernel import kernel
+from isa_ros.parameter import parameter, Parameters
+import numpy as np
 
 POINTS = 21
+
+
+@dataclass(frozen=True, kw_only=True)
+class Constant(Parameters):
+    """The same gain everywhere."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class OilStiffness(Parameters):
+    """Gains divided by the stiffness the force block works against, relative to its least."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class ThreePoints(Parameters):
+    """Straight lines between three factors."""
+
+    retracted: float = parameter('factor at the retracted end', '1', ge=0.0, le=100.0)
+    middle: float = parameter('factor at mid stroke', '1', ge=0.0, le=100.0)
+    extended: float = parameter('factor at the extended end', '1', ge=0.0, le=100.0)
+
+
+Schedule = Constant | OilStiffness | ThreePoints
+
+
+def schedule_table(sheet: Schedule, stiffness: np.ndarray) -> np.ndarray:
+    """
+    Return the factor at `POINTS` equal distances, shape (POINTS,)  (R6).
+
+    ``stiffness``, of the same shape, is what the force block works against: the gain of its
+    plant is proportional to it.
+    """
+    if isinstance(sheet, OilStiffness):
+        table: np.ndarray = stiffness.min() / stiffness
+        return table
+    if isinstance(sheet, ThreePoints):
+        return np.interp(np.linspace(0.0, 1.0, POINTS), [0.0, 0.5, 1.0],
+                         [sheet.retracted, sheet.middle, sheet.extended])
+    return np.ones(POINTS)
 
 
 @kernel

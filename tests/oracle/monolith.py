@@ -14,7 +14,8 @@ from isa_ros.load.leg_dynamics import leg_terms
 from isa_ros.load.leg_motion import leg_rates, N_STATES, shifted
 from isa_ros.load.leg_sheet import leg_records
 from isa_ros.load.linkage import actuator_coordinate
-from isa_ros.plant.plant import plant_rates, read_sensors, stop_spool
+from isa_ros.plant.plant import plant_rates, read_sensors
+from isa_ros.plant.spool import stop_spool
 from isa_ros.reu.cascade import cascade_step, is_due, REU_STATE
 from isa_ros.timebase import PLANT_STEP, PLANT_STEP_NS
 import numpy as np
@@ -79,7 +80,7 @@ def system_step(h, bodies, flat, rates, flat_rates, y, w, references, pressures,
             flat[0, j, i] += h / 6.0 * (
                 flat_rates[0, j, i] + 2.0 * (flat_rates[1, j, i] + flat_rates[2, j, i])
                 + flat_rates[3, j, i])
-        stop_spool(bodies[0][j].plant, actuators[j].plant)
+        stop_spool(bodies[0][j].plant.valve, actuators[j].plant.valve.x_max)
     y = shifted(shifted(shifted(shifted(y, h / 6.0, k1), h / 3.0, k2), h / 3.0, k3), h / 6.0, k4)
     w = (w[0] + h / 6.0 * (p1[0] + 2.0 * (p2[0] + p3[0]) + p4[0]),
          w[1] + h / 6.0 * (p1[1] + 2.0 * (p2[1] + p3[1]) + p4[1]),
@@ -111,8 +112,8 @@ def run(n_rows, steps_per_row, command_steps, release_step, commands, y0, pressu
                                  reus[j].measured)
                     cascade_step(step, reu, reus[j])
                 if is_due(step, reu.current_steps, reu.offset_steps + reu.delay_steps):
-                    reus[j].current_output = reus[j].current_reference
-                references[j] = reus[j].current_output
+                    reus[j].amplifier = reus[j].drive
+                references[j] = reus[j].amplifier
             y, w = system_step(PLANT_STEP, bodies, flat, rates, flat_rates, y, w, references,
                                pressures, actuators, step < release_step, body, linkages, ground)
         m = leg_terms(y[0], y[1], y[2], y[3], y[4], y[5], y[6], y[7], body)

@@ -1,24 +1,23 @@
 """The nested loops: rates, order, enable."""
 
-from isa_ros.actuator_sheet import actuator_record
-from isa_ros.errors import ConfigError
+from dataclasses import replace
+
+from isa_ros.actuator_sheet import actuator_record, refuse_wiring
 from isa_ros.reu import cascade
+from isa_ros.reu.wiring import Off
 import numpy as np
 import pytest
-from tests.sheets import actuator_sheet, override
+from tests.sheets import actuator_sheet, MODELS
 
 
-def loops(model: str, offset_steps: int = 0) -> tuple[np.record, np.record]:
+def loops(
+        model: str, offset_steps: int = 0, *variants: str) -> tuple[np.record, np.record]:
     """Return (constants, state) of an enabled cascade."""
-    reu = actuator_record(actuator_sheet(model), offset_steps).view(np.recarray)[0].reu
+    sheet = actuator_sheet(model, 'default', *variants)
+    reu = actuator_record(sheet, offset_steps).view(np.recarray)[0].reu
     state = np.zeros(1, cascade.REU_STATE).view(np.recarray)[0]
     state.setpoint.is_enabled = 1.0
     return reu, state
-
-
-def test_periods_in_plant_steps():
-    """1, 5, 5 and 10 kHz are 50, 10, 10 and 5 steps of 20 us (paper Fig 7)."""
-    assert cascade.loop_steps(actuator_sheet('isa_v5').reu) == (50, 10, 10, 5)
 
 
 def test_a_loop_samples_at_its_own_instants_only():
@@ -27,10 +26,10 @@ def test_a_loop_samples_at_its_own_instants_only():
     state.setpoint.effort = 10.0
     changed = []
     for step in range(0, 160):
-        state.position.force_reference = 0.0
+        state.position.output = 0.0
         if (step - 6) % 5 == 0:
             cascade.cascade_step(step, reu, state)
-        if state.position.force_reference:
+        if state.position.output:
             changed.append(step)
     assert changed == [6, 56, 106, 156]
 
@@ -65,24 +64,61 @@ def test_a_disabled_actuator_commands_null():
     assert (state.current_reference, state.spool_reference, state.force.integral) == (0, 0, 0)
 
 
-@pytest.mark.parametrize('delay_us', [100.0, 30.0])
-def test_a_delay_the_loops_cannot_have_is_refused(delay_us):
-    """A whole number of plant steps below the period of the current loop."""
-    reu = override(actuator_sheet('isa_v5').reu, 'computation_delay_us', delay_us)
-    with pytest.raises(ConfigError, match='multiple of 20 us below 100 us'):
-        cascade.delay_steps(reu, 5)
+def test_without_position_block_the_effort_goes_to_the_force_block_at_its_rate():
+    """The outermost block that is on takes the setpoint's effort."""
+    reu, state = loops('smart_manifold', 0, 'valve_amplifier')
+    state.setpoint.effort = 1e-3  # series A
+    cascade.cascade_step(5, reu, state)
+    assert state.current_reference == pytest.approx(2e-3)
+    assert state.spool_reference == pytest.approx(35.6e-6)
+    assert state.force_reference == 0.0
 
 
-@pytest.mark.parametrize(('rates', 'message'), [
-    ({'position': 3000.0}, r'position.rate_hz = 3000 Hz, .* whole nanoseconds'),
-    ({'current': 8000.0}, r'current.rate_hz = 8000 Hz = 0.125 ms, .* plant step 0.02 ms'),
-    ({'force': 1250.0, 'spool': 1250.0},
-     r'position.rate_hz = 1000 Hz does not divide force.rate_hz = 1250 Hz'),
-])
-def test_rates_that_do_not_divide_are_refused(rates, message):
-    """Both rates, or the rate and the step, are named."""
-    reu = actuator_sheet('isa_v5').reu
-    for loop, rate in rates.items():
-        reu = override(reu, f'{loop}.rate_hz', rate)
-    with pytest.raises(ConfigError, match=message):
-        cascade.loop_steps(reu)
+def test_pure_position_control_commands_the_valve():
+    """Paper section 5.1: the output of the position block is the command of the valve."""
+    reu, state = loops('smart_manifold', 0, 'position_control')
+    state.setpoint.position = 0.1
+    state.setpoint.stiffness = 300.0
+    cascade.cascade_step(0, reu, state)
+    assert state.current_reference == pytest.approx(2.0 * 8e-3 * 0.1)  # 8 mA/rad, series
+
+
+def test_a_pressure_block_controls_the_difference():
+    """Section 3: the pressure difference between the chambers."""
+    sheet = actuator_sheet('smart_manifold')
+    reu_sheet = replace(sheet.reu, position=Off(), force=Off(), pressure=replace(
+        sheet.reu.force, kp=1e-10, ki=0.0, kv=0.0))
+    sheet = replace(sheet, reu=reu_sheet)
+    refuse_wiring(sheet)
+    reu = actuator_record(sheet, 0).view(np.recarray)[0].reu
+    state = np.zeros(1, cascade.REU_STATE).view(np.recarray)[0]
+    state.setpoint.is_enabled = 1.0
+    state.setpoint.effort = 5e6
+    state.measured.pressure_a, state.measured.pressure_b = 9e6, 7e6
+    state.pressure.measured = 2e6
+    cascade.cascade_step(0, reu, state)
+    assert state.current_reference == pytest.approx(2.0 * 1e-10 * 3e6)
+
+
+def test_the_explicit_current_block_gives_a_voltage():
+    """Figure 7: PID + LLC; its first output is b_0 K_pf i_r."""
+    reu, state = loops('smart_manifold', 0, 'explicit', 'valve_amplifier')
+    state.setpoint.effort = 1e-5
+    cascade.cascade_step(0, reu, state)
+    assert state.drive == pytest.approx(reu.lead_lag.b_0 * 1.15 * 2e-5)
+
+
+@pytest.mark.parametrize('variants', [
+    (), ('feedback_linearisation',), ('explicit',), ('position_control',), ('valve_amplifier',)])
+@pytest.mark.parametrize('model', MODELS)
+def test_compiled_cascade_equals_its_python_source(model, variants):
+    """A few instants of every wiring, every state."""
+    reu, compiled = loops(model, 0, *variants)
+    python = loops(model, 0, *variants)[1]
+    for state, step in ((compiled, cascade.cascade_step), (python, cascade.cascade_step.py_func)):
+        state.setpoint.effort, state.setpoint.position = 1e-4, 0.03
+        state.measured.force, state.measured.position = 3.0, 0.02
+        state.measured.pressure_a, state.measured.pressure_b = 8e6, 9e6
+        for instant in (0, 5, 10, 50):
+            step(instant, reu, state)
+    assert compiled.tobytes() == python.tobytes()

@@ -1,9 +1,10 @@
 """Gain schedule over the stroke."""
 
 from hypothesis import given, strategies as st
-from isa_ros.actuator_sheet import gain_schedule
+from isa_ros.actuator_sheet import force_stiffness
 from isa_ros.plant.chambers import oil_stiffness
-from isa_ros.reu.schedule import POINTS, scheduled
+from isa_ros.reu.schedule import (
+    Constant, OilStiffness, POINTS, schedule_table, scheduled, ThreePoints)
 import numpy as np
 import pytest
 from tests.sheets import plant_row
@@ -23,7 +24,7 @@ def test_a_straight_table_is_reproduced_and_clamped(fraction):
 def test_oil_stiffness_schedule_keeps_the_loop_gain():
     """R6, C4: gain times oil stiffness in series with the sensor is the same everywhere."""
     plant = plant_row('isa_v5')
-    table = gain_schedule(plant, 'oil_stiffness')
+    table = schedule_table(OilStiffness(), force_stiffness(plant))
     positions = np.linspace(0.0, plant.chambers.stroke, POINTS)
     oil = np.array([oil_stiffness(s, plant.chambers) for s in positions])
     loop = table / (1.0 / oil + 1.0 / plant.mechanics.k_s)
@@ -33,4 +34,10 @@ def test_oil_stiffness_schedule_keeps_the_loop_gain():
 
 def test_constant_schedule_is_one():
     """The paper's ISA v5 needs no scheduling by direction (section 2.3)."""
-    assert (gain_schedule(plant_row('isa_v5'), 'constant') == 1.0).all()
+    assert (schedule_table(Constant(), force_stiffness(plant_row('isa_v5'))) == 1.0).all()
+
+
+def test_three_points_are_joined_by_straight_lines():
+    """R6: the table a user gives."""
+    table = schedule_table(ThreePoints(retracted=0.5, middle=1.0, extended=2.0), np.ones(POINTS))
+    assert [table[0], table[5], table[10], table[15], table[20]] == [0.5, 0.75, 1.0, 1.5, 2.0]

@@ -1,0 +1,152 @@
+"""
+The spool: what the coil current does to it, and the null bias in between.
+
+``x > 0`` opens P-A and B-T and extends. Equation 8 of the paper IS the closed spool loop and
+never stands inside another one; `PilotedSpool` is the same spool without its loop, which then
+is a block of the REU. Currents here are on the series scale of figure 5.
+"""
+
+from dataclasses import dataclass
+import math
+
+from isa_ros.kernel import kernel
+from isa_ros.parameter import parameter, Parameters
+from isa_ros.plant.units import MILLI, MPA
+import numpy as np
+
+CLOSED_LOOP = 0
+DIRECT = 1
+PILOTED = 2
+
+
+@dataclass(frozen=True, kw_only=True)
+class NullBias(Parameters):
+    """The current that holds the spool off its null, and what shifts it."""
+
+    current_ma: float = parameter('at the reference conditions', 'mA', ge=-2.0, le=2.0)
+    supply_ma_per_mpa: float = parameter('shift with supply pressure', 'mA/MPa', ge=-0.5, le=0.5)
+    return_ma_per_mpa: float = parameter('shift with return pressure', 'mA/MPa', ge=-0.5, le=0.5)
+    temperature_ua_per_k: float = parameter('shift with oil temperature', 'uA/K', ge=-50, le=50)
+    reference_supply_mpa: float = parameter('reference conditions', 'MPa', gt=0.0, le=70.0)
+    reference_celsius: float = parameter('reference conditions', 'celsius', ge=-30.0, le=80.0)
+
+
+@dataclass(frozen=True, kw_only=True)
+class Spool(Parameters):
+    """What all spools have."""
+
+    natural_frequency_rad_per_s: float = parameter(
+        'w_n of equations 7 and 8', 'rad/s', gt=0.0, le=2.0e4)
+    damping_ratio: float = parameter('zeta of equations 7 and 8', '1', gt=0.0, le=5.0)
+    null_bias: NullBias
+
+
+@dataclass(frozen=True, kw_only=True)
+class ClosedLoopSpool(Spool):
+    """Pilot and feedback in one: equation 8."""
+
+    loop_gain_per_s: float = parameter('K_loop of equation 8', '1/s', gt=0.0, le=1.0e4)
+
+
+@dataclass(frozen=True, kw_only=True)
+class DirectSpool(Spool):
+    """A spool that follows the current as a second-order system: equation 7."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class PilotedSpool(Spool):
+    """Equation 8 without its loop: the current drives the spool's speed."""
+
+    pilot_gain_mm_per_s_per_ma: float = parameter(
+        'K_pilot, spool speed per series current', 'mm/s/mA', gt=0.0, le=1.0e4)
+
+
+SPOOL = np.dtype([
+    ('kind', 'i8'), ('w_n', 'f8'), ('zeta', 'f8'),
+    ('k_loop', 'f8'),       # 1/s
+    ('k_pilot', 'f8'),      # m/s per A, series scale
+    ('bias', 'f8'),         # A, series scale, temperature included
+    ('bias_s', 'f8'), ('bias_t', 'f8'),     # A/Pa
+    ('p_s_ref', 'f8'),      # Pa
+])
+VALVE_STATE = np.dtype([('spool', 'f8'), ('velocity', 'f8'), ('acceleration', 'f8')])
+
+
+def spool_record(sheet: Spool, temperature: float) -> tuple[float, ...]:
+    """Return the `SPOOL` record of a sheet with oil at ``temperature`` (celsius)."""
+    kind, k_loop, k_pilot = DIRECT, 0.0, 0.0
+    if isinstance(sheet, ClosedLoopSpool):
+        kind, k_loop = CLOSED_LOOP, sheet.loop_gain_per_s
+    elif isinstance(sheet, PilotedSpool):
+        kind, k_pilot = PILOTED, sheet.pilot_gain_mm_per_s_per_ma
+    bias = sheet.null_bias
+    return (
+        kind, sheet.natural_frequency_rad_per_s, sheet.damping_ratio, k_loop, k_pilot,
+        bias.current_ma * MILLI
+        + bias.temperature_ua_per_k * 1e-6 * (temperature - bias.reference_celsius),
+        bias.supply_ma_per_mpa * MILLI / MPA, bias.return_ma_per_mpa * MILLI / MPA,
+        bias.reference_supply_mpa * MPA)
+
+
+@kernel
+def null_bias(p_s, p_t, spool):
+    """Return i_0 + b_S (P_S - P_S0) + b_T P_T, the null bias in A, series scale  (V12)."""
+    return spool.bias + spool.bias_s * (p_s - spool.p_s_ref) + spool.bias_t * p_t
+
+
+@kernel
+def spool_reference(current, k_spool):
+    """Return K_spool i of a series-scale current (A)  (V2, equation 9), in m."""
+    return k_spool * current
+
+
+@kernel
+def spool_jerk(reference, y, spool):
+    """
+    Return w_n^2 (K_loop (x_r - x) - x') - 2 zeta w_n x''  (V3), in m/s3.
+
+    Equation 8 of the paper in the time domain; ``y`` is a `VALVE_STATE` record.
+    """
+    w_n = spool.w_n
+    return (w_n * w_n * (spool.k_loop * (reference - y.spool) - y.velocity)
+            - 2.0 * spool.zeta * w_n * y.acceleration)
+
+
+@kernel
+def piloted_jerk(current, y, spool):
+    """Return w_n^2 (K_pilot i - x') - 2 zeta w_n x''  (V13), in m/s3: eq 8 with its loop open."""
+    w_n = spool.w_n
+    return (w_n * w_n * (spool.k_pilot * current - y.velocity)
+            - 2.0 * spool.zeta * w_n * y.acceleration)
+
+
+@kernel
+def spool_acceleration(reference, spool, velocity, w_n, zeta):
+    """Return w_n^2 (x_r - x) - 2 zeta w_n x'  (V10, equation 7 of the paper), in m/s2."""
+    return w_n * w_n * (reference - spool) - 2.0 * zeta * w_n * velocity
+
+
+@kernel
+def spool_rates(y, current, k_spool, spool, rates):
+    """Write the rates of one `VALVE_STATE` under a series-scale current, bias included."""
+    rates.spool = y.velocity
+    if spool.kind == DIRECT:
+        rates.velocity = spool_acceleration(
+            spool_reference(current, k_spool), y.spool, y.velocity, spool.w_n, spool.zeta)
+        rates.acceleration = 0.0
+        return
+    rates.velocity = y.acceleration
+    if spool.kind == PILOTED:
+        rates.acceleration = piloted_jerk(current, y, spool)
+    else:
+        rates.acceleration = spool_jerk(spool_reference(current, k_spool), y, spool)
+
+
+@kernel
+def stop_spool(y, x_max):
+    """Hold the spool at its mechanical stop; a plastic stop takes its speed."""
+    if abs(y.spool) > x_max:
+        y.spool = math.copysign(x_max, y.spool)
+        if y.velocity * y.spool > 0.0:
+            y.velocity = 0.0
+            y.acceleration = 0.0

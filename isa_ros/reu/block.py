@@ -1,0 +1,122 @@
+"""
+One control block of the REU: PID with its feed-forward and feedback terms.
+
+The same block controls position, force or torque, pressure difference or spool; its output
+is the reference of the next block inwards, or the series-scale coil current (A) where there
+is none. Gains are per that unit.
+"""
+
+from dataclasses import dataclass
+
+from isa_ros.kernel import kernel
+from isa_ros.parameter import choice, parameter, Parameters
+from isa_ros.reu.compensation import (
+    COMPENSATION, compensation_record, dual_gain_compensation, DualGain, Linear)
+from isa_ros.reu.filters import low_pass, low_pass_coefficient
+from isa_ros.reu.schedule import Constant, OilStiffness, POINTS, scheduled, ThreePoints
+import numpy as np
+
+
+@dataclass(frozen=True, kw_only=True)
+class Pid(Parameters):
+    """Gains are output per measured; the output's unit is that of the next block inwards."""
+
+    rate_hz: float = parameter('loop rate', 'Hz', gt=0.0, le=50e3)
+    kp: float = parameter('proportional gain K_p', 'output/measured', ge=0.0, le=1e9)
+    ki: float = parameter('integral gain K_i', 'output/(measured s)', ge=0.0, le=1e9)
+    kd: float = parameter('derivative gain K_d on the error', 'output s/measured', ge=0.0, le=1e6)
+    kf: float = parameter('feedback damping K_f', 's', ge=0.0, le=0.1)
+    kr: float = parameter('feed-forward of the reference', 'output/measured', ge=-1e9, le=1e9)
+    kv: float = parameter(
+        'velocity compensation K_v', 'output per m/s | rad/s', ge=0.0, le=1e6)
+    offset: float = parameter('added to the demand', 'output', ge=-1e6, le=1e6)
+    setpoint_weight: float = parameter('weight b of the reference', '1', ge=0.0, le=2.0)
+    measured_filter_hz: float = parameter(
+        'low-pass on the measured value; 0: none', 'Hz', ge=0.0, le=25e3)
+    derivative_filter_hz: float = parameter('low-pass on derivatives', 'Hz', gt=0.0, le=25e3)
+    limit: float = parameter('largest output', 'output', gt=0.0, le=1e9)
+    anti_windup: str = choice(
+        'clamped: the integral stands still while the output is saturated', 'clamped', 'none')
+    retracting_factor: float = parameter(
+        'factor on demands that retract, for slots of equal area', '1', gt=0.0, le=10.0)
+    gain_schedule: Constant | OilStiffness | ThreePoints
+    compensation: Linear | DualGain
+
+
+BLOCK = np.dtype([
+    ('period', 'f8'), ('kp', 'f8'), ('ki', 'f8'), ('kd', 'f8'), ('kf', 'f8'), ('kr', 'f8'),
+    ('kv', 'f8'), ('offset', 'f8'), ('b', 'f8'), ('measured_alpha', 'f8'),
+    ('derivative_alpha', 'f8'), ('limit', 'f8'), ('is_clamped', 'f8'), ('retracting', 'f8'),
+    ('compensation', COMPENSATION), ('schedule', 'f8', (POINTS,))])
+BLOCK_STATE = np.dtype([
+    ('integral', 'f8'), ('measured', 'f8'), ('measured_rate', 'f8'), ('error', 'f8'),
+    ('error_rate', 'f8'), ('output', 'f8')])
+
+
+def block_record(sheet: Pid, table: np.ndarray) -> tuple[object, ...]:
+    """Return the `BLOCK` record of a sheet; ``table`` (POINTS,) is its gain schedule."""
+    smooths = sheet.measured_filter_hz > 0.0
+    return (
+        1.0 / sheet.rate_hz, sheet.kp, sheet.ki, sheet.kd, sheet.kf, sheet.kr, sheet.kv,
+        sheet.offset, sheet.setpoint_weight,
+        low_pass_coefficient(sheet.measured_filter_hz, sheet.rate_hz) if smooths else 1.0,
+        low_pass_coefficient(sheet.derivative_filter_hz, sheet.rate_hz),
+        sheet.limit, float(sheet.anti_windup == 'clamped'), sheet.retracting_factor,
+        compensation_record(sheet.compensation), table)
+
+
+@kernel
+def observe(reference, measured, block, state):
+    """Smooth the measured value and its derivative and that of the error  (R1)."""
+    value = low_pass(state.measured, measured, block.measured_alpha)
+    rate = (value - state.measured) / block.period
+    state.measured_rate = low_pass(state.measured_rate, rate, block.derivative_alpha)
+    state.measured = value
+    error = reference - value
+    rate = (error - state.error) / block.period
+    state.error_rate = low_pass(state.error_rate, rate, block.derivative_alpha)
+    state.error = error
+
+
+@kernel
+def demanded(reference, velocity, gain, block, state):
+    """
+    Return the demand of a block  (R3), in the output's unit.
+
+    u = w [K_p (b r - y - K_f y') + I] + K_d e' + K_r r + K_v v + u_0 with I' = K_i e; the
+    schedule's ``gain`` w stands in K_p and K_i. A retracting demand is scaled  (R7).
+    """
+    feedback = (gain * block.kp * (block.b * reference - state.measured
+                                   - block.kf * state.measured_rate)
+                + state.integral + block.kd * state.error_rate)
+    ahead, of_speed = block.kr * reference + block.offset, block.kv * velocity
+    if block.compensation.of_velocity:
+        of_speed = dual_gain_compensation(of_speed, block.compensation)
+        demand = feedback + of_speed + ahead
+    else:
+        demand = dual_gain_compensation(feedback + of_speed + ahead, block.compensation)
+    return demand * block.retracting if demand < 0.0 else demand
+
+
+@kernel
+def block_step(reference, measured, velocity, place, stroke, block, state):
+    """
+    Run one period: measure, feed back, output, update.
+
+    ``place`` (m or rad) looks up the schedule. The integral stands still while the realised
+    output is saturated and the error would drive it further  (R5).
+    """
+    observe(reference, measured, block, state)
+    gain = scheduled(place, stroke, block.schedule)
+    wanted = demanded(reference, velocity, gain, block, state)
+    state.output = max(-block.limit, min(block.limit, wanted))
+    error = reference - state.measured
+    if state.output == wanted or error * wanted < 0.0 or block.is_clamped == 0.0:
+        state.integral += gain * block.ki * block.period * error
+
+
+@kernel
+def rest(state):
+    """Forget integral and output of a block that is disabled."""
+    state.integral = 0.0
+    state.output = 0.0

@@ -1,0 +1,55 @@
+"""
+Nonlinear compensation of a block's demand for the valve's dual-gain flow curve.
+
+The paper's block DGC. Its demand and output have the unit of the spool (m) or of the series
+current (A), whichever the block commands.
+"""
+
+from dataclasses import dataclass
+
+from isa_ros.kernel import kernel
+from isa_ros.parameter import choice, parameter, Parameters
+import numpy as np
+
+
+@dataclass(frozen=True, kw_only=True)
+class Linear(Parameters):
+    """No compensation."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class DualGain(Parameters):
+    """Inverse of the valve's dual-gain flow curve."""
+
+    knee: float = parameter('end of the low-gain region', 'm | A', gt=0.0, le=1.0)
+    slope: float = parameter('low gain over high gain', '1', gt=0.0, le=1.0)
+    applies_to: str = choice(
+        'what passes through it: the whole demand (our reading), or the velocity '
+        "compensation alone (the paper's text)", 'demand', 'velocity')
+
+
+COMPENSATION = np.dtype([('knee', 'f8'), ('slope', 'f8'), ('of_velocity', 'f8')])
+_NO_KNEE = 1e300  # any unit: a demand never reaches it
+
+
+def compensation_record(sheet: Linear | DualGain) -> tuple[float, ...]:
+    """Return the `COMPENSATION` record of a sheet."""
+    if isinstance(sheet, DualGain):
+        return sheet.knee, sheet.slope, float(sheet.applies_to == 'velocity')
+    return _NO_KNEE, 1.0, 0.0
+
+
+@kernel
+def dual_gain_compensation(demand, compensation):
+    """
+    Return the continuous inverse of the flow curve  (R4), in the demand's unit.
+
+    |u| up to the knee passes, beyond it counts ``slope`` only, so that the flow is
+    proportional to the demand. Our reading passes the whole demand (errata 23).
+    """
+    knee = compensation.knee
+    if demand > knee:
+        return knee + compensation.slope * (demand - knee)
+    if demand < -knee:
+        return -knee + compensation.slope * (demand + knee)
+    return demand

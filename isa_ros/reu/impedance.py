@@ -1,0 +1,46 @@
+"""
+The position block as an impedance: it makes the reference of the force or torque block.
+
+Reference in m or rad, output in N or Nm. The gains in force come with the setpoint.
+"""
+
+from dataclasses import dataclass
+
+from isa_ros.kernel import kernel
+from isa_ros.parameter import parameter, Parameters
+import numpy as np
+
+
+@dataclass(frozen=True, kw_only=True)
+class Impedance(Parameters):
+    """Impedance gains in force before the first setpoint, and the limits of the output."""
+
+    rate_hz: float = parameter('loop rate', 'Hz', gt=0.0, le=50e3)
+    stiffness: float = parameter('impedance stiffness', 'N/m | Nm/rad', ge=0.0, le=1e7)
+    damping: float = parameter('impedance damping', 'Ns/m | Nms/rad', ge=0.0, le=1e6)
+    force_out: float = parameter('largest reference, pushing out', 'N | Nm', gt=0.0, le=1e6)
+    force_in: float = parameter('largest reference, pulling in', 'N | Nm', gt=0.0, le=1e6)
+
+
+IMPEDANCE = np.dtype([('force_out', 'f8'), ('force_in', 'f8')])
+SETPOINT = np.dtype([
+    ('position', 'f8'), ('velocity', 'f8'), ('effort', 'f8'),
+    ('stiffness', 'f8'), ('damping', 'f8'), ('is_enabled', 'f8')])
+
+
+def impedance_record(sheet: Impedance) -> tuple[float, ...]:
+    """Return the `IMPEDANCE` record of a sheet."""
+    return sheet.force_out, sheet.force_in
+
+
+@kernel
+def impedance(setpoint, position, velocity):
+    """Return stiffness (x_d - x) + damping (v_d - v) + effort  (R2), in N or Nm."""
+    return (setpoint.stiffness * (setpoint.position - position)
+            + setpoint.damping * (setpoint.velocity - velocity) + setpoint.effort)
+
+
+@kernel
+def force_reference(setpoint, position, velocity, limits):
+    """Return the impedance's force clipped at stall  (R2), in N or Nm."""
+    return max(-limits.force_in, min(limits.force_out, impedance(setpoint, position, velocity)))

@@ -1,0 +1,67 @@
+"""
+The current block: proportional with second-order lead-lag, two degrees of freedom.
+
+Equations 1 and 2 of the paper. It commands the amplifier's voltage (V) from the amplifier's
+current (A); the gain on the demand does the work of an integral, without its phase lag.
+"""
+
+from dataclasses import dataclass
+
+from isa_ros.kernel import kernel
+from isa_ros.parameter import parameter, Parameters
+import numpy as np
+
+
+@dataclass(frozen=True, kw_only=True)
+class LeadLag(Parameters):
+    """Gains of the current loop."""
+
+    rate_hz: float = parameter('loop rate', 'Hz', gt=0.0, le=50e3)
+    kp_v_per_ma: float = parameter('K_p of equation 1', 'V/mA', gt=0.0, le=1e3)
+    kpf: float = parameter('K_pf on the demand (eq 2)', '1', gt=0.0, le=10.0)
+    lead_rad_per_s: float = parameter('w_lead', 'rad/s', gt=0.0, le=1e6)
+    lag_rad_per_s: float = parameter('w_lag', 'rad/s', gt=0.0, le=1e6)
+    lead_damping: float = parameter('zeta_lead', '1', gt=0.0, le=2.0)
+    lag_damping: float = parameter('zeta_lag', '1', gt=0.0, le=2.0)
+    limit_v: float = parameter('largest voltage', 'V', gt=0.0, le=100.0)
+
+
+LEAD_LAG = np.dtype([
+    ('kpf', 'f8'), ('limit', 'f8'),
+    ('b_0', 'f8'), ('b_1', 'f8'), ('b_2', 'f8'), ('a_1', 'f8'), ('a_2', 'f8')])
+LEAD_LAG_STATE = np.dtype([('z_1', 'f8'), ('z_2', 'f8')])
+
+
+def demand_gain(kp: float, static_gain: float) -> float:
+    """Return K_pf = (1 + K_p K_sg)/(K_p K_sg)  (R10, equation 2); ``kp`` V/A, K_sg A/V."""
+    return (1.0 + kp * static_gain) / (kp * static_gain)
+
+
+def lead_lag_record(sheet: LeadLag) -> tuple[float, ...]:
+    """
+    Return the `LEAD_LAG` record of a sheet: C(s) by plain Tustin, s = 2 (z - 1)/(T (z + 1))  (R9).
+
+    C(s) = K_p w_lag^2 (s^2 + 2 zeta_lead w_lead s + w_lead^2)
+    / (w_lead^2 (s^2 + 2 zeta_lag w_lag s + w_lag^2)), equation 1; no prewarping.
+    """
+    c = 2.0 * sheet.rate_hz
+
+    def quadratic(w: float, zeta: float) -> tuple[float, float, float]:
+        s2, s1, s0 = c * c, 2.0 * zeta * w * c, w * w
+        return s2 + s1 + s0, 2.0 * (s0 - s2), s2 - s1 + s0
+    lead = quadratic(sheet.lead_rad_per_s, sheet.lead_damping)
+    lag = quadratic(sheet.lag_rad_per_s, sheet.lag_damping)
+    ratio = sheet.lag_rad_per_s / sheet.lead_rad_per_s
+    gain = sheet.kp_v_per_ma * 1e3 * ratio * ratio / lag[0]
+    return (sheet.kpf, sheet.limit_v, gain * lead[0], gain * lead[1], gain * lead[2],
+            lag[1] / lag[0], lag[2] / lag[0])
+
+
+@kernel
+def lead_lag_step(reference, measured, loop, state):
+    """Return the voltage U = C(z) [K_pf i_r - i] of one period  (R9), saturated, in V."""
+    e = loop.kpf * reference - measured
+    voltage = loop.b_0 * e + state.z_1
+    state.z_1 = loop.b_1 * e - loop.a_1 * voltage + state.z_2
+    state.z_2 = loop.b_2 * e - loop.a_2 * voltage
+    return max(-loop.limit, min(loop.limit, voltage))

@@ -1,0 +1,130 @@
+"""
+The REU's four control blocks: what each controls, at which rate, and what makes no sense.
+
+    position -> force or torque -> pressure difference -> spool -> current
+
+Any of them may be off; the setpoint's effort then is the reference of the outermost block
+that is on. With all but the current block off the REU is a plain valve amplifier.
+"""
+
+from dataclasses import dataclass
+
+from isa_ros.errors import ConfigError
+from isa_ros.parameter import parameter, Parameters
+from isa_ros.reu.block import Pid
+from isa_ros.reu.feedback_linearisation import FeedbackLinearisation
+from isa_ros.reu.impedance import Impedance
+from isa_ros.reu.lead_lag import LeadLag
+from isa_ros.reu.speed import SpeedEstimate
+from isa_ros.timebase import NS_PER_SECOND, PLANT_STEP_NS, steps_in
+
+BLOCKS = 4  # the standard firmware provides (paper section 3)
+NEVER = 1 << 62  # plant steps: the period of a block that is off
+
+
+@dataclass(frozen=True, kw_only=True)
+class Off(Parameters):
+    """The block is not active; what would be its reference passes inwards."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class Held(Parameters):
+    """The block samples and holds; its loop is closed by the plant's own closed form."""
+
+    rate_hz: float = parameter('loop rate', 'Hz', gt=0.0, le=50e3)
+
+
+@dataclass(frozen=True, kw_only=True)
+class Reu(Parameters):
+    """The control blocks by the variable they control, outermost first."""
+
+    speed: SpeedEstimate
+    position: Off | Impedance | Pid
+    force: Off | Pid | FeedbackLinearisation
+    pressure: Off | Pid
+    spool: Off | Held | Pid
+    current: Held | LeadLag
+    computation_delay_us: float = parameter(
+        'from an instant of the loops to what the amplifier then gets', 'us', ge=0.0, le=1e3)
+
+
+VARIABLES = ('position', 'force', 'pressure', 'spool', 'current')
+"""What a block may control, outermost first."""
+
+
+def active(reu: Reu) -> dict[str, float]:
+    """Return the rate (Hz) of every block that is on, by its variable, outermost first."""
+    return {name: getattr(reu, name).rate_hz for name in VARIABLES
+            if not isinstance(getattr(reu, name), Off)}
+
+
+def refuse_nonsense(reu: Reu) -> None:
+    """
+    Refuse a set of blocks that no REU could run, whatever its actuator is.
+
+    Raises
+    ------
+    ConfigError
+        Too many blocks, an impedance without a force block, rates that do not divide, or a
+        delay that is not one.
+
+    """
+    names = active(reu)
+    if len(names) > BLOCKS:
+        raise ConfigError(
+            f'reu: {len(names)} control blocks are on ({", ".join(names)}), must be <= {BLOCKS}; '
+            'set kind: off for the others')
+    if isinstance(reu.position, Impedance) and isinstance(reu.force, Off):
+        raise ConfigError(
+            'reu.position.kind = impedance gives a force reference and reu.force.kind is off; '
+            'set reu.position.kind: pid for pure position control')
+    delay_steps(reu, loop_steps(reu)['current'])
+
+
+def loop_steps(reu: Reu) -> dict[str, int]:
+    """
+    Return the periods of the speed estimate and of all variables in plant steps.
+
+    A block that is off has the period `NEVER`.
+
+    Raises
+    ------
+    ConfigError
+        A rate is not a whole number of plant steps, or an outer period not a
+        whole number of the next inner one; both are named.
+
+    """
+    rates = {'speed': reu.speed.rate_hz} | active(reu)
+    steps = {}
+    for name, rate in rates.items():
+        period_ns = NS_PER_SECOND / rate
+        if period_ns != int(period_ns):
+            raise ConfigError(
+                f'{name}.rate_hz = {rate:g} Hz, its period must be whole nanoseconds')
+        steps[name] = steps_in(int(period_ns), f'period of {name}.rate_hz = {rate:g} Hz')
+    names = list(steps)
+    for outer, inner in zip(names, names[1:]):
+        if steps[outer] % steps[inner]:
+            raise ConfigError(
+                f'{outer}.rate_hz = {rates[outer]:g} Hz does not divide '
+                f'{inner}.rate_hz = {rates[inner]:g} Hz')
+    return {name: steps.get(name, NEVER) for name in ('speed', *VARIABLES)}
+
+
+def delay_steps(reu: Reu, current_steps: int) -> int:
+    """
+    Return the computational delay in plant steps.
+
+    Raises
+    ------
+    ConfigError
+        It is not a whole number of plant steps, or as long as the current block's period.
+
+    """
+    steps = reu.computation_delay_us * 1e3 / PLANT_STEP_NS
+    if steps != int(steps) or steps >= current_steps:
+        raise ConfigError(
+            f'computation_delay_us = {reu.computation_delay_us:g} us, must be a multiple of '
+            f'{PLANT_STEP_NS / 1e3:g} us below {current_steps * PLANT_STEP_NS / 1e3:g} us, '
+            'the period of the current loop')
+    return int(steps)

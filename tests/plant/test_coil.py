@@ -1,0 +1,81 @@
+"""The coil: voltage limit, redundant coils, the explicit coil's gain and resonance."""
+
+import math
+
+from hypothesis import given, strategies as st
+from isa_ros.plant import coil
+from isa_ros.plant.plant import plant_record
+import numpy as np
+import pytest
+from tests.sheets import actuator_sheet, override, plant_row
+
+CLOSED = plant_row('smart_manifold').coil
+EXPLICIT = plant_record(actuator_sheet('smart_manifold', 'table_4', 'explicit').plant)[0].coil
+
+
+def coil_state(*values: float) -> np.record:
+    """Return a `COIL_STATE` row."""
+    return np.array([values or (0.0, 0.0, 0.0)], coil.COIL_STATE).view(np.recarray)[0]
+
+
+def wired(coils: str) -> np.record:
+    """Return the closed-loop coil's record with its coils wired otherwise."""
+    sheet = override(actuator_sheet('smart_manifold'), 'plant.coil.coils', coils)
+    return plant_record(sheet.plant)[0].coil
+
+
+def test_amplifier_voltage_limits_a_large_current_step():
+    """V1: 24 V over 9.2 H is 2.6 A/s at zero current, and nothing is left at 10 mA."""
+    assert coil.current_rate(0.0, 0.010, CLOSED) == pytest.approx(24.0 / 9.2)
+    assert coil.current_rate(0.010, 0.020, CLOSED) == pytest.approx(0.0, abs=1e-9)
+    assert coil.current_rate(0.0, 0.001, CLOSED) == pytest.approx(2.0)
+
+
+def test_the_circuit_follows_the_wiring():
+    """Two coils of 4800 ohm: 2400 in parallel, 9600 in series, 4800 with one broken."""
+    for coils, resistance, per_series in (
+            ('parallel', 2400.0, 2.0), ('series', 9600.0, 1.0), ('one_open', 4800.0, 2.0)):
+        own = wired(coils)
+        assert (own.resistance, own.parallel) == (resistance, per_series)
+
+
+def test_one_open_coil_halves_what_the_amplifier_can_give():
+    """At 24 V: 10 mA in parallel, 5 mA with one coil broken; the valve sees half of each."""
+    for coils, largest in (('parallel', 10e-3), ('one_open', 5e-3)):
+        own = wired(coils)
+        assert coil.current_rate(largest, 1.0, own) == pytest.approx(0.0, abs=1e-9)
+        assert own.parallel == 2.0
+
+
+def response(hz: float) -> complex:
+    """Return I/U of the explicit coil, differenced from its kernel, which is linear."""
+    def rates(y: np.ndarray, voltage: float) -> np.ndarray:
+        return np.array(coil.explicit_rates(coil_state(*y), voltage, EXPLICIT))
+    matrix = np.array([rates(e, 0.0) for e in np.eye(3)]).T
+    states = np.linalg.solve(2j * math.pi * hz * np.eye(3) - matrix, rates(np.zeros(3), 1.0))
+    return complex(states[0] + states[1])
+
+
+def test_static_gain_is_10_ma_at_24_v():
+    """V11: the resonance is part of the coil's gain, not an addition to it (errata 7)."""
+    assert abs(response(1e-3)) == pytest.approx(10e-3 / 24.0, rel=1e-5)
+
+
+def test_the_coil_rings_at_1_8_khz():
+    """V11, Fig 8 B: the gain has its peak there, k/(2 zeta) of the static gain above the rest."""
+    frequencies = np.linspace(1500.0, 2100.0, 601)
+    gains = np.array([abs(response(f)) for f in frequencies])
+    assert frequencies[gains.argmax()] == pytest.approx(1800.0, abs=10.0)
+    peak = 0.02 / (2.0 * 0.03) * 10e-3 / 24.0
+    # the first-order share is 2.3 % of the static gain there, at a right angle to the peak
+    assert gains.max() == pytest.approx(peak, rel=0.1)
+
+
+@given(current=st.floats(-1e-2, 1e-2), drive=st.floats(-30.0, 30.0))
+def test_compiled_rates_equal_their_python_source(current, drive):
+    """Both kinds of coil."""
+    for own in (CLOSED, EXPLICIT):
+        y, compiled, python = coil_state(current, 1e-4, 2.0), coil_state(), coil_state()
+        coil.coil_rates(y, drive, own, compiled)
+        coil.coil_rates.py_func(y, drive, own, python)
+        assert compiled.tobytes() == python.tobytes()

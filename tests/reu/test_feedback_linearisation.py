@@ -1,0 +1,95 @@
+"""The linearising force block: it inverts the plant it knows."""
+
+from dataclasses import replace
+
+from hypothesis import given, strategies as st
+from isa_ros.actuator_sheet import actuator_record
+from isa_ros.plant import chambers, servo_valve
+from isa_ros.plant.plant import plant_record
+from isa_ros.reu import block, feedback_linearisation as fl
+from isa_ros.reu.cascade import MEASURED
+import numpy as np
+import pytest
+from tests.sheets import actuator_sheet, MODELS, override
+
+SUPPLY = 20.7e6
+
+
+def known(model: str) -> tuple[np.record, np.record]:
+    """Return (LINEARISATION, PLANT) records of a shipped model without null leakage."""
+    sheet = override(
+        actuator_sheet(model, 'default', 'feedback_linearisation'),
+        'plant.valve.null_leakage_lpm', 0.0)
+    sheet = override(sheet, 'plant.valve.orifice_smoothing_kpa', 1e-6)
+    record = actuator_record(sheet, 0).view(np.recarray)[0]
+    return record.reu.linearisation, plant_record(sheet.plant)[0]
+
+
+KNOWN = {model: known(model) for model in MODELS}
+
+
+def measured(**values: float) -> np.record:
+    """Return a `MEASURED` row."""
+    row = np.zeros(1, MEASURED).view(np.recarray)[0]
+    for name, value in values.items():
+        setattr(row, name, value)
+    return row
+
+
+@given(flow=st.floats(0.0, 1.2e-4))
+def test_opening_inverts_the_flow_curve(flow):
+    """R11, V4: g(u(q)) = q up to the spool's stop."""
+    for law, plant in KNOWN.values():
+        u = fl.opening_of(flow, law.model)
+        if u < law.model.x_max:
+            assert servo_valve.flow_curve(u, plant.valve) == pytest.approx(
+                flow, rel=1e-9, abs=1e-15)
+        else:
+            assert flow >= servo_valve.flow_curve(u, plant.valve) * (1.0 - 1e-9)
+
+
+@given(rate=st.floats(-1.0, 1.0), velocity=st.floats(-0.02, 0.02), place=st.floats(0.05, 0.95),
+       share_a=st.floats(0.2, 0.8), share_b=st.floats(0.2, 0.8))
+def test_the_opening_gives_the_wanted_force_rate(rate, velocity, place, share_a, share_b):
+    """R12: C2 and C3 with the flows of that opening give F' back, but at the spool's stop."""
+    for law, plant in KNOWN.values():
+        oil = plant.chambers
+        p_a, p_b, s = share_a * SUPPLY, share_b * SUPPLY, place * oil.stroke
+        wanted = rate * 0.02 * chambers.oil_stiffness(s, oil) * oil.stroke
+        speed = velocity * oil.stroke
+        x = fl.opening_for(
+            wanted, measured(position=s, pressure_a=p_a, pressure_b=p_b), speed, law)
+        if abs(x) == law.model.x_max:
+            continue
+        q_a, q_b, _, _ = servo_valve.port_flows(x, p_a, p_b, SUPPLY, 0.0, plant.valve)
+        rates = chambers.pressure_rates(q_a, q_b, p_a, p_b, s, speed, 0.0, oil)
+        given_rate = chambers.hydraulic_force(*rates, oil)
+        # scale: the terms that cancel
+        scale = abs(wanted) + chambers.oil_stiffness(s, oil) * abs(speed) + 1.0
+        assert given_rate == pytest.approx(wanted, abs=1e-9 * scale)
+
+
+def test_the_integral_stands_still_at_the_stop():
+    """R5 holds for this block too."""
+    sheet = actuator_sheet('isa_v5', 'default', 'feedback_linearisation')
+    sheet = replace(sheet, reu=replace(sheet.reu, force=replace(sheet.reu.force, ki_per_s2=1e4)))
+    law = actuator_record(sheet, 0).view(np.recarray)[0].reu.linearisation
+    state = np.zeros(1, block.BLOCK_STATE).view(np.recarray)[0]
+    row = measured(position=0.05, pressure_a=8e6, pressure_b=11e6)
+    fl.linearising_step(1e5, row, 0.0, law, state)
+    assert state.output == law.limit
+    assert state.integral == 0.0
+    fl.linearising_step(10.0, row, 0.0, law, state)
+    assert state.integral > 0.0
+
+
+@given(reference=st.floats(-7e3, 7e3), force=st.floats(-7e3, 7e3), velocity=st.floats(-0.5, 0.5))
+def test_compiled_block_equals_its_python_source(reference, force, velocity):
+    """One period, every state."""
+    for law, plant in KNOWN.values():
+        row = measured(position=0.4 * plant.chambers.stroke, force=force, pressure_a=9e6,
+                       pressure_b=7e6)
+        compiled, python = (np.zeros(1, block.BLOCK_STATE).view(np.recarray)[0] for _ in 'ab')
+        fl.linearising_step(reference, row, velocity, law, compiled)
+        fl.linearising_step.py_func(reference, row, velocity, law, python)
+        assert compiled.tobytes() == python.tobytes()
