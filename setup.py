@@ -27,7 +27,8 @@ setup(
     python_requires='>=3.10',
     packages=find_packages(include=['isa_ros', 'isa_ros.*', 'msg_adapters', 'msg_adapters.*']),
     package_data={
-        'isa_ros': ['py.typed', 'models/*.yaml', 'load/**/*.yaml', 'nodes/*.xml'],
+        'isa_ros': [
+            'py.typed', 'gaits/*.yaml', 'load/**/*.yaml', 'models/*.yaml', 'nodes/*.xml'],
         'msg_adapters': ['py.typed'],
     },
     data_files=[

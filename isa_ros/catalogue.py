@@ -1,4 +1,4 @@
-"""The data that comes with the package: actuator models with their presets and loads, legs."""
+"""The data that comes with the package: actuator models, legs, gaits."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -12,6 +12,7 @@ from isa_ros.strict_yaml import read, Tree
 _PACKAGE = Path(__file__).parent
 _MODELS = _PACKAGE / 'models'
 _LEGS = _PACKAGE / 'load' / 'legs'
+_GAITS = _PACKAGE / 'gaits'
 
 
 @dataclass(frozen=True)
@@ -113,6 +114,12 @@ def leg_section(name: str, where: str) -> tuple[Section, Place]:
     path = _packaged(_LEGS, name, where, 'leg')
     tree: Tree = read(path)
     return sourced(tree, Place(path.name)), Place(path.name)
+
+
+def gait_section(name: str, where: str) -> Section:
+    """Return the values of a packaged gait; as `actuator_model`."""
+    path = _packaged(_GAITS, name, where, 'gait')
+    return sourced(read(path), Place(path.name))
 
 
 def _names(directory: Path) -> list[str]:

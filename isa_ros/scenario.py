@@ -103,8 +103,8 @@ def _scenario(tree: Tree, place: Place, run: RunConfig) -> Scenario:
     tracks = []
     for actuator, points in sections.items():
         _refuse_stranger(actuator, run, place / 'tracks' / actuator)
-        tracks.append(read_track(
-            run.actuator(actuator), points, place / 'tracks' / actuator, run.step_ns, n_ticks))
+        tracks.append(
+            read_track(run, actuator, points, place / 'tracks' / actuator, n_ticks))
     return Scenario(name, run, n_ticks, tuple(tracks))
 
 

@@ -12,24 +12,20 @@ from typing import Any
 
 from isa_ros.config import ticks_in
 from isa_ros.errors import ConfigError
+from isa_ros.gait_motion import read_gait
+from isa_ros.motion import Excursion, MAX_EFFORT, Motion, POSITION, WAVEFORMS
 from isa_ros.parameter import check, parameter, Parameters
 from isa_ros.resolve import as_tree, build, Place, refuse_unknown, section_at, written
-from isa_ros.run_config import ActuatorConfig
+from isa_ros.run_config import ActuatorConfig, RunConfig
 from isa_ros.signals import HAS_ENABLE, HAS_SETPOINT
 from isa_ros.strict_yaml import Tree
 from isa_ros.timebase import NS_PER_SECOND
 import numpy as np
 
+GAIT = 'gait'
+MOTIONS = (*WAVEFORMS, GAIT)
 MAX_DURATION = 1e6  # s, a bound against slips of the pen
 HOLD = 'hold'       # position: where the actuator starts
-
-
-@dataclass(frozen=True, kw_only=True)
-class Sine(Parameters):
-    """A sine on the position from its setpoint on; the velocity follows it."""
-
-    amplitude: float = parameter('amplitude', 'm | rad', ge=-10.0, le=10.0)
-    frequency_hz: float = parameter('frequency', 'Hz', gt=0.0, le=500.0)
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -38,7 +34,7 @@ class Setpoint(Parameters):
 
     position: float = parameter('equilibrium', 'm | rad', ge=-100.0, le=100.0)
     velocity: float = parameter('of the equilibrium', 'm/s | rad/s', ge=-1e3, le=1e3)
-    effort: float = parameter('feed-forward', 'N | Nm', ge=-1e6, le=1e6)
+    effort: float = parameter('feed-forward', 'N | Nm', ge=-MAX_EFFORT, le=MAX_EFFORT)
 
 
 _GAINS: Mapping[str, Mapping[str, Any]] = {
@@ -56,21 +52,20 @@ class Event:
     stiffness: float | None
     damping: float | None
     is_enabled: bool | None
-    sine: Sine | None
+    motion: Motion | None
 
     def write(self, tick: int, step_ns: int, row: np.void) -> None:
-        """Fill the `COMMAND` row of ``tick``, this event's own or a later one of its sine."""
+        """Fill the `COMMAND` row of ``tick``, this event's own or a later one of its motion."""
         kinds = 0
         if self.setpoint is not None:
             kinds = HAS_SETPOINT
-            position, velocity = self.setpoint.position, self.setpoint.velocity
-            if self.sine is not None:
-                omega = 2.0 * math.pi * self.sine.frequency_hz
-                phase = omega * ((tick - self.tick) * step_ns / NS_PER_SECOND)
-                position += self.sine.amplitude * math.sin(phase)
-                velocity += self.sine.amplitude * omega * math.cos(phase)
-            row['position'], row['velocity'] = position, velocity
-            row['effort'] = self.setpoint.effort
+            own = self.setpoint
+            added = Excursion(0.0, 0.0, 0.0)
+            if self.motion is not None:
+                added = self.motion.at((tick - self.tick) * step_ns)
+            row['position'] = own.position + added.position
+            row['velocity'] = own.velocity + added.velocity
+            row['effort'] = own.effort + added.effort
             for name in _GAINS:
                 value = getattr(self, name)
                 row[name] = math.nan if value is None else value
@@ -88,18 +83,17 @@ class Track:
     events: tuple[Event, ...]
 
     def at(self, tick: int) -> Event | None:
-        """Return the event that speaks at ``tick``: its own one, or a sine going on."""
+        """Return the event that speaks at ``tick``: its own one, or a motion going on."""
         k = bisect_right(self.events, tick, key=lambda event: event.tick) - 1
         if k < 0:
             return None
         event = self.events[k]
-        return event if event.tick == tick or event.sine is not None else None
+        return event if event.tick == tick or event.motion is not None else None
 
 
-def read_track(
-        actuator: ActuatorConfig, points: Any, place: Place, step_ns: int, n_ticks: int) -> Track:
+def read_track(run: RunConfig, name: str, points: Any, place: Place, n_ticks: int) -> Track:
     """
-    Return the track of a list of setpoints.
+    Return the track of a list of setpoints for one actuator of a run.
 
     Raises
     ------
@@ -110,9 +104,10 @@ def read_track(
     if not isinstance(points, list) or not points:
         raise ConfigError(f'{place} = {points!r}, must be a list of setpoints')
     events: list[Event] = []
+    step_ns = run.step_ns
     for k, point in enumerate(points):
         below = Place(place.file, f'{place.key}[{k}]')
-        event = _event(section_at(point, below), below, actuator, step_ns)
+        event = _event(section_at(point, below), below, run, run.actuator(name))
         if event.tick >= n_ticks:
             raise ConfigError(
                 f'{below}.t_s = {event.tick * step_ns / NS_PER_SECOND:g} s, must be < '
@@ -122,15 +117,16 @@ def read_track(
                 f'{below}.t_s = {event.tick * step_ns / NS_PER_SECOND:g} s, must be > the '
                 f'one before it, {events[-1].tick * step_ns / NS_PER_SECOND:g} s')
         events.append(event)
-    return Track(actuator.name, tuple(events))
+    return Track(name, tuple(events))
 
 
-def _event(tree: Tree, place: Place, actuator: ActuatorConfig, step_ns: int) -> Event:
+def _event(tree: Tree, place: Place, run: RunConfig, actuator: ActuatorConfig) -> Event:
     refuse_unknown(tree, (
-        't_s', 'position', 'velocity', 'effort', 'stiffness', 'damping', 'enabled', 'sine'), place)
+        't_s', 'position', 'velocity', 'effort', 'stiffness', 'damping', 'enabled', *MOTIONS),
+        place)
     check(f'{place}.t_s', tree.get('t_s'), {
         'doc': 'time', 'unit': 's', 'bounds': {'ge': 0.0, 'le': MAX_DURATION}})
-    tick = ticks_in(float(tree['t_s']), step_ns, f'{place}.t_s')  # type: ignore[arg-type]
+    tick = ticks_in(float(tree['t_s']), run.step_ns, f'{place}.t_s')  # type: ignore[arg-type]
     is_enabled = tree.get('enabled')
     if is_enabled is not None and not isinstance(is_enabled, bool):
         raise ConfigError(f'{place}.enabled = {is_enabled!r}, must be true or false')
@@ -141,11 +137,27 @@ def _event(tree: Tree, place: Place, actuator: ActuatorConfig, step_ns: int) -> 
     if 'position' not in tree and is_enabled is None:
         raise ConfigError(place.has('needs a position or enabled'))
     gains = {name: _gain(tree, name, place) for name in _GAINS}
-    sine = build(Sine, written(section_at(tree['sine'], place / 'sine'), place / 'sine'),
-                 place / 'sine') if 'sine' in tree else None
-    return Event(
-        tick, _setpoint(tree, place, actuator) if 'position' in tree else None,
-        gains['stiffness'], gains['damping'], is_enabled, sine)
+    setpoint = _setpoint(tree, place, actuator) if 'position' in tree else None
+    motion = None if setpoint is None else _motion(tree, place, run, actuator, setpoint)
+    return Event(tick, setpoint, gains['stiffness'], gains['damping'], is_enabled, motion)
+
+
+def _motion(tree: Tree, place: Place, run: RunConfig, actuator: ActuatorConfig,
+            setpoint: Setpoint) -> Motion | None:
+    given = [name for name in MOTIONS if name in tree]
+    if not given:
+        return None
+    if len(given) > 1:
+        raise ConfigError(place.has(f'has {" and ".join(given)}, must be one motion'))
+    below = place / given[0]
+    section = section_at(tree[given[0]], below)
+    if given[0] == GAIT:
+        return read_gait(section, below, actuator, run.leg, setpoint.position)
+    with_default: Tree = {'moves': POSITION}
+    with_default |= section
+    wave = build(WAVEFORMS[given[0]], written(with_default, below), below)
+    wave.refuse_step(run.step_ns, str(below))
+    return wave
 
 
 def _setpoint(tree: Tree, place: Place, actuator: ActuatorConfig) -> Setpoint:
@@ -183,6 +195,11 @@ def event_tree(event: Event, step_ns: int) -> Tree:
             tree[name] = getattr(event, name)
     if event.is_enabled is not None:
         tree['enabled'] = event.is_enabled
-    if event.sine is not None:
-        tree['sine'] = as_tree(event.sine)
+    if event.motion is not None:
+        tree[_kind(event.motion)] = event.motion.tree()
     return tree
+
+
+def _kind(motion: Motion) -> str:
+    """Return the key of a motion."""
+    return next((name for name, cls in WAVEFORMS.items() if isinstance(motion, cls)), GAIT)

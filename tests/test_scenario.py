@@ -15,6 +15,8 @@ import pytest
 CONFIG = Path(__file__).parents[1] / 'config'
 DROP = CONFIG / 'scenarios' / 'drop.yaml'
 STEP = CONFIG / 'scenarios' / 'step.yaml'
+TROT = CONFIG / 'scenarios' / 'trot.yaml'
+TROT_LEG = CONFIG / 'scenarios' / 'trot_leg.yaml'
 
 
 @pytest.fixture(scope='module')
@@ -70,10 +72,10 @@ def test_the_step_blocks_the_wheel_and_asks_for_17_nm(rotary: RunConfig) -> None
     assert rows(step, 0)[0]['stiffness'] == 0.0
 
 
-@pytest.mark.parametrize('path', [DROP, STEP], ids=['drop', 'step'])
+@pytest.mark.parametrize('path', [DROP, STEP, TROT, TROT_LEG], ids=lambda path: path.stem)
 def test_a_scenario_survives_its_text(path: Path, leg: RunConfig, rotary: RunConfig) -> None:
     """The bag carries this text: every row of every tick must come back bit for bit."""
-    scenario = load_scenario(path, leg if path is DROP else rotary)
+    scenario = load_scenario(path, leg if path in (DROP, TROT_LEG) else rotary)
     again = scenario_of(scenario.to_yaml(), scenario.run)
     assert again == scenario and again.n_ticks is not None
     for tick in range(again.n_ticks):
@@ -97,6 +99,31 @@ def test_a_sine_speaks_every_tick_until_the_next_setpoint(rotary: RunConfig) -> 
         assert row['velocity'] == pytest.approx(0.35 * omega * math.cos(omega * t), abs=1e-13)
     assert rows(scenario, 500)[0]['velocity'] == 0.0
     assert rows(scenario, 501)[0]['kinds'] == 0
+
+
+@pytest.mark.parametrize('text', [
+    'chirp: {amplitude: 0.1, start_hz: 1, end_hz: 50, duration_s: 0.3, sweep: linear}',
+    'chirp: {moves: effort, amplitude: 17, start_hz: 50, end_hz: 1, duration_s: 0.3, '
+    'sweep: exponential}',
+    'pulse: {moves: effort, amplitude: 17.0, period_s: 0.1, width_s: 0.03}',
+    'gait: {joint: hfe}',
+])
+def test_a_motion_survives_its_text(text: str, rotary: RunConfig) -> None:
+    """What a file leaves out is written out; every row comes back bit for bit."""
+    scenario = of_track(f'  - {{t_s: 0.1, position: 0.8, {text}}}\n', rotary)
+    again = scenario_of(scenario.to_yaml(), scenario.run)
+    assert again == scenario
+    for tick in range(1000):
+        assert rows(again, tick).tobytes() == rows(scenario, tick).tobytes()
+
+
+def test_a_motion_is_added_to_its_setpoint(rotary: RunConfig) -> None:
+    scenario = of_track(
+        '  - {t_s: 0.1, position: 0.8, velocity: 0.1, effort: -3,\n'
+        '     pulse: {moves: effort, amplitude: 17, period_s: 0.1, width_s: 0.03}}\n', rotary)
+    up, down = rows(scenario, 100)[0], rows(scenario, 130)[0]
+    assert (up['position'], up['velocity'], up['effort']) == (0.8, 0.1, 14.0)
+    assert (down['position'], down['velocity'], down['effort']) == (0.8, 0.1, -3.0)
 
 
 def test_enabling_alone_is_no_setpoint(rotary: RunConfig) -> None:
@@ -123,6 +150,28 @@ def test_enabling_alone_is_no_setpoint(rotary: RunConfig) -> None:
     ('  - {t_s: 0, position: 0.8, stifness: 3}\n', 'stifness is unknown; did you mean stiffness'),
     ('  - {t_s: 0, position: 0.8, sine: {amplitude: 1, frequency_hz: 0}}\n',
      'sine.frequency_hz = 0 Hz, must be > 0 Hz'),
+    ('  - {t_s: 0, position: 0.8, sine: {amplitude: 1, frequency_hz: 501}}\n',
+     'rotor[0].sine.frequency_hz = 501 Hz, must be <= 500 Hz, half the rate of step_ms = 1 ms'),
+    ('  - {t_s: 0, position: 0.8, sine: {amplitude: 17, frequency_hz: 1}}\n',
+     'rotor[0].sine: Sine.amplitude = 17 m | rad, must be <= 10 m | rad (of the position)'),
+    ('  - {t_s: 0, position: 0.8, sine: {moves: speed, amplitude: 1, frequency_hz: 1}}\n',
+     "rotor[0].sine.moves = 'speed', must be one of position, effort"),
+    ('  - {t_s: 0, position: 0.8, chirp: {amplitude: 1, start_hz: 1, end_hz: 600, '
+     'duration_s: 1, sweep: linear}}\n', 'rotor[0].chirp.end_hz = 600 Hz, must be <= 500 Hz'),
+    ('  - {t_s: 0, position: 0.8, chirp: {amplitude: 1, start_hz: 1, end_hz: 9}}\n',
+     'rotor[0].chirp lacks duration_s'),
+    ('  - {t_s: 0, position: 0.8, pulse: {amplitude: 1, period_s: 0.1, width_s: 0.0305}}\n',
+     'rotor[0].pulse.width_s = 0.0305 s, must be a multiple of step_ms = 1 ms'),
+    ('  - {t_s: 0, position: 0.8, sine: {amplitude: 1, frequency_hz: 1}, gait: {joint: hfe}}\n',
+     'rotor[0] has sine and gait, must be one motion'),
+    ('  - {t_s: 0, enabled: true, gait: {joint: hfe}}\n',
+     'gait is not used: a setpoint needs its position'),
+    ('  - {t_s: 0, position: 0.8, gait: {joint: hip}}\n',
+     "rotor[0].gait.joint = 'hip', must be one of haa, hfe, kfe"),
+    ('  - {t_s: 0, position: 0.8, gait: {joint: hfe, forward_speed: 2}}\n',
+     'rotor[0].gait: forward_speed = 2 m/s at step_frequency_hz = 1.7 Hz moves hfe from -8.34'),
+    ('  - {t_s: 0, position: 0.2, gait: {joint: hfe}}\n',
+     'rotor[0].gait moves rotor from -0.1509 to 0.5509 rad, must stay within its 0 to 1.745 rad'),
     ('  - 3\n', 'tracks.rotor[0] = 3, must be a section'),
     ('    {}\n', 'tracks.rotor = {}, must be a list of setpoints'),
 ])
