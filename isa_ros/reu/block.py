@@ -50,7 +50,7 @@ BLOCK = np.dtype([
     ('compensation', COMPENSATION), ('schedule', 'f8', (POINTS,))])
 BLOCK_STATE = np.dtype([
     ('integral', 'f8'), ('measured', 'f8'), ('measured_rate', 'f8'), ('error', 'f8'),
-    ('error_rate', 'f8'), ('output', 'f8')])
+    ('error_rate', 'f8'), ('slow_rate', 'f8'), ('output', 'f8')])
 
 
 def block_record(sheet: Pid, table: np.ndarray) -> tuple[object, ...]:

@@ -87,7 +87,8 @@ def reu_record(
     if isinstance(reu.position, Impedance):
         row['impedance'] = impedance_record(reu.position)
     if isinstance(reu.force, FeedbackLinearisation):
-        row['linearisation'] = linearisation_record(reu.force, model)
+        row['linearisation'] = linearisation_record(
+            reu.force, reu.speed.filter_hz, model)
     if isinstance(reu.current, LeadLag):
         row['lead_lag'] = lead_lag_record(reu.current)
     for name, period in steps.items():

@@ -39,7 +39,7 @@ class FeedbackLinearisation(Parameters):
 
 LINEARISED = np.dtype([
     ('area_a', 'f8'), ('area_b', 'f8'), ('stroke', 'f8'), ('dead_volume', 'f8'),
-    ('beta', 'f8'), ('c_li', 'f8'),
+    ('beta', 'f8'), ('c_li', 'f8'), ('k_s', 'f8'),
     ('k_low', 'f8'), ('k_high', 'f8'), ('q_rest', 'f8'), ('x_dg', 'f8'), ('x_max', 'f8'),
     ('per_root_drop', 'f8'), ('f_pa', 'f8'), ('f_at', 'f8'), ('f_bt', 'f8'), ('f_pb', 'f8'),
     ('output_per_spool', 'f8')])
@@ -47,19 +47,25 @@ LINEARISED = np.dtype([
 
 LINEARISATION = np.dtype([
     ('period', 'f8'), ('bandwidth', 'f8'), ('ki', 'f8'), ('kf', 'f8'),
-    ('derivative_alpha', 'f8'), ('velocity_share', 'f8'), ('least_drop', 'f8'),
+    ('derivative_alpha', 'f8'), ('speed_alpha', 'f8'), ('velocity_share', 'f8'), ('least_drop', 'f8'),
     ('p_s', 'f8'), ('p_t', 'f8'), ('limit', 'f8'), ('is_clamped', 'f8'),
     ('model', LINEARISED)])
 
 
 def linearisation_record(
-        sheet: FeedbackLinearisation, model: tuple[float, ...]) -> tuple[object, ...]:
-    """Return the `LINEARISATION` record of a sheet; ``model`` is its `LINEARISED` record."""
+        sheet: FeedbackLinearisation, speed_filter_hz: float,
+        model: tuple[float, ...]) -> tuple[object, ...]:
+    """
+    Return the `LINEARISATION` record of a sheet; ``model`` is its `LINEARISED` record.
+
+    ``speed_filter_hz`` is the low-pass of the speed it will be given.
+    """
     names = LINEARISED.names or ()
     known = dict(zip(names, model))
     return (
         1.0 / sheet.rate_hz, sheet.bandwidth_rad_per_s, sheet.ki_per_s2, sheet.kf,
-        low_pass_coefficient(sheet.derivative_filter_hz, sheet.rate_hz), sheet.velocity_share,
+        low_pass_coefficient(sheet.derivative_filter_hz, sheet.rate_hz),
+        low_pass_coefficient(speed_filter_hz, sheet.rate_hz), sheet.velocity_share,
         sheet.least_drop_kpa * 1e3, sheet.supply_pressure_mpa * 1e6,
         sheet.return_pressure_mpa * 1e6,
         min(sheet.limit, known['x_max'] * known['output_per_spool']),
@@ -86,13 +92,14 @@ def opening_of(flow, model):
 
 
 @kernel
-def opening_for(force_rate, measured, velocity, block):
+def opening_for(force_rate, measured, load_velocity, block):
     """
     Return the spool travel (m) that gives ``force_rate`` (N/s | Nm/s)  (R12).
 
     From C2 and C3 F' = beta [(A_A/V_A Q_A - A_B/V_B Q_B) - (A_A^2/V_A + A_B^2/V_B) v
-    - (A_A/V_A + A_B/V_B) C_li (P_A - P_B)]; solved for the flow g of the open lands at dp_ref
-    (V7) with the measured pressures. Leakage of the lands is neglected.
+    - (A_A/V_A + A_B/V_B) C_li (P_A - P_B)], where the piston moves with the load and by what
+    the sensor gives way, v = v_load + F'/K_s; solved for the flow g of the open lands at
+    dp_ref (V7) with the measured pressures. Leakage of the lands is neglected.
     """
     model = block.model
     place = max(0.0, min(model.stroke, measured.position))
@@ -100,7 +107,9 @@ def opening_for(force_rate, measured, velocity, block):
     per_a = model.beta * a_a / (model.dead_volume + a_a * place)
     per_b = model.beta * a_b / (model.dead_volume + a_b * (model.stroke - place))
     p_a, p_b = measured.pressure_a, measured.pressure_b
-    wanted = (force_rate + block.velocity_share * (per_a * a_a + per_b * a_b) * velocity
+    k_oil = per_a * a_a + per_b * a_b
+    wanted = (force_rate * (1.0 + k_oil / model.k_s)
+              + block.velocity_share * k_oil * load_velocity
               + (per_a + per_b) * model.c_li * (p_a - p_b))
     least = block.least_drop
     if wanted > 0.0:
@@ -117,14 +126,18 @@ def linearising_step(reference, measured, velocity, block, state):
     """
     Run one period: F' = w (F_r - F - K_f dF/dt) + integral(K_i e)  (R8), then its opening  (R12).
 
-    ``state`` is a `BLOCK_STATE`; anti-windup as in R5.
+    The speed of the load is the estimated one less the sensor's, F'/K_s, through the same
+    low-pass. ``state`` is a `BLOCK_STATE`; anti-windup as in R5.
     """
     rate = (measured.force - state.measured) / block.period
     state.measured_rate = low_pass(state.measured_rate, rate, block.derivative_alpha)
+    state.slow_rate = low_pass(state.slow_rate, rate, block.speed_alpha)
     state.measured = measured.force
     error = reference - measured.force
     force_rate = block.bandwidth * (error - block.kf * state.measured_rate) + state.integral
-    wanted = block.model.output_per_spool * opening_for(force_rate, measured, velocity, block)
+    load_velocity = velocity - state.slow_rate / block.model.k_s
+    wanted = block.model.output_per_spool * opening_for(
+        force_rate, measured, load_velocity, block)
     state.output = max(-block.limit, min(block.limit, wanted))
     if abs(wanted) < block.limit or error * wanted < 0.0 or block.is_clamped == 0.0:
         state.integral += block.ki * block.period * error

@@ -51,7 +51,7 @@ def test_opening_inverts_the_flow_curve(flow):
 @given(rate=st.floats(-1.0, 1.0), velocity=st.floats(-0.02, 0.02), place=st.floats(0.05, 0.95),
        share_a=st.floats(0.2, 0.8), share_b=st.floats(0.2, 0.8))
 def test_the_opening_gives_the_wanted_force_rate(rate, velocity, place, share_a, share_b):
-    """R12: C2 and C3 with the flows of that opening give F' back, but at the spool's stop."""
+    """R12: with that opening C2 and C3 give F' back while the sensor gives way by F'/K_s."""
     for law, plant in KNOWN.values():
         oil = plant.chambers
         p_a, p_b, s = share_a * SUPPLY, share_b * SUPPLY, place * oil.stroke
@@ -62,10 +62,11 @@ def test_the_opening_gives_the_wanted_force_rate(rate, velocity, place, share_a,
         if abs(x) == law.model.x_max:
             continue
         q_a, q_b, _, _ = servo_valve.port_flows(x, p_a, p_b, SUPPLY, 0.0, plant.valve)
-        rates = chambers.pressure_rates(q_a, q_b, p_a, p_b, s, speed, 0.0, oil)
+        piston = speed + wanted / plant.mechanics.k_s
+        rates = chambers.pressure_rates(q_a, q_b, p_a, p_b, s, piston, 0.0, oil)
         given_rate = chambers.hydraulic_force(*rates, oil)
         # scale: the terms that cancel
-        scale = abs(wanted) + chambers.oil_stiffness(s, oil) * abs(speed) + 1.0
+        scale = abs(wanted) + chambers.oil_stiffness(s, oil) * (abs(speed) + abs(piston)) + 1.0
         assert given_rate == pytest.approx(wanted, abs=1e-9 * scale)
 
 
