@@ -13,13 +13,18 @@ from isa_ros.catalogue import actuator_model
 from isa_ros.config import leg_start, name_of, own_load, refuse_reach, refuse_start, ticks_in
 from isa_ros.errors import ConfigError
 from isa_ros.parameter import check
-from isa_ros.resolve import Place, refuse_unknown, section_at
+from isa_ros.resolve import alternatives, Place, refuse_unknown, section_at
 from isa_ros.run_config import ActuatorConfig, RunConfig
 from isa_ros.strict_yaml import dump, parse, read, Tree
 from isa_ros.timebase import NS_PER_SECOND
 from isa_ros.tracks import event_tree, MAX_DURATION, read_track, Track
 import numpy as np
 from numpy.typing import NDArray
+
+FIGURES = (
+    'position_torque_tracking', 'torque_step', 'force_step', 'impact', 'weight', 'knee_sine',
+    'leg_drop')
+"""Figures of the paper that a scenario may be drawn as; see `isa_ros.analysis.paper_figures`."""
 
 
 @dataclass(frozen=True)
@@ -32,6 +37,8 @@ class Scenario:
     n_ticks: int | None
     """None: until stopped."""
     tracks: tuple[Track, ...]
+    figure: str | None = None
+    """One of `FIGURES`, which `isa report` draws first."""
 
     @property
     def duration_s(self) -> float | None:
@@ -61,6 +68,8 @@ class Scenario:
     def to_yaml(self) -> str:
         """Return the scenario as a scenario file with every position as a number."""
         tree: Tree = {'name': self.name}
+        if self.figure is not None:
+            tree['figure'] = self.figure
         if self.duration_s is not None:
             tree['duration_s'] = self.duration_s
         tree['tracks'] = {
@@ -95,7 +104,7 @@ def scenario_of(text: str, run: RunConfig, name: str = 'scenario.yaml') -> Scena
 
 
 def _scenario(tree: Tree, place: Place, run: RunConfig) -> Scenario:
-    refuse_unknown(tree, ('name', 'duration_s', 'leg', 'loads', 'tracks'), place)
+    refuse_unknown(tree, ('name', 'figure', 'duration_s', 'leg', 'loads', 'tracks'), place)
     name = name_of(tree, 'name', place)
     n_ticks = _duration(tree.get('duration_s'), run.step_ns, f'{place}: duration_s')
     run = _with_loads(_with_leg(run, tree, place), tree, place)
@@ -105,7 +114,24 @@ def _scenario(tree: Tree, place: Place, run: RunConfig) -> Scenario:
         _refuse_stranger(actuator, run, place / 'tracks' / actuator)
         tracks.append(
             read_track(run, actuator, points, place / 'tracks' / actuator, n_ticks))
-    return Scenario(name, run, n_ticks, tuple(tracks))
+    return Scenario(name, run, n_ticks, tuple(tracks), figure_of(tree, place))
+
+
+def figure_of(tree: Tree, place: Place) -> str | None:
+    """
+    Return the figure a scenario is drawn as, None where it names none.
+
+    Raises
+    ------
+    ConfigError
+        There is no such figure.
+
+    """
+    figure = tree.get('figure')
+    if figure is None or figure in FIGURES:
+        return figure
+    raise ConfigError(
+        f"{place / 'figure'} = {figure!r} is no figure; {alternatives(str(figure), FIGURES)}")
 
 
 def _duration(value: Any, step_ns: int, where: str) -> int:

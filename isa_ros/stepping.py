@@ -98,6 +98,39 @@ class SteppedActuator:
         return messages
 
 
+class QuietActuator:
+    """One actuator that is told everything by the coordinator and tells nobody else."""
+
+    def __init__(self, config: ActuatorConfig, timing: Timing) -> None:
+        self._stepped = SteppedActuator(config, timing)
+
+    @property
+    def digest(self) -> str:
+        """Return the digest of its parameters."""
+        return self._stepped.digest
+
+    @property
+    def reply(self) -> np.void:
+        """Return the `LOAD_REPLY` of the last tick."""
+        return self._stepped.actuator.reply
+
+    def start(self, start: np.void | None) -> Messages:
+        """Begin anew at t = 0."""
+        return self._stepped.start(start)
+
+    def advance(self, tick: int, port: np.void | None, command: np.void | None) -> Messages:
+        """Take the command of this tick and advance."""
+        if command is not None and command['kinds']:
+            self._stepped.actuator.accept(command)
+        return self._stepped.advance(port)
+
+    def publish(self, messages: Messages) -> None:
+        """Tell nobody."""
+
+    def serve(self) -> None:
+        """Listen to nobody."""
+
+
 class LocalTransport:
     """
     All participants in this process, called one after the other in configuration order.

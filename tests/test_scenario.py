@@ -223,3 +223,18 @@ def test_an_idle_scenario_commands_nothing(rotary: RunConfig) -> None:
     assert scenario.n_ticks is None and scenario.duration_s is None
     assert rows(scenario, 0)[0]['kinds'] == 0
     assert idle(rotary, 0.25).n_ticks == 250
+
+
+def test_a_scenario_may_name_the_figure_it_is_drawn_as(rotary: RunConfig) -> None:
+    """The name survives the text a bag carries."""
+    scenario = scenario_of('name: s\nfigure: torque_step\nduration_s: 1\n', rotary)
+    assert scenario.figure == 'torque_step'
+    assert scenario_of(scenario.to_yaml(), rotary).figure == 'torque_step'
+
+
+@pytest.mark.parametrize('text, expected', [
+    ('torqe_step', 'did you mean torque_step'), ('bode', 'valid: position_torque_tracking'),
+    ('7', 'figure = 7 is no figure'), ('[a]', 'is no figure')])
+def test_an_unknown_figure_is_refused(text: str, expected: str, rotary: RunConfig) -> None:
+    with pytest.raises(ConfigError, match=expected):
+        scenario_of(f'name: s\nfigure: {text}\nduration_s: 1\n', rotary)

@@ -8,19 +8,14 @@ at the tick it took effect; the scenario is provenance only. No ROS is needed.
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 
-from isa_ros.actuator import Timing
 from isa_ros.bag.compare import Comparer, Report
 from isa_ros.bag.provenance import installed_versions
 from isa_ros.bag.reader import Bag
 from isa_ros.bag.tolerances import Tolerances
-from isa_ros.coordinator import (
-    Coordinator, Interrupted, Messages, Plan, Recorder, Records)
+from isa_ros.coordinator import Interrupted, Recorder, Records
 from isa_ros.errors import BagError, SetpointError
-from isa_ros.pacing import Pace, ProgressMeter
-from isa_ros.run_config import ActuatorConfig, RunConfig
-from isa_ros.shared_load import SharedLoad
-from isa_ros.stepping import LocalTransport, SteppedActuator
-from isa_ros.topics import topics_of
+from isa_ros.local_run import LocalRun
+from isa_ros.run_config import RunConfig
 from msg_adapters.setpoint import applied_to_command
 import numpy as np
 
@@ -83,24 +78,14 @@ class Rerun:
         self._run = RunConfig.from_yaml(
             bag.provenance.configuration, f'{bag.path.name}: configuration.yaml')
         self._commands, self._n_ticks = recorded_commands(bag, self._run)
-        self._load = SharedLoad(self._run)
-        self._order, self.topics = topics_of(self._run, self._load)
+        self._local = LocalRun(self._run)
+        self.topics = self._local.topics
 
     def simulate(
             self, recorder: Recorder, should_stop: Callable[[], bool] = lambda: False) -> None:
         """Hand every sample to ``recorder`` until the end of the bag or ``should_stop``."""
-        run = self._run
-        timing = Timing(run.step_ns, run.controller_offset_ns)
-        transport = LocalTransport(
-            [Replayed(actuator, timing) for actuator in run.actuators],
-            self._load.starts(run), _nobody_listens, _nobody_listens)
-        plan = Plan(step_ns=run.step_ns, n_actuators=len(run.actuators),
-                    n_ticks=self._n_ticks, commands=self._fill)
-        coordinator = Coordinator(
-            plan, self._order, transport, self._load, recorder, pace=Pace(),
-            progress=ProgressMeter(None, None), should_stop=should_stop)
         try:
-            coordinator.run(transport.join())
+            self._local.simulate(self._n_ticks, self._fill, recorder, should_stop)
         except Interrupted:
             pass  # should_stop has seen enough
 
@@ -131,40 +116,3 @@ def recorded_commands(
     if last < 0:
         raise BagError(f'{bag.path}: holds no sample, there is nothing to replay')
     return commands, last
-
-
-class Replayed:
-    """One actuator that is told everything and tells nobody."""
-
-    def __init__(self, config: ActuatorConfig, timing: Timing) -> None:
-        self._stepped = SteppedActuator(config, timing)
-
-    @property
-    def digest(self) -> str:
-        """Return the digest of its parameters."""
-        return self._stepped.digest
-
-    @property
-    def reply(self) -> np.void:
-        """Return the `LOAD_REPLY` of the last tick."""
-        return self._stepped.actuator.reply
-
-    def start(self, start: np.void | None) -> Messages:
-        """Begin anew at t = 0."""
-        return self._stepped.start(start)
-
-    def advance(self, tick: int, port: np.void | None, command: np.void | None) -> Messages:
-        """Take the recorded command and advance one tick."""
-        if command is not None and command['kinds']:
-            self._stepped.actuator.accept(command)
-        return self._stepped.advance(port)
-
-    def publish(self, messages: Messages) -> None:
-        """Tell nobody."""
-
-    def serve(self) -> None:
-        """Listen to nobody."""
-
-
-def _nobody_listens(message: object) -> None:
-    """Drop what a run would publish."""
