@@ -28,7 +28,8 @@ setup(
     packages=find_packages(include=['isa_ros', 'isa_ros.*', 'msg_adapters', 'msg_adapters.*']),
     package_data={
         'isa_ros': [
-            'py.typed', 'gaits/*.yaml', 'load/**/*.yaml', 'models/*.yaml', 'nodes/*.xml'],
+            'py.typed', 'gaits/*.yaml', 'load/**/*.yaml', 'models/*.yaml', 'nodes/*.xml',
+            'paper/*.yaml'],
         'msg_adapters': ['py.typed'],
     },
     data_files=[

@@ -137,6 +137,19 @@ def _params(parser: argparse.ArgumentParser) -> None:
         '--preset', default='default', metavar='NAME', help='gains of a model (default: default)')
 
 
+def _paper(parser: argparse.ArgumentParser) -> None:
+    parser.add_argument(
+        'name', metavar='NAME', nargs='?', help='a table or a statement (default: all)')
+
+
+def _validate(parser: argparse.ArgumentParser) -> None:
+    parser.add_argument(
+        '--only', action='append', metavar='NAME', help='a group, or an entry as GROUP.ENTRY')
+    parser.add_argument('--json', type=Path, metavar='FILE', help='write the entries there too')
+    parser.add_argument(
+        '--out', type=Path, metavar='DIR', help='write validation.md and its figures there')
+
+
 def _bench(parser: argparse.ArgumentParser) -> None:
     parser.add_argument('--json', type=Path, metavar='FILE', help='write the numbers there too')
 
@@ -148,6 +161,8 @@ _COMMANDS = {
     'compare': (_compare, commands.compare, 'find the first difference of two bags'),
     'report': (_report, commands.report, 'draw the figures of a bag, one page'),
     'params': (_params, commands.params, 'list every parameter with unit, range and source'),
+    'paper': (_paper, commands.paper, 'show what the paper prints, with the place'),
+    'validate': (_validate, commands.validate, 'hold the actuators against the paper, by number'),
     'bench': (_bench, commands.bench, 'measure how fast this machine simulates'),
 }
 

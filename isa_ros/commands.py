@@ -106,6 +106,29 @@ def params(options: Namespace) -> bool:
     return True
 
 
+def paper(options: Namespace) -> bool:
+    """Show what the paper prints."""
+    from isa_ros.paper.show import describe
+    print(describe(options.name))
+    return True
+
+
+def validate(options: Namespace) -> bool:
+    """Hold the actuators against the paper, number by number."""
+    from isa_ros.analysis.validation.groups import GROUPS
+    from isa_ros.analysis.validation.page import as_text, write_json, write_page
+    from isa_ros.analysis.validation.runner import chosen, is_reached, terminal_progress, validated
+    groups = chosen(GROUPS, options.only)
+    results = validated(groups, options.only, terminal_progress(sys.stderr))
+    print(as_text(results))
+    if options.json:
+        write_json(results, options.json)
+    if options.out:
+        for path in write_page(results, options.out):
+            print(path)
+    return is_reached(results)
+
+
 def bench(options: Namespace) -> bool:
     """Measure how fast this machine simulates."""
     from isa_ros.analysis.bench import bench as run_bench

@@ -1,0 +1,125 @@
+"""One number of the paper beside ours, and the verdict."""
+
+from collections.abc import Callable
+from dataclasses import dataclass
+import math
+import re
+
+from isa_ros.paper.printed import Printed
+from matplotlib.figure import Figure
+
+REACHED = 'reached'
+AS_READ = 'reached as read'
+NOT_REACHED = 'not reached'
+_READING = re.compile(r'(?:erratum|errata) \d+(?:(?:, | and )\d+)*: \S')
+
+
+@dataclass(frozen=True, kw_only=True)
+class Entry:
+    """
+    One check; ``tolerance`` is the interval (lowest, highest) that ours must lie in.
+
+    ``paper`` is the printed value, or a text where the paper gives no number. Where that
+    value lies outside the tolerance, ``reading`` says how it is read: ``erratum 13: ...``.
+
+    Raises
+    ------
+    ValueError
+        The interval is empty, or a contradiction with the paper has no reading.
+
+    """
+
+    name: str
+    source: str
+    paper: float | str
+    ours: float
+    unit: str
+    tolerance: tuple[float, float]
+    tolerance_source: str
+    reading: str = ''
+    reason: str = ''
+    """Why it is not reached, shown only then."""
+
+    def __post_init__(self) -> None:
+        lowest, highest = self.tolerance
+        if not lowest <= highest:
+            raise ValueError(f'{self.name}: tolerance {self.tolerance} holds no value')
+        if self.reading and not _READING.match(self.reading):
+            raise ValueError(f'{self.name}: reading {self.reading!r}, must begin with erratum N: ')
+        if not self.reading and self._contradicts:
+            raise ValueError(
+                f'{self.name}: {self.paper:g} {self.unit} of the paper is outside the tolerance '
+                f'{self.tolerance}, must have a reading')
+
+    @classmethod
+    def of(
+            cls, name: str, printed: Printed, ours: float, tolerance: tuple[float, float],
+            tolerance_source: str, *, reading: str = '', reason: str = '') -> 'Entry':
+        """Return the entry of a value in the paper's data."""
+        return cls(
+            name=name, source=printed.where,
+            paper=printed.text if printed.value is None else printed.value, ours=ours,
+            unit=printed.unit, tolerance=tolerance, tolerance_source=tolerance_source,
+            reading=reading, reason=reason)
+
+    @property
+    def _contradicts(self) -> bool:
+        lowest, highest = self.tolerance
+        return isinstance(self.paper, float) and not lowest <= self.paper <= highest
+
+    @property
+    def is_reached(self) -> bool:
+        """Tell whether ours lies in the tolerance; what is not a number does not."""
+        lowest, highest = self.tolerance
+        return lowest <= self.ours <= highest
+
+    @property
+    def verdict(self) -> str:
+        """Return `REACHED`, `AS_READ` where the printed value itself is not, or `NOT_REACHED`."""
+        if not self.is_reached:
+            return NOT_REACHED
+        return AS_READ if self._contradicts else REACHED
+
+
+@dataclass(frozen=True)
+class Drawing:
+    """A figure like one of the paper's; ``name`` is part of its file's name."""
+
+    name: str
+    caption: str
+    figure: Figure
+
+
+@dataclass(frozen=True)
+class Findings:
+    """What one group found."""
+
+    entries: tuple[Entry, ...]
+    drawings: tuple[Drawing, ...] = ()
+
+
+@dataclass(frozen=True)
+class Group:
+    """A group of checks; ``check`` is a function of a module, so that a worker can call it."""
+
+    name: str
+    title: str
+    check: Callable[[], Findings]
+    is_long: bool = False
+    """Takes more than a few seconds: starts first."""
+
+
+def around(value: float, *, by: float = 0.0, percent: float = 0.0) -> tuple[float, float]:
+    """Return the interval of ``value`` plus and minus ``by`` and ``percent`` of it."""
+    width = by + abs(value) * percent / 100.0
+    return value - width, value + width
+
+
+def at_least(value: float) -> tuple[float, float]:
+    """Return the interval from ``value`` on."""
+    return value, math.inf
+
+
+def at_most(value: float) -> tuple[float, float]:
+    """Return the interval up to ``value``."""
+    return -math.inf, value

@@ -1,0 +1,184 @@
+"""Run groups of checks in two worker processes and gather what they found."""
+
+from collections.abc import Callable, Sequence
+from concurrent.futures import as_completed, ProcessPoolExecutor
+from concurrent.futures.process import BrokenProcessPool
+from dataclasses import dataclass, replace
+import io
+import multiprocessing
+import signal
+import time
+from typing import TextIO
+
+from isa_ros.analysis.validation.entry import Drawing, Entry, Group
+from isa_ros.errors import ConfigError, IsaError, RunError
+from isa_ros.resolve import alternatives
+
+WORKERS = 2
+
+Progress = Callable[[int, int], None]
+"""Takes how many groups are done and how many there are."""
+
+
+@dataclass(frozen=True)
+class Picture:
+    """A drawn figure: PNG."""
+
+    name: str
+    caption: str
+    png: bytes
+
+
+@dataclass(frozen=True)
+class Result:
+    """What a group found, as it crosses from a worker."""
+
+    group: str
+    title: str
+    entries: tuple[Entry, ...]
+    pictures: tuple[Picture, ...]
+
+
+class GroupFailed(IsaError):
+    """A group that could not be run to its end; exit code as what ended it."""
+
+    def __init__(self, message: str, exit_code: int) -> None:
+        super().__init__(message, exit_code)  # both, so that it crosses from a worker
+        self.exit_code = exit_code
+
+    def __str__(self) -> str:
+        """Return the message alone."""
+        return str(self.args[0])
+
+
+def chosen(groups: Sequence[Group], only: Sequence[str] | None) -> tuple[Group, ...]:
+    """
+    Return the groups that ``only`` names, as GROUP or as GROUP.ENTRY; all for None.
+
+    Raises
+    ------
+    ConfigError
+        There is no such group.
+
+    """
+    if not only:
+        return tuple(groups)
+    names = [group.name for group in groups]
+    wanted = {name.partition('.')[0]: name for name in only}
+    for group, name in wanted.items():
+        if group not in names:
+            raise ConfigError(f'--only {name}: no such group; {alternatives(group, names)}')
+    return tuple(group for group in groups if group.name in wanted)
+
+
+def validated(
+        groups: Sequence[Group], only: Sequence[str] | None = None,
+        progress: Progress | None = None) -> tuple[Result, ...]:
+    """
+    Run the groups and return their results in order, of the entries ``only`` names.
+
+    Raises
+    ------
+    ConfigError
+        A group has no entry of a name in ``only``.
+    GroupFailed
+        A group cannot be run, or its simulation diverged.
+    RunError
+        A worker process was lost.
+
+    """
+    before = multiprocessing.active_children()
+    # Spawned, not forked: the threads of numba and matplotlib do not survive a fork.
+    with ProcessPoolExecutor(
+            min(WORKERS, len(groups)), multiprocessing.get_context('spawn'),
+            _leave_interrupts_to_the_parent) as executor:
+        try:
+            results = _gathered(executor, groups, progress)
+        except BaseException:
+            executor.shutdown(wait=False, cancel_futures=True)
+            for process in multiprocessing.active_children():
+                if process not in before:
+                    process.terminate()
+            raise
+    return tuple(only_of(results[group.name], only or ()) for group in groups)
+
+
+def _leave_interrupts_to_the_parent() -> None:
+    signal.signal(signal.SIGINT, signal.SIG_IGN)
+    signal.signal(signal.SIGTERM, signal.SIG_DFL)
+
+
+def _gathered(
+        executor: ProcessPoolExecutor, groups: Sequence[Group],
+        progress: Progress | None) -> dict[str, Result]:
+    results: dict[str, Result] = {}
+    order = sorted(groups, key=lambda group: not group.is_long)
+    futures = [executor.submit(run_group, group) for group in order]
+    for future in as_completed(futures):
+        try:
+            result = future.result()
+        except BrokenProcessPool as error:
+            raise RunError(f'validate: a worker process was lost: {error}') from error
+        results[result.group] = result
+        if progress is not None:
+            progress(len(results), len(groups))
+    return results
+
+
+def run_group(group: Group) -> Result:
+    """
+    Run one group in this process and draw its figures.
+
+    Raises
+    ------
+    GroupFailed
+        It was refused or diverged.
+
+    """
+    try:
+        findings = group.check()
+    except IsaError as error:
+        raise GroupFailed(f'{group.name}: {error}', error.exit_code) from error
+    names = [entry.name for entry in findings.entries]
+    if len(set(names)) != len(names):
+        raise ValueError(f'{group.name}: two entries have the same name: {names}')
+    return Result(group.name, group.title, findings.entries, tuple(
+        Picture(drawing.name, drawing.caption, _png(drawing)) for drawing in findings.drawings))
+
+
+def _png(drawing: Drawing) -> bytes:
+    buffer = io.BytesIO()
+    # Without the name of the program: the same figure gives the same bytes.
+    drawing.figure.savefig(buffer, format='png', metadata={'Software': None})
+    return buffer.getvalue()
+
+
+def only_of(result: Result, only: Sequence[str]) -> Result:
+    """Return a result with the entries that ``only`` names; all where it names the group."""
+    mine = [name for name in only if name.partition('.')[0] == result.group]
+    if not mine or result.group in mine:
+        return result
+    names = [f'{result.group}.{entry.name}' for entry in result.entries]
+    for name in mine:
+        if name not in names:
+            raise ConfigError(f'--only {name}: no such entry; {alternatives(name, names)}')
+    return replace(result, entries=tuple(
+        entry for entry, name in zip(result.entries, names) if name in mine))
+
+
+def is_reached(results: Sequence[Result]) -> bool:
+    """Tell whether every entry is reached."""
+    return all(entry.is_reached for result in results for entry in result.entries)
+
+
+def terminal_progress(stream: TextIO) -> Progress | None:
+    """Return what writes progress to ``stream``; None where it is no terminal."""
+    if not stream.isatty():
+        return None
+    start = time.monotonic()
+
+    def report(done: int, total: int) -> None:
+        stream.write(f'\r{done} of {total} groups, {time.monotonic() - start:.0f} s\033[K'
+                     f'{chr(10) if done == total else ""}')
+        stream.flush()
+    return report

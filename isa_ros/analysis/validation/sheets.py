@@ -1,0 +1,33 @@
+"""The shipped actuators as the checks need them, read once; nobody changes what is returned."""
+
+from functools import cache
+
+from isa_ros.actuator_sheet import ActuatorSheet
+from isa_ros.catalogue import actuator_model
+from isa_ros.plant.plant import plant_record
+from isa_ros.resolve import build
+import numpy as np
+
+PRESET = 'table_4'  # the paper's gains
+
+
+@cache
+def model_sheet(model: str, preset: str = PRESET) -> ActuatorSheet:
+    """
+    Return the data sheet of a shipped model with the gains of a preset.
+
+    Raises
+    ------
+    ConfigError
+        There is no such model or preset.
+
+    """
+    found = actuator_model(model, 'model')
+    return build(ActuatorSheet, found.with_preset(preset, 'preset'), found.place)
+
+
+@cache
+def plant_of(model: str) -> np.record:
+    """Return the `PLANT` record of a shipped model; as `model_sheet`."""
+    record: np.record = plant_record(model_sheet(model).plant)[0]
+    return record

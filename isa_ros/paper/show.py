@@ -1,0 +1,51 @@
+"""`isa paper`: what the paper prints, with the place."""
+
+from collections.abc import Iterator, Sequence
+
+from isa_ros.errors import ConfigError
+from isa_ros.paper.printed import Printed, statements, Table, tables
+from isa_ros.resolve import alternatives
+
+STATEMENTS = 'statements'
+
+
+def describe(name: str | None) -> str:
+    """
+    Return every table and statement as text, or the one of a name.
+
+    Raises
+    ------
+    ConfigError
+        There is no table or statement of this name.
+
+    """
+    names = [*tables(), STATEMENTS, *statements()]
+    if name is not None and name not in names:
+        raise ConfigError(f'{name} is neither a table nor a statement; '
+                          f'{alternatives(name, names)}')
+    blocks = [_table(table) for table in tables().values() if name in (None, table.name)]
+    chosen = [
+        (key, _with_unit(value), value.where, value.what)
+        for key, value in statements().items() if name in (None, STATEMENTS, key)]
+    if chosen:
+        blocks.append('\n'.join(['statements', *_aligned(chosen)]))
+    return '\n\n'.join(blocks)
+
+
+def _table(table: Table) -> str:
+    rows = [('', *table.columns)]
+    rows += [
+        (title, *map(_with_unit, cells))
+        for title, cells in table.rows.items()]
+    return '\n'.join([f'{table.name}: {table.caption}', *_aligned(rows)])
+
+
+def _with_unit(printed: Printed) -> str:
+    has_unit = printed.value is not None and printed.unit != '1'
+    return f'{printed.text} {printed.unit}' if has_unit else printed.text
+
+
+def _aligned(rows: Sequence[tuple[str, ...]]) -> Iterator[str]:
+    widths = [max(len(row[k]) for row in rows) for k in range(len(rows[0]))]
+    for row in rows:
+        yield '  '.join(text.ljust(width) for text, width in zip(row, widths)).rstrip()

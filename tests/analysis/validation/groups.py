@@ -1,0 +1,37 @@
+"""Small groups of checks for the tests of the frame; a worker imports them by name."""
+
+from isa_ros.analysis.validation.entry import around, Drawing, Entry, Findings, Group
+from isa_ros.analysis.validation.plots import plot
+from isa_ros.errors import ConfigError, SimulationDiverged
+
+
+def entry(name: str, ours: float, **more) -> Entry:
+    """Return an entry whose paper says 1."""
+    return Entry(**{
+        'name': name, 'source': 'Fig 1', 'paper': 1.0, 'ours': ours, 'unit': 'm',
+        'tolerance': around(1.0, by=0.1), 'tolerance_source': 'a tenth'} | more)
+
+
+def good() -> Findings:
+    figure, ax = plot('x', 'y')
+    ax.plot([0.0, 1.0], [0.0, 1.0])
+    return Findings((entry('a', 1.0), entry('b', 1.05)), (Drawing('line', 'A line.', figure),))
+
+
+def missed() -> Findings:
+    return Findings((
+        entry('far', 2.0, reason='the spring is too soft'), entry('lost', float('nan'))))
+
+
+def refused() -> Findings:
+    raise ConfigError('no such model')
+
+
+def diverged() -> Findings:
+    raise SimulationDiverged(1_000_000, 'spool', float('nan'))
+
+
+GOOD = Group('good', 'Good ones', good)
+MISSED = Group('missed', 'Missed ones', missed, is_long=True)
+REFUSED = Group('refused', 'Refused', refused)
+DIVERGED = Group('diverged', 'Diverged', diverged)

@@ -1,0 +1,58 @@
+"""The shipped groups: each is reached or gives its reason, and cites what exists."""
+
+from pathlib import Path
+import re
+
+from isa_ros.analysis.validation.groups import GROUPS
+from isa_ros.analysis.validation.page import markdown
+from isa_ros.analysis.validation.runner import run_group
+from isa_ros.cli import main
+import pytest
+
+DOCS = Path(__file__).parents[3] / 'docs'
+QUICK = [group for group in GROUPS if not group.is_long]
+LONG = [group for group in GROUPS if group.is_long]
+
+
+def check(group) -> None:
+    """Check a group against what docs/ shows of it."""
+    result = run_group(group)
+    assert all(entry.is_reached or entry.reason for entry in result.entries)
+    errata = set(re.findall(r'^\| (\d+) \|', (DOCS / 'paper-errata.md').read_text(), re.M))
+    for entry in result.entries:
+        cited = re.findall(r'\d+', entry.reading.partition(':')[0])
+        assert set(cited) <= errata
+    page = (DOCS / 'validation.md').read_text()
+    assert markdown(result) in page
+    for picture in result.pictures:
+        assert f'(figures/validation_{picture.name}.png)' in page
+        assert (DOCS / 'figures' / f'validation_{picture.name}.png').is_file()
+
+
+@pytest.mark.parametrize('group', QUICK, ids=[group.name for group in QUICK])
+def test_a_group_is_as_the_shipped_page_shows_it(group):
+    """`isa validate --out docs` was run after the last change."""
+    check(group)
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize('group', LONG, ids=[group.name for group in LONG])
+def test_a_long_group_is_as_the_shipped_page_shows_it(group):
+    check(group)
+
+
+def test_names_of_groups_are_different():
+    assert len({group.name for group in GROUPS}) == len(GROUPS)
+
+
+def test_one_entry_by_name(capsys):
+    assert main(['validate', '--only', 'actuator_data.manifold_stall']) == 0
+    printed = capsys.readouterr().out
+    assert printed.endswith('1 entries: 0 reached, 1 reached as read, 0 not reached\n')
+    assert '177.8' in printed
+
+
+def test_an_unknown_group_is_one_line_and_2(capsys):
+    assert main(['validate', '--only', 'valve_flows']) == 2
+    printed = capsys.readouterr().err
+    assert printed == 'isa: --only valve_flows: no such group; did you mean valve_flow?\n'
