@@ -1,0 +1,71 @@
+"""The list of errata: complete, and every place it names exists."""
+
+from pathlib import Path
+import re
+
+from isa_ros.catalogue import actuator_model, model_names
+from isa_ros.plant.servo_valve import flow_slope
+from isa_ros.resolve import merge, Section
+import pytest
+
+ROOT = Path(__file__).parents[1]
+TEXT = (ROOT / 'docs' / 'paper-errata.md').read_text(encoding='utf-8')
+ROWS = {int(row.split(' | ')[0].strip('| ')): row
+        for row in TEXT.splitlines() if re.match(r'\| \d+ \|', row)}
+
+
+def keys(section: Section, prefix: str = '') -> set[str]:
+    """Return the dotted path of every section and value."""
+    found = set()
+    for key, below in section.items():
+        found.add(f'{prefix}{key}')
+        if isinstance(below, dict):
+            found |= keys(below, f'{prefix}{key}.')
+    return found
+
+
+def model_keys() -> set[str]:
+    """Return every path of every shipped model with its presets and variants."""
+    found: set[str] = set()
+    for name in model_names():
+        model = actuator_model(name, 'test')
+        found |= keys(model.sheet)
+        for gains in model.presets.values():
+            found |= keys(merge(model.sheet, {'reu': gains}))
+        for variant in model.variants.values():
+            found |= keys(variant)
+    return found
+
+
+def test_there_are_25_with_five_columns() -> None:
+    assert sorted(ROWS) == list(range(1, 26))
+    assert all(row.count(' | ') == 4 for row in ROWS.values())
+
+
+def test_every_key_they_name_is_one_of_a_model() -> None:
+    named = set(re.findall(r'`((?:plant|reu)\.[a-z0-9_.]+)`', TEXT))
+    assert len(named) > 20 and named - model_keys() == set()
+
+
+def test_every_file_they_name_exists() -> None:
+    named = set(re.findall(r'`((?:plant|reu|load)/[a-z_.]*)`', TEXT))
+    assert named and all((ROOT / 'isa_ros' / name).exists() for name in named)
+
+
+def test_every_function_they_name_is_in_its_file() -> None:
+    named = re.findall(r'`([a-z_]+)` in `([a-z_/]+\.py)`', TEXT)
+    assert len(named) > 1
+    for function, file in named:
+        assert f'def {function}(' in (ROOT / 'isa_ros' / file).read_text(encoding='utf-8')
+
+
+def test_every_equation_they_name_is_documented() -> None:
+    equations = (ROOT / 'docs' / 'equations.md').read_text(encoding='utf-8')
+    for row in ROWS.values():
+        for number in re.findall(r'\b[VCMR]\d+\b', row.rpartition(' | ')[2]):
+            assert f'| {number} |' in equations
+
+
+@pytest.mark.parametrize('gain, slope', [(0.4, '0.18727'), (2.5, '1.17041')])
+def test_the_slopes_of_erratum_1_are_those_of_the_code(gain: float, slope: str) -> None:
+    assert f'{flow_slope(gain, 0.0356):.5f}' == slope and slope in ROWS[1]
