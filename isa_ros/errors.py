@@ -23,6 +23,10 @@ class BagError(IsaError):
     """A bag that cannot be read, or a directory that cannot take one."""
 
 
+class AnalysisError(IsaError):
+    """Signals that do not hold the answer that is asked of them."""
+
+
 class RunError(IsaError):
     """A run that could not be completed: a participant or the recorder was lost or late."""
 
