@@ -139,6 +139,15 @@ class SmartActuator:
         kernels.write_sample(self._read_out, body.plant, reu, self._sample)
 
     @property
+    def kernel_arguments(self) -> tuple[np.ndarray, ...]:
+        """
+        Return the arrays of `kernels.actuator_tick`, in its order from the port on.
+
+        The actuator's own memory: for whoever runs its loops and plant outside a tick.
+        """
+        return self._kernel_arguments
+
+    @property
     def sample(self) -> np.record:
         """Return the `SAMPLE` at the end of the last tick; the next tick overwrites it."""
         return self._sample
