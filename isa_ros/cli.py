@@ -7,7 +7,6 @@ Nothing here imports ROS or numba, so that `isa --help` answers at once.
 import argparse
 from collections.abc import Sequence
 import errno
-import math
 import os
 from pathlib import Path
 import signal
@@ -16,7 +15,8 @@ import traceback
 from types import FrameType
 from typing import NoReturn
 
-from isa_ros import commands
+from isa_ros import commands, response_arguments
+from isa_ros.argument_types import positive
 from isa_ros.errors import IsaError
 
 DONE, ANSWER_IS_NO, WRONG_INPUT, NOT_COMPLETED, INTERRUPTED = 0, 1, 2, 3, 130
@@ -94,7 +94,7 @@ def _bringup(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         '--scenario', metavar='FILE', help='what is commanded: a file, or a shipped one by name')
     parser.add_argument(
-        '--duration', type=_positive, metavar='S',
+        '--duration', type=positive, metavar='S',
         help='simulated time (default: that of the scenario, else until Ctrl-C)')
     parser.add_argument(
         '--out', type=Path, metavar='DIR',
@@ -102,7 +102,7 @@ def _bringup(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         '--overwrite', action='store_true', help='replace the bag in an existing directory')
     parser.add_argument(
-        '--real-time-factor', type=_positive, metavar='X',
+        '--real-time-factor', type=positive, metavar='X',
         help='not faster than X times real time (default: as fast as it goes)')
     parser.add_argument(
         '--in-process', action='store_true',
@@ -160,18 +160,12 @@ _COMMANDS = {
     'replay': (_replay, commands.replay, 'simulate a bag again from itself, and compare'),
     'compare': (_compare, commands.compare, 'find the first difference of two bags'),
     'report': (_report, commands.report, 'draw the figures of a bag, one page'),
+    'bode': (response_arguments.bode, commands.bode,
+             'measure the frequency response of a loop of an actuator'),
+    'step': (response_arguments.step, commands.step,
+             'measure the step response of a loop of an actuator'),
     'params': (_params, commands.params, 'list every parameter with unit, range and source'),
     'paper': (_paper, commands.paper, 'show what the paper prints, with the place'),
     'validate': (_validate, commands.validate, 'hold the actuators against the paper, by number'),
     'bench': (_bench, commands.bench, 'measure how fast this machine simulates'),
 }
-
-
-def _positive(text: str) -> float:
-    try:
-        value = float(text)
-    except ValueError:
-        value = math.nan
-    if not (math.isfinite(value) and value > 0.0):
-        raise argparse.ArgumentTypeError(f'{text!r} must be a number > 0')
-    return value

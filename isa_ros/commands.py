@@ -99,6 +99,20 @@ def _draw(bag: Path, page: Path) -> None:
         print(path)
 
 
+def bode(options: Namespace) -> bool:
+    """Measure the frequency response of a loop."""
+    from isa_ros.analysis.response import bode as measure_bode
+    measure_bode(options)
+    return True
+
+
+def step(options: Namespace) -> bool:
+    """Measure the step response of a loop."""
+    from isa_ros.analysis.response import step as measure_step
+    measure_step(options)
+    return True
+
+
 def params(options: Namespace) -> bool:
     """List every parameter of a model, a leg or a run."""
     from isa_ros.params import describe

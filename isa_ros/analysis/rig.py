@@ -1,0 +1,176 @@
+"""One actuator on a bench, as a command names it: which, with which gains, load, place."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+import math
+
+from isa_ros.actuator import SmartActuator, Timing
+from isa_ros.actuator_sheet import ActuatorSheet, refuse_wiring
+from isa_ros.analysis.excitation import excite, PERIOD_NS, RATE_HZ
+from isa_ros.analysis.loops import Loop, loop_of, SUPPLY, Unit, units_of
+from isa_ros.catalogue import actuator_model, model_names
+from isa_ros.config import load_run, own_load
+from isa_ros.errors import ConfigError
+from isa_ros.load.local import static_force
+from isa_ros.paths import CONFIG, find
+from isa_ros.resolve import build, Place
+from isa_ros.run_config import ActuatorConfig
+import numpy as np
+
+TIMING = Timing(PERIOD_NS, 0)
+REST_S = 0.3            # before anything is excited: several times the slowest loop's settling
+BLOCKED = 'blocked'
+
+
+@dataclass(frozen=True, kw_only=True)
+class Choice:
+    """What a user names; None takes the default."""
+
+    name: str
+    """A packaged model, or a run file."""
+    loop: str
+    actuator: str | None = None
+    preset: str | None = None
+    variants: Sequence[str] = ()
+    load: str | None = None
+    position: float | None = None
+    """mm or deg."""
+
+
+@dataclass(frozen=True)
+class Rig:
+    """An actuator with one of its loops outermost, on a load of its own."""
+
+    config: ActuatorConfig
+    loop: Loop
+    load: str
+    supply: tuple[float, float]     # and return, Pa gauge
+
+    @property
+    def title(self) -> str:
+        """Return what stands on the bench, and where."""
+        place = units_of(self.config.sheet)['position']
+        config = self.config
+        model = '' if config.name == config.model else f'{config.model}, '
+        return (f'{config.name} ({model}preset {config.preset}), {self.load} at '
+                f'{config.initial_position / place.scale:.4g} {place.symbol}')
+
+    @property
+    def offset(self) -> float:
+        """Return where the loop's reference rests: the start, or 0."""
+        return self.config.initial_position if self.loop.name == 'position' else 0.0
+
+    def start(self) -> SmartActuator:
+        """Return the actuator at rest: `REST_S` with its reference standing still."""
+        actuator = SmartActuator(self.config, TIMING)
+        actuator.start(
+            self.config.initial_position, static_force(self.config.load), *self.supply)
+        self.excite(actuator, np.zeros(round(REST_S * RATE_HZ)))
+        return actuator
+
+    def excite(
+            self, actuator: SmartActuator, values: np.ndarray,
+            rates: np.ndarray | None = None) -> np.ndarray:
+        """
+        Excite the loop by ``values`` around its offset, SI; return the `TRACE`.
+
+        ``rates`` are theirs: a position moves its velocity along, as a scenario's does.
+        """
+        return excite(
+            actuator, self.loop.quantity, self.loop.per_reference * (self.offset + values), rates)
+
+    def amplitude(self, given: float | None) -> float:
+        """
+        Return an amplitude given in the loop's unit in SI, or the loop's own.
+
+        Raises
+        ------
+        ConfigError
+            It is beyond what the loop can do.
+
+        """
+        if given is None:
+            return self.loop.amplitude
+        unit, largest = self.loop.unit, self.loop.largest
+        if given * unit.scale > largest:
+            raise ConfigError(
+                f'--amplitude = {given:g} {unit.symbol}, must be <= '
+                f'{largest / unit.scale:.4g} {unit.symbol}, the range of the '
+                f'{self.loop.name} loop')
+        return given * unit.scale
+
+
+def rig(choice: Choice) -> Rig:
+    """
+    Return the rig a user names.
+
+    A force, pressure, spool or current loop is measured against a blocked output, a position
+    loop on the load the actuator has, unless another kind is named.
+
+    Raises
+    ------
+    ConfigError
+        Something of the choice does not exist or does not fit.
+
+    """
+    config, supply = (
+        _of_model(choice) if choice.name in model_names() else _of_run(choice))
+    units = units_of(config.sheet)
+    config = replace(config, initial_position=_place(choice.position, config, units['position']))
+    loop = loop_of(config.sheet, choice.loop)
+    kind = choice.load or (None if choice.loop == 'position' else BLOCKED)
+    model = actuator_model(config.model, 'model')
+    if kind is None and config.load is None:
+        kind = model.default_load
+    if kind is not None:
+        config = replace(config, load=own_load({'kind': kind}, Place('--load'), model))
+    return Rig(replace(config, sheet=loop.sheet), loop,
+               kind or type(config.load).__name__.lower(), supply)
+
+
+def _of_model(choice: Choice) -> tuple[ActuatorConfig, tuple[float, float]]:
+    if choice.actuator is not None:
+        raise ConfigError(
+            f'--actuator {choice.actuator} is not used: {choice.name} is a model, not a run file')
+    model = actuator_model(choice.name, 'model')
+    preset = choice.preset or 'default'
+    section = model.with_variants(
+        model.with_preset(preset, '--preset'), choice.variants, '--variant')
+    sheet = build(ActuatorSheet, section, model.place)
+    refuse_wiring(sheet)
+    named = ' + '.join([preset, *choice.variants])
+    return (ActuatorConfig(
+        choice.name, model.name, named, sheet,
+        own_load({'kind': model.default_load}, Place(model.name) / 'load', model),
+        0.5 * sheet.plant.drive.stroke), (SUPPLY, 0.0))
+
+
+def _of_run(choice: Choice) -> tuple[ActuatorConfig, tuple[float, float]]:
+    for option, value in (('--preset', choice.preset), ('--variant', choice.variants)):
+        if value:
+            raise ConfigError(
+                f'{option} is not used: {choice.name} is no model, a run file says it itself; '
+                f'models: {", ".join(model_names())}')
+    try:
+        run = load_run(find(choice.name, CONFIG))
+    except ConfigError as error:
+        if choice.name.endswith('.yaml'):
+            raise
+        raise ConfigError(f'{error}; models: {", ".join(model_names())}') from error
+    if choice.actuator is None and len(run.actuators) > 1:
+        names = ', '.join(actuator.name for actuator in run.actuators)
+        raise ConfigError(f'{run.source} has several actuators, --actuator must name one: {names}')
+    config = run.actuators[0] if choice.actuator is None else run.actuator(choice.actuator)
+    pressures = run.supply.pressure_mpa * 1e6, run.supply.return_pressure_mpa * 1e6
+    return config, pressures
+
+
+def _place(given: float | None, config: ActuatorConfig, unit: Unit) -> float:
+    if given is None:
+        return config.initial_position
+    stroke = config.sheet.plant.drive.stroke
+    if not (math.isfinite(given) and 0.0 <= given * unit.scale <= stroke):
+        raise ConfigError(
+            f'--position = {given:g} {unit.symbol}, must be 0 to {stroke / unit.scale:.4g} '
+            f'{unit.symbol}, the stroke of {config.name}')
+    return given * unit.scale
