@@ -36,7 +36,7 @@ TRACE = np.dtype([
 
 
 @kernel
-def write_states(body, read_out, row):
+def write_states(body, plant, read_out, row):
     """Write the states of one instant, and what the sensors gave in ``read_out``."""
     row.position = body.plant.mechanics.position
     row.velocity = body.plant.mechanics.velocity
@@ -44,7 +44,7 @@ def write_states(body, read_out, row):
     row.pressure_a = body.plant.chambers.p_a
     row.pressure_b = body.plant.chambers.p_b
     row.spool = body.plant.valve.spool
-    row.current = coil_current(body.plant.coil)
+    row.current = coil_current(body.plant.coil, plant.coil)
     row.position_measured = read_out.position
     row.force_measured = read_out.force
 
@@ -87,7 +87,7 @@ def excite_steps(
             reu_state.setpoint.effort = values[row]
         trace[row].force = read_sensors(
             body.plant, body.load.position, body.load.velocity, actuator.plant, read_out)
-        write_states(body, read_out, trace[row])
+        write_states(body, actuator.plant, read_out, trace[row])
         step = first_step + row * steps
         loops_and_plant(step, 0.0, port, actuator, bodies, rates, y, k, reu_state)
         write_references(actuator.reu, reu_state, trace[row])

@@ -45,7 +45,7 @@ class ExplicitCoil(Coil):
     """The coil under the amplifier's voltage, with the resonance of the paper's figure 8 B."""
 
     mode_frequency_hz: float = parameter('of the resonance', 'Hz', gt=0.0, le=5.0e3)
-    mode_strength: float = parameter("its share of the coil's gain", '1', ge=0.0, le=0.5)
+    mode_strength: float = parameter('its share k of the current', '1', ge=0.0, le=0.5)
     mode_damping: float = parameter('its damping ratio', '1', gt=0.0, le=1.0)
 
 
@@ -99,20 +99,20 @@ def explicit_rates(y, voltage, coil):
     """
     Return the rates of the explicit coil under ``voltage``  (V11), in A/s, A/s, A/s2.
 
-    L di/dt = (1 - k) U - R i and m'' = w^2 (k U/R - m) - 2 zeta w m'; the current is i + m.
+    L di_1/dt = U - R i_1, and the resonance on it, m'' = w^2 (i_1 - m) - 2 zeta w m'.
     """
     u = max(-coil.voltage, min(coil.voltage, voltage))
-    first = ((1.0 - coil.mode_share) * u - coil.resistance * y.current) / coil.inductance
+    first = (u - coil.resistance * y.current) / coil.inductance
     w = coil.mode_w
-    second = (w * w * (coil.mode_share * u / coil.resistance - y.mode)
-              - 2.0 * coil.mode_zeta * w * y.mode_rate)
-    return first, y.mode_rate, second
+    return first, y.mode_rate, w * w * (y.current - y.mode) - 2.0 * coil.mode_zeta * w * y.mode_rate
 
 
 @kernel
-def coil_current(y):
-    """Return the current through the coil, resonance included, in A  (V11)."""
-    return y.current + y.mode
+def coil_current(y, coil):
+    """Return i = i_1 + k (m - i_1), the current with its resonance, in A  (V11)."""
+    if coil.kind == EXPLICIT:
+        return y.current + coil.mode_share * (y.mode - y.current)
+    return y.current
 
 
 @kernel

@@ -130,7 +130,7 @@ def plant_rates(y, x_load, v_load, drive, p_s, p_t, plant, rates):
     s, v = y.mechanics.position, y.mechanics.velocity
 
     coil.coil_rates(y.coil, drive, plant.coil, rates.coil)
-    current = (coil.coil_current(y.coil) / plant.coil.parallel
+    current = (coil.coil_current(y.coil, plant.coil) / plant.coil.parallel
                + spool.null_bias(p_s, p_t, plant.spool))
     spool.spool_rates(y.valve, current, plant.valve.k_spool, plant.spool, rates.valve)
 
@@ -172,5 +172,5 @@ def read_sensors(y, x_load, v_load, plant, measured):
     measured.pressure_b = convert(y.chambers.p_b, 0.0, own.pressure_range, own.pressure_step)
     measured.spool = convert(y.valve.spool, -own.spool_range, own.spool_range, own.spool_step)
     measured.current = convert(
-        coil.coil_current(y.coil), -own.current_range, own.current_range, own.current_step)
+        coil.coil_current(y.coil, plant.coil), -own.current_range, own.current_range, own.current_step)
     return force

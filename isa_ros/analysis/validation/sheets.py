@@ -12,18 +12,19 @@ PRESET = 'table_4'  # the paper's gains
 
 
 @cache
-def model_sheet(model: str, preset: str = PRESET) -> ActuatorSheet:
+def model_sheet(model: str, preset: str = PRESET, *variants: str) -> ActuatorSheet:
     """
-    Return the data sheet of a shipped model with the gains of a preset.
+    Return the data sheet of a shipped model with the gains of a preset, and variants.
 
     Raises
     ------
     ConfigError
-        There is no such model or preset.
+        There is no such model, preset or variant.
 
     """
     found = actuator_model(model, 'model')
-    return build(ActuatorSheet, found.with_preset(preset, 'preset'), found.place)
+    section = found.with_variants(found.with_preset(preset, 'preset'), variants, 'variant')
+    return build(ActuatorSheet, section, found.place)
 
 
 @cache
