@@ -15,7 +15,7 @@ steps of order four leave, for less time.
 import math
 
 from isa_ros.kernel import inlined, kernel
-from isa_ros.plant import chambers, servo_valve
+from isa_ros.plant import chambers, servo_valve, spool
 from isa_ros.plant.units import LPM, MILLI, MPA
 import numpy as np
 from scipy.integrate import DOP853
@@ -26,7 +26,7 @@ STAGES = 12                                       # evaluations in a step
 _NEWTON_STEPS = 6  # from a secant: its error is squared each time, 1e-1 to below 1e-16 in five
 
 CYLINDER = np.dtype([
-    ('valve', servo_valve.VALVE), ('chambers', chambers.CHAMBERS),
+    ('valve', servo_valve.VALVE), ('spool', spool.SPOOL), ('chambers', chambers.CHAMBERS),
     ('p_s', 'f8'), ('p_t', 'f8'),                               # Pa
     ('mass', 'f8'), ('damping', 'f8'), ('stiffness', 'f8'),     # kg, Ns/m, N/m
     ('gain', 'f8'), ('amplitude', 'f8'), ('omega', 'f8'),       # 1/m, m, rad/s
@@ -52,13 +52,13 @@ def cylinder_record() -> np.recarray:
     case.chambers = chambers.chambers_record(
         chambers.Cylinder(bore_mm=21.5, rod_mm=12.0, stroke_mm=100.0),
         chambers.Oil(effective_bulk_modulus=7e8, dead_volume_ml=1.0, cross_port_leakage=1e-13,
-                     aeration_pressure_kpa=5.0))
+                     aeration_pressure_kpa=5.0, temperature_celsius=40.0))
     valve = case.valve
     valve.k_low = valve.k_high = 7.5 * LPM
     valve.x_dg = valve.x_max = valve.x_l = 1.0
     valve.per_root_drop = 1.0 / math.sqrt(3.5 * MPA)
     valve.f_pa = valve.f_at = valve.f_bt = valve.f_pb = 1.0
-    valve.w_n, valve.zeta = 2.0 * math.pi * 120.0, 0.7
+    case.spool.w_n, case.spool.zeta = 2.0 * math.pi * 120.0, 0.7
     case.p_s, case.p_t = 20.7 * MPA, 0.0
     case.mass, case.damping, case.stiffness = 10.0, 200.0, 1e5
     case.gain, case.amplitude, case.omega = 60.0, 5.0 * MILLI, 2.0 * math.pi * 2.0
@@ -69,14 +69,14 @@ def cylinder_record() -> np.recarray:
 def slope(y, command, cylinder):
     """Return dy/dt of the `STATES`; m v' = f_h - d v - c x  (V7, V10, C2, C3)."""
     x, v, p_a, p_b, u, u_rate = y
-    valve, oil = cylinder.valve, cylinder.chambers
-    q_a, q_b, _, _ = _port_flows(u, p_a, p_b, cylinder.p_s, cylinder.p_t, valve)
+    closed, oil = cylinder.spool, cylinder.chambers
+    q_a, q_b, _, _ = _port_flows(u, p_a, p_b, cylinder.p_s, cylinder.p_t, cylinder.valve)
     rate_a, rate_b = chambers.pressure_rates(
         q_a, q_b, p_a, p_b, 0.5 * oil.stroke + x, v, cylinder.p_t, oil)
     force = (chambers.hydraulic_force(p_a, p_b, oil)
              - cylinder.damping * v - cylinder.stiffness * x)
     return (v, force / cylinder.mass, rate_a, rate_b, u_rate,
-            servo_valve.spool_acceleration(command, u, u_rate, valve.w_n, valve.zeta))
+            spool.spool_acceleration(command, u, u_rate, closed.w_n, closed.zeta))
 
 
 @inlined
