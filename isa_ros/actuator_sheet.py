@@ -85,7 +85,8 @@ def known_model(plant: np.record, output_per_spool: float) -> tuple[float, ...]:
     oil, valve = plant.chambers, plant.valve
     return (
         oil.area_a, oil.area_b, oil.stroke, oil.dead_volume, oil.beta, oil.c_li,
-        plant.mechanics.k_s, valve.k_low, valve.k_high, valve.q_rest, valve.x_dg, valve.x_max, valve.per_root_drop,
+        plant.mechanics.k_s, valve.k_low, valve.k_high, valve.q_rest, valve.x_dg, valve.x_max,
+        valve.per_root_drop,
         valve.f_pa, valve.f_at, valve.f_bt, valve.f_pb, output_per_spool)
 
 

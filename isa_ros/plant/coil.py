@@ -104,7 +104,8 @@ def explicit_rates(y, voltage, coil):
     u = max(-coil.voltage, min(coil.voltage, voltage))
     first = (u - coil.resistance * y.current) / coil.inductance
     w = coil.mode_w
-    return first, y.mode_rate, w * w * (y.current - y.mode) - 2.0 * coil.mode_zeta * w * y.mode_rate
+    second = w * w * (y.current - y.mode) - 2.0 * coil.mode_zeta * w * y.mode_rate
+    return first, y.mode_rate, second
 
 
 @kernel

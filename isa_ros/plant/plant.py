@@ -172,5 +172,6 @@ def read_sensors(y, x_load, v_load, plant, measured):
     measured.pressure_b = convert(y.chambers.p_b, 0.0, own.pressure_range, own.pressure_step)
     measured.spool = convert(y.valve.spool, -own.spool_range, own.spool_range, own.spool_step)
     measured.current = convert(
-        coil.coil_current(y.coil, plant.coil), -own.current_range, own.current_range, own.current_step)
+        coil.coil_current(y.coil, plant.coil), -own.current_range, own.current_range,
+        own.current_step)
     return force

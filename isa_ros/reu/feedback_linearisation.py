@@ -47,7 +47,8 @@ LINEARISED = np.dtype([
 
 LINEARISATION = np.dtype([
     ('period', 'f8'), ('bandwidth', 'f8'), ('ki', 'f8'), ('kf', 'f8'),
-    ('derivative_alpha', 'f8'), ('speed_alpha', 'f8'), ('velocity_share', 'f8'), ('least_drop', 'f8'),
+    ('derivative_alpha', 'f8'), ('speed_alpha', 'f8'), ('velocity_share', 'f8'),
+    ('least_drop', 'f8'),
     ('p_s', 'f8'), ('p_t', 'f8'), ('limit', 'f8'), ('is_clamped', 'f8'),
     ('model', LINEARISED)])
 

@@ -12,7 +12,7 @@ from isa_ros.actuator_sheet import actuator_record, ActuatorSheet
 from isa_ros.analysis.bode import bode
 from isa_ros.analysis.excitation import excite, RATE_HZ
 from isa_ros.analysis.rig import Choice, Rig, rig
-from isa_ros.analysis.step import step, Step
+from isa_ros.analysis.step import Step, step
 from isa_ros.analysis.step_response import step_figures
 from isa_ros.analysis.sweep import Sweep
 from isa_ros.analysis.validation.entry import around, at_most, Drawing, Entry, Findings
@@ -115,8 +115,9 @@ def _ringing() -> tuple[float, np.ndarray]:
     bench = _rig()
     current = bench.config.sheet.reu.current
     assert isinstance(current, LeadLag)
-    same = dict(lead_rad_per_s=current.lag_rad_per_s, lead_damping=current.lag_damping)
-    bare = replace(current, kp_v_per_ma=BARE_KP, kpf=1.0, **same)
+    bare = replace(
+        current, kp_v_per_ma=BARE_KP, kpf=1.0, lead_rad_per_s=current.lag_rad_per_s,
+        lead_damping=current.lag_damping)
     sheet = replace(bench.config.sheet, reu=replace(bench.config.sheet.reu, current=bare))
     actuator = _rig(sheet).start()
     n = round(STEP_S * RATE_HZ)
