@@ -11,7 +11,7 @@ from typing import Protocol
 from isa_ros import actuator_kernel as kernels
 from isa_ros.actuator_sheet import actuator_record, ActuatorSheet
 from isa_ros.errors import SimulationDiverged
-from isa_ros.load.local import local_port, local_stops, LocalLoad, static_force
+from isa_ros.load.local import local_port, LocalLoad, own_record, static_force
 from isa_ros.plant.plant import read_sensors, rest_pressures
 from isa_ros.reu.cascade import initial_gains, MEASURED, REU_STATE
 from isa_ros.signals import COMMAND, HAS_ENABLE, HAS_SETPOINT, LOAD_PORT, LOAD_REPLY, SAMPLE
@@ -69,7 +69,7 @@ class SmartActuator:
         self._is_shared = config.load is None
         offset_steps = timing.controller_offset_ns // PLANT_STEP_NS
         constants = actuator_record(config.sheet, offset_steps)
-        constants['stops'] = local_stops(config.load)
+        constants['load'] = own_record(config.load)
         bodies, rates = kernels.scratch()
         self._y = kernels.flat(bodies)
         rows = [np.zeros(1, dtype) for dtype in (

@@ -8,7 +8,8 @@ of floats (`BODY`), so that the integrator sees the same memory as a flat array.
 import math
 
 from isa_ros.kernel import kernel
-from isa_ros.load.port import load_acceleration, LOAD_STATE, load_stop_force, LOAD_STOPS
+from isa_ros.load.own import LOAD_STATE, OWN_LOAD, own_load_force
+from isa_ros.load.port import load_acceleration
 from isa_ros.plant.plant import PLANT, plant_rates, PLANT_STATE, read_sensors
 from isa_ros.plant.spool import stop_spool
 from isa_ros.reu.cascade import cascade_step, is_due, REU
@@ -27,7 +28,7 @@ STATE_SIZE = BODY.itemsize // 8
 STAGES = 4
 NOTHING = 1e-100  # any unit: a state that decays below is zero, denormal arithmetic is slow
 
-ACTUATOR = np.dtype([('plant', PLANT), ('reu', REU), ('stops', LOAD_STOPS)])
+ACTUATOR = np.dtype([('plant', PLANT), ('reu', REU), ('load', OWN_LOAD)])
 """Every constant of one actuator, SI."""
 
 
@@ -57,10 +58,10 @@ def body_rates(tau, y, drive, port, actuator, rates):
     force, q_p, q_t = plant_rates(
         y.plant, y.load.position, y.load.velocity, drive,
         port.supply_pressure, port.return_pressure, actuator.plant, rates.plant)
-    stop = load_stop_force(y.load.position, y.load.velocity, actuator.stops)
+    own = own_load_force(y.load, port.x0, actuator.load, rates.load)
     rates.load.position = y.load.velocity
     rates.load.velocity = load_acceleration(
-        tau, y.load.position, y.load.velocity, force + stop, port)
+        tau, y.load.position, y.load.velocity, force + own, port)
     rates.totals.impulse = force
     rates.totals.supply_volume = q_p
     rates.totals.return_volume = q_t
@@ -130,6 +131,8 @@ def loops_and_plant(step, tau, port, actuator, bodies, rates, y, k, reu_state):
         read_sensors(body.plant, body.load.position, body.load.velocity,
                      actuator.plant, reu_state.measured)
         cascade_step(step, reu, reu_state)
+    if step == actuator.load.rope.release_step:
+        body.load.weight.is_released = 1.0
     if is_due(step, reu.current_steps, reu.offset_steps + reu.delay_steps):
         reu_state.amplifier = reu_state.drive
     body_step(PLANT_STEP, tau, reu_state.amplifier, port, actuator,

@@ -91,7 +91,7 @@ def known_model(plant: np.record, output_per_spool: float) -> tuple[float, ...]:
 
 
 def actuator_record(sheet: ActuatorSheet, offset_steps: int) -> np.ndarray:
-    """Return the `ACTUATOR` record of a sheet without load stops, shape (1,)."""
+    """Return the `ACTUATOR` record of a sheet without a load of its own, shape (1,)."""
     plant = plant_record(sheet.plant)
     k_spool = plant[0].valve.k_spool
     commands_spool = not isinstance(sheet.reu.spool, Off)

@@ -1,4 +1,4 @@
-"""The data that comes with the package: actuator models, legs, gaits."""
+"""The data that comes with the package: actuator models, legs, materials, gaits."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -12,7 +12,9 @@ from isa_ros.strict_yaml import read, Tree
 _PACKAGE = Path(__file__).parent
 _MODELS = _PACKAGE / 'models'
 _LEGS = _PACKAGE / 'load' / 'legs'
+_MATERIALS = _PACKAGE / 'load' / 'materials'
 _GAITS = _PACKAGE / 'gaits'
+_PAD_KEYS = ('stiffness', 'damping')  # what a pad takes of its material
 
 
 @dataclass(frozen=True)
@@ -101,7 +103,8 @@ def actuator_model(name: str, where: str) -> Model:
         name, place, sheet,
         _sections(section_at(tree.get('presets'), place / 'presets'), place / 'presets'),
         _sections(section_at(tree.get('variants', {}), place / 'variants'), place / 'variants'),
-        _sections(loads, place / 'loads'), str(default))
+        {load: _load(load, section_at(below, place / 'loads' / load), place / 'loads' / load)
+         for load, below in loads.items()}, str(default))
 
 
 def _sections(tree: Tree, place: Place) -> dict[str, Section]:
@@ -109,11 +112,32 @@ def _sections(tree: Tree, place: Place) -> dict[str, Section]:
             for name, below in tree.items()}
 
 
+def _load(name: str, tree: Tree, place: Place) -> Section:
+    """Return a load with its kind, which is its name unless it says otherwise."""
+    rest = {key: value for key, value in tree.items() if key != 'material'}
+    section = {'kind': Entry(name, str(place), '')} | sourced(rest, place)
+    if 'material' in tree:
+        material, _ = material_section(tree['material'], f'{place}.material')
+        section = {key: material[key] for key in _PAD_KEYS} | section
+    return section
+
+
 def leg_section(name: str, where: str) -> tuple[Section, Place]:
     """Return the sheet of a packaged leg; as `actuator_model`."""
     path = _packaged(_LEGS, name, where, 'leg')
     tree: Tree = read(path)
     return sourced(tree, Place(path.name)), Place(path.name)
+
+
+def material_names() -> list[str]:
+    """Return the names of the packaged materials, sorted."""
+    return _names(_MATERIALS)
+
+
+def material_section(name: object, where: str) -> tuple[Section, Place]:
+    """Return a packaged material as the section of a ground; as `actuator_model`."""
+    path = _packaged(_MATERIALS, name, where, 'material')
+    return sourced(read(path), Place(path.name)), Place(path.name)
 
 
 def gait_section(name: str, where: str) -> Section:

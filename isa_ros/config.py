@@ -12,7 +12,7 @@ import re
 from typing import Any
 
 from isa_ros.actuator_sheet import ActuatorSheet, refuse_wiring
-from isa_ros.catalogue import actuator_model, leg_section, Model
+from isa_ros.catalogue import actuator_model, leg_section, material_section, Model
 from isa_ros.errors import ConfigError, ParameterError
 from isa_ros.load.leg_sheet import JOINTS, LegSheet
 from isa_ros.load.local import LocalLoad
@@ -141,9 +141,12 @@ def _section(tree: Tree, key: str, place: Place) -> Tree:
 def _leg(tree: Tree, place: Place, step_ns: int) -> tuple[LegConfig, Section]:
     below = place / 'leg'
     leg = _section(tree, 'leg', place)
-    refuse_unknown(leg, ('model', 'joints', 'start', 'parameters'), below)
+    refuse_unknown(leg, ('model', 'joints', 'ground', 'start', 'parameters'), below)
     model = leg.get('model')
     section, model_place = leg_section(model, f'{below}.model')  # type: ignore[arg-type]
+    if 'ground' in leg:
+        ground, _ = material_section(leg['ground'], f'{below}.ground')
+        section = merge(section, {'ground': ground})
     section = merge(section, _parameters(leg, below))
     sheet = build(LegSheet, section, model_place)
     start = leg_start(section_at(leg.get('start'), below / 'start'), below / 'start')
@@ -311,4 +314,5 @@ def _load_section(tree: Tree, place: Place, model: Model) -> Section:
     kind: Any = tree.get('kind')
     if kind not in model.loads:
         raise ConfigError(f'{place}.kind = {kind!r}, must be one of {", ".join(model.loads)}')
-    return merge(model.loads[kind], written(tree, place))
+    own = {key: value for key, value in tree.items() if key != 'kind'}
+    return merge(model.loads[kind], written(own, place))

@@ -4,13 +4,15 @@ from collections.abc import Iterator
 from typing import Any, NamedTuple
 
 from isa_ros.actuator_sheet import ActuatorSheet
-from isa_ros.catalogue import actuator_model, leg_names, leg_section, model_names
+from isa_ros.catalogue import (
+    actuator_model, leg_names, leg_section, Model, model_names)
 from isa_ros.config import read_run
 from isa_ros.errors import ConfigError
 from isa_ros.load.leg_sheet import LegSheet
+from isa_ros.load.local import LocalLoad
 from isa_ros.parameter import Parameters, walk
 from isa_ros.paths import CONFIG, find
-from isa_ros.resolve import build, Section, sources
+from isa_ros.resolve import as_tree, build, build_one_of, Section, sources
 
 _SYMBOLS = {'gt': '>', 'ge': '>=', 'lt': '<', 'le': '<='}
 
@@ -42,8 +44,9 @@ def describe(name: str, preset: str) -> str:
     if name in model_names():
         model = actuator_model(name, 'model')
         section = model.with_preset(preset, 'preset')
-        return _table(f'{name}, preset {preset}', rows(
-            build(ActuatorSheet, section, model.place), section))
+        sheet = build(ActuatorSheet, section, model.place)
+        return '\n\n'.join([
+            _table(f'{name}, preset {preset}', rows(sheet, section)), *_load_tables(model)])
     if name in leg_names():
         section, place = leg_section(name, 'leg')
         return _table(name, rows(build(LegSheet, section, place), section))
@@ -74,13 +77,24 @@ def _run_tables(path: str) -> Iterator[str]:
         origin = origins.actuators[actuator.name]
         yield _table(title, rows(actuator.sheet, origin.sheet))
         if actuator.load is not None:
-            kind = type(actuator.load).__name__.lower()
-            yield _table(
-                f'actuators.{actuator.name}.load: {kind}', rows(actuator.load, origin.load))
+            yield _table(f'actuators.{actuator.name}.load: {_kind(actuator.load)}',
+                         rows(actuator.load, origin.load))
     if run.leg is not None and origins.leg is not None:
         yield _table('leg.start', [
             row._replace(source=given) for row in rows(run.leg.start, {})])
         yield _table(f'leg: {run.leg.model}', rows(run.leg.sheet, origins.leg))
+
+
+def _load_tables(model: Model) -> Iterator[str]:
+    for name, section in model.loads.items():
+        load = build_one_of(LocalLoad, section, model.place / 'loads' / name)
+        kind = _kind(load)
+        yield _table(f'load {name}' + (f', a {kind}' if kind != name else ''),
+                     rows(load, section))
+
+
+def _kind(load: LocalLoad) -> str:
+    return str(as_tree(load, LocalLoad)['kind'])
 
 
 def _value(value: Any) -> str:

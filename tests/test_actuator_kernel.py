@@ -35,8 +35,9 @@ def run(model: str, kind: str, mode: str) -> str:
         env=environment, check=True, capture_output=True, text=True).stdout
 
 
-@pytest.mark.parametrize('kind', ['wheel', 'blocked'])
-@pytest.mark.parametrize('model', MODELS)
+@pytest.mark.parametrize(('model', 'kind'), [
+    *[(model, kind) for model in MODELS for kind in ('wheel', 'blocked', 'rubber')],
+    ('smart_manifold', 'drop_rig')])
 def test_compiled_tick_equals_its_python_source(model, kind):
     """Replay compares bytes: valve, oil, friction, sensors, loops, load copy, all of it."""
     compiled = run(model, kind, 'compiled')

@@ -118,6 +118,30 @@ def test_a_wrong_actuator_is_refused_by_file_and_key(
     assert '\n' not in str(caught.value)
 
 
+def test_the_foot_stands_on_the_named_material(tmp_path: Path) -> None:
+    """leg.ground replaces the model's ground; single values still win, and the text keeps all."""
+    text = (CONFIG / 'leg.yaml').read_text(encoding='utf-8')
+    path = tmp_path / 'leg.yaml'
+    path.write_text(text + '  ground: wood\n  parameters: {ground: {friction: 0.4}}\n')
+    run, plain = load_run(path), load_run(CONFIG / 'leg.yaml')
+    assert run.leg is not None and plain.leg is not None
+    ground = run.leg.sheet.ground
+    assert (ground.stiffness, ground.damping, ground.friction) == (1e7, 0.4, 0.4)
+    assert plain.leg.sheet.ground.stiffness == 3e6
+    assert RunConfig.from_yaml(run.to_yaml()) == run
+
+
+@pytest.mark.parametrize(('load', 'name'), [
+    ('kind: mass', 'Mass'), ('kind: blocked', 'Blocked'), ('kind: wheel', 'Wheel'),
+    ('kind: wood', 'Pad'), ('kind: metal, gap: 0.01', 'Pad')])
+def test_a_load_is_named_or_of_its_kind(tmp_path: Path, load: str, name: str) -> None:
+    """A named load is of another kind, which the resolved text says; it is read back."""
+    run = load_run(rig(tmp_path, f'model: isa_v5, load: {{{load}}}'))
+    assert type(run.actuator('ram').load).__name__ == name
+    assert f'kind: {name.lower()}' in run.to_yaml()
+    assert RunConfig.from_yaml(run.to_yaml()) == run
+
+
 @pytest.mark.parametrize('step', ['0.1', '0.5', '2', '100'])
 def test_macro_steps_on_the_grid_are_taken(tmp_path: Path, step: str) -> None:
     path = rig(tmp_path, step=step)

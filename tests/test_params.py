@@ -5,8 +5,9 @@ from itertools import product
 from isa_ros.actuator_sheet import ActuatorSheet
 from isa_ros.catalogue import actuator_model, leg_names, leg_section, model_names
 from isa_ros.load.leg_sheet import LegSheet
+from isa_ros.load.local import LocalLoad
 from isa_ros.params import describe, rows
-from isa_ros.resolve import build
+from isa_ros.resolve import build, build_one_of
 import pytest
 
 SOURCES = ('paper', 'derived', 'assumed', 'public model')
@@ -47,3 +48,20 @@ def test_a_run_shows_each_actuator_and_where_its_values_come_from() -> None:
     assert 'actuators.rotor: smart_manifold, preset table_4' in text
     assert 'actuators.rotor.load: wheel' in text
     assert '20.7   MPa' in text.replace('    ', '   ') and 'rig_rotary.yaml' in text
+
+
+def test_a_model_shows_its_loads() -> None:
+    """Each with its kind where its name is another, and its sources."""
+    text = describe('smart_manifold', 'default')
+    assert '\n\nload drop_rig\n' in text and '\n\nload wood, a pad\n' in text
+    assert '\n\nload wheel\n' in text
+    line = next(line for line in text.splitlines() if line.startswith('slack '))
+    assert '250 Nm of paper section 5.1' in line
+
+
+@pytest.mark.parametrize('name', model_names())
+def test_every_value_of_a_load_has_its_source(name: str) -> None:
+    model = actuator_model(name, 'model')
+    for load, section in model.loads.items():
+        table = rows(build_one_of(LocalLoad, section, model.place / load), section)
+        assert table and all(row.source.startswith(SOURCES) for row in table)

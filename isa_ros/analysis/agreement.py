@@ -17,7 +17,7 @@ from isa_ros.catalogue import actuator_model
 from isa_ros.config import own_load
 from isa_ros.default_actuator import default_actuator
 from isa_ros.kernel import kernel
-from isa_ros.load.local import local_port, local_stops
+from isa_ros.load.local import local_port, own_record
 from isa_ros.plant.mechanics import sensor_force
 from isa_ros.plant.plant import rest_pressures
 from isa_ros.resolve import Place
@@ -84,7 +84,7 @@ class Bench:
         sheet = default_actuator(model, model).sheet
         middle = 0.5 * sheet.plant.drive.stroke
         self._constants = actuator_record(sheet, 0)
-        self._constants['stops'] = local_stops(fixture)
+        self._constants['load'] = own_record(fixture)
         self._port = local_port(fixture, middle)
         self._port['supply_pressure'] = SUPPLY
         self._plant = self._constants.view(np.recarray)[0].plant

@@ -11,6 +11,7 @@ import math
 
 from isa_ros.errors import ParameterError
 from isa_ros.load import linkage as kernels
+from isa_ros.load.gravity import STANDARD_GRAVITY
 from isa_ros.load.ground import GROUND, Ground, ground_record
 from isa_ros.load.leg_dynamics import LEG_BODY
 from isa_ros.parameter import parameter, Parameters
@@ -18,7 +19,6 @@ import numpy as np
 
 JOINTS = ('haa', 'hfe', 'kfe')
 MILLI = 1e-3
-STANDARD_GRAVITY = 9.80665  # m/s2
 SHORTEST_LEVER = 2e-3  # m (or 1 of a rotary actuator): ports divide by it
 CHECKED_ANGLES = 257  # samples of a joint's range in which a linkage must be regular
 

@@ -1,13 +1,15 @@
 """
 Loads of one actuator alone, integrated in its node with the plant's step.
 
-Each is a constant load port (equation L1): an inertia, a spring to ground, end stops.
-Generalised units: N, m, kg or Nm, rad, kg m2.
+Each is a constant load port (equation L1), an inertia with or without a spring to ground,
+and what acts on it besides (`isa_ros.load.own`). Generalised units: N, m, kg or Nm, rad,
+kg m2.
 """
 
 from dataclasses import dataclass
 
-from isa_ros.load.port import LOAD_STOPS
+from isa_ros.load.drop_rig import DropRig, rope_record
+from isa_ros.load.own import OWN_LOAD
 from isa_ros.parameter import parameter, Parameters
 from isa_ros.signals import LOAD_PORT
 import numpy as np
@@ -41,7 +43,20 @@ class Mass(Parameters):
     force: float = parameter('constant force on it, e.g. weight', 'N | Nm', ge=-1e6, le=1e6)
 
 
-LocalLoad = Blocked | Wheel | Mass
+@dataclass(frozen=True, kw_only=True)
+class Pad(Parameters):
+    """A free mass that meets a pad of some material on its way out."""
+
+    inertia: float = parameter('moving mass', 'kg | kg m2', gt=0.0, le=1e4)
+    gap: float = parameter('free travel from the start to the pad', 'm | rad', ge=0.0, le=10.0)
+    radius: float = parameter(
+        '1, or the radius at which a wheel meets the pad', 'm/m | m/rad', gt=0.0, le=10.0)
+    stiffness: float = parameter('k of k d^1.5', 'N/m^1.5', gt=0.0, le=1e9)
+    damping: float = parameter(
+        "c of the factor 1 + c d' of Hunt and Crossley", 's/m', ge=0.0, le=100.0)
+
+
+LocalLoad = Blocked | Wheel | Mass | Pad | DropRig
 
 
 def local_port(load: LocalLoad, rest: float) -> np.ndarray:
@@ -57,12 +72,16 @@ def local_port(load: LocalLoad, rest: float) -> np.ndarray:
     return port
 
 
-def local_stops(load: LocalLoad | None) -> np.ndarray:
-    """Return the load's `LOAD_STOPS`, shape (1,); zero where it has none."""
-    stops = np.zeros(1, LOAD_STOPS)
-    if isinstance(load, Wheel):
-        stops[0] = (load.stop_low, load.stop_high, load.stop_stiffness, load.stop_damping)
-    return stops
+def own_record(load: LocalLoad | None) -> np.ndarray:
+    """Return the load's `OWN_LOAD`, shape (1,); zero where it has none."""
+    own = np.zeros(1, OWN_LOAD)
+    if isinstance(load, Wheel | DropRig):
+        own['stops'] = (load.stop_low, load.stop_high, load.stop_stiffness, load.stop_damping)
+    if isinstance(load, DropRig):
+        own['rope'] = rope_record(load)
+    elif isinstance(load, Pad):
+        own['pad'] = (load.gap, load.radius, load.stiffness, load.damping)
+    return own
 
 
 def static_force(load: LocalLoad | None) -> float:
