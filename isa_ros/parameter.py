@@ -15,12 +15,17 @@ _RELATIONS: dict[str, tuple[str, Callable[[float, float], bool]]] = {
 }
 
 
-def parameter(doc: str, unit: str, **bounds: float) -> Any:
-    """Declare one number; ``bounds`` are any of ``gt``, ``ge``, ``lt``, ``le``."""
+def parameter(doc: str, unit: str, *, absent: float | None = None, **bounds: float) -> Any:
+    """
+    Declare one number; ``bounds`` are any of ``gt``, ``ge``, ``lt``, ``le``.
+
+    ``absent`` is what a resolved configuration means that was written before the parameter.
+    """
     unknown = set(bounds) - set(_RELATIONS)
     if unknown:
         raise TypeError(f'unknown bounds {sorted(unknown)}; use {sorted(_RELATIONS)}')
-    return field(metadata={'doc': doc, 'unit': unit, 'bounds': bounds})
+    metadata = {'doc': doc, 'unit': unit, 'bounds': bounds}
+    return field(metadata=metadata if absent is None else metadata | {'absent': absent})
 
 
 def choice(doc: str, *names: str) -> Any:

@@ -175,7 +175,7 @@ def _kind(section: Section) -> Scalar:
 
 def build(cls: type[P], section: Section, place: Place) -> P:
     """
-    Return the parameter set of a section that must hold every value.
+    Return the parameter set of a section that must hold every value without `absent`.
 
     A field that may hold one of several sets has its section say which: ``kind: wheel``.
 
@@ -192,7 +192,10 @@ def build(cls: type[P], section: Section, place: Place) -> P:
     values: dict[str, Any] = {}
     for f in fields(cls):
         if f.name not in section:
-            raise ConfigError(place.has(f'lacks {f.name}'))
+            if 'absent' not in f.metadata:
+                raise ConfigError(place.has(f'lacks {f.name}'))
+            values[f.name] = f.metadata['absent']
+            continue
         entry = section[f.name]
         if 'doc' in f.metadata:
             values[f.name] = _checked(entry, f.metadata, place / f.name)

@@ -185,6 +185,14 @@ def test_a_damaged_resolved_text_is_refused(old: str, new: str, expected: str) -
         RunConfig.from_yaml(text.replace(old, new, 1))
 
 
+def test_a_text_from_before_a_parameter_is_read() -> None:
+    """The bag of a leg whose hip drop was not yet a number: the axes crossed at one height."""
+    run = load_run(CONFIG / 'leg.yaml')
+    text = run.to_yaml()
+    assert '      hip_drop_m: 0.0\n' in text
+    assert RunConfig.from_yaml(text.replace('      hip_drop_m: 0.0\n', '', 1)) == run
+
+
 def test_origins_say_which_file_a_value_comes_from(tmp_path: Path) -> None:
     ram = 'model: isa_v5, load: {kind: mass}, parameters: {plant: {oil: {dead_volume_ml: 2.5}}}'
     _, origins = read_run(rig(tmp_path, ram))

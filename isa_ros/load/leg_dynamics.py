@@ -14,10 +14,10 @@ import numpy as np
 
 LEG_BODY = np.dtype([
     (name, '<f8') for name in (
-        'l_hip', 'l_thigh', 'l_calf', 'm_slider', 'm_hip', 'm_thigh', 'm_calf', 'c_hip_x',
-        'c_hip_y', 'c_hip_z', 'c_thigh_x', 'c_thigh_y', 'c_thigh_z', 'c_calf_x', 'c_calf_y',
-        'c_calf_z', 'i_hip_xx', 'i_hip_yy', 'i_hip_zz', 'i_thigh_xx', 'i_thigh_yy', 'i_thigh_zz',
-        'i_calf_xx', 'i_calf_yy', 'i_calf_zz', 'gravity')])
+        'l_hip', 'd_hip', 'l_thigh', 'l_calf', 'm_slider', 'm_hip', 'm_thigh', 'm_calf',
+        'c_hip_x', 'c_hip_y', 'c_hip_z', 'c_thigh_x', 'c_thigh_y', 'c_thigh_z', 'c_calf_x',
+        'c_calf_y', 'c_calf_z', 'i_hip_xx', 'i_hip_yy', 'i_hip_zz', 'i_thigh_xx', 'i_thigh_yy',
+        'i_thigh_zz', 'i_calf_xx', 'i_calf_yy', 'i_calf_zz', 'gravity')])
 """Link lengths (m), masses (kg), centres of mass (m), inertias at them (kg m2), g (m/s2)."""
 
 
@@ -71,6 +71,7 @@ def leg_terms(q_z, q_haa, q_hfe, q_kfe, v_z, v_haa, v_hfe, v_kfe, body):
     s23 = s2*c3 + c2*s3
     c23 = c2*c3 - s2*s3
     l_hip = body.l_hip
+    d_hip = body.d_hip
     l_thigh = body.l_thigh
     l_calf = body.l_calf
     m_slider = body.m_slider
@@ -100,136 +101,151 @@ def leg_terms(q_z, q_haa, q_hfe, q_kfe, v_z, v_haa, v_hfe, v_kfe, body):
     t4 = c_thigh_x*m_thigh
     t5 = l_thigh*m_calf
     t6 = t4 + t5
-    t7 = c_calf_z*m_calf
-    t8 = c_thigh_z*m_thigh
-    t9 = l_hip*m_calf
-    t10 = l_hip*m_thigh
-    t11 = c_calf_y*c_calf_y*m_calf
-    t12 = l_hip*l_hip
-    t13 = c2*c2
-    t14 = c_thigh_y*c_thigh_y*m_thigh
-    t15 = c_thigh_x*c_thigh_x*m_thigh + l_thigh*l_thigh*m_calf
-    t16 = c_calf_x*c_calf_x*m_calf
-    t17 = 2*l_hip
-    t18 = s23*t5
-    t19 = c2*c_calf_y*t18
-    t20 = c23*t5
-    t21 = c2*c_calf_x*t20
-    t22 = t14 - 2*t19 + 2*t21
-    t23 = c1*c23*t2 + c1*s23*t0
-    t24 = c23*(-c_calf_y*t7 - c_calf_y*t9) + s23*(-c_calf_x*t7 - c_calf_x*t9)
-    t25 = c_calf_y*s2*t20
-    t26 = c_calf_x*s2*t18
-    t27 = i_calf_zz + t11 + t16
-    t28 = gravity*s1
-    t29 = -t28
-    t30 = v_haa*v_haa
-    t31 = -c_hip_y*t30 - t29
-    t32 = c_thigh_y*v_hfe
-    t33 = c2*v_haa
-    t34 = c_thigh_x*v_hfe
-    t35 = s2*v_haa
-    t36 = l_hip*t30
-    t37 = c_thigh_z*t35
-    t38 = t34 - t37
-    t39 = c_thigh_z*t33
-    t40 = -t32 + t39
-    t41 = t29 + t32*t33 - t33*t40 + t34*t35 + t35*t38 - t36
-    t42 = m_thigh*t41
-    t43 = c3*t33
-    t44 = s3*t35
-    t45 = t43 - t44
-    t46 = t43*v_hfe - t44*v_hfe + t45*v_kfe
-    t47 = s3*t33
-    t48 = c3*t35
-    t49 = t47 + t48
-    t50 = -t47*v_hfe - t48*v_hfe - t49*v_kfe
-    t51 = v_hfe + v_kfe
-    t52 = c_calf_x*t51 - c_calf_z*t49
-    t53 = -c_calf_y*t51 + c_calf_z*t45
-    t54 = -c_calf_x*t50 + c_calf_y*t46 + 2*l_thigh*s2*v_haa*v_hfe - t28 - t36 - t45*t53 + t49*t52
-    t55 = m_calf*t54
-    t56 = c1*gravity
-    t57 = -c_hip_x*t30 - t56
-    t58 = s2*t56
-    t59 = -c_thigh_x*t33 + c_thigh_y*s2*v_haa
-    t60 = -t35*t59 - t39*v_hfe + t40*v_hfe + t58
-    t61 = l_thigh*s2
-    t62 = c2*t30
-    t63 = t58 + t61*t62
-    t64 = c2*t56
-    t65 = -l_thigh*t13*t30 - l_thigh*v_hfe*v_hfe - t64
-    t66 = -c_calf_x*t45 + c_calf_y*t49
-    t67 = c3*t63 - c_calf_z*t46 - s3*t65 - t49*t66 + t51*t53
-    t68 = c3*m_calf
-    t69 = c3*t65 + c_calf_z*t50 + s3*t63 + t45*t66 - t51*t52
-    t70 = m_calf*s3
-    t71 = t67*t68 + t69*t70
-    t72 = c2*t59*v_haa - t37*v_hfe - t38*v_hfe - t64
-    t73 = m_thigh*t72
-    t74 = c2*(-t67*t70 + t68*t69 + t73) - s2*(m_thigh*t60 + t71)
-    t75 = t33*v_hfe
-    t76 = t45*t51
-    t77 = c_calf_y*t55 + i_calf_xx*t46 - i_calf_yy*t76 + i_calf_zz*t76 - t67*t7
-    t78 = t49*t51
-    t79 = -c_calf_x*t55 + i_calf_xx*t78 + i_calf_yy*t50 - i_calf_zz*t78 + t69*t7
-    t80 = t35*v_hfe
-    t81 = s2*t62
-    t82 = t45*t49
-    t83 = -i_calf_xx*t82 + i_calf_yy*t82 + t0*t67 - t2*t69
-    t84 = l_calf*s23
-    t85 = c2*l_thigh
-    t86 = s1*t85
-    t87 = c23*l_calf
-    t88 = s1*t87
-    t89 = -c1*l_hip + t86 + t88
-    t90 = l_hip*s1
-    t91 = c1*t85
-    t92 = c1*t87
-    t93 = t90 + t91 + t92
-    t94 = l_calf*v_hfe + l_calf*v_kfe
-    t95 = c1*t61
-    t96 = s1*t84
-    t97 = c1*t84
+    t7 = c_hip_x*m_hip
+    t8 = d_hip*m_calf
+    t9 = d_hip*m_thigh
+    t10 = c_calf_z*m_calf
+    t11 = c_thigh_z*m_thigh
+    t12 = l_hip*m_calf
+    t13 = l_hip*m_thigh
+    t14 = c_calf_y*c_calf_y*m_calf
+    t15 = 2*t9
+    t16 = 2*t8
+    t17 = d_hip*d_hip
+    t18 = l_hip*l_hip
+    t19 = c2*c2
+    t20 = c_thigh_y*c_thigh_y*m_thigh
+    t21 = c_thigh_x*c_thigh_x*m_thigh + l_thigh*l_thigh*m_calf
+    t22 = c_calf_x*c_calf_x*m_calf
+    t23 = 2*l_hip
+    t24 = c_calf_y*s23
+    t25 = c_thigh_y*s2
+    t26 = c23*c_calf_x
+    t27 = c2*t5
+    t28 = t24*t27
+    t29 = t26*t27
+    t30 = t20 - 2*t28 + 2*t29
+    t31 = c1*c23*t2 + c1*s23*t0
+    t32 = c23*(-c_calf_y*t10 - c_calf_y*t12) + s23*(-c_calf_x*t10 - c_calf_x*t12)
+    t33 = s2*t5
+    t34 = c23*c_calf_y*t33
+    t35 = c_calf_x*s23*t33
+    t36 = i_calf_zz + t14 + t22
+    t37 = gravity*s1
+    t38 = -t37
+    t39 = v_haa*v_haa
+    t40 = -c_hip_y*t39 - t38
+    t41 = c_thigh_y*v_hfe
+    t42 = c2*v_haa
+    t43 = c_thigh_x*v_hfe
+    t44 = s2*v_haa
+    t45 = l_hip*t39
+    t46 = c_thigh_z*t44
+    t47 = t43 - t46
+    t48 = c_thigh_z*t42
+    t49 = -t41 + t48
+    t50 = t38 + t41*t42 - t42*t49 + t43*t44 + t44*t47 - t45
+    t51 = m_thigh*t50
+    t52 = c3*t42
+    t53 = s3*t44
+    t54 = t52 - t53
+    t55 = t52*v_hfe - t53*v_hfe + t54*v_kfe
+    t56 = s3*t42
+    t57 = c3*t44
+    t58 = t56 + t57
+    t59 = -t56*v_hfe - t57*v_hfe - t58*v_kfe
+    t60 = v_hfe + v_kfe
+    t61 = c_calf_x*t60 - c_calf_z*t58
+    t62 = -c_calf_y*t60 + c_calf_z*t54
+    t63 = -c_calf_x*t59 + c_calf_y*t55 + 2*l_thigh*s2*v_haa*v_hfe - t37 - t45 - t54*t62 + t58*t61
+    t64 = m_calf*t63
+    t65 = t51 + t64
+    t66 = c1*gravity
+    t67 = -c_hip_x*t39 - t66
+    t68 = -d_hip*t39 - t66
+    t69 = -c_thigh_x*t42 + c_thigh_y*s2*v_haa
+    t70 = c2*t68 + t42*t69 - t46*v_hfe - t47*v_hfe
+    t71 = m_thigh*t70
+    t72 = l_thigh*s2
+    t73 = c2*t39
+    t74 = s2*t68
+    t75 = t72*t73 - t74
+    t76 = c2*t68 - l_thigh*t19*t39 - l_thigh*v_hfe*v_hfe
+    t77 = -c_calf_x*t54 + c_calf_y*t58
+    t78 = c3*t76 + c_calf_z*t59 + s3*t75 + t54*t77 - t60*t61
+    t79 = c3*m_calf
+    t80 = c3*t75 - c_calf_z*t55 - s3*t76 - t58*t77 + t60*t62
+    t81 = m_calf*s3
+    t82 = -t44*t69 - t48*v_hfe + t49*v_hfe - t74
+    t83 = t78*t81 + t79*t80
+    t84 = c2*(t71 + t78*t79 - t80*t81) - s2*(m_thigh*t82 + t83)
+    t85 = t42*v_hfe
+    t86 = t54*t60
+    t87 = c_calf_y*t64 + i_calf_xx*t55 - i_calf_yy*t86 + i_calf_zz*t86 - t10*t80
+    t88 = t58*t60
+    t89 = -c_calf_x*t64 + i_calf_xx*t88 + i_calf_yy*t59 - i_calf_zz*t88 + t10*t78
+    t90 = t44*v_hfe
+    t91 = s2*t73
+    t92 = t54*t58
+    t93 = -i_calf_xx*t92 + i_calf_yy*t92 + t0*t80 - t2*t78
+    t94 = l_calf*s23
+    t95 = d_hip*s1
+    t96 = c2*l_thigh
+    t97 = s1*t96
+    t98 = c23*l_calf
+    t99 = s1*t98
+    t100 = -c1*l_hip + t95 + t97 + t99
+    t101 = c1*d_hip
+    t102 = l_hip*s1
+    t103 = c1*t96
+    t104 = c1*t98
+    t105 = t101 + t102 + t103 + t104
+    t106 = l_calf*v_hfe + l_calf*v_kfe
+    t107 = c1*t72
+    t108 = s1*t94
+    t109 = c1*t94
     return LegTerms(
         m_z_z=m_calf + m_hip + m_slider + m_thigh,
         m_z_haa=(
-            c1*(c_hip_y*m_hip - t10 - t7 - t8 - t9) + c2*s1*t6 + c_hip_x*m_hip*s1 - s1*s2*t3
-            - s1*s23*t2 + s1*t1),
+            c1*(c_hip_y*m_hip - t10 - t11 - t12 - t13) + c2*s1*t6 - s1*s2*t3 - s1*s23*t2 + s1*t1
+            + s1*(t7 + t8 + t9)),
         m_haa_haa=(
-            -2*c2*c_thigh_y*s2*t4 + c23*c23*(-i_calf_xx + i_calf_yy - t11 + t16)
-            - 2*c_calf_y*s23*t1 + c_calf_z*c_calf_z*m_calf + c_hip_x*c_hip_x*m_hip
-            + c_hip_y*c_hip_y*m_hip + c_thigh_z*c_thigh_z*m_thigh + i_calf_xx + i_hip_zz
-            + i_thigh_xx + m_calf*t12 + m_thigh*t12 + t11 + t13*(-i_thigh_xx + i_thigh_yy - t14
-                                                                 + t15) + t17*t7 + t17*t8 + t22),
-        m_z_hfe=c1*c2*t3 + c1*s2*t6 + t23,
+            -2*c2*t25*t4 + c2*(c_thigh_x*t15 + l_thigh*t16) + c23*c23*(-i_calf_xx + i_calf_yy
+                                                                       - t14 + t22)
+            + c_calf_z*c_calf_z*m_calf + c_hip_x*c_hip_x*m_hip + c_hip_y*c_hip_y*m_hip
+            + c_thigh_z*c_thigh_z*m_thigh + i_calf_xx + i_hip_zz + i_thigh_xx + m_calf*t17
+            + m_calf*t18 + m_thigh*t17 + m_thigh*t18 - 2*t1*t24 + t10*t23 + t11*t23 + t14
+            - t15*t25 - t16*t24 + t16*t26 + t19*(-i_thigh_xx + i_thigh_yy - t20 + t21) + t30),
+        m_z_hfe=c1*c2*t3 + c1*s2*t6 + t31,
         m_haa_hfe=(
-            c2*(-c_thigh_y*t10 - c_thigh_y*t8) + s2*(-c_thigh_x*t10 - c_thigh_x*t8 - l_thigh*t7
-                                                     - l_thigh*t9) + t24),
-        m_hfe_hfe=i_thigh_zz + t15 + t22 + 2*t25 + 2*t26 + t27,
-        m_z_kfe=t23,
-        m_haa_kfe=t24,
-        m_hfe_kfe=-t19 + t21 + t25 + t26 + t27,
-        m_kfe_kfe=t27,
-        h_z=-c1*(m_hip*t57 + t74) + gravity*m_slider + s1*(m_hip*t31 - t42 - t55),
+            c2*(-c_thigh_y*t11 - c_thigh_y*t13) + s2*(-c_thigh_x*t11 - c_thigh_x*t13
+                                                      - l_thigh*t10 - l_thigh*t12) + t32),
+        m_hfe_hfe=i_thigh_zz + t21 + t30 + 2*t34 + 2*t35 + t36,
+        m_z_kfe=t31,
+        m_haa_kfe=t32,
+        m_hfe_kfe=-t28 + t29 + t34 + t35 + t36,
+        m_kfe_kfe=t36,
+        h_z=-c1*(m_hip*t67 + t84) + gravity*m_slider + s1*(m_hip*t40 - t65),
         h_haa=(
-            c2*(c3*t79 + i_thigh_xx*t80 - i_thigh_yy*t80 - i_thigh_zz*t80 + s3*t77 - t4*t41
-                - t5*t54 + t72*t8) + c_hip_x*m_hip*t31 - c_hip_y*m_hip*t57 + l_hip*t74
-            + s2*(c3*t77 + c_thigh_y*t42 + i_thigh_xx*t75 - i_thigh_yy*t75 + i_thigh_zz*t75
-                  - s3*t79 - t60*t8)),
-        h_hfe=-c_thigh_y*t73 - i_thigh_xx*t81 + i_thigh_yy*t81 + l_thigh*t71 + t4*t60 + t83,
-        h_kfe=t83,
-        foot_x=-t61 - t84,
-        foot_y=-t89,
-        foot_z=q_z - t93,
-        foot_v_x=-c23*t94 - t85*v_hfe,
-        foot_v_y=l_thigh*s1*s2*v_hfe + s1*s23*t94 - t90*v_haa - t91*v_haa - t92*v_haa,
-        foot_v_z=-c1*l_hip*v_haa + c1*s23*t94 + t86*v_haa + t88*v_haa + t95*v_hfe + v_z,
-        j_y_haa=-t93,
-        j_z_haa=t89,
-        j_x_hfe=-t85 - t87,
-        j_y_hfe=s1*t61 + t96,
-        j_z_hfe=t95 + t97,
-        j_x_kfe=-t87,
-        j_y_kfe=t96,
-        j_z_kfe=t97)
+            c2*(c3*t89 + i_thigh_xx*t90 - i_thigh_yy*t90 - i_thigh_zz*t90 + s3*t87 + t11*t70
+                - t4*t50 - t5*t63) - c_hip_y*m_hip*t67 - d_hip*t65 + l_hip*t84
+            + s2*(c3*t87 + c_thigh_y*t51 + i_thigh_xx*t85 - i_thigh_yy*t85 + i_thigh_zz*t85
+                  - s3*t89 - t11*t82) + t40*t7),
+        h_hfe=-c_thigh_y*t71 - i_thigh_xx*t91 + i_thigh_yy*t91 + l_thigh*t83 + t4*t82 + t93,
+        h_kfe=t93,
+        foot_x=-t72 - t94,
+        foot_y=-t100,
+        foot_z=q_z - t105,
+        foot_v_x=-c23*t106 - t96*v_hfe,
+        foot_v_y=(
+            l_thigh*s1*s2*v_hfe + s1*s23*t106 - t101*v_haa - t102*v_haa - t103*v_haa - t104*v_haa),
+        foot_v_z=(
+            -c1*l_hip*v_haa + c1*s23*t106 + t107*v_hfe + t95*v_haa + t97*v_haa + t99*v_haa + v_z),
+        j_y_haa=-t105,
+        j_z_haa=t100,
+        j_x_hfe=-t96 - t98,
+        j_y_hfe=s1*t72 + t108,
+        j_z_hfe=t107 + t109,
+        j_x_kfe=-t98,
+        j_y_kfe=t108,
+        j_z_kfe=t109)

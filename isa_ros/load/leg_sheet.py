@@ -34,7 +34,7 @@ class Slider(Parameters):
 class Link(Parameters):
     """One rigid link with principal axes along its own frame's."""
 
-    length_m: float = parameter('to the next joint or to the foot', 'm', gt=0.0, le=2.0)
+    length_m: float = parameter('to the next joint or to the foot', 'm', ge=0.0, le=2.0)
     mass_kg: float = parameter('mass, before the mass scale', 'kg', gt=0.0, le=100.0)
     com_x_m: float = parameter('centre of mass', 'm', ge=-2.0, le=2.0)
     com_y_m: float = parameter('centre of mass', 'm', ge=-2.0, le=2.0)
@@ -50,6 +50,8 @@ class Body(Parameters):
 
     mass_scale: float = parameter(
         'factor on the masses and inertias of the three links', '1', gt=0.0, le=10.0)
+    hip_drop_m: float = parameter(
+        'HFE axis below the HAA axis of a hanging leg', 'm', absent=0.0, ge=-2.0, le=2.0)
     slider: Slider
     hip: Link
     thigh: Link
@@ -164,6 +166,7 @@ def body_record(body: Body) -> np.ndarray:
     row = _rows(1, LEG_BODY)
     row['m_slider'] = body.slider.mass_kg
     row['gravity'] = STANDARD_GRAVITY
+    row['d_hip'] = body.hip_drop_m
     for name in ('hip', 'thigh', 'calf'):
         link: Link = getattr(body, name)
         row[f'l_{name}'] = link.length_m

@@ -12,8 +12,9 @@ import pytest
 from tests.legs import leg_sheet
 
 ROOT = Path(__file__).resolve().parents[2]
-URDF = ROOT / 'urdf' / 'hyq_real_leg.urdf'
+LEGS = ('hyq_real', 'hyq')
 BODY = body_record(leg_sheet().body)[0]
+BODIES = {name: body_record(leg_sheet(name).body)[0] for name in LEGS}
 NAMES = ('z', 'haa', 'hfe', 'kfe')
 # Sums of up to a hundred products: tens of ulps of the largest, more where forces cancel (h).
 ROUNDING = 1e-14
@@ -46,23 +47,23 @@ def bias(terms):
     return np.array([getattr(terms, f'h_{name}') for name in NAMES])
 
 
-@pytest.fixture(scope='module')
-def oracle():
-    """Return Pinocchio with the model of the shipped URDF."""
+@pytest.fixture(scope='module', params=LEGS)
+def oracle(request):
+    """Return Pinocchio with the model of a shipped URDF, and the leg's name."""
     pin = pytest.importorskip('pinocchio')
-    model = pin.buildModelFromUrdf(str(URDF))
+    model = pin.buildModelFromUrdf(str(ROOT / 'urdf' / f'{request.param}_leg.urdf'))
     model.gravity.linear = np.array([0.0, 0.0, -STANDARD_GRAVITY])
     assert [model.names[k] for k in range(1, 5)] == ['slider', 'haa', 'hfe', 'kfe']
-    return pin, model, model.createData()
+    return pin, model, model.createData(), request.param
 
 
 @settings(max_examples=200)
 @given(q=angles, v=speeds)
 def test_dynamics_equal_pinocchio(oracle, q, v):
     """L6-L8: M, h, foot, foot velocity and Jacobian from the URDF and from the data sheet."""
-    pin, model, data = oracle
+    pin, model, data, name = oracle
     q_all, v_all = np.array([0.7, *q]), np.array(v)
-    terms = leg_terms(*q_all, *v_all, BODY)
+    terms = leg_terms(*q_all, *v_all, BODIES[name])
     reference = pin.crba(model, data, q_all)
     reference = np.triu(reference) + np.triu(reference, 1).T
     h = pin.rnea(model, data, q_all, v_all, np.zeros(4))
@@ -80,25 +81,28 @@ def test_dynamics_equal_pinocchio(oracle, q, v):
     assert np.abs(velocity - jacobian @ v_all).max() < ROUNDING * (1.0 + np.abs(v_all).max())
 
 
+@pytest.mark.parametrize('name', LEGS)
 @given(q=angles)
-def test_mass_matrix_is_positive_definite(q):
+def test_mass_matrix_is_positive_definite(name, q):
     """Cholesky exists: the solve of the leg never divides by zero."""
-    np.linalg.cholesky(mass_matrix(leg_terms(0.5, *q, 0.0, 0.0, 0.0, 0.0, BODY)))
+    np.linalg.cholesky(mass_matrix(leg_terms(0.5, *q, 0.0, 0.0, 0.0, 0.0, BODIES[name])))
 
 
+@pytest.mark.parametrize('name', LEGS)
 @given(q=angles, v=speeds)
-def test_coriolis_forces_do_no_work(q, v):
+def test_coriolis_forces_do_no_work(name, q, v):
     """
     v^T (dM/dt v / 2 - c) = 0 for the velocity forces c = h(v) - h(0)  (L7).
 
     dM/dt by central differences over 2e-5 s: truncation 1e-10 |v|^3 times M''' below 2 kg m2,
     with |v|^3 up to 4096: 1e-6 of a power of the order of 1e3 W.
     """
-    terms = leg_terms(0.5, *q, *v, BODY)
-    still = leg_terms(0.5, *q, 0.0, 0.0, 0.0, 0.0, BODY)
+    body = BODIES[name]
+    terms = leg_terms(0.5, *q, *v, body)
+    still = leg_terms(0.5, *q, 0.0, 0.0, 0.0, 0.0, body)
     e, v_all = 1e-5, np.array(v)
     moved = [mass_matrix(leg_terms(
-        0.5, *(np.array(q) + s * e * v_all[1:]), 0.0, 0.0, 0.0, 0.0, BODY)) for s in (-1.0, 1.0)]
+        0.5, *(np.array(q) + s * e * v_all[1:]), 0.0, 0.0, 0.0, 0.0, body)) for s in (-1.0, 1.0)]
     rate = (moved[1] - moved[0]) / (2.0 * e)
     power = v_all @ (0.5 * rate @ v_all - (bias(terms) - bias(still)))
     assert abs(power) < 1e-5 * (1.0 + np.linalg.norm(v_all) ** 3)
@@ -111,14 +115,16 @@ def test_hanging_leg_weighs_what_the_paper_says():
     assert terms.h_z == pytest.approx(terms.m_z_z * STANDARD_GRAVITY, rel=1e-14)
 
 
-def test_signs_of_the_joints():
+@pytest.mark.parametrize(('name', 'hanging'), [
+    ('hyq_real', [0.0, 0.117, 1.0 - 0.74]), ('hyq', [0.0, 0.0, 1.0 - 0.08 - 0.691])])
+def test_signs_of_the_joints(name, hanging):
     """HAA > 0 moves the foot inward (right), HFE > 0 backward, straight leg hangs down."""
     def foot(*q):
-        terms = leg_terms(1.0, *q, 0.0, 0.0, 0.0, 0.0, BODY)
+        terms = leg_terms(1.0, *q, 0.0, 0.0, 0.0, 0.0, BODIES[name])
         return np.array([terms.foot_x, terms.foot_y, terms.foot_z])
 
     straight = foot(0.0, 0.0, 0.0)
-    assert straight == pytest.approx([0.0, 0.117, 1.0 - 0.74], abs=1e-15)
+    assert straight == pytest.approx(hanging, abs=1e-15)
     assert foot(0.1, 0.0, 0.0)[1] < straight[1]
     assert foot(0.0, 0.1, 0.0)[0] < 0.0
     assert foot(0.0, 0.0, -0.1)[0] > 0.0
@@ -144,8 +150,8 @@ def test_generated_file_is_what_the_script_writes():
 
 def test_urdf_limits_are_the_data_sheet_s(oracle):
     """Joint ranges of URDF (six decimals) and data sheet."""
-    _, model, _ = oracle
-    sheet = leg_sheet()
+    _, model, _, leg = oracle
+    sheet = leg_sheet(leg)
     for k, name in enumerate(NAMES[1:], 1):
         joint = getattr(sheet, name)
         assert math.degrees(model.lowerPositionLimit[k]) == pytest.approx(joint.low_deg, abs=3e-5)

@@ -33,6 +33,46 @@ def test_piston_of_the_knee_is_14_mm_out_at_full_flexion():
     assert abs(1e3 * x - 14.2) < 0.1
 
 
+HYQ = leg_sheet('hyq')
+
+
+@pytest.mark.parametrize(('flexion', 'lever'), [
+    (20.0, 22.5), (60.0, 41.3), (80.0, 44.9), (120.0, 35.6), (140.0, 22.5)])
+def test_knee_of_hyq_has_the_published_levers(flexion, lever):
+    """L4 with the flexion as minus the joint angle; the table is rounded to 0.1 mm."""
+    _, r, _ = linkage.actuator_coordinate(math.radians(-flexion), linkage_record(HYQ.kfe))
+    assert abs(1e3 * r - lever) < 0.05 + 1e-9
+
+
+def test_hip_of_hyq_has_the_published_geometry():
+    """L4: L^2 = a^2 + b^2 - 2 a b cos(pi/2 + q + 0.1089), 0.281 m retracted."""
+    for q in (-0.8, 0.0, 0.7):
+        x, _, _ = linkage.actuator_coordinate(q, linkage_record(HYQ.hfe))
+        square = 0.3219 ** 2 + 0.045 ** 2 - 2.0 * 0.3219 * 0.045 * math.cos(
+            math.pi / 2.0 + q + 0.1089)
+        assert x == pytest.approx(math.sqrt(square) - 0.281, abs=1e-15)
+
+
+@pytest.mark.parametrize(('joint', 'low', 'high'), [
+    ('hfe', -50.0, 52.2), ('kfe', -140.0, -20.0)])
+def test_isa_v2_reaches_the_joints_of_hyq(joint, low, high):
+    """The whole knee lies within its 80 mm; the hip up to 52.2 of 70 deg, rounded to 0.1 deg."""
+    row = linkage_record(getattr(HYQ, joint))
+    ends = [1e3 * linkage.actuator_coordinate(math.radians(q), row)[0] for q in (low, high)]
+    assert 0.0 < ends[0] < ends[1]
+    # 0.05 deg at the hip's lever of 21 mm there.
+    assert ends[1] < 80.0 + 0.02
+    if joint == 'hfe':
+        assert ends[1] > 80.0 - 0.05
+
+
+def test_leg_of_hyq_weighs_what_its_links_do():
+    """2.93 + 2.638 + 0.881 kg and the slider."""
+    body = body_record(HYQ.body)[0]
+    assert body['m_hip'] + body['m_thigh'] + body['m_calf'] == pytest.approx(6.449, rel=1e-15)
+    assert (body['l_hip'], body['d_hip']) == (0.0, 0.08)
+
+
 def test_mass_scale_applies_to_links_but_not_to_the_slider():
     """Masses and inertias of the three links scale together."""
     plain = body_record(replace(SHEET.body, mass_scale=1.0))[0]
