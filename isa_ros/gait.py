@@ -16,8 +16,9 @@ import math
 from typing import NamedTuple
 
 from isa_ros.errors import ConfigError
+from isa_ros.load.gravity import STANDARD_GRAVITY
 from isa_ros.load.leg_dynamics import leg_terms
-from isa_ros.load.leg_sheet import body_record, JOINTS, LegSheet, STANDARD_GRAVITY
+from isa_ros.load.leg_sheet import body_record, JOINTS, LegSheet
 from isa_ros.parameter import parameter, Parameters
 import numpy as np
 

@@ -1,0 +1,116 @@
+"""The shipped scenarios of both rigs show what the paper's figures show."""
+
+import math
+
+from isa_ros.analysis.experiment import run
+import numpy as np
+import pytest
+
+GRAVITY = 9.80665
+PULL = 5.0 * GRAVITY * 0.2   # weight on the rim, Nm
+STALL = 170.0                # paper Table 2, Nm
+TAUT_S = 0.1 + (2.0 * 0.16 / GRAVITY) ** 0.5  # released at 0.1 s, through the slack
+LAST = slice(-200, None)     # the last 0.2 s
+
+
+@pytest.fixture(scope='module')
+def drops():
+    """Return (t, deflection, torque) of the three drops by their stiffness in Nm/rad."""
+    found = {}
+    for stiffness, name in ((150.0, 'weight_soft'), (300.0, 'weight'), (600.0, 'weight_stiff')):
+        joint = run('rig_rotary', name).traces['/rotor/joint_states']
+        position = joint['position[0]']
+        found[stiffness] = joint.t, position[0] - position, joint['effort[0]']
+    return found
+
+
+@pytest.mark.parametrize('stiffness', [150.0, 300.0, 600.0])
+def test_weight_ends_where_the_impedance_carries_it(drops, stiffness):
+    """Deflection m g R / stiffness, 32.7 mrad at 300 Nm/rad, +-5 %; torque m g R."""
+    _, turned, torque = drops[stiffness]
+    assert turned[LAST].mean() == pytest.approx(PULL / stiffness, rel=0.05)
+    assert torque[LAST].mean() == pytest.approx(PULL, rel=0.05)
+
+
+def test_weight_settles_within_0_6_s(drops):
+    """At 300/20, within 5 % of the final deflection, counted from when the rope gets taut."""
+    t, turned, _ = drops[300.0]
+    final = turned[LAST].mean()
+    last_outside = np.flatnonzero(np.abs(turned - final) > 0.05 * final)[-1]
+    assert t[last_outside + 1] - TAUT_S < 0.6
+
+
+def test_stiffer_gains_bear_higher_peaks(drops):
+    """Paper Fig 18: 150/10 below 300/20 below 600/30, all below the stall torque."""
+    soft, middle, stiff = (drops[k][2].max() for k in (150.0, 300.0, 600.0))
+    assert PULL < soft < middle < stiff < STALL
+
+
+def test_nothing_is_felt_before_the_rope_is_taut(drops):
+    """The weight in the hand and in its free fall: within the sensor's code, 200 Nm over 2048."""
+    t, _, torque = drops[300.0]
+    assert np.abs(torque[t < TAUT_S]).max() <= 200.0 / 2048.0
+
+
+def test_impacts_stay_below_the_stall_torque():
+    """Paper Fig 15: the wheel hits both stops again and again, below 170 Nm, with spikes."""
+    traces = run('rig_rotary', 'impact').traces
+    joint, reference = traces['/rotor/joint_states'], traces['/rotor/references']['position[1]']
+    assert np.abs(joint['effort[0]']).max() < STALL
+    for beyond in (joint['position[0]'] < 0.0873, joint['position[0]'] > 1.6577):
+        assert np.count_nonzero(np.diff(beyond.astype(int)) == 1) >= 3
+    # The stop takes a speed of at least 1 rad/s, 20 Nms/rad answer; half of it in one period.
+    late = joint.t > 2.2
+    assert np.abs(np.diff(reference[late])).max() > 10.0
+
+
+@pytest.mark.parametrize(('name', 'base', 'step'), [
+    ('force_step_low', 200.0, 500.0), ('force_step_high', 1000.0, 3000.0)])
+def test_knee_s_force_follows_its_step_with_the_foot_on_the_pallet(name, base, step):
+    """
+    Paper Fig 14: steady within 10 N before, during and after the step; the foot stands.
+
+    The foot begins in touch and bears load from the first reference on. While it bears the
+    step, by virtual work, it bears the knee's torque over its distance from the knee.
+    Neglected are the shank's weight (below 2 Nm) and friction at the foot, below a fifth of the
+    load, at the knee's height of 0.3 m, against 0.24 m of distance.
+    """
+    traces = run('rig_knee', name).traces
+    knee, joints = traces['/kfe/joint_states'], traces['/joint_states']
+    normal = traces['/coordinator/ground_contact']['wrench.force.z']
+    for until, level in ((0.3, base), (0.7, step), (1.0, base)):
+        steady = (knee.t > until - 0.05) & (knee.t < until)
+        assert knee['effort[0]'][steady].mean() == pytest.approx(level, abs=10.0)
+    assert normal[knee.t > 0.02].min() > 0.0
+    at = np.searchsorted(knee.t, 0.69)
+    reach = 0.38 * math.sin(-joints['position[1]'][at] - joints['position[2]'][at])
+    assert normal[at] == pytest.approx(joints['effort[2]'][at] / reach, rel=0.25)
+
+
+def test_knee_follows_its_sine_in_the_air():
+    """Paper Fig 19: the piston within 5 % of the amplitude rms; the foot touches nothing."""
+    traces = run('rig_knee', 'knee_sine').traces
+    knee, reference = traces['/kfe/joint_states'], traces['/kfe/references']['position[0]']
+    late = knee.t > 1.1
+    error = (knee['position[0]'] - reference)[late]
+    assert np.sqrt(np.mean(error * error)) < 0.05 * 0.01
+    assert np.ptp(knee['position[0]'][late]) == pytest.approx(0.02, rel=0.05)
+    assert not traces['/coordinator/ground_contact']['wrench.force.z'].any()
+
+
+def test_knee_rig_bears_the_drop():
+    """Paper Fig 20: 10 cm onto wood, knee peak above 2 kN and below its 7500 N; it stands."""
+    traces = run('rig_knee', 'drop').traces
+    normal = traces['/coordinator/ground_contact']['wrench.force.z']
+    assert 2000.0 < traces['/kfe/joint_states']['effort[0]'].max() < 7500.0
+    # A whole period of its swing, 2 Hz, dying out: the mean is the weight but for its decay.
+    assert normal[-500:].mean() == pytest.approx(15.2 * GRAVITY, rel=0.1)
+
+
+def test_leg_of_hyq_lands_and_stands():
+    """A drop of 10 cm on two ISA v2: below their 4000 N, then the weight of 11.449 kg."""
+    traces = run('hyq_leg', 'drop').traces
+    normal = traces['/coordinator/ground_contact']['wrench.force.z']
+    for name in ('hfe', 'kfe'):
+        assert 500.0 < np.abs(traces[f'/{name}/joint_states']['effort[0]']).max() < 4000.0
+    assert normal[LAST].mean() == pytest.approx(11.449 * GRAVITY, rel=0.01)
