@@ -10,7 +10,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 from isa_ros.analysis.excitation import RATE_HZ
-from isa_ros.analysis.frequency import bandwidth, Margins, margins, Response
+from isa_ros.analysis.frequency import bandwidth, HALF_POWER, Margins, margins, Response
 from isa_ros.analysis.loops import CLOSED, Loop, OPEN, PLANT, Unit
 from isa_ros.analysis.rig import Rig
 from isa_ros.analysis.sweep import Answer, excitation, Sweep
@@ -24,7 +24,8 @@ class Bode:
     loop: Loop
     of: str
     response: Response          # output over input in SI
-    bandwidth: float | None     # of the closed loop, Hz
+    first_gain: float           # of the closed loop, at the lowest frequency
+    bandwidth: float | None     # of the closed loop, relative to a gain of 1, Hz
     margins: Margins            # of the open loop
     amplitude: float            # of the reference, SI
 
@@ -56,7 +57,9 @@ def evaluate(
     closed, opened, asked = (
         answer.estimate(reference, loop.input_of(which, trace), y)
         for which in (CLOSED, OPEN, of))
-    return Bode(loop, of, asked, bandwidth(closed), margins(opened), amplitude)
+    return Bode(
+        loop, of, asked, float(closed.gain[0]), bandwidth(closed, dc_gain=1.0), margins(opened),
+        amplitude)
 
 
 _HEAD = ('frequency, Hz', 'gain', 'gain, dB', 'phase, deg', 'coherence', 'in', 'out')
@@ -82,14 +85,15 @@ def table(measured: Bode) -> str:
 
 def conclusions(measured: Bode) -> Sequence[str]:
     """Return what follows from the run, a line each."""
-    found, last = measured.margins, measured.response.frequency[-1]
+    found, frequency = measured.margins, measured.response.frequency
     band = (f'{measured.bandwidth:.4g} Hz' if measured.bandwidth is not None
-            else f'above {last:.4g} Hz')
+            else f'below {frequency[0]:.4g} Hz' if measured.first_gain < HALF_POWER
+            else f'above {frequency[-1]:.4g} Hz')
     gain = ('none in this band' if found.gain_db is None
             else f'{found.gain_db:.1f} dB at {found.gain_frequency:.4g} Hz')
     phase = ('none in this band' if found.phase is None
              else f'{found.phase:.1f} deg at {found.phase_frequency:.4g} Hz')
-    return (f'closed loop, -3 dB of its gain at the lowest frequency: {band}',
+    return (f'closed loop, -3 dB: {band}',
             f'open loop, gain margin: {gain}', f'open loop, phase margin: {phase}')
 
 

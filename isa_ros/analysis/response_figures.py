@@ -22,8 +22,7 @@ def bode_figure(measured: Bode, title: str) -> Figure:
     of = '' if unit.symbol == '1' else f' of {unit.symbol}'
     gain.set_ylabel(f'gain {_ON_OUTPUT.get(measured.of, "Y/E")}, dB{of}')
     if measured.of == CLOSED:
-        level = decibels[0] + 20.0 * np.log10(HALF_POWER)
-        gain.axhline(level, color='gray', linestyle=':', label='-3 dB')
+        gain.axhline(20.0 * np.log10(HALF_POWER), color='gray', linestyle=':', label='-3 dB')
         if measured.bandwidth is not None:
             gain.axvline(measured.bandwidth, color='C3', linestyle='--',
                          label=f'{measured.bandwidth:.3g} Hz')
