@@ -51,5 +51,10 @@ def _rig(parser: argparse.ArgumentParser) -> None:
         '--amplitude', type=positive, metavar='A',
         help='of the reference, in N, Nm, mm, deg, MPa or mA (default: 10 %% of the rated force, '
              '25 %% of spool travel and current, 1 %% of the stroke)')
+    parser.add_argument(
+        '--nodes', action='store_true',
+        help='measure through running nodes, from the bag they record, at their ticks')
+    parser.add_argument(
+        '--bag', type=Path, metavar='DIR', help='with --nodes: keep the bag there')
     parser.add_argument('--json', type=Path, metavar='FILE', help='write the numbers there too')
     parser.add_argument('--out', type=Path, metavar='FILE.png', help='draw the figure')

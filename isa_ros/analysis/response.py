@@ -5,7 +5,7 @@ import json
 from pathlib import Path
 from typing import Any
 
-from isa_ros.analysis import bode as bodes, step as steps
+from isa_ros.analysis import bode as bodes, step as steps, through_nodes
 from isa_ros.analysis.response_figures import bode_figure, step_figure
 from isa_ros.analysis.rig import Choice, Rig, rig
 from isa_ros.analysis.sweep import Sweep
@@ -28,10 +28,14 @@ def bode(options: Namespace) -> None:
     sweep = Sweep(
         low=options.low or band[0], high=options.high or band[1], points=options.points,
         is_chirp=options.method == 'chirp')
-    measured = bodes.bode(bench, sweep, options.of, options.amplitude)
+    if options.nodes:
+        measured = through_nodes.bode(
+            bench, sweep, options.of, options.amplitude, options.bag)
+    else:
+        measured = bodes.bode(bench, sweep, options.of, options.amplitude)
     method = 'chirp' if sweep.is_chirp else 'stepped sine'
-    title = (f'{bench.title}\n{measured.loop.label}: {_RESPONSES[options.of]}; {method} of '
-             f'{_amplitude(measured)}')
+    title = (f'{_title(options, bench)}\n{measured.loop.label}: {_RESPONSES[options.of]}; '
+             f'{method} of {_amplitude(measured)}')
     print(title)
     print(bodes.table(measured))
     if options.json is not None:
@@ -44,9 +48,12 @@ def step(options: Namespace) -> None:
     """Measure a step response."""
     _refuse_figure(options.out)
     bench = _rig(options)
-    measured = steps.step(
-        bench, options.duration or DURATIONS[options.loop], options.amplitude)
-    title = f'{bench.title}\n{measured.loop.label}: step of {_amplitude(measured)}'
+    duration = options.duration or DURATIONS[options.loop]
+    if options.nodes:
+        measured = through_nodes.step(bench, duration, options.amplitude, options.bag)
+    else:
+        measured = steps.step(bench, duration, options.amplitude)
+    title = f'{_title(options, bench)}\n{measured.loop.label}: step of {_amplitude(measured)}'
     print(title)
     print(steps.summary(measured))
     if options.json is not None:
@@ -61,7 +68,13 @@ def step(options: Namespace) -> None:
         _draw(step_figure(measured, title), options.out)
 
 
+def _title(options: Namespace, bench: Rig) -> str:
+    return f'{bench.title}, through nodes' if options.nodes else bench.title
+
+
 def _rig(options: Namespace) -> Rig:
+    if options.bag is not None and not options.nodes:
+        raise ConfigError(f'--bag {options.bag} is not used: the bare actuator records none')
     return rig(Choice(
         name=options.name, loop=options.loop, actuator=options.actuator, preset=options.preset,
         variants=options.variant, load=options.load, position=options.position))
@@ -77,7 +90,8 @@ def _setting(
     config, unit = bench.config, measured.loop.unit
     return {
         'actuator': config.name, 'model': config.model, 'preset': config.preset,
-        'load': bench.load, 'loop': options.loop, 'unit': unit.symbol,
+        'through_nodes': options.nodes, 'load': bench.load,
+        'loop': options.loop, 'unit': unit.symbol,
         'initial_position': config.initial_position,
         'amplitude': measured.amplitude / unit.scale}
 

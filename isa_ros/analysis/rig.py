@@ -10,16 +10,20 @@ from isa_ros.analysis.excitation import excite, PERIOD_NS, RATE_HZ
 from isa_ros.analysis.loops import Loop, loop_of, SUPPLY, Unit, units_of
 from isa_ros.catalogue import actuator_model, model_names
 from isa_ros.config import load_run, own_load
+from isa_ros.default_actuator import default_load, DEFAULT_TIMING
 from isa_ros.errors import ConfigError
 from isa_ros.load.local import static_force
 from isa_ros.paths import CONFIG, find
+from isa_ros.plant.supply import ConstantSupply
+from isa_ros.plant.units import MPA
 from isa_ros.resolve import build, Place
-from isa_ros.run_config import ActuatorConfig
+from isa_ros.run_config import ActuatorConfig, RunConfig
 import numpy as np
 
 TIMING = Timing(PERIOD_NS, 0)
 REST_S = 0.3            # before anything is excited: several times the slowest loop's settling
 BLOCKED = 'blocked'
+TICK_TIMEOUT_S = 5.0    # of a model's run, as in the shipped run files
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -41,10 +45,15 @@ class Choice:
 class Rig:
     """An actuator with one of its loops outermost, on a load of its own."""
 
-    config: ActuatorConfig
+    run: RunConfig
+    """Of this actuator alone, as nodes would run it."""
     loop: Loop
     load: str
-    supply: tuple[float, float]     # and return, Pa gauge
+
+    @property
+    def config(self) -> ActuatorConfig:
+        """Return the actuator."""
+        return self.run.actuators[0]
 
     @property
     def title(self) -> str:
@@ -63,8 +72,10 @@ class Rig:
     def start(self) -> SmartActuator:
         """Return the actuator at rest: `REST_S` with its reference standing still."""
         actuator = SmartActuator(self.config, TIMING)
+        supply = self.run.supply
         actuator.start(
-            self.config.initial_position, static_force(self.config.load), *self.supply)
+            self.config.initial_position, static_force(self.config.load),
+            supply.pressure_mpa * MPA, supply.return_pressure_mpa * MPA)
         self.excite(actuator, np.zeros(round(REST_S * RATE_HZ)))
         return actuator
 
@@ -113,8 +124,8 @@ def rig(choice: Choice) -> Rig:
         Something of the choice does not exist or does not fit.
 
     """
-    config, supply = (
-        _of_model(choice) if choice.name in model_names() else _of_run(choice))
+    run = _of_model(choice) if choice.name in model_names() else _of_run(choice)
+    config = run.actuators[0]
     units = units_of(config.sheet)
     config = replace(config, initial_position=_place(choice.position, config, units['position']))
     loop = loop_of(config.sheet, choice.loop)
@@ -124,11 +135,11 @@ def rig(choice: Choice) -> Rig:
         kind = model.default_load
     if kind is not None:
         config = replace(config, load=own_load({'kind': kind}, Place('--load'), model))
-    return Rig(replace(config, sheet=loop.sheet), loop,
-               kind or type(config.load).__name__.lower(), supply)
+    alone = replace(run, leg=None, actuators=(replace(config, sheet=loop.sheet),))
+    return Rig(alone, loop, kind or type(config.load).__name__.lower())
 
 
-def _of_model(choice: Choice) -> tuple[ActuatorConfig, tuple[float, float]]:
+def _of_model(choice: Choice) -> RunConfig:
     if choice.actuator is not None:
         raise ConfigError(
             f'--actuator {choice.actuator} is not used: {choice.name} is a model, not a run file')
@@ -138,14 +149,17 @@ def _of_model(choice: Choice) -> tuple[ActuatorConfig, tuple[float, float]]:
         model.with_preset(preset, '--preset'), choice.variants, '--variant')
     sheet = build(ActuatorSheet, section, model.place)
     refuse_wiring(sheet)
-    named = ' + '.join([preset, *choice.variants])
-    return (ActuatorConfig(
-        choice.name, model.name, named, sheet,
-        own_load({'kind': model.default_load}, Place(model.name) / 'load', model),
-        0.5 * sheet.plant.drive.stroke), (SUPPLY, 0.0))
+    config = ActuatorConfig(
+        choice.name, model.name, ' + '.join([preset, *choice.variants]), sheet,
+        default_load(model), 0.5 * sheet.plant.drive.stroke)
+    return RunConfig(
+        choice.name, DEFAULT_TIMING.step_ns, DEFAULT_TIMING.controller_offset_ns,
+        TICK_TIMEOUT_S, ConstantSupply(pressure_mpa=SUPPLY / MPA, return_pressure_mpa=0.0),
+        (config,), None, choice.name)
 
 
-def _of_run(choice: Choice) -> tuple[ActuatorConfig, tuple[float, float]]:
+def _of_run(choice: Choice) -> RunConfig:
+    """Return the run of a file, with the chosen actuator alone."""
     for option, value in (('--preset', choice.preset), ('--variant', choice.variants)):
         if value:
             raise ConfigError(
@@ -161,8 +175,7 @@ def _of_run(choice: Choice) -> tuple[ActuatorConfig, tuple[float, float]]:
         names = ', '.join(actuator.name for actuator in run.actuators)
         raise ConfigError(f'{run.source} has several actuators, --actuator must name one: {names}')
     config = run.actuators[0] if choice.actuator is None else run.actuator(choice.actuator)
-    pressures = run.supply.pressure_mpa * 1e6, run.supply.return_pressure_mpa * 1e6
-    return config, pressures
+    return replace(run, actuators=(config,))
 
 
 def _place(given: float | None, config: ActuatorConfig, unit: Unit) -> float:

@@ -39,15 +39,20 @@ def step(rig: Rig, duration: float, amplitude: float | None = None) -> Step:
         A state is no longer finite.
 
     """
-    if not SHORTEST_S <= duration <= LONGEST_S:
-        raise ConfigError(
-            f'--duration = {duration:g} s, must be {SHORTEST_S:g} to {LONGEST_S:g} s')
+    check_duration(duration)
     peak = rig.amplitude(amplitude)
     before = round(BEFORE * duration * RATE_HZ)
     values = np.full(before + round(duration * RATE_HZ), peak)
     values[:before] = 0.0
     trace = rig.excite(rig.start(), values)
     return evaluate(rig.loop, trace, before, rig.offset, peak, RATE_HZ)
+
+
+def check_duration(duration: float) -> None:
+    """Refuse a recording too short for its figures, or too long to be meant."""
+    if not SHORTEST_S <= duration <= LONGEST_S:
+        raise ConfigError(
+            f'--duration = {duration:g} s, must be {SHORTEST_S:g} to {LONGEST_S:g} s')
 
 
 def evaluate(
