@@ -36,6 +36,11 @@ class Printed:
     unit: str
 
     @property
+    def is_bound(self) -> bool:
+        """Tell whether the paper prints less than or more than the value."""
+        return self.text.startswith(('<', '>'))
+
+    @property
     def number(self) -> float:
         """
         Return the value of what must be a number.

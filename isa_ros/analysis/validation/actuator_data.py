@@ -27,8 +27,9 @@ RATING = 'erratum 15: the paper prints a rating; P_S over the piston gives more'
 
 def actuator_data() -> Findings:
     """Compare dimensions, stall, oil, friction, relief and sensors with the tables."""
-    return Findings((*_rotary(), *_linear('isa_v5', 'ISA v5'), *_oil(), *_friction(),
-                     *_reliefs(), *_sensors()))
+    return Findings((
+        *_rotary(), *_linear('isa_v2', 'ISA v2'), *_linear('isa_v5', 'ISA v5'), *_oil(),
+        *_friction(), *_reliefs(), *_sensors()))
 
 
 def stall(model: str, direction: float) -> float:
@@ -118,7 +119,7 @@ def _friction() -> list[Entry]:
 def _reliefs() -> list[Entry]:
     limit = statement('relief_pressure')
     entries = []
-    for model in (ROTARY, 'isa_v5'):
+    for model in (ROTARY, 'isa_v2', 'isa_v5'):
         relief = plant_of(model).relief
         trickle = 1e-3 * LPM
         opens = brentq(lambda p: relief_flow(p, 0.0, relief) - trickle, 1.0 * MPA, 40.0 * MPA)

@@ -57,7 +57,7 @@ def current_loop() -> Findings:
 
 def _static_gain() -> tuple[float, np.ndarray]:
     """Return the static gain of the coil (A/V), and its current after every plant step (A)."""
-    constants = actuator_record(model_sheet(MANIFOLD, PRESET, EXPLICIT), 0)
+    constants = actuator_record(model_sheet(MANIFOLD, EXPLICIT), 0)
     bodies, rates = scratch()
     arguments = np.zeros(1, LOAD_PORT)[0], constants[0], bodies, rates, flat(bodies), flat(rates)
     coil = constants.view(np.recarray)[0].plant.coil

@@ -58,7 +58,8 @@ class Entry:
         """Return the entry of a value in the paper's data."""
         return cls(
             name=name, source=printed.where,
-            paper=printed.text if printed.value is None else printed.value, ours=ours,
+            paper=printed.text if printed.value is None or printed.is_bound else printed.value,
+            ours=ours,
             unit=printed.unit, tolerance=tolerance, tolerance_source=tolerance_source,
             reading=reading, reason=reason)
 

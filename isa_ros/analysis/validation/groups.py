@@ -3,14 +3,19 @@
 from isa_ros.analysis.validation.actuator_data import actuator_data
 from isa_ros.analysis.validation.current_loop import current_loop
 from isa_ros.analysis.validation.entry import Group
+from isa_ros.analysis.validation.reu_statics import reu_statics
 from isa_ros.analysis.validation.strokes import strokes
 from isa_ros.analysis.validation.valve_dynamics import valve_dynamics
 from isa_ros.analysis.validation.valve_flow import valve_flow
+from isa_ros.analysis.validation.valve_leakage import valve_leakage
 
 GROUPS = (
-    Group('valve_flow', 'Flow and leakage of the valves (Figs 5 and 6)', valve_flow),
+    Group('valve_flow', 'Flow gain of the valves (Fig 5)', valve_flow),
+    Group('valve_leakage', 'Leakage of the valves (Fig 6)', valve_leakage),
     Group('valve_dynamics', 'Frequency response of the valves (Fig 4)', valve_dynamics),
-    Group('current_loop', 'Current and spool loop (Figs 4 and 8)', current_loop, is_long=True),
-    Group('strokes', 'Force and torque control over the stroke', strokes, is_long=True),
+    Group('current_loop', 'The current loop around its coil (Figs 4 and 8)', current_loop,
+          is_long=True),
     Group('actuator_data', 'Data of the actuators (Tables 2, 3, 5)', actuator_data),
+    Group('reu_statics', 'Gains and rates of the control blocks (Fig 7, Table 4)', reu_statics),
+    Group('strokes', 'Force and torque control over the stroke', strokes, is_long=True),
 )

@@ -8,22 +8,24 @@ from isa_ros.plant.plant import plant_record
 from isa_ros.resolve import build
 import numpy as np
 
-PRESET = 'table_4'  # the paper's gains
+PRESET = 'table_4'    # the paper's gains; it prints none for the ISA v2
+FALLBACK = 'default'
 
 
 @cache
-def model_sheet(model: str, preset: str = PRESET, *variants: str) -> ActuatorSheet:
+def model_sheet(model: str, *variants: str) -> ActuatorSheet:
     """
-    Return the data sheet of a shipped model with the gains of a preset, and variants.
+    Return the data sheet of a shipped model with the paper's gains, and its variants.
 
     Raises
     ------
     ConfigError
-        There is no such model, preset or variant.
+        There is no such model or variant.
 
     """
     found = actuator_model(model, 'model')
-    section = found.with_variants(found.with_preset(preset, 'preset'), variants, 'variant')
+    preset = PRESET if PRESET in found.presets else FALLBACK
+    section = found.with_variants(found.with_preset(preset, 'preset'), variants, 'variants')
     return build(ActuatorSheet, section, found.place)
 
 

@@ -1,30 +1,36 @@
 """
 Frequency response of the valves: figure 4.
 
-From the plant's own rates: their linearisation about null for small signals, and the stepped
-sine through the compiled plant, with the amplifier's voltage limit, at the 25 % of Table 1.
+From the plant's own rates, linearised about null, for small signals; from a stepped sine
+through control blocks and plant, with every limit, for the 25 % of Table 1 and for the spool
+loop of the electric-feedback valve, which only exists sampled.
 """
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
+from dataclasses import replace
 import math
 
-from isa_ros.actuator_kernel import body_step, flat, scratch
-from isa_ros.actuator_sheet import actuator_record
+from isa_ros.actuator import SmartActuator
+from isa_ros.actuator_sheet import ActuatorSheet
+from isa_ros.analysis.excitation import excite, RATE_HZ
 from isa_ros.analysis.validation.entry import around, at_least, Drawing, Entry, Findings
 from isa_ros.analysis.validation.plots import stacked
 from isa_ros.analysis.validation.sheets import model_sheet, plant_of
+from isa_ros.default_actuator import default_actuator, DEFAULT_TIMING
 from isa_ros.paper.printed import cell, statement
 from isa_ros.plant.plant import plant_rates, PLANT_STATE
 from isa_ros.plant.units import MPA
-from isa_ros.signals import LOAD_PORT
-from isa_ros.timebase import PLANT_STEP
 import numpy as np
 from scipy.optimize import brentq
 
 SUPPLY = statement('supply_pressure').number * MPA
 ULLV = 'smart_manifold'
+ISA_V5 = 'isa_v5'
+HRV = 'isa_v2'
 MINUS_3_DB = math.sqrt(0.5)
 SMALL = 1e-6      # A, m, ...: far inside every limit
+SMALL_SPOOL = 5e-6    # m, 40 steps of the spool sensor, far inside every limit
+FULL_CURRENT = 5e-3   # A, coils in series
 SETTLE = 0.05     # s, ten time constants of the spool loop and more
 PERIODS = 4       # of the sine, that are looked at
 STATES = ('current', 'spool', 'velocity', 'acceleration')
@@ -34,6 +40,7 @@ Response = Callable[[float], complex]
 def valve_dynamics() -> Findings:
     """Compare the frequency response with figure 4 and Table 1, and draw it."""
     alone, behind = spool_over_current(ULLV), spool_over_reference(ULLV)
+    fast = spool_over_current(HRV)
     input_25 = cell('table_1', '-3 dB bandwidth at 25% input', 'Moog ISA v5 valve')
     return Findings((
         Entry.of('ullv_eq_8_alone', statement('ullv_bandwidth'), bandwidth(alone),
@@ -42,13 +49,23 @@ def valve_dynamics() -> Findings:
         Entry.of('ullv_eq_8_after_eq_10', statement('ullv_bandwidth'), bandwidth(behind),
                  (100.0, 120.0), 'greater than 100 Hz, around 120 Hz',
                  reading='erratum 20: 104.0 Hz with the pole of the current loop'),
-        Entry.of('ullv_at_25_percent', input_25, bandwidth(stepped_sine(ULLV, 0.25)),
+        Entry.of('ullv_at_25_percent', input_25, bandwidth(stepped_sine(
+                     model_sheet(ULLV, 'valve_amplifier'), 0.25 * FULL_CURRENT)),
                  at_least(100.0), 'the printed bound',
                  reading='erratum 25: 25 % of +-10 mA at the amplifier'),
+        Entry.of('ullv_sampled_spool_loop', statement('ullv_bandwidth_least'),
+                 bandwidth(stepped_sine(sampled_spool_loop(), SMALL_SPOOL)), (140.0, 165.0),
+                 'K_p K_pilot = 540 /s around the pole of eq 10 gives 140 to 165 Hz',
+                 reading='erratum 10: eq 8 without its loop, and that loop in the REU'),
         Entry(name='ullv_static_gain', source='eq 9', paper='K_spool', ours=abs(behind(0.0)),
               unit='1', tolerance=around(1.0, by=1e-6),
               tolerance_source='the difference quotient of a linear equation'),
-    ), (_drawing(alone, behind),))
+        Entry.of('hrv_bandwidth', statement('hrv_bandwidth'), bandwidth(fast),
+                 around(320.0, by=10.0), 'around: 3 % is read off a figure',
+                 reading='erratum 19: against the actual current'),
+    ), (_drawing((
+        (fast, 'HRV, actual current', 'b-'), (alone, 'ULLV, actual current', 'k-'),
+        (behind, 'ULLV, current reference', 'k--'))),))
 
 
 def linearised(model: str) -> tuple[np.ndarray, np.ndarray]:
@@ -94,36 +111,35 @@ def _response(model: str, matrix: np.ndarray, column: np.ndarray) -> Response:
     return response
 
 
-def stepped_sine(model: str, share: float) -> Response:
-    """Return the spool's response to a sine of ``share`` of the full current, 1 at rest."""
-    plant = plant_of(model)
-    scale = plant.coil.parallel / plant.valve.k_spool
-    amplitude = share * plant.valve.x_max * scale
+def stepped_sine(sheet: ActuatorSheet, amplitude: float) -> Response:
+    """
+    Return the spool's response to its reference, measured with a sine.
 
+    ``sheet`` is one whose outer blocks are off; ``amplitude`` has the unit of what it then
+    takes: m of spool, or series-scale A.
+    """
     def response(hz: float) -> complex:
-        n_period = round(1.0 / (hz * PLANT_STEP))
-        settle = math.ceil(SETTLE / (n_period * PLANT_STEP)) * n_period
-        n = settle + PERIODS * n_period
+        n_period = round(RATE_HZ / hz)
+        n = (math.ceil(SETTLE * RATE_HZ / n_period) + PERIODS) * n_period
         phase = 2.0 * math.pi * np.arange(n) / n_period
-        spool = driven(model, amplitude * np.sin(phase))[settle:]
-        # the fundamental over whole periods
-        return complex(2.0j * np.mean(spool * np.exp(-1j * phase[settle:])) * scale / amplitude)
+        trace = driven(sheet, amplitude * np.sin(phase))[-PERIODS * n_period:]
+        spin = np.exp(-1j * phase[:PERIODS * n_period])  # the fundamental over whole periods
+        return complex(np.mean(trace['spool'] * spin) / np.mean(trace['spool_reference'] * spin))
     return response
 
 
-def driven(model: str, drive: np.ndarray) -> np.ndarray:
-    """Return the spool (m) after each plant step under the amplifier's reference (A), (n,)."""
-    constants = actuator_record(model_sheet(model), 0)
-    port = np.zeros(1, LOAD_PORT)
-    port['supply_pressure'] = SUPPLY
-    bodies, rates = scratch()
-    bodies['plant']['chambers']['p_a'] = bodies['plant']['chambers']['p_b'] = 0.5 * SUPPLY
-    arguments = port[0], constants[0], bodies, rates, flat(bodies), flat(rates)
-    spool = np.empty(len(drive))
-    for k, current in enumerate(drive):
-        body_step(PLANT_STEP, 0.0, current, *arguments)
-        spool[k] = bodies['plant']['valve']['spool'][0]
-    return spool
+def driven(sheet: ActuatorSheet, efforts: np.ndarray) -> np.ndarray:
+    """Return the `TRACE` of an actuator at mid stroke that takes an effort every 100 us."""
+    base = default_actuator(ULLV if sheet.is_rotary else ISA_V5, 'driven')
+    config = replace(base, sheet=sheet, initial_position=0.5 * sheet.plant.drive.stroke)
+    return excite(SmartActuator(config, DEFAULT_TIMING), 'effort', efforts)
+
+
+def sampled_spool_loop() -> ActuatorSheet:
+    """Return the ISA v5 with its spool loop in the REU, around the pole of the current loop."""
+    sheet, closed = model_sheet(ISA_V5, 'valve_amplifier', 'explicit'), model_sheet(ISA_V5)
+    return replace(sheet, plant=replace(sheet.plant, coil=closed.plant.coil),
+                   reu=replace(sheet.reu, current=closed.reu.current))
 
 
 def bandwidth(response: Response) -> float:
@@ -131,14 +147,13 @@ def bandwidth(response: Response) -> float:
     return float(brentq(lambda hz: abs(response(hz)) - MINUS_3_DB, 1.0, 1000.0, xtol=0.05))
 
 
-def _drawing(alone: Response, behind: Response) -> Drawing:
+def _drawing(curves: Sequence[tuple[Response, str, str]]) -> Drawing:
     figure, (gain, phase) = stacked('frequency, Hz', 'spool over current, dB', 'phase, deg')
     hz = np.geomspace(1.0, 1000.0, 200)
-    for response, label, style in (
-            (alone, 'ULLV, actual current', '-'), (behind, 'ULLV, current reference', '--')):
+    for response, label, style in curves:
         values = np.array([response(float(f)) for f in hz])
-        gain.semilogx(hz, 20.0 * np.log10(np.abs(values)), 'k', linestyle=style, label=label)
-        phase.semilogx(hz, np.degrees(np.unwrap(np.angle(values))), 'k', linestyle=style)
+        gain.semilogx(hz, 20.0 * np.log10(np.abs(values)), style, label=label)
+        phase.semilogx(hz, np.degrees(np.unwrap(np.angle(values))), style)
     gain.axhline(-3.0, color='gray', linewidth=0.8, linestyle=':')
     gain.set_ylim(-30.0, 3.0)
     gain.legend(loc='lower left')
