@@ -55,6 +55,10 @@ class Rig:
         """Return the actuator."""
         return self.run.actuators[0]
 
+    def with_config(self, config: ActuatorConfig) -> 'Rig':
+        """Return the rig with another actuator on it."""
+        return replace(self, run=replace(self.run, actuators=(config,)))
+
     @property
     def title(self) -> str:
         """Return what stands on the bench, and where."""

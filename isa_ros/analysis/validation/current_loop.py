@@ -1,5 +1,5 @@
 """
-The current loop around the explicit coil, and the spool loop around that: figures 4 and 8.
+The current loop around the explicit coil: figure 8, section 3.1 and equations 1 and 2.
 
 The sheets' variant `explicit`: the coil with its resonance under the 2-DOF controller of
 equations 1 and 2, sampled at 10 kHz through the 12 bit converter. Currents are the amplifier's.
@@ -9,12 +9,10 @@ from dataclasses import replace
 
 from isa_ros.actuator_kernel import body_step, flat, scratch
 from isa_ros.actuator_sheet import actuator_record, ActuatorSheet
-from isa_ros.analysis.bode import bode
 from isa_ros.analysis.excitation import excite, RATE_HZ
 from isa_ros.analysis.rig import Choice, Rig, rig
 from isa_ros.analysis.step import Step, step
 from isa_ros.analysis.step_response import step_figures
-from isa_ros.analysis.sweep import Sweep
 from isa_ros.analysis.validation.entry import around, at_most, Drawing, Entry, Findings
 from isa_ros.analysis.validation.plots import stacked
 from isa_ros.analysis.validation.sheets import model_sheet, PRESET
@@ -25,7 +23,7 @@ from isa_ros.signals import LOAD_PORT
 from isa_ros.timebase import PLANT_STEP
 import numpy as np
 
-MANIFOLD, ISA_V5 = 'smart_manifold', 'isa_v5'
+MANIFOLD = 'smart_manifold'
 EXPLICIT = 'explicit'
 OPEN_LOOP_V = 10.0         # V, of the step that shows the static gain
 OPEN_LOOP_S = 0.1          # 26 time constants of the coil
@@ -33,7 +31,6 @@ STEPS_MA = (1.0, 2.0)      # that the amplifier's voltage does not limit
 LARGE_STEP_MA = 5.0
 BARE_KP = 16.0             # V/mA without lead-lag: the gain of Table 4, rings
 STEP_S = 0.05
-SPOOL_AMPLITUDE_MM = 5e-3  # 3 % of the travel: neither current nor spool limits it
 
 
 def current_loop() -> Findings:
@@ -50,8 +47,7 @@ def current_loop() -> Findings:
     ringing, bare = _ringing()
     entries += [
         Entry.of('coil_mode', statement('coil_mode'), ringing, around(1.8, percent=5.0),
-                 'around 1.8 kHz, read off a figure'),
-        _explicit_spool()]
+                 'around 1.8 kHz, read off a figure')]
     return Findings(tuple(entries), (_drawing(open_loop, bare, steps),))
 
 
@@ -73,7 +69,7 @@ def _rig(sheet: ActuatorSheet | None = None) -> Rig:
     bench = rig(Choice(name=MANIFOLD, loop='current', preset=PRESET, variants=(EXPLICIT,)))
     if sheet is None:
         return bench
-    return replace(bench, config=replace(bench.config, sheet=sheet))
+    return bench.with_config(replace(bench.config, sheet=sheet))
 
 
 def _step(amplitude_ma: float) -> Step:
@@ -127,17 +123,6 @@ def _ringing() -> tuple[float, np.ndarray]:
     frequency = np.fft.rfftfreq(16 * n, 1.0 / RATE_HZ)
     high = frequency > 1000.0  # beyond the loop's own response
     return float(frequency[high][spectrum[high].argmax()]) * 1e-3, trace
-
-
-def _explicit_spool() -> Entry:
-    """Measure the spool loop of Table 4 around the sampled current loop."""
-    bench = rig(Choice(name=ISA_V5, loop='spool', preset=PRESET, variants=(EXPLICIT,)))
-    measured = bode(
-        bench, Sweep(low=10.0, high=300.0, points=25), 'closed', SPOOL_AMPLITUDE_MM)
-    return Entry.of(
-        'explicit_spool_loop', statement('ullv_bandwidth'), measured.bandwidth or float('nan'),
-        (140.0, 165.0), 'K_p K_pilot = 540 1/s with the current loop inside it',
-        reading='erratum 10: eq 8 is the closed loop; around the current loop it is faster')
 
 
 def _drawing(open_loop: np.ndarray, bare: np.ndarray, steps: dict[float, Step]) -> Drawing:

@@ -13,7 +13,7 @@ GROUPS = (
     Group('valve_flow', 'Flow gain of the valves (Fig 5)', valve_flow),
     Group('valve_leakage', 'Leakage of the valves (Fig 6)', valve_leakage),
     Group('valve_dynamics', 'Frequency response of the valves (Fig 4)', valve_dynamics),
-    Group('current_loop', 'The current loop around its coil (Figs 4 and 8)', current_loop,
+    Group('current_loop', 'The current loop around its coil (Fig 8)', current_loop,
           is_long=True),
     Group('actuator_data', 'Data of the actuators (Tables 2, 3, 5)', actuator_data),
     Group('reu_statics', 'Gains and rates of the control blocks (Fig 7, Table 4)', reu_statics),

@@ -150,7 +150,8 @@ def _proportionality(model: str) -> Entry:
     line = valve.k_low * to_spool * demands
     return Entry(
         name=f'{model}_compensation', source='section 3, Fig 7',
-        paper='DGC undoes the dual gain', ours=round(float(100.0 * np.abs(flows / line - 1.0).max()), 6),
+        paper='DGC undoes the dual gain',
+        ours=round(float(100.0 * np.abs(flows / line - 1.0).max()), 6),
         unit='percent', tolerance=at_most(0.3),
         tolerance_source='1.2 mA and x_dg / K_spool differ by 0.05 %, times the ratio of gains',
         reading='erratum 23: the whole demand passes the inverse flow curve')

@@ -77,7 +77,7 @@ def _bench(subject: Subject, law: str, place: float) -> Rig:
         scheduled = isinstance(reu.force.gain_schedule, OilStiffness)
         force = replace(reu.force, gain_schedule=Constant() if scheduled else OilStiffness())
         config = replace(config, sheet=replace(config.sheet, reu=replace(reu, force=force)))
-    return replace(bench, config=config)
+    return bench.with_config(config)
 
 
 def _over_stroke(subject: Subject, law: str) -> Sweeps:
