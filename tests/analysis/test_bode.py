@@ -1,13 +1,16 @@
 """`isa bode` and `isa step` on the bare actuator: numbers, agreement of methods, refusals."""
 
+from dataclasses import replace
 import json
 from pathlib import Path
 
 from isa_ros import cli
 from isa_ros.analysis.bode import Bode, bode
+from isa_ros.analysis.loops import loop_of
 from isa_ros.analysis.rig import Choice, Rig, rig
 from isa_ros.analysis.step import step
 from isa_ros.analysis.sweep import Sweep
+from isa_ros.reu.wiring import Off
 import numpy as np
 import pytest
 
@@ -149,3 +152,25 @@ def test_a_position_loop_keeps_the_load_the_actuator_has():
     assert rig(Choice(name='isa_v5', loop='position')).load == 'mass'
     assert rig(Choice(name='leg.yaml', actuator='kfe', loop='position')).load == 'mass'
     assert rig(Choice(name='isa_v5', loop='spool')).load == 'blocked'
+
+
+def test_a_pressure_loop_is_measured_like_the_others():
+    """The ISA v5's force gains times an area close a loop of the pressure difference."""
+    bench = rig(Choice(name='isa_v5', loop='force'))
+    force, area = bench.config.sheet.reu.force, bench.config.sheet.plant.drive.areas[1]
+    pressure = replace(force, kp=area * force.kp, ki=area * force.ki)
+    sheet = replace(bench.config.sheet, reu=replace(
+        bench.config.sheet.reu, pressure=pressure, force=Off()))
+    loop = loop_of(sheet, 'pressure')
+    config = replace(bench.config, sheet=loop.sheet)
+    got = bode(Rig(replace(bench.run, actuators=(config,)), loop, 'blocked'),
+               Sweep(low=1.0, high=150.0, points=12), 'plant')
+    assert loop.inward == 'spool_reference'
+    assert got.response.coherence[0] > 0.99
+    # at 1 Hz, a fiftieth of its bandwidth or less, the integral holds it: 1/50 of 1
+    assert got.bandwidth is not None and got.bandwidth > 50.0
+    assert got.first_gain == pytest.approx(1.0, abs=0.02)
+    # oil integrates the spool's flow: between the valve's leakage, whose pole the phase of
+    # -65 deg at 1 Hz puts at 0.5 Hz, and the valve's own lag (104 Hz) there is -90 deg, less
+    # atan(0.5 / 4) = 7 and plus about 4 / 104 of 90 deg, twice for its second order = 7
+    assert got.response.phase[3] == pytest.approx(-90.0, abs=7.0)
