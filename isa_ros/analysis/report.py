@@ -6,9 +6,15 @@ import io
 from pathlib import Path
 
 from isa_ros.analysis.figures import ATMOSPHERE, figures, Traces
+from isa_ros.analysis.paper_figures import paper_figure
 from isa_ros.analysis.traces import read_traces
+from isa_ros.bag.provenance import SCENARIO
+from isa_ros.bag.reader import Bag
 from isa_ros.errors import BagError
+from isa_ros.resolve import Place
 from isa_ros.run_config import RunConfig
+from isa_ros.scenario import figure_of
+from isa_ros.strict_yaml import parse
 import numpy as np
 
 _PAGE = """<!DOCTYPE html>
@@ -38,7 +44,11 @@ def write_report(bag: Path, page: Path) -> list[Path]:
         raise BagError(f'{bag}: holds no sample, there is nothing to draw')
     page.parent.mkdir(parents=True, exist_ok=True)
     written, images = [page], []
-    for name, figure in figures(run, traces).items():
+    drawn = figures(run, traces)
+    name_of_paper = named_figure(bag)
+    if name_of_paper is not None:
+        drawn = {name_of_paper: paper_figure(name_of_paper, run, traces)} | drawn
+    for name, figure in drawn.items():
         buffer = io.BytesIO()
         figure.savefig(buffer, format='png')
         path = page.with_name(f'{page.stem}_{name}.png')
@@ -50,6 +60,11 @@ def write_report(bag: Path, page: Path) -> list[Path]:
         title=html.escape(run.name), summary=html.escape(_summary(run, traces)),
         rows=_rows(extremes(run, traces)), images=''.join(images)), encoding='utf-8')
     return written
+
+
+def named_figure(bag: Path) -> str | None:
+    """Return the figure of the paper that the scenario of a bag names, None for none."""
+    return figure_of(parse(Bag(bag).provenance.scenario, SCENARIO), Place(SCENARIO))
 
 
 def extremes(run: RunConfig, traces: Traces) -> list[tuple[str, float, float, str]]:
