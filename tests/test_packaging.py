@@ -60,11 +60,13 @@ def test_an_installed_package_finds_its_data(tmp_path: Path) -> None:
     purelib = next((tmp_path / 'prefix').glob('lib/python3*/site-packages'))
     program = (
         'from isa_ros.config import load_run; from isa_ros.paths import find\n'
-        'import isa_ros; print(isa_ros.__file__, load_run(find("leg", "config")).name)')
+        'from isa_ros.paper.printed import cell\n'
+        'import isa_ros; print(isa_ros.__file__, load_run(find("leg", "config")).name, '
+        'cell("table_5", "L_m", "Value").number)')
     result = subprocess.run(
         [sys.executable, '-c', program], cwd=tmp_path, check=True, capture_output=True, text=True,
         env={'PYTHONPATH': str(purelib), 'PATH': '', 'HOME': str(tmp_path)}, timeout=120)
-    assert result.stdout == f'{purelib}/isa_ros/__init__.py leg\n'
+    assert result.stdout == f'{purelib}/isa_ros/__init__.py leg 1.745\n'
     scripts = {path.name for path in (tmp_path / 'prefix' / 'bin').iterdir()}
     assert {name for name, _, _ in ENTRY_POINTS} <= scripts
 
