@@ -135,6 +135,9 @@ def _params(parser: argparse.ArgumentParser) -> None:
     parser.add_argument('name', metavar='MODEL|CONFIG', help='isa_v5, hyq_real, leg.yaml, ...')
     parser.add_argument(
         '--preset', default='default', metavar='NAME', help='gains of a model (default: default)')
+    parser.add_argument(
+        '--variant', action='append', default=[], metavar='V',
+        help='another way to model or to wire a model; may be repeated')
 
 
 def _paper(parser: argparse.ArgumentParser) -> None:

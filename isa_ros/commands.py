@@ -11,7 +11,7 @@ from pathlib import Path
 import sys
 from typing import TYPE_CHECKING
 
-from isa_ros.errors import BagError
+from isa_ros.errors import BagError, ConfigError
 from isa_ros.paths import CONFIG, find, SCENARIOS
 
 if TYPE_CHECKING:
@@ -116,7 +116,7 @@ def step(options: Namespace) -> bool:
 def params(options: Namespace) -> bool:
     """List every parameter of a model, a leg or a run."""
     from isa_ros.params import describe
-    print(describe(options.name, options.preset))
+    print(describe(options.name, options.preset, options.variant))
     return True
 
 
@@ -130,9 +130,12 @@ def paper(options: Namespace) -> bool:
 def validate(options: Namespace) -> bool:
     """Hold the actuators against the paper, number by number."""
     from isa_ros.analysis.validation.groups import GROUPS
-    from isa_ros.analysis.validation.page import as_text, write_json, write_page
+    from isa_ros.analysis.validation.page import as_text, PAGE, write_json, write_page
     from isa_ros.analysis.validation.runner import chosen, is_reached, terminal_progress, validated
     groups = chosen(GROUPS, options.only)
+    if options.only and options.out and (options.out / PAGE).exists():
+        raise ConfigError(
+            f'{options.out / PAGE} exists, must not: --only would leave a part of it')
     results = validated(groups, options.only, terminal_progress(sys.stderr))
     print(as_text(results))
     if options.json:

@@ -1,6 +1,6 @@
 """One declaration per parameter: its unit, its range and its meaning."""
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable
 from dataclasses import dataclass, field, fields
 import math
 from typing import Any
@@ -73,14 +73,3 @@ def check(where: str, value: Any, declared: Any) -> None:
             raise ParameterError(
                 f'{where} = {value:g} {unit}, must be {symbol} {bound:g} {unit} '
                 f'({declared["doc"]})')
-
-
-def walk(parameters: Parameters, prefix: str = '') -> Iterator[tuple[str, Any, Any]]:
-    """Yield (dotted path, value, declaration) of every parameter, in declaration order."""
-    for f in fields(parameters):
-        value = getattr(parameters, f.name)
-        path = f'{prefix}{f.name}'
-        if isinstance(value, Parameters):
-            yield from walk(value, f'{path}.')
-        else:
-            yield path, value, f.metadata

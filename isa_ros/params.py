@@ -1,7 +1,8 @@
 """`isa params`: every parameter of a model, a leg or a run with unit, range and source."""
 
-from collections.abc import Iterator
-from typing import Any, NamedTuple
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import fields
+from typing import Any, get_type_hints, NamedTuple
 
 from isa_ros.actuator_sheet import ActuatorSheet
 from isa_ros.catalogue import (
@@ -10,9 +11,9 @@ from isa_ros.config import read_run
 from isa_ros.errors import ConfigError
 from isa_ros.load.leg_sheet import LegSheet
 from isa_ros.load.local import LocalLoad
-from isa_ros.parameter import Parameters, walk
+from isa_ros.parameter import Parameters
 from isa_ros.paths import CONFIG, find
-from isa_ros.resolve import as_tree, build, build_one_of, Section, sources
+from isa_ros.resolve import as_tree, build, build_one_of, members, Section, sources
 
 _SYMBOLS = {'gt': '>', 'ge': '>=', 'lt': '<', 'le': '<='}
 
@@ -31,9 +32,11 @@ class Row(NamedTuple):
 HEADER = Row('parameter', 'value', 'unit', 'range', 'source', 'meaning')
 
 
-def describe(name: str, preset: str) -> str:
+def describe(name: str, preset: str, variants: Sequence[str] = ()) -> str:
     """
     Return the table of a packaged model or leg, or of a run file.
+
+    ``preset`` and ``variants`` are those of a model; a run file names its own.
 
     Raises
     ------
@@ -43,10 +46,13 @@ def describe(name: str, preset: str) -> str:
     """
     if name in model_names():
         model = actuator_model(name, 'model')
-        section = model.with_preset(preset, 'preset')
+        section = model.with_variants(
+            model.with_preset(preset, 'preset'), variants, 'variant')
         sheet = build(ActuatorSheet, section, model.place)
+        named = ' + '.join([preset, *variants])
         return '\n\n'.join([
-            _table(f'{name}, preset {preset}', rows(sheet, section)), *_load_tables(model)])
+            _table(f'{name}, preset {named}', rows(sheet, section)), *_load_tables(model),
+            f'presets: {", ".join(model.presets)}\nvariants: {", ".join(model.variants)}'])
     if name in leg_names():
         section, place = leg_section(name, 'leg')
         return _table(name, rows(build(LegSheet, section, place), section))
@@ -59,12 +65,29 @@ def describe(name: str, preset: str) -> str:
 
 
 def rows(parameters: Parameters, section: Section) -> list[Row]:
-    """Return a row for each parameter of a set, in the order of declaration."""
-    source_of = sources(section)
-    return [
-        Row(path, _value(value), declared.get('unit', ''), _range(declared),
-            source_of.get(path, ''), declared['doc'])
-        for path, value, declared in walk(parameters)]
+    """Return a row for each parameter of a set and for each kind, in the order declared."""
+    return list(_rows(parameters, sources(section), ''))
+
+
+def _rows(parameters: Parameters, source_of: Mapping[str, str], prefix: str) -> Iterator[Row]:
+    hints = get_type_hints(type(parameters))
+    for f in fields(parameters):
+        value, path = getattr(parameters, f.name), f'{prefix}{f.name}'
+        if isinstance(value, Parameters):
+            if not isinstance(hints[f.name], type):
+                yield _kind_row(path, value, hints[f.name], source_of)
+            yield from _rows(value, source_of, f'{path}.')
+        else:
+            yield Row(path, _value(value), f.metadata.get('unit', ''), _range(f.metadata),
+                      source_of.get(path, ''), f.metadata['doc'])
+
+
+def _kind_row(path: str, value: Parameters, union: Any, source_of: Mapping[str, str]) -> Row:
+    known = members(union)
+    kind = next(name for name, cls in known.items() if cls is type(value))
+    doc = (type(value).__doc__ or '').strip().splitlines()[0].rstrip('.')
+    return Row(f'{path}.kind', kind, '', ' | '.join(known),
+               source_of.get(f'{path}.kind', ''), doc)
 
 
 def _run_tables(path: str) -> Iterator[str]:

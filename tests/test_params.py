@@ -6,11 +6,16 @@ from isa_ros.actuator_sheet import ActuatorSheet
 from isa_ros.catalogue import actuator_model, leg_names, leg_section, model_names
 from isa_ros.load.leg_sheet import LegSheet
 from isa_ros.load.local import LocalLoad
-from isa_ros.params import describe, rows
+from isa_ros.params import describe, Row, rows
 from isa_ros.resolve import build, build_one_of
 import pytest
 
 SOURCES = ('paper', 'derived', 'assumed', 'public model')
+
+
+def is_kind(row: Row) -> bool:
+    """Tell whether a row says how something is modelled, which is no number to have a source."""
+    return row.parameter.endswith('.kind')
 
 
 @pytest.mark.parametrize('name', model_names())
@@ -23,7 +28,8 @@ def test_every_value_of_a_model_has_its_source(name: str) -> None:
         section = model.with_variants(
             model.with_preset(preset, 'preset'), [variant] if variant else [], 'variant')
         table = rows(build(ActuatorSheet, section, model.place), section)
-        assert table and all(row.source.startswith(SOURCES) for row in table)
+        assert table and all(
+            row.source.startswith(SOURCES) for row in table if not is_kind(row))
         assert len({row.parameter for row in table}) == len(table)
 
 
@@ -31,7 +37,7 @@ def test_every_value_of_a_model_has_its_source(name: str) -> None:
 def test_every_value_of_a_leg_has_its_source(name: str) -> None:
     section, place = leg_section(name, 'leg')
     assert all(row.source.startswith(SOURCES)
-               for row in rows(build(LegSheet, section, place), section))
+               for row in rows(build(LegSheet, section, place), section) if not is_kind(row))
 
 
 def test_a_row_shows_value_unit_range_and_source() -> None:
@@ -64,4 +70,14 @@ def test_every_value_of_a_load_has_its_source(name: str) -> None:
     model = actuator_model(name, 'model')
     for load, section in model.loads.items():
         table = rows(build_one_of(LocalLoad, section, model.place / load), section)
-        assert table and all(row.source.startswith(SOURCES) for row in table)
+        assert table and all(
+            row.source.startswith(SOURCES) for row in table if not is_kind(row))
+
+
+def test_a_variant_is_shown_with_its_kinds() -> None:
+    """The explicit coil in the place of the closed loop; other ways to model it are named."""
+    text = describe('isa_v5', 'table_4', ['explicit'])
+    kind = next(line for line in text.splitlines() if line.startswith('plant.coil.kind '))
+    assert kind.split()[1:5] == ['explicit', 'closed_loop', '|', 'explicit']
+    assert 'plant.coil.mode_frequency_hz' in text
+    assert 'variants: feedback_linearisation, explicit' in text

@@ -52,6 +52,15 @@ def test_one_entry_by_name(capsys):
     assert '177.8' in printed
 
 
+def test_a_part_does_not_overwrite_the_page(tmp_path, capsys):
+    """`--only` with the directory of a whole page."""
+    (tmp_path / 'validation.md').write_text('whole')
+    assert main(['validate', '--only', 'valve_flow', '--out', str(tmp_path)]) == 2
+    assert 'validation.md exists, must not' in capsys.readouterr().err
+    assert (tmp_path / 'validation.md').read_text() == 'whole'
+
+
+
 def test_an_unknown_group_is_one_line_and_2(capsys):
     assert main(['validate', '--only', 'valve_flows']) == 2
     printed = capsys.readouterr().err
