@@ -180,4 +180,6 @@ def actuator_tick(
     reply.supply_volume = body.totals.supply_volume
     reply.return_volume = body.totals.return_volume
     write_sample(read_out, body.plant, reu_state, samples[0])
+    samples[0].supply_volume += reply.supply_volume
+    samples[0].supply_flow = reply.supply_volume / (steps * PLANT_STEP)
     return first_broken(y)

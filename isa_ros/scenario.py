@@ -23,7 +23,7 @@ from numpy.typing import NDArray
 
 FIGURES = (
     'position_torque_tracking', 'torque_step', 'force_step', 'impact', 'weight', 'knee_sine',
-    'leg_drop')
+    'leg_drop', 'valve_response', 'flow_gain', 'leakage', 'current_step', 'bandwidth')
 """Figures of the paper that a scenario may be drawn as; see `isa_ros.analysis.paper_figures`."""
 
 

@@ -37,6 +37,8 @@ SAMPLE = np.dtype([
     ('force_reference', '<f8'),     # N | Nm
     ('spool_reference', '<f8'),     # m
     ('current_reference', '<f8'),   # amplifier (parallel) current, A
+    ('supply_volume', '<f8'),       # oil drawn from the supply since t = 0, m3
+    ('supply_flow', '<f8'),         # its mean over the tick, m3/s
 ])
 """What one actuator reports at the end of a tick."""
 

@@ -41,11 +41,17 @@ def actuator_joint_state(name: str, columns: Mapping[str, int]) -> tuple[JointSt
 
 
 def valve(name: str, columns: Mapping[str, int]) -> tuple[JointState, Fields]:
-    """Return spool position (m) and speed (m/s), with the coil current (A) as effort."""
+    """
+    Return spool and supply of a valve.
+
+    Spool: position (m), speed (m/s), coil current (A) as effort. Supply: oil drawn since
+    t = 0 (m3) as position, its mean flow over the tick (m3/s) as velocity.
+    """
     fields = entries(
-        1, position=[columns['spool']], velocity=[columns['spool_velocity']],
+        2, position=[columns['spool'], columns['supply_volume']],
+        velocity=[columns['spool_velocity'], columns['supply_flow']],
         effort=[columns['current']])
-    return joint_state(name, [f'{name}/spool']), fields
+    return joint_state(name, [f'{name}/spool', f'{name}/supply']), fields
 
 
 def references(name: str, columns: Mapping[str, int]) -> tuple[JointState, Fields]:

@@ -8,6 +8,7 @@ knee of a leg, or else the first actuator of the run.
 from collections.abc import Mapping
 from typing import NamedTuple
 
+from isa_ros.analysis.characteristics import RESPONSES
 from isa_ros.analysis.figures import Traces
 from isa_ros.analysis.traces import Trace
 from isa_ros.errors import ConfigError
@@ -39,7 +40,7 @@ LAYOUTS: Mapping[str, Layout] = {
     'knee_sine': Layout('Sine of the knee, as Fig 19', (POSITION,)),
     'leg_drop': Layout('Drop of the leg, as Fig 20', (FORCE,)),
 }
-"""By the names of `isa_ros.scenario.FIGURES`."""
+"""By the names of `isa_ros.scenario.FIGURES`, which also has those of `RESPONSES`."""
 
 
 def paper_figure(name: str, run: RunConfig, traces: Traces) -> Figure:
@@ -52,8 +53,10 @@ def paper_figure(name: str, run: RunConfig, traces: Traces) -> Figure:
         There is no such figure.
 
     """
+    if name in RESPONSES:
+        return RESPONSES[name](run, traces)
     if name not in LAYOUTS:
-        raise ConfigError(f'{name} is no figure; {alternatives(name, LAYOUTS)}')
+        raise ConfigError(f'{name} is no figure; {alternatives(name, [*LAYOUTS, *RESPONSES])}')
     layout = LAYOUTS[name]
     actuator = shown(run)
     rows = len(layout.panels)

@@ -18,7 +18,7 @@ class LeadLag(Parameters):
 
     rate_hz: float = parameter('loop rate', 'Hz', gt=0.0, le=50e3)
     kp_v_per_ma: float = parameter('K_p of equation 1', 'V/mA', gt=0.0, le=1e3)
-    kpf: float = parameter('K_pf on the demand (eq 2)', '1', gt=0.0, le=10.0)
+    kpf: float = parameter('K_pf on the demand (eq 2)', '1', gt=0.0, le=1e6)
     lead_rad_per_s: float = parameter('w_lead', 'rad/s', gt=0.0, le=1e6)
     lag_rad_per_s: float = parameter('w_lag', 'rad/s', gt=0.0, le=1e6)
     lead_damping: float = parameter('zeta_lead', '1', gt=0.0, le=2.0)

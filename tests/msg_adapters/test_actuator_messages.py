@@ -45,9 +45,10 @@ def test_joint_state_is_encoder_estimate_and_measured_force(sample):
         ['hip'], [sample['position']], [sample['velocity']], [sample['force']])
 
 
-def test_valve_is_spool_and_coil_current(sample):
+def test_valve_is_spool_with_coil_current_and_supply(sample):
     assert columns(published(sample, False)['valve']) == (
-        ['hip/spool'], [sample['spool']], [sample['spool_velocity']], [sample['current']])
+        ['hip/spool', 'hip/supply'], [sample['spool'], sample['supply_volume']],
+        [sample['spool_velocity'], sample['supply_flow']], [sample['current'], 0.0])
 
 
 def test_references_come_outermost_first(sample):

@@ -60,7 +60,6 @@ def test_a_part_does_not_overwrite_the_page(tmp_path, capsys):
     assert (tmp_path / 'validation.md').read_text() == 'whole'
 
 
-
 def test_an_unknown_group_is_one_line_and_2(capsys):
     assert main(['validate', '--only', 'valve_flows']) == 2
     printed = capsys.readouterr().err
