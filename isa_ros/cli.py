@@ -131,6 +131,12 @@ def _report(parser: argparse.ArgumentParser) -> None:
         '--out', type=Path, metavar='FILE.html', help='the page (default: beside the bag)')
 
 
+def _identify(parser: argparse.ArgumentParser) -> None:
+    parser.add_argument('bag', type=Path, metavar='BAG')
+    parser.add_argument('--actuator', metavar='NAME', help='only this one (default: all)')
+    parser.add_argument('--json', type=Path, metavar='FILE', help='write the numbers there too')
+
+
 def _params(parser: argparse.ArgumentParser) -> None:
     parser.add_argument('name', metavar='MODEL|CONFIG', help='isa_v5, hyq_real, leg.yaml, ...')
     parser.add_argument(
@@ -167,6 +173,7 @@ _COMMANDS = {
              'measure the frequency response of a loop of an actuator'),
     'step': (response_arguments.step, commands.step,
              'measure the step response of a loop of an actuator'),
+    'identify': (_identify, commands.identify, 'estimate valve, oil and friction from a bag'),
     'params': (_params, commands.params, 'list every parameter with unit, range and source'),
     'paper': (_paper, commands.paper, 'show what the paper prints, with the place'),
     'validate': (_validate, commands.validate, 'hold the actuators against the paper, by number'),

@@ -113,6 +113,16 @@ def step(options: Namespace) -> bool:
     return True
 
 
+def identify(options: Namespace) -> bool:
+    """Estimate the parameters of a bag's actuators."""
+    from isa_ros.analysis.identification import identify_bag, table, write_json
+    found = identify_bag(options.bag, options.actuator)
+    print(table(found))
+    if options.json:
+        write_json(found, options.bag, options.json)
+    return True
+
+
 def params(options: Namespace) -> bool:
     """List every parameter of a model, a leg or a run."""
     from isa_ros.params import describe

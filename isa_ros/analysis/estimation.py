@@ -1,0 +1,140 @@
+"""
+Estimates with confidence intervals from moment conditions, for identification.
+
+A model gives residuals r(theta) of shape (n,) and their Jacobian -J; theta solves
+``Z^T r = 0`` for instruments Z of J's shape. With Z = J these are least squares; where a column
+of J carries sensor noise that r carries too, its instrument is the same column from
+neighbouring samples, so that the noise of both does not correlate and does not bias theta
+(errors in variables).
+"""
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+import math
+
+import numpy as np
+from scipy.stats import t as student_t
+
+CONFIDENCE = 0.95
+_TOLERANCE = 1e-4   # of a step against the parameters' size; what is left is its square
+_MAX_STEPS = 30
+_HALVINGS = 12
+
+
+@dataclass(frozen=True)
+class Linearised:
+    """A model at one theta: residuals (n,), Jacobian and instruments (n, n_parameters)."""
+
+    residuals: np.ndarray
+    jacobian: np.ndarray
+    instruments: np.ndarray
+
+
+Model = Callable[[np.ndarray], Linearised]
+
+
+@dataclass(frozen=True)
+class Box:
+    """Where a parameter may lie, and the size its steps are judged by; each (n_parameters,)."""
+
+    least: np.ndarray
+    most: np.ndarray
+    size: np.ndarray
+
+    def clip(self, theta: np.ndarray) -> np.ndarray:
+        """Return the nearest point within."""
+        nearest: np.ndarray = np.clip(theta, self.least, self.most)
+        return nearest
+
+    def is_small(self, step: np.ndarray) -> bool:
+        """Tell whether a step no longer matters."""
+        return bool(np.all(np.abs(step) < _TOLERANCE * self.size))
+
+
+def solve(model: Model, start: np.ndarray, box: Box) -> np.ndarray:
+    """
+    Return theta near ``start`` within the box, shape (n_parameters,).
+
+    Damped least-squares steps first, which find the valley, then full steps on the moment
+    conditions. A parameter without any influence stays.
+    """
+    theta = box.clip(start)
+    here = model(theta)
+    for _ in range(_MAX_STEPS):
+        before = theta
+        theta, here = _descend(model, theta, here, box)
+        if box.is_small(theta - before):
+            break
+    for _ in range(_MAX_STEPS):
+        before = theta
+        theta = box.clip(theta + _step(here.instruments, here))
+        here = model(theta)
+        if box.is_small(theta - before):
+            break
+    return theta
+
+
+def _descend(
+        model: Model, theta: np.ndarray, here: Linearised, box: Box
+        ) -> tuple[np.ndarray, Linearised]:
+    """Take the first of the halved least-squares steps that lowers the sum of squares."""
+    cost = float(here.residuals @ here.residuals)
+    step = _step(here.jacobian, here)
+    for _ in range(_HALVINGS):
+        trial = box.clip(theta + step)
+        there = model(trial)
+        if float(there.residuals @ there.residuals) < cost:
+            return trial, there
+        step = 0.5 * step
+    return theta, here
+
+
+def _step(instruments: np.ndarray, here: Linearised) -> np.ndarray:
+    scale = _scale(here.jacobian)
+    matrix = (instruments / scale).T @ (here.jacobian / scale)
+    moments = (instruments / scale).T @ here.residuals
+    step: np.ndarray = np.linalg.lstsq(matrix, moments, rcond=1e-13)[0] / scale
+    return step
+
+
+def _scale(jacobian: np.ndarray) -> np.ndarray:
+    norms = np.linalg.norm(jacobian, axis=0)
+    return np.where(norms > 0.0, norms, 1.0)
+
+
+def half_widths(
+        here: Linearised, groups: np.ndarray, lags: int,
+        systematic: Sequence[np.ndarray] = (), of: np.ndarray | None = None) -> np.ndarray:
+    """
+    Return half of the 95 % interval of every parameter, infinite where nothing is known.
+
+    With ``of`` (m, n_parameters), of these sums of parameters instead.
+
+    ``groups`` (n,) counts the instant a residual belongs to; residuals of one instant may
+    depend on each other, and instants up to ``lags`` apart too (Newey and West 1987, a
+    Simple, Positive Semi-definite, Heteroskedasticity and Autocorrelation Consistent
+    Covariance Matrix, Econometrica 55). Student's t with one degree of freedom for every
+    ``lags`` instants instead of the normal distribution, since those count once. Each of
+    ``systematic`` (n,) is one standard deviation of an error all residuals share.
+    """
+    scale = _scale(here.jacobian)
+    matrix = (here.instruments / scale).T @ (here.jacobian / scale)
+    scores = np.zeros((int(groups.max()) + 1, matrix.shape[0]))
+    np.add.at(scores, groups, here.instruments / scale * here.residuals[:, None])
+    spread = scores.T @ scores
+    for lag in range(1, lags + 1):
+        product = scores[lag:].T @ scores[:-lag]
+        spread += (1.0 - lag / (lags + 1.0)) * (product + product.T)
+    n_blocks = np.count_nonzero(scores.any(axis=1)) / (lags + 1.0)
+    freedom = n_blocks - matrix.shape[0] / (lags + 1.0)
+    singular = np.linalg.svd(matrix, compute_uv=False)
+    if freedom < 1.0 or singular[-1] <= 1e-13 * singular[0]:
+        return np.full(matrix.shape[0] if of is None else len(of), math.inf)
+    inverse = np.linalg.inv(matrix) / scale[:, None]
+    inverse = inverse if of is None else of @ inverse
+    variances = np.diag(inverse @ spread @ inverse.T)
+    for error in systematic:
+        variances = variances + (inverse @ ((here.instruments / scale).T @ error)) ** 2
+    quantile = float(student_t.ppf(0.5 + 0.5 * CONFIDENCE, freedom))
+    widths: np.ndarray = quantile * np.sqrt(np.maximum(variances, 0.0))
+    return widths

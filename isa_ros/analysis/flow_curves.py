@@ -1,0 +1,173 @@
+"""
+The flow curve g of V4 as identification needs it: values, slopes and derivatives.
+
+An opening u is in m, > 0 where the land is open; a curve is 0 for u <= 0. ``theta`` are the
+curve's own parameters.
+"""
+
+import math
+from typing import Protocol
+
+import numpy as np
+
+_SHARES = np.linspace(0.05, 0.95, 13)   # of the spool's travels, tried as x_dg
+_BENDS = np.geomspace(0.1, 10.0, 9)     # over the knee, tried as k_low/q_rest
+_LEAST = 0.01                           # share of the samples that excites a parameter
+
+
+class FlowCurve(Protocol):
+    """The flow of an open land at the reference drop over its opening."""
+
+    @property
+    def size(self) -> int:
+        """Return the number of parameters."""
+        ...
+
+    def flow(self, u: np.ndarray, theta: np.ndarray) -> np.ndarray:
+        """Return g, m3/s."""
+        ...
+
+    def slope(self, u: np.ndarray, theta: np.ndarray) -> np.ndarray:
+        """Return dg/du, m2/s."""
+        ...
+
+    def derivative(self, u: np.ndarray, theta: np.ndarray, k: int) -> np.ndarray:
+        """Return dg/dtheta_k."""
+        ...
+
+    def guesses(self, travel: np.ndarray) -> list[float]:
+        """Return what the bend may be, for a spool that travelled so far, (n,)."""
+        ...
+
+    def shapes(self, u: np.ndarray, bend: float) -> list[np.ndarray]:
+        """Return the shapes g is linear in with that bend."""
+        ...
+
+    def theta(self, factors: np.ndarray, bend: float) -> np.ndarray:
+        """Return the parameters of the shapes' factors."""
+        ...
+
+    def excited(self, travel: np.ndarray) -> list[int]:
+        """Return the parameters a spool that travelled so far says something about."""
+        ...
+
+    def bounds(self, travel: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """Return the least and greatest parameters, (size,) each."""
+        ...
+
+
+class DualGainCurve:
+    """Parameters k_low, k_high (m2/s) and x_dg (m), of which ``x_dg`` is a first idea."""
+
+    size = 3
+
+    def __init__(self, x_dg: float) -> None:
+        self._x_dg = x_dg
+
+    def flow(self, u: np.ndarray, theta: np.ndarray) -> np.ndarray:
+        """Return k_low u up to x_dg, beyond with slope k_high  (V4)."""
+        flow: np.ndarray = (theta[0] * _first(u, theta[2]) + theta[1] * _beyond(u, theta[2]))
+        return flow
+
+    def slope(self, u: np.ndarray, theta: np.ndarray) -> np.ndarray:
+        """Return k_low or k_high where the land is open."""
+        slope: np.ndarray = np.where(u > theta[2], theta[1], theta[0]) * (u > 0.0)
+        return slope
+
+    def derivative(self, u: np.ndarray, theta: np.ndarray, k: int) -> np.ndarray:
+        """Return dg/dtheta_k."""
+        derivatives: tuple[np.ndarray, ...] = (
+            _first(u, theta[2]), _beyond(u, theta[2]), (theta[0] - theta[1]) * (u > theta[2]))
+        return derivatives[k]
+
+    def guesses(self, travel: np.ndarray) -> list[float]:
+        """Return x_dg at some shares of the travel."""
+        if len(self.excited(travel)) == 1:
+            return [math.inf]
+        return [float(x_dg) for x_dg in np.quantile(travel, _SHARES)]
+
+    def shapes(self, u: np.ndarray, bend: float) -> list[np.ndarray]:
+        """Return what opens before x_dg and beyond."""
+        if math.isinf(bend):
+            return [_first(u, bend)]
+        return [_first(u, bend), _beyond(u, bend)]
+
+    def theta(self, factors: np.ndarray, bend: float) -> np.ndarray:
+        """Return the slopes and x_dg."""
+        return np.array([factors[0], factors[-1], bend])
+
+    def excited(self, travel: np.ndarray) -> list[int]:
+        """Leave out what a spool about null does not show."""
+        is_beyond = np.count_nonzero(travel > self._x_dg) > _LEAST * len(travel)
+        return [0, 1, 2] if is_beyond else [0]
+
+    def bounds(self, travel: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """Keep x_dg within the travel."""
+        if len(self.excited(travel)) == 1:
+            return np.full(3, -math.inf), np.full(3, math.inf)
+        most = float(np.max(travel))
+        return (np.array([-math.inf, -math.inf, 0.02 * most]),
+                np.array([math.inf, math.inf, 0.98 * most]))
+
+
+class HighResponseCurve:
+    """Parameters k_low (m2/s) and q_rest (m3/s); the ``knee`` (m) is known."""
+
+    size = 2
+
+    def __init__(self, knee: float) -> None:
+        self._knee = knee
+
+    def flow(self, u: np.ndarray, theta: np.ndarray) -> np.ndarray:
+        """Return k_low u up to the knee, beyond it what is left of q_rest  (V4)."""
+        left = self._left(u, theta)
+        flow: np.ndarray = theta[0] * _first(u, self._knee) + theta[1] * (1.0 - left)
+        return flow
+
+    def slope(self, u: np.ndarray, theta: np.ndarray) -> np.ndarray:
+        """Return k_low, fading beyond the knee, where the land is open."""
+        slope: np.ndarray = theta[0] * self._left(u, theta) * (u > 0.0)
+        return slope
+
+    def derivative(self, u: np.ndarray, theta: np.ndarray, k: int) -> np.ndarray:
+        """Return dg/dtheta_k."""
+        left, beyond = self._left(u, theta), _beyond(u, self._knee)
+        derivatives: tuple[np.ndarray, ...] = (
+            _first(u, self._knee) + left * beyond,
+            1.0 - left - left * beyond * theta[0] / theta[1])
+        return derivatives[k]
+
+    def guesses(self, travel: np.ndarray) -> list[float]:
+        """Return some k_low/q_rest, 1/m."""
+        return [float(bend) for bend in _BENDS / self._knee]
+
+    def shapes(self, u: np.ndarray, bend: float) -> list[np.ndarray]:
+        """Return the curve with k_low = 1."""
+        return [_first(u, self._knee) - np.expm1(-bend * _beyond(u, self._knee)) / bend]
+
+    def theta(self, factors: np.ndarray, bend: float) -> np.ndarray:
+        """Return k_low and q_rest."""
+        return np.array([factors[0], factors[0] / bend])
+
+    def excited(self, travel: np.ndarray) -> list[int]:
+        """Leave out what a spool below the knee does not show."""
+        is_beyond = np.count_nonzero(travel > self._knee) > _LEAST * len(travel)
+        return [0, 1] if is_beyond else [0]
+
+    def bounds(self, travel: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """Keep both positive."""
+        return np.array([0.0, 1e-12]), np.full(2, math.inf)
+
+    def _left(self, u: np.ndarray, theta: np.ndarray) -> np.ndarray:
+        left: np.ndarray = np.exp(-_beyond(u, self._knee) * theta[0] / theta[1])
+        return left
+
+
+def _first(u: np.ndarray, x: float) -> np.ndarray:
+    first: np.ndarray = np.clip(u, 0.0, x)
+    return first
+
+
+def _beyond(u: np.ndarray, x: float) -> np.ndarray:
+    beyond: np.ndarray = np.maximum(u, x) - x if math.isfinite(x) else np.zeros_like(u)
+    return beyond
