@@ -55,7 +55,12 @@ class Estimate:
                 and self.low <= self.configured <= self.high)
 
 
-Identified = dict[str, list[Estimate]]
+@dataclass(frozen=True)
+class Identified:
+    """The estimates of every actuator that moved, and how little the others did."""
+
+    actuators: dict[str, list[Estimate]]
+    still: dict[str, str]
 
 
 def identify_bag(bag: Path, actuator: str | None = None) -> Identified:
@@ -71,18 +76,18 @@ def identify_bag(bag: Path, actuator: str | None = None) -> Identified:
 
     """
     run, traces = read_traces(bag)
-    found: Identified = {}
-    still = []
+    found = Identified({}, {})
     for one in [run.actuator(actuator)] if actuator else run.actuators:
         recording = recording_of(run, traces, one, bag)
         moved, least = float(np.ptp(recording.position)), _least_motion(recording)
         if moved < least:
             unit = 'rad' if one.sheet.is_rotary else 'm'
-            still.append(f'{one.name} moved by {moved:.2g} {unit}, must by {least:.2g} {unit}')
+            found.still[one.name] = f'moved by {moved:.2g} {unit}, must by {least:.2g} {unit}'
             continue
-        found[one.name] = identify(recording, one.sheet.plant)
-    if not found:
-        raise BagError(f'{bag}: nothing to identify: {"; ".join(still)}')
+        found.actuators[one.name] = identify(recording, one.sheet.plant)
+    if not found.actuators:
+        raise BagError(f'{bag}: nothing to identify: ' + '; '.join(
+            f'{name} {why}' for name, why in found.still.items()))
     return found
 
 
@@ -179,10 +184,11 @@ def _inverse(estimate: Estimate) -> Estimate:
 def table(found: Identified) -> str:
     """Return the estimates as text."""
     lines = []
-    for name, estimates in found.items():
+    for name, estimates in found.actuators.items():
         lines += [name, *_aligned([
             ('', 'estimate', f'{100.0 * CONFIDENCE:g} % interval', 'configured', 'unit', ''),
             *(_cells(estimate) for estimate in estimates)])]
+    lines += [f'{name}: nothing to identify: {why}' for name, why in found.still.items()]
     return '\n'.join(lines)
 
 
@@ -206,4 +212,5 @@ def write_json(found: Identified, bag: Path, path: Path) -> None:
         'bag': bag.name, 'confidence': CONFIDENCE,
         'actuators': {name: [asdict(estimate) | {'holds': estimate.holds}
                              for estimate in estimates]
-                      for name, estimates in found.items()}}, indent=2) + '\n', encoding='utf-8')
+                      for name, estimates in found.actuators.items()},
+        'still': found.still}, indent=2) + '\n', encoding='utf-8')

@@ -165,6 +165,41 @@ def test_a_bag_without_motion_is_refused_in_one_line(
     assert 'bag: nothing to identify: rotor moved by' in printed
 
 
+TWO = """
+name: two
+step_ms: 1.0
+controller_offset_ms: 0.12
+tick_timeout_s: 5.0
+supply: {kind: constant, pressure_mpa: 20.7, return_pressure_mpa: 0.0}
+actuators:
+  moving:
+    {model: smart_manifold, preset: default, load: {kind: mass}, initial_position_deg: 50.0}
+  standing:
+    {model: smart_manifold, preset: default, load: {kind: mass}, initial_position_deg: 50.0}
+"""
+TURN = """
+name: turn
+duration_s: 0.6
+tracks:
+  moving:
+  - {t_s: 0.0, position: hold, sine: {amplitude: 0.1, frequency_hz: 2.0}}
+"""
+
+
+def test_an_actuator_that_stands_is_named_beside_one_that_moves(
+        tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    """Not left out in silence, neither in the table nor in the file."""
+    (tmp_path / 'two.yaml').write_text(TWO)
+    (tmp_path / 'turn.yaml').write_text(TURN)
+    run(tmp_path / 'two.yaml', tmp_path / 'turn.yaml', tmp_path / 'bag')
+    assert main(['identify', str(tmp_path / 'bag'), '--json', str(tmp_path / 'out.json')]) == 0
+    printed = capsys.readouterr().out.splitlines()
+    assert printed[0] == 'moving'
+    assert printed[-1].startswith('standing: nothing to identify: moved by')
+    found = json.loads((tmp_path / 'out.json').read_text())
+    assert list(found['actuators']) == ['moving'] and list(found['still']) == ['standing']
+
+
 def test_an_unknown_actuator_is_refused_with_the_known_ones(
         capsys: pytest.CaptureFixture[str]) -> None:
     golden = Path(__file__).parent.parent / 'replay' / 'rotor_step'
@@ -175,6 +210,6 @@ def test_an_unknown_actuator_is_refused_with_the_known_ones(
 def test_a_bag_too_short_says_so() -> None:
     """The golden step moves for 0.1 s only: refused, not guessed."""
     golden = Path(__file__).parent.parent / 'replay' / 'rotor_step'
-    found = identify_bag(golden)['rotor']
+    found = identify_bag(golden).actuators['rotor']
     assert all(one.value is None and one.reason for one in found)
     assert found[0].reason.startswith('too short')
