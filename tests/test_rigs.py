@@ -52,6 +52,17 @@ def test_nothing_is_felt_before_the_rope_is_taut(drops):
     assert np.abs(torque[t < TAUT_S]).max() <= 200.0 / 2048.0
 
 
+def test_pure_position_control_bears_the_weight_worse(drops):
+    """Paper Fig 17: without a torque loop twice the torque, and it takes longer to settle."""
+    traces = run('rig_rotary_position', 'weight').traces
+    joint, reference = traces['/rotor/joint_states'], traces['/rotor/references']
+    assert not reference['position[1]'].any()
+    assert joint['effort[0]'].max() > 2.0 * drops[300.0][2].max()
+    late = joint.t > TAUT_S + 0.6
+    turned = joint['position[0]'][0] - joint['position[0]'][late]
+    assert np.abs(turned - turned[LAST].mean()).max() > 0.05 * turned[LAST].mean()
+
+
 def test_impacts_stay_below_the_stall_torque():
     """Paper Fig 15: the wheel hits both stops again and again, below 170 Nm, with spikes."""
     traces = run('rig_rotary', 'impact').traces
