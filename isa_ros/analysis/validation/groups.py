@@ -4,6 +4,8 @@ from isa_ros.analysis.validation.actuator_data import actuator_data
 from isa_ros.analysis.validation.current_loop import current_loop
 from isa_ros.analysis.validation.entry import Group
 from isa_ros.analysis.validation.reu_statics import reu_statics
+from isa_ros.analysis.validation.rotary_disturbances import rotary_disturbances
+from isa_ros.analysis.validation.rotary_rig import rotary_rig
 from isa_ros.analysis.validation.strokes import strokes
 from isa_ros.analysis.validation.valve_dynamics import valve_dynamics
 from isa_ros.analysis.validation.valve_flow import valve_flow
@@ -17,5 +19,9 @@ GROUPS = (
           is_long=True),
     Group('actuator_data', 'Data of the actuators (Tables 2, 3, 5)', actuator_data),
     Group('reu_statics', 'Gains and rates of the control blocks (Fig 7, Table 4)', reu_statics),
+    Group('rotary_rig', 'Torque control of the rotary rig (Figs 12, 13)', rotary_rig,
+          is_long=True),
+    Group('rotary_disturbances', 'Impacts and weights on the rotary rig (Figs 15 to 18)',
+          rotary_disturbances, is_long=True),
     Group('strokes', 'Force and torque control over the stroke', strokes, is_long=True),
 )

@@ -1,0 +1,92 @@
+"""What the checks under disturbances compute: impacts, their spikes, the blocked weight."""
+
+from dataclasses import replace
+import math
+
+from isa_ros.analysis.experiment import Experiment
+from isa_ros.analysis.traces import Trace
+from isa_ros.analysis.validation.rotary_disturbances import (
+    blocked_peak, dropped, fall_time, Impact, impacts, onsets)
+from isa_ros.config import load_run
+from isa_ros.load.gravity import STANDARD_GRAVITY
+from isa_ros.paths import CONFIG, find
+import numpy as np
+import pytest
+from tests.sheets import own_load
+
+DROP = own_load('smart_manifold', 'drop_rig')
+
+
+def trace(t, **columns) -> Trace:
+    """Return a trace of columns named as ``position_0`` for position[0]."""
+    names = [f'{name[:-2]}[{name[-1]}]' for name in columns]
+    fields = np.zeros(len(t), [(name, float) for name in names])
+    for name, values in zip(names, columns.values()):
+        fields[name] = values
+    return Trace(t, fields)
+
+
+def experiment(load=None, **traces) -> Experiment:
+    """Return what the rotary rig might have shown, on its wheel or another load."""
+    run = load_run(find('rig_rotary', CONFIG))
+    if load is not None:
+        run = replace(run, actuators=(replace(run.actuators[0], load=load),))
+    return Experiment(run, {f'/rotor/{name}': found for name, found in traces.items()})
+
+
+def test_a_rebound_is_no_impact_of_its_own():
+    """Contacts 0.06 s apart are one, those 0.5 s apart are two; one at the start is none."""
+    t = np.arange(1000) * 1e-3
+    begins = np.array([0, 300, 380, 900])
+    touching = np.zeros(1000, bool)
+    touching[begins[:, None] + np.arange(20)] = True
+    assert onsets(t, touching) == [300, 900]
+    assert onsets(t, np.zeros(1000, bool)) == []
+
+
+def test_a_spike_is_told_by_what_makes_it():
+    """
+    The wheel stops dead at the stop: 20 Nms/rad answer its 3 rad/s, 300 Nm/rad do not move.
+
+    Before, it runs 0.05 rad ahead at the speed it shall have: -15 Nm. After, the reference is
+    -15 + 60 Nm, all of it from the velocity.
+    """
+    load = load_run(find('rig_rotary', CONFIG)).actuators[0].load
+    t = np.arange(1000) * 1e-3
+    angle = np.minimum(load.stop_high + 1e-3, load.stop_high + 3.0 * (t - 0.5))
+    goal = angle - 0.05
+    torque = 300.0 * (goal - angle) + np.where(t > 0.5005, 20.0 * 3.0, 0.0)  # from 0.501 s on
+    hit, = impacts(experiment(
+        joint_states=trace(t, position_0=angle),
+        references=trace(t, position_0=goal, position_1=torque),
+        applied_setpoint=trace(t, position_1=np.full(1000, 300.0))))
+    assert hit == Impact(pytest.approx(15.0), pytest.approx(45.0), pytest.approx(100.0))
+
+
+def test_the_weight_is_timed_from_when_the_rope_is_taut():
+    """A deflection exp(-t/0.1 s) short of 30 mrad is within 5 % after 0.1 s ln 20."""
+    t = np.arange(2000) * 1e-3
+    taut = DROP.release_s + fall_time(DROP)
+    assert 0.5 * STANDARD_GRAVITY * fall_time(DROP) ** 2 == pytest.approx(DROP.slack)
+    turned = np.where(t < taut, 0.0, 0.03 * (1.0 - np.exp(-(t - taut) / 0.1)))
+    torque = np.where(t < taut, 0.0, 80.0 * np.exp(-(t - taut) / 0.1))
+    found = dropped(experiment(
+        DROP, joint_states=trace(t, position_0=0.9 - turned, effort_0=-torque)))
+    # what is left of the exponential over the last 0.2 s: exp(-15)
+    assert found.deflection == pytest.approx(0.03, rel=1e-6)
+    # between two samples the curve bends by (dt/tau)^2/8 = 1.3e-5 of the band: 1.3e-6 s
+    assert found.settling_time == pytest.approx(0.1 * math.log(20.0), abs=2e-6)
+    assert found.peak == torque.max()
+
+
+def test_the_blocked_weight_swings_on_its_rope():
+    """
+    Without damping R (m g + sqrt((m g)^2 + k m v^2)), v^2 = 2 g slack.
+
+    A thousandth of half a period misses the peak by at most (pi/1000)^2/8 = 1.2e-6 of it.
+    """
+    load = replace(DROP, rope_damping=0.0)
+    pull = load.weight_kg * STANDARD_GRAVITY
+    swing = math.sqrt(pull * (pull + 2.0 * load.rope_stiffness * load.slack))
+    assert blocked_peak(load) == pytest.approx(load.radius * (pull + swing), rel=1.3e-6)
+    assert blocked_peak(DROP) < blocked_peak(load)
