@@ -5,6 +5,7 @@ from isa_ros.analysis.validation.current_loop import current_loop
 from isa_ros.analysis.validation.entry import Group
 from isa_ros.analysis.validation.isa_v5 import isa_v5
 from isa_ros.analysis.validation.knee_rig import knee_rig
+from isa_ros.analysis.validation.numerics import numerics
 from isa_ros.analysis.validation.reu_statics import reu_statics
 from isa_ros.analysis.validation.rotary_disturbances import rotary_disturbances
 from isa_ros.analysis.validation.rotary_rig import rotary_rig
@@ -29,4 +30,5 @@ GROUPS = (
     Group('isa_v5', 'Force control of the ISA v5, relief valves (Table 4, section 2.7)', isa_v5,
           is_long=True),
     Group('knee_rig', 'The knee rig (Figs 14, 19, 20)', knee_rig, is_long=True),
+    Group('numerics', 'The solver and the linkages', numerics, is_long=True),
 )
