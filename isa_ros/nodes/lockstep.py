@@ -60,6 +60,7 @@ class LockstepTransport:
         self._watch = watch
         self._should_stop = should_stop
         self._run_id = secrets.randbits(63) + 1
+        self._identities: dict[int, bytes] = {}
         self._tick = 0
         self._publisher = node.create_publisher(UInt8MultiArray, STEP_TOPIC, LOCKSTEP)
         handle: Any = self._publisher.handle
@@ -71,7 +72,8 @@ class LockstepTransport:
         Say hello until all participants have answered the same one; return their messages.
 
         One more hello is left its whole period, in which a second node of a name or another
-        coordinator that was discovered a little later makes itself known.
+        coordinator that was discovered a little later makes itself known. A second node that
+        answers even later is noticed by `receive`.
 
         Raises
         ------
@@ -85,13 +87,12 @@ class LockstepTransport:
         """
         start = time.monotonic()
         names = [participant.name for participant in self._participants]
-        identities: dict[int, bytes] = {}
         complete: dict[int, Answer] = {}
         count = 0
         while True:
             count += 1
             self._send(encode_hello(self._run_id, count, self._starts, names))
-            answers = self._hello_answers(count, identities, is_last=bool(complete))
+            answers = self._hello_answers(count, is_last=bool(complete))
             refuse_other_coordinator(self._node)
             if complete:
                 return [complete[k].parts[_FIRST:] for k in range(len(names))]
@@ -108,8 +109,7 @@ class LockstepTransport:
                     f'{self._limits.join_s:g} s; start it with lockstep:=true in this '
                     'ROS_DOMAIN_ID')
 
-    def _hello_answers(
-            self, count: int, identities: dict[int, bytes], is_last: bool) -> dict[int, Answer]:
+    def _hello_answers(self, count: int, is_last: bool) -> dict[int, Answer]:
         """Return the answers to the ``count``-th hello; the last one takes its whole period."""
         answers: dict[int, Answer] = {}
         end = time.monotonic() + HELLO_PERIOD_S
@@ -121,25 +121,35 @@ class LockstepTransport:
             if data is None:
                 continue
             answer = decode_answer(data)
-            self._check_ready(answer, identities)
+            self._check_ready(answer)
             if answer.tick == count:
                 answers[answer.participant] = answer
         return answers
 
-    def _check_ready(self, answer: Answer, identities: dict[int, bytes]) -> None:
+    def _check_ready(self, answer: Answer) -> None:
         if answer.run_id != self._run_id or answer.kind is AnswerKind.BUSY:
             raise another_coordinator(self._node.context.get_domain_id())
         name, expected = self._participants[answer.participant]
         identity, digest = answer.parts[_IDENTITY], answer.parts[_DIGEST]
         assert identity is not None and digest is not None
-        if identities.setdefault(answer.participant, identity) != identity:
-            raise ConfigError(
-                f'{name}: two nodes of this name answer in ROS_DOMAIN_ID '
-                f'{self._node.context.get_domain_id()}, must be one')
+        if self._identities.setdefault(answer.participant, identity) != identity:
+            raise self._two_nodes(answer.participant)
         if expected and digest.decode() != expected:
             raise ConfigError(
                 f'{name}: digest of its parameters = {digest.decode()}, must be {expected} as '
                 'configured; give both the same file')
+
+    def _check_unbound(self, answer: Answer) -> None:
+        """Refuse a node outside of the run that has the name of one inside."""
+        name = (answer.parts[0] or b'').decode()
+        names = [participant.name for participant in self._participants]
+        if name in names:
+            raise self._two_nodes(names.index(name))
+
+    def _two_nodes(self, participant: int) -> ConfigError:
+        return ConfigError(
+            f'{self._participants[participant].name}: two nodes of this name answer in '
+            f'ROS_DOMAIN_ID {self._node.context.get_domain_id()}, must be one')
 
     def _refuse_lost(self, when: str) -> None:
         lost = self._watch()
@@ -167,10 +177,18 @@ class LockstepTransport:
                 self._check_waited(waited, missing)
                 continue
             answer = decode_answer(data)
-            if answer.run_id == self._run_id and answer.tick == self._tick and (
-                    answer.kind is not AnswerKind.READY and answer.participant in missing):
-                answers[answer.participant] = self._done(answer, replies)
-                missing.discard(answer.participant)
+            if answer.run_id != self._run_id or answer.kind is AnswerKind.BUSY:
+                continue
+            if answer.kind is AnswerKind.READY:
+                self._check_ready(answer)
+                continue
+            if answer.kind is AnswerKind.UNBOUND:
+                self._check_unbound(answer)
+                continue
+            if answer.tick != self._tick or answer.participant not in missing:
+                raise self._two_nodes(answer.participant)  # one answers each tick once
+            answers[answer.participant] = self._done(answer, replies)
+            missing.discard(answer.participant)
         return answers
 
     def _done(self, answer: Answer, replies: Records) -> Messages:

@@ -61,7 +61,7 @@ class Participant:
         if step.kind is StepKind.HELLO:
             self._answer_hello(step)
         elif step.run_id != self._run_id:
-            return
+            self._answer_strange(step)
         elif step.kind is StepKind.TICK:
             self._answer_tick(step)
         else:
@@ -79,6 +79,14 @@ class Participant:
         self._send(encode_answer(
             AnswerKind.READY, step.run_id, step.tick, self._index,
             (self._identity, self._stepper.digest.encode(), *self._first)))
+
+    def _answer_strange(self, step: Step) -> None:
+        """Give this name once to a run that goes on without it: another node may have it."""
+        if step.kind is StepKind.TICK and not self._run_id and (
+                step.run_id not in self._strangers):
+            self._strangers.add(step.run_id)
+            self._send(encode_answer(
+                AnswerKind.UNBOUND, step.run_id, step.tick, 0, (self._name.encode(),)))
 
     def _bind(self, step: Step) -> bool:
         """Join the run of a hello; return whether it calls this participant."""

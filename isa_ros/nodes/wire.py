@@ -59,6 +59,8 @@ class AnswerKind(IntEnum):
     """To a hello: this participant is in another run."""
     REFUSED = 5
     """To a tick: the reason why it cannot be done."""
+    UNBOUND = 6
+    """To the first tick of a run that never called this participant: its name."""
 
 
 class Step(NamedTuple):

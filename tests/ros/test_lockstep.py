@@ -218,6 +218,32 @@ def test_steps_of_a_strange_run_are_ignored(observer):
     assert stepper.ticks == [0]
 
 
+def test_a_second_node_of_a_name_is_noticed_during_the_run(observer):
+    """One that was discovered too late for any hello gives its name at its first tick."""
+    with spinning(observer.context, {'haa': Scripted(), 'kfe': Scripted()}):
+        transport = make_transport(observer)
+        transport.join()
+        tick(transport, 0)
+        with spinning(observer.context, {'kfe': Scripted()}):
+            wait_for(lambda: transport._publisher.get_subscription_count() >= 3, 'the match')
+
+            def ticks() -> None:
+                for number in range(1, 100_000):
+                    tick(transport, number)
+            with pytest.raises(ConfigError, match='kfe: two nodes of this name answer'):
+                ticks()
+
+
+def test_a_node_of_another_name_does_not_disturb(observer):
+    """It gives its name too, which is none of the run."""
+    with spinning(observer.context, {'haa': Scripted(), 'kfe': Scripted(), 'hfe': Scripted()}):
+        transport = make_transport(observer)
+        transport.join()
+        wait_for(lambda: transport._publisher.get_subscription_count() >= 3, 'the match')
+        for number in range(200):
+            tick(transport, number)
+
+
 def test_a_participant_serves_one_run_after_the_other(observer):
     stepper = Scripted()
     with spinning(observer.context, {'haa': stepper, 'kfe': Scripted()}):
