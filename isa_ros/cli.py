@@ -15,7 +15,7 @@ import traceback
 from types import FrameType
 from typing import NoReturn
 
-from isa_ros import commands, response_arguments
+from isa_ros import commands, response_arguments, study_arguments
 from isa_ros.argument_types import positive
 from isa_ros.errors import IsaError
 
@@ -174,6 +174,8 @@ _COMMANDS = {
     'step': (response_arguments.step, commands.step,
              'measure the step response of a loop of an actuator'),
     'identify': (_identify, commands.identify, 'estimate valve, oil and friction from a bag'),
+    'study': (study_arguments.study, commands.study,
+              'vary one parameter against the performance of the actuators'),
     'params': (_params, commands.params, 'list every parameter with unit, range and source'),
     'paper': (_paper, commands.paper, 'show what the paper prints, with the place'),
     'validate': (_validate, commands.validate, 'hold the actuators against the paper, by number'),

@@ -123,6 +123,13 @@ def identify(options: Namespace) -> bool:
     return True
 
 
+def study(options: Namespace) -> bool:
+    """Vary one parameter against the performance."""
+    from isa_ros.analysis.study_command import study as run_study
+    run_study(options)
+    return True
+
+
 def params(options: Namespace) -> bool:
     """List every parameter of a model, a leg or a run."""
     from isa_ros.params import describe
