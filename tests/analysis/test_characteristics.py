@@ -3,7 +3,6 @@
 from isa_ros.analysis.experiment import run
 from isa_ros.analysis.paper_figures import paper_figure
 from isa_ros.errors import ConfigError
-from isa_ros.scenario import FIGURES
 import numpy as np
 import pytest
 
@@ -76,10 +75,3 @@ def test_a_run_that_stands_still_has_no_response():
     """One line instead of an empty figure."""
     with pytest.raises(ConfigError, match='no reference moves'):
         paper_figure('leakage', *run('rig_leakage', duration=0.01))
-
-
-def test_every_figure_of_a_scenario_can_be_drawn():
-    """The names a scenario may use are those that exist."""
-    from isa_ros.analysis.characteristics import RESPONSES
-    from isa_ros.analysis.paper_figures import LAYOUTS
-    assert set(FIGURES) == {*LAYOUTS, *RESPONSES}

@@ -1,5 +1,6 @@
 """Figures of the paper from a run: the right signals in the paper's colours."""
 
+from isa_ros.analysis.characteristics import RESPONSES
 from isa_ros.analysis.experiment import Experiment, run
 from isa_ros.analysis.paper_figures import LAYOUTS, paper_figure, shown
 from isa_ros.analysis.report import write_report
@@ -19,7 +20,7 @@ def step(tmp_path_factory) -> tuple[Experiment, object]:
 
 
 def test_every_name_a_scenario_may_give_has_a_figure():
-    assert tuple(LAYOUTS) == FIGURES
+    assert {*LAYOUTS, *RESPONSES} == set(FIGURES)
 
 
 def test_the_reference_is_dashed_blue_and_the_applied_torque_solid_red(step):
@@ -34,7 +35,7 @@ def test_the_reference_is_dashed_blue_and_the_applied_torque_solid_red(step):
     assert set(np.round(reference.get_ydata(), 9)) == {0.0, 17.0}
 
 
-@pytest.mark.parametrize('name', FIGURES)
+@pytest.mark.parametrize('name', LAYOUTS)
 def test_every_figure_can_be_drawn_from_a_rig(step, name):
     experiment, _ = step
     figure = paper_figure(name, *experiment)
