@@ -9,6 +9,7 @@ m3/rad). Pressures are gauge. Each swept volume is counted once (errata 16).
 from dataclasses import dataclass
 import math
 
+from isa_ros.errors import ParameterError
 from isa_ros.kernel import kernel
 from isa_ros.parameter import parameter, Parameters
 from isa_ros.plant.units import MILLI, MILLILITRE
@@ -22,6 +23,13 @@ class Cylinder(Parameters):
     bore_mm: float = parameter('piston diameter', 'mm', gt=0.0, le=500.0)
     rod_mm: float = parameter('rod diameter', 'mm', gt=0.0, le=500.0)
     stroke_mm: float = parameter('stroke', 'mm', gt=0.0, le=5000.0)
+
+    def __post_init__(self) -> None:
+        """Refuse a rod that leaves no area on its side."""
+        super().__post_init__()
+        if self.rod_mm >= self.bore_mm:
+            raise ParameterError(
+                f'rod_mm = {self.rod_mm:g} mm, must be < bore_mm = {self.bore_mm:g} mm')
 
     @property
     def areas(self) -> tuple[float, float]:

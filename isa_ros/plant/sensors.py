@@ -7,6 +7,7 @@ The only way from the plant to the controller.
 from dataclasses import dataclass
 import math
 
+from isa_ros.errors import ParameterError
 from isa_ros.kernel import kernel
 from isa_ros.parameter import parameter, Parameters
 from isa_ros.plant.units import MILLI, MPA
@@ -23,6 +24,12 @@ class Sensors(Parameters):
     pressure_range_mpa: float = parameter('pressure sensors, 0 to', 'MPa', gt=0.0, le=100.0)
     spool_range_mm: float = parameter('spool sensor, +-', 'mm', gt=0.0, le=2.0)
     current_range_ma: float = parameter('current sensor, +-', 'mA', gt=0.0, le=200.0)
+
+    def __post_init__(self) -> None:
+        """Refuse a fraction of a bit."""
+        super().__post_init__()
+        if self.adc_bits != int(self.adc_bits):
+            raise ParameterError(f'adc_bits = {self.adc_bits:g} bit, must be whole')
 
 
 SENSORS = np.dtype([

@@ -1,6 +1,9 @@
 """Chambers: volumes, continuity, stall forces, oil stiffness."""
 
+from dataclasses import replace
+
 from hypothesis import given, strategies as st
+from isa_ros.errors import ParameterError
 from isa_ros.plant import chambers
 import numpy as np
 import pytest
@@ -21,6 +24,13 @@ def test_areas_are_table_2():
     """Bore 21.5 and rod 12 mm: 363.05 and 249.95 mm2, physics.md section 2."""
     areas = actuator_sheet('isa_v5').plant.drive.areas
     assert areas == pytest.approx((363.05e-6, 249.95e-6), rel=2e-5)
+
+
+@pytest.mark.parametrize('rod_mm', [21.5, 30.0])
+def test_a_rod_as_thick_as_its_piston_is_refused(rod_mm):
+    """It would leave no area to divide by."""
+    with pytest.raises(ParameterError, match=f'rod_mm = {rod_mm:g} mm, must be < bore_mm = 21.5'):
+        replace(actuator_sheet('isa_v5').plant.drive, rod_mm=rod_mm)
 
 
 @pytest.mark.parametrize(('oil', 'out', 'back'), [

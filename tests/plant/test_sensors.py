@@ -1,9 +1,12 @@
 """Encoder and converters."""
 
+from dataclasses import replace
+
 from hypothesis import given, strategies as st
+from isa_ros.errors import ParameterError
 from isa_ros.plant import sensors
 import pytest
-from tests.sheets import plant_row
+from tests.sheets import actuator_sheet, plant_row
 
 ISA_V5 = plant_row('isa_v5').sensors
 
@@ -31,3 +34,9 @@ def test_converter_has_4096_codes_and_clips(force):
 def test_zero_force_reads_exactly_zero():
     """A resting load cell must not bias the integral."""
     assert sensors.convert(0.0, -1e4, 1e4, ISA_V5.force_step) == 0.0
+
+
+def test_a_fraction_of_a_bit_is_refused():
+    """S2: codes are whole."""
+    with pytest.raises(ParameterError, match='adc_bits = 12.5 bit, must be whole'):
+        replace(actuator_sheet('isa_v5').plant.sensors, adc_bits=12.5)
