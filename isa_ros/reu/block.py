@@ -83,8 +83,9 @@ def demanded(reference, velocity, gain, block, state):
     """
     Return the demand of a block  (R3), in the output's unit.
 
-    u = w [K_p (b r - y - K_f y') + I] + K_d e' + K_r r + K_v v + u_0 with I' = K_i e; the
-    schedule's ``gain`` w stands in K_p and K_i. A retracting demand is scaled  (R7).
+    u = w K_p (b r - y - K_f y') + I + K_d e' + K_r r + K_v v + u_0 with I' = w K_i e; ``gain``
+    is the schedule's w. A retracting demand is scaled  (R7), so that the flow is, before what
+    compensates the flow curve  (R4).
     """
     feedback = (gain * block.kp * (block.b * reference - state.measured
                                    - block.kf * state.measured_rate)
@@ -92,10 +93,12 @@ def demanded(reference, velocity, gain, block, state):
     ahead, of_speed = block.kr * reference + block.offset, block.kv * velocity
     if block.compensation.of_velocity:
         of_speed = dual_gain_compensation(of_speed, block.compensation)
-        demand = feedback + of_speed + ahead
-    else:
-        demand = dual_gain_compensation(feedback + of_speed + ahead, block.compensation)
-    return demand * block.retracting if demand < 0.0 else demand
+    demand = feedback + of_speed + ahead
+    if demand < 0.0:
+        demand *= block.retracting
+    if block.compensation.of_velocity:
+        return demand
+    return dual_gain_compensation(demand, block.compensation)
 
 
 @kernel

@@ -103,6 +103,15 @@ def test_a_retracting_demand_is_scaled():
     assert step(loop, state(), -100.0, 0.0) == 0.5 * step(LOOP, state(), -100.0, 0.0)
 
 
+def test_a_retracting_demand_is_scaled_before_the_flow_curve_is_inverted():
+    """R7, R4: half the demand is half the flow, on both sides of the knee."""
+    valve, loop = plant_row('isa_v5').valve, record(retracting_factor=0.5, ki=0.0)
+    for demand in (3e-5, 6e-5, 3e-4):  # m; the knee is at 42.7 um
+        spools = [step(own, state(), -demand / SHEET.kp, 0.0) for own in (record(ki=0.0), loop)]
+        whole, half = (servo_valve.flow_curve(-x, valve) for x in spools)
+        assert half == pytest.approx(0.5 * whole, rel=1e-12)
+
+
 @given(demand=demands)
 def test_compensation_inverts_the_flow_curve(demand):
     """R4, V4: behind the compensation the land's flow is proportional to the demand."""
