@@ -6,15 +6,18 @@ from isa_ros.actuator_kernel import ACTUATOR
 from isa_ros.errors import ConfigError
 from isa_ros.parameter import choice, Parameters
 from isa_ros.plant.chambers import oil_stiffness
-from isa_ros.plant.coil import ExplicitCoil
+from isa_ros.plant.coil import ClosedLoopCoil, ExplicitCoil
 from isa_ros.plant.plant import LinearPlant, plant_record, RotaryPlant
 from isa_ros.plant.spool import DirectSpool, PilotedSpool
+from isa_ros.plant.units import MILLI
 from isa_ros.reu.block import Pid
 from isa_ros.reu.cascade import reu_record
 from isa_ros.reu.lead_lag import LeadLag
 from isa_ros.reu.schedule import POINTS
-from isa_ros.reu.wiring import Held, Off, refuse_nonsense, Reu
+from isa_ros.reu.wiring import Held, Off, refuse_nonsense, Reu, valve_block
 import numpy as np
+
+_ROUNDED = 1e-3  # of a limit: a data sheet prints three digits
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -40,7 +43,7 @@ def refuse_wiring(sheet: ActuatorSheet) -> None:
     ------
     ConfigError
         A spool block without a spool sensor, a loop that would be closed twice or not at
-        all, or what `refuse_nonsense` refuses.
+        all, a limit beyond the spool's stop, or what `refuse_nonsense` refuses.
 
     """
     reu, plant = sheet.reu, sheet.plant
@@ -49,10 +52,10 @@ def refuse_wiring(sheet: ActuatorSheet) -> None:
         raise ConfigError(
             f'reu.spool.kind = {_kind(reu.spool)}: a valve with mechanical feedback has no spool '
             'sensor; set reu.spool.kind: off')
-    if isinstance(plant.spool, PilotedSpool) and isinstance(reu.spool, Held):
+    if isinstance(plant.spool, PilotedSpool) and not isinstance(reu.spool, Pid):
         raise ConfigError(
-            'reu.spool.kind = held and plant.spool.kind = piloted: nobody closes the loop of the '
-            'spool; set reu.spool.kind: pid, or plant.spool.kind: closed_loop')
+            f'reu.spool.kind = {_kind(reu.spool)} and plant.spool.kind = piloted: nobody closes '
+            'the loop of the spool; set reu.spool.kind: pid, or plant.spool.kind: closed_loop')
     if isinstance(reu.spool, Pid) and not isinstance(plant.spool, (PilotedSpool, DirectSpool)):
         raise ConfigError(
             'reu.spool.kind = pid and plant.spool.kind = closed_loop: equation 8 already is the '
@@ -61,11 +64,33 @@ def refuse_wiring(sheet: ActuatorSheet) -> None:
         raise ConfigError(
             f'reu.current.kind = {_kind(reu.current)} and plant.coil.kind = '
             f'{_kind(plant.coil)}: lead_lag needs an explicit coil, held the closed_loop one')
+    _refuse_limit_beyond_stop(sheet)
+
+
+_KINDS: dict[type, str] = {
+    Off: 'off', Held: 'held', Pid: 'pid', LeadLag: 'lead_lag', ClosedLoopCoil: 'closed_loop',
+    ExplicitCoil: 'explicit'}
 
 
 def _kind(part: Parameters) -> str:
-    return {Held: 'held', LeadLag: 'lead_lag', Pid: 'pid', ExplicitCoil: 'explicit'}.get(
-        type(part), 'closed_loop')
+    return _KINDS[type(part)]
+
+
+def _refuse_limit_beyond_stop(sheet: ActuatorSheet) -> None:
+    """Refuse an output the valve cannot follow: its integral would wind up all the same."""
+    name, valve = valve_block(sheet.reu), sheet.plant.valve
+    if name is None:
+        return
+    if isinstance(sheet.reu.spool, Off):
+        stop, unit = valve.spool_stop_mm / valve.spool_gain_mm_per_ma * MILLI, 'A'
+    else:
+        stop, unit = valve.spool_stop_mm * MILLI, 'm'
+    limit = getattr(sheet.reu, name).limit
+    if limit > stop * (1.0 + _ROUNDED):
+        raise ConfigError(
+            f'reu.{name}.limit = {limit:g} {unit}, must be <= {stop:.4g} {unit}, the stop of the '
+            f'spool (reu.spool.kind = {_kind(sheet.reu.spool)}: {name} commands '
+            f"{'the series current' if unit == 'A' else 'the spool'})")
 
 
 def force_stiffness(plant: np.record) -> np.ndarray:

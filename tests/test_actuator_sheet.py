@@ -5,7 +5,7 @@ from dataclasses import replace
 from isa_ros.actuator_sheet import actuator_record, ActuatorSheet, refuse_wiring
 from isa_ros.catalogue import actuator_model
 from isa_ros.errors import ConfigError
-from isa_ros.reu.wiring import Held
+from isa_ros.reu.wiring import Held, Off
 import pytest
 from tests.sheets import actuator_sheet, MODELS
 
@@ -39,8 +39,24 @@ def test_the_spool_s_loop_is_closed_exactly_once():
     plain, explicit = actuator_sheet('isa_v5'), actuator_sheet('isa_v5', 'default', 'explicit')
     with pytest.raises(ConfigError, match='already is the closed loop'):
         refuse_wiring(changed(explicit, 'plant', 'spool', plain.plant.spool))
-    with pytest.raises(ConfigError, match='nobody closes the loop'):
-        refuse_wiring(changed(plain, 'plant', 'spool', explicit.plant.spool))
+    for reu_spool in (plain.reu.spool, Off()):
+        sheet = changed(plain, 'reu', 'spool', reu_spool)
+        with pytest.raises(ConfigError, match='nobody closes the loop'):
+            refuse_wiring(changed(sheet, 'plant', 'spool', explicit.plant.spool))
+
+
+@pytest.mark.parametrize(('model', 'variant', 'name', 'limit', 'message'), [
+    ('isa_v5', (), 'force', 1.79e-4, 'limit = 0.000179 m, must be <= 0.000178 m'),
+    ('smart_manifold', (), 'force', 5.1e-3, r'0.0051 A, must be <= 0.005 A.* series current'),
+    ('isa_v5', ('position_control',), 'position', 5e-3, 'reu.position.limit = 0.005 m'),
+    ('isa_v5', ('feedback_linearisation',), 'force', 5e-3, 'reu.force.limit = 0.005 m'),
+])
+def test_a_limit_beyond_the_spool_s_stop_is_refused(model, variant, name, limit, message):
+    """There the valve saturates unseen, and the integral winds up."""
+    sheet = actuator_sheet(model, 'default', *variant)
+    block = replace(getattr(sheet.reu, name), limit=limit)
+    with pytest.raises(ConfigError, match=message):
+        refuse_wiring(changed(sheet, 'reu', name, block))
 
 
 def test_the_current_s_loop_is_closed_exactly_once():

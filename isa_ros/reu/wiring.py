@@ -4,7 +4,8 @@ The REU's four control blocks: what each controls, at which rate, and what makes
     position -> force or torque -> pressure difference -> spool -> current
 
 Any of them may be off; the setpoint's effort then is the reference of the outermost block
-that is on. With all but the current block off the REU is a plain valve amplifier.
+that is on. With all but the current block off the REU is a plain valve amplifier. The gains of
+a block have the unit of what it commands: switching the block inside of it changes that unit.
 """
 
 from dataclasses import dataclass
@@ -12,6 +13,7 @@ from dataclasses import dataclass
 from isa_ros.errors import ConfigError
 from isa_ros.parameter import parameter, Parameters
 from isa_ros.reu.block import Pid
+from isa_ros.reu.compensation import DualGain
 from isa_ros.reu.feedback_linearisation import FeedbackLinearisation
 from isa_ros.reu.impedance import Impedance
 from isa_ros.reu.lead_lag import LeadLag
@@ -65,8 +67,8 @@ def refuse_nonsense(reu: Reu) -> None:
     Raises
     ------
     ConfigError
-        Too many blocks, an impedance without a force block, rates that do not divide, or a
-        delay that is not one.
+        Too many blocks, an impedance without a force block, a block that knows the valve but
+        does not command it, rates that do not divide, or a delay that is not one.
 
     """
     names = active(reu)
@@ -78,7 +80,30 @@ def refuse_nonsense(reu: Reu) -> None:
         raise ConfigError(
             'reu.position.kind = impedance gives a force reference and reu.force.kind is off; '
             'set reu.position.kind: pid for pure position control')
+    _refuse_far_from_valve(reu)
     delay_steps(reu, loop_steps(reu)['current'])
+
+
+def valve_block(reu: Reu) -> str | None:
+    """Return the variable of the block that commands the valve's opening, None for none."""
+    return next((name for name in ('pressure', 'force', 'position')
+                 if not isinstance(getattr(reu, name), Off)), None)
+
+
+def _refuse_far_from_valve(reu: Reu) -> None:
+    at_valve = valve_block(reu)
+    if isinstance(reu.force, FeedbackLinearisation) and at_valve != 'force':
+        raise ConfigError(
+            'reu.force.kind = feedback_linearisation commands the valve and reu.pressure.kind is '
+            'pid; set reu.pressure.kind: off')
+    for name in VARIABLES:
+        sheet = getattr(reu, name)
+        if (isinstance(sheet, Pid) and isinstance(sheet.compensation, DualGain)
+                and name != at_valve):
+            raise ConfigError(
+                f'reu.{name}.compensation.kind = dual_gain inverts the flow curve of the valve, '
+                f"which {f'reu.{at_valve}' if at_valve else 'no block'} commands; set "
+                f'reu.{name}.compensation.kind: linear')
 
 
 def loop_steps(reu: Reu) -> dict[str, int]:

@@ -7,7 +7,7 @@ from isa_ros.reu import cascade
 from isa_ros.reu.wiring import Off
 import numpy as np
 import pytest
-from tests.sheets import actuator_sheet, MODELS
+from tests.sheets import actuator_sheet, MODELS, override
 
 
 def loops(
@@ -64,14 +64,39 @@ def test_a_disabled_actuator_commands_null():
     assert (state.current_reference, state.spool_reference, state.force.integral) == (0, 0, 0)
 
 
-def test_without_position_block_the_effort_goes_to_the_force_block_at_its_rate():
-    """The outermost block that is on takes the setpoint's effort."""
+def test_without_any_outer_block_the_effort_is_the_current_of_the_coil():
+    """Section 3: a plain valve amplifier, at the instants of the current block."""
     reu, state = loops('smart_manifold', 0, 'valve_amplifier')
     state.setpoint.effort = 1e-3  # series A
     cascade.cascade_step(5, reu, state)
     assert state.current_reference == pytest.approx(2e-3)
     assert state.spool_reference == pytest.approx(35.6e-6)
     assert state.force_reference == 0.0
+
+
+def test_without_position_block_the_effort_goes_to_the_force_block_at_its_rate():
+    """The outermost block that is on takes the setpoint's effort, here at 5 kHz."""
+    sheet = actuator_sheet('smart_manifold')
+    sheet = replace(sheet, reu=replace(sheet.reu, position=Off()))
+    refuse_wiring(sheet)
+    reu = actuator_record(sheet, 0).view(np.recarray)[0].reu
+    state = np.zeros(1, cascade.REU_STATE).view(np.recarray)[0]
+    state.setpoint.is_enabled, state.setpoint.effort = 1.0, 10.0
+    cascade.cascade_step(5, reu, state)
+    assert (state.force_reference, state.force.output) == (10.0, 0.0)
+    cascade.cascade_step(10, reu, state)
+    assert state.force.output == pytest.approx(sheet.reu.force.kp * 10.0)
+
+
+def test_pure_position_control_feeds_the_setpoint_s_velocity_forward():
+    """R3: K_v of the position block is on the reference's speed, not on the measured one."""
+    sheet = override(
+        actuator_sheet('smart_manifold', 'default', 'position_control'), 'reu.position.kv', 1e-3)
+    reu = actuator_record(sheet, 0).view(np.recarray)[0].reu
+    state = np.zeros(1, cascade.REU_STATE).view(np.recarray)[0]
+    state.setpoint.is_enabled, state.setpoint.velocity = 1.0, 0.5
+    cascade.cascade_step(0, reu, state)
+    assert state.position.output == pytest.approx(1e-3 * 0.5)
 
 
 def test_pure_position_control_commands_the_valve():

@@ -3,6 +3,7 @@
 from dataclasses import replace
 
 from isa_ros.errors import ConfigError
+from isa_ros.reu.compensation import Linear
 from isa_ros.reu.wiring import active, delay_steps, loop_steps, NEVER, Off, refuse_nonsense
 import pytest
 from tests.sheets import actuator_sheet, MODELS, override
@@ -43,6 +44,31 @@ def test_an_impedance_needs_a_force_block():
     """Its output is a force reference."""
     with pytest.raises(ConfigError, match='impedance .* reu.force.kind is off'):
         refuse_nonsense(replace(actuator_sheet('isa_v5').reu, force=Off()))
+
+
+def test_a_linearising_block_needs_the_valve_inside():
+    """Its output is an opening, not a pressure."""
+    plain = actuator_sheet('smart_manifold').reu
+    reu = actuator_sheet('smart_manifold', 'default', 'feedback_linearisation').reu
+    refuse_nonsense(reu)
+    with pytest.raises(ConfigError, match='feedback_linearisation .* set reu.pressure.kind: off'):
+        refuse_nonsense(replace(reu, position=Off(), pressure=plain.force))
+
+
+def test_only_the_block_that_commands_the_valve_inverts_its_flow_curve():
+    """A force reference or the pilot's current has no knee at 1.2 mA."""
+    reu = actuator_sheet('smart_manifold').reu
+    linear = replace(reu.force, compensation=Linear())
+    refuse_nonsense(replace(reu, force=linear, pressure=reu.force))
+    with pytest.raises(ConfigError, match='reu.force.compensation.* which reu.pressure commands'):
+        refuse_nonsense(replace(reu, pressure=linear))
+    reu = actuator_sheet('isa_v5', 'default', 'explicit').reu
+    with pytest.raises(ConfigError, match='reu.spool.compensation.* which reu.force commands'):
+        refuse_nonsense(replace(reu, spool=replace(
+            reu.spool, compensation=reu.force.compensation)))
+    with pytest.raises(ConfigError, match='reu.spool.compensation.* which no block commands'):
+        refuse_nonsense(replace(reu, position=Off(), force=Off(), spool=replace(
+            reu.spool, compensation=reu.force.compensation)))
 
 
 @pytest.mark.parametrize('delay_us', [100.0, 30.0])
