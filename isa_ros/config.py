@@ -16,6 +16,7 @@ from isa_ros.catalogue import actuator_model, leg_section, material_section, Mod
 from isa_ros.errors import ConfigError, ParameterError
 from isa_ros.load.leg_sheet import JOINTS, LegSheet
 from isa_ros.load.local import LocalLoad
+from isa_ros.own_load import load_section, refuse_beyond_stops
 from isa_ros.parameter import check
 from isa_ros.plant.plant import plant_record
 from isa_ros.plant.supply import SupplySheet
@@ -225,14 +226,15 @@ def _actuator(
     _refuse_sheet(sheet, place)
     if joint is not None and leg is not None:
         position = _joint_position(tree, place, leg, joint, sheet)
-        load, load_section = None, {}
+        load, load_layers = None, {}
     else:
         position = _initial_position(tree, place, sheet)
-        load_section = _own_load(tree, place, model)
-        load = build_one_of(LocalLoad, load_section, place / 'load')
+        load_layers = _own_load(tree, place, model)
+        load = build_one_of(LocalLoad, load_layers, place / 'load')
+        refuse_beyond_stops(load, position, str(place))
     label = ' + '.join([str(preset), *variants])
     return (ActuatorConfig(name, model.name, label, sheet, load, position),
-            ActuatorOrigin(section, load_section))
+            ActuatorOrigin(section, load_layers))
 
 
 def _names(value: Any, place: Place) -> list[str]:
@@ -301,18 +303,4 @@ def _own_load(tree: Tree, place: Place, model: Model) -> Section:
         raise ConfigError(
             f'{place} is neither a joint of the leg nor has a load; valid kinds of '
             f'load: {", ".join(model.loads)}')
-    return _load_section(section_at(tree['load'], place / 'load'), place / 'load', model)
-
-
-def own_load(tree: Tree, place: Place, model: Model) -> LocalLoad:
-    """Return a load of one actuator: the model's of that kind with single values replaced."""
-    load: LocalLoad = build_one_of(LocalLoad, _load_section(tree, place, model), place)
-    return load
-
-
-def _load_section(tree: Tree, place: Place, model: Model) -> Section:
-    kind: Any = tree.get('kind')
-    if kind not in model.loads:
-        raise ConfigError(f'{place}.kind = {kind!r}, must be one of {", ".join(model.loads)}')
-    own = {key: value for key, value in tree.items() if key != 'kind'}
-    return merge(model.loads[kind], written(own, place))
+    return load_section(section_at(tree['load'], place / 'load'), place / 'load', model)

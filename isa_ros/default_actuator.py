@@ -3,8 +3,8 @@
 from isa_ros.actuator import Timing
 from isa_ros.actuator_sheet import ActuatorSheet
 from isa_ros.catalogue import actuator_model, Model
-from isa_ros.config import own_load
 from isa_ros.load.local import LocalLoad
+from isa_ros.own_load import own_load
 from isa_ros.resolve import build, Place
 from isa_ros.run_config import ActuatorConfig
 

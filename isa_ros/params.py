@@ -13,7 +13,7 @@ from isa_ros.load.leg_sheet import LegSheet
 from isa_ros.load.local import LocalLoad
 from isa_ros.parameter import Parameters
 from isa_ros.paths import CONFIG, find
-from isa_ros.resolve import as_tree, build, build_one_of, members, Section, sources
+from isa_ros.resolve import as_tree, build, build_one_of, Entry, members, Section
 
 _SYMBOLS = {'gt': '>', 'ge': '>=', 'lt': '<', 'le': '<='}
 
@@ -136,3 +136,14 @@ def _table(title: str, body: list[Row]) -> str:
     texts = ['  '.join(cell.ljust(width) for cell, width in zip(line, widths)).rstrip()
              for line in lines]
     return '\n'.join([title, *texts])
+
+
+def sources(section: Section, prefix: str = '') -> dict[str, str]:
+    """Return the source of every value by its dotted path."""
+    paths: dict[str, str] = {}
+    for key, entry in section.items():
+        if isinstance(entry, Entry):
+            paths[f'{prefix}{key}'] = entry.source
+        else:
+            paths |= sources(entry, f'{prefix}{key}.')
+    return paths

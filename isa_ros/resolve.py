@@ -87,8 +87,11 @@ def alternatives(name: str, names: Iterable[str]) -> str:
         return f'did you mean {" or ".join(near)}?'
     if not names:
         return 'there is nothing to name here'
-    shown = ', '.join(names[:_MAX_NAMED])
-    return f'valid: {shown}{", ..." if len(names) > _MAX_NAMED else ""}'
+    return f'valid: {_listed(names)}'
+
+
+def _listed(names: list[str]) -> str:
+    return ', '.join(names[:_MAX_NAMED]) + (', ...' if len(names) > _MAX_NAMED else '')
 
 
 def section_at(tree: Any, place: Place) -> Tree:
@@ -189,11 +192,13 @@ def build(cls: type[P], section: Section, place: Place) -> P:
     """
     hints = get_type_hints(cls)
     refuse_unknown_entries(section, [f.name for f in fields(cls)], place)
+    lacking = [f.name for f in fields(cls)
+               if f.name not in section and 'absent' not in f.metadata]
+    if lacking:
+        raise ConfigError(place.has(f'lacks {_listed(lacking)}'))
     values: dict[str, Any] = {}
     for f in fields(cls):
         if f.name not in section:
-            if 'absent' not in f.metadata:
-                raise ConfigError(place.has(f'lacks {f.name}'))
             values[f.name] = f.metadata['absent']
             continue
         entry = section[f.name]
@@ -225,7 +230,13 @@ def build_one_of(hint: Any, section: Section, place: Place) -> Any:
         value = kind.value if isinstance(kind, Entry) else 'a section'
         where = kind.where if isinstance(kind, Entry) else str(place / key)
         raise ConfigError(f'{where} = {value!r}, must be one of {", ".join(kinds)}')
-    return build(kinds[str(kind.value)], rest, place)
+    return build(kinds[str(kind.value)], rest, _place_of(kind, place))
+
+
+def _place_of(kind: Entry, place: Place) -> Place:
+    """Return where a section became the kind it is: a later layer's file must fill it."""
+    file, _, key = kind.where.partition(': ')
+    return place if file == place.file else Place(file, key.rpartition('.')[0])
 
 
 def refuse_unknown_entries(section: Section, names: list[str], place: Place) -> None:
@@ -253,17 +264,6 @@ def _checked(entry: Entry | Section, declared: Mapping[str, Any], place: Place) 
         raise ParameterError(f'{place} is a section, must be one value{unit and f" in {unit}"}')
     check(entry.where, entry.value, declared)
     return entry.value if 'names' in declared else float(entry.value)  # type: ignore[arg-type]
-
-
-def sources(section: Section, prefix: str = '') -> dict[str, str]:
-    """Return the source of every value by its dotted path."""
-    paths: dict[str, str] = {}
-    for key, entry in section.items():
-        if isinstance(entry, Entry):
-            paths[f'{prefix}{key}'] = entry.source
-        else:
-            paths |= sources(entry, f'{prefix}{key}.')
-    return paths
 
 
 def as_tree(parameters: Parameters, hint: Any = None) -> Tree:

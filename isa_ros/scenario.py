@@ -10,8 +10,9 @@ from pathlib import Path
 from typing import Any
 
 from isa_ros.catalogue import actuator_model
-from isa_ros.config import leg_start, name_of, own_load, refuse_reach, refuse_start, ticks_in
+from isa_ros.config import leg_start, name_of, refuse_reach, refuse_start, ticks_in
 from isa_ros.errors import ConfigError
+from isa_ros.own_load import own_load, refuse_beyond_stops
 from isa_ros.parameter import check
 from isa_ros.resolve import alternatives, Place, refuse_unknown, section_at
 from isa_ros.run_config import ActuatorConfig, RunConfig
@@ -173,5 +174,6 @@ def _with_loads(run: RunConfig, tree: Tree, place: Place) -> RunConfig:
             raise ConfigError(f'{below} is not used: the load of {name} is the leg')
         model = actuator_model(actuator.model, f'{run.source}: actuators.{name}.model')
         load = own_load(section_at(section, below), below, model)
+        refuse_beyond_stops(load, actuator.initial_position, str(below))
         replaced[name] = replace(actuator, load=load)
     return replace(run, actuators=tuple(replaced.get(a.name, a) for a in run.actuators))

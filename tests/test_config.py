@@ -6,7 +6,8 @@ from pathlib import Path
 from hypothesis import given, HealthCheck, settings, strategies as st
 from isa_ros.config import load_run, read_run, ticks_in
 from isa_ros.errors import ConfigError
-from isa_ros.load.local import Blocked, Mass, Wheel
+from isa_ros.load.local import Blocked, Mass
+from isa_ros.load.wheel import Wheel
 from isa_ros.run_config import RunConfig
 import pytest
 

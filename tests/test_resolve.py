@@ -6,8 +6,9 @@ import math
 from hypothesis import given, strategies as st
 from isa_ros.errors import ConfigError, ParameterError
 from isa_ros.parameter import choice, parameter, Parameters
+from isa_ros.params import sources
 from isa_ros.resolve import (
-    alternatives, as_tree, build, build_one_of, members, merge, Place, sourced, sources, written)
+    alternatives, as_tree, build, build_one_of, members, merge, Place, sourced, written)
 import pytest
 
 
@@ -84,6 +85,8 @@ def test_what_is_wrong_is_named_with_file_and_key(
 @pytest.mark.parametrize('over, expected', [
     ({'drive': {'bore_mm': -1.0}}, '^run.yaml: parameters.drive.bore_mm = -1 mm, must be > 0'),
     ({'drive': {'rod_mm': 1.0}}, '^run.yaml: parameters.drive.rod_mm is unknown'),
+    ({'drive': {'kind': 'big'}}, '^run.yaml: parameters.drive lacks low, high$'),
+    ({'drive': {'kind': 'big', 'low': 2.0, 'high': 1.0}}, '^run.yaml: parameters.drive: high = '),
     ({'other': {'deep': {'key': 1.0}}}, '^run.yaml: parameters.other'),
 ])
 def test_a_later_layer_is_blamed_at_its_own_file(

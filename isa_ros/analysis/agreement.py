@@ -14,10 +14,10 @@ import math
 from isa_ros import actuator_kernel as kernels
 from isa_ros.actuator_sheet import actuator_record
 from isa_ros.catalogue import actuator_model
-from isa_ros.config import own_load
 from isa_ros.default_actuator import default_actuator
 from isa_ros.kernel import kernel
 from isa_ros.load.local import local_port, own_record
+from isa_ros.own_load import own_load
 from isa_ros.plant.mechanics import sensor_force
 from isa_ros.plant.plant import rest_pressures
 from isa_ros.resolve import Place

@@ -9,10 +9,11 @@ from isa_ros.actuator_sheet import ActuatorSheet, refuse_wiring
 from isa_ros.analysis.excitation import excite, PERIOD_NS, RATE_HZ
 from isa_ros.analysis.loops import Loop, loop_of, SUPPLY, Unit, units_of
 from isa_ros.catalogue import actuator_model, model_names
-from isa_ros.config import load_run, own_load
+from isa_ros.config import load_run
 from isa_ros.default_actuator import default_load, DEFAULT_TIMING
 from isa_ros.errors import ConfigError
 from isa_ros.load.local import static_force
+from isa_ros.own_load import own_load
 from isa_ros.paths import CONFIG, find
 from isa_ros.plant.supply import ConstantSupply
 from isa_ros.plant.units import MPA

@@ -16,20 +16,16 @@ from isa_ros.contact import one_sided
 from isa_ros.errors import ParameterError
 from isa_ros.kernel import kernel
 from isa_ros.load.gravity import STANDARD_GRAVITY
-from isa_ros.parameter import parameter, Parameters
+from isa_ros.load.wheel import Wheel
+from isa_ros.parameter import parameter
 from isa_ros.timebase import NS_PER_SECOND, PLANT_STEP_NS
 import numpy as np
 
 
 @dataclass(frozen=True, kw_only=True)
-class DropRig(Parameters):
-    """The load wheel between its two end stops, with a weight on a slack rope at its rim."""
+class DropRig(Wheel):
+    """The load wheel with a weight on a slack rope at its rim."""
 
-    inertia: float = parameter('wheel', 'kg | kg m2', gt=0.0, le=1e4)
-    stop_low: float = parameter('lower end stop of the rig', 'm | rad')
-    stop_high: float = parameter('upper end stop of the rig', 'm | rad')
-    stop_stiffness: float = parameter('end stops', 'N/m | Nm/rad', gt=0.0, le=1e9)
-    stop_damping: float = parameter('end stops', 'Ns/m | Nms/rad', ge=0.0, le=1e6)
     radius: float = parameter('of the rim the rope is wound on', 'm/m | m/rad', gt=0.0, le=10.0)
     rope_stiffness: float = parameter('rope, pulling only', 'N/m', gt=0.0, le=1e8)
     rope_damping: float = parameter('rope, while taut', 'Ns/m', ge=0.0, le=1e5)

@@ -10,6 +10,7 @@ from dataclasses import dataclass
 
 from isa_ros.load.drop_rig import DropRig, rope_record
 from isa_ros.load.own import OWN_LOAD
+from isa_ros.load.wheel import Wheel
 from isa_ros.parameter import parameter, Parameters
 from isa_ros.signals import LOAD_PORT
 import numpy as np
@@ -22,17 +23,6 @@ class Blocked(Parameters):
     inertia: float = parameter('moving part of the fixture', 'kg | kg m2', gt=0.0, le=1e4)
     stiffness: float = parameter('support', 'N/m | Nm/rad', gt=0.0, le=1e9)
     damping: float = parameter('support', 'Ns/m | Nms/rad', ge=0.0, le=1e6)
-
-
-@dataclass(frozen=True, kw_only=True)
-class Wheel(Parameters):
-    """The paper's load wheel with the rig's two end stops."""
-
-    inertia: float = parameter('wheel', 'kg | kg m2', gt=0.0, le=1e4)
-    stop_low: float = parameter('lower end stop of the rig', 'm | rad')
-    stop_high: float = parameter('upper end stop of the rig', 'm | rad')
-    stop_stiffness: float = parameter('end stops', 'N/m | Nm/rad', gt=0.0, le=1e9)
-    stop_damping: float = parameter('end stops', 'Ns/m | Nms/rad', ge=0.0, le=1e6)
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -75,7 +65,7 @@ def local_port(load: LocalLoad, rest: float) -> np.ndarray:
 def own_record(load: LocalLoad | None) -> np.ndarray:
     """Return the load's `OWN_LOAD`, shape (1,); zero where it has none."""
     own = np.zeros(1, OWN_LOAD)
-    if isinstance(load, Wheel | DropRig):
+    if isinstance(load, Wheel):
         own['stops'] = (load.stop_low, load.stop_high, load.stop_stiffness, load.stop_damping)
     if isinstance(load, DropRig):
         own['rope'] = rope_record(load)

@@ -16,7 +16,7 @@ from isa_ros.analysis.validation.plots import stacked
 from isa_ros.load.drop_rig import (
     DropRig, ROPE, rope_record, rope_tension, weight_acceleration, WEIGHT_STATE)
 from isa_ros.load.gravity import STANDARD_GRAVITY
-from isa_ros.load.local import Wheel
+from isa_ros.load.wheel import Wheel
 from isa_ros.paper.printed import statement
 import numpy as np
 from scipy.integrate import solve_ivp
