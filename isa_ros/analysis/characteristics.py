@@ -31,7 +31,7 @@ def valve_response(run: RunConfig, traces: Traces) -> Figure:
         per_ampere = plant.valve.k_spool / plant.coil.parallel
         responses[actuator.name] = _chirp(
             references, valve['effort[0]'] * per_ampere, valve['position[0]'], run)
-    return _bode('spool over current', responses)
+    return _bode('Response of the valves, as Fig 4', 'spool over current', responses)
 
 
 def force_response(run: RunConfig, traces: Traces) -> Figure:
@@ -41,12 +41,15 @@ def force_response(run: RunConfig, traces: Traces) -> Figure:
         reference = traces[f'/{actuator.name}/references']['position[1]']
         force = traces[f'/{actuator.name}/joint_states']['effort[0]']
         responses[actuator.name] = _chirp(reference, reference, force, run)
-    return _bode('force over reference', responses)
+    rotary = {actuator.sheet.is_rotary for actuator in moved(run, traces)}
+    output = ' and '.join(word for word, is_rotary in (('force', False), ('torque', True))
+                          if is_rotary in rotary)
+    return _bode(f'Bandwidth of the {output}', f'{output} over reference', responses)
 
 
 def flow_gain(run: RunConfig, traces: Traces) -> Figure:
     """Draw the flow of the open land from the supply, at 3.5 MPa, over the current, as Fig 5."""
-    figure, (ax,) = _axes(1)
+    figure, (ax,) = _axes(1, 'Flow gain of the valves, as Fig 5')
     supply = _gauge(traces['/coordinator/supply_pressure']['fluid_pressure'])
     for actuator in moved(run, traces):
         valve, _ = _valve(actuator, traces)
@@ -67,7 +70,7 @@ def flow_gain(run: RunConfig, traces: Traces) -> Figure:
 
 def leakage(run: RunConfig, traces: Traces) -> Figure:
     """Draw what the supply gives to each blocked actuator over its current, as Fig 6."""
-    figure, (ax,) = _axes(1)
+    figure, (ax,) = _axes(1, 'Leakage of the valves, as Fig 6')
     for actuator in moved(run, traces):
         valve, _ = _valve(actuator, traces)
         plant = plant_record(actuator.sheet.plant)[0].valve
@@ -83,7 +86,7 @@ def leakage(run: RunConfig, traces: Traces) -> Figure:
 def current_step(run: RunConfig, traces: Traces) -> Figure:
     """Draw reference and current of the amplifiers over time, as Fig 8."""
     actuators = moved(run, traces)
-    figure, axes = _axes(len(actuators))
+    figure, axes = _axes(len(actuators), 'Steps of the current, as Fig 8')
     for ax, actuator in zip(axes, actuators):
         valve, reference = _valve(actuator, traces)
         t = traces[f'/{actuator.name}/valve'].t
@@ -135,21 +138,22 @@ def _chirp(r: np.ndarray, x: np.ndarray, y: np.ndarray, run: RunConfig) -> Respo
     return chirp_response(np.geomspace(5.0, highest, 60), SEGMENT_S, r, x, y, rate)
 
 
-def _bode(title: str, responses: Mapping[str, Response]) -> Figure:
-    figure, (gain, phase) = _axes(2)
+def _bode(title: str, ratio: str, responses: Mapping[str, Response]) -> Figure:
+    figure, (gain, phase) = _axes(2, title)
     for name, response in responses.items():
         width = bandwidth(response, 1.0)
         label = name if width is None else f'{name}, -3 dB at {width:.3g} Hz'
         gain.semilogx(response.frequency, response.gain_db, label=label)
         phase.semilogx(response.frequency, response.phase, label=name)
     gain.axhline(-3.0, color='gray', linewidth=0.8, linestyle=':')
-    gain.set_ylabel(f'{title}, dB')
+    gain.set_ylabel(f'{ratio}, dB')
     phase.set_ylabel('phase, deg')
     return _finish(figure, (gain, phase), 'frequency, Hz')
 
 
-def _axes(rows: int) -> tuple[Figure, tuple[Axes, ...]]:
+def _axes(rows: int, title: str) -> tuple[Figure, tuple[Axes, ...]]:
     figure = Figure(figsize=(8.0, 2.6 * rows + 1.2), dpi=110, layout='constrained')
+    figure.suptitle(title)
     return figure, tuple(figure.subplots(rows, 1, sharex=True, squeeze=False)[:, 0])
 
 
