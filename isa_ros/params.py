@@ -32,19 +32,22 @@ class Row(NamedTuple):
 HEADER = Row('parameter', 'value', 'unit', 'range', 'source', 'meaning')
 
 
-def describe(name: str, preset: str, variants: Sequence[str] = ()) -> str:
+def describe(name: str, preset: str | None = None, variants: Sequence[str] = ()) -> str:
     """
     Return the table of a packaged model or leg, or of a run file.
 
-    ``preset`` and ``variants`` are those of a model; a run file names its own.
+    ``preset`` (None: the default one) and ``variants`` are those of a model; a run file names
+    its own.
 
     Raises
     ------
     ConfigError
-        There is nothing of this name, or the run file cannot be run.
+        There is nothing of this name, the run file cannot be run, or a preset or variants are
+        given for what is no model.
 
     """
     if name in model_names():
+        preset = preset or 'default'
         model = actuator_model(name, 'model')
         section = model.with_variants(
             model.with_preset(preset, 'preset'), variants, 'variant')
@@ -53,6 +56,11 @@ def describe(name: str, preset: str, variants: Sequence[str] = ()) -> str:
         return '\n\n'.join([
             _table(f'{name}, preset {named}', rows(sheet, section)), *_load_tables(model),
             f'presets: {", ".join(model.presets)}\nvariants: {", ".join(model.variants)}'])
+    for option, given in (('--preset', preset), ('--variant', variants)):
+        if given:
+            raise ConfigError(
+                f'{option} is not used: {name} is no model, a run file says it itself; '
+                f'models: {", ".join(model_names())}')
     if name in leg_names():
         section, place = leg_section(name, 'leg')
         return _table(name, rows(build(LegSheet, section, place), section))

@@ -4,6 +4,7 @@ from itertools import product
 
 from isa_ros.actuator_sheet import ActuatorSheet
 from isa_ros.catalogue import actuator_model, leg_names, leg_section, model_names
+from isa_ros.errors import ConfigError
 from isa_ros.load.leg_sheet import LegSheet
 from isa_ros.load.local import LocalLoad
 from isa_ros.params import describe, Row, rows
@@ -50,10 +51,19 @@ def test_a_row_shows_value_unit_range_and_source() -> None:
 
 
 def test_a_run_shows_each_actuator_and_where_its_values_come_from() -> None:
-    text = describe('rig_rotary', 'default')
+    text = describe('rig_rotary')
     assert 'actuators.rotor: smart_manifold, preset table_4' in text
     assert 'actuators.rotor.load: wheel' in text
     assert '20.7   MPa' in text.replace('    ', '   ') and 'rig_rotary.yaml' in text
+
+
+@pytest.mark.parametrize('name', ['rig_rotary', 'rig_rotary.yaml', 'hyq_real'])
+@pytest.mark.parametrize('option, preset, variants', [
+    ('--preset', 'table_4', ()), ('--variant', None, ('explicit',))])
+def test_what_is_no_model_refuses_preset_and_variants(name, option, preset, variants) -> None:
+    """A run file says them itself; to show it without them would not answer the question."""
+    with pytest.raises(ConfigError, match=f'^{option} is not used: {name} is no model'):
+        describe(name, preset, variants)
 
 
 def test_a_model_shows_its_loads() -> None:
