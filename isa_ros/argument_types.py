@@ -2,6 +2,8 @@
 
 import argparse
 import math
+import os
+from pathlib import Path
 
 
 def positive(text: str) -> float:
@@ -32,3 +34,26 @@ def count(text: str) -> int:
     if value < 1:
         raise argparse.ArgumentTypeError(f'{text!r} must be a whole number > 0')
     return value
+
+
+def file_to_write(text: str) -> Path:
+    """Return the path of a file that can be written, so that nothing is measured in vain."""
+    path = Path(text)
+    if path.is_dir():
+        raise argparse.ArgumentTypeError(f'{text} is a directory, must be a file')
+    if not path.parent.is_dir():
+        raise argparse.ArgumentTypeError(f'{text}: there is no directory {path.parent}')
+    if not os.access(path if path.exists() else path.parent, os.W_OK):
+        raise argparse.ArgumentTypeError(f'{text} is not writable')
+    return path
+
+
+def directory_to_write(text: str) -> Path:
+    """Return the path of a directory that can be written or made."""
+    path = Path(text)
+    nearest = next(place for place in [path, *path.absolute().parents] if place.exists())
+    if not nearest.is_dir():
+        raise argparse.ArgumentTypeError(f'{text}: {nearest} is a file, must be a directory')
+    if not os.access(nearest, os.W_OK | os.X_OK):
+        raise argparse.ArgumentTypeError(f'{text}: {nearest} is not writable')
+    return path

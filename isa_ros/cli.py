@@ -16,7 +16,7 @@ from types import FrameType
 from typing import NoReturn
 
 from isa_ros import commands, response_arguments, study_arguments
-from isa_ros.argument_types import positive
+from isa_ros.argument_types import directory_to_write, file_to_write, positive
 from isa_ros.errors import IsaError
 
 DONE, ANSWER_IS_NO, WRONG_INPUT, NOT_COMPLETED, INTERRUPTED = 0, 1, 2, 3, 130
@@ -134,13 +134,14 @@ def _report(parser: argparse.ArgumentParser) -> None:
 def _identify(parser: argparse.ArgumentParser) -> None:
     parser.add_argument('bag', type=Path, metavar='BAG')
     parser.add_argument('--actuator', metavar='NAME', help='only this one (default: all)')
-    parser.add_argument('--json', type=Path, metavar='FILE', help='write the numbers there too')
+    parser.add_argument(
+        '--json', type=file_to_write, metavar='FILE', help='write the numbers there too')
 
 
 def _params(parser: argparse.ArgumentParser) -> None:
     parser.add_argument('name', metavar='MODEL|CONFIG', help='isa_v5, hyq_real, leg.yaml, ...')
     parser.add_argument(
-        '--preset', default='default', metavar='NAME', help='gains of a model (default: default)')
+        '--preset', metavar='NAME', help='gains of a model (default: default)')
     parser.add_argument(
         '--variant', action='append', default=[], metavar='V',
         help='another way to model or to wire a model; may be repeated')
@@ -154,13 +155,16 @@ def _paper(parser: argparse.ArgumentParser) -> None:
 def _validate(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         '--only', action='append', metavar='NAME', help='a group, or an entry as GROUP.ENTRY')
-    parser.add_argument('--json', type=Path, metavar='FILE', help='write the entries there too')
     parser.add_argument(
-        '--out', type=Path, metavar='DIR', help='write validation.md and its figures there')
+        '--json', type=file_to_write, metavar='FILE', help='write the entries there too')
+    parser.add_argument(
+        '--out', type=directory_to_write, metavar='DIR',
+        help='write validation.md and its figures there')
 
 
 def _bench(parser: argparse.ArgumentParser) -> None:
-    parser.add_argument('--json', type=Path, metavar='FILE', help='write the numbers there too')
+    parser.add_argument(
+        '--json', type=file_to_write, metavar='FILE', help='write the numbers there too')
 
 
 _COMMANDS = {

@@ -3,7 +3,7 @@
 import argparse
 from pathlib import Path
 
-from isa_ros.argument_types import count, number, positive
+from isa_ros.argument_types import count, file_to_write, number, positive
 
 LOOPS = ('position', 'force', 'pressure', 'spool', 'current')
 
@@ -56,5 +56,6 @@ def _rig(parser: argparse.ArgumentParser) -> None:
         help='measure through running nodes, from the bag they record, at their ticks')
     parser.add_argument(
         '--bag', type=Path, metavar='DIR', help='with --nodes: keep the bag there')
-    parser.add_argument('--json', type=Path, metavar='FILE', help='write the numbers there too')
-    parser.add_argument('--out', type=Path, metavar='FILE.png', help='draw the figure')
+    parser.add_argument(
+        '--json', type=file_to_write, metavar='FILE', help='write the numbers there too')
+    parser.add_argument('--out', type=file_to_write, metavar='FILE.png', help='draw the figure')

@@ -63,6 +63,12 @@ def test_debug_shows_the_traceback_and_keeps_the_exit_code(
     (['bringup', 'leg', '--duration', '0'], "argument --duration: '0' must be a number > 0"),
     (['bringup', 'leg', '--duration', 'nan'], "argument --duration: 'nan' must be"),
     (['bringup', 'leg', '--real-time-factor', 'x'], "--real-time-factor: 'x' must be"),
+    (['bode', 'isa_v5', '--json', '/none/x.json'],
+     'isa bode: argument --json: /none/x.json: there is no directory /none; see isa bode --help'),
+    (['step', 'isa_v5', '--out', '/'],
+     'isa step: argument --out: / is a directory, must be a file'),
+    (['validate', '--out', f'{__file__}/docs'],
+     f'isa validate: argument --out: {__file__}/docs: {__file__} is a file, must be a directory'),
     (['params', 'isa_v5', '--presets', 'x'], 'unrecognized arguments: --presets'),
 ])
 def test_wrong_usage_is_one_line_and_2(

@@ -7,6 +7,7 @@ from isa_ros.analysis.report import write_report
 from isa_ros.config import load_run
 from isa_ros.errors import ConfigError
 from isa_ros.paths import CONFIG, find
+from isa_ros.scenario import FIGURES
 import numpy as np
 import pytest
 
