@@ -1,9 +1,8 @@
 """The arguments of `isa study`."""
 
 import argparse
-from pathlib import Path
 
-from isa_ros.argument_types import number
+from isa_ros.argument_types import directory_to_write, file_to_write, number
 
 
 def study(parser: argparse.ArgumentParser) -> None:
@@ -15,6 +14,6 @@ def study(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         '--values', type=number, nargs='+', metavar='V',
         help='other values than those of the study, in the unit its table shows')
-    parser.add_argument('--json', type=Path, metavar='FILE', help='write the numbers there too')
+    parser.add_argument('--json', type=file_to_write, metavar='FILE', help='write the numbers there too')
     parser.add_argument(
-        '--out', type=Path, metavar='DIR', help='write studies.md and its figures there')
+        '--out', type=directory_to_write, metavar='DIR', help='write studies.md and its figures there')
