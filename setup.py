@@ -48,6 +48,7 @@ setup(
         'mcap>=1.1',
         'numba>=0.58',
         'numpy>=1.26',
+        'pillow>=9.0',  # matplotlib's own; figures of the studies are saved with a palette
         'PyYAML>=6.0',
         'scipy>=1.11',
         'zstandard>=0.19',

@@ -14,6 +14,8 @@ def study(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         '--values', type=number, nargs='+', metavar='V',
         help='other values than those of the study, in the unit its table shows')
-    parser.add_argument('--json', type=file_to_write, metavar='FILE', help='write the numbers there too')
     parser.add_argument(
-        '--out', type=directory_to_write, metavar='DIR', help='write studies.md and its figures there')
+        '--json', type=file_to_write, metavar='FILE', help='write the numbers there too')
+    parser.add_argument(
+        '--out', type=directory_to_write, metavar='DIR',
+        help='write studies.md and its figures there')
