@@ -102,6 +102,9 @@ def test_stops_of_the_wheel_act_from_both_sides():
     assert inside == 0.0
     assert own.stop_force(stops.high + 0.01, 0.0, stops) == pytest.approx(-500.0, rel=1e-12)
     assert own.stop_force(stops.low - 0.01, 0.0, stops) == pytest.approx(500.0, rel=1e-12)
+    # 20 Nms/rad more against what runs into the stop
+    assert own.stop_force(stops.high + 0.01, 2.0, stops) == pytest.approx(-540.0, rel=1e-12)
+    assert own.stop_force(stops.low - 0.01, -2.0, stops) == pytest.approx(540.0, rel=1e-12)
 
 
 @pytest.mark.parametrize('load', ['mass', 'blocked'])

@@ -42,3 +42,11 @@ def test_own_stops_push_back_into_the_range():
     assert mechanics.stop_force(-0.001, 0.0, 1.745, ROTOR) == pytest.approx(50.0)
     assert mechanics.stop_force(1.746, 0.0, 1.745, ROTOR) == pytest.approx(-50.0)
     assert mechanics.stop_force(0.9, 5.0, 1.745, ROTOR) == 0.0
+
+
+def test_own_stops_damp_what_runs_into_them():
+    """M3: 20 Nms/rad against the speed into the stop, on top of 50 Nm; off it less."""
+    assert mechanics.stop_force(-0.001, -1.0, 1.745, ROTOR) == pytest.approx(70.0)
+    assert mechanics.stop_force(-0.001, 1.0, 1.745, ROTOR) == pytest.approx(30.0)
+    assert mechanics.stop_force(1.746, 1.0, 1.745, ROTOR) == pytest.approx(-70.0)
+    assert mechanics.stop_force(1.746, -1.0, 1.745, ROTOR) == pytest.approx(-30.0)

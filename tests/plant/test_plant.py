@@ -6,12 +6,12 @@ from hypothesis import given, strategies as st
 from isa_ros import actuator_kernel as kernels
 from isa_ros.actuator_sheet import actuator_record, ActuatorSheet
 from isa_ros.plant import chambers, servo_valve
-from isa_ros.plant.plant import rest_pressures
+from isa_ros.plant.plant import plant_rates, plant_record, PLANT_STATE, rest_pressures
 from isa_ros.signals import LOAD_PORT
 from isa_ros.timebase import PLANT_STEP
 import numpy as np
 import pytest
-from tests.sheets import actuator_sheet, override, plant_row
+from tests.sheets import actuator_sheet, MODELS, override, plant_row
 
 SUPPLY = 20.7e6  # Pa
 
@@ -90,6 +90,59 @@ def test_trapped_oil_conserves_energy(model):
     # RK4 loses (w h)^6/72 of a mode's energy per step; the stiff sensor mode (10 krad/s,
     # 1e-4 of the energy) loses it all, the slow modes 1e-9 in 2500 steps
     assert energy() == pytest.approx(before, rel=2e-3)
+
+
+def rates_at(
+        plant: np.record, supply: float = SUPPLY, **chamber: float
+        ) -> tuple[np.record, tuple[float, float, float]]:
+    """Return the rates of a plant at rest at mid stroke, and its sensor force and flows."""
+    y, rates = (np.zeros(1, PLANT_STATE).view(np.recarray)[0] for _ in 'yr')
+    y.mechanics.position = x = 0.5 * plant.chambers.stroke
+    for name, value in chamber.items():
+        setattr(y.chambers, name, value)
+    return rates, plant_rates(y, x, 0.0, 0.0, supply, 0.0, plant, rates)
+
+
+@pytest.mark.parametrize(('p_a', 'p_b'), [(9e6, 12e6), (23e6, 5e6), (5e6, 23e6)])
+@pytest.mark.parametrize('model', MODELS)
+def test_what_the_supply_gives_and_the_return_lacks_is_in_the_chambers(model, p_a, p_b):
+    """V9, C2, C6: q_p - q_t is what compresses the oil, with either relief open too."""
+    plant = plant_row(model)
+    rates, (_, q_p, q_t) = rates_at(plant, p_a=p_a, p_b=p_b)
+    v_a, v_b = chambers.volumes(0.5 * plant.chambers.stroke, plant.chambers)
+    stored = (v_a * rates.chambers.p_a + v_b * rates.chambers.p_b) / plant.chambers.beta
+    assert q_p - q_t == pytest.approx(stored, abs=1e-12 * (abs(q_p) + abs(q_t)))
+
+
+@pytest.mark.parametrize('force', [-500.0, 0.0, 800.0])
+@pytest.mark.parametrize('model', MODELS)
+def test_rest_pressures_hold_the_force(model, force):
+    """C3: and without a force both chambers are at what the leaking lands divide."""
+    plant = plant_row(model)
+    force *= 0.05 if model == 'smart_manifold' else 1.0
+    p_a, p_b = rest_pressures(plant, SUPPLY, 0.3e6, force)
+    assert chambers.hydraulic_force(p_a, p_b, plant.chambers) == pytest.approx(force, abs=1e-8)
+    assert 0.3e6 < min(p_a, p_b) and max(p_a, p_b) < SUPPLY
+
+
+def test_a_null_bias_drives_the_spool_its_own_way():
+    """V12: more supply than at the reference conditions extends the manifold."""
+    plant = plant_row('smart_manifold')
+    more, _ = rates_at(plant, supply=SUPPLY + 7e6, p_a=1e7, p_b=1e7)
+    less, _ = rates_at(plant, supply=SUPPLY - 7e6, p_a=1e7, p_b=1e7)
+    assert more.valve.acceleration > 0.0 > less.valve.acceleration
+
+
+def test_the_valve_feels_the_resonance_of_its_coil():
+    """V11, V13: the spool is driven by the current with its mode, on the series scale."""
+    sheet = actuator_sheet('isa_v5', 'default', 'explicit')
+    plant = plant_record(sheet.plant)[0]
+    y, rates = (np.zeros(1, PLANT_STATE).view(np.recarray)[0] for _ in 'yr')
+    y.coil.mode = 1e-3
+    plant_rates(y, 0.0, 0.0, 0.0, SUPPLY, 0.0, plant, rates)
+    series = plant.coil.mode_share * 1e-3 / 2.0
+    w_n = plant.spool.w_n
+    assert rates.valve.acceleration == pytest.approx(w_n * w_n * plant.spool.k_pilot * series)
 
 
 @given(x=st.floats(-178e-6, 178e-6), p_a=st.floats(0.0, 22e6), p_b=st.floats(0.0, 22e6),

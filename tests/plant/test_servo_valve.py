@@ -147,6 +147,16 @@ def test_overlap_shifts_the_flow_curve():
     assert 0.0 < dead < 0.5 * live
 
 
+@pytest.mark.parametrize(('land', 'spool', 'chamber', 'other'), [
+    ('pa', 2e-5, 0, 1), ('at', -2e-5, 0, 1), ('bt', 2e-5, 1, 0), ('pb', -2e-5, 1, 0)])
+def test_the_lap_of_a_land_takes_from_its_own_flow_only(land, spool, chamber, other):
+    """V14: 10 um on one land at a time, the spool 20 um on the side that opens it."""
+    own = servo_valve.port_flows(spool, 10e6, 10e6, SUPPLY, 0.0, lapped(**{land: 10.0}))
+    plain = servo_valve.port_flows(spool, 10e6, 10e6, SUPPLY, 0.0, MANIFOLD)
+    assert abs(own[chamber]) < 0.7 * abs(plain[chamber])
+    assert own[other] == plain[other]
+
+
 @given(x=spools, p_a=pressures, p_b=pressures)
 def test_no_lap_is_the_plain_valve(x, p_a, p_b):
     """V14: the four lands one by one give what the shared evaluation gives, bit for bit."""

@@ -4,6 +4,7 @@ from dataclasses import replace
 
 from isa_ros.actuator_sheet import actuator_record, refuse_wiring
 from isa_ros.reu import cascade
+from isa_ros.reu.compensation import Linear
 from isa_ros.reu.wiring import Off
 import numpy as np
 import pytest
@@ -131,6 +132,46 @@ def test_the_explicit_current_block_gives_a_voltage():
     state.setpoint.effort = 1e-5
     cascade.cascade_step(0, reu, state)
     assert state.drive == pytest.approx(reu.lead_lag.b_0 * 1.15 * 2e-5)
+
+
+def test_a_disabled_position_or_pressure_block_forgets_its_integral():
+    """What it wound up before must not come back with the next enable."""
+    pid = replace(actuator_sheet('smart_manifold').reu.force, kp=0.0, ki=1e-9, kv=0.0)
+    reu_sheet = replace(
+        actuator_sheet('smart_manifold').reu, force=Off(),
+        position=replace(pid, ki=1e9, limit=1e7, compensation=Linear()), pressure=pid)
+    sheet = replace(actuator_sheet('smart_manifold'), reu=reu_sheet)
+    sheet = override(sheet, 'reu.position.rate_hz', 1000.0)
+    refuse_wiring(sheet)
+    reu = actuator_record(sheet, 0).view(np.recarray)[0].reu
+    state = np.zeros(1, cascade.REU_STATE).view(np.recarray)[0]
+    state.setpoint.is_enabled, state.setpoint.position = 1.0, 0.1
+    for instant in (0, 50, 100):
+        cascade.cascade_step(instant, reu, state)
+    assert state.position.integral > 0.0 and state.pressure.integral > 0.0
+    state.setpoint.is_enabled = 0.0
+    cascade.cascade_step(105, reu, state)
+    assert (state.position.integral, state.pressure.integral) == (0.0, 0.0)
+    assert (state.position.output, state.pressure.output) == (0.0, 0.0)
+    assert state.current_reference == 0.0
+
+
+def test_spool_and_current_blocks_feed_back_what_is_measured():
+    """Figure 7 B: at the reference neither asks for anything."""
+    sheet = actuator_sheet('isa_v5', 'default', 'explicit')
+    sheet = replace(sheet, reu=replace(sheet.reu, position=Off(), force=Off()))
+    refuse_wiring(sheet)
+    reu = actuator_record(sheet, 0).view(np.recarray)[0].reu
+    state = np.zeros(1, cascade.REU_STATE).view(np.recarray)[0]
+    state.setpoint.is_enabled, state.setpoint.effort = 1.0, 5e-5
+    state.measured.spool = state.spool.measured = 5e-5
+    cascade.cascade_step(0, reu, state)
+    assert (state.current_reference, state.drive) == (0.0, 0.0)
+    state.measured.spool, state.measured.current = 4e-5, 1e-3
+    cascade.cascade_step(10, reu, state)
+    assert state.current_reference == pytest.approx(2.0 * sheet.reu.spool.kp * 1e-5)
+    error = 1.15 * state.current_reference - 1e-3
+    assert state.drive == pytest.approx(reu.lead_lag.b_0 * error)
 
 
 @pytest.mark.parametrize('variants', [

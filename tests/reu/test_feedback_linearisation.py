@@ -84,6 +84,36 @@ def test_the_integral_stands_still_at_the_stop():
     assert state.integral > 0.0
 
 
+@pytest.mark.parametrize('model', MODELS)
+def test_the_output_is_what_the_innermost_block_takes(model):
+    """The opening in m, or the series current that gives it where no spool block is on."""
+    law, plant = KNOWN[model]
+    per_spool = 1.0 if model == 'isa_v5' else 1.0 / plant.valve.k_spool
+    row = measured(position=0.5 * plant.chambers.stroke, pressure_a=9e6, pressure_b=9e6)
+    state = np.zeros(1, block.BLOCK_STATE).view(np.recarray)[0]
+    fl.linearising_step(1.0, row, 0.0, law, state)
+    opening = fl.opening_for(law.bandwidth, row, 0.0, law)
+    assert state.output == pytest.approx(per_spool * opening, rel=1e-12)
+
+
+@pytest.mark.parametrize('model', MODELS)
+def test_a_rising_force_damps_and_slows_the_load(model):
+    """R8, R12: F' = -w K_f dF/dt, and the load moves by dF/dt / K_s less than the piston."""
+    law, plant = KNOWN[model]
+    state = np.zeros(1, block.BLOCK_STATE).view(np.recarray)[0]
+    rate = 1e-3 * chambers.oil_stiffness(0.5 * plant.chambers.stroke, plant.chambers)
+    for n in range(1, 200):  # 40 ms: the 100 Hz low-pass of the speed has settled to 1e-11
+        force = rate * n * law.period
+        row = measured(position=0.5 * plant.chambers.stroke, pressure_a=9e6, pressure_b=9e6,
+                       force=force)
+        state.integral = 0.0
+        fl.linearising_step(force, row, 0.0, law, state)
+    expected = law.model.output_per_spool * fl.opening_for(
+        -law.bandwidth * law.kf * rate, row, -rate / plant.mechanics.k_s, law)
+    assert expected < 0.0
+    assert state.output == pytest.approx(expected, rel=1e-8)
+
+
 @given(reference=st.floats(-7e3, 7e3), force=st.floats(-7e3, 7e3), velocity=st.floats(-0.5, 0.5))
 def test_compiled_block_equals_its_python_source(reference, force, velocity):
     """One period, every state."""

@@ -10,13 +10,13 @@ LIMITS = np.array(
     impedance.IMPEDANCE).view(np.recarray)[0]
 
 
-def reference(velocity: float = 0.0, **values: float) -> float:
-    """Return the force reference of a setpoint at position 0."""
+def reference(velocity: float = 0.0, measured: float = 0.0, **values: float) -> float:
+    """Return the force reference of a setpoint at position 0 and a measured speed."""
     setpoint = np.zeros(1, impedance.SETPOINT).view(np.recarray)[0]
     for name, value in values.items():
         setattr(setpoint, name, value)
     setpoint.velocity = velocity
-    return impedance.force_reference(setpoint, 0.0, 0.0, LIMITS)
+    return impedance.force_reference(setpoint, 0.0, measured, LIMITS)
 
 
 def test_at_rest_it_is_stiffness_times_error_plus_effort():
@@ -34,3 +34,4 @@ def test_it_is_clipped_at_stall_both_ways():
 def test_damping_acts_on_the_speed_error():
     """R2: 4000 Ns/m times the difference of set and estimated speed."""
     assert reference(velocity=0.1, damping=4000.0) == pytest.approx(400.0)
+    assert reference(velocity=0.1, measured=0.3, damping=4000.0) == pytest.approx(-800.0)
