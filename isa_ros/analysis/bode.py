@@ -10,7 +10,8 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 from isa_ros.analysis.excitation import RATE_HZ
-from isa_ros.analysis.frequency import bandwidth, HALF_POWER, Margins, margins, Response
+from isa_ros.analysis.frequency import (
+    bandwidth, HALF_POWER, Margins, margins, Response, TRUSTED)
 from isa_ros.analysis.loops import CLOSED, Loop, OPEN, PLANT, Unit
 from isa_ros.analysis.rig import Rig
 from isa_ros.analysis.sweep import Answer, excitation, Sweep
@@ -93,8 +94,15 @@ def conclusions(measured: Bode) -> Sequence[str]:
             else f'{found.gain_db:.1f} dB at {found.gain_frequency:.4g} Hz')
     phase = ('none in this band' if found.phase is None
              else f'{found.phase:.1f} deg at {found.phase_frequency:.4g} Hz')
-    return (f'closed loop, -3 dB: {band}',
-            f'open loop, gain margin: {gain}', f'open loop, phase margin: {phase}')
+    lines = [f'closed loop, -3 dB: {band}',
+             f'open loop, gain margin: {gain}', f'open loop, phase margin: {phase}']
+    least = int(measured.response.coherence.argmin())
+    if measured.response.coherence[least] < TRUSTED:
+        lines.append(
+            f'coherence falls to {measured.response.coherence[least]:.2g} at '
+            f'{frequency[least]:.4g} Hz, below {TRUSTED:g}: the loop hunts, or noise covers the '
+            'response; do not rely on what needs these points')
+    return lines
 
 
 def input_unit(measured: Bode) -> Unit:

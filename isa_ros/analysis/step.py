@@ -12,6 +12,7 @@ import numpy as np
 BEFORE = 0.1                # of the duration: shown before the step
 SHORTEST_S, LONGEST_S = 0.01, 100.0
 BAND = 0.05                 # settling band, a share of the step
+LOST = 0.5                  # error or ripple at the end, of the step: it does not follow
 
 
 @dataclass(frozen=True)
@@ -73,10 +74,14 @@ def summary(measured: Step) -> str:
     def time(value: float | None) -> str:
         return 'not within the recording' if value is None else f'{value * 1e3:.4g} ms'
 
-    return '\n'.join((
+    lines = [
         f'rise time, 10 to 90 %: {time(found.rise_time)}',
         f'overshoot: {found.overshoot * 100.0:.3g} %',
         f'settling time, into +-{BAND * 100.0:g} %: {time(found.settling_time)}',
         f'steady error, mean of the last tenth: {found.steady_error / unit.scale:.3g} '
         f'{unit.symbol}',
-        f'ripple, deviation over the last tenth: {found.ripple / unit.scale:.3g} {unit.symbol}'))
+        f'ripple, deviation over the last tenth: {found.ripple / unit.scale:.3g} {unit.symbol}']
+    if max(abs(found.steady_error), found.ripple) > LOST * abs(measured.amplitude):
+        lines.append(f'error or ripple at the end exceeds {LOST * 100.0:g} % of the step: the '
+                     'loop does not follow, or the recording is too short')
+    return '\n'.join(lines)

@@ -1,5 +1,5 @@
 """
-The current block: proportional with second-order lead-lag, two degrees of freedom.
+The current block: PID with second-order lead-lag, two degrees of freedom.
 
 Equations 1 and 2 of the paper. It commands the amplifier's voltage (V) from the amplifier's
 current (A); the gain on the demand does the work of an integral, without its phase lag.
@@ -8,7 +8,8 @@ current (A); the gain on the demand does the work of an integral, without its ph
 from dataclasses import dataclass
 
 from isa_ros.kernel import kernel
-from isa_ros.parameter import parameter, Parameters
+from isa_ros.parameter import choice, parameter, Parameters
+from isa_ros.reu.filters import low_pass, low_pass_coefficient
 import numpy as np
 
 
@@ -23,13 +24,21 @@ class LeadLag(Parameters):
     lag_rad_per_s: float = parameter('w_lag', 'rad/s', gt=0.0, le=1e6)
     lead_damping: float = parameter('zeta_lead', '1', gt=0.0, le=2.0)
     lag_damping: float = parameter('zeta_lag', '1', gt=0.0, le=2.0)
+    ki_v_per_ma_s: float = parameter('integral gain K_i', 'V/(mA s)', ge=0.0, le=1e6)
+    kd_v_s_per_ma: float = parameter('derivative gain K_d', 'V s/mA', ge=0.0, le=10.0)
+    derivative_filter_hz: float = parameter('low-pass on the derivative', 'Hz', gt=0.0, le=25e3)
+    offset_v: float = parameter('added to the voltage', 'V', ge=-100.0, le=100.0)
     limit_v: float = parameter('largest voltage', 'V', gt=0.0, le=100.0)
+    anti_windup: str = choice(
+        'clamped: the integral stands still while the voltage is saturated', 'clamped', 'none')
 
 
 LEAD_LAG = np.dtype([
-    ('kpf', 'f8'), ('limit', 'f8'),
+    ('period', 'f8'), ('kpf', 'f8'), ('ki', 'f8'), ('kd', 'f8'), ('derivative_alpha', 'f8'),
+    ('offset', 'f8'), ('limit', 'f8'), ('is_clamped', 'f8'),
     ('b_0', 'f8'), ('b_1', 'f8'), ('b_2', 'f8'), ('a_1', 'f8'), ('a_2', 'f8')])
-LEAD_LAG_STATE = np.dtype([('z_1', 'f8'), ('z_2', 'f8')])
+LEAD_LAG_STATE = np.dtype([
+    ('z_1', 'f8'), ('z_2', 'f8'), ('integral', 'f8'), ('error', 'f8'), ('error_rate', 'f8')])
 
 
 def demand_gain(kp: float, static_gain: float) -> float:
@@ -53,15 +62,32 @@ def lead_lag_record(sheet: LeadLag) -> tuple[float, ...]:
     lag = quadratic(sheet.lag_rad_per_s, sheet.lag_damping)
     ratio = sheet.lag_rad_per_s / sheet.lead_rad_per_s
     gain = sheet.kp_v_per_ma * 1e3 * ratio * ratio / lag[0]
-    return (sheet.kpf, sheet.limit_v, gain * lead[0], gain * lead[1], gain * lead[2],
+    return (1.0 / sheet.rate_hz, sheet.kpf, sheet.ki_v_per_ma_s * 1e3, sheet.kd_v_s_per_ma * 1e3,
+            low_pass_coefficient(sheet.derivative_filter_hz, sheet.rate_hz), sheet.offset_v,
+            sheet.limit_v, float(sheet.anti_windup == 'clamped'),
+            gain * lead[0], gain * lead[1], gain * lead[2],
             lag[1] / lag[0], lag[2] / lag[0])
 
 
 @kernel
 def lead_lag_step(reference, measured, loop, state):
-    """Return the voltage U = C(z) [K_pf i_r - i] of one period  (R9), saturated, in V."""
+    """
+    Return the voltage of one period, saturated, in V  (R9).
+
+    U = C(z) [K_pf i_r - i] + I + K_d e' + U_0 with I' = K_i e, e = i_r - i; anti-windup as
+    in R5. The paper's loop has C alone.
+    """
     e = loop.kpf * reference - measured
-    voltage = loop.b_0 * e + state.z_1
-    state.z_1 = loop.b_1 * e - loop.a_1 * voltage + state.z_2
-    state.z_2 = loop.b_2 * e - loop.a_2 * voltage
-    return max(-loop.limit, min(loop.limit, voltage))
+    lead_lag = loop.b_0 * e + state.z_1
+    state.z_1 = loop.b_1 * e - loop.a_1 * lead_lag + state.z_2
+    state.z_2 = loop.b_2 * e - loop.a_2 * lead_lag
+
+    error = reference - measured
+    rate = (error - state.error) / loop.period
+    state.error_rate = low_pass(state.error_rate, rate, loop.derivative_alpha)
+    state.error = error
+    wanted = lead_lag + state.integral + loop.kd * state.error_rate + loop.offset
+    voltage = max(-loop.limit, min(loop.limit, wanted))
+    if voltage == wanted or error * wanted < 0.0 or loop.is_clamped == 0.0:
+        state.integral += loop.ki * loop.period * error
+    return voltage

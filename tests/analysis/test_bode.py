@@ -5,10 +5,10 @@ import json
 from pathlib import Path
 
 from isa_ros import cli
-from isa_ros.analysis.bode import Bode, bode
+from isa_ros.analysis.bode import Bode, bode, conclusions
 from isa_ros.analysis.loops import loop_of
 from isa_ros.analysis.rig import Choice, Rig, rig
-from isa_ros.analysis.step import step
+from isa_ros.analysis.step import step, summary
 from isa_ros.analysis.sweep import Sweep
 from isa_ros.reu.wiring import Off
 import numpy as np
@@ -174,3 +174,24 @@ def test_a_pressure_loop_is_measured_like_the_others():
     # -65 deg at 1 Hz puts at 0.5 Hz, and the valve's own lag (104 Hz) there is -90 deg, less
     # atan(0.5 / 4) = 7 and plus about 4 / 104 of 90 deg, twice for its second order = 7
     assert got.response.phase[3] == pytest.approx(-90.0, abs=7.0)
+
+
+def test_a_hunting_loop_is_said_not_to_be_trusted(capsys):
+    """A pressure difference of 2 MPa under ten times the gains: a limit cycle, not a response."""
+    bench = rig(Choice(name='isa_v5', loop='pressure', variants=('pressure_control',)))
+    reu = bench.config.sheet.reu
+    wild = replace(reu, pressure=replace(
+        reu.pressure, kp=10.0 * reu.pressure.kp, ki=10.0 * reu.pressure.ki))
+    hunting = bench.with_config(
+        replace(bench.config, sheet=replace(bench.config.sheet, reu=wild)))
+    sweep = Sweep(low=20.0, high=100.0, points=4)
+    assert 'coherence falls to' in '\n'.join(conclusions(bode(hunting, sweep, 'closed', 0.2)))
+    assert 'coherence falls to' not in '\n'.join(conclusions(bode(bench, sweep, 'closed', 2.0)))
+
+
+def test_a_step_that_is_not_followed_is_said_so():
+    """Torque against a free mass cannot be held: there is nothing to push against."""
+    stopped = summary(step(rig(Choice(name='smart_manifold', loop='force')), 0.3, 17.0))
+    assert 'does not follow' not in stopped
+    lost = summary(step(rig(Choice(name='isa_v5', loop='force', load='mass')), 0.3, 7000.0))
+    assert 'does not follow' in lost

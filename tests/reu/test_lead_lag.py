@@ -1,6 +1,7 @@
 """The current block: equations 1 and 2, and the sampled loop around the explicit coil."""
 
 import cmath
+from dataclasses import replace
 import math
 
 from isa_ros.reu import lead_lag
@@ -48,3 +49,59 @@ def test_output_saturates_at_the_supply():
     state = np.zeros(1, lead_lag.LEAD_LAG_STATE).view(np.recarray)[0]
     assert lead_lag.lead_lag_step(1.0, 0.0, LOOP, state) == 24.0
     assert lead_lag.lead_lag_step(-1.0, 0.0, LOOP, state) == -24.0
+
+
+def changed(**values: object) -> np.record:
+    """Return the record with some values of the sheet replaced."""
+    return np.array([lead_lag.lead_lag_record(replace(SHEET, **values))],
+                    lead_lag.LEAD_LAG).view(np.recarray)[0]
+
+
+def voltages(loop: np.record, reference: float, measured: float, n: int) -> list[float]:
+    """Return the voltages of ``n`` periods from rest under constant currents (A)."""
+    state = np.zeros(1, lead_lag.LEAD_LAG_STATE).view(np.recarray)[0]
+    return [lead_lag.lead_lag_step(reference, measured, loop, state) for _ in range(n)]
+
+
+def test_integral_grows_with_the_error():
+    """R9: K_i T e a period, on top of the shipped loop's voltage."""
+    plain, integrating = LOOP, changed(ki_v_per_ma_s=100.0)
+    error = 1e-6
+    grown = np.subtract(voltages(integrating, error, 0.0, 5), voltages(plain, error, 0.0, 5))
+    expected = 100.0 * 1e3 * PERIOD * error * np.arange(5)
+    # one rounding of a voltage of 20 mV each
+    assert grown == pytest.approx(expected, abs=1e-16)
+
+
+def test_integral_stands_still_at_the_supply():
+    """R5: saturated by the proportional part, the loop does not wind up."""
+    def integral_after(loop: np.record) -> float:
+        for _ in range(50):
+            assert lead_lag.lead_lag_step(0.01, 0.0, loop, state) == 24.0
+        return float(state.integral)
+    state = np.zeros(1, lead_lag.LEAD_LAG_STATE).view(np.recarray)[0]
+    for _ in range(50):  # the lead-lag's own transient leaves saturation once
+        lead_lag.lead_lag_step(0.01, 0.0, LOOP, state)
+    assert integral_after(changed(ki_v_per_ma_s=100.0)) == 0.0
+    free = changed(ki_v_per_ma_s=100.0, anti_windup='none')
+    assert integral_after(free) == pytest.approx(50 * 1e5 * PERIOD * 0.01)
+
+
+def test_offset_and_derivative_add_their_share():
+    """R9: U_0 at once, K_d times the filtered slope of the first error."""
+    plain = voltages(LOOP, 1e-6, 0.0, 1)[0]
+    assert voltages(changed(offset_v=0.5), 1e-6, 0.0, 1)[0] - plain == pytest.approx(0.5)
+    alpha = 1.0 - math.exp(-2.0 * math.pi * 2000.0 * PERIOD)
+    kicked = voltages(changed(kd_v_s_per_ma=1e-3), 1e-6, 0.0, 1)[0] - plain
+    assert kicked == pytest.approx(1.0 * alpha * 1e-6 / PERIOD)
+
+
+def test_compiled_step_equals_its_python_source():
+    """A few periods with every term, every state."""
+    loop = changed(ki_v_per_ma_s=50.0, kd_v_s_per_ma=1e-4, offset_v=0.1)
+    compiled, python = (
+        np.zeros(1, lead_lag.LEAD_LAG_STATE).view(np.recarray)[0] for _ in 'ab')
+    for measured in (0.0, 1e-4, -3e-4, 2e-3):
+        assert (lead_lag.lead_lag_step(1e-3, measured, loop, compiled)
+                == lead_lag.lead_lag_step.py_func(1e-3, measured, loop, python))
+    assert compiled.tobytes() == python.tobytes()
