@@ -105,7 +105,7 @@ def rest_pressures(
     Return the gauge pressures (Pa) that hold ``force`` (N or Nm) with the valve near null.
 
     At null the leaking lands divide the supply pressure; what that lacks in force comes in
-    equal parts from each chamber.
+    equal parts from each chamber, as far as its pressure stays between return and supply.
     """
     lands, oil = plant.valve, plant.chambers
     share_a = lands.f_pa * lands.f_pa / (lands.f_pa * lands.f_pa + lands.f_at * lands.f_at)
@@ -113,7 +113,17 @@ def rest_pressures(
     span = supply - back
     p_a, p_b = back + span * share_a, back + span * share_b
     lacking = force - chambers.hydraulic_force(p_a, p_b, oil)
-    return p_a + 0.5 * lacking / oil.area_a, p_b - 0.5 * lacking / oil.area_b
+    p_a, p_b = p_a + 0.5 * lacking / oil.area_a, p_b - 0.5 * lacking / oil.area_b
+
+    def possible(p: float) -> float:
+        return min(max(p, back), supply)
+    if p_b != possible(p_b):
+        p_b = possible(p_b)
+        p_a = (force + oil.area_b * p_b) / oil.area_a
+    elif p_a != possible(p_a):
+        p_a = possible(p_a)
+        p_b = (oil.area_a * p_a - force) / oil.area_b
+    return possible(p_a), possible(p_b)
 
 
 @kernel

@@ -220,3 +220,22 @@ def test_the_spool_stays_within_its_stops():
     body.run(0.1)
     assert body.row.plant.valve.spool <= 178e-6
     assert body.row.plant.valve.spool == pytest.approx(178e-6, rel=0.01)
+
+
+@pytest.mark.parametrize('model', MODELS)
+@pytest.mark.parametrize('force', [1e6, -1e6])
+def test_rest_pressures_stay_between_return_and_supply(model, force):
+    """A start under a load beyond stall is oil at supply and return, not oil in tension."""
+    p_a, p_b = rest_pressures(plant_row(model), SUPPLY, 0.2e6, force)
+    assert (p_a, p_b) == ((SUPPLY, 0.2e6) if force > 0.0 else (0.2e6, SUPPLY))
+
+
+@pytest.mark.parametrize('model', MODELS)
+@pytest.mark.parametrize('share', [0.5, 0.98, -0.98])
+def test_rest_pressures_hold_the_force(model, share):
+    """C3: up to stall either way, exactly but for a rounding of the pressures' force."""
+    plant = plant_row(model)
+    oil = plant.chambers
+    force = share * SUPPLY * (oil.area_a if share > 0.0 else oil.area_b)
+    p_a, p_b = rest_pressures(plant, SUPPLY, 0.0, force)
+    assert chambers.hydraulic_force(p_a, p_b, plant.chambers) == pytest.approx(force, rel=1e-12)
