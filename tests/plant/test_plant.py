@@ -232,7 +232,7 @@ def test_rest_pressures_stay_between_return_and_supply(model, force):
 
 @pytest.mark.parametrize('model', MODELS)
 @pytest.mark.parametrize('share', [0.5, 0.98, -0.98])
-def test_rest_pressures_hold_the_force(model, share):
+def test_rest_pressures_hold_up_to_stall(model, share):
     """C3: up to stall either way, exactly but for a rounding of the pressures' force."""
     plant = plant_row(model)
     oil = plant.chambers
