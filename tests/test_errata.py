@@ -79,7 +79,7 @@ def current_loop_poles(lag: float, lead_damping: float, lag_damping: float) -> n
     sheet = build(ActuatorSheet, section, model.place)
     assert isinstance(sheet.reu.current, LeadLag)
     resistance, inductance, _ = circuit(sheet.plant.coil)
-    _, _, b_0, b_1, b_2, a_1, a_2 = lead_lag_record(replace(
+    *_, b_0, b_1, b_2, a_1, a_2 = lead_lag_record(replace(
         sheet.reu.current, lag_rad_per_s=lag, lead_damping=lead_damping,
         lag_damping=lag_damping))
     decay = math.exp(-resistance / inductance / sheet.reu.current.rate_hz)
