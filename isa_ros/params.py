@@ -13,7 +13,7 @@ from isa_ros.load.leg_sheet import LegSheet
 from isa_ros.load.local import LocalLoad
 from isa_ros.parameter import Parameters
 from isa_ros.paths import CONFIG, find
-from isa_ros.resolve import as_tree, build, build_one_of, Entry, members, Section
+from isa_ros.resolve import build, build_one_of, Entry, kind_of, members, Section
 
 _SYMBOLS = {'gt': '>', 'ge': '>=', 'lt': '<', 'le': '<='}
 
@@ -91,10 +91,8 @@ def _rows(parameters: Parameters, source_of: Mapping[str, str], prefix: str) -> 
 
 
 def _kind_row(path: str, value: Parameters, union: Any, source_of: Mapping[str, str]) -> Row:
-    known = members(union)
-    kind = next(name for name, cls in known.items() if cls is type(value))
     doc = (type(value).__doc__ or '').strip().splitlines()[0].rstrip('.')
-    return Row(f'{path}.kind', kind, '', ' | '.join(known),
+    return Row(f'{path}.kind', kind_of(value, union), '', ' | '.join(members(union)),
                source_of.get(f'{path}.kind', ''), doc)
 
 
@@ -108,7 +106,7 @@ def _run_tables(path: str) -> Iterator[str]:
         origin = origins.actuators[actuator.name]
         yield _table(title, rows(actuator.sheet, origin.sheet))
         if actuator.load is not None:
-            yield _table(f'actuators.{actuator.name}.load: {_kind(actuator.load)}',
+            yield _table(f'actuators.{actuator.name}.load: {kind_of(actuator.load, LocalLoad)}',
                          rows(actuator.load, origin.load))
     if run.leg is not None and origins.leg is not None:
         yield _table('leg.start', [
@@ -119,13 +117,9 @@ def _run_tables(path: str) -> Iterator[str]:
 def _load_tables(model: Model) -> Iterator[str]:
     for name, section in model.loads.items():
         load = build_one_of(LocalLoad, section, model.place / 'loads' / name)
-        kind = _kind(load)
+        kind = kind_of(load, LocalLoad)
         yield _table(f'load {name}' + (f', a {kind}' if kind != name else ''),
                      rows(load, section))
-
-
-def _kind(load: LocalLoad) -> str:
-    return str(as_tree(load, LocalLoad)['kind'])
 
 
 def _value(value: Any) -> str:

@@ -274,13 +274,18 @@ def as_tree(parameters: Parameters, hint: Any = None) -> Tree:
     """
     tree: Tree = {}
     if hint is not None and not isinstance(hint, type):
-        tree['kind'] = next(k for k, cls in members(hint).items() if cls is type(parameters))
+        tree['kind'] = kind_of(parameters, hint)
     hints = get_type_hints(type(parameters))
     for f in fields(parameters):
         value = getattr(parameters, f.name)
         is_set = isinstance(value, Parameters)
         tree[f.name] = as_tree(value, hints[f.name]) if is_set else value
     return tree
+
+
+def kind_of(parameters: Parameters, union: Any) -> str:
+    """Return which kind out of a union a parameter set is."""
+    return next(kind for kind, cls in members(union).items() if cls is type(parameters))
 
 
 def members(union: Any) -> dict[str, type[Parameters]]:

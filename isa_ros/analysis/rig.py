@@ -12,12 +12,12 @@ from isa_ros.catalogue import actuator_model, model_names
 from isa_ros.config import load_run
 from isa_ros.default_actuator import default_load, DEFAULT_TIMING
 from isa_ros.errors import ConfigError
-from isa_ros.load.local import static_force
+from isa_ros.load.local import LocalLoad, static_force
 from isa_ros.own_load import own_load
 from isa_ros.paths import CONFIG, find
 from isa_ros.plant.supply import ConstantSupply
 from isa_ros.plant.units import MPA
-from isa_ros.resolve import build, Place
+from isa_ros.resolve import build, kind_of, Place
 from isa_ros.run_config import ActuatorConfig, RunConfig
 import numpy as np
 
@@ -136,12 +136,13 @@ def rig(choice: Choice) -> Rig:
     loop = loop_of(config.sheet, choice.loop)
     kind = choice.load or (None if choice.loop == 'position' else BLOCKED)
     model = actuator_model(config.model, 'model')
-    if kind is None and config.load is None:
-        kind = model.default_load
-    if kind is not None:
+    if kind is None and config.load is not None:
+        kind = kind_of(config.load, LocalLoad)
+    else:
+        kind = kind or model.default_load
         config = replace(config, load=own_load({'kind': kind}, Place('--load'), model))
     alone = replace(run, leg=None, actuators=(replace(config, sheet=loop.sheet),))
-    return Rig(alone, loop, kind or type(config.load).__name__.lower())
+    return Rig(alone, loop, kind)
 
 
 def _of_model(choice: Choice) -> RunConfig:

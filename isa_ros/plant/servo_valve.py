@@ -13,10 +13,8 @@ import math
 
 from isa_ros.kernel import kernel
 from isa_ros.parameter import choice, parameter, Parameters
-from isa_ros.plant.units import LPM, MILLI, MPA
+from isa_ros.plant.units import LPM, MICRO, MILLI, MPA
 import numpy as np
-
-MICRO = 1e-6
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -11,7 +11,7 @@ import math
 
 from isa_ros.kernel import kernel
 from isa_ros.parameter import parameter, Parameters
-from isa_ros.plant.units import MILLI, MPA
+from isa_ros.plant.units import MICRO, MILLI, MPA
 import numpy as np
 
 CLOSED_LOOP = 0
@@ -83,7 +83,7 @@ def spool_record(sheet: Spool, temperature: float) -> tuple[float, ...]:
     return (
         kind, sheet.natural_frequency_rad_per_s, sheet.damping_ratio, k_loop, k_pilot,
         bias.current_ma * MILLI
-        + bias.temperature_ua_per_k * 1e-6 * (temperature - bias.reference_celsius),
+        + bias.temperature_ua_per_k * MICRO * (temperature - bias.reference_celsius),
         bias.supply_ma_per_mpa * MILLI / MPA, bias.return_ma_per_mpa * MILLI / MPA,
         bias.reference_supply_mpa * MPA)
 
