@@ -10,7 +10,7 @@ from typing import Protocol
 
 from isa_ros import actuator_kernel as kernels
 from isa_ros.actuator_sheet import actuator_record, ActuatorSheet
-from isa_ros.errors import SimulationDiverged
+from isa_ros.errors import ConfigError, SimulationDiverged
 from isa_ros.load.local import local_port, LocalLoad, own_record, static_force
 from isa_ros.plant.plant import read_sensors, rest_pressures
 from isa_ros.reu.cascade import initial_gains, MEASURED, REU_STATE
@@ -245,7 +245,19 @@ class SmartActuator:
             rows.tobytes() for rows in self._memory)
 
     def restore(self, snapshot: bytes) -> None:
-        """Continue from a `snapshot` of an actuator with the same digest."""
+        """
+        Continue from a `snapshot` of an actuator with the same digest.
+
+        Raises
+        ------
+        ConfigError
+            It is none.
+
+        """
+        expected = 8 + sum(rows.nbytes for rows in self._memory)
+        if len(snapshot) != expected:
+            raise ConfigError(
+                f'{self.name}: saved state of {len(snapshot)} bytes, must be {expected}')
         self.t_ns = int.from_bytes(snapshot[:8], 'little')
         offset = 8
         for rows in self._memory:

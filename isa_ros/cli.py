@@ -107,6 +107,16 @@ def _bringup(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         '--in-process', action='store_true',
         help='all nodes in one process: faster, and the same bytes in the bag')
+    parser.add_argument(
+        '--controller', action='append', default=[], metavar='NAME',
+        help='a node of yours that is waited for at every tick; may be repeated')
+    parser.add_argument(
+        '--paused', action='store_true',
+        help='wait before tick 0 for /coordinator/step or the end of the pause')
+    parser.add_argument(
+        '--restore', type=Path, metavar='FILE', help='go on from a saved state')
+    parser.add_argument(
+        '--save', type=file_to_write, metavar='FILE', help='save the state at the end there')
 
 
 def _replay(parser: argparse.ArgumentParser) -> None:

@@ -34,15 +34,15 @@ def demo(options: Namespace) -> bool:
 
 
 def _record(request: 'Request') -> Path:
-    """Run, and say where the bag is, however the run ends; return its directory."""
+    """Run, and say where its bags are, however the run ends; return the first directory."""
     from isa_ros.run import prepare, run_session
     from isa_ros.terminal import terminal_report
     session = prepare(request)
     try:
         return run_session(session, terminal_report(sys.stderr))
     finally:
-        if session.out.exists():
-            print(session.out)
+        for bag in session.bags:
+            print(bag)
 
 
 def _demo_directories() -> Iterator[Path]:
@@ -58,7 +58,9 @@ def bringup(options: Namespace) -> bool:
     _record(Request(
         config=find(options.config, CONFIG), scenario=scenario, out=options.out,
         duration_s=options.duration, real_time_factor=options.real_time_factor,
-        overwrite=options.overwrite, in_process=options.in_process))
+        overwrite=options.overwrite, in_process=options.in_process,
+        controllers=tuple(options.controller), is_paused=options.paused,
+        restore=options.restore, save=options.save))
     return True
 
 

@@ -8,8 +8,6 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 import math
 from pathlib import Path
-import re
-from typing import Any
 
 from isa_ros.actuator_sheet import ActuatorSheet, refuse_wiring
 from isa_ros.catalogue import actuator_model, leg_section, material_section, Model
@@ -22,17 +20,17 @@ from isa_ros.plant.plant import plant_record
 from isa_ros.plant.supply import SupplySheet
 from isa_ros.plant.units import MILLI
 from isa_ros.resolve import (
-    alternatives, build, build_one_of, Entry, merge, Place, refuse_unknown, Section, section_at,
-    written)
-from isa_ros.run_config import ActuatorConfig, LegConfig, LegStart, RunConfig, Times
+    alternatives, build, build_one_of, Entry, merge, names_at, Place, refuse_unknown, Section,
+    section_at, written)
+from isa_ros.run_config import (
+    ActuatorConfig, COORDINATOR, LegConfig, LegStart, NAME_RULE, refuse_bad_name, RunConfig,
+    Times)
 from isa_ros.strict_yaml import read, Tree
 from isa_ros.timebase import FORCE_WINDOWS, PLANT_STEP_NS
 
 __all__ = [
     'ActuatorConfig', 'LegConfig', 'LegStart', 'load_run', 'Origins', 'read_run', 'RunConfig']
 
-COORDINATOR = 'coordinator'  # the name of its node; no actuator may have it
-_NAME = re.compile(r'[a-z](?:_?[a-z0-9])*')
 _TICK_GRID_NS = FORCE_WINDOWS * PLANT_STEP_NS
 
 
@@ -71,19 +69,21 @@ def read_run(path: Path | str) -> tuple[RunConfig, Origins]:
     tree, place = read(path), Place(path.name)
     refuse_unknown(tree, (
         'name', 'step_ms', 'controller_offset_ms', 'tick_timeout_s', 'supply', 'actuators',
-        'leg'), place)
+        'controllers', 'leg'), place)
     times = build(Times, written(
         {f: tree[f] for f in Times.__dataclass_fields__ if f in tree}, place), place)
     step_ns, offset_ns = _grid(times, place)
     leg, leg_origin = _leg(tree, place, step_ns) if 'leg' in tree else (None, None)
     actuators, origins = _actuators(tree, place, leg)
-    return RunConfig(
+    run = RunConfig(
         name=name_of(tree, 'name', place),
         step_ns=step_ns, controller_offset_ns=offset_ns, tick_timeout_s=times.tick_timeout_s,
         supply=build_one_of(
             SupplySheet, written(_section(tree, 'supply', place), place / 'supply'),
             place / 'supply'),
-        actuators=actuators, leg=leg, source=path.name), Origins(origins, leg_origin)
+        actuators=actuators, leg=leg, source=path.name)
+    controllers = names_at(tree.get('controllers', []), place / 'controllers')
+    return run.with_controllers(controllers), Origins(origins, leg_origin)
 
 
 def ticks_in(seconds: float, step_ns: int, where: str) -> int:
@@ -108,9 +108,9 @@ def name_of(tree: Tree, key: str, place: Place) -> str:
     if key not in tree:
         raise ConfigError(place.has(f'lacks {key}'))
     value = tree[key]
-    if not isinstance(value, str) or not _NAME.fullmatch(value):
-        raise ConfigError(
-            f'{place / key} = {value!r}, must be small letters, digits and single underscores')
+    if not isinstance(value, str):
+        raise ConfigError(f'{place / key} = {value!r}, {NAME_RULE}')
+    refuse_bad_name(value, str(place / key))
     return value
 
 
@@ -217,7 +217,7 @@ def _actuator(
         place)
     model = actuator_model(tree.get('model'), f'{place}.model')  # type: ignore[arg-type]
     preset = tree.get('preset', 'default')
-    variants = _names(tree.get('variants', []), place / 'variants')
+    variants = names_at(tree.get('variants', []), place / 'variants')
     section = model.with_variants(
         model.with_preset(preset, f'{place}.preset'),  # type: ignore[arg-type]
         variants, f'{place}.variants')
@@ -235,12 +235,6 @@ def _actuator(
     label = ' + '.join([str(preset), *variants])
     return (ActuatorConfig(name, model.name, label, sheet, load, position),
             ActuatorOrigin(section, load_layers))
-
-
-def _names(value: Any, place: Place) -> list[str]:
-    if not isinstance(value, list) or not all(isinstance(name, str) for name in value):
-        raise ConfigError(f'{place} = {value!r}, must be a list of names')
-    return value
 
 
 def _parameters(tree: Tree, place: Place) -> Section:

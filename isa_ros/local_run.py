@@ -1,29 +1,37 @@
 """A whole run in this process, without ROS: what replay and experiments simulate with."""
 
 from collections.abc import Callable
+from dataclasses import replace
 
 from isa_ros.actuator import Timing
-from isa_ros.coordinator import Coordinator, Plan, Recorder, Records
+from isa_ros.coordinator import Coordinator, Plan, Requests
+from isa_ros.exchange import Recorder, Records, Rows, Silence
 from isa_ros.pacing import Pace, ProgressMeter
 from isa_ros.run_config import RunConfig
+from isa_ros.run_state import RunState
 from isa_ros.shared_load import SharedLoad
 from isa_ros.stepping import LocalTransport, QuietActuator
 from isa_ros.topics import topics_of
 
 
 class LocalRun:
-    """A run ready to be simulated; ``topics`` are what it records, in order."""
+    """
+    A run ready to be simulated; ``topics`` are what it records, in order.
+
+    Its controllers do not take part: what they asked for is among the commands.
+    """
 
     def __init__(self, run: RunConfig) -> None:
-        self._run = run
+        self._run = run = replace(run, controllers=())
         self._load = SharedLoad(run)
         self._order, self.topics = topics_of(run, self._load)
 
     def simulate(
             self, n_ticks: int, commands: Callable[[int, Records], None], recorder: Recorder,
-            should_stop: Callable[[], bool] = lambda: False) -> None:
+            should_stop: Callable[[], bool] = lambda: False, state: RunState | None = None,
+            requests: Requests | None = None) -> None:
         """
-        Hand every sample of ``n_ticks`` ticks to ``recorder``; to be called once.
+        Hand every sample until t = ``n_ticks`` step_ns to ``recorder``; to be called once.
 
         Raises
         ------
@@ -37,14 +45,10 @@ class LocalRun:
         timing = Timing(run.step_ns, run.controller_offset_ns)
         transport = LocalTransport(
             [QuietActuator(actuator, timing) for actuator in run.actuators],
-            self._load.starts(run), _nobody_listens, _nobody_listens)
-        plan = Plan(step_ns=run.step_ns, n_actuators=len(run.actuators), n_ticks=n_ticks,
-                    commands=commands)
+            self._load.starts(run), Silence())
+        rows = Rows(len(run.actuators))
+        plan = Plan(step_ns=run.step_ns, rows=rows, n_ticks=n_ticks, commands=commands)
         coordinator = Coordinator(
             plan, self._order, transport, self._load, recorder, pace=Pace(),
-            progress=ProgressMeter(None, None), should_stop=should_stop)
-        coordinator.run(transport.join())
-
-
-def _nobody_listens(message: object) -> None:
-    """Drop what a run would publish."""
+            progress=ProgressMeter(None, None), should_stop=should_stop, requests=requests)
+        coordinator.run(transport.join(rows), state)

@@ -16,7 +16,7 @@ class Progress(NamedTuple):
 
     t_ns: int
     real_time_factor: float
-    """Simulated over elapsed time since the start."""
+    """Simulated over elapsed time since the start, or since the last pause."""
     time_left_s: float | None
     """None where the end is not known."""
     is_last: bool
@@ -37,18 +37,24 @@ class Pace:
             self, real_time_factor: float | None = None,
             now: Callable[[], float] = time.monotonic,
             sleep: Callable[[float], None] = time.sleep) -> None:
-        factor = real_time_factor or 0.0
-        if not 0.0 <= factor < float('inf'):
-            raise ConfigError(
-                f'real_time_factor = {factor:g}, must be finite and >= 0 (0: as fast as it can)')
-        self._seconds_per_ns = 1.0 / (NS_PER_SECOND * factor) if factor else 0.0
+        self.set_factor(real_time_factor or 0.0)
         self._now = now
         self._sleep = sleep
         self._start = 0.0
 
-    def start(self) -> None:
-        """Let t = 0 be now."""
-        self._start = self._now()
+    def set_factor(self, real_time_factor: float) -> None:
+        """Keep another pace from the next `start` on; as the constructor."""
+        if not 0.0 <= real_time_factor < float('inf'):
+            raise ConfigError(
+                f'real_time_factor = {real_time_factor:g}, must be finite and >= 0 '
+                '(0: as fast as it can)')
+        self.factor = real_time_factor
+        self._seconds_per_ns = (
+            1.0 / (NS_PER_SECOND * real_time_factor) if real_time_factor else 0.0)
+
+    def start(self, t_ns: int = 0) -> None:
+        """Let ``t_ns`` be now."""
+        self._start = self._now() - t_ns * self._seconds_per_ns
 
     def wait(self, t_ns: int, should_stop: Callable[[], bool]) -> None:
         """Sleep until ``t_ns`` is due; return early when a stop is asked for."""
@@ -85,10 +91,12 @@ class ProgressMeter:
         self._report = report
         self._now = now
         self._start = 0.0
+        self._start_ns = 0
         self._next = 0.0
 
-    def start(self) -> None:
-        """Let t = 0 be now."""
+    def start(self, t_ns: int = 0) -> None:
+        """Let ``t_ns`` be now: the factor counts from there."""
+        self._start_ns = t_ns
         self._start = self._now()
         self._next = self._start + REPORT_PERIOD_S
 
@@ -105,7 +113,7 @@ class ProgressMeter:
 
     def _progress(self, t_ns: int, is_last: bool) -> Progress:
         elapsed = self._now() - self._start
-        factor = t_ns / (NS_PER_SECOND * elapsed) if elapsed > 0.0 else 0.0
+        factor = (t_ns - self._start_ns) / (NS_PER_SECOND * elapsed) if elapsed > 0.0 else 0.0
         left = None
         if self._duration_ns is not None and factor > 0.0:
             left = (self._duration_ns - t_ns) / (NS_PER_SECOND * factor)

@@ -109,6 +109,21 @@ def section_at(tree: Any, place: Place) -> Tree:
     return tree
 
 
+def names_at(value: Any, place: Place) -> list[str]:
+    """
+    Return a value as a list of names.
+
+    Raises
+    ------
+    ConfigError
+        It is something else.
+
+    """
+    if not isinstance(value, list) or not all(isinstance(name, str) for name in value):
+        raise ConfigError(f'{place} = {value!r}, must be a list of names')
+    return value
+
+
 def written(tree: Tree, place: Place) -> Section:
     """Return the plain numbers of a run file; their source is the file."""
     section: Section = {}

@@ -1,7 +1,7 @@
 """Bring-up: from the files of a run to its bag, in processes or in one."""
 
 from collections.abc import Callable, Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from itertools import count
 import os
 from pathlib import Path
@@ -11,10 +11,12 @@ from isa_ros.bag.metadata import FILE_NAME
 from isa_ros.bag.provenance import installed_versions, Provenance
 from isa_ros.bag.writer import BagWriter
 from isa_ros.config import load_run
-from isa_ros.coordinator import Coordinator, Plan, Transport
-from isa_ros.errors import BagError
+from isa_ros.coordinator import Coordinator, Plan, Requests
+from isa_ros.errors import BagError, RunError
+from isa_ros.exchange import Rows, Transport
 from isa_ros.pacing import Laps, Pace, Progress, ProgressMeter
 from isa_ros.run_config import RunConfig
+from isa_ros.run_state import read_state, RunState
 from isa_ros.scenario import idle, load_scenario, Scenario
 from isa_ros.shared_load import SharedLoad
 from isa_ros.stopping import StopRequest
@@ -40,6 +42,14 @@ class Request:
     """None or 0: as fast as it can."""
     overwrite: bool = False
     in_process: bool = False
+    controllers: tuple[str, ...] = ()
+    """Controllers that take part, besides those of the run file."""
+    is_paused: bool = False
+    """Wait for a step or the end of the pause before tick 0."""
+    restore: Path | None = None
+    """Saved state to go on from; None: begin at t = 0."""
+    save: Path | None = None
+    """Where the state at the end goes; None: nowhere."""
     namespace: str = ''
     join_timeout_s: float = JOIN_TIMEOUT_S
     laps: Laps | None = None
@@ -54,6 +64,10 @@ class Session:
     scenario: Scenario
     out: Path
     pace: Pace
+    state: RunState | None = None
+    """Where the run goes on from; None: it begins at t = 0."""
+    bags: list[Path] = field(default_factory=list)
+    """The bags of the run so far: `out`, and one more for each reset."""
 
     @property
     def run(self) -> RunConfig:
@@ -78,20 +92,27 @@ def prepare(request: Request) -> Session:
         The output directory exists or cannot be made.
 
     """
-    run = load_run(request.config)
+    run = load_run(request.config).with_controllers(request.controllers)
     scenario = idle(run) if request.scenario is None else load_scenario(request.scenario, run)
     if request.duration_s is not None:
         scenario = scenario.lasting(request.duration_s)
     name = run.name if request.scenario is None else f'{run.name}_{scenario.name}'
-    out = request.out or next(path for path in _candidates(name) if not path.exists())
+    out = request.out or _unused(RUNS / name)
     _check_output(out, request.overwrite)
-    return Session(request, scenario, out, Pace(request.real_time_factor))
+    state = None
+    if request.restore is not None:
+        state = read_state(request.restore, scenario.run.digest)
+    return Session(request, scenario, out, Pace(request.real_time_factor), state)
 
 
-def _candidates(name: str) -> Iterator[Path]:
-    yield RUNS / name
+def _candidates(directory: Path) -> Iterator[Path]:
+    yield directory
     for number in count(2):
-        yield RUNS / f'{name}_{number}'
+        yield directory.with_name(f'{directory.name}_{number}')
+
+
+def _unused(directory: Path) -> Path:
+    return next(path for path in _candidates(directory) if not path.exists())
 
 
 def _check_output(out: Path, overwrite: bool) -> None:
@@ -137,24 +158,77 @@ def run_session(session: Session, report: Report | None = None) -> Path:
 
 
 def record(
-        session: Session, transport: Transport, load: SharedLoad,
-        report: Report | None, should_stop: StopRequest) -> None:
-    """Join the participants of ``transport``, run, and record every sample."""
+        session: Session, transport: Transport, load: SharedLoad, report: Report | None,
+        should_stop: StopRequest, requests: Requests | None = None) -> None:
+    """
+    Join the participants of ``transport``, run, and record every sample.
+
+    A reset begins anew, with a bag of its own beside the first.
+    """
+    beginning, state, out = load.snapshot(), session.state, session.out
+    while True:
+        coordinator = _record_one(
+            session, out, state, transport, load, report, should_stop, requests)
+        if not coordinator.is_reset:
+            break
+        load.restore(beginning)
+        out, state = _unused(session.out), None
+    if session.request.save is not None:
+        write_state(session, coordinator, session.request.save)
+
+
+def _record_one(
+        session: Session, out: Path, state: RunState | None, transport: Transport,
+        load: SharedLoad, report: Report | None, should_stop: StopRequest,
+        requests: Requests | None) -> Coordinator:
+    """Run once, to the end or to a reset, and return where it came to."""
+    run, n_ticks = session.run, session.scenario.n_ticks
+    rows = Rows(len(run.actuators))
     plan = Plan(
-        step_ns=session.run.step_ns, n_actuators=len(session.run.actuators),
-        n_ticks=session.scenario.n_ticks, commands=session.scenario.commands)
-    duration_ns = None if plan.n_ticks is None else plan.n_ticks * plan.step_ns
-    first = transport.join()
-    order, topics = topics_of(session.run, load)
-    with BagWriter(session.out, topics, provenance(session), session.request.overwrite) as bag:
-        Coordinator(
+        step_ns=run.step_ns, rows=rows, has_controllers=bool(run.controllers), n_ticks=n_ticks,
+        commands=session.scenario.commands, is_paused=session.request.is_paused)
+    first = transport.join(rows)
+    order, topics = topics_of(run, load)
+    # The first bag alone may replace one: a reset takes a directory that does not exist.
+    overwrite = session.request.overwrite and not session.bags
+    with BagWriter(out, topics, provenance(session, state), overwrite) as bag:
+        session.bags.append(out)
+        coordinator = Coordinator(
             plan, order, transport, load, bag, pace=session.pace,
-            progress=ProgressMeter(duration_ns, report), should_stop=should_stop,
-            laps=session.request.laps).run(first)
+            progress=ProgressMeter(None if n_ticks is None else n_ticks * run.step_ns, report),
+            should_stop=should_stop, requests=requests, laps=session.request.laps)
+        coordinator.run(first, state)
+    return coordinator
 
 
-def provenance(session: Session) -> Provenance:
+def write_state(session: Session, coordinator: Coordinator, path: Path) -> None:
+    """
+    Save the state of a run between two ticks to a file.
+
+    Raises
+    ------
+    RunError
+        The file cannot be written, or a participant cannot be saved.
+
+    """
+    text = coordinator.save().to_json(session.run.digest, installed_versions())
+    try:
+        path.write_text(text, encoding='utf-8')
+    except OSError as error:
+        raise RunError(f'{path}: cannot save, {error.strerror}') from error
+
+
+def save_in_bag(session: Session, coordinator: Coordinator) -> str:
+    """Save the state of a run beside the messages of its bag and return the path."""
+    path = session.bags[-1] / f'state_{coordinator.ticks}.json'
+    write_state(session, coordinator, path)
+    return str(path)
+
+
+def provenance(session: Session, state: RunState | None = None) -> Provenance:
     """Return what the bag says about its own making."""
+    versions = installed_versions()
     return Provenance(
-        configuration=session.run.to_yaml(), scenario=session.scenario.to_yaml(),
-        seed=0, versions=installed_versions())
+        configuration=session.run.to_yaml(), scenario=session.scenario.to_yaml(), seed=0,
+        versions=versions,
+        state=None if state is None else state.to_json(session.run.digest, versions))

@@ -4,6 +4,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
 import hashlib
 import math
+import re
 from typing import Any
 
 from isa_ros.actuator_sheet import ActuatorSheet
@@ -14,8 +15,15 @@ from isa_ros.load.local import LocalLoad
 from isa_ros.parameter import parameter, Parameters
 from isa_ros.plant.supply import SupplySheet
 from isa_ros.resolve import (
-    as_tree, build, build_one_of, Place, refuse_unknown, section_at, written)
+    as_tree, build, build_one_of, names_at, Place, refuse_unknown, section_at, written)
 from isa_ros.strict_yaml import dump, parse, Tree
+
+
+COORDINATOR = 'coordinator'
+"""Name of the coordinator's node; no participant may have it."""
+
+NAME_RULE = 'must be small letters, digits and single underscores'
+_NAME = re.compile(r'[a-z](?:_?[a-z0-9])*')
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -86,6 +94,8 @@ class RunConfig:
     actuators: tuple[ActuatorConfig, ...]
     """In the order of the file, which is the order of every record."""
     leg: LegConfig | None
+    controllers: tuple[str, ...] = ()
+    """Names of the nodes that are waited for at every tick, besides the actuators."""
     source: str = field(default='')
     """Name of the file it was read from, without its directory."""
 
@@ -114,6 +124,27 @@ class RunConfig:
         """Return the row of an actuator in every record; as `actuator`."""
         return self.actuators.index(self.actuator(name))
 
+    def with_controllers(self, names: Sequence[str]) -> 'RunConfig':
+        """
+        Return the run with more controllers.
+
+        Raises
+        ------
+        ConfigError
+            A name that is taken.
+
+        """
+        for name in names:
+            refuse_bad_name(name, f'{self.source}: controllers')
+        every = (*self.controllers, *names)
+        taken = [COORDINATOR, *(actuator.name for actuator in self.actuators)]
+        for k, name in enumerate(every):
+            if name in (*taken, *every[:k]):
+                raise ConfigError(
+                    f'{self.source}: controllers: the name {name!r} is taken; '
+                    f'taken: {", ".join([*taken, *every[:k]])}')
+        return replace(self, controllers=every)
+
     def with_start(self, start: LegStart) -> 'RunConfig':
         """Return the run with its leg, and the actuators on it, starting elsewhere."""
         if self.leg is None:
@@ -134,6 +165,7 @@ class RunConfig:
             'tick_timeout_s': self.tick_timeout_s,
             'supply': as_tree(self.supply, SupplySheet),
             'actuators': {a.name: _actuator_tree(a) for a in self.actuators},
+            'controllers': list(self.controllers),
         }
         if self.leg is not None:
             tree['leg'] = {
@@ -157,7 +189,7 @@ class RunConfig:
         """
         tree, place = parse(text, name), Place(name)
         keys = ('name', 'source', 'step_ns', 'controller_offset_ns', 'tick_timeout_s', 'supply',
-                'actuators')
+                'actuators', 'controllers')
         _exactly(tree, (*keys, 'leg') if 'leg' in tree else keys, place)
         actuators = section_at(tree['actuators'], place / 'actuators')
         return cls(
@@ -170,8 +202,23 @@ class RunConfig:
                 _read_actuator(key, section_at(below, place / 'actuators' / key),
                                place / 'actuators' / key)
                 for key, below in actuators.items()),
+            controllers=tuple(names_at(tree['controllers'], place / 'controllers')),
             leg=_read_leg(section_at(tree['leg'], place / 'leg'), place / 'leg')
             if 'leg' in tree else None)
+
+
+def refuse_bad_name(name: str, where: str) -> None:
+    """
+    Refuse what ROS could not use as the name of a node.
+
+    Raises
+    ------
+    ConfigError
+        Anything but small letters, digits and single underscores.
+
+    """
+    if not _NAME.fullmatch(name):
+        raise ConfigError(f'{where} = {name!r}, {NAME_RULE}')
 
 
 def _actuator_tree(actuator: ActuatorConfig) -> Tree:

@@ -59,8 +59,7 @@ class Scenario:
         return replace(self, n_ticks=_duration(duration, self.run.step_ns, 'duration'))
 
     def commands(self, tick: int, out: NDArray[np.void]) -> None:
-        """Fill the `COMMAND` rows of one tick, (n_actuators,); kinds 0 where nothing is new."""
-        out['kinds'] = 0
+        """Write over the `COMMAND` rows of one tick, (n_actuators,), where something is said."""
         for track in self.tracks:
             event = track.at(tick)
             if event is not None:

@@ -4,7 +4,10 @@ What the actuators of one run have in common: the supply, and the leg where ther
 The coordinator's side of the load port (equation L1), and the messages that show it.
 """
 
-from isa_ros.coordinator import Messages, Records
+import math
+
+from isa_ros.errors import ConfigError
+from isa_ros.exchange import Messages, Records
 from isa_ros.load.leg import Leg, Pose
 from isa_ros.load.leg_sheet import JOINTS
 from isa_ros.load.local import static_force
@@ -13,22 +16,26 @@ from isa_ros.plant.servo_valve import largest_flow_slope
 from isa_ros.plant.supply import Supply
 from isa_ros.plant.units import MPA
 from isa_ros.run_config import LegConfig, RunConfig
-from isa_ros.signals import LOAD_PORT
-from isa_ros.stepping import START
+from isa_ros.signals import START
 from isa_ros.timebase import NS_PER_SECOND
-from msg_adapters import clock, fluid_pressure, joint_state, wrench
+from msg_adapters import clock, event, fluid_pressure, joint_state, wrench
 from msg_adapters.coordinator_messages import (
     ClockMessage, GroundContactMessage, LegJointStateMessage, SupplyPressureMessage)
 import numpy as np
 
 CLOCK_TOPIC = ('/clock', clock.TYPE)
+EVENT_TOPIC = ('/coordinator/events', event.TYPE)
 SUPPLY_TOPIC = ('/coordinator/supply_pressure', fluid_pressure.TYPE)
 JOINT_TOPIC = ('/joint_states', joint_state.TYPE)
 CONTACT_TOPIC = ('/coordinator/ground_contact', wrench.TYPE)
 
+_SHOWN = {'joint_position': 'position', 'joint_velocity': 'velocity', 'joint_torque': 'torque',
+          'foot_force': 'foot_force'}
+"""Field of the leg's sample by that of `SHARED_SAMPLE`."""
+
 
 class SharedLoad:
-    """Supply and leg of a run; see `isa_ros.coordinator.SharedLoad`."""
+    """Supply and leg of a run; see `isa_ros.exchange.SharedLoad`."""
 
     def __init__(self, run: RunConfig) -> None:
         self._step_ns = run.step_ns
@@ -36,7 +43,6 @@ class SharedLoad:
         slope = sum(largest_flow_slope(plant_record(a.sheet.plant)[0].valve, span)
                     for a in run.actuators)
         self._supply = Supply(run.supply, run.step_ns, slope)
-        self._ports = np.zeros(len(run.actuators), LOAD_PORT)
         self._leg: Leg | None = None
         self._release_ns = 0
         self._t_ns = 0
@@ -55,15 +61,14 @@ class SharedLoad:
             return (SUPPLY_TOPIC,)
         return SUPPLY_TOPIC, JOINT_TOPIC, CONTACT_TOPIC
 
-    def ports(self) -> Records:
-        """Return the `LOAD_PORT` of every actuator for the next tick, shape (n_actuators,)."""
-        self._ports['supply_pressure'] = self._supply.pressure
-        self._ports['return_pressure'] = self._supply.return_pressure
+    def ports(self, ports: Records) -> None:
+        """Fill the `LOAD_PORT` of every actuator for the next tick, shape (n_actuators,)."""
+        ports['supply_pressure'] = self._supply.pressure
+        ports['return_pressure'] = self._supply.return_pressure
         if self._leg is not None:
             if self._leg.is_held and self._t_ns >= self._release_ns:
                 self._leg.release()
-            self._leg.ports(self._ports)
-        return self._ports
+            self._leg.ports(ports)
 
     def advance(self, replies: Records) -> None:
         """
@@ -80,9 +85,44 @@ class SharedLoad:
         self._supply.advance(float(replies['supply_volume'].sum()))
         self._t_ns += self._step_ns
 
+    def show(self, shared: Records) -> None:
+        """Fill the `SHARED_SAMPLE` of this instant, shape (1,)."""
+        shared['supply_pressure'] = self._supply.pressure
+        for shown, name in _SHOWN.items():
+            shared[shown] = math.nan if self._leg is None else self._leg.sample[name]
+
     def clock(self, t_ns: int) -> bytes:
         """Return the `/clock` message of ``t_ns``."""
         return self._clock.pack(t_ns)
+
+    def event(self, t_ns: int, text: str) -> bytes:
+        """Return the message that says what was done to the run at ``t_ns``."""
+        return event.pack(t_ns, text)
+
+    def snapshot(self) -> bytes:
+        """Return the whole state; `restore` continues from it byte for byte."""
+        leg = b'' if self._leg is None else self._leg.state()
+        return self._t_ns.to_bytes(8, 'little') + self._supply.state() + leg
+
+    def restore(self, snapshot: bytes) -> None:
+        """
+        Continue from a `snapshot` of the same configuration.
+
+        Raises
+        ------
+        ConfigError
+            It is none.
+
+        """
+        here = len(self.snapshot())
+        if len(snapshot) != here:
+            raise ConfigError(
+                f'saved state of the load: {len(snapshot)} bytes, must be {here}')
+        supply_end = 8 + len(self._supply.state())
+        self._t_ns = int.from_bytes(snapshot[:8], 'little')
+        self._supply.restore(snapshot[8:supply_end])
+        if self._leg is not None:
+            self._leg.restore(snapshot[supply_end:])
 
     def messages(self, t_ns: int) -> Messages:
         """Return the messages of this instant in the order of `topics`."""

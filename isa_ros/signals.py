@@ -13,6 +13,14 @@ import numpy as np
 HAS_SETPOINT = 1
 HAS_ENABLE = 2
 
+START = np.dtype([
+    ('position', '<f8'),         # m | rad
+    ('force', '<f8'),            # what the actuator holds at rest, N | Nm
+    ('supply_pressure', '<f8'),  # Pa gauge
+    ('return_pressure', '<f8'),  # Pa gauge
+])
+"""How one actuator begins a run."""
+
 COMMAND = np.dtype([
     ('kinds', '<u4'),          # bits HAS_SETPOINT, HAS_ENABLE; 0: nothing new this tick
     ('is_enabled', '<u4'),     # 0 or 1, with HAS_ENABLE
@@ -65,3 +73,12 @@ LOAD_REPLY = np.dtype([
     ('return_volume', '<f8'),                  # oil given to the return in this tick, m3
 ])
 """Load port, actuator to load, one row per actuator and tick."""
+
+SHARED_SAMPLE = np.dtype([
+    ('supply_pressure', '<f8'),         # Pa gauge
+    ('joint_position', '<f8', (3,)),    # HAA, HFE, KFE, rad
+    ('joint_velocity', '<f8', (3,)),    # rad/s
+    ('joint_torque', '<f8', (3,)),      # Nm
+    ('foot_force', '<f8', (3,)),        # from the ground, base axes, N
+])
+"""What supply and leg show at the end of a tick; NaN what belongs to a leg that is not there."""

@@ -1,42 +1,34 @@
 """What moves when it is ticked: one actuator with its messages, and all of them in one process."""
 
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
+import time
 from typing import Protocol
 
 from isa_ros.actuator import ActuatorConfig, SmartActuator, Timing
-from isa_ros.coordinator import Messages, Records
-from isa_ros.signals import LOAD_REPLY
+from isa_ros.errors import ConfigError
+from isa_ros.exchange import Messages, Records, Rows, Voice
 from msg_adapters import actuator_messages
 import numpy as np
 
-START = np.dtype([
-    ('position', '<f8'),         # m | rad
-    ('force', '<f8'),            # what the actuator holds at rest, N | Nm
-    ('supply_pressure', '<f8'),  # Pa gauge
-    ('return_pressure', '<f8'),  # Pa gauge
-])
-"""How one actuator begins a run."""
-
-NO_REPLY = np.zeros(1, LOAD_REPLY)[0]
+IDLE_S = 0.005
+"""Host time between two looks at what is asked of a paused run."""
 
 
 class Stepper(Protocol):
-    """One participant of a run, wherever it lives."""
+    """One actuator of a run, wherever it lives."""
 
     @property
     def digest(self) -> str:
-        """Return a hash of its resolved parameters; empty: nothing to compare."""
+        """Return a hash of its resolved parameters."""
         ...
 
     def start(self, start: np.void | None) -> Messages:
         """Begin anew at t = 0 from a `START` row and return the messages of t = 0."""
         ...
 
-    def advance(self, tick: int, port: np.void | None, command: np.void | None) -> Messages:
+    def advance(self, port: np.void | None, command: np.void | None) -> Messages:
         """
-        Take part in one tick and return the messages of its end.
-
-        ``port`` and ``command`` are None for a participant that is no actuator.
+        Take the command of this tick, advance, and return the messages of its end.
 
         Raises
         ------
@@ -51,8 +43,29 @@ class Stepper(Protocol):
         """Return the `LOAD_REPLY` of the last tick."""
         ...
 
+    @property
+    def sample(self) -> np.void:
+        """Return the `SAMPLE` at the end of the last tick."""
+        ...
+
+    def snapshot(self) -> bytes:
+        """Return the whole state; `restore` continues from it byte for byte."""
+        ...
+
+    def restore(self, snapshot: bytes) -> Messages:
+        """
+        Continue from a `snapshot` and return the messages of that instant.
+
+        Raises
+        ------
+        ConfigError
+            It is none of an actuator with these parameters.
+
+        """
+        ...
+
     def publish(self, messages: Messages) -> None:
-        """Publish messages of `start` or `advance` to whoever listens."""
+        """Publish messages of `start`, `restore` or `advance` to whoever listens."""
         ...
 
     def serve(self) -> None:
@@ -87,6 +100,11 @@ class SteppedActuator:
         self.actuator.tick(port)
         return self._sampled(tick_start)
 
+    def restore(self, snapshot: bytes) -> Messages:
+        """Continue from a snapshot and return the messages of that instant."""
+        self.actuator.restore(snapshot)
+        return self._sampled(max(0, self.actuator.t_ns - self._step_ns))
+
     def _sampled(self, applied_ns: int) -> Messages:
         """Return all messages of this instant; what was applied took effect at ``applied_ns``."""
         applied = self.actuator.applied
@@ -114,15 +132,28 @@ class QuietActuator:
         """Return the `LOAD_REPLY` of the last tick."""
         return self._stepped.actuator.reply
 
+    @property
+    def sample(self) -> np.void:
+        """Return the `SAMPLE` at the end of the last tick."""
+        return self._stepped.actuator.sample
+
     def start(self, start: np.void | None) -> Messages:
         """Begin anew at t = 0."""
         return self._stepped.start(start)
 
-    def advance(self, tick: int, port: np.void | None, command: np.void | None) -> Messages:
+    def advance(self, port: np.void | None, command: np.void | None) -> Messages:
         """Take the command of this tick and advance."""
         if command is not None and command['kinds']:
             self._stepped.actuator.accept(command)
         return self._stepped.advance(port)
+
+    def snapshot(self) -> bytes:
+        """Return the whole state."""
+        return self._stepped.actuator.snapshot()
+
+    def restore(self, snapshot: bytes) -> Messages:
+        """Continue from a snapshot."""
+        return self._stepped.restore(snapshot)
 
     def publish(self, messages: Messages) -> None:
         """Tell nobody."""
@@ -133,40 +164,68 @@ class QuietActuator:
 
 class LocalTransport:
     """
-    All participants in this process, called one after the other in configuration order.
+    All actuators in this process, called one after the other in configuration order.
 
-    ``starts`` are their `START` rows, (n,); ``publish`` takes the messages of the shared load.
+    ``starts`` are their `START` rows, (n,).
     """
 
-    def __init__(
-            self, steppers: Sequence[Stepper], starts: Records,
-            publish: Callable[[Messages], None], publish_clock: Callable[[bytes], None]) -> None:
+    def __init__(self, steppers: Sequence[Stepper], starts: Records, voice: Voice) -> None:
         self._steppers = steppers
         self._starts = starts
-        self.publish = publish
-        self.publish_clock = publish_clock
-        self._work: tuple[int, Records, Records] | None = None
+        self.publish = voice.publish
+        self.publish_clock = voice.publish_clock
+        self.publish_event = voice.publish_event
+        self._first: list[Messages] = []
 
-    def join(self) -> Sequence[Messages]:
+    def join(self, rows: Rows) -> Sequence[Messages]:
         """Start everyone and return the messages of t = 0."""
-        answers = [stepper.start(self._starts[k]) for k, stepper in enumerate(self._steppers)]
-        for stepper, messages in zip(self._steppers, answers):
+        self._first = [
+            stepper.start(self._starts[k]) for k, stepper in enumerate(self._steppers)]
+        self.take_samples(rows)
+        return self._first
+
+    def restore(
+            self, tick: int, snapshots: Sequence[bytes], rows: Rows) -> Sequence[Messages]:
+        """Put everyone where the snapshots were taken and return the messages of then."""
+        if len(snapshots) != len(self._steppers):
+            raise ConfigError(
+                f'the saved state has {len(snapshots)} participants, the run has '
+                f'{len(self._steppers)}')
+        self._first = [
+            stepper.restore(own) for stepper, own in zip(self._steppers, snapshots)]
+        self.take_samples(rows)
+        return self._first
+
+    def begin(self) -> None:
+        """Publish the first messages of everyone."""
+        for stepper, messages in zip(self._steppers, self._first):
             stepper.publish(messages)
-        return answers
 
-    def send(self, tick: int, ports: Records, commands: Records) -> None:
-        """Keep the work for `receive`."""
-        self._work = (tick, ports, commands)
+    def send(self, tick: int, rows: Rows) -> None:
+        """Leave the work to `receive`."""
 
-    def receive(self, replies: Records) -> Sequence[Messages]:
+    def receive(self, rows: Rows) -> Sequence[Messages]:
         """Advance everyone."""
-        assert self._work is not None, 'send comes first'
-        tick, ports, commands = self._work
         answers = []
         for k, stepper in enumerate(self._steppers):
             stepper.serve()
-            messages = stepper.advance(tick, ports[k], commands[k])
+            messages = stepper.advance(rows.ports[k], rows.commands[k])
             stepper.publish(messages)
-            replies[k] = stepper.reply
+            rows.replies[k] = stepper.reply
             answers.append(messages)
         return answers
+
+    def idle(self) -> None:
+        """Listen to whoever asks something of an actuator."""
+        for stepper in self._steppers:
+            stepper.serve()
+        time.sleep(IDLE_S)
+
+    def snapshots(self) -> list[bytes]:
+        """Return the state of every actuator."""
+        return [stepper.snapshot() for stepper in self._steppers]
+
+    def take_samples(self, rows: Rows) -> None:
+        """Fill the samples with what the actuators show now."""
+        for k, stepper in enumerate(self._steppers):
+            rows.samples[k] = stepper.sample

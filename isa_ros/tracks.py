@@ -55,7 +55,11 @@ class Event:
     motion: Motion | None
 
     def write(self, tick: int, step_ns: int, row: np.void) -> None:
-        """Fill the `COMMAND` row of ``tick``, this event's own or a later one of its motion."""
+        """
+        Fill the `COMMAND` row of ``tick``, this event's own or a later one of its motion.
+
+        What the row said before and the event leaves open stays.
+        """
         kinds = 0
         if self.setpoint is not None:
             kinds = HAS_SETPOINT
@@ -72,7 +76,7 @@ class Event:
         if self.is_enabled is not None and tick == self.tick:
             kinds |= HAS_ENABLE
             row['is_enabled'] = int(self.is_enabled)
-        row['kinds'] = kinds
+        row['kinds'] |= kinds
 
 
 @dataclass(frozen=True)

@@ -1,16 +1,20 @@
 """The barrier and the run, with fakes for actuators, load and recorder."""
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 
-from isa_ros.coordinator import Coordinator, Interrupted, Messages, Order, Plan, Records
-from isa_ros.errors import RunError, SimulationDiverged
+from isa_ros.coordinator import Coordinator, Interrupted, Plan
+from isa_ros.errors import ConfigError, RunError, SimulationDiverged
+from isa_ros.exchange import Messages, Records, Rows
 from isa_ros.pacing import Pace, ProgressMeter
-from isa_ros.signals import LOAD_PORT
+from isa_ros.run_state import RunState
+from isa_ros.signals import COMMAND, HAS_SETPOINT
+from isa_ros.topics import Order
 import numpy as np
 import pytest
 
 STEP_NS = 1_000_000
 TOPICS = [['/b/state', '/b/applied'], ['/a/state'], ['/clock'], ['/supply']]
+EVENTS = '/events'
 
 
 class FakeTransport:
@@ -20,27 +24,48 @@ class FakeTransport:
         self.log = log
         self.failure: Exception | None = None
         self.fails_at = -1
+        self.asks_at = -1
         self.tick = 0
 
-    def join(self) -> Sequence[Messages]:
+    def join(self, rows: Rows) -> Sequence[Messages]:
         return self._answers(0)
+
+    def restore(
+            self, tick: int, snapshots: Sequence[bytes], rows: Rows) -> Sequence[Messages]:
+        self.log.append(f'restore {tick} {snapshots}')
+        return self._answers(tick)
+
+    def begin(self) -> None:
+        self.log.append('begin')
 
     def publish_clock(self, clock: bytes) -> None:
         self.log.append(f'clock {clock.decode()}')
 
-    def send(self, tick: int, ports: Records, commands: Records) -> None:
-        self.tick = tick
-        self.log.append(f'send {tick} x0={ports["x0"][0]:g} kinds={commands["kinds"].tolist()}')
+    def publish_event(self, event: bytes) -> None:
+        self.log.append(event.decode())
 
-    def receive(self, replies: Records) -> Sequence[Messages]:
+    def send(self, tick: int, rows: Rows) -> None:
+        self.tick = tick
+        self.log.append(
+            f'send {tick} x0={rows.ports["x0"][0]:g} kinds={rows.commands["kinds"].tolist()}')
+
+    def receive(self, rows: Rows) -> Sequence[Messages]:
         if self.tick == self.fails_at and self.failure is not None:
             raise self.failure
         self.log.append(f'receive {self.tick}')
-        replies['force'] = self.tick
+        rows.replies['force'] = self.tick
+        if self.tick == self.asks_at:
+            rows.requests[0] = (HAS_SETPOINT, 0, 0.5, 0.0, 0.0, np.nan, np.nan)
         return self._answers(self.tick + 1)
 
     def publish(self, messages: Messages) -> None:
         self.log.append('publish')
+
+    def idle(self) -> None:
+        self.log.append('idle')
+
+    def snapshots(self) -> list[bytes]:
+        return [b'b', b'a']
 
     def _answers(self, sequence: int) -> Sequence[Messages]:
         applied = b'applied' if sequence in (0, 2) else None
@@ -52,20 +77,32 @@ class FakeLoad:
 
     def __init__(self, log: list[str]) -> None:
         self.log = log
-        self._ports = np.zeros(2, LOAD_PORT)
+        self.x0 = 0
 
-    def ports(self) -> Records:
-        return self._ports
+    def ports(self, ports: Records) -> None:
+        ports['x0'] = self.x0
 
     def advance(self, replies: Records) -> None:
         self.log.append(f'advance {replies["force"][0]:g}')
-        self._ports['x0'] += 1.0
+        self.x0 += 1
+
+    def show(self, shared: Records) -> None:
+        self.log.append('show')
 
     def messages(self, t_ns: int) -> Messages:
         return (b'supply%d' % t_ns,)
 
     def clock(self, t_ns: int) -> bytes:
         return b'%d' % t_ns
+
+    def event(self, t_ns: int, text: str) -> bytes:
+        return f'{text} at {t_ns}'.encode()
+
+    def snapshot(self) -> bytes:
+        return b'%d' % self.x0
+
+    def restore(self, snapshot: bytes) -> None:
+        self.x0 = int(snapshot)
 
 
 class FakeRecorder:
@@ -84,26 +121,34 @@ class FakeRecorder:
 class Rig:
     """One coordinator with its fakes."""
 
-    def __init__(self, n_ticks: int | None = 3) -> None:
+    def __init__(self, n_ticks: int | None = 3, **plan: bool) -> None:
+        self.asked: dict[int, Callable[[Coordinator], object]] = {}
         self.log: list[str] = []
         self.transport = FakeTransport(self.log)
         self.recorder = FakeRecorder(self.log)
         self.stops_at: int | None = None
-        plan = Plan(step_ns=STEP_NS, n_actuators=2, n_ticks=n_ticks, commands=self.command)
-        self.order = Order(TOPICS)
+        self.looks = 0
+        self.rows, self.load = Rows(2), FakeLoad(self.log)
+        self.order = Order(TOPICS, EVENTS)
         self.coordinator = Coordinator(
-            plan, self.order, self.transport, FakeLoad(self.log), self.recorder,
-            pace=Pace(), progress=ProgressMeter(None, None), should_stop=self.should_stop)
+            Plan(step_ns=STEP_NS, rows=self.rows, n_ticks=n_ticks, commands=self.command, **plan),
+            self.order, self.transport, self.load, self.recorder,
+            pace=Pace(), progress=ProgressMeter(None, None), should_stop=self.should_stop,
+            requests=self.ask)
 
     def command(self, tick: int, rows: Records) -> None:
-        assert not rows['kinds'].any()
         rows['kinds'][1] = tick
+
+    def ask(self, coordinator: Coordinator) -> None:
+        """Ask for what a test wants at this look, counted from 0."""
+        self.looks += 1
+        self.asked.get(self.looks - 1, lambda run: None)(coordinator)
 
     def should_stop(self) -> bool:
         return self.coordinator.ticks == self.stops_at
 
-    def run(self) -> None:
-        self.coordinator.run(self.transport.join())
+    def run(self, state: RunState | None = None) -> None:
+        self.coordinator.run(self.transport.join(self.rows), state)
 
     @property
     def sequences(self) -> list[int]:
@@ -122,7 +167,7 @@ def test_order_of_a_tick():
     rig = Rig(2)
     rig.run()
     assert rig.log == [
-        'clock 0', 'publish',
+        'clock 0', 'begin', 'publish',
         'clock 1000000', 'send 0 x0=0 kinds=[0, 0]', 'record 0',
         'receive 0', 'advance 0', 'publish',
         'clock 2000000', 'send 1 x0=1 kinds=[0, 1]', 'record 1',
@@ -134,15 +179,16 @@ def test_sample_is_in_canonical_order():
     """Topics sorted by name, whatever the order of the participants; absent ones left out."""
     rig = Rig(2)
     rig.run()
-    assert rig.order.topics == ('/a/state', '/b/applied', '/b/state', '/clock', '/supply')
+    assert rig.order.topics == (
+        '/a/state', '/b/applied', '/b/state', '/clock', '/events', '/supply')
     assert rig.recorder.samples[1][2] == [
-        (0, b'a1'), (2, b'b1'), (3, b'1000000'), (4, b'supply1000000')]
+        (0, b'a1'), (2, b'b1'), (3, b'1000000'), (5, b'supply1000000')]
     assert rig.recorder.samples[2][2][1] == (1, b'applied')
 
 
 def test_a_topic_has_one_source():
     with pytest.raises(ValueError, match='two sources'):
-        Order([['/clock'], ['/clock']])
+        Order([['/clock'], ['/clock']], EVENTS)
 
 
 def test_stop_finishes_the_tick_and_records_it():
@@ -178,3 +224,107 @@ def test_lost_recorder_ends_the_run():
         rig.run()
     assert rig.sequences == [0, 1]
     assert rig.coordinator.ticks == 2
+
+
+def test_what_a_controller_asks_for_takes_effect_once_at_the_next_tick():
+    """Asked in tick 0, in force from tick 1; the scenario writes over it."""
+    rig = Rig(3)
+    rig.transport.asks_at = 0
+    rig.run()
+    assert [line for line in rig.log if line.startswith('send')] == [
+        'send 0 x0=0 kinds=[0, 0]', 'send 1 x0=1 kinds=[1, 1]', 'send 2 x0=2 kinds=[0, 2]']
+
+
+def test_only_controllers_are_shown_the_shared_load():
+    rig, controlled = Rig(1), Rig(1, has_controllers=True)
+    rig.run()
+    controlled.run()
+    assert 'show' not in rig.log
+    assert controlled.log.index('show') < controlled.log.index('send 0 x0=0 kinds=[0, 0]')
+
+
+def test_a_paused_run_ticks_only_when_stepped():
+    """Paused after a tick, two steps, then on to the end; each recorded where it was done."""
+    rig = Rig(5)
+    rig.asked = {1: lambda run: run.pause(True), 3: lambda run: run.step(2),
+                 5: lambda run: run.pause(False)}
+    rig.run()
+    assert rig.sequences == [0, 1, 2, 3, 4, 5]
+    idles = [k for k, line in enumerate(rig.log) if line == 'idle']
+    sends = [k for k, line in enumerate(rig.log) if line.startswith('send')]
+    assert [sum(idle < send for idle in idles) for send in sends] == [0, 2, 2, 4, 4]
+    events = {sequence: [data for topic, data in messages if topic == 4]
+              for _, sequence, messages in rig.recorder.samples}
+    assert events == {
+        0: [], 1: [b'pause at 1000000', b'step 2 at 1000000'], 2: [],
+        3: [b'resume at 3000000'], 4: [], 5: []}
+
+
+def test_a_step_is_refused_unless_paused():
+    rig = Rig(3)
+    rig.asked = {1: lambda run: run.step(1)}
+    with pytest.raises(ConfigError, match='step: the run is not paused'):
+        rig.run()
+
+
+def test_a_step_does_not_go_beyond_the_end():
+    rig = Rig(3, is_paused=True)
+    rig.asked = {0: lambda run: run.step(100)}
+    rig.run()
+    assert rig.sequences == [0, 1, 2, 3]
+
+
+def test_a_run_may_begin_paused():
+    rig = Rig(2, is_paused=True)
+    rig.asked = {3: lambda run: run.pause(False)}
+    rig.run()
+    assert rig.log.index('send 0 x0=0 kinds=[0, 0]') > rig.log.index('idle')
+    assert rig.sequences == [0, 1, 2]
+
+
+def test_a_stop_ends_a_pause():
+    rig = Rig(3, is_paused=True)
+    rig.stops_at = 0
+    with pytest.raises(Interrupted, match='after 0 ticks'):
+        rig.run()
+    assert rig.sequences == [0]
+
+
+def test_a_reset_ends_the_run_where_it_is():
+    rig = Rig(9)
+    rig.asked = {2: lambda run: run.reset()}
+    rig.run()
+    assert rig.coordinator.is_reset
+    assert rig.sequences == [0, 1, 2]
+    assert rig.recorder.samples[2][2][-2] == (4, b'reset at 2000000')
+
+
+def test_a_saved_run_goes_on_where_it_was():
+    """Tick, load, participants and what controllers asked for; the sample there comes first."""
+    first, states = Rig(4), []
+    first.transport.asks_at = 1
+    first.asked = {2: lambda run: states.append(run.save())}
+    first.run()
+    again = Rig(4)
+    again.run(states[0])
+    assert 'restore 2 [b\'b\', b\'a\']' in again.log
+    assert again.recorder.samples == first.recorder.samples[2:]
+    sent = [line for line in first.log if line.startswith('send')][2:]
+    assert [line for line in again.log if line.startswith('send')] == sent
+    assert sent[0] == 'send 2 x0=2 kinds=[1, 2]'
+
+
+def test_a_state_beyond_the_end_is_refused():
+    state = RunState(tick=3, load=b'3', participants=[b'b', b'a'],
+                     requests=np.zeros(2, COMMAND).tobytes())
+    with pytest.raises(ConfigError, match=r'of t = 0\.003 s, must be before the end, 0\.003 s'):
+        Rig(3).run(state)
+
+
+def test_another_pace_counts_from_now():
+    rig = Rig(2)
+    rig.asked = {1: lambda run: run.set_real_time_factor(1e6)}
+    rig.run()
+    assert rig.sequences == [0, 1, 2]
+    with pytest.raises(ConfigError, match='real_time_factor = -1'):
+        rig.coordinator.set_real_time_factor(-1.0)

@@ -32,8 +32,9 @@ def rotary() -> RunConfig:
 
 
 def rows(scenario: Scenario, tick: int) -> np.ndarray:
-    """Return the commands of a tick, written over rows that hold something else."""
+    """Return the commands of a tick, written over rows in which nothing new stands."""
     out = np.full(len(scenario.run.actuators), 7, COMMAND)
+    out['kinds'] = 0
     scenario.commands(tick, out)
     return out
 
@@ -216,6 +217,18 @@ def test_a_start_the_leg_cannot_take_is_refused(text: str, expected: str, leg: R
 def test_a_wrong_duration_is_refused(duration: float, expected: str, rotary: RunConfig) -> None:
     with pytest.raises(ConfigError, match=expected):
         idle(rotary, duration)
+
+
+def test_what_a_controller_asks_for_stays_where_the_scenario_is_silent(rotary):
+    """Enabling alone leaves the setpoint that was asked for."""
+    scenario = of_track('    - {t_s: 0.0, enabled: true}', rotary)
+    out = np.zeros(1, COMMAND)
+    out['kinds'], out['position'] = HAS_SETPOINT, 0.25
+    scenario.commands(0, out)
+    assert out['kinds'][0] == HAS_SETPOINT | HAS_ENABLE
+    assert out['position'][0] == 0.25
+    scenario.commands(1, out)
+    assert out['position'][0] == 0.25
 
 
 def test_an_idle_scenario_commands_nothing(rotary: RunConfig) -> None:

@@ -1,9 +1,10 @@
 """Actuators with their messages, called directly."""
 
-from isa_ros.coordinator import Messages
 from isa_ros.default_actuator import default_actuator, DEFAULT_TIMING
-from isa_ros.signals import COMMAND, HAS_ENABLE, HAS_SETPOINT, LOAD_PORT, LOAD_REPLY
-from isa_ros.stepping import LocalTransport, START, SteppedActuator
+from isa_ros.errors import ConfigError
+from isa_ros.exchange import Messages, Rows, Silence
+from isa_ros.signals import COMMAND, HAS_ENABLE, HAS_SETPOINT, LOAD_REPLY, SAMPLE, START
+from isa_ros.stepping import LocalTransport, SteppedActuator
 from msg_adapters.cdr_reader import decode
 import numpy as np
 import pytest
@@ -66,6 +67,26 @@ def test_start_begins_anew(stepped):
     assert run() == run()
 
 
+def test_a_restored_actuator_says_what_it_said_then(stepped):
+    """State and applied setpoint of that instant, and the same bytes from then on."""
+    stepped.start(None)
+    command = np.zeros(1, COMMAND)[0]
+    command['kinds'] = HAS_ENABLE
+    stepped.actuator.accept(command)
+    then, snapshot = stepped.advance(None), stepped.actuator.snapshot()
+    later = [stepped.advance(None) for _ in range(3)]
+    other = SteppedActuator(default_actuator('isa_v5', 'knee'), DEFAULT_TIMING)
+    assert other.restore(snapshot) == then
+    assert then[APPLIED] is not None
+    assert [other.advance(None) for _ in range(3)] == later
+
+
+def test_a_cut_snapshot_is_refused(stepped):
+    snapshot = stepped.actuator.snapshot()
+    with pytest.raises(ConfigError, match=r'knee: saved state of \d+ bytes, must be'):
+        stepped.restore(snapshot[:-1])
+
+
 class Scripted:
     """A participant that says when it was called."""
 
@@ -73,16 +94,24 @@ class Scripted:
 
     def __init__(self, name: str, log: list[str]) -> None:
         self.name, self.log = name, log
-        self.reply = np.zeros(1, LOAD_REPLY)[0]
+        self.reply, self.sample = np.zeros(1, LOAD_REPLY)[0], np.zeros(1, SAMPLE)[0]
 
     def start(self, start: np.void | None) -> Messages:
         self.log.append(f'{self.name} starts at {start["position"]:g}')
+        self.sample['position'] = start['position']
         return [b'first']
 
-    def advance(self, tick: int, port: np.void | None, command: np.void | None) -> Messages:
-        self.log.append(f'{self.name} {tick} {port["x0"]:g} {command["kinds"]}')
+    def advance(self, port: np.void | None, command: np.void | None) -> Messages:
+        self.log.append(f'{self.name} {port["x0"]:g} {command["kinds"]}')
         self.reply['force'] = port['x0']
-        return [b'%d' % tick]
+        return [b'%d' % port['x0']]
+
+    def snapshot(self) -> bytes:
+        return self.name.encode()
+
+    def restore(self, snapshot: bytes) -> Messages:
+        self.log.append(f'{self.name} goes on from {snapshot.decode()}')
+        return [b'then']
 
     def publish(self, messages: Messages) -> None:
         self.log.append(f'{self.name} publishes {messages[0].decode()}')
@@ -91,18 +120,42 @@ class Scripted:
         self.log.append(f'{self.name} serves')
 
 
-def test_local_transport_calls_in_order():
+@pytest.fixture
+def log() -> list[str]:
+    """Return what the steppers were asked, in order."""
+    return []
+
+
+@pytest.fixture
+def transport(log) -> LocalTransport:
+    """Return two scripted steppers in one process."""
+    starts = np.zeros(2, START)
+    starts['position'] = 1.0, 2.0
+    return LocalTransport([Scripted('b', log), Scripted('a', log)], starts, Silence())
+
+
+def test_local_transport_calls_in_order(log, transport):
     """Each serves its inputs, advances and publishes before the next one does."""
-    log: list[str] = []
-    starts, ports, commands = np.zeros(2, START), np.zeros(2, LOAD_PORT), np.zeros(2, COMMAND)
-    starts['position'], ports['x0'], commands['kinds'] = (1.0, 2.0), (3.0, 4.0), (0, 1)
-    transport = LocalTransport(
-        [Scripted('b', log), Scripted('a', log)], starts, log.append, log.append)
-    assert transport.join() == [[b'first'], [b'first']]
-    transport.send(5, ports, commands)
-    replies = np.zeros(2, LOAD_REPLY)
-    assert transport.receive(replies) == [[b'5'], [b'5']]
-    assert replies['force'].tolist() == [3.0, 4.0]
+    rows = Rows(2)
+    rows.ports['x0'], rows.commands['kinds'] = (3.0, 4.0), (0, 1)
+    assert transport.join(rows) == [[b'first'], [b'first']]
+    assert rows.samples['position'].tolist() == [1.0, 2.0]
+    transport.begin()
+    transport.send(5, rows)
+    assert transport.receive(rows) == [[b'3'], [b'4']]
+    assert rows.replies['force'].tolist() == [3.0, 4.0]
     assert log == [
         'b starts at 1', 'a starts at 2', 'b publishes first', 'a publishes first',
-        'b serves', 'b 5 3 0', 'b publishes 5', 'a serves', 'a 5 4 1', 'a publishes 5']
+        'b serves', 'b 3 0', 'b publishes 3', 'a serves', 'a 4 1', 'a publishes 4']
+
+
+def test_local_transport_restores_each_from_its_own(log, transport):
+    """What is published first is of the instant it goes on from."""
+    rows = Rows(2)
+    transport.join(rows)
+    log.clear()
+    assert transport.restore(7, transport.snapshots(), rows) == [[b'then'], [b'then']]
+    transport.begin()
+    assert log == ['b goes on from b', 'a goes on from a', 'b publishes then', 'a publishes then']
+    with pytest.raises(ConfigError, match='the saved state has 1 participants, the run has 2'):
+        transport.restore(7, [b'b'], rows)

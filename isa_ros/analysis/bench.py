@@ -22,12 +22,13 @@ from isa_ros.analysis import cylinder
 from isa_ros.bag.writer import BagWriter
 from isa_ros.config import load_run
 from isa_ros.default_actuator import default_actuator, DEFAULT_TIMING
+from isa_ros.exchange import Rows
 from isa_ros.pacing import Laps, Progress
 from isa_ros.paths import CONFIG, find, SCENARIOS
 from isa_ros.run import bringup, prepare, provenance, Request
 from isa_ros.scenario import load_scenario
 from isa_ros.shared_load import SharedLoad
-from isa_ros.signals import LOAD_PORT, LOAD_REPLY
+from isa_ros.signals import LOAD_PORT
 from isa_ros.stepping import SteppedActuator
 from isa_ros.timebase import NS_PER_SECOND, PLANT_STEP
 from isa_ros.topics import topics_of
@@ -143,8 +144,9 @@ def tick_parts() -> list[Row]:
     run = load_scenario(find('drop.yaml', SCENARIOS), load_run(find('leg.yaml', CONFIG))).run
     timing = DEFAULT_TIMING
     load = SharedLoad(run)
-    starts, ports = load.starts(run), load.ports()
-    replies = np.zeros(len(run.actuators), LOAD_REPLY)
+    starts, rows = load.starts(run), Rows(len(run.actuators))
+    ports, replies = rows.ports, rows.replies
+    load.ports(ports)
     parts = {}
     stepped = [SteppedActuator(config, timing) for config in run.actuators]
     for actuator, start in zip(stepped, starts):
@@ -167,7 +169,7 @@ def tick_parts() -> list[Row]:
 
     def leg() -> None:
         for _ in range(TICKS):
-            load.ports()
+            load.ports(ports)
             load.advance(replies)
     replies['mean_forces'] = starts['force'][:, None]
     parts['leg and supply'] = seconds(leg, TICKS)

@@ -161,7 +161,7 @@ def _of_model(choice: Choice) -> RunConfig:
     return RunConfig(
         choice.name, DEFAULT_TIMING.step_ns, DEFAULT_TIMING.controller_offset_ns,
         TICK_TIMEOUT_S, ConstantSupply(pressure_mpa=SUPPLY / MPA, return_pressure_mpa=0.0),
-        (config,), None, choice.name)
+        (config,), None, source=choice.name)
 
 
 def _of_run(choice: Choice) -> RunConfig:

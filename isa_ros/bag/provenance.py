@@ -16,7 +16,9 @@ from isa_ros.errors import BagError
 
 CONFIGURATION = 'configuration.yaml'
 SCENARIO = 'scenario.yaml'
-MEDIA_TYPE = 'application/yaml'
+STATE = 'state.json'
+MEDIA_TYPES = {
+    CONFIGURATION: 'application/yaml', SCENARIO: 'application/yaml', STATE: 'application/json'}
 RECORD = 'isa_ros'
 FORMAT = '1'
 
@@ -32,10 +34,13 @@ class Provenance:
     scenario: str
     seed: int
     versions: Mapping[str, str]
+    state: str | None = None
+    """The saved state that the run went on from (JSON text); None: it began at t = 0."""
 
     def attachments(self) -> dict[str, bytes]:
         """Return the attachments by name."""
-        return {CONFIGURATION: self.configuration.encode(), SCENARIO: self.scenario.encode()}
+        always = {CONFIGURATION: self.configuration.encode(), SCENARIO: self.scenario.encode()}
+        return always if self.state is None else always | {STATE: self.state.encode()}
 
     def record(self) -> dict[str, str]:
         """Return the key-value metadata record, in fixed order."""
@@ -59,7 +64,8 @@ class Provenance:
         if record.get('format') != FORMAT:
             raise BagError(
                 f'{where}: provenance format {record.get("format")!r}, must be {FORMAT!r}')
-        for name in (CONFIGURATION, SCENARIO):
+        expected = (CONFIGURATION, SCENARIO, *((STATE,) if STATE in attachments else ()))
+        for name in expected:
             if name not in attachments:
                 raise BagError(f'{where}: attachment {name} is missing')
             if record.get(f'{name}.sha256') != _sha256(attachments[name]):
@@ -74,7 +80,8 @@ class Provenance:
             seed=seed,
             versions={
                 key.removeprefix(_VERSION): value
-                for key, value in record.items() if key.startswith(_VERSION)})
+                for key, value in record.items() if key.startswith(_VERSION)},
+            state=attachments[STATE].decode() if STATE in attachments else None)
 
 
 def installed_versions() -> dict[str, str]:

@@ -6,16 +6,20 @@ at the tick it took effect; the scenario is provenance only. No ROS is needed.
 """
 
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 from isa_ros.bag.compare import Comparer, Report
 from isa_ros.bag.provenance import installed_versions
 from isa_ros.bag.reader import Bag
 from isa_ros.bag.tolerances import Tolerances
-from isa_ros.coordinator import Interrupted, Recorder, Records
+from isa_ros.coordinator import Coordinator, Interrupted
 from isa_ros.errors import BagError, SetpointError
+from isa_ros.exchange import Recorder, Records
 from isa_ros.local_run import LocalRun
 from isa_ros.run_config import RunConfig
+from isa_ros.run_state import RunState
+from isa_ros.shared_load import EVENT_TOPIC
+from msg_adapters import event
 from msg_adapters.setpoint import applied_to_command
 import numpy as np
 
@@ -78,6 +82,8 @@ class Rerun:
         self._run = RunConfig.from_yaml(
             bag.provenance.configuration, f'{bag.path.name}: configuration.yaml')
         self._commands, self._n_ticks = recorded_commands(bag, self._run)
+        self._events = recorded_events(bag)
+        self._state = _recorded_state(bag, self._run)
         self._local = LocalRun(self._run)
         self.topics = self._local.topics
 
@@ -85,13 +91,36 @@ class Rerun:
             self, recorder: Recorder, should_stop: Callable[[], bool] = lambda: False) -> None:
         """Hand every sample to ``recorder`` until the end of the bag or ``should_stop``."""
         try:
-            self._local.simulate(self._n_ticks, self._fill, recorder, should_stop)
+            self._local.simulate(
+                self._n_ticks, self._fill, recorder, should_stop, self._state, self._note)
         except Interrupted:
             pass  # should_stop has seen enough
 
     def _fill(self, tick: int, rows: Records) -> None:
         for row, command in self._commands.get(tick, ()):
             rows[row] = command
+
+    def _note(self, coordinator: Coordinator) -> None:
+        for text in self._events.pop(coordinator.ticks, ()):
+            coordinator.note(text)
+
+
+def _recorded_state(bag: Bag, run: RunConfig) -> RunState | None:
+    """Return where the run went on from; its controllers are not needed again."""
+    text = bag.provenance.state
+    if text is None:
+        return None
+    state = RunState.from_json(text, run.digest, f'{bag.path.name}: state.json')
+    return replace(state, participants=state.participants[:len(run.actuators)])
+
+
+def recorded_events(bag: Bag) -> dict[int, list[str]]:
+    """Return what was done to the run, by the tick before which it was done."""
+    events: dict[int, list[str]] = {}
+    for message in bag.messages():
+        if message.topic == EVENT_TOPIC[0]:
+            events.setdefault(message.sequence, []).append(event.text(message.data))
+    return events
 
 
 def recorded_commands(

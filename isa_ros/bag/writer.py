@@ -15,7 +15,7 @@ from types import TracebackType
 from isa_ros.bag.mcap_file import McapFile
 from isa_ros.bag.metadata import Counts, FILE_NAME, metadata_yaml, NO_START
 from isa_ros.bag.metadata import storage_metadata, Topic
-from isa_ros.bag.provenance import MEDIA_TYPE, Provenance, RECORD
+from isa_ros.bag.provenance import MEDIA_TYPES, Provenance, RECORD
 from isa_ros.errors import BagError, RunError
 from msg_adapters.definitions import definition, ENCODING
 
@@ -128,7 +128,7 @@ class BagWriter:
 
     def _write_head(self, provenance: Provenance) -> None:
         for name, data in provenance.attachments().items():
-            self._file.add_attachment(name, MEDIA_TYPE, data)
+            self._file.add_attachment(name, MEDIA_TYPES[name], data)
         self._file.add_metadata(RECORD, self._custom)
         self._file.add_metadata(
             'rosbag2', {'serialized_metadata': storage_metadata(self._custom)})

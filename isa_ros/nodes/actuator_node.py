@@ -4,8 +4,8 @@ from collections.abc import Callable, Sequence
 from typing import Any, NamedTuple
 
 from isa_ros.actuator import ActuatorConfig, Timing
-from isa_ros.coordinator import Messages
 from isa_ros.errors import SetpointError
+from isa_ros.exchange import Messages
 from isa_ros.nodes.prepared import PreparedPublishers
 from isa_ros.nodes.qos import SETPOINT
 from isa_ros.nodes.setpoint_publishers import IncompatiblePublishers
@@ -32,12 +32,12 @@ class ActuatorNode(Node):
     """
     One actuator on ROS topics; the node's name is the actuator's.
 
-    It owns neither physics nor clock: a `Participant`, a `LocalTransport` or the standalone
+    It owns neither physics nor clock: a `Member`, a `LocalTransport` or the standalone
     loop calls `start` and `advance`. Setpoints and requests that arrive between two ticks take
     effect at the next one; at the same tick a command of the scenario wins.
 
     ``resolve`` says what actuator it is, once the node's own name and parameters are known.
-    ``has_mailbox``: a `Participant` of this node waits for its steps.
+    ``has_mailbox``: a `Member` of this node waits for its steps.
     """
 
     def __init__(
@@ -69,15 +69,19 @@ class ActuatorNode(Node):
         """Return the `LOAD_REPLY` of the last tick."""
         return self._stepped.actuator.reply
 
+    @property
+    def sample(self) -> np.void:
+        """Return the `SAMPLE` at the end of the last tick."""
+        return self._stepped.actuator.sample
+
     def start(self, start: np.void | None) -> Messages:
         """Begin anew at t = 0 from a `START` row; None: as the configuration says."""
         return self._stepped.start(start)
 
     def advance(
-            self, tick: int, port: np.void | None = None,
-            command: np.void | None = None) -> Messages:
+            self, port: np.void | None = None, command: np.void | None = None) -> Messages:
         """
-        Advance one tick and return its messages.
+        Take a command, advance one tick and return its messages.
 
         Raises
         ------
@@ -88,6 +92,14 @@ class ActuatorNode(Node):
         if command is not None and command['kinds']:
             self._stepped.actuator.accept(command)
         return self._stepped.advance(port)
+
+    def snapshot(self) -> bytes:
+        """Return the whole state; `restore` continues from it byte for byte."""
+        return self._stepped.actuator.snapshot()
+
+    def restore(self, snapshot: bytes) -> Messages:
+        """Continue from a `snapshot` and return the messages of that instant."""
+        return self._stepped.restore(snapshot)
 
     def publish(self, messages: Messages) -> None:
         """Publish messages of `start` or `advance` to whoever listens."""

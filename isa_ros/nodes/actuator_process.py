@@ -12,7 +12,8 @@ from isa_ros.errors import ConfigError, IsaError
 from isa_ros.nodes.actuator_node import ActuatorNode, Setup
 from isa_ros.nodes.arguments import init_ros
 from isa_ros.nodes.environment import set_defaults
-from isa_ros.nodes.participant import Participant
+from isa_ros.nodes.member import Member
+from isa_ros.nodes.seat import ActuatorSeat
 from isa_ros.nodes.standalone import run_alone
 from isa_ros.run_config import RunConfig
 from isa_ros.scenario import load_scenario
@@ -51,7 +52,7 @@ def _run(model: str, should_stop: StopRequest) -> None:
     node = ActuatorNode(lambda node: _resolve(node, model), model or 'actuator', has_mailbox=True)
     try:
         if _boolean(node, 'lockstep'):
-            Participant(node, node).spin(should_stop)
+            Member(node, ActuatorSeat(node)).spin(should_stop)
         else:
             ParameterService(node)
             run_alone(node, _number(node, 'real_time_factor'), should_stop)

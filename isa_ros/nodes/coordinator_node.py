@@ -5,22 +5,25 @@ from pathlib import Path
 import sys
 from typing import Any
 
-from isa_ros.coordinator import Messages
 from isa_ros.errors import ConfigError, IsaError
+from isa_ros.exchange import Messages
 from isa_ros.nodes.arguments import init_ros
 from isa_ros.nodes.domain import sole_coordinator
 from isa_ros.nodes.environment import set_defaults
 from isa_ros.nodes.prepared import PreparedPublishers
+from isa_ros.nodes.run_services import REAL_TIME_FACTOR
 from isa_ros.run import JOIN_TIMEOUT_S, prepare, Request
-from isa_ros.shared_load import CLOCK_TOPIC
+from isa_ros.shared_load import CLOCK_TOPIC, EVENT_TOPIC
 from isa_ros.stopping import StopRequest
 from isa_ros.terminal import terminal_report
 from rcl_interfaces.msg import ParameterDescriptor
 from rclpy.node import Node
+from rclpy.parameter import Parameter
 from rclpy.utilities import try_shutdown
 
 NAME = 'coordinator'
 _OWN = f'/{NAME}/'
+_STRINGS = Parameter.Type.STRING_ARRAY
 USAGE = (
     'the coordinator of a run: ros2 run isa_ros coordinator --ros-args -p config_file:=leg.yaml '
     '[-p scenario_file:=drop.yaml] [-p out:=DIR] [-p duration:=S] [-p in_process:=true]')
@@ -32,6 +35,7 @@ class CoordinatorNode(Node):
     def __init__(self, **kwargs: Any) -> None:
         super().__init__(NAME, start_parameter_services=False, **kwargs)
         self._time = PreparedPublishers(self, [CLOCK_TOPIC])
+        self._events = PreparedPublishers(self, [(_relative(EVENT_TOPIC[0]), EVENT_TOPIC[1])])
         self._shown: PreparedPublishers | None = None
 
     def advertise(self, topics: Sequence[tuple[str, str]]) -> None:
@@ -47,6 +51,11 @@ class CoordinatorNode(Node):
     def publish_clock(self, clock: bytes) -> None:
         """Publish `/clock`."""
         self._time.publish((clock,))
+
+    def publish_event(self, event: bytes) -> None:
+        """Publish what was done to the run."""
+        self._events.refresh()
+        self._events.publish((event,))
 
     def request(self) -> Request:
         """
@@ -64,25 +73,35 @@ class CoordinatorNode(Node):
             'out': ('', 'directory of the bag; empty: a new one in runs/'),
             'duration': (0.0, 'simulated time, s; 0: that of the scenario'),
             'real_time_factor': (0.0, 'not faster than this; 0: as fast as it can'),
+            'controllers': ([], 'controllers that take part, besides those of the run file'),
+            'paused': (False, 'wait for ~/step or the end of the pause before tick 0'),
+            'restore': ('', 'saved state to go on from; empty: begin at t = 0'),
+            'save': ('', 'file for the state at the end; empty: not saved'),
             'overwrite': (False, 'replace the bag in an existing directory'),
             'in_process': (False, 'all nodes in this process'),
             'join_timeout_s': (JOIN_TIMEOUT_S, 'how long participants are waited for, s'),
         }
         values: dict[str, Any] = {
             name: self.declare_parameter(
-                name, default, ParameterDescriptor(description=text, read_only=True)).value
+                name, _STRINGS if default == [] else default,
+                ParameterDescriptor(description=text, read_only=name != REAL_TIME_FACTOR)).value
             for name, (default, text) in defaults.items()}
         if not values['config_file']:
             raise ConfigError(f'{NAME}: set the parameter config_file')
         return Request(
-            config=Path(values['config_file']),
-            scenario=Path(values['scenario_file']) if values['scenario_file'] else None,
-            out=Path(values['out']) if values['out'] else None,
+            config=Path(values['config_file']), scenario=_path(values['scenario_file']),
+            out=_path(values['out']), save=_path(values['save']),
+            restore=_path(values['restore']), controllers=tuple(values['controllers'] or ()),
+            is_paused=values['paused'],
             duration_s=values['duration'] or None,
             real_time_factor=values['real_time_factor'],
             overwrite=values['overwrite'], in_process=values['in_process'],
             namespace=self.get_namespace().strip('/'),
             join_timeout_s=values['join_timeout_s'])
+
+
+def _path(text: str) -> Path | None:
+    return Path(text) if text else None
 
 
 def _relative(name: str) -> str:

@@ -1,19 +1,22 @@
-"""The coordinator's end of the private wire: all participants, in processes of their own."""
+"""The coordinator's end of the private wire: participants in processes of their own."""
 
 from collections.abc import Callable, Sequence
 import secrets
 import time
 from typing import Any, NamedTuple
 
-from isa_ros.coordinator import Interrupted, Messages, Records
+from isa_ros.controller import merge_requests
+from isa_ros.coordinator import Interrupted
 from isa_ros.errors import ConfigError, RunError, SimulationDiverged
+from isa_ros.exchange import Messages, Records, Rows, Voice
 from isa_ros.nodes.domain import another_coordinator, refuse_other_coordinator
 from isa_ros.nodes.qos import LOCKSTEP
 from isa_ros.nodes.waiting import open_mailbox, SLICE_S
 from isa_ros.nodes.wire import (
     ACKNOWLEDGEMENT_TOPIC, Answer, AnswerKind, decode_answer, DIVERGENCE, encode_end,
-    encode_hello, encode_tick, STEP_TOPIC)
-from isa_ros.signals import LOAD_REPLY
+    encode_hello, encode_plain, encode_restore, encode_tick, STEP_TOPIC, StepKind)
+from isa_ros.signals import COMMAND, LOAD_REPLY, SAMPLE
+from isa_ros.stepping import IDLE_S
 import numpy as np
 from rclpy.duration import Duration
 from rclpy.node import Node
@@ -22,6 +25,8 @@ from std_msgs.msg import UInt8MultiArray
 HELLO_PERIOD_S = 0.05
 STOP_GRACE_S = 1.0  # how long a tick may still take once a stop is asked for
 _IDENTITY, _DIGEST, _FIRST = 0, 1, 2  # parts of a READY answer
+_REPLY, _SAMPLE, _MESSAGES = 0, 1, 2  # parts of what an actuator's seat says
+_NO_REASON = b'without a reason'
 
 
 class Expected(NamedTuple):
@@ -39,6 +44,17 @@ class Limits(NamedTuple):
     tick_s: float
 
 
+class Cast(NamedTuple):
+    """Who takes part in a run, and how the actuators begin it."""
+
+    participants: Sequence[Expected]
+    starts: Records
+    """`START` rows of the actuators, (n_actuators,)."""
+    step_ns: int
+    first_remote: int = 0
+    """Participants before it live in the coordinator's process and are not called here."""
+
+
 class LockstepTransport:
     """
     One broadcast step and one answer per participant and tick.
@@ -47,27 +63,30 @@ class LockstepTransport:
     """
 
     def __init__(
-            self, node: Node, participants: Sequence[Expected], starts: Records,
-            limits: Limits, publish: Callable[[Messages], None],
-            publish_clock: Callable[[bytes], None], *, watch: Callable[[], str | None],
-            should_stop: Callable[[], bool]) -> None:
+            self, node: Node, cast: Cast, limits: Limits, voice: Voice, *,
+            watch: Callable[[], str | None], should_stop: Callable[[], bool]) -> None:
         self._node = node
-        self._participants = participants
-        self._starts = starts
+        self._cast = cast
+        self._participants = cast.participants
+        self._remote = frozenset(range(cast.first_remote, len(cast.participants)))
+        self._has_controllers = len(cast.participants) > len(cast.starts)
         self._limits = limits
-        self.publish = publish
-        self.publish_clock = publish_clock
+        self.publish = voice.publish
+        self.publish_clock = voice.publish_clock
+        self.publish_event = voice.publish_event
         self._watch = watch
         self._should_stop = should_stop
-        self._run_id = secrets.randbits(63) + 1
+        self._run_id = 0
+        self._past_runs: set[int] = set()
         self._identities: dict[int, bytes] = {}
         self._tick = 0
+        self._doing = 'tick 0'
         self._publisher = node.create_publisher(UInt8MultiArray, STEP_TOPIC, LOCKSTEP)
         handle: Any = self._publisher.handle
         self._send: Callable[[bytes], None] = handle.publish_raw
         self._mailbox = open_mailbox(node, ACKNOWLEDGEMENT_TOPIC)
 
-    def join(self) -> Sequence[Messages]:
+    def join(self, rows: Rows) -> Sequence[Messages]:
         """
         Say hello until all participants have answered the same one; return their messages.
 
@@ -85,25 +104,31 @@ class LockstepTransport:
             A stop was asked for.
 
         """
+        if self._run_id:
+            self._send(encode_end(self._run_id))
+            self._past_runs.add(self._run_id)
+        self._run_id = secrets.randbits(63) + 1
         start = time.monotonic()
         names = [participant.name for participant in self._participants]
         complete: dict[int, Answer] = {}
         count = 0
         while True:
             count += 1
-            self._send(encode_hello(self._run_id, count, self._starts, names))
+            self._send(encode_hello(
+                self._run_id, count, self._cast.step_ns, self._cast.starts, names))
             answers = self._hello_answers(count, is_last=bool(complete))
             refuse_other_coordinator(self._node)
             if complete:
-                return [complete[k].parts[_FIRST:] for k in range(len(names))]
-            if len(answers) == len(names):
+                return self._said(rows, {
+                    k: answer.parts[_FIRST:] for k, answer in complete.items()})
+            if len(answers) == len(self._remote):
                 complete = answers
                 continue
             self._refuse_lost('before tick 0')
             if self._should_stop():
                 raise Interrupted('stopped before tick 0')
             if time.monotonic() - start > self._limits.join_s:
-                missing = [name for k, name in enumerate(names) if k not in answers]
+                missing = [names[k] for k in sorted(self._remote) if k not in answers]
                 raise RunError(
                     f'{", ".join(missing)}: no answer before tick 0 after '
                     f'{self._limits.join_s:g} s; start it with lockstep:=true in this '
@@ -113,7 +138,7 @@ class LockstepTransport:
         """Return the answers to the ``count``-th hello; the last one takes its whole period."""
         answers: dict[int, Answer] = {}
         end = time.monotonic() + HELLO_PERIOD_S
-        while is_last or len(answers) < len(self._participants):
+        while is_last or len(answers) < len(self._remote):
             left = end - time.monotonic()
             if left <= 0.0:
                 break
@@ -121,6 +146,8 @@ class LockstepTransport:
             if data is None:
                 continue
             answer = decode_answer(data)
+            if answer.run_id in self._past_runs:
+                continue
             self._check_ready(answer)
             if answer.tick == count:
                 answers[answer.participant] = answer
@@ -132,7 +159,8 @@ class LockstepTransport:
         name, expected = self._participants[answer.participant]
         identity, digest = answer.parts[_IDENTITY], answer.parts[_DIGEST]
         assert identity is not None and digest is not None
-        if self._identities.setdefault(answer.participant, identity) != identity:
+        if self._identities.setdefault(answer.participant, identity) != identity or (
+                answer.participant not in self._remote):
             raise self._two_nodes(answer.participant)
         if expected and digest.decode() != expected:
             raise ConfigError(
@@ -156,16 +184,67 @@ class LockstepTransport:
         if lost is not None:
             raise RunError(f'{lost} {when}')
 
-    def send(self, tick: int, ports: Records, commands: Records) -> None:
+    def begin(self) -> None:
+        """Let everyone publish the first messages."""
+        self._send(encode_plain(StepKind.BEGIN, self._run_id, 0))
+
+    def send(self, tick: int, rows: Rows) -> None:
         """Broadcast the step."""
         self._tick = tick
-        self._send(encode_tick(self._run_id, tick, ports, commands))
+        self._doing = f'tick {tick}'
+        self._send(encode_tick(self._run_id, tick, rows, self._has_controllers))
 
-    def receive(self, replies: Records) -> Sequence[Messages]:
+    def receive(self, rows: Rows) -> Sequence[Messages]:
         """Wait for every participant; see `Transport`."""
-        n = len(self._participants)
-        answers: list[Messages] = [()] * n
-        missing = set(range(n))
+        return self._said(rows, self._gather(AnswerKind.DONE))
+
+    def idle(self) -> None:
+        """Look for lost participants, and for a second node of a name, while time passes."""
+        self._refuse_lost(f'while paused before tick {self._tick}')
+        data = self._mailbox.wait(IDLE_S)
+        if data is not None:
+            self._is_expected(decode_answer(data), AnswerKind.DONE, set())
+
+    def snapshots(self) -> list[bytes]:
+        """Return the state of every participant."""
+        self._doing = 'the request to save its state'
+        self._send(encode_plain(StepKind.SAVE, self._run_id, self._tick))
+        parts = self._gather(AnswerKind.SAVED)
+        return [parts[k][0] or b'' for k in sorted(parts)]
+
+    def restore(
+            self, tick: int, snapshots: Sequence[bytes], rows: Rows) -> Sequence[Messages]:
+        """Put everyone where the snapshots were taken and return the messages of then."""
+        if len(snapshots) != len(self._participants):
+            raise ConfigError(
+                f'the saved state has {len(snapshots)} participants, the run has '
+                f'{len(self._participants)}')
+        self._tick = tick
+        self._doing = 'the request to restore its state'
+        self._send(encode_restore(self._run_id, tick, snapshots))
+        return self._said(rows, self._gather(AnswerKind.RESTORED))
+
+    def _said(
+            self, rows: Rows, parts: dict[int, list[bytes | None]]) -> Sequence[Messages]:
+        """Take what actuators and controllers say and return the messages of each."""
+        n_actuators = len(rows.replies)
+        said: list[Messages] = []
+        for k in sorted(parts):
+            own = parts[k]
+            if k >= n_actuators:
+                merge_requests(np.frombuffer(own[0] or b'', COMMAND), rows.requests)
+                said.append(())
+                continue
+            rows.replies[k] = np.frombuffer(own[_REPLY] or b'', LOAD_REPLY)[0]
+            if self._has_controllers:
+                rows.samples[k] = np.frombuffer(own[_SAMPLE] or b'', SAMPLE)[0]
+            said.append(own[_MESSAGES:])
+        return said
+
+    def _gather(self, kind: AnswerKind) -> dict[int, list[bytes | None]]:
+        """Wait until every participant has answered and return the parts of each."""
+        parts: dict[int, list[bytes | None]] = {}
+        missing = set(self._remote)
         waited = 0.0
         while missing:
             begin = time.monotonic()
@@ -177,32 +256,31 @@ class LockstepTransport:
                 self._check_waited(waited, missing)
                 continue
             answer = decode_answer(data)
-            if answer.run_id != self._run_id or answer.kind is AnswerKind.BUSY:
-                continue
-            if answer.kind is AnswerKind.READY:
-                self._check_ready(answer)
-                continue
-            if answer.kind is AnswerKind.UNBOUND:
-                self._check_unbound(answer)
-                continue
-            if answer.tick != self._tick or answer.participant not in missing:
-                raise self._two_nodes(answer.participant)  # one answers each tick once
-            answers[answer.participant] = self._done(answer, replies)
-            missing.discard(answer.participant)
-        return answers
+            if self._is_expected(answer, kind, missing):
+                parts[answer.participant] = answer.parts
+                missing.discard(answer.participant)
+        return parts
 
-    def _done(self, answer: Answer, replies: Records) -> Messages:
-        reply, *messages = answer.parts
-        if answer.kind is AnswerKind.DONE:
-            if reply is not None:
-                replies[answer.participant] = np.frombuffer(reply, LOAD_REPLY)[0]
-            return messages
-        assert reply is not None
+    def _is_expected(self, answer: Answer, kind: AnswerKind, missing: set[int]) -> bool:
+        """Tell whether an answer counts; raise what it says instead."""
+        if answer.run_id != self._run_id or answer.kind is AnswerKind.BUSY:
+            return False
+        if answer.kind is AnswerKind.READY:
+            self._check_ready(answer)
+            return False
+        if answer.kind is AnswerKind.UNBOUND:
+            self._check_unbound(answer)
+            return False
+        if answer.tick != self._tick or answer.participant not in missing:
+            raise self._two_nodes(answer.participant)  # one answers each step once
+        if answer.kind is kind:
+            return True
+        reason, *rest = answer.parts
         if answer.kind is AnswerKind.DIVERGED:
-            t_ns, value = DIVERGENCE.unpack(reply)
-            raise SimulationDiverged(t_ns, (messages[0] or b'').decode(), value)
+            t_ns, value = DIVERGENCE.unpack(reason or b'')
+            raise SimulationDiverged(t_ns, (rest[0] or b'').decode(), value)
         name = self._participants[answer.participant].name
-        raise RunError(f'{name}: refused tick {self._tick}: {reply.decode()}')
+        raise RunError(f'{name}: refused {self._doing}: {(reason or _NO_REASON).decode()}')
 
     def _check_waited(self, waited: float, missing: set[int]) -> None:
         names = ', '.join(self._participants[k].name for k in sorted(missing))
@@ -210,7 +288,7 @@ class LockstepTransport:
             raise Interrupted(f'stopped in tick {self._tick}, which {names} did not end')
         if waited >= self._limits.tick_s:
             raise RunError(
-                f'{names}: no answer to tick {self._tick} after {waited:.1f} s, must come '
+                f'{names}: no answer to {self._doing} after {waited:.1f} s, must come '
                 f'within {self._limits.tick_s:g} s')
 
     def close(self) -> None:

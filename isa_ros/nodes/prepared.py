@@ -3,7 +3,7 @@
 from collections.abc import Sequence
 from typing import Any
 
-from isa_ros.coordinator import Messages
+from isa_ros.exchange import Messages
 from isa_ros.nodes.qos import STATE
 from msg_adapters.cdr_reader import message_class
 from rclpy.node import Node

@@ -1,15 +1,18 @@
 """One run on ROS nodes: actuators in processes of their own, or all in this one."""
 
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 
+from isa_ros.exchange import Rows, Transport
 from isa_ros.nodes.actuator_node import ActuatorNode, Setup
 from isa_ros.nodes.coordinator_node import CoordinatorNode
 from isa_ros.nodes.domain import refuse_other_coordinator, sole_coordinator
 from isa_ros.nodes.environment import set_defaults
-from isa_ros.nodes.lockstep import Expected, Limits, LockstepTransport
+from isa_ros.nodes.lockstep import Cast, Expected, Limits, LockstepTransport
+from isa_ros.nodes.mixed import MixedTransport
+from isa_ros.nodes.run_services import RunServices
 from isa_ros.processes import actuator_processes, Children
-from isa_ros.run import record, Report, Session
+from isa_ros.run import record, Report, save_in_bag, Session
 from isa_ros.shared_load import SharedLoad
 from isa_ros.stepping import LocalTransport, SteppedActuator
 from isa_ros.stopping import StopRequest
@@ -30,12 +33,12 @@ def in_processes(session: Session, report: Report | None, should_stop: StopReque
     """Start one process per actuator, coordinate them from here, and end them."""
     set_defaults()
     load = SharedLoad(session.run)
-    expected = _expected(session, load)
+    cast = _cast(session, load)
     request = session.request
     processes = actuator_processes(session.run, request.config, request.scenario)
     with sole_coordinator(), Children(processes, request.namespace) as children:
         with _node(request.namespace) as node:
-            _coordinate(node, session, load, expected, report, should_stop, children.lost)
+            _coordinate(node, session, load, cast, report, should_stop, children.lost)
 
 
 def in_one_process(session: Session, report: Report | None, should_stop: StopRequest) -> None:
@@ -63,63 +66,90 @@ def coordinate(
         should_stop: StopRequest) -> None:
     """Run with participants that someone else starts."""
     load = SharedLoad(session.run)
-    _coordinate(node, session, load, _expected(session, load), report, should_stop, _nobody)
+    _coordinate(node, session, load, _cast(session, load), report, should_stop, _nobody)
 
 
 def _nobody() -> None:
     """Know nothing of the participants' processes."""
 
 
-def _expected(session: Session, load: SharedLoad) -> list[Expected]:
+def _cast(session: Session, load: SharedLoad) -> Cast:
     """
     Return the participants with the digests they must have.
 
     Ticks copies of the actuators once, so that a first run does not compile the kernels in
     every child at once.
     """
-    ports, starts = load.ports(), load.starts(session.run)
-    participants = []
-    for k, config in enumerate(session.run.actuators):
+    run, starts, rows = session.run, load.starts(session.run), Rows(len(session.run.actuators))
+    load.ports(rows.ports)
+    actuators = []
+    for k, config in enumerate(run.actuators):
         stepped = SteppedActuator(config, session.timing)
         stepped.start(starts[k])
-        stepped.advance(ports[k])
-        participants.append(Expected(config.name, stepped.digest))
-    return participants
+        stepped.advance(rows.ports[k])
+        actuators.append(Expected(config.name, stepped.digest))
+    return Cast([*actuators, *_controllers(session)], starts, run.step_ns)
+
+
+def _controllers(session: Session) -> list[Expected]:
+    return [Expected(name, '') for name in session.run.controllers]
 
 
 def _coordinate(
-        node: CoordinatorNode, session: Session, load: SharedLoad, expected: Sequence[Expected],
+        node: CoordinatorNode, session: Session, load: SharedLoad, cast: Cast,
         report: Report | None, should_stop: StopRequest,
         lost: Callable[[], str | None]) -> None:
     node.advertise(load.topics)
-    transport = LockstepTransport(
-        node, expected, load.starts(session.run),
-        Limits(session.request.join_timeout_s, session.run.tick_timeout_s),
-        node.publish, node.publish_clock, watch=lost, should_stop=should_stop)
+    transport = _lockstep(node, session, cast, should_stop, lost)
     try:
-        record(session, transport, load, report, should_stop)
+        _record(node, session, transport, load, report, should_stop)
     finally:
         transport.close()
+
+
+def _lockstep(
+        node: CoordinatorNode, session: Session, cast: Cast, should_stop: StopRequest,
+        lost: Callable[[], str | None]) -> LockstepTransport:
+    limits = Limits(session.request.join_timeout_s, session.run.tick_timeout_s)
+    return LockstepTransport(node, cast, limits, node, watch=lost, should_stop=should_stop)
 
 
 def coordinate_locally(
         node: CoordinatorNode, session: Session, report: Report | None,
         should_stop: StopRequest) -> None:
-    """Run with the nodes of all actuators in this process."""
+    """Run with the nodes of all actuators in this process; controllers have their own."""
     load = SharedLoad(session.run)
     node.advertise(load.topics)
     actuators = [
         ActuatorNode(_resolver(Setup(config, session.timing)), config.name, has_mailbox=False,
                      namespace=session.request.namespace, **_QUIET)
         for config in session.run.actuators]
+    controllers = None
     try:
         refuse_other_coordinator(node)
-        transport = LocalTransport(
-            actuators, load.starts(session.run), node.publish, node.publish_clock)
-        record(session, transport, load, report, should_stop)
+        starts = load.starts(session.run)
+        transport: Transport
+        transport = local = LocalTransport(actuators, starts, node)
+        if session.run.controllers:
+            every = [*(Expected(own.name, '') for own in session.run.actuators),
+                     *_controllers(session)]
+            cast = Cast(every, starts, session.run.step_ns, first_remote=len(actuators))
+            controllers = _lockstep(node, session, cast, should_stop, _nobody)
+            transport = MixedTransport(local, controllers)
+        _record(node, session, transport, load, report, should_stop)
     finally:
+        if controllers is not None:
+            controllers.close()
         for actuator in actuators:
             actuator.destroy_node()
+
+
+def _record(
+        node: CoordinatorNode, session: Session, transport: Transport, load: SharedLoad,
+        report: Report | None, should_stop: StopRequest) -> None:
+    """Record the run, and serve what is asked of it."""
+    services = RunServices(node, lambda coordinator: save_in_bag(session, coordinator))
+    record(session, transport, load, report, should_stop, services.serve)
 
 
 def _resolver(setup: Setup) -> Callable[[Node], Setup]:

@@ -53,7 +53,7 @@ def run_alone(
                     continue
                 wait = max(0.0, ((tick + 1) * step_s - elapsed) / real_time_factor)
             for _ in range(min(due - tick, BURST_TICKS)):
-                node.publish(node.advance(tick))
+                node.publish(node.advance())
                 tick += 1
             executor.spin_once(min(wait, LARGEST_LAG_S) if due <= tick else 0.0)
             node.check_publishers()

@@ -13,20 +13,20 @@ from enum import IntEnum
 import struct
 from typing import NamedTuple
 
-from isa_ros.coordinator import Records
 from isa_ros.errors import RunError
-from isa_ros.signals import COMMAND, LOAD_PORT
-from isa_ros.stepping import START
+from isa_ros.exchange import Records, Rows
+from isa_ros.signals import COMMAND, LOAD_PORT, SAMPLE, SHARED_SAMPLE, START
 import numpy as np
 
 STEP_TOPIC = '/_isa/step'
 ACKNOWLEDGEMENT_TOPIC = '/_isa/acknowledgement'
-WIRE_VERSION = 1
+WIRE_VERSION = 2
 
 _ENCAPSULATION = 0x00000100  # bytes 00 01 00 00: little endian CDR, no options
 _PREFIX = struct.Struct('<IIII')  # encapsulation, no dimensions, data_offset, array length
 _STEP = struct.Struct('<HHIQq')  # version, kind, rows, run id, tick
 _ACKNOWLEDGEMENT = struct.Struct('<HHIIIQq')  # version, kind, index, parts, -, run id, tick
+_NUMBER = struct.Struct('<q')
 _ABSENT = 0xFFFFFFFF  # length of a part that is None
 
 DIVERGENCE = struct.Struct('<qd')
@@ -44,23 +44,33 @@ class StepKind(IntEnum):
     TICK = 2
     END = 3
     """The run is over; the next hello may begin another."""
+    BEGIN = 4
+    """Publish the first messages: everyone is ready and `/clock` is out. No answer."""
+    SAVE = 5
+    """Answer with the whole state before ``tick``."""
+    RESTORE = 6
+    """Continue from a state before ``tick``."""
 
 
 class AnswerKind(IntEnum):
     """What a participant answers."""
 
     READY = 1
-    """To a hello: identity, digest, then the messages of t = 0."""
+    """To a hello: identity, digest, then what its `Seat` says of t = 0."""
     DONE = 2
-    """To a tick: the load reply, then the messages of its end."""
+    """To a tick: what its `Seat` says of the tick's end."""
     DIVERGED = 3
     """To a tick: t_ns and value, then the field that is no longer finite."""
     BUSY = 4
     """To a hello: this participant is in another run."""
     REFUSED = 5
-    """To a tick: the reason why it cannot be done."""
+    """To a tick, a save or a restore: the reason why it cannot be done."""
     UNBOUND = 6
     """To the first tick of a run that never called this participant: its name."""
+    SAVED = 7
+    """To a save: the whole state."""
+    RESTORED = 8
+    """To a restore: what its `Seat` says of that instant."""
 
 
 class Step(NamedTuple):
@@ -73,12 +83,17 @@ class Step(NamedTuple):
     body: bytes
 
     def names(self) -> list[str]:
-        """Return the participants that a hello calls, in order."""
-        return self.body[self.rows * START.itemsize:].decode().split('\n')
+        """Return the participants that a hello calls, in order: ``rows`` actuators first."""
+        return self.body[_NUMBER.size + self.rows * START.itemsize:].decode().split('\n')
+
+    def step_ns(self) -> int:
+        """Return the length of the ticks that a hello announces."""
+        return int(_NUMBER.unpack_from(self.body)[0])
 
     def start(self, index: int) -> np.void:
         """Return the `START` row of one actuator."""
-        row: np.void = np.frombuffer(self.body, START, 1, index * START.itemsize)[0]
+        row: np.void = np.frombuffer(
+            self.body, START, 1, _NUMBER.size + index * START.itemsize)[0]
         return row
 
     def port(self, index: int) -> np.void:
@@ -93,6 +108,25 @@ class Step(NamedTuple):
         row: np.void = np.frombuffer(self.body, COMMAND, 1, offset)[0]
         return row
 
+    def samples(self) -> Records:
+        """Return the `SAMPLE` of every actuator before the tick, (rows,); controllers' only."""
+        return np.frombuffer(self.body, SAMPLE, self.rows, self._samples_start)
+
+    def shared(self) -> Records:
+        """Return the `SHARED_SAMPLE` before the tick, (1,); controllers' only."""
+        return np.frombuffer(
+            self.body, SHARED_SAMPLE, 1, self._samples_start + self.rows * SAMPLE.itemsize)
+
+    @property
+    def _samples_start(self) -> int:
+        return self.rows * (LOAD_PORT.itemsize + COMMAND.itemsize)
+
+    def snapshot(self, index: int) -> bytes:
+        """Return the state from which one participant goes on."""
+        own = _split(self.body, self.rows, 0)[index]
+        assert own is not None
+        return own
+
 
 class Answer(NamedTuple):
     """One message of a participant."""
@@ -105,7 +139,8 @@ class Answer(NamedTuple):
     parts: list[bytes | None]
 
 
-def encode_hello(run_id: int, count: int, starts: Records, names: Sequence[str]) -> bytes:
+def encode_hello(
+        run_id: int, count: int, step_ns: int, starts: Records, names: Sequence[str]) -> bytes:
     """
     Return the bytes of the ``count``-th hello.
 
@@ -114,13 +149,25 @@ def encode_hello(run_id: int, count: int, starts: Records, names: Sequence[str])
     """
     return _step(
         StepKind.HELLO, run_id, count, len(starts),
-        starts.tobytes() + '\n'.join(names).encode())
+        _NUMBER.pack(step_ns) + starts.tobytes() + '\n'.join(names).encode())
 
 
-def encode_tick(run_id: int, tick: int, ports: Records, commands: Records) -> bytes:
-    """Return the bytes of one tick: `LOAD_PORT` and `COMMAND` of every actuator, (n,) each."""
-    return _step(
-        StepKind.TICK, run_id, tick, len(ports), ports.tobytes() + commands.tobytes())
+def encode_tick(run_id: int, tick: int, rows: Rows, has_controllers: bool) -> bytes:
+    """Return the bytes of one tick: ports and commands, for controllers also the samples."""
+    body = rows.ports.tobytes() + rows.commands.tobytes()
+    if has_controllers:
+        body += rows.samples.tobytes() + rows.shared.tobytes()
+    return _step(StepKind.TICK, run_id, tick, len(rows.ports), body)
+
+
+def encode_plain(kind: StepKind, run_id: int, tick: int) -> bytes:
+    """Return the bytes of a `BEGIN`, which has no tick, or a `SAVE`."""
+    return _step(kind, run_id, tick, 0, b'')
+
+
+def encode_restore(run_id: int, tick: int, snapshots: Sequence[bytes]) -> bytes:
+    """Return the bytes that put every participant before ``tick``."""
+    return _step(StepKind.RESTORE, run_id, tick, len(snapshots), _join(snapshots))
 
 
 def encode_end(run_id: int) -> bytes:
@@ -153,14 +200,10 @@ def encode_answer(
         kind: AnswerKind, run_id: int, tick: int, index: int,
         parts: Sequence[bytes | None]) -> bytes:
     """Return the bytes of an answer; a part that is None stays None."""
-    n = len(parts)
-    present = [part for part in parts if part is not None]
-    lengths = struct.pack(f'<{n}I', *(_ABSENT if p is None else len(p) for p in parts))
-    size = _ACKNOWLEDGEMENT.size + len(lengths) + sum(map(len, present))
-    return b''.join((
-        _PREFIX.pack(_ENCAPSULATION, 0, 0, size),
-        _ACKNOWLEDGEMENT.pack(WIRE_VERSION, kind, index, n, 0, run_id, tick),
-        lengths, *present))
+    body = _join(parts)
+    return (_PREFIX.pack(_ENCAPSULATION, 0, 0, _ACKNOWLEDGEMENT.size + len(body))
+            + _ACKNOWLEDGEMENT.pack(WIRE_VERSION, kind, index, len(parts), 0, run_id, tick)
+            + body)
 
 
 def decode_answer(data: bytes) -> Answer:
@@ -175,15 +218,26 @@ def decode_answer(data: bytes) -> Answer:
     """
     version, kind, index, n, _, run_id, tick = _ACKNOWLEDGEMENT.unpack_from(data, _PREFIX.size)
     _check_version(version)
+    return Answer(AnswerKind(kind), run_id, tick, index, _split(data, n, _PARTS_START))
+
+
+def _join(parts: Sequence[bytes | None]) -> bytes:
+    """Return the lengths of all parts, then those that are there."""
+    lengths = (_ABSENT if part is None else len(part) for part in parts)
+    return struct.pack(f'<{len(parts)}I', *lengths) + b''.join(filter(None, parts))
+
+
+def _split(data: bytes, n: int, offset: int) -> list[bytes | None]:
+    """Return the ``n`` parts that begin at ``offset``; inverse of `_join`."""
     parts: list[bytes | None] = []
-    start = _PARTS_START + 4 * n
-    for length in struct.unpack_from(f'<{n}I', data, _PARTS_START):
+    start = offset + 4 * n
+    for length in struct.unpack_from(f'<{n}I', data, offset):
         if length == _ABSENT:
             parts.append(None)
             continue
         parts.append(data[start:start + length])
         start += length
-    return Answer(AnswerKind(kind), run_id, tick, index, parts)
+    return parts
 
 
 def _check_version(version: int) -> None:

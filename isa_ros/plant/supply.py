@@ -147,3 +147,11 @@ class Supply:
         if self._record is not None:
             steps = round(self._step / SUPPLY_STEP)
             supply_advance(steps, drawn_volume / self._step, self._record, self._state)
+
+    def state(self) -> bytes:
+        """Return the whole state; `restore` continues from it byte for byte."""
+        return self._state.tobytes()
+
+    def restore(self, state: bytes) -> None:
+        """Continue from a `state` of a supply with the same sheet."""
+        self._state[:] = np.frombuffer(state, SUPPLY_STATE, 1)

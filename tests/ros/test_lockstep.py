@@ -4,13 +4,16 @@ from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
 import threading
 
-from isa_ros.coordinator import Interrupted, Messages
-from isa_ros.errors import ConfigError, RunError, SimulationDiverged
-from isa_ros.nodes import Participant, waiting
-from isa_ros.nodes.lockstep import Expected, Limits, LockstepTransport
+from isa_ros.controller import Controller, Setpoint
+from isa_ros.coordinator import Interrupted
+from isa_ros.errors import ConfigError, RunError, SetpointError, SimulationDiverged
+from isa_ros.exchange import Messages, Rows, Silence
+from isa_ros.nodes import waiting
+from isa_ros.nodes.lockstep import Cast, Expected, Limits, LockstepTransport
+from isa_ros.nodes.member import Member
+from isa_ros.nodes.seat import ActuatorSeat, ControllerSeat
 from isa_ros.nodes.wire import encode_tick
-from isa_ros.signals import COMMAND, LOAD_PORT, LOAD_REPLY
-from isa_ros.stepping import START
+from isa_ros.signals import HAS_SETPOINT, LOAD_REPLY, SAMPLE, START
 import numpy as np
 import pytest
 from rclpy.node import Node
@@ -26,42 +29,54 @@ class Scripted:
 
     def __init__(self, digest: str = 'same') -> None:
         self.digest = digest
-        self.reply = np.zeros(1, LOAD_REPLY)[0]
+        self.reply, self.sample = np.zeros(1, LOAD_REPLY)[0], np.zeros(1, SAMPLE)[0]
         self.starts = 0
-        self.ticks: list[int] = []
+        self.ticks = 0
+        self.published: list[Messages] = []
         self.fails_at = -1
+        self.error: Exception = SimulationDiverged(7_000_000, 'kfe: spool', float('inf'))
         self.is_late_at = -1
         self.released = threading.Event()
 
     def start(self, start: np.void | None) -> Messages:
         self.starts += 1
-        return [b'first' if start is None else b'%g' % start['position'], None]
+        self.ticks = 0
+        self.sample['position'] = start['position']
+        return [b'%g' % start['position'], None]
 
-    def advance(self, tick: int, port: np.void | None, command: np.void | None) -> Messages:
-        self.ticks.append(tick)
+    def advance(self, port: np.void | None, command: np.void | None) -> Messages:
+        tick, self.ticks = self.ticks, self.ticks + 1
         if tick == self.fails_at:
-            raise SimulationDiverged(7_000_000, 'kfe: spool', float('inf'))
+            raise self.error
         if tick == self.is_late_at:
             self.released.wait(DEADLINE_S)
         if port is not None and command is not None:
             self.reply['force'] = port['x0'] + command['position']
+        self.sample['position'] += 1.0
         return [b'%d' % tick, b'applied' if tick == 1 else None]
 
+    def snapshot(self) -> bytes:
+        return b'after %d' % self.ticks
+
+    def restore(self, snapshot: bytes) -> Messages:
+        self.ticks = int(snapshot.split()[1])
+        return [snapshot, None]
+
     def publish(self, messages: Messages) -> None:
-        pass
+        self.published.append(messages)
 
     def serve(self) -> None:
         pass
 
 
 @contextmanager
-def spinning(context, steppers: dict[str, Scripted]) -> Iterator[None]:
-    """Participants of these names while the context lasts."""
+def spinning(context, steppers: dict[str, Scripted | Controller]) -> Iterator[None]:
+    """Take part with these names while the context lasts."""
     is_over = threading.Event()
     nodes = [Node(name, context=context, enable_rosout=False, start_parameter_services=False)
              for name in steppers]
     threads = [
-        threading.Thread(target=Participant(node, stepper).spin, args=(is_over.is_set,))
+        threading.Thread(target=Member(node, seat(stepper)).spin, args=(is_over.is_set,))
         for node, stepper in zip(nodes, steppers.values())]
     for thread in threads:
         thread.start()
@@ -70,32 +85,41 @@ def spinning(context, steppers: dict[str, Scripted]) -> Iterator[None]:
     finally:
         is_over.set()
         for stepper in steppers.values():
-            stepper.released.set()
+            if isinstance(stepper, Scripted):
+                stepper.released.set()
         for thread in threads:
             thread.join()
         for node in nodes:
             node.destroy_node()
 
 
+def seat(stepper: Scripted | Controller) -> ActuatorSeat | ControllerSeat:
+    return ActuatorSeat(stepper) if isinstance(stepper, Scripted) else ControllerSeat(stepper)
+
+
 def make_transport(
-        node: Node, names: Sequence[str] = NAMES, limits: Limits = LIMITS,
+        node: Node, controllers: Sequence[str] = (), limits: Limits = LIMITS,
         watch: Callable[[], str | None] = lambda: None,
-        should_stop: Callable[[], bool] = lambda: False) -> LockstepTransport:
+        should_stop: Callable[[], bool] = lambda: False, first_remote: int = 0,
+        ) -> LockstepTransport:
     starts = np.zeros(2, START)
     starts['position'] = 0.25, 0.5
+    expected = [*(Expected(name, 'same') for name in NAMES),
+                *(Expected(name, '') for name in controllers)]
     return LockstepTransport(
-        node, [Expected(name, 'same') for name in names], starts, limits,
-        lambda messages: None, lambda clock: None, watch=watch, should_stop=should_stop)
+        node, Cast(expected, starts, 1_000_000, first_remote), limits, Silence(),
+        watch=watch, should_stop=should_stop)
 
 
-def tick(transport: LockstepTransport, number: int) -> tuple[list[float], Sequence[Messages]]:
+def tick(
+        transport: LockstepTransport, number: int, rows: Rows | None = None
+        ) -> tuple[list[float], Sequence[Messages]]:
     """Return (reply forces, messages) of one tick."""
-    ports, commands = np.zeros(2, LOAD_PORT), np.zeros(2, COMMAND)
-    ports['x0'], commands['position'] = (1.0, 2.0), number
-    replies = np.zeros(2, LOAD_REPLY)
-    transport.send(number, ports, commands)
-    messages = transport.receive(replies)
-    return replies['force'].tolist(), messages
+    rows = Rows(2) if rows is None else rows
+    rows.ports['x0'], rows.commands['position'] = (1.0, 2.0), number
+    transport.send(number, rows)
+    messages = transport.receive(rows)
+    return rows.replies['force'].tolist(), messages
 
 
 @pytest.mark.parametrize('has_handles', [True, False], ids=['wait set', 'executor'])
@@ -105,31 +129,130 @@ def test_every_participant_answers_every_tick(observer, monkeypatch, has_handles
     steppers = {'kfe': Scripted(), 'haa': Scripted()}
     with spinning(observer.context, steppers):
         transport = make_transport(observer)
-        assert transport.join() == [[b'0.25', None], [b'0.5', None]]
+        assert transport.join(Rows(2)) == [[b'0.25', None], [b'0.5', None]]
         assert tick(transport, 0) == ([1.0, 2.0], [[b'0', None], [b'0', None]])
         assert tick(transport, 1) == ([2.0, 3.0], [[b'1', b'applied'], [b'1', b'applied']])
         transport.close()
-    assert steppers['haa'].ticks == [0, 1]
+    assert steppers['haa'].ticks == 2
     assert steppers['haa'].starts == 1
 
 
-def test_a_controller_takes_part_without_being_an_actuator(observer):
-    """It is waited for at every tick; it has no port, no command and no reply."""
-    controller = Scripted(digest='its own')
-    steppers = {'haa': Scripted(), 'kfe': Scripted(), 'controller': controller}
+class Follower(Controller):
+    """Asks HAA to go where KFE was, and remembers what it was shown."""
+
+    def __init__(self) -> None:
+        self.shown: list[tuple[int, list[float]]] = []
+        self.asks: dict[str, Setpoint] | None = None
+
+    def start(self, names: Sequence[str]) -> None:
+        self.names = list(names)
+
+    def step(self, state) -> dict[str, Setpoint]:
+        positions = [float(own.position) for own in state.actuators.values()]
+        self.shown.append((state.t_ns, positions))
+        return {'haa': Setpoint(positions[1])} if self.asks is None else self.asks
+
+
+def test_a_controller_sees_tick_k_and_speaks_for_tick_k_plus_1(observer):
+    """It is shown the samples before the tick, and is waited for."""
+    controller, rows = Follower(), Rows(2)
+    steppers = {'haa': Scripted(), 'kfe': Scripted(), 'follower': controller}
     with spinning(observer.context, steppers):
-        transport = make_transport(observer, names=NAMES)
-        transport._participants = [*transport._participants, Expected('controller', '')]
-        assert transport.join()[2] == [b'first', None]
-        forces, messages = tick(transport, 0)
-        assert forces == [1.0, 2.0]
-        assert messages[2] == [b'0', None]
+        transport = make_transport(observer, ['follower'])
+        assert transport.join(rows)[2] == ()
+        assert rows.samples['position'].tolist() == [0.25, 0.5]
+        tick(transport, 0, rows)
+        assert rows.samples['position'].tolist() == [1.25, 1.5]
+        assert rows.requests['kinds'].tolist() == [HAS_SETPOINT, 0]
+        assert rows.requests['position'][0] == 0.5
+        tick(transport, 1, rows)
+        assert rows.requests['position'][0] == 1.5
+    assert controller.names == ['haa', 'kfe']
+    assert controller.shown == [(0, [0.25, 0.5]), (1_000_000, [1.25, 1.5])]
+
+
+def test_a_setpoint_for_nobody_ends_the_run(observer):
+    controller = Follower()
+    controller.asks = {'hip': Setpoint(0.1)}
+    with spinning(observer.context, {
+            'haa': Scripted(), 'kfe': Scripted(), 'follower': controller}):
+        transport = make_transport(observer, ['follower'])
+        transport.join(Rows(2))
+        with pytest.raises(RunError, match="follower: refused tick 0: 'hip' is no actuator"):
+            tick(transport, 0)
+
+
+def test_what_a_participant_raises_reaches_the_coordinator(observer):
+    """A refusal keeps the participant; the coordinator's run is over."""
+    stepper = Scripted()
+    stepper.fails_at, stepper.error = 1, SetpointError('kfe: no such thing')
+    with spinning(observer.context, {'haa': Scripted(), 'kfe': stepper}):
+        transport = make_transport(observer)
+        transport.join(Rows(2))
+        tick(transport, 0)
+        with pytest.raises(RunError, match='kfe: refused tick 1: kfe: no such thing'):
+            tick(transport, 1)
+
+
+def test_nothing_is_published_before_the_time_is(observer):
+    """The first messages wait for `begin`, after which `/clock` is out."""
+    stepper = Scripted()
+    with spinning(observer.context, {'haa': stepper, 'kfe': Scripted()}):
+        transport = make_transport(observer)
+        transport.join(Rows(2))
+        assert stepper.published == []
+        transport.begin()
+        tick(transport, 0)
+        wait_for(lambda: len(stepper.published) == 2, 'both messages')
+    assert stepper.published == [[b'0.25', None], [b'0', None]]
+
+
+def test_a_saved_state_is_restored(observer):
+    """Everyone gives its own state, and goes on from its own; the tick goes on too."""
+    with spinning(observer.context, {'haa': Scripted(), 'kfe': Scripted()}):
+        transport = make_transport(observer)
+        transport.join(Rows(2))
+        tick(transport, 0)
+        tick(transport, 1)
+        states = transport.snapshots()
+        assert states == [b'after 2', b'after 2']
+        transport.join(Rows(2))
+        assert transport.restore(2, [b'after 2', b'after 7'], Rows(2)) == [
+            [b'after 2', None], [b'after 7', None]]
+        transport.begin()
+        assert tick(transport, 2)[1] == [[b'2', None], [b'7', None]]
+
+
+def test_a_controller_without_snapshot_is_named(observer):
+    with spinning(observer.context, {
+            'haa': Scripted(), 'kfe': Scripted(), 'follower': Follower()}):
+        transport = make_transport(observer, ['follower'])
+        transport.join(Rows(2))
+        with pytest.raises(RunError, match=(
+                r'follower: refused the request to save its state: Follower has no snapshot\(\)')):
+            transport.snapshots()
+
+
+def test_only_those_in_other_processes_are_called(observer):
+    """Actuators in the coordinator's own process answer it directly."""
+    with spinning(observer.context, {'follower': Follower()}):
+        transport = make_transport(observer, ['follower'], first_remote=2)
+        rows = Rows(2)
+        assert transport.join(rows) == [()]
+        assert tick(transport, 0, rows)[1] == [()]
+        assert rows.requests['kinds'].tolist() == [HAS_SETPOINT, 0]
+
+
+def test_a_node_with_the_name_of_one_in_this_process_is_refused(observer):
+    with spinning(observer.context, {'follower': Follower(), 'haa': Scripted()}):
+        with pytest.raises(ConfigError, match='haa: two nodes of this name answer'):
+            make_transport(observer, ['follower'], first_remote=2).join(Rows(2))
 
 
 def test_other_digest_is_refused(observer):
     with spinning(observer.context, {'haa': Scripted(), 'kfe': Scripted('other')}):
         with pytest.raises(ConfigError, match='kfe: digest of its parameters = other, must be'):
-            make_transport(observer).join()
+            make_transport(observer).join(Rows(2))
 
 
 def test_divergence_arrives_with_its_field(observer):
@@ -138,7 +261,7 @@ def test_divergence_arrives_with_its_field(observer):
     stepper.fails_at = 1
     with spinning(observer.context, {'haa': Scripted(), 'kfe': stepper}):
         transport = make_transport(observer)
-        transport.join()
+        transport.join(Rows(2))
         tick(transport, 0)
         with pytest.raises(SimulationDiverged) as raised:
             tick(transport, 1)
@@ -151,7 +274,7 @@ def test_late_participant_is_named(observer):
     stepper.is_late_at = 1
     with spinning(observer.context, {'haa': stepper, 'kfe': Scripted()}):
         transport = make_transport(observer)
-        transport.join()
+        transport.join(Rows(2))
         tick(transport, 0)
         with pytest.raises(RunError, match=r'^haa: no answer to tick 1 after 0\.[34] s'):
             tick(transport, 1)
@@ -164,7 +287,7 @@ def test_lost_participant_is_named_before_its_timeout(observer):
     with spinning(observer.context, {'haa': stepper, 'kfe': Scripted()}):
         transport = make_transport(
             observer, limits=limits, watch=lambda: lost[0] if lost else None)
-        transport.join()
+        transport.join(Rows(2))
         lost.append('haa: its process 1 was ended by SIGKILL')
         with pytest.raises(RunError, match='SIGKILL in tick 0'):
             tick(transport, 0)
@@ -176,7 +299,7 @@ def test_stop_does_not_wait_for_the_timeout(observer):
     limits = Limits(join_s=DEADLINE_S, tick_s=DEADLINE_S)
     with spinning(observer.context, {'haa': stepper, 'kfe': Scripted()}):
         transport = make_transport(observer, limits=limits, should_stop=is_stopped.is_set)
-        transport.join()
+        transport.join(Rows(2))
         is_stopped.set()
         with pytest.raises(Interrupted, match='tick 0, which haa did not end'):
             tick(transport, 0)
@@ -187,10 +310,10 @@ def test_busy_participant_refuses_another_coordinator(observer):
     steppers = {'haa': Scripted(), 'kfe': Scripted()}
     with spinning(observer.context, steppers):
         first = make_transport(observer)
-        first.join()
+        first.join(Rows(2))
         tick(first, 0)
         with pytest.raises(ConfigError, match='another coordinator runs in ROS_DOMAIN_ID'):
-            make_transport(observer).join()
+            make_transport(observer).join(Rows(2))
         assert tick(first, 1)[0] == [2.0, 3.0]
     assert steppers['haa'].starts == 1
 
@@ -198,7 +321,7 @@ def test_busy_participant_refuses_another_coordinator(observer):
 def test_a_skipped_tick_is_refused(observer):
     with spinning(observer.context, {'haa': Scripted(), 'kfe': Scripted()}):
         transport = make_transport(observer)
-        transport.join()
+        transport.join(Rows(2))
         with pytest.raises(RunError, match='refused tick 1: tick 1 came, 0 was due'):
             tick(transport, 1)
 
@@ -208,21 +331,20 @@ def test_steps_of_a_strange_run_are_ignored(observer):
     stepper = Scripted()
     with spinning(observer.context, {'haa': stepper, 'kfe': Scripted()}):
         transport = make_transport(observer)
-        transport.join()
+        transport.join(Rows(2))
         stranger = make_transport(observer)
         wait_for(lambda: stranger._publisher.get_subscription_count() >= 2, 'the match')
-        stranger._send(encode_tick(
-            stranger._run_id, 0, np.zeros(2, LOAD_PORT), np.zeros(2, COMMAND)))
+        stranger._send(encode_tick(7, 0, Rows(2), False))
         stranger.close()
         assert tick(transport, 0)[0] == [1.0, 2.0]
-    assert stepper.ticks == [0]
+    assert stepper.ticks == 1
 
 
 def test_a_second_node_of_a_name_is_noticed_during_the_run(observer):
     """One that was discovered too late for any hello gives its name at its first tick."""
     with spinning(observer.context, {'haa': Scripted(), 'kfe': Scripted()}):
         transport = make_transport(observer)
-        transport.join()
+        transport.join(Rows(2))
         tick(transport, 0)
         with spinning(observer.context, {'kfe': Scripted()}):
             wait_for(lambda: transport._publisher.get_subscription_count() >= 3, 'the match')
@@ -238,7 +360,7 @@ def test_a_node_of_another_name_does_not_disturb(observer):
     """It gives its name too, which is none of the run."""
     with spinning(observer.context, {'haa': Scripted(), 'kfe': Scripted(), 'hfe': Scripted()}):
         transport = make_transport(observer)
-        transport.join()
+        transport.join(Rows(2))
         wait_for(lambda: transport._publisher.get_subscription_count() >= 3, 'the match')
         for number in range(200):
             tick(transport, number)
@@ -249,8 +371,8 @@ def test_a_participant_serves_one_run_after_the_other(observer):
     with spinning(observer.context, {'haa': stepper, 'kfe': Scripted()}):
         for _ in range(2):
             transport = make_transport(observer)
-            transport.join()
+            transport.join(Rows(2))
             assert tick(transport, 0)[0] == [1.0, 2.0]
             transport.close()
     assert stepper.starts == 2
-    assert stepper.ticks == [0, 0]
+    assert stepper.ticks == 1

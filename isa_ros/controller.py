@@ -1,0 +1,93 @@
+"""
+A user's controller in the lockstep: the state of tick k in, the setpoints of tick k + 1 out.
+
+Free of ROS; `isa_ros.nodes.Participant` lets one take part in a run.
+"""
+
+from collections.abc import Mapping, Sequence
+import math
+from typing import NamedTuple
+
+from isa_ros.errors import RunError, SetpointError
+from isa_ros.signals import HAS_ENABLE, HAS_SETPOINT
+import numpy as np
+from numpy.typing import NDArray
+
+
+class State(NamedTuple):
+    """What is known at one instant."""
+
+    t_ns: int
+    actuators: Mapping[str, np.record]
+    """`SAMPLE` by actuator: ``state.actuators['knee'].position``; SI, pressures gauge."""
+    shared: np.record
+    """`SHARED_SAMPLE`: supply pressure, joints and foot of the leg; NaN without a leg."""
+
+
+class Setpoint(NamedTuple):
+    """The impedance setpoint of one actuator; m, m/s, N, N/m, Ns/m or rad, rad/s, Nm, ..."""
+
+    position: float
+    velocity: float = 0.0
+    effort: float = 0.0
+    """Feed-forward force or torque."""
+    stiffness: float | None = None
+    """None keeps the gain in force, as does a damping of None."""
+    damping: float | None = None
+    is_enabled: bool | None = None
+    """None leaves the actuator as it is."""
+
+
+class Controller:
+    """What a user's controller says and is told; override `step`, and the rest as needed."""
+
+    def start(self, names: Sequence[str]) -> None:
+        """Begin anew at t = 0 with actuators of these names, in the order of the run."""
+
+    def step(self, state: State) -> Mapping[str, Setpoint]:
+        """
+        Return the setpoints that take effect one tick after ``state``, by actuator.
+
+        An actuator that is left out keeps its setpoint. What is returned may depend on the
+        states since `start` only, or the run cannot be repeated.
+        """
+        raise NotImplementedError
+
+    def snapshot(self) -> bytes:
+        """Return the whole state of the controller; needed only where a run is saved."""
+        raise RunError(f'{type(self).__name__} has no snapshot(), so the run cannot be saved')
+
+    def restore(self, snapshot: bytes) -> None:
+        """Continue from a `snapshot`."""
+        raise RunError(f'{type(self).__name__} has no restore(), so the run cannot go on')
+
+
+def fill_requests(
+        setpoints: Mapping[str, Setpoint], names: Sequence[str],
+        requests: NDArray[np.void]) -> None:
+    """
+    Write setpoints into the `COMMAND` rows of the actuators ``names``, shape (n_actuators,).
+
+    Raises
+    ------
+    SetpointError
+        An actuator that the run does not have, or a value that cannot be one.
+
+    """
+    for name, setpoint in setpoints.items():
+        if name not in names:
+            raise SetpointError(f'{name!r} is no actuator of the run; valid: {", ".join(names)}')
+        numbers = [math.nan if value is None else value for value in setpoint[:5]]
+        for field, value, given in zip(Setpoint._fields, numbers, setpoint):
+            if given is not None and not math.isfinite(value):
+                raise SetpointError(f'{name}: setpoint {field} = {value}, must be finite')
+            if field in ('stiffness', 'damping') and value < 0.0:
+                raise SetpointError(f'{name}: setpoint {field} = {value}, must be >= 0')
+        kinds = HAS_SETPOINT if setpoint.is_enabled is None else HAS_SETPOINT | HAS_ENABLE
+        requests[names.index(name)] = (kinds, bool(setpoint.is_enabled), *numbers)
+
+
+def merge_requests(requests: NDArray[np.void], into: NDArray[np.void]) -> None:
+    """Overwrite rows of ``into`` with the `COMMAND` rows of one controller that say something."""
+    said = np.flatnonzero(requests['kinds'])
+    into[said] = requests[said]

@@ -1,0 +1,1 @@
+"""Controllers to copy: one in the lockstep, one beside it."""

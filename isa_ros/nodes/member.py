@@ -1,0 +1,150 @@
+"""A participant's end of the private wire."""
+
+from collections.abc import Callable
+import secrets
+from typing import Any
+
+from isa_ros.errors import IsaError, SimulationDiverged
+from isa_ros.nodes.qos import LOCKSTEP
+from isa_ros.nodes.seat import Parts, Seat
+from isa_ros.nodes.waiting import open_mailbox, SLICE_S
+from isa_ros.nodes.wire import (
+    ACKNOWLEDGEMENT_TOPIC, AnswerKind, decode_step, DIVERGENCE, encode_answer, Step, STEP_TOPIC,
+    StepKind)
+from rclpy.node import Node
+from std_msgs.msg import UInt8MultiArray
+
+
+class Member:
+    """
+    Let ``seat`` take part whenever the coordinator asks, and answer.
+
+    The coordinator knows a member by the name of its node, and waits for it at every tick.
+    One that is bound to a run answers no other coordinator until that run ends or its
+    coordinator is gone.
+    """
+
+    def __init__(self, node: Node, seat: Seat) -> None:
+        self._name = node.get_name()
+        self._log = node.get_logger()
+        self._seat = seat
+        self._identity = secrets.token_bytes(8)
+        self._mailbox = open_mailbox(node, STEP_TOPIC)
+        self._publisher = node.create_publisher(UInt8MultiArray, ACKNOWLEDGEMENT_TOPIC, LOCKSTEP)
+        handle: Any = self._publisher.handle
+        self._send: Callable[[bytes], None] = handle.publish_raw
+        self._strangers: set[int] = set()
+        self._release()
+
+    def _release(self) -> None:
+        self._run_id = 0  # 0: bound to no run
+        self._index = 0
+        self._next_tick = 0
+        self._has_begun = False
+        self._first: Parts = ()
+
+    def spin(self, should_stop: Callable[[], bool]) -> None:
+        """Take part in one run after the other until ``should_stop``."""
+        while not should_stop():
+            data = self._mailbox.wait(SLICE_S)
+            if data is not None:
+                self._handle(decode_step(data))
+                continue
+            self._seat.serve()
+            if self._run_id and not self._mailbox.count_senders():
+                self._log.warning(
+                    f'the coordinator is gone after {self._next_tick} ticks; waiting for another')
+                self._release()
+
+    def _handle(self, step: Step) -> None:
+        if step.kind is StepKind.HELLO:
+            self._answer_hello(step)
+        elif step.run_id != self._run_id:
+            self._answer_strange(step)
+        elif step.kind is StepKind.TICK:
+            self._answer_tick(step)
+        elif step.kind is StepKind.BEGIN:
+            self._has_begun = True
+            self._seat.publish()
+        elif step.kind is StepKind.SAVE:
+            self._answer_to(step, AnswerKind.SAVED, lambda: (self._seat.snapshot(),))
+        elif step.kind is StepKind.RESTORE:
+            self._next_tick = step.tick
+            self._answer_to(step, AnswerKind.RESTORED,
+                            lambda: self._seat.restore(step.snapshot(self._index)))
+        else:
+            self._release()
+
+    def _answer_hello(self, step: Step) -> None:
+        if step.run_id != self._run_id:
+            if self._run_id and self._mailbox.count_senders() > 1:
+                self._send(encode_answer(AnswerKind.BUSY, step.run_id, step.tick, 0, ()))
+                return
+            if not self._bind(step):
+                return
+        elif self._has_begun:
+            return
+        self._send(encode_answer(
+            AnswerKind.READY, step.run_id, step.tick, self._index,
+            (self._identity, self._seat.digest, *self._first)))
+
+    def _answer_strange(self, step: Step) -> None:
+        """Give this name once to a run that goes on without it: another node may have it."""
+        if step.kind is StepKind.TICK and not self._run_id and (
+                step.run_id not in self._strangers):
+            self._strangers.add(step.run_id)
+            self._send(encode_answer(
+                AnswerKind.UNBOUND, step.run_id, step.tick, 0, (self._name.encode(),)))
+
+    def _bind(self, step: Step) -> bool:
+        """Join the run of a hello; return whether it calls this participant."""
+        self._release()
+        names = step.names()
+        if self._name not in names:
+            if step.run_id not in self._strangers:
+                self._strangers.add(step.run_id)
+                self._log.warning(
+                    f'a coordinator calls {", ".join(names)}, not {self._name!r}: '
+                    'declare it in the configuration')
+            return False
+        self._run_id = step.run_id
+        self._index = names.index(self._name)
+        self._seat.serve()
+        self._first = self._seat.start(step, self._index)
+        return True
+
+    def _answer_tick(self, step: Step) -> None:
+        if step.tick != self._next_tick:
+            self._answer(AnswerKind.REFUSED, step.tick, (
+                f'tick {step.tick} came, {self._next_tick} was due'.encode(),))
+            return
+        self._next_tick += 1
+        self._seat.serve()
+        # The answer first: publishing goes on while the coordinator works.
+        if self._answer_to(step, AnswerKind.DONE, lambda: self._seat.advance(step)):
+            self._seat.publish()
+
+    def _answer_to(self, step: Step, kind: AnswerKind, work: Callable[[], Parts]) -> bool:
+        """
+        Answer with what ``work`` gives, or with why it gives nothing.
+
+        Whatever else it raises is told to the coordinator too, and then ends this process.
+        """
+        try:
+            parts = work()
+        except SimulationDiverged as error:
+            self._answer(AnswerKind.DIVERGED, step.tick, (
+                DIVERGENCE.pack(error.t_ns, error.value), error.field.encode()))
+            return False
+        except IsaError as error:
+            self._answer(AnswerKind.REFUSED, step.tick, (str(error).encode(),))
+            return False
+        except BaseException as error:
+            self._answer(AnswerKind.REFUSED, step.tick, (
+                f'{type(error).__name__}: {error}'.encode(),))
+            raise
+        self._answer(kind, step.tick, parts)
+        return True
+
+    def _answer(self, kind: AnswerKind, tick: int, parts: Parts) -> None:
+        self._send(encode_answer(kind, self._run_id, tick, self._index, parts))

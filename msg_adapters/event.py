@@ -1,0 +1,31 @@
+"""rcl_interfaces/Log: what was done to a run, as ``~/events`` of the coordinator says it."""
+
+from builtin_interfaces.msg import Time
+from msg_adapters.cdr import encode
+from msg_adapters.cdr_reader import decode
+from msg_adapters.template import stamp
+from rcl_interfaces.msg import Log
+
+TYPE = 'rcl_interfaces/msg/Log'
+NAME = 'coordinator'
+
+
+def pack(t_ns: int, text: str) -> bytes:
+    """Return the CDR bytes of an event that took effect at ``t_ns``; the level is INFO."""
+    seconds, nanoseconds = stamp(t_ns)
+    time = Time(sec=seconds, nanosec=nanoseconds)
+    return encode(Log(stamp=time, level=Log.INFO, name=NAME, msg=text))
+
+
+def text(data: bytes) -> str:
+    """
+    Return what an event says; inverse of `pack`.
+
+    Raises
+    ------
+    CdrError
+        The bytes are no Log.
+
+    """
+    message: Log = decode(data, Log)
+    return str(message.msg)
