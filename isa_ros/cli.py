@@ -18,6 +18,7 @@ from typing import NoReturn
 from isa_ros import commands, response_arguments, study_arguments
 from isa_ros.argument_types import directory_to_write, file_to_write, positive
 from isa_ros.errors import IsaError
+from isa_ros.pacing import JOIN_TIMEOUT_S
 
 DONE, ANSWER_IS_NO, WRONG_INPUT, NOT_COMPLETED, INTERRUPTED = 0, 1, 2, 3, 130
 """Exit codes; `IsaError` children carry theirs, a diverged simulation 4 among them."""
@@ -110,6 +111,9 @@ def _bringup(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         '--controller', action='append', default=[], metavar='NAME',
         help='a node of yours that is waited for at every tick; may be repeated')
+    parser.add_argument(
+        '--join-timeout', type=positive, metavar='S', default=JOIN_TIMEOUT_S,
+        help=f'how long participants are waited for (default: {JOIN_TIMEOUT_S:g} s)')
     parser.add_argument(
         '--paused', action='store_true',
         help='wait before tick 0 for /coordinator/step or the end of the pause')

@@ -9,6 +9,7 @@ from isa_ros.timebase import NS_PER_SECOND
 
 SLICE_S = 0.1  # longest sleep between two looks at a signal
 REPORT_PERIOD_S = 0.2
+JOIN_TIMEOUT_S = 30.0  # how long participants are waited for before tick 0
 
 
 class Progress(NamedTuple):

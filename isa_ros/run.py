@@ -14,7 +14,7 @@ from isa_ros.config import load_run
 from isa_ros.coordinator import Coordinator, Plan, Requests
 from isa_ros.errors import BagError, RunError
 from isa_ros.exchange import Rows, Transport
-from isa_ros.pacing import Laps, Pace, Progress, ProgressMeter
+from isa_ros.pacing import JOIN_TIMEOUT_S, Laps, Pace, Progress, ProgressMeter
 from isa_ros.run_config import RunConfig
 from isa_ros.run_state import read_state, RunState
 from isa_ros.scenario import idle, load_scenario, Scenario
@@ -23,7 +23,6 @@ from isa_ros.stopping import StopRequest
 from isa_ros.topics import topics_of
 
 RUNS = Path('runs')
-JOIN_TIMEOUT_S = 30.0
 
 Report = Callable[[Progress], None]
 

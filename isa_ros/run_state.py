@@ -29,11 +29,12 @@ class RunState:
 
     def rows_of_requests(self, n_actuators: int) -> NDArray[np.void]:
         """Return the `COMMAND` rows that take effect at ``tick``, (n_actuators,)."""
-        rows = np.frombuffer(self.requests, COMMAND)
-        if len(rows) != n_actuators:
+        expected = n_actuators * COMMAND.itemsize
+        if len(self.requests) != expected:
             raise ConfigError(
-                f'the saved state has {len(rows)} actuators, the run has {n_actuators}')
-        return rows
+                f'the saved state has {len(self.requests)} bytes of requests, must have '
+                f'{expected} for the {n_actuators} actuators of the run')
+        return np.frombuffer(self.requests, COMMAND)
 
     def to_json(self, configuration: str, versions: Mapping[str, str]) -> str:
         """Return the text of a state file; ``configuration`` is the digest of the run's."""

@@ -200,3 +200,22 @@ def test_origins_say_which_file_a_value_comes_from(tmp_path: Path) -> None:
     plant = origins.actuators['ram'].sheet['plant']
     assert isinstance(plant, dict) and isinstance(plant['oil'], dict)
     assert plant['oil']['dead_volume_ml'].source == 'rig.yaml'  # type: ignore[union-attr]
+
+
+@pytest.mark.parametrize(('names', 'message'), [
+    (['hfe'], "leg.yaml: controllers: the name 'hfe' is taken"),
+    (['coordinator'], "leg.yaml: controllers: the name 'coordinator' is taken"),
+    (['sway', 'sway'], "leg.yaml: controllers: the name 'sway' is taken"),
+    (['Sway'], "leg.yaml: controllers = 'Sway', must be small letters")])
+def test_a_controller_that_cannot_be_is_refused(names, message):
+    with pytest.raises(ConfigError, match=message):
+        load_run(CONFIG / 'leg.yaml').with_controllers(names)
+
+
+def test_controllers_of_file_and_command_line_take_part(tmp_path):
+    """In this order, and in the text that a bag carries."""
+    path = tmp_path / 'leg.yaml'
+    path.write_text((CONFIG / 'leg.yaml').read_text() + 'controllers: [gait, balance]\n')
+    run = load_run(path).with_controllers(['sway'])
+    assert run.controllers == ('gait', 'balance', 'sway')
+    assert RunConfig.from_yaml(run.to_yaml()) == run

@@ -307,7 +307,7 @@ def test_a_saved_run_goes_on_where_it_was():
     first.run()
     again = Rig(4)
     again.run(states[0])
-    assert 'restore 2 [b\'b\', b\'a\']' in again.log
+    assert f'restore 2 {[b"b", b"a"]}' in again.log
     assert again.recorder.samples == first.recorder.samples[2:]
     sent = [line for line in first.log if line.startswith('send')][2:]
     assert [line for line in again.log if line.startswith('send')] == sent

@@ -12,7 +12,8 @@ from isa_ros.nodes.domain import sole_coordinator
 from isa_ros.nodes.environment import set_defaults
 from isa_ros.nodes.prepared import PreparedPublishers
 from isa_ros.nodes.run_services import REAL_TIME_FACTOR
-from isa_ros.run import JOIN_TIMEOUT_S, prepare, Request
+from isa_ros.pacing import JOIN_TIMEOUT_S
+from isa_ros.run import prepare, Request
 from isa_ros.shared_load import CLOCK_TOPIC, EVENT_TOPIC
 from isa_ros.stopping import StopRequest
 from isa_ros.terminal import terminal_report

@@ -29,7 +29,7 @@ class RunServices:
     offered, and the log says so.
     """
 
-    def __init__(self, node: Node, save: Save) -> None:
+    def __init__(self, node: Node, real_time_factor: float, save: Save) -> None:
         self._node = node
         self._save = save
         self._coordinator: Coordinator | None = None
@@ -40,6 +40,9 @@ class RunServices:
         node.declare_parameter(STEP_COUNT, 1, ParameterDescriptor(
             description='ticks of one call of ~/step',
             integer_range=[IntegerRange(from_value=1, to_value=LARGEST_STEP, step=1)]))
+        if not node.has_parameter(REAL_TIME_FACTOR):
+            node.declare_parameter(REAL_TIME_FACTOR, real_time_factor, ParameterDescriptor(
+                description='not faster than this; 0: as fast as it can'))
         node.add_on_set_parameters_callback(self._on_parameters)
         node.create_service(SetBool, '~/pause', self._on_pause)
         node.create_service(Trigger, '~/step', self._on_step)

@@ -148,7 +148,8 @@ def _record(
         node: CoordinatorNode, session: Session, transport: Transport, load: SharedLoad,
         report: Report | None, should_stop: StopRequest) -> None:
     """Record the run, and serve what is asked of it."""
-    services = RunServices(node, lambda coordinator: save_in_bag(session, coordinator))
+    services = RunServices(
+        node, session.pace.factor, lambda coordinator: save_in_bag(session, coordinator))
     record(session, transport, load, report, should_stop, services.serve)
 
 

@@ -1,10 +1,12 @@
 """What the coordinator publishes."""
 
 from geometry_msgs.msg import WrenchStamped
+from msg_adapters import event
 from msg_adapters.cdr_reader import decode
 from msg_adapters.coordinator_messages import ClockMessage, GroundContactMessage
 from msg_adapters.coordinator_messages import LegJointStateMessage, SupplyPressureMessage
 import numpy as np
+from rcl_interfaces.msg import Log
 from rosgraph_msgs.msg import Clock
 from sensor_msgs.msg import FluidPressure, JointState
 
@@ -40,3 +42,11 @@ def test_supply_pressure_is_absolute():
     message = decode(SupplyPressureMessage().pack(20.7e6, T_NS), FluidPressure)
     assert message.fluid_pressure == 20.7e6 + 101325.0
     assert message.header.frame_id == 'supply'
+
+
+def test_an_event_says_what_was_done_and_when():
+    data = event.pack(T_NS, 'step 3')
+    message = decode(data, Log)
+    assert (message.stamp.sec, message.stamp.nanosec) == (7, 8)
+    assert (message.name, message.level) == ('coordinator', Log.INFO)
+    assert event.text(data) == 'step 3'

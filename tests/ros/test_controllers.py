@@ -1,0 +1,88 @@
+"""Controllers of a user: one that is waited for, and one that follows /clock."""
+
+import hashlib
+from pathlib import Path
+import signal
+
+from isa_ros.bag.reader import Bag
+from isa_ros.bag.replay import replay
+from msg_adapters.cdr_reader import decode
+import pytest
+from sensor_msgs.msg import JointState
+from tests.ros.started import bringup, started, wait_for
+
+pytestmark = pytest.mark.ros
+SWAY = 'isa_ros.examples.sway'
+BESIDE = 'isa_ros.examples.beside_the_clock'
+
+
+def record(bag: Path, *options: str) -> str:
+    """Run the leg with the controller ``sway`` and return the sha256 of the bag."""
+    bag.parent.mkdir()
+    with bringup(bag, '--controller', 'sway', *options) as run:
+        assert run.exit_code() == 0, run.errors
+    return hashlib.sha256((bag / 'bag_0.mcap').read_bytes()).hexdigest()
+
+
+def setpoints(bag: Path) -> list[tuple[int, float]]:
+    """Return (tick it took effect at, position) of what HFE was told."""
+    return [(message.sequence - 1, decode(message.data, JointState).position[0])
+            for message in Bag(bag).messages()
+            if message.topic == '/hfe/applied_setpoint' and message.sequence]
+
+
+def messages_from(bag: Path, t_ns: int) -> list[tuple]:
+    return [message for message in Bag(bag).messages() if message.t_ns >= t_ns]
+
+
+def test_a_controller_in_the_lockstep_gives_the_same_bytes_every_time(domain, tmp_path):
+    """In processes, in one, and restored from a state half-way; replay needs no controller."""
+    bags = [tmp_path / name / 'bag' for name in ('several', 'one', 'half', 'rest')]
+    state = tmp_path / 'state.json'
+    with started(tmp_path / 'sway.log', SWAY):
+        several = record(bags[0], '--duration', '0.1')
+        assert record(bags[1], '--duration', '0.1', '--in-process') == several
+        record(bags[2], '--duration', '0.05', '--in-process', '--save', str(state))
+        record(bags[3], '--duration', '0.1', '--restore', str(state))
+    assert messages_from(bags[3], 0) == messages_from(bags[0], 50_000_000)
+    # Tick 0 shows it t = 0, so tick 1 is the first it speaks for.
+    assert [tick for tick, _ in setpoints(bags[0])] == list(range(1, 100))
+    assert setpoints(bags[0])[0] == (1, 0.038)
+    for bag in bags:
+        assert replay(Bag(bag)).is_equal
+
+
+def test_a_controller_that_is_not_there_is_named(domain, tmp_path):
+    with bringup(tmp_path / 'bag', '--controller', 'sway', '--in-process',
+                 '--join-timeout', '1') as run:
+        assert run.exit_code() == 3
+    assert run.errors.startswith('isa: sway: no answer before tick 0 after 1 s')
+    assert not (tmp_path / 'bag').exists()
+
+
+def test_a_killed_controller_ends_the_run_naming_it(domain, tmp_path):
+    bag = tmp_path / 'bag'
+    config = tmp_path / 'leg.yaml'
+    text = Path('config/leg.yaml').read_text()
+    config.write_text(text.replace('tick_timeout_s: 5.0', 'tick_timeout_s: 0.5')
+                      + 'controllers: [sway]\n')
+    with started(tmp_path / 'sway.log', SWAY) as sway:
+        with bringup(bag, '--in-process', config=config) as run:
+            wait_for(lambda: (bag / 'metadata.yaml').exists() or not run.is_running(), 'tick 0')
+            sway.signal(signal.SIGKILL)
+            assert run.exit_code() == 3
+    assert run.errors.startswith('isa: sway: no answer to tick ')
+    assert 'must come within 0.5 s' in run.errors
+    assert replay(Bag(bag)).is_equal
+
+
+def test_a_controller_that_follows_the_clock_replays_exactly(domain, tmp_path):
+    """Its setpoints take effect at whatever tick they meet, and are recorded with it."""
+    bag = tmp_path / 'bag'
+    with started(tmp_path / 'beside.log', BESIDE):
+        with bringup(bag, '--in-process', '--real-time-factor', '1', '--duration', '3') as run:
+            assert run.exit_code() == 0, run.errors
+    told = setpoints(bag)
+    assert len(told) > 20
+    assert all(later[0] - tick >= 1 for (tick, _), later in zip(told, told[1:]))
+    assert replay(Bag(bag)).is_equal

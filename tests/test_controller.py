@@ -1,0 +1,64 @@
+"""What controllers say becomes commands, or is refused whole."""
+
+import math
+
+from isa_ros.controller import Controller, fill_requests, merge_requests, Setpoint
+from isa_ros.errors import RunError, SetpointError
+from isa_ros.signals import COMMAND, HAS_ENABLE, HAS_SETPOINT
+import numpy as np
+import pytest
+
+NAMES = ('haa', 'kfe')
+
+
+def requests(**setpoints: Setpoint) -> np.ndarray:
+    """Return the rows that setpoints by name fill."""
+    rows = np.zeros(2, COMMAND)
+    fill_requests(setpoints, NAMES, rows)
+    return rows
+
+
+def test_a_setpoint_fills_the_row_of_its_actuator():
+    """A gain that is not given keeps the one in force; who is not named is told nothing."""
+    rows = requests(kfe=Setpoint(0.1, 0.2, 30.0, damping=400.0))
+    assert rows['kinds'].tolist() == [0, HAS_SETPOINT]
+    kinds, _, position, velocity, effort, stiffness, damping = rows[1].item()
+    assert (position, velocity, effort, damping) == (0.1, 0.2, 30.0, 400.0)
+    assert math.isnan(stiffness)
+
+
+@pytest.mark.parametrize('is_enabled', [True, False])
+def test_enabling_comes_with_the_setpoint(is_enabled):
+    row = requests(haa=Setpoint(0.0, is_enabled=is_enabled))[0]
+    assert row['kinds'] == HAS_SETPOINT | HAS_ENABLE
+    assert row['is_enabled'] == is_enabled
+
+
+@pytest.mark.parametrize(('setpoint', 'message'), [
+    (Setpoint(math.nan), 'haa: setpoint position = nan, must be finite'),
+    (Setpoint(0.0, effort=math.inf), 'haa: setpoint effort = inf, must be finite'),
+    (Setpoint(0.0, damping=math.nan), 'haa: setpoint damping = nan, must be finite'),
+    (Setpoint(0.0, stiffness=-1.0), 'haa: setpoint stiffness = -1.0, must be >= 0')])
+def test_a_value_that_cannot_be_is_refused(setpoint, message):
+    with pytest.raises(SetpointError, match=message):
+        requests(haa=setpoint)
+
+
+def test_an_unknown_actuator_is_refused_naming_those_there_are():
+    with pytest.raises(SetpointError, match="'hip' is no actuator of the run; valid: haa, kfe"):
+        requests(hip=Setpoint(0.0))
+
+
+def test_of_two_controllers_the_later_wins_where_both_speak():
+    rows = requests(haa=Setpoint(0.1), kfe=Setpoint(0.2))
+    merge_requests(requests(kfe=Setpoint(0.3)), rows)
+    assert rows['position'].tolist() == [0.1, 0.3]
+    assert rows['kinds'].tolist() == [HAS_SETPOINT, HAS_SETPOINT]
+
+
+def test_a_controller_that_keeps_nothing_says_so_itself():
+    """Silence would lose its state; so saving is refused until it says how."""
+    with pytest.raises(RunError, match=r'Controller has no snapshot\(\)'):
+        Controller().snapshot()
+    with pytest.raises(RunError, match=r'Controller has no restore\(\)'):
+        Controller().restore(b'')
