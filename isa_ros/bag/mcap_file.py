@@ -3,14 +3,16 @@ One MCAP file under construction, a whole chunk at a time.
 
 The records are those of the official ``mcap`` library, except the two that come by the
 million: its ``Writer`` makes an object and ten small packs of each message and two packs of
-each index entry. Here a message costs one pack, and an index is packed at once.
+each index entry. Here a tick costs one pack and an index is an array.
 """
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 import io
+from itertools import accumulate
 from pathlib import Path
 import struct
+from typing import NamedTuple
 import zlib
 
 from mcap.data_stream import RecordBuilder
@@ -19,48 +21,103 @@ from mcap.records import Attachment, AttachmentIndex, Channel, Chunk, ChunkIndex
 from mcap.records import Footer, Header, McapRecord, Metadata, MetadataIndex, Schema
 from mcap.records import Statistics, SummaryOffset
 from mcap.writer import MCAP0_MAGIC
+import numpy as np
+from numpy.typing import NDArray
+
+Entries = NDArray[np.uint64]
+"""Where the messages of one channel stand: rows of log time, ns, and offset in the chunk."""
 
 MESSAGE_HEADER = struct.Struct('<BQHIQQ')
 """Opcode, length of what follows, channel, sequence, log time, publish time."""
 
+_MESSAGE_HEAD = struct.Struct('<BQH')  # its first half, the same at every tick
+_MESSAGE_TAIL = struct.Struct('<IQQ')  # its second half, the same for all messages of a tick
 _MESSAGE = int(Opcode.MESSAGE)  # packing the enum itself takes three times as long
 _LENGTH_EXCESS = MESSAGE_HEADER.size - 9  # of a message record, over its data
 _INDEX_HEADER = struct.Struct('<BQHI')  # opcode, length, channel, bytes of entries
 _INDEX_EXCESS = _INDEX_HEADER.size - 9  # of a message index record, over its entries
+_ENTRY_BYTES = 16  # of a message index: time, offset
 _FOOTER_FIXED = struct.Struct('<BQQQ')  # opcode, length, summary and summary offset start
 
 
-class ChunkContent:
-    """Messages of one chunk and where each stands in it."""
+class _Layout:
+    """Ticks of the same topics and sizes: one after the other they differ in little."""
 
-    def __init__(self, prefix: bytes, n_channels: int) -> None:
+    def __init__(self, topics: Sequence[int], sizes: Sequence[int]) -> None:
+        self.heads = [
+            _MESSAGE_HEAD.pack(_MESSAGE, size + _LENGTH_EXCESS, k + 1)
+            for k, size in zip(topics, sizes)]
+        self.channels = [k + 1 for k in topics]
+        ends = list(accumulate(MESSAGE_HEADER.size + size for size in sizes))
+        self.offsets = [0, *ends[:-1]]
+        self.size = ends[-1] if ends else 0
+
+
+class _Stretch(NamedTuple):
+    """Ticks of one layout in a row: when they were, and where they stand in the chunk."""
+
+    layout: _Layout
+    times: list[int]
+    starts: list[int]
+
+
+class ChunkContent:
+    """
+    Messages of one chunk and where each stands in it.
+
+    A tick is joined from what its layout has prepared; the indices are made when they are
+    asked for, column by column.
+    """
+
+    def __init__(self, prefix: bytes) -> None:
         self._parts = [prefix]
-        self._indices: list[list[int]] = [[] for _ in range(n_channels)]
+        self._layouts: dict[tuple[tuple[int, ...], tuple[int, ...]], _Layout] = {}
+        self._stretches: list[_Stretch] = []
         self.size = len(prefix)
         self.start_ns = self.end_ns = 0
 
     def add(self, t_ns: int, sequence: int, messages: Sequence[tuple[int, bytes]]) -> None:
         """Append the messages of one instant: (topic index, CDR bytes)."""
-        if len(self._parts) == 1:
+        if not messages:
+            return
+        topics, data = zip(*messages)
+        key = topics, tuple(map(len, data))
+        layout = self._layouts.get(key)
+        if layout is None:
+            layout = self._layouts[key] = _Layout(*key)
+        if not self._stretches:
             self.start_ns = t_ns
+        if not self._stretches or self._stretches[-1].layout is not layout:
+            self._stretches.append(_Stretch(layout, [], []))
+        _, times, starts = self._stretches[-1]
+        times.append(t_ns)
+        starts.append(self.size)
         self.end_ns = t_ns
-        pack, append, indices, offset = (
-            MESSAGE_HEADER.pack, self._parts.append, self._indices, self.size)
-        for k, data in messages:
-            append(pack(
-                _MESSAGE, len(data) + _LENGTH_EXCESS, k + 1, sequence, t_ns, t_ns))
-            append(data)
-            indices[k] += (t_ns, offset)
-            offset += MESSAGE_HEADER.size + len(data)
-        self.size = offset
+        pieces: list[bytes] = [_MESSAGE_TAIL.pack(sequence, t_ns, t_ns)] * (3 * len(data))
+        pieces[::3] = layout.heads
+        pieces[2::3] = data
+        self._parts += pieces
+        self.size += layout.size
 
     def data(self) -> bytes:
         """Return the content of the chunk."""
         return b''.join(self._parts)
 
-    def message_indices(self) -> list[tuple[int, list[int]]]:
-        """Return (channel id, time and offset alternating) of each channel with messages."""
-        return [(k + 1, index) for k, index in enumerate(self._indices) if index]
+    def message_indices(self) -> list[tuple[int, Entries]]:
+        """Return (channel id, entries (n, 2) of time and offset) of those with messages."""
+        pieces: dict[int, list[Entries]] = {}
+        for layout, times, starts in self._stretches:
+            ticks = np.array((times, starts), np.uint64).T
+            for channel, offset in zip(layout.channels, layout.offsets):
+                pieces.setdefault(channel, []).append(ticks + np.array((0, offset), np.uint64))
+        return [(channel, _in_order(pieces[channel])) for channel in sorted(pieces)]
+
+
+def _in_order(pieces: Sequence[Entries]) -> Entries:
+    if len(pieces) == 1:
+        return pieces[0]
+    entries = np.concatenate(pieces)
+    return entries[np.argsort(entries[:, 1])]
 
 
 @dataclass
@@ -125,7 +182,7 @@ class McapFile:
     def new_chunk(self) -> ChunkContent:
         """Return an empty chunk; the first one starts with all schemas and channels."""
         registered = [] if self._chunks else [*self._schemas, *self._channels]
-        return ChunkContent(_bytes(*registered), len(self._channels))
+        return ChunkContent(_bytes(*registered))
 
     def add_chunk(self, content: ChunkContent) -> None:
         """Write a chunk, uncompressed, and its message indices."""
@@ -137,9 +194,10 @@ class McapFile:
         start, indices, offsets = self._position, b'', {}
         for channel, index in content.message_indices():
             offsets[channel] = start + len(chunk) + len(indices)
+            size = len(index) * _ENTRY_BYTES
             indices += _INDEX_HEADER.pack(
-                Opcode.MESSAGE_INDEX, len(index) * 8 + _INDEX_EXCESS, channel, len(index) * 8)
-            indices += struct.pack(f'<{len(index)}Q', *index)
+                Opcode.MESSAGE_INDEX, size + _INDEX_EXCESS, channel, size)
+            indices += index.astype('<u8').tobytes()
         self._append(chunk + indices)
         self._chunks.append(ChunkIndex(
             message_start_time=content.start_ns, message_end_time=content.end_ns,
@@ -192,7 +250,7 @@ class McapFile:
         self._totals.end_ns = content.end_ns
         self._totals.chunks += 1
         for channel, index in content.message_indices():
-            self._counts[channel - 1] += len(index) // 2
+            self._counts[channel - 1] += len(index)
 
     def _append(self, data: bytes) -> None:
         """Write all of it or nothing."""

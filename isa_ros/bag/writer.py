@@ -150,7 +150,7 @@ class BagWriter:
             self._start_ns = chunk.start_ns
         self._end_ns = chunk.end_ns
         for channel, index in indices:
-            self._counts[channel - 1] += len(index) // 2
+            self._counts[channel - 1] += len(index)
 
     def _write_metadata(self) -> None:
         """Replace metadata.yaml in one step."""
