@@ -9,12 +9,13 @@ import hashlib
 from typing import Protocol
 
 from isa_ros import actuator_kernel as kernels
+from isa_ros.actuator_rows import ActuatorRows
 from isa_ros.actuator_sheet import actuator_record, ActuatorSheet
 from isa_ros.errors import ConfigError, SimulationDiverged
 from isa_ros.load.local import local_port, LocalLoad, own_record, static_force
 from isa_ros.plant.plant import read_sensors, rest_pressures
-from isa_ros.reu.cascade import initial_gains, MEASURED, REU_STATE
-from isa_ros.signals import COMMAND, HAS_ENABLE, HAS_SETPOINT, LOAD_PORT, LOAD_REPLY, SAMPLE
+from isa_ros.reu.cascade import initial_gains
+from isa_ros.signals import COMMAND, HAS_ENABLE, HAS_SETPOINT, LOAD_PORT
 from isa_ros.timebase import FORCE_WINDOWS, PLANT_STEP_NS, steps_in
 import numpy as np
 
@@ -57,28 +58,24 @@ class SmartActuator:
     Valve, oil, piston or rotor, sensors and REU of one actuator.
 
     Before the first setpoint it holds the position it measured at t = 0, enabled. Equal
-    `digest`, equal parameters.
+    `digest`, equal parameters. ``row`` of ``rows`` is its memory; None: its own.
     """
 
-    def __init__(self, config: ActuatorConfig, timing: Timing) -> None:
+    def __init__(
+            self, config: ActuatorConfig, timing: Timing, rows: ActuatorRows | None = None,
+            row: int = 0) -> None:
         self.name = config.name
         self.is_rotary = config.sheet.is_rotary
         self._config = config
         self._timing = timing
         self._steps = timing.steps
-        self._is_shared = config.load is None
+        self._arrays = (rows or ActuatorRows(1)).at(row)
+        is_shared, self._port_rows, constants, bodies, _, self._y, _, reu, read_out, reply, \
+            sample = self._arrays
+        is_shared[0] = config.load is None
         offset_steps = timing.controller_offset_ns // PLANT_STEP_NS
-        constants = actuator_record(config.sheet, offset_steps)
+        constants[:] = actuator_record(config.sheet, offset_steps)
         constants['load'] = own_record(config.load)
-        bodies, rates = kernels.scratch()
-        self._y = kernels.flat(bodies)
-        rows = [np.zeros(1, dtype) for dtype in (
-            LOAD_PORT, REU_STATE, MEASURED, LOAD_REPLY, SAMPLE)]
-        self._port_rows, reu, read_out, reply, sample = rows
-        # The kernel takes the plain arrays: a recarray costs numba 4 us of dispatch each.
-        self._kernel_arguments = (
-            self._port_rows, constants, bodies, rates, self._y, kernels.flat(rates),
-            reu, read_out, reply, sample)
         self._pending_rows, self._applied_rows = np.zeros(1, COMMAND), np.zeros(1, COMMAND)
         self._memory = (
             bodies[:1], reu, self._port_rows, self._pending_rows, self._applied_rows,
@@ -89,6 +86,9 @@ class SmartActuator:
         self._reply, self._sample = _record(reply), _record(sample)
         self._port = _record(self._port_rows)
         self._pending, self._applied = _record(self._pending_rows), _record(self._applied_rows)
+        self._pending_kinds = self._pending_rows['kinds']
+        self._applied_kinds = self._applied_rows['kinds']
+        self._incoming = np.zeros(1, LOAD_PORT)
         self.digest = self._hash(constants)
         self.start(config.initial_position, static_force(config.load), 20.7e6, 0.0)
 
@@ -141,11 +141,11 @@ class SmartActuator:
     @property
     def kernel_arguments(self) -> tuple[np.ndarray, ...]:
         """
-        Return the arrays of `kernels.actuator_tick`, in its order from the port on.
+        Return the arrays of `kernels.actuator_tick`, in its order from ``ports`` on.
 
         The actuator's own memory: for whoever runs its loops and plant outside a tick.
         """
-        return self._kernel_arguments
+        return self._arrays[1:]
 
     @property
     def sample(self) -> np.record:
@@ -165,7 +165,7 @@ class SmartActuator:
         A `COMMAND` row with the gains in force and the enable state; at t = 0 the state the
         actuator starts with.
         """
-        return self._applied if self._applied_rows['kinds'][0] else None
+        return self._applied if self._applied_kinds[0] else None
 
     def accept(self, command: np.void) -> None:
         """
@@ -199,25 +199,38 @@ class SmartActuator:
             A state is no longer finite.
 
         """
-        self._take_pending()
+        incoming = self._port_rows
         if port is not None:
-            if self._is_shared:
-                self._port_rows[0] = port
-            else:
-                self._port.supply_pressure = port['supply_pressure']
-                self._port.return_pressure = port['return_pressure']
-        broken = kernels.actuator_tick(
-            self.t_ns // PLANT_STEP_NS, self._steps, self._is_shared, *self._kernel_arguments)
+            incoming = self._incoming
+            incoming[0] = port
+        self.begin_tick()
+        self.end_tick(kernels.actuator_tick(
+            self.t_ns // PLANT_STEP_NS, self._steps, incoming, *self._arrays))
+
+    def begin_tick(self) -> None:
+        """Let take effect what was accepted; `kernels.actuator_tick` comes next."""
+        kinds = int(self._pending_kinds[0])
+        if kinds:
+            self._take_pending(kinds)
+        else:
+            self._applied_kinds[0] = 0
+
+    def end_tick(self, broken: int) -> None:
+        """
+        Go on to the end of the tick; ``broken`` is the state the kernel names, or -1.
+
+        Raises
+        ------
+        SimulationDiverged
+            A state is no longer finite.
+
+        """
         self.t_ns += self._timing.step_ns
         if broken >= 0:
             raise SimulationDiverged(
                 self.t_ns, f'{self.name}: {kernels.state_name(broken)}', self._y[0, broken])
 
-    def _take_pending(self) -> None:
-        kinds = int(self._pending_rows['kinds'][0])
-        if not kinds:
-            self._applied_rows['kinds'] = 0
-            return
+    def _take_pending(self, kinds: int) -> None:
         pending, setpoint = self._pending, self._reu.setpoint
         if kinds & HAS_ENABLE:
             if pending.is_enabled and not setpoint.is_enabled:

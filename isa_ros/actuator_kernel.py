@@ -25,6 +25,7 @@ BODY = np.dtype([('plant', PLANT_STATE), ('load', LOAD_STATE), ('totals', TOTALS
 """Every continuous state of an actuator and its load copy; floats only."""
 
 STATE_SIZE = BODY.itemsize // 8
+BODIES = 2  # the state and a stage of its integration
 STAGES = 4
 NOTHING = 1e-100  # any unit: a state that decays below is zero, denormal arithmetic is slow
 
@@ -32,9 +33,9 @@ ACTUATOR = np.dtype([('plant', PLANT), ('reu', REU), ('load', OWN_LOAD)])
 """Every constant of one actuator, SI."""
 
 
-def scratch() -> tuple[np.ndarray, np.ndarray]:
-    """Return the working memory of one actuator: two `BODY` rows and `STAGES` rate rows."""
-    return np.zeros(2, BODY), np.zeros(STAGES, BODY)
+def scratch(n: int = 1) -> tuple[np.ndarray, np.ndarray]:
+    """Return the memory of ``n`` actuators: `BODIES` `BODY` rows and `STAGES` rate rows each."""
+    return np.zeros(n * BODIES, BODY), np.zeros(n * STAGES, BODY)
 
 
 def flat(rows: np.ndarray) -> np.ndarray:
@@ -149,21 +150,34 @@ def first_broken(y):
 
 
 @kernel
-def actuator_tick(
-        first_step, steps, is_shared, ports, actuators, bodies, rates, y, k,
-        reu_states, read_outs, replies, samples):
+def take_port(incoming, is_shared, port, body):
     """
-    Advance one actuator by ``steps`` plant steps; return the index of a broken state or -1.
+    Take what the coordinator says of the load at this tick.
 
-    All arrays have one row but ``bodies`` and ``rates`` (`scratch`). A shared load's state
-    overwrites the load copy first. Fills the `LOAD_REPLY` (mean force of each of the tick's
-    windows from its impulse) and the `SAMPLE` at the end of the tick.
+    A shared load's state overwrites the load copy; with a load of its own an actuator takes
+    the pressures alone.
     """
-    port, actuator, body, reply = ports[0], actuators[0], bodies[0], replies[0]
-    reu_state, read_out = reu_states[0], read_outs[0]
+    port.supply_pressure = incoming.supply_pressure
+    port.return_pressure = incoming.return_pressure
     if is_shared:
+        port.x0, port.v0, port.a0 = incoming.x0, incoming.v0, incoming.a0
+        port.inverse_mass = incoming.inverse_mass
+        port.a_bias, port.jerk = incoming.a_bias, incoming.jerk
+        port.stiffness, port.damping = incoming.stiffness, incoming.damping
         body.load.position = port.x0
         body.load.velocity = port.v0
+
+
+@kernel
+def tick_row(first_step, steps, port, actuator, bodies, rates, y, k, reu_state, read_out,
+             reply, sample):
+    """
+    Advance one actuator by ``steps`` plant steps.
+
+    Fills its `LOAD_REPLY` (mean force of each of the tick's windows from its impulse) and its
+    `SAMPLE` at the end of the tick.
+    """
+    body = bodies[0]
     body.totals.supply_volume = 0.0
     body.totals.return_volume = 0.0
     window_steps = steps // FORCE_WINDOWS
@@ -179,7 +193,29 @@ def actuator_tick(
     reply.velocity = body.plant.mechanics.velocity
     reply.supply_volume = body.totals.supply_volume
     reply.return_volume = body.totals.return_volume
-    write_sample(read_out, body.plant, reu_state, samples[0])
-    samples[0].supply_volume += reply.supply_volume
-    samples[0].supply_flow = reply.supply_volume / (steps * PLANT_STEP)
-    return first_broken(y)
+    write_sample(read_out, body.plant, reu_state, sample)
+    sample.supply_volume += reply.supply_volume
+    sample.supply_flow = reply.supply_volume / (steps * PLANT_STEP)
+
+
+@kernel
+def actuator_tick(
+        first_step, steps, incoming, is_shared, ports, actuators, bodies, rates, y, k,
+        reu_states, read_outs, replies, samples):
+    """
+    Advance every actuator by ``steps`` plant steps, one after the other.
+
+    Return the place of the first state that is no longer finite in the states of all, or -1.
+    ``incoming`` are this tick's `LOAD_PORT` rows; each array has one row an actuator, but
+    ``bodies`` and ``rates`` and their flat views have `BODIES` and `STAGES` (`scratch`).
+    """
+    for n in range(len(ports)):
+        own, own_rates = bodies[n * BODIES:(n + 1) * BODIES], rates[n * STAGES:(n + 1) * STAGES]
+        own_y, own_k = y[n * BODIES:(n + 1) * BODIES], k[n * STAGES:(n + 1) * STAGES]
+        take_port(incoming[n], is_shared[n], ports[n], own[0])
+        tick_row(first_step, steps, ports[n], actuators[n], own, own_rates, own_y, own_k,
+                 reu_states[n], read_outs[n], replies[n], samples[n])
+        broken = first_broken(own_y)
+        if broken >= 0:
+            return n * STATE_SIZE + broken
+    return -1

@@ -17,9 +17,9 @@ model, kind, mode, *variants = sys.argv[1:]
 sheet = actuator_sheet(model, 'default', *variants)
 actuator = smart_actuator(model, kind, sheet=sheet, timing=Timing(1_000_000, 120_000))
 if mode == 'python':
-    actuator._kernel_arguments = tuple(
-        rows.view(np.recarray) if rows.dtype.names else rows
-        for rows in actuator._kernel_arguments)
+    actuator._arrays = tuple(
+        rows.view(np.recarray) if rows.dtype.names else rows for rows in actuator._arrays)
+    actuator._port_rows = actuator._arrays[1]
 stroke = sheet.plant.drive.stroke
 actuator.accept(setpoint(position=0.6 * stroke, velocity=0.01))
 for _ in range(5):
