@@ -153,6 +153,11 @@ class SmartActuator:
         return self._sample
 
     @property
+    def sample_rows(self) -> np.ndarray:
+        """Return the `sample` as an array, (1,)."""
+        return self._arrays[-1]
+
+    @property
     def reply(self) -> np.record:
         """Return the `LOAD_REPLY` of the last tick; the next tick overwrites it."""
         return self._reply

@@ -20,7 +20,7 @@ from isa_ros.signals import START
 from isa_ros.timebase import NS_PER_SECOND
 from msg_adapters import clock, event, fluid_pressure, joint_state, wrench
 from msg_adapters.coordinator_messages import (
-    ClockMessage, GroundContactMessage, LegJointStateMessage, SupplyPressureMessage)
+    ClockMessage, LegMessages, SupplyMessages)
 import numpy as np
 
 CLOCK_TOPIC = ('/clock', clock.TYPE)
@@ -50,9 +50,8 @@ class SharedLoad:
             self._leg = _leg(run, run.leg)
             self._release_ns = round(run.leg.start.release_s * NS_PER_SECOND)
         self._clock = ClockMessage()
-        self._pressure = SupplyPressureMessage()
-        self._joints = LegJointStateMessage(JOINTS)
-        self._contact = GroundContactMessage()
+        self._supply_alone = SupplyMessages()
+        self._with_leg = LegMessages(JOINTS)
 
     @property
     def topics(self) -> tuple[tuple[str, str], ...]:
@@ -126,13 +125,9 @@ class SharedLoad:
 
     def messages(self, t_ns: int) -> Messages:
         """Return the messages of this instant in the order of `topics`."""
-        pressure = self._pressure.pack(self._supply.pressure, t_ns)
         if self._leg is None:
-            return (pressure,)
-        sample = self._leg.sample
-        joints = self._joints.pack(
-            sample['position'], sample['velocity'], sample['torque'], t_ns)
-        return pressure, joints, self._contact.pack(sample['foot_force'], t_ns)
+            return self._supply_alone.pack(self._supply.pressure, t_ns)
+        return self._with_leg.pack(self._supply.pressure, self._leg.shown, t_ns)
 
     def starts(self, run: RunConfig) -> Records:
         """

@@ -8,6 +8,7 @@ from isa_ros.actuator import ActuatorConfig, SmartActuator, Timing
 from isa_ros.errors import ConfigError
 from isa_ros.exchange import Messages, Records, Rows, Voice
 from msg_adapters import actuator_messages
+from msg_adapters.setpoint import AppliedSetpoint
 import numpy as np
 
 IDLE_S = 0.005
@@ -85,7 +86,8 @@ class SteppedActuator:
         self.actuator = SmartActuator(config, timing)
         self.topics = actuator_messages.TOPICS
         self._step_ns = timing.step_ns
-        self._messages = actuator_messages.ActuatorMessages(config.name, config.sheet.is_rotary)
+        self._states = actuator_messages.StateMessages([(config.name, config.sheet.is_rotary)])
+        self._applied = AppliedSetpoint(config.name)
         self.digest = participant_digest(self.actuator, timing)
 
     def start(self, start: np.void | None) -> Messages:
@@ -108,12 +110,8 @@ class SteppedActuator:
     def _sampled(self, applied_ns: int) -> Messages:
         """Return all messages of this instant; what was applied took effect at ``applied_ns``."""
         applied = self.actuator.applied
-        messages: list[bytes | None] = [
-            None if applied is None
-            else self._messages.applied_setpoint(applied, applied_ns)[1]]
-        messages += [
-            data for _, data in self._messages.state(self.actuator.sample, self.actuator.t_ns)]
-        return messages
+        return [None if applied is None else self._applied.pack(applied, applied_ns),
+                *self._states.pack(self.actuator.sample_rows, self.actuator.t_ns)]
 
 
 class QuietActuator:

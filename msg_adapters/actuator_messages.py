@@ -1,9 +1,11 @@
-"""Everything one actuator publishes at a tick, as prepared CDR bytes."""
+"""What actuators publish at a tick, as prepared CDR bytes."""
+
+from collections.abc import Sequence
 
 from isa_ros.signals import SAMPLE
 from msg_adapters import fluid_pressure, joint_state, wrench
-from msg_adapters.setpoint import AppliedSetpoint
-from msg_adapters.template import stamp, Template
+from msg_adapters.cdr import Message
+from msg_adapters.template import Fields, Template
 import numpy as np
 
 STATE_TOPICS = (
@@ -19,44 +21,45 @@ STATE_TOPICS = (
 APPLIED_SETPOINT = ('applied_setpoint', joint_state.TYPE)
 TOPICS = tuple(sorted((*STATE_TOPICS, APPLIED_SETPOINT)))
 
-_N_STAMP = 2
+_SAMPLED = tuple(SAMPLE.names or ())
+_PRESSURES = slice(_SAMPLED.index('pressure_a'), _SAMPLED.index('pressure_b') + 1)
+_WIDTH = len(_SAMPLED) + 2  # values of one actuator: its sample, then absolute pressures
 
 
-class ActuatorMessages:
+class StateMessages:
     """
-    Prepared messages of one actuator.
+    Prepared state messages of the actuators of a process, (name, whether rotary) each.
 
     Frames: ``NAME_load_cell``, ``NAME_pressure_a``, ``NAME_pressure_b``; ``NAME`` for the
     rest.
     """
 
-    def __init__(self, name: str, is_rotary: bool) -> None:
-        self.name = name
-        self._applied = AppliedSetpoint(name)
-        columns = {field: _N_STAMP + k for k, field in enumerate(SAMPLE.names or ())}
-        n = _N_STAMP + len(columns)
-        prepared = {
-            'joint_states': joint_state.actuator_joint_state(name, columns),
-            'load_cell': wrench.load_cell(name, is_rotary, columns),
-            'pressure_a': fluid_pressure.fluid_pressure(f'{name}_pressure_a', n),
-            'pressure_b': fluid_pressure.fluid_pressure(f'{name}_pressure_b', n + 1),
-            'references': joint_state.references(name, columns),
-            'valve': joint_state.valve(name, columns),
-        }
-        self._suffixes = [suffix for suffix, _ in STATE_TOPICS]
-        self._template = Template([prepared[suffix] for suffix in self._suffixes], n + 2)
-        self._pressure_a = columns['pressure_a'] - _N_STAMP
-        self._pressure_b = columns['pressure_b'] - _N_STAMP
+    def __init__(self, actuators: Sequence[tuple[str, bool]]) -> None:
+        n = len(actuators)
+        self._template = Template(
+            [message for row, (name, is_rotary) in enumerate(actuators)
+             for message in _prepared(name, is_rotary, row * _WIDTH)], n * _WIDTH)
+        table = self._template.values.reshape(n, _WIDTH)
+        self._sampled, self._absolute = table[:, :len(_SAMPLED)], table[:, len(_SAMPLED):]
 
-    def state(self, sample: np.void, t_ns: int) -> list[tuple[str, bytes]]:
-        """Return (topic suffix, CDR bytes) of a SAMPLE row at ``t_ns``, as `STATE_TOPICS`."""
-        values = sample.item()
-        data = self._template.pack((
-            *stamp(t_ns), *values,
-            fluid_pressure.absolute(values[self._pressure_a]),
-            fluid_pressure.absolute(values[self._pressure_b])))
-        return list(zip(self._suffixes, data))
+    def pack(self, samples: np.ndarray, t_ns: int) -> list[bytes]:
+        """Return the CDR bytes of (n,) SAMPLE rows at ``t_ns``: `STATE_TOPICS` of each."""
+        rows = samples.view('<f8').reshape(self._sampled.shape)
+        self._sampled[:] = rows
+        np.add(rows[:, _PRESSURES], fluid_pressure.ATMOSPHERE, out=self._absolute)
+        return self._template.pack(t_ns)
 
-    def applied_setpoint(self, command: np.void, t_ns: int) -> tuple[str, bytes]:
-        """Return (topic suffix, CDR bytes) of a COMMAND row, its gains resolved."""
-        return APPLIED_SETPOINT[0], self._applied.pack(command, t_ns)
+
+def _prepared(name: str, is_rotary: bool, first: int) -> list[tuple[Message, Fields]]:
+    """Return the messages of `STATE_TOPICS`; the actuator's values begin at ``first``."""
+    columns = {field: first + k for k, field in enumerate(_SAMPLED)}
+    absolute = first + len(_SAMPLED)
+    prepared = {
+        'joint_states': joint_state.actuator_joint_state(name, columns),
+        'load_cell': wrench.load_cell(name, is_rotary, columns),
+        'pressure_a': fluid_pressure.fluid_pressure(f'{name}_pressure_a', absolute),
+        'pressure_b': fluid_pressure.fluid_pressure(f'{name}_pressure_b', absolute + 1),
+        'references': joint_state.references(name, columns),
+        'valve': joint_state.valve(name, columns),
+    }
+    return [prepared[suffix] for suffix, _ in STATE_TOPICS]

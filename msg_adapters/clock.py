@@ -1,11 +1,11 @@
 """rosgraph_msgs/Clock: simulation time."""
 
-from msg_adapters.template import Fields
+from msg_adapters.template import Fields, NANOSEC, SEC
 from rosgraph_msgs.msg import Clock
 
 TYPE = 'rosgraph_msgs/msg/Clock'
 
 
 def clock() -> tuple[Clock, Fields]:
-    """Return the message whose time is (sec, nanosec), values 0 and 1."""
-    return Clock(), {'clock.sec': 0, 'clock.nanosec': 1}
+    """Return the message of a time."""
+    return Clock(), {'clock.sec': SEC, 'clock.nanosec': NANOSEC}

@@ -3,8 +3,10 @@
 from collections.abc import Sequence
 
 from msg_adapters import clock, fluid_pressure, joint_state, wrench
-from msg_adapters.template import STAMP, stamp, Template
+from msg_adapters.template import STAMP, Template
+import numpy as np
 
+SUPPLY_FRAME = 'supply'
 WORLD_FRAME = 'world'
 
 
@@ -12,49 +14,51 @@ class ClockMessage:
     """Prepared ``/clock``."""
 
     def __init__(self) -> None:
-        self._template = Template([clock.clock()], n_values=2)
+        self._template = Template([clock.clock()], n_values=0)
 
     def pack(self, t_ns: int) -> bytes:
         """Return the CDR bytes of simulation time ``t_ns``."""
-        return self._template.pack(stamp(t_ns))[0]
+        return self._template.pack(t_ns)[0]
 
 
-class SupplyPressureMessage:
-    """Prepared ``~/supply_pressure``."""
+class SupplyMessages:
+    """Prepared ``~/supply_pressure``, alone."""
 
-    def __init__(self, frame_id: str = 'supply') -> None:
-        self._template = Template([fluid_pressure.fluid_pressure(frame_id, 2)], n_values=3)
+    def __init__(self) -> None:
+        self._template = Template([fluid_pressure.fluid_pressure(SUPPLY_FRAME, 0)], n_values=1)
 
-    def pack(self, gauge: float, t_ns: int) -> bytes:
+    def pack(self, supply_pressure: float, t_ns: int) -> list[bytes]:
         """Return the CDR bytes of a gauge pressure (Pa), published as absolute."""
-        return self._template.pack((*stamp(t_ns), fluid_pressure.absolute(gauge)))[0]
+        self._template.values[0] = fluid_pressure.absolute(supply_pressure)
+        return self._template.pack(t_ns)
 
 
-class LegJointStateMessage:
-    """Prepared ``joint_states`` of the leg: URDF joints in fixed order."""
+class LegMessages:
+    """
+    Prepared ``~/supply_pressure``, ``joint_states`` and ``~/ground_contact`` of a leg.
 
-    def __init__(self, joints: Sequence[str], frame_id: str = WORLD_FRAME) -> None:
+    Joints are those of the URDF, in fixed order.
+    """
+
+    def __init__(self, joints: Sequence[str]) -> None:
         n = len(joints)
         fields = joint_state.entries(
-            n, position=range(2, 2 + n), velocity=range(2 + n, 2 + 2 * n),
-            effort=range(2 + 2 * n, 2 + 3 * n))
-        self._template = Template(
-            [(joint_state.joint_state(frame_id, joints), fields)], n_values=2 + 3 * n)
+            n, position=range(1, 1 + n), velocity=range(1 + n, 1 + 2 * n),
+            effort=range(1 + 2 * n, 1 + 3 * n))
+        axes = {f'wrench.force.{axis}': 1 + 3 * n + k for k, axis in enumerate('xyz')}
+        self._template = Template([
+            fluid_pressure.fluid_pressure(SUPPLY_FRAME, 0),
+            (joint_state.joint_state(WORLD_FRAME, joints), fields),
+            (wrench.wrench(WORLD_FRAME), {**STAMP, **axes})], n_values=4 + 3 * n)
 
-    def pack(
-            self, positions: Sequence[float], velocities: Sequence[float],
-            efforts: Sequence[float], t_ns: int) -> bytes:
-        """Return the CDR bytes of q (rad | m), its speed and effort (Nm | N), each (n,)."""
-        return self._template.pack((*stamp(t_ns), *positions, *velocities, *efforts))[0]
+    def pack(self, supply_pressure: float, leg: np.ndarray, t_ns: int) -> list[bytes]:
+        """
+        Return the CDR bytes of a gauge pressure (Pa), published as absolute, and of a leg.
 
-
-class GroundContactMessage:
-    """Prepared ``~/ground_contact``: the ground's force on the foot."""
-
-    def __init__(self, frame_id: str = WORLD_FRAME) -> None:
-        axes = {f'wrench.force.{axis}': 2 + k for k, axis in enumerate('xyz')}
-        self._template = Template([(wrench.wrench(frame_id), {**STAMP, **axes})], n_values=5)
-
-    def pack(self, force: Sequence[float], t_ns: int) -> bytes:
-        """Return the CDR bytes of a force (3,), N, at the foot; no torque is transmitted."""
-        return self._template.pack((*stamp(t_ns), *force))[0]
+        ``leg`` is q (rad | m), its speed and effort (Nm | N) of all joints, then the ground's
+        force on the foot (N, no torque is transmitted), shape (3 n + 3,).
+        """
+        values = self._template.values
+        values[0] = fluid_pressure.absolute(supply_pressure)
+        values[1:] = leg
+        return self._template.pack(t_ns)

@@ -7,7 +7,7 @@ from isa_ros.errors import SetpointError
 from isa_ros.signals import COMMAND, HAS_ENABLE, HAS_SETPOINT
 from msg_adapters.cdr_reader import decode
 from msg_adapters.joint_state import ARRAYS, entries, joint_state
-from msg_adapters.template import stamp, Template
+from msg_adapters.template import Template
 import numpy as np
 from sensor_msgs.msg import JointState
 
@@ -19,14 +19,15 @@ class AppliedSetpoint:
 
     def __init__(self, name: str) -> None:
         names = [name, f'{name}/stiffness', f'{name}/damping', f'{name}/enabled']
-        fields = entries(4, position=[2, 5, 6, 7], velocity=[3], effort=[4])
-        self._template = Template([(joint_state(name, names), fields)], n_values=8)
+        fields = entries(4, position=[0, 3, 4, 5], velocity=[1], effort=[2])
+        self._template = Template([(joint_state(name, names), fields)], n_values=6)
 
     def pack(self, command: np.void, t_ns: int) -> bytes:
         """Return the CDR bytes of a COMMAND row with gains resolved, in force from ``t_ns``."""
         _, is_enabled, position, velocity, effort, stiffness, damping = command.item()
-        return self._template.pack((
-            *stamp(t_ns), position, velocity, effort, stiffness, damping, float(is_enabled)))[0]
+        self._template.values[:] = (
+            position, velocity, effort, stiffness, damping, is_enabled)
+        return self._template.pack(t_ns)[0]
 
 
 def msg_to_command(message: JointState, name: str) -> np.void:

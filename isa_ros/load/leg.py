@@ -110,6 +110,11 @@ class Leg:
         return row
 
     @property
+    def shown(self) -> np.ndarray:
+        """Return position, velocity and torque of the joints and the foot's force, (12,)."""
+        return self._flat_sample[:kernels.N_SHOWN]
+
+    @property
     def is_held(self) -> bool:
         """Return whether the slider is locked."""
         return bool(self._state['is_held'][0])

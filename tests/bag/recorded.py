@@ -6,9 +6,10 @@ from isa_ros.bag.metadata import Topic
 from isa_ros.bag.provenance import Provenance
 from isa_ros.bag.writer import BagWriter
 from isa_ros.signals import COMMAND, SAMPLE
-from msg_adapters.actuator_messages import ActuatorMessages, APPLIED_SETPOINT, STATE_TOPICS
+from msg_adapters.actuator_messages import APPLIED_SETPOINT, STATE_TOPICS, StateMessages
 from msg_adapters.clock import TYPE as CLOCK
 from msg_adapters.coordinator_messages import ClockMessage
+from msg_adapters.setpoint import AppliedSetpoint
 import numpy as np
 
 STEP_NS = 1_000_000
@@ -20,23 +21,24 @@ TOPICS = tuple(sorted(
     + [Topic(f'/hip/{suffix}', type_name) for suffix, type_name in STATE_TOPICS],
     key=lambda topic: topic.name))
 NAMES = [topic.name for topic in TOPICS]
-MESSAGES = ActuatorMessages('hip', is_rotary=True)
+STATES = StateMessages([('hip', True)])
+APPLIED = AppliedSetpoint('hip')
 CLOCK_MESSAGE = ClockMessage()
 
 
 def tick_messages(tick, **changed):
     """Return (topic index, bytes) of tick 0, 1, ...; ``changed`` replaces sample fields."""
     t_ns = tick * STEP_NS
-    sample = np.zeros(1, dtype=SAMPLE)[0]
+    sample = np.zeros(1, dtype=SAMPLE)
     for k, field in enumerate(SAMPLE.names):
         sample[field] = np.sin(0.1 * tick + k)
     for field, value in changed.items():
         sample[field] = value
     produced = {'/clock': CLOCK_MESSAGE.pack(t_ns)}
-    produced |= {f'/hip/{suffix}': data for suffix, data in MESSAGES.state(sample, t_ns)}
+    produced |= {f'/hip/{suffix}': data
+                 for (suffix, _), data in zip(STATE_TOPICS, STATES.pack(sample, t_ns))}
     if tick % 100 == 0:
-        suffix, data = MESSAGES.applied_setpoint(np.zeros(1, dtype=COMMAND)[0], t_ns)
-        produced[f'/hip/{suffix}'] = data
+        produced[f'/hip/{APPLIED_SETPOINT[0]}'] = APPLIED.pack(np.zeros(1, COMMAND)[0], t_ns)
     return [(NAMES.index(name), produced[name]) for name in sorted(produced)]
 
 

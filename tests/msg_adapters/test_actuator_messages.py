@@ -1,7 +1,7 @@
 """What an actuator publishes: interface.md's table of topics, value by value."""
 
-from isa_ros.signals import COMMAND, SAMPLE
-from msg_adapters.actuator_messages import ActuatorMessages, APPLIED_SETPOINT, STATE_TOPICS
+from isa_ros.signals import SAMPLE
+from msg_adapters.actuator_messages import STATE_TOPICS, StateMessages
 from msg_adapters.cdr_reader import decode, message_class
 import numpy as np
 import pytest
@@ -11,15 +11,19 @@ T_NS = 2_000_000_003
 
 @pytest.fixture
 def sample():
-    """Return a row whose fields all differ: field k holds k + 1."""
-    return np.array([tuple(range(1, len(SAMPLE.names) + 1))], dtype=SAMPLE)[0]
+    """Return a row whose fields all differ, (1,): field k holds k + 1."""
+    return np.array([tuple(range(1, len(SAMPLE.names) + 1))], dtype=SAMPLE)
 
 
 def published(sample, is_rotary):
     """Return the messages by topic suffix."""
-    types = dict(STATE_TOPICS)
-    state = ActuatorMessages('hip', is_rotary).state(sample, T_NS)
-    return {suffix: decode(data, message_class(types[suffix])) for suffix, data in state}
+    return decoded(StateMessages([('hip', is_rotary)]).pack(sample, T_NS))
+
+
+def decoded(state):
+    """Return the messages of one actuator by topic suffix."""
+    return {suffix: decode(data, message_class(type_))
+            for (suffix, type_), data in zip(STATE_TOPICS, state, strict=True)}
 
 
 def columns(message):
@@ -28,9 +32,9 @@ def columns(message):
             list(message.effort))
 
 
-def test_state_topics_come_sorted_and_complete(sample):
-    topics = [suffix for suffix, _ in ActuatorMessages('hip', False).state(sample, T_NS)]
-    assert topics == sorted(topics) == [suffix for suffix, _ in STATE_TOPICS]
+def test_state_topics_come_sorted():
+    topics = [suffix for suffix, _ in STATE_TOPICS]
+    assert topics == sorted(topics)
 
 
 def test_every_header_has_stamp_and_frame(sample):
@@ -78,13 +82,18 @@ def test_load_cell_measures_along_the_rod_or_about_the_shaft(sample, is_rotary, 
     assert set(values.values()) == {0.0}
 
 
-def test_applied_setpoint_has_its_topic():
-    row = np.zeros(1, dtype=COMMAND)[0]
-    suffix, data = ActuatorMessages('hip', True).applied_setpoint(row, T_NS)
-    assert suffix == APPLIED_SETPOINT[0]
-    assert decode(data, message_class(APPLIED_SETPOINT[1])).header.stamp.nanosec == 3
-
-
 def test_same_sample_gives_the_same_bytes(sample):
-    state = ActuatorMessages('hip', False).state(sample, T_NS)
-    assert ActuatorMessages('hip', False).state(sample.copy(), T_NS) == state
+    state = StateMessages([('hip', False)]).pack(sample, T_NS)
+    assert StateMessages([('hip', False)]).pack(sample.copy(), T_NS) == state
+
+
+def test_actuators_together_say_what_each_says_alone(sample):
+    """Names of unequal length, so that no message of the second stands where the first has it."""
+    other = sample.copy()
+    for k, field in enumerate(SAMPLE.names):
+        other[field] = -0.0 if k % 2 else 1e9 / (k + 1)
+    together = StateMessages([('hip', True), ('knee_left', False)]).pack(
+        np.concatenate((sample, other)), T_NS)
+    assert together == [
+        *StateMessages([('hip', True)]).pack(sample, T_NS),
+        *StateMessages([('knee_left', False)]).pack(other, T_NS)]

@@ -3,8 +3,7 @@
 from geometry_msgs.msg import WrenchStamped
 from msg_adapters import event
 from msg_adapters.cdr_reader import decode
-from msg_adapters.coordinator_messages import ClockMessage, GroundContactMessage
-from msg_adapters.coordinator_messages import LegJointStateMessage, SupplyPressureMessage
+from msg_adapters.coordinator_messages import ClockMessage, LegMessages, SupplyMessages
 import numpy as np
 from rcl_interfaces.msg import Log
 from rosgraph_msgs.msg import Clock
@@ -18,10 +17,13 @@ def test_clock_is_simulation_time():
     assert (message.clock.sec, message.clock.nanosec) == (7, 8)
 
 
+def leg_messages() -> list[bytes]:
+    """Return supply, joints and contact of a leg whose values count from 1."""
+    return LegMessages(['haa', 'hfe', 'kfe']).pack(20.7e6, np.arange(1.0, 13.0), T_NS)
+
+
 def test_leg_joints_come_in_fixed_order():
-    template = LegJointStateMessage(['haa', 'hfe', 'kfe'])
-    data = template.pack(np.array([1.0, 2.0, 3.0]), [4.0, 5.0, 6.0], (7.0, 8.0, 9.0), T_NS)
-    message = decode(data, JointState)
+    message = decode(leg_messages()[1], JointState)
     assert message.name == ['haa', 'hfe', 'kfe']
     assert list(message.position) == [1.0, 2.0, 3.0]
     assert list(message.velocity) == [4.0, 5.0, 6.0]
@@ -31,15 +33,17 @@ def test_leg_joints_come_in_fixed_order():
 
 
 def test_ground_contact_is_a_force_in_the_world():
-    message = decode(GroundContactMessage().pack([1.0, 2.0, 3.0], T_NS), WrenchStamped)
+    message = decode(leg_messages()[2], WrenchStamped)
     force, torque = message.wrench.force, message.wrench.torque
-    assert (force.x, force.y, force.z) == (1.0, 2.0, 3.0)
+    assert (force.x, force.y, force.z) == (10.0, 11.0, 12.0)
     assert (torque.x, torque.y, torque.z) == (0.0, 0.0, 0.0)
     assert message.header.frame_id == 'world'
 
 
 def test_supply_pressure_is_absolute():
-    message = decode(SupplyPressureMessage().pack(20.7e6, T_NS), FluidPressure)
+    alone, = SupplyMessages().pack(20.7e6, T_NS)
+    assert alone == leg_messages()[0]
+    message = decode(alone, FluidPressure)
     assert message.fluid_pressure == 20.7e6 + 101325.0
     assert message.header.frame_id == 'supply'
 

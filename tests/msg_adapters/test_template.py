@@ -2,9 +2,9 @@
 
 from hypothesis import given, settings, strategies as st
 from msg_adapters.cdr import CdrError, encode
-from msg_adapters.template import STAMP, stamp, Template
+from msg_adapters.template import NANOSEC, SEC, STAMP, stamp, Template
 import pytest
-from sensor_msgs.msg import FluidPressure, JointState
+from sensor_msgs.msg import FluidPressure, Image, JointState, RegionOfInterest
 
 numbers = st.floats()
 names = st.lists(st.text('abcdefgh/_', min_size=1, max_size=9), max_size=4)
@@ -29,16 +29,17 @@ def test_packing_equals_encoding(entries, frame, t_ns, drawn):
     values = drawn.draw(st.lists(numbers, min_size=n, max_size=n))
     paths = [f'{array}[{k}]' for array in ('position', 'velocity', 'effort')
              for k in range(len(entries))]
-    fields = {**STAMP, **{path: 2 + k for k, path in enumerate(paths)}}
-    template = Template([(joints(entries, frame, [0.0] * n, 0), fields)], 2 + n)
-    assert template.pack((*stamp(t_ns), *values)) == [
-        encode(joints(entries, frame, values, t_ns))]
+    fields = {**STAMP, **{path: k for k, path in enumerate(paths)}}
+    template = Template([(joints(entries, frame, [0.0] * n, 0), fields)], n)
+    template.values[:] = values
+    assert template.pack(t_ns) == [encode(joints(entries, frame, values, t_ns))]
 
 
 def test_messages_of_one_template_share_their_values():
     first, second = FluidPressure(variance=3.0), JointState(name=['a'], position=[9.0])
-    template = Template([(first, {**STAMP, 'fluid_pressure': 2}), (second, STAMP)], 3)
-    packed = template.pack((*stamp(1_000_000_002), 5.0))
+    template = Template([(first, {**STAMP, 'fluid_pressure': 0}), (second, STAMP)], 1)
+    template.values[0] = 5.0
+    packed = template.pack(1_000_000_002)
     for message in (first, second):
         message.header.stamp.sec, message.header.stamp.nanosec = 1, 2
     first.fluid_pressure = 5.0
@@ -49,6 +50,17 @@ def test_unknown_field_is_refused_naming_those_there_are():
     with pytest.raises(CdrError, match=r"no number 'presure'; it has header.stamp.sec, .*, "
                                        'fluid_pressure, variance'):
         Template([(FluidPressure(), {'presure': 0})], 1)
+
+
+@pytest.mark.parametrize('message, fields', [
+    (Image(), {'height': 0}),             # an integer where a double is filled in
+    (JointState(), {'header.stamp.sec': 0}),
+    (Image(), {'height': SEC}),           # not an int32
+    (RegionOfInterest(), {'x_offset': NANOSEC}),  # no second half of a time
+])
+def test_a_field_that_is_no_double_is_refused(message, fields):
+    with pytest.raises(CdrError, match='neither a double nor a time'):
+        Template([(message, fields)], 1)
 
 
 def test_time_is_split_without_a_float():
