@@ -1,11 +1,20 @@
 """Strict YAML: what is refused, with its line, and numbers that keep every bit."""
 
 from pathlib import Path
+from typing import Any
 
 from hypothesis import given, strategies as st
 from isa_ros import strict_yaml
 from isa_ros.errors import ConfigError
 import pytest
+
+
+@pytest.fixture(params=['the fastest parser', 'the one without libyaml'])
+def parse(request: pytest.FixtureRequest, monkeypatch: pytest.MonkeyPatch) -> Any:
+    """Return `strict_yaml.parse` with either parser, whatever PyYAML was built with."""
+    if request.param != 'the fastest parser':
+        monkeypatch.setattr(strict_yaml, '_Loader', strict_yaml._PythonLoader)
+    return strict_yaml.parse
 
 
 @pytest.mark.parametrize('text, expected', [
@@ -24,9 +33,9 @@ import pytest
     ('a: [' + '1,' * 20001 + ']\n', 'x.yaml: line 1: more than 20000 values'),
     ('a: ' + 'x' * (1 << 20), 'x.yaml: larger than 1048576 bytes'),
 ])
-def test_refused_text_names_file_and_line(text: str, expected: str) -> None:
+def test_refused_text_names_file_and_line(parse: Any, text: str, expected: str) -> None:
     with pytest.raises(ConfigError, match=expected) as caught:
-        strict_yaml.parse(text, 'x.yaml')
+        parse(text, 'x.yaml')
     assert '\n' not in str(caught.value)
 
 
@@ -35,9 +44,9 @@ def test_refused_text_names_file_and_line(text: str, expected: str) -> None:
     ('yes', 'yes'), ('1:30', '1:30'), ('2024-01-01', '2024-01-01'), ('true', True),
     ('~', None), ('', None), ("'3'", '3'), ('1_000', '1_000'), ('.inf', float('inf')),
 ])
-def test_scalars_follow_yaml_1_2(text: str, value: object) -> None:
+def test_scalars_follow_yaml_1_2(parse: Any, text: str, value: object) -> None:
     """YAML 1.1 would read 1e5 as a text, 010 as 8, on as true and 1:30 as 90."""
-    got = strict_yaml.parse(f'a: {text}\n', 'x.yaml')['a']
+    got = parse(f'a: {text}\n', 'x.yaml')['a']
     assert got == value and type(got) is type(value)
 
 
