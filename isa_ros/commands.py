@@ -43,6 +43,8 @@ def _record(request: 'Request') -> Path:
     finally:
         for bag in session.bags:
             print(bag)
+        if session.pace.shortfall:
+            print(f'isa: {session.pace.shortfall}', file=sys.stderr)
 
 
 def _demo_directories() -> Iterator[Path]:

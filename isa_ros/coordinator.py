@@ -118,6 +118,7 @@ class Coordinator:
                     self._advance()
         finally:
             self._record()
+            self._pace.end(self.t_ns)
             self._progress.end(self.t_ns)
 
     @property

@@ -9,6 +9,7 @@ from isa_ros.timebase import NS_PER_SECOND
 
 SLICE_S = 0.1  # longest sleep between two looks at a signal
 REPORT_PERIOD_S = 0.2
+LARGEST_LAG_S = 0.1     # behind the pace at the end of a run that is not worth a word
 JOIN_TIMEOUT_S = 30.0  # how long participants are waited for before tick 0
 
 
@@ -42,6 +43,7 @@ class Pace:
         self._now = now
         self._sleep = sleep
         self._start = 0.0
+        self._lag = 0.0
 
     def set_factor(self, real_time_factor: float) -> None:
         """Keep another pace from the next `start` on; as the constructor."""
@@ -56,6 +58,19 @@ class Pace:
     def start(self, t_ns: int = 0) -> None:
         """Let ``t_ns`` be now."""
         self._start = self._now() - t_ns * self._seconds_per_ns
+
+    def end(self, t_ns: int) -> None:
+        """Take note of how far behind the run is at its end."""
+        due = self._start + t_ns * self._seconds_per_ns
+        self._lag = self._now() - due if self._seconds_per_ns else 0.0
+
+    @property
+    def shortfall(self) -> str | None:
+        """Return the one line for the user of a run that fell behind, None for one that kept."""
+        if self._lag <= LARGEST_LAG_S:
+            return None
+        return (f'{self._lag:.1f} s of host time behind real_time_factor = {self.factor:g} '
+                'at the end')
 
     def wait(self, t_ns: int, should_stop: Callable[[], bool]) -> None:
         """Sleep until ``t_ns`` is due; return early when a stop is asked for."""

@@ -16,6 +16,7 @@ ARGUMENTS = {
     'duration': ('0.0', 'simulated time in s; 0: that of the scenario, else until Ctrl-C'),
     'in_process': ('false', 'all nodes in one process: faster, and the same bytes in the bag'),
     'real_time_factor': ('0.0', 'not faster than this times real time; 0: as fast as it goes'),
+    'paused': ('false', 'wait for /coordinator/step or the end of the pause before tick 0'),
     'namespace': ('', 'of all nodes'),
 }
 
@@ -35,10 +36,15 @@ def _nodes(context: LaunchContext) -> list[Node]:
     options = {
         'out': values['out'],
         'duration': float(values['duration']),
-        'in_process': values['in_process'].lower() in ('true', '1'),
+        'in_process': _is_true(values['in_process']),
+        'paused': _is_true(values['paused']),
         'real_time_factor': float(values['real_time_factor'])}
     return [_node(process, values['namespace'])
             for process in run_processes(load_run(config), config, scenario, options)]
+
+
+def _is_true(text: str) -> bool:
+    return text.lower() in ('true', '1')
 
 
 def _node(process: Process, namespace: str) -> Node:

@@ -63,6 +63,40 @@ def test_a_stop_ends_the_wait_within_a_slice():
     assert host.naps == [SLICE_S, SLICE_S]
 
 
+def test_a_run_that_fell_behind_says_so():
+    """Ten simulated seconds in eleven of the host's: one behind; nothing where it kept pace."""
+    host = Host()
+    pace = Pace(1.0, host.time, host.sleep)
+    pace.start()
+    host.now += 11.0
+    pace.end(10 * 10**9)
+    assert pace.shortfall == '1.0 s of host time behind real_time_factor = 1 at the end'
+    pace.start(10 * 10**9)
+    pace.wait(12 * 10**9, never)
+    pace.end(12 * 10**9)
+    assert pace.shortfall is None
+
+
+def test_a_run_without_pace_is_never_behind():
+    host = Host()
+    pace = Pace(None, host.time, host.sleep)
+    pace.start()
+    host.now += 50.0
+    pace.end(1)
+    assert pace.shortfall is None
+
+
+def test_another_factor_counts_from_the_next_start():
+    """What was simulated before does not count."""
+    host = Host()
+    pace = Pace(1.0, host.time, host.sleep)
+    pace.start()
+    pace.set_factor(0.5)
+    pace.start(3_000_000)
+    pace.wait(5_000_000, never)
+    assert host.now == pytest.approx(100.004, abs=1e-9)
+
+
 @pytest.mark.parametrize('factor', [-1.0, float('inf'), float('nan')])
 def test_pace_refuses(factor):
     with pytest.raises(ConfigError, match='real_time_factor'):

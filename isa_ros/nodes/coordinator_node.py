@@ -127,6 +127,8 @@ def _main(args: Sequence[str] | None) -> int:
                 run = coordinate_locally if session.request.in_process else coordinate
                 with sole_coordinator():
                     run(node, session, terminal_report(), should_stop)
+                if session.pace.shortfall:
+                    node.get_logger().warning(session.pace.shortfall)
             finally:
                 node.destroy_node()
         except IsaError as error:
