@@ -8,24 +8,53 @@ from collections.abc import MutableMapping
 import os
 from pathlib import Path
 
-PROFILE = Path(__file__).with_name('fastdds_profile.xml')
+from rclpy.utilities import get_rmw_implementation_identifier
+
+LOCALHOST_PROFILE = Path(__file__).with_name('fastdds_localhost.xml')
+NETWORK_PROFILE = Path(__file__).with_name('fastdds_network.xml')
 
 _PROFILE_VARIABLES = ('FASTRTPS_DEFAULT_PROFILES_FILE', 'FASTDDS_DEFAULT_PROFILES_FILE')
 _PROFILE_IN_DIRECTORY = 'DEFAULT_FASTRTPS_PROFILES.xml'
 _OTHER_SETTINGS = ('RMW_FASTRTPS_USE_QOS_FROM_XML', 'ROS_DISCOVERY_SERVER')
-_DISCOVERY_VARIABLES = (
-    'ROS_AUTOMATIC_DISCOVERY_RANGE', 'ROS_LOCALHOST_ONLY', 'ROS_STATIC_PEERS')
+_TRANSPORTS = 'FASTDDS_BUILTIN_TRANSPORTS'
+_RANGE = 'ROS_AUTOMATIC_DISCOVERY_RANGE'
+_OTHER_DISCOVERY = ('ROS_LOCALHOST_ONLY', 'ROS_STATIC_PEERS')
+_FAST_DDS = 'rmw_fastrtps'
 
 
-def set_defaults(environment: MutableMapping[str, str] = os.environ) -> None:
+def set_defaults(
+        environment: MutableMapping[str, str] = os.environ,
+        middleware: str | None = None) -> None:
     """
-    Use the packaged Fast DDS profile and stay on this host, unless the user chose otherwise.
+    Use a packaged Fast DDS profile and stay on this host, unless the user chose otherwise.
 
-    Fast DDS 2 reads the first of the two variables, Fast DDS 3 the second.
+    ``middleware`` is the one in use unless it is given. Fast DDS 2 reads the first of the two
+    variables of a profile, Fast DDS 3 the second.
     """
-    chosen = any(name in environment for name in (*_PROFILE_VARIABLES, *_OTHER_SETTINGS))
-    if not chosen and not Path(_PROFILE_IN_DIRECTORY).exists():
-        for name in _PROFILE_VARIABLES:
-            environment[name] = str(PROFILE)
-    if not any(name in environment for name in _DISCOVERY_VARIABLES):
-        environment['ROS_AUTOMATIC_DISCOVERY_RANGE'] = 'LOCALHOST'
+    if not any(name in environment for name in (_RANGE, *_OTHER_DISCOVERY)):
+        environment[_RANGE] = 'LOCALHOST'
+    if _has_settings(environment):
+        return
+    profile = NETWORK_PROFILE
+    if _is_for_this_host(environment):
+        if (middleware or get_rmw_implementation_identifier()).startswith(_FAST_DDS):
+            # For LOCALHOST the middleware adds transports of its own to those of a profile:
+            # UDP that listens on every interface, and shared memory that outlives a SIGKILL.
+            environment[_RANGE] = 'SYSTEM_DEFAULT'
+            profile = LOCALHOST_PROFILE
+    else:
+        environment.setdefault(_TRANSPORTS, 'UDPv4')
+    for name in _PROFILE_VARIABLES:
+        environment[name] = str(profile)
+
+
+def _has_settings(environment: MutableMapping[str, str]) -> bool:
+    """Return whether the user has a profile or a setting that replaces one."""
+    return (any(name in environment for name in (*_PROFILE_VARIABLES, *_OTHER_SETTINGS))
+            or Path(_PROFILE_IN_DIRECTORY).exists())
+
+
+def _is_for_this_host(environment: MutableMapping[str, str]) -> bool:
+    """Return whether no node of another host is to be found, over transports of our choice."""
+    return environment.get(_RANGE) == 'LOCALHOST' and not any(
+        name in environment for name in (_TRANSPORTS, *_OTHER_DISCOVERY))

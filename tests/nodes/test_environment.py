@@ -2,10 +2,11 @@
 
 from xml.etree import ElementTree
 
-from isa_ros.nodes.environment import PROFILE, set_defaults
+from isa_ros.nodes.environment import LOCALHOST_PROFILE, NETWORK_PROFILE, set_defaults
 import pytest
 
 NAMESPACE = '{http://www.eprosima.com/XMLSchemas/fastRTPS_Profiles}'
+FAST_DDS = 'rmw_fastrtps_cpp'
 
 
 @pytest.fixture(autouse=True)
@@ -14,13 +15,39 @@ def empty_directory(tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
 
 
-def test_defaults():
+def with_profile(profile, **others):
+    return {'FASTRTPS_DEFAULT_PROFILES_FILE': str(profile),
+            'FASTDDS_DEFAULT_PROFILES_FILE': str(profile), **others}
+
+
+def test_by_default_the_profile_alone_says_what_listens():
+    """For LOCALHOST rmw_fastrtps would add UDP on every interface and shared memory."""
     environment: dict[str, str] = {}
-    set_defaults(environment)
-    assert environment == {
-        'FASTRTPS_DEFAULT_PROFILES_FILE': str(PROFILE),
-        'FASTDDS_DEFAULT_PROFILES_FILE': str(PROFILE),
-        'ROS_AUTOMATIC_DISCOVERY_RANGE': 'LOCALHOST'}
+    set_defaults(environment, FAST_DDS)
+    assert environment == with_profile(
+        LOCALHOST_PROFILE, ROS_AUTOMATIC_DISCOVERY_RANGE='SYSTEM_DEFAULT')
+
+
+def test_children_keep_what_their_parent_has_set():
+    environment: dict[str, str] = {}
+    set_defaults(environment, FAST_DDS)
+    inherited = dict(environment)
+    set_defaults(inherited, FAST_DDS)
+    assert inherited == environment
+
+
+def test_the_user_who_asks_for_localhost_gets_the_same():
+    environment = {'ROS_AUTOMATIC_DISCOVERY_RANGE': 'LOCALHOST'}
+    set_defaults(environment, FAST_DDS)
+    assert environment == with_profile(
+        LOCALHOST_PROFILE, ROS_AUTOMATIC_DISCOVERY_RANGE='SYSTEM_DEFAULT')
+
+
+def test_a_middleware_without_our_profile_stays_at_localhost():
+    """SYSTEM_DEFAULT would be the whole subnet there."""
+    environment: dict[str, str] = {}
+    set_defaults(environment, 'rmw_cyclonedds_cpp')
+    assert environment['ROS_AUTOMATIC_DISCOVERY_RANGE'] == 'LOCALHOST'
 
 
 @pytest.mark.parametrize('name', [
@@ -28,32 +55,43 @@ def test_defaults():
     'RMW_FASTRTPS_USE_QOS_FROM_XML', 'ROS_DISCOVERY_SERVER'])
 def test_profile_of_the_user_is_kept(name):
     environment = {name: 'mine'}
-    set_defaults(environment)
+    set_defaults(environment, FAST_DDS)
     assert environment == {name: 'mine', 'ROS_AUTOMATIC_DISCOVERY_RANGE': 'LOCALHOST'}
 
 
 def test_profile_in_the_directory_is_kept(tmp_path):
     (tmp_path / 'DEFAULT_FASTRTPS_PROFILES.xml').touch()
     environment: dict[str, str] = {}
-    set_defaults(environment)
+    set_defaults(environment, FAST_DDS)
     assert environment == {'ROS_AUTOMATIC_DISCOVERY_RANGE': 'LOCALHOST'}
 
 
-@pytest.mark.parametrize(
-    'name', ['ROS_AUTOMATIC_DISCOVERY_RANGE', 'ROS_LOCALHOST_ONLY', 'ROS_STATIC_PEERS'])
-def test_discovery_of_the_user_is_kept(name):
-    environment = {name: 'mine'}
-    set_defaults(environment)
-    assert environment[name] == 'mine'
-    assert environment.get('ROS_AUTOMATIC_DISCOVERY_RANGE', 'mine') == 'mine'
+@pytest.mark.parametrize(('name', 'value'), [
+    ('ROS_AUTOMATIC_DISCOVERY_RANGE', 'SUBNET'), ('ROS_LOCALHOST_ONLY', '1'),
+    ('ROS_STATIC_PEERS', '192.0.2.7')])
+def test_network_of_the_user_is_kept(name, value):
+    """Without shared memory, so that a killed node leaves nothing behind."""
+    environment = {name: value}
+    set_defaults(environment, FAST_DDS)
+    assert environment == with_profile(
+        NETWORK_PROFILE, FASTDDS_BUILTIN_TRANSPORTS='UDPv4', **{name: value})
 
 
+def test_transports_of_the_user_are_kept():
+    environment = {'FASTDDS_BUILTIN_TRANSPORTS': 'SHM'}
+    set_defaults(environment, FAST_DDS)
+    assert environment == with_profile(
+        NETWORK_PROFILE, FASTDDS_BUILTIN_TRANSPORTS='SHM',
+        ROS_AUTOMATIC_DISCOVERY_RANGE='LOCALHOST')
+
+
+@pytest.mark.parametrize('profile', [LOCALHOST_PROFILE, NETWORK_PROFILE])
 @pytest.mark.parametrize(('path', 'text'), [
     ('discovery_config/leaseDuration/sec', '5'),
     ('discovery_config/initialAnnouncements/count', '40'),
     ('discovery_config/initialAnnouncements/period/nanosec', '50000000'),
     ('data_writer/times/heartbeatPeriod/nanosec', '5000000')])
-def test_profile_says_what_was_measured(path, text):
+def test_profiles_say_what_was_measured(profile, path, text):
     """The values of lockstep.md, fact 6."""
     steps = './/' + '/'.join(f'{NAMESPACE}{step}' for step in path.split('/'))
-    assert ElementTree.parse(PROFILE).findtext(steps) == text
+    assert ElementTree.parse(profile).findtext(steps) == text

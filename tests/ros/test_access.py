@@ -1,0 +1,90 @@
+"""What is open to others: by default this host, nothing else, and nothing stays behind."""
+
+from collections.abc import Iterator
+import ipaddress
+import os
+from pathlib import Path
+import signal
+
+import pytest
+from tests.ros.started import actuator, bringup, RIG, started, wait_for
+
+pytestmark = pytest.mark.ros
+DISCOVERY = (
+    'FASTRTPS_DEFAULT_PROFILES_FILE', 'FASTDDS_DEFAULT_PROFILES_FILE',
+    'FASTDDS_BUILTIN_TRANSPORTS', 'ROS_AUTOMATIC_DISCOVERY_RANGE', 'ROS_LOCALHOST_ONLY',
+    'ROS_STATIC_PEERS')
+INODE_COLUMN, LOCAL_COLUMN = 9, 1  # of /proc/net/udp and its like, as proc_net_tcp.txt has them
+
+
+@pytest.fixture(autouse=True)
+def untouched(monkeypatch):
+    """Set nothing of what a user may set."""
+    for name in DISCOVERY:
+        monkeypatch.delenv(name, raising=False)
+
+
+def bound_addresses(pid: int) -> Iterator[str]:
+    """Yield the local address of every internet socket of a process."""
+    inodes = set()
+    for descriptor in Path(f'/proc/{pid}/fd').iterdir():
+        target = os.readlink(descriptor)
+        if target.startswith('socket:['):
+            inodes.add(target[len('socket:['):-1])
+    for protocol in ('udp', 'udp6', 'tcp', 'tcp6', 'raw', 'raw6', 'udplite', 'udplite6'):
+        table = Path(f'/proc/{pid}/net/{protocol}')
+        if not table.exists():
+            continue
+        for line in table.read_text().splitlines()[1:]:
+            columns = line.split()
+            if columns[INODE_COLUMN] in inodes:
+                yield str(ip_address(columns[LOCAL_COLUMN].split(':')[0]))
+
+
+def ip_address(digits: str) -> ipaddress.IPv4Address | ipaddress.IPv6Address:
+    """Return an address that the kernel prints as words of the host's (little) endianness."""
+    words = bytes.fromhex(digits)
+    return ipaddress.ip_address(
+        b''.join(words[k:k + 4][::-1] for k in range(0, len(words), 4)))
+
+
+def shared_memory(pid: int) -> list[str]:
+    """Return the middleware's shared memory that a process has mapped."""
+    return [line for line in Path(f'/proc/{pid}/maps').read_text().splitlines()
+            if '/dev/shm/fastrtps' in line]
+
+
+def test_nothing_listens_on_the_network_unasked(domain, tmp_path):
+    """Every socket of every process of a run is bound to the loopback interface."""
+    bag = tmp_path / 'bag'
+    with bringup(bag, '--real-time-factor', '1', config=RIG) as run:
+        wait_for(lambda: (bag / 'metadata.yaml').exists() or not run.is_running(), 'tick 0')
+        assert run.is_running(), run.errors
+        pids = [run.pid, *run.children().values()]
+        assert len(pids) == 2
+        for pid in pids:
+            addresses = list(bound_addresses(pid))
+            assert len(addresses) >= 2  # discovery and data
+            assert set(addresses) == {'127.0.0.1'}
+            assert shared_memory(pid) == []  # what SIGKILL would leave behind
+        run.signal(signal.SIGTERM)
+        assert run.exit_code() == 130
+
+
+def test_a_user_who_asks_for_the_network_gets_it(domain, tmp_path, monkeypatch):
+    """Without shared memory there, too."""
+    monkeypatch.setenv('ROS_AUTOMATIC_DISCOVERY_RANGE', 'SUBNET')
+    with actuator(tmp_path / 'log', 'knee', model='isa_v5') as process:
+        wait_for(lambda: '0.0.0.0' in bound_addresses(process.pid), 'a socket on the network')
+        assert shared_memory(process.pid) == []
+
+
+@pytest.mark.parametrize('asked', [None, 'LOCALHOST'])
+def test_a_plain_node_of_this_host_reads_and_commands(domain, tmp_path, monkeypatch, asked):
+    """It has ROS's own defaults, or the range that keeps it on this host, and no profile."""
+    with actuator(tmp_path / 'actuator.log', 'knee', model='isa_v5') as knee:
+        if asked is not None:
+            monkeypatch.setenv('ROS_AUTOMATIC_DISCOVERY_RANGE', asked)
+        with started(tmp_path / 'plain.log', 'tests.ros.plain_node', 'knee', '0.03') as plain:
+            assert plain.exit_code() == 0, plain.errors
+        assert knee.is_running(), knee.errors
