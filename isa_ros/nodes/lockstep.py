@@ -13,8 +13,8 @@ from isa_ros.nodes.domain import another_coordinator, refuse_other_coordinator
 from isa_ros.nodes.qos import LOCKSTEP
 from isa_ros.nodes.waiting import open_mailbox, SLICE_S
 from isa_ros.nodes.wire import (
-    ACKNOWLEDGEMENT_TOPIC, Answer, AnswerKind, decode_answer, DIVERGENCE, encode_end,
-    encode_hello, encode_plain, encode_restore, encode_tick, STEP_TOPIC, StepKind)
+    ACKNOWLEDGEMENT_TOPIC, Answer, AnswerKind, decode_answer, DIVERGENCE, encode_begin,
+    encode_end, encode_hello, encode_restore, encode_save, encode_tick, STEP_TOPIC)
 from isa_ros.signals import COMMAND, LOAD_REPLY, SAMPLE
 from isa_ros.stepping import IDLE_S
 import numpy as np
@@ -24,6 +24,8 @@ from std_msgs.msg import UInt8MultiArray
 
 HELLO_PERIOD_S = 0.05
 STOP_GRACE_S = 1.0  # how long a tick may still take once a stop is asked for
+REPEAT_S = 1.0  # from one request of a step to the next: a participant that was stopped for
+# longer than the middleware's lease has lost what was on its way
 _IDENTITY, _DIGEST, _FIRST = 0, 1, 2  # parts of a READY answer
 _REPLY, _SAMPLE, _MESSAGES = 0, 1, 2  # parts of what an actuator's seat says
 _NO_REASON = b'without a reason'
@@ -80,7 +82,8 @@ class LockstepTransport:
         self._past_runs: set[int] = set()
         self._identities: dict[int, bytes] = {}
         self._tick = 0
-        self._doing = 'tick 0'
+        self._saves = 0
+        self._step, self._doing = b'', 'tick 0'
         self._publisher = node.create_publisher(UInt8MultiArray, STEP_TOPIC, LOCKSTEP)
         handle: Any = self._publisher.handle
         self._send: Callable[[bytes], None] = handle.publish_raw
@@ -186,13 +189,16 @@ class LockstepTransport:
 
     def begin(self) -> None:
         """Let everyone publish the first messages."""
-        self._send(encode_plain(StepKind.BEGIN, self._run_id, 0))
+        self._send(encode_begin(self._run_id))
 
     def send(self, tick: int, rows: Rows) -> None:
         """Broadcast the step."""
         self._tick = tick
-        self._doing = f'tick {tick}'
-        self._send(encode_tick(self._run_id, tick, rows, self._has_controllers))
+        self._ask(f'tick {tick}', encode_tick(self._run_id, tick, rows, self._has_controllers))
+
+    def _ask(self, what: str, step: bytes) -> None:
+        self._doing, self._step = what, step
+        self._send(step)
 
     def receive(self, rows: Rows) -> Sequence[Messages]:
         """Wait for every participant; see `Transport`."""
@@ -207,8 +213,9 @@ class LockstepTransport:
 
     def snapshots(self) -> list[bytes]:
         """Return the state of every participant."""
-        self._doing = 'the request to save its state'
-        self._send(encode_plain(StepKind.SAVE, self._run_id, self._tick))
+        self._saves += 1
+        self._ask('the request to save its state',
+                  encode_save(self._run_id, self._tick, self._saves))
         parts = self._gather(AnswerKind.SAVED)
         return [parts[k][0] or b'' for k in sorted(parts)]
 
@@ -220,8 +227,8 @@ class LockstepTransport:
                 f'the saved state has {len(snapshots)} participants, the run has '
                 f'{len(self._participants)}')
         self._tick = tick
-        self._doing = 'the request to restore its state'
-        self._send(encode_restore(self._run_id, tick, snapshots))
+        self._ask('the request to restore its state',
+                  encode_restore(self._run_id, tick, snapshots))
         return self._said(rows, self._gather(AnswerKind.RESTORED))
 
     def _said(
@@ -245,7 +252,7 @@ class LockstepTransport:
         """Wait until every participant has answered and return the parts of each."""
         parts: dict[int, list[bytes | None]] = {}
         missing = set(self._remote)
-        waited = 0.0
+        waited, repeat_at = 0.0, REPEAT_S
         while missing:
             begin = time.monotonic()
             data = self._mailbox.wait(SLICE_S)
@@ -254,6 +261,9 @@ class LockstepTransport:
                 # A stopped or suspended host must not look like a late participant.
                 waited += min(time.monotonic() - begin, 2.0 * SLICE_S)
                 self._check_waited(waited, missing)
+                if waited >= repeat_at:
+                    repeat_at += REPEAT_S
+                    self._send(self._step)
                 continue
             answer = decode_answer(data)
             if self._is_expected(answer, kind, missing):
@@ -272,6 +282,8 @@ class LockstepTransport:
             self._check_unbound(answer)
             return False
         if answer.tick != self._tick or answer.participant not in missing:
+            if answer.is_repeated:
+                return False
             raise self._two_nodes(answer.participant)  # one answers each step once
         if answer.kind is kind:
             return True

@@ -21,7 +21,8 @@ class Member:
 
     The coordinator knows a member by the name of its node, and waits for it at every tick.
     One that is bound to a run answers no other coordinator until that run ends or its
-    coordinator is gone.
+    coordinator is gone; one that only seemed to be gone, stopped for longer than the
+    middleware's lease, goes on with its run.
     """
 
     def __init__(self, node: Node, seat: Seat) -> None:
@@ -42,6 +43,9 @@ class Member:
         self._next_tick = 0
         self._has_begun = False
         self._first: Parts = ()
+        self._answered: tuple[StepKind, int, int] | None = None  # kind, tick, rows of a step
+        self._last: tuple[AnswerKind, Parts] = AnswerKind.DONE, ()
+        self._is_alone = False
 
     def spin(self, should_stop: Callable[[], bool]) -> None:
         """Take part in one run after the other until ``should_stop``."""
@@ -51,21 +55,24 @@ class Member:
                 self._handle(decode_step(data))
                 continue
             self._seat.serve()
-            if self._run_id and not self._mailbox.count_senders():
+            is_alone = bool(self._run_id) and not self._mailbox.count_senders()
+            if is_alone and not self._is_alone:
                 self._log.warning(
-                    f'the coordinator is gone after {self._next_tick} ticks; waiting for another')
-                self._release()
+                    f'the coordinator is gone after {self._next_tick} ticks; waiting for it or '
+                    'for another')
+            self._is_alone = is_alone
 
     def _handle(self, step: Step) -> None:
         if step.kind is StepKind.HELLO:
             self._answer_hello(step)
         elif step.run_id != self._run_id:
             self._answer_strange(step)
+        elif self._answered == (step.kind, step.tick, step.rows):
+            self._repeat(step)
         elif step.kind is StepKind.TICK:
             self._answer_tick(step)
         elif step.kind is StepKind.BEGIN:
-            self._has_begun = True
-            self._seat.publish()
+            self._begin()
         elif step.kind is StepKind.SAVE:
             self._answer_to(step, AnswerKind.SAVED, lambda: (self._seat.snapshot(),))
         elif step.kind is StepKind.RESTORE:
@@ -113,9 +120,21 @@ class Member:
         self._first = self._seat.start(step, self._index)
         return True
 
+    def _begin(self) -> None:
+        if not self._has_begun:
+            self._has_begun = True
+            self._seat.publish()
+
+    def _repeat(self, step: Step) -> None:
+        """Say once more what was said: the answer, or the first request, may have been lost."""
+        kind, parts = self._last
+        self._send(encode_answer(
+            kind, self._run_id, step.tick, self._index, parts, is_repeated=True))
+
     def _answer_tick(self, step: Step) -> None:
+        self._begin()
         if step.tick != self._next_tick:
-            self._answer(AnswerKind.REFUSED, step.tick, (
+            self._answer(step, AnswerKind.REFUSED, (
                 f'tick {step.tick} came, {self._next_tick} was due'.encode(),))
             return
         self._next_tick += 1
@@ -133,18 +152,19 @@ class Member:
         try:
             parts = work()
         except SimulationDiverged as error:
-            self._answer(AnswerKind.DIVERGED, step.tick, (
+            self._answer(step, AnswerKind.DIVERGED, (
                 DIVERGENCE.pack(error.t_ns, error.value), error.field.encode()))
             return False
         except IsaError as error:
-            self._answer(AnswerKind.REFUSED, step.tick, (str(error).encode(),))
+            self._answer(step, AnswerKind.REFUSED, (str(error).encode(),))
             return False
         except BaseException as error:
-            self._answer(AnswerKind.REFUSED, step.tick, (
+            self._answer(step, AnswerKind.REFUSED, (
                 f'{type(error).__name__}: {error}'.encode(),))
             raise
-        self._answer(kind, step.tick, parts)
+        self._answer(step, kind, parts)
         return True
 
-    def _answer(self, kind: AnswerKind, tick: int, parts: Parts) -> None:
-        self._send(encode_answer(kind, self._run_id, tick, self._index, parts))
+    def _answer(self, step: Step, kind: AnswerKind, parts: Parts) -> None:
+        self._answered, self._last = (step.kind, step.tick, step.rows), (kind, parts)
+        self._send(encode_answer(kind, self._run_id, step.tick, self._index, parts))

@@ -20,12 +20,14 @@ import numpy as np
 
 STEP_TOPIC = '/_isa/step'
 ACKNOWLEDGEMENT_TOPIC = '/_isa/acknowledgement'
-WIRE_VERSION = 2
+WIRE_VERSION = 3
 
 _ENCAPSULATION = 0x00000100  # bytes 00 01 00 00: little endian CDR, no options
 _PREFIX = struct.Struct('<IIII')  # encapsulation, no dimensions, data_offset, array length
 _STEP = struct.Struct('<HHIQq')  # version, kind, rows, run id, tick
-_ACKNOWLEDGEMENT = struct.Struct('<HHIIIQq')  # version, kind, index, parts, -, run id, tick
+_ACKNOWLEDGEMENT = struct.Struct('<HHIIIQq')
+"""Version, kind, index, parts, whether it is repeated, run id, tick."""
+
 _NUMBER = struct.Struct('<q')
 _ABSENT = 0xFFFFFFFF  # length of a part that is None
 
@@ -137,6 +139,8 @@ class Answer(NamedTuple):
     participant: int
     """Its place in the hello's names."""
     parts: list[bytes | None]
+    is_repeated: bool
+    """To a step that had been answered before."""
 
 
 def encode_hello(
@@ -160,9 +164,14 @@ def encode_tick(run_id: int, tick: int, rows: Rows, has_controllers: bool) -> by
     return _step(StepKind.TICK, run_id, tick, len(rows.ports), body)
 
 
-def encode_plain(kind: StepKind, run_id: int, tick: int) -> bytes:
-    """Return the bytes of a `BEGIN`, which has no tick, or a `SAVE`."""
-    return _step(kind, run_id, tick, 0, b'')
+def encode_begin(run_id: int) -> bytes:
+    """Return the bytes that let the first messages be published."""
+    return _step(StepKind.BEGIN, run_id, 0, 0, b'')
+
+
+def encode_save(run_id: int, tick: int, count: int) -> bytes:
+    """Return the bytes of the ``count``-th request for the state before the next tick."""
+    return _step(StepKind.SAVE, run_id, tick, count, b'')
 
 
 def encode_restore(run_id: int, tick: int, snapshots: Sequence[bytes]) -> bytes:
@@ -198,12 +207,12 @@ def decode_step(data: bytes) -> Step:
 
 def encode_answer(
         kind: AnswerKind, run_id: int, tick: int, index: int,
-        parts: Sequence[bytes | None]) -> bytes:
+        parts: Sequence[bytes | None], is_repeated: bool = False) -> bytes:
     """Return the bytes of an answer; a part that is None stays None."""
     body = _join(parts)
     return (_PREFIX.pack(_ENCAPSULATION, 0, 0, _ACKNOWLEDGEMENT.size + len(body))
-            + _ACKNOWLEDGEMENT.pack(WIRE_VERSION, kind, index, len(parts), 0, run_id, tick)
-            + body)
+            + _ACKNOWLEDGEMENT.pack(
+                WIRE_VERSION, kind, index, len(parts), is_repeated, run_id, tick) + body)
 
 
 def decode_answer(data: bytes) -> Answer:
@@ -216,9 +225,11 @@ def decode_answer(data: bytes) -> Answer:
         It is of another version of this package.
 
     """
-    version, kind, index, n, _, run_id, tick = _ACKNOWLEDGEMENT.unpack_from(data, _PREFIX.size)
+    version, kind, index, n, is_repeated, run_id, tick = _ACKNOWLEDGEMENT.unpack_from(
+        data, _PREFIX.size)
     _check_version(version)
-    return Answer(AnswerKind(kind), run_id, tick, index, _split(data, n, _PARTS_START))
+    parts = _split(data, n, _PARTS_START)
+    return Answer(AnswerKind(kind), run_id, tick, index, parts, bool(is_repeated))
 
 
 def _join(parts: Sequence[bytes | None]) -> bytes:

@@ -60,17 +60,19 @@ def test_hello_round_trip():
     assert step.start(1).tobytes() == starts[1].tobytes()
 
 
-@given(RUN_IDS, TICKS, strategies.lists(strategies.none() | strategies.binary(max_size=300)))
-def test_answer_round_trip(run_id, tick, parts):
+@given(RUN_IDS, TICKS, strategies.lists(strategies.none() | strategies.binary(max_size=300)),
+       strategies.booleans())
+def test_answer_round_trip(run_id, tick, parts, is_repeated):
     """An absent part stays different from an empty one."""
-    data = wire.encode_answer(wire.AnswerKind.DONE, run_id, tick, 2, parts)
+    data = wire.encode_answer(wire.AnswerKind.DONE, run_id, tick, 2, parts, is_repeated)
     assert wire.decode_answer(data) == wire.Answer(
-        wire.AnswerKind.DONE, run_id, tick, 2, parts)
+        wire.AnswerKind.DONE, run_id, tick, 2, parts, is_repeated)
 
 
 @pytest.mark.parametrize('data', [
     wire.encode_end(5),
-    wire.encode_plain(wire.StepKind.BEGIN, 5, 0),
+    wire.encode_begin(5),
+    wire.encode_save(5, 9, 2),
     wire.encode_tick(5, 1, filled(3), True),
     wire.encode_answer(wire.AnswerKind.DONE, 5, 1, 0, [b'abc', None])])
 def test_bytes_are_a_uint8_multi_array(data):
@@ -85,5 +87,5 @@ def test_bytes_are_a_uint8_multi_array(data):
     (wire.decode_step, wire.encode_end(5)),
     (wire.decode_answer, wire.encode_answer(wire.AnswerKind.BUSY, 5, 1, 0, ()))])
 def test_another_version_is_refused(decode, data):
-    with pytest.raises(RunError, match='wire version 3'):
-        decode(data[:16] + b'\3' + data[17:])
+    with pytest.raises(RunError, match='wire version 9'):
+        decode(data[:16] + b'\x09' + data[17:])

@@ -356,6 +356,69 @@ def test_a_second_node_of_a_name_is_noticed_during_the_run(observer):
                 ticks()
 
 
+def dropping(send: Callable[[bytes], None]) -> Callable[[bytes], None]:
+    """Lose the first message, as a participant does that the middleware took for gone."""
+    messages: list[bytes] = []
+
+    def send_but_the_first(message: bytes) -> None:
+        if messages:
+            send(message)
+        messages.append(message)
+    return send_but_the_first
+
+
+PATIENT = Limits(join_s=DEADLINE_S, tick_s=DEADLINE_S)
+
+
+def test_a_lost_step_is_asked_for_again(observer):
+    stepper = Scripted()
+    with spinning(observer.context, {'haa': Scripted(), 'kfe': stepper}):
+        transport = make_transport(observer, limits=PATIENT)
+        transport.join(Rows(2))
+        transport._send = dropping(transport._send)
+        assert tick(transport, 0)[0] == [1.0, 2.0]
+        assert tick(transport, 1)[0] == [2.0, 3.0]
+    assert stepper.ticks == 2
+
+
+@pytest.fixture
+def members(monkeypatch) -> list[Member]:
+    """Return the members that are made from now on."""
+    made: list[Member] = []
+    make = Member.__init__
+
+    def note(self: Member, *arguments: object) -> None:
+        make(self, *arguments)
+        made.append(self)
+    monkeypatch.setattr(Member, '__init__', note)
+    return made
+
+
+def test_a_lost_answer_is_given_again_without_another_tick(observer, members):
+    """The other participant repeats its answer too, which is not taken for a second node."""
+    steppers = {'haa': Scripted(), 'kfe': Scripted()}
+    with spinning(observer.context, steppers):
+        transport = make_transport(observer, limits=PATIENT)
+        transport.join(Rows(2))
+        members[1]._send = dropping(members[1]._send)
+        for number in range(50):
+            assert tick(transport, number)[0] == [1.0 + number, 2.0 + number]
+    assert steppers['haa'].ticks == steppers['kfe'].ticks == 50
+
+
+def test_a_lost_state_is_given_again(observer, members):
+    """Saved once, however often it is asked for; a later save is another."""
+    steppers = {'haa': Scripted(), 'kfe': Scripted()}
+    with spinning(observer.context, steppers):
+        transport = make_transport(observer, limits=PATIENT)
+        transport.join(Rows(2))
+        tick(transport, 0)
+        members[0]._send = dropping(members[0]._send)
+        assert transport.snapshots() == [b'after 1', b'after 1']
+        steppers['haa'].ticks = 5
+        assert transport.snapshots() == [b'after 5', b'after 1']
+
+
 def test_a_node_of_another_name_does_not_disturb(observer):
     """It gives its name too, which is none of the run."""
     with spinning(observer.context, {'haa': Scripted(), 'kfe': Scripted(), 'hfe': Scripted()}):
