@@ -13,6 +13,21 @@ Messages = Sequence[bytes | None]
 Records = NDArray[np.void]
 """Rows of one of the record types of `isa_ros.signals`, one per actuator."""
 
+Floats = NDArray[np.float64]
+
+
+def floats(rows: Records) -> Floats:
+    """
+    Return the same memory as plain numbers, (n, floats of a row).
+
+    Records of floats are copied ten times as fast in this form.
+    """
+    return rows.view(np.float64).reshape(len(rows), -1)
+
+
+IDLE_S = 0.005
+"""Host time between two looks at what is asked of a paused run."""
+
 
 class Rows:
     """

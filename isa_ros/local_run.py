@@ -4,13 +4,14 @@ from collections.abc import Callable
 from dataclasses import replace
 
 from isa_ros.actuator import Timing
+from isa_ros.actuator_group import ActuatorGroup
 from isa_ros.coordinator import Coordinator, Plan, Requests
 from isa_ros.exchange import Recorder, Records, Rows, Silence
+from isa_ros.local_transport import LocalTransport
 from isa_ros.pacing import Pace, ProgressMeter
 from isa_ros.run_config import RunConfig
 from isa_ros.run_state import RunState
 from isa_ros.shared_load import SharedLoad
-from isa_ros.stepping import LocalTransport, QuietActuator
 from isa_ros.topics import topics_of
 
 
@@ -44,8 +45,7 @@ class LocalRun:
         run = self._run
         timing = Timing(run.step_ns, run.controller_offset_ns)
         transport = LocalTransport(
-            [QuietActuator(actuator, timing) for actuator in run.actuators],
-            self._load.starts(run), Silence())
+            ActuatorGroup(run.actuators, timing), self._load.starts(run), Silence())
         rows = Rows(len(run.actuators))
         plan = Plan(step_ns=run.step_ns, rows=rows, n_ticks=n_ticks, commands=commands)
         coordinator = Coordinator(

@@ -19,8 +19,12 @@ STATE_TOPICS = (
 """(topic suffix, type) of what is published at every tick, sorted by suffix."""
 
 APPLIED_SETPOINT = ('applied_setpoint', joint_state.TYPE)
-TOPICS = tuple(sorted((*STATE_TOPICS, APPLIED_SETPOINT)))
+APPLIED_TOPICS = (APPLIED_SETPOINT,)
+"""The same of what is published when something takes effect."""
 
+TOPICS = (*APPLIED_TOPICS, *STATE_TOPICS)
+
+_FLOAT = np.dtype('<f8')
 _SAMPLED = tuple(SAMPLE.names or ())
 _PRESSURES = slice(_SAMPLED.index('pressure_a'), _SAMPLED.index('pressure_b') + 1)
 _WIDTH = len(_SAMPLED) + 2  # values of one actuator: its sample, then absolute pressures
@@ -41,12 +45,12 @@ class StateMessages:
              for message in _prepared(name, is_rotary, row * _WIDTH)], n * _WIDTH)
         table = self._template.values.reshape(n, _WIDTH)
         self._sampled, self._absolute = table[:, :len(_SAMPLED)], table[:, len(_SAMPLED):]
+        self._gauge = self._sampled[:, _PRESSURES]
 
     def pack(self, samples: np.ndarray, t_ns: int) -> list[bytes]:
         """Return the CDR bytes of (n,) SAMPLE rows at ``t_ns``: `STATE_TOPICS` of each."""
-        rows = samples.view('<f8').reshape(self._sampled.shape)
-        self._sampled[:] = rows
-        np.add(rows[:, _PRESSURES], fluid_pressure.ATMOSPHERE, out=self._absolute)
+        self._sampled[:] = samples.view(_FLOAT).reshape(self._sampled.shape)
+        np.add(self._gauge, fluid_pressure.ATMOSPHERE, self._absolute)
         return self._template.pack(t_ns)
 
 

@@ -3,7 +3,7 @@
 from collections.abc import Callable, Sequence
 from typing import Any, NamedTuple
 
-from isa_ros.actuator import ActuatorConfig, Timing
+from isa_ros.actuator import ActuatorConfig, SmartActuator, Timing
 from isa_ros.errors import SetpointError
 from isa_ros.exchange import Messages
 from isa_ros.nodes.prepared import PreparedPublishers
@@ -12,6 +12,7 @@ from isa_ros.nodes.setpoint_publishers import IncompatiblePublishers
 from isa_ros.nodes.waiting import open_server
 from isa_ros.signals import COMMAND, HAS_ENABLE
 from isa_ros.stepping import SteppedActuator
+from msg_adapters.actuator_messages import TOPICS
 from msg_adapters.setpoint import msg_to_command
 import numpy as np
 from rclpy.node import Node
@@ -26,6 +27,8 @@ class Setup(NamedTuple):
 
     config: ActuatorConfig
     timing: Timing
+    actuator: SmartActuator | None = None
+    """It lives among others; None: it is made."""
 
 
 class ActuatorNode(Node):
@@ -47,7 +50,7 @@ class ActuatorNode(Node):
         self.setup = resolve(self)
         self._stepped = SteppedActuator(*self.setup)
         self._prepared = PreparedPublishers(
-            self, [(f'~/{suffix}', type_) for suffix, type_ in self._stepped.topics])
+            self, [(f'~/{suffix}', type_) for suffix, type_ in TOPICS])
         setpoints = self.create_subscription(
             JointState, '~/setpoint', self._on_setpoint, SETPOINT)
         enable = self.create_service(SetBool, '~/enable', self._on_enable)
@@ -75,13 +78,13 @@ class ActuatorNode(Node):
         return self._stepped.actuator.sample
 
     def start(self, start: np.void | None) -> Messages:
-        """Begin anew at t = 0 from a `START` row; None: as the configuration says."""
+        """Begin anew at t = 0 from a `START` row; None: as configured. Return what applies."""
         return self._stepped.start(start)
 
     def advance(
             self, port: np.void | None = None, command: np.void | None = None) -> Messages:
         """
-        Take a command, advance one tick and return its messages.
+        Take a command, advance one tick and return what was applied at its start.
 
         Raises
         ------
@@ -98,12 +101,13 @@ class ActuatorNode(Node):
         return self._stepped.actuator.snapshot()
 
     def restore(self, snapshot: bytes) -> Messages:
-        """Continue from a `snapshot` and return the messages of that instant."""
+        """Continue from a `snapshot` and return what was applied before that instant."""
         return self._stepped.restore(snapshot)
 
-    def publish(self, messages: Messages) -> None:
-        """Publish messages of `start` or `advance` to whoever listens."""
-        self._prepared.publish(messages)
+    def publish(self, applied: Messages, states: Messages | None = None) -> None:
+        """Publish what was applied and the state; None: made here, if anybody listens."""
+        if self._prepared.is_heard():
+            self._prepared.send((*applied, *(states or self._stepped.states())))
 
     def serve(self) -> None:
         """Take the setpoints and requests that have arrived; do not wait."""

@@ -5,10 +5,11 @@ import secrets
 import time
 from typing import Any, NamedTuple
 
+from isa_ros.actuator_group import by_actuator
 from isa_ros.controller import merge_requests
 from isa_ros.coordinator import Interrupted
 from isa_ros.errors import ConfigError, RunError, SimulationDiverged
-from isa_ros.exchange import Messages, Records, Rows, Voice
+from isa_ros.exchange import IDLE_S, Messages, Records, Rows, Voice
 from isa_ros.nodes.domain import another_coordinator, refuse_other_coordinator
 from isa_ros.nodes.qos import LOCKSTEP
 from isa_ros.nodes.waiting import open_mailbox, SLICE_S
@@ -16,7 +17,7 @@ from isa_ros.nodes.wire import (
     ACKNOWLEDGEMENT_TOPIC, Answer, AnswerKind, decode_answer, DIVERGENCE, encode_begin,
     encode_end, encode_hello, encode_restore, encode_save, encode_tick, STEP_TOPIC)
 from isa_ros.signals import COMMAND, LOAD_REPLY, SAMPLE
-from isa_ros.stepping import IDLE_S
+from msg_adapters.actuator_messages import StateMessages
 import numpy as np
 from rclpy.duration import Duration
 from rclpy.node import Node
@@ -27,7 +28,7 @@ STOP_GRACE_S = 1.0  # how long a tick may still take once a stop is asked for
 REPEAT_S = 1.0  # from one request of a step to the next: a participant that was stopped for
 # longer than the middleware's lease has lost what was on its way
 _IDENTITY, _DIGEST, _FIRST = 0, 1, 2  # parts of a READY answer
-_REPLY, _SAMPLE, _MESSAGES = 0, 1, 2  # parts of what an actuator's seat says
+_REPLY, _SAMPLE, _APPLIED = 0, 1, 2  # parts of what an actuator's seat says
 _NO_REASON = b'without a reason'
 
 
@@ -55,6 +56,8 @@ class Cast(NamedTuple):
     step_ns: int
     first_remote: int = 0
     """Participants before it live in the coordinator's process and are not called here."""
+    states: StateMessages | None = None
+    """Makes messages of the actuators' samples; None: nobody wants them."""
 
 
 class LockstepTransport:
@@ -122,7 +125,7 @@ class LockstepTransport:
             answers = self._hello_answers(count, is_last=bool(complete))
             refuse_other_coordinator(self._node)
             if complete:
-                return self._said(rows, {
+                return self._said(rows, 0, {
                     k: answer.parts[_FIRST:] for k, answer in complete.items()})
             if len(answers) == len(self._remote):
                 complete = answers
@@ -202,7 +205,7 @@ class LockstepTransport:
 
     def receive(self, rows: Rows) -> Sequence[Messages]:
         """Wait for every participant; see `Transport`."""
-        return self._said(rows, self._gather(AnswerKind.DONE))
+        return self._said(rows, self._tick + 1, self._gather(AnswerKind.DONE))
 
     def idle(self) -> None:
         """Look for lost participants, and for a second node of a name, while time passes."""
@@ -229,11 +232,12 @@ class LockstepTransport:
         self._tick = tick
         self._ask('the request to restore its state',
                   encode_restore(self._run_id, tick, snapshots))
-        return self._said(rows, self._gather(AnswerKind.RESTORED))
+        return self._said(rows, tick, self._gather(AnswerKind.RESTORED))
 
     def _said(
-            self, rows: Rows, parts: dict[int, list[bytes | None]]) -> Sequence[Messages]:
-        """Take what actuators and controllers say and return the messages of each."""
+            self, rows: Rows, tick: int,
+            parts: dict[int, list[bytes | None]]) -> Sequence[Messages]:
+        """Take what actuators and controllers say before ``tick``; return their messages."""
         n_actuators = len(rows.replies)
         said: list[Messages] = []
         for k in sorted(parts):
@@ -243,9 +247,12 @@ class LockstepTransport:
                 said.append(())
                 continue
             rows.replies[k] = np.frombuffer(own[_REPLY] or b'', LOAD_REPLY)[0]
-            if self._has_controllers:
-                rows.samples[k] = np.frombuffer(own[_SAMPLE] or b'', SAMPLE)[0]
-            said.append(own[_MESSAGES:])
+            rows.samples[k] = np.frombuffer(own[_SAMPLE] or b'', SAMPLE)[0]
+            said.append(own[_APPLIED:])
+        if self._cast.states is not None:
+            states = self._cast.states.pack(rows.samples, tick * self._cast.step_ns)
+            for k, own_states in enumerate(by_actuator(states)):
+                said[k] = (*said[k], *own_states)
         return said
 
     def _gather(self, kind: AnswerKind) -> dict[int, list[bytes | None]]:

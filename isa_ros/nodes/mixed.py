@@ -3,8 +3,8 @@
 from collections.abc import Sequence
 
 from isa_ros.exchange import Messages, Rows
+from isa_ros.local_transport import LocalTransport
 from isa_ros.nodes.lockstep import LockstepTransport
-from isa_ros.stepping import LocalTransport
 
 
 class MixedTransport:
@@ -36,7 +36,6 @@ class MixedTransport:
     def receive(self, rows: Rows) -> Sequence[Messages]:
         """Advance the actuators, then wait for the controllers."""
         actuators = self._actuators.receive(rows)
-        self._actuators.take_samples(rows)
         return [*actuators, *self._controllers.receive(rows)]
 
     def idle(self) -> None:

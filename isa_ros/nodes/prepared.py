@@ -28,9 +28,18 @@ class PreparedPublishers:
 
     def publish(self, messages: Messages) -> None:
         """Publish every message that is not None and has a listener."""
+        if self.is_heard():
+            self.send(messages)
+
+    def is_heard(self) -> bool:
+        """Tell whether anybody listens; to be asked once a tick."""
         if self._countdown == 0:
             self.refresh()
         self._countdown -= 1
+        return bool(self._listened)
+
+    def send(self, messages: Messages) -> None:
+        """Publish to those who listen, as `is_heard` found them."""
         for slot, publish_raw in self._listened:
             message = messages[slot]
             if message is not None:

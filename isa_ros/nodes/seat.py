@@ -1,8 +1,9 @@
 """
 What a participant of the lockstep does with a step: simulate an actuator, or control.
 
-A seat answers in parts of bytes. An actuator's are its `LOAD_REPLY`, its `SAMPLE` and then
-its messages; a controller's are the `COMMAND` rows it asks for.
+A seat answers in parts of bytes. An actuator's are its `LOAD_REPLY`, its `SAMPLE`, of which
+the coordinator makes the state messages itself, and then what it applied; a controller's are
+the `COMMAND` rows it asks for.
 """
 
 from collections.abc import Sequence
@@ -65,7 +66,7 @@ class ActuatorSeat:
     def __init__(self, stepper: Stepper) -> None:
         self._stepper = stepper
         self._index = 0
-        self._messages: Messages = ()
+        self._applied: Messages = ()
 
     @property
     def digest(self) -> bytes:
@@ -83,8 +84,8 @@ class ActuatorSeat:
             self._stepper.advance(step.port(self._index), step.command(self._index)))
 
     def publish(self) -> None:
-        """Publish the messages of the last answer."""
-        self._stepper.publish(self._messages)
+        """Publish what the last answer holds."""
+        self._stepper.publish(self._applied)
 
     def serve(self) -> None:
         """Take the setpoints and requests that have arrived."""
@@ -98,10 +99,10 @@ class ActuatorSeat:
         """Continue from a snapshot."""
         return self._answer(self._stepper.restore(snapshot))
 
-    def _answer(self, messages: Messages) -> Parts:
-        self._messages = messages
+    def _answer(self, applied: Messages) -> Parts:
+        self._applied = applied
         stepper = self._stepper
-        return stepper.reply.tobytes(), stepper.sample.tobytes(), *messages
+        return stepper.reply.tobytes(), stepper.sample.tobytes(), *applied
 
 
 class ControllerSeat:

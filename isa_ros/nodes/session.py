@@ -3,7 +3,9 @@
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 
+from isa_ros.actuator_group import ActuatorGroup, state_messages
 from isa_ros.exchange import Rows, Transport
+from isa_ros.local_transport import LocalTransport
 from isa_ros.nodes.actuator_node import ActuatorNode, Setup
 from isa_ros.nodes.coordinator_node import CoordinatorNode
 from isa_ros.nodes.domain import refuse_other_coordinator, sole_coordinator
@@ -14,7 +16,7 @@ from isa_ros.nodes.run_services import RunServices
 from isa_ros.processes import actuator_processes, Children
 from isa_ros.run import record, Report, save_in_bag, Session
 from isa_ros.shared_load import SharedLoad
-from isa_ros.stepping import LocalTransport, SteppedActuator
+from isa_ros.stepping import SteppedActuator
 from isa_ros.stopping import StopRequest
 import rclpy
 from rclpy.node import Node
@@ -88,7 +90,9 @@ def _cast(session: Session, load: SharedLoad) -> Cast:
         stepped.start(starts[k])
         stepped.advance(rows.ports[k])
         actuators.append(Expected(config.name, stepped.digest))
-    return Cast([*actuators, *_controllers(session)], starts, run.step_ns)
+    return Cast(
+        [*actuators, *_controllers(session)], starts, run.step_ns,
+        states=state_messages(run.actuators))
 
 
 def _controllers(session: Session) -> list[Expected]:
@@ -120,20 +124,21 @@ def coordinate_locally(
     """Run with the nodes of all actuators in this process; controllers have their own."""
     load = SharedLoad(session.run)
     node.advertise(load.topics)
+    configs = session.run.actuators
+    group = ActuatorGroup(configs, session.timing)
     actuators = [
-        ActuatorNode(_resolver(Setup(config, session.timing)), config.name, has_mailbox=False,
-                     namespace=session.request.namespace, **_QUIET)
-        for config in session.run.actuators]
+        ActuatorNode(_resolver(Setup(config, session.timing, member.actuator)), config.name,
+                     has_mailbox=False, namespace=session.request.namespace, **_QUIET)
+        for config, member in zip(configs, group.members)]
     controllers = None
     try:
         refuse_other_coordinator(node)
         starts = load.starts(session.run)
         transport: Transport
-        transport = local = LocalTransport(actuators, starts, node)
+        transport = local = LocalTransport(group, starts, node, actuators)
         if session.run.controllers:
-            every = [*(Expected(own.name, '') for own in session.run.actuators),
-                     *_controllers(session)]
-            cast = Cast(every, starts, session.run.step_ns, first_remote=len(actuators))
+            every = [*(Expected(own.name, '') for own in configs), *_controllers(session)]
+            cast = Cast(every, starts, session.run.step_ns, first_remote=len(configs))
             controllers = _lockstep(node, session, cast, should_stop, _nobody)
             transport = MixedTransport(local, controllers)
         _record(node, session, transport, load, report, should_stop)
