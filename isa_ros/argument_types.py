@@ -14,6 +14,14 @@ def positive(text: str) -> float:
     return value
 
 
+def not_negative(text: str) -> float:
+    """Return a finite number >= 0."""
+    value = number(text)
+    if value < 0.0:
+        raise argparse.ArgumentTypeError(f'{text!r} must be a number >= 0')
+    return value
+
+
 def number(text: str) -> float:
     """Return a finite number."""
     try:

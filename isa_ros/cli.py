@@ -16,12 +16,14 @@ from types import FrameType
 from typing import NoReturn
 
 from isa_ros import commands, response_arguments, study_arguments
-from isa_ros.argument_types import directory_to_write, file_to_write, positive
+from isa_ros.argument_types import directory_to_write, file_to_write, not_negative, positive
 from isa_ros.errors import IsaError
 from isa_ros.pacing import JOIN_TIMEOUT_S
 
 DONE, ANSWER_IS_NO, WRONG_INPUT, NOT_COMPLETED, INTERRUPTED = 0, 1, 2, 3, 130
 """Exit codes; `IsaError` children carry theirs, a diverged simulation 4 among them."""
+
+COMPRESSIONS = ('none', 'lz4', 'zstd')
 
 _DISK_IS_FULL = (errno.ENOSPC, errno.EDQUOT)
 
@@ -102,6 +104,12 @@ def _bringup(parser: argparse.ArgumentParser) -> None:
         help='directory of the bag (default: a new one in runs/)')
     parser.add_argument(
         '--overwrite', action='store_true', help='replace the bag in an existing directory')
+    parser.add_argument(
+        '--compression', choices=COMPRESSIONS,
+        help='of the chunks of the bag (default: that of CONFIG, else none)')
+    parser.add_argument(
+        '--split-mb', type=not_negative, metavar='N',
+        help='begin another file of the bag after N MB, 0: never (default: that of CONFIG)')
     parser.add_argument(
         '--real-time-factor', type=positive, metavar='X',
         help='not faster than X times real time (default: as fast as it goes)')

@@ -60,7 +60,8 @@ def bringup(options: Namespace) -> bool:
     _record(Request(
         config=find(options.config, CONFIG), scenario=scenario, out=options.out,
         duration_s=options.duration, real_time_factor=options.real_time_factor,
-        overwrite=options.overwrite, in_process=options.in_process,
+        overwrite=options.overwrite, compression=options.compression,
+        split_mb=options.split_mb, in_process=options.in_process,
         controllers=tuple(options.controller), is_paused=options.paused,
         restore=options.restore, save=options.save,
         join_timeout_s=options.join_timeout))

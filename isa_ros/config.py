@@ -19,6 +19,7 @@ from isa_ros.parameter import check
 from isa_ros.plant.plant import plant_record
 from isa_ros.plant.supply import SupplySheet
 from isa_ros.plant.units import MILLI
+from isa_ros.record_config import read_record
 from isa_ros.resolve import (
     alternatives, build, build_one_of, Entry, merge, names_at, Place, refuse_unknown, Section,
     section_at, written)
@@ -68,8 +69,8 @@ def read_run(path: Path | str) -> tuple[RunConfig, Origins]:
     path = Path(path)
     tree, place = read(path), Place(path.name)
     refuse_unknown(tree, (
-        'name', 'step_ms', 'controller_offset_ms', 'tick_timeout_s', 'supply', 'actuators',
-        'controllers', 'leg'), place)
+        'name', 'step_ms', 'controller_offset_ms', 'tick_timeout_s', 'supply', 'record',
+        'actuators', 'controllers', 'leg'), place)
     times = build(Times, written(
         {f: tree[f] for f in Times.__dataclass_fields__ if f in tree}, place), place)
     step_ns, offset_ns = _grid(times, place)
@@ -81,7 +82,8 @@ def read_run(path: Path | str) -> tuple[RunConfig, Origins]:
         supply=build_one_of(
             SupplySheet, written(_section(tree, 'supply', place), place / 'supply'),
             place / 'supply'),
-        actuators=actuators, leg=leg, source=path.name)
+        actuators=actuators, leg=leg, source=path.name,
+        record=read_record(tree.get('record', {}), place / 'record'))
     controllers = names_at(tree.get('controllers', []), place / 'controllers')
     return run.with_controllers(controllers), Origins(origins, leg_origin)
 

@@ -12,6 +12,7 @@ from isa_ros.pacing import Pace, ProgressMeter
 from isa_ros.run_config import RunConfig
 from isa_ros.run_state import RunState
 from isa_ros.shared_load import SharedLoad
+from isa_ros.thinning import Thinning
 from isa_ros.topics import topics_of
 
 
@@ -25,7 +26,9 @@ class LocalRun:
     def __init__(self, run: RunConfig) -> None:
         self._run = run = replace(run, controllers=())
         self._load = SharedLoad(run)
-        self._order, self.topics = topics_of(run, self._load)
+        self._order, topics = topics_of(run, self._load)
+        self._thinning = Thinning(run.record, topics, run.source)
+        self.topics = self._thinning.topics
 
     def simulate(
             self, n_ticks: int, commands: Callable[[int, Records], None], recorder: Recorder,
@@ -49,6 +52,7 @@ class LocalRun:
         rows = Rows(len(run.actuators))
         plan = Plan(step_ns=run.step_ns, rows=rows, n_ticks=n_ticks, commands=commands)
         coordinator = Coordinator(
-            plan, self._order, transport, self._load, recorder, pace=Pace(),
-            progress=ProgressMeter(None, None), should_stop=should_stop, requests=requests)
+            plan, self._order, transport, self._load, self._thinning.recorder(recorder),
+            pace=Pace(), progress=ProgressMeter(None, None), should_stop=should_stop,
+            requests=requests)
         coordinator.run(transport.join(rows), state)

@@ -20,6 +20,7 @@ from isa_ros.run_state import read_state, RunState
 from isa_ros.scenario import idle, load_scenario, Scenario
 from isa_ros.shared_load import SharedLoad
 from isa_ros.stopping import StopRequest
+from isa_ros.thinning import Thinning
 from isa_ros.topics import topics_of
 
 RUNS = Path('runs')
@@ -40,6 +41,9 @@ class Request:
     real_time_factor: float | None = None
     """None or 0: as fast as it can."""
     overwrite: bool = False
+    compression: str | None = None
+    """None: that of the configuration, as `split_mb`."""
+    split_mb: float | None = None
     in_process: bool = False
     controllers: tuple[str, ...] = ()
     """Controllers that take part, besides those of the run file."""
@@ -91,7 +95,11 @@ def prepare(request: Request) -> Session:
         The output directory exists or cannot be made.
 
     """
-    run = load_run(request.config).with_controllers(request.controllers)
+    run = load_run(request.config).with_controllers(request.controllers).stored(
+        request.compression, request.split_mb, 'record options')
+    if run.record.thins:
+        run.record.refuse_misfits(
+            [topic.name for topic in topics_of(run, SharedLoad(run))[1]], run.source)
     scenario = idle(run) if request.scenario is None else load_scenario(request.scenario, run)
     if request.duration_s is not None:
         scenario = scenario.lasting(request.duration_s)
@@ -188,12 +196,14 @@ def _record_one(
         commands=session.scenario.commands, is_paused=session.request.is_paused)
     first = transport.join(rows)
     order, topics = topics_of(run, load)
+    thinning = Thinning(run.record, topics, run.source)
     # The first bag alone may replace one: a reset takes a directory that does not exist.
     overwrite = session.request.overwrite and not session.bags
-    with BagWriter(out, topics, provenance(session, state), overwrite) as bag:
+    with BagWriter(out, thinning.topics, provenance(session, state), overwrite,
+                   run.record.storage) as bag:
         session.bags.append(out)
         coordinator = Coordinator(
-            plan, order, transport, load, bag, pace=session.pace,
+            plan, order, transport, load, thinning.recorder(bag), pace=session.pace,
             progress=ProgressMeter(None if n_ticks is None else n_ticks * run.step_ns, report),
             should_stop=should_stop, requests=requests, laps=session.request.laps)
         coordinator.run(first, state)

@@ -14,6 +14,7 @@ from isa_ros.load.linkage import actuator_coordinate
 from isa_ros.load.local import LocalLoad
 from isa_ros.parameter import parameter, Parameters
 from isa_ros.plant.supply import SupplySheet
+from isa_ros.record_config import read_record, RecordConfig
 from isa_ros.resolve import (
     as_tree, build, build_one_of, names_at, Place, refuse_unknown, section_at, written)
 from isa_ros.strict_yaml import dump, parse, Tree
@@ -98,11 +99,13 @@ class RunConfig:
     """Names of the nodes that are waited for at every tick, besides the actuators."""
     source: str = field(default='')
     """Name of the file it was read from, without its directory."""
+    record: RecordConfig = RecordConfig()
 
     @property
     def digest(self) -> str:
-        """Return the sha256 of the resolved text."""
-        return hashlib.sha256(self.to_yaml().encode()).hexdigest()
+        """Return the sha256 of the resolved text, but for what is recorded and how."""
+        text = replace(self, record=RecordConfig()).to_yaml()
+        return hashlib.sha256(text.encode()).hexdigest()
 
     def actuator(self, name: str) -> ActuatorConfig:
         """
@@ -155,6 +158,11 @@ class RunConfig:
             replace(a, initial_position=leg.position_of(joint_of[a.name]))
             if a.name in joint_of else a for a in self.actuators))
 
+    def stored(
+            self, compression: str | None, split_mb: float | None, where: str) -> 'RunConfig':
+        """Return the run recorded as asked for at ``where``; as `RecordConfig.stored`."""
+        return replace(self, record=self.record.stored(compression, split_mb, where))
+
     def to_yaml(self) -> str:
         """Return the resolved configuration as text; `from_yaml` undoes it bit for bit."""
         tree: Tree = {
@@ -164,6 +172,7 @@ class RunConfig:
             'controller_offset_ns': self.controller_offset_ns,
             'tick_timeout_s': self.tick_timeout_s,
             'supply': as_tree(self.supply, SupplySheet),
+            'record': self.record.to_tree(),
             'actuators': {a.name: _actuator_tree(a) for a in self.actuators},
             'controllers': list(self.controllers),
         }
@@ -190,7 +199,7 @@ class RunConfig:
         tree, place = parse(text, name), Place(name)
         keys = ('name', 'source', 'step_ns', 'controller_offset_ns', 'tick_timeout_s', 'supply',
                 'actuators', 'controllers')
-        _exactly(tree, (*keys, 'leg') if 'leg' in tree else keys, place)
+        _exactly(tree, (*keys, *(key for key in ('leg', 'record') if key in tree)), place)
         actuators = section_at(tree['actuators'], place / 'actuators')
         return cls(
             name=_of(str, tree, 'name', place), source=_of(str, tree, 'source', place),
@@ -203,6 +212,7 @@ class RunConfig:
                                place / 'actuators' / key)
                 for key, below in actuators.items()),
             controllers=tuple(names_at(tree['controllers'], place / 'controllers')),
+            record=read_record(tree.get('record', {}), place / 'record'),
             leg=_read_leg(section_at(tree['leg'], place / 'leg'), place / 'leg')
             if 'leg' in tree else None)
 

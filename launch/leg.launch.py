@@ -17,6 +17,8 @@ ARGUMENTS = {
     'in_process': ('false', 'all nodes in one process: faster, and the same bytes in the bag'),
     'real_time_factor': ('0.0', 'not faster than this times real time; 0: as fast as it goes'),
     'paused': ('false', 'wait for /coordinator/step or the end of the pause before tick 0'),
+    'compression': ('', 'of the bag: none, lz4, zstd; empty: that of the run file'),
+    'split_mb': ('-1.0', 'size of the files of the bag in MB; 0: one; < 0: as in the run file'),
     'namespace': ('', 'of all nodes'),
 }
 
@@ -38,7 +40,9 @@ def _nodes(context: LaunchContext) -> list[Node]:
         'duration': float(values['duration']),
         'in_process': _is_true(values['in_process']),
         'paused': _is_true(values['paused']),
-        'real_time_factor': float(values['real_time_factor'])}
+        'real_time_factor': float(values['real_time_factor']),
+        'compression': values['compression'],
+        'split_mb': float(values['split_mb'])}
     return [_node(process, values['namespace'])
             for process in run_processes(load_run(config), config, scenario, options)]
 

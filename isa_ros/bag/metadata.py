@@ -43,11 +43,19 @@ class Topic:
 
 
 class Counts(NamedTuple):
-    """What has been written so far."""
+    """What has been written so far, to one file or to all."""
 
     start_ns: int
     end_ns: int
     messages: Sequence[int]  # by topic, (n_topics,)
+
+    @classmethod
+    def together(cls, parts: Sequence['Counts']) -> 'Counts':
+        """Return what files hold together that follow each other in time."""
+        filled = [part for part in parts if part.total]
+        return cls(
+            filled[0].start_ns if filled else NO_START, filled[-1].end_ns if filled else NO_START,
+            [sum(counts) for counts in zip(*(part.messages for part in parts))])
 
     @property
     def total(self) -> int:
@@ -61,10 +69,14 @@ class Counts(NamedTuple):
 
 
 def metadata_yaml(
-        file_name: str, topics: Sequence[tuple[Topic, str]], counts: Counts,
+        files: Sequence[tuple[str, Counts]], topics: Sequence[tuple[Topic, str]],
         custom: Mapping[str, str]) -> str:
-    """Return the text of metadata.yaml; ``topics`` are (topic, type hash)."""
-    lines = _information(file_name, topics, counts, custom)
+    """
+    Return the text of metadata.yaml.
+
+    ``files`` are (name, what it holds) in order of time, ``topics`` (topic, type hash).
+    """
+    lines = _information(files, topics, custom)
     return '\n'.join(['rosbag2_bagfile_information:', *_indent(lines, 2), ''])
 
 
@@ -74,31 +86,37 @@ def storage_metadata(custom: Mapping[str, str]) -> str:
 
     It names no file and counts nothing: rosbag2 takes both from the file.
     """
-    return '\n'.join(_information(None, (), Counts(NO_START, NO_START, ()), custom))
+    return '\n'.join(_information((), (), custom))
 
 
 def _information(
-        file_name: str | None, topics: Sequence[tuple[Topic, str]], counts: Counts,
+        files: Sequence[tuple[str, Counts]], topics: Sequence[tuple[Topic, str]],
         custom: Mapping[str, str]) -> list[str]:
-    duration = ['duration:', f'  nanoseconds: {counts.duration_ns}']
-    start = ['starting_time:', f'  nanoseconds_since_epoch: {counts.start_ns}']
-    total = f'message_count: {counts.total}'
-    paths = [] if file_name is None else [_quote(file_name)]
+    counts = Counts.together([part for _, part in files])
+    start, duration, total = _extent(counts)
     described = [
         line for (topic, type_hash), count in zip(topics, counts.messages)
         for line in _topic(topic, type_hash, count)]
-    files = [
-        line for path in paths
-        for line in _item([f'path: {path}', *start, *duration, total])]
     return [
         f'version: {VERSION}', 'storage_identifier: mcap', *duration, *start, total,
         *_list('topics_with_message_count', described),
-        'compression_format: ""', 'compression_mode: ""',
-        *_list('relative_file_paths', [f'- {path}' for path in paths]),
-        *_list('files', files),
+        'compression_format: ""', 'compression_mode: ""',  # of whole files, never of chunks
+        *_list('relative_file_paths', [f'- {_quote(name)}' for name, _ in files]),
+        *_list('files', [line for name, part in files for line in _file(name, part)]),
         *(['custom_data:'] if custom else ['custom_data: ~']),
         *(f'  {_quote(key)}: {_quote(value)}' for key, value in custom.items()),
         f'ros_distro: {ROS_DISTRO}']
+
+
+def _extent(counts: Counts) -> tuple[list[str], list[str], str]:
+    return (['starting_time:', f'  nanoseconds_since_epoch: {counts.start_ns}'],
+            ['duration:', f'  nanoseconds: {counts.duration_ns}'],
+            f'message_count: {counts.total}')
+
+
+def _file(name: str, counts: Counts) -> list[str]:
+    start, duration, total = _extent(counts)
+    return _item([f'path: {_quote(name)}', *start, *duration, total])
 
 
 def _topic(topic: Topic, type_hash: str, count: int) -> list[str]:

@@ -1,37 +1,28 @@
 """
-Reading a bag, whole or cut short by a killed recorder.
+Reading a bag, of one file or several, whole or cut short by a killed recorder.
 
-Opening reads the file once and checks every checksum and every message record; what was
+Opening reads everything once and checks every checksum and every message record; what was
 opened can be iterated without surprises. A file that was cut short is read up to its last
-complete chunk, which the writer ends with a whole tick.
+complete chunk, which the writer ends with a whole tick. What metadata.yaml says is for other
+readers: nothing is opened because of it.
 """
 
 from collections.abc import Iterator
-from itertools import groupby
 from operator import attrgetter
 from pathlib import Path
+import re
 from typing import NamedTuple
 
-from isa_ros.bag.mcap_file import MESSAGE_HEADER
+from isa_ros.bag.part_reader import BagMessage, PartReader
 from isa_ros.bag.provenance import Provenance, RECORD
-from isa_ros.bag.records import chunk_content, End, parse_record, read_records, Record
 from isa_ros.errors import BagError
-from mcap.opcode import Opcode
-from mcap.records import Attachment, Channel, Chunk, McapRecord, Metadata, Schema
 
-_HEAD_BYTES = 9  # opcode, length
-_PREFIX_BYTES = MESSAGE_HEADER.size
-_MESSAGE = int(Opcode.MESSAGE)  # comparing with the enum itself takes three times as long
-_DECLARATIONS = (int(Opcode.SCHEMA), int(Opcode.CHANNEL))
+__all__ = ['Bag', 'BagMessage', 'Tick']
 
+MAX_TICK_MESSAGES = 100_000
+"""Messages of one instant; a tick of a run has one per topic."""
 
-class BagMessage(NamedTuple):
-    """One recorded message."""
-
-    t_ns: int
-    sequence: int
-    topic: str
-    data: bytes
+_NUMBERED = re.compile(r'(.*)_(0|[1-9][0-9]{0,5})\.mcap')
 
 
 class Tick(NamedTuple):
@@ -46,29 +37,31 @@ class Bag:
     """
     One recorded run.
 
-    ``path`` is a rosbag2 directory with one MCAP file, or the file itself. ``types`` are the
-    message types by topic, ``n_messages`` counts them; ``is_whole`` tells whether the
-    recorder came to its end. ``start_ns`` and ``end_ns`` are None without messages.
+    ``path`` is a rosbag2 directory with NAME_0.mcap, NAME_1.mcap, ..., or with one MCAP file
+    of any name, or the file itself. ``types`` are the message types by topic, ``definitions``
+    the schema texts by type, ``n_messages`` counts the messages; ``is_whole`` tells whether
+    the recorder came to its end. ``start_ns`` and ``end_ns`` are None without messages.
 
     Raises
     ------
     BagError
-        not a bag, or damaged: the file, the place and what is wrong.
+        not a bag, damaged, or files of different runs: the file, the place and what is wrong.
 
     """
 
     def __init__(self, path: Path) -> None:
-        self.path = _mcap_file(path)
-        self.types: dict[str, str] = {}
-        self.n_messages = 0
-        self.start_ns: int | None = None
-        self.end_ns: int | None = None
-        self.is_whole = False
-        self._attachments: dict[str, bytes] = {}
-        self._metadata: dict[str, dict[str, str]] = {}
-        self._schemas: dict[int, Schema] = {}
-        self._channels: dict[int, Channel] = {}
-        self._scan()
+        files = _mcap_files(path)
+        self._parts = [PartReader(file) for file in files]
+        first, last = self._parts[0], self._parts[-1]
+        self.path = first.path if len(self._parts) == 1 else path
+        _refuse_strangers(self._parts)
+        filled = [part for part in self._parts if part.n_messages]
+        self.types = dict(first.types)
+        self.definitions = dict(first.definitions)
+        self.n_messages = sum(part.n_messages for part in filled)
+        self.start_ns = filled[0].start_ns if filled else None
+        self.end_ns = filled[-1].end_ns if filled else None
+        self.is_whole = last.is_whole and not last.continues
 
     @property
     def provenance(self) -> Provenance:
@@ -81,112 +74,92 @@ class Bag:
             it was not recorded by this package, or a part is missing or altered.
 
         """
-        if RECORD not in self._metadata:
+        attachments, record = self.provenance_records
+        return Provenance.of_records(attachments, record, str(self.path))
+
+    @property
+    def provenance_records(self) -> tuple[dict[str, bytes], dict[str, str]]:
+        """Return attachments and key-value record as they are; raises as `provenance`."""
+        first = self._parts[0]
+        if RECORD not in first.metadata:
             raise BagError(f'{self.path}: has no provenance (metadata record {RECORD})')
-        return Provenance.of_records(
-            self._attachments, self._metadata[RECORD], str(self.path))
+        return dict(first.attachments), dict(first.metadata[RECORD])
+
+    @property
+    def number(self) -> str | None:
+        """Return which file of a bag a lone file says to be, None for a whole bag."""
+        return self._parts[0].number
 
     def messages(self) -> Iterator[BagMessage]:
-        """Yield every message in file order."""
-        for record in self._records():
-            if isinstance(record, Record) and isinstance(record.parsed, Chunk):
-                yield from self._chunk_messages(record.parsed, self._where(record))
+        """Yield every message in order of time."""
+        for part in self._parts:
+            yield from part.messages()
 
     def ticks(self) -> Iterator[Tick]:
         """Yield the messages of each instant together."""
-        for t_ns, group in groupby(self.messages(), key=attrgetter('t_ns')):
-            messages = tuple(sorted(group, key=attrgetter('topic')))
-            yield Tick(t_ns, messages[0].sequence, messages)
-
-    def _records(self) -> Iterator[Record | End]:
-        try:
-            with self.path.open('rb') as file:
-                yield from read_records(file, str(self.path))
-        except OSError as error:
-            raise BagError(f'{self.path}: cannot be read, {error.strerror}') from None
-
-    def _scan(self) -> None:
-        for record in self._records():
-            if isinstance(record, End):
-                self.is_whole = record.is_whole
-            elif isinstance(record.parsed, Chunk):
-                self._scan_chunk(record.parsed, self._where(record))
-            elif isinstance(record.parsed, Attachment):
-                self._attachments[record.parsed.name] = record.parsed.data
-            elif isinstance(record.parsed, Metadata):
-                self._metadata[record.parsed.name] = record.parsed.metadata
-            elif isinstance(record.parsed, (Schema, Channel)):
-                self._register(record.parsed, self._where(record))
-            elif record.opcode == Opcode.MESSAGE:
-                raise BagError(f'{self._where(record)}: a message outside chunks, not supported')
-
-    def _scan_chunk(self, chunk: Chunk, where: str) -> None:
-        for message in self._chunk_messages(chunk, where):
-            if self.start_ns is None:
-                self.start_ns = self.end_ns = message.t_ns
-            if self.end_ns is not None and message.t_ns < self.end_ns:
+        found: list[BagMessage] = []
+        for message in self.messages():
+            if found and message.t_ns != found[0].t_ns:
+                yield _tick(found)
+                found = []
+            found.append(message)
+            if len(found) > MAX_TICK_MESSAGES:
                 raise BagError(
-                    f'{where}: time runs back on {message.topic}, from {self.end_ns} to '
+                    f'{self.path}: more than {MAX_TICK_MESSAGES} messages at t = '
                     f'{message.t_ns} ns')
-            self.end_ns = message.t_ns
-            self.n_messages += 1
-
-    def _chunk_messages(self, chunk: Chunk, where: str) -> Iterator[BagMessage]:
-        data = chunk_content(chunk, where)
-        position = 0
-        while position < len(data):
-            start = position + _HEAD_BYTES
-            position = start + int.from_bytes(data[position + 1:start], 'little')
-            if start > len(data) or position > len(data):
-                raise BagError(f'{where}: a record reaches beyond its chunk')
-            opcode = data[start - _HEAD_BYTES]
-            if opcode == _MESSAGE:
-                yield self._message(data, start - _HEAD_BYTES, position, where)
-            elif opcode in _DECLARATIONS:
-                self._register(parse_record(opcode, data[start:position], where), where)
-
-    def _message(self, data: bytes, start: int, end: int, where: str) -> BagMessage:
-        if end - start < _PREFIX_BYTES:
-            raise BagError(f'{where}: a message record of {end - start} bytes')
-        _, _, channel, sequence, t_ns, _ = MESSAGE_HEADER.unpack_from(data, start)
-        if channel not in self._channels:
-            raise BagError(f'{where}: a message on channel {channel}, which is not declared')
-        topic = self._channels[channel].topic
-        return BagMessage(t_ns, sequence, topic, data[start + _PREFIX_BYTES:end])
-
-    def _register(self, declared: McapRecord | None, where: str) -> None:
-        """Take note of a schema or channel; a second declaration must be the same."""
-        if isinstance(declared, Schema):
-            if self._schemas.setdefault(declared.id, declared) != declared:
-                raise BagError(f'{where}: schema {declared.id} is declared twice')
-        elif isinstance(declared, Channel):
-            if self._channels.setdefault(declared.id, declared) != declared:
-                raise BagError(f'{where}: channel {declared.id} is declared twice')
-            if declared.schema_id not in self._schemas or declared.message_encoding != 'cdr':
-                raise BagError(
-                    f'{where}: {declared.topic} is {declared.message_encoding!r} with schema '
-                    f"{declared.schema_id}, must be 'cdr' with a schema declared before it")
-            type_name = self._schemas[declared.schema_id].name
-            if self.types.setdefault(declared.topic, type_name) != type_name:
-                raise BagError(
-                    f'{where}: {declared.topic} has two types, {self.types[declared.topic]} '
-                    f'and {type_name}')
-
-    def _where(self, record: Record) -> str:
-        return f'{self.path}: damaged at byte {record.offset}'
+        if found:
+            yield _tick(found)
 
 
-def _mcap_file(path: Path) -> Path:
-    """Return the one MCAP file of a bag directory, or the file itself."""
+def _tick(messages: list[BagMessage]) -> Tick:
+    messages = sorted(messages, key=attrgetter('topic'))
+    return Tick(messages[0].t_ns, messages[0].sequence, tuple(messages))
+
+
+def _mcap_files(path: Path) -> list[Path]:
+    """Return the MCAP files of a bag directory in their order, or the file itself."""
     if not path.is_dir():
         if not path.is_file():
             raise BagError(f'{path}: no such bag')
-        return path
+        return [path]
     files = sorted(path.glob('*.mcap'))
-    if len(files) != 1:
+    if len(files) == 1:
+        return files
+    names = ', '.join(file.name for file in files) or 'none'
+    numbered = [_NUMBERED.fullmatch(file.name) for file in files]
+    stems = {match[1] for match in numbered if match}
+    if not files or not all(numbered) or len(stems) != 1:
         below = path / 'bag'
         hint = f'; did you mean {below}?' if not files and below.is_dir() else ''
         raise BagError(
-            f'{path} holds {len(files)} MCAP files, must hold one: '
-            f'{", ".join(file.name for file in files) or "none"}{hint}')
-    return files[0]
+            f'{path} holds {len(files)} MCAP files, must hold one, or NAME_0.mcap, NAME_1.mcap, '
+            f'...: {names}{hint}')
+    numbers = {int(match[2]): file for match, file in zip(numbered, files) if match}
+    for number in range(len(files)):
+        if number not in numbers:
+            raise BagError(f'{path}: {stems.pop()}_{number}.mcap is missing among {names}')
+    return [numbers[number] for number in range(len(files))]
+
+
+def _refuse_strangers(parts: list[PartReader]) -> None:
+    """Refuse files that are not one run, each beginning where the one before it ends."""
+    first = parts[0]
+    if len(parts) > 1 and first.number is not None:
+        raise BagError(f'{first.path}: says to be file {first.number!r} of a bag, not 0')
+    for number, (before, part) in enumerate(zip(parts, parts[1:]), start=1):
+        if not before.is_whole:
+            raise BagError(f'{before.path}: is cut short, but {part.path.name} goes on')
+        if not part.n_messages and not part.is_whole:
+            continue  # cut short in its head
+        if part.number not in (None, str(number)):
+            raise BagError(f'{part.path}: says to be file {part.number!r} of a bag, not {number}')
+        if part.attachments != first.attachments or (
+                part.metadata.get(RECORD) != first.metadata.get(RECORD)):
+            raise BagError(f'{part.path}: is of another run than {first.path.name}')
+        if part.types != first.types or part.definitions != first.definitions:
+            raise BagError(f'{part.path}: has other topics or types than {first.path.name}')
+        if part.start_ns is not None and before.end_ns is not None and (
+                part.start_ns <= before.end_ns):
+            raise BagError(
+                f'{part.path}: begins at {part.start_ns} ns, before {before.path.name} ends '
+                f'({before.end_ns} ns)')

@@ -26,6 +26,10 @@ import zstandard
 MAX_RECORD_BYTES = 256 * 1024 * 1024
 """Largest record, and largest content of a chunk, that is read."""
 
+MAX_EXPANSION = 1000
+"""Bytes a chunk of more than `FREE_BYTES` may hold for each of its compressed ones."""
+FREE_BYTES = 64 * 1024
+
 _HEAD_BYTES = 9  # opcode, length
 _FOOTER_CRC_BYTES = 4
 _PARSED: dict[int, Any] = {
@@ -86,6 +90,10 @@ def chunk_content(chunk: Chunk, where: str) -> bytes:
     limit = chunk.uncompressed_size
     if limit > MAX_RECORD_BYTES:
         raise BagError(f'{where}: {limit} bytes in a chunk, must be <= {MAX_RECORD_BYTES}')
+    if limit > max(FREE_BYTES, MAX_EXPANSION * len(chunk.data)):
+        raise BagError(
+            f'{where}: {limit} bytes in a chunk of {len(chunk.data)} compressed ones, must be '
+            f'<= {MAX_EXPANSION} times as many')
     try:
         if chunk.compression == 'zstd':
             stream = zstandard.ZstdDecompressor().stream_reader(chunk.data)
@@ -140,8 +148,8 @@ class _Reader:
         self._summary_crc: int | None = None
 
     def check_magic(self) -> None:
-        """Refuse what is no MCAP file."""
-        if self._read(len(MCAP0_MAGIC)) != MCAP0_MAGIC:
+        """Refuse what is no MCAP file, nor the first bytes of one."""
+        if not MCAP0_MAGIC.startswith(self._read(len(MCAP0_MAGIC))):
             raise BagError(f'{self._where}: is no MCAP file (opening magic)')
 
     def next_record(self) -> Record | End:

@@ -1,27 +1,25 @@
 """
 The recorder: a rosbag2 directory that can be read at any moment of the run.
 
-Provenance and metadata.yaml are written before the first message. A chunk ends with the
-tick that reaches 1 MiB or 500 ticks, and is in the operating system's hands when
-`BagWriter.write_tick` returns: a killed run loses 500 ticks at most, and what is left ends
-with a whole tick. Nothing is compressed, nothing is taken from the host: the same run gives
-the same bytes.
+Provenance and metadata.yaml are written before the first message. A chunk ends with a whole
+tick and is in the operating system's hands when `BagWriter.write_tick` returns: a killed run
+loses less than a simulated second, and what is left ends with a whole tick. With a size to
+split at, the tick after the chunk that reaches it begins the next file.
+
+Nothing is taken from the host: the same run gives the same bytes. Compressed ones depend on
+the libraries' versions besides, zstd's or lz4's; what is in them does not.
 """
 
 from collections.abc import Sequence
 from pathlib import Path
 from types import TracebackType
 
-from isa_ros.bag.mcap_file import McapFile
-from isa_ros.bag.metadata import Counts, FILE_NAME, metadata_yaml, NO_START
-from isa_ros.bag.metadata import storage_metadata, Topic
-from isa_ros.bag.provenance import MEDIA_TYPES, Provenance, RECORD
+from isa_ros.bag.metadata import FILE_NAME, metadata_yaml, Topic
+from isa_ros.bag.part_writer import Head, PartWriter
+from isa_ros.bag.provenance import Provenance
 from isa_ros.errors import BagError, RunError
-from msg_adapters.definitions import definition, ENCODING
-
-LIBRARY = 'isa_ros'  # without a version: the same run gives the same bytes everywhere
-CHUNK_BYTES = 1024 * 1024
-CHUNK_TICKS = 500
+from isa_ros.record_config import PLAIN, Storage
+from msg_adapters.definitions import definition
 
 
 class BagWriter:
@@ -30,7 +28,7 @@ class BagWriter:
 
     ``topics`` are sorted by name; a topic's place in them is its index. The directory must
     not exist, unless it is to be overwritten and holds a bag: then that bag is removed, and
-    nothing else.
+    nothing else. ``path`` is the first file.
 
     Raises
     ------
@@ -43,34 +41,31 @@ class BagWriter:
 
     def __init__(
             self, directory: Path, topics: Sequence[Topic], provenance: Provenance,
-            overwrite: bool = False) -> None:
+            overwrite: bool = False, storage: Storage = PLAIN) -> None:
         _check_sorted(topics)
         definitions = {topic.type_name: definition(topic.type_name) for topic in topics}
-        self._topics = [(topic, definitions[topic.type_name].type_hash) for topic in topics]
-        self._custom = provenance.record()
+        self._head = Head(
+            provenance.attachments(), provenance.record(),
+            [(topic, definitions[topic.type_name].type_hash) for topic in topics],
+            {name: text for name, (text, _) in definitions.items()})
+        self._storage = storage
         self._metadata_path = directory / FILE_NAME
-        self.path = directory / f'{directory.resolve().name}_0.mcap'
+        self._stem = directory.resolve().name
+        self.path = self._path(0)
         _make_directory(directory, overwrite)
-        self._start_ns, self._end_ns = NO_START, NO_START
-        self._counts = [0] * len(topics)
-        self._ticks = 0
+        self._parts: list[PartWriter] = []
+        self._is_full = False
         self._is_closed = False
         self._error: RunError | None = None
         try:
-            self._file = McapFile(self.path, LIBRARY)
-            self._write_head(provenance)
-            for name, (text, _) in definitions.items():
-                self._file.add_schema(name, ENCODING, text.encode())
-            self._add_channels(list(definitions))
-            self._write_metadata()
+            self._begin_part()
         except OSError as error:
-            raise self._failure(error) from error
-        self._chunk = self._file.new_chunk()
+            raise self._failure(error, self.path) from error
 
     def write_tick(
             self, t_ns: int, sequence: int, messages: Sequence[tuple[int, bytes]]) -> None:
         """
-        Record the messages of one tick: (topic index, CDR bytes), sorted by index.
+        Record the messages of one tick: (topic index, CDR bytes), sorted by index, maybe none.
 
         ``t_ns`` is log and publish time, ``sequence`` the tick's number.
 
@@ -82,14 +77,16 @@ class BagWriter:
         """
         if self._error is not None:
             raise self._error
-        self._chunk.add(t_ns, sequence, messages)
-        self._ticks += 1
-        if self._ticks == CHUNK_TICKS or self._chunk.size >= CHUNK_BYTES:
-            try:
-                self._end_chunk()
+        try:
+            if self._is_full and messages:
+                self._begin_part()
+            part = self._parts[-1]
+            if part.write_tick(t_ns, sequence, messages):
                 self._write_metadata()
-            except OSError as error:
-                raise self._failure(error) from error
+                split = self._storage.split_bytes
+                self._is_full = split is not None and part.size >= split
+        except OSError as error:
+            raise self._failure(error, self._path(len(self._parts) - 1)) from error
 
     def close(self) -> None:
         """
@@ -104,14 +101,14 @@ class BagWriter:
         if self._is_closed:
             return
         self._is_closed = True
+        part = self._parts[-1]
         try:
-            self._end_chunk()
-            self._file.finish()
+            part.finish(is_last=True)
             self._write_metadata()
         except OSError as error:
-            raise self._failure(error) from error
+            raise self._failure(error, part.path) from error
         finally:
-            self._file.close()
+            part.close()
 
     def __enter__(self) -> 'BagWriter':
         return self
@@ -126,43 +123,34 @@ class BagWriter:
             if error is None:
                 raise
 
-    def _write_head(self, provenance: Provenance) -> None:
-        for name, data in provenance.attachments().items():
-            self._file.add_attachment(name, MEDIA_TYPES[name], data)
-        self._file.add_metadata(RECORD, self._custom)
-        self._file.add_metadata(
-            'rosbag2', {'serialized_metadata': storage_metadata(self._custom)})
+    def _begin_part(self) -> None:
+        """End the file that is full, if there is one, and begin the next."""
+        if self._parts:
+            self._parts[-1].finish(is_last=False)
+            self._parts[-1].close()
+        number = len(self._parts)
+        self._parts.append(PartWriter(
+            self._path(number), number, self._head, self._storage.compression))
+        self._is_full = False
+        self._write_metadata()
 
-    def _add_channels(self, types: list[str]) -> None:
-        for topic, type_hash in self._topics:
-            self._file.add_channel(topic.name, types.index(topic.type_name) + 1, {
-                'offered_qos_profiles': topic.qos.to_yaml(), 'topic_type_hash': type_hash})
-
-    def _end_chunk(self) -> None:
-        chunk, self._ticks = self._chunk, 0
-        self._chunk = self._file.new_chunk()
-        indices = chunk.message_indices()
-        if not indices:
-            return
-        self._file.add_chunk(chunk)
-        self._chunk = self._file.new_chunk()
-        if self._start_ns == NO_START:
-            self._start_ns = chunk.start_ns
-        self._end_ns = chunk.end_ns
-        for channel, index in indices:
-            self._counts[channel - 1] += len(index)
+    def _path(self, number: int) -> Path:
+        return self._metadata_path.with_name(f'{self._stem}_{number}.mcap')
 
     def _write_metadata(self) -> None:
         """Replace metadata.yaml in one step."""
-        counts = Counts(self._start_ns, self._end_ns, self._counts)
-        text = metadata_yaml(self.path.name, self._topics, counts, self._custom)
+        text = metadata_yaml(
+            [(part.path.name, part.counts) for part in self._parts], self._head.topics,
+            self._head.custom)
         temporary = self._metadata_path.with_suffix('.yaml.tmp')
-        temporary.write_text(text, encoding='utf-8')
+        temporary.unlink(missing_ok=True)  # never written through a link that lay there
+        with temporary.open('x', encoding='utf-8') as file:
+            file.write(text)
         temporary.replace(self._metadata_path)
 
-    def _failure(self, error: OSError) -> RunError:
+    def _failure(self, error: OSError, path: Path) -> RunError:
         self._error = RunError(
-            f'{error.filename or self.path}: cannot record, {error.strerror or error}')
+            f'{error.filename or path}: cannot record, {error.strerror or error}')
         return self._error
 
 

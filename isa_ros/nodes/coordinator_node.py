@@ -79,6 +79,8 @@ class CoordinatorNode(Node):
             'restore': ('', 'saved state to go on from; empty: begin at t = 0'),
             'save': ('', 'file for the state at the end; empty: not saved'),
             'overwrite': (False, 'replace the bag in an existing directory'),
+            'compression': ('', 'of the bag: none, lz4, zstd; empty: that of the run file'),
+            'split_mb': (-1.0, 'size of the files of a bag, MB; 0: one; < 0: as the run file'),
             'in_process': (False, 'all nodes in this process'),
             'join_timeout_s': (JOIN_TIMEOUT_S, 'how long participants are waited for, s'),
         }
@@ -97,6 +99,8 @@ class CoordinatorNode(Node):
             duration_s=values['duration'] or None,
             real_time_factor=values['real_time_factor'],
             overwrite=values['overwrite'], in_process=values['in_process'],
+            compression=values['compression'] or None,
+            split_mb=values['split_mb'] if values['split_mb'] >= 0.0 else None,
             namespace=self.get_namespace().strip('/'),
             join_timeout_s=values['join_timeout_s'])
 

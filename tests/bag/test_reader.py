@@ -227,11 +227,11 @@ def test_lost_attachment_is_named(mcap, tmp_path):
 def test_what_is_no_bag_is_refused_by_name(tmp_path):
     with pytest.raises(BagError, match='nothing: no such bag'):
         Bag(tmp_path / 'nothing')
-    with pytest.raises(BagError, match='holds 0 MCAP files, must hold one: none'):
+    with pytest.raises(BagError, match='holds 0 MCAP files, must hold one, or .*none'):
         Bag(tmp_path)
     (tmp_path / 'text.mcap').write_text('text')
     with pytest.raises(BagError, match='text.mcap: is no MCAP file'):
         Bag(tmp_path)
     (tmp_path / 'more.mcap').write_text('')
-    with pytest.raises(BagError, match='2 MCAP files, must hold one: more.mcap, text.mcap'):
+    with pytest.raises(BagError, match='2 MCAP files, must hold one, or .*more.mcap, text.mcap'):
         Bag(tmp_path)

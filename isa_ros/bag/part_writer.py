@@ -1,0 +1,124 @@
+"""
+One file of a bag under construction: its head, chunks of whole ticks, its end.
+
+Every file stands alone: provenance, schemas and channels are in each of them.
+"""
+
+from collections.abc import Mapping, Sequence
+from pathlib import Path
+from typing import NamedTuple
+
+from isa_ros.bag.mcap_file import McapFile
+from isa_ros.bag.metadata import Counts, NO_START, storage_metadata, Topic
+from isa_ros.bag.provenance import MEDIA_TYPES, RECORD
+from msg_adapters.definitions import ENCODING
+
+LIBRARY = 'isa_ros'  # without a version: the same run gives the same bytes everywhere
+CHUNK_BYTES = 1024 * 1024
+CHUNK_TICKS = 500
+CHUNK_NS = 500_000_000
+PART, CONTINUES = 'isa_ros.part', 'isa_ros.continues'
+"""Records of a split bag: a file's number at its head, the next one's at its end."""
+NUMBER = 'number'
+
+
+class Head(NamedTuple):
+    """What every file of a bag begins with."""
+
+    attachments: Mapping[str, bytes]
+    custom: Mapping[str, str]
+    topics: Sequence[tuple[Topic, str]]
+    """(topic, type hash)."""
+    schemas: Mapping[str, str]
+    """Text by type name."""
+
+
+class PartWriter:
+    """
+    The file of this ``number`` in a bag.
+
+    A chunk ends with the tick that reaches 1 MiB, 500 ticks or half a simulated second.
+    Every method that writes raises the system's OSError.
+    """
+
+    def __init__(self, path: Path, number: int, head: Head, compression: str) -> None:
+        self.path = path
+        self._number = number
+        self._file = McapFile(path, LIBRARY, compression)
+        self._is_finished = False
+        self._start_ns, self._end_ns = NO_START, NO_START
+        self._counts = [0] * len(head.topics)
+        self._ticks = 0
+        try:
+            self._write_head(head)
+        except OSError:
+            self._file.close()
+            raise
+        self._chunk = self._file.new_chunk()
+
+    @property
+    def counts(self) -> Counts:
+        """Return what complete chunks hold."""
+        return Counts(self._start_ns, self._end_ns, tuple(self._counts))
+
+    @property
+    def size(self) -> int:
+        """Return the number of bytes written."""
+        return self._file.size
+
+    def write_tick(
+            self, t_ns: int, sequence: int, messages: Sequence[tuple[int, bytes]]) -> bool:
+        """Take the messages of one tick, maybe none; tell whether that ended a chunk."""
+        if messages:
+            self._chunk.add(t_ns, sequence, messages)
+            self._ticks += 1
+        elif not self._ticks:
+            return False
+        if (self._ticks < CHUNK_TICKS and self._chunk.size < CHUNK_BYTES
+                and t_ns - self._chunk.start_ns < CHUNK_NS):
+            return False
+        self._end_chunk()
+        return True
+
+    def finish(self, is_last: bool) -> None:
+        """Write what is pending and the summary; a second call does nothing."""
+        if self._is_finished:
+            return
+        self._end_chunk()
+        if not is_last:
+            self._file.add_metadata(CONTINUES, {NUMBER: str(self._number + 1)})
+        self._file.finish()
+        self._is_finished = True
+
+    def close(self) -> None:
+        """Close the file, finished or not."""
+        self._file.close()
+
+    def _write_head(self, head: Head) -> None:
+        for name, data in head.attachments.items():
+            self._file.add_attachment(name, MEDIA_TYPES[name], data)
+        self._file.add_metadata(RECORD, head.custom)
+        if self._number:
+            self._file.add_metadata(PART, {NUMBER: str(self._number)})
+        self._file.add_metadata(
+            'rosbag2', {'serialized_metadata': storage_metadata(head.custom)})
+        types = list(head.schemas)
+        for name in types:
+            self._file.add_schema(name, ENCODING, head.schemas[name].encode())
+        for topic, type_hash in head.topics:
+            self._file.add_channel(topic.name, types.index(topic.type_name) + 1, {
+                'offered_qos_profiles': topic.qos.to_yaml(), 'topic_type_hash': type_hash})
+
+    def _end_chunk(self) -> None:
+        chunk, self._ticks = self._chunk, 0
+        self._chunk = self._file.new_chunk()
+        indices = chunk.message_indices()
+        if not indices:
+            return
+        self._file.add_chunk(chunk)
+        self._chunk = self._file.new_chunk()
+        if self._start_ns == NO_START:
+            self._start_ns = chunk.start_ns
+        self._end_ns = chunk.end_ns
+        for channel, index in indices:
+            self._counts[channel - 1] += len(index)
