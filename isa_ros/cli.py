@@ -17,7 +17,7 @@ from typing import NoReturn
 
 from isa_ros import commands, response_arguments, study_arguments
 from isa_ros.argument_types import directory_to_write, file_to_write, not_negative, positive
-from isa_ros.errors import IsaError
+from isa_ros.errors import IsaError, one_line
 from isa_ros.pacing import JOIN_TIMEOUT_S
 
 DONE, ANSWER_IS_NO, WRONG_INPUT, NOT_COMPLETED, INTERRUPTED = 0, 1, 2, 3, 130
@@ -56,7 +56,7 @@ def _end(error: IsaError | OSError | KeyboardInterrupt) -> int:
         print('isa: interrupted', file=sys.stderr)
         return INTERRUPTED
     if isinstance(error, IsaError):
-        print(f'isa: {error}', file=sys.stderr)
+        print(f'isa: {one_line(str(error))}', file=sys.stderr)
         return error.exit_code
     if isinstance(error, BrokenPipeError):  # the reader of a pipe had enough
         os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())

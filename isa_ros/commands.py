@@ -11,7 +11,7 @@ from pathlib import Path
 import sys
 from typing import TYPE_CHECKING
 
-from isa_ros.errors import BagError, ConfigError
+from isa_ros.errors import BagError, ConfigError, one_line
 from isa_ros.paths import CONFIG, find, SCENARIOS
 
 if TYPE_CHECKING:
@@ -75,18 +75,21 @@ def replay(options: Namespace) -> bool:
     from isa_ros.bag.tolerances import load_tolerances
     bag = Bag(options.bag)
     tolerances = load_tolerances(options.tolerance, bag.types) if options.tolerance else None
-    report = replay_bag(bag, tolerances)
+    report = replay_bag(
+        bag, tolerances, lambda line: print(one_line(line), flush=True))
     print(report)
     return report.is_equal
 
 
 def compare(options: Namespace) -> bool:
     """Find the first difference of two bags."""
-    from isa_ros.bag.compare import compare_bags
+    from isa_ros.bag.compare import compare_bags, recorded_as
     from isa_ros.bag.reader import Bag
     from isa_ros.bag.tolerances import load_tolerances
     expected, actual = Bag(options.expected), Bag(options.actual)
     tolerances = load_tolerances(options.tolerance, expected.types) if options.tolerance else None
+    if not recorded_as(expected).thins_like(recorded_as(actual)):
+        print('not recorded alike: what both hold is compared')
     report = compare_bags(expected, actual, tolerances)
     print(report)
     return report.is_equal

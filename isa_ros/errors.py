@@ -1,5 +1,13 @@
 """Every error a user can cause or meet, each with the exit code it ends a command with."""
 
+LONGEST = 2000
+
+
+def one_line(text: str) -> str:
+    """Return a text that may quote a file of someone else's as one line a terminal can take."""
+    shown = ''.join(c if c.isprintable() else repr(c)[1:-1] for c in text)
+    return shown if len(shown) <= LONGEST else f'{shown[:LONGEST]} ...'
+
 
 class IsaError(Exception):
     """Base of all errors of this package; the message is one line for the user."""

@@ -27,7 +27,7 @@ class LocalRun:
         self._run = run = replace(run, controllers=())
         self._load = SharedLoad(run)
         self._order, topics = topics_of(run, self._load)
-        self._thinning = Thinning(run.record, topics, run.source)
+        self._thinning = Thinning(run.record, topics)
         self.topics = self._thinning.topics
 
     def simulate(

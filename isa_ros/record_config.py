@@ -60,6 +60,10 @@ class RecordConfig:
         """Tell whether anything is left out or decimated."""
         return bool(self.leave_out or self.decimate)
 
+    def thins_like(self, other: 'RecordConfig') -> bool:
+        """Tell whether another one leaves out and decimates the same."""
+        return (self.leave_out, self.decimate) == (other.leave_out, other.decimate)
+
     def period(self, topic: str) -> int:
         """Return every how many ticks a topic is recorded, 0 for never."""
         if replay_needs(topic):
@@ -67,11 +71,6 @@ class RecordConfig:
         if any(fnmatchcase(topic, pattern) for pattern in self.leave_out):
             return 0
         return next((n for pattern, n in self.decimate if fnmatchcase(topic, pattern)), 1)
-
-    def keeps(self, topic: str, sequence: int) -> bool:
-        """Tell whether a message of a tick is recorded."""
-        period = self.period(topic)
-        return period > 0 and sequence % period == 0
 
     def refuse_misfits(self, topics: Iterable[str], source: str) -> None:
         """

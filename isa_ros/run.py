@@ -196,7 +196,7 @@ def _record_one(
         commands=session.scenario.commands, is_paused=session.request.is_paused)
     first = transport.join(rows)
     order, topics = topics_of(run, load)
-    thinning = Thinning(run.record, topics, run.source)
+    thinning = Thinning(run.record, topics)
     # The first bag alone may replace one: a reset takes a directory that does not exist.
     overwrite = session.request.overwrite and not session.bags
     with BagWriter(out, thinning.topics, provenance(session, state), overwrite,

@@ -26,6 +26,13 @@ COORDINATOR = 'coordinator'
 NAME_RULE = 'must be small letters, digits and single underscores'
 _NAME = re.compile(r'[a-z](?:_?[a-z0-9])*')
 
+KEYS = ('name', 'source', 'step_ns', 'controller_offset_ns', 'tick_timeout_s', 'supply',
+        'actuators')
+ACTUATOR_KEYS = ('model', 'preset', 'initial_position', 'sheet')
+LEG_KEYS = ('model', 'joints', 'start', 'sheet')
+LATER = {'controllers': 'none', 'record': 'everything'}
+"""Sections that the first resolved configurations did not have, and what they meant."""
+
 
 @dataclass(frozen=True, kw_only=True)
 class Times(Parameters):
@@ -197,9 +204,7 @@ class RunConfig:
 
         """
         tree, place = parse(text, name), Place(name)
-        keys = ('name', 'source', 'step_ns', 'controller_offset_ns', 'tick_timeout_s', 'supply',
-                'actuators', 'controllers')
-        _exactly(tree, (*keys, *(key for key in ('leg', 'record') if key in tree)), place)
+        _exactly(tree, (*KEYS, *(key for key in (*LATER, 'leg') if key in tree)), place)
         actuators = section_at(tree['actuators'], place / 'actuators')
         return cls(
             name=_of(str, tree, 'name', place), source=_of(str, tree, 'source', place),
@@ -211,7 +216,7 @@ class RunConfig:
                 _read_actuator(key, section_at(below, place / 'actuators' / key),
                                place / 'actuators' / key)
                 for key, below in actuators.items()),
-            controllers=tuple(names_at(tree['controllers'], place / 'controllers')),
+            controllers=tuple(names_at(tree.get('controllers', []), place / 'controllers')),
             record=read_record(tree.get('record', {}), place / 'record'),
             leg=_read_leg(section_at(tree['leg'], place / 'leg'), place / 'leg')
             if 'leg' in tree else None)
@@ -244,8 +249,7 @@ def _actuator_tree(actuator: ActuatorConfig) -> Tree:
 
 
 def _read_actuator(name: str, tree: Tree, place: Place) -> ActuatorConfig:
-    keys = ('model', 'preset', 'initial_position', 'sheet')
-    _exactly(tree, (*keys, 'load') if 'load' in tree else keys, place)
+    _exactly(tree, (*ACTUATOR_KEYS, 'load') if 'load' in tree else ACTUATOR_KEYS, place)
     return ActuatorConfig(
         name=name, model=_of(str, tree, 'model', place), preset=_of(str, tree, 'preset', place),
         sheet=_set(ActuatorSheet, tree, 'sheet', place),
@@ -254,7 +258,7 @@ def _read_actuator(name: str, tree: Tree, place: Place) -> ActuatorConfig:
 
 
 def _read_leg(tree: Tree, place: Place) -> LegConfig:
-    _exactly(tree, ('model', 'joints', 'start', 'sheet'), place)
+    _exactly(tree, LEG_KEYS, place)
     joints = section_at(tree['joints'], place / 'joints')
     _exactly(joints, JOINTS, place / 'joints')
     return LegConfig(

@@ -6,41 +6,73 @@ In a conftest.py: ``pytest_plugins = ['isa_ros.testing']``; in a test::
     def test_my_leg_still_drops_like_that(assert_replays):
         assert_replays('bags/drop', 'bags/tolerances.yaml')
 
-Without a tolerance file every bit must be equal, which holds on the machine and with the
-versions that recorded the bag.
+Without a tolerance file every bit must be equal, which holds on the kind of machine and with
+the versions that recorded the bag. `assert_replays` may be imported and called as well.
 """
 
 from collections.abc import Callable
 from pathlib import Path
+import platform
 
 from isa_ros.bag.reader import Bag
 from isa_ros.bag.replay import replay
 from isa_ros.bag.tolerances import load_tolerances
 import pytest
 
+__all__ = ['assert_replays', 'AssertReplays']
+
 AssertReplays = Callable[..., None]
 
+_CPU_INFO = Path('/proc/cpuinfo')
 
-def check_replay(bag: Path | str, tolerances: Path | str | None = None) -> None:
+
+def assert_replays(bag: Path | str, tolerances: Path | str | None = None) -> None:
     """
     Simulate a bag again and compare every message.
 
     Raises
     ------
     AssertionError
-        The replay differs: first tick, topic and field with both values.
+        The replay differs: first tick, topic and field with both values, and how this
+        installation differs from the one that recorded the bag.
     BagError, ConfigError
-        The bag or the tolerance file cannot be read.
+        The bag or the tolerance file cannot be read, or the bag not be simulated.
 
     """
     recorded = Bag(Path(bag))
     allowed = None if tolerances is None else load_tolerances(Path(tolerances), recorded.types)
     report = replay(recorded, allowed)
     if not report.is_equal:
-        raise AssertionError(f'{bag}: {report}')
+        lines = [f'{bag}: {report}', *report.changes]
+        if tolerances is None:
+            lines += _why_bits_differ(bool(report.changes))
+        raise AssertionError('\n'.join(lines))
 
 
-@pytest.fixture
-def assert_replays() -> AssertReplays:
-    """Return `check_replay`."""
-    return check_replay
+@pytest.fixture(name='assert_replays')
+def _assert_replays() -> AssertReplays:
+    """Return `assert_replays`."""
+    return assert_replays
+
+
+def _why_bits_differ(has_changes: bool) -> list[str]:
+    """Say what a comparison without tolerances rests on; a bag does not name its machine."""
+    known = (
+        'Versions or topics differ as listed' if has_changes else
+        'Versions and topics are those of the bag')
+    return [
+        'No tolerances were given, so every bit must be equal, which holds with the same '
+        f'versions on the same kind of CPU. {known}; the CPU here is {_cpu()}, the bag does not '
+        'say which one recorded it. For other versions or CPUs give tolerances.']
+
+
+def _cpu() -> str:
+    """Return the name of this machine's processor."""
+    try:
+        for line in _CPU_INFO.read_text(encoding='utf-8', errors='replace').splitlines():
+            key, _, value = line.partition(':')
+            if key.strip() == 'model name':
+                return value.strip()
+    except OSError:
+        pass
+    return platform.machine()

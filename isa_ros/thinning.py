@@ -8,18 +8,9 @@ from isa_ros.record_config import RecordConfig
 
 
 class Thinning:
-    """
-    Which topics are recorded, and at which ticks; ``topics`` are the recorded ones, in order.
+    """Which topics are recorded, and when; ``topics`` are the recorded ones, in order."""
 
-    Raises
-    ------
-    ConfigError
-        A pattern fits no topic, or one that a replay needs.
-
-    """
-
-    def __init__(self, record: RecordConfig, topics: Sequence[Topic], source: str) -> None:
-        record.refuse_misfits([topic.name for topic in topics], source)
+    def __init__(self, record: RecordConfig, topics: Sequence[Topic]) -> None:
         self._periods = [record.period(topic.name) for topic in topics]
         kept = [k for k, period in enumerate(self._periods) if period]
         self._places = {k: place for place, k in enumerate(kept)}

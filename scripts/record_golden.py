@@ -1,24 +1,29 @@
 """
 Record the golden bags of tests/replay again; say in the commit which equation changed.
 
-    python scripts/record_golden.py
+    python scripts/record_golden.py [NAME ...]
+
+They are compressed to be small, so their bytes depend on zstd's version; what they hold does
+not, and that is what the tests look at.
 """
 
 from pathlib import Path
+import sys
 
 from isa_ros.paths import CONFIG, find
 from isa_ros.run import bringup, Request
 
 GOLDEN = Path(__file__).parent.parent / 'tests' / 'replay'
-RUNS = {'leg_touchdown': 'leg.yaml', 'rotor_step': 'rig_rotary.yaml'}
+RUNS = {
+    'leg_touchdown': 'leg.yaml', 'rotor_step': 'rig_rotary.yaml', 'knee_push': 'rig_knee.yaml'}
 
 
 def main() -> None:
-    """Record every golden bag, in one process."""
-    for name, config in RUNS.items():
+    """Record the named golden bags, or every one, in one process."""
+    for name in sys.argv[1:] or RUNS:
         bag = bringup(Request(
-            config=find(config, CONFIG), scenario=GOLDEN / f'{name}.yaml',
-            out=GOLDEN / name, overwrite=True, in_process=True))
+            config=find(RUNS[name], CONFIG), scenario=GOLDEN / f'{name}.yaml',
+            out=GOLDEN / name, overwrite=True, in_process=True, compression='zstd'))
         print(bag)
 
 

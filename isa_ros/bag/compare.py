@@ -5,12 +5,16 @@ A `Comparer` takes messages as a `BagWriter` does, so that a replay streams what
 produces straight into it; nothing but one tick is held in memory.
 """
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 from itertools import zip_longest
 
+from isa_ros.bag.provenance import CONFIGURATION
 from isa_ros.bag.reader import Bag, BagMessage, Tick
 from isa_ros.bag.tolerances import Tolerances
+from isa_ros.record_config import read_record, RecordConfig
+from isa_ros.resolve import Place
+from isa_ros.strict_yaml import parse
 from isa_ros.timebase import NS_PER_SECOND
 from msg_adapters.cdr_reader import decode, flatten, message_class
 
@@ -66,8 +70,9 @@ class Comparer:
     """
     Compares the ticks that come in with those of a bag, in its order.
 
-    ``topics`` are the names that the topic indices of `write_tick` mean. After the first
-    difference nothing more is compared.
+    ``topics`` are the names that the topic indices of `write_tick` mean; what ``compares``
+    denies, by topic and tick, counts on neither side. After the first difference nothing more
+    is compared.
 
     Raises
     ------
@@ -80,11 +85,13 @@ class Comparer:
 
     def __init__(
             self, expected: Bag, topics: Sequence[str],
-            tolerances: Tolerances | None = None) -> None:
+            tolerances: Tolerances | None = None,
+            compares: Callable[[str, int], bool] = lambda topic, sequence: True) -> None:
         self._types = expected.types
         self._topics = list(topics)
         self._tolerances = tolerances or Tolerances()
-        self._expected: Iterator[Tick] = expected.ticks()
+        self._compares = compares
+        self._expected = self._compared(expected.ticks())
         self._ticks = self._messages = 0
         self._end_ns: int | None = None
         self.difference: Difference | None = None
@@ -94,6 +101,11 @@ class Comparer:
         """Compare one tick's (topic index, CDR bytes); as `BagWriter.write_tick`."""
         if self.difference is not None:
             return
+        produced = sorted(
+            ((name, data) for k, data in messages
+             if self._compares(name := self._topics[k], sequence)), key=lambda pair: pair[0])
+        if not produced:
+            return
         tick = next(self._expected, None)
         if tick is None:
             self.difference = Difference(sequence, t_ns, 'bag', 'tick', ABSENT, PRESENT)
@@ -101,8 +113,6 @@ class Comparer:
             self.difference = Difference(
                 tick.sequence, tick.t_ns, 'bag', 'log_time', tick.t_ns, t_ns)
         else:
-            produced = sorted(
-                ((self._topics[k], data) for k, data in messages), key=lambda pair: pair[0])
             self.difference = self._first_difference(tick, produced)
             self._ticks += 1
             self._messages += len(tick.messages)
@@ -116,6 +126,13 @@ class Comparer:
                 self.difference = Difference(
                     tick.sequence, tick.t_ns, 'bag', 'tick', PRESENT, ABSENT)
         return Report(self._ticks, self._messages, self._end_ns, self.difference)
+
+    def _compared(self, ticks: Iterator[Tick]) -> Iterator[Tick]:
+        """Yield the part of the ticks that is compared, if there is any."""
+        for tick in ticks:
+            messages = tuple(m for m in tick.messages if self._compares(m.topic, m.sequence))
+            if messages:
+                yield tick._replace(messages=messages)
 
     def _first_difference(
             self, tick: Tick, produced: Sequence[tuple[str, bytes]]) -> Difference | None:
@@ -150,7 +167,7 @@ class Comparer:
 
 def compare_bags(expected: Bag, actual: Bag, tolerances: Tolerances | None = None) -> Report:
     """
-    Return how a second bag compares with the first.
+    Return how a second bag compares with the first: in what both were to record.
 
     Raises
     ------
@@ -167,13 +184,34 @@ def compare_bags(expected: Bag, actual: Bag, tolerances: Tolerances | None = Non
             return Report(0, 0, None, Difference(
                 0, expected.start_ns or 0, topic, 'type', str(type_name), actual.types[topic]))
     indices = {topic: k for k, topic in enumerate(topics)}
-    comparer = Comparer(expected, topics, tolerances)
+    records = [recorded_as(expected), recorded_as(actual)]
+    periods = {topic: [record.period(topic) for record in records]
+               for topic in {*expected.types, *actual.types}}
+    comparer = Comparer(expected, topics, tolerances, lambda topic, sequence: all(
+        period and sequence % period == 0 for period in periods[topic]))
     for tick in actual.ticks():
         comparer.write_tick(
             tick.t_ns, tick.sequence, [(indices[m.topic], m.data) for m in tick.messages])
         if comparer.difference is not None:
             break
     return comparer.finish()
+
+
+def recorded_as(bag: Bag) -> RecordConfig:
+    """
+    Return what a bag was to record; everything, where it does not say.
+
+    Raises
+    ------
+    ConfigError
+        What it says cannot be read.
+
+    """
+    if not bag.has_provenance:
+        return RecordConfig()
+    name = f'{bag.path.name}: {CONFIGURATION}'
+    tree = parse(bag.provenance.configuration, name)
+    return read_record(tree.get('record', {}), Place(name, 'record'))
 
 
 def _absence(

@@ -38,9 +38,9 @@ class PartReader:
     """
     One MCAP file.
 
-    ``types`` are the message types by topic, ``definitions`` the schema texts by type;
-    ``is_whole`` tells whether the recorder came to its end. ``start_ns`` and ``end_ns`` are
-    None without messages.
+    ``types`` are the message types by topic, ``type_hashes`` those of their definitions, ''
+    where the file has none; ``is_whole`` tells whether the recorder came to its end.
+    ``start_ns`` and ``end_ns`` are None without messages.
 
     Raises
     ------
@@ -52,7 +52,7 @@ class PartReader:
     def __init__(self, path: Path) -> None:
         self.path = path
         self.types: dict[str, str] = {}
-        self.definitions: dict[str, bytes] = {}
+        self.type_hashes: dict[str, str] = {}
         self.n_messages = 0
         self.start_ns: int | None = None
         self.end_ns: int | None = None
@@ -145,7 +145,6 @@ class PartReader:
             if self._schemas.setdefault(declared.id, declared) != declared:
                 raise BagError(f'{where}: schema {declared.id} is declared twice')
             _refuse_unless(_TYPE, declared.name, f'{where}: type')
-            self.definitions[declared.name] = declared.data
         elif isinstance(declared, Channel):
             if self._channels.setdefault(declared.id, declared) != declared:
                 raise BagError(f'{where}: channel {declared.id} is declared twice')
@@ -162,6 +161,7 @@ class PartReader:
             raise BagError(
                 f'{where}: {channel.topic} has two types, {self.types[channel.topic]} '
                 f'and {type_name}')
+        self.type_hashes[channel.topic] = channel.metadata.get('topic_type_hash', '')
 
     def _where(self, record: Record) -> str:
         return f'{self.path}: damaged at byte {record.offset}'

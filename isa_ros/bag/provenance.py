@@ -22,7 +22,7 @@ MEDIA_TYPES = {
 RECORD = 'isa_ros'
 FORMAT = '1'
 
-_VERSION = 'version.'
+VERSION = 'version.'
 _RESULT_DEPENDS_ON = ('llvmlite', 'numba', 'numpy')
 
 
@@ -45,7 +45,7 @@ class Provenance:
     def record(self) -> dict[str, str]:
         """Return the key-value metadata record, in fixed order."""
         digests = {f'{name}.sha256': _sha256(data) for name, data in self.attachments().items()}
-        versions = {f'{_VERSION}{name}': self.versions[name] for name in sorted(self.versions)}
+        versions = {f'{VERSION}{name}': self.versions[name] for name in sorted(self.versions)}
         return {'format': FORMAT, 'seed': str(self.seed), **digests, **versions}
 
     @classmethod
@@ -70,6 +70,7 @@ class Provenance:
                 raise BagError(f'{where}: attachment {name} is missing')
             if record.get(f'{name}.sha256') != _sha256(attachments[name]):
                 raise BagError(f'{where}: attachment {name} does not match its sha256')
+            _refuse_undecodable(name, attachments[name], where)
         try:
             seed = int(record.get('seed', ''))
         except ValueError:
@@ -79,9 +80,16 @@ class Provenance:
             scenario=attachments[SCENARIO].decode(),
             seed=seed,
             versions={
-                key.removeprefix(_VERSION): value
-                for key, value in record.items() if key.startswith(_VERSION)},
+                key.removeprefix(VERSION): value
+                for key, value in record.items() if key.startswith(VERSION)},
             state=attachments[STATE].decode() if STATE in attachments else None)
+
+
+def _refuse_undecodable(name: str, data: bytes, where: str) -> None:
+    try:
+        data.decode()
+    except UnicodeDecodeError as error:
+        raise BagError(f'{where}: attachment {name}: byte {error.start} is not UTF-8') from None
 
 
 def installed_versions() -> dict[str, str]:

@@ -38,9 +38,10 @@ class Bag:
     One recorded run.
 
     ``path`` is a rosbag2 directory with NAME_0.mcap, NAME_1.mcap, ..., or with one MCAP file
-    of any name, or the file itself. ``types`` are the message types by topic, ``definitions``
-    the schema texts by type, ``n_messages`` counts the messages; ``is_whole`` tells whether
-    the recorder came to its end. ``start_ns`` and ``end_ns`` are None without messages.
+    of any name, or the file itself. ``types`` are the message types by topic, ``type_hashes``
+    those of their definitions ('': unknown), ``n_messages`` counts the messages; ``is_whole``
+    tells whether the recorder came to its end. ``start_ns`` and ``end_ns`` are None without
+    messages.
 
     Raises
     ------
@@ -57,11 +58,16 @@ class Bag:
         _refuse_strangers(self._parts)
         filled = [part for part in self._parts if part.n_messages]
         self.types = dict(first.types)
-        self.definitions = dict(first.definitions)
+        self.type_hashes = dict(first.type_hashes)
         self.n_messages = sum(part.n_messages for part in filled)
         self.start_ns = filled[0].start_ns if filled else None
         self.end_ns = filled[-1].end_ns if filled else None
         self.is_whole = last.is_whole and not last.continues
+
+    @property
+    def has_provenance(self) -> bool:
+        """Tell whether it was recorded by this package."""
+        return RECORD in self._parts[0].metadata
 
     @property
     def provenance(self) -> Provenance:
@@ -81,7 +87,7 @@ class Bag:
     def provenance_records(self) -> tuple[dict[str, bytes], dict[str, str]]:
         """Return attachments and key-value record as they are; raises as `provenance`."""
         first = self._parts[0]
-        if RECORD not in first.metadata:
+        if not self.has_provenance:
             raise BagError(f'{self.path}: has no provenance (metadata record {RECORD})')
         return dict(first.attachments), dict(first.metadata[RECORD])
 
@@ -156,7 +162,7 @@ def _refuse_strangers(parts: list[PartReader]) -> None:
         if part.attachments != first.attachments or (
                 part.metadata.get(RECORD) != first.metadata.get(RECORD)):
             raise BagError(f'{part.path}: is of another run than {first.path.name}')
-        if part.types != first.types or part.definitions != first.definitions:
+        if part.types != first.types or part.type_hashes != first.type_hashes:
             raise BagError(f'{part.path}: has other topics or types than {first.path.name}')
         if part.start_ns is not None and before.end_ns is not None and (
                 part.start_ns <= before.end_ns):

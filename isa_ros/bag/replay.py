@@ -5,11 +5,11 @@ Inputs are the configuration the bag carries and the applied setpoints recorded 
 at the tick it took effect; the scenario is provenance only. No ROS is needed.
 """
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 
 from isa_ros.bag.compare import Comparer, Report
-from isa_ros.bag.provenance import installed_versions
+from isa_ros.bag.installation import differences, refuse_obstacles, topic_differences
 from isa_ros.bag.reader import Bag
 from isa_ros.bag.tolerances import Tolerances
 from isa_ros.coordinator import Coordinator, Interrupted
@@ -32,43 +32,57 @@ class ReplayReport:
 
     report: Report
     is_whole: bool
-    changed_versions: Mapping[str, tuple[str, str]]
-    """Version in the bag and here, of whatever differs."""
+    changes: Sequence[str]
+    """How this installation differs from the one that recorded the bag, a line each."""
+    unconfirmed: Sequence[str]
+    """Topics of the bag that are not recorded here, or otherwise."""
 
     @property
     def is_equal(self) -> bool:
-        """Tell whether the replay gave the bag within the tolerances."""
-        return self.report.is_equal
+        """Tell whether the replay gave the whole bag within the tolerances."""
+        return self.report.is_equal and not self.unconfirmed
 
     def __str__(self) -> str:
-        """Return what a user wants to know, a line each."""
-        lines = [str(self.report)]
-        if not self.is_whole:
-            lines.append('the bag was cut short there')
-        lines += [f'{name} is {here} here, was {there}'
-                  for name, (there, here) in self.changed_versions.items()]
-        return '\n'.join(lines)
+        """Return the verdict, and whether it is one of a bag cut short."""
+        verdict = str(self.report)
+        if self.report.is_equal and self.unconfirmed:
+            verdict = f'not confirmed: {", ".join(self.unconfirmed)}; the rest is {verdict}'
+        return verdict if self.is_whole else f'{verdict}\nthe bag was cut short there'
 
 
-def replay(bag: Bag, tolerances: Tolerances | None = None) -> ReplayReport:
+def replay(
+        bag: Bag, tolerances: Tolerances | None = None,
+        tell: Callable[[str], None] = lambda line: None) -> ReplayReport:
     """
     Simulate a bag again and compare, up to the first difference.
+
+    ``tell`` takes how this installation differs from the bag's, before anything is simulated.
 
     Raises
     ------
     BagError
-        The bag is damaged or has nothing to simulate.
+        The bag is damaged, has nothing to simulate, or cannot be simulated by this version.
     ConfigError
-        The configuration in it cannot be run by this version.
+        The configuration in it is out of range.
 
     """
+    if bag.number is not None:
+        raise BagError(f'{bag.path}: is file {bag.number} of a split bag, replay its directory')
+    found = differences(bag)
+    changes = [difference.text for difference in found]
+    for line in changes:
+        tell(line)
+    refuse_obstacles(bag, found)
     again = Rerun(bag)
-    comparer = Comparer(bag, [topic.name for topic in again.topics], tolerances)
+    topics = topic_differences(bag, again.topics)
+    for line in topics.lines:
+        tell(line)
+    comparer = Comparer(
+        bag, [topic.name for topic in again.topics], tolerances,
+        lambda topic, sequence: topic in topics.compared)
     again.simulate(comparer, lambda: comparer.difference is not None)
-    here, there = installed_versions(), bag.provenance.versions
-    changed = {name: (was, here.get(name, 'missing'))
-               for name, was in there.items() if here.get(name) != was}
-    return ReplayReport(comparer.finish(), bag.is_whole, changed)
+    return ReplayReport(
+        comparer.finish(), bag.is_whole, [*changes, *topics.lines], topics.unconfirmed)
 
 
 class Rerun:

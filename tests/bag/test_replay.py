@@ -3,7 +3,6 @@
 from pathlib import Path
 import shutil
 
-from isa_ros.bag.metadata import Topic
 from isa_ros.bag.reader import Bag
 from isa_ros.bag.replay import recorded_commands, replay, Rerun
 from isa_ros.bag.writer import BagWriter
@@ -11,8 +10,9 @@ from isa_ros.cli import main
 from isa_ros.run_config import RunConfig
 from msg_adapters.setpoint import applied_to_command, AppliedSetpoint
 import pytest
+from tests.bag.golden import GOLDEN as GOLDEN_BAGS, rewrite
 
-GOLDEN = Path(__file__).parent.parent / 'replay' / 'leg_touchdown'
+GOLDEN = GOLDEN_BAGS / 'leg_touchdown'
 CHANGED = '/kfe/applied_setpoint'
 EFFORT_TICK = 50  # the scenario's effort of 200 N takes effect there
 
@@ -26,17 +26,6 @@ def here(tmp_path) -> Path:
     with BagWriter(directory, again.topics, golden.provenance) as writer:
         again.simulate(writer)
     return directory
-
-
-def rewrite(bag: Bag, directory: Path, change) -> None:
-    """Record ``bag`` again with every message passed through ``change``."""
-    topics = [Topic(name, bag.types[name]) for name in sorted(bag.types)]
-    index = {topic.name: k for k, topic in enumerate(topics)}
-    with BagWriter(directory, topics, bag.provenance) as writer:
-        for tick in bag.ticks():
-            writer.write_tick(tick.t_ns, tick.sequence, [
-                (index[m.topic], change(m.topic, tick.sequence, m.data))
-                for m in tick.messages])
 
 
 def one_percent_more(topic: str, sequence: int, data: bytes) -> bytes:

@@ -1,0 +1,118 @@
+"""`isa_ros.testing` as its users have it: a conftest.py, a test, a bag and tolerances."""
+
+from pathlib import Path
+import re
+import shutil
+import struct
+
+from isa_ros.bag.provenance import installed_versions
+from isa_ros.bag.reader import Bag
+from isa_ros.bag.replay import Rerun
+from isa_ros.bag.writer import BagWriter
+from isa_ros.run_config import RunConfig
+import pytest
+from tests.bag.golden import GOLDEN, rewrite
+
+pytest_plugins = ['pytester']
+
+README = (Path(__file__).parents[1] / 'README.md').read_text()
+EXAMPLE = next(block for block in re.findall(r'```python\n(.*?)```', README, re.DOTALL)
+               if 'assert_replays' in block)
+BITWISE = "def test_it(assert_replays):\n    assert_replays('bags/drop')\n"
+TOLERANT = BITWISE.replace("'bags/drop'", "'bags/drop', 'bags/tolerances.yaml'")
+EFFORT_TICK = 21
+
+
+@pytest.fixture(scope='module')
+def here(tmp_path_factory) -> Path:
+    """Return a bag that this machine recorded with these versions: a golden run anew."""
+    golden = Bag(GOLDEN / 'rotor_step')
+    directory = tmp_path_factory.mktemp('here') / 'drop'
+    own = golden.provenance
+    own = type(own)(RunConfig.from_yaml(own.configuration).to_yaml(), own.scenario, 0,
+                    installed_versions())
+    again = Rerun(golden)
+    with BagWriter(directory, again.topics, own) as writer:
+        again.simulate(writer)
+    return directory
+
+
+@pytest.fixture
+def project(pytester):
+    """Return a user's project with the plug-in."""
+    pytester.makeconftest("pytest_plugins = ['isa_ros.testing']\n")
+    pytester.mkdir('bags')
+    return pytester
+
+
+def with_a_code_more(topic: str, sequence: int, data: bytes) -> bytes:
+    """Change the last number of one message by less than the tolerances below."""
+    if (topic, sequence) != ('/rotor/load_cell', EFFORT_TICK):
+        return data
+    value, = struct.unpack('<d', data[-8:])
+    return data[:-8] + struct.pack('<d', value + 0.05)
+
+
+def test_the_example_of_the_readme_passes_and_fails(project) -> None:
+    """The tolerance file there names topics of the leg: it must fit the bag."""
+    shutil.copytree(GOLDEN / 'leg_touchdown', project.path / 'bags' / 'drop')
+    tolerances = next(block for block in re.findall(r'```yaml\n(.*?)```', README, re.DOTALL)
+                      if block.startswith('/kfe/'))
+    (project.path / 'bags' / 'tolerances.yaml').write_text(
+        (GOLDEN / 'leg_touchdown_tolerances.yaml').read_text())
+    project.makepyfile(test_drop=EXAMPLE.replace("pytest_plugins = ['isa_ros.testing']", ''))
+    project.runpytest_inprocess('-q').assert_outcomes(passed=1)
+    (project.path / 'bags' / 'tolerances.yaml').write_text(tolerances.replace('/kfe/', '/knee/'))
+    result = project.runpytest_inprocess('-q')
+    result.assert_outcomes(failed=1)
+    result.stdout.fnmatch_lines(['*tolerances.yaml: /knee/joint_states: no such topic*'])
+
+
+def test_every_bit_counts_without_tolerances(project, here) -> None:
+    shutil.copytree(here, project.path / 'bags' / 'drop')
+    project.makepyfile(test_it=BITWISE)
+    project.runpytest_inprocess('-q').assert_outcomes(passed=1)
+    shutil.rmtree(project.path / 'bags' / 'drop')
+    rewrite(Bag(here), project.path / 'bags' / 'drop', with_a_code_more)
+    result = project.runpytest_inprocess('-q')
+    result.assert_outcomes(failed=1)
+    result.stdout.fnmatch_lines([
+        '*bags/drop: differ: tick 21 (t = 0.021000 s), /rotor/load_cell, wrench.torque.z: *',
+        '*No tolerances were given, so every bit must be equal*'
+        'Versions and topics are those of the bag; the CPU here is*'])
+
+
+def test_tolerances_by_signal_admit_what_they_say(project, here) -> None:
+    rewrite(Bag(here), project.path / 'bags' / 'drop', with_a_code_more)
+    project.makepyfile(test_it=TOLERANT)
+    for bound, outcome in ((0.06, {'passed': 1}), (0.04, {'failed': 1})):
+        (project.path / 'bags' / 'tolerances.yaml').write_text(
+            f'/rotor/load_cell: {{wrench.torque.z: {bound}}}\n')
+        result = project.runpytest_inprocess('-q')
+        result.assert_outcomes(**outcome)
+        result.stdout.no_fnmatch_line('*No tolerances were given*')
+
+
+def test_other_versions_are_named_where_bits_differ(project, here) -> None:
+    there = installed_versions() | {'numpy': '1.0'}
+    rewrite(Bag(here), project.path / 'bags' / 'drop', with_a_code_more, versions=there)
+    project.makepyfile(test_it=BITWISE)
+    result = project.runpytest_inprocess('-q')
+    result.assert_outcomes(failed=1)
+    result.stdout.fnmatch_lines([
+        f'*numpy is {installed_versions()["numpy"]} here, was 1.0',
+        '*No tolerances were given*Versions or topics differ as listed; the CPU here is*'])
+
+
+def test_other_versions_alone_are_no_failure(project, here) -> None:
+    rewrite(Bag(here), project.path / 'bags' / 'drop', versions={'numpy': '1.0'})
+    project.makepyfile(test_it=BITWISE)
+    project.runpytest_inprocess('-q').assert_outcomes(passed=1)
+
+
+def test_function_may_be_imported(project, here) -> None:
+    shutil.copytree(here, project.path / 'bags' / 'drop')
+    project.makepyfile(test_it=(
+        'from isa_ros.testing import assert_replays\n\n\n'
+        "def test_it():\n    assert_replays('bags/drop')\n"))
+    project.runpytest_inprocess('-q').assert_outcomes(passed=1)
