@@ -14,7 +14,7 @@ from typing import NamedTuple
 
 from isa_ros.errors import ConfigError, IsaError
 from isa_ros.exchange import Messages, Recorder, Records, Rows, SharedLoad, Transport
-from isa_ros.pacing import Laps, Pace, ProgressMeter
+from isa_ros.pacing import BEFORE_TICKS, Laps, Pace, ProgressMeter
 from isa_ros.run_state import RunState
 from isa_ros.timebase import NS_PER_SECOND
 from isa_ros.topics import Order
@@ -219,7 +219,7 @@ class Coordinator:
 
     def _tick(self, tick: int) -> None:
         rows = self._rows
-        self._lap('between ticks')
+        self._lap(BEFORE_TICKS)
         rows.commands[:] = rows.requests
         rows.requests['kinds'] = 0
         self._plan.commands(tick, rows.commands)

@@ -12,6 +12,9 @@ REPORT_PERIOD_S = 0.2
 LARGEST_LAG_S = 0.1     # behind the pace at the end of a run that is not worth a word
 JOIN_TIMEOUT_S = 30.0  # how long participants are waited for before tick 0
 
+STARTING, JOINING, BEFORE_TICKS = 'starting', 'joining', 'between ticks'
+"""Phases of `Laps` that are no part of a tick: until everyone is called, until all are there."""
+
 
 class Progress(NamedTuple):
     """How far a run is."""

@@ -14,7 +14,8 @@ from isa_ros.config import load_run
 from isa_ros.coordinator import Coordinator, Plan, Requests
 from isa_ros.errors import BagError, RunError
 from isa_ros.exchange import Rows, Transport
-from isa_ros.pacing import JOIN_TIMEOUT_S, Laps, Pace, Progress, ProgressMeter
+from isa_ros.pacing import (
+    JOIN_TIMEOUT_S, JOINING, Laps, Pace, Progress, ProgressMeter, STARTING)
 from isa_ros.run_config import RunConfig
 from isa_ros.run_state import read_state, RunState
 from isa_ros.scenario import idle, load_scenario, Scenario
@@ -194,7 +195,10 @@ def _record_one(
     plan = Plan(
         step_ns=run.step_ns, rows=rows, has_controllers=bool(run.controllers), n_ticks=n_ticks,
         commands=session.scenario.commands, is_paused=session.request.is_paused)
+    laps = session.request.laps or Laps()
+    laps.lap(STARTING)
     first = transport.join(rows)
+    laps.lap(JOINING)
     order, topics = topics_of(run, load)
     thinning = Thinning(run.record, topics)
     # The first bag alone may replace one: a reset takes a directory that does not exist.
