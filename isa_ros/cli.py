@@ -186,7 +186,12 @@ def _validate(parser: argparse.ArgumentParser) -> None:
 
 def _bench(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
+        '--only', action='append', metavar='NAME', help='a group of rows; may be repeated')
+    parser.add_argument(
         '--json', type=file_to_write, metavar='FILE', help='write the numbers there too')
+    parser.add_argument(
+        '--out', type=directory_to_write, metavar='DIR',
+        help='write bench.md and its figure there')
 
 
 _COMMANDS = {

@@ -174,6 +174,6 @@ def validate(options: Namespace) -> bool:
 
 def bench(options: Namespace) -> bool:
     """Measure how fast this machine simulates."""
-    from isa_ros.analysis.bench import bench as run_bench
-    run_bench(options.json)
+    from isa_ros.analysis.bench.command import bench as run_bench
+    run_bench(options.json, options.only, options.out)
     return True

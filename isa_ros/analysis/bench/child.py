@@ -1,0 +1,38 @@
+"""Processes of the bench: Python modules of this package, wherever it is installed."""
+
+from collections.abc import Mapping, Sequence
+import os
+from pathlib import Path
+import subprocess
+import sys
+import time
+
+import isa_ros
+
+Ended = subprocess.CompletedProcess[str]
+
+_ROOT = Path(isa_ros.__file__).parents[1]
+
+
+def environment(added: Mapping[str, str] | None = None) -> dict[str, str]:
+    """Return this process's environment, with this package in reach."""
+    path = [str(_ROOT), *filter(None, [os.environ.get('PYTHONPATH')])]
+    return {**os.environ, 'PYTHONPATH': os.pathsep.join(path), **(added or {})}
+
+
+def run_module(module: str, arguments: Sequence[str], timeout_s: float) -> Ended:
+    """
+    Run ``python -m module STARTED *arguments`` to its end and return what it said.
+
+    STARTED is the monotonic clock just before; a process that takes longer is killed.
+    """
+    return subprocess.run(
+        [sys.executable, '-m', module, str(time.monotonic()), *arguments], env=environment(),
+        stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True,
+        errors='replace', timeout=timeout_s)
+
+
+def last_line(ended: Ended) -> str:
+    """Return why a process failed, as it said itself."""
+    said = ended.stderr.strip().splitlines()
+    return said[-1] if said else f'exit code {ended.returncode}'

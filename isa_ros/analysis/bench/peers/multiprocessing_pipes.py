@@ -1,0 +1,64 @@
+"""The floor: the pipes of multiprocessing, on sockets of this host."""
+
+from multiprocessing.connection import Client, Connection, Listener, wait
+from pathlib import Path
+
+_ADDRESS = 'pipes'
+
+
+class CoordinatorEnd:
+    """A pipe to every worker."""
+
+    def __init__(self, directory: Path, n_workers: int) -> None:
+        self._listener = Listener(str(directory / _ADDRESS), 'AF_UNIX', backlog=n_workers)
+        self._n_workers = n_workers
+        self._pipes: list[Connection] = []
+
+    def send(self, message: bytes) -> None:
+        """Write to every pipe; the first time, accept the workers."""
+        while len(self._pipes) < self._n_workers:
+            self._pipes.append(self._listener.accept())
+        for pipe in self._pipes:
+            pipe.send_bytes(message)
+
+    def receive(self, timeout_s: float) -> bytes | None:
+        """Read from whichever pipe has something."""
+        for pipe in wait(self._pipes, timeout_s):
+            assert isinstance(pipe, Connection)
+            return pipe.recv_bytes()
+        return None
+
+    def close(self) -> None:
+        """Close all pipes."""
+        for pipe in self._pipes:
+            pipe.close()
+        self._listener.close()
+
+
+class WorkerEnd:
+    """One pipe."""
+
+    def __init__(self, directory: Path) -> None:
+        self._pipe = Client(str(directory / _ADDRESS), 'AF_UNIX')
+
+    def send(self, message: bytes) -> None:
+        """Write."""
+        self._pipe.send_bytes(message)
+
+    def receive(self, timeout_s: float) -> bytes | None:
+        """Read what arrives in time."""
+        return self._pipe.recv_bytes() if self._pipe.poll(timeout_s) else None
+
+    def close(self) -> None:
+        """Close the pipe."""
+        self._pipe.close()
+
+
+def coordinator_end(directory: Path, n_workers: int) -> CoordinatorEnd:
+    """Listen in ``directory``."""
+    return CoordinatorEnd(directory, n_workers)
+
+
+def worker_end(directory: Path, index: int) -> WorkerEnd:
+    """Connect to the coordinator."""
+    return WorkerEnd(directory)

@@ -1,0 +1,58 @@
+"""One actuator over a peer: `python -m ... PEER DIRECTORY INDEX CONFIG [SCENARIO]`."""
+
+from collections.abc import Sequence
+from pathlib import Path
+import sys
+
+from isa_ros.actuator import Timing
+from isa_ros.analysis.bench.peers.catalogue import ends, peer
+from isa_ros.analysis.bench.peers.frames import decode_step, encode_answer, Kind
+from isa_ros.analysis.bench.peers.link import Link
+from isa_ros.config import load_run
+from isa_ros.run_config import RunConfig
+from isa_ros.scenario import load_scenario
+from isa_ros.stepping import QuietActuator, Stepper
+from isa_ros.stopping import end_with_parent
+
+SLICE_S = 0.5
+
+
+def main(arguments: Sequence[str]) -> None:
+    """Answer the steps of one run until its end."""
+    end_with_parent()
+    name, directory, index, *files = arguments
+    run = _run(files)
+    config = run.actuators[int(index)]
+    stepper = QuietActuator(config, Timing(run.step_ns, run.controller_offset_ns))
+    link = ends(peer(name)).worker_end(Path(directory), int(index))
+    try:
+        answer_steps(link, stepper, int(index))
+    finally:
+        link.close()
+
+
+def _run(files: Sequence[str]) -> RunConfig:
+    run = load_run(files[0])
+    for scenario in files[1:]:
+        run = load_scenario(scenario, run).run
+    return run
+
+
+def answer_steps(link: Link, stepper: Stepper, index: int) -> None:
+    """Take part in one run, as a participant does."""
+    while True:
+        data = link.receive(SLICE_S)
+        if data is None:
+            continue
+        step = decode_step(data)
+        if step.kind is Kind.END:
+            return
+        if step.kind is Kind.START:
+            messages = stepper.start(step.start(index))
+        else:
+            messages = stepper.advance(step.port(index), step.command(index))
+        link.send(encode_answer(index, step.tick, stepper.reply, stepper.sample, messages))
+
+
+if __name__ == '__main__':
+    main(sys.argv[1:])

@@ -1,0 +1,87 @@
+"""One measured number beside its floor and its aim, and how a short piece of work is timed."""
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, replace
+from statistics import median
+import time
+
+REPEATS = 7
+
+
+@dataclass(frozen=True)
+class Aim:
+    """What a value should reach."""
+
+    value: float
+    is_most: bool = False
+    """Not more than that; else at least."""
+
+    def is_reached(self, value: float) -> bool:
+        """Tell whether a value is on the right side."""
+        return value <= self.value if self.is_most else value >= self.value
+
+    def __str__(self) -> str:
+        """Return the bound as text."""
+        return f'{"<=" if self.is_most else ">="} {self.value:g}'
+
+
+@dataclass(frozen=True)
+class Row:
+    """One measurement; ``ratio`` is in the direction in which more is better."""
+
+    name: str
+    value: float | None
+    """The median; None: not measured, and ``note`` says why."""
+    unit: str
+    floor: str = ''
+    ratio: float | None = None
+    lowest: float | None = None
+    highest: float | None = None
+    aim: Aim | None = None
+    note: str = ''
+
+    @classmethod
+    def of(cls, name: str, values: Sequence[float], unit: str) -> 'Row':
+        """Return the median of several measurements, with the lowest and the highest."""
+        return cls(name, median(values), unit, lowest=min(values), highest=max(values))
+
+    def against(self, floor: str, ratio: float) -> 'Row':
+        """Return the row beside what it is compared with."""
+        return replace(self, floor=floor, ratio=ratio)
+
+    def aiming(self, aim: Aim) -> 'Row':
+        """Return the row beside its aim."""
+        return replace(self, aim=aim)
+
+    def noting(self, note: str) -> 'Row':
+        """Return the row with a remark."""
+        return replace(self, note=note)
+
+    @property
+    def number(self) -> float:
+        """Return the value of a row that has one."""
+        assert self.value is not None
+        return self.value
+
+    @property
+    def is_reached(self) -> bool | None:
+        """Tell whether the aim is reached; None: there is none, or nothing was measured."""
+        if self.aim is None or self.value is None:
+            return None
+        return self.aim.is_reached(self.value)
+
+
+def seconds(work: Callable[[], object], per: int, of_cpu: bool = False) -> float:
+    """
+    Return the median time of one of the ``per`` pieces of ``work`` in s, after a warm-up.
+
+    With ``of_cpu`` the processor's time in this process instead of the wall's.
+    """
+    clock = time.process_time if of_cpu else time.perf_counter
+    work()
+    times = []
+    for _ in range(REPEATS):
+        start = clock()
+        work()
+        times.append((clock() - start) / per)
+    return median(times)
