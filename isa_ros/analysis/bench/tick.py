@@ -45,6 +45,7 @@ def tick_parts() -> list[Row]:
         for _ in range(TICKS):
             for k, actuator in enumerate(stepped):
                 actuator.advance(ports[k])
+                actuator.states()
     parts['three actuators: plant + REU'] = seconds(kernels_only, TICKS)
     for k, actuator in enumerate(stepped):
         actuator.start(starts[k])
@@ -71,8 +72,8 @@ def _recorder_seconds(load: SharedLoad, stepped: Sequence[SteppedActuator]) -> f
         session = prepare(request_of(_DROP, Path(directory)))
         order, topics = topics_of(session.run, load)
         messages = order.merge(
-            [*(actuator.advance(None) for actuator in stepped), [load.clock(0)],
-             load.messages(0)])
+            [*((*actuator.advance(None), *actuator.states()) for actuator in stepped),
+             [load.clock(0)], load.messages(0)])
         ticks = count()
         with BagWriter(session.out, topics, provenance(session)) as bag:
             def work() -> None:

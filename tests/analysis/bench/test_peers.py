@@ -3,8 +3,11 @@
 from isa_ros.analysis.bench.peers import frames
 from isa_ros.analysis.bench.peers.catalogue import peer
 from isa_ros.analysis.bench.peers.transport import PeerTransport
+from isa_ros.config import load_run
 from isa_ros.errors import ConfigError, RunError
 from isa_ros.exchange import Rows
+from isa_ros.paths import CONFIG, find
+from isa_ros.run_config import RunConfig
 from isa_ros.signals import COMMAND, LOAD_PORT, LOAD_REPLY, SAMPLE, START
 import numpy as np
 import pytest
@@ -54,19 +57,25 @@ class Silence:
         """Have nothing to let go."""
 
 
-def test_a_worker_that_ended_is_named():
-    transport = PeerTransport(Silence(), ['hip'], rows(START, 1), lambda: 'hip: its worker ended')
-    with pytest.raises(RunError, match='hip: its worker ended'):
-        transport.join(Rows(2))
+@pytest.fixture(scope='module')
+def leg() -> RunConfig:
+    """Return a run of three actuators."""
+    return load_run(find('leg.yaml', CONFIG))
 
 
-def test_workers_that_never_answer_are_named():
-    transport = PeerTransport(Silence(), ['hip', 'knee'], rows(START, 2), lambda: None)
-    with pytest.raises(RunError, match='hip, knee: no answer before tick 0'):
-        transport.join(Rows(2))
-    transport.send(3, Rows(2))
-    with pytest.raises(RunError, match='hip, knee: no answer to tick 3'):
-        transport.receive(Rows(2))
+def test_a_worker_that_ended_is_named(leg):
+    transport = PeerTransport(Silence(), leg, rows(START, 3), lambda: 'hfe: its worker ended')
+    with pytest.raises(RunError, match='hfe: its worker ended'):
+        transport.join(Rows(3))
+
+
+def test_workers_that_never_answer_are_named(leg):
+    transport = PeerTransport(Silence(), leg, rows(START, 3), lambda: None)
+    with pytest.raises(RunError, match='haa, hfe, kfe: no answer before tick 0'):
+        transport.join(Rows(3))
+    transport.send(3, Rows(3))
+    with pytest.raises(RunError, match='haa, hfe, kfe: no answer to tick 3'):
+        transport.receive(Rows(3))
 
 
 def test_a_wrong_peer_is_answered_with_the_right_one():

@@ -8,6 +8,7 @@ import subprocess
 import sys
 import tempfile
 
+from isa_ros.actuator_group import by_actuator, state_messages
 from isa_ros.analysis.bench.child import environment
 from isa_ros.analysis.bench.peers.catalogue import ends, Peer
 from isa_ros.analysis.bench.peers.frames import (
@@ -16,6 +17,7 @@ from isa_ros.analysis.bench.peers.link import Link
 from isa_ros.errors import RunError
 from isa_ros.exchange import Messages, Records, Rows, Silence
 from isa_ros.run import record, Report, Session
+from isa_ros.run_config import RunConfig
 from isa_ros.shared_load import SharedLoad
 from isa_ros.stopping import PARENT_VARIABLE, StopRequest
 
@@ -31,10 +33,12 @@ class PeerTransport(Silence):
     """Steps and answers of a run over a `Link`; nobody else listens to a message."""
 
     def __init__(
-            self, link: Link, names: Sequence[str], starts: Records,
+            self, link: Link, run: RunConfig, starts: Records,
             lost: Callable[[], str | None]) -> None:
         self._link = link
-        self._names = names
+        self._names = [actuator.name for actuator in run.actuators]
+        self._states = state_messages(run.actuators)
+        self._step_ns = run.step_ns
         self._starts = starts
         self._lost = lost
         self._tick = 0
@@ -45,7 +49,7 @@ class PeerTransport(Silence):
             self._link.send(encode_start(count, self._starts))
             answers = self._answers(-count, START_PERIOD_S, slices=1)
             if len(answers) == len(self._names):
-                return self._said(answers, rows)
+                return self._said(answers, rows, 0)
         raise RunError(f'{self._missing(answers)}: no answer before tick 0')
 
     def begin(self) -> None:
@@ -61,7 +65,7 @@ class PeerTransport(Silence):
         answers = self._answers(self._tick, SLICE_S, TICK_SLICES)
         if len(answers) < len(self._names):
             raise RunError(f'{self._missing(answers)}: no answer to tick {self._tick}')
-        return self._said(answers, rows)
+        return self._said(answers, rows, (self._tick + 1) * self._step_ns)
 
     def idle(self) -> None:
         """Refuse what no bench asks for."""
@@ -76,11 +80,12 @@ class PeerTransport(Silence):
         """Refuse what no bench asks for."""
         raise RunError(_NOT_HERE)
 
-    def _said(self, answers: dict[int, Answer], rows: Rows) -> Sequence[Messages]:
-        """Take what the workers say and return the messages of each."""
+    def _said(self, answers: dict[int, Answer], rows: Rows, t_ns: int) -> Sequence[Messages]:
+        """Take what the workers say and return the messages of each at ``t_ns``."""
         for k, answer in answers.items():
             rows.replies[k], rows.samples[k] = answer.reply, answer.sample
-        return [answers[k].messages for k in range(len(self._names))]
+        states = by_actuator(self._states.pack(rows.samples, t_ns))
+        return [(*answers[k].messages, *own) for k, own in enumerate(states)]
 
     def _answers(self, tick: int, timeout_s: float, slices: int) -> dict[int, Answer]:
         """Return the answers to one step that come before ``slices`` waits were in vain."""
@@ -143,11 +148,10 @@ def run_over(
         peer: Peer, session: Session, report: Report | None, should_stop: StopRequest) -> None:
     """Run and record what was prepared, over a peer."""
     load = SharedLoad(session.run)
-    names = [actuator.name for actuator in session.run.actuators]
     with tempfile.TemporaryDirectory(prefix='isa_bench_') as directory:
-        with _open(peer, Path(directory), len(names)) as link, \
+        with _open(peer, Path(directory), len(session.run.actuators)) as link, \
                 Workers(session, peer, Path(directory)) as workers:
-            transport = PeerTransport(link, names, load.starts(session.run), workers.lost)
+            transport = PeerTransport(link, session.run, load.starts(session.run), workers.lost)
             try:
                 record(session, transport, load, report, should_stop)
             finally:

@@ -11,7 +11,7 @@ from isa_ros.analysis.bench.peers.link import Link
 from isa_ros.config import load_run
 from isa_ros.run_config import RunConfig
 from isa_ros.scenario import load_scenario
-from isa_ros.stepping import QuietActuator, Stepper
+from isa_ros.stepping import SteppedActuator
 from isa_ros.stopping import end_with_parent
 
 SLICE_S = 0.5
@@ -23,10 +23,10 @@ def main(arguments: Sequence[str]) -> None:
     name, directory, index, *files = arguments
     run = _run(files)
     config = run.actuators[int(index)]
-    stepper = QuietActuator(config, Timing(run.step_ns, run.controller_offset_ns))
+    stepped = SteppedActuator(config, Timing(run.step_ns, run.controller_offset_ns))
     link = ends(peer(name)).worker_end(Path(directory), int(index))
     try:
-        answer_steps(link, stepper, int(index))
+        answer_steps(link, stepped, int(index))
     finally:
         link.close()
 
@@ -38,7 +38,7 @@ def _run(files: Sequence[str]) -> RunConfig:
     return run
 
 
-def answer_steps(link: Link, stepper: Stepper, index: int) -> None:
+def answer_steps(link: Link, stepped: SteppedActuator, index: int) -> None:
     """Take part in one run, as a participant does."""
     while True:
         data = link.receive(SLICE_S)
@@ -48,10 +48,14 @@ def answer_steps(link: Link, stepper: Stepper, index: int) -> None:
         if step.kind is Kind.END:
             return
         if step.kind is Kind.START:
-            messages = stepper.start(step.start(index))
+            applied = stepped.start(step.start(index))
         else:
-            messages = stepper.advance(step.port(index), step.command(index))
-        link.send(encode_answer(index, step.tick, stepper.reply, stepper.sample, messages))
+            command = step.command(index)
+            if command['kinds']:
+                stepped.actuator.accept(command)
+            applied = stepped.advance(step.port(index))
+        actuator = stepped.actuator
+        link.send(encode_answer(index, step.tick, actuator.reply, actuator.sample, applied))
 
 
 if __name__ == '__main__':
