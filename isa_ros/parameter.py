@@ -28,6 +28,16 @@ def parameter(doc: str, unit: str, *, absent: float | None = None, **bounds: flo
     return field(metadata=metadata if absent is None else metadata | {'absent': absent})
 
 
+def tunable(doc: str, unit: str, *, named: str | None = None, **bounds: float) -> Any:
+    """
+    Declare one number that may change while a run goes on.
+
+    ``named`` is its name where that stands without a unit, in SI; None: the same.
+    """
+    declared = parameter(doc, unit, **bounds)
+    return field(metadata=declared.metadata | {'tunable': named or ''})
+
+
 def choice(doc: str, *names: str) -> Any:
     """Declare one name out of a fixed list."""
     return field(metadata={'doc': doc, 'unit': '', 'names': names})

@@ -9,7 +9,7 @@ is none. Gains are per that unit.
 from dataclasses import dataclass
 
 from isa_ros.kernel import kernel
-from isa_ros.parameter import choice, parameter, Parameters
+from isa_ros.parameter import choice, parameter, Parameters, tunable
 from isa_ros.reu.compensation import (
     COMPENSATION, compensation_record, dual_gain_compensation, DualGain, Linear)
 from isa_ros.reu.filters import low_pass, low_pass_coefficient
@@ -22,22 +22,22 @@ class Pid(Parameters):
     """Gains are output per measured; the output's unit is that of the next block inwards."""
 
     rate_hz: float = parameter('loop rate', 'Hz', gt=0.0, le=50e3)
-    kp: float = parameter('proportional gain K_p', 'output/measured', ge=0.0, le=1e9)
-    ki: float = parameter('integral gain K_i', 'output/(measured s)', ge=0.0, le=1e9)
-    kd: float = parameter('derivative gain K_d on the error', 'output s/measured', ge=0.0, le=1e6)
-    kf: float = parameter('feedback damping K_f', 's', ge=0.0, le=0.1)
-    kr: float = parameter('feed-forward of the reference', 'output/measured', ge=-1e9, le=1e9)
-    kv: float = parameter(
+    kp: float = tunable('proportional gain K_p', 'output/measured', ge=0.0, le=1e9)
+    ki: float = tunable('integral gain K_i', 'output/(measured s)', ge=0.0, le=1e9)
+    kd: float = tunable('derivative gain K_d on the error', 'output s/measured', ge=0.0, le=1e6)
+    kf: float = tunable('feedback damping K_f', 's', ge=0.0, le=0.1)
+    kr: float = tunable('feed-forward of the reference', 'output/measured', ge=-1e9, le=1e9)
+    kv: float = tunable(
         'velocity compensation K_v', 'output per m/s | rad/s', ge=0.0, le=1e6)
-    offset: float = parameter('added to the demand', 'output', ge=-1e6, le=1e6)
-    setpoint_weight: float = parameter('weight b of the reference', '1', ge=0.0, le=2.0)
+    offset: float = tunable('added to the demand', 'output', ge=-1e6, le=1e6)
+    setpoint_weight: float = tunable('weight b of the reference', '1', ge=0.0, le=2.0)
     measured_filter_hz: float = parameter(
         'low-pass on the measured value; 0: none', 'Hz', ge=0.0, le=25e3)
     derivative_filter_hz: float = parameter('low-pass on derivatives', 'Hz', gt=0.0, le=25e3)
-    limit: float = parameter('largest output', 'output', gt=0.0, le=1e9)
+    limit: float = tunable('largest output', 'output', gt=0.0, le=1e9)
     anti_windup: str = choice(
         'clamped: the integral stands still while the output is saturated', 'clamped', 'none')
-    retracting_factor: float = parameter(
+    retracting_factor: float = tunable(
         'factor on demands that retract, for slots of equal area', '1', gt=0.0, le=10.0)
     gain_schedule: Constant | OilStiffness | ThreePoints
     compensation: Linear | DualGain

@@ -8,7 +8,7 @@ current (A), whichever the block commands.
 from dataclasses import dataclass
 
 from isa_ros.kernel import kernel
-from isa_ros.parameter import choice, parameter, Parameters
+from isa_ros.parameter import choice, Parameters, tunable
 import numpy as np
 
 
@@ -21,8 +21,8 @@ class Linear(Parameters):
 class DualGain(Parameters):
     """Inverse of the valve's dual-gain flow curve."""
 
-    knee: float = parameter('end of the low-gain region', 'm | A', gt=0.0, le=1.0)
-    slope: float = parameter('low gain over high gain', '1', gt=0.0, le=1.0)
+    knee: float = tunable('end of the low-gain region', 'm | A', gt=0.0, le=1.0)
+    slope: float = tunable('low gain over high gain', '1', gt=0.0, le=1.0)
     applies_to: str = choice(
         'what passes through it: the whole demand (our reading), or the velocity '
         "compensation alone (the paper's text)", 'demand', 'velocity')

@@ -11,7 +11,7 @@ from dataclasses import dataclass
 import math
 
 from isa_ros.kernel import kernel
-from isa_ros.parameter import choice, parameter, Parameters
+from isa_ros.parameter import choice, parameter, Parameters, tunable
 from isa_ros.reu.filters import low_pass, low_pass_coefficient
 import numpy as np
 
@@ -21,18 +21,21 @@ class FeedbackLinearisation(Parameters):
     """What the force shall do, and what the block knows of its actuator besides its sheet."""
 
     rate_hz: float = parameter('loop rate', 'Hz', gt=0.0, le=50e3)
-    bandwidth_rad_per_s: float = parameter(
-        'pole of the force on its reference', 'rad/s', gt=0.0, le=1e4)
-    ki_per_s2: float = parameter('integral of the force error', '1/s2', ge=0.0, le=1e7)
-    kf: float = parameter('force damping K_f', 's', ge=0.0, le=0.1)
+    bandwidth_rad_per_s: float = tunable(
+        'pole of the force on its reference', 'rad/s', named='bandwidth', gt=0.0, le=1e4)
+    ki_per_s2: float = tunable('integral of the force error', '1/s2', named='ki', ge=0.0, le=1e7)
+    kf: float = tunable('force damping K_f', 's', ge=0.0, le=0.1)
     derivative_filter_hz: float = parameter('low-pass on dF/dt', 'Hz', gt=0.0, le=25e3)
-    velocity_share: float = parameter(
+    velocity_share: float = tunable(
         'share of the swept flow that is compensated', '1', ge=0.0, le=1.5)
-    least_drop_kpa: float = parameter(
-        'pressure drop below which a land counts as having it', 'kPa', gt=0.0, le=5e3)
-    supply_pressure_mpa: float = parameter('gauge supply it assumes', 'MPa', gt=0.0, le=70.0)
-    return_pressure_mpa: float = parameter('gauge return it assumes', 'MPa', ge=0.0, le=5.0)
-    limit: float = parameter('largest output', 'm | A', gt=0.0, le=1.0)
+    least_drop_kpa: float = tunable(
+        'pressure drop below which a land counts as having it', 'kPa', named='least_drop',
+        gt=0.0, le=5e3)
+    supply_pressure_mpa: float = tunable(
+        'gauge supply it assumes', 'MPa', named='supply_pressure', gt=0.0, le=70.0)
+    return_pressure_mpa: float = tunable(
+        'gauge return it assumes', 'MPa', named='return_pressure', ge=0.0, le=5.0)
+    limit: float = tunable('largest output', 'm | A', gt=0.0, le=1.0)
     anti_windup: str = choice(
         'clamped: the integral stands still while the output is saturated', 'clamped', 'none')
 

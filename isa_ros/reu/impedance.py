@@ -7,7 +7,7 @@ Reference in m or rad, output in N or Nm. The gains in force come with the setpo
 from dataclasses import dataclass
 
 from isa_ros.kernel import kernel
-from isa_ros.parameter import parameter, Parameters
+from isa_ros.parameter import parameter, Parameters, tunable
 import numpy as np
 
 
@@ -16,10 +16,10 @@ class Impedance(Parameters):
     """Impedance gains in force before the first setpoint, and the limits of the output."""
 
     rate_hz: float = parameter('loop rate', 'Hz', gt=0.0, le=50e3)
-    stiffness: float = parameter('impedance stiffness', 'N/m | Nm/rad', ge=0.0, le=1e7)
-    damping: float = parameter('impedance damping', 'Ns/m | Nms/rad', ge=0.0, le=1e6)
-    force_out: float = parameter('largest reference, pushing out', 'N | Nm', gt=0.0, le=1e6)
-    force_in: float = parameter('largest reference, pulling in', 'N | Nm', gt=0.0, le=1e6)
+    stiffness: float = tunable('impedance stiffness', 'N/m | Nm/rad', ge=0.0, le=1e7)
+    damping: float = tunable('impedance damping', 'Ns/m | Nms/rad', ge=0.0, le=1e6)
+    force_out: float = tunable('largest reference, pushing out', 'N | Nm', gt=0.0, le=1e6)
+    force_in: float = tunable('largest reference, pulling in', 'N | Nm', gt=0.0, le=1e6)
 
 
 IMPEDANCE = np.dtype([('force_out', 'f8'), ('force_in', 'f8')])

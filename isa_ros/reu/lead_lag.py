@@ -8,7 +8,7 @@ current (A); the gain on the demand does the work of an integral, without its ph
 from dataclasses import dataclass
 
 from isa_ros.kernel import kernel
-from isa_ros.parameter import choice, parameter, Parameters
+from isa_ros.parameter import choice, parameter, Parameters, tunable
 from isa_ros.reu.filters import low_pass, low_pass_coefficient
 import numpy as np
 
@@ -18,17 +18,17 @@ class LeadLag(Parameters):
     """Gains of the current loop."""
 
     rate_hz: float = parameter('loop rate', 'Hz', gt=0.0, le=50e3)
-    kp_v_per_ma: float = parameter('K_p of equation 1', 'V/mA', gt=0.0, le=1e3)
-    kpf: float = parameter('K_pf on the demand (eq 2)', '1', gt=0.0, le=1e6)
-    lead_rad_per_s: float = parameter('w_lead', 'rad/s', gt=0.0, le=1e6)
-    lag_rad_per_s: float = parameter('w_lag', 'rad/s', gt=0.0, le=1e6)
-    lead_damping: float = parameter('zeta_lead', '1', gt=0.0, le=2.0)
-    lag_damping: float = parameter('zeta_lag', '1', gt=0.0, le=2.0)
-    ki_v_per_ma_s: float = parameter('integral gain K_i', 'V/(mA s)', ge=0.0, le=1e6)
-    kd_v_s_per_ma: float = parameter('derivative gain K_d', 'V s/mA', ge=0.0, le=10.0)
+    kp_v_per_ma: float = tunable('K_p of equation 1', 'V/mA', named='kp', gt=0.0, le=1e3)
+    kpf: float = tunable('K_pf on the demand (eq 2)', '1', gt=0.0, le=1e6)
+    lead_rad_per_s: float = tunable('w_lead', 'rad/s', named='lead', gt=0.0, le=1e6)
+    lag_rad_per_s: float = tunable('w_lag', 'rad/s', named='lag', gt=0.0, le=1e6)
+    lead_damping: float = tunable('zeta_lead', '1', gt=0.0, le=2.0)
+    lag_damping: float = tunable('zeta_lag', '1', gt=0.0, le=2.0)
+    ki_v_per_ma_s: float = tunable('integral gain K_i', 'V/(mA s)', named='ki', ge=0.0, le=1e6)
+    kd_v_s_per_ma: float = tunable('derivative gain K_d', 'V s/mA', named='kd', ge=0.0, le=10.0)
     derivative_filter_hz: float = parameter('low-pass on the derivative', 'Hz', gt=0.0, le=25e3)
-    offset_v: float = parameter('added to the voltage', 'V', ge=-100.0, le=100.0)
-    limit_v: float = parameter('largest voltage', 'V', gt=0.0, le=100.0)
+    offset_v: float = tunable('added to the voltage', 'V', named='offset', ge=-100.0, le=100.0)
+    limit_v: float = tunable('largest voltage', 'V', named='limit', gt=0.0, le=100.0)
     anti_windup: str = choice(
         'clamped: the integral stands still while the voltage is saturated', 'clamped', 'none')
 

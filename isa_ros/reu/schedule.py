@@ -8,7 +8,7 @@ from dataclasses import dataclass
 import math
 
 from isa_ros.kernel import kernel
-from isa_ros.parameter import parameter, Parameters
+from isa_ros.parameter import Parameters, tunable
 import numpy as np
 
 POINTS = 21
@@ -28,9 +28,9 @@ class OilStiffness(Parameters):
 class ThreePoints(Parameters):
     """Straight lines between three factors."""
 
-    retracted: float = parameter('factor at the retracted end', '1', ge=0.0, le=100.0)
-    middle: float = parameter('factor at mid stroke', '1', ge=0.0, le=100.0)
-    extended: float = parameter('factor at the extended end', '1', ge=0.0, le=100.0)
+    retracted: float = tunable('factor at the retracted end', '1', ge=0.0, le=100.0)
+    middle: float = tunable('factor at mid stroke', '1', ge=0.0, le=100.0)
+    extended: float = tunable('factor at the extended end', '1', ge=0.0, le=100.0)
 
 
 Schedule = Constant | OilStiffness | ThreePoints
