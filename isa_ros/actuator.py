@@ -4,6 +4,7 @@ One smart actuator: setpoints in, one tick, samples out. Free of ROS.
 The same object serves a node of its own, many nodes in one process, and replay.
 """
 
+from collections.abc import Mapping
 from dataclasses import dataclass
 import hashlib
 from typing import Protocol
@@ -13,10 +14,13 @@ from isa_ros.actuator_rows import ActuatorRows
 from isa_ros.actuator_sheet import actuator_record, ActuatorSheet
 from isa_ros.errors import ConfigError, SimulationDiverged
 from isa_ros.load.local import local_port, LocalLoad, own_record, static_force
+from isa_ros.pending import gain_after, merge, take
 from isa_ros.plant.plant import read_sensors, rest_pressures
 from isa_ros.reu.cascade import initial_gains
 from isa_ros.signals import COMMAND, HAS_ENABLE, HAS_SETPOINT, LOAD_PORT
 from isa_ros.timebase import FORCE_WINDOWS, PLANT_STEP_NS, steps_in
+from isa_ros.tunable import GAINS
+from isa_ros.tuning import gains_command, Tuning
 import numpy as np
 
 
@@ -90,6 +94,7 @@ class SmartActuator:
         self._applied_kinds = self._applied_rows['kinds']
         self._incoming = np.zeros(1, LOAD_PORT)
         self.digest = self._hash(constants)
+        self._tuning = Tuning(config.name, config.sheet, offset_steps, constants)
         self.start(config.initial_position, static_force(config.load), 20.7e6, 0.0)
 
     def _hash(self, constants: np.ndarray) -> str:
@@ -104,11 +109,13 @@ class SmartActuator:
         """
         Put the actuator at rest at ``position`` (m | rad), t = 0, holding ``force`` (N | Nm).
 
-        Pressures are gauge, Pa. The first sample is what the sensors read then.
+        Pressures are gauge, Pa. The first sample is what the sensors read then. What was tuned
+        before is in force again from the first tick on.
         """
         self.t_ns = 0
         for rows in self._memory:
             rows.fill(0)
+        self.accept(gains_command(self._tuning.reset()))
         if self._config.load is not None:
             self._port_rows[:] = local_port(self._config.load, position)
         self._port.supply_pressure = supply_pressure
@@ -172,24 +179,34 @@ class SmartActuator:
         """
         return self._applied if self._applied_kinds[0] else None
 
+    @property
+    def applied_parameters(self) -> dict[str, float]:
+        """Return the tuned values that changed at the start of the last tick, SI, by name."""
+        return self._tuning.applied
+
     def accept(self, command: np.void) -> None:
         """
         Take a valid `COMMAND`; it takes effect at the next tick.
 
         Of several before one tick the last wins, and a gain left NaN keeps the one before.
         """
-        pending = self._pending
-        kinds = int(command['kinds'])
-        if kinds & HAS_SETPOINT:
-            was_pending = int(pending.kinds) & HAS_SETPOINT
-            for name in ('position', 'velocity', 'effort'):
-                pending[name] = command[name]
-            for name in ('stiffness', 'damping'):
-                if not (was_pending and np.isnan(command[name])):
-                    pending[name] = command[name]
-        if kinds & HAS_ENABLE:
-            pending.is_enabled = command['is_enabled']
-        pending.kinds |= kinds
+        merge(self._pending, command)
+
+    def tune(self, values: Mapping[str, float]) -> None:
+        """
+        Take new values of `isa_ros.tunable.tunables`, SI, all or none; in force at the next tick.
+
+        Of several before one tick the last wins; the loops keep their states. A gain of the
+        impedance is a command for this gain alone. Raises as `isa_ros.tunable.tuned`.
+        """
+        self._tuning.accept(values)
+        self.accept(gains_command(values))
+
+    def parameter(self, name: str) -> float:
+        """Return a tunable value as it will be at the next tick, whoever set it."""
+        if name not in GAINS:
+            return self._tuning.value(name)
+        return gain_after(GAINS[name], self._pending, self._reu)
 
     def tick(self, port: np.void | None = None) -> None:
         """
@@ -214,9 +231,11 @@ class SmartActuator:
 
     def begin_tick(self) -> None:
         """Let take effect what was accepted; `kernels.actuator_tick` comes next."""
+        self._tuning.take()
         kinds = int(self._pending_kinds[0])
         if kinds:
-            self._take_pending(kinds)
+            take(self._pending, self._reu)
+            self._note_applied(kinds)
         else:
             self._applied_kinds[0] = 0
 
@@ -235,22 +254,6 @@ class SmartActuator:
             raise SimulationDiverged(
                 self.t_ns, f'{self.name}: {kernels.state_name(broken)}', self._y[0, broken])
 
-    def _take_pending(self, kinds: int) -> None:
-        pending, setpoint = self._pending, self._reu.setpoint
-        if kinds & HAS_ENABLE:
-            if pending.is_enabled and not setpoint.is_enabled:
-                setpoint.position = self._reu.measured.position
-                setpoint.velocity = setpoint.effort = 0.0
-            setpoint.is_enabled = float(pending.is_enabled)
-        if kinds & HAS_SETPOINT:
-            for name in ('position', 'velocity', 'effort'):
-                setpoint[name] = pending[name]
-            for name in ('stiffness', 'damping'):
-                if not np.isnan(pending[name]):
-                    setpoint[name] = pending[name]
-        pending.kinds = 0
-        self._note_applied(kinds)
-
     def _note_applied(self, kinds: int) -> None:
         setpoint = self._reu.setpoint
         self._applied_rows[0] = (
@@ -260,7 +263,7 @@ class SmartActuator:
     def snapshot(self) -> bytes:
         """Return the whole state; `restore` continues from it byte for byte."""
         return self.t_ns.to_bytes(8, 'little') + b''.join(
-            rows.tobytes() for rows in self._memory)
+            rows.tobytes() for rows in self._memory) + self._tuning.snapshot()
 
     def restore(self, snapshot: bytes) -> None:
         """
@@ -272,7 +275,7 @@ class SmartActuator:
             It is none.
 
         """
-        expected = 8 + sum(rows.nbytes for rows in self._memory)
+        expected = 8 + sum(rows.nbytes for rows in self._memory) + self._tuning.nbytes
         if len(snapshot) != expected:
             raise ConfigError(
                 f'{self.name}: saved state of {len(snapshot)} bytes, must be {expected}')
@@ -281,6 +284,7 @@ class SmartActuator:
         for rows in self._memory:
             rows[:] = np.frombuffer(snapshot, rows.dtype, len(rows), offset)
             offset += rows.nbytes
+        self._tuning.restore(snapshot[offset:])
 
 
 def _record(rows: np.ndarray) -> np.record:

@@ -12,6 +12,7 @@ import numpy as np
 
 HAS_SETPOINT = 1
 HAS_ENABLE = 2
+HAS_GAINS = 4
 
 START = np.dtype([
     ('position', '<f8'),         # m | rad
@@ -22,7 +23,7 @@ START = np.dtype([
 """How one actuator begins a run."""
 
 COMMAND = np.dtype([
-    ('kinds', '<u4'),          # bits HAS_SETPOINT, HAS_ENABLE; 0: nothing new this tick
+    ('kinds', '<u4'),          # bits of HAS_*; 0: nothing new this tick
     ('is_enabled', '<u4'),     # 0 or 1, with HAS_ENABLE
     ('position', '<f8'),       # m | rad
     ('velocity', '<f8'),       # m/s | rad/s
