@@ -1,12 +1,12 @@
 """A whole run in this process, without ROS: what replay and experiments simulate with."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from dataclasses import replace
 
-from isa_ros.actuator import Timing
+from isa_ros.actuator import SmartActuator, Timing
 from isa_ros.actuator_group import ActuatorGroup
 from isa_ros.coordinator import Coordinator, Plan, Requests
-from isa_ros.exchange import Recorder, Records, Rows, Silence
+from isa_ros.exchange import Messages, Recorder, Records, Rows, Silence
 from isa_ros.local_transport import LocalTransport
 from isa_ros.pacing import Pace, ProgressMeter
 from isa_ros.run_config import RunConfig
@@ -15,15 +15,20 @@ from isa_ros.shared_load import SharedLoad
 from isa_ros.thinning import Thinning
 from isa_ros.topics import topics_of
 
+Tuned = Mapping[int, Mapping[str, float]]
+"""Tick -> new values of an actuator's parameters, SI, by name."""
+
 
 class LocalRun:
     """
     A run ready to be simulated; ``topics`` are what it records, in order.
 
-    Its controllers do not take part: what they asked for is among the commands.
+    Its controllers do not take part: what they asked for is among the commands. ``tuned`` are
+    the parameters that change under way, by actuator.
     """
 
-    def __init__(self, run: RunConfig) -> None:
+    def __init__(self, run: RunConfig, tuned: Mapping[str, Tuned] | None = None) -> None:
+        self._tuned = tuned or {}
         self._run = run = replace(run, controllers=())
         self._load = SharedLoad(run)
         self._order, topics = topics_of(run, self._load)
@@ -47,8 +52,11 @@ class LocalRun:
         """
         run = self._run
         timing = Timing(run.step_ns, run.controller_offset_ns)
-        transport = LocalTransport(
-            ActuatorGroup(run.actuators, timing), self._load.starts(run), Silence())
+        group = ActuatorGroup(run.actuators, timing)
+        tuners = [
+            _Tuner(member.actuator, run.step_ns, self._tuned.get(config.name, {}))
+            for member, config in zip(group.members, run.actuators)] if self._tuned else []
+        transport = LocalTransport(group, self._load.starts(run), Silence(), tuners)
         rows = Rows(len(run.actuators))
         plan = Plan(step_ns=run.step_ns, rows=rows, n_ticks=n_ticks, commands=commands)
         coordinator = Coordinator(
@@ -56,3 +64,21 @@ class LocalRun:
             pace=Pace(), progress=ProgressMeter(None, None), should_stop=should_stop,
             requests=requests)
         coordinator.run(transport.join(rows), state)
+
+
+class _Tuner:
+    """Tunes one actuator at its ticks, as a user of its node would; listens to nobody."""
+
+    def __init__(self, actuator: SmartActuator, step_ns: int, tuned: Tuned) -> None:
+        self._actuator = actuator
+        self._step_ns = step_ns
+        self._tuned = tuned
+
+    def serve(self) -> None:
+        """Set what changes at the tick that comes next."""
+        values = self._tuned.get(self._actuator.t_ns // self._step_ns)
+        if values is not None:
+            self._actuator.tune(values)
+
+    def publish(self, applied: Messages, states: Messages) -> None:
+        """Tell nobody."""

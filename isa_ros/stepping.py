@@ -5,6 +5,7 @@ from typing import Protocol
 from isa_ros.actuator import ActuatorConfig, SmartActuator, Timing
 from isa_ros.exchange import Messages
 from msg_adapters.actuator_messages import StateMessages
+from msg_adapters.applied_parameters import applied_parameters
 from msg_adapters.setpoint import AppliedSetpoint
 import numpy as np
 
@@ -87,6 +88,7 @@ class SteppedActuator:
         self.digest = participant_digest(self.actuator, timing)
         self._step_ns = timing.step_ns
         self._states = StateMessages([(config.name, config.sheet.is_rotary)])
+        self._name = config.name
         self._applied = AppliedSetpoint(config.name)
 
     def start(self, start: np.void | None) -> Messages:
@@ -108,8 +110,9 @@ class SteppedActuator:
 
     def applied(self, t_ns: int) -> Messages:
         """Return what took effect at the tick that began at ``t_ns``, as `APPLIED_TOPICS`."""
-        applied = self.actuator.applied
-        return (None if applied is None else self._applied.pack(applied, t_ns),)
+        tuned, applied = self.actuator.applied_parameters, self.actuator.applied
+        return (applied_parameters(self._name, tuned, t_ns) if tuned else None,
+                None if applied is None else self._applied.pack(applied, t_ns))
 
     def states(self) -> Messages:
         """Return the state messages of this instant, as `STATE_TOPICS`."""

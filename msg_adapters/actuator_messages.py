@@ -3,7 +3,7 @@
 from collections.abc import Sequence
 
 from isa_ros.signals import SAMPLE
-from msg_adapters import fluid_pressure, joint_state, wrench
+from msg_adapters import applied_parameters, fluid_pressure, joint_state, wrench
 from msg_adapters.cdr import Message
 from msg_adapters.template import Fields, Template
 import numpy as np
@@ -19,7 +19,8 @@ STATE_TOPICS = (
 """(topic suffix, type) of what is published at every tick, sorted by suffix."""
 
 APPLIED_SETPOINT = ('applied_setpoint', joint_state.TYPE)
-APPLIED_TOPICS = (APPLIED_SETPOINT,)
+APPLIED_PARAMETERS = ('applied_parameters', applied_parameters.TYPE)
+APPLIED_TOPICS = (APPLIED_PARAMETERS, APPLIED_SETPOINT)
 """The same of what is published when something takes effect."""
 
 TOPICS = (*APPLIED_TOPICS, *STATE_TOPICS)

@@ -5,12 +5,14 @@ from isa_ros.errors import ConfigError
 from isa_ros.exchange import Messages
 from isa_ros.signals import COMMAND, HAS_ENABLE, HAS_SETPOINT, START
 from isa_ros.stepping import SteppedActuator
+from msg_adapters.applied_parameters import tuned_values
 from msg_adapters.cdr_reader import decode
 import numpy as np
 import pytest
+from rcl_interfaces.msg import ParameterEvent
 from sensor_msgs.msg import JointState
 
-APPLIED, JOINT_STATES = 0, 0  # places in what is applied, and in the states
+TUNED, APPLIED, JOINT_STATES = 0, 1, 0  # places in what is applied, and in the states
 
 
 @pytest.fixture
@@ -29,10 +31,11 @@ def said(stepped: SteppedActuator, applied: Messages) -> list[bytes | None]:
 
 
 def test_first_messages_are_of_t_0(stepped):
-    """The state and the initial setpoint, both stamped 0."""
+    """The state and the initial setpoint, both stamped 0; no parameter has changed."""
     applied = stepped.start(None)
     assert stamp_ns(decode(stepped.states()[JOINT_STATES], JointState)) == 0
     assert decode(applied[APPLIED], JointState).name[0] == 'knee'
+    assert applied[TUNED] is None
 
 
 def test_applied_setpoint_carries_the_tick_it_took_effect_at(stepped):
@@ -50,6 +53,19 @@ def test_applied_setpoint_carries_the_tick_it_took_effect_at(stepped):
     assert stepped.advance(None)[APPLIED] is None
 
 
+def test_applied_parameters_carry_the_tick_they_took_effect_at(stepped):
+    """Of two values the last, of two equal ones none; only on change."""
+    stepped.start(None)
+    stepped.advance(None)
+    stepped.actuator.tune({'force.kp': 1e-7, 'force.kf': 0.002})
+    stepped.actuator.tune({'force.kp': 9e-8})
+    data = stepped.advance(None)[TUNED]
+    stamp = decode(data, ParameterEvent).stamp
+    assert (stamp.sec, stamp.nanosec) == (0, 1_000_000)
+    assert tuned_values(data, 'knee') == {'force.kp': 9e-8}
+    assert stepped.advance(None)[TUNED] is None
+
+
 def test_start_begins_anew(stepped):
     """A second run in the same object gives the first one's bytes."""
     start = np.zeros(1, START)[0]
@@ -60,13 +76,15 @@ def test_start_begins_anew(stepped):
         command = np.zeros(1, COMMAND)[0]
         command['kinds'] = HAS_ENABLE
         stepped.actuator.accept(command)
+        stepped.actuator.tune({'force.kp': 1e-7})
         return messages + [said(stepped, stepped.advance(None)) for _ in range(3)]
     assert run() == run()
 
 
 def test_a_restored_actuator_says_what_it_said_then(stepped):
-    """State and applied setpoint of that instant, and the same bytes from then on."""
+    """State and what was applied at that instant, and the same bytes from then on."""
     stepped.start(None)
+    stepped.actuator.tune({'force.kp': 1e-7})
     command = np.zeros(1, COMMAND)[0]
     command['kinds'] = HAS_ENABLE
     stepped.actuator.accept(command)
@@ -75,7 +93,7 @@ def test_a_restored_actuator_says_what_it_said_then(stepped):
     later = [said(stepped, stepped.advance(None)) for _ in range(3)]
     other = SteppedActuator(default_actuator('isa_v5', 'knee'), DEFAULT_TIMING)
     assert said(other, other.restore(snapshot)) == then
-    assert then[APPLIED] is not None
+    assert then[APPLIED] is not None and then[TUNED] is not None
     assert [said(other, other.advance(None)) for _ in range(3)] == later
 
 

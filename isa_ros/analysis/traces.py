@@ -7,9 +7,12 @@ from pathlib import Path
 from isa_ros.bag.reader import Bag
 from isa_ros.errors import BagError
 from isa_ros.run_config import RunConfig
+from msg_adapters import applied_parameters, event
 from msg_adapters.cdr import encode_with_slots
 from msg_adapters.cdr_reader import decode, message_class
 import numpy as np
+
+_NO_SIGNALS = (applied_parameters.TYPE, event.TYPE)  # texts of any length
 
 
 @dataclass(frozen=True)
@@ -25,7 +28,7 @@ class Trace:
 
 def read_traces(path: Path) -> tuple[RunConfig, dict[str, Trace]]:
     """
-    Return the configuration a bag carries and every topic in it by name.
+    Return the configuration a bag carries and every topic of signals in it by name.
 
     Raises
     ------
@@ -37,6 +40,8 @@ def read_traces(path: Path) -> tuple[RunConfig, dict[str, Trace]]:
     times: dict[str, list[int]] = {}
     messages: dict[str, list[bytes]] = {}
     for message in bag.messages():
+        if bag.types[message.topic] in _NO_SIGNALS:
+            continue
         times.setdefault(message.topic, []).append(message.t_ns)
         messages.setdefault(message.topic, []).append(message.data)
     return RunConfig.from_yaml(bag.provenance.configuration), {

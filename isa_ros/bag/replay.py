@@ -1,12 +1,13 @@
 """
 Replay: simulate a recorded run again from the bag alone, and compare every message.
 
-Inputs are the configuration the bag carries and the applied setpoints recorded in it, each
-at the tick it took effect; the scenario is provenance only. No ROS is needed.
+Inputs are the configuration the bag carries and the applied setpoints and parameters recorded
+in it, each at the tick it took effect; the scenario is provenance only. No ROS is needed.
 """
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
+from typing import NamedTuple
 
 from isa_ros.bag.compare import Comparer, Report
 from isa_ros.bag.installation import differences, refuse_obstacles, topic_differences
@@ -20,10 +21,12 @@ from isa_ros.run_config import RunConfig
 from isa_ros.run_state import RunState
 from isa_ros.shared_load import EVENT_TOPIC
 from msg_adapters import event
+from msg_adapters.applied_parameters import tuned_values
 from msg_adapters.setpoint import applied_to_command
 import numpy as np
 
 APPLIED = 'applied_setpoint'
+TUNED = 'applied_parameters'
 
 
 @dataclass(frozen=True)
@@ -95,10 +98,10 @@ class Rerun:
     def __init__(self, bag: Bag) -> None:
         self._run = RunConfig.from_yaml(
             bag.provenance.configuration, f'{bag.path.name}: configuration.yaml')
-        self._commands, self._n_ticks = recorded_commands(bag, self._run)
+        self._commands, tuned, self._n_ticks = recorded_inputs(bag, self._run)
         self._events = recorded_events(bag)
         self._state = _recorded_state(bag, self._run)
-        self._local = LocalRun(self._run)
+        self._local = LocalRun(self._run, tuned)
         self.topics = self._local.topics
 
     def simulate(
@@ -137,25 +140,39 @@ def recorded_events(bag: Bag) -> dict[int, list[str]]:
     return events
 
 
-def recorded_commands(
-        bag: Bag, run: RunConfig) -> tuple[dict[int, list[tuple[int, np.void]]], int]:
+class Inputs(NamedTuple):
+    """What a bag says was fed into its run."""
+
+    commands: dict[int, list[tuple[int, np.void]]]
+    """Tick -> (row, `COMMAND`) of every applied setpoint."""
+    tuned: dict[str, dict[int, dict[str, float]]]
+    """Actuator -> tick -> applied parameters, SI, by name."""
+    n_ticks: int
+
+
+def recorded_inputs(bag: Bag, run: RunConfig) -> Inputs:
     """
-    Return (row, `COMMAND`) of every applied setpoint by its tick, and the number of ticks.
+    Return the applied setpoints and parameters of a bag by their ticks.
 
     Sample k + 1 holds what took effect at tick k; that of t = 0 is where the run starts.
     """
-    rows = {f'/{a.name}/{APPLIED}': (k, a.name) for k, a in enumerate(run.actuators)}
-    commands: dict[int, list[tuple[int, np.void]]] = {}
+    setpoints = {f'/{a.name}/{APPLIED}': (k, a.name) for k, a in enumerate(run.actuators)}
+    parameters = {f'/{a.name}/{TUNED}': a.name for a in run.actuators}
+    inputs = Inputs({}, {}, -1)
     last = -1
     for message in bag.messages():
         last = message.sequence
-        if message.topic in rows and message.sequence:
-            row, name = rows[message.topic]
-            try:
-                command = applied_to_command(message.data, name)
-            except SetpointError as error:
-                raise BagError(f'{bag.path}: {message.topic}: {error}') from error
-            commands.setdefault(message.sequence - 1, []).append((row, command))
+        tick, topic = last - 1, message.topic
+        try:
+            if topic in setpoints and last:
+                row, name = setpoints[topic]
+                inputs.commands.setdefault(tick, []).append(
+                    (row, applied_to_command(message.data, name)))
+            elif topic in parameters:
+                name = parameters[topic]
+                inputs.tuned.setdefault(name, {})[tick] = tuned_values(message.data, name)
+        except SetpointError as error:
+            raise BagError(f'{bag.path}: {topic}: {error}') from error
     if last < 0:
         raise BagError(f'{bag.path}: holds no sample, there is nothing to replay')
-    return commands, last
+    return inputs._replace(n_ticks=last)

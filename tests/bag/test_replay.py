@@ -4,7 +4,7 @@ from pathlib import Path
 import shutil
 
 from isa_ros.bag.reader import Bag
-from isa_ros.bag.replay import recorded_commands, replay, Rerun
+from isa_ros.bag.replay import recorded_inputs, replay, Rerun
 from isa_ros.bag.writer import BagWriter
 from isa_ros.cli import main
 from isa_ros.run_config import RunConfig
@@ -41,8 +41,8 @@ def test_recorded_commands_take_effect_at_their_ticks():
     """The applied setpoints of sample k + 1 are the commands of tick k."""
     bag = Bag(GOLDEN)
     run = RunConfig.from_yaml(bag.provenance.configuration)
-    commands, n_ticks = recorded_commands(bag, run)
-    assert n_ticks == 80
+    commands, tuned, n_ticks = recorded_inputs(bag, run)
+    assert (tuned, n_ticks) == ({}, 80)
     assert sorted(commands) == [0, EFFORT_TICK]
     assert [row for row, _ in commands[0]] == [0, 1, 2]
     (row, command), = commands[EFFORT_TICK]
