@@ -9,13 +9,16 @@ from isa_ros.exchange import Messages
 from isa_ros.nodes.prepared import PreparedPublishers
 from isa_ros.nodes.qos import SETPOINT
 from isa_ros.nodes.setpoint_publishers import IncompatiblePublishers
+from isa_ros.nodes.tunable_parameters import TunableParameters
 from isa_ros.nodes.waiting import open_server
 from isa_ros.signals import COMMAND, HAS_ENABLE
 from isa_ros.stepping import SteppedActuator
+from isa_ros.tunable import tunables
 from msg_adapters.actuator_messages import TOPICS
 from msg_adapters.setpoint import msg_to_command
 import numpy as np
 from rclpy.node import Node
+from rclpy.parameter import Parameter
 from sensor_msgs.msg import JointState
 from std_srvs.srv import SetBool
 
@@ -36,8 +39,8 @@ class ActuatorNode(Node):
     One actuator on ROS topics; the node's name is the actuator's.
 
     It owns neither physics nor clock: a `Member`, a `LocalTransport` or the standalone
-    loop calls `start` and `advance`. Setpoints and requests that arrive between two ticks take
-    effect at the next one; at the same tick a command of the scenario wins.
+    loop calls `start` and `advance`. Setpoints, parameters and requests that arrive between two
+    ticks take effect at the next one; at the same tick a command of the scenario wins.
 
     ``resolve`` says what actuator it is, once the node's own name and parameters are known.
     ``has_mailbox``: a `Member` of this node waits for its steps.
@@ -46,16 +49,21 @@ class ActuatorNode(Node):
     def __init__(
             self, resolve: Callable[[Node], Setup], name: str = 'actuator', *,
             has_mailbox: bool, **kwargs: Any) -> None:
+        self._tunables: TunableParameters | None = None
         super().__init__(name, start_parameter_services=False, **kwargs)
         self.setup = resolve(self)
         self._stepped = SteppedActuator(*self.setup)
+        self._tunables = TunableParameters(
+            self, self._stepped.actuator, tunables(self.setup.config.sheet),
+            self._parameter_overrides)
         self._prepared = PreparedPublishers(
             self, [(f'~/{suffix}', type_) for suffix, type_ in TOPICS])
         setpoints = self.create_subscription(
             JointState, '~/setpoint', self._on_setpoint, SETPOINT)
         enable = self.create_service(SetBool, '~/enable', self._on_enable)
         self._incompatible = IncompatiblePublishers(self, setpoints)
-        self._inputs = open_server(self, [setpoints], [enable], has_mailbox)
+        self._inputs = open_server(
+            self, [setpoints], [enable], self._tunables.services, has_mailbox)
 
     @property
     def digest(self) -> str:
@@ -113,6 +121,11 @@ class ActuatorNode(Node):
         """Take the setpoints and requests that have arrived; do not wait."""
         self._inputs.serve()
         self._incompatible.check()
+
+    def get_parameter(self, name: str) -> Parameter:
+        """Return a parameter; a gain as it is, whether a service or a setpoint has set it."""
+        tuned = None if self._tunables is None else self._tunables.get(name)
+        return super().get_parameter(name) if tuned is None else tuned
 
     def check_publishers(self) -> None:
         """Name publishers whose setpoints cannot be received."""

@@ -20,12 +20,12 @@ from isa_ros.scenario import load_scenario
 from isa_ros.stopping import end_with_parent, StopRequest
 from rcl_interfaces.msg import ParameterDescriptor
 from rclpy.node import Node
-from rclpy.parameter_service import ParameterService
 from rclpy.utilities import try_shutdown
 
 USAGE = (
     'one actuator: ros2 run isa_ros actuator --ros-args -p model:=isa_v5 '
-    '[-r __node:=NAME] [-p real_time_factor:=1.0] [-p config_file:=leg.yaml -p lockstep:=true]')
+    '[-r __node:=NAME] [-p real_time_factor:=1.0] [-p force.kp:=GAIN ...] '
+    '[-p config_file:=leg.yaml -p lockstep:=true]')
 
 
 def run(args: Sequence[str] | None, model: str) -> int:
@@ -54,7 +54,6 @@ def _run(model: str, should_stop: StopRequest) -> None:
         if _boolean(node, 'lockstep'):
             Member(node, ActuatorSeat(node)).spin(should_stop)
         else:
-            ParameterService(node)
             run_alone(node, _number(node, 'real_time_factor'), should_stop)
     finally:
         node.destroy_node()

@@ -27,6 +27,9 @@ SLICE_S = 0.1
 SERVICE_PERIOD_S = 0.005
 """Host time between two looks at a node's services; a setpoint is looked for at every tick."""
 
+SELDOM_PERIOD_S = 0.05
+"""The same for services that need not answer at once: a parameter's."""
+
 _NS_PER_SECOND = 1_000_000_000
 
 
@@ -81,12 +84,12 @@ class DirectServer:
     """Take what has arrived from the handles themselves, in the order given."""
 
     def __init__(
-            self, subscriptions: Sequence[Subscription], services: Sequence[Service]) -> None:
+            self, subscriptions: Sequence[Subscription], services: Sequence[Service],
+            seldom: Sequence[Service] = ()) -> None:
         self._subscriptions: list[Any] = [
             (s.handle.take_message, s.msg_type, s.callback) for s in subscriptions]
-        self._services: list[Any] = [
-            (s.handle.service_take_request, s.srv_type, s) for s in services]
-        self._services_due = 0.0
+        self._services, self._seldom = _taken(services), _taken(seldom)
+        self._services_due = self._seldom_due = 0.0
 
     def serve(self) -> None:
         """Run the callbacks of everything that has arrived; do not wait."""
@@ -94,7 +97,10 @@ class DirectServer:
         now = time.monotonic()
         if now >= self._services_due:  # an empty look costs 5 us, a sixth of an actuator's tick
             self._services_due = now + SERVICE_PERIOD_S
-            self._serve_services()
+            _serve(self._services)
+        if now >= self._seldom_due:
+            self._seldom_due = now + SELDOM_PERIOD_S
+            _serve(self._seldom)
 
     def _serve_subscriptions(self) -> None:
         for take_message, message_type, callback in self._subscriptions:
@@ -102,14 +108,19 @@ class DirectServer:
             while (taken := take_message(message_type, True)) is not None:
                 callback(deserialize_message(taken[0], message_type))
 
-    def _serve_services(self) -> None:
-        for take_request, service_type, service in self._services:
-            while True:
-                request, header = take_request(service_type.Request)
-                if header is None:
-                    break
-                service.send_response(
-                    service.callback(request, service_type.Response()), header)
+
+def _taken(services: Sequence[Service]) -> list[Any]:
+    return [(s.handle.service_take_request, s.srv_type, s) for s in services]
+
+
+def _serve(services: Sequence[Any]) -> None:
+    for take_request, service_type, service in services:
+        while True:
+            request, header = take_request(service_type.Request)
+            if header is None:
+                break
+            service.send_response(
+                service.callback(request, service_type.Response()), header)
 
 
 class ExecutorMailbox:
@@ -174,10 +185,14 @@ def open_mailbox(node: Node, topic: str) -> Mailbox:
 
 def open_server(
         node: Node, subscriptions: Sequence[Subscription], services: Sequence[Service],
-        has_mailbox: bool) -> Server:
-    """Return what serves the node between ticks; ``has_mailbox``: it waits for steps itself."""
+        seldom: Sequence[Service], has_mailbox: bool) -> Server:
+    """
+    Return what serves the node between ticks; ``has_mailbox``: it waits for steps itself.
+
+    ``seldom`` are services that are looked at less often.
+    """
     if has_handles():
-        return DirectServer(subscriptions, services)
+        return DirectServer(subscriptions, services, seldom)
     return ExecutorServer(None if has_mailbox else node)
 
 

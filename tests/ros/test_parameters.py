@@ -1,0 +1,266 @@
+"""Gains as ROS parameters: declared, tuned while a run goes on, recorded and replayed."""
+
+from itertools import cycle
+from pathlib import Path
+import signal
+from typing import Any
+
+from isa_ros.bag.reader import Bag
+from isa_ros.bag.replay import replay, Rerun
+from isa_ros.bag.writer import BagWriter
+from isa_ros.default_actuator import default_actuator, DEFAULT_TIMING
+from isa_ros.nodes.actuator_node import ActuatorNode, Setup
+from isa_ros.signals import START
+from msg_adapters.applied_parameters import tuned_values
+from msg_adapters.cdr_reader import decode
+import numpy as np
+import pytest
+from rcl_interfaces.msg import Parameter, ParameterEvent, ParameterType, ParameterValue
+from rcl_interfaces.srv import DescribeParameters, GetParameters, SetParameters
+from rcl_interfaces.srv import SetParametersAtomically
+from rclpy.executors import SingleThreadedExecutor
+from rclpy.node import Node
+from rclpy.parameter import Parameter as RosParameter
+from sensor_msgs.msg import JointState
+from tests.ros.started import actuator, bringup, coordinator, RIG, wait_for
+
+pytestmark = pytest.mark.ros
+TUNED, APPLIED = 0, 1  # places in the sorted topics
+KP = 2.5e-5  # A/Nm; the preset has 4e-5
+
+
+class Tuner:
+    """What a user has who tunes one actuator: the standard services, its state, two echoes."""
+
+    def __init__(self, node: Node, name: str) -> None:
+        self.name = name
+        self.node = node
+        self.events: list[ParameterEvent] = []
+        self.setpoints: list[JointState] = []
+        self.state: list[JointState] = []
+        node.create_subscription(JointState, f'/{name}/joint_states', self.state.append, 10)
+        node.create_subscription(
+            ParameterEvent, f'/{name}/applied_parameters', self.events.append, 10)
+        node.create_subscription(
+            JointState, f'/{name}/applied_setpoint', self.setpoints.append, 10)
+        self._executor = SingleThreadedExecutor(context=node.context)
+        self._executor.add_node(node)
+        self._clients = {
+            service: node.create_client(service, f'/{name}/{topic}') for service, topic in (
+                (SetParameters, 'set_parameters'), (GetParameters, 'get_parameters'),
+                (SetParametersAtomically, 'set_parameters_atomically'),
+                (DescribeParameters, 'describe_parameters'))}
+
+    def wait_for(self, condition: Any, what: str) -> None:
+        """Spin until ``condition``."""
+        def spin() -> bool:
+            self._executor.spin_once(0.01)
+            return bool(condition())
+        wait_for(spin, what)
+
+    def connect(self) -> None:
+        """Wait until the services are there and the state comes."""
+        self.wait_for(
+            lambda: self.state and all(
+                client.service_is_ready() for client in self._clients.values()), 'connection')
+
+    def let_run(self) -> None:
+        """Wait for 0.1 s of simulation: longer than what may lie in the queue of the state."""
+        begin = _ns(self.state[-1].header.stamp)
+        self.wait_for(
+            lambda: _ns(self.state[-1].header.stamp) - begin > 100_000_000, 'simulated time')
+
+    def call(self, request: Any) -> Any:
+        """Return the answer to a request."""
+        service = next(s for s in self._clients if isinstance(request, s.Request))
+        future = self._clients[service].call_async(request)
+        self.wait_for(future.done, 'the answer')
+        return future.result()
+
+    def tune(self, name: str, value: float) -> Any:
+        """Set one parameter and return the result."""
+        return self.call(SetParameters.Request(parameters=[_double(name, value)])).results[0]
+
+    def get(self, *names: str) -> list[float]:
+        """Return the values of parameters."""
+        return [v.double_value for v in self.call(GetParameters.Request(names=names)).values]
+
+
+def _ns(stamp: Any) -> int:
+    return int(stamp.sec) * 10**9 + int(stamp.nanosec)
+
+
+def _double(name: str, value: float) -> Parameter:
+    return Parameter(name=name, value=ParameterValue(
+        type=ParameterType.PARAMETER_DOUBLE, double_value=value))
+
+
+def recorded(bag: Path, name: str) -> list[tuple[int, int, dict[str, float]]]:
+    """Return (number of the sample, stamp in ns, values) of the applied parameters."""
+    found = []
+    for message in Bag(bag).messages():
+        if message.topic == f'/{name}/applied_parameters':
+            stamp = decode(message.data, ParameterEvent).stamp
+            found.append((message.sequence, _ns(stamp), tuned_values(message.data, name)))
+    return found
+
+
+def record_again(bag: Path, out: Path) -> Path:
+    """Return the bag of a replay in one process."""
+    again = Rerun(Bag(bag))
+    with BagWriter(out, again.topics, Bag(bag).provenance) as writer:
+        again.simulate(writer)
+    return out
+
+
+def content(bag: Path) -> bytes:
+    """Return what all files of messages of a bag hold."""
+    return b''.join(path.read_bytes() for path in sorted(bag.glob('*.mcap')))
+
+
+def test_every_gain_is_declared_with_unit_meaning_and_range(observer, tmp_path):
+    """interface.md: with range and description, in SI; the rest read-only."""
+    with actuator(tmp_path / 'log', 'knee', model='isa_v5'):
+        tuner = Tuner(observer, 'knee')
+        tuner.connect()
+        kp, limit, model = tuner.call(DescribeParameters.Request(
+            names=['force.kp', 'force.limit', 'model'])).descriptors
+        assert kp.description == 'proportional gain K_p, m/N'
+        span, = kp.floating_point_range
+        assert (span.from_value, span.to_value, kp.read_only) == (0.0, 1e9, False)
+        assert limit.additional_constraints == '> 0'
+        assert model.read_only
+        refused = tuner.call(SetParameters.Request(parameters=[Parameter(
+            name='model', value=ParameterValue(
+                type=ParameterType.PARAMETER_STRING, string_value='isa_v2'))])).results[0]
+        assert not refused.successful and 'read-only' in refused.reason
+
+
+def test_a_refused_value_is_answered_with_the_reason_and_changes_nothing(observer, tmp_path):
+    """Beyond its range, beyond the spool's stop, and one bad of two set atomically."""
+    with actuator(tmp_path / 'log', 'knee', model='isa_v5') as process:
+        tuner = Tuner(observer, 'knee')
+        tuner.connect()
+        before = tuner.get('force.kp', 'force.limit')
+        for name, value, reason in (
+                ('force.limit', 2e-4, 'reu.force.limit = 0.0002 m, must be <= 0.000178 m'),
+                ('force.limit', 0.0, 'force.limit = 0 m, must be > 0 m'),
+                ('force.kp', -1.0, 'force.kp'),
+                ('force.kq', 1.0, 'undeclared')):  # rclpy's own words
+            result = tuner.tune(name, value)
+            assert not result.successful and reason in result.reason
+        result = tuner.call(SetParametersAtomically.Request(parameters=[
+            _double('force.kp', 1e-7), _double('force.limit', 1.0)])).result
+        assert not result.successful
+        assert tuner.get('force.kp', 'force.limit') == before
+        assert not tuner.events
+    assert 'Traceback' not in process.errors
+
+
+def test_a_stiffness_is_a_setpoint_that_changes_this_gain_alone(observer, tmp_path):
+    """And a setpoint's gain is what the parameter then says."""
+    with actuator(tmp_path / 'log', 'knee', model='isa_v5'):
+        tuner = Tuner(observer, 'knee')
+        tuner.connect()
+        damping, = tuner.get('position.damping')
+        tuner.wait_for(  # matched here is not yet matched there
+            lambda: tuner.tune('position.stiffness', 5e4).successful and any(
+                m.position[1] == 5e4 for m in tuner.setpoints), 'the echo')
+        assert tuner.setpoints[-1].position[2] == damping
+        publisher = observer.create_publisher(JointState, '/knee/setpoint', 1)
+
+        def has_come() -> bool:
+            publisher.publish(JointState(
+                name=['knee', 'knee/stiffness'], position=[0.05, 7e4]))
+            return tuner.setpoints[-1].position[1] == 7e4
+        tuner.wait_for(has_come, 'the setpoint')
+        assert tuner.get('position.stiffness') == [7e4]
+        assert not tuner.events
+
+
+@pytest.mark.parametrize('options', [(), ('--in-process',)])
+def test_a_gain_tuned_in_a_run_is_recorded_with_its_tick_and_replays(
+        observer, tmp_path, options):
+    """Stamped t_k in sample k + 1; the replay in one process gives the same bytes."""
+    bag = tmp_path / 'bag'
+    with bringup(bag, '--real-time-factor', '1', *options, config=RIG) as run:
+        tuner = Tuner(observer, 'rotor')
+        tuner.connect()
+        for value in (KP, 2.0 * KP):
+            assert tuner.tune('force.kp', value).successful
+            tuner.let_run()
+        assert tuner.tune('position.damping', 25.0).successful
+        tuner.let_run()
+        run.signal(signal.SIGTERM)
+        assert run.exit_code() == 130
+    found = recorded(bag, 'rotor')
+    assert [values for *_, values in found] == [{'force.kp': KP}, {'force.kp': 2.0 * KP}]
+    assert all(stamp == (sample - 1) * 1_000_000 for sample, stamp, _ in found)
+    assert replay(Bag(bag)).is_equal
+    assert content(record_again(bag, tmp_path / 'again')) == content(bag)
+
+
+def test_what_was_set_stays_set_when_another_run_begins(observer):
+    """And is recorded at its first tick: the configuration does not say it."""
+    setup = Setup(default_actuator('isa_v5', 'knee'), DEFAULT_TIMING)
+    start = np.zeros(1, START)[0]
+    start['position'], start['supply_pressure'] = 0.05, 20.7e6
+    node = ActuatorNode(
+        lambda _: setup, 'knee', has_mailbox=False, context=observer.context,
+        enable_rosout=False)
+    try:
+        for name, value in (('force.kp', 9e-8), ('position.stiffness', 5e4)):
+            result, = node.set_parameters([RosParameter(name, value=value)])
+            assert result.successful
+        for _ in range(2):
+            assert node.start(start)[TUNED] is None
+            messages = node.advance()
+            assert tuned_values(messages[TUNED], 'knee') == {'force.kp': 9e-8}
+            assert decode(messages[APPLIED], JointState).position[1] == 5e4
+            assert node.advance()[TUNED] is None
+        gains = node.get_parameters(['force.kp', 'position.stiffness', 'force.kf'])
+        assert [gain.value for gain in gains] == [9e-8, 5e4, 0.002]
+    finally:
+        node.destroy_node()
+
+
+def test_an_override_on_the_command_line_wins_over_the_file_and_is_recorded_at_tick_0(
+        domain, tmp_path):
+    """The digest stays that of the file, so the run is not refused; the bag replays."""
+    bag = tmp_path / 'bag'
+    parameters: dict[str, object] = {
+        'config_file': RIG, 'lockstep': True, 'force.kp': KP, 'position.stiffness': 200.0}
+    with actuator(tmp_path / 'log', 'rotor', **parameters):
+        with coordinator(tmp_path / 'run', config_file=RIG, out=bag, duration=0.05) as run:
+            assert run.exit_code() == 0, run.errors
+    assert recorded(bag, 'rotor') == [(1, 0, {'force.kp': KP})]
+    assert replay(Bag(bag)).is_equal
+
+
+@pytest.mark.parametrize(('name', 'value', 'message'), [
+    ('force.kq', 1.0, 'knee: parameter force.kq is unknown; did you mean force.k'),
+    ('force.kp', -1.0, 'knee: force.kp = -1 m/N, must be >= 0 m/N (proportional gain K_p)'),
+    ('force.limit', 1, 'knee: reu.force.limit = 1 m, must be <= 0.000178 m'),  # as one writes it
+])
+def test_a_wrong_override_is_refused_in_one_line(domain, tmp_path, name, value, message):
+    """Exit code 2."""
+    with actuator(tmp_path / 'log', 'knee', model='isa_v5', **{name: value}) as process:
+        assert process.exit_code() == 2
+    assert message in process.errors
+    assert len(process.errors.splitlines()) == 1
+
+
+def test_a_lone_actuator_begins_with_its_override_and_says_what_changed(observer, tmp_path):
+    """Matched here is not yet matched there: two values by turns until the echo comes."""
+    with actuator(tmp_path / 'log', 'knee', model='isa_v5', **{'force.kp': 7e-8}):
+        tuner = Tuner(observer, 'knee')
+        tuner.connect()
+        assert tuner.get('force.kp', 'force.kf') == [7e-8, 0.002]
+        values = cycle((5e-8, 6e-8))
+        tuner.wait_for(
+            lambda: tuner.tune('force.kp', next(values)).successful and tuner.events, 'the echo')
+    event = tuner.events[-1]
+    assert (event.node, _ns(event.stamp) % 1_000_000) == ('/knee', 0)
+    changed, = event.changed_parameters
+    # 7e-8, in force from tick 0, for whoever listens by then
+    assert changed.name == 'force.kp' and changed.value.double_value in (5e-8, 6e-8, 7e-8)
