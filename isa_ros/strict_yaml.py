@@ -1,5 +1,5 @@
 """
-YAML for people, strictly: duplicate keys, aliases and oversized files are refused.
+YAML for people, strictly: duplicate keys, aliases, tags and oversized files are refused.
 
 Scalars follow the JSON schema of YAML 1.2, so that `1e5` is a number and `on` is a name.
 """
@@ -18,6 +18,7 @@ Tree = dict[str, 'Scalar | Tree | list[Any]']
 MAX_BYTES = 1 << 20   # of one file; the largest shipped one has 8 kB
 MAX_NODES = 20_000    # of one file
 MAX_DEPTH = 16        # of nested sections
+MAX_DIGITS = 300      # of a whole number: what a double can hold
 
 
 _SCALARS = (
@@ -42,6 +43,8 @@ class _Strict(yaml.composer.Composer):
     def compose_node(self, parent: yaml.Node | None, index: Any) -> yaml.Node | None:
         if self.check_event(yaml.AliasEvent):
             self._refuse('aliases (*name) are not read')
+        if getattr(self.peek_event(), 'tag', None) is not None:
+            self._refuse('tags (!name) are not read')
         self.nodes += 1
         if self.nodes > MAX_NODES:
             self._refuse(f'more than {MAX_NODES} values')
@@ -104,6 +107,8 @@ def _plain(node: yaml.Node, loader: Any, name: str) -> Any:
                 raise _error(key_node, name, f'duplicate key {key}')
             tree[key] = _plain(value_node, loader, name)
         return tree
+    if node.tag.endswith(':int') and len(node.value) > MAX_DIGITS:
+        raise _error(node, name, f'a number of {len(node.value)} digits, must be <= {MAX_DIGITS}')
     try:
         return loader.construct_object(node)
     except (yaml.YAMLError, ValueError) as error:
@@ -121,7 +126,7 @@ def parse(text: str, name: str) -> Tree:
     Raises
     ------
     ConfigError
-        Not YAML, not one section, too large, an alias, or a duplicate key with its line.
+        Not YAML, not one section, too large, an alias, a tag or a duplicate key with its line.
 
     """
     if len(text.encode('utf-8', 'replace')) > MAX_BYTES:
