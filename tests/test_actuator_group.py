@@ -7,10 +7,12 @@ from isa_ros.actuator_group import ActuatorGroup
 from isa_ros.default_actuator import default_actuator, DEFAULT_TIMING
 from isa_ros.errors import SimulationDiverged
 from isa_ros.signals import HAS_SETPOINT, LOAD_PORT
+from msg_adapters.actuator_messages import APPLIED_SETPOINT, APPLIED_TOPICS
 import numpy as np
 import pytest
 from tests.sheets import MODELS, setpoint
 
+SETPOINT = APPLIED_TOPICS.index(APPLIED_SETPOINT)
 CONFIGS = [
     *(default_actuator(model, model) for model in MODELS),
     replace(default_actuator('isa_v5', 'at_a_joint'), load=None)]
@@ -41,7 +43,7 @@ def test_together_they_do_what_each_does_alone():
             assert group.members[k].actuator.snapshot() == actuator.snapshot()
             assert group.replies[k].tobytes() == actuator.reply.tobytes()
             assert group.samples[k].tobytes() == actuator.sample.tobytes()
-            assert (applied[k][0] is not None) == bool(
+            assert (applied[k][SETPOINT] is not None) == bool(
                 actuator.applied is not None and actuator.applied.kinds & HAS_SETPOINT)
     assert group.states() == [member.states() for member in group.members]
 
