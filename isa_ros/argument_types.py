@@ -44,6 +44,14 @@ def count(text: str) -> int:
     return value
 
 
+def names(text: str) -> tuple[str, ...]:
+    """Return names that commas separate."""
+    found = tuple(text.split(','))
+    if not all(found):
+        raise argparse.ArgumentTypeError(f'{text!r} must be names with commas between them')
+    return found
+
+
 def file_to_write(text: str) -> Path:
     """Return the path of a file that can be written, so that nothing is measured in vain."""
     path = Path(text)

@@ -16,7 +16,8 @@ from types import FrameType
 from typing import NoReturn
 
 from isa_ros import commands, response_arguments, study_arguments
-from isa_ros.argument_types import directory_to_write, file_to_write, not_negative, positive
+from isa_ros.argument_types import (
+    directory_to_write, file_to_write, names, not_negative, positive)
 from isa_ros.errors import IsaError, one_line
 from isa_ros.pacing import JOIN_TIMEOUT_S
 
@@ -117,6 +118,9 @@ def _bringup(parser: argparse.ArgumentParser) -> None:
         '--in-process', action='store_true',
         help='all nodes in one process: faster, and the same bytes in the bag')
     parser.add_argument(
+        '--elsewhere', type=names, default=(), metavar='NAME[,NAME...]|all',
+        help='actuators that `isa actuators` starts on another host: they are waited for')
+    parser.add_argument(
         '--controller', action='append', default=[], metavar='NAME',
         help='a node of yours that is waited for at every tick; may be repeated')
     parser.add_argument(
@@ -129,6 +133,15 @@ def _bringup(parser: argparse.ArgumentParser) -> None:
         '--restore', type=Path, metavar='FILE', help='go on from a saved state')
     parser.add_argument(
         '--save', type=file_to_write, metavar='FILE', help='save the state at the end there')
+
+
+def _actuators(parser: argparse.ArgumentParser) -> None:
+    parser.add_argument('config', metavar='CONFIG', help='a run file, or a shipped one by name')
+    parser.add_argument(
+        'names', nargs='*', metavar='NAME', help='an actuator of it (default: all)')
+    parser.add_argument(
+        '--scenario', metavar='FILE',
+        help='that of the run: it may change loads or where the run starts')
 
 
 def _replay(parser: argparse.ArgumentParser) -> None:
@@ -197,6 +210,8 @@ def _bench(parser: argparse.ArgumentParser) -> None:
 _COMMANDS = {
     'demo': (_demo, commands.demo, 'drop the leg by 10 cm, record it, and draw a report'),
     'bringup': (_bringup, commands.bringup, 'run and record a configuration'),
+    'actuators': (_actuators, commands.actuators,
+                  'run actuators of a configuration for a coordinator on another host'),
     'replay': (_replay, commands.replay, 'simulate a bag again from itself, and compare'),
     'compare': (_compare, commands.compare, 'find the first difference of two bags'),
     'report': (_report, commands.report, 'draw the figures of a bag, one page'),

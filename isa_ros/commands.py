@@ -62,9 +62,17 @@ def bringup(options: Namespace) -> bool:
         duration_s=options.duration, real_time_factor=options.real_time_factor,
         overwrite=options.overwrite, compression=options.compression,
         split_mb=options.split_mb, in_process=options.in_process,
-        controllers=tuple(options.controller), is_paused=options.paused,
-        restore=options.restore, save=options.save,
+        elsewhere=options.elsewhere, controllers=tuple(options.controller),
+        is_paused=options.paused, restore=options.restore, save=options.save,
         join_timeout_s=options.join_timeout))
+    return True
+
+
+def actuators(options: Namespace) -> bool:
+    """Run actuators of a configuration for a coordinator on another host."""
+    from isa_ros.actuator_host import host_actuators
+    scenario = None if options.scenario is None else find(options.scenario, SCENARIOS)
+    host_actuators(find(options.config, CONFIG), scenario, options.names)
     return True
 
 

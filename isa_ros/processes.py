@@ -20,6 +20,9 @@ MODULES = {
 }
 """Module of each executable."""
 
+ALL = 'all'
+"""Stands for every actuator of a run."""
+
 _END_S = 3.0  # from SIGTERM to SIGKILL
 _POLL_S = 0.01
 _ROOT = Path(isa_ros.__file__).parents[1]
@@ -46,14 +49,31 @@ class Process:
 
 
 def actuator_processes(
-        run: RunConfig, config: Path, scenario: Path | None) -> tuple[Process, ...]:
-    """Return the actuators of a run, in the order of the file."""
+        run: RunConfig, config: Path, scenario: Path | None,
+        names: Sequence[str] | None = None) -> tuple[Process, ...]:
+    """Return the named actuators of a run, None: all, in the order of the file."""
     files = [('config_file', str(config.resolve()))]
     if scenario is not None:
         files.append(('scenario_file', str(scenario.resolve())))
     return tuple(
         Process(actuator.name, 'actuator', (('lockstep', True), *files))
-        for actuator in run.actuators)
+        for actuator in run.actuators if names is None or actuator.name in names)
+
+
+def names_here(run: RunConfig, elsewhere: Sequence[str]) -> tuple[str, ...]:
+    """
+    Return the actuators that this host starts: all but those ``elsewhere``.
+
+    Raises
+    ------
+    ConfigError
+        ``elsewhere`` names an actuator that the run does not have.
+
+    """
+    if list(elsewhere) == [ALL]:
+        return ()
+    away = {run.actuator(name).name for name in elsewhere}
+    return tuple(own.name for own in run.actuators if own.name not in away)
 
 
 def run_processes(

@@ -12,10 +12,11 @@ from isa_ros.bag.provenance import installed_versions, Provenance
 from isa_ros.bag.writer import BagWriter
 from isa_ros.config import load_run
 from isa_ros.coordinator import Coordinator, Plan, Requests
-from isa_ros.errors import BagError, RunError
+from isa_ros.errors import BagError, ConfigError, RunError
 from isa_ros.exchange import Rows, Transport
 from isa_ros.pacing import (
     JOIN_TIMEOUT_S, JOINING, Laps, Pace, Progress, ProgressMeter, STARTING)
+from isa_ros.processes import names_here
 from isa_ros.run_config import RunConfig
 from isa_ros.run_state import read_state, RunState
 from isa_ros.scenario import idle, load_scenario, Scenario
@@ -46,6 +47,8 @@ class Request:
     """None: that of the configuration, as `split_mb`."""
     split_mb: float | None = None
     in_process: bool = False
+    elsewhere: tuple[str, ...] = ()
+    """Actuators that another host starts; `processes.ALL` alone: all of them."""
     controllers: tuple[str, ...] = ()
     """Controllers that take part, besides those of the run file."""
     is_paused: bool = False
@@ -104,6 +107,11 @@ def prepare(request: Request) -> Session:
     scenario = idle(run) if request.scenario is None else load_scenario(request.scenario, run)
     if request.duration_s is not None:
         scenario = scenario.lasting(request.duration_s)
+    if request.in_process and request.elsewhere:
+        raise ConfigError(
+            f'--elsewhere {",".join(request.elsewhere)} with --in-process: leave one out, this '
+            'process would have all actuators')
+    names_here(run, request.elsewhere)
     name = run.name if request.scenario is None else f'{run.name}_{scenario.name}'
     out = request.out or _unused(RUNS / name)
     _check_output(out, request.overwrite)

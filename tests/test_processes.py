@@ -7,7 +7,7 @@ import time
 
 from isa_ros import processes
 from isa_ros.config import load_run
-from isa_ros.processes import actuator_processes, Children, Process, run_processes
+from isa_ros.processes import actuator_processes, Children, names_here, Process, run_processes
 import pytest
 
 CONFIG = Path(__file__).parents[1] / 'config' / 'leg.yaml'
@@ -37,6 +37,15 @@ def test_one_process_per_actuator():
     assert [(p.name, p.executable) for p in found] == [
         ('haa', 'actuator'), ('hfe', 'actuator'), ('kfe', 'actuator')]
     assert found[0].parameters == (('lockstep', True), ('config_file', str(CONFIG)))
+
+
+@pytest.mark.parametrize('elsewhere, here', [
+    ((), ['haa', 'hfe', 'kfe']), (('hfe',), ['haa', 'kfe']), (('all',), []),
+    (('kfe', 'haa', 'hfe'), [])])
+def test_this_host_starts_what_no_other_does(elsewhere, here):
+    run = load_run(CONFIG)
+    found = actuator_processes(run, CONFIG, None, names_here(run, elsewhere))
+    assert [process.name for process in found] == here
 
 
 def test_arguments_are_yaml_that_keeps_its_type():

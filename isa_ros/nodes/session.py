@@ -13,7 +13,7 @@ from isa_ros.nodes.environment import set_defaults
 from isa_ros.nodes.lockstep import Cast, Expected, Limits, LockstepTransport
 from isa_ros.nodes.mixed import MixedTransport
 from isa_ros.nodes.run_services import RunServices
-from isa_ros.processes import actuator_processes, Children
+from isa_ros.processes import actuator_processes, Children, names_here
 from isa_ros.run import record, Report, save_in_bag, Session
 from isa_ros.shared_load import SharedLoad
 from isa_ros.stepping import SteppedActuator
@@ -37,7 +37,8 @@ def in_processes(session: Session, report: Report | None, should_stop: StopReque
     load = SharedLoad(session.run)
     cast = _cast(session, load)
     request = session.request
-    processes = actuator_processes(session.run, request.config, request.scenario)
+    processes = actuator_processes(
+        session.run, request.config, request.scenario, names_here(session.run, request.elsewhere))
     with sole_coordinator(), Children(processes, request.namespace) as children:
         with _node(request.namespace) as node:
             _coordinate(node, session, load, cast, report, should_stop, children.lost)
