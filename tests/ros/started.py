@@ -1,6 +1,6 @@
 """Processes that a test starts, waits for with a deadline, and ends by their id."""
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
 import os
 from pathlib import Path
@@ -29,15 +29,19 @@ def wait_for(condition: Callable[[], T], what: str = '') -> T:
 
 
 class Started:
-    """One process under test; its standard error goes to a file."""
+    """
+    One process under test; its standard error goes to a file.
 
-    def __init__(self, arguments: list[str], log: Path) -> None:
+    ``prefix`` is a command that becomes it, `Host.enter` of `tests.ros.hosts` for one.
+    """
+
+    def __init__(self, arguments: list[str], log: Path, prefix: Sequence[str] = ()) -> None:
         self._log = log
         environment = os.environ | {'PYTHONPATH': str(ROOT)}
         with log.open('w') as stderr:
             self._process = subprocess.Popen(
-                [sys.executable, '-m', *arguments], stderr=stderr, stdin=subprocess.DEVNULL,
-                stdout=subprocess.DEVNULL, env=environment)
+                [*prefix, sys.executable, '-m', *arguments], stderr=stderr,
+                stdin=subprocess.DEVNULL, stdout=subprocess.DEVNULL, env=environment)
 
     @property
     def errors(self) -> str:
@@ -80,9 +84,9 @@ class Started:
 
 
 @contextmanager
-def started(log: Path, *arguments: str) -> Iterator[Started]:
+def started(log: Path, *arguments: str, prefix: Sequence[str] = ()) -> Iterator[Started]:
     """Run ``python -m ARGUMENTS`` while the context lasts."""
-    process = Started(list(arguments), log)
+    process = Started(list(arguments), log, prefix)
     try:
         yield process
     finally:
@@ -90,10 +94,12 @@ def started(log: Path, *arguments: str) -> Iterator[Started]:
 
 
 @contextmanager
-def bringup(out: Path, *arguments: str, config: Path = LEG) -> Iterator[Started]:
+def bringup(
+        out: Path, *arguments: str, config: Path = LEG,
+        prefix: Sequence[str] = ()) -> Iterator[Started]:
     """Run ``isa bringup``; its standard error goes beside the bag."""
     with started(out.with_suffix('.log'), 'isa_ros', 'bringup', str(config),
-                 '--out', str(out), *arguments) as process:
+                 '--out', str(out), *arguments, prefix=prefix) as process:
         yield process
 
 
