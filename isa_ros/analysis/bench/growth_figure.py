@@ -8,6 +8,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 REAL_TIME = 1000.0      # ticks/s
+SPEEDS = (20, 50, 100, 200, 500, 1000, 2000, 5000, 10000)     # that are labelled
 MIB = 1024.0 * 1024.0
 _STYLES = ('C0o-', 'C1s-')
 
@@ -23,6 +24,9 @@ def growth_figure(curves: Curves) -> Figure:
         memory.plot(numbers, [median(map(_mebibytes, runs)) for _, runs in curve],
                     style, markersize=4, label=name)
     speed.axhline(REAL_TIME, color='gray', linestyle='--', linewidth=0.8, label='real time')
+    lowest, highest = speed.get_ylim()
+    shown = [value for value in SPEEDS if lowest <= value <= highest]
+    speed.set_yticks(shown, [str(value) for value in shown])
     for ax, label in ((speed, 'ticks of 1 ms per second'), (memory, 'memory together, MiB')):
         _finish(ax, label, max(curves.values(), key=len))
     return figure

@@ -28,7 +28,7 @@ class Machine:
     def summary(self) -> str:
         """Return one line."""
         return (f'{self.processor}, {self.cores} cores, {self.memory_gib:.0f} GiB, Linux '
-                f'{self.kernel}, Python {self.python}, load {self.load:.2f} before')
+                f'{self.kernel}, Python {self.python}, load {self.load:.1f} before')
 
 
 def machine() -> Machine:
@@ -36,7 +36,7 @@ def machine() -> Machine:
     pages = os.sysconf('SC_PHYS_PAGES') * os.sysconf('SC_PAGE_SIZE')
     return Machine(
         processor=_processor(), cores=len(os.sched_getaffinity(0)),
-        memory_gib=pages / _KIB ** 3, kernel=platform.release(),
+        memory_gib=pages / _KIB ** 3, kernel='.'.join(platform.release().split('.')[:2]),
         python=platform.python_version(), load=os.getloadavg()[0])
 
 

@@ -28,7 +28,7 @@ def leg_rows(outcomes: Outcomes) -> list[Row]:
         runs = outcomes.of(spec)
         speed = speed_row(f'leg, {spec.way}', runs).aiming(_AIMS[spec])
         rows.append(speed.noting(profile(runs)) if speed.is_reached is False else speed)
-        rows += tick_rows(runs, pipe)
+        rows += [row.under(speed) for row in tick_rows(runs, pipe)]
     return rows
 
 
@@ -40,13 +40,13 @@ def speed_row(name: str, runs: Sequence[Measured]) -> Row:
 
 def tick_rows(runs: Sequence[Measured], pipe: float) -> list[Row]:
     """Return what a tick takes, of the host's time and of its processors'."""
-    row = Row.of('  a tick', [run.tick * 1e6 for run in runs], 'us')
+    row = Row.of('a tick', [run.tick * 1e6 for run in runs], 'us')
     tick = row.number * 1e-6
     rows = [row.against('pipe floor', pipe / tick)]
-    rows += [Row(f'    {phase}', spent * 1e6, 'us', 'that tick', spent / tick)
+    rows += [Row(f'of it {phase}', spent * 1e6, 'us', 'that tick', spent / tick)
              for phase, spent in median_of([run.phases for run in runs]).items()]
-    rows += [Row(f'  processor time of a tick, {part}', spent * 1e6, 'us', 'that tick',
+    rows += [Row(f'processor time of a tick, {part}', spent * 1e6, 'us', 'that tick',
                  spent / tick)
              for part, spent in median_of([run.processor for run in runs]).items()]
     share = busy(runs)
-    return [*rows, Row(f'  {cores()} cores in use', 100.0 * share, '%', 'all of them', share)]
+    return [*rows, Row(f'{cores()} cores in use', 100.0 * share, '%', 'all of them', share)]

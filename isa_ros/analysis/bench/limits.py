@@ -24,7 +24,12 @@ def startup_profile(runs: Sequence[Measured]) -> str:
 
 def _parts(parts: Mapping[str, float], scale: float, unit: str) -> str:
     by_size = sorted(parts.items(), key=lambda part: -part[1])
-    return ', '.join(f'{name} {value * scale:.3g} {unit}' for name, value in by_size)
+    return ', '.join(f'{name} {_digits(value * scale)} {unit}' for name, value in by_size)
+
+
+def _digits(value: float) -> str:
+    """Return three digits, also of large numbers."""
+    return f'{value:.0f}' if value >= 1e3 else f'{value:.3g}'
 
 
 def busy(runs: Sequence[Measured]) -> float:

@@ -22,13 +22,16 @@ Measured and written, with its figure, in one call of
 
     ./isa bench --out docs
 
-on {machine}. Every row is a median, with the lowest and the highest in brackets; a ratio is in
-the direction in which more is better, to a floor of the same call. Whole runs take 1 ms ticks
-with recording, each run in a process of its own, in rounds of alternating order. The peers carry
-the same steps and answers between the same actuators, shared load and recorder, and give the same
-bag, byte for byte; isa_ros also publishes every topic. A phase *actuators* in processes is the
-wait for them.
+on
 
+    {machine}
+
+Every row is a median, with the lowest and the highest in brackets; a ratio is in the direction in
+which more is better, to a floor of the same call. Whole runs take 1 ms ticks with recording, each
+run in a process of its own, in rounds of alternating order. The peers carry the same steps and
+answers between the same actuators, shared load and recorder, and give the same bag, byte for
+byte; isa_ros also publishes every topic. In processes, the phase *actuators* is the wait for
+them.
 """
 
 
@@ -55,7 +58,8 @@ def as_lines(section: Section) -> list[str]:
     lines = [f'{section.title} ({section.name})']
     for row in section.rows:
         ratio = '' if row.ratio is None else f'{row.ratio:.3g}'
-        line = f'{row.name:52} {_number(row.value):>10} {row.unit:8} {ratio:>8}  {row.floor}'
+        line = (f'{_indented(row, "  "):52} {_number(row.value):>10} {row.unit:8} {ratio:>8}  '
+                f'{row.floor}')
         lines.append(line.rstrip() + _verdict(row))
         if row.note:
             lines.append(f'    {row.note}')
@@ -130,7 +134,7 @@ def _aims(report: Report) -> list[str]:
 
 
 def _spread(row: Row) -> str:
-    if row.lowest is None or row.highest is None:
+    if row.lowest is None or row.highest is None or row.lowest == row.highest:
         return _number(row.value)
     return f'{_number(row.value)} ({_number(row.lowest)} to {_number(row.highest)})'
 
@@ -142,15 +146,14 @@ def _markdown(section: Section) -> list[str]:
     for row in section.rows:
         ratio = '' if row.ratio is None else f'{row.ratio:.3g}'
         beside = row.note if row.value is None else row.floor
-        lines.append(f'| {_indented(row.name)} | {_spread(row)} | {row.unit} | {ratio} | '
+        lines.append(f'| {_indented(row, "&emsp;")} | {_spread(row)} | {row.unit} | {ratio} | '
                      f'{beside} |')
     return [*lines, '']
 
 
-def _indented(name: str) -> str:
-    """Return a name whose leading spaces survive in a table."""
-    bare = name.lstrip(' ')
-    return '&nbsp;' * (len(name) - len(bare)) + bare
+def _indented(row: Row, space: str) -> str:
+    """Return the name, a part's behind a space."""
+    return f'{space if row.part_of else ""}{row.name}'
 
 
 def _png(curves: growth.Curves) -> bytes:

@@ -39,6 +39,8 @@ class Row:
     highest: float | None = None
     aim: Aim | None = None
     note: str = ''
+    part_of: str = ''
+    """Name of the row that this one is a part of."""
 
     @classmethod
     def of(cls, name: str, values: Sequence[float], unit: str) -> 'Row':
@@ -56,6 +58,10 @@ class Row:
     def noting(self, note: str) -> 'Row':
         """Return the row with a remark."""
         return replace(self, note=note)
+
+    def under(self, whole: 'Row') -> 'Row':
+        """Return the row as a part of another one."""
+        return replace(self, part_of=whole.name)
 
     @property
     def number(self) -> float:

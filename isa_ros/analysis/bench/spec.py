@@ -34,7 +34,8 @@ class Spec:
 
     def __str__(self) -> str:
         """Return a few words for progress and messages."""
-        what = 'the leg' if self.plant == LEG else f'{self.plant} actuators'
+        what = 'the leg' if self.plant == LEG else (
+            f'{self.plant} actuator{"" if self.plant == "1" else "s"}')
         return f'{what}, {self.way}'
 
 

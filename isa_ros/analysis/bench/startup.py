@@ -37,5 +37,5 @@ def _rows(spec: Spec, outcomes: Outcomes, floor: float) -> list[Row]:
         row = row.aiming(_AIM)
         row = row.noting(startup_profile(runs)) if row.is_reached is False else row
     parts = median_of([run.startup for run in runs])
-    return [row, *(Row(f'    {part}', spent, 's', 'the whole', spent / row.number)
+    return [row, *(Row(part, spent, 's', 'the whole', spent / row.number).under(row)
                    for part, spent in parts.items())]

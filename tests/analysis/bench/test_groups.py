@@ -9,10 +9,9 @@ from tests.analysis.bench.told import MIB, told
 
 
 def by_name(rows):
-    """Return the rows by their names, which a group has once."""
-    found = {row.name: row for row in rows}
-    assert len(found) == len(rows)
-    return found
+    """Return the rows by name; a group has a name once, and a row a part once."""
+    assert len({(row.part_of, row.name) for row in rows}) == len(rows)
+    return {row.name: row for row in rows}
 
 
 @pytest.fixture
@@ -33,6 +32,10 @@ def test_a_missed_aim_says_where_the_tick_goes(monkeypatch):
     assert [row.name for row in missed] == ['leg, processes']
     assert 'actuators 500 us' in missed[0].note and 'together 75% of 2 cores' in missed[0].note
     assert [row.name for row in rows if row.is_reached] == ['leg, one process']
+    parts = [row for row in rows if row.part_of == 'leg, processes']
+    assert [row.value for row in parts if row.name.startswith('of it')] == pytest.approx(
+        [500.0, 500.0])
+    by_name(rows)
 
 
 def test_peers_are_compared_round_by_round():
@@ -81,7 +84,7 @@ def test_start_up_is_the_sum_of_its_parts(loading):
     total = rows['the leg, processes: to tick 0']
     assert (total.lowest, total.value, total.highest) == (3.0, 5.0, 6.0)
     assert total.is_reached is False and 'actuators join 3.75 s' in total.note
-    assert rows['    imports'].ratio == pytest.approx(0.25)
+    assert rows['imports'].ratio == pytest.approx(0.25)
 
 
 def test_24_processes_are_left_out_where_memory_is_short(monkeypatch):

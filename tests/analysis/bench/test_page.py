@@ -20,6 +20,7 @@ def report() -> Report:
         Row.of('leg, processes', [1000.0, 1200.0, 1100.0], 'ticks/s').aiming(Aim(1500.0)).noting(
             'of a tick of 909 us: actuators 700 us'),
         Row.of('start', [3.0], 's').aiming(Aim(4.0, is_most=True)),
+        Row('a tick', 909.0, 'us', part_of='leg, processes'),
         Row('HELICS', None, 'ticks/s', note='not installed: requirements-bench.txt'))
     outcomes = Outcomes({spec: [told(3000.0 / int(spec.plant))]
                          for spec in growth.IN_ONE_PROCESS + growth.IN_PROCESSES})
@@ -33,8 +34,9 @@ def test_the_page_names_machine_aims_and_limits(report, tmp_path):
     assert 'A processor @ 1 GHz, 2 cores' in text
     assert ('| leg, processes | >= 1500 | 1100 (1000 to 1200) ticks/s | **not reached** |'
             in text)
-    assert '| start | <= 4 | 3 (3 to 3) s | reached |' in text
+    assert '| start | <= 4 | 3 s | reached |' in text
     assert '- leg, processes: of a tick of 909 us: actuators 700 us.' in text
+    assert '| &emsp;a tick | 909 | us |' in text
     assert '| HELICS | - | ticks/s |  | not installed: requirements-bench.txt |' in text
     assert figure.read_bytes().startswith(b'\x89PNG')
     assert f'](figures/{figure.name})' in text
@@ -46,7 +48,7 @@ def test_the_json_holds_every_row_and_every_run(report, tmp_path):
     tree = json.loads(path.read_text(encoding='utf-8'))
     assert tree['machine']['cores'] == 2
     assert [(row['group'], row['is_reached']) for row in tree['rows']] == [
-        ('leg', False), ('leg', True), ('leg', None)]
+        ('leg', False), ('leg', True), ('leg', None), ('leg', None)]
     assert len(tree['runs']) == len(growth.IN_ONE_PROCESS + growth.IN_PROCESSES)
     assert tree['runs'][0]['spec']['plant'] == '1'
     assert tree['runs'][0]['ticks_per_s'] == 3000.0
