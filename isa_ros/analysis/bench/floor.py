@@ -4,10 +4,11 @@ from multiprocessing import get_context
 from multiprocessing.connection import Connection
 
 from isa_ros.analysis.bench.row import seconds
+from isa_ros.signals import LOAD_REPLY, SAMPLE
 
 TICKS = 500
 WORKERS = 3             # as many as the leg has actuators
-PIPE_BYTES = 1500       # about one actuator's acknowledgement
+PIPE_BYTES = LOAD_REPLY.itemsize + SAMPLE.itemsize     # of one actuator's answer
 
 
 def pipe_exchange() -> float:

@@ -1,13 +1,15 @@
 """The leg's drop, recording: three actuators in processes of their own, and in one."""
 
 from collections.abc import Sequence
+from statistics import median
 
 from isa_ros.analysis.bench.floor import pipe_exchange, WORKERS
-from isa_ros.analysis.bench.limits import busy, cores, profile
+from isa_ros.analysis.bench.limits import busy, cores, in_parts, profile
 from isa_ros.analysis.bench.rounds import Outcomes
 from isa_ros.analysis.bench.row import Aim, Row
 from isa_ros.analysis.bench.spec import (
     LEG, Measured, median_of, ONE_PROCESS, PROCESSES, Spec)
+from isa_ros.analysis.bench.tick import actuator_parts
 
 IN_PROCESSES = Spec(LEG, PROCESSES, 2000)
 IN_ONE_PROCESS = Spec(LEG, ONE_PROCESS, 3000)
@@ -27,9 +29,27 @@ def leg_rows(outcomes: Outcomes) -> list[Row]:
     for spec in SPECS:
         runs = outcomes.of(spec)
         speed = speed_row(f'leg, {spec.way}', runs).aiming(_AIMS[spec])
-        rows.append(speed.noting(profile(runs)) if speed.is_reached is False else speed)
-        rows += [row.under(speed) for row in tick_rows(runs, pipe)]
+        below = tick_rows(runs, pipe)
+        limit = profile(runs)
+        if spec == IN_ONE_PROCESS:
+            spent = _actuator_phase(runs)
+            below += [Row(f'of its actuators {part}', value * 1e6, 'us', 'that phase',
+                          value / sum(spent.values())) for part, value in spent.items()]
+            limit += f'; of its actuators: {in_parts(spent, 1e6, "us")}'
+        rows.append(speed.noting(limit) if speed.is_reached is False else speed)
+        rows += [row.under(speed) for row in below]
     return rows
+
+
+def _actuator_phase(runs: Sequence[Measured]) -> dict[str, float]:
+    """
+    Return what the phase of the actuators is spent on where they are in one process, in s.
+
+    Plant, REU and messages as they take without ROS, in this process; the rest is theirs.
+    """
+    parts = actuator_parts()
+    phase = median(run.phases['actuators'] for run in runs)
+    return parts | {'ROS: publishing and listening': max(0.0, phase - sum(parts.values()))}
 
 
 def speed_row(name: str, runs: Sequence[Measured]) -> Row:

@@ -7,24 +7,25 @@ from statistics import median
 from isa_ros.analysis.bench.spec import Measured, median_of
 
 
+def in_parts(parts: Mapping[str, float], scale: float, unit: str) -> str:
+    """Return parts with their values, the largest first."""
+    by_size = sorted(parts.items(), key=lambda part: -part[1])
+    return ', '.join(f'{name} {_digits(value * scale)} {unit}' for name, value in by_size)
+
+
 def profile(runs: Sequence[Measured]) -> str:
     """Return where a tick goes, in one sentence; medians over the runs."""
     tick = median(run.tick for run in runs)
     phases, processor = (
         median_of([run.phases for run in runs]), median_of([run.processor for run in runs]))
-    return (f'of a tick of {tick * 1e6:.0f} us: {_parts(phases, 1e6, "us")}; processor time of '
-            f'a tick: {_parts(processor, 1e6, "us")}, together {busy(runs):.0%} of '
+    return (f'of a tick of {tick * 1e6:.0f} us: {in_parts(phases, 1e6, "us")}; processor time of '
+            f'a tick: {in_parts(processor, 1e6, "us")}, together {busy(runs):.0%} of '
             f'{cores()} cores')
 
 
 def startup_profile(runs: Sequence[Measured]) -> str:
     """Return where the start-up goes, in one sentence; medians over the runs."""
-    return f'from the start on: {_parts(median_of([run.startup for run in runs]), 1.0, "s")}'
-
-
-def _parts(parts: Mapping[str, float], scale: float, unit: str) -> str:
-    by_size = sorted(parts.items(), key=lambda part: -part[1])
-    return ', '.join(f'{name} {_digits(value * scale)} {unit}' for name, value in by_size)
+    return f'from the start on: {in_parts(median_of([run.startup for run in runs]), 1.0, "s")}'
 
 
 def _digits(value: float) -> str:

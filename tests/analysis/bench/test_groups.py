@@ -25,6 +25,7 @@ def loading(monkeypatch):
 def test_a_missed_aim_says_where_the_tick_goes(monkeypatch):
     """Half of 1000 us in each phase; 1500 us of processor time is 3/4 of two cores."""
     monkeypatch.setattr(leg, 'pipe_exchange', lambda: 100e-6)
+    monkeypatch.setattr(leg, 'actuator_parts', lambda: {'plant': 60e-6, 'messages': 10e-6})
     monkeypatch.setattr('isa_ros.analysis.bench.limits.cores', lambda: 2)
     outcomes = Outcomes({leg.IN_PROCESSES: [told(1000.0, 3)], leg.IN_ONE_PROCESS: [told(5000.0)]})
     rows = leg.leg_rows(outcomes)
@@ -35,7 +36,9 @@ def test_a_missed_aim_says_where_the_tick_goes(monkeypatch):
     parts = [row for row in rows if row.part_of == 'leg, processes']
     assert [row.value for row in parts if row.name.startswith('of it')] == pytest.approx(
         [500.0, 500.0])
-    by_name(rows)
+    # 100 us of the 200 us tick in one process are the actuators': the rest of them is ROS.
+    assert by_name(rows)['of its actuators ROS: publishing and listening'].value == (
+        pytest.approx(30.0))
 
 
 def test_peers_are_compared_round_by_round():

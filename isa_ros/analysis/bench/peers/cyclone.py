@@ -13,7 +13,7 @@ from cyclonedds.sub import DataReader
 from cyclonedds.topic import Topic
 from cyclonedds.util import duration
 
-LARGEST = 2048  # bytes of a message
+LARGEST = 1024  # bytes of a message: three times load port and command, or one answer
 _DEPTH = 10     # as the lockstep's own topics
 _LOOPBACK = """
 <CycloneDDS><Domain Id="any">
