@@ -54,18 +54,16 @@ def actuator_parts() -> dict[str, float]:
     run = _drop()
     load, rows = SharedLoad(run), Rows(len(run.actuators))
     load.ports(rows.ports)
-    silent, talking = _group(run, load), _group(run, load)
+    group = _group(run, load)
 
-    def kernels_only() -> None:
+    def plants() -> None:
         for _ in range(TICKS):
-            silent.advance(rows.ports)
+            group.advance(rows.ports)
 
-    def with_messages() -> None:
+    def messages() -> None:
         for _ in range(TICKS):
-            talking.advance(rows.ports)
-            talking.states()
-    plant = seconds(kernels_only, TICKS)
-    return {PLANT: plant, MESSAGES: seconds(with_messages, TICKS) - plant}
+            group.states()
+    return {PLANT: seconds(plants, TICKS), MESSAGES: seconds(messages, TICKS)}
 
 
 def _group(run: RunConfig, load: SharedLoad) -> ActuatorGroup:
