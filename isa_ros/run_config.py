@@ -18,6 +18,7 @@ from isa_ros.record_config import read_record, RecordConfig
 from isa_ros.resolve import (
     as_tree, build, build_one_of, names_at, Place, refuse_unknown, section_at, written)
 from isa_ros.strict_yaml import dump, parse, Tree
+from isa_ros.timebase import refuse_grid
 
 
 COORDINATOR = 'coordinator'
@@ -206,10 +207,14 @@ class RunConfig:
         tree, place = parse(text, name), Place(name)
         _exactly(tree, (*KEYS, *(key for key in (*LATER, 'leg') if key in tree)), place)
         actuators = section_at(tree['actuators'], place / 'actuators')
+        step_ns, offset_ns = (
+            _of(int, tree, key, place) for key in ('step_ns', 'controller_offset_ns'))
+        refuse_grid(step_ns, offset_ns, name)
+        for actuator in actuators:
+            refuse_bad_name(actuator, f'{place / "actuators"}: the name')
         return cls(
             name=_of(str, tree, 'name', place), source=_of(str, tree, 'source', place),
-            step_ns=_of(int, tree, 'step_ns', place),
-            controller_offset_ns=_of(int, tree, 'controller_offset_ns', place),
+            step_ns=step_ns, controller_offset_ns=offset_ns,
             tick_timeout_s=_of(float, tree, 'tick_timeout_s', place),
             supply=_set(SupplySheet, tree, 'supply', place),
             actuators=tuple(

@@ -12,6 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 FORMAT = 1
+MAX_TICKS = 2**32  # sequence numbers of a bag
 LARGEST_BYTES = 16 * 1024 * 1024
 _BYTES = ('load', 'requests')
 
@@ -54,6 +55,8 @@ class RunState:
             It is no saved state, or one of another configuration; ``where`` names the file.
 
         """
+        if len(text) > LARGEST_BYTES:
+            raise ConfigError(f'{where}: larger than {LARGEST_BYTES} bytes, no saved state')
         try:
             tree: Any = json.loads(text)
             if tree['format'] != FORMAT:
@@ -63,8 +66,9 @@ class RunState:
                     f'{where}: saved from the configuration {tree["configuration.sha256"]}, '
                     f'must be that of this run, {configuration}')
             tick = tree['tick']
-            if type(tick) is not int or tick < 0:
-                raise ConfigError(f'{where}: tick = {tick!r}, must be an integer >= 0')
+            if type(tick) is not int or not 0 <= tick < MAX_TICKS:
+                raise ConfigError(
+                    f'{where}: tick = {tick!r}, must be an integer >= 0 and < {MAX_TICKS}')
             return cls(
                 tick=tick, participants=[bytes.fromhex(own) for own in tree['participants']],
                 **{name: bytes.fromhex(tree[name]) for name in _BYTES})

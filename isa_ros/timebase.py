@@ -9,6 +9,7 @@ from isa_ros.errors import ConfigError
 NS_PER_SECOND = 1_000_000_000
 PLANT_STEP_NS = 20_000  # fixed RK4 step, physics section 3: stable to 76 us at the worst orifice
 PLANT_STEP = PLANT_STEP_NS / NS_PER_SECOND
+MAX_STEP_NS = 100_000_000
 FORCE_WINDOWS = 5  # mean forces a macro step hands to the load
 
 
@@ -27,3 +28,24 @@ def steps_in(period_ns: int, name: str) -> int:
             f'{name} = {period_ns / 1e6:g} ms, must be a positive multiple of the plant step '
             f'{PLANT_STEP_NS / 1e6:g} ms')
     return period_ns // PLANT_STEP_NS
+
+
+def refuse_grid(step_ns: int, offset_ns: int, where: str) -> None:
+    """
+    Refuse a macro step or an offset of the controllers' samples that no run may have.
+
+    Raises
+    ------
+    ConfigError
+        One is outside its range or no whole number of plant steps.
+
+    """
+    grid_ns = FORCE_WINDOWS * PLANT_STEP_NS
+    if not 0 < step_ns <= MAX_STEP_NS or step_ns % grid_ns:
+        raise ConfigError(
+            f'{where}: step_ns = {step_ns:g} ns, must be > 0 and <= {MAX_STEP_NS} ns and a '
+            f'multiple of {grid_ns} ns')
+    if not 0 <= offset_ns < step_ns or offset_ns % PLANT_STEP_NS:
+        raise ConfigError(
+            f'{where}: controller_offset_ns = {offset_ns:g} ns, must be >= 0 and < step_ns = '
+            f'{step_ns} ns and a multiple of {PLANT_STEP_NS} ns')

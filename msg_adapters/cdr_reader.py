@@ -1,7 +1,11 @@
 """Reading messages back from their CDR bytes, every length checked before it is used."""
 
 from collections.abc import Iterator
+from functools import cache
 from importlib import import_module
+from importlib.util import find_spec
+from pathlib import Path
+import re
 import struct
 from typing import Any, TypeVar
 
@@ -9,8 +13,10 @@ from msg_adapters.cdr import CdrError, ENCAPSULATION, field_type, FieldType, is_
 from msg_adapters.cdr import PRIMITIVES
 
 M = TypeVar('M', bound=Message)
+_TYPE = re.compile(r'(?P<package>[a-z][a-z0-9_]*)/(?:msg/)?(?P<name>[A-Z][A-Za-z0-9]*)', re.ASCII)
 
 
+@cache
 def message_class(type_name: str) -> type[Message]:
     """
     Return the message class of ``sensor_msgs/msg/JointState`` or ``sensor_msgs/JointState``.
@@ -21,12 +27,24 @@ def message_class(type_name: str) -> type[Message]:
         no such message package or type is installed.
 
     """
-    package, *_, name = type_name.split('/')
+    parts = _TYPE.fullmatch(type_name)
+    if parts is None or not _has_messages(parts['package']):
+        raise CdrError(f'{type_name}: no such message type is installed')
     try:
-        found: type[Message] = getattr(import_module(f'{package}.msg'), name)
-    except (ImportError, AttributeError, ValueError) as error:
+        found: type[Message] = getattr(import_module(f'{parts["package"]}.msg'), parts['name'])
+    except (ImportError, AttributeError) as error:
         raise CdrError(f'{type_name}: no such message type is installed ({error})') from None
+    if not hasattr(found, 'get_fields_and_field_types'):
+        raise CdrError(f'{type_name}: is no message type')
     return found
+
+
+def _has_messages(package: str) -> bool:
+    """Tell whether a package may be imported: a file names it, and importing runs its code."""
+    found = find_spec(package)
+    return found is not None and any(
+        (Path(folder) / 'msg' / '__init__.py').is_file()
+        for folder in found.submodule_search_locations or ())
 
 
 def decode(data: bytes, cls: type[M]) -> M:
@@ -77,7 +95,11 @@ class _Decoder:
         if not declared:
             self._take(1)
         for name, text in declared.items():
-            setattr(result, name, self._field(field_type(text)))
+            value = self._field(field_type(text))
+            try:
+                setattr(result, name, value)
+            except AssertionError:  # what message classes raise, for a bound of the type
+                raise CdrError(f'{self._name}: {name} is beyond {text}') from None
         return result
 
     def _field(self, declared: FieldType) -> Any:

@@ -1,6 +1,6 @@
 """The signals of a bag as arrays over time."""
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -26,6 +26,17 @@ class Trace:
         return self.fields[path]
 
 
+class _Topics(dict[str, Trace]):
+    """The topics of one bag; one that it does not hold is an error of the bag."""
+
+    def __init__(self, bag: Path, topics: Mapping[str, Trace]) -> None:
+        super().__init__(topics)
+        self._bag = bag
+
+    def __missing__(self, topic: str) -> Trace:
+        raise BagError(f'{self._bag}: {topic} is not in it, was it left out?')
+
+
 def read_traces(path: Path) -> tuple[RunConfig, dict[str, Trace]]:
     """
     Return the configuration a bag carries and every topic of signals in it by name.
@@ -44,10 +55,10 @@ def read_traces(path: Path) -> tuple[RunConfig, dict[str, Trace]]:
             continue
         times.setdefault(message.topic, []).append(message.t_ns)
         messages.setdefault(message.topic, []).append(message.data)
-    return RunConfig.from_yaml(bag.provenance.configuration), {
+    return RunConfig.from_yaml(bag.provenance.configuration), _Topics(path, {
         topic: Trace(np.array(times[topic]) * 1e-9,
                      columns(messages[topic], bag.types[topic], f'{path}: {topic}'))
-        for topic in times}
+        for topic in times})
 
 
 def columns(messages: Sequence[bytes], type_name: str, where: str) -> np.ndarray:

@@ -128,6 +128,8 @@ def _recorded_state(bag: Bag, run: RunConfig) -> RunState | None:
     if text is None:
         return None
     state = RunState.from_json(text, run.digest, f'{bag.path.name}: state.json')
+    if state.tick > next(bag.messages()).sequence:
+        raise BagError(f'{bag.path}: begins before tick {state.tick}, the one of its state.json')
     return replace(state, participants=state.participants[:len(run.actuators)])
 
 

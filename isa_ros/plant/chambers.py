@@ -48,7 +48,7 @@ class Vane(Parameters):
     """Rotary vane actuator with equal displacement both ways."""
 
     displacement_cc_per_rad: float = parameter(
-        'displacement D_m', 'cc/rad', gt=0.0, le=1000.0)
+        'displacement D_m', 'cc/rad', ge=1e-3, le=1000.0)
     rotation: float = parameter('angular range L_m', 'rad', gt=0.0, le=6.2)
 
     @property

@@ -123,7 +123,7 @@ def loop_steps(reu: Reu) -> dict[str, int]:
     steps = {}
     for name, rate in rates.items():
         period_ns = NS_PER_SECOND / rate
-        if period_ns != int(period_ns):
+        if not period_ns.is_integer():  # nor is an infinite one
             raise ConfigError(
                 f'{name}.rate_hz = {rate:g} Hz, its period must be whole nanoseconds')
         steps[name] = steps_in(int(period_ns), f'period of {name}.rate_hz = {rate:g} Hz')
