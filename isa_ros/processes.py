@@ -11,6 +11,7 @@ import sys
 import time
 
 import isa_ros
+from isa_ros.errors import RunError
 from isa_ros.run_config import RunConfig
 from isa_ros.stopping import PARENT_VARIABLE
 
@@ -23,7 +24,9 @@ MODULES = {
 ALL = 'all'
 """Stands for every actuator of a run."""
 
-_END_S = 3.0  # from SIGTERM to SIGKILL
+END_S = 3.0
+"""From SIGTERM to SIGKILL, host time."""
+
 _POLL_S = 0.01
 _ROOT = Path(isa_ros.__file__).parents[1]
 
@@ -94,7 +97,15 @@ def run_processes(
 
 
 class Children:
-    """Processes that end with this one; a context manager."""
+    """
+    Processes that end with this one; a context manager.
+
+    Raises
+    ------
+    RunError
+        One cannot be started; those before it are ended.
+
+    """
 
     def __init__(self, processes: Sequence[Process], namespace: str = '') -> None:
         self._processes = processes
@@ -108,18 +119,28 @@ class Children:
                 [str(_ROOT), *filter(None, [os.environ.get('PYTHONPATH')])]),
         }
         for process in self._processes:
-            # A session of its own: Ctrl-C reaches the coordinator alone, which ends the tick.
-            self._running[process.name] = subprocess.Popen(
-                [sys.executable, '-m', MODULES[process.executable],
-                 *process.ros_arguments(self._namespace),
-                 '-p', 'start_type_description_service:=false', '--disable-rosout-logs'],
-                env=environment, stdin=subprocess.DEVNULL, start_new_session=True)
+            try:
+                self._running[process.name] = self._start(process, environment)
+            except OSError as error:
+                self.__exit__()
+                raise RunError(
+                    f'{process.name}: cannot be started, {error.strerror or error}') from error
         return self
+
+    def _start(
+            self, process: Process, environment: Mapping[str, str]) -> subprocess.Popen[bytes]:
+        # A session of its own: Ctrl-C reaches the coordinator alone, which ends the tick.
+        return subprocess.Popen(
+            [sys.executable, '-m', MODULES[process.executable],
+             *process.ros_arguments(self._namespace),
+             '-p', 'start_type_description_service:=false', '--disable-rosout-logs'],
+            env=environment, stdin=subprocess.DEVNULL, start_new_session=True)
 
     def __exit__(self, *_: object) -> None:
         for process in self._running.values():
             process.terminate()
-        deadline = time.monotonic() + _END_S
+            process.send_signal(signal.SIGCONT)  # one that was stopped cannot end
+        deadline = time.monotonic() + END_S
         for process in self._running.values():
             try:
                 process.wait(max(_POLL_S, deadline - time.monotonic()))

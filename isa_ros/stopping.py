@@ -9,7 +9,7 @@ from types import FrameType
 PARENT_VARIABLE = 'ISA_ROS_PARENT'
 """Process id of the bring-up that must not be outlived."""
 
-_PR_SET_PDEATHSIG = 1
+PR_SET_PDEATHSIG = 1  # linux/prctl.h
 
 
 class StopRequest:
@@ -38,7 +38,10 @@ class StopRequest:
 
 def end_with_parent() -> None:
     """
-    Ask the kernel for SIGTERM when the bring-up that started this process is gone.
+    Ask the kernel to kill this process when the bring-up that started it is gone.
+
+    A bring-up that ends by itself has ended its children before. SIGKILL, as it ends a stopped
+    process too: there is nothing to save that the coordinator does not have.
 
     Does nothing in a process that no bring-up started, and outside Linux, where the lost
     coordinator is noticed by its publisher.
@@ -46,6 +49,6 @@ def end_with_parent() -> None:
     parent = os.environ.pop(PARENT_VARIABLE, '')
     if not parent or sys.platform != 'linux':
         return
-    ctypes.CDLL(None).prctl(_PR_SET_PDEATHSIG, signal.SIGTERM)
+    ctypes.CDLL(None).prctl(PR_SET_PDEATHSIG, signal.SIGKILL)
     if os.getppid() != int(parent):  # it ended before the line above
-        os.kill(os.getpid(), signal.SIGTERM)
+        os.kill(os.getpid(), signal.SIGKILL)

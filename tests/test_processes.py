@@ -1,12 +1,16 @@
 """The process list of a run, and what becomes of its processes."""
 
+from dataclasses import replace
+import errno
 import os
 from pathlib import Path
 import signal
+import subprocess
 import time
 
 from isa_ros import processes
 from isa_ros.config import load_run
+from isa_ros.errors import RunError
 from isa_ros.processes import actuator_processes, Children, names_here, Process, run_processes
 import pytest
 
@@ -96,9 +100,34 @@ def test_a_child_that_does_not_end_is_killed(monkeypatch, tmp_path, sleeper):
         'signal.signal(signal.SIGTERM, signal.SIG_IGN)\n'
         f'pathlib.Path({str(ready)!r}).touch()\n'
         'while True:\n    signal.pause()\n')
-    monkeypatch.setattr(processes, '_END_S', 0.1)
+    monkeypatch.setattr(processes, 'END_S', 0.1)
     with Children([sleeper]) as children:
         pid = children.pids['haa']
         wait_for(ready.exists)
     with pytest.raises(ProcessLookupError):
         os.kill(pid, 0)
+
+
+def test_a_stopped_child_ends_by_itself(sleeper):
+    """A signal does not reach a stopped process before it is continued."""
+    with Children([sleeper]) as children:
+        process = children._running['haa']
+        os.kill(process.pid, signal.SIGSTOP)
+        wait_for(lambda: ') T ' in Path(f'/proc/{process.pid}/stat').read_text())
+    assert process.returncode == -signal.SIGTERM
+
+
+def test_children_before_one_that_cannot_be_started_are_ended(monkeypatch, sleeper):
+    started = []
+
+    def start_one(*arguments, **options):
+        if started:
+            raise OSError(errno.EAGAIN, os.strerror(errno.EAGAIN))
+        started.append(popen(*arguments, **options))
+        return started[0]
+    popen = subprocess.Popen
+    monkeypatch.setattr(subprocess, 'Popen', start_one)
+    with pytest.raises(RunError, match='kfe: cannot be started, Resource temporarily unavail'):
+        with Children([sleeper, replace(sleeper, name='kfe')]):
+            pytest.fail('it started')
+    assert started[0].returncode == -signal.SIGTERM

@@ -54,12 +54,17 @@ def sole_coordinator() -> Iterator[None]:
         return
     with socket.socket(socket.AF_UNIX, socket.SOCK_DGRAM) as claim:
         try:
-            claim.bind(f'\0isa_ros/coordinator/{domain}')
+            claim.bind(claim_address(domain))
         except OSError as error:
             if error.errno != errno.EADDRINUSE:
                 raise
             raise another_coordinator(domain) from None
         yield
+
+
+def claim_address(domain: int) -> str:
+    """Return the abstract socket name that the coordinator of a domain holds."""
+    return f'\0isa_ros/coordinator/{domain}'
 
 
 def refuse_other_coordinator(node: Node) -> None:

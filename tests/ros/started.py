@@ -2,14 +2,17 @@
 
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
+import ctypes
 import os
 from pathlib import Path
+import signal
 import subprocess
 import sys
 import time
 from typing import TypeVar
 
 import isa_ros
+from isa_ros.stopping import PR_SET_PDEATHSIG
 
 ROOT = Path(isa_ros.__file__).parents[1]
 LEG = ROOT / 'config' / 'leg.yaml'
@@ -28,6 +31,11 @@ def wait_for(condition: Callable[[], T], what: str = '') -> T:
     return value
 
 
+def _end_with_this() -> None:
+    """Ask the kernel to end a new process with the tests, should they be killed."""
+    ctypes.CDLL(None).prctl(PR_SET_PDEATHSIG, signal.SIGKILL)
+
+
 class Started:
     """
     One process under test; its standard error goes to a file.
@@ -37,11 +45,13 @@ class Started:
 
     def __init__(self, arguments: list[str], log: Path, prefix: Sequence[str] = ()) -> None:
         self._log = log
-        environment = os.environ | {'PYTHONPATH': str(ROOT)}
+        path = os.pathsep.join([str(ROOT), *filter(None, [os.environ.get('PYTHONPATH')])])
+        environment = os.environ | {'PYTHONPATH': path}
         with log.open('w') as stderr:
             self._process = subprocess.Popen(
                 [*prefix, sys.executable, '-m', *arguments], stderr=stderr,
-                stdin=subprocess.DEVNULL, stdout=subprocess.DEVNULL, env=environment)
+                stdin=subprocess.DEVNULL, stdout=subprocess.DEVNULL, env=environment,
+                preexec_fn=_end_with_this)
 
     @property
     def errors(self) -> str:
@@ -63,7 +73,19 @@ class Started:
 
     def exit_code(self) -> int:
         """Wait for its end and return the exit code."""
-        return self._process.wait(DEADLINE_S)
+        return self.wait(DEADLINE_S)
+
+    def wait(self, timeout_s: float) -> int:
+        """Wait for its end and return the exit code, or raise subprocess.TimeoutExpired."""
+        return self._process.wait(timeout_s)
+
+    def has_ended_within(self, timeout_s: float) -> bool:
+        """Wait for its end that long at most and return whether it came."""
+        try:
+            self.wait(timeout_s)
+        except subprocess.TimeoutExpired:
+            return False
+        return True
 
     def children(self) -> dict[str, int]:
         """Return its children's process ids by node name."""
@@ -95,10 +117,10 @@ def started(log: Path, *arguments: str, prefix: Sequence[str] = ()) -> Iterator[
 
 @contextmanager
 def bringup(
-        out: Path, *arguments: str, config: Path = LEG,
+        out: Path, *arguments: str, config: Path = LEG, log: Path | None = None,
         prefix: Sequence[str] = ()) -> Iterator[Started]:
-    """Run ``isa bringup``; its standard error goes beside the bag."""
-    with started(out.with_suffix('.log'), 'isa_ros', 'bringup', str(config),
+    """Run ``isa bringup``; its standard error goes to ``log``, or beside the bag."""
+    with started(log or out.with_suffix('.log'), 'isa_ros', 'bringup', str(config),
                  '--out', str(out), *arguments, prefix=prefix) as process:
         yield process
 

@@ -1,0 +1,68 @@
+"""A jump of the host's clock changes nothing: neither a byte of the bag nor how long it takes."""
+
+from pathlib import Path
+import shutil
+import struct
+import subprocess
+import sys
+
+import pytest
+from tests.ros.faults import sha256, wait_for_chunk, WHEEL_SINE
+from tests.ros.started import bringup, DEADLINE_S, RIG
+
+pytestmark = [pytest.mark.ros, pytest.mark.slow]
+SOURCE = Path(__file__).with_name('jumping_clock.c')
+HOUR_S = 3600
+
+
+class HostClock:
+    """The clock of all processes that are started from now on."""
+
+    def __init__(self, directory: Path, patch: pytest.MonkeyPatch) -> None:
+        library = directory / 'jumping_clock.so'
+        subprocess.run(['cc', '-shared', '-fPIC', '-o', str(library), str(SOURCE), '-ldl'],
+                       check=True, timeout=DEADLINE_S)
+        self._shift = directory / 'shift'
+        self._shift.write_bytes(struct.pack('<q', 0))
+        patch.setenv('LD_PRELOAD', str(library))
+        patch.setenv('ISA_ROS_CLOCK_SHIFT', str(self._shift))
+
+    def jump_to(self, seconds: int) -> None:
+        """Let it be ``seconds`` ahead of what it was at the start."""
+        with self._shift.open('r+b') as file:
+            file.write(struct.pack('<q', seconds))
+
+
+@pytest.fixture
+def host_clock(tmp_path, monkeypatch) -> HostClock:
+    """Return a clock that jumps, for the processes that the test starts."""
+    if shutil.which('cc') is None:
+        pytest.skip('a clock that jumps is compiled with cc')
+    return HostClock(tmp_path, monkeypatch)
+
+
+def read_clock() -> float:
+    """Return what a process sees now."""
+    return float(subprocess.run(
+        [sys.executable, '-c', 'import time; print(time.time())'], capture_output=True,
+        text=True, check=True, timeout=DEADLINE_S).stdout)
+
+
+def test_a_jump_of_the_host_clock_changes_nothing(domain, tmp_path, undisturbed, host_clock):
+    """
+    An hour forth, two back and one forth, in the nodes and in the middleware's threads.
+
+    An hour back is short: all that time the middleware's threads do not sleep.
+    """
+    bag = tmp_path / 'bag'
+    with bringup(bag, *WHEEL_SINE, '--real-time-factor', '1', config=RIG) as run:
+        before = read_clock()
+        wait_for_chunk(bag, run)
+        host_clock.jump_to(HOUR_S)
+        assert HOUR_S <= read_clock() - before < HOUR_S + DEADLINE_S
+        wait_for_chunk(bag, run)
+        host_clock.jump_to(-HOUR_S)
+        assert read_clock() < before
+        host_clock.jump_to(0)
+        assert run.exit_code() == 0, run.errors
+    assert sha256(bag) == sha256(undisturbed)

@@ -1,0 +1,64 @@
+"""Whoever of a run is killed: it is named at once, and the bag can be used."""
+
+import os
+import signal
+
+import pytest
+from tests.ros.faults import (
+    assert_last_second_lost_at_most, assert_replays, ClockListener, Fault, KILL_SEEN_S,
+    mcap_file, wait_for_chunk, with_lease)
+from tests.ros.started import actuator, bringup, coordinator, is_alive, RIG, wait_for
+
+pytestmark = [pytest.mark.ros, pytest.mark.slow]
+
+
+@pytest.mark.parametrize('name', ['haa', 'hfe', 'kfe'])
+def test_killed_actuator_ends_the_run_naming_it(domain, tmp_path, name):
+    bag = tmp_path / 'bag'
+    with bringup(bag) as run:
+        wait_for_chunk(bag, run)
+        fault = Fault(run, bag)
+        assert sorted(fault.children) == ['haa', 'hfe', 'kfe']
+        pid = fault.children[name]
+        os.kill(pid, signal.SIGKILL)
+        ended = fault.ended(KILL_SEEN_S)
+    assert ended.exit_code == 3
+    last = assert_replays(bag)
+    assert ended.line == (
+        f'isa: {name}: its process {pid} was ended by SIGKILL in tick {last}')
+
+
+@pytest.mark.parametrize('options', [(), ('--in-process',)], ids=['processes', 'one process'])
+def test_killed_run_loses_its_last_second_at_most(domain, tmp_path, observer, options):
+    """One actuator is stopped at that moment, so that it cannot end by itself."""
+    bag, clock = tmp_path / 'bag', ClockListener(observer)
+    with bringup(bag, *options, config=RIG) as run:
+        wait_for_chunk(bag, run)
+        wait_for(clock.latest_ns, 'the time')
+        fault = Fault(run, bag)
+        for pid in fault.children.values():
+            os.kill(pid, signal.SIGSTOP)
+        run.signal(signal.SIGKILL)
+        assert run.exit_code() == -signal.SIGKILL
+        wait_for(lambda: not any(map(is_alive, fault.pids)), 'their end')
+    assert_last_second_lost_at_most(bag, clock.latest_ns())
+    assert_replays(bag, is_whole=False)
+
+
+def test_actuators_of_a_killed_coordinator_serve_the_next(domain, tmp_path, monkeypatch):
+    """Started by hand, they wait; the dead one's bag goes on to its last chunk."""
+    with_lease(tmp_path / 'profile.xml', 2, monkeypatch)
+    bag, next_bag = tmp_path / 'bag', tmp_path / 'next'
+    with actuator(tmp_path / 'rotor.log', 'rotor', config_file=RIG, lockstep=True) as rotor:
+        with coordinator(tmp_path / 'first.log', config_file=RIG, out=bag) as first:
+            wait_for_chunk(bag, first)
+            first.signal(signal.SIGKILL)
+            assert first.exit_code() == -signal.SIGKILL
+        wait_for(lambda: 'the coordinator is gone after' in rotor.errors, 'the warning')
+        with coordinator(tmp_path / 'second.log', config_file=RIG, out=next_bag,
+                         duration=0.05) as second:
+            assert second.exit_code() == 0, second.errors
+        assert rotor.is_running()
+    assert_replays(bag, is_whole=False)
+    assert assert_replays(next_bag) == 50
+    assert mcap_file(next_bag).stat().st_size < mcap_file(bag).stat().st_size

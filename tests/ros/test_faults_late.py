@@ -1,0 +1,67 @@
+"""Whoever of a run stops or is slow: within the limit nothing changes, beyond it has a name."""
+
+import os
+from pathlib import Path
+import signal
+
+import pytest
+from tests.ros.faults import (
+    assert_replays, Fault, sha256, wait_for_chunk, wait_for_tick_0, WHEEL_SINE, with_lease,
+    with_timeout)
+from tests.ros.started import bringup, RIG, wait_for
+
+pytestmark = [pytest.mark.ros, pytest.mark.slow]
+TIMEOUT_S = 0.5
+LEASE_S = 2  # longer than from one announcement to the next
+N_STOPS = 5
+
+
+def stop(pid: int) -> None:
+    """Stop a process and wait until it is."""
+    os.kill(pid, signal.SIGSTOP)
+    wait_for(lambda: ') T ' in Path(f'/proc/{pid}/stat').read_text(), 'the stop')
+
+
+def test_stopped_actuator_is_named_with_tick_and_time(domain, tmp_path):
+    """A stopped process answers nothing; its state is unknown, so only time can tell."""
+    bag = tmp_path / 'bag'
+    with bringup(bag, config=with_timeout(tmp_path / 'rig.yaml', TIMEOUT_S)) as run:
+        wait_for_chunk(bag, run)
+        fault = Fault(run, bag)
+        os.kill(fault.children['rotor'], signal.SIGSTOP)
+        ended = fault.ended(TIMEOUT_S)
+    assert ended.exit_code == 3
+    last = assert_replays(bag)
+    assert f'isa: rotor: no answer to tick {last} after 0.5 s, must come within 0.5 s' in (
+        ended.line.replace('0.6 s', '0.5 s'))  # it is looked for every 0.1 s
+
+
+def test_slow_participants_change_nothing(domain, tmp_path, undisturbed):
+    """The actuator and the coordinator come late by turns, within the limit."""
+    bag = tmp_path / 'bag'
+    with bringup(bag, *WHEEL_SINE, '--real-time-factor', '1', config=RIG) as run:
+        wait_for_tick_0(bag, run)
+        for _ in range(N_STOPS):
+            for pid in (run.children()['rotor'], run.pid):
+                stop(pid)
+                os.kill(pid, signal.SIGCONT)
+        assert run.exit_code() == 0, run.errors
+    assert sha256(bag) == sha256(undisturbed)
+
+
+@pytest.mark.parametrize(
+    ('who', 'topic'), [('rotor', '/rotor/joint_states'), ('coordinator', '/clock')])
+def test_a_stop_longer_than_the_lease_changes_nothing(
+        tmp_path, monkeypatch, observer, undisturbed, who, topic):
+    """The middleware forgets who does not speak for a lease, the run does not."""
+    with_lease(tmp_path / 'profile.xml', LEASE_S, monkeypatch)
+    bag = tmp_path / 'bag'
+    with bringup(bag, *WHEEL_SINE, '--real-time-factor', '1', config=RIG) as run:
+        wait_for_tick_0(bag, run)
+        pid = run.children().get(who, run.pid)
+        wait_for(lambda: observer.count_publishers(topic) == 1, 'the discovery')
+        stop(pid)
+        wait_for(lambda: observer.count_publishers(topic) == 0, 'the end of the lease')
+        os.kill(pid, signal.SIGCONT)
+        assert run.exit_code() == 0, run.errors
+    assert sha256(bag) == sha256(undisturbed)

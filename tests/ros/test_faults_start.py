@@ -1,0 +1,135 @@
+"""Whoever of a run does not start, or fails by an error of its own, is named."""
+
+from pathlib import Path
+import signal
+
+import pytest
+from tests.ros.faults import assert_replays, Fault
+from tests.ros.started import actuator, bringup, coordinator, RIG, Started, wait_for
+
+pytestmark = [pytest.mark.ros, pytest.mark.slow]
+START_S = 3.0  # of the coordinator's node, in which a signal waits
+
+BREAKS_AT_START = "sys.modules['rclpy'] = None  # as where ROS is not sourced"
+BREAKS_AT_TICK = """
+from isa_ros import actuator
+tick = actuator.SmartActuator.tick
+def breaking(self, *port):
+    if self.t_ns == 100_000_000:
+        raise RuntimeError('an error of its own')
+    tick(self, *port)
+actuator.SmartActuator.tick = breaking
+"""
+DIVERGING = """
+name: diverging
+step_ms: 1.0
+controller_offset_ms: 0.12
+tick_timeout_s: 5.0
+supply: {kind: constant, pressure_mpa: 20.7, return_pressure_mpa: 0.0}
+actuators:
+  ram:
+    model: isa_v5
+    preset: default
+    load: {kind: mass, inertia: 20.0}
+    initial_position_mm: 5.0
+    parameters: {plant: {mechanics: {stop_damping: 1.0e+6}}}
+"""
+INTO_THE_STOP = """
+name: into_the_stop
+duration_s: 1.0
+tracks:
+  ram:
+  - {t_s: 0.0, position: hold, stiffness: 1.0e+5, damping: 100.0}
+  - {t_s: 0.1, position: 0.0, effort: -5000.0}
+"""
+
+
+@pytest.fixture
+def break_actuators(monkeypatch, tmp_path):
+    """Return a function that adds lines to the start of every actuator process."""
+    def add(lines: str) -> None:
+        indented = '\n'.join(f'    {line}' for line in lines.strip().splitlines())
+        (tmp_path / 'sitecustomize.py').write_text(
+            f'import sys\nif any("__node:=" in a for a in sys.orig_argv):\n{indented}\n')
+        monkeypatch.setenv('PYTHONPATH', str(tmp_path))
+    return add
+
+
+def wait_for_children(run: Started) -> None:
+    """Wait until the processes of the actuators are there."""
+    wait_for(lambda: run.children() or not run.is_running(), 'children')
+    assert run.is_running(), run.errors
+
+
+def last_line(run: Started) -> str:
+    """Return what the command says; before it stands the traceback of the broken node."""
+    return run.errors.splitlines()[-1]
+
+
+def test_an_actuator_that_does_not_start_is_named(domain, tmp_path, break_actuators):
+    break_actuators(BREAKS_AT_START)
+    bag = tmp_path / 'bag'
+    with bringup(bag, config=RIG) as run:
+        assert run.exit_code() == 3
+    assert last_line(run).startswith('isa: rotor: its process ')
+    assert last_line(run).endswith(' ended with exit code 1 before tick 0')
+    assert not bag.exists()
+
+
+def test_an_actuator_that_raises_is_named(domain, tmp_path, break_actuators):
+    break_actuators(BREAKS_AT_TICK)
+    bag = tmp_path / 'bag'
+    with bringup(bag, config=RIG) as run:
+        assert run.exit_code() == 3
+    assert last_line(run) == (
+        'isa: rotor: refused tick 100: RuntimeError: an error of its own')
+    assert assert_replays(bag) == 100
+
+
+def test_an_actuator_that_diverges_is_named_with_state_and_time(domain, tmp_path):
+    """Damping of a stop beyond what the plant's step can follow; the wall is met at 0.12 s."""
+    config, scenario, bag = (tmp_path / name for name in ('ram.yaml', 'stop.yaml', 'bag'))
+    config.write_text(DIVERGING)
+    scenario.write_text(INTO_THE_STOP)
+    with bringup(bag, '--scenario', str(scenario), config=config) as run:
+        assert run.exit_code() == 4
+    last = assert_replays(bag)
+    line, = run.errors.splitlines()
+    assert line.startswith('isa: ram: plant.')
+    assert line.endswith(
+        f' at t = {(last + 1) * 1e-3:.6f} s, must be finite: the simulation diverged')
+
+
+@pytest.mark.parametrize('number', [signal.SIGTERM, signal.SIGINT])
+def test_a_signal_before_tick_0_ends_the_run(domain, tmp_path, number):
+    bag = tmp_path / 'bag'
+    with bringup(bag, config=RIG) as run:
+        wait_for_children(run)
+        fault = Fault(run, None)
+        run.signal(number)
+        ended = fault.ended(START_S)
+    assert ended.exit_code == 130
+    assert ended.line == 'isa: stopped before tick 0'
+    assert not bag.exists()
+
+
+def test_a_participant_that_was_never_started_is_named(domain, tmp_path):
+    """Of two actuators, one is there."""
+    config = with_another_actuator(tmp_path / 'two.yaml')
+    bag = tmp_path / 'bag'
+    with actuator(tmp_path / 'rotor.log', 'rotor', config_file=config, lockstep=True):
+        with coordinator(tmp_path / 'coordinator.log', config_file=config, out=bag,
+                         join_timeout_s=3.0) as run:
+            assert run.exit_code() == 3
+    assert run.errors == (
+        'coordinator: other: no answer before tick 0 after 3 s; start it with lockstep:=true in '
+        'this ROS_DOMAIN_ID\n')
+    assert not bag.exists()
+
+
+def with_another_actuator(path: Path) -> Path:
+    """Return the rig's configuration with a second actuator."""
+    lines = RIG.read_text().splitlines()
+    line, = (line for line in lines if line.startswith('  rotor:'))
+    path.write_text('\n'.join([*lines, line.replace('rotor:', 'other:')]))
+    return path
