@@ -101,6 +101,8 @@ def _run_tables(path: str) -> Iterator[str]:
     given = f'{run.source}'
     yield _table(f'supply of {given}', [
         row._replace(source=given) for row in rows(run.supply, {})])
+    yield _table('record', [
+        row._replace(source=given) for row in rows(run.record.storage, {})])
     for actuator in run.actuators:
         title = f'actuators.{actuator.name}: {actuator.model}, preset {actuator.preset}'
         origin = origins.actuators[actuator.name]

@@ -7,6 +7,8 @@ from isa_ros.config import load_run
 from isa_ros.paths import CONFIG, find, SCENARIOS
 from isa_ros.run_config import RunConfig
 from isa_ros.scenario import load_scenario
+from isa_ros.shared_load import SharedLoad
+from isa_ros.topics import topics_of
 import pytest
 
 README = (Path(__file__).parents[1] / 'README.md').read_text()
@@ -32,6 +34,15 @@ def test_the_run_file_and_its_scenario_fit(tmp_path: Path) -> None:
     path.write_text(next(block for block in BLOCKS if block.startswith('name: my_step')))
     run = run_of(head[head.index('actuators:'):], tmp_path)
     assert load_scenario(path, run).duration_s == 1.0
+
+
+def test_the_section_record_fits_the_run_file(tmp_path: Path) -> None:
+    head = next(block for block in BLOCKS if block.startswith('name: my_ram'))
+    section = next(block for block in BLOCKS if block.startswith('record:'))
+    run = run_of(head[head.index('actuators:'):] + section, tmp_path)
+    run.record.refuse_misfits(
+        [topic.name for topic in topics_of(run, SharedLoad(run))[1]], run.source)
+    assert (run.record.storage.compression, run.record.thins) == ('zstd', True)
 
 
 def test_the_control_blocks_are_those_it_says(tmp_path: Path) -> None:
