@@ -13,6 +13,8 @@ from isa_ros.timebase import NS_PER_SECOND
 import pytest
 from rosbags.rosbag2 import Reader
 
+pytestmark = pytest.mark.slow
+
 ROOT = Path(__file__).parents[2]
 FIRST, LAST = 700, 1700  # ticks of 1 ms: chunks of 0.5 s, files of one chunk
 RECORD = """
