@@ -165,6 +165,11 @@ class SmartActuator:
         return self._arrays[-1]
 
     @property
+    def reply_rows(self) -> np.ndarray:
+        """Return the `reply` as an array, (1,)."""
+        return self._arrays[-2]
+
+    @property
     def reply(self) -> np.record:
         """Return the `LOAD_REPLY` of the last tick; the next tick overwrites it."""
         return self._reply

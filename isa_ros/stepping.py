@@ -3,7 +3,7 @@
 from typing import Protocol
 
 from isa_ros.actuator import ActuatorConfig, SmartActuator, Timing
-from isa_ros.exchange import Messages
+from isa_ros.exchange import Messages, Records
 from msg_adapters.actuator_messages import StateMessages
 from msg_adapters.applied_parameters import applied_parameters
 from msg_adapters.setpoint import AppliedSetpoint
@@ -35,13 +35,13 @@ class Stepper(Protocol):
         ...
 
     @property
-    def reply(self) -> np.void:
-        """Return the `LOAD_REPLY` of the last tick."""
+    def reply(self) -> Records:
+        """Return the `LOAD_REPLY` of the last tick, (1,)."""
         ...
 
     @property
-    def sample(self) -> np.void:
-        """Return the `SAMPLE` at the end of the last tick."""
+    def sample(self) -> Records:
+        """Return the `SAMPLE` at the end of the last tick, (1,)."""
         ...
 
     def snapshot(self) -> bytes:

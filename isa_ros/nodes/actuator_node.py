@@ -5,7 +5,7 @@ from typing import Any, NamedTuple
 
 from isa_ros.actuator import ActuatorConfig, SmartActuator, Timing
 from isa_ros.errors import SetpointError
-from isa_ros.exchange import Messages
+from isa_ros.exchange import Messages, Records
 from isa_ros.nodes.prepared import PreparedPublishers
 from isa_ros.nodes.qos import SETPOINT
 from isa_ros.nodes.setpoint_publishers import IncompatiblePublishers
@@ -76,14 +76,14 @@ class ActuatorNode(Node):
         return self._stepped.actuator.t_ns
 
     @property
-    def reply(self) -> np.void:
-        """Return the `LOAD_REPLY` of the last tick."""
-        return self._stepped.actuator.reply
+    def reply(self) -> Records:
+        """Return the `LOAD_REPLY` of the last tick, (1,)."""
+        return self._stepped.actuator.reply_rows
 
     @property
-    def sample(self) -> np.void:
-        """Return the `SAMPLE` at the end of the last tick."""
-        return self._stepped.actuator.sample
+    def sample(self) -> Records:
+        """Return the `SAMPLE` at the end of the last tick, (1,)."""
+        return self._stepped.actuator.sample_rows
 
     def start(self, start: np.void | None) -> Messages:
         """Begin anew at t = 0 from a `START` row; None: as configured. Return what applies."""

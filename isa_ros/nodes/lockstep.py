@@ -9,14 +9,14 @@ from isa_ros.actuator_group import by_actuator
 from isa_ros.controller import merge_requests
 from isa_ros.coordinator import Interrupted
 from isa_ros.errors import ConfigError, RunError, SimulationDiverged
-from isa_ros.exchange import IDLE_S, Messages, Records, Rows, Voice
+from isa_ros.exchange import floats, IDLE_S, Messages, Records, Rows, Voice
 from isa_ros.nodes.domain import another_coordinator, refuse_other_coordinator
 from isa_ros.nodes.qos import LOCKSTEP
 from isa_ros.nodes.waiting import open_mailbox, SLICE_S
 from isa_ros.nodes.wire import (
     ACKNOWLEDGEMENT_TOPIC, Answer, AnswerKind, decode_answer, DIVERGENCE, encode_begin,
     encode_end, encode_hello, encode_restore, encode_save, encode_tick, STEP_TOPIC)
-from isa_ros.signals import COMMAND, LOAD_REPLY, SAMPLE
+from isa_ros.signals import COMMAND
 from msg_adapters.actuator_messages import StateMessages
 import numpy as np
 from rclpy.duration import Duration
@@ -239,6 +239,7 @@ class LockstepTransport:
             parts: dict[int, list[bytes | None]]) -> Sequence[Messages]:
         """Take what actuators and controllers say before ``tick``; return their messages."""
         n_actuators = len(rows.replies)
+        replies, samples = floats(rows.replies), floats(rows.samples)
         said: list[Messages] = []
         for k in sorted(parts):
             own = parts[k]
@@ -246,8 +247,8 @@ class LockstepTransport:
                 merge_requests(np.frombuffer(own[0] or b'', COMMAND), rows.requests)
                 said.append(())
                 continue
-            rows.replies[k] = np.frombuffer(own[_REPLY] or b'', LOAD_REPLY)[0]
-            rows.samples[k] = np.frombuffer(own[_SAMPLE] or b'', SAMPLE)[0]
+            replies[k] = np.frombuffer(own[_REPLY] or b'')
+            samples[k] = np.frombuffer(own[_SAMPLE] or b'')
             said.append(own[_APPLIED:])
         if self._cast.states is not None:
             states = self._cast.states.pack(rows.samples, tick * self._cast.step_ns)

@@ -66,13 +66,12 @@ class WaitSetMailbox:
 
     def wait(self, timeout_s: float) -> bytes | None:
         """Return the next message, or None if none arrives within ``timeout_s``."""
+        # It returns at once while there is a message; to look before it is mostly in vain.
+        wait_set = self._wait_set
+        wait_set.clear_entities()
+        wait_set.add_subscription(self._handle)
+        wait_set.wait(int(timeout_s * _NS_PER_SECOND))
         taken = self._take(UInt8MultiArray, True)
-        if taken is None:
-            wait_set = self._wait_set
-            wait_set.clear_entities()
-            wait_set.add_subscription(self._handle)
-            wait_set.wait(int(timeout_s * _NS_PER_SECOND))
-            taken = self._take(UInt8MultiArray, True)
         return None if taken is None else taken[0]
 
     def count_senders(self) -> int:

@@ -29,7 +29,7 @@ class Scripted:
 
     def __init__(self, digest: str = 'same') -> None:
         self.digest = digest
-        self.reply, self.sample = np.zeros(1, LOAD_REPLY)[0], np.zeros(1, SAMPLE)[0]
+        self.reply, self.sample = np.zeros(1, LOAD_REPLY), np.zeros(1, SAMPLE)
         self.starts = 0
         self.ticks = 0
         self.published: list[Messages] = []
