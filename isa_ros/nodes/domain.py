@@ -3,22 +3,30 @@ One coordinator per ROS domain and host.
 
 The graph shows another coordinator only once it is discovered, 0.1 s to more than a second
 after the start. On one host, where discovery stays by default, a name in the kernel says so
-at once: it belongs to the network namespace and vanishes with the process that holds it.
+at once: it belongs to the network namespace and vanishes with the process that holds it. Where
+other hosts are found too, a run in one process waits for the graph; one in processes has to
+wait for its participants anyway.
 """
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
 import errno
 import os
 import socket
 import sys
+import time
 
 from isa_ros.errors import ConfigError
+from isa_ros.nodes.environment import finds_other_hosts
 from rclpy.node import Node
 
 _VARIABLE = 'ROS_DOMAIN_ID'
 _LARGEST = 232  # above it DDS has no port numbers
 _CLOCK_TOPIC = '/clock'
+_LOOK_S = 0.05
+
+DISCOVERY_S = 1.0
+"""In which the packaged profile finds who is there already."""
 
 
 def domain_id() -> int:
@@ -79,6 +87,26 @@ def refuse_other_coordinator(node: Node) -> None:
     """
     if node.count_publishers(_CLOCK_TOPIC) > 1:
         raise another_coordinator(node.context.get_domain_id())
+
+
+def look_for_other_coordinator(
+        node: Node, environment: Mapping[str, str] = os.environ) -> None:
+    """
+    Refuse to be the second coordinator of a network, which takes `DISCOVERY_S` to be sure of.
+
+    On one host `sole_coordinator` knows at once.
+
+    Raises
+    ------
+    ConfigError
+        Another node publishes `/clock`.
+
+    """
+    deadline = time.monotonic() + (DISCOVERY_S if finds_other_hosts(environment) else 0.0)
+    refuse_other_coordinator(node)
+    while (left := deadline - time.monotonic()) > 0.0:
+        time.sleep(min(left, _LOOK_S))
+        refuse_other_coordinator(node)
 
 
 def another_coordinator(domain: int) -> ConfigError:

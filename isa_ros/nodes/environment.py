@@ -4,7 +4,7 @@ The middleware settings a lockstep wants, where the user has set none.
 Must be called before `rclpy.init`; children inherit them.
 """
 
-from collections.abc import MutableMapping
+from collections.abc import Mapping, MutableMapping
 import os
 from pathlib import Path
 
@@ -46,6 +46,15 @@ def set_defaults(
         environment.setdefault(_TRANSPORTS, 'UDPv4')
     for name in _PROFILE_VARIABLES:
         environment[name] = str(profile)
+
+
+def finds_other_hosts(environment: Mapping[str, str]) -> bool:
+    """Return whether nodes of other hosts may be found, once `set_defaults` has been called."""
+    is_here = (
+        environment.get(_RANGE) in ('LOCALHOST', 'OFF')
+        or environment.get('ROS_LOCALHOST_ONLY') == '1'
+        or str(LOCALHOST_PROFILE) in (environment.get(name) for name in _PROFILE_VARIABLES))
+    return not is_here
 
 
 def _has_settings(environment: MutableMapping[str, str]) -> bool:

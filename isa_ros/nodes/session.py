@@ -8,7 +8,7 @@ from isa_ros.exchange import Rows, Transport
 from isa_ros.local_transport import LocalTransport
 from isa_ros.nodes.actuator_node import ActuatorNode, Setup
 from isa_ros.nodes.coordinator_node import CoordinatorNode
-from isa_ros.nodes.domain import refuse_other_coordinator, sole_coordinator
+from isa_ros.nodes.domain import look_for_other_coordinator, sole_coordinator
 from isa_ros.nodes.environment import set_defaults
 from isa_ros.nodes.lockstep import Cast, Expected, Limits, LockstepTransport
 from isa_ros.nodes.mixed import MixedTransport
@@ -133,7 +133,7 @@ def coordinate_locally(
         for config, member in zip(configs, group.members)]
     controllers = None
     try:
-        refuse_other_coordinator(node)
+        look_for_other_coordinator(node)
         starts = load.starts(session.run)
         transport: Transport
         transport = local = LocalTransport(group, starts, node, actuators)

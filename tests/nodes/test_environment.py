@@ -2,7 +2,8 @@
 
 from xml.etree import ElementTree
 
-from isa_ros.nodes.environment import LOCALHOST_PROFILE, NETWORK_PROFILE, set_defaults
+from isa_ros.nodes.environment import (
+    finds_other_hosts, LOCALHOST_PROFILE, NETWORK_PROFILE, set_defaults)
 import pytest
 
 NAMESPACE = '{http://www.eprosima.com/XMLSchemas/fastRTPS_Profiles}'
@@ -95,3 +96,15 @@ def test_profiles_say_what_was_measured(profile, path, text):
     """The values of lockstep.md, fact 6."""
     steps = './/' + '/'.join(f'{NAMESPACE}{step}' for step in path.split('/'))
     assert ElementTree.parse(profile).findtext(steps) == text
+
+
+@pytest.mark.parametrize(('given', 'is_network'), [
+    ({}, False), ({'ROS_AUTOMATIC_DISCOVERY_RANGE': 'LOCALHOST'}, False),
+    ({'ROS_AUTOMATIC_DISCOVERY_RANGE': 'OFF'}, False), ({'ROS_LOCALHOST_ONLY': '1'}, False),
+    ({'ROS_AUTOMATIC_DISCOVERY_RANGE': 'SUBNET'}, True),
+    ({'ROS_STATIC_PEERS': '192.0.2.1'}, True)])
+def test_other_hosts_are_found_where_they_are_asked_for(given, is_network):
+    """Where they are, a coordinator needs time to see another."""
+    environment = dict(given)
+    set_defaults(environment, FAST_DDS)
+    assert finds_other_hosts(environment) == is_network
