@@ -4,16 +4,13 @@ from collections.abc import Sequence
 from pathlib import Path
 import time
 
-from isa_ros.actuator import Timing
 from isa_ros.config import load_run
 from isa_ros.errors import RunError
-from isa_ros.exchange import Rows
 from isa_ros.processes import actuator_processes, Children
-from isa_ros.run_config import RunConfig
 from isa_ros.scenario import load_scenario
 from isa_ros.shared_load import SharedLoad
-from isa_ros.stepping import SteppedActuator
 from isa_ros.stopping import StopRequest
+from isa_ros.warm_up import warmed_up
 
 LOOK_PERIOD_S = 0.1
 
@@ -38,21 +35,10 @@ def host_actuators(config: Path, scenario: Path | None, names: Sequence[str]) ->
     chosen = [run.actuator(name).name for name in names] or None
     processes = actuator_processes(run, config, scenario, chosen)
     with StopRequest() as should_stop:
-        _compile(run)
+        warmed_up(run, SharedLoad(run))
         with Children(processes) as children:
             while not should_stop():
                 lost = children.lost()
                 if lost is not None:
                     raise RunError(lost)
                 time.sleep(LOOK_PERIOD_S)
-
-
-def _compile(run: RunConfig) -> None:
-    """Tick a copy of every actuator once, so that a first run does not compile in each child."""
-    timing = Timing(run.step_ns, run.controller_offset_ns)
-    load, rows = SharedLoad(run), Rows(len(run.actuators))
-    load.ports(rows.ports)
-    for config, start, port in zip(run.actuators, load.starts(run), rows.ports):
-        stepped = SteppedActuator(config, timing)
-        stepped.start(start)
-        stepped.advance(port)

@@ -3,13 +3,14 @@
 from collections.abc import Callable, Sequence
 import secrets
 import time
-from typing import Any, NamedTuple
+from typing import Any
 
 from isa_ros.actuator_group import by_actuator
 from isa_ros.controller import merge_requests
 from isa_ros.coordinator import Interrupted
 from isa_ros.errors import ConfigError, RunError, SimulationDiverged
-from isa_ros.exchange import floats, IDLE_S, Messages, Records, Rows, Voice
+from isa_ros.exchange import floats, IDLE_S, Messages, Rows, Voice
+from isa_ros.nodes.cast import Cast, Limits
 from isa_ros.nodes.domain import another_coordinator, refuse_other_coordinator
 from isa_ros.nodes.qos import LOCKSTEP
 from isa_ros.nodes.waiting import open_mailbox, SLICE_S
@@ -17,7 +18,6 @@ from isa_ros.nodes.wire import (
     ACKNOWLEDGEMENT_TOPIC, Answer, AnswerKind, decode_answer, DIVERGENCE, encode_begin,
     encode_end, encode_hello, encode_restore, encode_save, encode_tick, STEP_TOPIC)
 from isa_ros.signals import COMMAND
-from msg_adapters.actuator_messages import StateMessages
 import numpy as np
 from rclpy.duration import Duration
 from rclpy.node import Node
@@ -30,34 +30,6 @@ REPEAT_S = 1.0  # from one request of a step to the next: a participant that was
 _IDENTITY, _DIGEST, _FIRST = 0, 1, 2  # parts of a READY answer
 _REPLY, _SAMPLE, _APPLIED = 0, 1, 2  # parts of what an actuator's seat says
 _NO_REASON = b'without a reason'
-
-
-class Expected(NamedTuple):
-    """A participant of the configuration; the actuators come first, in file order."""
-
-    name: str
-    digest: str
-    """Empty: not compared."""
-
-
-class Limits(NamedTuple):
-    """How long participants are waited for, in seconds of the host."""
-
-    join_s: float
-    tick_s: float
-
-
-class Cast(NamedTuple):
-    """Who takes part in a run, and how the actuators begin it."""
-
-    participants: Sequence[Expected]
-    starts: Records
-    """`START` rows of the actuators, (n_actuators,)."""
-    step_ns: int
-    first_remote: int = 0
-    """Participants before it live in the coordinator's process and are not called here."""
-    states: StateMessages | None = None
-    """Makes messages of the actuators' samples; None: nobody wants them."""
 
 
 class LockstepTransport:
@@ -85,7 +57,8 @@ class LockstepTransport:
         self._past_runs: set[int] = set()
         self._identities: dict[int, bytes] = {}
         self._tick = 0
-        self._saves = 0
+        self._requests = 0
+        self._awaited = 0  # what an answer must carry for a tick: the tick, or a request's number
         self._step, self._doing = b'', 'tick 0'
         self._publisher = node.create_publisher(UInt8MultiArray, STEP_TOPIC, LOCKSTEP)
         handle: Any = self._publisher.handle
@@ -197,11 +170,17 @@ class LockstepTransport:
     def send(self, tick: int, rows: Rows) -> None:
         """Broadcast the step."""
         self._tick = tick
-        self._ask(f'tick {tick}', encode_tick(self._run_id, tick, rows, self._has_controllers))
+        step = encode_tick(self._run_id, tick, rows, self._has_controllers)
+        self._ask(f'tick {tick}', tick, step)
 
-    def _ask(self, what: str, step: bytes) -> None:
-        self._doing, self._step = what, step
+    def _ask(self, what: str, awaited: int, step: bytes) -> None:
+        self._doing, self._awaited, self._step = what, awaited, step
         self._send(step)
+
+    def _next_request(self) -> int:
+        """Return a number that no tick and no other request has."""
+        self._requests += 1
+        return -self._requests
 
     def receive(self, rows: Rows) -> Sequence[Messages]:
         """Wait for every participant; see `Transport`."""
@@ -216,9 +195,8 @@ class LockstepTransport:
 
     def snapshots(self) -> list[bytes]:
         """Return the state of every participant."""
-        self._saves += 1
-        self._ask('the request to save its state',
-                  encode_save(self._run_id, self._tick, self._saves))
+        number = self._next_request()
+        self._ask('the request to save its state', number, encode_save(self._run_id, number))
         parts = self._gather(AnswerKind.SAVED)
         return [parts[k][0] or b'' for k in sorted(parts)]
 
@@ -230,8 +208,9 @@ class LockstepTransport:
                 f'the saved state has {len(snapshots)} participants, the run has '
                 f'{len(self._participants)}')
         self._tick = tick
-        self._ask('the request to restore its state',
-                  encode_restore(self._run_id, tick, snapshots))
+        number = self._next_request()
+        self._ask('the request to restore its state', number,
+                  encode_restore(self._run_id, number, tick, snapshots))
         return self._said(rows, tick, self._gather(AnswerKind.RESTORED))
 
     def _said(
@@ -289,7 +268,7 @@ class LockstepTransport:
         if answer.kind is AnswerKind.UNBOUND:
             self._check_unbound(answer)
             return False
-        if answer.tick != self._tick or answer.participant not in missing:
+        if answer.tick != self._awaited or answer.participant not in missing:
             if answer.is_repeated:
                 return False
             raise self._two_nodes(answer.participant)  # one answers each step once

@@ -43,7 +43,7 @@ class Member:
         self._next_tick = 0
         self._has_begun = False
         self._first: Parts = ()
-        self._answered: tuple[StepKind, int, int] | None = None  # kind, tick, rows of a step
+        self._answered: tuple[StepKind, int] | None = None  # kind and tick of a step
         self._last: tuple[AnswerKind, Parts] = AnswerKind.DONE, ()
         self._is_alone = False
 
@@ -67,7 +67,7 @@ class Member:
             self._answer_hello(step)
         elif step.run_id != self._run_id:
             self._answer_strange(step)
-        elif self._answered == (step.kind, step.tick, step.rows):
+        elif self._answered == (step.kind, step.tick):
             self._repeat(step)
         elif step.kind is StepKind.TICK:
             self._answer_tick(step)
@@ -76,7 +76,7 @@ class Member:
         elif step.kind is StepKind.SAVE:
             self._answer_to(step, AnswerKind.SAVED, lambda: (self._seat.snapshot(),))
         elif step.kind is StepKind.RESTORE:
-            self._next_tick = step.tick
+            self._next_tick = step.restored_tick()
             self._answer_to(step, AnswerKind.RESTORED,
                             lambda: self._seat.restore(step.snapshot(self._index)))
         else:
@@ -166,5 +166,5 @@ class Member:
         return True
 
     def _answer(self, step: Step, kind: AnswerKind, parts: Parts) -> None:
-        self._answered, self._last = (step.kind, step.tick, step.rows), (kind, parts)
+        self._answered, self._last = (step.kind, step.tick), (kind, parts)
         self._send(encode_answer(kind, self._run_id, step.tick, self._index, parts))

@@ -4,20 +4,21 @@ from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 
 from isa_ros.actuator_group import ActuatorGroup, state_messages
-from isa_ros.exchange import Rows, Transport
+from isa_ros.exchange import Transport
 from isa_ros.local_transport import LocalTransport
 from isa_ros.nodes.actuator_node import ActuatorNode, Setup
+from isa_ros.nodes.cast import Cast, Expected, Limits
 from isa_ros.nodes.coordinator_node import CoordinatorNode
 from isa_ros.nodes.domain import look_for_other_coordinator, sole_coordinator
 from isa_ros.nodes.environment import set_defaults
-from isa_ros.nodes.lockstep import Cast, Expected, Limits, LockstepTransport
+from isa_ros.nodes.lockstep import LockstepTransport
 from isa_ros.nodes.mixed import MixedTransport
 from isa_ros.nodes.run_services import RunServices
 from isa_ros.processes import actuator_processes, Children, names_here
 from isa_ros.run import record, Report, save_in_bag, Session
 from isa_ros.shared_load import SharedLoad
-from isa_ros.stepping import SteppedActuator
 from isa_ros.stopping import StopRequest
+from isa_ros.warm_up import warmed_up
 import rclpy
 from rclpy.node import Node
 from rclpy.parameter import Parameter
@@ -80,19 +81,13 @@ def _cast(session: Session, load: SharedLoad) -> Cast:
     """
     Return the participants with the digests they must have.
 
-    Ticks copies of the actuators once, so that a first run does not compile the kernels in
-    every child at once.
+    The kernels are compiled by then, which not every child shall do at once.
     """
-    run, starts, rows = session.run, load.starts(session.run), Rows(len(session.run.actuators))
-    load.ports(rows.ports)
-    actuators = []
-    for k, config in enumerate(run.actuators):
-        stepped = SteppedActuator(config, session.timing)
-        stepped.start(starts[k])
-        stepped.advance(rows.ports[k])
-        actuators.append(Expected(config.name, stepped.digest))
+    run = session.run
+    actuators = [Expected(config.name, stepped.digest)
+                 for config, stepped in zip(run.actuators, warmed_up(run, load))]
     return Cast(
-        [*actuators, *_controllers(session)], starts, run.step_ns,
+        [*actuators, *_controllers(session)], load.starts(run), run.step_ns,
         states=state_messages(run.actuators))
 
 

@@ -49,9 +49,10 @@ class StepKind(IntEnum):
     BEGIN = 4
     """Publish the first messages: everyone is ready and `/clock` is out. No answer."""
     SAVE = 5
-    """Answer with the whole state before ``tick``."""
+    """Answer with the whole state before the next tick; ``tick`` is a number below 0, new at
+    each request, so that no answer to another one is taken for this one's."""
     RESTORE = 6
-    """Continue from a state before ``tick``."""
+    """Continue from a state before the tick in the body; ``tick`` as in a save."""
 
 
 class AnswerKind(IntEnum):
@@ -128,9 +129,13 @@ class Step(NamedTuple):
     def _samples_start(self) -> int:
         return self.rows * (LOAD_PORT.itemsize + COMMAND.itemsize)
 
+    def restored_tick(self) -> int:
+        """Return the tick before which a restore puts everyone."""
+        return int(_NUMBER.unpack_from(self.body)[0])
+
     def snapshot(self, index: int) -> bytes:
         """Return the state from which one participant goes on."""
-        own = _split(self.body, self.rows, 0)[index]
+        own = _split(self.body, self.rows, _NUMBER.size)[index]
         assert own is not None
         return own
 
@@ -174,14 +179,15 @@ def encode_begin(run_id: int) -> bytes:
     return _step(StepKind.BEGIN, run_id, 0, 0, b'')
 
 
-def encode_save(run_id: int, tick: int, count: int) -> bytes:
-    """Return the bytes of the ``count``-th request for the state before the next tick."""
-    return _step(StepKind.SAVE, run_id, tick, count, b'')
+def encode_save(run_id: int, number: int) -> bytes:
+    """Return the bytes that ask for the state before the next tick; see `StepKind.SAVE`."""
+    return _step(StepKind.SAVE, run_id, number, 0, b'')
 
 
-def encode_restore(run_id: int, tick: int, snapshots: Sequence[bytes]) -> bytes:
-    """Return the bytes that put every participant before ``tick``."""
-    return _step(StepKind.RESTORE, run_id, tick, len(snapshots), _join(snapshots))
+def encode_restore(run_id: int, number: int, tick: int, snapshots: Sequence[bytes]) -> bytes:
+    """Return the bytes that put every participant before ``tick``; see `StepKind.SAVE`."""
+    body = _NUMBER.pack(tick) + _join(snapshots)
+    return _step(StepKind.RESTORE, run_id, number, len(snapshots), body)
 
 
 def encode_end(run_id: int) -> bytes:

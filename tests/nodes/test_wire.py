@@ -44,8 +44,8 @@ def test_step_round_trip(run_id, tick, n, has_controllers):
 
 @given(strategies.lists(strategies.binary(max_size=300), min_size=1))
 def test_restore_round_trip(snapshots):
-    step = wire.decode_step(wire.encode_restore(5, 9, snapshots))
-    assert (step.kind, step.tick) == (wire.StepKind.RESTORE, 9)
+    step = wire.decode_step(wire.encode_restore(5, -2, 9, snapshots))
+    assert (step.kind, step.tick, step.restored_tick()) == (wire.StepKind.RESTORE, -2, 9)
     assert [step.snapshot(k) for k in range(len(snapshots))] == snapshots
 
 
@@ -72,7 +72,7 @@ def test_answer_round_trip(run_id, tick, parts, is_repeated):
 @pytest.mark.parametrize('data', [
     wire.encode_end(5),
     wire.encode_begin(5),
-    wire.encode_save(5, 9, 2),
+    wire.encode_save(5, -1),
     wire.encode_tick(5, 1, filled(3), True),
     wire.encode_answer(wire.AnswerKind.DONE, 5, 1, 0, [b'abc', None])])
 def test_bytes_are_a_uint8_multi_array(data):

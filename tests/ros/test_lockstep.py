@@ -9,7 +9,8 @@ from isa_ros.coordinator import Interrupted
 from isa_ros.errors import ConfigError, RunError, SetpointError, SimulationDiverged
 from isa_ros.exchange import Messages, Rows, Silence
 from isa_ros.nodes import waiting
-from isa_ros.nodes.lockstep import Cast, Expected, Limits, LockstepTransport
+from isa_ros.nodes.cast import Cast, Expected, Limits
+from isa_ros.nodes.lockstep import LockstepTransport
 from isa_ros.nodes.member import Member
 from isa_ros.nodes.seat import ActuatorSeat, ControllerSeat
 from isa_ros.nodes.wire import encode_tick
