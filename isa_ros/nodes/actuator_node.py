@@ -6,6 +6,7 @@ from typing import Any, NamedTuple
 from isa_ros.actuator import ActuatorConfig, SmartActuator, Timing
 from isa_ros.errors import SetpointError
 from isa_ros.exchange import Messages, Records
+from isa_ros.nodes.middleware import refusals
 from isa_ros.nodes.prepared import PreparedPublishers
 from isa_ros.nodes.qos import SETPOINT
 from isa_ros.nodes.setpoint_publishers import IncompatiblePublishers
@@ -50,7 +51,8 @@ class ActuatorNode(Node):
             self, resolve: Callable[[Node], Setup], name: str = 'actuator', *,
             has_mailbox: bool, **kwargs: Any) -> None:
         self._tunables: TunableParameters | None = None
-        super().__init__(name, start_parameter_services=False, **kwargs)
+        with refusals():
+            super().__init__(name, start_parameter_services=False, **kwargs)
         self.setup = resolve(self)
         self._stepped = SteppedActuator(*self.setup)
         self._tunables = TunableParameters(

@@ -4,6 +4,7 @@ from collections.abc import Sequence
 import sys
 
 from isa_ros.errors import ConfigError
+from isa_ros.nodes.middleware import refusals
 import rclpy
 from rclpy.impl.implementation_singleton import rclpy_implementation as _rclpy
 from rclpy.signals import SignalHandlerOptions
@@ -19,7 +20,7 @@ def init_ros(args: Sequence[str] | None, usage: str) -> None:
     Raises
     ------
     ConfigError
-        An argument that is not one of ROS, or a malformed one.
+        An argument that is not one of ROS, a malformed one, or a middleware that refuses.
 
     """
     given = list(sys.argv if args is None else args)
@@ -30,6 +31,7 @@ def init_ros(args: Sequence[str] | None, usage: str) -> None:
             raise SystemExit(0)
         if rest:
             raise ConfigError(f'argument {rest[0]!r} is unknown; {usage}')
-        rclpy.init(args=given, signal_handler_options=SignalHandlerOptions.NO)
+        with refusals():
+            rclpy.init(args=given, signal_handler_options=SignalHandlerOptions.NO)
     except (_rclpy.RCLInvalidROSArgsError, _rclpy.UnknownROSArgsError) as error:
         raise ConfigError(f'{str(error).splitlines()[0]}; {usage}') from error

@@ -10,6 +10,7 @@ from isa_ros.exchange import Messages
 from isa_ros.nodes.arguments import init_ros
 from isa_ros.nodes.domain import sole_coordinator
 from isa_ros.nodes.environment import set_defaults
+from isa_ros.nodes.middleware import refusals
 from isa_ros.nodes.prepared import PreparedPublishers
 from isa_ros.nodes.run_services import REAL_TIME_FACTOR
 from isa_ros.pacing import JOIN_TIMEOUT_S
@@ -34,7 +35,8 @@ class CoordinatorNode(Node):
     """Publish what the coordinator of a run has to say."""
 
     def __init__(self, **kwargs: Any) -> None:
-        super().__init__(NAME, start_parameter_services=False, **kwargs)
+        with refusals():
+            super().__init__(NAME, start_parameter_services=False, **kwargs)
         self._time = PreparedPublishers(self, [CLOCK_TOPIC])
         self._events = PreparedPublishers(self, [(_relative(EVENT_TOPIC[0]), EVENT_TOPIC[1])])
         self._shown: PreparedPublishers | None = None

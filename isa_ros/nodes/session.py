@@ -12,6 +12,7 @@ from isa_ros.nodes.coordinator_node import CoordinatorNode
 from isa_ros.nodes.domain import look_for_other_coordinator, sole_coordinator
 from isa_ros.nodes.environment import set_defaults
 from isa_ros.nodes.lockstep import LockstepTransport
+from isa_ros.nodes.middleware import refusals
 from isa_ros.nodes.mixed import MixedTransport
 from isa_ros.nodes.run_services import RunServices
 from isa_ros.processes import actuator_processes, Children, names_here
@@ -54,7 +55,8 @@ def in_one_process(session: Session, report: Report | None, should_stop: StopReq
 
 @contextmanager
 def _node(namespace: str) -> Iterator[CoordinatorNode]:
-    rclpy.init(args=[], signal_handler_options=SignalHandlerOptions.NO)
+    with refusals():
+        rclpy.init(args=[], signal_handler_options=SignalHandlerOptions.NO)
     try:
         node = CoordinatorNode(namespace=namespace, **_QUIET)
         try:

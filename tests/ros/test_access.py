@@ -88,3 +88,15 @@ def test_a_plain_node_of_this_host_reads_and_commands(domain, tmp_path, monkeypa
         with started(tmp_path / 'plain.log', 'tests.ros.plain_node', 'knee', '0.03') as plain:
             assert plain.exit_code() == 0, plain.errors
         assert knee.is_running(), knee.errors
+
+
+def test_security_that_is_not_there_is_refused(domain, tmp_path, monkeypatch):
+    """The wheels are built without it; where it is built in, its files are missing here."""
+    (tmp_path / 'keystore' / 'enclaves').mkdir(parents=True)
+    monkeypatch.setenv('ROS_SECURITY_ENABLE', 'true')
+    monkeypatch.setenv('ROS_SECURITY_STRATEGY', 'Enforce')
+    monkeypatch.setenv('ROS_SECURITY_KEYSTORE', str(tmp_path / 'keystore'))
+    with actuator(tmp_path / 'log', 'knee', model='isa_v5') as process:
+        assert process.exit_code() == 2
+    assert 'ROS_SECURITY_ENABLE = true asks for security' in process.errors
+    assert 'Traceback' not in process.errors
