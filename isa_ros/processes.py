@@ -1,6 +1,6 @@
 """The processes of one run: one list for bring-up and launch, and the children of the former."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 import json
 import os
@@ -12,6 +12,7 @@ import time
 
 import isa_ros
 from isa_ros.errors import RunError
+from isa_ros.forked import can_fork, Forked
 from isa_ros.run_config import RunConfig
 from isa_ros.stopping import PARENT_VARIABLE
 
@@ -100,6 +101,9 @@ class Children:
     """
     Processes that end with this one; a context manager.
 
+    ``work`` is what an executable does with its arguments: processes begin as copies of this
+    one that do it, where that can be; None: they begin from nothing.
+
     Raises
     ------
     RunError
@@ -107,10 +111,13 @@ class Children:
 
     """
 
-    def __init__(self, processes: Sequence[Process], namespace: str = '') -> None:
+    def __init__(
+            self, processes: Sequence[Process], namespace: str = '',
+            work: Callable[[Sequence[str]], int] | None = None) -> None:
         self._processes = processes
         self._namespace = namespace
-        self._running: dict[str, subprocess.Popen[bytes]] = {}
+        self._work = work
+        self._running: dict[str, subprocess.Popen[bytes] | Forked] = {}
 
     def __enter__(self) -> 'Children':
         environment = os.environ | {
@@ -128,12 +135,19 @@ class Children:
         return self
 
     def _start(
-            self, process: Process, environment: Mapping[str, str]) -> subprocess.Popen[bytes]:
+            self, process: Process, environment: Mapping[str, str]
+            ) -> subprocess.Popen[bytes] | Forked:
+        arguments = [*process.ros_arguments(self._namespace),
+                     '-p', 'start_type_description_service:=false', '--disable-rosout-logs']
+        work = self._work
+        if work is not None and can_fork():
+            def copy() -> int:
+                os.environ[PARENT_VARIABLE] = environment[PARENT_VARIABLE]
+                return work([process.executable, *arguments])
+            return Forked(process.name, copy)
         # A session of its own: Ctrl-C reaches the coordinator alone, which ends the tick.
         return subprocess.Popen(
-            [sys.executable, '-m', MODULES[process.executable],
-             *process.ros_arguments(self._namespace),
-             '-p', 'start_type_description_service:=false', '--disable-rosout-logs'],
+            [sys.executable, '-m', MODULES[process.executable], *arguments],
             env=environment, stdin=subprocess.DEVNULL, start_new_session=True)
 
     def __exit__(self, *_: object) -> None:

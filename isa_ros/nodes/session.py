@@ -7,6 +7,7 @@ from isa_ros.actuator_group import ActuatorGroup, state_messages
 from isa_ros.exchange import Transport
 from isa_ros.local_transport import LocalTransport
 from isa_ros.nodes.actuator_node import ActuatorNode, Setup
+from isa_ros.nodes.actuator_process import run
 from isa_ros.nodes.cast import Cast, Expected, Limits
 from isa_ros.nodes.coordinator_node import CoordinatorNode
 from isa_ros.nodes.domain import look_for_other_coordinator, sole_coordinator
@@ -41,7 +42,8 @@ def in_processes(session: Session, report: Report | None, should_stop: StopReque
     request = session.request
     processes = actuator_processes(
         session.run, request.config, request.scenario, names_here(session.run, request.elsewhere))
-    with sole_coordinator(), Children(processes, request.namespace) as children:
+    children = Children(processes, request.namespace, lambda arguments: run(arguments, ''))
+    with sole_coordinator(), children:
         with _node(request.namespace) as node:
             _coordinate(node, session, load, cast, report, should_stop, children.lost)
 

@@ -92,10 +92,13 @@ class Started:
         found = {}
         text = Path(f'/proc/{self.pid}/task/{self.pid}/children').read_text()
         for pid in text.split():
+            # One that began as a copy of its parent has the node's name itself.
+            name = Path(f'/proc/{pid}/comm').read_text().strip()
             arguments = Path(f'/proc/{pid}/cmdline').read_text().split('\0')
             for argument in arguments:
                 if argument.startswith('__node:='):
-                    found[argument.removeprefix('__node:=')] = int(pid)
+                    name = argument.removeprefix('__node:=')
+            found[name] = int(pid)
         return found
 
     def end(self) -> None:

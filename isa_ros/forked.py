@@ -1,0 +1,132 @@
+"""
+Processes that begin as a copy of this one, with everything imported and compiled.
+
+A node in a process of its own spends a second of CPU on importing and on making numba ready,
+which this process has done already; the memory of that is shared until it is written to.
+A copy has only the thread that made it, so a process in which threads of Python or of the
+middleware are at work is not copied.
+"""
+
+from collections.abc import Callable
+import contextlib
+import ctypes
+import gc
+import os
+from pathlib import Path
+import signal
+import subprocess
+import sys
+import threading
+import time
+import traceback
+from typing import NoReturn
+import warnings
+
+_PR_SET_NAME = 15  # linux/prctl.h
+_POLL_S = 0.01
+_SIGNALS = (signal.SIGINT, signal.SIGTERM)
+
+
+def can_fork() -> bool:
+    """
+    Return whether a copy of this process would be whole.
+
+    Middlewares name their threads, Fast DDS dds.ev.0 for one; those that wait for work of
+    OpenBLAS and LTTng have the name of the process, and are not missed.
+    """
+    return (sys.platform == 'linux' and threading.active_count() == 1
+            and len(_thread_names()) == 1)
+
+
+def _thread_names() -> set[str]:
+    names = set()
+    for task in Path('/proc/self/task').iterdir():
+        with contextlib.suppress(FileNotFoundError):  # it has ended meanwhile
+            names.add((task / 'comm').read_text())
+    return names
+
+
+class Forked:
+    """A copy of this process at work; what `subprocess.Popen` offers of it."""
+
+    def __init__(self, name: str, work: Callable[[], int]) -> None:
+        """Let a copy do ``work`` and end with the exit code it returns; ``name`` is for ps."""
+        for stream in (sys.stdout, sys.stderr):
+            stream.flush()
+        gc.freeze()  # a collection would write to the pages that are shared
+        # A signal that comes before the copy has its own handlers must not get lost in it.
+        signal.pthread_sigmask(signal.SIG_BLOCK, _SIGNALS)
+        try:
+            with warnings.catch_warnings():
+                # Python 3.12 counts threads that wait for work: of OpenBLAS, of LTTng.
+                warnings.simplefilter('ignore', DeprecationWarning)
+                self.pid = os.fork()
+            if not self.pid:
+                _run(name, work)
+        finally:
+            signal.pthread_sigmask(signal.SIG_UNBLOCK, _SIGNALS)
+            gc.unfreeze()
+        self.returncode: int | None = None
+
+    def poll(self) -> int | None:
+        """Return the exit code, negative for a signal; None while it runs."""
+        if self.returncode is None:
+            pid, status = os.waitpid(self.pid, os.WNOHANG)
+            if pid:
+                self.returncode = os.waitstatus_to_exitcode(status)
+        return self.returncode
+
+    def wait(self, timeout: float | None = None) -> int:
+        """Return the exit code once it has ended; raise `subprocess.TimeoutExpired`."""
+        deadline = None if timeout is None else time.monotonic() + timeout
+        while (code := self.poll()) is None:
+            if deadline is not None and time.monotonic() > deadline:
+                raise subprocess.TimeoutExpired(str(self.pid), timeout or 0.0)
+            time.sleep(_POLL_S)
+        return code
+
+    def send_signal(self, number: int) -> None:
+        """Send a signal, unless it has ended."""
+        if self.poll() is None:
+            os.kill(self.pid, number)
+
+    def terminate(self) -> None:
+        """Send SIGTERM."""
+        self.send_signal(signal.SIGTERM)
+
+    def kill(self) -> None:
+        """Send SIGKILL."""
+        self.send_signal(signal.SIGKILL)
+
+
+def _run(name: str, work: Callable[[], int]) -> NoReturn:
+    """Do the work of a copy; nothing of what it is a copy of goes on."""
+    code = 1
+    try:
+        for number in _SIGNALS:
+            signal.signal(number, signal.SIG_DFL)
+        os.setsid()
+        _let_go_of_files()
+        ctypes.CDLL(None).prctl(_PR_SET_NAME, name.encode())
+        signal.pthread_sigmask(signal.SIG_UNBLOCK, _SIGNALS)
+        code = work()
+    except SystemExit as end:
+        code = end.code if isinstance(end.code, int) else 1
+    except BaseException:
+        traceback.print_exc()
+    finally:
+        for stream in (sys.stdout, sys.stderr):
+            with contextlib.suppress(OSError):
+                stream.flush()
+        os._exit(code)
+
+
+def _let_go_of_files() -> None:
+    """Put nothing in the place of every file but the outputs; their numbers stay taken."""
+    nothing = os.open(os.devnull, os.O_RDWR)
+    for name in os.listdir('/proc/self/fd'):
+        if int(name) not in (1, 2, nothing):
+            with contextlib.suppress(OSError):  # the directory that was just listed
+                os.fstat(int(name))
+                os.dup2(nothing, int(name))
+    os.close(nothing)
