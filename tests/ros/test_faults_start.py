@@ -10,7 +10,7 @@ from tests.ros.started import actuator, bringup, coordinator, RIG, Started, wait
 pytestmark = [pytest.mark.ros, pytest.mark.slow]
 START_S = 3.0  # of the coordinator's node, in which a signal waits
 
-BREAKS_AT_START = "sys.modules['rclpy'] = None  # as where ROS is not sourced"
+BREAKS_AT_START = "sys.modules['isa_ros.nodes.actuator_process'].init_ros = None"
 BREAKS_AT_TICK = """
 from isa_ros import actuator
 tick = actuator.SmartActuator.tick
@@ -46,11 +46,12 @@ tracks:
 
 @pytest.fixture
 def break_actuators(monkeypatch, tmp_path):
-    """Return a function that adds lines to the start of every actuator process."""
+    """Return a function that adds lines to the start of every copy of a bring-up."""
     def add(lines: str) -> None:
         indented = '\n'.join(f'    {line}' for line in lines.strip().splitlines())
         (tmp_path / 'sitecustomize.py').write_text(
-            f'import sys\nif any("__node:=" in a for a in sys.orig_argv):\n{indented}\n')
+            f'import os, sys\ndef break_it():\n{indented}\n'
+            'os.register_at_fork(after_in_child=break_it)\n')
         monkeypatch.setenv('PYTHONPATH', str(tmp_path))
     return add
 
