@@ -1,4 +1,8 @@
-"""A ROS domain that nobody else of this host uses, and a user's node in it."""
+"""
+A ROS domain that nobody else of this host uses, and a user's node in it.
+
+What they set for the processes to come, the test's own `pytest.MonkeyPatch` takes back.
+"""
 
 from collections.abc import Iterator
 from contextlib import contextmanager
@@ -21,7 +25,7 @@ _SETTINGS = (
 
 
 @contextmanager
-def held_domain() -> Iterator[int]:
+def held_domain(patch: pytest.MonkeyPatch) -> Iterator[int]:
     """Hold a ROS_DOMAIN_ID that no other test of this host holds, and set it."""
     for number in range(FIRST_DOMAIN, LAST_DOMAIN + 1):
         with (Path(tempfile.gettempdir()) / f'isa_ros_domain_{number}.lock').open('w') as lock:
@@ -30,9 +34,8 @@ def held_domain() -> Iterator[int]:
                 _refuse_used(number)
             except OSError:
                 continue
-            with pytest.MonkeyPatch.context() as patch:
-                patch.setenv('ROS_DOMAIN_ID', str(number))
-                yield number
+            patch.setenv('ROS_DOMAIN_ID', str(number))
+            yield number
             return
     raise RuntimeError(f'no free ROS_DOMAIN_ID in {FIRST_DOMAIN}..{LAST_DOMAIN}')
 
@@ -44,20 +47,19 @@ def _refuse_used(domain: int) -> None:
 
 
 @contextmanager
-def observing() -> Iterator[Node]:
+def observing(patch: pytest.MonkeyPatch) -> Iterator[Node]:
     """Return a node in the domain that is set, with the packaged middleware settings."""
-    with pytest.MonkeyPatch.context() as patch:
-        for name in _SETTINGS:
-            patch.delenv(name, raising=False)
-        defaults: dict[str, str] = {}
-        set_defaults(defaults)
-        for name, value in defaults.items():
-            patch.setenv(name, value)
-        context = rclpy.Context()
-        rclpy.init(context=context, domain_id=int(os.environ['ROS_DOMAIN_ID']))
-        node = Node('observer', context=context, enable_rosout=False)
-        try:
-            yield node
-        finally:
-            node.destroy_node()
-            rclpy.shutdown(context=context)
+    for name in _SETTINGS:
+        patch.delenv(name, raising=False)
+    defaults: dict[str, str] = {}
+    set_defaults(defaults)
+    for name, value in defaults.items():
+        patch.setenv(name, value)
+    context = rclpy.Context()
+    rclpy.init(context=context, domain_id=int(os.environ['ROS_DOMAIN_ID']))
+    node = Node('observer', context=context, enable_rosout=False)
+    try:
+        yield node
+    finally:
+        node.destroy_node()
+        rclpy.shutdown(context=context)

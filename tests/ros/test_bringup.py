@@ -28,8 +28,8 @@ def test_processes_and_one_process_give_equal_files(domain, tmp_path):
     assert sha256(bags[0]) == sha256(bags[1])
 
 
-@pytest.mark.parametrize('number', [signal.SIGTERM, signal.SIGINT])
-@pytest.mark.parametrize('options', [(), ('--in-process',)])
+@pytest.mark.parametrize(
+    ('number', 'options'), [(signal.SIGTERM, ()), (signal.SIGINT, ('--in-process',))])
 def test_signal_ends_cleanly(domain, tmp_path, number, options):
     bag = tmp_path / 'bag'
     with bringup(bag, *options) as run:

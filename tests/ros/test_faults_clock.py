@@ -8,7 +8,7 @@ import sys
 
 import pytest
 from tests.ros.faults import sha256, wait_for_chunk, WHEEL_SINE
-from tests.ros.started import bringup, DEADLINE_S, RIG
+from tests.ros.started import bringup, DEADLINE_S
 
 pytestmark = [pytest.mark.ros, pytest.mark.slow]
 SOURCE = Path(__file__).with_name('jumping_clock.c')
@@ -48,14 +48,15 @@ def read_clock() -> float:
         text=True, check=True, timeout=DEADLINE_S).stdout)
 
 
-def test_a_jump_of_the_host_clock_changes_nothing(domain, tmp_path, undisturbed, host_clock):
+def test_a_jump_of_the_host_clock_changes_nothing(
+        domain, tmp_path, patient_rig, undisturbed, host_clock):
     """
     An hour forth, two back and one forth, in the nodes and in the middleware's threads.
 
     An hour back is short: all that time the middleware's threads do not sleep.
     """
     bag = tmp_path / 'bag'
-    with bringup(bag, *WHEEL_SINE, '--real-time-factor', '1', config=RIG) as run:
+    with bringup(bag, *WHEEL_SINE, '--real-time-factor', '1', config=patient_rig) as run:
         before = read_clock()
         wait_for_chunk(bag, run)
         host_clock.jump_to(HOUR_S)

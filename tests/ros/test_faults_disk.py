@@ -42,11 +42,10 @@ def read_only_disk(tmp_path) -> Iterator[Path]:
     subprocess.run(['umount', str(disk)], timeout=DEADLINE_S, check=True)
 
 
-@pytest.mark.parametrize('options', [(), ('--in-process',)], ids=['processes', 'one process'])
-def test_full_disk_ends_the_run_with_a_whole_bag(domain, tmp_path, small_disk, options):
+def test_full_disk_ends_the_run_with_a_whole_bag(domain, tmp_path, small_disk):
     """The chunk that did not fit is lost: 500 ticks of 0.5 s."""
     bag = small_disk / 'bag'
-    with bringup(bag, *options, config=RIG, log=tmp_path / 'log') as run:
+    with bringup(bag, config=RIG, log=tmp_path / 'log') as run:
         wait_for_chunk(bag, run)
         fault = Fault(run, bag)
         ended = fault.ended(DEADLINE_S)

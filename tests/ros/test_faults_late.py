@@ -8,7 +8,7 @@ import pytest
 from tests.ros.faults import (
     assert_replays, Fault, sha256, wait_for_chunk, wait_for_tick_0, WHEEL_SINE, with_lease,
     with_timeout)
-from tests.ros.started import bringup, RIG, wait_for
+from tests.ros.started import bringup, wait_for
 
 pytestmark = [pytest.mark.ros, pytest.mark.slow]
 TIMEOUT_S = 0.5
@@ -36,10 +36,10 @@ def test_stopped_actuator_is_named_with_tick_and_time(domain, tmp_path):
         ended.line.replace('0.6 s', '0.5 s'))  # it is looked for every 0.1 s
 
 
-def test_slow_participants_change_nothing(domain, tmp_path, undisturbed):
+def test_slow_participants_change_nothing(domain, tmp_path, patient_rig, undisturbed):
     """The actuator and the coordinator come late by turns, within the limit."""
     bag = tmp_path / 'bag'
-    with bringup(bag, *WHEEL_SINE, '--real-time-factor', '1', config=RIG) as run:
+    with bringup(bag, *WHEEL_SINE, '--real-time-factor', '1', config=patient_rig) as run:
         wait_for_tick_0(bag, run)
         for _ in range(N_STOPS):
             for pid in (run.children()['rotor'], run.pid):
@@ -52,11 +52,11 @@ def test_slow_participants_change_nothing(domain, tmp_path, undisturbed):
 @pytest.mark.parametrize(
     ('who', 'topic'), [('rotor', '/rotor/joint_states'), ('coordinator', '/clock')])
 def test_a_stop_longer_than_the_lease_changes_nothing(
-        tmp_path, monkeypatch, observer, undisturbed, who, topic):
+        tmp_path, monkeypatch, observer, patient_rig, undisturbed, who, topic):
     """The middleware forgets who does not speak for a lease, the run does not."""
     with_lease(tmp_path / 'profile.xml', LEASE_S, monkeypatch)
     bag = tmp_path / 'bag'
-    with bringup(bag, *WHEEL_SINE, '--real-time-factor', '1', config=RIG) as run:
+    with bringup(bag, *WHEEL_SINE, '--real-time-factor', '1', config=patient_rig) as run:
         wait_for_tick_0(bag, run)
         pid = run.children().get(who, run.pid)
         wait_for(lambda: observer.count_publishers(topic) == 1, 'the discovery')

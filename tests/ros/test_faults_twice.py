@@ -29,9 +29,7 @@ def test_an_actuator_started_twice_ends_the_run_naming_it(domain, tmp_path, obse
     assert_replays(bag)
 
 
-@pytest.mark.parametrize('options', [(), ('--in-process',)], ids=['processes', 'one process'])
-def test_a_second_coordinator_of_another_host_is_refused(
-        domain, tmp_path, monkeypatch, options):
+def test_a_second_coordinator_of_another_host_is_refused(domain, tmp_path, monkeypatch):
     """The graph alone can tell; the first one goes on."""
     if (reason := why_no_hosts()) is not None:
         pytest.skip(f'no network namespaces: {reason}')
@@ -41,7 +39,7 @@ def test_a_second_coordinator_of_another_host_is_refused(
         with bringup(bags[0], '--in-process', '--real-time-factor', '1', config=RIG,
                      prefix=host.enter) as first:
             wait_for_tick_0(bags[0], first)
-            with bringup(bags[1], *options, config=RIG, prefix=other.enter) as second:
+            with bringup(bags[1], '--in-process', config=RIG, prefix=other.enter) as second:
                 assert second.exit_code() == 2
             first.signal(signal.SIGTERM)
             assert first.exit_code() == 130

@@ -9,6 +9,7 @@ import argparse
 from pathlib import Path
 import tempfile
 
+import pytest
 from tests.ros.domains import held_domain, observing
 from tests.ros.started import RIG
 from tests.soak.killed import killed_runs
@@ -25,8 +26,8 @@ def main() -> None:
     parser.add_argument('--in-process', action='store_true')
     parser.add_argument('--config', type=Path, default=RIG)
     options = parser.parse_args()
-    with tempfile.TemporaryDirectory() as directory, held_domain(), \
-            observing() as observer:
+    with tempfile.TemporaryDirectory() as directory, pytest.MonkeyPatch.context() as patch, \
+            held_domain(patch), observing(patch) as observer:
         if options.name == 'long':
             print(long_run(Path(directory), options.seconds))
             return
