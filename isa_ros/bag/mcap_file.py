@@ -238,8 +238,10 @@ class McapFile:
         self._append(data_end + summary + _bytes(footer) + MCAP0_MAGIC)
 
     def close(self) -> None:
-        """Close the file, finished or not."""
+        """Close the file, finished or not, and forget what stands in it."""
         self._file.close()
+        for records in (self._schemas, self._channels, self._chunks):
+            records.clear()
 
     def _summary(self) -> list[tuple[Opcode, Sequence[McapRecord]]]:
         totals = self._totals
