@@ -39,6 +39,7 @@ class _Parser(argparse.ArgumentParser):
 def main(arguments: Sequence[str] | None = None) -> int:
     """Run one command and return its exit code."""
     options = make_parser().parse_args(arguments)
+    options.is_alone = arguments is None  # in this process: nobody else has called
     # Ctrl-C and SIGTERM end a command alike; a run replaces both to stop between two ticks.
     before = signal.signal(signal.SIGTERM, _interrupt)
     try:

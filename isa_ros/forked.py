@@ -4,7 +4,8 @@ Processes that begin as a copy of this one, with everything imported and compile
 A node in a process of its own spends a second of CPU on importing and on making numba ready,
 which this process has done already; the memory of that is shared until it is written to.
 A copy has only the thread that made it, so a process in which threads of Python or of the
-middleware are at work is not copied.
+middleware are at work is not copied; one that has ever had a node must not be: Fast DDS leaves
+behind what a copy cannot use, and nodes of the copy are never discovered.
 """
 
 from collections.abc import Callable

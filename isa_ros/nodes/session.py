@@ -1,6 +1,6 @@
 """One run on ROS nodes: actuators in processes of their own, or all in this one."""
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
 
 from isa_ros.actuator_group import ActuatorGroup, state_messages
@@ -42,10 +42,15 @@ def in_processes(session: Session, report: Report | None, should_stop: StopReque
     request = session.request
     processes = actuator_processes(
         session.run, request.config, request.scenario, names_here(session.run, request.elsewhere))
-    children = Children(processes, request.namespace, lambda arguments: run(arguments, ''))
+    children = Children(
+        processes, request.namespace, _work if request.may_copy else None)
     with sole_coordinator(), children:
         with _node(request.namespace) as node:
             _coordinate(node, session, load, cast, report, should_stop, children.lost)
+
+
+def _work(arguments: Sequence[str]) -> int:
+    return run(arguments, '')
 
 
 def in_one_process(session: Session, report: Report | None, should_stop: StopRequest) -> None:

@@ -4,9 +4,10 @@ from pathlib import Path
 import signal
 
 from isa_ros.bag.reader import Bag
+from isa_ros.run import bringup as bring_up, Request
 import pytest
 from tests.ros.faults import sha256, wait_for_tick_0
-from tests.ros.started import bringup, DROP, is_alive
+from tests.ros.started import bringup, DEADLINE_S, DROP, is_alive, RIG
 
 pytestmark = pytest.mark.ros
 
@@ -26,6 +27,14 @@ def test_processes_and_one_process_give_equal_files(domain, tmp_path):
             assert run.exit_code() == 0, run.errors
     assert read_sequences(bags[0]) == list(range(301))
     assert sha256(bags[0]) == sha256(bags[1])
+
+
+def test_a_program_runs_one_after_the_other(domain, tmp_path):
+    """Fast DDS was used by the first, so the second cannot begin as copies of this process."""
+    for name in ('first', 'second'):
+        bag = bring_up(Request(
+            config=RIG, out=tmp_path / name / 'bag', duration_s=0.01, join_timeout_s=DEADLINE_S))
+        assert read_sequences(bag) == list(range(11))
 
 
 @pytest.mark.parametrize(
