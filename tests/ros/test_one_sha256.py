@@ -22,7 +22,7 @@ from tests.ros.started import bringup, DROP, LEG, started, wait_for
 
 pytestmark = [pytest.mark.ros, pytest.mark.slow]
 TICKS = 300
-RUN = ('--scenario', str(DROP), '--duration', f'{TICKS * 1e-3}')
+RUN = ('--scenario', str(DROP), '--duration', f'{TICKS * 1e-3}', '--join-timeout', '100')
 CORES = 2
 STOP_S = 2.0  # less than the leg's tick_timeout_s
 LOSS, SEED = 0.01, 4
@@ -104,9 +104,9 @@ def found(tmp_path_factory: pytest.TempPathFactory,
         assert run.exit_code() == 0, run.errors
     hashes = {'in_one_process': sha256(bag)}
     yield hashes
-    terminal = request.config.pluginmanager.get_plugin('terminalreporter')
-    if terminal is not None:
-        terminal.write_line(f'\n{as_text(hashes)}')
+    capture = request.config.pluginmanager.get_plugin('capturemanager')
+    with capture.global_and_fixture_disabled():
+        print(f'\n{as_text(hashes)}')
 
 
 def as_text(hashes: dict[str, str]) -> str:
