@@ -28,7 +28,10 @@ def bound_addresses(pid: int) -> Iterator[str]:
     """Yield the local address of every internet socket of a process."""
     inodes = set()
     for descriptor in Path(f'/proc/{pid}/fd').iterdir():
-        target = os.readlink(descriptor)
+        try:
+            target = os.readlink(descriptor)
+        except FileNotFoundError:  # closed since the listing
+            continue
         if target.startswith('socket:['):
             inodes.add(target[len('socket:['):-1])
     for protocol in ('udp', 'udp6', 'tcp', 'tcp6', 'raw', 'raw6', 'udplite', 'udplite6'):
