@@ -26,10 +26,11 @@ def test_actuators_of_another_take_part_in_one_run_after_the_other(domain, tmp_p
 
 def test_a_lost_actuator_ends_its_host_naming_it(domain, tmp_path):
     with started(tmp_path / 'actuators.log', 'isa_ros', 'actuators', str(RIG)) as actuators:
-        children = wait_for(actuators.children, 'the child')
-        os.kill(children['rotor'], signal.SIGKILL)
+        # A child has its name a moment after it has begun.
+        child = wait_for(lambda: actuators.children().get('rotor'), 'the child')
+        os.kill(child, signal.SIGKILL)
         assert actuators.exit_code() == 3
-    assert f'isa: rotor: its process {children["rotor"]} was ended by SIGKILL' in actuators.errors
+    assert f'isa: rotor: its process {child} was ended by SIGKILL' in actuators.errors
 
 
 def test_a_missing_actuator_of_another_host_is_named(domain, tmp_path):
