@@ -103,8 +103,9 @@ def test_an_actuator_that_diverges_is_named_with_state_and_time(domain, tmp_path
 
 @pytest.mark.parametrize('number', [signal.SIGTERM, signal.SIGINT])
 def test_a_signal_before_tick_0_ends_the_run(domain, tmp_path, number):
-    bag = tmp_path / 'bag'
-    with bringup(bag, config=RIG) as run:
+    """Of two actuators, one never comes, so that the run waits."""
+    bag, config = tmp_path / 'bag', with_another_actuator(tmp_path / 'two.yaml')
+    with bringup(bag, '--elsewhere', 'other', config=config) as run:
         wait_for_children(run)
         fault = Fault(run, None)
         run.signal(number)
