@@ -6,11 +6,9 @@ cached caller would silently run the old equation. The cache directory therefore
 hash of every kernel source, and any edit of one starts an empty cache.
 """
 
-from collections.abc import Callable
 import hashlib
 import os
 from pathlib import Path
-from typing import Any
 
 import numba
 
@@ -22,16 +20,6 @@ if 'NUMBA_CACHE_DIR' not in os.environ:
     numba.config.CACHE_DIR = str(  # type: ignore[attr-defined]
         Path.home() / '.cache' / 'isa_ros' / _DIGEST)
 
-# No fastmath, no parallel: both may reorder roundings, and replay compares bytes.
-kernel = numba.njit(cache=True, nogil=True, error_model='numpy')
-
-
-def inlined(function: Callable[..., Any]) -> Any:
-    """
-    Return a function, or a kernel once more, that LLVM builds into every kernel that calls it.
-
-    Worth it where the call costs as much as the equations; the bits stay. It has no cache of
-    its own: numba would file it under the same name as the kernel that is called.
-    """
-    source = getattr(function, 'py_func', function)
-    return numba.njit(nogil=True, error_model='numpy', forceinline=True)(source)
+# No fastmath, no parallel: both may reorder roundings, and replay compares bytes. What a kernel
+# calls is built into it: a call costs as much as many an equation, and the bits stay.
+kernel = numba.njit(cache=True, nogil=True, error_model='numpy', forceinline=True)

@@ -14,7 +14,7 @@ steps of order four leave, for less time.
 
 import math
 
-from isa_ros.kernel import inlined, kernel
+from isa_ros.kernel import kernel
 from isa_ros.plant import chambers, servo_valve, spool
 from isa_ros.plant.units import LPM, MILLI, MPA
 import numpy as np
@@ -35,8 +35,6 @@ CYLINDER = np.dtype([
 # Prince and Dormand's method of order 8, the coefficients that are not zero of each stage.
 A_2, A_3, A_4, A_5, A_6, A_7, A_8, A_9, A_10, A_11, A_12, B = (
     tuple(float(a) for a in row if a != 0.0) for row in (*DOP853.A[1:STAGES], DOP853.B))
-
-_port_flows = inlined(servo_valve.port_flows)
 
 
 def cylinder_record() -> np.recarray:
@@ -65,12 +63,13 @@ def cylinder_record() -> np.recarray:
     return record
 
 
-@inlined
+@kernel
 def slope(y, command, cylinder):
     """Return dy/dt of the `STATES`; m v' = f_h - d v - c x  (V7, V10, C2, C3)."""
     x, v, p_a, p_b, u, u_rate = y
     closed, oil = cylinder.spool, cylinder.chambers
-    q_a, q_b, _, _ = _port_flows(u, p_a, p_b, cylinder.p_s, cylinder.p_t, cylinder.valve)
+    q_a, q_b, _, _ = servo_valve.port_flows(
+        u, p_a, p_b, cylinder.p_s, cylinder.p_t, cylinder.valve)
     rate_a, rate_b = chambers.pressure_rates(
         q_a, q_b, p_a, p_b, 0.5 * oil.stroke + x, v, cylinder.p_t, oil)
     force = (chambers.hydraulic_force(p_a, p_b, oil)
@@ -79,7 +78,7 @@ def slope(y, command, cylinder):
             spool.spool_acceleration(command, u, u_rate, closed.w_n, closed.zeta))
 
 
-@inlined
+@kernel
 def ahead(y, h, weights, slopes):
     """Return y + h times the weighted sum of as many slopes, the newest slope added last."""
     a, b, c, d, e, f = y
