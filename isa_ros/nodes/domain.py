@@ -25,7 +25,7 @@ _LARGEST = 232  # above it DDS has no port numbers
 _CLOCK_TOPIC = '/clock'
 _LOOK_S = 0.05
 
-DISCOVERY_S = 1.0
+DISCOVERY_S = 2.0
 """In which the packaged profile finds who is there already."""
 
 

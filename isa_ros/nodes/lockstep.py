@@ -243,6 +243,8 @@ class LockstepTransport:
         while missing:
             begin = time.monotonic()
             data = self._mailbox.wait(SLICE_S)
+            if data is None and self._watch() is not None:
+                data = self._mailbox.wait(SLICE_S)  # what the lost one had still said
             if data is None:
                 self._refuse_lost(f'in tick {self._tick}')
                 # A stopped or suspended host must not look like a late participant.

@@ -115,11 +115,12 @@ def test_a_signal_before_tick_0_ends_the_run(domain, tmp_path, number):
     assert not bag.exists()
 
 
-def test_a_participant_that_was_never_started_is_named(domain, tmp_path):
+def test_a_participant_that_was_never_started_is_named(observer, tmp_path):
     """Of two actuators, one is there."""
     config = with_another_actuator(tmp_path / 'two.yaml')
     bag = tmp_path / 'bag'
     with actuator(tmp_path / 'rotor.log', 'rotor', config_file=config, lockstep=True):
+        wait_for(lambda: observer.count_publishers('/rotor/joint_states'), 'the actuator')
         with coordinator(tmp_path / 'coordinator.log', config_file=config, out=bag,
                          join_timeout_s=3.0) as run:
             assert run.exit_code() == 3

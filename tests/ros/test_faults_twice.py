@@ -39,7 +39,8 @@ def test_a_second_coordinator_of_another_host_is_refused(domain, tmp_path, monke
         with bringup(bags[0], '--in-process', '--real-time-factor', '1', config=RIG,
                      prefix=host.enter) as first:
             wait_for_tick_0(bags[0], first)
-            with bringup(bags[1], '--in-process', config=RIG, prefix=other.enter) as second:
+            with bringup(bags[1], '--in-process', '--duration', '5', config=RIG,
+                         prefix=other.enter) as second:
                 assert second.exit_code() == 2
             first.signal(signal.SIGTERM)
             assert first.exit_code() == 130
