@@ -25,8 +25,7 @@ from std_msgs.msg import UInt8MultiArray
 
 HELLO_PERIOD_S = 0.05
 STOP_GRACE_S = 1.0  # how long a tick may still take once a stop is asked for
-REPEAT_S = 1.0  # from one request of a step to the next: a participant that was stopped for
-# longer than the middleware's lease has lost what was on its way
+REPEAT_S = 1.0  # from one request of a step to the next: what was on its way may be lost
 _IDENTITY, _DIGEST, _FIRST = 0, 1, 2  # parts of a READY answer
 _REPLY, _SAMPLE, _APPLIED = 0, 1, 2  # parts of what an actuator's seat says
 _NO_REASON = b'without a reason'
@@ -57,6 +56,7 @@ class LockstepTransport:
         self._past_runs: set[int] = set()
         self._identities: dict[int, bytes] = {}
         self._tick = 0
+        self._remind_at = 0.0
         self._requests = 0
         self._awaited = 0  # what an answer must carry for a tick: the tick, or a request's number
         self._step, self._doing = b'', 'tick 0'
@@ -187,7 +187,10 @@ class LockstepTransport:
         return self._said(rows, self._tick + 1, self._gather(AnswerKind.DONE))
 
     def idle(self) -> None:
-        """Look for lost participants, and for a second node of a name, while time passes."""
+        """Say that the run goes on, and look for lost participants and second nodes."""
+        if time.monotonic() >= self._remind_at:
+            self._remind_at = time.monotonic() + REPEAT_S
+            self._send(encode_begin(self._run_id))
         self._refuse_lost(f'while paused before tick {self._tick}')
         data = self._mailbox.wait(IDLE_S)
         if data is not None:

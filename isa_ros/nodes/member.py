@@ -2,6 +2,7 @@
 
 from collections.abc import Callable
 import secrets
+import time
 from typing import Any
 
 from isa_ros.errors import IsaError, SimulationDiverged
@@ -14,6 +15,9 @@ from isa_ros.nodes.wire import (
 from rclpy.node import Node
 from std_msgs.msg import UInt8MultiArray
 
+SILENCE_S = 5.0
+"""After it a coordinator counts as gone; one that waits or is paused speaks each second."""
+
 
 class Member:
     """
@@ -21,8 +25,8 @@ class Member:
 
     The coordinator knows a member by the name of its node, and waits for it at every tick.
     One that is bound to a run answers no other coordinator until that run ends or its
-    coordinator is gone; one that only seemed to be gone, stopped for longer than the
-    middleware's lease, goes on with its run.
+    coordinator has been silent for `SILENCE_S`; one that only seemed to be gone goes on with
+    its run. The middleware knows less: a killed one stays in its graph for a lease.
     """
 
     def __init__(self, node: Node, seat: Seat) -> None:
@@ -45,6 +49,7 @@ class Member:
         self._first: Parts = ()
         self._answered: tuple[StepKind, int] | None = None  # kind and tick of a step
         self._last: tuple[AnswerKind, Parts] = AnswerKind.DONE, ()
+        self._heard = 0.0  # when the coordinator of this run spoke, on the host's monotonic clock
         self._is_alone = False
 
     def spin(self, should_stop: Callable[[], bool]) -> None:
@@ -55,14 +60,20 @@ class Member:
                 self._handle(decode_step(data))
                 continue
             self._seat.serve()
-            is_alone = bool(self._run_id) and not self._mailbox.count_senders()
+            is_alone = bool(self._run_id) and not self._is_led(self._mailbox.count_senders())
             if is_alone and not self._is_alone:
                 self._log.warning(
-                    f'the coordinator is gone after {self._next_tick} ticks; waiting for it or '
-                    'for another')
+                    f'the coordinator is gone or silent after {self._next_tick} ticks; waiting '
+                    'for it or for another')
             self._is_alone = is_alone
 
+    def _is_led(self, n_coordinators: int) -> bool:
+        """Return whether the coordinator of the run may be there and has spoken not long ago."""
+        return n_coordinators > 0 and time.monotonic() - self._heard < SILENCE_S
+
     def _handle(self, step: Step) -> None:
+        if step.run_id == self._run_id:
+            self._heard = time.monotonic()
         if step.kind is StepKind.HELLO:
             self._answer_hello(step)
         elif step.run_id != self._run_id:
@@ -84,7 +95,7 @@ class Member:
 
     def _answer_hello(self, step: Step) -> None:
         if step.run_id != self._run_id:
-            if self._run_id and self._mailbox.count_senders() > 1:
+            if self._run_id and self._is_led(self._mailbox.count_senders() - 1):
                 self._send(encode_answer(AnswerKind.BUSY, step.run_id, step.tick, 0, ()))
                 return
             if not self._bind(step):
@@ -114,7 +125,7 @@ class Member:
                     f'a coordinator calls {", ".join(names)}, not {self._name!r}: '
                     'declare it in the configuration')
             return False
-        self._run_id = step.run_id
+        self._run_id, self._heard = step.run_id, time.monotonic()
         self._index = names.index(self._name)
         self._seat.serve()
         self._first = self._seat.start(step, self._index)

@@ -88,14 +88,18 @@ def test_transports_of_the_user_are_kept():
 
 @pytest.mark.parametrize('profile', [LOCALHOST_PROFILE, NETWORK_PROFILE])
 @pytest.mark.parametrize(('path', 'text'), [
-    ('discovery_config/leaseDuration/sec', '5'),
+    ('discovery_config/leaseDuration/sec', '60'),
     ('discovery_config/initialAnnouncements/count', '40'),
     ('discovery_config/initialAnnouncements/period/nanosec', '50000000'),
     ('data_writer/times/heartbeatPeriod/nanosec', '5000000'),
     ('data_writer/times/nackResponseDelay/nanosec', '0'),
     ('data_reader/times/heartbeatResponseDelay/nanosec', '0')])
 def test_profiles_say_what_was_measured(profile, path, text):
-    """The values of lockstep.md, fact 6; with delays of 5 ms 1 % loss halves the ticks/s."""
+    """
+    The values of lockstep.md, fact 6; with delays of 5 ms 1 % loss halves the ticks/s.
+
+    But for the lease: of 14 nodes that were stopped for a lease of 2 s, 3 were never found again.
+    """
     steps = './/' + '/'.join(f'{NAMESPACE}{step}' for step in path.split('/'))
     assert ElementTree.parse(profile).findtext(steps) == text
 

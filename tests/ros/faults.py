@@ -8,10 +8,8 @@ from typing import NamedTuple
 
 from isa_ros.bag.reader import Bag
 from isa_ros.cli import main
-from isa_ros.nodes.environment import LOCALHOST_PROFILE
 from isa_ros.processes import END_S
 from mcap.writer import MCAP0_MAGIC
-import pytest
 from rclpy.node import Node
 from rosgraph_msgs.msg import Clock
 from tests.ros.started import DEADLINE_S, is_alive, RIG, Started, wait_for
@@ -158,15 +156,6 @@ class ClockListener:
 def sha256(bag: Path) -> str:
     """Return the SHA-256 of what was recorded."""
     return hashlib.sha256(mcap_file(bag).read_bytes()).hexdigest()
-
-
-def with_lease(path: Path, seconds: int, patch: pytest.MonkeyPatch) -> None:
-    """Give the processes to come another lease than the packaged profile's."""
-    text = LOCALHOST_PROFILE.read_text()
-    assert text.count('<sec>5</sec>') == 1
-    path.write_text(text.replace('<sec>5</sec>', f'<sec>{seconds}</sec>'))
-    patch.setenv('FASTRTPS_DEFAULT_PROFILES_FILE', str(path))
-    patch.setenv('ROS_AUTOMATIC_DISCOVERY_RANGE', 'SYSTEM_DEFAULT')
 
 
 def with_timeout(path: Path, seconds: float) -> Path:

@@ -6,7 +6,7 @@ import signal
 import pytest
 from tests.ros.faults import (
     assert_last_second_lost_at_most, assert_replays, ClockListener, Fault, KILL_SEEN_S,
-    mcap_file, wait_for_chunk, with_lease)
+    mcap_file, wait_for_chunk)
 from tests.ros.started import actuator, bringup, coordinator, is_alive, RIG, wait_for
 
 pytestmark = [pytest.mark.ros, pytest.mark.slow]
@@ -46,16 +46,15 @@ def test_killed_run_loses_its_last_second_at_most(domain, tmp_path, observer, op
     assert_replays(bag, is_whole=False)
 
 
-def test_actuators_of_a_killed_coordinator_serve_the_next(domain, tmp_path, monkeypatch):
+def test_actuators_of_a_killed_coordinator_serve_the_next(domain, tmp_path):
     """Started by hand, they wait; the dead one's bag goes on to its last chunk."""
-    with_lease(tmp_path / 'profile.xml', 2, monkeypatch)
     bag, next_bag = tmp_path / 'bag', tmp_path / 'next'
     with actuator(tmp_path / 'rotor.log', 'rotor', config_file=RIG, lockstep=True) as rotor:
         with coordinator(tmp_path / 'first.log', config_file=RIG, out=bag) as first:
             wait_for_chunk(bag, first)
             first.signal(signal.SIGKILL)
             assert first.exit_code() == -signal.SIGKILL
-        wait_for(lambda: 'the coordinator is gone after' in rotor.errors, 'the warning')
+        wait_for(lambda: 'the coordinator is gone or silent after' in rotor.errors, 'the warning')
         with coordinator(tmp_path / 'second.log', config_file=RIG, out=next_bag,
                          duration=0.05) as second:
             assert second.exit_code() == 0, second.errors

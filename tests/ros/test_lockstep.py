@@ -3,12 +3,13 @@
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
 import threading
+import time
 
 from isa_ros.controller import Controller, Setpoint
 from isa_ros.coordinator import Interrupted
 from isa_ros.errors import ConfigError, RunError, SetpointError, SimulationDiverged
 from isa_ros.exchange import Messages, Rows, Silence
-from isa_ros.nodes import waiting
+from isa_ros.nodes import lockstep, member, waiting
 from isa_ros.nodes.cast import Cast, Expected, Limits
 from isa_ros.nodes.lockstep import LockstepTransport
 from isa_ros.nodes.member import Member
@@ -316,6 +317,43 @@ def test_busy_participant_refuses_another_coordinator(observer):
         with pytest.raises(ConfigError, match='another coordinator runs in ROS_DOMAIN_ID'):
             make_transport(observer).join(Rows(2))
         assert tick(first, 1)[0] == [2.0, 3.0]
+    assert steppers['haa'].starts == 1
+
+
+def is_followed(transport: LockstepTransport) -> bool:
+    """Try to begin a run; return whether the participants take part."""
+    try:
+        transport.join(Rows(2))
+    except ConfigError:
+        return False
+    return True
+
+
+def test_participants_of_a_silent_coordinator_follow_another(observer, monkeypatch):
+    """A killed one stays in the middleware's graph for a while."""
+    monkeypatch.setattr(member, 'SILENCE_S', 0.2)
+    steppers = {'haa': Scripted(), 'kfe': Scripted()}
+    with spinning(observer.context, steppers):
+        first, second = make_transport(observer), make_transport(observer)
+        first.join(Rows(2))
+        tick(first, 0)
+        wait_for(lambda: is_followed(second), 'the silence')
+        assert tick(second, 0)[0] == [1.0, 2.0]
+    assert steppers['haa'].starts == 2
+
+
+def test_a_paused_coordinator_is_not_silent(observer, monkeypatch):
+    monkeypatch.setattr(member, 'SILENCE_S', 0.3)
+    monkeypatch.setattr(lockstep, 'REPEAT_S', 0.02)
+    steppers = {'haa': Scripted(), 'kfe': Scripted()}
+    with spinning(observer.context, steppers):
+        first, second = make_transport(observer), make_transport(observer)
+        first.join(Rows(2))
+        end = time.monotonic() + 2.0 * member.SILENCE_S
+        while time.monotonic() < end:
+            first.idle()
+        assert not is_followed(second)
+        assert tick(first, 0)[0] == [1.0, 2.0]
     assert steppers['haa'].starts == 1
 
 

@@ -47,7 +47,8 @@ def long_run(directory: Path, seconds: float) -> LongRun:
         samples = np.array(resident_over_time(run, bag))
         assert run.exit_code() == 0, run.errors
     elapsed = time.monotonic() - begin
-    settled = samples[samples[:, 0] >= WARM_UP * seconds]
+    # The last sample may be of a process that has given everything back.
+    settled = samples[(samples[:, 0] >= WARM_UP * seconds) & (samples[:, 0] < seconds)]
     slope = np.polyfit(settled[:, 0], settled[:, 1], 1)[0]
     least, most = settled[:, 1].min(), settled[:, 1].max()
     return LongRun(seconds, elapsed, least, most, 3600.0 * slope, assert_times_agree(bag))
