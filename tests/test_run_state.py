@@ -4,7 +4,7 @@ import json
 
 from hypothesis import given, strategies
 from isa_ros.errors import ConfigError
-from isa_ros.run_state import LARGEST_BYTES, read_state, RunState
+from isa_ros.run_state import LARGEST_BYTES, MAX_TICKS, read_state, RunState
 from isa_ros.signals import COMMAND
 import numpy as np
 import pytest
@@ -13,7 +13,7 @@ STATE = RunState(tick=7, load=b'load', participants=[b'haa', b''],
                  requests=np.zeros(2, COMMAND).tobytes())
 
 
-@given(strategies.integers(0, 2**62), strategies.binary(),
+@given(strategies.integers(0, MAX_TICKS - 1), strategies.binary(),
        strategies.lists(strategies.binary()))
 def test_the_text_loses_nothing(tick, load, participants):
     state = RunState(tick=tick, load=load, participants=participants, requests=b'')
@@ -27,6 +27,7 @@ def test_the_configuration_must_be_the_same():
 
 @pytest.mark.parametrize(('key', 'value', 'message'), [
     ('tick', -1, 'tick = -1, must be an integer >= 0'),
+    ('tick', MAX_TICKS, f'tick = {MAX_TICKS}, must be an integer >= 0 and < {MAX_TICKS}'),
     ('tick', 1.5, 'tick = 1.5, must be an integer >= 0'),
     ('load', 'xyz', 'is no saved state of a run'),
     ('load', None, 'is no saved state of a run'),
