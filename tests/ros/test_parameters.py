@@ -18,11 +18,11 @@ import pytest
 from rcl_interfaces.msg import Parameter, ParameterEvent, ParameterType, ParameterValue
 from rcl_interfaces.srv import DescribeParameters, GetParameters, SetParameters
 from rcl_interfaces.srv import SetParametersAtomically
-from rclpy.executors import SingleThreadedExecutor
 from rclpy.node import Node
 from rclpy.parameter import Parameter as RosParameter
 from sensor_msgs.msg import JointState
-from tests.ros.started import actuator, bringup, coordinator, RIG, wait_for
+from tests.ros.spinning import Spinning
+from tests.ros.started import actuator, bringup, coordinator, RIG
 
 pytestmark = pytest.mark.ros
 TUNED, APPLIED = 0, 1  # places in the sorted topics
@@ -43,20 +43,13 @@ class Tuner:
             ParameterEvent, f'/{name}/applied_parameters', self.events.append, 10)
         node.create_subscription(
             JointState, f'/{name}/applied_setpoint', self.setpoints.append, 10)
-        self._executor = SingleThreadedExecutor(context=node.context)
-        self._executor.add_node(node)
+        self._spinning = Spinning(node)
+        self.wait_for = self._spinning.wait_for
         self._clients = {
             service: node.create_client(service, f'/{name}/{topic}') for service, topic in (
                 (SetParameters, 'set_parameters'), (GetParameters, 'get_parameters'),
                 (SetParametersAtomically, 'set_parameters_atomically'),
                 (DescribeParameters, 'describe_parameters'))}
-
-    def wait_for(self, condition: Any, what: str) -> None:
-        """Spin until ``condition``."""
-        def spin() -> bool:
-            self._executor.spin_once(0.01)
-            return bool(condition())
-        wait_for(spin, what)
 
     def connect(self) -> None:
         """Wait until the services are there and the state comes."""

@@ -2,16 +2,15 @@
 
 from pathlib import Path
 import signal
-from typing import Any
 
 from isa_ros.bag.reader import Bag
 from msg_adapters.cdr_reader import decode
 import pytest
-from rclpy.executors import SingleThreadedExecutor
 from rclpy.node import Node
 from rclpy.qos import QoSProfile, ReliabilityPolicy
 from sensor_msgs.msg import JointState
 from std_srvs.srv import SetBool
+from tests.ros.spinning import Spinning
 from tests.ros.started import actuator, bringup, RIG, wait_for
 
 pytestmark = pytest.mark.ros
@@ -31,15 +30,8 @@ class User:
             JointState, f'/{name}/applied_setpoint', self.applied.append, 10)
         self._setpoints = node.create_publisher(JointState, f'/{name}/setpoint', 1)
         self._enable = node.create_client(SetBool, f'/{name}/enable')
-        self._executor = SingleThreadedExecutor(context=node.context)
-        self._executor.add_node(node)
-
-    def wait_for(self, condition: Any, what: str) -> None:
-        """Spin until ``condition``."""
-        def spin() -> bool:
-            self._executor.spin_once(0.01)
-            return bool(condition())
-        wait_for(spin, what)
+        self._spinning = Spinning(node)
+        self.wait_for = self._spinning.wait_for
 
     def connect(self) -> None:
         """Wait until everything is matched, both ways."""
@@ -54,7 +46,7 @@ class User:
         """Repeat a setpoint until it is echoed: matched here is not yet matched there."""
         def repeat() -> bool:
             self.command(position)
-            self._executor.spin_once(0.01)
+            self._spinning.spin_once()
             return bool(self.applied) and self.applied[-1].position[0] == position
         wait_for(repeat, 'the setpoint')
 

@@ -8,12 +8,12 @@ from isa_ros.bag.reader import Bag
 from isa_ros.bag.replay import recorded_events, replay
 import pytest
 from rcl_interfaces.srv import SetParameters
-from rclpy.executors import SingleThreadedExecutor
 from rclpy.node import Node
 from rclpy.parameter import Parameter
 from rosgraph_msgs.msg import Clock
 from std_srvs.srv import SetBool, Trigger
-from tests.ros.started import bringup, RIG, started, wait_for
+from tests.ros.spinning import Spinning
+from tests.ros.started import bringup, RIG, started
 
 pytestmark = pytest.mark.ros
 
@@ -25,17 +25,11 @@ class User:
         self._node = node
         self.clocks: list[int] = []
         node.create_subscription(Clock, '/clock', self._on_clock, 100)
-        self._executor = SingleThreadedExecutor(context=node.context)
-        self._executor.add_node(node)
+        self._spinning = Spinning(node)
+        self.wait_for = self._spinning.wait_for
 
     def _on_clock(self, message: Clock) -> None:
         self.clocks.append(message.clock.sec * 10**9 + message.clock.nanosec)
-
-    def wait_for(self, condition: Any, what: str) -> None:
-        def spin() -> bool:
-            self._executor.spin_once(0.01)
-            return bool(condition())
-        wait_for(spin, what)
 
     def call(self, kind: Any, name: str, request: Any) -> Any:
         client = self._node.create_client(kind, f'/coordinator/{name}')
