@@ -1,8 +1,27 @@
-"""Settings of all tests."""
+"""Settings of all tests, and what each must leave as it was."""
+
+from collections.abc import Iterator
+import os
 
 from hypothesis import settings
+import pytest
 
 # The first call of a kernel compiles it, which no deadline allows for; the same examples on
 # every run, so that a failure is reproducible.
 settings.register_profile('isa_ros', deadline=None, derandomize=True)
 settings.load_profile('isa_ros')
+
+# pytest changes the first at every phase of a test, the first import of a kernel sets the second.
+_CHANGING = ('PYTEST_CURRENT_TEST', 'NUMBA_CACHE_DIR')
+
+
+def _environment() -> dict[str, str]:
+    return {name: value for name, value in os.environ.items() if name not in _CHANGING}
+
+
+@pytest.fixture(autouse=True)
+def same_environment() -> Iterator[None]:
+    """Fail a test that leaves the environment changed for the processes of later ones."""
+    before = _environment()
+    yield
+    assert _environment() == before

@@ -1,10 +1,11 @@
 """
 The middleware settings a lockstep wants, where the user has set none.
 
-Must be called before `rclpy.init`; children inherit them.
+Must stand before `rclpy.init`; children inherit them.
 """
 
-from collections.abc import Mapping, MutableMapping
+from collections.abc import Iterator, Mapping, MutableMapping
+from contextlib import contextmanager
 import os
 from pathlib import Path
 
@@ -46,6 +47,22 @@ def set_defaults(
         environment.setdefault(_TRANSPORTS, 'UDPv4')
     for name in _PROFILE_VARIABLES:
         environment[name] = str(profile)
+
+
+@contextmanager
+def defaults(environment: MutableMapping[str, str] = os.environ) -> Iterator[None]:
+    """Set them for a while in a process that goes on to do something else; then take them back."""
+    before = dict(environment)
+    set_defaults(environment)
+    added = {name: value for name, value in environment.items() if before.get(name) != value}
+    try:
+        yield
+    finally:
+        for name in added:
+            if name in before:
+                environment[name] = before[name]
+            else:
+                environment.pop(name, None)
 
 
 def finds_other_hosts(environment: Mapping[str, str]) -> bool:

@@ -11,7 +11,7 @@ from isa_ros.nodes.actuator_process import run
 from isa_ros.nodes.cast import Cast, Expected, Limits
 from isa_ros.nodes.coordinator_node import CoordinatorNode
 from isa_ros.nodes.domain import look_for_other_coordinator, sole_coordinator
-from isa_ros.nodes.environment import set_defaults
+from isa_ros.nodes.environment import defaults
 from isa_ros.nodes.lockstep import LockstepTransport
 from isa_ros.nodes.middleware import refusals
 from isa_ros.nodes.mixed import MixedTransport
@@ -36,7 +36,6 @@ _QUIET = {
 
 def in_processes(session: Session, report: Report | None, should_stop: StopRequest) -> None:
     """Start one process per actuator, coordinate them from here, and end them."""
-    set_defaults()
     load = SharedLoad(session.run)
     cast = _cast(session, load)
     request = session.request
@@ -44,7 +43,7 @@ def in_processes(session: Session, report: Report | None, should_stop: StopReque
         session.run, request.config, request.scenario, names_here(session.run, request.elsewhere))
     children = Children(
         processes, request.namespace, _work if request.may_copy else None)
-    with sole_coordinator(), children:
+    with defaults(), sole_coordinator(), children:
         with _node(request.namespace) as node:
             _coordinate(node, session, load, cast, report, should_stop, children.lost)
 
@@ -55,8 +54,7 @@ def _work(arguments: Sequence[str]) -> int:
 
 def in_one_process(session: Session, report: Report | None, should_stop: StopRequest) -> None:
     """Call the nodes of all actuators from here."""
-    set_defaults()
-    with sole_coordinator(), _node(session.request.namespace) as node:
+    with defaults(), sole_coordinator(), _node(session.request.namespace) as node:
         coordinate_locally(node, session, report, should_stop)
 
 

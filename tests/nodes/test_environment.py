@@ -3,7 +3,7 @@
 from xml.etree import ElementTree
 
 from isa_ros.nodes.environment import (
-    finds_other_hosts, LOCALHOST_PROFILE, NETWORK_PROFILE, set_defaults)
+    defaults, finds_other_hosts, LOCALHOST_PROFILE, NETWORK_PROFILE, set_defaults)
 import pytest
 
 NAMESPACE = '{http://www.eprosima.com/XMLSchemas/fastRTPS_Profiles}'
@@ -35,6 +35,17 @@ def test_children_keep_what_their_parent_has_set():
     inherited = dict(environment)
     set_defaults(inherited, FAST_DDS)
     assert inherited == environment
+
+
+@pytest.mark.parametrize('given', [
+    {}, {'ROS_AUTOMATIC_DISCOVERY_RANGE': 'LOCALHOST'}, {'ROS_STATIC_PEERS': '192.0.2.7'}])
+def test_a_process_that_goes_on_gets_its_environment_back(given):
+    """A run called as a library must not choose the network of what its caller does next."""
+    environment = dict(given)
+    with pytest.raises(RuntimeError), defaults(environment):
+        assert environment['FASTDDS_DEFAULT_PROFILES_FILE']
+        raise RuntimeError
+    assert environment == given
 
 
 def test_the_user_who_asks_for_localhost_gets_the_same():
