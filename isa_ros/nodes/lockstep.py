@@ -12,8 +12,9 @@ from isa_ros.errors import ConfigError, RunError, SimulationDiverged
 from isa_ros.exchange import floats, IDLE_S, Messages, Rows, Voice
 from isa_ros.nodes.cast import Cast, Limits
 from isa_ros.nodes.domain import another_coordinator, refuse_other_coordinator
+from isa_ros.nodes.local_wire import LocalWires
 from isa_ros.nodes.qos import LOCKSTEP
-from isa_ros.nodes.waiting import open_mailbox, SLICE_S
+from isa_ros.nodes.waiting import LOOK_S, open_mailbox, SLICE_S
 from isa_ros.nodes.wire import (
     ACKNOWLEDGEMENT_TOPIC, Answer, AnswerKind, decode_answer, DIVERGENCE, encode_begin,
     encode_end, encode_hello, encode_restore, encode_save, encode_tick, STEP_TOPIC)
@@ -34,6 +35,9 @@ _NO_REASON = b'without a reason'
 class LockstepTransport:
     """
     One broadcast step and one answer per participant and tick.
+
+    They are topics; sockets carry them once a run has begun whose participants are all on this
+    host, and the topics then only show the run to nodes that are not part of it.
 
     ``watch`` is called while nothing arrives and says who is lost, if it knows.
     """
@@ -61,6 +65,9 @@ class LockstepTransport:
         self._awaited = 0  # what an answer must carry for a tick: the tick, or a request's number
         self._step, self._doing = b'', 'tick 0'
         self._publisher = node.create_publisher(UInt8MultiArray, STEP_TOPIC, LOCKSTEP)
+        self._wires = LocalWires()
+        self._has_wires = self._uses_wires = False
+        self._look_at = 0.0
         handle: Any = self._publisher.handle
         self._send: Callable[[bytes], None] = handle.publish_raw
         self._mailbox = open_mailbox(node, ACKNOWLEDGEMENT_TOPIC)
@@ -84,9 +91,10 @@ class LockstepTransport:
 
         """
         if self._run_id:
-            self._send(encode_end(self._run_id))
+            self._end()
             self._past_runs.add(self._run_id)
         self._run_id = secrets.randbits(63) + 1
+        self._wires.listen(self._run_id)
         start = time.monotonic()
         names = [participant.name for participant in self._participants]
         complete: dict[int, Answer] = {}
@@ -98,6 +106,7 @@ class LockstepTransport:
             answers = self._hello_answers(count, is_last=bool(complete))
             refuse_other_coordinator(self._node)
             if complete:
+                self._has_wires = self._wires.connect(self._identities)
                 return self._said(rows, 0, {
                     k: answer.parts[_FIRST:] for k, answer in complete.items()})
             if len(answers) == len(self._remote):
@@ -166,6 +175,7 @@ class LockstepTransport:
     def begin(self) -> None:
         """Let everyone publish the first messages."""
         self._send(encode_begin(self._run_id))
+        self._uses_wires = self._has_wires
 
     def send(self, tick: int, rows: Rows) -> None:
         """Broadcast the step."""
@@ -175,7 +185,8 @@ class LockstepTransport:
 
     def _ask(self, what: str, awaited: int, step: bytes) -> None:
         self._doing, self._awaited, self._step = what, awaited, step
-        self._send(step)
+        if not (self._uses_wires and self._wires.send(step)):
+            self._send(step)
 
     def _next_request(self) -> int:
         """Return a number that no tick and no other request has."""
@@ -245,9 +256,9 @@ class LockstepTransport:
         waited, repeat_at = 0.0, REPEAT_S
         while missing:
             begin = time.monotonic()
-            data = self._mailbox.wait(SLICE_S)
+            data = self._next_answer()
             if data is None and self._watch() is not None:
-                data = self._mailbox.wait(SLICE_S)  # what the lost one had still said
+                data = self._next_answer()  # what the lost one had still said
             if data is None:
                 self._refuse_lost(f'in tick {self._tick}')
                 # A stopped or suspended host must not look like a late participant.
@@ -262,6 +273,17 @@ class LockstepTransport:
                 parts[answer.participant] = answer.parts
                 missing.discard(answer.participant)
         return parts
+
+    def _next_answer(self) -> bytes | None:
+        """Return the next message, or None if none arrives within `SLICE_S`."""
+        if not self._uses_wires:
+            return self._mailbox.wait(SLICE_S)
+        if time.monotonic() >= self._look_at:
+            if (data := self._mailbox.wait(0.0)) is not None:
+                return data
+            self._look_at = time.monotonic() + LOOK_S
+            self._send(encode_begin(self._run_id))  # ticks no longer tell others of the run
+        return self._wires.wait(SLICE_S)
 
     def _is_expected(self, answer: Answer, kind: AnswerKind, missing: set[int]) -> bool:
         """Tell whether an answer counts; raise what it says instead."""
@@ -297,5 +319,10 @@ class LockstepTransport:
 
     def close(self) -> None:
         """Tell the participants that the run is over."""
-        self._send(encode_end(self._run_id))
+        self._end()
         self._publisher.wait_for_all_acked(Duration(seconds=HELLO_PERIOD_S))
+
+    def _end(self) -> None:
+        self._send(encode_end(self._run_id))
+        self._wires.close()
+        self._has_wires = self._uses_wires = False

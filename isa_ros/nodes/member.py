@@ -6,9 +6,10 @@ import time
 from typing import Any
 
 from isa_ros.errors import IsaError, SimulationDiverged
+from isa_ros.nodes.local_wire import LocalWire
 from isa_ros.nodes.qos import LOCKSTEP
 from isa_ros.nodes.seat import Parts, Seat
-from isa_ros.nodes.waiting import open_mailbox, SLICE_S
+from isa_ros.nodes.waiting import LOOK_S, open_mailbox, SLICE_S
 from isa_ros.nodes.wire import (
     ACKNOWLEDGEMENT_TOPIC, AnswerKind, decode_step, DIVERGENCE, encode_answer, Step, STEP_TOPIC,
     StepKind)
@@ -39,9 +40,12 @@ class Member:
         handle: Any = self._publisher.handle
         self._send: Callable[[bytes], None] = handle.publish_raw
         self._strangers: set[int] = set()
+        self._wire: LocalWire | None = None
+        self._look_at = 0.0
         self._release()
 
     def _release(self) -> None:
+        self._hang_up()
         self._run_id = 0  # 0: bound to no run
         self._index = 0
         self._next_tick = 0
@@ -55,7 +59,7 @@ class Member:
     def spin(self, should_stop: Callable[[], bool]) -> None:
         """Take part in one run after the other until ``should_stop``."""
         while not should_stop():
-            data = self._mailbox.wait(SLICE_S)
+            data = self._next_step()
             if data is not None:
                 self._handle(decode_step(data))
                 continue
@@ -66,6 +70,29 @@ class Member:
                     f'the coordinator is gone or silent after {self._next_tick} ticks; waiting '
                     'for it or for another')
             self._is_alone = is_alone
+
+    def _next_step(self) -> bytes | None:
+        """Return the next message, or None if none arrives within `SLICE_S`."""
+        wire = self._wire_in_use()
+        if wire is None:
+            return self._mailbox.wait(SLICE_S)
+        if time.monotonic() >= self._look_at:
+            if (data := self._mailbox.wait(0.0)) is not None:
+                return data
+            self._look_at = time.monotonic() + LOOK_S
+        data = wire.wait()
+        if not wire.is_open:
+            self._hang_up()
+        return data
+
+    def _wire_in_use(self) -> LocalWire | None:
+        """Return the socket to the coordinator, which waits at its own end once it has begun."""
+        return self._wire if self._has_begun else None
+
+    def _hang_up(self) -> None:
+        if self._wire is not None:
+            self._wire.close()
+            self._wire = None
 
     def _is_led(self, n_coordinators: int) -> bool:
         """Return whether the coordinator of the run may be there and has spoken not long ago."""
@@ -108,7 +135,7 @@ class Member:
 
     def _answer_strange(self, step: Step) -> None:
         """Give this name once to a run that goes on without it: another node may have it."""
-        if step.kind is StepKind.TICK and not self._run_id and (
+        if step.kind in (StepKind.TICK, StepKind.BEGIN) and not self._run_id and (
                 step.run_id not in self._strangers):
             self._strangers.add(step.run_id)
             self._send(encode_answer(
@@ -127,6 +154,7 @@ class Member:
             return False
         self._run_id, self._heard = step.run_id, time.monotonic()
         self._index = names.index(self._name)
+        self._wire = LocalWire.to_run(self._run_id, self._identity, SLICE_S)
         self._seat.serve()
         self._first = self._seat.start(step, self._index)
         return True
@@ -139,7 +167,7 @@ class Member:
     def _repeat(self, step: Step) -> None:
         """Say once more what was said: the answer, or the first request, may have been lost."""
         kind, parts = self._last
-        self._send(encode_answer(
+        self._say(encode_answer(
             kind, self._run_id, step.tick, self._index, parts, is_repeated=True))
 
     def _answer_tick(self, step: Step) -> None:
@@ -178,4 +206,10 @@ class Member:
 
     def _answer(self, step: Step, kind: AnswerKind, parts: Parts) -> None:
         self._answered, self._last = (step.kind, step.tick), (kind, parts)
-        self._send(encode_answer(kind, self._run_id, step.tick, self._index, parts))
+        self._say(encode_answer(kind, self._run_id, step.tick, self._index, parts))
+
+    def _say(self, answer: bytes) -> None:
+        """Answer the coordinator of the run where it waits."""
+        wire = self._wire_in_use()
+        if wire is None or not wire.send(answer):
+            self._send(answer)

@@ -24,6 +24,9 @@ from std_msgs.msg import UInt8MultiArray
 SLICE_S = 0.1
 """Longest wait in one piece: a signal handler of Python runs between two pieces."""
 
+LOOK_S = 0.1
+"""Host time between two looks at the wire's topics while sockets carry its ticks."""
+
 SERVICE_PERIOD_S = 0.005
 """Host time between two looks at a node's services; a setpoint is looked for at every tick."""
 

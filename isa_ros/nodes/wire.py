@@ -47,7 +47,8 @@ class StepKind(IntEnum):
     END = 3
     """The run is over; the next hello may begin another."""
     BEGIN = 4
-    """Publish the first messages: everyone is ready and `/clock` is out. No answer."""
+    """Publish the first messages: everyone is ready and `/clock` is out. Said again while the
+    run goes on without ticks on the topic. No answer."""
     SAVE = 5
     """Answer with the whole state before the next tick; ``tick`` is a number below 0, new at
     each request, so that no answer to another one is taken for this one's."""
@@ -69,7 +70,7 @@ class AnswerKind(IntEnum):
     REFUSED = 5
     """To a tick, a save or a restore: the reason why it cannot be done."""
     UNBOUND = 6
-    """To the first tick of a run that never called this participant: its name."""
+    """To the first sign of a run that never called this participant: its name."""
     SAVED = 7
     """To a save: the whole state."""
     RESTORED = 8

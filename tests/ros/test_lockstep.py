@@ -9,7 +9,7 @@ from isa_ros.controller import Controller, Setpoint
 from isa_ros.coordinator import Interrupted
 from isa_ros.errors import ConfigError, RunError, SetpointError, SimulationDiverged
 from isa_ros.exchange import Messages, Rows, Silence
-from isa_ros.nodes import lockstep, member, waiting
+from isa_ros.nodes import local_wire, lockstep, member, waiting
 from isa_ros.nodes.cast import Cast, Expected, Limits
 from isa_ros.nodes.lockstep import LockstepTransport
 from isa_ros.nodes.member import Member
@@ -24,6 +24,14 @@ from tests.ros.started import DEADLINE_S, wait_for
 pytestmark = pytest.mark.ros
 LIMITS = Limits(join_s=DEADLINE_S, tick_s=0.3)
 NAMES = ('haa', 'kfe')
+
+
+@pytest.fixture(params=['sockets', 'topics'], autouse=True)
+def carrier(request: pytest.FixtureRequest, monkeypatch: pytest.MonkeyPatch) -> str:
+    """Return what carries the ticks: one host has sockets."""
+    if request.param == 'topics':
+        monkeypatch.setattr(local_wire, 'is_possible', lambda: False)
+    return request.param
 
 
 class Scripted:
@@ -113,6 +121,13 @@ def make_transport(
         watch=watch, should_stop=should_stop)
 
 
+def begin(transport: LockstepTransport, rows: Rows | None = None) -> Sequence[Messages]:
+    """Return the messages before tick 0."""
+    messages = transport.join(Rows(2) if rows is None else rows)
+    transport.begin()
+    return messages
+
+
 def tick(
         transport: LockstepTransport, number: int, rows: Rows | None = None
         ) -> tuple[list[float], Sequence[Messages]]:
@@ -131,7 +146,7 @@ def test_every_participant_answers_every_tick(observer, monkeypatch, has_handles
     steppers = {'kfe': Scripted(), 'haa': Scripted()}
     with spinning(observer.context, steppers):
         transport = make_transport(observer)
-        assert transport.join(Rows(2)) == [[b'0.25', None], [b'0.5', None]]
+        assert begin(transport) == [[b'0.25', None], [b'0.5', None]]
         assert tick(transport, 0) == ([1.0, 2.0], [[b'0', None], [b'0', None]])
         assert tick(transport, 1) == ([2.0, 3.0], [[b'1', b'applied'], [b'1', b'applied']])
         transport.close()
@@ -161,7 +176,7 @@ def test_a_controller_sees_tick_k_and_speaks_for_tick_k_plus_1(observer):
     steppers = {'haa': Scripted(), 'kfe': Scripted(), 'follower': controller}
     with spinning(observer.context, steppers):
         transport = make_transport(observer, ['follower'])
-        assert transport.join(rows)[2] == ()
+        assert begin(transport, rows)[2] == ()
         assert rows.samples['position'].tolist() == [0.25, 0.5]
         tick(transport, 0, rows)
         assert rows.samples['position'].tolist() == [1.25, 1.5]
@@ -179,7 +194,7 @@ def test_a_setpoint_for_nobody_ends_the_run(observer):
     with spinning(observer.context, {
             'haa': Scripted(), 'kfe': Scripted(), 'follower': controller}):
         transport = make_transport(observer, ['follower'])
-        transport.join(Rows(2))
+        begin(transport)
         with pytest.raises(RunError, match="follower: refused tick 0: 'hip' is no actuator"):
             tick(transport, 0)
 
@@ -190,7 +205,7 @@ def test_what_a_participant_raises_reaches_the_coordinator(observer):
     stepper.fails_at, stepper.error = 1, SetpointError('kfe: no such thing')
     with spinning(observer.context, {'haa': Scripted(), 'kfe': stepper}):
         transport = make_transport(observer)
-        transport.join(Rows(2))
+        begin(transport)
         tick(transport, 0)
         with pytest.raises(RunError, match='kfe: refused tick 1: kfe: no such thing'):
             tick(transport, 1)
@@ -213,7 +228,7 @@ def test_a_saved_state_is_restored(observer):
     """Everyone gives its own state, and goes on from its own; the tick goes on too."""
     with spinning(observer.context, {'haa': Scripted(), 'kfe': Scripted()}):
         transport = make_transport(observer)
-        transport.join(Rows(2))
+        begin(transport)
         tick(transport, 0)
         tick(transport, 1)
         states = transport.snapshots()
@@ -229,7 +244,7 @@ def test_a_controller_without_snapshot_is_named(observer):
     with spinning(observer.context, {
             'haa': Scripted(), 'kfe': Scripted(), 'follower': Follower()}):
         transport = make_transport(observer, ['follower'])
-        transport.join(Rows(2))
+        begin(transport)
         with pytest.raises(RunError, match=(
                 r'follower: refused the request to save its state: Follower has no snapshot\(\)')):
             transport.snapshots()
@@ -240,7 +255,7 @@ def test_only_those_in_other_processes_are_called(observer):
     with spinning(observer.context, {'follower': Follower()}):
         transport = make_transport(observer, ['follower'], first_remote=2)
         rows = Rows(2)
-        assert transport.join(rows) == [()]
+        assert begin(transport, rows) == [()]
         assert tick(transport, 0, rows)[1] == [()]
         assert rows.requests['kinds'].tolist() == [HAS_SETPOINT, 0]
 
@@ -263,7 +278,7 @@ def test_divergence_arrives_with_its_field(observer):
     stepper.fails_at = 1
     with spinning(observer.context, {'haa': Scripted(), 'kfe': stepper}):
         transport = make_transport(observer)
-        transport.join(Rows(2))
+        begin(transport)
         tick(transport, 0)
         with pytest.raises(SimulationDiverged) as raised:
             tick(transport, 1)
@@ -276,7 +291,7 @@ def test_late_participant_is_named(observer):
     stepper.is_late_at = 1
     with spinning(observer.context, {'haa': stepper, 'kfe': Scripted()}):
         transport = make_transport(observer)
-        transport.join(Rows(2))
+        begin(transport)
         tick(transport, 0)
         with pytest.raises(RunError, match=r'^haa: no answer to tick 1 after 0\.[34] s'):
             tick(transport, 1)
@@ -289,7 +304,7 @@ def test_lost_participant_is_named_before_its_timeout(observer):
     with spinning(observer.context, {'haa': stepper, 'kfe': Scripted()}):
         transport = make_transport(
             observer, limits=limits, watch=lambda: lost[0] if lost else None)
-        transport.join(Rows(2))
+        begin(transport)
         lost.append('haa: its process 1 was ended by SIGKILL')
         with pytest.raises(RunError, match='SIGKILL in tick 0'):
             tick(transport, 0)
@@ -301,7 +316,7 @@ def test_stop_does_not_wait_for_the_timeout(observer):
     limits = Limits(join_s=DEADLINE_S, tick_s=DEADLINE_S)
     with spinning(observer.context, {'haa': stepper, 'kfe': Scripted()}):
         transport = make_transport(observer, limits=limits, should_stop=is_stopped.is_set)
-        transport.join(Rows(2))
+        begin(transport)
         is_stopped.set()
         with pytest.raises(Interrupted, match='tick 0, which haa did not end'):
             tick(transport, 0)
@@ -312,7 +327,7 @@ def test_busy_participant_refuses_another_coordinator(observer):
     steppers = {'haa': Scripted(), 'kfe': Scripted()}
     with spinning(observer.context, steppers):
         first = make_transport(observer)
-        first.join(Rows(2))
+        begin(first)
         tick(first, 0)
         with pytest.raises(ConfigError, match='another coordinator runs in ROS_DOMAIN_ID'):
             make_transport(observer).join(Rows(2))
@@ -323,7 +338,7 @@ def test_busy_participant_refuses_another_coordinator(observer):
 def is_followed(transport: LockstepTransport) -> bool:
     """Try to begin a run; return whether the participants take part."""
     try:
-        transport.join(Rows(2))
+        begin(transport)
     except ConfigError:
         return False
     return True
@@ -335,7 +350,7 @@ def test_participants_of_a_silent_coordinator_follow_another(observer, monkeypat
     steppers = {'haa': Scripted(), 'kfe': Scripted()}
     with spinning(observer.context, steppers):
         first, second = make_transport(observer), make_transport(observer)
-        first.join(Rows(2))
+        begin(first)
         tick(first, 0)
         wait_for(lambda: is_followed(second), 'the silence')
         assert tick(second, 0)[0] == [1.0, 2.0]
@@ -348,7 +363,7 @@ def test_a_paused_coordinator_is_not_silent(observer, monkeypatch):
     steppers = {'haa': Scripted(), 'kfe': Scripted()}
     with spinning(observer.context, steppers):
         first, second = make_transport(observer), make_transport(observer)
-        first.join(Rows(2))
+        begin(first)
         end = time.monotonic() + 2.0 * member.SILENCE_S
         while time.monotonic() < end:
             first.idle()
@@ -360,7 +375,7 @@ def test_a_paused_coordinator_is_not_silent(observer, monkeypatch):
 def test_a_skipped_tick_is_refused(observer):
     with spinning(observer.context, {'haa': Scripted(), 'kfe': Scripted()}):
         transport = make_transport(observer)
-        transport.join(Rows(2))
+        begin(transport)
         with pytest.raises(RunError, match='refused tick 1: tick 1 came, 0 was due'):
             tick(transport, 1)
 
@@ -370,7 +385,7 @@ def test_steps_of_a_strange_run_are_ignored(observer):
     stepper = Scripted()
     with spinning(observer.context, {'haa': stepper, 'kfe': Scripted()}):
         transport = make_transport(observer)
-        transport.join(Rows(2))
+        begin(transport)
         stranger = make_transport(observer)
         wait_for(lambda: stranger._publisher.get_subscription_count() >= 2, 'the match')
         stranger._send(encode_tick(7, 0, Rows(2), False))
@@ -383,7 +398,7 @@ def test_a_second_node_of_a_name_is_noticed_during_the_run(observer):
     """One that was discovered too late for any hello gives its name at its first tick."""
     with spinning(observer.context, {'haa': Scripted(), 'kfe': Scripted()}):
         transport = make_transport(observer)
-        transport.join(Rows(2))
+        begin(transport)
         tick(transport, 0)
         with spinning(observer.context, {'kfe': Scripted()}):
             wait_for(lambda: transport._publisher.get_subscription_count() >= 3, 'the match')
@@ -395,26 +410,42 @@ def test_a_second_node_of_a_name_is_noticed_during_the_run(observer):
                 ticks()
 
 
-def dropping(send: Callable[[bytes], None]) -> Callable[[bytes], None]:
+def dropping(send: Callable[[bytes], object]) -> Callable[[bytes], bool]:
     """Lose the first message, as a participant does that the middleware took for gone."""
     messages: list[bytes] = []
 
-    def send_but_the_first(message: bytes) -> None:
+    def send_but_the_first(message: bytes) -> bool:
         if messages:
             send(message)
         messages.append(message)
+        return True
     return send_but_the_first
+
+
+def drop_next(end: LockstepTransport | Member, carrier: str) -> None:
+    """Lose what this end sends next."""
+    wire = end._wires if isinstance(end, LockstepTransport) else end._wire
+    assert is_by_socket(end) == (carrier == 'sockets')
+    if carrier == 'sockets':
+        wire.send = dropping(wire.send)
+    else:
+        end._send = dropping(end._send)
+
+
+def is_by_socket(end: LockstepTransport | Member) -> bool:
+    """Return whether this end sends its ticks or answers by socket."""
+    return end._uses_wires if isinstance(end, LockstepTransport) else end._wire is not None
 
 
 PATIENT = Limits(join_s=DEADLINE_S, tick_s=DEADLINE_S)
 
 
-def test_a_lost_step_is_asked_for_again(observer):
+def test_a_lost_step_is_asked_for_again(observer, carrier):
     stepper = Scripted()
     with spinning(observer.context, {'haa': Scripted(), 'kfe': stepper}):
         transport = make_transport(observer, limits=PATIENT)
-        transport.join(Rows(2))
-        transport._send = dropping(transport._send)
+        begin(transport)
+        drop_next(transport, carrier)
         assert tick(transport, 0)[0] == [1.0, 2.0]
         assert tick(transport, 1)[0] == [2.0, 3.0]
     assert stepper.ticks == 2
@@ -433,26 +464,26 @@ def members(monkeypatch) -> list[Member]:
     return made
 
 
-def test_a_lost_answer_is_given_again_without_another_tick(observer, members):
+def test_a_lost_answer_is_given_again_without_another_tick(observer, members, carrier):
     """The other participant repeats its answer too, which is not taken for a second node."""
     steppers = {'haa': Scripted(), 'kfe': Scripted()}
     with spinning(observer.context, steppers):
         transport = make_transport(observer, limits=PATIENT)
-        transport.join(Rows(2))
-        members[1]._send = dropping(members[1]._send)
+        begin(transport)
+        drop_next(members[1], carrier)
         for number in range(50):
             assert tick(transport, number)[0] == [1.0 + number, 2.0 + number]
     assert steppers['haa'].ticks == steppers['kfe'].ticks == 50
 
 
-def test_a_lost_state_is_given_again(observer, members):
+def test_a_lost_state_is_given_again(observer, members, carrier):
     """Saved once, however often it is asked for; a later save is another."""
     steppers = {'haa': Scripted(), 'kfe': Scripted()}
     with spinning(observer.context, steppers):
         transport = make_transport(observer, limits=PATIENT)
-        transport.join(Rows(2))
+        begin(transport)
         tick(transport, 0)
-        members[0]._send = dropping(members[0]._send)
+        drop_next(members[0], carrier)
         assert transport.snapshots() == [b'after 1', b'after 1']
         steppers['haa'].ticks = 5
         assert transport.snapshots() == [b'after 5', b'after 1']
@@ -462,7 +493,7 @@ def test_a_node_of_another_name_does_not_disturb(observer):
     """It gives its name too, which is none of the run."""
     with spinning(observer.context, {'haa': Scripted(), 'kfe': Scripted(), 'hfe': Scripted()}):
         transport = make_transport(observer)
-        transport.join(Rows(2))
+        begin(transport)
         wait_for(lambda: transport._publisher.get_subscription_count() >= 3, 'the match')
         for number in range(200):
             tick(transport, number)
@@ -473,7 +504,7 @@ def test_a_participant_serves_one_run_after_the_other(observer):
     with spinning(observer.context, {'haa': stepper, 'kfe': Scripted()}):
         for _ in range(2):
             transport = make_transport(observer)
-            transport.join(Rows(2))
+            begin(transport)
             assert tick(transport, 0)[0] == [1.0, 2.0]
             transport.close()
     assert stepper.starts == 2

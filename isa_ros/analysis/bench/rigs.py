@@ -33,7 +33,7 @@ def rigs_file(n_actuators: int) -> str:
 
 
 def request_of(spec: Spec, directory: Path) -> Request:
-    """Return the run of a spec, its files in ``directory``."""
+    """Return the run of a spec, as the command starts it; its files are in ``directory``."""
     config, scenario = find('leg.yaml', CONFIG), None
     if spec.plant == LEG:
         scenario = find('drop.yaml', SCENARIOS)
@@ -42,4 +42,5 @@ def request_of(spec: Spec, directory: Path) -> Request:
         config.write_text(rigs_file(int(spec.plant)), encoding='utf-8')
     return Request(
         config=config, scenario=scenario, out=directory / 'bag',
-        duration_s=spec.ticks * TICK_S, in_process=spec.way == ONE_PROCESS, join_timeout_s=120.0)
+        duration_s=spec.ticks * TICK_S, in_process=spec.way == ONE_PROCESS, join_timeout_s=120.0,
+        may_copy=True)
