@@ -8,7 +8,6 @@ from isa_ros.config import load_run
 from isa_ros.errors import RunError
 from isa_ros.processes import actuator_processes, Children
 from isa_ros.scenario import load_scenario
-from isa_ros.shared_load import SharedLoad
 from isa_ros.stopping import StopRequest
 from isa_ros.warm_up import warmed_up
 
@@ -35,7 +34,7 @@ def host_actuators(config: Path, scenario: Path | None, names: Sequence[str]) ->
     chosen = [run.actuator(name).name for name in names] or None
     processes = actuator_processes(run, config, scenario, chosen)
     with StopRequest() as should_stop:
-        warmed_up(run, SharedLoad(run))
+        warmed_up(run)
         with Children(processes) as children:
             while not should_stop():
                 lost = children.lost()

@@ -28,7 +28,7 @@ def demo(options: Namespace) -> bool:
         raise BagError(f'{out} exists, must not; a demo never overwrites')
     bag = _record(Request(
         config=find('leg.yaml', CONFIG), scenario=find('drop.yaml', SCENARIOS),
-        out=out / 'bag', may_copy=options.is_alone))
+        out=out / 'bag', is_alone=options.is_alone))
     _draw(bag, out / 'report.html')
     return True
 
@@ -64,7 +64,7 @@ def bringup(options: Namespace) -> bool:
         split_mb=options.split_mb, in_process=options.in_process,
         elsewhere=options.elsewhere, controllers=tuple(options.controller),
         is_paused=options.paused, restore=options.restore, save=options.save,
-        join_timeout_s=options.join_timeout, may_copy=options.is_alone))
+        join_timeout_s=options.join_timeout, is_alone=options.is_alone))
     return True
 
 

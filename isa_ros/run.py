@@ -59,8 +59,9 @@ class Request:
     """Where the state at the end goes; None: nowhere."""
     namespace: str = ''
     join_timeout_s: float = JOIN_TIMEOUT_S
-    may_copy: bool = False
-    """Nobody in this process has had a node, so actuators may begin as copies of it."""
+    is_alone: bool = False
+    """This process does nothing but the run, so that what was loaded need not be collected and,
+    where nobody has had a node, actuators may begin as copies of it."""
     laps: Laps | None = None
     """Takes the host time of every phase of the ticks."""
 

@@ -1,4 +1,4 @@
-"""The kernels of a run, compiled before anything waits for them."""
+"""The kernels of a run, compiled or loaded before anything waits for them."""
 
 from isa_ros.actuator import Timing
 from isa_ros.exchange import Rows
@@ -7,13 +7,15 @@ from isa_ros.shared_load import SharedLoad
 from isa_ros.stepping import SteppedActuator
 
 
-def warmed_up(run: RunConfig, load: SharedLoad) -> list[SteppedActuator]:
-    """Return a copy of every actuator, ticked once under the first port of ``load``."""
-    timing = Timing(run.step_ns, run.controller_offset_ns)
+def warmed_up(run: RunConfig) -> list[SteppedActuator]:
+    """Return a copy of every actuator, after one tick of all and of a copy of their load."""
+    timing, load = Timing(run.step_ns, run.controller_offset_ns), SharedLoad(run)
     rows = Rows(len(run.actuators))
     load.ports(rows.ports)
     copies = [SteppedActuator(config, timing) for config in run.actuators]
-    for copy, start, port in zip(copies, load.starts(run), rows.ports):
+    for k, (copy, start) in enumerate(zip(copies, load.starts(run))):
         copy.start(start)
-        copy.advance(port)
+        copy.advance(rows.ports[k])
+        rows.replies[k] = copy.actuator.reply_rows[0]
+    load.advance(rows.replies)
     return copies

@@ -8,6 +8,7 @@ each index entry. Here a tick costs one pack and an index is an array.
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
+from functools import cached_property
 import io
 from itertools import accumulate
 from pathlib import Path
@@ -99,15 +100,20 @@ class ChunkContent:
         pieces: list[bytes] = [_MESSAGE_TAIL.pack(sequence, t_ns, t_ns)] * (3 * len(data))
         pieces[::3] = layout.heads
         pieces[2::3] = data
-        self._parts += pieces
+        self._parts.append(b''.join(pieces))  # now: many at once would halt a tick
         self.size += layout.size
 
     def data(self) -> bytes:
         """Return the content of the chunk."""
         return b''.join(self._parts)
 
+    @cached_property
     def message_indices(self) -> list[tuple[int, Entries]]:
-        """Return (channel id, entries (n, 2) of time and offset) of those with messages."""
+        """
+        Return (channel id, entries (n, 2) of time and offset) of those with messages.
+
+        To be asked for when the chunk is complete.
+        """
         pieces: dict[int, list[Entries]] = {}
         for layout, times, starts in self._stretches:
             ticks = np.array((times, starts), np.uint64).T
@@ -204,7 +210,7 @@ class McapFile:
             uncompressed_size=len(content_bytes), uncompressed_crc=zlib.crc32(content_bytes),
             compression=self._compression, data=data))
         start, indices, offsets = self._position, b'', {}
-        for channel, index in content.message_indices():
+        for channel, index in content.message_indices:
             offsets[channel] = start + len(chunk) + len(indices)
             size = len(index) * _ENTRY_BYTES
             indices += _INDEX_HEADER.pack(
@@ -263,7 +269,7 @@ class McapFile:
             self._totals.start_ns = content.start_ns
         self._totals.end_ns = content.end_ns
         self._totals.chunks += 1
-        for channel, index in content.message_indices():
+        for channel, index in content.message_indices:
             self._counts[channel - 1] += len(index)
 
     def _append(self, data: bytes) -> None:

@@ -2,6 +2,7 @@
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+from functools import cache
 import json
 from typing import NamedTuple
 
@@ -120,13 +121,17 @@ def _file(name: str, counts: Counts) -> list[str]:
 
 
 def _topic(topic: Topic, type_hash: str, count: int) -> list[str]:
+    return [*_topic_metadata(topic, type_hash), f'  message_count: {count}']
+
+
+@cache
+def _topic_metadata(topic: Topic, type_hash: str) -> list[str]:
     return _item([
         'topic_metadata:',
         *_indent([
             f'name: {topic.name}', f'type: {topic.type_name}', 'serialization_format: cdr',
             'offered_qos_profiles:', *_indent(topic.qos.to_yaml().split('\n'), 2),
-            f'type_description_hash: {type_hash}'], 2),
-        f'message_count: {count}'])
+            f'type_description_hash: {type_hash}'], 2)])
 
 
 def _duration(name: str) -> list[str]:

@@ -112,7 +112,7 @@ class PartWriter:
     def _end_chunk(self) -> None:
         chunk, self._ticks = self._chunk, 0
         self._chunk = self._file.new_chunk()
-        indices = chunk.message_indices()
+        indices = chunk.message_indices
         if not indices:
             return
         self._file.add_chunk(chunk)

@@ -2,6 +2,7 @@
 
 from collections.abc import Sequence
 from dataclasses import replace
+import gc
 import sys
 
 from isa_ros.actuator import Timing
@@ -51,6 +52,7 @@ def run(args: Sequence[str] | None, model: str) -> int:
 def _run(model: str, should_stop: StopRequest) -> None:
     node = ActuatorNode(lambda node: _resolve(node, model), model or 'actuator', has_mailbox=True)
     try:
+        gc.freeze()  # collecting what is loaded by now would halt a tick for 60 ms
         if _boolean(node, 'lockstep'):
             Member(node, ActuatorSeat(node)).spin(should_stop)
         else:

@@ -104,7 +104,7 @@ class CoordinatorNode(Node):
             compression=values['compression'] or None,
             split_mb=values['split_mb'] if values['split_mb'] >= 0.0 else None,
             namespace=self.get_namespace().strip('/'),
-            join_timeout_s=values['join_timeout_s'])
+            join_timeout_s=values['join_timeout_s'], is_alone=True)
 
 
 def _path(text: str) -> Path | None:

@@ -43,4 +43,4 @@ def request_of(spec: Spec, directory: Path) -> Request:
     return Request(
         config=config, scenario=scenario, out=directory / 'bag',
         duration_s=spec.ticks * TICK_S, in_process=spec.way == ONE_PROCESS, join_timeout_s=120.0,
-        may_copy=True)
+        is_alone=True)
