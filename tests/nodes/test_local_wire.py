@@ -12,7 +12,7 @@ IDENTITIES = {0: b'identity of haa', 2: b'identity of kfe'}
 SLICE_S = 0.05
 
 pytestmark = pytest.mark.skipif(
-    not local_wire.is_possible(), reason='abstract socket names are Linux\'s')
+    not local_wire.is_possible(), reason="abstract socket names are Linux's")
 
 
 @pytest.fixture
@@ -48,7 +48,7 @@ def test_a_message_goes_to_all_and_each_answers_for_itself(wires, ends):
     for step in b'one', b'x' * LARGEST:
         assert wires.send(step)
         assert [end.wait() for end in ends] == [step, step]
-        assert all([end.send(b'%d ' % k + step[:9]) for k, end in enumerate(ends)])
+        assert [end.send(b'%d ' % k + step[:9]) for k, end in enumerate(ends)] == [True, True]
         assert received(wires, 2) == [b'0 ' + step[:9], b'1 ' + step[:9]]
     assert wires.wait(0.0) is None
 

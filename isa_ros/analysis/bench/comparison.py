@@ -17,7 +17,7 @@ _AIMS = {'helics': Aim(1.8), 'zeromq': Aim(2.5, is_most=True)}
 def comparison_rows(outcomes: Outcomes) -> list[Row]:
     """Return ticks/s over each peer, and the ratios of the same rounds to isa_ros."""
     floor, ours = outcomes.of(_SPECS[FLOOR]), outcomes.of(IN_PROCESSES)
-    rows, ratios = [speed_row('isa_ros: DDS, every topic published', ours)], []
+    rows, ratios = [speed_row('isa_ros: Unix sockets, topics for who listens', ours)], []
     for peer, spec in _SPECS.items():
         theirs = outcomes.of(spec)
         if not theirs:

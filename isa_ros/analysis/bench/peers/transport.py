@@ -14,6 +14,7 @@ from isa_ros.analysis.bench.peers.catalogue import ends, Peer
 from isa_ros.analysis.bench.peers.frames import (
     Answer, decode_answer, encode_end, encode_start, encode_tick)
 from isa_ros.analysis.bench.peers.link import Link
+from isa_ros.analysis.bench.peers.worker import settle
 from isa_ros.errors import RunError
 from isa_ros.exchange import Messages, Records, Rows, Silence
 from isa_ros.run import record, Report, Session
@@ -147,6 +148,7 @@ class Workers:
 def run_over(
         peer: Peer, session: Session, report: Report | None, should_stop: StopRequest) -> None:
     """Run and record what was prepared, over a peer."""
+    settle(session.run)
     load = SharedLoad(session.run)
     with tempfile.TemporaryDirectory(prefix='isa_bench_') as directory:
         with _open(peer, Path(directory), len(session.run.actuators)) as link, \

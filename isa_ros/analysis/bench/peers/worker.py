@@ -1,6 +1,7 @@
 """One actuator over a peer: `python -m ... PEER DIRECTORY INDEX CONFIG [SCENARIO]`."""
 
 from collections.abc import Sequence
+import gc
 from pathlib import Path
 import sys
 
@@ -13,6 +14,7 @@ from isa_ros.run_config import RunConfig
 from isa_ros.scenario import load_scenario
 from isa_ros.stepping import SteppedActuator
 from isa_ros.stopping import end_with_parent
+from isa_ros.warm_up import warmed_up
 
 SLICE_S = 0.5
 
@@ -24,11 +26,18 @@ def main(arguments: Sequence[str]) -> None:
     run = _run(files)
     config = run.actuators[int(index)]
     stepped = SteppedActuator(config, Timing(run.step_ns, run.controller_offset_ns))
+    settle(run)
     link = ends(peer(name)).worker_end(Path(directory), int(index))
     try:
         answer_steps(link, stepped, int(index))
     finally:
         link.close()
+
+
+def settle(run: RunConfig) -> None:
+    """Load all kernels and spare the collector what is loaded, as a run of isa_ros does."""
+    warmed_up(run)
+    gc.freeze()
 
 
 def _run(files: Sequence[str]) -> RunConfig:
