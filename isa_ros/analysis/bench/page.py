@@ -30,8 +30,8 @@ Every row is a median, with the lowest and the highest in brackets; a ratio is i
 which more is better, to a floor of the same call. Whole runs take 1 ms ticks with recording, each
 run in a process of its own, in rounds of alternating order. The peers carry the same steps and
 answers between the same actuators, shared load and recorder, and give the same bag, byte for
-byte; isa_ros also publishes every topic. In processes, the phase *actuators* is the wait for
-them.
+byte; isa_ros also looks for setpoints, requests and listeners. In processes, the phase
+*actuators* is the wait for them.
 """
 
 

@@ -1,14 +1,13 @@
 """Start-up with warm caches: from the start of the command to its first tick."""
 
-from isa_ros.analysis.bench import growth, leg
+from isa_ros.analysis.bench import leg
+from isa_ros.analysis.bench.comparison import TWELVE
 from isa_ros.analysis.bench.limits import startup_profile
 from isa_ros.analysis.bench.loading import median_loading
 from isa_ros.analysis.bench.rounds import Outcomes
 from isa_ros.analysis.bench.row import Aim, Row
-from isa_ros.analysis.bench.spec import median_of, PROCESSES, Spec
+from isa_ros.analysis.bench.spec import median_of, Spec
 
-TWELVE = next(
-    spec for spec in growth.IN_PROCESSES if (spec.plant, spec.way) == ('12', PROCESSES))
 SPECS = (*leg.SPECS, TWELVE)
 _AIM = Aim(4.0, is_most=True)
 

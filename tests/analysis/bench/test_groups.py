@@ -60,6 +60,19 @@ def test_peers_are_compared_round_by_round():
     assert rows['ZeroMQ ipc'].ratio == pytest.approx(0.75)
 
 
+def test_twelve_actuators_over_peers_have_the_aims_of_the_leg():
+    ours = comparison.TWELVE
+    over = {peer.name: comparison.over(peer, ours) for peer in comparison.PEERS}
+    rows = by_name(comparison.comparison_rows(Outcomes({
+        ours: [told(600.0, 12), told(500.0, 12)], over['pipes']: [told(400.0, 12)],
+        over['zeromq']: [told(1800.0, 12)], over['helics']: [told(400.0, 12)]})))
+    assert rows['12 actuators, isa_ros over HELICS'].value == pytest.approx(1.5)
+    assert rows['12 actuators, isa_ros over HELICS'].is_reached is False
+    assert rows['12 actuators, ZeroMQ ipc over isa_ros'].value == pytest.approx(3.0)
+    assert rows['12 actuators, ZeroMQ ipc over isa_ros'].is_reached is False
+    assert not [name for name in rows if name.startswith('isa_ros')]  # no leg was run
+
+
 def test_twelve_actuators_have_aims_and_what_was_not_run_says_so():
     twelve = [next(s for s in specs if s.plant == '12')
               for specs in (growth.IN_ONE_PROCESS, growth.IN_PROCESSES)]

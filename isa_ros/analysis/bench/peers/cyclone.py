@@ -1,20 +1,23 @@
 """Cyclone DDS from Python, reliable, on this host alone."""
 
-from dataclasses import dataclass
 import os
 from pathlib import Path
+from typing import Any, NamedTuple
 
 from cyclonedds.core import (
     InstanceState, Policy, Qos, ReadCondition, SampleState, ViewState, WaitSet)
 from cyclonedds.domain import Domain, DomainParticipant
-from cyclonedds.idl import IdlStruct, types
+from cyclonedds.idl import make_idl_struct, types
 from cyclonedds.pub import DataWriter
 from cyclonedds.sub import DataReader
 from cyclonedds.topic import Topic
 from cyclonedds.util import duration
+from isa_ros.signals import COMMAND, LOAD_PORT
 
-LARGEST = 1024  # bytes of a message: three times load port and command, or one answer
-_DEPTH = 10     # as the lockstep's own topics
+ANSWER_BYTES = 1024
+HEAD_BYTES = 64  # of a step, more than it has
+_WORKERS = 'workers'  # file in the directory of a run: how many there are
+_DEPTH = 64  # as the lockstep's own topics
 _LOOPBACK = """
 <CycloneDDS><Domain Id="any">
   <General>
@@ -32,32 +35,47 @@ _LOOPBACK = """
 _ANY = SampleState.Any | ViewState.Any | InstanceState.Alive
 
 
-@dataclass
-class Octets(IdlStruct):
-    """A message as it is, in a field of fixed size: Python's encoder is slow with sequences."""
+class Octets(NamedTuple):
+    """
+    A topic of messages as they are, of up to ``size`` bytes.
 
-    length: types.uint32
-    octets: types.array[types.uint8, LARGEST]
+    They stand in a field of fixed size: Python's encoder is slow with sequences.
+    """
+
+    topic: str
+    size: int
+
+    @property
+    def message_type(self) -> Any:
+        """Return the type of its messages."""
+        name = f'Octets{self.size}'
+        return make_idl_struct(name, name, {
+            'length': types.uint32, 'octets': types.array[types.uint8, self.size]})
 
 
 class End:
     """A writer of one topic and a reader of the other."""
 
-    def __init__(self, written: str, read: str) -> None:
+    def __init__(self, written: Octets, read: Octets) -> None:
         number = int(os.environ.get('ROS_DOMAIN_ID') or 0)
         self._domain = Domain(number, _LOOPBACK)
         participant = DomainParticipant(number)
         qos = Qos(
             Policy.Reliability.Reliable(duration(seconds=1)), Policy.History.KeepLast(_DEPTH))
-        self._writer = DataWriter(participant, Topic(participant, written, Octets), qos=qos)
-        self._reader = DataReader(participant, Topic(participant, read, Octets), qos=qos)
+        self._message, self._size = written.message_type, written.size
+        self._received = read.message_type
+        self._writer = DataWriter(
+            participant, Topic(participant, written.topic, self._message), qos=qos)
+        self._reader = DataReader(
+            participant, Topic(participant, read.topic, self._received), qos=qos)
         self._condition = ReadCondition(self._reader, _ANY)
         self._wait_set = WaitSet(participant)
         self._wait_set.attach(self._condition)
 
     def send(self, message: bytes) -> None:
         """Write to whoever is matched."""
-        self._writer.write(Octets(len(message), message.ljust(LARGEST, b'\0')))
+        self._writer.write(self._message(
+            length=len(message), octets=message.ljust(self._size, b'\0')))
 
     def receive(self, timeout_s: float) -> bytes | None:
         """Take what is there, or wait for it."""
@@ -65,7 +83,7 @@ class End:
         if not samples and self._wait_set.wait(int(timeout_s * 1e9)):
             samples = self._reader.take(condition=self._condition)
         for sample in samples:
-            if isinstance(sample, Octets):
+            if isinstance(sample, self._received):
                 return bytes(sample.octets[:sample.length])
         return None
 
@@ -75,6 +93,7 @@ class End:
 
 def coordinator_end(directory: Path, n_workers: int) -> End:
     """Write steps and read answers."""
+    (directory / _WORKERS).write_text(str(n_workers))
     return End(*_topics(directory))
 
 
@@ -84,6 +103,9 @@ def worker_end(directory: Path, index: int) -> End:
     return End(answers, steps)
 
 
-def _topics(directory: Path) -> tuple[str, str]:
+def _topics(directory: Path) -> tuple[Octets, Octets]:
     """Return the topics of steps and of answers, of this run alone."""
-    return f'{directory.name}_steps', f'{directory.name}_answers'
+    n_workers = int((directory / _WORKERS).read_text())
+    step = HEAD_BYTES + n_workers * (LOAD_PORT.itemsize + COMMAND.itemsize)
+    return (Octets(f'{directory.name}_steps', step),
+            Octets(f'{directory.name}_answers', ANSWER_BYTES))
