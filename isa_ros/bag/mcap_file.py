@@ -8,7 +8,6 @@ each index entry. Here a tick costs one pack and an index is an array.
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
-from functools import cached_property
 import io
 from itertools import accumulate
 from pathlib import Path
@@ -107,13 +106,13 @@ class ChunkContent:
         """Return the content of the chunk."""
         return b''.join(self._parts)
 
-    @cached_property
-    def message_indices(self) -> list[tuple[int, Entries]]:
-        """
-        Return (channel id, entries (n, 2) of time and offset) of those with messages.
+    @property
+    def is_empty(self) -> bool:
+        """Return whether there is no message in it."""
+        return not self._stretches
 
-        To be asked for when the chunk is complete.
-        """
+    def message_indices(self) -> list[tuple[int, Entries]]:
+        """Return (channel id, entries (n, 2) of time and offset) of those with messages."""
         pieces: dict[int, list[Entries]] = {}
         for layout, times, starts in self._stretches:
             ticks = np.array((times, starts), np.uint64).T
@@ -201,8 +200,8 @@ class McapFile:
         registered = [] if self._chunks else [*self._schemas, *self._channels]
         return ChunkContent(_bytes(*registered))
 
-    def add_chunk(self, content: ChunkContent) -> None:
-        """Write a chunk and its message indices."""
+    def add_chunk(self, content: ChunkContent) -> list[tuple[int, int]]:
+        """Write a chunk and its message indices; return (channel id, messages) of each."""
         content_bytes = content.data()
         data = self._compress(content_bytes)
         chunk = _bytes(Chunk(
@@ -210,7 +209,8 @@ class McapFile:
             uncompressed_size=len(content_bytes), uncompressed_crc=zlib.crc32(content_bytes),
             compression=self._compression, data=data))
         start, indices, offsets = self._position, b'', {}
-        for channel, index in content.message_indices:
+        channels = content.message_indices()
+        for channel, index in channels:
             offsets[channel] = start + len(chunk) + len(indices)
             size = len(index) * _ENTRY_BYTES
             indices += _INDEX_HEADER.pack(
@@ -222,7 +222,9 @@ class McapFile:
             chunk_start_offset=start, chunk_length=len(chunk), message_index_offsets=offsets,
             message_index_length=len(indices), compression=self._compression,
             compressed_size=len(data), uncompressed_size=len(content_bytes)))
-        self._count(content)
+        counts = [(channel, len(index)) for channel, index in channels]
+        self._count(content, counts)
+        return counts
 
     def finish(self) -> None:
         """Write the end of the data, the summary and the footer, all or nothing."""
@@ -264,13 +266,13 @@ class McapFile:
             (Opcode.ATTACHMENT_INDEX, self._attachments),
             (Opcode.METADATA_INDEX, self._metadata)]
 
-    def _count(self, content: ChunkContent) -> None:
+    def _count(self, content: ChunkContent, counts: Sequence[tuple[int, int]]) -> None:
         if self._totals.chunks == 0:
             self._totals.start_ns = content.start_ns
         self._totals.end_ns = content.end_ns
         self._totals.chunks += 1
-        for channel, index in content.message_indices:
-            self._counts[channel - 1] += len(index)
+        for channel, count in counts:
+            self._counts[channel - 1] += count
 
     def _append(self, data: bytes) -> None:
         """Write all of it or nothing."""

@@ -125,13 +125,13 @@ def _topic(topic: Topic, type_hash: str, count: int) -> list[str]:
 
 
 @cache
-def _topic_metadata(topic: Topic, type_hash: str) -> list[str]:
-    return _item([
+def _topic_metadata(topic: Topic, type_hash: str) -> tuple[str, ...]:
+    return tuple(_item([
         'topic_metadata:',
         *_indent([
             f'name: {topic.name}', f'type: {topic.type_name}', 'serialization_format: cdr',
             'offered_qos_profiles:', *_indent(topic.qos.to_yaml().split('\n'), 2),
-            f'type_description_hash: {type_hash}'], 2)])
+            f'type_description_hash: {type_hash}'], 2)]))
 
 
 def _duration(name: str) -> list[str]:

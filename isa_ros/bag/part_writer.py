@@ -112,13 +112,12 @@ class PartWriter:
     def _end_chunk(self) -> None:
         chunk, self._ticks = self._chunk, 0
         self._chunk = self._file.new_chunk()
-        indices = chunk.message_indices
-        if not indices:
+        if chunk.is_empty:
             return
-        self._file.add_chunk(chunk)
+        counts = self._file.add_chunk(chunk)
         self._chunk = self._file.new_chunk()
         if self._start_ns == NO_START:
             self._start_ns = chunk.start_ns
         self._end_ns = chunk.end_ns
-        for channel, index in indices:
-            self._counts[channel - 1] += len(index)
+        for channel, count in counts:
+            self._counts[channel - 1] += count

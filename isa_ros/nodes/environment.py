@@ -53,12 +53,11 @@ def set_defaults(
 def defaults(environment: MutableMapping[str, str] = os.environ) -> Iterator[None]:
     """Set them for a while in a process that goes on to do something else; then take them back."""
     before = dict(environment)
-    set_defaults(environment)
-    added = {name: value for name, value in environment.items() if before.get(name) != value}
     try:
+        set_defaults(environment)
         yield
     finally:
-        for name in added:
+        for name in (*_PROFILE_VARIABLES, _TRANSPORTS, _RANGE):  # all that it sets
             if name in before:
                 environment[name] = before[name]
             else:

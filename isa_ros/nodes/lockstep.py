@@ -37,7 +37,8 @@ class LockstepTransport:
     One broadcast step and one answer per participant and tick.
 
     They are topics; sockets carry them once a run has begun whose participants are all on this
-    host, and the topics then only show the run to nodes that are not part of it.
+    host, until one of these closes. The topics then show the run to nodes that are not part of
+    it, and repeat what one that is stopped may have missed.
 
     ``watch`` is called while nothing arrives and says who is lost, if it knows.
     """
@@ -66,7 +67,6 @@ class LockstepTransport:
         self._step, self._doing = b'', 'tick 0'
         self._publisher = node.create_publisher(UInt8MultiArray, STEP_TOPIC, LOCKSTEP)
         self._wires = LocalWires()
-        self._has_wires = self._uses_wires = False
         self._look_at = 0.0
         handle: Any = self._publisher.handle
         self._send: Callable[[bytes], None] = handle.publish_raw
@@ -106,7 +106,6 @@ class LockstepTransport:
             answers = self._hello_answers(count, is_last=bool(complete))
             refuse_other_coordinator(self._node)
             if complete:
-                self._has_wires = self._wires.connect(self._identities)
                 return self._said(rows, 0, {
                     k: answer.parts[_FIRST:] for k, answer in complete.items()})
             if len(answers) == len(self._remote):
@@ -174,8 +173,8 @@ class LockstepTransport:
 
     def begin(self) -> None:
         """Let everyone publish the first messages."""
+        self._wires.connect(self._identities)
         self._send(encode_begin(self._run_id))
-        self._uses_wires = self._has_wires
 
     def send(self, tick: int, rows: Rows) -> None:
         """Broadcast the step."""
@@ -185,7 +184,7 @@ class LockstepTransport:
 
     def _ask(self, what: str, awaited: int, step: bytes) -> None:
         self._doing, self._awaited, self._step = what, awaited, step
-        if not (self._uses_wires and self._wires.send(step)):
+        if not self._wires.send(step):
             self._send(step)
 
     def _next_request(self) -> int:
@@ -276,14 +275,17 @@ class LockstepTransport:
 
     def _next_answer(self) -> bytes | None:
         """Return the next message, or None if none arrives within `SLICE_S`."""
-        if not self._uses_wires:
+        if not self._wires.is_open:
             return self._mailbox.wait(SLICE_S)
         if time.monotonic() >= self._look_at:
             if (data := self._mailbox.wait(0.0)) is not None:
                 return data
             self._look_at = time.monotonic() + LOOK_S
-            self._send(encode_begin(self._run_id))  # ticks no longer tell others of the run
-        return self._wires.wait(SLICE_S)
+            self._send(encode_begin(self._run_id))  # else nobody outside would hear of the run
+        data = self._wires.wait(SLICE_S)
+        if data is None and not self._wires.is_open:
+            self._send(self._step)  # again: an answer may have been lost with the sockets
+        return data
 
     def _is_expected(self, answer: Answer, kind: AnswerKind, missing: set[int]) -> bool:
         """Tell whether an answer counts; raise what it says instead."""
@@ -325,4 +327,3 @@ class LockstepTransport:
     def _end(self) -> None:
         self._send(encode_end(self._run_id))
         self._wires.close()
-        self._has_wires = self._uses_wires = False

@@ -45,10 +45,11 @@ class Member:
         self._release()
 
     def _release(self) -> None:
-        self._hang_up()
+        self._close_wire()
         self._run_id = 0  # 0: bound to no run
         self._index = 0
         self._next_tick = 0
+        self._request = 0  # the last one; their numbers fall
         self._has_begun = False
         self._first: Parts = ()
         self._answered: tuple[StepKind, int] | None = None  # kind and tick of a step
@@ -58,6 +59,12 @@ class Member:
 
     def spin(self, should_stop: Callable[[], bool]) -> None:
         """Take part in one run after the other until ``should_stop``."""
+        try:
+            self._spin(should_stop)
+        finally:
+            self._close_wire()
+
+    def _spin(self, should_stop: Callable[[], bool]) -> None:
         while not should_stop():
             data = self._next_step()
             if data is not None:
@@ -82,14 +89,14 @@ class Member:
             self._look_at = time.monotonic() + LOOK_S
         data = wire.wait()
         if not wire.is_open:
-            self._hang_up()
+            self._close_wire()
         return data
 
     def _wire_in_use(self) -> LocalWire | None:
         """Return the socket to the coordinator, which waits at its own end once it has begun."""
         return self._wire if self._has_begun else None
 
-    def _hang_up(self) -> None:
+    def _close_wire(self) -> None:
         if self._wire is not None:
             self._wire.close()
             self._wire = None
@@ -107,6 +114,8 @@ class Member:
             self._answer_strange(step)
         elif self._answered == (step.kind, step.tick):
             self._repeat(step)
+        elif self._is_past(step):
+            pass  # a repeat on the topic that newer steps on the socket have overtaken
         elif step.kind is StepKind.TICK:
             self._answer_tick(step)
         elif step.kind is StepKind.BEGIN:
@@ -119,6 +128,13 @@ class Member:
                             lambda: self._seat.restore(step.snapshot(self._index)))
         else:
             self._release()
+
+    def _is_past(self, step: Step) -> bool:
+        if step.kind is StepKind.TICK:
+            return step.tick < self._next_tick
+        if step.kind in (StepKind.SAVE, StepKind.RESTORE):
+            return step.tick >= self._request
+        return False
 
     def _answer_hello(self, step: Step) -> None:
         if step.run_id != self._run_id:
@@ -206,6 +222,7 @@ class Member:
 
     def _answer(self, step: Step, kind: AnswerKind, parts: Parts) -> None:
         self._answered, self._last = (step.kind, step.tick), (kind, parts)
+        self._request = min(self._request, step.tick)
         self._say(encode_answer(kind, self._run_id, step.tick, self._index, parts))
 
     def _say(self, answer: bytes) -> None:

@@ -39,13 +39,13 @@ def in_processes(session: Session, report: Report | None, should_stop: StopReque
     """Start one process per actuator, coordinate them from here, and end them."""
     load = SharedLoad(session.run)
     cast = _cast(session, load)
-    _settle(session)
     request = session.request
     processes = actuator_processes(
         session.run, request.config, request.scenario, names_here(session.run, request.elsewhere))
     children = Children(
         processes, request.namespace, _work if request.is_alone else None)
     with defaults(), sole_coordinator(), children:
+        _settle(session)
         with _node(request.namespace) as node:
             _coordinate(node, session, load, cast, report, should_stop, children.lost)
 

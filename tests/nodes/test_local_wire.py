@@ -1,6 +1,8 @@
 """Both ends of the wire between processes of one host."""
 
 from collections.abc import Iterator
+import os
+import socket
 import time
 
 from isa_ros.nodes import local_wire
@@ -61,18 +63,26 @@ def test_silence_lasts_a_slice(wires, ends):
     assert ends[0].is_open
 
 
-def test_what_is_too_large_is_left_to_the_topics(wires, ends):
-    assert not wires.send(b'x' * (LARGEST + 1))
+def test_too_large_an_answer_is_left_to_the_topics(wires, ends):
     assert not ends[0].send(b'x' * (LARGEST + 1))
-    assert wires.send(b'next') and ends[0].wait() == b'next'
+    assert ends[0].send(b'next') and wires.wait(SLICE_S) == b'next'
+
+
+def test_too_large_a_step_is_left_to_the_topics_and_so_is_the_rest(wires, ends):
+    """Else the participants would wait at both."""
+    assert not wires.send(b'x' * (LARGEST + 1))
+    assert not wires.is_open
+    assert [end.wait() for end in ends] == [None, None]
+    assert [end.is_open for end in ends] == [False, False]
 
 
 def test_one_that_does_not_read_holds_nobody_up(wires, ends):
-    """Its queue is full one day."""
-    for number in range(1000):
-        assert wires.send(b'%d' % number + bytes(LARGEST - 9))
-        data = ends[1].wait()
-        assert data is not None and data.startswith(b'%d' % number)
+    """Its queue is full one day, and then the topics have to do."""
+    n = 0
+    while wires.send(bytes(LARGEST)):
+        assert ends[1].wait() == bytes(LARGEST)
+        n += 1
+    assert 0 < n < 1000 and not wires.is_open
 
 
 def test_without_a_coordinator_on_this_host_there_is_no_wire():
@@ -85,6 +95,7 @@ def test_where_names_are_not_abstract_there_is_no_wire(monkeypatch):
     wires.listen(RUN)
     assert LocalWire.to_run(RUN, IDENTITIES[0], SLICE_S) is None
     assert not wires.connect(IDENTITIES)
+    assert not wires.send(b'step')
     wires.close()
 
 
@@ -103,16 +114,68 @@ def test_a_stranger_is_not_let_in(wires):
     assert wires.send(b'step') and [end.wait() for end in ends] == [b'step', b'step']
 
 
+def test_a_stranger_of_another_user_is_not_let_in(wires, monkeypatch):
+    ends = [call(identity) for identity in IDENTITIES.values()]
+    own = os.geteuid()
+    monkeypatch.setattr(os, 'geteuid', lambda: own + 1)
+    assert not wires.connect(IDENTITIES)
+    assert [end.wait() for end in ends] == [None, None]
+
+
+def test_strangers_that_come_and_come_hold_nobody_up(wires, monkeypatch):
+    monkeypatch.setattr(local_wire, '_STRANGERS', 3)
+    strangers = [call(b'nobody') for _ in range(10)]
+    ends = [call(identity) for identity in IDENTITIES.values()]
+    assert not wires.connect(IDENTITIES)
+    for end in strangers + ends:
+        assert end.wait() is None and not end.is_open
+
+
+def test_a_full_queue_of_calls_holds_nobody_up(monkeypatch):
+    monkeypatch.setattr(socket, 'SOMAXCONN', 1)
+    wires = LocalWires()
+    wires.listen(RUN)
+    calls = [LocalWire.to_run(RUN, b'nobody', SLICE_S) for _ in range(4)]
+    assert calls[0] is not None and calls[-1] is None
+    wires.close()
+
+
+def test_a_name_that_is_taken_is_left(wires):
+    other = LocalWires()
+    other.listen(RUN)
+    assert not other.connect(IDENTITIES)
+    ends = [call(identity) for identity in IDENTITIES.values()]
+    assert wires.connect(IDENTITIES) and all(end.is_open for end in ends)
+
+
+def test_the_default_timeout_of_the_process_does_not_matter(wires):
+    """A user's controller may have set one."""
+    socket.setdefaulttimeout(0.001)
+    try:
+        ends = [call(identity) for identity in IDENTITIES.values()]
+        assert wires.connect(IDENTITIES)
+    finally:
+        socket.setdefaulttimeout(None)
+    begin = time.monotonic()
+    assert ends[0].wait() is None and ends[0].is_open
+    assert time.monotonic() - begin >= 0.9 * SLICE_S
+    assert wires.send(b'step') and ends[0].wait() == b'step'
+
+
 def test_nobody_can_call_once_the_run_goes_on(wires, ends):
     assert LocalWire.to_run(RUN, b'late', SLICE_S) is None
 
 
-def test_one_that_ends_is_silent_and_the_others_go_on(wires, ends):
+def test_where_one_closes_all_are_closed(wires, ends):
+    """What it had said before still counts."""
     assert ends[0].send(b'last')
     ends[0].close()
-    assert ends[1].send(b'from the other')
-    assert [data for data in received(wires, 4) if data] == [b'from the other', b'last']
-    assert wires.send(b'step') and ends[1].wait() == b'step'
+    assert wires.wait(SLICE_S) == b'last' and wires.is_open
+    begin = time.monotonic()
+    assert wires.wait(SLICE_S) is None and not wires.is_open
+    assert ends[1].wait() is None and not ends[1].is_open
+    assert time.monotonic() - begin < SLICE_S
+    assert not wires.send(b'step')
 
 
 def test_a_coordinator_that_ends_is_noticed_at_once(wires, ends):
