@@ -118,7 +118,8 @@ class Coordinator:
                     self._advance()
         finally:
             self._record()
-            self._pace.end(self.t_ns)
+            if not self.is_paused:  # else nothing was due
+                self._pace.end(self.t_ns)
             self._progress.end(self.t_ns)
 
     @property
@@ -130,10 +131,6 @@ class Coordinator:
         self._progress.start(self.t_ns)
 
     def _restore(self, state: RunState) -> Sequence[Messages]:
-        if self._plan.n_ticks is not None and state.tick >= self._plan.n_ticks:
-            raise ConfigError(
-                f'the saved state is of t = {state.tick * self._plan.step_ns * 1e-9:g} s, must '
-                f'be before the end, {self._plan.n_ticks * self._plan.step_ns * 1e-9:g} s')
         self.ticks = state.tick
         self._load.restore(state.load)
         self._rows.requests[:] = state.rows_of_requests(len(self._rows.requests))

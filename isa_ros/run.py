@@ -23,6 +23,7 @@ from isa_ros.scenario import idle, load_scenario, Scenario
 from isa_ros.shared_load import SharedLoad
 from isa_ros.stopping import StopRequest
 from isa_ros.thinning import Thinning
+from isa_ros.timebase import NS_PER_SECOND
 from isa_ros.topics import topics_of
 
 RUNS = Path('runs')
@@ -118,9 +119,17 @@ def prepare(request: Request) -> Session:
     name = run.name if request.scenario is None else f'{run.name}_{scenario.name}'
     out = request.out or _unused(RUNS / name)
     _check_output(out, request.overwrite)
+    save = request.save
+    if save is not None and save.exists() and not (request.overwrite and save.is_file()):
+        raise ConfigError(f'--save {save}: exists, must not; --overwrite replaces a file')
     state = None
     if request.restore is not None:
         state = read_state(request.restore, scenario.run.digest)
+        n_ticks, seconds = scenario.n_ticks, scenario.run.step_ns / NS_PER_SECOND
+        if n_ticks is not None and state.tick >= n_ticks:
+            raise ConfigError(
+                f'--restore {request.restore}: of t = {state.tick * seconds:g} s, must be before '
+                f'the end, {n_ticks * seconds:g} s')
     return Session(request, scenario, out, Pace(request.real_time_factor), state)
 
 
@@ -136,10 +145,11 @@ def _unused(directory: Path) -> Path:
 
 def _check_output(out: Path, overwrite: bool) -> None:
     if out.exists():
+        if not out.is_dir() or (any(out.iterdir()) and not (out / FILE_NAME).is_file()):
+            raise BagError(
+                f'{out} exists and holds no bag ({FILE_NAME}), so it is not overwritten')
         if not overwrite:
             raise BagError(f'{out} exists, must not; --overwrite replaces the bag in it')
-        if not out.is_dir() or (any(out.iterdir()) and not (out / FILE_NAME).is_file()):
-            raise BagError(f'{out} holds no bag ({FILE_NAME}), so it is not overwritten')
     parent = next(path for path in [out, *out.absolute().parents] if path.exists())
     if not parent.is_dir() or not os.access(parent, os.W_OK | os.X_OK):
         raise BagError(f'{out}: cannot be made, {parent} is not writable')

@@ -15,6 +15,7 @@ FORMAT = 1
 MAX_TICKS = 2**32  # sequence numbers of a bag
 LARGEST_BYTES = 16 * 1024 * 1024
 _BYTES = ('load', 'requests')
+_SHOWN = 12  # digits of a digest
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -63,8 +64,10 @@ class RunState:
                 raise ConfigError(f'{where}: format {tree["format"]!r}, must be {FORMAT}')
             if tree['configuration.sha256'] != configuration:
                 raise ConfigError(
-                    f'{where}: saved from the configuration {tree["configuration.sha256"]}, '
-                    f'must be that of this run, {configuration}')
+                    f'{where}: saved from the configuration '
+                    f'{str(tree["configuration.sha256"])[:_SHOWN]}..., must be that of this run, '
+                    f'{configuration[:_SHOWN]}...; a scenario that changes loads or start is '
+                    'part of it')
             tick = tree['tick']
             if type(tick) is not int or not 0 <= tick < MAX_TICKS:
                 raise ConfigError(

@@ -1,13 +1,14 @@
 """The barrier and the run, with fakes for actuators, load and recorder."""
 
 from collections.abc import Callable, Sequence
+import itertools
 
 from isa_ros.coordinator import Coordinator, Interrupted, Plan
 from isa_ros.errors import ConfigError, RunError, SimulationDiverged
 from isa_ros.exchange import Messages, Records, Rows
 from isa_ros.pacing import Pace, ProgressMeter
 from isa_ros.run_state import RunState
-from isa_ros.signals import COMMAND, HAS_SETPOINT
+from isa_ros.signals import HAS_SETPOINT
 from isa_ros.topics import Order
 import numpy as np
 import pytest
@@ -121,7 +122,8 @@ class FakeRecorder:
 class Rig:
     """One coordinator with its fakes."""
 
-    def __init__(self, n_ticks: int | None = 3, **plan: bool) -> None:
+    def __init__(
+            self, n_ticks: int | None = 3, pace: Pace | None = None, **plan: bool) -> None:
         self.asked: dict[int, Callable[[Coordinator], object]] = {}
         self.log: list[str] = []
         self.transport = FakeTransport(self.log)
@@ -133,7 +135,7 @@ class Rig:
         self.coordinator = Coordinator(
             Plan(step_ns=STEP_NS, rows=self.rows, n_ticks=n_ticks, commands=self.command, **plan),
             self.order, self.transport, self.load, self.recorder,
-            pace=Pace(), progress=ProgressMeter(None, None), should_stop=self.should_stop,
+            pace=pace or Pace(), progress=ProgressMeter(None, None), should_stop=self.should_stop,
             requests=self.ask)
 
     def command(self, tick: int, rows: Records) -> None:
@@ -314,11 +316,15 @@ def test_a_saved_run_goes_on_where_it_was():
     assert sent[0] == 'send 2 x0=2 kinds=[1, 2]'
 
 
-def test_a_state_beyond_the_end_is_refused():
-    state = RunState(tick=3, load=b'3', participants=[b'b', b'a'],
-                     requests=np.zeros(2, COMMAND).tobytes())
-    with pytest.raises(ConfigError, match=r'of t = 0\.003 s, must be before the end, 0\.003 s'):
-        Rig(3).run(state)
+def test_a_run_that_ends_paused_was_not_behind():
+    """However long it was paused: a minute at each look."""
+    clock = itertools.count(step=60)
+    pace = Pace(1.0, now=lambda: float(next(clock)), sleep=lambda seconds: None)
+    rig = Rig(None, pace)
+    rig.asked = {2: lambda run: run.pause(True), 5: lambda run: setattr(rig, 'stops_at', 2)}
+    with pytest.raises(Interrupted, match='after 2 ticks'):
+        rig.run()
+    assert rig.log[-2:] == ['idle', 'record 2'] and pace.shortfall is None
 
 
 def test_another_pace_counts_from_now():

@@ -21,7 +21,7 @@ def test_the_text_loses_nothing(tick, load, participants):
 
 
 def test_the_configuration_must_be_the_same():
-    with pytest.raises(ConfigError, match='s.json: saved from the configuration one, must be'):
+    with pytest.raises(ConfigError, match='s.json: saved from the configuration one..., must be'):
         RunState.from_json(STATE.to_json('one', {}), 'another', 's.json')
 
 

@@ -17,8 +17,10 @@ from isa_ros.scenario import figure_of
 from isa_ros.strict_yaml import parse
 import numpy as np
 
+_GENERATOR = '<meta name="generator" content="isa_ros">'
 _PAGE = """<!DOCTYPE html>
-<html lang="en"><head><meta charset="utf-8"><title>{title}</title>
+<html lang="en"><head><meta charset="utf-8">{generator}
+<title>{title}</title>
 <style>
 body {{ font-family: sans-serif; max-width: 60em; margin: 2em auto; }}
 td, th {{ padding: 0.2em 0.8em; text-align: right; }}
@@ -36,9 +38,10 @@ def write_report(bag: Path, page: Path) -> list[Path]:
     Raises
     ------
     BagError
-        The bag cannot be read or holds no sample.
+        The bag cannot be read or holds no sample, or the page would replace another file.
 
     """
+    _refuse_others(page)
     run, traces = read_traces(bag)
     if '/clock' not in traces:
         raise BagError(f'{bag}: holds no sample, there is nothing to draw')
@@ -57,9 +60,19 @@ def write_report(bag: Path, page: Path) -> list[Path]:
         encoded = base64.b64encode(buffer.getvalue()).decode()
         images.append(f'<img alt="{html.escape(name)}" src="data:image/png;base64,{encoded}">')
     page.write_text(_PAGE.format(
-        title=html.escape(run.name), summary=html.escape(_summary(run, traces)),
-        rows=_rows(extremes(run, traces)), images=''.join(images)), encoding='utf-8')
+        generator=_GENERATOR, title=html.escape(run.name),
+        summary=html.escape(_summary(run, traces)), rows=_rows(extremes(run, traces)), images=''.join(images)), encoding='utf-8')
     return written
+
+
+def _refuse_others(page: Path) -> None:
+    """Refuse to replace what is no report."""
+    if page.is_dir():
+        raise BagError(f'{page}: is a directory, must be the name of the page')
+    if page.exists():
+        with page.open('rb') as file:
+            if _GENERATOR.encode() not in file.read(len(_PAGE)):
+                raise BagError(f'{page} exists and is no report, so it is not overwritten')
 
 
 def named_figure(bag: Path) -> str | None:

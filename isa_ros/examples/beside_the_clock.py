@@ -1,8 +1,10 @@
 """A controller that does not join: it follows /clock, and nobody waits for it."""
 
+from contextlib import suppress
 import math
 
 import rclpy
+from rclpy.executors import ExternalShutdownException
 from rclpy.node import Node
 from rosgraph_msgs.msg import Clock
 from sensor_msgs.msg import JointState
@@ -30,4 +32,5 @@ class BesideTheClock(Node):
 
 if __name__ == '__main__':
     rclpy.init()
-    rclpy.spin(BesideTheClock())
+    with suppress(KeyboardInterrupt, ExternalShutdownException):  # a signal is its end
+        rclpy.spin(BesideTheClock())

@@ -16,6 +16,7 @@ from isa_ros.nodes.environment import set_defaults
 from isa_ros.nodes.member import Member
 from isa_ros.nodes.seat import ActuatorSeat
 from isa_ros.nodes.standalone import run_alone
+from isa_ros.paths import CONFIG, find, SCENARIOS
 from isa_ros.run_config import RunConfig
 from isa_ros.scenario import load_scenario
 from isa_ros.stopping import end_with_parent, StopRequest
@@ -73,9 +74,9 @@ def _resolve(node: Node, model: str) -> Setup:
             name, default, ParameterDescriptor(description=description, read_only=True))
     chosen, path = _text(node, 'model'), _text(node, 'config_file')
     if path:
-        run = load_run(path)
+        run = load_run(find(path, CONFIG))
         if scenario := _text(node, 'scenario_file'):
-            run = load_scenario(scenario, run).run
+            run = load_scenario(find(scenario, SCENARIOS), run).run
         return _from_run(run, node.get_name(), chosen, _boolean(node, 'lockstep'))
     if _boolean(node, 'lockstep'):
         raise ConfigError(f'{node.get_name()}: lockstep needs the parameter config_file')

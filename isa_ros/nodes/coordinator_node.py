@@ -14,6 +14,7 @@ from isa_ros.nodes.middleware import refusals
 from isa_ros.nodes.prepared import PreparedPublishers
 from isa_ros.nodes.run_services import REAL_TIME_FACTOR
 from isa_ros.pacing import JOIN_TIMEOUT_S
+from isa_ros.paths import CONFIG, find, SCENARIOS
 from isa_ros.run import prepare, Request
 from isa_ros.shared_load import CLOCK_TOPIC, EVENT_TOPIC
 from isa_ros.stopping import StopRequest
@@ -94,7 +95,9 @@ class CoordinatorNode(Node):
         if not values['config_file']:
             raise ConfigError(f'{NAME}: set the parameter config_file')
         return Request(
-            config=Path(values['config_file']), scenario=_path(values['scenario_file']),
+            config=find(values['config_file'], CONFIG),
+            scenario=(find(values['scenario_file'], SCENARIOS)
+                      if values['scenario_file'] else None),
             out=_path(values['out']), save=_path(values['save']),
             restore=_path(values['restore']), controllers=tuple(values['controllers'] or ()),
             is_paused=values['paused'],

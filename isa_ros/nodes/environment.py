@@ -9,6 +9,7 @@ from contextlib import contextmanager
 import os
 from pathlib import Path
 
+from isa_ros.errors import ConfigError
 from rclpy.utilities import get_rmw_implementation_identifier
 
 LOCALHOST_PROFILE = Path(__file__).with_name('fastdds_localhost.xml')
@@ -31,7 +32,16 @@ def set_defaults(
 
     ``middleware`` is the one in use unless it is given. Fast DDS 2 reads the first of the two
     variables of a profile, Fast DDS 3 the second.
+
+    Raises
+    ------
+    ConfigError
+        A profile of the user's is no file, which the middleware itself would pass over.
+
     """
+    for name in _PROFILE_VARIABLES:
+        if name in environment and not Path(environment[name]).is_file():
+            raise ConfigError(f'{name} = {environment[name]}: no such file')
     if not any(name in environment for name in (_RANGE, *_OTHER_DISCOVERY)):
         environment[_RANGE] = 'LOCALHOST'
     if _has_settings(environment):

@@ -115,11 +115,15 @@ class LockstepTransport:
             if self._should_stop():
                 raise Interrupted('stopped before tick 0')
             if time.monotonic() - start > self._limits.join_s:
-                missing = [names[k] for k in sorted(self._remote) if k not in answers]
-                raise RunError(
-                    f'{", ".join(missing)}: no answer before tick 0 after '
-                    f'{self._limits.join_s:g} s; start it with lockstep:=true in this '
-                    'ROS_DOMAIN_ID')
+                raise self._no_answer([k for k in sorted(self._remote) if k not in answers])
+
+    def _no_answer(self, missing: Sequence[int]) -> RunError:
+        names = ', '.join(self._participants[k].name for k in missing)
+        # A controller is there once its node is; an actuator may also run alone.
+        how = ' with lockstep:=true' if missing[0] < len(self._cast.starts) else ''
+        return RunError(
+            f'{names}: no answer before tick 0 after {self._limits.join_s:g} s; start it{how} in '
+            'this ROS_DOMAIN_ID')
 
     def _hello_answers(self, count: int, is_last: bool) -> dict[int, Answer]:
         """Return the answers to the ``count``-th hello; the last one takes its whole period."""

@@ -5,6 +5,7 @@ from pathlib import Path
 from isa_ros.analysis.report import extremes, write_report
 from isa_ros.analysis.traces import read_traces
 from isa_ros.cli import main
+from isa_ros.errors import BagError
 import pytest
 
 GOLDEN = Path(__file__).parent.parent / 'replay'
@@ -26,6 +27,21 @@ def test_a_rig_has_no_leg(tmp_path):
     """The rotary rig alone, in degrees and newton metres."""
     written = write_report(GOLDEN / 'rotor_step', tmp_path / 'page.html')
     assert [path.name for path in written] == ['page.html', 'page_rotor.png']
+
+
+def test_another_page_is_not_replaced(tmp_path):
+    page = tmp_path / 'mine.html'
+    page.write_text('precious')
+    with pytest.raises(BagError, match='mine.html exists and is no report, so it is not'):
+        write_report(GOLDEN / 'rotor_step', page)
+    assert page.read_text() == 'precious' and not list(tmp_path.glob('*.png'))
+    with pytest.raises(BagError, match='is a directory, must be the name of the page'):
+        write_report(GOLDEN / 'rotor_step', tmp_path)
+
+
+def test_a_report_is_replaced_by_one(tmp_path):
+    first = write_report(GOLDEN / 'rotor_step', tmp_path / 'report.html')
+    assert write_report(GOLDEN / 'rotor_step', tmp_path / 'report.html') == first
 
 
 def test_extremes_are_those_of_the_signals():

@@ -2,6 +2,7 @@
 
 from xml.etree import ElementTree
 
+from isa_ros.errors import ConfigError
 from isa_ros.nodes.environment import (
     defaults, finds_other_hosts, LOCALHOST_PROFILE, NETWORK_PROFILE, set_defaults)
 import pytest
@@ -65,10 +66,22 @@ def test_a_middleware_without_our_profile_stays_at_localhost():
 @pytest.mark.parametrize('name', [
     'FASTRTPS_DEFAULT_PROFILES_FILE', 'FASTDDS_DEFAULT_PROFILES_FILE',
     'RMW_FASTRTPS_USE_QOS_FROM_XML', 'ROS_DISCOVERY_SERVER'])
-def test_profile_of_the_user_is_kept(name):
-    environment = {name: 'mine'}
+def test_profile_of_the_user_is_kept(name, tmp_path):
+    mine = tmp_path / 'mine'
+    mine.touch()
+    environment = {name: str(mine)}
     set_defaults(environment, FAST_DDS)
-    assert environment == {name: 'mine', 'ROS_AUTOMATIC_DISCOVERY_RANGE': 'LOCALHOST'}
+    assert environment == {name: str(mine), 'ROS_AUTOMATIC_DISCOVERY_RANGE': 'LOCALHOST'}
+
+
+@pytest.mark.parametrize('name', [
+    'FASTRTPS_DEFAULT_PROFILES_FILE', 'FASTDDS_DEFAULT_PROFILES_FILE'])
+def test_profile_that_is_not_there_is_refused(name, tmp_path):
+    """The middleware would go on with none."""
+    environment = {name: str(tmp_path / 'typo.xml')}
+    with pytest.raises(ConfigError, match=f'^{name} = .*typo.xml: no such file$'):
+        set_defaults(environment, FAST_DDS)
+    assert environment == {name: str(tmp_path / 'typo.xml')}
 
 
 def test_profile_in_the_directory_is_kept(tmp_path):
