@@ -61,7 +61,8 @@ def write_report(bag: Path, page: Path) -> list[Path]:
         images.append(f'<img alt="{html.escape(name)}" src="data:image/png;base64,{encoded}">')
     page.write_text(_PAGE.format(
         generator=_GENERATOR, title=html.escape(run.name),
-        summary=html.escape(_summary(run, traces)), rows=_rows(extremes(run, traces)), images=''.join(images)), encoding='utf-8')
+        summary=html.escape(_summary(run, traces)), rows=_rows(extremes(run, traces)),
+        images=''.join(images)), encoding='utf-8')
     return written
 
 

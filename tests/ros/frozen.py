@@ -1,0 +1,21 @@
+"""`python -m tests.ros.frozen ...` is `isa ...` and says what the collector is spared in a run."""
+
+import gc
+import sys
+from typing import Any
+
+from isa_ros.cli import main
+from isa_ros.nodes import session
+
+
+def said(coordinate: Any) -> Any:
+    """Return the function that also says how many objects are frozen when it is called."""
+    def wrapped(*arguments: Any) -> None:
+        print(f'{gc.get_freeze_count()} objects frozen', file=sys.stderr)
+        coordinate(*arguments)
+    return wrapped
+
+
+if __name__ == '__main__':
+    session._record = said(session._record)
+    sys.exit(main())
