@@ -282,7 +282,7 @@ class LockstepTransport:
         if not self._wires.is_open:
             return self._mailbox.wait(SLICE_S)
         if time.monotonic() >= self._look_at:
-            if (data := self._mailbox.wait(0.0)) is not None:
+            if (data := self._mailbox.take()) is not None:
                 return data
             self._look_at = time.monotonic() + LOOK_S
             self._send(encode_begin(self._run_id))  # else nobody outside would hear of the run

@@ -84,7 +84,7 @@ class Member:
         if wire is None:
             return self._mailbox.wait(SLICE_S)
         if time.monotonic() >= self._look_at:
-            if (data := self._mailbox.wait(0.0)) is not None:
+            if (data := self._mailbox.take()) is not None:
                 return data
             self._look_at = time.monotonic() + LOOK_S
         data = wire.wait()

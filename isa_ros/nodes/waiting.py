@@ -43,6 +43,10 @@ class Mailbox(Protocol):
         """Return the next message, or None if none arrives within ``timeout_s``."""
         ...
 
+    def take(self) -> bytes | None:
+        """Return the next message if there is one."""
+        ...
+
     def count_senders(self) -> int:
         """Return how many publishers are matched at this moment."""
         ...
@@ -63,7 +67,7 @@ class WaitSetMailbox:
         self._subscription = node.create_subscription(
             UInt8MultiArray, topic, _unexpected, LOCKSTEP, raw=True)
         handle: Any = self._subscription.handle
-        self._take = handle.take_message
+        self._take: Any = handle.take_message
         self._handle = handle
         self._wait_set: Any = _rclpy.WaitSet(1, 0, 0, 0, 0, 0, node.context.handle)
 
@@ -74,6 +78,10 @@ class WaitSetMailbox:
         wait_set.clear_entities()
         wait_set.add_subscription(self._handle)
         wait_set.wait(int(timeout_s * _NS_PER_SECOND))
+        return self.take()
+
+    def take(self) -> bytes | None:
+        """Return the next message if there is one."""
         taken = self._take(UInt8MultiArray, True)
         return None if taken is None else taken[0]
 
@@ -143,6 +151,10 @@ class ExecutorMailbox:
         if not self._messages:
             self._executor.spin_once(timeout_s)
         return self._messages.popleft() if self._messages else None
+
+    def take(self) -> bytes | None:
+        """Return the next message if there is one."""
+        return self.wait(0.0)
 
     def count_senders(self) -> int:
         """Return how many publishers are matched at this moment."""
