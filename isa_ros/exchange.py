@@ -45,6 +45,8 @@ class Rows:
         """From the actuators to the load, at the tick's end."""
         self.samples: Records = np.zeros(n_actuators, SAMPLE)
         """What the actuators show at the tick's start; at its end once they have answered."""
+        self.reply_values, self.sample_values = floats(self.replies), floats(self.samples)
+        """The same memory as plain numbers."""
         self.requests: Records = np.zeros(n_actuators, COMMAND)
         """What the controllers ask for, to take effect at the next tick."""
         self.shared: Records = np.zeros(1, SHARED_SAMPLE)

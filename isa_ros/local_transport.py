@@ -86,8 +86,8 @@ class LocalTransport:
     def _say(self, rows: Rows, applied: list[Messages]) -> list[Messages]:
         """Fill replies and samples, and return all messages of this instant."""
         self._applied = applied
-        floats(rows.replies)[:] = self._replies
-        floats(rows.samples)[:] = self._samples
+        rows.reply_values[:] = self._replies
+        rows.sample_values[:] = self._samples
         return [(*own, *states) for own, states in zip(applied, self._group.states())]
 
     def _publish(self, states: Sequence[Messages]) -> None:

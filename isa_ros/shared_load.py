@@ -81,7 +81,7 @@ class SharedLoad:
         """
         if self._leg is not None:
             self._leg.advance(replies)
-        self._supply.advance(float(replies['supply_volume'].sum()))
+        self._supply.advance(sum(replies['supply_volume'].tolist()))
         self._t_ns += self._step_ns
 
     def show(self, shared: Records) -> None:

@@ -9,7 +9,7 @@ from isa_ros.actuator_group import by_actuator
 from isa_ros.controller import merge_requests
 from isa_ros.coordinator import Interrupted
 from isa_ros.errors import ConfigError, RunError, SimulationDiverged
-from isa_ros.exchange import floats, IDLE_S, Messages, Rows, Voice
+from isa_ros.exchange import IDLE_S, Messages, Rows, Voice
 from isa_ros.nodes.cast import Cast, Limits
 from isa_ros.nodes.domain import another_coordinator, refuse_other_coordinator
 from isa_ros.nodes.local_wire import LocalWires
@@ -235,7 +235,6 @@ class LockstepTransport:
             parts: dict[int, list[bytes | None]]) -> Sequence[Messages]:
         """Take what actuators and controllers say before ``tick``; return their messages."""
         n_actuators = len(rows.replies)
-        replies, samples = floats(rows.replies), floats(rows.samples)
         said: list[Messages] = []
         for k in sorted(parts):
             own = parts[k]
@@ -243,8 +242,8 @@ class LockstepTransport:
                 merge_requests(np.frombuffer(own[0] or b'', COMMAND), rows.requests)
                 said.append(())
                 continue
-            replies[k] = np.frombuffer(own[_REPLY] or b'')
-            samples[k] = np.frombuffer(own[_SAMPLE] or b'')
+            rows.reply_values[k] = np.frombuffer(own[_REPLY] or b'')
+            rows.sample_values[k] = np.frombuffer(own[_SAMPLE] or b'')
             said.append(own[_APPLIED:])
         if self._cast.states is not None:
             states = self._cast.states.pack(rows.samples, tick * self._cast.step_ns)

@@ -44,12 +44,14 @@ class RunServices:
             node.declare_parameter(REAL_TIME_FACTOR, real_time_factor, ParameterDescriptor(
                 description='not faster than this; 0: as fast as it can'))
         node.add_on_set_parameters_callback(self._on_parameters)
-        node.create_service(SetBool, '~/pause', self._on_pause)
-        node.create_service(Trigger, '~/step', self._on_step)
-        node.create_service(Trigger, '~/reset', self._on_reset)
-        node.create_service(Trigger, '~/save', self._on_save)
+        own = [
+            node.create_service(SetBool, '~/pause', self._on_pause),
+            node.create_service(Trigger, '~/step', self._on_step),
+            node.create_service(Trigger, '~/reset', self._on_reset),
+            node.create_service(Trigger, '~/save', self._on_save)]
         ParameterService(node)
-        self._server = DirectServer([], list(node.services))
+        self._server = DirectServer(
+            [], own, [service for service in node.services if service not in own])
 
     def serve(self, coordinator: Coordinator) -> None:
         """Answer everything that was asked since the last call."""
