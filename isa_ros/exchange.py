@@ -22,7 +22,7 @@ def floats(rows: Records) -> Floats:
 
     Records of floats are copied ten times as fast in this form.
     """
-    return rows.view(np.float64).reshape(len(rows), -1)
+    return rows.view(np.float64).reshape(len(rows), rows.itemsize // np.float64().itemsize)
 
 
 IDLE_S = 0.005
