@@ -36,10 +36,10 @@ def run(args: Sequence[str] | None, model: str) -> int:
 
     It has no end of its own, so a signal is its normal one: 0, as launch expects it.
     """
-    set_defaults()
     with StopRequest() as should_stop:
         end_with_parent()
         try:
+            set_defaults()
             init_ros(args, USAGE)
             _run(model, should_stop)
         except IsaError as error:

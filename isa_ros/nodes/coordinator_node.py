@@ -126,9 +126,9 @@ def main(args: Sequence[str] | None = None) -> None:
 
 def _main(args: Sequence[str] | None) -> int:
     from isa_ros.nodes.session import coordinate, coordinate_locally
-    set_defaults()
     with StopRequest() as should_stop:
         try:
+            set_defaults()
             init_ros(args, USAGE)
             node = CoordinatorNode()
             try:

@@ -4,9 +4,19 @@ import signal
 
 from isa_ros.nodes.wire import ACKNOWLEDGEMENT_TOPIC
 import pytest
-from tests.ros.started import actuator, bringup, coordinator, RIG, wait_for
+from tests.ros.started import actuator, bringup, coordinator, RIG, started, wait_for
 
 pytestmark = pytest.mark.ros
+
+
+@pytest.mark.parametrize('module', ['actuator_process', 'coordinator_node'])
+def test_a_profile_that_is_not_there_is_one_line(domain, tmp_path, monkeypatch, module):
+    profile = tmp_path / 'typo.xml'
+    monkeypatch.setenv('FASTRTPS_DEFAULT_PROFILES_FILE', str(profile))
+    with started(tmp_path / 'log', f'isa_ros.nodes.{module}') as node:
+        assert node.exit_code() == 2
+    who, _, line = node.errors.partition(': ')
+    assert line == f'FASTRTPS_DEFAULT_PROFILES_FILE = {profile}: no such file\n', who
 
 
 def test_missing_participant_is_named(domain, tmp_path):
