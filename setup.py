@@ -28,8 +28,7 @@ setup(
     packages=find_packages(include=['isa_ros', 'isa_ros.*', 'msg_adapters', 'msg_adapters.*']),
     package_data={
         'isa_ros': [
-            'py.typed', 'gaits/*.yaml', 'load/**/*.yaml', 'models/*.yaml', 'nodes/*.xml',
-            'paper/*.yaml'],
+            'py.typed', 'config/data/*/*.yaml', 'nodes/middleware/*.xml', 'paper/*.yaml'],
         'msg_adapters': ['py.typed'],
     },
     data_files=[
@@ -57,12 +56,12 @@ setup(
     zip_safe=False,
     entry_points={
         'console_scripts': [
-            'actuator = isa_ros.nodes.actuator_node:main',
-            'isa_v2 = isa_ros.nodes.actuator_node:main_isa_v2',
-            'isa_v5 = isa_ros.nodes.actuator_node:main_isa_v5',
-            'smart_manifold = isa_ros.nodes.actuator_node:main_smart_manifold',
-            'coordinator = isa_ros.nodes.coordinator_node:main',
-            'isa = isa_ros.cli:main',
+            'actuator = isa_ros.nodes.actuator.process:main',
+            'isa_v2 = isa_ros.nodes.actuator.process:main_isa_v2',
+            'isa_v5 = isa_ros.nodes.actuator.process:main_isa_v5',
+            'smart_manifold = isa_ros.nodes.actuator.process:main_smart_manifold',
+            'coordinator = isa_ros.nodes.coordinator.process:main',
+            'isa = isa_ros.cli.main:main',
         ],
     },
 )

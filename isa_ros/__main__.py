@@ -2,6 +2,6 @@
 
 import sys
 
-from isa_ros.cli import main
+from isa_ros.cli.main import main
 
 sys.exit(main())

@@ -8,8 +8,8 @@ from collections.abc import Mapping, Sequence
 import math
 from typing import NamedTuple
 
+from isa_ros.core.signals import HAS_ENABLE, HAS_SETPOINT
 from isa_ros.errors import RunError, SetpointError
-from isa_ros.signals import HAS_ENABLE, HAS_SETPOINT
 import numpy as np
 from numpy.typing import NDArray
 

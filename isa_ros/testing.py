@@ -15,8 +15,8 @@ from pathlib import Path
 import platform
 
 from isa_ros.bag.reader import Bag
-from isa_ros.bag.replay import replay
-from isa_ros.bag.tolerances import load_tolerances
+from isa_ros.replay.replay import replay
+from isa_ros.replay.tolerances import load_tolerances
 import pytest
 
 __all__ = ['assert_replays', 'AssertReplays']

@@ -1,8 +1,8 @@
 """One run of lockstep nodes: every actuator of a configuration, and the coordinator."""
 
-from isa_ros.config import load_run
-from isa_ros.paths import CONFIG, find, SCENARIOS
-from isa_ros.processes import Process, run_processes
+from isa_ros.config.run_file.paths import CONFIG, find, SCENARIOS
+from isa_ros.config.run_file.run_file import load_run
+from isa_ros.processes.processes.processes import Process, run_processes
 from launch import LaunchContext, LaunchDescription
 from launch.actions import DeclareLaunchArgument, OpaqueFunction, Shutdown
 from launch.substitutions import LaunchConfiguration

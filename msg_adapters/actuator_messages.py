@@ -2,7 +2,7 @@
 
 from collections.abc import Sequence
 
-from isa_ros.signals import SAMPLE
+from isa_ros.core.signals import SAMPLE
 from msg_adapters import applied_parameters, fluid_pressure, joint_state, wrench
 from msg_adapters.cdr import Message
 from msg_adapters.template import Fields, Template

@@ -3,8 +3,8 @@
 from collections.abc import Sequence
 import math
 
+from isa_ros.core.signals import COMMAND, HAS_ENABLE, HAS_SETPOINT
 from isa_ros.errors import SetpointError
-from isa_ros.signals import COMMAND, HAS_ENABLE, HAS_SETPOINT
 from msg_adapters.cdr_reader import decode
 from msg_adapters.joint_state import ARRAYS, entries, joint_state
 from msg_adapters.template import Template

@@ -1,5 +1,5 @@
 """
-Generate isa_ros/load/leg_dynamics.py: the leg's equations of motion in closed form.
+Generate isa_ros/surroundings/leg/dynamics.py: the leg's equations of motion in closed form.
 
     python scripts/generate_leg.py [--out FILE]
 
@@ -29,7 +29,7 @@ import sympy as sp
 from sympy.printing.precedence import PRECEDENCE
 from sympy.printing.pycode import PythonCodePrinter
 
-TARGET = Path(__file__).resolve().parents[1] / 'isa_ros' / 'load' / 'leg_dynamics.py'
+TARGET = Path(__file__).resolve().parents[1] / 'isa_ros' / 'surroundings' / 'leg' / 'dynamics.py'
 LINKS = ('hip', 'thigh', 'calf')
 COORDINATES = ('z', 'haa', 'hfe', 'kfe')
 AXES = ('x', 'y', 'z')
@@ -47,7 +47,7 @@ q = (z, q_haa, q_hfe, q_kfe): height of the HAA axis above the ground (m) and jo
 import math
 from typing import NamedTuple
 
-from isa_ros.kernel import kernel
+from isa_ros.core.kernel import kernel
 import numpy as np
 
 LEG_BODY = np.dtype([
@@ -252,7 +252,7 @@ def assignments(leg, entries):
 
 
 def generate():
-    """Return the source of isa_ros/load/leg_dynamics.py."""
+    """Return the source of isa_ros/surroundings/leg/dynamics.py."""
     leg = Leg()
     entries = outputs(leg)
     shorten(leg, entries)

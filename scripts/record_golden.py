@@ -1,5 +1,5 @@
 """
-Record the golden bags of tests/replay again; say in the commit which equation changed.
+Record the golden bags of tests/golden again; say in the commit which equation changed.
 
     python scripts/record_golden.py [NAME ...]
 
@@ -10,10 +10,11 @@ not, and that is what the tests look at.
 from pathlib import Path
 import sys
 
-from isa_ros.paths import CONFIG, find
-from isa_ros.run import bringup, Request
+from isa_ros.config.paths import CONFIG, find
+from isa_ros.nodes.bringup import bringup
+from isa_ros.run.session import Request
 
-GOLDEN = Path(__file__).parent.parent / 'tests' / 'replay'
+GOLDEN = Path(__file__).parent.parent / 'tests' / 'golden'
 RUNS = {
     'leg_touchdown': 'leg.yaml', 'rotor_step': 'rig_rotary.yaml', 'knee_push': 'rig_knee.yaml'}
 

@@ -1,8 +1,8 @@
 """The shipped legs as the tests need them."""
 
-from isa_ros.catalogue import leg_section
-from isa_ros.load.leg_sheet import LegSheet
-from isa_ros.resolve import build
+from isa_ros.config.catalogue import leg_section
+from isa_ros.config.sections import build
+from isa_ros.surroundings.leg.sheet import LegSheet
 
 
 def leg_sheet(name: str = 'hyq_real') -> LegSheet:

@@ -3,15 +3,15 @@
 from dataclasses import replace
 from typing import Any
 
-from isa_ros.actuator import SmartActuator, Timing
-from isa_ros.actuator_sheet import ActuatorSheet
-from isa_ros.catalogue import actuator_model
-from isa_ros.load.local import LocalLoad
-from isa_ros.parameter import Parameters
+from isa_ros.actuator.actuator import SmartActuator, Timing
+from isa_ros.actuator.sheet import ActuatorSheet
+from isa_ros.config.catalogue import actuator_model
+from isa_ros.config.run_config import ActuatorConfig
+from isa_ros.config.sections import build, build_one_of, Entry
+from isa_ros.core.parameter import Parameters
+from isa_ros.core.signals import COMMAND, HAS_SETPOINT
+from isa_ros.loads.sheets import LocalLoad
 from isa_ros.plant.plant import plant_record
-from isa_ros.resolve import build, build_one_of, Entry
-from isa_ros.run_config import ActuatorConfig
-from isa_ros.signals import COMMAND, HAS_SETPOINT
 import numpy as np
 
 MODELS = ('smart_manifold', 'isa_v2', 'isa_v5')

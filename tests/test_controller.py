@@ -3,8 +3,8 @@
 import math
 
 from isa_ros.controller import Controller, fill_requests, merge_requests, Setpoint
+from isa_ros.core.signals import COMMAND, HAS_ENABLE, HAS_SETPOINT
 from isa_ros.errors import RunError, SetpointError
-from isa_ros.signals import COMMAND, HAS_ENABLE, HAS_SETPOINT
 import numpy as np
 import pytest
 

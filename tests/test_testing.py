@@ -7,9 +7,9 @@ import struct
 
 from isa_ros.bag.provenance import installed_versions
 from isa_ros.bag.reader import Bag
-from isa_ros.bag.replay import Rerun
 from isa_ros.bag.writer import BagWriter
-from isa_ros.run_config import RunConfig
+from isa_ros.config.run_config import RunConfig
+from isa_ros.replay.replay import Rerun
 import pytest
 from tests.bag.golden import GOLDEN, rewrite
 

@@ -14,17 +14,17 @@ from pathlib import Path
 from tempfile import TemporaryDirectory
 from typing import Any, NamedTuple
 
-from isa_ros.analysis.traces import read_traces, Trace
+from isa_ros.analysis.signals.traces import read_traces, Trace
 from isa_ros.bag.provenance import installed_versions, Provenance
 from isa_ros.bag.writer import BagWriter
-from isa_ros.config import load_run
+from isa_ros.config.paths import CONFIG, find, SCENARIOS
+from isa_ros.config.run_config import ActuatorConfig, RunConfig
+from isa_ros.config.run_file import load_run
+from isa_ros.core.parameter import Parameters
+from isa_ros.core.suggest import alternatives
 from isa_ros.errors import ConfigError, ParameterError
-from isa_ros.local_run import LocalRun
-from isa_ros.parameter import Parameters
-from isa_ros.paths import CONFIG, find, SCENARIOS
-from isa_ros.resolve import alternatives
-from isa_ros.run_config import ActuatorConfig, RunConfig
-from isa_ros.scenario import idle, load_scenario, Scenario
+from isa_ros.run.local_run import LocalRun
+from isa_ros.scenario.scenario import idle, load_scenario, Scenario
 
 Overrides = Mapping[str, Mapping[str, Any]]
 """Values in data-sheet units by actuator and dotted path: plant..., reu... or load...."""

@@ -1,46 +1,16 @@
 """metadata.yaml of a rosbag2 directory, version 9, in the order and form rosbag2 writes it."""
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
 from functools import cache
 import json
 from typing import NamedTuple
+
+from isa_ros.core.topic import Topic
 
 VERSION = 9
 FILE_NAME = 'metadata.yaml'
 ROS_DISTRO = 'jazzy'
 NO_START = 2**63 - 1  # rosbag2's starting time of a bag without messages
-
-_INFINITE = (9223372036, 854775807)  # RMW_DURATION_INFINITE (s, ns)
-
-
-@dataclass(frozen=True)
-class Qos:
-    """What a publisher offers; deadline, lifespan and lease are infinite."""
-
-    history: str = 'keep_last'
-    depth: int = 10
-    reliability: str = 'reliable'
-    durability: str = 'volatile'
-
-    def to_yaml(self) -> str:
-        """Return the list of this one profile, without a final newline."""
-        lines = [
-            f'- history: {self.history}', f'  depth: {self.depth}',
-            f'  reliability: {self.reliability}', f'  durability: {self.durability}',
-            *_duration('deadline'), *_duration('lifespan'),
-            '  liveliness: automatic', *_duration('liveliness_lease_duration'),
-            '  avoid_ros_namespace_conventions: false']
-        return '\n'.join(lines)
-
-
-@dataclass(frozen=True)
-class Topic:
-    """One topic of a bag: fully qualified name, message type, offered quality of service."""
-
-    name: str
-    type_name: str
-    qos: Qos = Qos()
 
 
 class Counts(NamedTuple):
@@ -132,11 +102,6 @@ def _topic_metadata(topic: Topic, type_hash: str) -> tuple[str, ...]:
             f'name: {topic.name}', f'type: {topic.type_name}', 'serialization_format: cdr',
             'offered_qos_profiles:', *_indent(topic.qos.to_yaml().split('\n'), 2),
             f'type_description_hash: {type_hash}'], 2)]))
-
-
-def _duration(name: str) -> list[str]:
-    sec, nsec = _INFINITE
-    return [f'  {name}:', f'    sec: {sec}', f'    nsec: {nsec}']
 
 
 def _list(name: str, lines: Sequence[str]) -> list[str]:

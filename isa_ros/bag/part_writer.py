@@ -9,8 +9,9 @@ from pathlib import Path
 from typing import NamedTuple
 
 from isa_ros.bag.mcap_file import McapFile
-from isa_ros.bag.metadata import Counts, NO_START, storage_metadata, Topic
+from isa_ros.bag.metadata import Counts, NO_START, storage_metadata
 from isa_ros.bag.provenance import MEDIA_TYPES, RECORD
+from isa_ros.core.topic import Topic
 from msg_adapters.definitions import ENCODING
 
 LIBRARY = 'isa_ros'  # without a version: the same run gives the same bytes everywhere

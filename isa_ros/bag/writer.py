@@ -14,11 +14,12 @@ from collections.abc import Sequence
 from pathlib import Path
 from types import TracebackType
 
-from isa_ros.bag.metadata import FILE_NAME, metadata_yaml, Topic
+from isa_ros.bag.metadata import FILE_NAME, metadata_yaml
 from isa_ros.bag.part_writer import Head, PartWriter
 from isa_ros.bag.provenance import Provenance
+from isa_ros.config.recording import PLAIN, Storage
+from isa_ros.core.topic import Topic
 from isa_ros.errors import BagError, RunError
-from isa_ros.record_config import PLAIN, Storage
 from msg_adapters.definitions import definition
 
 

@@ -3,9 +3,9 @@
 from collections.abc import Callable
 
 from isa_ros.controller import Controller
-from isa_ros.nodes.member import Member
-from isa_ros.nodes.seat import ControllerSeat
-from isa_ros.stopping import StopRequest
+from isa_ros.nodes.lockstep.participant_end import Member
+from isa_ros.nodes.lockstep.roles import ControllerSeat
+from isa_ros.processes.stopping import StopRequest
 from rclpy.node import Node
 
 

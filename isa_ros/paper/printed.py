@@ -11,9 +11,10 @@ from pathlib import Path
 import re
 from typing import Any, NamedTuple
 
+from isa_ros.config.sections import Place, refuse_unknown, section_at
+from isa_ros.config.yaml_text import read, Tree
+from isa_ros.core.suggest import alternatives
 from isa_ros.errors import ConfigError
-from isa_ros.resolve import alternatives, Place, refuse_unknown, section_at
-from isa_ros.strict_yaml import read, Tree
 
 _PACKAGE = Path(__file__).parent
 _NUMBER = re.compile(

@@ -2,9 +2,9 @@
 
 from collections.abc import Iterator, Sequence
 
+from isa_ros.core.suggest import alternatives
 from isa_ros.errors import ConfigError
 from isa_ros.paper.printed import Printed, statements, Table, tables
-from isa_ros.resolve import alternatives
 
 STATEMENTS = 'statements'
 

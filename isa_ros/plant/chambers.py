@@ -9,10 +9,10 @@ m3/rad). Pressures are gauge. Each swept volume is counted once (errata 16).
 from dataclasses import dataclass
 import math
 
+from isa_ros.core.kernel import kernel
+from isa_ros.core.parameter import parameter, Parameters
+from isa_ros.core.units import MILLI, MILLILITRE
 from isa_ros.errors import ParameterError
-from isa_ros.kernel import kernel
-from isa_ros.parameter import parameter, Parameters
-from isa_ros.plant.units import MILLI, MILLILITRE
 import numpy as np
 
 

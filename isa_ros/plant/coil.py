@@ -12,8 +12,8 @@ and the sampling of the current loop.
 from dataclasses import dataclass
 import math
 
-from isa_ros.kernel import kernel
-from isa_ros.parameter import choice, parameter, Parameters
+from isa_ros.core.kernel import kernel
+from isa_ros.core.parameter import choice, parameter, Parameters
 import numpy as np
 
 _COILS = ('parallel', 'series', 'one_open')

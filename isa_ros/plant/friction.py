@@ -8,8 +8,8 @@ or Nm, rad (rotary).
 from dataclasses import dataclass
 import math
 
-from isa_ros.kernel import kernel
-from isa_ros.parameter import parameter, Parameters
+from isa_ros.core.kernel import kernel
+from isa_ros.core.parameter import parameter, Parameters
 import numpy as np
 
 

@@ -8,9 +8,9 @@ force > 0 pushes the load out. Units N, m, kg (linear) or Nm, rad, kg m2 (rotary
 from dataclasses import dataclass
 import math
 
-from isa_ros.contact import one_sided
-from isa_ros.kernel import kernel
-from isa_ros.parameter import parameter, Parameters
+from isa_ros.core.contact import one_sided
+from isa_ros.core.kernel import kernel
+from isa_ros.core.parameter import parameter, Parameters
 import numpy as np
 
 

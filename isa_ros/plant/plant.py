@@ -7,13 +7,12 @@ State, rates and parameters are nested records of floats, one row per actuator
 
 from dataclasses import dataclass
 
+from isa_ros.core.kernel import kernel
+from isa_ros.core.parameter import Parameters
+from isa_ros.core.timebase import PLANT_STEP
 from isa_ros.errors import ParameterError
-from isa_ros.kernel import kernel
-from isa_ros.parameter import Parameters
-from isa_ros.plant import (
-    chambers, coil, friction, mechanics, relief, sensors, servo_valve, spool)
+from isa_ros.plant import chambers, coil, friction, mechanics, relief, sensors, servo_valve, spool
 from isa_ros.plant.sensors import convert, encode
-from isa_ros.timebase import PLANT_STEP
 import numpy as np
 
 STABLE_RATE = 2.5 / PLANT_STEP  # 1/s; RK4 is stable to 2.78 on the real axis

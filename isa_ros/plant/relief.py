@@ -6,9 +6,9 @@ Flows are positive OUT OF the chamber. Both valves are static.
 
 from dataclasses import dataclass
 
-from isa_ros.kernel import kernel
-from isa_ros.parameter import parameter, Parameters
-from isa_ros.plant.units import LPM, MPA
+from isa_ros.core.kernel import kernel
+from isa_ros.core.parameter import parameter, Parameters
+from isa_ros.core.units import LPM, MPA
 import numpy as np
 
 

@@ -7,10 +7,10 @@ The only way from the plant to the controller.
 from dataclasses import dataclass
 import math
 
+from isa_ros.core.kernel import kernel
+from isa_ros.core.parameter import parameter, Parameters
+from isa_ros.core.units import MILLI, MPA
 from isa_ros.errors import ParameterError
-from isa_ros.kernel import kernel
-from isa_ros.parameter import parameter, Parameters
-from isa_ros.plant.units import MILLI, MPA
 import numpy as np
 
 

@@ -11,9 +11,9 @@ spool (`flow_slope`). Neglected: flow forces and hysteresis.
 from dataclasses import dataclass
 import math
 
-from isa_ros.kernel import kernel
-from isa_ros.parameter import choice, parameter, Parameters
-from isa_ros.plant.units import LPM, MICRO, MILLI, MPA
+from isa_ros.core.kernel import kernel
+from isa_ros.core.parameter import choice, parameter, Parameters
+from isa_ros.core.units import LPM, MICRO, MILLI, MPA
 import numpy as np
 
 

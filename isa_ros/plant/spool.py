@@ -9,9 +9,9 @@ is a block of the REU. Currents here are on the series scale of figure 5.
 from dataclasses import dataclass
 import math
 
-from isa_ros.kernel import kernel
-from isa_ros.parameter import parameter, Parameters
-from isa_ros.plant.units import MICRO, MILLI, MPA
+from isa_ros.core.kernel import kernel
+from isa_ros.core.parameter import parameter, Parameters
+from isa_ros.core.units import MICRO, MILLI, MPA
 import numpy as np
 
 CLOSED_LOOP = 0

@@ -8,8 +8,8 @@ is none. Gains are per that unit.
 
 from dataclasses import dataclass
 
-from isa_ros.kernel import kernel
-from isa_ros.parameter import choice, parameter, Parameters, tunable
+from isa_ros.core.kernel import kernel
+from isa_ros.core.parameter import choice, parameter, Parameters, tunable
 from isa_ros.reu.compensation import (
     COMPENSATION, compensation_record, dual_gain_compensation, DualGain, Linear)
 from isa_ros.reu.filters import low_pass, low_pass_coefficient

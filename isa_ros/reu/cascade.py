@@ -9,12 +9,11 @@ equation 8, current: equation 10): it only samples and holds its reference.
     position 1 kHz -> force 5 kHz -> [spool 5 kHz ->] current 10 kHz
 """
 
-from isa_ros.kernel import kernel
+from isa_ros.core.kernel import kernel
 from isa_ros.reu.block import BLOCK, block_record, BLOCK_STATE, block_step, Pid, rest
 from isa_ros.reu.feedback_linearisation import (
     FeedbackLinearisation, LINEARISATION, linearisation_record, linearising_step)
-from isa_ros.reu.impedance import (
-    force_reference, IMPEDANCE, Impedance, impedance_record, SETPOINT)
+from isa_ros.reu.impedance import force_reference, IMPEDANCE, Impedance, impedance_record, SETPOINT
 from isa_ros.reu.lead_lag import LEAD_LAG, lead_lag_record, LEAD_LAG_STATE, lead_lag_step, LeadLag
 from isa_ros.reu.schedule import schedule_table
 from isa_ros.reu.speed import SPEED, speed_record, SPEED_STATE, speed_step

@@ -7,8 +7,8 @@ current (A), whichever the block commands.
 
 from dataclasses import dataclass
 
-from isa_ros.kernel import kernel
-from isa_ros.parameter import choice, Parameters, tunable
+from isa_ros.core.kernel import kernel
+from isa_ros.core.parameter import choice, Parameters, tunable
 import numpy as np
 
 

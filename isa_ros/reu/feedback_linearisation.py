@@ -10,8 +10,8 @@ control of Boaventura et al. 2015, which the paper names as future work.
 from dataclasses import dataclass
 import math
 
-from isa_ros.kernel import kernel
-from isa_ros.parameter import choice, parameter, Parameters, tunable
+from isa_ros.core.kernel import kernel
+from isa_ros.core.parameter import choice, parameter, Parameters, tunable
 from isa_ros.reu.filters import low_pass, low_pass_coefficient
 import numpy as np
 

@@ -2,7 +2,7 @@
 
 import math
 
-from isa_ros.kernel import kernel
+from isa_ros.core.kernel import kernel
 
 
 def low_pass_coefficient(cutoff_hz: float, rate_hz: float) -> float:

@@ -6,8 +6,8 @@ Reference in m or rad, output in N or Nm. The gains in force come with the setpo
 
 from dataclasses import dataclass
 
-from isa_ros.kernel import kernel
-from isa_ros.parameter import parameter, Parameters, tunable
+from isa_ros.core.kernel import kernel
+from isa_ros.core.parameter import parameter, Parameters, tunable
 import numpy as np
 
 

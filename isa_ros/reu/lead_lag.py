@@ -7,8 +7,8 @@ current (A); the gain on the demand does the work of an integral, without its ph
 
 from dataclasses import dataclass
 
-from isa_ros.kernel import kernel
-from isa_ros.parameter import choice, parameter, Parameters, tunable
+from isa_ros.core.kernel import kernel
+from isa_ros.core.parameter import choice, parameter, Parameters, tunable
 from isa_ros.reu.filters import low_pass, low_pass_coefficient
 import numpy as np
 

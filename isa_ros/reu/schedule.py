@@ -7,8 +7,8 @@ The factor over the stroke is a table at equal distances with straight lines bet
 from dataclasses import dataclass
 import math
 
-from isa_ros.kernel import kernel
-from isa_ros.parameter import Parameters, tunable
+from isa_ros.core.kernel import kernel
+from isa_ros.core.parameter import Parameters, tunable
 import numpy as np
 
 POINTS = 21

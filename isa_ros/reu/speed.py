@@ -2,8 +2,8 @@
 
 from dataclasses import dataclass
 
-from isa_ros.kernel import kernel
-from isa_ros.parameter import parameter, Parameters
+from isa_ros.core.kernel import kernel
+from isa_ros.core.parameter import parameter, Parameters
 from isa_ros.reu.filters import low_pass, low_pass_coefficient
 import numpy as np
 

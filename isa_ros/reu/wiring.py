@@ -10,15 +10,15 @@ a block have the unit of what it commands: switching the block inside of it chan
 
 from dataclasses import dataclass
 
+from isa_ros.core.parameter import parameter, Parameters
+from isa_ros.core.timebase import NS_PER_SECOND, PLANT_STEP_NS, steps_in
 from isa_ros.errors import ConfigError
-from isa_ros.parameter import parameter, Parameters
 from isa_ros.reu.block import Pid
 from isa_ros.reu.compensation import DualGain
 from isa_ros.reu.feedback_linearisation import FeedbackLinearisation
 from isa_ros.reu.impedance import Impedance
 from isa_ros.reu.lead_lag import LeadLag
 from isa_ros.reu.speed import SpeedEstimate
-from isa_ros.timebase import NS_PER_SECOND, PLANT_STEP_NS, steps_in
 
 BLOCKS = 4  # the standard firmware provides (paper section 3)
 NEVER = 1 << 62  # plant steps: the period of a block that is off

@@ -3,9 +3,9 @@
 from dataclasses import replace
 from functools import lru_cache
 
-from isa_ros.actuator import Timing
-from isa_ros.analysis.recording import Recording
-from isa_ros.signals import SAMPLE
+from isa_ros.actuator.actuator import Timing
+from isa_ros.analysis.signals.recording import Recording
+from isa_ros.core.signals import SAMPLE
 import numpy as np
 from tests.sheets import actuator_sheet, override, plant_row, setpoint, smart_actuator
 

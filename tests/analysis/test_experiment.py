@@ -1,12 +1,12 @@
 """Experiments: the same samples as a recorded run, with single parameters replaced."""
 
 from isa_ros.analysis.experiment import prepared, run, with_overrides
-from isa_ros.analysis.traces import read_traces
+from isa_ros.analysis.signals.traces import read_traces
 from isa_ros.bag.reader import Bag
-from isa_ros.bag.replay import replay
-from isa_ros.config import load_run
+from isa_ros.config.paths import CONFIG, find
+from isa_ros.config.run_file import load_run
 from isa_ros.errors import BagError, ConfigError, ParameterError
-from isa_ros.paths import CONFIG, find
+from isa_ros.replay.replay import replay
 import numpy as np
 import pytest
 

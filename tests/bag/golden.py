@@ -4,12 +4,12 @@ from collections.abc import Callable, Mapping
 from dataclasses import replace
 from pathlib import Path
 
-from isa_ros.bag.metadata import Topic
 from isa_ros.bag.reader import Bag
 from isa_ros.bag.writer import BagWriter
-from isa_ros.record_config import PLAIN, Storage
+from isa_ros.config.recording import PLAIN, Storage
+from isa_ros.core.topic import Topic
 
-GOLDEN = Path(__file__).parent.parent / 'replay'
+GOLDEN = Path(__file__).parents[1] / 'golden'
 
 Change = Callable[[str, int, bytes], bytes]
 

@@ -2,10 +2,10 @@
 
 from pathlib import Path
 
-from isa_ros.bag.metadata import Topic
 from isa_ros.bag.provenance import Provenance
 from isa_ros.bag.writer import BagWriter
-from isa_ros.signals import COMMAND, SAMPLE
+from isa_ros.core.signals import COMMAND, SAMPLE
+from isa_ros.core.topic import Topic
 from msg_adapters.actuator_messages import APPLIED_SETPOINT, STATE_TOPICS, StateMessages
 from msg_adapters.clock import TYPE as CLOCK
 from msg_adapters.coordinator_messages import ClockMessage

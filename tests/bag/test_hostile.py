@@ -9,12 +9,12 @@ import sys
 
 from hypothesis import given, HealthCheck, settings, strategies as st
 from isa_ros.bag import reader
-from isa_ros.bag.metadata import Topic
 from isa_ros.bag.provenance import Provenance
 from isa_ros.bag.reader import Bag
 from isa_ros.bag.writer import BagWriter
-from isa_ros.cli import main
-from isa_ros.config import load_run
+from isa_ros.cli.main import main
+from isa_ros.config.run_file import load_run
+from isa_ros.core.topic import Topic
 from isa_ros.errors import BagError, IsaError
 import lz4.frame
 from mcap.writer import CompressionType, Writer

@@ -7,9 +7,9 @@ import subprocess
 import sys
 
 from isa_ros.bag.reader import Bag
-from isa_ros.cli import main
-from isa_ros.record_config import Storage
-from isa_ros.timebase import NS_PER_SECOND
+from isa_ros.cli.main import main
+from isa_ros.config.recording import Storage
+from isa_ros.core.timebase import NS_PER_SECOND
 import pytest
 from rosbags.rosbag2 import Reader
 
@@ -24,9 +24,9 @@ import sys
 
 from isa_ros.bag.provenance import installed_versions, Provenance
 from isa_ros.bag.writer import BagWriter
-from isa_ros.config import load_run
-from isa_ros.local_run import LocalRun
-from isa_ros.scenario import load_scenario
+from isa_ros.config.run_file import load_run
+from isa_ros.run.local_run import LocalRun
+from isa_ros.scenario.scenario import load_scenario
 
 out, compression, split_mb = sys.argv[1:]
 scenario = load_scenario('config/scenarios/trot.yaml', load_run('config/rig_rotary.yaml').stored(

@@ -10,8 +10,8 @@ import sys
 from isa_ros.bag.part_writer import CHUNK_TICKS
 from isa_ros.bag.reader import Bag
 from isa_ros.bag.writer import BagWriter
+from isa_ros.config.recording import Storage
 from isa_ros.errors import BagError, RunError
-from isa_ros.record_config import Storage
 from mcap.reader import make_reader
 import pytest
 from rosbags.highlevel import AnyReader

@@ -4,13 +4,13 @@ from collections import Counter
 from dataclasses import replace
 import struct
 
-from isa_ros.bag.compare import compare_bags
 from isa_ros.bag.reader import Bag
-from isa_ros.bag.replay import replay, Rerun
 from isa_ros.bag.writer import BagWriter
-from isa_ros.cli import main
-from isa_ros.record_config import RecordConfig
-from isa_ros.run_config import RunConfig
+from isa_ros.cli.main import main
+from isa_ros.config.recording import RecordConfig
+from isa_ros.config.run_config import RunConfig
+from isa_ros.replay.compare import compare_bags
+from isa_ros.replay.replay import replay, Rerun
 import pytest
 from tests.bag.golden import GOLDEN, rewrite
 

@@ -8,10 +8,10 @@ import signal
 import subprocess
 import sys
 
-from isa_ros.bag.metadata import Topic
 from isa_ros.bag.part_writer import CHUNK_BYTES, CHUNK_TICKS
 from isa_ros.bag.reader import Bag
 from isa_ros.bag.writer import BagWriter
+from isa_ros.core.topic import Topic
 from isa_ros.errors import BagError, RunError
 from mcap.reader import make_reader
 from mcap.stream_reader import StreamReader

@@ -1,6 +1,6 @@
 """What an actuator publishes: interface.md's table of topics, value by value."""
 
-from isa_ros.signals import SAMPLE
+from isa_ros.core.signals import SAMPLE
 from msg_adapters.actuator_messages import STATE_TOPICS, StateMessages
 from msg_adapters.cdr_reader import decode, message_class
 import numpy as np

@@ -3,8 +3,8 @@
 import math
 
 from hypothesis import given, settings, strategies as st
+from isa_ros.core.signals import COMMAND, HAS_ENABLE, HAS_SETPOINT
 from isa_ros.errors import SetpointError
-from isa_ros.signals import COMMAND, HAS_ENABLE, HAS_SETPOINT
 from msg_adapters.cdr import encode
 from msg_adapters.cdr_reader import decode
 from msg_adapters.setpoint import applied_to_command, AppliedSetpoint, msg_to_command

@@ -6,18 +6,18 @@ steps at the same instants as in the package. Only the equations are shared with
 package; ports, mean forces, ticks and the leg's own step do not occur here.
 """
 
-from isa_ros.actuator_kernel import ACTUATOR, BODY, STATE_SIZE
-from isa_ros.actuator_sheet import actuator_record
-from isa_ros.kernel import kernel
-from isa_ros.load.ground import normal_force
-from isa_ros.load.leg_dynamics import leg_terms
-from isa_ros.load.leg_motion import leg_rates, N_STATES, shifted
-from isa_ros.load.leg_sheet import leg_records
-from isa_ros.load.linkage import actuator_coordinate
+from isa_ros.actuator.kernel import ACTUATOR, BODY, STATE_SIZE
+from isa_ros.actuator.sheet import actuator_record
+from isa_ros.core.contact import normal_force
+from isa_ros.core.kernel import kernel
+from isa_ros.core.timebase import PLANT_STEP, PLANT_STEP_NS
 from isa_ros.plant.plant import plant_rates, read_sensors
 from isa_ros.plant.spool import stop_spool
 from isa_ros.reu.cascade import cascade_step, is_due, REU_STATE
-from isa_ros.timebase import PLANT_STEP, PLANT_STEP_NS
+from isa_ros.surroundings.leg.dynamics import leg_terms
+from isa_ros.surroundings.leg.motion import leg_rates, N_STATES, shifted
+from isa_ros.surroundings.leg.sheet import leg_records
+from isa_ros.surroundings.linkage import actuator_coordinate
 import numpy as np
 
 TRACE = np.dtype([

@@ -3,13 +3,13 @@
 from dataclasses import dataclass, field
 import math
 
-from isa_ros.actuator import SmartActuator, Timing
-from isa_ros.actuator_sheet import ActuatorSheet
-from isa_ros.load.leg import Leg, Pose
-from isa_ros.load.leg_motion import N_STATES
-from isa_ros.load.leg_sheet import LegSheet
-from isa_ros.run_config import ActuatorConfig
-from isa_ros.signals import LOAD_PORT, LOAD_REPLY
+from isa_ros.actuator.actuator import SmartActuator, Timing
+from isa_ros.actuator.sheet import ActuatorSheet
+from isa_ros.config.run_config import ActuatorConfig
+from isa_ros.core.signals import LOAD_PORT, LOAD_REPLY
+from isa_ros.surroundings.leg.leg import Leg, Pose
+from isa_ros.surroundings.leg.motion import N_STATES
+from isa_ros.surroundings.leg.sheet import LegSheet
 import numpy as np
 from tests.legs import leg_sheet
 from tests.oracle.monolith import monolith, ROW_NS, TIME_BYTES, TRACE

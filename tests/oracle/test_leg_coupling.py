@@ -9,7 +9,7 @@ only.
 
 from functools import cache
 
-from isa_ros.actuator_sheet import ActuatorSheet
+from isa_ros.actuator.sheet import ActuatorSheet
 import numpy as np
 import pytest
 from tests.oracle.measure import compare, Errors

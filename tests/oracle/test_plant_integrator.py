@@ -1,6 +1,6 @@
 """The plant's fixed step against scipy's adaptive one, on smooth pieces and across kinks."""
 
-from isa_ros.analysis import agreement
+from isa_ros.analysis.accuracy import agreement
 import pytest
 from tests.sheets import MODELS
 

@@ -1,11 +1,10 @@
 """The paper as data: spot checks of what is printed, and a loader that takes nothing else."""
 
-from isa_ros.cli import main
+from isa_ros.cli.main import main
+from isa_ros.config.sections import Place
+from isa_ros.config.yaml_text import parse
 from isa_ros.errors import ConfigError
-from isa_ros.paper.printed import (
-    cell, read_statements, read_tables, statement, statements, tables)
-from isa_ros.resolve import Place
-from isa_ros.strict_yaml import parse
+from isa_ros.paper.printed import cell, read_statements, read_tables, statement, statements, tables
 import pytest
 
 TABLE = """

@@ -1,7 +1,7 @@
 """Force sensor, play and end stops."""
 
 from hypothesis import given, strategies as st
-from isa_ros.contact import one_sided
+from isa_ros.core.contact import one_sided
 from isa_ros.plant import mechanics
 import pytest
 from tests.sheets import plant_row

@@ -3,12 +3,12 @@
 import math
 
 from hypothesis import given, strategies as st
-from isa_ros import actuator_kernel as kernels
-from isa_ros.actuator_sheet import actuator_record, ActuatorSheet
+from isa_ros.actuator import kernel as kernels
+from isa_ros.actuator.sheet import actuator_record, ActuatorSheet
+from isa_ros.core.signals import LOAD_PORT
+from isa_ros.core.timebase import PLANT_STEP
 from isa_ros.plant import chambers, servo_valve
 from isa_ros.plant.plant import plant_rates, plant_record, PLANT_STATE, rest_pressures
-from isa_ros.signals import LOAD_PORT
-from isa_ros.timebase import PLANT_STEP
 import numpy as np
 import pytest
 from tests.sheets import actuator_sheet, MODELS, override, plant_row

@@ -1,9 +1,9 @@
 """Relief and anti-cavitation valves."""
 
+from isa_ros.core.units import LPM
 from isa_ros.errors import ParameterError
 from isa_ros.plant import relief
 from isa_ros.plant.plant import plant_record
-from isa_ros.plant.units import LPM
 import pytest
 from tests.sheets import actuator_sheet, override, plant_row
 

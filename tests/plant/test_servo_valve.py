@@ -3,9 +3,9 @@
 import math
 
 from hypothesis import given, strategies as st
+from isa_ros.core.units import LPM, MILLI
 from isa_ros.plant import servo_valve
 from isa_ros.plant.plant import plant_record
-from isa_ros.plant.units import LPM, MILLI
 import numpy as np
 import pytest
 from scipy.optimize import brentq

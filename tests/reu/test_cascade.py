@@ -2,7 +2,7 @@
 
 from dataclasses import replace
 
-from isa_ros.actuator_sheet import actuator_record, refuse_wiring
+from isa_ros.actuator.sheet import actuator_record, refuse_wiring
 from isa_ros.reu import cascade
 from isa_ros.reu.compensation import Linear
 from isa_ros.reu.wiring import Off

@@ -3,7 +3,7 @@
 from dataclasses import replace
 
 from hypothesis import given, strategies as st
-from isa_ros.actuator_sheet import actuator_record
+from isa_ros.actuator.sheet import actuator_record
 from isa_ros.plant import chambers, servo_valve
 from isa_ros.plant.plant import plant_record
 from isa_ros.reu import block, feedback_linearisation as fl

@@ -1,7 +1,7 @@
 """Gain schedule over the stroke."""
 
 from hypothesis import given, strategies as st
-from isa_ros.actuator_sheet import force_stiffness
+from isa_ros.actuator.sheet import force_stiffness
 from isa_ros.plant.chambers import oil_stiffness
 from isa_ros.reu.schedule import (
     Constant, OilStiffness, POINTS, schedule_table, scheduled, ThreePoints)

@@ -12,8 +12,8 @@ from pathlib import Path
 import socket
 import tempfile
 
-from isa_ros.nodes.domain import claim_address
-from isa_ros.nodes.environment import set_defaults
+from isa_ros.nodes.middleware.domain import claim_address
+from isa_ros.nodes.middleware.environment import set_defaults
 import pytest
 import rclpy
 from rclpy.node import Node

@@ -7,8 +7,8 @@ import time
 from typing import NamedTuple
 
 from isa_ros.bag.reader import Bag
-from isa_ros.cli import main
-from isa_ros.processes import END_S
+from isa_ros.cli.main import main
+from isa_ros.processes.processes import END_S
 from mcap.writer import MCAP0_MAGIC
 from rclpy.node import Node
 from rosgraph_msgs.msg import Clock

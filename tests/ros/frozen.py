@@ -4,8 +4,8 @@ import gc
 import sys
 from typing import Any
 
-from isa_ros.cli import main
-from isa_ros.nodes import session
+from isa_ros.cli.main import main
+from isa_ros.nodes.coordinator import runs as session
 
 
 def said(coordinate: Any) -> Any:

@@ -13,7 +13,7 @@ import time
 from typing import TypeVar
 
 import isa_ros
-from isa_ros.stopping import PR_SET_PDEATHSIG
+from isa_ros.processes.stopping import PR_SET_PDEATHSIG
 
 ROOT = Path(isa_ros.__file__).parents[1]
 LEG = ROOT / 'config' / 'leg.yaml'
@@ -137,7 +137,7 @@ def actuator(log: Path, name: str, **parameters: object) -> Iterator[Started]:
     arguments = ['--ros-args', '-r', f'__node:={name}']
     for key, value in parameters.items():
         arguments += ['-p', f'{key}:={_yaml(value)}']
-    with started(log, 'isa_ros.nodes.actuator_process', *arguments) as process:
+    with started(log, 'isa_ros.nodes.actuator.process', *arguments) as process:
         yield process
 
 
@@ -147,7 +147,7 @@ def coordinator(log: Path, **parameters: object) -> Iterator[Started]:
     arguments = ['--ros-args']
     for key, value in parameters.items():
         arguments += ['-p', f'{key}:={_yaml(value)}']
-    with started(log, 'isa_ros.nodes.coordinator_node', *arguments) as process:
+    with started(log, 'isa_ros.nodes.coordinator.process', *arguments) as process:
         yield process
 
 

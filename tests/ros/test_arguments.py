@@ -6,7 +6,7 @@ import sys
 import pytest
 
 pytestmark = pytest.mark.ros
-MODULES = ['isa_ros.nodes.actuator_process', 'isa_ros.nodes.coordinator_node']
+MODULES = ['isa_ros.nodes.actuator.process', 'isa_ros.nodes.coordinator.process']
 
 
 def run(module: str, *arguments: str) -> subprocess.CompletedProcess[str]:

@@ -1,16 +1,15 @@
 """The bench on real nodes: real rows, and consistent; its speed is no test."""
 
-from isa_ros.analysis.bench.loading import median_loading
-from isa_ros.analysis.bench.peers.catalogue import peer, PEERS
-from isa_ros.analysis.bench.peers.transport import run_over
-from isa_ros.analysis.bench.rigs import request_of
-from isa_ros.analysis.bench.rounds import measured
-from isa_ros.analysis.bench.spec import (
-    ACTUATORS, COORDINATOR, LEG, Measured, ONE_PROCESS, PROCESSES, Spec)
 from isa_ros.bag.writer import BagWriter
-from isa_ros.local_run import LocalRun
-from isa_ros.run import prepare, provenance
-from isa_ros.stopping import StopRequest
+from isa_ros.bench.loading import median_loading
+from isa_ros.bench.peers.catalogue import peer, PEERS
+from isa_ros.bench.peers.transport import run_over
+from isa_ros.bench.rigs import request_of
+from isa_ros.bench.rounds import measured
+from isa_ros.bench.spec import ACTUATORS, COORDINATOR, LEG, Measured, ONE_PROCESS, PROCESSES, Spec
+from isa_ros.processes.stopping import StopRequest
+from isa_ros.run.local_run import LocalRun
+from isa_ros.run.session import prepare, provenance
 import pytest
 
 pytestmark = [pytest.mark.ros, pytest.mark.slow]
@@ -35,7 +34,7 @@ def test_a_run_tells_speed_phases_start_up_and_memory(way, n_processes, domain):
 
 
 def test_what_an_actuator_loads_is_more_than_the_floor(monkeypatch):
-    monkeypatch.setattr('isa_ros.analysis.bench.loading.REPEATS', 1)
+    monkeypatch.setattr('isa_ros.bench.loading.REPEATS', 1)
     loads = median_loading()
     assert 0.0 < loads.floor < loads.imports
     assert loads.kernels > 0.0 and loads.floor_bytes > 30 * MIB

@@ -5,7 +5,8 @@ import re
 import signal
 
 from isa_ros.bag.reader import Bag
-from isa_ros.run import bringup as bring_up, Request
+from isa_ros.nodes.bringup import bringup as bring_up
+from isa_ros.run.session import Request
 import pytest
 from tests.ros.faults import sha256, wait_for_tick_0
 from tests.ros.started import bringup, DEADLINE_S, DROP, is_alive, RIG, started

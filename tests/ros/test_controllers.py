@@ -5,7 +5,7 @@ from pathlib import Path
 import signal
 
 from isa_ros.bag.reader import Bag
-from isa_ros.bag.replay import replay
+from isa_ros.replay.replay import replay
 from msg_adapters.cdr_reader import decode
 import pytest
 from sensor_msgs.msg import JointState

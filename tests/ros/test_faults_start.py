@@ -10,9 +10,9 @@ from tests.ros.started import actuator, bringup, coordinator, RIG, Started, wait
 pytestmark = [pytest.mark.ros, pytest.mark.slow]
 START_S = 3.0  # of the coordinator's node, in which a signal waits
 
-BREAKS_AT_START = "sys.modules['isa_ros.nodes.actuator_process'].init_ros = None"
+BREAKS_AT_START = "sys.modules['isa_ros.nodes.actuator.process'].init_ros = None"
 BREAKS_AT_TICK = """
-from isa_ros import actuator
+from isa_ros.actuator import actuator
 tick = actuator.SmartActuator.tick
 def breaking(self, *port):
     if self.t_ns == 100_000_000:

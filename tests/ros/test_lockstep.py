@@ -6,16 +6,18 @@ import threading
 import time
 
 from isa_ros.controller import Controller, Setpoint
-from isa_ros.coordinator import Interrupted
+from isa_ros.core.signals import HAS_SETPOINT, LOAD_REPLY, SAMPLE, START
 from isa_ros.errors import ConfigError, RunError, SetpointError, SimulationDiverged
-from isa_ros.exchange import Messages, Rows, Silence
-from isa_ros.nodes import local_wire, lockstep, member, waiting
-from isa_ros.nodes.cast import Cast, Expected, Limits
-from isa_ros.nodes.lockstep import LockstepTransport
-from isa_ros.nodes.member import Member
-from isa_ros.nodes.seat import ActuatorSeat, ControllerSeat
-from isa_ros.nodes.wire import encode_tick
-from isa_ros.signals import HAS_SETPOINT, LOAD_REPLY, SAMPLE, START
+from isa_ros.nodes.lockstep import (
+    coordinator_end as lockstep, participant_end as member, sockets as local_wire)
+from isa_ros.nodes.lockstep.coordinator_end import LockstepTransport
+from isa_ros.nodes.lockstep.expected import Cast, Expected, Limits
+from isa_ros.nodes.lockstep.participant_end import Member
+from isa_ros.nodes.lockstep.roles import ActuatorSeat, ControllerSeat
+from isa_ros.nodes.middleware import mailboxes, servers
+from isa_ros.run.coordinator import Interrupted
+from isa_ros.run.exchange import Messages, Rows, Silence
+from isa_ros.run.wire import encode_tick
 import numpy as np
 import pytest
 from rclpy.node import Node
@@ -145,7 +147,8 @@ def tick(
 @pytest.mark.parametrize('has_handles', [True, False], ids=['wait set', 'executor'])
 def test_every_participant_answers_every_tick(observer, monkeypatch, has_handles):
     """Rows go to their actuator, answers come back in the order of the configuration."""
-    monkeypatch.setattr(waiting, 'has_handles', lambda: has_handles)
+    for module in (mailboxes, servers):
+        monkeypatch.setattr(module, 'has_handles', lambda: has_handles)
     steppers = {'kfe': Scripted(), 'haa': Scripted()}
     with spinning(observer.context, steppers):
         transport = make_transport(observer)

@@ -6,18 +6,18 @@ import signal
 from typing import Any
 
 from isa_ros.bag.reader import Bag
-from isa_ros.bag.replay import replay, Rerun
 from isa_ros.bag.writer import BagWriter
-from isa_ros.default_actuator import default_actuator, DEFAULT_TIMING
-from isa_ros.nodes.actuator_node import ActuatorNode, Setup
-from isa_ros.signals import START
+from isa_ros.config.default_actuator import default_actuator, DEFAULT_TIMING
+from isa_ros.core.signals import START
+from isa_ros.nodes.actuator.node import ActuatorNode, Setup
+from isa_ros.replay.replay import replay, Rerun
 from msg_adapters.applied_parameters import tuned_values
 from msg_adapters.cdr_reader import decode
 import numpy as np
 import pytest
 from rcl_interfaces.msg import Parameter, ParameterEvent, ParameterType, ParameterValue
-from rcl_interfaces.srv import DescribeParameters, GetParameters, SetParameters
-from rcl_interfaces.srv import SetParametersAtomically
+from rcl_interfaces.srv import (
+    DescribeParameters, GetParameters, SetParameters, SetParametersAtomically)
 from rclpy.node import Node
 from rclpy.parameter import Parameter as RosParameter
 from sensor_msgs.msg import JointState

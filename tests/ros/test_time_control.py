@@ -5,7 +5,7 @@ import signal
 from typing import Any
 
 from isa_ros.bag.reader import Bag
-from isa_ros.bag.replay import recorded_events, replay
+from isa_ros.replay.replay import recorded_events, replay
 import pytest
 from rcl_interfaces.srv import SetParameters
 from rclpy.node import Node

@@ -8,12 +8,12 @@ import math
 
 from isa_ros.analysis.validation.entry import around, Entry, Findings
 from isa_ros.analysis.validation.sheets import model_sheet, plant_of
+from isa_ros.core.units import LPM, MILLI, MILLILITRE, MPA
 from isa_ros.paper.printed import cell, statement
 from isa_ros.plant.chambers import hydraulic_force, pressure_rates, volumes
 from isa_ros.plant.friction import stribeck
 from isa_ros.plant.relief import relief_flow
 from isa_ros.plant.sensors import convert, encode
-from isa_ros.plant.units import LPM, MILLI, MILLILITRE, MPA
 import numpy as np
 from scipy.optimize import brentq
 

@@ -7,20 +7,20 @@ equations 1 and 2, sampled at 10 kHz through the 12 bit converter. Currents are 
 
 from dataclasses import replace
 
-from isa_ros.actuator_kernel import body_step, flat, scratch
-from isa_ros.actuator_sheet import actuator_record, ActuatorSheet
-from isa_ros.analysis.excitation import excite, RATE_HZ
-from isa_ros.analysis.rig import Choice, Rig, rig
-from isa_ros.analysis.step import Step, step
-from isa_ros.analysis.step_response import step_figures
+from isa_ros.actuator.kernel import body_step, flat, scratch
+from isa_ros.actuator.sheet import actuator_record, ActuatorSheet
+from isa_ros.analysis.response.excitation import excite, RATE_HZ
+from isa_ros.analysis.response.rig import Choice, Rig, rig
+from isa_ros.analysis.response.step import Step, step
+from isa_ros.analysis.signals.step_response import step_figures
 from isa_ros.analysis.validation.entry import around, at_most, Drawing, Entry, Findings
 from isa_ros.analysis.validation.plots import stacked
 from isa_ros.analysis.validation.sheets import model_sheet, PRESET
+from isa_ros.core.signals import LOAD_PORT
+from isa_ros.core.timebase import PLANT_STEP
 from isa_ros.paper.printed import cell, statement
 from isa_ros.plant.coil import coil_current
 from isa_ros.reu.lead_lag import demand_gain, LeadLag
-from isa_ros.signals import LOAD_PORT
-from isa_ros.timebase import PLANT_STEP
 import numpy as np
 
 MANIFOLD = 'smart_manifold'

@@ -9,23 +9,23 @@ dz/dq make it (dz/dq / r)^2 times as stiff, and the shank M_qq / r^2 heavy.
 
 from dataclasses import replace
 
-from isa_ros.actuator import SmartActuator
-from isa_ros.analysis.bode import bode
-from isa_ros.analysis.excitation import RATE_HZ
-from isa_ros.analysis.rig import Choice, Rig, rig, TIMING
-from isa_ros.analysis.step import Step, step
-from isa_ros.analysis.sweep import Sweep
+from isa_ros.actuator.actuator import SmartActuator
+from isa_ros.analysis.response.bode import bode
+from isa_ros.analysis.response.excitation import RATE_HZ
+from isa_ros.analysis.response.rig import Choice, Rig, rig, TIMING
+from isa_ros.analysis.response.step import Step, step
+from isa_ros.analysis.response.sweep import Sweep
 from isa_ros.analysis.validation.entry import around, at_most, Drawing, Entry, Findings
 from isa_ros.analysis.validation.plots import stacked
 from isa_ros.analysis.validation.sheets import model_sheet, plant_of
-from isa_ros.config import load_run
-from isa_ros.load.leg_dynamics import leg_terms
-from isa_ros.load.leg_sheet import body_record, JOINTS, linkage_record
-from isa_ros.load.linkage import actuator_coordinate
-from isa_ros.load.local import Blocked, Mass
+from isa_ros.config.paths import CONFIG, find
+from isa_ros.config.run_file import load_run
+from isa_ros.core.units import MILLI, MPA
+from isa_ros.loads.sheets import Blocked, Mass
 from isa_ros.paper.printed import statement
-from isa_ros.paths import CONFIG, find
-from isa_ros.plant.units import MILLI, MPA
+from isa_ros.surroundings.leg.dynamics import leg_terms
+from isa_ros.surroundings.leg.sheet import body_record, JOINTS, linkage_record
+from isa_ros.surroundings.linkage import actuator_coordinate
 import numpy as np
 
 MODEL = 'isa_v5'

@@ -9,20 +9,20 @@ from dataclasses import replace
 import math
 
 from isa_ros.analysis.experiment import Experiment, run
-from isa_ros.analysis.paper_figures import draw_force, draw_position
-from isa_ros.analysis.step_response import step_figures, StepFigures
-from isa_ros.analysis.traces import Trace
+from isa_ros.analysis.report.paper_figures import draw_force, draw_position
+from isa_ros.analysis.signals.step_response import step_figures, StepFigures
+from isa_ros.analysis.signals.traces import Trace
 from isa_ros.analysis.validation.entry import around, at_least, at_most, Drawing, Entry, Findings
 from isa_ros.analysis.validation.isa_v5 import cell_code, CODE
 from isa_ros.analysis.validation.plots import stacked
-from isa_ros.catalogue import material_section
-from isa_ros.config import load_run
-from isa_ros.load.gravity import STANDARD_GRAVITY
-from isa_ros.load.ground import Ground
+from isa_ros.config.catalogue import material_section
+from isa_ros.config.paths import CONFIG, find
+from isa_ros.config.run_config import RunConfig
+from isa_ros.config.run_file import load_run
+from isa_ros.config.sections import build
+from isa_ros.core.gravity import STANDARD_GRAVITY
 from isa_ros.paper.printed import statement
-from isa_ros.paths import CONFIG, find
-from isa_ros.resolve import build
-from isa_ros.run_config import RunConfig
+from isa_ros.surroundings.ground import Ground
 import numpy as np
 
 RIG, LEG, KNEE = 'rig_knee', 'leg', 'kfe'

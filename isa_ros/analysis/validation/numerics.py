@@ -2,25 +2,26 @@
 What the numbers of all other groups rest on: the plant's fixed step and the leg's linkages.
 
 The plant is held against scipy's DOP853 of the same equations, at a tolerance of 1e-12
-(`isa_ros.analysis.agreement`); the valve-driven cylinder of the same kernels
-(`isa_ros.analysis.cylinder`) against a solution known to twelve digits; lever and extension of
-the knees against the table of the published linkages. The paper says nothing of these.
+(`isa_ros.analysis.accuracy.agreement`); the valve-driven cylinder of the same kernels
+(`isa_ros.analysis.accuracy.cylinder`) against a solution known to twelve digits; lever and
+extension of the knees against the table of the published linkages. The paper says nothing of
+these.
 """
 
 from collections.abc import Iterable
 import math
 
-from isa_ros.analysis import agreement, cylinder
-from isa_ros.analysis.agreement import compare, Difference, LOADS, Piece
+from isa_ros.analysis.accuracy import agreement, cylinder
+from isa_ros.analysis.accuracy.agreement import compare, Difference, LOADS, Piece
 from isa_ros.analysis.validation.entry import at_most, Entry, Findings
 from isa_ros.analysis.validation.sheets import plant_of
-from isa_ros.config import load_run
-from isa_ros.load.leg_sheet import linkage_record
-from isa_ros.load.linkage import actuator_coordinate
-from isa_ros.paths import CONFIG, find
+from isa_ros.config.paths import CONFIG, find
+from isa_ros.config.run_file import load_run
+from isa_ros.core.timebase import PLANT_STEP
+from isa_ros.core.units import MILLI
 from isa_ros.plant.chambers import volumes
-from isa_ros.plant.units import MILLI
-from isa_ros.timebase import PLANT_STEP
+from isa_ros.surroundings.leg.sheet import linkage_record
+from isa_ros.surroundings.linkage import actuator_coordinate
 
 MODELS = ('smart_manifold', 'isa_v2', 'isa_v5')
 SMOOTH, SINE, STEPS = agreement.PIECES

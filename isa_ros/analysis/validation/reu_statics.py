@@ -5,12 +5,12 @@ Gains are measured on the kernels: a reference, a position or a speed goes in, a
 block gives inwards is divided by it.
 """
 
-from isa_ros.actuator_sheet import actuator_record
+from isa_ros.actuator.sheet import actuator_record
 from isa_ros.analysis.validation.entry import around, at_most, Entry, Findings
 from isa_ros.analysis.validation.sheets import model_sheet, plant_of
+from isa_ros.core.units import MILLI
 from isa_ros.paper.printed import cell, Printed, statement
 from isa_ros.plant.servo_valve import flow_curve
-from isa_ros.plant.units import MILLI
 from isa_ros.reu.block import BLOCK_STATE, block_step
 from isa_ros.reu.cascade import initial_gains
 from isa_ros.reu.compensation import dual_gain_compensation

@@ -8,15 +8,14 @@ import math
 from typing import NamedTuple
 
 from isa_ros.analysis.experiment import Experiment, run
-from isa_ros.analysis.paper_figures import draw_force, paper_figure
-from isa_ros.analysis.step_response import step_figures
-from isa_ros.analysis.validation.entry import (
-    around, at_least, at_most, Drawing, Entry, Findings)
+from isa_ros.analysis.report.paper_figures import draw_force, paper_figure
+from isa_ros.analysis.signals.step_response import step_figures
+from isa_ros.analysis.validation.entry import around, at_least, at_most, Drawing, Entry, Findings
 from isa_ros.analysis.validation.plots import stacked
-from isa_ros.load.drop_rig import (
+from isa_ros.core.gravity import STANDARD_GRAVITY
+from isa_ros.loads.drop_rig import (
     DropRig, ROPE, rope_record, rope_tension, weight_acceleration, WEIGHT_STATE)
-from isa_ros.load.gravity import STANDARD_GRAVITY
-from isa_ros.load.wheel import Wheel
+from isa_ros.loads.wheel import Wheel
 from isa_ros.paper.printed import statement
 import numpy as np
 from scipy.integrate import solve_ivp

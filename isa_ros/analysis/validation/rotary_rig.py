@@ -9,15 +9,14 @@ from collections.abc import Mapping
 import math
 from typing import Any
 
-from isa_ros.analysis.bode import bode
 from isa_ros.analysis.experiment import Experiment, run, with_overrides
-from isa_ros.analysis.paper_figures import paper_figure
-from isa_ros.analysis.rig import Choice, rig
-from isa_ros.analysis.step import step
-from isa_ros.analysis.step_response import step_figures, StepFigures
-from isa_ros.analysis.sweep import Sweep
-from isa_ros.analysis.validation.entry import (
-    around, at_least, at_most, Drawing, Entry, Findings)
+from isa_ros.analysis.report.paper_figures import paper_figure
+from isa_ros.analysis.response.bode import bode
+from isa_ros.analysis.response.rig import Choice, rig
+from isa_ros.analysis.response.step import step
+from isa_ros.analysis.response.sweep import Sweep
+from isa_ros.analysis.signals.step_response import step_figures, StepFigures
+from isa_ros.analysis.validation.entry import around, at_least, at_most, Drawing, Entry, Findings
 from isa_ros.analysis.validation.sheets import model_sheet
 from isa_ros.paper.printed import statement
 from isa_ros.reu.block import Pid

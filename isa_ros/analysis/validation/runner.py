@@ -11,8 +11,8 @@ import time
 from typing import TextIO
 
 from isa_ros.analysis.validation.entry import Drawing, Entry, Group
+from isa_ros.core.suggest import alternatives
 from isa_ros.errors import ConfigError, IsaError, RunError
-from isa_ros.resolve import alternatives
 
 WORKERS = 2
 

@@ -2,10 +2,10 @@
 
 from functools import cache
 
-from isa_ros.actuator_sheet import ActuatorSheet
-from isa_ros.catalogue import actuator_model
+from isa_ros.actuator.sheet import ActuatorSheet
+from isa_ros.config.catalogue import actuator_model
+from isa_ros.config.sections import build
 from isa_ros.plant.plant import plant_record
-from isa_ros.resolve import build
 import numpy as np
 
 PRESET = 'table_4'    # the paper's gains; it prints none for the ISA v2

@@ -8,12 +8,11 @@ Table 4, the ISA v5 those retuned for the leg.
 
 from dataclasses import dataclass, replace
 
-from isa_ros.analysis.bode import bode
-from isa_ros.analysis.rig import Choice, Rig, rig
-from isa_ros.analysis.step import step
-from isa_ros.analysis.sweep import Sweep
-from isa_ros.analysis.validation.entry import (
-    at_least, at_most, Drawing, Entry, Findings)
+from isa_ros.analysis.response.bode import bode
+from isa_ros.analysis.response.rig import Choice, Rig, rig
+from isa_ros.analysis.response.step import step
+from isa_ros.analysis.response.sweep import Sweep
+from isa_ros.analysis.validation.entry import at_least, at_most, Drawing, Entry, Findings
 from isa_ros.analysis.validation.plots import stacked
 from isa_ros.paper.printed import statement
 from isa_ros.reu.block import Pid

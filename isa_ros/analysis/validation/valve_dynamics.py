@@ -10,16 +10,16 @@ from collections.abc import Callable, Sequence
 from dataclasses import replace
 import math
 
-from isa_ros.actuator import SmartActuator
-from isa_ros.actuator_sheet import ActuatorSheet
-from isa_ros.analysis.excitation import excite, RATE_HZ
+from isa_ros.actuator.actuator import SmartActuator
+from isa_ros.actuator.sheet import ActuatorSheet
+from isa_ros.analysis.response.excitation import excite, RATE_HZ
 from isa_ros.analysis.validation.entry import around, at_least, Drawing, Entry, Findings
 from isa_ros.analysis.validation.plots import stacked
 from isa_ros.analysis.validation.sheets import model_sheet, plant_of
-from isa_ros.default_actuator import default_actuator, DEFAULT_TIMING
+from isa_ros.config.default_actuator import default_actuator, DEFAULT_TIMING
+from isa_ros.core.units import MPA
 from isa_ros.paper.printed import cell, statement
 from isa_ros.plant.plant import plant_rates, PLANT_STATE
-from isa_ros.plant.units import MPA
 import numpy as np
 from scipy.optimize import brentq
 

@@ -9,9 +9,9 @@ import math
 from isa_ros.analysis.validation.entry import around, Drawing, Entry, Findings
 from isa_ros.analysis.validation.plots import plot
 from isa_ros.analysis.validation.sheets import plant_of
+from isa_ros.core.units import LPM, MILLI, MPA
 from isa_ros.paper.printed import cell, statement
 from isa_ros.plant.servo_valve import flow_curve, port_flows
-from isa_ros.plant.units import LPM, MILLI, MPA
 import numpy as np
 from scipy.optimize import brentq
 

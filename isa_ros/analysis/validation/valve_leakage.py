@@ -10,9 +10,9 @@ from isa_ros.analysis.validation.plots import plot
 from isa_ros.analysis.validation.sheets import plant_of
 from isa_ros.analysis.validation.valve_flow import (
     CURRENT, FULL_CURRENT, HRV, ISA_V5, spool_at, SUPPLY, ULLV, VALVES)
+from isa_ros.core.units import LPM
 from isa_ros.paper.printed import statement
 from isa_ros.plant.servo_valve import port_flows
-from isa_ros.plant.units import LPM
 import numpy as np
 from scipy.optimize import brentq
 

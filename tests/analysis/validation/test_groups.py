@@ -6,7 +6,7 @@ import re
 from isa_ros.analysis.validation.groups import GROUPS
 from isa_ros.analysis.validation.page import markdown
 from isa_ros.analysis.validation.runner import run_group
-from isa_ros.cli import main
+from isa_ros.cli.main import main
 import pytest
 
 DOCS = Path(__file__).parents[3] / 'docs'

@@ -3,7 +3,7 @@
 import math
 
 from isa_ros.analysis.experiment import Experiment, run
-from isa_ros.analysis.traces import Trace
+from isa_ros.analysis.signals.traces import Trace
 from isa_ros.analysis.validation import knee_rig
 import numpy as np
 import pytest

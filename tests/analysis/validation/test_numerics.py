@@ -1,6 +1,6 @@
 """The checks of the solver: what a kink may leave, and which differences count."""
 
-from isa_ros.analysis.agreement import Difference
+from isa_ros.analysis.accuracy.agreement import Difference
 from isa_ros.analysis.validation import numerics
 import pytest
 

@@ -4,12 +4,12 @@ from dataclasses import replace
 import math
 
 from isa_ros.analysis.experiment import Experiment
-from isa_ros.analysis.traces import Trace
+from isa_ros.analysis.signals.traces import Trace
 from isa_ros.analysis.validation.rotary_disturbances import (
     blocked_peak, dropped, fall_time, Impact, impacts, onsets)
-from isa_ros.config import load_run
-from isa_ros.load.gravity import STANDARD_GRAVITY
-from isa_ros.paths import CONFIG, find
+from isa_ros.config.paths import CONFIG, find
+from isa_ros.config.run_file import load_run
+from isa_ros.core.gravity import STANDARD_GRAVITY
 import numpy as np
 import pytest
 from tests.sheets import own_load

@@ -1,0 +1,1 @@
+"""One smart actuator: data sheet, kernel of a tick, memory, commands, tuning."""

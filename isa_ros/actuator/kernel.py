@@ -1,0 +1,221 @@
+"""
+One tick of one actuator: the REU's instants and the plant's steps in time order.
+
+Composes plant, REU and load copy into one kernel. The continuous states live in one record
+of floats (`BODY`), so that the integrator sees the same memory as a flat array.
+"""
+
+import math
+
+from isa_ros.core.kernel import kernel
+from isa_ros.core.timebase import FORCE_WINDOWS, PLANT_STEP
+from isa_ros.loads.forces import LOAD_STATE, OWN_LOAD, own_load_force
+from isa_ros.loads.port import load_acceleration
+from isa_ros.plant.plant import PLANT, plant_rates, PLANT_STATE, read_sensors
+from isa_ros.plant.spool import stop_spool
+from isa_ros.reu.cascade import cascade_step, is_due, REU
+import numpy as np
+
+TOTALS = np.dtype([
+    ('impulse', 'f8'),          # integral of the sensor force, Ns | Nms
+    ('supply_volume', 'f8'),    # drawn from the supply, m3
+    ('return_volume', 'f8'),    # given to the return, m3
+])
+BODY = np.dtype([('plant', PLANT_STATE), ('load', LOAD_STATE), ('totals', TOTALS)])
+"""Every continuous state of an actuator and its load copy; floats only."""
+
+STATE_SIZE = BODY.itemsize // 8
+BODIES = 2  # the state and a stage of its integration
+STAGES = 4
+NOTHING = 1e-100  # any unit: a state that decays below is zero, denormal arithmetic is slow
+
+ACTUATOR = np.dtype([('plant', PLANT), ('reu', REU), ('load', OWN_LOAD)])
+"""Every constant of one actuator, SI."""
+
+
+def scratch(n: int = 1) -> tuple[np.ndarray, np.ndarray]:
+    """Return the memory of ``n`` actuators: `BODIES` `BODY` rows and `STAGES` rate rows each."""
+    return np.zeros(n * BODIES, BODY), np.zeros(n * STAGES, BODY)
+
+
+def flat(rows: np.ndarray) -> np.ndarray:
+    """Return the same memory of `BODY` rows as floats, shape (rows, STATE_SIZE)."""
+    return rows.view(np.float64).reshape(len(rows), STATE_SIZE)
+
+
+def state_name(index: int) -> str:
+    """Return the dotted name of one state of `BODY` by its place in the flat array."""
+    def walk(record: np.dtype, prefix: str) -> list[str]:
+        if record.names is None:
+            return [prefix]
+        return [name for field in record.names
+                for name in walk(record[field], f'{prefix}.{field}' if prefix else field)]
+    return walk(BODY, '')[index]
+
+
+@kernel
+def body_rates(tau, y, drive, port, actuator, rates):
+    """Write the derivative of one `BODY` into ``rates``."""
+    force, q_p, q_t = plant_rates(
+        y.plant, y.load.position, y.load.velocity, drive,
+        port.supply_pressure, port.return_pressure, actuator.plant, rates.plant)
+    own = own_load_force(y.load, port.x0, actuator.load, rates.load)
+    rates.load.position = y.load.velocity
+    rates.load.velocity = load_acceleration(
+        tau, y.load.position, y.load.velocity, force + own, port)
+    rates.totals.impulse = force
+    rates.totals.supply_volume = q_p
+    rates.totals.return_volume = q_t
+
+
+@kernel
+def body_step(h, tau, drive, port, actuator, bodies, rates, y, k):
+    """
+    Advance ``bodies[0]`` by one classical Runge-Kutta step of ``h`` seconds.
+
+    ``bodies[1]`` holds the stage; ``y`` and ``k`` are the flat views of ``bodies``, ``rates``.
+    """
+    body_rates(tau, bodies[0], drive, port, actuator, rates[0])
+    for j in range(STATE_SIZE):
+        y[1, j] = y[0, j] + 0.5 * h * k[0, j]
+    body_rates(tau + 0.5 * h, bodies[1], drive, port, actuator, rates[1])
+    for j in range(STATE_SIZE):
+        y[1, j] = y[0, j] + 0.5 * h * k[1, j]
+    body_rates(tau + 0.5 * h, bodies[1], drive, port, actuator, rates[2])
+    for j in range(STATE_SIZE):
+        y[1, j] = y[0, j] + h * k[2, j]
+    body_rates(tau + h, bodies[1], drive, port, actuator, rates[3])
+    for j in range(STATE_SIZE):
+        value = y[0, j] + h / 6.0 * (k[0, j] + 2.0 * (k[1, j] + k[2, j]) + k[3, j])
+        y[0, j] = 0.0 if abs(value) < NOTHING else value
+    stop_spool(bodies[0].plant.valve, actuator.plant.valve.x_max)
+
+
+@kernel
+def body_steps(n, h, drive, port, actuator, bodies, rates, y, k):
+    """Take ``n`` steps of `body_step` under a constant drive and port."""
+    for i in range(n):
+        body_step(h, i * h, drive, port, actuator, bodies, rates, y, k)
+
+
+@kernel
+def square_roots(n):
+    """Take ``n`` square roots, each of the last: what `isa bench` holds a plant step against."""
+    x = 2.0
+    for _ in range(n):
+        x = math.sqrt(x + 1.0)
+    return x
+
+
+@kernel
+def write_sample(measured, plant, reu, sample):
+    """Fill one `SAMPLE` from what the sensors read and the loops hold."""
+    sample.position = measured.position
+    sample.velocity = reu.speed.velocity
+    sample.force = measured.force
+    sample.pressure_a = measured.pressure_a
+    sample.pressure_b = measured.pressure_b
+    sample.spool = measured.spool
+    sample.spool_velocity = plant.valve.velocity
+    sample.current = measured.current
+    sample.position_reference = reu.setpoint.position
+    sample.force_reference = reu.force_reference
+    sample.spool_reference = reu.spool_reference
+    sample.current_reference = reu.current_reference
+
+
+@kernel
+def loops_and_plant(step, tau, port, actuator, bodies, rates, y, k, reu_state):
+    """Run the loops that are due at plant step ``step``, then the plant over that step."""
+    body, reu = bodies[0], actuator.reu
+    if is_due(step, reu.current_steps, reu.offset_steps):
+        read_sensors(body.plant, body.load.position, body.load.velocity,
+                     actuator.plant, reu_state.measured)
+        cascade_step(step, reu, reu_state)
+    if step == actuator.load.rope.release_step:
+        body.load.weight.is_released = 1.0
+    if is_due(step, reu.current_steps, reu.offset_steps + reu.delay_steps):
+        reu_state.amplifier = reu_state.drive
+    body_step(PLANT_STEP, tau, reu_state.amplifier, port, actuator,
+              bodies, rates, y, k)
+
+
+@kernel
+def first_broken(y):
+    """Return the index of the first state that is not finite, or -1."""
+    for j in range(STATE_SIZE):
+        if not math.isfinite(y[0, j]):
+            return j
+    return -1
+
+
+@kernel
+def take_port(incoming, is_shared, port, body):
+    """
+    Take what the coordinator says of the load at this tick.
+
+    A shared load's state overwrites the load copy; with a load of its own an actuator takes
+    the pressures alone.
+    """
+    port.supply_pressure = incoming.supply_pressure
+    port.return_pressure = incoming.return_pressure
+    if is_shared:
+        port.x0, port.v0, port.a0 = incoming.x0, incoming.v0, incoming.a0
+        port.inverse_mass = incoming.inverse_mass
+        port.a_bias, port.jerk = incoming.a_bias, incoming.jerk
+        port.stiffness, port.damping = incoming.stiffness, incoming.damping
+        body.load.position = port.x0
+        body.load.velocity = port.v0
+
+
+@kernel
+def tick_row(first_step, steps, port, actuator, bodies, rates, y, k, reu_state, read_out,
+             reply, sample):
+    """
+    Advance one actuator by ``steps`` plant steps.
+
+    Fills its `LOAD_REPLY` (mean force of each of the tick's windows from its impulse) and its
+    `SAMPLE` at the end of the tick.
+    """
+    body = bodies[0]
+    body.totals.supply_volume = 0.0
+    body.totals.return_volume = 0.0
+    window_steps = steps // FORCE_WINDOWS
+    for window in range(FORCE_WINDOWS):
+        body.totals.impulse = 0.0
+        for i in range(window * window_steps, (window + 1) * window_steps):
+            loops_and_plant(first_step + i, i * PLANT_STEP, port, actuator,
+                            bodies, rates, y, k, reu_state)
+        reply.mean_forces[window] = body.totals.impulse / (window_steps * PLANT_STEP)
+    reply.force = read_sensors(
+        body.plant, body.load.position, body.load.velocity, actuator.plant, read_out)
+    reply.position = body.plant.mechanics.position
+    reply.velocity = body.plant.mechanics.velocity
+    reply.supply_volume = body.totals.supply_volume
+    reply.return_volume = body.totals.return_volume
+    write_sample(read_out, body.plant, reu_state, sample)
+    sample.supply_volume += reply.supply_volume
+    sample.supply_flow = reply.supply_volume / (steps * PLANT_STEP)
+
+
+@kernel
+def actuator_tick(
+        first_step, steps, incoming, is_shared, ports, actuators, bodies, rates, y, k,
+        reu_states, read_outs, replies, samples):
+    """
+    Advance every actuator by ``steps`` plant steps, one after the other.
+
+    Return the place of the first state that is no longer finite in the states of all, or -1.
+    ``incoming`` are this tick's `LOAD_PORT` rows; each array has one row an actuator, but
+    ``bodies`` and ``rates`` and their flat views have `BODIES` and `STAGES` (`scratch`).
+    """
+    for n in range(len(ports)):
+        own, own_rates = bodies[n * BODIES:(n + 1) * BODIES], rates[n * STAGES:(n + 1) * STAGES]
+        own_y, own_k = y[n * BODIES:(n + 1) * BODIES], k[n * STAGES:(n + 1) * STAGES]
+        take_port(incoming[n], is_shared[n], ports[n], own[0])
+        tick_row(first_step, steps, ports[n], actuators[n], own, own_rates, own_y, own_k,
+                 reu_states[n], read_outs[n], replies[n], samples[n])
+        broken = first_broken(own_y)
+        if broken >= 0:
+            return n * STATE_SIZE + broken
+    return -1

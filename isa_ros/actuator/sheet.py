@@ -1,0 +1,129 @@
+"""The data sheet of one actuator, and the SI records the kernels read."""
+
+from dataclasses import dataclass
+
+from isa_ros.actuator.kernel import ACTUATOR
+from isa_ros.core.parameter import choice, Parameters
+from isa_ros.core.units import MILLI
+from isa_ros.errors import ConfigError
+from isa_ros.plant.chambers import oil_stiffness
+from isa_ros.plant.coil import ClosedLoopCoil, ExplicitCoil
+from isa_ros.plant.plant import LinearPlant, plant_record, RotaryPlant
+from isa_ros.plant.spool import DirectSpool, PilotedSpool
+from isa_ros.reu.block import Pid
+from isa_ros.reu.cascade import reu_record
+from isa_ros.reu.lead_lag import LeadLag
+from isa_ros.reu.schedule import POINTS
+from isa_ros.reu.wiring import Held, Off, refuse_nonsense, Reu, valve_block
+import numpy as np
+
+_ROUNDED = 1e-3  # of a limit: a data sheet prints three digits
+
+
+@dataclass(frozen=True, kw_only=True)
+class ActuatorSheet(Parameters):
+    """Everything that makes one actuator: plant, REU and how the two are wired."""
+
+    spool_feedback: str = choice(
+        "the valve's spool sensor; a mechanical feedback has none", 'electric', 'mechanic')
+    plant: LinearPlant | RotaryPlant
+    reu: Reu
+
+    @property
+    def is_rotary(self) -> bool:
+        """Return whether the generalised units are rad and Nm."""
+        return isinstance(self.plant, RotaryPlant)
+
+
+def refuse_wiring(sheet: ActuatorSheet) -> None:
+    """
+    Refuse control blocks that do not fit their actuator.
+
+    Raises
+    ------
+    ConfigError
+        A spool block without a spool sensor, a loop that would be closed twice or not at
+        all, a limit beyond the spool's stop, or what `refuse_nonsense` refuses.
+
+    """
+    reu, plant = sheet.reu, sheet.plant
+    refuse_nonsense(reu)
+    if sheet.spool_feedback == 'mechanic' and not isinstance(reu.spool, Off):
+        raise ConfigError(
+            f'reu.spool.kind = {_kind(reu.spool)}: a valve with mechanical feedback has no spool '
+            'sensor; set reu.spool.kind: off')
+    if isinstance(plant.spool, PilotedSpool) and not isinstance(reu.spool, Pid):
+        raise ConfigError(
+            f'reu.spool.kind = {_kind(reu.spool)} and plant.spool.kind = piloted: nobody closes '
+            'the loop of the spool; set reu.spool.kind: pid, or plant.spool.kind: closed_loop')
+    if isinstance(reu.spool, Pid) and not isinstance(plant.spool, (PilotedSpool, DirectSpool)):
+        raise ConfigError(
+            'reu.spool.kind = pid and plant.spool.kind = closed_loop: equation 8 already is the '
+            'closed loop of the spool; set plant.spool.kind: piloted, or reu.spool.kind: held')
+    if isinstance(reu.current, LeadLag) != isinstance(plant.coil, ExplicitCoil):
+        raise ConfigError(
+            f'reu.current.kind = {_kind(reu.current)} and plant.coil.kind = '
+            f'{_kind(plant.coil)}: lead_lag needs an explicit coil, held the closed_loop one')
+    _refuse_limit_beyond_stop(sheet)
+
+
+_KINDS: dict[type, str] = {
+    Off: 'off', Held: 'held', Pid: 'pid', LeadLag: 'lead_lag', ClosedLoopCoil: 'closed_loop',
+    ExplicitCoil: 'explicit'}
+
+
+def _kind(part: Parameters) -> str:
+    return _KINDS[type(part)]
+
+
+def _refuse_limit_beyond_stop(sheet: ActuatorSheet) -> None:
+    """Refuse an output the valve cannot follow: its integral would wind up all the same."""
+    name, valve = valve_block(sheet.reu), sheet.plant.valve
+    if name is None:
+        return
+    if isinstance(sheet.reu.spool, Off):
+        stop, unit = valve.spool_stop_mm / valve.spool_gain_mm_per_ma * MILLI, 'A'
+    else:
+        stop, unit = valve.spool_stop_mm * MILLI, 'm'
+    limit = getattr(sheet.reu, name).limit
+    if limit > stop * (1.0 + _ROUNDED):
+        raise ConfigError(
+            f'reu.{name}.limit = {limit:g} {unit}, must be <= {stop:.4g} {unit}, the stop of the '
+            f'spool (reu.spool.kind = {_kind(sheet.reu.spool)}: {name} commands '
+            f"{'the series current' if unit == 'A' else 'the spool'})")
+
+
+def force_stiffness(plant: np.record) -> np.ndarray:
+    """
+    Return what the force block works against at `POINTS` equal distances, shape (POINTS,).
+
+    The trapped oil in series with the force sensor, in N/m or Nm/rad.
+    """
+    k_s = plant.mechanics.k_s
+    return np.array([
+        1.0 / (1.0 / oil_stiffness(s, plant.chambers) + 1.0 / k_s)
+        for s in np.linspace(0.0, plant.chambers.stroke, POINTS)])
+
+
+def known_model(plant: np.record, output_per_spool: float) -> tuple[float, ...]:
+    """Return the `LINEARISED` record: what a linearising block knows of its actuator."""
+    oil, valve = plant.chambers, plant.valve
+    return (
+        oil.area_a, oil.area_b, oil.stroke, oil.dead_volume, oil.beta, oil.c_li,
+        plant.mechanics.k_s, valve.k_low, valve.k_high, valve.q_rest, valve.x_dg, valve.x_max,
+        valve.per_root_drop,
+        valve.f_pa, valve.f_at, valve.f_bt, valve.f_pb, output_per_spool)
+
+
+def actuator_record(sheet: ActuatorSheet, offset_steps: int) -> np.ndarray:
+    """Return the `ACTUATOR` record of a sheet without a load of its own, shape (1,)."""
+    plant = plant_record(sheet.plant)
+    k_spool = plant[0].valve.k_spool
+    commands_spool = not isinstance(sheet.reu.spool, Off)
+    reu = reu_record(
+        sheet.reu, offset_steps, plant[0].chambers.stroke, force_stiffness(plant[0]),
+        known_model(plant[0], 1.0 if commands_spool else 1.0 / k_spool),
+        k_spool, plant[0].coil.parallel)
+    record = np.zeros(1, ACTUATOR)
+    record['plant'], record['reu'] = plant, reu
+    return record

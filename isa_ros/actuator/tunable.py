@@ -1,0 +1,126 @@
+"""
+What may change while a run goes on: gains and limits of the control blocks, in SI.
+
+Named by block and parameter: ``force.kp``, ``position.stiffness``, ``force.compensation.knee``.
+Rates, filters and kinds make the structure of the loops and stay. The gains of the impedance
+come with every setpoint; tuning one is a setpoint that changes this gain alone.
+"""
+
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass, fields, replace
+import re
+from typing import Any, NamedTuple
+
+from isa_ros.actuator.sheet import ActuatorSheet, refuse_wiring
+from isa_ros.core.parameter import check, Parameters
+from isa_ros.core.suggest import alternatives
+from isa_ros.core.units import MILLI, MPA
+from isa_ros.errors import ConfigError
+from isa_ros.reu.wiring import active, VARIABLES
+
+GAINS = {'position.stiffness': 'stiffness', 'position.damping': 'damping'}
+"""What comes with every setpoint, by its name in a `COMMAND`."""
+
+
+class _Si(NamedTuple):
+    unit: str
+    scale: float  # SI per unit of the sheet
+
+
+_KPA = 1e3
+_IN_SI = {
+    'kPa': _Si('Pa', _KPA), 'MPa': _Si('Pa', MPA), 'V/mA': _Si('V/A', 1.0 / MILLI),
+    'V/(mA s)': _Si('V/(A s)', 1.0 / MILLI), 'V s/mA': _Si('V s/A', 1.0 / MILLI)}
+_MEASURED = {
+    'position': 'm | rad', 'force': 'N | Nm', 'pressure': 'Pa', 'spool': 'm', 'current': 'A'}
+"""Unit of what each block controls; the current is that of coils in series."""
+_VALVE = 'm | A'  # as a sheet calls the unit of what commands the valve
+_EITHER = re.compile(r'(\S+) \| (\S+)')
+
+
+@dataclass(frozen=True)
+class Tunable:
+    """One parameter as it may be tuned, SI."""
+
+    name: str
+    value: float
+    unit: str
+    bounds: Mapping[str, float]
+    """Any of ``gt``, ``ge``, ``lt``, ``le``."""
+    doc: str
+    path: tuple[str, ...]
+    """Where it stands in the sheet's REU."""
+    scale: float
+    """SI per unit of the sheet."""
+
+
+def tunables(sheet: ActuatorSheet) -> dict[str, Tunable]:
+    """Return what may be tuned of the blocks that are on, by name, outermost block first."""
+    return {tunable.name: tunable for variable in active(sheet.reu)
+            for tunable in _of_block(sheet, variable)}
+
+
+def _of_block(sheet: ActuatorSheet, variable: str) -> Iterator[Tunable]:
+    inner = VARIABLES[VARIABLES.index(variable) + 1:]
+    on = active(sheet.reu)
+    output = next((_MEASURED[name] for name in inner if name in on), 'V')
+    for path, value, declared in _declared(getattr(sheet.reu, variable), (variable,)):
+        si = _IN_SI.get(declared['unit'], _Si(declared['unit'], 1.0))
+        unit = si.unit.replace(_VALVE, 'output')
+        for word, means in (('output', output), ('measured', _MEASURED[variable])):
+            unit = unit.replace(word, _of_kind(means, sheet.is_rotary))
+        yield Tunable(
+            name='.'.join((*path[:-1], declared['tunable'] or path[-1])),
+            value=value * si.scale, unit=_of_kind(unit, sheet.is_rotary),
+            bounds={name: bound * si.scale for name, bound in declared['bounds'].items()},
+            doc=declared['doc'], path=path, scale=si.scale)
+
+
+def _of_kind(unit: str, is_rotary: bool) -> str:
+    """Return the unit of a linear or of a rotary actuator out of both."""
+    return _EITHER.sub(r'\2' if is_rotary else r'\1', unit)
+
+
+def _declared(
+        block: Parameters, path: tuple[str, ...]
+        ) -> Iterator[tuple[tuple[str, ...], float, Mapping[str, Any]]]:
+    """Yield path, value and declaration of every tunable number of a block."""
+    for f in fields(block):
+        value = getattr(block, f.name)
+        if isinstance(value, Parameters):
+            yield from _declared(value, (*path, f.name))
+        elif 'tunable' in f.metadata:
+            yield (*path, f.name), value, f.metadata
+
+
+def tuned(sheet: ActuatorSheet, values: Mapping[str, float]) -> ActuatorSheet:
+    """
+    Return a sheet with other values of its `tunables`, SI.
+
+    Raises
+    ------
+    ConfigError
+        A name that is none of them, a value out of its range, or beyond the stop of the spool.
+
+    """
+    known = tunables(sheet)
+    reu = sheet.reu
+    for name, value in values.items():
+        if name not in known:
+            raise ConfigError(f'{name} is unknown; {alternatives(name, known)}')
+        tunable = known[name]
+        check(name, value, {
+            'doc': tunable.doc, 'unit': tunable.unit, 'bounds': tunable.bounds})
+        if value != tunable.value:  # what was written stays as it was, without a rounding
+            reu = _with(reu, tunable.path, value / tunable.scale)
+    if reu is not sheet.reu:
+        sheet = replace(sheet, reu=reu)
+        refuse_wiring(sheet)
+    return sheet
+
+
+def _with(parameters: Any, path: tuple[str, ...], value: float) -> Any:
+    head, *rest = path
+    below = getattr(parameters, head)
+    return replace(parameters, **{
+        head: _with(below, tuple(rest), value) if rest else value})

@@ -1,0 +1,1 @@
+"""How exactly the plant is integrated, against solutions that are known."""

@@ -1,0 +1,162 @@
+"""
+The plant against another solver: how far the fixed step is from what the equations say.
+
+`scipy`'s adaptive DOP853 integrates the same `body_rates` with a tolerance of 1e-12. It starts
+anew wherever the current reference jumps, and shrinks its steps to pass the kinks: null and the
+dual-gain point, reversals, the amplifier's voltage limit, relief and refill. With a tolerance
+of 1e-13 it gives the same within 4e-10 of each state's largest value.
+"""
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+import math
+
+from isa_ros.actuator import kernel as kernels
+from isa_ros.actuator.sheet import actuator_record
+from isa_ros.config.catalogue import actuator_model
+from isa_ros.config.default_actuator import default_actuator
+from isa_ros.config.own_load import own_load
+from isa_ros.config.sections import Place
+from isa_ros.core.kernel import kernel
+from isa_ros.core.timebase import PLANT_STEP
+from isa_ros.loads.sheets import local_port, own_record
+from isa_ros.plant.mechanics import sensor_force
+from isa_ros.plant.plant import rest_pressures
+import numpy as np
+from scipy.integrate import solve_ivp
+
+SUPPLY = 20.7e6        # Pa
+TOLERANCE = 1e-12      # of a step, of each state's largest value
+ROW = 1e-3             # s between the instants that are compared
+LOADS = ('wheel', 'blocked')
+
+
+@dataclass(frozen=True)
+class Piece:
+    """
+    Amplifier currents, each held for a millisecond; A.
+
+    The first ``skipped`` milliseconds bring the actuator into motion and are not compared.
+    """
+
+    name: str
+    currents: tuple[float, ...]
+    skipped: int = 0
+
+
+PIECES = (
+    Piece('smooth', (2.0e-4,) * 10 + (2.8e-4,) * 10 + (2.0e-4,) * 10, skipped=10),
+    Piece('sine of 4 mA, 10 Hz',
+          tuple(4e-3 * math.sin(2.0 * math.pi * 10.0 * k * ROW) for k in range(100))),
+    Piece('steps of 5 mA', (5e-3,) * 12 + (-5e-3,) * 12 + (0.0,) * 6),
+)
+"""Opening one way; through null and the dual-gain point; through every limit there is."""
+
+
+@dataclass(frozen=True)
+class Difference:
+    """The largest departure of one state in one piece, relative to its largest value."""
+
+    piece: str
+    load: str
+    state: str
+    relative: float
+
+    @property
+    def name(self) -> str:
+        """Return piece, load and state in one line."""
+        return f'{self.piece}, {self.load}: {self.state}'
+
+
+@kernel
+def rates_of_first(tau, drive, ports, actuators, bodies, rates):
+    """Write the derivative of ``bodies[0]`` into ``rates[0]``."""
+    kernels.body_rates(tau, bodies[0], drive, ports[0], actuators[0], rates[0])
+
+
+class Bench:
+    """One actuator of a model at rest at mid stroke on one of its own loads, without REU."""
+
+    def __init__(self, model: str, load: str) -> None:
+        found = actuator_model(model, 'model')
+        place = Place(found.name) / 'load'
+        fixture = own_load({'kind': load}, place, found)
+        sheet = default_actuator(model, model).sheet
+        middle = 0.5 * sheet.plant.drive.stroke
+        self._constants = actuator_record(sheet, 0)
+        self._constants['load'] = own_record(fixture)
+        self._port = local_port(fixture, middle)
+        self._port['supply_pressure'] = SUPPLY
+        self._plant = self._constants.view(np.recarray)[0].plant
+        self._bodies, self._rates = kernels.scratch()
+        self._y, self._k = kernels.flat(self._bodies), kernels.flat(self._rates)
+        body = self._bodies.view(np.recarray)[0]
+        body.plant.mechanics.position = body.load.position = middle
+        body.plant.chambers.p_a, body.plant.chambers.p_b = rest_pressures(
+            self._plant, SUPPLY, 0.0, 0.0)
+        self._start = self._y[0].copy()
+
+    def fixed(self, piece: Piece, h: float) -> np.ndarray:
+        """Return the states after each millisecond in steps of ``h`` s, shape (n, states)."""
+        self._y[0] = self._start
+        rows = []
+        for current in piece.currents:
+            kernels.body_steps(round(ROW / h), h, current, self._port[0], self._constants[0],
+                               self._bodies, self._rates, self._y, self._k)
+            rows.append(self._y[0].copy())
+        return np.array(rows)
+
+    def adaptive(self, piece: Piece, scale: np.ndarray, tolerance: float) -> np.ndarray:
+        """Return the same by scipy; ``scale`` is the size of each state."""
+        state, rows = self._start, []
+        for current in piece.currents:
+            solved = solve_ivp(
+                self._slopes, (0.0, ROW), state, method='DOP853', args=(current,),
+                rtol=tolerance, atol=tolerance * scale)
+            state = solved.y[:, -1]
+            rows.append(state)
+        return np.array(rows)
+
+    def _slopes(self, tau: float, state: np.ndarray, current: float) -> np.ndarray:
+        self._y[0] = state
+        rates_of_first(tau, current, self._port, self._constants, self._bodies, self._rates)
+        rates: np.ndarray = self._k[0].copy()
+        return rates
+
+    def with_force(self, rows: np.ndarray) -> np.ndarray:
+        """Return the states with the sensor force as one more column."""
+        bodies = np.ascontiguousarray(rows).view(kernels.BODY)[:, 0]
+        moving, load = bodies['plant']['mechanics'], bodies['load']
+        force = [sensor_force(s, v, x, x_rate, self._plant.mechanics) for s, v, x, x_rate in zip(
+            moving['position'], moving['velocity'], load['position'], load['velocity'])]
+        return np.column_stack((rows, force))
+
+
+def compare(
+        model: str, load: str, piece: Piece, h: float = PLANT_STEP,
+        tolerance: float = TOLERANCE) -> Iterator[Difference]:
+    """Yield the `Difference` of each state and of the sensor force over one piece."""
+    bench = Bench(model, load)
+    ours = bench.fixed(piece, h)
+    size = np.abs(ours).max(axis=0)
+    exact = bench.adaptive(piece, np.where(size > 0.0, size, 1.0), tolerance)
+    ours, exact = bench.with_force(ours), bench.with_force(exact)
+    apart = np.abs(ours - exact)[piece.skipped:].max(axis=0)
+    size = np.abs(exact)[piece.skipped:].max(axis=0)
+    names = [kernels.state_name(j) for j in range(kernels.STATE_SIZE)] + ['sensor force']
+    for name, difference, largest in zip(names, apart, size, strict=True):
+        relative = difference / largest if largest > 0.0 else difference
+        yield Difference(piece.name, load, name, float(relative))
+
+
+def agreement(model: str) -> list[Difference]:
+    """
+    Return how far a packaged model's plant at 20 us is from scipy's solution.
+
+    Raises
+    ------
+    ConfigError
+        There is no such model, or it lacks one of the `LOADS`.
+
+    """
+    return [found for piece in PIECES for load in LOADS for found in compare(model, load, piece)]

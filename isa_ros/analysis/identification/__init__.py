@@ -1,0 +1,1 @@
+"""Parameters of an actuator out of what its sensors recorded."""

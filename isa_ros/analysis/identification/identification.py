@@ -1,0 +1,217 @@
+"""
+`isa identify`: valve gains, bulk modulus, leakage and friction out of a bag.
+
+Each with its 95 % interval beside the value of the configuration in the bag. What the data
+do not hold is refused with the reason.
+"""
+
+from collections.abc import Sequence
+from dataclasses import asdict, dataclass
+import json
+import math
+from pathlib import Path
+
+from isa_ros.analysis.identification import force_balance
+from isa_ros.analysis.identification.estimation import CONFIDENCE
+from isa_ros.analysis.identification.flow_curves import DualGainCurve, FlowCurve, HighResponseCurve
+from isa_ros.analysis.identification.force_balance import fit_friction
+from isa_ros.analysis.identification.volume_balance import (
+    C_LI, COMPLIANCE, CURVE, fit_balance, Q_0)
+from isa_ros.analysis.signals.recording import Recording, recording_of, SHORTEST
+from isa_ros.analysis.signals.traces import read_traces
+from isa_ros.core.units import LPM, MILLI
+from isa_ros.errors import BagError
+from isa_ros.plant.plant import LinearPlant, RotaryPlant
+from isa_ros.plant.servo_valve import DualGainValve, HighResponseValve, Valve
+import numpy as np
+
+_LEAST_COUNTS = 50.0  # of the encoder; fewer leave more than 1 % of the volume to its rounding
+_WIDEST = 0.5         # half of an interval over the estimate, beyond which nothing is said
+_TOO_SHORT = 'too short: {:.2g} s of the bag can be used'
+_UNSEPARATED = 'the data do not tell it from the others'
+_WITHIN = 'not in the data: the spool stays near null'
+_SLIDING = 'not in the data: too little sliding both ways'
+_SLOW = 'not in the data: no slow sliding that shows it'
+
+_CurveRow = tuple[str, str, int, float, float]
+
+
+@dataclass(frozen=True)
+class Estimate:
+    """One parameter: its estimate and 95 % interval, or why there is none."""
+
+    parameter: str
+    unit: str
+    value: float | None
+    low: float | None
+    high: float | None
+    configured: float
+    reason: str
+    """Empty where there is an estimate."""
+
+    @property
+    def holds(self) -> bool:
+        """Tell whether the interval holds the configured value."""
+        return (self.low is not None and self.high is not None
+                and self.low <= self.configured <= self.high)
+
+
+@dataclass(frozen=True)
+class Identified:
+    """The estimates of every actuator that moved, and how little the others did."""
+
+    actuators: dict[str, list[Estimate]]
+    still: dict[str, str]
+
+
+def identify_bag(bag: Path, actuator: str | None = None) -> Identified:
+    """
+    Return the estimates of every actuator of a bag, or of one.
+
+    Raises
+    ------
+    BagError
+        The bag cannot be read, or not one actuator moved enough.
+    ConfigError
+        There is no actuator of this name.
+
+    """
+    run, traces = read_traces(bag)
+    found = Identified({}, {})
+    for one in [run.actuator(actuator)] if actuator else run.actuators:
+        recording = recording_of(run, traces, one, bag)
+        moved, least = float(np.ptp(recording.position)), _least_motion(recording)
+        if moved < least:
+            unit = 'rad' if one.sheet.is_rotary else 'm'
+            found.still[one.name] = f'moved by {moved:.2g} {unit}, must by {least:.2g} {unit}'
+            continue
+        found.actuators[one.name] = identify(recording, one.sheet.plant)
+    if not found.actuators:
+        raise BagError(f'{bag}: nothing to identify: ' + '; '.join(
+            f'{name} {why}' for name, why in found.still.items()))
+    return found
+
+
+def _least_motion(recording: Recording) -> float:
+    return float(_LEAST_COUNTS * recording.plant.sensors.encoder)
+
+
+def identify(recording: Recording, sheet: LinearPlant | RotaryPlant) -> list[Estimate]:
+    """Return the estimates of one actuator beside the values of its sheet."""
+    return [*_valve_and_oil(recording, sheet), *_friction(recording, sheet)]
+
+
+def _valve_and_oil(
+        recording: Recording, sheet: LinearPlant | RotaryPlant) -> list[Estimate]:
+    valve, oil = sheet.valve, sheet.oil
+    curve, names = _curve(recording, valve)
+    balance = fit_balance(recording, curve)
+    lacks = _TOO_SHORT.format(balance.duration) if balance.duration < SHORTEST else _UNSEPARATED
+    rows = [
+        _estimate(name, unit, balance.values[CURVE + k] / scale,
+                  balance.half_widths[CURVE + k] / scale, configured,
+                  lacks if k == 0 or balance.duration < SHORTEST else _WITHIN)
+        for name, unit, k, scale, configured in names]
+    rows.append(_inverse(_estimate(
+        'bulk modulus', 'Pa', balance.values[COMPLIANCE], balance.half_widths[COMPLIANCE],
+        1.0 / oil.effective_bulk_modulus, lacks)))
+    rows += [
+        _estimate(name, unit, balance.values[k] / scale, balance.half_widths[k] / scale,
+                  configured, lacks)
+        for name, unit, k, scale, configured in (
+            ('cross-port leakage', 'm3/s/Pa', C_LI, 1.0, oil.cross_port_leakage),
+            ('null leakage', 'l/min', Q_0, LPM, valve.null_leakage_lpm))]
+    return rows
+
+
+def _curve(recording: Recording, valve: Valve) -> tuple[FlowCurve, list[_CurveRow]]:
+    """Return the kind of flow curve, and (name, unit, k, SI per unit, configured) to report."""
+    si = recording.plant.valve
+    per_ma = LPM / (valve.spool_gain_mm_per_ma * MILLI)  # m3/s per m of a l/min per mA
+    if isinstance(valve, DualGainValve):
+        return DualGainCurve(si.x_dg), [
+            ('low flow gain', 'l/min/mA', 0, per_ma, valve.low_gain_lpm_per_ma),
+            ('low flow gain', 'm3/s/m', 0, 1.0, float(si.k_low)),
+            ('high flow gain', 'l/min/mA', 1, per_ma, valve.high_gain_lpm_per_ma),
+            ('high flow gain', 'm3/s/m', 1, 1.0, float(si.k_high)),
+            ('dual-gain point', 'mm', 2, MILLI, valve.dual_gain_point_mm)]
+    assert isinstance(valve, HighResponseValve)
+    return HighResponseCurve(si.x_dg), [
+        ('flow gain', 'l/min/mA', 0, per_ma, valve.gain_lpm_per_ma),
+        ('flow gain', 'm3/s/m', 0, 1.0, float(si.k_low)),
+        ('flow beyond the knee', 'l/min', 1, LPM, valve.remaining_lpm)]
+
+
+def _friction(recording: Recording, sheet: LinearPlant | RotaryPlant) -> list[Estimate]:
+    fit = fit_friction(recording)
+    friction = sheet.friction
+    force, speed, drag = (
+        ('Nm', 'rad/s', 'Nms/rad') if isinstance(sheet, RotaryPlant) else ('N', 'm/s', 'Ns/m'))
+    return [
+        _estimate(name, unit, fit.values[k], fit.half_widths[k], configured, reason)
+        for name, unit, k, configured, reason in (
+            ('Coulomb friction', force, force_balance.COULOMB, friction.coulomb, _SLIDING),
+            ('viscous friction', drag, force_balance.VISCOUS, friction.viscous, _SLIDING),
+            ('stiction', force, force_balance.STICTION, friction.stiction, _SLOW),
+            ('Stribeck speed', speed, force_balance.STRIBECK, friction.stribeck_speed, _SLOW))]
+
+
+def _estimate(
+        name: str, unit: str, value: float, half_width: float, configured: float,
+        reason: str) -> Estimate:
+    """Return an estimate, or the refusal of one; ``reason`` is why the data might lack it."""
+    value, half_width = float(value), float(half_width)
+    if math.isnan(value) or math.isinf(half_width):
+        return Estimate(name, unit, None, None, None, configured, reason)
+    low, high = value - half_width, value + half_width
+    if half_width <= _WIDEST * abs(value):
+        return Estimate(name, unit, value, low, high, configured, '')
+    return Estimate(
+        name, unit, None, low, high, configured, f'too uncertain: {value:.3g} +- {half_width:.2g}')
+
+
+def _inverse(estimate: Estimate) -> Estimate:
+    """Return the estimate of the inverse of a parameter."""
+    value, low, high = estimate.value, estimate.low, estimate.high
+    if value is None or low is None or high is None:
+        return Estimate(
+            estimate.parameter, estimate.unit, None, None, None, 1.0 / estimate.configured,
+            estimate.reason if low is None else 'too uncertain, its inverse nearly holds 0')
+    return Estimate(
+        estimate.parameter, estimate.unit, 1.0 / value, 1.0 / high, 1.0 / low,
+        1.0 / estimate.configured, '')
+
+
+def table(found: Identified) -> str:
+    """Return the estimates as text."""
+    lines = []
+    for name, estimates in found.actuators.items():
+        lines += [name, *_aligned([
+            ('', 'estimate', f'{100.0 * CONFIDENCE:g} % interval', 'configured', 'unit', ''),
+            *(_cells(estimate) for estimate in estimates)])]
+    lines += [f'{name}: nothing to identify: {why}' for name, why in found.still.items()]
+    return '\n'.join(lines)
+
+
+def _cells(estimate: Estimate) -> tuple[str, ...]:
+    head, tail = estimate.parameter, (f'{estimate.configured:.5g}', estimate.unit)
+    if estimate.value is None:
+        return head, '-', '', *tail, estimate.reason
+    interval = f'{estimate.low:.5g} to {estimate.high:.5g}'
+    return head, f'{estimate.value:.5g}', interval, *tail, '' if estimate.holds else 'differs'
+
+
+def _aligned(rows: Sequence[tuple[str, ...]]) -> list[str]:
+    widths = [max(len(row[k]) for row in rows) for k in range(len(rows[0]))]
+    return ['  ' + '  '.join(cell.ljust(width) for cell, width in zip(row, widths)).rstrip()
+            for row in rows]
+
+
+def write_json(found: Identified, bag: Path, path: Path) -> None:
+    """Write the estimates, null for what was refused."""
+    path.write_text(json.dumps({
+        'bag': bag.name, 'confidence': CONFIDENCE,
+        'actuators': {name: [asdict(estimate) | {'holds': estimate.holds}
+                             for estimate in estimates]
+                      for name, estimates in found.actuators.items()},
+        'still': found.still}, indent=2) + '\n', encoding='utf-8')

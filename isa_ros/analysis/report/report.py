@@ -1,0 +1,113 @@
+"""A run on one page: its figures and its extreme values, from the bag alone."""
+
+import base64
+import html
+import io
+from pathlib import Path
+
+from isa_ros.analysis.report.figures import ATMOSPHERE, figures, Traces
+from isa_ros.analysis.report.paper_figures import paper_figure
+from isa_ros.analysis.signals.traces import read_traces
+from isa_ros.bag.provenance import SCENARIO
+from isa_ros.bag.reader import Bag
+from isa_ros.config.run_config import RunConfig
+from isa_ros.config.sections import Place
+from isa_ros.config.yaml_text import parse
+from isa_ros.errors import BagError
+from isa_ros.scenario.scenario import figure_of
+import numpy as np
+
+_GENERATOR = '<meta name="generator" content="isa_ros">'
+_PAGE = """<!DOCTYPE html>
+<html lang="en"><head><meta charset="utf-8">{generator}
+<title>{title}</title>
+<style>
+body {{ font-family: sans-serif; max-width: 60em; margin: 2em auto; }}
+td, th {{ padding: 0.2em 0.8em; text-align: right; }}
+td:first-child, th:first-child {{ text-align: left; }}
+img {{ max-width: 100%; }}
+</style></head>
+<body><h1>{title}</h1><p>{summary}</p><table>{rows}</table>{images}</body></html>
+"""
+
+
+def write_report(bag: Path, page: Path) -> list[Path]:
+    """
+    Write the page and, beside it, each of its figures as PNG; return what was written.
+
+    Raises
+    ------
+    BagError
+        The bag cannot be read or holds no sample, or the page would replace another file.
+
+    """
+    _refuse_others(page)
+    run, traces = read_traces(bag)
+    if '/clock' not in traces:
+        raise BagError(f'{bag}: holds no sample, there is nothing to draw')
+    page.parent.mkdir(parents=True, exist_ok=True)
+    written, images = [page], []
+    drawn = figures(run, traces)
+    name_of_paper = named_figure(bag)
+    if name_of_paper is not None:
+        drawn = {name_of_paper: paper_figure(name_of_paper, run, traces)} | drawn
+    for name, figure in drawn.items():
+        buffer = io.BytesIO()
+        figure.savefig(buffer, format='png')
+        path = page.with_name(f'{page.stem}_{name}.png')
+        path.write_bytes(buffer.getvalue())
+        written.append(path)
+        encoded = base64.b64encode(buffer.getvalue()).decode()
+        images.append(f'<img alt="{html.escape(name)}" src="data:image/png;base64,{encoded}">')
+    page.write_text(_PAGE.format(
+        generator=_GENERATOR, title=html.escape(run.name),
+        summary=html.escape(_summary(run, traces)), rows=_rows(extremes(run, traces)),
+        images=''.join(images)), encoding='utf-8')
+    return written
+
+
+def _refuse_others(page: Path) -> None:
+    """Refuse to replace what is no report."""
+    if page.is_dir():
+        raise BagError(f'{page}: is a directory, must be the name of the page')
+    if page.exists():
+        with page.open('rb') as file:
+            if _GENERATOR.encode() not in file.read(len(_PAGE)):
+                raise BagError(f'{page} exists and is no report, so it is not overwritten')
+
+
+def named_figure(bag: Path) -> str | None:
+    """Return the figure of the paper that the scenario of a bag names, None for none."""
+    return figure_of(parse(Bag(bag).provenance.scenario, SCENARIO), Place(SCENARIO))
+
+
+def extremes(run: RunConfig, traces: Traces) -> list[tuple[str, float, float, str]]:
+    """Return (signal, least, greatest, unit) of every actuator, and of the ground's force."""
+    values = []
+    for actuator in run.actuators:
+        name = actuator.name
+        joint = traces[f'/{name}/joint_states']
+        pressures = [traces[f'/{name}/pressure_{side}']['fluid_pressure'] for side in 'ab']
+        units = ('rad', 'Nm') if actuator.sheet.is_rotary else ('m', 'N')
+        for signal, series, unit in (
+                ('position', joint['position[0]'], units[0]),
+                ('force', joint['effort[0]'], units[1]),
+                ('pressure', (np.concatenate(pressures) - ATMOSPHERE) * 1e-6, 'MPa gauge')):
+            values.append((f'{name} {signal}', float(series.min()), float(series.max()), unit))
+    if run.leg is not None:
+        ground = traces['/coordinator/ground_contact']['wrench.force.z']
+        values.append(('ground force', float(ground.min()), float(ground.max()), 'N'))
+    return values
+
+
+def _summary(run: RunConfig, traces: Traces) -> str:
+    end = float(traces['/clock'].t[-1])
+    return (f'{run.source}: {len(run.actuators)} actuators, {end:.3f} s of simulation time '
+            f'in steps of {run.step_ns / 1e6:g} ms.')
+
+
+def _rows(values: list[tuple[str, float, float, str]]) -> str:
+    head = '<tr><th>signal</th><th>least</th><th>greatest</th><th>unit</th></tr>'
+    return head + ''.join(
+        f'<tr><td>{html.escape(signal)}</td><td>{least:.4g}</td><td>{greatest:.4g}</td>'
+        f'<td>{html.escape(unit)}</td></tr>' for signal, least, greatest, unit in values)

@@ -1,0 +1,1 @@
+"""Frequency and step response of the loops of an actuator."""

@@ -1,0 +1,110 @@
+"""
+`isa bode`: the frequency response of one loop, with amplitude and coherence.
+
+Closed loop Y/R, plant Y/U and open loop Y/E come from the same closed-loop run: E is R - Y,
+U what the loop's block gives inwards. The margins are those of Y/E, the loop as if it had
+unity feedback; damping and velocity terms of the block count as part of what it drives.
+"""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+from isa_ros.analysis.response.excitation import RATE_HZ
+from isa_ros.analysis.response.loops import CLOSED, Loop, OPEN, PLANT, Unit
+from isa_ros.analysis.response.rig import Rig
+from isa_ros.analysis.response.sweep import Answer, excitation, Sweep
+from isa_ros.analysis.signals.frequency import (
+    bandwidth, HALF_POWER, Margins, margins, Response, TRUSTED)
+import numpy as np
+
+
+@dataclass(frozen=True)
+class Bode:
+    """A measured response and what follows from its run."""
+
+    loop: Loop
+    of: str
+    response: Response          # output over input in SI
+    first_gain: float           # of the closed loop, at the lowest frequency
+    bandwidth: float | None     # of the closed loop, relative to a gain of 1, Hz
+    margins: Margins            # of the open loop
+    amplitude: float            # of the reference, SI
+
+
+def bode(rig: Rig, sweep: Sweep, of: str, amplitude: float | None = None) -> Bode:
+    """
+    Measure one response of a rig's loop; ``amplitude`` in the loop's unit.
+
+    Raises
+    ------
+    ConfigError
+        The band or the amplitude is beyond the loop, or it has no such response.
+    SimulationDiverged
+        A state is no longer finite.
+
+    """
+    loop = rig.loop
+    sweep.check(loop.rate_hz, f'the {loop.name} loop takes its reference')
+    peak = rig.amplitude(amplitude)
+    values, rates, answer = excitation(sweep, RATE_HZ)
+    trace = rig.excite(rig.start(), peak * values, peak * rates)
+    return evaluate(loop, answer, of, peak, trace)
+
+
+def evaluate(
+        loop: Loop, answer: Answer, of: str, amplitude: float, trace: np.ndarray) -> Bode:
+    """Return a loop's response from the signals of one run, named as in `excitation.TRACE`."""
+    reference, y = trace[f'{loop.name}_reference'], trace[loop.name]
+    closed, opened, asked = (
+        answer.estimate(reference, loop.input_of(which, trace), y)
+        for which in (CLOSED, OPEN, of))
+    return Bode(
+        loop, of, asked, float(closed.gain[0]), bandwidth(closed, dc_gain=1.0), margins(opened),
+        amplitude)
+
+
+_HEAD = ('frequency, Hz', 'gain', 'gain, dB', 'phase, deg', 'coherence', 'in', 'out')
+
+
+def table(measured: Bode) -> str:
+    """Return a response as a table, its bandwidth and margins below."""
+    loop, response = measured.loop, measured.response
+    unit, into = loop.response_unit(measured.of), input_unit(measured)
+    head = [*_HEAD[:1], f'gain, {unit.symbol}', *_HEAD[2:5],
+            f'in, {into.symbol}', f'out, {loop.unit.symbol}']
+    value = response.gain / unit.scale
+    columns = zip(
+        response.frequency, value, 20.0 * np.log10(value), response.phase, response.coherence,
+        response.input_amplitude / into.scale, response.output_amplitude / loop.unit.scale)
+    rows = [[f'{f:.4g}', f'{gain:.4g}', f'{db:.2f}', f'{phase:.1f}', f'{coherence:.4f}',
+             f'{x:.4g}', f'{y:.4g}'] for f, gain, db, phase, coherence, x, y in columns]
+    widths = [max(len(row[k]) for row in [head, *rows]) for k in range(len(head))]
+    lines = ['  '.join(cell.rjust(width) for cell, width in zip(row, widths))
+             for row in [head, *rows]]
+    return '\n'.join([*lines, *conclusions(measured)])
+
+
+def conclusions(measured: Bode) -> Sequence[str]:
+    """Return what follows from the run, a line each."""
+    found, frequency = measured.margins, measured.response.frequency
+    band = (f'{measured.bandwidth:.4g} Hz' if measured.bandwidth is not None
+            else f'below {frequency[0]:.4g} Hz' if measured.first_gain < HALF_POWER
+            else f'above {frequency[-1]:.4g} Hz')
+    gain = ('none in this band' if found.gain_db is None
+            else f'{found.gain_db:.1f} dB at {found.gain_frequency:.4g} Hz')
+    phase = ('none in this band' if found.phase is None
+             else f'{found.phase:.1f} deg at {found.phase_frequency:.4g} Hz')
+    lines = [f'closed loop, -3 dB: {band}',
+             f'open loop, gain margin: {gain}', f'open loop, phase margin: {phase}']
+    least = int(measured.response.coherence.argmin())
+    if measured.response.coherence[least] < TRUSTED:
+        lines.append(
+            f'coherence falls to {measured.response.coherence[least]:.2g} at '
+            f'{frequency[least]:.4g} Hz, below {TRUSTED:g}: the loop hunts, or noise covers the '
+            'response; do not rely on what needs these points')
+    return lines
+
+
+def input_unit(measured: Bode) -> Unit:
+    """Return the unit of the response's input."""
+    return measured.loop.inward_unit if measured.of == PLANT else measured.loop.unit

@@ -1,0 +1,156 @@
+"""
+The loops of an actuator as one excites and observes them.
+
+    position -> force or torque -> pressure difference -> spool -> current
+
+A loop is excited by the setpoint once every block outside it is off. All of its signals come
+from one run: reference R, output Y, error R - Y, and U, what its block gives inwards.
+"""
+
+from dataclasses import dataclass, replace
+import math
+from typing import Any
+
+from isa_ros.actuator.sheet import actuator_record, ActuatorSheet
+from isa_ros.core.units import MILLI, MPA
+from isa_ros.errors import ConfigError
+from isa_ros.reu.impedance import Impedance
+from isa_ros.reu.lead_lag import LeadLag
+from isa_ros.reu.wiring import active, Off, VARIABLES
+import numpy as np
+
+SUPPLY = 20.7 * MPA     # the paper's, as an actuator alone has it
+FORCE_SHARE = 0.1       # of the rating; the paper's force bandwidth
+INNER_SHARE = 0.25      # of spool travel, current, as the paper's Table 1
+POSITION_SHARE = 0.01   # of the stroke: slow enough for the valve's flow up to tens of Hz
+OPEN, PLANT, CLOSED = 'open', 'plant', 'closed'
+
+
+@dataclass(frozen=True)
+class Unit:
+    """A unit in which a user reads and writes a quantity; ``scale`` SI units each."""
+
+    symbol: str
+    scale: float = 1.0
+
+
+@dataclass(frozen=True)
+class Loop:
+    """One loop of one actuator; signal names are fields of `excitation.TRACE`."""
+
+    name: str
+    label: str                  # force reads torque where it is one
+    sheet: ActuatorSheet        # with the blocks outside the loop off
+    unit: Unit                  # of reference and output
+    inward: str | None          # the signal its block gives inwards
+    inward_unit: Unit
+    quantity: str               # of the setpoint that is its reference
+    per_reference: float        # that quantity per SI unit of the reference
+    rate_hz: float              # at which it takes its reference
+    amplitude: float            # to excite it with where nothing else is said, SI
+    largest: float              # amplitude that still makes sense, SI
+
+    def input_of(self, of: str, trace: np.ndarray) -> np.ndarray:
+        """
+        Return the input of the response ``of`` closed, plant or open loop, shape (n,).
+
+        Raises
+        ------
+        ConfigError
+            The loop is closed inside the plant, so that it has no plant of its own.
+
+        """
+        reference: np.ndarray = trace[f'{self.name}_reference']
+        if of == OPEN:
+            error: np.ndarray = reference - trace[self.name]
+            return error
+        if of == CLOSED:
+            return reference
+        if self.inward is None:
+            raise ConfigError(
+                f'--of plant: the {self.name} loop is closed inside the plant model, it has '
+                'no output; valid: closed, open')
+        inward: np.ndarray = trace[self.inward]
+        return inward
+
+    def response_unit(self, of: str) -> Unit:
+        """Return the unit of a response, output over input."""
+        if of != PLANT:
+            return Unit('1')
+        return Unit(f'{self.unit.symbol}/{self.inward_unit.symbol}',
+                    self.unit.scale / self.inward_unit.scale)
+
+
+def outermost(sheet: ActuatorSheet, name: str) -> ActuatorSheet:
+    """
+    Return the sheet with every block outside a loop off: the setpoint becomes its reference.
+
+    A spool block that is off is no fault: the valve closes the loop by itself, mechanically,
+    and the current block then is the outermost one.
+
+    Raises
+    ------
+    ConfigError
+        The loop's own block is off.
+
+    """
+    if name not in VARIABLES:
+        raise ConfigError(f'loop {name!r} is unknown; valid: {", ".join(VARIABLES)}')
+    is_on = active(sheet.reu)
+    if name not in is_on and name != 'spool':
+        raise ConfigError(f'the {name} loop is off; on: {", ".join(is_on)}')
+    outside: dict[str, Any] = {other: Off() for other in VARIABLES[:VARIABLES.index(name)]}
+    return replace(sheet, reu=replace(sheet.reu, **outside))
+
+
+def loop_of(sheet: ActuatorSheet, name: str) -> Loop:
+    """Return a loop of an actuator, ready to be excited; as `outermost`."""
+    alone = outermost(sheet, name)
+    is_on = list(active(alone.reu).items())
+    record = actuator_record(alone, 0)[0]
+    units = units_of(sheet)
+    inward = _inward(alone, [other for other, _ in is_on], name)
+    current_per_spool = float(record['plant']['coil']['parallel']
+                              / record['plant']['valve']['k_spool'])
+    per_reference = 1.0
+    if is_on[0][0] == 'current':     # its setpoint counts in amperes of the series scale
+        per_reference = 1.0 / float(record['plant']['coil']['parallel'])
+        if name == 'spool':
+            per_reference *= current_per_spool
+    share, largest = {
+        'position': (POSITION_SHARE, float(sheet.plant.drive.stroke)),
+        'force': (FORCE_SHARE, rating(sheet)),
+        'pressure': (FORCE_SHARE, SUPPLY),
+        'spool': (INNER_SHARE, float(record['plant']['valve']['x_max'])),
+        'current': (INNER_SHARE, float(record['plant']['valve']['x_max']) * current_per_spool),
+    }[name]
+    return Loop(
+        name=name, label='torque' if name == 'force' and sheet.is_rotary else name,
+        sheet=alone, unit=units[name], inward=inward,
+        inward_unit=units[inward.removesuffix('_reference') if inward else 'drive'],
+        quantity='position' if name == 'position' else 'effort', per_reference=per_reference,
+        rate_hz=is_on[0][1], amplitude=share * largest, largest=largest)
+
+
+def _inward(alone: ActuatorSheet, names: list[str], name: str) -> str | None:
+    """Return the signal that a loop's block gives to the next one inwards."""
+    if name == 'current':
+        return 'drive' if isinstance(alone.reu.current, LeadLag) else None
+    if name not in names:
+        return 'current_reference'
+    return f'{names[names.index(name) + 1]}_reference'
+
+
+def units_of(sheet: ActuatorSheet) -> dict[str, Unit]:
+    """Return the unit of every loop's signals as users read them."""
+    place, force = ((Unit('deg', math.radians(1.0)), Unit('Nm')) if sheet.is_rotary
+                    else (Unit('mm', MILLI), Unit('N')))
+    return {'position': place, 'force': force, 'pressure': Unit('MPa', MPA),
+            'spool': Unit('mm', MILLI), 'current': Unit('mA', MILLI), 'drive': Unit('V')}
+
+
+def rating(sheet: ActuatorSheet) -> float:
+    """Return the largest force (N) or torque (Nm) pushing out: rated, else hydraulic stall."""
+    if isinstance(sheet.reu.position, Impedance):
+        return sheet.reu.position.force_out
+    return float(sheet.plant.drive.areas[0]) * SUPPLY

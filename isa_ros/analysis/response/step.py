@@ -1,0 +1,87 @@
+"""`isa step`: the step response of one loop, its figures and its signals."""
+
+from dataclasses import dataclass
+
+from isa_ros.analysis.response.excitation import RATE_HZ
+from isa_ros.analysis.response.loops import Loop
+from isa_ros.analysis.response.rig import Rig
+from isa_ros.analysis.signals.step_response import step_figures, StepFigures
+from isa_ros.errors import ConfigError
+import numpy as np
+
+BEFORE = 0.1                # of the duration: shown before the step
+SHORTEST_S, LONGEST_S = 0.01, 100.0
+BAND = 0.05                 # settling band, a share of the step
+LOST = 0.5                  # error or ripple at the end, of the step: it does not follow
+
+
+@dataclass(frozen=True)
+class Step:
+    """A measured step: signals over time from the step on, (n,), SI, and its figures."""
+
+    loop: Loop
+    amplitude: float
+    t: np.ndarray
+    reference: np.ndarray
+    output: np.ndarray
+    inward: np.ndarray | None
+    figures: StepFigures
+
+
+def step(rig: Rig, duration: float, amplitude: float | None = None) -> Step:
+    """
+    Measure a step of a loop's reference by ``amplitude`` (the loop's unit) from its rest.
+
+    Raises
+    ------
+    ConfigError
+        The duration or the amplitude makes no sense.
+    SimulationDiverged
+        A state is no longer finite.
+
+    """
+    check_duration(duration)
+    peak = rig.amplitude(amplitude)
+    before = round(BEFORE * duration * RATE_HZ)
+    values = np.full(before + round(duration * RATE_HZ), peak)
+    values[:before] = 0.0
+    trace = rig.excite(rig.start(), values)
+    return evaluate(rig.loop, trace, before, rig.offset, peak, RATE_HZ)
+
+
+def check_duration(duration: float) -> None:
+    """Refuse a recording too short for its figures, or too long to be meant."""
+    if not SHORTEST_S <= duration <= LONGEST_S:
+        raise ConfigError(
+            f'--duration = {duration:g} s, must be {SHORTEST_S:g} to {LONGEST_S:g} s')
+
+
+def evaluate(
+        loop: Loop, trace: np.ndarray, before: int, start: float, amplitude: float,
+        rate: float) -> Step:
+    """Return a step from ``start`` at row ``before`` of signals named as in `TRACE`."""
+    t, output = (np.arange(len(trace)) - before) / rate, trace[loop.name]
+    return Step(
+        loop, amplitude, t, trace[f'{loop.name}_reference'], output,
+        None if loop.inward is None else trace[loop.inward],
+        step_figures(t[before:], output[before:], start, start + amplitude, BAND))
+
+
+def summary(measured: Step) -> str:
+    """Return the figures of a step, a line each."""
+    found, unit = measured.figures, measured.loop.unit
+
+    def time(value: float | None) -> str:
+        return 'not within the recording' if value is None else f'{value * 1e3:.4g} ms'
+
+    lines = [
+        f'rise time, 10 to 90 %: {time(found.rise_time)}',
+        f'overshoot: {found.overshoot * 100.0:.3g} %',
+        f'settling time, into +-{BAND * 100.0:g} %: {time(found.settling_time)}',
+        f'steady error, mean of the last tenth: {found.steady_error / unit.scale:.3g} '
+        f'{unit.symbol}',
+        f'ripple, deviation over the last tenth: {found.ripple / unit.scale:.3g} {unit.symbol}']
+    if max(abs(found.steady_error), found.ripple) > LOST * abs(measured.amplitude):
+        lines.append(f'error or ripple at the end exceeds {LOST * 100.0:g} % of the step: the '
+                     'loop does not follow, or the recording is too short')
+    return '\n'.join(lines)

@@ -1,0 +1,165 @@
+"""
+What a frequency response is measured with: one sine after the other, or a chirp.
+
+Excitations have amplitude 1. A frequency of the stepped sine is moved a little, so that the
+cycles that are measured fill whole periods of a grid: then a tick's worth of samples, and the
+images of a reference held over a tick, are orthogonal to it.
+"""
+
+from dataclasses import dataclass
+import math
+from typing import NamedTuple
+
+from isa_ros.analysis.signals.frequency import chirp_response, Response, stepped_response, Window
+from isa_ros.errors import ConfigError
+import numpy as np
+
+GRID_S = 1e-3       # where nothing else gives one: ten periods of the trace
+SETTLE_S = 0.2      # at each frequency, and
+SETTLE_CYCLES = 1
+WINDOW_S = 0.2      # measured at each frequency, and
+WINDOW_CYCLES = 4
+SEGMENT_CYCLES = 4  # of the lowest frequency in a segment of a chirp
+LEAST_SEGMENT_S = 0.5
+SEGMENTS = 16       # of a chirp
+EDGE = 1.25         # by which a chirp goes beyond its band at either end
+LARGEST_SHARE = 0.4     # of the rate at which a loop takes its reference
+TWO_PI = 2.0 * math.pi
+
+
+@dataclass(frozen=True, kw_only=True)
+class Sweep:
+    """Which frequencies, and how they are excited; Hz."""
+
+    low: float
+    high: float
+    points: int
+    is_chirp: bool = False
+
+    @property
+    def frequencies(self) -> np.ndarray:
+        """Return what is asked for: as many points, equal distances in log f."""
+        return np.geomspace(self.low, self.high, self.points)
+
+    def check(self, rate: float, what: str) -> None:
+        """
+        Refuse an empty band, and one that ``what`` cannot take at ``rate`` values a second.
+
+        Raises
+        ------
+        ConfigError
+            The band is one of these.
+
+        """
+        if not 0.0 < self.low < self.high:
+            raise ConfigError(
+                f'--from = {self.low:g} Hz, must be < --to = {self.high:g} Hz and > 0')
+        if self.points < 2:
+            raise ConfigError(f'--points = {self.points}, must be >= 2')
+        if self.high > LARGEST_SHARE * rate:
+            raise ConfigError(
+                f'--to = {self.high:g} Hz, must be <= {LARGEST_SHARE * rate:g} Hz: {what} at '
+                f'{rate:g} Hz')
+
+
+class Section(NamedTuple):
+    """One frequency of a stepped sine, and its times in s: whole periods of the grid."""
+
+    frequency: float
+    settle: float
+    measured: float
+
+
+def sections(sweep: Sweep, grid: float) -> tuple[Section, ...]:
+    """Return the sections of a stepped sine, times in multiples of ``grid`` (s)."""
+    found = []
+    for wanted in sweep.frequencies:
+        cycles = max(WINDOW_CYCLES, math.ceil(WINDOW_S * wanted))
+        measured = round(cycles / wanted / grid) * grid
+        frequency = cycles / measured
+        settle = math.ceil(max(SETTLE_S, SETTLE_CYCLES / frequency) / grid) * grid
+        found.append(Section(float(frequency), settle, measured))
+    return tuple(found)
+
+
+def windows(parts: tuple[Section, ...], rate: float, first: int) -> tuple[Window, ...]:
+    """Return where the settled samples of each section are, the first section at ``first``."""
+    found, at = [], first
+    for frequency, settle, measured in parts:
+        start = at + round(settle * rate)
+        at = start + round(measured * rate)
+        found.append(Window(frequency, start, at))
+    return tuple(found)
+
+
+class ChirpBand(NamedTuple):
+    """A logarithmic chirp; segments are what its spectra are averaged over."""
+
+    low: float
+    high: float
+    duration: float
+    segment: float
+
+
+def chirp_band(sweep: Sweep, rate: float, grid: float) -> ChirpBand:
+    """Return the chirp of a sweep: its band and a little beyond, below half the rate."""
+    segment = math.ceil(max(LEAST_SEGMENT_S, SEGMENT_CYCLES / sweep.low) / grid) * grid
+    return ChirpBand(
+        sweep.low / EDGE, min(EDGE * sweep.high, 0.5 * rate), SEGMENTS * segment, segment)
+
+
+@dataclass(frozen=True)
+class Answer:
+    """How the response is found in the samples of a run."""
+
+    rate: float
+    windows: tuple[Window, ...] = ()    # of a stepped sine; none: a chirp
+    segment: float = 0.0                # of a chirp, s
+    frequencies: np.ndarray | None = None
+
+    def estimate(self, r: np.ndarray, x: np.ndarray, y: np.ndarray) -> Response:
+        """Return the response from ``x`` to ``y`` to the reference ``r``, each (n,)."""
+        if self.frequencies is None:
+            return stepped_response(self.windows, x, y, self.rate)
+        return chirp_response(self.frequencies, self.segment, r, x, y, self.rate)
+
+
+class Excitation(NamedTuple):
+    """Values of amplitude 1, their rates of change (1/s), and how to read what they caused."""
+
+    values: np.ndarray
+    rates: np.ndarray
+    answer: Answer
+
+
+def excitation(sweep: Sweep, rate: float) -> Excitation:
+    """Return what excites a sweep, ``rate`` values a second."""
+    return (_chirp if sweep.is_chirp else _stepped)(sweep, rate)
+
+
+def _stepped(sweep: Sweep, rate: float) -> Excitation:
+    """Return one sine after the other, without a jump between them."""
+    phases, slopes, phase = [], [], 0.0
+    parts = sections(sweep, GRID_S)
+    for frequency, settle, measured in parts:
+        n = round((settle + measured) * rate)
+        slope = TWO_PI * frequency
+        phases.append(phase + slope / rate * np.arange(n))
+        slopes.append(np.full(n, slope))
+        phase = math.fmod(phase + slope / rate * n, TWO_PI)
+    angle = np.concatenate(phases)
+    return Excitation(
+        np.sin(angle), np.concatenate(slopes) * np.cos(angle),
+        Answer(rate, windows(parts, rate, 0)))
+
+
+def _chirp(sweep: Sweep, rate: float) -> Excitation:
+    """Return f = f_0 (f_1/f_0)^(t/T)."""
+    band = chirp_band(sweep, rate, GRID_S)
+    t = np.arange(round(band.duration * rate)) / rate
+    growth = math.log(band.high / band.low) / band.duration
+    angle = TWO_PI * band.low * np.expm1(growth * t) / growth
+    slope = TWO_PI * band.low * np.exp(growth * t)
+    return Excitation(
+        np.sin(angle), slope * np.cos(angle),
+        Answer(rate, segment=band.segment, frequencies=sweep.frequencies))

@@ -1,0 +1,174 @@
+"""
+The same measurements through the running nodes: a scenario, its bag, the same estimators.
+
+Everything is seen at the ticks: what the sensors read and the references in force at the end
+of each. A reference stands for a tick and is recorded at its end, so that against the bare
+actuator a response from the reference shows the hold: its gain, and up to half a tick of time.
+"""
+
+from contextlib import ExitStack
+import math
+from pathlib import Path
+import sys
+from tempfile import TemporaryDirectory
+
+from isa_ros.analysis.report.figures import ATMOSPHERE
+from isa_ros.analysis.response import bode as bodes, step as steps
+from isa_ros.analysis.response.excitation import TRACE
+from isa_ros.analysis.response.loops import Loop, PLANT
+from isa_ros.analysis.response.rig import REST_S, Rig
+from isa_ros.analysis.response.sweep import Answer, chirp_band, sections, Sweep, windows
+from isa_ros.analysis.signals.traces import read_traces, Trace
+from isa_ros.config.run_config import RunConfig
+from isa_ros.config.sections import as_tree
+from isa_ros.config.yaml_text import dump, Tree
+from isa_ros.core.timebase import NS_PER_SECOND
+from isa_ros.core.units import MILLI
+from isa_ros.errors import ConfigError
+from isa_ros.loads.sheets import LocalLoad
+from isa_ros.run.session import prepare, Request
+from isa_ros.run.terminal import terminal_report
+from isa_ros.surroundings.supply import SupplySheet
+import numpy as np
+
+RECORDED = ('position_reference', 'force_reference', 'spool_reference', 'current_reference')
+"""The references of a bag, in its order."""
+
+
+def bode(
+        rig: Rig, sweep: Sweep, of: str, amplitude: float | None, bag: Path | None
+        ) -> bodes.Bode:
+    """
+    Measure as `bode.bode`, through nodes; the bag is kept in ``bag``, None keeps none.
+
+    Raises
+    ------
+    ConfigError
+        The band, the amplitude or the loop cannot be measured.
+    BagError, RunError, SimulationDiverged
+        The run cannot be recorded or completed.
+
+    """
+    _refuse_unrecorded(rig.loop, of)
+    rate = NS_PER_SECOND / rig.run.step_ns
+    if rate < rig.loop.rate_hz:
+        sweep.check(rate, 'the nodes take setpoints')
+    else:
+        sweep.check(rig.loop.rate_hz, f'the {rig.loop.name} loop takes its reference')
+    peak = rig.amplitude(amplitude)
+    points, end, answer = _excited(rig, sweep, peak, rate)
+    trace = _recorded(rig, points, end, bag)
+    return bodes.evaluate(rig.loop, answer, of, peak, trace[_rest(rig) + 1:])
+
+
+def step(rig: Rig, duration: float, amplitude: float | None, bag: Path | None) -> steps.Step:
+    """Measure as `step.step`, through nodes; as `bode`."""
+    _refuse_unrecorded(rig.loop, '')
+    steps.check_duration(duration)
+    peak, tick = rig.amplitude(amplitude), rig.run.step_ns / NS_PER_SECOND
+    before, after = _rest(rig), math.ceil(duration / tick)
+    points = [_point(rig, 0, {}), _point(rig, before, {}, peak)]
+    trace = _recorded(rig, points, before + after, bag)
+    # Row k shows the setpoint of tick k - 1: the step stands in the row after its tick.
+    shown = round(steps.BEFORE * after)
+    return steps.evaluate(
+        rig.loop, trace[before - shown:], shown, rig.offset, peak, 1.0 / tick)
+
+
+def _refuse_unrecorded(loop: Loop, of: str) -> None:
+    for signal in (f'{loop.name}_reference', *([loop.inward] if of == PLANT else [])):
+        if signal is not None and signal not in RECORDED:
+            raise ConfigError(
+                f'--nodes: {str(signal).replace("_", " ")} is not recorded by the nodes, must be '
+                'measured on the bare actuator')
+
+
+def _rest(rig: Rig) -> int:
+    """Return the ticks before anything is excited."""
+    return math.ceil(REST_S * NS_PER_SECOND / rig.run.step_ns)
+
+
+def _point(rig: Rig, tick: int, motion: Tree, value: float = 0.0) -> Tree:
+    """Return a setpoint ``value`` (SI, of the loop's reference) off its rest, as a scenario's."""
+    given = rig.loop.per_reference * value
+    is_position = rig.loop.quantity == 'position'
+    return {
+        't_s': tick * rig.run.step_ns / NS_PER_SECOND,
+        'position': rig.config.initial_position + (given if is_position else 0.0),
+        'effort': 0.0 if is_position else given, **motion}
+
+
+def _excited(
+        rig: Rig, sweep: Sweep, peak: float, rate: float) -> tuple[list[Tree], int, Answer]:
+    """Return the setpoints of a sweep, the tick it ends at, and how to read the answer."""
+    loop, rest = rig.loop, _rest(rig)
+    common: Tree = {'moves': loop.quantity, 'amplitude': loop.per_reference * peak}
+    points = [_point(rig, 0, {})]
+    if sweep.is_chirp:
+        band = chirp_band(sweep, rate, 1.0 / rate)
+        motion: Tree = common | {
+            'start_hz': band.low, 'end_hz': band.high, 'duration_s': band.duration,
+            'sweep': 'exponential'}
+        points.append(_point(rig, rest, {'chirp': motion}))
+        return points, rest + round(band.duration * rate), Answer(
+            rate, segment=band.segment, frequencies=sweep.frequencies)
+    parts, tick = sections(sweep, 1.0 / rate), rest
+    for frequency, settle, measured in parts:
+        sine: Tree = common | {'frequency_hz': frequency}
+        points.append(_point(rig, tick, {'sine': sine}))
+        tick += round(settle * rate) + round(measured * rate)
+    return points, tick, Answer(rate, windows(parts, rate, 0))
+
+
+def _recorded(rig: Rig, points: list[Tree], end: int, bag: Path | None) -> np.ndarray:
+    """Run a rig's actuator in processes; return its `TRACE`, a row for each tick and t = 0."""
+    name = rig.config.name
+    with ExitStack() as stack:
+        files = Path(stack.enter_context(TemporaryDirectory(prefix='isa_')))
+        config, scenario = files / f'{rig.run.name}.yaml', files / 'excitation.yaml'
+        config.write_text(run_file(rig.run))
+        scenario.write_text(dump({
+            'name': 'excitation', 'duration_s': end * rig.run.step_ns / NS_PER_SECOND,
+            'tracks': {name: points}}))
+        out = files / 'bag' if bag is None else bag
+        from isa_ros.nodes.bringup import run_session  # rclpy, which nothing else here needs
+        run_session(
+            prepare(Request(config=config, scenario=scenario, out=out)),
+            terminal_report(sys.stderr))
+        return _trace(read_traces(out)[1], name)
+
+
+def run_file(run: RunConfig) -> str:
+    """Return a run of actuators on their own loads as the text of a run file, all values in it."""
+    actuators: dict[str, Tree] = {}
+    for config in run.actuators:
+        key, scale = (('initial_position_deg', math.radians(1.0)) if config.sheet.is_rotary
+                      else ('initial_position_mm', MILLI))
+        actuators[config.name] = {
+            'model': config.model, 'preset': config.preset.partition(' ')[0],
+            'parameters': as_tree(config.sheet), key: config.initial_position / scale}
+        if config.load is not None:
+            actuators[config.name]['load'] = as_tree(config.load, LocalLoad)
+    return dump({
+        'name': run.name, 'step_ms': run.step_ns * 1e-6,
+        'controller_offset_ms': run.controller_offset_ns * 1e-6,
+        'tick_timeout_s': run.tick_timeout_s, 'supply': as_tree(run.supply, SupplySheet),
+        'actuators': dict(actuators)})
+
+
+def _trace(traces: dict[str, Trace], name: str) -> np.ndarray:
+    """Return the signals of a bag as a `TRACE`; NaN for what nodes do not record."""
+    joint, valve, references, high, low = (
+        traces[f'/{name}/{topic}']
+        for topic in ('joint_states', 'valve', 'references', 'pressure_a', 'pressure_b'))
+    rows = np.full(len(joint.t), math.nan, TRACE)
+    for k, field in enumerate(RECORDED):
+        rows[field] = references[f'position[{k}]']
+    rows['position'] = rows['position_measured'] = joint['position[0]']
+    rows['force'] = rows['force_measured'] = joint['effort[0]']
+    rows['velocity'] = joint['velocity[0]']
+    rows['spool'], rows['current'] = valve['position[0]'], valve['effort[0]']
+    rows['pressure_a'] = high['fluid_pressure'] - ATMOSPHERE
+    rows['pressure_b'] = low['fluid_pressure'] - ATMOSPHERE
+    rows['pressure'] = rows['pressure_a'] - rows['pressure_b']
+    return rows

@@ -1,0 +1,1 @@
+"""Signals of a bag, and what can be read from them."""

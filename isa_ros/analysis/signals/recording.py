@@ -1,0 +1,134 @@
+"""One actuator's sensors out of a bag, as arrays on one grid of time."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from pathlib import Path
+
+from isa_ros.analysis.signals.traces import Trace
+from isa_ros.config.run_config import ActuatorConfig, RunConfig
+from isa_ros.core.units import MPA
+from isa_ros.errors import BagError
+from isa_ros.plant.plant import plant_record
+from isa_ros.surroundings.supply import ATMOSPHERE
+import numpy as np
+
+Traces = dict[str, Trace]
+SHORTEST = 0.5          # s, below which nothing can be known of the scatter
+_SLOWEST_STEP = 2e-3    # s, with which a valve of 100 Hz can just be followed
+_JITTER = 1e-6          # s, of a sample against the grid
+
+
+@dataclass(frozen=True)
+class Recording:
+    """
+    What the sensors gave, each (n,), SI and gauge, ``step`` seconds apart.
+
+    ``plant`` is the `PLANT` record of the configuration: what is known and what is compared.
+    """
+
+    plant: np.record
+    step: float
+    position: np.ndarray
+    force: np.ndarray
+    pressure_a: np.ndarray
+    pressure_b: np.ndarray
+    spool: np.ndarray
+    supply_pressure: np.ndarray
+    return_pressure: float
+
+    @property
+    def duration(self) -> float:
+        """Return the time from the first sample to the last, s."""
+        return (len(self.position) - 1) * self.step
+
+    def half_rate(self) -> 'Recording':
+        """Return the recording without every second sample."""
+        return replace(self, step=2.0 * self.step, **{
+            name: getattr(self, name)[::2] for name in (
+                'position', 'force', 'pressure_a', 'pressure_b', 'spool', 'supply_pressure')})
+
+    def is_trapped(self, margin: float) -> np.ndarray:
+        """Return where neither relief nor refill passes oil, by ``margin`` (Pa), (n,)."""
+        least = self.return_pressure + margin
+        sensors = self.plant.sensors
+        most = min(self.plant.relief.p_open, sensors.pressure_range) - margin
+        is_trapped: np.ndarray = np.ones(len(self.position), bool)
+        for pressure in (self.pressure_a, self.pressure_b):
+            is_trapped &= (pressure > least) & (pressure < most)
+        return is_trapped
+
+    def is_standing(self, ends: np.ndarray, signals: Sequence[str]) -> np.ndarray:
+        """
+        Return for each window between ``ends`` whether no signal changes by more than a code.
+
+        The rounding of a code that stands still does not average out.
+        """
+        is_standing: np.ndarray = np.ones(len(ends) - 1, bool)
+        for name in signals:
+            signal, step = getattr(self, name), self.resolution(name)
+            spread = np.maximum.reduceat(signal, ends[:-1]) - np.minimum.reduceat(
+                signal, ends[:-1])
+            is_standing &= spread < 1.5 * step
+        return is_standing
+
+    def resolution(self, name: str) -> float:
+        """Return the least step of a signal, SI."""
+        own = self.plant.sensors
+        return float({
+            'position': own.encoder, 'force': own.force_step, 'spool': own.spool_step,
+            'pressure_a': own.pressure_step, 'pressure_b': own.pressure_step}[name])
+
+    def is_whole(self, ends: np.ndarray, condition: np.ndarray) -> np.ndarray:
+        """Return for each window between ``ends`` whether the condition holds throughout."""
+        broken = np.concatenate([[0], np.cumsum(~condition)])
+        is_whole: np.ndarray = broken[ends[1:] + 1] == broken[ends[:-1]]
+        return is_whole
+
+
+def recording_of(
+        run: RunConfig, traces: Traces, actuator: ActuatorConfig, bag: Path) -> Recording:
+    """
+    Return one actuator's recording.
+
+    Raises
+    ------
+    BagError
+        A topic is missing, or the topics are not sampled together.
+
+    """
+    t, signals = None, {}
+    for name, (topic, field) in {
+            'position': (f'/{actuator.name}/joint_states', 'position[0]'),
+            'force': (f'/{actuator.name}/joint_states', 'effort[0]'),
+            'pressure_a': (f'/{actuator.name}/pressure_a', 'fluid_pressure'),
+            'pressure_b': (f'/{actuator.name}/pressure_b', 'fluid_pressure'),
+            'spool': (f'/{actuator.name}/valve', 'position[0]'),
+            'supply_pressure': ('/coordinator/supply_pressure', 'fluid_pressure')}.items():
+        if topic not in traces:
+            raise BagError(f'{bag}: {topic} is missing, cannot identify {actuator.name}')
+        trace = traces[topic]
+        t = trace.t if t is None else t
+        if len(trace.t) != len(t) or np.max(np.abs(trace.t - t)) > _JITTER:
+            raise BagError(f'{bag}: {topic} is not sampled with the others, must be')
+        offset = ATMOSPHERE if field == 'fluid_pressure' else 0.0
+        signals[name] = np.array(trace[field], np.float64) - offset
+    assert t is not None
+    return Recording(
+        plant=plant_record(actuator.sheet.plant)[0], step=_grid(t, bag),
+        return_pressure=run.supply.return_pressure_mpa * MPA, **signals)
+
+
+def _grid(t: np.ndarray, bag: Path) -> float:
+    """Return the step of evenly spaced samples, s."""
+    if len(t) < 2:
+        raise BagError(f'{bag}: holds {len(t)} samples, must hold more')
+    step = float(t[-1] - t[0]) / (len(t) - 1)
+    worst = float(np.max(np.abs(np.diff(t) - step)))
+    if worst > _JITTER:
+        raise BagError(
+            f'{bag}: samples are missing, a step of {1e3 * (step + worst):g} ms among '
+            f'steps of {1e3 * step:g} ms')
+    if step > _SLOWEST_STEP + _JITTER:
+        raise BagError(f'{bag}: sampled every {1e3 * step:g} ms, must be at least every '
+                       f'{1e3 * _SLOWEST_STEP:g} ms')
+    return step

@@ -1,0 +1,80 @@
+"""The signals of a bag as arrays over time."""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+
+from isa_ros.bag.reader import Bag
+from isa_ros.config.run_config import RunConfig
+from isa_ros.errors import BagError
+from msg_adapters import applied_parameters, event
+from msg_adapters.cdr import encode_with_slots
+from msg_adapters.cdr_reader import decode, message_class
+import numpy as np
+
+_NO_SIGNALS = (applied_parameters.TYPE, event.TYPE)  # texts of any length
+
+
+@dataclass(frozen=True)
+class Trace:
+    """One topic: times (n,) in s and its numeric fields by path, each of shape (n,)."""
+
+    t: np.ndarray
+    fields: np.ndarray
+
+    def __getitem__(self, path: str) -> np.ndarray:
+        return self.fields[path]
+
+
+class _Topics(dict[str, Trace]):
+    """The topics of one bag; one that it does not hold is an error of the bag."""
+
+    def __init__(self, bag: Path, topics: Mapping[str, Trace]) -> None:
+        super().__init__(topics)
+        self._bag = bag
+
+    def __missing__(self, topic: str) -> Trace:
+        raise BagError(f'{self._bag}: {topic} is not in it, was it left out?')
+
+
+def read_traces(path: Path) -> tuple[RunConfig, dict[str, Trace]]:
+    """
+    Return the configuration a bag carries and every topic of signals in it by name.
+
+    Raises
+    ------
+    BagError
+        Not a bag, damaged, or a topic whose messages change their layout.
+
+    """
+    bag = Bag(path)
+    times: dict[str, list[int]] = {}
+    messages: dict[str, list[bytes]] = {}
+    for message in bag.messages():
+        if bag.types[message.topic] in _NO_SIGNALS:
+            continue
+        times.setdefault(message.topic, []).append(message.t_ns)
+        messages.setdefault(message.topic, []).append(message.data)
+    return RunConfig.from_yaml(bag.provenance.configuration), _Topics(path, {
+        topic: Trace(np.array(times[topic]) * 1e-9,
+                     columns(messages[topic], bag.types[topic], f'{path}: {topic}'))
+        for topic in times})
+
+
+def columns(messages: Sequence[bytes], type_name: str, where: str) -> np.ndarray:
+    """
+    Return the numbers of messages of one layout as a structured view, shape (n,).
+
+    The first message is decoded; where its numbers lie, those of the others do too as long
+    as names and array lengths stay, which the recorder's prepared messages guarantee.
+    """
+    first = messages[0]
+    encoded, slots = encode_with_slots(decode(first, message_class(type_name)))
+    if encoded != first or any(len(message) != len(first) for message in messages):
+        raise BagError(f'{where}: the messages change their layout, cannot be drawn')
+    record = np.dtype({
+        'names': list(slots),
+        'formats': [f'<{slot.code}' for slot in slots.values()],
+        'offsets': [slot.offset for slot in slots.values()],
+        'itemsize': len(first)})
+    return np.frombuffer(b''.join(messages), record)

@@ -1,0 +1,1 @@
+"""One parameter varied against the performance of an actuator."""

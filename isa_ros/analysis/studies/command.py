@@ -1,0 +1,86 @@
+"""`isa study`: list the studies, or run them, print, write and draw."""
+
+from argparse import Namespace
+from collections.abc import Sequence
+from dataclasses import replace
+import json
+import sys
+import time
+from typing import TextIO
+
+from isa_ros.analysis.studies.measure import Benches, Result, results
+from isa_ros.analysis.studies.page import as_text, as_tree, write_page
+from isa_ros.analysis.studies.studies import only_model, STUDIES, Study, study_of
+from isa_ros.errors import ConfigError
+
+
+def study(options: Namespace) -> None:
+    """
+    Run what is asked for, or list what there is.
+
+    Raises
+    ------
+    ConfigError
+        There is no such study or model, or options that do not go together.
+
+    """
+    chosen = _chosen(options)
+    if not chosen:
+        print(listing())
+        return
+    benches = Benches()
+    done: list[tuple[Study, Sequence[Result]]] = []
+    for one in chosen:
+        found = results(one, benches, _progress(sys.stderr, one))
+        done.append((one, found))
+        print(as_text(one, found), end='\n\n' if one is not chosen[-1] else '\n', flush=True)
+    if options.json is not None:
+        options.json.write_text(
+            json.dumps([as_tree(*one) for one in done], indent=2) + '\n', encoding='utf-8')
+        print(options.json)
+    if options.out is not None:
+        for path in write_page(done, options.out):
+            print(path)
+
+
+def listing() -> str:
+    """Return every study, a line each."""
+    width = max(len(one.name) for one in STUDIES)
+    return '\n'.join(f'{one.name.ljust(width)}  {one.title}' for one in STUDIES)
+
+
+def _chosen(options: Namespace) -> tuple[Study, ...]:
+    if options.name is None and not options.all:
+        for option in ('model', 'values', 'json', 'out'):
+            if getattr(options, option) is not None:
+                raise ConfigError(
+                    f'--{option} needs a study, or --all; {", ".join(s.name for s in STUDIES)}')
+        return ()
+    if options.name is not None and options.all:
+        raise ConfigError(f'study {options.name} and --all, must be one of both')
+    asked = STUDIES if options.all else (study_of(options.name),)
+    chosen = tuple(only_model(one, options.model) for one in asked)
+    if options.values is None:
+        return chosen
+    if len(chosen) != 1 or len(chosen[0].cases) != 1:
+        raise ConfigError('--values needs one study of one --model: units differ')
+    case = replace(chosen[0].cases[0], values=tuple(options.values))
+    return (replace(chosen[0], cases=(case,)),)
+
+
+class _Progress:
+    """Says on a terminal how far a study is."""
+
+    def __init__(self, stream: TextIO, of: Study) -> None:
+        self._stream, self._name, self._start = stream, of.name, time.monotonic()
+
+    def __call__(self, done: int, total: int) -> None:
+        taken = time.monotonic() - self._start
+        left = taken * (total - done) / done
+        self._stream.write('\r\033[K' if done == total else (
+            f'\r{self._name}: {done} of {total} values, {left:.0f} s left\033[K'))
+        self._stream.flush()
+
+
+def _progress(stream: TextIO, of: Study) -> '_Progress | None':
+    return _Progress(stream, of) if stream.isatty() else None

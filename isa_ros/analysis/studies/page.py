@@ -1,0 +1,150 @@
+"""Studies as text, as JSON, and as the page docs/studies.md with its figures."""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import fields
+import io
+from pathlib import Path
+import textwrap
+from typing import Any
+
+from isa_ros.analysis.studies.figure import study_figure
+from isa_ros.analysis.studies.measure import Outcome, Result, RIPPLE_S
+from isa_ros.analysis.studies.studies import Case, STUDIES, Study
+from PIL import Image
+
+PAGE, FIGURES = 'studies.md', 'figures'
+COLORS = 64     # of a figure
+LINE = 99       # characters
+_HEAD = """# Studies
+
+What the paper announces to analyse with its simulation: one parameter at a time, everything else
+as shipped, on the smart manifold with the gains of Table 4 and on the ISA v5 with its default
+gains. This page and its figures are written by
+
+    ./isa study --all --out docs
+
+A star marks the shipped value. Rise (10 to 90 %) and overshoot are those of a step of 10 % of
+the rating against a blocked output at mid stroke, the -3 dB of sines as large (-: outside of 10
+to 160 Hz). A ripple is half of peak to peak, of what is left 0.8 s after such a step up or back
+down: at mid stroke, near the stop at 2 % of the stroke, where the oil is stiffest, and while
+standing on the wheel after a trot. *At* is the frequency of the largest, told where it exceeds
+2 % of the step. The errors are rms in a trot at 1 m/s: the wheel of the manifold moves as HFE, a
+mass of 50 kg on the ISA v5 as the piston of KFE, without feed-forward.
+
+"""
+
+
+def head(result: Result) -> tuple[str, ...]:
+    """Return the names of the columns."""
+    force = result.force_unit
+    return (result.case.unit.symbol, 'rise, ms', 'overshoot, %', '-3 dB, Hz',
+            f'ripple mid, {force}', f'near stop, {force}', f'on wheel, {force}', 'at, Hz',
+            f'error, {force}', f'error, {result.position_unit}')
+
+
+def cells(result: Result, outcome: Outcome) -> tuple[str, ...]:
+    """Return a row of the table."""
+    at = '-' if outcome.ripple_hz is None else f'{outcome.ripple_hz:.3g}'
+    return (f'{outcome.value:g}{"*" if result.is_shipped(outcome) else ""}',
+            _number(outcome.rise), _number(outcome.overshoot), _number(outcome.bandwidth),
+            _number(outcome.ripple_mid), _number(outcome.ripple_end),
+            _number(outcome.ripple_wheel),
+            f'<= {at}' if outcome.ripple_hz == 1.0 / RIPPLE_S else at,
+            _number(outcome.force_error), _number(outcome.position_error))
+
+
+def _number(value: float | None) -> str:
+    """Return three digits, also of large numbers; - for none."""
+    if value is None:
+        return '-'
+    return f'{value:.0f}' if abs(value) >= 1e3 else f'{value:.3g}'
+
+
+def as_text(study: Study, results: Sequence[Result]) -> str:
+    """Return what a terminal shows."""
+    blocks = [f'{study.title} ({study.source})']
+    for result in results:
+        rows = [head(result), *(cells(result, outcome) for outcome in result.outcomes)]
+        widths = [max(len(row[k]) for row in rows) for k in range(len(rows[0]))]
+        blocks.append('\n'.join([_name(result.case), *(
+            '  '.join(cell.rjust(width) for cell, width in zip(row, widths)) for row in rows)]))
+    return '\n\n'.join(blocks)
+
+
+def _name(case: Case) -> str:
+    added = ''.join(f' + {variant}' for variant in case.variants)
+    return f'{case.model}, gains {case.preset}{added}: {", ".join(path for path, _ in case.paths)}'
+
+
+def as_tree(study: Study, results: Sequence[Result]) -> dict[str, Any]:
+    """Return a study for JSON; null where there is no number."""
+    names = [f.name for f in fields(Outcome) if f.name != 'step']
+    return {
+        'name': study.name, 'title': study.title, 'source': study.source,
+        'cases': [{
+            'model': result.case.model, 'preset': result.case.preset,
+            'variants': list(result.case.variants), 'unit': result.case.unit.symbol,
+            'parameters': {path: share * result.case.unit.scale
+                           for path, share in result.case.paths},
+            'shipped': result.shipped, 'step': result.amplitude, 'force_unit': result.force_unit,
+            'position_unit': result.position_unit,
+            'outcomes': [{name: getattr(outcome, name) for name in names}
+                         for outcome in result.outcomes],
+        } for result in results]}
+
+
+class _ByValue(Mapping[str, Outcome]):
+    """The outcomes of a result by their value as it is shown, for `Study.seen`."""
+
+    def __init__(self, result: Result) -> None:
+        self._of = {f'{outcome.value:g}': outcome for outcome in result.outcomes}
+
+    def __getitem__(self, value: object) -> Outcome:
+        return self._of[str(value)]
+
+    def __iter__(self) -> Any:
+        return iter(self._of)
+
+    def __len__(self) -> int:
+        return len(self._of)
+
+
+def seen(study: Study, results: Sequence[Result]) -> str:
+    """Return what one sees in a study, its numbers filled in; '' for a part of it."""
+    if study not in STUDIES:
+        return ''
+    text = study.seen.format_map({result.case.model: _ByValue(result) for result in results})
+    return textwrap.fill(' '.join(text.split()), LINE)
+
+
+def write_page(done: Sequence[tuple[Study, Sequence[Result]]], directory: Path) -> list[Path]:
+    """Write studies.md and figures/study_*.png into a directory; return their paths."""
+    (directory / FIGURES).mkdir(parents=True, exist_ok=True)
+    written, blocks = [directory / PAGE], []
+    for study, results in done:
+        name = f'{FIGURES}/study_{study.name}.png'
+        (directory / name).write_bytes(_png(study, results))
+        written.append(directory / name)
+        text = seen(study, results)
+        blocks.append('\n'.join([
+            f'## {study.title}', '', f'`isa study {study.name}`; {study.source}.', '',
+            *([text, ''] if text else []), f'![{study.title}]({name})', '',
+            *(line for result in results for line in _markdown(result))]))
+    written[0].write_text(_HEAD + '\n'.join(blocks), encoding='utf-8')
+    return written
+
+
+def _markdown(result: Result) -> list[str]:
+    columns = head(result)
+    return [_name(result.case), '', f'| {" | ".join(columns)} |', '|' + '---:|' * len(columns),
+            *(f'| {" | ".join(cells(result, outcome))} |' for outcome in result.outcomes), '']
+
+
+def _png(study: Study, results: Sequence[Result]) -> bytes:
+    """Return the figure with a palette: a third of the bytes."""
+    drawn, small = io.BytesIO(), io.BytesIO()
+    study_figure(study.title, results).savefig(drawn, format='png')
+    with Image.open(drawn) as image:
+        image.convert('RGB').quantize(COLORS, dither=Image.Dither.NONE).save(
+            small, format='png', optimize=True)
+    return small.getvalue()

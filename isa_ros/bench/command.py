@@ -1,0 +1,74 @@
+"""The command: which groups, in which order, and where the rows go."""
+
+from collections.abc import Sequence
+from pathlib import Path
+import sys
+
+from isa_ros.bench.groups import Group, GROUPS
+from isa_ros.bench.host import Machine, machine
+from isa_ros.bench.page import as_lines, HEAD, PAGE, Report, Section, write_json, write_page
+from isa_ros.bench.rounds import Outcomes, outcomes, Progress, terminal_progress
+from isa_ros.core.suggest import alternatives
+from isa_ros.errors import ConfigError
+
+
+def chosen(only: Sequence[str] | None, groups: Sequence[Group] = GROUPS) -> tuple[Group, ...]:
+    """
+    Return the groups that ``only`` names, in their order; all for None.
+
+    Raises
+    ------
+    ConfigError
+        There is no such group.
+
+    """
+    names = [group.name for group in groups]
+    for name in only or ():
+        if name not in names:
+            raise ConfigError(f'--only {name}: no such group; {alternatives(name, names)}')
+    return tuple(group for group in groups if not only or group.name in only)
+
+
+def bench(
+        json_file: Path | None = None, only: Sequence[str] | None = None,
+        out: Path | None = None) -> Report:
+    """
+    Measure, print the rows as they come, and write JSON or the page if asked.
+
+    Raises
+    ------
+    ConfigError
+        No such group, or a page that a part of it would replace.
+    RunError
+        A run could not be completed.
+
+    """
+    groups = chosen(only)
+    if only and out is not None and (out / PAGE).exists():
+        raise ConfigError(f'{out / PAGE} exists, must not: --only would leave a part of it')
+    here = machine()
+    print(f'{here.summary}\n{HEAD}')
+    report = measured_report(groups, here, terminal_progress(sys.stderr))
+    if json_file is not None:
+        write_json(report, json_file)
+    if out is not None:
+        for path in write_page(report, out):
+            print(path)
+    return report
+
+
+def measured_report(
+        groups: Sequence[Group], here: Machine, progress: Progress | None = None) -> Report:
+    """Measure the groups that need no runs, then do all runs, then the groups made of them."""
+    sections: dict[str, Section] = {}
+    done = Outcomes({})
+    for has_runs in (False, True):
+        below = [group for group in groups if bool(group.specs()) is has_runs]
+        if has_runs:
+            done = outcomes(list(dict.fromkeys(
+                spec for group in below for spec in group.specs())), progress)
+        for group in below:
+            section = Section(group.name, group.title, tuple(group.rows(done)))
+            print('\n'.join(as_lines(section)), flush=True)
+            sections[group.name] = section
+    return Report(here, tuple(sections[group.name] for group in groups), done)

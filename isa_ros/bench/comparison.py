@@ -1,0 +1,75 @@
+"""Other middlewares under the leg and twelve actuators: same work, same bag, another exchange."""
+
+from isa_ros.bench import growth
+from isa_ros.bench.leg import IN_PROCESSES, speed_row
+from isa_ros.bench.limits import profile
+from isa_ros.bench.peers.catalogue import Peer, PEERS
+from isa_ros.bench.rounds import Outcomes
+from isa_ros.bench.row import Aim, Row
+from isa_ros.bench.spec import PROCESSES, Spec
+
+REQUIREMENTS = 'requirements-bench.txt'
+FLOOR = PEERS[0]
+TWELVE = next(
+    spec for spec in growth.IN_PROCESSES if (spec.plant, spec.way) == ('12', PROCESSES))
+OURS = {'': IN_PROCESSES, '12 actuators, ': TWELVE}
+"""The runs of this package that peers are held against, by what their rows begin with."""
+
+_AIMS = {'helics': Aim(1.8), 'zeromq': Aim(2.5, is_most=True)}
+
+
+def over(peer: Peer, ours: Spec) -> Spec:
+    """Return the run over a peer: twelve workers take long to start, so they do it once."""
+    if ours is TWELVE:
+        return Spec(ours.plant, peer.name, ours.ticks // 2, rounds=1)
+    return Spec(ours.plant, peer.name, ours.ticks, ours.rounds)
+
+
+SPECS = tuple(
+    spec for ours in OURS.values() for spec in (ours, *(over(peer, ours) for peer in PEERS)))
+
+
+def comparison_rows(outcomes: Outcomes) -> list[Row]:
+    """Return ticks/s over each peer, and the ratios of the same rounds to isa_ros."""
+    return [row for before, ours in OURS.items() for row in _rows(before, ours, outcomes)]
+
+
+def _rows(before: str, ours: Spec, outcomes: Outcomes) -> list[Row]:
+    floor, own = outcomes.of(over(FLOOR, ours)), outcomes.of(ours)
+    if not own:
+        return []
+    rows = [speed_row(f'{before}isa_ros: Unix sockets, topics for who listens', own)]
+    ratios = []
+    for peer in PEERS:
+        spec = over(peer, ours)
+        theirs = outcomes.of(spec)
+        if not theirs:
+            rows.append(Row(
+                f'{before}{peer.title}', None, 'ticks/s', note=_reason(outcomes.reason(spec))))
+            continue
+        rows.append(speed_row(f'{before}{peer.title}', theirs))
+        if peer is not FLOOR:
+            ratios.append(_ratio_row(before, peer, ours, outcomes))
+    if floor:
+        pipes = speed_row('', floor).number
+        rows = [row if row.value is None else row.against(FLOOR.title, row.value / pipes)
+                for row in rows]
+    return rows + ratios
+
+
+def _reason(reason: str) -> str:
+    return f'{reason}: {REQUIREMENTS}' if reason == 'not installed' else reason
+
+
+def _ratio_row(before: str, peer: Peer, ours: Spec, outcomes: Outcomes) -> Row:
+    """Return ours over theirs, or theirs over ours where that is what the aim bounds."""
+    own, theirs = outcomes.of(ours), outcomes.of(over(peer, ours))
+    aim = _AIMS.get(peer.name)
+    if aim is not None and aim.is_most:
+        ratios = [b.ticks_per_s / a.ticks_per_s for a, b in zip(own, theirs)]
+        row = Row.of(f'{before}{peer.title} over isa_ros', ratios, 'times').aiming(aim)
+    else:
+        ratios = [a.ticks_per_s / b.ticks_per_s for a, b in zip(own, theirs)]
+        row = Row.of(f'{before}isa_ros over {peer.title}', ratios, 'times')
+        row = row if aim is None else row.aiming(aim)
+    return row.noting(profile(own)) if row.is_reached is False else row

@@ -1,0 +1,71 @@
+"""The leg's drop, recording: three actuators in processes of their own, and in one."""
+
+from collections.abc import Sequence
+from statistics import median
+
+from isa_ros.bench.floor import pipe_exchange, WORKERS
+from isa_ros.bench.limits import busy, cores, in_parts, profile
+from isa_ros.bench.rounds import Outcomes
+from isa_ros.bench.row import Aim, Row
+from isa_ros.bench.spec import LEG, Measured, median_of, ONE_PROCESS, PROCESSES, Spec
+from isa_ros.bench.tick import actuator_parts
+
+IN_PROCESSES = Spec(LEG, PROCESSES, 2000)
+IN_ONE_PROCESS = Spec(LEG, ONE_PROCESS, 3000)
+SPECS = (IN_PROCESSES, IN_ONE_PROCESS)
+_AIMS = {IN_PROCESSES: Aim(1500.0), IN_ONE_PROCESS: Aim(4000.0)}
+
+
+def leg_rows(outcomes: Outcomes) -> list[Row]:
+    """
+    Return the speed of both ways beside their aims, and where a tick goes.
+
+    In processes the recorder works while the actuators do, and ``actuators`` is the wait for
+    them.
+    """
+    pipe = pipe_exchange()
+    rows = [Row(f'floor: {WORKERS} workers on pipes, no work', pipe * 1e6, 'us', 'itself', 1.0)]
+    for spec in SPECS:
+        runs = outcomes.of(spec)
+        speed = speed_row(f'leg, {spec.way}', runs).aiming(_AIMS[spec])
+        below = tick_rows(runs, pipe)
+        limit = profile(runs)
+        if spec == IN_ONE_PROCESS:
+            spent = _actuator_phase(runs)
+            below += [Row(f'of its actuators {part}', value * 1e6, 'us', 'that phase',
+                          value / sum(spent.values())) for part, value in spent.items()]
+            limit += f'; of its actuators: {in_parts(spent, 1e6, "us")}'
+        rows.append(speed.noting(limit) if speed.is_reached is False else speed)
+        rows += [row.under(speed) for row in below]
+    return rows
+
+
+def _actuator_phase(runs: Sequence[Measured]) -> dict[str, float]:
+    """
+    Return what the phase of the actuators is spent on where they are in one process, in s.
+
+    Plant, REU and messages as they take without ROS, in this process; the rest is theirs.
+    """
+    parts = actuator_parts()
+    phase = median(run.phases['actuators'] for run in runs)
+    return parts | {'ROS: publishing and listening': max(0.0, phase - sum(parts.values()))}
+
+
+def speed_row(name: str, runs: Sequence[Measured]) -> Row:
+    """Return ticks/s against real time."""
+    row = Row.of(name, [run.ticks_per_s for run in runs], 'ticks/s')
+    return row.against('real time', row.number * 1e-3)
+
+
+def tick_rows(runs: Sequence[Measured], pipe: float) -> list[Row]:
+    """Return what a tick takes, of the host's time and of its processors'."""
+    row = Row.of('a tick', [run.tick * 1e6 for run in runs], 'us')
+    tick = row.number * 1e-6
+    rows = [row.against('pipe floor', pipe / tick)]
+    rows += [Row(f'of it {phase}', spent * 1e6, 'us', 'that tick', spent / tick)
+             for phase, spent in median_of([run.phases for run in runs]).items()]
+    rows += [Row(f'processor time of a tick, {part}', spent * 1e6, 'us', 'that tick',
+                 spent / tick)
+             for part, spent in median_of([run.processor for run in runs]).items()]
+    share = busy(runs)
+    return [*rows, Row(f'{cores()} cores in use', 100.0 * share, '%', 'all of them', share)]

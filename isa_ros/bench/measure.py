@@ -1,0 +1,70 @@
+"""
+A process that does one measured run: `python -m ... STARTED SPEC RESULT`.
+
+STARTED is the monotonic clock of whoever started it, RESULT the file it writes. Only what it
+cannot do without is imported before it looks at the clock.
+"""
+
+from collections.abc import Sequence
+import os
+from pathlib import Path
+import sys
+import tempfile
+import time
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from isa_ros.bench.spec import Measured, Spec
+    from isa_ros.run.session import Report, Request
+
+
+def main(arguments: Sequence[str]) -> int:
+    """Run, write what was measured, and return the exit code."""
+    entered = time.monotonic()
+    started, spec_text, result = arguments
+    from isa_ros.bench.spec import Spec
+    from isa_ros.errors import IsaError
+    try:
+        measured = measure(Spec.from_json(spec_text), float(started), entered)
+    except IsaError as error:
+        print(error, file=sys.stderr)
+        return error.exit_code
+    Path(result).write_text(measured.to_json(), encoding='utf-8')
+    return 0
+
+
+def measure(spec: 'Spec', started: float, entered: float) -> 'Measured':
+    """
+    Do the run of ``spec`` here and return what it told.
+
+    ``started`` and ``entered`` are when this process was started and reached its first line.
+    """
+    from isa_ros.bench.rigs import request_of
+    from isa_ros.bench.spec import IMPORTS, INTERPRETER
+    from isa_ros.bench.watch import Watch
+    watch = Watch({INTERPRETER: entered - started, IMPORTS: time.monotonic() - entered})
+    with tempfile.TemporaryDirectory(prefix='isa_bench_') as directory:
+        _run(spec, watch.request(request_of(spec, Path(directory))), watch.report)
+    return watch.measured(spec.ticks)
+
+
+def _run(spec: 'Spec', request: 'Request', report: 'Report') -> None:
+    from isa_ros.bench.spec import ONE_PROCESS, PROCESSES
+    from isa_ros.run.session import prepare
+    from isa_ros.nodes.bringup import bringup
+    if spec.way in (PROCESSES, ONE_PROCESS):
+        bringup(request, report)
+        return
+    from isa_ros.bench.peers.catalogue import peer
+    from isa_ros.bench.peers.transport import run_over
+    from isa_ros.processes.stopping import StopRequest
+    with StopRequest() as should_stop:
+        run_over(peer(spec.way), prepare(request), report, should_stop)
+
+
+if __name__ == '__main__':
+    code = main(sys.argv[1:])
+    sys.stdout.flush()
+    sys.stderr.flush()
+    # Without the middlewares' own ends, which are measured by nobody and not always short.
+    os._exit(code)

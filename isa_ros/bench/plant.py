@@ -1,0 +1,71 @@
+"""The plant alone, the plant with its REU, and a cylinder whose motion is known."""
+
+from isa_ros.actuator import kernel as kernels
+from isa_ros.actuator.actuator import SmartActuator
+from isa_ros.actuator.sheet import actuator_record
+from isa_ros.analysis.accuracy import cylinder
+from isa_ros.bench.row import Row, seconds
+from isa_ros.config.default_actuator import default_actuator, DEFAULT_TIMING
+from isa_ros.core.signals import LOAD_PORT
+from isa_ros.core.timebase import NS_PER_SECOND, PLANT_STEP
+import numpy as np
+
+PLANT_STEPS = 20_000
+ROOTS = 40               # in a plant step
+TICKS = 500
+HOLDS = 10_000          # of the cylinder, ten seconds
+HOLD_ROOTS = cylinder.STAGES * 4 * 2    # in a hold: four orifices, two each
+
+
+def plant_rows() -> list[Row]:
+    """
+    Measure plant alone and plant with REU on one core, against real time.
+
+    The machine's own speed stands beside them: the 40 square roots of a plant step (four
+    evaluations, five orifices, two each), one after the other.
+    """
+    roots = seconds(lambda: kernels.square_roots(PLANT_STEPS * ROOTS), PLANT_STEPS)
+    rows = [Row(f'floor: {ROOTS} square roots', roots * 1e6, 'us', 'itself', 1.0)]
+    for model in ('smart_manifold', 'isa_v5'):
+        config = default_actuator(model, model)
+        bodies, rates = kernels.scratch()
+        port = np.zeros(1, LOAD_PORT)
+        constants = actuator_record(config.sheet, 0)
+        flats = kernels.flat(bodies), kernels.flat(rates)
+        step = seconds(
+            lambda: kernels.body_steps(
+                PLANT_STEPS, PLANT_STEP, 0.0, port[0], constants[0], bodies, rates, *flats),
+            PLANT_STEPS)
+        rows += [
+            Row(f'{model}: plant, a step of 20 us', step * 1e6, 'us', 'real time',
+                PLANT_STEP / step),
+            Row(f'{model}: plant, the same', step * 1e6, 'us', 'square roots', roots / step)]
+        actuator = SmartActuator(config, DEFAULT_TIMING)
+
+        def ticks(actuator: SmartActuator = actuator) -> None:
+            for _ in range(TICKS):
+                actuator.tick()
+        tick = seconds(ticks, TICKS)
+        rows.append(Row(f'{model}: plant + REU, a tick of 1 ms', tick * 1e6, 'us',
+                        'real time', DEFAULT_TIMING.step_ns / NS_PER_SECOND / tick))
+    return rows
+
+
+def cylinder_rows() -> list[Row]:
+    """
+    Measure the valve-driven cylinder in simulated s per CPU s, and its error beside it.
+
+    The error is the largest of the position at any hold of ten seconds, from a solution in
+    steps of a sixteenth; the ratio is to the nanometre asked for.
+    """
+    roots = seconds(lambda: kernels.square_roots(HOLDS * HOLD_ROOTS), HOLDS, of_cpu=True)
+    cylinders = cylinder.cylinder_record()
+    states = cylinder.at_rest(HOLDS, cylinders[0])
+    hold = seconds(
+        lambda: cylinder.cylinder_run(1, cylinders, states), HOLDS, of_cpu=True)
+    error = float(np.abs(states - cylinder.simulate(HOLDS, 16))[:, 0].max())
+    return [
+        Row(f'floor: {HOLD_ROOTS} square roots', roots * 1e6, 'us', 'itself', 1.0),
+        Row('cylinder, order 8, a step of 1 ms', cylinder.HOLD / hold, 's/CPU s',
+            'square roots', roots / hold),
+        Row('cylinder: its largest error', error, 'm', 'a nanometre', 1e-9 / error)]

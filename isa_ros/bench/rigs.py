@@ -1,0 +1,46 @@
+"""Runs of any number of actuators: legs' worth of them, each on a load of its own."""
+
+from copy import deepcopy
+from pathlib import Path
+
+from isa_ros.bench.spec import LEG, ONE_PROCESS, Spec
+from isa_ros.config.paths import CONFIG, find, SCENARIOS
+from isa_ros.config.yaml_text import dump, Tree
+from isa_ros.run.session import Request
+
+TICK_S = 1e-3
+_PATTERN: tuple[tuple[str, Tree], ...] = (
+    ('haa', {
+        'model': 'smart_manifold', 'load': {'kind': 'wheel'}, 'initial_position_deg': 50.0}),
+    ('hfe', {'model': 'isa_v5', 'load': {'kind': 'mass'}, 'initial_position_mm': 50.0}),
+    ('kfe', {'model': 'isa_v5', 'load': {'kind': 'mass'}, 'initial_position_mm': 50.0}),
+)
+
+
+def rigs_file(n_actuators: int) -> str:
+    """Return a run file of ``n_actuators`` that hold their places: HAA, HFE, KFE and again."""
+    actuators: Tree = {}
+    for k in range(n_actuators):
+        leg, joint = divmod(k, len(_PATTERN))
+        name, tree = _PATTERN[joint]
+        # A copy: a run file has no aliases.
+        actuators[f'{name}_{leg + 1}'] = deepcopy(tree) | {'preset': 'default'}
+    return dump({
+        'name': f'rigs_{n_actuators}', 'step_ms': 1e3 * TICK_S, 'controller_offset_ms': 0.12,
+        'tick_timeout_s': 5.0,
+        'supply': {'kind': 'constant', 'pressure_mpa': 20.7, 'return_pressure_mpa': 0.0},
+        'actuators': actuators})
+
+
+def request_of(spec: Spec, directory: Path) -> Request:
+    """Return the run of a spec, as the command starts it; its files are in ``directory``."""
+    config, scenario = find('leg.yaml', CONFIG), None
+    if spec.plant == LEG:
+        scenario = find('drop.yaml', SCENARIOS)
+    else:
+        config = directory / f'rigs_{spec.plant}.yaml'
+        config.write_text(rigs_file(int(spec.plant)), encoding='utf-8')
+    return Request(
+        config=config, scenario=scenario, out=directory / 'bag',
+        duration_s=spec.ticks * TICK_S, in_process=spec.way == ONE_PROCESS, join_timeout_s=120.0,
+        is_alone=True)

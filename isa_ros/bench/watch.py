@@ -1,0 +1,88 @@
+"""Look at a run from inside its coordinator: laps, start-up, memory, processor time."""
+
+from dataclasses import replace
+import os
+import time
+
+from isa_ros.bench.host import children_of, memory_of, processor_seconds_of
+from isa_ros.bench.spec import ACTUATORS, COORDINATOR, JOINED, Measured, Memory, PREPARED, RECORDER
+from isa_ros.errors import RunError
+from isa_ros.run.pacing import BEFORE_TICKS, JOINING, Laps, Progress, STARTING
+from isa_ros.run.session import Request
+
+
+class FirstLaps(Laps):
+    """Laps that tell when each phase ended for the first time, and what the ticks cost."""
+
+    def __init__(self) -> None:
+        super().__init__()
+        self.first: dict[str, float] = {}
+        self.spent_before: dict[str, float] = {}
+
+    def lap(self, phase: str) -> None:
+        """Charge the time since the last call; at the first tick, note the processor time."""
+        if phase not in self.first:
+            self.first[phase] = time.monotonic()
+            if phase == BEFORE_TICKS:
+                self.spent_before = processor_seconds()
+        super().lap(phase)
+
+
+class Watch:
+    """What is known of one run; ``startup`` are the parts before it."""
+
+    def __init__(self, startup: dict[str, float]) -> None:
+        self._startup = startup
+        self._laps = FirstLaps()
+        self._begun = time.monotonic()
+        self._factor = 0.0
+        self._memory: list[Memory] = []
+        self._spent: dict[str, float] = {}
+
+    def request(self, request: Request) -> Request:
+        """Return the request with these laps."""
+        return replace(request, laps=self._laps)
+
+    def report(self, progress: Progress) -> None:
+        """Look around at the end of the run, while its processes still are there."""
+        if not progress.is_last:
+            return
+        self._factor = progress.real_time_factor
+        after, before = processor_seconds(), self._laps.spent_before
+        self._spent = {part: after[part] - before[part] for part in before}
+        me = os.getpid()
+        self._memory = [memory_of(pid) for pid in (me, *children_of(me))]
+
+    def measured(self, ticks: int) -> Measured:
+        """
+        Return what a run of so many ticks told.
+
+        Raises
+        ------
+        RunError
+            It ended before its first tick.
+
+        """
+        first = self._laps.first
+        if BEFORE_TICKS not in first or not self._factor:
+            raise RunError('the run ended before its first tick')
+        parts, begun = dict(self._startup), self._begun
+        for part, phase in ((PREPARED, STARTING), (JOINED, JOINING), (RECORDER, BEFORE_TICKS)):
+            parts[part] = first[phase] - begun
+            begun = first[phase]
+        return Measured(
+            ticks_per_s=1e3 * self._factor, startup=parts,
+            phases={phase: spent / ticks for phase, spent in self._laps.spent.items()
+                    if phase not in (STARTING, JOINING, BEFORE_TICKS)},
+            processor={part: spent / ticks for part, spent in self._spent.items()},
+            memory=self._memory)
+
+
+def processor_seconds() -> dict[str, float]:
+    """Return the processor time so far of this process, and of its children together."""
+    me = os.getpid()
+    spent = {COORDINATOR: processor_seconds_of(me)}
+    children = children_of(me)
+    if children:
+        spent[ACTUATORS] = sum(processor_seconds_of(child) for child in children)
+    return spent

@@ -1,0 +1,189 @@
+"""
+What each command of `isa` does; a command returns whether its answer is yes.
+
+Imports are late on purpose: `isa --help` has no time for numba.
+"""
+
+from argparse import Namespace
+from collections.abc import Iterator
+from itertools import count
+from pathlib import Path
+import sys
+from typing import TYPE_CHECKING
+
+from isa_ros.config.paths import CONFIG, find, SCENARIOS
+from isa_ros.errors import BagError, ConfigError, one_line
+
+if TYPE_CHECKING:
+    from isa_ros.run.session import Request
+
+RUNS = Path('runs')  # where a demo goes that says nothing else
+
+
+def demo(options: Namespace) -> bool:
+    """Drop the leg, four processes, and draw the report of it."""
+    from isa_ros.run.session import Request
+    out = options.out or next(path for path in _demo_directories() if not path.exists())
+    if out.exists():
+        raise BagError(f'{out} exists, must not; a demo never overwrites')
+    bag = _record(Request(
+        config=find('leg.yaml', CONFIG), scenario=find('drop.yaml', SCENARIOS),
+        out=out / 'bag', is_alone=options.is_alone))
+    _draw(bag, out / 'report.html')
+    return True
+
+
+def _record(request: 'Request') -> Path:
+    """Run, and say where its bags are, however the run ends; return the first directory."""
+    from isa_ros.run.session import prepare
+    from isa_ros.run.terminal import terminal_report
+    session = prepare(request)
+    # rclpy takes a third of a second to import, which a wrong option should not cost.
+    from isa_ros.nodes.bringup import run_session
+    try:
+        return run_session(session, terminal_report(sys.stderr))
+    finally:
+        for bag in session.bags:
+            print(bag)
+        if session.pace.shortfall:
+            print(f'isa: {session.pace.shortfall}', file=sys.stderr)
+
+
+def _demo_directories() -> Iterator[Path]:
+    yield RUNS / 'demo'
+    for number in count(2):
+        yield RUNS / f'demo_{number}'
+
+
+def bringup(options: Namespace) -> bool:
+    """Run and record a configuration."""
+    from isa_ros.run.session import Request
+    scenario = None if options.scenario is None else find(options.scenario, SCENARIOS)
+    _record(Request(
+        config=find(options.config, CONFIG), scenario=scenario, out=options.out,
+        duration_s=options.duration, real_time_factor=options.real_time_factor,
+        overwrite=options.overwrite, compression=options.compression,
+        split_mb=options.split_mb, in_process=options.in_process,
+        elsewhere=options.elsewhere, controllers=tuple(options.controller),
+        is_paused=options.paused, restore=options.restore, save=options.save,
+        join_timeout_s=options.join_timeout, is_alone=options.is_alone))
+    return True
+
+
+def actuators(options: Namespace) -> bool:
+    """Run actuators of a configuration for a coordinator on another host."""
+    from isa_ros.processes.actuator_host import host_actuators
+    scenario = None if options.scenario is None else find(options.scenario, SCENARIOS)
+    host_actuators(find(options.config, CONFIG), scenario, options.names)
+    return True
+
+
+def replay(options: Namespace) -> bool:
+    """Simulate a bag again from itself, and compare."""
+    from isa_ros.bag.reader import Bag
+    from isa_ros.replay.replay import replay as replay_bag
+    from isa_ros.replay.tolerances import load_tolerances
+    bag = Bag(options.bag)
+    tolerances = load_tolerances(options.tolerance, bag.types) if options.tolerance else None
+    report = replay_bag(
+        bag, tolerances, lambda line: print(one_line(line), flush=True))
+    print(report)
+    return report.is_equal
+
+
+def compare(options: Namespace) -> bool:
+    """Find the first difference of two bags."""
+    from isa_ros.replay.compare import compare_bags, recorded_as
+    from isa_ros.bag.reader import Bag
+    from isa_ros.replay.tolerances import load_tolerances
+    expected, actual = Bag(options.expected), Bag(options.actual)
+    tolerances = load_tolerances(options.tolerance, expected.types) if options.tolerance else None
+    if not recorded_as(expected).thins_like(recorded_as(actual)):
+        print('not recorded alike: what both hold is compared')
+    report = compare_bags(expected, actual, tolerances)
+    print(report)
+    return report.is_equal
+
+
+def report(options: Namespace) -> bool:
+    """Draw the figures of a bag."""
+    bag: Path = options.bag
+    _draw(bag, options.out or (bag if bag.is_dir() else bag.parent) / 'report.html')
+    return True
+
+
+def _draw(bag: Path, page: Path) -> None:
+    from isa_ros.analysis.report.report import write_report
+    for path in write_report(bag, page):
+        print(path)
+
+
+def bode(options: Namespace) -> bool:
+    """Measure the frequency response of a loop."""
+    from isa_ros.analysis.response.command import bode as measure_bode
+    measure_bode(options)
+    return True
+
+
+def step(options: Namespace) -> bool:
+    """Measure the step response of a loop."""
+    from isa_ros.analysis.response.command import step as measure_step
+    measure_step(options)
+    return True
+
+
+def identify(options: Namespace) -> bool:
+    """Estimate the parameters of a bag's actuators."""
+    from isa_ros.analysis.identification.identification import identify_bag, table, write_json
+    found = identify_bag(options.bag, options.actuator)
+    print(table(found))
+    if options.json:
+        write_json(found, options.bag, options.json)
+    return True
+
+
+def study(options: Namespace) -> bool:
+    """Vary one parameter against the performance."""
+    from isa_ros.analysis.studies.command import study as run_study
+    run_study(options)
+    return True
+
+
+def params(options: Namespace) -> bool:
+    """List every parameter of a model, a leg or a run."""
+    from isa_ros.config.listing import describe
+    print(describe(options.name, options.preset, options.variant))
+    return True
+
+
+def paper(options: Namespace) -> bool:
+    """Show what the paper prints."""
+    from isa_ros.paper.show import describe
+    print(describe(options.name))
+    return True
+
+
+def validate(options: Namespace) -> bool:
+    """Hold the actuators against the paper, number by number."""
+    from isa_ros.analysis.validation.groups import GROUPS
+    from isa_ros.analysis.validation.page import as_text, PAGE, write_json, write_page
+    from isa_ros.analysis.validation.runner import chosen, is_reached, terminal_progress, validated
+    groups = chosen(GROUPS, options.only)
+    if options.only and options.out and (options.out / PAGE).exists():
+        raise ConfigError(
+            f'{options.out / PAGE} exists, must not: --only would leave a part of it')
+    results = validated(groups, options.only, terminal_progress(sys.stderr))
+    print(as_text(results))
+    if options.json:
+        write_json(results, options.json)
+    if options.out:
+        for path in write_page(results, options.out):
+            print(path)
+    return is_reached(results)
+
+
+def bench(options: Namespace) -> bool:
+    """Measure how fast this machine simulates."""
+    from isa_ros.bench.command import bench as run_bench
+    run_bench(options.json, options.only, options.out)
+    return True

@@ -1,0 +1,230 @@
+"""
+The command `isa`: arguments and exit codes. What a command does is in `isa_ros.cli.commands`.
+
+Nothing here imports ROS or numba, so that `isa --help` answers at once.
+"""
+
+import argparse
+from collections.abc import Sequence
+import errno
+import os
+from pathlib import Path
+import signal
+import sys
+import traceback
+from types import FrameType
+from typing import NoReturn
+
+from isa_ros.cli import commands, response_arguments, study_arguments
+from isa_ros.cli.argument_types import (
+    directory_to_write, file_to_write, names, not_negative, positive)
+from isa_ros.errors import IsaError, one_line
+from isa_ros.run.pacing import JOIN_TIMEOUT_S
+
+DONE, ANSWER_IS_NO, WRONG_INPUT, NOT_COMPLETED, INTERRUPTED = 0, 1, 2, 3, 130
+"""Exit codes; `IsaError` children carry theirs, a diverged simulation 4 among them."""
+
+COMPRESSIONS = ('none', 'lz4', 'zstd')
+
+_DISK_IS_FULL = (errno.ENOSPC, errno.EDQUOT)
+
+
+class _Parser(argparse.ArgumentParser):
+    """Says what is wrong in one line."""
+
+    def error(self, message: str) -> NoReturn:
+        self.exit(WRONG_INPUT, f'{self.prog}: {message}; see {self.prog} --help\n')
+
+
+def main(arguments: Sequence[str] | None = None) -> int:
+    """Run one command and return its exit code."""
+    options = make_parser().parse_args(arguments)
+    options.is_alone = arguments is None  # in this process: nobody else has called
+    # Ctrl-C and SIGTERM end a command alike; a run replaces both to stop between two ticks.
+    before = signal.signal(signal.SIGTERM, _interrupt)
+    try:
+        return DONE if options.command(options) else ANSWER_IS_NO
+    except (IsaError, OSError, KeyboardInterrupt) as error:
+        if 'debug' in options:
+            traceback.print_exc()
+        return _end(error)
+    finally:
+        signal.signal(signal.SIGTERM, before)
+
+
+def _end(error: IsaError | OSError | KeyboardInterrupt) -> int:
+    """Say in one line why a command ended, and return its exit code."""
+    if isinstance(error, KeyboardInterrupt):
+        print('isa: interrupted', file=sys.stderr)
+        return INTERRUPTED
+    if isinstance(error, IsaError):
+        print(f'isa: {one_line(str(error))}', file=sys.stderr)
+        return error.exit_code
+    if isinstance(error, BrokenPipeError):  # the reader of a pipe had enough
+        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+        return DONE
+    where = f'{error.filename}: ' if error.filename else ''
+    print(f'isa: {where}{error.strerror or error}', file=sys.stderr)
+    return NOT_COMPLETED if error.errno in _DISK_IS_FULL else WRONG_INPUT
+
+
+def _interrupt(number: int, frame: FrameType | None) -> NoReturn:
+    raise KeyboardInterrupt
+
+
+def make_parser() -> argparse.ArgumentParser:
+    """Return the parser of all commands."""
+    common = _Parser(add_help=False)
+    common.add_argument(
+        '--debug', action='store_true', default=argparse.SUPPRESS,
+        help='show the traceback of an error')
+    parser = _Parser(
+        prog='isa', parents=[common],
+        description='Hydraulic integrated smart actuators, simulated in lockstep.')
+    subparsers = parser.add_subparsers(metavar='COMMAND', required=True)
+    for name, (add_arguments, command, summary) in _COMMANDS.items():
+        below = subparsers.add_parser(name, parents=[common], help=summary, description=summary)
+        add_arguments(below)
+        below.set_defaults(command=command)
+    return parser
+
+
+def _demo(parser: argparse.ArgumentParser) -> None:
+    parser.add_argument(
+        '--out', type=Path, metavar='DIR', help='new directory (default: a new one in runs/)')
+
+
+def _bringup(parser: argparse.ArgumentParser) -> None:
+    parser.add_argument('config', metavar='CONFIG', help='a run file, or a shipped one by name')
+    parser.add_argument(
+        '--scenario', metavar='FILE', help='what is commanded: a file, or a shipped one by name')
+    parser.add_argument(
+        '--duration', type=positive, metavar='S',
+        help='simulated time (default: that of the scenario, else until Ctrl-C)')
+    parser.add_argument(
+        '--out', type=Path, metavar='DIR',
+        help='directory of the bag (default: a new one in runs/)')
+    parser.add_argument(
+        '--overwrite', action='store_true', help='replace the bag in an existing directory')
+    parser.add_argument(
+        '--compression', choices=COMPRESSIONS,
+        help='of the chunks of the bag (default: that of CONFIG, else none)')
+    parser.add_argument(
+        '--split-mb', type=not_negative, metavar='N',
+        help='begin another file of the bag after N MB, 0: never (default: that of CONFIG)')
+    parser.add_argument(
+        '--real-time-factor', type=positive, metavar='X',
+        help='not faster than X times real time (default: as fast as it goes)')
+    parser.add_argument(
+        '--in-process', action='store_true',
+        help='all nodes in one process: faster, and the same bytes in the bag')
+    parser.add_argument(
+        '--elsewhere', type=names, default=(), metavar='NAME[,NAME...]|all',
+        help='actuators that `isa actuators` starts on another host: they are waited for')
+    parser.add_argument(
+        '--controller', action='append', default=[], metavar='NAME',
+        help='a node of yours that is waited for at every tick; may be repeated')
+    parser.add_argument(
+        '--join-timeout', type=positive, metavar='S', default=JOIN_TIMEOUT_S,
+        help=f'how long participants are waited for (default: {JOIN_TIMEOUT_S:g} s)')
+    parser.add_argument(
+        '--paused', action='store_true',
+        help='wait before tick 0 for /coordinator/step or the end of the pause')
+    parser.add_argument(
+        '--restore', type=Path, metavar='FILE', help='go on from a saved state')
+    parser.add_argument(
+        '--save', type=file_to_write, metavar='FILE', help='save the state at the end there')
+
+
+def _actuators(parser: argparse.ArgumentParser) -> None:
+    parser.add_argument('config', metavar='CONFIG', help='a run file, or a shipped one by name')
+    parser.add_argument(
+        'names', nargs='*', metavar='NAME', help='an actuator of it (default: all)')
+    parser.add_argument(
+        '--scenario', metavar='FILE',
+        help='that of the run: it may change loads or where the run starts')
+
+
+def _replay(parser: argparse.ArgumentParser) -> None:
+    parser.add_argument('bag', type=Path, metavar='BAG')
+    _tolerance(parser)
+
+
+def _compare(parser: argparse.ArgumentParser) -> None:
+    parser.add_argument('expected', type=Path, metavar='BAG')
+    parser.add_argument('actual', type=Path, metavar='BAG')
+    _tolerance(parser)
+
+
+def _tolerance(parser: argparse.ArgumentParser) -> None:
+    parser.add_argument(
+        '--tolerance', type=Path, metavar='FILE', help='bounds by topic and field (default: none)')
+
+
+def _report(parser: argparse.ArgumentParser) -> None:
+    parser.add_argument('bag', type=Path, metavar='BAG')
+    parser.add_argument(
+        '--out', type=Path, metavar='FILE.html', help='the page (default: beside the bag)')
+
+
+def _identify(parser: argparse.ArgumentParser) -> None:
+    parser.add_argument('bag', type=Path, metavar='BAG')
+    parser.add_argument('--actuator', metavar='NAME', help='only this one (default: all)')
+    parser.add_argument(
+        '--json', type=file_to_write, metavar='FILE', help='write the numbers there too')
+
+
+def _params(parser: argparse.ArgumentParser) -> None:
+    parser.add_argument('name', metavar='MODEL|CONFIG', help='isa_v5, hyq_real, leg.yaml, ...')
+    parser.add_argument(
+        '--preset', metavar='NAME', help='gains of a model (default: default)')
+    parser.add_argument(
+        '--variant', action='append', default=[], metavar='V',
+        help='another way to model or to wire a model; may be repeated')
+
+
+def _paper(parser: argparse.ArgumentParser) -> None:
+    parser.add_argument(
+        'name', metavar='NAME', nargs='?', help='a table or a statement (default: all)')
+
+
+def _validate(parser: argparse.ArgumentParser) -> None:
+    parser.add_argument(
+        '--only', action='append', metavar='NAME', help='a group, or an entry as GROUP.ENTRY')
+    parser.add_argument(
+        '--json', type=file_to_write, metavar='FILE', help='write the entries there too')
+    parser.add_argument(
+        '--out', type=directory_to_write, metavar='DIR',
+        help='write validation.md and its figures there')
+
+
+def _bench(parser: argparse.ArgumentParser) -> None:
+    parser.add_argument(
+        '--only', action='append', metavar='NAME', help='a group of rows; may be repeated')
+    parser.add_argument(
+        '--json', type=file_to_write, metavar='FILE', help='write the numbers there too')
+    parser.add_argument(
+        '--out', type=directory_to_write, metavar='DIR',
+        help='write bench.md and its figure there')
+
+
+_COMMANDS = {
+    'demo': (_demo, commands.demo, 'drop the leg by 10 cm, record it, and draw a report'),
+    'bringup': (_bringup, commands.bringup, 'run and record a configuration'),
+    'actuators': (_actuators, commands.actuators,
+                  'run actuators of a configuration for a coordinator on another host'),
+    'replay': (_replay, commands.replay, 'simulate a bag again from itself, and compare'),
+    'compare': (_compare, commands.compare, 'find the first difference of two bags'),
+    'report': (_report, commands.report, 'draw the figures of a bag, one page'),
+    'bode': (response_arguments.bode, commands.bode,
+             'measure the frequency response of a loop of an actuator'),
+    'step': (response_arguments.step, commands.step,
+             'measure the step response of a loop of an actuator'),
+    'identify': (_identify, commands.identify, 'estimate valve, oil and friction from a bag'),
+    'study': (study_arguments.study, commands.study,
+              'vary one parameter against the performance of the actuators'),
+    'params': (_params, commands.params, 'list every parameter with unit, range and source'),
+    'paper': (_paper, commands.paper, 'show what the paper prints, with the place'),
+    'validate': (_validate, commands.validate, 'hold the actuators against the paper, by number'),
+    'bench': (_bench, commands.bench, 'measure how fast this machine simulates'),
+}

@@ -1,0 +1,61 @@
+"""The arguments of `isa bode` and `isa step`."""
+
+import argparse
+from pathlib import Path
+
+from isa_ros.cli.argument_types import count, file_to_write, number, positive
+
+LOOPS = ('position', 'force', 'pressure', 'spool', 'current')
+
+
+def bode(parser: argparse.ArgumentParser) -> None:
+    """Add the arguments of `isa bode`."""
+    _rig(parser)
+    parser.add_argument(
+        '--of', choices=('closed', 'plant', 'open'), default='closed',
+        help='output over reference, over what the block gives inwards, or over the error')
+    parser.add_argument(
+        '--method', choices=('stepped', 'chirp'), default='stepped',
+        help='one sine after the other (default), or a logarithmic chirp')
+    parser.add_argument(
+        '--from', dest='low', type=positive, metavar='HZ', help='lowest frequency')
+    parser.add_argument(
+        '--to', dest='high', type=positive, metavar='HZ', help='highest frequency')
+    parser.add_argument(
+        '--points', type=count, default=30, metavar='N', help='frequencies (default: 30)')
+
+
+def step(parser: argparse.ArgumentParser) -> None:
+    """Add the arguments of `isa step`."""
+    _rig(parser)
+    parser.add_argument(
+        '--duration', type=positive, metavar='S', help='recorded after the step')
+
+
+def _rig(parser: argparse.ArgumentParser) -> None:
+    parser.add_argument('name', metavar='MODEL|CONFIG', help='isa_v5, rig_rotary.yaml, ...')
+    parser.add_argument('--actuator', metavar='NAME', help='which one of a run file')
+    parser.add_argument(
+        '--loop', choices=LOOPS, default='force',
+        help='the loop to excite, the blocks outside it off (default: force, or torque)')
+    parser.add_argument('--preset', metavar='P', help='gains of a model (default: default)')
+    parser.add_argument(
+        '--variant', action='append', default=[], metavar='V',
+        help='another way to model or to wire a model; may be repeated')
+    parser.add_argument(
+        '--load', metavar='KIND',
+        help="load of the model (default: blocked; for the position loop the actuator's own)")
+    parser.add_argument(
+        '--position', type=number, metavar='X', help='in mm or deg (default: as configured)')
+    parser.add_argument(
+        '--amplitude', type=positive, metavar='A',
+        help='of the reference, in N, Nm, mm, deg, MPa or mA (default: 10 %% of the rated force, '
+             '25 %% of spool travel and current, 1 %% of the stroke)')
+    parser.add_argument(
+        '--nodes', action='store_true',
+        help='measure through running nodes, from the bag they record, at their ticks')
+    parser.add_argument(
+        '--bag', type=Path, metavar='DIR', help='with --nodes: keep the bag there')
+    parser.add_argument(
+        '--json', type=file_to_write, metavar='FILE', help='write the numbers there too')
+    parser.add_argument('--out', type=file_to_write, metavar='FILE.png', help='draw the figure')

@@ -1,0 +1,33 @@
+"""One actuator of a packaged model on its default load, without a run file."""
+
+from isa_ros.actuator.actuator import Timing
+from isa_ros.actuator.sheet import ActuatorSheet
+from isa_ros.config.catalogue import actuator_model, Model
+from isa_ros.config.own_load import own_load
+from isa_ros.config.run_config import ActuatorConfig
+from isa_ros.config.sections import build, Place
+from isa_ros.loads.sheets import LocalLoad
+
+DEFAULT_TIMING = Timing(step_ns=1_000_000, controller_offset_ns=120_000)  # coupling.md
+PRESET = 'default'
+
+
+def default_actuator(model: str, name: str) -> ActuatorConfig:
+    """
+    Return an actuator of a model, at mid stroke on the model's default load.
+
+    Raises
+    ------
+    ConfigError
+        There is no such model.
+
+    """
+    found = actuator_model(model, 'model')
+    sheet = build(ActuatorSheet, found.with_preset(PRESET, 'preset'), found.place)
+    return ActuatorConfig(
+        name, found.name, PRESET, sheet, default_load(found), 0.5 * sheet.plant.drive.stroke)
+
+
+def default_load(model: Model) -> LocalLoad:
+    """Return the load a model has where nothing else is said."""
+    return own_load({'kind': model.default_load}, Place(model.name) / 'load', model)

@@ -1,0 +1,53 @@
+"""A load of one actuator alone, from the model's own and what a file says of it."""
+
+from dataclasses import replace
+from typing import Any
+
+from isa_ros.config.catalogue import Model
+from isa_ros.config.sections import build_one_of, Entry, merge, Place, Section, written
+from isa_ros.config.yaml_text import Tree
+from isa_ros.errors import ConfigError
+from isa_ros.loads.sheets import LocalLoad
+from isa_ros.loads.wheel import Wheel
+
+
+def own_load(tree: Tree, place: Place, model: Model) -> LocalLoad:
+    """Return a load of one actuator: the model's of that kind with single values replaced."""
+    load: LocalLoad = build_one_of(LocalLoad, load_section(tree, place, model), place)
+    return load
+
+
+def load_section(tree: Tree, place: Place, model: Model) -> Section:
+    """
+    Return the values of a load, each knowing where it was written.
+
+    Raises
+    ------
+    ConfigError
+        The model has no load of this kind.
+
+    """
+    kind: Any = tree.get('kind')
+    if kind not in model.loads:
+        raise ConfigError(f'{place}.kind = {kind!r}, must be one of {", ".join(model.loads)}')
+    own = {key: value for key, value in tree.items() if key != 'kind'}
+    section = merge(model.loads[kind], written(own, place))
+    named = section['kind']
+    assert isinstance(named, Entry)
+    return section | {'kind': replace(named, where=str(place / 'kind'))}
+
+
+def refuse_beyond_stops(load: LocalLoad, position: float, where: str) -> None:
+    """
+    Refuse a start outside the end stops of the load.
+
+    Raises
+    ------
+    ConfigError
+        The stops would throw the load back in.
+
+    """
+    if isinstance(load, Wheel) and not load.stop_low <= position <= load.stop_high:
+        raise ConfigError(
+            f'{where}: starts at {position:.4g} m | rad, must be between the stops of its load, '
+            f'{load.stop_low:g} and {load.stop_high:g}')

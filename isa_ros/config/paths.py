@@ -1,0 +1,59 @@
+"""
+Where shipped files are: in a clone beside the package, installed under share/isa_ros.
+
+A file named on the command line is the user's own if it exists, else a shipped one.
+"""
+
+import os
+from pathlib import Path
+import sys
+
+from isa_ros.errors import ConfigError
+
+_SHARE = Path('share') / 'isa_ros'
+CONFIG = 'config'
+SCENARIOS = 'config/scenarios'
+
+
+def share_directories() -> list[Path]:
+    """Return the directories that may hold config/, launch/ and urdf/, the nearest first."""
+    package = Path(__file__).resolve().parents[1]
+    found = [package.parent] if (package.parent / 'package.xml').is_file() else []
+    # A merged or isolated colcon install, and a wheel: PREFIX/lib/python3.x/site-packages.
+    prefixes = [Path(p) for p in os.environ.get('AMENT_PREFIX_PATH', '').split(os.pathsep) if p]
+    prefixes += [*package.parents[2:5], Path(sys.prefix)]
+    for prefix in prefixes:
+        if (prefix / _SHARE).is_dir() and prefix / _SHARE not in found:
+            found.append(prefix / _SHARE)
+    return found
+
+
+def shipped(directory: str) -> dict[str, Path]:
+    """Return the shipped YAML files of ``config`` or ``config/scenarios`` by name, sorted."""
+    files: dict[str, Path] = {}
+    for share in share_directories():
+        for path in (share / directory).glob('*.yaml'):
+            files.setdefault(path.name, path)
+    return dict(sorted(files.items()))
+
+
+def find(name: str, directory: str) -> Path:
+    """
+    Return the user's file ``name``, or else the shipped file of that name.
+
+    The ending .yaml may be left out for shipped files.
+
+    Raises
+    ------
+    ConfigError
+        There is neither.
+
+    """
+    path = Path(name)
+    if path.exists():
+        return path
+    files = shipped(directory)
+    for known in (name, f'{name}.yaml'):
+        if known in files:
+            return files[known]
+    raise ConfigError(f'{name}: no such file; shipped: {", ".join(files) or "none"}')

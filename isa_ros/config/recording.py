@@ -1,0 +1,181 @@
+"""
+What of a run is recorded, and how its files are written: the section `record` of a run file.
+
+::
+
+    record:
+      compression: zstd              # none, lz4, zstd
+      split_mb: 100                  # a new file after so many MB; 0: one file
+      leave_out: [/*/references]     # topics; * stands for any text
+      decimate: {/*/pressure_?: 10}  # only the samples of every tenth tick
+"""
+
+from collections.abc import Iterable
+from dataclasses import dataclass, replace
+from fnmatch import fnmatchcase
+from typing import Any
+
+from isa_ros.config.sections import as_tree, build, Place, refuse_unknown, section_at, written
+from isa_ros.config.yaml_text import Tree
+from isa_ros.core.parameter import choice, parameter, Parameters
+from isa_ros.errors import ConfigError
+
+BYTES_PER_MB = 1_000_000
+MAX_PERIOD = 10_000    # ticks between two samples of a topic
+MAX_PATTERNS = 100
+MAX_PATTERN_LENGTH = 256
+
+_EVENTS = '/coordinator/events'
+
+
+@dataclass(frozen=True, kw_only=True)
+class Storage(Parameters):
+    """How the files of a bag are written."""
+
+    compression: str = choice('of every chunk of a bag', 'none', 'lz4', 'zstd')
+    split_mb: float = parameter(
+        'size after which the next file of a bag begins; 0: one file', 'MB', ge=0.0, le=1e6)
+
+    @property
+    def split_bytes(self) -> int | None:
+        """Return the size after which the next file begins, None for one file."""
+        return round(self.split_mb * BYTES_PER_MB) if self.split_mb else None
+
+
+PLAIN = Storage(compression='none', split_mb=0.0)
+
+
+@dataclass(frozen=True)
+class RecordConfig:
+    """Storage, and what is thinned out."""
+
+    storage: Storage = PLAIN
+    leave_out: tuple[str, ...] = ()
+    """Patterns of topics that are not recorded."""
+    decimate: tuple[tuple[str, int], ...] = ()
+    """(pattern of topics, n): recorded at every n-th tick; the first that fits a topic counts."""
+
+    @property
+    def thins(self) -> bool:
+        """Tell whether anything is left out or decimated."""
+        return bool(self.leave_out or self.decimate)
+
+    def thins_like(self, other: 'RecordConfig') -> bool:
+        """Tell whether another one leaves out and decimates the same."""
+        return (self.leave_out, self.decimate) == (other.leave_out, other.decimate)
+
+    def period(self, topic: str) -> int:
+        """Return every how many ticks a topic is recorded, 0 for never."""
+        if replay_needs(topic):
+            return 1
+        if any(fnmatchcase(topic, pattern) for pattern in self.leave_out):
+            return 0
+        return next((n for pattern, n in self.decimate if fnmatchcase(topic, pattern)), 1)
+
+    def refuse_misfits(self, topics: Iterable[str], source: str) -> None:
+        """
+        Refuse patterns that fit no topic of a run, or one that replay needs.
+
+        Raises
+        ------
+        ConfigError
+            The pattern, by file and key.
+
+        """
+        topics, place = sorted(topics), Place(source, 'record')
+        for pattern in self.leave_out:
+            for topic in _fitting(pattern, topics, place / 'leave_out'):
+                if replay_needs(topic):
+                    raise ConfigError(
+                        f'{place / "leave_out"} = {pattern!r} leaves out {topic}, which a '
+                        'replay needs, must not')
+        for pattern, _ in self.decimate:
+            fitting = _fitting(pattern, topics, place / 'decimate')
+            if all(replay_needs(topic) for topic in fitting):
+                raise ConfigError(
+                    f'{place / "decimate"} = {pattern!r} thins {fitting[0]}, which a replay '
+                    'needs whole, must not')
+
+    def stored(
+            self, compression: str | None, split_mb: float | None,
+            where: str) -> 'RecordConfig':
+        """
+        Return it with what was asked for at ``where``; None leaves a value as it is.
+
+        Raises
+        ------
+        ConfigError
+            A value is none of the known ones, or out of range.
+
+        """
+        given = {'compression': compression, 'split_mb': split_mb}
+        asked: Tree = {key: value for key, value in given.items() if value is not None}
+        place = Place(where)
+        return replace(self, storage=_storage(asked, place, self.storage))
+
+    def to_tree(self) -> Tree:
+        """Return the section; `read_record` undoes it."""
+        return as_tree(self.storage) | {
+            'leave_out': list(self.leave_out), 'decimate': dict(self.decimate)}
+
+
+def replay_needs(topic: str) -> bool:
+    """Tell whether a topic says what was done to a run: all that a replay is fed with."""
+    return topic == _EVENTS or topic.rpartition('/')[2].startswith('applied_')
+
+
+def read_record(value: Any, place: Place) -> RecordConfig:
+    """
+    Return what a section `record` says; what it leaves out is as without the section.
+
+    Raises
+    ------
+    ConfigError
+        By file, key and value.
+
+    """
+    tree = section_at(value, place)
+    keys = tuple(Storage.__dataclass_fields__)
+    refuse_unknown(tree, (*keys, 'leave_out', 'decimate'), place)
+    storage: Tree = {key: tree[key] for key in keys if key in tree}
+    patterns = tree.get('leave_out', [])
+    if not isinstance(patterns, list):
+        raise ConfigError(f'{place / "leave_out"} = {patterns!r}, must be a list of topics')
+    periods = section_at(tree.get('decimate', {}), place / 'decimate')
+    for key, found in (('leave_out', patterns), ('decimate', periods)):
+        if len(found) > MAX_PATTERNS:
+            raise ConfigError(
+                f'{place / key} has {len(found)} patterns, must be <= {MAX_PATTERNS}')
+    return RecordConfig(
+        _storage(storage, place, PLAIN),
+        tuple(_pattern(pattern, place / 'leave_out') for pattern in patterns),
+        tuple((_pattern(pattern, place / 'decimate'), _period(n, place / 'decimate' / pattern))
+              for pattern, n in periods.items()))
+
+
+def _storage(tree: Tree, place: Place, base: Storage) -> Storage:
+    return build(Storage, written(as_tree(base) | tree, place), place)
+
+
+def _pattern(value: Any, place: Place) -> str:
+    if isinstance(value, str) and value.startswith(('/', '*')) and (
+            len(value) <= MAX_PATTERN_LENGTH):
+        return value
+    raise ConfigError(
+        f'{place} = {value!r}, must be a topic like /hip/valve or a pattern like /*/valve of '
+        f'<= {MAX_PATTERN_LENGTH} letters')
+
+
+def _period(value: Any, place: Place) -> int:
+    if type(value) is int and 2 <= value <= MAX_PERIOD:
+        return value
+    raise ConfigError(
+        f'{place} = {value!r}, must be a whole number of ticks >= 2 and <= {MAX_PERIOD}')
+
+
+def _fitting(pattern: str, topics: Iterable[str], place: Place) -> list[str]:
+    fitting = [topic for topic in topics if fnmatchcase(topic, pattern)]
+    if not fitting:
+        raise ConfigError(
+            f'{place} = {pattern!r} fits no topic; there are {", ".join(topics)}')
+    return fitting

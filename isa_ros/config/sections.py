@@ -1,0 +1,292 @@
+"""
+From sections of numbers to checked parameter sets, each value knowing where it came from.
+
+A later layer (preset, run file) replaces single values of an earlier one (the model's
+sheet); what is wrong is reported at the file and key it was written at.
+"""
+
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass, fields
+import re
+from typing import Any, get_args, get_type_hints, TypeVar
+
+from isa_ros.config.yaml_text import Scalar, Tree
+from isa_ros.core.parameter import check, Parameters
+from isa_ros.core.suggest import alternatives, listed
+from isa_ros.errors import ConfigError, ParameterError
+
+_SOURCES = ('paper', 'derived', 'assumed', 'public model')
+KIND_KEYS = ('kind', 'linkage')  # what a section may call its kind
+
+P = TypeVar('P', bound=Parameters)
+
+
+@dataclass(frozen=True)
+class Entry:
+    """One value, where it was written (``file: dotted key``) and what it rests on."""
+
+    value: Scalar
+    where: str
+    source: str
+
+
+Section = dict[str, 'Entry | Section']
+
+
+@dataclass(frozen=True)
+class Place:
+    """A section of a file; its text starts every message about the section."""
+
+    file: str
+    key: str = ''
+
+    def __truediv__(self, key: str) -> 'Place':
+        return Place(self.file, f'{self.key}.{key}' if self.key else key)
+
+    def __str__(self) -> str:
+        return f'{self.file}: {self.key}' if self.key else self.file
+
+    def has(self, what: str) -> str:
+        """Return a message about the section itself."""
+        return f'{self}: {what}' if not self.key else f'{self} {what}'
+
+
+def refuse_unknown(given: Iterable[str], names: Iterable[str], place: Place) -> None:
+    """
+    Refuse the first key that is not one of ``names``, naming the nearest ones.
+
+    A key that differs from a name in its unit only is told so: the unit belongs to the key.
+
+    Raises
+    ------
+    ConfigError
+        A key is unknown.
+
+    """
+    names = list(names)
+    for key in given:
+        if key not in names:
+            raise ConfigError(f'{place / key} is unknown; {alternatives(key, names)}')
+
+
+def section_at(tree: Any, place: Place) -> Tree:
+    """
+    Return a value as a section.
+
+    Raises
+    ------
+    ConfigError
+        It is a scalar or a list.
+
+    """
+    if not isinstance(tree, dict):
+        raise ConfigError(f'{place} = {tree!r}, must be a section of `key: value`')
+    return tree
+
+
+def names_at(value: Any, place: Place) -> list[str]:
+    """
+    Return a value as a list of names.
+
+    Raises
+    ------
+    ConfigError
+        It is something else.
+
+    """
+    if not isinstance(value, list) or not all(isinstance(name, str) for name in value):
+        raise ConfigError(f'{place} = {value!r}, must be a list of names')
+    return value
+
+
+def written(tree: Tree, place: Place) -> Section:
+    """Return the plain numbers of a run file; their source is the file."""
+    section: Section = {}
+    for key, value in tree.items():
+        if isinstance(value, dict):
+            section[key] = written(value, place / key)
+        elif isinstance(value, list):
+            raise ConfigError(f'{place / key} = {value!r}, must be one value')
+        else:
+            section[key] = Entry(value, str(place / key), place.file)
+    return section
+
+
+def sourced(tree: Tree, place: Place) -> Section:
+    """
+    Return the values of a model's sheet, each written as ``{value: ..., source: ...}``.
+
+    Raises
+    ------
+    ConfigError
+        A value lacks its source, or the source is none of the declared ones.
+
+    """
+    section: Section = {}
+    for key, value in tree.items():
+        if key in KIND_KEYS and isinstance(value, str):
+            section[key] = Entry(value, str(place / key), '')
+            continue
+        below = section_at(value, place / key)
+        if 'value' not in below and 'source' not in below:
+            section[key] = sourced(below, place / key)
+            continue
+        refuse_unknown(below, ('value', 'source'), place / key)
+        number, source = below.get('value'), below.get('source')
+        if isinstance(number, (dict, list)) or not isinstance(source, str):
+            raise ConfigError((place / key).has('needs a value and its source'))
+        if not source.startswith(_SOURCES):
+            raise ConfigError(
+                f'{place / key}.source = {source!r}, must start with {" or ".join(_SOURCES)}')
+        section[key] = Entry(number, str(place / key), source)
+    return section
+
+
+def merge(base: Section, over: Section) -> Section:
+    """
+    Return ``base`` with the single values of ``over`` in place of its own.
+
+    A section of another kind replaces the one before it whole.
+    """
+    merged = dict(base)
+    for key, value in over.items():
+        below = merged.get(key)
+        if (isinstance(value, dict) and isinstance(below, dict)
+                and _kind(value) in (None, _kind(below))):
+            merged[key] = merge(below, value)
+        else:
+            merged[key] = value
+    return merged
+
+
+def _kind(section: Section) -> Scalar:
+    """Return the kind a section names, None where it names none."""
+    named = [entry.value for key in KIND_KEYS
+             if isinstance(entry := section.get(key), Entry)]
+    return named[0] if named else None
+
+
+def build(cls: type[P], section: Section, place: Place) -> P:
+    """
+    Return the parameter set of a section that must hold every value without `absent`.
+
+    A field that may hold one of several sets has its section say which: ``kind: wheel``.
+
+    Raises
+    ------
+    ConfigError
+        An unknown or missing key or kind, or values that contradict each other.
+    ParameterError
+        A value of the wrong type or out of range, at the key it was written at.
+
+    """
+    hints = get_type_hints(cls)
+    refuse_unknown_entries(section, [f.name for f in fields(cls)], place)
+    lacking = [f.name for f in fields(cls)
+               if f.name not in section and 'absent' not in f.metadata]
+    if lacking:
+        raise ConfigError(place.has(f'lacks {listed(lacking)}'))
+    values: dict[str, Any] = {}
+    for f in fields(cls):
+        if f.name not in section:
+            values[f.name] = f.metadata['absent']
+            continue
+        entry = section[f.name]
+        if 'doc' in f.metadata:
+            values[f.name] = _checked(entry, f.metadata, place / f.name)
+        elif isinstance(entry, Entry):
+            raise ConfigError(f'{entry.where} = {entry.value!r}, must be a section')
+        else:
+            values[f.name] = build_one_of(hints[f.name], entry, place / f.name)
+    try:
+        return cls(**values)
+    except ParameterError as error:
+        raise ParameterError(f'{place}: {error}') from error
+
+
+def build_one_of(hint: Any, section: Section, place: Place) -> Any:
+    """Return the set of a class, or of the one its section names out of a union; as `build`."""
+    if isinstance(hint, type):
+        return build(hint, section, place)
+    kinds = members(hint)
+    for key in KIND_KEYS:
+        if key in section:
+            break
+    else:
+        raise ConfigError(place.has(f'lacks kind, one of {", ".join(kinds)}'))
+    rest = dict(section)
+    kind = rest.pop(key)
+    if not isinstance(kind, Entry) or kind.value not in kinds:
+        value = kind.value if isinstance(kind, Entry) else 'a section'
+        where = kind.where if isinstance(kind, Entry) else str(place / key)
+        raise ConfigError(f'{where} = {value!r}, must be one of {", ".join(kinds)}')
+    return build(kinds[str(kind.value)], rest, _place_of(kind, place))
+
+
+def _place_of(kind: Entry, place: Place) -> Place:
+    """Return where a section became the kind it is: a later layer's file must fill it."""
+    file, _, key = kind.where.partition(': ')
+    return place if file == place.file else Place(file, key.rpartition('.')[0])
+
+
+def refuse_unknown_entries(section: Section, names: list[str], place: Place) -> None:
+    """Refuse an unknown key where it was written, which may be a later layer's file."""
+    for key, entry in section.items():
+        if key not in names:
+            where = _first_where(entry)
+            raise ConfigError(f'{where or place / key} is unknown; {alternatives(key, names)}')
+
+
+def _first_where(entry: Entry | Section) -> str:
+    """Return where a value or the first value of a section was written, '' for none."""
+    if isinstance(entry, Entry):
+        return entry.where
+    for below in entry.values():
+        where = _first_where(below)
+        if where:
+            return where.rpartition('.')[0] or where
+    return ''
+
+
+def _checked(entry: Entry | Section, declared: Mapping[str, Any], place: Place) -> Any:
+    if not isinstance(entry, Entry):
+        unit = declared['unit'] if 'unit' in declared else ''
+        raise ParameterError(f'{place} is a section, must be one value{unit and f" in {unit}"}')
+    check(entry.where, entry.value, declared)
+    return entry.value if 'names' in declared else float(entry.value)  # type: ignore[arg-type]
+
+
+def as_tree(parameters: Parameters, hint: Any = None) -> Tree:
+    """
+    Return a parameter set as sections of plain values; `written` and `build` undo it.
+
+    ``hint`` is the type it was declared with; out of a union, its kind is named.
+    """
+    tree: Tree = {}
+    if hint is not None and not isinstance(hint, type):
+        tree['kind'] = kind_of(parameters, hint)
+    hints = get_type_hints(type(parameters))
+    for f in fields(parameters):
+        value = getattr(parameters, f.name)
+        is_set = isinstance(value, Parameters)
+        tree[f.name] = as_tree(value, hints[f.name]) if is_set else value
+    return tree
+
+
+def kind_of(parameters: Parameters, union: Any) -> str:
+    """Return which kind out of a union a parameter set is."""
+    return next(kind for kind, cls in members(union).items() if cls is type(parameters))
+
+
+def members(union: Any) -> dict[str, type[Parameters]]:
+    """
+    Return the classes of a union by their kind: the name in small letters.
+
+    A last word that all of them share is left out: LinearPlant | RotaryPlant are linear
+    and rotary.
+    """
+    classes = get_args(union) or (union,)
+    words = {cls: re.findall('[A-Z][a-z0-9]*', cls.__name__) for cls in classes}
+    if len(classes) > 1 and len({w[-1] for w in words.values()}) == 1:
+        words = {cls: w[:-1] for cls, w in words.items()}
+    return {'_'.join(w).lower(): cls for cls, w in words.items()}

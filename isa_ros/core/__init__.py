@@ -1,0 +1,1 @@
+"""What every other package stands on: kernels, parameters, units, time, signals, contact."""

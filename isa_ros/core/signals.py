@@ -1,0 +1,85 @@
+"""
+What crosses a boundary: setpoints, samples, and the two directions of the load port.
+
+Each signal is one numpy record type, SI units, little endian, so that the same bytes
+serve as kernel argument, log row and wire format. Generalised coordinates: metres and
+newtons for a linear actuator, radians and newton metres for a rotary one.
+Force > 0 pushes out; pressures are gauge.
+"""
+
+from isa_ros.core.timebase import FORCE_WINDOWS
+import numpy as np
+
+HAS_SETPOINT = 1
+HAS_ENABLE = 2
+HAS_GAINS = 4
+
+START = np.dtype([
+    ('position', '<f8'),         # m | rad
+    ('force', '<f8'),            # what the actuator holds at rest, N | Nm
+    ('supply_pressure', '<f8'),  # Pa gauge
+    ('return_pressure', '<f8'),  # Pa gauge
+])
+"""How one actuator begins a run."""
+
+COMMAND = np.dtype([
+    ('kinds', '<u4'),          # bits of HAS_*; 0: nothing new this tick
+    ('is_enabled', '<u4'),     # 0 or 1, with HAS_ENABLE
+    ('position', '<f8'),       # m | rad
+    ('velocity', '<f8'),       # m/s | rad/s
+    ('effort', '<f8'),         # feed-forward, N | Nm
+    ('stiffness', '<f8'),      # N/m | Nm/rad; NaN keeps the gain in force
+    ('damping', '<f8'),        # Ns/m | Nms/rad; NaN keeps the gain in force
+])
+"""What may take effect at one tick boundary of one actuator."""
+
+SAMPLE = np.dtype([
+    ('position', '<f8'),            # encoder, m | rad
+    ('velocity', '<f8'),            # estimated by the REU, m/s | rad/s
+    ('force', '<f8'),               # load cell or torque sensor, N | Nm
+    ('pressure_a', '<f8'),          # Pa gauge
+    ('pressure_b', '<f8'),          # Pa gauge
+    ('spool', '<f8'),               # m
+    ('spool_velocity', '<f8'),      # m/s
+    ('current', '<f8'),             # amplifier (parallel) current, A
+    ('position_reference', '<f8'),  # m | rad
+    ('force_reference', '<f8'),     # N | Nm
+    ('spool_reference', '<f8'),     # m
+    ('current_reference', '<f8'),   # amplifier (parallel) current, A
+    ('supply_volume', '<f8'),       # oil drawn from the supply since t = 0, m3
+    ('supply_flow', '<f8'),         # its mean over the tick, m3/s
+])
+"""What one actuator reports at the end of a tick."""
+
+LOAD_PORT = np.dtype([
+    ('x0', '<f8'),               # load position at the tick, m | rad
+    ('v0', '<f8'),               # load speed
+    ('a0', '<f8'),               # load acceleration along the reference
+    ('inverse_mass', '<f8'),     # 1/m_eff, 1/kg | 1/(kg m2)
+    ('a_bias', '<f8'),           # load acceleration without this actuator's force
+    ('jerk', '<f8'),             # slope of a_bias
+    ('stiffness', '<f8'),        # k, 1/s2
+    ('damping', '<f8'),          # d, 1/s
+    ('supply_pressure', '<f8'),  # Pa gauge
+    ('return_pressure', '<f8'),  # Pa gauge
+])
+"""Load port, load to actuator, one row per actuator and tick (equation L1)."""
+
+LOAD_REPLY = np.dtype([
+    ('mean_forces', '<f8', (FORCE_WINDOWS,)),  # mean sensor force of each fifth of the tick
+    ('force', '<f8'),                          # sensor force at the end of the tick
+    ('position', '<f8'),                       # piston or rotor position at the end
+    ('velocity', '<f8'),                       # piston or rotor speed at the end
+    ('supply_volume', '<f8'),                  # oil drawn from the supply in this tick, m3
+    ('return_volume', '<f8'),                  # oil given to the return in this tick, m3
+])
+"""Load port, actuator to load, one row per actuator and tick."""
+
+SHARED_SAMPLE = np.dtype([
+    ('supply_pressure', '<f8'),         # Pa gauge
+    ('joint_position', '<f8', (3,)),    # HAA, HFE, KFE, rad
+    ('joint_velocity', '<f8', (3,)),    # rad/s
+    ('joint_torque', '<f8', (3,)),      # Nm
+    ('foot_force', '<f8', (3,)),        # from the ground, base axes, N
+])
+"""What supply and leg show at the end of a tick; NaN what belongs to a leg that is not there."""

@@ -1,0 +1,32 @@
+"""What a wrong name may have meant."""
+
+from collections.abc import Iterable
+import difflib
+import re
+
+_UNIT = (r'(?:m3|mm|um|cm|m|mrad|rad|deg|mpa|kpa|hpa|pa|bar|psi|lpm|ml|cc|l|khz|hz|ms|us|ns|s|min'
+         r'|kg|g|kn|n|nm|ma|a|kv|v|w|j|ohm|h|celsius|percent)')
+_UNIT_SUFFIX = re.compile(rf'_(?:per_)?{_UNIT}(?:_per_{_UNIT})*$')
+_MAX_NAMED = 12  # names in a message
+
+
+def alternatives(name: str, names: Iterable[str]) -> str:
+    """Return what a wrong name may have meant, as the end of a message."""
+    names = list(names)
+    stem = _UNIT_SUFFIX.sub('', name)
+    for known in names:
+        if _UNIT_SUFFIX.sub('', known) == stem:
+            if known == stem:
+                return f'the key is {known}, in SI'
+            return f'the key is {known} (the unit belongs to the key)'
+    near = difflib.get_close_matches(name, names, n=3, cutoff=0.6)
+    if near:
+        return f'did you mean {" or ".join(near)}?'
+    if not names:
+        return 'no names are defined here'
+    return f'valid: {listed(names)}'
+
+
+def listed(names: list[str]) -> str:
+    """Return names as a list of at most a dozen."""
+    return ', '.join(names[:_MAX_NAMED]) + (', ...' if len(names) > _MAX_NAMED else '')

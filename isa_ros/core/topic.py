@@ -1,0 +1,39 @@
+"""A topic, and what its publisher offers."""
+
+from dataclasses import dataclass
+
+_INFINITE = (9223372036, 854775807)  # RMW_DURATION_INFINITE (s, ns)
+
+
+@dataclass(frozen=True)
+class Qos:
+    """What a publisher offers; deadline, lifespan and lease are infinite."""
+
+    history: str = 'keep_last'
+    depth: int = 10
+    reliability: str = 'reliable'
+    durability: str = 'volatile'
+
+    def to_yaml(self) -> str:
+        """Return the list of this one profile, without a final newline."""
+        lines = [
+            f'- history: {self.history}', f'  depth: {self.depth}',
+            f'  reliability: {self.reliability}', f'  durability: {self.durability}',
+            *_duration('deadline'), *_duration('lifespan'),
+            '  liveliness: automatic', *_duration('liveliness_lease_duration'),
+            '  avoid_ros_namespace_conventions: false']
+        return '\n'.join(lines)
+
+
+@dataclass(frozen=True)
+class Topic:
+    """One topic of a bag: fully qualified name, message type, offered quality of service."""
+
+    name: str
+    type_name: str
+    qos: Qos = Qos()
+
+
+def _duration(name: str) -> list[str]:
+    sec, nsec = _INFINITE
+    return [f'  {name}:', f'    sec: {sec}', f'    nsec: {nsec}']

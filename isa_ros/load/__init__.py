@@ -1,1 +1,0 @@
-"""What an actuator moves, and the port between the two."""

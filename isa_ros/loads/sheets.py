@@ -1,0 +1,79 @@
+"""
+Loads of one actuator alone, integrated in its node with the plant's step.
+
+Each is a constant load port (equation L1), an inertia with or without a spring to ground,
+and what acts on it besides (`isa_ros.loads.forces`). Generalised units: N, m, kg or Nm, rad,
+kg m2.
+"""
+
+from dataclasses import dataclass
+
+from isa_ros.core.parameter import parameter, Parameters
+from isa_ros.core.signals import LOAD_PORT
+from isa_ros.loads.drop_rig import DropRig, rope_record
+from isa_ros.loads.forces import OWN_LOAD
+from isa_ros.loads.wheel import Wheel
+import numpy as np
+
+
+@dataclass(frozen=True, kw_only=True)
+class Blocked(Parameters):
+    """The output held by a stiff support: a fixture on a spring to ground."""
+
+    inertia: float = parameter('moving part of the fixture', 'kg | kg m2', gt=0.0, le=1e4)
+    stiffness: float = parameter('support', 'N/m | Nm/rad', gt=0.0, le=1e9)
+    damping: float = parameter('support', 'Ns/m | Nms/rad', ge=0.0, le=1e6)
+
+
+@dataclass(frozen=True, kw_only=True)
+class Mass(Parameters):
+    """A free mass or inertia, with a constant force on it."""
+
+    inertia: float = parameter('moving mass', 'kg | kg m2', gt=0.0, le=1e4)
+    force: float = parameter('constant force on it, e.g. weight', 'N | Nm', ge=-1e6, le=1e6)
+
+
+@dataclass(frozen=True, kw_only=True)
+class Pad(Parameters):
+    """A free mass that meets a pad of some material on its way out."""
+
+    inertia: float = parameter('moving mass', 'kg | kg m2', gt=0.0, le=1e4)
+    gap: float = parameter('free travel from the start to the pad', 'm | rad', ge=0.0, le=10.0)
+    radius: float = parameter(
+        '1, or the radius at which a wheel meets the pad', 'm/m | m/rad', gt=0.0, le=10.0)
+    stiffness: float = parameter('k of k d^1.5', 'N/m^1.5', gt=0.0, le=1e9)
+    damping: float = parameter(
+        "c of the factor 1 + c d' of Hunt and Crossley", 's/m', ge=0.0, le=100.0)
+
+
+LocalLoad = Blocked | Wheel | Mass | Pad | DropRig
+
+
+def local_port(load: LocalLoad, rest: float) -> np.ndarray:
+    """Return the constant `LOAD_PORT` of a load at rest at ``rest`` (m or rad), shape (1,)."""
+    port = np.zeros(1, LOAD_PORT)
+    port['x0'] = rest
+    port['inverse_mass'] = 1.0 / load.inertia
+    if isinstance(load, Blocked):
+        port['stiffness'] = load.stiffness / load.inertia
+        port['damping'] = load.damping / load.inertia
+    elif isinstance(load, Mass):
+        port['a_bias'] = load.force / load.inertia
+    return port
+
+
+def own_record(load: LocalLoad | None) -> np.ndarray:
+    """Return the load's `OWN_LOAD`, shape (1,); zero where it has none."""
+    own = np.zeros(1, OWN_LOAD)
+    if isinstance(load, Wheel):
+        own['stops'] = (load.stop_low, load.stop_high, load.stop_stiffness, load.stop_damping)
+    if isinstance(load, DropRig):
+        own['rope'] = rope_record(load)
+    elif isinstance(load, Pad):
+        own['pad'] = (load.gap, load.radius, load.stiffness, load.damping)
+    return own
+
+
+def static_force(load: LocalLoad | None) -> float:
+    """Return the sensor force that holds the load at rest, in N or Nm."""
+    return -load.force if isinstance(load, Mass) else 0.0

@@ -1,0 +1,1 @@
+"""The node of one actuator: under a coordinator, or alone."""

@@ -1,0 +1,62 @@
+"""One actuator alone: its own time, at the pace of the host."""
+
+from collections.abc import Callable
+import time
+from typing import Any
+
+from isa_ros.core.timebase import NS_PER_SECOND
+from isa_ros.errors import ConfigError
+from isa_ros.nodes.actuator.node import ActuatorNode
+from rclpy.experimental.events_executor import EventsExecutor
+
+BURST_TICKS = 20        # between two looks at setpoints, services and signals
+LARGEST_LAG_S = 0.5     # a longer delay is given up instead of caught up
+WARNING_PERIOD_S = 10.0
+
+
+def run_alone(
+        node: ActuatorNode, real_time_factor: float, should_stop: Callable[[], bool]) -> None:
+    """
+    Tick ``node`` until ``should_stop`` at ``real_time_factor``, 0: as fast as it can.
+
+    Raises
+    ------
+    ConfigError
+        The factor is negative or not finite.
+    SimulationDiverged
+        A state is no longer finite.
+
+    """
+    if not 0.0 <= real_time_factor < float('inf'):
+        raise ConfigError(
+            f'{node.get_name()}: real_time_factor = {real_time_factor:g}, must be finite and '
+            '>= 0')
+    executor: Any = EventsExecutor(context=node.context)
+    executor.add_node(node)
+    node.publish(node.start(None))
+    step_s = node.setup.timing.step_ns / NS_PER_SECOND
+    tick, began = 0, time.monotonic()
+    try:
+        while not should_stop():
+            wait = 0.0
+            due = tick + BURST_TICKS
+            if real_time_factor:
+                elapsed = (time.monotonic() - began) * real_time_factor
+                due = int(elapsed / step_s)
+                lag = elapsed - tick * step_s
+                if lag > LARGEST_LAG_S * real_time_factor:
+                    began += lag / real_time_factor
+                    node.get_logger().warning(
+                        f'{lag:.1f} s of simulated time behind real_time_factor = '
+                        f'{real_time_factor:g}, given up',
+                        throttle_duration_sec=WARNING_PERIOD_S)
+                    continue
+                wait = max(0.0, ((tick + 1) * step_s - elapsed) / real_time_factor)
+            for _ in range(min(due - tick, BURST_TICKS)):
+                node.publish(node.advance())
+                tick += 1
+            executor.spin_once(min(wait, LARGEST_LAG_S) if due <= tick else 0.0)
+            node.check_publishers()
+    finally:
+        executor.remove_node(node)
+        executor.shutdown()

@@ -1,0 +1,154 @@
+"""ROS 2 face of one smart actuator: setpoints in, one tick, messages out."""
+
+from collections.abc import Callable
+from typing import Any, NamedTuple
+
+from isa_ros.actuator.actuator import ActuatorConfig, SmartActuator, Timing
+from isa_ros.actuator.tunable import tunables
+from isa_ros.core.signals import COMMAND, HAS_ENABLE
+from isa_ros.errors import SetpointError
+from isa_ros.nodes.actuator.parameters import TunableParameters
+from isa_ros.nodes.actuator.setpoint_publishers import IncompatiblePublishers
+from isa_ros.nodes.middleware.publishers import PreparedPublishers
+from isa_ros.nodes.middleware.qos import SETPOINT
+from isa_ros.nodes.middleware.refusals import refusals
+from isa_ros.nodes.middleware.servers import open_server
+from isa_ros.run.exchange import Messages, Records
+from isa_ros.run.stepping import SteppedActuator
+from msg_adapters.actuator_messages import TOPICS
+from msg_adapters.setpoint import msg_to_command
+import numpy as np
+from rclpy.node import Node
+from rclpy.parameter import Parameter
+from sensor_msgs.msg import JointState
+from std_srvs.srv import SetBool
+
+WARNING_PERIOD_S = 1.0
+
+
+class Setup(NamedTuple):
+    """What a node simulates, and on what grid of time."""
+
+    config: ActuatorConfig
+    timing: Timing
+    actuator: SmartActuator | None = None
+    """It lives among others; None: it is made."""
+
+
+class ActuatorNode(Node):
+    """
+    One actuator on ROS topics; the node's name is the actuator's.
+
+    It owns neither physics nor clock: a `Member`, a `LocalTransport` or the standalone
+    loop calls `start` and `advance`. Setpoints, parameters and requests that arrive between two
+    ticks take effect at the next one; at the same tick a command of the scenario wins.
+
+    ``resolve`` says what actuator it is, once the node's own name and parameters are known.
+    ``has_mailbox``: a `Member` of this node waits for its steps.
+    """
+
+    def __init__(
+            self, resolve: Callable[[Node], Setup], name: str = 'actuator', *,
+            has_mailbox: bool, **kwargs: Any) -> None:
+        self._tunables: TunableParameters | None = None
+        with refusals():
+            super().__init__(name, start_parameter_services=False, **kwargs)
+        self.setup = resolve(self)
+        self._stepped = SteppedActuator(*self.setup)
+        self._tunables = TunableParameters(
+            self, self._stepped.actuator, tunables(self.setup.config.sheet),
+            self._parameter_overrides)
+        self._prepared = PreparedPublishers(
+            self, [(f'~/{suffix}', type_) for suffix, type_ in TOPICS])
+        setpoints = self.create_subscription(
+            JointState, '~/setpoint', self._on_setpoint, SETPOINT)
+        enable = self.create_service(SetBool, '~/enable', self._on_enable)
+        self._incompatible = IncompatiblePublishers(self, setpoints)
+        self._inputs = open_server(
+            self, [setpoints], [enable], self._tunables.services, has_mailbox)
+
+    @property
+    def digest(self) -> str:
+        """Return a hash of the resolved parameters."""
+        return self._stepped.digest
+
+    @property
+    def t_ns(self) -> int:
+        """Return the simulated time reached."""
+        return self._stepped.actuator.t_ns
+
+    @property
+    def reply(self) -> Records:
+        """Return the `LOAD_REPLY` of the last tick, (1,)."""
+        return self._stepped.actuator.reply_rows
+
+    @property
+    def sample(self) -> Records:
+        """Return the `SAMPLE` at the end of the last tick, (1,)."""
+        return self._stepped.actuator.sample_rows
+
+    def start(self, start: np.void | None) -> Messages:
+        """Begin anew at t = 0 from a `START` row; None: as configured. Return what applies."""
+        return self._stepped.start(start)
+
+    def advance(
+            self, port: np.void | None = None, command: np.void | None = None) -> Messages:
+        """
+        Take a command, advance one tick and return what was applied at its start.
+
+        Raises
+        ------
+        SimulationDiverged
+            A state is no longer finite.
+
+        """
+        if command is not None and command['kinds']:
+            self._stepped.actuator.accept(command)
+        return self._stepped.advance(port)
+
+    def snapshot(self) -> bytes:
+        """Return the whole state; `restore` continues from it byte for byte."""
+        return self._stepped.actuator.snapshot()
+
+    def restore(self, snapshot: bytes) -> Messages:
+        """Continue from a `snapshot` and return what was applied before that instant."""
+        return self._stepped.restore(snapshot)
+
+    def publish(self, applied: Messages, states: Messages | None = None) -> None:
+        """Publish what was applied and the state; None: made here, if anybody listens."""
+        if self._prepared.is_heard():
+            self._prepared.send((*applied, *(states or self._stepped.states())))
+
+    def serve(self) -> None:
+        """Take the setpoints and requests that have arrived; do not wait."""
+        self._inputs.serve()
+        self._incompatible.check()
+
+    def get_parameter(self, name: str) -> Parameter:
+        """Return a parameter; a gain as it is, whether a service or a setpoint has set it."""
+        tuned = None if self._tunables is None else self._tunables.get(name)
+        return super().get_parameter(name) if tuned is None else tuned
+
+    def check_publishers(self) -> None:
+        """Name publishers whose setpoints cannot be received."""
+        self._incompatible.check()
+
+    def _on_setpoint(self, message: JointState) -> None:
+        try:
+            command = msg_to_command(message, self.get_name())
+        except SetpointError as error:
+            self.get_logger().warning(
+                f'setpoint rejected: {error}', throttle_duration_sec=WARNING_PERIOD_S)
+            return
+        self._stepped.actuator.accept(command)
+
+    def _on_enable(
+            self, request: SetBool.Request, response: SetBool.Response) -> SetBool.Response:
+        command = np.zeros(1, COMMAND)[0]
+        command['kinds'] = HAS_ENABLE
+        command['is_enabled'] = request.data
+        self._stepped.actuator.accept(command)
+        response.success = True
+        response.message = (
+            f'{"enabled" if request.data else "disabled"} from t = {self.t_ns * 1e-9:.6f} s')
+        return response

@@ -1,0 +1,136 @@
+"""A process of one actuator: under a coordinator, or alone."""
+
+from collections.abc import Sequence
+from dataclasses import replace
+import gc
+import sys
+
+from isa_ros.actuator.actuator import Timing
+from isa_ros.config.catalogue import actuator_model, model_names
+from isa_ros.config.default_actuator import default_actuator, default_load, DEFAULT_TIMING
+from isa_ros.config.paths import CONFIG, find, SCENARIOS
+from isa_ros.config.run_config import RunConfig
+from isa_ros.config.run_file import load_run
+from isa_ros.errors import ConfigError, IsaError
+from isa_ros.nodes.actuator.alone import run_alone
+from isa_ros.nodes.actuator.node import ActuatorNode, Setup
+from isa_ros.nodes.lockstep.participant_end import Member
+from isa_ros.nodes.lockstep.roles import ActuatorSeat
+from isa_ros.nodes.middleware.arguments import init_ros
+from isa_ros.nodes.middleware.environment import set_defaults
+from isa_ros.processes.stopping import end_with_parent, StopRequest
+from isa_ros.scenario.scenario import load_scenario
+from rcl_interfaces.msg import ParameterDescriptor
+from rclpy.node import Node
+from rclpy.utilities import try_shutdown
+
+USAGE = (
+    'one actuator: ros2 run isa_ros actuator --ros-args -p model:=isa_v5 '
+    '[-r __node:=NAME] [-p real_time_factor:=1.0] [-p force.kp:=GAIN ...] '
+    '[-p config_file:=leg.yaml -p lockstep:=true]')
+
+
+def run(args: Sequence[str] | None, model: str) -> int:
+    """
+    Run one actuator until it is told to stop and return the exit code.
+
+    It has no end of its own, so a signal is its normal one: 0, as launch expects it.
+    """
+    with StopRequest() as should_stop:
+        end_with_parent()
+        try:
+            set_defaults()
+            init_ros(args, USAGE)
+            _run(model, should_stop)
+        except IsaError as error:
+            print(f'actuator: {error}', file=sys.stderr)
+            return error.exit_code
+        finally:
+            try_shutdown()
+    return 0
+
+
+def _run(model: str, should_stop: StopRequest) -> None:
+    node = ActuatorNode(lambda node: _resolve(node, model), model or 'actuator', has_mailbox=True)
+    try:
+        gc.freeze()  # collecting what is loaded by now would halt a tick for 60 ms
+        if _boolean(node, 'lockstep'):
+            Member(node, ActuatorSeat(node)).spin(should_stop)
+        else:
+            run_alone(node, _number(node, 'real_time_factor'), should_stop)
+    finally:
+        node.destroy_node()
+
+
+def _resolve(node: Node, model: str) -> Setup:
+    """Declare the node's parameters and return the actuator they describe."""
+    for name, default, description in (
+            ('lockstep', False, 'move only when a coordinator ticks'),
+            ('model', model, f'one of {", ".join(model_names())}'),
+            ('config_file', '', 'run file that declares this actuator'),
+            ('scenario_file', '', 'scenario that changes loads or start of that run'),
+            ('real_time_factor', 1.0, 'simulated over host time, alone; 0: as fast as it can')):
+        node.declare_parameter(
+            name, default, ParameterDescriptor(description=description, read_only=True))
+    chosen, path = _text(node, 'model'), _text(node, 'config_file')
+    if path:
+        run = load_run(find(path, CONFIG))
+        if scenario := _text(node, 'scenario_file'):
+            run = load_scenario(find(scenario, SCENARIOS), run).run
+        return _from_run(run, node.get_name(), chosen, _boolean(node, 'lockstep'))
+    if _boolean(node, 'lockstep'):
+        raise ConfigError(f'{node.get_name()}: lockstep needs the parameter config_file')
+    if not chosen:
+        raise ConfigError(
+            f'{node.get_name()}: set the parameter model, one of {", ".join(model_names())}, or '
+            'config_file')
+    return Setup(default_actuator(chosen, node.get_name()), DEFAULT_TIMING)
+
+
+def _from_run(run: RunConfig, name: str, model: str, in_lockstep: bool) -> Setup:
+    config = run.actuator(name)
+    if model not in ('', config.model):
+        raise ConfigError(
+            f'{run.source}: {name} is of model {config.model}, the parameter model is {model!r}')
+    if config.load is None and not in_lockstep:
+        config = replace(config, load=default_load(actuator_model(config.model, name)))
+    return Setup(config, Timing(run.step_ns, run.controller_offset_ns))
+
+
+def _text(node: Node, name: str) -> str:
+    value: str = node.get_parameter(name).value
+    return value
+
+
+def _boolean(node: Node, name: str) -> bool:
+    value: bool = node.get_parameter(name).value
+    return value
+
+
+def _number(node: Node, name: str) -> float:
+    value: float = node.get_parameter(name).value
+    return value
+
+
+def main(args: Sequence[str] | None = None, model: str = '') -> None:
+    """Run one actuator node; the model is the parameter ``model`` unless it is given."""
+    raise SystemExit(run(args, model))
+
+
+def main_isa_v2(args: Sequence[str] | None = None) -> None:
+    """Run one ISA v2."""
+    main(args, 'isa_v2')
+
+
+def main_isa_v5(args: Sequence[str] | None = None) -> None:
+    """Run one ISA v5."""
+    main(args, 'isa_v5')
+
+
+def main_smart_manifold(args: Sequence[str] | None = None) -> None:
+    """Run one smart manifold on its rotary actuator."""
+    main(args, 'smart_manifold')
+
+
+if __name__ == '__main__':
+    main()

@@ -1,0 +1,51 @@
+"""The coordinator as a program: participants are started by someone else, or all are here."""
+
+from collections.abc import Sequence
+import sys
+
+from isa_ros.errors import IsaError
+from isa_ros.nodes.coordinator.node import CoordinatorNode, NAME
+from isa_ros.nodes.coordinator.runs import coordinate, coordinate_locally
+from isa_ros.nodes.middleware.arguments import init_ros
+from isa_ros.nodes.middleware.domain import sole_coordinator
+from isa_ros.nodes.middleware.environment import set_defaults
+from isa_ros.processes.stopping import StopRequest
+from isa_ros.run.session import prepare
+from isa_ros.run.terminal import terminal_report
+from rclpy.utilities import try_shutdown
+
+USAGE = (
+    'the coordinator of a run: ros2 run isa_ros coordinator --ros-args -p config_file:=leg.yaml '
+    '[-p scenario_file:=drop.yaml] [-p out:=DIR] [-p duration:=S] [-p in_process:=true]')
+
+
+def main(args: Sequence[str] | None = None) -> None:
+    """Coordinate the run that the parameters name."""
+    sys.exit(_main(args))
+
+
+def _main(args: Sequence[str] | None) -> int:
+    with StopRequest() as should_stop:
+        try:
+            set_defaults()
+            init_ros(args, USAGE)
+            node = CoordinatorNode()
+            try:
+                session = prepare(node.request())
+                run = coordinate_locally if session.request.in_process else coordinate
+                with sole_coordinator():
+                    run(node, session, terminal_report(), should_stop)
+                if session.pace.shortfall:
+                    node.get_logger().warning(session.pace.shortfall)
+            finally:
+                node.destroy_node()
+        except IsaError as error:
+            print(f'{NAME}: {error}', file=sys.stderr)
+            return error.exit_code
+        finally:
+            try_shutdown()
+    return 0
+
+
+if __name__ == '__main__':
+    main()

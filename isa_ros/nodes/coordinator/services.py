@@ -1,0 +1,116 @@
+"""Pause, step, reset and save as services of the coordinator, served between two ticks."""
+
+from collections.abc import Callable
+from typing import Any
+
+from isa_ros.errors import IsaError
+from isa_ros.nodes.middleware.handles import has_handles
+from isa_ros.nodes.middleware.servers import DirectServer
+from isa_ros.run.coordinator import Coordinator
+from rcl_interfaces.msg import IntegerRange, ParameterDescriptor, SetParametersResult
+from rclpy.node import Node
+from rclpy.parameter import Parameter
+from rclpy.parameter_service import ParameterService
+from std_srvs.srv import SetBool, Trigger
+
+STEP_COUNT = 'step_count'
+LARGEST_STEP = 1_000_000_000
+REAL_TIME_FACTOR = 'real_time_factor'
+
+Save = Callable[[Coordinator], str]
+"""Saves the state of a run and returns where."""
+
+
+class RunServices:
+    """
+    What a user may ask of a run between two ticks.
+
+    A step answers when its ticks are done, everything else at once. Needs the handles of
+    `DirectServer`: an executor would call in the middle of a tick. Without them nothing is
+    offered, and the log says so.
+    """
+
+    def __init__(self, node: Node, real_time_factor: float, save: Save) -> None:
+        self._node = node
+        self._save = save
+        self._coordinator: Coordinator | None = None
+        self._server: DirectServer | None = None
+        if not has_handles():
+            node.get_logger().warning('this rclpy offers no pause, step, reset and save')
+            return
+        node.declare_parameter(STEP_COUNT, 1, ParameterDescriptor(
+            description='ticks of one call of ~/step',
+            integer_range=[IntegerRange(from_value=1, to_value=LARGEST_STEP, step=1)]))
+        if not node.has_parameter(REAL_TIME_FACTOR):
+            node.declare_parameter(REAL_TIME_FACTOR, real_time_factor, ParameterDescriptor(
+                description='not faster than this; 0: as fast as it can'))
+        node.add_on_set_parameters_callback(self._on_parameters)
+        own = [
+            node.create_service(SetBool, '~/pause', self._on_pause),
+            node.create_service(Trigger, '~/step', self._on_step),
+            node.create_service(Trigger, '~/reset', self._on_reset),
+            node.create_service(Trigger, '~/save', self._on_save)]
+        ParameterService(node)
+        self._server = DirectServer(
+            [], own, [service for service in node.services if service not in own])
+
+    def serve(self, coordinator: Coordinator) -> None:
+        """Answer everything that was asked since the last call."""
+        if self._server is not None:
+            self._coordinator = coordinator
+            self._server.serve()
+
+    @property
+    def _run(self) -> Coordinator:
+        assert self._coordinator is not None, 'only served with a coordinator'
+        return self._coordinator
+
+    def _on_pause(self, request: SetBool.Request, response: SetBool.Response) -> Any:
+        return self._answer(response, lambda: self._pause(request.data))
+
+    def _on_step(self, request: Trigger.Request, response: Trigger.Response) -> Any:
+        return self._answer(response, self._step)
+
+    def _on_reset(self, request: Trigger.Request, response: Trigger.Response) -> Any:
+        return self._answer(response, self._reset)
+
+    def _on_save(self, request: Trigger.Request, response: Trigger.Response) -> Any:
+        return self._answer(response, lambda: f'saved to {self._save(self._run)}')
+
+    def _answer(self, response: Any, work: Callable[[], str]) -> Any:
+        try:
+            response.message = work()
+            response.success = True
+        except IsaError as error:
+            if error.exit_code != IsaError.exit_code:  # the run itself is over
+                raise
+            response.message = str(error)
+            response.success = False
+        return response
+
+    def _pause(self, is_paused: bool) -> str:
+        self._run.pause(is_paused)
+        return f'{"paused" if is_paused else "running"} from {self._instant()}'
+
+    def _step(self) -> str:
+        count = self._node.get_parameter(STEP_COUNT).value
+        before = self._run.ticks
+        self._run.step(count)
+        return f'{self._run.ticks - before} ticks to {self._instant()}'
+
+    def _reset(self) -> str:
+        instant = self._instant()
+        self._run.reset()
+        return f'begins anew, was at {instant}'
+
+    def _instant(self) -> str:
+        return f't = {self._run.t_ns * 1e-9:.6f} s'
+
+    def _on_parameters(self, parameters: list[Parameter]) -> SetParametersResult:
+        for parameter in parameters:
+            if parameter.name == REAL_TIME_FACTOR:
+                try:
+                    self._run.set_real_time_factor(parameter.value)
+                except IsaError as error:
+                    return SetParametersResult(successful=False, reason=str(error))
+        return SetParametersResult(successful=True)

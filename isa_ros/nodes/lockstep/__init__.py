@@ -1,0 +1,1 @@
+"""Both ends of the private wire between a coordinator and its participants."""

@@ -1,0 +1,332 @@
+"""The coordinator's end of the private wire: participants in processes of their own."""
+
+from collections.abc import Callable, Sequence
+import secrets
+import time
+from typing import Any
+
+from isa_ros.controller import merge_requests
+from isa_ros.core.signals import COMMAND
+from isa_ros.errors import ConfigError, RunError, SimulationDiverged
+from isa_ros.nodes.lockstep.expected import Cast, Limits
+from isa_ros.nodes.lockstep.sockets import LocalWires
+from isa_ros.nodes.middleware.domain import another_coordinator, refuse_other_coordinator
+from isa_ros.nodes.middleware.mailboxes import LOOK_S, open_mailbox, SLICE_S
+from isa_ros.nodes.middleware.qos import LOCKSTEP
+from isa_ros.run.coordinator import Interrupted
+from isa_ros.run.exchange import IDLE_S, Messages, Rows, Voice
+from isa_ros.run.group import by_actuator
+from isa_ros.run.wire import (
+    ACKNOWLEDGEMENT_TOPIC, Answer, AnswerKind, decode_answer, DIVERGENCE, encode_begin, encode_end,
+    encode_hello, encode_restore, encode_save, encode_tick, STEP_TOPIC)
+import numpy as np
+from rclpy.duration import Duration
+from rclpy.node import Node
+from std_msgs.msg import UInt8MultiArray
+
+HELLO_PERIOD_S = 0.05
+STOP_GRACE_S = 1.0  # how long a tick may still take once a stop is asked for
+REPEAT_S = 1.0  # from one request of a step to the next: what was on its way may be lost
+_IDENTITY, _DIGEST, _FIRST = 0, 1, 2  # parts of a READY answer
+_REPLY, _SAMPLE, _APPLIED = 0, 1, 2  # parts of what an actuator's seat says
+_NO_REASON = b'without a reason'
+
+
+class LockstepTransport:
+    """
+    One broadcast step and one answer per participant and tick.
+
+    They are topics; sockets carry them once a run has begun whose participants are all on this
+    host, until one of these closes. The topics then show the run to nodes that are not part of
+    it, and repeat what one that is stopped may have missed.
+
+    ``watch`` is called while nothing arrives and says who is lost, if it knows.
+    """
+
+    def __init__(
+            self, node: Node, cast: Cast, limits: Limits, voice: Voice, *,
+            watch: Callable[[], str | None], should_stop: Callable[[], bool]) -> None:
+        self._node = node
+        self._cast = cast
+        self._participants = cast.participants
+        self._remote = frozenset(range(cast.first_remote, len(cast.participants)))
+        self._has_controllers = len(cast.participants) > len(cast.starts)
+        self._limits = limits
+        self.publish = voice.publish
+        self.publish_clock = voice.publish_clock
+        self.publish_event = voice.publish_event
+        self._watch = watch
+        self._should_stop = should_stop
+        self._run_id = 0
+        self._past_runs: set[int] = set()
+        self._identities: dict[int, bytes] = {}
+        self._tick = 0
+        self._remind_at = 0.0
+        self._requests = 0
+        self._awaited = 0  # what an answer must carry for a tick: the tick, or a request's number
+        self._step, self._doing = b'', 'tick 0'
+        self._publisher = node.create_publisher(UInt8MultiArray, STEP_TOPIC, LOCKSTEP)
+        self._wires = LocalWires()
+        self._look_at = 0.0
+        handle: Any = self._publisher.handle
+        self._send: Callable[[bytes], None] = handle.publish_raw
+        self._mailbox = open_mailbox(node, ACKNOWLEDGEMENT_TOPIC)
+
+    def join(self, rows: Rows) -> Sequence[Messages]:
+        """
+        Say hello until all participants have answered the same one; return their messages.
+
+        One more hello is left its whole period, in which a second node of a name or another
+        coordinator that was discovered a little later makes itself known. A second node that
+        answers even later is noticed by `receive`.
+
+        Raises
+        ------
+        ConfigError
+            Other parameters, a name that two nodes have, or another coordinator.
+        RunError
+            A participant did not answer in time, or was lost.
+        Interrupted
+            A stop was asked for.
+
+        """
+        if self._run_id:
+            self._end()
+            self._past_runs.add(self._run_id)
+        self._run_id = secrets.randbits(63) + 1
+        self._wires.listen(self._run_id)
+        start = time.monotonic()
+        names = [participant.name for participant in self._participants]
+        complete: dict[int, Answer] = {}
+        count = 0
+        while True:
+            count += 1
+            self._send(encode_hello(
+                self._run_id, count, self._cast.step_ns, self._cast.starts, names))
+            answers = self._hello_answers(count, is_last=bool(complete))
+            refuse_other_coordinator(self._node)
+            if complete:
+                return self._said(rows, 0, {
+                    k: answer.parts[_FIRST:] for k, answer in complete.items()})
+            if len(answers) == len(self._remote):
+                complete = answers
+                continue
+            self._refuse_lost('before tick 0')
+            if self._should_stop():
+                raise Interrupted('stopped before tick 0')
+            if time.monotonic() - start > self._limits.join_s:
+                raise self._no_answer([k for k in sorted(self._remote) if k not in answers])
+
+    def _no_answer(self, missing: Sequence[int]) -> RunError:
+        names = ', '.join(self._participants[k].name for k in missing)
+        # A controller is there once its node is; an actuator may also run alone.
+        how = ' with lockstep:=true' if missing[0] < len(self._cast.starts) else ''
+        return RunError(
+            f'{names}: no answer before tick 0 after {self._limits.join_s:g} s; start it{how} in '
+            'this ROS_DOMAIN_ID')
+
+    def _hello_answers(self, count: int, is_last: bool) -> dict[int, Answer]:
+        """Return the answers to the ``count``-th hello; the last one takes its whole period."""
+        answers: dict[int, Answer] = {}
+        end = time.monotonic() + HELLO_PERIOD_S
+        while is_last or len(answers) < len(self._remote):
+            left = end - time.monotonic()
+            if left <= 0.0:
+                break
+            data = self._mailbox.wait(left)
+            if data is None:
+                continue
+            answer = decode_answer(data)
+            if answer.run_id in self._past_runs:
+                continue
+            self._check_ready(answer)
+            if answer.tick == count:
+                answers[answer.participant] = answer
+        return answers
+
+    def _check_ready(self, answer: Answer) -> None:
+        if answer.run_id != self._run_id or answer.kind is AnswerKind.BUSY:
+            raise another_coordinator(self._node.context.get_domain_id())
+        name, expected = self._participants[answer.participant]
+        identity, digest = answer.parts[_IDENTITY], answer.parts[_DIGEST]
+        assert identity is not None and digest is not None
+        if self._identities.setdefault(answer.participant, identity) != identity or (
+                answer.participant not in self._remote):
+            raise self._two_nodes(answer.participant)
+        if expected and digest.decode() != expected:
+            raise ConfigError(
+                f'{name}: digest of its parameters = {digest.decode()}, must be {expected} as '
+                'configured; give both the same file')
+
+    def _check_unbound(self, answer: Answer) -> None:
+        """Refuse a node outside of the run that has the name of one inside."""
+        name = (answer.parts[0] or b'').decode()
+        names = [participant.name for participant in self._participants]
+        if name in names:
+            raise self._two_nodes(names.index(name))
+
+    def _two_nodes(self, participant: int) -> ConfigError:
+        return ConfigError(
+            f'{self._participants[participant].name}: two nodes of this name answer in '
+            f'ROS_DOMAIN_ID {self._node.context.get_domain_id()}, must be one')
+
+    def _refuse_lost(self, when: str) -> None:
+        lost = self._watch()
+        if lost is not None:
+            raise RunError(f'{lost} {when}')
+
+    def begin(self) -> None:
+        """Let everyone publish the first messages."""
+        self._wires.connect(self._identities)
+        self._send(encode_begin(self._run_id))
+
+    def send(self, tick: int, rows: Rows) -> None:
+        """Broadcast the step."""
+        self._tick = tick
+        step = encode_tick(self._run_id, tick, rows, self._has_controllers)
+        self._ask(f'tick {tick}', tick, step)
+
+    def _ask(self, what: str, awaited: int, step: bytes) -> None:
+        self._doing, self._awaited, self._step = what, awaited, step
+        if not self._wires.send(step):
+            self._send(step)
+
+    def _next_request(self) -> int:
+        """Return a number that no tick and no other request has."""
+        self._requests += 1
+        return -self._requests
+
+    def receive(self, rows: Rows) -> Sequence[Messages]:
+        """Wait for every participant; see `Transport`."""
+        return self._said(rows, self._tick + 1, self._gather(AnswerKind.DONE))
+
+    def idle(self) -> None:
+        """Say that the run goes on, and look for lost participants and second nodes."""
+        if time.monotonic() >= self._remind_at:
+            self._remind_at = time.monotonic() + REPEAT_S
+            self._send(encode_begin(self._run_id))
+        self._refuse_lost(f'while paused before tick {self._tick}')
+        data = self._mailbox.wait(IDLE_S)
+        if data is not None:
+            self._is_expected(decode_answer(data), AnswerKind.DONE, set())
+
+    def snapshots(self) -> list[bytes]:
+        """Return the state of every participant."""
+        number = self._next_request()
+        self._ask('the request to save its state', number, encode_save(self._run_id, number))
+        parts = self._gather(AnswerKind.SAVED)
+        return [parts[k][0] or b'' for k in sorted(parts)]
+
+    def restore(
+            self, tick: int, snapshots: Sequence[bytes], rows: Rows) -> Sequence[Messages]:
+        """Put everyone where the snapshots were taken and return the messages of then."""
+        if len(snapshots) != len(self._participants):
+            raise ConfigError(
+                f'the saved state has {len(snapshots)} participants, the run has '
+                f'{len(self._participants)}')
+        self._tick = tick
+        number = self._next_request()
+        self._ask('the request to restore its state', number,
+                  encode_restore(self._run_id, number, tick, snapshots))
+        return self._said(rows, tick, self._gather(AnswerKind.RESTORED))
+
+    def _said(
+            self, rows: Rows, tick: int,
+            parts: dict[int, list[bytes | None]]) -> Sequence[Messages]:
+        """Take what actuators and controllers say before ``tick``; return their messages."""
+        n_actuators = len(rows.replies)
+        said: list[Messages] = []
+        for k in sorted(parts):
+            own = parts[k]
+            if k >= n_actuators:
+                merge_requests(np.frombuffer(own[0] or b'', COMMAND), rows.requests)
+                said.append(())
+                continue
+            rows.reply_values[k] = np.frombuffer(own[_REPLY] or b'')
+            rows.sample_values[k] = np.frombuffer(own[_SAMPLE] or b'')
+            said.append(own[_APPLIED:])
+        if self._cast.states is not None:
+            states = self._cast.states.pack(rows.samples, tick * self._cast.step_ns)
+            for k, own_states in enumerate(by_actuator(states)):
+                said[k] = (*said[k], *own_states)
+        return said
+
+    def _gather(self, kind: AnswerKind) -> dict[int, list[bytes | None]]:
+        """Wait until every participant has answered and return the parts of each."""
+        parts: dict[int, list[bytes | None]] = {}
+        missing = set(self._remote)
+        waited, repeat_at = 0.0, REPEAT_S
+        while missing:
+            begin = time.monotonic()
+            data = self._next_answer()
+            if data is None and self._watch() is not None:
+                data = self._next_answer()  # what the lost one had still said
+            if data is None:
+                self._refuse_lost(f'in tick {self._tick}')
+                # A stopped or suspended host must not look like a late participant.
+                waited += min(time.monotonic() - begin, 2.0 * SLICE_S)
+                self._check_waited(waited, missing)
+                if waited >= repeat_at:
+                    repeat_at += REPEAT_S
+                    self._send(self._step)
+                continue
+            answer = decode_answer(data)
+            if self._is_expected(answer, kind, missing):
+                parts[answer.participant] = answer.parts
+                missing.discard(answer.participant)
+        return parts
+
+    def _next_answer(self) -> bytes | None:
+        """Return the next message, or None if none arrives within `SLICE_S`."""
+        if not self._wires.is_open:
+            return self._mailbox.wait(SLICE_S)
+        if time.monotonic() >= self._look_at:
+            if (data := self._mailbox.take()) is not None:
+                return data
+            self._look_at = time.monotonic() + LOOK_S
+            self._send(encode_begin(self._run_id))  # else nobody outside would hear of the run
+        data = self._wires.wait(SLICE_S)
+        if data is None and not self._wires.is_open:
+            self._send(self._step)  # again: an answer may have been lost with the sockets
+        return data
+
+    def _is_expected(self, answer: Answer, kind: AnswerKind, missing: set[int]) -> bool:
+        """Tell whether an answer counts; raise what it says instead."""
+        if answer.run_id != self._run_id or answer.kind is AnswerKind.BUSY:
+            return False
+        if answer.kind is AnswerKind.READY:
+            self._check_ready(answer)
+            return False
+        if answer.kind is AnswerKind.UNBOUND:
+            self._check_unbound(answer)
+            return False
+        if answer.tick != self._awaited or answer.participant not in missing:
+            if answer.is_repeated:
+                return False
+            raise self._two_nodes(answer.participant)  # one answers each step once
+        if answer.kind is kind:
+            return True
+        reason, *rest = answer.parts
+        if answer.kind is AnswerKind.DIVERGED:
+            t_ns, value = DIVERGENCE.unpack(reason or b'')
+            raise SimulationDiverged(t_ns, (rest[0] or b'').decode(), value)
+        name = self._participants[answer.participant].name
+        raise RunError(f'{name}: refused {self._doing}: {(reason or _NO_REASON).decode()}')
+
+    def _check_waited(self, waited: float, missing: set[int]) -> None:
+        names = ', '.join(self._participants[k].name for k in sorted(missing))
+        if self._should_stop() and waited >= STOP_GRACE_S:
+            raise Interrupted(f'stopped in tick {self._tick}, which {names} did not end')
+        if waited >= self._limits.tick_s:
+            raise RunError(
+                f'{names}: no answer to {self._doing} after {waited:.1f} s, must come '
+                f'within {self._limits.tick_s:g} s')
+
+    def close(self) -> None:
+        """Tell the participants that the run is over."""
+        self._end()
+        self._publisher.wait_for_all_acked(Duration(seconds=HELLO_PERIOD_S))
+
+    def _end(self) -> None:
+        self._send(encode_end(self._run_id))
+        self._wires.close()

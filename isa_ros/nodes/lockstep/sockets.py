@@ -1,0 +1,215 @@
+"""
+The private wire between processes of one host: a Unix socket to each participant.
+
+It carries the same bytes as the topics of the wire, for half the time of a tick: the kernel
+wakes the receiver directly, without a thread of the middleware in between. Its name is abstract
+and holds the run's id, so that only a process of the same network namespace can reach it and
+nothing is left behind. Wherever something is not as it should be, a run does without.
+"""
+
+from collections.abc import Mapping
+import os
+import select
+import socket
+import struct
+import sys
+
+from isa_ros.nodes.middleware.handles import has_handles
+
+LARGEST = 65536
+"""Bytes of the largest message."""
+
+_IDENTITY_BYTES = 64  # at most
+_STRANGERS = 1000  # as many are turned away before the topics have to do
+_TIME = struct.Struct('@ll')  # struct timeval
+_CREDENTIALS = struct.Struct('@iII')  # struct ucred: process, user, group
+
+
+def is_possible() -> bool:
+    """
+    Return whether there can be sockets: abstract names are Linux's.
+
+    Without rclpy's handles a participant's setpoints arrive only while it waits for a topic.
+    """
+    return sys.platform == 'linux' and has_handles()
+
+
+def _name(run_id: int) -> str:
+    return f'\0isa_ros/run/{run_id:016x}'
+
+
+def _socket() -> socket.socket:
+    """Return a socket that does not wait, whatever default the process has set."""
+    made = socket.socket(socket.AF_UNIX, socket.SOCK_SEQPACKET)
+    made.setblocking(False)
+    return made
+
+
+class LocalWire:
+    """A participant's end."""
+
+    def __init__(self, end: socket.socket) -> None:
+        self._socket = end
+        self.is_open = True
+
+    @staticmethod
+    def to_run(run_id: int, identity: bytes, slice_s: float) -> 'LocalWire | None':
+        """Connect to the coordinator of a run and say who this is; None: it is not there."""
+        if not is_possible():
+            return None
+        end = _socket()
+        try:
+            end.connect(_name(run_id))
+            end.send(identity)
+            # The kernel's own timeout, for which Python need not poll before it reads.
+            end.setblocking(True)
+            seconds, part = divmod(slice_s, 1.0)
+            end.setsockopt(
+                socket.SOL_SOCKET, socket.SO_RCVTIMEO, _TIME.pack(int(seconds), int(part * 1e6)))
+        except OSError:
+            end.close()
+            return None
+        return LocalWire(end)
+
+    def wait(self) -> bytes | None:
+        """Return the next message, or None if none arrives within the slice or ever."""
+        try:
+            data = self._socket.recv(LARGEST)
+        except BlockingIOError:
+            return None
+        except OSError:
+            data = b''
+        if not data:
+            self.close()
+            return None
+        return data
+
+    def send(self, message: bytes) -> bool:
+        """Send; return whether it was possible."""
+        if not self.is_open or len(message) > LARGEST:
+            return False
+        try:
+            self._socket.send(message)
+        except OSError:
+            self.close()
+            return False
+        return True
+
+    def close(self) -> None:
+        """Close; the coordinator is told so by the kernel."""
+        self.is_open = False
+        self._socket.close()
+
+
+class LocalWires:
+    """The coordinator's ends, one to each participant of a run: all of them, or none."""
+
+    def __init__(self) -> None:
+        self._listening: socket.socket | None = None
+        self._ends: dict[int, socket.socket] = {}  # by file descriptor
+        self._ready: list[int] = []
+        if is_possible():
+            self._epoll = select.epoll()
+
+    @property
+    def is_open(self) -> bool:
+        """Return whether every participant is at the other end of one."""
+        return bool(self._ends)
+
+    def listen(self, run_id: int) -> None:
+        """Let the participants of a run connect."""
+        if not is_possible():
+            return
+        self._listening = _socket()
+        try:
+            self._listening.bind(_name(run_id))
+            self._listening.listen(socket.SOMAXCONN)
+        except OSError:
+            self.close()
+
+    def connect(self, identities: Mapping[int, bytes]) -> bool:
+        """
+        Take those who have connected; return whether these are all the participants.
+
+        They have connected before they say over the topics that they are ready. Nobody else
+        can any more.
+        """
+        missing = set(identities.values())
+        try:
+            for _ in range(len(missing) + _STRANGERS):
+                if self._listening is None or not missing:
+                    break
+                end, _ = self._listening.accept()
+                end.setblocking(False)
+                identity = _first_message(end)
+                if identity not in missing or not _is_of_this_user(end):
+                    end.close()
+                    continue
+                missing.remove(identity)
+                self._ends[end.fileno()] = end
+                self._epoll.register(end.fileno(), select.EPOLLIN)
+        except OSError:
+            pass  # nobody else has connected
+        self._stop_listening()
+        if missing:
+            self.close()
+        return self.is_open
+
+    def send(self, message: bytes) -> bool:
+        """Send to all; return whether it was possible, else all are closed."""
+        try:
+            if len(message) <= LARGEST:
+                for end in self._ends.values():
+                    end.send(message)
+                return self.is_open
+        except OSError:
+            pass
+        self.close()
+        return False
+
+    def wait(self, timeout_s: float) -> bytes | None:
+        """
+        Return the next message, or None if none arrives within ``timeout_s``.
+
+        Where one end is closed from the other side, all are closed at once.
+        """
+        if not self._ready:
+            self._ready = [number for number, _ in self._epoll.poll(timeout_s)]
+        while self._ready:
+            try:
+                data = self._ends[self._ready.pop()].recv(LARGEST)
+            except BlockingIOError:
+                continue
+            except OSError:
+                data = b''
+            if data:
+                return data
+            self.close()
+        return None
+
+    def close(self) -> None:
+        """Close all ends."""
+        self._stop_listening()
+        for number, end in self._ends.items():
+            self._epoll.unregister(number)
+            end.close()
+        self._ends.clear()
+        self._ready.clear()
+
+    def _stop_listening(self) -> None:
+        if self._listening is not None:
+            self._listening.close()
+            self._listening = None
+
+
+def _first_message(end: socket.socket) -> bytes:
+    try:
+        return end.recv(_IDENTITY_BYTES)
+    except OSError:
+        return b''
+
+
+def _is_of_this_user(end: socket.socket) -> bool:
+    credentials = end.getsockopt(socket.SOL_SOCKET, socket.SO_PEERCRED, _CREDENTIALS.size)
+    _, user, _ = _CREDENTIALS.unpack(credentials)
+    return bool(user == os.geteuid())

@@ -1,0 +1,106 @@
+"""
+Serving the setpoints and services of a node between two ticks.
+
+They are taken directly from rclpy's semi-private handles when there is time for them; where
+these have changed, an `EventsExecutor` does the same a little slower.
+"""
+
+from collections.abc import Sequence
+import time
+from typing import Any, Protocol
+
+from isa_ros.nodes.middleware.handles import has_handles
+from rclpy.experimental.events_executor import EventsExecutor
+from rclpy.node import Node
+from rclpy.serialization import deserialize_message
+from rclpy.service import Service
+from rclpy.subscription import Subscription
+
+SERVICE_PERIOD_S = 0.005
+"""Host time between two looks at a node's services; a setpoint is looked for at every tick."""
+
+SELDOM_PERIOD_S = 0.05
+"""The same for services that need not answer at once: a parameter's."""
+
+
+class Server(Protocol):
+    """The setpoints and services of one node."""
+
+    def serve(self) -> None:
+        """Run the callbacks of everything that has arrived; do not wait."""
+        ...
+
+
+class DirectServer:
+    """Take what has arrived from the handles themselves, in the order given."""
+
+    def __init__(
+            self, subscriptions: Sequence[Subscription], services: Sequence[Service],
+            seldom: Sequence[Service] = ()) -> None:
+        self._subscriptions: list[Any] = [
+            (s.handle.take_message, s.msg_type, s.callback) for s in subscriptions]
+        self._services, self._seldom = _taken(services), _taken(seldom)
+        self._services_due = self._seldom_due = 0.0
+
+    def serve(self) -> None:
+        """Run the callbacks of everything that has arrived; do not wait."""
+        self._serve_subscriptions()
+        now = time.monotonic()
+        if now >= self._services_due:  # an empty look costs 5 us, a sixth of an actuator's tick
+            self._services_due = now + SERVICE_PERIOD_S
+            _serve(self._services)
+        if now >= self._seldom_due:
+            self._seldom_due = now + SELDOM_PERIOD_S
+            _serve(self._seldom)
+
+    def _serve_subscriptions(self) -> None:
+        for take_message, message_type, callback in self._subscriptions:
+            # As bytes: an empty take would cost a message object all the same.
+            while (taken := take_message(message_type, True)) is not None:
+                callback(deserialize_message(taken[0], message_type))
+
+
+def _taken(services: Sequence[Service]) -> list[Any]:
+    return [(s.handle.service_take_request, s.srv_type, s) for s in services]
+
+
+def _serve(services: Sequence[Any]) -> None:
+    for take_request, service_type, service in services:
+        while True:
+            request, header = take_request(service_type.Request)
+            if header is None:
+                break
+            service.send_response(
+                service.callback(request, service_type.Response()), header)
+
+
+class ExecutorServer:
+    """
+    Serve a node on an executor of its own, unless its mailbox's executor already does.
+
+    ``node`` is None where it does.
+    """
+
+    def __init__(self, node: Node | None) -> None:
+        self._executor: Any = None
+        if node is not None:
+            self._executor = EventsExecutor(context=node.context)
+            self._executor.add_node(node)
+
+    def serve(self) -> None:
+        """Run the callbacks of everything that has arrived; do not wait."""
+        if self._executor is not None:
+            self._executor.spin_once(0.0)
+
+
+def open_server(
+        node: Node, subscriptions: Sequence[Subscription], services: Sequence[Service],
+        seldom: Sequence[Service], has_mailbox: bool) -> Server:
+    """
+    Return what serves the node between ticks; ``has_mailbox``: it waits for steps itself.
+
+    ``seldom`` are services that are looked at less often.
+    """
+    if has_handles():
+        return DirectServer(subscriptions, services, seldom)
+    return ExecutorServer(None if has_mailbox else node)

@@ -1,0 +1,43 @@
+"""Actuators of a run on this host, for a coordinator on another."""
+
+from collections.abc import Sequence
+from pathlib import Path
+import time
+
+from isa_ros.config.run_file import load_run
+from isa_ros.errors import RunError
+from isa_ros.processes.processes import actuator_processes, Children
+from isa_ros.processes.stopping import StopRequest
+from isa_ros.run.warm_up import warmed_up
+from isa_ros.scenario.scenario import load_scenario
+
+LOOK_PERIOD_S = 0.1
+
+
+def host_actuators(config: Path, scenario: Path | None, names: Sequence[str]) -> None:
+    """
+    Start a process for each named actuator, all if none is, and keep them until a signal.
+
+    They take part in one run after the other; a signal is their normal end.
+
+    Raises
+    ------
+    ConfigError
+        A file that cannot be run, or an actuator that it does not declare.
+    RunError
+        One of the processes ended.
+
+    """
+    run = load_run(config)
+    if scenario is not None:
+        run = load_scenario(scenario, run).run
+    chosen = [run.actuator(name).name for name in names] or None
+    processes = actuator_processes(run, config, scenario, chosen)
+    with StopRequest() as should_stop:
+        warmed_up(run)
+        with Children(processes) as children:
+            while not should_stop():
+                lost = children.lost()
+                if lost is not None:
+                    raise RunError(lost)
+                time.sleep(LOOK_PERIOD_S)

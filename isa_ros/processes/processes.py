@@ -1,0 +1,159 @@
+"""The processes of one run: one list for bring-up and launch, and the children of the former."""
+
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass
+import json
+import os
+from pathlib import Path
+import signal
+import subprocess
+import sys
+import time
+
+import isa_ros
+from isa_ros.config.run_config import RunConfig
+from isa_ros.errors import RunError
+from isa_ros.processes.forked import can_fork, Forked
+from isa_ros.processes.stopping import PARENT_VARIABLE
+
+MODULES = {
+    'actuator': 'isa_ros.nodes.actuator.process',
+    'coordinator': 'isa_ros.nodes.coordinator.process',
+}
+"""Module of each executable."""
+
+END_S = 3.0
+"""From SIGTERM to SIGKILL, host time."""
+
+_POLL_S = 0.01
+_ROOT = Path(isa_ros.__file__).parents[1]
+
+ParameterValue = bool | float | str
+
+
+@dataclass(frozen=True)
+class Process:
+    """One node in a process of its own."""
+
+    name: str
+    executable: str
+    parameters: tuple[tuple[str, ParameterValue], ...]
+
+    def ros_arguments(self, namespace: str = '') -> list[str]:
+        """Return the arguments that set name, namespace and parameters."""
+        arguments = ['--ros-args', '-r', f'__node:={self.name}']
+        if namespace:
+            arguments += ['-r', f'__ns:=/{namespace.strip("/")}']
+        for key, value in self.parameters:
+            arguments += ['-p', f'{key}:={json.dumps(value)}']
+        return arguments
+
+
+def actuator_processes(
+        run: RunConfig, config: Path, scenario: Path | None,
+        names: Sequence[str] | None = None) -> tuple[Process, ...]:
+    """Return the named actuators of a run, None: all, in the order of the file."""
+    files = [('config_file', str(config.resolve()))]
+    if scenario is not None:
+        files.append(('scenario_file', str(scenario.resolve())))
+    return tuple(
+        Process(actuator.name, 'actuator', (('lockstep', True), *files))
+        for actuator in run.actuators if names is None or actuator.name in names)
+
+
+def run_processes(
+        run: RunConfig, config: Path, scenario: Path | None,
+        options: Mapping[str, ParameterValue]) -> tuple[Process, ...]:
+    """
+    Return every process of a run, the coordinator last.
+
+    ``options`` are parameters of the coordinator; with ``in_process`` it is alone.
+    """
+    files = [('config_file', str(config.resolve()))]
+    if scenario is not None:
+        files.append(('scenario_file', str(scenario.resolve())))
+    coordinator = Process('coordinator', 'coordinator', (*files, *options.items()))
+    if options.get('in_process'):
+        return (coordinator,)
+    return (*actuator_processes(run, config, scenario), coordinator)
+
+
+class Children:
+    """
+    Processes that end with this one; a context manager.
+
+    ``work`` is what an executable does with its arguments: processes begin as copies of this
+    one that do it, where that can be; None: they begin from nothing.
+
+    Raises
+    ------
+    RunError
+        One cannot be started; those before it are ended.
+
+    """
+
+    def __init__(
+            self, processes: Sequence[Process], namespace: str = '',
+            work: Callable[[Sequence[str]], int] | None = None) -> None:
+        self._processes = processes
+        self._namespace = namespace
+        self._work = work
+        self._running: dict[str, subprocess.Popen[bytes] | Forked] = {}
+
+    def __enter__(self) -> 'Children':
+        environment = os.environ | {
+            PARENT_VARIABLE: str(os.getpid()),
+            'PYTHONPATH': os.pathsep.join(
+                [str(_ROOT), *filter(None, [os.environ.get('PYTHONPATH')])]),
+        }
+        for process in self._processes:
+            try:
+                self._running[process.name] = self._start(process, environment)
+            except OSError as error:
+                self.__exit__()
+                raise RunError(
+                    f'{process.name}: cannot be started, {error.strerror or error}') from error
+        return self
+
+    def _start(
+            self, process: Process, environment: Mapping[str, str]
+            ) -> subprocess.Popen[bytes] | Forked:
+        arguments = [*process.ros_arguments(self._namespace),
+                     '-p', 'start_type_description_service:=false', '--disable-rosout-logs']
+        work = self._work
+        if work is not None and can_fork():
+            def copy() -> int:
+                os.environ[PARENT_VARIABLE] = environment[PARENT_VARIABLE]
+                return work([process.executable, *arguments])
+            return Forked(process.name, copy)
+        # A session of its own: Ctrl-C reaches the coordinator alone, which ends the tick.
+        return subprocess.Popen(
+            [sys.executable, '-m', MODULES[process.executable], *arguments],
+            env=environment, stdin=subprocess.DEVNULL, start_new_session=True)
+
+    def __exit__(self, *_: object) -> None:
+        for process in self._running.values():
+            process.terminate()
+            process.send_signal(signal.SIGCONT)  # one that was stopped cannot end
+        deadline = time.monotonic() + END_S
+        for process in self._running.values():
+            try:
+                process.wait(max(_POLL_S, deadline - time.monotonic()))
+            except subprocess.TimeoutExpired:
+                process.kill()
+                process.wait()
+
+    @property
+    def pids(self) -> dict[str, int]:
+        """Return the process ids by name."""
+        return {name: process.pid for name, process in self._running.items()}
+
+    def lost(self) -> str | None:
+        """Say which child has ended, and how; None: all run."""
+        for name, process in self._running.items():
+            code = process.poll()
+            if code is not None:
+                how = (f'was ended by {signal.Signals(-code).name}' if code < 0
+                       else f'ended with exit code {code}')
+                return f'{name}: its process {process.pid} {how}'
+        return None

@@ -1,0 +1,1 @@
+"""Simulate a bag again from itself, and compare bags."""

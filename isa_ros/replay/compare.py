@@ -1,0 +1,223 @@
+"""
+Comparing a recorded run with another, tick by tick, down to the first differing field.
+
+A `Comparer` takes messages as a `BagWriter` does, so that a replay streams what it
+produces straight into it; nothing but one tick is held in memory.
+"""
+
+from collections.abc import Callable, Iterator, Sequence
+from dataclasses import dataclass
+from itertools import zip_longest
+
+from isa_ros.bag.provenance import CONFIGURATION
+from isa_ros.bag.reader import Bag, BagMessage, Tick
+from isa_ros.config.recording import read_record, RecordConfig
+from isa_ros.config.sections import Place
+from isa_ros.config.yaml_text import parse
+from isa_ros.core.timebase import NS_PER_SECOND
+from isa_ros.replay.tolerances import Tolerances
+from msg_adapters.cdr_reader import decode, flatten, message_class
+
+ABSENT = 'absent'
+PRESENT = 'present'
+
+Value = str | int | float | bytes | bool
+
+
+@dataclass(frozen=True)
+class Difference:
+    """First place where two runs differ."""
+
+    tick: int
+    t_ns: int
+    topic: str
+    field: str
+    expected: Value
+    actual: Value
+
+    def __str__(self) -> str:
+        """Return the one line for the user; floats with every digit."""
+        return (
+            f'tick {self.tick} (t = {self.t_ns / NS_PER_SECOND:.6f} s), {self.topic}, '
+            f'{self.field}: expected {self.expected!r}, got {self.actual!r}')
+
+
+@dataclass(frozen=True)
+class Report:
+    """What was compared, and the first difference, None where there is none."""
+
+    ticks: int
+    messages: int
+    end_ns: int | None  # of the last tick compared
+    difference: Difference | None
+
+    @property
+    def is_equal(self) -> bool:
+        """Tell whether the runs are equal within the tolerances."""
+        return self.difference is None
+
+    def __str__(self) -> str:
+        """Return the one line for the user."""
+        if self.difference is not None:
+            return f'differ: {self.difference}'
+        end = 'nothing to compare' if self.end_ns is None else (
+            f'{self.ticks} ticks, {self.messages} messages, '
+            f'up to t = {self.end_ns / NS_PER_SECOND:.6f} s')
+        return f'equal: {end}'
+
+
+class Comparer:
+    """
+    Compares the ticks that come in with those of a bag, in its order.
+
+    ``topics`` are the names that the topic indices of `write_tick` mean; what ``compares``
+    denies, by topic and tick, counts on neither side. After the first difference nothing more
+    is compared.
+
+    Raises
+    ------
+    BagError
+        the bag is damaged.
+    CdrError
+        a message that is not what its type says.
+
+    """
+
+    def __init__(
+            self, expected: Bag, topics: Sequence[str],
+            tolerances: Tolerances | None = None,
+            compares: Callable[[str, int], bool] = lambda topic, sequence: True) -> None:
+        self._types = expected.types
+        self._topics = list(topics)
+        self._tolerances = tolerances or Tolerances()
+        self._compares = compares
+        self._expected = self._compared(expected.ticks())
+        self._ticks = self._messages = 0
+        self._end_ns: int | None = None
+        self.difference: Difference | None = None
+
+    def write_tick(
+            self, t_ns: int, sequence: int, messages: Sequence[tuple[int, bytes]]) -> None:
+        """Compare one tick's (topic index, CDR bytes); as `BagWriter.write_tick`."""
+        if self.difference is not None:
+            return
+        produced = sorted(
+            ((name, data) for k, data in messages
+             if self._compares(name := self._topics[k], sequence)), key=lambda pair: pair[0])
+        if not produced:
+            return
+        tick = next(self._expected, None)
+        if tick is None:
+            self.difference = Difference(sequence, t_ns, 'bag', 'tick', ABSENT, PRESENT)
+        elif tick.t_ns != t_ns:
+            self.difference = Difference(
+                tick.sequence, tick.t_ns, 'bag', 'log_time', tick.t_ns, t_ns)
+        else:
+            self.difference = self._first_difference(tick, produced)
+            self._ticks += 1
+            self._messages += len(tick.messages)
+            self._end_ns = t_ns
+
+    def finish(self) -> Report:
+        """Return the report; a bag with ticks left over is longer than what came in."""
+        if self.difference is None:
+            tick = next(self._expected, None)
+            if tick is not None:
+                self.difference = Difference(
+                    tick.sequence, tick.t_ns, 'bag', 'tick', PRESENT, ABSENT)
+        return Report(self._ticks, self._messages, self._end_ns, self.difference)
+
+    def _compared(self, ticks: Iterator[Tick]) -> Iterator[Tick]:
+        """Yield the part of the ticks that is compared, if there is any."""
+        for tick in ticks:
+            messages = tuple(m for m in tick.messages if self._compares(m.topic, m.sequence))
+            if messages:
+                yield tick._replace(messages=messages)
+
+    def _first_difference(
+            self, tick: Tick, produced: Sequence[tuple[str, bytes]]) -> Difference | None:
+        for message, other in zip_longest(tick.messages, produced):
+            if message is None or other is None or message.topic != other[0]:
+                return _absence(tick, message, other)
+            if message.data != other[1]:
+                difference = self._field_difference(tick, message, other[1])
+                if difference is not None:
+                    return difference
+        return None
+
+    def _field_difference(
+            self, tick: Tick, message: BagMessage, data: bytes) -> Difference | None:
+        cls = message_class(self._types[message.topic])
+        pairs = zip(flatten(decode(message.data, cls)), flatten(decode(data, cls)))
+        for (field, expected), (_, actual) in pairs:
+            if not self._is_equal(message.topic, field, expected, actual):
+                return Difference(
+                    tick.sequence, tick.t_ns, message.topic, field, expected, actual)
+        return None
+
+    def _is_equal(self, topic: str, field: str, expected: Value, actual: Value) -> bool:
+        """Tell whether two values of a field are equal; -0.0 and 0.0 are not."""
+        if not (isinstance(expected, float) and isinstance(actual, float)):
+            return expected == actual
+        if repr(expected) == repr(actual):
+            return True
+        tolerance = self._tolerances.of(topic, field)
+        return tolerance is not None and tolerance.admits(expected, actual)
+
+
+def compare_bags(expected: Bag, actual: Bag, tolerances: Tolerances | None = None) -> Report:
+    """
+    Return how a second bag compares with the first: in what both were to record.
+
+    Raises
+    ------
+    BagError
+        a bag is damaged.
+    CdrError
+        a message that is not what its type says.
+
+    """
+    topics = sorted(actual.types)
+    for topic in topics:
+        type_name = expected.types.get(topic)
+        if type_name not in (None, actual.types[topic]):
+            return Report(0, 0, None, Difference(
+                0, expected.start_ns or 0, topic, 'type', str(type_name), actual.types[topic]))
+    indices = {topic: k for k, topic in enumerate(topics)}
+    records = [recorded_as(expected), recorded_as(actual)]
+    periods = {topic: [record.period(topic) for record in records]
+               for topic in {*expected.types, *actual.types}}
+    comparer = Comparer(expected, topics, tolerances, lambda topic, sequence: all(
+        period and sequence % period == 0 for period in periods[topic]))
+    for tick in actual.ticks():
+        comparer.write_tick(
+            tick.t_ns, tick.sequence, [(indices[m.topic], m.data) for m in tick.messages])
+        if comparer.difference is not None:
+            break
+    return comparer.finish()
+
+
+def recorded_as(bag: Bag) -> RecordConfig:
+    """
+    Return what a bag was to record; everything, where it does not say.
+
+    Raises
+    ------
+    ConfigError
+        What it says cannot be read.
+
+    """
+    if not bag.has_provenance:
+        return RecordConfig()
+    name = f'{bag.path.name}: {CONFIGURATION}'
+    tree = parse(bag.provenance.configuration, name)
+    return read_record(tree.get('record', {}), Place(name, 'record'))
+
+
+def _absence(
+        tick: Tick, message: BagMessage | None, other: tuple[str, bytes] | None) -> Difference:
+    """Return the difference of a message that only one side has: the first by topic."""
+    if message is not None and (other is None or message.topic < other[0]):
+        return Difference(tick.sequence, tick.t_ns, message.topic, 'message', PRESENT, ABSENT)
+    topic = '' if other is None else other[0]
+    return Difference(tick.sequence, tick.t_ns, topic, 'message', ABSENT, PRESENT)

@@ -1,0 +1,108 @@
+"""
+What a bag and this installation do not have in common, a line each.
+
+Versions, the format of the provenance, and keys of the configuration; whether the run can be
+simulated all the same is known before anything is.
+"""
+
+from collections.abc import Iterator, Mapping
+from typing import NamedTuple
+
+from isa_ros.bag.provenance import CONFIGURATION, FORMAT, installed_versions, VERSION
+from isa_ros.bag.reader import Bag
+from isa_ros.config.sections import Place
+from isa_ros.config.yaml_text import parse
+from isa_ros.core.topic import Topic
+from isa_ros.errors import BagError
+from isa_ros.replay.other_versions import key_differences
+from msg_adapters.definitions import definition
+
+_NAMED = 3  # obstacles that the one line of an error repeats
+
+
+class Difference(NamedTuple):
+    """One thing that differs."""
+
+    text: str
+    is_obstacle: bool
+    """The run cannot be simulated here."""
+
+
+def differences(bag: Bag) -> list[Difference]:
+    """
+    Return how the installation that recorded a bag differs from this one.
+
+    Raises
+    ------
+    BagError
+        The bag was not recorded by this package.
+    ConfigError
+        Its configuration is no YAML section.
+
+    """
+    attachments, record = bag.provenance_records
+    found = [Difference(line, False) for line in _changed_versions(record)]
+    if record.get('format') != FORMAT:
+        found.append(Difference(
+            f'the format of the provenance is {record.get("format")!r}, here {FORMAT!r}', True))
+    if CONFIGURATION in attachments:
+        text = attachments[CONFIGURATION].decode('utf-8', 'replace')
+        found += [Difference(*difference) for difference in key_differences(
+            parse(text, CONFIGURATION), Place(CONFIGURATION))]
+    return found
+
+
+def refuse_obstacles(bag: Bag, found: list[Difference]) -> None:
+    """
+    Refuse a bag that cannot be simulated here.
+
+    Raises
+    ------
+    BagError
+        With the first few reasons.
+
+    """
+    obstacles = [difference.text for difference in found if difference.is_obstacle]
+    if obstacles:
+        more = len(obstacles) - _NAMED
+        reasons = '; '.join(obstacles[:_NAMED]) + (f'; and {more} more' if more > 0 else '')
+        raise BagError(f'{bag.path}: cannot be simulated by this version: {reasons}')
+
+
+class TopicDifferences(NamedTuple):
+    """Which topics a bag and this version do not share."""
+
+    lines: list[str]
+    unconfirmed: list[str]
+    """Topics of the bag that nothing here can be compared with."""
+    compared: frozenset[str]
+
+
+def topic_differences(bag: Bag, topics: list[Topic]) -> TopicDifferences:
+    """Return how the topics of a bag differ from those that its run records here."""
+    here = {topic.name: topic.type_name for topic in topics}
+    lines, unconfirmed = [], []
+    for topic, type_name in sorted(bag.types.items()):
+        reason = None
+        if topic not in here:
+            reason = f'{topic} is unknown here'
+        elif type_name != here[topic]:
+            reason = f'{topic} is {type_name} in the bag, {here[topic]} here'
+        elif bag.type_hashes[topic] not in ('', definition(type_name).type_hash):
+            reason = f'{topic} is another {type_name} in the bag than here'
+        if reason is not None:
+            lines.append(f'{reason}, so it is not compared')
+            unconfirmed.append(topic)
+    lines += [f'{topic} is missing in the bag' for topic in sorted(set(here) - set(bag.types))]
+    return TopicDifferences(
+        lines, unconfirmed, frozenset(set(here) & set(bag.types) - set(unconfirmed)))
+
+
+def _changed_versions(record: Mapping[str, str]) -> Iterator[str]:
+    here = installed_versions()
+    there = {key.removeprefix(VERSION): value
+             for key, value in record.items() if key.startswith(VERSION)}
+    for name in [*there, *sorted(set(here) - set(there))]:
+        if here.get(name) != there.get(name):
+            yield (f'{name} is {here.get(name, "not known")} here, was '
+                   f'{there.get(name, "not recorded")}')

@@ -1,0 +1,180 @@
+"""
+Replay: simulate a recorded run again from the bag alone, and compare every message.
+
+Inputs are the configuration the bag carries and the applied setpoints and parameters recorded
+in it, each at the tick it took effect; the scenario is provenance only. No ROS is needed.
+"""
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, replace
+from typing import NamedTuple
+
+from isa_ros.bag.reader import Bag
+from isa_ros.config.run_config import RunConfig
+from isa_ros.errors import BagError, SetpointError
+from isa_ros.replay.compare import Comparer, Report
+from isa_ros.replay.installation import differences, refuse_obstacles, topic_differences
+from isa_ros.replay.tolerances import Tolerances
+from isa_ros.run.coordinator import Coordinator, Interrupted
+from isa_ros.run.exchange import Recorder, Records
+from isa_ros.run.local_run import LocalRun
+from isa_ros.run.saved_state import RunState
+from isa_ros.surroundings.surroundings import EVENT_TOPIC
+from msg_adapters import event
+from msg_adapters.applied_parameters import tuned_values
+from msg_adapters.setpoint import applied_to_command
+import numpy as np
+
+APPLIED = 'applied_setpoint'
+TUNED = 'applied_parameters'
+
+
+@dataclass(frozen=True)
+class ReplayReport:
+    """How a replay compares with its bag."""
+
+    report: Report
+    is_whole: bool
+    changes: Sequence[str]
+    """How this installation differs from the one that recorded the bag, a line each."""
+    unconfirmed: Sequence[str]
+    """Topics of the bag that are not recorded here, or otherwise."""
+
+    @property
+    def is_equal(self) -> bool:
+        """Tell whether the replay gave the whole bag within the tolerances."""
+        return self.report.is_equal and not self.unconfirmed
+
+    def __str__(self) -> str:
+        """Return the verdict, and whether it is one of a bag cut short."""
+        verdict = str(self.report)
+        if self.report.is_equal and self.unconfirmed:
+            verdict = f'not confirmed: {", ".join(self.unconfirmed)}; the rest is {verdict}'
+        return verdict if self.is_whole else f'{verdict}\nthe bag was cut short there'
+
+
+def replay(
+        bag: Bag, tolerances: Tolerances | None = None,
+        tell: Callable[[str], None] = lambda line: None) -> ReplayReport:
+    """
+    Simulate a bag again and compare, up to the first difference.
+
+    ``tell`` takes how this installation differs from the bag's, before anything is simulated.
+
+    Raises
+    ------
+    BagError
+        The bag is damaged, has nothing to simulate, or cannot be simulated by this version.
+    ConfigError
+        The configuration in it is out of range.
+
+    """
+    if bag.number is not None:
+        raise BagError(f'{bag.path}: is file {bag.number} of a split bag, replay its directory')
+    found = differences(bag)
+    changes = [difference.text for difference in found]
+    for line in changes:
+        tell(line)
+    refuse_obstacles(bag, found)
+    again = Rerun(bag)
+    topics = topic_differences(bag, again.topics)
+    for line in topics.lines:
+        tell(line)
+    comparer = Comparer(
+        bag, [topic.name for topic in again.topics], tolerances,
+        lambda topic, sequence: topic in topics.compared)
+    again.simulate(comparer, lambda: comparer.difference is not None)
+    return ReplayReport(
+        comparer.finish(), bag.is_whole, [*changes, *topics.lines], topics.unconfirmed)
+
+
+class Rerun:
+    """
+    A bag's run, ready to be simulated anew; ``topics`` are what it records, in order.
+
+    Raises as `replay`.
+    """
+
+    def __init__(self, bag: Bag) -> None:
+        self._run = RunConfig.from_yaml(
+            bag.provenance.configuration, f'{bag.path.name}: configuration.yaml')
+        self._commands, tuned, self._n_ticks = recorded_inputs(bag, self._run)
+        self._events = recorded_events(bag)
+        self._state = _recorded_state(bag, self._run)
+        self._local = LocalRun(self._run, tuned)
+        self.topics = self._local.topics
+
+    def simulate(
+            self, recorder: Recorder, should_stop: Callable[[], bool] = lambda: False) -> None:
+        """Hand every sample to ``recorder`` until the end of the bag or ``should_stop``."""
+        try:
+            self._local.simulate(
+                self._n_ticks, self._fill, recorder, should_stop, self._state, self._note)
+        except Interrupted:
+            pass  # should_stop has seen enough
+
+    def _fill(self, tick: int, rows: Records) -> None:
+        for row, command in self._commands.get(tick, ()):
+            rows[row] = command
+
+    def _note(self, coordinator: Coordinator) -> None:
+        for text in self._events.pop(coordinator.ticks, ()):
+            coordinator.note(text)
+
+
+def _recorded_state(bag: Bag, run: RunConfig) -> RunState | None:
+    """Return where the run went on from; its controllers are not needed again."""
+    text = bag.provenance.state
+    if text is None:
+        return None
+    state = RunState.from_json(text, run.digest, f'{bag.path.name}: state.json')
+    if state.tick > next(bag.messages()).sequence:
+        raise BagError(f'{bag.path}: begins before tick {state.tick}, the one of its state.json')
+    return replace(state, participants=state.participants[:len(run.actuators)])
+
+
+def recorded_events(bag: Bag) -> dict[int, list[str]]:
+    """Return what was done to the run, by the tick before which it was done."""
+    events: dict[int, list[str]] = {}
+    for message in bag.messages():
+        if message.topic == EVENT_TOPIC[0]:
+            events.setdefault(message.sequence, []).append(event.text(message.data))
+    return events
+
+
+class Inputs(NamedTuple):
+    """What a bag says was fed into its run."""
+
+    commands: dict[int, list[tuple[int, np.void]]]
+    """Tick -> (row, `COMMAND`) of every applied setpoint."""
+    tuned: dict[str, dict[int, dict[str, float]]]
+    """Actuator -> tick -> applied parameters, SI, by name."""
+    n_ticks: int
+
+
+def recorded_inputs(bag: Bag, run: RunConfig) -> Inputs:
+    """
+    Return the applied setpoints and parameters of a bag by their ticks.
+
+    Sample k + 1 holds what took effect at tick k; that of t = 0 is where the run starts.
+    """
+    setpoints = {f'/{a.name}/{APPLIED}': (k, a.name) for k, a in enumerate(run.actuators)}
+    parameters = {f'/{a.name}/{TUNED}': a.name for a in run.actuators}
+    inputs = Inputs({}, {}, -1)
+    last = -1
+    for message in bag.messages():
+        last = message.sequence
+        tick, topic = last - 1, message.topic
+        try:
+            if topic in setpoints and last:
+                row, name = setpoints[topic]
+                inputs.commands.setdefault(tick, []).append(
+                    (row, applied_to_command(message.data, name)))
+            elif topic in parameters:
+                name = parameters[topic]
+                inputs.tuned.setdefault(name, {})[tick] = tuned_values(message.data, name)
+        except SetpointError as error:
+            raise BagError(f'{bag.path}: {topic}: {error}') from error
+    if last < 0:
+        raise BagError(f'{bag.path}: holds no sample, there is nothing to replay')
+    return inputs._replace(n_ticks=last)

@@ -1,0 +1,107 @@
+"""
+How far two bags may differ, by topic and field: nothing, where nothing is said.
+
+A tolerance file names topics and fields, a number (absolute, in the field's unit) or both
+bounds; a field without index means each element::
+
+    /haa/joint_states:
+      position: 1.0e-6
+      effort: {absolute: 1.0e-3, relative: 1.0e-6}
+"""
+
+from collections.abc import Mapping
+import math
+from pathlib import Path
+import re
+from typing import NamedTuple
+
+from isa_ros.config import yaml_text as strict_yaml
+from isa_ros.errors import ConfigError
+from msg_adapters.cdr import field_type, Message
+from msg_adapters.cdr_reader import message_class
+
+FLOATS = ('float', 'double')
+_INDEX = re.compile(r'\[\d+\]')
+
+
+class Tolerance(NamedTuple):
+    """Allowed distance from the expected value."""
+
+    absolute: float = 0.0  # in the field's unit
+    relative: float = 0.0  # of the expected value
+
+    def admits(self, expected: float, actual: float) -> bool:
+        """Tell whether the actual value is near enough; a NaN never is."""
+        return abs(actual - expected) <= self.absolute + self.relative * abs(expected)
+
+
+class Tolerances:
+    """Tolerances by topic and field; by default every bit must be equal."""
+
+    def __init__(self, by_field: Mapping[tuple[str, str], Tolerance] | None = None) -> None:
+        self._by_field = dict(by_field or {})
+
+    def of(self, topic: str, field: str) -> Tolerance | None:
+        """Return the tolerance of a field path; one with its index wins."""
+        exact = self._by_field.get((topic, field))
+        return exact or self._by_field.get((topic, _INDEX.sub('', field)))
+
+
+def load_tolerances(path: Path, types: Mapping[str, str]) -> Tolerances:
+    """
+    Read a tolerance file for bags with these message types by topic.
+
+    Raises
+    ------
+    ConfigError
+        an unknown topic or field, a field that is no float, or a bound that is
+        not a finite number >= 0; each by file, key and value.
+
+    """
+    by_field = {}
+    for topic, section in strict_yaml.read(path).items():
+        if topic not in types:
+            raise ConfigError(
+                f'{path.name}: {topic}: no such topic in the bag, which has '
+                f'{", ".join(sorted(types))}')
+        if not isinstance(section, dict):
+            raise ConfigError(f'{path.name}: {topic} = {section!r}, must be fields')
+        fields = _fields(message_class(types[topic]))
+        for field, bound in section.items():
+            where = f'{path.name}: {topic}: {field}'
+            _check_field(where, field, fields)
+            by_field[topic, field] = _tolerance(where, bound)
+    return Tolerances(by_field)
+
+
+def _fields(cls: type[Message], prefix: str = '') -> dict[str, str]:
+    """Return the element type of every field path, without indices."""
+    found: dict[str, str] = {}
+    for name, declared in cls.get_fields_and_field_types().items():
+        item = field_type(declared).item
+        if '/' in item:
+            found |= _fields(message_class(item), f'{prefix}{name}.')
+        else:
+            found[f'{prefix}{name}'] = item
+    return found
+
+
+def _check_field(where: str, field: str, fields: Mapping[str, str]) -> None:
+    floats = [name for name, item in fields.items() if item in FLOATS]
+    if _INDEX.sub('', field) not in floats:
+        raise ConfigError(f'{where}: must be a number of the message: {", ".join(floats)}')
+
+
+def _tolerance(where: str, bound: object) -> Tolerance:
+    bounds = bound if isinstance(bound, dict) else {'absolute': bound}
+    if not bounds or set(bounds) - set(Tolerance._fields):
+        raise ConfigError(
+            f'{where} = {bound!r}, must be a number or have {" and ".join(Tolerance._fields)}')
+    return Tolerance(**{name: _bound(where, name, value) for name, value in bounds.items()})
+
+
+def _bound(where: str, name: str, value: object) -> float:
+    if isinstance(value, (int, float)) and not isinstance(value, bool):
+        if math.isfinite(value) and value >= 0.0:
+            return float(value)
+    raise ConfigError(f'{where}: {name} = {value!r}, must be a finite number >= 0')

@@ -1,0 +1,1 @@
+"""A run: its ticks, its messages, its pace, its saved states."""

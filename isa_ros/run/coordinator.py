@@ -1,0 +1,265 @@
+"""
+The run: one barrier per tick, free of ROS.
+
+Tick k takes every actuator from t_k to t_k+1 = (k + 1) step_ns, then the load they share.
+Controllers work on the state of t_k meanwhile, and what they ask for takes effect at t_k+1.
+The sample of t_k is recorded while the actuators work on tick k, so the recorder costs a
+tick nothing as long as it is faster than they are. N ticks give N + 1 samples: the state
+at t = 0 is one of them.
+"""
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from typing import NamedTuple
+
+from isa_ros.core.timebase import NS_PER_SECOND
+from isa_ros.errors import ConfigError, IsaError
+from isa_ros.run.exchange import Messages, Recorder, Records, Rows, SharedLoad, Transport
+from isa_ros.run.pacing import BEFORE_TICKS, Laps, Pace, ProgressMeter
+from isa_ros.run.saved_state import RunState
+from isa_ros.run.topics import Order
+
+
+class Interrupted(IsaError):
+    """A run that was asked to stop before its end."""
+
+    exit_code = 130
+
+
+class Sample(NamedTuple):
+    """Everything the sources said at one instant."""
+
+    sequence: int
+    sources: Sequence[Messages]
+
+
+@dataclass(frozen=True, kw_only=True)
+class Plan:
+    """What is run, and for how long."""
+
+    step_ns: int
+    rows: Rows
+    has_controllers: bool = False
+    n_ticks: int | None
+    """Ends at t = n_ticks step_ns; None: until stopped."""
+    commands: Callable[[int, Records], None]
+    """Writes over the `COMMAND` rows of one tick, which hold what controllers ask for."""
+    is_paused: bool = False
+    """Wait for the first `Coordinator.step` or the end of the pause."""
+
+
+Requests = Callable[['Coordinator'], None]
+"""Calls `Coordinator.pause`, `step`, `reset`, `save` or `note` for what was asked since."""
+
+
+class Coordinator:
+    """Advance actuators and their load tick by tick, and record every sample."""
+
+    def __init__(
+            self, plan: Plan, order: Order, transport: Transport, load: SharedLoad,
+            recorder: Recorder, *, pace: Pace, progress: ProgressMeter,
+            should_stop: Callable[[], bool], requests: Requests | None = None,
+            laps: Laps | None = None) -> None:
+        self._plan = plan
+        self._rows = plan.rows
+        self._lap: Callable[[str], None] = _no_lap if laps is None else laps.lap
+        self._order = order
+        self._transport = transport
+        self._load = load
+        self._recorder = recorder
+        self._pace = pace
+        self._progress = progress
+        self._should_stop = should_stop
+        self._serve: Requests = _no_requests if requests is None else requests
+        self._unrecorded: Sample | None = None
+        self._events: list[bytes] = []
+        self.ticks = 0
+        """Where the run is: t = ticks step_ns."""
+        self.is_paused = plan.is_paused
+        self.is_reset = False
+        """Whether the run ended because it shall begin anew."""
+
+    @property
+    def t_ns(self) -> int:
+        """Return the simulated time reached."""
+        return self.ticks * self._plan.step_ns
+
+    def run(self, first: Sequence[Messages], state: RunState | None = None) -> None:
+        """
+        Run to the end, from the answers of `Transport.join`, or from a saved state.
+
+        Whatever ends the run, every sample of a finished tick is handed to the recorder.
+
+        Raises
+        ------
+        Interrupted
+            Stopped before the end; the tick under way was finished if it could.
+        RunError
+            A participant or the recorder was lost or late.
+        SimulationDiverged
+            A state is no longer finite.
+
+        """
+        if state is not None:
+            first = self._restore(state)
+        clock = self._publish_clock(self.ticks)
+        self._transport.begin()
+        self._end_tick(clock, first)
+        self._start_clocks()
+        try:
+            while True:
+                self._serve(self)
+                if self._is_over:
+                    break
+                if self.is_paused:
+                    self._pass_time()
+                else:
+                    self._pace.wait(self.t_ns, self._should_stop)
+                    self._advance()
+        finally:
+            self._record()
+            if not self.is_paused:  # else nothing was due
+                self._pace.end(self.t_ns)
+            self._progress.end(self.t_ns)
+
+    @property
+    def _is_over(self) -> bool:
+        return self.ticks == self._plan.n_ticks or self.is_reset
+
+    def _start_clocks(self) -> None:
+        self._pace.start(self.t_ns)
+        self._progress.start(self.t_ns)
+
+    def _restore(self, state: RunState) -> Sequence[Messages]:
+        self.ticks = state.tick
+        self._load.restore(state.load)
+        self._rows.requests[:] = state.rows_of_requests(len(self._rows.requests))
+        return self._transport.restore(state.tick, state.participants, self._rows)
+
+    def pause(self, is_paused: bool) -> None:
+        """Stop before the next tick, or go on."""
+        if is_paused == self.is_paused:
+            return
+        self.is_paused = is_paused
+        self.note('pause' if is_paused else 'resume')
+        self._start_clocks()
+
+    def step(self, n_ticks: int) -> None:
+        """
+        Advance exactly ``n_ticks`` while paused; fewer only where the run ends before.
+
+        Raises
+        ------
+        ConfigError
+            The run is not paused.
+
+        """
+        if not self.is_paused:
+            raise ConfigError('step: the run is not paused, pause it first')
+        self.note(f'step {n_ticks}')
+        for _ in range(n_ticks):
+            if self._is_over:
+                break
+            self._advance()
+
+    def reset(self) -> None:
+        """End this run, so that it begins anew at t = 0 with a new bag."""
+        self.note('reset')
+        self.is_reset = True
+
+    def save(self) -> RunState:
+        """
+        Return everything the rest of the run depends on.
+
+        Raises
+        ------
+        RunError
+            A participant was lost, or cannot be saved.
+
+        """
+        return RunState(
+            tick=self.ticks, load=self._load.snapshot(),
+            participants=self._transport.snapshots(), requests=self._rows.requests.tobytes())
+
+    def set_real_time_factor(self, factor: float) -> None:
+        """
+        Go on at ``factor`` times real time; 0: as fast as it can.
+
+        Raises
+        ------
+        ConfigError
+            It is negative or not finite.
+
+        """
+        self._pace.set_factor(factor)
+        self._start_clocks()
+
+    def note(self, event: str) -> None:
+        """Record and publish what was done to the run at this instant."""
+        message = self._load.event(self.t_ns, event)
+        self._events.append(message)
+        self._transport.publish_event(message)
+
+    def _pass_time(self) -> None:
+        self._refuse_stop()
+        self._transport.idle()
+
+    def _advance(self) -> None:
+        self._refuse_stop()
+        self._tick(self.ticks)
+        self._progress.update(self.t_ns)
+
+    def _refuse_stop(self) -> None:
+        if self._should_stop():
+            t = self.t_ns / NS_PER_SECOND
+            raise Interrupted(f'stopped at t = {t:.6f} s after {self.ticks} ticks')
+
+    def _tick(self, tick: int) -> None:
+        rows = self._rows
+        self._lap(BEFORE_TICKS)
+        rows.commands[:] = rows.requests
+        rows.requests['kinds'] = 0
+        self._plan.commands(tick, rows.commands)
+        self._load.ports(rows.ports)
+        if self._plan.has_controllers:
+            self._load.show(rows.shared)
+        self._lap('commands and ports')
+        clock = self._publish_clock(tick + 1)
+        self._transport.send(tick, rows)
+        self._lap('clock and step out')
+        self._record()
+        self._lap('recorder')
+        answers = self._transport.receive(rows)
+        self._lap('actuators')
+        self._load.advance(rows.replies)
+        self._lap('leg and supply')
+        self.ticks = tick + 1
+        self._end_tick(clock, answers)
+        self._lap('messages of the leg')
+
+    def _publish_clock(self, sequence: int) -> bytes:
+        clock = self._load.clock(sequence * self._plan.step_ns)
+        self._transport.publish_clock(clock)
+        return clock
+
+    def _end_tick(self, clock: bytes, answers: Sequence[Messages]) -> None:
+        shown = self._load.messages(self.t_ns)
+        self._transport.publish(shown)
+        self._unrecorded = Sample(self.ticks, (*answers, (clock,), shown))
+
+    def _record(self) -> None:
+        sample, self._unrecorded = self._unrecorded, None
+        if sample is None:
+            return
+        events, self._events = self._events, []
+        t_ns = sample.sequence * self._plan.step_ns
+        self._recorder.write_tick(
+            t_ns, sample.sequence, self._order.merge(sample.sources, events))
+
+
+def _no_lap(phase: str) -> None:
+    """Measure nothing."""
+
+
+def _no_requests(coordinator: Coordinator) -> None:
+    """Ask for nothing."""

@@ -1,0 +1,139 @@
+"""Host time: how fast a run goes and how far it is. Nothing of it reaches a result."""
+
+from collections.abc import Callable
+import time
+from typing import NamedTuple
+
+from isa_ros.core.timebase import NS_PER_SECOND
+from isa_ros.errors import ConfigError
+
+SLICE_S = 0.1  # longest sleep between two looks at a signal
+REPORT_PERIOD_S = 0.2
+LARGEST_LAG_S = 0.1     # behind the pace at the end of a run that is not worth a word
+JOIN_TIMEOUT_S = 30.0  # how long participants are waited for before tick 0
+
+STARTING, JOINING, BEFORE_TICKS = 'starting', 'joining', 'between ticks'
+"""Phases of `Laps` that are no part of a tick: until everyone is called, until all are there."""
+
+
+class Progress(NamedTuple):
+    """How far a run is."""
+
+    t_ns: int
+    real_time_factor: float
+    """Simulated over elapsed time since the start, or since the last pause."""
+    time_left_s: float | None
+    """None where the end is not known."""
+    is_last: bool
+
+
+class Pace:
+    """
+    Hold the run back to ``real_time_factor``; None or 0 runs as fast as it can.
+
+    Raises
+    ------
+    ConfigError
+        The factor is negative or not finite.
+
+    """
+
+    def __init__(
+            self, real_time_factor: float | None = None,
+            now: Callable[[], float] = time.monotonic,
+            sleep: Callable[[float], None] = time.sleep) -> None:
+        self.set_factor(real_time_factor or 0.0)
+        self._now = now
+        self._sleep = sleep
+        self._start = 0.0
+        self._lag = 0.0
+
+    def set_factor(self, real_time_factor: float) -> None:
+        """Keep another pace from the next `start` on; as the constructor."""
+        if not 0.0 <= real_time_factor < float('inf'):
+            raise ConfigError(
+                f'real_time_factor = {real_time_factor:g}, must be finite and >= 0 '
+                '(0: as fast as it can)')
+        self.factor = real_time_factor
+        self._seconds_per_ns = (
+            1.0 / (NS_PER_SECOND * real_time_factor) if real_time_factor else 0.0)
+
+    def start(self, t_ns: int = 0) -> None:
+        """Let ``t_ns`` be now."""
+        self._start = self._now() - t_ns * self._seconds_per_ns
+
+    def end(self, t_ns: int) -> None:
+        """Take note of how far behind the run is at its end."""
+        due = self._start + t_ns * self._seconds_per_ns
+        self._lag = self._now() - due if self._seconds_per_ns else 0.0
+
+    @property
+    def shortfall(self) -> str | None:
+        """Return the one line for the user of a run that fell behind, None for one that kept."""
+        if self._lag <= LARGEST_LAG_S:
+            return None
+        return (f'{self._lag:.1f} s of host time behind real_time_factor = {self.factor:g} '
+                'at the end')
+
+    def wait(self, t_ns: int, should_stop: Callable[[], bool]) -> None:
+        """Sleep until ``t_ns`` is due; return early when a stop is asked for."""
+        if not self._seconds_per_ns:
+            return
+        due = self._start + t_ns * self._seconds_per_ns
+        while (left := due - self._now()) > 0.0 and not should_stop():
+            self._sleep(min(left, SLICE_S))
+
+
+class Laps:
+    """Host time that each phase of the ticks has taken, for whoever measures it."""
+
+    def __init__(self, now: Callable[[], float] = time.perf_counter) -> None:
+        self.spent: dict[str, float] = {}
+        """Seconds by phase."""
+        self._now = now
+        self._last = now()
+
+    def lap(self, phase: str) -> None:
+        """Charge the time since the last call to ``phase``."""
+        now = self._now()
+        self.spent[phase] = self.spent.get(phase, 0.0) + now - self._last
+        self._last = now
+
+
+class ProgressMeter:
+    """Report the progress of a run of ``duration_ns`` (None: open end) now and then."""
+
+    def __init__(
+            self, duration_ns: int | None, report: Callable[[Progress], None] | None,
+            now: Callable[[], float] = time.monotonic) -> None:
+        self._duration_ns = duration_ns
+        self._report = report
+        self._now = now
+        self._start = 0.0
+        self._start_ns = 0
+        self._next = 0.0
+
+    def start(self, t_ns: int = 0) -> None:
+        """Let ``t_ns`` be now: the factor counts from there."""
+        self._start_ns = t_ns
+        self._start = self._now()
+        self._next = self._start + REPORT_PERIOD_S
+
+    def update(self, t_ns: int) -> None:
+        """Report if the last report is old enough."""
+        if self._report is not None and self._now() >= self._next:
+            self._next = self._now() + REPORT_PERIOD_S
+            self._report(self._progress(t_ns, is_last=False))
+
+    def end(self, t_ns: int) -> None:
+        """Report the end of the run."""
+        if self._report is not None:
+            self._report(self._progress(t_ns, is_last=True))
+
+    def _progress(self, t_ns: int, is_last: bool) -> Progress:
+        elapsed = self._now() - self._start
+        factor = (t_ns - self._start_ns) / (NS_PER_SECOND * elapsed) if elapsed > 0.0 else 0.0
+        left = None
+        if self._duration_ns is not None and factor > 0.0:
+            left = (self._duration_ns - t_ns) / (NS_PER_SECOND * factor)
+        return Progress(t_ns, factor, left, is_last)

@@ -1,0 +1,235 @@
+"""Bring-up: from the files of a run to its bag, in processes or in one."""
+
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass, field
+from itertools import count
+import os
+from pathlib import Path
+
+from isa_ros.actuator.actuator import Timing
+from isa_ros.bag.metadata import FILE_NAME
+from isa_ros.bag.provenance import installed_versions, Provenance
+from isa_ros.bag.writer import BagWriter
+from isa_ros.config.run_config import RunConfig
+from isa_ros.config.run_file import load_run
+from isa_ros.core.timebase import NS_PER_SECOND
+from isa_ros.errors import BagError, ConfigError, RunError
+from isa_ros.run.coordinator import Coordinator, Plan, Requests
+from isa_ros.run.exchange import Rows, Transport
+from isa_ros.run.pacing import (
+    JOIN_TIMEOUT_S, JOINING, Laps, Pace, Progress, ProgressMeter, STARTING)
+from isa_ros.run.saved_state import read_state, RunState
+from isa_ros.run.thinning import Thinning
+from isa_ros.run.topics import topics_of
+from isa_ros.scenario.scenario import idle, load_scenario, Scenario
+from isa_ros.surroundings.surroundings import SharedLoad
+
+RUNS = Path('runs')
+
+Report = Callable[[Progress], None]
+
+
+@dataclass(frozen=True, kw_only=True)
+class Request:
+    """What a user asks for; every option of `isa bringup`."""
+
+    config: Path
+    scenario: Path | None = None
+    out: Path | None = None
+    """None: a new directory in runs/."""
+    duration_s: float | None = None
+    """None: that of the scenario, else until stopped."""
+    real_time_factor: float | None = None
+    """None or 0: as fast as it can."""
+    overwrite: bool = False
+    compression: str | None = None
+    """None: that of the configuration, as `split_mb`."""
+    split_mb: float | None = None
+    in_process: bool = False
+    elsewhere: tuple[str, ...] = ()
+    """Actuators that another host starts; `run_config.ALL` alone: all of them."""
+    controllers: tuple[str, ...] = ()
+    """Controllers that take part, besides those of the run file."""
+    is_paused: bool = False
+    """Wait for a step or the end of the pause before tick 0."""
+    restore: Path | None = None
+    """Saved state to go on from; None: begin at t = 0."""
+    save: Path | None = None
+    """Where the state at the end goes; None: nowhere."""
+    namespace: str = ''
+    join_timeout_s: float = JOIN_TIMEOUT_S
+    is_alone: bool = False
+    """This process does nothing but the run, so that what was loaded need not be collected and,
+    where nobody has had a node, actuators may begin as copies of it."""
+    laps: Laps | None = None
+    """Takes the host time of every phase of the ticks."""
+
+
+@dataclass(frozen=True)
+class Session:
+    """One run, read and checked, before anything is started."""
+
+    request: Request
+    scenario: Scenario
+    out: Path
+    pace: Pace
+    state: RunState | None = None
+    """Where the run goes on from; None: it begins at t = 0."""
+    bags: list[Path] = field(default_factory=list)
+    """The bags of the run so far: `out`, and one more for each reset."""
+
+    @property
+    def run(self) -> RunConfig:
+        """Return the configuration that is simulated and recorded."""
+        return self.scenario.run
+
+    @property
+    def timing(self) -> Timing:
+        """Return the grid of time of every actuator."""
+        return Timing(self.run.step_ns, self.run.controller_offset_ns)
+
+
+def prepare(request: Request) -> Session:
+    """
+    Read the files of a run and check that its bag can be made.
+
+    Raises
+    ------
+    ConfigError
+        A file or an option that cannot be run.
+    BagError
+        The output directory exists or cannot be made.
+
+    """
+    run = load_run(request.config).with_controllers(request.controllers).stored(
+        request.compression, request.split_mb, 'record options')
+    if run.record.thins:
+        run.record.refuse_misfits(
+            [topic.name for topic in topics_of(run, SharedLoad(run))[1]], run.source)
+    scenario = idle(run) if request.scenario is None else load_scenario(request.scenario, run)
+    if request.duration_s is not None:
+        scenario = scenario.lasting(request.duration_s)
+    if request.in_process and request.elsewhere:
+        raise ConfigError(
+            f'--elsewhere {",".join(request.elsewhere)} with --in-process: leave one out, this '
+            'process would have all actuators')
+    run.names_here(request.elsewhere)
+    name = run.name if request.scenario is None else f'{run.name}_{scenario.name}'
+    out = request.out or _unused(RUNS / name)
+    _check_output(out, request.overwrite)
+    save = request.save
+    if save is not None and save.exists() and not (request.overwrite and save.is_file()):
+        raise ConfigError(f'--save {save}: exists, must not; --overwrite replaces a file')
+    state = None
+    if request.restore is not None:
+        state = read_state(request.restore, scenario.run.digest)
+        n_ticks, seconds = scenario.n_ticks, scenario.run.step_ns / NS_PER_SECOND
+        if n_ticks is not None and state.tick >= n_ticks:
+            raise ConfigError(
+                f'--restore {request.restore}: of t = {state.tick * seconds:g} s, must be before '
+                f'the end, {n_ticks * seconds:g} s')
+    return Session(request, scenario, out, Pace(request.real_time_factor), state)
+
+
+def _candidates(directory: Path) -> Iterator[Path]:
+    yield directory
+    for number in count(2):
+        yield directory.with_name(f'{directory.name}_{number}')
+
+
+def _unused(directory: Path) -> Path:
+    return next(path for path in _candidates(directory) if not path.exists())
+
+
+def _check_output(out: Path, overwrite: bool) -> None:
+    if out.exists():
+        if not out.is_dir() or (any(out.iterdir()) and not (out / FILE_NAME).is_file()):
+            raise BagError(
+                f'{out} exists and holds no bag ({FILE_NAME}), so it is not overwritten')
+        if not overwrite:
+            raise BagError(f'{out} exists, must not; --overwrite replaces the bag in it')
+    parent = next(path for path in [out, *out.absolute().parents] if path.exists())
+    if not parent.is_dir() or not os.access(parent, os.W_OK | os.X_OK):
+        raise BagError(f'{out}: cannot be made, {parent} is not writable')
+
+
+def record(
+        session: Session, transport: Transport, load: SharedLoad, report: Report | None,
+        should_stop: Callable[[], bool], requests: Requests | None = None) -> None:
+    """
+    Join the participants of ``transport``, run, and record every sample.
+
+    A reset begins anew, with a bag of its own beside the first.
+    """
+    beginning, state, out = load.snapshot(), session.state, session.out
+    while True:
+        coordinator = _record_one(
+            session, out, state, transport, load, report, should_stop, requests)
+        if not coordinator.is_reset:
+            break
+        load.restore(beginning)
+        out, state = _unused(session.out), None
+    if session.request.save is not None:
+        write_state(session, coordinator, session.request.save)
+
+
+def _record_one(
+        session: Session, out: Path, state: RunState | None, transport: Transport,
+        load: SharedLoad, report: Report | None, should_stop: Callable[[], bool],
+        requests: Requests | None) -> Coordinator:
+    """Run once, to the end or to a reset, and return where it came to."""
+    run, n_ticks = session.run, session.scenario.n_ticks
+    rows = Rows(len(run.actuators))
+    plan = Plan(
+        step_ns=run.step_ns, rows=rows, has_controllers=bool(run.controllers), n_ticks=n_ticks,
+        commands=session.scenario.commands, is_paused=session.request.is_paused)
+    laps = session.request.laps or Laps()
+    laps.lap(STARTING)
+    first = transport.join(rows)
+    laps.lap(JOINING)
+    order, topics = topics_of(run, load)
+    thinning = Thinning(run.record, topics)
+    # The first bag alone may replace one: a reset takes a directory that does not exist.
+    overwrite = session.request.overwrite and not session.bags
+    with BagWriter(out, thinning.topics, provenance(session, state), overwrite,
+                   run.record.storage) as bag:
+        session.bags.append(out)
+        coordinator = Coordinator(
+            plan, order, transport, load, thinning.recorder(bag), pace=session.pace,
+            progress=ProgressMeter(None if n_ticks is None else n_ticks * run.step_ns, report),
+            should_stop=should_stop, requests=requests, laps=session.request.laps)
+        coordinator.run(first, state)
+    return coordinator
+
+
+def write_state(session: Session, coordinator: Coordinator, path: Path) -> None:
+    """
+    Save the state of a run between two ticks to a file.
+
+    Raises
+    ------
+    RunError
+        The file cannot be written, or a participant cannot be saved.
+
+    """
+    text = coordinator.save().to_json(session.run.digest, installed_versions())
+    try:
+        path.write_text(text, encoding='utf-8')
+    except OSError as error:
+        raise RunError(f'{path}: cannot save, {error.strerror}') from error
+
+
+def save_in_bag(session: Session, coordinator: Coordinator) -> str:
+    """Save the state of a run beside the messages of its bag and return the path."""
+    path = session.bags[-1] / f'state_{coordinator.ticks}.json'
+    write_state(session, coordinator, path)
+    return str(path)
+
+
+def provenance(session: Session, state: RunState | None = None) -> Provenance:
+    """Return what the bag says about its own making."""
+    versions = installed_versions()
+    return Provenance(
+        configuration=session.run.to_yaml(), scenario=session.scenario.to_yaml(), seed=0,
+        versions=versions,
+        state=None if state is None else state.to_json(session.run.digest, versions))

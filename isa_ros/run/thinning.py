@@ -1,0 +1,42 @@
+"""The part of a run's samples that its configuration wants recorded."""
+
+from collections.abc import Sequence
+
+from isa_ros.config.recording import RecordConfig
+from isa_ros.core.topic import Topic
+from isa_ros.run.exchange import Recorder
+
+
+class Thinning:
+    """Which topics are recorded, and when; ``topics`` are the recorded ones, in order."""
+
+    def __init__(self, record: RecordConfig, topics: Sequence[Topic]) -> None:
+        self._periods = [record.period(topic.name) for topic in topics]
+        kept = [k for k, period in enumerate(self._periods) if period]
+        self._places = {k: place for place, k in enumerate(kept)}
+        self._is_needed = record.thins
+        self.topics = [topics[k] for k in kept]
+
+    def recorder(self, recorder: Recorder) -> Recorder:
+        """Return what to hand every message to, so that ``recorder`` gets the kept ones."""
+        if not self._is_needed:
+            return recorder
+        return _Thinned(recorder, self._periods, self._places)
+
+
+class _Thinned:
+    """Hands on what is kept, by its place among the kept topics."""
+
+    def __init__(
+            self, recorder: Recorder, periods: Sequence[int], places: dict[int, int]) -> None:
+        self._recorder = recorder
+        self._periods = periods
+        self._places = places
+
+    def write_tick(
+            self, t_ns: int, sequence: int, messages: Sequence[tuple[int, bytes]]) -> None:
+        """Hand on the part of a tick that is kept, which may be nothing."""
+        periods, places = self._periods, self._places
+        self._recorder.write_tick(t_ns, sequence, [
+            (places[k], data) for k, data in messages
+            if periods[k] and sequence % periods[k] == 0])

@@ -1,0 +1,275 @@
+"""
+The private wire of the lockstep: one step to all, one acknowledgement from each.
+
+Both travel as std_msgs/UInt8MultiArray whose bytes are made here, without rclpy's encoder:
+the 16 bytes in front of the array are fixed but for its length. Every message carries the
+run's id, so that two coordinators in one domain can tell their messages apart. Little
+endian, unpadded; the layout is an implementation detail of one version of this package,
+and ``WIRE_VERSION`` is refused where it differs.
+"""
+
+from collections.abc import Sequence
+from enum import IntEnum
+from functools import cache
+import struct
+from typing import NamedTuple
+
+from isa_ros.core.signals import COMMAND, LOAD_PORT, SAMPLE, SHARED_SAMPLE, START
+from isa_ros.errors import RunError
+from isa_ros.run.exchange import Records, Rows
+import numpy as np
+
+STEP_TOPIC = '/_isa/step'
+ACKNOWLEDGEMENT_TOPIC = '/_isa/acknowledgement'
+WIRE_VERSION = 3
+
+_ENCAPSULATION = 0x00000100  # bytes 00 01 00 00: little endian CDR, no options
+_PREFIX = struct.Struct('<IIII')  # encapsulation, no dimensions, data_offset, array length
+_STEP = struct.Struct('<IIIIHHIQq')  # prefix; version, kind, rows, run id, tick
+_ACKNOWLEDGEMENT = struct.Struct('<IIIIHHIIIQq')
+"""Prefix; version, kind, index, parts, whether it is repeated, run id, tick."""
+
+_NUMBER = struct.Struct('<q')
+_ABSENT = 0xFFFFFFFF  # length of a part that is None
+
+DIVERGENCE = struct.Struct('<qd')
+"""First part of a `DIVERGED` answer: t_ns, value."""
+
+_COUNT = 4  # bytes of a length
+
+
+class StepKind(IntEnum):
+    """What the coordinator wants."""
+
+    HELLO = 1
+    """Answer if your name is listed, and start over at t = 0; ``tick`` counts the hellos."""
+    TICK = 2
+    END = 3
+    """The run is over; the next hello may begin another."""
+    BEGIN = 4
+    """Publish the first messages: everyone is ready and `/clock` is out. Said again while the
+    run goes on without ticks on the topic. No answer."""
+    SAVE = 5
+    """Answer with the whole state before the next tick; ``tick`` is a number below 0, new at
+    each request, so that no answer to another one is taken for this one's."""
+    RESTORE = 6
+    """Continue from a state before the tick in the body; ``tick`` as in a save."""
+
+
+class AnswerKind(IntEnum):
+    """What a participant answers."""
+
+    READY = 1
+    """To a hello: identity, digest, then what its `Seat` says of t = 0."""
+    DONE = 2
+    """To a tick: what its `Seat` says of the tick's end."""
+    DIVERGED = 3
+    """To a tick: t_ns and value, then the field that is no longer finite."""
+    BUSY = 4
+    """To a hello: this participant is in another run."""
+    REFUSED = 5
+    """To a tick, a save or a restore: the reason why it cannot be done."""
+    UNBOUND = 6
+    """To the first sign of a run that never called this participant: its name."""
+    SAVED = 7
+    """To a save: the whole state."""
+    RESTORED = 8
+    """To a restore: what its `Seat` says of that instant."""
+
+
+# Calling an enumeration costs a microsecond in a tick; a dictionary a twentieth.
+_STEP_KINDS = {int(kind): kind for kind in StepKind}
+_ANSWER_KINDS = {int(kind): kind for kind in AnswerKind}
+
+
+class Step(NamedTuple):
+    """One message of the coordinator."""
+
+    kind: StepKind
+    run_id: int
+    tick: int
+    rows: int
+    body: bytes
+
+    def names(self) -> list[str]:
+        """Return the participants that a hello calls, in order: ``rows`` actuators first."""
+        return self.body[_NUMBER.size + self.rows * START.itemsize:].decode().split('\n')
+
+    def step_ns(self) -> int:
+        """Return the length of the ticks that a hello announces."""
+        return int(_NUMBER.unpack_from(self.body)[0])
+
+    def start(self, index: int) -> np.void:
+        """Return the `START` row of one actuator."""
+        row: np.void = np.frombuffer(
+            self.body, START, 1, _NUMBER.size + index * START.itemsize)[0]
+        return row
+
+    def port(self, index: int) -> np.void:
+        """Return the `LOAD_PORT` row of one actuator."""
+        row: np.void = np.frombuffer(
+            self.body, LOAD_PORT, 1, index * LOAD_PORT.itemsize)[0]
+        return row
+
+    def command(self, index: int) -> np.void:
+        """Return the `COMMAND` row of one actuator."""
+        offset = self.rows * LOAD_PORT.itemsize + index * COMMAND.itemsize
+        row: np.void = np.frombuffer(self.body, COMMAND, 1, offset)[0]
+        return row
+
+    def samples(self) -> Records:
+        """Return the `SAMPLE` of every actuator before the tick, (rows,); controllers' only."""
+        return np.frombuffer(self.body, SAMPLE, self.rows, self._samples_start)
+
+    def shared(self) -> Records:
+        """Return the `SHARED_SAMPLE` before the tick, (1,); controllers' only."""
+        return np.frombuffer(
+            self.body, SHARED_SAMPLE, 1, self._samples_start + self.rows * SAMPLE.itemsize)
+
+    @property
+    def _samples_start(self) -> int:
+        return self.rows * (LOAD_PORT.itemsize + COMMAND.itemsize)
+
+    def restored_tick(self) -> int:
+        """Return the tick before which a restore puts everyone."""
+        return int(_NUMBER.unpack_from(self.body)[0])
+
+    def snapshot(self, index: int) -> bytes:
+        """Return the state from which one participant goes on."""
+        own = _split(self.body, self.rows, _NUMBER.size)[index]
+        assert own is not None
+        return own
+
+
+class Answer(NamedTuple):
+    """One message of a participant."""
+
+    kind: AnswerKind
+    run_id: int
+    tick: int
+    participant: int
+    """Its place in the hello's names."""
+    parts: list[bytes | None]
+    is_repeated: bool
+    """To a step that had been answered before."""
+
+
+def encode_hello(
+        run_id: int, count: int, step_ns: int, starts: Records, names: Sequence[str]) -> bytes:
+    """
+    Return the bytes of the ``count``-th hello.
+
+    ``starts`` are the `START` rows of the actuators, (n,); ``names`` all participants, the
+    actuators first.
+    """
+    return _step(
+        StepKind.HELLO, run_id, count, len(starts),
+        _NUMBER.pack(step_ns) + starts.tobytes() + '\n'.join(names).encode())
+
+
+def encode_tick(run_id: int, tick: int, rows: Rows, has_controllers: bool) -> bytes:
+    """Return the bytes of one tick: ports and commands, for controllers also the samples."""
+    body = rows.ports.tobytes() + rows.commands.tobytes()
+    if has_controllers:
+        body += rows.samples.tobytes() + rows.shared.tobytes()
+    return _step(StepKind.TICK, run_id, tick, len(rows.ports), body)
+
+
+def encode_begin(run_id: int) -> bytes:
+    """Return the bytes that let the first messages be published."""
+    return _step(StepKind.BEGIN, run_id, 0, 0, b'')
+
+
+def encode_save(run_id: int, number: int) -> bytes:
+    """Return the bytes that ask for the state before the next tick; see `StepKind.SAVE`."""
+    return _step(StepKind.SAVE, run_id, number, 0, b'')
+
+
+def encode_restore(run_id: int, number: int, tick: int, snapshots: Sequence[bytes]) -> bytes:
+    """Return the bytes that put every participant before ``tick``; see `StepKind.SAVE`."""
+    body = _NUMBER.pack(tick) + _join(snapshots)
+    return _step(StepKind.RESTORE, run_id, number, len(snapshots), body)
+
+
+def encode_end(run_id: int) -> bytes:
+    """Return the bytes that end a run."""
+    return _step(StepKind.END, run_id, 0, 0, b'')
+
+
+def _step(kind: StepKind, run_id: int, tick: int, rows: int, body: bytes) -> bytes:
+    return _STEP.pack(
+        _ENCAPSULATION, 0, 0, _STEP.size - _PREFIX.size + len(body),
+        WIRE_VERSION, kind, rows, run_id, tick) + body
+
+
+def decode_step(data: bytes) -> Step:
+    """
+    Return the message of a coordinator.
+
+    Raises
+    ------
+    RunError
+        It is of another version of this package.
+
+    """
+    _, _, _, size, version, kind, rows, run_id, tick = _STEP.unpack_from(data)
+    _check_version(version)
+    return Step(_STEP_KINDS[kind], run_id, tick, rows, data[_STEP.size:_PREFIX.size + size])
+
+
+def encode_answer(
+        kind: AnswerKind, run_id: int, tick: int, index: int,
+        parts: Sequence[bytes | None], is_repeated: bool = False) -> bytes:
+    """Return the bytes of an answer; a part that is None stays None."""
+    body = _join(parts)
+    return _ACKNOWLEDGEMENT.pack(
+        _ENCAPSULATION, 0, 0, _ACKNOWLEDGEMENT.size - _PREFIX.size + len(body),
+        WIRE_VERSION, kind, index, len(parts), is_repeated, run_id, tick) + body
+
+
+def decode_answer(data: bytes) -> Answer:
+    """
+    Return the message of a participant.
+
+    Raises
+    ------
+    RunError
+        It is of another version of this package.
+
+    """
+    _, _, _, _, version, kind, index, n, is_repeated, run_id, tick = (
+        _ACKNOWLEDGEMENT.unpack_from(data))
+    _check_version(version)
+    parts = _split(data, n, _ACKNOWLEDGEMENT.size)
+    return Answer(_ANSWER_KINDS[kind], run_id, tick, index, parts, bool(is_repeated))
+
+
+def _join(parts: Sequence[bytes | None]) -> bytes:
+    """Return the lengths of all parts, then those that are there."""
+    lengths = [_ABSENT if part is None else len(part) for part in parts]
+    return b''.join((_counts(len(parts)).pack(*lengths), *filter(None, parts)))
+
+
+def _split(data: bytes, n: int, offset: int) -> list[bytes | None]:
+    """Return the ``n`` parts that begin at ``offset``; inverse of `_join`."""
+    parts: list[bytes | None] = []
+    start = offset + _COUNT * n
+    for length in _counts(n).unpack_from(data, offset):
+        if length == _ABSENT:
+            parts.append(None)
+            continue
+        parts.append(data[start:start + length])
+        start += length
+    return parts
+
+
+@cache
+def _counts(n: int) -> struct.Struct:
+    return struct.Struct(f'<{n}I')
+
+
+def _check_version(version: int) -> None:
+    if version != WIRE_VERSION:
+        raise RunError(
+            f'lockstep wire version {version} met, this isa_ros speaks {WIRE_VERSION}: '
+            'coordinator and participants must be of one installation')

@@ -1,0 +1,179 @@
+"""
+Scenarios: what is commanded to whom at which tick, and what the rig is changed to for it.
+
+Values are SI with the setpoint topic's words. A scenario that replaces loads or the start
+of the leg gives its own `run`: the configuration to simulate, record and replay.
+"""
+
+from dataclasses import dataclass, replace
+from pathlib import Path
+from typing import Any
+
+from isa_ros.config.catalogue import actuator_model
+from isa_ros.config.own_load import own_load, refuse_beyond_stops
+from isa_ros.config.run_config import ActuatorConfig, RunConfig
+from isa_ros.config.run_file import leg_start, name_of, refuse_reach, refuse_start, ticks_in
+from isa_ros.config.sections import Place, refuse_unknown, section_at
+from isa_ros.config.yaml_text import dump, parse, read, Tree
+from isa_ros.core.parameter import check
+from isa_ros.core.suggest import alternatives
+from isa_ros.core.timebase import NS_PER_SECOND
+from isa_ros.errors import ConfigError
+from isa_ros.scenario.setpoints import event_tree, MAX_DURATION, read_track, Track
+import numpy as np
+from numpy.typing import NDArray
+
+FIGURES = (
+    'position_torque_tracking', 'torque_step', 'force_step', 'impact', 'weight', 'knee_sine',
+    'leg_drop', 'valve_response', 'flow_gain', 'leakage', 'current_step', 'bandwidth')
+"""Figures of the paper that a scenario may be drawn as; `analysis.report` draws them."""
+
+
+@dataclass(frozen=True)
+class Scenario:
+    """The commands of a run, and the run they are meant for."""
+
+    name: str
+    run: RunConfig
+    """With the scenario's own loads and start of the leg: simulate and record this one."""
+    n_ticks: int | None
+    """None: until stopped."""
+    tracks: tuple[Track, ...]
+    figure: str | None = None
+    """One of `FIGURES`, which `isa report` draws first."""
+
+    @property
+    def duration_s(self) -> float | None:
+        """Return the duration in s, None for no end."""
+        return None if self.n_ticks is None else self.n_ticks * self.run.step_ns / NS_PER_SECOND
+
+    def lasting(self, duration: float) -> 'Scenario':
+        """
+        Return the scenario with another duration in s.
+
+        Raises
+        ------
+        ConfigError
+            It is not a positive whole number of ticks.
+
+        """
+        return replace(self, n_ticks=_duration(duration, self.run.step_ns, 'duration'))
+
+    def commands(self, tick: int, out: NDArray[np.void]) -> None:
+        """Write over the `COMMAND` rows of one tick, (n_actuators,), where something is said."""
+        for track in self.tracks:
+            event = track.at(tick)
+            if event is not None:
+                event.write(tick, self.run.step_ns, out[self.run.index(track.actuator)])
+
+    def to_yaml(self) -> str:
+        """Return the scenario as a scenario file with every position as a number."""
+        tree: Tree = {'name': self.name}
+        if self.figure is not None:
+            tree['figure'] = self.figure
+        if self.duration_s is not None:
+            tree['duration_s'] = self.duration_s
+        tree['tracks'] = {
+            track.actuator: [event_tree(event, self.run.step_ns) for event in track.events]
+            for track in self.tracks}
+        return dump(tree)
+
+
+def idle(run: RunConfig, duration: float | None = None) -> Scenario:
+    """Return the scenario that commands nothing: every actuator holds where it starts."""
+    scenario = Scenario('idle', run, None, ())
+    return scenario if duration is None else scenario.lasting(duration)
+
+
+def load_scenario(path: Path | str, run: RunConfig) -> Scenario:
+    """
+    Return the scenario of a file for a run.
+
+    Raises
+    ------
+    ConfigError
+        The file cannot be read, or does not fit the run.
+
+    """
+    path = Path(path)
+    return _scenario(read(path), Place(path.name), run)
+
+
+def scenario_of(text: str, run: RunConfig, name: str = 'scenario.yaml') -> Scenario:
+    """Return the scenario of a text; as `load_scenario`."""
+    return _scenario(parse(text, name), Place(name), run)
+
+
+def _scenario(tree: Tree, place: Place, run: RunConfig) -> Scenario:
+    refuse_unknown(tree, ('name', 'figure', 'duration_s', 'leg', 'loads', 'tracks'), place)
+    name = name_of(tree, 'name', place)
+    n_ticks = _duration(tree.get('duration_s'), run.step_ns, f'{place}: duration_s')
+    run = _with_loads(_with_leg(run, tree, place), tree, place)
+    sections = section_at(tree.get('tracks', {}), place / 'tracks')
+    tracks = []
+    for actuator, points in sections.items():
+        _refuse_stranger(actuator, run, place / 'tracks' / actuator)
+        tracks.append(
+            read_track(run, actuator, points, place / 'tracks' / actuator, n_ticks))
+    return Scenario(name, run, n_ticks, tuple(tracks), figure_of(tree, place))
+
+
+def figure_of(tree: Tree, place: Place) -> str | None:
+    """
+    Return the figure a scenario is drawn as, None where it names none.
+
+    Raises
+    ------
+    ConfigError
+        There is no such figure.
+
+    """
+    figure = tree.get('figure')
+    if figure is None or figure in FIGURES:
+        return figure
+    raise ConfigError(
+        f"{place / 'figure'} = {figure!r} is no figure; {alternatives(str(figure), FIGURES)}")
+
+
+def _duration(value: Any, step_ns: int, where: str) -> int:
+    check(where, value, {
+        'doc': 'duration', 'unit': 's', 'bounds': {'gt': 0.0, 'le': MAX_DURATION}})
+    return ticks_in(float(value), step_ns, where)
+
+
+def _refuse_stranger(name: str, run: RunConfig, place: Place) -> None:
+    try:
+        run.actuator(name)
+    except ConfigError as error:
+        raise ConfigError(f'{place} is unknown: {error}') from error
+
+
+def _with_leg(run: RunConfig, tree: Tree, place: Place) -> RunConfig:
+    if 'leg' not in tree:
+        return run
+    below = place / 'leg'
+    if run.leg is None:
+        raise ConfigError(f'{below} is not used: {run.source} has no leg')
+    start = leg_start(section_at(tree['leg'], below), below, run.leg.start)
+    refuse_start(start, run.leg.sheet, run.step_ns, below)
+    run = run.with_start(start)
+    for joint, actuator in run.leg.joints if run.leg else ():
+        if run.leg is not None:
+            refuse_reach(run.leg, joint, run.actuator(actuator).sheet, str(below))
+    return run
+
+
+def _with_loads(run: RunConfig, tree: Tree, place: Place) -> RunConfig:
+    loads = section_at(tree.get('loads', {}), place / 'loads')
+    replaced: dict[str, ActuatorConfig] = {}
+    for name, section in loads.items():
+        below = place / 'loads' / name
+        _refuse_stranger(name, run, below)
+        actuator = run.actuator(name)
+        if actuator.load is None:
+            raise ConfigError(f'{below} is not used: the load of {name} is the leg')
+        model = actuator_model(actuator.model, f'{run.source}: actuators.{name}.model')
+        load = own_load(section_at(section, below), below, model)
+        refuse_beyond_stops(load, actuator.initial_position, str(below))
+        replaced[name] = replace(actuator, load=load)
+    return replace(run, actuators=tuple(replaced.get(a.name, a) for a in run.actuators))

@@ -1,0 +1,142 @@
+"""
+A trot as the motion of one actuator: the joint it moves, through its linkage.
+
+At a joint of the leg the actuator leaves its setpoint's position for the leg's own, smoothly.
+On a load of its own it moves about its setpoint's position: a rotary one as if it were on the
+joint itself, a linear one through the linkage of the joint. Equations G1 to G7.
+"""
+
+from dataclasses import dataclass, field
+from functools import cached_property
+
+from isa_ros.config.catalogue import gait_section, leg_section
+from isa_ros.config.run_config import ActuatorConfig, LegConfig
+from isa_ros.config.sections import as_tree, build, merge, Place, written
+from isa_ros.config.yaml_text import Tree
+from isa_ros.core.parameter import choice, parameter
+from isa_ros.core.timebase import NS_PER_SECOND
+from isa_ros.errors import ConfigError
+from isa_ros.scenario.trot import CHECKED_INSTANTS, smooth_step, Trot, TrottingLeg
+from isa_ros.scenario.waveforms import Excursion
+from isa_ros.surroundings.leg.sheet import Direct, JOINTS, LegSheet, linkage_record
+from isa_ros.surroundings.linkage import actuator_coordinate
+import numpy as np
+
+LEG = 'hyq_real'  # trots where the run has none
+GAIT = 'trot'
+
+
+@dataclass(frozen=True, kw_only=True)
+class Gait(Trot):
+    """A trot, and what of it one actuator is told."""
+
+    joint: str = choice('the joint it moves', *JOINTS)
+    phase: float = parameter('where in the stride it begins; 0: touch-down', '1', ge=0.0, le=1.0)
+    start_s: float = parameter('time to grow from standing to the whole motion', 's',
+                               ge=0.0, le=100.0)
+    feed_forward: float = parameter(
+        'part of the torque of the joint that is added to the effort', '1', ge=0.0, le=1.0)
+
+
+@dataclass(frozen=True)
+class GaitMotion:
+    """A trot in the coordinate of one actuator."""
+
+    gait: Gait
+    sheet: LegSheet
+    is_direct: bool
+    """The joint's angle itself, whatever the joint's linkage."""
+    rest: float | None
+    """Where the actuator stands before, m or rad; None: in the middle of the motion."""
+    _leg: TrottingLeg = field(init=False, repr=False, compare=False)
+    _linkage: np.void = field(init=False, repr=False, compare=False)
+
+    def __post_init__(self) -> None:
+        """Prepare the leg; as `TrottingLeg`, which may refuse it."""
+        object.__setattr__(self, '_leg', TrottingLeg(self.gait, self.sheet))
+        object.__setattr__(self, '_linkage', linkage_record(getattr(self.sheet, self.gait.joint)))
+
+    def _joint(self, stride: float) -> tuple[float, float, float]:
+        """Return position, velocity and effort of the actuator at a time in strides  (L2)."""
+        joints, k = self._leg.at(stride), JOINTS.index(self.gait.joint)
+        angle, speed, torque = joints.angle[k], joints.speed[k], joints.torque[k]
+        if self.is_direct:
+            return angle, speed, torque
+        x, lever, _ = actuator_coordinate(angle, self._linkage)
+        return x, lever * speed, torque / lever
+
+    @cached_property
+    def span(self) -> tuple[float, float]:
+        """Return the least and the greatest position of a stride, m or rad."""
+        positions = [self._joint(k / CHECKED_INSTANTS)[0] for k in range(CHECKED_INSTANTS)]
+        return min(positions), max(positions)
+
+    @cached_property
+    def origin(self) -> float:
+        """Return the position of a stride that is no excursion, m or rad."""
+        return 0.5 * sum(self.span) if self.rest is None else self.rest
+
+    def at(self, t_ns: int) -> Excursion:
+        """
+        Return the excursion: the gait's own, grown by w(t/T) while t < T = start_s  (G7).
+
+        x = w (x_g - x_0), v = w v_g + w' (x_g - x_0), F = w F_g.
+        """
+        t = t_ns / NS_PER_SECOND
+        position, velocity, effort = self._joint(
+            self.gait.phase + t * self.gait.step_frequency_hz)
+        away, effort = position - self.origin, self.gait.feed_forward * effort
+        if t >= self.gait.start_s:
+            return Excursion(away, velocity, effort)
+        w, slope, _ = smooth_step(t / self.gait.start_s)
+        return Excursion(w * away, w * velocity + slope / self.gait.start_s * away, w * effort)
+
+    def tree(self) -> Tree:
+        """Return its section of a scenario file."""
+        return as_tree(self.gait)
+
+
+def read_gait(tree: Tree, place: Place, actuator: ActuatorConfig, leg: LegConfig | None,
+              setpoint: float) -> GaitMotion:
+    """
+    Return the gait of a section whose setpoint stands at ``setpoint``, m or rad.
+
+    What the section leaves out is as in the packaged trot.
+
+    Raises
+    ------
+    ConfigError
+        The section is wrong, or the leg or the actuator cannot follow.
+
+    """
+    gait = build(Gait, merge(gait_section(GAIT, str(place)), written(tree, place)), place)
+    joint_of = {name: joint for joint, name in leg.joints} if leg else {}
+    moved = joint_of.get(actuator.name)
+    is_direct = moved is None and actuator.sheet.is_rotary
+    if leg is None or moved is None:
+        sheet = build(LegSheet, *leg_section(LEG, str(place)))
+        if not is_direct and isinstance(getattr(sheet, gait.joint), Direct):
+            raise ConfigError(
+                f'{place}.joint = {gait.joint!r} has no linkage for the linear {actuator.name}')
+    elif moved == gait.joint:
+        sheet = leg.sheet
+    else:
+        raise ConfigError(f'{place}.joint = {gait.joint!r}, must be {moved}: {actuator.name} '
+                          'moves it')
+    try:
+        motion = GaitMotion(gait, sheet, is_direct, None if moved is None else setpoint)
+    except ConfigError as error:
+        raise ConfigError(f'{place}: {error}') from error
+    _refuse_stroke(motion, actuator, setpoint, place)
+    return motion
+
+
+def _refuse_stroke(
+        motion: GaitMotion, actuator: ActuatorConfig, setpoint: float, place: Place) -> None:
+    low, high = (setpoint + end - motion.origin for end in motion.span)
+    stroke = actuator.sheet.plant.drive.stroke
+    if not (0.0 <= low and high <= stroke):
+        unit = 'rad' if actuator.sheet.is_rotary else 'm'
+        raise ConfigError(
+            f'{place} moves {actuator.name} from {low:.4g} to {high:.4g} {unit}, must stay '
+            f'within its 0 to {stroke:.4g} {unit}')

@@ -1,0 +1,183 @@
+"""
+Motions: what is added to a setpoint from its event on, until the next one.
+
+Times are integer ns since the event. A motion of the position moves the velocity with it, so
+that the damping of the impedance does not brake it; one of the effort is of the effort alone.
+"""
+
+from abc import ABC, abstractmethod
+from dataclasses import dataclass
+import math
+from typing import NamedTuple, Protocol
+
+from isa_ros.config.run_file import ticks_in
+from isa_ros.config.sections import as_tree
+from isa_ros.config.yaml_text import Tree
+from isa_ros.core.parameter import check, choice, parameter, Parameters
+from isa_ros.core.timebase import NS_PER_SECOND
+from isa_ros.errors import ConfigError, ParameterError
+
+POSITION, EFFORT = 'position', 'effort'
+MAX_POSITION = 10.0   # m | rad, a bound against slips of the pen
+MAX_EFFORT = 1e8      # N, Nm or Pa, the same
+UNITS = 'm | rad | N | Nm'
+TWO_PI = 2.0 * math.pi
+
+
+class Excursion(NamedTuple):
+    """What a motion adds to position, velocity and effort of its setpoint, SI."""
+
+    position: float
+    velocity: float
+    effort: float
+
+
+class Motion(Protocol):
+    """What goes on after an event."""
+
+    def at(self, t_ns: int) -> Excursion:
+        """Return the excursion ``t_ns`` after the event."""
+        ...
+
+    def tree(self) -> Tree:
+        """Return its section of a scenario file."""
+        ...
+
+
+@dataclass(frozen=True, kw_only=True)
+class Waveform(Parameters, ABC):
+    """What all waveforms declare; of the position unless it says otherwise."""
+
+    moves: str = choice('what it is added to', POSITION, EFFORT)
+    amplitude: float = parameter('amplitude', UNITS, ge=-MAX_EFFORT, le=MAX_EFFORT)
+
+    def __post_init__(self) -> None:
+        """Refuse a position in another unit than m or rad."""
+        super().__post_init__()
+        if self.moves == POSITION:
+            check(f'{type(self).__name__}.amplitude', self.amplitude, {
+                'doc': 'of the position', 'unit': 'm | rad',
+                'bounds': {'ge': -MAX_POSITION, 'le': MAX_POSITION}})
+
+    def tree(self) -> Tree:
+        """Return its section of a scenario file."""
+        return as_tree(self)
+
+    @abstractmethod
+    def at(self, t_ns: int) -> Excursion:
+        """Return the excursion ``t_ns`` after the event."""
+
+    @abstractmethod
+    def refuse_step(self, step_ns: int, where: str) -> None:
+        """
+        Refuse what setpoints ``step_ns`` apart cannot show.
+
+        Raises
+        ------
+        ConfigError
+            A frequency above half the rate of the setpoints, or a time between two of them.
+
+        """
+
+    def _excursion(self, value: float, rate: float) -> Excursion:
+        """Return the amplitude times a value and its rate."""
+        if self.moves == EFFORT:
+            return Excursion(0.0, 0.0, self.amplitude * value)
+        return Excursion(self.amplitude * value, self.amplitude * rate, 0.0)
+
+
+@dataclass(frozen=True, kw_only=True)
+class Sine(Waveform):
+    """A sine from its setpoint on."""
+
+    frequency_hz: float = parameter('frequency', 'Hz', gt=0.0, le=5e3)
+
+    def at(self, t_ns: int) -> Excursion:
+        """Return A sin(omega t) and A omega cos(omega t)."""
+        omega = TWO_PI * self.frequency_hz
+        phase = omega * (t_ns / NS_PER_SECOND)
+        return self._excursion(math.sin(phase), omega * math.cos(phase))
+
+    def refuse_step(self, step_ns: int, where: str) -> None:
+        """Refuse a sine that the setpoints would alias."""
+        _refuse_alias(self.frequency_hz, step_ns, f'{where}.frequency_hz')
+
+
+@dataclass(frozen=True, kw_only=True)
+class Chirp(Waveform):
+    """A sine from one frequency to another; it stays at the end frequency."""
+
+    start_hz: float = parameter('frequency at its setpoint', 'Hz', gt=0.0, le=5e3)
+    end_hz: float = parameter('frequency after duration_s', 'Hz', gt=0.0, le=5e3)
+    duration_s: float = parameter('time from one to the other', 's', gt=0.0, le=1e5)
+    sweep: str = choice('how the frequency moves', 'linear', 'exponential')
+
+    def __post_init__(self) -> None:
+        """Refuse a chirp that is a sine."""
+        super().__post_init__()
+        if self.start_hz == self.end_hz:
+            raise ParameterError(
+                f'Chirp.end_hz = {self.end_hz:g} Hz, must differ from start_hz (else: sine)')
+
+    def phase(self, t: float) -> tuple[float, float]:
+        """
+        Return the phase, rad, and its rate, rad/s, at ``t`` in s: the integral in closed form.
+
+        Linear f = f_0 + (f_1 - f_0) t/T, exponential f = f_0 (f_1/f_0)^(t/T).
+        """
+        swept = min(t, self.duration_s)
+        if self.sweep == 'linear':
+            slope = (self.end_hz - self.start_hz) / self.duration_s
+            cycles = swept * (self.start_hz + 0.5 * slope * swept)
+            frequency = self.start_hz + slope * swept
+        else:
+            growth = math.log(self.end_hz / self.start_hz) / self.duration_s
+            cycles = self.start_hz * math.expm1(growth * swept) / growth
+            frequency = self.start_hz * math.exp(growth * swept)
+        return TWO_PI * (cycles + self.end_hz * (t - swept)), TWO_PI * frequency
+
+    def at(self, t_ns: int) -> Excursion:
+        """Return A sin(phase) and A phase' cos(phase)."""
+        phase, rate = self.phase(t_ns / NS_PER_SECOND)
+        return self._excursion(math.sin(phase), rate * math.cos(phase))
+
+    def refuse_step(self, step_ns: int, where: str) -> None:
+        """Refuse a chirp that the setpoints would alias at one of its ends."""
+        for key in ('start_hz', 'end_hz'):
+            _refuse_alias(getattr(self, key), step_ns, f'{where}.{key}')
+
+
+@dataclass(frozen=True, kw_only=True)
+class Pulse(Waveform):
+    """A train of steps: the amplitude for a width, then nothing until the period is over."""
+
+    period_s: float = parameter('from one step to the next', 's', gt=0.0, le=1e5)
+    width_s: float = parameter('of a step', 's', gt=0.0, le=1e5)
+
+    def __post_init__(self) -> None:
+        """Refuse a step as long as its period."""
+        super().__post_init__()
+        if not self.width_s < self.period_s:
+            raise ParameterError(
+                f'Pulse.width_s = {self.width_s:g} s, must be < period_s = {self.period_s:g} s')
+
+    def at(self, t_ns: int) -> Excursion:
+        """Return A during a step; the velocity of its edges is not commanded."""
+        is_up = t_ns % round(self.period_s * NS_PER_SECOND) < round(self.width_s * NS_PER_SECOND)
+        return self._excursion(float(is_up), 0.0)
+
+    def refuse_step(self, step_ns: int, where: str) -> None:
+        """Refuse edges between two setpoints."""
+        ticks_in(self.period_s, step_ns, f'{where}.period_s')
+        ticks_in(self.width_s, step_ns, f'{where}.width_s')
+
+
+WAVEFORMS: dict[str, type[Waveform]] = {'sine': Sine, 'chirp': Chirp, 'pulse': Pulse}
+
+
+def _refuse_alias(frequency_hz: float, step_ns: int, where: str) -> None:
+    highest = 0.5 * NS_PER_SECOND / step_ns
+    if frequency_hz > highest:
+        raise ConfigError(
+            f'{where} = {frequency_hz:g} Hz, must be <= {highest:g} Hz, half the rate of '
+            f'step_ms = {step_ns / 1e6:g} ms')

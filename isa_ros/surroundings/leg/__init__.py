@@ -1,0 +1,1 @@
+"""One leg on a vertical slider, moved by three actuators."""

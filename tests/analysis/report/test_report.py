@@ -1,0 +1,61 @@
+"""The page of a run and its figures."""
+
+from pathlib import Path
+
+from isa_ros.analysis.report.report import extremes, write_report
+from isa_ros.analysis.signals.traces import read_traces
+from isa_ros.cli.main import main
+from isa_ros.errors import BagError
+import pytest
+
+GOLDEN = Path(__file__).parents[2] / 'golden'
+PNG = b'\x89PNG\r\n\x1a\n'
+
+
+def test_a_leg_has_a_figure_of_its_own_and_one_for_each_actuator(tmp_path):
+    """One self-contained page, and each figure as PNG beside it."""
+    written = write_report(GOLDEN / 'leg_touchdown', tmp_path / 'run' / 'page.html')
+    assert [path.name for path in written] == [
+        'page.html', 'page_leg.png', 'page_haa.png', 'page_hfe.png', 'page_kfe.png']
+    assert all(path.read_bytes().startswith(PNG) for path in written[1:])
+    page = written[0].read_text()
+    assert page.count('data:image/png;base64,') == 4
+    assert 'http' not in page
+
+
+def test_a_rig_has_no_leg(tmp_path):
+    """The rotary rig alone, in degrees and newton metres."""
+    written = write_report(GOLDEN / 'rotor_step', tmp_path / 'page.html')
+    assert [path.name for path in written] == ['page.html', 'page_rotor.png']
+
+
+def test_another_page_is_not_replaced(tmp_path):
+    page = tmp_path / 'mine.html'
+    page.write_text('precious')
+    with pytest.raises(BagError, match='mine.html exists and is no report, so it is not'):
+        write_report(GOLDEN / 'rotor_step', page)
+    assert page.read_text() == 'precious' and not list(tmp_path.glob('*.png'))
+    with pytest.raises(BagError, match='is a directory, must be the name of the page'):
+        write_report(GOLDEN / 'rotor_step', tmp_path)
+
+
+def test_a_report_is_replaced_by_one(tmp_path):
+    first = write_report(GOLDEN / 'rotor_step', tmp_path / 'report.html')
+    assert write_report(GOLDEN / 'rotor_step', tmp_path / 'report.html') == first
+
+
+def test_extremes_are_those_of_the_signals():
+    """The table's torque peak is the signal's: the overshoot of the 17 Nm step."""
+    run, traces = read_traces(GOLDEN / 'rotor_step')
+    values = {name: (low, high) for name, low, high, _ in extremes(run, traces)}
+    effort = traces['/rotor/joint_states']['effort[0]']
+    assert values['rotor force'] == (effort.min(), effort.max())
+    assert 17.0 < values['rotor force'][1] < 17.0 * 1.5
+
+
+@pytest.mark.parametrize('name', ['missing', 'empty'])
+def test_what_is_no_bag_is_refused(tmp_path, capsys, name):
+    """Exit code 2 and one line."""
+    (tmp_path / 'empty').mkdir()
+    assert main(['report', str(tmp_path / name)]) == 2
+    assert capsys.readouterr().err.count('\n') == 1

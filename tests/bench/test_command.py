@@ -1,0 +1,43 @@
+"""What the command does with its options."""
+
+from isa_ros.bench import command
+from isa_ros.bench.command import chosen
+from isa_ros.bench.groups import Group, GROUPS
+from isa_ros.bench.row import Row
+from isa_ros.cli.main import main
+import pytest
+
+
+def test_groups_are_chosen_by_name_in_their_own_order():
+    assert chosen(None) == GROUPS
+    assert [group.name for group in chosen(['tick', 'plant'])] == ['plant', 'tick']
+
+
+def test_a_wrong_group_is_answered_with_the_right_one(capsys):
+    assert main(['bench', '--only', 'peer']) == 2
+    assert capsys.readouterr().err == (
+        'isa: --only peer: no such group; did you mean peers?\n')
+
+
+def test_a_part_does_not_replace_the_page(tmp_path, capsys):
+    (tmp_path / 'bench.md').write_text('the whole')
+    assert main(['bench', '--only', 'plant', '--out', str(tmp_path)]) == 2
+    assert 'bench.md exists, must not' in capsys.readouterr().err
+    assert (tmp_path / 'bench.md').read_text() == 'the whole'
+
+
+def test_rows_are_printed_and_written(monkeypatch, tmp_path, capsys):
+    group = Group('own', 'A group', lambda _: [Row('a row', 2.0, 'us', 'floor', 0.5)])
+    monkeypatch.setattr(command, 'chosen', lambda only: (group,))
+    assert main(['bench', '--json', str(tmp_path / 'b.json'), '--out', str(tmp_path)]) == 0
+    printed = capsys.readouterr().out
+    assert 'A group (own)' in printed and 'a row' in printed and str(tmp_path) in printed
+    assert (tmp_path / 'bench.md').exists() and (tmp_path / 'b.json').exists()
+
+
+@pytest.mark.parametrize('option', ['--json', '--out'])
+def test_a_place_that_cannot_be_written_is_refused_before_anything(option, tmp_path, capsys):
+    (tmp_path / 'file').write_text('')
+    with pytest.raises(SystemExit) as ended:
+        main(['bench', option, str(tmp_path / 'file' / 'below')])
+    assert ended.value.code == 2

@@ -1,0 +1,149 @@
+"""The command line: exit codes, one line per error, and what is not imported."""
+
+from argparse import Namespace
+import errno
+import os
+from pathlib import Path
+import signal
+import subprocess
+import sys
+
+from isa_ros.cli import main as cli
+from isa_ros.errors import (
+    BagError, ConfigError, IsaError, ParameterError, RunError, SimulationDiverged)
+import pytest
+
+ROOT = Path(__file__).parents[2]
+
+
+def outcome(monkeypatch: pytest.MonkeyPatch, ending: BaseException | bool, *more: str) -> int:
+    """Return the exit code of a command that ends like this."""
+    def command(options: Namespace) -> bool:
+        if isinstance(ending, bool):
+            return ending
+        raise ending
+
+    add_arguments, _, summary = cli._COMMANDS['params']
+    monkeypatch.setitem(cli._COMMANDS, 'params', (add_arguments, command, summary))
+    return cli.main([*more, 'params', 'isa_v5'])
+
+
+@pytest.mark.parametrize('ending, code', [
+    (True, 0), (False, 1), (ConfigError('x'), 2), (ParameterError('x'), 2), (BagError('x'), 2),
+    (PermissionError(errno.EACCES, 'Permission denied', 'out'), 2),
+    (RunError('x'), 3), (OSError(errno.ENOSPC, 'No space left on device', 'out'), 3),
+    (SimulationDiverged(1_000_000, 'spool', float('nan')), 4), (KeyboardInterrupt(), 130),
+])
+def test_the_exit_codes_are_those_of_the_interface(
+        ending: BaseException | bool, code: int, monkeypatch: pytest.MonkeyPatch,
+        capsys: pytest.CaptureFixture[str]) -> None:
+    """Interface.md: 0 done, 1 no, 2 input, 3 not completed, 4 diverged, 130 interrupted."""
+    assert outcome(monkeypatch, ending) == code
+    assert capsys.readouterr().err.count('\n') == (code > 1)
+
+
+def test_an_error_names_what_the_system_refused(
+        monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]) -> None:
+    outcome(monkeypatch, PermissionError(errno.EACCES, 'Permission denied', 'out/bag'))
+    assert capsys.readouterr().err == 'isa: out/bag: Permission denied\n'
+
+
+def test_debug_shows_the_traceback_and_keeps_the_exit_code(
+        monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]) -> None:
+    assert outcome(monkeypatch, IsaError('wrong'), '--debug') == 2
+    printed = capsys.readouterr().err
+    assert 'Traceback' in printed and printed.endswith('isa: wrong\n')
+    assert 'debug' in cli.make_parser().parse_args(['params', 'isa_v5', '--debug'])
+
+
+@pytest.mark.parametrize('arguments, expected', [
+    ([], 'isa: the following arguments are required: COMMAND'),
+    (['fly'], "invalid choice: 'fly'"),
+    (['bringup'], 'isa bringup: the following arguments are required: CONFIG'),
+    (['bringup', 'leg', '--duration', '0'], "argument --duration: '0' must be a number > 0"),
+    (['bringup', 'leg', '--duration', 'nan'], "argument --duration: 'nan' must be"),
+    (['bringup', 'leg', '--real-time-factor', 'x'], "--real-time-factor: 'x' must be"),
+    (['bringup', 'leg', '--elsewhere', 'hfe,'],
+     "isa bringup: argument --elsewhere: 'hfe,' must be names with commas between them"),
+    (['bode', 'isa_v5', '--json', '/none/x.json'],
+     'isa bode: argument --json: /none/x.json: there is no directory /none; see isa bode --help'),
+    (['step', 'isa_v5', '--out', '/'],
+     'isa step: argument --out: / is a directory, must be a file'),
+    (['validate', '--out', f'{__file__}/docs'],
+     f'isa validate: argument --out: {__file__}/docs: {__file__} is a file, must be a directory'),
+    (['params', 'isa_v5', '--presets', 'x'], 'unrecognized arguments: --presets'),
+])
+def test_wrong_usage_is_one_line_and_2(
+        arguments: list[str], expected: str, capsys: pytest.CaptureFixture[str]) -> None:
+    with pytest.raises(SystemExit) as caught:
+        cli.main(arguments)
+    assert caught.value.code == 2
+    printed = capsys.readouterr().err
+    assert expected in printed and printed.count('\n') == 1
+
+
+@pytest.mark.parametrize('arguments, expected', [
+    (['params', 'isa_v6'], 'isa: isa_v6: no such file; shipped: hyq_leg.yaml, leg.yaml'),
+    (['params', 'isa_v5', '--preset', 'fast'], "isa: preset = 'fast' is no preset of isa_v5"),
+    (['bringup', 'no_such_run'], 'isa: no_such_run: no such file; shipped: hyq_leg.yaml'),
+    (['bringup', 'leg', '--scenario', 'fly'],
+     'isa: fly: no such file; shipped: current_step.yaml, drop.yaml'),
+    (['bringup', 'leg', '--scenario', 'step'],
+     'isa: step.yaml: loads.rotor is unknown: leg.yaml: no actuator'),
+    (['bringup', 'leg', '--duration', '0.0005'],
+     'isa: duration = 0.0005 s, must be a multiple of step_ms = 1 ms'),
+    (['bringup', 'leg', '--elsewhere', 'hfe,knee'],
+     "isa: leg.yaml: no actuator 'knee'; valid: haa, hfe, kfe"),
+    (['bringup', 'leg', '--elsewhere', 'hfe', '--in-process'],
+     'isa: --elsewhere hfe with --in-process: leave one out'),
+    (['actuators', 'leg', 'knee'], "isa: leg.yaml: no actuator 'knee'; valid: haa, hfe, kfe"),
+    (['compare', 'no_bag', 'no_bag'], 'isa: no_bag'),
+    (['report', 'no_bag'], 'isa: no_bag'),
+    (['replay', 'no_bag'], 'isa: no_bag'),
+])
+def test_unreadable_input_is_one_line_and_2(
+        arguments: list[str], expected: str, capsys: pytest.CaptureFixture[str],
+        monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
+    monkeypatch.chdir(tmp_path)
+    assert cli.main(arguments) == 2
+    printed = capsys.readouterr().err
+    assert printed.startswith(expected) and printed.count('\n') == 1
+    assert not list(tmp_path.iterdir())
+
+
+def test_help_imports_neither_ros_nor_numba() -> None:
+    """`isa --help` answers at once; numba alone costs half a second."""
+    program = (
+        'import sys\n'
+        'from isa_ros.cli.main import make_parser\n'
+        'make_parser().format_help()\n'
+        'print(sorted({"numba", "numpy", "rclpy", "yaml"} & set(sys.modules)))\n')
+    # -I: without the site's .pth files and the user's environment.
+    result = subprocess.run(
+        [sys.executable, '-c', f'import sys; sys.path.insert(0, {str(ROOT)!r})\n{program}'],
+        capture_output=True, text=True, check=True)
+    assert result.stdout == '[]\n'
+
+
+def test_sigterm_ends_a_command_like_ctrl_c(monkeypatch: pytest.MonkeyPatch) -> None:
+    def command(options: Namespace) -> bool:
+        os.kill(os.getpid(), signal.SIGTERM)
+        signal.sigtimedwait([], 5.0)  # not reached: the handler raises before
+        return True
+
+    before = signal.getsignal(signal.SIGTERM)
+    add_arguments, _, summary = cli._COMMANDS['params']
+    monkeypatch.setitem(cli._COMMANDS, 'params', (add_arguments, command, summary))
+    assert cli.main(['params', 'isa_v5']) == 130
+    assert signal.getsignal(signal.SIGTERM) is before
+
+
+def test_a_reader_that_has_enough_is_no_error() -> None:
+    """`isa params leg.yaml | head -1`: no traceback, exit code 0."""
+    with subprocess.Popen(
+            [sys.executable, '-m', 'isa_ros', 'params', 'leg'], cwd=ROOT,
+            stdout=subprocess.PIPE, stderr=subprocess.PIPE) as process:
+        assert process.stdout is not None and process.stderr is not None
+        process.stdout.close()
+        assert process.stderr.read() == b''
+    assert process.returncode == 0

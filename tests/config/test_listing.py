@@ -1,0 +1,93 @@
+"""`isa params`: every parameter once, with its source."""
+
+from itertools import product
+
+from isa_ros.actuator.sheet import ActuatorSheet
+from isa_ros.config.catalogue import actuator_model, leg_names, leg_section, model_names
+from isa_ros.config.listing import describe, Row, rows
+from isa_ros.config.sections import build, build_one_of
+from isa_ros.errors import ConfigError
+from isa_ros.loads.sheets import LocalLoad
+from isa_ros.surroundings.leg.sheet import LegSheet
+import pytest
+
+SOURCES = ('paper', 'derived', 'assumed', 'public model')
+
+
+def is_kind(row: Row) -> bool:
+    """Tell whether a row says how something is modelled, which is no number to have a source."""
+    return row.parameter.endswith('.kind')
+
+
+@pytest.mark.parametrize('name', model_names())
+def test_every_value_of_a_model_has_its_source(name: str) -> None:
+    """Every preset and variant of a model is a whole sheet, and no value is without a source."""
+    model = actuator_model(name, 'model')
+    # the paper prints no gains for the ISA v2
+    assert {'default'} | ({'table_4'} if name != 'isa_v2' else set()) == set(model.presets)
+    for preset, variant in product(model.presets, ['', *model.variants]):
+        section = model.with_variants(
+            model.with_preset(preset, 'preset'), [variant] if variant else [], 'variant')
+        table = rows(build(ActuatorSheet, section, model.place), section)
+        assert table and all(
+            row.source.startswith(SOURCES) for row in table if not is_kind(row))
+        assert len({row.parameter for row in table}) == len(table)
+
+
+@pytest.mark.parametrize('name', leg_names())
+def test_every_value_of_a_leg_has_its_source(name: str) -> None:
+    section, place = leg_section(name, 'leg')
+    assert all(row.source.startswith(SOURCES)
+               for row in rows(build(LegSheet, section, place), section) if not is_kind(row))
+
+
+def test_a_row_shows_value_unit_range_and_source() -> None:
+    """The paper's Table 2: bore 21.5 mm."""
+    line = next(line for line in describe('isa_v5', 'default').splitlines()
+                if line.startswith('plant.drive.bore_mm '))
+    assert line.split('  ')[0] == 'plant.drive.bore_mm'
+    for cell in ('21.5', 'mm', '> 0, <= 500', 'paper Table 2', 'piston diameter'):
+        assert cell in line
+
+
+def test_a_run_shows_each_actuator_and_where_its_values_come_from() -> None:
+    text = describe('rig_rotary')
+    assert 'actuators.rotor: smart_manifold, preset table_4' in text
+    assert 'actuators.rotor.load: wheel' in text
+    assert '20.7   MPa' in text.replace('    ', '   ') and 'rig_rotary.yaml' in text
+
+
+@pytest.mark.parametrize('name', ['rig_rotary', 'rig_rotary.yaml', 'hyq_real'])
+@pytest.mark.parametrize('option, preset, variants', [
+    ('--preset', 'table_4', ()), ('--variant', None, ('explicit',))])
+def test_what_is_no_model_refuses_preset_and_variants(name, option, preset, variants) -> None:
+    """A run file says them itself; to show it without them would not answer the question."""
+    with pytest.raises(ConfigError, match=f'^{option} is not used: {name} is no model'):
+        describe(name, preset, variants)
+
+
+def test_a_model_shows_its_loads() -> None:
+    """Each with its kind where its name is another, and its sources."""
+    text = describe('smart_manifold', 'default')
+    assert '\n\nload drop_rig\n' in text and '\n\nload wood, a pad\n' in text
+    assert '\n\nload wheel\n' in text
+    line = next(line for line in text.splitlines() if line.startswith('slack '))
+    assert '250 Nm of paper section 5.1' in line
+
+
+@pytest.mark.parametrize('name', model_names())
+def test_every_value_of_a_load_has_its_source(name: str) -> None:
+    model = actuator_model(name, 'model')
+    for load, section in model.loads.items():
+        table = rows(build_one_of(LocalLoad, section, model.place / load), section)
+        assert table and all(
+            row.source.startswith(SOURCES) for row in table if not is_kind(row))
+
+
+def test_a_variant_is_shown_with_its_kinds() -> None:
+    """The explicit coil in the place of the closed loop; other ways to model it are named."""
+    text = describe('isa_v5', 'table_4', ['explicit'])
+    kind = next(line for line in text.splitlines() if line.startswith('plant.coil.kind '))
+    assert kind.split()[1:5] == ['explicit', 'closed_loop', '|', 'explicit']
+    assert 'plant.coil.mode_frequency_hz' in text
+    assert 'variants: feedback_linearisation, explicit' in text

@@ -1,0 +1,43 @@
+"""Shipped files are found by name from anywhere, and a user's own file comes first."""
+
+from pathlib import Path
+
+from isa_ros.config import paths
+from isa_ros.errors import ConfigError
+import pytest
+
+ROOT = Path(__file__).parents[2]
+
+
+@pytest.mark.parametrize('name', ['leg', 'leg.yaml'])
+def test_a_shipped_file_is_found_from_anywhere(
+        name: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.chdir(tmp_path)
+    assert paths.find(name, paths.CONFIG) == ROOT / 'config' / 'leg.yaml'
+    assert paths.find('drop', paths.SCENARIOS) == ROOT / 'config' / 'scenarios' / 'drop.yaml'
+
+
+def test_a_file_of_the_user_comes_first(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / 'leg.yaml').write_text('name: mine\n', encoding='utf-8')
+    assert paths.find('leg.yaml', paths.CONFIG) == Path('leg.yaml')
+
+
+def test_an_unknown_file_is_answered_with_the_shipped_ones() -> None:
+    with pytest.raises(
+            ConfigError, match='legs.yaml: no such file; shipped: hyq_leg.yaml, leg.yaml, rig_'):
+        paths.find('legs.yaml', paths.CONFIG)
+
+
+def test_an_installed_share_directory_is_found(
+        tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """As after `colcon build` and sourcing: the package is not in a clone."""
+    package = tmp_path / 'lib' / 'python3' / 'site-packages' / 'isa_ros' / 'config' / 'paths.py'
+    config = tmp_path / 'ws' / 'share' / 'isa_ros' / 'config'
+    package.parent.mkdir(parents=True)
+    config.mkdir(parents=True)
+    (config / 'mine.yaml').touch()
+    monkeypatch.setattr(paths, '__file__', str(package))
+    monkeypatch.setenv('AMENT_PREFIX_PATH', f'{tmp_path / "other"}:{tmp_path / "ws"}')
+    assert paths.find('mine', paths.CONFIG) == config / 'mine.yaml'
+    assert ROOT not in paths.share_directories()

@@ -1,0 +1,221 @@
+"""Run files: the shipped ones, what an override does, and the resolved text."""
+
+import math
+from pathlib import Path
+
+from hypothesis import given, HealthCheck, settings, strategies as st
+from isa_ros.config.run_config import RunConfig
+from isa_ros.config.run_file import load_run, read_run, ticks_in
+from isa_ros.errors import ConfigError
+from isa_ros.loads.sheets import Blocked, Mass
+from isa_ros.loads.wheel import Wheel
+import pytest
+
+CONFIG = Path(__file__).parents[2] / 'config'
+SHIPPED = sorted(CONFIG.glob('*.yaml'))
+
+RIG = """\
+name: rig
+step_ms: {step}
+controller_offset_ms: 0.12
+tick_timeout_s: 5.0
+supply: {{kind: constant, pressure_mpa: 20.7, return_pressure_mpa: 0.0}}
+actuators:
+  ram: {{{ram}}}
+  rotor: {{model: smart_manifold, load: {{kind: wheel, inertia: 0.4}}}}
+"""
+
+
+def rig(tmp_path: Path, ram: str = 'model: isa_v5, load: {kind: mass}', step: str = '1') -> Path:
+    """Return the file of a run with a cylinder and a rotary actuator."""
+    path = tmp_path / 'rig.yaml'
+    path.write_text(RIG.format(step=step, ram=ram), encoding='utf-8')
+    return path
+
+
+@pytest.mark.parametrize('path', SHIPPED, ids=lambda path: path.stem)
+def test_a_shipped_run_survives_its_resolved_text(path: Path) -> None:
+    """The bag carries this text; replay must get the same run from it, bit for bit."""
+    run = load_run(path)
+    again = RunConfig.from_yaml(run.to_yaml())
+    assert again == run
+    assert again.to_yaml() == run.to_yaml() and again.digest == run.digest
+    assert str(path.parent) not in run.to_yaml()
+
+
+def test_the_leg_is_the_one_of_the_design() -> None:
+    """interface.md: HAA smart manifold, HFE and KFE ISA v5; no own loads."""
+    run = load_run(CONFIG / 'leg.yaml')
+    assert [(a.name, a.model, a.load) for a in run.actuators] == [
+        ('haa', 'smart_manifold', None), ('hfe', 'isa_v5', None), ('kfe', 'isa_v5', None)]
+    assert (run.step_ns, run.controller_offset_ns) == (1_000_000, 120_000)
+
+
+def test_the_leg_puts_its_actuators_where_the_linkages_say() -> None:
+    """
+    Physics.md, section 2: knee extension 44.5 mm at -80 deg, piston = extension + 14.1 mm.
+
+    The hip's slider-crank: L^2 = 356^2 + 45^2 - 2 356 45 cos(41.3 + 20 deg), x = L - 299 mm.
+    """
+    run = load_run(CONFIG / 'leg.yaml')
+    positions = {a.name: a.initial_position for a in run.actuators}
+    assert positions['kfe'] * 1e3 == pytest.approx(44.5 + 14.1, abs=0.05)  # 0.1 mm is printed
+    length = math.sqrt(
+        356.0**2 + 45.0**2 - 2.0 * 356.0 * 45.0 * math.cos(math.radians(41.3 + 20.0)))
+    assert positions['hfe'] * 1e3 == pytest.approx(length - 299.0, rel=1e-12)
+
+
+def test_an_override_replaces_one_value_of_one_actuator(tmp_path: Path) -> None:
+    plain = load_run(rig(tmp_path)).actuator('ram')
+    ram = 'model: isa_v5, load: {kind: mass}, parameters: {plant: {oil: {dead_volume_ml: 2.5}}}'
+    changed = load_run(rig(tmp_path, ram)).actuator('ram')
+    assert changed.sheet.plant.oil.dead_volume_ml == 2.5
+    assert changed.sheet.reu == plain.sheet.reu
+    assert changed.sheet.plant.valve == plain.sheet.plant.valve
+
+
+def test_a_preset_gives_other_gains(tmp_path: Path) -> None:
+    """Physics.md, errata 11: table_4 has 0.02 mm/kN = 2e-8 m/N."""
+    run = load_run(rig(tmp_path, 'model: isa_v5, preset: table_4, load: {kind: blocked}'))
+    ram = run.actuator('ram')
+    assert ram.preset == 'table_4' and ram.sheet.reu.force.kp == 2.0e-8
+    assert isinstance(ram.load, Blocked)
+
+
+def test_own_loads_take_the_values_of_the_model_but_for_those_given(tmp_path: Path) -> None:
+    run = load_run(rig(tmp_path))
+    ram, rotor = run.actuators
+    assert isinstance(ram.load, Mass) and ram.load.inertia == 50.0
+    assert isinstance(rotor.load, Wheel) and rotor.load.inertia == 0.4
+
+
+def test_initial_positions_are_si_and_mid_stroke_by_default(tmp_path: Path) -> None:
+    ram = 'model: isa_v5, load: {kind: mass}, initial_position_mm: 30'
+    run = load_run(rig(tmp_path, ram))
+    assert run.actuator('ram').initial_position == pytest.approx(0.030, rel=1e-15)
+    assert run.actuator('rotor').initial_position == 0.5 * 1.745
+
+
+@pytest.mark.parametrize('ram, expected', [
+    ('model: isa_v5, load: {kind: mass}, initial_position_deg: 3',
+     'rig.yaml: actuators.ram.initial_position_deg is unknown: the actuator is linear, the key '
+     'is initial_position_mm'),
+    ('model: isa_v5, load: {kind: mass}, initial_position_mm: 100.5', 'must be <= 100 mm'),
+    ('model: isa_v5, load: {kind: mass, inertia: 0}',
+     'rig.yaml: actuators.ram.load.inertia = 0 kg | kg m2, must be > 0'),
+    ('load: {kind: mass}', 'rig.yaml: actuators.ram.model = None is no model; valid: isa_v2'),
+    ('model: [isa_v5], load: {kind: mass}', "actuators.ram.model = ['isa_v5'] is no model"),
+    ('model: isa_v5, load: mass', "actuators.ram.load = 'mass', must be a section"),
+    ('model: isa_v5, load: {kind: mass}, parameters: {plant: {relief: {slope_lpm_per_mpa: 900}}}',
+     'rig.yaml: actuators.ram: relief.slope_lpm_per_mpa = 900 l/min/MPa'),
+    ('model: isa_v5, load: {kind: mass}, parameters: {reu: {current: {rate_hz: 30000}}}',
+     'rig.yaml: actuators.ram: current.rate_hz = 30000 Hz, its period must be whole nanosec'),
+])
+def test_a_wrong_actuator_is_refused_by_file_and_key(
+        tmp_path: Path, ram: str, expected: str) -> None:
+    with pytest.raises(ConfigError) as caught:
+        load_run(rig(tmp_path, ram))
+    assert expected in str(caught.value)
+    assert '\n' not in str(caught.value)
+
+
+def test_the_foot_stands_on_the_named_material(tmp_path: Path) -> None:
+    """leg.ground replaces the model's ground; single values still win, and the text keeps all."""
+    text = (CONFIG / 'leg.yaml').read_text(encoding='utf-8')
+    path = tmp_path / 'leg.yaml'
+    path.write_text(text + '  ground: wood\n  parameters: {ground: {friction: 0.4}}\n')
+    run, plain = load_run(path), load_run(CONFIG / 'leg.yaml')
+    assert run.leg is not None and plain.leg is not None
+    ground = run.leg.sheet.ground
+    assert (ground.stiffness, ground.damping, ground.friction) == (1e7, 0.4, 0.4)
+    assert plain.leg.sheet.ground.stiffness == 3e6
+    assert RunConfig.from_yaml(run.to_yaml()) == run
+
+
+@pytest.mark.parametrize(('load', 'name'), [
+    ('kind: mass', 'Mass'), ('kind: blocked', 'Blocked'), ('kind: wheel', 'Wheel'),
+    ('kind: wood', 'Pad'), ('kind: metal, gap: 0.01', 'Pad')])
+def test_a_load_is_named_or_of_its_kind(tmp_path: Path, load: str, name: str) -> None:
+    """A named load is of another kind, which the resolved text says; it is read back."""
+    run = load_run(rig(tmp_path, f'model: isa_v5, load: {{{load}}}'))
+    assert type(run.actuator('ram').load).__name__ == name
+    assert f'kind: {name.lower()}' in run.to_yaml()
+    assert RunConfig.from_yaml(run.to_yaml()) == run
+
+
+@pytest.mark.parametrize('step', ['0.1', '0.5', '2', '100'])
+def test_macro_steps_on_the_grid_are_taken(tmp_path: Path, step: str) -> None:
+    path = rig(tmp_path, step=step)
+    if float(step) <= 0.12:
+        with pytest.raises(ConfigError, match='controller_offset_ms = 0.12 ms, must be < step'):
+            load_run(path)
+    else:
+        assert load_run(path).step_ns == round(float(step) * 1e6)
+
+
+@pytest.mark.parametrize('step', ['0.25', '1.00001', '0.02', '0'])
+def test_macro_steps_off_the_grid_are_refused(tmp_path: Path, step: str) -> None:
+    """A tick holds five equal force windows of whole plant steps: 0.1 ms."""
+    with pytest.raises(ConfigError, match='rig.yaml: step_ms = '):
+        load_run(rig(tmp_path, step=step))
+
+
+@settings(suppress_health_check=[HealthCheck.function_scoped_fixture])
+@given(tick=st.integers(0, 10**9))
+def test_every_tick_is_found_from_its_seconds(tick: int) -> None:
+    """t_k = k H is exact in nanoseconds, and in seconds to a double's rounding."""
+    assert ticks_in(tick * 1_000_000 / 1e9, 1_000_000, 't') == tick
+
+
+def test_the_digest_changes_with_any_parameter(tmp_path: Path) -> None:
+    plain = load_run(rig(tmp_path)).digest
+    ram = 'model: isa_v5, load: {kind: mass, inertia: 50.00000000000001}'
+    assert load_run(rig(tmp_path, ram)).digest != plain
+
+
+@pytest.mark.parametrize('old, new, expected', [
+    ('step_ns: 1000000', 'step_ns: 1.0', 'step_ns = 1.0, must be of type int'),
+    ('preset: default', 'presets: default', 'actuators.haa.presets is unknown'),
+    ('    preset: default\n', '', 'actuators.haa lacks preset'),
+    ('stroke_mm: 100.0', 'stroke_mm: -1', 'drive.stroke_mm = -1 mm, must be > 0 mm'),
+])
+def test_a_damaged_resolved_text_is_refused(old: str, new: str, expected: str) -> None:
+    text = load_run(CONFIG / 'leg.yaml').to_yaml()
+    assert old in text
+    with pytest.raises(ConfigError, match=expected):
+        RunConfig.from_yaml(text.replace(old, new, 1))
+
+
+def test_a_text_from_before_a_parameter_is_read() -> None:
+    """The bag of a leg whose hip drop was not yet a number: the axes crossed at one height."""
+    run = load_run(CONFIG / 'leg.yaml')
+    text = run.to_yaml()
+    assert '      hip_drop_m: 0.0\n' in text
+    assert RunConfig.from_yaml(text.replace('      hip_drop_m: 0.0\n', '', 1)) == run
+
+
+def test_origins_say_which_file_a_value_comes_from(tmp_path: Path) -> None:
+    ram = 'model: isa_v5, load: {kind: mass}, parameters: {plant: {oil: {dead_volume_ml: 2.5}}}'
+    _, origins = read_run(rig(tmp_path, ram))
+    plant = origins.actuators['ram'].sheet['plant']
+    assert isinstance(plant, dict) and isinstance(plant['oil'], dict)
+    assert plant['oil']['dead_volume_ml'].source == 'rig.yaml'  # type: ignore[union-attr]
+
+
+@pytest.mark.parametrize(('names', 'message'), [
+    (['hfe'], "leg.yaml: controllers: the name 'hfe' is taken"),
+    (['coordinator'], "leg.yaml: controllers: the name 'coordinator' is taken"),
+    (['sway', 'sway'], "leg.yaml: controllers: the name 'sway' is taken"),
+    (['Sway'], "leg.yaml: controllers = 'Sway', must be small letters")])
+def test_a_controller_that_cannot_be_is_refused(names, message):
+    with pytest.raises(ConfigError, match=message):
+        load_run(CONFIG / 'leg.yaml').with_controllers(names)
+
+
+def test_controllers_of_file_and_command_line_take_part(tmp_path):
+    """In this order, and in the text that a bag carries."""
+    path = tmp_path / 'leg.yaml'
+    path.write_text((CONFIG / 'leg.yaml').read_text() + 'controllers: [gait, balance]\n')
+    run = load_run(path).with_controllers(['sway'])
+    assert run.controllers == ('gait', 'balance', 'sway')
+    assert RunConfig.from_yaml(run.to_yaml()) == run

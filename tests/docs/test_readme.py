@@ -1,0 +1,66 @@
+"""What the README shows can be run as it stands there."""
+
+from pathlib import Path
+import re
+
+from isa_ros.config.paths import CONFIG, find, SCENARIOS
+from isa_ros.config.run_config import RunConfig
+from isa_ros.config.run_file import load_run
+from isa_ros.run.topics import topics_of
+from isa_ros.scenario.scenario import load_scenario
+from isa_ros.surroundings.surroundings import SharedLoad
+import pytest
+
+README = (Path(__file__).parents[2] / 'README.md').read_text()
+BLOCKS = re.findall(r'```yaml\n(.*?)```', README, re.DOTALL)
+FIGURES = [
+    (config, scenario, figures)
+    for figures, configs, scenario in re.findall(
+        r'^\| ([\w. ]+) \| (`\w+`(?:, or `\w+`)?) \| `(\w+)` \|', README, re.MULTILINE)
+    for config in re.findall(r'\w+(?=`)', configs)]
+
+
+def run_of(actuators: str, tmp_path: Path) -> RunConfig:
+    """Return the first run file of the README, with other actuators in it."""
+    head = next(block for block in BLOCKS if block.startswith('name: my_ram'))
+    path = tmp_path / 'my_run.yaml'
+    path.write_text(head[:head.index('actuators:')] + actuators)
+    return load_run(path)
+
+
+def test_the_run_file_and_its_scenario_fit(tmp_path: Path) -> None:
+    head = next(block for block in BLOCKS if block.startswith('name: my_ram'))
+    path = tmp_path / 'my_step.yaml'
+    path.write_text(next(block for block in BLOCKS if block.startswith('name: my_step')))
+    run = run_of(head[head.index('actuators:'):], tmp_path)
+    assert load_scenario(path, run).duration_s == 1.0
+
+
+def test_the_section_record_fits_the_run_file(tmp_path: Path) -> None:
+    head = next(block for block in BLOCKS if block.startswith('name: my_ram'))
+    section = next(block for block in BLOCKS if block.startswith('record:'))
+    run = run_of(head[head.index('actuators:'):] + section, tmp_path)
+    run.record.refuse_misfits(
+        [topic.name for topic in topics_of(run, SharedLoad(run))[1]], run.source)
+    assert (run.record.storage.compression, run.record.thins) == ('zstd', True)
+
+
+def test_the_control_blocks_are_those_it_says(tmp_path: Path) -> None:
+    run = run_of(next(block for block in BLOCKS if block.startswith('actuators:')), tmp_path)
+    kinds = {a.name: type(a.sheet.reu.force).__name__ for a in run.actuators}
+    assert kinds == {'linearised': 'FeedbackLinearisation', 'scheduled': 'Pid', 'pressure': 'Off'}
+    assert type(run.actuator('pressure').sheet.reu.pressure).__name__ == 'Pid'
+
+
+@pytest.mark.parametrize('config, scenario, figure', FIGURES)
+def test_a_figure_of_the_table_has_a_scenario_that_names_it(
+        config: str, scenario: str, figure: str) -> None:
+    """A scenario that fits its rig, and of which a report knows what to draw."""
+    fitted = load_scenario(find(scenario, SCENARIOS), load_run(find(config, CONFIG)))
+    assert fitted.figure is not None and fitted.duration_s is not None
+
+
+def test_the_table_has_every_figure_of_the_paper_with_measurements() -> None:
+    """Figures 1 to 3, 7 and 9 to 11 are drawings and pictures, 16 is a photograph."""
+    named = {int(figure) for *_, figure in FIGURES if figure.isdigit()}
+    assert named == {4, 5, 6, 8, 12, 13, 14, 15, 17, 18, 19, 20}

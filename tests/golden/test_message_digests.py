@@ -1,0 +1,22 @@
+"""Every topic of every shipped configuration and scenario has the bytes it had."""
+
+import json
+
+import pytest
+from tests.golden.message_digests import digests, FILE, IDLE, pairs
+
+RECORDED = json.loads(FILE.read_text(encoding='utf-8'))
+PAIRS = pairs()
+
+
+def test_every_pair_is_recorded():
+    """Every shipped configuration is there, and every shipped scenario fits one of them."""
+    assert sorted(PAIRS) == sorted(RECORDED)
+    assert {name.split()[1] for name in PAIRS} >= {IDLE, 'drop.yaml', 'step.yaml'}
+
+
+@pytest.mark.golden
+@pytest.mark.parametrize('name', RECORDED)
+def test_messages_are_those_of_the_recorded_digests(name):
+    """Compared topic by topic, so that a failure names the ones that changed."""
+    assert digests(PAIRS[name]) == RECORDED[name]

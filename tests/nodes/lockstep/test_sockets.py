@@ -1,0 +1,196 @@
+"""Both ends of the wire between processes of one host."""
+
+from collections.abc import Iterator
+import os
+import socket
+import time
+
+from isa_ros.nodes.lockstep import sockets as local_wire
+from isa_ros.nodes.lockstep.sockets import LARGEST, LocalWire, LocalWires
+import pytest
+
+RUN = 0x1234_5678_9abc
+IDENTITIES = {0: b'identity of haa', 2: b'identity of kfe'}
+SLICE_S = 0.05
+
+pytestmark = pytest.mark.skipif(
+    not local_wire.is_possible(), reason="abstract socket names are Linux's")
+
+
+@pytest.fixture
+def wires() -> Iterator[LocalWires]:
+    """Return a coordinator's end that others can call."""
+    wires = LocalWires()
+    wires.listen(RUN)
+    yield wires
+    wires.close()
+
+
+def call(identity: bytes, run: int = RUN) -> LocalWire:
+    wire = LocalWire.to_run(run, identity, SLICE_S)
+    assert wire is not None
+    return wire
+
+
+@pytest.fixture
+def ends(wires) -> Iterator[list[LocalWire]]:
+    """Return the connected ends of two participants."""
+    ends = [call(identity) for identity in IDENTITIES.values()]
+    assert wires.connect(IDENTITIES)
+    yield ends
+    for end in ends:
+        end.close()
+
+
+def received(wires: LocalWires, n: int) -> list[bytes | None]:
+    return sorted((wires.wait(SLICE_S) for _ in range(n)), key=lambda data: data or b'')
+
+
+def test_a_message_goes_to_all_and_each_answers_for_itself(wires, ends):
+    for step in b'one', b'x' * LARGEST:
+        assert wires.send(step)
+        assert [end.wait() for end in ends] == [step, step]
+        assert [end.send(b'%d ' % k + step[:9]) for k, end in enumerate(ends)] == [True, True]
+        assert received(wires, 2) == [b'0 ' + step[:9], b'1 ' + step[:9]]
+    assert wires.wait(0.0) is None
+
+
+def test_silence_lasts_a_slice(wires, ends):
+    for wait in (ends[0].wait, lambda: wires.wait(SLICE_S)):
+        begin = time.monotonic()
+        assert wait() is None
+        assert time.monotonic() - begin >= 0.9 * SLICE_S
+    assert ends[0].is_open
+
+
+def test_too_large_an_answer_is_left_to_the_topics(wires, ends):
+    assert not ends[0].send(b'x' * (LARGEST + 1))
+    assert ends[0].send(b'next') and wires.wait(SLICE_S) == b'next'
+
+
+def test_too_large_a_step_is_left_to_the_topics_and_so_is_the_rest(wires, ends):
+    """Else the participants would wait at both."""
+    assert not wires.send(b'x' * (LARGEST + 1))
+    assert not wires.is_open
+    assert [end.wait() for end in ends] == [None, None]
+    assert [end.is_open for end in ends] == [False, False]
+
+
+def test_one_that_does_not_read_holds_nobody_up(wires, ends):
+    """Its queue is full one day, and then the topics have to do."""
+    n = 0
+    while wires.send(bytes(LARGEST)):
+        assert ends[1].wait() == bytes(LARGEST)
+        n += 1
+    assert 0 < n < 1000 and not wires.is_open
+
+
+def test_without_a_coordinator_on_this_host_there_is_no_wire():
+    assert LocalWire.to_run(RUN + 1, b'me', SLICE_S) is None
+
+
+def test_where_names_are_not_abstract_there_is_no_wire(monkeypatch):
+    monkeypatch.setattr(local_wire, 'is_possible', lambda: False)
+    wires = LocalWires()
+    wires.listen(RUN)
+    assert LocalWire.to_run(RUN, IDENTITIES[0], SLICE_S) is None
+    assert not wires.connect(IDENTITIES)
+    assert not wires.send(b'step')
+    wires.close()
+
+
+def test_with_one_elsewhere_all_hang_up(wires):
+    here = call(IDENTITIES[0])
+    assert not wires.connect(IDENTITIES)
+    assert here.wait() is None and not here.is_open
+
+
+def test_a_stranger_is_not_let_in(wires):
+    strangers = [call(b'nobody'), call(b'i' * 1000), call(IDENTITIES[0][:-1])]
+    ends = [call(identity) for identity in IDENTITIES.values()]
+    assert wires.connect(IDENTITIES)
+    for stranger in strangers:
+        assert stranger.wait() is None and not stranger.is_open
+    assert wires.send(b'step') and [end.wait() for end in ends] == [b'step', b'step']
+
+
+def test_a_stranger_of_another_user_is_not_let_in(wires, monkeypatch):
+    ends = [call(identity) for identity in IDENTITIES.values()]
+    own = os.geteuid()
+    monkeypatch.setattr(os, 'geteuid', lambda: own + 1)
+    assert not wires.connect(IDENTITIES)
+    assert [end.wait() for end in ends] == [None, None]
+
+
+def test_strangers_that_come_and_come_hold_nobody_up(wires, monkeypatch):
+    monkeypatch.setattr(local_wire, '_STRANGERS', 3)
+    strangers = [call(b'nobody') for _ in range(10)]
+    ends = [call(identity) for identity in IDENTITIES.values()]
+    assert not wires.connect(IDENTITIES)
+    for end in strangers + ends:
+        assert end.wait() is None and not end.is_open
+
+
+def test_a_full_queue_of_calls_holds_nobody_up(monkeypatch):
+    monkeypatch.setattr(socket, 'SOMAXCONN', 1)
+    wires = LocalWires()
+    wires.listen(RUN)
+    calls = [LocalWire.to_run(RUN, b'nobody', SLICE_S) for _ in range(4)]
+    assert calls[0] is not None and calls[-1] is None
+    wires.close()
+
+
+def test_a_name_that_is_taken_is_left(wires):
+    other = LocalWires()
+    other.listen(RUN)
+    assert not other.connect(IDENTITIES)
+    ends = [call(identity) for identity in IDENTITIES.values()]
+    assert wires.connect(IDENTITIES) and all(end.is_open for end in ends)
+
+
+def test_the_default_timeout_of_the_process_does_not_matter(wires):
+    """A user's controller may have set one."""
+    socket.setdefaulttimeout(0.001)
+    try:
+        ends = [call(identity) for identity in IDENTITIES.values()]
+        assert wires.connect(IDENTITIES)
+    finally:
+        socket.setdefaulttimeout(None)
+    begin = time.monotonic()
+    assert ends[0].wait() is None and ends[0].is_open
+    assert time.monotonic() - begin >= 0.9 * SLICE_S
+    assert wires.send(b'step') and ends[0].wait() == b'step'
+
+
+def test_nobody_can_call_once_the_run_goes_on(wires, ends):
+    assert LocalWire.to_run(RUN, b'late', SLICE_S) is None
+
+
+def test_where_one_closes_all_are_closed(wires, ends):
+    """What it had said before still counts."""
+    assert ends[0].send(b'last')
+    ends[0].close()
+    assert wires.wait(SLICE_S) == b'last' and wires.is_open
+    begin = time.monotonic()
+    assert wires.wait(SLICE_S) is None and not wires.is_open
+    assert ends[1].wait() is None and not ends[1].is_open
+    assert time.monotonic() - begin < SLICE_S
+    assert not wires.send(b'step')
+
+
+def test_a_coordinator_that_ends_is_noticed_at_once(wires, ends):
+    wires.close()
+    begin = time.monotonic()
+    assert ends[0].wait() is None and not ends[0].is_open
+    assert not ends[1].send(b'answer') and not ends[1].is_open
+    assert time.monotonic() - begin < SLICE_S
+
+
+def test_a_coordinator_leads_one_run_after_the_other(wires, ends):
+    wires.close()
+    wires.listen(RUN + 1)
+    with_others = {1: b'another'}
+    end = call(b'another', RUN + 1)
+    assert wires.connect(with_others)
+    assert wires.send(b'step') and end.wait() == b'step'
+    end.close()

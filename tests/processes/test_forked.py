@@ -1,0 +1,143 @@
+"""Copies of a process, made by one that has nothing else to do: a script of its own."""
+
+import subprocess
+import sys
+import textwrap
+
+import pytest
+
+START = """
+import os, signal, socket, subprocess, sys, threading, time
+from pathlib import Path
+from isa_ros.processes.forked import can_fork, Forked
+
+def wait_for(condition):
+    deadline = time.monotonic() + 20.0
+    while not condition():
+        assert time.monotonic() < deadline
+        time.sleep(0.001)
+"""
+
+
+def run(script: str) -> subprocess.CompletedProcess[str]:
+    """Run a script behind `START` to its end."""
+    done = subprocess.run(
+        [sys.executable, '-c', START + textwrap.dedent(script)], capture_output=True, text=True,
+        timeout=60.0)
+    assert done.returncode == 0, done.stderr
+    return done
+
+
+def test_a_copy_works_and_its_exit_code_is_returned():
+    """With what was there before it, in a process and a session of its own."""
+    done = run("""
+        known = 'before'
+        def work():
+            print(known, os.getpid() != parent, os.getsid(0) == os.getpid())
+            return 7
+        parent = os.getpid()
+        copy = Forked('haa', work)
+        assert copy.wait(20.0) == copy.poll() == copy.returncode == 7
+        print('after')
+        """)
+    assert done.stdout.splitlines() == ['before True True', 'after']
+
+
+def test_a_copy_has_its_name():
+    run("""
+        copy = Forked('haa', lambda: signal.pause() or 0)
+        wait_for(lambda: Path(f'/proc/{copy.pid}/comm').read_text() == 'haa\\n')
+        copy.kill()
+        assert copy.wait(20.0) == -signal.SIGKILL
+        """)
+
+
+def test_a_signal_that_comes_at_once_is_not_lost():
+    run("""
+        for _ in range(50):
+            copy = Forked('haa', lambda: signal.pause() or 0)
+            copy.terminate()
+            assert copy.wait(20.0) == -signal.SIGTERM
+        assert signal.pthread_sigmask(signal.SIG_BLOCK, ()) == set()
+        """)
+
+
+def test_the_handlers_of_the_original_are_not_those_of_the_copy():
+    run("""
+        signal.signal(signal.SIGTERM, lambda number, frame: None)
+        copy = Forked('haa', lambda: signal.pause() or 0)
+        copy.terminate()
+        assert copy.wait(20.0) == -signal.SIGTERM
+        """)
+
+
+def test_a_copy_that_does_not_end_in_time_is_told():
+    run("""
+        copy = Forked('haa', lambda: signal.pause() or 0)
+        try:
+            copy.wait(0.01)
+        except subprocess.TimeoutExpired:
+            assert copy.poll() is None
+            copy.kill()
+            copy.wait()
+            copy.kill()
+        """)
+
+
+def test_a_copy_holds_no_file_of_the_original():
+    """A name that the original has claimed is free when the original gives it up."""
+    run("""
+        claim = socket.socket(socket.AF_UNIX, socket.SOCK_DGRAM)
+        claim.bind(f'\\0isa_ros/test_forked/{os.getpid()}')
+        copy = Forked('haa', lambda: signal.pause() or 0)
+        files = Path(f'/proc/{copy.pid}/fd')
+        wait_for(lambda: {os.readlink(f) for f in files.iterdir() if int(f.name) not in (1, 2)}
+                 == {os.devnull})
+        name = claim.getsockname()
+        claim.close()
+        socket.socket(socket.AF_UNIX, socket.SOCK_DGRAM).bind(name)
+        copy.kill()
+        copy.wait()
+        """)
+
+
+def test_what_a_copy_raises_is_shown_and_ends_it_alone():
+    done = run("""
+        def fail():
+            raise OSError('no such thing')
+        try:
+            assert Forked('haa', fail).wait(20.0) == 1
+            assert Forked('kfe', lambda: sys.exit(3)).wait(20.0) == 3
+        finally:
+            print('once')
+        """)
+    assert done.stdout == 'once\n'
+    assert done.stderr.splitlines()[-1] == 'OSError: no such thing'
+
+
+def test_a_process_with_another_thread_is_not_copied():
+    run("""
+        assert can_fork()
+        done = threading.Event()
+        thread = threading.Thread(target=done.wait)
+        thread.start()
+        assert not can_fork()
+        done.set()
+        thread.join()
+        assert can_fork()
+        """)
+
+
+@pytest.mark.ros
+def test_a_process_with_a_node_is_not_copied():
+    """The threads of the middleware would be missing in the copy, and hold its locks."""
+    run("""
+        from isa_ros.nodes.middleware.environment import set_defaults
+        set_defaults()
+        os.environ['ROS_DOMAIN_ID'] = '231'
+        import rclpy
+        assert can_fork()
+        rclpy.init()
+        node = rclpy.create_node('only')
+        assert not can_fork()
+        """)

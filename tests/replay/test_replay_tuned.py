@@ -1,0 +1,83 @@
+"""Gains that changed under way: recorded with their tick, and an input of the replay."""
+
+from pathlib import Path
+
+from isa_ros.analysis.signals.traces import read_traces
+from isa_ros.bag.reader import Bag
+from isa_ros.bag.writer import BagWriter
+from isa_ros.cli.main import main
+from isa_ros.config.run_config import RunConfig
+from isa_ros.core.topic import Topic
+from isa_ros.replay.replay import recorded_inputs, replay, Rerun
+from isa_ros.run.local_run import LocalRun
+from msg_adapters.applied_parameters import applied_parameters, TYPE
+import pytest
+
+GOLDEN = Path(__file__).parents[1] / 'golden' / 'leg_touchdown'
+TOPIC = '/kfe/applied_parameters'
+TUNED = {'kfe': {0: {'force.kp': 9e-8}, 30: {'force.kp': 1.1e-7, 'force.kf': 1e-3}},
+         'haa': {30: {'force.limit': 4e-3}}}
+N_TICKS = 60
+
+
+@pytest.fixture(scope='module')
+def tuned(tmp_path_factory) -> Path:
+    """Return a bag of the leg with gains of two actuators changed under way."""
+    provenance = Bag(GOLDEN).provenance
+    local = LocalRun(RunConfig.from_yaml(provenance.configuration), TUNED)
+    directory = tmp_path_factory.mktemp('bags') / 'tuned'
+    with BagWriter(directory, local.topics, provenance) as writer:
+        local.simulate(N_TICKS, lambda tick, rows: None, writer)
+    return directory
+
+
+def with_kp(bag: Path, directory: Path, value: float) -> Path:
+    """Record a bag again with another force.kp said at the first tick."""
+    source = Bag(bag)
+    topics = [Topic(name, source.types[name]) for name in sorted(source.types)]
+    index = {topic.name: k for k, topic in enumerate(topics)}
+    with BagWriter(directory, topics, source.provenance) as writer:
+        for tick in source.ticks():
+            writer.write_tick(tick.t_ns, tick.sequence, [
+                (index[m.topic], applied_parameters('kfe', {'force.kp': value}, 0)
+                 if (m.topic, tick.sequence) == (TOPIC, 1) else m.data)
+                for m in tick.messages])
+    return directory
+
+
+def test_what_was_tuned_is_an_input_at_its_tick(tuned):
+    bag = Bag(tuned)
+    inputs = recorded_inputs(bag, RunConfig.from_yaml(bag.provenance.configuration))
+    assert (inputs.tuned, inputs.n_ticks) == (TUNED, N_TICKS)
+    assert bag.types[TOPIC] == TYPE
+
+
+def test_a_bag_with_tuned_gains_replays_to_the_same_bytes(tuned, tmp_path):
+    again = Rerun(Bag(tuned))
+    with BagWriter(tmp_path / 'tuned', again.topics, Bag(tuned).provenance) as writer:
+        again.simulate(writer)
+    assert replay(Bag(tuned)).is_equal
+    first, second = (next(d.glob('*.mcap')) for d in (tuned, tmp_path / 'tuned'))
+    assert first.read_bytes() == second.read_bytes()
+
+
+def test_a_gain_changed_by_one_percent_is_found(tuned, tmp_path):
+    """In the states of the tick from which it is in force."""
+    difference = replay(Bag(with_kp(tuned, tmp_path / 'changed', 9.09e-8))).report.difference
+    assert difference is not None
+    assert difference.tick == 1
+
+
+def test_a_recorded_gain_that_cannot_be_is_refused(tuned, tmp_path, capsys):
+    """Exit code 2: a bag from elsewhere makes nothing but a simulation happen."""
+    assert main(['replay', str(with_kp(tuned, tmp_path / 'wrong', -1.0))]) == 2
+    error = capsys.readouterr().err
+    assert error.count('\n') == 1
+    assert 'kfe: force.kp = -1 m/N, must be >= 0 m/N' in error
+
+
+def test_what_was_tuned_is_no_signal_to_be_drawn(tuned):
+    """Its messages change their layout."""
+    _, traces = read_traces(tuned)
+    assert TOPIC not in traces
+    assert len(traces['/kfe/references'].t) == N_TICKS + 1

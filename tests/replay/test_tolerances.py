@@ -1,0 +1,62 @@
+"""Tolerance files: what they mean, and what is refused by file, key and value."""
+
+from isa_ros.errors import ConfigError
+from isa_ros.replay.tolerances import load_tolerances, Tolerance
+import pytest
+
+TYPES = {
+    '/hip/joint_states': 'sensor_msgs/msg/JointState',
+    '/hip/load_cell': 'geometry_msgs/msg/WrenchStamped',
+}
+
+
+@pytest.fixture
+def load(tmp_path):
+    """Return a function that reads a tolerance text."""
+    def read(text):
+        path = tmp_path / 'tolerance.yaml'
+        path.write_text(text)
+        return load_tolerances(path, TYPES)
+
+    return read
+
+
+def test_number_is_absolute_for_every_element(load):
+    tolerances = load('/hip/joint_states: {position: 0.5}')
+    assert tolerances.of('/hip/joint_states', 'position[3]') == Tolerance(0.5, 0.0)
+    assert tolerances.of('/hip/joint_states', 'velocity[3]') is None
+    assert tolerances.of('/hip/load_cell', 'position[3]') is None
+
+
+def test_index_wins_over_the_whole_array(load):
+    tolerances = load('/hip/joint_states:\n  position: 0.5\n  "position[1]": 0.0\n')
+    assert tolerances.of('/hip/joint_states', 'position[1]') == Tolerance(0.0, 0.0)
+    assert tolerances.of('/hip/joint_states', 'position[0]') == Tolerance(0.5, 0.0)
+
+
+def test_both_bounds_add_up(load):
+    found = load('/hip/load_cell: {wrench.force.x: {absolute: 1.0, relative: 0.1}}')
+    tolerance = found.of('/hip/load_cell', 'wrench.force.x')
+    assert tolerance.admits(-100.0, -111.0)
+    assert not tolerance.admits(-100.0, -111.01)
+
+
+@pytest.mark.parametrize('text, said', [
+    ('/knee: {position: 1.0}',
+     'tolerance.yaml: /knee: no such topic in the bag, which has /hip/joint_states, /hip/load'),
+    ('/hip/load_cell: 1.0', 'tolerance.yaml: /hip/load_cell = 1.0, must be fields'),
+    ('/hip/load_cell: {wrench.force.w: 1.0}',
+     'tolerance.yaml: /hip/load_cell: wrench.force.w: must be a number of the message: wrench.f'),
+    ('/hip/load_cell: {header.stamp.sec: 1}', 'header.stamp.sec: must be a number'),
+    ('/hip/load_cell: {wrench.force.x: -1.0}',
+     'wrench.force.x: absolute = -1.0, must be a finite number >= 0'),
+    ('/hip/load_cell: {wrench.force.x: .inf}', 'absolute = inf, must be a finite number'),
+    ('/hip/load_cell: {wrench.force.x: true}', 'absolute = True, must be a finite number'),
+    ('/hip/load_cell: {wrench.force.x: {relative: a}}', "relative = 'a', must be a finite"),
+    ('/hip/load_cell: {wrench.force.x: {}}', r'= \{\}, must be a number or have absolute and'),
+    ('/hip/load_cell: {wrench.force.x: {rel: 1.0}}', r"\{'rel': 1.0\}, must be a number or have"),
+    ('/hip/load_cell: {}\n/hip/load_cell: {}', 'duplicate key /hip/load_cell'),
+])
+def test_malformed_tolerance_is_refused(load, text, said):
+    with pytest.raises(ConfigError, match=said):
+        load(text)

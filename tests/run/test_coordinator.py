@@ -1,0 +1,336 @@
+"""The barrier and the run, with fakes for actuators, load and recorder."""
+
+from collections.abc import Callable, Sequence
+import itertools
+
+from isa_ros.core.signals import HAS_SETPOINT
+from isa_ros.errors import ConfigError, RunError, SimulationDiverged
+from isa_ros.run.coordinator import Coordinator, Interrupted, Plan
+from isa_ros.run.exchange import Messages, Records, Rows
+from isa_ros.run.pacing import Pace, ProgressMeter
+from isa_ros.run.saved_state import RunState
+from isa_ros.run.topics import Order
+import numpy as np
+import pytest
+
+STEP_NS = 1_000_000
+TOPICS = [['/b/state', '/b/applied'], ['/a/state'], ['/clock'], ['/supply']]
+EVENTS = '/events'
+
+
+class FakeTransport:
+    """Two participants that answer with the tick; the first applies something at tick 1."""
+
+    def __init__(self, log: list[str]) -> None:
+        self.log = log
+        self.failure: Exception | None = None
+        self.fails_at = -1
+        self.asks_at = -1
+        self.tick = 0
+
+    def join(self, rows: Rows) -> Sequence[Messages]:
+        return self._answers(0)
+
+    def restore(
+            self, tick: int, snapshots: Sequence[bytes], rows: Rows) -> Sequence[Messages]:
+        self.log.append(f'restore {tick} {snapshots}')
+        return self._answers(tick)
+
+    def begin(self) -> None:
+        self.log.append('begin')
+
+    def publish_clock(self, clock: bytes) -> None:
+        self.log.append(f'clock {clock.decode()}')
+
+    def publish_event(self, event: bytes) -> None:
+        self.log.append(event.decode())
+
+    def send(self, tick: int, rows: Rows) -> None:
+        self.tick = tick
+        self.log.append(
+            f'send {tick} x0={rows.ports["x0"][0]:g} kinds={rows.commands["kinds"].tolist()}')
+
+    def receive(self, rows: Rows) -> Sequence[Messages]:
+        if self.tick == self.fails_at and self.failure is not None:
+            raise self.failure
+        self.log.append(f'receive {self.tick}')
+        rows.replies['force'] = self.tick
+        if self.tick == self.asks_at:
+            rows.requests[0] = (HAS_SETPOINT, 0, 0.5, 0.0, 0.0, np.nan, np.nan)
+        return self._answers(self.tick + 1)
+
+    def publish(self, messages: Messages) -> None:
+        self.log.append('publish')
+
+    def idle(self) -> None:
+        self.log.append('idle')
+
+    def snapshots(self) -> list[bytes]:
+        return [b'b', b'a']
+
+    def _answers(self, sequence: int) -> Sequence[Messages]:
+        applied = b'applied' if sequence in (0, 2) else None
+        return [[b'b%d' % sequence, applied], [b'a%d' % sequence]]
+
+
+class FakeLoad:
+    """A load whose position counts the ticks."""
+
+    def __init__(self, log: list[str]) -> None:
+        self.log = log
+        self.x0 = 0
+
+    def ports(self, ports: Records) -> None:
+        ports['x0'] = self.x0
+
+    def advance(self, replies: Records) -> None:
+        self.log.append(f'advance {replies["force"][0]:g}')
+        self.x0 += 1
+
+    def show(self, shared: Records) -> None:
+        self.log.append('show')
+
+    def messages(self, t_ns: int) -> Messages:
+        return (b'supply%d' % t_ns,)
+
+    def clock(self, t_ns: int) -> bytes:
+        return b'%d' % t_ns
+
+    def event(self, t_ns: int, text: str) -> bytes:
+        return f'{text} at {t_ns}'.encode()
+
+    def snapshot(self) -> bytes:
+        return b'%d' % self.x0
+
+    def restore(self, snapshot: bytes) -> None:
+        self.x0 = int(snapshot)
+
+
+class FakeRecorder:
+    """Keeps what it is given."""
+
+    def __init__(self, log: list[str]) -> None:
+        self.log = log
+        self.samples: list[tuple[int, int, list[tuple[int, bytes]]]] = []
+
+    def write_tick(
+            self, t_ns: int, sequence: int, messages: Sequence[tuple[int, bytes]]) -> None:
+        self.log.append(f'record {sequence}')
+        self.samples.append((t_ns, sequence, list(messages)))
+
+
+class Rig:
+    """One coordinator with its fakes."""
+
+    def __init__(
+            self, n_ticks: int | None = 3, pace: Pace | None = None, **plan: bool) -> None:
+        self.asked: dict[int, Callable[[Coordinator], object]] = {}
+        self.log: list[str] = []
+        self.transport = FakeTransport(self.log)
+        self.recorder = FakeRecorder(self.log)
+        self.stops_at: int | None = None
+        self.looks = 0
+        self.rows, self.load = Rows(2), FakeLoad(self.log)
+        self.order = Order(TOPICS, EVENTS)
+        self.coordinator = Coordinator(
+            Plan(step_ns=STEP_NS, rows=self.rows, n_ticks=n_ticks, commands=self.command, **plan),
+            self.order, self.transport, self.load, self.recorder,
+            pace=pace or Pace(), progress=ProgressMeter(None, None), should_stop=self.should_stop,
+            requests=self.ask)
+
+    def command(self, tick: int, rows: Records) -> None:
+        rows['kinds'][1] = tick
+
+    def ask(self, coordinator: Coordinator) -> None:
+        """Ask for what a test wants at this look, counted from 0."""
+        self.looks += 1
+        self.asked.get(self.looks - 1, lambda run: None)(coordinator)
+
+    def should_stop(self) -> bool:
+        return self.coordinator.ticks == self.stops_at
+
+    def run(self, state: RunState | None = None) -> None:
+        self.coordinator.run(self.transport.join(self.rows), state)
+
+    @property
+    def sequences(self) -> list[int]:
+        return [sequence for _, sequence, _ in self.recorder.samples]
+
+
+def test_n_ticks_give_n_plus_1_samples():
+    rig = Rig(3)
+    rig.run()
+    assert rig.sequences == [0, 1, 2, 3]
+    assert [t_ns for t_ns, _, _ in rig.recorder.samples] == [0, 1_000_000, 2_000_000, 3_000_000]
+
+
+def test_order_of_a_tick():
+    """Clock of the tick's end first; the last sample is recorded while actuators work."""
+    rig = Rig(2)
+    rig.run()
+    assert rig.log == [
+        'clock 0', 'begin', 'publish',
+        'clock 1000000', 'send 0 x0=0 kinds=[0, 0]', 'record 0',
+        'receive 0', 'advance 0', 'publish',
+        'clock 2000000', 'send 1 x0=1 kinds=[0, 1]', 'record 1',
+        'receive 1', 'advance 1', 'publish',
+        'record 2']
+
+
+def test_sample_is_in_canonical_order():
+    """Topics sorted by name, whatever the order of the participants; absent ones left out."""
+    rig = Rig(2)
+    rig.run()
+    assert rig.order.topics == (
+        '/a/state', '/b/applied', '/b/state', '/clock', '/events', '/supply')
+    assert rig.recorder.samples[1][2] == [
+        (0, b'a1'), (2, b'b1'), (3, b'1000000'), (5, b'supply1000000')]
+    assert rig.recorder.samples[2][2][1] == (1, b'applied')
+
+
+def test_a_topic_has_one_source():
+    with pytest.raises(ValueError, match='two sources'):
+        Order([['/clock'], ['/clock']], EVENTS)
+
+
+def test_stop_finishes_the_tick_and_records_it():
+    rig = Rig(None)
+    rig.stops_at = 2
+    with pytest.raises(Interrupted, match=r't = 0\.002000 s after 2 ticks') as raised:
+        rig.run()
+    assert raised.value.exit_code == 130
+    assert rig.sequences == [0, 1, 2]
+    assert rig.log[-2:] == ['publish', 'record 2']
+
+
+@pytest.mark.parametrize('failure', [
+    RunError('kfe: no answer to tick 2'), SimulationDiverged(3_000_000, 'kfe: spool', np.nan)])
+def test_finished_ticks_are_recorded_when_an_actuator_fails(failure):
+    rig = Rig(9)
+    rig.transport.failure, rig.transport.fails_at = failure, 2
+    with pytest.raises(type(failure)) as raised:
+        rig.run()
+    assert raised.value is failure
+    assert rig.sequences == [0, 1, 2]
+
+
+def test_lost_recorder_ends_the_run():
+    rig = Rig(9)
+
+    def write_tick(t_ns, sequence, messages):
+        if sequence == 2:
+            raise RunError('drop_0.mcap: cannot record, No space left on device')
+        rig.recorder.samples.append((t_ns, sequence, list(messages)))
+    rig.recorder.write_tick = write_tick
+    with pytest.raises(RunError, match='No space left'):
+        rig.run()
+    assert rig.sequences == [0, 1]
+    assert rig.coordinator.ticks == 2
+
+
+def test_what_a_controller_asks_for_takes_effect_once_at_the_next_tick():
+    """Asked in tick 0, in force from tick 1; the scenario writes over it."""
+    rig = Rig(3)
+    rig.transport.asks_at = 0
+    rig.run()
+    assert [line for line in rig.log if line.startswith('send')] == [
+        'send 0 x0=0 kinds=[0, 0]', 'send 1 x0=1 kinds=[1, 1]', 'send 2 x0=2 kinds=[0, 2]']
+
+
+def test_only_controllers_are_shown_the_shared_load():
+    rig, controlled = Rig(1), Rig(1, has_controllers=True)
+    rig.run()
+    controlled.run()
+    assert 'show' not in rig.log
+    assert controlled.log.index('show') < controlled.log.index('send 0 x0=0 kinds=[0, 0]')
+
+
+def test_a_paused_run_ticks_only_when_stepped():
+    """Paused after a tick, two steps, then on to the end; each recorded where it was done."""
+    rig = Rig(5)
+    rig.asked = {1: lambda run: run.pause(True), 3: lambda run: run.step(2),
+                 5: lambda run: run.pause(False)}
+    rig.run()
+    assert rig.sequences == [0, 1, 2, 3, 4, 5]
+    idles = [k for k, line in enumerate(rig.log) if line == 'idle']
+    sends = [k for k, line in enumerate(rig.log) if line.startswith('send')]
+    assert [sum(idle < send for idle in idles) for send in sends] == [0, 2, 2, 4, 4]
+    events = {sequence: [data for topic, data in messages if topic == 4]
+              for _, sequence, messages in rig.recorder.samples}
+    assert events == {
+        0: [], 1: [b'pause at 1000000', b'step 2 at 1000000'], 2: [],
+        3: [b'resume at 3000000'], 4: [], 5: []}
+
+
+def test_a_step_is_refused_unless_paused():
+    rig = Rig(3)
+    rig.asked = {1: lambda run: run.step(1)}
+    with pytest.raises(ConfigError, match='step: the run is not paused'):
+        rig.run()
+
+
+def test_a_step_does_not_go_beyond_the_end():
+    rig = Rig(3, is_paused=True)
+    rig.asked = {0: lambda run: run.step(100)}
+    rig.run()
+    assert rig.sequences == [0, 1, 2, 3]
+
+
+def test_a_run_may_begin_paused():
+    rig = Rig(2, is_paused=True)
+    rig.asked = {3: lambda run: run.pause(False)}
+    rig.run()
+    assert rig.log.index('send 0 x0=0 kinds=[0, 0]') > rig.log.index('idle')
+    assert rig.sequences == [0, 1, 2]
+
+
+def test_a_stop_ends_a_pause():
+    rig = Rig(3, is_paused=True)
+    rig.stops_at = 0
+    with pytest.raises(Interrupted, match='after 0 ticks'):
+        rig.run()
+    assert rig.sequences == [0]
+
+
+def test_a_reset_ends_the_run_where_it_is():
+    rig = Rig(9)
+    rig.asked = {2: lambda run: run.reset()}
+    rig.run()
+    assert rig.coordinator.is_reset
+    assert rig.sequences == [0, 1, 2]
+    assert rig.recorder.samples[2][2][-2] == (4, b'reset at 2000000')
+
+
+def test_a_saved_run_goes_on_where_it_was():
+    """Tick, load, participants and what controllers asked for; the sample there comes first."""
+    first, states = Rig(4), []
+    first.transport.asks_at = 1
+    first.asked = {2: lambda run: states.append(run.save())}
+    first.run()
+    again = Rig(4)
+    again.run(states[0])
+    assert f'restore 2 {[b"b", b"a"]}' in again.log
+    assert again.recorder.samples == first.recorder.samples[2:]
+    sent = [line for line in first.log if line.startswith('send')][2:]
+    assert [line for line in again.log if line.startswith('send')] == sent
+    assert sent[0] == 'send 2 x0=2 kinds=[1, 2]'
+
+
+def test_a_run_that_ends_paused_was_not_behind():
+    """However long it was paused: a minute at each look."""
+    clock = itertools.count(step=60)
+    pace = Pace(1.0, now=lambda: float(next(clock)), sleep=lambda seconds: None)
+    rig = Rig(None, pace)
+    rig.asked = {2: lambda run: run.pause(True), 5: lambda run: setattr(rig, 'stops_at', 2)}
+    with pytest.raises(Interrupted, match='after 2 ticks'):
+        rig.run()
+    assert rig.log[-2:] == ['idle', 'record 2'] and pace.shortfall is None
+
+
+def test_another_pace_counts_from_now():
+    rig = Rig(2)
+    rig.asked = {1: lambda run: run.set_real_time_factor(1e6)}
+    rig.run()
+    assert rig.sequences == [0, 1, 2]
+    with pytest.raises(ConfigError, match='real_time_factor = -1'):
+        rig.coordinator.set_real_time_factor(-1.0)

@@ -1,0 +1,138 @@
+"""Host time: pace and progress, on a clock of the test's own."""
+
+from isa_ros.errors import ConfigError
+from isa_ros.run.pacing import Laps, Pace, Progress, ProgressMeter, SLICE_S
+import pytest
+
+
+class Host:
+    """A clock that only sleeping moves, and what was slept."""
+
+    def __init__(self) -> None:
+        self.now = 100.0
+        self.naps: list[float] = []
+
+    def time(self) -> float:
+        return self.now
+
+    def sleep(self, seconds: float) -> None:
+        self.naps.append(seconds)
+        self.now += seconds
+
+
+def never() -> bool:
+    return False
+
+
+def test_pace_holds_the_run_back():
+    """At factor 0.5, 10 ms of simulation last 20 ms."""
+    host = Host()
+    pace = Pace(0.5, host.time, host.sleep)
+    pace.start()
+    for tick in range(11):
+        pace.wait(tick * 1_000_000, never)
+    assert host.now == pytest.approx(100.02, abs=1e-9)  # 1e-9 s: eleven roundings of 100 s
+
+
+def test_pace_does_not_drift():
+    """A tick that takes long is made up for: due times count from the start."""
+    host = Host()
+    pace = Pace(1.0, host.time, host.sleep)
+    pace.start()
+    host.now += 0.0035
+    pace.wait(1_000_000, never)
+    assert host.naps == []
+    pace.wait(4_000_000, never)
+    assert host.naps == [pytest.approx(0.0005, abs=1e-9)]
+
+
+@pytest.mark.parametrize('factor', [None, 0.0])
+def test_without_factor_nothing_waits(factor):
+    host = Host()
+    pace = Pace(factor, host.time, host.sleep)
+    pace.start()
+    pace.wait(10**12, never)
+    assert host.naps == []
+
+
+def test_a_stop_ends_the_wait_within_a_slice():
+    host = Host()
+    pace = Pace(1e-6, host.time, host.sleep)
+    pace.start()
+    pace.wait(1_000_000, lambda: len(host.naps) == 2)
+    assert host.naps == [SLICE_S, SLICE_S]
+
+
+def test_a_run_that_fell_behind_says_so():
+    """Ten simulated seconds in eleven of the host's: one behind; nothing where it kept pace."""
+    host = Host()
+    pace = Pace(1.0, host.time, host.sleep)
+    pace.start()
+    host.now += 11.0
+    pace.end(10 * 10**9)
+    assert pace.shortfall == '1.0 s of host time behind real_time_factor = 1 at the end'
+    pace.start(10 * 10**9)
+    pace.wait(12 * 10**9, never)
+    pace.end(12 * 10**9)
+    assert pace.shortfall is None
+
+
+def test_a_run_without_pace_is_never_behind():
+    host = Host()
+    pace = Pace(None, host.time, host.sleep)
+    pace.start()
+    host.now += 50.0
+    pace.end(1)
+    assert pace.shortfall is None
+
+
+def test_another_factor_counts_from_the_next_start():
+    """What was simulated before does not count."""
+    host = Host()
+    pace = Pace(1.0, host.time, host.sleep)
+    pace.start()
+    pace.set_factor(0.5)
+    pace.start(3_000_000)
+    pace.wait(5_000_000, never)
+    assert host.now == pytest.approx(100.004, abs=1e-9)
+
+
+@pytest.mark.parametrize('factor', [-1.0, float('inf'), float('nan')])
+def test_pace_refuses(factor):
+    with pytest.raises(ConfigError, match='real_time_factor'):
+        Pace(factor)
+
+
+def test_progress_names_factor_and_time_left():
+    host = Host()
+    reports: list[Progress] = []
+    meter = ProgressMeter(4_000_000_000, reports.append, host.time)
+    meter.start()
+    host.now += 0.1
+    meter.update(500_000_000)
+    assert reports == []
+    host.now += 0.4
+    meter.update(1_000_000_000)
+    host.now += 1.5
+    meter.end(4_000_000_000)
+    assert reports == [
+        Progress(1_000_000_000, 2.0, 1.5, False), Progress(4_000_000_000, 2.0, 0.0, True)]
+
+
+def test_open_end_has_no_time_left():
+    host = Host()
+    reports: list[Progress] = []
+    meter = ProgressMeter(None, reports.append, host.time)
+    meter.start()
+    host.now += 1.0
+    meter.update(1_000_000_000)
+    assert reports == [Progress(1_000_000_000, 1.0, None, False)]
+
+
+def test_laps_charge_the_time_since_the_last_one():
+    """Host time by phase, summed over the ticks."""
+    clock = iter([0.0, 1.0, 3.0, 3.5, 7.5])
+    laps = Laps(now=lambda: next(clock))
+    for phase in ('send', 'wait', 'send', 'wait'):
+        laps.lap(phase)
+    assert laps.spent == {'send': 1.5, 'wait': 6.0}

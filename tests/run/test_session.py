@@ -1,0 +1,60 @@
+"""What is checked of a request before anything is started."""
+
+from pathlib import Path
+
+from isa_ros.config.paths import CONFIG, find
+from isa_ros.config.run_file import load_run
+from isa_ros.errors import BagError, ConfigError
+from isa_ros.run.saved_state import RunState
+from isa_ros.run.session import prepare, Request
+import pytest
+
+RIG = find('rig_rotary.yaml', CONFIG)
+
+
+def state_at(tick: int, directory: Path) -> Path:
+    """Return a state file of the rig, of nothing but its tick."""
+    path = directory / 'state.json'
+    path.write_text(RunState(tick=tick, load=b'', participants=[], requests=b'').to_json(
+        load_run(RIG).digest, {}))
+    return path
+
+
+def test_a_state_beyond_the_end_is_refused(tmp_path: Path):
+    state = state_at(50, tmp_path)
+    request = Request(config=RIG, out=tmp_path / 'bag', restore=state, duration_s=0.05)
+    with pytest.raises(ConfigError, match=(
+            f'^--restore {state}: of t = 0.05 s, must be before the end, 0.05 s$')):
+        prepare(request)
+    assert not (tmp_path / 'bag').exists()
+
+
+def test_a_state_before_the_end_is_taken(tmp_path: Path):
+    request = Request(
+        config=RIG, out=tmp_path / 'bag', restore=state_at(49, tmp_path), duration_s=0.05)
+    state = prepare(request).state
+    assert state is not None and state.tick == 49
+
+
+def test_a_saved_state_is_not_overwritten_unasked(tmp_path: Path):
+    state = state_at(3, tmp_path)
+    before = state.read_bytes()
+    with pytest.raises(ConfigError, match=f'^--save {state}: exists, must not; --overwrite'):
+        prepare(Request(config=RIG, out=tmp_path / 'bag', save=state))
+    prepare(Request(config=RIG, out=tmp_path / 'bag', save=state, overwrite=True))
+    assert state.read_bytes() == before
+
+
+def test_a_directory_is_no_place_for_a_state(tmp_path: Path):
+    with pytest.raises(ConfigError, match='^--save'):
+        prepare(Request(config=RIG, out=tmp_path / 'bag', save=tmp_path, overwrite=True))
+
+
+@pytest.mark.parametrize('overwrite', [False, True])
+def test_a_directory_without_a_bag_is_never_replaced(tmp_path: Path, overwrite: bool):
+    """And nobody is told that --overwrite would do it."""
+    (tmp_path / 'mine.txt').touch()
+    with pytest.raises(BagError) as refused:
+        prepare(Request(config=RIG, out=tmp_path, overwrite=overwrite))
+    assert str(refused.value) == (
+        f'{tmp_path} exists and holds no bag (metadata.yaml), so it is not overwritten')

@@ -1,0 +1,368 @@
+"""The leg as a load: statics, momentum, energy, ports, determinism, errors."""
+
+import math
+import os
+from pathlib import Path
+import subprocess
+import sys
+
+from isa_ros.core.signals import LOAD_PORT, LOAD_REPLY
+from isa_ros.errors import ConfigError, SimulationDiverged
+from isa_ros.surroundings.leg import motion as kernels
+from isa_ros.surroundings.leg.dynamics import leg_terms
+from isa_ros.surroundings.leg.leg import Leg, Pose
+from isa_ros.surroundings.leg.sheet import body_record, STANDARD_GRAVITY
+from isa_ros.surroundings.linkage import actuator_coordinate
+import numpy as np
+import pytest
+from tests.legs import leg_sheet
+
+MS = 1_000_000
+SHEET = leg_sheet()
+POSE = Pose(haa=math.radians(13.0), hfe=math.radians(48.0), kfe=math.radians(-95.0),
+            foot_height=0.1)
+BODY = body_record(SHEET.body)[0]
+
+
+def hanging(step_ns=MS, pose=POSE):
+    """Return the shipped leg."""
+    return Leg(SHEET, pose, step_ns)
+
+
+def constant(forces):
+    """Return replies of actuators that push with constant forces."""
+    replies = np.zeros(3, LOAD_REPLY)
+    replies['mean_forces'] = np.array(forces)[:, None]
+    replies['force'] = forces
+    return replies
+
+
+def flat_state(leg):
+    """Return the leg's state as floats."""
+    return np.frombuffer(leg.state(), np.float64, len(kernels.STATE_NAMES), 8)
+
+
+def mass_matrix(y):
+    """Return M at a state, shape (4, 4)."""
+    terms = leg_terms(*y[:8], BODY)
+    names = ('z', 'haa', 'hfe', 'kfe')
+    m = np.zeros((4, 4))
+    for i, row in enumerate(names):
+        for j, column in enumerate(names[i:], i):
+            m[i, j] = m[j, i] = getattr(terms, f'm_{row}_{column}')
+    return m
+
+
+def energy(y):
+    """Return kinetic plus potential energy, J."""
+    v = np.array(y[4:8])
+    return 0.5 * v @ mass_matrix(y) @ v + potential(y)
+
+
+def potential(y):
+    """Return m g times the height of the whole leg's centre of mass, J, from the frames."""
+    b = BODY
+    s1, c1 = math.sin(y[1]), math.cos(y[1])
+    s2, c2 = math.sin(y[2]), math.cos(y[2])
+    s3, c3 = math.sin(y[2] + y[3]), math.cos(y[2] + y[3])
+
+    def in_leg_plane(down, left):
+        return -c1 * down - s1 * left
+
+    hip = -b['c_hip_x'] * c1 + b['c_hip_y'] * s1
+    thigh = in_leg_plane(b['c_thigh_x'] * c2 - b['c_thigh_y'] * s2,
+                         b['l_hip'] + b['c_thigh_z'])
+    calf = in_leg_plane(
+        b['l_thigh'] * c2 + b['c_calf_x'] * c3 - b['c_calf_y'] * s3,
+        b['l_hip'] + b['c_calf_z'])
+    mass = b['m_slider'] + b['m_hip'] + b['m_thigh'] + b['m_calf']
+    return STANDARD_GRAVITY * (
+        mass * y[0] + b['m_hip'] * hip + b['m_thigh'] * thigh + b['m_calf'] * calf)
+
+
+def test_held_leg_hangs_still_under_its_static_forces():
+    """L6 at rest: 0.1 s under `actuator_forces` moves nothing but roundings (1e-13 rad)."""
+    leg = hanging()
+    replies = constant(leg.actuator_forces)
+    before = flat_state(leg)
+    for _ in range(100):
+        leg.advance(replies)
+    assert np.abs(flat_state(leg) - before)[:8].max() < 1e-11
+    assert leg.sample['foot_position'][2] == pytest.approx(0.1, abs=1e-12)
+
+
+def test_released_leg_falls_freely_whatever_the_actuators_do():
+    """
+    Vertical momentum falls by m g t: actuator forces are internal.
+
+    RK4 at 0.1 ms: the oracle of its own order (below) leaves 1e-9 of the speeds.
+    """
+    leg = hanging()
+    leg.release()
+    total = BODY['m_slider'] + BODY['m_hip'] + BODY['m_thigh'] + BODY['m_calf']
+    for _ in range(60):
+        leg.advance(constant((3.0, 150.0, 80.0)))
+    y = flat_state(leg)
+    momentum = (mass_matrix(y) @ y[4:8])[0]
+    assert momentum == pytest.approx(-total * STANDARD_GRAVITY * 0.06, rel=1e-9)
+
+
+def test_work_of_the_actuators_is_the_change_of_energy():
+    """L2, L6-L8: F dx of three constant forces equals the change of T + V, off the ground."""
+    leg = hanging()
+    leg.release()
+    forces = np.array((3.0, 150.0, 80.0))
+    x, e = np.array(leg.actuator_positions), energy(flat_state(leg))
+    for _ in range(60):
+        leg.advance(constant(forces))
+    work = forces @ (np.array(leg.actuator_positions) - x)
+    change = energy(flat_state(leg)) - e
+    # Kinetic and potential parts are of the order of 10 J, RK4 leaves 1e-9 of them.
+    assert change == pytest.approx(work, abs=1e-8)
+    assert abs(work) > 0.1
+
+
+def test_runge_kutta_is_of_fourth_order():
+    """Halving the step divides the error by 16 (asymptotically), in the air."""
+    leg = hanging()
+    y0 = (*flat_state(leg)[:4], 0.0, 1.0, 3.0, -6.0, 0.0, 0.0)
+
+    def end(n):
+        y = y0
+        for _ in range(n):
+            y = kernels.leg_step(y, 0.2 / n, (5.0, 150.0, 50.0), False, leg._body[0],
+                                 leg._linkages, leg._ground[0])
+        return np.array(y)
+
+    exact = end(3200)
+    errors = [np.abs(end(n) - exact).max() for n in (25, 50, 100)]
+    for coarse, fine in zip(errors, errors[1:]):
+        assert 13.0 < coarse / fine < 20.0
+
+
+def test_standing_leg_rests_with_its_weight_on_the_ground():
+    """N = m g at rest, friction within its cone, after 3 s of springs and dampers."""
+    leg = hanging(pose=Pose(haa=POSE.haa, hfe=POSE.hfe, kfe=POSE.kfe, foot_height=0.01))
+    leg.release()
+    start = np.array(leg.actuator_positions)
+    ports = np.zeros(3, LOAD_PORT)
+    k, d = np.array((2e3, 3e5, 3e5)), np.array((60.0, 6e3, 6e3))
+    for _ in range(3000):
+        leg.ports(ports)
+        leg.advance(constant(k * (start - ports['x0']) - d * ports['v0']))
+    f_x, f_y, normal = leg.sample['foot_force']
+    total = BODY['m_slider'] + BODY['m_hip'] + BODY['m_thigh'] + BODY['m_calf']
+    assert np.abs(leg.sample['velocity']).max() < 1e-3
+    # m z'' is left of the balance: accelerations are below the speeds times 100 1/s.
+    assert normal == pytest.approx(total * STANDARD_GRAVITY, rel=0.01)
+    assert math.hypot(f_x, f_y) < 0.7 * normal
+
+
+def moving_leg(step_ns=MS, release=True, ticks=160):
+    """Return a leg that has hit the ground and moves on it."""
+    leg = hanging(step_ns)
+    if release:
+        leg.release()
+    start = np.array(leg.actuator_positions)
+    hold = np.array(leg.actuator_forces)
+    ports = np.zeros(3, LOAD_PORT)
+    for _ in range(ticks):
+        leg.ports(ports)
+        leg.advance(constant(
+            hold + (300.0, 1e5, 1e5) * (start - ports['x0']) - (20.0, 4e3, 4e3) * ports['v0']))
+    return leg
+
+
+@pytest.mark.parametrize('release', [True, False])
+def test_effective_mass_is_that_of_the_mass_matrix(release):
+    """L13: 1/m_eff = r^2 (M^-1)_jj; a held slider takes its row and column out of M."""
+    leg = moving_leg(release=release)
+    ports = np.zeros(3, LOAD_PORT)
+    leg.ports(ports)
+    y = flat_state(leg)
+    m = mass_matrix(y)
+    if release:
+        inverse = np.linalg.inv(m)[1:, 1:]
+    else:
+        inverse = np.linalg.inv(m[1:, 1:])
+    for j in range(3):
+        _, r, _ = actuator_coordinate(y[j + 1], leg._linkages[j])
+        # Condition of M below 1e4: 1e-16 * 1e4.
+        assert ports['inverse_mass'][j] == pytest.approx(r * r * inverse[j, j], rel=1e-12)
+
+
+def test_port_is_the_leg_s_motion_to_third_order():
+    """
+    L1, L12: x(t) of each actuator, forces as assumed, is x0 + v0 t + a t^2/2 + jerk t^3/6.
+
+    a = a_bias + F/m_eff = a0, third derivative = jerk + F'/m_eff. The leg is integrated in
+    steps of 1 us over t = 0.2 ms; the remainder is t^4/24 of the fourth derivative
+    (below 1e9 m/s4 in contact: 1e-7) plus the jerk's look-ahead error of as much.
+    """
+    leg = moving_leg()
+    ports = np.zeros(3, LOAD_PORT)
+    leg.ports(ports)
+    flat = flat_state(leg)
+    y, f, slope, held = kernels.unpacked(flat)
+    assert leg.sample['foot_force'][2] > 100.0
+    t, n = 2e-4, 200
+    for i in range(n):
+        middle = tuple(f[j] + slope[j] * (i + 0.5) * t / n for j in range(3))
+        y = kernels.leg_step(y, t / n, middle, held, leg._body[0], leg._linkages,
+                             leg._ground[0])
+    for j in range(3):
+        x = actuator_coordinate(y[j + 1], leg._linkages[j])[0]
+        p = ports[j]
+        third = p['jerk'] + slope[j] * p['inverse_mass']
+        predicted = p['x0'] + t * (p['v0'] + t * (0.5 * p['a0'] + t * third / 6.0))
+        assert p['a0'] == pytest.approx(p['a_bias'] + f[j] * p['inverse_mass'], rel=1e-12)
+        without_third = p['x0'] + t * (p['v0'] + t * 0.5 * p['a0'])
+        assert abs(predicted - x) < 0.2 * abs(without_third - x) + 1e-15
+
+
+def test_ground_stiffness_is_seen_through_the_port():
+    """
+    L14, L15: under a constant extra force the leg moves as k and d of the port say.
+
+    The response of x_j to one more newton, minus that without it, is integrated from the leg
+    and from its linear copy over 0.5 ms; what is left is the curvature of the contact law.
+    """
+    leg = moving_leg()
+    ports = np.zeros(3, LOAD_PORT)
+    leg.ports(ports)
+    y0, f, _, held = kernels.unpacked(flat_state(leg))
+    n, t = 500, 5e-4
+    for j in (1, 2):
+        ends = []
+        for extra in (0.0, 1.0):
+            y = y0
+            force = tuple(f[i] + (extra if i == j else 0.0) for i in range(3))
+            for _ in range(n):
+                y = kernels.leg_step(y, t / n, force, held, leg._body[0], leg._linkages,
+                                     leg._ground[0])
+            ends.append(actuator_coordinate(y[j + 1], leg._linkages[j])[0])
+        p = ports[j]
+        x = v = 0.0
+        for _ in range(n):
+            a = p['inverse_mass'] - p['stiffness'] * x - p['damping'] * v
+            x += t / n * (v + 0.5 * t / n * a)
+            v += t / n * a
+        free = 0.5 * p['inverse_mass'] * t * t
+        moved = ends[1] - ends[0]
+        assert p['stiffness'] > 0.0
+        assert abs(moved - x) < 0.2 * abs(moved - free)
+
+
+def test_step_size_does_not_change_the_leg_under_constant_forces():
+    """All macro steps are made of the same 0.1 ms: the same bytes at 0.5, 1 and 2 ms."""
+    ends = []
+    for step_ns in (MS // 2, MS, 2 * MS):
+        leg = hanging(step_ns)
+        leg.release()
+        for _ in range(150 * MS // step_ns):
+            leg.advance(constant((3.0, 300.0, 200.0)))
+        ends.append(flat_state(leg)[:kernels.N_STATES].tobytes())
+    assert ends[0] == ends[1] == ends[2]
+
+
+def test_restored_leg_continues_byte_for_byte():
+    """`state` holds everything that the next tick depends on."""
+    leg, twin = moving_leg(), hanging()
+    twin.restore(leg.state())
+    ports, twin_ports = np.zeros(3, LOAD_PORT), np.zeros(3, LOAD_PORT)
+    for _ in range(20):
+        leg.ports(ports)
+        twin.ports(twin_ports)
+        assert ports.tobytes() == twin_ports.tobytes()
+        leg.advance(constant((1.0, 200.0, 100.0)))
+        twin.advance(constant((1.0, 200.0, 100.0)))
+    assert leg.state() == twin.state()
+    assert leg.t_ns == twin.t_ns == 180 * MS
+
+
+def test_rows_say_which_actuator_drives_which_joint():
+    """A leg may use any rows of the run's arrays, and leaves the others and pressures alone."""
+    ports, wide = np.zeros(3, LOAD_PORT), np.zeros(5, LOAD_PORT)
+    wide['supply_pressure'] = 20.7e6
+    leg = hanging()
+    leg.ports(ports)
+    scattered = Leg(SHEET, POSE, MS, rows=(4, 0, 2))
+    scattered.ports(wide)
+    assert (wide['x0'][[4, 0, 2]] == ports['x0']).all()
+    assert (wide['x0'][[1, 3]] == 0.0).all()
+    assert (wide['supply_pressure'] == 20.7e6).all()
+    replies = np.zeros(5, LOAD_REPLY)
+    replies[[4, 0, 2]] = constant((1.0, 200.0, 100.0))
+    scattered.advance(replies)
+    leg.advance(constant((1.0, 200.0, 100.0)))
+    assert scattered.state() == leg.state()
+
+
+def test_hold_takes_the_speed_of_the_slider():
+    """A locked slider stands, and stays."""
+    leg = moving_leg(ticks=60)
+    leg.hold()
+    height = flat_state(leg)[0]
+    leg.advance(constant((0.0, 0.0, 0.0)))
+    assert leg.is_held
+    assert flat_state(leg)[0] == height
+    assert leg.sample['height_velocity'] == 0.0
+
+
+def test_divergence_names_state_and_time():
+    """A force that is not a number ends the run."""
+    leg = hanging()
+    leg.advance(constant((0.0, 0.0, 0.0)))
+    with pytest.raises(SimulationDiverged, match=r'leg\.z = nan at t = 0\.002000 s'):
+        leg.advance(constant((math.nan, 0.0, 0.0)))
+
+
+@pytest.mark.parametrize(('pose', 'message'), [
+    (Pose(haa=0.0, hfe=0.0, kfe=-1.5, foot_height=0.1), r'pose\.hfe = 0 deg, must be within 15'),
+    (Pose(haa=1.0, hfe=0.8, kfe=-1.5, foot_height=0.1), r'pose\.haa = 57\.2958 deg, must be'),
+    (Pose(haa=0.0, hfe=0.8, kfe=-1.5, foot_height=-0.01), r'foot_height = -0\.01 m, must be >= 0'),
+    (Pose(haa=math.nan, hfe=0.8, kfe=-1.5, foot_height=0.1), r'pose\.haa = nan deg')])
+def test_a_pose_the_leg_cannot_start_in_is_refused(pose, message):
+    """What, value, unit and bound."""
+    with pytest.raises(ConfigError, match=message):
+        hanging(pose=pose)
+
+
+def test_a_macro_step_that_does_not_divide_is_refused():
+    """A fifth of the macro step is a whole number of plant steps."""
+    with pytest.raises(ConfigError, match='a fifth of step_ms'):
+        hanging(step_ns=1_010_000)
+
+
+PURE = """
+import sys
+import numpy as np
+import tests.surroundings.leg.test_leg as t
+from isa_ros.surroundings.leg import port_kernel as kernels
+from isa_ros.core.signals import LOAD_PORT
+leg = t.hanging(pose=t.Pose(haa=0.2, hfe=0.8, kfe=-1.6, foot_height=0.002))
+leg.release()
+hold = np.array(leg.actuator_forces)
+ports = np.zeros(3, LOAD_PORT).view(np.recarray)
+normal = 0.0
+for k in range(40):
+    kernels.leg_ports(leg._flat, 5e-4, leg._rows, leg._body, leg._linkages, leg._ground, ports)
+    forces = t.constant(hold + (0.1 * k, 3.0 * k, 2.0 * k)).view(np.float64).reshape(3, -1)
+    kernels.leg_tick(leg._flat, t.MS, leg._rows, leg._body, leg._linkages, leg._ground, forces,
+                     leg._flat_sample)
+    normal = max(normal, leg.sample['foot_force'][2])
+assert normal > 10.0, normal
+sys.stdout.write((leg.state() + ports.tobytes()).hex())
+"""
+
+
+def test_compiled_leg_equals_its_python_source():
+    """A drop through the impact with numba switched off gives the same bytes."""
+    outputs = []
+    for disable in ('0', '1'):
+        environment = dict(os.environ, NUMBA_DISABLE_JIT=disable)
+        outputs.append(subprocess.run(
+            [sys.executable, '-c', PURE], env=environment, check=True, capture_output=True,
+            cwd=Path(__file__).resolve().parents[3]).stdout)
+    assert outputs[0] == outputs[1]
+    assert len(outputs[0]) > 100
