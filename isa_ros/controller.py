@@ -8,20 +8,26 @@ from collections.abc import Mapping, Sequence
 import math
 from typing import NamedTuple
 
-from isa_ros.core.signals import HAS_ENABLE, HAS_SETPOINT
+from isa_ros.core.signals import COMMAND, HAS_ENABLE, HAS_SETPOINT
 from isa_ros.errors import RunError, SetpointError
 import numpy as np
 from numpy.typing import NDArray
 
 
 class State(NamedTuple):
-    """What is known at one instant."""
+    """What is known at one instant; the records are overwritten by the next tick."""
 
     t_ns: int
     actuators: Mapping[str, np.record]
     """`SAMPLE` by actuator: ``state.actuators['knee'].position``; SI, pressures gauge."""
-    shared: np.record
-    """`SHARED_SAMPLE`: supply pressure, joints and foot of the leg; NaN without a leg."""
+    supplies: Mapping[str, np.record]
+    """`SUPPLY_SAMPLE` by supply: ``state.supplies['supply'].pressure``, Pa gauge."""
+    body: np.record | None
+    """
+    The sample of the body that the actuators move, None without one.
+
+    Of a leg: ``position``, ``velocity``, ``torque`` of its joints, ``foot_force``, ... (3,).
+    """
 
 
 class Setpoint(NamedTuple):
@@ -91,3 +97,27 @@ def merge_requests(requests: NDArray[np.void], into: NDArray[np.void]) -> None:
     """Overwrite rows of ``into`` with the `COMMAND` rows of one controller that say something."""
     said = np.flatnonzero(requests['kinds'])
     into[said] = requests[said]
+
+
+def by_name(names: Sequence[str], rows: NDArray[np.void]) -> dict[str, np.record]:
+    """Return rows with their fields as attributes, on the same memory, by name."""
+    return dict(zip(names, rows.view(np.recarray)))
+
+
+class ControllerSeat:
+    """
+    One controller of a run: shows it the state, and keeps what it asks for.
+
+    ``requests`` are `COMMAND` rows of the actuators ``names``, (n_actuators,).
+    """
+
+    def __init__(self, controller: Controller, names: Sequence[str]) -> None:
+        self.controller = controller
+        self.names = list(names)
+        self.requests: NDArray[np.void] = np.zeros(len(names), COMMAND)
+        controller.start(self.names)
+
+    def step(self, state: State) -> None:
+        """Fill the requests with what takes effect one tick after ``state``."""
+        self.requests['kinds'] = 0
+        fill_requests(self.controller.step(state), self.names, self.requests)

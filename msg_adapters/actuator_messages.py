@@ -1,12 +1,9 @@
-"""What actuators publish at a tick, as prepared CDR bytes."""
+"""The messages of an actuator at a tick, prepared."""
 
-from collections.abc import Sequence
+from collections.abc import Mapping
 
-from isa_ros.core.signals import SAMPLE
-from msg_adapters import applied_parameters, fluid_pressure, joint_state, wrench
-from msg_adapters.cdr import Message
-from msg_adapters.template import Fields, Template
-import numpy as np
+from msg_adapters import applied_parameters, fluid_pressure, joint_state, setpoint, wrench
+from msg_adapters.template import Prepared
 
 STATE_TOPICS = (
     ('joint_states', joint_state.TYPE),
@@ -25,46 +22,25 @@ APPLIED_TOPICS = (APPLIED_PARAMETERS, APPLIED_SETPOINT)
 
 TOPICS = (*APPLIED_TOPICS, *STATE_TOPICS)
 
-_FLOAT = np.dtype('<f8')
-_SAMPLED = tuple(SAMPLE.names or ())
-_PRESSURES = slice(_SAMPLED.index('pressure_a'), _SAMPLED.index('pressure_b') + 1)
-_WIDTH = len(_SAMPLED) + 2  # values of one actuator: its sample, then absolute pressures
 
-
-class StateMessages:
+def prepared(
+        name: str, is_rotary: bool, sample: Mapping[str, int], absolute: Mapping[str, int],
+        applied: Mapping[str, int]) -> dict[str, Prepared]:
     """
-    Prepared state messages of the actuators of a process, (name, whether rotary) each.
+    Return the prepared messages of an actuator by topic suffix, but `APPLIED_PARAMETERS`.
 
-    Frames: ``NAME_load_cell``, ``NAME_pressure_a``, ``NAME_pressure_b``; ``NAME`` for the
-    rest.
+    Columns of values by field: ``sample`` of its `SAMPLE`, ``absolute`` of its pressures in Pa
+    absolute, ``applied`` of its applied `COMMAND`. Frames: ``NAME_load_cell``,
+    ``NAME_pressure_a``, ``NAME_pressure_b``; ``NAME`` for the rest.
     """
-
-    def __init__(self, actuators: Sequence[tuple[str, bool]]) -> None:
-        n = len(actuators)
-        self._template = Template(
-            [message for row, (name, is_rotary) in enumerate(actuators)
-             for message in _prepared(name, is_rotary, row * _WIDTH)], n * _WIDTH)
-        table = self._template.values.reshape(n, _WIDTH)
-        self._sampled, self._absolute = table[:, :len(_SAMPLED)], table[:, len(_SAMPLED):]
-        self._gauge = self._sampled[:, _PRESSURES]
-
-    def pack(self, samples: np.ndarray, t_ns: int) -> list[bytes]:
-        """Return the CDR bytes of (n,) SAMPLE rows at ``t_ns``: `STATE_TOPICS` of each."""
-        self._sampled[:] = samples.view(_FLOAT).reshape(self._sampled.shape)
-        np.add(self._gauge, fluid_pressure.ATMOSPHERE, self._absolute)
-        return self._template.pack(t_ns)
-
-
-def _prepared(name: str, is_rotary: bool, first: int) -> list[tuple[Message, Fields]]:
-    """Return the messages of `STATE_TOPICS`; the actuator's values begin at ``first``."""
-    columns = {field: first + k for k, field in enumerate(_SAMPLED)}
-    absolute = first + len(_SAMPLED)
-    prepared = {
-        'joint_states': joint_state.actuator_joint_state(name, columns),
-        'load_cell': wrench.load_cell(name, is_rotary, columns),
-        'pressure_a': fluid_pressure.fluid_pressure(f'{name}_pressure_a', absolute),
-        'pressure_b': fluid_pressure.fluid_pressure(f'{name}_pressure_b', absolute + 1),
-        'references': joint_state.references(name, columns),
-        'valve': joint_state.valve(name, columns),
+    return {
+        'applied_setpoint': setpoint.applied_setpoint(name, applied),
+        'joint_states': joint_state.actuator_joint_state(name, sample),
+        'load_cell': wrench.load_cell(name, is_rotary, sample),
+        'pressure_a': fluid_pressure.fluid_pressure(
+            f'{name}_pressure_a', absolute['pressure_a']),
+        'pressure_b': fluid_pressure.fluid_pressure(
+            f'{name}_pressure_b', absolute['pressure_b']),
+        'references': joint_state.references(name, sample),
+        'valve': joint_state.valve(name, sample),
     }
-    return [prepared[suffix] for suffix, _ in STATE_TOPICS]

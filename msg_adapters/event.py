@@ -8,6 +8,7 @@ from rcl_interfaces.msg import Log
 
 TYPE = 'rcl_interfaces/msg/Log'
 NAME = 'coordinator'
+TOPIC = ('/coordinator/events', TYPE)
 
 
 def pack(t_ns: int, text: str) -> bytes:

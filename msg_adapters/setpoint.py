@@ -1,33 +1,30 @@
 """Setpoints in, applied setpoints out: JointState <-> COMMAND row."""
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 import math
 
 from isa_ros.core.signals import COMMAND, HAS_ENABLE, HAS_SETPOINT
 from isa_ros.errors import SetpointError
 from msg_adapters.cdr_reader import decode
 from msg_adapters.joint_state import ARRAYS, entries, joint_state
-from msg_adapters.template import Template
+from msg_adapters.template import Prepared, START_STAMP
 import numpy as np
 from sensor_msgs.msg import JointState
 
 GAINS = ('stiffness', 'damping')
 
 
-class AppliedSetpoint:
-    """Prepared ``~/applied_setpoint`` of one actuator: everything that took effect at a tick."""
+def applied_setpoint(name: str, columns: Mapping[str, int]) -> Prepared:
+    """
+    Return ``~/applied_setpoint`` of an actuator: everything in force from the tick's start on.
 
-    def __init__(self, name: str) -> None:
-        names = [name, f'{name}/stiffness', f'{name}/damping', f'{name}/enabled']
-        fields = entries(4, position=[0, 3, 4, 5], velocity=[1], effort=[2])
-        self._template = Template([(joint_state(name, names), fields)], n_values=6)
-
-    def pack(self, command: np.void, t_ns: int) -> bytes:
-        """Return the CDR bytes of a COMMAND row with gains resolved, in force from ``t_ns``."""
-        _, is_enabled, position, velocity, effort, stiffness, damping = command.item()
-        self._template.values[:] = (
-            position, velocity, effort, stiffness, damping, is_enabled)
-        return self._template.pack(t_ns)[0]
+    ``columns`` are those of a COMMAND row with gains resolved, by field.
+    """
+    names = [name, *(f'{name}/{gain}' for gain in GAINS), f'{name}/enabled']
+    fields = entries(
+        len(names), velocity=[columns['velocity']], effort=[columns['effort']],
+        position=[columns[field] for field in ('position', *GAINS, 'is_enabled')])
+    return joint_state(name, names), {**fields, **START_STAMP}
 
 
 def msg_to_command(message: JointState, name: str) -> np.void:
@@ -50,7 +47,7 @@ def msg_to_command(message: JointState, name: str) -> np.void:
 
 def applied_to_command(data: bytes, name: str) -> np.void:
     """
-    Return the COMMAND row of a recorded applied setpoint; inverse of `AppliedSetpoint.pack`.
+    Return the COMMAND row of a recorded applied setpoint; inverse of `applied_setpoint`.
 
     Raises
     ------

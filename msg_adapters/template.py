@@ -8,23 +8,35 @@ import numpy as np
 
 NS_PER_SECOND = 1_000_000_000
 SEC, NANOSEC = -2, -1
-"""In place of an index: the two halves of the time."""
+"""In place of a column: the two halves of the time of the instant."""
+START_SEC, START_NANOSEC = -4, -3
+"""The same of the time at which the tick began."""
+
+INSTANT, TICK_START, FIRST_VALUE = 0, 1, 2
+"""Words of a `Template`: the two times, then the values."""
 
 Fields = Mapping[str, int]
-"""Field path -> index into `Template.values`, or `SEC` and `NANOSEC`."""
+"""Field path -> column of the values, or one half of a time."""
 
 STAMP: Fields = {'header.stamp.sec': SEC, 'header.stamp.nanosec': NANOSEC}
 """Paths of a header's stamp."""
+START_STAMP: Fields = {'header.stamp.sec': START_SEC, 'header.stamp.nanosec': START_NANOSEC}
+
+Prepared = tuple[Message, Fields]
+"""A message, and which of its numbers change."""
 
 _WORD = 8  # bytes of a double, and of a time
+_SECONDS = {SEC: INSTANT, START_SEC: TICK_START}
+_NANOSECONDS = (NANOSEC, START_NANOSEC)
 
 
 class Template:
     """
-    Several messages that share one set of values, written by one assignment of numpy.
+    Several messages in one block of memory, encoded once; then only their numbers change.
 
-    Every message is encoded once, all into one block of memory, in which doubles and times
-    are whole words; nothing else can change: arrays keep their length.
+    Doubles and times are whole words of the block: word ``places[k]`` of ``block`` holds word
+    ``sources[k]`` of a row of words: two times, then the values. Nothing else can change:
+    arrays keep their length.
 
     Raises
     ------
@@ -34,38 +46,44 @@ class Template:
 
     """
 
-    def __init__(self, messages: Sequence[tuple[Message, Fields]], n_values: int) -> None:
+    def __init__(self, messages: Sequence[Prepared]) -> None:
         block = bytearray()
         places, sources = [], []
-        self._slices = []
+        starts, sizes = [], []
         for message, fields in messages:
             data, slots = encode_with_slots(message)
             block += bytes(-(len(block) + len(ENCAPSULATION)) % _WORD)
             start = len(block)
-            for path, source in fields.items():
-                offset = _offset(message, slots, path, source)
-                if source != NANOSEC:
+            for path, column in fields.items():
+                offset = _offset(message, slots, path, column)
+                if column not in _NANOSECONDS:
                     places.append((start + offset) // _WORD)
-                    sources.append(0 if source == SEC else 1 + source)
-            self._slices.append(slice(start, start + len(data)))
+                    sources.append(_SECONDS.get(column, FIRST_VALUE + column))
+            starts.append(start)
+            sizes.append(len(data))
             block += data
         block += bytes(-len(block) % _WORD)
-        self._block = np.frombuffer(block, '<u8')
-        self._places, self._sources = np.array(places, np.intp), np.array(sources, np.intp)
-        self._words = np.zeros(1 + n_values, '<u8')
-        self._gathered = np.zeros(len(places), '<u8')
-        self.values = self._words[1:].view('<f8')
-        """What the next `pack` writes, (n_values,); to be filled in place."""
+        self.block = np.frombuffer(block, '<u8')
+        """The messages, one after the other, as words; to be filled in place."""
+        self.places, self.sources = np.array(places, np.int64), np.array(sources, np.int64)
+        self.starts, self.sizes = np.array(starts, np.int64), np.array(sizes, np.int64)
+        """Where each message begins in the bytes of the block, and how long it is."""
+        self._bytes = memoryview(block)
 
-    def pack(self, t_ns: int) -> list[bytes]:
-        """Return the CDR bytes of every message with `values`, at ``t_ns``."""
-        sec, nanosec = stamp(t_ns)
-        self._words[0] = nanosec << 32 | sec
-        # With a mode the result goes straight into its place; no index is out of range.
-        self._words.take(self._sources, out=self._gathered, mode='clip')
-        self._block[self._places] = self._gathered
-        data = self._block.tobytes()
-        return [data[part] for part in self._slices]
+    def fill(self, words: np.ndarray) -> None:
+        """Write a row of words, ``<u8``, into every message."""
+        self.block[self.places] = words[self.sources]
+
+    def message(self, k: int) -> bytes:
+        """Return the CDR bytes of the ``k``-th message as they are now."""
+        start = self.starts[k]
+        return bytes(self._bytes[start:start + self.sizes[k]])
+
+
+def time_word(t_ns: int) -> int:
+    """Return a time as the word of a stamp: seconds in the lower half, nanoseconds above."""
+    sec, nanosec = stamp(t_ns)
+    return nanosec << 32 | sec
 
 
 def stamp(t_ns: int) -> tuple[int, int]:
@@ -79,8 +97,9 @@ def _offset(message: Message, slots: Mapping[str, Slot], path: str, source: int)
         raise CdrError(
             f'{type(message).__name__} has no number {path!r}; it has {", ".join(slots)}')
     slot = slots[path]
-    expected = {SEC: 'i', NANOSEC: 'I'}.get(source, 'd')
-    half = struct.calcsize('<I') if source == NANOSEC else 0
+    is_nanosec = source in _NANOSECONDS
+    expected = 'i' if source in _SECONDS else 'I' if is_nanosec else 'd'
+    half = struct.calcsize('<I') if is_nanosec else 0
     if slot.code != expected or (slot.offset - len(ENCAPSULATION)) % _WORD != half:
         raise CdrError(
             f'{type(message).__name__}.{path} cannot be prepared: neither a double nor a time '

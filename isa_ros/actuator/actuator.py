@@ -7,14 +7,14 @@ The same object serves a node of its own, many nodes in one process, and replay.
 from collections.abc import Mapping
 from dataclasses import dataclass
 import hashlib
-from typing import Protocol
+from typing import NoReturn, Protocol
 
 from isa_ros.actuator import kernel as kernels
-from isa_ros.actuator.inbox import gain_after, merge, take
-from isa_ros.actuator.rows import ActuatorRows
+from isa_ros.actuator.inbox import merge, note_applied
+from isa_ros.actuator.rows import Memory, memory_of
 from isa_ros.actuator.sheet import actuator_record, ActuatorSheet
 from isa_ros.actuator.tunable import GAINS
-from isa_ros.actuator.tuning import gains_command, Tuning
+from isa_ros.actuator.tuning import gain_after, gains_command, Tuning
 from isa_ros.core.signals import COMMAND, HAS_ENABLE, HAS_SETPOINT, LOAD_PORT
 from isa_ros.core.timebase import FORCE_WINDOWS, PLANT_STEP_NS, steps_in
 from isa_ros.errors import ConfigError, SimulationDiverged
@@ -22,6 +22,10 @@ from isa_ros.loads.sheets import local_port, LocalLoad, own_record, static_force
 from isa_ros.plant.plant import read_sensors, rest_pressures
 from isa_ros.reu.cascade import initial_gains
 import numpy as np
+
+
+PAPER_SUPPLY = 20.7e6
+"""Pa gauge: the supply pressure of the paper's rigs, where no supply is configured."""
 
 
 @dataclass(frozen=True)
@@ -62,40 +66,37 @@ class SmartActuator:
     Valve, oil, piston or rotor, sensors and REU of one actuator.
 
     Before the first setpoint it holds the position it measured at t = 0, enabled. Equal
-    `digest`, equal parameters. ``row`` of ``rows`` is its memory; None: its own.
+    `digest`, equal parameters. ``memory`` is its row among others; None: a row of its own.
     """
 
     def __init__(
-            self, config: ActuatorConfig, timing: Timing, rows: ActuatorRows | None = None,
-            row: int = 0) -> None:
+            self, config: ActuatorConfig, timing: Timing, memory: Memory | None = None) -> None:
         self.name = config.name
         self.is_rotary = config.sheet.is_rotary
+        self.memory = memory_of(1) if memory is None else memory
+        """Its row of the memory of a tick."""
         self._config = config
         self._timing = timing
         self._steps = timing.steps
-        self._arrays = (rows or ActuatorRows(1)).at(row)
-        is_shared, self._port_rows, constants, bodies, _, self._y, _, reu, read_out, reply, \
-            sample = self._arrays
-        is_shared[0] = config.load is None
+        self.memory.is_shared[0] = config.load is None
         offset_steps = timing.controller_offset_ns // PLANT_STEP_NS
+        constants = self.memory.constants
         constants[:] = actuator_record(config.sheet, offset_steps)
         constants['load'] = own_record(config.load)
-        self._pending_rows, self._applied_rows = np.zeros(1, COMMAND), np.zeros(1, COMMAND)
-        self._memory = (
-            bodies[:1], reu, self._port_rows, self._pending_rows, self._applied_rows,
-            reply, sample)
+        self._saved = (
+            self.memory.bodies[:1], self.memory.reu, self.memory.ports, self.memory.pending,
+            self.memory.applied, self.memory.replies, self.memory.samples)
         # Rows with their fields as attributes, on the same memory.
-        self._constants, self._body = _record(constants), _record(bodies)
-        self._reu, self._read_out = _record(reu), _record(read_out)
-        self._reply, self._sample = _record(reply), _record(sample)
-        self._port = _record(self._port_rows)
-        self._pending, self._applied = _record(self._pending_rows), _record(self._applied_rows)
-        self._pending_kinds = self._pending_rows['kinds']
-        self._applied_kinds = self._applied_rows['kinds']
-        self._incoming = np.zeros(1, LOAD_PORT)
+        self._constants, self._body = _record(constants), _record(self.memory.bodies)
+        self._reu, self._read_out = _record(self.memory.reu), _record(self.memory.read_outs)
+        self._reply, self._sample = _record(self.memory.replies), _record(self.memory.samples)
+        self._port, self._pending = _record(self.memory.ports), _record(self.memory.pending)
+        self._applied = _record(self.memory.applied)
+        self._incoming, self._commands = np.zeros(1, LOAD_PORT), np.zeros(1, COMMAND)
         self.digest = self._hash(constants)
-        self._tuning = Tuning(config.name, config.sheet, offset_steps, constants)
-        self.start(config.initial_position, static_force(config.load), 20.7e6, 0.0)
+        self.tuning = Tuning(config.name, config.sheet, offset_steps, constants)
+        """What was tuned, and what of it is in force."""
+        self.start(config.initial_position, static_force(config.load), PAPER_SUPPLY, 0.0)
 
     def _hash(self, constants: np.ndarray) -> str:
         """Return a hash of every resolved parameter: equal digests, equal actuators."""
@@ -113,11 +114,11 @@ class SmartActuator:
         before is in force again from the first tick on.
         """
         self.t_ns = 0
-        for rows in self._memory:
+        for rows in self._saved:
             rows.fill(0)
-        self.accept(gains_command(self._tuning.reset()))
+        self.accept(gains_command(self.tuning.reset()))
         if self._config.load is not None:
-            self._port_rows[:] = local_port(self._config.load, position)
+            self.memory.ports[:] = local_port(self._config.load, position)
         self._port.supply_pressure = supply_pressure
         self._port.return_pressure = return_pressure
         body, plant = self._body, self._constants.plant
@@ -126,7 +127,7 @@ class SmartActuator:
         body.plant.chambers.p_a, body.plant.chambers.p_b = rest_pressures(
             plant, supply_pressure, return_pressure, force)
         self._start_loops()
-        self._note_applied(HAS_SETPOINT | HAS_ENABLE)
+        note_applied(HAS_SETPOINT | HAS_ENABLE, self._reu.setpoint, self._applied)
         self._reply.position = position
 
     def _start_loops(self) -> None:
@@ -146,28 +147,9 @@ class SmartActuator:
         kernels.write_sample(self._read_out, body.plant, reu, self._sample)
 
     @property
-    def kernel_arguments(self) -> tuple[np.ndarray, ...]:
-        """
-        Return the arrays of `kernels.actuator_tick`, in its order from ``ports`` on.
-
-        The actuator's own memory: for whoever runs its loops and plant outside a tick.
-        """
-        return self._arrays[1:]
-
-    @property
     def sample(self) -> np.record:
         """Return the `SAMPLE` at the end of the last tick; the next tick overwrites it."""
         return self._sample
-
-    @property
-    def sample_rows(self) -> np.ndarray:
-        """Return the `sample` as an array, (1,)."""
-        return self._arrays[-1]
-
-    @property
-    def reply_rows(self) -> np.ndarray:
-        """Return the `reply` as an array, (1,)."""
-        return self._arrays[-2]
 
     @property
     def reply(self) -> np.record:
@@ -182,12 +164,12 @@ class SmartActuator:
         A `COMMAND` row with the gains in force and the enable state; at t = 0 the state the
         actuator starts with.
         """
-        return self._applied if self._applied_kinds[0] else None
+        return self._applied if self._applied.kinds else None
 
     @property
     def applied_parameters(self) -> dict[str, float]:
         """Return the tuned values that changed at the start of the last tick, SI, by name."""
-        return self._tuning.applied
+        return self.tuning.applied
 
     def accept(self, command: np.void) -> None:
         """
@@ -195,7 +177,8 @@ class SmartActuator:
 
         Of several before one tick the last wins, and a gain left NaN keeps the one before.
         """
-        merge(self._pending, command)
+        self._commands[0] = command
+        merge(_record(self._commands), self._pending)
 
     def tune(self, values: Mapping[str, float]) -> None:
         """
@@ -204,14 +187,14 @@ class SmartActuator:
         Of several before one tick the last wins; the loops keep their states. A gain of the
         impedance is a command for this gain alone. Raises as `isa_ros.actuator.tunable.tuned`.
         """
-        self._tuning.accept(values)
+        self.tuning.accept(values)
         self.accept(gains_command(values))
 
     def parameter(self, name: str) -> float:
         """Return a tunable value as it will be at the next tick, whoever set it."""
         if name not in GAINS:
-            return self._tuning.value(name)
-        return gain_after(GAINS[name], self._pending, self._reu)
+            return self.tuning.value(name)
+        return gain_after(name, self._pending, self._reu)
 
     def tick(self, port: np.void | None = None) -> None:
         """
@@ -226,49 +209,28 @@ class SmartActuator:
             A state is no longer finite.
 
         """
-        incoming = self._port_rows
+        incoming = self.memory.ports
         if port is not None:
             incoming = self._incoming
             incoming[0] = port
-        self.begin_tick()
-        self.end_tick(kernels.actuator_tick(
-            self.t_ns // PLANT_STEP_NS, self._steps, incoming, *self._arrays))
-
-    def begin_tick(self) -> None:
-        """Let take effect what was accepted; `kernels.actuator_tick` comes next."""
-        self._tuning.take()
-        kinds = int(self._pending_kinds[0])
-        if kinds:
-            take(self._pending, self._reu)
-            self._note_applied(kinds)
-        else:
-            self._applied_kinds[0] = 0
-
-    def end_tick(self, broken: int) -> None:
-        """
-        Go on to the end of the tick; ``broken`` is the state the kernel names, or -1.
-
-        Raises
-        ------
-        SimulationDiverged
-            A state is no longer finite.
-
-        """
+        self.tuning.take()
+        self._commands['kinds'] = 0
+        broken = kernels.actuator_tick(
+            self.t_ns // PLANT_STEP_NS, self._steps, incoming, self._commands, self.memory)
         self.t_ns += self._timing.step_ns
         if broken >= 0:
-            raise SimulationDiverged(
-                self.t_ns, f'{self.name}: {kernels.state_name(broken)}', self._y[0, broken])
+            self.refuse_broken(broken)
 
-    def _note_applied(self, kinds: int) -> None:
-        setpoint = self._reu.setpoint
-        self._applied_rows[0] = (
-            kinds, int(setpoint.is_enabled), setpoint.position, setpoint.velocity,
-            setpoint.effort, setpoint.stiffness, setpoint.damping)
+    def refuse_broken(self, state: int) -> NoReturn:
+        """Raise `SimulationDiverged` for a state of `kernels.BODY`, named by its place."""
+        raise SimulationDiverged(
+            self.t_ns, f'{self.name}: {kernels.state_name(state)}',
+            self.memory.states[0, state])
 
     def snapshot(self) -> bytes:
         """Return the whole state; `restore` continues from it byte for byte."""
         return self.t_ns.to_bytes(8, 'little') + b''.join(
-            rows.tobytes() for rows in self._memory) + self._tuning.snapshot()
+            rows.tobytes() for rows in self._saved) + self.tuning.snapshot()
 
     def restore(self, snapshot: bytes) -> None:
         """
@@ -280,16 +242,21 @@ class SmartActuator:
             It is none.
 
         """
-        expected = 8 + sum(rows.nbytes for rows in self._memory) + self._tuning.nbytes
+        expected = 8 + sum(rows.nbytes for rows in self._saved) + self.tuning.nbytes
         if len(snapshot) != expected:
             raise ConfigError(
                 f'{self.name}: saved state of {len(snapshot)} bytes, must be {expected}')
         self.t_ns = int.from_bytes(snapshot[:8], 'little')
         offset = 8
-        for rows in self._memory:
+        for rows in self._saved:
             rows[:] = np.frombuffer(snapshot, rows.dtype, len(rows), offset)
             offset += rows.nbytes
-        self._tuning.restore(snapshot[offset:])
+        self.tuning.restore(snapshot[offset:])
+
+
+def participant_digest(actuator: SmartActuator, timing: Timing) -> str:
+    """Return a hash that differs for actuators with other parameters or another grid of time."""
+    return f'{actuator.digest}/{timing.step_ns}/{timing.controller_offset_ns}'
 
 
 def _record(rows: np.ndarray) -> np.record:

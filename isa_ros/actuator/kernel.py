@@ -7,6 +7,7 @@ of floats (`BODY`), so that the integrator sees the same memory as a flat array.
 
 import math
 
+from isa_ros.actuator.inbox import latch, merge
 from isa_ros.core.kernel import kernel
 from isa_ros.core.timebase import FORCE_WINDOWS, PLANT_STEP
 from isa_ros.loads.forces import LOAD_STATE, OWN_LOAD, own_load_force
@@ -199,23 +200,26 @@ def tick_row(first_step, steps, port, actuator, bodies, rates, y, k, reu_state, 
 
 
 @kernel
-def actuator_tick(
-        first_step, steps, incoming, is_shared, ports, actuators, bodies, rates, y, k,
-        reu_states, read_outs, replies, samples):
+def actuator_tick(first_step, steps, incoming, commands, memory):
     """
     Advance every actuator by ``steps`` plant steps, one after the other.
 
     Return the place of the first state that is no longer finite in the states of all, or -1.
-    ``incoming`` are this tick's `LOAD_PORT` rows; each array has one row an actuator, but
-    ``bodies`` and ``rates`` and their flat views have `BODIES` and `STAGES` (`scratch`).
+    ``incoming`` are this tick's `LOAD_PORT` rows and ``commands`` the `COMMAND` rows that take
+    effect at its start, (n,) each; ``memory`` is a `Memory` of n actuators.
     """
-    for n in range(len(ports)):
-        own, own_rates = bodies[n * BODIES:(n + 1) * BODIES], rates[n * STAGES:(n + 1) * STAGES]
-        own_y, own_k = y[n * BODIES:(n + 1) * BODIES], k[n * STAGES:(n + 1) * STAGES]
-        take_port(incoming[n], is_shared[n], ports[n], own[0])
-        tick_row(first_step, steps, ports[n], actuators[n], own, own_rates, own_y, own_k,
-                 reu_states[n], read_outs[n], replies[n], samples[n])
-        broken = first_broken(own_y)
+    for n in range(len(memory.ports)):
+        bodies = memory.bodies[n * BODIES:(n + 1) * BODIES]
+        rates = memory.rates[n * STAGES:(n + 1) * STAGES]
+        y = memory.states[n * BODIES:(n + 1) * BODIES]
+        k = memory.slopes[n * STAGES:(n + 1) * STAGES]
+        reu, port = memory.reu[n], memory.ports[n]
+        merge(commands[n], memory.pending[n])
+        latch(memory.pending[n], reu, memory.applied[n])
+        take_port(incoming[n], memory.is_shared[n], port, bodies[0])
+        tick_row(first_step, steps, port, memory.constants[n], bodies, rates, y, k, reu,
+                 memory.read_outs[n], memory.replies[n], memory.samples[n])
+        broken = first_broken(y)
         if broken >= 0:
             return n * STATE_SIZE + broken
     return -1

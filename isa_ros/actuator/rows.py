@@ -1,30 +1,61 @@
 """The memory of the actuators of one process: a row each, so that one kernel call ticks all."""
 
+from typing import NamedTuple
+
 from isa_ros.actuator import kernel as kernels
-from isa_ros.core.signals import LOAD_PORT, LOAD_REPLY, SAMPLE
+from isa_ros.core.signals import COMMAND, LOAD_PORT, LOAD_REPLY, SAMPLE
 from isa_ros.reu.cascade import MEASURED, REU_STATE
 import numpy as np
 
 
-class ActuatorRows:
+class Memory(NamedTuple):
     """
-    Arrays of ``n`` actuators, in the order of `kernels.actuator_tick` from ``is_shared`` on.
+    Everything that the kernel of a tick reads and writes of ``n`` actuators.
 
-    `at` gives the same for one of them: views on its rows.
+    One row an actuator, but `kernels.BODIES` and `kernels.STAGES` of ``bodies`` and ``rates``.
     """
 
-    def __init__(self, n: int) -> None:
-        bodies, rates = kernels.scratch(n)
-        self.samples = np.zeros(n, SAMPLE)
-        self.replies = np.zeros(n, LOAD_REPLY)
-        self.arrays = (
-            np.zeros(n, np.bool_), np.zeros(n, LOAD_PORT), np.zeros(n, kernels.ACTUATOR),
-            bodies, rates, kernels.flat(bodies), kernels.flat(rates),
-            np.zeros(n, REU_STATE), np.zeros(n, MEASURED), self.replies, self.samples)
-        self._n = n
+    is_shared: np.ndarray
+    """Whether its load is a body that it moves with others, (n,)."""
+    ports: np.ndarray
+    """`LOAD_PORT` in force, (n,)."""
+    constants: np.ndarray
+    """`ACTUATOR`, (n,)."""
+    bodies: np.ndarray
+    """`BODY`: the state and a stage of its integration."""
+    rates: np.ndarray
+    """`BODY`: the stages' rates of change."""
+    states: np.ndarray
+    """The same memory as ``bodies``, as floats."""
+    slopes: np.ndarray
+    """The same memory as ``rates``, as floats."""
+    reu: np.ndarray
+    """`REU_STATE`, (n,)."""
+    read_outs: np.ndarray
+    """`MEASURED` at the tick's end, (n,)."""
+    replies: np.ndarray
+    """`LOAD_REPLY` of the last tick, (n,)."""
+    samples: np.ndarray
+    """`SAMPLE` at the end of the last tick, (n,)."""
+    pending: np.ndarray
+    """`COMMAND` that waits for the next tick, (n,)."""
+    applied: np.ndarray
+    """`COMMAND` that took effect at the start of the last tick, (n,)."""
 
-    def at(self, row: int) -> tuple[np.ndarray, ...]:
-        """Return the arrays of one actuator."""
-        return tuple(
-            array[row * (len(array) // self._n):(row + 1) * (len(array) // self._n)]
-            for array in self.arrays)
+
+def memory_of(n: int) -> Memory:
+    """Return the memory of ``n`` actuators, all zero."""
+    bodies, rates = kernels.scratch(n)
+    return Memory(
+        is_shared=np.zeros(n, np.bool_), ports=np.zeros(n, LOAD_PORT),
+        constants=np.zeros(n, kernels.ACTUATOR), bodies=bodies, rates=rates,
+        states=kernels.flat(bodies), slopes=kernels.flat(rates), reu=np.zeros(n, REU_STATE),
+        read_outs=np.zeros(n, MEASURED), replies=np.zeros(n, LOAD_REPLY),
+        samples=np.zeros(n, SAMPLE), pending=np.zeros(n, COMMAND), applied=np.zeros(n, COMMAND))
+
+
+def row_of(memory: Memory, row: int) -> Memory:
+    """Return the memory of one actuator: views on its rows."""
+    n = len(memory.ports)
+    return Memory(*(
+        rows[row * (len(rows) // n):(row + 1) * (len(rows) // n)] for rows in memory))

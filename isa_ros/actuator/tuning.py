@@ -2,6 +2,7 @@
 
 from collections.abc import Mapping
 
+from isa_ros.actuator.inbox import WITH_GAINS
 from isa_ros.actuator.sheet import actuator_record, ActuatorSheet
 from isa_ros.actuator.tunable import GAINS, tunables, tuned
 from isa_ros.core.signals import COMMAND, HAS_GAINS
@@ -122,3 +123,10 @@ def gains_command(values: Mapping[str, float]) -> np.void:
     for name, gain in GAINS.items():
         command[gain] = values.get(name, np.nan)
     return command
+
+
+def gain_after(name: str, pending: np.record, reu: np.record) -> float:
+    """Return a gain of `GAINS` as it will be once the ``pending`` command has taken effect."""
+    gain = GAINS[name]
+    is_new = int(pending.kinds) & WITH_GAINS and not np.isnan(pending[gain])
+    return float((pending if is_new else reu.setpoint)[gain])

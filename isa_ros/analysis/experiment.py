@@ -23,7 +23,7 @@ from isa_ros.config.run_file import load_run
 from isa_ros.core.parameter import Parameters
 from isa_ros.core.suggest import alternatives
 from isa_ros.errors import ConfigError, ParameterError
-from isa_ros.run.local_run import LocalRun
+from isa_ros.run.local_run import Inputs, LocalRun
 from isa_ros.scenario.scenario import idle, load_scenario, Scenario
 
 Overrides = Mapping[str, Mapping[str, Any]]
@@ -131,5 +131,5 @@ def _recorded(plan: Scenario, n_ticks: int, out: Path) -> Experiment:
         configuration=plan.run.to_yaml(), scenario=plan.to_yaml(), seed=0,
         versions=installed_versions())
     with BagWriter(out, local.topics, provenance) as bag:
-        local.simulate(n_ticks, plan.commands, bag)
+        local.simulate(n_ticks, Inputs(plan.commands), bag)
     return Experiment(*read_traces(out))

@@ -45,9 +45,9 @@ def main(arguments: Sequence[str]) -> None:
         return
     from isa_ros.config.default_actuator import default_actuator, DEFAULT_TIMING
     from isa_ros.nodes.actuator import process as actuator_process  # noqa: F401
-    from isa_ros.run.stepping import SteppedActuator
+    from isa_ros.actuator.actuator import SmartActuator
     imported = time.monotonic()
-    SteppedActuator(default_actuator('isa_v5', 'isa_v5'), DEFAULT_TIMING).advance(None)
+    SmartActuator(default_actuator('isa_v5', 'isa_v5'), DEFAULT_TIMING).tick()
     print(json.dumps((imported - started, time.monotonic() - imported)))
 
 

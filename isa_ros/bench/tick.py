@@ -1,5 +1,6 @@
 """What a tick of the leg is made of, without ROS."""
 
+from collections.abc import Callable
 from itertools import count, islice
 from pathlib import Path
 import tempfile
@@ -8,86 +9,125 @@ from isa_ros.bag.writer import BagWriter
 from isa_ros.bench.rigs import request_of
 from isa_ros.bench.row import Row, seconds
 from isa_ros.bench.spec import LEG, ONE_PROCESS, Spec
-from isa_ros.config.default_actuator import DEFAULT_TIMING
+from isa_ros.config.assembly import group_of, surroundings_of
 from isa_ros.config.paths import CONFIG, find, SCENARIOS
-from isa_ros.config.run_config import RunConfig
 from isa_ros.config.run_file import load_run
-from isa_ros.run.exchange import Rows
-from isa_ros.run.group import ActuatorGroup
+from isa_ros.controller import Controller, Setpoint, State
+from isa_ros.core.signals import LOAD_PORT
+from isa_ros.run.local_run import shown
+from isa_ros.run.narrator import packer_of, topics_of
 from isa_ros.run.session import prepare, provenance
-from isa_ros.run.topics import topics_of
-from isa_ros.scenario.scenario import load_scenario
-from isa_ros.surroundings.surroundings import SharedLoad
+from isa_ros.scenario.scenario import load_scenario, Scenario
+from isa_ros.simulation import Simulation
+import numpy as np
 
 TICKS = 500
-PLANT, MESSAGES = 'three actuators: plant + REU', 'three actuators: their messages'
+PLANT, MESSAGES = 'three actuators: plant + REU', 'messages of actuators, leg and supply'
 _DROP = Spec(LEG, ONE_PROCESS, TICKS)
 
 
 def tick_parts() -> list[Row]:
     """Measure what the leg's tick is made of, without ROS; the ratio is to a whole tick."""
-    run = _drop()
-    load = SharedLoad(run)
+    drop = _drop()
     parts = actuator_parts()
-    starts, rows = load.starts(run), Rows(len(run.actuators))
-    rows.replies['mean_forces'] = starts['force'][:, None]
+    surroundings = surroundings_of(drop.run)
+    ports = np.zeros(len(drop.run.actuators), LOAD_PORT)
+    replies = group_of(drop.run).replies
+    replies['mean_forces'] = surroundings.starts()['force'][:, None]
 
     def leg() -> None:
         for _ in range(TICKS):
-            load.ports(rows.ports)
-            load.advance(rows.replies)
+            surroundings.ports(ports)
+            surroundings.advance(replies)
     parts['leg and supply'] = seconds(leg, TICKS)
-    parts['leg and supply: their messages'] = seconds(
-        lambda: [(load.messages(k), load.clock(k)) for k in range(TICKS)], TICKS)
-    parts['recorder'] = _recorder_seconds()
+    parts['recorder'] = _recorder_seconds(drop)
     whole = sum(parts.values())
     return [Row(f'tick of the leg: {name}', value * 1e6, 'us', 'sum of the parts', value / whole)
             for name, value in parts.items()]
 
 
-def _drop() -> RunConfig:
-    return load_scenario(find('drop.yaml', SCENARIOS), load_run(find('leg.yaml', CONFIG))).run
+class _Holder(Controller):
+    """Asks one actuator to stay where it is, at every tick."""
+
+    def step(self, state: State) -> dict[str, Setpoint]:
+        return {'kfe': Setpoint(position=state.actuators['kfe'].position)}
+
+
+def memory_rows() -> list[Row]:
+    """Measure the leg's drop in memory beside its kernels alone, and what a controller adds."""
+    drop = _drop()
+    kernels = _kernel_seconds(drop)
+    alone = _simulated(Simulation(drop))
+    controlled = _simulated(Simulation(drop, [_Holder()]))
+    return [
+        Row('floor: the kernel of three actuators', kernels * 1e6, 'us', 'itself', 1.0),
+        Row('leg in memory, a tick', alone * 1e6, 'us', 'that kernel', kernels / alone),
+        Row('a controller in memory adds', (controlled - alone) * 1e6, 'us', 'that kernel',
+            kernels / max(controlled - alone, 1e-9))]
+
+
+def _simulated(simulation: Simulation) -> float:
+    """Return the time of a tick of the first `TICKS` ones, in s."""
+    def work() -> None:
+        simulation.reset()
+        for _ in range(TICKS):
+            simulation.step()
+    return seconds(work, TICKS, of_cpu=True)
+
+
+def _kernel_seconds(drop: Scenario) -> float:
+    """Return the time of the actuators' kernel alone, each tick under the port it really has."""
+    simulation = Simulation(drop)
+    ports: list[np.ndarray] = []
+    take: Callable[[np.ndarray], None] = simulation.surroundings.ports
+    for _ in range(TICKS):
+        port = np.zeros(len(simulation.names), LOAD_PORT)
+        take(port)
+        ports.append(port)
+        simulation.step()
+    group, starts = group_of(drop.run), surroundings_of(drop.run).starts()
+
+    def work() -> None:
+        group.start(starts)
+        for port in ports:
+            group.advance(port)
+    return seconds(work, TICKS, of_cpu=True)
+
+
+def _drop() -> Scenario:
+    return load_scenario(find('drop.yaml', SCENARIOS), load_run(find('leg.yaml', CONFIG)))
 
 
 def actuator_parts() -> dict[str, float]:
-    """Return the time that the leg's actuators take for a tick, all in one process, in s."""
-    run = _drop()
-    load, rows = SharedLoad(run), Rows(len(run.actuators))
-    load.ports(rows.ports)
-    group = _group(run, load)
+    """Return the time that the leg's actuators and messages take for a tick, in s."""
+    simulation = Simulation(_drop())
+    ports = np.zeros(len(simulation.names), LOAD_PORT)
+    simulation.surroundings.ports(ports)
+    packer = packer_of(simulation.scenario.run, shown(simulation))
 
     def plants() -> None:
         for _ in range(TICKS):
-            group.advance(rows.ports)
+            simulation.group.advance(ports)
 
     def messages() -> None:
-        for _ in range(TICKS):
-            group.states()
+        for tick in range(TICKS):
+            packer.pack(tick, tick, {})
+            packer.everything()
     return {PLANT: seconds(plants, TICKS), MESSAGES: seconds(messages, TICKS)}
 
 
-def _group(run: RunConfig, load: SharedLoad) -> ActuatorGroup:
-    """Return the actuators of a run at its start."""
-    group = ActuatorGroup(run.actuators, DEFAULT_TIMING)
-    for member, start in zip(group.members, load.starts(run)):
-        member.start(start)
-    return group
-
-
-def _recorder_seconds() -> float:
-    """Return the time of one tick's 22 messages in the recorder, in s."""
+def _recorder_seconds(drop: Scenario) -> float:
+    """Return the time of one tick's messages in the recorder, in s."""
+    simulation = Simulation(drop)
+    rows = shown(simulation)
+    simulation.step()
+    packer = packer_of(drop.run, rows)
+    packer.pack(0, 0, {})
+    messages = packer.everything()
     with tempfile.TemporaryDirectory() as directory:
         session = prepare(request_of(_DROP, Path(directory)))
-        load, rows = SharedLoad(session.run), Rows(len(session.run.actuators))
-        load.ports(rows.ports)
-        group = _group(session.run, load)
-        order, topics = topics_of(session.run, load)
-        messages = order.merge(
-            [*((*applied, *states)
-               for applied, states in zip(group.advance(rows.ports), group.states())),
-             [load.clock(0)], load.messages(0)])
         ticks = count()
-        with BagWriter(session.out, topics, provenance(session)) as bag:
+        with BagWriter(session.out, topics_of(drop.run, rows), provenance(session)) as bag:
             def work() -> None:
                 for tick in islice(ticks, TICKS):
                     bag.write_tick(tick * session.run.step_ns, tick, messages)

@@ -98,8 +98,9 @@ def _kind_row(path: str, value: Parameters, union: Any, source_of: Mapping[str, 
 def _run_tables(path: str) -> Iterator[str]:
     run, origins = read_run(path)
     given = f'{run.source}'
-    yield _table(f'supply of {given}', [
-        row._replace(source=given) for row in rows(run.supply, {})])
+    for supply in run.supplies:
+        yield _table(f'{supply.name} of {given}', [
+            row._replace(source=given) for row in rows(supply.sheet, {})])
     yield _table('record', [
         row._replace(source=given) for row in rows(run.record.storage, {})])
     for actuator in run.actuators:

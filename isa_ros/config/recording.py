@@ -10,11 +10,12 @@ What of a run is recorded, and how its files are written: the section `record` o
       decimate: {/*/pressure_?: 10}  # only the samples of every tenth tick
 """
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Iterator
 from dataclasses import dataclass, replace
 from fnmatch import fnmatchcase
 from typing import Any
 
+from isa_ros.config.schema import KeyDifference
 from isa_ros.config.sections import as_tree, build, Place, refuse_unknown, section_at, written
 from isa_ros.config.yaml_text import Tree
 from isa_ros.core.parameter import choice, parameter, Parameters
@@ -179,3 +180,22 @@ def _fitting(pattern: str, topics: Iterable[str], place: Place) -> list[str]:
         raise ConfigError(
             f'{place} = {pattern!r} fits no topic; there are {", ".join(topics)}')
     return fitting
+
+
+class RecordKind:
+    """What is recorded; a `Kind`."""
+
+    def tree(self, value: RecordConfig) -> Tree:
+        """Return the section."""
+        return value.to_tree()
+
+    def read(self, tree: Any, place: Place) -> RecordConfig:
+        """Return the section; as `Kind.read`."""
+        return read_record(tree, place)
+
+    def differences(self, tree: Any, place: Place) -> Iterator[KeyDifference]:
+        """Yield keys that are unknown; a key that is missing has its default."""
+        known = RecordConfig().to_tree()
+        for key in tree if isinstance(tree, dict) else ():
+            if key not in known:
+                yield KeyDifference(f'{place / key} is unknown here', True)

@@ -3,21 +3,20 @@
 from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
 import hashlib
-import math
-import re
-from typing import Any
 
 from isa_ros.actuator.sheet import ActuatorSheet
-from isa_ros.config.recording import read_record, RecordConfig
-from isa_ros.config.sections import (
-    as_tree, build, build_one_of, names_at, Place, refuse_unknown, section_at, written)
+from isa_ros.config.leg_config import JointsKind, LegConfig, LegStart
+from isa_ros.config.names import refuse_bad_name
+from isa_ros.config.recording import RecordConfig, RecordKind
+from isa_ros.config.schema import Key, Named, Names, OneOf, ParameterSet, Plain, Section
+from isa_ros.config.sections import Place
+from isa_ros.config.supplies import refuse_misfed, SUPPLY, SupplyConfig, SupplyKind
 from isa_ros.config.yaml_text import dump, parse, Tree
 from isa_ros.core.parameter import parameter, Parameters
 from isa_ros.core.timebase import refuse_grid
 from isa_ros.errors import ConfigError
 from isa_ros.loads.sheets import LocalLoad
-from isa_ros.surroundings.leg.sheet import JOINTS, LegSheet, linkage_record
-from isa_ros.surroundings.linkage import actuator_coordinate
+from isa_ros.surroundings.leg.sheet import LegSheet
 from isa_ros.surroundings.supply import SupplySheet
 
 
@@ -26,16 +25,6 @@ COORDINATOR = 'coordinator'
 
 ALL = 'all'
 """Stands for every actuator of a run."""
-
-NAME_RULE = 'must be small letters, digits and single underscores'
-_NAME = re.compile(r'[a-z](?:_?[a-z0-9])*')
-
-KEYS = ('name', 'source', 'step_ns', 'controller_offset_ns', 'tick_timeout_s', 'supply',
-        'actuators')
-ACTUATOR_KEYS = ('model', 'preset', 'initial_position', 'sheet')
-LEG_KEYS = ('model', 'joints', 'start', 'sheet')
-LATER = {'controllers': 'none', 'record': 'everything'}
-"""Sections that the first resolved configurations did not have, and what they meant."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -49,35 +38,8 @@ class Times(Parameters):
         'host time after which a participant counts as lost', 's', gt=0.0, le=3600.0)
 
 
-@dataclass(frozen=True, kw_only=True)
-class LegStart(Parameters):
-    """Where the leg is at t = 0, and until when its slider is held there."""
-
-    haa_deg: float = parameter('hip abduction', 'deg', ge=-180.0, le=180.0)
-    hfe_deg: float = parameter('hip flexion', 'deg', ge=-180.0, le=180.0)
-    kfe_deg: float = parameter('knee flexion', 'deg', ge=-180.0, le=180.0)
-    foot_height_mm: float = parameter('foot above the ground', 'mm', ge=-100.0, le=5000.0)
-    release_s: float = parameter('slider held until then; 0: free', 's', ge=0.0, le=1e6)
-
-    def angle(self, joint: str) -> float:
-        """Return the angle of a joint of `JOINTS`, rad."""
-        return math.radians(getattr(self, f'{joint}_deg'))
-
-
-@dataclass(frozen=True)
-class LegConfig:
-    """The shared load: a leg, which actuator moves which joint, and how it starts."""
-
-    model: str
-    sheet: LegSheet
-    joints: tuple[tuple[str, str], ...]
-    """(joint, actuator) in the order of `JOINTS`."""
-    start: LegStart
-
-    def position_of(self, joint: str) -> float:
-        """Return where the start puts the actuator of a joint, m or rad  (L2)."""
-        linkage = linkage_record(getattr(self.sheet, joint))
-        return float(actuator_coordinate(self.start.angle(joint), linkage)[0])
+BodyConfig = LegConfig
+"""The body that several actuators move; a union once there is another kind."""
 
 
 @dataclass(frozen=True)
@@ -89,7 +51,7 @@ class ActuatorConfig:
     preset: str
     sheet: ActuatorSheet
     load: LocalLoad | None
-    """Its own load; None at a joint of the leg."""
+    """Its own load; None where it moves the body."""
     initial_position: float
     """m or rad."""
 
@@ -102,15 +64,32 @@ class RunConfig:
     step_ns: int
     controller_offset_ns: int
     tick_timeout_s: float
-    supply: SupplySheet
+    supplies: tuple[SupplyConfig, ...]
+    """Each actuator is fed by exactly one of them."""
     actuators: tuple[ActuatorConfig, ...]
     """In the order of the file, which is the order of every record."""
-    leg: LegConfig | None
+    body: BodyConfig | None = None
+    """What several actuators move together; None: each has a load of its own."""
     controllers: tuple[str, ...] = ()
     """Names of the nodes that are waited for at every tick, besides the actuators."""
     source: str = field(default='')
     """Name of the file it was read from, without its directory."""
     record: RecordConfig = RecordConfig()
+
+    @property
+    def leg(self) -> LegConfig | None:
+        """Return the body where it is a leg."""
+        return self.body if isinstance(self.body, LegConfig) else None
+
+    def supply_of(self, name: str) -> SupplySheet:
+        """Return the sheet of the supply that feeds an actuator; as `actuator`."""
+        fed = self.actuator(name).name
+        return next(own.sheet for own in self.supplies if fed in own.feeds)
+
+    def alone(self, actuator: ActuatorConfig) -> 'RunConfig':
+        """Return a run of ``actuator`` alone, on the supply of the actuator of its name."""
+        supply = SupplyConfig(SUPPLY, self.supply_of(actuator.name), (actuator.name,))
+        return replace(self, actuators=(actuator,), supplies=(supply,), body=None)
 
     @property
     def digest(self) -> str:
@@ -180,7 +159,7 @@ class RunConfig:
             raise ConfigError(f'{self.source}: has no leg that could start at {start}')
         leg = replace(self.leg, start=start)
         joint_of = {actuator: joint for joint, actuator in leg.joints}
-        return replace(self, leg=leg, actuators=tuple(
+        return replace(self, body=leg, actuators=tuple(
             replace(a, initial_position=leg.position_of(joint_of[a.name]))
             if a.name in joint_of else a for a in self.actuators))
 
@@ -191,25 +170,7 @@ class RunConfig:
 
     def to_yaml(self) -> str:
         """Return the resolved configuration as text; `from_yaml` undoes it bit for bit."""
-        tree: Tree = {
-            'name': self.name,
-            'source': self.source,
-            'step_ns': self.step_ns,
-            'controller_offset_ns': self.controller_offset_ns,
-            'tick_timeout_s': self.tick_timeout_s,
-            'supply': as_tree(self.supply, SupplySheet),
-            'record': self.record.to_tree(),
-            'actuators': {a.name: _actuator_tree(a) for a in self.actuators},
-            'controllers': list(self.controllers),
-        }
-        if self.leg is not None:
-            tree['leg'] = {
-                'model': self.leg.model,
-                'joints': dict(self.leg.joints),
-                'start': as_tree(self.leg.start),
-                'sheet': as_tree(self.leg.sheet),
-            }
-        return dump(tree)
+        return dump(RUN.tree(self))
 
     @classmethod
     def from_yaml(cls, text: str, name: str = 'configuration.yaml') -> 'RunConfig':
@@ -222,90 +183,42 @@ class RunConfig:
             The text is not one `to_yaml` gives.
 
         """
-        tree, place = parse(text, name), Place(name)
-        _exactly(tree, (*KEYS, *(key for key in (*LATER, 'leg') if key in tree)), place)
-        actuators = section_at(tree['actuators'], place / 'actuators')
-        step_ns, offset_ns = (
-            _of(int, tree, key, place) for key in ('step_ns', 'controller_offset_ns'))
-        refuse_grid(step_ns, offset_ns, name)
-        for actuator in actuators:
-            refuse_bad_name(actuator, f'{place / "actuators"}: the name')
-        return cls(
-            name=_of(str, tree, 'name', place), source=_of(str, tree, 'source', place),
-            step_ns=step_ns, controller_offset_ns=offset_ns,
-            tick_timeout_s=_of(float, tree, 'tick_timeout_s', place),
-            supply=_set(SupplySheet, tree, 'supply', place),
-            actuators=tuple(
-                _read_actuator(key, section_at(below, place / 'actuators' / key),
-                               place / 'actuators' / key)
-                for key, below in actuators.items()),
-            controllers=tuple(names_at(tree.get('controllers', []), place / 'controllers')),
-            record=read_record(tree.get('record', {}), place / 'record'),
-            leg=_read_leg(section_at(tree['leg'], place / 'leg'), place / 'leg')
-            if 'leg' in tree else None)
+        run: RunConfig = RUN.read(modern(parse(text, name)), Place(name))
+        refuse_grid(run.step_ns, run.controller_offset_ns, name)
+        for actuator in run.actuators:
+            refuse_bad_name(actuator.name, f'{name}: actuators: the name')
+        refuse_misfed(
+            run.supplies, [actuator.name for actuator in run.actuators], Place(name, 'supplies'))
+        return run
 
 
-def refuse_bad_name(name: str, where: str) -> None:
-    """
-    Refuse what ROS could not use as the name of a node.
+RUN = Section(RunConfig, {
+    'name': Key(Plain(str)), 'source': Key(Plain(str)), 'step_ns': Key(Plain(int)),
+    'controller_offset_ns': Key(Plain(int)), 'tick_timeout_s': Key(Plain(float)),
+    'supplies': Key(Named(SupplyKind())),
+    'record': Key(RecordKind(), meant='everything'),
+    'actuators': Key(Named(Section(ActuatorConfig, {
+        'model': Key(Plain(str)), 'preset': Key(Plain(str)),
+        'initial_position': Key(Plain(float)),
+        'load': Key(ParameterSet(LocalLoad), is_optional=True),
+        'sheet': Key(ParameterSet(ActuatorSheet))}))),
+    'controllers': Key(Names(), meant='none'),
+    'body': Key(OneOf({'leg': Section(LegConfig, {
+        'model': Key(Plain(str)), 'joints': Key(JointsKind()),
+        'start': Key(ParameterSet(LegStart)),
+        'sheet': Key(ParameterSet(LegSheet))})}), is_optional=True),
+})
+"""Every key of a resolved configuration."""
 
-    Raises
-    ------
-    ConfigError
-        Anything but small letters, digits and single underscores.
 
-    """
-    if not _NAME.fullmatch(name):
-        raise ConfigError(f'{where} = {name!r}, {NAME_RULE}')
-
-
-def _actuator_tree(actuator: ActuatorConfig) -> Tree:
-    tree: Tree = {
-        'model': actuator.model,
-        'preset': actuator.preset,
-        'initial_position': actuator.initial_position,
-    }
-    if actuator.load is not None:
-        tree['load'] = as_tree(actuator.load, LocalLoad)
-    tree['sheet'] = as_tree(actuator.sheet)
+def modern(tree: Tree) -> Tree:
+    """Return the tree of a resolved configuration that may still say ``supply`` and ``leg``."""
+    tree = dict(tree)
+    actuators, supply = tree.get('actuators'), tree.get(SUPPLY)
+    if isinstance(supply, dict) and isinstance(actuators, dict) and 'supplies' not in tree:
+        del tree[SUPPLY]
+        tree['supplies'] = {SUPPLY: supply | {'feeds': list(actuators)}}
+    if isinstance(tree.get('leg'), dict) and 'body' not in tree:
+        leg: Tree = {'kind': 'leg'}
+        tree['body'] = leg | tree.pop('leg')  # type: ignore[operator]
     return tree
-
-
-def _read_actuator(name: str, tree: Tree, place: Place) -> ActuatorConfig:
-    _exactly(tree, (*ACTUATOR_KEYS, 'load') if 'load' in tree else ACTUATOR_KEYS, place)
-    return ActuatorConfig(
-        name=name, model=_of(str, tree, 'model', place), preset=_of(str, tree, 'preset', place),
-        sheet=_set(ActuatorSheet, tree, 'sheet', place),
-        load=_set(LocalLoad, tree, 'load', place) if 'load' in tree else None,
-        initial_position=_of(float, tree, 'initial_position', place))
-
-
-def _read_leg(tree: Tree, place: Place) -> LegConfig:
-    _exactly(tree, LEG_KEYS, place)
-    joints = section_at(tree['joints'], place / 'joints')
-    _exactly(joints, JOINTS, place / 'joints')
-    return LegConfig(
-        model=_of(str, tree, 'model', place),
-        joints=tuple((joint, _of(str, joints, joint, place / 'joints')) for joint in JOINTS),
-        start=build(LegStart, written(section_at(tree['start'], place), place / 'start'),
-                    place / 'start'),
-        sheet=_set(LegSheet, tree, 'sheet', place))
-
-
-def _exactly(tree: Tree, keys: Sequence[str], place: Place) -> None:
-    refuse_unknown(tree, keys, place)
-    for key in keys:
-        if key not in tree:
-            raise ConfigError(place.has(f'lacks {key}'))
-
-
-def _of(kind: type, tree: Tree, key: str, place: Place) -> Any:
-    value = tree[key]
-    if type(value) is not kind:
-        raise ConfigError(f'{place / key} = {value!r}, must be of type {kind.__name__}')
-    return value
-
-
-def _set(hint: Any, tree: Tree, key: str, place: Place) -> Any:
-    below = place / key
-    return build_one_of(hint, written(section_at(tree[key], below), below), below)

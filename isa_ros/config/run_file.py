@@ -11,13 +11,15 @@ from pathlib import Path
 
 from isa_ros.actuator.sheet import ActuatorSheet, refuse_wiring
 from isa_ros.config.catalogue import actuator_model, leg_section, material_section, Model
+from isa_ros.config.leg_config import LegConfig, LegStart
+from isa_ros.config.names import NAME_RULE, refuse_bad_name
 from isa_ros.config.own_load import load_section, refuse_beyond_stops
 from isa_ros.config.recording import read_record
-from isa_ros.config.run_config import (
-    ActuatorConfig, COORDINATOR, LegConfig, LegStart, NAME_RULE, refuse_bad_name, RunConfig, Times)
+from isa_ros.config.run_config import ActuatorConfig, COORDINATOR, RunConfig, Times
 from isa_ros.config.sections import (
     build, build_one_of, Entry, merge, names_at, Place, refuse_unknown, Section, section_at,
     written)
+from isa_ros.config.supplies import read_supplies, SUPPLY
 from isa_ros.config.yaml_text import read, Tree
 from isa_ros.core.parameter import check
 from isa_ros.core.suggest import alternatives
@@ -27,7 +29,6 @@ from isa_ros.errors import ConfigError, ParameterError
 from isa_ros.loads.sheets import LocalLoad
 from isa_ros.plant.plant import plant_record
 from isa_ros.surroundings.leg.sheet import JOINTS, LegSheet
-from isa_ros.surroundings.supply import SupplySheet
 
 __all__ = [
     'ActuatorConfig', 'LegConfig', 'LegStart', 'load_run', 'Origins', 'read_run', 'RunConfig']
@@ -69,20 +70,18 @@ def read_run(path: Path | str) -> tuple[RunConfig, Origins]:
     path = Path(path)
     tree, place = read(path), Place(path.name)
     refuse_unknown(tree, (
-        'name', 'step_ms', 'controller_offset_ms', 'tick_timeout_s', 'supply', 'record',
-        'actuators', 'controllers', 'leg'), place)
+        'name', 'step_ms', 'controller_offset_ms', 'tick_timeout_s', SUPPLY, 'supplies', 'record',
+        'actuators', 'controllers', 'leg', 'body'), place)
     times = build(Times, written(
         {f: tree[f] for f in Times.__dataclass_fields__ if f in tree}, place), place)
     step_ns, offset_ns = _grid(times, place)
-    leg, leg_origin = _leg(tree, place, step_ns) if 'leg' in tree else (None, None)
+    leg, leg_origin = _body(tree, place, step_ns)
     actuators, origins = _actuators(tree, place, leg)
     run = RunConfig(
         name=name_of(tree, 'name', place),
         step_ns=step_ns, controller_offset_ns=offset_ns, tick_timeout_s=times.tick_timeout_s,
-        supply=build_one_of(
-            SupplySheet, written(_section(tree, 'supply', place), place / 'supply'),
-            place / 'supply'),
-        actuators=actuators, leg=leg, source=path.name,
+        supplies=read_supplies(tree, [actuator.name for actuator in actuators], place),
+        actuators=actuators, body=leg, source=path.name,
         record=read_record(tree.get('record', {}), place / 'record'))
     controllers = names_at(tree.get('controllers', []), place / 'controllers')
     return run.with_controllers(controllers), Origins(origins, leg_origin)
@@ -141,9 +140,22 @@ def _section(tree: Tree, key: str, place: Place) -> Tree:
     return section_at(tree[key], place / key)
 
 
-def _leg(tree: Tree, place: Place, step_ns: int) -> tuple[LegConfig, Section]:
-    below = place / 'leg'
-    leg = _section(tree, 'leg', place)
+def _body(tree: Tree, place: Place, step_ns: int) -> tuple[LegConfig | None, Section | None]:
+    """Return the body that the actuators move, and the sections it was built from."""
+    if 'leg' in tree and 'body' in tree:
+        raise ConfigError(place.has('has leg and body, must have one; leg is a body of that kind'))
+    if 'leg' in tree:
+        return _leg(_section(tree, 'leg', place), place / 'leg', step_ns)
+    if 'body' not in tree:
+        return None, None
+    rest = dict(_section(tree, 'body', place))
+    kind = rest.pop('kind', None)
+    if kind != 'leg':
+        raise ConfigError(f"{place / 'body' / 'kind'} = {kind!r}, must be one of leg")
+    return _leg(rest, place / 'body', step_ns)
+
+
+def _leg(leg: Tree, below: Place, step_ns: int) -> tuple[LegConfig, Section]:
     refuse_unknown(leg, ('model', 'joints', 'ground', 'start', 'parameters'), below)
     model = leg.get('model')
     section, model_place = leg_section(model, f'{below}.model')  # type: ignore[arg-type]

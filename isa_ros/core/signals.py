@@ -74,12 +74,3 @@ LOAD_REPLY = np.dtype([
     ('return_volume', '<f8'),                  # oil given to the return in this tick, m3
 ])
 """Load port, actuator to load, one row per actuator and tick."""
-
-SHARED_SAMPLE = np.dtype([
-    ('supply_pressure', '<f8'),         # Pa gauge
-    ('joint_position', '<f8', (3,)),    # HAA, HFE, KFE, rad
-    ('joint_velocity', '<f8', (3,)),    # rad/s
-    ('joint_torque', '<f8', (3,)),      # Nm
-    ('foot_force', '<f8', (3,)),        # from the ground, base axes, N
-])
-"""What supply and leg show at the end of a tick; NaN what belongs to a leg that is not there."""

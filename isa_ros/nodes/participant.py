@@ -3,8 +3,8 @@
 from collections.abc import Callable
 
 from isa_ros.controller import Controller
-from isa_ros.nodes.lockstep.participant_end import Member
-from isa_ros.nodes.lockstep.roles import ControllerSeat
+from isa_ros.nodes.lockstep.participant_end import ParticipantEnd
+from isa_ros.nodes.lockstep.roles import ControllerRole
 from isa_ros.processes.stopping import StopRequest
 from rclpy.node import Node
 
@@ -18,7 +18,7 @@ class Participant:
     """
 
     def __init__(self, node: Node, controller: Controller) -> None:
-        self._member = Member(node, ControllerSeat(controller))
+        self._end = ParticipantEnd(node, ControllerRole(controller))
 
     def spin(self, should_stop: Callable[[], bool] | None = None) -> None:
         """
@@ -28,7 +28,7 @@ class Participant:
         3, and raised.
         """
         if should_stop is not None:
-            self._member.spin(should_stop)
+            self._end.spin(should_stop)
             return
         with StopRequest() as signalled:
-            self._member.spin(signalled)
+            self._end.spin(signalled)

@@ -11,15 +11,15 @@ from typing import NamedTuple
 
 from isa_ros.bag.reader import Bag
 from isa_ros.config.run_config import RunConfig
+from isa_ros.core.saved_state import RunState
 from isa_ros.errors import BagError, SetpointError
 from isa_ros.replay.compare import Comparer, Report
 from isa_ros.replay.installation import differences, refuse_obstacles, topic_differences
 from isa_ros.replay.tolerances import Tolerances
-from isa_ros.run.coordinator import Coordinator, Interrupted
+from isa_ros.run import local_run
+from isa_ros.run.coordinator import Interrupted
 from isa_ros.run.exchange import Recorder, Records
 from isa_ros.run.local_run import LocalRun
-from isa_ros.run.saved_state import RunState
-from isa_ros.surroundings.surroundings import EVENT_TOPIC
 from msg_adapters import event
 from msg_adapters.applied_parameters import tuned_values
 from msg_adapters.setpoint import applied_to_command
@@ -98,10 +98,10 @@ class Rerun:
     def __init__(self, bag: Bag) -> None:
         self._run = RunConfig.from_yaml(
             bag.provenance.configuration, f'{bag.path.name}: configuration.yaml')
-        self._commands, tuned, self._n_ticks = recorded_inputs(bag, self._run)
+        self._commands, self._tuned, self._n_ticks = recorded_inputs(bag, self._run)
         self._events = recorded_events(bag)
         self._state = _recorded_state(bag, self._run)
-        self._local = LocalRun(self._run, tuned)
+        self._local = LocalRun(self._run)
         self.topics = self._local.topics
 
     def simulate(
@@ -109,17 +109,14 @@ class Rerun:
         """Hand every sample to ``recorder`` until the end of the bag or ``should_stop``."""
         try:
             self._local.simulate(
-                self._n_ticks, self._fill, recorder, should_stop, self._state, self._note)
+                self._n_ticks, local_run.Inputs(self._fill, self._tuned, self._events), recorder,
+                should_stop, self._state)
         except Interrupted:
             pass  # should_stop has seen enough
 
     def _fill(self, tick: int, rows: Records) -> None:
         for row, command in self._commands.get(tick, ()):
             rows[row] = command
-
-    def _note(self, coordinator: Coordinator) -> None:
-        for text in self._events.pop(coordinator.ticks, ()):
-            coordinator.note(text)
 
 
 def _recorded_state(bag: Bag, run: RunConfig) -> RunState | None:
@@ -137,7 +134,7 @@ def recorded_events(bag: Bag) -> dict[int, list[str]]:
     """Return what was done to the run, by the tick before which it was done."""
     events: dict[int, list[str]] = {}
     for message in bag.messages():
-        if message.topic == EVENT_TOPIC[0]:
+        if message.topic == event.TOPIC[0]:
             events.setdefault(message.sequence, []).append(event.text(message.data))
     return events
 

@@ -8,16 +8,16 @@ tick nothing as long as it is faster than they are. N ticks give N + 1 samples: 
 at t = 0 is one of them.
 """
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable
 from dataclasses import dataclass
-from typing import NamedTuple
 
+from isa_ros.core.saved_state import RunState
 from isa_ros.core.timebase import NS_PER_SECOND
 from isa_ros.errors import ConfigError, IsaError
-from isa_ros.run.exchange import Messages, Recorder, Records, Rows, SharedLoad, Transport
+from isa_ros.run.exchange import Records, Rows, Transport
+from isa_ros.run.narrator import Narrator
 from isa_ros.run.pacing import BEFORE_TICKS, Laps, Pace, ProgressMeter
-from isa_ros.run.saved_state import RunState
-from isa_ros.run.topics import Order
+from isa_ros.surroundings.surroundings import Surroundings
 
 
 class Interrupted(IsaError):
@@ -26,20 +26,12 @@ class Interrupted(IsaError):
     exit_code = 130
 
 
-class Sample(NamedTuple):
-    """Everything the sources said at one instant."""
-
-    sequence: int
-    sources: Sequence[Messages]
-
-
 @dataclass(frozen=True, kw_only=True)
 class Plan:
     """What is run, and for how long."""
 
     step_ns: int
     rows: Rows
-    has_controllers: bool = False
     n_ticks: int | None
     """Ends at t = n_ticks step_ns; None: until stopped."""
     commands: Callable[[int, Records], None]
@@ -53,26 +45,23 @@ Requests = Callable[['Coordinator'], None]
 
 
 class Coordinator:
-    """Advance actuators and their load tick by tick, and record every sample."""
+    """Advance actuators and their surroundings tick by tick, and tell every sample."""
 
     def __init__(
-            self, plan: Plan, order: Order, transport: Transport, load: SharedLoad,
-            recorder: Recorder, *, pace: Pace, progress: ProgressMeter,
+            self, plan: Plan, transport: Transport, surroundings: Surroundings,
+            narrator: Narrator, *, pace: Pace, progress: ProgressMeter,
             should_stop: Callable[[], bool], requests: Requests | None = None,
             laps: Laps | None = None) -> None:
         self._plan = plan
         self._rows = plan.rows
         self._lap: Callable[[str], None] = _no_lap if laps is None else laps.lap
-        self._order = order
         self._transport = transport
-        self._load = load
-        self._recorder = recorder
+        self._surroundings = surroundings
+        self._narrator = narrator
         self._pace = pace
         self._progress = progress
         self._should_stop = should_stop
         self._serve: Requests = _no_requests if requests is None else requests
-        self._unrecorded: Sample | None = None
-        self._events: list[bytes] = []
         self.ticks = 0
         """Where the run is: t = ticks step_ns."""
         self.is_paused = plan.is_paused
@@ -84,9 +73,9 @@ class Coordinator:
         """Return the simulated time reached."""
         return self.ticks * self._plan.step_ns
 
-    def run(self, first: Sequence[Messages], state: RunState | None = None) -> None:
+    def run(self, state: RunState | None = None) -> None:
         """
-        Run to the end, from the answers of `Transport.join`, or from a saved state.
+        Run to the end, after `Transport.join`, from t = 0 or from a saved state.
 
         Whatever ends the run, every sample of a finished tick is handed to the recorder.
 
@@ -101,10 +90,10 @@ class Coordinator:
 
         """
         if state is not None:
-            first = self._restore(state)
-        clock = self._publish_clock(self.ticks)
+            self._restore(state)
+        self._narrator.say_time(self.ticks)
         self._transport.begin()
-        self._end_tick(clock, first)
+        self._narrator.take(self.ticks, self._rows.tuned)
         self._start_clocks()
         try:
             while True:
@@ -117,7 +106,7 @@ class Coordinator:
                     self._pace.wait(self.t_ns, self._should_stop)
                     self._advance()
         finally:
-            self._record()
+            self._narrator.record()
             if not self.is_paused:  # else nothing was due
                 self._pace.end(self.t_ns)
             self._progress.end(self.t_ns)
@@ -130,11 +119,11 @@ class Coordinator:
         self._pace.start(self.t_ns)
         self._progress.start(self.t_ns)
 
-    def _restore(self, state: RunState) -> Sequence[Messages]:
+    def _restore(self, state: RunState) -> None:
         self.ticks = state.tick
-        self._load.restore(state.load)
+        self._surroundings.restore(state.load)
         self._rows.requests[:] = state.rows_of_requests(len(self._rows.requests))
-        return self._transport.restore(state.tick, state.participants, self._rows)
+        self._transport.restore(state.tick, state.participants, self._rows)
 
     def pause(self, is_paused: bool) -> None:
         """Stop before the next tick, or go on."""
@@ -178,7 +167,7 @@ class Coordinator:
 
         """
         return RunState(
-            tick=self.ticks, load=self._load.snapshot(),
+            tick=self.ticks, load=self._surroundings.snapshot(),
             participants=self._transport.snapshots(), requests=self._rows.requests.tobytes())
 
     def set_real_time_factor(self, factor: float) -> None:
@@ -196,9 +185,7 @@ class Coordinator:
 
     def note(self, event: str) -> None:
         """Record and publish what was done to the run at this instant."""
-        message = self._load.event(self.t_ns, event)
-        self._events.append(message)
-        self._transport.publish_event(message)
+        self._narrator.note(self.ticks, event)
 
     def _pass_time(self) -> None:
         self._refuse_stop()
@@ -220,41 +207,20 @@ class Coordinator:
         rows.commands[:] = rows.requests
         rows.requests['kinds'] = 0
         self._plan.commands(tick, rows.commands)
-        self._load.ports(rows.ports)
-        if self._plan.has_controllers:
-            self._load.show(rows.shared)
+        self._surroundings.ports(rows.ports)
         self._lap('commands and ports')
-        clock = self._publish_clock(tick + 1)
+        self._narrator.say_time(tick + 1)
         self._transport.send(tick, rows)
         self._lap('clock and step out')
-        self._record()
+        self._narrator.record()
         self._lap('recorder')
-        answers = self._transport.receive(rows)
+        self._transport.receive(rows)
         self._lap('actuators')
-        self._load.advance(rows.replies)
-        self._lap('leg and supply')
+        self._surroundings.advance(rows.replies)
+        self._lap('body and supplies')
         self.ticks = tick + 1
-        self._end_tick(clock, answers)
-        self._lap('messages of the leg')
-
-    def _publish_clock(self, sequence: int) -> bytes:
-        clock = self._load.clock(sequence * self._plan.step_ns)
-        self._transport.publish_clock(clock)
-        return clock
-
-    def _end_tick(self, clock: bytes, answers: Sequence[Messages]) -> None:
-        shown = self._load.messages(self.t_ns)
-        self._transport.publish(shown)
-        self._unrecorded = Sample(self.ticks, (*answers, (clock,), shown))
-
-    def _record(self) -> None:
-        sample, self._unrecorded = self._unrecorded, None
-        if sample is None:
-            return
-        events, self._events = self._events, []
-        t_ns = sample.sequence * self._plan.step_ns
-        self._recorder.write_tick(
-            t_ns, sample.sequence, self._order.merge(sample.sources, events))
+        self._narrator.take(self.ticks, self._rows.tuned)
+        self._lap('messages')
 
 
 def _no_lap(phase: str) -> None:

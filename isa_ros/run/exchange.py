@@ -1,14 +1,13 @@
-"""What crosses between load, actuators, controllers and recorder at a tick, and who they are."""
+"""What crosses between surroundings, actuators, controllers and recorder at a tick: rows."""
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from typing import Protocol
 
-from isa_ros.core.signals import COMMAND, LOAD_PORT, LOAD_REPLY, SAMPLE, SHARED_SAMPLE
+from isa_ros.core.signals import COMMAND, LOAD_PORT, LOAD_REPLY, SAMPLE
+from isa_ros.run.packing import Shown
+from isa_ros.surroundings.surroundings import Surroundings
 import numpy as np
 from numpy.typing import NDArray
-
-Messages = Sequence[bytes | None]
-"""Serialised messages of one source, in the order of its topics; None: nothing new."""
 
 Records = NDArray[np.void]
 """Rows of one of the record types of `isa_ros.core.signals`, one per actuator."""
@@ -36,60 +35,41 @@ class Rows:
     Overwritten tick by tick; what must last is copied.
     """
 
-    def __init__(self, n_actuators: int) -> None:
+    def __init__(self, n_actuators: int, surroundings: Surroundings) -> None:
         self.ports: Records = np.zeros(n_actuators, LOAD_PORT)
-        """From the load to the actuators, for the tick."""
+        """From the surroundings to the actuators, for the tick."""
         self.commands: Records = np.zeros(n_actuators, COMMAND)
         """What takes effect at the tick's start."""
         self.replies: Records = np.zeros(n_actuators, LOAD_REPLY)
-        """From the actuators to the load, at the tick's end."""
+        """From the actuators to the surroundings, at the tick's end."""
         self.samples: Records = np.zeros(n_actuators, SAMPLE)
         """What the actuators show at the tick's start; at its end once they have answered."""
-        self.reply_values, self.sample_values = floats(self.replies), floats(self.samples)
-        """The same memory as plain numbers."""
+        self.applied: Records = np.zeros(n_actuators, COMMAND)
+        """What is in force since the last tick's start; of no kind where nothing is new."""
+        self.tuned: Mapping[int, Mapping[str, float]] = {}
+        """Parameters that changed at the start of the last tick, SI, by row and name."""
         self.requests: Records = np.zeros(n_actuators, COMMAND)
         """What the controllers ask for, to take effect at the next tick."""
-        self.shared: Records = np.zeros(1, SHARED_SAMPLE)
-        """What supply and leg show at the tick's start, (1,)."""
+        self.supplies: Records = surroundings.supplies
+        """`SUPPLY_SAMPLE` of the supplies; the surroundings' own memory."""
+        self.body: Records | None = None
+        """What the body shows, (1,); the body's own memory. None: no body."""
+        if surroundings.body is not None:
+            self.body = surroundings.body.sample
+        self.shown = Shown(self.samples, self.applied, self.supplies, self.body)
+        """The rows that messages are made of."""
+        self.reply_values, self.sample_values = floats(self.replies), floats(self.samples)
+        """The same memory as plain numbers."""
 
 
-class Voice(Protocol):
-    """Who publishes for a run."""
-
-    def publish(self, messages: Messages) -> None:
-        """Publish the messages of the shared load."""
-        ...
-
-    def publish_clock(self, clock: bytes) -> None:
-        """Publish `/clock`."""
-        ...
-
-    def publish_event(self, event: bytes) -> None:
-        """Publish what was done to the run."""
-        ...
-
-
-class Silence:
-    """A `Voice` that tells nobody."""
-
-    def publish(self, messages: Messages) -> None:
-        """Tell nobody."""
-
-    def publish_clock(self, clock: bytes) -> None:
-        """Tell nobody."""
-
-    def publish_event(self, event: bytes) -> None:
-        """Tell nobody."""
-
-
-class Transport(Voice, Protocol):
+class Transport(Protocol):
     """Actuators and controllers, wherever they run."""
 
-    def join(self, rows: Rows) -> Sequence[Messages]:
+    def join(self, rows: Rows) -> None:
         """
-        Wait until every participant is ready at t = 0 and return their first messages.
+        Wait until every participant is ready at t = 0.
 
-        Fills the samples. A second call begins another run.
+        Fills what they show and have applied. A second call begins another run.
 
         Raises
         ------
@@ -101,8 +81,7 @@ class Transport(Voice, Protocol):
         """
         ...
 
-    def restore(
-            self, tick: int, snapshots: Sequence[bytes], rows: Rows) -> Sequence[Messages]:
+    def restore(self, tick: int, snapshots: Sequence[bytes], rows: Rows) -> None:
         """
         Put everyone, after `join`, where it was before ``tick``; as `join`.
 
@@ -115,14 +94,12 @@ class Transport(Voice, Protocol):
         ...
 
     def send(self, tick: int, rows: Rows) -> None:
-        """Set everyone to work: ports and commands, and to controllers the samples."""
+        """Set everyone to work: ports and commands, and to controllers what is shown."""
         ...
 
-    def receive(self, rows: Rows) -> Sequence[Messages]:
+    def receive(self, rows: Rows) -> None:
         """
-        Wait for everyone and return the messages of each.
-
-        Fills replies, samples and requests.
+        Wait for everyone; fill replies, samples, applied, tuned and requests.
 
         Raises
         ------
@@ -131,7 +108,7 @@ class Transport(Voice, Protocol):
         SimulationDiverged
             The state of an actuator is no longer finite.
         Interrupted
-            A stop is asked for and the tick does not end.
+            A stop was requested and the tick does not end.
 
         """
         ...
@@ -158,42 +135,6 @@ class Transport(Voice, Protocol):
             A participant was lost or late, or cannot be saved.
 
         """
-        ...
-
-
-class SharedLoad(Protocol):
-    """What the actuators have in common: the supply, and the leg where there is one."""
-
-    def ports(self, ports: Records) -> None:
-        """Fill the `LOAD_PORT` of every actuator, shape (n_actuators,)."""
-        ...
-
-    def advance(self, replies: Records) -> None:
-        """Advance by one tick under the `LOAD_REPLY` of every actuator, shape (n_actuators,)."""
-        ...
-
-    def show(self, shared: Records) -> None:
-        """Fill the `SHARED_SAMPLE` of this instant, shape (1,)."""
-        ...
-
-    def messages(self, t_ns: int) -> Messages:
-        """Return what leg and supply show at this instant."""
-        ...
-
-    def clock(self, t_ns: int) -> bytes:
-        """Return the `/clock` message of ``t_ns``."""
-        ...
-
-    def event(self, t_ns: int, text: str) -> bytes:
-        """Return the message that says what was done to the run at ``t_ns``."""
-        ...
-
-    def snapshot(self) -> bytes:
-        """Return the whole state; `restore` continues from it byte for byte."""
-        ...
-
-    def restore(self, snapshot: bytes) -> None:
-        """Continue from a `snapshot` of the same configuration."""
         ...
 
 

@@ -1,28 +1,29 @@
 """Bring-up: from the files of a run to its bag, in processes or in one."""
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, field
 from itertools import count
 import os
 from pathlib import Path
 
-from isa_ros.actuator.actuator import Timing
 from isa_ros.bag.metadata import FILE_NAME
 from isa_ros.bag.provenance import installed_versions, Provenance
 from isa_ros.bag.writer import BagWriter
+from isa_ros.config.assembly import surroundings_of
 from isa_ros.config.run_config import RunConfig
 from isa_ros.config.run_file import load_run
+from isa_ros.core.saved_state import read_state, RunState
 from isa_ros.core.timebase import NS_PER_SECOND
+from isa_ros.core.topic import Topic
 from isa_ros.errors import BagError, ConfigError, RunError
 from isa_ros.run.coordinator import Coordinator, Plan, Requests
 from isa_ros.run.exchange import Rows, Transport
+from isa_ros.run.narrator import Narrator, Outlets, packer_of, topics_of
 from isa_ros.run.pacing import (
     JOIN_TIMEOUT_S, JOINING, Laps, Pace, Progress, ProgressMeter, STARTING)
-from isa_ros.run.saved_state import read_state, RunState
 from isa_ros.run.thinning import Thinning
-from isa_ros.run.topics import topics_of
 from isa_ros.scenario.scenario import idle, load_scenario, Scenario
-from isa_ros.surroundings.surroundings import SharedLoad
+from isa_ros.surroundings.surroundings import Surroundings
 
 RUNS = Path('runs')
 
@@ -83,11 +84,6 @@ class Session:
         """Return the configuration that is simulated and recorded."""
         return self.scenario.run
 
-    @property
-    def timing(self) -> Timing:
-        """Return the grid of time of every actuator."""
-        return Timing(self.run.step_ns, self.run.controller_offset_ns)
-
 
 def prepare(request: Request) -> Session:
     """
@@ -104,8 +100,9 @@ def prepare(request: Request) -> Session:
     run = load_run(request.config).with_controllers(request.controllers).stored(
         request.compression, request.split_mb, 'record options')
     if run.record.thins:
+        rows = Rows(len(run.actuators), surroundings_of(run))
         run.record.refuse_misfits(
-            [topic.name for topic in topics_of(run, SharedLoad(run))[1]], run.source)
+            [topic.name for topic in topics_of(run, rows.shown)], run.source)
     scenario = idle(run) if request.scenario is None else load_scenario(request.scenario, run)
     if request.duration_s is not None:
         scenario = scenario.lasting(request.duration_s)
@@ -154,20 +151,25 @@ def _check_output(out: Path, overwrite: bool) -> None:
 
 
 def record(
-        session: Session, transport: Transport, load: SharedLoad, report: Report | None,
+        session: Session, transport: Transport, surroundings: Surroundings,
+        outlets: Callable[[Sequence[Topic]], Outlets], report: Report | None,
         should_stop: Callable[[], bool], requests: Requests | None = None) -> None:
     """
     Join the participants of ``transport``, run, and record every sample.
 
-    A reset begins anew, with a bag of its own beside the first.
+    ``outlets`` makes the publishers of the topics of supplies and body. A reset begins anew,
+    with a bag of its own beside the first.
     """
-    beginning, state, out = load.snapshot(), session.state, session.out
+    beginning, state, out = surroundings.snapshot(), session.state, session.out
+    rows = Rows(len(session.run.actuators), surroundings)
+    published = outlets(packer_of(session.run, rows.shown).surroundings)
     while True:
         coordinator = _record_one(
-            session, out, state, transport, load, report, should_stop, requests)
+            session, out, state, transport, surroundings, rows, published, report, should_stop,
+            requests)
         if not coordinator.is_reset:
             break
-        load.restore(beginning)
+        surroundings.restore(beginning)
         out, state = _unused(session.out), None
     if session.request.save is not None:
         write_state(session, coordinator, session.request.save)
@@ -175,30 +177,30 @@ def record(
 
 def _record_one(
         session: Session, out: Path, state: RunState | None, transport: Transport,
-        load: SharedLoad, report: Report | None, should_stop: Callable[[], bool],
-        requests: Requests | None) -> Coordinator:
+        surroundings: Surroundings, rows: Rows, outlets: Outlets, report: Report | None,
+        should_stop: Callable[[], bool], requests: Requests | None) -> Coordinator:
     """Run once, to the end or to a reset, and return where it came to."""
     run, n_ticks = session.run, session.scenario.n_ticks
-    rows = Rows(len(run.actuators))
     plan = Plan(
-        step_ns=run.step_ns, rows=rows, has_controllers=bool(run.controllers), n_ticks=n_ticks,
+        step_ns=run.step_ns, rows=rows, n_ticks=n_ticks,
         commands=session.scenario.commands, is_paused=session.request.is_paused)
     laps = session.request.laps or Laps()
     laps.lap(STARTING)
-    first = transport.join(rows)
+    rows.requests['kinds'] = 0
+    transport.join(rows)
     laps.lap(JOINING)
-    order, topics = topics_of(run, load)
-    thinning = Thinning(run.record, topics)
+    thinning = Thinning(run.record, topics_of(run, rows.shown))
     # The first bag alone may replace one: a reset takes a directory that does not exist.
     overwrite = session.request.overwrite and not session.bags
     with BagWriter(out, thinning.topics, provenance(session, state), overwrite,
                    run.record.storage) as bag:
         session.bags.append(out)
         coordinator = Coordinator(
-            plan, order, transport, load, thinning.recorder(bag), pace=session.pace,
+            plan, transport, surroundings,
+            Narrator(run, rows.shown, thinning.recorder(bag), outlets), pace=session.pace,
             progress=ProgressMeter(None if n_ticks is None else n_ticks * run.step_ns, report),
             should_stop=should_stop, requests=requests, laps=session.request.laps)
-        coordinator.run(first, state)
+        coordinator.run(state)
     return coordinator
 
 

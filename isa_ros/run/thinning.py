@@ -2,6 +2,7 @@
 
 from collections.abc import Sequence
 
+from isa_ros.bag.packed import Packed
 from isa_ros.config.recording import RecordConfig
 from isa_ros.core.topic import Topic
 from isa_ros.run.exchange import Recorder
@@ -36,7 +37,8 @@ class _Thinned:
     def write_tick(
             self, t_ns: int, sequence: int, messages: Sequence[tuple[int, bytes]]) -> None:
         """Hand on the part of a tick that is kept, which may be nothing."""
-        periods, places = self._periods, self._places
-        self._recorder.write_tick(t_ns, sequence, [
-            (places[k], data) for k, data in messages
-            if periods[k] and sequence % periods[k] == 0])
+        packed = Packed.of(messages)
+        kept = [(place, self._places[k]) for place, k in enumerate(packed.layout.topics.tolist())
+                if self._periods[k] and sequence % self._periods[k] == 0]
+        self._recorder.write_tick(t_ns, sequence, packed.selected(
+            [place for place, _ in kept], [topic for _, topic in kept]))

@@ -2,28 +2,23 @@
 
 from contextlib import suppress
 
-from isa_ros.actuator.actuator import Timing
+from isa_ros.actuator.actuator import SmartActuator
 from isa_ros.config.run_config import RunConfig
 from isa_ros.errors import SimulationDiverged
-from isa_ros.run.exchange import Rows
-from isa_ros.run.stepping import SteppedActuator
-from isa_ros.surroundings.surroundings import SharedLoad
+from isa_ros.run.local_run import shown
+from isa_ros.run.narrator import packer_of
+from isa_ros.scenario.scenario import idle
+from isa_ros.simulation import Simulation
 
 
-def warmed_up(run: RunConfig) -> list[SteppedActuator]:
+def warmed_up(run: RunConfig) -> list[SmartActuator]:
     """
-    Return a copy of every actuator, after one tick of all and of a copy of their load.
+    Return a copy of every actuator, after one tick of a copy of the whole run.
 
     Where that diverges the run itself will say so, and record what was before.
     """
-    timing, load = Timing(run.step_ns, run.controller_offset_ns), SharedLoad(run)
-    rows = Rows(len(run.actuators))
-    load.ports(rows.ports)
-    copies = [SteppedActuator(config, timing) for config in run.actuators]
+    simulation = Simulation(idle(run))
     with suppress(SimulationDiverged):
-        for k, (copy, start) in enumerate(zip(copies, load.starts(run))):
-            copy.start(start)
-            copy.advance(rows.ports[k])
-            rows.replies[k] = copy.actuator.reply_rows[0]
-        load.advance(rows.replies)
-    return copies
+        simulation.step()
+    packer_of(run, shown(simulation)).pack(0, 0, {})
+    return simulation.group.actuators

@@ -8,20 +8,23 @@ endian, unpadded; the layout is an implementation detail of one version of this 
 and ``WIRE_VERSION`` is refused where it differs.
 """
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from enum import IntEnum
 from functools import cache
+import json
 import struct
 from typing import NamedTuple
 
-from isa_ros.core.signals import COMMAND, LOAD_PORT, SAMPLE, SHARED_SAMPLE, START
+from isa_ros.core.signals import COMMAND, LOAD_PORT, LOAD_REPLY, SAMPLE, START
 from isa_ros.errors import RunError
 from isa_ros.run.exchange import Records, Rows
+from isa_ros.run.packing import Shown
+from isa_ros.surroundings.supply import SUPPLY_SAMPLE
 import numpy as np
 
 STEP_TOPIC = '/_isa/step'
 ACKNOWLEDGEMENT_TOPIC = '/_isa/acknowledgement'
-WIRE_VERSION = 3
+WIRE_VERSION = 4
 
 _ENCAPSULATION = 0x00000100  # bytes 00 01 00 00: little endian CDR, no options
 _PREFIX = struct.Struct('<IIII')  # encapsulation, no dimensions, data_offset, array length
@@ -60,9 +63,9 @@ class AnswerKind(IntEnum):
     """What a participant answers."""
 
     READY = 1
-    """To a hello: identity, digest, then what its `Seat` says of t = 0."""
+    """To a hello: identity, digest, then the parts of its role at t = 0."""
     DONE = 2
-    """To a tick: what its `Seat` says of the tick's end."""
+    """To a tick: the parts of its role at the tick's end."""
     DIVERGED = 3
     """To a tick: t_ns and value, then the field that is no longer finite."""
     BUSY = 4
@@ -74,12 +77,37 @@ class AnswerKind(IntEnum):
     SAVED = 7
     """To a save: the whole state."""
     RESTORED = 8
-    """To a restore: what its `Seat` says of that instant."""
+    """To a restore: the parts of its role at that instant."""
 
 
 # Calling an enumeration costs a microsecond in a tick; a dictionary a twentieth.
 _STEP_KINDS = {int(kind): kind for kind in StepKind}
 _ANSWER_KINDS = {int(kind): kind for kind in AnswerKind}
+
+
+class Cast(NamedTuple):
+    """Who takes part in a run, and what controllers are shown besides the actuators."""
+
+    names: Sequence[str]
+    """The participants in order: the actuators first, then the controllers."""
+    supplies: Sequence[str]
+    body: np.dtype[np.void] | None
+    """Record type of the body's sample; None: no body."""
+
+    def encode(self) -> bytes:
+        """Return what `decode` reads."""
+        body = None if self.body is None else [
+            [name, self.body[name].base.str, self.body[name].shape]
+            for name in self.body.names or ()]
+        return json.dumps([list(self.names), list(self.supplies), body]).encode()
+
+    @classmethod
+    def decode(cls, data: bytes) -> 'Cast':
+        """Return the cast of its bytes."""
+        names, supplies, body = json.loads(data)
+        record = None if body is None else np.dtype(
+            [(name, format_, tuple(shape)) for name, format_, shape in body])
+        return cls(names, supplies, record)
 
 
 class Step(NamedTuple):
@@ -91,9 +119,9 @@ class Step(NamedTuple):
     rows: int
     body: bytes
 
-    def names(self) -> list[str]:
-        """Return the participants that a hello calls, in order: ``rows`` actuators first."""
-        return self.body[_NUMBER.size + self.rows * START.itemsize:].decode().split('\n')
+    def cast(self) -> Cast:
+        """Return the participants that a hello calls: ``rows`` actuators first."""
+        return Cast.decode(self.body[_NUMBER.size + self.rows * START.itemsize:])
 
     def step_ns(self) -> int:
         """Return the length of the ticks that a hello announces."""
@@ -101,34 +129,29 @@ class Step(NamedTuple):
 
     def start(self, index: int) -> np.void:
         """Return the `START` row of one actuator."""
-        row: np.void = np.frombuffer(
-            self.body, START, 1, _NUMBER.size + index * START.itemsize)[0]
-        return row
+        return self._row(START, _NUMBER.size + index * START.itemsize)
 
     def port(self, index: int) -> np.void:
         """Return the `LOAD_PORT` row of one actuator."""
-        row: np.void = np.frombuffer(
-            self.body, LOAD_PORT, 1, index * LOAD_PORT.itemsize)[0]
-        return row
+        return self._row(LOAD_PORT, index * LOAD_PORT.itemsize)
 
     def command(self, index: int) -> np.void:
         """Return the `COMMAND` row of one actuator."""
-        offset = self.rows * LOAD_PORT.itemsize + index * COMMAND.itemsize
-        row: np.void = np.frombuffer(self.body, COMMAND, 1, offset)[0]
+        return self._row(COMMAND, self.rows * LOAD_PORT.itemsize + index * COMMAND.itemsize)
+
+    def shown(self, cast: Cast) -> Shown:
+        """Return what controllers are shown of the state before a tick; nothing is applied."""
+        at = self.rows * (LOAD_PORT.itemsize + COMMAND.itemsize)
+        samples = np.frombuffer(self.body, SAMPLE, self.rows, at)
+        at += samples.nbytes
+        supplies = np.frombuffer(self.body, SUPPLY_SAMPLE, len(cast.supplies), at)
+        at += supplies.nbytes
+        body = None if cast.body is None else np.frombuffer(self.body, cast.body, 1, at)
+        return Shown(samples, np.zeros(self.rows, COMMAND), supplies, body)
+
+    def _row(self, record: np.dtype[np.void], offset: int) -> np.void:
+        row: np.void = np.frombuffer(self.body, record, 1, offset)[0]
         return row
-
-    def samples(self) -> Records:
-        """Return the `SAMPLE` of every actuator before the tick, (rows,); controllers' only."""
-        return np.frombuffer(self.body, SAMPLE, self.rows, self._samples_start)
-
-    def shared(self) -> Records:
-        """Return the `SHARED_SAMPLE` before the tick, (1,); controllers' only."""
-        return np.frombuffer(
-            self.body, SHARED_SAMPLE, 1, self._samples_start + self.rows * SAMPLE.itemsize)
-
-    @property
-    def _samples_start(self) -> int:
-        return self.rows * (LOAD_PORT.itemsize + COMMAND.itemsize)
 
     def restored_tick(self) -> int:
         """Return the tick before which a restore puts everyone."""
@@ -155,23 +178,19 @@ class Answer(NamedTuple):
 
 
 def encode_hello(
-        run_id: int, count: int, step_ns: int, starts: Records, names: Sequence[str]) -> bytes:
-    """
-    Return the bytes of the ``count``-th hello.
-
-    ``starts`` are the `START` rows of the actuators, (n,); ``names`` all participants, the
-    actuators first.
-    """
+        run_id: int, count: int, step_ns: int, starts: Records, cast: Cast) -> bytes:
+    """Return the bytes of the ``count``-th hello; ``starts`` are the actuators' `START`, (n,)."""
     return _step(
         StepKind.HELLO, run_id, count, len(starts),
-        _NUMBER.pack(step_ns) + starts.tobytes() + '\n'.join(names).encode())
+        _NUMBER.pack(step_ns) + starts.tobytes() + cast.encode())
 
 
 def encode_tick(run_id: int, tick: int, rows: Rows, has_controllers: bool) -> bytes:
-    """Return the bytes of one tick: ports and commands, for controllers also the samples."""
+    """Return the bytes of one tick: ports and commands, for controllers also what is shown."""
     body = rows.ports.tobytes() + rows.commands.tobytes()
     if has_controllers:
-        body += rows.samples.tobytes() + rows.shared.tobytes()
+        body += rows.samples.tobytes() + rows.supplies.tobytes()
+        body += b'' if rows.body is None else rows.body.tobytes()
     return _step(StepKind.TICK, run_id, tick, len(rows.ports), body)
 
 
@@ -242,6 +261,31 @@ def decode_answer(data: bytes) -> Answer:
     _check_version(version)
     parts = _split(data, n, _ACKNOWLEDGEMENT.size)
     return Answer(_ANSWER_KINDS[kind], run_id, tick, index, parts, bool(is_repeated))
+
+
+def actuator_parts(
+        reply: Records, sample: Records, applied: Records,
+        tuned: Mapping[str, float]) -> list[bytes | None]:
+    """
+    Return the parts of an actuator's answer: its rows, and the parameters that changed.
+
+    ``reply``, ``sample`` and ``applied`` are its `LOAD_REPLY`, `SAMPLE` and `COMMAND`, (1,).
+    """
+    return [reply.tobytes() + sample.tobytes() + applied.tobytes(),
+            json.dumps(dict(tuned)).encode() if tuned else None]
+
+
+def take_actuator_parts(parts: Sequence[bytes | None], row: int, rows: Rows) -> None:
+    """Fill one row from the parts of an actuator's answer; inverse of `actuator_parts`."""
+    data, tuned = parts
+    assert data is not None
+    sample_at = LOAD_REPLY.itemsize
+    applied_at = sample_at + SAMPLE.itemsize
+    rows.reply_values[row] = np.frombuffer(data, np.float64, sample_at // 8)
+    rows.sample_values[row] = np.frombuffer(data, np.float64, SAMPLE.itemsize // 8, sample_at)
+    rows.applied[row] = np.frombuffer(data, COMMAND, 1, applied_at)[0]
+    if tuned is not None:
+        rows.tuned = {**rows.tuned, row: json.loads(tuned)}
 
 
 def _join(parts: Sequence[bytes | None]) -> bytes:

@@ -6,6 +6,8 @@ of the leg gives its own `run`: the configuration to simulate, record and replay
 """
 
 from dataclasses import dataclass, replace
+from functools import cached_property
+import math
 from pathlib import Path
 from typing import Any
 
@@ -58,6 +60,20 @@ class Scenario:
 
         """
         return replace(self, n_ticks=_duration(duration, self.run.step_ns, 'duration'))
+
+    def speaks_at(self, tick: int) -> bool:
+        """Return whether a command of the scenario takes effect at a tick."""
+        return tick in self._events or tick >= self._first_motion
+
+    @cached_property
+    def _events(self) -> frozenset[int]:
+        return frozenset(event.tick for track in self.tracks for event in track.events)
+
+    @cached_property
+    def _first_motion(self) -> float:
+        """Return the tick from which on a motion may go on."""
+        return min((event.tick for track in self.tracks for event in track.events
+                    if event.motion is not None), default=math.inf)
 
     def commands(self, tick: int, out: NDArray[np.void]) -> None:
         """Write over the `COMMAND` rows of one tick, (n_actuators,), where something is said."""

@@ -10,7 +10,8 @@ from dataclasses import dataclass, field
 from functools import cached_property
 
 from isa_ros.config.catalogue import gait_section, leg_section
-from isa_ros.config.run_config import ActuatorConfig, LegConfig
+from isa_ros.config.leg_config import LegConfig
+from isa_ros.config.run_config import ActuatorConfig
 from isa_ros.config.sections import as_tree, build, merge, Place, written
 from isa_ros.config.yaml_text import Tree
 from isa_ros.core.parameter import choice, parameter

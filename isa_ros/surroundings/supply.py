@@ -1,11 +1,14 @@
 """
-The hydraulic supply all actuators share: constant pressure, or pump and accumulator.
+A hydraulic supply and the actuators it feeds: pump side, and the line back to its tank.
 
-Actuators see the supply pressure of the tick's start over the whole tick and report the
-volume they drew; the supply then advances over the same interval. Pressures are gauge.
+Actuators see both pressures of the tick's start over the whole tick and report the volumes that
+they drew and gave back; the supply then advances over the same interval. Pressures are gauge,
+flows leave the supply and enter the return line when positive. Equations C7-C9.
+
+Neglected: length and resistance of the pressure line, heat, air in the tank.
 """
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 import math
 
 from isa_ros.core.kernel import kernel
@@ -16,7 +19,26 @@ import numpy as np
 
 ATMOSPHERE = 101325.0        # Pa, between gauge and the gas law's absolute pressure
 SUPPLY_STEP = 1e-4           # s, of the supply's own RK4
-_SLOWEST_TICKS = 10.0        # ticks a supply's time constant must last (coupling.md)
+_SLOWEST_TICKS = 10.0        # ticks a time constant must last (coupling.md)
+_LITRE = 1e-3                # m3
+
+
+@dataclass(frozen=True, kw_only=True)
+class HeldReturn(Parameters):
+    """A return line that stays at the pressure of the tank."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class VolumeReturn(Parameters):
+    """A return line with a volume of oil, separated from the tank by a filter or a long hose."""
+
+    oil_volume_l: float = parameter('oil in the return line', 'l', gt=0.0, le=100.0)
+    bulk_modulus: float = parameter('effective, of the return line', 'Pa', gt=0.0, le=2e9)
+    tank_lpm_per_mpa: float = parameter(
+        'flow to the tank per pressure above it', 'l/min/MPa', gt=0.0, le=1e4)
+
+
+ReturnLine = HeldReturn | VolumeReturn
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -25,6 +47,7 @@ class ConstantSupply(Parameters):
 
     pressure_mpa: float = parameter('gauge supply pressure', 'MPa', gt=0.0, le=70.0)
     return_pressure_mpa: float = parameter('gauge return pressure', 'MPa', ge=0.0, le=5.0)
+    return_line: ReturnLine = field(default=HeldReturn(), metadata={'absent': HeldReturn()})
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -45,6 +68,7 @@ class AccumulatorSupply(Parameters):
     relief_mpa: float = parameter('gauge pressure of the relief valve', 'MPa', gt=0.0, le=70.0)
     relief_lpm_per_mpa: float = parameter(
         'relief flow per pressure above opening', 'l/min/MPa', gt=0.0, le=1e3)
+    return_line: ReturnLine = field(default=HeldReturn(), metadata={'absent': HeldReturn()})
 
 
 SupplySheet = ConstantSupply | AccumulatorSupply
@@ -52,17 +76,43 @@ SupplySheet = ConstantSupply | AccumulatorSupply
 SUPPLY = np.dtype([
     ('p_set', 'f8'), ('p_t', 'f8'), ('v_0', 'f8'), ('p_0', 'f8'), ('n', 'f8'), ('c_line', 'f8'),
     ('q_max', 'f8'), ('lag', 'f8'), ('band', 'f8'), ('p_relief', 'f8'), ('k_relief', 'f8')])
-SUPPLY_STATE = np.dtype([('pressure', 'f8'), ('pump_flow', 'f8')])
+RETURN_LINE = np.dtype([
+    ('p_t', 'f8'),              # of the tank, Pa
+    ('c', 'f8'),                # V/beta, m3/Pa
+    ('g', 'f8'),                # to the tank, m3/s/Pa
+])
+SUPPLY_SAMPLE = np.dtype([
+    ('pressure', '<f8'),            # Pa gauge
+    ('return_pressure', '<f8'),     # Pa gauge
+    ('pump_flow', '<f8'),           # m3/s; 0 of an ideal supply
+    ('drawn', '<f8'),               # by the actuators since t = 0, m3
+    ('returned', '<f8'),            # by the actuators since t = 0, m3
+])
+"""State of one supply, which is also its sample at the end of a tick."""
 
 
 def supply_record(sheet: AccumulatorSupply) -> np.ndarray:
     """Return the `SUPPLY` record of an accumulator supply, shape (1,)."""
-    return np.array([(
-        sheet.pressure_mpa * MPA, sheet.return_pressure_mpa * MPA,
-        sheet.gas_volume_l * 1e-3, sheet.precharge_mpa * MPA + ATMOSPHERE,
-        sheet.polytropic_exponent, sheet.line_volume_l * 1e-3 / sheet.bulk_modulus,
-        sheet.pump_flow_lpm * LPM, sheet.pump_lag_s, sheet.pump_band_mpa * MPA,
-        sheet.relief_mpa * MPA, sheet.relief_lpm_per_mpa * LPM / MPA)], dtype=SUPPLY)
+    record = np.zeros(1, SUPPLY)
+    for name, value in {
+            'p_set': sheet.pressure_mpa * MPA, 'p_t': sheet.return_pressure_mpa * MPA,
+            'v_0': sheet.gas_volume_l * _LITRE, 'p_0': sheet.precharge_mpa * MPA + ATMOSPHERE,
+            'n': sheet.polytropic_exponent,
+            'c_line': sheet.line_volume_l * _LITRE / sheet.bulk_modulus,
+            'q_max': sheet.pump_flow_lpm * LPM, 'lag': sheet.pump_lag_s,
+            'band': sheet.pump_band_mpa * MPA, 'p_relief': sheet.relief_mpa * MPA,
+            'k_relief': sheet.relief_lpm_per_mpa * LPM / MPA}.items():
+        record[name] = value
+    return record
+
+
+def return_record(line: VolumeReturn, tank_pressure: float) -> np.ndarray:
+    """Return the `RETURN_LINE` record of a return line with a volume, shape (1,)."""
+    record = np.zeros(1, RETURN_LINE)
+    record['p_t'] = tank_pressure
+    record['c'] = line.oil_volume_l * _LITRE / line.bulk_modulus
+    record['g'] = line.tank_lpm_per_mpa * LPM / MPA
+    return record
 
 
 @kernel
@@ -106,52 +156,98 @@ def supply_advance(steps, drawn, supplies, states):
         state.pump_flow = q + h / 6.0 * (q_1 + 2.0 * (q_2 + q_3) + q_4)
 
 
+@kernel
+def return_rate(pressure, returned, line):
+    """Return dP/dt of the return line: C dP/dt = Q_returned - G (P - P_tank)  (C9), in Pa/s."""
+    return (returned - line.g * (pressure - line.p_t)) / line.c
+
+
+@kernel
+def return_advance(steps, returned, lines, states):
+    """Advance the return line of ``states[0]`` with the mean flow ``returned``; RK4 as above."""
+    h, line, state = SUPPLY_STEP, lines[0], states[0]
+    for _ in range(steps):
+        p = state.return_pressure
+        p_1 = return_rate(p, returned, line)
+        p_2 = return_rate(p + 0.5 * h * p_1, returned, line)
+        p_3 = return_rate(p + 0.5 * h * p_2, returned, line)
+        p_4 = return_rate(p + h * p_3, returned, line)
+        state.return_pressure = p + h / 6.0 * (p_1 + 2.0 * (p_2 + p_3) + p_4)
+
+
 class Supply:
     """
-    The supply over a run; `pressure` and `return_pressure` hold for the next tick.
+    One supply over a run.
 
-    ``flow_slope`` is the sum of the valves' largest dQ/dP in m3/s/Pa.
+    ``flow_slope`` is the sum of the valves' largest dQ/dP in m3/s/Pa; ``state`` is the supply's
+    `SUPPLY_SAMPLE` row, shape (1,), None: a row of its own.
 
     Raises
     ------
     ParameterError
-        The supply is too small to hold its pressure over one tick.
+        The supply or its return line is too small to hold its pressure over one tick, or the
+        return line is too fast for its integration.
 
     """
 
-    def __init__(self, sheet: SupplySheet, step_ns: int, flow_slope: float) -> None:
-        self.return_pressure = sheet.return_pressure_mpa * MPA
+    def __init__(
+            self, sheet: SupplySheet, step_ns: int, flow_slope: float,
+            state: np.ndarray | None = None) -> None:
         self._step = step_ns * 1e-9
+        self._substeps = round(self._step / SUPPLY_STEP)
+        self.state = np.zeros(1, SUPPLY_SAMPLE) if state is None else state
+        tank_pressure = sheet.return_pressure_mpa * MPA
+        self.state['pressure'] = sheet.pressure_mpa * MPA
+        self.state['return_pressure'] = tank_pressure
         self._record: np.ndarray | None = None
-        self._state = np.zeros(1, SUPPLY_STATE)
-        self._state['pressure'] = sheet.pressure_mpa * MPA
+        self._line: np.ndarray | None = None
         if isinstance(sheet, AccumulatorSupply):
             self._record = supply_record(sheet)
-            self._refuse_small(self._record, flow_slope)
+            self._refuse_small(
+                'capacitance', capacitance(self.pressure, self._record[0]), flow_slope,
+                'gas_volume_l')
+        if isinstance(sheet.return_line, VolumeReturn):
+            self._line = return_record(sheet.return_line, tank_pressure)
+            self._refuse_small(
+                'capacitance of the return line', float(self._line['c'][0]), flow_slope,
+                'return_line.oil_volume_l')
+            self._refuse_fast(self._line[0])
 
-    def _refuse_small(self, record: np.ndarray, flow_slope: float) -> None:
-        holds = capacitance(self.pressure, record[0]) / flow_slope
-        bound = _SLOWEST_TICKS * self._step
+    def _refuse_small(self, what: str, c: float, flow_slope: float, key: str) -> None:
+        holds, bound = c / flow_slope, _SLOWEST_TICKS * self._step
         if holds < bound:
             raise ParameterError(
-                f'supply: capacitance over flow slope = {holds * 1e3:.3g} ms, '
-                f'must be >= {bound * 1e3:.3g} ms (ten ticks); enlarge gas_volume_l')
+                f'supply: {what} over flow slope = {holds * 1e3:.3g} ms, '
+                f'must be >= {bound * 1e3:.3g} ms (ten ticks); enlarge {key}')
+
+    def _refuse_fast(self, line: np.void) -> None:
+        """Refuse a return line whose time constant C/G is below the step of the integration."""
+        constant = float(line['c'] / line['g'])
+        if constant < SUPPLY_STEP:
+            raise ParameterError(
+                f'supply: time constant of the return line = {constant * 1e3:.3g} ms, must be >= '
+                f'{SUPPLY_STEP * 1e3:g} ms; reduce return_line.tank_lpm_per_mpa')
 
     @property
     def pressure(self) -> float:
-        """Return the gauge supply pressure in Pa."""
-        return float(self._state['pressure'][0])
+        """Return the gauge supply pressure in Pa, which holds for the next tick."""
+        return float(self.state['pressure'][0])
 
-    def advance(self, drawn_volume: float) -> None:
-        """Advance one tick in which the actuators drew ``drawn_volume`` (m3)."""
+    @property
+    def return_pressure(self) -> float:
+        """Return the gauge return pressure in Pa, which holds for the next tick."""
+        return float(self.state['return_pressure'][0])
+
+    def advance(self, drawn: float, returned: float = 0.0) -> None:
+        """Advance one tick in which the actuators drew and gave back these volumes (m3)."""
+        self.state['drawn'] += drawn
+        self.state['returned'] += returned
         if self._record is not None:
-            steps = round(self._step / SUPPLY_STEP)
-            supply_advance(steps, drawn_volume / self._step, self._record, self._state)
+            supply_advance(self._substeps, drawn / self._step, self._record, self.state)
+        if self._line is not None:
+            return_advance(self._substeps, returned / self._step, self._line, self.state)
 
-    def state(self) -> bytes:
-        """Return the whole state; `restore` continues from it byte for byte."""
-        return self._state.tobytes()
-
-    def restore(self, state: bytes) -> None:
-        """Continue from a `state` of a supply with the same sheet."""
-        self._state[:] = np.frombuffer(state, SUPPLY_STATE, 1)
+    @property
+    def is_constant(self) -> bool:
+        """Return whether both pressures stay as they are at t = 0."""
+        return self._record is None and self._line is None

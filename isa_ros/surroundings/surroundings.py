@@ -1,106 +1,99 @@
 """
-What the actuators of one run have in common: the supply, and the leg where there is one.
+Everything outside the actuators of a run: the supplies that feed them and the body they move.
 
-The coordinator's side of the load port (equation L1), and the messages that show it.
+The surroundings' side of the load port (equation L1). They know neither messages nor the
+configuration: `isa_ros.config.assembly` makes them from a run.
 """
 
-import math
+from collections.abc import Sequence
+from typing import NamedTuple
 
-from isa_ros.config.run_config import LegConfig, RunConfig
-from isa_ros.core.signals import START
-from isa_ros.core.timebase import NS_PER_SECOND
-from isa_ros.core.units import MPA
 from isa_ros.errors import ConfigError
-from isa_ros.loads.sheets import static_force
-from isa_ros.plant.plant import plant_record
-from isa_ros.plant.servo_valve import largest_flow_slope
-from isa_ros.run.exchange import Messages, Records
-from isa_ros.surroundings.leg.leg import Leg, Pose
-from isa_ros.surroundings.leg.sheet import JOINTS
-from isa_ros.surroundings.supply import Supply
-from msg_adapters import clock, event, fluid_pressure, joint_state, wrench
-from msg_adapters.coordinator_messages import ClockMessage, LegMessages, SupplyMessages
+from isa_ros.surroundings.body import Body, Records
+from isa_ros.surroundings.supply import Supply, SUPPLY_SAMPLE, SupplySheet
 import numpy as np
 
-CLOCK_TOPIC = ('/clock', clock.TYPE)
-EVENT_TOPIC = ('/coordinator/events', event.TYPE)
-SUPPLY_TOPIC = ('/coordinator/supply_pressure', fluid_pressure.TYPE)
-JOINT_TOPIC = ('/joint_states', joint_state.TYPE)
-CONTACT_TOPIC = ('/coordinator/ground_contact', wrench.TYPE)
 
-_SHOWN = {'joint_position': 'position', 'joint_velocity': 'velocity', 'joint_torque': 'torque',
-          'foot_force': 'foot_force'}
-"""Field of the leg's sample by that of `SHARED_SAMPLE`."""
+class Feed(NamedTuple):
+    """One supply, and what it is connected to."""
+
+    name: str
+    """'' for the only supply of a run."""
+    sheet: SupplySheet
+    rows: Sequence[int]
+    """Rows of the actuators that it feeds."""
+    flow_slope: float
+    """Sum of their valves' largest dQ/dP, m3/s/Pa."""
 
 
-class SharedLoad:
-    """Supply and leg of a run; see `isa_ros.run.exchange.SharedLoad`."""
+class Surroundings:
+    """
+    Supplies and body over a run; a run without a body has actuators on loads of their own.
 
-    def __init__(self, run: RunConfig) -> None:
-        self._step_ns = run.step_ns
-        span = (run.supply.pressure_mpa - run.supply.return_pressure_mpa) * MPA
-        slope = sum(largest_flow_slope(plant_record(a.sheet.plant)[0].valve, span)
-                    for a in run.actuators)
-        self._supply = Supply(run.supply, run.step_ns, slope)
-        self._leg: Leg | None = None
-        self._release_ns = 0
-        self._t_ns = 0
-        if run.leg is not None:
-            self._leg = _leg(run, run.leg)
-            self._release_ns = round(run.leg.start.release_s * NS_PER_SECOND)
-        self._clock = ClockMessage()
-        self._supply_alone = SupplyMessages()
-        self._with_leg = LegMessages(JOINTS)
+    ``starts`` are `START` rows, (n_actuators,), with position and force at t = 0 of those
+    actuators that do not move the body; ``sensor_stiffness`` of all of them, N/m or Nm/rad,
+    (n_actuators,).
+    """
 
-    @property
-    def topics(self) -> tuple[tuple[str, str], ...]:
-        """Return (name, type) of what `messages` gives, in its order."""
-        if self._leg is None:
-            return (SUPPLY_TOPIC,)
-        return SUPPLY_TOPIC, JOINT_TOPIC, CONTACT_TOPIC
+    def __init__(
+            self, feeds: Sequence[Feed], body: Body | None, starts: Records,
+            sensor_stiffness: Sequence[float], step_ns: int) -> None:
+        self.feeds = tuple(feeds)
+        self.body = body
+        self.supplies: Records = np.zeros(len(feeds), SUPPLY_SAMPLE)
+        """`SUPPLY_SAMPLE` of every supply at the end of the last tick; overwritten."""
+        self._supplies = [
+            Supply(feed.sheet, step_ns, feed.flow_slope, self.supplies[k:k + 1])
+            for k, feed in enumerate(feeds)]
+        self._rows = [np.array(feed.rows, np.int64) for feed in feeds]
+        self._rest = starts.copy()
+        self._sensor_stiffness = sensor_stiffness
+
+    def starts(self) -> Records:
+        """
+        Return the `START` of every actuator, shape (n_actuators,).
+
+        An actuator that moves the body carries it: its sensor is strained by the force it
+        holds, so the piston or rotor stands beside the load by force over stiffness (S1).
+        """
+        starts = self._rest.copy()
+        self._fill_pressures(starts)
+        if self.body is not None:
+            self.body.starts(starts)
+            for row in self.body.rows:
+                starts[row]['position'] += starts[row]['force'] / self._sensor_stiffness[row]
+        return starts
 
     def ports(self, ports: Records) -> None:
         """Fill the `LOAD_PORT` of every actuator for the next tick, shape (n_actuators,)."""
-        ports['supply_pressure'] = self._supply.pressure
-        ports['return_pressure'] = self._supply.return_pressure
-        if self._leg is not None:
-            if self._leg.is_held and self._t_ns >= self._release_ns:
-                self._leg.release()
-            self._leg.ports(ports)
+        self._fill_pressures(ports)
+        if self.body is not None:
+            self.body.ports(ports)
+
+    def _fill_pressures(self, rows: Records) -> None:
+        for supply, fed in zip(self._supplies, self._rows):
+            rows['supply_pressure'][fed] = supply.pressure
+            rows['return_pressure'][fed] = supply.return_pressure
 
     def advance(self, replies: Records) -> None:
         """
-        Advance leg and supply by one tick under the `LOAD_REPLY` of every actuator.
+        Advance body and supplies by one tick under the `LOAD_REPLY` of every actuator.
 
         Raises
         ------
         SimulationDiverged
-            A state of the leg is no longer finite.
+            A state of the body is no longer finite.
 
         """
-        if self._leg is not None:
-            self._leg.advance(replies)
-        self._supply.advance(sum(replies['supply_volume'].tolist()))
-        self._t_ns += self._step_ns
-
-    def show(self, shared: Records) -> None:
-        """Fill the `SHARED_SAMPLE` of this instant, shape (1,)."""
-        shared['supply_pressure'] = self._supply.pressure
-        for shown, name in _SHOWN.items():
-            shared[shown] = math.nan if self._leg is None else self._leg.sample[name]
-
-    def clock(self, t_ns: int) -> bytes:
-        """Return the `/clock` message of ``t_ns``."""
-        return self._clock.pack(t_ns)
-
-    def event(self, t_ns: int, text: str) -> bytes:
-        """Return the message that says what was done to the run at ``t_ns``."""
-        return event.pack(t_ns, text)
+        if self.body is not None:
+            self.body.advance(replies)
+        drawn, returned = replies['supply_volume'].tolist(), replies['return_volume'].tolist()
+        for supply, feed in zip(self._supplies, self.feeds):
+            supply.advance(_sum(drawn, feed.rows), _sum(returned, feed.rows))
 
     def snapshot(self) -> bytes:
         """Return the whole state; `restore` continues from it byte for byte."""
-        leg = b'' if self._leg is None else self._leg.state()
-        return self._t_ns.to_bytes(8, 'little') + self._supply.state() + leg
+        return self.supplies.tobytes() + (b'' if self.body is None else self.body.snapshot())
 
     def restore(self, snapshot: bytes) -> None:
         """
@@ -109,49 +102,22 @@ class SharedLoad:
         Raises
         ------
         ConfigError
-            It is none.
+            The bytes are not such a snapshot.
 
         """
-        here = len(self.snapshot())
-        if len(snapshot) != here:
+        expected = len(self.snapshot())
+        if len(snapshot) != expected:
             raise ConfigError(
-                f'saved state of the load: {len(snapshot)} bytes, must be {here}')
-        supply_end = 8 + len(self._supply.state())
-        self._t_ns = int.from_bytes(snapshot[:8], 'little')
-        self._supply.restore(snapshot[8:supply_end])
-        if self._leg is not None:
-            self._leg.restore(snapshot[supply_end:])
-
-    def messages(self, t_ns: int) -> Messages:
-        """Return the messages of this instant in the order of `topics`."""
-        if self._leg is None:
-            return self._supply_alone.pack(self._supply.pressure, t_ns)
-        return self._with_leg.pack(self._supply.pressure, self._leg.shown, t_ns)
-
-    def starts(self, run: RunConfig) -> Records:
-        """
-        Return the `START` of every actuator, shape (n_actuators,).
-
-        At a joint of the leg the actuator carries it: its sensor is strained by the force
-        it holds, so the piston or rotor stands beside the load by force over stiffness (S1).
-        """
-        starts = np.zeros(len(run.actuators), START)
-        starts['position'] = [actuator.initial_position for actuator in run.actuators]
-        starts['force'] = [static_force(actuator.load) for actuator in run.actuators]
-        starts['supply_pressure'] = self._supply.pressure
-        starts['return_pressure'] = self._supply.return_pressure
-        if self._leg is not None and run.leg is not None:
-            rows = [run.index(name) for _, name in run.leg.joints]
-            for row, x, force in zip(
-                    rows, self._leg.actuator_positions, self._leg.actuator_forces):
-                k_s = plant_record(run.actuators[row].sheet.plant)[0].mechanics.k_s
-                starts[row]['position'] = x + force / k_s
-                starts[row]['force'] = force
-        return starts
+                f'saved state of the surroundings: {len(snapshot)} bytes, must be {expected}')
+        supplies_end = self.supplies.nbytes
+        self.supplies[:] = np.frombuffer(snapshot[:supplies_end], SUPPLY_SAMPLE)
+        if self.body is not None:
+            self.body.restore(snapshot[supplies_end:])
 
 
-def _leg(run: RunConfig, leg: LegConfig) -> Leg:
-    start = leg.start
-    pose = Pose(haa=start.angle('haa'), hfe=start.angle('hfe'), kfe=start.angle('kfe'),
-                foot_height=start.foot_height_mm * 1e-3)
-    return Leg(leg.sheet, pose, run.step_ns, [run.index(name) for _, name in leg.joints])
+def _sum(values: Sequence[float], rows: Sequence[int]) -> float:
+    """Return the sum in the order of the rows: the `sum` of Python 3.12 rounds otherwise."""
+    total = 0.0
+    for row in rows:
+        total += values[row]
+    return total

@@ -144,7 +144,7 @@ def monolith(rig, actuators, leg, commands, n_rows, release_ns, aside):
         constants[j] = actuator_record(sheet, offset_steps)[0]
     bodies['plant']['mechanics']['position'][0] += aside
     trace = np.zeros(n_rows, TRACE)
-    y0 = tuple(np.frombuffer(leg.state(), np.float64, N_STATES, TIME_BYTES).tolist())
+    y0 = tuple(np.frombuffer(leg.snapshot(), np.float64, N_STATES, TIME_BYTES).tolist())
     run(n_rows, ROW_NS // PLANT_STEP_NS, rig.command_ns // PLANT_STEP_NS,
         release_ns // PLANT_STEP_NS, commands, y0, np.array([rig.supply_pressure, 0.0]), bodies,
         bodies.view(np.float64).reshape(2, 3, STATE_SIZE), rates,

@@ -108,6 +108,6 @@ class Rig:
             work += replies['mean_forces'].mean(axis=1) * (np.array(leg.actuator_positions) - x)
             last = rows[-1:]
             last['force'] = replies['force']
-            last['leg'] = np.frombuffer(leg.state(), np.float64, N_STATES, TIME_BYTES)
-            last['normal'], last['work'] = leg.sample['foot_force'][2], work
+            last['leg'] = np.frombuffer(leg.snapshot(), np.float64, N_STATES, TIME_BYTES)
+            last['normal'], last['work'] = leg.sample[0]['foot_force'][2], work
         return trace

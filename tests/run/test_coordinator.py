@@ -3,12 +3,12 @@
 from collections.abc import Callable, Sequence
 import itertools
 
+from isa_ros.core.saved_state import RunState
 from isa_ros.core.signals import HAS_SETPOINT
 from isa_ros.errors import ConfigError, RunError, SimulationDiverged
 from isa_ros.run.coordinator import Coordinator, Interrupted, Plan
 from isa_ros.run.exchange import Messages, Records, Rows
 from isa_ros.run.pacing import Pace, ProgressMeter
-from isa_ros.run.saved_state import RunState
 from isa_ros.run.topics import Order
 import numpy as np
 import pytest

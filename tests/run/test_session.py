@@ -4,8 +4,8 @@ from pathlib import Path
 
 from isa_ros.config.paths import CONFIG, find
 from isa_ros.config.run_file import load_run
+from isa_ros.core.saved_state import RunState
 from isa_ros.errors import BagError, ConfigError
-from isa_ros.run.saved_state import RunState
 from isa_ros.run.session import prepare, Request
 import pytest
 

@@ -115,16 +115,16 @@ def excite(
 
     """
     trace = np.zeros(len(values), TRACE)
-    arrays = actuator.kernel_arguments
+    memory = actuator.memory
     done = excite_steps(
         actuator.t_ns // PLANT_STEP_NS, _STEPS, quantity == 'position',
         np.ascontiguousarray(values, dtype=float),
         np.zeros(len(values)) if velocities is None else np.ascontiguousarray(velocities),
-        trace, *arrays[:8])
+        trace, memory.ports, memory.constants, memory.bodies, memory.rates, memory.states,
+        memory.slopes, memory.reu, memory.read_outs)
     actuator.t_ns += min(done + 1, len(values)) * PERIOD_NS
     if done < len(values):
-        states = arrays[4]
-        broken = first_broken(states)
+        broken = first_broken(memory.states)
         raise SimulationDiverged(
-            actuator.t_ns, f'{actuator.name}: {state_name(broken)}', states[0, broken])
+            actuator.t_ns, f'{actuator.name}: {state_name(broken)}', memory.states[0, broken])
     return trace

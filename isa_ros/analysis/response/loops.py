@@ -11,6 +11,7 @@ from dataclasses import dataclass, replace
 import math
 from typing import Any
 
+from isa_ros.actuator.actuator import PAPER_SUPPLY
 from isa_ros.actuator.sheet import actuator_record, ActuatorSheet
 from isa_ros.core.units import MILLI, MPA
 from isa_ros.errors import ConfigError
@@ -19,7 +20,6 @@ from isa_ros.reu.lead_lag import LeadLag
 from isa_ros.reu.wiring import active, Off, VARIABLES
 import numpy as np
 
-SUPPLY = 20.7 * MPA     # the paper's, as an actuator alone has it
 FORCE_SHARE = 0.1       # of the rating; the paper's force bandwidth
 INNER_SHARE = 0.25      # of spool travel, current, as the paper's Table 1
 POSITION_SHARE = 0.01   # of the stroke: slow enough for the valve's flow up to tens of Hz
@@ -120,7 +120,7 @@ def loop_of(sheet: ActuatorSheet, name: str) -> Loop:
     share, largest = {
         'position': (POSITION_SHARE, float(sheet.plant.drive.stroke)),
         'force': (FORCE_SHARE, rating(sheet)),
-        'pressure': (FORCE_SHARE, SUPPLY),
+        'pressure': (FORCE_SHARE, PAPER_SUPPLY),
         'spool': (INNER_SHARE, float(record['plant']['valve']['x_max'])),
         'current': (INNER_SHARE, float(record['plant']['valve']['x_max']) * current_per_spool),
     }[name]
@@ -153,4 +153,4 @@ def rating(sheet: ActuatorSheet) -> float:
     """Return the largest force (N) or torque (Nm) pushing out: rated, else hydraulic stall."""
     if isinstance(sheet.reu.position, Impedance):
         return sheet.reu.position.force_out
-    return float(sheet.plant.drive.areas[0]) * SUPPLY
+    return float(sheet.plant.drive.areas[0]) * PAPER_SUPPLY

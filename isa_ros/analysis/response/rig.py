@@ -4,10 +4,10 @@ from collections.abc import Sequence
 from dataclasses import dataclass, replace
 import math
 
-from isa_ros.actuator.actuator import SmartActuator, Timing
+from isa_ros.actuator.actuator import PAPER_SUPPLY, SmartActuator, Timing
 from isa_ros.actuator.sheet import ActuatorSheet, refuse_wiring
 from isa_ros.analysis.response.excitation import excite, PERIOD_NS, RATE_HZ
-from isa_ros.analysis.response.loops import Loop, loop_of, SUPPLY, Unit, units_of
+from isa_ros.analysis.response.loops import Loop, loop_of, Unit, units_of
 from isa_ros.config.catalogue import actuator_model, model_names
 from isa_ros.config.default_actuator import default_load, DEFAULT_TIMING
 from isa_ros.config.own_load import own_load
@@ -15,6 +15,7 @@ from isa_ros.config.paths import CONFIG, find
 from isa_ros.config.run_config import ActuatorConfig, RunConfig
 from isa_ros.config.run_file import load_run
 from isa_ros.config.sections import build, kind_of, Place
+from isa_ros.config.supplies import SUPPLY, SupplyConfig
 from isa_ros.core.units import MPA
 from isa_ros.errors import ConfigError
 from isa_ros.loads.sheets import LocalLoad, static_force
@@ -24,6 +25,7 @@ import numpy as np
 TIMING = Timing(PERIOD_NS, 0)
 REST_S = 0.3            # before anything is excited: several times the slowest loop's settling
 BLOCKED = 'blocked'
+PAPER = ConstantSupply(pressure_mpa=PAPER_SUPPLY / MPA, return_pressure_mpa=0.0)
 TICK_TIMEOUT_S = 5.0    # of a model's run, as in the shipped run files
 
 
@@ -77,7 +79,7 @@ class Rig:
     def start(self) -> SmartActuator:
         """Return the actuator at rest: `REST_S` with its reference standing still."""
         actuator = SmartActuator(self.config, TIMING)
-        supply = self.run.supply
+        supply = self.run.supply_of(self.config.name)
         actuator.start(
             self.config.initial_position, static_force(self.config.load),
             supply.pressure_mpa * MPA, supply.return_pressure_mpa * MPA)
@@ -141,8 +143,7 @@ def rig(choice: Choice) -> Rig:
     else:
         kind = kind or model.default_load
         config = replace(config, load=own_load({'kind': kind}, Place('--load'), model))
-    alone = replace(run, leg=None, actuators=(replace(config, sheet=loop.sheet),))
-    return Rig(alone, loop, kind)
+    return Rig(run.alone(replace(config, sheet=loop.sheet)), loop, kind)
 
 
 def _of_model(choice: Choice) -> RunConfig:
@@ -160,8 +161,8 @@ def _of_model(choice: Choice) -> RunConfig:
         default_load(model), 0.5 * sheet.plant.drive.stroke)
     return RunConfig(
         choice.name, DEFAULT_TIMING.step_ns, DEFAULT_TIMING.controller_offset_ns,
-        TICK_TIMEOUT_S, ConstantSupply(pressure_mpa=SUPPLY / MPA, return_pressure_mpa=0.0),
-        (config,), None, source=choice.name)
+        TICK_TIMEOUT_S,
+        (SupplyConfig(SUPPLY, PAPER, (config.name,)),), (config,), source=choice.name)
 
 
 def _of_run(choice: Choice) -> RunConfig:
@@ -181,7 +182,7 @@ def _of_run(choice: Choice) -> RunConfig:
         names = ', '.join(actuator.name for actuator in run.actuators)
         raise ConfigError(f'{run.source} has several actuators, --actuator must name one: {names}')
     config = run.actuators[0] if choice.actuator is None else run.actuator(choice.actuator)
-    return replace(run, actuators=(config,))
+    return run.alone(config)
 
 
 def _place(given: float | None, config: ActuatorConfig, unit: Unit) -> float:

@@ -152,7 +152,8 @@ def run_file(run: RunConfig) -> str:
     return dump({
         'name': run.name, 'step_ms': run.step_ns * 1e-6,
         'controller_offset_ms': run.controller_offset_ns * 1e-6,
-        'tick_timeout_s': run.tick_timeout_s, 'supply': as_tree(run.supply, SupplySheet),
+        'tick_timeout_s': run.tick_timeout_s,
+        'supply': as_tree(run.supplies[0].sheet, SupplySheet),
         'actuators': dict(actuators)})
 
 

@@ -115,7 +115,7 @@ def recording_of(
     assert t is not None
     return Recording(
         plant=plant_record(actuator.sheet.plant)[0], step=_grid(t, bag),
-        return_pressure=run.supply.return_pressure_mpa * MPA, **signals)
+        return_pressure=run.supply_of(actuator.name).return_pressure_mpa * MPA, **signals)
 
 
 def _grid(t: np.ndarray, bag: Path) -> float:

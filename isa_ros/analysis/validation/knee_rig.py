@@ -54,7 +54,7 @@ def on_ground(material: str) -> RunConfig:
     rig = load_run(find(RIG, CONFIG))
     assert rig.leg is not None
     ground = build(Ground, *material_section(material, 'ground'))
-    return replace(rig, leg=replace(rig.leg, sheet=replace(rig.leg.sheet, ground=ground)))
+    return replace(rig, body=replace(rig.leg, sheet=replace(rig.leg.sheet, ground=ground)))
 
 
 def knee_force(experiment: Experiment) -> tuple[np.ndarray, np.ndarray]:

@@ -10,62 +10,67 @@ import tempfile
 
 from isa_ros.bench.child import environment
 from isa_ros.bench.peers.catalogue import ends, Peer
-from isa_ros.bench.peers.frames import Answer, decode_answer, encode_end, encode_start, encode_tick
 from isa_ros.bench.peers.link import Link
 from isa_ros.bench.peers.worker import settle
+from isa_ros.config.assembly import surroundings_of
 from isa_ros.config.run_config import RunConfig
 from isa_ros.errors import RunError
 from isa_ros.processes.stopping import PARENT_VARIABLE, StopRequest
-from isa_ros.run.exchange import Messages, Records, Rows, Silence
-from isa_ros.run.group import by_actuator, state_messages
+from isa_ros.run.exchange import Records, Rows
+from isa_ros.run.narrator import Outlets
 from isa_ros.run.session import record, Report, Session
-from isa_ros.surroundings.surroundings import SharedLoad
+from isa_ros.run.wire import (
+    Answer, Cast, decode_answer, encode_end, encode_hello, encode_tick, take_actuator_parts)
 
 START_PERIOD_S = 0.05
 SLICE_S = 0.5
 JOIN_SLICES = 1200      # of a start: a minute
 TICK_SLICES = 20        # ten seconds
 END_S = 5.0
+RUN_ID = 1              # there is one run on a link
 _NOT_HERE = 'a peer runs to its end: no pause, no saved state'
 
 
-class PeerTransport(Silence):
-    """Steps and answers of a run over a `Link`; nobody else listens to a message."""
+class PeerTransport:
+    """A `Transport` to the workers of a `Link`, with the frames of the run's own wire."""
 
     def __init__(
             self, link: Link, run: RunConfig, starts: Records,
             lost: Callable[[], str | None]) -> None:
         self._link = link
-        self._names = [actuator.name for actuator in run.actuators]
-        self._states = state_messages(run.actuators)
+        self._cast = Cast(
+            [actuator.name for actuator in run.actuators],
+            [supply.name for supply in run.supplies], None)
         self._step_ns = run.step_ns
         self._starts = starts
         self._lost = lost
         self._tick = 0
 
-    def join(self, rows: Rows) -> Sequence[Messages]:
-        """Send starts until all workers have answered the same one."""
+    def join(self, rows: Rows) -> None:
+        """Send hellos until all workers have answered the same one."""
         for count in range(1, JOIN_SLICES + 1):
-            self._link.send(encode_start(count, self._starts))
-            answers = self._answers(-count, START_PERIOD_S, slices=1)
-            if len(answers) == len(self._names):
-                return self._said(answers, rows, 0)
+            self._link.send(
+                encode_hello(RUN_ID, count, self._step_ns, self._starts, self._cast))
+            answers = self._answers(count, START_PERIOD_S, slices=1)
+            if len(answers) == len(self._cast.names):
+                self._take(answers, rows)
+                return
         raise RunError(f'{self._missing(answers)}: no answer before tick 0')
 
     def begin(self) -> None:
-        """Let nobody publish."""
+        """Do nothing: no worker publishes."""
 
     def send(self, tick: int, rows: Rows) -> None:
         """Send the step."""
         self._tick = tick
-        self._link.send(encode_tick(tick, rows.ports, rows.commands))
+        self._link.send(encode_tick(RUN_ID, tick, rows, has_controllers=False))
 
-    def receive(self, rows: Rows) -> Sequence[Messages]:
+    def receive(self, rows: Rows) -> None:
         """Wait for every worker."""
         answers = self._answers(self._tick, SLICE_S, TICK_SLICES)
-        if len(answers) < len(self._names):
+        if len(answers) < len(self._cast.names):
             raise RunError(f'{self._missing(answers)}: no answer to tick {self._tick}')
-        return self._said(answers, rows, (self._tick + 1) * self._step_ns)
+        self._take(answers, rows)
 
     def idle(self) -> None:
         """Refuse what no bench asks for."""
@@ -75,22 +80,20 @@ class PeerTransport(Silence):
         """Refuse what no bench asks for."""
         raise RunError(_NOT_HERE)
 
-    def restore(
-            self, tick: int, snapshots: Sequence[bytes], rows: Rows) -> Sequence[Messages]:
+    def restore(self, tick: int, snapshots: Sequence[bytes], rows: Rows) -> None:
         """Refuse what no bench asks for."""
         raise RunError(_NOT_HERE)
 
-    def _said(self, answers: dict[int, Answer], rows: Rows, t_ns: int) -> Sequence[Messages]:
-        """Take what the workers say and return the messages of each at ``t_ns``."""
+    def _take(self, answers: dict[int, Answer], rows: Rows) -> None:
+        """Fill the rows from the answers of all workers."""
+        rows.tuned = {}
         for k, answer in answers.items():
-            rows.replies[k], rows.samples[k] = answer.reply, answer.sample
-        states = by_actuator(self._states.pack(rows.samples, t_ns))
-        return [(*answers[k].messages, *own) for k, own in enumerate(states)]
+            take_actuator_parts(answer.parts, k, rows)
 
     def _answers(self, tick: int, timeout_s: float, slices: int) -> dict[int, Answer]:
         """Return the answers to one step that come before ``slices`` waits were in vain."""
         answers: dict[int, Answer] = {}
-        while len(answers) < len(self._names) and slices:
+        while len(answers) < len(self._cast.names) and slices:
             data = self._link.receive(timeout_s)
             if data is None:
                 slices -= 1
@@ -99,11 +102,11 @@ class PeerTransport(Silence):
                 continue
             answer = decode_answer(data)
             if answer.tick == tick:
-                answers[answer.worker] = answer
+                answers[answer.participant] = answer
         return answers
 
     def _missing(self, answers: dict[int, Answer]) -> str:
-        return ', '.join(name for k, name in enumerate(self._names) if k not in answers)
+        return ', '.join(name for k, name in enumerate(self._cast.names) if k not in answers)
 
 
 class Workers:
@@ -148,15 +151,16 @@ def run_over(
         peer: Peer, session: Session, report: Report | None, should_stop: StopRequest) -> None:
     """Run and record what was prepared, over a peer."""
     settle(session.run)
-    load = SharedLoad(session.run)
+    surroundings = surroundings_of(session.run)
     with tempfile.TemporaryDirectory(prefix='isa_bench_') as directory:
         with _open(peer, Path(directory), len(session.run.actuators)) as link, \
                 Workers(session, peer, Path(directory)) as workers:
-            transport = PeerTransport(link, session.run, load.starts(session.run), workers.lost)
+            transport = PeerTransport(link, session.run, surroundings.starts(), workers.lost)
             try:
-                record(session, transport, load, report, should_stop)
+                record(session, transport, surroundings, lambda topics: Outlets(), report,
+                       should_stop)
             finally:
-                link.send(encode_end())
+                link.send(encode_end(RUN_ID))
 
 
 @contextmanager

@@ -5,15 +5,15 @@ import gc
 from pathlib import Path
 import sys
 
-from isa_ros.actuator.actuator import Timing
+from isa_ros.actuator.actuator import SmartActuator
 from isa_ros.bench.peers.catalogue import ends, peer
-from isa_ros.bench.peers.frames import decode_step, encode_answer, Kind
 from isa_ros.bench.peers.link import Link
+from isa_ros.config.assembly import timing_of
 from isa_ros.config.run_config import RunConfig
 from isa_ros.config.run_file import load_run
 from isa_ros.processes.stopping import end_with_parent
-from isa_ros.run.stepping import SteppedActuator
 from isa_ros.run.warm_up import warmed_up
+from isa_ros.run.wire import actuator_parts, AnswerKind, decode_step, encode_answer, StepKind
 from isa_ros.scenario.scenario import load_scenario
 
 SLICE_S = 0.5
@@ -25,11 +25,11 @@ def main(arguments: Sequence[str]) -> None:
     name, directory, index, *files = arguments
     run = _run(files)
     config = run.actuators[int(index)]
-    stepped = SteppedActuator(config, Timing(run.step_ns, run.controller_offset_ns))
+    actuator = SmartActuator(config, timing_of(run))
     settle(run)
     link = ends(peer(name)).worker_end(Path(directory), int(index))
     try:
-        answer_steps(link, stepped, int(index))
+        answer_steps(link, actuator, int(index))
     finally:
         link.close()
 
@@ -47,24 +47,26 @@ def _run(files: Sequence[str]) -> RunConfig:
     return run
 
 
-def answer_steps(link: Link, stepped: SteppedActuator, index: int) -> None:
+def answer_steps(link: Link, actuator: SmartActuator, index: int) -> None:
     """Take part in one run, as a participant does."""
+    memory = actuator.memory
     while True:
         data = link.receive(SLICE_S)
         if data is None:
             continue
         step = decode_step(data)
-        if step.kind is Kind.END:
+        if step.kind is StepKind.END:
             return
-        if step.kind is Kind.START:
-            applied = stepped.start(step.start(index))
+        if step.kind is StepKind.HELLO:
+            actuator.start(*step.start(index).item())
         else:
             command = step.command(index)
             if command['kinds']:
-                stepped.actuator.accept(command)
-            applied = stepped.advance(step.port(index))
-        actuator = stepped.actuator
-        link.send(encode_answer(index, step.tick, actuator.reply, actuator.sample, applied))
+                actuator.accept(command)
+            actuator.tick(step.port(index))
+        link.send(encode_answer(
+            AnswerKind.DONE, step.run_id, step.tick, index, actuator_parts(
+                memory.replies, memory.samples, memory.applied, actuator.applied_parameters)))
 
 
 if __name__ == '__main__':

@@ -33,7 +33,8 @@ def run_alone(
             '>= 0')
     executor: Any = EventsExecutor(context=node.context)
     executor.add_node(node)
-    node.publish(node.start(None))
+    node.start(None)
+    node.publish()
     step_s = node.setup.timing.step_ns / NS_PER_SECOND
     tick, began = 0, time.monotonic()
     try:
@@ -53,7 +54,8 @@ def run_alone(
                     continue
                 wait = max(0.0, ((tick + 1) * step_s - elapsed) / real_time_factor)
             for _ in range(min(due - tick, BURST_TICKS)):
-                node.publish(node.advance())
+                node.advance()
+                node.publish()
                 tick += 1
             executor.spin_once(min(wait, LARGEST_LAG_S) if due <= tick else 0.0)
             node.check_publishers()

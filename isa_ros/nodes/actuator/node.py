@@ -1,9 +1,9 @@
 """ROS 2 face of one smart actuator: setpoints in, one tick, messages out."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from typing import Any, NamedTuple
 
-from isa_ros.actuator.actuator import ActuatorConfig, SmartActuator, Timing
+from isa_ros.actuator.actuator import ActuatorConfig, participant_digest, SmartActuator, Timing
 from isa_ros.actuator.tunable import tunables
 from isa_ros.core.signals import COMMAND, HAS_ENABLE
 from isa_ros.errors import SetpointError
@@ -13,8 +13,9 @@ from isa_ros.nodes.middleware.publishers import PreparedPublishers
 from isa_ros.nodes.middleware.qos import SETPOINT
 from isa_ros.nodes.middleware.refusals import refusals
 from isa_ros.nodes.middleware.servers import open_server
-from isa_ros.run.exchange import Messages, Records
-from isa_ros.run.stepping import SteppedActuator
+from isa_ros.run.exchange import Records
+from isa_ros.run.packing import Names, Packer, Shown
+from isa_ros.surroundings.supply import SUPPLY_SAMPLE
 from msg_adapters.actuator_messages import TOPICS
 from msg_adapters.setpoint import msg_to_command
 import numpy as np
@@ -39,12 +40,13 @@ class ActuatorNode(Node):
     """
     One actuator on ROS topics; the node's name is the actuator's.
 
-    It owns neither physics nor clock: a `Member`, a `LocalTransport` or the standalone
-    loop calls `start` and `advance`. Setpoints, parameters and requests that arrive between two
-    ticks take effect at the next one; at the same tick a command of the scenario wins.
+    It owns neither physics nor clock: a `ParticipantEnd`, an `InProcess` transport or the loop
+    of a lone actuator calls `start` and `advance`. Setpoints, parameters and requests that
+    arrive between two ticks take effect at the next one; at the same tick a command of the
+    scenario wins.
 
-    ``resolve`` says what actuator it is, once the node's own name and parameters are known.
-    ``has_mailbox``: a `Member` of this node waits for its steps.
+    ``resolve`` returns what actuator it is, once the node's own name and parameters are known.
+    ``has_mailbox``: a `ParticipantEnd` of this node waits for its steps.
     """
 
     def __init__(
@@ -54,12 +56,19 @@ class ActuatorNode(Node):
         with refusals():
             super().__init__(name, start_parameter_services=False, **kwargs)
         self.setup = resolve(self)
-        self._stepped = SteppedActuator(*self.setup)
+        config, timing, actuator = self.setup
+        self.actuator = actuator or SmartActuator(config, timing)
+        """The actuator itself."""
         self._tunables = TunableParameters(
-            self, self._stepped.actuator, tunables(self.setup.config.sheet),
-            self._parameter_overrides)
-        self._prepared = PreparedPublishers(
+            self, self.actuator, tunables(config.sheet), self._parameter_overrides)
+        memory = self.actuator.memory
+        self._packer = Packer(
+            Names([(config.name, config.sheet.is_rotary)]),
+            Shown(memory.samples, memory.applied, np.zeros(0, SUPPLY_SAMPLE), None),
+            is_run=False)
+        self.outlet = PreparedPublishers(
             self, [(f'~/{suffix}', type_) for suffix, type_ in TOPICS])
+        """The publishers of `TOPICS`."""
         setpoints = self.create_subscription(
             JointState, '~/setpoint', self._on_setpoint, SETPOINT)
         enable = self.create_service(SetBool, '~/enable', self._on_enable)
@@ -69,32 +78,42 @@ class ActuatorNode(Node):
 
     @property
     def digest(self) -> str:
-        """Return a hash of the resolved parameters."""
-        return self._stepped.digest
+        """Return a hash of the resolved parameters and of the grid of time."""
+        return participant_digest(self.actuator, self.setup.timing)
 
     @property
     def t_ns(self) -> int:
         """Return the simulated time reached."""
-        return self._stepped.actuator.t_ns
+        return self.actuator.t_ns
 
     @property
     def reply(self) -> Records:
         """Return the `LOAD_REPLY` of the last tick, (1,)."""
-        return self._stepped.actuator.reply_rows
+        return self.actuator.memory.replies
 
     @property
     def sample(self) -> Records:
         """Return the `SAMPLE` at the end of the last tick, (1,)."""
-        return self._stepped.actuator.sample_rows
+        return self.actuator.memory.samples
 
-    def start(self, start: np.void | None) -> Messages:
-        """Begin anew at t = 0 from a `START` row; None: as configured. Return what applies."""
-        return self._stepped.start(start)
+    @property
+    def applied(self) -> Records:
+        """Return the `COMMAND` that took effect at its start, of no kind for none, (1,)."""
+        return self.actuator.memory.applied
 
-    def advance(
-            self, port: np.void | None = None, command: np.void | None = None) -> Messages:
+    @property
+    def tuned(self) -> Mapping[str, float]:
+        """Return the parameters that changed at its start, SI."""
+        return self.actuator.applied_parameters
+
+    def start(self, start: np.void | None) -> None:
+        """Begin anew at t = 0 from a `START` row; None: as configured."""
+        if start is not None:
+            self.actuator.start(*start.item())
+
+    def advance(self, port: np.void | None = None, command: np.void | None = None) -> None:
         """
-        Take a command, advance one tick and return what was applied at its start.
+        Take a command and advance one tick.
 
         Raises
         ------
@@ -103,21 +122,26 @@ class ActuatorNode(Node):
 
         """
         if command is not None and command['kinds']:
-            self._stepped.actuator.accept(command)
-        return self._stepped.advance(port)
+            self.actuator.accept(command)
+        self.actuator.tick(port)
 
     def snapshot(self) -> bytes:
         """Return the whole state; `restore` continues from it byte for byte."""
-        return self._stepped.actuator.snapshot()
+        return self.actuator.snapshot()
 
-    def restore(self, snapshot: bytes) -> Messages:
-        """Continue from a `snapshot` and return what was applied before that instant."""
-        return self._stepped.restore(snapshot)
+    def restore(self, snapshot: bytes) -> None:
+        """Continue from a `snapshot`."""
+        self.actuator.restore(snapshot)
 
-    def publish(self, applied: Messages, states: Messages | None = None) -> None:
-        """Publish what was applied and the state; None: made here, if anybody listens."""
-        if self._prepared.is_heard():
-            self._prepared.send((*applied, *(states or self._stepped.states())))
+    def publish(self) -> None:
+        """Publish the state and what was applied, where there is a subscription."""
+        if not self.outlet.is_heard():
+            return
+        t_ns = self.actuator.t_ns
+        tuned = self.actuator.applied_parameters
+        self._packer.pack(
+            t_ns, max(0, t_ns - self.setup.timing.step_ns), {0: tuned} if tuned else {})
+        self.outlet.send(self._packer.of_actuator(0))
 
     def serve(self) -> None:
         """Take the setpoints and requests that have arrived; do not wait."""
@@ -140,14 +164,14 @@ class ActuatorNode(Node):
             self.get_logger().warning(
                 f'setpoint rejected: {error}', throttle_duration_sec=WARNING_PERIOD_S)
             return
-        self._stepped.actuator.accept(command)
+        self.actuator.accept(command)
 
     def _on_enable(
             self, request: SetBool.Request, response: SetBool.Response) -> SetBool.Response:
         command = np.zeros(1, COMMAND)[0]
         command['kinds'] = HAS_ENABLE
         command['is_enabled'] = request.data
-        self._stepped.actuator.accept(command)
+        self.actuator.accept(command)
         response.success = True
         response.message = (
             f'{"enabled" if request.data else "disabled"} from t = {self.t_ns * 1e-9:.6f} s')

@@ -14,8 +14,8 @@ from isa_ros.config.run_file import load_run
 from isa_ros.errors import ConfigError, IsaError
 from isa_ros.nodes.actuator.alone import run_alone
 from isa_ros.nodes.actuator.node import ActuatorNode, Setup
-from isa_ros.nodes.lockstep.participant_end import Member
-from isa_ros.nodes.lockstep.roles import ActuatorSeat
+from isa_ros.nodes.lockstep.participant_end import ParticipantEnd
+from isa_ros.nodes.lockstep.roles import ActuatorRole
 from isa_ros.nodes.middleware.arguments import init_ros
 from isa_ros.nodes.middleware.environment import set_defaults
 from isa_ros.processes.stopping import end_with_parent, StopRequest
@@ -55,7 +55,7 @@ def _run(model: str, should_stop: StopRequest) -> None:
     try:
         gc.freeze()  # collecting what is loaded by now would halt a tick for 60 ms
         if _boolean(node, 'lockstep'):
-            Member(node, ActuatorSeat(node)).spin(should_stop)
+            ParticipantEnd(node, ActuatorRole(node)).spin(should_stop)
         else:
             run_alone(node, _number(node, 'real_time_factor'), should_stop)
     finally:

@@ -1,18 +1,19 @@
-"""ROS 2 face of the run: time, leg and supply on topics."""
+"""ROS 2 face of the run: time, events, supplies and body on topics."""
 
 from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
 from isa_ros.config.paths import CONFIG, find, SCENARIOS
+from isa_ros.core.topic import Topic
 from isa_ros.errors import ConfigError
 from isa_ros.nodes.coordinator.services import REAL_TIME_FACTOR
 from isa_ros.nodes.middleware.publishers import PreparedPublishers
 from isa_ros.nodes.middleware.refusals import refusals
-from isa_ros.run.exchange import Messages
+from isa_ros.run.narrator import Outlet, Outlets
 from isa_ros.run.pacing import JOIN_TIMEOUT_S
 from isa_ros.run.session import Request
-from isa_ros.surroundings.surroundings import CLOCK_TOPIC, EVENT_TOPIC
+from msg_adapters import clock, event
 from rcl_interfaces.msg import ParameterDescriptor
 from rclpy.node import Node
 from rclpy.parameter import Parameter
@@ -23,33 +24,23 @@ _STRINGS = Parameter.Type.STRING_ARRAY
 
 
 class CoordinatorNode(Node):
-    """Publish what the coordinator of a run has to say."""
+    """Publish time, events, supplies and body of a run."""
 
     def __init__(self, **kwargs: Any) -> None:
         with refusals():
             super().__init__(NAME, start_parameter_services=False, **kwargs)
-        self._time = PreparedPublishers(self, [CLOCK_TOPIC])
-        self._events = PreparedPublishers(self, [(_relative(EVENT_TOPIC[0]), EVENT_TOPIC[1])])
-        self._shown: PreparedPublishers | None = None
+        self._time = PreparedPublishers(self, [clock.TOPIC])
+        self._events = _Events(self, [(_relative(event.TOPIC[0]), event.TOPIC[1])])
 
-    def advertise(self, topics: Sequence[tuple[str, str]]) -> None:
-        """Advertise the topics of the shared load, (name in the bag, type) each."""
-        self._shown = PreparedPublishers(
-            self, [(_relative(name), type_) for name, type_ in topics])
+    def outlets(self, surroundings: Sequence[Topic], actuators: Sequence[Outlet]) -> Outlets:
+        """
+        Advertise the topics of supplies and body, and return the publishers of a run.
 
-    def publish(self, messages: Messages) -> None:
-        """Publish the messages of the shared load to whoever listens."""
-        if self._shown is not None:
-            self._shown.publish(messages)
-
-    def publish_clock(self, clock: bytes) -> None:
-        """Publish `/clock`."""
-        self._time.publish((clock,))
-
-    def publish_event(self, event: bytes) -> None:
-        """Publish what was done to the run."""
-        self._events.refresh()
-        self._events.publish((event,))
+        ``actuators`` are those of the actuators in this process, none where they have their own.
+        """
+        shown = PreparedPublishers(
+            self, [(_relative(topic.name), topic.type_name) for topic in surroundings])
+        return Outlets(self._time, self._events, shown, actuators)
 
     def request(self) -> Request:
         """
@@ -107,3 +98,12 @@ def _path(text: str) -> Path | None:
 def _relative(name: str) -> str:
     """Return a topic of the bag as the node names it, so that namespaces work."""
     return f'~/{name.removeprefix(_OWN)}' if name.startswith(_OWN) else name.removeprefix('/')
+
+
+class _Events(PreparedPublishers):
+    """Events are rare: subscriptions are looked for at each."""
+
+    def is_heard(self) -> bool:
+        """Return whether there is a subscription at this moment."""
+        self.refresh()
+        return super().is_heard()

@@ -4,12 +4,14 @@ from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
 import gc
 
+from isa_ros.actuator.actuator import participant_digest
+from isa_ros.config.assembly import group_of, surroundings_of, timing_of
 from isa_ros.nodes.actuator.node import ActuatorNode, Setup
 from isa_ros.nodes.actuator.process import run
 from isa_ros.nodes.coordinator.node import CoordinatorNode
 from isa_ros.nodes.coordinator.services import RunServices
 from isa_ros.nodes.lockstep.coordinator_end import LockstepTransport
-from isa_ros.nodes.lockstep.expected import Cast, Expected, Limits
+from isa_ros.nodes.lockstep.expected import Expected, Limits, Participants
 from isa_ros.nodes.lockstep.mixed_transport import MixedTransport
 from isa_ros.nodes.middleware.domain import look_for_other_coordinator, sole_coordinator
 from isa_ros.nodes.middleware.environment import defaults
@@ -17,11 +19,11 @@ from isa_ros.nodes.middleware.refusals import refusals
 from isa_ros.processes.processes import actuator_processes, Children
 from isa_ros.processes.stopping import StopRequest
 from isa_ros.run.exchange import Transport
-from isa_ros.run.group import ActuatorGroup, state_messages
-from isa_ros.run.in_process import LocalTransport
+from isa_ros.run.in_process import InProcess
+from isa_ros.run.narrator import Outlet
 from isa_ros.run.session import record, Report, save_in_bag, Session
 from isa_ros.run.warm_up import warmed_up
-from isa_ros.surroundings.surroundings import SharedLoad
+from isa_ros.run.wire import Cast
 import rclpy
 from rclpy.node import Node
 from rclpy.parameter import Parameter
@@ -37,21 +39,21 @@ _QUIET = {
 
 def in_processes(session: Session, report: Report | None, should_stop: StopRequest) -> None:
     """Start one process per actuator, coordinate them from here, and end them."""
-    load = SharedLoad(session.run)
-    cast = _cast(session, load)
+    participants = _participants(session)
     request = session.request
     processes = actuator_processes(
-        session.run, request.config, request.scenario, session.run.names_here(request.elsewhere))
+        session.run, request.config, request.scenario,
+        session.run.names_here(request.elsewhere))
     children = Children(
         processes, request.namespace, _work if request.is_alone else None)
     with defaults(), sole_coordinator(), children:
         _settle(session)
         with _node(request.namespace) as node:
-            _coordinate(node, session, load, cast, report, should_stop, children.lost)
+            _coordinate(node, session, participants, report, should_stop, children.lost)
 
 
 def _settle(session: Session) -> None:
-    """Spare the collector what is loaded by now, which halts a run for 60 ms once or twice."""
+    """Freeze loaded objects: collecting them would halt a run for 60 ms once or twice."""
     if session.request.is_alone:
         gc.freeze()
 
@@ -84,93 +86,89 @@ def coordinate(
         node: CoordinatorNode, session: Session, report: Report | None,
         should_stop: StopRequest) -> None:
     """Run with participants that someone else starts."""
-    load = SharedLoad(session.run)
-    cast = _cast(session, load)
+    participants = _participants(session)
     _settle(session)
-    _coordinate(node, session, load, cast, report, should_stop, _nobody)
+    _coordinate(node, session, participants, report, should_stop, _unwatched)
 
 
-def _nobody() -> None:
-    """Know nothing of the participants' processes."""
+def _unwatched() -> None:
+    """Return None: the processes of the participants are not known here."""
 
 
-def _cast(session: Session, load: SharedLoad) -> Cast:
+def _participants(session: Session, *, are_here: bool = False) -> Participants:
     """
-    Return the participants with the digests they must have.
+    Return who takes part, with the digests that the actuators must have.
 
     The kernels are compiled by then, which not every child shall do at once.
     """
-    run = session.run
-    actuators = [Expected(config.name, stepped.digest)
-                 for config, stepped in zip(run.actuators, warmed_up(run))]
-    return Cast(
-        [*actuators, *_controllers(session)], load.starts(run), run.step_ns,
-        states=state_messages(run.actuators))
-
-
-def _controllers(session: Session) -> list[Expected]:
-    return [Expected(name, '') for name in session.run.controllers]
+    run, timing = session.run, timing_of(session.run)
+    surroundings = surroundings_of(run)
+    expected = [Expected(actuator.name, '' if are_here else participant_digest(actuator, timing))
+                for actuator in warmed_up(run)]
+    expected += [Expected(name, '') for name in run.controllers]
+    body = None if surroundings.body is None else surroundings.body.sample.dtype
+    cast = Cast([own.name for own in expected], [own.name for own in run.supplies], body)
+    return Participants(
+        expected, cast, surroundings.starts(), run.step_ns,
+        first_remote=len(run.actuators) if are_here else 0)
 
 
 def _coordinate(
-        node: CoordinatorNode, session: Session, load: SharedLoad, cast: Cast,
+        node: CoordinatorNode, session: Session, participants: Participants,
         report: Report | None, should_stop: StopRequest,
         lost: Callable[[], str | None]) -> None:
-    node.advertise(load.topics)
-    transport = _lockstep(node, session, cast, should_stop, lost)
+    transport = _lockstep(node, session, participants, should_stop, lost)
     try:
-        _record(node, session, transport, load, report, should_stop)
+        _record(node, session, transport, (), report, should_stop)
     finally:
         transport.close()
 
 
 def _lockstep(
-        node: CoordinatorNode, session: Session, cast: Cast, should_stop: StopRequest,
-        lost: Callable[[], str | None]) -> LockstepTransport:
+        node: CoordinatorNode, session: Session, participants: Participants,
+        should_stop: StopRequest, lost: Callable[[], str | None]) -> LockstepTransport:
     limits = Limits(session.request.join_timeout_s, session.run.tick_timeout_s)
-    return LockstepTransport(node, cast, limits, node, watch=lost, should_stop=should_stop)
+    return LockstepTransport(node, participants, limits, watch=lost, should_stop=should_stop)
 
 
 def coordinate_locally(
         node: CoordinatorNode, session: Session, report: Report | None,
         should_stop: StopRequest) -> None:
     """Run with the nodes of all actuators in this process; controllers have their own."""
-    load = SharedLoad(session.run)
-    node.advertise(load.topics)
     configs = session.run.actuators
-    warmed_up(session.run)
+    participants = _participants(session, are_here=True)
     _settle(session)
-    group = ActuatorGroup(configs, session.timing)
+    group = group_of(session.run)
+    timing = timing_of(session.run)
     actuators = [
-        ActuatorNode(_resolver(Setup(config, session.timing, member.actuator)), config.name,
+        ActuatorNode(_resolver(Setup(config, timing, actuator)), config.name,
                      has_mailbox=False, namespace=session.request.namespace, **_QUIET)
-        for config, member in zip(configs, group.members)]
+        for config, actuator in zip(configs, group.actuators)]
     controllers = None
     try:
         look_for_other_coordinator(node)
-        starts = load.starts(session.run)
         transport: Transport
-        transport = local = LocalTransport(group, starts, node, actuators)
+        transport = local = InProcess(group, participants.starts, actuators)
         if session.run.controllers:
-            every = [*(Expected(own.name, '') for own in configs), *_controllers(session)]
-            cast = Cast(every, starts, session.run.step_ns, first_remote=len(configs))
-            controllers = _lockstep(node, session, cast, should_stop, _nobody)
+            controllers = _lockstep(node, session, participants, should_stop, _unwatched)
             transport = MixedTransport(local, controllers)
-        _record(node, session, transport, load, report, should_stop)
+        _record(node, session, transport, [own.outlet for own in actuators], report, should_stop)
     finally:
         if controllers is not None:
             controllers.close()
-        for actuator in actuators:
-            actuator.destroy_node()
+        for own in actuators:
+            own.destroy_node()
 
 
 def _record(
-        node: CoordinatorNode, session: Session, transport: Transport, load: SharedLoad,
-        report: Report | None, should_stop: StopRequest) -> None:
+        node: CoordinatorNode, session: Session, transport: Transport,
+        actuators: Sequence[Outlet], report: Report | None, should_stop: StopRequest) -> None:
     """Record the run, and serve what is asked of it."""
+    surroundings = surroundings_of(session.run)
     services = RunServices(
         node, session.pace.factor, lambda coordinator: save_in_bag(session, coordinator))
-    record(session, transport, load, report, should_stop, services.serve)
+    record(session, transport, surroundings, lambda topics: node.outlets(topics, actuators),
+           report, should_stop, services.serve)
 
 
 def _resolver(setup: Setup) -> Callable[[Node], Setup]:

@@ -8,17 +8,16 @@ from typing import Any
 from isa_ros.controller import merge_requests
 from isa_ros.core.signals import COMMAND
 from isa_ros.errors import ConfigError, RunError, SimulationDiverged
-from isa_ros.nodes.lockstep.expected import Cast, Limits
+from isa_ros.nodes.lockstep.expected import Limits, Participants
 from isa_ros.nodes.lockstep.sockets import LocalWires
 from isa_ros.nodes.middleware.domain import another_coordinator, refuse_other_coordinator
 from isa_ros.nodes.middleware.mailboxes import LOOK_S, open_mailbox, SLICE_S
 from isa_ros.nodes.middleware.qos import LOCKSTEP
 from isa_ros.run.coordinator import Interrupted
-from isa_ros.run.exchange import IDLE_S, Messages, Rows, Voice
-from isa_ros.run.group import by_actuator
+from isa_ros.run.exchange import IDLE_S, Rows
 from isa_ros.run.wire import (
     ACKNOWLEDGEMENT_TOPIC, Answer, AnswerKind, decode_answer, DIVERGENCE, encode_begin, encode_end,
-    encode_hello, encode_restore, encode_save, encode_tick, STEP_TOPIC)
+    encode_hello, encode_restore, encode_save, encode_tick, STEP_TOPIC, take_actuator_parts)
 import numpy as np
 from rclpy.duration import Duration
 from rclpy.node import Node
@@ -28,7 +27,6 @@ HELLO_PERIOD_S = 0.05
 STOP_GRACE_S = 1.0  # how long a tick may still take once a stop is asked for
 REPEAT_S = 1.0  # from one request of a step to the next: what was on its way may be lost
 _IDENTITY, _DIGEST, _FIRST = 0, 1, 2  # parts of a READY answer
-_REPLY, _SAMPLE, _APPLIED = 0, 1, 2  # parts of what an actuator's seat says
 _NO_REASON = b'without a reason'
 
 
@@ -44,17 +42,15 @@ class LockstepTransport:
     """
 
     def __init__(
-            self, node: Node, cast: Cast, limits: Limits, voice: Voice, *,
+            self, node: Node, participants: Participants, limits: Limits, *,
             watch: Callable[[], str | None], should_stop: Callable[[], bool]) -> None:
         self._node = node
-        self._cast = cast
-        self._participants = cast.participants
-        self._remote = frozenset(range(cast.first_remote, len(cast.participants)))
-        self._has_controllers = len(cast.participants) > len(cast.starts)
+        self._run = participants
+        self._participants = participants.expected
+        self._remote = frozenset(
+            range(participants.first_remote, len(participants.expected)))
+        self._has_controllers = len(participants.expected) > len(participants.starts)
         self._limits = limits
-        self.publish = voice.publish
-        self.publish_clock = voice.publish_clock
-        self.publish_event = voice.publish_event
         self._watch = watch
         self._should_stop = should_stop
         self._run_id = 0
@@ -72,9 +68,9 @@ class LockstepTransport:
         self._send: Callable[[bytes], None] = handle.publish_raw
         self._mailbox = open_mailbox(node, ACKNOWLEDGEMENT_TOPIC)
 
-    def join(self, rows: Rows) -> Sequence[Messages]:
+    def join(self, rows: Rows) -> None:
         """
-        Say hello until all participants have answered the same one; return their messages.
+        Say hello until all participants have answered the same one.
 
         One more hello is left its whole period, in which a second node of a name or another
         coordinator that was discovered a little later makes itself known. A second node that
@@ -96,18 +92,17 @@ class LockstepTransport:
         self._run_id = secrets.randbits(63) + 1
         self._wires.listen(self._run_id)
         start = time.monotonic()
-        names = [participant.name for participant in self._participants]
         complete: dict[int, Answer] = {}
         count = 0
         while True:
             count += 1
             self._send(encode_hello(
-                self._run_id, count, self._cast.step_ns, self._cast.starts, names))
+                self._run_id, count, self._run.step_ns, self._run.starts, self._run.cast))
             answers = self._hello_answers(count, is_last=bool(complete))
             refuse_other_coordinator(self._node)
             if complete:
-                return self._said(rows, 0, {
-                    k: answer.parts[_FIRST:] for k, answer in complete.items()})
+                self._take(rows, {k: answer.parts[_FIRST:] for k, answer in complete.items()})
+                return
             if len(answers) == len(self._remote):
                 complete = answers
                 continue
@@ -120,7 +115,7 @@ class LockstepTransport:
     def _no_answer(self, missing: Sequence[int]) -> RunError:
         names = ', '.join(self._participants[k].name for k in missing)
         # A controller is there once its node is; an actuator may also run alone.
-        how = ' with lockstep:=true' if missing[0] < len(self._cast.starts) else ''
+        how = ' with lockstep:=true' if missing[0] < len(self._run.starts) else ''
         return RunError(
             f'{names}: no answer before tick 0 after {self._limits.join_s:g} s; start it{how} in '
             'this ROS_DOMAIN_ID')
@@ -196,9 +191,9 @@ class LockstepTransport:
         self._requests += 1
         return -self._requests
 
-    def receive(self, rows: Rows) -> Sequence[Messages]:
+    def receive(self, rows: Rows) -> None:
         """Wait for every participant; see `Transport`."""
-        return self._said(rows, self._tick + 1, self._gather(AnswerKind.DONE))
+        self._take(rows, self._gather(AnswerKind.DONE))
 
     def idle(self) -> None:
         """Say that the run goes on, and look for lost participants and second nodes."""
@@ -217,9 +212,8 @@ class LockstepTransport:
         parts = self._gather(AnswerKind.SAVED)
         return [parts[k][0] or b'' for k in sorted(parts)]
 
-    def restore(
-            self, tick: int, snapshots: Sequence[bytes], rows: Rows) -> Sequence[Messages]:
-        """Put everyone where the snapshots were taken and return the messages of then."""
+    def restore(self, tick: int, snapshots: Sequence[bytes], rows: Rows) -> None:
+        """Put everyone where the snapshots were taken."""
         if len(snapshots) != len(self._participants):
             raise ConfigError(
                 f'the saved state has {len(snapshots)} participants, the run has '
@@ -228,28 +222,18 @@ class LockstepTransport:
         number = self._next_request()
         self._ask('the request to restore its state', number,
                   encode_restore(self._run_id, number, tick, snapshots))
-        return self._said(rows, tick, self._gather(AnswerKind.RESTORED))
+        self._take(rows, self._gather(AnswerKind.RESTORED))
 
-    def _said(
-            self, rows: Rows, tick: int,
-            parts: dict[int, list[bytes | None]]) -> Sequence[Messages]:
-        """Take what actuators and controllers say before ``tick``; return their messages."""
+    def _take(self, rows: Rows, parts: dict[int, list[bytes | None]]) -> None:
+        """Fill the rows from the answers of actuators and controllers."""
         n_actuators = len(rows.replies)
-        said: list[Messages] = []
+        if self._run.first_remote == 0:
+            rows.tuned = {}
         for k in sorted(parts):
-            own = parts[k]
-            if k >= n_actuators:
-                merge_requests(np.frombuffer(own[0] or b'', COMMAND), rows.requests)
-                said.append(())
-                continue
-            rows.reply_values[k] = np.frombuffer(own[_REPLY] or b'')
-            rows.sample_values[k] = np.frombuffer(own[_SAMPLE] or b'')
-            said.append(own[_APPLIED:])
-        if self._cast.states is not None:
-            states = self._cast.states.pack(rows.samples, tick * self._cast.step_ns)
-            for k, own_states in enumerate(by_actuator(states)):
-                said[k] = (*said[k], *own_states)
-        return said
+            if k < n_actuators:
+                take_actuator_parts(parts[k], k, rows)
+            else:
+                merge_requests(np.frombuffer(parts[k][0] or b'', COMMAND), rows.requests)
 
     def _gather(self, kind: AnswerKind) -> dict[int, list[bytes | None]]:
         """Wait until every participant has answered and return the parts of each."""

@@ -4,7 +4,7 @@ from collections.abc import Sequence
 from typing import NamedTuple
 
 from isa_ros.run.exchange import Records
-from msg_adapters.actuator_messages import StateMessages
+from isa_ros.run.wire import Cast
 
 
 class Expected(NamedTuple):
@@ -22,14 +22,13 @@ class Limits(NamedTuple):
     tick_s: float
 
 
-class Cast(NamedTuple):
+class Participants(NamedTuple):
     """Who takes part in a run, and how the actuators begin it."""
 
-    participants: Sequence[Expected]
+    expected: Sequence[Expected]
+    cast: Cast
     starts: Records
     """`START` rows of the actuators, (n_actuators,)."""
     step_ns: int
     first_remote: int = 0
     """Participants before it live in the coordinator's process and are not called here."""
-    states: StateMessages | None = None
-    """Makes messages of the actuators' samples; None: nobody wants them."""

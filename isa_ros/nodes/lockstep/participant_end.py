@@ -6,7 +6,7 @@ import time
 from typing import Any
 
 from isa_ros.errors import IsaError, SimulationDiverged
-from isa_ros.nodes.lockstep.roles import Parts, Seat
+from isa_ros.nodes.lockstep.roles import Parts, Role
 from isa_ros.nodes.lockstep.sockets import LocalWire
 from isa_ros.nodes.middleware.mailboxes import LOOK_S, open_mailbox, SLICE_S
 from isa_ros.nodes.middleware.qos import LOCKSTEP
@@ -20,20 +20,20 @@ SILENCE_S = 5.0
 """After it a coordinator counts as gone; one that waits or is paused speaks each second."""
 
 
-class Member:
+class ParticipantEnd:
     """
-    Let ``seat`` take part whenever the coordinator asks, and answer.
+    Let ``role`` take part whenever the coordinator asks, and answer.
 
-    The coordinator knows a member by the name of its node, and waits for it at every tick.
+    The coordinator knows a participant by the name of its node, and waits for it at every tick.
     One that is bound to a run answers no other coordinator until that run ends or its
     coordinator has been silent for `SILENCE_S`; one that only seemed to be gone goes on with
     its run. The middleware knows less: a killed one stays in its graph for a lease.
     """
 
-    def __init__(self, node: Node, seat: Seat) -> None:
+    def __init__(self, node: Node, role: Role) -> None:
         self._name = node.get_name()
         self._log = node.get_logger()
-        self._seat = seat
+        self._role = role
         self._identity = secrets.token_bytes(8)
         self._mailbox = open_mailbox(node, STEP_TOPIC)
         self._publisher = node.create_publisher(UInt8MultiArray, ACKNOWLEDGEMENT_TOPIC, LOCKSTEP)
@@ -70,7 +70,7 @@ class Member:
             if data is not None:
                 self._handle(decode_step(data))
                 continue
-            self._seat.serve()
+            self._role.serve()
             is_alone = bool(self._run_id) and not self._is_led(self._mailbox.count_senders())
             if is_alone and not self._is_alone:
                 self._log.warning(
@@ -121,11 +121,11 @@ class Member:
         elif step.kind is StepKind.BEGIN:
             self._begin()
         elif step.kind is StepKind.SAVE:
-            self._answer_to(step, AnswerKind.SAVED, lambda: (self._seat.snapshot(),))
+            self._answer_to(step, AnswerKind.SAVED, lambda: (self._role.snapshot(),))
         elif step.kind is StepKind.RESTORE:
             self._next_tick = step.restored_tick()
             self._answer_to(step, AnswerKind.RESTORED,
-                            lambda: self._seat.restore(step.snapshot(self._index)))
+                            lambda: self._role.restore(step.snapshot(self._index)))
         else:
             self._release()
 
@@ -147,7 +147,7 @@ class Member:
             return
         self._send(encode_answer(
             AnswerKind.READY, step.run_id, step.tick, self._index,
-            (self._identity, self._seat.digest, *self._first)))
+            (self._identity, self._role.digest, *self._first)))
 
     def _answer_strange(self, step: Step) -> None:
         """Give this name once to a run that goes on without it: another node may have it."""
@@ -160,7 +160,7 @@ class Member:
     def _bind(self, step: Step) -> bool:
         """Join the run of a hello; return whether it calls this participant."""
         self._release()
-        names = step.names()
+        names = step.cast().names
         if self._name not in names:
             if step.run_id not in self._strangers:
                 self._strangers.add(step.run_id)
@@ -171,14 +171,14 @@ class Member:
         self._run_id, self._heard = step.run_id, time.monotonic()
         self._index = names.index(self._name)
         self._wire = LocalWire.to_run(self._run_id, self._identity, SLICE_S)
-        self._seat.serve()
-        self._first = self._seat.start(step, self._index)
+        self._role.serve()
+        self._first = self._role.start(step, self._index)
         return True
 
     def _begin(self) -> None:
         if not self._has_begun:
             self._has_begun = True
-            self._seat.publish()
+            self._role.publish()
 
     def _repeat(self, step: Step) -> None:
         """Say once more what was said: the answer, or the first request, may have been lost."""
@@ -193,10 +193,10 @@ class Member:
                 f'tick {step.tick} came, {self._next_tick} was due'.encode(),))
             return
         self._next_tick += 1
-        self._seat.serve()
+        self._role.serve()
         # The answer first: publishing goes on while the coordinator works.
-        if self._answer_to(step, AnswerKind.DONE, lambda: self._seat.advance(step)):
-            self._seat.publish()
+        if self._answer_to(step, AnswerKind.DONE, lambda: self._role.advance(step)):
+            self._role.publish()
 
     def _answer_to(self, step: Step, kind: AnswerKind, work: Callable[[], Parts]) -> bool:
         """

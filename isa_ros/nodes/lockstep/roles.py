@@ -1,26 +1,23 @@
 """
 What a participant of the lockstep does with a step: simulate an actuator, or control.
 
-A seat answers in parts of bytes. An actuator's are its `LOAD_REPLY`, its `SAMPLE`, of which
-the coordinator makes the state messages itself, and then what it applied; a controller's are
-the `COMMAND` rows it asks for.
+A role answers in parts of bytes. An actuator's are its rows and the parameters that changed
+(`wire.actuator_parts`); a controller's are the `COMMAND` rows it asks for.
 """
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from typing import Protocol
 
-from isa_ros.controller import Controller, fill_requests, State
-from isa_ros.core.signals import COMMAND
-from isa_ros.run.exchange import Messages
-from isa_ros.run.stepping import Stepper
-from isa_ros.run.wire import Step
+from isa_ros.controller import by_name, Controller, ControllerSeat, State
+from isa_ros.run.exchange import Records
+from isa_ros.run.wire import actuator_parts, Cast, Step
 import numpy as np
 
 Parts = Sequence[bytes | None]
 
 
-class Seat(Protocol):
-    """One place among the participants of a run."""
+class Role(Protocol):
+    """What one participant does in a run."""
 
     @property
     def digest(self) -> bytes:
@@ -44,7 +41,7 @@ class Seat(Protocol):
         ...
 
     def publish(self) -> None:
-        """Publish what the last answer holds to whoever listens."""
+        """Publish what the last answer holds to those who subscribe."""
         ...
 
     def serve(self) -> None:
@@ -60,13 +57,84 @@ class Seat(Protocol):
         ...
 
 
-class ActuatorSeat:
+class Stepper(Protocol):
+    """One actuator of a run: its node. Rows are those of `SmartActuator.memory`, (1,)."""
+
+    @property
+    def digest(self) -> str:
+        """Return a hash of its resolved parameters."""
+        ...
+
+    @property
+    def reply(self) -> Records:
+        """Return the `LOAD_REPLY` of the last tick."""
+        ...
+
+    @property
+    def sample(self) -> Records:
+        """Return the `SAMPLE` at the end of the last tick."""
+        ...
+
+    @property
+    def applied(self) -> Records:
+        """Return the `COMMAND` that took effect at its start, of no kind for none."""
+        ...
+
+    @property
+    def tuned(self) -> Mapping[str, float]:
+        """Return the parameters that changed at its start, SI."""
+        ...
+
+    def start(self, start: np.void | None) -> None:
+        """Begin anew at t = 0 from a `START` row; None: as configured."""
+        ...
+
+    def advance(self, port: np.void | None, command: np.void | None) -> None:
+        """
+        Take the command of this tick and advance.
+
+        Raises
+        ------
+        SimulationDiverged
+            A state is no longer finite.
+
+        """
+        ...
+
+    def snapshot(self) -> bytes:
+        """Return the whole state; `restore` continues from it byte for byte."""
+        ...
+
+    def restore(self, snapshot: bytes) -> None:
+        """
+        Continue from a `snapshot`.
+
+        Raises
+        ------
+        ConfigError
+            The bytes are not a snapshot of an actuator with these parameters.
+
+        """
+        ...
+
+    def publish(self) -> None:
+        """Publish the state and what was applied to those who subscribe."""
+        ...
+
+    def serve(self) -> None:
+        """Take the setpoints and requests that have arrived; do not wait."""
+        ...
+
+
+class ActuatorRole:
     """An actuator in the lockstep."""
 
     def __init__(self, stepper: Stepper) -> None:
         self._stepper = stepper
         self._index = 0
-        self._applied: Messages = ()
+        self.publish = stepper.publish
+        self.serve = stepper.serve
+        self.snapshot = stepper.snapshot
 
     @property
     def digest(self) -> bytes:
@@ -76,67 +144,56 @@ class ActuatorSeat:
     def start(self, step: Step, index: int) -> Parts:
         """Begin anew at rest, as its `START` row says."""
         self._index = index
-        return self._answer(self._stepper.start(step.start(index)))
+        self._stepper.start(step.start(index))
+        return self._parts()
 
     def advance(self, step: Step) -> Parts:
         """Advance one tick under its row of ports and commands."""
-        return self._answer(
-            self._stepper.advance(step.port(self._index), step.command(self._index)))
-
-    def publish(self) -> None:
-        """Publish what the last answer holds."""
-        self._stepper.publish(self._applied)
-
-    def serve(self) -> None:
-        """Take the setpoints and requests that have arrived."""
-        self._stepper.serve()
-
-    def snapshot(self) -> bytes:
-        """Return the whole state."""
-        return self._stepper.snapshot()
+        self._stepper.advance(step.port(self._index), step.command(self._index))
+        return self._parts()
 
     def restore(self, snapshot: bytes) -> Parts:
         """Continue from a snapshot."""
-        return self._answer(self._stepper.restore(snapshot))
+        self._stepper.restore(snapshot)
+        return self._parts()
 
-    def _answer(self, applied: Messages) -> Parts:
-        self._applied = applied
-        stepper = self._stepper
-        return stepper.reply.tobytes(), stepper.sample.tobytes(), *applied
+    def _parts(self) -> Parts:
+        own = self._stepper
+        return actuator_parts(own.reply, own.sample, own.applied, own.tuned)
 
 
-class ControllerSeat:
+class ControllerRole:
     """A user's controller in the lockstep."""
 
     digest = b''
 
     def __init__(self, controller: Controller) -> None:
         self._controller = controller
-        self._names: list[str] = []
+        self._seat: ControllerSeat | None = None
+        self._cast = Cast((), (), None)
         self._step_ns = 0
-        self._requests = np.zeros(0, COMMAND)
 
     def start(self, step: Step, index: int) -> Parts:
-        """Tell the controller who is there; before it has seen a state it asks for nothing."""
-        self._names = step.names()[:step.rows]
-        self._step_ns = step.step_ns()
-        self._requests = np.zeros(step.rows, COMMAND)
-        self._controller.start(self._names)
-        return (self._requests.tobytes(),)
+        """Tell the controller which actuators there are; it asks for nothing yet."""
+        self._cast, self._step_ns = step.cast(), step.step_ns()
+        self._seat = ControllerSeat(self._controller, self._cast.names[:step.rows])
+        return self._parts()
 
     def advance(self, step: Step) -> Parts:
         """Show the state before the tick, and return what shall take effect after it."""
-        samples, shared = step.samples().view(np.recarray), step.shared().view(np.recarray)
-        state = State(step.tick * self._step_ns, dict(zip(self._names, samples)), shared[0])
-        self._requests.fill(0)
-        fill_requests(self._controller.step(state), self._names, self._requests)
-        return (self._requests.tobytes(),)
+        assert self._seat is not None, 'a run begins with a hello'
+        shown = step.shown(self._cast)
+        body = None if shown.body is None else shown.body.view(np.recarray)[0]
+        self._seat.step(State(
+            step.tick * self._step_ns, by_name(self._seat.names, shown.samples),
+            by_name(self._cast.supplies, shown.supplies), body))
+        return self._parts()
 
     def publish(self) -> None:
-        """Publish nothing: what it asked for is recorded as it takes effect."""
+        """Do nothing: what it asks for is recorded as it takes effect."""
 
     def serve(self) -> None:
-        """Listen to nobody: what else a node hears is its user's."""
+        """Do nothing: other subscriptions belong to the user's node."""
 
     def snapshot(self) -> bytes:
         """Return the whole state of the controller."""
@@ -145,4 +202,8 @@ class ControllerSeat:
     def restore(self, snapshot: bytes) -> Parts:
         """Continue from a snapshot; what was asked for before is in the run's own state."""
         self._controller.restore(snapshot)
-        return (self._requests.tobytes(),)
+        return self._parts()
+
+    def _parts(self) -> Parts:
+        assert self._seat is not None, 'a run begins with a hello'
+        return (self._seat.requests.tobytes(),)

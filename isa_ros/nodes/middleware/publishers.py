@@ -1,14 +1,14 @@
-"""Publish prepared bytes to whoever listens, and spend nothing where nobody does."""
+"""Publish prepared bytes where there is a subscription, and spend nothing where there is none."""
 
 from collections.abc import Sequence
 from typing import Any
 
 from isa_ros.nodes.middleware.qos import STATE
-from isa_ros.run.exchange import Messages
+from isa_ros.run.packing import Messages
 from msg_adapters.cdr_reader import message_class
 from rclpy.node import Node
 
-_REFRESH_TICKS = 20  # a new listener is noticed within that many ticks
+_REFRESH_TICKS = 20  # a new subscription is noticed within that many ticks
 
 
 class PreparedPublishers:
@@ -26,27 +26,22 @@ class PreparedPublishers:
         self._listened: list[tuple[int, Any]] = []
         self._countdown = 0
 
-    def publish(self, messages: Messages) -> None:
-        """Publish every message that is not None and has a listener."""
-        if self.is_heard():
-            self.send(messages)
-
     def is_heard(self) -> bool:
-        """Tell whether anybody listens; to be asked once a tick."""
+        """Return whether there is a subscription; to be asked once a tick."""
         if self._countdown == 0:
             self.refresh()
         self._countdown -= 1
         return bool(self._listened)
 
     def send(self, messages: Messages) -> None:
-        """Publish to those who listen, as `is_heard` found them."""
+        """Publish what is not None to those subscriptions that `is_heard` found."""
         for slot, publish_raw in self._listened:
             message = messages[slot]
             if message is not None:
                 publish_raw(message)
 
     def refresh(self) -> None:
-        """Look anew for listeners."""
+        """Look anew for subscriptions."""
         self._countdown = _REFRESH_TICKS
         self._listened = [
             (slot, handle.publish_raw) for slot, handle in enumerate(self._handles)

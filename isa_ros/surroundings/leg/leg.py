@@ -37,17 +37,20 @@ class Pose:
 
 class Leg:
     """
-    Slider, three links and the ground, advanced tick by tick.
+    Slider, three links and the ground, advanced tick by tick: a `Body`.
 
-    At t = 0 the slider is held and the actuators carry the leg (`actuator_forces`).
+    At t = 0 the slider is held and the actuators carry the leg (`actuator_forces`); it is
+    released before the tick that begins at ``release_ns``, None: by `release` alone.
     """
 
     def __init__(self, sheet: LegSheet, pose: Pose, step_ns: int,
-                 rows: Sequence[int] = (0, 1, 2)) -> None:
+                 rows: Sequence[int] = (0, 1, 2), release_ns: int | None = None) -> None:
         steps_in(step_ns // FORCE_WINDOWS, 'a fifth of step_ms')
         self._refuse_pose(sheet, pose)
         self._step_ns = step_ns
-        self._rows = np.array(rows, np.int64)
+        self.rows = np.array(rows, np.int64)
+        """Rows of the actuators that drive HAA, HFE and KFE, (3,)."""
+        self._release_ns = release_ns
         self._body, self._linkages, self._ground = leg_records(sheet)
         self._state = np.zeros(1, LEG_STATE)
         self._flat = self._state.view(np.float64)
@@ -55,6 +58,7 @@ class Leg:
         self._flat_sample = self._sample.view(np.float64)
         self._look_ahead = 0.5 * step_ns / NS_PER_SECOND
         self._t_ns = 0
+        self._is_to_be_released = release_ns is not None
         self._start(pose)
 
     @staticmethod
@@ -104,20 +108,19 @@ class Leg:
         return x[0], x[1], x[2]
 
     @property
-    def sample(self) -> np.void:
-        """Return the `LEG_SAMPLE` at the end of the last tick; overwritten by the next."""
-        row: np.void = self._sample[0]
-        return row
-
-    @property
-    def shown(self) -> np.ndarray:
-        """Return position, velocity and torque of the joints and the foot's force, (12,)."""
-        return self._flat_sample[:kernels.N_SHOWN]
+    def sample(self) -> np.ndarray:
+        """Return the `LEG_SAMPLE` at the end of the last tick, (1,); overwritten by the next."""
+        return self._sample
 
     @property
     def is_held(self) -> bool:
         """Return whether the slider is locked."""
         return bool(self._state['is_held'][0])
+
+    def starts(self, starts: np.ndarray) -> None:
+        """Fill position (m | rad) and force (N | Nm) of this leg's rows of `START`."""
+        for row, x, force in zip(self.rows, self.actuator_positions, self.actuator_forces):
+            starts[row]['position'], starts[row]['force'] = x, force
 
     def hold(self) -> None:
         """Lock the slider where it is; its speed is taken by the lock."""
@@ -134,7 +137,10 @@ class Leg:
 
         The pressures in them are left as they are.
         """
-        kernels.leg_ports(self._flat, self._look_ahead, self._rows, self._body, self._linkages,
+        if self._is_to_be_released and self._t_ns >= (self._release_ns or 0):
+            self._is_to_be_released = False
+            self.release()
+        kernels.leg_ports(self._flat, self._look_ahead, self.rows, self._body, self._linkages,
                           self._ground, ports)
 
     def advance(self, replies: np.ndarray) -> None:
@@ -148,21 +154,22 @@ class Leg:
 
         """
         broken = kernels.leg_tick(
-            self._flat, self._step_ns, self._rows, self._body, self._linkages, self._ground,
+            self._flat, self._step_ns, self.rows, self._body, self._linkages, self._ground,
             replies.view(np.float64).reshape(-1, kernels.REPLY_WIDTH), self._flat_sample)
         self._t_ns += self._step_ns
         if broken >= 0:
             raise SimulationDiverged(
                 self._t_ns, f'leg.{STATE_NAMES[broken]}', float(self._flat[broken]))
 
-    def state(self) -> bytes:
+    def snapshot(self) -> bytes:
         """Return the whole state; `restore` continues from it byte for byte."""
         return (self._t_ns.to_bytes(8, 'little') + self._state.tobytes()
                 + self._sample.tobytes())
 
-    def restore(self, state: bytes) -> None:
-        """Continue from a `state` of a leg with the same sheet and step."""
-        self._t_ns = int.from_bytes(state[:8], 'little')
-        self._state[:] = np.frombuffer(state, LEG_STATE, 1, 8)
+    def restore(self, snapshot: bytes) -> None:
+        """Continue from a `snapshot` of a leg with the same sheet and step."""
+        self._t_ns = int.from_bytes(snapshot[:8], 'little')
+        self._state[:] = np.frombuffer(snapshot, LEG_STATE, 1, 8)
         self._sample[:] = np.frombuffer(
-            state, kernels.LEG_SAMPLE, 1, 8 + self._state.nbytes)
+            snapshot, kernels.LEG_SAMPLE, 1, 8 + self._state.nbytes)
+        self._is_to_be_released = self._release_ns is not None and self.is_held

@@ -29,7 +29,6 @@ LEG_SAMPLE = np.dtype([
 ])
 """What a leg shows at the end of a tick."""
 
-N_SHOWN = 12                # the first floats of a `LEG_SAMPLE` are what a leg publishes
 REPLY_WIDTH = LOAD_REPLY.itemsize // 8
 MEANS = 0                   # places in a reply's row of floats
 END_FORCE = FORCE_WINDOWS

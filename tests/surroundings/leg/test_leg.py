@@ -39,7 +39,7 @@ def constant(forces):
 
 def flat_state(leg):
     """Return the leg's state as floats."""
-    return np.frombuffer(leg.state(), np.float64, len(kernels.STATE_NAMES), 8)
+    return np.frombuffer(leg.snapshot(), np.float64, len(kernels.STATE_NAMES), 8)
 
 
 def mass_matrix(y):
@@ -88,7 +88,7 @@ def test_held_leg_hangs_still_under_its_static_forces():
     for _ in range(100):
         leg.advance(replies)
     assert np.abs(flat_state(leg) - before)[:8].max() < 1e-11
-    assert leg.sample['foot_position'][2] == pytest.approx(0.1, abs=1e-12)
+    assert leg.sample[0]['foot_position'][2] == pytest.approx(0.1, abs=1e-12)
 
 
 def test_released_leg_falls_freely_whatever_the_actuators_do():
@@ -150,9 +150,9 @@ def test_standing_leg_rests_with_its_weight_on_the_ground():
     for _ in range(3000):
         leg.ports(ports)
         leg.advance(constant(k * (start - ports['x0']) - d * ports['v0']))
-    f_x, f_y, normal = leg.sample['foot_force']
+    f_x, f_y, normal = leg.sample[0]['foot_force']
     total = BODY['m_slider'] + BODY['m_hip'] + BODY['m_thigh'] + BODY['m_calf']
-    assert np.abs(leg.sample['velocity']).max() < 1e-3
+    assert np.abs(leg.sample[0]['velocity']).max() < 1e-3
     # m z'' is left of the balance: accelerations are below the speeds times 100 1/s.
     assert normal == pytest.approx(total * STANDARD_GRAVITY, rel=0.01)
     assert math.hypot(f_x, f_y) < 0.7 * normal
@@ -204,7 +204,7 @@ def test_port_is_the_leg_s_motion_to_third_order():
     leg.ports(ports)
     flat = flat_state(leg)
     y, f, slope, held = kernels.unpacked(flat)
-    assert leg.sample['foot_force'][2] > 100.0
+    assert leg.sample[0]['foot_force'][2] > 100.0
     t, n = 2e-4, 200
     for i in range(n):
         middle = tuple(f[j] + slope[j] * (i + 0.5) * t / n for j in range(3))
@@ -268,7 +268,7 @@ def test_step_size_does_not_change_the_leg_under_constant_forces():
 def test_restored_leg_continues_byte_for_byte():
     """`state` holds everything that the next tick depends on."""
     leg, twin = moving_leg(), hanging()
-    twin.restore(leg.state())
+    twin.restore(leg.snapshot())
     ports, twin_ports = np.zeros(3, LOAD_PORT), np.zeros(3, LOAD_PORT)
     for _ in range(20):
         leg.ports(ports)
@@ -276,7 +276,7 @@ def test_restored_leg_continues_byte_for_byte():
         assert ports.tobytes() == twin_ports.tobytes()
         leg.advance(constant((1.0, 200.0, 100.0)))
         twin.advance(constant((1.0, 200.0, 100.0)))
-    assert leg.state() == twin.state()
+    assert leg.snapshot() == twin.snapshot()
     assert leg.t_ns == twin.t_ns == 180 * MS
 
 
@@ -295,7 +295,7 @@ def test_rows_say_which_actuator_drives_which_joint():
     replies[[4, 0, 2]] = constant((1.0, 200.0, 100.0))
     scattered.advance(replies)
     leg.advance(constant((1.0, 200.0, 100.0)))
-    assert scattered.state() == leg.state()
+    assert scattered.snapshot() == leg.snapshot()
 
 
 def test_hold_takes_the_speed_of_the_slider():
@@ -306,7 +306,7 @@ def test_hold_takes_the_speed_of_the_slider():
     leg.advance(constant((0.0, 0.0, 0.0)))
     assert leg.is_held
     assert flat_state(leg)[0] == height
-    assert leg.sample['height_velocity'] == 0.0
+    assert leg.sample[0]['height_velocity'] == 0.0
 
 
 def test_divergence_names_state_and_time():
@@ -346,13 +346,13 @@ hold = np.array(leg.actuator_forces)
 ports = np.zeros(3, LOAD_PORT).view(np.recarray)
 normal = 0.0
 for k in range(40):
-    kernels.leg_ports(leg._flat, 5e-4, leg._rows, leg._body, leg._linkages, leg._ground, ports)
+    kernels.leg_ports(leg._flat, 5e-4, leg.rows, leg._body, leg._linkages, leg._ground, ports)
     forces = t.constant(hold + (0.1 * k, 3.0 * k, 2.0 * k)).view(np.float64).reshape(3, -1)
-    kernels.leg_tick(leg._flat, t.MS, leg._rows, leg._body, leg._linkages, leg._ground, forces,
+    kernels.leg_tick(leg._flat, t.MS, leg.rows, leg._body, leg._linkages, leg._ground, forces,
                      leg._flat_sample)
-    normal = max(normal, leg.sample['foot_force'][2])
+    normal = max(normal, leg.sample[0]['foot_force'][2])
 assert normal > 10.0, normal
-sys.stdout.write((leg.state() + ports.tobytes()).hex())
+sys.stdout.write((leg.snapshot() + ports.tobytes()).hex())
 """
 
 

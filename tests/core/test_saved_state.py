@@ -3,9 +3,9 @@
 import json
 
 from hypothesis import given, strategies
+from isa_ros.core.saved_state import LARGEST_BYTES, MAX_TICKS, read_state, RunState
 from isa_ros.core.signals import COMMAND
 from isa_ros.errors import ConfigError
-from isa_ros.run.saved_state import LARGEST_BYTES, MAX_TICKS, read_state, RunState
 import numpy as np
 import pytest
 

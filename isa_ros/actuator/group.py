@@ -1,0 +1,127 @@
+"""The actuators of one process, advanced by one call of the kernel; rows in, rows out."""
+
+from collections.abc import Mapping, Sequence
+import struct
+
+from isa_ros.actuator import kernel as kernels
+from isa_ros.actuator.actuator import ActuatorConfig, SmartActuator, Timing
+from isa_ros.actuator.rows import memory_of, row_of
+from isa_ros.core.signals import COMMAND
+from isa_ros.core.timebase import PLANT_STEP_NS
+from isa_ros.errors import ConfigError
+import numpy as np
+from numpy.typing import NDArray
+
+Records = NDArray[np.void]
+"""Rows of one of the record types of `isa_ros.core.signals`, one per actuator."""
+
+_SIZE = struct.Struct('<I')
+
+
+class ActuatorGroup:
+    """
+    Actuators that share one memory: the door for whoever owns the loop around them.
+
+    Ticked together they do what each does alone, bit for bit. In a loop of your own::
+
+        group = ActuatorGroup(run.actuators, run.timing)
+        replies = group.advance(ports, commands)
+
+    ``ports`` are `LOAD_PORT` rows, which say what the load of each actuator does during the
+    tick (equation L1), ``commands`` `COMMAND` rows, ``replies`` `LOAD_REPLY` rows; (n,) each,
+    in the order of ``configs``.
+    """
+
+    def __init__(self, configs: Sequence[ActuatorConfig], timing: Timing) -> None:
+        self._timing = timing
+        self._steps = timing.steps
+        self._memory = memory_of(len(configs))
+        self.actuators = [
+            SmartActuator(config, timing, row_of(self._memory, k))
+            for k, config in enumerate(configs)]
+        """The same actuators one by one, in the order of ``configs``."""
+        self._no_commands: Records = np.zeros(len(configs), COMMAND)
+
+    @property
+    def t_ns(self) -> int:
+        """Return the simulated time reached, ns."""
+        return self.actuators[0].t_ns
+
+    @property
+    def replies(self) -> Records:
+        """Return the `LOAD_REPLY` of all at the end of the last tick, (n,); overwritten."""
+        return self._memory.replies
+
+    @property
+    def samples(self) -> Records:
+        """Return the `SAMPLE` of all at the end of the last tick, (n,); overwritten."""
+        return self._memory.samples
+
+    @property
+    def applied(self) -> Records:
+        """
+        Return what took effect at the start of the last tick, `COMMAND` rows (n,); overwritten.
+
+        ``kinds`` is 0 where nothing did; else the row holds all that is in force then.
+        """
+        return self._memory.applied
+
+    @property
+    def tuned(self) -> dict[int, Mapping[str, float]]:
+        """Return the parameters that changed at the start of the last tick, SI, by row."""
+        return {row: changed for row, actuator in enumerate(self.actuators)
+                if (changed := actuator.applied_parameters)}
+
+    def start(self, starts: Records) -> None:
+        """Put all at rest at t = 0, as their `START` rows say, (n,)."""
+        for actuator, start in zip(self.actuators, starts):
+            actuator.start(*start.item())
+
+    def advance(self, ports: Records, commands: Records | None = None) -> Records:
+        """
+        Advance all by one tick and return their `LOAD_REPLY` rows, (n,).
+
+        ``ports`` are their `LOAD_PORT` rows; of an actuator with a load of its own the
+        pressures alone count. ``commands`` are valid `COMMAND` rows that take effect now.
+
+        Raises
+        ------
+        SimulationDiverged
+            A state is no longer finite.
+
+        """
+        actuators = self.actuators
+        for actuator in actuators:
+            actuator.tuning.take()
+        broken = kernels.actuator_tick(
+            actuators[0].t_ns // PLANT_STEP_NS, self._steps, ports,
+            self._no_commands if commands is None else commands, self._memory)
+        for actuator in actuators:
+            actuator.t_ns += self._timing.step_ns
+        if broken >= 0:
+            row, state = divmod(broken, kernels.STATE_SIZE)
+            actuators[row].refuse_broken(state)
+        return self._memory.replies
+
+    def snapshot(self) -> bytes:
+        """Return the state of all; `restore` continues from it byte for byte."""
+        snapshots = [actuator.snapshot() for actuator in self.actuators]
+        return b''.join(_SIZE.pack(len(own)) + own for own in snapshots)
+
+    def restore(self, snapshot: bytes) -> None:
+        """
+        Continue from a `snapshot` of actuators with the same digests.
+
+        Raises
+        ------
+        ConfigError
+            The bytes are not such a snapshot.
+
+        """
+        at = 0
+        for actuator in self.actuators:
+            if len(snapshot) < at + _SIZE.size:
+                raise ConfigError(f'{actuator.name}: missing in the saved state')
+            size, = _SIZE.unpack_from(snapshot, at)
+            at += _SIZE.size + size
+            actuator.restore(snapshot[at - size:at])

@@ -1,0 +1,72 @@
+"""The messages of one tick in one block of memory, as they go into a file."""
+
+from collections.abc import Iterator, Sequence
+from typing import NamedTuple, overload
+
+import numpy as np
+
+
+class Layout(NamedTuple):
+    """
+    Which messages stand where in a block: (n,) each, by ascending topic.
+
+    Blocks of one layout differ in their numbers alone.
+    """
+
+    topics: np.ndarray
+    """Index into the sorted topics, int64."""
+    starts: np.ndarray
+    """Where the CDR bytes begin in the block, int64."""
+    sizes: np.ndarray
+    """Their number, int64."""
+
+
+def layout(topics: Sequence[int], starts: Sequence[int], sizes: Sequence[int]) -> Layout:
+    """Return a layout from plain numbers."""
+    return Layout(*(np.array(column, np.int64) for column in (topics, starts, sizes)))
+
+
+class Packed(Sequence[tuple[int, bytes]]):
+    """Messages of a tick: (topic index, CDR bytes) each, without an object for each of them."""
+
+    def __init__(self, block: np.ndarray, where: Layout) -> None:
+        self.block = block
+        """Bytes, ``u1``; valid until the next tick is packed."""
+        self.layout = where
+
+    @classmethod
+    def of(cls, messages: Sequence[tuple[int, bytes]]) -> 'Packed':
+        """Return the same messages in a block."""
+        if isinstance(messages, cls):
+            return messages
+        sizes = [len(data) for _, data in messages]
+        starts = np.cumsum([0, *sizes])[:-1]
+        block = np.frombuffer(b''.join(data for _, data in messages), np.uint8)
+        return cls(block, layout([k for k, _ in messages], list(starts), sizes))
+
+    def __len__(self) -> int:
+        return len(self.layout.topics)
+
+    @overload
+    def __getitem__(self, place: int) -> tuple[int, bytes]: ...
+
+    @overload
+    def __getitem__(self, place: slice) -> list[tuple[int, bytes]]: ...
+
+    def __getitem__(
+            self, place: int | slice) -> tuple[int, bytes] | list[tuple[int, bytes]]:
+        if isinstance(place, slice):
+            return [self[k] for k in range(*place.indices(len(self)))]
+        start = self.layout.starts[place]
+        return int(self.layout.topics[place]), bytes(
+            self.block[start:start + self.layout.sizes[place]])
+
+    def __iter__(self) -> Iterator[tuple[int, bytes]]:
+        for k in range(len(self)):
+            yield self[k]
+
+    def selected(self, places: Sequence[int], topics: Sequence[int]) -> 'Packed':
+        """Return the messages at some places, under other topic indices."""
+        chosen = np.array(places, np.int64)
+        return Packed(self.block, Layout(
+            np.array(topics, np.int64), self.layout.starts[chosen], self.layout.sizes[chosen]))

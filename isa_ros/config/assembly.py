@@ -1,0 +1,67 @@
+"""From a configuration to what is simulated: its actuators, and their surroundings."""
+
+from isa_ros.actuator.actuator import Timing
+from isa_ros.actuator.group import ActuatorGroup
+from isa_ros.config.leg_config import LegConfig
+from isa_ros.config.run_config import RunConfig
+from isa_ros.core.signals import START
+from isa_ros.core.timebase import NS_PER_SECOND
+from isa_ros.core.units import MILLI, MPA
+from isa_ros.loads.sheets import static_force
+from isa_ros.plant.plant import plant_record
+from isa_ros.plant.servo_valve import largest_flow_slope
+from isa_ros.surroundings.body import Body
+from isa_ros.surroundings.leg.leg import Leg, Pose
+from isa_ros.surroundings.surroundings import Feed, Surroundings
+import numpy as np
+
+
+def timing_of(run: RunConfig) -> Timing:
+    """Return the grid of time of every actuator of a run."""
+    return Timing(run.step_ns, run.controller_offset_ns)
+
+
+def group_of(run: RunConfig) -> ActuatorGroup:
+    """Return the actuators of a run, each where its configuration starts it."""
+    return ActuatorGroup(run.actuators, timing_of(run))
+
+
+def surroundings_of(run: RunConfig) -> Surroundings:
+    """
+    Return the supplies of a run and the body that its actuators move, at t = 0.
+
+    Raises
+    ------
+    ParameterError
+        A supply is too small for the tick.
+    ConfigError
+        The body cannot start where it should.
+
+    """
+    plants = [plant_record(actuator.sheet.plant)[0] for actuator in run.actuators]
+    feeds = []
+    for supply in run.supplies:
+        rows = [run.index(name) for name in supply.feeds]
+        span = (supply.sheet.pressure_mpa - supply.sheet.return_pressure_mpa) * MPA
+        slope = sum(largest_flow_slope(plants[row].valve, span) for row in rows)
+        feeds.append(Feed(supply.name, supply.sheet, rows, slope))
+    starts = np.zeros(len(run.actuators), START)
+    starts['position'] = [actuator.initial_position for actuator in run.actuators]
+    starts['force'] = [static_force(actuator.load) for actuator in run.actuators]
+    return Surroundings(
+        feeds, _body(run), starts, [plant.mechanics.k_s for plant in plants], run.step_ns)
+
+
+def _body(run: RunConfig) -> Body | None:
+    """Return the body of the kind that the run names; another kind is one more line here."""
+    if isinstance(run.body, LegConfig):
+        return _leg(run, run.body)
+    return None
+
+
+def _leg(run: RunConfig, leg: LegConfig) -> Leg:
+    start = leg.start
+    pose = Pose(haa=start.angle('haa'), hfe=start.angle('hfe'), kfe=start.angle('kfe'),
+                foot_height=start.foot_height_mm * MILLI)
+    return Leg(leg.sheet, pose, run.step_ns, [run.index(name) for _, name in leg.joints],
+               release_ns=round(start.release_s * NS_PER_SECOND))

@@ -1,0 +1,22 @@
+"""Names of runs, actuators, supplies and controllers, which ROS must accept as well."""
+
+import re
+
+from isa_ros.errors import ConfigError
+
+NAME_RULE = 'must be small letters, digits and single underscores'
+_NAME = re.compile(r'[a-z](?:_?[a-z0-9])*')
+
+
+def refuse_bad_name(name: str, where: str) -> None:
+    """
+    Refuse what ROS could not use as the name of a node.
+
+    Raises
+    ------
+    ConfigError
+        Anything but small letters, digits and single underscores.
+
+    """
+    if not _NAME.fullmatch(name):
+        raise ConfigError(f'{where} = {name!r}, {NAME_RULE}')

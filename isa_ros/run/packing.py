@@ -1,0 +1,242 @@
+"""
+From rows to messages: the one place where what actuators and surroundings show becomes bytes.
+
+Every message of a run is prepared once, in one block of memory. At a tick a kernel writes the
+numbers of all rows into it. Recorder and publishers get parts of the block.
+"""
+
+from collections.abc import Callable, Mapping, Sequence
+from typing import NamedTuple
+
+from isa_ros.bag.packed import Layout, layout, Packed
+from isa_ros.core.kernel import kernel
+from isa_ros.core.signals import COMMAND, SAMPLE
+from isa_ros.core.topic import Topic
+from isa_ros.surroundings.supply import SUPPLY_SAMPLE
+from msg_adapters import actuator_messages, clock, event, fluid_pressure
+from msg_adapters.actuator_messages import STATE_TOPICS, TOPICS
+from msg_adapters.applied_parameters import applied_parameters
+from msg_adapters.template import FIRST_VALUE, Prepared, Template, time_word
+import numpy as np
+from numpy.typing import NDArray
+
+Records = NDArray[np.void]
+Messages = Sequence[bytes | None]
+"""Serialised messages of one source in the order of its topics; None: nothing new."""
+
+_SAMPLE, _SUPPLY = tuple(SAMPLE.names or ()), tuple(SUPPLY_SAMPLE.names or ())
+_APPLIED = tuple(name for name in COMMAND.names or () if name != 'kinds')
+_PRESSURES = ('pressure_a', 'pressure_b')
+_FIRST_PRESSURE = _SAMPLE.index(_PRESSURES[0])
+_SUPPLY_PRESSURES = ('pressure', 'return_pressure')
+_COORDINATOR = '/coordinator'
+
+
+class Shown(NamedTuple):
+    """The rows that messages are made of; the same memory over a whole run."""
+
+    samples: Records
+    """`SAMPLE`, (n,)."""
+    applied: Records
+    """`COMMAND` that took effect at the tick's start, of no kind for none, (n,)."""
+    supplies: Records
+    """`SUPPLY_SAMPLE`, (m,)."""
+    body: Records | None
+    """What the body shows, (1,), a record of floats."""
+
+
+BodyMessages = Callable[[Mapping[str, int]], Mapping[tuple[str, str], Prepared]]
+"""Takes the columns of a body's sample by field; returns its messages by (topic, type)."""
+
+
+class Names(NamedTuple):
+    """What the messages of a run call the sources of its rows."""
+
+    actuators: Sequence[tuple[str, bool]]
+    """(name, whether it is rotary) of each."""
+    supplies: Sequence[tuple[str, bool]] = ()
+    """(name, whether its return pressure is published) of each."""
+    body: BodyMessages | None = None
+
+
+def float_columns(record: np.dtype[np.void], first: int = 0) -> dict[str, int]:
+    """Return the place of every float of a record by field, ``field[k]`` in an array."""
+    columns: dict[str, int] = {}
+    for name in record.names or ():
+        n = record[name].itemsize // 8
+        for k in range(n):
+            columns[name if record[name].shape == () else f'{name}[{k}]'] = first
+            first += 1
+    return columns
+
+
+@kernel
+def pack(instant, tick_start, gauge_zero, samples, applied, supplies, body, words, values,
+         template):
+    """
+    Write the numbers of all rows into the block of a template.
+
+    ``samples`` (n, floats of a `SAMPLE`), ``supplies`` (m, floats of a `SUPPLY_SAMPLE`) and
+    ``body`` are plain floats, ``applied`` `COMMAND` rows; ``values`` is the float view of
+    ``words``; ``template`` has block, places and sources. Published pressures are absolute:
+    gauge plus ``gauge_zero``.
+    """
+    words[0], words[1] = instant, tick_start
+    at = FIRST_VALUE
+    for n in range(len(samples)):
+        for j in range(samples.shape[1]):
+            values[at] = samples[n, j]
+            at += 1
+        values[at] = samples[n, _FIRST_PRESSURE] + gauge_zero
+        values[at + 1] = samples[n, _FIRST_PRESSURE + 1] + gauge_zero
+        command = applied[n]
+        values[at + 2], values[at + 3] = float(command.is_enabled), command.position
+        values[at + 4], values[at + 5] = command.velocity, command.effort
+        values[at + 6], values[at + 7] = command.stiffness, command.damping
+        at += 8
+    for m in range(len(supplies)):
+        values[at], values[at + 1] = supplies[m, 0] + gauge_zero, supplies[m, 1] + gauge_zero
+        at += 2
+    for j in range(len(body)):
+        values[at] = body[j]
+        at += 1
+    for k in range(len(template.places)):
+        template.block[template.places[k]] = words[template.sources[k]]
+
+
+class _Target(NamedTuple):
+    block: np.ndarray
+    places: np.ndarray
+    sources: np.ndarray
+
+
+class Packer:
+    """
+    Prepared messages of some rows.
+
+    ``topics`` are all that may come, sorted by name: of every actuator `TOPICS`, of every
+    supply its pressure, those of the body, and with ``is_run`` the clock and the events.
+    """
+
+    def __init__(self, names: Names, shown: Shown, is_run: bool = True) -> None:
+        self._names = names
+        self._shown = shown
+        found: dict[Topic, Prepared | None] = {}
+        at = 0
+        for name, is_rotary in names.actuators:
+            own = self._actuator(name, is_rotary, at)
+            at += len(_SAMPLE) + len(_PRESSURES) + len(_APPLIED)
+            found |= {Topic(f'/{name}/{suffix}', type_): own.get(suffix)
+                      for suffix, type_ in TOPICS}
+        for supply, shows_return in names.supplies:
+            for k, suffix in enumerate(_SUPPLY_PRESSURES[:1 + shows_return]):
+                topic = Topic(f'{_COORDINATOR}/{supply}_{suffix}', fluid_pressure.TYPE)
+                found[topic] = fluid_pressure.fluid_pressure(supply, at + k)
+            at += len(_SUPPLY_PRESSURES)
+        if names.body is not None and shown.body is not None:
+            body = names.body(float_columns(shown.body.dtype, at))
+            found |= {Topic(*topic): message for topic, message in body.items()}
+        if is_run:
+            found |= {Topic(*clock.TOPIC): clock.clock(), Topic(*event.TOPIC): None}
+        self.topics = tuple(sorted(found, key=lambda topic: topic.name))
+        if len({topic.name for topic in self.topics}) != len(self.topics):
+            raise ValueError(f'a topic has two sources: {self.topics}')
+        prepared = {topic: message for topic, message in found.items() if message is not None}
+        self._place = {topic.name: k for k, topic in enumerate(prepared)}
+        self._index = {topic.name: k for k, topic in enumerate(self.topics)}
+        self._template = Template(list(prepared.values()))
+        self._bytes = self._template.block.view(np.uint8)
+        self._tuned: dict[int, bytes] = {}
+        self._layouts: dict[bytes, Layout] = {}
+        self._bind()
+
+    @staticmethod
+    def _actuator(name: str, is_rotary: bool, first: int) -> dict[str, Prepared]:
+        places = {field: first + k for k, field in enumerate(
+            (*_SAMPLE, *(f'{field}, absolute' for field in _PRESSURES),
+             *(f'applied {field}' for field in _APPLIED)))}
+        return actuator_messages.prepared(
+            name, is_rotary, places,
+            {field: places[f'{field}, absolute'] for field in _PRESSURES},
+            {field: places[f'applied {field}'] for field in _APPLIED})
+
+    def _bind(self) -> None:
+        """Keep the rows as plain numbers, which the kernel takes ten times as fast."""
+        shown, template = self._shown, self._template
+        n, m = len(shown.samples), len(shown.supplies)
+        self._samples = shown.samples.view(np.float64).reshape(n, len(_SAMPLE))
+        self._supplies = shown.supplies.view(np.float64).reshape(m, len(_SUPPLY))
+        self._body = np.zeros(0) if shown.body is None else (
+            shown.body.view(np.float64).reshape(-1))
+        size = (FIRST_VALUE + n * (len(_SAMPLE) + len(_PRESSURES) + len(_APPLIED))
+                + m * len(_SUPPLY_PRESSURES) + len(self._body))
+        self._words = np.zeros(size, np.uint64)
+        self._values = self._words.view(np.float64)
+        self._target = _Target(template.block, template.places, template.sources)
+        self._kinds = shown.applied['kinds']
+
+    def pack(
+            self, t_ns: int, tick_start_ns: int,
+            tuned: Mapping[int, Mapping[str, float]]) -> None:
+        """
+        Pack the rows as they are at ``t_ns``, the end of a tick that began at the other time.
+
+        ``tuned`` are the parameters that changed at its start, by row.
+        """
+        pack(time_word(t_ns), time_word(tick_start_ns), fluid_pressure.ATMOSPHERE,
+             self._samples, self._shown.applied, self._supplies, self._body, self._words,
+             self._values, self._target)
+        self._tuned = {
+            row: applied_parameters(self._names.actuators[row][0], values, tick_start_ns)
+            for row, values in tuned.items()} if tuned else {}
+
+    def everything(self, events: Sequence[bytes] = ()) -> Packed:
+        """Return all messages of the instant that was packed, in the order of `topics`."""
+        key = (self._kinds != 0).tobytes()
+        where = self._layouts.get(key)
+        if where is None:
+            where = self._layouts[key] = self._layout()
+        packed = Packed(self._bytes, where)
+        if not (events or self._tuned):
+            return packed
+        extra = [(self._index[event.TOPIC[0]], data) for data in events]
+        extra += [(self._index[f'/{self._names.actuators[row][0]}/{_PARAMETERS}'], data)
+                  for row, data in self._tuned.items()]
+        return Packed.of(sorted([*packed, *extra], key=lambda message: message[0]))
+
+    def _layout(self) -> Layout:
+        """Return the layout of the prepared messages without setpoints that nothing applied."""
+        silent = {f'/{name}/{_SETPOINT}' for (name, _), kinds in zip(
+            self._names.actuators, self._kinds) if not kinds}
+        present = [(self._index[name], place) for name, place in self._place.items()
+                   if name not in silent]
+        present.sort()
+        places = [place for _, place in present]
+        starts, sizes = self._template.starts, self._template.sizes
+        return layout([index for index, _ in present], starts[places].tolist(),
+                      sizes[places].tolist())
+
+    def of_actuator(self, row: int) -> list[bytes | None]:
+        """Return the messages of one actuator in the order of `TOPICS`."""
+        name = self._names.actuators[row][0]
+        setpoint = self._message(f'/{name}/{_SETPOINT}') if self._kinds[row] else None
+        return [self._tuned.get(row), setpoint,
+                *(self._message(f'/{name}/{suffix}') for suffix, _ in STATE_TOPICS)]
+
+    def of(self, topics: Sequence[Topic]) -> list[bytes]:
+        """Return the messages of some topics."""
+        return [self._message(topic.name) for topic in topics]
+
+    def _message(self, name: str) -> bytes:
+        return self._template.message(self._place[name])
+
+    @property
+    def surroundings(self) -> list[Topic]:
+        """Return the topics of supplies and body."""
+        own = {f'/{name}/{suffix}' for name, _ in self._names.actuators for suffix, _ in TOPICS}
+        return [topic for topic in self.topics
+                if topic.name not in own and topic.name not in (clock.TOPIC[0], event.TOPIC[0])]
+
+
+_SETPOINT = actuator_messages.APPLIED_SETPOINT[0]
+_PARAMETERS = actuator_messages.APPLIED_PARAMETERS[0]

@@ -1,0 +1,206 @@
+"""
+The model of a run as an object: numpy in, numpy out. Neither ROS nor messages nor a bag.
+
+    simulation = Simulation(load_scenario('drop.yaml', load_run('leg.yaml')))
+    while simulation.t < 1.0:
+        samples = simulation.step()
+    print(samples['kfe'].force)
+
+A tick is the exchange of `isa_ros.run.coordinator` without anybody to wait for.
+"""
+
+from collections.abc import Mapping, Sequence
+
+from isa_ros.config.assembly import group_of, surroundings_of
+from isa_ros.controller import (
+    by_name, Controller, ControllerSeat, fill_requests, merge_requests, Setpoint, State)
+from isa_ros.core.saved_state import RunState
+from isa_ros.core.signals import COMMAND, LOAD_PORT
+from isa_ros.core.timebase import NS_PER_SECOND
+from isa_ros.errors import ConfigError
+from isa_ros.scenario.scenario import Scenario
+import numpy as np
+from numpy.typing import NDArray
+
+Records = NDArray[np.void]
+
+_SNAPSHOT = 'snapshot'
+
+
+class Simulation:
+    """
+    A run in memory, tick by tick; it begins at t = 0.
+
+    Commands come from the scenario, from `command`, and from ``controllers``, which are shown
+    the state of a tick and take effect one tick later. At one tick the scenario wins over a
+    controller, and both over `command`.
+
+    Raises
+    ------
+    ConfigError
+        The run cannot be assembled.
+
+    """
+
+    def __init__(self, scenario: Scenario, controllers: Sequence[Controller] = ()) -> None:
+        self.scenario = scenario
+        run = scenario.run
+        self.names = tuple(actuator.name for actuator in run.actuators)
+        """The actuators, in the order of every row."""
+        self.group = group_of(run)
+        """The actuators: what they show is in its rows."""
+        self.surroundings = surroundings_of(run)
+        """Supplies and body: what they show is in their rows."""
+        self._starts, self._beginning = (
+            self.surroundings.starts(), self.surroundings.snapshot())
+        self._controllers = tuple(controllers)
+        self._seats: list[ControllerSeat] = []
+        n = len(self.names)
+        self._ports: Records = np.zeros(n, LOAD_PORT)
+        self._commands: Records = np.zeros(n, COMMAND)
+        self._requests: Records = np.zeros(n, COMMAND)
+        self.samples: Mapping[str, np.record] = by_name(self.names, self.group.samples)
+        """`SAMPLE` by actuator at the end of the last tick; the next one overwrites them."""
+        self.supply_samples: Mapping[str, np.record] = by_name(
+            [feed.name for feed in self.surroundings.feeds], self.surroundings.supplies)
+        """`SUPPLY_SAMPLE` by supply, likewise."""
+        self.body_sample: np.record | None = None
+        """What the body shows, likewise; None without one."""
+        if self.surroundings.body is not None:
+            self.body_sample = self.surroundings.body.sample.view(np.recarray)[0]
+        self.reset()
+
+    def reset(self) -> Mapping[str, np.record]:
+        """Begin anew at t = 0 and return the `samples` of then."""
+        self.ticks = 0
+        self.surroundings.restore(self._beginning)
+        self.group.start(self._starts)
+        self._requests['kinds'] = 0
+        self._seats = [ControllerSeat(own, self.names) for own in self._controllers]
+        return self.samples
+
+    @property
+    def t_ns(self) -> int:
+        """Return the simulated time, ns."""
+        return self.ticks * self.scenario.run.step_ns
+
+    @property
+    def t(self) -> float:
+        """Return the simulated time, s."""
+        return self.t_ns / NS_PER_SECOND
+
+    def command(self, name: str, **setpoint: float | bool | None) -> None:
+        """
+        Give an actuator a setpoint that takes effect at the next tick.
+
+        The fields are those of `Setpoint`: ``position`` (m or rad), ``velocity``, ``effort``,
+        ``stiffness``, ``damping``, ``is_enabled``.
+
+        Raises
+        ------
+        SetpointError
+            An actuator that the run does not have, or a value that cannot be one.
+
+        """
+        row: Records = np.zeros(len(self.names), COMMAND)
+        fill_requests({name: Setpoint(**setpoint)}, self.names, row)  # type: ignore[arg-type]
+        at = self.names.index(name)
+        self.group.actuators[at].accept(row[at])
+
+    def step(self, commands: Records | None = None) -> Mapping[str, np.record]:
+        """
+        Advance one tick and return the `samples` at its end.
+
+        ``commands`` are `COMMAND` rows, (n_actuators,), in the place of those of the scenario.
+
+        Raises
+        ------
+        SimulationDiverged
+            A state is no longer finite.
+
+        """
+        if commands is None:
+            commands = self._scheduled()
+        if self._seats:
+            self._control()
+        self.surroundings.ports(self._ports)
+        self.surroundings.advance(self.group.advance(self._ports, commands))
+        self.ticks += 1
+        return self.samples
+
+    def _scheduled(self) -> Records | None:
+        """Return the requests of the controllers with the scenario's commands over them."""
+        speaks = self.scenario.speaks_at(self.ticks)
+        if not (speaks or self._seats):
+            return None
+        self._commands[:] = self._requests
+        self._requests['kinds'] = 0
+        if speaks:
+            self.scenario.commands(self.ticks, self._commands)
+        return self._commands
+
+    def _control(self) -> None:
+        """Show the controllers the state before the tick; what they ask for is for the next."""
+        state = State(self.t_ns, self.samples, self.supply_samples, self.body_sample)
+        for seat in self._seats:
+            seat.step(state)
+            merge_requests(seat.requests, self._requests)
+
+    def state(self) -> RunState:
+        """
+        Return everything that the rest of the run depends on, as a run on nodes saves it.
+
+        Raises
+        ------
+        RunError
+            A controller cannot be saved.
+
+        """
+        return RunState(
+            tick=self.ticks, load=self.surroundings.snapshot(),
+            participants=[*(actuator.snapshot() for actuator in self.group.actuators),
+                          *(seat.controller.snapshot() for seat in self._seats)],
+            requests=self._requests.tobytes())
+
+    def resume(self, state: RunState) -> None:
+        """
+        Continue from a `state` of the same configuration.
+
+        Raises
+        ------
+        ConfigError
+            It is of another one.
+
+        """
+        n = len(self.names)
+        if len(state.participants) != n + len(self._seats):
+            raise ConfigError(
+                f'the saved state has {len(state.participants)} participants, the run has '
+                f'{n + len(self._seats)}')
+        self.ticks = state.tick
+        self.surroundings.restore(state.load)
+        self._requests[:] = state.rows_of_requests(n)
+        for actuator, own in zip(self.group.actuators, state.participants):
+            actuator.restore(own)
+        for seat, own in zip(self._seats, state.participants[n:]):
+            seat.controller.restore(own)
+
+    def snapshot(self) -> bytes:
+        """Return the whole state; `restore` continues from it byte for byte. As `state`."""
+        return self.state().to_json(self.scenario.run.digest, {}).encode()
+
+    def restore(self, snapshot: bytes) -> Mapping[str, np.record]:
+        """Continue from a `snapshot` and return the `samples` of then; as `resume`."""
+        self.resume(RunState.from_json(
+            snapshot.decode(), self.scenario.run.digest, _SNAPSHOT))
+        return self.samples
+
+    @property
+    def applied(self) -> Records:
+        """Return what took effect at the start of the last tick; `ActuatorGroup.applied`."""
+        return self.group.applied
+
+    @property
+    def tuned(self) -> Mapping[int, Mapping[str, float]]:
+        """Return the parameters that changed then; `ActuatorGroup.tuned`."""
+        return self.group.tuned
