@@ -2,130 +2,39 @@
 One MCAP file under construction, a whole chunk at a time.
 
 The records are those of the official ``mcap`` library, except the two that come by the
-million: its ``Writer`` makes an object and ten small packs of each message and two packs of
-each index entry. Here a tick costs one pack and an index is an array.
+million: messages (`isa_ros.bag.chunk`) and the entries of their index, which is an array.
 """
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 import io
-from itertools import accumulate
 from pathlib import Path
 import struct
-from typing import NamedTuple
 import zlib
 
+from isa_ros.bag.chunk import Chunk, Layouts
+from isa_ros.bag.crc import combined
 import lz4.frame  # type: ignore[import-untyped]
 from mcap.data_stream import RecordBuilder
 from mcap.opcode import Opcode
-from mcap.records import Attachment, AttachmentIndex, Channel, Chunk, ChunkIndex, DataEnd
-from mcap.records import Footer, Header, McapRecord, Metadata, MetadataIndex, Schema
-from mcap.records import Statistics, SummaryOffset
+from mcap.records import (
+    Attachment, AttachmentIndex, Channel, Chunk as ChunkRecord, ChunkIndex, DataEnd, Footer,
+    Header, McapRecord, Metadata, MetadataIndex, Schema, Statistics, SummaryOffset)
 from mcap.writer import MCAP0_MAGIC
 import numpy as np
 from numpy.typing import NDArray
 import zstandard
 
-Entries = NDArray[np.uint64]
-"""Where the messages of one channel stand: rows of log time, ns, and offset in the chunk."""
-
-MESSAGE_HEADER = struct.Struct('<BQHIQQ')
-"""Opcode, length of what follows, channel, sequence, log time, publish time."""
-
-_MESSAGE_HEAD = struct.Struct('<BQH')  # its first half, the same at every tick
-_MESSAGE_TAIL = struct.Struct('<IQQ')  # its second half, the same for all messages of a tick
-_MESSAGE = int(Opcode.MESSAGE)  # packing the enum itself takes three times as long
-_LENGTH_EXCESS = MESSAGE_HEADER.size - 9  # of a message record, over its data
 _INDEX_HEADER = struct.Struct('<BQHI')  # opcode, length, channel, bytes of entries
 _INDEX_EXCESS = _INDEX_HEADER.size - 9  # of a message index record, over its entries
 _ENTRY_BYTES = 16  # of a message index: time, offset
 _ZSTD_LEVEL = 1  # on a leg's bag higher ones take longer and save 2 %
 _FOOTER_FIXED = struct.Struct('<BQQQ')  # opcode, length, summary and summary offset start
+_LENGTH = struct.Struct('<Q')
+_BUFFER_BYTES = 1024 * 1024 + 64 * 1024  # of a chunk and the tick that ends it
+_BUFFERS = 2  # one is filled while the other is written
 
-
-class _Layout:
-    """Ticks of the same topics and sizes: one after the other they differ in little."""
-
-    def __init__(self, topics: Sequence[int], sizes: Sequence[int]) -> None:
-        self.heads = [
-            _MESSAGE_HEAD.pack(_MESSAGE, size + _LENGTH_EXCESS, k + 1)
-            for k, size in zip(topics, sizes)]
-        self.channels = [k + 1 for k in topics]
-        ends = list(accumulate(MESSAGE_HEADER.size + size for size in sizes))
-        self.offsets = [0, *ends[:-1]]
-        self.size = ends[-1] if ends else 0
-
-
-class _Stretch(NamedTuple):
-    """Ticks of one layout in a row: when they were, and where they stand in the chunk."""
-
-    layout: _Layout
-    times: list[int]
-    starts: list[int]
-
-
-class ChunkContent:
-    """
-    Messages of one chunk and where each stands in it.
-
-    A tick is joined from what its layout has prepared; the indices are made when they are
-    asked for, column by column.
-    """
-
-    def __init__(self, prefix: bytes) -> None:
-        self._parts = [prefix]
-        self._layouts: dict[tuple[tuple[int, ...], tuple[int, ...]], _Layout] = {}
-        self._stretches: list[_Stretch] = []
-        self.size = len(prefix)
-        self.start_ns = self.end_ns = 0
-
-    def add(self, t_ns: int, sequence: int, messages: Sequence[tuple[int, bytes]]) -> None:
-        """Append the messages of one instant: (topic index, CDR bytes)."""
-        if not messages:
-            return
-        topics, data = zip(*messages)
-        key = topics, tuple(map(len, data))
-        layout = self._layouts.get(key)
-        if layout is None:
-            layout = self._layouts[key] = _Layout(*key)
-        if not self._stretches:
-            self.start_ns = t_ns
-        if not self._stretches or self._stretches[-1].layout is not layout:
-            self._stretches.append(_Stretch(layout, [], []))
-        _, times, starts = self._stretches[-1]
-        times.append(t_ns)
-        starts.append(self.size)
-        self.end_ns = t_ns
-        pieces: list[bytes] = [_MESSAGE_TAIL.pack(sequence, t_ns, t_ns)] * (3 * len(data))
-        pieces[::3] = layout.heads
-        pieces[2::3] = data
-        self._parts.append(b''.join(pieces))  # now: many at once would halt a tick
-        self.size += layout.size
-
-    def data(self) -> bytes:
-        """Return the content of the chunk."""
-        return b''.join(self._parts)
-
-    @property
-    def is_empty(self) -> bool:
-        """Return whether there is no message in it."""
-        return not self._stretches
-
-    def message_indices(self) -> list[tuple[int, Entries]]:
-        """Return (channel id, entries (n, 2) of time and offset) of those with messages."""
-        pieces: dict[int, list[Entries]] = {}
-        for layout, times, starts in self._stretches:
-            ticks = np.array((times, starts), np.uint64).T
-            for channel, offset in zip(layout.channels, layout.offsets):
-                pieces.setdefault(channel, []).append(ticks + np.array((0, offset), np.uint64))
-        return [(channel, _in_order(pieces[channel])) for channel in sorted(pieces)]
-
-
-def _in_order(pieces: Sequence[Entries]) -> Entries:
-    if len(pieces) == 1:
-        return pieces[0]
-    entries = np.concatenate(pieces)
-    return entries[np.argsort(entries[:, 1])]
+Bytes = bytes | memoryview
 
 
 @dataclass
@@ -159,6 +68,9 @@ class McapFile:
         self._chunks: list[ChunkIndex] = []
         self._counts: list[int] = []
         self._totals = _Totals()
+        self._layouts = Layouts()
+        self._buffers: list[NDArray[np.uint8]] = []
+        self._has_chunk = False
         self._append(MCAP0_MAGIC + _bytes(Header(profile='ros2', library=library)))
 
     @property
@@ -195,35 +107,48 @@ class McapFile:
         self._metadata.append(MetadataIndex(
             offset=self._position - len(record), length=len(record), name=name))
 
-    def new_chunk(self) -> ChunkContent:
-        """Return an empty chunk; the first one starts with all schemas and channels."""
-        registered = [] if self._chunks else [*self._schemas, *self._channels]
-        return ChunkContent(_bytes(*registered))
+    def new_chunk(self) -> Chunk:
+        """
+        Return an empty chunk; the first one starts with all schemas and channels.
 
-    def add_chunk(self, content: ChunkContent) -> list[tuple[int, int]]:
+        Two may be in use at a time: one that is filled and one that is written.
+        """
+        registered = [] if self._has_chunk else [*self._schemas, *self._channels]
+        self._has_chunk = True
+        buffer = self._buffers.pop() if self._buffers else np.empty(_BUFFER_BYTES, np.uint8)
+        return Chunk(_bytes(*registered), self._layouts, buffer)
+
+    def add_chunk(self, content: Chunk) -> list[tuple[int, int]]:
         """Write a chunk and its message indices; return (channel id, messages) of each."""
         content_bytes = content.data()
+        content_crc = zlib.crc32(content_bytes)
         data = self._compress(content_bytes)
-        chunk = _bytes(Chunk(
+        head = _bytes(ChunkRecord(
             message_start_time=content.start_ns, message_end_time=content.end_ns,
-            uncompressed_size=len(content_bytes), uncompressed_crc=zlib.crc32(content_bytes),
-            compression=self._compression, data=data))
+            uncompressed_size=content.size, uncompressed_crc=content_crc,
+            compression=self._compression, data=b''))
+        # The record of the library without its data, so that these are not copied.
+        length = len(head) + len(data)
+        head = head[:1] + _LENGTH.pack(length - 9) + head[9:-8] + _LENGTH.pack(len(data))
         start, indices, offsets = self._position, b'', {}
         channels = content.message_indices()
         for channel, index in channels:
-            offsets[channel] = start + len(chunk) + len(indices)
+            offsets[channel] = start + length + len(indices)
             size = len(index) * _ENTRY_BYTES
             indices += _INDEX_HEADER.pack(
                 Opcode.MESSAGE_INDEX, size + _INDEX_EXCESS, channel, size)
             indices += index.astype('<u8').tobytes()
-        self._append(chunk + indices)
+        data_crc = content_crc if data is content_bytes else zlib.crc32(data)
+        self._append(head, (data, data_crc), indices)
         self._chunks.append(ChunkIndex(
             message_start_time=content.start_ns, message_end_time=content.end_ns,
-            chunk_start_offset=start, chunk_length=len(chunk), message_index_offsets=offsets,
+            chunk_start_offset=start, chunk_length=length, message_index_offsets=offsets,
             message_index_length=len(indices), compression=self._compression,
-            compressed_size=len(data), uncompressed_size=len(content_bytes)))
+            compressed_size=len(data), uncompressed_size=content.size))
         counts = [(channel, len(index)) for channel, index in channels]
         self._count(content, counts)
+        if len(self._buffers) < _BUFFERS:
+            self._buffers.append(content.buffer)
         return counts
 
     def finish(self) -> None:
@@ -246,8 +171,9 @@ class McapFile:
         self._append(data_end + summary + _bytes(footer) + MCAP0_MAGIC)
 
     def close(self) -> None:
-        """Close the file, finished or not, and forget what stands in it."""
+        """Close the file, finished or not, and release what it held in memory."""
         self._file.close()
+        self._buffers.clear()
         for records in (self._schemas, self._channels, self._chunks):
             records.clear()
 
@@ -266,7 +192,7 @@ class McapFile:
             (Opcode.ATTACHMENT_INDEX, self._attachments),
             (Opcode.METADATA_INDEX, self._metadata)]
 
-    def _count(self, content: ChunkContent, counts: Sequence[tuple[int, int]]) -> None:
+    def _count(self, content: Chunk, counts: Sequence[tuple[int, int]]) -> None:
         if self._totals.chunks == 0:
             self._totals.start_ns = content.start_ns
         self._totals.end_ns = content.end_ns
@@ -274,26 +200,34 @@ class McapFile:
         for channel, count in counts:
             self._counts[channel - 1] += count
 
-    def _append(self, data: bytes) -> None:
-        """Write all of it or nothing."""
-        rest = memoryview(data)
+    def _append(self, *parts: bytes | tuple[Bytes, int]) -> None:
+        """Write all parts or nothing; a part may come with its CRC."""
+        written = 0
         try:
-            while rest:
-                rest = rest[self._file.write(rest) or 0:]
-        finally:
-            if rest:
-                self._file.truncate(self._position)
-                self._file.seek(self._position)
-        self._position += len(data)
-        self._crc = zlib.crc32(data, self._crc)
+            for part in parts:
+                rest = memoryview(part[0] if isinstance(part, tuple) else part)
+                while rest:
+                    n = self._file.write(rest) or 0
+                    written += n
+                    rest = rest[n:]
+        except OSError:
+            self._file.truncate(self._position)
+            self._file.seek(self._position)
+            raise
+        self._position += written
+        for part in parts:
+            if isinstance(part, tuple):
+                self._crc = combined(self._crc, part[1], len(part[0]))
+            else:
+                self._crc = zlib.crc32(part, self._crc)
 
 
-def _compressed_by_lz4(data: bytes) -> bytes:
+def _compressed_by_lz4(data: Bytes) -> bytes:
     compressed: bytes = lz4.frame.compress(data)
     return compressed
 
 
-_COMPRESSORS: dict[str, Callable[[bytes], bytes]] = {
+_COMPRESSORS: dict[str, Callable[[Bytes], Bytes]] = {
     'none': lambda data: data,
     'lz4': _compressed_by_lz4,
     'zstd': lambda data: zstandard.ZstdCompressor(level=_ZSTD_LEVEL).compress(data),

@@ -8,6 +8,7 @@ from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import NamedTuple
 
+from isa_ros.bag.chunk import Chunk
 from isa_ros.bag.mcap_file import McapFile
 from isa_ros.bag.metadata import Counts, NO_START, storage_metadata
 from isa_ros.bag.provenance import MEDIA_TYPES, RECORD
@@ -68,24 +69,40 @@ class PartWriter:
         return self._file.size
 
     def write_tick(
-            self, t_ns: int, sequence: int, messages: Sequence[tuple[int, bytes]]) -> bool:
-        """Take the messages of one tick, maybe none; tell whether that ended a chunk."""
+            self, t_ns: int, sequence: int, messages: Sequence[tuple[int, bytes]]
+            ) -> Chunk | None:
+        """
+        Take the messages of one tick, maybe none.
+
+        Return the chunk that this tick ended, which is to be handed to `write_chunk` before
+        the next one.
+        """
         if messages:
             self._chunk.add(t_ns, sequence, messages)
             self._ticks += 1
         elif not self._ticks:
-            return False
+            return None
         if (self._ticks < CHUNK_TICKS and self._chunk.size < CHUNK_BYTES
                 and t_ns - self._chunk.start_ns < CHUNK_NS):
-            return False
-        self._end_chunk()
-        return True
+            return None
+        return self._take_chunk()
+
+    def write_chunk(self, chunk: Chunk) -> None:
+        """Write a chunk to the file."""
+        if chunk.is_empty:
+            return
+        counts = self._file.add_chunk(chunk)
+        if self._start_ns == NO_START:
+            self._start_ns = chunk.start_ns
+        self._end_ns = chunk.end_ns
+        for channel, count in counts:
+            self._counts[channel - 1] += count
 
     def finish(self, is_last: bool) -> None:
         """Write what is pending and the summary; a second call does nothing."""
         if self._is_finished:
             return
-        self._end_chunk()
+        self.write_chunk(self._take_chunk())
         if not is_last:
             self._file.add_metadata(CONTINUES, {NUMBER: str(self._number + 1)})
         self._file.finish()
@@ -110,15 +127,7 @@ class PartWriter:
             self._file.add_channel(topic.name, types.index(topic.type_name) + 1, {
                 'offered_qos_profiles': topic.qos.to_yaml(), 'topic_type_hash': type_hash})
 
-    def _end_chunk(self) -> None:
-        chunk, self._ticks = self._chunk, 0
-        self._chunk = self._file.new_chunk()
-        if chunk.is_empty:
-            return
-        counts = self._file.add_chunk(chunk)
-        self._chunk = self._file.new_chunk()
-        if self._start_ns == NO_START:
-            self._start_ns = chunk.start_ns
-        self._end_ns = chunk.end_ns
-        for channel, count in counts:
-            self._counts[channel - 1] += count
+    def _take_chunk(self) -> Chunk:
+        chunk, self._chunk = self._chunk, self._file.new_chunk()
+        self._ticks = 0
+        return chunk

@@ -2,18 +2,21 @@
 The recorder: a rosbag2 directory that can be read at any moment of the run.
 
 Provenance and metadata.yaml are written before the first message. A chunk ends with a whole
-tick and is in the operating system's hands when `BagWriter.write_tick` returns: a killed run
-loses less than a simulated second, and what is left ends with a whole tick. With a size to
-split at, the tick after the chunk that reaches it begins the next file.
+tick, holds at most half a simulated second, and is written by a thread while the next one is
+filled: a killed run loses less than a simulated second, and what is left ends with a whole tick.
+With a size to split at, the tick after the chunk that reaches it begins the next file.
 
 Nothing is taken from the host: the same run gives the same bytes. Compressed ones depend on
 the libraries' versions besides, zstd's or lz4's; what is in them does not.
 """
 
 from collections.abc import Sequence
+from concurrent.futures import Future, ThreadPoolExecutor
 from pathlib import Path
+import time
 from types import TracebackType
 
+from isa_ros.bag.chunk import Chunk
 from isa_ros.bag.metadata import FILE_NAME, metadata_yaml
 from isa_ros.bag.part_writer import Head, PartWriter
 from isa_ros.bag.provenance import Provenance
@@ -21,6 +24,10 @@ from isa_ros.config.recording import PLAIN, Storage
 from isa_ros.core.topic import Topic
 from isa_ros.errors import BagError, RunError
 from msg_adapters.definitions import definition
+
+
+METADATA_PERIOD_S = 1.0
+"""Host time between two writings of metadata.yaml: readers need it at the end alone."""
 
 
 class BagWriter:
@@ -58,6 +65,9 @@ class BagWriter:
         self._is_full = False
         self._is_closed = False
         self._error: RunError | None = None
+        self._thread = ThreadPoolExecutor(1, 'recorder')
+        self._writing: Future[None] | None = None
+        self._metadata_due = 0.0
         try:
             self._begin_part()
         except OSError as error:
@@ -81,11 +91,12 @@ class BagWriter:
         try:
             if self._is_full and messages:
                 self._begin_part()
-            part = self._parts[-1]
-            if part.write_tick(t_ns, sequence, messages):
-                self._write_metadata()
-                split = self._storage.split_bytes
-                self._is_full = split is not None and part.size >= split
+            chunk = self._parts[-1].write_tick(t_ns, sequence, messages)
+            if chunk is not None:
+                self._end_writing()
+                self._writing = self._thread.submit(self._write, self._parts[-1], chunk)
+                if self._storage.split_bytes is not None:  # its size decides on the next tick
+                    self._end_writing()
         except OSError as error:
             raise self._failure(error, self._path(len(self._parts) - 1)) from error
 
@@ -104,12 +115,30 @@ class BagWriter:
         self._is_closed = True
         part = self._parts[-1]
         try:
+            self._end_writing()
             part.finish(is_last=True)
             self._write_metadata()
         except OSError as error:
             raise self._failure(error, part.path) from error
         finally:
+            self._thread.shutdown()
             part.close()
+
+    def _end_writing(self) -> None:
+        """Wait for the chunk that is being written, if there is one; raise its error."""
+        writing, self._writing = self._writing, None
+        if writing is not None:
+            writing.result()
+
+    def _write(self, part: PartWriter, chunk: Chunk) -> None:
+        """Write a chunk, and from time to time what the bag holds so far; in the thread."""
+        part.write_chunk(chunk)
+        split = self._storage.split_bytes
+        self._is_full = split is not None and part.size >= split
+        now = time.monotonic()
+        if now >= self._metadata_due:
+            self._metadata_due = now + METADATA_PERIOD_S
+            self._write_metadata()
 
     def __enter__(self) -> 'BagWriter':
         return self
@@ -127,6 +156,7 @@ class BagWriter:
     def _begin_part(self) -> None:
         """End the file that is full, if there is one, and begin the next."""
         if self._parts:
+            self._end_writing()
             self._parts[-1].finish(is_last=False)
             self._parts[-1].close()
         number = len(self._parts)

@@ -1,0 +1,163 @@
+"""
+One chunk of an MCAP file under construction: message records in one buffer, written by a kernel.
+
+The official ``mcap.writer.Writer`` makes an object and ten small packs of each message; here a
+tick is one call, whatever the number of its messages.
+"""
+
+from collections.abc import Sequence
+import struct
+from typing import NamedTuple
+
+from isa_ros.bag.packed import Layout, Packed
+from isa_ros.core.kernel import kernel
+from mcap.opcode import Opcode
+import numpy as np
+from numpy.typing import NDArray
+
+Entries = NDArray[np.uint64]
+"""Where the messages of one channel stand: rows of log time, ns, and offset in the chunk."""
+
+MESSAGE_HEADER = struct.Struct('<BQHIQQ')
+"""Opcode, length of what follows, channel, sequence, log time, publish time."""
+
+_MESSAGE = int(Opcode.MESSAGE)
+_HEADER_BYTES = MESSAGE_HEADER.size
+_LENGTH_EXCESS = _HEADER_BYTES - 9  # of a message record, over its data
+
+
+@kernel
+def put(buffer, at, value, n):
+    """Write ``value`` as ``n`` bytes, little endian; return the place behind it."""
+    for k in range(n):
+        buffer[at + k] = value >> 8 * k & 255
+    return at + n
+
+
+@kernel
+def append(buffer, at, block, layout, sequence, t_ns):
+    """
+    Append the message records of one tick to ``buffer`` at ``at``.
+
+    ``layout`` says where the messages of the tick stand in ``block``. The buffer is large
+    enough: the caller has counted.
+    """
+    for k in range(len(layout.topics)):
+        size, start = layout.sizes[k], layout.starts[k]
+        at = put(buffer, at, _MESSAGE, 1)
+        at = put(buffer, at, size + _LENGTH_EXCESS, 8)
+        at = put(buffer, at, layout.topics[k] + 1, 2)
+        at = put(buffer, at, sequence, 4)
+        at = put(buffer, at, t_ns, 8)
+        at = put(buffer, at, t_ns, 8)
+        buffer[at:at + size] = block[start:start + size]
+        at += size
+
+
+class _Ticks(NamedTuple):
+    """What ticks of one layout have in common."""
+
+    layout: Layout
+    channels: list[int]
+    offsets: list[int]
+    """Of each record from the begin of the tick's."""
+    size: int
+
+
+class Layouts:
+    """The layouts that ticks of a file have had so far."""
+
+    def __init__(self) -> None:
+        self._by_identity: dict[int, _Ticks] = {}
+        self._by_content: dict[tuple[bytes, bytes], _Ticks] = {}
+
+    def of(self, layout: Layout) -> _Ticks:
+        """Return what the ticks of a layout have in common, the same object for equal ones."""
+        found = self._by_identity.get(id(layout))
+        if found is not None and found.layout is layout:
+            return found
+        key = layout.topics.tobytes(), layout.sizes.tobytes()
+        found = self._by_content.get(key)
+        if found is None:
+            ends = np.cumsum(layout.sizes + _HEADER_BYTES).tolist()
+            found = self._by_content[key] = _Ticks(
+                layout, (layout.topics + 1).tolist(), [0, *ends[:-1]], ends[-1])
+            self._by_identity[id(layout)] = found
+        return found
+
+
+class _Stretch(NamedTuple):
+    """Ticks of one layout in a row: when they were, and where they stand in the chunk."""
+
+    ticks: _Ticks
+    times: list[int]
+    starts: list[int]
+
+
+class Chunk:
+    """
+    Messages of one chunk and where each stands in it.
+
+    ``buffer`` is memory for its bytes, which grows where it must: `buffer` is the one to use
+    again once the chunk is written.
+    """
+
+    def __init__(self, prefix: bytes, layouts: Layouts, buffer: NDArray[np.uint8]) -> None:
+        self._layouts = layouts
+        self._stretches: list[_Stretch] = []
+        self.buffer = buffer
+        self.size = 0
+        self.start_ns = self.end_ns = 0
+        self._reserve(len(prefix))
+        self.buffer[:len(prefix)] = np.frombuffer(prefix, np.uint8)
+        self.size = len(prefix)
+
+    def _reserve(self, n: int) -> None:
+        if self.size + n > len(self.buffer):
+            grown = np.empty(2 * (self.size + n), np.uint8)
+            grown[:self.size] = self.buffer[:self.size]
+            self.buffer = grown
+
+    def add(self, t_ns: int, sequence: int, messages: Sequence[tuple[int, bytes]]) -> None:
+        """Append the messages of one instant: (topic index, CDR bytes)."""
+        if not messages:
+            return
+        packed = Packed.of(messages)
+        ticks = self._layouts.of(packed.layout)
+        self._reserve(ticks.size)
+        append(self.buffer, self.size, packed.block, packed.layout, sequence, t_ns)
+        if not self._stretches:
+            self.start_ns = t_ns
+        if not self._stretches or self._stretches[-1].ticks is not ticks:
+            self._stretches.append(_Stretch(ticks, [], []))
+        stretch = self._stretches[-1]
+        stretch.times.append(t_ns)
+        stretch.starts.append(self.size)
+        self.end_ns = t_ns
+        self.size += ticks.size
+
+    def data(self) -> memoryview:
+        """Return the content of the chunk, on its own memory."""
+        return self.buffer[:self.size].data
+
+    @property
+    def is_empty(self) -> bool:
+        """Return whether there is no message in it."""
+        return not self._stretches
+
+    def message_indices(self) -> list[tuple[int, Entries]]:
+        """Return (channel id, entries (n, 2) of time and offset) of those with messages."""
+        pieces: dict[int, list[Entries]] = {}
+        for ticks, times, starts in self._stretches:
+            instants = np.array((times, starts), np.uint64).T
+            for channel, offset in zip(ticks.channels, ticks.offsets):
+                pieces.setdefault(channel, []).append(
+                    instants + np.array((0, offset), np.uint64))
+        return [(channel, _in_order(pieces[channel])) for channel in sorted(pieces)]
+
+
+def _in_order(pieces: Sequence[Entries]) -> Entries:
+    if len(pieces) == 1:
+        return pieces[0]
+    entries = np.concatenate(pieces)
+    return entries[np.argsort(entries[:, 1])]
