@@ -12,7 +12,7 @@ import sys
 from typing import TYPE_CHECKING
 
 from isa_ros.config.paths import CONFIG, find, SCENARIOS
-from isa_ros.errors import BagError, ConfigError, one_line
+from isa_ros.errors import BagError, one_line
 
 if TYPE_CHECKING:
     from isa_ros.run.session import Request
@@ -167,12 +167,13 @@ def validate(options: Namespace) -> bool:
     """Hold the actuators against the paper, number by number."""
     from isa_ros.analysis.validation.groups import GROUPS
     from isa_ros.analysis.validation.page import as_text, PAGE, write_json, write_page
-    from isa_ros.analysis.validation.runner import chosen, is_reached, terminal_progress, validated
+    from isa_ros.analysis.validation.runner import chosen, is_reached, validated
+    from isa_ros.text.page import refuse_a_part
+    from isa_ros.text.progress import counted
     groups = chosen(GROUPS, options.only)
-    if options.only and options.out and (options.out / PAGE).exists():
-        raise ConfigError(
-            f'{options.out / PAGE} exists, must not: --only would leave a part of it')
-    results = validated(groups, options.only, terminal_progress(sys.stderr))
+    if options.out:
+        refuse_a_part(options.out / PAGE, options.only)
+    results = validated(groups, options.only, counted(sys.stderr, 'groups', stays=True))
     print(as_text(results))
     if options.json:
         write_json(results, options.json)

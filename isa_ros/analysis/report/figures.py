@@ -1,5 +1,7 @@
 """Figures of a run: one for each actuator, one for the leg."""
 
+from collections.abc import Sequence
+
 from isa_ros.analysis.signals.traces import Trace
 from isa_ros.config.run_config import ActuatorConfig, RunConfig
 from matplotlib.axes import Axes
@@ -47,7 +49,7 @@ def actuator_figure(actuator: ActuatorConfig, traces: Traces) -> Figure:
     _reference(valve, reference.t, 1e3 * reference['position[2]'])
     _measured(valve, spool.t, 1e3 * spool['position[0]'])
     valve.set_ylabel('spool, mm')
-    return _finish(figure, (position, force, pressure, valve))
+    return finish(figure, (position, force, pressure, valve))
 
 
 def leg_figure(traces: Traces) -> Figure:
@@ -62,7 +64,7 @@ def leg_figure(traces: Traces) -> Figure:
     for axis in 'xyz':
         contact.plot(ground.t, ground[f'wrench.force.{axis}'], label=axis)
     contact.set_ylabel('ground force, N')
-    return _finish(figure, (angle, torque, contact))
+    return finish(figure, (angle, torque, contact))
 
 
 def _reference(ax: Axes, t: np.ndarray, values: np.ndarray) -> None:
@@ -80,7 +82,8 @@ def _stack(rows: int, title: str) -> tuple[Figure, tuple[Axes, ...]]:
     return figure, tuple(axes)
 
 
-def _finish(figure: Figure, axes: tuple[Axes, ...]) -> Figure:
+def finish(figure: Figure, axes: Sequence[Axes]) -> Figure:
+    """Add grids, legends and the time axis."""
     for ax in axes:
         ax.grid(visible=True, linewidth=0.4)
         ax.legend(loc='upper right', fontsize='small')

@@ -9,7 +9,7 @@ from collections.abc import Mapping
 from typing import NamedTuple
 
 from isa_ros.analysis.report.characteristics import RESPONSES
-from isa_ros.analysis.report.figures import Traces
+from isa_ros.analysis.report.figures import finish, Traces
 from isa_ros.analysis.signals.traces import Trace
 from isa_ros.config.run_config import ActuatorConfig, RunConfig
 from isa_ros.core.suggest import alternatives
@@ -65,11 +65,7 @@ def paper_figure(name: str, run: RunConfig, traces: Traces) -> Figure:
     axes = figure.subplots(rows, 1, sharex=True, squeeze=False)[:, 0]
     for panel, ax in zip(layout.panels, axes):
         (draw_position if panel == POSITION else draw_force)(ax, actuator, traces)
-        ax.grid(visible=True, linewidth=0.4)
-        ax.legend(loc='upper right', fontsize='small')
-        ax.margins(x=0.0)
-    axes[-1].set_xlabel('simulation time, s')
-    return figure
+    return finish(figure, tuple(axes))
 
 
 def shown(run: RunConfig) -> ActuatorConfig:
