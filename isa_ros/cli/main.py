@@ -15,16 +15,12 @@ import traceback
 from types import FrameType
 from typing import NoReturn
 
-from isa_ros.cli import commands, response_arguments, study_arguments
-from isa_ros.cli.argument_types import (
-    directory_to_write, file_to_write, names, not_negative, positive)
+from isa_ros.cli import commands, response_arguments, run_arguments, study_arguments
+from isa_ros.cli.argument_types import directory_to_write, file_to_write
 from isa_ros.errors import IsaError, one_line
-from isa_ros.run.pacing import JOIN_TIMEOUT_S
 
 DONE, ANSWER_IS_NO, WRONG_INPUT, NOT_COMPLETED, INTERRUPTED = 0, 1, 2, 3, 130
 """Exit codes; `IsaError` children carry theirs, a diverged simulation 4 among them."""
-
-COMPRESSIONS = ('none', 'lz4', 'zstd')
 
 _DISK_IS_FULL = (errno.ENOSPC, errno.EDQUOT)
 
@@ -92,48 +88,6 @@ def make_parser() -> argparse.ArgumentParser:
 def _demo(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         '--out', type=Path, metavar='DIR', help='new directory (default: a new one in runs/)')
-
-
-def _bringup(parser: argparse.ArgumentParser) -> None:
-    parser.add_argument('config', metavar='CONFIG', help='a run file, or a shipped one by name')
-    parser.add_argument(
-        '--scenario', metavar='FILE', help='what is commanded: a file, or a shipped one by name')
-    parser.add_argument(
-        '--duration', type=positive, metavar='S',
-        help='simulated time (default: that of the scenario, else until Ctrl-C)')
-    parser.add_argument(
-        '--out', type=Path, metavar='DIR',
-        help='directory of the bag (default: a new one in runs/)')
-    parser.add_argument(
-        '--overwrite', action='store_true', help='replace the bag in an existing directory')
-    parser.add_argument(
-        '--compression', choices=COMPRESSIONS,
-        help='of the chunks of the bag (default: that of CONFIG, else none)')
-    parser.add_argument(
-        '--split-mb', type=not_negative, metavar='N',
-        help='begin another file of the bag after N MB, 0: never (default: that of CONFIG)')
-    parser.add_argument(
-        '--real-time-factor', type=positive, metavar='X',
-        help='not faster than X times real time (default: as fast as it goes)')
-    parser.add_argument(
-        '--in-process', action='store_true',
-        help='all nodes in one process: faster, and the same bytes in the bag')
-    parser.add_argument(
-        '--elsewhere', type=names, default=(), metavar='NAME[,NAME...]|all',
-        help='actuators that `isa actuators` starts on another host: they are waited for')
-    parser.add_argument(
-        '--controller', action='append', default=[], metavar='NAME',
-        help='a node of yours that is waited for at every tick; may be repeated')
-    parser.add_argument(
-        '--join-timeout', type=positive, metavar='S', default=JOIN_TIMEOUT_S,
-        help=f'how long participants are waited for (default: {JOIN_TIMEOUT_S:g} s)')
-    parser.add_argument(
-        '--paused', action='store_true',
-        help='wait before tick 0 for /coordinator/step or the end of the pause')
-    parser.add_argument(
-        '--restore', type=Path, metavar='FILE', help='go on from a saved state')
-    parser.add_argument(
-        '--save', type=file_to_write, metavar='FILE', help='save the state at the end there')
 
 
 def _actuators(parser: argparse.ArgumentParser) -> None:
@@ -210,7 +164,7 @@ def _bench(parser: argparse.ArgumentParser) -> None:
 
 _COMMANDS = {
     'demo': (_demo, commands.demo, 'drop the leg by 10 cm, record it, and draw a report'),
-    'bringup': (_bringup, commands.bringup, 'run and record a configuration'),
+    'bringup': (run_arguments.bringup, commands.bringup, 'run and record a configuration'),
     'actuators': (_actuators, commands.actuators,
                   'run actuators of a configuration for a coordinator on another host'),
     'replay': (_replay, commands.replay, 'simulate a bag again from itself, and compare'),
