@@ -15,8 +15,8 @@ import traceback
 from types import FrameType
 from typing import NoReturn
 
-from isa_ros.cli import commands, response_arguments, run_arguments, study_arguments
-from isa_ros.cli.argument_types import directory_to_write, file_to_write
+from isa_ros.cli import (
+    commands, response_arguments, run_arguments, shared_arguments, study_arguments)
 from isa_ros.errors import IsaError, one_line
 
 DONE, ANSWER_IS_NO, WRONG_INPUT, NOT_COMPLETED, INTERRUPTED = 0, 1, 2, 3, 130
@@ -100,13 +100,13 @@ def _actuators(parser: argparse.ArgumentParser) -> None:
 
 
 def _replay(parser: argparse.ArgumentParser) -> None:
-    parser.add_argument('bag', type=Path, metavar='BAG')
+    shared_arguments.bag(parser)
     _tolerance(parser)
 
 
 def _compare(parser: argparse.ArgumentParser) -> None:
-    parser.add_argument('expected', type=Path, metavar='BAG')
-    parser.add_argument('actual', type=Path, metavar='BAG')
+    shared_arguments.bag(parser, 'expected')
+    shared_arguments.bag(parser, 'actual')
     _tolerance(parser)
 
 
@@ -116,25 +116,20 @@ def _tolerance(parser: argparse.ArgumentParser) -> None:
 
 
 def _report(parser: argparse.ArgumentParser) -> None:
-    parser.add_argument('bag', type=Path, metavar='BAG')
+    shared_arguments.bag(parser)
     parser.add_argument(
         '--out', type=Path, metavar='FILE.html', help='the page (default: beside the bag)')
 
 
 def _identify(parser: argparse.ArgumentParser) -> None:
-    parser.add_argument('bag', type=Path, metavar='BAG')
+    shared_arguments.bag(parser)
     parser.add_argument('--actuator', metavar='NAME', help='only this one (default: all)')
-    parser.add_argument(
-        '--json', type=file_to_write, metavar='FILE', help='write the numbers there too')
+    shared_arguments.json_file(parser)
 
 
 def _params(parser: argparse.ArgumentParser) -> None:
     parser.add_argument('name', metavar='MODEL|CONFIG', help='isa_v5, hyq_real, leg.yaml, ...')
-    parser.add_argument(
-        '--preset', metavar='NAME', help='gains of a model (default: default)')
-    parser.add_argument(
-        '--variant', action='append', default=[], metavar='V',
-        help='another way to model or to wire a model; may be repeated')
+    shared_arguments.gains(parser, 'NAME')
 
 
 def _paper(parser: argparse.ArgumentParser) -> None:
@@ -145,21 +140,15 @@ def _paper(parser: argparse.ArgumentParser) -> None:
 def _validate(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         '--only', action='append', metavar='NAME', help='a group, or an entry as GROUP.ENTRY')
-    parser.add_argument(
-        '--json', type=file_to_write, metavar='FILE', help='write the entries there too')
-    parser.add_argument(
-        '--out', type=directory_to_write, metavar='DIR',
-        help='write validation.md and its figures there')
+    shared_arguments.json_file(parser, 'the entries')
+    shared_arguments.page_directory(parser, 'validation.md and its figures')
 
 
 def _bench(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         '--only', action='append', metavar='NAME', help='a group of rows; may be repeated')
-    parser.add_argument(
-        '--json', type=file_to_write, metavar='FILE', help='write the numbers there too')
-    parser.add_argument(
-        '--out', type=directory_to_write, metavar='DIR',
-        help='write bench.md and its figure there')
+    shared_arguments.json_file(parser)
+    shared_arguments.page_directory(parser, 'bench.md and its figure')
 
 
 _COMMANDS = {
