@@ -10,6 +10,7 @@ from isa_ros.bench.growth_figure import growth_figure
 from isa_ros.bench.host import Machine
 from isa_ros.bench.rounds import Outcomes
 from isa_ros.bench.row import Row
+from isa_ros.text.number import digits
 from isa_ros.text.page import Page, png_with_palette
 from isa_ros.text.table import padded
 
@@ -57,7 +58,7 @@ def as_lines(section: Section) -> list[str]:
     """Return the lines that a terminal shows."""
     lines = [f'{section.title} ({section.name})']
     for row in section.rows:
-        lines.append(padded((_indented(row, '  '), _number(row.value), row.unit, _ratio(row),
+        lines.append(padded((_indented(row, '  '), digits(row.value, 4), row.unit, _ratio(row),
                              row.floor), _WIDTHS, _SIDES) + _verdict(row))
         if row.note:
             lines.append(f'    {row.note}')
@@ -68,13 +69,6 @@ def _verdict(row: Row) -> str:
     if row.is_reached is None:
         return ''
     return f'; aim {row.aim}: {"reached" if row.is_reached else "not reached"}'
-
-
-def _number(value: float | None) -> str:
-    """Return four digits, also of large numbers; - for none."""
-    if value is None:
-        return '-'
-    return f'{value:.0f}' if abs(value) >= 1e4 else f'{value:.4g}'
 
 
 def as_tree(report: Report) -> dict[str, Any]:
@@ -132,8 +126,8 @@ def _aims(page: Page, report: Report) -> None:
 
 def _spread(row: Row) -> str:
     if row.lowest is None or row.highest is None or row.lowest == row.highest:
-        return _number(row.value)
-    return f'{_number(row.value)} ({_number(row.lowest)} to {_number(row.highest)})'
+        return digits(row.value, 4)
+    return f'{digits(row.value, 4)} ({digits(row.lowest, 4)} to {digits(row.highest, 4)})'
 
 
 def _cells(row: Row) -> tuple[str, ...]:

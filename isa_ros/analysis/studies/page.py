@@ -9,6 +9,7 @@ from typing import Any
 from isa_ros.analysis.studies.figure import study_figure
 from isa_ros.analysis.studies.measure import Outcome, Result, RIPPLE_S
 from isa_ros.analysis.studies.studies import Case, STUDIES, Study
+from isa_ros.text.number import digits
 from isa_ros.text.page import Page, png_with_palette
 from isa_ros.text.table import aligned, RIGHT
 
@@ -43,19 +44,13 @@ def head(result: Result) -> tuple[str, ...]:
 def cells(result: Result, outcome: Outcome) -> tuple[str, ...]:
     """Return a row of the table."""
     at = '-' if outcome.ripple_hz is None else f'{outcome.ripple_hz:.3g}'
+    step = (outcome.rise, outcome.overshoot, outcome.bandwidth)
+    ripples = (outcome.ripple_mid, outcome.ripple_end, outcome.ripple_wheel)
+    errors = (outcome.force_error, outcome.position_error)
     return (f'{outcome.value:g}{"*" if result.is_shipped(outcome) else ""}',
-            _number(outcome.rise), _number(outcome.overshoot), _number(outcome.bandwidth),
-            _number(outcome.ripple_mid), _number(outcome.ripple_end),
-            _number(outcome.ripple_wheel),
+            *(digits(value, 3) for value in (*step, *ripples)),
             f'<= {at}' if outcome.ripple_hz == 1.0 / RIPPLE_S else at,
-            _number(outcome.force_error), _number(outcome.position_error))
-
-
-def _number(value: float | None) -> str:
-    """Return three digits, also of large numbers; - for none."""
-    if value is None:
-        return '-'
-    return f'{value:.0f}' if abs(value) >= 1e3 else f'{value:.3g}'
+            *(digits(value, 3) for value in errors))
 
 
 def as_text(study: Study, results: Sequence[Result]) -> str:
