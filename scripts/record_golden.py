@@ -12,7 +12,7 @@ import sys
 
 from isa_ros.config.paths import CONFIG, find
 from isa_ros.nodes.bringup import bringup
-from isa_ros.run.session import Request
+from isa_ros.run.options import Request
 
 GOLDEN = Path(__file__).parent.parent / 'tests' / 'golden'
 RUNS = {

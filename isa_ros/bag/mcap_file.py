@@ -2,7 +2,7 @@
 One MCAP file under construction, a whole chunk at a time.
 
 The records are those of the official ``mcap`` library, except the two that come by the
-million: messages (`isa_ros.bag.chunk`) and the entries of their index, which is an array.
+million: messages (`isa_ros.bag.message_chunk`) and the entries of their index, which is an array.
 """
 
 from collections.abc import Callable, Mapping, Sequence
@@ -12,8 +12,8 @@ from pathlib import Path
 import struct
 import zlib
 
-from isa_ros.bag.chunk import Chunk, Layouts
 from isa_ros.bag.crc import combined
+from isa_ros.bag.message_chunk import Chunk, Layouts
 import lz4.frame  # type: ignore[import-untyped]
 from mcap.data_stream import RecordBuilder
 from mcap.opcode import Opcode

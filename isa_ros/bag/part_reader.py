@@ -10,7 +10,7 @@ from pathlib import Path
 import re
 from typing import NamedTuple
 
-from isa_ros.bag.chunk import MESSAGE_HEADER
+from isa_ros.bag.message_chunk import MESSAGE_HEADER
 from isa_ros.bag.part_writer import CONTINUES, NUMBER, PART
 from isa_ros.bag.records import chunk_content, End, parse_record, read_records, Record
 from isa_ros.errors import BagError

@@ -8,8 +8,8 @@ from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import NamedTuple
 
-from isa_ros.bag.chunk import Chunk
 from isa_ros.bag.mcap_file import McapFile
+from isa_ros.bag.message_chunk import Chunk
 from isa_ros.bag.metadata import Counts, NO_START, storage_metadata
 from isa_ros.bag.provenance import MEDIA_TYPES, RECORD
 from isa_ros.core.topic import Topic

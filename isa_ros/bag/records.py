@@ -18,8 +18,8 @@ import lz4.frame  # type: ignore[import-untyped]
 from mcap.data_stream import ReadDataStream
 from mcap.exceptions import EndOfFile
 from mcap.opcode import Opcode
-from mcap.records import Attachment, Channel, Chunk, DataEnd, Footer, Header, McapRecord
-from mcap.records import Metadata, Schema
+from mcap.records import (
+    Attachment, Channel, Chunk, DataEnd, Footer, Header, McapRecord, Metadata, Schema)
 from mcap.writer import MCAP0_MAGIC
 import zstandard
 

@@ -16,7 +16,7 @@ from pathlib import Path
 import time
 from types import TracebackType
 
-from isa_ros.bag.chunk import Chunk
+from isa_ros.bag.message_chunk import Chunk
 from isa_ros.bag.metadata import FILE_NAME, metadata_yaml
 from isa_ros.bag.part_writer import Head, PartWriter
 from isa_ros.bag.provenance import Provenance

@@ -7,9 +7,11 @@ import sys
 from isa_ros.bench.groups import Group, GROUPS
 from isa_ros.bench.host import Machine, machine
 from isa_ros.bench.page import as_lines, HEAD, PAGE, Report, Section, write_json, write_page
-from isa_ros.bench.rounds import Outcomes, outcomes, Progress, terminal_progress
+from isa_ros.bench.rounds import Outcomes, outcomes
 from isa_ros.core.suggest import alternatives
 from isa_ros.errors import ConfigError
+from isa_ros.text.page import refuse_a_part
+from isa_ros.text.progress import counted, Progress
 
 
 def chosen(only: Sequence[str] | None, groups: Sequence[Group] = GROUPS) -> tuple[Group, ...]:
@@ -44,11 +46,11 @@ def bench(
 
     """
     groups = chosen(only)
-    if only and out is not None and (out / PAGE).exists():
-        raise ConfigError(f'{out / PAGE} exists, must not: --only would leave a part of it')
+    if out is not None:
+        refuse_a_part(out / PAGE, only)
     here = machine()
     print(f'{here.summary}\n{HEAD}')
-    report = measured_report(groups, here, terminal_progress(sys.stderr))
+    report = measured_report(groups, here, counted(sys.stderr, 'runs'))
     if json_file is not None:
         write_json(report, json_file)
     if out is not None:

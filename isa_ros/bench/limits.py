@@ -5,12 +5,13 @@ import os
 from statistics import median
 
 from isa_ros.bench.spec import Measured, median_of
+from isa_ros.text.number import digits
 
 
 def in_parts(parts: Mapping[str, float], scale: float, unit: str) -> str:
     """Return parts with their values, the largest first."""
     by_size = sorted(parts.items(), key=lambda part: -part[1])
-    return ', '.join(f'{name} {_digits(value * scale)} {unit}' for name, value in by_size)
+    return ', '.join(f'{name} {digits(value * scale, 3)} {unit}' for name, value in by_size)
 
 
 def profile(runs: Sequence[Measured]) -> str:
@@ -26,11 +27,6 @@ def profile(runs: Sequence[Measured]) -> str:
 def startup_profile(runs: Sequence[Measured]) -> str:
     """Return where the start-up goes, in one sentence; medians over the runs."""
     return f'from the start on: {in_parts(median_of([run.startup for run in runs]), 1.0, "s")}'
-
-
-def _digits(value: float) -> str:
-    """Return three digits, also of large numbers."""
-    return f'{value:.0f}' if value >= 1e3 else f'{value:.3g}'
 
 
 def busy(runs: Sequence[Measured]) -> float:

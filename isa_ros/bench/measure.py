@@ -15,7 +15,8 @@ from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
     from isa_ros.bench.spec import Measured, Spec
-    from isa_ros.run.session import Report, Request
+    from isa_ros.run.options import Request
+    from isa_ros.run.session import Report
 
 
 def main(arguments: Sequence[str]) -> int:

@@ -1,7 +1,6 @@
 """The rows as text, as JSON, and as the page docs/bench.md with its figure."""
 
 from dataclasses import asdict, dataclass
-import io
 import json
 from pathlib import Path
 from typing import Any
@@ -11,11 +10,13 @@ from isa_ros.bench.growth_figure import growth_figure
 from isa_ros.bench.host import Machine
 from isa_ros.bench.rounds import Outcomes
 from isa_ros.bench.row import Row
-from PIL import Image
+from isa_ros.text.number import digits
+from isa_ros.text.page import Page, png_with_palette
+from isa_ros.text.table import padded
 
-PAGE, FIGURE = 'bench.md', 'figures/bench_growth.png'
-COLORS = 64     # of the figure
-HEAD = f'{"measurement":52} {"median":>10} {"unit":8} {"ratio":>8}  to'
+PAGE, FIGURE = 'bench.md', 'bench_growth'
+_WIDTHS, _SIDES = (52, 9, 7, 8, 0), 'lrlrl'
+HEAD = padded(('measurement', 'median', 'unit', 'ratio', 'to'), _WIDTHS, _SIDES)
 _HEAD = """# How fast, and what limits it
 
 Measured and written, with its figure, in one call of
@@ -57,10 +58,8 @@ def as_lines(section: Section) -> list[str]:
     """Return the lines that a terminal shows."""
     lines = [f'{section.title} ({section.name})']
     for row in section.rows:
-        ratio = '' if row.ratio is None else f'{row.ratio:.3g}'
-        line = (f'{_indented(row, "  "):52} {_number(row.value):>10} {row.unit:8} {ratio:>8}  '
-                f'{row.floor}')
-        lines.append(line.rstrip() + _verdict(row))
+        lines.append(padded((_indented(row, '  '), digits(row.value, 4), row.unit, _ratio(row),
+                             row.floor), _WIDTHS, _SIDES) + _verdict(row))
         if row.note:
             lines.append(f'    {row.note}')
     return lines
@@ -70,13 +69,6 @@ def _verdict(row: Row) -> str:
     if row.is_reached is None:
         return ''
     return f'; aim {row.aim}: {"reached" if row.is_reached else "not reached"}'
-
-
-def _number(value: float | None) -> str:
-    """Return four digits, also of large numbers; - for none."""
-    if value is None:
-        return '-'
-    return f'{value:.0f}' if abs(value) >= 1e4 else f'{value:.4g}'
 
 
 def as_tree(report: Report) -> dict[str, Any]:
@@ -99,68 +91,55 @@ def write_json(report: Report, path: Path) -> None:
 
 def write_page(report: Report, directory: Path) -> list[Path]:
     """Write bench.md, and the figure of the growth where that was measured."""
-    directory.mkdir(parents=True, exist_ok=True)
-    blocks = [_HEAD.format(machine=report.machine.summary), *_aims(report)]
-    written = [directory / PAGE]
+    page = Page(PAGE, _HEAD.format(machine=report.machine.summary))
+    _aims(page, report)
     curves = {name: growth.curve(specs, report.outcomes) for name, specs in (
         ('one process', growth.IN_ONE_PROCESS), ('processes', growth.IN_PROCESSES))}
     has_figure = all(len(curve) > 1 for curve in curves.values())
     for section in report.sections:
-        blocks += _markdown(section)
+        page.section(section.title)
+        page.paragraph(f'`isa bench --only {section.name}`')
+        page.table([('', 'median', 'unit', 'ratio', 'to'), *map(_cells, section.rows)])
         if section.name == 'growth' and has_figure:
-            written.append(directory / FIGURE)
-            written[-1].parent.mkdir(exist_ok=True)
-            written[-1].write_bytes(_png(curves))
-            blocks += [f'![Ticks per second over the number of actuators]({FIGURE})', '']
-    written[0].write_text('\n'.join(blocks).rstrip() + '\n', encoding='utf-8')
-    return written
+            page.figure(FIGURE, 'Ticks per second over the number of actuators',
+                        png_with_palette(growth_figure(curves)))
+    return page.write(directory)
 
 
-def _aims(report: Report) -> list[str]:
-    """Return the aims and, for each that is not reached, what limits it."""
+def _aims(page: Page, report: Report) -> None:
+    """Add the aims and, for each that is not reached, what limits it."""
     rows = [row for section in report.sections for row in section.rows if row.aim is not None]
     if not rows:
-        return []
-    lines = ['## Aims', '', '| | aim | here | |', '|---|---|---|---|']
+        return
+    page.section('Aims')
+    cells = [('', 'aim', 'here', '')]
     for row in rows:
         verdict = {True: 'reached', False: '**not reached**', None: row.note}[row.is_reached]
         here = _spread(row) if row.value is None else f'{_spread(row)} {row.unit}'
-        lines.append(f'| {row.name} | {row.aim} | {here} | {verdict} |')
+        cells.append((row.name, str(row.aim), here, verdict))
+    page.table(cells)
     missed = [row for row in rows if row.is_reached is False]
     if missed:
-        lines += ['', 'What limits those that are not reached, from the laps of the coordinator:',
-                  '', *(f'- {row.name}: {row.note}.' for row in missed)]
-    return [*lines, '']
+        page.paragraph('What limits those that are not reached, from the laps of the coordinator:')
+        page.items(f'{row.name}: {row.note}.' for row in missed)
 
 
 def _spread(row: Row) -> str:
     if row.lowest is None or row.highest is None or row.lowest == row.highest:
-        return _number(row.value)
-    return f'{_number(row.value)} ({_number(row.lowest)} to {_number(row.highest)})'
+        return digits(row.value, 4)
+    return f'{digits(row.value, 4)} ({digits(row.lowest, 4)} to {digits(row.highest, 4)})'
 
 
-def _markdown(section: Section) -> list[str]:
-    """Return the table of one group."""
-    lines = [f'## {section.title}', '', f'`isa bench --only {section.name}`', '',
-             '| | median | unit | ratio | to |', '|---|---|---|---|---|']
-    for row in section.rows:
-        ratio = '' if row.ratio is None else f'{row.ratio:.3g}'
-        beside = row.note if row.value is None else row.floor
-        lines.append(f'| {_indented(row, "&emsp;")} | {_spread(row)} | {row.unit} | {ratio} | '
-                     f'{beside} |')
-    return [*lines, '']
+def _cells(row: Row) -> tuple[str, ...]:
+    """Return a row of a group's table on the page."""
+    beside = row.note if row.value is None else row.floor
+    return _indented(row, '&emsp;'), _spread(row), row.unit, _ratio(row), beside
+
+
+def _ratio(row: Row) -> str:
+    return '' if row.ratio is None else f'{row.ratio:.3g}'
 
 
 def _indented(row: Row, space: str) -> str:
     """Return the name, a part's behind a space."""
     return f'{space if row.part_of else ""}{row.name}'
-
-
-def _png(curves: growth.Curves) -> bytes:
-    """Return the figure with a palette, without the name of the program."""
-    drawn, small = io.BytesIO(), io.BytesIO()
-    growth_figure(curves).savefig(drawn, format='png')
-    with Image.open(drawn) as image:
-        image.convert('RGB').quantize(COLORS, dither=Image.Dither.NONE).save(
-            small, format='png', optimize=True)
-    return small.getvalue()

@@ -1,21 +1,17 @@
 """Do the runs of all groups, one after the other, in rounds of alternating order."""
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 import subprocess
 import tempfile
-import time
-from typing import TextIO
 
 from isa_ros.bench.child import last_line, run_module
 from isa_ros.bench.peers.catalogue import PEERS
 from isa_ros.bench.spec import Failed, Measured, Spec
 from isa_ros.errors import RunError
+from isa_ros.text.progress import Progress
 
 RUN_TIMEOUT_S = 180.0   # of one run, start-up included
-
-Progress = Callable[[int, int, str], None]
-"""Takes how many runs are done, how many there are, and what the next one is."""
 
 
 class Outcomes:
@@ -103,18 +99,3 @@ def measured(spec: Spec) -> Measured | Failed:
         if ended.returncode or not result.exists():
             return Failed(last_line(ended))
         return Measured.from_json(result.read_text(encoding='utf-8'))
-
-
-def terminal_progress(stream: TextIO) -> Progress | None:
-    """Return what writes progress to ``stream``; None where it is no terminal."""
-    if not stream.isatty():
-        return None
-    start = time.monotonic()
-
-    def report(done: int, total: int, what: str) -> None:
-        spent = time.monotonic() - start
-        left = f', {spent / done * (total - done):.0f} s left' if done else ''
-        stream.write(f'\r{done} of {total} runs, {spent:.0f} s{left}: {what}\033[K'
-                     if done < total else '\r\033[K')
-        stream.flush()
-    return report

@@ -9,20 +9,16 @@ from collections.abc import Iterator
 from itertools import count
 from pathlib import Path
 import sys
-from typing import TYPE_CHECKING
 
 from isa_ros.config.paths import CONFIG, find, SCENARIOS
-from isa_ros.errors import BagError, ConfigError, one_line
-
-if TYPE_CHECKING:
-    from isa_ros.run.session import Request
+from isa_ros.errors import BagError, one_line
+from isa_ros.run.options import Request, request_of_arguments
 
 RUNS = Path('runs')  # where a demo goes that says nothing else
 
 
 def demo(options: Namespace) -> bool:
     """Drop the leg, four processes, and draw the report of it."""
-    from isa_ros.run.session import Request
     out = options.out or next(path for path in _demo_directories() if not path.exists())
     if out.exists():
         raise BagError(f'{out} exists, must not; a demo never overwrites')
@@ -33,7 +29,7 @@ def demo(options: Namespace) -> bool:
     return True
 
 
-def _record(request: 'Request') -> Path:
+def _record(request: Request) -> Path:
     """Run, and say where its bags are, however the run ends; return the first directory."""
     from isa_ros.run.session import prepare
     from isa_ros.run.terminal import terminal_report
@@ -57,16 +53,7 @@ def _demo_directories() -> Iterator[Path]:
 
 def bringup(options: Namespace) -> bool:
     """Run and record a configuration."""
-    from isa_ros.run.session import Request
-    scenario = None if options.scenario is None else find(options.scenario, SCENARIOS)
-    _record(Request(
-        config=find(options.config, CONFIG), scenario=scenario, out=options.out,
-        duration_s=options.duration, real_time_factor=options.real_time_factor,
-        overwrite=options.overwrite, compression=options.compression,
-        split_mb=options.split_mb, in_process=options.in_process,
-        elsewhere=options.elsewhere, controllers=tuple(options.controller),
-        is_paused=options.paused, restore=options.restore, save=options.save,
-        join_timeout_s=options.join_timeout, is_alone=options.is_alone))
+    _record(request_of_arguments(vars(options), is_alone=options.is_alone))
     return True
 
 
@@ -167,12 +154,13 @@ def validate(options: Namespace) -> bool:
     """Hold the actuators against the paper, number by number."""
     from isa_ros.analysis.validation.groups import GROUPS
     from isa_ros.analysis.validation.page import as_text, PAGE, write_json, write_page
-    from isa_ros.analysis.validation.runner import chosen, is_reached, terminal_progress, validated
+    from isa_ros.analysis.validation.runner import chosen, is_reached, validated
+    from isa_ros.text.page import refuse_a_part
+    from isa_ros.text.progress import counted
     groups = chosen(GROUPS, options.only)
-    if options.only and options.out and (options.out / PAGE).exists():
-        raise ConfigError(
-            f'{options.out / PAGE} exists, must not: --only would leave a part of it')
-    results = validated(groups, options.only, terminal_progress(sys.stderr))
+    if options.out:
+        refuse_a_part(options.out / PAGE, options.only)
+    results = validated(groups, options.only, counted(sys.stderr, 'groups', stays=True))
     print(as_text(results))
     if options.json:
         write_json(results, options.json)

@@ -15,16 +15,12 @@ import traceback
 from types import FrameType
 from typing import NoReturn
 
-from isa_ros.cli import commands, response_arguments, study_arguments
-from isa_ros.cli.argument_types import (
-    directory_to_write, file_to_write, names, not_negative, positive)
+from isa_ros.cli import (
+    commands, response_arguments, run_arguments, shared_arguments, study_arguments)
 from isa_ros.errors import IsaError, one_line
-from isa_ros.run.pacing import JOIN_TIMEOUT_S
 
 DONE, ANSWER_IS_NO, WRONG_INPUT, NOT_COMPLETED, INTERRUPTED = 0, 1, 2, 3, 130
 """Exit codes; `IsaError` children carry theirs, a diverged simulation 4 among them."""
-
-COMPRESSIONS = ('none', 'lz4', 'zstd')
 
 _DISK_IS_FULL = (errno.ENOSPC, errno.EDQUOT)
 
@@ -94,48 +90,6 @@ def _demo(parser: argparse.ArgumentParser) -> None:
         '--out', type=Path, metavar='DIR', help='new directory (default: a new one in runs/)')
 
 
-def _bringup(parser: argparse.ArgumentParser) -> None:
-    parser.add_argument('config', metavar='CONFIG', help='a run file, or a shipped one by name')
-    parser.add_argument(
-        '--scenario', metavar='FILE', help='what is commanded: a file, or a shipped one by name')
-    parser.add_argument(
-        '--duration', type=positive, metavar='S',
-        help='simulated time (default: that of the scenario, else until Ctrl-C)')
-    parser.add_argument(
-        '--out', type=Path, metavar='DIR',
-        help='directory of the bag (default: a new one in runs/)')
-    parser.add_argument(
-        '--overwrite', action='store_true', help='replace the bag in an existing directory')
-    parser.add_argument(
-        '--compression', choices=COMPRESSIONS,
-        help='of the chunks of the bag (default: that of CONFIG, else none)')
-    parser.add_argument(
-        '--split-mb', type=not_negative, metavar='N',
-        help='begin another file of the bag after N MB, 0: never (default: that of CONFIG)')
-    parser.add_argument(
-        '--real-time-factor', type=positive, metavar='X',
-        help='not faster than X times real time (default: as fast as it goes)')
-    parser.add_argument(
-        '--in-process', action='store_true',
-        help='all nodes in one process: faster, and the same bytes in the bag')
-    parser.add_argument(
-        '--elsewhere', type=names, default=(), metavar='NAME[,NAME...]|all',
-        help='actuators that `isa actuators` starts on another host: they are waited for')
-    parser.add_argument(
-        '--controller', action='append', default=[], metavar='NAME',
-        help='a node of yours that is waited for at every tick; may be repeated')
-    parser.add_argument(
-        '--join-timeout', type=positive, metavar='S', default=JOIN_TIMEOUT_S,
-        help=f'how long participants are waited for (default: {JOIN_TIMEOUT_S:g} s)')
-    parser.add_argument(
-        '--paused', action='store_true',
-        help='wait before tick 0 for /coordinator/step or the end of the pause')
-    parser.add_argument(
-        '--restore', type=Path, metavar='FILE', help='go on from a saved state')
-    parser.add_argument(
-        '--save', type=file_to_write, metavar='FILE', help='save the state at the end there')
-
-
 def _actuators(parser: argparse.ArgumentParser) -> None:
     parser.add_argument('config', metavar='CONFIG', help='a run file, or a shipped one by name')
     parser.add_argument(
@@ -146,13 +100,13 @@ def _actuators(parser: argparse.ArgumentParser) -> None:
 
 
 def _replay(parser: argparse.ArgumentParser) -> None:
-    parser.add_argument('bag', type=Path, metavar='BAG')
+    shared_arguments.bag(parser)
     _tolerance(parser)
 
 
 def _compare(parser: argparse.ArgumentParser) -> None:
-    parser.add_argument('expected', type=Path, metavar='BAG')
-    parser.add_argument('actual', type=Path, metavar='BAG')
+    shared_arguments.bag(parser, 'expected')
+    shared_arguments.bag(parser, 'actual')
     _tolerance(parser)
 
 
@@ -162,25 +116,20 @@ def _tolerance(parser: argparse.ArgumentParser) -> None:
 
 
 def _report(parser: argparse.ArgumentParser) -> None:
-    parser.add_argument('bag', type=Path, metavar='BAG')
+    shared_arguments.bag(parser)
     parser.add_argument(
         '--out', type=Path, metavar='FILE.html', help='the page (default: beside the bag)')
 
 
 def _identify(parser: argparse.ArgumentParser) -> None:
-    parser.add_argument('bag', type=Path, metavar='BAG')
+    shared_arguments.bag(parser)
     parser.add_argument('--actuator', metavar='NAME', help='only this one (default: all)')
-    parser.add_argument(
-        '--json', type=file_to_write, metavar='FILE', help='write the numbers there too')
+    shared_arguments.json_file(parser)
 
 
 def _params(parser: argparse.ArgumentParser) -> None:
     parser.add_argument('name', metavar='MODEL|CONFIG', help='isa_v5, hyq_real, leg.yaml, ...')
-    parser.add_argument(
-        '--preset', metavar='NAME', help='gains of a model (default: default)')
-    parser.add_argument(
-        '--variant', action='append', default=[], metavar='V',
-        help='another way to model or to wire a model; may be repeated')
+    shared_arguments.gains(parser, 'NAME')
 
 
 def _paper(parser: argparse.ArgumentParser) -> None:
@@ -191,26 +140,20 @@ def _paper(parser: argparse.ArgumentParser) -> None:
 def _validate(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         '--only', action='append', metavar='NAME', help='a group, or an entry as GROUP.ENTRY')
-    parser.add_argument(
-        '--json', type=file_to_write, metavar='FILE', help='write the entries there too')
-    parser.add_argument(
-        '--out', type=directory_to_write, metavar='DIR',
-        help='write validation.md and its figures there')
+    shared_arguments.json_file(parser, 'the entries')
+    shared_arguments.page_directory(parser, 'validation.md and its figures')
 
 
 def _bench(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         '--only', action='append', metavar='NAME', help='a group of rows; may be repeated')
-    parser.add_argument(
-        '--json', type=file_to_write, metavar='FILE', help='write the numbers there too')
-    parser.add_argument(
-        '--out', type=directory_to_write, metavar='DIR',
-        help='write bench.md and its figure there')
+    shared_arguments.json_file(parser)
+    shared_arguments.page_directory(parser, 'bench.md and its figure')
 
 
 _COMMANDS = {
     'demo': (_demo, commands.demo, 'drop the leg by 10 cm, record it, and draw a report'),
-    'bringup': (_bringup, commands.bringup, 'run and record a configuration'),
+    'bringup': (run_arguments.bringup, commands.bringup, 'run and record a configuration'),
     'actuators': (_actuators, commands.actuators,
                   'run actuators of a configuration for a coordinator on another host'),
     'replay': (_replay, commands.replay, 'simulate a bag again from itself, and compare'),

@@ -3,6 +3,7 @@
 import argparse
 from pathlib import Path
 
+from isa_ros.cli import shared_arguments
 from isa_ros.cli.argument_types import count, file_to_write, number, positive
 
 LOOPS = ('position', 'force', 'pressure', 'spool', 'current')
@@ -38,10 +39,7 @@ def _rig(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         '--loop', choices=LOOPS, default='force',
         help='the loop to excite, the blocks outside it off (default: force, or torque)')
-    parser.add_argument('--preset', metavar='P', help='gains of a model (default: default)')
-    parser.add_argument(
-        '--variant', action='append', default=[], metavar='V',
-        help='another way to model or to wire a model; may be repeated')
+    shared_arguments.gains(parser, 'P')
     parser.add_argument(
         '--load', metavar='KIND',
         help="load of the model (default: blocked; for the position loop the actuator's own)")
@@ -56,6 +54,5 @@ def _rig(parser: argparse.ArgumentParser) -> None:
         help='measure through running nodes, from the bag they record, at their ticks')
     parser.add_argument(
         '--bag', type=Path, metavar='DIR', help='with --nodes: keep the bag there')
-    parser.add_argument(
-        '--json', type=file_to_write, metavar='FILE', help='write the numbers there too')
+    shared_arguments.json_file(parser)
     parser.add_argument('--out', type=file_to_write, metavar='FILE.png', help='draw the figure')

@@ -2,7 +2,8 @@
 
 import argparse
 
-from isa_ros.cli.argument_types import directory_to_write, file_to_write, number
+from isa_ros.cli import shared_arguments
+from isa_ros.cli.argument_types import number
 
 
 def study(parser: argparse.ArgumentParser) -> None:
@@ -14,8 +15,5 @@ def study(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         '--values', type=number, nargs='+', metavar='V',
         help='other values than those of the study, in the unit its table shows')
-    parser.add_argument(
-        '--json', type=file_to_write, metavar='FILE', help='write the numbers there too')
-    parser.add_argument(
-        '--out', type=directory_to_write, metavar='DIR',
-        help='write studies.md and its figures there')
+    shared_arguments.json_file(parser)
+    shared_arguments.page_directory(parser, 'studies.md and its figures')

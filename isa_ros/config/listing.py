@@ -13,6 +13,7 @@ from isa_ros.core.parameter import Parameters
 from isa_ros.errors import ConfigError
 from isa_ros.loads.sheets import LocalLoad
 from isa_ros.surroundings.leg.sheet import LegSheet
+from isa_ros.text.table import aligned
 
 _SYMBOLS = {'gt': '>', 'ge': '>=', 'lt': '<', 'le': '<='}
 
@@ -135,11 +136,7 @@ def _range(declared: Any) -> str:
 
 
 def _table(title: str, body: list[Row]) -> str:
-    lines = [HEADER, *body]
-    widths = [max(len(line[k]) for line in lines) for k in range(len(HEADER))]
-    texts = ['  '.join(cell.ljust(width) for cell, width in zip(line, widths)).rstrip()
-             for line in lines]
-    return '\n'.join([title, *texts])
+    return '\n'.join([title, *aligned([HEADER, *body])])
 
 
 def sources(section: Section, prefix: str = '') -> dict[str, str]:

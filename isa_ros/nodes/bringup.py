@@ -4,7 +4,8 @@ from pathlib import Path
 
 from isa_ros.nodes.coordinator.runs import in_one_process, in_processes
 from isa_ros.processes.stopping import StopRequest
-from isa_ros.run.session import prepare, Report, Request, Session
+from isa_ros.run.options import Request
+from isa_ros.run.session import prepare, Report, Session
 
 
 def bringup(request: Request, report: Report | None = None) -> Path:

@@ -1,10 +1,9 @@
 """`isa paper`: what the paper prints, with the place."""
 
-from collections.abc import Iterator, Sequence
-
 from isa_ros.core.suggest import alternatives
 from isa_ros.errors import ConfigError
 from isa_ros.paper.printed import Printed, statements, Table, tables
+from isa_ros.text.table import aligned
 
 STATEMENTS = 'statements'
 
@@ -28,7 +27,7 @@ def describe(name: str | None) -> str:
         (key, _with_unit(value), value.where, value.what)
         for key, value in statements().items() if name in (None, STATEMENTS, key)]
     if chosen:
-        blocks.append('\n'.join(['statements', *_aligned(chosen)]))
+        blocks.append('\n'.join(['statements', *aligned(chosen)]))
     return '\n\n'.join(blocks)
 
 
@@ -37,15 +36,9 @@ def _table(table: Table) -> str:
     rows += [
         (title, *map(_with_unit, cells))
         for title, cells in table.rows.items()]
-    return '\n'.join([f'{table.name}: {table.caption}', *_aligned(rows)])
+    return '\n'.join([f'{table.name}: {table.caption}', *aligned(rows)])
 
 
 def _with_unit(printed: Printed) -> str:
     has_unit = printed.value is not None and printed.unit != '1'
     return f'{printed.text} {printed.unit}' if has_unit else printed.text
-
-
-def _aligned(rows: Sequence[tuple[str, ...]]) -> Iterator[str]:
-    widths = [max(len(row[k]) for row in rows) for k in range(len(rows[0]))]
-    for row in rows:
-        yield '  '.join(text.ljust(width) for text, width in zip(row, widths)).rstrip()

@@ -19,8 +19,8 @@ from isa_ros.errors import BagError, ConfigError, RunError
 from isa_ros.run.coordinator import Coordinator, Plan, Requests
 from isa_ros.run.exchange import Rows, Transport
 from isa_ros.run.narrator import Narrator, Outlets, packer_of, topics_of
-from isa_ros.run.pacing import (
-    JOIN_TIMEOUT_S, JOINING, Laps, Pace, Progress, ProgressMeter, STARTING)
+from isa_ros.run.options import Request
+from isa_ros.run.pacing import JOINING, Laps, Pace, Progress, ProgressMeter, STARTING
 from isa_ros.run.thinning import Thinning
 from isa_ros.scenario.scenario import idle, load_scenario, Scenario
 from isa_ros.surroundings.surroundings import Surroundings
@@ -28,42 +28,6 @@ from isa_ros.surroundings.surroundings import Surroundings
 RUNS = Path('runs')
 
 Report = Callable[[Progress], None]
-
-
-@dataclass(frozen=True, kw_only=True)
-class Request:
-    """What a user asks for; every option of `isa bringup`."""
-
-    config: Path
-    scenario: Path | None = None
-    out: Path | None = None
-    """None: a new directory in runs/."""
-    duration_s: float | None = None
-    """None: that of the scenario, else until stopped."""
-    real_time_factor: float | None = None
-    """None or 0: as fast as it can."""
-    overwrite: bool = False
-    compression: str | None = None
-    """None: that of the configuration, as `split_mb`."""
-    split_mb: float | None = None
-    in_process: bool = False
-    elsewhere: tuple[str, ...] = ()
-    """Actuators that another host starts; `run_config.ALL` alone: all of them."""
-    controllers: tuple[str, ...] = ()
-    """Controllers that take part, besides those of the run file."""
-    is_paused: bool = False
-    """Wait for a step or the end of the pause before tick 0."""
-    restore: Path | None = None
-    """Saved state to go on from; None: begin at t = 0."""
-    save: Path | None = None
-    """Where the state at the end goes; None: nowhere."""
-    namespace: str = ''
-    join_timeout_s: float = JOIN_TIMEOUT_S
-    is_alone: bool = False
-    """This process does nothing but the run, so that what was loaded need not be collected and,
-    where nobody has had a node, actuators may begin as copies of it."""
-    laps: Laps | None = None
-    """Takes the host time of every phase of the ticks."""
 
 
 @dataclass(frozen=True)

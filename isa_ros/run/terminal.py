@@ -6,16 +6,17 @@ from typing import TextIO
 
 from isa_ros.core.timebase import NS_PER_SECOND
 from isa_ros.run.pacing import Progress
+from isa_ros.text.progress import terminal_line
 
 
 def terminal_report(stream: TextIO = sys.stderr) -> Callable[[Progress], None] | None:
     """Return what writes progress to ``stream``; None where it is no terminal."""
-    if not stream.isatty():
+    line = terminal_line(stream)
+    if line is None:
         return None
 
     def report(progress: Progress) -> None:
-        stream.write(f'\r{progress_line(progress)}\033[K{chr(10) if progress.is_last else ""}')
-        stream.flush()
+        (line.end if progress.is_last else line.show)(progress_line(progress))
     return report
 
 

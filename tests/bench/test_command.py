@@ -1,11 +1,16 @@
 """What the command does with its options."""
 
-from isa_ros.bench import command
+import sys
+
+from isa_ros.bench import command, rounds
 from isa_ros.bench.command import chosen
 from isa_ros.bench.groups import Group, GROUPS
 from isa_ros.bench.row import Row
+from isa_ros.bench.spec import LEG, ONE_PROCESS, Spec
 from isa_ros.cli.main import main
 import pytest
+from tests.bench.told import told
+from tests.text.terminal import Terminal
 
 
 def test_groups_are_chosen_by_name_in_their_own_order():
@@ -41,3 +46,14 @@ def test_a_place_that_cannot_be_written_is_refused_before_anything(option, tmp_p
     with pytest.raises(SystemExit) as ended:
         main(['bench', option, str(tmp_path / 'file' / 'below')])
     assert ended.value.code == 2
+
+
+def test_a_terminal_shows_the_next_run_and_nothing_is_left_at_the_end(monkeypatch):
+    spec = Spec(LEG, ONE_PROCESS, 10, rounds=2)
+    group = Group('own', 'A group', lambda _: [], lambda: (spec,))
+    monkeypatch.setattr(command, 'chosen', lambda only: (group,))
+    monkeypatch.setattr(rounds, 'measured', lambda spec: told(1000.0))
+    monkeypatch.setattr(sys, 'stderr', Terminal())
+    assert main(['bench']) == 0
+    assert sys.stderr.getvalue() == (
+        f'\r0 of 2 runs, 0 s: {spec}\x1b[K\r1 of 2 runs, 0 s, 0 s left: {spec}\x1b[K\r\x1b[K')

@@ -10,7 +10,8 @@ from isa_ros.config.sections import Place
 from isa_ros.config.yaml_text import parse
 from isa_ros.core.topic import Topic
 from isa_ros.errors import ConfigError
-from isa_ros.run.session import prepare, Request
+from isa_ros.run.options import Request
+from isa_ros.run.session import prepare
 from isa_ros.run.thinning import Thinning
 import pytest
 

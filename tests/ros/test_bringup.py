@@ -6,7 +6,7 @@ import signal
 
 from isa_ros.bag.reader import Bag
 from isa_ros.nodes.bringup import bringup as bring_up
-from isa_ros.run.session import Request
+from isa_ros.run.options import Request
 import pytest
 from tests.ros.faults import sha256, wait_for_tick_0
 from tests.ros.started import bringup, DEADLINE_S, DROP, is_alive, RIG, started

@@ -6,7 +6,8 @@ from isa_ros.config.paths import CONFIG, find
 from isa_ros.config.run_file import load_run
 from isa_ros.core.saved_state import RunState
 from isa_ros.errors import BagError, ConfigError
-from isa_ros.run.session import prepare, Request
+from isa_ros.run.options import Request
+from isa_ros.run.session import prepare
 import pytest
 
 RIG = find('rig_rotary.yaml', CONFIG)

@@ -4,13 +4,7 @@ import io
 
 from isa_ros.run.pacing import Progress
 from isa_ros.run.terminal import terminal_report
-
-
-class Terminal(io.StringIO):
-    """A stream that is a terminal."""
-
-    def isatty(self) -> bool:
-        return True
+from tests.text.terminal import Terminal
 
 
 def test_nothing_is_shown_elsewhere():

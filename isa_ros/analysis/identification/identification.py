@@ -5,7 +5,6 @@ Each with its 95 % interval beside the value of the configuration in the bag. Wh
 do not hold is refused with the reason.
 """
 
-from collections.abc import Sequence
 from dataclasses import asdict, dataclass
 import json
 import math
@@ -23,6 +22,7 @@ from isa_ros.core.units import LPM, MILLI
 from isa_ros.errors import BagError
 from isa_ros.plant.plant import LinearPlant, RotaryPlant
 from isa_ros.plant.servo_valve import DualGainValve, HighResponseValve, Valve
+from isa_ros.text.table import aligned, GAP
 import numpy as np
 
 _LEAST_COUNTS = 50.0  # of the encoder; fewer leave more than 1 % of the volume to its rounding
@@ -186,9 +186,9 @@ def table(found: Identified) -> str:
     """Return the estimates as text."""
     lines = []
     for name, estimates in found.actuators.items():
-        lines += [name, *_aligned([
+        lines += [name, *(GAP + line for line in aligned([
             ('', 'estimate', f'{100.0 * CONFIDENCE:g} % interval', 'configured', 'unit', ''),
-            *(_cells(estimate) for estimate in estimates)])]
+            *map(_cells, estimates)]))]
     lines += [f'{name}: nothing to identify: {why}' for name, why in found.still.items()]
     return '\n'.join(lines)
 
@@ -199,12 +199,6 @@ def _cells(estimate: Estimate) -> tuple[str, ...]:
         return head, '-', '', *tail, estimate.reason
     interval = f'{estimate.low:.5g} to {estimate.high:.5g}'
     return head, f'{estimate.value:.5g}', interval, *tail, '' if estimate.holds else 'differs'
-
-
-def _aligned(rows: Sequence[tuple[str, ...]]) -> list[str]:
-    widths = [max(len(row[k]) for row in rows) for k in range(len(rows[0]))]
-    return ['  ' + '  '.join(cell.ljust(width) for cell, width in zip(row, widths)).rstrip()
-            for row in rows]
 
 
 def write_json(found: Identified, bag: Path, path: Path) -> None:

@@ -6,7 +6,7 @@ Drawn from a bag as `isa_ros.analysis.report.paper_figures`, each from the actua
 
 from collections.abc import Callable, Mapping
 
-from isa_ros.analysis.report.figures import ATMOSPHERE, Traces
+from isa_ros.analysis.report.figures import ATMOSPHERE, stack, Traces
 from isa_ros.analysis.signals.frequency import bandwidth, chirp_response, Response
 from isa_ros.config.run_config import ActuatorConfig, RunConfig
 from isa_ros.core.units import LPM, MILLI, MPA
@@ -152,9 +152,7 @@ def _bode(title: str, ratio: str, responses: Mapping[str, Response]) -> Figure:
 
 
 def _axes(rows: int, title: str) -> tuple[Figure, tuple[Axes, ...]]:
-    figure = Figure(figsize=(8.0, 2.6 * rows + 1.2), dpi=110, layout='constrained')
-    figure.suptitle(title)
-    return figure, tuple(figure.subplots(rows, 1, sharex=True, squeeze=False)[:, 0])
+    return stack(rows, title, 2.6 * rows + 1.2)
 
 
 def _finish(figure: Figure, axes: tuple[Axes, ...], x_label: str) -> Figure:

@@ -1,5 +1,7 @@
 """Figures of a run: one for each actuator, one for the leg."""
 
+from collections.abc import Sequence
+
 from isa_ros.analysis.signals.traces import Trace
 from isa_ros.config.run_config import ActuatorConfig, RunConfig
 from matplotlib.axes import Axes
@@ -23,8 +25,8 @@ def figures(run: RunConfig, traces: Traces) -> dict[str, Figure]:
 
 def actuator_figure(actuator: ActuatorConfig, traces: Traces) -> Figure:
     """Draw position, force, chamber pressures and valve of one actuator over time."""
-    figure, (position, force, pressure, valve) = _stack(
-        4, f'{actuator.name} ({actuator.model}, preset {actuator.preset})')
+    figure, (position, force, pressure, valve) = stack(
+        4, f'{actuator.name} ({actuator.model}, preset {actuator.preset})', 8.6)
     of = {topic: traces[f'/{actuator.name}/{topic}'] for topic in (
         'joint_states', 'references', 'pressure_a', 'pressure_b', 'valve')}
     scale, unit, load = (
@@ -47,12 +49,12 @@ def actuator_figure(actuator: ActuatorConfig, traces: Traces) -> Figure:
     _reference(valve, reference.t, 1e3 * reference['position[2]'])
     _measured(valve, spool.t, 1e3 * spool['position[0]'])
     valve.set_ylabel('spool, mm')
-    return _finish(figure, (position, force, pressure, valve))
+    return finish(figure, (position, force, pressure, valve))
 
 
 def leg_figure(traces: Traces) -> Figure:
     """Draw joint angles, joint torques and the ground's force on the foot over time."""
-    figure, (angle, torque, contact) = _stack(3, 'leg')
+    figure, (angle, torque, contact) = stack(3, 'leg', 6.6)
     joints, ground = traces['/joint_states'], traces['/coordinator/ground_contact']
     for k, name in enumerate(('HAA', 'HFE', 'KFE')):
         angle.plot(joints.t, np.degrees(joints[f'position[{k}]']), label=name)
@@ -62,7 +64,7 @@ def leg_figure(traces: Traces) -> Figure:
     for axis in 'xyz':
         contact.plot(ground.t, ground[f'wrench.force.{axis}'], label=axis)
     contact.set_ylabel('ground force, N')
-    return _finish(figure, (angle, torque, contact))
+    return finish(figure, (angle, torque, contact))
 
 
 def _reference(ax: Axes, t: np.ndarray, values: np.ndarray) -> None:
@@ -73,14 +75,15 @@ def _measured(ax: Axes, t: np.ndarray, values: np.ndarray) -> None:
     ax.plot(t, values, color='C0', linewidth=1.2, label='measured')
 
 
-def _stack(rows: int, title: str) -> tuple[Figure, tuple[Axes, ...]]:
-    figure = Figure(figsize=(8.0, 2.0 * rows + 0.6), dpi=110, layout='constrained')
-    axes = figure.subplots(rows, 1, sharex=True)
+def stack(rows: int, title: str, height: float) -> tuple[Figure, tuple[Axes, ...]]:
+    """Return a figure of some height, inches, with axes one above the other."""
+    figure = Figure(figsize=(8.0, height), dpi=110, layout='constrained')
     figure.suptitle(title)
-    return figure, tuple(axes)
+    return figure, tuple(figure.subplots(rows, 1, sharex=True, squeeze=False)[:, 0])
 
 
-def _finish(figure: Figure, axes: tuple[Axes, ...]) -> Figure:
+def finish(figure: Figure, axes: Sequence[Axes]) -> Figure:
+    """Add grids, legends and the time axis."""
     for ax in axes:
         ax.grid(visible=True, linewidth=0.4)
         ax.legend(loc='upper right', fontsize='small')

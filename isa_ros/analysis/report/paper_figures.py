@@ -9,7 +9,7 @@ from collections.abc import Mapping
 from typing import NamedTuple
 
 from isa_ros.analysis.report.characteristics import RESPONSES
-from isa_ros.analysis.report.figures import Traces
+from isa_ros.analysis.report.figures import finish, stack, Traces
 from isa_ros.analysis.signals.traces import Trace
 from isa_ros.config.run_config import ActuatorConfig, RunConfig
 from isa_ros.core.suggest import alternatives
@@ -60,16 +60,10 @@ def paper_figure(name: str, run: RunConfig, traces: Traces) -> Figure:
     layout = LAYOUTS[name]
     actuator = shown(run)
     rows = len(layout.panels)
-    figure = Figure(figsize=(8.0, 2.6 * rows + 0.8), dpi=110, layout='constrained')
-    figure.suptitle(f'{layout.title}: {actuator.name}')
-    axes = figure.subplots(rows, 1, sharex=True, squeeze=False)[:, 0]
+    figure, axes = stack(rows, f'{layout.title}: {actuator.name}', 2.6 * rows + 0.8)
     for panel, ax in zip(layout.panels, axes):
         (draw_position if panel == POSITION else draw_force)(ax, actuator, traces)
-        ax.grid(visible=True, linewidth=0.4)
-        ax.legend(loc='upper right', fontsize='small')
-        ax.margins(x=0.0)
-    axes[-1].set_xlabel('simulation time, s')
-    return figure
+    return finish(figure, axes)
 
 
 def shown(run: RunConfig) -> ActuatorConfig:

@@ -2,7 +2,6 @@
 
 import base64
 import html
-import io
 from pathlib import Path
 
 from isa_ros.analysis.report.figures import ATMOSPHERE, figures, Traces
@@ -15,6 +14,7 @@ from isa_ros.config.sections import Place
 from isa_ros.config.yaml_text import parse
 from isa_ros.errors import BagError
 from isa_ros.scenario.scenario import figure_of
+from isa_ros.text.page import png
 import numpy as np
 
 _GENERATOR = '<meta name="generator" content="isa_ros">'
@@ -52,12 +52,10 @@ def write_report(bag: Path, page: Path) -> list[Path]:
     if name_of_paper is not None:
         drawn = {name_of_paper: paper_figure(name_of_paper, run, traces)} | drawn
     for name, figure in drawn.items():
-        buffer = io.BytesIO()
-        figure.savefig(buffer, format='png')
         path = page.with_name(f'{page.stem}_{name}.png')
-        path.write_bytes(buffer.getvalue())
+        path.write_bytes(drawing := png(figure))
         written.append(path)
-        encoded = base64.b64encode(buffer.getvalue()).decode()
+        encoded = base64.b64encode(drawing).decode()
         images.append(f'<img alt="{html.escape(name)}" src="data:image/png;base64,{encoded}">')
     page.write_text(_PAGE.format(
         generator=_GENERATOR, title=html.escape(run.name),

@@ -15,6 +15,7 @@ from isa_ros.analysis.response.rig import Rig
 from isa_ros.analysis.response.sweep import Answer, excitation, Sweep
 from isa_ros.analysis.signals.frequency import (
     bandwidth, HALF_POWER, Margins, margins, Response, TRUSTED)
+from isa_ros.text.table import aligned, RIGHT
 import numpy as np
 
 
@@ -78,10 +79,7 @@ def table(measured: Bode) -> str:
         response.input_amplitude / into.scale, response.output_amplitude / loop.unit.scale)
     rows = [[f'{f:.4g}', f'{gain:.4g}', f'{db:.2f}', f'{phase:.1f}', f'{coherence:.4f}',
              f'{x:.4g}', f'{y:.4g}'] for f, gain, db, phase, coherence, x, y in columns]
-    widths = [max(len(row[k]) for row in [head, *rows]) for k in range(len(head))]
-    lines = ['  '.join(cell.rjust(width) for cell, width in zip(row, widths))
-             for row in [head, *rows]]
-    return '\n'.join([*lines, *conclusions(measured)])
+    return '\n'.join([*aligned([head, *rows], RIGHT), *conclusions(measured)])
 
 
 def conclusions(measured: Bode) -> Sequence[str]:

@@ -26,7 +26,8 @@ from isa_ros.core.timebase import NS_PER_SECOND
 from isa_ros.core.units import MILLI
 from isa_ros.errors import ConfigError
 from isa_ros.loads.sheets import LocalLoad
-from isa_ros.run.session import prepare, Request
+from isa_ros.run.options import Request
+from isa_ros.run.session import prepare
 from isa_ros.run.terminal import terminal_report
 from isa_ros.surroundings.supply import SupplySheet
 import numpy as np

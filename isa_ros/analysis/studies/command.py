@@ -5,13 +5,13 @@ from collections.abc import Sequence
 from dataclasses import replace
 import json
 import sys
-import time
-from typing import TextIO
 
 from isa_ros.analysis.studies.measure import Benches, Result, results
 from isa_ros.analysis.studies.page import as_text, as_tree, write_page
 from isa_ros.analysis.studies.studies import only_model, STUDIES, Study, study_of
 from isa_ros.errors import ConfigError
+from isa_ros.text.progress import counted
+from isa_ros.text.table import aligned
 
 
 def study(options: Namespace) -> None:
@@ -31,7 +31,7 @@ def study(options: Namespace) -> None:
     benches = Benches()
     done: list[tuple[Study, Sequence[Result]]] = []
     for one in chosen:
-        found = results(one, benches, _progress(sys.stderr, one))
+        found = results(one, benches, counted(sys.stderr, 'values', of=one.name))
         done.append((one, found))
         print(as_text(one, found), end='\n\n' if one is not chosen[-1] else '\n', flush=True)
     if options.json is not None:
@@ -45,8 +45,7 @@ def study(options: Namespace) -> None:
 
 def listing() -> str:
     """Return every study, a line each."""
-    width = max(len(one.name) for one in STUDIES)
-    return '\n'.join(f'{one.name.ljust(width)}  {one.title}' for one in STUDIES)
+    return '\n'.join(aligned([(one.name, one.title) for one in STUDIES]))
 
 
 def _chosen(options: Namespace) -> tuple[Study, ...]:
@@ -66,21 +65,3 @@ def _chosen(options: Namespace) -> tuple[Study, ...]:
         raise ConfigError('--values needs one study of one --model: units differ')
     case = replace(chosen[0].cases[0], values=tuple(options.values))
     return (replace(chosen[0], cases=(case,)),)
-
-
-class _Progress:
-    """Says on a terminal how far a study is."""
-
-    def __init__(self, stream: TextIO, of: Study) -> None:
-        self._stream, self._name, self._start = stream, of.name, time.monotonic()
-
-    def __call__(self, done: int, total: int) -> None:
-        taken = time.monotonic() - self._start
-        left = taken * (total - done) / done
-        self._stream.write('\r\033[K' if done == total else (
-            f'\r{self._name}: {done} of {total} values, {left:.0f} s left\033[K'))
-        self._stream.flush()
-
-
-def _progress(stream: TextIO, of: Study) -> '_Progress | None':
-    return _Progress(stream, of) if stream.isatty() else None

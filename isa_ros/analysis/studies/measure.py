@@ -10,7 +10,6 @@ What a study measures at each value, on the bare actuator.
 A ripple is half of peak to peak; one beyond `SMALL` of the step has its frequency told.
 """
 
-from collections.abc import Callable
 from dataclasses import dataclass, replace
 import math
 
@@ -28,6 +27,7 @@ from isa_ros.core.timebase import NS_PER_SECOND
 from isa_ros.core.units import MILLI
 from isa_ros.scenario.trot import smooth_step
 from isa_ros.scenario.trot_motion import read_gait
+from isa_ros.text.progress import Progress
 import numpy as np
 from scipy import signal
 
@@ -43,9 +43,6 @@ JOINTS = {'smart_manifold': 'hfe', 'isa_v5': 'kfe'}     # that trot
 ROUNDING = 1e-9         # of a value in its unit
 SETPOINT_NS = 1_000_000     # between setpoints of a run
 GROWN_S, TROT_S, FADE_S, STAND_S = 0.6, 1.2, 0.3, 0.9   # 0.6 s: start_s of the packaged trot
-
-Progress = Callable[[int, int], None]
-"""Takes how many values are done and how many there are."""
 
 
 @dataclass(frozen=True, kw_only=True)

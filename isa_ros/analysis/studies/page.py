@@ -2,7 +2,6 @@
 
 from collections.abc import Mapping, Sequence
 from dataclasses import fields
-import io
 from pathlib import Path
 import textwrap
 from typing import Any
@@ -10,10 +9,11 @@ from typing import Any
 from isa_ros.analysis.studies.figure import study_figure
 from isa_ros.analysis.studies.measure import Outcome, Result, RIPPLE_S
 from isa_ros.analysis.studies.studies import Case, STUDIES, Study
-from PIL import Image
+from isa_ros.text.number import digits
+from isa_ros.text.page import Page, png_with_palette
+from isa_ros.text.table import aligned, RIGHT
 
-PAGE, FIGURES = 'studies.md', 'figures'
-COLORS = 64     # of a figure
+PAGE = 'studies.md'
 LINE = 99       # characters
 _HEAD = """# Studies
 
@@ -30,7 +30,6 @@ down: at mid stroke, near the stop at 2 % of the stroke, where the oil is stiffe
 standing on the wheel after a trot. *At* is the frequency of the largest, told where it exceeds
 2 % of the step. The errors are rms in a trot at 1 m/s: the wheel of the manifold moves as HFE, a
 mass of 50 kg on the ISA v5 as the piston of KFE, without feed-forward.
-
 """
 
 
@@ -45,30 +44,25 @@ def head(result: Result) -> tuple[str, ...]:
 def cells(result: Result, outcome: Outcome) -> tuple[str, ...]:
     """Return a row of the table."""
     at = '-' if outcome.ripple_hz is None else f'{outcome.ripple_hz:.3g}'
+    step = (outcome.rise, outcome.overshoot, outcome.bandwidth)
+    ripples = (outcome.ripple_mid, outcome.ripple_end, outcome.ripple_wheel)
+    errors = (outcome.force_error, outcome.position_error)
     return (f'{outcome.value:g}{"*" if result.is_shipped(outcome) else ""}',
-            _number(outcome.rise), _number(outcome.overshoot), _number(outcome.bandwidth),
-            _number(outcome.ripple_mid), _number(outcome.ripple_end),
-            _number(outcome.ripple_wheel),
+            *(digits(value, 3) for value in (*step, *ripples)),
             f'<= {at}' if outcome.ripple_hz == 1.0 / RIPPLE_S else at,
-            _number(outcome.force_error), _number(outcome.position_error))
-
-
-def _number(value: float | None) -> str:
-    """Return three digits, also of large numbers; - for none."""
-    if value is None:
-        return '-'
-    return f'{value:.0f}' if abs(value) >= 1e3 else f'{value:.3g}'
+            *(digits(value, 3) for value in errors))
 
 
 def as_text(study: Study, results: Sequence[Result]) -> str:
     """Return what a terminal shows."""
     blocks = [f'{study.title} ({study.source})']
     for result in results:
-        rows = [head(result), *(cells(result, outcome) for outcome in result.outcomes)]
-        widths = [max(len(row[k]) for row in rows) for k in range(len(rows[0]))]
-        blocks.append('\n'.join([_name(result.case), *(
-            '  '.join(cell.rjust(width) for cell, width in zip(row, widths)) for row in rows)]))
+        blocks.append('\n'.join([_name(result.case), *aligned(_table(result), RIGHT)]))
     return '\n\n'.join(blocks)
+
+
+def _table(result: Result) -> list[tuple[str, ...]]:
+    return [head(result), *(cells(result, outcome) for outcome in result.outcomes)]
 
 
 def _name(case: Case) -> str:
@@ -119,32 +113,14 @@ def seen(study: Study, results: Sequence[Result]) -> str:
 
 def write_page(done: Sequence[tuple[Study, Sequence[Result]]], directory: Path) -> list[Path]:
     """Write studies.md and figures/study_*.png into a directory; return their paths."""
-    (directory / FIGURES).mkdir(parents=True, exist_ok=True)
-    written, blocks = [directory / PAGE], []
+    page = Page(PAGE, _HEAD)
     for study, results in done:
-        name = f'{FIGURES}/study_{study.name}.png'
-        (directory / name).write_bytes(_png(study, results))
-        written.append(directory / name)
-        text = seen(study, results)
-        blocks.append('\n'.join([
-            f'## {study.title}', '', f'`isa study {study.name}`; {study.source}.', '',
-            *([text, ''] if text else []), f'![{study.title}]({name})', '',
-            *(line for result in results for line in _markdown(result))]))
-    written[0].write_text(_HEAD + '\n'.join(blocks), encoding='utf-8')
-    return written
-
-
-def _markdown(result: Result) -> list[str]:
-    columns = head(result)
-    return [_name(result.case), '', f'| {" | ".join(columns)} |', '|' + '---:|' * len(columns),
-            *(f'| {" | ".join(cells(result, outcome))} |' for outcome in result.outcomes), '']
-
-
-def _png(study: Study, results: Sequence[Result]) -> bytes:
-    """Return the figure with a palette: a third of the bytes."""
-    drawn, small = io.BytesIO(), io.BytesIO()
-    study_figure(study.title, results).savefig(drawn, format='png')
-    with Image.open(drawn) as image:
-        image.convert('RGB').quantize(COLORS, dither=Image.Dither.NONE).save(
-            small, format='png', optimize=True)
-    return small.getvalue()
+        page.section(study.title)
+        page.paragraph(f'`isa study {study.name}`; {study.source}.')
+        page.paragraph(seen(study, results))
+        page.figure(f'study_{study.name}', study.title,
+                    png_with_palette(study_figure(study.title, results)))
+        for result in results:
+            page.paragraph(_name(result.case))
+            page.table(_table(result), RIGHT)
+    return page.write(directory)

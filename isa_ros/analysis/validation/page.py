@@ -8,9 +8,10 @@ from typing import Any
 
 from isa_ros.analysis.validation.entry import AS_READ, Entry, NOT_REACHED, REACHED
 from isa_ros.analysis.validation.runner import Result
+from isa_ros.text.page import Page
+from isa_ros.text.table import aligned
 
 PAGE = 'validation.md'
-FIGURES = 'figures'
 _DIGITS = 4   # of values
 _BOUND_DIGITS = 6   # of tolerances, which may be narrower than the digits of a value
 _HEAD = """# Validation
@@ -21,21 +22,18 @@ tolerance around the reading of a printed value that contradicts the paper itsel
 ([paper-errata.md](paper-errata.md)). This page and its figures are written by
 
     ./isa validate --out docs
-
 """
+_COLUMNS = ('entry', 'source', 'paper', 'ours', 'unit', 'tolerance', 'from', 'reading', 'verdict')
 
 
 def as_text(results: Sequence[Result]) -> str:
     """Return the table a terminal shows."""
     blocks = []
     for result in results:
-        rows = [('', 'paper', 'ours', 'unit', 'tolerance', 'verdict')]
-        rows += [(f'{result.group}.{e.name}', number(e.paper), number(e.ours), unit(e),
-                  interval(e), e.verdict) for e in result.entries]
-        widths = [max(len(row[k]) for row in rows) for k in range(len(rows[0]))]
-        blocks.append('\n'.join([result.title, *(
-            '  '.join(cell.ljust(width) for cell, width in zip(row, widths)).rstrip()
-            for row in rows), *_missed(result)]))
+        lines = aligned([('', 'paper', 'ours', 'unit', 'tolerance', 'verdict'), *(
+            (f'{result.group}.{e.name}', number(e.paper), number(e.ours), unit(e), interval(e),
+             e.verdict) for e in result.entries)])
+        blocks.append('\n'.join([result.title, *lines, *_missed(result)]))
     return '\n\n'.join([*blocks, summary(results)])
 
 
@@ -99,29 +97,21 @@ def write_json(results: Sequence[Result], path: Path) -> None:
 
 def write_page(results: Sequence[Result], directory: Path) -> list[Path]:
     """Write validation.md and figures/validation_*.png into a directory; return their paths."""
-    (directory / FIGURES).mkdir(parents=True, exist_ok=True)
-    written = [directory / PAGE]
-    blocks = [_HEAD + summary(results) + '.\n']
+    page = Page(PAGE, _HEAD)
+    page.paragraph(f'{summary(results)}.')
     for result in results:
-        blocks.append(markdown(result))
+        page.section(result.title)
+        page.table([_COLUMNS, *(_cells(result, entry) for entry in result.entries)])
+        page.items(_missed(result))
         for picture in result.pictures:
-            name = f'{FIGURES}/validation_{picture.name}.png'
-            (directory / name).write_bytes(picture.png)
-            written.append(directory / name)
-            blocks.append(f'![{picture.caption}]({name})\n\n{picture.caption}\n')
-    written[0].write_text('\n'.join(blocks), encoding='utf-8')
-    return written
+            page.figure(f'validation_{picture.name}', picture.caption, picture.png)
+            page.paragraph(picture.caption)
+    return page.write(directory)
 
 
-def markdown(result: Result) -> str:
-    """Return the section of one group, without its figures."""
-    lines = [f'## {result.title}', '',
-             '| entry | source | paper | ours | unit | tolerance | from | reading | verdict |',
-             '|---|---|---|---|---|---|---|---|---|']
-    for e in result.entries:
-        verdict = f'**{e.verdict}**' if e.verdict == NOT_REACHED else e.verdict
-        cells = (f'{result.group}.{e.name}', e.source, number(e.paper), number(e.ours), unit(e),
-                 interval(e), e.tolerance_source, e.reading, verdict)
-        lines.append(f'| {" | ".join(cell.replace("|", "/") for cell in cells)} |')
-    missed = _missed(result)
-    return '\n'.join([*lines, '', *(f'- {line}' for line in missed), *([''] if missed else [])])
+def _cells(result: Result, entry: Entry) -> tuple[str, ...]:
+    """Return a row of the page's table."""
+    verdict = f'**{entry.verdict}**' if entry.verdict == NOT_REACHED else entry.verdict
+    return (f'{result.group}.{entry.name}', entry.source, number(entry.paper),
+            number(entry.ours), unit(entry), interval(entry), entry.tolerance_source,
+            entry.reading, verdict)

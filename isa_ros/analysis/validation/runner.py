@@ -1,23 +1,19 @@
 """Run groups of checks in two worker processes and gather what they found."""
 
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from concurrent.futures import as_completed, ProcessPoolExecutor
 from concurrent.futures.process import BrokenProcessPool
 from dataclasses import dataclass, replace
-import io
 import multiprocessing
 import signal
-import time
-from typing import TextIO
 
-from isa_ros.analysis.validation.entry import Drawing, Entry, Group
+from isa_ros.analysis.validation.entry import Entry, Group
 from isa_ros.core.suggest import alternatives
 from isa_ros.errors import ConfigError, IsaError, RunError
+from isa_ros.text.page import png
+from isa_ros.text.progress import Progress
 
 WORKERS = 2
-
-Progress = Callable[[int, int], None]
-"""Takes how many groups are done and how many there are."""
 
 
 @dataclass(frozen=True)
@@ -143,14 +139,8 @@ def run_group(group: Group) -> Result:
     if len(set(names)) != len(names):
         raise ValueError(f'{group.name}: two entries have the same name: {names}')
     return Result(group.name, group.title, findings.entries, tuple(
-        Picture(drawing.name, drawing.caption, _png(drawing)) for drawing in findings.drawings))
-
-
-def _png(drawing: Drawing) -> bytes:
-    buffer = io.BytesIO()
-    # Without the name of the program: the same figure gives the same bytes.
-    drawing.figure.savefig(buffer, format='png', metadata={'Software': None})
-    return buffer.getvalue()
+        Picture(drawing.name, drawing.caption, png(drawing.figure))
+        for drawing in findings.drawings))
 
 
 def only_of(result: Result, only: Sequence[str]) -> Result:
@@ -169,16 +159,3 @@ def only_of(result: Result, only: Sequence[str]) -> Result:
 def is_reached(results: Sequence[Result]) -> bool:
     """Tell whether every entry is reached."""
     return all(entry.is_reached for result in results for entry in result.entries)
-
-
-def terminal_progress(stream: TextIO) -> Progress | None:
-    """Return what writes progress to ``stream``; None where it is no terminal."""
-    if not stream.isatty():
-        return None
-    start = time.monotonic()
-
-    def report(done: int, total: int) -> None:
-        stream.write(f'\r{done} of {total} groups, {time.monotonic() - start:.0f} s\033[K'
-                     f'{chr(10) if done == total else ""}')
-        stream.flush()
-    return report

@@ -4,6 +4,7 @@ from dataclasses import replace
 import json
 import math
 from pathlib import Path
+import sys
 
 from isa_ros.analysis.response.bode import bode
 from isa_ros.analysis.studies import measure as study_run
@@ -16,6 +17,7 @@ from isa_ros.errors import ConfigError
 from isa_ros.reu.schedule import Constant
 import numpy as np
 import pytest
+from tests.text.terminal import Terminal
 
 REST = slice(-4000, None)   # 0.4 s of 10 kHz
 NEAR_STOP = 0.02
@@ -186,8 +188,9 @@ def test_what_cannot_be_studied_is_one_line_and_2(arguments, expected, capsys):
     assert printed.out == ''
 
 
-def test_the_command_prints_writes_and_draws_one_study(tmp_path: Path, capsys):
-    numbers = tmp_path / 'study.json'
+def test_the_command_prints_writes_and_draws_one_study(tmp_path: Path, capsys, monkeypatch):
+    numbers, terminal = tmp_path / 'study.json', Terminal()
+    monkeypatch.setattr(sys, 'stderr', terminal)
     assert cli.main([
         'study', 'backlash', '--model', 'smart_manifold', '--values', '0', '5',
         '--json', str(numbers), '--out', str(tmp_path)]) == 0
@@ -204,6 +207,8 @@ def test_the_command_prints_writes_and_draws_one_study(tmp_path: Path, capsys):
         assert f'| {" | ".join(row.split())} |' in page
     figure = tmp_path / 'figures/study_backlash.png'
     assert figure.read_bytes().startswith(b'\x89PNG') and figure.name in page
+    shown = terminal.getvalue().split('\r')
+    assert shown[1].startswith('backlash: 1 of 2 values, ') and shown[-1] == '\x1b[K'
 
 
 def test_a_study_is_plain_data():

@@ -1,10 +1,15 @@
 """Groups in worker processes: order, choice, and how they fail."""
 
+import re
+import sys
+
 from isa_ros.analysis.validation.runner import (
     chosen, GroupFailed, is_reached, only_of, run_group, validated)
+from isa_ros.cli.main import main
 from isa_ros.errors import ConfigError
 import pytest
 from tests.analysis.validation.groups import DIVERGED, GOOD, MISSED, REFUSED
+from tests.text.terminal import Terminal
 
 GROUPS = (GOOD, MISSED)
 
@@ -35,6 +40,13 @@ def test_progress_counts_the_groups():
     seen = []
     validated(GROUPS, progress=lambda done, total: seen.append((done, total)))
     assert seen == [(1, 2), (2, 2)]
+
+
+def test_a_terminal_keeps_how_long_all_groups_took(monkeypatch):
+    monkeypatch.setattr('isa_ros.analysis.validation.groups.GROUPS', (GOOD,))
+    monkeypatch.setattr(sys, 'stderr', Terminal())
+    assert main(['validate']) == 0
+    assert re.fullmatch(r'\r1 of 1 groups, \d+ s\x1b\[K\n', sys.stderr.getvalue())
 
 
 @pytest.mark.parametrize('only, groups', [

@@ -1,0 +1,38 @@
+"""The arguments of `isa bringup`, made from the options of a run."""
+
+import argparse
+from collections.abc import Callable, Mapping
+from pathlib import Path
+from typing import Any
+
+from isa_ros.cli.argument_types import file_to_write, names, not_negative, positive
+from isa_ros.run.options import COMPRESSIONS, Kind, Option, OPTIONS
+
+_TYPES: Mapping[Kind, Callable[[str], Any]] = {
+    Kind.PATH: Path, Kind.NEW_FILE: file_to_write, Kind.POSITIVE: positive,
+    Kind.NOT_NEGATIVE: not_negative, Kind.NAMES: names}
+"""What checks a value; else it is a text."""
+
+
+def bringup(parser: argparse.ArgumentParser) -> None:
+    """Add the arguments of `isa bringup`."""
+    for option in OPTIONS:
+        if option.is_argument:
+            _add(parser, option)
+
+
+def _add(parser: argparse.ArgumentParser, option: Option) -> None:
+    how: dict[str, Any] = {'help': option.argument_help}
+    flag = f'--{option.name.replace("_", "-")}'
+    if option.is_required:
+        parser.add_argument(option.name, metavar=option.metavar, **how)
+    elif option.kind is Kind.FLAG:
+        parser.add_argument(flag, action='store_true', **how)
+    elif option.kind is Kind.COMPRESSION:
+        parser.add_argument(flag, choices=COMPRESSIONS, **how)
+    elif option.kind is Kind.REPEATED:
+        parser.add_argument(
+            flag, dest=option.name, action='append', default=[], metavar=option.metavar, **how)
+    else:
+        parser.add_argument(flag, type=_TYPES.get(option.kind, str), default=option.default,
+                            metavar=option.metavar, **how)

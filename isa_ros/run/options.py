@@ -1,0 +1,226 @@
+"""
+The options of a run, each declared once: a field of `Request`.
+
+The arguments of `isa bringup`, the ROS parameters of the coordinator and the arguments of the
+launch file are made from `OPTIONS`, and `Request` is filled from their values. Nothing here
+imports ROS or numba: `isa --help` and launch files read it.
+"""
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field, fields, MISSING, replace
+from enum import Enum
+from pathlib import Path
+from typing import Any
+
+from isa_ros.config.paths import CONFIG, find, SCENARIOS
+from isa_ros.run.pacing import JOIN_TIMEOUT_S, Laps
+
+COMPRESSIONS = ('none', 'lz4', 'zstd')
+
+RosValue = bool | float | str
+
+
+class Kind(Enum):
+    """What the value of an option is."""
+
+    CONFIG = CONFIG
+    """A run file, or a shipped one by name."""
+    SCENARIO = SCENARIOS
+    """A scenario, or a shipped one by name."""
+    PATH = 'path'
+    NEW_FILE = 'new file'
+    TEXT = 'text'
+    COMPRESSION = 'compression'
+    POSITIVE = '> 0'
+    NOT_NEGATIVE = '>= 0'
+    FLAG = 'flag'
+    NAMES = 'names'
+    """Names with commas between them on the command line."""
+    REPEATED = 'repeated'
+    """A name for each time that it stands on the command line."""
+
+
+_SHIPPED = (Kind.CONFIG, Kind.SCENARIO)
+_NAMES = (Kind.NAMES, Kind.REPEATED)
+_UNSET: Mapping[Kind, tuple[RosValue, str]] = {
+    Kind.POSITIVE: (0.0, '0'), Kind.NOT_NEGATIVE: (-1.0, '< 0'), Kind.FLAG: (False, 'false')}
+"""The value of a ROS parameter that is not set, and how help names it; else an empty text."""
+_EMPTY: tuple[RosValue, str] = ('', 'empty')
+
+
+@dataclass(frozen=True, kw_only=True)
+class Option:
+    """One option: how it is named and explained, and where it can be given."""
+
+    kind: Kind
+    meaning: str
+    """``{config}`` stands for the run file."""
+    otherwise: str = ''
+    """What holds where the option is not given."""
+    unit: str = ''
+    metavar: str | None = None
+    name: str = ''
+    """On the command line, there with dashes, and of a launch file; '': as the field."""
+    parameter: str = ''
+    """Name of the ROS parameter; '': as ``name``."""
+    launch_default: str = ''
+    """'': as the parameter's."""
+    is_argument: bool = True
+    is_parameter: bool = True
+    is_launched: bool = False
+
+    field: str = ''
+    """Of `Request`."""
+    default: Any = None
+    is_required: bool = False
+
+    @property
+    def argument_help(self) -> str:
+        """Return the help of the command line."""
+        text = self.meaning + (f' (default: {self.otherwise})' if self.otherwise else '')
+        text += '; may be repeated' if self.kind is Kind.REPEATED else ''
+        return text.format(config='CONFIG')
+
+    @property
+    def description(self) -> str:
+        """Return the help of the ROS parameter and of the launch file's argument."""
+        text = self.meaning + (f', {self.unit}' if self.unit else '')
+        if self.kind is Kind.COMPRESSION:
+            text += f': {", ".join(COMPRESSIONS)}'
+        if self.kind in _NAMES:
+            text += '; a list of names'
+        elif self.default is None and not self.is_required:
+            text += f'; {_UNSET.get(self.kind, _EMPTY)[1]}: {self.otherwise or "none"}'
+        return text.format(config='the run file')
+
+    @property
+    def parameter_default(self) -> RosValue | None:
+        """Return the default of the ROS parameter; None: an empty list of names."""
+        if self.kind in _NAMES:
+            return None
+        unset: RosValue = _UNSET.get(self.kind, _EMPTY)[0]
+        return unset if self.default is None else self.default
+
+    @property
+    def launch_text(self) -> str:
+        """Return the default of the launch file's argument."""
+        return self.launch_default or str(self.parameter_default).lower()
+
+    def of_argument(self, value: Any) -> Any:
+        """Return the value for `Request` of one that the command line has checked."""
+        if self.kind in _SHIPPED:
+            return None if value is None else find(value, self.kind.value)
+        return tuple(value) if self.kind in _NAMES else value
+
+    def of_parameter(self, value: Any) -> Any:
+        """Return the value for `Request` of a ROS parameter."""
+        if self.kind in _NAMES:
+            return tuple(value or ())
+        if self.kind is Kind.NOT_NEGATIVE:
+            return None if value < 0.0 else value
+        if self.default is None and value == self.parameter_default:
+            return None
+        return Path(value) if self.kind in (Kind.PATH, Kind.NEW_FILE) else self.of_argument(value)
+
+    def of_launch(self, text: str) -> RosValue:
+        """Return the value of the ROS parameter for the text of the launch file's argument."""
+        if self.kind is Kind.FLAG:
+            return text.lower() in ('true', '1')
+        return float(text) if self.kind in (Kind.POSITIVE, Kind.NOT_NEGATIVE) else text
+
+
+def _option(kind: Kind, meaning: str, **more: Any) -> Mapping[str, Option]:
+    return {'option': Option(kind=kind, meaning=meaning, **more)}
+
+
+@dataclass(frozen=True, kw_only=True)
+class Request:
+    """What a user asks for; a field without an option is for programs only."""
+
+    config: Path = field(metadata=_option(
+        Kind.CONFIG, 'a run file, or a shipped one by name', metavar='CONFIG',
+        parameter='config_file', launch_default='leg.yaml', is_launched=True))
+    scenario: Path | None = field(default=None, metadata=_option(
+        Kind.SCENARIO, 'what is commanded: a file, or a shipped one by name', metavar='FILE',
+        parameter='scenario_file', is_launched=True))
+    duration_s: float | None = field(default=None, metadata=_option(
+        Kind.POSITIVE, 'simulated time', otherwise='that of the scenario, else until Ctrl-C',
+        unit='s', metavar='S', name='duration', is_launched=True))
+    out: Path | None = field(default=None, metadata=_option(
+        Kind.PATH, 'directory of the bag', otherwise='a new one in runs/', metavar='DIR',
+        is_launched=True))
+    overwrite: bool = field(default=False, metadata=_option(
+        Kind.FLAG, 'replace the bag in an existing directory'))
+    compression: str | None = field(default=None, metadata=_option(
+        Kind.COMPRESSION, 'of the chunks of the bag', otherwise='that of {config}, else none',
+        is_launched=True))
+    split_mb: float | None = field(default=None, metadata=_option(
+        Kind.NOT_NEGATIVE, 'begin another file of the bag after N MB, 0: never',
+        otherwise='that of {config}', metavar='N', is_launched=True))
+    real_time_factor: float | None = field(default=None, metadata=_option(
+        Kind.POSITIVE, 'not faster than X times real time', otherwise='as fast as it goes',
+        metavar='X', is_launched=True))
+    in_process: bool = field(default=False, metadata=_option(
+        Kind.FLAG, 'all nodes in one process: faster, and the same bytes in the bag',
+        is_launched=True))
+    elsewhere: tuple[str, ...] = field(default=(), metadata=_option(
+        Kind.NAMES, 'actuators that `isa actuators` starts on another host: they are waited for',
+        metavar='NAME[,NAME...]|all', is_parameter=False))
+    """`run_config.ALL` alone: all of them."""
+    controllers: tuple[str, ...] = field(default=(), metadata=_option(
+        Kind.REPEATED, 'a node of yours that is waited for at every tick', metavar='NAME',
+        name='controller', parameter='controllers'))
+    """Besides those of the run file."""
+    join_timeout_s: float = field(default=JOIN_TIMEOUT_S, metadata=_option(
+        Kind.POSITIVE, 'how long participants are waited for',
+        otherwise=f'{JOIN_TIMEOUT_S:g} s', unit='s', metavar='S', name='join_timeout',
+        parameter='join_timeout_s'))
+    is_paused: bool = field(default=False, metadata=_option(
+        Kind.FLAG, 'wait before tick 0 for /coordinator/step or the end of the pause',
+        name='paused', is_launched=True))
+    restore: Path | None = field(default=None, metadata=_option(
+        Kind.PATH, 'go on from a saved state', metavar='FILE'))
+    save: Path | None = field(default=None, metadata=_option(
+        Kind.NEW_FILE, 'save the state at the end there', metavar='FILE'))
+    namespace: str = field(default='', metadata=_option(
+        Kind.TEXT, 'of all nodes', is_argument=False, is_parameter=False, is_launched=True))
+    is_alone: bool = False
+    """This process does nothing but the run, so that what was loaded need not be collected and,
+    where nobody has had a node, actuators may begin as copies of it."""
+    laps: Laps | None = None
+    """Takes the host time of every phase of the ticks."""
+
+
+def _declared() -> tuple[Option, ...]:
+    options = []
+    for f in fields(Request):
+        option: Option | None = f.metadata.get('option')
+        if option is not None:
+            name = option.name or f.name
+            options.append(replace(
+                option, name=name, parameter=option.parameter or name, field=f.name,
+                default=None if f.default is MISSING else f.default,
+                is_required=f.default is MISSING))
+    return tuple(options)
+
+
+OPTIONS = _declared()
+"""In the order of `isa bringup --help`."""
+
+
+def request_of_arguments(values: Mapping[str, Any], **more: Any) -> Request:
+    """Return the request of the command line's values, by the names of their options."""
+    return Request(**{option.field: option.of_argument(values[option.name])
+                      for option in OPTIONS if option.is_argument}, **more)
+
+
+def request_of_parameters(values: Mapping[str, Any], **more: Any) -> Request:
+    """Return the request of the coordinator's ROS parameters, by their names."""
+    return Request(**{option.field: option.of_parameter(values[option.parameter])
+                      for option in OPTIONS if option.is_parameter}, **more)
+
+
+def launched_parameters(texts: Mapping[str, str]) -> dict[str, RosValue]:
+    """Return the coordinator's ROS parameters, less its files, for a launch file's arguments."""
+    return {option.parameter: option.of_launch(texts[option.name]) for option in OPTIONS
+            if option.is_launched and option.is_parameter and option.kind not in _SHIPPED}

@@ -1,0 +1,69 @@
+"""Progress of long work: one line of a terminal, written over until the work ends."""
+
+from collections.abc import Callable
+import time
+from typing import Protocol, TextIO
+
+_TO_THE_LEFT, _CLEAR_THE_REST = '\r', '\033[K'
+
+
+class Line:
+    """One line of a terminal."""
+
+    def __init__(self, terminal: TextIO) -> None:
+        self._terminal = terminal
+
+    def show(self, text: str) -> None:
+        """Replace what the line shows."""
+        self._write(text)
+
+    def end(self, text: str) -> None:
+        """Leave ``text`` on the terminal and go to the next line."""
+        self._write(text, '\n')
+
+    def erase(self) -> None:
+        """Leave nothing on the terminal."""
+        self._write('')
+
+    def _write(self, text: str, end: str = '') -> None:
+        self._terminal.write(f'{_TO_THE_LEFT}{text}{_CLEAR_THE_REST}{end}')
+        self._terminal.flush()
+
+
+def terminal_line(stream: TextIO) -> Line | None:
+    """Return the line progress is shown on; None where ``stream`` is not a terminal."""
+    return Line(stream) if stream.isatty() else None
+
+
+class Progress(Protocol):
+    """Takes how many pieces of work are done, how many there are, and what the next one is."""
+
+    def __call__(self, done: int, total: int, what: str = '') -> None:
+        """Show it."""
+
+
+def counted(
+        stream: TextIO, pieces: str, *, of: str = '', stays: bool = False,
+        clock: Callable[[], float] = time.monotonic) -> Progress | None:
+    """
+    Return what shows how many pieces are done and the time spent and left; None: no terminal.
+
+    ``pieces`` is their plural; ``of`` what they are pieces of. At the end the line is erased,
+    unless it ``stays``.
+    """
+    line = terminal_line(stream)
+    if line is None:
+        return None
+    start = clock()
+
+    def report(done: int, total: int, what: str = '') -> None:
+        spent = clock() - start
+        text = f'{of}{": " if of else ""}{done} of {total} {pieces}, {spent:.0f} s'
+        if done < total:
+            left = f', {spent / done * (total - done):.0f} s left' if done else ''
+            line.show(f'{text}{left}{": " if what else ""}{what}')
+        elif stays:
+            line.end(text)
+        else:
+            line.erase()
+    return report

@@ -1,0 +1,43 @@
+"""
+Tables of text: columns aligned for a terminal, or Markdown.
+
+A table is its rows of cells, the header first where there is one. A string of ``l`` and ``r``
+says which columns are left- or right-aligned; its last letter holds for all that follow.
+"""
+
+from collections.abc import Sequence
+
+LEFT, RIGHT = 'l', 'r'
+GAP = '  '      # between two columns
+
+Cells = Sequence[str]
+
+_RULES = {LEFT: '---', RIGHT: '---:'}
+
+
+def aligned(rows: Sequence[Cells], sides: str = LEFT) -> list[str]:
+    """Return a line for each row, every column as wide as its widest cell."""
+    widths = [max(map(len, column)) for column in zip(*rows, strict=True)]
+    return [padded(row, widths, sides) for row in rows]
+
+
+def padded(cells: Cells, widths: Sequence[int], sides: str = LEFT) -> str:
+    """Return one line of a table whose columns are at least ``widths`` wide."""
+    return GAP.join(
+        cell.rjust(width) if side == RIGHT else cell.ljust(width)
+        for cell, width, side in zip(cells, widths, _sides(sides, len(cells)), strict=True)
+    ).rstrip()
+
+
+def markdown(rows: Sequence[Cells], sides: str = LEFT) -> list[str]:
+    """Return the lines of a Markdown table; the first row is its header."""
+    header, *body = rows
+    head = ''.join(f'| {cell} ' if cell else '| ' for cell in header)
+    rule = '|'.join(_RULES[side] for side in _sides(sides, len(header)))
+    # A bar within a cell would end it.
+    return [f'{head}|', f'|{rule}|', *(
+        f'| {" | ".join(cell.replace("|", "/") for cell in row)} |' for row in body)]
+
+
+def _sides(sides: str, n_columns: int) -> str:
+    return sides.ljust(n_columns, sides[-1])[:n_columns]

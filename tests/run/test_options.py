@@ -1,0 +1,114 @@
+"""The options of a run: one declaration for the command line, ROS parameters and launch files."""
+
+from dataclasses import fields
+from pathlib import Path
+import subprocess
+import sys
+
+from isa_ros.config.paths import CONFIG, find, SCENARIOS
+from isa_ros.config.recording import Storage
+from isa_ros.run.options import (
+    COMPRESSIONS, launched_parameters, Option, OPTIONS, Request, request_of_arguments,
+    request_of_parameters)
+import pytest
+
+ROOT = Path(__file__).parents[2]
+LEG = find('leg', CONFIG)
+BY_FIELD = {option.field: option for option in OPTIONS}
+DEFAULTS = {option.parameter: option.parameter_default for option in OPTIONS
+            if option.is_parameter} | {'config_file': 'leg'}
+TEXTS = {option.name: option.launch_text for option in OPTIONS if option.is_launched}
+
+
+def option_of(field: str) -> Option:
+    """Return the option of a field of `Request`."""
+    return BY_FIELD[field]
+
+
+def test_the_ros_parameters_of_the_coordinator_keep_their_names():
+    assert set(DEFAULTS) == {
+        'config_file', 'scenario_file', 'out', 'duration', 'real_time_factor', 'controllers',
+        'paused', 'restore', 'save', 'overwrite', 'compression', 'split_mb', 'in_process',
+        'join_timeout_s'}
+
+
+def test_the_launch_file_keeps_its_arguments_and_their_defaults():
+    assert TEXTS == {
+        'config': 'leg.yaml', 'scenario': '', 'out': '', 'duration': '0.0',
+        'in_process': 'false', 'real_time_factor': '0.0', 'paused': 'false', 'compression': '',
+        'split_mb': '-1.0', 'namespace': ''}
+
+
+def test_every_field_with_an_option_is_of_the_request():
+    assert set(BY_FIELD) == {f.name for f in fields(Request)} - {'is_alone', 'laps'}
+
+
+def test_parameters_that_are_not_set_ask_for_the_defaults():
+    assert request_of_parameters(DEFAULTS) == Request(config=LEG)
+
+
+def test_parameters_that_are_set_ask_for_what_the_command_line_asks_for():
+    by_parameters = request_of_parameters({
+        'config_file': 'leg', 'scenario_file': 'drop', 'out': 'bag', 'duration': 0.5,
+        'real_time_factor': 2.0, 'controllers': ['sway', 'hold'], 'paused': True,
+        'restore': 'a.json', 'save': 'b.json', 'overwrite': True, 'compression': 'lz4',
+        'split_mb': 3.0, 'in_process': True, 'join_timeout_s': 7.0}, is_alone=True)
+    by_arguments = request_of_arguments({
+        'config': 'leg', 'scenario': 'drop', 'out': Path('bag'), 'duration': 0.5,
+        'real_time_factor': 2.0, 'controller': ['sway', 'hold'], 'paused': True,
+        'restore': Path('a.json'), 'save': Path('b.json'), 'overwrite': True,
+        'compression': 'lz4', 'split_mb': 3.0, 'in_process': True, 'join_timeout': 7.0,
+        'elsewhere': ()}, is_alone=True)
+    assert by_parameters == by_arguments == Request(
+        config=LEG, scenario=find('drop', SCENARIOS), out=Path('bag'), duration_s=0.5,
+        real_time_factor=2.0, controllers=('sway', 'hold'), is_paused=True,
+        restore=Path('a.json'), save=Path('b.json'), overwrite=True, compression='lz4',
+        split_mb=3.0, in_process=True, join_timeout_s=7.0, is_alone=True)
+
+
+@pytest.mark.parametrize('field, given, expected', [
+    ('split_mb', 0.0, 0.0), ('split_mb', -2.0, None), ('duration_s', 0.0, None),
+    ('duration_s', -1.0, -1.0), ('join_timeout_s', 0.0, 0.0), ('controllers', None, ())])
+def test_a_parameter_means(field, given, expected):
+    """0 MB is one file, below is not set; what is set and wrong is refused by the run."""
+    assert option_of(field).of_parameter(given) == expected
+
+
+def test_a_launch_file_hands_texts_on_as_parameters_of_their_type():
+    """The files are handed on by `run_processes`, the namespace by launch."""
+    assert launched_parameters(TEXTS) == {
+        'out': '', 'duration': 0.0, 'in_process': False, 'real_time_factor': 0.0,
+        'paused': False, 'compression': '', 'split_mb': -1.0}
+    given = launched_parameters(TEXTS | {
+        'duration': '2', 'in_process': 'True', 'paused': '1', 'compression': 'zstd'})
+    assert given['duration'] == 2.0 and isinstance(given['duration'], float)
+    assert (given['in_process'], given['paused'], given['compression']) == (True, True, 'zstd')
+
+
+@pytest.mark.parametrize('field, help_, description', [
+    ('duration_s', 'simulated time (default: that of the scenario, else until Ctrl-C)',
+     'simulated time, s; 0: that of the scenario, else until Ctrl-C'),
+    ('compression', 'of the chunks of the bag (default: that of CONFIG, else none)',
+     'of the chunks of the bag: none, lz4, zstd; empty: that of the run file, else none'),
+    ('controllers', 'a node of yours that is waited for at every tick; may be repeated',
+     'a node of yours that is waited for at every tick; a list of names'),
+    ('join_timeout_s', 'how long participants are waited for (default: 30 s)',
+     'how long participants are waited for, s')])
+def test_help_says_unit_and_default_in_each_place(field, help_, description):
+    option = option_of(field)
+    assert (option.argument_help, option.description) == (help_, description)
+
+
+def test_the_compressions_are_those_of_a_run_file():
+    declared = next(f for f in fields(Storage) if f.name == 'compression')
+    assert declared.metadata['names'] == COMPRESSIONS
+
+
+def test_the_options_import_neither_ros_nor_numba():
+    program = (
+        f'import sys; sys.path.insert(0, {str(ROOT)!r})\n'
+        'import isa_ros.run.options\n'
+        'print(sorted({"numba", "numpy", "rclpy", "yaml"} & set(sys.modules)))\n')
+    result = subprocess.run(
+        [sys.executable, '-S', '-c', program], capture_output=True, text=True, timeout=60)
+    assert (result.stdout, result.stderr) == ('[]\n', '')

@@ -1,0 +1,47 @@
+"""Progress on a terminal: one line, with the time spent and left."""
+
+import io
+
+from isa_ros.text.progress import counted, terminal_line
+import pytest
+from tests.text.terminal import Terminal
+
+
+def shown(steps, **options) -> list[str]:
+    """Return what the line showed at (time, done, total, what), each."""
+    stream, times = Terminal(), iter([0.0, *(time for time, *_ in steps)])
+    report = counted(stream, 'runs', clock=lambda: next(times), **options)
+    assert report is not None
+    for _, *progress in steps:
+        report(*progress)
+    return stream.getvalue().split('\r')[1:]
+
+
+def test_nothing_is_shown_elsewhere():
+    assert terminal_line(io.StringIO()) is None
+    assert counted(io.StringIO(), 'runs') is None
+
+
+def test_a_line_is_written_over_and_ends_or_is_erased():
+    stream = Terminal()
+    line = terminal_line(stream)
+    assert line is not None
+    line.show('a long text')
+    line.show('short')
+    line.erase()
+    line.end('done')
+    assert stream.getvalue() == '\ra long text\x1b[K\rshort\x1b[K\r\x1b[K\rdone\x1b[K\n'
+
+
+def test_the_time_left_is_what_the_rest_takes_at_the_same_speed():
+    """2 of 6 in 4 s: 2 s each, 8 s for the other four."""
+    assert shown([(0.0, 0, 6, 'leg'), (4.0, 2, 6, 'rig')]) == [
+        '0 of 6 runs, 0 s: leg\x1b[K', '2 of 6 runs, 4 s, 8 s left: rig\x1b[K']
+
+
+@pytest.mark.parametrize('stays, expected', [
+    (False, '\x1b[K'), (True, 'lap: 2 of 2 runs, 7 s\x1b[K\n')])
+def test_at_the_end_the_line_is_erased_unless_it_stays(stays, expected):
+    first, last = shown([(3.0, 1, 2), (7.0, 2, 2)], of='lap', stays=stays)
+    assert first == 'lap: 1 of 2 runs, 3 s, 3 s left\x1b[K'
+    assert last == expected

@@ -1,0 +1,51 @@
+"""Columns of a table, on a terminal and in Markdown."""
+
+from hypothesis import given, strategies as st
+from isa_ros.text.table import aligned, GAP, markdown, padded, RIGHT
+import pytest
+
+ROWS = [('', 'value', 'unit'), ('bore', '21.5', 'mm'), ('stroke', '120', '')]
+CELLS = st.text(st.characters(codec='ascii', exclude_categories=['Cc', 'Zs']), max_size=8)
+
+
+def test_a_column_is_as_wide_as_its_widest_cell_and_ends_without_spaces():
+    assert aligned(ROWS) == [
+        '        value  unit', 'bore    21.5   mm', 'stroke  120']
+
+
+def test_the_last_side_holds_for_the_columns_that_follow():
+    assert aligned(ROWS, 'lr') == [
+        '        value  unit', 'bore     21.5    mm', 'stroke    120']
+    assert aligned(ROWS, RIGHT) == [
+        '        value  unit', '  bore   21.5    mm', 'stroke    120']
+
+
+@given(st.integers(1, 5).flatmap(
+    lambda n: st.lists(st.lists(CELLS, min_size=n, max_size=n), min_size=1)))
+def test_cells_keep_their_text_and_columns_their_place(rows):
+    widths = [max(len(cell) for cell in column) for column in zip(*rows)]
+    for line, row in zip(aligned(rows), rows, strict=True):
+        place = 0
+        for cell, width in zip(row, widths):
+            assert line[place:place + width].rstrip() == cell
+            place += width + len(GAP)
+
+
+def test_a_line_grows_where_a_cell_is_wider_than_its_column():
+    assert padded(('a', '1'), (3, 4), 'lr') == 'a       1'
+    assert padded(('abcdef', '1'), (3, 4), 'lr') == 'abcdef     1'
+
+
+def test_a_row_that_lacks_a_cell_is_a_mistake_of_the_caller():
+    with pytest.raises(ValueError):
+        aligned([('a', 'b'), ('c',)])
+
+
+def test_markdown_has_a_rule_below_its_header():
+    assert markdown(ROWS) == [
+        '| | value | unit |', '|---|---|---|', '| bore | 21.5 | mm |', '| stroke | 120 |  |']
+    assert markdown(ROWS[:1], 'lr')[1] == '|---|---:|---:|'
+
+
+def test_a_bar_does_not_end_a_cell_of_markdown():
+    assert markdown([('unit',), ('m | rad',)])[2] == '| m / rad |'
