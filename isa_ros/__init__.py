@@ -1,1 +1,48 @@
-"""Hydraulic integrated smart actuators as ROS 2 nodes stepped in lockstep."""
+"""
+Hydraulic integrated smart actuators as ROS 2 nodes stepped in lockstep, and as Python objects.
+
+    import isa_ros
+    run = isa_ros.load('leg', scenario='drop')
+    result = run.simulate()
+    print(result['kfe.force'].max(), result.units['kfe.force'])
+
+The names below are loaded when they are first used: importing the package takes neither numba
+nor ROS.
+"""
+
+from importlib import import_module
+from typing import Any, TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from isa_ros.actuator.group import ActuatorGroup as ActuatorGroup
+    from isa_ros.controller import Controller as Controller
+    from isa_ros.controller import Setpoint as Setpoint
+    from isa_ros.controller import State as State
+    from isa_ros.scripting.result import Result as Result
+    from isa_ros.scripting.run import load as load
+    from isa_ros.scripting.run import Run as Run
+    from isa_ros.scripting.sweep import Sweep as Sweep
+    from isa_ros.scripting.sweep import sweep as sweep
+    from isa_ros.simulation import Simulation as Simulation
+    from isa_ros.surroundings.body import Body as Body
+
+_HOMES = {
+    'ActuatorGroup': 'actuator.group', 'Body': 'surroundings.body', 'Controller': 'controller',
+    'Result': 'scripting.result', 'Run': 'scripting.run', 'Setpoint': 'controller',
+    'Simulation': 'simulation', 'State': 'controller', 'Sweep': 'scripting.sweep',
+    'load': 'scripting.run', 'sweep': 'scripting.sweep'}
+
+__all__ = [  # noqa: F822, the names are loaded by `__getattr__`
+    'ActuatorGroup', 'Body', 'Controller', 'Result', 'Run', 'Setpoint', 'Simulation', 'State',
+    'Sweep', 'load', 'sweep']
+
+
+def __getattr__(name: str) -> Any:
+    """Load a public name where it is used first."""
+    if name not in _HOMES:
+        raise AttributeError(f'module {__name__!r} has no attribute {name!r}')
+    return getattr(import_module(f'{__name__}.{_HOMES[name]}'), name)
+
+
+def __dir__() -> list[str]:
+    return sorted({*globals(), *_HOMES})

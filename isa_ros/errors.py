@@ -53,3 +53,7 @@ class SimulationDiverged(IsaError):
         self.t_ns = t_ns
         self.field = field
         self.value = value
+
+    def __reduce__(self) -> tuple[type['SimulationDiverged'], tuple[int, str, float]]:
+        """Return what a copy in another process is made of."""
+        return type(self), (self.t_ns, self.field, self.value)

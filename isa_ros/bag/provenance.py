@@ -12,7 +12,9 @@ from pathlib import Path
 import platform
 from xml.etree import ElementTree
 
+from isa_ros.core.saved_state import RunState
 from isa_ros.errors import BagError
+from isa_ros.scenario.scenario import Scenario
 
 CONFIGURATION = 'configuration.yaml'
 SCENARIO = 'scenario.yaml'
@@ -83,6 +85,14 @@ class Provenance:
                 key.removeprefix(VERSION): value
                 for key, value in record.items() if key.startswith(VERSION)},
             state=attachments[STATE].decode() if STATE in attachments else None)
+
+
+def provenance_of(scenario: Scenario, state: RunState | None = None) -> Provenance:
+    """Return what the bag of a run says about its making; ``state`` is where it goes on from."""
+    run, versions = scenario.run, installed_versions()
+    return Provenance(
+        configuration=run.to_yaml(), scenario=scenario.to_yaml(), seed=0, versions=versions,
+        state=None if state is None else state.to_json(run.digest, versions))
 
 
 def _refuse_undecodable(name: str, data: bytes, where: str) -> None:

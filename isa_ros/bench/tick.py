@@ -5,6 +5,7 @@ from itertools import count, islice
 from pathlib import Path
 import tempfile
 
+from isa_ros.bag.provenance import provenance_of
 from isa_ros.bag.writer import BagWriter
 from isa_ros.bench.rigs import request_of
 from isa_ros.bench.row import Row, seconds
@@ -16,7 +17,7 @@ from isa_ros.controller import Controller, Setpoint, State
 from isa_ros.core.signals import LOAD_PORT
 from isa_ros.run.local_run import shown
 from isa_ros.run.narrator import packer_of, topics_of
-from isa_ros.run.session import prepare, provenance
+from isa_ros.run.session import prepare
 from isa_ros.scenario.scenario import load_scenario, Scenario
 from isa_ros.simulation import Simulation
 import numpy as np
@@ -127,7 +128,8 @@ def _recorder_seconds(drop: Scenario) -> float:
     with tempfile.TemporaryDirectory() as directory:
         session = prepare(request_of(_DROP, Path(directory)))
         ticks = count()
-        with BagWriter(session.out, topics_of(drop.run, rows), provenance(session)) as bag:
+        with BagWriter(
+                session.out, topics_of(drop.run, rows), provenance_of(session.scenario)) as bag:
             def work() -> None:
                 for tick in islice(ticks, TICKS):
                     bag.write_tick(tick * session.run.step_ns, tick, messages)

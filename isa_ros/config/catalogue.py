@@ -2,6 +2,7 @@
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from functools import cache
 from pathlib import Path
 
 from isa_ros.config.sections import (
@@ -86,7 +87,12 @@ def actuator_model(name: str, where: str) -> Model:
         There is no such model, or its file is not as it must be.
 
     """
-    path = _packaged(_MODELS, name, where, 'model')
+    return _model(_packaged(_MODELS, name, where, 'model'))
+
+
+@cache
+def _model(path: Path) -> Model:
+    """Return the model of a file; sections are merged by copies, so that one serves all."""
     tree, place = read(path), Place(path.name)
     refuse_unknown(
         tree, ('model', 'kind', 'spool_feedback', 'plant', 'reu', 'presets', 'variants', 'loads'),
@@ -101,7 +107,7 @@ def actuator_model(name: str, where: str) -> Model:
     if default not in loads:
         raise ConfigError(f'{place}: loads.default = {default!r}; {alternatives("", loads)}')
     return Model(
-        name, place, sheet,
+        path.stem, place, sheet,
         _sections(section_at(tree.get('presets'), place / 'presets'), place / 'presets'),
         _sections(section_at(tree.get('variants', {}), place / 'variants'), place / 'variants'),
         {load: _load(load, section_at(below, place / 'loads' / load), place / 'loads' / load)
@@ -125,9 +131,13 @@ def _load(name: str, tree: Tree, place: Place) -> Section:
 
 def leg_section(name: str, where: str) -> tuple[Section, Place]:
     """Return the sheet of a packaged leg; as `actuator_model`."""
-    path = _packaged(_LEGS, name, where, 'leg')
-    tree: Tree = read(path)
-    return sourced(tree, Place(path.name)), Place(path.name)
+    return _sourced(_packaged(_LEGS, name, where, 'leg'))
+
+
+@cache
+def _sourced(path: Path) -> tuple[Section, Place]:
+    """Return the values of a file, and its name; as `_model`."""
+    return sourced(read(path), Place(path.name)), Place(path.name)
 
 
 def material_names() -> list[str]:
@@ -137,14 +147,12 @@ def material_names() -> list[str]:
 
 def material_section(name: object, where: str) -> tuple[Section, Place]:
     """Return a packaged material as the section of a ground; as `actuator_model`."""
-    path = _packaged(_MATERIALS, name, where, 'material')
-    return sourced(read(path), Place(path.name)), Place(path.name)
+    return _sourced(_packaged(_MATERIALS, name, where, 'material'))
 
 
 def gait_section(name: str, where: str) -> Section:
     """Return the values of a packaged gait; as `actuator_model`."""
-    path = _packaged(_GAITS, name, where, 'gait')
-    return sourced(read(path), Place(path.name))
+    return _sourced(_packaged(_GAITS, name, where, 'gait'))[0]
 
 
 def _names(directory: Path) -> list[str]:

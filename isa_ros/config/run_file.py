@@ -68,7 +68,11 @@ def load_run(path: Path | str) -> RunConfig:
 def read_run(path: Path | str) -> tuple[RunConfig, Origins]:
     """Return a run and what it was built from; as `load_run`."""
     path = Path(path)
-    tree, place = read(path), Place(path.name)
+    return run_of(read(path), Place(path.name))
+
+
+def run_of(tree: Tree, place: Place) -> tuple[RunConfig, Origins]:
+    """Return the run of a file's tree and what it was built from; as `load_run`."""
     refuse_unknown(tree, (
         'name', 'step_ms', 'controller_offset_ms', 'tick_timeout_s', SUPPLY, 'supplies', 'record',
         'actuators', 'controllers', 'leg', 'body'), place)
@@ -81,7 +85,7 @@ def read_run(path: Path | str) -> tuple[RunConfig, Origins]:
         name=name_of(tree, 'name', place),
         step_ns=step_ns, controller_offset_ns=offset_ns, tick_timeout_s=times.tick_timeout_s,
         supplies=read_supplies(tree, [actuator.name for actuator in actuators], place),
-        actuators=actuators, body=leg, source=path.name,
+        actuators=actuators, body=leg, source=place.file,
         record=read_record(tree.get('record', {}), place / 'record'))
     controllers = names_at(tree.get('controllers', []), place / 'controllers')
     return run.with_controllers(controllers), Origins(origins, leg_origin)

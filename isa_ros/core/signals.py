@@ -51,6 +51,14 @@ SAMPLE = np.dtype([
 ])
 """What one actuator reports at the end of a tick."""
 
+SAMPLE_UNITS = {
+    'position': 'm | rad', 'velocity': 'm/s | rad/s', 'force': 'N | Nm',
+    'pressure_a': 'Pa', 'pressure_b': 'Pa', 'spool': 'm', 'spool_velocity': 'm/s',
+    'current': 'A', 'position_reference': 'm | rad', 'force_reference': 'N | Nm',
+    'spool_reference': 'm', 'current_reference': 'A', 'supply_volume': 'm3',
+    'supply_flow': 'm3/s'}
+"""Unit of each field of a `SAMPLE`: of a linear actuator | of a rotary one."""
+
 LOAD_PORT = np.dtype([
     ('x0', '<f8'),               # load position at the tick, m | rad
     ('v0', '<f8'),               # load speed

@@ -7,7 +7,7 @@ import os
 from pathlib import Path
 
 from isa_ros.bag.metadata import FILE_NAME
-from isa_ros.bag.provenance import installed_versions, Provenance
+from isa_ros.bag.provenance import installed_versions, provenance_of
 from isa_ros.bag.writer import BagWriter
 from isa_ros.config.assembly import surroundings_of
 from isa_ros.config.run_config import RunConfig
@@ -156,7 +156,7 @@ def _record_one(
     thinning = Thinning(run.record, topics_of(run, rows.shown))
     # The first bag alone may replace one: a reset takes a directory that does not exist.
     overwrite = session.request.overwrite and not session.bags
-    with BagWriter(out, thinning.topics, provenance(session, state), overwrite,
+    with BagWriter(out, thinning.topics, provenance_of(session.scenario, state), overwrite,
                    run.record.storage) as bag:
         session.bags.append(out)
         coordinator = Coordinator(
@@ -190,12 +190,3 @@ def save_in_bag(session: Session, coordinator: Coordinator) -> str:
     path = session.bags[-1] / f'state_{coordinator.ticks}.json'
     write_state(session, coordinator, path)
     return str(path)
-
-
-def provenance(session: Session, state: RunState | None = None) -> Provenance:
-    """Return what the bag says about its own making."""
-    versions = installed_versions()
-    return Provenance(
-        configuration=session.run.to_yaml(), scenario=session.scenario.to_yaml(), seed=0,
-        versions=versions,
-        state=None if state is None else state.to_json(session.run.digest, versions))

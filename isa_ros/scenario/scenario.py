@@ -112,15 +112,16 @@ def load_scenario(path: Path | str, run: RunConfig) -> Scenario:
 
     """
     path = Path(path)
-    return _scenario(read(path), Place(path.name), run)
+    return read_scenario(read(path), Place(path.name), run)
 
 
 def scenario_of(text: str, run: RunConfig, name: str = 'scenario.yaml') -> Scenario:
     """Return the scenario of a text; as `load_scenario`."""
-    return _scenario(parse(text, name), Place(name), run)
+    return read_scenario(parse(text, name), Place(name), run)
 
 
-def _scenario(tree: Tree, place: Place, run: RunConfig) -> Scenario:
+def read_scenario(tree: Tree, place: Place, run: RunConfig) -> Scenario:
+    """Return the scenario of a file's tree; as `load_scenario`."""
     refuse_unknown(tree, ('name', 'figure', 'duration_s', 'leg', 'loads', 'tracks'), place)
     name = name_of(tree, 'name', place)
     n_ticks = _duration(tree.get('duration_s'), run.step_ns, f'{place}: duration_s')

@@ -1,5 +1,6 @@
 """The body that actuators move together, as a run knows it: a leg, a robot, another simulator."""
 
+from collections.abc import Mapping
 from typing import Protocol
 
 import numpy as np
@@ -30,6 +31,11 @@ class Body(Protocol):
 
         The record type is the body's own; the memory stays the same and is overwritten.
         """
+        ...
+
+    @property
+    def units(self) -> Mapping[str, str]:
+        """Return the unit of each field of the sample."""
         ...
 
     def starts(self, starts: Records) -> None:

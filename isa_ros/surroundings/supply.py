@@ -89,6 +89,9 @@ SUPPLY_SAMPLE = np.dtype([
     ('returned', '<f8'),            # by the actuators since t = 0, m3
 ])
 """State of one supply, which is also its sample at the end of a tick."""
+SUPPLY_UNITS = {
+    'pressure': 'Pa', 'return_pressure': 'Pa', 'pump_flow': 'm3/s', 'drawn': 'm3',
+    'returned': 'm3'}
 
 
 def supply_record(sheet: AccumulatorSupply) -> np.ndarray:

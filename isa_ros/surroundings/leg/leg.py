@@ -6,7 +6,7 @@ position (m) or shaft angle (rad). Rows of `LOAD_PORT` and `LOAD_REPLY` arrays b
 run's actuators; ``rows`` says which of them drive HAA, HFE and KFE.
 """
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 import math
 
@@ -111,6 +111,11 @@ class Leg:
     def sample(self) -> np.ndarray:
         """Return the `LEG_SAMPLE` at the end of the last tick, (1,); overwritten by the next."""
         return self._sample
+
+    @property
+    def units(self) -> Mapping[str, str]:
+        """Return the unit of each field of the `LEG_SAMPLE`."""
+        return kernels.LEG_UNITS
 
     @property
     def is_held(self) -> bool:

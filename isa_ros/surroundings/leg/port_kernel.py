@@ -28,6 +28,9 @@ LEG_SAMPLE = np.dtype([
     ('height_velocity', '<f8'),       # m/s
 ])
 """What a leg shows at the end of a tick."""
+LEG_UNITS = {
+    'position': 'rad', 'velocity': 'rad/s', 'torque': 'Nm', 'foot_force': 'N',
+    'foot_position': 'm', 'height': 'm', 'height_velocity': 'm/s'}
 
 REPLY_WIDTH = LOAD_REPLY.itemsize // 8
 MEANS = 0                   # places in a reply's row of floats

@@ -1,0 +1,206 @@
+"""What a run showed, as columns over time: names, units, arrays; a bag on demand."""
+
+from collections.abc import Iterator, Mapping
+from functools import cached_property
+from pathlib import Path
+from typing import Any, NamedTuple
+
+from isa_ros.core.signals import SAMPLE, SAMPLE_UNITS
+from isa_ros.core.suggest import alternatives
+from isa_ros.core.timebase import NS_PER_SECOND
+from isa_ros.errors import AnalysisError
+from isa_ros.scenario.scenario import Scenario
+from isa_ros.simulation import Records, Simulation
+from isa_ros.surroundings.supply import SUPPLY_UNITS
+from isa_ros.text.progress import Progress
+import numpy as np
+from numpy.typing import NDArray
+
+BODY = 'body'
+_REPORT_TICKS = 100     # between two reports of progress
+
+
+class Log(NamedTuple):
+    """Every row of a run: n + 1 samples of n ticks."""
+
+    samples: Records
+    """`SAMPLE`, (n + 1, n_actuators)."""
+    supplies: Records
+    """`SUPPLY_SAMPLE`, (n + 1, n_supplies)."""
+    body: Records | None
+    """The body's sample, (n + 1,); None without a body."""
+    applied: Mapping[int, Records]
+    """`COMMAND` rows (n_actuators,) of the samples in which something took effect."""
+
+
+class Result(Mapping[str, NDArray[np.float64]]):
+    """
+    A run's signals over time: ``result['kfe.force']`` is an array, (n + 1,) for n ticks.
+
+    Names are ACTUATOR.FIELD with the fields of `SAMPLE`, SUPPLY.FIELD of `SUPPLY_SAMPLE`, and
+    body.FIELD; a field of several numbers gives an array of as many columns. SI, pressures
+    gauge. The arrays are views of the log: a copy is yours to change.
+    """
+
+    def __init__(self, scenario: Scenario, log: Log, body_units: Mapping[str, str]) -> None:
+        self.scenario = scenario
+        """What was simulated."""
+        self.log = log
+        """The rows behind the names."""
+        run = scenario.run
+        self.time: NDArray[np.float64] = (
+            np.arange(len(log.samples)) * run.step_ns / NS_PER_SECOND)
+        """s, (n + 1,)."""
+        self.units: Mapping[str, str] = dict(self._units(body_units))
+        """Unit of every name."""
+
+    def _units(self, body_units: Mapping[str, str]) -> Iterator[tuple[str, str]]:
+        for actuator in self.scenario.run.actuators:
+            kind = 1 if actuator.sheet.is_rotary else 0
+            for field, unit in SAMPLE_UNITS.items():
+                yield f'{actuator.name}.{field}', unit.split(' | ')[kind if ' | ' in unit else 0]
+        for supply in self.scenario.run.supplies:
+            for field, unit in SUPPLY_UNITS.items():
+                yield f'{supply.name}.{field}', unit
+        for field, unit in body_units.items():
+            yield f'{BODY}.{field}', unit
+
+    @cached_property
+    def _columns(self) -> dict[str, NDArray[np.float64]]:
+        run, log = self.scenario.run, self.log
+        sources = [*((actuator.name, log.samples[:, k]) for k, actuator in
+                     enumerate(run.actuators)),
+                   *((supply.name, log.supplies[:, k]) for k, supply in enumerate(run.supplies))]
+        if log.body is not None:
+            sources.append((BODY, log.body))
+        columns = {}
+        for source, rows in sources:
+            for field in rows.dtype.names or ():
+                columns[f'{source}.{field}'] = rows[field]
+        for column in columns.values():
+            column.flags.writeable = False
+        return columns
+
+    def __getitem__(self, name: str) -> NDArray[np.float64]:
+        if name not in self._columns:
+            raise KeyError(f'{name} is unknown; {alternatives(name, self._columns)}')
+        return self._columns[name]
+
+    def __iter__(self) -> Iterator[str]:
+        return iter(self._columns)
+
+    def __len__(self) -> int:
+        return len(self._columns)
+
+    def __repr__(self) -> str:
+        run = self.scenario.run
+        return (f'<Result of {run.source}, {self.scenario.name}: {len(self)} signals, '
+                f'{len(self.time)} samples to t = {self.time[-1]:g} s>')
+
+    def _flat(self) -> Iterator[tuple[str, NDArray[np.float64]]]:
+        """Yield every column of numbers; of an array ``name[k]``."""
+        for name, column in self.items():
+            if column.ndim == 1:
+                yield name, column
+                continue
+            for k in range(column.shape[1]):
+                yield f'{name}[{k}]', column[:, k]
+
+    def to_pandas(self) -> Any:
+        """
+        Return a `pandas.DataFrame` with the time in s as index, units in ``attrs['units']``.
+
+        Raises
+        ------
+        AnalysisError
+            pandas is not installed.
+
+        """
+        pandas = optional('pandas')
+        frame = pandas.DataFrame(
+            dict(self._flat()), index=pandas.Index(self.time, name='time'))
+        frame.attrs['units'] = dict(self.units)
+        return frame
+
+    def to_xarray(self) -> Any:
+        """
+        Return an `xarray.Dataset` over the time in s; every variable has its unit.
+
+        Raises
+        ------
+        AnalysisError
+            xarray is not installed.
+
+        """
+        xarray = optional('xarray')
+        return xarray.Dataset(
+            {name: (('time',) if column.ndim == 1 else ('time', f'{name}_axis'), column,
+                    {'units': self.units[name]}) for name, column in self.items()},
+            coords={'time': ('time', self.time, {'units': 's'})})
+
+    def save(self, directory: str | Path, *, overwrite: bool = False) -> Path:
+        """
+        Write the bag that `isa bringup` records of this run, byte for byte; return its directory.
+
+        Raises
+        ------
+        BagError
+            The directory exists and is not to be overwritten, or cannot be made.
+        RunError
+            The bag cannot be written.
+
+        """
+        from isa_ros.scripting.bag import save  # messages, which nothing else here needs
+        return save(self, Path(directory), overwrite)
+
+
+def optional(package: str) -> Any:
+    """Return a package that is not required; raise `AnalysisError` where it is missing."""
+    from importlib import import_module
+    try:
+        return import_module(package)
+    except ImportError as error:
+        raise AnalysisError(f'{package} is not installed: pip install {package}') from error
+
+
+def simulated(
+        simulation: Simulation, n_ticks: int, report: Progress | None = None) -> Result:
+    """
+    Return the result of the first ``n_ticks`` of a simulation at t = 0.
+
+    Raises
+    ------
+    SimulationDiverged
+        A state is no longer finite.
+
+    """
+    group, surroundings = simulation.group, simulation.surroundings
+    n = n_ticks + 1
+    samples = np.zeros((n, len(group.samples)), SAMPLE)
+    supplies = np.zeros((n, len(surroundings.supplies)), surroundings.supplies.dtype)
+    body = surroundings.body
+    bodies = None if body is None else np.zeros(n, body.sample.dtype)
+    # The same memory as plain numbers, which are copied ten times as fast.
+    pairs = [(_numbers(samples, n), _numbers(group.samples, 1)[0]),
+             (_numbers(supplies, n), _numbers(surroundings.supplies, 1)[0])]
+    if body is not None and bodies is not None:
+        pairs.append((_numbers(bodies, n), _numbers(body.sample, 1)[0]))
+    applied: dict[int, Records] = {}
+    kinds = group.applied['kinds']
+    for tick in range(n):
+        if tick:
+            simulation.step()
+        for into, shown in pairs:
+            into[tick] = shown
+        if kinds.any():
+            applied[tick] = group.applied.copy()
+        if report is not None and tick % _REPORT_TICKS == 0:
+            report(tick, n_ticks)
+    if report is not None:
+        report(n_ticks, n_ticks)
+    return Result(simulation.scenario, Log(samples, supplies, bodies, applied),
+                  {} if body is None else body.units)
+
+
+def _numbers(rows: Records, n: int) -> NDArray[np.float64]:
+    return rows.view(np.float64).reshape(n, -1)

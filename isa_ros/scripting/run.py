@@ -1,0 +1,184 @@
+"""A run as Python has it: read from files, changed by key, simulated in memory."""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
+from pathlib import Path
+import re
+import sys
+from typing import Any
+
+from isa_ros.config.paths import CONFIG, find, SCENARIOS
+from isa_ros.config.run_config import RunConfig
+from isa_ros.config.run_file import run_of
+from isa_ros.config.sections import Place
+from isa_ros.config.yaml_text import read, Tree
+from isa_ros.controller import Controller
+from isa_ros.errors import ConfigError
+from isa_ros.scenario.scenario import idle, read_scenario, Scenario
+from isa_ros.scripting.result import Result, simulated
+from isa_ros.scripting.tree import replaced
+from isa_ros.simulation import Simulation
+from isa_ros.text.progress import counted
+
+_SCENARIO = 'scenario.'     # begins a key of the scenario's file
+_WORDS = re.compile(r'(?<=[a-z0-9])(?=[A-Z])')
+
+Controllers = Sequence[Controller] | Mapping[str, Controller]
+
+
+@dataclass(frozen=True)
+class _File:
+    """The tree of a file, and its name for messages."""
+
+    tree: Tree
+    name: str
+
+    def replaced(self, key: str, value: Any) -> '_File':
+        return replace(self, tree=replaced(self.tree, key, value, self.name))
+
+    @property
+    def place(self) -> Place:
+        return Place(self.name)
+
+
+class Run:
+    """
+    A configuration with its scenario, immutable; `load` makes one from files.
+
+    Raises as `load`.
+    """
+
+    def __init__(
+            self, config: _File, scenario: _File | None, duration: float | None,
+            compression: str | None, split_mb: float | None) -> None:
+        self._config, self._scenario_file = config, scenario
+        self._options: dict[str, Any] = {
+            'duration': duration, 'compression': compression, 'split_mb': split_mb}
+        run = run_of(config.tree, config.place)[0].stored(
+            compression, split_mb, 'record options')
+        plan = idle(run) if scenario is None else read_scenario(
+            scenario.tree, scenario.place, run)
+        self.scenario: Scenario = plan if duration is None else plan.lasting(duration)
+        """What is commanded when, with the resolved configuration as its ``run``."""
+
+    @property
+    def configuration(self) -> RunConfig:
+        """Return the resolved configuration."""
+        return self.scenario.run
+
+    @property
+    def actuators(self) -> tuple[str, ...]:
+        """Return the names of the actuators, in the order of the file."""
+        return tuple(actuator.name for actuator in self.configuration.actuators)
+
+    def __repr__(self) -> str:
+        scenario = 'no scenario' if self._scenario_file is None else self._scenario_file.name
+        return f'<Run {self._config.name}, {scenario}: {", ".join(self.actuators)}>'
+
+    def replace(self, changes: Mapping[str, Any]) -> 'Run':
+        """
+        Return the run with other values, by the dotted keys and in the units of its files.
+
+        ``{'actuators.kfe.parameters.plant.friction.stiction': 150.0}``; keys of the scenario's
+        file begin with ``scenario.``: ``{'scenario.tracks.kfe[1].position': 0.06}``. A key may
+        name a whole section. All values are checked as if they stood in the files.
+
+        Raises
+        ------
+        ConfigError
+            A key that the files cannot have, or a value that is refused.
+
+        """
+        config, scenario = self._config, self._scenario_file
+        for key, value in changes.items():
+            if not key.startswith(_SCENARIO):
+                config = config.replaced(key, value)
+            elif scenario is None:
+                raise ConfigError(f'{config.name}: {key} is not used: the run has no scenario')
+            else:
+                scenario = scenario.replaced(key.removeprefix(_SCENARIO), value)
+        return Run(config, scenario, **self._options)
+
+    def simulation(self, controllers: Controllers = ()) -> Simulation:
+        """
+        Return the run as an object that is stepped by hand; see `Simulation`.
+
+        ``controllers`` take part in every step, in their order. A mapping names them as their
+        nodes would be; else a controller has the name of its class, `Sway` sway.
+        """
+        named = self._named(controllers)
+        return Simulation(self._with_names(list(named)), list(named.values()))
+
+    def simulate(
+            self, duration: float | None = None, controllers: Controllers = (), *,
+            progress: bool = False) -> Result:
+        """
+        Simulate from t = 0 and return every sample, in memory.
+
+        ``duration`` in s; None: that of the scenario. ``controllers`` as in `simulation`. With
+        ``progress`` a terminal shows how far it is.
+
+        Raises
+        ------
+        ConfigError
+            There is neither a duration nor a scenario that has one.
+        SimulationDiverged
+            A state is no longer finite.
+
+        """
+        named = self._named(controllers)
+        plan = self._with_names(list(named))
+        if duration is not None:
+            plan = plan.lasting(duration)
+        if plan.n_ticks is None:
+            raise ConfigError(
+                f'{self._config.name}: simulate needs a duration, as there is no scenario')
+        report = counted(sys.stderr, 'ticks', of=self._config.name) if progress else None
+        return simulated(Simulation(plan, list(named.values())), plan.n_ticks, report)
+
+    def _named(self, controllers: Controllers) -> dict[str, Controller]:
+        if isinstance(controllers, Mapping):
+            return dict(controllers)
+        named: dict[str, Controller] = {}
+        for controller in controllers:
+            name = _WORDS.sub('_', type(controller).__name__).lower()
+            if name in named:
+                raise ConfigError(
+                    f'two controllers are named {name}; give a mapping from names to controllers')
+            named[name] = controller
+        return named
+
+    def _with_names(self, names: Sequence[str]) -> Scenario:
+        """Return the scenario of the run with these controllers, which its file may name."""
+        run = self.configuration
+        for name in run.controllers:
+            if name not in names:
+                raise ConfigError(
+                    f'{self._config.name}: controllers: {name!r} takes part in this run; give it '
+                    'as one of the controllers')
+        added = [name for name in names if name not in run.controllers]
+        return replace(self.scenario, run=run.with_controllers(added))
+
+
+def load(
+        config: str | Path, scenario: str | Path | None = None, *,
+        duration: float | None = None, compression: str | None = None,
+        split_mb: float | None = None) -> Run:
+    """
+    Return the run of a file, or of a shipped one by name, with its scenario.
+
+    ``duration`` (s), ``compression`` and ``split_mb`` are the options of `isa bringup`.
+
+    Raises
+    ------
+    ConfigError
+        A file cannot be read, or what it says cannot be run: file, key, value and bound.
+
+    """
+    return Run(_file(config, CONFIG), None if scenario is None else _file(scenario, SCENARIOS),
+               duration, compression, split_mb)
+
+
+def _file(name: str | Path, directory: str) -> _File:
+    path = find(str(name), directory)
+    return _File(read(path), path.name)
