@@ -27,7 +27,7 @@ BODY = np.dtype([('plant', PLANT_STATE), ('load', LOAD_STATE), ('totals', TOTALS
 STATE_SIZE = BODY.itemsize // 8
 BODIES = 2  # the state and a stage of its integration
 STAGES = 4
-NOTHING = 1e-100  # any unit: a state that decays below is zero, denormal arithmetic is slow
+NOTHING = 1e-100  # any unit: smaller states are set to zero, since denormal arithmetic is slow
 
 ACTUATOR = np.dtype([('plant', PLANT), ('reu', REU), ('load', OWN_LOAD)])
 """Every constant of one actuator, SI."""
@@ -100,7 +100,7 @@ def body_steps(n, h, drive, port, actuator, bodies, rates, y, k):
 
 @kernel
 def square_roots(n):
-    """Take ``n`` square roots, each of the last: what `isa bench` holds a plant step against."""
+    """Take ``n`` square roots, one after the other: the yardstick of `isa bench`."""
     x = 2.0
     for _ in range(n):
         x = math.sqrt(x + 1.0)
@@ -109,7 +109,7 @@ def square_roots(n):
 
 @kernel
 def write_sample(measured, plant, reu, sample):
-    """Fill one `SAMPLE` from what the sensors read and the loops hold."""
+    """Fill one `SAMPLE` from the sensor readings and the loops' references."""
     sample.position = measured.position
     sample.velocity = reu.speed.velocity
     sample.force = measured.force
@@ -152,10 +152,10 @@ def first_broken(y):
 @kernel
 def take_port(incoming, is_shared, port, body):
     """
-    Take what the coordinator says of the load at this tick.
+    Copy the coordinator's `LOAD_PORT` of this tick.
 
-    A shared load's state overwrites the load copy; with a load of its own an actuator takes
-    the pressures alone.
+    A shared load's state overwrites the load copy; of an actuator with its own load only the
+    pressures are copied.
     """
     port.supply_pressure = incoming.supply_pressure
     port.return_pressure = incoming.return_pressure
@@ -205,9 +205,9 @@ def actuator_tick(
     """
     Advance every actuator by ``steps`` plant steps, one after the other.
 
-    Return the place of the first state that is no longer finite in the states of all, or -1.
-    ``incoming`` are this tick's `LOAD_PORT` rows; each array has one row an actuator, but
-    ``bodies`` and ``rates`` and their flat views have `BODIES` and `STAGES` (`scratch`).
+    Return the index, in the states of all, of the first that is no longer finite, or -1.
+    ``incoming`` are this tick's `LOAD_PORT` rows; each array has one row per actuator, except
+    ``bodies`` and ``rates`` and their flat views with `BODIES` and `STAGES` (`scratch`).
     """
     for n in range(len(ports)):
         own, own_rates = bodies[n * BODIES:(n + 1) * BODIES], rates[n * STAGES:(n + 1) * STAGES]

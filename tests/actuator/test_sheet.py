@@ -41,7 +41,7 @@ def test_the_spool_s_loop_is_closed_exactly_once():
         refuse_wiring(changed(explicit, 'plant', 'spool', plain.plant.spool))
     for reu_spool in (plain.reu.spool, Off()):
         sheet = changed(plain, 'reu', 'spool', reu_spool)
-        with pytest.raises(ConfigError, match='nobody closes the loop'):
+        with pytest.raises(ConfigError, match='the spool loop is open'):
             refuse_wiring(changed(sheet, 'plant', 'spool', explicit.plant.spool))
 
 
