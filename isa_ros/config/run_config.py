@@ -22,7 +22,7 @@ from isa_ros.surroundings.supply import SupplySheet
 
 
 COORDINATOR = 'coordinator'
-"""Name of the coordinator's node; no participant may have it."""
+"""Name of the coordinator's node; participants must have other names."""
 
 ALL = 'all'
 """Stands for every actuator of a run."""
@@ -35,12 +35,12 @@ KEYS = ('name', 'source', 'step_ns', 'controller_offset_ns', 'tick_timeout_s', '
 ACTUATOR_KEYS = ('model', 'preset', 'initial_position', 'sheet')
 LEG_KEYS = ('model', 'joints', 'start', 'sheet')
 LATER = {'controllers': 'none', 'record': 'everything'}
-"""Sections that the first resolved configurations did not have, and what they meant."""
+"""Sections that the first resolved configurations did not have, and their values there."""
 
 
 @dataclass(frozen=True, kw_only=True)
 class Times(Parameters):
-    """What the lockstep runs on."""
+    """Timing of the lockstep."""
 
     step_ms: float = parameter('macro step H', 'ms', gt=0.0, le=100.0)
     controller_offset_ms: float = parameter(
@@ -51,7 +51,7 @@ class Times(Parameters):
 
 @dataclass(frozen=True, kw_only=True)
 class LegStart(Parameters):
-    """Where the leg is at t = 0, and until when its slider is held there."""
+    """Pose of the leg at t = 0, and the time until which its slider is held there."""
 
     haa_deg: float = parameter('hip abduction', 'deg', ge=-180.0, le=180.0)
     hfe_deg: float = parameter('hip flexion', 'deg', ge=-180.0, le=180.0)
@@ -66,7 +66,7 @@ class LegStart(Parameters):
 
 @dataclass(frozen=True)
 class LegConfig:
-    """The shared load: a leg, which actuator moves which joint, and how it starts."""
+    """The shared load: a leg, the actuator of each joint, and the leg's start."""
 
     model: str
     sheet: LegSheet
@@ -75,7 +75,7 @@ class LegConfig:
     start: LegStart
 
     def position_of(self, joint: str) -> float:
-        """Return where the start puts the actuator of a joint, m or rad  (L2)."""
+        """Return the position of a joint's actuator at the leg's start, m or rad  (L2)."""
         linkage = linkage_record(getattr(self.sheet, joint))
         return float(actuator_coordinate(self.start.angle(joint), linkage)[0])
 
@@ -96,7 +96,7 @@ class ActuatorConfig:
 
 @dataclass(frozen=True)
 class RunConfig:
-    """Everything that makes a run but the setpoints."""
+    """Everything that defines a run, except the setpoints."""
 
     name: str
     step_ns: int
@@ -107,14 +107,14 @@ class RunConfig:
     """In the order of the file, which is the order of every record."""
     leg: LegConfig | None
     controllers: tuple[str, ...] = ()
-    """Names of the nodes that are waited for at every tick, besides the actuators."""
+    """Names of the nodes, besides the actuators, that every tick waits for."""
     source: str = field(default='')
     """Name of the file it was read from, without its directory."""
     record: RecordConfig = RecordConfig()
 
     @property
     def digest(self) -> str:
-        """Return the sha256 of the resolved text, but for what is recorded and how."""
+        """Return the sha256 of the resolved text without the section `record`."""
         text = replace(self, record=RecordConfig()).to_yaml()
         return hashlib.sha256(text.encode()).hexdigest()
 
@@ -125,7 +125,7 @@ class RunConfig:
         Raises
         ------
         ConfigError
-            There is none.
+            The run has no actuator of this name.
 
         """
         for actuator in self.actuators:
@@ -140,12 +140,12 @@ class RunConfig:
 
     def names_here(self, elsewhere: Sequence[str]) -> tuple[str, ...]:
         """
-        Return the actuators that this host starts: all but those ``elsewhere``.
+        Return the actuators that this host starts: all except those ``elsewhere``.
 
         Raises
         ------
         ConfigError
-            ``elsewhere`` names an actuator that the run does not have.
+            ``elsewhere`` has a name that is not an actuator of the run.
 
         """
         if list(elsewhere) == [ALL]:
@@ -160,7 +160,7 @@ class RunConfig:
         Raises
         ------
         ConfigError
-            A name that is taken.
+            A name is already taken.
 
         """
         for name in names:
@@ -175,9 +175,9 @@ class RunConfig:
         return replace(self, controllers=every)
 
     def with_start(self, start: LegStart) -> 'RunConfig':
-        """Return the run with its leg, and the actuators on it, starting elsewhere."""
+        """Return the run with another start of its leg and of the actuators on it."""
         if self.leg is None:
-            raise ConfigError(f'{self.source}: has no leg that could start at {start}')
+            raise ConfigError(f'{self.source}: the run has no leg that could start at {start}')
         leg = replace(self.leg, start=start)
         joint_of = {actuator: joint for joint, actuator in leg.joints}
         return replace(self, leg=leg, actuators=tuple(
@@ -186,11 +186,11 @@ class RunConfig:
 
     def stored(
             self, compression: str | None, split_mb: float | None, where: str) -> 'RunConfig':
-        """Return the run recorded as asked for at ``where``; as `RecordConfig.stored`."""
+        """Return the run with storage values given at ``where``; as `RecordConfig.stored`."""
         return replace(self, record=self.record.stored(compression, split_mb, where))
 
     def to_yaml(self) -> str:
-        """Return the resolved configuration as text; `from_yaml` undoes it bit for bit."""
+        """Return the resolved configuration as text, the exact inverse of `from_yaml`."""
         tree: Tree = {
             'name': self.name,
             'source': self.source,
@@ -214,12 +214,12 @@ class RunConfig:
     @classmethod
     def from_yaml(cls, text: str, name: str = 'configuration.yaml') -> 'RunConfig':
         """
-        Return the configuration of a resolved text; ``name`` stands in messages.
+        Return the configuration of a resolved text; error messages begin with ``name``.
 
         Raises
         ------
         ConfigError
-            The text is not one `to_yaml` gives.
+            The text is not an output of `to_yaml`.
 
         """
         tree, place = parse(text, name), Place(name)
@@ -247,12 +247,12 @@ class RunConfig:
 
 def refuse_bad_name(name: str, where: str) -> None:
     """
-    Refuse what ROS could not use as the name of a node.
+    Refuse a name that ROS does not allow for a node.
 
     Raises
     ------
     ConfigError
-        Anything but small letters, digits and single underscores.
+        The name has other characters than small letters, digits and single underscores.
 
     """
     if not _NAME.fullmatch(name):

@@ -15,7 +15,7 @@ SOURCES = ('paper', 'derived', 'assumed', 'public model')
 
 
 def is_kind(row: Row) -> bool:
-    """Tell whether a row says how something is modelled, which is no number to have a source."""
+    """Return whether a row says how something is modelled, which is no number to have a source."""
     return row.parameter.endswith('.kind')
 
 
@@ -62,7 +62,7 @@ def test_a_run_shows_each_actuator_and_where_its_values_come_from() -> None:
     ('--preset', 'table_4', ()), ('--variant', None, ('explicit',))])
 def test_what_is_no_model_refuses_preset_and_variants(name, option, preset, variants) -> None:
     """A run file says them itself; to show it without them would not answer the question."""
-    with pytest.raises(ConfigError, match=f'^{option} is not used: {name} is no model'):
+    with pytest.raises(ConfigError, match=f'^{option} is not used: {name} is not a model'):
         describe(name, preset, variants)
 
 

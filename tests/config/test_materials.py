@@ -45,5 +45,5 @@ def test_pad_of_a_model_has_the_numbers_of_its_material(model, name):
 
 def test_an_unknown_material_is_answered_with_the_right_ones():
     """One line, naming the key and what it may have meant."""
-    with pytest.raises(ConfigError, match="leg.ground = 'wod' is no material; did you mean wood"):
+    with pytest.raises(ConfigError, match="leg.ground = 'wod' is not a material; did you mean wood"):
         material_section('wod', 'run.yaml: leg.ground')
