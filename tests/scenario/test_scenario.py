@@ -247,7 +247,7 @@ def test_a_scenario_may_name_the_figure_it_is_drawn_as(rotary: RunConfig) -> Non
 
 @pytest.mark.parametrize('text, expected', [
     ('torqe_step', 'did you mean torque_step'), ('bode', 'valid: position_torque_tracking'),
-    ('7', 'figure = 7 is no figure'), ('[a]', 'is no figure')])
+    ('7', 'figure = 7 is not a figure'), ('[a]', 'is not a figure')])
 def test_an_unknown_figure_is_refused(text: str, expected: str, rotary: RunConfig) -> None:
     with pytest.raises(ConfigError, match=expected):
         scenario_of(f'name: s\nfigure: {text}\nduration_s: 1\n', rotary)
