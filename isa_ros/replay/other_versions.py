@@ -1,4 +1,4 @@
-"""Which keys of a resolved configuration this version knows, and which it wants besides."""
+"""Keys of a resolved configuration that are unknown to this version, and keys it lacks."""
 
 from collections.abc import Iterator
 from dataclasses import fields
@@ -24,7 +24,7 @@ class KeyDifference(NamedTuple):
 
 
 def key_differences(tree: Tree, place: Place) -> Iterator[KeyDifference]:
-    """Yield what a resolved configuration has that is unknown here, and what it lacks."""
+    """Yield the keys of a resolved configuration that are unknown here, and those it lacks."""
     yield from _section(tree, KEYS, (*LATER, 'leg'), place)
     for key, meant in LATER.items():
         if key not in tree:
@@ -56,7 +56,7 @@ def _leg(tree: Any, place: Place) -> Iterator[KeyDifference]:
 def _section(
         tree: Any, keys: tuple[str, ...], optional: tuple[str, ...], place: Place
         ) -> Iterator[KeyDifference]:
-    """Compare the keys of a section; what is none is refused where it is built."""
+    """Compare the keys of a section; a value that is not a section is refused by `build`."""
     if not isinstance(tree, dict):
         return
     for key in tree:
@@ -68,7 +68,7 @@ def _section(
 
 
 def _set(hint: Any, tree: Any, place: Place) -> Iterator[KeyDifference]:
-    """Compare the keys of a parameter set, or of the kind its section names."""
+    """Compare the keys of a parameter set, or of the kind that its section selects."""
     if not isinstance(tree, dict):
         return
     rest = dict(tree)

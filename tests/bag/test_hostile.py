@@ -147,7 +147,7 @@ def test_type_of_a_bag_imports_no_module(tmp_path, refused):
                                    {'topic': '/' + 'a' * 300}, {'type_name': '../msg/X'},
                                    {'type_name': 'a\nb'}])
 def test_name_that_ros_does_not_have_is_refused(tmp_path, refused, names):
-    assert 'must be letters, digits, _ and /' in refused(
+    assert 'must be a ROS name of letters, digits, _ and /' in refused(
         'replay', foreign(tmp_path / 'x.mcap', **names))
 
 
@@ -163,7 +163,7 @@ def test_versions_of_a_bag_are_shown_as_one_line_each(tmp_path, capsys):
 def test_pipe_in_a_bag_is_not_waited_for(tmp_path, refused):
     record(tmp_path / 'rig', 3)
     os.mkfifo(tmp_path / 'rig' / 'rig_1.mcap')
-    assert 'rig_1.mcap: is no file' in refused('replay', tmp_path / 'rig')
+    assert 'rig_1.mcap: is not a file' in refused('replay', tmp_path / 'rig')
 
 
 def test_names_in_metadata_are_never_opened(tmp_path, refused):

@@ -179,7 +179,7 @@ def test_missing_file_in_the_middle_is_named(copy):
 def test_file_cut_short_before_others_is_named(copy):
     middle = copy / 'rig_1.mcap'
     middle.write_bytes(middle.read_bytes()[:-5])
-    with pytest.raises(BagError, match='rig_1.mcap: is cut short, but rig_2.mcap goes on'):
+    with pytest.raises(BagError, match='rig_1.mcap: is cut short, but rig_2.mcap continues it'):
         Bag(copy)
 
 
@@ -194,7 +194,7 @@ def test_files_in_another_order_are_refused(copy):
     one.rename(copy / 'x')
     two.rename(one)
     (copy / 'x').rename(two)
-    with pytest.raises(BagError, match="rig_1.mcap: says to be file '2' of a bag, not 1"):
+    with pytest.raises(BagError, match="rig_1.mcap: is labelled file '2' of a bag, not 1"):
         Bag(copy)
 
 
@@ -202,7 +202,7 @@ def test_first_file_that_is_not_the_first_is_refused(copy):
     (copy / 'rig_0.mcap').unlink()
     for number in (1, 2):
         (copy / f'rig_{number}.mcap').rename(copy / f'rig_{number - 1}.mcap')
-    with pytest.raises(BagError, match="rig_0.mcap: says to be file '1' of a bag, not 0"):
+    with pytest.raises(BagError, match="rig_0.mcap: is labelled file '1' of a bag, not 0"):
         Bag(copy)
 
 
@@ -218,7 +218,7 @@ def other_run(directory, provenance=PROVENANCE, topics=TOPICS, first=0):
 def test_file_of_another_run_is_refused(copy, tmp_path):
     other = other_run(tmp_path / 'other', replace(PROVENANCE, seed=8))
     shutil.copyfile(other, copy / 'rig_1.mcap')
-    with pytest.raises(BagError, match='rig_1.mcap: is of another run than rig_0.mcap'):
+    with pytest.raises(BagError, match='rig_1.mcap: belongs to another run than rig_0.mcap'):
         Bag(copy)
 
 

@@ -44,10 +44,10 @@ def test_both_bounds_add_up(load):
 @pytest.mark.parametrize('text, said', [
     ('/knee: {position: 1.0}',
      'tolerance.yaml: /knee: no such topic in the bag, which has /hip/joint_states, /hip/load'),
-    ('/hip/load_cell: 1.0', 'tolerance.yaml: /hip/load_cell = 1.0, must be fields'),
+    ('/hip/load_cell: 1.0', 'tolerance.yaml: /hip/load_cell = 1.0, must be a section of fields'),
     ('/hip/load_cell: {wrench.force.w: 1.0}',
-     'tolerance.yaml: /hip/load_cell: wrench.force.w: must be a number of the message: wrench.f'),
-    ('/hip/load_cell: {header.stamp.sec: 1}', 'header.stamp.sec: must be a number'),
+     'tolerance.yaml: /hip/load_cell: wrench.force.w: must be a float field of the message: wr'),
+    ('/hip/load_cell: {header.stamp.sec: 1}', 'header.stamp.sec: must be a float field'),
     ('/hip/load_cell: {wrench.force.x: -1.0}',
      'wrench.force.x: absolute = -1.0, must be a finite number >= 0'),
     ('/hip/load_cell: {wrench.force.x: .inf}', 'absolute = inf, must be a finite number'),
