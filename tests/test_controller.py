@@ -45,7 +45,7 @@ def test_a_value_that_cannot_be_is_refused(setpoint, message):
 
 
 def test_an_unknown_actuator_is_refused_naming_those_there_are():
-    with pytest.raises(SetpointError, match="'hip' is no actuator of the run; valid: haa, kfe"):
+    with pytest.raises(SetpointError, match="'hip' is not an actuator of the run; valid: haa, kfe"):
         requests(hip=Setpoint(0.0))
 
 
