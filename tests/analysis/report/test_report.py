@@ -32,7 +32,7 @@ def test_a_rig_has_no_leg(tmp_path):
 def test_another_page_is_not_replaced(tmp_path):
     page = tmp_path / 'mine.html'
     page.write_text('precious')
-    with pytest.raises(BagError, match='mine.html exists and is no report, so it is not'):
+    with pytest.raises(BagError, match='mine.html already exists and is not a report, so it is not'):
         write_report(GOLDEN / 'rotor_step', page)
     assert page.read_text() == 'precious' and not list(tmp_path.glob('*.png'))
     with pytest.raises(BagError, match='is a directory, must be the name of the page'):

@@ -234,7 +234,7 @@ def test_points_without_coherence_make_no_margin():
 @pytest.mark.parametrize(('frequency', 'expected'), [
     (6000.0, 'frequency = 6000 Hz, must be > 0 and < 5000 Hz'),
     (0.0, 'frequency = 0 Hz'),
-    (5.0, '0.1 s of samples hold no whole cycle of 5 Hz')])
+    (5.0, '0.1 s of samples have no whole cycle of 5 Hz')])
 def test_a_frequency_the_samples_cannot_show_is_refused(frequency, expected):
     with pytest.raises(AnalysisError, match=expected):
         fit_sine(np.zeros(1000), frequency, RATE)
@@ -244,7 +244,7 @@ def test_nothing_to_measure_is_refused():
     still, moving = np.zeros(1000), np.sin(np.arange(1000))
     with pytest.raises(AnalysisError, match='without a frequency'):
         stepped_response([], moving, moving, RATE)
-    with pytest.raises(AnalysisError, match='the input stands still at 50 Hz'):
+    with pytest.raises(AnalysisError, match='the input does not move at 50 Hz'):
         stepped_response([Window(50.0, 0, 1000)], still, moving, RATE)
 
 

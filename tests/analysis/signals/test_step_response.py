@@ -61,7 +61,7 @@ def test_what_never_gets_there_has_no_rise_time():
 
 
 @pytest.mark.parametrize(('n', 'target', 'band', 'expected'), [
-    (100, 0.0, 0.05, 'a step from 0 to 0'),
+    (100, 0.0, 0.05, 'step from 0 to 0'),
     (100, 1.0, 0.0, 'settling band = 0'),
     (100, 1.0, 1.0, 'settling band = 1'),
     (9, 1.0, 0.05, '9 times and 9 values'),

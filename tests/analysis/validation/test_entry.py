@@ -37,7 +37,7 @@ def test_a_reading_names_its_erratum(reading):
 
 
 def test_an_empty_tolerance_is_no_entry():
-    with pytest.raises(ValueError, match='holds no value'):
+    with pytest.raises(ValueError, match='contains no value'):
         entry('x', 1.0, tolerance=(1.0, math.nan))
 
 
