@@ -134,7 +134,7 @@ def parse_record(opcode: int, content: bytes, where: str) -> McapRecord | None:
 
 
 class _Reader:
-    """Position in one file, and the running checksum of what was read."""
+    """Position in one file, and the running checksum of the bytes read."""
 
     def __init__(self, file: BinaryIO, where: str) -> None:
         self._file = file

@@ -109,9 +109,9 @@ class RecordConfig:
 
         """
         given = {'compression': compression, 'split_mb': split_mb}
-        asked: Tree = {key: value for key, value in given.items() if value is not None}
+        values: Tree = {key: value for key, value in given.items() if value is not None}
         place = Place(where)
-        return replace(self, storage=_storage(asked, place, self.storage))
+        return replace(self, storage=_storage(values, place, self.storage))
 
     def to_tree(self) -> Tree:
         """Return the section, the inverse of `read_record`."""

@@ -66,7 +66,7 @@ class Parameters:
 
 
 def check(where: str, value: Any, declared: Any) -> None:
-    """Refuse a value that breaks its declaration, naming what, value, unit and bound."""
+    """Refuse a value that breaks its declaration; the message has name, value, unit, bound."""
     if 'names' in declared:
         if value not in declared['names']:
             raise ParameterError(

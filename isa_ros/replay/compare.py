@@ -77,9 +77,9 @@ class Comparer:
     Raises
     ------
     BagError
-        the bag is damaged.
+        The bag is damaged.
     CdrError
-        a message that is not what its type says.
+        A message does not match its type.
 
     """
 
@@ -172,9 +172,9 @@ def compare_bags(expected: Bag, actual: Bag, tolerances: Tolerances | None = Non
     Raises
     ------
     BagError
-        a bag is damaged.
+        A bag is damaged.
     CdrError
-        a message that is not what its type says.
+        A message does not match its type.
 
     """
     topics = sorted(actual.types)

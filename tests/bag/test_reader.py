@@ -109,7 +109,7 @@ def test_any_flipped_bit_of_a_whole_bag_is_found(mcap, scratch, drawn):
 @given(drawn=st.data())
 @settings(deadline=None, max_examples=40)
 def test_flipped_bit_in_a_chunk_of_a_cut_bag_is_found(mcap, scratch, drawn):
-    """No DataEnd there: the chunk's own CRC has to tell."""
+    """A cut bag has no DataEnd, so the chunk's own CRC must detect it."""
     start, end = chunks(mcap)[0]
     data = bytearray(mcap.read_bytes()[:end])
     data[drawn.draw(st.integers(start + 9 + 40, end - 1))] ^= 1 << drawn.draw(st.integers(0, 7))
@@ -121,7 +121,7 @@ def test_flipped_bit_in_a_chunk_of_a_cut_bag_is_found(mcap, scratch, drawn):
 @given(data=st.binary(max_size=400))
 @settings(deadline=None)
 def test_arbitrary_records_are_read_or_refused(scratch, data):
-    """Whatever follows the magic, nothing but BagError comes out."""
+    """For any bytes after the magic the only error raised is BagError."""
     scratch.write_bytes(b'\x89MCAP0\r\n' + data)
     try:
         bag = Bag(scratch)

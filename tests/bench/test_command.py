@@ -1,4 +1,4 @@
-"""What the command does with its options."""
+"""The options of the command."""
 
 from isa_ros.bench import command
 from isa_ros.bench.command import chosen

@@ -1,4 +1,4 @@
-"""The command line: exit codes, one line per error, and what is not imported."""
+"""The command line: exit codes, one line per error, and imports that are avoided."""
 
 from argparse import Namespace
 import errno
@@ -17,7 +17,7 @@ ROOT = Path(__file__).parents[2]
 
 
 def outcome(monkeypatch: pytest.MonkeyPatch, ending: BaseException | bool, *more: str) -> int:
-    """Return the exit code of a command that ends like this."""
+    """Return the exit code of a command that ends with an error."""
     def command(options: Namespace) -> bool:
         if isinstance(ending, bool):
             return ending

@@ -1,4 +1,4 @@
-"""The paper as data: spot checks of what is printed, and a loader that takes nothing else."""
+"""The paper as data: spot checks of printed values, and a strict loader."""
 
 from isa_ros.cli.main import main
 from isa_ros.config.sections import Place

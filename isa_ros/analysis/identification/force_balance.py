@@ -192,9 +192,9 @@ class _Windows:
         if min(np.sum((0.0 < speed) & (speed < v_s)),
                np.sum((-v_s < speed) & (speed < 0.0))) < _SLOW_WINDOWS:
             return False
-        asked = np.zeros((2, N_PARAMETERS))
-        asked[0, STICTION], asked[0, COULOMB], asked[1, STRIBECK] = 1.0, -1.0, 1.0
-        return bool(np.all(asked @ theta > self.half_widths(theta, _ALL, asked)))
+        sums = np.zeros((2, N_PARAMETERS))
+        sums[0, STICTION], sums[0, COULOMB], sums[1, STRIBECK] = 1.0, -1.0, 1.0
+        return bool(np.all(sums @ theta > self.half_widths(theta, _ALL, sums)))
 
     def leave_out_collisions(self, theta: np.ndarray) -> None:
         """Leave out the windows whose force can only be that of a collision."""

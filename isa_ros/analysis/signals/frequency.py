@@ -163,8 +163,8 @@ def chirp_response(
     bins = bins[(bins >= 1) & (bins < n // 2)]
     if not len(bins):
         raise AnalysisError(
-            f'no frequency from {rate / n:g} to {0.5 * rate:g} Hz, what segments of '
-            f'{segment:g} s resolve')
+            f'no frequency from {rate / n:g} to {0.5 * rate:g} Hz, the band that segments '
+            f'of {segment:g} s resolve')
     rr, yy = spectrum(r, r)[bins].real, spectrum(y, y)[bins].real
     rx, ry = spectrum(r, x)[bins], spectrum(r, y)[bins]
     if not (rr > 0.0).all() or not np.abs(rx).all():

@@ -190,7 +190,7 @@ def test_a_hunting_loop_is_said_not_to_be_trusted(capsys):
 
 
 def test_a_step_that_is_not_followed_is_said_so():
-    """Torque against a free mass cannot be held: there is nothing to push against."""
+    """Torque against a free mass cannot be held, since the mass yields."""
     stopped = summary(step(rig(Choice(name='smart_manifold', loop='force')), 0.3, 17.0))
     assert 'does not follow' not in stopped
     lost = summary(step(rig(Choice(name='isa_v5', loop='force', load='mass')), 0.3, 7000.0))

@@ -1,4 +1,4 @@
-"""Recordings out of a bag."""
+"""Recordings read from a bag."""
 
 from dataclasses import replace
 from pathlib import Path
