@@ -1,7 +1,7 @@
 """
 A user's controller in the lockstep: the state of tick k in, the setpoints of tick k + 1 out.
 
-Free of ROS; `isa_ros.nodes.Participant` lets one take part in a run.
+Independent of ROS; with `isa_ros.nodes.Participant` a controller takes part in a run.
 """
 
 from collections.abc import Mapping, Sequence
@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 
 
 class State(NamedTuple):
-    """What is known at one instant; the records are overwritten by the next tick."""
+    """The state of a run at one instant; the next tick overwrites the records."""
 
     t_ns: int
     actuators: Mapping[str, np.record]
@@ -41,11 +41,11 @@ class Setpoint(NamedTuple):
     """None keeps the gain in force, as does a damping of None."""
     damping: float | None = None
     is_enabled: bool | None = None
-    """None leaves the actuator as it is."""
+    """None leaves the actuator enabled or disabled, as it is."""
 
 
 class Controller:
-    """What a user's controller says and is told; override `step`, and the rest as needed."""
+    """Base of a user's controller; override `step`, and the other methods as needed."""
 
     def start(self, names: Sequence[str]) -> None:
         """Begin anew at t = 0 with actuators of these names, in the order of the run."""
@@ -54,18 +54,18 @@ class Controller:
         """
         Return the setpoints that take effect one tick after ``state``, by actuator.
 
-        An actuator that is left out keeps its setpoint. What is returned may depend on the
-        states since `start` only, or the run cannot be repeated.
+        An actuator that is left out keeps its setpoint. The result must depend only on the
+        states since `start`, otherwise the run cannot be repeated.
         """
         raise NotImplementedError
 
     def snapshot(self) -> bytes:
-        """Return the whole state of the controller; needed only where a run is saved."""
+        """Return the whole state of the controller; needed only for saving a run."""
         raise RunError(f'{type(self).__name__} has no snapshot(), so the run cannot be saved')
 
     def restore(self, snapshot: bytes) -> None:
         """Continue from a `snapshot`."""
-        raise RunError(f'{type(self).__name__} has no restore(), so the run cannot go on')
+        raise RunError(f'{type(self).__name__} has no restore(), so the run cannot continue')
 
 
 def fill_requests(
@@ -77,12 +77,13 @@ def fill_requests(
     Raises
     ------
     SetpointError
-        An actuator that the run does not have, or a value that cannot be one.
+        An actuator that the run does not have, or an invalid value.
 
     """
     for name, setpoint in setpoints.items():
         if name not in names:
-            raise SetpointError(f'{name!r} is no actuator of the run; valid: {", ".join(names)}')
+            raise SetpointError(
+                f'{name!r} is not an actuator of the run; valid: {", ".join(names)}')
         numbers = [math.nan if value is None else value for value in setpoint[:5]]
         for field, value, given in zip(Setpoint._fields, numbers, setpoint):
             if given is not None and not math.isfinite(value):
@@ -94,9 +95,9 @@ def fill_requests(
 
 
 def merge_requests(requests: NDArray[np.void], into: NDArray[np.void]) -> None:
-    """Overwrite rows of ``into`` with the `COMMAND` rows of one controller that say something."""
-    said = np.flatnonzero(requests['kinds'])
-    into[said] = requests[said]
+    """Overwrite rows of ``into`` with those `COMMAND` rows of a controller that hold a command."""
+    given = np.flatnonzero(requests['kinds'])
+    into[given] = requests[given]
 
 
 def by_name(names: Sequence[str], rows: NDArray[np.void]) -> dict[str, np.record]:

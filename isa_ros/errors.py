@@ -1,10 +1,10 @@
-"""Every error a user can cause or meet, each with the exit code it ends a command with."""
+"""The errors that a user can cause or see, each with its exit code."""
 
 LONGEST = 2000
 
 
 def one_line(text: str) -> str:
-    """Return a text that may quote a file of someone else's as one line a terminal can take."""
+    """Return a text, which may quote an untrusted file, as one line safe for a terminal."""
     shown = ''.join(c if c.isprintable() else repr(c)[1:-1] for c in text)
     return shown if len(shown) <= LONGEST else f'{shown[:LONGEST]} ...'
 
@@ -28,11 +28,11 @@ class SetpointError(IsaError):
 
 
 class BagError(IsaError):
-    """A bag that cannot be read, or a directory that cannot take one."""
+    """A bag that cannot be read, or a directory in which none can be written."""
 
 
 class AnalysisError(IsaError):
-    """Signals that do not hold the answer that is asked of them."""
+    """Signals from which the requested result cannot be computed."""
 
 
 class RunError(IsaError):

@@ -6,8 +6,8 @@ In a conftest.py: ``pytest_plugins = ['isa_ros.testing']``; in a test::
     def test_my_leg_still_drops_like_that(assert_replays):
         assert_replays('bags/drop', 'bags/tolerances.yaml')
 
-Without a tolerance file every bit must be equal, which holds on the kind of machine and with
-the versions that recorded the bag. `assert_replays` may be imported and called as well.
+Without a tolerance file every bit must be equal, which is the case on the same kind of machine
+and with the same versions. `assert_replays` may also be imported and called.
 """
 
 from collections.abc import Callable
@@ -36,7 +36,7 @@ def assert_replays(bag: Path | str, tolerances: Path | str | None = None) -> Non
         The replay differs: first tick, topic and field with both values, and how this
         installation differs from the one that recorded the bag.
     BagError, ConfigError
-        The bag or the tolerance file cannot be read, or the bag not be simulated.
+        The bag or the tolerance file cannot be read, or the bag cannot be simulated.
 
     """
     recorded = Bag(Path(bag))
@@ -56,14 +56,14 @@ def _assert_replays() -> AssertReplays:
 
 
 def _why_bits_differ(has_changes: bool) -> list[str]:
-    """Say what a comparison without tolerances rests on; a bag does not name its machine."""
+    """Return why equal bits may not be expected; a bag has no data of its machine."""
     known = (
         'Versions or topics differ as listed' if has_changes else
         'Versions and topics are those of the bag')
     return [
         'No tolerances were given, so every bit must be equal, which holds with the same '
-        f'versions on the same kind of CPU. {known}; the CPU here is {_cpu()}, the bag does not '
-        'say which one recorded it. For other versions or CPUs give tolerances.']
+        f'versions on the same kind of CPU. {known}; the CPU here is {_cpu()}, that of the '
+        'recording is not stored in the bag. For other versions or CPUs give tolerances.']
 
 
 def _cpu() -> str:

@@ -4,7 +4,7 @@ Generate isa_ros/surroundings/leg/dynamics.py: the leg's equations of motion in 
     python scripts/generate_leg.py [--out FILE]
 
 The generated file is committed; a test generates it again and compares the bytes, so edit
-this script, never its output. Needs sympy, and only here.
+this script, never its output. The only user of sympy.
 
 Model (equations L6-L8 of docs/equations.md): a slider on a vertical rail carries the hip
 link, which carries thigh and calf. Frames, as in the public HyQ-REAL models: the base has x
@@ -219,7 +219,7 @@ def wrapped(head, text, indent):
     current = ' ' * columns[-1]
     for token in text.replace(' + ', '\0+ ').replace(' - ', '\0- ').split('\0'):
         if current.strip():
-            # A bracket far to the right would leave its own terms no room below.
+            # A bracket far to the right would leave too little room for its terms below it.
             is_deep = token.count('(') > token.count(')') and len(current) > DEEP
             if is_deep or len(current) + 1 + len(token) + 2 > WIDTH:
                 lines.append(current)

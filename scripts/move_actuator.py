@@ -1,5 +1,5 @@
 """
-Send one position setpoint to an actuator node and print what took effect.
+Send one position setpoint to an actuator node and print the applied one.
 
     python scripts/move_actuator.py NAME POSITION     (m, or rad for a rotary actuator)
 """
@@ -16,7 +16,7 @@ PATIENCE_S = 10.0
 
 
 def main() -> int:
-    """Publish once a subscriber is there, wait for the echo."""
+    """Publish once a subscriber exists, then wait for the echo."""
     parser = argparse.ArgumentParser(description='Send one position setpoint.')
     parser.add_argument('name')
     parser.add_argument('position', type=float, help='m, or rad for a rotary actuator')
@@ -27,7 +27,7 @@ def main() -> int:
     applied: list[JointState] = []
 
     def on_echo(message: JointState) -> None:
-        if message.position[0] == position:  # not the place it started from
+        if message.position[0] == position:  # not the start position
             applied.append(message)
     node.create_subscription(
         JointState, f'/{name}/applied_setpoint', on_echo, QoSProfile(depth=10))

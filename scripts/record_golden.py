@@ -3,8 +3,8 @@ Record the golden bags of tests/golden again; say in the commit which equation c
 
     python scripts/record_golden.py [NAME ...]
 
-They are compressed to be small, so their bytes depend on zstd's version; what they hold does
-not, and that is what the tests look at.
+They are compressed to be small, so their bytes depend on zstd's version; their messages do not,
+and the tests compare the messages.
 """
 
 from pathlib import Path

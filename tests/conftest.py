@@ -1,4 +1,4 @@
-"""Settings of all tests, and what each must leave as it was."""
+"""Settings of all tests, and a check that each leaves the environment unchanged."""
 
 from collections.abc import Iterator
 import os
@@ -6,7 +6,7 @@ import os
 from hypothesis import settings
 import pytest
 
-# The first call of a kernel compiles it, which no deadline allows for; the same examples on
+# The first call of a kernel compiles it, which would exceed a deadline; the same examples on
 # every run, so that a failure is reproducible.
 settings.register_profile('isa_ros', deadline=None, derandomize=True)
 settings.load_profile('isa_ros')

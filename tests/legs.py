@@ -1,4 +1,4 @@
-"""The shipped legs as the tests need them."""
+"""The shipped legs, for the tests."""
 
 from isa_ros.config.catalogue import leg_section
 from isa_ros.config.sections import build

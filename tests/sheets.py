@@ -1,4 +1,4 @@
-"""The shipped actuators as the tests need them."""
+"""The shipped actuators, for the tests."""
 
 from dataclasses import replace
 from typing import Any
@@ -16,7 +16,7 @@ import numpy as np
 
 MODELS = ('smart_manifold', 'isa_v2', 'isa_v5')
 FINE = Timing(step_ns=100_000, controller_offset_ns=20_000)
-"""A tick as short as the current loop's period, for looking at transients."""
+"""A tick as short as the current loop's period, for measuring transients."""
 
 
 def actuator_sheet(model: str, preset: str = 'default', *variants: str) -> ActuatorSheet:
@@ -50,7 +50,7 @@ def smart_actuator(
         model: str, load: str | LocalLoad | None, *, preset: str = 'default',
         position: float | None = None, timing: Timing = FINE,
         sheet: ActuatorSheet | None = None) -> SmartActuator:
-    """Return an actuator on one of its own loads, at mid stroke unless told otherwise."""
+    """Return an actuator on one of its own loads, by default at mid stroke."""
     sheet = sheet or actuator_sheet(model, preset)
     if isinstance(load, str):
         load = own_load(model, load)
@@ -61,7 +61,7 @@ def smart_actuator(
 
 
 def setpoint(**values: float) -> np.void:
-    """Return a `COMMAND` row; gains that are not named keep."""
+    """Return a `COMMAND` row; missing gains keep those in force."""
     command = np.zeros(1, COMMAND)[0]
     command['kinds'] = HAS_SETPOINT
     command['stiffness'] = command['damping'] = np.nan

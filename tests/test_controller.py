@@ -1,4 +1,4 @@
-"""What controllers say becomes commands, or is refused whole."""
+"""Controllers' setpoints become commands, or are refused as a whole."""
 
 import math
 
@@ -19,7 +19,7 @@ def requests(**setpoints: Setpoint) -> np.ndarray:
 
 
 def test_a_setpoint_fills_the_row_of_its_actuator():
-    """A gain that is not given keeps the one in force; who is not named is told nothing."""
+    """A missing gain keeps the one in force; other actuators receive no command."""
     rows = requests(kfe=Setpoint(0.1, 0.2, 30.0, damping=400.0))
     assert rows['kinds'].tolist() == [0, HAS_SETPOINT]
     kinds, _, position, velocity, effort, stiffness, damping = rows[1].item()
@@ -45,7 +45,7 @@ def test_a_value_that_cannot_be_is_refused(setpoint, message):
 
 
 def test_an_unknown_actuator_is_refused_naming_those_there_are():
-    with pytest.raises(SetpointError, match="'hip' is no actuator of the run; valid: haa, kfe"):
+    with pytest.raises(SetpointError, match="'hip' is not an actuator of the run; valid: haa"):
         requests(hip=Setpoint(0.0))
 
 
@@ -57,7 +57,7 @@ def test_of_two_controllers_the_later_wins_where_both_speak():
 
 
 def test_a_controller_that_keeps_nothing_says_so_itself():
-    """Silence would lose its state; so saving is refused until it says how."""
+    """Its state would be lost, so saving is refused until it has a snapshot()."""
     with pytest.raises(RunError, match=r'Controller has no snapshot\(\)'):
         Controller().snapshot()
     with pytest.raises(RunError, match=r'Controller has no restore\(\)'):

@@ -1,4 +1,4 @@
-"""What an installation needs: one version, real entry points, pinned requirements."""
+"""Installation: one version, existing entry points, pinned requirements."""
 
 from importlib import import_module
 from pathlib import Path
@@ -51,11 +51,11 @@ def test_pyproject_holds_no_metadata() -> None:
 
 @pytest.mark.slow
 def test_an_installed_package_finds_its_data(tmp_path: Path) -> None:
-    """A wheel carries the models, and share/isa_ros the configurations."""
+    """A wheel contains the models, and share/isa_ros the configurations."""
     pytest.importorskip('setuptools', minversion='70.1')  # the first one that makes wheels
     subprocess.run(
         [sys.executable, '-m', 'pip', 'install', '--quiet', '--no-deps', '--no-build-isolation',
-         '--no-index', '--disable-pip-version-check', '--ignore-installed',  # leaves the clone's
+         '--no-index', '--disable-pip-version-check', '--ignore-installed',  # keeps the clone's
          '--prefix', str(tmp_path / 'prefix'),
          str(copy_of_clone(tmp_path))], check=True, capture_output=True, timeout=120)
     purelib = next((tmp_path / 'prefix').glob('lib/python3*/site-packages'))
@@ -73,7 +73,7 @@ def test_an_installed_package_finds_its_data(tmp_path: Path) -> None:
 
 
 def copy_of_clone(tmp_path: Path) -> Path:
-    """Return a copy of what the build reads: the build writes beside its sources."""
+    """Return a copy of the build's inputs, since the build writes beside its sources."""
     copy = tmp_path / 'clone'
     copy.mkdir()
     for name in ('isa_ros', 'msg_adapters', 'config', 'launch', 'urdf', 'resource'):

@@ -1,4 +1,4 @@
-"""`isa_ros.testing` as its users have it: a conftest.py, a test, a bag and tolerances."""
+"""`isa_ros.testing` in a user's project: a conftest.py, a test, a bag and tolerances."""
 
 from pathlib import Path
 import re
@@ -54,7 +54,7 @@ def with_a_code_more(topic: str, sequence: int, data: bytes) -> bytes:
 
 
 def test_the_example_of_the_readme_passes_and_fails(project) -> None:
-    """The tolerance file there names topics of the leg: it must fit the bag."""
+    """The README's tolerance file has topics of the leg, so the bag must be the leg's."""
     shutil.copytree(GOLDEN / 'leg_touchdown', project.path / 'bags' / 'drop')
     tolerances = next(block for block in re.findall(r'```yaml\n(.*?)```', README, re.DOTALL)
                       if block.startswith('/kfe/'))

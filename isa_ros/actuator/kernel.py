@@ -28,7 +28,7 @@ BODY = np.dtype([('plant', PLANT_STATE), ('load', LOAD_STATE), ('totals', TOTALS
 STATE_SIZE = BODY.itemsize // 8
 BODIES = 2  # the state and a stage of its integration
 STAGES = 4
-NOTHING = 1e-100  # any unit: a state that decays below is zero, denormal arithmetic is slow
+NOTHING = 1e-100  # any unit: smaller states are set to zero, since denormal arithmetic is slow
 
 ACTUATOR = np.dtype([('plant', PLANT), ('reu', REU), ('load', OWN_LOAD)])
 """Every constant of one actuator, SI."""
@@ -101,7 +101,7 @@ def body_steps(n, h, drive, port, actuator, bodies, rates, y, k):
 
 @kernel
 def square_roots(n):
-    """Take ``n`` square roots, each of the last: what `isa bench` holds a plant step against."""
+    """Take ``n`` square roots, one after the other: the yardstick of `isa bench`."""
     x = 2.0
     for _ in range(n):
         x = math.sqrt(x + 1.0)
@@ -110,7 +110,7 @@ def square_roots(n):
 
 @kernel
 def write_sample(measured, plant, reu, sample):
-    """Fill one `SAMPLE` from what the sensors read and the loops hold."""
+    """Fill one `SAMPLE` from the sensor readings and the loops' references."""
     sample.position = measured.position
     sample.velocity = reu.speed.velocity
     sample.force = measured.force
@@ -153,10 +153,10 @@ def first_broken(y):
 @kernel
 def take_port(incoming, is_shared, port, body):
     """
-    Take what the coordinator says of the load at this tick.
+    Copy the coordinator's `LOAD_PORT` of this tick.
 
-    A shared load's state overwrites the load copy; with a load of its own an actuator takes
-    the pressures alone.
+    A shared load's state overwrites the load copy; of an actuator with its own load only the
+    pressures are copied.
     """
     port.supply_pressure = incoming.supply_pressure
     port.return_pressure = incoming.return_pressure

@@ -22,7 +22,7 @@ _ROUNDED = 1e-3  # of a limit: a data sheet prints three digits
 
 @dataclass(frozen=True, kw_only=True)
 class ActuatorSheet(Parameters):
-    """Everything that makes one actuator: plant, REU and how the two are wired."""
+    """The data sheet of one actuator: its plant, its REU and the wiring between them."""
 
     spool_feedback: str = choice(
         "the valve's spool sensor; a mechanical feedback has none", 'electric', 'mechanic')
@@ -43,7 +43,7 @@ def refuse_wiring(sheet: ActuatorSheet) -> None:
     ------
     ConfigError
         A spool block without a spool sensor, a loop that would be closed twice or not at
-        all, a limit beyond the spool's stop, or what `refuse_nonsense` refuses.
+        all, a limit beyond the spool's stop, or an error of `refuse_nonsense`.
 
     """
     reu, plant = sheet.reu, sheet.plant
@@ -54,8 +54,8 @@ def refuse_wiring(sheet: ActuatorSheet) -> None:
             'sensor; set reu.spool.kind: off')
     if isinstance(plant.spool, PilotedSpool) and not isinstance(reu.spool, Pid):
         raise ConfigError(
-            f'reu.spool.kind = {_kind(reu.spool)} and plant.spool.kind = piloted: nobody closes '
-            'the loop of the spool; set reu.spool.kind: pid, or plant.spool.kind: closed_loop')
+            f'reu.spool.kind = {_kind(reu.spool)} and plant.spool.kind = piloted: the spool '
+            'loop is open; set reu.spool.kind: pid, or plant.spool.kind: closed_loop')
     if isinstance(reu.spool, Pid) and not isinstance(plant.spool, (PilotedSpool, DirectSpool)):
         raise ConfigError(
             'reu.spool.kind = pid and plant.spool.kind = closed_loop: equation 8 already is the '
@@ -77,7 +77,7 @@ def _kind(part: Parameters) -> str:
 
 
 def _refuse_limit_beyond_stop(sheet: ActuatorSheet) -> None:
-    """Refuse an output the valve cannot follow: its integral would wind up all the same."""
+    """Refuse an output limit beyond the valve's stop: the integral would still wind up."""
     name, valve = valve_block(sheet.reu), sheet.plant.valve
     if name is None:
         return
@@ -95,9 +95,9 @@ def _refuse_limit_beyond_stop(sheet: ActuatorSheet) -> None:
 
 def force_stiffness(plant: np.record) -> np.ndarray:
     """
-    Return what the force block works against at `POINTS` equal distances, shape (POINTS,).
+    Return the stiffness in the force loop at `POINTS` equal distances, shape (POINTS,).
 
-    The trapped oil in series with the force sensor, in N/m or Nm/rad.
+    It is that of the trapped oil in series with the force sensor, in N/m or Nm/rad.
     """
     k_s = plant.mechanics.k_s
     return np.array([
@@ -106,7 +106,7 @@ def force_stiffness(plant: np.record) -> np.ndarray:
 
 
 def known_model(plant: np.record, output_per_spool: float) -> tuple[float, ...]:
-    """Return the `LINEARISED` record: what a linearising block knows of its actuator."""
+    """Return the `LINEARISED` record: a linearising block's model of its actuator."""
     oil, valve = plant.chambers, plant.valve
     return (
         oil.area_a, oil.area_b, oil.stroke, oil.dead_volume, oil.beta, oil.c_li,

@@ -1,9 +1,9 @@
 """
-What may change while a run goes on: gains and limits of the control blocks, in SI.
+Parameters that may change during a run: gains and limits of the control blocks, in SI.
 
 Named by block and parameter: ``force.kp``, ``position.stiffness``, ``force.compensation.knee``.
-Rates, filters and kinds make the structure of the loops and stay. The gains of the impedance
-come with every setpoint; tuning one is a setpoint that changes this gain alone.
+Rates, filters and kinds define the structure of the loops and are fixed. The gains of the
+impedance are part of every setpoint; tuning one is a setpoint that changes this gain alone.
 """
 
 from collections.abc import Iterator, Mapping
@@ -19,7 +19,7 @@ from isa_ros.errors import ConfigError
 from isa_ros.reu.wiring import active, VARIABLES
 
 GAINS = {'position.stiffness': 'stiffness', 'position.damping': 'damping'}
-"""What comes with every setpoint, by its name in a `COMMAND`."""
+"""The gains that are part of every setpoint, and their names in a `COMMAND`."""
 
 
 class _Si(NamedTuple):
@@ -34,13 +34,13 @@ _IN_SI = {
 _MEASURED = {
     'position': 'm | rad', 'force': 'N | Nm', 'pressure': 'Pa', 'spool': 'm', 'current': 'A'}
 """Unit of what each block controls; the current is that of coils in series."""
-_VALVE = 'm | A'  # as a sheet calls the unit of what commands the valve
+_VALVE = 'm | A'  # unit, in a sheet, of an output that commands the valve
 _EITHER = re.compile(r'(\S+) \| (\S+)')
 
 
 @dataclass(frozen=True)
 class Tunable:
-    """One parameter as it may be tuned, SI."""
+    """One parameter that may be tuned, SI."""
 
     name: str
     value: float
@@ -49,13 +49,13 @@ class Tunable:
     """Any of ``gt``, ``ge``, ``lt``, ``le``."""
     doc: str
     path: tuple[str, ...]
-    """Where it stands in the sheet's REU."""
+    """Its path in the sheet's REU."""
     scale: float
     """SI per unit of the sheet."""
 
 
 def tunables(sheet: ActuatorSheet) -> dict[str, Tunable]:
-    """Return what may be tuned of the blocks that are on, by name, outermost block first."""
+    """Return the tunable parameters of the blocks that are on, by name, outermost first."""
     return {tunable.name: tunable for variable in active(sheet.reu)
             for tunable in _of_block(sheet, variable)}
 
@@ -77,7 +77,7 @@ def _of_block(sheet: ActuatorSheet, variable: str) -> Iterator[Tunable]:
 
 
 def _of_kind(unit: str, is_rotary: bool) -> str:
-    """Return the unit of a linear or of a rotary actuator out of both."""
+    """Return the linear or the rotary alternative of a unit ``linear | rotary``."""
     return _EITHER.sub(r'\2' if is_rotary else r'\1', unit)
 
 
@@ -100,7 +100,7 @@ def tuned(sheet: ActuatorSheet, values: Mapping[str, float]) -> ActuatorSheet:
     Raises
     ------
     ConfigError
-        A name that is none of them, a value out of its range, or beyond the stop of the spool.
+        An unknown name, a value out of its range, or beyond the stop of the spool.
 
     """
     known = tunables(sheet)
@@ -111,7 +111,7 @@ def tuned(sheet: ActuatorSheet, values: Mapping[str, float]) -> ActuatorSheet:
         tunable = known[name]
         check(name, value, {
             'doc': tunable.doc, 'unit': tunable.unit, 'bounds': tunable.bounds})
-        if value != tunable.value:  # what was written stays as it was, without a rounding
+        if value != tunable.value:  # an equal value is kept: converting it would round it
             reu = _with(reu, tunable.path, value / tunable.scale)
     if reu is not sheet.reu:
         sheet = replace(sheet, reu=reu)

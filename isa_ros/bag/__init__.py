@@ -1,1 +1,1 @@
-"""Bags: written, read, replayed and compared."""
+"""The format of bags: writing and reading them."""

@@ -14,7 +14,7 @@ NO_START = 2**63 - 1  # rosbag2's starting time of a bag without messages
 
 
 class Counts(NamedTuple):
-    """What has been written so far, to one file or to all."""
+    """Messages written so far, to one file or to all files."""
 
     start_ns: int
     end_ns: int
@@ -22,7 +22,7 @@ class Counts(NamedTuple):
 
     @classmethod
     def together(cls, parts: Sequence['Counts']) -> 'Counts':
-        """Return what files hold together that follow each other in time."""
+        """Return the sum over consecutive files."""
         filled = [part for part in parts if part.total]
         return cls(
             filled[0].start_ns if filled else NO_START, filled[-1].end_ns if filled else NO_START,
@@ -45,7 +45,7 @@ def metadata_yaml(
     """
     Return the text of metadata.yaml.
 
-    ``files`` are (name, what it holds) in order of time, ``topics`` (topic, type hash).
+    ``files`` are (name, counts) in order of time, ``topics`` (topic, type hash).
     """
     lines = _information(files, topics, custom)
     return '\n'.join(['rosbag2_bagfile_information:', *_indent(lines, 2), ''])
@@ -53,9 +53,9 @@ def metadata_yaml(
 
 def storage_metadata(custom: Mapping[str, str]) -> str:
     """
-    Return what the MCAP file itself says to rosbag2 where metadata.yaml is lost.
+    Return the metadata inside an MCAP file, which rosbag2 uses if metadata.yaml is lost.
 
-    It names no file and counts nothing: rosbag2 takes both from the file.
+    It has neither file names nor counts: rosbag2 takes both from the file.
     """
     return '\n'.join(_information((), (), custom))
 
@@ -71,7 +71,7 @@ def _information(
     return [
         f'version: {VERSION}', 'storage_identifier: mcap', *duration, *start, total,
         *_list('topics_with_message_count', described),
-        'compression_format: ""', 'compression_mode: ""',  # of whole files, never of chunks
+        'compression_format: ""', 'compression_mode: ""',  # of whole files, not of chunks
         *_list('relative_file_paths', [f'- {_quote(name)}' for name, _ in files]),
         *_list('files', [line for name, part in files for line in _file(name, part)]),
         *(['custom_data:'] if custom else ['custom_data: ~']),

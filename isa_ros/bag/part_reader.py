@@ -1,8 +1,8 @@
 """
 One file of a bag, whole or cut short by a killed recorder.
 
-Opening reads it once and checks every checksum and every message record; what was opened can
-be iterated without surprises.
+Opening reads it once and checks every checksum and every message record, so that iterating
+over an opened file raises no error.
 """
 
 from collections.abc import Iterator, Mapping
@@ -19,7 +19,7 @@ from mcap.records import Attachment, Channel, Chunk, McapRecord, Metadata, Schem
 
 _HEAD_BYTES = 9  # opcode, length
 _PREFIX_BYTES = MESSAGE_HEADER.size
-_MESSAGE = int(Opcode.MESSAGE)  # comparing with the enum itself takes three times as long
+_MESSAGE = int(Opcode.MESSAGE)  # a comparison with the enum itself takes three times as long
 _DECLARATIONS = (int(Opcode.SCHEMA), int(Opcode.CHANNEL))
 _TOPIC = re.compile(r'[A-Za-z0-9_/~]{1,255}')
 _TYPE = re.compile(r'[A-Za-z0-9_/]{1,255}')
@@ -45,7 +45,7 @@ class PartReader:
     Raises
     ------
     BagError
-        not a bag, or damaged: the file, the place and what is wrong.
+        The file is not a bag, or damaged; the message has the file, the offset and the error.
 
     """
 
@@ -62,17 +62,17 @@ class PartReader:
         self._schemas: dict[int, Schema] = {}
         self._channels: dict[int, Channel] = {}
         if not path.is_file():
-            raise BagError(f'{path}: is no file')
+            raise BagError(f'{path}: is not a file')
         self._scan()
 
     @property
     def number(self) -> str | None:
-        """Return which file of a bag it says to be, None where it says nothing."""
+        """Return the number that the file is labelled with, None without a label."""
         return self.metadata.get(PART, {}).get(NUMBER)
 
     @property
     def continues(self) -> bool:
-        """Tell whether the recorder went on in another file."""
+        """Return whether the recorder continued in another file."""
         return CONTINUES in self.metadata
 
     def messages(self) -> Iterator[BagMessage]:
@@ -109,7 +109,7 @@ class PartReader:
                 self.start_ns = self.end_ns = message.t_ns
             if self.end_ns is not None and message.t_ns < self.end_ns:
                 raise BagError(
-                    f'{where}: time runs back on {message.topic}, from {self.end_ns} to '
+                    f'{where}: time decreases on {message.topic}, from {self.end_ns} to '
                     f'{message.t_ns} ns')
             self.end_ns = message.t_ns
             self.n_messages += 1
@@ -140,7 +140,7 @@ class PartReader:
         return BagMessage(t_ns, sequence, topic, data[start + _PREFIX_BYTES:end])
 
     def _register(self, declared: McapRecord | None, where: str) -> None:
-        """Take note of a schema or channel; a second declaration must be the same."""
+        """Store a schema or channel; a second declaration must be equal to the first."""
         if isinstance(declared, Schema):
             if self._schemas.setdefault(declared.id, declared) != declared:
                 raise BagError(f'{where}: schema {declared.id} is declared twice')
@@ -169,4 +169,4 @@ class PartReader:
 
 def _refuse_unless(valid: re.Pattern[str], name: str, what: str) -> None:
     if not valid.fullmatch(name):
-        raise BagError(f'{what} {name[:80]!r}, must be letters, digits, _ and / as ROS has them')
+        raise BagError(f'{what} {name[:80]!r}, must be a ROS name of letters, digits, _ and /')

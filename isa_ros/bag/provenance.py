@@ -1,7 +1,7 @@
 """
-What a bag says about its own making, so that a replay needs nothing else.
+Provenance of a bag: everything that a replay needs, stored in the bag itself.
 
-Nothing of the host: no wall time, path, user, process mode or number of processes.
+It has no data of the host: no wall time, path, user, process mode or number of processes.
 """
 
 from collections.abc import Mapping
@@ -37,7 +37,7 @@ class Provenance:
     seed: int
     versions: Mapping[str, str]
     state: str | None = None
-    """The saved state that the run went on from (JSON text); None: it began at t = 0."""
+    """The saved state that the run continued from (JSON text); None: it began at t = 0."""
 
     def attachments(self) -> dict[str, bytes]:
         """Return the attachments by name."""
@@ -55,12 +55,12 @@ class Provenance:
             cls, attachments: Mapping[str, bytes], record: Mapping[str, str],
             where: str) -> 'Provenance':
         """
-        Return the provenance that a bag carries; inverse of `attachments` and `record`.
+        Return the provenance of a bag; inverse of `attachments` and `record`.
 
         Raises
         ------
         BagError
-            a part is missing, altered, or of a later format.
+            A part is missing, altered, or of a later format.
 
         """
         if record.get('format') != FORMAT:
@@ -103,13 +103,13 @@ def _refuse_undecodable(name: str, data: bytes, where: str) -> None:
 
 
 def installed_versions() -> dict[str, str]:
-    """Return the versions of what a run's numbers depend on, by package name."""
+    """Return the versions of the packages that a run's numbers depend on, by name."""
     versions = {name: version(name) for name in _RESULT_DEPENDS_ON}
     return {'isa_ros': _own_version(), 'python': platform.python_version(), **versions}
 
 
 def _own_version() -> str:
-    """Return the installed version, or the source tree's where nothing is installed."""
+    """Return the installed version, or that of the source tree if none is installed."""
     try:
         return version('isa_ros')
     except PackageNotFoundError:
@@ -119,7 +119,7 @@ def _own_version() -> str:
     except OSError:
         text = None
     if not text:
-        raise BagError(f'{manifest}: no version of isa_ros is installed or declared')
+        raise BagError(f'{manifest}: the version of isa_ros is neither installed nor declared')
     return text
 
 

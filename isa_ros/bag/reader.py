@@ -1,10 +1,10 @@
 """
-Reading a bag, of one file or several, whole or cut short by a killed recorder.
+Reader of a bag, of one file or several, whole or cut short by a killed recorder.
 
-Opening reads everything once and checks every checksum and every message record; what was
-opened can be iterated without surprises. A file that was cut short is read up to its last
-complete chunk, which the writer ends with a whole tick. What metadata.yaml says is for other
-readers: nothing is opened because of it.
+Opening reads everything once and checks every checksum and every message record, so that
+iterating over an opened bag raises no error. A file that was cut short is read up to its last
+complete chunk, which the writer ends with a whole tick. metadata.yaml is for other readers and
+is not used here.
 """
 
 from collections.abc import Iterator
@@ -46,7 +46,8 @@ class Bag:
     Raises
     ------
     BagError
-        not a bag, damaged, or files of different runs: the file, the place and what is wrong.
+        The path is not a bag, or the bag is damaged, or its files are of different runs; the
+        message has the file, the offset and the error.
 
     """
 
@@ -66,18 +67,18 @@ class Bag:
 
     @property
     def has_provenance(self) -> bool:
-        """Tell whether it was recorded by this package."""
+        """Return whether the bag was recorded by this package."""
         return RECORD in self._parts[0].metadata
 
     @property
     def provenance(self) -> Provenance:
         """
-        Return what the bag says about its making.
+        Return the provenance stored in the bag.
 
         Raises
         ------
         BagError
-            it was not recorded by this package, or a part is missing or altered.
+            The bag was not recorded by this package, or a part is missing or altered.
 
         """
         attachments, record = self.provenance_records
@@ -93,7 +94,7 @@ class Bag:
 
     @property
     def number(self) -> str | None:
-        """Return which file of a bag a lone file says to be, None for a whole bag."""
+        """Return the label of a single file of a split bag, None for a whole bag."""
         return self._parts[0].number
 
     def messages(self) -> Iterator[BagMessage]:
@@ -148,20 +149,20 @@ def _mcap_files(path: Path) -> list[Path]:
 
 
 def _refuse_strangers(parts: list[PartReader]) -> None:
-    """Refuse files that are not one run, each beginning where the one before it ends."""
+    """Refuse files that are not the consecutive parts of one run."""
     first = parts[0]
     if len(parts) > 1 and first.number is not None:
-        raise BagError(f'{first.path}: says to be file {first.number!r} of a bag, not 0')
+        raise BagError(f'{first.path}: is labelled file {first.number!r} of a bag, not 0')
     for number, (before, part) in enumerate(zip(parts, parts[1:]), start=1):
         if not before.is_whole:
-            raise BagError(f'{before.path}: is cut short, but {part.path.name} goes on')
+            raise BagError(f'{before.path}: is cut short, but {part.path.name} continues it')
         if not part.n_messages and not part.is_whole:
-            continue  # cut short in its head
+            continue  # cut short before its label
         if part.number not in (None, str(number)):
-            raise BagError(f'{part.path}: says to be file {part.number!r} of a bag, not {number}')
+            raise BagError(f'{part.path}: is labelled file {part.number!r} of a bag, not {number}')
         if part.attachments != first.attachments or (
                 part.metadata.get(RECORD) != first.metadata.get(RECORD)):
-            raise BagError(f'{part.path}: is of another run than {first.path.name}')
+            raise BagError(f'{part.path}: belongs to another run than {first.path.name}')
         if part.types != first.types or part.type_hashes != first.type_hashes:
             raise BagError(f'{part.path}: has other topics or types than {first.path.name}')
         if part.start_ns is not None and before.end_ns is not None and (

@@ -1,9 +1,9 @@
 """
 Records of an MCAP file, in file order, each checked before it is used.
 
-A record that the file ends in is where a killed recorder stopped. Anything else that does
-not fit is damage: an unknown record, a checksum, a length beyond the end of a file that
-has its closing magic, or beyond what a bag may hold.
+If the file ends within a record, the recorder was killed there. Any other error is damage: an
+unknown record, a wrong checksum, a length beyond the end of a file that has its closing magic,
+or a length above the limits of a bag.
 """
 
 from collections.abc import Iterator
@@ -37,11 +37,11 @@ _PARSED: dict[int, Any] = {
     Opcode.HEADER: Header, Opcode.METADATA: Metadata, Opcode.SCHEMA: Schema,
     Opcode.ATTACHMENT: Attachment, Opcode.CHUNK: Chunk,
 }
-_PRIVATE = 0x80  # opcodes from here on are the writer's own, to be skipped
+_PRIVATE = 0x80  # opcodes from here on are private to writers and are skipped
 
 
 class Record(NamedTuple):
-    """One record: where it starts, what it is, and its parsed form where that is needed."""
+    """One record: its offset, its opcode, and its parsed form if that is needed."""
 
     offset: int
     opcode: int
@@ -49,7 +49,7 @@ class Record(NamedTuple):
 
 
 class End(NamedTuple):
-    """How a file ends: whole, or cut short at an offset."""
+    """The end of a file: whole, or cut short at an offset."""
 
     is_whole: bool
     offset: int
@@ -62,7 +62,7 @@ def read_records(file: BinaryIO, where: str) -> Iterator[Record | End]:
     Raises
     ------
     BagError
-        the file is no MCAP file, or damaged, naming the offset and what.
+        The file is not an MCAP file, or damaged; the message has the offset and the error.
 
     """
     reader = _Reader(file, where)
@@ -84,7 +84,7 @@ def chunk_content(chunk: Chunk, where: str) -> bytes:
     Raises
     ------
     BagError
-        unknown compression, a size that is not the declared one, a wrong CRC.
+        Unknown compression, a size other than the declared one, or a wrong CRC.
 
     """
     limit = chunk.uncompressed_size
@@ -107,7 +107,7 @@ def chunk_content(chunk: Chunk, where: str) -> bytes:
     except (zstandard.ZstdError, RuntimeError) as error:
         raise BagError(f'{where}: a chunk that cannot be decompressed ({error})') from None
     if len(data) != limit:
-        raise BagError(f'{where}: {len(data)} bytes in a chunk, must be {limit}')
+        raise BagError(f'{where}: {len(data)} bytes in a chunk, must be the declared {limit}')
     if chunk.uncompressed_crc and zlib.crc32(data) != chunk.uncompressed_crc:
         raise BagError(f'{where}: CRC of a chunk is wrong, its data are damaged')
     return data
@@ -120,7 +120,7 @@ def parse_record(opcode: int, content: bytes, where: str) -> McapRecord | None:
     Raises
     ------
     BagError
-        the content is not what the opcode says.
+        The content does not match the opcode.
 
     """
     cls = _PARSED.get(opcode)
@@ -129,18 +129,18 @@ def parse_record(opcode: int, content: bytes, where: str) -> McapRecord | None:
     try:
         parsed: McapRecord = cls.read(ReadDataStream(io.BytesIO(content)))
     except (EndOfFile, ValueError, struct.error) as error:
-        raise BagError(f'{where}: a malformed {cls.__name__} ({error})') from None
+        raise BagError(f'{where}: malformed {cls.__name__} record ({error})') from None
     return parsed
 
 
 class _Reader:
-    """Position in one file, and the running checksum of what was read."""
+    """Position in one file, and the running checksum of the bytes read."""
 
     def __init__(self, file: BinaryIO, where: str) -> None:
         self._file = file
         self._where = where
         self._size = file.seek(0, os.SEEK_END)
-        file.seek(max(self._size - len(MCAP0_MAGIC), len(MCAP0_MAGIC)))  # not the opening one
+        file.seek(max(self._size - len(MCAP0_MAGIC), len(MCAP0_MAGIC)))  # not the opening magic
         self._is_closed = file.read() == MCAP0_MAGIC
         file.seek(0)
         self._position = 0
@@ -148,9 +148,9 @@ class _Reader:
         self._summary_crc: int | None = None
 
     def check_magic(self) -> None:
-        """Refuse what is no MCAP file, nor the first bytes of one."""
+        """Refuse a file that does not begin with the MCAP magic, or with a part of it."""
         if not MCAP0_MAGIC.startswith(self._read(len(MCAP0_MAGIC))):
-            raise BagError(f'{self._where}: is no MCAP file (opening magic)')
+            raise BagError(f'{self._where}: is not an MCAP file (wrong opening magic)')
 
     def next_record(self) -> Record | End:
         """Return the next complete record, or the end of a file that was cut short."""
@@ -175,22 +175,22 @@ class _Reader:
             self._summary_crc = 0
         if isinstance(parsed, Footer):
             if self._summary_crc is None:
-                raise self._damage(offset, 'a footer without the end of the data')
+                raise self._damage(offset, 'a footer before the end of the data section')
             self._check(offset, 'the summary', parsed.summary_crc, self._summary_crc)
         return Record(offset, opcode, parsed)
 
     def closing(self) -> End:
-        """Return the end behind the footer."""
+        """Return the end of the file after the footer."""
         offset = self._position
         magic = self._file.read(len(MCAP0_MAGIC) + 1)
         if magic == MCAP0_MAGIC:
             return End(True, offset)
         if MCAP0_MAGIC.startswith(magic):
             return End(False, offset)
-        raise self._damage(offset, 'no closing magic')
+        raise self._damage(offset, 'the closing magic is missing')
 
     def _read(self, size: int) -> bytes:
-        """Read on, the running checksums too; the footer's own CRC is left out of them."""
+        """Read and update the running checksums, without the footer's own CRC."""
         data = self._file.read(size)
         self._position += len(data)
         if self._summary_crc is None:
@@ -214,7 +214,7 @@ class _Reader:
 
     def _cut(self, offset: int) -> End:
         if self._is_closed:
-            raise self._damage(offset, 'a record that reaches beyond the end')
+            raise self._damage(offset, 'a record reaches beyond the end of the file')
         return End(False, offset)
 
     def _damage(self, offset: int, what: str) -> BagError:

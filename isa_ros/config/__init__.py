@@ -1,1 +1,1 @@
-"""From YAML files to checked, immutable configurations; the data that is shipped."""
+"""YAML files to checked, immutable configurations; the data shipped with the package."""

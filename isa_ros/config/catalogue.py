@@ -16,7 +16,7 @@ _MODELS = _DATA / 'models'
 _LEGS = _DATA / 'legs'
 _MATERIALS = _DATA / 'materials'
 _GAITS = _DATA / 'gaits'
-_PAD_KEYS = ('stiffness', 'damping')  # what a pad takes of its material
+_PAD_KEYS = ('stiffness', 'damping')  # of the material, used by a pad
 
 
 @dataclass(frozen=True)
@@ -28,7 +28,7 @@ class Model:
     sheet: Section
     presets: dict[str, Section]
     variants: dict[str, Section]
-    """Other ways to model or to wire it: sections of the sheet in the place of its own."""
+    """Other ways to model or to wire it: sections that replace those of the sheet."""
     loads: dict[str, Section]
     default_load: str
 
@@ -39,29 +39,29 @@ class Model:
         Raises
         ------
         ConfigError
-            The model has no preset of this name; ``where`` is the key that named it.
+            The model has no preset of this name; ``where`` is the key with the name.
 
         """
         if preset not in self.presets:
             raise ConfigError(
-                f'{where} = {preset!r} is no preset of {self.name}; '
+                f'{where} = {preset!r} is not a preset of {self.name}; '
                 f'{alternatives(preset, self.presets)}')
         return merge(self.sheet, {'reu': self.presets[preset]})
 
     def with_variants(self, section: Section, variants: Sequence[str], where: str) -> Section:
         """
-        Return a sheet with the sections of variants in the place of its own, in their order.
+        Return a sheet with some sections replaced by those of variants, in their order.
 
         Raises
         ------
         ConfigError
-            The model has no variant of a name; ``where`` is the key that named it.
+            The model has no variant of a name; ``where`` is the key with the name.
 
         """
         for variant in variants:
             if variant not in self.variants:
                 raise ConfigError(
-                    f'{where} = {variant!r} is no variant of {self.name}; '
+                    f'{where} = {variant!r} is not a variant of {self.name}; '
                     f'{alternatives(str(variant), self.variants)}')
             section = merge(section, self.variants[variant])
         return section
@@ -79,12 +79,12 @@ def leg_names() -> list[str]:
 
 def actuator_model(name: str, where: str) -> Model:
     """
-    Return a packaged actuator model; ``where`` is the key that named it.
+    Return a packaged actuator model; ``where`` is the key with its name.
 
     Raises
     ------
     ConfigError
-        There is no such model, or its file is not as it must be.
+        The model does not exist, or its file is invalid.
 
     """
     return _model(_packaged(_MODELS, name, where, 'model'))
@@ -120,7 +120,7 @@ def _sections(tree: Tree, place: Place) -> dict[str, Section]:
 
 
 def _load(name: str, tree: Tree, place: Place) -> Section:
-    """Return a load with its kind, which is its name unless it says otherwise."""
+    """Return a load with its kind; without a key ``kind`` that is its name."""
     rest = {key: value for key, value in tree.items() if key != 'material'}
     section = {'kind': Entry(name, str(place), '')} | sourced(rest, place)
     if 'material' in tree:
@@ -162,5 +162,5 @@ def _names(directory: Path) -> list[str]:
 def _packaged(directory: Path, name: object, where: str, what: str) -> Path:
     names = _names(directory)
     if not isinstance(name, str) or name not in names:
-        raise ConfigError(f'{where} = {name!r} is no {what}; {alternatives(str(name), names)}')
+        raise ConfigError(f'{where} = {name!r} is not a {what}; {alternatives(str(name), names)}')
     return directory / f'{name}.yaml'

@@ -19,7 +19,7 @@ def default_actuator(model: str, name: str) -> ActuatorConfig:
     Raises
     ------
     ConfigError
-        There is no such model.
+        The model does not exist.
 
     """
     found = actuator_model(model, 'model')
@@ -29,5 +29,5 @@ def default_actuator(model: str, name: str) -> ActuatorConfig:
 
 
 def default_load(model: Model) -> LocalLoad:
-    """Return the load a model has where nothing else is said."""
+    """Return the default load of a model."""
     return own_load({'kind': model.default_load}, Place(model.name) / 'load', model)

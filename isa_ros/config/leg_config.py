@@ -16,7 +16,7 @@ from isa_ros.surroundings.linkage import actuator_coordinate
 
 @dataclass(frozen=True, kw_only=True)
 class LegStart(Parameters):
-    """Where the leg is at t = 0, and until when its slider is held there."""
+    """Pose of the leg at t = 0, and the time until which its slider is held there."""
 
     haa_deg: float = parameter('hip abduction', 'deg', ge=-180.0, le=180.0)
     hfe_deg: float = parameter('hip flexion', 'deg', ge=-180.0, le=180.0)
@@ -31,7 +31,7 @@ class LegStart(Parameters):
 
 @dataclass(frozen=True)
 class LegConfig:
-    """A leg as the body of a run: which actuator moves which joint, and how it starts."""
+    """A leg as the body of a run: its sheet, the actuator of each joint, and its start."""
 
     model: str
     sheet: LegSheet
@@ -40,7 +40,7 @@ class LegConfig:
     start: LegStart
 
     def position_of(self, joint: str) -> float:
-        """Return where the start puts the actuator of a joint, m or rad  (L2)."""
+        """Return the position of a joint's actuator at the leg's start, m or rad  (L2)."""
         linkage = linkage_record(getattr(self.sheet, joint))
         return float(actuator_coordinate(self.start.angle(joint), linkage)[0])
 

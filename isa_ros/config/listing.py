@@ -36,14 +36,14 @@ def describe(name: str, preset: str | None = None, variants: Sequence[str] = ())
     """
     Return the table of a packaged model or leg, or of a run file.
 
-    ``preset`` (None: the default one) and ``variants`` are those of a model; a run file names
-    its own.
+    ``preset`` (None: the default one) and ``variants`` apply to a model; a run file has its
+    own.
 
     Raises
     ------
     ConfigError
-        There is nothing of this name, the run file cannot be run, or a preset or variants are
-        given for what is no model.
+        The name is unknown, the run file cannot be run, or a preset or variants are given for
+        a leg or a run file.
 
     """
     if name in model_names():
@@ -59,7 +59,7 @@ def describe(name: str, preset: str | None = None, variants: Sequence[str] = ())
     for option, given in (('--preset', preset), ('--variant', variants)):
         if given:
             raise ConfigError(
-                f'{option} is not used: {name} is no model, a run file says it itself; '
+                f'{option} is not used: {name} is not a model, and a run file has its own; '
                 f'models: {", ".join(model_names())}')
     if name in leg_names():
         section, place = leg_section(name, 'leg')

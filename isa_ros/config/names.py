@@ -10,12 +10,12 @@ _NAME = re.compile(r'[a-z](?:_?[a-z0-9])*')
 
 def refuse_bad_name(name: str, where: str) -> None:
     """
-    Refuse what ROS could not use as the name of a node.
+    Refuse a name that ROS does not allow for a node.
 
     Raises
     ------
     ConfigError
-        Anything but small letters, digits and single underscores.
+        The name has other characters than small letters, digits and single underscores.
 
     """
     if not _NAME.fullmatch(name):

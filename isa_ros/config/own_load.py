@@ -1,4 +1,4 @@
-"""A load of one actuator alone, from the model's own and what a file says of it."""
+"""The load of a single actuator: the model's values, replaced by those of a file."""
 
 from dataclasses import replace
 from typing import Any
@@ -19,7 +19,7 @@ def own_load(tree: Tree, place: Place, model: Model) -> LocalLoad:
 
 def load_section(tree: Tree, place: Place, model: Model) -> Section:
     """
-    Return the values of a load, each knowing where it was written.
+    Return the values of a load, each with the place where it was written.
 
     Raises
     ------
@@ -44,7 +44,7 @@ def refuse_beyond_stops(load: LocalLoad, position: float, where: str) -> None:
     Raises
     ------
     ConfigError
-        The stops would throw the load back in.
+        The start is outside, where the stops would push the load back with a jolt.
 
     """
     if isinstance(load, Wheel) and not load.stop_low <= position <= load.stop_high:

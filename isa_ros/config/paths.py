@@ -1,7 +1,7 @@
 """
-Where shipped files are: in a clone beside the package, installed under share/isa_ros.
+Paths of shipped files: in a clone beside the package, installed under share/isa_ros.
 
-A file named on the command line is the user's own if it exists, else a shipped one.
+A name on the command line is the user's own file if that exists, else a shipped one.
 """
 
 import os
@@ -46,7 +46,7 @@ def find(name: str, directory: str) -> Path:
     Raises
     ------
     ConfigError
-        There is neither.
+        Neither file exists.
 
     """
     path = Path(name)

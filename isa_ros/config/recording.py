@@ -1,5 +1,5 @@
 """
-What of a run is recorded, and how its files are written: the section `record` of a run file.
+Recorded topics of a run and the format of its files: the section `record` of a run file.
 
 ::
 
@@ -31,7 +31,7 @@ _EVENTS = '/coordinator/events'
 
 @dataclass(frozen=True, kw_only=True)
 class Storage(Parameters):
-    """How the files of a bag are written."""
+    """Compression and splitting of a bag's files."""
 
     compression: str = choice('of every chunk of a bag', 'none', 'lz4', 'zstd')
     split_mb: float = parameter(
@@ -48,25 +48,25 @@ PLAIN = Storage(compression='none', split_mb=0.0)
 
 @dataclass(frozen=True)
 class RecordConfig:
-    """Storage, and what is thinned out."""
+    """Storage, and the topics that are left out or decimated."""
 
     storage: Storage = PLAIN
     leave_out: tuple[str, ...] = ()
     """Patterns of topics that are not recorded."""
     decimate: tuple[tuple[str, int], ...] = ()
-    """(pattern of topics, n): recorded at every n-th tick; the first that fits a topic counts."""
+    """(pattern of topics, n): recorded at every n-th tick; the first matching pattern counts."""
 
     @property
     def thins(self) -> bool:
-        """Tell whether anything is left out or decimated."""
+        """Return whether anything is left out or decimated."""
         return bool(self.leave_out or self.decimate)
 
     def thins_like(self, other: 'RecordConfig') -> bool:
-        """Tell whether another one leaves out and decimates the same."""
+        """Return whether another configuration leaves out and decimates the same."""
         return (self.leave_out, self.decimate) == (other.leave_out, other.decimate)
 
     def period(self, topic: str) -> int:
-        """Return every how many ticks a topic is recorded, 0 for never."""
+        """Return the period of recording a topic in ticks, 0 for never."""
         if replay_needs(topic):
             return 1
         if any(fnmatchcase(topic, pattern) for pattern in self.leave_out):
@@ -75,12 +75,12 @@ class RecordConfig:
 
     def refuse_misfits(self, topics: Iterable[str], source: str) -> None:
         """
-        Refuse patterns that fit no topic of a run, or one that replay needs.
+        Refuse patterns that match no topic of a run, or one that replay needs.
 
         Raises
         ------
         ConfigError
-            The pattern, by file and key.
+            One of the patterns is refused; the message has its file and key.
 
         """
         topics, place = sorted(topics), Place(source, 'record')
@@ -89,50 +89,50 @@ class RecordConfig:
                 if replay_needs(topic):
                     raise ConfigError(
                         f'{place / "leave_out"} = {pattern!r} leaves out {topic}, which a '
-                        'replay needs, must not')
+                        'replay needs')
         for pattern, _ in self.decimate:
             fitting = _fitting(pattern, topics, place / 'decimate')
             if all(replay_needs(topic) for topic in fitting):
                 raise ConfigError(
-                    f'{place / "decimate"} = {pattern!r} thins {fitting[0]}, which a replay '
-                    'needs whole, must not')
+                    f'{place / "decimate"} = {pattern!r} decimates {fitting[0]}, of which a '
+                    'replay needs every message')
 
     def stored(
             self, compression: str | None, split_mb: float | None,
             where: str) -> 'RecordConfig':
         """
-        Return it with what was asked for at ``where``; None leaves a value as it is.
+        Return a copy with the values given at ``where``; None leaves a value unchanged.
 
         Raises
         ------
         ConfigError
-            A value is none of the known ones, or out of range.
+            A value is unknown or out of range.
 
         """
         given = {'compression': compression, 'split_mb': split_mb}
-        asked: Tree = {key: value for key, value in given.items() if value is not None}
+        values: Tree = {key: value for key, value in given.items() if value is not None}
         place = Place(where)
-        return replace(self, storage=_storage(asked, place, self.storage))
+        return replace(self, storage=_storage(values, place, self.storage))
 
     def to_tree(self) -> Tree:
-        """Return the section; `read_record` undoes it."""
+        """Return the section, the inverse of `read_record`."""
         return as_tree(self.storage) | {
             'leave_out': list(self.leave_out), 'decimate': dict(self.decimate)}
 
 
 def replay_needs(topic: str) -> bool:
-    """Tell whether a topic says what was done to a run: all that a replay is fed with."""
+    """Return whether a topic holds inputs of a run, which are the inputs of its replay."""
     return topic == _EVENTS or topic.rpartition('/')[2].startswith('applied_')
 
 
 def read_record(value: Any, place: Place) -> RecordConfig:
     """
-    Return what a section `record` says; what it leaves out is as without the section.
+    Return the configuration of a section `record`; missing keys have their defaults.
 
     Raises
     ------
     ConfigError
-        By file, key and value.
+        A key or value is invalid; the message has file, key and value.
 
     """
     tree = section_at(value, place)
@@ -164,7 +164,7 @@ def _pattern(value: Any, place: Place) -> str:
         return value
     raise ConfigError(
         f'{place} = {value!r}, must be a topic like /hip/valve or a pattern like /*/valve of '
-        f'<= {MAX_PATTERN_LENGTH} letters')
+        f'<= {MAX_PATTERN_LENGTH} characters')
 
 
 def _period(value: Any, place: Place) -> int:
@@ -178,7 +178,7 @@ def _fitting(pattern: str, topics: Iterable[str], place: Place) -> list[str]:
     fitting = [topic for topic in topics if fnmatchcase(topic, pattern)]
     if not fitting:
         raise ConfigError(
-            f'{place} = {pattern!r} fits no topic; there are {", ".join(topics)}')
+            f'{place} = {pattern!r} matches no topic; valid: {", ".join(topics)}')
     return fitting
 
 

@@ -21,7 +21,7 @@ from isa_ros.surroundings.supply import SupplySheet
 
 
 COORDINATOR = 'coordinator'
-"""Name of the coordinator's node; no participant may have it."""
+"""Name of the coordinator's node; participants must have other names."""
 
 ALL = 'all'
 """Stands for every actuator of a run."""
@@ -29,7 +29,7 @@ ALL = 'all'
 
 @dataclass(frozen=True, kw_only=True)
 class Times(Parameters):
-    """What the lockstep runs on."""
+    """Timing of the lockstep."""
 
     step_ms: float = parameter('macro step H', 'ms', gt=0.0, le=100.0)
     controller_offset_ms: float = parameter(
@@ -58,7 +58,7 @@ class ActuatorConfig:
 
 @dataclass(frozen=True)
 class RunConfig:
-    """Everything that makes a run but the setpoints."""
+    """Everything that defines a run, except the setpoints."""
 
     name: str
     step_ns: int
@@ -71,7 +71,7 @@ class RunConfig:
     body: BodyConfig | None = None
     """What several actuators move together; None: each has a load of its own."""
     controllers: tuple[str, ...] = ()
-    """Names of the nodes that are waited for at every tick, besides the actuators."""
+    """Names of the nodes, besides the actuators, that every tick waits for."""
     source: str = field(default='')
     """Name of the file it was read from, without its directory."""
     record: RecordConfig = RecordConfig()
@@ -93,7 +93,7 @@ class RunConfig:
 
     @property
     def digest(self) -> str:
-        """Return the sha256 of the resolved text, but for what is recorded and how."""
+        """Return the sha256 of the resolved text without the section `record`."""
         text = replace(self, record=RecordConfig()).to_yaml()
         return hashlib.sha256(text.encode()).hexdigest()
 
@@ -104,7 +104,7 @@ class RunConfig:
         Raises
         ------
         ConfigError
-            There is none.
+            The run has no actuator of this name.
 
         """
         for actuator in self.actuators:
@@ -119,12 +119,12 @@ class RunConfig:
 
     def names_here(self, elsewhere: Sequence[str]) -> tuple[str, ...]:
         """
-        Return the actuators that this host starts: all but those ``elsewhere``.
+        Return the actuators that this host starts: all except those ``elsewhere``.
 
         Raises
         ------
         ConfigError
-            ``elsewhere`` names an actuator that the run does not have.
+            ``elsewhere`` has a name that is not an actuator of the run.
 
         """
         if list(elsewhere) == [ALL]:
@@ -139,7 +139,7 @@ class RunConfig:
         Raises
         ------
         ConfigError
-            A name that is taken.
+            A name is already taken.
 
         """
         for name in names:
@@ -154,9 +154,9 @@ class RunConfig:
         return replace(self, controllers=every)
 
     def with_start(self, start: LegStart) -> 'RunConfig':
-        """Return the run with its leg, and the actuators on it, starting elsewhere."""
+        """Return the run with another start of its leg and of the actuators on it."""
         if self.leg is None:
-            raise ConfigError(f'{self.source}: has no leg that could start at {start}')
+            raise ConfigError(f'{self.source}: the run has no leg that could start at {start}')
         leg = replace(self.leg, start=start)
         joint_of = {actuator: joint for joint, actuator in leg.joints}
         return replace(self, body=leg, actuators=tuple(
@@ -165,7 +165,7 @@ class RunConfig:
 
     def stored(
             self, compression: str | None, split_mb: float | None, where: str) -> 'RunConfig':
-        """Return the run recorded as asked for at ``where``; as `RecordConfig.stored`."""
+        """Return the run with storage values given at ``where``; as `RecordConfig.stored`."""
         return replace(self, record=self.record.stored(compression, split_mb, where))
 
     def to_yaml(self) -> str:
@@ -175,12 +175,12 @@ class RunConfig:
     @classmethod
     def from_yaml(cls, text: str, name: str = 'configuration.yaml') -> 'RunConfig':
         """
-        Return the configuration of a resolved text; ``name`` stands in messages.
+        Return the configuration of a resolved text; error messages begin with ``name``.
 
         Raises
         ------
         ConfigError
-            The text is not one `to_yaml` gives.
+            The text is not an output of `to_yaml`.
 
         """
         run: RunConfig = RUN.read(modern(parse(text, name)), Place(name))

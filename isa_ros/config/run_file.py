@@ -1,5 +1,5 @@
 """
-Read a run file: strict YAML in data-sheet units to a `RunConfig`.
+Reader of run files: strict YAML in data-sheet units to a `RunConfig`.
 
 Every error is one line with file, key, value, unit and bound.
 """
@@ -46,7 +46,7 @@ class ActuatorOrigin:
 
 @dataclass(frozen=True)
 class Origins:
-    """The layered sections a run was built from, for whoever shows where values come from."""
+    """The layered sections a run was built from, for lists of values with their sources."""
 
     actuators: Mapping[str, ActuatorOrigin]
     leg: Section | None
@@ -59,14 +59,14 @@ def load_run(path: Path | str) -> RunConfig:
     Raises
     ------
     ConfigError
-        The file cannot be read, or what it says cannot be run.
+        The file cannot be read, or its content cannot be run.
 
     """
     return read_run(path)[0]
 
 
 def read_run(path: Path | str) -> tuple[RunConfig, Origins]:
-    """Return a run and what it was built from; as `load_run`."""
+    """Return a run and the sections it was built from; as `load_run`."""
     path = Path(path)
     return run_of(read(path), Place(path.name))
 
@@ -93,12 +93,12 @@ def run_of(tree: Tree, place: Place) -> tuple[RunConfig, Origins]:
 
 def ticks_in(seconds: float, step_ns: int, where: str) -> int:
     """
-    Return a time in ticks; ``where`` names it.
+    Return a time in ticks; ``where`` is its name in messages.
 
     Raises
     ------
     ConfigError
-        The time is not a whole number of macro steps; both are named.
+        The time is not a whole number of macro steps; the message has both.
 
     """
     ticks = round(seconds * 1e9 / step_ns)
@@ -179,7 +179,7 @@ def _leg(leg: Tree, below: Place, step_ns: int) -> tuple[LegConfig, Section]:
 
 
 def leg_start(tree: Tree, place: Place, base: LegStart | None = None) -> LegStart:
-    """Return where a leg starts; what the section leaves out is as in ``base``."""
+    """Return the start of a leg; keys missing in the section are as in ``base``."""
     section = written(tree, place)
     if base is not None:
         section = {f: Entry(getattr(base, f), str(place / f), '')
@@ -207,7 +207,7 @@ def _actuators(
     for joint, name in leg.joints if leg else ():
         if name not in section:
             raise ConfigError(
-                f'{place}: leg.joints.{joint} = {name!r} is no actuator; '
+                f'{place}: leg.joints.{joint} = {name!r} is not an actuator; '
                 f'{alternatives(name, section)}')
         if name in joint_of:
             raise ConfigError(
@@ -219,7 +219,7 @@ def _actuators(
     for name in section:
         name_of({name: name}, name, below)
         if name == COORDINATOR:
-            raise ConfigError(f'{below / name}: this is the name of the node of the coordinator')
+            raise ConfigError(f'{below / name}: the name is reserved for the coordinator')
         config, origins[name] = _actuator(
             name, section_at(section[name], below / name), below / name, leg, joint_of.get(name))
         configs.append(config)
@@ -283,7 +283,7 @@ def _joint_position(
 
 
 def refuse_reach(leg: LegConfig, joint: str, sheet: ActuatorSheet, where: str) -> None:
-    """Refuse a start of the leg that its actuator does not reach."""
+    """Refuse a start of the leg that is outside the stroke of a joint's actuator."""
     position, stroke = leg.position_of(joint), sheet.plant.drive.stroke
     if not 0.0 <= position <= stroke:
         scale, unit = (math.degrees(1.0), 'deg') if sheet.is_rotary else (1.0 / MILLI, 'mm')
@@ -313,6 +313,6 @@ def _initial_position(tree: Tree, place: Place, sheet: ActuatorSheet) -> float:
 def _own_load(tree: Tree, place: Place, model: Model) -> Section:
     if 'load' not in tree:
         raise ConfigError(
-            f'{place} is neither a joint of the leg nor has a load; valid kinds of '
+            f'{place} has no load and moves no joint of the leg; valid kinds of '
             f'load: {", ".join(model.loads)}')
     return load_section(section_at(tree['load'], place / 'load'), place / 'load', model)

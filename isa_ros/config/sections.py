@@ -1,8 +1,8 @@
 """
-From sections of numbers to checked parameter sets, each value knowing where it came from.
+Sections of numbers to checked parameter sets; each value keeps the place it was written at.
 
 A later layer (preset, run file) replaces single values of an earlier one (the model's
-sheet); what is wrong is reported at the file and key it was written at.
+sheet); errors are reported with the file and key at which the value was written.
 """
 
 from collections.abc import Iterable, Mapping
@@ -16,14 +16,14 @@ from isa_ros.core.suggest import alternatives, listed
 from isa_ros.errors import ConfigError, ParameterError
 
 _SOURCES = ('paper', 'derived', 'assumed', 'public model')
-KIND_KEYS = ('kind', 'linkage')  # what a section may call its kind
+KIND_KEYS = ('kind', 'linkage')  # keys that may hold the kind of a section
 
 P = TypeVar('P', bound=Parameters)
 
 
 @dataclass(frozen=True)
 class Entry:
-    """One value, where it was written (``file: dotted key``) and what it rests on."""
+    """One value, where it was written (``file: dotted key``) and its source."""
 
     value: Scalar
     where: str
@@ -35,7 +35,7 @@ Section = dict[str, 'Entry | Section']
 
 @dataclass(frozen=True)
 class Place:
-    """A section of a file; its text starts every message about the section."""
+    """A section of a file; messages about the section begin with its text."""
 
     file: str
     key: str = ''
@@ -53,9 +53,10 @@ class Place:
 
 def refuse_unknown(given: Iterable[str], names: Iterable[str], place: Place) -> None:
     """
-    Refuse the first key that is not one of ``names``, naming the nearest ones.
+    Refuse the first key that is not one of ``names``; the message has the nearest ones.
 
-    A key that differs from a name in its unit only is told so: the unit belongs to the key.
+    For a key that differs from a name only in its unit the message says that the unit belongs
+    to the key.
 
     Raises
     ------
@@ -76,7 +77,7 @@ def section_at(tree: Any, place: Place) -> Tree:
     Raises
     ------
     ConfigError
-        It is a scalar or a list.
+        The value is a scalar or a list.
 
     """
     if not isinstance(tree, dict):
@@ -91,7 +92,7 @@ def names_at(value: Any, place: Place) -> list[str]:
     Raises
     ------
     ConfigError
-        It is something else.
+        The value is not a list of names.
 
     """
     if not isinstance(value, list) or not all(isinstance(name, str) for name in value):
@@ -119,7 +120,7 @@ def sourced(tree: Tree, place: Place) -> Section:
     Raises
     ------
     ConfigError
-        A value lacks its source, or the source is none of the declared ones.
+        A value lacks its source, or the source begins with an unknown word.
 
     """
     section: Section = {}
@@ -144,9 +145,9 @@ def sourced(tree: Tree, place: Place) -> Section:
 
 def merge(base: Section, over: Section) -> Section:
     """
-    Return ``base`` with the single values of ``over`` in place of its own.
+    Return ``base`` with single values replaced by those of ``over``.
 
-    A section of another kind replaces the one before it whole.
+    A section of another kind replaces the earlier section as a whole.
     """
     merged = dict(base)
     for key, value in over.items():
@@ -160,7 +161,7 @@ def merge(base: Section, over: Section) -> Section:
 
 
 def _kind(section: Section) -> Scalar:
-    """Return the kind a section names, None where it names none."""
+    """Return the kind of a section, None for a section without one."""
     named = [entry.value for key in KIND_KEYS
              if isinstance(entry := section.get(key), Entry)]
     return named[0] if named else None
@@ -170,14 +171,15 @@ def build(cls: type[P], section: Section, place: Place) -> P:
     """
     Return the parameter set of a section that must hold every value without `absent`.
 
-    A field that may hold one of several sets has its section say which: ``kind: wheel``.
+    If a field may hold one of several sets, its section has a key that selects one:
+    ``kind: wheel``.
 
     Raises
     ------
     ConfigError
         An unknown or missing key or kind, or values that contradict each other.
     ParameterError
-        A value of the wrong type or out of range, at the key it was written at.
+        A value of the wrong type or out of range; the message has its key.
 
     """
     hints = get_type_hints(cls)
@@ -205,7 +207,7 @@ def build(cls: type[P], section: Section, place: Place) -> P:
 
 
 def build_one_of(hint: Any, section: Section, place: Place) -> Any:
-    """Return the set of a class, or of the one its section names out of a union; as `build`."""
+    """Return the set of a class, or of the member of a union that a section selects; `build`."""
     if isinstance(hint, type):
         return build(hint, section, place)
     kinds = members(hint)
@@ -224,13 +226,13 @@ def build_one_of(hint: Any, section: Section, place: Place) -> Any:
 
 
 def _place_of(kind: Entry, place: Place) -> Place:
-    """Return where a section became the kind it is: a later layer's file must fill it."""
+    """Return the place that set the kind: a later layer with another kind must be complete."""
     file, _, key = kind.where.partition(': ')
     return place if file == place.file else Place(file, key.rpartition('.')[0])
 
 
 def refuse_unknown_entries(section: Section, names: list[str], place: Place) -> None:
-    """Refuse an unknown key where it was written, which may be a later layer's file."""
+    """Refuse an unknown key with the place of its value, perhaps a later layer's file."""
     for key, entry in section.items():
         if key not in names:
             where = _first_where(entry)
@@ -238,7 +240,7 @@ def refuse_unknown_entries(section: Section, names: list[str], place: Place) -> 
 
 
 def _first_where(entry: Entry | Section) -> str:
-    """Return where a value or the first value of a section was written, '' for none."""
+    """Return where a value or the first value of a section was written, '' if it is empty."""
     if isinstance(entry, Entry):
         return entry.where
     for below in entry.values():
@@ -258,9 +260,9 @@ def _checked(entry: Entry | Section, declared: Mapping[str, Any], place: Place) 
 
 def as_tree(parameters: Parameters, hint: Any = None) -> Tree:
     """
-    Return a parameter set as sections of plain values; `written` and `build` undo it.
+    Return a parameter set as sections of plain values, the inverse of `written` and `build`.
 
-    ``hint`` is the type it was declared with; out of a union, its kind is named.
+    ``hint`` is the type it was declared with; for a union the section has the key of its kind.
     """
     tree: Tree = {}
     if hint is not None and not isinstance(hint, type):
@@ -274,7 +276,7 @@ def as_tree(parameters: Parameters, hint: Any = None) -> Tree:
 
 
 def kind_of(parameters: Parameters, union: Any) -> str:
-    """Return which kind out of a union a parameter set is."""
+    """Return the kind of a parameter set that is a member of a union."""
     return next(kind for kind, cls in members(union).items() if cls is type(parameters))
 
 

@@ -1,5 +1,5 @@
 """
-YAML for people, strictly: duplicate keys, aliases, tags and oversized files are refused.
+Strict YAML for hand-written files: duplicate keys, aliases, tags and large files are refused.
 
 Scalars follow the JSON schema of YAML 1.2, so that `1e5` is a number and `on` is a name.
 """
@@ -18,7 +18,7 @@ Tree = dict[str, 'Scalar | Tree | list[Any]']
 MAX_BYTES = 1 << 20   # of one file; the largest shipped one has 8 kB
 MAX_NODES = 20_000    # of one file
 MAX_DEPTH = 16        # of nested sections
-MAX_DIGITS = 300      # of a whole number: what a double can hold
+MAX_DIGITS = 300      # of a whole number: a double holds 308
 
 
 _SCALARS = (
@@ -32,7 +32,7 @@ _SCALARS = (
 
 
 class _Strict(yaml.composer.Composer):
-    """Scalars of YAML 1.2, no aliases, bounded size; the parser is another base's."""
+    """Scalars of YAML 1.2, no aliases, bounded size; a second base class is the parser."""
 
     check_event: Callable[..., bool]
     peek_event: Callable[[], Any]
@@ -74,7 +74,7 @@ class _PythonLoader(_Strict, yaml.reader.Reader, yaml.scanner.Scanner, yaml.pars
 _Loader: Any = _PythonLoader
 if yaml.__with_libyaml__:
     class _LibraryLoader(_Strict, yaml.CSafeLoader):
-        """Twenty times as fast: half a second of the start of every process of a run."""
+        """Twenty times as fast; saves half a second when a process of a run starts."""
 
         def __init__(self, text: str) -> None:
             yaml.CSafeLoader.__init__(self, text)
@@ -84,7 +84,7 @@ if yaml.__with_libyaml__:
 
 
 class _Dumper(yaml.SafeDumper):
-    """Quotes whatever YAML 1.1 or 1.2 would take for something else than a text."""
+    """Quotes every text that YAML 1.1 or 1.2 would read as another type."""
 
 
 for _scalar in _SCALARS:
@@ -121,12 +121,13 @@ def _error(node: yaml.Node, name: str, what: str) -> ConfigError:
 
 def parse(text: str, name: str) -> Tree:
     """
-    Return the top-level section of a YAML text; ``name`` is its file's, for messages.
+    Return the top-level section of a YAML text; ``name`` is its file's name, for messages.
 
     Raises
     ------
     ConfigError
-        Not YAML, not one section, too large, an alias, a tag or a duplicate key with its line.
+        The text is not YAML, not one section or too large, or has an alias, a tag or a
+        duplicate key; the message has the line.
 
     """
     if len(text.encode('utf-8', 'replace')) > MAX_BYTES:
@@ -152,7 +153,7 @@ def read(path: Path) -> Tree:
     Raises
     ------
     ConfigError
-        The file cannot be read, or as `parse`.
+        The file cannot be read, or `parse` refuses its text.
 
     """
     try:

@@ -1,1 +1,1 @@
-"""What every other package stands on: kernels, parameters, units, time, signals, contact."""
+"""Foundations of the other packages: kernels, parameters, units, time, signals, contact."""

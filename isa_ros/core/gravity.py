@@ -1,3 +1,3 @@
-"""The one gravity of legs and weights."""
+"""Standard gravity, used for legs and for weights."""
 
 STANDARD_GRAVITY = 9.80665  # m/s2

@@ -1,5 +1,5 @@
 """
-The one way to compile a kernel in this package.
+The decorator that compiles every kernel of this package.
 
 numba's disk cache does not notice an edit in a function imported from another file: the
 cached caller would silently run the old equation. The cache directory therefore carries a
@@ -20,6 +20,6 @@ if 'NUMBA_CACHE_DIR' not in os.environ:
     numba.config.CACHE_DIR = str(  # type: ignore[attr-defined]
         Path.home() / '.cache' / 'isa_ros' / _DIGEST)
 
-# No fastmath, no parallel: both may reorder roundings, and replay compares bytes. What a kernel
-# calls is built into it: a call costs as much as many an equation, and the bits stay.
+# No fastmath, no parallel: both may reorder roundings, and replay compares bytes. Functions that
+# a kernel calls are inlined: a call costs as much as an equation, and inlining keeps every bit.
 kernel = numba.njit(cache=True, nogil=True, error_model='numpy', forceinline=True)

@@ -19,7 +19,7 @@ def parameter(doc: str, unit: str, *, absent: float | None = None, **bounds: flo
     """
     Declare one number; ``bounds`` are any of ``gt``, ``ge``, ``lt``, ``le``.
 
-    ``absent`` is what a resolved configuration means that was written before the parameter.
+    ``absent`` is the value for a resolved configuration older than the parameter.
     """
     unknown = set(bounds) - set(_RELATIONS)
     if unknown:
@@ -30,9 +30,9 @@ def parameter(doc: str, unit: str, *, absent: float | None = None, **bounds: flo
 
 def tunable(doc: str, unit: str, *, named: str | None = None, **bounds: float) -> Any:
     """
-    Declare one number that may change while a run goes on.
+    Declare one number that may change during a run.
 
-    ``named`` is its name where that stands without a unit, in SI; None: the same.
+    ``named`` is its name in SI, without a unit suffix; None: the name of the field.
     """
     declared = parameter(doc, unit, **bounds)
     return field(metadata=declared.metadata | {'tunable': named or ''})
@@ -66,7 +66,7 @@ class Parameters:
 
 
 def check(where: str, value: Any, declared: Any) -> None:
-    """Refuse a value that breaks its declaration, naming what, value, unit and bound."""
+    """Refuse a value that breaks its declaration; the message has name, value, unit, bound."""
     if 'names' in declared:
         if value not in declared['names']:
             raise ParameterError(

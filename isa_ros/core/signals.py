@@ -1,5 +1,5 @@
 """
-What crosses a boundary: setpoints, samples, and the two directions of the load port.
+Records exchanged between components: setpoints, samples, both directions of the load port.
 
 Each signal is one numpy record type, SI units, little endian, so that the same bytes
 serve as kernel argument, log row and wire format. Generalised coordinates: metres and
@@ -16,11 +16,11 @@ HAS_GAINS = 4
 
 START = np.dtype([
     ('position', '<f8'),         # m | rad
-    ('force', '<f8'),            # what the actuator holds at rest, N | Nm
+    ('force', '<f8'),            # sensor force at rest, N | Nm
     ('supply_pressure', '<f8'),  # Pa gauge
     ('return_pressure', '<f8'),  # Pa gauge
 ])
-"""How one actuator begins a run."""
+"""State in which one actuator begins a run."""
 
 COMMAND = np.dtype([
     ('kinds', '<u4'),          # bits of HAS_*; 0: nothing new this tick
@@ -31,7 +31,7 @@ COMMAND = np.dtype([
     ('stiffness', '<f8'),      # N/m | Nm/rad; NaN keeps the gain in force
     ('damping', '<f8'),        # Ns/m | Nms/rad; NaN keeps the gain in force
 ])
-"""What may take effect at one tick boundary of one actuator."""
+"""Command to one actuator, in effect from a tick boundary on."""
 
 SAMPLE = np.dtype([
     ('position', '<f8'),            # encoder, m | rad
@@ -49,7 +49,7 @@ SAMPLE = np.dtype([
     ('supply_volume', '<f8'),       # oil drawn from the supply since t = 0, m3
     ('supply_flow', '<f8'),         # its mean over the tick, m3/s
 ])
-"""What one actuator reports at the end of a tick."""
+"""Values one actuator reports at the end of a tick."""
 
 SAMPLE_UNITS = {
     'position': 'm | rad', 'velocity': 'm/s | rad/s', 'force': 'N | Nm',

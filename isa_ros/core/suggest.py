@@ -1,4 +1,4 @@
-"""What a wrong name may have meant."""
+"""Suggestions for an unknown name, for error messages."""
 
 from collections.abc import Iterable
 import difflib
@@ -11,7 +11,7 @@ _MAX_NAMED = 12  # names in a message
 
 
 def alternatives(name: str, names: Iterable[str]) -> str:
-    """Return what a wrong name may have meant, as the end of a message."""
+    """Return the valid names closest to an unknown one, as the end of a message."""
     names = list(names)
     stem = _UNIT_SUFFIX.sub('', name)
     for known in names:

@@ -10,12 +10,12 @@ NS_PER_SECOND = 1_000_000_000
 PLANT_STEP_NS = 20_000  # fixed RK4 step, physics section 3: stable to 76 us at the worst orifice
 PLANT_STEP = PLANT_STEP_NS / NS_PER_SECOND
 MAX_STEP_NS = 100_000_000
-FORCE_WINDOWS = 5  # mean forces a macro step hands to the load
+FORCE_WINDOWS = 5  # mean forces per macro step that the load receives
 
 
 def steps_in(period_ns: int, name: str) -> int:
     """
-    Return how many plant steps one period holds.
+    Return the number of plant steps in one period.
 
     Raises
     ------
@@ -32,12 +32,12 @@ def steps_in(period_ns: int, name: str) -> int:
 
 def refuse_grid(step_ns: int, offset_ns: int, where: str) -> None:
     """
-    Refuse a macro step or an offset of the controllers' samples that no run may have.
+    Refuse an invalid macro step or offset of the controllers' samples.
 
     Raises
     ------
     ConfigError
-        One is outside its range or no whole number of plant steps.
+        One is outside its range or not a whole number of plant steps.
 
     """
     grid_ns = FORCE_WINDOWS * PLANT_STEP_NS

@@ -1,4 +1,4 @@
-"""A topic, and what its publisher offers."""
+"""A topic and the quality of service its publisher offers."""
 
 from dataclasses import dataclass
 
@@ -7,7 +7,7 @@ _INFINITE = (9223372036, 854775807)  # RMW_DURATION_INFINITE (s, ns)
 
 @dataclass(frozen=True)
 class Qos:
-    """What a publisher offers; deadline, lifespan and lease are infinite."""
+    """Offered quality of service; deadline, lifespan and lease are infinite."""
 
     history: str = 'keep_last'
     depth: int = 10
@@ -15,7 +15,7 @@ class Qos:
     durability: str = 'volatile'
 
     def to_yaml(self) -> str:
-        """Return the list of this one profile, without a final newline."""
+        """Return a YAML list that holds this profile, without a final newline."""
         lines = [
             f'- history: {self.history}', f'  depth: {self.depth}',
             f'  reliability: {self.reliability}', f'  durability: {self.durability}',

@@ -1,1 +1,1 @@
-"""Controllers to copy: one in the lockstep, one beside it."""
+"""Example controllers to copy: one in the lockstep, one outside of it."""

@@ -1,4 +1,4 @@
-"""A controller that does not join: it follows /clock, and nobody waits for it."""
+"""A controller outside the lockstep: it follows /clock, and the run does not wait for it."""
 
 from contextlib import suppress
 import math
@@ -13,7 +13,7 @@ PERIOD_NS = 10_000_000
 
 
 class BesideTheClock(Node):
-    """Sway HFE every 10 ms of simulated time; what took effect when is echoed and recorded."""
+    """Sway HFE every 10 ms of simulated time; applied setpoints are echoed and recorded."""
 
     def __init__(self) -> None:
         super().__init__('beside_the_clock')
@@ -24,7 +24,7 @@ class BesideTheClock(Node):
     def _on_clock(self, message: Clock) -> None:
         t_ns = message.clock.sec * 10**9 + message.clock.nanosec
         if self._due_ns - PERIOD_NS <= t_ns < self._due_ns:
-            return  # a run that begins anew is due at once
+            return  # not due yet; after a restart of the run the next setpoint is due at once
         self._due_ns = t_ns + PERIOD_NS
         position = 0.038 + 0.004 * math.sin(2.0 * math.pi * 1.5 * t_ns * 1e-9)
         self._setpoints.publish(JointState(name=['hfe'], position=[position]))
@@ -32,5 +32,5 @@ class BesideTheClock(Node):
 
 if __name__ == '__main__':
     rclpy.init()
-    with suppress(KeyboardInterrupt, ExternalShutdownException):  # a signal is its end
+    with suppress(KeyboardInterrupt, ExternalShutdownException):  # a signal ends the node
         rclpy.spin(BesideTheClock())

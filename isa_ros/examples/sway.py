@@ -1,4 +1,4 @@
-"""A controller in the lockstep: sway the hip, whatever the host does meanwhile."""
+"""A controller in the lockstep: sway the hip, independently of the host's timing."""
 
 from collections.abc import Mapping
 import math
@@ -18,11 +18,11 @@ class Sway(Controller):
         return {'hfe': Setpoint(position=0.038 + sine, effort=-0.1 * hfe.force)}
 
     def snapshot(self) -> bytes:
-        """Return nothing: all it needs to know is in the state."""
+        """Return nothing: everything it needs is in the state."""
         return b''
 
     def restore(self, snapshot: bytes) -> None:
-        """Go on: there is nothing to restore."""
+        """Do nothing: there is nothing to restore."""
 
 
 if __name__ == '__main__':

@@ -1,1 +1,1 @@
-"""What one actuator alone moves, and the port between an actuator and its load."""
+"""Loads of a single actuator, and the port between an actuator and its load."""

@@ -1,11 +1,11 @@
 """
-A weight that falls on a rope at the rim of a wheel: the rig of the paper's Figures 16 to 18.
+A weight falling on a rope at the rim of a wheel: the rig of the paper's Figures 16 to 18.
 
 ``x`` is the wheel's angle (rad), ``x_0`` its angle at t = 0; the rope pulls the wheel
-towards smaller angles, so that it takes a torque > 0 to carry the weight. ``w`` is how far
-the weight has fallen (m, downward). A hand holds the weight until its release, on the grid
-of plant steps; then it falls freely through the slack until the rope is taut. Equations
-L17-L20 of docs/equations.md.
+towards smaller angles, so that it takes a torque > 0 to carry the weight. ``w`` is the
+distance the weight has fallen (m, downward). The weight is held by hand until its release, on
+the grid of plant steps; then it falls freely through the slack until the rope is taut.
+Equations L17-L20 of docs/equations.md.
 
 Neglected: the rope's mass and its swinging, air drag, the hand's reaction before release.
 """
@@ -31,7 +31,7 @@ class DropRig(Wheel):
     rope_damping: float = parameter('rope, while taut', 'Ns/m', ge=0.0, le=1e5)
     slack: float = parameter('free fall until the rope is taut', 'm', ge=0.0, le=10.0)
     weight_kg: float = parameter('falling weight', 'kg', ge=0.01, le=1e3)
-    release_s: float = parameter('a hand holds the weight until then', 's', ge=0.0, le=1e6)
+    release_s: float = parameter('the weight is held until then', 's', ge=0.0, le=1e6)
 
     def __post_init__(self) -> None:
         """Refuse a release between two plant steps."""
@@ -82,7 +82,7 @@ def rope_tension(turn, speed, weight, rope):
 
 @kernel
 def weight_acceleration(tension, weight, rope):
-    """Return w'' = g - T/m once released, 0 in the hand  (L19), in m/s2; m > 0 declared."""
+    """Return w'' = g - T/m once released, 0 while held  (L19), in m/s2; m > 0 declared."""
     return weight.is_released * (rope.gravity - tension / rope.mass)
 
 
@@ -91,7 +91,7 @@ def weight_rates(turn, speed, weight, rope, rates):
     """
     Write the derivative of one `WEIGHT_STATE`; return the torque -R T on the wheel  (L20).
 
-    ``turn`` is x - x_0. The rate of ``is_released`` stays what it is, zero.
+    ``turn`` is x - x_0. The rate of ``is_released`` is always zero and is not written.
     """
     tension = rope_tension(turn, speed, weight, rope)
     rates.fall = weight.velocity

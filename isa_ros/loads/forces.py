@@ -1,8 +1,8 @@
 """
-What else acts on a load of one actuator alone: end stops, a pad, a weight on a rope.
+Forces on the load of a single actuator: its end stops, a pad, a weight on a rope.
 
 ``x`` is the load's position in the actuator's coordinate (m or rad), ``x_0`` that at t = 0;
-forces > 0 push out. Units N, m or Nm, rad. A record of zeros is a load without any.
+forces > 0 push out. Units N, m or Nm, rad. A record of zeros is a load without these forces.
 """
 
 from isa_ros.core.contact import normal_force, one_sided
@@ -25,7 +25,7 @@ OWN_LOAD = np.dtype([('stops', STOPS), ('pad', PAD), ('rope', ROPE)])
 
 @kernel
 def stop_force(x, v, stops):
-    """Return the force of the load's own end stops  (M3), in N or Nm; 0 where it has none."""
+    """Return the force of the load's own end stops  (M3), in N or Nm; 0 for a load without."""
     return (one_sided(stops.low - x, -v, stops.stiffness, stops.damping)
             - one_sided(x - stops.high, v, stops.stiffness, stops.damping))
 

@@ -2,9 +2,9 @@
 The load port: the copy of its load that an actuator integrates during one tick.
 
 ``x`` is the load's side of the force sensor in the actuator's coordinate (m or rad),
-``force`` what the sensor transmits, > 0 pushing out. A shared load (the leg) is linearised
-anew every tick; a load of one actuator alone is the same equation with constants and what
-`isa_ros.loads.forces` adds.
+``force`` the force that the sensor transmits, > 0 pushing out. A shared load (the leg) is
+linearised anew every tick; the load of a single actuator is the same equation with constant
+coefficients plus the forces of `isa_ros.loads.forces`.
 """
 
 from isa_ros.core.kernel import kernel

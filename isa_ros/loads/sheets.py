@@ -1,9 +1,8 @@
 """
-Loads of one actuator alone, integrated in its node with the plant's step.
+Loads of a single actuator, integrated in its node with the plant's step.
 
 Each is a constant load port (equation L1), an inertia with or without a spring to ground,
-and what acts on it besides (`isa_ros.loads.forces`). Generalised units: N, m, kg or Nm, rad,
-kg m2.
+plus the forces of `isa_ros.loads.forces`. Generalised units: N, m, kg or Nm, rad, kg m2.
 """
 
 from dataclasses import dataclass
@@ -35,7 +34,7 @@ class Mass(Parameters):
 
 @dataclass(frozen=True, kw_only=True)
 class Pad(Parameters):
-    """A free mass that meets a pad of some material on its way out."""
+    """A free mass that meets a pad of a given material while it extends."""
 
     inertia: float = parameter('moving mass', 'kg | kg m2', gt=0.0, le=1e4)
     gap: float = parameter('free travel from the start to the pad', 'm | rad', ge=0.0, le=10.0)
@@ -63,7 +62,7 @@ def local_port(load: LocalLoad, rest: float) -> np.ndarray:
 
 
 def own_record(load: LocalLoad | None) -> np.ndarray:
-    """Return the load's `OWN_LOAD`, shape (1,); zero where it has none."""
+    """Return the load's `OWN_LOAD`, shape (1,); zeros for a load without such forces."""
     own = np.zeros(1, OWN_LOAD)
     if isinstance(load, Wheel):
         own['stops'] = (load.stop_low, load.stop_high, load.stop_stiffness, load.stop_damping)

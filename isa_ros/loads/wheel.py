@@ -17,7 +17,7 @@ class Wheel(Parameters):
     stop_damping: float = parameter('end stops', 'Ns/m | Nms/rad', ge=0.0, le=1e6)
 
     def __post_init__(self) -> None:
-        """Refuse stops that leave nothing between them."""
+        """Refuse a lower stop that is not below the upper one."""
         super().__post_init__()
         if self.stop_low >= self.stop_high:
             raise ParameterError(

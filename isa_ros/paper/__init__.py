@@ -1,1 +1,1 @@
-"""The paper's tables and statements as data, each number with the place it is printed at."""
+"""The paper's tables and statements as data, each number with its place in the paper."""

@@ -1,8 +1,8 @@
 """
-Strict access to what the paper prints: tables by row and column, statements by name.
+Strict access to the paper's numbers: tables by row and column, statements by name.
 
-A number keeps the text it is printed as, with its relation (`<`, `>`) and its note. Nothing
-is corrected here; how the paper is read is in docs/paper-errata.md.
+A number keeps its printed text, with its relation (`<`, `>`) and its note. Nothing is corrected
+here; docs/paper-errata.md explains how the paper is read.
 """
 
 from dataclasses import dataclass
@@ -20,8 +20,8 @@ _PACKAGE = Path(__file__).parent
 _NUMBER = re.compile(
     r'(?P<relation>[<>])?(?P<digits>-?(?:\d{1,3}(?:,\d{3})+|\d+)(?:\.\d+)?(?:e-?\d+)?)'
     r'(?P<note>\*| \([^()]+\))?')
-TEXT = 'text'    # the unit of words
-NO_NUMBERS = ('-', 'built-in')  # what may stand where a number is expected
+TEXT = 'text'    # the unit of a value in words
+NO_NUMBERS = ('-', 'built-in')  # texts that are allowed in place of a number
 
 
 @dataclass(frozen=True)
@@ -33,27 +33,27 @@ class Printed:
     what: str
     text: str
     value: float | None
-    """None where the paper prints words or nothing."""
+    """None if the paper prints words or nothing."""
     unit: str
 
     @property
     def is_bound(self) -> bool:
-        """Tell whether the paper prints less than or more than the value."""
+        """Return whether the printed value is a bound, with < or >."""
         return self.text.startswith(('<', '>'))
 
     @property
     def number(self) -> float:
         """
-        Return the value of what must be a number.
+        Return the value as a number.
 
         Raises
         ------
         ConfigError
-            The paper prints none here.
+            The paper prints no number here.
 
         """
         if self.value is None:
-            raise ConfigError(f'{self.where}: {self.what} = {self.text!r} is no number')
+            raise ConfigError(f'{self.where}: {self.what} = {self.text!r} is not a number')
         return self.value
 
 
@@ -74,7 +74,7 @@ def tables() -> dict[str, Table]:
 
 @cache
 def statements() -> dict[str, Printed]:
-    """Return what text, equations and captions say, by name."""
+    """Return the values from text, equations and captions, by name."""
     return read_statements(read(_PACKAGE / 'statements.yaml'), Place('statements.yaml'))
 
 
@@ -85,12 +85,12 @@ def cell(table: str, row: str, column: str) -> Printed:
     Raises
     ------
     ConfigError
-        There is no such table, row or column; the nearest ones are named.
+        The table, row or column does not exist; the message has the nearest names.
 
     """
     found = tables().get(table)
     if found is None:
-        raise ConfigError(f'{table} is no table; {alternatives(table, tables())}')
+        raise ConfigError(f'{table} is not a table; {alternatives(table, tables())}')
     for name, names in ((row, found.rows), (column, found.columns)):
         if name not in names:
             raise ConfigError(f'{table} has no {name!r}; {alternatives(name, names)}')
@@ -100,7 +100,7 @@ def cell(table: str, row: str, column: str) -> Printed:
 def statement(name: str) -> Printed:
     """Return one statement; as `cell`."""
     if name not in statements():
-        raise ConfigError(f'{name} is no statement; {alternatives(name, statements())}')
+        raise ConfigError(f'{name} is not a statement; {alternatives(name, statements())}')
     return statements()[name]
 
 
@@ -111,7 +111,7 @@ def read_tables(tree: Tree, place: Place) -> dict[str, Table]:
     Raises
     ------
     ConfigError
-        A key, a row or a cell is not as it must be.
+        A key, a row or a cell is invalid.
 
     """
     return {name: _table(name, section_at(below, place / name), place / name)
@@ -143,7 +143,7 @@ def _table(name: str, tree: Tree, place: Place) -> Table:
         here = Place(place.file, f'{place.key}.rows[{k}]')
         title, cells = _row(name, columns, section_at(below, here), here)
         if title in rows:
-            raise ConfigError(f'{here}.row = {title!r} is there twice')
+            raise ConfigError(f'{here}.row = {title!r} occurs twice')
         rows[title] = cells
     return Table(name, _text(tree['caption'], place / 'caption'), columns, rows)
 
@@ -159,7 +159,7 @@ def _row(
     for key, values in (('unit', units), ('printed', texts)):
         if len(values) != len(columns):
             raise ConfigError(
-                f'{place / key} has {len(values)} values, must be {len(columns)}, one for each '
+                f'{place / key} has {len(values)} values, must have {len(columns)}, one for each '
                 'column')
     where = table.replace('_', ' ').capitalize()
     return title, tuple(

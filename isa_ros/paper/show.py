@@ -1,4 +1,4 @@
-"""`isa paper`: what the paper prints, with the place."""
+"""`isa paper`: the paper's values, each with its place in the paper."""
 
 from isa_ros.core.suggest import alternatives
 from isa_ros.errors import ConfigError
@@ -10,12 +10,12 @@ STATEMENTS = 'statements'
 
 def describe(name: str | None) -> str:
     """
-    Return every table and statement as text, or the one of a name.
+    Return every table and statement as text, or only the named one.
 
     Raises
     ------
     ConfigError
-        There is no table or statement of this name.
+        Neither a table nor a statement has this name.
 
     """
     names = [*tables(), STATEMENTS, *statements()]

@@ -25,7 +25,7 @@ class Cylinder(Parameters):
     stroke_mm: float = parameter('stroke', 'mm', gt=0.0, le=5000.0)
 
     def __post_init__(self) -> None:
-        """Refuse a rod that leaves no area on its side."""
+        """Refuse a rod that leaves no piston area on its side."""
         super().__post_init__()
         if self.rod_mm >= self.bore_mm:
             raise ParameterError(
@@ -65,7 +65,7 @@ class Vane(Parameters):
 
 @dataclass(frozen=True, kw_only=True)
 class Oil(Parameters):
-    """The enclosed oil and the ways around the piston."""
+    """The enclosed oil and the leakage past the piston."""
 
     effective_bulk_modulus: float = parameter('beta_eff', 'Pa', gt=0.0, le=2.0e9)
     dead_volume_ml: float = parameter('V_p of each chamber', 'ml', gt=0.0, le=1000.0)
@@ -115,7 +115,7 @@ def pressure_rates(q_a, q_b, p_a, p_b, s, v, p_t, chambers):
     """
     Return (dP_A/dt, dP_B/dt) in Pa/s  (C2, equations 3 and 4 of the paper).
 
-    ``q_a`` and ``q_b`` (m3/s) are all flows into a chamber but the cross-port leakage.
+    ``q_a`` and ``q_b`` (m3/s) are all flows into a chamber except the cross-port leakage.
     The volumes are positive within the range of the end stops.
     """
     v_a, v_b = volumes(s, chambers)

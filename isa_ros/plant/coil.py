@@ -1,7 +1,7 @@
 """
 Coil current behind the amplifier: the closed current loop of the paper, or the coil itself.
 
-Equation 10 of the paper IS the closed current loop: it never stands with an explicit coil.
+Equation 10 of the paper IS the closed current loop: it is never combined with an explicit coil.
 Currents are the amplifier's, in A. The valve curves' series scale is the current through
 both coils in series that moves the valve as far. Positive current extends.
 
@@ -42,7 +42,7 @@ class ClosedLoopCoil(Coil):
 
 @dataclass(frozen=True, kw_only=True)
 class ExplicitCoil(Coil):
-    """The coil under the amplifier's voltage, with the resonance of the paper's figure 8 B."""
+    """The coil driven by the amplifier's voltage, with the resonance of the paper's figure 8 B."""
 
     mode_frequency_hz: float = parameter('of the resonance', 'Hz', gt=0.0, le=5.0e3)
     mode_strength: float = parameter('its share k of the current', '1', ge=0.0, le=0.5)
@@ -62,7 +62,8 @@ def circuit(sheet: Coil) -> tuple[float, float, float]:
     """
     Return resistance (ohm), inductance (H) and amplifier current per series-scale current.
 
-    Two coils in parallel share the current; a single one moves the valve half as far with it.
+    Two coils in parallel share the current; with the same current a single coil moves the
+    valve half as far.
     """
     coils_in_row, branches = {
         'parallel': (1.0, 2.0), 'series': (2.0, 1.0), 'one_open': (1.0, 1.0)}[sheet.coils]
@@ -118,7 +119,7 @@ def coil_current(y, coil):
 
 @kernel
 def coil_rates(y, drive, coil, rates):
-    """Write the rates of one `COIL_STATE`; ``drive`` is a reference in A, or explicit: in V."""
+    """Write the rates of one `COIL_STATE`; ``drive``: a reference in A; explicit coil: in V."""
     if coil.kind == EXPLICIT:
         rates.current, rates.mode, rates.mode_rate = explicit_rates(y, drive, coil)
     else:

@@ -1,7 +1,7 @@
 """
 The moving part of the actuator: piston or rotor, force sensor and own end stops.
 
-The sensor is the spring between the actuator and its load and reads what it transmits;
+The sensor is the spring between the actuator and its load and reads the force it transmits;
 force > 0 pushes the load out. Units N, m, kg (linear) or Nm, rad, kg m2 (rotary).
 """
 

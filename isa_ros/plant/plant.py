@@ -103,8 +103,8 @@ def rest_pressures(
     """
     Return the gauge pressures (Pa) that hold ``force`` (N or Nm) with the valve near null.
 
-    At null the leaking lands divide the supply pressure; what that lacks in force comes in
-    equal parts from each chamber, as far as its pressure stays between return and supply.
+    At null the leaking lands divide the supply pressure; the rest of the force comes in equal
+    parts from both chambers, as far as their pressures stay between return and supply.
     """
     lands, oil = plant.valve, plant.chambers
     share_a = lands.f_pa * lands.f_pa / (lands.f_pa * lands.f_pa + lands.f_at * lands.f_at)
@@ -130,8 +130,8 @@ def plant_rates(y, x_load, v_load, drive, p_s, p_t, plant, rates):
     """
     Write dy/dt of one `PLANT_STATE` into ``rates``; return (sensor force, q_p, q_t).
 
-    ``drive`` is what the amplifier gives: a current reference (A), or a voltage (V) to an
-    explicit coil. ``x_load`` and ``v_load`` are the load's side of the force sensor. Forces
+    ``drive`` is the amplifier's output: a current reference (A), or for an explicit coil a
+    voltage (V). ``x_load`` and ``v_load`` are the load's side of the force sensor. Forces
     in N or Nm, flows in m3/s (equation M4: inertia * s'' = f_h - f_friction - f_sensor +
     f_stop).
     """
@@ -168,7 +168,7 @@ def plant_rates(y, x_load, v_load, drive, p_s, p_t, plant, rates):
 @kernel
 def read_sensors(y, x_load, v_load, plant, measured):
     """
-    Write what every sensor gives at one instant; return the exact sensor force  (S1, S2).
+    Write the reading of every sensor at one instant; return the exact sensor force  (S1, S2).
 
     ``measured`` has the fields position, force, pressure_a, pressure_b, spool, current.
     """

@@ -40,8 +40,8 @@ def relief_flow(p, p_t, relief):
     """
     Return the flow from the chamber to return, in m3/s  (C6).
 
-    Linear above the opening pressure; below the return pressure the check valve lets
-    c (P_T - p)^2 back in, its opening growing with the drop.
+    Linear above the opening pressure; below the return pressure the check valve, whose opening
+    grows with the drop, returns c (P_T - p)^2 to the chamber.
     """
     if p > relief.p_open:
         return relief.slope * (p - relief.p_open)

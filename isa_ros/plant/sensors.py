@@ -1,7 +1,7 @@
 """
-What the REU can see: 12-bit converters and the encoder.
+Sensors of the REU: 12-bit converters and the encoder.
 
-The only way from the plant to the controller.
+All measurements that the controller uses pass through them.
 """
 
 from dataclasses import dataclass
@@ -26,10 +26,10 @@ class Sensors(Parameters):
     current_range_ma: float = parameter('current sensor, +-', 'mA', gt=0.0, le=200.0)
 
     def __post_init__(self) -> None:
-        """Refuse a fraction of a bit."""
+        """Refuse a resolution that is not a whole number of bits."""
         super().__post_init__()
         if self.adc_bits != int(self.adc_bits):
-            raise ParameterError(f'adc_bits = {self.adc_bits:g} bit, must be whole')
+            raise ParameterError(f'adc_bits = {self.adc_bits:g} bit, must be a whole number')
 
 
 SENSORS = np.dtype([

@@ -29,7 +29,7 @@ class Lap(Parameters):
 
 @dataclass(frozen=True, kw_only=True)
 class Valve(Parameters):
-    """What all valves have; currents on the series scale of figure 5."""
+    """Parameters of every valve; currents on the series scale of figure 5."""
 
     spool_gain_mm_per_ma: float = parameter(
         'spool travel per series current, K_spool (eq 9)', 'mm/mA', gt=0.0, le=1.0)
@@ -100,7 +100,7 @@ def land_factors(area_ratio: float) -> tuple[float, float, float, float]:
     Return the factors of the lands P-A, A-T, B-T, P-B for rho = A_A/A_B  (V8).
 
     1, sqrt(rho), 1/rho, 1/sqrt(rho): equal speed both ways and no pressure jump when the
-    direction changes, which is what section 2.3 of the paper asks of its unequal slots.
+    direction changes, as section 2.3 of the paper requires of its unequal slots.
     """
     return 1.0, math.sqrt(area_ratio), 1.0 / area_ratio, 1.0 / math.sqrt(area_ratio)
 
@@ -156,7 +156,7 @@ def flow_curve(opening, valve):
     """
     Return g, the flow of one open land at the reference drop  (V4), in m3/s.
 
-    Continuous: k_low u up to x_dg; beyond, with slope k_high, or of a high-response valve
+    Continuous: k_low u up to x_dg; beyond, with slope k_high, or for a high-response valve
     k_low x_dg + q_rest (1 - exp(-(u - x_dg) k_low/q_rest)). ``opening`` u >= 0 in m.
     """
     if opening <= valve.x_dg:
@@ -170,7 +170,7 @@ def flow_curve(opening, valve):
 
 @kernel
 def leakage(travel, valve):
-    """Return q_0 x_l / (x_l + u), what every land leaks at the reference drop  (V6), in m3/s."""
+    """Return q_0 x_l / (x_l + u), a land's leakage at the reference drop  (V6), in m3/s."""
     return valve.q_0 * valve.x_l / (valve.x_l + travel)
 
 

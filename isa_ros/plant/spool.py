@@ -1,8 +1,8 @@
 """
-The spool: what the coil current does to it, and the null bias in between.
+The spool: its motion under the coil current, and the null bias added to that current.
 
 ``x > 0`` opens P-A and B-T and extends. Equation 8 of the paper IS the closed spool loop and
-never stands inside another one; `PilotedSpool` is the same spool without its loop, which then
+is never put inside another one; `PilotedSpool` is the same spool without its loop, which then
 is a block of the REU. Currents here are on the series scale of figure 5.
 """
 
@@ -21,7 +21,7 @@ PILOTED = 2
 
 @dataclass(frozen=True, kw_only=True)
 class NullBias(Parameters):
-    """The current that holds the spool off its null, and what shifts it."""
+    """The current that holds the spool off its null, and its shifts."""
 
     current_ma: float = parameter('at the reference conditions', 'mA', ge=-2.0, le=2.0)
     supply_ma_per_mpa: float = parameter('shift with supply pressure', 'mA/MPa', ge=-0.5, le=0.5)
@@ -33,7 +33,7 @@ class NullBias(Parameters):
 
 @dataclass(frozen=True, kw_only=True)
 class Spool(Parameters):
-    """What all spools have."""
+    """Parameters of every spool."""
 
     natural_frequency_rad_per_s: float = parameter(
         'w_n of equations 7 and 8', 'rad/s', gt=0.0, le=2.0e4)
@@ -43,7 +43,7 @@ class Spool(Parameters):
 
 @dataclass(frozen=True, kw_only=True)
 class ClosedLoopSpool(Spool):
-    """Pilot and feedback in one: equation 8."""
+    """Pilot stage and spool feedback in one: equation 8."""
 
     loop_gain_per_s: float = parameter('K_loop of equation 8', '1/s', gt=0.0, le=1.0e4)
 
@@ -144,7 +144,7 @@ def spool_rates(y, current, k_spool, spool, rates):
 
 @kernel
 def stop_spool(y, x_max):
-    """Hold the spool at its mechanical stop; a plastic stop takes its speed."""
+    """Hold the spool at its mechanical stop; the impact is plastic, so its speed is zero."""
     if abs(y.spool) > x_max:
         y.spool = math.copysign(x_max, y.spool)
         if y.velocity * y.spool > 0.0:

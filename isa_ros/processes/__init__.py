@@ -1,1 +1,1 @@
-"""The processes of a run: starting, copying, watching and ending them."""
+"""The processes of a run: starting, forking, watching and ending them."""

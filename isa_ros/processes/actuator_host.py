@@ -16,7 +16,7 @@ LOOK_PERIOD_S = 0.1
 
 def host_actuators(config: Path, scenario: Path | None, names: Sequence[str]) -> None:
     """
-    Start a process for each named actuator, all if none is, and keep them until a signal.
+    Start a process for each named actuator (default: for all) and keep them until a signal.
 
     They take part in one run after the other; a signal is their normal end.
 

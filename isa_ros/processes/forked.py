@@ -1,11 +1,11 @@
 """
-Processes that begin as a copy of this one, with everything imported and compiled.
+Processes forked from this one, with everything imported and compiled.
 
-A node in a process of its own spends a second of CPU on importing and on making numba ready,
-which this process has done already; the memory of that is shared until it is written to.
-A copy has only the thread that made it, so a process in which threads of Python or of the
-middleware are at work is not copied; one that has ever had a node must not be: Fast DDS leaves
-behind what a copy cannot use, and nodes of the copy are never discovered.
+A node in a new process spends a second of CPU on imports and on loading numba, which this
+process has done already; that memory is shared until it is written to. A forked process has
+only the thread that called fork, so a process with running threads of Python or of the
+middleware is not forked. A process that has ever had a node must not be forked: Fast DDS leaves
+state behind that the copy cannot use, and nodes of the copy are never discovered.
 """
 
 from collections.abc import Callable
@@ -30,10 +30,10 @@ _SIGNALS = (signal.SIGINT, signal.SIGTERM)
 
 def can_fork() -> bool:
     """
-    Return whether a copy of this process would be whole.
+    Return whether a fork of this process would work.
 
-    Middlewares name their threads, Fast DDS dds.ev.0 for one; those that wait for work of
-    OpenBLAS and LTTng have the name of the process, and are not missed.
+    Threads of a middleware have names of their own, for example dds.ev.0 of Fast DDS. Worker
+    threads of OpenBLAS and LTTng have the name of the process; a copy works without them.
     """
     return (sys.platform == 'linux' and threading.active_count() == 1
             and len(_thread_names()) == 1)
@@ -42,24 +42,24 @@ def can_fork() -> bool:
 def _thread_names() -> set[str]:
     names = set()
     for task in Path('/proc/self/task').iterdir():
-        with contextlib.suppress(FileNotFoundError):  # it has ended meanwhile
+        with contextlib.suppress(FileNotFoundError):  # the thread has ended meanwhile
             names.add((task / 'comm').read_text())
     return names
 
 
 class Forked:
-    """A copy of this process at work; what `subprocess.Popen` offers of it."""
+    """A forked copy of this process, with a part of the interface of `subprocess.Popen`."""
 
     def __init__(self, name: str, work: Callable[[], int]) -> None:
-        """Let a copy do ``work`` and end with the exit code it returns; ``name`` is for ps."""
+        """Fork a copy that runs ``work`` and exits with its result; ps shows ``name``."""
         for stream in (sys.stdout, sys.stderr):
             stream.flush()
-        gc.freeze()  # a collection would write to the pages that are shared
-        # A signal that comes before the copy has its own handlers must not get lost in it.
+        gc.freeze()  # a collection would write to the shared pages
+        # A signal that arrives before the copy has set its handlers must not get lost in it.
         signal.pthread_sigmask(signal.SIG_BLOCK, _SIGNALS)
         try:
             with warnings.catch_warnings():
-                # Python 3.12 counts threads that wait for work: of OpenBLAS, of LTTng.
+                # Python 3.12 also warns of the idle worker threads of OpenBLAS and LTTng.
                 warnings.simplefilter('ignore', DeprecationWarning)
                 self.pid = os.fork()
             if not self.pid:
@@ -70,7 +70,7 @@ class Forked:
         self.returncode: int | None = None
 
     def poll(self) -> int | None:
-        """Return the exit code, negative for a signal; None while it runs."""
+        """Return the exit code, negative for a signal; None while the process runs."""
         if self.returncode is None:
             pid, status = os.waitpid(self.pid, os.WNOHANG)
             if pid:
@@ -78,7 +78,7 @@ class Forked:
         return self.returncode
 
     def wait(self, timeout: float | None = None) -> int:
-        """Return the exit code once it has ended; raise `subprocess.TimeoutExpired`."""
+        """Wait for the end and return the exit code; raise `subprocess.TimeoutExpired`."""
         deadline = None if timeout is None else time.monotonic() + timeout
         while (code := self.poll()) is None:
             if deadline is not None and time.monotonic() > deadline:
@@ -87,7 +87,7 @@ class Forked:
         return code
 
     def send_signal(self, number: int) -> None:
-        """Send a signal, unless it has ended."""
+        """Send a signal, unless the process has ended."""
         if self.poll() is None:
             os.kill(self.pid, number)
 
@@ -101,7 +101,7 @@ class Forked:
 
 
 def _run(name: str, work: Callable[[], int]) -> NoReturn:
-    """Do the work of a copy; nothing of what it is a copy of goes on."""
+    """Do the work of a copy and exit, without returning to the code of the original."""
     code = 1
     try:
         for number in _SIGNALS:
@@ -123,11 +123,11 @@ def _run(name: str, work: Callable[[], int]) -> NoReturn:
 
 
 def _let_go_of_files() -> None:
-    """Put nothing in the place of every file but the outputs; their numbers stay taken."""
+    """Redirect every open file except the outputs to /dev/null; descriptors remain in use."""
     nothing = os.open(os.devnull, os.O_RDWR)
     for name in os.listdir('/proc/self/fd'):
         if int(name) not in (1, 2, nothing):
-            with contextlib.suppress(OSError):  # the directory that was just listed
+            with contextlib.suppress(OSError):  # the descriptor of the listed directory
                 os.fstat(int(name))
                 os.dup2(nothing, int(name))
     os.close(nothing)

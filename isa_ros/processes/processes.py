@@ -1,4 +1,4 @@
-"""The processes of one run: one list for bring-up and launch, and the children of the former."""
+"""The processes of one run, as bring-up and launch files start them, and child processes."""
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
@@ -23,7 +23,7 @@ MODULES = {
 """Module of each executable."""
 
 END_S = 3.0
-"""From SIGTERM to SIGKILL, host time."""
+"""Host time from SIGTERM to SIGKILL."""
 
 _POLL_S = 0.01
 _ROOT = Path(isa_ros.__file__).parents[1]
@@ -52,7 +52,7 @@ class Process:
 def actuator_processes(
         run: RunConfig, config: Path, scenario: Path | None,
         names: Sequence[str] | None = None) -> tuple[Process, ...]:
-    """Return the named actuators of a run, None: all, in the order of the file."""
+    """Return the processes of the named actuators (None: all), in the order of the file."""
     files = [('config_file', str(config.resolve()))]
     if scenario is not None:
         files.append(('scenario_file', str(scenario.resolve())))
@@ -67,7 +67,7 @@ def run_processes(
     """
     Return every process of a run, the coordinator last.
 
-    ``options`` are parameters of the coordinator; with ``in_process`` it is alone.
+    ``options`` are parameters of the coordinator; with ``in_process`` it is the only process.
     """
     files = [('config_file', str(config.resolve()))]
     if scenario is not None:
@@ -82,13 +82,13 @@ class Children:
     """
     Processes that end with this one; a context manager.
 
-    ``work`` is what an executable does with its arguments: processes begin as copies of this
-    one that do it, where that can be; None: they begin from nothing.
+    ``work`` runs an executable with its arguments: if this process can be forked, processes
+    are copies of it that call ``work``; otherwise, and with None, they are started anew.
 
     Raises
     ------
     RunError
-        One cannot be started; those before it are ended.
+        A process cannot be started; those already started are ended.
 
     """
 
@@ -134,7 +134,7 @@ class Children:
     def __exit__(self, *_: object) -> None:
         for process in self._running.values():
             process.terminate()
-            process.send_signal(signal.SIGCONT)  # one that was stopped cannot end
+            process.send_signal(signal.SIGCONT)  # a stopped process cannot end
         deadline = time.monotonic() + END_S
         for process in self._running.values():
             try:
@@ -149,7 +149,7 @@ class Children:
         return {name: process.pid for name, process in self._running.items()}
 
     def lost(self) -> str | None:
-        """Say which child has ended, and how; None: all run."""
+        """Return a message about the first child that has ended; None: all run."""
         for name, process in self._running.items():
             code = process.poll()
             if code is not None:

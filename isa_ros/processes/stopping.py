@@ -1,4 +1,4 @@
-"""Ctrl-C and SIGTERM as a request that is honoured between two ticks."""
+"""Ctrl-C and SIGTERM as a stop request that takes effect between two ticks."""
 
 import ctypes
 import os
@@ -7,7 +7,7 @@ import sys
 from types import FrameType
 
 PARENT_VARIABLE = 'ISA_ROS_PARENT'
-"""Process id of the bring-up that must not be outlived."""
+"""Environment variable with the process id of the bring-up, with which a child ends."""
 
 PR_SET_PDEATHSIG = 1  # linux/prctl.h
 
@@ -19,7 +19,7 @@ class StopRequest:
         self._is_set = False
 
     def __call__(self) -> bool:
-        """Return whether a stop was asked for."""
+        """Return whether a stop was requested."""
         return self._is_set
 
     def __enter__(self) -> 'StopRequest':
@@ -38,17 +38,17 @@ class StopRequest:
 
 def end_with_parent() -> None:
     """
-    Ask the kernel to kill this process when the bring-up that started it is gone.
+    Have the kernel kill this process when the bring-up that started it ends.
 
-    A bring-up that ends by itself has ended its children before. SIGKILL, as it ends a stopped
-    process too: there is nothing to save that the coordinator does not have.
+    A bring-up that ends normally has ended its children before. SIGKILL is used because it ends
+    a stopped process as well; all data worth saving are in the coordinator.
 
-    Does nothing in a process that no bring-up started, and outside Linux, where the lost
-    coordinator is noticed by its publisher.
+    Does nothing in a process that was not started by a bring-up, and outside Linux, where a
+    child detects the end of the coordinator by its publisher.
     """
     parent = os.environ.pop(PARENT_VARIABLE, '')
     if not parent or sys.platform != 'linux':
         return
     ctypes.CDLL(None).prctl(PR_SET_PDEATHSIG, signal.SIGKILL)
-    if os.getppid() != int(parent):  # it ended before the line above
+    if os.getppid() != int(parent):  # the parent ended before the line above
         os.kill(os.getpid(), signal.SIGKILL)

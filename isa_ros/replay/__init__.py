@@ -1,1 +1,1 @@
-"""Simulate a bag again from itself, and compare bags."""
+"""Simulate the run of a bag again, and compare bags."""

@@ -1,8 +1,8 @@
 """
 Comparing a recorded run with another, tick by tick, down to the first differing field.
 
-A `Comparer` takes messages as a `BagWriter` does, so that a replay streams what it
-produces straight into it; nothing but one tick is held in memory.
+A `Comparer` takes messages as a `BagWriter` does, so that a replay streams its messages
+straight into it; only one tick is held in memory.
 """
 
 from collections.abc import Callable, Iterator, Sequence
@@ -44,7 +44,7 @@ class Difference:
 
 @dataclass(frozen=True)
 class Report:
-    """What was compared, and the first difference, None where there is none."""
+    """Extent of the comparison, and the first difference, None for equal runs."""
 
     ticks: int
     messages: int
@@ -53,7 +53,7 @@ class Report:
 
     @property
     def is_equal(self) -> bool:
-        """Tell whether the runs are equal within the tolerances."""
+        """Return whether the runs are equal within the tolerances."""
         return self.difference is None
 
     def __str__(self) -> str:
@@ -70,16 +70,16 @@ class Comparer:
     """
     Compares the ticks that come in with those of a bag, in its order.
 
-    ``topics`` are the names that the topic indices of `write_tick` mean; what ``compares``
-    denies, by topic and tick, counts on neither side. After the first difference nothing more
-    is compared.
+    ``topics`` are the names for the topic indices of `write_tick`; messages for which
+    ``compares``, called with topic and tick, is false are ignored on both sides. After the
+    first difference nothing more is compared.
 
     Raises
     ------
     BagError
-        the bag is damaged.
+        The bag is damaged.
     CdrError
-        a message that is not what its type says.
+        A message does not match its type.
 
     """
 
@@ -119,7 +119,7 @@ class Comparer:
             self._end_ns = t_ns
 
     def finish(self) -> Report:
-        """Return the report; a bag with ticks left over is longer than what came in."""
+        """Return the report; ticks left over in the bag are a difference."""
         if self.difference is None:
             tick = next(self._expected, None)
             if tick is not None:
@@ -128,7 +128,7 @@ class Comparer:
         return Report(self._ticks, self._messages, self._end_ns, self.difference)
 
     def _compared(self, ticks: Iterator[Tick]) -> Iterator[Tick]:
-        """Yield the part of the ticks that is compared, if there is any."""
+        """Yield the ticks with the messages that are compared, without empty ticks."""
         for tick in ticks:
             messages = tuple(m for m in tick.messages if self._compares(m.topic, m.sequence))
             if messages:
@@ -156,7 +156,7 @@ class Comparer:
         return None
 
     def _is_equal(self, topic: str, field: str, expected: Value, actual: Value) -> bool:
-        """Tell whether two values of a field are equal; -0.0 and 0.0 are not."""
+        """Return whether two values of a field are equal; -0.0 and 0.0 differ."""
         if not (isinstance(expected, float) and isinstance(actual, float)):
             return expected == actual
         if repr(expected) == repr(actual):
@@ -167,14 +167,14 @@ class Comparer:
 
 def compare_bags(expected: Bag, actual: Bag, tolerances: Tolerances | None = None) -> Report:
     """
-    Return how a second bag compares with the first: in what both were to record.
+    Return the comparison of two bags, for the messages that both were configured to record.
 
     Raises
     ------
     BagError
-        a bag is damaged.
+        A bag is damaged.
     CdrError
-        a message that is not what its type says.
+        A message does not match its type.
 
     """
     topics = sorted(actual.types)
@@ -199,12 +199,12 @@ def compare_bags(expected: Bag, actual: Bag, tolerances: Tolerances | None = Non
 
 def recorded_as(bag: Bag) -> RecordConfig:
     """
-    Return what a bag was to record; everything, where it does not say.
+    Return a bag's configuration of recording; by default everything is recorded.
 
     Raises
     ------
     ConfigError
-        What it says cannot be read.
+        The configuration cannot be read.
 
     """
     if not bag.has_provenance:
@@ -216,7 +216,7 @@ def recorded_as(bag: Bag) -> RecordConfig:
 
 def _absence(
         tick: Tick, message: BagMessage | None, other: tuple[str, bytes] | None) -> Difference:
-    """Return the difference of a message that only one side has: the first by topic."""
+    """Return the difference for a message that one side lacks, the first by topic."""
     if message is not None and (other is None or message.topic < other[0]):
         return Difference(tick.sequence, tick.t_ns, message.topic, 'message', PRESENT, ABSENT)
     topic = '' if other is None else other[0]

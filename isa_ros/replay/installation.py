@@ -1,8 +1,8 @@
 """
-What a bag and this installation do not have in common, a line each.
+Differences between a bag and this installation, one line each.
 
-Versions, the format of the provenance, and keys of the configuration; whether the run can be
-simulated all the same is known before anything is.
+They are versions, the format of the provenance, and keys of the configuration. Differences
+that prevent a simulation are found before it starts.
 """
 
 from collections.abc import Iterator, Mapping
@@ -17,27 +17,27 @@ from isa_ros.errors import BagError
 from isa_ros.replay.other_versions import key_differences
 from msg_adapters.definitions import definition
 
-_NAMED = 3  # obstacles that the one line of an error repeats
+_NAMED = 3  # obstacles listed in the error message
 
 
 class Difference(NamedTuple):
-    """One thing that differs."""
+    """One difference."""
 
     text: str
     is_obstacle: bool
-    """The run cannot be simulated here."""
+    """The run cannot be simulated by this installation."""
 
 
 def differences(bag: Bag) -> list[Difference]:
     """
-    Return how the installation that recorded a bag differs from this one.
+    Return the differences between the installation that recorded a bag and this one.
 
     Raises
     ------
     BagError
         The bag was not recorded by this package.
     ConfigError
-        Its configuration is no YAML section.
+        Its configuration is not a YAML section.
 
     """
     attachments, record = bag.provenance_records
@@ -59,7 +59,7 @@ def refuse_obstacles(bag: Bag, found: list[Difference]) -> None:
     Raises
     ------
     BagError
-        With the first few reasons.
+        The bag has obstacles; the message lists the first few.
 
     """
     obstacles = [difference.text for difference in found if difference.is_obstacle]
@@ -70,16 +70,16 @@ def refuse_obstacles(bag: Bag, found: list[Difference]) -> None:
 
 
 class TopicDifferences(NamedTuple):
-    """Which topics a bag and this version do not share."""
+    """Topics that differ between a bag and this version."""
 
     lines: list[str]
     unconfirmed: list[str]
-    """Topics of the bag that nothing here can be compared with."""
+    """Topics of the bag that cannot be compared by this version."""
     compared: frozenset[str]
 
 
 def topic_differences(bag: Bag, topics: list[Topic]) -> TopicDifferences:
-    """Return how the topics of a bag differ from those that its run records here."""
+    """Return the differences between the topics of a bag and those its run records here."""
     here = {topic.name: topic.type_name for topic in topics}
     lines, unconfirmed = [], []
     for topic, type_name in sorted(bag.types.items()):

@@ -1,4 +1,4 @@
-"""Which keys of a resolved configuration this version knows, and which it wants besides."""
+"""Keys of a resolved configuration that are unknown to this version, and keys it lacks."""
 
 from collections.abc import Iterator
 

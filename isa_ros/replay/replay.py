@@ -1,8 +1,9 @@
 """
 Replay: simulate a recorded run again from the bag alone, and compare every message.
 
-Inputs are the configuration the bag carries and the applied setpoints and parameters recorded
-in it, each at the tick it took effect; the scenario is provenance only. No ROS is needed.
+Inputs are the configuration stored in the bag and the applied setpoints and parameters recorded
+in it, each at the tick at which it took effect; the scenario is provenance only. ROS is not
+needed.
 """
 
 from collections.abc import Callable, Sequence
@@ -31,22 +32,22 @@ TUNED = 'applied_parameters'
 
 @dataclass(frozen=True)
 class ReplayReport:
-    """How a replay compares with its bag."""
+    """The comparison of a replay with its bag."""
 
     report: Report
     is_whole: bool
     changes: Sequence[str]
-    """How this installation differs from the one that recorded the bag, a line each."""
+    """Differences from the installation that recorded the bag, one line each."""
     unconfirmed: Sequence[str]
-    """Topics of the bag that are not recorded here, or otherwise."""
+    """Topics of the bag that this version does not record, or with another type."""
 
     @property
     def is_equal(self) -> bool:
-        """Tell whether the replay gave the whole bag within the tolerances."""
+        """Return whether the replay reproduced the whole bag within the tolerances."""
         return self.report.is_equal and not self.unconfirmed
 
     def __str__(self) -> str:
-        """Return the verdict, and whether it is one of a bag cut short."""
+        """Return the verdict, with a remark for a bag that was cut short."""
         verdict = str(self.report)
         if self.report.is_equal and self.unconfirmed:
             verdict = f'not confirmed: {", ".join(self.unconfirmed)}; the rest is {verdict}'
@@ -59,14 +60,15 @@ def replay(
     """
     Simulate a bag again and compare, up to the first difference.
 
-    ``tell`` takes how this installation differs from the bag's, before anything is simulated.
+    ``tell`` is called with each difference between this installation and the bag's before the
+    simulation starts.
 
     Raises
     ------
     BagError
         The bag is damaged, has nothing to simulate, or cannot be simulated by this version.
     ConfigError
-        The configuration in it is out of range.
+        The bag's configuration is out of range.
 
     """
     if bag.number is not None:
@@ -90,7 +92,7 @@ def replay(
 
 class Rerun:
     """
-    A bag's run, ready to be simulated anew; ``topics`` are what it records, in order.
+    A bag's run, ready to be simulated anew; ``topics`` are the topics it records, in order.
 
     Raises as `replay`.
     """
@@ -112,7 +114,7 @@ class Rerun:
                 self._n_ticks, local_run.Inputs(self._fill, self._tuned, self._events), recorder,
                 should_stop, self._state)
         except Interrupted:
-            pass  # should_stop has seen enough
+            pass  # should_stop was true before the end
 
     def _fill(self, tick: int, rows: Records) -> None:
         for row, command in self._commands.get(tick, ()):
@@ -120,18 +122,18 @@ class Rerun:
 
 
 def _recorded_state(bag: Bag, run: RunConfig) -> RunState | None:
-    """Return where the run went on from; its controllers are not needed again."""
+    """Return the saved state that the run continued from, without its controllers."""
     text = bag.provenance.state
     if text is None:
         return None
     state = RunState.from_json(text, run.digest, f'{bag.path.name}: state.json')
     if state.tick > next(bag.messages()).sequence:
-        raise BagError(f'{bag.path}: begins before tick {state.tick}, the one of its state.json')
+        raise BagError(f'{bag.path}: begins before tick {state.tick}, that of its state.json')
     return replace(state, participants=state.participants[:len(run.actuators)])
 
 
 def recorded_events(bag: Bag) -> dict[int, list[str]]:
-    """Return what was done to the run, by the tick before which it was done."""
+    """Return the texts of the run's events, by the tick before which they happened."""
     events: dict[int, list[str]] = {}
     for message in bag.messages():
         if message.topic == event.TOPIC[0]:
@@ -140,7 +142,7 @@ def recorded_events(bag: Bag) -> dict[int, list[str]]:
 
 
 class Inputs(NamedTuple):
-    """What a bag says was fed into its run."""
+    """The recorded inputs of a run."""
 
     commands: dict[int, list[tuple[int, np.void]]]
     """Tick -> (row, `COMMAND`) of every applied setpoint."""
@@ -153,7 +155,7 @@ def recorded_inputs(bag: Bag, run: RunConfig) -> Inputs:
     """
     Return the applied setpoints and parameters of a bag by their ticks.
 
-    Sample k + 1 holds what took effect at tick k; that of t = 0 is where the run starts.
+    Sample k + 1 holds the inputs that took effect at tick k; that of t = 0 is the start.
     """
     setpoints = {f'/{a.name}/{APPLIED}': (k, a.name) for k, a in enumerate(run.actuators)}
     parameters = {f'/{a.name}/{TUNED}': a.name for a in run.actuators}
@@ -173,5 +175,5 @@ def recorded_inputs(bag: Bag, run: RunConfig) -> Inputs:
         except SetpointError as error:
             raise BagError(f'{bag.path}: {topic}: {error}') from error
     if last < 0:
-        raise BagError(f'{bag.path}: holds no sample, there is nothing to replay')
+        raise BagError(f'{bag.path}: has no samples, so there is nothing to replay')
     return inputs._replace(n_ticks=last)

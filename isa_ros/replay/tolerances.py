@@ -1,8 +1,8 @@
 """
-How far two bags may differ, by topic and field: nothing, where nothing is said.
+Tolerances between two bags by topic and field; fields without one must be equal.
 
-A tolerance file names topics and fields, a number (absolute, in the field's unit) or both
-bounds; a field without index means each element::
+A tolerance file has for each topic and field a number (absolute, in the field's unit) or both
+bounds; a field without index stands for every element::
 
     /haa/joint_states:
       position: 1.0e-6
@@ -31,7 +31,7 @@ class Tolerance(NamedTuple):
     relative: float = 0.0  # of the expected value
 
     def admits(self, expected: float, actual: float) -> bool:
-        """Tell whether the actual value is near enough; a NaN never is."""
+        """Return whether the actual value is within the tolerance; a NaN never is."""
         return abs(actual - expected) <= self.absolute + self.relative * abs(expected)
 
 
@@ -42,7 +42,7 @@ class Tolerances:
         self._by_field = dict(by_field or {})
 
     def of(self, topic: str, field: str) -> Tolerance | None:
-        """Return the tolerance of a field path; one with its index wins."""
+        """Return the tolerance of a field path; one given with the index comes first."""
         exact = self._by_field.get((topic, field))
         return exact or self._by_field.get((topic, _INDEX.sub('', field)))
 
@@ -54,8 +54,8 @@ def load_tolerances(path: Path, types: Mapping[str, str]) -> Tolerances:
     Raises
     ------
     ConfigError
-        an unknown topic or field, a field that is no float, or a bound that is
-        not a finite number >= 0; each by file, key and value.
+        An unknown topic or field, a field that is not a float, or a bound that is
+        not a finite number >= 0; the message has file, key and value.
 
     """
     by_field = {}
@@ -65,7 +65,7 @@ def load_tolerances(path: Path, types: Mapping[str, str]) -> Tolerances:
                 f'{path.name}: {topic}: no such topic in the bag, which has '
                 f'{", ".join(sorted(types))}')
         if not isinstance(section, dict):
-            raise ConfigError(f'{path.name}: {topic} = {section!r}, must be fields')
+            raise ConfigError(f'{path.name}: {topic} = {section!r}, must be a section of fields')
         fields = _fields(message_class(types[topic]))
         for field, bound in section.items():
             where = f'{path.name}: {topic}: {field}'
@@ -89,7 +89,7 @@ def _fields(cls: type[Message], prefix: str = '') -> dict[str, str]:
 def _check_field(where: str, field: str, fields: Mapping[str, str]) -> None:
     floats = [name for name, item in fields.items() if item in FLOATS]
     if _INDEX.sub('', field) not in floats:
-        raise ConfigError(f'{where}: must be a number of the message: {", ".join(floats)}')
+        raise ConfigError(f'{where}: must be a float field of the message: {", ".join(floats)}')
 
 
 def _tolerance(where: str, bound: object) -> Tolerance:

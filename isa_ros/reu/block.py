@@ -19,7 +19,7 @@ import numpy as np
 
 @dataclass(frozen=True, kw_only=True)
 class Pid(Parameters):
-    """Gains are output per measured; the output's unit is that of the next block inwards."""
+    """PID gains, output per measured; the output's unit is that of the next block inwards."""
 
     rate_hz: float = parameter('loop rate', 'Hz', gt=0.0, le=50e3)
     kp: float = tunable('proportional gain K_p', 'output/measured', ge=0.0, le=1e9)
@@ -36,7 +36,7 @@ class Pid(Parameters):
     derivative_filter_hz: float = parameter('low-pass on derivatives', 'Hz', gt=0.0, le=25e3)
     limit: float = tunable('largest output', 'output', gt=0.0, le=1e9)
     anti_windup: str = choice(
-        'clamped: the integral stands still while the output is saturated', 'clamped', 'none')
+        'clamped: the integral is held while the output is saturated', 'clamped', 'none')
     retracting_factor: float = tunable(
         'factor on demands that retract, for slots of equal area', '1', gt=0.0, le=10.0)
     gain_schedule: Constant | OilStiffness | ThreePoints
@@ -67,7 +67,7 @@ def block_record(sheet: Pid, table: np.ndarray) -> tuple[object, ...]:
 
 @kernel
 def observe(reference, measured, block, state):
-    """Smooth the measured value and its derivative and that of the error  (R1)."""
+    """Filter the measured value, its derivative and the derivative of the error  (R1)."""
     value = low_pass(state.measured, measured, block.measured_alpha)
     rate = (value - state.measured) / block.period
     state.measured_rate = low_pass(state.measured_rate, rate, block.derivative_alpha)
@@ -84,8 +84,8 @@ def demanded(reference, velocity, gain, block, state):
     Return the demand of a block  (R3), in the output's unit.
 
     u = w K_p (b r - y - K_f y') + I + K_d e' + K_r r + K_v v + u_0 with I' = w K_i e; ``gain``
-    is the schedule's w. A retracting demand is scaled  (R7), so that the flow is, before what
-    compensates the flow curve  (R4).
+    is the schedule's w. A retracting demand is scaled  (R7) before the flow curve is
+    compensated  (R4), so that the flow is scaled alike.
     """
     feedback = (gain * block.kp * (block.b * reference - state.measured
                                    - block.kf * state.measured_rate)
@@ -106,7 +106,7 @@ def block_step(reference, measured, velocity, place, stroke, block, state):
     """
     Run one period: measure, feed back, output, update.
 
-    ``place`` (m or rad) looks up the schedule. The integral stands still while the realised
+    The schedule is read at ``place`` (m or rad). The integral is held while the realised
     output is saturated and the error would drive it further  (R5).
     """
     observe(reference, measured, block, state)
@@ -120,6 +120,6 @@ def block_step(reference, measured, velocity, place, stroke, block, state):
 
 @kernel
 def rest(state):
-    """Forget integral and output of a block that is disabled."""
+    """Reset integral and output of a block that is disabled."""
     state.integral = 0.0
     state.output = 0.0

@@ -1,9 +1,9 @@
 """
-The control blocks at their rates, outermost first: figure 7 A and B, and whatever is wired.
+The control blocks at their rates, outermost first: figure 7 A and B, and any other wiring.
 
 One period of a block is always: measure, feed back, output, update. Blocks that coincide run
-outermost first in the same instant; what they give reaches the amplifier after the
-computational delay, none by default. A held block's loop is closed in the plant (spool:
+outermost first in the same instant; their output reaches the amplifier after the
+computational delay, zero by default. A held block's loop is closed in the plant (spool:
 equation 8, current: equation 10): it only samples and holds its reference.
 
     position 1 kHz -> force 5 kHz -> [spool 5 kHz ->] current 10 kHz
@@ -46,7 +46,7 @@ REU = np.dtype([
 MEASURED = np.dtype([
     ('position', 'f8'), ('force', 'f8'), ('pressure_a', 'f8'), ('pressure_b', 'f8'),
     ('spool', 'f8'), ('current', 'f8')])
-"""What the sensors gave last: encoder m | rad, N | Nm, Pa gauge, m, amplifier A."""
+"""The last sensor readings: encoder m | rad, N | Nm, Pa gauge, m, amplifier A."""
 
 REU_STATE = np.dtype([
     ('measured', MEASURED),
@@ -60,8 +60,8 @@ REU_STATE = np.dtype([
     ('force_reference', 'f8'),     # N | Nm; 0 without a force block
     ('spool_reference', 'f8'),     # m
     ('current_reference', 'f8'),   # amplifier A
-    ('drive', 'f8'),               # what the blocks give the amplifier: A, or V
-    ('amplifier', 'f8'),           # what the amplifier has of it
+    ('drive', 'f8'),               # output of the blocks: A, or V
+    ('amplifier', 'f8'),           # the drive after the computational delay
 ])
 
 
@@ -71,8 +71,8 @@ def reu_record(
     """
     Return the `REU` record, shape (1,).
 
-    ``stiffness`` (POINTS,) is what the force block works against over the stroke, ``model``
-    the actuator as a linearising block knows it.
+    ``stiffness`` (POINTS,) is the stiffness in the force loop over the stroke, ``model`` the
+    `LINEARISED` record, a linearising block's model of the actuator.
     """
     record = np.zeros(1, REU)
     row = record[0]
@@ -112,7 +112,7 @@ def is_due(step, period_steps, offset_steps):
 
 @kernel
 def position_reference_inwards(step, reu, state):
-    """Run the position block if it is on and due; return the reference it gives inwards."""
+    """Run the position block if it is on and due; return the next block's reference."""
     if reu.position_kind == OFF:
         return state.setpoint.effort
     if is_due(step, reu.position_steps, reu.offset_steps):
@@ -128,7 +128,7 @@ def position_reference_inwards(step, reu, state):
 
 @kernel
 def force_reference_inwards(step, reference, reu, state):
-    """Run the force and pressure blocks that are on and due; return what they give inwards."""
+    """Run the force and pressure blocks that are on and due; return the next block's reference."""
     place, velocity = state.measured.position, state.speed.velocity
     if reu.force_kind != OFF:
         state.force_reference = reference

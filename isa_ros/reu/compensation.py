@@ -24,8 +24,8 @@ class DualGain(Parameters):
     knee: float = tunable('end of the low-gain region', 'm | A', gt=0.0, le=1.0)
     slope: float = tunable('low gain over high gain', '1', gt=0.0, le=1.0)
     applies_to: str = choice(
-        'what passes through it: the whole demand (our reading), or the velocity '
-        "compensation alone (the paper's text)", 'demand', 'velocity')
+        'its input: the whole demand (our reading), or the velocity compensation alone '
+        "(the paper's text)", 'demand', 'velocity')
 
 
 COMPENSATION = np.dtype([('knee', 'f8'), ('slope', 'f8'), ('of_velocity', 'f8')])
@@ -44,8 +44,8 @@ def dual_gain_compensation(demand, compensation):
     """
     Return the continuous inverse of the flow curve  (R4), in the demand's unit.
 
-    |u| up to the knee passes, beyond it counts ``slope`` only, so that the flow is
-    proportional to the demand. Our reading passes the whole demand (errata 23).
+    |u| is unchanged up to the knee and has the slope ``slope`` beyond it, so that the flow is
+    proportional to the demand. In our reading its input is the whole demand (errata 23).
     """
     knee = compensation.knee
     if demand > knee:

@@ -18,7 +18,7 @@ import numpy as np
 
 @dataclass(frozen=True, kw_only=True)
 class FeedbackLinearisation(Parameters):
-    """What the force shall do, and what the block knows of its actuator besides its sheet."""
+    """Wanted dynamics of the force, and the values the block's model assumes."""
 
     rate_hz: float = parameter('loop rate', 'Hz', gt=0.0, le=50e3)
     bandwidth_rad_per_s: float = tunable(
@@ -29,15 +29,15 @@ class FeedbackLinearisation(Parameters):
     velocity_share: float = tunable(
         'share of the swept flow that is compensated', '1', ge=0.0, le=1.5)
     least_drop_kpa: float = tunable(
-        'pressure drop below which a land counts as having it', 'kPa', named='least_drop',
+        'smallest pressure drop over a land that the model uses', 'kPa', named='least_drop',
         gt=0.0, le=5e3)
     supply_pressure_mpa: float = tunable(
-        'gauge supply it assumes', 'MPa', named='supply_pressure', gt=0.0, le=70.0)
+        'assumed gauge supply pressure', 'MPa', named='supply_pressure', gt=0.0, le=70.0)
     return_pressure_mpa: float = tunable(
-        'gauge return it assumes', 'MPa', named='return_pressure', ge=0.0, le=5.0)
+        'assumed gauge return pressure', 'MPa', named='return_pressure', ge=0.0, le=5.0)
     limit: float = tunable('largest output', 'm | A', gt=0.0, le=1.0)
     anti_windup: str = choice(
-        'clamped: the integral stands still while the output is saturated', 'clamped', 'none')
+        'clamped: the integral is held while the output is saturated', 'clamped', 'none')
 
 
 LINEARISED = np.dtype([
@@ -46,7 +46,7 @@ LINEARISED = np.dtype([
     ('k_low', 'f8'), ('k_high', 'f8'), ('q_rest', 'f8'), ('x_dg', 'f8'), ('x_max', 'f8'),
     ('per_root_drop', 'f8'), ('f_pa', 'f8'), ('f_at', 'f8'), ('f_bt', 'f8'), ('f_pb', 'f8'),
     ('output_per_spool', 'f8')])
-"""The actuator as the block knows it, SI; names as in the plant's records."""
+"""The block's model of the actuator, SI; names as in the plant's records."""
 
 LINEARISATION = np.dtype([
     ('period', 'f8'), ('bandwidth', 'f8'), ('ki', 'f8'), ('kf', 'f8'),
@@ -62,7 +62,7 @@ def linearisation_record(
     """
     Return the `LINEARISATION` record of a sheet; ``model`` is its `LINEARISED` record.
 
-    ``speed_filter_hz`` is the low-pass of the speed it will be given.
+    ``speed_filter_hz`` is the low-pass on the speed estimate that the block receives.
     """
     names = LINEARISED.names or ()
     known = dict(zip(names, model))
@@ -101,8 +101,8 @@ def opening_for(force_rate, measured, load_velocity, block):
     Return the spool travel (m) that gives ``force_rate`` (N/s | Nm/s)  (R12).
 
     From C2 and C3 F' = beta [(A_A/V_A Q_A - A_B/V_B Q_B) - (A_A^2/V_A + A_B^2/V_B) v
-    - (A_A/V_A + A_B/V_B) C_li (P_A - P_B)], where the piston moves with the load and by what
-    the sensor gives way, v = v_load + F'/K_s; solved for the flow g of the open lands at
+    - (A_A/V_A + A_B/V_B) C_li (P_A - P_B)], where the piston moves with the load and with the
+    sensor's deflection, v = v_load + F'/K_s; solved for the flow g of the open lands at
     dp_ref (V7) with the measured pressures. Leakage of the lands is neglected.
     """
     model = block.model

@@ -1,4 +1,4 @@
-"""Discrete first-order filters; coefficients are made once, at configuration."""
+"""Discrete first-order filters; coefficients are computed once, at configuration."""
 
 import math
 

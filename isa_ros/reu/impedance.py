@@ -1,5 +1,5 @@
 """
-The position block as an impedance: it makes the reference of the force or torque block.
+The position block as an impedance: its output is the reference of the force or torque block.
 
 Reference in m or rad, output in N or Nm. The gains in force come with the setpoint.
 """

@@ -2,7 +2,7 @@
 The current block: PID with second-order lead-lag, two degrees of freedom.
 
 Equations 1 and 2 of the paper. It commands the amplifier's voltage (V) from the amplifier's
-current (A); the gain on the demand does the work of an integral, without its phase lag.
+current (A); the gain on the demand replaces an integral, without its phase lag.
 """
 
 from dataclasses import dataclass
@@ -30,7 +30,7 @@ class LeadLag(Parameters):
     offset_v: float = tunable('added to the voltage', 'V', named='offset', ge=-100.0, le=100.0)
     limit_v: float = tunable('largest voltage', 'V', named='limit', gt=0.0, le=100.0)
     anti_windup: str = choice(
-        'clamped: the integral stands still while the voltage is saturated', 'clamped', 'none')
+        'clamped: the integral is held while the voltage is saturated', 'clamped', 'none')
 
 
 LEAD_LAG = np.dtype([

@@ -21,7 +21,7 @@ class Constant(Parameters):
 
 @dataclass(frozen=True, kw_only=True)
 class OilStiffness(Parameters):
-    """Gains divided by the stiffness the force block works against, relative to its least."""
+    """Gains divided by the stiffness in the force loop, relative to its smallest value."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -40,8 +40,8 @@ def schedule_table(sheet: Schedule, stiffness: np.ndarray) -> np.ndarray:
     """
     Return the factor at `POINTS` equal distances, shape (POINTS,)  (R6).
 
-    ``stiffness``, of the same shape, is what the force block works against: the gain of its
-    plant is proportional to it.
+    ``stiffness``, of the same shape, is the stiffness in the force loop: the gain of the
+    loop's plant is proportional to it.
     """
     if isinstance(sheet, OilStiffness):
         table: np.ndarray = stiffness.min() / stiffness

@@ -1,11 +1,11 @@
 """
-The REU's four control blocks: what each controls, at which rate, and what makes no sense.
+The REU's four control blocks: their variables and rates, and the combinations it refuses.
 
     position -> force or torque -> pressure difference -> spool -> current
 
 Any of them may be off; the setpoint's effort then is the reference of the outermost block
 that is on. With all but the current block off the REU is a plain valve amplifier. The gains of
-a block have the unit of what it commands: switching the block inside of it changes that unit.
+a block have the unit of its output: switching the next block inwards on or off changes it.
 """
 
 from dataclasses import dataclass
@@ -20,18 +20,18 @@ from isa_ros.reu.impedance import Impedance
 from isa_ros.reu.lead_lag import LeadLag
 from isa_ros.reu.speed import SpeedEstimate
 
-BLOCKS = 4  # the standard firmware provides (paper section 3)
+BLOCKS = 4  # in the standard firmware (paper section 3)
 NEVER = 1 << 62  # plant steps: the period of a block that is off
 
 
 @dataclass(frozen=True, kw_only=True)
 class Off(Parameters):
-    """The block is not active; what would be its reference passes inwards."""
+    """The block is not active; its reference goes to the next block inwards."""
 
 
 @dataclass(frozen=True, kw_only=True)
 class Held(Parameters):
-    """The block samples and holds; its loop is closed by the plant's own closed form."""
+    """The block samples and holds its reference; its loop is closed in the plant's equations."""
 
     rate_hz: float = parameter('loop rate', 'Hz', gt=0.0, le=50e3)
 
@@ -47,11 +47,11 @@ class Reu(Parameters):
     spool: Off | Held | Pid
     current: Held | LeadLag
     computation_delay_us: float = parameter(
-        'from an instant of the loops to what the amplifier then gets', 'us', ge=0.0, le=1e3)
+        'from an instant of the loops to its output at the amplifier', 'us', ge=0.0, le=1e3)
 
 
 VARIABLES = ('position', 'force', 'pressure', 'spool', 'current')
-"""What a block may control, outermost first."""
+"""The variables a block may control, outermost first."""
 
 
 def active(reu: Reu) -> dict[str, float]:
@@ -62,13 +62,13 @@ def active(reu: Reu) -> dict[str, float]:
 
 def refuse_nonsense(reu: Reu) -> None:
     """
-    Refuse a set of blocks that no REU could run, whatever its actuator is.
+    Refuse a set of blocks that an REU cannot run with any actuator.
 
     Raises
     ------
     ConfigError
-        Too many blocks, an impedance without a force block, a block that knows the valve but
-        does not command it, rates that do not divide, or a delay that is not one.
+        Too many blocks, an impedance without a force block, a block with a model of the valve
+        that does not command it, rates that do not divide, or an invalid delay.
 
     """
     names = active(reu)
@@ -123,7 +123,7 @@ def loop_steps(reu: Reu) -> dict[str, int]:
     steps = {}
     for name, rate in rates.items():
         period_ns = NS_PER_SECOND / rate
-        if not period_ns.is_integer():  # nor is an infinite one
+        if not period_ns.is_integer():  # infinity is not an integer either
             raise ConfigError(
                 f'{name}.rate_hz = {rate:g} Hz, its period must be whole nanoseconds')
         steps[name] = steps_in(int(period_ns), f'period of {name}.rate_hz = {rate:g} Hz')

@@ -1,1 +1,1 @@
-"""What is commanded at which tick: setpoints, waveforms, the trot."""
+"""Commands by tick: setpoints, waveforms, the trot."""

@@ -1,7 +1,7 @@
 """
-Scenarios: what is commanded to whom at which tick, and what the rig is changed to for it.
+Scenarios: the commands of each actuator by tick, and changes of the rig that they need.
 
-Values are SI with the setpoint topic's words. A scenario that replaces loads or the start
+Values are SI with the names of the setpoint topic. A scenario that replaces loads or the start
 of the leg gives its own `run`: the configuration to simulate, record and replay.
 """
 
@@ -46,7 +46,7 @@ class Scenario:
 
     @property
     def duration_s(self) -> float | None:
-        """Return the duration in s, None for no end."""
+        """Return the duration in s, None for a scenario without end."""
         return None if self.n_ticks is None else self.n_ticks * self.run.step_ns / NS_PER_SECOND
 
     def lasting(self, duration: float) -> 'Scenario':
@@ -56,7 +56,7 @@ class Scenario:
         Raises
         ------
         ConfigError
-            It is not a positive whole number of ticks.
+            The duration is not a positive whole number of ticks.
 
         """
         return replace(self, n_ticks=_duration(duration, self.run.step_ns, 'duration'))
@@ -76,7 +76,7 @@ class Scenario:
                     if event.motion is not None), default=math.inf)
 
     def commands(self, tick: int, out: NDArray[np.void]) -> None:
-        """Write over the `COMMAND` rows of one tick, (n_actuators,), where something is said."""
+        """Write this tick's commands into ``out``, `COMMAND` rows of shape (n_actuators,)."""
         for track in self.tracks:
             event = track.at(tick)
             if event is not None:
@@ -96,7 +96,7 @@ class Scenario:
 
 
 def idle(run: RunConfig, duration: float | None = None) -> Scenario:
-    """Return the scenario that commands nothing: every actuator holds where it starts."""
+    """Return the scenario without commands: every actuator holds its start position."""
     scenario = Scenario('idle', run, None, ())
     return scenario if duration is None else scenario.lasting(duration)
 
@@ -137,19 +137,19 @@ def read_scenario(tree: Tree, place: Place, run: RunConfig) -> Scenario:
 
 def figure_of(tree: Tree, place: Place) -> str | None:
     """
-    Return the figure a scenario is drawn as, None where it names none.
+    Return the figure that a scenario is drawn as, None for a scenario without the key.
 
     Raises
     ------
     ConfigError
-        There is no such figure.
+        The figure does not exist.
 
     """
     figure = tree.get('figure')
     if figure is None or figure in FIGURES:
         return figure
     raise ConfigError(
-        f"{place / 'figure'} = {figure!r} is no figure; {alternatives(str(figure), FIGURES)}")
+        f"{place / 'figure'} = {figure!r} is not a figure; {alternatives(str(figure), FIGURES)}")
 
 
 def _duration(value: Any, step_ns: int, where: str) -> int:

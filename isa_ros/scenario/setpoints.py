@@ -1,7 +1,7 @@
 """
-Tracks: the setpoints one actuator is given, by tick, SI, with the setpoint topic's words.
+Tracks: the setpoints of one actuator by tick, SI, with the names of the setpoint topic.
 
-A setpoint without velocity or effort has zero there; without a gain the gain in force stays.
+A missing velocity or effort is zero; a missing gain leaves the gain in force unchanged.
 """
 
 from bisect import bisect_right
@@ -24,8 +24,8 @@ import numpy as np
 
 GAIT = 'gait'
 MOTIONS = (*WAVEFORMS, GAIT)
-MAX_DURATION = 1e6  # s, a bound against slips of the pen
-HOLD = 'hold'       # position: where the actuator starts
+MAX_DURATION = 1e6  # s, a bound against typing errors
+HOLD = 'hold'       # position: the start of the actuator
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -45,7 +45,7 @@ _GAINS: Mapping[str, Mapping[str, Any]] = {
 
 @dataclass(frozen=True)
 class Event:
-    """What one actuator is told at one tick; None leaves it as it is."""
+    """The command to one actuator at one tick; None leaves a value unchanged."""
 
     tick: int
     setpoint: Setpoint | None
@@ -58,7 +58,7 @@ class Event:
         """
         Fill the `COMMAND` row of ``tick``, this event's own or a later one of its motion.
 
-        What the row said before and the event leaves open stays.
+        Values of the row that the event does not set are left unchanged.
         """
         kinds = 0
         if self.setpoint is not None:
@@ -87,7 +87,7 @@ class Track:
     events: tuple[Event, ...]
 
     def at(self, tick: int) -> Event | None:
-        """Return the event that speaks at ``tick``: its own one, or a motion going on."""
+        """Return the event of ``tick``, or the earlier one whose motion still runs."""
         k = bisect_right(self.events, tick, key=lambda event: event.tick) - 1
         if k < 0:
             return None
@@ -102,7 +102,7 @@ def read_track(run: RunConfig, name: str, points: Any, place: Place, n_ticks: in
     Raises
     ------
     ConfigError
-        A setpoint is not as it must be, not on a tick, out of order or after the end.
+        A setpoint is invalid, not on a tick, out of order or after the end.
 
     """
     if not isinstance(points, list) or not points:
@@ -181,7 +181,7 @@ def _gain(tree: Tree, name: str, place: Place) -> float | None:
 
 
 def _refuse_far(position: Any, place: Place, actuator: ActuatorConfig) -> None:
-    """Refuse an equilibrium a whole stroke beyond the range: most likely another unit."""
+    """Refuse an equilibrium more than a stroke beyond the range: most likely a wrong unit."""
     stroke = actuator.sheet.plant.drive.stroke
     check(f'{place}.position', position, {
         'doc': 'at most a stroke beyond the range',

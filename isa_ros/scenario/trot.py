@@ -1,14 +1,14 @@
 """
-A trot at constant speed and height: where the feet go, and what the joints of a leg do for it.
+A trot at constant speed and height: trajectories of the feet, and the joint motion of a leg.
 
 Conventions
 - Time counts in strides: a foot touches down at stride 0, lifts off at ``duty_factor``.
-- The foot is seen from the hip: x forward, z up (m), in the plane of the leg under HAA = 0.
+- The foot is given relative to the hip: x forward, z up (m), in the plane of the leg at HAA = 0.
   Joint angles and torques have the signs of scripts/generate_leg.py; the knee is bent, KFE < 0.
 - Diagonal legs move alike, the two pairs half a stride apart.
 
-Equations G1-G6 of docs/equations.md. Neglected: pitch, roll and the bobbing of the body, the
-horizontal forces that swinging legs need from those that stand, impact at touch-down.
+Equations G1-G6 of docs/equations.md. Neglected: pitch, roll and bobbing of the body, the
+horizontal forces that the standing legs exert for the swinging ones, impact at touch-down.
 """
 
 from dataclasses import dataclass
@@ -28,7 +28,7 @@ LEGS_OF_A_PAIR = 2
 
 @dataclass(frozen=True, kw_only=True)
 class Trot(Parameters):
-    """What makes a trot."""
+    """Parameters of a trot."""
 
     forward_speed: float = parameter('speed of the body', 'm/s', ge=0.0, le=5.0)
     step_frequency_hz: float = parameter('strides of one leg', 'Hz', ge=0.1, le=5.0)
@@ -40,7 +40,7 @@ class Trot(Parameters):
 
 
 class Foot(NamedTuple):
-    """A foot seen from the hip: position (m), speed, acceleration, load upwards (N)."""
+    """A foot relative to the hip: position (m), speed, acceleration, load upwards (N)."""
 
     x: float
     z: float
@@ -100,8 +100,8 @@ def _share(part: float, duty_factor: float) -> float:
     """
     Return the part of the weight that the foot's pair carries  (G4).
 
-    While all feet stand the pair that has touched down takes over by w; the shares of both
-    pairs add up to 1 at any time.
+    While all feet stand, the share of the pair that has touched down grows with w; the shares
+    of both pairs add up to 1 at any time.
     """
     overlap = duty_factor - 0.5
     if part < overlap:

@@ -1,9 +1,9 @@
 """
 A trot as the motion of one actuator: the joint it moves, through its linkage.
 
-At a joint of the leg the actuator leaves its setpoint's position for the leg's own, smoothly.
-On a load of its own it moves about its setpoint's position: a rotary one as if it were on the
-joint itself, a linear one through the linkage of the joint. Equations G1 to G7.
+At a joint of the leg the actuator moves smoothly from its setpoint's position to that of the
+trot. On its own load it moves about its setpoint's position: a rotary actuator as if it were on
+the joint itself, a linear one through the linkage of the joint. Equations G1 to G7.
 """
 
 from dataclasses import dataclass, field
@@ -23,16 +23,16 @@ from isa_ros.surroundings.leg.sheet import Direct, JOINTS, LegSheet, linkage_rec
 from isa_ros.surroundings.linkage import actuator_coordinate
 import numpy as np
 
-LEG = 'hyq_real'  # trots where the run has none
+LEG = 'hyq_real'  # leg of the trot in a run without one
 GAIT = 'trot'
 
 
 @dataclass(frozen=True, kw_only=True)
 class Gait(Trot):
-    """A trot, and what of it one actuator is told."""
+    """A trot, and the part of it that one actuator follows."""
 
     joint: str = choice('the joint it moves', *JOINTS)
-    phase: float = parameter('where in the stride it begins; 0: touch-down', '1', ge=0.0, le=1.0)
+    phase: float = parameter('stride phase at its start; 0: touch-down', '1', ge=0.0, le=1.0)
     start_s: float = parameter('time to grow from standing to the whole motion', 's',
                                ge=0.0, le=100.0)
     feed_forward: float = parameter(
@@ -46,14 +46,14 @@ class GaitMotion:
     gait: Gait
     sheet: LegSheet
     is_direct: bool
-    """The joint's angle itself, whatever the joint's linkage."""
+    """The coordinate is the joint's angle itself, whatever the joint's linkage."""
     rest: float | None
-    """Where the actuator stands before, m or rad; None: in the middle of the motion."""
+    """Position of the actuator before, m or rad; None: the middle of the motion."""
     _leg: TrottingLeg = field(init=False, repr=False, compare=False)
     _linkage: np.void = field(init=False, repr=False, compare=False)
 
     def __post_init__(self) -> None:
-        """Prepare the leg; as `TrottingLeg`, which may refuse it."""
+        """Prepare the leg; raises as `TrottingLeg`."""
         object.__setattr__(self, '_leg', TrottingLeg(self.gait, self.sheet))
         object.__setattr__(self, '_linkage', linkage_record(getattr(self.sheet, self.gait.joint)))
 
@@ -74,7 +74,7 @@ class GaitMotion:
 
     @cached_property
     def origin(self) -> float:
-        """Return the position of a stride that is no excursion, m or rad."""
+        """Return the position from which excursions are measured, m or rad."""
         return 0.5 * sum(self.span) if self.rest is None else self.rest
 
     def at(self, t_ns: int) -> Excursion:
@@ -100,14 +100,14 @@ class GaitMotion:
 def read_gait(tree: Tree, place: Place, actuator: ActuatorConfig, leg: LegConfig | None,
               setpoint: float) -> GaitMotion:
     """
-    Return the gait of a section whose setpoint stands at ``setpoint``, m or rad.
+    Return the gait of a section; ``setpoint`` is its setpoint's position, m or rad.
 
-    What the section leaves out is as in the packaged trot.
+    Missing keys are as in the packaged trot.
 
     Raises
     ------
     ConfigError
-        The section is wrong, or the leg or the actuator cannot follow.
+        The section is invalid, or the leg or the actuator cannot follow the trot.
 
     """
     gait = build(Gait, merge(gait_section(GAIT, str(place)), written(tree, place)), place)

@@ -1,8 +1,8 @@
 """
-Motions: what is added to a setpoint from its event on, until the next one.
+Motions: values added to a setpoint from its event until the next one.
 
-Times are integer ns since the event. A motion of the position moves the velocity with it, so
-that the damping of the impedance does not brake it; one of the effort is of the effort alone.
+Times are integer ns since the event. A motion of the position changes the velocity as well, so
+that the damping of the impedance does not brake it; one of the effort changes the effort only.
 """
 
 from abc import ABC, abstractmethod
@@ -18,14 +18,14 @@ from isa_ros.core.timebase import NS_PER_SECOND
 from isa_ros.errors import ConfigError, ParameterError
 
 POSITION, EFFORT = 'position', 'effort'
-MAX_POSITION = 10.0   # m | rad, a bound against slips of the pen
-MAX_EFFORT = 1e8      # N, Nm or Pa, the same
+MAX_POSITION = 10.0   # m | rad, a bound against typing errors
+MAX_EFFORT = 1e8      # N, Nm or Pa, likewise
 UNITS = 'm | rad | N | Nm'
 TWO_PI = 2.0 * math.pi
 
 
 class Excursion(NamedTuple):
-    """What a motion adds to position, velocity and effort of its setpoint, SI."""
+    """Values that a motion adds to position, velocity and effort of its setpoint, SI."""
 
     position: float
     velocity: float
@@ -33,7 +33,7 @@ class Excursion(NamedTuple):
 
 
 class Motion(Protocol):
-    """What goes on after an event."""
+    """A motion of the setpoint after an event."""
 
     def at(self, t_ns: int) -> Excursion:
         """Return the excursion ``t_ns`` after the event."""
@@ -46,9 +46,9 @@ class Motion(Protocol):
 
 @dataclass(frozen=True, kw_only=True)
 class Waveform(Parameters, ABC):
-    """What all waveforms declare; of the position unless it says otherwise."""
+    """Parameters of every waveform; by default it moves the position."""
 
-    moves: str = choice('what it is added to', POSITION, EFFORT)
+    moves: str = choice('quantity it is added to', POSITION, EFFORT)
     amplitude: float = parameter('amplitude', UNITS, ge=-MAX_EFFORT, le=MAX_EFFORT)
 
     def __post_init__(self) -> None:
@@ -70,7 +70,7 @@ class Waveform(Parameters, ABC):
     @abstractmethod
     def refuse_step(self, step_ns: int, where: str) -> None:
         """
-        Refuse what setpoints ``step_ns`` apart cannot show.
+        Refuse a waveform that setpoints ``step_ns`` apart cannot represent.
 
         Raises
         ------
@@ -110,10 +110,10 @@ class Chirp(Waveform):
     start_hz: float = parameter('frequency at its setpoint', 'Hz', gt=0.0, le=5e3)
     end_hz: float = parameter('frequency after duration_s', 'Hz', gt=0.0, le=5e3)
     duration_s: float = parameter('time from one to the other', 's', gt=0.0, le=1e5)
-    sweep: str = choice('how the frequency moves', 'linear', 'exponential')
+    sweep: str = choice('how the frequency changes', 'linear', 'exponential')
 
     def __post_init__(self) -> None:
-        """Refuse a chirp that is a sine."""
+        """Refuse a chirp of a single frequency, which is a sine."""
         super().__post_init__()
         if self.start_hz == self.end_hz:
             raise ParameterError(
@@ -149,7 +149,7 @@ class Chirp(Waveform):
 
 @dataclass(frozen=True, kw_only=True)
 class Pulse(Waveform):
-    """A train of steps: the amplitude for a width, then nothing until the period is over."""
+    """A train of steps: the amplitude for a width, then zero until the period is over."""
 
     period_s: float = parameter('from one step to the next', 's', gt=0.0, le=1e5)
     width_s: float = parameter('of a step', 's', gt=0.0, le=1e5)

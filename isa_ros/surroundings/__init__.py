@@ -1,1 +1,1 @@
-"""What the actuators of a run share: supplies, and the body they move."""
+"""Surroundings that the actuators of a run share: supplies, and the body they move."""

@@ -1,8 +1,8 @@
 """
 Foot on level ground: normal force of Hunt and Crossley, friction with bristles.
 
-The ground is the plane z = 0 and the foot a point. Force > 0 pushes the foot up; it never
-pulls. Tangential forces act along x and y of the base. Equations L9-L11 of
+The ground is the plane z = 0 and the foot a point. Force > 0 pushes the foot up; the ground
+never pulls. Tangential forces act along x and y of the base. Equations L9-L11 of
 docs/equations.md.
 
 Neglected: the foot's radius and rolling, uneven ground, and wear of the rubber.
@@ -69,7 +69,7 @@ def friction_forces(normal, z_x, z_y, rate_x, rate_y, ground):
     """
     Return -N (sigma_0 z + sigma_1 z')  (L11), in N, cut to the friction cone mu N.
 
-    The cut acts only on the damping's share while the foot begins to slide.
+    The cut affects only the damping's share while the foot begins to slide.
     """
     f_x = -normal * (ground.sigma_0 * z_x + ground.sigma_1 * rate_x)
     f_y = -normal * (ground.sigma_0 * z_y + ground.sigma_1 * rate_y)

@@ -56,7 +56,7 @@ def test_blocked_force_step_of_table_4_is_as_slow_as_predicted():
 @pytest.mark.parametrize(('model', 'force', 'quiet'), [
     ('smart_manifold', 17.0, 0.3), ('isa_v5', 750.0, 5.0)])
 def test_default_preset_does_not_hunt_over_the_stroke(model, force, quiet, fraction):
-    """At rest after the step the force stands still: bars of 0.3 Nm and 5 N."""
+    """At rest after the step the force is constant within 0.3 Nm and 5 N."""
     trace = blocked_step(model, 'default', force, fraction)
     assert trace[-2000:].std() < quiet
     assert abs(trace[-2000:].mean() - force) < 2.0 * quiet
@@ -69,7 +69,7 @@ def test_asked_for_too_much_it_reads_its_rating_or_stall_less_friction(model, si
     """Errata 15, physics.md section 4: the load cell reads 1 to 2 % below hydraulic stall."""
     actuator = smart_actuator(model, 'blocked')
     actuator.accept(setpoint(effort=sign * 1e6, stiffness=0.0, damping=0.0))
-    # the manifold's integral takes seconds to make up for the cross-port leakage
+    # the manifold's integral takes seconds to compensate the cross-port leakage
     reached = forces(actuator, 3.0)[-1000:].mean()
     # half a percent either way of the middle of 1 to 2 %
     assert reached == pytest.approx(reading, rel=0.0051)
@@ -99,7 +99,7 @@ def test_it_reaches_a_position_setpoint(model):
 
 
 def test_gains_left_out_keep_and_the_echo_resolves_them():
-    """A plain JointState keeps the gains; the echo names what is in force."""
+    """A plain JointState keeps the gains; the echo has the gains in force."""
     actuator = smart_actuator('smart_manifold', 'mass', timing=TICK)
     actuator.accept(setpoint(position=1.0, stiffness=150.0, damping=10.0))
     actuator.tick()
@@ -112,7 +112,7 @@ def test_gains_left_out_keep_and_the_echo_resolves_them():
 
 
 def test_of_two_setpoints_before_a_tick_the_last_wins_and_keeps_the_gains():
-    """An asynchronous pair ends as if sent one after the other."""
+    """Two setpoints sent together have the effect of two sent one after the other."""
     actuator = smart_actuator('smart_manifold', 'mass', timing=TICK)
     actuator.accept(setpoint(position=1.0, stiffness=150.0))
     actuator.accept(setpoint(position=1.2))
@@ -121,7 +121,7 @@ def test_of_two_setpoints_before_a_tick_the_last_wins_and_keeps_the_gains():
 
 
 def test_disabled_it_goes_limp_and_enabled_it_holds_where_it_is():
-    """Disabled the valve stands at null; enabling holds the measured position."""
+    """While disabled the valve is at null; enabling holds the measured position."""
     actuator = smart_actuator('smart_manifold', 'mass', timing=TICK)
     command = np.zeros(1, COMMAND)[0]
     command['kinds'] = HAS_ENABLE
@@ -134,7 +134,7 @@ def test_disabled_it_goes_limp_and_enabled_it_holds_where_it_is():
     before = float(actuator.sample.position)
     actuator.accept(command)
     actuator.tick()
-    # the REU's own reading lies up to one tick before the sample
+    # the REU's own reading is up to one tick older than the sample
     assert actuator.applied['position'] == pytest.approx(before, abs=1e-3)
     assert actuator.applied['is_enabled'] == 1
 
@@ -156,12 +156,12 @@ def test_a_restored_snapshot_continues_byte_for_byte(model):
 
 
 def test_a_shared_load_overwrites_the_copy_at_every_tick():
-    """coupling.md: the port's x0 and v0 are where the load is."""
+    """coupling.md: the port's x0 and v0 are the state of the load."""
     actuator = smart_actuator('isa_v5', None, position=0.05, timing=TICK)
     port = np.zeros(1, LOAD_PORT)[0]
     port['x0'], port['supply_pressure'] = 0.0501, 20.7e6
     actuator.tick(port)
-    # the load stands still at x0, 0.1 mm ahead: the cell pulls the piston along
+    # the load is at rest at x0, 0.1 mm ahead: the cell pulls the piston along
     assert actuator.reply.mean_forces[0] < 0.0
     assert actuator.reply.position > 0.05
 
@@ -187,7 +187,7 @@ def test_a_state_that_is_not_finite_ends_the_run_by_name():
 
 
 def test_computational_delay_holds_the_current_back():
-    """The amplifier follows 40 us later."""
+    """The amplifier's current follows its reference 40 us later."""
     sheet = actuator_sheet('smart_manifold', 'table_4')
     currents = []
     for delay_us in (0.0, 40.0):

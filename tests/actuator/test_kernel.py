@@ -42,7 +42,7 @@ def run(model: str, kind: str, mode: str, variants: tuple[str, ...]) -> str:
     ('isa_v5', 'rubber', ()),
     ('isa_v5', 'blocked', ('explicit',)), ('isa_v2', 'wheel', ('feedback_linearisation',))])
 def test_compiled_tick_equals_its_python_source(model, kind, variants):
-    """Replay compares bytes: valve, oil, friction, sensors, loops, load copy, all of it."""
+    """Replay compares bytes: valve, oil, friction, sensors, loops and load copy are equal."""
     compiled = run(model, kind, 'compiled', variants)
     assert len(compiled) > 1000
     assert compiled == run(model, kind, 'python', variants)

@@ -1,4 +1,4 @@
-"""How plant and control blocks are wired: what does not fit is refused."""
+"""Wiring of plant and control blocks: combinations that do not fit are refused."""
 
 from dataclasses import replace
 
@@ -35,13 +35,13 @@ def test_a_spool_block_needs_a_spool_sensor():
 
 
 def test_the_spool_s_loop_is_closed_exactly_once():
-    """Equation 8 never stands inside another spool loop, and never without one."""
+    """Equation 8 is never put inside another spool loop; without it a spool loop is needed."""
     plain, explicit = actuator_sheet('isa_v5'), actuator_sheet('isa_v5', 'default', 'explicit')
     with pytest.raises(ConfigError, match='already is the closed loop'):
         refuse_wiring(changed(explicit, 'plant', 'spool', plain.plant.spool))
     for reu_spool in (plain.reu.spool, Off()):
         sheet = changed(plain, 'reu', 'spool', reu_spool)
-        with pytest.raises(ConfigError, match='nobody closes the loop'):
+        with pytest.raises(ConfigError, match='the spool loop is open'):
             refuse_wiring(changed(sheet, 'plant', 'spool', explicit.plant.spool))
 
 
@@ -52,7 +52,7 @@ def test_the_spool_s_loop_is_closed_exactly_once():
     ('isa_v5', ('feedback_linearisation',), 'force', 5e-3, 'reu.force.limit = 0.005 m'),
 ])
 def test_a_limit_beyond_the_spool_s_stop_is_refused(model, variant, name, limit, message):
-    """There the valve saturates unseen, and the integral winds up."""
+    """Beyond the stop the block does not detect saturation, and its integral winds up."""
     sheet = actuator_sheet(model, 'default', *variant)
     block = replace(getattr(sheet.reu, name), limit=limit)
     with pytest.raises(ConfigError, match=message):
@@ -60,7 +60,7 @@ def test_a_limit_beyond_the_spool_s_stop_is_refused(model, variant, name, limit,
 
 
 def test_the_current_s_loop_is_closed_exactly_once():
-    """Equation 10 never stands with the explicit coil."""
+    """Equation 10 is never combined with the explicit coil."""
     plain, explicit = actuator_sheet('isa_v5'), actuator_sheet('isa_v5', 'default', 'explicit')
     for sheet in (changed(plain, 'plant', 'coil', explicit.plant.coil),
                   changed(explicit, 'plant', 'coil', plain.plant.coil)):

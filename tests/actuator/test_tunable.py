@@ -1,4 +1,4 @@
-"""What may be tuned: every gain and limit of the blocks that are on, once, in SI."""
+"""Tunable parameters: every gain and limit of the blocks that are on, once, in SI."""
 
 from dataclasses import replace
 import math
@@ -34,7 +34,7 @@ def test_every_tunable_is_si_within_its_range_and_has_a_meaning(model, variant):
 
 @pytest.mark.parametrize(('model', 'variant'), EVERY)
 def test_every_tunable_changes_a_constant_of_the_loops_and_nothing_of_the_plant(model, variant):
-    """But the gains of the impedance, which come with the setpoint."""
+    """The gains of the impedance are excepted, since they are part of the setpoint."""
     sheet = sheet_of(model, variant)
     before = actuator_record(sheet, 6)
     for name, tunable in tunables(sheet).items():
@@ -48,7 +48,7 @@ def test_every_tunable_changes_a_constant_of_the_loops_and_nothing_of_the_plant(
 
 
 def test_rates_filters_and_kinds_are_not_tunable():
-    """They make the structure of the loops."""
+    """They define the structure of the loops."""
     names = tunables(actuator_sheet('isa_v5', 'default', 'explicit'))
     assert {'position.stiffness', 'force.kp', 'spool.kp', 'current.kp'} <= set(names)
     assert not [name for name in names if 'rate' in name or 'filter' in name or 'kind' in name]
@@ -102,7 +102,7 @@ def test_the_factors_of_a_schedule_are_tunable_where_there_is_one():
     ('spool.kp', 1.0, ConfigError, 'spool.kp is unknown'),
     ('force.rate_hz', 1e3, ConfigError, 'force.rate_hz is unknown')])
 def test_what_cannot_be_is_refused_in_one_line(name, value, error, message):
-    """What, value, unit, bound."""
+    """The message has name, value, unit and bound."""
     with pytest.raises(error, match=message) as raised:
         tuned(actuator_sheet('isa_v5'), {name: value})
     assert '\n' not in str(raised.value)

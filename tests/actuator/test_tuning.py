@@ -1,4 +1,4 @@
-"""An actuator that is tuned: from the next tick on, all or none, and with its whole state."""
+"""Tuning an actuator: in force from the next tick on, all values or none, state kept."""
 
 from isa_ros.errors import ConfigError
 import numpy as np
@@ -6,7 +6,7 @@ import pytest
 from tests.actuator.test_actuator import TICK
 from tests.sheets import actuator_sheet, MODELS, override, setpoint, smart_actuator
 
-EFFORTS = (0.0, 50.0, -30.0, 80.0, 20.0, 60.0, -10.0, 40.0)  # something to control
+EFFORTS = (0.0, 50.0, -30.0, 80.0, 20.0, 60.0, -10.0, 40.0)  # N | Nm
 
 
 def run(actuator, ticks):
@@ -21,7 +21,7 @@ def run(actuator, ticks):
 
 @pytest.mark.parametrize('model', MODELS)
 def test_a_value_tuned_before_the_first_tick_acts_as_if_it_stood_in_the_sheet(model):
-    """Byte for byte, from t = 0 on."""
+    """The samples are equal byte for byte, from t = 0 on."""
     sheet = actuator_sheet(model)
     kp = 0.7 * sheet.reu.force.kp
     tuned = smart_actuator(model, 'mass', timing=TICK)
@@ -36,7 +36,7 @@ def test_a_value_tuned_before_the_first_tick_acts_as_if_it_stood_in_the_sheet(mo
 
 
 def test_a_value_acts_from_the_next_tick_on_and_the_loops_keep_their_states():
-    """The tick before is untouched, the integral goes on."""
+    """The tick before is not changed, and the integral keeps its value."""
     tuned, untouched = (smart_actuator('isa_v5', 'mass', timing=TICK) for _ in range(2))
     assert run(tuned, 20) == run(untouched, 20)
     tuned.tune({'force.kp': 1.2e-7})
@@ -63,7 +63,7 @@ def test_of_several_before_one_tick_the_last_wins_and_what_does_not_change_is_no
 
 
 def test_the_value_of_the_sheet_brings_back_its_bytes():
-    """No rounding stays behind: kp is V/mA in the sheet, V/A here."""
+    """Conversion leaves no rounding error: kp is V/mA in the sheet, V/A here."""
     sheet = actuator_sheet('isa_v5', 'default', 'explicit')
     actuator = smart_actuator('isa_v5', 'mass', timing=TICK, sheet=sheet)
     before, kp = actuator._constants.tobytes(), actuator.parameter('current.kp')
@@ -76,7 +76,7 @@ def test_the_value_of_the_sheet_brings_back_its_bytes():
 
 
 def test_of_values_of_which_one_is_refused_none_is_taken():
-    """The second is right for itself, the first is beyond the spool's stop."""
+    """The second value alone is valid, the first is beyond the spool's stop."""
     actuator = smart_actuator('isa_v5', 'mass', timing=TICK)
     kp = actuator.parameter('force.kp')
     with pytest.raises(ConfigError, match=r'isa_v5: reu.force.limit = 0.001 m, must be <='):
@@ -88,7 +88,7 @@ def test_of_values_of_which_one_is_refused_none_is_taken():
 
 
 def test_a_tuned_stiffness_is_a_setpoint_that_changes_this_gain_alone():
-    """Equilibrium, feed-forward and the other gain stay; the echo says all of them."""
+    """Equilibrium, feed-forward and the other gain are kept; the echo has all of them."""
     actuator = smart_actuator('isa_v5', 'mass', timing=TICK)
     actuator.accept(setpoint(position=0.051, velocity=0.01, effort=5.0, damping=3000.0))
     actuator.tick()
@@ -103,7 +103,7 @@ def test_a_tuned_stiffness_is_a_setpoint_that_changes_this_gain_alone():
 
 
 def test_a_gain_and_a_setpoint_before_one_tick_act_as_if_sent_one_after_the_other():
-    """A setpoint that names no gain keeps the tuned one; one that names it wins."""
+    """A setpoint without a gain keeps the tuned one; a gain in the setpoint replaces it."""
     actuator = smart_actuator('isa_v5', 'mass', timing=TICK)
     actuator.tune({'position.stiffness': 4e4, 'position.damping': 2e3})
     actuator.accept(setpoint(position=0.051, damping=1e3))
@@ -115,7 +115,7 @@ def test_a_gain_and_a_setpoint_before_one_tick_act_as_if_sent_one_after_the_othe
 
 @pytest.mark.parametrize('ticks_after', [0, 1, 5])
 def test_a_restored_snapshot_continues_with_what_was_tuned(ticks_after):
-    """In force or still waiting for its tick; what it says and does is the same."""
+    """Values in force or still pending are restored; samples and echoes are the same."""
     actuator = smart_actuator('isa_v5', 'mass', timing=TICK)
     run(actuator, 10)
     actuator.tune({'force.kp': 1.2e-7, 'position.stiffness': 4e4})
@@ -130,7 +130,7 @@ def test_a_restored_snapshot_continues_with_what_was_tuned(ticks_after):
 
 
 def test_a_saved_state_with_a_value_that_cannot_be_is_refused():
-    """A state from elsewhere is checked as a user's values are."""
+    """A saved state is checked like a user's values."""
     actuator = smart_actuator('isa_v5', 'mass', timing=TICK)
     kp = np.float64(actuator.parameter('force.kp')).tobytes()
     snapshot = actuator.snapshot().replace(kp, np.float64(-1.0).tobytes())
@@ -139,7 +139,7 @@ def test_a_saved_state_with_a_value_that_cannot_be_is_refused():
 
 
 def test_what_was_tuned_is_in_force_again_from_the_first_tick_of_another_run():
-    """And said there, for the configuration does not say it; at t = 0 the sheet's is."""
+    """The echo has it, since the configuration has not; at t = 0 the sheet's is in force."""
     actuator = smart_actuator('isa_v5', 'mass', timing=TICK)
     begin = actuator._constants.tobytes()
     actuator.tune({'force.kp': 1.2e-7, 'position.stiffness': 4e4})

@@ -42,7 +42,7 @@ CHANGED = {
         'friction.viscous': 320.0},
     'isa_v2': {},
 }
-"""Parameters of the plant that is recorded, by their paths below `plant`; nobody tells them."""
+"""Parameters of the plant that is recorded, by their paths below `plant`; unknown to the fit."""
 
 
 @lru_cache
@@ -68,7 +68,7 @@ def samples(model: str) -> np.ndarray:
 
 
 def recording(model: str) -> Recording:
-    """Return what the sensors gave, with the shipped sheet as what is known."""
+    """Return the sensor signals, with the shipped sheet as known parameters."""
     rows = samples(model)
     return Recording(
         plant=plant_row(model), step=1e-3, supply_pressure=np.full(len(rows), SUPPLY),

@@ -20,7 +20,7 @@ def rig():
 
 
 def test_an_experiment_is_a_run_that_replays(tmp_path):
-    """The bag it leaves holds its traces and simulates again to the same bytes."""
+    """Its bag has the same traces and simulates again to the same bytes."""
     experiment = run('rig_rotary', 'step', tmp_path / 'bag')
     assert replay(Bag(tmp_path / 'bag')).is_equal
     _, traces = read_traces(tmp_path / 'bag')

@@ -1,4 +1,4 @@
-"""Golden bags, rewritten: what another version or another hand would have left."""
+"""Golden bags, rewritten as by another version or another person."""
 
 from collections.abc import Callable, Mapping
 from dataclasses import replace

@@ -1,4 +1,4 @@
-"""A bag from anywhere: one line and exit code 2, and nothing outside is opened or written."""
+"""Bags from untrusted sources: one line, exit code 2, and no other file is opened or written."""
 
 from dataclasses import replace
 import json
@@ -30,7 +30,7 @@ MEBIBYTE = 1024 * 1024
 
 @pytest.fixture
 def refused(capsys):
-    """Return the one line that a command ends with; it has written nothing else."""
+    """Return the one line that a command ends with, which is its only output."""
     def refuse(*arguments) -> str:
         assert main([str(argument) for argument in arguments]) == 2
         error = capsys.readouterr().err
@@ -41,7 +41,7 @@ def refused(capsys):
 
 
 def with_configuration(directory: Path, text: str, **fields) -> Path:
-    """Write a bag of two clock messages that says to be a run of this configuration."""
+    """Write a bag of two clock messages with this configuration as its provenance."""
     clock = Topic('/clock', CLOCK)
     own = Provenance(text, fields.pop('scenario', ''), 0, {}, **fields)
     with BagWriter(directory, [clock], own) as writer:
@@ -103,7 +103,7 @@ def test_messages_without_end_at_one_instant_are_refused(tmp_path, monkeypatch):
         list(bag.ticks())
 
 
-@pytest.mark.parametrize('text, said', [
+@pytest.mark.parametrize('text, expected', [
     ('a: ' + '[' * 100_000, 'line 1: nested deeper than 16'),
     ('a: &a [x, x]\nb: &b [*a, *a]\nc: [*b, *b]\n', 'line 2: aliases'),
     ('a: !!python/object/apply:os.system [touch x]\n', 'line 1: tags'),
@@ -121,8 +121,8 @@ def test_messages_without_end_at_one_instant_are_refused(tmp_path, monkeypatch):
     (RIG.replace('model: smart_manifold', 'model: smart_manifold\n    "x\\ny": 1'),
      r'actuators.rotor.x\ny is unknown here'),
 ])
-def test_hostile_configuration_ends_in_one_line(tmp_path, refused, text, said):
-    assert said in refused('replay', with_configuration(tmp_path / 'bag', text))
+def test_hostile_configuration_ends_in_one_line(tmp_path, refused, text, expected):
+    assert expected in refused('replay', with_configuration(tmp_path / 'bag', text))
 
 
 def test_attachment_that_is_no_text_is_refused(tmp_path, refused, monkeypatch):
@@ -147,7 +147,7 @@ def test_type_of_a_bag_imports_no_module(tmp_path, refused):
                                    {'topic': '/' + 'a' * 300}, {'type_name': '../msg/X'},
                                    {'type_name': 'a\nb'}])
 def test_name_that_ros_does_not_have_is_refused(tmp_path, refused, names):
-    assert 'must be letters, digits, _ and /' in refused(
+    assert 'must be a ROS name of letters, digits, _ and /' in refused(
         'replay', foreign(tmp_path / 'x.mcap', **names))
 
 
@@ -163,7 +163,7 @@ def test_versions_of_a_bag_are_shown_as_one_line_each(tmp_path, capsys):
 def test_pipe_in_a_bag_is_not_waited_for(tmp_path, refused):
     record(tmp_path / 'rig', 3)
     os.mkfifo(tmp_path / 'rig' / 'rig_1.mcap')
-    assert 'rig_1.mcap: is no file' in refused('replay', tmp_path / 'rig')
+    assert 'rig_1.mcap: is not a file' in refused('replay', tmp_path / 'rig')
 
 
 def test_names_in_metadata_are_never_opened(tmp_path, refused):
@@ -180,14 +180,14 @@ def test_names_in_metadata_are_never_opened(tmp_path, refused):
 
 
 def test_metadata_of_a_bag_may_be_anything(tmp_path):
-    """It is for other readers."""
+    """metadata.yaml is for other readers."""
     record(tmp_path / 'rig', 3)
     (tmp_path / 'rig' / 'metadata.yaml').write_text('&a [*a, !!python/name:os.system x]' * 1000)
     assert Bag(tmp_path / 'rig').is_whole
 
 
 def test_overwriting_writes_through_no_link(tmp_path):
-    """Links that lie in a bag to be overwritten lead nowhere."""
+    """Links in a bag that is overwritten are not followed."""
     outside = [tmp_path / name for name in ('one', 'two', 'three')]
     for path in outside:
         path.write_text('mine')
@@ -209,21 +209,21 @@ def test_figure_of_a_scenario_names_no_path(tmp_path, refused):
             there, scenario='name: x\nfigure: ../../x\n')) as writer:
         writer.write_tick(0, 0, [(0, tick_messages(0)[0][1])])
     before = sorted(tmp_path.rglob('*'))
-    assert '/rotor/joint_states is not in it' in refused('report', again)
+    assert '/rotor/joint_states is not in the bag' in refused('report', again)
     assert sorted(tmp_path.rglob('*')) == before
 
 
-@pytest.mark.parametrize('state, said', [
+@pytest.mark.parametrize('state, expected', [
     ('[' * 200_000, 'is no saved state'),
     ('{"format": 1}', 'is no saved state'),
     ('x' * (16 * MEBIBYTE + 1), 'larger than 16777216 bytes'),
     (json.dumps({'format': 1, 'configuration.sha256': 'x'}), 'saved from the configuration x'),
 ])
-def test_hostile_state_ends_in_one_line(tmp_path, refused, state, said):
-    assert said in refused('replay', with_configuration(tmp_path / 'bag', RIG, state=state))
+def test_hostile_state_ends_in_one_line(tmp_path, refused, state, expected):
+    assert expected in refused('replay', with_configuration(tmp_path / 'bag', RIG, state=state))
 
 
-@pytest.mark.parametrize('change, said', [
+@pytest.mark.parametrize('change, expected', [
     ({'tick': 10**30}, 'must be an integer >= 0 and < 4294967296'),
     ({'tick': -1}, 'must be an integer >= 0'),
     ({'tick': 2}, 'begins before tick 2'),
@@ -232,18 +232,18 @@ def test_hostile_state_ends_in_one_line(tmp_path, refused, state, said):
     ({'load': ''}, 'saved state of the load: 0 bytes, must be'),
     ({'requests': '00'}, 'has 1 bytes of requests, must have 48'),
 ])
-def test_state_that_does_not_fit_ends_in_one_line(tmp_path, refused, change, said):
+def test_state_that_does_not_fit_ends_in_one_line(tmp_path, refused, change, expected):
     digest = load_run(Path(__file__).parents[2] / 'config' / 'rig_rotary.yaml').digest
     state = {'format': 1, 'configuration.sha256': digest, 'versions': {}, 'tick': 0,
              'load': '00' * 24, 'requests': '00' * 48, 'participants': ['00']} | change
-    assert said in refused('replay', with_configuration(
+    assert expected in refused('replay', with_configuration(
         tmp_path / 'bag', RIG, state=json.dumps(state)))
 
 
 @given(drawn=st.data())
 @settings(max_examples=60, suppress_health_check=[HealthCheck.function_scoped_fixture])
 def test_any_bytes_in_a_chunk_are_read_or_refused(tmp_path, drawn):
-    """Whole records with anything in them, and a checksum that says nothing."""
+    """Whole records with arbitrary content, and no checksum (0)."""
     content = b''.join(
         bytes([opcode]) + struct.pack('<Q', len(data)) + data for opcode, data in drawn.draw(
             st.lists(st.tuples(st.integers(0, 15), st.binary(max_size=60)), max_size=6)))

@@ -1,4 +1,4 @@
-"""Recording processes that are killed: what is left reads, replays, and lacks a second at most."""
+"""Recording processes that are killed: the bag reads, replays, and lacks at most a second."""
 
 from pathlib import Path
 import random
@@ -71,7 +71,7 @@ def killed_recording(out: Path, storage: Storage, tick: int) -> int:
 @pytest.mark.parametrize('compression, split_mb, seed', [
     ('none', 0.0, 1), ('none', 0.0, 2), ('zstd', 0.0, 3), ('zstd', 0.1, 4), ('lz4', 0.1, 5)])
 def test_killed_recording_reads_and_replays(tmp_path, capsys, compression, split_mb, seed):
-    """The tick is drawn; where the kill then hits its chunk is up to the machine."""
+    """The tick is random; the place of the kill within its chunk depends on the machine."""
     tick = random.Random(seed).randint(FIRST, LAST)
     storage = Storage(compression=compression, split_mb=split_mb)
     last = killed_recording(tmp_path / 'bag', storage, tick)
@@ -88,7 +88,7 @@ def test_killed_recording_reads_and_replays(tmp_path, capsys, compression, split
 
 
 def test_files_before_the_last_are_whole_for_other_readers(tmp_path):
-    """What is listed exists, and all but the last file open in the official reader."""
+    """The listed files exist, and all but the last one open in the official reader."""
     killed_recording(tmp_path / 'bag', Storage(compression='zstd', split_mb=0.1), FIRST)
     files = sorted((tmp_path / 'bag').glob('*.mcap'))
     for path in files[:-1]:

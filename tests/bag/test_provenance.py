@@ -1,4 +1,4 @@
-"""Provenance: a round trip through the bag, and every way it can be incomplete."""
+"""Provenance: a round trip through the bag, and every kind of missing part."""
 
 from dataclasses import replace
 from importlib.metadata import PackageNotFoundError
@@ -23,13 +23,13 @@ def test_records_give_the_same_provenance_back():
     assert read_back(odd.attachments(), odd.record()) == odd
 
 
-@pytest.mark.parametrize('key, value, said', [
+@pytest.mark.parametrize('key, value, expected', [
     ('format', '2', "x.mcap: provenance format '2', must be '1'"),
     ('seed', 'one', "seed 'one', must be an integer"),
     ('scenario.yaml.sha256', '', 'attachment scenario.yaml does not match its sha256'),
 ])
-def test_altered_record_is_refused(key, value, said):
-    with pytest.raises(BagError, match=said):
+def test_altered_record_is_refused(key, value, expected):
+    with pytest.raises(BagError, match=expected):
         read_back(PROVENANCE.attachments(), PROVENANCE.record() | {key: value})
 
 
@@ -57,7 +57,7 @@ def test_source_tree_declares_the_version_that_is_not_installed(monkeypatch):
 
 
 def test_bag_holds_nothing_of_the_host(tmp_path):
-    """The directory is all that the writer is told of the host."""
+    """The only data of the host that the writer receives is the directory."""
     data = record(tmp_path / 'a_telling_name', 3).read_bytes()
     for text in ('a_telling_name', str(tmp_path)):
         assert text.encode() not in data, text

@@ -109,7 +109,7 @@ def test_any_flipped_bit_of_a_whole_bag_is_found(mcap, scratch, drawn):
 @given(drawn=st.data())
 @settings(deadline=None, max_examples=40)
 def test_flipped_bit_in_a_chunk_of_a_cut_bag_is_found(mcap, scratch, drawn):
-    """No DataEnd there: the chunk's own CRC has to tell."""
+    """A cut bag has no DataEnd, so the chunk's own CRC must detect it."""
     start, end = chunks(mcap)[0]
     data = bytearray(mcap.read_bytes()[:end])
     data[drawn.draw(st.integers(start + 9 + 40, end - 1))] ^= 1 << drawn.draw(st.integers(0, 7))
@@ -121,7 +121,7 @@ def test_flipped_bit_in_a_chunk_of_a_cut_bag_is_found(mcap, scratch, drawn):
 @given(data=st.binary(max_size=400))
 @settings(deadline=None)
 def test_arbitrary_records_are_read_or_refused(scratch, data):
-    """Whatever follows the magic, nothing but BagError comes out."""
+    """For any bytes after the magic the only error raised is BagError."""
     scratch.write_bytes(b'\x89MCAP0\r\n' + data)
     try:
         bag = Bag(scratch)
@@ -145,7 +145,7 @@ def test_chunk_larger_than_it_declares_is_refused(mcap, tmp_path, compression):
         chunk = next(r for r in StreamReader(file, emit_chunks=True).records
                      if isinstance(r, Chunk))
     chunk.uncompressed_size -= 1
-    with pytest.raises(BagError, match=r'here: \d+ bytes in a chunk, must be \d+'):
+    with pytest.raises(BagError, match=r'here: \d+ bytes in a chunk, must be the declared \d+'):
         records.chunk_content(chunk, 'here')
 
 
@@ -196,7 +196,7 @@ def test_messages_of_one_instant_form_a_tick_sorted_by_topic(tmp_path):
 
 def test_time_that_runs_back_is_refused(tmp_path):
     path = write(tmp_path / 'b.mcap', (0, 5), (0, 4))
-    with pytest.raises(BagError, match='time runs back on /a, from 5 to 4 ns'):
+    with pytest.raises(BagError, match='time decreases on /a, from 5 to 4 ns'):
         Bag(path)
 
 
@@ -230,7 +230,7 @@ def test_what_is_no_bag_is_refused_by_name(tmp_path):
     with pytest.raises(BagError, match='holds 0 MCAP files, must hold one, or .*none'):
         Bag(tmp_path)
     (tmp_path / 'text.mcap').write_text('text')
-    with pytest.raises(BagError, match='text.mcap: is no MCAP file'):
+    with pytest.raises(BagError, match='text.mcap: is not an MCAP file'):
         Bag(tmp_path)
     (tmp_path / 'more.mcap').write_text('')
     with pytest.raises(BagError, match='2 MCAP files, must hold one, or .*more.mcap, text.mcap'):

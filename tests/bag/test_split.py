@@ -1,4 +1,4 @@
-"""Split and compressed bags: what readers make of them, what belongs together, what is lost."""
+"""Split and compressed bags: other readers, files of one run, loss at a kill."""
 
 from dataclasses import replace
 import hashlib
@@ -179,7 +179,7 @@ def test_missing_file_in_the_middle_is_named(copy):
 def test_file_cut_short_before_others_is_named(copy):
     middle = copy / 'rig_1.mcap'
     middle.write_bytes(middle.read_bytes()[:-5])
-    with pytest.raises(BagError, match='rig_1.mcap: is cut short, but rig_2.mcap goes on'):
+    with pytest.raises(BagError, match='rig_1.mcap: is cut short, but rig_2.mcap continues it'):
         Bag(copy)
 
 
@@ -194,7 +194,7 @@ def test_files_in_another_order_are_refused(copy):
     one.rename(copy / 'x')
     two.rename(one)
     (copy / 'x').rename(two)
-    with pytest.raises(BagError, match="rig_1.mcap: says to be file '2' of a bag, not 1"):
+    with pytest.raises(BagError, match="rig_1.mcap: is labelled file '2' of a bag, not 1"):
         Bag(copy)
 
 
@@ -202,7 +202,7 @@ def test_first_file_that_is_not_the_first_is_refused(copy):
     (copy / 'rig_0.mcap').unlink()
     for number in (1, 2):
         (copy / f'rig_{number}.mcap').rename(copy / f'rig_{number - 1}.mcap')
-    with pytest.raises(BagError, match="rig_0.mcap: says to be file '1' of a bag, not 0"):
+    with pytest.raises(BagError, match="rig_0.mcap: is labelled file '1' of a bag, not 0"):
         Bag(copy)
 
 
@@ -218,7 +218,7 @@ def other_run(directory, provenance=PROVENANCE, topics=TOPICS, first=0):
 def test_file_of_another_run_is_refused(copy, tmp_path):
     other = other_run(tmp_path / 'other', replace(PROVENANCE, seed=8))
     shutil.copyfile(other, copy / 'rig_1.mcap')
-    with pytest.raises(BagError, match='rig_1.mcap: is of another run than rig_0.mcap'):
+    with pytest.raises(BagError, match='rig_1.mcap: belongs to another run than rig_0.mcap'):
         Bag(copy)
 
 
@@ -237,7 +237,7 @@ def test_time_that_does_not_go_on_is_refused(copy, tmp_path):
 
 
 def test_full_disk_while_splitting_leaves_a_readable_bag(tmp_path):
-    """The limit lets two files pass, then every file is too large for its second chunk."""
+    """The limit allows two files; then every file is too large for its second chunk."""
     size = record(tmp_path / 'measure', CHUNK_TICKS, storage=storage()).stat().st_size
     writer = BagWriter(tmp_path / 'rig', TOPICS, PROVENANCE, storage=storage(split_mb=2.0))
     with limited_files(int(1.5 * size)), pytest.raises(RunError, match='cannot record, File too'):
@@ -248,7 +248,7 @@ def test_full_disk_while_splitting_leaves_a_readable_bag(tmp_path):
 
 
 def test_next_file_that_cannot_be_made_is_a_run_error(tmp_path):
-    """What was recorded stays, and the bag says that it was to go on."""
+    """The recorded files are kept, and the bag is labelled as continuing."""
     (tmp_path / 'rig').mkdir()
     writer = BagWriter(tmp_path / 'rig', TOPICS, PROVENANCE, True, storage())
     (tmp_path / 'rig' / 'rig_1.mcap').write_bytes(b'in the way')
@@ -263,7 +263,7 @@ def test_next_file_that_cannot_be_made_is_a_run_error(tmp_path):
 
 
 def test_long_steps_end_a_chunk_after_half_a_second(tmp_path):
-    """At most a simulated second may be lost, at any step."""
+    """At most a second of simulation may be lost, at any step."""
     step_ns = 100_000_000
     writer = BagWriter(tmp_path / 'rig', TOPICS, PROVENANCE)
     for tick in range(30):
@@ -273,7 +273,7 @@ def test_long_steps_end_a_chunk_after_half_a_second(tmp_path):
 
 
 def test_ticks_without_messages_end_a_chunk_too(tmp_path):
-    """A topic at every 2000th tick: what was recorded must not wait for the next one."""
+    """A topic at every 2000th tick: its chunk must not wait for the next message."""
     writer = BagWriter(tmp_path / 'rig', TOPICS, PROVENANCE)
     writer.write_tick(0, 0, tick_messages(0))
     for tick in range(1, 501):

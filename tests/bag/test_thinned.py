@@ -1,4 +1,4 @@
-"""Bags that leave topics out: replay and compare look at what was to be recorded."""
+"""Bags without some topics: replay and compare use the configuration of recording."""
 
 from collections import Counter
 from dataclasses import replace
@@ -21,14 +21,14 @@ N = 151  # samples
 
 
 def recorded_as(bag: Bag, record: RecordConfig, directory) -> Bag:
-    """Simulate a bag's run again and record it as asked."""
+    """Simulate a bag's run again and record it with these patterns."""
     def section(text: str) -> str:
         return replace(RunConfig.from_yaml(text), record=record).to_yaml()
 
-    asked = Bag(rewrite(bag, directory.with_name(f'{directory.name}_asked'),
-                        configuration=section))
-    again = Rerun(asked)
-    with BagWriter(directory, again.topics, asked.provenance) as writer:
+    configured = Bag(rewrite(
+        bag, directory.with_name(f'{directory.name}_configured'), configuration=section))
+    again = Rerun(configured)
+    with BagWriter(directory, again.topics, configured.provenance) as writer:
         again.simulate(writer)
     return Bag(directory)
 
@@ -44,8 +44,8 @@ def thinned(whole, tmp_path_factory) -> Bag:
     return recorded_as(whole, RECORD, tmp_path_factory.mktemp('bags') / 'thinned')
 
 
-def test_bag_holds_what_was_asked_for(whole, thinned):
-    """What took effect is whole, whatever the patterns say; t = 0 is among the samples."""
+def test_bag_holds_what_was_configured(whole, thinned):
+    """Applied commands are complete for any patterns; t = 0 is among the samples."""
     counts = Counter(message.topic for message in thinned.messages())
     assert counts['/rotor/valve'] == 16
     assert counts['/rotor/joint_states'] == 51
@@ -82,7 +82,7 @@ def test_thinned_bag_equals_the_whole_one_in_what_both_hold(whole, thinned, caps
 
 
 def test_message_lost_from_a_thinned_bag_is_missed(whole, thinned, tmp_path):
-    """Left out is what the configuration leaves out, nothing else."""
+    """Only the messages that the configuration leaves out may be missing."""
     lost = Bag(rewrite(thinned, tmp_path / 'lost', without=('/rotor/valve',)))
     difference = compare_bags(whole, lost).difference
     assert (difference.tick, difference.topic, difference.actual) == (

@@ -1,4 +1,4 @@
-"""The recorder: what other readers make of its bags, determinism, loss, and refusals."""
+"""The recorder: its bags in other readers, determinism, loss, and refusals."""
 
 from contextlib import contextmanager, ExitStack
 import hashlib
@@ -62,7 +62,7 @@ def test_mcap_library_reads_it_in_order_with_valid_checksums(mcap):
 
 
 def test_data_section_checksum_holds(mcap):
-    """The stream reader checks DataEnd's CRC and every chunk's on the way."""
+    """The stream reader checks the CRC of DataEnd and of every chunk."""
     with mcap.open('rb') as file:
         kinds = [type(r).__name__ for r in StreamReader(file, validate_crcs=True).records]
     assert kinds[:5] == ['Header', 'Attachment', 'Attachment', 'Metadata', 'Metadata']
@@ -204,7 +204,7 @@ def test_kill_leaves_all_but_the_last_500_ticks(tmp_path):
 
 @contextmanager
 def limited_files(size):
-    """Bound the size of files, as a full disk does; not one moment longer than the block."""
+    """Bound the size of files, as a full disk does; for the duration of the block only."""
     soft, hard = resource.getrlimit(resource.RLIMIT_FSIZE)
     handler = signal.signal(signal.SIGXFSZ, signal.SIG_IGN)
     resource.setrlimit(resource.RLIMIT_FSIZE, (size, hard))

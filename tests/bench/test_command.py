@@ -1,4 +1,4 @@
-"""What the command does with its options."""
+"""The options of the command."""
 
 import sys
 

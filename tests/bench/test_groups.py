@@ -1,4 +1,4 @@
-"""What the groups make of runs."""
+"""Rows of the groups from the results of runs."""
 
 from isa_ros.bench import comparison, growth, leg, memory, startup
 from isa_ros.bench.loading import Loading
@@ -9,14 +9,14 @@ from tests.bench.told import MIB, told
 
 
 def by_name(rows):
-    """Return the rows by name; a group has a name once, and a row a part once."""
+    """Return the rows by name; names are unique in a group, and parts in a row."""
     assert len({(row.part_of, row.name) for row in rows}) == len(rows)
     return {row.name: row for row in rows}
 
 
 @pytest.fixture
 def loading(monkeypatch):
-    """Return what an actuator loads, without starting one."""
+    """Return the modules an actuator loads, without starting one."""
     loads = Loading(floor=0.5, floor_bytes=45 * MIB, imports=1.0, kernels=0.25)
     monkeypatch.setattr(startup, 'median_loading', lambda: loads)
     monkeypatch.setattr(memory, 'median_loading', lambda: loads)
@@ -42,7 +42,7 @@ def test_a_missed_aim_says_where_the_tick_goes(monkeypatch):
 
 
 def test_peers_are_compared_round_by_round():
-    """In the round with half the speed both are half as fast: the ratio is what it was."""
+    """In the round with half the speed both are half as fast: the ratio is unchanged."""
     def peer(name: str) -> Spec:
         return Spec(LEG, name, leg.IN_PROCESSES.ticks)
     rows = by_name(comparison.comparison_rows(Outcomes({

@@ -1,4 +1,4 @@
-"""What the kernel says about processes."""
+"""The kernel's data on processes."""
 
 import os
 import subprocess

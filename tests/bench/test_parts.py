@@ -1,4 +1,4 @@
-"""Rows that are measured in this process: real, and consistent with each other."""
+"""Rows that are measured in this process: positive, and consistent with each other."""
 
 from isa_ros.bench import plant, tick
 import pytest

@@ -1,4 +1,4 @@
-"""What crosses to a worker and back, and workers that do not answer."""
+"""Messages to a worker and back, and workers that do not answer."""
 
 from isa_ros.bench.peers import frames
 from isa_ros.bench.peers.catalogue import peer
@@ -44,17 +44,17 @@ def test_an_answer_crosses_with_what_was_not_said():
 
 
 class Silence:
-    """A link on which nobody answers."""
+    """A link without answers."""
 
     def send(self, message: bytes) -> None:
-        """Send to nobody."""
+        """Discard the message."""
 
     def receive(self, timeout_s: float) -> bytes | None:
         """Return at once."""
         return None
 
     def close(self) -> None:
-        """Have nothing to let go."""
+        """Do nothing: there is nothing to release."""
 
 
 @pytest.fixture(scope='module')

@@ -1,4 +1,4 @@
-"""The order of the runs, and what becomes of those that fail."""
+"""The order of the runs, and the handling of those that fail."""
 
 from itertools import pairwise
 from statistics import mean
@@ -18,7 +18,7 @@ def test_every_other_round_goes_backwards():
 
 
 def test_a_steady_drift_meets_all_specs_alike():
-    """With an even number of rounds the mean place of every spec is the same."""
+    """With an even number of rounds the mean position of every spec is the same."""
     order = rounds.order_of([A, B, C])
     places = {spec: mean(k for k, s in enumerate(order) if s is spec) for spec in (A, B, C)}
     assert all(a == b for a, b in pairwise(places.values()))
@@ -64,6 +64,6 @@ def test_progress_counts_every_run(monkeypatch):
 
 
 def test_a_run_that_cannot_start_says_why():
-    """A real process; a plant that is none is refused by the run file's own check."""
+    """A real process; an invalid plant is refused by the check of the run file."""
     failed = rounds.measured(Spec('0', ONE_PROCESS, 10))
     assert isinstance(failed, Failed) and 'rigs_0.yaml' in failed.reason

@@ -1,4 +1,4 @@
-"""A row's own arithmetic; how fast anything is, is no test."""
+"""A row's own arithmetic; speeds are not tested."""
 
 from isa_ros.bench import row
 from isa_ros.bench.row import Aim, Row
@@ -6,7 +6,7 @@ import pytest
 
 
 def test_seconds_is_the_median_of_one_piece(monkeypatch):
-    """Each repetition's time over its pieces; one slow repetition does not matter."""
+    """Each repetition's time over its pieces; one slow repetition has no influence."""
     durations = iter([1.0, 2.0, 3.0, 100.0, 2.0, 2.0, 1.0])
     clock = [0.0]
     calls = []
@@ -21,7 +21,7 @@ def test_seconds_is_the_median_of_one_piece(monkeypatch):
 
 
 def test_processor_time_does_not_count_waiting(monkeypatch):
-    """The other clock, and only that one."""
+    """Only the processor's clock is used."""
     clock = iter(range(100))
     monkeypatch.setattr(row.time, 'process_time', lambda: 3.0 * next(clock))
     assert row.seconds(lambda: None, per=6, of_cpu=True) == pytest.approx(0.5)

@@ -1,4 +1,4 @@
-"""What runs might have told, for tests of what is made of it."""
+"""Artificial results of runs, for tests of their evaluation."""
 
 from isa_ros.bench.spec import ACTUATORS, COORDINATOR, Measured, Memory
 

@@ -1,4 +1,4 @@
-"""The command line: exit codes, one line per error, and what is not imported."""
+"""The command line: exit codes, one line per error, and imports that are avoided."""
 
 from argparse import Namespace
 import errno
@@ -17,7 +17,7 @@ ROOT = Path(__file__).parents[2]
 
 
 def outcome(monkeypatch: pytest.MonkeyPatch, ending: BaseException | bool, *more: str) -> int:
-    """Return the exit code of a command that ends like this."""
+    """Return the exit code of a command that ends with an error."""
     def command(options: Namespace) -> bool:
         if isinstance(ending, bool):
             return ending
@@ -84,7 +84,7 @@ def test_wrong_usage_is_one_line_and_2(
 
 @pytest.mark.parametrize('arguments, expected', [
     (['params', 'isa_v6'], 'isa: isa_v6: no such file; shipped: hyq_leg.yaml, leg.yaml'),
-    (['params', 'isa_v5', '--preset', 'fast'], "isa: preset = 'fast' is no preset of isa_v5"),
+    (['params', 'isa_v5', '--preset', 'fast'], "isa: preset = 'fast' is not a preset of isa_v5"),
     (['bringup', 'no_such_run'], 'isa: no_such_run: no such file; shipped: hyq_leg.yaml'),
     (['bringup', 'leg', '--scenario', 'fly'],
      'isa: fly: no such file; shipped: current_step.yaml, drop.yaml'),

@@ -15,13 +15,13 @@ SOURCES = ('paper', 'derived', 'assumed', 'public model')
 
 
 def is_kind(row: Row) -> bool:
-    """Tell whether a row says how something is modelled, which is no number to have a source."""
+    """Return whether a row is a kind of model, which has no number and no source."""
     return row.parameter.endswith('.kind')
 
 
 @pytest.mark.parametrize('name', model_names())
 def test_every_value_of_a_model_has_its_source(name: str) -> None:
-    """Every preset and variant of a model is a whole sheet, and no value is without a source."""
+    """Every preset and variant of a model is a whole sheet, and every value has a source."""
     model = actuator_model(name, 'model')
     # the paper prints no gains for the ISA v2
     assert {'default'} | ({'table_4'} if name != 'isa_v2' else set()) == set(model.presets)
@@ -61,13 +61,13 @@ def test_a_run_shows_each_actuator_and_where_its_values_come_from() -> None:
 @pytest.mark.parametrize('option, preset, variants', [
     ('--preset', 'table_4', ()), ('--variant', None, ('explicit',))])
 def test_what_is_no_model_refuses_preset_and_variants(name, option, preset, variants) -> None:
-    """A run file says them itself; to show it without them would not answer the question."""
-    with pytest.raises(ConfigError, match=f'^{option} is not used: {name} is no model'):
+    """A run file sets them itself, so the options would have no effect."""
+    with pytest.raises(ConfigError, match=f'^{option} is not used: {name} is not a model'):
         describe(name, preset, variants)
 
 
 def test_a_model_shows_its_loads() -> None:
-    """Each with its kind where its name is another, and its sources."""
+    """Each load has its kind, if that is not its name, and its sources."""
     text = describe('smart_manifold', 'default')
     assert '\n\nload drop_rig\n' in text and '\n\nload wood, a pad\n' in text
     assert '\n\nload wheel\n' in text
@@ -85,7 +85,7 @@ def test_every_value_of_a_load_has_its_source(name: str) -> None:
 
 
 def test_a_variant_is_shown_with_its_kinds() -> None:
-    """The explicit coil in the place of the closed loop; other ways to model it are named."""
+    """The explicit coil replaces the closed loop; the other variants are listed."""
     text = describe('isa_v5', 'table_4', ['explicit'])
     kind = next(line for line in text.splitlines() if line.startswith('plant.coil.kind '))
     assert kind.split()[1:5] == ['explicit', 'closed_loop', '|', 'explicit']

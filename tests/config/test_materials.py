@@ -15,7 +15,7 @@ def material(name):
 
 
 def test_there_are_metal_rubber_and_wood():
-    """What the paper's rigs stand against."""
+    """The materials of the paper's rigs."""
     assert material_names() == ['metal', 'rubber', 'wood']
 
 
@@ -44,6 +44,6 @@ def test_pad_of_a_model_has_the_numbers_of_its_material(model, name):
 
 
 def test_an_unknown_material_is_answered_with_the_right_ones():
-    """One line, naming the key and what it may have meant."""
-    with pytest.raises(ConfigError, match="leg.ground = 'wod' is no material; did you mean wood"):
+    """One line with the key and the closest names."""
+    with pytest.raises(ConfigError, match="ground = 'wod' is not a material; did you mean wood"):
         material_section('wod', 'run.yaml: leg.ground')

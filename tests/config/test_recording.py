@@ -1,4 +1,4 @@
-"""The section `record`: what it says, what it refuses, what the command line does to it."""
+"""The section `record`: its keys, refused values, and options of the command line."""
 
 from pathlib import Path
 
@@ -48,7 +48,7 @@ def test_section_says_what_is_written() -> None:
     assert record(ALL).storage.split_bytes == 20_000_000
 
 
-@pytest.mark.parametrize('text, said', [
+@pytest.mark.parametrize('text, expected', [
     ('record: {compress: zstd}', 'x.yaml: record.compress is unknown; did you mean compression?'),
     ('record: {compression: rar}',
      "x.yaml: record.compression = 'rar', must be one of none, lz4, zstd"),
@@ -63,38 +63,38 @@ def test_section_says_what_is_written() -> None:
     ('record: {decimate: {/a: true}}', 'record.decimate./a = True, must be a whole number'),
     ('record: {decimate: {/a: 10001}}', 'must be a whole number of ticks >= 2 and <= 10000'),
     (f'record: {{leave_out: [{", ".join(["/a"] * 101)}]}}', '101 patterns, must be <= 100'),
-    (f'record: {{leave_out: [/{"a" * 256}]}}', 'of <= 256 letters'),
+    (f'record: {{leave_out: [/{"a" * 256}]}}', 'of <= 256 characters'),
 ])
-def test_malformed_section_is_refused_by_key(text: str, said: str) -> None:
+def test_malformed_section_is_refused_by_key(text: str, expected: str) -> None:
     with pytest.raises(ConfigError) as caught:
         record(text)
-    assert said in str(caught.value)
+    assert expected in str(caught.value)
 
 
 def test_period_is_that_of_the_first_pattern_that_fits() -> None:
-    """What a replay is fed with is whole whatever the patterns say."""
+    """The inputs of a replay are complete for any patterns."""
     thinned = record(ALL)
     assert {topic: thinned.period(topic) for topic in TOPICS} == {
         '/clock': 2, '/coordinator/events': 1, '/rotor/applied_setpoint': 1,
         '/rotor/references': 0, '/rotor/valve': 10}
 
 
-@pytest.mark.parametrize('text, said', [
+@pytest.mark.parametrize('text, expected', [
     ('{leave_out: [/rotor/applied_setpoint]}',
      "x.yaml: record.leave_out = '/rotor/applied_setpoint' leaves out /rotor/applied_setpoint, "
-     'which a replay needs, must not'),
+     'which a replay needs'),
     ('{leave_out: [/rotor/*]}', "'/rotor/*' leaves out /rotor/applied_setpoint, which a replay"),
     ('{leave_out: [/coordinator/events]}', 'leaves out /coordinator/events, which a replay'),
     ('{leave_out: [/knee/valve]}',
-     "x.yaml: record.leave_out = '/knee/valve' fits no topic; there are /clock, "),
-    ('{decimate: {/knee/valve: 3}}', "record.decimate = '/knee/valve' fits no topic"),
+     "x.yaml: record.leave_out = '/knee/valve' matches no topic; valid: /clock, "),
+    ('{decimate: {/knee/valve: 3}}', "record.decimate = '/knee/valve' matches no topic"),
     ('{decimate: {/rotor/applied_*: 3}}',
-     "record.decimate = '/rotor/applied_*' thins /rotor/applied_setpoint, which a replay needs"),
+     "record.decimate = '/rotor/applied_*' decimates /rotor/applied_setpoint, of which a replay"),
 ])
-def test_pattern_that_does_not_fit_the_run_is_refused(text: str, said: str) -> None:
+def test_pattern_that_does_not_fit_the_run_is_refused(text: str, expected: str) -> None:
     with pytest.raises(ConfigError) as caught:
         record(f'record: {text}').refuse_misfits(TOPICS, 'x.yaml')
-    assert said in str(caught.value)
+    assert expected in str(caught.value)
     assert '\n' not in str(caught.value)
 
 
@@ -127,19 +127,19 @@ def test_command_line_wins_and_is_recorded(tmp_path: Path) -> None:
     assert prepare(Request(config=path, out=tmp_path / 'bag')).run.record == record(ALL)
 
 
-@pytest.mark.parametrize('options, said', [
+@pytest.mark.parametrize('options, expected', [
     (('--compression', 'rar'), "invalid choice: 'rar'"),
     (('--split-mb', '-1'), "'-1' must be a number >= 0"),
     (('--split-mb', '1e9'), 'split_mb = 1e+09 MB, must be <= 1e+06 MB'),
 ])
-def test_wrong_option_is_refused_in_one_line(tmp_path, capsys, options, said) -> None:
+def test_wrong_option_is_refused_in_one_line(tmp_path, capsys, options, expected) -> None:
     try:
         code = main(['bringup', str(RIG), '--out', str(tmp_path / 'bag'), *options])
     except SystemExit as end:
         code = end.code
     printed = capsys.readouterr()
     assert code == 2 and printed.err.count('\n') == 1
-    assert said in printed.err
+    assert expected in printed.err
     assert not (tmp_path / 'bag').exists()
 
 
@@ -151,7 +151,7 @@ def test_pattern_is_refused_before_anything_starts(tmp_path, capsys) -> None:
 
 
 class Recorded:
-    """Remembers what it is handed."""
+    """Keeps the ticks it receives."""
 
     def __init__(self) -> None:
         self.ticks: list[tuple[int, list[tuple[int, bytes]]]] = []

@@ -33,7 +33,7 @@ def test_weight_ends_where_the_impedance_carries_it(drops, stiffness):
 
 
 def test_weight_settles_within_0_6_s(drops):
-    """At 300/20, within 5 % of the final deflection, counted from when the rope gets taut."""
+    """At 300/20, within 5 % of the final deflection, counted from the instant the rope is taut."""
     t, turned, _ = drops[300.0]
     final = turned[LAST].mean()
     last_outside = np.flatnonzero(np.abs(turned - final) > 0.05 * final)[-1]
@@ -47,7 +47,7 @@ def test_stiffer_gains_bear_higher_peaks(drops):
 
 
 def test_nothing_is_felt_before_the_rope_is_taut(drops):
-    """The weight in the hand and in its free fall: within the sensor's code, 200 Nm over 2048."""
+    """While held and in free fall the torque is within a sensor code, 200 Nm over 2048."""
     t, _, torque = drops[300.0]
     assert np.abs(torque[t < TAUT_S]).max() <= 200.0 / 2048.0
 
@@ -64,13 +64,13 @@ def test_pure_position_control_bears_the_weight_worse(drops):
 
 
 def test_impacts_stay_below_the_stall_torque():
-    """Paper Fig 15: the wheel hits both stops again and again, below 170 Nm, with spikes."""
+    """Paper Fig 15: the wheel hits both stops repeatedly, below 170 Nm, with spikes."""
     traces = run('rig_rotary', 'impact').traces
     joint, reference = traces['/rotor/joint_states'], traces['/rotor/references']['position[1]']
     assert np.abs(joint['effort[0]']).max() < STALL
     for beyond in (joint['position[0]'] < 0.0873, joint['position[0]'] > 1.6577):
         assert np.count_nonzero(np.diff(beyond.astype(int)) == 1) >= 3
-    # The stop takes a speed of at least 1 rad/s, 20 Nms/rad answer; half of it in one period.
+    # The stop absorbs at least 1 rad/s, times 20 Nms/rad; half of that in one period.
     late = joint.t > 2.2
     assert np.abs(np.diff(reference[late])).max() > 10.0
 
@@ -81,8 +81,8 @@ def test_knee_s_force_follows_its_step_with_the_foot_on_the_pallet(name, base, s
     """
     Paper Fig 14: steady within 10 N before, during and after the step; the foot stands.
 
-    The foot begins in touch and bears load from the first reference on. While it bears the
-    step, by virtual work, it bears the knee's torque over its distance from the knee.
+    The foot begins in contact and carries load from the first reference on. Under the
+    step its force is, by virtual work, the knee's torque over its distance from the knee.
     Neglected are the shank's weight (below 2 Nm) and friction at the foot, below a fifth of the
     load, at the knee's height of 0.3 m, against 0.24 m of distance.
     """
@@ -114,7 +114,7 @@ def test_knee_rig_bears_the_drop():
     traces = run('rig_knee', 'drop').traces
     normal = traces['/coordinator/ground_contact']['wrench.force.z']
     assert 2000.0 < traces['/kfe/joint_states']['effort[0]'].max() < 7500.0
-    # A whole period of its swing, 2 Hz, dying out: the mean is the weight but for its decay.
+    # A whole period of its decaying swing, 2 Hz: the mean is the weight except for the decay.
     assert normal[-500:].mean() == pytest.approx(15.2 * GRAVITY, rel=0.1)
 
 

@@ -1,4 +1,4 @@
-"""Run files: the shipped ones, what an override does, and the resolved text."""
+"""Run files: the shipped ones, overrides, and the resolved text."""
 
 import math
 from pathlib import Path
@@ -35,7 +35,7 @@ def rig(tmp_path: Path, ram: str = 'model: isa_v5, load: {kind: mass}', step: st
 
 @pytest.mark.parametrize('path', SHIPPED, ids=lambda path: path.stem)
 def test_a_shipped_run_survives_its_resolved_text(path: Path) -> None:
-    """The bag carries this text; replay must get the same run from it, bit for bit."""
+    """The bag has this text; replay must get the same run from it, bit for bit."""
     run = load_run(path)
     again = RunConfig.from_yaml(run.to_yaml())
     assert again == run
@@ -103,8 +103,8 @@ def test_initial_positions_are_si_and_mid_stroke_by_default(tmp_path: Path) -> N
     ('model: isa_v5, load: {kind: mass}, initial_position_mm: 100.5', 'must be <= 100 mm'),
     ('model: isa_v5, load: {kind: mass, inertia: 0}',
      'rig.yaml: actuators.ram.load.inertia = 0 kg | kg m2, must be > 0'),
-    ('load: {kind: mass}', 'rig.yaml: actuators.ram.model = None is no model; valid: isa_v2'),
-    ('model: [isa_v5], load: {kind: mass}', "actuators.ram.model = ['isa_v5'] is no model"),
+    ('load: {kind: mass}', 'rig.yaml: actuators.ram.model = None is not a model; valid: isa_v2'),
+    ('model: [isa_v5], load: {kind: mass}', "actuators.ram.model = ['isa_v5'] is not a model"),
     ('model: isa_v5, load: mass', "actuators.ram.load = 'mass', must be a section"),
     ('model: isa_v5, load: {kind: mass}, parameters: {plant: {relief: {slope_lpm_per_mpa: 900}}}',
      'rig.yaml: actuators.ram: relief.slope_lpm_per_mpa = 900 l/min/MPa'),
@@ -120,7 +120,7 @@ def test_a_wrong_actuator_is_refused_by_file_and_key(
 
 
 def test_the_foot_stands_on_the_named_material(tmp_path: Path) -> None:
-    """leg.ground replaces the model's ground; single values still win, and the text keeps all."""
+    """leg.ground replaces the model's ground; single values take precedence; the text has all."""
     text = (CONFIG / 'leg.yaml').read_text(encoding='utf-8')
     path = tmp_path / 'leg.yaml'
     path.write_text(text + '  ground: wood\n  parameters: {ground: {friction: 0.4}}\n')
@@ -136,7 +136,7 @@ def test_the_foot_stands_on_the_named_material(tmp_path: Path) -> None:
     ('kind: mass', 'Mass'), ('kind: blocked', 'Blocked'), ('kind: wheel', 'Wheel'),
     ('kind: wood', 'Pad'), ('kind: metal, gap: 0.01', 'Pad')])
 def test_a_load_is_named_or_of_its_kind(tmp_path: Path, load: str, name: str) -> None:
-    """A named load is of another kind, which the resolved text says; it is read back."""
+    """A named load has another kind, which the resolved text contains; it is read back."""
     run = load_run(rig(tmp_path, f'model: isa_v5, load: {{{load}}}'))
     assert type(run.actuator('ram').load).__name__ == name
     assert f'kind: {name.lower()}' in run.to_yaml()
@@ -187,7 +187,7 @@ def test_a_damaged_resolved_text_is_refused(old: str, new: str, expected: str) -
 
 
 def test_a_text_from_before_a_parameter_is_read() -> None:
-    """The bag of a leg whose hip drop was not yet a number: the axes crossed at one height."""
+    """A leg's bag from before the parameter of the hip drop: the axes crossed at one height."""
     run = load_run(CONFIG / 'leg.yaml')
     text = run.to_yaml()
     assert '      hip_drop_m: 0.0\n' in text
@@ -213,7 +213,7 @@ def test_a_controller_that_cannot_be_is_refused(names, message):
 
 
 def test_controllers_of_file_and_command_line_take_part(tmp_path):
-    """In this order, and in the text that a bag carries."""
+    """In this order, also in the text stored in a bag."""
     path = tmp_path / 'leg.yaml'
     path.write_text((CONFIG / 'leg.yaml').read_text() + 'controllers: [gait, balance]\n')
     run = load_run(path).with_controllers(['sway'])

@@ -1,4 +1,4 @@
-"""Layers of values to checked parameter sets: what is refused, and at which file and key."""
+"""Layers of values to checked parameter sets: refused values, with file and key."""
 
 from dataclasses import dataclass
 import math
@@ -92,7 +92,7 @@ def test_what_is_wrong_is_named_with_file_and_key(
 ])
 def test_a_later_layer_is_blamed_at_its_own_file(
         over: dict[str, object], expected: str) -> None:
-    """The model's sheet is not at fault for what a run file says."""
+    """An error in a run file is not reported for the model's sheet."""
     section = merge(written(GOOD, MODEL), written(over, RUN))  # type: ignore[arg-type]
     with pytest.raises(ConfigError, match=expected):
         build(Sheet, section, MODEL)

@@ -1,4 +1,4 @@
-"""Strict YAML: what is refused, with its line, and numbers that keep every bit."""
+"""Strict YAML: errors with their line, and numbers that keep every bit."""
 
 from pathlib import Path
 from typing import Any

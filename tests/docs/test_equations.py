@@ -1,4 +1,4 @@
-"""Every equation number a docstring names is in docs/equations.md, and the other way round."""
+"""Equation numbers of docstrings and of docs/equations.md are the same."""
 
 from pathlib import Path
 import re
@@ -26,10 +26,10 @@ def numbers_in_document() -> set[str]:
 
 
 def test_every_number_in_the_code_is_documented():
-    """A reader finds each cited equation in the document."""
+    """Each cited equation is in the document."""
     assert numbers_in_code() - numbers_in_document() == set()
 
 
 def test_every_documented_equation_is_cited_by_the_code():
-    """The document has no equation that nothing computes."""
+    """Each equation of the document is computed by the code."""
     assert numbers_in_document() - numbers_in_code() == set()

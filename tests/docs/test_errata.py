@@ -1,4 +1,4 @@
-"""The list of errata: complete, and every place it names exists."""
+"""The list of errata: complete, and every place in it exists."""
 
 from dataclasses import replace
 import math
@@ -102,7 +102,7 @@ def test_errata_8_and_9_are_what_the_loop_does() -> None:
     assert 0.1 < least_damping(current_loop_poles(2513.3, *exchanged)) < 0.25
     assert 0.0 < least_damping(current_loop_poles(25133.0, *as_printed)) < 0.1
     as_read = current_loop_poles(25133.0, *exchanged)
-    # real poles only: no oscillation but the alternation of samples, and that decays
+    # real poles only: no oscillation except the alternation of samples, which decays
     assert all(as_read.imag == 0.0) and max(np.abs(as_read)) < 0.8
 
 

@@ -1,4 +1,4 @@
-"""What the README shows can be run as it stands there."""
+"""The examples of the README can be run as printed."""
 
 from pathlib import Path
 import re
@@ -55,7 +55,7 @@ def test_the_control_blocks_are_those_it_says(tmp_path: Path) -> None:
 @pytest.mark.parametrize('config, scenario, figure', FIGURES)
 def test_a_figure_of_the_table_has_a_scenario_that_names_it(
         config: str, scenario: str, figure: str) -> None:
-    """A scenario that fits its rig, and of which a report knows what to draw."""
+    """A scenario that fits its rig, with a figure that the report can draw."""
     fitted = load_scenario(find(scenario, SCENARIOS), load_run(find(config, CONFIG)))
     assert fitted.figure is not None and fitted.duration_s is not None
 

@@ -4,7 +4,7 @@ Digests of the messages of every shipped configuration under each of its scenari
     python -m tests.golden.message_digests          # write message_digests.json anew
 
 A digest is the sha256 over (time, sequence, CDR bytes) of one topic over `SECONDS`. It changes
-only where an equation or a message does; the commit that writes the file anew says which.
+only where an equation or a message does; the commit that writes the file anew explains it.
 """
 
 import hashlib
@@ -51,7 +51,7 @@ def pairs() -> dict[str, Scenario]:
             try:
                 found[f'{config} {name}'] = load_scenario(scenario, run)
             except ConfigError:
-                continue  # it is meant for actuators of another configuration
+                continue  # it is for actuators of another configuration
     return found
 
 

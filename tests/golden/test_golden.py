@@ -18,7 +18,7 @@ CONTENTS = {
     'rotor_step': ('rig_rotary.yaml', 150, '/rotor/load_cell'),
     'knee_push': ('rig_knee.yaml', 100, '/kfe/load_cell'),
 }
-"""Run file, ticks, and a topic that the bag is there for."""
+"""Run file, ticks, and the topic for which the bag was recorded."""
 
 
 def tolerances(bag: Path) -> Path:
@@ -39,14 +39,14 @@ def test_golden_bag_replays(assert_replays, bag):
 @pytest.mark.golden
 @pytest.mark.parametrize('bag', BAGS, ids=lambda bag: bag.name)
 def test_golden_bag_replays_bit_for_bit(assert_replays, bag):
-    """As on the machine that recorded it: nothing but an equation may change a bit."""
+    """Bits equal those of the recording machine: only a changed equation may change them."""
     assert_replays(bag)
 
 
 @pytest.mark.golden
 @pytest.mark.parametrize('bag', BAGS, ids=lambda bag: bag.name)
 def test_command_replays_golden_bag(bag):
-    """`isa replay` as users have it, in a process of its own."""
+    """`isa replay` as for a user, in a separate process."""
     done = subprocess.run(
         [sys.executable, '-m', 'isa_ros', 'replay', bag, '--tolerance', tolerances(bag)],
         cwd=ROOT, capture_output=True, text=True, timeout=300)
@@ -58,7 +58,7 @@ def test_command_replays_golden_bag(bag):
 
 @pytest.mark.parametrize('bag', BAGS, ids=lambda bag: bag.name)
 def test_golden_bag_holds_what_it_is_there_for(bag):
-    """A sample at t = 0 and one per tick; small enough for the repository."""
+    """A sample at t = 0 and one per tick; the size is small enough for the repository."""
     config, n_ticks, topic = CONTENTS[bag.name]
     read = Bag(bag)
     run = RunConfig.from_yaml(read.provenance.configuration)

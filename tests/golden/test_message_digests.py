@@ -1,4 +1,4 @@
-"""Every topic of every shipped configuration and scenario has the bytes it had."""
+"""The bytes of every topic of every shipped configuration and scenario are unchanged."""
 
 import json
 
@@ -10,7 +10,7 @@ PAIRS = pairs()
 
 
 def test_every_pair_is_recorded():
-    """Every shipped configuration is there, and every shipped scenario fits one of them."""
+    """Every shipped configuration is recorded, and every shipped scenario fits one of them."""
     assert sorted(PAIRS) == sorted(RECORDED)
     assert {name.split()[1] for name in PAIRS} >= {IDLE, 'drop.yaml', 'step.yaml'}
 
@@ -18,5 +18,5 @@ def test_every_pair_is_recorded():
 @pytest.mark.golden
 @pytest.mark.parametrize('name', RECORDED)
 def test_messages_are_those_of_the_recorded_digests(name):
-    """Compared topic by topic, so that a failure names the ones that changed."""
+    """Compared topic by topic, so that a failure lists the changed ones."""
     assert digests(PAIRS[name]) == RECORDED[name]

@@ -1,4 +1,4 @@
-"""The leg's bag in the readers that others use, topic by topic."""
+"""The leg's bag in other readers, topic by topic."""
 
 from collections import Counter
 from pathlib import Path
@@ -33,7 +33,7 @@ def test_every_topic_is_there_at_its_rate_with_simulation_time():
 
 
 def test_rosbag2_reader_knows_every_message():
-    """The metadata count what the file holds."""
+    """The counts of the metadata are those of the file."""
     with Reader(BAG) as reader:
         assert reader.message_count == N_SAMPLES * len(TOPICS) + sum(ECHOES.values())
         assert (reader.start_time, reader.duration) == (0, 80_000_001)  # rosbags adds 1 ns

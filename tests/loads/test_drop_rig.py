@@ -63,7 +63,7 @@ def test_blocked_wheel_sees_more_than_the_paper_s_250_nm():
     """
     Section 5.1 of the paper; without damping R (m g + sqrt((m g)^2 + k m v^2)).
 
-    The damping takes away less than exp(-zeta phi) of the swing, phi = pi/2 + asin(m g/swing)
+    The damping reduces the swing by less than exp(-zeta phi), phi = pi/2 + asin(m g/swing)
     its angle from rope taut to the deepest point.
     """
     peak = -fallen(0.25)[5].min()
@@ -78,10 +78,10 @@ def test_blocked_wheel_sees_more_than_the_paper_s_250_nm():
 
 def test_energy_is_kept_by_a_rope_without_damping():
     """
-    Weight, wheel and stretched rope exchange their energy, fallen height counted down.
+    Weight, wheel and stretched rope exchange their energy, fallen height counted negative.
 
-    At the step in which the rope gets taut or slack the force bends by k v: it changes the
-    speed by less than k v h^2/m and the energy by k v^2 h^2 = 1.3e-4 J; six such steps.
+    At the step in which the rope gets taut or slack the force's slope changes by k v: the
+    error is below k v h^2/m in speed and k v^2 h^2 = 1.3e-4 J in energy; six such steps.
     """
     sheet = replace(SHEET, rope_damping=0.0)
     _, turn, spin, fall, speed, _ = fallen(0.6, sheet, SHEET.inertia)
@@ -96,7 +96,7 @@ def test_energy_is_kept_by_a_rope_without_damping():
 
 def test_damped_rope_brings_the_weight_to_rest():
     """
-    L18: on a blocked wheel it ends where the rope carries it, w = slack + m g/k.
+    L18: on a blocked wheel the weight comes to rest at w = slack + m g/k.
 
     zeta = 0.5 gives 0.16 of the speed back at each bounce: the fourth lasts 1.5 ms. From 0.3 s
     on the swing at 141 rad/s falls to exp(-0.5 * 141 * 0.5 s) = 5e-16.
@@ -111,7 +111,7 @@ def test_damped_rope_brings_the_weight_to_rest():
 @given(turn=st.floats(-0.8, 0.8), speed=st.floats(-10.0, 10.0), fall=st.floats(-0.1, 0.5),
        velocity=st.floats(-5.0, 5.0), is_released=st.sampled_from([0.0, 1.0]))
 def test_rope_pulls_and_never_pushes(turn, speed, fall, velocity, is_released):
-    """L18, L20: T >= 0, the wheel is only ever pulled towards smaller angles; jit == Python."""
+    """L18, L20: T >= 0, the rope pulls the wheel towards smaller angles only; jit == Python."""
     row, state, rates = rope(), weight(fall, velocity, is_released), weight()
     torque = drop_rig.weight_rates(turn, speed, state, row, rates)
     assert torque <= 0.0
@@ -162,6 +162,6 @@ def test_restored_rig_continues_byte_for_byte():
     ('weight_kg', 0.0, r'weight_kg = 0 kg, must be >= 0\.01 kg'),
     ('radius', 0.0, r'radius = 0 m/m \| m/rad, must be > 0 ')])
 def test_a_value_outside_its_range_is_refused(name, value, message):
-    """What, value, unit and bound."""
+    """The message has name, value, unit and bound."""
     with pytest.raises(ParameterError, match=message):
         replace(SHEET, **{name: value})

@@ -1,4 +1,4 @@
-"""Loads of one actuator alone: stops, pads of the ground's law, nothing where nothing is."""
+"""Loads of a single actuator: stops, pads with the ground's law, no force without them."""
 
 from dataclasses import replace
 from functools import cache
@@ -46,7 +46,7 @@ def test_pad_is_the_ground_at_a_radius(material, turn, v):
 @pytest.mark.parametrize('model', MODELS)
 @given(turn=turns, v=speeds)
 def test_pad_never_pulls(model, turn, v):
-    """L21: one-sided; nothing within the gap."""
+    """L21: one-sided; no force within the gap."""
     pad = row(model, 'rubber').pad.copy()
     pad.gap = 0.005
     force = own.pad_force(turn, v, pad)
@@ -78,11 +78,11 @@ def test_materials_stiffen_with_load_and_differ_by_their_names():
 @pytest.mark.parametrize('material', MATERIALS)
 def test_actuator_pushes_on_the_pad_with_the_force_it_is_told(model, material, effort):
     """
-    At rest the sensor reads what the pad bears, and the pad is as deep as its law says.
+    At rest the sensor reads the pad's force, and the pad's depth follows from its law.
 
-    The slowest, 50 kg on rubber, halves its swing of 1500 N every 0.15 s: 0.2 N after 2 s. Left
-    is the force sensor's code, 10 kN | 200 Nm over 2048. The depth is compared with the force
-    that is there, at speeds below 1e-4 m/s: the law's damping is below 1e-4 of it.
+    The slowest, 50 kg on rubber, halves its swing of 1500 N every 0.15 s: 0.2 N after 2 s. The
+    rest is the force sensor's code, 10 kN | 200 Nm over 2048. The depth is compared with the force
+    at that instant, at speeds below 1e-4 m/s: the law's damping is below 1e-4 of it.
     """
     actuator = smart_actuator(model, material)
     start = actuator._body.load.position
@@ -97,13 +97,13 @@ def test_actuator_pushes_on_the_pad_with_the_force_it_is_told(model, material, e
 
 
 def test_stops_of_the_wheel_act_from_both_sides():
-    """M3: one-sided springs beyond the ends, nothing between them."""
+    """M3: one-sided springs beyond the ends, no force between them."""
     stops = row('smart_manifold', 'wheel').stops
     inside = own.stop_force(0.5 * (stops.low + stops.high), 3.0, stops)
     assert inside == 0.0
     assert own.stop_force(stops.high + 0.01, 0.0, stops) == pytest.approx(-500.0, rel=1e-12)
     assert own.stop_force(stops.low - 0.01, 0.0, stops) == pytest.approx(500.0, rel=1e-12)
-    # 20 Nms/rad more against what runs into the stop
+    # 20 Nms/rad more against motion into the stop
     assert own.stop_force(stops.high + 0.01, 2.0, stops) == pytest.approx(-540.0, rel=1e-12)
     assert own.stop_force(stops.low - 0.01, -2.0, stops) == pytest.approx(540.0, rel=1e-12)
 
@@ -111,7 +111,7 @@ def test_stops_of_the_wheel_act_from_both_sides():
 @pytest.mark.parametrize('load', ['mass', 'blocked'])
 @given(position=st.floats(-1.0, 3.0), velocity=speeds)
 def test_a_load_without_any_of_them_feels_none(load, position, velocity):
-    """A record of zeros."""
+    """The record is all zeros."""
     y, rates = state(position, velocity), state()
     assert own.own_load_force(y, 0.5, row('smart_manifold', load), rates) == 0.0
     assert rates.weight.fall == rates.weight.velocity == 0.0
@@ -120,7 +120,7 @@ def test_a_load_without_any_of_them_feels_none(load, position, velocity):
 @pytest.mark.parametrize('load', ['wheel', 'drop_rig', 'rubber'])
 @given(position=st.floats(-0.5, 2.5), velocity=speeds)
 def test_compiled_kernel_equals_its_python_source(load, position, velocity):
-    """Replay depends on it."""
+    """Replay depends on equal bits."""
     y, rates = state(position, velocity), state()
     record = row('smart_manifold', load)
     assert (own.own_load_force(y, 0.8, record, rates)
@@ -131,6 +131,6 @@ def test_compiled_kernel_equals_its_python_source(load, position, velocity):
     ('gap', -0.1, '>= 0 '), ('radius', 0.0, '> 0 '), ('stiffness', 0.0, '> 0 '),
     ('damping', -0.1, '>= 0 '), ('inertia', 0.0, '> 0 ')])
 def test_a_value_outside_its_range_is_refused(name, value, bound):
-    """The message names the parameter and the bound."""
+    """The message has the parameter and the bound."""
     with pytest.raises(ParameterError, match=f'Pad.{name} = .*must be {bound}'):
         replace(own_load('isa_v5', 'wood'), **{name: value})

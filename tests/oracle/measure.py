@@ -1,4 +1,4 @@
-"""How far a coupled run is from the one ODE, in the measures of the accuracy bars."""
+"""Errors of a coupled run against the one ODE, in the measures of the accuracy limits."""
 
 from dataclasses import dataclass, fields
 
@@ -8,7 +8,7 @@ from tests.oracle.rig import Rig, ROW_NS, WINDOWS
 
 @dataclass(frozen=True)
 class Errors:
-    """Relative errors but for the angle; arrays are HAA, HFE, KFE."""
+    """Relative errors, except for the angle; arrays are HAA, HFE, KFE."""
 
     rms: np.ndarray      # window-mean forces: RMS of the error over RMS of the reference
     peak: np.ndarray     # largest window-mean force

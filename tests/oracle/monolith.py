@@ -130,7 +130,7 @@ def run(n_rows, steps_per_row, command_steps, release_step, commands, y0, pressu
 
 def monolith(rig, actuators, leg, commands, n_rows, release_ns, aside):
     """
-    Run the one ODE from where the three `SmartActuator` and the `Leg` stand at t = 0.
+    Run the one ODE from the states of the three `SmartActuator` and the `Leg` at t = 0.
 
     Pistons and rotor start ``aside`` (m | rad). Returns the `TRACE`, shape (n_rows,).
     """

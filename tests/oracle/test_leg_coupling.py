@@ -1,5 +1,5 @@
 """
-The load port against leg and actuators as one ODE: the accuracy the coupling promises.
+The load port against leg and actuators as one ODE: the specified accuracy.
 
 Measured with sensors of 24 bits and 1 nm. With the shipped 12 bits the system itself tells
 two starts 1 nm apart by more than the exchange does
@@ -105,7 +105,7 @@ def test_drop_at_half_a_millisecond(variant):
 
 @pytest.mark.parametrize('variant', list(VARIANTS))
 def test_drop_at_2_ms_stays_bounded(variant):
-    """Beyond the usable step forces are wrong by less than half and the leg lands all the same."""
+    """Beyond the usable step forces are wrong by less than half, and the leg still lands."""
     errors = drop(variant)[2 * MS]
     assert errors.rms.max() < 0.5 and errors.peak.max() < 0.5 and errors.ground[0] < 0.5
     assert errors.angle.max() < 2.0

@@ -4,7 +4,7 @@ from isa_ros.analysis.accuracy import agreement
 import pytest
 from tests.sheets import MODELS
 
-FLOOR = 1e-9  # what scipy's tolerance leaves, where a state has been larger before
+FLOOR = 1e-9  # error of scipy's tolerance, if a state has been larger before
 SMOOTH, SINE, STEPS = agreement.PIECES
 parametrized = pytest.mark.parametrize(
     ('model', 'load'), [(model, load) for model in MODELS for load in agreement.LOADS])
@@ -18,9 +18,9 @@ def relative(model: str, load: str, piece: agreement.Piece, h: float = 20e-6) ->
 @parametrized
 def test_a_smooth_piece_is_exact_to_nine_digits(model, load):
     """
-    Pressures and positions; physics says 2e-11.
+    Pressures and positions; 2e-11 by physics.md.
 
-    RK4 leaves (p_c h)^4/120 of a jump to the current's pole p_c = 2000/s, so its integral
+    RK4 has an error of (p_c h)^4/120 of a jump at the pole p_c = 2000/s, so its integral
     lacks 1e-11 s of the jump: of 0.4 of the current over 10 ms, 4e-10.
     """
     found = relative(model, load, SMOOTH)
@@ -31,7 +31,7 @@ def test_a_smooth_piece_is_exact_to_nine_digits(model, load):
 
 @parametrized
 def test_smooth_differences_fall_with_the_fourth_power_of_the_step(model, load):
-    """A tenth of the step: 1e-4 of every state's difference, down to what scipy leaves."""
+    """A tenth of the step: 1e-4 of every state's difference, down to scipy's own error."""
     coarse, fine = (relative(model, load, SMOOTH, h) for h in (20e-6, 2e-6))
     for state, difference in coarse.items():
         assert fine[state] < 1e-3 * difference + FLOOR, state
@@ -41,7 +41,7 @@ def test_smooth_differences_fall_with_the_fourth_power_of_the_step(model, load):
 @pytest.mark.parametrize('model', ['smart_manifold', 'isa_v5'])
 def test_null_and_dual_gain_point_leave_a_millionth_of_the_pressure(model, load):
     """
-    A slope that jumps by J within a step leaves up to J h^2/8 of it.
+    A slope that jumps by J within a step causes an error of up to J h^2/8.
 
     At null a land of 0.19 m3/s per m of spool closes as another opens, at 4.5 mm/s of spool
     speed; on some 15 ml of oil that is J = 7e10 Pa/s2 and 3.5 Pa, at the dual-gain point 5.25
@@ -56,7 +56,7 @@ def test_null_and_dual_gain_point_leave_a_millionth_of_the_pressure(model, load)
 @pytest.mark.parametrize('piece', [SINE, STEPS], ids=lambda piece: piece.name)
 @parametrized
 def test_differences_across_kinks_are_those_of_the_step(model, load, piece):
-    """A tenth of the step: 1/100 of what a kink leaves, 1/10 of what a jump does."""
+    """A tenth of the step: 1/100 of the error of a kink, 1/10 of that of a jump."""
     coarse, fine = (max(relative(model, load, piece, h).values()) for h in (20e-6, 2e-6))
     assert FLOOR < fine < 0.1 * coarse
 

@@ -1,4 +1,4 @@
-"""The paper as data: spot checks of what is printed, and a loader that takes nothing else."""
+"""The paper as data: spot checks of printed values, and a strict loader."""
 
 from isa_ros.cli.main import main
 from isa_ros.config.sections import Place
@@ -49,7 +49,7 @@ def test_words_and_empty_cells_have_no_number():
     assert cell('table_2', 'Valve spool feedback', 'Smart manifold').text == 'Mechanic'
     for row in ('Current K_i', 'Spool K_p'):
         empty = cell('table_4', row, 'Smart manifold')
-        with pytest.raises(ConfigError, match="Smart manifold = '-' is no number"):
+        with pytest.raises(ConfigError, match="Smart manifold = '-' is not a number"):
             empty.number
 
 
@@ -74,12 +74,12 @@ def test_every_statement_is_a_number_with_its_place():
 
 @pytest.mark.parametrize('change, expected', [
     (("'1', '2'", "'1', 'x2'"), r"t\.rows\[0\]\.printed = 'x2', must be a number"),
-    (("'1', '2'", "'1'"), r'printed has 1 values, must be 2, one for each column'),
+    (("'1', '2'", "'1'"), r'printed has 1 values, must have 2, one for each column'),
     (("'1', '2'", "1, '2'"), r'printed = 1, must be a text \(in quotes'),
-    (('unit: mm', 'unit: [mm]'), r'unit has 1 values, must be 2'),
+    (('unit: mm', 'unit: [mm]'), r'unit has 1 values, must have 2'),
     (('row: r, ', ''), r'lacks row'),
     (('caption: c', 'captain: c'), r'captain is unknown; did you mean caption'),
-    (('rows:\n', 'rows:\n  - {row: r, unit: mm, printed: ["1", "2"]}\n'), r"'r' is there twice"),
+    (('rows:\n', 'rows:\n  - {row: r, unit: mm, printed: ["1", "2"]}\n'), r"'r' occurs twice"),
 ])
 def test_a_table_that_is_not_as_it_must_be_is_refused(change, expected):
     with pytest.raises(ConfigError, match=expected):
@@ -93,10 +93,10 @@ def test_a_statement_needs_its_place():
 
 
 @pytest.mark.parametrize('call, expected', [
-    (lambda: cell('table_6', 'x', 'y'), 'table_6 is no table; did you mean'),
+    (lambda: cell('table_6', 'x', 'y'), 'table_6 is not a table; did you mean'),
     (lambda: cell('table_5', 'd_m', 'Value'), "table_5 has no 'd_m'; did you mean L_m or D_m"),
     (lambda: cell('table_5', 'D_m', 'ISA v5'), "table_5 has no 'ISA v5'; valid: Value"),
-    (lambda: statement('spool_gian'), 'spool_gian is no statement; did you mean spool_gain'),
+    (lambda: statement('spool_gian'), 'spool_gian is not a statement; did you mean spool_gain'),
 ])
 def test_an_unknown_name_is_answered_with_the_near_ones(call, expected):
     with pytest.raises(ConfigError, match=expected):

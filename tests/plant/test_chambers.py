@@ -28,7 +28,7 @@ def test_areas_are_table_2():
 
 @pytest.mark.parametrize('rod_mm', [21.5, 30.0])
 def test_a_rod_as_thick_as_its_piston_is_refused(rod_mm):
-    """It would leave no area to divide by."""
+    """The rod would leave no piston area, which is a divisor."""
     with pytest.raises(ParameterError, match=f'rod_mm = {rod_mm:g} mm, must be < bore_mm = 21.5'):
         replace(actuator_sheet('isa_v5').plant.drive, rod_mm=rod_mm)
 
@@ -54,7 +54,7 @@ def test_each_swept_volume_counts_once(oil):
 @given(fraction=fractions, q_a=flows, q_b=flows, p_a=pressures, p_b=pressures,
        v=st.floats(-1.0, 1.0))
 def test_oil_is_conserved(fraction, q_a, q_b, p_a, p_b, v):
-    """C2: V dP/beta is inflow minus swept volume; what leaks from A enters B."""
+    """C2: V dP/beta is inflow minus swept volume; the leakage from A enters B."""
     for oil in (MANIFOLD, ISA_V5):
         s = fraction * oil.stroke
         v_a, v_b = chambers.volumes(s, oil)
@@ -75,7 +75,7 @@ def test_aerated_oil_is_soft_and_continuous(oil):
 
 @BOTH
 def test_oil_stiffness_is_the_linearised_force(oil):
-    """C4: trapped oil answers a small displacement with k_oil (integral of C2)."""
+    """C4: trapped oil has the stiffness k_oil for a small displacement (integral of C2)."""
     s, step = 0.4 * oil.stroke, 1e-9
     rate_a, rate_b = chambers.pressure_rates(0.0, 0.0, 10e6, 10e6, s, 1.0, 0.0, oil)
     force = chambers.hydraulic_force(rate_a * step, rate_b * step, oil)

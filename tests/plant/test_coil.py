@@ -25,7 +25,7 @@ def wired(coils: str) -> np.record:
 
 
 def test_amplifier_voltage_limits_a_large_current_step():
-    """V1: 24 V over 9.2 H is 2.6 A/s at zero current, and nothing is left at 10 mA."""
+    """V1: 24 V over 9.2 H is 2.6 A/s at zero current, and zero at 10 mA."""
     assert coil.current_rate(0.0, 0.010, CLOSED) == pytest.approx(24.0 / 9.2)
     assert coil.current_rate(0.010, 0.020, CLOSED) == pytest.approx(0.0, abs=1e-9)
     assert coil.current_rate(0.0, 0.001, CLOSED) == pytest.approx(2.0)
@@ -40,7 +40,7 @@ def test_the_circuit_follows_the_wiring():
 
 
 def test_one_open_coil_halves_what_the_amplifier_can_give():
-    """At 24 V: 10 mA in parallel, 5 mA with one coil broken; the valve sees half of each."""
+    """At 24 V: 10 mA in parallel, 5 mA with one coil broken; on the series scale half of each."""
     for coils, largest in (('parallel', 10e-3), ('one_open', 5e-3)):
         own = wired(coils)
         assert coil.current_rate(largest, 1.0, own) == pytest.approx(0.0, abs=1e-9)

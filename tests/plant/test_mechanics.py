@@ -15,7 +15,7 @@ def test_sensor_reads_the_spring_and_its_damping():
 
 
 def test_the_sensor_pulls_as_it_pushes():
-    """M2: the torque sensor is no one-sided contact."""
+    """M2: the torque sensor is not a one-sided contact."""
     assert mechanics.sensor_force(0.0, 0.0, 0.001, 0.0, ROTOR) == pytest.approx(-20.0)
 
 
@@ -31,21 +31,21 @@ def test_play_is_odd_and_takes_at_most_the_gap(d, j):
 
 @given(depth=st.floats(-0.1, 0.1), rate=st.floats(-10.0, 10.0))
 def test_a_contact_never_pulls(depth, rate):
-    """M3: no force apart, never a negative one."""
+    """M3: no force without contact, never a negative one."""
     force = one_sided(depth, rate, 5e4, 20.0)
     assert force >= 0.0
     assert depth > 0.0 or force == 0.0
 
 
 def test_own_stops_push_back_into_the_range():
-    """M3: positive below 0, negative beyond the stroke, nothing between."""
+    """M3: positive below 0, negative beyond the stroke, zero between."""
     assert mechanics.stop_force(-0.001, 0.0, 1.745, ROTOR) == pytest.approx(50.0)
     assert mechanics.stop_force(1.746, 0.0, 1.745, ROTOR) == pytest.approx(-50.0)
     assert mechanics.stop_force(0.9, 5.0, 1.745, ROTOR) == 0.0
 
 
 def test_own_stops_damp_what_runs_into_them():
-    """M3: 20 Nms/rad against the speed into the stop, on top of 50 Nm; off it less."""
+    """M3: 20 Nms/rad against the speed into the stop, plus 50 Nm; less when leaving it."""
     assert mechanics.stop_force(-0.001, -1.0, 1.745, ROTOR) == pytest.approx(70.0)
     assert mechanics.stop_force(-0.001, 1.0, 1.745, ROTOR) == pytest.approx(30.0)
     assert mechanics.stop_force(1.746, 1.0, 1.745, ROTOR) == pytest.approx(-70.0)

@@ -106,7 +106,7 @@ def rates_at(
 @pytest.mark.parametrize(('p_a', 'p_b'), [(9e6, 12e6), (23e6, 5e6), (5e6, 23e6)])
 @pytest.mark.parametrize('model', MODELS)
 def test_what_the_supply_gives_and_the_return_lacks_is_in_the_chambers(model, p_a, p_b):
-    """V9, C2, C6: q_p - q_t is what compresses the oil, with either relief open too."""
+    """V9, C2, C6: q_p - q_t compresses the oil, also with either relief valve open."""
     plant = plant_row(model)
     rates, (_, q_p, q_t) = rates_at(plant, p_a=p_a, p_b=p_b)
     v_a, v_b = chambers.volumes(0.5 * plant.chambers.stroke, plant.chambers)
@@ -117,7 +117,7 @@ def test_what_the_supply_gives_and_the_return_lacks_is_in_the_chambers(model, p_
 @pytest.mark.parametrize('force', [-500.0, 0.0, 800.0])
 @pytest.mark.parametrize('model', MODELS)
 def test_rest_pressures_hold_the_force(model, force):
-    """C3: and without a force both chambers are at what the leaking lands divide."""
+    """C3: without a force both chambers have the pressures divided by the leaking lands."""
     plant = plant_row(model)
     force *= 0.05 if model == 'smart_manifold' else 1.0
     p_a, p_b = rest_pressures(plant, SUPPLY, 0.3e6, force)
@@ -203,7 +203,7 @@ def test_oil_spring_sets_the_natural_frequency(model):
 def test_relief_holds_22_to_22_5_mpa(model, speed):
     """Section 2.7: driven in at up to the relief's flow, the cap side stays at 22 MPa."""
     body = Body(actuator_sheet(model), 0.8 * plant_row(model).chambers.stroke)
-    body.row.load.velocity = -speed  # inverse mass 0: a load that nothing slows
+    body.row.load.velocity = -speed  # inverse mass 0: a load of constant speed
     body.row.plant.mechanics.velocity = -speed
     stroke = plant_row(model).chambers.stroke
     peak = 0.0
@@ -225,7 +225,7 @@ def test_the_spool_stays_within_its_stops():
 @pytest.mark.parametrize('model', MODELS)
 @pytest.mark.parametrize('force', [1e6, -1e6])
 def test_rest_pressures_stay_between_return_and_supply(model, force):
-    """A start under a load beyond stall is oil at supply and return, not oil in tension."""
+    """Under a load beyond stall the oil starts at supply and return pressure, not in tension."""
     p_a, p_b = rest_pressures(plant_row(model), SUPPLY, 0.2e6, force)
     assert (p_a, p_b) == ((SUPPLY, 0.2e6) if force > 0.0 else (0.2e6, SUPPLY))
 
@@ -233,7 +233,7 @@ def test_rest_pressures_stay_between_return_and_supply(model, force):
 @pytest.mark.parametrize('model', MODELS)
 @pytest.mark.parametrize('share', [0.5, 0.98, -0.98])
 def test_rest_pressures_hold_up_to_stall(model, share):
-    """C3: up to stall either way, exactly but for a rounding of the pressures' force."""
+    """C3: up to stall either way, exact except for a rounding of the pressures' force."""
     plant = plant_row(model)
     oil = plant.chambers
     force = share * SUPPLY * (oil.area_a if share > 0.0 else oil.area_b)

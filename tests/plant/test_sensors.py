@@ -38,5 +38,5 @@ def test_zero_force_reads_exactly_zero():
 
 def test_a_fraction_of_a_bit_is_refused():
     """S2: codes are whole."""
-    with pytest.raises(ParameterError, match='adc_bits = 12.5 bit, must be whole'):
+    with pytest.raises(ParameterError, match='adc_bits = 12.5 bit, must be a whole number'):
         replace(actuator_sheet('isa_v5').plant.sensors, adc_bits=12.5)

@@ -159,14 +159,14 @@ def test_the_lap_of_a_land_takes_from_its_own_flow_only(land, spool, chamber, ot
 
 @given(x=spools, p_a=pressures, p_b=pressures)
 def test_no_lap_is_the_plain_valve(x, p_a, p_b):
-    """V14: the four lands one by one give what the shared evaluation gives, bit for bit."""
+    """V14: the four lands one by one equal the shared evaluation, bit for bit."""
     plain = servo_valve.port_flows(x, p_a, p_b, SUPPLY, 0.0, MANIFOLD)
     assert servo_valve.port_flows(x, p_a, p_b, SUPPLY, 0.0, UNLAPPED) == plain
 
 
 @given(x=spools, p_a=pressures, p_b=pressures)
 def test_flow_is_conserved_with_lap(x, p_a, p_b):
-    """V9 holds whatever opens when."""
+    """V9 holds for any laps."""
     q_a, q_b, q_p, q_t = servo_valve.port_flows(x, p_a, p_b, SUPPLY, 0.0, LAPPED)
     scale = abs(q_a) + abs(q_b) + abs(q_p) + abs(q_t)
     assert q_p == pytest.approx(q_a + q_b + q_t, abs=1e-15 * scale)
@@ -194,7 +194,7 @@ def test_land_factors_give_equal_speed_both_ways():
 
 @given(x=spools, p_a=pressures, p_b=pressures, p_s=pressures, p_t=st.floats(0.0, 1e6))
 def test_flow_is_conserved(x, p_a, p_b, p_s, p_t):
-    """V9: what leaves the supply enters a chamber or the return: q_p = q_a + q_b + q_t."""
+    """V9: oil from the supply enters a chamber or the return: q_p = q_a + q_b + q_t."""
     for valve in (MANIFOLD, ISA_V5):
         q_a, q_b, q_p, q_t = servo_valve.port_flows(x, p_a, p_b, p_s, p_t, valve)
         scale = abs(q_a) + abs(q_b) + abs(q_p) + abs(q_t)

@@ -100,7 +100,7 @@ def test_electric_feedback_is_ten_times_less_sensitive():
 
 @given(x=st.floats(-1e-3, 1e-3), v=st.floats(-1.0, 1.0))
 def test_the_stop_holds_the_spool(x, v):
-    """Beyond 0.178 mm the spool stands at the stop, without speed into it."""
+    """Beyond 0.178 mm the spool is at the stop, without speed into it."""
     y, x_max = valve_state(x, v, 1.0), MANIFOLD.valve.x_max
     spool.stop_spool(y, x_max)
     assert abs(y.spool) <= x_max

@@ -1,4 +1,4 @@
-"""Copies of a process, made by one that has nothing else to do: a script of its own."""
+"""Forked copies of a process, made by a separate script without other work."""
 
 import subprocess
 import sys
@@ -29,7 +29,7 @@ def run(script: str) -> subprocess.CompletedProcess[str]:
 
 
 def test_a_copy_works_and_its_exit_code_is_returned():
-    """With what was there before it, in a process and a session of its own."""
+    """With the state before the fork, in its own process and session."""
     done = run("""
         known = 'before'
         def work():
@@ -85,7 +85,7 @@ def test_a_copy_that_does_not_end_in_time_is_told():
 
 
 def test_a_copy_holds_no_file_of_the_original():
-    """A name that the original has claimed is free when the original gives it up."""
+    """A name that the original has claimed is free once the original releases it."""
     run("""
         claim = socket.socket(socket.AF_UNIX, socket.SOCK_DGRAM)
         claim.bind(f'\\0isa_ros/test_forked/{os.getpid()}')
@@ -130,7 +130,7 @@ def test_a_process_with_another_thread_is_not_copied():
 
 @pytest.mark.ros
 def test_a_process_with_a_node_is_not_copied():
-    """The threads of the middleware would be missing in the copy, and hold its locks."""
+    """The middleware's threads would be missing in the copy, and their locks would stay held."""
     run("""
         from isa_ros.nodes.middleware.environment import set_defaults
         set_defaults()

@@ -1,4 +1,4 @@
-"""The process list of a run, and what becomes of its processes."""
+"""The process list of a run, and the end of its processes."""
 
 from dataclasses import replace
 import errno
@@ -93,7 +93,7 @@ def test_a_killed_child_is_named_with_its_signal(sleeper):
 
 
 def test_a_child_that_does_not_end_is_killed(monkeypatch, tmp_path, sleeper):
-    """SIGTERM is ignored; after the grace the process is gone all the same."""
+    """SIGTERM is ignored; after the grace period the process has ended."""
     ready = tmp_path / 'ready'
     (tmp_path / 'sleeper.py').write_text(
         'import pathlib, signal\n'

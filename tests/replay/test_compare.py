@@ -140,7 +140,7 @@ def foreign(path, data):
 
 
 def test_padding_is_no_difference(tmp_path):
-    """Middlewares leave it uninitialised: only fields count."""
+    """Middlewares leave padding uninitialised, so only fields are compared."""
     data = dict(tick_messages(0))[NAMES.index('/hip/valve')]
     text = b'hip/spool\0'  # 10 bytes, padded to 12
     padded = bytearray(data)
@@ -173,7 +173,7 @@ def test_tolerance_of_one_topic_leaves_the_others_strict(bag):
 
 
 def test_cut_bag_compares_up_to_its_end(tmp_path):
-    """What replay does with a bag cut short: it stops where the bag stops."""
+    """A replay of a bag cut short ends at the end of the bag."""
     path = record(tmp_path / 'rig', 700)
     path.write_bytes(path.read_bytes()[:-100_000])
     bag = Bag(path)

@@ -1,4 +1,4 @@
-"""Bags of other versions: what differs is said first, and what can be simulated is."""
+"""Bags of other versions: differences are listed, then the run is simulated if possible."""
 
 from importlib.metadata import version
 from pathlib import Path
@@ -39,7 +39,7 @@ def here(tmp_path_factory) -> Bag:
 
 @pytest.fixture
 def replayed(capsys):
-    """Return what `isa replay` of a bag ends with: exit code, lines said, errors."""
+    """Return the result of `isa replay` of a bag: exit code, output lines, errors."""
     def replay(bag: Path) -> tuple[int, list[str], str]:
         code = main(['replay', str(bag)])
         printed = capsys.readouterr()
@@ -49,7 +49,7 @@ def replayed(capsys):
 
 
 def edited(pattern: str, replacement: str):
-    """Return a change of a configuration that must find its place."""
+    """Return a replacement in a configuration that must occur there."""
     def change(text: str) -> str:
         changed, count = re.subn(pattern, replacement, text, count=1, flags=re.MULTILINE)
         assert count == 1
@@ -64,7 +64,7 @@ def test_bag_of_this_installation_differs_in_nothing(here, replayed):
 
 
 def test_other_versions_are_said_first_and_simulated(here, replayed, tmp_path):
-    """Here some are other, one was not recorded, and one is not known."""
+    """Some versions differ here, one was not recorded, and one is unknown."""
     there = installed_versions() | {'numpy': '1.0', 'numba': '0.1', 'fortran': '77'}
     del there['llvmlite']
     bag = rewrite(here, tmp_path / 'old', versions=there)
@@ -93,17 +93,17 @@ def test_key_that_is_unknown_here_is_named_and_not_simulated(here, replayed, tmp
     bag = rewrite(here, tmp_path / 'new', configuration=edited(
         r'^( +)kf: (.*)$', r'\1kf: \2\n\1magic: 1.0'))
     code, lines, error = replayed(bag)
-    said = 'configuration.yaml: actuators.rotor.sheet.reu.force.magic is unknown here'
-    assert (code, lines) == (2, [said])
-    assert error == f'isa: {bag / "new_0.mcap"}: cannot be simulated by this version: {said}\n'
+    expected = 'configuration.yaml: actuators.rotor.sheet.reu.force.magic is unknown here'
+    assert (code, lines) == (2, [expected])
+    assert error == f'isa: {bag / "new_0.mcap"}: cannot be simulated by this version: {expected}\n'
 
 
 def test_key_that_the_bag_lacks_is_named_and_not_simulated(here, replayed, tmp_path):
     bag = rewrite(here, tmp_path / 'old', configuration=edited(r'^ +kf: .*\n', ''))
     code, lines, error = replayed(bag)
-    said = 'configuration.yaml: actuators.rotor.sheet.reu.force.kf is missing in the bag'
-    assert (code, lines) == (2, [said])
-    assert said in error
+    expected = 'configuration.yaml: actuators.rotor.sheet.reu.force.kf is missing in the bag'
+    assert (code, lines) == (2, [expected])
+    assert expected in error
 
 
 def test_sections_that_came_later_are_said_and_simulated(here, replayed, tmp_path):
@@ -144,7 +144,7 @@ def test_topic_that_the_bag_lacks_is_said_and_the_rest_compared(here, replayed, 
 
 
 def test_topic_that_is_unknown_here_is_said_and_leaves_the_answer_no(here, replayed, tmp_path):
-    """What the bag holds of it was not shown again."""
+    """The bag's messages of this topic were not reproduced."""
     bag = rewrite(here, tmp_path / 'new', rename={'/rotor/valve': '/rotor/ghost'})
     code, lines, _ = replayed(bag)
     assert code == 1
@@ -165,7 +165,7 @@ def test_topic_of_another_type_is_not_compared(here, replayed, tmp_path):
 
 
 def test_topic_of_another_definition_is_not_compared(here, replayed, tmp_path, monkeypatch):
-    """A field more than here, say: the name is the same, the hash of the definition is not."""
+    """For example with one more field: the name is the same, its definition has another hash."""
     other = Definition(definition(VALVE).text, 'RIHS01_' + '0' * 64)
     with monkeypatch.context() as patch:
         patch.setattr(writer, 'definition', lambda name: (

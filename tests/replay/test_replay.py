@@ -1,4 +1,4 @@
-"""Replay: what is fed back, what a changed input gives, what a cut bag gives."""
+"""Replay: its inputs, the result of a changed input, and of a bag cut short."""
 
 from pathlib import Path
 import shutil
@@ -50,12 +50,12 @@ def test_recorded_commands_take_effect_at_their_ticks():
 
 
 def test_a_setpoint_changed_by_one_percent_is_found(here, tmp_path, capsys):
-    """Exit code 1, naming the first differing tick, topic and field."""
+    """Exit code 1, with the first differing tick, topic and field."""
     changed = tmp_path / 'changed'
     rewrite(Bag(here), changed, one_percent_more)
     difference = replay(Bag(changed)).report.difference
     assert difference is not None
-    # the knee's loop answers within the tick, the foot with it; topics are in sorted order
+    # the knee's loop responds within the tick, and so does the foot; topics are sorted
     assert difference.tick == EFFORT_TICK + 1
     assert (difference.topic, difference.field) == (
         '/coordinator/ground_contact', 'wrench.force.x')
@@ -65,7 +65,7 @@ def test_a_setpoint_changed_by_one_percent_is_found(here, tmp_path, capsys):
 
 
 def test_a_damaged_bag_is_an_error(here, tmp_path, capsys):
-    """Exit code 2, one line naming the file."""
+    """Exit code 2, one line with the file."""
     damaged = tmp_path / 'damaged'
     shutil.copytree(here, damaged)
     path = next(damaged.glob('*.mcap'))
@@ -79,7 +79,7 @@ def test_a_damaged_bag_is_an_error(here, tmp_path, capsys):
 
 
 def test_a_bag_cut_short_replays_to_its_end(here, tmp_path, capsys):
-    """Exit code 0; the report says where it ends."""
+    """Exit code 0; the report has the time of the end."""
     cut = tmp_path / 'cut'
     cut.mkdir()
     path = next(here.glob('*.mcap'))

@@ -1,4 +1,4 @@
-"""Gains that changed under way: recorded with their tick, and an input of the replay."""
+"""Gains that changed during a run: recorded with their tick, and an input of the replay."""
 
 from pathlib import Path
 
@@ -22,7 +22,7 @@ N_TICKS = 60
 
 @pytest.fixture(scope='module')
 def tuned(tmp_path_factory) -> Path:
-    """Return a bag of the leg with gains of two actuators changed under way."""
+    """Return a bag of the leg with gains of two actuators changed during the run."""
     provenance = Bag(GOLDEN).provenance
     local = LocalRun(RunConfig.from_yaml(provenance.configuration), TUNED)
     directory = tmp_path_factory.mktemp('bags') / 'tuned'
@@ -32,7 +32,7 @@ def tuned(tmp_path_factory) -> Path:
 
 
 def with_kp(bag: Path, directory: Path, value: float) -> Path:
-    """Record a bag again with another force.kp said at the first tick."""
+    """Record a bag again with another force.kp in its first applied parameters."""
     source = Bag(bag)
     topics = [Topic(name, source.types[name]) for name in sorted(source.types)]
     index = {topic.name: k for k, topic in enumerate(topics)}
@@ -62,14 +62,14 @@ def test_a_bag_with_tuned_gains_replays_to_the_same_bytes(tuned, tmp_path):
 
 
 def test_a_gain_changed_by_one_percent_is_found(tuned, tmp_path):
-    """In the states of the tick from which it is in force."""
+    """The difference is in the states of the tick from which the gain is in force."""
     difference = replay(Bag(with_kp(tuned, tmp_path / 'changed', 9.09e-8))).report.difference
     assert difference is not None
     assert difference.tick == 1
 
 
 def test_a_recorded_gain_that_cannot_be_is_refused(tuned, tmp_path, capsys):
-    """Exit code 2: a bag from elsewhere makes nothing but a simulation happen."""
+    """Exit code 2: an untrusted bag can only start a simulation."""
     assert main(['replay', str(with_kp(tuned, tmp_path / 'wrong', -1.0))]) == 2
     error = capsys.readouterr().err
     assert error.count('\n') == 1

@@ -1,4 +1,4 @@
-"""Tolerance files: what they mean, and what is refused by file, key and value."""
+"""Tolerance files: their meaning, and refusals with file, key and value."""
 
 from isa_ros.errors import ConfigError
 from isa_ros.replay.tolerances import load_tolerances, Tolerance
@@ -41,13 +41,13 @@ def test_both_bounds_add_up(load):
     assert not tolerance.admits(-100.0, -111.01)
 
 
-@pytest.mark.parametrize('text, said', [
+@pytest.mark.parametrize('text, expected', [
     ('/knee: {position: 1.0}',
      'tolerance.yaml: /knee: no such topic in the bag, which has /hip/joint_states, /hip/load'),
-    ('/hip/load_cell: 1.0', 'tolerance.yaml: /hip/load_cell = 1.0, must be fields'),
+    ('/hip/load_cell: 1.0', 'tolerance.yaml: /hip/load_cell = 1.0, must be a section of fields'),
     ('/hip/load_cell: {wrench.force.w: 1.0}',
-     'tolerance.yaml: /hip/load_cell: wrench.force.w: must be a number of the message: wrench.f'),
-    ('/hip/load_cell: {header.stamp.sec: 1}', 'header.stamp.sec: must be a number'),
+     'tolerance.yaml: /hip/load_cell: wrench.force.w: must be a float field of the message: wr'),
+    ('/hip/load_cell: {header.stamp.sec: 1}', 'header.stamp.sec: must be a float field'),
     ('/hip/load_cell: {wrench.force.x: -1.0}',
      'wrench.force.x: absolute = -1.0, must be a finite number >= 0'),
     ('/hip/load_cell: {wrench.force.x: .inf}', 'absolute = inf, must be a finite number'),
@@ -57,6 +57,6 @@ def test_both_bounds_add_up(load):
     ('/hip/load_cell: {wrench.force.x: {rel: 1.0}}', r"\{'rel': 1.0\}, must be a number or have"),
     ('/hip/load_cell: {}\n/hip/load_cell: {}', 'duplicate key /hip/load_cell'),
 ])
-def test_malformed_tolerance_is_refused(load, text, said):
-    with pytest.raises(ConfigError, match=said):
+def test_malformed_tolerance_is_refused(load, text, expected):
+    with pytest.raises(ConfigError, match=expected):
         load(text)

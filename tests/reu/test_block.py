@@ -62,7 +62,7 @@ def test_feedback_damping_opposes_a_rising_force():
 
 
 def test_derivative_acts_on_the_error():
-    """R3: an error growing at r adds K_d r, whatever makes it grow."""
+    """R3: an error growing at r adds K_d r, whether reference or measured value changes."""
     loop = record(kp=0.0, ki=0.0, kd=1e-9)
     for sign in (1.0, -1.0):
         own, rate = state(), 1e4
@@ -114,7 +114,7 @@ def test_a_retracting_demand_is_scaled_before_the_flow_curve_is_inverted():
 
 @given(demand=demands)
 def test_compensation_inverts_the_flow_curve(demand):
-    """R4, V4: behind the compensation the land's flow is proportional to the demand."""
+    """R4, V4: with the compensation the land's flow is proportional to the demand."""
     valve = plant_row('isa_v5').valve
     spool = dual_gain_compensation(demand, LOOP.compensation)
     flow = servo_valve.flow_curve(abs(spool), valve)
@@ -123,7 +123,7 @@ def test_compensation_inverts_the_flow_curve(demand):
 
 
 def test_the_paper_s_text_compensates_the_velocity_alone():
-    """R4, errata 23: with `applies_to: velocity` a large force error passes as it is."""
+    """R4, errata 23: with `applies_to: velocity` a large force error passes unchanged."""
     loop = record(compensation=replace(SHEET.compensation, applies_to='velocity'))
     demand = 1e-4  # m, beyond the knee of 42.7 um
     error = demand / SHEET.kp
@@ -145,7 +145,7 @@ def test_output_saturates_and_the_integral_stands_still():
 
 
 def test_without_anti_windup_the_integral_winds_up():
-    """What R5 prevents."""
+    """Without anti-windup the integral winds up, which R5 prevents."""
     own, loop = state(), record(anti_windup='none')
     for _ in range(2000):
         step(loop, own, 7500.0, 0.0, 1.0)

@@ -36,7 +36,7 @@ def test_a_loop_samples_at_its_own_instants_only():
 
 
 def test_coinciding_loops_run_outermost_first_without_delay():
-    """One instant carries an effort through to the current reference."""
+    """Within one instant an effort reaches the current reference."""
     reu, state = loops('smart_manifold')
     state.setpoint.effort = 10.0
     cascade.cascade_step(0, reu, state)
@@ -56,7 +56,7 @@ def test_the_electric_valve_is_commanded_by_its_spool():
 
 
 def test_a_disabled_actuator_commands_null():
-    """Disabled: no current, no memory."""
+    """While disabled the current is zero and the states are reset."""
     reu, state = loops('isa_v5')
     state.setpoint.effort = 100.0
     cascade.cascade_step(0, reu, state)
@@ -135,7 +135,7 @@ def test_the_explicit_current_block_gives_a_voltage():
 
 
 def test_a_disabled_position_or_pressure_block_forgets_its_integral():
-    """What it wound up before must not come back with the next enable."""
+    """An integral from before must not reappear with the next enable."""
     pid = replace(actuator_sheet('smart_manifold').reu.force, kp=0.0, ki=1e-9, kv=0.0)
     reu_sheet = replace(
         actuator_sheet('smart_manifold').reu, force=Off(),
@@ -157,7 +157,7 @@ def test_a_disabled_position_or_pressure_block_forgets_its_integral():
 
 
 def test_spool_and_current_blocks_feed_back_what_is_measured():
-    """Figure 7 B: at the reference neither asks for anything."""
+    """Figure 7 B: at the reference the outputs of both blocks are zero."""
     sheet = actuator_sheet('isa_v5', 'default', 'explicit')
     sheet = replace(sheet, reu=replace(sheet.reu, position=Off(), force=Off()))
     refuse_wiring(sheet)

@@ -1,4 +1,4 @@
-"""The linearising force block: it inverts the plant it knows."""
+"""The linearising force block: it inverts its model of the plant."""
 
 from dataclasses import replace
 
@@ -51,7 +51,7 @@ def test_opening_inverts_the_flow_curve(flow):
 @given(rate=st.floats(-1.0, 1.0), velocity=st.floats(-0.02, 0.02), place=st.floats(0.05, 0.95),
        share_a=st.floats(0.2, 0.8), share_b=st.floats(0.2, 0.8))
 def test_the_opening_gives_the_wanted_force_rate(rate, velocity, place, share_a, share_b):
-    """R12: with that opening C2 and C3 give F' back while the sensor gives way by F'/K_s."""
+    """R12: with that opening C2 and C3 give F', with the sensor deflecting by F'/K_s."""
     for law, plant in KNOWN.values():
         oil = plant.chambers
         p_a, p_b, s = share_a * SUPPLY, share_b * SUPPLY, place * oil.stroke
@@ -86,7 +86,7 @@ def test_the_integral_stands_still_at_the_stop():
 
 @pytest.mark.parametrize('model', MODELS)
 def test_the_output_is_what_the_innermost_block_takes(model):
-    """The opening in m, or the series current that gives it where no spool block is on."""
+    """The opening in m, or without a spool block the series current for it."""
     law, plant = KNOWN[model]
     per_spool = 1.0 if model == 'isa_v5' else 1.0 / plant.valve.k_spool
     row = measured(position=0.5 * plant.chambers.stroke, pressure_a=9e6, pressure_b=9e6)

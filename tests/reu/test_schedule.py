@@ -38,6 +38,6 @@ def test_constant_schedule_is_one():
 
 
 def test_three_points_are_joined_by_straight_lines():
-    """R6: the table a user gives."""
+    """R6: a table given by the user."""
     table = schedule_table(ThreePoints(retracted=0.5, middle=1.0, extended=2.0), np.ones(POINTS))
     assert [table[0], table[5], table[10], table[15], table[20]] == [0.5, 0.75, 1.0, 1.5, 2.0]

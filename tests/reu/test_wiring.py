@@ -1,4 +1,4 @@
-"""Four control blocks: which sets make sense, and their rates."""
+"""Four control blocks: valid sets, and their rates."""
 
 from dataclasses import replace
 
@@ -26,7 +26,7 @@ def test_shipped_actuators_have_the_blocks_of_figure_7(model, blocks):
 
 
 def test_a_plain_valve_amplifier_has_one_block():
-    """Section 3: even only the valve current loop."""
+    """Section 3: it may be the valve current loop alone."""
     for model in MODELS:
         reu = actuator_sheet(model, 'default', 'valve_amplifier').reu
         refuse_nonsense(reu)
@@ -56,7 +56,7 @@ def test_a_linearising_block_needs_the_valve_inside():
 
 
 def test_only_the_block_that_commands_the_valve_inverts_its_flow_curve():
-    """A force reference or the pilot's current has no knee at 1.2 mA."""
+    """Neither a force reference nor the pilot's current has a knee at 1.2 mA."""
     reu = actuator_sheet('smart_manifold').reu
     linear = replace(reu.force, compensation=Linear())
     refuse_nonsense(replace(reu, force=linear, pressure=reu.force))
@@ -86,7 +86,7 @@ def test_a_delay_the_loops_cannot_have_is_refused(delay_us):
      r'position.rate_hz = 1000 Hz does not divide force.rate_hz = 1250 Hz'),
 ])
 def test_rates_that_do_not_divide_are_refused(rates, message):
-    """Both rates, or the rate and the step, are named."""
+    """The message has both rates, or the rate and the step."""
     reu = actuator_sheet('isa_v5').reu
     for loop, rate in rates.items():
         reu = override(reu, f'{loop}.rate_hz', rate)

@@ -1,7 +1,7 @@
 """
-A ROS domain that nobody else of this host uses, and a user's node in it.
+A ROS domain that no other process of this host uses, and a user's node in it.
 
-What they set for the processes to come, the test's own `pytest.MonkeyPatch` takes back.
+Their settings for later processes are undone by the test's own `pytest.MonkeyPatch`.
 """
 
 from collections.abc import Iterator
@@ -18,7 +18,7 @@ import pytest
 import rclpy
 from rclpy.node import Node
 
-FIRST_DOMAIN, LAST_DOMAIN = 10, 100  # 0 is the user's; above 101 ports meet ephemeral ones
+FIRST_DOMAIN, LAST_DOMAIN = 10, 100  # 0 is the user's; above 101 ports may be ephemeral ones
 _SETTINGS = (
     'FASTRTPS_DEFAULT_PROFILES_FILE', 'FASTDDS_DEFAULT_PROFILES_FILE',
     'ROS_AUTOMATIC_DISCOVERY_RANGE')

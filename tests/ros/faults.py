@@ -1,4 +1,4 @@
-"""How a run under a fault ends: what it says, how soon, and what it leaves behind."""
+"""The end of a run under a fault: its message, its delay, and what is left behind."""
 
 import hashlib
 from pathlib import Path
@@ -27,7 +27,7 @@ class Ended(NamedTuple):
 
     exit_code: int
     line: str
-    """What the command said; anything else must be a node's log."""
+    """The command's message; any other line must be a node's log."""
     detected_s: float
     """From the fault to the end of the bag."""
     ended_s: float
@@ -36,9 +36,9 @@ class Ended(NamedTuple):
 
 class Fault:
     """
-    One fault of a run: to be made right before it is caused, or else to be told its `begin`.
+    One fault of a run: construct it right before causing the fault, or call `begin` then.
 
-    ``bag`` is None where the run never gets as far as to make one.
+    ``bag`` is None if the run ends before a bag is created.
     """
 
     def __init__(self, run: Started, bag: Path | None) -> None:
@@ -50,12 +50,12 @@ class Fault:
         self._begin = time.monotonic()
 
     def begin(self) -> None:
-        """Let the fault begin now."""
+        """Set the begin of the fault to now."""
         self._begin = time.monotonic()
 
     def ended(self, within_s: float) -> Ended:
         """
-        Wait for the end and return it; nothing of the run is left.
+        Wait for the end and return it; check that no part of the run is left.
 
         ``within_s`` is the promised time to detect, after which the bag is closed and the
         children are given `END_S`.
@@ -76,7 +76,7 @@ class Fault:
         return Ended(self._run.exit_code(), lines[0], detected, ended)
 
     def assert_nothing_left(self) -> None:
-        """Fail if a process lives, or a piece of shared memory that one of them had is there."""
+        """Fail if a process still runs, or shared memory of one of them still exists."""
         assert [pid for pid in self.pids if is_alive(pid)] == []
         assert [path for path in sorted(self._segments) if Path(path).exists()] == []
 
@@ -101,13 +101,13 @@ def mcap_file(bag: Path) -> Path:
 
 
 def wait_for_tick_0(bag: Path, run: Started) -> None:
-    """Wait until the bag exists: all have answered the hello."""
+    """Wait until the bag exists: all participants have answered the hello."""
     wait_for(lambda: (bag / 'metadata.yaml').exists() or not run.is_running(), 'tick 0')
     assert run.is_running(), run.errors
 
 
 def wait_for_chunk(bag: Path, run: Started) -> None:
-    """Wait until the recorder has handed a chunk to the system."""
+    """Wait until the recorder has written a chunk."""
     wait_for_tick_0(bag, run)
     before = n_messages(bag)
     wait_for(lambda: n_messages(bag) > before or not run.is_running(), 'a chunk')
@@ -132,13 +132,13 @@ def assert_replays(bag: Path, is_whole: bool = True) -> int:
 
 
 def assert_last_second_lost_at_most(bag: Path, reached_ns: int) -> None:
-    """Fail unless a bag cut short goes on to a second before what was reached."""
+    """Fail unless a bag cut short ends at most a second before the time reached."""
     end = Bag(bag).end_ns
     assert end is not None and end >= reached_ns - ONE_SECOND_NS
 
 
 class ClockListener:
-    """How far a run is, as anyone sees it on `/clock`."""
+    """The progress of a run, as seen on `/clock`."""
 
     def __init__(self, observer: Node) -> None:
         self._subscription = observer.create_subscription(
@@ -154,7 +154,7 @@ class ClockListener:
 
 
 def sha256(bag: Path) -> str:
-    """Return the SHA-256 of what was recorded."""
+    """Return the SHA-256 of the recorded messages."""
     return hashlib.sha256(mcap_file(bag).read_bytes()).hexdigest()
 
 

@@ -1,4 +1,4 @@
-"""`python -m tests.ros.frozen ...` is `isa ...` and says what the collector is spared in a run."""
+"""`python -m tests.ros.frozen ...` is `isa ...` and prints the objects frozen in a run."""
 
 import gc
 import sys
@@ -9,7 +9,7 @@ from isa_ros.nodes.coordinator import runs as session
 
 
 def said(coordinate: Any) -> Any:
-    """Return the function that also says how many objects are frozen when it is called."""
+    """Return the function that also prints the number of frozen objects when it is called."""
     def wrapped(*arguments: Any) -> None:
         print(f'{gc.get_freeze_count()} objects frozen', file=sys.stderr)
         coordinate(*arguments)

@@ -1,7 +1,7 @@
 """
 Hosts on this machine: network namespaces, joined by a cable or by a lossy relay.
 
-Made inside a user namespace, so that root is not needed where the kernel allows that.
+Made inside a user namespace, so that root is not needed if the kernel allows that.
 """
 
 from collections.abc import Iterator
@@ -17,7 +17,7 @@ from tests.ros.relay import READY
 from tests.ros.started import Started, started, wait_for
 
 INTERFACE = 'eth0'
-ADDRESSES = '192.0.2.1', '192.0.2.2'  # RFC 5737: for documentation, nobody's
+ADDRESSES = '192.0.2.1', '192.0.2.2'  # RFC 5737: reserved for documentation
 PREFIX_BITS = 24
 
 
@@ -39,7 +39,7 @@ class Host:
         subprocess.run([*self.enter, *command], check=True, capture_output=True)
 
     def plug(self, name: str, other: 'Host', other_name: str) -> None:
-        """Lay a cable to another host."""
+        """Connect this host to another by a cable."""
         self.run('ip', 'link', 'add', name, 'type', 'veth',
                  'peer', 'name', other_name, 'netns', str(other.holder))
 
@@ -52,7 +52,7 @@ class Host:
 
 
 def why_no_hosts() -> str | None:
-    """Return why this machine cannot have hosts of its own; None: it can."""
+    """Return why this machine cannot create hosts; None: it can."""
     for tool in ('ip', 'nsenter', 'unshare'):
         if shutil.which(tool) is None:
             return f'the command {tool} is missing'
@@ -64,7 +64,7 @@ def why_no_hosts() -> str | None:
 
 @contextmanager
 def two_hosts() -> Iterator[tuple[Host, Host]]:
-    """Give two hosts with a cable between them."""
+    """Yield two hosts with a cable between them."""
     with ExitStack() as stack:
         first, second = _addressed(stack)
         first.plug(INTERFACE, second, INTERFACE)
@@ -91,7 +91,7 @@ class Relay:
 @contextmanager
 def two_lossy_hosts(
         log: Path, loss: float, seed: int) -> Iterator[tuple[Host, Host, Relay]]:
-    """Give two hosts and, between them, a relay that loses a share of all frames."""
+    """Yield two hosts and, between them, a relay that loses a share of all frames."""
     with ExitStack() as stack:
         first, second = _addressed(stack)
         between = Host(_namespace(stack, first.enter))
@@ -124,5 +124,5 @@ def _namespace(stack: ExitStack, prefix: list[str]) -> int:
     stack.enter_context(holder.stdin)
     holder.stdin.write(b'.')
     holder.stdin.flush()
-    assert holder.stdout.read(1) == b'.'  # it answers only once it is in there
+    assert holder.stdout.read(1) == b'.'  # it answers once it is in the namespace
     return holder.pid

@@ -12,7 +12,7 @@ from tests.ros.started import wait_for
 
 
 def main(name: str, position: float) -> None:
-    """Send, and listen to both topics."""
+    """Send, and subscribe to both topics."""
     rclpy.init()
     node = rclpy.create_node('plain')
     states: list[JointState] = []

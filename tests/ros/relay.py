@@ -22,7 +22,7 @@ READY = 'relaying'
 def open_interface(name: str) -> socket.socket:
     """Return a socket that sends and receives the frames of an interface."""
     port = socket.socket(socket.AF_PACKET, socket.SOCK_RAW, socket.htons(ALL_PROTOCOLS))
-    # In front of each frame stands what its sender left to the hardware: its checksum.
+    # The header of each frame has the offload request of its sender: the checksum.
     port.setsockopt(SOL_PACKET, PACKET_VNET_HDR, 1)
     port.bind((name, 0))
     port.setblocking(False)

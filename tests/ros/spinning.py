@@ -15,7 +15,7 @@ class Spinning:
         self._executor.add_node(node)
 
     def spin_once(self) -> None:
-        """Run the callbacks of what has arrived, or arrives within 10 ms."""
+        """Run the callbacks of messages that have arrived, or arrive within 10 ms."""
         self._executor.spin_once(0.01)
 
     def wait_for(self, condition: Any, what: str) -> None:

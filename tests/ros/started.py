@@ -30,12 +30,12 @@ def wait_for(condition: Callable[[], T], what: str = '') -> T:
     deadline, never = time.monotonic() + DEADLINE_S, threading.Event()
     while not (value := condition()):
         assert time.monotonic() < deadline, f'{what or condition} did not happen'
-        never.wait(LOOK_S)  # a core that looks all the time is one that starts nothing
+        never.wait(LOOK_S)  # polling without a pause would take the core from the new process
     return value
 
 
 def _end_with_this() -> None:
-    """Ask the kernel to end a new process with the tests, should they be killed."""
+    """Have the kernel end a new process if the tests are killed."""
     ctypes.CDLL(None).prctl(PR_SET_PDEATHSIG, signal.SIGKILL)
 
 
@@ -58,7 +58,7 @@ class Started:
 
     @property
     def errors(self) -> str:
-        """Return what it has written to standard error."""
+        """Return its output on standard error."""
         return self._log.read_text()
 
     @property
@@ -83,7 +83,7 @@ class Started:
         return self._process.wait(timeout_s)
 
     def has_ended_within(self, timeout_s: float) -> bool:
-        """Wait for its end that long at most and return whether it came."""
+        """Wait at most that long for its end and return whether it has ended."""
         try:
             self.wait(timeout_s)
         except subprocess.TimeoutExpired:
@@ -95,7 +95,7 @@ class Started:
         found = {}
         text = Path(f'/proc/{self.pid}/task/{self.pid}/children').read_text()
         for pid in text.split():
-            # One that began as a copy of its parent has the node's name itself.
+            # A process forked from its parent has the node's name itself.
             name = Path(f'/proc/{pid}/comm').read_text().strip()
             arguments = Path(f'/proc/{pid}/cmdline').read_text().split('\0')
             for argument in arguments:
@@ -105,7 +105,7 @@ class Started:
         return found
 
     def end(self) -> None:
-        """End it, whatever it does."""
+        """End it unconditionally."""
         if self.is_running():
             self._process.kill()
         self._process.wait()
@@ -143,7 +143,7 @@ def actuator(log: Path, name: str, **parameters: object) -> Iterator[Started]:
 
 @contextmanager
 def coordinator(log: Path, **parameters: object) -> Iterator[Started]:
-    """Run a coordinator that starts no one."""
+    """Run a coordinator that starts no actuators."""
     arguments = ['--ros-args']
     for key, value in parameters.items():
         arguments += ['-p', f'{key}:={_yaml(value)}']
@@ -152,7 +152,7 @@ def coordinator(log: Path, **parameters: object) -> Iterator[Started]:
 
 
 def is_alive(pid: int) -> bool:
-    """Return whether a process runs; one that only waits for its parent does not."""
+    """Return whether a process runs; a zombie does not."""
     try:
         return ') Z ' not in Path(f'/proc/{pid}/stat').read_text()
     except FileNotFoundError:

@@ -1,4 +1,4 @@
-"""What is open to others: by default this host, nothing else, and nothing stays behind."""
+"""Access from outside: by default from this host only, and no shared memory is left behind."""
 
 from collections.abc import Iterator
 import ipaddress
@@ -14,12 +14,12 @@ DISCOVERY = (
     'FASTRTPS_DEFAULT_PROFILES_FILE', 'FASTDDS_DEFAULT_PROFILES_FILE',
     'FASTDDS_BUILTIN_TRANSPORTS', 'ROS_AUTOMATIC_DISCOVERY_RANGE', 'ROS_LOCALHOST_ONLY',
     'ROS_STATIC_PEERS')
-INODE_COLUMN, LOCAL_COLUMN = 9, 1  # of /proc/net/udp and its like, as proc_net_tcp.txt has them
+INODE_COLUMN, LOCAL_COLUMN = 9, 1  # of /proc/net/udp and similar files, see proc_net_tcp.txt
 
 
 @pytest.fixture(autouse=True)
 def untouched(monkeypatch):
-    """Set nothing of what a user may set."""
+    """Remove all settings that a user may have."""
     for name in DISCOVERY:
         monkeypatch.delenv(name, raising=False)
 
@@ -75,7 +75,7 @@ def test_nothing_listens_on_the_network_unasked(domain, tmp_path):
 
 
 def test_a_user_who_asks_for_the_network_gets_it(domain, tmp_path, monkeypatch):
-    """Without shared memory there, too."""
+    """There is no shared memory with these settings either."""
     monkeypatch.setenv('ROS_AUTOMATIC_DISCOVERY_RANGE', 'SUBNET')
     with actuator(tmp_path / 'log', 'knee', model='isa_v5') as process:
         wait_for(lambda: '0.0.0.0' in bound_addresses(process.pid), 'a socket on the network')
@@ -84,7 +84,7 @@ def test_a_user_who_asks_for_the_network_gets_it(domain, tmp_path, monkeypatch):
 
 @pytest.mark.parametrize('asked', [None, 'LOCALHOST'])
 def test_a_plain_node_of_this_host_reads_and_commands(domain, tmp_path, monkeypatch, asked):
-    """It has ROS's own defaults, or the range that keeps it on this host, and no profile."""
+    """The node has ROS's own defaults, or the range of this host only, and no profile."""
     with actuator(tmp_path / 'actuator.log', 'knee', model='isa_v5') as knee:
         if asked is not None:
             monkeypatch.setenv('ROS_AUTOMATIC_DISCOVERY_RANGE', asked)
@@ -94,7 +94,7 @@ def test_a_plain_node_of_this_host_reads_and_commands(domain, tmp_path, monkeypa
 
 
 def test_security_that_is_not_there_is_refused(domain, tmp_path, monkeypatch):
-    """The wheels are built without it; where it is built in, its files are missing here."""
+    """The wheels are built without security; in a build with it, its files are missing here."""
     (tmp_path / 'keystore' / 'enclaves').mkdir(parents=True)
     monkeypatch.setenv('ROS_SECURITY_ENABLE', 'true')
     monkeypatch.setenv('ROS_SECURITY_STRATEGY', 'Enforce')

@@ -1,4 +1,4 @@
-"""Actuators that someone else starts for a coordinator: `isa actuators`."""
+"""Actuators started separately for a coordinator: `isa actuators`."""
 
 import os
 import signal
@@ -10,7 +10,7 @@ pytestmark = pytest.mark.ros
 
 
 def test_actuators_of_another_take_part_in_one_run_after_the_other(domain, tmp_path):
-    """And a signal ends them."""
+    """A signal then ends the actuators."""
     with started(tmp_path / 'actuators.log', 'isa_ros', 'actuators', str(RIG)) as actuators:
         for bag in (tmp_path / 'first', tmp_path / 'second'):
             with bringup(bag, '--duration', '0.05', '--elsewhere', 'rotor', config=RIG) as run:
@@ -26,7 +26,7 @@ def test_actuators_of_another_take_part_in_one_run_after_the_other(domain, tmp_p
 
 def test_a_lost_actuator_ends_its_host_naming_it(domain, tmp_path):
     with started(tmp_path / 'actuators.log', 'isa_ros', 'actuators', str(RIG)) as actuators:
-        # A child has its name a moment after it has begun.
+        # A child gets its name shortly after its start.
         child = wait_for(lambda: actuators.children().get('rotor'), 'the child')
         os.kill(child, signal.SIGKILL)
         assert actuators.exit_code() == 3

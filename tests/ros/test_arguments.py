@@ -1,4 +1,4 @@
-"""Command lines of the executables: help, and what is no ROS argument."""
+"""Command lines of the executables: help, and arguments that are not ROS arguments."""
 
 import subprocess
 import sys
@@ -10,7 +10,7 @@ MODULES = ['isa_ros.nodes.actuator.process', 'isa_ros.nodes.coordinator.process'
 
 
 def run(module: str, *arguments: str) -> subprocess.CompletedProcess[str]:
-    """Return how an executable ended."""
+    """Return the result of an executable."""
     return subprocess.run([sys.executable, '-m', module, *arguments],
                           capture_output=True, text=True, timeout=60)
 

@@ -1,4 +1,4 @@
-"""The bench on real nodes: real rows, and consistent; its speed is no test."""
+"""The bench on real nodes: positive and consistent rows; speeds are not tested."""
 
 from isa_ros.bag.writer import BagWriter
 from isa_ros.bench.loading import median_loading

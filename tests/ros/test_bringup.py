@@ -1,4 +1,4 @@
-"""Runs of the leg in processes: equal bytes, and ends before their time."""
+"""Runs of the leg in processes: equal bytes, and early ends."""
 
 from pathlib import Path
 import re
@@ -32,7 +32,7 @@ def test_processes_and_one_process_give_equal_files(domain, tmp_path):
 
 
 def test_a_program_runs_one_after_the_other(domain, tmp_path):
-    """Fast DDS was used by the first, so the second cannot begin as copies of this process."""
+    """Fast DDS was used by the first, so the processes of the second cannot be forked."""
     for name in ('first', 'second'):
         bag = bring_up(Request(
             config=RIG, out=tmp_path / name / 'bag', duration_s=0.01, join_timeout_s=DEADLINE_S))

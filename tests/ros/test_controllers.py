@@ -1,4 +1,4 @@
-"""Controllers of a user: one that is waited for, and one that follows /clock."""
+"""Controllers of a user: one in the lockstep, and one that follows /clock."""
 
 import hashlib
 from pathlib import Path
@@ -25,7 +25,7 @@ def record(bag: Path, *options: str) -> str:
 
 
 def setpoints(bag: Path) -> list[tuple[int, float]]:
-    """Return (tick it took effect at, position) of what HFE was told."""
+    """Return (tick of effect, position) of the setpoints applied to HFE."""
     return [(message.sequence - 1, decode(message.data, JointState).position[0])
             for message in Bag(bag).messages()
             if message.topic == '/hfe/applied_setpoint' and message.sequence]
@@ -36,7 +36,7 @@ def messages_from(bag: Path, t_ns: int) -> list[tuple]:
 
 
 def test_a_controller_in_the_lockstep_gives_the_same_bytes_every_time(domain, tmp_path):
-    """In processes, in one, and restored from a state half-way; replay needs no controller."""
+    """In processes, in one process, and restored half-way; replay needs no controller."""
     bags = [tmp_path / name / 'bag' for name in ('several', 'one', 'half', 'rest')]
     state = tmp_path / 'state.json'
     with started(tmp_path / 'sway.log', SWAY):
@@ -45,7 +45,7 @@ def test_a_controller_in_the_lockstep_gives_the_same_bytes_every_time(domain, tm
         record(bags[2], '--duration', '0.05', '--in-process', '--save', str(state))
         record(bags[3], '--duration', '0.1', '--restore', str(state))
     assert messages_from(bags[3], 0) == messages_from(bags[0], 50_000_000)
-    # Tick 0 shows it t = 0, so tick 1 is the first it speaks for.
+    # At tick 0 it receives t = 0, so its first setpoint is for tick 1.
     assert [tick for tick, _ in setpoints(bags[0])] == list(range(1, 100))
     assert setpoints(bags[0])[0] == (1, 0.038)
     for bag in bags:
@@ -77,12 +77,12 @@ def test_a_killed_controller_ends_the_run_naming_it(domain, tmp_path):
 
 
 def test_a_controller_that_follows_the_clock_replays_exactly(domain, tmp_path):
-    """Its setpoints take effect at whatever tick they meet, and are recorded with it."""
+    """Its setpoints take effect at the tick of their arrival, and are recorded with it."""
     bag = tmp_path / 'bag'
     with started(tmp_path / 'beside.log', BESIDE):
         with bringup(bag, '--in-process', '--real-time-factor', '1', '--duration', '3') as run:
             assert run.exit_code() == 0, run.errors
-    told = setpoints(bag)
-    assert len(told) > 20
-    assert all(later[0] - tick >= 1 for (tick, _), later in zip(told, told[1:]))
+    applied = setpoints(bag)
+    assert len(applied) > 20
+    assert all(later[0] - tick >= 1 for (tick, _), later in zip(applied, applied[1:]))
     assert replay(Bag(bag)).is_equal

@@ -1,4 +1,4 @@
-"""The coordinator executable, which waits for participants that someone else starts."""
+"""The coordinator executable, which waits for participants started separately."""
 
 import signal
 
@@ -70,7 +70,7 @@ def test_second_coordinator_is_refused_and_the_first_goes_on(domain, tmp_path, i
 
 
 def test_two_nodes_of_one_name_are_refused(domain, tmp_path, observer):
-    """Nothing says which of the two is the actuator."""
+    """The coordinator cannot decide which of the two is the actuator."""
     arguments = {'config_file': RIG, 'lockstep': True}
     with actuator(tmp_path / 'a.log', 'rotor', **arguments) as a, \
             actuator(tmp_path / 'b.log', 'rotor', **arguments) as b:

@@ -1,4 +1,4 @@
-"""A jump of the host's clock changes nothing: neither a byte of the bag nor how long it takes."""
+"""A jump of the host's clock changes neither a byte of the bag nor the duration of the run."""
 
 from pathlib import Path
 import shutil
@@ -28,7 +28,7 @@ class HostClock:
         patch.setenv('ISA_ROS_CLOCK_SHIFT', str(self._shift))
 
     def jump_to(self, seconds: int) -> None:
-        """Let it be ``seconds`` ahead of what it was at the start."""
+        """Set it ``seconds`` ahead of its value at the start."""
         with self._shift.open('r+b') as file:
             file.write(struct.pack('<q', seconds))
 
@@ -42,7 +42,7 @@ def host_clock(tmp_path, monkeypatch) -> HostClock:
 
 
 def read_clock() -> float:
-    """Return what a process sees now."""
+    """Return the time that a process reads now."""
     return float(subprocess.run(
         [sys.executable, '-c', 'import time; print(time.time())'], capture_output=True,
         text=True, check=True, timeout=DEADLINE_S).stdout)
@@ -51,9 +51,9 @@ def read_clock() -> float:
 def test_a_jump_of_the_host_clock_changes_nothing(
         domain, tmp_path, patient_rig, undisturbed, host_clock):
     """
-    An hour forth, two back and one forth, in the nodes and in the middleware's threads.
+    An hour forward, two back and one forward, in the nodes and in the middleware's threads.
 
-    An hour back is short: all that time the middleware's threads do not sleep.
+    The hour back is short, since the middleware's threads do not sleep during it.
     """
     bag = tmp_path / 'bag'
     with bringup(bag, *WHEEL_SINE, '--real-time-factor', '1', config=patient_rig) as run:

@@ -1,4 +1,4 @@
-"""The recorder's faults: what cannot be written is named, what was written can be used."""
+"""The recorder's faults: the message has the file, and the written part can be used."""
 
 from collections.abc import Iterator
 from pathlib import Path
@@ -6,8 +6,7 @@ import shutil
 import subprocess
 
 import pytest
-from tests.ros.faults import (
-    assert_replays, Fault, wait_for_chunk, wait_for_tick_0)
+from tests.ros.faults import assert_replays, Fault, wait_for_chunk, wait_for_tick_0
 from tests.ros.started import bringup, DEADLINE_S, RIG
 
 pytestmark = [pytest.mark.ros, pytest.mark.slow]
@@ -34,7 +33,7 @@ def small_disk(tmp_path) -> Iterator[Path]:
 
 @pytest.fixture
 def read_only_disk(tmp_path) -> Iterator[Path]:
-    """Return a directory that even root cannot write to."""
+    """Return a directory that root cannot write to either."""
     disk = tmp_path / 'read_only'
     disk.mkdir()
     mount('-t', 'tmpfs', '-o', 'ro', 'tmpfs', str(disk))
@@ -58,7 +57,7 @@ def test_full_disk_ends_the_run_with_a_whole_bag(domain, tmp_path, small_disk):
 
 
 def test_a_disk_that_is_full_at_the_start_ends_the_run(domain, tmp_path, small_disk):
-    """What is there is no bag and not mistaken for one."""
+    """The directory is not a bag and is not accepted as one."""
     (small_disk / 'others').write_bytes(bytes(2 * MEGABYTE - 10_000))
     bag = small_disk / 'bag'
     with bringup(bag, config=RIG, log=tmp_path / 'log') as run:
@@ -86,7 +85,7 @@ def test_a_path_below_a_file_is_refused_before_anything_starts(domain, tmp_path)
 
 
 def test_a_directory_that_vanishes_ends_the_run(domain, tmp_path):
-    """The file that is open takes the rest, but the next metadata.yaml has no place."""
+    """The open file can still be written, but the next metadata.yaml cannot be created."""
     bag = tmp_path / 'bag'
     with bringup(bag, config=RIG, log=tmp_path / 'log') as run:
         wait_for_tick_0(bag, run)

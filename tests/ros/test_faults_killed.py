@@ -1,12 +1,12 @@
-"""Whoever of a run is killed: it is named at once, and the bag can be used."""
+"""Any process of a run is killed: it is reported at once, and the bag can be used."""
 
 import os
 import signal
 
 import pytest
 from tests.ros.faults import (
-    assert_last_second_lost_at_most, assert_replays, ClockListener, Fault, KILL_SEEN_S,
-    mcap_file, wait_for_chunk)
+    assert_last_second_lost_at_most, assert_replays, ClockListener, Fault, KILL_SEEN_S, mcap_file,
+    wait_for_chunk)
 from tests.ros.started import actuator, bringup, coordinator, is_alive, RIG, wait_for
 
 pytestmark = [pytest.mark.ros, pytest.mark.slow]
@@ -14,7 +14,7 @@ pytestmark = [pytest.mark.ros, pytest.mark.slow]
 
 @pytest.mark.parametrize('name', ['haa', 'kfe'])
 def test_killed_actuator_ends_the_run_naming_it(domain, tmp_path, name):
-    """The first and the last of a leg."""
+    """The first and the last actuator of a leg."""
     bag = tmp_path / 'bag'
     with bringup(bag) as run:
         wait_for_chunk(bag, run)
@@ -47,7 +47,7 @@ def test_killed_run_loses_its_last_second_at_most(domain, tmp_path, observer, op
 
 
 def test_actuators_of_a_killed_coordinator_serve_the_next(domain, tmp_path):
-    """Started by hand, they wait; the dead one's bag goes on to its last chunk."""
+    """Actuators started by hand wait; the first bag is complete up to its last chunk."""
     bag, next_bag = tmp_path / 'bag', tmp_path / 'next'
     with actuator(tmp_path / 'rotor.log', 'rotor', config_file=RIG, lockstep=True) as rotor:
         with coordinator(tmp_path / 'first.log', config_file=RIG, out=bag) as first:

@@ -1,4 +1,4 @@
-"""Whoever of a run stops or is slow: within the limit nothing changes, beyond it has a name."""
+"""Stopped or slow processes: no effect within the time limit, an error with their name beyond."""
 
 import os
 from pathlib import Path
@@ -15,13 +15,13 @@ N_STOPS = 5
 
 
 def stop(pid: int) -> None:
-    """Stop a process and wait until it is."""
+    """Stop a process and wait until it is stopped."""
     os.kill(pid, signal.SIGSTOP)
     wait_for(lambda: ') T ' in Path(f'/proc/{pid}/stat').read_text(), 'the stop')
 
 
 def test_stopped_actuator_is_named_with_tick_and_time(domain, tmp_path):
-    """A stopped process answers nothing; its state is unknown, so only time can tell."""
+    """A stopped process does not answer; it can only be detected by a timeout."""
     bag = tmp_path / 'bag'
     with bringup(bag, config=with_timeout(tmp_path / 'rig.yaml', TIMEOUT_S)) as run:
         wait_for_chunk(bag, run)
@@ -31,11 +31,11 @@ def test_stopped_actuator_is_named_with_tick_and_time(domain, tmp_path):
     assert ended.exit_code == 3
     last = assert_replays(bag)
     assert f'isa: rotor: no answer to tick {last} after 0.5 s, must come within 0.5 s' in (
-        ended.line.replace('0.6 s', '0.5 s'))  # it is looked for every 0.1 s
+        ended.line.replace('0.6 s', '0.5 s'))  # it is checked every 0.1 s
 
 
 def test_slow_participants_change_nothing(domain, tmp_path, patient_rig, undisturbed):
-    """The actuator and the coordinator come late by turns, within the limit."""
+    """The actuator and the coordinator are late by turns, within the limit."""
     bag = tmp_path / 'bag'
     with bringup(bag, *WHEEL_SINE, '--real-time-factor', '1', config=patient_rig) as run:
         wait_for_tick_0(bag, run)
@@ -49,7 +49,7 @@ def test_slow_participants_change_nothing(domain, tmp_path, patient_rig, undistu
 
 def test_a_coordinator_that_was_stopped_for_long_goes_on(
         domain, tmp_path, patient_rig, undisturbed):
-    """For longer than its actuator takes it for there."""
+    """It is stopped for longer than its actuator waits before it accepts another coordinator."""
     bag = tmp_path / 'bag'
     with bringup(bag, *WHEEL_SINE, '--real-time-factor', '1', config=patient_rig) as run:
         wait_for_tick_0(bag, run)

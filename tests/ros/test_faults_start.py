@@ -1,4 +1,4 @@
-"""Whoever of a run does not start, or fails by an error of its own, is named."""
+"""A participant that does not start, or fails with an error of its own, is reported."""
 
 from pathlib import Path
 import signal
@@ -8,7 +8,7 @@ from tests.ros.faults import assert_replays, Fault
 from tests.ros.started import actuator, bringup, coordinator, RIG, Started, wait_for
 
 pytestmark = [pytest.mark.ros, pytest.mark.slow]
-START_S = 3.0  # of the coordinator's node, in which a signal waits
+START_S = 3.0  # start of the coordinator's node, during which a signal is pending
 
 BREAKS_AT_START = "sys.modules['isa_ros.nodes.actuator.process'].init_ros = None"
 BREAKS_AT_TICK = """
@@ -57,13 +57,13 @@ def break_actuators(monkeypatch, tmp_path):
 
 
 def wait_for_children(run: Started) -> None:
-    """Wait until the processes of the actuators are there."""
+    """Wait until the processes of the actuators exist."""
     wait_for(lambda: run.children() or not run.is_running(), 'children')
     assert run.is_running(), run.errors
 
 
 def last_line(run: Started) -> str:
-    """Return what the command says; before it stands the traceback of the broken node."""
+    """Return the command's message, which follows the traceback of the broken node."""
     return run.errors.splitlines()[-1]
 
 
@@ -88,7 +88,7 @@ def test_an_actuator_that_raises_is_named(domain, tmp_path, break_actuators):
 
 
 def test_an_actuator_that_diverges_is_named_with_state_and_time(domain, tmp_path):
-    """Damping of a stop beyond what the plant's step can follow; the wall is met at 0.12 s."""
+    """Damping of a stop too large for the plant's step; the stop is reached at 0.12 s."""
     config, scenario, bag = (tmp_path / name for name in ('ram.yaml', 'stop.yaml', 'bag'))
     config.write_text(DIVERGING)
     scenario.write_text(INTO_THE_STOP)
@@ -103,7 +103,7 @@ def test_an_actuator_that_diverges_is_named_with_state_and_time(domain, tmp_path
 
 @pytest.mark.parametrize('number', [signal.SIGTERM, signal.SIGINT])
 def test_a_signal_before_tick_0_ends_the_run(domain, tmp_path, number):
-    """Of two actuators, one never comes, so that the run waits."""
+    """One of two actuators is never started, so that the run waits."""
     bag, config = tmp_path / 'bag', with_another_actuator(tmp_path / 'two.yaml')
     with bringup(bag, '--elsewhere', 'other', config=config) as run:
         wait_for_children(run)
@@ -116,7 +116,7 @@ def test_a_signal_before_tick_0_ends_the_run(domain, tmp_path, number):
 
 
 def test_a_participant_that_was_never_started_is_named(observer, tmp_path):
-    """Of two actuators, one is there."""
+    """One of two actuators is started."""
     config = with_another_actuator(tmp_path / 'two.yaml')
     bag = tmp_path / 'bag'
     with actuator(tmp_path / 'rotor.log', 'rotor', config_file=config, lockstep=True):

@@ -1,4 +1,4 @@
-"""What there must be once is there twice: refused before a run, named during it."""
+"""Two nodes with the same role: refused before a run, reported during it."""
 
 import signal
 
@@ -12,7 +12,7 @@ JOIN_S = 1.0  # promised: a node that has appeared is noticed within it
 
 
 def test_an_actuator_started_twice_ends_the_run_naming_it(domain, tmp_path, observer):
-    """The second one appears during the run; it is nobody's to end."""
+    """The second one appears during the run and is not ended by it."""
     bag = tmp_path / 'bag'
     with bringup(bag, config=RIG) as run:
         wait_for_tick_0(bag, run)
@@ -30,7 +30,7 @@ def test_an_actuator_started_twice_ends_the_run_naming_it(domain, tmp_path, obse
 
 
 def test_a_second_coordinator_of_another_host_is_refused(domain, tmp_path, monkeypatch):
-    """The graph alone can tell; the first one goes on."""
+    """It is detected by the graph alone; the first coordinator continues."""
     if (reason := why_no_hosts()) is not None:
         pytest.skip(f'no network namespaces: {reason}')
     monkeypatch.setenv('ROS_AUTOMATIC_DISCOVERY_RANGE', 'SUBNET')

@@ -30,14 +30,14 @@ NAMES = ('haa', 'kfe')
 
 @pytest.fixture(params=['sockets', 'topics'], autouse=True)
 def carrier(request: pytest.FixtureRequest, monkeypatch: pytest.MonkeyPatch) -> str:
-    """Return what carries the ticks: one host has sockets."""
+    """Return the transport of the ticks: sockets on one host."""
     if request.param == 'topics':
         monkeypatch.setattr(local_wire, 'is_possible', lambda: False)
     return request.param
 
 
 class Scripted:
-    """A participant that answers what it was asked."""
+    """A participant that returns the received values in its answers."""
 
     def __init__(self, digest: str = 'same') -> None:
         self.digest = digest
@@ -161,11 +161,11 @@ def test_every_participant_answers_every_tick(observer, monkeypatch, has_handles
 
 
 class Follower(Controller):
-    """Asks HAA to go where KFE was, and remembers what it was shown."""
+    """Commands HAA to the position of KFE, and keeps the states it received."""
 
     def __init__(self) -> None:
         self.shown: list[tuple[int, list[float]]] = []
-        self.asks: dict[str, Setpoint] | None = None
+        self.setpoints: dict[str, Setpoint] | None = None
 
     def start(self, names: Sequence[str]) -> None:
         self.names = list(names)
@@ -173,11 +173,11 @@ class Follower(Controller):
     def step(self, state) -> dict[str, Setpoint]:
         positions = [float(own.position) for own in state.actuators.values()]
         self.shown.append((state.t_ns, positions))
-        return {'haa': Setpoint(positions[1])} if self.asks is None else self.asks
+        return {'haa': Setpoint(positions[1])} if self.setpoints is None else self.setpoints
 
 
 def test_a_controller_sees_tick_k_and_speaks_for_tick_k_plus_1(observer):
-    """It is shown the samples before the tick, and is waited for."""
+    """It receives the samples before the tick, and the run waits for its answer."""
     controller, rows = Follower(), Rows(2)
     steppers = {'haa': Scripted(), 'kfe': Scripted(), 'follower': controller}
     with spinning(observer.context, steppers):
@@ -194,19 +194,19 @@ def test_a_controller_sees_tick_k_and_speaks_for_tick_k_plus_1(observer):
     assert controller.shown == [(0, [0.25, 0.5]), (1_000_000, [1.25, 1.5])]
 
 
-def test_a_setpoint_for_nobody_ends_the_run(observer):
+def test_a_setpoint_for_an_unknown_actuator_ends_the_run(observer):
     controller = Follower()
-    controller.asks = {'hip': Setpoint(0.1)}
+    controller.setpoints = {'hip': Setpoint(0.1)}
     with spinning(observer.context, {
             'haa': Scripted(), 'kfe': Scripted(), 'follower': controller}):
         transport = make_transport(observer, ['follower'])
         begin(transport)
-        with pytest.raises(RunError, match="follower: refused tick 0: 'hip' is no actuator"):
+        with pytest.raises(RunError, match="follower: refused tick 0: 'hip' is not an actuator"):
             tick(transport, 0)
 
 
 def test_what_a_participant_raises_reaches_the_coordinator(observer):
-    """A refusal keeps the participant; the coordinator's run is over."""
+    """After a refusal the participant continues; the coordinator's run ends."""
     stepper = Scripted()
     stepper.fails_at, stepper.error = 1, SetpointError('kfe: no such thing')
     with spinning(observer.context, {'haa': Scripted(), 'kfe': stepper}):
@@ -217,8 +217,8 @@ def test_what_a_participant_raises_reaches_the_coordinator(observer):
             tick(transport, 1)
 
 
-def test_nothing_is_published_before_the_time_is(observer):
-    """The first messages wait for `begin`, after which `/clock` is out."""
+def test_nothing_is_published_before_the_clock(observer):
+    """The first messages are held until `begin`, when `/clock` has been published."""
     stepper = Scripted()
     with spinning(observer.context, {'haa': stepper, 'kfe': Scripted()}):
         transport = make_transport(observer)
@@ -231,7 +231,7 @@ def test_nothing_is_published_before_the_time_is(observer):
 
 
 def test_a_saved_state_is_restored(observer):
-    """Everyone gives its own state, and goes on from its own; the tick goes on too."""
+    """Every participant saves and restores its own state; the tick number continues too."""
     with spinning(observer.context, {'haa': Scripted(), 'kfe': Scripted()}):
         transport = make_transport(observer)
         begin(transport)
@@ -279,7 +279,7 @@ def test_other_digest_is_refused(observer):
 
 
 def test_divergence_arrives_with_its_field(observer):
-    """What the actuator raised, the coordinator raises."""
+    """The coordinator raises the error that the actuator raised."""
     stepper = Scripted()
     stepper.fails_at = 1
     with spinning(observer.context, {'haa': Scripted(), 'kfe': stepper}):
@@ -329,7 +329,7 @@ def test_stop_does_not_wait_for_the_timeout(observer):
 
 
 def test_busy_participant_refuses_another_coordinator(observer):
-    """Bound to a run, it is stepped by no one else, and the other is told."""
+    """A participant bound to a run accepts steps of that run only and refuses the other."""
     steppers = {'haa': Scripted(), 'kfe': Scripted()}
     with spinning(observer.context, steppers):
         first = make_transport(observer)
@@ -351,7 +351,7 @@ def is_followed(transport: LockstepTransport) -> bool:
 
 
 def test_participants_of_a_silent_coordinator_follow_another(observer, monkeypatch):
-    """A killed one stays in the middleware's graph for a while."""
+    """A killed coordinator stays in the middleware's graph for a while."""
     monkeypatch.setattr(member, 'SILENCE_S', 0.2)
     steppers = {'haa': Scripted(), 'kfe': Scripted()}
     with spinning(observer.context, steppers):
@@ -401,7 +401,7 @@ def test_steps_of_a_strange_run_are_ignored(observer):
 
 
 def test_a_second_node_of_a_name_is_noticed_during_the_run(observer):
-    """One that was discovered too late for any hello gives its name at its first tick."""
+    """A node discovered too late for any hello gives its name at its first tick."""
     with spinning(observer.context, {'haa': Scripted(), 'kfe': Scripted()}):
         transport = make_transport(observer)
         begin(transport)
@@ -417,7 +417,7 @@ def test_a_second_node_of_a_name_is_noticed_during_the_run(observer):
 
 
 def dropping(send: Callable[[bytes], object]) -> Callable[[bytes], bool]:
-    """Lose the first message, as a participant does that the middleware took for gone."""
+    """Lose the first message, as if the middleware had dropped the participant for a while."""
     messages: list[bytes] = []
 
     def send_but_the_first(message: bytes) -> bool:
@@ -429,7 +429,7 @@ def dropping(send: Callable[[bytes], object]) -> Callable[[bytes], bool]:
 
 
 def drop_next(end: LockstepTransport | Member, carrier: str) -> None:
-    """Lose what this end sends next."""
+    """Lose the next message that this end sends."""
     wire = end._wires if isinstance(end, LockstepTransport) else end._wire
     assert is_by_socket(end) == (carrier == 'sockets')
     if carrier == 'sockets':
@@ -459,7 +459,7 @@ def test_a_lost_step_is_asked_for_again(observer, carrier):
 
 @pytest.fixture
 def members(monkeypatch) -> list[Member]:
-    """Return the members that are made from now on."""
+    """Return a list of the members that are created from now on."""
     made: list[Member] = []
     make = Member.__init__
 
@@ -471,7 +471,7 @@ def members(monkeypatch) -> list[Member]:
 
 
 def test_a_lost_answer_is_given_again_without_another_tick(observer, members, carrier):
-    """The other participant repeats its answer too, which is not taken for a second node."""
+    """The other participant repeats its answer too, which does not count as a second node."""
     steppers = {'haa': Scripted(), 'kfe': Scripted()}
     with spinning(observer.context, steppers):
         transport = make_transport(observer, limits=PATIENT)
@@ -483,7 +483,7 @@ def test_a_lost_answer_is_given_again_without_another_tick(observer, members, ca
 
 
 def test_a_lost_state_is_given_again(observer, members, carrier):
-    """Saved once, however often it is asked for; a later save is another."""
+    """A state is saved once for repeated requests; a later request saves a new one."""
     steppers = {'haa': Scripted(), 'kfe': Scripted()}
     with spinning(observer.context, steppers):
         transport = make_transport(observer, limits=PATIENT)
@@ -496,7 +496,7 @@ def test_a_lost_state_is_given_again(observer, members, carrier):
 
 
 def test_a_repeat_that_newer_steps_have_overtaken_is_past(observer, monkeypatch):
-    """While one works for long its steps are repeated to all, by a slower way."""
+    """During a long step of one participant its steps are repeated to all over the topics."""
     monkeypatch.setattr(lockstep, 'REPEAT_S', 0.05)
     slow = Scripted()
     steppers = {'haa': Scripted(), 'kfe': slow}
@@ -514,7 +514,7 @@ def test_a_repeat_that_newer_steps_have_overtaken_is_past(observer, monkeypatch)
 @pytest.mark.parametrize('closed', [[0], [0, 1]])
 def test_without_sockets_the_topics_carry_the_run_on(
         observer, monkeypatch, members, carrier, closed):
-    """And no step has to be repeated for that."""
+    """No step has to be repeated."""
     monkeypatch.setattr(lockstep, 'REPEAT_S', DEADLINE_S)
     steppers = {'haa': Scripted(), 'kfe': Scripted()}
     with spinning(observer.context, steppers):
@@ -545,7 +545,7 @@ def test_steps_too_large_for_sockets_travel_as_topics(observer, monkeypatch, car
 
 
 def test_a_participant_without_a_socket_keeps_all_on_topics(observer, monkeypatch):
-    """It is on another host, or has another user."""
+    """The participant is on another host, or belongs to another user."""
     connect = local_wire.LocalWire.to_run
     taken: list[bytes] = []
 
@@ -563,7 +563,7 @@ def test_a_participant_without_a_socket_keeps_all_on_topics(observer, monkeypatc
 
 
 def test_a_node_of_another_name_does_not_disturb(observer):
-    """It gives its name too, which is none of the run."""
+    """It gives its name too, which is not a name of the run."""
     with spinning(observer.context, {'haa': Scripted(), 'kfe': Scripted(), 'hfe': Scripted()}):
         transport = make_transport(observer)
         begin(transport)

@@ -1,7 +1,7 @@
 """
 One run, six ways of running it, one sha256.
 
-The way of reference is one process; each of the others is held against it.
+The reference is one process; each of the other ways is compared with it.
 """
 
 from collections.abc import Callable, Iterator, Sequence
@@ -78,7 +78,7 @@ def on_two_hosts(bag: Path, monkeypatch: pytest.MonkeyPatch) -> None:
 
 
 def on_two_hosts_with_loss(bag: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    """Without multicast: the hosts name each other."""
+    """Without multicast: each host has the other's address."""
     monkeypatch.setenv('ROS_AUTOMATIC_DISCOVERY_RANGE', 'LOCALHOST')
     monkeypatch.setenv('ROS_STATIC_PEERS', ';'.join(ADDRESSES))
     with two_lossy_hosts(bag.with_name('relay.log'), LOSS, SEED) as (first, second, relay):
@@ -98,7 +98,7 @@ NEEDS_HOSTS = (on_two_hosts, on_two_hosts_with_loss)
 @pytest.fixture(scope='module')
 def found(tmp_path_factory: pytest.TempPathFactory,
           request: pytest.FixtureRequest) -> Iterator[dict[str, str]]:
-    """Return the sha256 of the run in one process; each way adds its own; show all at the end."""
+    """Return the sha256 of the run in one process; each way adds its own; print all at the end."""
     bag = tmp_path_factory.mktemp('in_one_process') / 'bag'
     with bringup(bag, *RUN, '--in-process') as run:
         assert run.exit_code() == 0, run.errors

@@ -1,4 +1,4 @@
-"""Gains as ROS parameters: declared, tuned while a run goes on, recorded and replayed."""
+"""Gains as ROS parameters: declared, tuned during a run, recorded and replayed."""
 
 from itertools import cycle
 from pathlib import Path
@@ -30,7 +30,7 @@ KP = 2.5e-5  # A/Nm; the preset has 4e-5
 
 
 class Tuner:
-    """What a user has who tunes one actuator: the standard services, its state, two echoes."""
+    """A user's node for tuning one actuator: the standard services, its state, two echoes."""
 
     def __init__(self, node: Node, name: str) -> None:
         self.name = name
@@ -52,13 +52,13 @@ class Tuner:
                 (DescribeParameters, 'describe_parameters'))}
 
     def connect(self) -> None:
-        """Wait until the services are there and the state comes."""
+        """Wait until the services are available and the state arrives."""
         self.wait_for(
             lambda: self.state and all(
                 client.service_is_ready() for client in self._clients.values()), 'connection')
 
     def let_run(self) -> None:
-        """Wait for 0.1 s of simulation: longer than what may lie in the queue of the state."""
+        """Wait for 0.1 s of simulation, longer than the queue of the state."""
         begin = _ns(self.state[-1].header.stamp)
         self.wait_for(
             lambda: _ns(self.state[-1].header.stamp) - begin > 100_000_000, 'simulated time')
@@ -107,7 +107,7 @@ def record_again(bag: Path, out: Path) -> Path:
 
 
 def content(bag: Path) -> bytes:
-    """Return what all files of messages of a bag hold."""
+    """Return the content of all message files of a bag."""
     return b''.join(path.read_bytes() for path in sorted(bag.glob('*.mcap')))
 
 
@@ -151,12 +151,12 @@ def test_a_refused_value_is_answered_with_the_reason_and_changes_nothing(observe
 
 
 def test_a_stiffness_is_a_setpoint_that_changes_this_gain_alone(observer, tmp_path):
-    """And a setpoint's gain is what the parameter then says."""
+    """After a setpoint with a gain the parameter has this gain."""
     with actuator(tmp_path / 'log', 'knee', model='isa_v5'):
         tuner = Tuner(observer, 'knee')
         tuner.connect()
         damping, = tuner.get('position.damping')
-        tuner.wait_for(  # matched here is not yet matched there
+        tuner.wait_for(  # a match on one side may precede that on the other
             lambda: tuner.tune('position.stiffness', 5e4).successful and any(
                 m.position[1] == 5e4 for m in tuner.setpoints), 'the echo')
         assert tuner.setpoints[-1].position[2] == damping
@@ -194,7 +194,7 @@ def test_a_gain_tuned_in_a_run_is_recorded_with_its_tick_and_replays(
 
 
 def test_what_was_set_stays_set_when_another_run_begins(observer):
-    """And is recorded at its first tick: the configuration does not say it."""
+    """It is recorded at the first tick, since the configuration does not contain it."""
     setup = Setup(default_actuator('isa_v5', 'knee'), DEFAULT_TIMING)
     start = np.zeros(1, START)[0]
     start['position'], start['supply_pressure'] = 0.05, 20.7e6
@@ -233,7 +233,7 @@ def test_an_override_on_the_command_line_wins_over_the_file_and_is_recorded_at_t
 @pytest.mark.parametrize(('name', 'value', 'message'), [
     ('force.kq', 1.0, 'knee: parameter force.kq is unknown; did you mean force.k'),
     ('force.kp', -1.0, 'knee: force.kp = -1 m/N, must be >= 0 m/N (proportional gain K_p)'),
-    ('force.limit', 1, 'knee: reu.force.limit = 1 m, must be <= 0.000178 m'),  # as one writes it
+    ('force.limit', 1, 'knee: reu.force.limit = 1 m, must be <= 0.000178 m'),  # an integer
 ])
 def test_a_wrong_override_is_refused_in_one_line(domain, tmp_path, name, value, message):
     """Exit code 2."""
@@ -244,7 +244,7 @@ def test_a_wrong_override_is_refused_in_one_line(domain, tmp_path, name, value, 
 
 
 def test_a_lone_actuator_begins_with_its_override_and_says_what_changed(observer, tmp_path):
-    """Matched here is not yet matched there: two values by turns until the echo comes."""
+    """The two sides match at different times: two values by turns until the echo arrives."""
     with actuator(tmp_path / 'log', 'knee', model='isa_v5', **{'force.kp': 7e-8}):
         tuner = Tuner(observer, 'knee')
         tuner.connect()
@@ -255,5 +255,5 @@ def test_a_lone_actuator_begins_with_its_override_and_says_what_changed(observer
     event = tuner.events[-1]
     assert (event.node, _ns(event.stamp) % 1_000_000) == ('/knee', 0)
     changed, = event.changed_parameters
-    # 7e-8, in force from tick 0, for whoever listens by then
+    # 7e-8, in force from tick 0, for subscribers that match by then
     assert changed.name == 'force.kp' and changed.value.double_value in (5e-8, 6e-8, 7e-8)

@@ -1,4 +1,4 @@
-"""How a run is recorded: options, parameters, and a coordinator that is killed meanwhile."""
+"""Recording of a run: options, parameters, and a coordinator that is killed during it."""
 
 import hashlib
 from pathlib import Path

@@ -12,7 +12,7 @@ import pytest
 pytestmark = pytest.mark.ros
 ROOT = Path(__file__).parents[2]
 COMMON = ('smart_manifold', '--preset', 'table_4')
-HOLD_S = 1e-3           # a setpoint stands for a tick
+HOLD_S = 1e-3           # a setpoint is held for a tick
 INTO_HOLD_S = 0.38e-3   # from the middle of the hold, 0.12 + 0.5 ms, to its record at the end
 BARE_S = 0.1e-3         # half a period of the force block, in the bare measurement
 
@@ -34,7 +34,7 @@ def test_a_bode_through_nodes_is_that_of_the_bare_actuator_behind_a_hold(
     f = np.array(bare['frequency_hz'])
     assert nodes['frequency_hz'] == pytest.approx(f, rel=1e-12)
     hold = np.sinc(f * HOLD_S)
-    # What is left: the samples' own quantisation and the images of the hold at 1 kHz - f, which
+    # Remaining: the samples' own quantisation and the images of the hold at 1 kHz - f, which
     # a loop 30 dB down there passes into the samples: 1 % of the gain; a deg for the same.
     assert np.array(nodes['gain']) / bare['gain'] == pytest.approx(hold, rel=0.01)
     later = 360.0 * f * (INTO_HOLD_S + BARE_S)

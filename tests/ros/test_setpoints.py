@@ -18,7 +18,7 @@ ARRIVAL = 1e-3  # m: a tenth of the way
 
 
 class User:
-    """What a user of one actuator has: its topics and its service."""
+    """A user's node for one actuator: its topics and its service."""
 
     def __init__(self, node: Node, name: str) -> None:
         self.name = name
@@ -43,7 +43,7 @@ class User:
         self._setpoints.publish(JointState(name=[self.name], position=[position]))
 
     def go_to(self, position: float) -> None:
-        """Repeat a setpoint until it is echoed: matched here is not yet matched there."""
+        """Repeat a setpoint until it is echoed: the two sides match at different times."""
         def repeat() -> bool:
             self.command(position)
             self._spinning.spin_once()
@@ -59,8 +59,8 @@ class User:
         return self.state[-1].position[0]
 
 
-def test_actuator_alone_obeys(observer, tmp_path):
-    """The first experience: one process, 1 kHz topics, a setpoint that it goes to."""
+def test_actuator_alone_follows_a_setpoint(observer, tmp_path):
+    """One process, 1 kHz topics, and motion to a setpoint."""
     with actuator(tmp_path / 'log', 'knee', model='isa_v5') as process:
         user = User(observer, 'knee')
         user.connect()

@@ -85,12 +85,12 @@ def test_a_paused_run_goes_exactly_as_far_as_it_is_told(observer, tmp_path, opti
 
 
 def states(bag: Path) -> list[tuple[int, str, bytes]]:
-    """Return everything but what was done to the run."""
+    """Return all messages except the run's events."""
     return [(m.t_ns, m.topic, m.data) for m in Bag(bag).messages() if 'events' not in m.topic]
 
 
 def continued(out: Path, state: Path) -> Path:
-    """Go on from a saved state to where the first run was reset, in one process."""
+    """Continue from a saved state up to the reset of the first run, in one process."""
     with bringup(out, '--restore', str(state), '--duration', '0.049', '--in-process',
                  config=RIG) as run:
         assert run.exit_code() == 0, run.errors
@@ -98,7 +98,7 @@ def continued(out: Path, state: Path) -> Path:
 
 
 def test_the_pace_may_be_changed_while_it_runs(observer, tmp_path):
-    """From slow to as fast as it can; what cannot be is refused with the reason."""
+    """From slow to as fast as possible; invalid factors are refused with the reason."""
     bag = tmp_path / 'bag'
     with bringup(bag, '--real-time-factor', '0.01', '--duration', '2', '--in-process',
                  config=RIG) as run:

@@ -1,4 +1,4 @@
-"""Scenarios: rows of commands by tick, replaced loads and starts, and what is refused."""
+"""Scenarios: rows of commands by tick, replaced loads and starts, and refusals."""
 
 import math
 from pathlib import Path
@@ -32,7 +32,7 @@ def rotary() -> RunConfig:
 
 
 def rows(scenario: Scenario, tick: int) -> np.ndarray:
-    """Return the commands of a tick, written over rows in which nothing new stands."""
+    """Return the commands of a tick, written over rows without new commands."""
     out = np.full(len(scenario.run.actuators), 7, COMMAND)
     out['kinds'] = 0
     scenario.commands(tick, out)
@@ -75,7 +75,7 @@ def test_the_step_blocks_the_wheel_and_asks_for_17_nm(rotary: RunConfig) -> None
 
 @pytest.mark.parametrize('path', [DROP, STEP, TROT, TROT_LEG], ids=lambda path: path.stem)
 def test_a_scenario_survives_its_text(path: Path, leg: RunConfig, rotary: RunConfig) -> None:
-    """The bag carries this text: every row of every tick must come back bit for bit."""
+    """The text is stored in the bag: it must give every row of every tick bit for bit."""
     scenario = load_scenario(path, leg if path in (DROP, TROT_LEG) else rotary)
     again = scenario_of(scenario.to_yaml(), scenario.run)
     assert again == scenario and again.n_ticks is not None
@@ -110,7 +110,7 @@ def test_a_sine_speaks_every_tick_until_the_next_setpoint(rotary: RunConfig) -> 
     'gait: {joint: hfe}',
 ])
 def test_a_motion_survives_its_text(text: str, rotary: RunConfig) -> None:
-    """What a file leaves out is written out; every row comes back bit for bit."""
+    """Missing keys are written out; every row is reproduced bit for bit."""
     scenario = of_track(f'  - {{t_s: 0.1, position: 0.8, {text}}}\n', rotary)
     again = scenario_of(scenario.to_yaml(), scenario.run)
     assert again == scenario
@@ -220,7 +220,7 @@ def test_a_wrong_duration_is_refused(duration: float, expected: str, rotary: Run
 
 
 def test_what_a_controller_asks_for_stays_where_the_scenario_is_silent(rotary):
-    """Enabling alone leaves the setpoint that was asked for."""
+    """Enabling alone does not change the setpoint."""
     scenario = of_track('    - {t_s: 0.0, enabled: true}', rotary)
     out = np.zeros(1, COMMAND)
     out['kinds'], out['position'] = HAS_SETPOINT, 0.25
@@ -239,7 +239,7 @@ def test_an_idle_scenario_commands_nothing(rotary: RunConfig) -> None:
 
 
 def test_a_scenario_may_name_the_figure_it_is_drawn_as(rotary: RunConfig) -> None:
-    """The name survives the text a bag carries."""
+    """The figure is kept in the text stored in a bag."""
     scenario = scenario_of('name: s\nfigure: torque_step\nduration_s: 1\n', rotary)
     assert scenario.figure == 'torque_step'
     assert scenario_of(scenario.to_yaml(), rotary).figure == 'torque_step'
@@ -247,7 +247,7 @@ def test_a_scenario_may_name_the_figure_it_is_drawn_as(rotary: RunConfig) -> Non
 
 @pytest.mark.parametrize('text, expected', [
     ('torqe_step', 'did you mean torque_step'), ('bode', 'valid: position_torque_tracking'),
-    ('7', 'figure = 7 is no figure'), ('[a]', 'is no figure')])
+    ('7', 'figure = 7 is not a figure'), ('[a]', 'is not a figure')])
 def test_an_unknown_figure_is_refused(text: str, expected: str, rotary: RunConfig) -> None:
     with pytest.raises(ConfigError, match=expected):
         scenario_of(f'name: s\nfigure: {text}\nduration_s: 1\n', rotary)

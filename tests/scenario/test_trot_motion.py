@@ -36,7 +36,7 @@ def leg() -> RunConfig:
 
 
 def of(run: RunConfig, name: str, **values: float | str) -> GaitMotion:
-    """Return the gait of an actuator that stands where its run starts."""
+    """Return the gait of an actuator at its start position."""
     actuator = run.actuator(name)
     return read_gait(dict(values), PLACE, actuator, run.leg, actuator.initial_position)
 
@@ -74,7 +74,7 @@ def test_at_the_leg_the_actuator_moves_its_joint(name: str, leg: RunConfig) -> N
 def test_it_starts_at_rest_and_the_velocity_follows(
         name: str, joint: str, rotary: RunConfig, leg: RunConfig) -> None:
     """
-    G7 from standing: nothing at its event; then the central difference over 1 us.
+    G7 from standing: zero at its event; then the central difference over 1 us.
 
     Truncation (1e-6)^2/6 times a third derivative below 1e5 rad/s3, rounding 1e-15/1e-6.
     """

@@ -64,7 +64,7 @@ def test_a_motion_of_the_effort_moves_nothing_else(motion: Sine | Chirp) -> None
 
 
 def test_a_pulse_is_up_for_its_width_in_every_period() -> None:
-    """Whole ns: after 1e5 periods of 0.1 s the edges still stand at their tick."""
+    """Whole ns: after 1e5 periods of 0.1 s the edges are still at their tick."""
     train = Pulse(moves='effort', amplitude=17.0, period_s=0.1, width_s=0.03)
     for start in (0, 100_000 * 100 * MS):
         ups = [train.at(start + k * MS).effort for k in range(100)]

@@ -1,8 +1,8 @@
 """
-Long runs in processes that are killed at a random time: what they leave must be usable.
+Long runs in processes that are killed at a random time: their bags must be usable.
 
-What is killed is drawn as well: the bring-up with all its processes, or one participant. Time
-and victim follow from the seed; the moment within a tick is the host's.
+The victim is random as well: the bring-up with all its processes, or one participant. Time
+and victim follow from the seed; the moment within a tick depends on the host.
 """
 
 from collections.abc import Iterator, Sequence
@@ -20,7 +20,7 @@ from tests.ros.faults import assert_replays, ClockListener, ONE_SECOND_NS
 from tests.ros.started import bringup, DEADLINE_S, is_alive, Started, wait_for
 
 BRING_UP = 'bring-up'
-FIRST_S = 1.0  # before it a bag may hold no chunk yet
+FIRST_S = 1.0  # before it a bag may have no chunk yet
 LOOK_S = 0.02
 
 
@@ -29,9 +29,9 @@ class Killed(NamedTuple):
 
     victim: str
     t_s: float
-    """Simulated time, drawn."""
+    """Simulated time of the kill, random."""
     lost_s: float
-    """What of the time that was seen on `/clock` the bag does not hold."""
+    """Simulated time that was published on `/clock` but is not in the bag."""
     is_whole: bool
 
     def __str__(self) -> str:
@@ -54,7 +54,7 @@ def killed_runs(
 
 def killed_run(
         observer: Node, run: Started, bag: Path, kill_s: float, draw: random.Random) -> Killed:
-    """Kill someone of ``run`` at ``kill_s`` and examine what is left."""
+    """Kill a process of ``run`` at ``kill_s`` and examine the bag."""
     clock = ClockListener(observer)
     wait_for_time(clock, run, kill_s)
     children = run.children()
@@ -75,7 +75,7 @@ def killed_run(
 
 
 def wait_for_time(clock: ClockListener, run: Started, seconds: float) -> None:
-    """Wait until the run has got that far; the deadline starts anew whenever it gets further."""
+    """Wait until the run has reached that time; any progress restarts the deadline."""
     reached, deadline = 0, time.monotonic() + DEADLINE_S
     while reached < seconds * ONE_SECOND_NS:
         assert not run.has_ended_within(LOOK_S), run.errors

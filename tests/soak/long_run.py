@@ -19,7 +19,7 @@ _STORAGE = '\nrecord: {compression: lz4, split_mb: 100}\n'
 
 
 class LongRun(NamedTuple):
-    """What a long run took."""
+    """Duration and memory of a long run."""
 
     simulated_s: float
     elapsed_s: float
@@ -47,7 +47,7 @@ def long_run(directory: Path, seconds: float) -> LongRun:
         samples = np.array(resident_over_time(run, bag))
         assert run.exit_code() == 0, run.errors
     elapsed = time.monotonic() - begin
-    # The last sample may be of a process that has given everything back.
+    # The last sample may be of a process that has released its memory.
     settled = samples[(samples[:, 0] >= WARM_UP * seconds) & (samples[:, 0] < seconds)]
     slope = np.polyfit(settled[:, 0], settled[:, 1], 1)[0]
     least, most = settled[:, 1].min(), settled[:, 1].max()
@@ -68,7 +68,7 @@ def resident_over_time(run: Started, bag: Path) -> list[tuple[float, float]]:
 
 
 def recorded_s(bag: Path) -> float:
-    """Return how long a bag is, as metadata.yaml says after each chunk."""
+    """Return the duration of a bag from metadata.yaml, which is written after each chunk."""
     found = re.search(r'^    nanoseconds: (\d+)$', (bag / 'metadata.yaml').read_text(), re.M)
     assert found is not None
     return int(found[1]) / ONE_SECOND_NS

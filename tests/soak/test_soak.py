@@ -11,7 +11,7 @@ SECONDS = 60.0
 
 
 def test_runs_that_are_killed_leave_bags_that_replay(tmp_path, monkeypatch):
-    """Seeded: the bring-up, its actuator, and the bring-up again."""
+    """Killed according to the seed: the bring-up, its actuator, and the bring-up again."""
     with held_domain(monkeypatch), observing(monkeypatch) as observer:
         runs = list(killed_runs(observer, RIG, (), 5.0, 3, 4, tmp_path))
     for killed in runs:

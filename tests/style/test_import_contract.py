@@ -1,4 +1,4 @@
-"""Layers: who may import whom. The contract stands in pyproject.toml."""
+"""Layers of imports. The contract is in pyproject.toml."""
 
 from pathlib import Path
 import subprocess
@@ -12,7 +12,7 @@ ROOT = Path(__file__).parents[2]
 
 @pytest.mark.linter
 def test_the_import_contract_is_kept() -> None:
-    """Layers below know nothing of ROS, of each other, or of the layers above."""
+    """Lower layers import neither ROS, nor each other, nor the layers above."""
     program = 'from importlinter.cli import lint_imports_command; lint_imports_command()'
     result = subprocess.run(
         [sys.executable, '-c', program],

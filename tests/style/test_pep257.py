@@ -13,7 +13,7 @@ CODE = ('isa_ros', 'msg_adapters', 'launch', 'scripts', 'tests', 'setup.py')
 @pytest.mark.linter
 @pytest.mark.pep257
 def test_pep257_finds_nothing() -> None:
-    """As ament_pep257 configures it; in a process of its own, for it logs every file."""
+    """As ament_pep257 configures it; in a separate process, since it logs every file."""
     program = 'import sys; from ament_pep257.main import main; sys.exit(main())'
     result = subprocess.run(
         [sys.executable, '-c', program, *(p for p in CODE if (ROOT / p).exists())],

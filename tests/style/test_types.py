@@ -13,7 +13,7 @@ ROOT = Path(__file__).parents[2]
 @pytest.mark.linter
 @pytest.mark.slow
 def test_mypy_strict_finds_nothing() -> None:
-    """The configuration and the packages it names stand in pyproject.toml."""
+    """The configuration and the packages are in pyproject.toml."""
     result = subprocess.run(
         [sys.executable, '-m', 'mypy'], cwd=ROOT, capture_output=True, text=True, check=False)
     assert result.returncode == 0, result.stdout + result.stderr

@@ -88,7 +88,7 @@ def test_compiled_kernel_equals_its_python_source(height, v, z):
     ('bristle_travel_mm', 0.01, '>= 0.05 '), ('bristle_relaxation_ms', 0.1, '>= 0.5 '),
     ('bristle_damping', -1.0, '>= 0 ')])
 def test_a_value_outside_its_range_is_refused(name, value, bound):
-    """The message names the parameter and the bound."""
+    """The message has the parameter and the bound."""
     values = {key: getattr(SHEET, key) for key in SHEET.__dataclass_fields__}
     with pytest.raises(ParameterError, match=f'Ground.{name} = .*must be {bound}'):
         ground.Ground(**(values | {name: value}))

@@ -34,7 +34,7 @@ def test_an_empty_accumulator_leaves_the_line():
 
 
 def test_pump_settles_where_it_delivers_what_is_drawn():
-    """C8: at 6 of 12 l/min the compensator stands half its band below the set point."""
+    """C8: at 6 of 12 l/min the pressure is half the compensator's band below the set point."""
     plant = supply.Supply(SHEET, MS, SLOPE)
     for _ in range(20_000):
         plant.advance(6.0 * LPM * 1e-3)

@@ -1,1 +1,1 @@
-"""How exactly the plant is integrated, against solutions that are known."""
+"""Accuracy of the plant's integration, against known solutions."""

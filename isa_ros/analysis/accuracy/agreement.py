@@ -1,10 +1,10 @@
 """
-The plant against another solver: how far the fixed step is from what the equations say.
+The plant against another solver: the error of the fixed step in solving the equations.
 
 `scipy`'s adaptive DOP853 integrates the same `body_rates` with a tolerance of 1e-12. It starts
 anew wherever the current reference jumps, and shrinks its steps to pass the kinks: null and the
 dual-gain point, reversals, the amplifier's voltage limit, relief and refill. With a tolerance
-of 1e-13 it gives the same within 4e-10 of each state's largest value.
+of 1e-13 its solution differs by at most 4e-10 of each state's largest value.
 """
 
 from collections.abc import Iterator
@@ -50,7 +50,7 @@ PIECES = (
           tuple(4e-3 * math.sin(2.0 * math.pi * 10.0 * k * ROW) for k in range(100))),
     Piece('steps of 5 mA', (5e-3,) * 12 + (-5e-3,) * 12 + (0.0,) * 6),
 )
-"""Opening one way; through null and the dual-gain point; through every limit there is."""
+"""Opening one way; through null and the dual-gain point; through every limit of the plant."""
 
 
 @dataclass(frozen=True)
@@ -107,7 +107,7 @@ class Bench:
         return np.array(rows)
 
     def adaptive(self, piece: Piece, scale: np.ndarray, tolerance: float) -> np.ndarray:
-        """Return the same by scipy; ``scale`` is the size of each state."""
+        """Return the same states by scipy; ``scale`` is the largest value of each state."""
         state, rows = self._start, []
         for current in piece.currents:
             solved = solve_ivp(
@@ -151,12 +151,12 @@ def compare(
 
 def agreement(model: str) -> list[Difference]:
     """
-    Return how far a packaged model's plant at 20 us is from scipy's solution.
+    Return the differences between a packaged model's plant at 20 us and scipy's solution.
 
     Raises
     ------
     ConfigError
-        There is no such model, or it lacks one of the `LOADS`.
+        The model does not exist, or it lacks one of the `LOADS`.
 
     """
     return [found for piece in PIECES for load in LOADS for found in compare(model, load, piece)]

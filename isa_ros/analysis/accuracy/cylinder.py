@@ -1,15 +1,15 @@
 """
-A valve-driven cylinder with an exact answer, made of the plant's own equations.
+A valve-driven cylinder with a reference solution, made of the plant's own equations.
 
 A loaded differential cylinder follows a sine under sampled position control. Its solution is
-known to twelve digits, so it shows how exact these equations can be integrated and what that
-costs, beside any other simulator of hydraulics. ``x`` counts from mid stroke, the spool
+known to twelve digits, so it shows how exactly these equations can be integrated and at what
+cost, in comparison with any other simulator of hydraulics. ``x`` counts from mid stroke, the spool
 opening ``u`` from -1 to 1; signs are those of the chambers. The command
 u_r = K (x_r - x) is held for a millisecond and never reaches 1.
 
-The right-hand side is smooth but where the spool passes null, and there a step is cut in two.
-One step of order eight then covers a hold: its error is a thousandth of what four classical
-steps of order four leave, for less time.
+The right-hand side is smooth except where the spool passes null; there a step is cut in two.
+One step of order eight then covers a hold: its error is a thousandth of that of four classical
+steps of order four, in less time.
 """
 
 import math
@@ -116,8 +116,8 @@ def split_step(y, end, h, r, case):
     """
     Return y after two steps that meet where the spool passes null within ``h``.
 
-    ``end`` is what one step over it gave. A spool that touches null and turns back leaves the
-    instant inexact, and the kink with it: as in a step that is not cut.
+    ``end`` is the result of one step over ``h``. For a spool that touches null and turns back
+    the instant of the kink is inexact, and the error is that of a step that is not cut.
     """
     passed = h * y[4] / (y[4] - end[4])
     for _ in range(_NEWTON_STEPS):
@@ -131,7 +131,7 @@ def cylinder_run(steps, cylinders, states):
     """
     Fill ``states``, shape (holds + 1, 6), from its first row, in ``steps`` steps a hold.
 
-    One row a hold, of the instant at which it begins.
+    Each hold has one row: the states at the instant at which it begins.
     """
     case = cylinders[0]
     h = HOLD / steps
@@ -147,7 +147,7 @@ def cylinder_run(steps, cylinders, states):
 
 
 def at_rest(holds: int, cylinder: np.record) -> np.ndarray:
-    """Return room for the states of ``holds`` holds, the first at rest and in balance."""
+    """Return an array for the states of ``holds`` holds; the first is at rest and in balance."""
     states = np.zeros((holds + 1, len(STATES)))
     p_b = 0.5 * cylinder.p_s
     states[0, 2:4] = p_b * cylinder.chambers.area_b / cylinder.chambers.area_a, p_b

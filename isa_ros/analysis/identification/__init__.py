@@ -1,1 +1,1 @@
-"""Parameters of an actuator out of what its sensors recorded."""
+"""Identification of an actuator's parameters from its recorded sensor signals."""

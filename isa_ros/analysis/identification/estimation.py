@@ -2,10 +2,9 @@
 Estimates with confidence intervals from moment conditions, for identification.
 
 A model gives residuals r(theta) of shape (n,) and their Jacobian -J; theta solves
-``Z^T r = 0`` for instruments Z of J's shape. With Z = J these are least squares; where a column
-of J carries sensor noise that r carries too, its instrument is the same column from
-neighbouring samples, so that the noise of both does not correlate and does not bias theta
-(errors in variables).
+``Z^T r = 0`` for instruments Z of J's shape. With Z = J these are least squares; if a column of
+J has the same sensor noise as r, its instrument is the same column from neighbouring samples,
+whose noise is not correlated with it and does not bias theta (errors in variables).
 """
 
 from collections.abc import Callable, Sequence
@@ -16,7 +15,7 @@ import numpy as np
 from scipy.stats import t as student_t
 
 CONFIDENCE = 0.95
-_TOLERANCE = 1e-4   # of a step against the parameters' size; what is left is its square
+_TOLERANCE = 1e-4   # of a step against the parameters' size; the remaining error is its square
 _MAX_STEPS = 30
 _HALVINGS = 12
 
@@ -35,19 +34,19 @@ Model = Callable[[np.ndarray], Linearised]
 
 @dataclass(frozen=True)
 class Box:
-    """Where a parameter may lie, and the size its steps are judged by; each (n_parameters,)."""
+    """Bounds of the parameters, and the scale of their steps; each (n_parameters,)."""
 
     least: np.ndarray
     most: np.ndarray
     size: np.ndarray
 
     def clip(self, theta: np.ndarray) -> np.ndarray:
-        """Return the nearest point within."""
+        """Return the nearest point within the bounds."""
         nearest: np.ndarray = np.clip(theta, self.least, self.most)
         return nearest
 
     def is_small(self, step: np.ndarray) -> bool:
-        """Tell whether a step no longer matters."""
+        """Return whether a step is negligible."""
         return bool(np.all(np.abs(step) < _TOLERANCE * self.size))
 
 
@@ -55,8 +54,8 @@ def solve(model: Model, start: np.ndarray, box: Box) -> np.ndarray:
     """
     Return theta near ``start`` within the box, shape (n_parameters,).
 
-    Damped least-squares steps first, which find the valley, then full steps on the moment
-    conditions. A parameter without any influence stays.
+    Damped least-squares steps first, which find the minimum roughly, then full steps on the
+    moment conditions. A parameter without any influence keeps its value.
     """
     theta = box.clip(start)
     here = model(theta)
@@ -106,16 +105,16 @@ def half_widths(
         here: Linearised, groups: np.ndarray, lags: int,
         systematic: Sequence[np.ndarray] = (), of: np.ndarray | None = None) -> np.ndarray:
     """
-    Return half of the 95 % interval of every parameter, infinite where nothing is known.
+    Return half of the 95 % interval of every parameter, infinite if the data do not bound it.
 
     With ``of`` (m, n_parameters), of these sums of parameters instead.
 
-    ``groups`` (n,) counts the instant a residual belongs to; residuals of one instant may
-    depend on each other, and instants up to ``lags`` apart too (Newey and West 1987, a
+    ``groups`` (n,) is the number of the instant a residual belongs to; residuals of one instant
+    may be correlated, and those of instants up to ``lags`` apart too (Newey and West 1987, a
     Simple, Positive Semi-definite, Heteroskedasticity and Autocorrelation Consistent
     Covariance Matrix, Econometrica 55). Student's t with one degree of freedom for every
-    ``lags`` instants instead of the normal distribution, since those count once. Each of
-    ``systematic`` (n,) is one standard deviation of an error all residuals share.
+    ``lags`` instants instead of the normal distribution, since those are not independent. Each
+    of ``systematic`` (n,) is one standard deviation of an error common to all residuals.
     """
     scale = _scale(here.jacobian)
     matrix = (here.instruments / scale).T @ (here.jacobian / scale)

@@ -1,7 +1,7 @@
 """
-The flow curve g of V4 as identification needs it: values, slopes and derivatives.
+The flow curve g of V4 for identification: values, slopes and derivatives.
 
-An opening u is in m, > 0 where the land is open; a curve is 0 for u <= 0. ``theta`` are the
+An opening u is in m, > 0 for an open land; a curve is 0 for u <= 0. ``theta`` are the
 curve's own parameters.
 """
 
@@ -36,11 +36,11 @@ class FlowCurve(Protocol):
         ...
 
     def guesses(self, travel: np.ndarray) -> list[float]:
-        """Return what the bend may be, for a spool that travelled so far, (n,)."""
+        """Return candidates for the bend, for a spool with this travel, (n,)."""
         ...
 
     def shapes(self, u: np.ndarray, bend: float) -> list[np.ndarray]:
-        """Return the shapes g is linear in with that bend."""
+        """Return the shapes of which g with that bend is a linear combination."""
         ...
 
     def theta(self, factors: np.ndarray, bend: float) -> np.ndarray:
@@ -48,7 +48,7 @@ class FlowCurve(Protocol):
         ...
 
     def excited(self, travel: np.ndarray) -> list[int]:
-        """Return the parameters a spool that travelled so far says something about."""
+        """Return the parameters that a spool with this travel excites."""
         ...
 
     def bounds(self, travel: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
@@ -57,7 +57,7 @@ class FlowCurve(Protocol):
 
 
 class DualGainCurve:
-    """Parameters k_low, k_high (m2/s) and x_dg (m), of which ``x_dg`` is a first idea."""
+    """Parameters k_low, k_high (m2/s) and x_dg (m), with ``x_dg`` as first guess of the last."""
 
     size = 3
 
@@ -87,7 +87,7 @@ class DualGainCurve:
         return [float(x_dg) for x_dg in np.quantile(travel, _SHARES)]
 
     def shapes(self, u: np.ndarray, bend: float) -> list[np.ndarray]:
-        """Return what opens before x_dg and beyond."""
+        """Return the opening up to x_dg and the opening beyond it."""
         if math.isinf(bend):
             return [_first(u, bend)]
         return [_first(u, bend), _beyond(u, bend)]
@@ -97,7 +97,7 @@ class DualGainCurve:
         return np.array([factors[0], factors[-1], bend])
 
     def excited(self, travel: np.ndarray) -> list[int]:
-        """Leave out what a spool about null does not show."""
+        """Leave out the parameters that a spool near null does not excite."""
         is_beyond = np.count_nonzero(travel > self._x_dg) > _LEAST * len(travel)
         return [0, 1, 2] if is_beyond else [0]
 
@@ -119,7 +119,7 @@ class HighResponseCurve:
         self._knee = knee
 
     def flow(self, u: np.ndarray, theta: np.ndarray) -> np.ndarray:
-        """Return k_low u up to the knee, beyond it what is left of q_rest  (V4)."""
+        """Return k_low u up to the knee, beyond it the exponential rise by q_rest  (V4)."""
         left = self._left(u, theta)
         flow: np.ndarray = theta[0] * _first(u, self._knee) + theta[1] * (1.0 - left)
         return flow
@@ -150,7 +150,7 @@ class HighResponseCurve:
         return np.array([factors[0], factors[0] / bend])
 
     def excited(self, travel: np.ndarray) -> list[int]:
-        """Leave out what a spool below the knee does not show."""
+        """Leave out the parameter that a spool below the knee does not excite."""
         is_beyond = np.count_nonzero(travel > self._knee) > _LEAST * len(travel)
         return [0, 1] if is_beyond else [0]
 

@@ -1,16 +1,16 @@
 """
-Friction out of a recording: the balance of forces over short windows.
+Friction from a recording: the balance of forces over short windows.
 
-M4 integrated over a window, while no stop touches,
+M4 integrated over a window, without contact with a stop,
 
     int (f_h - F_sensor) dt - I dv = int F_f dt
 
-Sliding steadily, the bristles of F2 are strained to g(v), so that with the mean speed v of a
+In steady sliding the bristles of F2 are strained to g(v), so that with the mean speed v of a
 window F_f = sgn(v) (F_c + (F_s - F_c) exp(-(v/v_s)^2)) + sigma_2 v  (F1, F3). A constant
-force beside it, which an offset of a sensor would be, is estimated too. Known: areas and the
-moving part's inertia. Left out: windows near the actuator's own stops, with a chamber near a
-relief, a refill or the end of its sensor, and with a reversal, a collision or another speed
-within or a short way before.
+force in addition, such as an offset of a sensor, is estimated too. Known: areas and the moving
+part's inertia. Left out: windows near the actuator's own stops, with a chamber near a relief,
+a refill or the end of its sensor, and with a reversal, a collision or another speed in the
+window or shortly before it.
 """
 
 from dataclasses import dataclass
@@ -26,18 +26,18 @@ CORRELATION = 0.4   # s, over which residuals may depend on each other
 _SMOOTHED = 0.021   # s, the length of the parabola whose slope is the speed at a window's end
 _MARGIN = 1e5       # Pa from relief and return within which a chamber is left out
 _NEAR_STOP = 0.01   # of the stroke
-_SETTLED = 0.003    # of the stroke, slid since a reversal or a collision
-_SAME_SPEED = 0.3   # change of the speed over that way, over the speed
+_SETTLED = 0.003    # of the stroke, travelled since a reversal or a collision
+_SAME_SPEED = 0.3   # change of the speed over that travel, over the speed
 _STEADY = 0.5       # change of the speed within a window over its mean
 _OUTLIER = 6.0      # robust deviations: a collision within the window
-_ROUNDS = 3         # of leaving out such windows
+_ROUNDS = 3         # of leaving out outliers
 _SHARES = (0.02, 0.5)   # of the windows, slower than the Stribeck speeds tried first
 _SPEEDS = 12        # of them
 _SLOW_WINDOWS = 10  # slower than the Stribeck speed, in each direction
 _SLOW = 0.3         # of the highest speed, above any Stribeck speed
 
 COULOMB, VISCOUS, OFFSET, STICTION, STRIBECK = range(5)
-"""Parameters: N, Ns/m, N, N, m/s, or their rotary equals."""
+"""Parameters: N, Ns/m, N, N, m/s, or the rotary units."""
 N_PARAMETERS = 5
 _ALL = np.arange(N_PARAMETERS)
 _WITHOUT_SPEED = np.delete(_ALL, STRIBECK)
@@ -48,7 +48,7 @@ class ForceBalance:
     """
     Estimates and half-widths of the 95 % intervals, (N_PARAMETERS,).
 
-    NaN where the data do not hold a parameter; then its half-width is infinite.
+    NaN for a parameter that the data do not determine; then its half-width is infinite.
     """
 
     values: np.ndarray
@@ -60,9 +60,9 @@ def fit_friction(recording: Recording) -> ForceBalance:
     """
     Return the friction of one actuator.
 
-    The half-widths hold, beside the scatter, the rounding of pressures and force where they
-    stand still, and how far the estimates move with windows half as long: a speed that
-    changes too much within a window widens them.
+    The half-widths include, besides the scatter, the rounding of constant pressures and forces,
+    and the change of the estimates with windows half as long: a speed that changes too much
+    within a window widens them.
     """
     values = np.full(N_PARAMETERS, math.nan)
     widths = np.full(N_PARAMETERS, math.inf)
@@ -106,7 +106,7 @@ class _Windows:
         near = _NEAR_STOP * oil.stroke
         is_free = recording.is_trapped(_MARGIN) & (s > near) & (s < oil.stroke - near)
         is_steady = np.abs(np.diff(speed[ends])) < _STEADY * np.abs(self._speed)
-        # A collision reaches as far as the parabola.
+        # A collision affects as many samples as the parabola has.
         is_steady[1:-1] &= is_steady[2:] & is_steady[:-2]
         self._good = recording.is_whole(ends, is_free) & self._is_settled(is_steady)
         rounding = math.hypot(oil.area_a * recording.resolution('pressure_a'),
@@ -118,9 +118,9 @@ class _Windows:
 
     def _is_settled(self, is_steady: np.ndarray) -> np.ndarray:
         """
-        Return which windows the bristles have settled in.
+        Return the windows in which the bristles have settled.
 
-        On the way before, nothing but steady sliding at about the same speed.
+        The travel before such a window is steady sliding at about the same speed.
         """
         path = np.concatenate([[0.0], np.cumsum(np.abs(self._travel))])
         since = np.maximum.accumulate(np.where(is_steady, 0.0, path[1:]))
@@ -137,13 +137,13 @@ class _Windows:
         return int(np.count_nonzero(self._good))
 
     def slides_both_ways(self) -> bool:
-        """Tell whether there is sliding in both directions, enough for an interval."""
+        """Return whether there is sliding in both directions, enough for an interval."""
         least = 2 * self._lags
         speed = self._speed[self._good]
         return bool(np.sum(speed > 0.0) > least and np.sum(speed < 0.0) > least)
 
     def start(self) -> np.ndarray | None:
-        """Return the best fit at some Stribeck speeds without collisions; None: nothing left."""
+        """Return the best fit at some Stribeck speeds without collisions; None: no window."""
         guess = np.zeros(N_PARAMETERS)
         for _ in range(_ROUNDS):
             speed, force = self._speed[self._good], self._force[self._good]
@@ -187,17 +187,17 @@ class _Windows:
             [self._rounding[self._good]], of)
 
     def shows_stiction(self, theta: np.ndarray) -> bool:
-        """Tell whether slow sliding tells stiction from Coulomb friction, and its speed too."""
+        """Return whether slow sliding determines stiction and Stribeck speed."""
         speed, v_s = self._speed[self._good], theta[STRIBECK]
         if min(np.sum((0.0 < speed) & (speed < v_s)),
                np.sum((-v_s < speed) & (speed < 0.0))) < _SLOW_WINDOWS:
             return False
-        asked = np.zeros((2, N_PARAMETERS))
-        asked[0, STICTION], asked[0, COULOMB], asked[1, STRIBECK] = 1.0, -1.0, 1.0
-        return bool(np.all(asked @ theta > self.half_widths(theta, _ALL, asked)))
+        sums = np.zeros((2, N_PARAMETERS))
+        sums[0, STICTION], sums[0, COULOMB], sums[1, STRIBECK] = 1.0, -1.0, 1.0
+        return bool(np.all(sums @ theta > self.half_widths(theta, _ALL, sums)))
 
     def leave_out_collisions(self, theta: np.ndarray) -> None:
-        """Leave out the windows whose force nothing but a collision explains."""
+        """Leave out the windows whose force can only be that of a collision."""
         residuals = self._residuals(theta)
         deviation = 1.4826 * float(np.median(np.abs(residuals)))
         self._good[self._good] = np.abs(residuals) < _OUTLIER * deviation

@@ -1,8 +1,8 @@
 """
-`isa identify`: valve gains, bulk modulus, leakage and friction out of a bag.
+`isa identify`: valve gains, bulk modulus, leakage and friction from a bag.
 
-Each with its 95 % interval beside the value of the configuration in the bag. What the data
-do not hold is refused with the reason.
+Each has its 95 % interval beside the value of the configuration in the bag. A parameter that
+the data do not determine is refused with the reason.
 """
 
 from dataclasses import asdict, dataclass
@@ -26,9 +26,9 @@ from isa_ros.text.table import aligned, GAP
 import numpy as np
 
 _LEAST_COUNTS = 50.0  # of the encoder; fewer leave more than 1 % of the volume to its rounding
-_WIDEST = 0.5         # half of an interval over the estimate, beyond which nothing is said
+_WIDEST = 0.5         # half of an interval over the estimate, beyond which none is given
 _TOO_SHORT = 'too short: {:.2g} s of the bag can be used'
-_UNSEPARATED = 'the data do not tell it from the others'
+_UNSEPARATED = 'the data do not separate it from the others'
 _WITHIN = 'not in the data: the spool stays near null'
 _SLIDING = 'not in the data: too little sliding both ways'
 _SLOW = 'not in the data: no slow sliding that shows it'
@@ -47,18 +47,18 @@ class Estimate:
     high: float | None
     configured: float
     reason: str
-    """Empty where there is an estimate."""
+    """Empty if there is an estimate."""
 
     @property
     def holds(self) -> bool:
-        """Tell whether the interval holds the configured value."""
+        """Return whether the interval contains the configured value."""
         return (self.low is not None and self.high is not None
                 and self.low <= self.configured <= self.high)
 
 
 @dataclass(frozen=True)
 class Identified:
-    """The estimates of every actuator that moved, and how little the others did."""
+    """The estimates of every actuator that moved, and the small motion of the others."""
 
     actuators: dict[str, list[Estimate]]
     still: dict[str, str]
@@ -71,9 +71,9 @@ def identify_bag(bag: Path, actuator: str | None = None) -> Identified:
     Raises
     ------
     BagError
-        The bag cannot be read, or not one actuator moved enough.
+        The bag cannot be read, or no actuator moved enough.
     ConfigError
-        There is no actuator of this name.
+        The bag has no actuator of this name.
 
     """
     run, traces = read_traces(bag)
@@ -83,7 +83,7 @@ def identify_bag(bag: Path, actuator: str | None = None) -> Identified:
         moved, least = float(np.ptp(recording.position)), _least_motion(recording)
         if moved < least:
             unit = 'rad' if one.sheet.is_rotary else 'm'
-            found.still[one.name] = f'moved by {moved:.2g} {unit}, must by {least:.2g} {unit}'
+            found.still[one.name] = f'moved {moved:.2g} {unit}, needs at least {least:.2g} {unit}'
             continue
         found.actuators[one.name] = identify(recording, one.sheet.plant)
     if not found.actuators:
@@ -125,7 +125,7 @@ def _valve_and_oil(
 
 
 def _curve(recording: Recording, valve: Valve) -> tuple[FlowCurve, list[_CurveRow]]:
-    """Return the kind of flow curve, and (name, unit, k, SI per unit, configured) to report."""
+    """Return the flow curve, and (name, unit, k, SI per unit, configured) of its parameters."""
     si = recording.plant.valve
     per_ma = LPM / (valve.spool_gain_mm_per_ma * MILLI)  # m3/s per m of a l/min per mA
     if isinstance(valve, DualGainValve):
@@ -159,7 +159,7 @@ def _friction(recording: Recording, sheet: LinearPlant | RotaryPlant) -> list[Es
 def _estimate(
         name: str, unit: str, value: float, half_width: float, configured: float,
         reason: str) -> Estimate:
-    """Return an estimate, or the refusal of one; ``reason`` is why the data might lack it."""
+    """Return an estimate or its refusal; ``reason`` is given if it is not in the data."""
     value, half_width = float(value), float(half_width)
     if math.isnan(value) or math.isinf(half_width):
         return Estimate(name, unit, None, None, None, configured, reason)
@@ -176,7 +176,7 @@ def _inverse(estimate: Estimate) -> Estimate:
     if value is None or low is None or high is None:
         return Estimate(
             estimate.parameter, estimate.unit, None, None, None, 1.0 / estimate.configured,
-            estimate.reason if low is None else 'too uncertain, its inverse nearly holds 0')
+            estimate.reason if low is None else 'too uncertain, its inverse may be 0')
     return Estimate(
         estimate.parameter, estimate.unit, 1.0 / value, 1.0 / high, 1.0 / low,
         1.0 / estimate.configured, '')
@@ -202,7 +202,7 @@ def _cells(estimate: Estimate) -> tuple[str, ...]:
 
 
 def write_json(found: Identified, bag: Path, path: Path) -> None:
-    """Write the estimates, null for what was refused."""
+    """Write the estimates, null for a refused one."""
     path.write_text(json.dumps({
         'bag': bag.name, 'confidence': CONFIDENCE,
         'actuators': {name: [asdict(estimate) | {'holds': estimate.holds}

@@ -1,5 +1,5 @@
 """
-Valve and oil out of a recording: the volume balance of both chambers over short windows.
+Valve and oil from a recording: the volume balance of both chambers over short windows.
 
 C2 integrated over a window,
 
@@ -7,7 +7,7 @@ C2 integrated over a window,
    -A_B ds = int Q_B dt - 1/beta int V_B dP_B + C_li int (P_A - P_B) dt
 
 is linear in 1/beta and C_li, and with V6, V7 and V14 for the flows in q_0 and in most of the
-flow curve's parameters. Nothing is differentiated. The null of the lands on the spool's
+flow curve's parameters. No signal is differentiated. The null of the lands on the spool's
 sensor is estimated too. Known: areas, dead volume, land factors, lap, dp_ref, delta and x_l.
 Left out: windows in which a chamber is near a relief, a refill or the end of its sensor.
 """
@@ -23,7 +23,7 @@ from isa_ros.analysis.signals.recording import Recording, SHORTEST
 import numpy as np
 from scipy.interpolate import CubicSpline
 
-WINDOW = 0.010      # s, short against the motion, long against the noise of its two ends
+WINDOW = 0.010      # s, short for the motion, long for the noise of its two ends
 CORRELATION = 0.4   # s, over which residuals may depend on each other
 _SUBSTEPS = 4       # of a sample, between which spool and pressures are interpolated
 _ROUNDING = 1.0 / math.sqrt(12.0)   # standard deviation of a rounding over its step
@@ -39,7 +39,7 @@ class Balance:
     """
     Estimates and half-widths of the 95 % intervals, (CURVE + curve.size,).
 
-    NaN where the recording does not excite a parameter; then its half-width is infinite.
+    NaN for a parameter that the recording does not excite; then its half-width is infinite.
     """
 
     values: np.ndarray
@@ -49,7 +49,7 @@ class Balance:
 
 
 class _Land(NamedTuple):
-    """One land: its opening at null, how the spool opens it, and S(dP)/sqrt(dp_ref) f."""
+    """One land: its opening at null, its sign of opening, and S(dP)/sqrt(dp_ref) f."""
 
     closed_by: float
     direction: float
@@ -60,8 +60,8 @@ def fit_balance(recording: Recording, curve: FlowCurve) -> Balance:
     """
     Return the valve's and the oil's parameters of one actuator.
 
-    The half-widths hold, beside the scatter, the rounding of a spool that stands still, and
-    how far the estimates move at half the rate: motion too fast for the sampling widens them.
+    The half-widths include, besides the scatter, the rounding of a spool at rest, and the
+    change of the estimates at half the rate: motion too fast for the sampling widens them.
     """
     if recording.duration < SHORTEST:
         size = CURVE + curve.size
@@ -145,7 +145,7 @@ class _Windows:
         return taken
 
     def _through(self, shapes: Sequence[np.ndarray]) -> np.ndarray:
-        """Return the integral of what the lands pass, given g or a derivative of each."""
+        """Return the integral of the lands' flows, given g or a derivative of each."""
         return np.concatenate([
             self._integral(sum(land.weight * shape for land, shape in zip(lands, pair)))
             for lands, pair in zip(self._lands, (shapes[:2], shapes[2:]))])
@@ -155,7 +155,7 @@ class _Windows:
                 for lands in self._lands for land in lands]
 
     def excited(self) -> np.ndarray:
-        """Return the parameters the recording can say anything about."""
+        """Return the parameters that the recording excites."""
         curve = [CURVE + k for k in self._curve.excited(self._travel)]
         return np.array([NULL, *_LINEAR, *curve])
 
@@ -189,19 +189,19 @@ class _Windows:
         return best
 
     def _leaking(self, u: np.ndarray) -> np.ndarray:
-        """Return what a land leaks per unit of q_0  (V6)."""
+        """Return the leakage of a land per unit of q_0  (V6)."""
         leaking: np.ndarray = self._x_l / (self._x_l + np.abs(u))
         return leaking
 
     def _slopes(self, theta: np.ndarray) -> list[np.ndarray]:
-        """Return what the lands pass more per m of spool."""
+        """Return the change of the lands' flows per m of spool."""
         directions = [land.direction for lands in self._lands for land in lands]
         return [d * (self._curve.slope(u, theta[CURVE:])
                      - np.sign(u) * theta[Q_0] * self._leaking(u) / (self._x_l + np.abs(u)))
                 for d, u in zip(directions, self._openings(theta[NULL]))]
 
     def rounding(self, theta: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        """Return what a standing spool's rounding does, all one way or away from null."""
+        """Return the effect of a resting spool's rounding, all one way or away from null."""
         slopes = self._slopes(theta)
         away = np.sign(self._spool)
         return (self._through([self._rounding * slope for slope in slopes]),
@@ -231,7 +231,7 @@ def _lands(
         ) -> tuple[tuple[_Land, _Land], tuple[_Land, _Land]]:
     """Return the lands of chambers A and B at fine samples, flows into them positive  (V7)."""
     valve, p_t = recording.plant.valve, recording.return_pressure
-    # The supply pressure of a sample holds until the next one.
+    # The supply pressure of a sample is in force until the next one.
     p_s = np.repeat(recording.supply_pressure, _SUBSTEPS)[:len(p_a)]
 
     def root(dp: np.ndarray) -> np.ndarray:
@@ -252,7 +252,7 @@ def _fine(signal: np.ndarray) -> np.ndarray:
 
 
 def _from_neighbours(signal: np.ndarray) -> np.ndarray:
-    """Return every sample as the cubic through its four neighbours has it, without itself."""
+    """Return for every sample the value of the cubic through its four neighbours."""
     filled = signal.copy()
     filled[2:-2] = (4.0 * (signal[1:-3] + signal[3:-1]) - signal[:-4] - signal[4:]) / 6.0
     return filled

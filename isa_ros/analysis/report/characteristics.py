@@ -17,7 +17,7 @@ from matplotlib.figure import Figure
 import numpy as np
 
 LAND_DROP = 3.5 * MPA       # at which figure 5 states its flows (erratum 2)
-LEAST_DROP = 1.0 * MPA      # below, a land's flow says little about its opening
+LEAST_DROP = 1.0 * MPA      # below it, a land's flow hardly depends on its opening
 SEGMENT_S = 0.5             # of the chirp, whose spectra are averaged
 SERIES = 'current, coils in series, mA'
 
@@ -69,7 +69,7 @@ def flow_gain(run: RunConfig, traces: Traces) -> Figure:
 
 
 def leakage(run: RunConfig, traces: Traces) -> Figure:
-    """Draw what the supply gives to each blocked actuator over its current, as Fig 6."""
+    """Draw the supply flow of each blocked actuator over its current, as Fig 6."""
     figure, (ax,) = _axes(1, 'Leakage of the valves, as Fig 6')
     for actuator in moved(run, traces):
         valve, _ = _valve(actuator, traces)
@@ -108,7 +108,7 @@ def moved(run: RunConfig, traces: Traces) -> list[ActuatorConfig]:
     Raises
     ------
     ConfigError
-        None did: there is nothing to draw.
+        No reference moved, so there is nothing to draw.
 
     """
     found = []
@@ -117,12 +117,12 @@ def moved(run: RunConfig, traces: Traces) -> list[ActuatorConfig]:
         if any(np.ptp(references[f'position[{k}]']) > 0.0 for k in (1, 3)):
             found.append(actuator)
     if not found:
-        raise ConfigError(f'{run.source}: no reference moves, there is no response to draw')
+        raise ConfigError(f'{run.source}: no reference moves, so there is no response to draw')
     return found
 
 
 def _valve(actuator: ActuatorConfig, traces: Traces) -> tuple[np.ndarray, np.ndarray]:
-    """Return the valve's fields, and the current reference (A) beside them."""
+    """Return the valve's fields, and the current reference (A) at the same times."""
     return (traces[f'/{actuator.name}/valve'].fields,
             traces[f'/{actuator.name}/references']['position[3]'])
 

@@ -1,8 +1,8 @@
 """
 Figures of the paper, drawn from a bag: reference dashed blue, applied solid red.
 
-A scenario names its figure (`figure: torque_step`), `isa report` draws it first. It shows the
-knee of a leg, or else the first actuator of the run.
+A scenario may have a figure (`figure: torque_step`), which `isa report` draws first. It shows
+the knee of a leg, or the first actuator of a run without a leg.
 """
 
 from collections.abc import Mapping
@@ -24,7 +24,7 @@ POSITION, FORCE = 'position', 'force'
 
 
 class Layout(NamedTuple):
-    """What one figure of the paper shows."""
+    """The title and the diagrams of one figure of the paper."""
 
     title: str
     panels: tuple[str, ...]
@@ -50,13 +50,13 @@ def paper_figure(name: str, run: RunConfig, traces: Traces) -> Figure:
     Raises
     ------
     ConfigError
-        There is no such figure.
+        The figure does not exist.
 
     """
     if name in RESPONSES:
         return RESPONSES[name](run, traces)
     if name not in LAYOUTS:
-        raise ConfigError(f'{name} is no figure; {alternatives(name, [*LAYOUTS, *RESPONSES])}')
+        raise ConfigError(f'{name} is not a figure; {alternatives(name, [*LAYOUTS, *RESPONSES])}')
     layout = LAYOUTS[name]
     actuator = shown(run)
     rows = len(layout.panels)
@@ -67,7 +67,7 @@ def paper_figure(name: str, run: RunConfig, traces: Traces) -> Figure:
 
 
 def shown(run: RunConfig) -> ActuatorConfig:
-    """Return the actuator a figure shows."""
+    """Return the actuator that a figure shows: the knee, or the first one."""
     joints = dict(run.leg.joints) if run.leg is not None else {}
     return run.actuator(joints[KNEE]) if KNEE in joints else run.actuators[0]
 

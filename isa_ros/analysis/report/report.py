@@ -33,18 +33,18 @@ img {{ max-width: 100%; }}
 
 def write_report(bag: Path, page: Path) -> list[Path]:
     """
-    Write the page and, beside it, each of its figures as PNG; return what was written.
+    Write the page and, beside it, each of its figures as PNG; return the written files.
 
     Raises
     ------
     BagError
-        The bag cannot be read or holds no sample, or the page would replace another file.
+        The bag cannot be read or has no samples, or the page would replace another file.
 
     """
     _refuse_others(page)
     run, traces = read_traces(bag)
     if '/clock' not in traces:
-        raise BagError(f'{bag}: holds no sample, there is nothing to draw')
+        raise BagError(f'{bag}: has no samples, so there is nothing to draw')
     page.parent.mkdir(parents=True, exist_ok=True)
     written, images = [page], []
     drawn = figures(run, traces)
@@ -65,17 +65,18 @@ def write_report(bag: Path, page: Path) -> list[Path]:
 
 
 def _refuse_others(page: Path) -> None:
-    """Refuse to replace what is no report."""
+    """Refuse to replace a file that is not a report."""
     if page.is_dir():
         raise BagError(f'{page}: is a directory, must be the name of the page')
     if page.exists():
         with page.open('rb') as file:
             if _GENERATOR.encode() not in file.read(len(_PAGE)):
-                raise BagError(f'{page} exists and is no report, so it is not overwritten')
+                raise BagError(
+                    f'{page} already exists and is not a report, so it is not overwritten')
 
 
 def named_figure(bag: Path) -> str | None:
-    """Return the figure of the paper that the scenario of a bag names, None for none."""
+    """Return the paper's figure set in the scenario of a bag, None if it has none."""
     return figure_of(parse(Bag(bag).provenance.scenario, SCENARIO), Place(SCENARIO))
 
 

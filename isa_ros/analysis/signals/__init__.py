@@ -1,1 +1,1 @@
-"""Signals of a bag, and what can be read from them."""
+"""Signals of a bag, and quantities computed from them."""

@@ -1,10 +1,10 @@
 """
 Frequency response of sampled signals: stepped sine and chirp, bandwidth, margins.
 
-Knows no plant: signals are arrays of equal length, sampled at ``rate`` (Hz). Amplitudes are
-peak values in the signals' own units. A response from ``x`` to ``y`` is taken with the help
-of the excitation ``r``, as (y over r) divided by (x over r): inside a closed loop the plain
-ratio of spectra would answer with noise what the controller made of the noise.
+Independent of the plant: signals are arrays of equal length, sampled at ``rate`` (Hz).
+Amplitudes are peak values in the signals' own units. A response from ``x`` to ``y`` is computed
+with the excitation ``r``, as (y over r) divided by (x over r): inside a closed loop the plain
+ratio of spectra would be biased by noise that the controller feeds back.
 """
 
 from collections.abc import Sequence
@@ -61,15 +61,15 @@ class Sine(NamedTuple):
     amplitude: complex
     offset: float
     explained: float
-    """Share of the variance that the sine explains; 0 for a signal that stands still."""
+    """Share of the variance that the sine explains; 0 for a constant signal."""
 
 
 def fit_sine(values: np.ndarray, frequency: float, rate: float) -> Sine:
     """
     Fit sine, cosine and offset at ``frequency`` by least squares.
 
-    Only the last whole cycles count: over them the three are orthogonal, and an offset or a
-    harmonic does not pass for an answer.
+    Only the last whole cycles are used: over them the three are orthogonal, so that offsets and
+    harmonics have no influence.
 
     Raises
     ------
@@ -84,14 +84,14 @@ def fit_sine(values: np.ndarray, frequency: float, rate: float) -> Sine:
     cycles = math.floor(len(values) * frequency / rate + 1e-9)
     if cycles < 1:
         raise AnalysisError(
-            f'{len(values) / rate:g} s of samples hold no whole cycle of {frequency:g} Hz')
+            f'{len(values) / rate:g} s of samples have no whole cycle of {frequency:g} Hz')
     n = round(cycles * rate / frequency)
     angle = 2.0 * math.pi * frequency / rate * np.arange(len(values) - n, len(values))
     basis = np.column_stack((np.cos(angle), np.sin(angle), np.ones(n)))
     window = np.asarray(values[-n:], dtype=float)
     parts = np.linalg.lstsq(basis, window, rcond=None)[0]
     variance = float(np.var(window))
-    # A signal that stands still is one value up to the rounding of its mean.
+    # A constant signal is one value up to the rounding of its mean.
     if variance <= np.square(4.0 * np.finfo(float).eps * np.abs(window).max()):
         return Sine(0j, float(parts[2]), 0.0)
     left = float(np.var(window - basis @ parts)) / variance
@@ -117,7 +117,7 @@ def stepped_response(
     Raises
     ------
     AnalysisError
-        There is no window, or the input does not contain the frequency.
+        No window is given, or the input does not contain the frequency.
 
     """
     if not windows:
@@ -126,7 +126,7 @@ def stepped_response(
     for frequency, start, end in windows:
         into, out = (fit_sine(s[start:end], frequency, rate) for s in (x, y))
         if into.amplitude == 0j:
-            raise AnalysisError(f'the input stands still at {frequency:g} Hz, must move')
+            raise AnalysisError(f'the input does not move at {frequency:g} Hz')
         rows.append((frequency, out.amplitude / into.amplitude, out.explained,
                      abs(into.amplitude), abs(out.amplitude)))
     columns = [np.array(column) for column in zip(*rows)]
@@ -140,14 +140,14 @@ def chirp_response(
     Return the response from ``x`` to ``y`` to a chirp ``r`` of constant amplitude.
 
     Spectra are averaged over Hann windows of ``segment`` seconds (Welch), three quarters
-    overlapping: then their squares add up to a constant and no instant of the sweep counts
-    more. The value is S_ry / S_rx at the bins nearest to ``frequencies``, the coherence
-    |S_ry|^2 / (S_rr S_yy). Amplitudes are what a sine of the chirp's own would give.
+    overlapping: then their squares add up to a constant and all instants of the sweep have the
+    same weight. The value is S_ry / S_rx at the bins nearest to ``frequencies``, the coherence
+    |S_ry|^2 / (S_rr S_yy). Amplitudes are those for a sine with the chirp's amplitude.
 
     Raises
     ------
     AnalysisError
-        Too short for `SEGMENTS` segments, no bin in the band, or nothing excited there.
+        Too short for `SEGMENTS` segments, no bin in the band, or no excitation there.
 
     """
     n = round(segment * rate)
@@ -163,12 +163,12 @@ def chirp_response(
     bins = bins[(bins >= 1) & (bins < n // 2)]
     if not len(bins):
         raise AnalysisError(
-            f'no frequency from {rate / n:g} to {0.5 * rate:g} Hz, what segments of '
-            f'{segment:g} s resolve')
+            f'no frequency from {rate / n:g} to {0.5 * rate:g} Hz, the band that segments '
+            f'of {segment:g} s resolve')
     rr, yy = spectrum(r, r)[bins].real, spectrum(y, y)[bins].real
     rx, ry = spectrum(r, x)[bins], spectrum(r, y)[bins]
     if not (rr > 0.0).all() or not np.abs(rx).all():
-        raise AnalysisError('the chirp does not excite the whole band, must')
+        raise AnalysisError('the chirp does not excite the whole band')
     amplitude = math.sqrt(2.0) * float(np.std(r))
     with np.errstate(invalid='ignore'):
         coherence = np.where(yy > 0.0, np.square(np.abs(ry)) / (rr * yy), 0.0)
@@ -179,7 +179,7 @@ def chirp_response(
 
 def bandwidth(response: Response, dc_gain: float | None = None) -> float | None:
     """
-    Return where the gain first falls through -3 dB of ``dc_gain``, in Hz.
+    Return the frequency at which the gain first falls through -3 dB of ``dc_gain``, in Hz.
 
     None as ``dc_gain`` means the gain at the lowest frequency. Interpolated in dB over log f
     between the two points around it; None if the gain never falls there.
@@ -205,8 +205,8 @@ def margins(response: Response) -> Margins:
     """
     Return the smallest gain and phase margins of an open loop L of 1/(1 + L).
 
-    Of several crossings the one with the smallest distance from instability counts. Points
-    with a coherence below `TRUSTED` are left out.
+    Of several crossings the one closest to instability is used. Points with a coherence below
+    `TRUSTED` are left out.
     """
     kept = response.coherence >= TRUSTED
     frequency, value = response.frequency[kept], response.value[kept]
@@ -230,7 +230,7 @@ def margins(response: Response) -> Margins:
 
 
 def _crossing(frequency: np.ndarray, values: np.ndarray, k: int) -> float:
-    """Return where ``values`` pass zero between points k - 1 and k, straight over log f."""
+    """Return where ``values`` pass zero between points k - 1 and k, linear over log f."""
     left, right = float(values[k - 1]), float(values[k])
     if not math.isfinite(right):     # a gain of zero has no dB to interpolate to
         return float(frequency[k])

@@ -1,4 +1,4 @@
-"""One actuator's sensors out of a bag, as arrays on one grid of time."""
+"""One actuator's sensor signals from a bag, as arrays on one grid of time."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
@@ -13,7 +13,7 @@ from isa_ros.surroundings.supply import ATMOSPHERE
 import numpy as np
 
 Traces = dict[str, Trace]
-SHORTEST = 0.5          # s, below which nothing can be known of the scatter
+SHORTEST = 0.5          # s, below which the scatter cannot be estimated
 _SLOWEST_STEP = 2e-3    # s, with which a valve of 100 Hz can just be followed
 _JITTER = 1e-6          # s, of a sample against the grid
 
@@ -21,9 +21,9 @@ _JITTER = 1e-6          # s, of a sample against the grid
 @dataclass(frozen=True)
 class Recording:
     """
-    What the sensors gave, each (n,), SI and gauge, ``step`` seconds apart.
+    The sensor signals, each (n,), SI and gauge, ``step`` seconds apart.
 
-    ``plant`` is the `PLANT` record of the configuration: what is known and what is compared.
+    ``plant`` is the `PLANT` record of the configuration, with known and compared parameters.
     """
 
     plant: np.record
@@ -61,7 +61,7 @@ class Recording:
         """
         Return for each window between ``ends`` whether no signal changes by more than a code.
 
-        The rounding of a code that stands still does not average out.
+        The rounding of a constant code does not average out.
         """
         is_standing: np.ndarray = np.ones(len(ends) - 1, bool)
         for name in signals:
@@ -109,7 +109,7 @@ def recording_of(
         trace = traces[topic]
         t = trace.t if t is None else t
         if len(trace.t) != len(t) or np.max(np.abs(trace.t - t)) > _JITTER:
-            raise BagError(f'{bag}: {topic} is not sampled with the others, must be')
+            raise BagError(f'{bag}: {topic} is not sampled together with the others')
         offset = ATMOSPHERE if field == 'fluid_pressure' else 0.0
         signals[name] = np.array(trace[field], np.float64) - offset
     assert t is not None
@@ -121,7 +121,7 @@ def recording_of(
 def _grid(t: np.ndarray, bag: Path) -> float:
     """Return the step of evenly spaced samples, s."""
     if len(t) < 2:
-        raise BagError(f'{bag}: holds {len(t)} samples, must hold more')
+        raise BagError(f'{bag}: has {len(t)} samples, must have more')
     step = float(t[-1] - t[0]) / (len(t) - 1)
     worst = float(np.max(np.abs(np.diff(t) - step)))
     if worst > _JITTER:

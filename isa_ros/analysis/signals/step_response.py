@@ -1,8 +1,8 @@
 """
-What a step response shows: rise, overshoot, settling, steady error. Knows no plant.
+Figures of a step response: rise, overshoot, settling, steady error; independent of the plant.
 
-All figures are relative to the commanded change ``target - start``, whichever its sign, so
-that a response that ends elsewhere shows it in every figure.
+All figures are relative to the commanded change ``target - start``, of either sign, so that a
+steady error affects every figure.
 """
 
 from typing import NamedTuple
@@ -15,14 +15,14 @@ TAIL = 0.1           # of the recording: its end, over which the steady state is
 
 
 class StepFigures(NamedTuple):
-    """The figures of one step; times in s from the step, None if it never got there."""
+    """The figures of one step; times in s from the step, None if a level is never reached."""
 
     rise_time: float | None
     """From the first crossing of 10 % to that of 90 % of the change."""
     overshoot: float
     """Share of the change by which the largest value passes the target; 0 if none does."""
     settling_time: float | None
-    """When it came into the band around the target for good."""
+    """Time from which on the response stays in the band around the target."""
     steady_error: float
     """Target less the mean over the last tenth, in the signal's unit."""
     ripple: float
@@ -46,12 +46,12 @@ def step_figures(
     """
     change = target - start
     if change == 0.0:
-        raise AnalysisError(f'a step from {start:g} to {target:g}, must change something')
+        raise AnalysisError(f'step from {start:g} to {target:g}: start and target must differ')
     if not 0.0 < band < 1.0:
         raise AnalysisError(f'settling band = {band:g}, must be > 0 and < 1 of the step')
     if len(t) * TAIL < 1.0 or len(t) != len(y):
         raise AnalysisError(
-            f'{len(t)} times and {len(y)} values of a step, must be as many, and at least '
+            f'{len(t)} times and {len(y)} values of a step, must be equally many, and at least '
             f'{1.0 / TAIL:g}')
     share = (np.asarray(y, dtype=float) - start) / change
     low, high = (_first_crossing(t, share, level) for level in RISE)

@@ -27,19 +27,19 @@ class Trace:
 
 
 class _Topics(dict[str, Trace]):
-    """The topics of one bag; one that it does not hold is an error of the bag."""
+    """The topics of one bag; a missing one raises a `BagError`."""
 
     def __init__(self, bag: Path, topics: Mapping[str, Trace]) -> None:
         super().__init__(topics)
         self._bag = bag
 
     def __missing__(self, topic: str) -> Trace:
-        raise BagError(f'{self._bag}: {topic} is not in it, was it left out?')
+        raise BagError(f'{self._bag}: {topic} is not in the bag, was it left out?')
 
 
 def read_traces(path: Path) -> tuple[RunConfig, dict[str, Trace]]:
     """
-    Return the configuration a bag carries and every topic of signals in it by name.
+    Return the configuration stored in a bag and every topic of signals in it by name.
 
     Raises
     ------
@@ -65,8 +65,8 @@ def columns(messages: Sequence[bytes], type_name: str, where: str) -> np.ndarray
     """
     Return the numbers of messages of one layout as a structured view, shape (n,).
 
-    The first message is decoded; where its numbers lie, those of the others do too as long
-    as names and array lengths stay, which the recorder's prepared messages guarantee.
+    The first message is decoded; the numbers of the others are at the same offsets as long as
+    names and array lengths are the same, which the recorder's prepared messages guarantee.
     """
     first = messages[0]
     encoded, slots = encode_with_slots(decode(first, message_class(type_name)))

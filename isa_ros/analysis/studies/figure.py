@@ -1,4 +1,4 @@
-"""The figure of a study: an actuator a column, steps above what follows from the values."""
+"""The figure of a study: one column per actuator, the steps above the measures by value."""
 
 from collections.abc import Sequence
 

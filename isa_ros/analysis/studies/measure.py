@@ -1,13 +1,13 @@
 """
-What a study measures at each value, on the bare actuator.
+The measures of a study at each value, on the bare actuator.
 
 - Output blocked, steps of 10 % of the rating and back, at mid stroke and near the stop at its
   end, where the oil is stiffest: rise, overshoot, and the ripple left 0.8 s after.
-- Sines of the same amplitude at mid stroke: where the closed loop falls through -3 dB.
+- Sines of the same amplitude at mid stroke: the frequency of -3 dB of the closed loop.
 - On the wheel under its impedance gains, a joint of a leg that trots at 1 m/s, and then stands:
-  how far torque and position are from their references, and the ripple while it stands.
+  the errors of torque and position, and the ripple while it stands.
 
-A ripple is half of peak to peak; one beyond `SMALL` of the step has its frequency told.
+A ripple is half of peak to peak; for one beyond `SMALL` of the step the frequency is given.
 """
 
 from dataclasses import dataclass, replace
@@ -38,8 +38,8 @@ RIPPLE_S = 0.4          # at the end of each
 SHOWN_S = 0.1           # of a step in a figure
 SWEEP = Sweep(low=10.0, high=160.0, points=9)
 WHEEL = 'wheel'
-LOAD = 'load.'          # begins a parameter of the blocked output
-JOINTS = {'smart_manifold': 'hfe', 'isa_v5': 'kfe'}     # that trot
+LOAD = 'load.'          # prefix of a parameter of the blocked output
+JOINTS = {'smart_manifold': 'hfe', 'isa_v5': 'kfe'}     # joint of the trot by model
 ROUNDING = 1e-9         # of a value in its unit
 SETPOINT_NS = 1_000_000     # between setpoints of a run
 GROWN_S, TROT_S, FADE_S, STAND_S = 0.6, 1.2, 0.3, 0.9   # 0.6 s: start_s of the packaged trot
@@ -47,7 +47,7 @@ GROWN_S, TROT_S, FADE_S, STAND_S = 0.6, 1.2, 0.3, 0.9   # 0.6 s: start_s of the 
 
 @dataclass(frozen=True, kw_only=True)
 class Outcome:
-    """What was measured at one value, in the units a user reads."""
+    """The measures at one value, in the units of the page."""
 
     value: float
     rise: float | None          # ms, 10 to 90 %
@@ -73,7 +73,7 @@ class Bench:
 
 
 class Benches:
-    """The benches of several studies: cases that differ in their values share one."""
+    """The benches of several studies: cases that differ only in their values share one."""
 
     def __init__(self) -> None:
         self._of: dict[tuple[str, tuple[str, ...]], Bench] = {}
@@ -91,7 +91,7 @@ class Benches:
 
 @dataclass(frozen=True)
 class Result:
-    """A case, the value its shipped actuator has, and what was measured at all of them."""
+    """A case, the value of its shipped actuator, and the outcomes at all values."""
 
     case: Case
     shipped: float
@@ -110,7 +110,7 @@ class Result:
         return 'mrad' if self.is_rotary else 'mm'
 
     def is_shipped(self, outcome: Outcome) -> bool:
-        """Tell whether an outcome is that of the shipped actuator, its value but rounded."""
+        """Return whether an outcome is that of the shipped actuator, up to rounding."""
         return math.isclose(outcome.value, self.shipped, rel_tol=ROUNDING)
 
 
@@ -188,7 +188,7 @@ def changed(given: Rig, loop: str, overrides: dict[str, float]) -> Rig:
 
 
 def placed(blocked: Rig, place: float) -> Rig:
-    """Return a rig at a place, as a share of the stroke."""
+    """Return a rig at a position given as a share of the stroke."""
     stroke = blocked.config.sheet.plant.drive.stroke
     return blocked.with_config(replace(blocked.config, initial_position=place * stroke))
 
@@ -226,7 +226,7 @@ def ripple(values: np.ndarray) -> float:
 
 
 def frequency(values: np.ndarray) -> float:
-    """Return where the spectrum of ``values`` less their drift is largest, in Hz."""
+    """Return the frequency of the largest peak in the spectrum without the drift, in Hz."""
     window = signal.windows.hann(len(values), sym=False)
     found = np.abs(np.fft.rfft(window * signal.detrend(values)))
     return float((1 + int(np.argmax(found[1:]))) * RATE_HZ / len(values))

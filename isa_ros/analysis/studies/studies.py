@@ -1,9 +1,9 @@
 """
-What the paper announces to study: which parameter is varied over which values.
+The studies that the paper announces: a parameter of each and its values.
 
 Sections 4, 5.1 and 6 name quantisation, sampling, hunting from overlap, backlash, friction and
 stiffness. A study varies one of them on both actuators, everything else as shipped.
-`isa_ros.analysis.studies.measure` says what is measured.
+`isa_ros.analysis.studies.measure` describes the measures.
 """
 
 from collections.abc import Sequence
@@ -25,8 +25,8 @@ class Case:
     """
     One study on one actuator.
 
-    ``paths`` are the parameters that are varied, as `experiment.Overrides` name them, each
-    with its share of the value; one that begins with ``load.`` is of the blocked output.
+    ``paths`` are the parameters that are varied, named as in `experiment.Overrides`, each with
+    its share of the value; one that begins with ``load.`` belongs to the blocked output.
     """
 
     model: str
@@ -37,7 +37,7 @@ class Case:
 
     @property
     def preset(self) -> str:
-        """Return the gains it has."""
+        """Return the name of its gains."""
         return PRESETS[self.model]
 
     def overrides(self, value: float) -> dict[str, float]:
@@ -47,12 +47,12 @@ class Case:
 
 @dataclass(frozen=True)
 class Study:
-    """One parameter, its cases, and what one sees in the outcomes."""
+    """One parameter, its cases, and a text about the outcomes."""
 
     name: str
     title: str
     source: str
-    """What the paper says of it."""
+    """The statement of the paper."""
     cases: tuple[Case, ...]
     seen: str = field(repr=False)
     """Text of the page; ``{isa_v5[12].overshoot:.0f}`` is a number of the run itself."""
@@ -150,7 +150,7 @@ def study_of(name: str) -> Study:
     Raises
     ------
     ConfigError
-        There is none.
+        The study does not exist.
 
     """
     names = [study.name for study in STUDIES]
@@ -161,17 +161,18 @@ def study_of(name: str) -> Study:
 
 def only_model(study: Study, model: str | None) -> Study:
     """
-    Return a study of one actuator; None: of all it has.
+    Return a study of one actuator; None: of all its actuators.
 
     Raises
     ------
     ConfigError
-        It does not have the actuator.
+        The study does not have the actuator.
 
     """
     if model is None:
         return study
     models = [case.model for case in study.cases]
     if model not in models:
-        raise ConfigError(f'--model {model}: no model of a study; {alternatives(model, models)}')
+        raise ConfigError(
+            f'--model {model}: not a model of a study; {alternatives(model, models)}')
     return replace(study, cases=(study.cases[models.index(model)],))

@@ -1,7 +1,7 @@
 """
-The data of the actuators: tables 2, 3 and 5, from what the plant's equations do with them.
+The data of the actuators: tables 2, 3 and 5, as results of the plant's equations.
 
-Pressures, volumes and forces come from the kernels, so that a wrong conversion is found.
+Pressures, volumes and forces are computed by the kernels, which reveals wrong conversions.
 """
 
 import math
@@ -151,7 +151,7 @@ def _sensors() -> list[Entry]:
 
 
 def _least_step(resolution: float) -> float:
-    """Return the smallest change of what the encoder gives over a hundred counts."""
+    """Return the smallest change of the encoder's reading over a hundred counts."""
     places = np.linspace(0.0, 100.0 * resolution, 10_001)
     values = np.array([encode(place, resolution) for place in places])
     steps = np.diff(values)

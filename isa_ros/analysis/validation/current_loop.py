@@ -27,7 +27,7 @@ MANIFOLD = 'smart_manifold'
 EXPLICIT = 'explicit'
 OPEN_LOOP_V = 10.0         # V, of the step that shows the static gain
 OPEN_LOOP_S = 0.1          # 26 time constants of the coil
-STEPS_MA = (1.0, 2.0)      # that the amplifier's voltage does not limit
+STEPS_MA = (1.0, 2.0)      # not limited by the amplifier's voltage
 LARGE_STEP_MA = 5.0
 BARE_KP = 16.0             # V/mA without lead-lag: the gain of Table 4, rings
 STEP_S = 0.05
@@ -77,7 +77,7 @@ def _step(amplitude_ma: float) -> Step:
 
 
 def _settled(measured: Step) -> float:
-    """Return when the current is within 2 % of its step for good, ms."""
+    """Return the time from which on the current is within 2 % of its step, ms."""
     after = measured.t >= 0.0
     found = step_figures(
         measured.t[after], measured.output[after], 0.0, measured.amplitude, band=0.02)

@@ -19,8 +19,8 @@ class Entry:
     """
     One check; ``tolerance`` is the interval (lowest, highest) that ours must lie in.
 
-    ``paper`` is the printed value, or a text where the paper gives no number. Where that
-    value lies outside the tolerance, ``reading`` says how it is read: ``erratum 13: ...``.
+    ``paper`` is the printed value, or a text if the paper gives no number. If that value lies
+    outside the tolerance, ``reading`` is how it is read: ``erratum 13: ...``.
 
     Raises
     ------
@@ -38,12 +38,12 @@ class Entry:
     tolerance_source: str
     reading: str = ''
     reason: str = ''
-    """Why it is not reached, shown only then."""
+    """The cause, shown only for a value that is not reached."""
 
     def __post_init__(self) -> None:
         lowest, highest = self.tolerance
         if not lowest <= highest:
-            raise ValueError(f'{self.name}: tolerance {self.tolerance} holds no value')
+            raise ValueError(f'{self.name}: tolerance {self.tolerance} contains no value')
         if self.reading and not _READING.match(self.reading):
             raise ValueError(f'{self.name}: reading {self.reading!r}, must begin with erratum N: ')
         if not self.reading and self._contradicts:
@@ -70,13 +70,13 @@ class Entry:
 
     @property
     def is_reached(self) -> bool:
-        """Tell whether ours lies in the tolerance; what is not a number does not."""
+        """Return whether ours lies in the tolerance; a NaN does not."""
         lowest, highest = self.tolerance
         return lowest <= self.ours <= highest
 
     @property
     def verdict(self) -> str:
-        """Return `REACHED`, `AS_READ` where the printed value itself is not, or `NOT_REACHED`."""
+        """Return `REACHED`, `AS_READ` if the value was read otherwise, or `NOT_REACHED`."""
         if not self.is_reached:
             return NOT_REACHED
         return AS_READ if self._contradicts else REACHED
@@ -93,7 +93,7 @@ class Drawing:
 
 @dataclass(frozen=True)
 class Findings:
-    """What one group found."""
+    """The results of one group."""
 
     entries: tuple[Entry, ...]
     drawings: tuple[Drawing, ...] = ()
@@ -107,7 +107,7 @@ class Group:
     title: str
     check: Callable[[], Findings]
     is_long: bool = False
-    """Takes more than a few seconds: starts first."""
+    """True if it takes more than a few seconds: it then starts first."""
 
 
 def around(value: float, *, by: float = 0.0, percent: float = 0.0) -> tuple[float, float]:

@@ -1,4 +1,4 @@
-"""Every group of checks, in the order of the paper; the package says how to add one."""
+"""Every group of checks, in the order of the paper; see the package on how to add one."""
 
 from isa_ros.analysis.validation.actuator_data import actuator_data
 from isa_ros.analysis.validation.current_loop import current_loop

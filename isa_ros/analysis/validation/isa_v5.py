@@ -1,10 +1,10 @@
 """
-The ISA v5 alone: what its printed gains give, what the retuned ones do, and its relief valves.
+The ISA v5 alone: performance of its printed and of its retuned gains, and its relief valves.
 
-Steps and frequency responses of 750 N, a tenth of its rating. Whether the retuned gains hunt
-over the stroke is in `strokes`. The foot's stiffness is taken to the piston through the leg of
-the knee rig, with hip and slider held: the lever of the linkage r = dx/dq and that of the foot
-dz/dq make it (dz/dq / r)^2 times as stiff, and the shank M_qq / r^2 heavy.
+Steps and frequency responses of 750 N, a tenth of its rating. Hunting of the retuned gains over
+the stroke is in `strokes`. The foot's stiffness is transformed to the piston through the leg of
+the knee rig, with hip and slider held: with the lever of the linkage r = dx/dq and that of the
+foot dz/dq it is (dz/dq / r)^2 times as stiff, and the mass of the shank is M_qq / r^2.
 """
 
 from dataclasses import replace
@@ -54,7 +54,7 @@ def isa_v5() -> Findings:
 
 
 def bench(preset: str, place: float = 0.5) -> Rig:
-    """Return the force loop against the blocked load at a place of the stroke."""
+    """Return the force loop against the blocked load at a share of the stroke."""
     found = rig(Choice(name=MODEL, loop='force', preset=preset))
     return found.with_config(replace(
         found.config, initial_position=place * found.config.sheet.plant.drive.stroke))
@@ -84,13 +84,13 @@ def foot() -> Rig:
 
 
 def cell_code() -> float:
-    """Return what the load cell resolves, N."""
+    """Return the resolution of the load cell, N."""
     sensors = model_sheet(MODEL).plant.sensors
     return float(2.0 * sensors.force_range / 2 ** sensors.adc_bits)
 
 
 def bandwidth(of: Rig) -> float:
-    """Return where the closed loop's gain is 3 dB below 1, Hz; NaN outside the sweep."""
+    """Return the frequency of a closed-loop gain of -3 dB, Hz; NaN outside the sweep."""
     found = bode(of, SWEEP, 'closed').bandwidth
     return float('nan') if found is None else found
 
@@ -125,7 +125,7 @@ def _retuned() -> tuple[Entry, ...]:
 
 
 def _relief(model: str) -> Entry:
-    """Return how far the cap side gets, valve closed, under a load beyond the supply's."""
+    """Return the cap-side pressure, valve closed, under a load above the supply's force."""
     oil = plant_of(model).chambers
     found = rig(Choice(
         name=model, loop='spool', variants=('valve_amplifier',), load='mass'))

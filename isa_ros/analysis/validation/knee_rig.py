@@ -173,7 +173,7 @@ def _weight(drop: Experiment) -> tuple[Entry, ...]:
         Entry(name='falling_weight', source=slider.where, paper=falling,
               ours=float(standing / STANDARD_GRAVITY), unit='kg',
               tolerance=around(falling, by=0.05),
-              tolerance_source='half of the last printed digit; what the ground bears at last'))
+              tolerance_source='half of the last printed digit; ground force at rest'))
 
 
 def _rms(values: np.ndarray) -> float:
@@ -211,4 +211,4 @@ def _fig_20(drop: Experiment) -> Drawing:
     force.legend(loc='upper right', fontsize='small')
     return Drawing(
         'fig_20', 'Force of the knee in a drop of 10 cm, let go at 0.1 s, as Fig 20; below, '
-        'what the ground bears.', figure)
+        'the ground force.', figure)

@@ -1,11 +1,11 @@
 """
-What the numbers of all other groups rest on: the plant's fixed step and the leg's linkages.
+The basis of the numbers of all other groups: the plant's fixed step and the leg's linkages.
 
-The plant is held against scipy's DOP853 of the same equations, at a tolerance of 1e-12
+The plant is compared with scipy's DOP853 of the same equations, at a tolerance of 1e-12
 (`isa_ros.analysis.accuracy.agreement`); the valve-driven cylinder of the same kernels
-(`isa_ros.analysis.accuracy.cylinder`) against a solution known to twelve digits; lever and
-extension of the knees against the table of the published linkages. The paper says nothing of
-these.
+(`isa_ros.analysis.accuracy.cylinder`) with a solution known to twelve digits; lever and
+extension of the knees with the table of the published linkages. The paper gives no such
+numbers.
 """
 
 from collections.abc import Iterable
@@ -28,7 +28,7 @@ SMOOTH, SINE, STEPS = agreement.PIECES
 STATES = ('plant.chambers.p_a', 'plant.chambers.p_b', 'plant.mechanics.position',
           'load.position')
 OTHER = 'independent integration'
-NOTHING = 'nothing of its own solver'
+NOTHING = 'no accuracy of its solver'
 LEAST_SMOOTH = 4e-10   # (p_c h)^4/120 of 0.4 of the current, over 10 ms
 FINER = 0.1            # of the step
 SECONDS = (1, 5, 10)
@@ -45,11 +45,11 @@ KNEES: dict[str, tuple[tuple[float, float | None, float], ...]] = {
     'hyq_leg': (
         (-20.0, None, 22.5), (-60.0, None, 41.3), (-80.0, None, 44.9), (-120.0, None, 35.6),
         (-140.0, None, 22.5))}
-SHORTEST_KNEE = 313.1  # mm, pin to pin at extension 0, to which the table counts
+SHORTEST_KNEE = 313.1  # mm, pin to pin at extension 0 of the table
 
 
 def numerics() -> Findings:
-    """Compare plant, cylinder and linkages with what was computed elsewhere."""
+    """Compare plant, cylinder and linkages with independent results."""
     return Findings((
         *(entry for model in MODELS for entry in _plant(model)), *_cylinder(),
         *(entry for config in KNEES for entry in _knee(config))))
@@ -57,11 +57,11 @@ def numerics() -> Findings:
 
 def kink(model: str) -> float:
     """
-    Return what a step may leave of the supply pressure at a kink of the flow, 1.
+    Return the allowed error of a step at a kink of the flow, relative to the supply pressure.
 
-    A slope that jumps by J within a step h leaves J h^2/8: here the whole slope of one land
-    under half the supply pressure, at the spool's largest speed in the sine, into the smaller
-    chamber at mid stroke.
+    A slope that jumps by J within a step h causes an error J h^2/8: here the whole slope of one
+    land under half the supply pressure, at the spool's largest speed in the sine, into the
+    smaller chamber at mid stroke.
     """
     plant = plant_of(model)
     oil, valve = plant.chambers, plant.valve
@@ -74,7 +74,7 @@ def kink(model: str) -> float:
 
 
 def worst(found: Iterable[Difference], states: tuple[str, ...] = ()) -> float:
-    """Return the largest relative difference; of ``states`` only, where given."""
+    """Return the largest relative difference; only that of ``states``, if given."""
     return max(each.relative for each in found if not states or each.state in states)
 
 

@@ -1,4 +1,4 @@
-"""Axes of the validation's figures, all in one look."""
+"""Axes of the validation's figures, in a common style."""
 
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure

@@ -1,8 +1,8 @@
 """
-The control blocks as figure 7 and Table 4 have them, one at a time and outside of the loop.
+The control blocks of figure 7 and Table 4, one at a time and in open loop.
 
-Gains are measured on the kernels: a reference, a position or a speed goes in, and what the
-block gives inwards is divided by it.
+Gains are measured on the kernels: the block's output divided by its input, a reference, a
+position or a speed.
 """
 
 from isa_ros.actuator.sheet import actuator_record
@@ -39,7 +39,7 @@ def _force_block(model: str) -> tuple[np.record, np.record]:
 
 
 def proportional_gain(model: str) -> float:
-    """Return what the first period gives for a small reference, over it."""
+    """Return the output of the first period over a small reference."""
     block, state = _force_block(model)
     reference = SMALL * block.limit / block.kp
     block_step(reference, 0.0, 0.0, 0.0, 1.0, block, state)
@@ -47,7 +47,7 @@ def proportional_gain(model: str) -> float:
 
 
 def integral_gain(model: str) -> float:
-    """Return how fast the output grows over a constant error."""
+    """Return the growth rate of the output over a constant error."""
     block, state = _force_block(model)
     error = SMALL * block.limit / (PERIODS * block.period * block.ki)
     block_step(error, 0.0, 0.0, 0.0, 1.0, block, state)
@@ -138,7 +138,7 @@ def _rates() -> list[Entry]:
 
 
 def _proportionality(model: str) -> Entry:
-    """Return by how much the flow of the compensated demand departs from a straight line."""
+    """Compare the flow of the compensated demand with a straight line."""
     valve = plant_of(model).valve
     block, _ = _force_block(model)
     to_spool = valve.k_spool if model == ROTARY else 1.0
@@ -150,7 +150,7 @@ def _proportionality(model: str) -> Entry:
     line = valve.k_low * to_spool * demands
     return Entry(
         name=f'{model}_compensation', source='section 3, Fig 7',
-        paper='DGC undoes the dual gain',
+        paper='DGC compensates the dual gain',
         ours=round(float(100.0 * np.abs(flows / line - 1.0).max()), 6),
         unit='percent', tolerance=at_most(0.3),
         tolerance_source='1.2 mA and x_dg / K_spool differ by 0.05 %, times the ratio of gains',

@@ -23,7 +23,7 @@ from scipy.integrate import solve_ivp
 RIG, POSITION_RIG = 'rig_rotary', 'rig_rotary_position'
 JOINT, REFERENCES = '/rotor/joint_states', '/rotor/references'
 APART_S = 0.2       # free of the stop before an impact; less is the wheel's rebound
-NEAR_S = 0.05       # before and after it, in which the reference is looked at
+NEAR_S = 0.05       # before and after an impact, in which the reference is evaluated
 WEIGHTS = (
     ('weight_soft', '150 Nm/rad, 10 Nms/rad'), ('weight', '300 Nm/rad, 20 Nms/rad'),
     ('weight_stiff', '600 Nm/rad, 30 Nms/rad'))
@@ -42,7 +42,7 @@ def rotary_disturbances() -> Findings:
         (*_impacts(hit), *_weights({k: dropped(e) for k, e in impedance.items()}),
          *_position_control(dropped(impedance[MIDDLE]), dropped(position)),
          _blocked(drop_rig(position))),
-        (Drawing('fig_15', 'The wheel hitting its stops again and again, as Fig 15.',
+        (Drawing('fig_15', 'The wheel hitting its stops repeatedly, as Fig 15.',
                  paper_figure('impact', *hit)),
          Drawing('fig_17', 'The weight under pure position control, as Fig 17.',
                  paper_figure('weight', *position)),
@@ -50,13 +50,13 @@ def rotary_disturbances() -> Findings:
 
 
 class Impact(NamedTuple):
-    """What the torque's reference does about one impact, Nm."""
+    """The torque reference around one impact, Nm."""
 
     before: float
     """Largest of `NEAR_S` before."""
     after: float
     velocity_share: float
-    """Percent of its rise that the velocity makes, not the position."""
+    """Share of its rise due to the velocity, not the position, percent."""
 
 
 def impacts(experiment: Experiment) -> list[Impact]:
@@ -80,7 +80,7 @@ def impacts(experiment: Experiment) -> list[Impact]:
 
 
 def onsets(t: np.ndarray, is_touching: np.ndarray) -> list[int]:
-    """Return where a contact begins after `APART_S` (s) without any; both (n,)."""
+    """Return the indices at which a contact begins after `APART_S` without any; both (n,)."""
     touching = np.flatnonzero(is_touching)
     gaps = np.diff(t[touching], prepend=t[0])
     return [int(k) for k in touching[gaps > APART_S]]
@@ -106,12 +106,12 @@ def _impacts(experiment: Experiment) -> tuple[Entry, ...]:
 
 
 class Drop(NamedTuple):
-    """How the wheel bears the weight."""
+    """The response of the wheel to the weight."""
 
     deflection: float
     """At the end, rad."""
     settling_time: float
-    """Into `BAND` of that for good, counted from when the rope gets taut, s."""
+    """Time from the taut rope until it stays within `BAND` of that, s."""
     peak: float
     """Largest torque, Nm."""
 
@@ -124,7 +124,7 @@ def drop_rig(experiment: Experiment) -> DropRig:
 
 
 def dropped(experiment: Experiment) -> Drop:
-    """Return what the bag of such a run shows."""
+    """Return the response from the bag of such a run."""
     load, joint = drop_rig(experiment), experiment.traces[JOINT]
     turned = joint['position[0]'][0] - joint['position[0]']
     final = float(turned[joint.t > joint.t[-1] - REST_S].mean())
@@ -145,7 +145,7 @@ def _weights(found: dict[str, Drop]) -> tuple[Entry, ...]:
     return (
         _deflection('weight_deflection', found[MIDDLE], 300.0, 'a steady state is reached'),
         _deflection('weight_soft_deflection', found['weight_soft'], 150.0,
-                    'a compliant set of gains copes too'),
+                    'compliant gains reach it too'),
         Entry(name='weight_settling', source='section 5.1, Fig 18',
               paper='much faster than without', ours=found[MIDDLE].settling_time, unit='s',
               tolerance=at_most(0.6),

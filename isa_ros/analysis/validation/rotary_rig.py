@@ -1,8 +1,8 @@
 """
 The rotary rig under torque control: figures 12 and 13, bandwidth and hunting.
 
-The shipped run file and scenarios, with the gains of Table 4. What the scenarios do not show,
-the torque loop at several places and gains, is measured on the same actuator, blocked.
+The shipped run file and scenarios, with the gains of Table 4. The torque loop at several
+positions and gains, which no scenario covers, is measured on the same actuator, blocked.
 """
 
 from collections.abc import Mapping
@@ -34,7 +34,7 @@ MIDDLE, STOP = 50.0, 5.0    # deg; the rig stops the wheel 5 deg inside the rang
 RIPPLE_S = 1.0
 HIGHER, HIGH = 1.25, 2.5    # times the torque gains of Table 4
 SLOWER_HZ = 1000.0
-STIFF_SENSOR = {'plant.mechanics.sensor_stiffness': 5e4}    # Nm/rad, the most that is plausible
+STIFF_SENSOR = {'plant.mechanics.sensor_stiffness': 5e4}    # Nm/rad, the largest plausible one
 STIFF_SUPPORT = {'load.stiffness': 1e5}                     # twice that of the sheet
 TARGET = 'a target, not of the paper'
 
@@ -81,7 +81,7 @@ def _ms(seconds: float | None) -> float:
 
 def ideal_overshoot(force: Pid) -> float:
     """
-    Return the overshoot (percent) that the gains leave on an ideal valve.
+    Return the overshoot (percent) of the gains with an ideal valve.
 
     A torque y with y' = G u, u = K_p (r - y - K_f y') + K_i int (r - y) and G without bound:
     y/r = (2 zeta w s + w^2) / (s^2 + 2 zeta w s + w^2), 2 zeta w = 1/K_f and

@@ -1,4 +1,4 @@
-"""The shipped actuators as the checks need them, read once; nobody changes what is returned."""
+"""The shipped actuators for the checks, read once; callers must not change them."""
 
 from functools import cache
 
@@ -8,7 +8,7 @@ from isa_ros.config.sections import build
 from isa_ros.plant.plant import plant_record
 import numpy as np
 
-PRESET = 'table_4'    # the paper's gains; it prints none for the ISA v2
+PRESET = 'table_4'    # the paper's gains; the paper has none for the ISA v2
 FALLBACK = 'default'
 
 
@@ -20,7 +20,7 @@ def model_sheet(model: str, *variants: str) -> ActuatorSheet:
     Raises
     ------
     ConfigError
-        There is no such model or variant.
+        The model or variant does not exist.
 
     """
     found = actuator_model(model, 'model')

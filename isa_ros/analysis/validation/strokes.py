@@ -40,7 +40,7 @@ SUBJECTS = (Subject('isa_v5', 'default', 5.0), Subject('smart_manifold', 'table_
 
 @dataclass(frozen=True)
 class Sweeps:
-    """What was measured at each of `PLACES`, shape (n,)."""
+    """The measures at each of `PLACES`, shape (n,)."""
 
     rise: np.ndarray        # ms
     overshoot: np.ndarray   # percent
@@ -49,7 +49,7 @@ class Sweeps:
 
     @property
     def rise_spread(self) -> float:
-        """Return how far the rise time departs from the middle of its range, percent."""
+        """Return the largest deviation of the rise time from the middle of its range, percent."""
         low, high = float(self.rise.min()), float(self.rise.max())
         return 100.0 * (high - low) / (high + low)
 

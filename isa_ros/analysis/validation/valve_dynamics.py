@@ -32,7 +32,7 @@ SMALL = 1e-6      # A, m, ...: far inside every limit
 SMALL_SPOOL = 5e-6    # m, 40 steps of the spool sensor, far inside every limit
 FULL_CURRENT = 5e-3   # A, coils in series
 SETTLE = 0.05     # s, ten time constants of the spool loop and more
-PERIODS = 4       # of the sine, that are looked at
+PERIODS = 4       # of the sine, that are evaluated
 STATES = ('current', 'spool', 'velocity', 'acceleration')
 Response = Callable[[float], complex]
 
@@ -115,8 +115,8 @@ def stepped_sine(sheet: ActuatorSheet, amplitude: float) -> Response:
     """
     Return the spool's response to its reference, measured with a sine.
 
-    ``sheet`` is one whose outer blocks are off; ``amplitude`` has the unit of what it then
-    takes: m of spool, or series-scale A.
+    The outer blocks of ``sheet`` are off; ``amplitude`` has the unit of its effort: m of
+    spool, or series-scale A.
     """
     def response(hz: float) -> complex:
         n_period = round(RATE_HZ / hz)
@@ -129,7 +129,7 @@ def stepped_sine(sheet: ActuatorSheet, amplitude: float) -> Response:
 
 
 def driven(sheet: ActuatorSheet, efforts: np.ndarray) -> np.ndarray:
-    """Return the `TRACE` of an actuator at mid stroke that takes an effort every 100 us."""
+    """Return the `TRACE` of an actuator at mid stroke with a new effort every 100 us."""
     base = default_actuator(ULLV if sheet.is_rotary else ISA_V5, 'driven')
     config = replace(base, sheet=sheet, initial_position=0.5 * sheet.plant.drive.stroke)
     return excite(SmartActuator(config, DEFAULT_TIMING), 'effort', efforts)

@@ -22,7 +22,7 @@ ULLV = 'smart_manifold'  # equal slots: every land as printed
 ISA_V5 = 'isa_v5'        # the same valve, slots matched to its piston
 HRV = 'isa_v2'
 VALVES = ((HRV, 'HRV', 'blue'), (ULLV, 'ULLV', 'black'))  # colours of the paper
-LINE = '1 %: a curve drawn over 5 mA is not read better'
+LINE = '1 %: reading accuracy of a curve drawn over 5 mA'
 CURRENT = 'current, coils in series, mA'
 ROUNDED = 'half of the last printed digit'
 

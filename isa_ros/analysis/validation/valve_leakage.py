@@ -1,8 +1,8 @@
 """
 Leakage of the valves and what it costs: figure 6.
 
-The supply flow with both ports blocked, as of an actuator at rest, against the current with
-both coils in series. The tare leakage is the share of it that passes no land.
+The supply flow with both ports blocked, as for an actuator at rest, against the current with
+both coils in series. The tare leakage is the part of it that does not pass the lands.
 """
 
 from isa_ros.analysis.validation.entry import around, Drawing, Entry, Findings
@@ -39,7 +39,7 @@ def leakage(current: float, model: str) -> float:
 
 
 def tare(current: float, model: str) -> float:
-    """Return the supply flow that passes no land, l/min; ``current`` in mA."""
+    """Return the supply flow that does not pass the lands, l/min; ``current`` in mA."""
     valve = plant_of(model).valve.copy()
     arguments = spool_at(current, valve), 0.5 * SUPPLY, 0.5 * SUPPLY, SUPPLY, 0.0
     total = port_flows(*arguments, valve)[2]

@@ -3,7 +3,7 @@ One leg as the shared load of three actuators: ports down, forces up.
 
 ``x`` of a port is the load's side of the force sensor in the actuator's own coordinate: piston
 position (m) or shaft angle (rad). Rows of `LOAD_PORT` and `LOAD_REPLY` arrays belong to the
-run's actuators; ``rows`` says which of them drive HAA, HFE and KFE.
+run's actuators; ``rows`` are the indices of those that drive HAA, HFE and KFE.
 """
 
 from collections.abc import Mapping, Sequence
@@ -22,7 +22,7 @@ import numpy as np
 
 @dataclass(frozen=True, kw_only=True)
 class Pose:
-    """Where a leg hangs at t = 0, at rest: joint angles (rad) and the foot's height (m)."""
+    """Pose of a leg at rest at t = 0: joint angles (rad) and the foot's height (m)."""
 
     haa: float
     hfe: float
@@ -96,7 +96,7 @@ class Leg:
 
     @property
     def actuator_forces(self) -> tuple[float, float, float]:
-        """Return the sensor forces (N | Nm) the ports assume now; at t = 0 the holding ones."""
+        """Return the sensor forces (N | Nm) the ports assume now; at t = 0 they hold the leg."""
         state = self._state[0]
         return (float(state['force_haa']), float(state['force_hfe']), float(state['force_kfe']))
 
@@ -128,7 +128,7 @@ class Leg:
             starts[row]['position'], starts[row]['force'] = x, force
 
     def hold(self) -> None:
-        """Lock the slider where it is; its speed is taken by the lock."""
+        """Lock the slider at its present height and set its speed to zero."""
         self._state['is_held'] = 1.0
         self._state['v_z'] = 0.0
 

@@ -1,8 +1,8 @@
 """
 One leg under three actuators: its state, accelerations and Runge-Kutta step.
 
-Continuous states are one flat row of floats (`LEG_STATE`); inside a kernel they travel as a
-tuple y = (z, q_haa, q_hfe, q_kfe, their speeds, bristle x, bristle y). Joints are in the order
+Continuous states are one flat row of floats (`LEG_STATE`); inside a kernel they are a tuple
+y = (z, q_haa, q_hfe, q_kfe, their speeds, bristle x, bristle y). Joints are in the order
 HAA, HFE, KFE. Equations L6 and L12 of docs/equations.md.
 
 Neglected: friction of joints and rail, compliance of links and joints.
@@ -27,7 +27,7 @@ STATE_NAMES = (
     'is_held',                              # 1.0: the slider is locked
 )
 LEG_STATE = np.dtype([(name, '<f8') for name in STATE_NAMES])
-"""Everything a leg carries from tick to tick."""
+"""The state of a leg that persists from tick to tick."""
 
 N_STATES = 10
 FORCE = N_STATES            # place of the force estimates in the flat state
@@ -59,7 +59,7 @@ def factor(m, is_held):
     Return D (4) and L (6: 10 20 21 30 31 32) of M = L D L^T.
 
     A held slider is the constraint z'' = 0: its row and column become those of a unit mass
-    on which nothing acts. D > 0 because M is positive definite.
+    without forces. D > 0 because M is positive definite.
     """
     m_zz, m_z1, m_z2, m_z3 = m.m_z_z, m.m_z_haa, m.m_z_hfe, m.m_z_kfe
     if is_held:

@@ -1,8 +1,8 @@
 """
-What a leg exchanges with its three actuators: load ports down, a tick under their forces.
+Exchange of a leg with its three actuators: load ports down, a tick under their forces.
 
-States and joints as in `surroundings.leg.motion`; L1 is the port, L12-L16 how the leg fills it
-and what it keeps from tick to tick.
+States and joints as in `surroundings.leg.motion`; L1 is the port, L12-L16 are its coefficients
+for a leg and the forces kept from tick to tick.
 """
 
 import math
@@ -37,7 +37,7 @@ MEANS = 0                   # places in a reply's row of floats
 END_FORCE = FORCE_WINDOWS
 SUBSTEP_NS = 100_000        # longest Runge-Kutta step of the leg, coupling.md
 PROBE_DISPLACEMENT = 1e-7   # m | rad: 1e-3 of the smallest depth at which the ground matters
-PROBE_SPEED = 1e-5          # m/s | rad/s: as small against impact speeds
+PROBE_SPEED = 1e-5          # m/s | rad/s: equally small against impact speeds
 
 
 @kernel
@@ -45,7 +45,7 @@ def response(j, a):
     """
     Return (u, 1/m_eff) of a force at actuator ``j``  (L13).
 
-    u is the direction in which the leg gives way, scaled to one unit of x_j: M^-1 e_j / (r
+    u is the direction in which the leg yields to it, scaled to one unit of x_j: M^-1 e_j / (r
     (M^-1)_jj); 1/m_eff = r^2 (M^-1)_jj.
     """
     e = (1.0 if j == 0 else 0.0, 1.0 if j == 1 else 0.0, 1.0 if j == 2 else 0.0)
@@ -56,7 +56,7 @@ def response(j, a):
 
 @kernel
 def bristle_follow(y, u, body, ground):
-    """Return how far the bristles follow a displacement u of the leg: (dz'/dv) J u  (L14)."""
+    """Return the bristles' deflection for a displacement u of the leg: (dz'/dv) J u  (L14)."""
     m = leg_terms(y[0], y[1], y[2], y[3], y[4], y[5], y[6], y[7], body)
     if m.foot_z >= 0.0:
         return 0.0, 0.0
@@ -176,12 +176,12 @@ def window_line(replies, row):
 @kernel
 def keep_forces(flat, step, rows, replies):
     """
-    Keep the force each other actuator will be assumed to have, and its slope  (L16).
+    Keep the force that each port will assume of the other actuators, and its slope  (L16).
 
     Mean of the tick, slope F' = R^4 F'_line + (1 - R^4) (mean - mean two ticks ago) / (2 H),
-    force at the tick's end = mean + F' H / 2. A trend within the tick counts as far as it
-    is one: the ringing of a load cell must not reach the other actuators as a trend, or
-    the exchange feeds it (with a damping ratio of 0.01 it grows when it beats with the ticks).
+    force at the tick's end = mean + F' H / 2. A trend within the tick is weighted by how well
+    a line fits it: if the ringing of a load cell reached the other actuators as a trend, the
+    exchange would feed it (with a damping ratio of 0.01 it grows when it beats with the ticks).
     """
     for j in range(3):
         mean, rise, r_2 = window_line(replies, rows[j])

@@ -25,14 +25,14 @@ CHECKED_ANGLES = 257  # samples of a joint's range in which a linkage must be re
 
 @dataclass(frozen=True, kw_only=True)
 class Slider(Parameters):
-    """What the leg hangs from."""
+    """The vertical slider that carries the leg."""
 
     mass_kg: float = parameter('part of the slider that falls with the leg', 'kg', gt=0.0, le=1e3)
 
 
 @dataclass(frozen=True, kw_only=True)
 class Link(Parameters):
-    """One rigid link with principal axes along its own frame's."""
+    """One rigid link with principal axes along those of its own frame."""
 
     length_m: float = parameter('to the next joint or to the foot', 'm', ge=0.0, le=2.0)
     mass_kg: float = parameter('mass, before the mass scale', 'kg', gt=0.0, le=100.0)
@@ -60,7 +60,7 @@ class Body(Parameters):
 
 @dataclass(frozen=True, kw_only=True)
 class Joint(Parameters):
-    """The range of a joint, and how its angle is counted along its linkage."""
+    """The range of a joint, and sign and offset of its angle in its linkage."""
 
     low_deg: float = parameter("lower end of the joint's range", 'deg', ge=-360.0, le=360.0)
     high_deg: float = parameter("upper end of the joint's range", 'deg', ge=-360.0, le=360.0)
@@ -88,7 +88,7 @@ class Joint(Parameters):
             if lever * levers[0] < SHORTEST_LEVER * SHORTEST_LEVER:
                 raise ParameterError(
                     f'{where}: lever = {1e3 * lever:.2f} mm at joint angle {angle:.2f} deg, must '
-                    f'keep its sign and >= {1e3 * SHORTEST_LEVER:g} mm over the whole range')
+                    f'keep its sign and be >= {1e3 * SHORTEST_LEVER:g} mm over the whole range')
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -121,7 +121,7 @@ class FourBar(Joint):
 
 @dataclass(frozen=True, kw_only=True)
 class LegSheet(Parameters):
-    """Everything that makes one leg on its rig."""
+    """The data sheet of one leg on its rig."""
 
     body: Body
     haa: Direct | SliderCrank | FourBar
@@ -134,7 +134,7 @@ def _rows(n: int, dtype: np.dtype[np.void]) -> np.ndarray:
     """
     Return zeros whose rows have attributes, so that kernels also run as plain Python.
 
-    The array itself stays a plain one: a numpy subclass as argument slows every call.
+    The array itself is a plain one: a numpy subclass as argument slows every call.
     """
     return np.asarray(np.zeros(n, dtype).view(np.recarray))
 

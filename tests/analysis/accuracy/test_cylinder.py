@@ -1,4 +1,4 @@
-"""The valve-driven cylinder: its exact answer, the order of its steps, jit == Python, scipy."""
+"""The valve-driven cylinder: its solution, the order of its steps, jit == Python, scipy."""
 
 import os
 import subprocess
@@ -10,7 +10,7 @@ import pytest
 from scipy.integrate import solve_ivp
 
 X, V, P_A, P_B = -1.30241237753e-3, 57.5180136914e-3, 5452872.548, 8386667.199
-"""The answer at t = 1, 5 and 10 s, to the digits it was given with (m, m/s, Pa)."""
+"""The solution at t = 1, 5 and 10 s, with the digits known (m, m/s, Pa)."""
 SECONDS = (1000, 5000, 10000)  # ms
 FINE = 16                      # steps a hold: the error of one step by 16^-8, 2e-10
 
@@ -30,7 +30,7 @@ def test_fine_steps_give_every_digit_of_the_answer(fine):
 
 
 def test_one_step_a_hold_stays_within_a_nanometre_and_a_pascal(fine):
-    """The accuracy asked of the speed that `isa bench` reports, at every hold of ten seconds."""
+    """The accuracy required for the speed in `isa bench`, at every hold of ten seconds."""
     apart = np.abs(cylinder.simulate(10_000) - fine).max(axis=0)
     assert apart[0] < 1e-9
     assert max(apart[2:4]) < 1.0
@@ -46,7 +46,7 @@ def test_steps_are_of_order_eight_across_null(fine):
 
 
 def test_a_step_is_cut_where_the_spool_passes_null():
-    """Uncut, the kink leaves what h^2 leaves, hundreds of times more in that hold."""
+    """Without a cut the kink causes an error of order h^2, hundreds of times larger."""
     case = cylinder.cylinder_record()[0]
     states = cylinder.simulate(1000)
     before = int(np.flatnonzero(states[1:, 4] * states[:-1, 4] < 0.0)[0])
@@ -57,7 +57,7 @@ def test_a_step_is_cut_where_the_spool_passes_null():
         exact = cylinder.step(exact, 1e-6, r, case)
     uncut = cylinder.step(y, 1e-3, r, case)
     cut = cylinder.split_step(y, uncut, 1e-3, r, case)
-    # the fine solution leaves the kink in a step of 1 us, a 1e-6th of what 1 ms leaves
+    # the fine solution has the kink in a step of 1 us, with 1e-6 of the error of 1 ms
     assert abs(cut[2] - exact[2]) < 0.01 * abs(uncut[2] - exact[2])
 
 
@@ -69,7 +69,7 @@ def command(case: np.record, hold: int, x: float) -> float:
 @pytest.mark.parametrize(('method', 'holds'), [
     ('DOP853', 1000), pytest.param('Radau', 160, marks=pytest.mark.slow)])
 def test_scipy_gives_the_same(fine, method, holds):
-    """Adaptive steps begun anew at every hold; past null in both, the implicit one is slow."""
+    """Adaptive steps restart at every hold; null is passed in both, the implicit one is slow."""
     case = cylinder.cylinder_record()[0]
     size = np.abs(fine).max(axis=0)
     states = [fine[0]]
@@ -80,7 +80,7 @@ def test_scipy_gives_the_same(fine, method, holds):
             method=method, rtol=1e-12, atol=1e-12 * size)
         states.append(solved.y[:, -1])
     apart = np.abs(np.array(states) - fine[:holds + 1]).max(axis=0)
-    # some fifty steps in a hold, some ten holds until the loops forget an error
+    # some fifty steps in a hold, some ten holds until an error has decayed in the loops
     assert (apart < 50 * 10 * 1e-12 * size).all()
 
 

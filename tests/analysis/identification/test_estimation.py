@@ -1,4 +1,4 @@
-"""Moment conditions, and intervals that hold as often as they say."""
+"""Moment conditions, and intervals with the stated coverage."""
 
 from isa_ros.analysis.identification.estimation import Box, half_widths, Linearised, solve
 import numpy as np
@@ -17,7 +17,7 @@ def line(x: np.ndarray, y: np.ndarray, instrument: np.ndarray):
 
 
 def test_a_curved_model_is_solved() -> None:
-    """An exponential from a poor start: no noise, so what is left is the square of 1e-4."""
+    """An exponential from a poor start: without noise the error left is the square of 1e-4."""
     x = np.linspace(0.0, 2.0, 50)
     y = 3.0 * np.exp(-1.7 * x)
 
@@ -91,7 +91,7 @@ def test_a_shared_error_widens_the_interval_by_what_it_moves() -> None:
 
 
 def test_what_nothing_tells_apart_has_no_interval() -> None:
-    """Two equal columns, or fewer samples than what depends on each other."""
+    """Two equal columns, or fewer samples than the length of their correlation."""
     x = np.linspace(0.0, 1.0, 50)
     twice = Linearised(x, np.column_stack([x, x]), np.column_stack([x, x]))
     assert np.all(np.isinf(half_widths(twice, np.arange(50), 2)))

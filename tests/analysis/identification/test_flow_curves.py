@@ -18,7 +18,7 @@ def shipped(model: str) -> tuple[FlowCurve, np.ndarray]:
 
 @pytest.mark.parametrize('model', ['smart_manifold', 'isa_v5', 'isa_v2'])
 def test_the_curve_is_the_plants(model: str) -> None:
-    """V4, to rounding; a closed land passes nothing."""
+    """V4, to rounding; a closed land has no flow."""
     valve = plant_row(model).valve
     curve, theta = shipped(model)
     expected = [flow_curve(u, valve) if u > 0.0 else 0.0 for u in OPENINGS]

@@ -1,4 +1,4 @@
-"""Identification: known parameters recovered from what the sensors gave."""
+"""Identification: known parameters recovered from the sensor signals."""
 
 from dataclasses import replace
 import json
@@ -21,7 +21,7 @@ from tests.sheets import actuator_sheet, override
 
 RIGS = ('smart_manifold', 'isa_v5')
 SEEDS = 20
-# Of 20 intervals that hold the truth with 95 % each, 16 or fewer do in 1.6 % of the cases.
+# Of 20 intervals of 95 %, 16 or fewer contain the true value in 1.6 % of the cases.
 LEAST_HITS = 17
 
 
@@ -53,12 +53,12 @@ def shipped_curve(model: str) -> DualGainCurve:
 @pytest.mark.slow
 @pytest.mark.parametrize('model', RIGS)
 def test_intervals_of_valve_and_oil_hold_the_truth_under_noise(model: str) -> None:
-    """All seven parameters; what is known is the shipped sheet, where each is another one."""
+    """All seven parameters; the shipped sheet is taken as known, with another value of each."""
     expected, clean = true_balance(model), recording(model)
     found = [fit_balance(noisy(clean, seed), shipped_curve(model)) for seed in range(SEEDS)]
     hits = sum(np.abs(one.values - expected) <= one.half_widths for one in found)
     assert np.all(hits >= LEAST_HITS), hits
-    # The intervals say something: the shipped values are 20 % and more away.
+    # The intervals are narrow enough: the shipped values are 20 % and more away.
     assert all(one.half_widths[k] < 0.1 * expected[k]
                for one in found for k in range(len(expected)) if k != NULL)
 
@@ -70,7 +70,7 @@ def test_intervals_of_valve_and_oil_hold_the_truth_under_noise(model: str) -> No
 ])
 def test_intervals_of_friction_hold_the_truth_under_noise(
         model: str, sure: tuple[int, ...]) -> None:
-    """The manifold never slides steadily as slowly as its Stribeck speed here."""
+    """In this motion the manifold has no steady sliding as slow as its Stribeck speed."""
     expected, clean = true_friction(model), recording(model)
     found = [fit_friction(noisy(clean, seed)) for seed in range(SEEDS)]
     hits = sum(np.abs(one.values - expected) <= one.half_widths for one in found)
@@ -81,7 +81,7 @@ def test_intervals_of_friction_hold_the_truth_under_noise(
 
 @pytest.mark.parametrize('model', RIGS)
 def test_the_converters_alone_do_not_mislead(model: str) -> None:
-    """Without noise the rounding repeats from one period to the next, which scatter hides."""
+    """Without noise the rounding repeats in every period, without scatter."""
     balance = fit_balance(recording(model), shipped_curve(model))
     assert np.all(np.abs(balance.values - true_balance(model)) <= balance.half_widths)
     friction = fit_friction(recording(model))
@@ -126,7 +126,7 @@ def test_what_the_motion_does_not_show_is_refused() -> None:
 
 
 def test_a_high_response_valve_is_identified_by_its_own_curve() -> None:
-    """The ISA v2: one gain up to the knee, what is left beyond; the shipped values."""
+    """The ISA v2: one gain up to the knee and the flow beyond it; the shipped values."""
     sheet = actuator_sheet('isa_v2').plant
     found = {(one.parameter, one.unit): one
              for one in identify(recording('isa_v2'), sheet)}
@@ -142,7 +142,7 @@ def test_a_high_response_valve_is_identified_by_its_own_curve() -> None:
 def test_the_shipped_scenarios_show_everything(
         config: str, scenario: str, name: str, tmp_path: Path,
         capsys: pytest.CaptureFixture[str]) -> None:
-    """A bag through `isa identify`: every parameter there, every interval holds its value."""
+    """A bag through `isa identify`: all parameters are listed, intervals contain their values."""
     run(config, scenario, tmp_path / 'bag')
     assert main(['identify', str(tmp_path / 'bag'), '--actuator', name,
                  '--json', str(tmp_path / 'found.json')]) == 0
@@ -163,7 +163,7 @@ def test_a_bag_without_motion_is_refused_in_one_line(
     assert main(['identify', str(tmp_path / 'bag')]) == 2
     printed = capsys.readouterr().err
     assert printed.count('\n') == 1
-    assert 'bag: nothing to identify: rotor moved by' in printed
+    assert 'bag: nothing to identify: rotor moved' in printed
 
 
 TWO = """
@@ -189,14 +189,14 @@ tracks:
 
 def test_an_actuator_that_stands_is_named_beside_one_that_moves(
         tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
-    """Not left out in silence, neither in the table nor in the file."""
+    """The table and the file list it with the reason."""
     (tmp_path / 'two.yaml').write_text(TWO)
     (tmp_path / 'turn.yaml').write_text(TURN)
     run(tmp_path / 'two.yaml', tmp_path / 'turn.yaml', tmp_path / 'bag')
     assert main(['identify', str(tmp_path / 'bag'), '--json', str(tmp_path / 'out.json')]) == 0
     printed = capsys.readouterr().out.splitlines()
     assert printed[0] == 'moving'
-    assert printed[-1].startswith('standing: nothing to identify: moved by')
+    assert printed[-1].startswith('standing: nothing to identify: moved')
     found = json.loads((tmp_path / 'out.json').read_text())
     assert list(found['actuators']) == ['moving'] and list(found['still']) == ['standing']
 
@@ -209,7 +209,7 @@ def test_an_unknown_actuator_is_refused_with_the_known_ones(
 
 
 def test_a_bag_too_short_says_so() -> None:
-    """The golden step moves for 0.1 s only: refused, not guessed."""
+    """The golden step moves for 0.1 s only, so it is refused."""
     golden = Path(__file__).parents[2] / 'golden' / 'rotor_step'
     found = identify_bag(golden).actuators['rotor']
     assert all(one.value is None and one.reason for one in found)

@@ -1,4 +1,4 @@
-"""Responses and characteristics drawn from bags, held against the data sheets."""
+"""Responses and characteristics drawn from bags, compared with the data sheets."""
 
 from isa_ros.analysis.experiment import run
 from isa_ros.analysis.report.paper_figures import paper_figure
@@ -8,7 +8,7 @@ import pytest
 
 
 def curve(figure, row: int, label: str) -> tuple[np.ndarray, np.ndarray]:
-    """Return x and y of the line whose label begins so."""
+    """Return x and y of the line whose label begins with ``label``."""
     lines = [line for line in figure.axes[row].lines if line.get_label().startswith(label)]
     assert len(lines) == 1, [line.get_label() for line in figure.axes[row].lines]
     return np.asarray(lines[0].get_xdata()), np.asarray(lines[0].get_ydata())
@@ -52,7 +52,7 @@ def test_leakage_is_figure_6():
         # 1 ml takes 0.03 ml to rise by 20.7 MPa; the high-response valve does so within 0.05 mA,
         # which last 0.06 s: 0.03 l/min, at its fastest twice that
         assert y.max() == pytest.approx(at_null, abs=0.06)
-        # what the closed lands still leak at 5 mA is 7 % of their leakage at null
+        # at 5 mA the closed lands leak 7 % of their leakage at null
         assert near(x, y, 4.9, 0.1).max() == pytest.approx(tare, abs=0.015)
 
 
@@ -78,6 +78,6 @@ def test_bandwidth_at_10_percent_is_50_to_100_hz(config, scenario, output):
 
 
 def test_a_run_that_stands_still_has_no_response():
-    """One line instead of an empty figure."""
+    """One error line instead of an empty figure."""
     with pytest.raises(ConfigError, match='no reference moves'):
         paper_figure('leakage', *run('rig_leakage', duration=0.01))

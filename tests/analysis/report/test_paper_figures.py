@@ -60,7 +60,7 @@ def test_of_a_leg_the_knee_is_shown():
 
 
 def test_an_unknown_figure_is_refused(step):
-    with pytest.raises(ConfigError, match='torque_stop is no figure; did you mean torque_step'):
+    with pytest.raises(ConfigError, match='torque_stop is not a figure; did you mean torque_step'):
         paper_figure('torque_stop', *step[0])
 
 

@@ -32,7 +32,7 @@ def test_a_rig_has_no_leg(tmp_path):
 def test_another_page_is_not_replaced(tmp_path):
     page = tmp_path / 'mine.html'
     page.write_text('precious')
-    with pytest.raises(BagError, match='mine.html exists and is no report, so it is not'):
+    with pytest.raises(BagError, match='mine.html already exists and is not a report, so'):
         write_report(GOLDEN / 'rotor_step', page)
     assert page.read_text() == 'precious' and not list(tmp_path.glob('*.png'))
     with pytest.raises(BagError, match='is a directory, must be the name of the page'):
@@ -55,7 +55,7 @@ def test_extremes_are_those_of_the_signals():
 
 @pytest.mark.parametrize('name', ['missing', 'empty'])
 def test_what_is_no_bag_is_refused(tmp_path, capsys, name):
-    """Exit code 2 and one line."""
+    """The command ends with exit code 2 and one line."""
     (tmp_path / 'empty').mkdir()
     assert main(['report', str(tmp_path / name)]) == 2
     assert capsys.readouterr().err.count('\n') == 1

@@ -88,7 +88,7 @@ def test_a_blocked_torque_step_has_its_figures(torque):
     (['bode', 'isa_v5', '--loop', 'current', '--of', 'plant'], '--of plant: the current loop'),
     (['bode', 'isa_v5', '--amplitude', '9000'], '--amplitude = 9000 N, must be <= 7500 N'),
     (['bode', 'isa_v5', '--preset', 'tabel_4'], 'did you mean table_4?'),
-    (['bode', 'isa_v5', '--variant', 'x'], "--variant = 'x' is no variant of isa_v5"),
+    (['bode', 'isa_v5', '--variant', 'x'], "--variant = 'x' is not a variant of isa_v5"),
     (['bode', 'isa_v5', '--load', 'bloked'], "--load.kind = 'bloked', must be one of"),
     (['bode', 'isa_v5', '--position', '120'], '--position = 120 mm, must be 0 to 100 mm'),
     (['bode', 'isa_v5', '--actuator', 'kfe'], '--actuator kfe is not used: isa_v5 is a model'),
@@ -190,7 +190,7 @@ def test_a_hunting_loop_is_said_not_to_be_trusted(capsys):
 
 
 def test_a_step_that_is_not_followed_is_said_so():
-    """Torque against a free mass cannot be held: there is nothing to push against."""
+    """Torque against a free mass cannot be held, since the mass yields."""
     stopped = summary(step(rig(Choice(name='smart_manifold', loop='force')), 0.3, 17.0))
     assert 'does not follow' not in stopped
     lost = summary(step(rig(Choice(name='isa_v5', loop='force', load='mass')), 0.3, 7000.0))

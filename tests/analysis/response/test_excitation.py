@@ -1,4 +1,4 @@
-"""The excitation runs the same loops and plant as the ticks, and logs what they show."""
+"""The excitation runs the same loops and plant as the ticks, and logs the same signals."""
 
 import math
 
@@ -47,7 +47,7 @@ def test_excitation_equals_ticks_sample_for_sample(model):
 
 
 def test_a_position_excitation_is_the_setpoint():
-    """With the sheet's stiffness a blocked actuator answers a position with force."""
+    """With the sheet's stiffness a blocked actuator responds to a position with force."""
     actuator = smart_actuator('isa_v5', 'blocked', timing=TICK)
     values = 0.05 + 1e-3 * np.sin(2.0 * math.pi * 10.0 * np.arange(2000) / RATE_HZ)
     trace = excite(actuator, 'position', values)
@@ -60,7 +60,7 @@ def test_a_velocity_goes_with_a_position():
     """4000 Ns/m on 10 mm/s, from the position block's next instant on."""
     actuator = smart_actuator('isa_v5', 'blocked', timing=TICK)
     trace = excite(actuator, 'position', np.full(20, 0.05), np.full(20, 0.01))
-    # the output stands still to the micrometre of the encoder: 1e5 N/m, and 4000 Ns/m at 1 kHz
+    # the output is at rest within 1 um of the encoder: 1e5 N/m, and 4000 Ns/m at 1 kHz
     # through a low-pass of 100 Hz (a share of 0.47)
     assert trace['force_reference'] == pytest.approx(40.0, abs=0.1 + 4000.0 * 1e-3 * 0.47)
 

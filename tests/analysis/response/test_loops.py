@@ -1,4 +1,4 @@
-"""Loops as they are excited: what is outermost, in which unit, how far it may go."""
+"""Loops for an excitation: the outermost block, its unit and its largest amplitude."""
 
 from dataclasses import replace
 

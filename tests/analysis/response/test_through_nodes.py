@@ -1,4 +1,4 @@
-"""What the nodes are given to measure a loop: a run file with everything in it."""
+"""The run file with which nodes measure a loop: complete, with every parameter."""
 
 from pathlib import Path
 
@@ -15,7 +15,7 @@ import pytest
     Choice(name='leg.yaml', actuator='kfe', loop='position'),
     Choice(name='rig_rotary', loop='force', load='wheel')])
 def test_a_run_file_gives_the_rig_back(choice: Choice, tmp_path: Path):
-    """Blocks that are off, variants, load and place, none of it by name alone."""
+    """Blocks that are off, variants, load and position are written out in full."""
     bench, path = rig(choice), tmp_path / 'rig.yaml'
     path.write_text(run_file(bench.run))
     run = load_run(path)

@@ -26,7 +26,7 @@ def first_order(corner_hz: float) -> signal.lti:
 
 
 def answer(system: signal.lti, u: np.ndarray) -> np.ndarray:
-    """Return the exact answer of a system to samples held over each period."""
+    """Return the exact response of a system to samples held over each period."""
     discrete = signal.cont2discrete((system.num, system.den), 1.0 / RATE)
     return signal.lfilter(discrete[0].ravel(), discrete[1], u)
 
@@ -59,7 +59,7 @@ def test_fit_recovers_amplitude_phase_and_offset():
 
 
 def test_fit_leaves_out_what_is_not_a_whole_cycle():
-    """The piece of a cycle at the start, here with another offset, does not count."""
+    """The incomplete cycle at the start, here with another offset, has no influence."""
     y = np.sin(2.0 * math.pi * 10.0 * np.arange(2300) / RATE)
     y[:300] += 100.0
     assert fit_sine(y, 10.0, RATE).explained == pytest.approx(1.0, abs=1e-12)
@@ -87,7 +87,7 @@ def test_stepped_sine_measures_a_first_order_lag(corner):
 
 
 def test_stepped_sine_measures_a_delay_as_phase():
-    """5 ms: 1.8 deg/Hz, without end."""
+    """A delay of 5 ms is 1.8 deg/Hz, beyond any number of turns."""
     frequencies = [10.0, 50.0, 90.0, 130.0, 170.0]
     u, windows = stepped(frequencies, 1.0)
     got = stepped_response(windows, u, np.roll(u, 50), RATE)
@@ -127,7 +127,7 @@ def test_chirp_measures_a_second_order_system():
     exact = held(system, got.frequency)
     # The window's autocorrelation 1 - (2/3)(pi tau / T)^2 on the impulse response makes an
     # error of (2/3)(pi / T)^2 |H''|, largest near the resonance: 1/(2 zeta) 2/(zeta w)^2 there.
-    # T = 2 s; twice that, because a sweep is no stationary noise.
+    # T = 2 s; twice that, because a sweep is not stationary noise.
     bias = 2.0 / 3.0 * (math.pi / 2.0) ** 2 / 0.4 * 1.0 / (0.4 * w) ** 2
     # A logarithmic sweep has a spectrum of 1/f, so that a bin, of variance 1/(3 T^2), has its
     # centre of mass 1/(3 T^2 f) too low. Half as much again for the differences dH/df.
@@ -152,7 +152,7 @@ def test_chirp_sees_the_plant_through_a_closed_loop_with_noise():
     got = chirp_response(np.geomspace(3.0, 100.0, 12), 2.0, r, u, y, RATE)
     z = np.exp(2j * math.pi * got.frequency / RATE)
     exact = 1.0 / RATE / (z - 1.0)
-    assert got.coherence.min() < 0.95    # the noise is there
+    assert got.coherence.min() < 0.95    # the noise has an effect
     # per point sqrt((1 - c) / (2 c n)) for n effective segments of at least 2; four deviations
     # of the magnitude of 1 + plant * controller times the noise over the chirp
     deviation = np.sqrt((1.0 - got.coherence) / (2.0 * got.coherence * 2.0))
@@ -222,7 +222,7 @@ def test_an_integrator_has_a_phase_margin_only():
 
 
 def test_points_without_coherence_make_no_margin():
-    """Noise at the end of the band that jumps over the critical point does not count."""
+    """Noise at the end of the band that jumps over the critical point has no influence."""
     clean = response_of(signal.lti([10.0], [1.0, 0.0]), np.geomspace(0.1, 10.0, 50))
     value, coherence = clean.value.copy(), clean.coherence.copy()
     value[-4:] = [-2.0, 0.1j, -3.0, -0.1j]
@@ -234,7 +234,7 @@ def test_points_without_coherence_make_no_margin():
 @pytest.mark.parametrize(('frequency', 'expected'), [
     (6000.0, 'frequency = 6000 Hz, must be > 0 and < 5000 Hz'),
     (0.0, 'frequency = 0 Hz'),
-    (5.0, '0.1 s of samples hold no whole cycle of 5 Hz')])
+    (5.0, '0.1 s of samples have no whole cycle of 5 Hz')])
 def test_a_frequency_the_samples_cannot_show_is_refused(frequency, expected):
     with pytest.raises(AnalysisError, match=expected):
         fit_sine(np.zeros(1000), frequency, RATE)
@@ -244,7 +244,7 @@ def test_nothing_to_measure_is_refused():
     still, moving = np.zeros(1000), np.sin(np.arange(1000))
     with pytest.raises(AnalysisError, match='without a frequency'):
         stepped_response([], moving, moving, RATE)
-    with pytest.raises(AnalysisError, match='the input stands still at 50 Hz'):
+    with pytest.raises(AnalysisError, match='the input does not move at 50 Hz'):
         stepped_response([Window(50.0, 0, 1000)], still, moving, RATE)
 
 

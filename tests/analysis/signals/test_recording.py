@@ -1,4 +1,4 @@
-"""Recordings out of a bag."""
+"""Recordings read from a bag."""
 
 from dataclasses import replace
 from pathlib import Path
@@ -35,7 +35,7 @@ def test_a_topic_sampled_apart_is_refused() -> None:
     run, traces = read_traces(GOLDEN)
     valve = traces['/rotor/valve']
     thinned = traces | {'/rotor/valve': replace(valve, t=valve.t[::2], fields=valve.fields[::2])}
-    with pytest.raises(BagError, match='/rotor/valve is not sampled with the others'):
+    with pytest.raises(BagError, match='/rotor/valve is not sampled together with the others'):
         recording_of(run, thinned, run.actuators[0], GOLDEN)
 
 

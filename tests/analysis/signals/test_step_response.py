@@ -1,4 +1,4 @@
-"""Figures of step responses with known answers."""
+"""Figures of step responses with known results."""
 
 import math
 
@@ -15,7 +15,7 @@ LINE = 1e-6
 
 @pytest.mark.parametrize(('start', 'target'), [(0.0, 1.0), (5.0, -3.0)])
 def test_a_first_order_lag_rises_in_its_time_constant_times_ln_9(start, target):
-    """Within tau ln 9, settled after -tau ln 0.05, no overshoot, whichever way it goes."""
+    """Rise in tau ln 9, settled after -tau ln 0.05, no overshoot, for steps up and down."""
     tau = 0.05
     got = step_figures(T, start + (target - start) * (1.0 - np.exp(-T / tau)), start, target)
     assert got.rise_time == pytest.approx(tau * math.log(9.0), abs=LINE)
@@ -38,7 +38,7 @@ def test_a_second_order_system_overshoots_by_its_damping():
         math.exp(-math.pi * zeta / math.sqrt(1.0 - zeta * zeta)), abs=1e-5)
     assert got.settling_time is not None
     assert np.abs(y[got.settling_time < T] - 1.0).max() < 0.05
-    # for good: a moment earlier it is still outside
+    # it stays in the band: shortly before it is still outside
     assert abs(y[np.searchsorted(T, got.settling_time) - 1] - 1.0) > 0.05
 
 
@@ -61,7 +61,7 @@ def test_what_never_gets_there_has_no_rise_time():
 
 
 @pytest.mark.parametrize(('n', 'target', 'band', 'expected'), [
-    (100, 0.0, 0.05, 'a step from 0 to 0'),
+    (100, 0.0, 0.05, 'step from 0 to 0'),
     (100, 1.0, 0.0, 'settling band = 0'),
     (100, 1.0, 1.0, 'settling band = 1'),
     (9, 1.0, 0.05, '9 times and 9 values'),

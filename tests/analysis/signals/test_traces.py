@@ -34,7 +34,7 @@ def test_time_is_that_of_the_samples():
 
 
 def test_messages_of_two_layouts_are_refused():
-    """A longer message cannot be read by the first one's offsets."""
+    """A longer message cannot be read with the first one's offsets."""
     first = next(m.data for m in Bag(GOLDEN).messages() if m.topic == '/kfe/references')
     with pytest.raises(BagError, match='somewhere: the messages change their layout'):
         columns([first, first + b'\0'], 'sensor_msgs/msg/JointState', 'somewhere')

@@ -1,4 +1,4 @@
-"""Studies: what they vary, what they find, and what the command makes of it."""
+"""Studies: their parameters, their results, and the output of the command."""
 
 from dataclasses import replace
 import json
@@ -39,7 +39,7 @@ def benches() -> Benches:
 
 @pytest.mark.parametrize(('study', 'case'), CASES)
 def test_every_value_can_be_run_and_one_of_them_is_the_shipped_one(study, case, benches):
-    """All in range, rates that divide: what a rig refuses before it moves."""
+    """All values are in range and rates divide, as a rig requires before it moves."""
     on = benches.of(case)
     for value in case.values:
         changed(on.blocked, 'force', case.overrides(value))
@@ -61,7 +61,7 @@ def test_a_value_no_actuator_could_have_is_refused(name, value, expected, benche
 
 
 def test_coarser_converters_ripple_more(benches):
-    """A limit cycle of about the quantum, 400 Nm over 2^bits, which a loop cannot see into."""
+    """A limit cycle of about the quantum, 400 Nm over 2^bits, below which the loop is blind."""
     case = case_of('adc_bits', 'smart_manifold')
     found = {}
     for bits in (8.0, 10.0, 12.0):
@@ -73,7 +73,7 @@ def test_coarser_converters_ripple_more(benches):
 
 
 def test_backlash_hunts_at_zero_torque_only(benches):
-    """Loaded by 17 Nm the play is taken up; back at zero the loop crosses it again and again."""
+    """Loaded by 17 Nm the play is taken up; back at zero the loop crosses it repeatedly."""
     case = case_of('backlash', 'smart_manifold')
     on = benches.of(case)
     for half_play, hunts in ((0.0, False), (5.0, True)):
@@ -81,7 +81,7 @@ def test_backlash_hunts_at_zero_torque_only(benches):
         loaded, released = up_and_back(rig)
         assert ripple(loaded[REST]) < QUIET * rig.loop.amplitude
         assert (ripple(released[REST]) > 0.1 * rig.loop.amplitude) == hunts
-    # It goes on: no smaller in the last 0.4 s than 0.4 s before.
+    # It does not decay: no smaller in the last 0.4 s than 0.4 s before.
     assert ripple(released[REST]) == pytest.approx(ripple(released[-8000:-4000]), rel=0.05)
 
 
@@ -124,7 +124,7 @@ def test_what_hunts_blocked_does_so_for_the_reason_on_the_page(
 
 
 def test_the_trot_moves_its_velocity_along_and_ends_at_rest(benches):
-    """Setpoints 1 ms apart: the trapezoid of their velocities is the way between them."""
+    """Setpoints 1 ms apart: the trapezoid of their velocities is the distance between them."""
     on = benches.of(case_of('lap', 'smart_manifold'))
     positions, velocities = on.positions[::10], on.velocities[::10]
     way = 0.5e-3 * (velocities[1:] + velocities[:-1])
@@ -143,7 +143,7 @@ def test_ripple_and_frequency_of_a_known_sine():
 
 
 def outcome(value: float) -> Outcome:
-    """Return an outcome with numbers that are no one's."""
+    """Return an outcome with made-up numbers."""
     return Outcome(
         value=value, rise=4.0, overshoot=40.0, bandwidth=60.0, ripple_mid=0.1, ripple_end=0.2,
         ripple_wheel=0.3, ripple_hz=20.0, force_error=3.0, position_error=70.0,
@@ -152,7 +152,7 @@ def outcome(value: float) -> Outcome:
 
 @pytest.mark.parametrize('study', STUDIES, ids=lambda study: study.name)
 def test_every_text_takes_its_numbers_from_the_run(study):
-    """All braces name a value of the study; a part of a study has no text."""
+    """All braces refer to a value of the study; a part of a study has no text."""
     results = [Result(case, case.values[0], 17.0, tuple(map(outcome, case.values)), True)
                for case in study.cases]
     text = seen(study, results)
@@ -176,7 +176,7 @@ def test_without_a_name_the_studies_are_listed(capsys):
 
 @pytest.mark.parametrize(('arguments', 'expected'), [
     (['backlsh'], "study 'backlsh' is unknown; did you mean backlash?"),
-    (['lap', '--model', 'isa_v2'], '--model isa_v2: no model of a study; did you mean isa_v5?'),
+    (['lap', '--model', 'isa_v2'], '--model isa_v2: not a model of a study; did you mean isa_v5?'),
     (['lap', '--all'], 'study lap and --all, must be one of both'),
     (['--model', 'isa_v5'], '--model needs a study, or --all; adc_bits, '),
     (['lap', '--values', '3'], '--values needs one study of one --model'),

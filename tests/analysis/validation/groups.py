@@ -1,4 +1,4 @@
-"""Small groups of checks for the tests of the frame; a worker imports them by name."""
+"""Small groups of checks for the tests of the runner; a worker imports them by name."""
 
 from isa_ros.analysis.validation.entry import around, Drawing, Entry, Findings, Group
 from isa_ros.analysis.validation.plots import plot
@@ -6,7 +6,7 @@ from isa_ros.errors import ConfigError, SimulationDiverged
 
 
 def entry(name: str, ours: float, **more) -> Entry:
-    """Return an entry whose paper says 1."""
+    """Return an entry with 1 as the value of the paper."""
     return Entry(**{
         'name': name, 'source': 'Fig 1', 'paper': 1.0, 'ours': ours, 'unit': 'm',
         'tolerance': around(1.0, by=0.1), 'tolerance_source': 'a tenth'} | more)

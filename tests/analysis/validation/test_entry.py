@@ -1,4 +1,4 @@
-"""Entries: verdicts, and what an entry must not be."""
+"""Entries: verdicts, and invalid entries."""
 
 import math
 
@@ -19,7 +19,7 @@ def test_the_verdict_is_whether_ours_is_in_the_tolerance(ours, verdict):
 
 
 def test_a_printed_value_outside_the_tolerance_is_read(ours=5.0):
-    """Its verdict says that the reading is reached, not the printed value."""
+    """Its verdict is that the reading is reached, not the printed value."""
     read = entry('x', ours, tolerance=around(5.0, percent=1.0), reading=READING)
     assert read.verdict == AS_READ
     assert entry('x', 1.0, tolerance=around(5.0), reading=READING).verdict == NOT_REACHED
@@ -37,7 +37,7 @@ def test_a_reading_names_its_erratum(reading):
 
 
 def test_an_empty_tolerance_is_no_entry():
-    with pytest.raises(ValueError, match='holds no value'):
+    with pytest.raises(ValueError, match='contains no value'):
         entry('x', 1.0, tolerance=(1.0, math.nan))
 
 

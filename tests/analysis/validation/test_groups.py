@@ -1,4 +1,4 @@
-"""The shipped groups: each is reached or gives its reason, and cites what exists."""
+"""The shipped groups: each entry is reached or has a reason, and its references exist."""
 
 from pathlib import Path
 import re
@@ -15,7 +15,7 @@ LONG = [group for group in GROUPS if group.is_long]
 
 
 def check(group) -> None:
-    """Check a group against what docs/ shows of it."""
+    """Check a group against its section of docs/validation.md."""
     result = run_group(group)
     assert all(entry.is_reached or entry.reason for entry in result.entries)
     errata = set(re.findall(r'^\| (\d+) \|', (DOCS / 'paper-errata.md').read_text(), re.M))

@@ -1,4 +1,4 @@
-"""The ISA v5 alone: the foot at the piston, and what the load cell resolves."""
+"""The ISA v5 alone: the foot at the piston, and the load cell's resolution."""
 
 import math
 

@@ -1,4 +1,4 @@
-"""The knee rig's checks: how ground, edges and the fall are taken from a run."""
+"""The knee rig's checks: ground, edges and the fall evaluated from a run."""
 
 import math
 
@@ -35,7 +35,7 @@ def test_both_edges_of_a_force_step_are_measured_against_their_own_change():
 
 
 def test_errors_are_those_of_the_settled_periods():
-    """A shift by 1 mm of a sine of 10 mm from 1.1 s on: the transient before does not count."""
+    """A shift by 1 mm of a sine of 10 mm from 1.1 s on: the transient before has no influence."""
     t = np.arange(3000) * 1e-3
     wanted = 10e-3 * np.sin(2.0 * math.pi * t)
     measured = wanted + np.where(t < 1.1, 5e-3, 1e-3)
@@ -57,8 +57,8 @@ def test_the_fall_takes_as_long_as_a_free_one():
     """
     10 cm at g take 143 ms.
 
-    Until it is let go the leg sags by 3 mm under its impedance, 2 ms at 1.4 m/s, and contact
-    is seen at ticks of 1 ms.
+    Until its release the leg sags by 3 mm under its impedance, 2 ms at 1.4 m/s, and contact
+    is detected at ticks of 1 ms.
     """
     fall = knee_rig.touchdown(run('rig_knee', 'drop', duration=0.3))
     assert fall == pytest.approx(math.sqrt(2.0 * 0.1 / 9.80665), abs=3e-3)

@@ -1,4 +1,4 @@
-"""The checks of the solver: what a kink may leave, and which differences count."""
+"""The checks of the solver: the allowed error at a kink, and the differences compared."""
 
 from isa_ros.analysis.accuracy.agreement import Difference
 from isa_ros.analysis.validation import numerics

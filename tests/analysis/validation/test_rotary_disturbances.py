@@ -1,4 +1,4 @@
-"""What the checks under disturbances compute: impacts, their spikes, the blocked weight."""
+"""Results of the checks under disturbances: impacts, their spikes, the blocked weight."""
 
 from dataclasses import replace
 import math
@@ -27,7 +27,7 @@ def trace(t, **columns) -> Trace:
 
 
 def experiment(load=None, **traces) -> Experiment:
-    """Return what the rotary rig might have shown, on its wheel or another load."""
+    """Return an artificial experiment of the rotary rig, on its wheel or another load."""
     run = load_run(find('rig_rotary', CONFIG))
     if load is not None:
         run = replace(run, actuators=(replace(run.actuators[0], load=load),))
@@ -46,9 +46,9 @@ def test_a_rebound_is_no_impact_of_its_own():
 
 def test_a_spike_is_told_by_what_makes_it():
     """
-    The wheel stops dead at the stop: 20 Nms/rad answer its 3 rad/s, 300 Nm/rad do not move.
+    The wheel stops at once at the stop: 20 Nms/rad times 3 rad/s, 300 Nm/rad unchanged.
 
-    Before, it runs 0.05 rad ahead at the speed it shall have: -15 Nm. After, the reference is
+    Before, it is 0.05 rad ahead at the speed of its setpoint: -15 Nm. After, the reference is
     -15 + 60 Nm, all of it from the velocity.
     """
     load = load_run(find('rig_rotary', CONFIG)).actuators[0].load

@@ -1,4 +1,4 @@
-"""What the torque checks of the rotary rig compute from signals and gains."""
+"""Results of the torque checks of the rotary rig from signals and gains."""
 
 from isa_ros.analysis.validation.rotary_rig import ideal_overshoot, relative_error, ripple
 from isa_ros.analysis.validation.sheets import model_sheet

@@ -1,4 +1,4 @@
-"""Groups in worker processes: order, choice, and how they fail."""
+"""Groups in worker processes: order, selection, and errors."""
 
 import re
 import sys
@@ -21,7 +21,7 @@ def results():
 
 
 def test_results_come_in_the_order_of_the_groups(results):
-    """Although the long one starts first."""
+    """The order is that of the list, although the long group starts first."""
     assert [result.group for result in results] == ['good', 'missed']
     assert [entry.name for entry in results[0].entries] == ['a', 'b']
 
@@ -71,7 +71,7 @@ def test_an_unknown_name_is_answered_with_the_near_ones(results):
 @pytest.mark.parametrize('group, code, message', [
     (REFUSED, 2, 'refused: no such model'), (DIVERGED, 4, 'diverged: spool = nan at t = 0.001')])
 def test_a_group_that_fails_keeps_its_exit_code(group, code, message):
-    """Also across the process boundary, where an exception is rebuilt from its arguments."""
+    """The error passes the process boundary, where an exception is rebuilt from its arguments."""
     with pytest.raises(GroupFailed, match=message) as caught:
         validated((GOOD, group))
     assert caught.value.exit_code == code

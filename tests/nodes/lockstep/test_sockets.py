@@ -19,7 +19,7 @@ pytestmark = pytest.mark.skipif(
 
 @pytest.fixture
 def wires() -> Iterator[LocalWires]:
-    """Return a coordinator's end that others can call."""
+    """Return a coordinator's end that accepts connections."""
     wires = LocalWires()
     wires.listen(RUN)
     yield wires
@@ -69,15 +69,15 @@ def test_too_large_an_answer_is_left_to_the_topics(wires, ends):
 
 
 def test_too_large_a_step_is_left_to_the_topics_and_so_is_the_rest(wires, ends):
-    """Else the participants would wait at both."""
+    """Otherwise the participants would wait at both."""
     assert not wires.send(b'x' * (LARGEST + 1))
     assert not wires.is_open
     assert [end.wait() for end in ends] == [None, None]
     assert [end.is_open for end in ends] == [False, False]
 
 
-def test_one_that_does_not_read_holds_nobody_up(wires, ends):
-    """Its queue is full one day, and then the topics have to do."""
+def test_one_that_does_not_read_delays_no_other(wires, ends):
+    """When its queue is full, the ticks go over the topics."""
     n = 0
     while wires.send(bytes(LARGEST)):
         assert ends[1].wait() == bytes(LARGEST)
@@ -122,7 +122,7 @@ def test_a_stranger_of_another_user_is_not_let_in(wires, monkeypatch):
     assert [end.wait() for end in ends] == [None, None]
 
 
-def test_strangers_that_come_and_come_hold_nobody_up(wires, monkeypatch):
+def test_repeated_foreign_connections_cause_no_delay(wires, monkeypatch):
     monkeypatch.setattr(local_wire, '_STRANGERS', 3)
     strangers = [call(b'nobody') for _ in range(10)]
     ends = [call(identity) for identity in IDENTITIES.values()]
@@ -131,7 +131,7 @@ def test_strangers_that_come_and_come_hold_nobody_up(wires, monkeypatch):
         assert end.wait() is None and not end.is_open
 
 
-def test_a_full_queue_of_calls_holds_nobody_up(monkeypatch):
+def test_a_full_queue_of_connections_causes_no_delay(monkeypatch):
     monkeypatch.setattr(socket, 'SOMAXCONN', 1)
     wires = LocalWires()
     wires.listen(RUN)
@@ -162,12 +162,12 @@ def test_the_default_timeout_of_the_process_does_not_matter(wires):
     assert wires.send(b'step') and ends[0].wait() == b'step'
 
 
-def test_nobody_can_call_once_the_run_goes_on(wires, ends):
+def test_no_connection_is_accepted_once_the_run_goes_on(wires, ends):
     assert LocalWire.to_run(RUN, b'late', SLICE_S) is None
 
 
 def test_where_one_closes_all_are_closed(wires, ends):
-    """What it had said before still counts."""
+    """Messages sent before the end are still read."""
     assert ends[0].send(b'last')
     ends[0].close()
     assert wires.wait(SLICE_S) == b'last' and wires.is_open

@@ -1,4 +1,4 @@
-"""One coordinator per domain, known at once on one host."""
+"""One coordinator per domain; on one host a second one is refused at once."""
 
 from isa_ros.errors import ConfigError
 from isa_ros.nodes.middleware.domain import domain_id, sole_coordinator

@@ -1,4 +1,4 @@
-"""The packaged middleware settings are used where the user has set none."""
+"""The packaged middleware settings are used if the user has set none."""
 
 from xml.etree import ElementTree
 
@@ -41,7 +41,7 @@ def test_children_keep_what_their_parent_has_set():
 @pytest.mark.parametrize('given', [
     {}, {'ROS_AUTOMATIC_DISCOVERY_RANGE': 'LOCALHOST'}, {'ROS_STATIC_PEERS': '192.0.2.7'}])
 def test_a_process_that_goes_on_gets_its_environment_back(given):
-    """A run called as a library must not choose the network of what its caller does next."""
+    """A run called as a library must not set the network for its caller's later work."""
     environment = dict(given)
     with pytest.raises(RuntimeError), defaults(environment):
         assert environment['FASTDDS_DEFAULT_PROFILES_FILE']
@@ -77,7 +77,7 @@ def test_profile_of_the_user_is_kept(name, tmp_path):
 @pytest.mark.parametrize('name', [
     'FASTRTPS_DEFAULT_PROFILES_FILE', 'FASTDDS_DEFAULT_PROFILES_FILE'])
 def test_profile_that_is_not_there_is_refused(name, tmp_path):
-    """The middleware would go on with none."""
+    """The middleware would continue without a profile."""
     environment = {name: str(tmp_path / 'typo.xml')}
     with pytest.raises(ConfigError, match=f'^{name} = .*typo.xml: no such file$'):
         set_defaults(environment, FAST_DDS)
@@ -122,7 +122,7 @@ def test_profiles_say_what_was_measured(profile, path, text):
     """
     The values of lockstep.md, fact 6; with delays of 5 ms 1 % loss halves the ticks/s.
 
-    But for the lease: of 14 nodes that were stopped for a lease of 2 s, 3 were never found again.
+    Except the lease: of 14 nodes stopped for a lease of 2 s, 3 were never discovered again.
     """
     steps = './/' + '/'.join(f'{NAMESPACE}{step}' for step in path.split('/'))
     assert ElementTree.parse(profile).findtext(steps) == text
@@ -134,7 +134,7 @@ def test_profiles_say_what_was_measured(profile, path, text):
     ({'ROS_AUTOMATIC_DISCOVERY_RANGE': 'SUBNET'}, True),
     ({'ROS_STATIC_PEERS': '192.0.2.1'}, True)])
 def test_other_hosts_are_found_where_they_are_asked_for(given, is_network):
-    """Where they are, a coordinator needs time to see another."""
+    """With other hosts a coordinator needs time to discover another one."""
     environment = dict(given)
     set_defaults(environment, FAST_DDS)
     assert finds_other_hosts(environment) == is_network

@@ -81,7 +81,7 @@ def potential(y):
 
 
 def test_held_leg_hangs_still_under_its_static_forces():
-    """L6 at rest: 0.1 s under `actuator_forces` moves nothing but roundings (1e-13 rad)."""
+    """L6 at rest: 0.1 s under `actuator_forces` moves the leg by roundings only (1e-13 rad)."""
     leg = hanging()
     replies = constant(leg.actuator_forces)
     before = flat_state(leg)
@@ -95,7 +95,7 @@ def test_released_leg_falls_freely_whatever_the_actuators_do():
     """
     Vertical momentum falls by m g t: actuator forces are internal.
 
-    RK4 at 0.1 ms: the oracle of its own order (below) leaves 1e-9 of the speeds.
+    RK4 at 0.1 ms: its error, by the test of its order (below), is 1e-9 of the speeds.
     """
     leg = hanging()
     leg.release()
@@ -117,7 +117,7 @@ def test_work_of_the_actuators_is_the_change_of_energy():
         leg.advance(constant(forces))
     work = forces @ (np.array(leg.actuator_positions) - x)
     change = energy(flat_state(leg)) - e
-    # Kinetic and potential parts are of the order of 10 J, RK4 leaves 1e-9 of them.
+    # Kinetic and potential parts are of the order of 10 J, the error of RK4 1e-9 of them.
     assert change == pytest.approx(work, abs=1e-8)
     assert abs(work) > 0.1
 
@@ -222,10 +222,10 @@ def test_port_is_the_leg_s_motion_to_third_order():
 
 def test_ground_stiffness_is_seen_through_the_port():
     """
-    L14, L15: under a constant extra force the leg moves as k and d of the port say.
+    L14, L15: under a constant extra force the leg moves according to k and d of the port.
 
     The response of x_j to one more newton, minus that without it, is integrated from the leg
-    and from its linear copy over 0.5 ms; what is left is the curvature of the contact law.
+    and from its linear copy over 0.5 ms; the difference is the curvature of the contact law.
     """
     leg = moving_leg()
     ports = np.zeros(3, LOAD_PORT)
@@ -299,7 +299,7 @@ def test_rows_say_which_actuator_drives_which_joint():
 
 
 def test_hold_takes_the_speed_of_the_slider():
-    """A locked slider stands, and stays."""
+    """A locked slider stops and does not move."""
     leg = moving_leg(ticks=60)
     leg.hold()
     height = flat_state(leg)[0]
@@ -323,7 +323,7 @@ def test_divergence_names_state_and_time():
     (Pose(haa=0.0, hfe=0.8, kfe=-1.5, foot_height=-0.01), r'foot_height = -0\.01 m, must be >= 0'),
     (Pose(haa=math.nan, hfe=0.8, kfe=-1.5, foot_height=0.1), r'pose\.haa = nan deg')])
 def test_a_pose_the_leg_cannot_start_in_is_refused(pose, message):
-    """What, value, unit and bound."""
+    """The message has name, value, unit and bound."""
     with pytest.raises(ConfigError, match=message):
         hanging(pose=pose)
 

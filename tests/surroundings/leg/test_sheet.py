@@ -108,7 +108,7 @@ def test_four_bar_that_cannot_close_is_refused():
 
 
 def test_linkage_through_a_dead_centre_is_refused():
-    """L4: the lever vanishes at gamma = 0, where a force could not be told from none."""
+    """L4: the lever vanishes at gamma = 0, where a force has no torque."""
     with pytest.raises(ParameterError, match=r'SliderCrank.*lever'):
         replace(SHEET.hfe, low_deg=-30.0)
 
@@ -117,6 +117,6 @@ def test_linkage_through_a_dead_centre_is_refused():
     ('sense', 0.5, r'Direct\.sense = 0\.5, must be 1 or -1'),
     ('low_deg', 40.0, r'Direct\.low_deg = 40 deg, must be < high_deg = 23 deg')])
 def test_a_joint_without_range_or_sense_is_refused(field, value, message):
-    """What, value, unit and bound."""
+    """The message has name, value, unit and bound."""
     with pytest.raises(ParameterError, match=message):
         replace(SHEET.haa, **{field: value})
