@@ -93,7 +93,7 @@ def test_the_output_is_what_the_innermost_block_takes(model):
     state = np.zeros(1, block.BLOCK_STATE).view(np.recarray)[0]
     fl.linearising_step(1.0, row, 0.0, law, state)
     opening = fl.opening_for(law.bandwidth, row, 0.0, law)
-    assert state.output == pytest.approx(per_spool * opening, rel=1e-12)
+    assert state.output == pytest.approx(per_spool * opening, rel=1e-12, abs=0.0)
 
 
 @pytest.mark.parametrize('model', MODELS)
@@ -111,7 +111,7 @@ def test_a_rising_force_damps_and_slows_the_load(model):
     expected = law.model.output_per_spool * fl.opening_for(
         -law.bandwidth * law.kf * rate, row, -rate / plant.mechanics.k_s, law)
     assert expected < 0.0
-    assert state.output == pytest.approx(expected, rel=1e-8)
+    assert state.output == pytest.approx(expected, rel=1e-8, abs=0.0)
 
 
 @given(reference=st.floats(-7e3, 7e3), force=st.floats(-7e3, 7e3), velocity=st.floats(-0.5, 0.5))
