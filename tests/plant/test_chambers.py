@@ -26,6 +26,13 @@ def test_areas_are_table_2():
     assert areas == pytest.approx((363.05e-6, 249.95e-6), rel=2e-5, abs=0.0)
 
 
+@pytest.mark.parametrize(('model', 'stroke'), [
+    ('isa_v2', 0.080), ('isa_v5', 0.100), ('smart_manifold', 1.745)])
+def test_strokes_are_those_of_the_tables(model, stroke):
+    """Tables 2 and 5: 80 and 100 mm, 100 deg printed as 1.745 rad; a product with 1e-3."""
+    assert plant_row(model).chambers.stroke == pytest.approx(stroke, rel=2.3e-16, abs=0.0)
+
+
 @pytest.mark.parametrize('rod_mm', [21.5, 30.0])
 def test_a_rod_as_thick_as_its_piston_is_refused(rod_mm):
     """It would leave no area to divide by."""
