@@ -223,7 +223,8 @@ def test_orifice_is_odd_and_below_the_root(dp):
 
 def test_orifice_smoothing_is_a_quarter_percent_at_ten_delta():
     """V5: (1 + 1/100)^(-1/4) = 0.99752 at dp = 10 delta."""
-    assert servo_valve.signed_sqrt(1e6, 1e5) / 1e3 == pytest.approx(1.01 ** -0.25, rel=1e-12, abs=0.0)
+    assert servo_valve.signed_sqrt(1e6, 1e5) / 1e3 == pytest.approx(
+        1.01 ** -0.25, rel=1e-12, abs=0.0)
 
 
 @given(x=spools, p_a=pressures, p_b=pressures)
