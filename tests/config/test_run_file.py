@@ -92,7 +92,8 @@ def test_own_loads_take_the_values_of_the_model_but_for_those_given(tmp_path: Pa
 def test_initial_positions_are_si_and_mid_stroke_by_default(tmp_path: Path) -> None:
     ram = 'model: isa_v5, load: {kind: mass}, initial_position_mm: 30'
     run = load_run(rig(tmp_path, ram))
-    assert run.actuator('ram').initial_position == pytest.approx(0.030, rel=1e-15)
+    assert run.actuator('ram').initial_position == pytest.approx(
+        0.030, rel=1e-15, abs=0.0)
     assert run.actuator('rotor').initial_position == 0.5 * 1.745
 
 

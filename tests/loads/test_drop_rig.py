@@ -137,7 +137,7 @@ def test_weight_waits_in_the_hand_for_its_plant_step():
     assert actuator._body.load.weight.fall == 0.0
     actuator.tick()  # to 105 plant steps
     assert actuator._body.load.weight.fall == pytest.approx(
-        0.5 * STANDARD_GRAVITY * (4.0 * PLANT_STEP) ** 2, rel=1e-12)
+        0.5 * STANDARD_GRAVITY * (4.0 * PLANT_STEP) ** 2, rel=1e-12, abs=0.0)
 
 
 def test_restored_rig_continues_byte_for_byte():

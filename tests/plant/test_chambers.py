@@ -23,7 +23,14 @@ pressures = st.floats(0.0, 22.5e6)
 def test_areas_are_table_2():
     """Bore 21.5 and rod 12 mm: 363.05 and 249.95 mm2, physics.md section 2."""
     areas = actuator_sheet('isa_v5').plant.drive.areas
-    assert areas == pytest.approx((363.05e-6, 249.95e-6), rel=2e-5)
+    assert areas == pytest.approx((363.05e-6, 249.95e-6), rel=2e-5, abs=0.0)
+
+
+@pytest.mark.parametrize(('model', 'stroke'), [
+    ('isa_v2', 0.080), ('isa_v5', 0.100), ('smart_manifold', 1.745)])
+def test_strokes_are_those_of_the_tables(model, stroke):
+    """Tables 2 and 5: 80 and 100 mm, 100 deg printed as 1.745 rad; a product with 1e-3."""
+    assert plant_row(model).chambers.stroke == pytest.approx(stroke, rel=2.3e-16, abs=0.0)
 
 
 @pytest.mark.parametrize('rod_mm', [21.5, 30.0])
@@ -45,10 +52,11 @@ def test_hydraulic_stall(oil, out, back):
 def test_each_swept_volume_counts_once(oil):
     """C1, errata 16: the volumes at the ends are dead volume and dead plus swept volume."""
     start, end = chambers.volumes(0.0, oil), chambers.volumes(oil.stroke, oil)
+    # one product and one sum, each rounded once; a volume is 1e-6 m3 and more
     assert start == pytest.approx(
-        (oil.dead_volume, oil.dead_volume + oil.area_b * oil.stroke), rel=1e-14)
+        (oil.dead_volume, oil.dead_volume + oil.area_b * oil.stroke), rel=1e-14, abs=0.0)
     assert end == pytest.approx(
-        (oil.dead_volume + oil.area_a * oil.stroke, oil.dead_volume), rel=1e-14)
+        (oil.dead_volume + oil.area_a * oil.stroke, oil.dead_volume), rel=1e-14, abs=0.0)
 
 
 @given(fraction=fractions, q_a=flows, q_b=flows, p_a=pressures, p_b=pressures,

@@ -70,7 +70,7 @@ def test_the_coil_resonates_at_1_8_khz():
     k = 0.1
     # H(jw) of the resonance is 1/(2 j zeta)
     expected = first_order * (1.0 + k * (1.0 / (2j * 0.03) - 1.0))
-    assert response(1800.0) == pytest.approx(expected, rel=1e-9)
+    assert response(1800.0) == pytest.approx(expected, rel=1e-9, abs=0.0)
 
 
 @given(current=st.floats(-1e-2, 1e-2), drive=st.floats(-30.0, 30.0))

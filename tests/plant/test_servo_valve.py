@@ -141,7 +141,7 @@ def test_overlap_shifts_the_flow_curve():
     valve = lapped(pa=10.0, at=10.0, bt=10.0, pb=10.0)
     for spool in (12e-6, 60e-6):
         assert servo_valve.land_flow(spool - valve.lap_pa, valve) == pytest.approx(
-            servo_valve.land_flow(spool - 10e-6, MANIFOLD), rel=1e-12)
+            servo_valve.land_flow(spool - 10e-6, MANIFOLD), rel=1e-12, abs=0.0)
     dead = servo_valve.port_flows(9e-6, WIDE - LAND_DROP, LAND_DROP, WIDE, 0.0, valve)[0]
     live = servo_valve.port_flows(9e-6, WIDE - LAND_DROP, LAND_DROP, WIDE, 0.0, MANIFOLD)[0]
     assert 0.0 < dead < 0.5 * live
@@ -223,7 +223,8 @@ def test_orifice_is_odd_and_below_the_root(dp):
 
 def test_orifice_smoothing_is_a_quarter_percent_at_ten_delta():
     """V5: (1 + 1/100)^(-1/4) = 0.99752 at dp = 10 delta."""
-    assert servo_valve.signed_sqrt(1e6, 1e5) / 1e3 == pytest.approx(1.01 ** -0.25, rel=1e-12)
+    assert servo_valve.signed_sqrt(1e6, 1e5) / 1e3 == pytest.approx(
+        1.01 ** -0.25, rel=1e-12, abs=0.0)
 
 
 @given(x=spools, p_a=pressures, p_b=pressures)

@@ -110,6 +110,25 @@ def test_the_stop_holds_the_spool(x, v):
         assert (y.spool, y.velocity) == (x, v)
 
 
+@given(beyond=st.floats(1e-9, 1e-3), v=st.floats(1e-9, 1.0), a=st.floats(-1e4, 1e4),
+       side=st.sampled_from([1.0, -1.0]))
+def test_the_stop_takes_speed_and_acceleration_of_a_spool_that_runs_into_it(beyond, v, a, side):
+    """What a plastic stop holds is at rest; one that kept x'' would move on in V3 as if free."""
+    x_max = MANIFOLD.valve.x_max
+    y = valve_state(side * (x_max + beyond), side * v, side * a)
+    spool.stop_spool(y, x_max)
+    assert (y.spool, y.velocity, y.acceleration) == (side * x_max, 0.0, 0.0)
+
+
+@given(v=st.floats(0.0, 1.0), a=st.floats(-1e4, 1e4), side=st.sampled_from([1.0, -1.0]))
+def test_the_stop_lets_a_spool_go_that_leaves_it(v, a, side):
+    """A stop pushes and never pulls: speed away from it stays, and so does its acceleration."""
+    x_max = MANIFOLD.valve.x_max
+    y = valve_state(side * (x_max + 1e-9), -side * v, side * a)
+    spool.stop_spool(y, x_max)
+    assert (y.spool, y.velocity, y.acceleration) == (side * x_max, -side * v, side * a)
+
+
 @given(current=st.floats(-5e-3, 5e-3), x=st.floats(-2e-4, 2e-4), v=st.floats(-0.2, 0.2))
 def test_compiled_rates_equal_their_python_source(current, x, v):
     """All three kinds of spool."""

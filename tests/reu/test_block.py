@@ -44,7 +44,9 @@ def test_first_period_is_proportional_then_the_integral_grows():
     own = state()
     first = step(LOOP, own, 100.0, 0.0)
     assert first == pytest.approx(SHEET.kp * 100.0)
-    assert step(LOOP, own, 100.0, 0.0) - first == pytest.approx(SHEET.ki * PERIOD * 100.0)
+    # a difference of outputs some 100 times as large, rounded to 1e-16 of them
+    assert step(LOOP, own, 100.0, 0.0) - first == pytest.approx(
+        SHEET.ki * PERIOD * 100.0, rel=1e-12, abs=0.0)
 
 
 def test_velocity_compensation_adds_its_flow():
@@ -58,7 +60,7 @@ def test_feedback_damping_opposes_a_rising_force():
     for n in range(1, 200):
         output = step(LOOP, own, rate * n * PERIOD, rate * n * PERIOD)
     assert own.measured_rate == pytest.approx(rate, rel=1e-9)
-    assert output == pytest.approx(-SHEET.kp * SHEET.kf * rate, rel=1e-9)
+    assert output == pytest.approx(-SHEET.kp * SHEET.kf * rate, rel=1e-9, abs=0.0)
 
 
 def test_derivative_acts_on_the_error():
@@ -69,7 +71,7 @@ def test_derivative_acts_on_the_error():
         for n in range(1, 200):
             growing = rate * n * PERIOD
             output = step(loop, own, *((growing, 0.0) if sign > 0.0 else (0.0, growing)))
-        assert output == pytest.approx(sign * 1e-9 * rate, rel=1e-9)
+        assert output == pytest.approx(sign * 1e-9 * rate, rel=1e-9, abs=0.0)
 
 
 def test_reference_feed_forward_and_offset_add_to_the_demand():
@@ -93,7 +95,7 @@ def test_schedule_scales_proportional_and_integral_gain():
     for _ in range(2):
         step(LOOP, full, 100.0, 0.0)
         step(halved, half, 100.0, 0.0)
-    assert half.output == pytest.approx(0.5 * full.output, rel=1e-12)
+    assert half.output == pytest.approx(0.5 * full.output, rel=1e-12, abs=0.0)
 
 
 def test_a_retracting_demand_is_scaled():
@@ -109,7 +111,7 @@ def test_a_retracting_demand_is_scaled_before_the_flow_curve_is_inverted():
     for demand in (3e-5, 6e-5, 3e-4):  # m; the knee is at 42.7 um
         spools = [step(own, state(), -demand / SHEET.kp, 0.0) for own in (record(ki=0.0), loop)]
         whole, half = (servo_valve.flow_curve(-x, valve) for x in spools)
-        assert half == pytest.approx(0.5 * whole, rel=1e-12)
+        assert half == pytest.approx(0.5 * whole, rel=1e-12, abs=0.0)
 
 
 @given(demand=demands)

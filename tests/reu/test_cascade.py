@@ -42,7 +42,8 @@ def test_coinciding_loops_run_outermost_first_without_delay():
     cascade.cascade_step(0, reu, state)
     assert state.force.output == pytest.approx(4e-5 * 10.0)
     # coils in parallel: the amplifier gives twice the series current
-    assert state.current_reference == pytest.approx(2.0 * state.force.output, rel=1e-12)
+    assert state.current_reference == pytest.approx(
+        2.0 * state.force.output, rel=1e-12, abs=0.0)
 
 
 def test_the_electric_valve_is_commanded_by_its_spool():
@@ -52,7 +53,7 @@ def test_the_electric_valve_is_commanded_by_its_spool():
     cascade.cascade_step(0, reu, state)
     assert state.spool_reference == state.force.output
     assert state.current_reference == pytest.approx(
-        2.0 * state.spool_reference / 0.0356, rel=1e-12)
+        2.0 * state.spool_reference / 0.0356, rel=1e-12, abs=0.0)
 
 
 def test_a_disabled_actuator_commands_null():

@@ -15,11 +15,12 @@ from tests.sheets import actuator_sheet, MODELS, override
 SUPPLY = 20.7e6
 
 
-def known(model: str) -> tuple[np.record, np.record]:
+def known(model: str, return_mpa: float = 0.0) -> tuple[np.record, np.record]:
     """Return (LINEARISATION, PLANT) records of a shipped model without null leakage."""
     sheet = override(
         actuator_sheet(model, 'default', 'feedback_linearisation'),
         'plant.valve.null_leakage_lpm', 0.0)
+    sheet = override(sheet, 'reu.force.return_pressure_mpa', return_mpa)
     sheet = override(sheet, 'plant.valve.orifice_smoothing_kpa', 1e-6)
     record = actuator_record(sheet, 0).view(np.recarray)[0]
     return record.reu.linearisation, plant_record(sheet.plant)[0]
@@ -84,6 +85,28 @@ def test_the_integral_stands_still_at_the_stop():
     assert state.integral > 0.0
 
 
+@pytest.mark.parametrize('direction', [1.0, -1.0])
+@pytest.mark.parametrize('model', MODELS)
+def test_the_opening_counts_from_the_return_pressure(model, direction):
+    """
+    R12 with P_T = 2 MPa: the lands to return have P - P_T, and C2, C3 give F' back.
+
+    With 5 MPa in both chambers a block that took P for P - P_T would open a fifth too little
+    there.
+    """
+    law, plant = known(model, return_mpa=2.0)
+    oil, p = plant.chambers, 5e6
+    s = 0.5 * oil.stroke
+    wanted = direction * 1e-3 * chambers.oil_stiffness(s, oil) * oil.stroke
+    x = fl.opening_for(wanted, measured(position=s, pressure_a=p, pressure_b=p), 0.0, law)
+    assert 0.0 < direction * x < law.model.x_max
+    q_a, q_b, _, _ = servo_valve.port_flows(x, p, p, SUPPLY, 2e6, plant.valve)
+    rates = chambers.pressure_rates(
+        q_a, q_b, p, p, s, wanted / plant.mechanics.k_s, 2e6, oil)
+    # a dozen roundings, and the orifices' smoothing of 1e-3 Pa on 3 MPa: 1e-19
+    assert chambers.hydraulic_force(*rates, oil) == pytest.approx(wanted, rel=1e-9, abs=0.0)
+
+
 @pytest.mark.parametrize('model', MODELS)
 def test_the_output_is_what_the_innermost_block_takes(model):
     """The opening in m, or without a spool block the series current for it."""
@@ -93,7 +116,7 @@ def test_the_output_is_what_the_innermost_block_takes(model):
     state = np.zeros(1, block.BLOCK_STATE).view(np.recarray)[0]
     fl.linearising_step(1.0, row, 0.0, law, state)
     opening = fl.opening_for(law.bandwidth, row, 0.0, law)
-    assert state.output == pytest.approx(per_spool * opening, rel=1e-12)
+    assert state.output == pytest.approx(per_spool * opening, rel=1e-12, abs=0.0)
 
 
 @pytest.mark.parametrize('model', MODELS)
@@ -111,7 +134,7 @@ def test_a_rising_force_damps_and_slows_the_load(model):
     expected = law.model.output_per_spool * fl.opening_for(
         -law.bandwidth * law.kf * rate, row, -rate / plant.mechanics.k_s, law)
     assert expected < 0.0
-    assert state.output == pytest.approx(expected, rel=1e-8)
+    assert state.output == pytest.approx(expected, rel=1e-8, abs=0.0)
 
 
 @given(reference=st.floats(-7e3, 7e3), force=st.floats(-7e3, 7e3), velocity=st.floats(-0.5, 0.5))

@@ -11,4 +11,5 @@ def test_step_response_is_the_sampled_exponential():
     alpha, y = low_pass_coefficient(100.0, 1000.0), 0.0
     for n in range(1, 20):
         y = low_pass(y, 1.0, alpha)
-        assert y == pytest.approx(1.0 - math.exp(-2.0 * math.pi * 0.1 * n), rel=1e-12)
+        assert y == pytest.approx(
+            1.0 - math.exp(-2.0 * math.pi * 0.1 * n), rel=1e-12, abs=0.0)

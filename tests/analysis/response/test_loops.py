@@ -34,7 +34,7 @@ def test_a_spool_with_mechanical_feedback_is_excited_through_the_current():
     loop = loop_of(actuator_sheet('smart_manifold'), 'spool')
     assert loop.inward == 'current_reference'
     assert loop.per_reference * loop.largest == pytest.approx(5e-3, rel=1e-3)   # 0.178/0.0356
-    assert loop.largest == pytest.approx(178e-6, rel=1e-12)
+    assert loop.largest == pytest.approx(178e-6, rel=1e-12, abs=0.0)
 
 
 def test_the_current_is_the_amplifiers_twice_the_series_scale():

@@ -2,6 +2,7 @@
 
 from collections.abc import Iterator
 import os
+import secrets
 import socket
 import time
 
@@ -9,7 +10,7 @@ from isa_ros.nodes.lockstep import sockets as local_wire
 from isa_ros.nodes.lockstep.sockets import LARGEST, LocalWire, LocalWires
 import pytest
 
-RUN = 0x1234_5678_9abc
+RUN = secrets.randbits(63)  # another suite on this host must not meet this one
 IDENTITIES = {0: b'identity of haa', 2: b'identity of kfe'}
 SLICE_S = 0.05
 
@@ -44,6 +45,26 @@ def ends(wires) -> Iterator[list[LocalWire]]:
 
 def received(wires: LocalWires, n: int) -> list[bytes | None]:
     return sorted((wires.wait(SLICE_S) for _ in range(n)), key=lambda data: data or b'')
+
+
+def test_runs_at_the_same_time_have_sockets_of_their_own(wires):
+    """The name holds the run's id: a participant reaches the coordinator that called it."""
+    other = LocalWires()
+    other.listen(RUN ^ 1)
+    try:
+        here, there = call(b'here'), call(b'there', RUN ^ 1)
+        assert wires.connect({0: b'here'}) and other.connect({0: b'there'})
+        assert wires.send(b'step of one') and other.send(b'step of the other')
+        assert (here.wait(), there.wait()) == (b'step of one', b'step of the other')
+        here.close()
+        there.close()
+    finally:
+        other.close()
+
+
+def test_a_run_that_does_not_listen_has_no_socket(wires):
+    """Although another one of this host does."""
+    assert LocalWire.to_run(RUN ^ 1, b'stray', SLICE_S) is None
 
 
 def test_a_message_goes_to_all_and_each_answers_for_itself(wires, ends):

@@ -1,0 +1,18 @@
+"""The exit code of `isa validate`: 0 where all entries are reached, 1 where one is not."""
+
+from isa_ros.analysis.validation import groups
+from isa_ros.cli.main import main
+import pytest
+from tests.analysis.validation.groups import GOOD, MISSED
+
+
+@pytest.mark.parametrize(('shipped', 'only', 'code'), [
+    ((GOOD,), [], 0), ((GOOD, MISSED), [], 1), ((GOOD, MISSED), ['--only', 'good'], 0),
+    ((GOOD, MISSED), ['--only', 'missed'], 1)])
+def test_an_entry_that_is_missed_is_the_answer_no(
+        shipped, only, code, monkeypatch: pytest.MonkeyPatch,
+        capsys: pytest.CaptureFixture[str]) -> None:
+    """A continuous integration that asks for the exit code alone must be told."""
+    monkeypatch.setattr(groups, 'GROUPS', shipped)
+    assert main(['validate', *only]) == code
+    assert ('the spring is too soft' in capsys.readouterr().out) == (code == 1)

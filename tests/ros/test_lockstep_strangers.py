@@ -1,0 +1,222 @@
+"""
+Steps and answers that do not belong into a tick, handed to each end of the wire one by one.
+
+Both ends have a real node but no partner: what arrives is put into their mailbox in the order
+of the test, so that no race of the middleware decides.
+"""
+
+from collections import deque
+from collections.abc import Iterable, Iterator
+
+from isa_ros.core.signals import LOAD_REPLY, SAMPLE, START
+from isa_ros.errors import ConfigError
+from isa_ros.nodes.lockstep.coordinator_end import LockstepTransport
+from isa_ros.nodes.lockstep.expected import Cast, Expected, Limits
+from isa_ros.nodes.lockstep.participant_end import Member
+from isa_ros.run import wire
+from isa_ros.run.exchange import Messages, Rows, Silence
+from isa_ros.run.wire import Answer, AnswerKind, encode_answer
+import numpy as np
+import pytest
+from rclpy.node import Node
+from tests.ros.started import DEADLINE_S
+
+pytestmark = pytest.mark.ros
+
+RUN = 4711
+NAMES = ('haa', 'kfe')
+LIMITS = Limits(join_s=DEADLINE_S, tick_s=0.05)
+
+
+class Post:
+    """A mailbox that holds what a test puts into it, and nothing else ever arrives."""
+
+    def __init__(self, messages: Iterable[bytes] = ()) -> None:
+        self.messages = deque(messages)
+
+    def wait(self, timeout_s: float) -> bytes | None:
+        """Return the next message at once."""
+        return self.messages.popleft() if self.messages else None
+
+    take = wait
+
+    def count_senders(self) -> int:
+        """Return 1, a coordinator."""
+        return 1
+
+
+class Counting:
+    """A seat that counts what it is asked for."""
+
+    digest = b'same'
+
+    def __init__(self) -> None:
+        self.ticks = self.snapshots = 0
+
+    def start(self, step: wire.Step, index: int) -> Messages:
+        """Begin anew."""
+        self.ticks = 0
+        return [b'start']
+
+    def advance(self, step: wire.Step) -> Messages:
+        """Count a tick."""
+        self.ticks += 1
+        return [b'tick %d' % self.ticks]
+
+    def publish(self) -> None:
+        """Publish nothing."""
+
+    def serve(self) -> None:
+        """Take nothing."""
+
+    def snapshot(self) -> bytes:
+        """Count a snapshot."""
+        self.snapshots += 1
+        return b'after %d' % self.ticks
+
+    def restore(self, snapshot: bytes) -> Messages:
+        """Go on from where it was taken."""
+        self.ticks = int(snapshot.split()[1])
+        return [b'restored']
+
+
+class Participant:
+    """A member without a thread, bound to `RUN`, and its answers."""
+
+    def __init__(self, node: Node) -> None:
+        self.seat = Counting()
+        self._member = Member(node, self.seat)
+        self.answers: list[Answer] = []
+        self._member._send = lambda data: self.answers.append(wire.decode_answer(data))
+        starts = np.zeros(2, START)
+        self.answers_to(
+            wire.encode_hello(RUN, 1, 1_000_000, starts, NAMES), wire.encode_begin(RUN))
+
+    def answers_to(self, *steps: bytes) -> list[tuple[AnswerKind, int, bool]]:
+        """Hand steps over; return (kind, tick, is repeated) of the answers to them."""
+        before = len(self.answers)
+        for step in steps:
+            self._member._handle(wire.decode_step(step))
+        return [(one.kind, one.tick, one.is_repeated) for one in self.answers[before:]]
+
+
+@pytest.fixture
+def member(observer: Node) -> Iterator[Participant]:
+    """Return a participant in a run that has begun."""
+    node = Node('kfe', context=observer.context, enable_rosout=False,
+                start_parameter_services=False)
+    yield Participant(node)
+    node.destroy_node()
+
+
+def tick(number: int, run: int = RUN) -> bytes:
+    return wire.encode_tick(run, number, Rows(2), has_controllers=False)
+
+
+def done(number: int, is_repeated: bool = False) -> tuple[AnswerKind, int, bool]:
+    return AnswerKind.DONE, number, is_repeated
+
+
+def test_a_repeat_of_the_last_step_is_answered_again_without_another_tick(member):
+    assert member.answers_to(tick(0), tick(0)) == [done(0), done(0, is_repeated=True)]
+    assert member.answers[-1].parts == member.answers[-2].parts
+    assert member.seat.ticks == 1
+
+
+def test_a_repeat_that_a_newer_tick_has_overtaken_is_dropped(member):
+    """It is a copy on the slower topic: an answer, or a refusal, would end the run."""
+    assert member.answers_to(tick(0), tick(1), tick(0)) == [done(0), done(1)]
+    assert member.seat.ticks == 2
+    assert member.answers_to(tick(2)) == [done(2)]
+
+
+def test_an_overtaken_request_to_save_is_dropped(member):
+    """Requests count down: -1 again after -2 or after a tick is an old one."""
+    saved = [wire.encode_save(RUN, number) for number in (-1, -2)]
+    assert member.answers_to(tick(0), *saved, saved[0]) == [
+        done(0), (AnswerKind.SAVED, -1, False), (AnswerKind.SAVED, -2, False)]
+    assert member.answers_to(tick(1), saved[1]) == [done(1)]
+    assert member.seat.snapshots == 2
+
+
+def test_an_overtaken_request_to_restore_is_dropped(member):
+    """Else a run that went on after it would be put back."""
+    restore = wire.encode_restore(RUN, -1, 5, [b'after 5', b'after 5'])
+    assert member.answers_to(restore, tick(5), restore) == [
+        (AnswerKind.RESTORED, -1, False), done(5)]
+    assert member.seat.ticks == 6
+
+
+def test_a_tick_of_another_run_moves_no_actuator(member):
+    assert member.answers_to(tick(0, run=RUN + 1), wire.encode_end(RUN + 1)) == []
+    assert member.seat.ticks == 0
+    assert member.answers_to(tick(0)) == [done(0)]
+
+
+def answer(
+        participant: int, number: int, force: float, run: int = RUN,
+        kind: AnswerKind = AnswerKind.DONE, is_repeated: bool = False) -> bytes:
+    """Return the answer of an actuator to a tick."""
+    reply, sample = np.zeros(1, LOAD_REPLY), np.zeros(1, SAMPLE)
+    reply['force'] = force
+    return encode_answer(
+        kind, run, number, participant, [reply.tobytes(), sample.tobytes(), None], is_repeated)
+
+
+class Coordination:
+    """A coordinator's end in the middle of a run, whose participants are the test."""
+
+    def __init__(self, node: Node, monkeypatch: pytest.MonkeyPatch) -> None:
+        cast = Cast([Expected(name, 'same') for name in NAMES], np.zeros(2, START), 1_000_000)
+        self._transport = LockstepTransport(
+            node, cast, LIMITS, Silence(), watch=lambda: None, should_stop=lambda: False)
+        self._post = Post()
+        monkeypatch.setattr(self._transport, '_mailbox', self._post)
+        monkeypatch.setattr(self._transport, '_run_id', RUN)
+
+    def forces(self, number: int, *answers: bytes) -> list[float]:
+        """Return the forces of tick ``number`` when these answers arrive in this order."""
+        rows = Rows(2)
+        self._transport.send(number, rows)
+        self._post.messages.extend(answers)
+        self._transport.receive(rows)
+        assert not self._post.messages
+        forces: list[float] = rows.replies['force'].tolist()
+        return forces
+
+
+@pytest.fixture
+def coordination(observer: Node, monkeypatch: pytest.MonkeyPatch) -> Coordination:
+    """Return a coordinator's end."""
+    return Coordination(observer, monkeypatch)
+
+
+def test_the_answer_of_another_run_is_not_taken_for_this_ones(coordination):
+    """Same tick, same participant: the run's id alone tells them apart."""
+    assert coordination.forces(
+        3, answer(0, 3, -99.0, run=RUN + 1), answer(1, 3, 2.0), answer(0, 3, 1.0)) == [1.0, 2.0]
+
+
+def test_the_answer_of_another_run_is_not_a_second_node(coordination):
+    """Also where this run's own answer came first."""
+    assert coordination.forces(
+        3, answer(0, 3, 1.0), answer(0, 3, -99.0, run=RUN + 1), answer(1, 3, 2.0)) == [1.0, 2.0]
+
+
+def test_two_nodes_that_answer_one_step_are_refused(coordination):
+    """Both bound, of one name: the run has two states of one actuator."""
+    with pytest.raises(ConfigError, match='haa: two nodes of this name answer'):
+        coordination.forces(3, answer(0, 3, 1.0), answer(0, 3, 1.5), answer(1, 3, 2.0))
+
+
+def test_an_answer_to_a_step_that_is_not_awaited_is_refused(coordination):
+    """One node answers each step once, and only when asked."""
+    with pytest.raises(ConfigError, match='kfe: two nodes of this name answer'):
+        coordination.forces(3, answer(1, 2, 2.0), answer(0, 3, 1.0), answer(1, 3, 2.0))
+
+
+def test_an_answer_given_again_is_not_a_second_node(coordination):
+    """A repeat is marked as one: the first may have been lost, or not."""
+    assert coordination.forces(
+        3, answer(0, 2, 7.0, is_repeated=True), answer(0, 3, 1.0),
+        answer(0, 3, 1.0, is_repeated=True), answer(1, 3, 2.0, is_repeated=True)) == [1.0, 2.0]
