@@ -1,1 +1,1 @@
-"""Example controllers to copy: one in the lockstep, one outside of it."""
+"""Programs to copy: in a notebook, as a node, beside the clock."""

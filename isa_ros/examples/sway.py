@@ -4,8 +4,6 @@ from collections.abc import Mapping
 import math
 
 from isa_ros.controller import Controller, Setpoint, State
-from isa_ros.nodes import Participant
-import rclpy
 
 
 class Sway(Controller):
@@ -26,5 +24,8 @@ class Sway(Controller):
 
 
 if __name__ == '__main__':
+    from isa_ros.nodes import Participant
+    import rclpy
+
     rclpy.init()
     Participant(rclpy.create_node('sway'), Sway()).spin()

@@ -161,13 +161,14 @@ class Run:
 
 
 def load(
-        config: str | Path, scenario: str | Path | None = None, *,
+        config: str | Path | Tree, scenario: str | Path | Tree | None = None, *,
         duration: float | None = None, compression: str | None = None,
         split_mb: float | None = None) -> Run:
     """
     Return the run of a file, or of a shipped one by name, with its scenario.
 
-    ``duration`` (s), ``compression`` and ``split_mb`` are the options of `isa bringup`.
+    In the place of a file its content may be given, as a dictionary. ``duration`` (s),
+    ``compression`` and ``split_mb`` are the options of `isa bringup`.
 
     Raises
     ------
@@ -179,6 +180,9 @@ def load(
                duration, compression, split_mb)
 
 
-def _file(name: str | Path, directory: str) -> _File:
-    path = find(str(name), directory)
+def _file(given: str | Path | Tree, directory: str) -> _File:
+    if isinstance(given, dict):
+        name = given.get('name')
+        return _File(given, f'{name}.yaml' if isinstance(name, str) else 'the dictionary')
+    path = find(str(given), directory)
     return _File(read(path), path.name)
