@@ -61,7 +61,7 @@ def test_a_value_no_actuator_could_have_is_refused(name, value, expected, benche
 
 
 def test_coarser_converters_ripple_more(benches):
-    """A limit cycle of about the quantum, 400 Nm over 2^bits, below which the loop is blind."""
+    """A limit cycle of about the quantum, 400 Nm over 2^bits, which the loop cannot resolve."""
     case = case_of('adc_bits', 'smart_manifold')
     found = {}
     for bits in (8.0, 10.0, 12.0):
