@@ -2,7 +2,6 @@
 
 from collections.abc import Iterator
 import os
-from pathlib import Path
 
 from hypothesis import settings
 import pytest
@@ -16,16 +15,12 @@ settings.load_profile('isa_ros')
 # pytest changes the first at every phase of a test, the first import of a kernel sets the second.
 _CHANGING = ('PYTEST_CURRENT_TEST', 'NUMBA_CACHE_DIR')
 
-_UNGUARDED = Path(__file__).parent / 'surroundings'
-"""Its tests do not all state their tolerance yet."""
-
 
 @pytest.fixture(autouse=True)
-def approx_states_its_tolerance(request: pytest.FixtureRequest) -> Iterator[None]:
+def approx_states_its_tolerance() -> Iterator[None]:
     """Refuse `pytest.approx` with a default tolerance that is wider than the number."""
     with pytest.MonkeyPatch.context() as patch:  # its own: a test's ends before others look
-        if not request.path.is_relative_to(_UNGUARDED):
-            patch.setattr(pytest, 'approx', refusing_approx)
+        patch.setattr(pytest, 'approx', refusing_approx)
         yield
 
 

@@ -188,7 +188,8 @@ def test_effective_mass_is_that_of_the_mass_matrix(release):
     for j in range(3):
         _, r, _ = actuator_coordinate(y[j + 1], leg._linkages[j])
         # Condition of M below 1e4: 1e-16 * 1e4.
-        assert ports['inverse_mass'][j] == pytest.approx(r * r * inverse[j, j], rel=1e-12)
+        assert ports['inverse_mass'][j] == pytest.approx(
+            r * r * inverse[j, j], rel=1e-12, abs=0.0)
 
 
 def test_port_is_the_leg_s_motion_to_third_order():
@@ -215,7 +216,8 @@ def test_port_is_the_leg_s_motion_to_third_order():
         p = ports[j]
         third = p['jerk'] + slope[j] * p['inverse_mass']
         predicted = p['x0'] + t * (p['v0'] + t * (0.5 * p['a0'] + t * third / 6.0))
-        assert p['a0'] == pytest.approx(p['a_bias'] + f[j] * p['inverse_mass'], rel=1e-12)
+        assert p['a0'] == pytest.approx(
+            p['a_bias'] + f[j] * p['inverse_mass'], rel=1e-12, abs=0.0)
         without_third = p['x0'] + t * (p['v0'] + t * 0.5 * p['a0'])
         assert abs(predicted - x) < 0.2 * abs(without_third - x) + 1e-15
 

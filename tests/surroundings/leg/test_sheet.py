@@ -22,9 +22,9 @@ def test_records_are_si():
     assert body[0]['l_thigh'] == 0.36
     assert linkages['kind'].tolist() == [
         linkage.DIRECT, linkage.SLIDER_CRANK, linkage.FOUR_BAR]
-    assert linkages[1]['a'] == pytest.approx(0.356, rel=1e-15)
-    assert linkages[2]['offset'] == pytest.approx(math.pi + 0.6, rel=1e-15)
-    assert ground[0]['sigma_0'] == pytest.approx(0.7 / 1e-3, rel=1e-15)
+    assert linkages[1]['a'] == pytest.approx(0.356, rel=1e-15, abs=0.0)
+    assert linkages[2]['offset'] == pytest.approx(math.pi + 0.6, rel=1e-15, abs=0.0)
+    assert ground[0]['sigma_0'] == pytest.approx(0.7 / 1e-3, rel=1e-15, abs=0.0)
 
 
 def test_piston_of_the_knee_is_14_mm_out_at_full_flexion():
@@ -69,7 +69,8 @@ def test_isa_v2_reaches_the_joints_of_hyq(joint, low, high):
 def test_leg_of_hyq_weighs_what_its_links_do():
     """2.93 + 2.638 + 0.881 kg and the slider."""
     body = body_record(HYQ.body)[0]
-    assert body['m_hip'] + body['m_thigh'] + body['m_calf'] == pytest.approx(6.449, rel=1e-15)
+    assert body['m_hip'] + body['m_thigh'] + body['m_calf'] == pytest.approx(
+        6.449, rel=1e-15, abs=0.0)
     assert (body['l_hip'], body['d_hip']) == (0.0, 0.08)
 
 
@@ -77,7 +78,8 @@ def test_mass_scale_applies_to_links_but_not_to_the_slider():
     """Masses and inertias of the three links scale together."""
     plain = body_record(replace(SHEET.body, mass_scale=1.0))[0]
     scaled = body_record(SHEET.body)[0]
-    assert plain['m_hip'] + plain['m_thigh'] + plain['m_calf'] == pytest.approx(12.14, rel=1e-15)
+    assert plain['m_hip'] + plain['m_thigh'] + plain['m_calf'] == pytest.approx(
+        12.14, rel=1e-15, abs=0.0)
     for name in ('m_hip', 'm_thigh', 'm_calf', 'i_hip_xx', 'i_thigh_yy', 'i_calf_zz'):
         assert scaled[name] == 0.84 * plain[name]
     assert scaled['m_slider'] == plain['m_slider'] == 5.0
