@@ -125,3 +125,5 @@ class ActuatorGroup:
             size, = _SIZE.unpack_from(snapshot, at)
             at += _SIZE.size + size
             actuator.restore(snapshot[at - size:at])
+        if at != len(snapshot):
+            raise ConfigError(f'saved state of {len(snapshot)} bytes, must be {at}')

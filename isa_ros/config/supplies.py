@@ -10,7 +10,7 @@ from isa_ros.config.sections import build_one_of, names_at, Place, section_at, w
 from isa_ros.config.yaml_text import Tree
 from isa_ros.core.suggest import alternatives
 from isa_ros.errors import ConfigError
-from isa_ros.surroundings.supply import SupplySheet
+from isa_ros.surroundings.supply import SupplySheet, VolumeReturn
 
 SUPPLY = 'supply'
 """Name of the only supply of a run."""
@@ -74,9 +74,17 @@ def refuse_misfed(
     Raises
     ------
     ConfigError
-        The supply and the actuator are named.
+        The supply and the actuator are named; or a supply has the name under which the return
+        pressure of another one is published.
 
     """
+    names = {supply.name for supply in supplies}
+    for supply in supplies:
+        taken = f'{supply.name}_return'
+        if taken in names and isinstance(supply.sheet.return_line, VolumeReturn):
+            raise ConfigError(
+                f'{place / taken}: the return pressure of {supply.name} is published as '
+                f'{taken}_pressure, must have another name')
     fed: dict[str, str] = {}
     for supply in supplies:
         where = place / supply.name / 'feeds'

@@ -121,30 +121,30 @@ class Packer:
     def __init__(self, names: Names, shown: Shown, is_run: bool = True) -> None:
         self._names = names
         self._shown = shown
-        found: dict[Topic, Prepared | None] = {}
+        found: list[tuple[Topic, Prepared | None]] = []
         at = 0
         for name, is_rotary in names.actuators:
             own = self._actuator(name, is_rotary, at)
             at += len(_SAMPLE) + len(_PRESSURES) + len(_APPLIED)
-            found |= {Topic(f'/{name}/{suffix}', type_): own.get(suffix)
-                      for suffix, type_ in TOPICS}
+            found += [(Topic(f'/{name}/{suffix}', type_), own.get(suffix))
+                      for suffix, type_ in TOPICS]
         for supply, shows_return in names.supplies:
             for k, suffix in enumerate(_SUPPLY_PRESSURES[:1 + shows_return]):
                 topic = Topic(f'{_COORDINATOR}/{supply}_{suffix}', fluid_pressure.TYPE)
-                found[topic] = fluid_pressure.fluid_pressure(supply, at + k)
+                found.append((topic, fluid_pressure.fluid_pressure(supply, at + k)))
             at += len(_SUPPLY_PRESSURES)
         if names.body is not None and shown.body is not None:
             body = names.body(float_columns(shown.body.dtype, at))
-            found |= {Topic(*topic): message for topic, message in body.items()}
+            found += [(Topic(*topic), message) for topic, message in body.items()]
         if is_run:
-            found |= {Topic(*clock.TOPIC): clock.clock(), Topic(*event.TOPIC): None}
-        self.topics = tuple(sorted(found, key=lambda topic: topic.name))
+            found += [(Topic(*clock.TOPIC), clock.clock()), (Topic(*event.TOPIC), None)]
+        self.topics = tuple(sorted((topic for topic, _ in found), key=lambda topic: topic.name))
         if len({topic.name for topic in self.topics}) != len(self.topics):
             raise ValueError(f'a topic has two sources: {self.topics}')
-        prepared = {topic: message for topic, message in found.items() if message is not None}
-        self._place = {topic.name: k for k, topic in enumerate(prepared)}
+        prepared = [(topic, message) for topic, message in found if message is not None]
+        self._place = {topic.name: k for k, (topic, _) in enumerate(prepared)}
         self._index = {topic.name: k for k, topic in enumerate(self.topics)}
-        self._template = Template(list(prepared.values()))
+        self._template = Template([message for _, message in prepared])
         self._bytes = self._template.block.view(np.uint8)
         self._tuned: dict[int, bytes] = {}
         self._layouts: dict[bytes, Layout] = {}

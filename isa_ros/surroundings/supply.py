@@ -183,7 +183,7 @@ class Supply:
     One supply over a run.
 
     ``flow_slope`` is the sum of the valves' largest dQ/dP in m3/s/Pa; ``state`` is the supply's
-    `SUPPLY_SAMPLE` row, shape (1,), None: a row of its own.
+    `SUPPLY_SAMPLE` row, shape (1,), None: a row of its own. ``name`` stands in errors.
 
     Raises
     ------
@@ -195,7 +195,8 @@ class Supply:
 
     def __init__(
             self, sheet: SupplySheet, step_ns: int, flow_slope: float,
-            state: np.ndarray | None = None) -> None:
+            state: np.ndarray | None = None, name: str = 'supply') -> None:
+        self._name = name
         self._step = step_ns * 1e-9
         self._substeps = round(self._step / SUPPLY_STEP)
         self.state = np.zeros(1, SUPPLY_SAMPLE) if state is None else state
@@ -220,7 +221,7 @@ class Supply:
         holds, bound = c / flow_slope, _SLOWEST_TICKS * self._step
         if holds < bound:
             raise ParameterError(
-                f'supply: {what} over flow slope = {holds * 1e3:.3g} ms, '
+                f'{self._name}: {what} over flow slope = {holds * 1e3:.3g} ms, '
                 f'must be >= {bound * 1e3:.3g} ms (ten ticks); enlarge {key}')
 
     def _refuse_fast(self, line: np.void) -> None:
@@ -228,7 +229,7 @@ class Supply:
         constant = float(line['c'] / line['g'])
         if constant < SUPPLY_STEP:
             raise ParameterError(
-                f'supply: time constant of the return line = {constant * 1e3:.3g} ms, must be >= '
+                f'{self._name}: time constant of the return line = {constant * 1e3:.3g} ms, must be >= '
                 f'{SUPPLY_STEP * 1e3:g} ms; reduce return_line.tank_lpm_per_mpa')
 
     @property

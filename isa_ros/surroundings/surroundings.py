@@ -18,7 +18,7 @@ class Feed(NamedTuple):
     """One supply, and what it is connected to."""
 
     name: str
-    """'' for the only supply of a run."""
+    """Of the supply, by which controllers and errors know it."""
     sheet: SupplySheet
     rows: Sequence[int]
     """Rows of the actuators that it feeds."""
@@ -43,7 +43,7 @@ class Surroundings:
         self.supplies: Records = np.zeros(len(feeds), SUPPLY_SAMPLE)
         """`SUPPLY_SAMPLE` of every supply at the end of the last tick; overwritten."""
         self._supplies = [
-            Supply(feed.sheet, step_ns, feed.flow_slope, self.supplies[k:k + 1])
+            Supply(feed.sheet, step_ns, feed.flow_slope, self.supplies[k:k + 1], feed.name)
             for k, feed in enumerate(feeds)]
         self._rows = [np.array(feed.rows, np.int64) for feed in feeds]
         self._rest = starts.copy()

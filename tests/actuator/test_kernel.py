@@ -11,15 +11,16 @@ SCRIPT = """
 import sys
 import numpy as np
 from isa_ros.actuator.actuator import Timing
+from isa_ros.actuator.rows import Memory
 from tests.sheets import actuator_sheet, setpoint, smart_actuator
 
 model, kind, mode, *variants = sys.argv[1:]
 sheet = actuator_sheet(model, 'default', *variants)
 actuator = smart_actuator(model, kind, sheet=sheet, timing=Timing(1_000_000, 120_000))
 if mode == 'python':
-    actuator._arrays = tuple(
-        rows.view(np.recarray) if rows.dtype.names else rows for rows in actuator._arrays)
-    actuator._port_rows = actuator._arrays[1]
+    actuator.memory = Memory(*(
+        rows.view(np.recarray) if rows.dtype.names else rows for rows in actuator.memory))
+    actuator._commands = actuator._commands.view(np.recarray)
 stroke = sheet.plant.drive.stroke
 actuator.accept(setpoint(position=0.6 * stroke, velocity=0.01))
 for _ in range(5):

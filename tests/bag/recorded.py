@@ -4,26 +4,26 @@ from pathlib import Path
 
 from isa_ros.bag.provenance import Provenance
 from isa_ros.bag.writer import BagWriter
-from isa_ros.core.signals import COMMAND, SAMPLE
+from isa_ros.core.signals import SAMPLE
 from isa_ros.core.topic import Topic
-from msg_adapters.actuator_messages import APPLIED_SETPOINT, STATE_TOPICS, StateMessages
-from msg_adapters.clock import TYPE as CLOCK
-from msg_adapters.coordinator_messages import ClockMessage
-from msg_adapters.setpoint import AppliedSetpoint
+from msg_adapters import clock
+from msg_adapters.actuator_messages import APPLIED_SETPOINT, STATE_TOPICS
+from msg_adapters.fluid_pressure import ATMOSPHERE
+from msg_adapters.template import Template
 import numpy as np
+from tests.messages import APPLIED, fill, of_actuator
 
 STEP_NS = 1_000_000
 PROVENANCE = Provenance(
     configuration='name: rig\n', scenario='name: step\n', seed=7,
     versions={'isa_ros': '0.1.0', 'numpy': '2.0'})
 TOPICS = tuple(sorted(
-    [Topic('/clock', CLOCK), Topic('/hip/applied_setpoint', APPLIED_SETPOINT[1])]
+    [Topic(*clock.TOPIC), Topic('/hip/applied_setpoint', APPLIED_SETPOINT[1])]
     + [Topic(f'/hip/{suffix}', type_name) for suffix, type_name in STATE_TOPICS],
     key=lambda topic: topic.name))
 NAMES = [topic.name for topic in TOPICS]
-STATES = StateMessages([('hip', True)])
-APPLIED = AppliedSetpoint('hip')
-CLOCK_MESSAGE = ClockMessage()
+MESSAGES = of_actuator('hip', is_rotary=True)
+TEMPLATE = Template(list(MESSAGES.values()))
 
 
 def tick_messages(tick, **changed):
@@ -34,11 +34,12 @@ def tick_messages(tick, **changed):
         sample[field] = np.sin(0.1 * tick + k)
     for field, value in changed.items():
         sample[field] = value
-    produced = {'/clock': CLOCK_MESSAGE.pack(t_ns)}
-    produced |= {f'/hip/{suffix}': data
-                 for (suffix, _), data in zip(STATE_TOPICS, STATES.pack(sample, t_ns))}
-    if tick % 100 == 0:
-        produced[f'/hip/{APPLIED_SETPOINT[0]}'] = APPLIED.pack(np.zeros(1, COMMAND)[0], t_ns)
+    absolute = [sample[0][f'pressure_{chamber}'] + ATMOSPHERE for chamber in 'ab']
+    fill(TEMPLATE, [*sample.item(), *absolute, *np.zeros(len(APPLIED))], t_ns, t_ns)
+    produced = {'/clock': clock.pack(t_ns)} | {
+        f'/hip/{suffix}': TEMPLATE.message(k) for k, suffix in enumerate(MESSAGES)}
+    if tick % 100:
+        del produced[f'/hip/{APPLIED_SETPOINT[0]}']
     return [(NAMES.index(name), produced[name]) for name in sorted(produced)]
 
 

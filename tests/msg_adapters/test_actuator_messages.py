@@ -1,29 +1,27 @@
 """What an actuator publishes: interface.md's table of topics, value by value."""
 
-from isa_ros.core.signals import SAMPLE
-from msg_adapters.actuator_messages import STATE_TOPICS, StateMessages
+from msg_adapters.actuator_messages import APPLIED_SETPOINT, STATE_TOPICS, TOPICS
 from msg_adapters.cdr_reader import decode, message_class
-import numpy as np
 import pytest
+from tests.messages import of_actuator, packed, VALUES
 
-T_NS = 2_000_000_003
-
-
-@pytest.fixture
-def sample():
-    """Return a row whose fields all differ, (1,): field k holds k + 1."""
-    return np.array([tuple(range(1, len(SAMPLE.names) + 1))], dtype=SAMPLE)
+T_NS, START_NS = 2_000_000_003, 1_000_000_009
+ROW = {value: float(k) for k, value in enumerate(VALUES, start=1)}
+"""Values of one actuator; all differ."""
 
 
-def published(sample, is_rotary):
+def sampled(field):
+    """Return a value of its sample."""
+    return ROW[f'sample {field}']
+
+
+def published(is_rotary=False):
     """Return the messages by topic suffix."""
-    return decoded(StateMessages([('hip', is_rotary)]).pack(sample, T_NS))
-
-
-def decoded(state):
-    """Return the messages of one actuator by topic suffix."""
-    return {suffix: decode(data, message_class(type_))
-            for (suffix, type_), data in zip(STATE_TOPICS, state, strict=True)}
+    prepared = of_actuator('hip', is_rotary)
+    types = dict(TOPICS)
+    return {suffix: decode(data, message_class(types[suffix]))
+            for suffix, data in zip(prepared, packed(
+                list(prepared.values()), list(ROW.values()), T_NS, START_NS), strict=True)}
 
 
 def columns(message):
@@ -37,63 +35,78 @@ def test_state_topics_come_sorted():
     assert topics == sorted(topics)
 
 
-def test_every_header_has_stamp_and_frame(sample):
-    for suffix, message in published(sample, False).items():
-        assert (message.header.stamp.sec, message.header.stamp.nanosec) == (2, 3), suffix
-        assert message.header.frame_id.startswith('hip'), suffix
+def test_every_topic_but_that_of_parameters_is_prepared():
+    """Tuned parameters are encoded as they come: their number varies."""
+    assert {'applied_parameters', *of_actuator('hip', False)} == {suffix for suffix, _ in TOPICS}
 
 
-def test_joint_state_is_encoder_estimate_and_measured_force(sample):
-    message = published(sample, False)['joint_states']
-    assert columns(message) == (
-        ['hip'], [sample['position']], [sample['velocity']], [sample['force']])
+@pytest.mark.parametrize('suffix', [suffix for suffix, _ in STATE_TOPICS])
+def test_every_state_has_stamp_and_frame(suffix):
+    header = published()[suffix].header
+    assert (header.stamp.sec, header.stamp.nanosec) == (2, 3)
+    assert header.frame_id.startswith('hip')
 
 
-def test_valve_is_spool_with_coil_current_and_supply(sample):
-    assert columns(published(sample, False)['valve']) == (
-        ['hip/spool', 'hip/supply'], [sample['spool'], sample['supply_volume']],
-        [sample['spool_velocity'], sample['supply_flow']], [sample['current'], 0.0])
+def test_joint_state_is_encoder_estimate_and_measured_force():
+    assert columns(published()['joint_states']) == (
+        ['hip'], [sampled('position')], [sampled('velocity')], [sampled('force')])
 
 
-def test_references_come_outermost_first(sample):
-    names, positions, velocities, efforts = columns(published(sample, False)['references'])
+def test_valve_is_spool_with_coil_current_and_supply():
+    assert columns(published()['valve']) == (
+        ['hip/spool', 'hip/supply'], [sampled('spool'), sampled('supply_volume')],
+        [sampled('spool_velocity'), sampled('supply_flow')], [sampled('current'), 0.0])
+
+
+def test_references_come_outermost_first():
+    names, positions, velocities, efforts = columns(published()['references'])
     loops = ('position', 'force', 'spool', 'current')
     assert names == [f'hip/{loop}' for loop in loops]
-    assert positions == [sample[f'{loop}_reference'] for loop in loops]
+    assert positions == [sampled(f'{loop}_reference') for loop in loops]
     assert velocities == efforts == [0.0] * 4
 
 
-def test_pressures_are_absolute(sample):
-    """Gauge + 101325 Pa, as sensor_msgs/FluidPressure demands."""
-    messages = published(sample, False)
-    for chamber in 'ab':
-        message = messages[f'pressure_{chamber}']
-        assert message.fluid_pressure == sample[f'pressure_{chamber}'] + 101325.0
-        assert message.header.frame_id == f'hip_pressure_{chamber}'
+@pytest.mark.parametrize('chamber', 'ab')
+def test_pressures_are_the_absolute_ones(chamber):
+    """As sensor_msgs/FluidPressure demands; the sample has them as gauge."""
+    message = published()[f'pressure_{chamber}']
+    assert message.fluid_pressure == ROW[f'absolute pressure_{chamber}']
+    assert message.header.frame_id == f'hip_pressure_{chamber}'
 
 
 @pytest.mark.parametrize('is_rotary, component', [(False, 'force.x'), (True, 'torque.z')])
-def test_load_cell_measures_along_the_rod_or_about_the_shaft(sample, is_rotary, component):
-    message = published(sample, is_rotary)['load_cell']
+def test_load_cell_measures_along_the_rod_or_about_the_shaft(is_rotary, component):
+    message = published(is_rotary)['load_cell']
     values = {f'{vector}.{axis}': getattr(getattr(message.wrench, vector), axis)
               for vector in ('force', 'torque') for axis in 'xyz'}
     assert message.header.frame_id == 'hip_load_cell'
-    assert values.pop(component) == sample['force']
+    assert values.pop(component) == sampled('force')
     assert set(values.values()) == {0.0}
 
 
-def test_same_sample_gives_the_same_bytes(sample):
-    state = StateMessages([('hip', False)]).pack(sample, T_NS)
-    assert StateMessages([('hip', False)]).pack(sample.copy(), T_NS) == state
+def test_what_was_applied_carries_the_tick_s_start():
+    """It was in force over the whole tick, at whose end it is published."""
+    message = published()[APPLIED_SETPOINT[0]]
+    assert (message.header.stamp.sec, message.header.stamp.nanosec) == (1, 9)
+    assert list(message.position) == [ROW[f'applied {field}'] for field in (
+        'position', 'stiffness', 'damping', 'is_enabled')]
 
 
-def test_actuators_together_say_what_each_says_alone(sample):
+def test_actuators_together_say_what_each_says_alone():
     """Names of unequal length, so that no message of the second stands where the first has it."""
-    other = sample.copy()
-    for k, field in enumerate(SAMPLE.names):
-        other[field] = -0.0 if k % 2 else 1e9 / (k + 1)
-    together = StateMessages([('hip', True), ('knee_left', False)]).pack(
-        np.concatenate((sample, other)), T_NS)
+    first, second = list(ROW.values()), [1e9 / (k + 1) * (-1.0) ** k for k in range(len(VALUES))]
+    together = packed(
+        [*of_actuator('hip', True).values(),
+         *of_actuator('knee_left', False, len(VALUES)).values()], first + second, T_NS, START_NS)
     assert together == [
-        *StateMessages([('hip', True)]).pack(sample, T_NS),
-        *StateMessages([('knee_left', False)]).pack(other, T_NS)]
+        *packed(list(of_actuator('hip', True).values()), first, T_NS, START_NS),
+        *packed(list(of_actuator('knee_left', False).values()), second, T_NS, START_NS)]
+    assert len(set(together)) == len(together)
+
+
+def test_every_value_but_the_gauge_pressures_is_published():
+    """Of these the absolute ones are."""
+    used = {column for _, fields in of_actuator('hip', False).values()
+            for column in fields.values() if column >= 0}
+    assert {value for k, value in enumerate(VALUES) if k not in used} == {
+        'sample pressure_a', 'sample pressure_b'}

@@ -7,10 +7,11 @@ from isa_ros.core.signals import COMMAND, HAS_ENABLE, HAS_SETPOINT
 from isa_ros.errors import SetpointError
 from msg_adapters.cdr import encode
 from msg_adapters.cdr_reader import decode
-from msg_adapters.setpoint import applied_to_command, AppliedSetpoint, msg_to_command
+from msg_adapters.setpoint import applied_to_command, msg_to_command
 import numpy as np
 import pytest
 from sensor_msgs.msg import JointState
+from tests.messages import applied_setpoint
 
 finite = st.floats(allow_nan=False, allow_infinity=False)
 positive = st.floats(0.0, allow_infinity=False)
@@ -87,14 +88,14 @@ def test_malformed_setpoint_is_refused(message, said):
 def test_applied_setpoint_comes_back_bit_for_bit(t_ns, **values):
     """Replay feeds the recorded applied setpoints, so the round trip must be exact."""
     row = command(kinds=HAS_SETPOINT | HAS_ENABLE, **values)
-    data = AppliedSetpoint('hip').pack(row, t_ns)
+    data = applied_setpoint('hip', row, t_ns)
     assert applied_to_command(data, 'hip').tobytes() == row.tobytes()
 
 
 def test_applied_setpoint_names_all_that_took_effect():
     row = command(position=0.5, velocity=1.0, effort=2.0, stiffness=300.0, damping=20.0,
                   is_enabled=1)
-    message = decode(AppliedSetpoint('hip').pack(row, 3_000_000_004), JointState)
+    message = decode(applied_setpoint('hip', row, 3_000_000_004), JointState)
     assert message.name == ['hip', 'hip/stiffness', 'hip/damping', 'hip/enabled']
     assert list(message.position) == [0.5, 300.0, 20.0, 1.0]
     assert list(message.velocity) == [1.0, 0.0, 0.0, 0.0]
@@ -104,13 +105,13 @@ def test_applied_setpoint_names_all_that_took_effect():
 
 
 def test_applied_setpoint_of_another_actuator_is_refused():
-    data = AppliedSetpoint('knee').pack(command(), 0)
+    data = applied_setpoint('knee', command(), 0)
     with pytest.raises(SetpointError, match="hip: applied setpoint names .'knee'"):
         applied_to_command(data, 'hip')
 
 
 def test_applied_enable_is_zero_or_one():
-    message = decode(AppliedSetpoint('hip').pack(command(), 0), JointState)
+    message = decode(applied_setpoint('hip', command(), 0), JointState)
     message.position[3] = 0.5
     with pytest.raises(SetpointError, match='hip/enabled = 0.5, must be 0.0 or 1.0'):
         applied_to_command(encode(message), 'hip')

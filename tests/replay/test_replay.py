@@ -8,9 +8,10 @@ from isa_ros.bag.writer import BagWriter
 from isa_ros.cli.main import main
 from isa_ros.config.run_config import RunConfig
 from isa_ros.replay.replay import recorded_inputs, replay, Rerun
-from msg_adapters.setpoint import applied_to_command, AppliedSetpoint
+from msg_adapters.setpoint import applied_to_command
 import pytest
 from tests.bag.golden import GOLDEN as GOLDEN_BAGS, rewrite
+from tests.messages import applied_setpoint
 
 GOLDEN = GOLDEN_BAGS / 'leg_touchdown'
 CHANGED = '/kfe/applied_setpoint'
@@ -34,7 +35,7 @@ def one_percent_more(topic: str, sequence: int, data: bytes) -> bytes:
         return data
     command = applied_to_command(data, 'kfe')
     command['effort'] *= 1.01
-    return AppliedSetpoint('kfe').pack(command, EFFORT_TICK * 1_000_000)
+    return applied_setpoint('kfe', command, EFFORT_TICK * 1_000_000)
 
 
 def test_recorded_commands_take_effect_at_their_ticks():

@@ -1,4 +1,4 @@
-"""The barrier and the run, with fakes for actuators, load and recorder."""
+"""The barrier and the run, with fakes for actuators, surroundings and recorder."""
 
 from collections.abc import Callable, Sequence
 import itertools
@@ -7,19 +7,24 @@ from isa_ros.core.saved_state import RunState
 from isa_ros.core.signals import HAS_SETPOINT
 from isa_ros.errors import ConfigError, RunError, SimulationDiverged
 from isa_ros.run.coordinator import Coordinator, Interrupted, Plan
-from isa_ros.run.exchange import Messages, Records, Rows
+from isa_ros.run.exchange import Records, Rows
+from isa_ros.run.narrator import Narrator, Outlets, topics_of
 from isa_ros.run.pacing import Pace, ProgressMeter
-from isa_ros.run.topics import Order
+from isa_ros.run.packing import Messages
+from isa_ros.surroundings.supply import SUPPLY_SAMPLE
+from msg_adapters import event
+from msg_adapters.cdr_reader import decode
 import numpy as np
 import pytest
+from rosgraph_msgs.msg import Clock
+from tests.runs import hip_and_knee
 
 STEP_NS = 1_000_000
-TOPICS = [['/b/state', '/b/applied'], ['/a/state'], ['/clock'], ['/supply']]
-EVENTS = '/events'
+RUN = hip_and_knee()
 
 
 class FakeTransport:
-    """Two participants that answer with the tick; the first applies something at tick 1."""
+    """Two participants whose position is the tick; the first applies something at tick 1."""
 
     def __init__(self, log: list[str]) -> None:
         self.log = log
@@ -28,39 +33,29 @@ class FakeTransport:
         self.asks_at = -1
         self.tick = 0
 
-    def join(self, rows: Rows) -> Sequence[Messages]:
-        return self._answers(0)
+    def join(self, rows: Rows) -> None:
+        self._answer(0, rows)
 
-    def restore(
-            self, tick: int, snapshots: Sequence[bytes], rows: Rows) -> Sequence[Messages]:
+    def restore(self, tick: int, snapshots: Sequence[bytes], rows: Rows) -> None:
         self.log.append(f'restore {tick} {snapshots}')
-        return self._answers(tick)
+        self._answer(tick, rows)
 
     def begin(self) -> None:
         self.log.append('begin')
-
-    def publish_clock(self, clock: bytes) -> None:
-        self.log.append(f'clock {clock.decode()}')
-
-    def publish_event(self, event: bytes) -> None:
-        self.log.append(event.decode())
 
     def send(self, tick: int, rows: Rows) -> None:
         self.tick = tick
         self.log.append(
             f'send {tick} x0={rows.ports["x0"][0]:g} kinds={rows.commands["kinds"].tolist()}')
 
-    def receive(self, rows: Rows) -> Sequence[Messages]:
+    def receive(self, rows: Rows) -> None:
         if self.tick == self.fails_at and self.failure is not None:
             raise self.failure
         self.log.append(f'receive {self.tick}')
         rows.replies['force'] = self.tick
         if self.tick == self.asks_at:
             rows.requests[0] = (HAS_SETPOINT, 0, 0.5, 0.0, 0.0, np.nan, np.nan)
-        return self._answers(self.tick + 1)
-
-    def publish(self, messages: Messages) -> None:
-        self.log.append('publish')
+        self._answer(self.tick + 1, rows)
 
     def idle(self) -> None:
         self.log.append('idle')
@@ -68,42 +63,33 @@ class FakeTransport:
     def snapshots(self) -> list[bytes]:
         return [b'b', b'a']
 
-    def _answers(self, sequence: int) -> Sequence[Messages]:
-        applied = b'applied' if sequence in (0, 2) else None
-        return [[b'b%d' % sequence, applied], [b'a%d' % sequence]]
+    def _answer(self, sequence: int, rows: Rows) -> None:
+        rows.samples['position'] = sequence
+        rows.applied['kinds'][0] = HAS_SETPOINT if sequence in (0, 2) else 0
+        rows.tuned = {1: {'force.kp': 1e-7}} if sequence == 2 else {}
 
 
-class FakeLoad:
-    """A load whose position counts the ticks."""
+class FakeSurroundings:
+    """Surroundings whose position and pressure count the ticks."""
+
+    body = None
 
     def __init__(self, log: list[str]) -> None:
         self.log = log
-        self.x0 = 0
+        self.supplies = np.zeros(1, SUPPLY_SAMPLE)
 
     def ports(self, ports: Records) -> None:
-        ports['x0'] = self.x0
+        ports['x0'] = self.supplies['pressure']
 
     def advance(self, replies: Records) -> None:
         self.log.append(f'advance {replies["force"][0]:g}')
-        self.x0 += 1
-
-    def show(self, shared: Records) -> None:
-        self.log.append('show')
-
-    def messages(self, t_ns: int) -> Messages:
-        return (b'supply%d' % t_ns,)
-
-    def clock(self, t_ns: int) -> bytes:
-        return b'%d' % t_ns
-
-    def event(self, t_ns: int, text: str) -> bytes:
-        return f'{text} at {t_ns}'.encode()
+        self.supplies['pressure'] += 1.0
 
     def snapshot(self) -> bytes:
-        return b'%d' % self.x0
+        return self.supplies.tobytes()
 
     def restore(self, snapshot: bytes) -> None:
-        self.x0 = int(snapshot)
+        self.supplies[:] = np.frombuffer(snapshot, SUPPLY_SAMPLE)
 
 
 class FakeRecorder:
@@ -119,8 +105,28 @@ class FakeRecorder:
         self.samples.append((t_ns, sequence, list(messages)))
 
 
+class FakeOutlet:
+    """Writes down what is published."""
+
+    def __init__(self, log: list[str], line: Callable[[bytes], str]) -> None:
+        self.log, self.line = log, line
+
+    def is_heard(self) -> bool:
+        return True
+
+    def send(self, messages: Messages) -> None:
+        data = messages[0]
+        assert data is not None
+        self.log.append(self.line(data))
+
+
+def clock_line(data: bytes) -> str:
+    time = decode(data, Clock).clock
+    return f'clock {time.sec * 10**9 + time.nanosec}'
+
+
 class Rig:
-    """One coordinator with its fakes."""
+    """One coordinator with its fakes, and the narrator of a run."""
 
     def __init__(
             self, n_ticks: int | None = 3, pace: Pace | None = None, **plan: bool) -> None:
@@ -130,11 +136,16 @@ class Rig:
         self.recorder = FakeRecorder(self.log)
         self.stops_at: int | None = None
         self.looks = 0
-        self.rows, self.load = Rows(2), FakeLoad(self.log)
-        self.order = Order(TOPICS, EVENTS)
+        surroundings = FakeSurroundings(self.log)
+        self.rows = Rows(2, surroundings)
+        self.topics = [topic.name for topic in topics_of(RUN, self.rows.shown)]
+        narrator = Narrator(RUN, self.rows.shown, self.recorder, Outlets(
+            clock=FakeOutlet(self.log, clock_line),
+            events=FakeOutlet(self.log, lambda data: f'event {event.text(data)}'),
+            surroundings=FakeOutlet(self.log, lambda data: 'publish')))
         self.coordinator = Coordinator(
             Plan(step_ns=STEP_NS, rows=self.rows, n_ticks=n_ticks, commands=self.command, **plan),
-            self.order, self.transport, self.load, self.recorder,
+            self.transport, surroundings, narrator,
             pace=pace or Pace(), progress=ProgressMeter(None, None), should_stop=self.should_stop,
             requests=self.ask)
 
@@ -150,7 +161,20 @@ class Rig:
         return self.coordinator.ticks == self.stops_at
 
     def run(self, state: RunState | None = None) -> None:
-        self.coordinator.run(self.transport.join(self.rows), state)
+        self.transport.join(self.rows)
+        self.coordinator.run(state)
+
+    @property
+    def events(self) -> dict[int, list[str]]:
+        """Return the recorded events by sequence, each stamped with its instant."""
+        place, said = self.topics.index('/coordinator/events'), {}
+        for t_ns, sequence, messages in self.recorder.samples:
+            own = [data for topic, data in messages if topic == place]
+            texts = [event.text(data) for data in own]
+            assert own == [event.pack(t_ns, text) for text in texts]
+            if texts:
+                said[sequence] = texts
+        return said
 
     @property
     def sequences(self) -> list[int]:
@@ -177,20 +201,17 @@ def test_order_of_a_tick():
         'record 2']
 
 
-def test_sample_is_in_canonical_order():
-    """Topics sorted by name, whatever the order of the participants; absent ones left out."""
+def test_every_sample_is_of_its_own_instant():
+    """The clock in it, what was applied at its tick's start, and what was tuned then."""
     rig = Rig(2)
     rig.run()
-    assert rig.order.topics == (
-        '/a/state', '/b/applied', '/b/state', '/clock', '/events', '/supply')
-    assert rig.recorder.samples[1][2] == [
-        (0, b'a1'), (2, b'b1'), (3, b'1000000'), (5, b'supply1000000')]
-    assert rig.recorder.samples[2][2][1] == (1, b'applied')
-
-
-def test_a_topic_has_one_source():
-    with pytest.raises(ValueError, match='two sources'):
-        Order([['/clock'], ['/clock']], EVENTS)
+    said = [{rig.topics[k]: data for k, data in messages}
+            for _, _, messages in rig.recorder.samples]
+    assert [clock_line(own['/clock']) for own in said] == ['clock 0', 'clock 1000000',
+                                                           'clock 2000000']
+    assert ['/hip/applied_setpoint' in own for own in said] == [True, False, True]
+    assert ['/knee/applied_parameters' in own for own in said] == [False, False, True]
+    assert [sorted(own) == list(own) for own in said] == [True] * 3
 
 
 def test_stop_finishes_the_tick_and_records_it():
@@ -237,14 +258,6 @@ def test_what_a_controller_asks_for_takes_effect_once_at_the_next_tick():
         'send 0 x0=0 kinds=[0, 0]', 'send 1 x0=1 kinds=[1, 1]', 'send 2 x0=2 kinds=[0, 2]']
 
 
-def test_only_controllers_are_shown_the_shared_load():
-    rig, controlled = Rig(1), Rig(1, has_controllers=True)
-    rig.run()
-    controlled.run()
-    assert 'show' not in rig.log
-    assert controlled.log.index('show') < controlled.log.index('send 0 x0=0 kinds=[0, 0]')
-
-
 def test_a_paused_run_ticks_only_when_stepped():
     """Paused after a tick, two steps, then on to the end; each recorded where it was done."""
     rig = Rig(5)
@@ -255,11 +268,9 @@ def test_a_paused_run_ticks_only_when_stepped():
     idles = [k for k, line in enumerate(rig.log) if line == 'idle']
     sends = [k for k, line in enumerate(rig.log) if line.startswith('send')]
     assert [sum(idle < send for idle in idles) for send in sends] == [0, 2, 2, 4, 4]
-    events = {sequence: [data for topic, data in messages if topic == 4]
-              for _, sequence, messages in rig.recorder.samples}
-    assert events == {
-        0: [], 1: [b'pause at 1000000', b'step 2 at 1000000'], 2: [],
-        3: [b'resume at 3000000'], 4: [], 5: []}
+    assert rig.events == {1: ['pause', 'step 2'], 3: ['resume']}
+    assert [line for line in rig.log if line.startswith('event')] == [
+        'event pause', 'event step 2', 'event resume']
 
 
 def test_a_step_is_refused_unless_paused():
@@ -298,7 +309,7 @@ def test_a_reset_ends_the_run_where_it_is():
     rig.run()
     assert rig.coordinator.is_reset
     assert rig.sequences == [0, 1, 2]
-    assert rig.recorder.samples[2][2][-2] == (4, b'reset at 2000000')
+    assert rig.events == {2: ['reset']}
 
 
 def test_a_saved_run_goes_on_where_it_was():

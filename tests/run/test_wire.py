@@ -1,10 +1,12 @@
 """The private wire: what is encoded is decoded, and is what the message type says."""
 
 from hypothesis import given, strategies
-from isa_ros.core.signals import START
+from isa_ros.core.signals import COMMAND, LOAD_REPLY, SAMPLE, START
 from isa_ros.errors import RunError
 from isa_ros.run import wire
 from isa_ros.run.exchange import Rows
+from isa_ros.surroundings.leg.port_kernel import LEG_SAMPLE
+from isa_ros.surroundings.supply import SUPPLY_SAMPLE
 import numpy as np
 import pytest
 from rclpy.serialization import deserialize_message
@@ -19,27 +21,68 @@ def rows(dtype: np.dtype, n: int) -> np.ndarray:
     return np.frombuffer(bytes(k % 251 for k in range(n * dtype.itemsize)), dtype).copy()
 
 
-def filled(n: int) -> Rows:
+class Shows:
+    """A body of which only its sample matters."""
+
+    def __init__(self, record: np.dtype) -> None:
+        self.sample = rows(record, 1)
+
+
+class Outside:
+    """Surroundings of which only what they show matters."""
+
+    def __init__(self, n_supplies: int, body: np.dtype | None) -> None:
+        self.supplies = rows(SUPPLY_SAMPLE, n_supplies)
+        self.body = None if body is None else Shows(body)
+
+
+def filled(n: int, n_supplies: int = 1, body: np.dtype | None = LEG_SAMPLE) -> Rows:
     """Return an exchange of ``n`` actuators whose bytes all differ."""
-    made = Rows(n)
+    made = Rows(n, Outside(n_supplies, body))
     for name in ('ports', 'commands', 'samples'):
         getattr(made, name)[:] = rows(getattr(made, name).dtype, n)
-    made.shared[:] = rows(made.shared.dtype, 1)
     return made
 
 
-@given(RUN_IDS, TICKS, strategies.integers(0, 12), strategies.booleans())
-def test_step_round_trip(run_id, tick, n, has_controllers):
+def cast(n_supplies: int = 1, body: np.dtype | None = LEG_SAMPLE) -> wire.Cast:
+    """Return who takes part beside ``n_supplies`` supplies and a body."""
+    return wire.Cast(
+        ['haa', 'kfe', 'controller'], [f'supply_{k}' for k in range(n_supplies)], body)
+
+
+@given(RUN_IDS, TICKS, strategies.integers(0, 12))
+def test_step_round_trip(run_id, tick, n):
     """Every row of every record type arrives bit for bit, NaN included."""
     sent = filled(n)
-    step = wire.decode_step(wire.encode_tick(run_id, tick, sent, has_controllers))
+    step = wire.decode_step(wire.encode_tick(run_id, tick, sent, has_controllers=False))
     assert (step.kind, step.run_id, step.tick) == (wire.StepKind.TICK, run_id, tick)
     for k in range(n):
         assert step.port(k).tobytes() == sent.ports[k].tobytes()
         assert step.command(k).tobytes() == sent.commands[k].tobytes()
-    if has_controllers:
-        assert step.samples().tobytes() == sent.samples.tobytes()
-        assert step.shared().tobytes() == sent.shared.tobytes()
+
+
+@given(strategies.integers(0, 5), strategies.integers(1, 3), strategies.booleans())
+def test_controllers_are_shown_samples_supplies_and_body(n, n_supplies, has_body):
+    """In one step with the rows of the actuators; nothing is applied there."""
+    body = LEG_SAMPLE if has_body else None
+    sent = filled(n, n_supplies, body)
+    step = wire.decode_step(wire.encode_tick(1, 2, sent, has_controllers=True))
+    shown = step.shown(cast(n_supplies, body))
+    assert shown.samples.tobytes() == sent.samples.tobytes()
+    assert shown.supplies.tobytes() == sent.supplies.tobytes()
+    assert (None if shown.body is None else shown.body.tobytes()) == (
+        None if sent.body is None else sent.body.tobytes())
+    assert shown.applied['kinds'].tolist() == [0] * n
+    assert [step.port(k).tobytes() for k in range(n)] == [port.tobytes() for port in sent.ports]
+
+
+def test_without_controllers_nothing_is_shown():
+    """A tick is as short as its ports and commands."""
+    alone = filled(2)
+    size = alone.ports.nbytes + alone.commands.nbytes
+    shown = alone.samples.nbytes + alone.supplies.nbytes + alone.body.nbytes
+    assert len(wire.decode_step(wire.encode_tick(1, 2, alone, False)).body) == size
+    assert len(wire.decode_step(wire.encode_tick(1, 2, alone, True)).body) == size + shown
 
 
 @given(strategies.lists(strategies.binary(max_size=300), min_size=1))
@@ -49,15 +92,36 @@ def test_restore_round_trip(snapshots):
     assert [step.snapshot(k) for k in range(len(snapshots))] == snapshots
 
 
-def test_hello_round_trip():
+@pytest.mark.parametrize('body', [None, LEG_SAMPLE])
+def test_hello_round_trip(body):
     """More names than actuators: a controller takes part without a row."""
-    starts = rows(START, 2)
-    step = wire.decode_step(wire.encode_hello(
-        7, 3, 2_000_000, starts, ['haa', 'kfe', 'controller']))
+    starts, everyone = rows(START, 2), cast(2, body)
+    step = wire.decode_step(wire.encode_hello(7, 3, 2_000_000, starts, everyone))
     assert (step.kind, step.run_id, step.tick) == (wire.StepKind.HELLO, 7, 3)
-    assert step.names() == ['haa', 'kfe', 'controller']
+    assert step.cast() == everyone
     assert (step.rows, step.step_ns()) == (2, 2_000_000)
     assert step.start(1).tobytes() == starts[1].tobytes()
+
+
+@pytest.mark.parametrize('tuned', [{}, {'force.kp': 1e-7, 'force.kf': 1.0 / 3.0}])
+def test_the_parts_of_an_actuator_fill_its_row_alone(tuned):
+    """Its three rows bit for bit, and the parameters that changed; what others said stays."""
+    reply, sample, applied = rows(LOAD_REPLY, 1), rows(SAMPLE, 1), rows(COMMAND, 1)
+    parts = wire.actuator_parts(reply, sample, applied, tuned)
+    taken = filled(3)
+    before = taken.samples.tobytes()
+    taken.tuned = {0: {'spool.kp': 2.0}}
+    answer = wire.decode_answer(wire.encode_answer(wire.AnswerKind.DONE, 1, 2, 1, parts))
+    wire.take_actuator_parts(answer.parts, 1, taken)
+    assert taken.replies[1].tobytes() == reply.tobytes()
+    assert taken.samples[1].tobytes() == sample.tobytes()
+    assert taken.applied[1].tobytes() == applied.tobytes()
+    assert taken.tuned == {0: {'spool.kp': 2.0}} | ({1: tuned} if tuned else {})
+    size = SAMPLE.itemsize
+    for k in (0, 2):
+        assert taken.samples[k].tobytes() == before[k * size:(k + 1) * size]
+        assert not taken.replies[k].tobytes().strip(b'\0')
+        assert not taken.applied[k].tobytes().strip(b'\0')
 
 
 @given(RUN_IDS, TICKS, strategies.lists(strategies.none() | strategies.binary(max_size=300)),

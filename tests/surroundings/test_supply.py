@@ -1,4 +1,7 @@
-"""Supply: capacitance, steady state, refusal of one that is too small."""
+"""Supply: capacitance, steady state, closure of both oil balances, what is refused."""
+
+from dataclasses import replace
+import math
 
 from isa_ros.core.units import LPM
 from isa_ros.errors import ParameterError
@@ -12,6 +15,8 @@ SHEET = supply.AccumulatorSupply(
     pump_lag_s=0.03, pump_band_mpa=0.5, relief_mpa=22.5, relief_lpm_per_mpa=24.0)
 MS = 1_000_000
 SLOPE = 2e-12  # m3/s/Pa, of three valves wide open
+LINE = supply.VolumeReturn(oil_volume_l=10.0, bulk_modulus=1e9, tank_lpm_per_mpa=12.0)
+C_LINE, G_TANK = 10e-3 / 1e9, 12.0 * LPM / 1e6  # a time constant of 50 ms
 
 
 def test_capacitance_is_the_slope_of_the_gas_volume():
@@ -30,7 +35,7 @@ def test_capacitance_is_the_slope_of_the_gas_volume():
 def test_an_empty_accumulator_leaves_the_line():
     """C7 below precharge."""
     record = supply.supply_record(SHEET)[0]
-    assert supply.capacitance(5e6, record) == pytest.approx(0.2e-3 / 7e8, rel=1e-15, abs=0.0)
+    assert supply.capacitance(5e6, record) == pytest.approx(0.2e-3 / 7e8, rel=1e-12, abs=0.0)
 
 
 def test_pump_settles_where_it_delivers_what_is_drawn():
@@ -49,12 +54,80 @@ def test_relief_valve_takes_what_is_pushed_back():
     assert plant.pressure == pytest.approx(22.5e6 + 0.25e6, abs=1.0)
 
 
+def gas_volume(pressure: float) -> float:
+    """Return the gas of the accumulator by its gas law, m3."""
+    return 0.32e-3 * (12.1013250e6 / (pressure + supply.ATMOSPHERE)) ** (1.0 / 1.4)
+
+
+def test_what_the_pump_gives_is_drawn_or_stored():
+    """C8: pumped - drawn = gas displaced + oil compressed, over half a second of changing flow."""
+    plant = supply.Supply(SHEET, MS, SLOPE)
+    first, pumped, before = plant.pressure, 0.0, 0.0
+    pressures = []
+    for tick in range(500):
+        plant.advance((3.0 + 3.0 * math.sin(0.05 * tick)) * LPM * 1e-3)
+        pumped += 0.5e-3 * (before + float(plant.state['pump_flow'][0]))
+        before = float(plant.state['pump_flow'][0])
+        pressures.append(plant.pressure)
+    assert 12e6 < min(pressures) < max(pressures) < 22.5e6  # not empty, relief valve closed
+    stored = gas_volume(first) - gas_volume(plant.pressure) + (
+        0.2e-3 / 7e8) * (plant.pressure - first)
+    # The trapezoids of the pump's flow err by T h^2/12 max|Q''|. With dQ/dt <= q_max/lag = 7e-3
+    # and a demand that changes by at most q_max/band q_max/C = 1e-2 m3/s2, Q'' <= 0.6 m3/s3.
+    assert pumped - float(plant.state['drawn'][0]) == pytest.approx(stored, rel=0.0, abs=2.5e-8)
+    assert float(plant.state['drawn'][0]) > 2e-5
+
+
 def test_a_constant_supply_stays():
-    """The ideal supply."""
+    """The ideal supply; it counts the oil nevertheless."""
     plant = supply.Supply(
-        supply.ConstantSupply(pressure_mpa=20.7, return_pressure_mpa=0.1), MS, SLOPE)
-    plant.advance(1.0)
-    assert (plant.pressure, plant.return_pressure) == pytest.approx((20.7e6, 0.1e6))
+        supply.ConstantSupply(pressure_mpa=20.7, return_pressure_mpa=0.5), MS, SLOPE)
+    assert plant.is_constant
+    for drawn, returned in ((1.0, 0.25), (0.5, 0.125)):
+        plant.advance(drawn, returned)
+    assert (plant.pressure, plant.return_pressure) == (20.7e6, 0.5e6)
+    assert (plant.state['drawn'][0], plant.state['returned'][0]) == (1.5, 0.375)
+
+
+@pytest.mark.parametrize('sheet', [
+    supply.ConstantSupply(pressure_mpa=20.7, return_pressure_mpa=0.5, return_line=LINE),
+    replace(SHEET, return_pressure_mpa=0.5, return_line=LINE)], ids=['constant', 'accumulator'])
+def test_a_return_line_settles_where_the_tank_takes_what_comes(sheet):
+    """C9: P_tank + Q/G, 0.5 MPa above the tank at 6 l/min; what is drawn does not matter."""
+    plant = supply.Supply(sheet, MS, SLOPE)
+    assert not plant.is_constant
+    for _ in range(2000):  # 40 time constants: 4e-18 of the step is left
+        plant.advance(5.0 * LPM * 1e-3, 6.0 * LPM * 1e-3)
+    assert plant.return_pressure == pytest.approx(0.5e6 + 6.0 * LPM / G_TANK, rel=1e-9)
+    for _ in range(2000):
+        plant.advance(5.0 * LPM * 1e-3, 0.0)
+    assert plant.return_pressure == pytest.approx(0.5e6, rel=1e-9)
+
+
+def test_a_return_line_rises_with_its_time_constant():
+    """C9: P_tank + Q/G (1 - exp(-G t/C)); RK4 errs by (h G/C)^4/120 = 1e-13 of it."""
+    plant = supply.Supply(
+        supply.ConstantSupply(pressure_mpa=20.7, return_pressure_mpa=0.5, return_line=LINE),
+        MS, SLOPE)
+    for tick in range(1, 101):
+        plant.advance(0.0, 6.0 * LPM * 1e-3)
+        rise = 6.0 * LPM / G_TANK * (1.0 - math.exp(-G_TANK * tick * 1e-3 / C_LINE))
+        assert plant.return_pressure == pytest.approx(0.5e6 + rise, rel=1e-9)
+
+
+@pytest.mark.parametrize(('line', 'message'), [
+    # C/slope: 1e-15 m3/Pa over 2e-12 m3/s/Pa
+    (replace(LINE, oil_volume_l=1e-3), 'capacitance of the return line over flow slope = 0.5 ms, '
+     'must be >= 10 ms (ten ticks); enlarge return_line.oil_volume_l'),
+    # C/G: 1e-11 m3/Pa over 1.7e-7 m3/s/Pa
+    (replace(LINE, tank_lpm_per_mpa=1e4), 'time constant of the return line = 0.06 ms, must be '
+     '>= 0.1 ms; reduce return_line.tank_lpm_per_mpa')])
+def test_a_return_line_that_cannot_be_integrated_is_refused(line, message):
+    """By the name of its supply, with both numbers and the key."""
+    sheet = supply.ConstantSupply(pressure_mpa=20.7, return_pressure_mpa=0.5, return_line=line)
+    with pytest.raises(ParameterError) as refused:
+        supply.Supply(sheet, MS, SLOPE, name='main')
+    assert str(refused.value) == f'main: {message}'
 
 
 def test_a_supply_too_small_for_the_tick_is_refused_with_both_numbers():
@@ -70,3 +143,14 @@ def test_compiled_rates_equal_their_python_source():
     for pressure in np.linspace(1e6, 23e6, 200):
         assert supply.supply_rates(pressure, 1e-4, 5e-5, row) == \
             supply.supply_rates.py_func(pressure, 1e-4, 5e-5, row)
+
+
+def test_a_compiled_return_line_equals_its_python_source():
+    line = supply.return_record(LINE, 0.5e6).view(np.recarray)
+    ends = []
+    for advance in (supply.return_advance, supply.return_advance.py_func):
+        state = np.zeros(1, supply.SUPPLY_SAMPLE).view(np.recarray)
+        for tick in range(50):
+            advance(10, 1e-5 * tick, line, state)
+        ends.append(state.tobytes())
+    assert ends[0] == ends[1]

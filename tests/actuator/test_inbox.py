@@ -1,0 +1,156 @@
+"""Commands on their way: what waits, what it changes, and what is noted of it."""
+
+import math
+
+from hypothesis import given, strategies as st
+from isa_ros.actuator import inbox
+from isa_ros.core.signals import COMMAND, HAS_ENABLE, HAS_GAINS, HAS_SETPOINT
+from isa_ros.reu.cascade import REU_STATE
+import numpy as np
+import pytest
+
+EVERYTHING = HAS_SETPOINT | HAS_ENABLE | HAS_GAINS
+NUMBERS = st.floats(-1e6, 1e6)
+GAINS = st.just(math.nan) | st.floats(0.0, 1e6)
+COMMANDS = st.tuples(
+    st.integers(0, EVERYTHING), st.integers(0, 1), NUMBERS, NUMBERS, NUMBERS, GAINS, GAINS)
+
+
+def row(*values: float) -> np.record:
+    """Return a `COMMAND` with its fields as attributes; without values, of no kind."""
+    rows = np.zeros(1, COMMAND)
+    if values:
+        rows[0] = values
+    return rows.view(np.recarray)[0]
+
+
+def reu_at(position: float, is_enabled: float = 1.0) -> np.record:
+    """Return a `REU_STATE` that measures a position and has a setpoint in force."""
+    reu = np.zeros(1, REU_STATE).view(np.recarray)[0]
+    reu.measured.position = position
+    setpoint = reu.setpoint
+    setpoint.position, setpoint.velocity, setpoint.effort = 0.04, 0.5, 20.0
+    setpoint.stiffness, setpoint.damping, setpoint.is_enabled = 300.0, 20.0, is_enabled
+    return reu
+
+
+def merged(*commands: np.record) -> np.record:
+    """Return what waits after these commands."""
+    pending = row()
+    for command in commands:
+        inbox.merge(command, pending)
+    return pending
+
+
+def latched(pending: np.record, reu: np.record) -> np.record:
+    """Let what waits take effect and return what is noted of it."""
+    applied = row()
+    inbox.latch(pending, reu, applied)
+    return applied
+
+
+def in_force(reu: np.record) -> list[float]:
+    """Return position, velocity, effort, stiffness, damping and whether it is enabled."""
+    own = reu.setpoint
+    return [own.position, own.velocity, own.effort, own.stiffness, own.damping, own.is_enabled]
+
+
+def test_of_two_setpoints_the_last_wins():
+    pending = merged(row(HAS_SETPOINT, 0, 0.01, 1.0, 10.0, 100.0, 5.0),
+                     row(HAS_SETPOINT, 0, 0.02, 2.0, 20.0, 200.0, 6.0))
+    assert pending.item() == (HAS_SETPOINT, 0, 0.02, 2.0, 20.0, 200.0, 6.0)
+
+
+def test_a_gain_that_is_left_out_keeps_the_one_that_waits():
+    pending = merged(row(HAS_SETPOINT, 0, 0.01, 0.0, 0.0, 100.0, math.nan),
+                     row(HAS_SETPOINT, 0, 0.02, 0.0, 0.0, math.nan, 6.0))
+    assert (pending.position, pending.stiffness, pending.damping) == (0.02, 100.0, 6.0)
+
+
+def test_gains_and_an_enable_that_wait_are_not_lost_to_a_setpoint():
+    """Kinds add up; each keeps what it brought."""
+    pending = merged(row(HAS_ENABLE, 1, 0.0, 0.0, 0.0, math.nan, math.nan),
+                     row(HAS_GAINS, 0, 0.0, 0.0, 0.0, 100.0, math.nan),
+                     row(HAS_SETPOINT, 0, 0.02, 2.0, 20.0, math.nan, math.nan))
+    kinds, is_enabled, position, velocity, effort, stiffness, damping = pending.item()
+    assert kinds == EVERYTHING
+    assert (is_enabled, position, velocity, effort, stiffness) == (1, 0.02, 2.0, 20.0, 100.0)
+    assert math.isnan(damping)
+
+
+def test_gains_that_waited_for_an_earlier_tick_are_not_taken_again():
+    """The first command after a tick begins anew, though the row still holds old numbers."""
+    pending = merged(row(HAS_SETPOINT, 0, 0.01, 0.0, 0.0, 100.0, 5.0))
+    latched(pending, reu_at(0.03))
+    inbox.merge(row(HAS_SETPOINT, 0, 0.02, 0.0, 0.0, math.nan, math.nan), pending)
+    assert math.isnan(pending.stiffness) and math.isnan(pending.damping)
+
+
+def test_a_gain_that_is_nan_keeps_the_one_in_force():
+    reu = reu_at(0.03)
+    applied = latched(merged(row(HAS_SETPOINT, 0, 0.02, 2.0, 5.0, math.nan, 6.0)), reu)
+    assert in_force(reu) == [0.02, 2.0, 5.0, 300.0, 6.0, 1.0]
+    assert applied.item() == (HAS_SETPOINT, 1, 0.02, 2.0, 5.0, 300.0, 6.0)
+
+
+def test_gains_alone_leave_the_setpoint():
+    reu = reu_at(0.03)
+    applied = latched(merged(row(HAS_GAINS, 0, 9.0, 9.0, 9.0, 150.0, math.nan)), reu)
+    assert in_force(reu) == [0.04, 0.5, 20.0, 150.0, 20.0, 1.0]
+    assert applied.item() == (HAS_GAINS, 1, 0.04, 0.5, 20.0, 150.0, 20.0)
+
+
+def test_enabled_anew_it_holds_where_it_is():
+    """The position measured last, at rest and without feed-forward; the gains stay."""
+    reu = reu_at(0.03, is_enabled=0.0)
+    applied = latched(merged(row(HAS_ENABLE, 1, 0.0, 0.0, 0.0, math.nan, math.nan)), reu)
+    assert in_force(reu) == [0.03, 0.0, 0.0, 300.0, 20.0, 1.0]
+    assert applied.item() == (HAS_ENABLE, 1, 0.03, 0.0, 0.0, 300.0, 20.0)
+
+
+def test_enabled_twice_it_keeps_its_setpoint():
+    reu = reu_at(0.03)
+    latched(merged(row(HAS_ENABLE, 1, 0.0, 0.0, 0.0, math.nan, math.nan)), reu)
+    assert in_force(reu) == [0.04, 0.5, 20.0, 300.0, 20.0, 1.0]
+
+
+def test_enabled_with_a_setpoint_it_goes_there():
+    reu = reu_at(0.03, is_enabled=0.0)
+    latched(merged(row(HAS_ENABLE | HAS_SETPOINT, 1, 0.05, 0.1, 0.0, math.nan, math.nan)), reu)
+    assert in_force(reu) == [0.05, 0.1, 0.0, 300.0, 20.0, 1.0]
+
+
+def test_disabled_it_keeps_its_setpoint_for_whoever_reads_it():
+    reu = reu_at(0.03)
+    latched(merged(row(HAS_ENABLE, 0, 0.0, 0.0, 0.0, math.nan, math.nan)), reu)
+    assert in_force(reu) == [0.04, 0.5, 20.0, 300.0, 20.0, 0.0]
+
+
+def test_where_nothing_waits_nothing_changes_or_is_noted():
+    reu, applied = reu_at(0.03), row(HAS_SETPOINT, 1, 1.0, 1.0, 1.0, 1.0, 1.0)
+    before = reu.tobytes()
+    inbox.latch(row(), reu, applied)
+    assert reu.tobytes() == before
+    assert applied.kinds == 0
+
+
+def test_what_took_effect_waits_no_longer():
+    pending = merged(row(EVERYTHING, 1, 0.05, 0.1, 0.0, 100.0, 5.0))
+    reu = reu_at(0.03)
+    assert latched(pending, reu).kinds == EVERYTHING
+    assert latched(pending, reu).kinds == 0
+
+
+@pytest.mark.parametrize('is_enabled', [0.0, 1.0])
+@given(commands=st.lists(COMMANDS, max_size=4))
+def test_compiled_commands_equal_their_python_source(is_enabled, commands):
+    """Merged one after the other, then latched: the same bytes."""
+    ends = []
+    for merge, latch in ((inbox.merge, inbox.latch), (inbox.merge.py_func, inbox.latch.py_func)):
+        pending, reu, applied = row(), reu_at(0.03, is_enabled), row()
+        for command in commands:
+            merge(row(*command), pending)
+        waiting = pending.tobytes()
+        latch(pending, reu, applied)
+        ends.append((waiting, pending.tobytes(), reu.tobytes(), applied.tobytes()))
+    assert ends[0] == ends[1]

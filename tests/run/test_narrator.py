@@ -1,0 +1,179 @@
+"""What a run tells, to whom, and what is not even packed."""
+
+from collections.abc import Sequence
+
+from isa_ros.actuator.group import ActuatorGroup
+from isa_ros.config.assembly import group_of, surroundings_of
+from isa_ros.core.signals import HAS_SETPOINT
+from isa_ros.run.exchange import Rows
+from isa_ros.run.narrator import Narrator, Outlets, packer_of, Silence, topics_of
+from isa_ros.run.packing import Messages, Packer
+from msg_adapters import clock, event
+import pytest
+from tests.runs import hip_and_knee
+
+RUN = hip_and_knee()
+STEP_NS = RUN.step_ns
+
+
+class FakeOutlet:
+    """Keeps what is published where it has a subscription."""
+
+    def __init__(self, log: list[str], name: str, has_subscription: bool) -> None:
+        self.log, self.name, self.has_subscription = log, name, has_subscription
+        self.sent: list[Messages] = []
+
+    def is_heard(self) -> bool:
+        return self.has_subscription
+
+    def send(self, messages: Messages) -> None:
+        self.log.append(self.name)
+        self.sent.append(list(messages))
+
+
+class FakeRecorder:
+    """Keeps what is recorded."""
+
+    def __init__(self, log: list[str]) -> None:
+        self.log = log
+        self.samples: list[tuple[int, int, list[tuple[int, bytes]]]] = []
+
+    def write_tick(
+            self, t_ns: int, sequence: int, messages: Sequence[tuple[int, bytes]]) -> None:
+        self.log.append('recorder')
+        self.samples.append((t_ns, sequence, list(messages)))
+
+
+class Stage:
+    """A narrator, with outlets of which some have a subscription."""
+
+    def __init__(self, *heard: str, is_recorded: bool = True) -> None:
+        self.log: list[str] = []
+        self.group: ActuatorGroup = group_of(RUN)
+        self.rows = Rows(2, surroundings_of(RUN))
+        self.rows.samples[:] = self.group.samples
+        self.outlets = {name: FakeOutlet(self.log, name, name in heard) for name in (
+            'clock', 'events', 'surroundings', 'hip', 'knee')}
+        self.recorder = FakeRecorder(self.log)
+        self.topics = [topic.name for topic in topics_of(RUN, self.rows.shown)]
+        self.narrator = Narrator(
+            RUN, self.rows.shown, self.recorder if is_recorded else None, Outlets(
+                clock=self.outlets['clock'], events=self.outlets['events'],
+                surroundings=self.outlets['surroundings'],
+                actuators=[self.outlets['hip'], self.outlets['knee']]))
+
+    def expected(self, tick: int, tuned=None) -> Packer:
+        """Return a packer of the run that has packed this instant."""
+        packer = packer_of(RUN, self.rows.shown)
+        packer.pack(tick * STEP_NS, max(0, (tick - 1) * STEP_NS), tuned or {})
+        return packer
+
+
+EVERYONE = ('clock', 'events', 'surroundings', 'hip', 'knee')
+
+
+@pytest.mark.parametrize('heard', [(), ('clock',), ('clock', 'events')])
+def test_nothing_is_packed_where_nothing_is_recorded_and_nobody_subscribes(heard, monkeypatch):
+    """Time and events are messages of their own, and not part of the rows."""
+    stage = Stage(*heard, is_recorded=False)
+
+    def pack(*arguments):
+        pytest.fail('rows were packed')
+    monkeypatch.setattr(Packer, 'pack', pack)
+    stage.narrator.say_time(1)
+    stage.narrator.note(1, 'step 1')
+    stage.narrator.take(1, {})
+    stage.narrator.record()
+    assert stage.log == list(heard)
+
+
+@pytest.mark.parametrize('listener', ['surroundings', 'hip', 'knee', None])
+def test_one_listener_or_the_recorder_is_enough_to_pack(listener, monkeypatch):
+    """And packs once."""
+    stage = Stage(*filter(None, [listener]), is_recorded=listener is None)
+    packed, pack = [], Packer.pack
+
+    def note(self, *arguments):
+        packed.append(arguments)
+        pack(self, *arguments)
+    monkeypatch.setattr(Packer, 'pack', note)
+    stage.narrator.take(3, {})
+    assert packed == [(3 * STEP_NS, 2 * STEP_NS, {})]
+
+
+def test_outlets_get_the_messages_of_their_own_sources():
+    """Each in the order of its topics, with what was applied and tuned at the tick's start."""
+    stage = Stage(*EVERYONE)
+    stage.rows.applied[1]['kinds'] = HAS_SETPOINT
+    tuned = {0: {'force.kp': 1e-7}}
+    stage.narrator.take(3, tuned)
+    expected = stage.expected(3, tuned)
+    assert stage.outlets['hip'].sent == [expected.of_actuator(0)]
+    assert stage.outlets['knee'].sent == [expected.of_actuator(1)]
+    assert stage.outlets['surroundings'].sent == [expected.of(expected.surroundings)]
+    assert stage.outlets['clock'].sent == stage.outlets['events'].sent == []
+
+
+@pytest.mark.parametrize('heard', EVERYONE)
+def test_nothing_is_sent_where_nobody_subscribes(heard):
+    """The recorder gets all of it nevertheless."""
+    stage = Stage(heard)
+    stage.narrator.say_time(1)
+    stage.narrator.note(1, 'step 1')
+    stage.narrator.take(1, {})
+    stage.narrator.record()
+    assert stage.log == [heard, 'recorder']
+    assert [sequence for _, sequence, _ in stage.recorder.samples] == [1]
+
+
+def test_the_time_is_said_before_the_rest_of_its_instant():
+    """As a coordinator calls it: time, then the rows, then the record."""
+    stage = Stage(*EVERYONE)
+    stage.narrator.say_time(2)
+    stage.narrator.take(2, {})
+    stage.narrator.record()
+    assert stage.log == ['clock', 'hip', 'knee', 'surroundings', 'recorder']
+    assert stage.outlets['clock'].sent == [[clock.pack(2 * STEP_NS)]]
+
+
+def test_an_instant_is_recorded_once_with_all_its_events():
+    """What is noted after the rows were packed is of the same instant; the next one has none."""
+    stage = Stage()
+    stage.narrator.note(1, 'pause')
+    stage.narrator.take(1, {})
+    stage.narrator.note(1, 'step 1')
+    for _ in range(2):
+        stage.narrator.record()
+    stage.narrator.take(2, {})
+    stage.narrator.record()
+    (t_ns, sequence, first), (_, _, second) = stage.recorder.samples
+    assert (t_ns, sequence) == (STEP_NS, 1)
+    place = stage.topics.index('/coordinator/events')
+    assert [event.text(data) for topic, data in first if topic == place] == ['pause', 'step 1']
+    assert [topic for topic, _ in second if topic == place] == []
+
+
+def test_the_recorder_gets_the_packed_instant():
+    """The rows of then, also where they have changed since."""
+    stage = Stage()
+    stage.narrator.take(3, {1: {'force.kp': 1e-7}})
+    expected = list(stage.expected(3, {1: {'force.kp': 1e-7}}).everything())
+    stage.rows.samples['position'] += 1.0
+    stage.narrator.record()
+    assert stage.recorder.samples == [(3 * STEP_NS, 3, expected)]
+
+
+def test_where_actuators_publish_for_themselves_the_rest_is_said():
+    """Their outlets are left out: they have processes of their own."""
+    stage = Stage(*EVERYONE)
+    narrator = Narrator(RUN, stage.rows.shown, stage.recorder, Outlets(
+        surroundings=stage.outlets['surroundings']))
+    narrator.take(1, {})
+    narrator.record()
+    assert stage.log == ['surroundings', 'recorder']
+
+
+def test_silence_is_never_heard():
+    assert not Silence().is_heard()
+    assert [Outlets().clock.is_heard(), Outlets().events.is_heard(),
+            Outlets().surroundings.is_heard(), *Outlets().actuators] == [False] * 3

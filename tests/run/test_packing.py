@@ -1,0 +1,293 @@
+"""From rows to messages: which there are, in what order, and what they say."""
+
+from collections.abc import Sequence
+
+from isa_ros.config.assembly import group_of, surroundings_of
+from isa_ros.config.paths import CONFIG, find
+from isa_ros.config.run_file import load_run
+from isa_ros.config.supplies import SupplyConfig
+from isa_ros.core.signals import COMMAND, HAS_ENABLE, HAS_GAINS, HAS_SETPOINT, SAMPLE
+from isa_ros.run import packing
+from isa_ros.run.exchange import Rows
+from isa_ros.run.narrator import packer_of
+from isa_ros.run.packing import Names, Packer, Shown
+from isa_ros.surroundings.supply import ConstantSupply, SUPPLY_SAMPLE
+from msg_adapters import event
+from msg_adapters.actuator_messages import TOPICS
+from msg_adapters.applied_parameters import tuned_values
+from msg_adapters.cdr_reader import decode, message_class
+import numpy as np
+import pytest
+from rcl_interfaces.msg import ParameterEvent
+from sensor_msgs.msg import FluidPressure, JointState
+from tests.runs import ACCUMULATOR, hip_and_knee, RETURN_LINE
+
+LEG = load_run(find('leg.yaml', CONFIG))
+TICK_NS, T_NS = 6_000_000, 7_000_000
+SUFFIXES = ('applied_parameters', 'applied_setpoint', 'joint_states', 'load_cell', 'pressure_a',
+            'pressure_b', 'references', 'valve')
+ATMOSPHERE = 101325.0  # Pa, ISO 2533
+
+
+def shown(n: int = 2, n_supplies: int = 1) -> Shown:
+    """Return rows whose numbers all differ; nothing is applied."""
+    samples, supplies = np.zeros(n, SAMPLE), np.zeros(n_supplies, SUPPLY_SAMPLE)
+    samples.view(np.float64)[:] = np.arange(1.0, len(SAMPLE.names) * n + 1)
+    supplies.view(np.float64)[:] = 1e6 * np.arange(1.0, len(SUPPLY_SAMPLE.names) * n_supplies + 1)
+    return Shown(samples, np.zeros(n, COMMAND), supplies, None)
+
+
+def applied(rows: Shown, row: int, kinds: int = HAS_SETPOINT, **values: float) -> None:
+    """Let a command have taken effect on one actuator."""
+    rows.applied[row]['kinds'] = kinds
+    for name, value in values.items():
+        rows.applied[row][name] = value
+
+
+def named(packer: Packer, messages: Sequence[tuple[int, bytes]]) -> list[tuple[str, bytes]]:
+    return [(packer.topics[k].name, data) for k, data in messages]
+
+
+def everything(packer: Packer, events: Sequence[bytes] = ()) -> dict[str, bytes]:
+    """Return what is packed by topic; each topic comes once."""
+    messages = named(packer, packer.everything(events))
+    assert len({name for name, _ in messages}) == len(messages)
+    return dict(messages)
+
+
+def stamp_ns(message: JointState) -> int:
+    return message.header.stamp.sec * 10**9 + message.header.stamp.nanosec
+
+
+@pytest.fixture
+def rows() -> Shown:
+    """Return the rows of a hip and a knee."""
+    return shown()
+
+
+@pytest.fixture
+def packer(rows: Shown) -> Packer:
+    """Return what packs them, on one supply."""
+    return Packer(Names([('hip', True), ('knee', False)], [('supply', False)]), rows)
+
+
+def test_a_leg_has_every_topic_in_canonical_order():
+    """Sorted by name, with the types of interface.md."""
+    surroundings = surroundings_of(LEG)
+    packer = packer_of(LEG, Rows(3, surroundings).shown)
+    assert [topic.name for topic in packer.topics] == [
+        '/clock', '/coordinator/events', '/coordinator/ground_contact',
+        '/coordinator/supply_pressure',
+        *(f'/{name}/{suffix}' for name in ('haa', 'hfe') for suffix in SUFFIXES),
+        '/joint_states', *(f'/kfe/{suffix}' for suffix in SUFFIXES)]
+    types = {topic.name: topic.type_name for topic in packer.topics}
+    assert types['/clock'] == 'rosgraph_msgs/msg/Clock'
+    assert types['/coordinator/events'] == 'rcl_interfaces/msg/Log'
+    assert types['/coordinator/ground_contact'] == 'geometry_msgs/msg/WrenchStamped'
+    assert types['/coordinator/supply_pressure'] == 'sensor_msgs/msg/FluidPressure'
+    assert types['/joint_states'] == 'sensor_msgs/msg/JointState'
+    assert [types[f'/kfe/{suffix}'] for suffix in SUFFIXES] == [type_ for _, type_ in TOPICS]
+    assert [topic.name for topic in packer.surroundings] == [
+        '/coordinator/ground_contact', '/coordinator/supply_pressure', '/joint_states']
+
+
+def test_messages_come_in_the_order_of_the_topics(packer, rows):
+    """Whatever the order of the sources; what is new in between as well."""
+    applied(rows, 1)
+    packer.pack(T_NS, TICK_NS, {0: {'force.kp': 1e-7}})
+    messages = named(packer, packer.everything([event.pack(T_NS, 'step 1')]))
+    assert [name for name, _ in messages] == sorted(name for name, _ in messages)
+    assert [name for name, _ in messages] == [
+        topic.name for topic in packer.topics
+        if topic.name not in ('/hip/applied_setpoint', '/knee/applied_parameters')]
+    types = {topic.name: topic.type_name for topic in packer.topics}
+    for name, data in messages:
+        decode(data, message_class(types[name]))
+
+
+@pytest.mark.parametrize('names', [
+    Names([('knee', False), ('knee', False)], [('supply', False)]),
+    Names([('hip', False), ('knee', False)], [('main', True), ('main_return', False)]),
+    Names([('hip', False), ('coordinator', False)], [('supply', False)],
+          lambda columns: {('/coordinator/valve', 'sensor_msgs/msg/JointState'): (
+              JointState(), {})})])
+def test_a_topic_has_one_source(names):
+    """The last: of the same name, and even of the same type."""
+    of_body = shown(2, len(names.supplies))._replace(body=np.zeros(1, [('height', '<f8')]))
+    with pytest.raises(ValueError, match='a topic has two sources'):
+        Packer(names, of_body)
+
+
+def test_what_is_applied_is_said_at_its_own_actuator_and_tick_alone(packer, rows):
+    """Each kind of a command is; the stamp is the start of the tick, the state's its end."""
+    for kinds in (HAS_SETPOINT, HAS_ENABLE, HAS_GAINS):
+        applied(rows, 1, kinds, position=0.03, is_enabled=1)
+        packer.pack(T_NS, TICK_NS, {})
+        said = everything(packer)
+        assert '/hip/applied_setpoint' not in said
+        message = decode(said['/knee/applied_setpoint'], JointState)
+        assert (stamp_ns(message), message.position[0]) == (TICK_NS, 0.03)
+        assert stamp_ns(decode(said['/knee/joint_states'], JointState)) == T_NS
+    applied(rows, 1, 0)
+    packer.pack(T_NS + 1, T_NS, {})
+    assert '/knee/applied_setpoint' not in everything(packer)
+    applied(rows, 0)
+    packer.pack(T_NS + 2, T_NS + 1, {})
+    said = everything(packer)
+    assert '/hip/applied_setpoint' in said and '/knee/applied_setpoint' not in said
+
+
+def test_an_applied_setpoint_holds_everything_in_force(packer, rows):
+    values = {'position': 0.5, 'velocity': 1.0, 'effort': 2.0, 'stiffness': 300.0,
+              'damping': 20.0, 'is_enabled': 1}
+    applied(rows, 0, **values)
+    packer.pack(T_NS, TICK_NS, {})
+    message = decode(everything(packer)['/hip/applied_setpoint'], JointState)
+    assert list(message.position) == [0.5, 300.0, 20.0, 1.0]
+    assert (message.velocity[0], message.effort[0]) == (1.0, 2.0)
+
+
+def test_parameters_are_said_where_they_changed(packer):
+    """Stamped with the tick from which they are in force; at the next instant no more."""
+    packer.pack(T_NS, TICK_NS, {1: {'force.kp': 9e-8, 'force.kf': 0.002}})
+    said = everything(packer)
+    assert '/hip/applied_parameters' not in said
+    data = said['/knee/applied_parameters']
+    assert tuned_values(data, 'knee') == {'force.kp': 9e-8, 'force.kf': 0.002}
+    stamp = decode(data, ParameterEvent).stamp
+    assert (stamp.sec, stamp.nanosec) == (0, TICK_NS)
+    packer.pack(T_NS + 1, T_NS, {})
+    assert '/knee/applied_parameters' not in everything(packer)
+
+
+def test_several_events_of_an_instant_keep_their_order(packer):
+    packer.pack(T_NS, TICK_NS, {})
+    events = [event.pack(T_NS, text) for text in ('step 1', 'resume', 'note a')]
+    assert [data for name, data in named(packer, packer.everything(events))
+            if name == '/coordinator/events'] == events
+
+
+def test_pressures_are_absolute(packer, rows):
+    """Gauge + 101325 Pa, as sensor_msgs/FluidPressure demands."""
+    packer.pack(T_NS, TICK_NS, {})
+    said = everything(packer)
+    for row, name in enumerate(('hip', 'knee')):
+        for chamber in 'ab':
+            message = decode(said[f'/{name}/pressure_{chamber}'], FluidPressure)
+            assert message.fluid_pressure == rows.samples[f'pressure_{chamber}'][row] + ATMOSPHERE
+            assert message.header.frame_id == f'{name}_pressure_{chamber}'
+    supply = decode(said['/coordinator/supply_pressure'], FluidPressure)
+    assert supply.fluid_pressure == rows.supplies['pressure'][0] + ATMOSPHERE
+    assert supply.header.frame_id == 'supply'
+
+
+def test_the_numbers_of_each_row_are_in_its_own_messages(packer, rows):
+    packer.pack(T_NS, TICK_NS, {})
+    said = everything(packer)
+    for row, name in enumerate(('hip', 'knee')):
+        state = decode(said[f'/{name}/joint_states'], JointState)
+        assert (state.position[0], state.velocity[0], state.effort[0]) == tuple(
+            rows.samples[row].item()[:3])
+
+
+def test_only_a_return_line_with_a_volume_shows_its_pressure():
+    """A return line that stays at tank pressure has nothing to show."""
+    rows = shown(2, 2)
+    packer = Packer(
+        Names([('hip', True), ('knee', False)], [('held', False), ('main', True)]), rows)
+    packer.pack(T_NS, TICK_NS, {})
+    said = everything(packer)
+    pressures = {name: decode(data, FluidPressure).fluid_pressure for name, data in said.items()
+                 if name.startswith('/coordinator/')}
+    assert pressures == {
+        '/coordinator/held_pressure': rows.supplies['pressure'][0] + ATMOSPHERE,
+        '/coordinator/main_pressure': rows.supplies['pressure'][1] + ATMOSPHERE,
+        '/coordinator/main_return_pressure': rows.supplies['return_pressure'][1] + ATMOSPHERE}
+
+
+def test_the_return_lines_of_a_run_decide_which_pressures_there_are():
+    """Of a constant supply and of a pump with an accumulator alike."""
+    def topics(*sheets: ConstantSupply) -> list[str]:
+        run = hip_and_knee([SupplyConfig(name, sheet, (fed,)) for (name, fed), sheet in zip(
+            (('first', 'hip'), ('second', 'knee')), sheets)])
+        packer = packer_of(run, Rows(2, surroundings_of(run)).shown)
+        return [topic.name for topic in packer.surroundings]
+
+    held = ConstantSupply(pressure_mpa=20.7, return_pressure_mpa=0.5)
+    line = ConstantSupply(pressure_mpa=20.7, return_pressure_mpa=0.5, return_line=RETURN_LINE)
+    assert topics(held, ACCUMULATOR) == [
+        '/coordinator/first_pressure', '/coordinator/second_pressure']
+    assert topics(line, held) == [
+        '/coordinator/first_pressure', '/coordinator/first_return_pressure',
+        '/coordinator/second_pressure']
+
+
+def test_a_body_shows_the_floats_of_its_sample():
+    """By the columns of its own record type, arrays element by element."""
+    seen: dict[str, int] = {}
+
+    def messages(columns):
+        seen.update(columns)
+        message = JointState(name=['a', 'b'], position=[0.0, 0.0])
+        return {('/body', 'sensor_msgs/msg/JointState'): (message, {
+            'position[0]': columns['height'], 'position[1]': columns['angle[1]']})}
+
+    body = np.zeros(1, [('angle', '<f8', (2,)), ('height', '<f8')])
+    packer = Packer(Names([('hip', True)], [('supply', False)], messages),
+                    shown(1)._replace(body=body))
+    body['angle'], body['height'] = (0.25, 0.5), 2.0
+    packer.pack(T_NS, TICK_NS, {})
+    assert list(decode(everything(packer)['/body'], JointState).position) == [2.0, 0.5]
+    assert list(seen) == ['angle[0]', 'angle[1]', 'height']
+
+
+def test_one_actuator_is_said_as_its_node_publishes_it(packer, rows):
+    """In the order of its topics; None where there is nothing new."""
+    applied(rows, 0)
+    packer.pack(T_NS, TICK_NS, {1: {'force.kp': 9e-8}})
+    said = everything(packer)
+    for row, name in enumerate(('hip', 'knee')):
+        assert packer.of_actuator(row) == [said.get(f'/{name}/{suffix}') for suffix, _ in TOPICS]
+    assert packer.of_actuator(0)[0] is None and packer.of_actuator(0)[1] is not None
+    assert packer.of_actuator(1)[0] is not None and packer.of_actuator(1)[1] is None
+
+
+def test_an_actuator_alone_says_what_it_says_among_others(packer, rows):
+    """Its node has neither clock nor events."""
+    applied(rows, 1)
+    packer.pack(T_NS, TICK_NS, {})
+    own = Shown(rows.samples[1:], rows.applied[1:], np.zeros(0, SUPPLY_SAMPLE), None)
+    alone = Packer(Names([('knee', False)]), own, is_run=False)
+    alone.pack(T_NS, TICK_NS, {})
+    assert [topic.name for topic in alone.topics] == [f'/knee/{suffix}' for suffix in SUFFIXES]
+    assert alone.of_actuator(0) == packer.of_actuator(1)
+
+
+def test_the_first_messages_are_of_t_0():
+    """The state and the initial setpoint, both stamped 0; no parameter has changed."""
+    run = hip_and_knee()
+    group, surroundings = group_of(run), surroundings_of(run)
+    group.start(surroundings.starts())
+    packer = packer_of(run, Shown(group.samples, group.applied, surroundings.supplies, None))
+    packer.pack(0, 0, group.tuned)
+    parameters, setpoint, joint_states, *_ = packer.of_actuator(1)
+    assert parameters is None
+    assert stamp_ns(decode(joint_states, JointState)) == 0
+    first = decode(setpoint, JointState)
+    assert (first.name[0], stamp_ns(first), first.position[3]) == ('knee', 0, 1.0)
+
+
+def test_compiled_packing_equals_its_python_source(rows, monkeypatch):
+    """The same words, NaN and minus zero included."""
+    rows.samples['velocity'] = np.nan, -0.0
+    applied(rows, 1, position=0.3, stiffness=np.nan, is_enabled=1)
+
+    own = rows._replace(applied=rows.applied.view(np.recarray))  # fields by dot in Python too
+
+    def packed() -> list[tuple[int, bytes]]:
+        packer = Packer(Names([('hip', True), ('knee', False)], [('supply', True)]), own)
+        packer.pack(T_NS, TICK_NS, {})
+        return list(packer.everything())
+    compiled = packed()
+    monkeypatch.setattr(packing, 'pack', packing.pack.py_func)
+    assert packed() == compiled
