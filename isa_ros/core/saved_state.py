@@ -11,7 +11,7 @@ from isa_ros.errors import ConfigError
 import numpy as np
 from numpy.typing import NDArray
 
-FORMAT = 1
+FORMAT = 2
 MAX_TICKS = 2**32  # sequence numbers of a bag
 LARGEST_BYTES = 16 * 1024 * 1024
 _BYTES = ('load', 'requests')
