@@ -71,7 +71,11 @@ class Simulation:
         self.reset()
 
     def reset(self) -> Mapping[str, np.record]:
-        """Begin anew at t = 0 and return the `samples` of then."""
+        """
+        Begin anew at t = 0 and return the `samples` of then.
+
+        What was tuned is in force again from the first tick on.
+        """
         self.ticks = 0
         self.surroundings.restore(self._beginning)
         self.group.start(self._starts)
@@ -119,8 +123,7 @@ class Simulation:
             A state is no longer finite.
 
         """
-        if commands is None:
-            commands = self._scheduled()
+        commands = self._in_force(commands)
         if self._seats:
             self._control()
         self.surroundings.ports(self._ports)
@@ -128,15 +131,17 @@ class Simulation:
         self.ticks += 1
         return self.samples
 
-    def _scheduled(self) -> Records | None:
-        """Return the requests of the controllers with the scenario's commands over them."""
-        speaks = self.scenario.speaks_at(self.ticks)
+    def _in_force(self, given: Records | None) -> Records | None:
+        """Return the controllers' requests under what is given, else under the scenario's."""
+        speaks = given is None and self.scenario.speaks_at(self.ticks)
         if not (speaks or self._seats):
-            return None
+            return given
         self._commands[:] = self._requests
         self._requests['kinds'] = 0
         if speaks:
             self.scenario.commands(self.ticks, self._commands)
+        if given is not None:
+            merge_requests(given, self._commands)
         return self._commands
 
     def _control(self) -> None:

@@ -1,0 +1,299 @@
+"""The model as an object: a tick, its commands, and where it can begin anew."""
+
+from collections.abc import Mapping, Sequence
+import json
+import math
+import struct
+
+from isa_ros.config.paths import CONFIG, find, SCENARIOS
+from isa_ros.config.run_file import load_run
+from isa_ros.config.supplies import SupplyConfig
+from isa_ros.controller import Controller, Setpoint, State
+from isa_ros.core.signals import COMMAND, HAS_SETPOINT
+from isa_ros.errors import ConfigError, RunError, SetpointError, SimulationDiverged
+from isa_ros.run.local_run import shown
+from isa_ros.run.narrator import Narrator, topics_of
+from isa_ros.scenario.scenario import idle, load_scenario, Scenario, scenario_of
+from isa_ros.simulation import Simulation
+import numpy as np
+import pytest
+from tests.golden.message_digests import Digests, FILE, SECONDS
+from tests.runs import ACCUMULATOR, CONSTANT, hip_and_knee
+
+RUN = hip_and_knee([SupplyConfig('constant', CONSTANT, ('hip',)),
+                    SupplyConfig('pump', ACCUMULATOR, ('knee',))])
+RECORDED = json.loads(FILE.read_text(encoding='utf-8'))
+
+
+class Counter(Controller):
+    """Asks one actuator for a place that counts the ticks since its start; a state of its own."""
+
+    def __init__(self, name: str = 'knee', offset: float = 0.0) -> None:
+        self.name, self.offset = name, offset
+        self.count = 0
+        self.shown: list[tuple[int, list[float], list[float]]] = []
+        self.starts: list[list[str]] = []
+
+    def start(self, names: Sequence[str]) -> None:
+        self.count = 0
+        self.starts.append(list(names))
+
+    def step(self, state: State) -> Mapping[str, Setpoint]:
+        self.shown.append((
+            state.t_ns, [float(own.position) for own in state.actuators.values()],
+            [float(own.pressure) for own in state.supplies.values()]))
+        self.count += 1
+        return {self.name: Setpoint(self.offset + 1e-4 * self.count)}
+
+    def snapshot(self) -> bytes:
+        return struct.pack('<q', self.count)
+
+    def restore(self, snapshot: bytes) -> None:
+        self.count, = struct.unpack('<q', snapshot)
+
+
+def shows(simulation: Simulation) -> bytes:
+    """Return everything that the simulation shows now."""
+    body = b'' if simulation.body_sample is None else simulation.body_sample.tobytes()
+    return b''.join([
+        *(own.tobytes() for own in simulation.samples.values()),
+        *(own.tobytes() for own in simulation.supply_samples.values()), body,
+        simulation.applied.tobytes(), repr(simulation.tuned).encode()])
+
+
+def stepped(simulation: Simulation, ticks: int) -> list[bytes]:
+    """Return what the simulation shows after each of some ticks."""
+    said = []
+    for _ in range(ticks):
+        simulation.step()
+        said.append(shows(simulation))
+    return said
+
+
+def applied_position(simulation: Simulation, name: str = 'knee') -> float | None:
+    """Return the position that took effect at the last tick's start; None: no setpoint did."""
+    row = simulation.applied[simulation.names.index(name)]
+    return float(row['position']) if row['kinds'] & HAS_SETPOINT else None
+
+
+def drop() -> Scenario:
+    return load_scenario(find('drop.yaml', SCENARIOS), load_run(find('leg.yaml', CONFIG)))
+
+
+@pytest.mark.golden
+@pytest.mark.parametrize(('config', 'scenario'), [
+    ('leg.yaml', 'drop.yaml'), ('rig_rotary.yaml', 'wheel_sine.yaml'), ('leg.yaml', 'idle')])
+def test_its_rows_are_those_of_a_recorded_run(config, scenario):
+    """Packed at every tick, they have the digests of the messages of the golden runs."""
+    run = load_run(find(config, CONFIG))
+    fitted = idle(run) if scenario == 'idle' else load_scenario(find(scenario, SCENARIOS), run)
+    simulation = Simulation(fitted)
+    rows = shown(simulation)
+    digests = Digests([topic.name for topic in topics_of(fitted.run, rows)])
+    narrator = Narrator(fitted.run, rows, digests)
+    while True:
+        narrator.take(simulation.ticks, simulation.tuned)
+        narrator.record()
+        if simulation.t >= SECONDS:
+            break
+        simulation.step()
+    assert digests.by_topic() == RECORDED[f'{config} {scenario}']
+
+
+def test_a_tick_takes_it_one_step_further():
+    simulation = Simulation(idle(RUN))
+    assert (simulation.ticks, simulation.t_ns, simulation.t) == (0, 0, 0.0)
+    for _ in range(3):
+        samples = simulation.step()
+    assert samples is simulation.samples
+    assert (simulation.ticks, simulation.t_ns, simulation.t) == (3, 3_000_000, 0.003)
+    assert list(samples) == ['hip', 'knee'] == list(simulation.names)
+    assert samples['knee'].position == simulation.group.samples['position'][1]
+
+
+def test_supplies_and_body_are_shown_by_name():
+    """A run without a body shows none."""
+    simulation = Simulation(idle(RUN))
+    simulation.step()
+    assert list(simulation.supply_samples) == ['constant', 'pump']
+    assert simulation.supply_samples['constant'].pressure == 20.7e6
+    assert 19e6 < simulation.supply_samples['pump'].pressure < 20.7e6
+    assert simulation.body_sample is None
+    leg = Simulation(drop())
+    assert leg.body_sample.foot_position[2] == pytest.approx(0.1, abs=1e-12)
+    for _ in range(300):
+        leg.step()
+    assert leg.body_sample.foot_position[2] < 0.05
+
+
+def test_reset_begins_anew():
+    """Scenario, supplies, body, controllers, and what was commanded but not in force yet."""
+    controller = Counter('kfe', 0.05)
+    simulation = Simulation(drop(), [controller])
+    first = [shows(simulation), *stepped(simulation, 150)]
+    simulation.command('haa', position=0.5)
+    samples = simulation.samples
+    assert simulation.reset() is samples
+    assert simulation.ticks == 0
+    assert [shows(simulation), *stepped(simulation, 150)] == first
+    assert controller.starts == [['haa', 'hfe', 'kfe']] * 2
+
+
+def test_what_was_tuned_is_in_force_from_the_first_tick_after_a_reset():
+    """As the parameters of a node stay set."""
+    simulation = Simulation(idle(RUN))
+    simulation.group.actuators[1].tune({'force.kp': 1e-7})
+    first = stepped(simulation, 5)
+    simulation.reset()
+    assert simulation.tuned == {}
+    assert stepped(simulation, 5) == first
+
+
+@pytest.mark.parametrize('has_controller', [False, True])
+def test_it_goes_on_from_its_middle_byte_for_byte(has_controller):
+    """With what controllers asked for, what was commanded and tuned but not in force yet."""
+    def made() -> Simulation:
+        return Simulation(drop(), [Counter('kfe', 0.05), Counter('hfe', 0.03)]
+                          if has_controller else [])
+    simulation = made()
+    stepped(simulation, 60)  # before the slider is released
+    simulation.command('haa', position=0.8)
+    simulation.group.actuators[2].tune({'force.kp': 1e-7})
+    saved = simulation.snapshot()
+    then, samples = simulation.ticks, simulation.samples['kfe'].tobytes()
+    rest = stepped(simulation, 100)
+    other = made()
+    for again in (simulation, other):
+        assert again.restore(saved)['kfe'].tobytes() == samples
+        assert again.ticks == then
+        assert stepped(again, 100) == rest
+        assert again.snapshot() == simulation.snapshot()
+
+
+def test_a_state_of_another_run_or_of_other_controllers_is_refused():
+    saved = Simulation(idle(RUN), [Counter()]).snapshot()
+    with pytest.raises(ConfigError, match='saved from the configuration .*, must be that of this'):
+        Simulation(drop(), [Counter()]).restore(saved)
+    with pytest.raises(ConfigError, match='the saved state has 3 participants, the run has 2'):
+        Simulation(idle(RUN)).restore(saved)
+
+
+def test_a_controller_that_keeps_its_state_to_itself_cannot_be_saved():
+    with pytest.raises(RunError, match=r'Controller has no snapshot\(\)'):
+        Simulation(idle(RUN), [Controller()]).snapshot()
+
+
+def test_a_command_takes_effect_at_the_next_tick_once():
+    simulation = Simulation(idle(RUN))
+    simulation.step()
+    simulation.command('knee', position=0.06, stiffness=2e5, is_enabled=True)
+    assert applied_position(simulation) is None
+    simulation.step()
+    knee = simulation.applied[1]
+    assert (knee['position'], knee['stiffness'], knee['is_enabled']) == (0.06, 2e5, 1)
+    assert math.isfinite(knee['damping'])  # the one in force
+    assert applied_position(simulation, 'hip') is None
+    simulation.step()
+    assert applied_position(simulation) is None
+    for _ in range(500):
+        simulation.step()
+    # within the deflection of a stiff spring under the friction of the seals
+    assert simulation.samples['knee'].position == pytest.approx(0.06, abs=1e-3)
+
+
+@pytest.mark.parametrize(('name', 'setpoint', 'message'), [
+    ('elbow', {'position': 0.0}, "'elbow' is no actuator of the run; valid: hip, knee"),
+    ('knee', {'position': math.nan}, 'knee: setpoint position = nan, must be finite'),
+    ('knee', {'position': 0.0, 'damping': -1.0}, 'knee: setpoint damping = -1.0, must be >= 0')])
+def test_a_command_that_cannot_be_is_refused(name, setpoint, message):
+    """And changes nothing."""
+    simulation, untouched = Simulation(idle(RUN)), Simulation(idle(RUN))
+    with pytest.raises(SetpointError, match=message):
+        simulation.command(name, **setpoint)
+    assert stepped(simulation, 2) == stepped(untouched, 2)
+
+
+def test_a_controller_asks_at_tick_k_for_tick_k_plus_1():
+    """It is shown the state before the tick, as a run on nodes shows it."""
+    controller = Counter()
+    simulation = Simulation(idle(RUN), [controller])
+    known, taken = [], []
+    for _ in range(4):
+        known.append((
+            simulation.t_ns, [float(own.position) for own in simulation.samples.values()],
+            [float(own.pressure) for own in simulation.supply_samples.values()]))
+        simulation.step()
+        taken.append(applied_position(simulation))
+    assert controller.starts[-1] == ['hip', 'knee']
+    assert controller.shown == known
+    assert taken == [None, 1e-4, 1e-4 * 2, 1e-4 * 3]
+
+
+def test_a_setpoint_for_an_unknown_actuator_ends_the_tick():
+    simulation = Simulation(idle(RUN), [Counter('elbow')])
+    with pytest.raises(SetpointError, match="'elbow' is no actuator of the run"):
+        simulation.step()
+
+
+def test_of_two_controllers_the_later_wins_where_both_ask():
+    simulation = Simulation(idle(RUN), [Counter('knee'), Counter('hip'), Counter('knee', 0.5)])
+    simulation.step()
+    simulation.step()
+    assert (applied_position(simulation), applied_position(simulation, 'hip')) == (0.5 + 1e-4, 1e-4)
+
+
+SCENARIO = scenario_of(
+    'name: test\nduration_s: 1.0\ntracks:\n  knee:\n  - {t_s: 0.002, position: 0.07}\n', RUN)
+
+
+@pytest.mark.parametrize(('scenario', 'controllers', 'expected'), [
+    (SCENARIO, [Counter('knee', 0.05)], 0.07), (SCENARIO, [], 0.07),
+    (idle(RUN), [Counter('knee', 0.05)], 0.05 + 1e-4 * 2), (idle(RUN), [], 0.03)],
+    ids=['all three', 'scenario over command', 'controller over command', 'command'])
+def test_the_scenario_wins_over_a_controller_and_both_over_a_command(
+        scenario, controllers, expected):
+    """At the tick that begins at 2 ms, for which all of them ask."""
+    simulation = Simulation(scenario, controllers)
+    stepped(simulation, 2)
+    simulation.command('knee', position=0.03)
+    simulation.step()
+    assert applied_position(simulation) == expected
+
+
+def rows_for(name: str, position: float) -> np.ndarray:
+    """Return commands of one actuator alone."""
+    rows = np.zeros(2, COMMAND)
+    rows[RUN.index(name)] = (HAS_SETPOINT, 0, position, 0.0, 0.0, math.nan, math.nan)
+    return rows
+
+
+def test_given_commands_stand_in_the_place_of_the_scenario_s():
+    """They win over a controller where both ask, and it is heard where they say nothing."""
+    simulation = Simulation(SCENARIO, [Counter('knee', 0.05), Counter('hip', 0.5)])
+    stepped(simulation, 2)
+    simulation.step(rows_for('knee', 0.06))
+    assert applied_position(simulation) == 0.06
+    assert applied_position(simulation, 'hip') == 0.5 + 1e-4 * 2
+    simulation.step(rows_for('hip', 0.6))
+    assert applied_position(simulation) == 0.05 + 1e-4 * 3
+    assert applied_position(simulation, 'hip') == 0.6
+    alone = Simulation(SCENARIO)
+    stepped(alone, 2)
+    alone.step(np.zeros(2, COMMAND))
+    assert applied_position(alone) is None
+
+
+def test_parameters_that_changed_are_shown_at_their_tick():
+    simulation = Simulation(idle(RUN))
+    simulation.group.actuators[1].tune({'force.kp': 1e-7})
+    simulation.step()
+    assert simulation.tuned == {1: {'force.kp': 1e-7}}
+    simulation.step()
+    assert simulation.tuned == {}
+
+
+def test_a_state_that_is_not_finite_ends_the_tick_by_name():
+    simulation = Simulation(idle(RUN))
+    simulation.group.actuators[1].memory.bodies['plant']['chambers']['p_a'][0] = math.nan
+    with pytest.raises(SimulationDiverged, match=r'^knee: plant\.\S+ = nan at t = 0.001'):
+        simulation.step()
