@@ -40,6 +40,8 @@ def measure(spec: 'Spec', started: float, entered: float) -> 'Measured':
 
     ``started`` and ``entered`` are when this process was started and reached its first line.
     """
+    from isa_ros.core.without_blas import start_without_blas
+    start_without_blas()
     from isa_ros.bench.rigs import request_of
     from isa_ros.bench.spec import IMPORTS, INTERPRETER
     from isa_ros.bench.watch import Watch

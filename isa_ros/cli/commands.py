@@ -31,8 +31,11 @@ def demo(options: Namespace) -> bool:
 
 def _record(request: Request) -> Path:
     """Run, and say where its bags are, however the run ends; return the first directory."""
+    from isa_ros.core.without_blas import start_without_blas
     from isa_ros.run.session import prepare
     from isa_ros.run.terminal import terminal_report
+    if request.is_alone:
+        start_without_blas()
     session = prepare(request)
     # rclpy takes a third of a second to import, which a wrong option should not cost.
     from isa_ros.nodes.bringup import run_session

@@ -11,6 +11,7 @@ from isa_ros.config.default_actuator import default_actuator, default_load, DEFA
 from isa_ros.config.paths import CONFIG, find, SCENARIOS
 from isa_ros.config.run_config import RunConfig
 from isa_ros.config.run_file import load_run
+from isa_ros.core.without_blas import start_without_blas
 from isa_ros.errors import ConfigError, IsaError
 from isa_ros.nodes.actuator.alone import run_alone
 from isa_ros.nodes.actuator.node import ActuatorNode, Setup
@@ -114,6 +115,7 @@ def _number(node: Node, name: str) -> float:
 
 def main(args: Sequence[str] | None = None, model: str = '') -> None:
     """Run one actuator node; the model is the parameter ``model`` unless it is given."""
+    start_without_blas()
     raise SystemExit(run(args, model))
 
 

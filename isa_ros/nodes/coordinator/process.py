@@ -3,6 +3,7 @@
 from collections.abc import Sequence
 import sys
 
+from isa_ros.core.without_blas import start_without_blas
 from isa_ros.errors import IsaError
 from isa_ros.nodes.coordinator.node import CoordinatorNode, NAME
 from isa_ros.nodes.coordinator.runs import coordinate, coordinate_locally
@@ -21,6 +22,7 @@ USAGE = (
 
 def main(args: Sequence[str] | None = None) -> None:
     """Coordinate the run that the parameters name."""
+    start_without_blas()
     sys.exit(_main(args))
 
 
