@@ -119,7 +119,10 @@ class SupplyKind:
         return SupplyConfig(sheet=self._sheet.read(rest, place), feeds=feeds, **given)
 
     def differences(self, tree: Any, place: Place) -> Iterator[KeyDifference]:
-        """Yield the keys of the sheet that differ."""
-        if isinstance(tree, dict):
-            yield from self._sheet.differences(
-                {key: value for key, value in tree.items() if key != 'feeds'}, place)
+        """Yield the keys of the sheet that differ, and ``feeds`` where it is missing."""
+        if not isinstance(tree, dict):
+            return
+        yield from self._sheet.differences(
+            {key: value for key, value in tree.items() if key != 'feeds'}, place)
+        if 'feeds' not in tree:
+            yield KeyDifference(f'{place / "feeds"} is missing in the bag', True)

@@ -229,8 +229,8 @@ class Supply:
         constant = float(line['c'] / line['g'])
         if constant < SUPPLY_STEP:
             raise ParameterError(
-                f'{self._name}: time constant of the return line = {constant * 1e3:.3g} ms, must be >= '
-                f'{SUPPLY_STEP * 1e3:g} ms; reduce return_line.tank_lpm_per_mpa')
+                f'{self._name}: time constant of the return line = {constant * 1e3:.3g} ms, must '
+                f'be >= {SUPPLY_STEP * 1e3:g} ms; reduce return_line.tank_lpm_per_mpa')
 
     @property
     def pressure(self) -> float:

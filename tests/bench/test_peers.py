@@ -1,46 +1,67 @@
 """Messages to a worker and back, and workers that do not answer."""
 
-from isa_ros.bench.peers import frames
+from collections.abc import Callable
+
+from isa_ros.actuator.actuator import SmartActuator
 from isa_ros.bench.peers.catalogue import peer
 from isa_ros.bench.peers.transport import PeerTransport
+from isa_ros.bench.peers.worker import answer_steps
+from isa_ros.config.assembly import surroundings_of, timing_of
 from isa_ros.config.paths import CONFIG, find
 from isa_ros.config.run_config import RunConfig
 from isa_ros.config.run_file import load_run
-from isa_ros.core.signals import COMMAND, LOAD_PORT, LOAD_REPLY, SAMPLE, START
 from isa_ros.errors import ConfigError, RunError
 from isa_ros.run.exchange import Rows
-import numpy as np
+from isa_ros.run.wire import (
+    actuator_parts, Answer, AnswerKind, Cast, decode_answer, decode_step, encode_answer,
+    encode_end, encode_hello, encode_tick, StepKind, take_actuator_parts)
 import pytest
+from tests.sheets import setpoint
 
 
-def rows(dtype: np.dtype, n: int) -> np.ndarray:
-    """Return rows whose bytes all differ."""
-    return np.frombuffer(bytes(k % 251 for k in range(n * dtype.itemsize)), dtype)
+class Script:
+    """A link whose worker gets some steps, one after the other, and keeps what it answers."""
+
+    def __init__(self, *steps: bytes) -> None:
+        self._steps: list[bytes | None] = [None, *steps]  # the first wait is in vain
+        self.sent: list[bytes] = []
+
+    def send(self, message: bytes) -> None:
+        """Keep an answer."""
+        self.sent.append(message)
+
+    def receive(self, timeout_s: float) -> bytes | None:
+        """Return the next step."""
+        return self._steps.pop(0)
+
+    def answers(self) -> list[Answer]:
+        """Return what was answered."""
+        return [decode_answer(data) for data in self.sent]
 
 
-def test_a_tick_crosses_with_the_rows_of_every_worker():
-    ports, commands = rows(LOAD_PORT, 3), rows(COMMAND, 3)
-    step = frames.decode_step(frames.encode_tick(7, ports, commands))
-    assert (step.kind, step.tick) == (frames.Kind.TICK, 7)
-    for k in range(3):
-        assert step.port(k).tobytes() == ports[k].tobytes()
-        assert step.command(k).tobytes() == commands[k].tobytes()
-
-
-def test_a_start_is_told_from_the_others_by_its_count():
-    starts = rows(START, 2)
-    step = frames.decode_step(frames.encode_start(4, starts))
-    assert (step.kind, step.tick) == (frames.Kind.START, -4)
-    assert step.start(1).tobytes() == starts[1].tobytes()
-
-
-def test_an_answer_crosses_with_what_was_not_said():
-    reply, sample = rows(LOAD_REPLY, 1)[0], rows(SAMPLE, 1)[0]
-    answer = frames.decode_answer(frames.encode_answer(2, 9, reply, sample, (None, b'abc', b'')))
-    assert (answer.worker, answer.tick) == (2, 9)
-    assert answer.reply.tobytes() == reply.tobytes()
-    assert answer.sample.tobytes() == sample.tobytes()
-    assert answer.messages == [None, b'abc', b'']
+def test_a_worker_does_what_an_actuator_of_the_run_does(leg):
+    """From its row of starts, under its rows of ports and commands, until the end."""
+    surroundings = surroundings_of(leg)
+    starts, exchange = surroundings.starts(), Rows(3, surroundings)
+    surroundings.ports(exchange.ports)
+    exchange.commands[1] = setpoint(position=0.03)
+    index, cast = 1, Cast([own.name for own in leg.actuators], ['supply'], None)
+    link = Script(encode_hello(1, 4, leg.step_ns, starts, cast),
+                  encode_tick(1, 0, exchange, False), encode_end(1))
+    worker, own = (SmartActuator(leg.actuators[index], timing_of(leg)) for _ in range(2))
+    answer_steps(link, worker, index)
+    taken = Rows(3, surroundings)
+    own.start(*starts[index].item())
+    for answer, tick in zip(link.answers(), (4, 0), strict=True):
+        assert (answer.kind, answer.run_id, answer.tick, answer.participant) == (
+            AnswerKind.DONE, 1, tick, index)
+        take_actuator_parts(answer.parts, index, taken)
+        assert taken.samples[index].tobytes() == own.sample.tobytes()
+        assert taken.replies[index].tobytes() == own.reply.tobytes()
+        assert taken.applied[index].tobytes() == own.memory.applied.tobytes()
+        own.accept(exchange.commands[index])
+        own.tick(exchange.ports[index])
+    assert taken.applied[index]['position'] == 0.03
 
 
 class Silence:
@@ -57,25 +78,89 @@ class Silence:
         """Do nothing: there is nothing to release."""
 
 
+class Echo(Silence):
+    """A link whose three workers answer at once, with what they were told, and an old answer."""
+
+    def __init__(self) -> None:
+        self._answers: list[bytes] = []
+        self.kinds: list[StepKind] = []
+
+    def send(self, message: bytes) -> None:
+        """Answer for all, the last one first."""
+        step = decode_step(message)
+        self.kinds.append(step.kind)
+        if step.kind is StepKind.END:
+            return
+        rows = Rows(1, surroundings_of(load_run(find('rig_rotary.yaml', CONFIG))))
+        for k in reversed(range(step.rows)):
+            rows.samples['position'] = (
+                step.start(k) if step.kind is StepKind.HELLO else step.command(k))['position']
+            parts = actuator_parts(
+                rows.replies, rows.samples, rows.applied, {'force.kp': 1e-7} if k == 2 else {})
+            self._answers += [
+                encode_answer(AnswerKind.DONE, step.run_id, tick, k, parts)
+                for tick in (step.tick - 1, step.tick)]
+
+    def receive(self, timeout_s: float) -> bytes | None:
+        """Return the next answer."""
+        return self._answers.pop(0) if self._answers else None
+
+
 @pytest.fixture(scope='module')
 def leg() -> RunConfig:
     """Return a run of three actuators."""
     return load_run(find('leg.yaml', CONFIG))
 
 
+def nothing_lost() -> None:
+    """Return None: all workers run."""
+
+
+def made(
+        link: Silence, run: RunConfig,
+        lost: Callable[[], str | None] = nothing_lost) -> tuple[PeerTransport, Rows]:
+    """Return a transport, and the rows it fills."""
+    surroundings = surroundings_of(run)
+    return PeerTransport(link, run, surroundings.starts(), lost), Rows(3, surroundings)
+
+
+def test_the_rows_of_all_workers_are_filled(leg):
+    """Each answer into its own row, those to other steps left out."""
+    link = Echo()
+    transport, rows = made(link, leg)
+    starts = surroundings_of(leg).starts()
+    transport.join(rows)
+    assert rows.samples['position'].tolist() == starts['position'].tolist()
+    assert rows.tuned == {2: {'force.kp': 1e-7}}
+    transport.begin()
+    rows.commands['position'] = 0.1, 0.2, 0.3
+    transport.send(5, rows)
+    transport.receive(rows)
+    assert rows.samples['position'].tolist() == [0.1, 0.2, 0.3]
+    assert link.kinds == [StepKind.HELLO, StepKind.TICK]
+
+
 def test_a_worker_that_ended_is_named(leg):
-    transport = PeerTransport(Silence(), leg, rows(START, 3), lambda: 'hfe: its worker ended')
+    transport, rows = made(Silence(), leg, lambda: 'hfe: its worker ended')
     with pytest.raises(RunError, match='hfe: its worker ended'):
-        transport.join(Rows(3))
+        transport.join(rows)
 
 
 def test_workers_that_never_answer_are_named(leg):
-    transport = PeerTransport(Silence(), leg, rows(START, 3), lambda: None)
+    transport, rows = made(Silence(), leg)
     with pytest.raises(RunError, match='haa, hfe, kfe: no answer before tick 0'):
-        transport.join(Rows(3))
-    transport.send(3, Rows(3))
+        transport.join(rows)
+    transport.send(3, rows)
     with pytest.raises(RunError, match='haa, hfe, kfe: no answer to tick 3'):
-        transport.receive(Rows(3))
+        transport.receive(rows)
+
+
+@pytest.mark.parametrize('ask', [
+    lambda transport, rows: transport.idle(), lambda transport, rows: transport.snapshots(),
+    lambda transport, rows: transport.restore(0, [], rows)])
+def test_what_a_peer_cannot_do_is_refused(leg, ask):
+    with pytest.raises(RunError, match='a peer runs to its end: no pause, no saved state'):
+        ask(*made(Silence(), leg))
 
 
 def test_a_wrong_peer_is_answered_with_the_right_one():

@@ -1,14 +1,17 @@
 """The examples of the README can be run as printed."""
 
+from dataclasses import replace
 from pathlib import Path
 import re
 
 from isa_ros.config.paths import CONFIG, find, SCENARIOS
+from isa_ros.config.recording import RecordConfig
 from isa_ros.config.run_config import RunConfig
 from isa_ros.config.run_file import load_run
-from isa_ros.run.topics import topics_of
-from isa_ros.scenario.scenario import load_scenario
-from isa_ros.surroundings.surroundings import SharedLoad
+from isa_ros.controller import Controller, Setpoint, State
+from isa_ros.run.local_run import LocalRun
+from isa_ros.scenario.scenario import idle, load_scenario
+from isa_ros.simulation import Simulation
 import pytest
 
 README = (Path(__file__).parents[2] / 'README.md').read_text()
@@ -41,7 +44,8 @@ def test_the_section_record_fits_the_run_file(tmp_path: Path) -> None:
     section = next(block for block in BLOCKS if block.startswith('record:'))
     run = run_of(head[head.index('actuators:'):] + section, tmp_path)
     run.record.refuse_misfits(
-        [topic.name for topic in topics_of(run, SharedLoad(run))[1]], run.source)
+        [topic.name for topic in LocalRun(replace(run, record=RecordConfig())).topics],
+        run.source)
     assert (run.record.storage.compression, run.record.thins) == ('zstd', True)
 
 
@@ -64,3 +68,19 @@ def test_the_table_has_every_figure_of_the_paper_with_measurements() -> None:
     """Figures 1 to 3, 7 and 9 to 11 are drawings and pictures, 16 is a photograph."""
     named = {int(figure) for *_, figure in FIGURES if figure.isdigit()}
     assert named == {4, 5, 6, 8, 12, 13, 14, 15, 17, 18, 19, 20}
+
+
+def test_what_a_controller_is_shown_is_named_as_it_is() -> None:
+    """Every `state.` of the page is a field of the state of the shipped leg."""
+    shown: list[State] = []
+
+    class Look(Controller):
+        def step(self, state: State) -> dict[str, Setpoint]:
+            shown.append(state)
+            return {}
+
+    Simulation(idle(load_run(find('leg.yaml', CONFIG))), [Look()]).step()
+    names = set(re.findall(r"\bstate\.[a-z_]+(?:\['\w+'\])?(?:\.[a-z_]+)?", README))
+    assert names >= {'state.body', "state.supplies['supply'].pressure", "state.actuators['hfe']"}
+    for name in names:
+        assert eval(name, {'state': shown[0]}) is not None

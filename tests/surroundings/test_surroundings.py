@@ -164,7 +164,8 @@ def three_actuators(first, second) -> RunConfig:
 
 
 @pytest.mark.parametrize(('first', 'second'), [
-    (RETURNING, LOW), (LOW, RETURNING), (replace(ACCUMULATOR, return_pressure_mpa=0.5), RETURNING)],
+    (RETURNING, LOW), (LOW, RETURNING),
+    (replace(ACCUMULATOR, return_pressure_mpa=0.5), RETURNING)],
     ids=['returning low', 'low returning', 'accumulator returning'])
 def test_the_oil_of_each_supply_is_that_of_its_own_actuators(first, second):
     """Drawn and given back, to a thousandth of a microlitre, while all of them move."""
