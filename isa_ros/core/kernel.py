@@ -33,7 +33,7 @@ if 'NUMBA_CACHE_DIR' not in os.environ:
 _compile = numba.njit(nogil=True, error_model='numpy', forceinline=True)
 
 
-class _LockedCache(FunctionCache):  # type: ignore[misc]
+class _LockedCache(FunctionCache):
     """numba's disk cache, which only one process at a time adds to."""
 
     def save_overload(self, sig: Any, data: Any) -> None:
@@ -42,14 +42,14 @@ class _LockedCache(FunctionCache):  # type: ignore[misc]
         directory = os.open(self.cache_path, os.O_RDONLY)
         try:
             fcntl.flock(directory, fcntl.LOCK_EX)
-            super().save_overload(sig, data)
+            super().save_overload(sig, data)  # type: ignore[no-untyped-call]
         finally:
             os.close(directory)
 
 
 def kernel(function: Callable[..., Any]) -> Any:
     """Compile a function for each combination of argument types, and keep that on disk."""
-    compiled = _compile(function)
+    compiled: Any = _compile(function)
     if compiled is not function:  # with NUMBA_DISABLE_JIT it is
-        compiled._cache = _LockedCache(function)
+        compiled._cache = _LockedCache(function)  # type: ignore[no-untyped-call]
     return compiled

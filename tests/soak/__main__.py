@@ -1,5 +1,5 @@
 """
-The long forms of the soak tests, with figures; nothing is kept but what they print.
+One soak test with figures of choice; nothing is kept but what it prints.
 
     python -m tests.soak killed --runs 10 --seconds 600 --seed 1 [--in-process]
     python -m tests.soak long --seconds 3600
