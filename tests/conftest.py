@@ -1,7 +1,8 @@
-"""Settings of all tests, and a check that each leaves the environment unchanged."""
+"""Settings of all tests, which of them run, and checks of what each leaves unchanged."""
 
 from collections.abc import Iterator
 import os
+from typing import Any
 
 from hypothesis import settings
 import pytest
@@ -14,6 +15,43 @@ settings.load_profile('isa_ros')
 
 # pytest changes the first at every phase of a test, the first import of a kernel sets the second.
 _CHANGING = ('PYTEST_CURRENT_TEST', 'NUMBA_CACHE_DIR')
+_NO_DOMAIN = 'none: tests.ros.domains.held_domain'
+
+
+def pytest_addoption(parser: pytest.Parser) -> None:
+    """Add the option that `./isa test --long` passes on."""
+    parser.addoption('--long', action='store_true', help='run the tests marked long, no others')
+
+
+def pytest_configure() -> None:
+    """Set a ROS_DOMAIN_ID that is refused: a test that starts nodes holds a domain of its own."""
+    os.environ['ROS_DOMAIN_ID'] = _NO_DOMAIN
+
+
+@pytest.hookimpl(optionalhook=True)
+def pytest_xdist_make_scheduler(config: pytest.Config, log: Any) -> Any:
+    """Distribute files, in the order of `long_files_first`."""
+    from tests.scheduling import ByFile
+    config.option.loadscopereorder = False
+    return ByFile(config, log)
+
+
+def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item]) -> None:
+    """Leave out the long tests, or all others; a worker's tests are sorted for the scheduler."""
+    chosen, others = [], []
+    for item in items:
+        is_long = item.get_closest_marker('long') is not None
+        (chosen if is_long == config.getoption('--long') else others).append(item)
+    if others:
+        config.hook.pytest_deselected(items=others)
+        items[:] = chosen
+    if _is_worker(config):
+        from tests.scheduling import long_files_first
+        long_files_first(items)
+
+
+def _is_worker(config: pytest.Config) -> bool:
+    return hasattr(config, 'workerinput')
 
 
 @pytest.fixture(autouse=True)
@@ -34,3 +72,17 @@ def same_environment() -> Iterator[None]:
     before = _environment()
     yield
     assert _environment() == before
+
+
+@pytest.fixture(scope='session')
+def compiled_kernels() -> None:
+    """Wait until the kernels are compiled."""
+    from tests.kernels import compile_kernels
+    compile_kernels()
+
+
+@pytest.fixture(autouse=True)
+def kernels_compiled_once(request: pytest.FixtureRequest) -> None:
+    """Let one of several workers compile; a process alone compiles what its tests need."""
+    if _is_worker(request.config) and not request.node.get_closest_marker('linter'):
+        request.getfixturevalue('compiled_kernels')

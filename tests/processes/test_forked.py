@@ -5,6 +5,7 @@ import sys
 import textwrap
 
 import pytest
+from tests.ros.domains import held_domain
 
 START = """
 import os, signal, socket, subprocess, sys, threading, time
@@ -129,15 +130,15 @@ def test_a_process_with_another_thread_is_not_copied():
 
 
 @pytest.mark.ros
-def test_a_process_with_a_node_is_not_copied():
+def test_a_process_with_a_node_is_not_copied(monkeypatch):
     """The middleware's threads would be missing in the copy, and their locks would stay held."""
-    run("""
-        from isa_ros.nodes.middleware.environment import set_defaults
-        set_defaults()
-        os.environ['ROS_DOMAIN_ID'] = '231'
-        import rclpy
-        assert can_fork()
-        rclpy.init()
-        node = rclpy.create_node('only')
-        assert not can_fork()
-        """)
+    with held_domain(monkeypatch):
+        run("""
+            from isa_ros.nodes.middleware.environment import set_defaults
+            set_defaults()
+            import rclpy
+            assert can_fork()
+            rclpy.init()
+            node = rclpy.create_node('only')
+            assert not can_fork()
+            """)

@@ -21,10 +21,11 @@ from isa_ros.run.wire import encode_tick
 import numpy as np
 import pytest
 from rclpy.node import Node
-from tests.ros.started import DEADLINE_S, wait_for
+from tests.ros.started import wait_for
 
 pytestmark = pytest.mark.ros
-LIMITS = Limits(join_s=DEADLINE_S, tick_s=0.3)
+DEADLINE_S = 20.0  # without processes to start and kernels to compile
+PATIENT = Limits(join_s=DEADLINE_S, tick_s=DEADLINE_S)
 NAMES = ('haa', 'kfe')
 
 
@@ -113,7 +114,7 @@ def seat(stepper: Scripted | Controller) -> ActuatorSeat | ControllerSeat:
 
 
 def make_transport(
-        node: Node, controllers: Sequence[str] = (), limits: Limits = LIMITS,
+        node: Node, controllers: Sequence[str] = (), limits: Limits = PATIENT,
         watch: Callable[[], str | None] = lambda: None,
         should_stop: Callable[[], bool] = lambda: False, first_remote: int = 0,
         ) -> LockstepTransport:
@@ -296,7 +297,7 @@ def test_late_participant_is_named(observer):
     stepper = Scripted()
     stepper.is_late_at = 1
     with spinning(observer.context, {'haa': stepper, 'kfe': Scripted()}):
-        transport = make_transport(observer)
+        transport = make_transport(observer, limits=Limits(join_s=DEADLINE_S, tick_s=0.3))
         begin(transport)
         tick(transport, 0)
         with pytest.raises(RunError, match=r'^haa: no answer to tick 1 after 0\.[34] s'):
@@ -306,10 +307,8 @@ def test_late_participant_is_named(observer):
 def test_lost_participant_is_named_before_its_timeout(observer):
     stepper, lost = Scripted(), []
     stepper.is_late_at = 0
-    limits = Limits(join_s=DEADLINE_S, tick_s=DEADLINE_S)
     with spinning(observer.context, {'haa': stepper, 'kfe': Scripted()}):
-        transport = make_transport(
-            observer, limits=limits, watch=lambda: lost[0] if lost else None)
+        transport = make_transport(observer, watch=lambda: lost[0] if lost else None)
         begin(transport)
         lost.append('haa: its process 1 was ended by SIGKILL')
         with pytest.raises(RunError, match='SIGKILL in tick 0'):
@@ -319,9 +318,8 @@ def test_lost_participant_is_named_before_its_timeout(observer):
 def test_stop_does_not_wait_for_the_timeout(observer):
     stepper, is_stopped = Scripted(), threading.Event()
     stepper.is_late_at = 0
-    limits = Limits(join_s=DEADLINE_S, tick_s=DEADLINE_S)
     with spinning(observer.context, {'haa': stepper, 'kfe': Scripted()}):
-        transport = make_transport(observer, limits=limits, should_stop=is_stopped.is_set)
+        transport = make_transport(observer, should_stop=is_stopped.is_set)
         begin(transport)
         is_stopped.set()
         with pytest.raises(Interrupted, match='tick 0, which haa did not end'):
@@ -443,13 +441,10 @@ def is_by_socket(end: LockstepTransport | Member) -> bool:
     return end._wires.is_open if isinstance(end, LockstepTransport) else end._wire is not None
 
 
-PATIENT = Limits(join_s=DEADLINE_S, tick_s=DEADLINE_S)
-
-
 def test_a_lost_step_is_asked_for_again(observer, carrier):
     stepper = Scripted()
     with spinning(observer.context, {'haa': Scripted(), 'kfe': stepper}):
-        transport = make_transport(observer, limits=PATIENT)
+        transport = make_transport(observer)
         begin(transport)
         drop_next(transport, carrier)
         assert tick(transport, 0)[0] == [1.0, 2.0]
@@ -474,7 +469,7 @@ def test_a_lost_answer_is_given_again_without_another_tick(observer, members, ca
     """The other participant repeats its answer too, which does not count as a second node."""
     steppers = {'haa': Scripted(), 'kfe': Scripted()}
     with spinning(observer.context, steppers):
-        transport = make_transport(observer, limits=PATIENT)
+        transport = make_transport(observer)
         begin(transport)
         drop_next(members[1], carrier)
         for number in range(50):
@@ -486,7 +481,7 @@ def test_a_lost_state_is_given_again(observer, members, carrier):
     """A state is saved once for repeated requests; a later request saves a new one."""
     steppers = {'haa': Scripted(), 'kfe': Scripted()}
     with spinning(observer.context, steppers):
-        transport = make_transport(observer, limits=PATIENT)
+        transport = make_transport(observer)
         begin(transport)
         tick(transport, 0)
         drop_next(members[0], carrier)
@@ -501,7 +496,7 @@ def test_a_repeat_that_newer_steps_have_overtaken_is_past(observer, monkeypatch)
     slow = Scripted()
     steppers = {'haa': Scripted(), 'kfe': slow}
     with spinning(observer.context, steppers):
-        transport = make_transport(observer, limits=PATIENT)
+        transport = make_transport(observer)
         begin(transport)
         tick(transport, 0)
         slow.pause_s = 0.06
@@ -518,7 +513,7 @@ def test_without_sockets_the_topics_carry_the_run_on(
     monkeypatch.setattr(lockstep, 'REPEAT_S', DEADLINE_S)
     steppers = {'haa': Scripted(), 'kfe': Scripted()}
     with spinning(observer.context, steppers):
-        transport = make_transport(observer, limits=PATIENT)
+        transport = make_transport(observer)
         begin(transport)
         tick(transport, 0)
         assert is_by_socket(transport) == (carrier == 'sockets')
@@ -536,7 +531,7 @@ def test_without_sockets_the_topics_carry_the_run_on(
 def test_steps_too_large_for_sockets_travel_as_topics(observer, monkeypatch, carrier):
     monkeypatch.setattr(local_wire, 'LARGEST', 200)
     with spinning(observer.context, {'haa': Scripted(), 'kfe': Scripted()}):
-        transport = make_transport(observer, limits=PATIENT)
+        transport = make_transport(observer)
         begin(transport)
         assert is_by_socket(transport) == (carrier == 'sockets')
         for number in range(50):
@@ -554,7 +549,7 @@ def test_a_participant_without_a_socket_keeps_all_on_topics(observer, monkeypatc
         return connect(run_id, identity, slice_s) if len(taken) == 1 else None
     monkeypatch.setattr(local_wire.LocalWire, 'to_run', staticmethod(one_only))
     with spinning(observer.context, {'haa': Scripted(), 'kfe': Scripted()}):
-        transport = make_transport(observer, limits=PATIENT)
+        transport = make_transport(observer)
         begin(transport)
         assert not is_by_socket(transport)
         for number in range(50):

@@ -17,6 +17,7 @@ import threading
 import time
 
 import pytest
+from tests.ros.domains import held_domain
 from tests.ros.hosts import ADDRESSES, Host, two_hosts, two_lossy_hosts, why_no_hosts
 from tests.ros.started import bringup, DROP, LEG, started, wait_for
 
@@ -100,7 +101,8 @@ def found(tmp_path_factory: pytest.TempPathFactory,
           request: pytest.FixtureRequest) -> Iterator[dict[str, str]]:
     """Return the sha256 of the run in one process; each way adds its own; print all at the end."""
     bag = tmp_path_factory.mktemp('in_one_process') / 'bag'
-    with bringup(bag, *RUN, '--in-process') as run:
+    with pytest.MonkeyPatch.context() as patch, held_domain(patch), \
+            bringup(bag, *RUN, '--in-process') as run:
         assert run.exit_code() == 0, run.errors
     hashes = {'in_one_process': sha256(bag)}
     yield hashes

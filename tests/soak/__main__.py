@@ -1,5 +1,5 @@
 """
-The long forms of the soak tests, with figures; only their output is kept.
+One soak test with chosen figures; only its output is kept.
 
     python -m tests.soak killed --runs 10 --seconds 600 --seed 1 [--in-process]
     python -m tests.soak long --seconds 3600

@@ -1,4 +1,4 @@
-"""The short forms of the soak tests; `python -m tests.soak` runs the long ones."""
+"""The short forms of the soak tests; test_long.py has the long ones."""
 
 import pytest
 from tests.ros.domains import held_domain, observing

@@ -13,6 +13,7 @@ import pytest
 RUN = secrets.randbits(63)  # another suite on this host must not meet this one
 IDENTITIES = {0: b'identity of haa', 2: b'identity of kfe'}
 SLICE_S = 0.05
+LONG_SLICE_S = 10.0  # by far longer than a busy host keeps a process waiting
 
 pytestmark = pytest.mark.skipif(
     not local_wire.is_possible(), reason="abstract socket names are Linux's")
@@ -27,8 +28,8 @@ def wires() -> Iterator[LocalWires]:
     wires.close()
 
 
-def call(identity: bytes, run: int = RUN) -> LocalWire:
-    wire = LocalWire.to_run(run, identity, SLICE_S)
+def call(identity: bytes, run: int = RUN, slice_s: float = SLICE_S) -> LocalWire:
+    wire = LocalWire.to_run(run, identity, slice_s)
     assert wire is not None
     return wire
 
@@ -37,6 +38,16 @@ def call(identity: bytes, run: int = RUN) -> LocalWire:
 def ends(wires) -> Iterator[list[LocalWire]]:
     """Return the connected ends of two participants."""
     ends = [call(identity) for identity in IDENTITIES.values()]
+    assert wires.connect(IDENTITIES)
+    yield ends
+    for end in ends:
+        end.close()
+
+
+@pytest.fixture
+def patient_ends(wires) -> Iterator[list[LocalWire]]:
+    """Return the connected ends of two participants that would wait for long."""
+    ends = [call(identity, slice_s=LONG_SLICE_S) for identity in IDENTITIES.values()]
     assert wires.connect(IDENTITIES)
     yield ends
     for end in ends:
@@ -187,24 +198,24 @@ def test_no_connection_is_accepted_once_the_run_goes_on(wires, ends):
     assert LocalWire.to_run(RUN, b'late', SLICE_S) is None
 
 
-def test_where_one_closes_all_are_closed(wires, ends):
+def test_where_one_closes_all_are_closed(wires, patient_ends):
     """Messages sent before the end are still read."""
-    assert ends[0].send(b'last')
-    ends[0].close()
-    assert wires.wait(SLICE_S) == b'last' and wires.is_open
+    assert patient_ends[0].send(b'last')
+    patient_ends[0].close()
+    assert wires.wait(LONG_SLICE_S) == b'last' and wires.is_open
     begin = time.monotonic()
-    assert wires.wait(SLICE_S) is None and not wires.is_open
-    assert ends[1].wait() is None and not ends[1].is_open
-    assert time.monotonic() - begin < SLICE_S
+    assert wires.wait(LONG_SLICE_S) is None and not wires.is_open
+    assert patient_ends[1].wait() is None and not patient_ends[1].is_open
+    assert time.monotonic() - begin < LONG_SLICE_S
     assert not wires.send(b'step')
 
 
-def test_a_coordinator_that_ends_is_noticed_at_once(wires, ends):
+def test_a_coordinator_that_ends_is_noticed_at_once(wires, patient_ends):
     wires.close()
     begin = time.monotonic()
-    assert ends[0].wait() is None and not ends[0].is_open
-    assert not ends[1].send(b'answer') and not ends[1].is_open
-    assert time.monotonic() - begin < SLICE_S
+    assert patient_ends[0].wait() is None and not patient_ends[0].is_open
+    assert not patient_ends[1].send(b'answer') and not patient_ends[1].is_open
+    assert time.monotonic() - begin < LONG_SLICE_S
 
 
 def test_a_coordinator_leads_one_run_after_the_other(wires, ends):

@@ -3,25 +3,23 @@
 from isa_ros.errors import ConfigError
 from isa_ros.nodes.middleware.domain import domain_id, sole_coordinator
 import pytest
-
-UNUSED_DOMAIN = '231'  # no port numbers are left for nodes there
+from tests.ros.domains import held_domain
 
 
 def test_a_second_coordinator_is_refused(monkeypatch):
-    monkeypatch.setenv('ROS_DOMAIN_ID', UNUSED_DOMAIN)
-    with sole_coordinator():
-        with pytest.raises(ConfigError, match='another coordinator runs in ROS_DOMAIN_ID 231'):
-            with sole_coordinator():
-                pass
-    with sole_coordinator():
-        pass
+    with held_domain(monkeypatch) as domain:
+        with sole_coordinator():
+            with pytest.raises(
+                    ConfigError, match=f'another coordinator runs in ROS_DOMAIN_ID {domain}'):
+                with sole_coordinator():
+                    pass
+        with sole_coordinator():
+            pass
 
 
 def test_another_domain_is_free(monkeypatch):
-    monkeypatch.setenv('ROS_DOMAIN_ID', UNUSED_DOMAIN)
-    with sole_coordinator():
-        monkeypatch.setenv('ROS_DOMAIN_ID', '230')
-        with sole_coordinator():
+    with held_domain(monkeypatch), sole_coordinator():
+        with held_domain(monkeypatch), sole_coordinator():
             pass
 
 
