@@ -32,7 +32,7 @@ def test_the_configuration_must_be_the_same():
     ('load', 'xyz', 'is no saved state of a run'),
     ('load', None, 'is no saved state of a run'),
     ('participants', 3, 'is no saved state of a run'),
-    ('format', 2, 'format 2, must be 1')])
+    ('format', 1, 'format 1, must be 2')])
 def test_a_damaged_text_is_refused(key, value, message):
     tree = json.loads(STATE.to_json('digest', {})) | {key: value}
     with pytest.raises(ConfigError, match=message):

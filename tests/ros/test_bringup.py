@@ -6,10 +6,13 @@ import signal
 
 from isa_ros.bag.reader import Bag
 from isa_ros.nodes.bringup import bringup as bring_up
+from isa_ros.replay.replay import replay
 from isa_ros.run.options import Request
+from msg_adapters.cdr_reader import decode
 import pytest
+from sensor_msgs.msg import FluidPressure
 from tests.ros.faults import sha256, wait_for_tick_0
-from tests.ros.started import bringup, DEADLINE_S, DROP, is_alive, RIG, started
+from tests.ros.started import bringup, DEADLINE_S, DROP, is_alive, LEG, RIG, started
 
 pytestmark = pytest.mark.ros
 
@@ -29,6 +32,37 @@ def test_processes_and_one_process_give_equal_files(domain, tmp_path):
             assert run.exit_code() == 0, run.errors
     assert read_sequences(bags[0]) == list(range(301))
     assert sha256(bags[0]) == sha256(bags[1])
+
+
+TWO_SUPPLIES = """
+supplies:
+  pump: {kind: constant, pressure_mpa: 16.0, return_pressure_mpa: 0.0, feeds: [kfe, haa]}
+  hip:
+    kind: constant
+    pressure_mpa: 20.7
+    return_pressure_mpa: 0.5
+    return_line: {kind: volume, oil_volume_l: 2.0, bulk_modulus: 1.0e+9, tank_lpm_per_mpa: 40.0}
+    feeds: [hfe]
+"""
+
+
+def test_several_supplies_give_equal_files_and_replay(domain, tmp_path):
+    """Each actuator is told the pressures of its own supply, wherever it runs."""
+    config = tmp_path / 'leg.yaml'
+    config.write_text(re.sub(r'\nsupply: .*\n', TWO_SUPPLIES, LEG.read_text()))
+    bags = [tmp_path / 'several' / 'bag', tmp_path / 'one' / 'bag']
+    for bag, options in zip(bags, [(), ('--in-process',)]):
+        bag.parent.mkdir()
+        with bringup(bag, '--scenario', str(DROP), '--duration', '0.15', *options,
+                     config=config) as run:
+            assert run.exit_code() == 0, run.errors
+    assert sha256(bags[0]) == sha256(bags[1])
+    assert replay(Bag(bags[0])).is_equal
+    topic = '/coordinator/hip_return_pressure'
+    pressures = [decode(message.data, FluidPressure).fluid_pressure
+                 for message in Bag(bags[0]).messages() if message.topic == topic]
+    assert pressures[0] == 0.5e6 + 101325.0 and len(pressures) == 151
+    assert max(pressures) > pressures[0] + 100.0
 
 
 def test_a_program_runs_one_after_the_other(domain, tmp_path):

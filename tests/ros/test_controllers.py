@@ -5,11 +5,17 @@ from pathlib import Path
 import signal
 
 from isa_ros.bag.reader import Bag
+from isa_ros.config.run_file import load_run
+from isa_ros.examples.sway import Sway
 from isa_ros.replay.replay import replay
+from isa_ros.run.local_run import shown
+from isa_ros.run.narrator import packer_of
+from isa_ros.scenario.scenario import idle
+from isa_ros.simulation import Simulation
 from msg_adapters.cdr_reader import decode
 import pytest
 from sensor_msgs.msg import JointState
-from tests.ros.started import bringup, started, wait_for
+from tests.ros.started import bringup, LEG, started, wait_for
 
 pytestmark = pytest.mark.ros
 SWAY = 'isa_ros.examples.sway'
@@ -50,6 +56,29 @@ def test_a_controller_in_the_lockstep_gives_the_same_bytes_every_time(domain, tm
     assert setpoints(bags[0])[0] == (1, 0.038)
     for bag in bags:
         assert replay(Bag(bag)).is_equal
+
+
+def simulated(n_ticks: int) -> list[tuple[int, str, bytes]]:
+    """Return (sequence, topic, data) of the leg with the controller in memory."""
+    run = load_run(LEG)
+    simulation, said = Simulation(idle(run), [Sway()]), []
+    packer = packer_of(run, shown(simulation))
+    while True:
+        packer.pack(simulation.t_ns, max(0, simulation.t_ns - run.step_ns), simulation.tuned)
+        said += [(simulation.ticks, packer.topics[k].name, data)
+                 for k, data in packer.everything()]
+        if simulation.ticks == n_ticks:
+            return said
+        simulation.step()
+
+
+def test_a_controller_in_memory_gives_the_bytes_of_one_in_the_lockstep(domain, tmp_path):
+    """Message by message: time, actuators, supply, leg, and what took effect when."""
+    bag = tmp_path / 'run' / 'bag'
+    with started(tmp_path / 'sway.log', SWAY):
+        record(bag, '--duration', '0.1')
+    assert [(message.sequence, message.topic, message.data)
+            for message in Bag(bag).messages()] == simulated(100)
 
 
 def test_a_controller_that_is_not_there_is_named(domain, tmp_path):
