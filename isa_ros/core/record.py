@@ -1,9 +1,10 @@
 """Numpy records filled by the names of their fields, as kernels read them."""
 
 import numpy as np
+from numpy.typing import ArrayLike
 
 
-def record(dtype: np.dtype[np.void], /, **fields: object) -> np.record:
+def record(dtype: np.dtype[np.void], /, **fields: ArrayLike) -> np.record:
     """
     Return one record of ``dtype``, each of its fields given by name.
 
