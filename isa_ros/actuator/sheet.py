@@ -4,6 +4,7 @@ from dataclasses import dataclass
 
 from isa_ros.actuator.kernel import ACTUATOR
 from isa_ros.core.parameter import choice, Parameters
+from isa_ros.core.record import record
 from isa_ros.core.units import MILLI
 from isa_ros.errors import ConfigError
 from isa_ros.plant.chambers import oil_stiffness
@@ -12,6 +13,7 @@ from isa_ros.plant.plant import LinearPlant, plant_record, RotaryPlant
 from isa_ros.plant.spool import DirectSpool, PilotedSpool
 from isa_ros.reu.block import Pid
 from isa_ros.reu.cascade import reu_record
+from isa_ros.reu.feedback_linearisation import LINEARISED
 from isa_ros.reu.lead_lag import LeadLag
 from isa_ros.reu.schedule import POINTS
 from isa_ros.reu.wiring import Held, Off, refuse_nonsense, Reu, valve_block
@@ -105,14 +107,15 @@ def force_stiffness(plant: np.record) -> np.ndarray:
         for s in np.linspace(0.0, plant.chambers.stroke, POINTS)])
 
 
-def known_model(plant: np.record, output_per_spool: float) -> tuple[float, ...]:
+def known_model(plant: np.record, output_per_spool: float) -> np.record:
     """Return the `LINEARISED` record: a linearising block's model of its actuator."""
     oil, valve = plant.chambers, plant.valve
-    return (
-        oil.area_a, oil.area_b, oil.stroke, oil.dead_volume, oil.beta, oil.c_li,
-        plant.mechanics.k_s, valve.k_low, valve.k_high, valve.q_rest, valve.x_dg, valve.x_max,
-        valve.per_root_drop,
-        valve.f_pa, valve.f_at, valve.f_bt, valve.f_pb, output_per_spool)
+    return record(
+        LINEARISED, area_a=oil.area_a, area_b=oil.area_b, stroke=oil.stroke,
+        dead_volume=oil.dead_volume, beta=oil.beta, c_li=oil.c_li, k_s=plant.mechanics.k_s,
+        k_low=valve.k_low, k_high=valve.k_high, q_rest=valve.q_rest, x_dg=valve.x_dg,
+        x_max=valve.x_max, per_root_drop=valve.per_root_drop, f_pa=valve.f_pa,
+        f_at=valve.f_at, f_bt=valve.f_bt, f_pb=valve.f_pb, output_per_spool=output_per_spool)
 
 
 def actuator_record(sheet: ActuatorSheet, offset_steps: int) -> np.ndarray:
@@ -124,6 +127,6 @@ def actuator_record(sheet: ActuatorSheet, offset_steps: int) -> np.ndarray:
         sheet.reu, offset_steps, plant[0].chambers.stroke, force_stiffness(plant[0]),
         known_model(plant[0], 1.0 if commands_spool else 1.0 / k_spool),
         k_spool, plant[0].coil.parallel)
-    record = np.zeros(1, ACTUATOR)
-    record['plant'], record['reu'] = plant, reu
-    return record
+    rows = np.zeros(1, ACTUATOR)
+    rows['plant'], rows['reu'] = plant, reu
+    return rows

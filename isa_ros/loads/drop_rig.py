@@ -16,6 +16,7 @@ from isa_ros.core.contact import one_sided
 from isa_ros.core.gravity import STANDARD_GRAVITY
 from isa_ros.core.kernel import kernel
 from isa_ros.core.parameter import parameter
+from isa_ros.core.record import record
 from isa_ros.core.timebase import NS_PER_SECOND, PLANT_STEP_NS
 from isa_ros.errors import ParameterError
 from isa_ros.loads.wheel import Wheel
@@ -59,11 +60,12 @@ WEIGHT_STATE = np.dtype([
 ])
 
 
-def rope_record(sheet: DropRig) -> tuple[float | int, ...]:
+def rope_record(sheet: DropRig) -> np.record:
     """Return the `ROPE` record of a sheet."""
-    return (sheet.radius, sheet.rope_stiffness, sheet.rope_damping, sheet.slack,
-            sheet.weight_kg, STANDARD_GRAVITY,
-            round(sheet.release_s * NS_PER_SECOND / PLANT_STEP_NS))
+    return record(
+        ROPE, radius=sheet.radius, stiffness=sheet.rope_stiffness, damping=sheet.rope_damping,
+        slack=sheet.slack, mass=sheet.weight_kg, gravity=STANDARD_GRAVITY,
+        release_step=round(sheet.release_s * NS_PER_SECOND / PLANT_STEP_NS))
 
 
 @kernel

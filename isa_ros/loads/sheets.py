@@ -8,9 +8,10 @@ plus the forces of `isa_ros.loads.forces`. Generalised units: N, m, kg or Nm, ra
 from dataclasses import dataclass
 
 from isa_ros.core.parameter import parameter, Parameters
+from isa_ros.core.record import record
 from isa_ros.core.signals import LOAD_PORT
 from isa_ros.loads.drop_rig import DropRig, rope_record
-from isa_ros.loads.forces import OWN_LOAD
+from isa_ros.loads.forces import OWN_LOAD, PAD, STOPS
 from isa_ros.loads.wheel import Wheel
 import numpy as np
 
@@ -65,11 +66,15 @@ def own_record(load: LocalLoad | None) -> np.ndarray:
     """Return the load's `OWN_LOAD`, shape (1,); zeros for a load without such forces."""
     own = np.zeros(1, OWN_LOAD)
     if isinstance(load, Wheel):
-        own['stops'] = (load.stop_low, load.stop_high, load.stop_stiffness, load.stop_damping)
+        own['stops'] = record(
+            STOPS, low=load.stop_low, high=load.stop_high, stiffness=load.stop_stiffness,
+            damping=load.stop_damping)
     if isinstance(load, DropRig):
         own['rope'] = rope_record(load)
     elif isinstance(load, Pad):
-        own['pad'] = (load.gap, load.radius, load.stiffness, load.damping)
+        own['pad'] = record(
+            PAD, gap=load.gap, radius=load.radius, stiffness=load.stiffness,
+            damping=load.damping)
     return own
 
 

@@ -11,6 +11,7 @@ import math
 
 from isa_ros.core.kernel import kernel
 from isa_ros.core.parameter import parameter, Parameters
+from isa_ros.core.record import record
 from isa_ros.core.units import MILLI, MILLILITRE
 from isa_ros.errors import ParameterError
 import numpy as np
@@ -83,11 +84,13 @@ CHAMBERS = np.dtype([
 CHAMBERS_STATE = np.dtype([('p_a', 'f8'), ('p_b', 'f8')])
 
 
-def chambers_record(drive: Cylinder | Vane, oil: Oil) -> tuple[float, ...]:
+def chambers_record(drive: Cylinder | Vane, oil: Oil) -> np.record:
     """Return the `CHAMBERS` record."""
-    return (
-        *drive.areas, drive.stroke, oil.dead_volume_ml * MILLILITRE,
-        oil.effective_bulk_modulus, oil.cross_port_leakage, oil.aeration_pressure_kpa * 1e3)
+    area_a, area_b = drive.areas
+    return record(
+        CHAMBERS, area_a=area_a, area_b=area_b, stroke=drive.stroke,
+        dead_volume=oil.dead_volume_ml * MILLILITRE, beta=oil.effective_bulk_modulus,
+        c_li=oil.cross_port_leakage, p_air=oil.aeration_pressure_kpa * 1e3)
 
 
 @kernel

@@ -14,6 +14,7 @@ import math
 
 from isa_ros.core.kernel import kernel
 from isa_ros.core.parameter import choice, parameter, Parameters
+from isa_ros.core.record import record
 import numpy as np
 
 _COILS = ('parallel', 'series', 'one_open')
@@ -72,15 +73,19 @@ def circuit(sheet: Coil) -> tuple[float, float, float]:
             sheet.coil_inductance * coils_in_row / branches, per_series)
 
 
-def coil_record(sheet: Coil) -> tuple[float, ...]:
-    """Return the `COIL` record of a sheet."""
+def coil_record(sheet: ClosedLoopCoil | ExplicitCoil) -> np.record:
+    """Return the `COIL` record of a sheet; what the other kind of coil has is zero."""
     resistance, inductance, per_series = circuit(sheet)
-    common = (sheet.supply_voltage, resistance, inductance, per_series)
+    kind, p_c, mode_w, mode_share, mode_zeta = CLOSED_LOOP, 0.0, 0.0, 0.0, 0.0
     if isinstance(sheet, ExplicitCoil):
-        return (EXPLICIT, *common, 0.0, 2.0 * math.pi * sheet.mode_frequency_hz,
-                sheet.mode_strength, sheet.mode_damping)
-    assert isinstance(sheet, ClosedLoopCoil)
-    return (CLOSED_LOOP, *common, sheet.bandwidth_rad_per_s, 0.0, 0.0, 0.0)
+        kind, mode_w = EXPLICIT, 2.0 * math.pi * sheet.mode_frequency_hz
+        mode_share, mode_zeta = sheet.mode_strength, sheet.mode_damping
+    else:
+        p_c = sheet.bandwidth_rad_per_s
+    return record(
+        COIL, kind=kind, voltage=sheet.supply_voltage, resistance=resistance,
+        inductance=inductance, parallel=per_series, p_c=p_c, mode_w=mode_w,
+        mode_share=mode_share, mode_zeta=mode_zeta)
 
 
 @kernel

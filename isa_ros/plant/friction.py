@@ -10,6 +10,7 @@ import math
 
 from isa_ros.core.kernel import kernel
 from isa_ros.core.parameter import parameter, Parameters
+from isa_ros.core.record import record
 import numpy as np
 
 
@@ -31,10 +32,11 @@ FRICTION = np.dtype([
 FRICTION_STATE = np.dtype([('bristle', 'f8')])
 
 
-def friction_record(sheet: Friction) -> tuple[float, ...]:
+def friction_record(sheet: Friction) -> np.record:
     """Return the `FRICTION` record of a sheet."""
-    return (sheet.stiction, sheet.coulomb, sheet.bristle_stiffness, sheet.bristle_damping,
-            sheet.viscous, sheet.stribeck_speed)
+    return record(
+        FRICTION, stiction=sheet.stiction, coulomb=sheet.coulomb, sigma0=sheet.bristle_stiffness,
+        sigma1=sheet.bristle_damping, sigma2=sheet.viscous, v_s=sheet.stribeck_speed)
 
 
 @kernel

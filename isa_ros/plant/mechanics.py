@@ -11,6 +11,7 @@ import math
 from isa_ros.core.contact import one_sided
 from isa_ros.core.kernel import kernel
 from isa_ros.core.parameter import parameter, Parameters
+from isa_ros.core.record import record
 import numpy as np
 
 
@@ -33,10 +34,11 @@ MECHANICS = np.dtype([
 MECHANICS_STATE = np.dtype([('position', 'f8'), ('velocity', 'f8')])
 
 
-def mechanics_record(sheet: Mechanics) -> tuple[float, ...]:
+def mechanics_record(sheet: Mechanics) -> np.record:
     """Return the `MECHANICS` record of a sheet."""
-    return (sheet.inertia, sheet.sensor_stiffness, sheet.sensor_damping, sheet.backlash,
-            sheet.stop_stiffness, sheet.stop_damping)
+    return record(
+        MECHANICS, inertia=sheet.inertia, k_s=sheet.sensor_stiffness, d_s=sheet.sensor_damping,
+        backlash=sheet.backlash, k_stop=sheet.stop_stiffness, d_stop=sheet.stop_damping)
 
 
 @kernel

@@ -9,6 +9,7 @@ from dataclasses import dataclass
 
 from isa_ros.core.kernel import kernel
 from isa_ros.core.parameter import Parameters
+from isa_ros.core.record import record
 from isa_ros.core.timebase import PLANT_STEP
 from isa_ros.errors import ParameterError
 from isa_ros.plant import chambers, coil, friction, mechanics, relief, sensors, servo_valve, spool
@@ -75,18 +76,18 @@ def plant_record(sheet: LinearPlant | RotaryPlant) -> np.recarray:
 
     """
     area_a, area_b = sheet.drive.areas
-    record = np.array([(
-        coil.coil_record(sheet.coil),
-        spool.spool_record(sheet.spool, sheet.oil.temperature_celsius),
-        servo_valve.valve_record(sheet.valve, area_a / area_b),
-        chambers.chambers_record(sheet.drive, sheet.oil),
-        relief.relief_record(sheet.relief),
-        friction.friction_record(sheet.friction),
-        mechanics.mechanics_record(sheet.mechanics),
-        sensors.sensors_record(sheet.sensors),
-    )], dtype=PLANT).view(np.recarray)
-    _refuse_stiff_relief(record[0], sheet)
-    return record
+    rows = np.array([record(
+        PLANT,
+        coil=coil.coil_record(sheet.coil),
+        spool=spool.spool_record(sheet.spool, sheet.oil.temperature_celsius),
+        valve=servo_valve.valve_record(sheet.valve, area_a / area_b),
+        chambers=chambers.chambers_record(sheet.drive, sheet.oil),
+        relief=relief.relief_record(sheet.relief),
+        friction=friction.friction_record(sheet.friction),
+        mechanics=mechanics.mechanics_record(sheet.mechanics),
+        sensors=sensors.sensors_record(sheet.sensors))], PLANT).view(np.recarray)
+    _refuse_stiff_relief(rows[0], sheet)
+    return rows
 
 
 def _refuse_stiff_relief(plant: np.record, sheet: PlantSheet) -> None:

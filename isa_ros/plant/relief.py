@@ -8,6 +8,7 @@ from dataclasses import dataclass
 
 from isa_ros.core.kernel import kernel
 from isa_ros.core.parameter import parameter, Parameters
+from isa_ros.core.record import record
 from isa_ros.core.units import LPM, MPA
 import numpy as np
 
@@ -27,12 +28,12 @@ RELIEF = np.dtype([('p_open', 'f8'), ('slope', 'f8'), ('c_refill', 'f8')])
 _REFILL_DROP = 1e5  # Pa below return at which `refill_lpm` is stated
 
 
-def relief_record(sheet: Relief) -> tuple[float, ...]:
+def relief_record(sheet: Relief) -> np.record:
     """Return the `RELIEF` record of a sheet."""
-    return (
-        sheet.opening_pressure_mpa * MPA,
-        sheet.slope_lpm_per_mpa * LPM / MPA,
-        sheet.refill_lpm * LPM / (_REFILL_DROP * _REFILL_DROP))
+    return record(
+        RELIEF, p_open=sheet.opening_pressure_mpa * MPA,
+        slope=sheet.slope_lpm_per_mpa * LPM / MPA,
+        c_refill=sheet.refill_lpm * LPM / (_REFILL_DROP * _REFILL_DROP))
 
 
 @kernel

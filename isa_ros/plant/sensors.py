@@ -9,6 +9,7 @@ import math
 
 from isa_ros.core.kernel import kernel
 from isa_ros.core.parameter import parameter, Parameters
+from isa_ros.core.record import record
 from isa_ros.core.units import MILLI, MPA
 from isa_ros.errors import ParameterError
 import numpy as np
@@ -40,17 +41,17 @@ SENSORS = np.dtype([
     ('current_range', 'f8'), ('current_step', 'f8')])
 
 
-def sensors_record(sheet: Sensors) -> tuple[float, ...]:
+def sensors_record(sheet: Sensors) -> np.record:
     """Return the `SENSORS` record: a range and a step of one least significant bit each."""
     codes = 2.0 ** sheet.adc_bits
     pressure = sheet.pressure_range_mpa * MPA
     spool, current = sheet.spool_range_mm * MILLI, sheet.current_range_ma * MILLI
-    return (
-        sheet.encoder_resolution,
-        sheet.force_range, 2.0 * sheet.force_range / codes,
-        pressure, pressure / codes,
-        spool, 2.0 * spool / codes,
-        current, 2.0 * current / codes)
+    return record(
+        SENSORS, encoder=sheet.encoder_resolution,
+        force_range=sheet.force_range, force_step=2.0 * sheet.force_range / codes,
+        pressure_range=pressure, pressure_step=pressure / codes,
+        spool_range=spool, spool_step=2.0 * spool / codes,
+        current_range=current, current_step=2.0 * current / codes)
 
 
 @kernel

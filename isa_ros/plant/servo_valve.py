@@ -10,9 +10,11 @@ spool (`flow_slope`). Neglected: flow forces and hysteresis.
 
 from dataclasses import dataclass
 import math
+from typing import NamedTuple
 
 from isa_ros.core.kernel import kernel
 from isa_ros.core.parameter import choice, parameter, Parameters
+from isa_ros.core.record import record
 from isa_ros.core.units import LPM, MICRO, MILLI, MPA
 import numpy as np
 
@@ -105,33 +107,41 @@ def land_factors(area_ratio: float) -> tuple[float, float, float, float]:
     return 1.0, math.sqrt(area_ratio), 1.0 / area_ratio, 1.0 / math.sqrt(area_ratio)
 
 
-def _curve(sheet: Valve) -> tuple[float, float, float, float]:
-    """Return (k_low, k_high, q_rest, x_dg) of a sheet's flow curve."""
+class _Curve(NamedTuple):
+    """The flow curve's fields of a `VALVE`."""
+
+    k_low: float
+    k_high: float
+    q_rest: float
+    x_dg: float
+
+
+def _curve(sheet: DualGainValve | HighResponseValve) -> _Curve:
     if isinstance(sheet, HighResponseValve):
-        slope = flow_slope(sheet.gain_lpm_per_ma, sheet.spool_gain_mm_per_ma)
-        return (slope, 0.0, sheet.remaining_lpm * LPM,
-                sheet.knee_ma * sheet.spool_gain_mm_per_ma * MILLI)
-    assert isinstance(sheet, DualGainValve)
-    return (flow_slope(sheet.low_gain_lpm_per_ma, sheet.spool_gain_mm_per_ma),
-            flow_slope(sheet.high_gain_lpm_per_ma, sheet.spool_gain_mm_per_ma),
-            0.0, sheet.dual_gain_point_mm * MILLI)
+        return _Curve(
+            k_low=flow_slope(sheet.gain_lpm_per_ma, sheet.spool_gain_mm_per_ma), k_high=0.0,
+            q_rest=sheet.remaining_lpm * LPM,
+            x_dg=sheet.knee_ma * sheet.spool_gain_mm_per_ma * MILLI)
+    return _Curve(
+        k_low=flow_slope(sheet.low_gain_lpm_per_ma, sheet.spool_gain_mm_per_ma),
+        k_high=flow_slope(sheet.high_gain_lpm_per_ma, sheet.spool_gain_mm_per_ma),
+        q_rest=0.0, x_dg=sheet.dual_gain_point_mm * MILLI)
 
 
-def valve_record(sheet: Valve, area_ratio: float) -> tuple[float, ...]:
+def valve_record(sheet: DualGainValve | HighResponseValve, area_ratio: float) -> np.record:
     """Return the `VALVE` record of a sheet on an actuator with A_A/A_B = ``area_ratio``."""
-    laps = [getattr(sheet.lap, f'{land}_um') * MICRO for land in ('pa', 'at', 'bt', 'pb')]
-    return (
-        sheet.spool_gain_mm_per_ma,
-        *_curve(sheet),
-        sheet.spool_stop_mm * MILLI,
-        1.0 / math.sqrt(sheet.land_drop_mpa * MPA),
-        sheet.null_leakage_lpm * LPM,
-        sheet.leakage_travel_um * MICRO,
-        sheet.tare_leakage_lpm * LPM / math.sqrt(sheet.tare_pressure_mpa * MPA),
-        sheet.orifice_smoothing_kpa * 1e3,
-        *land_factors(area_ratio if sheet.slots == 'matched' else 1.0),
-        float(any(laps)), *laps,
-    )
+    f_pa, f_at, f_bt, f_pb = land_factors(area_ratio if sheet.slots == 'matched' else 1.0)
+    laps = {f'lap_{land}': getattr(sheet.lap, f'{land}_um') * MICRO
+            for land in ('pa', 'at', 'bt', 'pb')}
+    return record(
+        VALVE, k_spool=sheet.spool_gain_mm_per_ma, **_curve(sheet)._asdict(),
+        x_max=sheet.spool_stop_mm * MILLI,
+        per_root_drop=1.0 / math.sqrt(sheet.land_drop_mpa * MPA),
+        q_0=sheet.null_leakage_lpm * LPM, x_l=sheet.leakage_travel_um * MICRO,
+        c_tare=sheet.tare_leakage_lpm * LPM / math.sqrt(sheet.tare_pressure_mpa * MPA),
+        delta=sheet.orifice_smoothing_kpa * 1e3,
+        f_pa=f_pa, f_at=f_at, f_bt=f_bt, f_pb=f_pb,
+        is_lapped=float(any(laps.values())), **laps)
 
 
 def largest_flow_slope(valve: np.record, span: float) -> float:

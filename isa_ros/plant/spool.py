@@ -11,6 +11,7 @@ import math
 
 from isa_ros.core.kernel import kernel
 from isa_ros.core.parameter import parameter, Parameters
+from isa_ros.core.record import record
 from isa_ros.core.units import MICRO, MILLI, MPA
 import numpy as np
 
@@ -72,7 +73,7 @@ SPOOL = np.dtype([
 VALVE_STATE = np.dtype([('spool', 'f8'), ('velocity', 'f8'), ('acceleration', 'f8')])
 
 
-def spool_record(sheet: Spool, temperature: float) -> tuple[float, ...]:
+def spool_record(sheet: Spool, temperature: float) -> np.record:
     """Return the `SPOOL` record of a sheet with oil at ``temperature`` (celsius)."""
     kind, k_loop, k_pilot = DIRECT, 0.0, 0.0
     if isinstance(sheet, ClosedLoopSpool):
@@ -80,12 +81,13 @@ def spool_record(sheet: Spool, temperature: float) -> tuple[float, ...]:
     elif isinstance(sheet, PilotedSpool):
         kind, k_pilot = PILOTED, sheet.pilot_gain_mm_per_s_per_ma
     bias = sheet.null_bias
-    return (
-        kind, sheet.natural_frequency_rad_per_s, sheet.damping_ratio, k_loop, k_pilot,
-        bias.current_ma * MILLI
-        + bias.temperature_ua_per_k * MICRO * (temperature - bias.reference_celsius),
-        bias.supply_ma_per_mpa * MILLI / MPA, bias.return_ma_per_mpa * MILLI / MPA,
-        bias.reference_supply_mpa * MPA)
+    warmer = temperature - bias.reference_celsius
+    return record(
+        SPOOL, kind=kind, w_n=sheet.natural_frequency_rad_per_s, zeta=sheet.damping_ratio,
+        k_loop=k_loop, k_pilot=k_pilot,
+        bias=bias.current_ma * MILLI + bias.temperature_ua_per_k * MICRO * warmer,
+        bias_s=bias.supply_ma_per_mpa * MILLI / MPA, bias_t=bias.return_ma_per_mpa * MILLI / MPA,
+        p_s_ref=bias.reference_supply_mpa * MPA)
 
 
 @kernel

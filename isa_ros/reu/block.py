@@ -10,6 +10,7 @@ from dataclasses import dataclass
 
 from isa_ros.core.kernel import kernel
 from isa_ros.core.parameter import choice, parameter, Parameters, tunable
+from isa_ros.core.record import record
 from isa_ros.reu.compensation import (
     COMPENSATION, compensation_record, dual_gain_compensation, DualGain, Linear)
 from isa_ros.reu.filters import low_pass, low_pass_coefficient
@@ -53,16 +54,18 @@ BLOCK_STATE = np.dtype([
     ('error_rate', 'f8'), ('slow_rate', 'f8'), ('output', 'f8')])
 
 
-def block_record(sheet: Pid, table: np.ndarray) -> tuple[object, ...]:
+def block_record(sheet: Pid, table: np.ndarray) -> np.record:
     """Return the `BLOCK` record of a sheet; ``table`` (POINTS,) is its gain schedule."""
     smooths = sheet.measured_filter_hz > 0.0
-    return (
-        1.0 / sheet.rate_hz, sheet.kp, sheet.ki, sheet.kd, sheet.kf, sheet.kr, sheet.kv,
-        sheet.offset, sheet.setpoint_weight,
-        low_pass_coefficient(sheet.measured_filter_hz, sheet.rate_hz) if smooths else 1.0,
-        low_pass_coefficient(sheet.derivative_filter_hz, sheet.rate_hz),
-        sheet.limit, float(sheet.anti_windup == 'clamped'), sheet.retracting_factor,
-        compensation_record(sheet.compensation), table)
+    return record(
+        BLOCK, period=1.0 / sheet.rate_hz, kp=sheet.kp, ki=sheet.ki, kd=sheet.kd, kf=sheet.kf,
+        kr=sheet.kr, kv=sheet.kv, offset=sheet.offset, b=sheet.setpoint_weight,
+        measured_alpha=(low_pass_coefficient(sheet.measured_filter_hz, sheet.rate_hz)
+                        if smooths else 1.0),
+        derivative_alpha=low_pass_coefficient(sheet.derivative_filter_hz, sheet.rate_hz),
+        limit=sheet.limit, is_clamped=float(sheet.anti_windup == 'clamped'),
+        retracting=sheet.retracting_factor,
+        compensation=compensation_record(sheet.compensation), schedule=table)
 
 
 @kernel

@@ -67,7 +67,7 @@ REU_STATE = np.dtype([
 
 def reu_record(
         reu: Reu, offset_steps: int, stroke: float, stiffness: np.ndarray,
-        model: tuple[float, ...], k_spool: float, parallel: float) -> np.ndarray:
+        model: np.record, k_spool: float, parallel: float) -> np.ndarray:
     """
     Return the `REU` record, shape (1,).
 

@@ -9,6 +9,7 @@ from dataclasses import dataclass
 
 from isa_ros.core.kernel import kernel
 from isa_ros.core.parameter import choice, Parameters, tunable
+from isa_ros.core.record import record
 import numpy as np
 
 
@@ -32,11 +33,12 @@ COMPENSATION = np.dtype([('knee', 'f8'), ('slope', 'f8'), ('of_velocity', 'f8')]
 _NO_KNEE = 1e300  # any unit: a demand never reaches it
 
 
-def compensation_record(sheet: Linear | DualGain) -> tuple[float, ...]:
+def compensation_record(sheet: Linear | DualGain) -> np.record:
     """Return the `COMPENSATION` record of a sheet."""
     if isinstance(sheet, DualGain):
-        return sheet.knee, sheet.slope, float(sheet.applies_to == 'velocity')
-    return _NO_KNEE, 1.0, 0.0
+        return record(COMPENSATION, knee=sheet.knee, slope=sheet.slope,
+                      of_velocity=float(sheet.applies_to == 'velocity'))
+    return record(COMPENSATION, knee=_NO_KNEE, slope=1.0, of_velocity=0.0)
 
 
 @kernel

@@ -12,6 +12,7 @@ import math
 
 from isa_ros.core.kernel import kernel
 from isa_ros.core.parameter import choice, parameter, Parameters, tunable
+from isa_ros.core.record import record
 from isa_ros.reu.filters import low_pass, low_pass_coefficient
 import numpy as np
 
@@ -57,24 +58,21 @@ LINEARISATION = np.dtype([
 
 
 def linearisation_record(
-        sheet: FeedbackLinearisation, speed_filter_hz: float,
-        model: tuple[float, ...]) -> tuple[object, ...]:
+        sheet: FeedbackLinearisation, speed_filter_hz: float, model: np.record) -> np.record:
     """
     Return the `LINEARISATION` record of a sheet; ``model`` is its `LINEARISED` record.
 
     ``speed_filter_hz`` is the low-pass on the speed estimate that the block receives.
     """
-    names = LINEARISED.names or ()
-    known = dict(zip(names, model))
-    return (
-        1.0 / sheet.rate_hz, sheet.bandwidth_rad_per_s, sheet.ki_per_s2, sheet.kf,
-        low_pass_coefficient(sheet.derivative_filter_hz, sheet.rate_hz),
-        low_pass_coefficient(speed_filter_hz, sheet.rate_hz), sheet.velocity_share,
-        sheet.least_drop_kpa * 1e3, sheet.supply_pressure_mpa * 1e6,
-        sheet.return_pressure_mpa * 1e6,
-        min(sheet.limit, known['x_max'] * known['output_per_spool']),
-        float(sheet.anti_windup == 'clamped'),
-        model)
+    return record(
+        LINEARISATION, period=1.0 / sheet.rate_hz, bandwidth=sheet.bandwidth_rad_per_s,
+        ki=sheet.ki_per_s2, kf=sheet.kf,
+        derivative_alpha=low_pass_coefficient(sheet.derivative_filter_hz, sheet.rate_hz),
+        speed_alpha=low_pass_coefficient(speed_filter_hz, sheet.rate_hz),
+        velocity_share=sheet.velocity_share, least_drop=sheet.least_drop_kpa * 1e3,
+        p_s=sheet.supply_pressure_mpa * 1e6, p_t=sheet.return_pressure_mpa * 1e6,
+        limit=min(sheet.limit, model.x_max * model.output_per_spool),
+        is_clamped=float(sheet.anti_windup == 'clamped'), model=model)
 
 
 @kernel

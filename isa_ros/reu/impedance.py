@@ -8,6 +8,7 @@ from dataclasses import dataclass
 
 from isa_ros.core.kernel import kernel
 from isa_ros.core.parameter import parameter, Parameters, tunable
+from isa_ros.core.record import record
 import numpy as np
 
 
@@ -28,9 +29,9 @@ SETPOINT = np.dtype([
     ('stiffness', 'f8'), ('damping', 'f8'), ('is_enabled', 'f8')])
 
 
-def impedance_record(sheet: Impedance) -> tuple[float, ...]:
+def impedance_record(sheet: Impedance) -> np.record:
     """Return the `IMPEDANCE` record of a sheet."""
-    return sheet.force_out, sheet.force_in
+    return record(IMPEDANCE, force_out=sheet.force_out, force_in=sheet.force_in)
 
 
 @kernel

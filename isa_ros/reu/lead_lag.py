@@ -9,6 +9,7 @@ from dataclasses import dataclass
 
 from isa_ros.core.kernel import kernel
 from isa_ros.core.parameter import choice, parameter, Parameters, tunable
+from isa_ros.core.record import record
 from isa_ros.reu.filters import low_pass, low_pass_coefficient
 import numpy as np
 
@@ -46,7 +47,7 @@ def demand_gain(kp: float, static_gain: float) -> float:
     return (1.0 + kp * static_gain) / (kp * static_gain)
 
 
-def lead_lag_record(sheet: LeadLag) -> tuple[float, ...]:
+def lead_lag_record(sheet: LeadLag) -> np.record:
     """
     Return the `LEAD_LAG` record of a sheet: C(s) by plain Tustin, s = 2 (z - 1)/(T (z + 1))  (R9).
 
@@ -58,15 +59,18 @@ def lead_lag_record(sheet: LeadLag) -> tuple[float, ...]:
     def quadratic(w: float, zeta: float) -> tuple[float, float, float]:
         s2, s1, s0 = c * c, 2.0 * zeta * w * c, w * w
         return s2 + s1 + s0, 2.0 * (s0 - s2), s2 - s1 + s0
-    lead = quadratic(sheet.lead_rad_per_s, sheet.lead_damping)
-    lag = quadratic(sheet.lag_rad_per_s, sheet.lag_damping)
+    lead_0, lead_1, lead_2 = quadratic(sheet.lead_rad_per_s, sheet.lead_damping)
+    lag_0, lag_1, lag_2 = quadratic(sheet.lag_rad_per_s, sheet.lag_damping)
     ratio = sheet.lag_rad_per_s / sheet.lead_rad_per_s
-    gain = sheet.kp_v_per_ma * 1e3 * ratio * ratio / lag[0]
-    return (1.0 / sheet.rate_hz, sheet.kpf, sheet.ki_v_per_ma_s * 1e3, sheet.kd_v_s_per_ma * 1e3,
-            low_pass_coefficient(sheet.derivative_filter_hz, sheet.rate_hz), sheet.offset_v,
-            sheet.limit_v, float(sheet.anti_windup == 'clamped'),
-            gain * lead[0], gain * lead[1], gain * lead[2],
-            lag[1] / lag[0], lag[2] / lag[0])
+    gain = sheet.kp_v_per_ma * 1e3 * ratio * ratio / lag_0
+    return record(
+        LEAD_LAG, period=1.0 / sheet.rate_hz, kpf=sheet.kpf, ki=sheet.ki_v_per_ma_s * 1e3,
+        kd=sheet.kd_v_s_per_ma * 1e3,
+        derivative_alpha=low_pass_coefficient(sheet.derivative_filter_hz, sheet.rate_hz),
+        offset=sheet.offset_v, limit=sheet.limit_v,
+        is_clamped=float(sheet.anti_windup == 'clamped'),
+        b_0=gain * lead_0, b_1=gain * lead_1, b_2=gain * lead_2,
+        a_1=lag_1 / lag_0, a_2=lag_2 / lag_0)
 
 
 @kernel

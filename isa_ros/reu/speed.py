@@ -4,6 +4,7 @@ from dataclasses import dataclass
 
 from isa_ros.core.kernel import kernel
 from isa_ros.core.parameter import parameter, Parameters
+from isa_ros.core.record import record
 from isa_ros.reu.filters import low_pass, low_pass_coefficient
 import numpy as np
 
@@ -20,9 +21,10 @@ SPEED = np.dtype([('rate', 'f8'), ('alpha', 'f8')])
 SPEED_STATE = np.dtype([('position', 'f8'), ('velocity', 'f8')])
 
 
-def speed_record(sheet: SpeedEstimate) -> tuple[float, ...]:
+def speed_record(sheet: SpeedEstimate) -> np.record:
     """Return the `SPEED` record of a sheet."""
-    return sheet.rate_hz, low_pass_coefficient(sheet.filter_hz, sheet.rate_hz)
+    return record(
+        SPEED, rate=sheet.rate_hz, alpha=low_pass_coefficient(sheet.filter_hz, sheet.rate_hz))
 
 
 @kernel

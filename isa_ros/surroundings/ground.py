@@ -14,6 +14,7 @@ import math
 from isa_ros.core.contact import normal_force
 from isa_ros.core.kernel import kernel
 from isa_ros.core.parameter import parameter, Parameters
+from isa_ros.core.record import record
 import numpy as np
 
 
@@ -44,11 +45,12 @@ GROUND = np.dtype([
 ])
 
 
-def ground_record(sheet: Ground) -> tuple[float, ...]:
+def ground_record(sheet: Ground) -> np.record:
     """Return the `GROUND` record of a sheet."""
-    return (sheet.stiffness, sheet.damping, sheet.friction,
-            sheet.friction / (sheet.bristle_travel_mm * 1e-3), sheet.bristle_damping,
-            1.0 / (sheet.bristle_relaxation_ms * 1e-3))
+    return record(
+        GROUND, stiffness=sheet.stiffness, damping=sheet.damping, friction=sheet.friction,
+        sigma_0=sheet.friction / (sheet.bristle_travel_mm * 1e-3), sigma_1=sheet.bristle_damping,
+        relaxation=1.0 / (sheet.bristle_relaxation_ms * 1e-3))
 
 
 @kernel

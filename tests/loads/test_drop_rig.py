@@ -5,10 +5,11 @@ import math
 
 from hypothesis import given, strategies as st
 from isa_ros.core.gravity import STANDARD_GRAVITY
+from isa_ros.core.record import record
 from isa_ros.core.timebase import PLANT_STEP
 from isa_ros.errors import ParameterError
 from isa_ros.loads import drop_rig
-from isa_ros.loads.drop_rig import ROPE, WEIGHT_STATE
+from isa_ros.loads.drop_rig import rope_record, WEIGHT_STATE
 import numpy as np
 import pytest
 from tests.sheets import own_load, setpoint, smart_actuator
@@ -18,14 +19,9 @@ WEIGHT_N = SHEET.weight_kg * STANDARD_GRAVITY
 TAUT_SPEED = math.sqrt(2.0 * STANDARD_GRAVITY * SHEET.slack)  # at the end of the slack
 
 
-def rope(sheet=SHEET):
-    """Return the `ROPE` row of a sheet."""
-    return np.array([drop_rig.rope_record(sheet)], ROPE).view(np.recarray)[0]
-
-
 def weight(fall=0.0, velocity=0.0, is_released=1.0):
     """Return one `WEIGHT_STATE`."""
-    return np.array([(fall, velocity, is_released)], WEIGHT_STATE).view(np.recarray)[0]
+    return record(WEIGHT_STATE, fall=fall, velocity=velocity, is_released=is_released)
 
 
 def fallen(duration, sheet=SHEET, inertia=math.inf):
@@ -34,7 +30,7 @@ def fallen(duration, sheet=SHEET, inertia=math.inf):
 
     Classical Runge-Kutta with the plant's step; a blocked wheel has an infinite inertia.
     """
-    row, state, rates = rope(sheet), weight(), weight()
+    row, state, rates = rope_record(sheet), weight(), weight()
 
     def slope(y):
         state.fall, state.velocity = y[2], y[3]
@@ -112,7 +108,7 @@ def test_damped_rope_brings_the_weight_to_rest():
        velocity=st.floats(-5.0, 5.0), is_released=st.sampled_from([0.0, 1.0]))
 def test_rope_pulls_and_never_pushes(turn, speed, fall, velocity, is_released):
     """L18, L20: T >= 0, the rope pulls the wheel towards smaller angles only; jit == Python."""
-    row, state, rates = rope(), weight(fall, velocity, is_released), weight()
+    row, state, rates = rope_record(SHEET), weight(fall, velocity, is_released), weight()
     torque = drop_rig.weight_rates(turn, speed, state, row, rates)
     assert torque <= 0.0
     assert torque == 0.0 or fall + SHEET.radius * turn > SHEET.slack

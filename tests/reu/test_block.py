@@ -19,8 +19,7 @@ demands = st.floats(-2e-3, 2e-3)
 
 def record(sheet: block.Pid = SHEET, factor: float = 1.0, **changes: object) -> np.record:
     """Return the `BLOCK` record of a sheet with some values replaced."""
-    values = block.block_record(replace(sheet, **changes), np.full(POINTS, factor))
-    return np.array([values], block.BLOCK).view(np.recarray)[0]
+    return block.block_record(replace(sheet, **changes), np.full(POINTS, factor))
 
 
 LOOP = record()

@@ -5,9 +5,7 @@ import numpy as np
 import pytest
 from tests.sheets import actuator_sheet
 
-LIMITS = np.array(
-    [impedance.impedance_record(actuator_sheet('isa_v5').reu.position)],
-    impedance.IMPEDANCE).view(np.recarray)[0]
+LIMITS = impedance.impedance_record(actuator_sheet('isa_v5').reu.position)
 
 
 def reference(velocity: float = 0.0, measured: float = 0.0, **values: float) -> float:

@@ -10,7 +10,7 @@ import pytest
 from tests.sheets import actuator_sheet
 
 SHEET = actuator_sheet('smart_manifold', 'table_4', 'explicit').reu.current
-LOOP = np.array([lead_lag.lead_lag_record(SHEET)], lead_lag.LEAD_LAG).view(np.recarray)[0]
+LOOP = lead_lag.lead_lag_record(SHEET)
 PERIOD = 1.0 / SHEET.rate_hz
 
 
@@ -53,8 +53,7 @@ def test_output_saturates_at_the_supply():
 
 def changed(**values: object) -> np.record:
     """Return the record with some values of the sheet replaced."""
-    return np.array([lead_lag.lead_lag_record(replace(SHEET, **values))],
-                    lead_lag.LEAD_LAG).view(np.recarray)[0]
+    return lead_lag.lead_lag_record(replace(SHEET, **values))
 
 
 def voltages(loop: np.record, reference: float, measured: float, n: int) -> list[float]:

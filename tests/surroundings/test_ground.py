@@ -5,12 +5,11 @@ import math
 from hypothesis import given, strategies as st
 from isa_ros.errors import ParameterError
 from isa_ros.surroundings import ground
-import numpy as np
 import pytest
 from tests.legs import leg_sheet
 
 SHEET = leg_sheet().ground
-ROW = np.array([ground.ground_record(SHEET)], ground.GROUND).view(np.recarray)[0]
+ROW = ground.ground_record(SHEET)
 
 depths = st.floats(1e-6, 0.02)
 speeds = st.floats(-3.0, 3.0)

@@ -11,6 +11,7 @@ import math
 
 from isa_ros.core.gravity import STANDARD_GRAVITY
 from isa_ros.core.parameter import parameter, Parameters
+from isa_ros.core.record import record
 from isa_ros.errors import ParameterError
 from isa_ros.surroundings import linkage as kernels
 from isa_ros.surroundings.ground import GROUND, Ground, ground_record
@@ -139,9 +140,9 @@ def _rows(n: int, dtype: np.dtype[np.void]) -> np.ndarray:
     return np.asarray(np.zeros(n, dtype).view(np.recarray))
 
 
-def linkage_record(joint: Direct | SliderCrank | FourBar | Joint) -> np.void:
+def linkage_record(joint: Direct | SliderCrank | FourBar | Joint) -> np.record:
     """Return the `LINKAGE` record of a joint's sheet, SI."""
-    row = _rows(1, kernels.LINKAGE)
+    row: np.record = _rows(1, kernels.LINKAGE)[0]
     row['sense'] = joint.sense
     row['offset'] = math.radians(joint.offset_deg)
     if isinstance(joint, SliderCrank):
@@ -157,25 +158,25 @@ def linkage_record(joint: Direct | SliderCrank | FourBar | Joint) -> np.void:
         row['retracted_length'] = joint.retracted_length_mm * MILLI
         for name in ('bk', 'ar', 'br'):
             row[name] = getattr(joint, f'{name}_mm') * MILLI
-    record: np.void = row[0]
-    return record
+    return row
 
 
 def body_record(body: Body) -> np.ndarray:
     """Return the `LEG_BODY` record of a leg with its mass scale applied, shape (1,)."""
-    row = _rows(1, LEG_BODY)
-    row['m_slider'] = body.slider.mass_kg
-    row['gravity'] = STANDARD_GRAVITY
-    row['d_hip'] = body.hip_drop_m
+    links = {}
     for name in ('hip', 'thigh', 'calf'):
         link: Link = getattr(body, name)
-        row[f'l_{name}'] = link.length_m
-        row[f'm_{name}'] = body.mass_scale * link.mass_kg
+        links[f'l_{name}'] = link.length_m
+        links[f'm_{name}'] = body.mass_scale * link.mass_kg
         for axis in 'xyz':
-            row[f'c_{name}_{axis}'] = getattr(link, f'com_{axis}_m')
-            row[f'i_{name}_{axis}{axis}'] = (
+            links[f'c_{name}_{axis}'] = getattr(link, f'com_{axis}_m')
+            links[f'i_{name}_{axis}{axis}'] = (
                 body.mass_scale * getattr(link, f'inertia_{axis}{axis}'))
-    return row
+    rows = _rows(1, LEG_BODY)
+    rows[0] = record(
+        LEG_BODY, m_slider=body.slider.mass_kg, gravity=STANDARD_GRAVITY, d_hip=body.hip_drop_m,
+        **links)
+    return rows
 
 
 def leg_records(sheet: LegSheet) -> tuple[np.ndarray, np.ndarray, np.ndarray]:

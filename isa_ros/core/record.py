@@ -1,0 +1,34 @@
+"""Numpy records filled by the names of their fields, as kernels read them."""
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+
+def record(dtype: np.dtype[np.void], /, **fields: ArrayLike) -> np.record:
+    """
+    Return one record of ``dtype``, each of its fields given by name.
+
+    It has attributes, so that a kernel also runs on it as plain Python. A field that is itself
+    a record is given as one: numpy would fill it from a tuple or another record by place.
+
+    Raises
+    ------
+    TypeError
+        A field is missing or unknown, or a nested one is not a record of its own type.
+
+    """
+    names = dtype.names or ()
+    missing = [name for name in names if name not in fields]
+    unknown = [name for name in fields if name not in names]
+    if missing or unknown:
+        raise TypeError(
+            f'record of {", ".join(names)}: '
+            f'missing {", ".join(missing) or "none"}, unknown {", ".join(unknown) or "none"}')
+    row: np.record = np.zeros(1, dtype).view(np.recarray)[0]
+    for name, value in fields.items():
+        nested = dtype[name]
+        if nested.names is not None and getattr(value, 'dtype', None) != nested:
+            raise TypeError(
+                f'{name} = {value!r}, must be a record of {", ".join(nested.names)}')
+        row[name] = value
+    return row
