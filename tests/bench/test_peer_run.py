@@ -1,8 +1,8 @@
 """
-Runs over the peer that Python brings along: the frames, the coordinator's end, the workers.
+Runs over the peer that Python includes: the coordinator's end and the workers.
 
-ZeroMQ, Cyclone DDS and HELICS carry the same frames between the same two loops; only the two
-functions of their own file need what may not be installed.
+ZeroMQ, Cyclone DDS and HELICS carry the same bytes between the same two loops; only the two
+functions of their own file need packages that may not be installed.
 """
 
 import ast
@@ -13,21 +13,22 @@ from pathlib import Path
 import tempfile
 import threading
 
-from isa_ros.actuator.actuator import Timing
-from isa_ros.bench.peers import catalogue, frames
+from isa_ros.actuator.actuator import SmartActuator
+from isa_ros.bench.peers import catalogue
 from isa_ros.bench.peers.catalogue import ends, peer, PEERS
 from isa_ros.bench.peers.link import Link
-from isa_ros.bench.peers.transport import PeerTransport
+from isa_ros.bench.peers.transport import PeerTransport, RUN_ID
 from isa_ros.bench.peers.worker import answer_steps
 from isa_ros.bench.rigs import rigs_file
+from isa_ros.config.assembly import group_of, surroundings_of, timing_of
 from isa_ros.config.run_config import RunConfig
 from isa_ros.config.run_file import load_run
-from isa_ros.core.signals import HAS_SETPOINT, LOAD_REPLY, SAMPLE, START
+from isa_ros.core.signals import COMMAND, HAS_SETPOINT, LOAD_REPLY, SAMPLE, START
 from isa_ros.errors import RunError
-from isa_ros.run.exchange import Messages, Rows, Silence
-from isa_ros.run.group import ActuatorGroup
-from isa_ros.run.in_process import LocalTransport
-from isa_ros.run.stepping import SteppedActuator
+from isa_ros.run.exchange import Rows
+from isa_ros.run.in_process import InProcess
+from isa_ros.run.wire import (
+    actuator_parts, AnswerKind, decode_step, encode_answer, encode_end, Step)
 import numpy as np
 import pytest
 
@@ -45,8 +46,11 @@ def run(tmp_path_factory: pytest.TempPathFactory) -> RunConfig:
     return load_run(path)
 
 
-def timing(run: RunConfig) -> Timing:
-    return Timing(run.step_ns, run.controller_offset_ns)
+def rows_of(run: RunConfig) -> Rows:
+    """Return the memory of a run at a supply pressure that lasts."""
+    rows = Rows(len(run.actuators), surroundings_of(run))
+    rows.ports['supply_pressure'] = 20.7e6
+    return rows
 
 
 def starts(run: RunConfig) -> np.ndarray:
@@ -60,7 +64,7 @@ def work(directory: Path, run: RunConfig, index: int) -> None:
     """Answer the steps of one run as a worker."""
     link = PIPES.worker_end(directory, index)
     try:
-        answer_steps(link, SteppedActuator(run.actuators[index], timing(run)), index)
+        answer_steps(link, SmartActuator(run.actuators[index], timing_of(run)), index)
     finally:
         link.close()
 
@@ -78,52 +82,53 @@ def over_pipes(run: RunConfig) -> Iterator[Link]:
         try:
             yield link
         finally:
-            link.send(frames.encode_end())
+            link.send(encode_end(RUN_ID))
             for worker in workers:
                 worker.join(JOIN_S)
             link.close()
         assert not any(worker.is_alive() for worker in workers), 'the end reaches all'
 
 
-def ticks(
-        transport: PeerTransport | LocalTransport, n_actuators: int
-        ) -> tuple[list[list[Messages]], bytes]:
-    """Return the messages of a run of `TICKS`, and the replies and samples of its ticks."""
-    rows, exchanged = Rows(n_actuators), b''
-    rows.ports['supply_pressure'] = 20.7e6
-    said = [[tuple(own) for own in transport.join(rows)]]
+def ticks(transport: PeerTransport | InProcess, run: RunConfig) -> list[tuple[bytes, ...]]:
+    """Return what the actuators fill into the rows, at the start and in a run of `TICKS`."""
+    rows = rows_of(run)
+
+    def filled() -> tuple[bytes, ...]:
+        return rows.replies.tobytes(), rows.samples.tobytes(), rows.applied.tobytes()
+    transport.join(rows)
+    all_rows = [filled()]
     transport.begin()
     for tick in range(TICKS):
         rows.commands.fill(0)
         if tick == SENT_OFF_AT:
             rows.commands[1] = (HAS_SETPOINT, 0, 0.06, 0.0, 0.0, np.nan, np.nan)
         transport.send(tick, rows)
-        said.append([tuple(own) for own in transport.receive(rows)])
-        exchanged += rows.replies.tobytes() + rows.samples.tobytes()
-    return said, exchanged
+        transport.receive(rows)
+        all_rows.append(filled())
+    return all_rows
 
 
 def test_a_run_over_pipes_is_that_of_direct_calls_byte_for_byte(run):
-    """Starts, ports, commands, replies, samples, applied setpoints and state messages."""
+    """Starts, ports, commands, replies, samples and applied setpoints."""
     with over_pipes(run) as link:
-        over = ticks(PeerTransport(link, run, starts(run), lambda: None), 2)
-    group = ActuatorGroup(run.actuators, timing(run))
-    direct = ticks(LocalTransport(group, starts(run), Silence()), 2)
+        over = ticks(PeerTransport(link, run, starts(run), lambda: None), run)
+    direct = ticks(InProcess(group_of(run), starts(run)), run)
     assert over == direct
-    moved = np.frombuffer(over[1][-2 * SAMPLE.itemsize:], SAMPLE)
+    _, samples, _ = over[-1]
+    moved = np.frombuffer(samples, SAMPLE)
     assert moved['position_reference'][1] == 0.06, 'the setpoint came through'
 
 
 class Scripted:
     """A link whose answers to each step a test gives, in their order."""
 
-    def __init__(self, answers: Callable[[frames.Step], Sequence[bytes]]) -> None:
+    def __init__(self, answers: Callable[[Step], Sequence[bytes]]) -> None:
         self._answers = answers
         self._arrived: list[bytes] = []
 
     def send(self, message: bytes) -> None:
         """Let the answers to a step arrive."""
-        self._arrived += self._answers(frames.decode_step(message))
+        self._arrived += self._answers(decode_step(message))
 
     def receive(self, timeout_s: float) -> bytes | None:
         """Return the next one."""
@@ -136,38 +141,40 @@ class Scripted:
 def answered(worker: int, tick: int, force: float) -> bytes:
     reply = np.zeros(1, LOAD_REPLY)
     reply['force'] = force
-    return frames.encode_answer(worker, tick, reply[0], np.zeros(1, SAMPLE)[0], (None, None))
+    return encode_answer(AnswerKind.DONE, RUN_ID, tick, worker, actuator_parts(
+        reply, np.zeros(1, SAMPLE), np.zeros(1, COMMAND), {}))
 
 
 def test_late_answers_to_an_earlier_start_do_not_count(run):
-    """A worker that was slow to come up answers the first starts behind the third."""
+    """A worker that started slowly answers the first two hellos after the third."""
     sent: list[int] = []
 
-    def answers(step: frames.Step) -> list[bytes]:
+    def answers(step: Step) -> list[bytes]:
         sent.append(step.tick)
         if len(sent) < 3:
             return [answered(0, step.tick, 1.0)]
-        return [answered(1, -1, -9.0), answered(1, -2, -9.0), answered(1, step.tick, 2.0),
+        return [answered(1, 1, -9.0), answered(1, 2, -9.0), answered(1, step.tick, 2.0),
                 answered(0, step.tick, 1.0)]
-    rows = Rows(2)
+    rows = rows_of(run)
     PeerTransport(Scripted(answers), run, starts(run), lambda: None).join(rows)
-    assert sent == [-1, -2, -3]
+    assert sent == [1, 2, 3]
     assert rows.replies['force'].tolist() == [1.0, 2.0]
 
 
 def test_the_answer_to_another_tick_does_not_count(run):
-    """Only what carries the tick's own number; without it the worker is named."""
+    """An answer counts by its tick; a worker without one is named."""
     transport = PeerTransport(
         Scripted(lambda step: [answered(0, step.tick, 1.0), answered(1, step.tick - 1, -9.0)]),
         run, starts(run), lambda: None)
-    transport.send(4, Rows(2))
+    rows = rows_of(run)
+    transport.send(4, rows)
     with pytest.raises(RunError, match=f'^{run.actuators[1].name}: no answer to tick 4$'):
-        transport.receive(Rows(2))
+        transport.receive(rows)
 
 
 @pytest.mark.parametrize('one', PEERS, ids=lambda one: one.name)
 def test_every_peer_has_both_ends(one):
-    """As `Ends` asks for them, also where the package that a file imports is not installed."""
+    """As `Ends` declares them, also where the package that a file imports is not installed."""
     source = (Path(catalogue.__file__).parent / f'{one.module}.py').read_text()
     given = {node.name: [argument.arg for argument in node.args.args]
              for node in ast.parse(source).body if isinstance(node, ast.FunctionDef)}

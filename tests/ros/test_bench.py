@@ -1,5 +1,6 @@
 """The bench on real nodes: positive and consistent rows; speeds are not tested."""
 
+from isa_ros.bag.provenance import provenance_of
 from isa_ros.bag.writer import BagWriter
 from isa_ros.bench.loading import median_loading
 from isa_ros.bench.peers.catalogue import peer, PEERS
@@ -8,8 +9,8 @@ from isa_ros.bench.rigs import request_of
 from isa_ros.bench.rounds import measured
 from isa_ros.bench.spec import ACTUATORS, COORDINATOR, LEG, Measured, ONE_PROCESS, PROCESSES, Spec
 from isa_ros.processes.stopping import StopRequest
-from isa_ros.run.local_run import LocalRun
-from isa_ros.run.session import prepare, provenance
+from isa_ros.run.local_run import Inputs, LocalRun
+from isa_ros.run.session import prepare
 import pytest
 
 pytestmark = [pytest.mark.ros, pytest.mark.slow]
@@ -50,8 +51,8 @@ def test_a_run_over_a_peer_gives_the_same_bag(name, tmp_path, domain):
         run_over(peer(name), session, None, should_stop)
     local = LocalRun(session.run)
     expected = tmp_path / 'direct' / 'bag'
-    with BagWriter(expected, local.topics, provenance(session)) as bag:
-        local.simulate(TICKS, session.scenario.commands, bag)
+    with BagWriter(expected, local.topics, provenance_of(session.scenario)) as bag:
+        local.simulate(TICKS, Inputs(session.scenario.commands), bag)
     recorded = session.out / 'bag_0.mcap'
     assert recorded.stat().st_size > TICKS * 2000
     assert recorded.read_bytes() == (expected / 'bag_0.mcap').read_bytes()

@@ -8,23 +8,26 @@ of the test, so that no race of the middleware decides.
 from collections import deque
 from collections.abc import Iterable, Iterator
 
-from isa_ros.core.signals import LOAD_REPLY, SAMPLE, START
+from isa_ros.core.signals import COMMAND, LOAD_REPLY, SAMPLE, START
 from isa_ros.errors import ConfigError
 from isa_ros.nodes.lockstep.coordinator_end import LockstepTransport
-from isa_ros.nodes.lockstep.expected import Cast, Expected, Limits
-from isa_ros.nodes.lockstep.participant_end import Member
+from isa_ros.nodes.lockstep.expected import Expected, Limits, Participants
+from isa_ros.nodes.lockstep.participant_end import ParticipantEnd
+from isa_ros.nodes.lockstep.roles import Parts
 from isa_ros.run import wire
-from isa_ros.run.exchange import Messages, Rows, Silence
-from isa_ros.run.wire import Answer, AnswerKind, encode_answer
+from isa_ros.run.exchange import Rows
+from isa_ros.run.wire import actuator_parts, Answer, AnswerKind, Cast, encode_answer
 import numpy as np
 import pytest
 from rclpy.node import Node
 from tests.ros.started import DEADLINE_S
+from tests.ros.test_lockstep import rows_of_two
 
 pytestmark = pytest.mark.ros
 
 RUN = 4711
 NAMES = ('haa', 'kfe')
+CAST = Cast(NAMES, ['supply'], None)
 LIMITS = Limits(join_s=DEADLINE_S, tick_s=0.05)
 
 
@@ -46,19 +49,19 @@ class Post:
 
 
 class Counting:
-    """A seat that counts what it is asked for."""
+    """A role that counts what it has to do."""
 
     digest = b'same'
 
     def __init__(self) -> None:
         self.ticks = self.snapshots = 0
 
-    def start(self, step: wire.Step, index: int) -> Messages:
+    def start(self, step: wire.Step, index: int) -> Parts:
         """Begin anew."""
         self.ticks = 0
         return [b'start']
 
-    def advance(self, step: wire.Step) -> Messages:
+    def advance(self, step: wire.Step) -> Parts:
         """Count a tick."""
         self.ticks += 1
         return [b'tick %d' % self.ticks]
@@ -74,29 +77,29 @@ class Counting:
         self.snapshots += 1
         return b'after %d' % self.ticks
 
-    def restore(self, snapshot: bytes) -> Messages:
+    def restore(self, snapshot: bytes) -> Parts:
         """Go on from where it was taken."""
         self.ticks = int(snapshot.split()[1])
         return [b'restored']
 
 
 class Participant:
-    """A member without a thread, bound to `RUN`, and its answers."""
+    """A participant without a thread, bound to `RUN`, and its answers."""
 
     def __init__(self, node: Node) -> None:
-        self.seat = Counting()
-        self._member = Member(node, self.seat)
+        self.role = Counting()
+        self._end = ParticipantEnd(node, self.role)
         self.answers: list[Answer] = []
-        self._member._send = lambda data: self.answers.append(wire.decode_answer(data))
+        self._end._send = lambda data: self.answers.append(wire.decode_answer(data))
         starts = np.zeros(2, START)
         self.answers_to(
-            wire.encode_hello(RUN, 1, 1_000_000, starts, NAMES), wire.encode_begin(RUN))
+            wire.encode_hello(RUN, 1, 1_000_000, starts, CAST), wire.encode_begin(RUN))
 
     def answers_to(self, *steps: bytes) -> list[tuple[AnswerKind, int, bool]]:
         """Hand steps over; return (kind, tick, is repeated) of the answers to them."""
         before = len(self.answers)
         for step in steps:
-            self._member._handle(wire.decode_step(step))
+            self._end._handle(wire.decode_step(step))
         return [(one.kind, one.tick, one.is_repeated) for one in self.answers[before:]]
 
 
@@ -110,7 +113,7 @@ def member(observer: Node) -> Iterator[Participant]:
 
 
 def tick(number: int, run: int = RUN) -> bytes:
-    return wire.encode_tick(run, number, Rows(2), has_controllers=False)
+    return wire.encode_tick(run, number, rows_of_two(), has_controllers=False)
 
 
 def done(number: int, is_repeated: bool = False) -> tuple[AnswerKind, int, bool]:
@@ -120,13 +123,13 @@ def done(number: int, is_repeated: bool = False) -> tuple[AnswerKind, int, bool]
 def test_a_repeat_of_the_last_step_is_answered_again_without_another_tick(member):
     assert member.answers_to(tick(0), tick(0)) == [done(0), done(0, is_repeated=True)]
     assert member.answers[-1].parts == member.answers[-2].parts
-    assert member.seat.ticks == 1
+    assert member.role.ticks == 1
 
 
 def test_a_repeat_that_a_newer_tick_has_overtaken_is_dropped(member):
     """It is a copy on the slower topic: an answer, or a refusal, would end the run."""
     assert member.answers_to(tick(0), tick(1), tick(0)) == [done(0), done(1)]
-    assert member.seat.ticks == 2
+    assert member.role.ticks == 2
     assert member.answers_to(tick(2)) == [done(2)]
 
 
@@ -136,7 +139,7 @@ def test_an_overtaken_request_to_save_is_dropped(member):
     assert member.answers_to(tick(0), *saved, saved[0]) == [
         done(0), (AnswerKind.SAVED, -1, False), (AnswerKind.SAVED, -2, False)]
     assert member.answers_to(tick(1), saved[1]) == [done(1)]
-    assert member.seat.snapshots == 2
+    assert member.role.snapshots == 2
 
 
 def test_an_overtaken_request_to_restore_is_dropped(member):
@@ -144,12 +147,12 @@ def test_an_overtaken_request_to_restore_is_dropped(member):
     restore = wire.encode_restore(RUN, -1, 5, [b'after 5', b'after 5'])
     assert member.answers_to(restore, tick(5), restore) == [
         (AnswerKind.RESTORED, -1, False), done(5)]
-    assert member.seat.ticks == 6
+    assert member.role.ticks == 6
 
 
 def test_a_tick_of_another_run_moves_no_actuator(member):
     assert member.answers_to(tick(0, run=RUN + 1), wire.encode_end(RUN + 1)) == []
-    assert member.seat.ticks == 0
+    assert member.role.ticks == 0
     assert member.answers_to(tick(0)) == [done(0)]
 
 
@@ -157,26 +160,27 @@ def answer(
         participant: int, number: int, force: float, run: int = RUN,
         kind: AnswerKind = AnswerKind.DONE, is_repeated: bool = False) -> bytes:
     """Return the answer of an actuator to a tick."""
-    reply, sample = np.zeros(1, LOAD_REPLY), np.zeros(1, SAMPLE)
+    reply = np.zeros(1, LOAD_REPLY)
     reply['force'] = force
-    return encode_answer(
-        kind, run, number, participant, [reply.tobytes(), sample.tobytes(), None], is_repeated)
+    parts = actuator_parts(reply, np.zeros(1, SAMPLE), np.zeros(1, COMMAND), {})
+    return encode_answer(kind, run, number, participant, parts, is_repeated)
 
 
 class Coordination:
     """A coordinator's end in the middle of a run, whose participants are the test."""
 
     def __init__(self, node: Node, monkeypatch: pytest.MonkeyPatch) -> None:
-        cast = Cast([Expected(name, 'same') for name in NAMES], np.zeros(2, START), 1_000_000)
         self._transport = LockstepTransport(
-            node, cast, LIMITS, Silence(), watch=lambda: None, should_stop=lambda: False)
+            node, Participants([Expected(name, 'same') for name in NAMES], CAST,
+                               np.zeros(2, START), 1_000_000),
+            LIMITS, watch=lambda: None, should_stop=lambda: False)
         self._post = Post()
         monkeypatch.setattr(self._transport, '_mailbox', self._post)
         monkeypatch.setattr(self._transport, '_run_id', RUN)
 
     def forces(self, number: int, *answers: bytes) -> list[float]:
         """Return the forces of tick ``number`` when these answers arrive in this order."""
-        rows = Rows(2)
+        rows: Rows = rows_of_two()
         self._transport.send(number, rows)
         self._post.messages.extend(answers)
         self._transport.receive(rows)

@@ -6,11 +6,12 @@ from pathlib import Path
 
 from isa_ros.config.run_config import RunConfig
 from isa_ros.config.run_file import load_run
-from isa_ros.core.signals import HAS_SETPOINT
-from isa_ros.run.coordinator import Coordinator
+from isa_ros.core.saved_state import RunState
+from isa_ros.core.signals import COMMAND, HAS_SETPOINT
 from isa_ros.run.exchange import Records
-from isa_ros.run.local_run import LocalRun
-from isa_ros.run.saved_state import RunState
+from isa_ros.run.local_run import Inputs, LocalRun
+from isa_ros.scenario.scenario import idle
+from isa_ros.simulation import Simulation
 import numpy as np
 import pytest
 
@@ -37,9 +38,8 @@ class Kept:
 def leg(release_s: float) -> RunConfig:
     """Return the shipped leg, hanging 0.1 m above the ground until its release."""
     run = load_run(CONFIG / 'leg.yaml')
-    assert run.leg is not None
-    start = replace(run.leg.start, foot_height_mm=100.0, release_s=release_s)
-    return replace(run, leg=replace(run.leg, start=start))
+    start = replace(run.body.start, foot_height_mm=100.0, release_s=release_s)
+    return replace(run, body=replace(run.body, start=start))
 
 
 def commands(tick: int, rows: Records) -> None:
@@ -48,17 +48,22 @@ def commands(tick: int, rows: Records) -> None:
         rows[2] = (HAS_SETPOINT, 0, 0.0587, 0.0, 50.0, np.nan, np.nan)
 
 
-def recorded(
-        run: RunConfig, state: RunState | None = None,
-        save_at: int = -1) -> tuple[dict[int, Sample], list[RunState]]:
-    """Return the samples of a run and the state that was saved before a tick."""
-    kept, states = Kept(), []
+def recorded(run: RunConfig, state: RunState | None = None) -> dict[int, Sample]:
+    """Return the samples of a run."""
+    kept = Kept()
+    LocalRun(run).simulate(TICKS, Inputs(commands), kept, state=state)
+    return kept.samples
 
-    def requests(coordinator: Coordinator) -> None:
-        if coordinator.ticks == save_at:
-            states.append(coordinator.save())
-    LocalRun(run).simulate(TICKS, commands, kept, state=state, requests=requests)
-    return kept.samples, states
+
+def state_before(run: RunConfig, tick: int) -> RunState:
+    """Return the state of a run before a tick."""
+    simulation = Simulation(idle(run))
+    rows = np.zeros(len(run.actuators), COMMAND)
+    while simulation.ticks < tick:
+        rows['kinds'] = 0
+        commands(simulation.ticks, rows)
+        simulation.step(rows)
+    return simulation.state()
 
 
 def first_difference(one: dict[int, Sample], other: dict[int, Sample]) -> int:
@@ -69,16 +74,15 @@ def first_difference(one: dict[int, Sample], other: dict[int, Sample]) -> int:
 @pytest.mark.parametrize('release_s', [0.02, 0.0194])
 def test_the_slider_is_held_until_its_release_and_not_a_tick_longer(release_s):
     """Sample 20, of the release, is that of a leg that is held on; sample 21 no longer is."""
-    released, _ = recorded(leg(release_s))
-    held, _ = recorded(leg(NEVER_S))
+    released, held = recorded(leg(release_s)), recorded(leg(NEVER_S))
     assert first_difference(released, held) == RELEASE + 1
 
 
 @pytest.mark.parametrize('save_at', [RELEASE - 7, RELEASE, RELEASE + 1])
 def test_a_restored_run_releases_the_slider_when_the_whole_one_does(save_at):
     """The state holds the time: before, at and after the release the samples go on alike."""
-    whole, (state,) = recorded(leg(0.02), save_at=save_at)
-    rest, _ = recorded(leg(0.02), state=state)
+    whole = recorded(leg(0.02))
+    rest = recorded(leg(0.02), state_before(leg(0.02), save_at))
     assert sorted(rest) == list(range(save_at, TICKS + 1))
     assert {k: rest[k] for k in rest if k > save_at} == {
         k: whole[k] for k in rest if k > save_at}

@@ -8,7 +8,7 @@ from pathlib import Path
 from isa_ros.config.run_file import load_run
 from isa_ros.core.signals import HAS_SETPOINT
 from isa_ros.run.exchange import Records
-from isa_ros.run.local_run import LocalRun
+from isa_ros.run.local_run import Inputs, LocalRun
 from isa_ros.surroundings import supply
 from msg_adapters.cdr_reader import decode
 import numpy as np
@@ -53,15 +53,16 @@ class Kept:
 def recorded() -> Kept:
     """Return a run of two cylinders, of which the second extends and the first stands."""
     run = load_run(CONFIG / 'rig_linear.yaml')
-    run = replace(run, supply=SHEET, actuators=tuple(
-        replace(run.actuators[0], name=name) for name in ('first', 'second')))
+    feed = replace(run.supplies[0], sheet=SHEET, feeds=('first', 'second'))
+    run = replace(run, supplies=(feed,), actuators=tuple(
+        replace(run.actuators[0], name=name) for name in feed.feeds))
 
     def commands(tick: int, rows: Records) -> None:
         if tick == STARTS_AT:
             rows[1] = (HAS_SETPOINT, 0, 0.08, 0.0, 0.0, np.nan, np.nan)
     local = LocalRun(run)
     kept = Kept([topic.name for topic in local.topics])
-    local.simulate(TICKS, commands, kept)
+    local.simulate(TICKS, Inputs(commands), kept)
     return kept
 
 

@@ -32,7 +32,7 @@ def advanced(*ticks: np.ndarray) -> tuple[dict[str, float], tuple[float, ...]]:
         replies = np.zeros(3, LOAD_REPLY)
         replies['mean_forces'] = means
         leg.advance(replies)
-    values = np.frombuffer(leg.state(), np.float64, len(STATE_NAMES), TIME_BYTES)
+    values = np.frombuffer(leg.snapshot(), np.float64, len(STATE_NAMES), TIME_BYTES)
     return dict(zip(STATE_NAMES, values.tolist())), holding
 
 
