@@ -25,7 +25,7 @@ import sys
 from isa_ros.bag.provenance import installed_versions, Provenance
 from isa_ros.bag.writer import BagWriter
 from isa_ros.config.run_file import load_run
-from isa_ros.run.local_run import LocalRun
+from isa_ros.run.local_run import Inputs, LocalRun
 from isa_ros.scenario.scenario import load_scenario
 
 out, compression, split_mb = sys.argv[1:]
@@ -43,7 +43,7 @@ class Telling:
 with BagWriter(Path(out), local.topics, Provenance(
         scenario.run.to_yaml(), scenario.to_yaml(), 0, installed_versions()),
         storage=scenario.run.record.storage) as bag:
-    local.simulate(1_000_000, scenario.commands, Telling())
+    local.simulate(1_000_000, Inputs(scenario.commands), Telling())
 """
 
 

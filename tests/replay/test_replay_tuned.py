@@ -9,7 +9,7 @@ from isa_ros.cli.main import main
 from isa_ros.config.run_config import RunConfig
 from isa_ros.core.topic import Topic
 from isa_ros.replay.replay import recorded_inputs, replay, Rerun
-from isa_ros.run.local_run import LocalRun
+from isa_ros.run.local_run import Inputs, LocalRun
 from msg_adapters.applied_parameters import applied_parameters, TYPE
 import pytest
 
@@ -24,10 +24,10 @@ N_TICKS = 60
 def tuned(tmp_path_factory) -> Path:
     """Return a bag of the leg with gains of two actuators changed during the run."""
     provenance = Bag(GOLDEN).provenance
-    local = LocalRun(RunConfig.from_yaml(provenance.configuration), TUNED)
+    local = LocalRun(RunConfig.from_yaml(provenance.configuration))
     directory = tmp_path_factory.mktemp('bags') / 'tuned'
     with BagWriter(directory, local.topics, provenance) as writer:
-        local.simulate(N_TICKS, lambda tick, rows: None, writer)
+        local.simulate(N_TICKS, Inputs(lambda tick, rows: None, TUNED), writer)
     return directory
 
 

@@ -41,7 +41,7 @@ def test_excitation_equals_ticks_sample_for_sample(model):
         for name in ('force', 'spool', 'current'):
             assert row[f'{name}_reference'] == ticked.sample[f'{name}_reference']
     # all but the totals, which a tick starts anew
-    states = [actuator.kernel_arguments[4][0, :-3].tobytes() for actuator in (ticked, excited)]
+    states = [actuator.memory.states[0, :-3].tobytes() for actuator in (ticked, excited)]
     assert states[0] == states[1]
     assert excited.t_ns == ticked.t_ns
 
@@ -71,7 +71,9 @@ def test_compiled_excitation_equals_its_python_source():
     for kernel in (excite_steps, excite_steps.py_func):
         actuator = blocked('smart_manifold')
         trace = np.zeros(20, TRACE)
-        arrays = actuator.kernel_arguments[:8]
+        memory = actuator.memory
+        arrays = (memory.ports, memory.constants, memory.bodies, memory.rates, memory.states,
+                  memory.slopes, memory.reu, memory.read_outs)
         if kernel is not excite_steps:
             arrays = tuple(a.view(np.recarray) if a.dtype.names else a for a in arrays)
             trace = trace.view(np.recarray)
@@ -97,7 +99,7 @@ def test_slow_torque_follows_its_reference():
 
 def test_a_state_that_is_not_finite_ends_it_with_time_and_name():
     actuator = blocked('isa_v5')
-    actuator.kernel_arguments[0]['supply_pressure'] = math.nan
+    actuator.memory.ports['supply_pressure'] = math.nan
     with pytest.raises(SimulationDiverged, match=r'isa_v5: plant\.\S+ = nan at t = 0.000200 s'):
         excite(actuator, 'effort', np.zeros(10))
 
