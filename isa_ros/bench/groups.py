@@ -4,11 +4,12 @@ from collections.abc import Callable
 from dataclasses import dataclass
 
 from isa_ros.bench import comparison, growth, leg, memory, startup
+from isa_ros.bench.in_memory import in_memory_rows
 from isa_ros.bench.plant import cylinder_rows, plant_rows
 from isa_ros.bench.rounds import Outcomes
 from isa_ros.bench.row import Row
 from isa_ros.bench.spec import Spec
-from isa_ros.bench.tick import memory_rows, tick_parts
+from isa_ros.bench.tick import tick_parts
 
 
 @dataclass(frozen=True)
@@ -30,7 +31,7 @@ GROUPS = (
     Group('plant', 'One actuator, one core', _alone(plant_rows)),
     Group('cylinder', 'A valve-driven cylinder whose motion is known', _alone(cylinder_rows)),
     Group('tick', 'Parts of a tick of the leg, without ROS', _alone(tick_parts)),
-    Group('in_memory', 'The leg in memory, without a bag', _alone(memory_rows)),
+    Group('in_memory', 'The leg in memory, without a bag', _alone(in_memory_rows)),
     Group('leg', 'The leg, recording', leg.leg_rows, lambda: leg.SPECS),
     Group('peers', 'The same exchange over other middlewares', comparison.comparison_rows,
           lambda: comparison.SPECS),

@@ -1,6 +1,5 @@
 """What a tick of the leg is made of, without ROS."""
 
-from collections.abc import Callable
 from itertools import count, islice
 from pathlib import Path
 import tempfile
@@ -13,7 +12,6 @@ from isa_ros.bench.spec import LEG, ONE_PROCESS, Spec
 from isa_ros.config.assembly import group_of, surroundings_of
 from isa_ros.config.paths import CONFIG, find, SCENARIOS
 from isa_ros.config.run_file import load_run
-from isa_ros.controller import Controller, Setpoint, State
 from isa_ros.core.signals import LOAD_PORT
 from isa_ros.run.local_run import shown
 from isa_ros.run.narrator import packer_of, topics_of
@@ -29,7 +27,7 @@ _DROP = Spec(LEG, ONE_PROCESS, TICKS)
 
 def tick_parts() -> list[Row]:
     """Measure what the leg's tick is made of, without ROS; the ratio is to a whole tick."""
-    drop = _drop()
+    drop = leg_drop()
     parts = actuator_parts()
     surroundings = surroundings_of(drop.run)
     ports = np.zeros(len(drop.run.actuators), LOAD_PORT)
@@ -47,61 +45,14 @@ def tick_parts() -> list[Row]:
             for name, value in parts.items()]
 
 
-class _Holder(Controller):
-    """Asks one actuator to stay where it is, at every tick."""
-
-    def step(self, state: State) -> dict[str, Setpoint]:
-        return {'kfe': Setpoint(position=state.actuators['kfe'].position)}
-
-
-def memory_rows() -> list[Row]:
-    """Measure the leg's drop in memory beside its kernels alone, and what a controller adds."""
-    drop = _drop()
-    kernels = _kernel_seconds(drop)
-    alone = _simulated(Simulation(drop))
-    controlled = _simulated(Simulation(drop, [_Holder()]))
-    return [
-        Row('floor: the kernel of three actuators', kernels * 1e6, 'us', 'itself', 1.0),
-        Row('leg in memory, a tick', alone * 1e6, 'us', 'that kernel', kernels / alone),
-        Row('a controller in memory adds', (controlled - alone) * 1e6, 'us', 'that kernel',
-            kernels / max(controlled - alone, 1e-9))]
-
-
-def _simulated(simulation: Simulation) -> float:
-    """Return the time of a tick of the first `TICKS` ones, in s."""
-    def work() -> None:
-        simulation.reset()
-        for _ in range(TICKS):
-            simulation.step()
-    return seconds(work, TICKS, of_cpu=True)
-
-
-def _kernel_seconds(drop: Scenario) -> float:
-    """Return the time of the actuators' kernel alone, each tick under the port it really has."""
-    simulation = Simulation(drop)
-    ports: list[np.ndarray] = []
-    take: Callable[[np.ndarray], None] = simulation.surroundings.ports
-    for _ in range(TICKS):
-        port = np.zeros(len(simulation.names), LOAD_PORT)
-        take(port)
-        ports.append(port)
-        simulation.step()
-    group, starts = group_of(drop.run), surroundings_of(drop.run).starts()
-
-    def work() -> None:
-        group.start(starts)
-        for port in ports:
-            group.advance(port)
-    return seconds(work, TICKS, of_cpu=True)
-
-
-def _drop() -> Scenario:
+def leg_drop() -> Scenario:
+    """Return the shipped drop of the shipped leg."""
     return load_scenario(find('drop.yaml', SCENARIOS), load_run(find('leg.yaml', CONFIG)))
 
 
 def actuator_parts() -> dict[str, float]:
     """Return the time that the leg's actuators and messages take for a tick, in s."""
-    simulation = Simulation(_drop())
+    simulation = Simulation(leg_drop())
     ports = np.zeros(len(simulation.names), LOAD_PORT)
     simulation.surroundings.ports(ports)
     packer = packer_of(simulation.scenario.run, shown(simulation))

@@ -1,0 +1,89 @@
+"""The leg's drop in memory: beside its kernels alone, with a controller, and many at once."""
+
+from collections.abc import Callable
+import os
+import time
+
+from isa_ros.bench.row import Aim, Row, seconds
+from isa_ros.bench.tick import leg_drop
+from isa_ros.config.assembly import group_of, surroundings_of
+from isa_ros.controller import Controller, Setpoint, State
+from isa_ros.core.signals import LOAD_PORT
+from isa_ros.scenario.scenario import Scenario
+from isa_ros.scripting.run import load, Run
+from isa_ros.scripting.sweep import sweep
+from isa_ros.simulation import Simulation
+import numpy as np
+
+TICKS = 500
+N_DROPS = 200
+_KERNEL = 'the kernel of three actuators'
+
+
+class _Holder(Controller):
+    """Asks one actuator to stay where it is, at every tick."""
+
+    def step(self, state: State) -> dict[str, Setpoint]:
+        return {'kfe': Setpoint(position=state.actuators['kfe'].position)}
+
+
+def in_memory_rows() -> list[Row]:
+    """Measure a tick in memory in time of the processor, and a sweep in time of the host."""
+    drop = leg_drop()
+    kernels = _kernel_seconds(drop)
+    alone = _simulated(Simulation(drop))
+    controlled = _simulated(Simulation(drop, [_Holder()]))
+    return [
+        Row(f'floor: {_KERNEL}', kernels * 1e6, 'us'),
+        Row('a tick of the leg', alone * 1e6, 'us', _KERNEL, kernels / alone),
+        Row('a tick of the leg over the kernel', alone / kernels, '1').aiming(Aim(2.0, True)),
+        Row('a controller adds to a tick', (controlled - alone) * 1e6, 'us').aiming(
+            Aim(20.0, True)),
+        *_sweep_rows()]
+
+
+def _simulated(simulation: Simulation) -> float:
+    """Return the time of a tick of the first `TICKS` ones, in s."""
+    def work() -> None:
+        simulation.reset()
+        for _ in range(TICKS):
+            simulation.step()
+    return seconds(work, TICKS, of_cpu=True)
+
+
+def _kernel_seconds(drop: Scenario) -> float:
+    """Return the time of the actuators' kernel alone, each tick under the port it really has."""
+    simulation = Simulation(drop)
+    ports: list[np.ndarray] = []
+    take: Callable[[np.ndarray], None] = simulation.surroundings.ports
+    for _ in range(TICKS):
+        port = np.zeros(len(simulation.names), LOAD_PORT)
+        take(port)
+        ports.append(port)
+        simulation.step()
+    group, starts = group_of(drop.run), surroundings_of(drop.run).starts()
+
+    def work() -> None:
+        group.start(starts)
+        for port in ports:
+            group.advance(port)
+    return seconds(work, TICKS, of_cpu=True)
+
+
+def _sweep_rows() -> list[Row]:
+    run = load('leg.yaml', 'drop.yaml')
+    n_cores = os.cpu_count() or 1
+    one, all_cores = _sweep_seconds(run, 1), _sweep_seconds(run, n_cores)
+    return [
+        Row(f'sweep of {N_DROPS} drops in one process', one, 's'),
+        Row(f'sweep of {N_DROPS} drops in {n_cores} processes', all_cores, 's',
+            'one process', one / all_cores)]
+
+
+def _sweep_seconds(run: Run, workers: int) -> float:
+    """Return the time of a sweep of the supply's pressure, in s."""
+    pressures = np.linspace(16.0, 21.0, N_DROPS).tolist()
+    start = time.perf_counter()
+    sweep(run, {'supply.pressure_mpa': pressures}, workers=workers, measure={
+        'peak': lambda result: float(result['kfe.force'].max())}, progress=True)
+    return time.perf_counter() - start
