@@ -13,7 +13,7 @@ def compile_kernels() -> None:
     """
     Load the kernels of all shipped configurations, or compile them while others wait.
 
-    From an empty cache that takes a core's whole attention for 20 s, however many try.
+    From an empty cache one core needs about 20 s, and as many cores as try need 20 s each.
     """
     cache = Path(numba.config.CACHE_DIR)
     cache.mkdir(parents=True, exist_ok=True)
