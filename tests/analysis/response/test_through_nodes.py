@@ -25,8 +25,9 @@ def test_a_run_file_gives_the_rig_back(choice: Choice, tmp_path: Path):
     # a division and a multiplication by the scale of mm or deg: one rounding each
     assert read.initial_position == pytest.approx(
         given.initial_position, rel=4.5e-16, abs=0.0)
-    assert (run.step_ns, run.controller_offset_ns, run.supply) == (
-        bench.run.step_ns, bench.run.controller_offset_ns, bench.run.supply)
+    assert (run.step_ns, run.controller_offset_ns) == (
+        bench.run.step_ns, bench.run.controller_offset_ns)
+    assert run.supply_of(read.name) == bench.run.supply_of(given.name)
 
 
 @pytest.mark.parametrize(('arguments', 'expected'), [
