@@ -2,11 +2,13 @@
 
 from collections.abc import Mapping, Sequence
 import struct
+from typing import NamedTuple
 
 from isa_ros.actuator import kernel as kernels
 from isa_ros.actuator.actuator import ActuatorConfig, SmartActuator, Timing
 from isa_ros.actuator.rows import memory_of, row_of
-from isa_ros.core.signals import COMMAND
+from isa_ros.actuator.states import STATES
+from isa_ros.core.signals import COMMAND, SAMPLE
 from isa_ros.core.timebase import PLANT_STEP_NS
 from isa_ros.errors import ConfigError
 import numpy as np
@@ -16,6 +18,15 @@ Records = NDArray[np.void]
 """Rows of one of the record types of `isa_ros.core.signals`, one per actuator."""
 
 _SIZE = struct.Struct('<I')
+
+
+class TickLog(NamedTuple):
+    """The actuators before the first of n ticks and at the end of each, (n + 1, n_actuators)."""
+
+    samples: Records
+    """`SAMPLE`."""
+    states: Records
+    """`STATES`."""
 
 
 class ActuatorGroup:
@@ -90,18 +101,46 @@ class ActuatorGroup:
             A state is no longer finite.
 
         """
-        actuators = self.actuators
-        for actuator in actuators:
-            actuator.tuning.take()
+        self._take()
         broken = kernels.actuator_tick(
-            actuators[0].t_ns // PLANT_STEP_NS, self._steps, ports,
+            self.t_ns // PLANT_STEP_NS, self._steps, ports,
             self._no_commands if commands is None else commands, self._memory)
-        for actuator in actuators:
-            actuator.t_ns += self._timing.step_ns
+        self._end(1, broken)
+        return self._memory.replies
+
+    def advance_many(self, ports: Records, commands: Records) -> TickLog:
+        """
+        Advance all by a tick for each row of ``commands``, (n_ticks, n), in one call.
+
+        As many calls of `advance` with the same ``ports``, but much faster where ticks are
+        short; meant for actuators with loads of their own and a constant supply. Raises as
+        `advance`.
+        """
+        n_ticks = len(commands)
+        samples, states = (
+            np.zeros((n_ticks + 1, len(self.actuators)), record) for record in (SAMPLE, STATES))
+        if n_ticks > 0:
+            self._take()
+        done, broken = kernels.actuator_ticks(
+            self.t_ns // PLANT_STEP_NS, self._steps, ports, commands, self._memory, samples,
+            states)
+        if done > 1:    # changed parameters were new in the first tick only
+            self._take()
+        self._end(done, broken)
+        return TickLog(samples, states)
+
+    def _take(self) -> None:
+        """Let changed parameters take effect."""
+        for actuator in self.actuators:
+            actuator.tuning.take()
+
+    def _end(self, n_ticks: int, broken: int) -> None:
+        """Move the time on by as many ticks; refuse a state that is no longer finite."""
+        for actuator in self.actuators:
+            actuator.t_ns += n_ticks * self._timing.step_ns
         if broken >= 0:
             row, state = divmod(broken, kernels.STATE_SIZE)
-            actuators[row].refuse_broken(state)
-        return self._memory.replies
+            self.actuators[row].refuse_broken(state)
 
     def snapshot(self) -> bytes:
         """Return the state of all; `restore` continues from it byte for byte."""

@@ -8,6 +8,7 @@ of floats (`BODY`), so that the integrator sees the same memory as a flat array.
 import math
 
 from isa_ros.actuator.inbox import latch, merge
+from isa_ros.actuator.states import write_states
 from isa_ros.core.kernel import kernel
 from isa_ros.core.timebase import FORCE_WINDOWS, PLANT_STEP
 from isa_ros.loads.forces import LOAD_STATE, OWN_LOAD, own_load_force
@@ -223,3 +224,29 @@ def actuator_tick(first_step, steps, incoming, commands, memory):
         if broken >= 0:
             return n * STATE_SIZE + broken
     return -1
+
+
+@kernel
+def write_log(memory, samples, states):
+    """Copy the `SAMPLE` of every actuator and write its `STATES`, (n,) each."""
+    for n in range(len(samples)):
+        samples[n] = memory.samples[n]
+        write_states(memory.bodies[n * BODIES], memory.replies[n].force, memory.constants[n],
+                     memory.reu[n], states[n])
+
+
+@kernel
+def actuator_ticks(first_step, steps, incoming, commands, memory, samples, states):
+    """
+    Run `actuator_tick` for each row of ``commands``, (n_ticks, n), with constant ``incoming``.
+
+    Return the number of ticks, and the place of a state that the last one broke, or -1.
+    ``samples`` and ``states``, (n_ticks + 1, n), begin with the state before the first tick.
+    """
+    write_log(memory, samples[0], states[0])
+    for tick in range(len(commands)):
+        broken = actuator_tick(first_step + tick * steps, steps, incoming, commands[tick], memory)
+        write_log(memory, samples[tick + 1], states[tick + 1])
+        if broken >= 0:
+            return tick + 1, broken
+    return len(commands), -1

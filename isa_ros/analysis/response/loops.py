@@ -36,7 +36,7 @@ class Unit:
 
 @dataclass(frozen=True)
 class Loop:
-    """One loop of one actuator; signal names are fields of `excitation.TRACE`."""
+    """One loop of one actuator; signal names are fields of `actuator_trace.TRACE`."""
 
     name: str
     label: str                  # force reads torque where it is one

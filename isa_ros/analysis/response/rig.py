@@ -4,9 +4,10 @@ from collections.abc import Sequence
 from dataclasses import dataclass, replace
 import math
 
-from isa_ros.actuator.actuator import PAPER_SUPPLY, SmartActuator, Timing
+from isa_ros.actuator.actuator import PAPER_SUPPLY
+from isa_ros.actuator.group import ActuatorGroup, Records
 from isa_ros.actuator.sheet import ActuatorSheet, refuse_wiring
-from isa_ros.analysis.response.excitation import excite, PERIOD_NS, RATE_HZ
+from isa_ros.analysis.response.actuator_trace import RATE_HZ, setpoints, TIMING, traced
 from isa_ros.analysis.response.loops import Loop, loop_of, Unit, units_of
 from isa_ros.config.catalogue import actuator_model, model_names
 from isa_ros.config.default_actuator import default_load, DEFAULT_TIMING
@@ -16,13 +17,13 @@ from isa_ros.config.run_config import ActuatorConfig, RunConfig
 from isa_ros.config.run_file import load_run
 from isa_ros.config.sections import build, kind_of, Place
 from isa_ros.config.supplies import SUPPLY, SupplyConfig
+from isa_ros.core.signals import LOAD_PORT, START
 from isa_ros.core.units import MPA
 from isa_ros.errors import ConfigError
 from isa_ros.loads.sheets import LocalLoad, static_force
 from isa_ros.surroundings.supply import ConstantSupply
 import numpy as np
 
-TIMING = Timing(PERIOD_NS, 0)
 REST_S = 0.3            # before anything is excited: several times the slowest loop's settling
 BLOCKED = 'blocked'
 PAPER = ConstantSupply(pressure_mpa=PAPER_SUPPLY / MPA, return_pressure_mpa=0.0)
@@ -76,26 +77,42 @@ class Rig:
         """Return where the loop's reference rests: the start, or 0."""
         return self.config.initial_position if self.loop.name == 'position' else 0.0
 
-    def start(self) -> SmartActuator:
-        """Return the actuator at rest: `REST_S` with its reference standing still."""
-        actuator = SmartActuator(self.config, TIMING)
+    @property
+    def ports(self) -> Records:
+        """Return the `LOAD_PORT` row of every tick: the pressures of the supply, (1,)."""
+        return self._with_pressures(LOAD_PORT)
+
+    def _with_pressures(self, record: np.dtype[np.void]) -> Records:
+        row = np.zeros(1, record)
         supply = self.run.supply_of(self.config.name)
-        actuator.start(
-            self.config.initial_position, static_force(self.config.load),
-            supply.pressure_mpa * MPA, supply.return_pressure_mpa * MPA)
+        row['supply_pressure'] = supply.pressure_mpa * MPA
+        row['return_pressure'] = supply.return_pressure_mpa * MPA
+        return row
+
+    def begin(self, force: float) -> ActuatorGroup:
+        """Return the actuator alone at t = 0, where it is placed, holding ``force`` (N | Nm)."""
+        group, start = ActuatorGroup([self.config], TIMING), self._with_pressures(START)
+        start['position'], start['force'] = self.config.initial_position, force
+        group.start(start)
+        return group
+
+    def start(self) -> ActuatorGroup:
+        """Return the actuator at rest: `REST_S` with its reference standing still."""
+        actuator = self.begin(static_force(self.config.load))
         self.excite(actuator, np.zeros(round(REST_S * RATE_HZ)))
         return actuator
 
     def excite(
-            self, actuator: SmartActuator, values: np.ndarray,
+            self, actuator: ActuatorGroup, values: np.ndarray,
             rates: np.ndarray | None = None) -> np.ndarray:
         """
         Excite the loop by ``values`` around its offset, SI; return the `TRACE`.
 
         ``rates`` are theirs: a position moves its velocity along, as a scenario's does.
         """
-        return excite(
-            actuator, self.loop.quantity, self.loop.per_reference * (self.offset + values), rates)
+        given = self.loop.per_reference * (self.offset + values)
+        return traced(
+            actuator, self.ports, setpoints(actuator, self.loop.quantity, given, rates))
 
     def amplitude(self, given: float | None) -> float:
         """

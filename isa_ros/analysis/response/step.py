@@ -2,7 +2,7 @@
 
 from dataclasses import dataclass
 
-from isa_ros.analysis.response.excitation import RATE_HZ
+from isa_ros.analysis.response.actuator_trace import RATE_HZ
 from isa_ros.analysis.response.loops import Loop
 from isa_ros.analysis.response.rig import Rig
 from isa_ros.analysis.signals.step_response import step_figures, StepFigures

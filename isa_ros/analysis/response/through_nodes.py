@@ -14,7 +14,7 @@ from tempfile import TemporaryDirectory
 
 from isa_ros.analysis.report.figures import ATMOSPHERE
 from isa_ros.analysis.response import bode as bodes, step as steps
-from isa_ros.analysis.response.excitation import TRACE
+from isa_ros.analysis.response.actuator_trace import TRACE
 from isa_ros.analysis.response.loops import Loop, PLANT
 from isa_ros.analysis.response.rig import REST_S, Rig
 from isa_ros.analysis.response.sweep import Answer, chirp_band, sections, Sweep, windows

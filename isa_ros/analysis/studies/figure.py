@@ -2,7 +2,7 @@
 
 from collections.abc import Sequence
 
-from isa_ros.analysis.response.excitation import RATE_HZ
+from isa_ros.analysis.response.actuator_trace import RATE_HZ
 from isa_ros.analysis.studies.measure import Outcome, Result, SMALL
 from matplotlib import colormaps
 from matplotlib.axes import Axes

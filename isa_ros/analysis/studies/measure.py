@@ -15,8 +15,8 @@ import math
 
 from isa_ros.actuator.sheet import refuse_wiring
 from isa_ros.analysis.experiment import with_overrides
+from isa_ros.analysis.response.actuator_trace import RATE_HZ
 from isa_ros.analysis.response.bode import bode
-from isa_ros.analysis.response.excitation import RATE_HZ
 from isa_ros.analysis.response.loops import loop_of
 from isa_ros.analysis.response.rig import BLOCKED, Choice, Rig, rig
 from isa_ros.analysis.response.sweep import Sweep

@@ -9,7 +9,7 @@ from dataclasses import replace
 
 from isa_ros.actuator.kernel import body_step, flat, scratch
 from isa_ros.actuator.sheet import actuator_record, ActuatorSheet
-from isa_ros.analysis.response.excitation import excite, RATE_HZ
+from isa_ros.analysis.response.actuator_trace import RATE_HZ
 from isa_ros.analysis.response.rig import Choice, Rig, rig
 from isa_ros.analysis.response.step import Step, step
 from isa_ros.analysis.signals.step_response import step_figures
@@ -30,6 +30,7 @@ OPEN_LOOP_S = 0.1          # 26 time constants of the coil
 STEPS_MA = (1.0, 2.0)      # not limited by the amplifier's voltage
 LARGE_STEP_MA = 5.0
 BARE_KP = 16.0             # V/mA without lead-lag: the gain of Table 4, rings
+BARE_STEP = 1e-3           # A, small enough for the amplifier's voltage
 STEP_S = 0.05
 
 
@@ -115,9 +116,9 @@ def _ringing() -> tuple[float, np.ndarray]:
         current, kp_v_per_ma=BARE_KP, kpf=1.0, lead_rad_per_s=current.lag_rad_per_s,
         lead_damping=current.lag_damping)
     sheet = replace(bench.config.sheet, reu=replace(bench.config.sheet.reu, current=bare))
-    actuator = _rig(sheet).start()
+    bench = _rig(sheet)
     n = round(STEP_S * RATE_HZ)
-    trace = excite(actuator, 'effort', np.full(n, 0.5e-3))['current']
+    trace = bench.excite(bench.start(), np.full(n, BARE_STEP))['current']
     ring = trace[:n // 2] - trace[n // 2:].mean()
     spectrum = np.abs(np.fft.rfft(ring * np.hanning(len(ring)), 16 * n))
     frequency = np.fft.rfftfreq(16 * n, 1.0 / RATE_HZ)

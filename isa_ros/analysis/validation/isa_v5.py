@@ -9,10 +9,9 @@ foot dz/dq it is (dz/dq / r)^2 times as stiff, and the mass of the shank is M_qq
 
 from dataclasses import replace
 
-from isa_ros.actuator.actuator import SmartActuator
+from isa_ros.analysis.response.actuator_trace import RATE_HZ
 from isa_ros.analysis.response.bode import bode
-from isa_ros.analysis.response.excitation import RATE_HZ
-from isa_ros.analysis.response.rig import Choice, Rig, rig, TIMING
+from isa_ros.analysis.response.rig import Choice, Rig, rig
 from isa_ros.analysis.response.step import Step, step
 from isa_ros.analysis.response.sweep import Sweep
 from isa_ros.analysis.validation.entry import around, at_most, Drawing, Entry, Findings
@@ -134,10 +133,7 @@ def _relief(model: str) -> Entry:
     found = found.with_config(replace(
         found.config, initial_position=0.9 * float(oil.stroke),
         load=replace(found.config.load, force=force)))
-    actuator = SmartActuator(found.config, TIMING)
-    supply = statement('supply_pressure').number * MPA
-    actuator.start(found.config.initial_position, 0.0, supply, 0.0)
-    trace = found.excite(actuator, np.zeros(round(OVERLOAD_S * RATE_HZ)))
+    trace = found.excite(found.begin(force=0.0), np.zeros(round(OVERLOAD_S * RATE_HZ)))
     return Entry.of(
         f'{model}_relief', statement('relief_pressure'), float(trace['pressure_a'].max()) / MPA,
         (OPENING / MPA, FULL_RELIEF / MPA), '10 l/min take 0.5 MPa more')

@@ -10,13 +10,15 @@ from collections.abc import Callable, Sequence
 from dataclasses import replace
 import math
 
-from isa_ros.actuator.actuator import SmartActuator
+from isa_ros.actuator.actuator import PAPER_SUPPLY
+from isa_ros.actuator.group import ActuatorGroup
 from isa_ros.actuator.sheet import ActuatorSheet
-from isa_ros.analysis.response.excitation import excite, RATE_HZ
+from isa_ros.analysis.response.actuator_trace import PERIOD_NS, RATE_HZ, setpoints
 from isa_ros.analysis.validation.entry import around, at_least, Drawing, Entry, Findings
 from isa_ros.analysis.validation.plots import stacked
 from isa_ros.analysis.validation.sheets import model_sheet, plant_of
 from isa_ros.config.default_actuator import default_actuator, DEFAULT_TIMING
+from isa_ros.core.signals import LOAD_PORT
 from isa_ros.core.units import MPA
 from isa_ros.paper.printed import cell, statement
 from isa_ros.plant.plant import plant_rates, PLANT_STATE
@@ -129,10 +131,14 @@ def stepped_sine(sheet: ActuatorSheet, amplitude: float) -> Response:
 
 
 def driven(sheet: ActuatorSheet, efforts: np.ndarray) -> np.ndarray:
-    """Return the `TRACE` of an actuator at mid stroke with a new effort every 100 us."""
+    """Return the `STATES` of an actuator at mid stroke before each effort, one every 100 us."""
     base = default_actuator(ULLV if sheet.is_rotary else ISA_V5, 'driven')
     config = replace(base, sheet=sheet, initial_position=0.5 * sheet.plant.drive.stroke)
-    return excite(SmartActuator(config, DEFAULT_TIMING), 'effort', efforts)
+    group = ActuatorGroup([config], replace(DEFAULT_TIMING, step_ns=PERIOD_NS))
+    ports = np.zeros(1, LOAD_PORT)
+    ports['supply_pressure'] = PAPER_SUPPLY
+    states: np.ndarray = group.advance_many(ports, setpoints(group, 'effort', efforts)).states
+    return states[:-1, 0]
 
 
 def sampled_spool_loop() -> ActuatorSheet:

@@ -2,7 +2,7 @@
 
 from dataclasses import replace
 
-from isa_ros.analysis.response.excitation import TRACE
+from isa_ros.analysis.response.actuator_trace import TRACE
 from isa_ros.analysis.response.loops import loop_of, outermost, rating
 from isa_ros.errors import ConfigError
 from isa_ros.reu.wiring import active, Off, VARIABLES

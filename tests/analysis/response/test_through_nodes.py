@@ -24,8 +24,9 @@ def test_a_run_file_gives_the_rig_back(choice: Choice, tmp_path: Path):
     assert (read.sheet, read.load) == (given.sheet, given.load)
     # a division and a multiplication by the scale of mm or deg: one rounding each
     assert read.initial_position == pytest.approx(given.initial_position, rel=4.5e-16, abs=0.0)
-    assert (run.step_ns, run.controller_offset_ns, run.supplies) == (
-        bench.run.step_ns, bench.run.controller_offset_ns, bench.run.supplies)
+    assert (run.step_ns, run.controller_offset_ns) == (
+        bench.run.step_ns, bench.run.controller_offset_ns)
+    assert run.supply_of(read.name) == bench.run.supply_of(given.name)
 
 
 @pytest.mark.parametrize(('arguments', 'expected'), [

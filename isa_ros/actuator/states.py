@@ -1,0 +1,58 @@
+"""
+The states of one actuator at one instant: exact ones of the plant, references of its REU.
+
+A `SAMPLE` holds what the sensors read; a `STATES` row holds the values behind the sensors, and
+references that are not reported.
+"""
+
+from isa_ros.core.kernel import kernel
+from isa_ros.plant.coil import coil_current
+from isa_ros.reu.cascade import OFF
+import numpy as np
+
+STATES = np.dtype([
+    ('position', 'f8'),             # of the piston or rotor, m | rad
+    ('velocity', 'f8'),             # m/s | rad/s
+    ('force', 'f8'),                # in the force or torque sensor, N | Nm
+    ('pressure_a', 'f8'),           # Pa gauge
+    ('pressure_b', 'f8'),           # Pa gauge
+    ('spool', 'f8'),                # m
+    ('current', 'f8'),              # amplifier A
+    ('position_reference', 'f8'),   # m | rad
+    ('force_reference', 'f8'),      # N | Nm; 0 without a force block
+    ('pressure_reference', 'f8'),   # of the pressure difference, Pa; 0 without a pressure block
+    ('spool_reference', 'f8'),      # m
+    ('current_reference', 'f8'),    # amplifier A
+    ('drive', 'f8'),                # output of the blocks: V with an explicit coil, else A
+])
+
+
+@kernel
+def pressure_reference(reu, state):
+    """Return the reference of the pressure block in Pa, which the next block outwards gives."""
+    if reu.pressure_kind == OFF:
+        return 0.0
+    if reu.force_kind != OFF:
+        return state.force.output
+    if reu.position_kind != OFF:
+        return state.position.output
+    return state.setpoint.effort
+
+
+@kernel
+def write_states(body, force, actuator, reu_state, row):
+    """Fill one `STATES` row from a `BODY`, its sensor force (N | Nm) and a `REU_STATE`."""
+    plant = body.plant
+    row.position = plant.mechanics.position
+    row.velocity = plant.mechanics.velocity
+    row.force = force
+    row.pressure_a = plant.chambers.p_a
+    row.pressure_b = plant.chambers.p_b
+    row.spool = plant.valve.spool
+    row.current = coil_current(plant.coil, actuator.plant.coil)
+    row.position_reference = reu_state.setpoint.position
+    row.force_reference = reu_state.force_reference
+    row.pressure_reference = pressure_reference(actuator.reu, reu_state)
+    row.spool_reference = reu_state.spool_reference
+    row.current_reference = reu_state.current_reference
+    row.drive = reu_state.drive
