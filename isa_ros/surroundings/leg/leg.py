@@ -14,8 +14,7 @@ from isa_ros.core.record import rows_of
 from isa_ros.core.timebase import FORCE_WINDOWS, NS_PER_SECOND, steps_in
 from isa_ros.errors import ConfigError, SimulationDiverged
 from isa_ros.surroundings.leg import port_kernel as kernels
-from isa_ros.surroundings.leg.motion import (
-    continuous, ContinuousState, LEG_STATE, terms_of)
+from isa_ros.surroundings.leg.motion import continuous, ContinuousState, LEG_STATE, terms_of
 from isa_ros.surroundings.leg.sheet import JOINTS, leg_record, LegSheet
 from isa_ros.surroundings.linkage import actuator_coordinate
 import numpy as np
