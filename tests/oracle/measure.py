@@ -31,7 +31,7 @@ def errors(coupled: np.ndarray, reference: np.ndarray, step_ns: int) -> Errors:
     peak = np.abs(np.abs(coupled['mean']).max(axis=0) / np.abs(means).max(axis=0) - 1.0)
     normal = at['normal'].max()
     ground = abs(ticks['normal'].max() / normal - 1.0) if normal > 0.0 else 0.0
-    angle = np.degrees(np.abs(ticks['leg'][:, 1:4] - at['leg'][:, 1:4]).max(axis=0))
+    angle = np.degrees(np.abs(ticks['angle'] - at['angle']).max(axis=0))
     work = np.abs(ticks['work'][-1] - at['work'][-1]) / np.abs(at['work']).max(axis=0)
     return Errors(rms, peak, np.array([ground]), angle, work)
 

@@ -8,11 +8,10 @@ from isa_ros.actuator.sheet import ActuatorSheet
 from isa_ros.config.run_config import ActuatorConfig
 from isa_ros.core.signals import LOAD_PORT, LOAD_REPLY
 from isa_ros.surroundings.leg.leg import Leg, Pose
-from isa_ros.surroundings.leg.motion import N_STATES
 from isa_ros.surroundings.leg.sheet import LegSheet
 import numpy as np
 from tests.legs import leg_sheet
-from tests.oracle.monolith import monolith, ROW_NS, TIME_BYTES, TRACE
+from tests.oracle.monolith import monolith, ROW_NS, TRACE
 from tests.sheets import actuator_sheet, setpoint
 
 WINDOWS = 5
@@ -77,12 +76,12 @@ class Rig:
         """
         Return the `TRACE` through the load port, one row per window of a fifth of ``step_ns``.
 
-        Leg and end forces are known at ticks only; the rows between carry NaN.
+        Angles and end forces are known at ticks only; the rows between carry NaN.
         """
         actuators, leg = self.start(step_ns)
         n = duration_ns // step_ns
         trace = np.zeros(n * WINDOWS, TRACE)
-        for name in ('force', 'leg', 'normal', 'work'):
+        for name in ('force', 'angle', 'normal', 'work'):
             trace[name] = np.nan
         ports, replies = np.zeros(3, LOAD_PORT), np.zeros(3, LOAD_REPLY)
         ports['supply_pressure'] = self.supply_pressure
@@ -108,6 +107,6 @@ class Rig:
             work += replies['mean_forces'].mean(axis=1) * (np.array(leg.actuator_positions) - x)
             last = rows[-1:]
             last['force'] = replies['force']
-            last['leg'] = np.frombuffer(leg.snapshot(), np.float64, N_STATES, TIME_BYTES)
+            last['angle'] = leg.sample[0]['position']
             last['normal'], last['work'] = leg.sample[0]['foot_force'][2], work
         return trace

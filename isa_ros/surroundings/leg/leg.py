@@ -10,12 +10,12 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 import math
 
+from isa_ros.core.record import rows_of
 from isa_ros.core.timebase import FORCE_WINDOWS, NS_PER_SECOND, steps_in
 from isa_ros.errors import ConfigError, SimulationDiverged
 from isa_ros.surroundings.leg import port_kernel as kernels
-from isa_ros.surroundings.leg.dynamics import leg_terms
-from isa_ros.surroundings.leg.motion import LEG_STATE, STATE_NAMES, unpacked
-from isa_ros.surroundings.leg.sheet import JOINTS, leg_records, LegSheet
+from isa_ros.surroundings.leg.motion import continuous, ContinuousState, LEG_STATE, terms_of
+from isa_ros.surroundings.leg.sheet import JOINTS, leg_record, LegSheet
 from isa_ros.surroundings.linkage import actuator_coordinate
 import numpy as np
 
@@ -51,11 +51,9 @@ class Leg:
         self.rows = np.array(rows, np.int64)
         """Rows of the actuators that drive HAA, HFE and KFE, (3,)."""
         self._release_ns = release_ns
-        self._body, self._linkages, self._ground = leg_records(sheet)
-        self._state = np.zeros(1, LEG_STATE)
-        self._flat = self._state.view(np.float64)
-        self._sample = np.zeros(1, kernels.LEG_SAMPLE)
-        self._flat_sample = self._sample.view(np.float64)
+        self._constants = leg_record(sheet)
+        self._state = rows_of(1, LEG_STATE)
+        self._sample = rows_of(1, kernels.LEG_SAMPLE)
         self._look_ahead = 0.5 * step_ns / NS_PER_SECOND
         self._t_ns = 0
         self._is_to_be_released = release_ns is not None
@@ -75,19 +73,17 @@ class Leg:
                     f'{joint.low_deg:g}..{joint.high_deg:g} deg')
 
     def _start(self, pose: Pose) -> None:
-        still = (0.0, 0.0, 0.0, 0.0)
-        terms = leg_terms(0.0, *pose.joints, *still, self._body[0])
-        state = self._state[0]
-        state['z'] = pose.foot_height - terms.foot_z
-        state['is_held'] = 1.0
+        state, leg = self._state[0], self._constants[0]
+        state.q_haa, state.q_hfe, state.q_kfe = pose.haa, pose.hfe, pose.kfe
+        terms = terms_of(continuous(state), leg)
+        state.z = pose.foot_height - terms.foot_z
+        state.is_held = 1.0
         for k, name in enumerate(JOINTS):
-            _, lever, _ = actuator_coordinate(pose.joints[k], self._linkages[k])
-            state[f'q_{name}'] = pose.joints[k]
-            for force in ('force', 'mean', 'older'):
-                state[f'{force}_{name}'] = getattr(terms, f'h_{name}') / lever
-        y, force, _, is_held = unpacked(self._flat)
-        kernels.fill_sample(y, force, is_held, self._body[0], self._linkages, self._ground[0],
-                            self._flat_sample)
+            _, lever, _ = actuator_coordinate(pose.joints[k], leg[name])
+            force = getattr(terms, f'h_{name}') / lever
+            state.force[k] = state.mean_force[k] = state.older_mean[k] = force
+        kernels.fill_sample(
+            continuous(state), self.actuator_forces, True, leg, self._sample[0])
 
     @property
     def t_ns(self) -> int:
@@ -97,15 +93,16 @@ class Leg:
     @property
     def actuator_forces(self) -> tuple[float, float, float]:
         """Return the sensor forces (N | Nm) the ports assume now; at t = 0 they hold the leg."""
-        state = self._state[0]
-        return (float(state['force_haa']), float(state['force_hfe']), float(state['force_kfe']))
+        haa, hfe, kfe = self._state['force'][0].tolist()
+        return haa, hfe, kfe
 
     @property
     def actuator_positions(self) -> tuple[float, float, float]:
         """Return the load's side of the three force sensors, m | rad."""
-        x = [actuator_coordinate(float(self._state[f'q_{name}'][0]), self._linkages[k])[0]
-             for k, name in enumerate(JOINTS)]
-        return x[0], x[1], x[2]
+        haa, hfe, kfe = (
+            actuator_coordinate(float(self._state[f'q_{name}'][0]), self._constants[0][name])[0]
+            for name in JOINTS)
+        return haa, hfe, kfe
 
     @property
     def sample(self) -> np.ndarray:
@@ -145,8 +142,7 @@ class Leg:
         if self._is_to_be_released and self._t_ns >= (self._release_ns or 0):
             self._is_to_be_released = False
             self.release()
-        kernels.leg_ports(self._flat, self._look_ahead, self.rows, self._body, self._linkages,
-                          self._ground, ports)
+        kernels.leg_ports(self._state, self._look_ahead, self.rows, self._constants, ports)
 
     def advance(self, replies: np.ndarray) -> None:
         """
@@ -159,12 +155,11 @@ class Leg:
 
         """
         broken = kernels.leg_tick(
-            self._flat, self._step_ns, self.rows, self._body, self._linkages, self._ground,
-            replies.view(np.float64).reshape(-1, kernels.REPLY_WIDTH), self._flat_sample)
+            self._state, self._step_ns, self.rows, self._constants, replies, self._sample)
         self._t_ns += self._step_ns
         if broken >= 0:
-            raise SimulationDiverged(
-                self._t_ns, f'leg.{STATE_NAMES[broken]}', float(self._flat[broken]))
+            name = ContinuousState._fields[broken]
+            raise SimulationDiverged(self._t_ns, f'leg.{name}', float(self._state[name][0]))
 
     def snapshot(self) -> bytes:
         """Return the whole state; `restore` continues from it byte for byte."""

@@ -1,9 +1,9 @@
 """
 One leg under three actuators: its state, accelerations and Runge-Kutta step.
 
-Continuous states are one flat row of floats (`LEG_STATE`); inside a kernel they are a tuple
-y = (z, q_haa, q_hfe, q_kfe, their speeds, bristle x, bristle y). Joints are in the order
-HAA, HFE, KFE. Equations L6 and L12 of docs/equations.md.
+Joints are in the order HAA, HFE, KFE; three values of one kind are a tuple in that order. Inside
+a kernel y is the `ContinuousState`, f the actuators' forces, ``leg`` the record `LEG`. Equations
+L6 and L12 of docs/equations.md.
 
 Neglected: friction of joints and rail, compliance of links and joints.
 """
@@ -11,52 +11,85 @@ Neglected: friction of joints and rail, compliance of links and joints.
 from typing import NamedTuple
 
 from isa_ros.core.kernel import kernel
-from isa_ros.surroundings.ground import contact
-from isa_ros.surroundings.leg.dynamics import leg_terms
-from isa_ros.surroundings.linkage import actuator_coordinate
+from isa_ros.surroundings.ground import contact, GROUND
+from isa_ros.surroundings.leg.dynamics import LEG_BODY, leg_terms
+from isa_ros.surroundings.linkage import actuator_coordinate, LINKAGE
 import numpy as np
 
-STATE_NAMES = (
-    'z', 'q_haa', 'q_hfe', 'q_kfe',         # m, rad
-    'v_z', 'v_haa', 'v_hfe', 'v_kfe',       # m/s, rad/s
-    'bristle_x', 'bristle_y',               # m
-    'force_haa', 'force_hfe', 'force_kfe',  # estimated at the tick's end, N | Nm
-    'slope_haa', 'slope_hfe', 'slope_kfe',  # its slope, N/s | Nm/s
-    'mean_haa', 'mean_hfe', 'mean_kfe',     # over the last tick, N | Nm
-    'older_haa', 'older_hfe', 'older_kfe',  # over the tick before, N | Nm
-    'is_held',                              # 1.0: the slider is locked
-)
-LEG_STATE = np.dtype([(name, '<f8') for name in STATE_NAMES])
+
+LEG = np.dtype([
+    ('body', LEG_BODY), ('haa', LINKAGE), ('hfe', LINKAGE), ('kfe', LINKAGE), ('ground', GROUND)])
+"""Every constant of one leg, SI."""
+
+
+class ContinuousState(NamedTuple):
+    """What the equations of motion integrate, or the rates of change of it."""
+
+    z: float            # m
+    q_haa: float        # rad
+    q_hfe: float
+    q_kfe: float
+    v_z: float          # m/s
+    v_haa: float        # rad/s
+    v_hfe: float
+    v_kfe: float
+    bristle_x: float    # m
+    bristle_y: float
+
+
+LEG_STATE = np.dtype([
+    *((name, '<f8') for name in ContinuousState._fields),
+    ('force', '<f8', (3,)),       # estimated at the tick's end, N | Nm
+    ('slope', '<f8', (3,)),       # its slope, N/s | Nm/s
+    ('mean_force', '<f8', (3,)),  # over the last tick, N | Nm
+    ('older_mean', '<f8', (3,)),  # over the tick before, N | Nm
+    ('is_held', '<f8'),           # 1.0: the slider is locked
+])
 """The state of a leg that persists from tick to tick."""
 
-N_STATES = 10
-FORCE = N_STATES            # place of the force estimates in the flat state
-SLOPE = FORCE + 3
-MEAN = SLOPE + 3            # place of the last tick's mean forces
-OLDER = MEAN + 3           # and of the one before
-HELD = OLDER + 3
+
+class Coordinates(NamedTuple):
+    """One value per generalised coordinate."""
+
+    z: float
+    haa: float
+    hfe: float
+    kfe: float
+
+
+class Factor(NamedTuple):
+    """D and the lower triangle of L of a mass matrix M = L D L^T."""
+
+    d0: float
+    d1: float
+    d2: float
+    d3: float
+    l10: float
+    l20: float
+    l21: float
+    l30: float
+    l31: float
+    l32: float
 
 
 class Motion(NamedTuple):
-    """Accelerations, the factor L D L^T of the mass matrix, levers and the foot."""
+    """How the leg moves at one instant; three values are those of the joints, or x y z."""
 
-    a_z: float
-    a_haa: float
-    a_hfe: float
-    a_kfe: float
-    rate_x: float
-    rate_y: float
-    d: tuple[float, ...]     # (4,)
-    l: tuple[float, ...]     # (6,), see `factor`
-    r: tuple[float, ...]     # (3,), lever arms
-    dr: tuple[float, ...]    # (3,), their derivatives
-    foot: tuple[float, ...]  # position and force from the ground, x y z each
+    acceleration: Coordinates            # m/s2, rad/s2
+    bristle_rate_x: float                # m/s
+    bristle_rate_y: float
+    factor: Factor                       # of the mass matrix
+    position: tuple[float, ...]          # (3,), of the actuators, m | rad
+    lever: tuple[float, ...]             # (3,), r
+    lever_rate: tuple[float, ...]        # (3,), dr/dq
+    foot_position: tuple[float, ...]     # (3,), m
+    foot_force: tuple[float, ...]        # (3,), from the ground, N
 
 
 @kernel
 def factor(m, is_held):
     """
-    Return D (4) and L (6: 10 20 21 30 31 32) of M = L D L^T.
+    Return the `Factor` of the mass matrix in the `LegTerms` m.
 
     A held slider is the constraint z'' = 0: its row and column become those of a unit mass
     without forces. D > 0 because M is positive definite.
@@ -72,79 +105,127 @@ def factor(m, is_held):
     e32 = m.m_hfe_kfe - l30 * m_z2 - l31 * e21
     l32 = e32 / d2
     d3 = m.m_kfe_kfe - l30 * m_z3 - l31 * e31 - l32 * e32
-    return (m_zz, d1, d2, d3), (l10, l20, l21, l30, l31, l32)
+    return Factor(
+        d0=m_zz, d1=d1, d2=d2, d3=d3, l10=l10, l20=l20, l21=l21, l30=l30, l31=l31, l32=l32)
 
 
 @kernel
-def solve(d, l, b0, b1, b2, b3):  # noqa: E741, the symbol of the factorisation
-    """Return the solution of L D L^T x = b."""
-    b1 -= l[0] * b0
-    b2 -= l[1] * b0 + l[2] * b1
-    b3 -= l[3] * b0 + l[4] * b1 + l[5] * b2
-    x3 = b3 / d[3]
-    x2 = b2 / d[2] - l[5] * x3
-    x1 = b1 / d[1] - l[2] * x2 - l[4] * x3
-    x0 = b0 / d[0] - l[0] * x1 - l[1] * x2 - l[3] * x3
-    return x0, x1, x2, x3
+def solve(m, b0, b1, b2, b3):
+    """Return the solution x of L D L^T x = b with the `Factor` m."""
+    b1 -= m.l10 * b0
+    b2 -= m.l20 * b0 + m.l21 * b1
+    b3 -= m.l30 * b0 + m.l31 * b1 + m.l32 * b2
+    x3 = b3 / m.d3
+    x2 = b2 / m.d2 - m.l32 * x3
+    x1 = b1 / m.d1 - m.l21 * x2 - m.l31 * x3
+    x0 = b0 / m.d0 - m.l10 * x1 - m.l20 * x2 - m.l30 * x3
+    return Coordinates(z=x0, haa=x1, hfe=x2, kfe=x3)
 
 
 @kernel
-def leg_motion(y, f, is_held, body, linkages, ground):
-    """Return the `Motion` under actuator forces ``f``: M q'' = r F + J^T f_foot - h  (L6)."""
-    m = leg_terms(y[0], y[1], y[2], y[3], y[4], y[5], y[6], y[7], body)
-    _, r1, dr1 = actuator_coordinate(y[1], linkages[0])
-    _, r2, dr2 = actuator_coordinate(y[2], linkages[1])
-    _, r3, dr3 = actuator_coordinate(y[3], linkages[2])
+def terms_of(y, leg):
+    """Return the `LegTerms` of a state."""
+    return leg_terms(y.z, y.q_haa, y.q_hfe, y.q_kfe, y.v_z, y.v_haa, y.v_hfe, y.v_kfe,
+                     leg.body)
+
+
+@kernel
+def leg_motion(y, f, is_held, leg):
+    """Return the `Motion` under actuator forces: M q'' = r F + J^T f_foot - h  (L6)."""
+    m = terms_of(y, leg)
+    f_haa, f_hfe, f_kfe = f
+    x_haa, r_haa, dr_haa = actuator_coordinate(y.q_haa, leg.haa)
+    x_hfe, r_hfe, dr_hfe = actuator_coordinate(y.q_hfe, leg.hfe)
+    x_kfe, r_kfe, dr_kfe = actuator_coordinate(y.q_kfe, leg.kfe)
     f_x, f_y, f_z, rate_x, rate_y = contact(
-        m.foot_z, m.foot_v_x, m.foot_v_y, m.foot_v_z, y[8], y[9], ground)
-    d, l = factor(m, is_held)  # noqa: E741
-    b0 = 0.0 if is_held else f_z - m.h_z
-    b1 = r1 * f[0] + m.j_y_haa * f_y + m.j_z_haa * f_z - m.h_haa
-    b2 = r2 * f[1] + m.j_x_hfe * f_x + m.j_y_hfe * f_y + m.j_z_hfe * f_z - m.h_hfe
-    b3 = r3 * f[2] + m.j_x_kfe * f_x + m.j_y_kfe * f_y + m.j_z_kfe * f_z - m.h_kfe
-    a = solve(d, l, b0, b1, b2, b3)
-    return Motion(a[0], a[1], a[2], a[3], rate_x, rate_y, d, l, (r1, r2, r3), (dr1, dr2, dr3),
-                  (m.foot_x, m.foot_y, m.foot_z, f_x, f_y, f_z))
+        m.foot_z, m.foot_v_x, m.foot_v_y, m.foot_v_z, y.bristle_x, y.bristle_y, leg.ground)
+    m_factor = factor(m, is_held)
+    acceleration = solve(
+        m_factor,
+        0.0 if is_held else f_z - m.h_z,
+        r_haa * f_haa + m.j_y_haa * f_y + m.j_z_haa * f_z - m.h_haa,
+        r_hfe * f_hfe + m.j_x_hfe * f_x + m.j_y_hfe * f_y + m.j_z_hfe * f_z - m.h_hfe,
+        r_kfe * f_kfe + m.j_x_kfe * f_x + m.j_y_kfe * f_y + m.j_z_kfe * f_z - m.h_kfe)
+    return Motion(
+        acceleration=acceleration, bristle_rate_x=rate_x, bristle_rate_y=rate_y,
+        factor=m_factor, position=(x_haa, x_hfe, x_kfe), lever=(r_haa, r_hfe, r_kfe),
+        lever_rate=(dr_haa, dr_hfe, dr_kfe),
+        foot_position=(m.foot_x, m.foot_y, m.foot_z), foot_force=(f_x, f_y, f_z))
 
 
 @kernel
-def leg_rates(y, f, is_held, body, linkages, ground):
-    """Return dy/dt, a tuple of `N_STATES`."""
-    a = leg_motion(y, f, is_held, body, linkages, ground)
-    return (y[4], y[5], y[6], y[7], a.a_z, a.a_haa, a.a_hfe, a.a_kfe, a.rate_x, a.rate_y)
+def leg_rates(y, f, is_held, leg):
+    """Return dy/dt, a `ContinuousState` of rates."""
+    motion = leg_motion(y, f, is_held, leg)
+    a = motion.acceleration
+    return ContinuousState(
+        z=y.v_z, q_haa=y.v_haa, q_hfe=y.v_hfe, q_kfe=y.v_kfe,
+        v_z=a.z, v_haa=a.haa, v_hfe=a.hfe, v_kfe=a.kfe,
+        bristle_x=motion.bristle_rate_x, bristle_y=motion.bristle_rate_y)
 
 
 @kernel
 def shifted(y, h, k):
     """Return y + h k."""
-    return (y[0] + h * k[0], y[1] + h * k[1], y[2] + h * k[2], y[3] + h * k[3],
-            y[4] + h * k[4], y[5] + h * k[5], y[6] + h * k[6], y[7] + h * k[7],
-            y[8] + h * k[8], y[9] + h * k[9])
+    return ContinuousState(
+        z=y.z + h * k.z, q_haa=y.q_haa + h * k.q_haa, q_hfe=y.q_hfe + h * k.q_hfe,
+        q_kfe=y.q_kfe + h * k.q_kfe, v_z=y.v_z + h * k.v_z, v_haa=y.v_haa + h * k.v_haa,
+        v_hfe=y.v_hfe + h * k.v_hfe, v_kfe=y.v_kfe + h * k.v_kfe,
+        bristle_x=y.bristle_x + h * k.bristle_x, bristle_y=y.bristle_y + h * k.bristle_y)
 
 
 @kernel
-def leg_step(y, h, f, is_held, body, linkages, ground):
+def leg_step(y, h, f, is_held, leg):
     """Return y after one classical Runge-Kutta step under constant forces."""
-    k1 = leg_rates(y, f, is_held, body, linkages, ground)
-    k2 = leg_rates(shifted(y, 0.5 * h, k1), f, is_held, body, linkages, ground)
-    k3 = leg_rates(shifted(y, 0.5 * h, k2), f, is_held, body, linkages, ground)
-    k4 = leg_rates(shifted(y, h, k3), f, is_held, body, linkages, ground)
+    k1 = leg_rates(y, f, is_held, leg)
+    k2 = leg_rates(shifted(y, 0.5 * h, k1), f, is_held, leg)
+    k3 = leg_rates(shifted(y, 0.5 * h, k2), f, is_held, leg)
+    k4 = leg_rates(shifted(y, h, k3), f, is_held, leg)
     y = shifted(shifted(y, h / 6.0, k1), h / 6.0, k4)
     return shifted(shifted(y, h / 3.0, k2), h / 3.0, k3)
 
 
 @kernel
-def actuator_accelerations(y, f, is_held, body, linkages, ground):
-    """Return x'' = r q'' + (dr/dq) q'^2 of the three actuators  (L12), in m/s2 or rad/s2."""
-    a = leg_motion(y, f, is_held, body, linkages, ground)
-    return (a.r[0] * a.a_haa + a.dr[0] * y[5] * y[5],
-            a.r[1] * a.a_hfe + a.dr[1] * y[6] * y[6],
-            a.r[2] * a.a_kfe + a.dr[2] * y[7] * y[7])
+def joint_angles(y):
+    """Return the joint angles of a state, rad."""
+    return y.q_haa, y.q_hfe, y.q_kfe
 
 
 @kernel
-def unpacked(flat):
-    """Return (y, forces, slopes, is_held) of the flat state."""
-    y = (flat[0], flat[1], flat[2], flat[3], flat[4], flat[5], flat[6], flat[7], flat[8], flat[9])
-    return (y, (flat[FORCE], flat[FORCE + 1], flat[FORCE + 2]),
-            (flat[SLOPE], flat[SLOPE + 1], flat[SLOPE + 2]), flat[HELD] != 0.0)
+def joint_speeds(y):
+    """Return the joint speeds of a state, rad/s."""
+    return y.v_haa, y.v_hfe, y.v_kfe
+
+
+@kernel
+def actuator_accelerations(y, f, is_held, leg):
+    """Return x'' = r q'' + (dr/dq) q'^2 of the three actuators  (L12), in m/s2 or rad/s2."""
+    motion = leg_motion(y, f, is_held, leg)
+    a, (r_haa, r_hfe, r_kfe) = motion.acceleration, motion.lever
+    dr_haa, dr_hfe, dr_kfe = motion.lever_rate
+    return (r_haa * a.haa + dr_haa * y.v_haa * y.v_haa,
+            r_hfe * a.hfe + dr_hfe * y.v_hfe * y.v_hfe,
+            r_kfe * a.kfe + dr_kfe * y.v_kfe * y.v_kfe)
+
+
+@kernel
+def continuous(state):
+    """Return the `ContinuousState` in a `LEG_STATE`."""
+    return ContinuousState(
+        z=state.z, q_haa=state.q_haa, q_hfe=state.q_hfe, q_kfe=state.q_kfe,
+        v_z=state.v_z, v_haa=state.v_haa, v_hfe=state.v_hfe, v_kfe=state.v_kfe,
+        bristle_x=state.bristle_x, bristle_y=state.bristle_y)
+
+
+@kernel
+def keep_continuous(y, state):
+    """Write a `ContinuousState` into a `LEG_STATE`."""
+    state.z, state.q_haa, state.q_hfe, state.q_kfe = y.z, y.q_haa, y.q_hfe, y.q_kfe
+    state.v_z, state.v_haa, state.v_hfe, state.v_kfe = y.v_z, y.v_haa, y.v_hfe, y.v_kfe
+    state.bristle_x, state.bristle_y = y.bristle_x, y.bristle_y
+
+
+@kernel
+def of_joints(values):
+    """Return the values of a field of three as a tuple."""
+    return values[0], values[1], values[2]

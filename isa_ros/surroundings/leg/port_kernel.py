@@ -1,21 +1,20 @@
 """
 Exchange of a leg with its three actuators: load ports down, a tick under their forces.
 
-States and joints as in `surroundings.leg.motion`; L1 is the port, L12-L16 are its coefficients
-for a leg and the forces kept from tick to tick.
+States, joints and ``leg`` as in `surroundings.leg.motion`. ``states``, ``legs`` and ``samples``
+are one `LEG_STATE`, `LEG` and `LEG_SAMPLE`, (1,) each; ``rows`` (3,) are the places of the three
+actuators in ``ports`` and ``replies``. L1 is the port, L12-L16 are its coefficients for a leg and
+the forces kept from tick to tick.
 """
 
 import math
 
 from isa_ros.core.kernel import kernel
-from isa_ros.core.signals import LOAD_REPLY
 from isa_ros.core.timebase import FORCE_WINDOWS, NS_PER_SECOND
 from isa_ros.surroundings.ground import bristle_rates
-from isa_ros.surroundings.leg.dynamics import leg_terms
 from isa_ros.surroundings.leg.motion import (
-    actuator_accelerations, FORCE, leg_motion, leg_step, MEAN, N_STATES, OLDER, shifted, SLOPE,
-    solve, unpacked)
-from isa_ros.surroundings.linkage import actuator_coordinate
+    actuator_accelerations, continuous, ContinuousState, Coordinates, joint_angles, joint_speeds,
+    keep_continuous, leg_motion, leg_step, of_joints, shifted, solve, terms_of)
 import numpy as np
 
 LEG_SAMPLE = np.dtype([
@@ -32,130 +31,161 @@ LEG_UNITS = {
     'position': 'rad', 'velocity': 'rad/s', 'torque': 'Nm', 'foot_force': 'N',
     'foot_position': 'm', 'height': 'm', 'height_velocity': 'm/s'}
 
-REPLY_WIDTH = LOAD_REPLY.itemsize // 8
-MEANS = 0                   # places in a reply's row of floats
-END_FORCE = FORCE_WINDOWS
 SUBSTEP_NS = 100_000        # longest Runge-Kutta step of the leg, coupling.md
 PROBE_DISPLACEMENT = 1e-7   # m | rad: 1e-3 of the smallest depth at which the ground matters
 PROBE_SPEED = 1e-5          # m/s | rad/s: equally small against impact speeds
 
 
 @kernel
-def response(j, a):
+def response(j, motion):
     """
     Return (u, 1/m_eff) of a force at actuator ``j``  (L13).
 
     u is the direction in which the leg yields to it, scaled to one unit of x_j: M^-1 e_j / (r
     (M^-1)_jj); 1/m_eff = r^2 (M^-1)_jj.
     """
-    e = (1.0 if j == 0 else 0.0, 1.0 if j == 1 else 0.0, 1.0 if j == 2 else 0.0)
-    c = solve(a.d, a.l, 0.0, e[0], e[1], e[2])
-    scale = 1.0 / (a.r[j] * c[j + 1])
-    return (c[0] * scale, c[1] * scale, c[2] * scale, c[3] * scale), a.r[j] * a.r[j] * c[j + 1]
+    c = solve(motion.factor, 0.0,
+              1.0 if j == 0 else 0.0, 1.0 if j == 1 else 0.0, 1.0 if j == 2 else 0.0)
+    r, c_jj = motion.lever[j], (c.haa, c.hfe, c.kfe)[j]
+    scale = 1.0 / (r * c_jj)
+    u = Coordinates(z=c.z * scale, haa=c.haa * scale, hfe=c.hfe * scale, kfe=c.kfe * scale)
+    return u, r * r * c_jj
 
 
 @kernel
-def bristle_follow(y, u, body, ground):
+def bristle_follow(y, u, leg):
     """Return the bristles' deflection for a displacement u of the leg: (dz'/dv) J u  (L14)."""
-    m = leg_terms(y[0], y[1], y[2], y[3], y[4], y[5], y[6], y[7], body)
+    m = terms_of(y, leg)
     if m.foot_z >= 0.0:
         return 0.0, 0.0
-    w_x = m.j_x_hfe * u[2] + m.j_x_kfe * u[3]
-    w_y = m.j_y_haa * u[1] + m.j_y_hfe * u[2] + m.j_y_kfe * u[3]
-    s = PROBE_SPEED
-    before = bristle_rates(y[8], y[9], m.foot_v_x, m.foot_v_y, True, ground)
-    after = bristle_rates(
-        y[8], y[9], m.foot_v_x + s * w_x, m.foot_v_y + s * w_y, True, ground)
-    return (after[0] - before[0]) / s, (after[1] - before[1]) / s
+    ground, s = leg.ground, PROBE_SPEED
+    w_x = m.j_x_hfe * u.hfe + m.j_x_kfe * u.kfe
+    w_y = m.j_y_haa * u.haa + m.j_y_hfe * u.hfe + m.j_y_kfe * u.kfe
+    x_before, y_before = bristle_rates(
+        y.bristle_x, y.bristle_y, m.foot_v_x, m.foot_v_y, True, ground)
+    x_after, y_after = bristle_rates(
+        y.bristle_x, y.bristle_y, m.foot_v_x + s * w_x, m.foot_v_y + s * w_y, True, ground)
+    return (x_after - x_before) / s, (y_after - y_before) / s
 
 
 @kernel
-def leg_ports(flat, look_ahead, rows, body_rows, linkages, ground_rows, ports):
+def ahead(y, h, motion):
+    """Return y after ``h`` seconds of constant accelerations and bristle rates."""
+    a = motion.acceleration
+    return shifted(y, h, ContinuousState(
+        z=y.v_z + 0.5 * h * a.z, q_haa=y.v_haa + 0.5 * h * a.haa,
+        q_hfe=y.v_hfe + 0.5 * h * a.hfe, q_kfe=y.v_kfe + 0.5 * h * a.kfe,
+        v_z=a.z, v_haa=a.haa, v_hfe=a.hfe, v_kfe=a.kfe,
+        bristle_x=motion.bristle_rate_x, bristle_y=motion.bristle_rate_y))
+
+
+@kernel
+def displaced(y, u, leg):
+    """Return y displaced by `PROBE_DISPLACEMENT` along u, the bristles with it  (L14)."""
+    z_x, z_y = bristle_follow(y, u, leg)
+    return shifted(y, PROBE_DISPLACEMENT, ContinuousState(
+        z=u.z, q_haa=u.haa, q_hfe=u.hfe, q_kfe=u.kfe,
+        v_z=0.0, v_haa=0.0, v_hfe=0.0, v_kfe=0.0, bristle_x=z_x, bristle_y=z_y))
+
+
+@kernel
+def faster(y, u):
+    """Return y with `PROBE_SPEED` more along u."""
+    return shifted(y, PROBE_SPEED, ContinuousState(
+        z=0.0, q_haa=0.0, q_hfe=0.0, q_kfe=0.0,
+        v_z=u.z, v_haa=u.haa, v_hfe=u.hfe, v_kfe=u.kfe, bristle_x=0.0, bristle_y=0.0))
+
+
+@kernel
+def leg_ports(states, look_ahead, rows, legs, ports):
     """
-    Fill the `LOAD_PORT` of the three actuators, rows ``rows`` of ``ports``  (L1, L12-L15).
+    Fill the `LOAD_PORT` of the three actuators  (L1, L12-L15).
 
     Pressures are left as they are. ``look_ahead`` (s) is the distance of the jerk's
     finite difference.
     """
-    body, ground = body_rows[0], ground_rows[0]
-    y, f, slope, is_held = unpacked(flat)
-    a = leg_motion(y, f, is_held, body, linkages, ground)
-    now = actuator_accelerations(y, f, is_held, body, linkages, ground)
+    state, leg = states[0], legs[0]
+    y, is_held = continuous(state), state.is_held != 0.0
+    f, slope = of_joints(state.force), of_joints(state.slope)
+    motion = leg_motion(y, f, is_held, leg)
+    now = actuator_accelerations(y, f, is_held, leg)
     h = look_ahead
-    speed = (y[4] + 0.5 * h * a.a_z, y[5] + 0.5 * h * a.a_haa, y[6] + 0.5 * h * a.a_hfe,
-             y[7] + 0.5 * h * a.a_kfe)
-    ahead = shifted(y, h, (speed[0], speed[1], speed[2], speed[3], a.a_z, a.a_haa, a.a_hfe,
-                           a.a_kfe, a.rate_x, a.rate_y))
     later = actuator_accelerations(
-        ahead, (f[0] + h * slope[0], f[1] + h * slope[1], f[2] + h * slope[2]),
-        is_held, body, linkages, ground)
+        ahead(y, h, motion), (f[0] + h * slope[0], f[1] + h * slope[1], f[2] + h * slope[2]),
+        is_held, leg)
+    speeds = joint_speeds(y)
     for j in range(3):
         port = ports[rows[j]]
-        u, inverse_mass = response(j, a)
-        x, r, _ = actuator_coordinate(y[j + 1], linkages[j])
-        port.x0, port.v0, port.a0 = x, r * y[j + 5], now[j]
+        u, inverse_mass = response(j, motion)
+        port.x0, port.v0 = motion.position[j], motion.lever[j] * speeds[j]
+        port.a0 = now[j]
         port.inverse_mass = inverse_mass
         port.a_bias = now[j] - f[j] * inverse_mass
         port.jerk = (later[j] - now[j]) / h - slope[j] * inverse_mass
-        z_x, z_y = bristle_follow(y, u, body, ground)
-        moved = shifted(y, PROBE_DISPLACEMENT,
-                        (u[0], u[1], u[2], u[3], 0.0, 0.0, 0.0, 0.0, z_x, z_y))
-        faster = shifted(y, PROBE_SPEED,
-                         (0.0, 0.0, 0.0, 0.0, u[0], u[1], u[2], u[3], 0.0, 0.0))
         port.stiffness = (now[j] - actuator_accelerations(
-            moved, f, is_held, body, linkages, ground)[j]) / PROBE_DISPLACEMENT
+            displaced(y, u, leg), f, is_held, leg)[j]) / PROBE_DISPLACEMENT
         port.damping = (now[j] - actuator_accelerations(
-            faster, f, is_held, body, linkages, ground)[j]) / PROBE_SPEED
+            faster(y, u), f, is_held, leg)[j]) / PROBE_SPEED
 
 
 @kernel
-def fill_sample(y, f, is_held, body, linkages, ground, sample):
-    """Fill one `LEG_SAMPLE`, a flat row; ``f`` are the sensor forces."""
-    a = leg_motion(y, f, is_held, body, linkages, ground)
+def fill_sample(y, f, is_held, leg, sample):
+    """Fill one `LEG_SAMPLE`; ``f`` are the sensor forces."""
+    motion = leg_motion(y, f, is_held, leg)
+    angles, speeds = joint_angles(y), joint_speeds(y)
     for j in range(3):
-        sample[j] = y[j + 1]
-        sample[j + 3] = y[j + 5]
-        sample[j + 6] = a.r[j] * f[j]
-        sample[j + 9] = a.foot[j + 3]
-        sample[j + 12] = a.foot[j]
-    sample[15], sample[16] = y[0], y[4]
+        sample.position[j] = angles[j]
+        sample.velocity[j] = speeds[j]
+        sample.torque[j] = motion.lever[j] * f[j]
+        sample.foot_force[j] = motion.foot_force[j]
+        sample.foot_position[j] = motion.foot_position[j]
+    sample.height, sample.height_velocity = y.z, y.v_z
 
 
 @kernel
-def reply_column(replies, rows, column):
-    """Return one column of the three actuators' rows of the flat replies."""
-    return replies[rows[0], column], replies[rows[1], column], replies[rows[2], column]
+def mean_forces(replies, rows, window):
+    """Return the actuators' mean forces in one window of the tick."""
+    return (replies[rows[0]].mean_forces[window], replies[rows[1]].mean_forces[window],
+            replies[rows[2]].mean_forces[window])
 
 
 @kernel
-def leg_tick(flat, step_ns, rows, body_rows, linkages, ground_rows, replies, sample):
-    """
-    Advance by one macro step under the mean forces of its windows; return a broken state or -1.
-
-    ``replies`` are the `LOAD_REPLY` rows as floats, shape (n_actuators, REPLY_WIDTH). Each
-    window is divided into equal Runge-Kutta steps of at most `SUBSTEP_NS`.
-    """
-    body, ground = body_rows[0], ground_rows[0]
-    y, _, _, is_held = unpacked(flat)
-    window_ns = step_ns // FORCE_WINDOWS
-    substeps = (window_ns + SUBSTEP_NS - 1) // SUBSTEP_NS
-    h = window_ns / NS_PER_SECOND / substeps
-    for window in range(FORCE_WINDOWS):
-        f = reply_column(replies, rows, MEANS + window)
-        for _ in range(substeps):
-            y = leg_step(y, h, f, is_held, body, linkages, ground)
-    for i in range(N_STATES):
-        flat[i] = y[i]
+def first_broken(y):
+    """Return the place of the first value that is not finite in a `ContinuousState`, or -1."""
+    for i in range(len(y)):
         if not math.isfinite(y[i]):
             return i
-    keep_forces(flat, step_ns / NS_PER_SECOND, rows, replies)
-    fill_sample(y, reply_column(replies, rows, END_FORCE), is_held, body, linkages, ground,
-                sample)
     return -1
 
 
 @kernel
-def window_line(replies, row):
+def leg_tick(states, step_ns, rows, legs, replies, samples):
+    """
+    Advance by one macro step under the mean forces of its windows; return `first_broken`.
+
+    Each window is divided into equal Runge-Kutta steps of at most `SUBSTEP_NS`. A state that
+    broke leaves forces and sample as they were.
+    """
+    state, leg = states[0], legs[0]
+    y, is_held = continuous(state), state.is_held != 0.0
+    window_ns = step_ns // FORCE_WINDOWS
+    substeps = (window_ns + SUBSTEP_NS - 1) // SUBSTEP_NS
+    h = window_ns / NS_PER_SECOND / substeps
+    for window in range(FORCE_WINDOWS):
+        f = mean_forces(replies, rows, window)
+        for _ in range(substeps):
+            y = leg_step(y, h, f, is_held, leg)
+    keep_continuous(y, state)
+    broken = first_broken(y)
+    if broken < 0:
+        keep_forces(state, step_ns / NS_PER_SECOND, rows, replies)
+        end_force = (replies[rows[0]].force, replies[rows[1]].force, replies[rows[2]].force)
+        fill_sample(y, end_force, is_held, leg, samples[0])
+    return broken
+
+
+@kernel
+def window_line(means):
     """
     Return (mean, slope per window, R^2) of the line through a tick's window means.
 
@@ -164,9 +194,9 @@ def window_line(replies, row):
     n = float(FORCE_WINDOWS)
     mean, moment, spread = 0.0, 0.0, 0.0
     for window in range(FORCE_WINDOWS):
-        mean += replies[row, MEANS + window] / n
+        mean += means[window] / n
     for window in range(FORCE_WINDOWS):
-        departure = replies[row, MEANS + window] - mean
+        departure = means[window] - mean
         moment += (window - 0.5 * (n - 1.0)) * departure
         spread += departure * departure
     slope = 12.0 * moment / (n * (n * n - 1.0))
@@ -174,7 +204,7 @@ def window_line(replies, row):
 
 
 @kernel
-def keep_forces(flat, step, rows, replies):
+def keep_forces(state, step, rows, replies):
     """
     Keep the force that each port will assume of the other actuators, and its slope  (L16).
 
@@ -184,11 +214,11 @@ def keep_forces(flat, step, rows, replies):
     exchange would feed it (with a damping ratio of 0.01 it grows when it beats with the ticks).
     """
     for j in range(3):
-        mean, rise, r_2 = window_line(replies, rows[j])
+        mean, rise, r_2 = window_line(replies[rows[j]].mean_forces)
         trust = r_2 * r_2
         slope = (trust * rise * FORCE_WINDOWS / step
-                 + (1.0 - trust) * (mean - flat[OLDER + j]) / (2.0 * step))
-        flat[OLDER + j] = flat[MEAN + j]
-        flat[MEAN + j] = mean
-        flat[SLOPE + j] = slope
-        flat[FORCE + j] = mean + 0.5 * step * slope
+                 + (1.0 - trust) * (mean - state.older_mean[j]) / (2.0 * step))
+        state.older_mean[j] = state.mean_force[j]
+        state.mean_force[j] = mean
+        state.slope[j] = slope
+        state.force[j] = mean + 0.5 * step * slope

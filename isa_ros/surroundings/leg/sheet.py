@@ -11,11 +11,12 @@ import math
 
 from isa_ros.core.gravity import STANDARD_GRAVITY
 from isa_ros.core.parameter import parameter, Parameters
-from isa_ros.core.record import record
+from isa_ros.core.record import record, rows_of
 from isa_ros.errors import ParameterError
 from isa_ros.surroundings import linkage as kernels
-from isa_ros.surroundings.ground import GROUND, Ground, ground_record
+from isa_ros.surroundings.ground import Ground, ground_record
 from isa_ros.surroundings.leg.dynamics import LEG_BODY
+from isa_ros.surroundings.leg.motion import LEG
 import numpy as np
 
 JOINTS = ('haa', 'hfe', 'kfe')
@@ -131,18 +132,9 @@ class LegSheet(Parameters):
     ground: Ground
 
 
-def _rows(n: int, dtype: np.dtype[np.void]) -> np.ndarray:
-    """
-    Return zeros whose rows have attributes, so that kernels also run as plain Python.
-
-    The array itself is a plain one: a numpy subclass as argument slows every call.
-    """
-    return np.asarray(np.zeros(n, dtype).view(np.recarray))
-
-
 def linkage_record(joint: Direct | SliderCrank | FourBar | Joint) -> np.record:
     """Return the `LINKAGE` record of a joint's sheet, SI."""
-    row: np.record = _rows(1, kernels.LINKAGE)[0]
+    row: np.record = rows_of(1, kernels.LINKAGE)[0]
     row['sense'] = joint.sense
     row['offset'] = math.radians(joint.offset_deg)
     if isinstance(joint, SliderCrank):
@@ -172,18 +164,17 @@ def body_record(body: Body) -> np.ndarray:
             links[f'c_{name}_{axis}'] = getattr(link, f'com_{axis}_m')
             links[f'i_{name}_{axis}{axis}'] = (
                 body.mass_scale * getattr(link, f'inertia_{axis}{axis}'))
-    rows = _rows(1, LEG_BODY)
+    rows = rows_of(1, LEG_BODY)
     rows[0] = record(
         LEG_BODY, m_slider=body.slider.mass_kg, gravity=STANDARD_GRAVITY, d_hip=body.hip_drop_m,
         **links)
     return rows
 
 
-def leg_records(sheet: LegSheet) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """Return the records of body (1,), linkages in the order of `JOINTS` (3,), ground (1,)."""
-    linkages = _rows(len(JOINTS), kernels.LINKAGE)
-    for k, name in enumerate(JOINTS):
-        linkages[k] = linkage_record(getattr(sheet, name))
-    ground = _rows(1, GROUND)
-    ground[0] = ground_record(sheet.ground)
-    return body_record(sheet.body), linkages, ground
+def leg_record(sheet: LegSheet) -> np.ndarray:
+    """Return the `LEG` record of a sheet, shape (1,)."""
+    rows = rows_of(1, LEG)
+    rows[0] = record(
+        LEG, body=body_record(sheet.body)[0], ground=ground_record(sheet.ground),
+        **{name: linkage_record(getattr(sheet, name)) for name in JOINTS})
+    return rows

@@ -5,8 +5,7 @@ import math
 from isa_ros.core.signals import LOAD_REPLY
 from isa_ros.core.timebase import FORCE_WINDOWS
 from isa_ros.surroundings.leg.leg import Leg, Pose
-from isa_ros.surroundings.leg.motion import STATE_NAMES
-from isa_ros.surroundings.leg.sheet import JOINTS
+from isa_ros.surroundings.leg.motion import LEG_STATE
 import numpy as np
 import pytest
 from tests.legs import leg_sheet
@@ -19,9 +18,9 @@ RAMP = np.arange(FORCE_WINDOWS, dtype=float)
 RINGING = np.array((1.0, -1.0, 1.0, -1.0, 1.0))
 
 
-def advanced(*ticks: np.ndarray) -> tuple[dict[str, float], tuple[float, ...]]:
+def advanced(*ticks: np.ndarray) -> tuple[np.void, tuple[float, ...]]:
     """
-    Return the leg's state after some ticks, and the forces that held it before.
+    Return the leg's `LEG_STATE` after some ticks, and the forces that held it before.
 
     Each tick is the window means of three actuators, (3, FORCE_WINDOWS).
     """
@@ -32,8 +31,7 @@ def advanced(*ticks: np.ndarray) -> tuple[dict[str, float], tuple[float, ...]]:
         replies = np.zeros(3, LOAD_REPLY)
         replies['mean_forces'] = means
         leg.advance(replies)
-    values = np.frombuffer(leg.snapshot(), np.float64, len(STATE_NAMES), TIME_BYTES)
-    return dict(zip(STATE_NAMES, values.tolist())), holding
+    return np.frombuffer(leg.snapshot(), LEG_STATE, 1, TIME_BYTES)[0], holding
 
 
 def expected_slope(means: np.ndarray, older: float) -> float:
@@ -55,10 +53,9 @@ def test_a_trend_counts_with_the_fourth_power_of_its_correlation(ringing):
              for offset, slope in ((100.0, 7.0), (140.0, -5.0), (90.0, 11.0))]
     state, _ = advanced(*(np.tile(means, (3, 1)) for means in ticks))
     expected = expected_slope(ticks[2], older=float(ticks[0].mean()))
-    for joint in JOINTS:
-        assert state[f'slope_{joint}'] == pytest.approx(expected, rel=1e-11)
-        assert state[f'force_{joint}'] == pytest.approx(
-            float(ticks[2].mean()) + 0.5 * H * expected, rel=1e-12)
+    assert state['slope'] == pytest.approx(expected, rel=1e-11)
+    assert state['force'] == pytest.approx(
+        float(ticks[2].mean()) + 0.5 * H * expected, rel=1e-12)
 
 
 def test_the_powers_of_the_correlation_are_told_apart():
@@ -72,8 +69,7 @@ def test_the_first_tick_is_held_against_the_forces_at_rest():
     """Two ticks before the first one the actuators held the leg; equal means have no trend."""
     means = np.array((5.0, 300.0, 200.0))
     state, holding = advanced(np.tile(means[:, None], FORCE_WINDOWS))
-    for k, joint in enumerate(JOINTS):
-        assert state[f'slope_{joint}'] == pytest.approx((means[k] - holding[k]) / (2.0 * H))
+    assert state['slope'] == pytest.approx((means - holding) / (2.0 * H))
 
 
 def test_each_actuator_has_its_own_slope():
@@ -81,6 +77,7 @@ def test_each_actuator_has_its_own_slope():
     hold = np.array(advanced()[1])[:, None] * np.ones(FORCE_WINDOWS)
     hold[1] += 5.0 * (RAMP - RAMP.mean())
     state, _ = advanced(hold)
-    assert state['slope_hfe'] == pytest.approx(25.0 / H, rel=1e-9)
+    haa, hfe, kfe = state['slope']
+    assert hfe == pytest.approx(25.0 / H, rel=1e-9)
     # the mean of equal forces of 300 N rounds to 1e-13 N, which two ticks divide by
-    assert [state['slope_haa'], state['slope_kfe']] == pytest.approx([0.0, 0.0], abs=1e-9)
+    assert [haa, kfe] == pytest.approx([0.0, 0.0], abs=1e-9)

@@ -6,12 +6,12 @@ from pathlib import Path
 import subprocess
 import sys
 
+from isa_ros.core.record import rows_of
 from isa_ros.core.signals import LOAD_PORT, LOAD_REPLY
 from isa_ros.errors import ConfigError, SimulationDiverged
 from isa_ros.surroundings.leg import motion as kernels
-from isa_ros.surroundings.leg.dynamics import leg_terms
 from isa_ros.surroundings.leg.leg import Leg, Pose
-from isa_ros.surroundings.leg.sheet import body_record, STANDARD_GRAVITY
+from isa_ros.surroundings.leg.sheet import JOINTS, leg_record, STANDARD_GRAVITY
 from isa_ros.surroundings.linkage import actuator_coordinate
 import numpy as np
 import pytest
@@ -21,7 +21,8 @@ MS = 1_000_000
 SHEET = leg_sheet()
 POSE = Pose(haa=math.radians(13.0), hfe=math.radians(48.0), kfe=math.radians(-95.0),
             foot_height=0.1)
-BODY = body_record(SHEET.body)[0]
+CONSTANTS = leg_record(SHEET)[0]
+BODY = CONSTANTS.body
 
 
 def hanging(step_ns=MS, pose=POSE):
@@ -31,20 +32,25 @@ def hanging(step_ns=MS, pose=POSE):
 
 def constant(forces):
     """Return replies of actuators that push with constant forces."""
-    replies = np.zeros(3, LOAD_REPLY)
+    replies = rows_of(3, LOAD_REPLY)
     replies['mean_forces'] = np.array(forces)[:, None]
     replies['force'] = forces
     return replies
 
 
-def flat_state(leg):
-    """Return the leg's state as floats."""
-    return np.frombuffer(leg.snapshot(), np.float64, len(kernels.STATE_NAMES), 8)
+def state(leg):
+    """Return the leg's `LEG_STATE`."""
+    return np.frombuffer(leg.snapshot(), kernels.LEG_STATE, 1, 8)[0]
+
+
+def continuous(leg):
+    """Return the leg's `ContinuousState`."""
+    return kernels.continuous(state(leg))
 
 
 def mass_matrix(y):
     """Return M at a state, shape (4, 4)."""
-    terms = leg_terms(*y[:8], BODY)
+    terms = kernels.terms_of(y, CONSTANTS)
     names = ('z', 'haa', 'hfe', 'kfe')
     m = np.zeros((4, 4))
     for i, row in enumerate(names):
@@ -53,18 +59,23 @@ def mass_matrix(y):
     return m
 
 
+def speeds(y):
+    """Return the speeds of a state's coordinates, (4,)."""
+    return np.array((y.v_z, y.v_haa, y.v_hfe, y.v_kfe))
+
+
 def energy(y):
     """Return kinetic plus potential energy, J."""
-    v = np.array(y[4:8])
+    v = speeds(y)
     return 0.5 * v @ mass_matrix(y) @ v + potential(y)
 
 
 def potential(y):
     """Return m g times the height of the whole leg's centre of mass, J, from the frames."""
     b = BODY
-    s1, c1 = math.sin(y[1]), math.cos(y[1])
-    s2, c2 = math.sin(y[2]), math.cos(y[2])
-    s3, c3 = math.sin(y[2] + y[3]), math.cos(y[2] + y[3])
+    s1, c1 = math.sin(y.q_haa), math.cos(y.q_haa)
+    s2, c2 = math.sin(y.q_hfe), math.cos(y.q_hfe)
+    s3, c3 = math.sin(y.q_hfe + y.q_kfe), math.cos(y.q_hfe + y.q_kfe)
 
     def in_leg_plane(down, left):
         return -c1 * down - s1 * left
@@ -77,17 +88,17 @@ def potential(y):
         b['l_hip'] + b['c_calf_z'])
     mass = b['m_slider'] + b['m_hip'] + b['m_thigh'] + b['m_calf']
     return STANDARD_GRAVITY * (
-        mass * y[0] + b['m_hip'] * hip + b['m_thigh'] * thigh + b['m_calf'] * calf)
+        mass * y.z + b['m_hip'] * hip + b['m_thigh'] * thigh + b['m_calf'] * calf)
 
 
 def test_held_leg_hangs_still_under_its_static_forces():
     """L6 at rest: 0.1 s under `actuator_forces` moves the leg by roundings only (1e-13 rad)."""
     leg = hanging()
     replies = constant(leg.actuator_forces)
-    before = flat_state(leg)
+    before = continuous(leg)
     for _ in range(100):
         leg.advance(replies)
-    assert np.abs(flat_state(leg) - before)[:8].max() < 1e-11
+    assert np.abs(np.subtract(continuous(leg), before)).max() < 1e-11
     assert leg.sample[0]['foot_position'][2] == pytest.approx(0.1, abs=1e-12)
 
 
@@ -102,8 +113,8 @@ def test_released_leg_falls_freely_whatever_the_actuators_do():
     total = BODY['m_slider'] + BODY['m_hip'] + BODY['m_thigh'] + BODY['m_calf']
     for _ in range(60):
         leg.advance(constant((3.0, 150.0, 80.0)))
-    y = flat_state(leg)
-    momentum = (mass_matrix(y) @ y[4:8])[0]
+    y = continuous(leg)
+    momentum = (mass_matrix(y) @ speeds(y))[0]
     assert momentum == pytest.approx(-total * STANDARD_GRAVITY * 0.06, rel=1e-9)
 
 
@@ -112,11 +123,11 @@ def test_work_of_the_actuators_is_the_change_of_energy():
     leg = hanging()
     leg.release()
     forces = np.array((3.0, 150.0, 80.0))
-    x, e = np.array(leg.actuator_positions), energy(flat_state(leg))
+    x, e = np.array(leg.actuator_positions), energy(continuous(leg))
     for _ in range(60):
         leg.advance(constant(forces))
     work = forces @ (np.array(leg.actuator_positions) - x)
-    change = energy(flat_state(leg)) - e
+    change = energy(continuous(leg)) - e
     # Kinetic and potential parts are of the order of 10 J, the error of RK4 1e-9 of them.
     assert change == pytest.approx(work, abs=1e-8)
     assert abs(work) > 0.1
@@ -125,13 +136,12 @@ def test_work_of_the_actuators_is_the_change_of_energy():
 def test_runge_kutta_is_of_fourth_order():
     """Halving the step divides the error by 16 (asymptotically), in the air."""
     leg = hanging()
-    y0 = (*flat_state(leg)[:4], 0.0, 1.0, 3.0, -6.0, 0.0, 0.0)
+    y0 = continuous(leg)._replace(v_haa=1.0, v_hfe=3.0, v_kfe=-6.0)
 
     def end(n):
         y = y0
         for _ in range(n):
-            y = kernels.leg_step(y, 0.2 / n, (5.0, 150.0, 50.0), False, leg._body[0],
-                                 leg._linkages, leg._ground[0])
+            y = kernels.leg_step(y, 0.2 / n, (5.0, 150.0, 50.0), False, CONSTANTS)
         return np.array(y)
 
     exact = end(3200)
@@ -179,14 +189,14 @@ def test_effective_mass_is_that_of_the_mass_matrix(release):
     leg = moving_leg(release=release)
     ports = np.zeros(3, LOAD_PORT)
     leg.ports(ports)
-    y = flat_state(leg)
+    y = continuous(leg)
     m = mass_matrix(y)
     if release:
         inverse = np.linalg.inv(m)[1:, 1:]
     else:
         inverse = np.linalg.inv(m[1:, 1:])
-    for j in range(3):
-        _, r, _ = actuator_coordinate(y[j + 1], leg._linkages[j])
+    for j, (name, angle) in enumerate(zip(JOINTS, kernels.joint_angles(y))):
+        _, r, _ = actuator_coordinate(angle, CONSTANTS[name])
         # Condition of M below 1e4: 1e-16 * 1e4.
         assert ports['inverse_mass'][j] == pytest.approx(
             r * r * inverse[j, j], rel=1e-12, abs=0.0)
@@ -203,16 +213,14 @@ def test_port_is_the_leg_s_motion_to_third_order():
     leg = moving_leg()
     ports = np.zeros(3, LOAD_PORT)
     leg.ports(ports)
-    flat = flat_state(leg)
-    y, f, slope, held = kernels.unpacked(flat)
+    found = state(leg)
+    y, f, slope = continuous(leg), found['force'], found['slope']
     assert leg.sample[0]['foot_force'][2] > 100.0
     t, n = 2e-4, 200
     for i in range(n):
         middle = tuple(f[j] + slope[j] * (i + 0.5) * t / n for j in range(3))
-        y = kernels.leg_step(y, t / n, middle, held, leg._body[0], leg._linkages,
-                             leg._ground[0])
-    for j in range(3):
-        x = actuator_coordinate(y[j + 1], leg._linkages[j])[0]
+        y = kernels.leg_step(y, t / n, middle, leg.is_held, CONSTANTS)
+    for j, x in enumerate(kernels.leg_motion(y, tuple(f), leg.is_held, CONSTANTS).position):
         p = ports[j]
         third = p['jerk'] + slope[j] * p['inverse_mass']
         predicted = p['x0'] + t * (p['v0'] + t * (0.5 * p['a0'] + t * third / 6.0))
@@ -232,7 +240,7 @@ def test_ground_stiffness_is_seen_through_the_port():
     leg = moving_leg()
     ports = np.zeros(3, LOAD_PORT)
     leg.ports(ports)
-    y0, f, _, held = kernels.unpacked(flat_state(leg))
+    y0, f = continuous(leg), state(leg)['force']
     n, t = 500, 5e-4
     for j in (1, 2):
         ends = []
@@ -240,9 +248,8 @@ def test_ground_stiffness_is_seen_through_the_port():
             y = y0
             force = tuple(f[i] + (extra if i == j else 0.0) for i in range(3))
             for _ in range(n):
-                y = kernels.leg_step(y, t / n, force, held, leg._body[0], leg._linkages,
-                                     leg._ground[0])
-            ends.append(actuator_coordinate(y[j + 1], leg._linkages[j])[0])
+                y = kernels.leg_step(y, t / n, force, leg.is_held, CONSTANTS)
+            ends.append(kernels.leg_motion(y, force, leg.is_held, CONSTANTS).position[j])
         p = ports[j]
         x = v = 0.0
         for _ in range(n):
@@ -263,7 +270,7 @@ def test_step_size_does_not_change_the_leg_under_constant_forces():
         leg.release()
         for _ in range(150 * MS // step_ns):
             leg.advance(constant((3.0, 300.0, 200.0)))
-        ends.append(flat_state(leg)[:kernels.N_STATES].tobytes())
+        ends.append(np.array(continuous(leg)).tobytes())
     assert ends[0] == ends[1] == ends[2]
 
 
@@ -304,10 +311,10 @@ def test_hold_takes_the_speed_of_the_slider():
     """A locked slider stops and does not move."""
     leg = moving_leg(ticks=60)
     leg.hold()
-    height = flat_state(leg)[0]
+    height = continuous(leg).z
     leg.advance(constant((0.0, 0.0, 0.0)))
     assert leg.is_held
-    assert flat_state(leg)[0] == height
+    assert continuous(leg).z == height
     assert leg.sample[0]['height_velocity'] == 0.0
 
 
@@ -340,18 +347,16 @@ PURE = """
 import sys
 import numpy as np
 import tests.surroundings.leg.test_leg as t
-from isa_ros.surroundings.leg import port_kernel as kernels
+from isa_ros.core.record import rows_of
 from isa_ros.core.signals import LOAD_PORT
 leg = t.hanging(pose=t.Pose(haa=0.2, hfe=0.8, kfe=-1.6, foot_height=0.002))
 leg.release()
 hold = np.array(leg.actuator_forces)
-ports = np.zeros(3, LOAD_PORT).view(np.recarray)
+ports = rows_of(3, LOAD_PORT)
 normal = 0.0
 for k in range(40):
-    kernels.leg_ports(leg._flat, 5e-4, leg.rows, leg._body, leg._linkages, leg._ground, ports)
-    forces = t.constant(hold + (0.1 * k, 3.0 * k, 2.0 * k)).view(np.float64).reshape(3, -1)
-    kernels.leg_tick(leg._flat, t.MS, leg.rows, leg._body, leg._linkages, leg._ground, forces,
-                     leg._flat_sample)
+    leg.ports(ports)
+    leg.advance(t.constant(hold + (0.1 * k, 3.0 * k, 2.0 * k)))
     normal = max(normal, leg.sample[0]['foot_force'][2])
 assert normal > 10.0, normal
 sys.stdout.write((leg.snapshot() + ports.tobytes()).hex())

@@ -12,16 +12,16 @@ import math
 
 from isa_ros.core.signals import LOAD_PORT, LOAD_REPLY
 from isa_ros.surroundings.leg.leg import Leg, Pose
-from isa_ros.surroundings.leg.motion import leg_step, STATE_NAMES, unpacked
-from isa_ros.surroundings.leg.sheet import JOINTS
-from isa_ros.surroundings.linkage import actuator_coordinate
+from isa_ros.surroundings.leg.motion import continuous, leg_motion, LEG_STATE, leg_step
+from isa_ros.surroundings.leg.sheet import JOINTS, leg_record
 import numpy as np
 import pytest
 from tests.legs import leg_sheet
 
 MS = 1_000_000
 T, N = 1e-3, 1000  # s of a tick, steps of the leg in it
-TIME_BYTES = 8     # a state begins with the time
+TIME_BYTES = 8     # a snapshot begins with the time
+CONSTANTS = leg_record(leg_sheet())[0]
 ACTUATORS = pytest.mark.parametrize('j', range(3), ids=JOINTS)
 
 
@@ -46,14 +46,14 @@ def standing() -> tuple[Leg, np.ndarray]:
 def moved_by_a_newton(j: int) -> float:
     """Return how much farther a newton (or Nm) more at actuator ``j`` brings it in a tick."""
     leg, _ = standing()
-    flat = np.frombuffer(leg.state(), np.float64, len(STATE_NAMES), TIME_BYTES)
-    y_0, force, _, is_held = unpacked(flat)
+    state = np.frombuffer(leg.snapshot(), LEG_STATE, 1, TIME_BYTES)[0]
+    y_0, force = continuous(state), state['force']
     ends = []
     for extra in (0.0, 1.0):
         y, pushed = y_0, tuple(force[k] + (extra if k == j else 0.0) for k in range(3))
         for _ in range(N):
-            y = leg_step(y, T / N, pushed, is_held, leg._body[0], leg._linkages, leg._ground[0])
-        ends.append(actuator_coordinate(y[j + 1], leg._linkages[j])[0])
+            y = leg_step(y, T / N, pushed, leg.is_held, CONSTANTS)
+        ends.append(leg_motion(y, pushed, leg.is_held, CONSTANTS).position[j])
     return ends[1] - ends[0]
 
 
@@ -70,7 +70,7 @@ def predicted_by_the_port(j: int) -> float:
 
 def test_the_foot_sticks() -> None:
     """It stands within its friction cone, loaded to half of it: the bristles are deflected."""
-    f_x, f_y, normal = standing()[0].sample['foot_force']
+    f_x, f_y, normal = standing()[0].sample[0]['foot_force']
     assert 0.3 * 0.7 * normal < math.hypot(f_x, f_y) < 0.7 * 0.7 * normal
 
 

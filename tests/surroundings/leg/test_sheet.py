@@ -7,7 +7,7 @@ from pathlib import Path
 from isa_ros.config.catalogue import leg_names
 from isa_ros.errors import ParameterError
 from isa_ros.surroundings import linkage
-from isa_ros.surroundings.leg.sheet import body_record, leg_records, linkage_record
+from isa_ros.surroundings.leg.sheet import body_record, leg_record, linkage_record
 import pytest
 from tests.legs import leg_sheet
 import yaml
@@ -18,13 +18,13 @@ ROOT = Path(__file__).resolve().parents[3]
 
 def test_records_are_si():
     """Millimetres and degrees of the sheet in metres and radians."""
-    body, linkages, ground = leg_records(SHEET)
-    assert body[0]['l_thigh'] == 0.36
-    assert linkages['kind'].tolist() == [
+    leg = leg_record(SHEET)[0]
+    assert leg.body.l_thigh == 0.36
+    assert [leg.haa.kind, leg.hfe.kind, leg.kfe.kind] == [
         linkage.DIRECT, linkage.SLIDER_CRANK, linkage.FOUR_BAR]
-    assert linkages[1]['a'] == pytest.approx(0.356, rel=1e-15, abs=0.0)
-    assert linkages[2]['offset'] == pytest.approx(math.pi + 0.6, rel=1e-15, abs=0.0)
-    assert ground[0]['sigma_0'] == pytest.approx(0.7 / 1e-3, rel=1e-15, abs=0.0)
+    assert leg.hfe.a == pytest.approx(0.356, rel=1e-15, abs=0.0)
+    assert leg.kfe.offset == pytest.approx(math.pi + 0.6, rel=1e-15, abs=0.0)
+    assert leg.ground.sigma_0 == pytest.approx(0.7 / 1e-3, rel=1e-15, abs=0.0)
 
 
 def test_piston_of_the_knee_is_14_mm_out_at_full_flexion():
