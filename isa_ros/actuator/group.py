@@ -1,4 +1,4 @@
-"""The actuators of one process, advanced by one call of the kernel; rows in, rows out."""
+"""The actuators of one process, advanced by one kernel call; rows in, rows out."""
 
 from collections.abc import Mapping, Sequence
 import struct
@@ -20,16 +20,16 @@ _SIZE = struct.Struct('<I')
 
 class ActuatorGroup:
     """
-    Actuators that share one memory: the door for whoever owns the loop around them.
+    Actuators that share one memory and advance together.
 
-    Ticked together they do what each does alone, bit for bit. In a loop of your own::
+    Their results equal those of single actuators bit for bit. To use them in your own loop::
 
         group = ActuatorGroup(run.actuators, run.timing)
         replies = group.advance(ports, commands)
 
-    ``ports`` are `LOAD_PORT` rows, which say what the load of each actuator does during the
-    tick (equation L1), ``commands`` `COMMAND` rows, ``replies`` `LOAD_REPLY` rows; (n,) each,
-    in the order of ``configs``.
+    ``ports`` are `LOAD_PORT` rows: the motion of each actuator's load during the tick (equation
+    L1); ``commands`` are `COMMAND` rows, ``replies`` `LOAD_REPLY` rows; (n,) each, in the order
+    of ``configs``.
     """
 
     def __init__(self, configs: Sequence[ActuatorConfig], timing: Timing) -> None:
@@ -60,9 +60,9 @@ class ActuatorGroup:
     @property
     def applied(self) -> Records:
         """
-        Return what took effect at the start of the last tick, `COMMAND` rows (n,); overwritten.
+        Return the commands that took effect at the start of the last tick, (n,); overwritten.
 
-        ``kinds`` is 0 where nothing did; else the row holds all that is in force then.
+        `COMMAND` rows: ``kinds`` is 0 without a command; otherwise a row has all values in force.
         """
         return self._memory.applied
 
@@ -73,7 +73,7 @@ class ActuatorGroup:
                 if (changed := actuator.applied_parameters)}
 
     def start(self, starts: Records) -> None:
-        """Put all at rest at t = 0, as their `START` rows say, (n,)."""
+        """Put all at rest at t = 0 according to their `START` rows, (n,)."""
         for actuator, start in zip(self.actuators, starts):
             actuator.start(*start.item())
 
@@ -81,8 +81,8 @@ class ActuatorGroup:
         """
         Advance all by one tick and return their `LOAD_REPLY` rows, (n,).
 
-        ``ports`` are their `LOAD_PORT` rows; of an actuator with a load of its own the
-        pressures alone count. ``commands`` are valid `COMMAND` rows that take effect now.
+        ``ports`` are their `LOAD_PORT` rows; an actuator with its own load uses only the
+        pressures. ``commands`` are valid `COMMAND` rows that take effect now.
 
         Raises
         ------
@@ -92,7 +92,7 @@ class ActuatorGroup:
         """
         actuators = self.actuators
         for actuator in actuators:
-            actuator.tuning.take()
+            actuator.tuning.latch()
         broken = kernels.actuator_tick(
             actuators[0].t_ns // PLANT_STEP_NS, self._steps, ports,
             self._no_commands if commands is None else commands, self._memory)
@@ -100,11 +100,11 @@ class ActuatorGroup:
             actuator.t_ns += self._timing.step_ns
         if broken >= 0:
             row, state = divmod(broken, kernels.STATE_SIZE)
-            actuators[row].refuse_broken(state)
+            actuators[row].raise_diverged(state)
         return self._memory.replies
 
     def snapshot(self) -> bytes:
-        """Return the state of all; `restore` continues from it byte for byte."""
+        """Return the complete state of all; `restore` continues from it byte for byte."""
         snapshots = [actuator.snapshot() for actuator in self.actuators]
         return b''.join(_SIZE.pack(len(own)) + own for own in snapshots)
 
@@ -115,7 +115,7 @@ class ActuatorGroup:
         Raises
         ------
         ConfigError
-            The bytes are not such a snapshot.
+            The bytes are not a snapshot of these actuators.
 
         """
         at = 0
@@ -126,4 +126,4 @@ class ActuatorGroup:
             at += _SIZE.size + size
             actuator.restore(snapshot[at - size:at])
         if at != len(snapshot):
-            raise ConfigError(f'saved state of {len(snapshot)} bytes, must be {at}')
+            raise ConfigError(f'saved state has {len(snapshot)} bytes, must have {at}')
