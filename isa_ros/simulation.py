@@ -133,7 +133,7 @@ class Simulation:
 
     def _in_force(self, given: Records | None) -> Records | None:
         """Return the controllers' requests under what is given, else under the scenario's."""
-        speaks = given is None and self.scenario.speaks_at(self.ticks)
+        speaks = given is None and self.scenario.has_commands_at(self.ticks)
         if not (speaks or self._seats):
             return given
         self._commands[:] = self._requests

@@ -92,7 +92,7 @@ def test_its_rows_are_those_of_a_recorded_run(config, scenario):
     digests = Digests([topic.name for topic in topics_of(fitted.run, rows)])
     narrator = Narrator(fitted.run, rows, digests)
     while True:
-        narrator.take(simulation.ticks, simulation.tuned)
+        narrator.publish_rows(simulation.ticks, simulation.tuned)
         narrator.record()
         if simulation.t >= SECONDS:
             break

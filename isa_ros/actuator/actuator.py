@@ -1,7 +1,7 @@
 """
-One smart actuator: setpoints in, one tick, samples out. Free of ROS.
+One smart actuator, advanced tick by tick: setpoints in, samples out. No ROS.
 
-The same object serves a node of its own, many nodes in one process, and replay.
+The same class is used by a single node, by many nodes in one process, and by replay.
 """
 
 from collections.abc import Mapping
@@ -10,7 +10,7 @@ import hashlib
 from typing import NoReturn, Protocol
 
 from isa_ros.actuator import kernel as kernels
-from isa_ros.actuator.inbox import merge, note_applied
+from isa_ros.actuator.inbox import merge, write_applied
 from isa_ros.actuator.rows import Memory, memory_of
 from isa_ros.actuator.sheet import actuator_record, ActuatorSheet
 from isa_ros.actuator.tunable import GAINS
@@ -25,12 +25,12 @@ import numpy as np
 
 
 PAPER_SUPPLY = 20.7e6
-"""Pa gauge: the supply pressure of the paper's rigs, where no supply is configured."""
+"""Pa gauge: supply pressure of the paper's rigs, used if no supply is configured."""
 
 
 @dataclass(frozen=True)
 class Timing:
-    """The macro step and the offset of the REU's instants from it, in nanoseconds."""
+    """The tick and the offset of the REU's sampling instants from it, in nanoseconds."""
 
     step_ns: int
     controller_offset_ns: int
@@ -42,11 +42,11 @@ class Timing:
 
 
 class ActuatorConfig(Protocol):
-    """What an actuator is made from; `isa_ros.config.run_file` provides it."""
+    """Configuration of an actuator; `isa_ros.config.run_file` provides it."""
 
     @property
     def name(self) -> str:
-        """Return the actuator's name, which is its node's."""
+        """Return the name of the actuator and of its node."""
 
     @property
     def sheet(self) -> ActuatorSheet:
@@ -54,7 +54,7 @@ class ActuatorConfig(Protocol):
 
     @property
     def load(self) -> LocalLoad | None:
-        """Return its own load, or None at a joint of a shared load."""
+        """Return its own load; None if it moves a body."""
 
     @property
     def initial_position(self) -> float:
@@ -65,8 +65,9 @@ class SmartActuator:
     """
     Valve, oil, piston or rotor, sensors and REU of one actuator.
 
-    Before the first setpoint it holds the position it measured at t = 0, enabled. Equal
-    `digest`, equal parameters. ``memory`` is its row among others; None: a row of its own.
+    Before the first setpoint it is enabled and holds the position measured at t = 0. Actuators
+    with equal `digest` have equal parameters. ``memory`` is its row in the memory of several
+    actuators; None: it gets its own.
     """
 
     def __init__(
@@ -74,7 +75,7 @@ class SmartActuator:
         self.name = config.name
         self.is_rotary = config.sheet.is_rotary
         self.memory = memory_of(1) if memory is None else memory
-        """Its row of the memory of a tick."""
+        """Its row in the memory of the tick kernel."""
         self._config = config
         self._timing = timing
         self._steps = timing.steps
@@ -95,11 +96,11 @@ class SmartActuator:
         self._incoming, self._commands = np.zeros(1, LOAD_PORT), np.zeros(1, COMMAND)
         self.digest = self._hash(constants)
         self.tuning = Tuning(config.name, config.sheet, offset_steps, constants)
-        """What was tuned, and what of it is in force."""
+        """Tuned parameters, accepted and in force."""
         self.start(config.initial_position, static_force(config.load), PAPER_SUPPLY, 0.0)
 
     def _hash(self, constants: np.ndarray) -> str:
-        """Return a hash of every resolved parameter: equal digests, equal actuators."""
+        """Return a hash of every resolved parameter."""
         own = self._config
         text = f'{self._timing} {own.load} {initial_gains(own.sheet.reu)}'
         return hashlib.sha256(constants.tobytes() + text.encode()).hexdigest()[:16]
@@ -110,8 +111,8 @@ class SmartActuator:
         """
         Put the actuator at rest at ``position`` (m | rad), t = 0, holding ``force`` (N | Nm).
 
-        Pressures are gauge, Pa. The first sample is what the sensors read then. What was tuned
-        before is in force again from the first tick on.
+        Pressures are gauge, Pa. The first sample has the sensor readings at that time. Tuned
+        values stay, and are in force again from the first tick on.
         """
         self.t_ns = 0
         for rows in self._saved:
@@ -127,7 +128,7 @@ class SmartActuator:
         body.plant.chambers.p_a, body.plant.chambers.p_b = rest_pressures(
             plant, supply_pressure, return_pressure, force)
         self._start_loops()
-        note_applied(HAS_SETPOINT | HAS_ENABLE, self._reu.setpoint, self._applied)
+        write_applied(HAS_SETPOINT | HAS_ENABLE, self._reu.setpoint, self._applied)
         self._reply.position = position
 
     def _start_loops(self) -> None:
@@ -159,10 +160,10 @@ class SmartActuator:
     @property
     def applied(self) -> np.record | None:
         """
-        Return what took effect at the start of the last tick, or None.
+        Return the command that took effect at the start of the last tick, or None.
 
-        A `COMMAND` row with the gains in force and the enable state; at t = 0 the state the
-        actuator starts with.
+        A `COMMAND` row with the gains in force and the enable state; at t = 0 the initial state
+        of the actuator.
         """
         return self._applied if self._applied.kinds else None
 
@@ -173,35 +174,35 @@ class SmartActuator:
 
     def accept(self, command: np.void) -> None:
         """
-        Take a valid `COMMAND`; it takes effect at the next tick.
+        Accept a valid `COMMAND`; it takes effect at the next tick.
 
-        Of several before one tick the last wins, and a gain left NaN keeps the one before.
+        The last of several before one tick wins; a gain of NaN leaves the pending one unchanged.
         """
         self._commands[0] = command
         merge(_record(self._commands), self._pending)
 
     def tune(self, values: Mapping[str, float]) -> None:
         """
-        Take new values of `tunables`, SI, all or none; in force at the next tick.
+        Accept new values of `tunables`, SI, all or none; they take effect at the next tick.
 
-        Of several before one tick the last wins; the loops keep their states. A gain of the
-        impedance is a command for this gain alone. Raises as `isa_ros.actuator.tunable.tuned`.
+        The last of several before one tick wins; the loops keep their states. A gain of the
+        impedance is a command for this gain only. Raises as `isa_ros.actuator.tunable.tuned`.
         """
         self.tuning.accept(values)
         self.accept(gains_command(values))
 
     def parameter(self, name: str) -> float:
-        """Return a tunable value as it will be at the next tick, whoever set it."""
+        """Return a tunable value as it will be at the next tick, set by parameter or command."""
         if name not in GAINS:
             return self.tuning.value(name)
         return gain_after(name, self._pending, self._reu)
 
     def tick(self, port: np.void | None = None) -> None:
         """
-        Advance one macro step; ``port`` is this tick's `LOAD_PORT` row.
+        Advance one tick; ``port`` is its `LOAD_PORT` row.
 
-        An actuator with its own load reads only the pressures of the port; None keeps the
-        pressures it has.
+        An actuator with its own load reads only the pressures of the port; None leaves its
+        pressures unchanged.
 
         Raises
         ------
@@ -213,22 +214,22 @@ class SmartActuator:
         if port is not None:
             incoming = self._incoming
             incoming[0] = port
-        self.tuning.take()
+        self.tuning.latch()
         self._commands['kinds'] = 0
         broken = kernels.actuator_tick(
             self.t_ns // PLANT_STEP_NS, self._steps, incoming, self._commands, self.memory)
         self.t_ns += self._timing.step_ns
         if broken >= 0:
-            self.refuse_broken(broken)
+            self.raise_diverged(broken)
 
-    def refuse_broken(self, state: int) -> NoReturn:
-        """Raise `SimulationDiverged` for a state of `kernels.BODY`, named by its place."""
+    def raise_diverged(self, state: int) -> NoReturn:
+        """Raise `SimulationDiverged` for a state, given by its index in `kernels.BODY`."""
         raise SimulationDiverged(
             self.t_ns, f'{self.name}: {kernels.state_name(state)}',
             self.memory.states[0, state])
 
     def snapshot(self) -> bytes:
-        """Return the whole state; `restore` continues from it byte for byte."""
+        """Return the complete state; `restore` continues from it byte for byte."""
         return self.t_ns.to_bytes(8, 'little') + b''.join(
             rows.tobytes() for rows in self._saved) + self.tuning.snapshot()
 
@@ -239,13 +240,13 @@ class SmartActuator:
         Raises
         ------
         ConfigError
-            It is none.
+            The bytes are not a snapshot of this actuator.
 
         """
         expected = 8 + sum(rows.nbytes for rows in self._saved) + self.tuning.nbytes
         if len(snapshot) != expected:
             raise ConfigError(
-                f'{self.name}: saved state of {len(snapshot)} bytes, must be {expected}')
+                f'{self.name}: saved state has {len(snapshot)} bytes, must have {expected}')
         self.t_ns = int.from_bytes(snapshot[:8], 'little')
         offset = 8
         for rows in self._saved:
@@ -255,7 +256,7 @@ class SmartActuator:
 
 
 def participant_digest(actuator: SmartActuator, timing: Timing) -> str:
-    """Return a hash that differs for actuators with other parameters or another grid of time."""
+    """Return a hash of the parameters and the timing of an actuator."""
     return f'{actuator.digest}/{timing.step_ns}/{timing.controller_offset_ns}'
 
 

@@ -1,4 +1,4 @@
-"""The actuators of one process, advanced by one call of the kernel; rows in, rows out."""
+"""The actuators of one process, advanced by one kernel call; rows in, rows out."""
 
 from collections.abc import Mapping, Sequence
 import struct
@@ -31,16 +31,16 @@ class TickLog(NamedTuple):
 
 class ActuatorGroup:
     """
-    Actuators that share one memory: the door for whoever owns the loop around them.
+    Actuators that share one memory and advance together.
 
-    Ticked together they do what each does alone, bit for bit. In a loop of your own::
+    Their results equal those of single actuators bit for bit. To use them in your own loop::
 
         group = ActuatorGroup(run.actuators, run.timing)
         replies = group.advance(ports, commands)
 
-    ``ports`` are `LOAD_PORT` rows, which say what the load of each actuator does during the
-    tick (equation L1), ``commands`` `COMMAND` rows, ``replies`` `LOAD_REPLY` rows; (n,) each,
-    in the order of ``configs``.
+    ``ports`` are `LOAD_PORT` rows: the motion of each actuator's load during the tick (equation
+    L1); ``commands`` are `COMMAND` rows, ``replies`` `LOAD_REPLY` rows; (n,) each, in the order
+    of ``configs``.
     """
 
     def __init__(self, configs: Sequence[ActuatorConfig], timing: Timing) -> None:
@@ -71,9 +71,9 @@ class ActuatorGroup:
     @property
     def applied(self) -> Records:
         """
-        Return what took effect at the start of the last tick, `COMMAND` rows (n,); overwritten.
+        Return the commands that took effect at the start of the last tick, (n,); overwritten.
 
-        ``kinds`` is 0 where nothing did; else the row holds all that is in force then.
+        `COMMAND` rows: ``kinds`` is 0 without a command; otherwise a row has all values in force.
         """
         return self._memory.applied
 
@@ -84,7 +84,7 @@ class ActuatorGroup:
                 if (changed := actuator.applied_parameters)}
 
     def start(self, starts: Records) -> None:
-        """Put all at rest at t = 0, as their `START` rows say, (n,)."""
+        """Put all at rest at t = 0 according to their `START` rows, (n,)."""
         for actuator, start in zip(self.actuators, starts):
             actuator.start(*start.item())
 
@@ -92,8 +92,8 @@ class ActuatorGroup:
         """
         Advance all by one tick and return their `LOAD_REPLY` rows, (n,).
 
-        ``ports`` are their `LOAD_PORT` rows; of an actuator with a load of its own the
-        pressures alone count. ``commands`` are valid `COMMAND` rows that take effect now.
+        ``ports`` are their `LOAD_PORT` rows; an actuator with its own load uses only the
+        pressures. ``commands`` are valid `COMMAND` rows that take effect now.
 
         Raises
         ------
@@ -101,7 +101,7 @@ class ActuatorGroup:
             A state is no longer finite.
 
         """
-        self._take()
+        self._latch()
         broken = kernels.actuator_tick(
             self.t_ns // PLANT_STEP_NS, self._steps, ports,
             self._no_commands if commands is None else commands, self._memory)
@@ -120,19 +120,19 @@ class ActuatorGroup:
         samples, states = (
             np.zeros((n_ticks + 1, len(self.actuators)), record) for record in (SAMPLE, STATES))
         if n_ticks > 0:
-            self._take()
+            self._latch()
         done, broken = kernels.actuator_ticks(
             self.t_ns // PLANT_STEP_NS, self._steps, ports, commands, self._memory, samples,
             states)
         if done > 1:    # changed parameters were new in the first tick only
-            self._take()
+            self._latch()
         self._end(done, broken)
         return TickLog(samples, states)
 
-    def _take(self) -> None:
+    def _latch(self) -> None:
         """Let changed parameters take effect."""
         for actuator in self.actuators:
-            actuator.tuning.take()
+            actuator.tuning.latch()
 
     def _end(self, n_ticks: int, broken: int) -> None:
         """Move the time on by as many ticks; refuse a state that is no longer finite."""
@@ -140,10 +140,10 @@ class ActuatorGroup:
             actuator.t_ns += n_ticks * self._timing.step_ns
         if broken >= 0:
             row, state = divmod(broken, kernels.STATE_SIZE)
-            self.actuators[row].refuse_broken(state)
+            self.actuators[row].raise_diverged(state)
 
     def snapshot(self) -> bytes:
-        """Return the state of all; `restore` continues from it byte for byte."""
+        """Return the complete state of all; `restore` continues from it byte for byte."""
         snapshots = [actuator.snapshot() for actuator in self.actuators]
         return b''.join(_SIZE.pack(len(own)) + own for own in snapshots)
 
@@ -154,7 +154,7 @@ class ActuatorGroup:
         Raises
         ------
         ConfigError
-            The bytes are not such a snapshot.
+            The bytes are not a snapshot of these actuators.
 
         """
         at = 0
@@ -165,4 +165,4 @@ class ActuatorGroup:
             at += _SIZE.size + size
             actuator.restore(snapshot[at - size:at])
         if at != len(snapshot):
-            raise ConfigError(f'saved state of {len(snapshot)} bytes, must be {at}')
+            raise ConfigError(f'saved state has {len(snapshot)} bytes, must have {at}')

@@ -1,8 +1,8 @@
 """
-Commands on their way to an actuator: accepted between two ticks, in force from the next one.
+Pending commands of an actuator: accepted between two ticks, in force from the next one.
 
-A `COMMAND` row holds what waits. Topics, services, scenarios and controllers all add to it with
-`merge`; `latch` lets it take effect at the start of a tick.
+One `COMMAND` row per actuator holds them. Topics, services, scenarios and controllers all add to
+it with `merge`; `latch` applies it at the start of a tick.
 """
 
 import math
@@ -11,12 +11,12 @@ from isa_ros.core.kernel import kernel
 from isa_ros.core.signals import HAS_ENABLE, HAS_GAINS, HAS_SETPOINT
 
 WITH_GAINS = HAS_SETPOINT | HAS_GAINS
-"""Kinds of a command that may hold gains."""
+"""Kinds of commands that may contain gains."""
 
 
 @kernel
 def merge(command, pending):
-    """Add a command: of several the last wins, and a gain that is NaN keeps the one before."""
+    """Add a command: the last of several wins; a gain of NaN leaves the pending one unchanged."""
     kinds = command.kinds
     if kinds & HAS_SETPOINT:
         pending.position = command.position
@@ -36,9 +36,9 @@ def merge(command, pending):
 @kernel
 def latch(pending, reu, applied):
     """
-    Let what waits take effect on a `REU_STATE`, and note it in ``applied``, of no kind for none.
+    Apply the pending command to a `REU_STATE` and copy it to ``applied``; without one, kinds is 0.
 
-    Enabled anew, the actuator holds the position it measured last.
+    An actuator that is enabled again holds its last measured position.
     """
     kinds, setpoint = pending.kinds, reu.setpoint
     applied.kinds = kinds
@@ -60,12 +60,12 @@ def latch(pending, reu, applied):
         if not math.isnan(pending.damping):
             setpoint.damping = pending.damping
     pending.kinds = 0
-    note_applied(kinds, setpoint, applied)
+    write_applied(kinds, setpoint, applied)
 
 
 @kernel
-def note_applied(kinds, setpoint, applied):
-    """Fill a `COMMAND` row with everything that is in force; ``kinds`` is what is new of it."""
+def write_applied(kinds, setpoint, applied):
+    """Fill a `COMMAND` row with all values in force; ``kinds`` are those that changed."""
     applied.kinds = kinds
     applied.is_enabled = int(setpoint.is_enabled)
     applied.position, applied.velocity = setpoint.position, setpoint.velocity

@@ -1,4 +1,4 @@
-"""The memory of the actuators of one process: a row each, so that one kernel call ticks all."""
+"""Memory of the actuators of one process: a row each, so that one kernel call advances all."""
 
 from typing import NamedTuple
 
@@ -10,13 +10,13 @@ import numpy as np
 
 class Memory(NamedTuple):
     """
-    Everything that the kernel of a tick reads and writes of ``n`` actuators.
+    Memory that the tick kernel reads and writes, for ``n`` actuators.
 
-    One row an actuator, but `kernels.BODIES` and `kernels.STAGES` of ``bodies`` and ``rates``.
+    One row per actuator, except `kernels.BODIES` of ``bodies`` and `kernels.STAGES` of ``rates``.
     """
 
     is_shared: np.ndarray
-    """Whether its load is a body that it moves with others, (n,)."""
+    """Whether the actuator moves a body together with others, (n,)."""
     ports: np.ndarray
     """`LOAD_PORT` in force, (n,)."""
     constants: np.ndarray
@@ -38,7 +38,7 @@ class Memory(NamedTuple):
     samples: np.ndarray
     """`SAMPLE` at the end of the last tick, (n,)."""
     pending: np.ndarray
-    """`COMMAND` that waits for the next tick, (n,)."""
+    """`COMMAND` pending for the next tick, (n,)."""
     applied: np.ndarray
     """`COMMAND` that took effect at the start of the last tick, (n,)."""
 

@@ -1,4 +1,4 @@
-"""The tuned values of one actuator: accepted between two ticks, in force from the next one."""
+"""Tuned values of one actuator: accepted between two ticks, in force from the next one."""
 
 from collections.abc import Mapping
 
@@ -14,10 +14,10 @@ _BEFORE, _IN_FORCE, _ACCEPTED = range(3)
 
 class Tuning:
     """
-    Keeps the REU part of an `ACTUATOR` row up to date; the states of the loops stay.
+    Keeps the REU part of an `ACTUATOR` row up to date; the states of the loops are unchanged.
 
-    ``constants`` is that row, shape (1,), made from ``sheet`` with ``offset_steps``; ``name``
-    is the actuator's. What is in `GAINS` is in force with the setpoints, and only kept here.
+    ``constants`` is that row, shape (1,), made from ``sheet`` with ``offset_steps``; ``name`` is
+    the actuator's. Values of `GAINS` take effect with the setpoints and are only stored here.
     """
 
     def __init__(
@@ -28,15 +28,15 @@ class Tuning:
         self._offset_steps = offset_steps
         self._constants = constants
         self._written = constants['reu'].copy()
-        known = tunables(sheet)
-        self._names = list(known)
-        self._first = np.array([tunable.value for tunable in known.values()], float)
-        # What was in force before the last tick, what is, and what will be at the next one.
+        found = tunables(sheet)
+        self._names = list(found)
+        self._first = np.array([tunable.value for tunable in found.values()], float)
+        # Values in force before the last tick, in force now, and in force from the next tick on.
         self._rows = np.tile(self._first, (3, 1))
         self._is_settled = True
 
     def reset(self) -> dict[str, float]:
-        """Return to the values of the sheet until the next tick; return the `GAINS` of then."""
+        """Restore the sheet's values until the next tick; return the `GAINS` accepted for it."""
         self._rows[_BEFORE] = self._rows[_IN_FORCE] = self._first
         self._is_settled = False
         self._constants['reu'] = self._written
@@ -44,7 +44,7 @@ class Tuning:
 
     def accept(self, values: Mapping[str, float]) -> None:
         """
-        Take new values, SI, all or none; of several before one tick the last wins.
+        Accept new values, SI, all or none; the last of several before one tick wins.
 
         Raises
         ------
@@ -58,11 +58,11 @@ class Tuning:
         self._is_settled = False
 
     def value(self, name: str) -> float:
-        """Return the value that was accepted last."""
+        """Return the last accepted value."""
         return float(self._rows[_ACCEPTED, self._names.index(name)])
 
-    def take(self) -> None:
-        """Begin a tick: what was accepted is in force."""
+    def latch(self) -> None:
+        """Begin a tick: put the accepted values in force."""
         if self._is_settled:
             return
         before, in_force, accepted = self._rows
@@ -84,7 +84,7 @@ class Tuning:
             self._tuned_by(changed), self._offset_steps)['reu'] if changed else self._written
 
     def _changed(self, row: int) -> dict[str, float]:
-        """Return what differs from the sheet in a row."""
+        """Return the values of a row that differ from the sheet."""
         return self._where(row, self._rows[row] != self._first)
 
     def _where(self, row: int, differs: np.ndarray) -> dict[str, float]:
@@ -93,7 +93,7 @@ class Tuning:
 
     @property
     def applied(self) -> dict[str, float]:
-        """Return what changed at the start of the last tick but `GAINS`, outermost block first."""
+        """Return the changes at the start of the last tick without `GAINS`, outermost first."""
         if self._is_settled:
             return {}
         changed = self._where(_IN_FORCE, self._rows[_BEFORE] != self._rows[_IN_FORCE])
@@ -105,7 +105,7 @@ class Tuning:
         return self._rows.nbytes
 
     def snapshot(self) -> bytes:
-        """Return what `restore` needs."""
+        """Return the state as bytes for `restore`."""
         return self._rows.tobytes()
 
     def restore(self, snapshot: bytes) -> None:
@@ -117,7 +117,7 @@ class Tuning:
 
 
 def gains_command(values: Mapping[str, float]) -> np.void:
-    """Return the `COMMAND` row of the `GAINS` among tuned values, of no kind without any."""
+    """Return the `COMMAND` row of the `GAINS` among tuned values; without any, kinds is 0."""
     command: np.void = np.zeros(1, COMMAND)[0]
     command['kinds'] = 0 if GAINS.keys().isdisjoint(values) else HAS_GAINS
     for name, gain in GAINS.items():
@@ -126,7 +126,7 @@ def gains_command(values: Mapping[str, float]) -> np.void:
 
 
 def gain_after(name: str, pending: np.record, reu: np.record) -> float:
-    """Return a gain of `GAINS` as it will be once the ``pending`` command has taken effect."""
+    """Return a gain of `GAINS` after the ``pending`` command has taken effect."""
     gain = GAINS[name]
     is_new = int(pending.kinds) & WITH_GAINS and not np.isnan(pending[gain])
     return float((pending if is_new else reu.setpoint)[gain])

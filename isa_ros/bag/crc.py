@@ -1,9 +1,9 @@
 """
-CRC-32 of two stretches of bytes from the CRCs of each, so that no byte is read twice.
+CRC-32 of two consecutive blocks of bytes from the CRC of each, so that no byte is read twice.
 
-A CRC is a remainder modulo a polynomial over GF(2): appending n bytes multiplies it by x^(8 n),
-and the CRC of what was appended is added. Polynomials are 32 bits, the coefficient of x^0 in
-the highest one, as zlib has them.
+A CRC is a remainder modulo a polynomial over GF(2): appending n bytes multiplies it by x^(8 n)
+and adds the CRC of the appended bytes. Polynomials are 32 bits with the coefficient of x^0 in
+the highest one, as in zlib.
 """
 
 _POLYNOMIAL = 0xEDB88320  # of zlib.crc32, IEEE 802.3

@@ -1,8 +1,8 @@
 """
-One MCAP file under construction, a whole chunk at a time.
+Writer of one MCAP file, chunk by chunk.
 
-The records are those of the official ``mcap`` library, except the two that come by the
-million: messages (`isa_ros.bag.message_chunk`) and the entries of their index, which is an array.
+The records are those of the official ``mcap`` library, except the two kinds that are written by
+the million: messages (`isa_ros.bag.message_chunk`) and the entries of their index, an array.
 """
 
 from collections.abc import Callable, Mapping, Sequence
@@ -26,9 +26,9 @@ from numpy.typing import NDArray
 import zstandard
 
 _INDEX_HEADER = struct.Struct('<BQHI')  # opcode, length, channel, bytes of entries
-_INDEX_EXCESS = _INDEX_HEADER.size - 9  # of a message index record, over its entries
+_INDEX_EXCESS = _INDEX_HEADER.size - 9  # length field of an index record minus that of its entries
 _ENTRY_BYTES = 16  # of a message index: time, offset
-_ZSTD_LEVEL = 1  # on a leg's bag higher ones take longer and save 2 %
+_ZSTD_LEVEL = 1  # for a leg's bag higher levels take longer and save 2 %
 _FOOTER_FIXED = struct.Struct('<BQQQ')  # opcode, length, summary and summary offset start
 _LENGTH = struct.Struct('<Q')
 _BUFFER_BYTES = 1024 * 1024 + 64 * 1024  # of a chunk and the tick that ends it
@@ -48,11 +48,11 @@ class _Totals:
 
 class McapFile:
     """
-    Append-only MCAP file: what has been written is on disk and complete, record by record.
+    Append-only MCAP file: every written record is complete on disk.
 
-    ``compression`` of the chunks is none, lz4 or zstd. A write that fails leaves the file as
-    it was before, so that it can still be read and finished. Every method that writes raises
-    the system's OSError.
+    ``compression`` of the chunks is none, lz4 or zstd. A failed write leaves the file as it was
+    before, so that it can still be read and finished. Every method that writes raises the
+    system's OSError.
     """
 
     def __init__(self, path: Path, library: str, compression: str = 'none') -> None:
@@ -79,13 +79,13 @@ class McapFile:
         return self._position
 
     def add_schema(self, name: str, encoding: str, data: bytes) -> int:
-        """Register a schema; it goes to the first chunk and the summary."""
+        """Register a schema; it is written to the first chunk and the summary."""
         self._schemas.append(Schema(
             id=len(self._schemas) + 1, name=name, encoding=encoding, data=data))
         return len(self._schemas)
 
     def add_channel(self, topic: str, schema: int, metadata: Mapping[str, str]) -> None:
-        """Register the next channel, to which the next topic index belongs."""
+        """Register the channel of the next topic index."""
         self._channels.append(Channel(
             id=len(self._channels) + 1, schema_id=schema, topic=topic, message_encoding='cdr',
             metadata=dict(metadata)))
@@ -111,7 +111,7 @@ class McapFile:
         """
         Return an empty chunk; the first one starts with all schemas and channels.
 
-        Two may be in use at a time: one that is filled and one that is written.
+        Two may be in use at a time: one is filled while the other is written.
         """
         registered = [] if self._has_chunk else [*self._schemas, *self._channels]
         self._has_chunk = True
@@ -127,7 +127,7 @@ class McapFile:
             message_start_time=content.start_ns, message_end_time=content.end_ns,
             uncompressed_size=content.size, uncompressed_crc=content_crc,
             compression=self._compression, data=b''))
-        # The record of the library without its data, so that these are not copied.
+        # The library's record without its data, to avoid copying them.
         length = len(head) + len(data)
         head = head[:1] + _LENGTH.pack(length - 9) + head[9:-8] + _LENGTH.pack(len(data))
         start, indices, offsets = self._position, b'', {}
@@ -171,7 +171,7 @@ class McapFile:
         self._append(data_end + summary + _bytes(footer) + MCAP0_MAGIC)
 
     def close(self) -> None:
-        """Close the file, finished or not, and release what it held in memory."""
+        """Close the file, finished or not, and release its memory."""
         self._file.close()
         self._buffers.clear()
         for records in (self._schemas, self._channels, self._chunks):

@@ -1,8 +1,8 @@
 """
-One chunk of an MCAP file under construction: message records in one buffer, written by a kernel.
+One chunk of an MCAP file while it is written: message records in a buffer, filled by a kernel.
 
-The official ``mcap.writer.Writer`` makes an object and ten small packs of each message; here a
-tick is one call, whatever the number of its messages.
+The official ``mcap.writer.Writer`` creates an object and makes ten small packs for each message;
+here one call writes all messages of a tick.
 """
 
 from collections.abc import Sequence
@@ -16,19 +16,19 @@ import numpy as np
 from numpy.typing import NDArray
 
 Entries = NDArray[np.uint64]
-"""Where the messages of one channel stand: rows of log time, ns, and offset in the chunk."""
+"""Index of one channel's messages: rows of log time, ns, and offset in the chunk."""
 
 MESSAGE_HEADER = struct.Struct('<BQHIQQ')
-"""Opcode, length of what follows, channel, sequence, log time, publish time."""
+"""Opcode, length of the rest, channel, sequence, log time, publish time."""
 
 _MESSAGE = int(Opcode.MESSAGE)
 _HEADER_BYTES = MESSAGE_HEADER.size
-_LENGTH_EXCESS = _HEADER_BYTES - 9  # of a message record, over its data
+_LENGTH_EXCESS = _HEADER_BYTES - 9  # length field of a message record minus length of its data
 
 
 @kernel
 def put(buffer, at, value, n):
-    """Write ``value`` as ``n`` bytes, little endian; return the place behind it."""
+    """Write ``value`` as ``n`` bytes, little endian; return the offset after it."""
     for k in range(n):
         buffer[at + k] = value >> 8 * k & 255
     return at + n
@@ -39,8 +39,8 @@ def append(buffer, at, block, layout, sequence, t_ns):
     """
     Append the message records of one tick to ``buffer`` at ``at``.
 
-    ``layout`` says where the messages of the tick stand in ``block``. The buffer is large
-    enough: the caller has counted.
+    ``layout`` gives the position of each message in ``block``. The caller makes the buffer large
+    enough.
     """
     for k in range(len(layout.topics)):
         size, start = layout.sizes[k], layout.starts[k]
@@ -55,24 +55,24 @@ def append(buffer, at, block, layout, sequence, t_ns):
 
 
 class _Ticks(NamedTuple):
-    """What ticks of one layout have in common."""
+    """Chunk layout shared by all ticks of one `Layout`."""
 
     layout: Layout
     channels: list[int]
     offsets: list[int]
-    """Of each record from the begin of the tick's."""
+    """Of each record, relative to the first of the tick."""
     size: int
 
 
 class Layouts:
-    """The layouts that ticks of a file have had so far."""
+    """Cache of the layouts that the ticks of a file have had so far."""
 
     def __init__(self) -> None:
         self._by_identity: dict[int, _Ticks] = {}
         self._by_content: dict[tuple[bytes, bytes], _Ticks] = {}
 
     def of(self, layout: Layout) -> _Ticks:
-        """Return what the ticks of a layout have in common, the same object for equal ones."""
+        """Return the chunk layout of a tick; the same object for equal layouts."""
         found = self._by_identity.get(id(layout))
         if found is not None and found.layout is layout:
             return found
@@ -87,7 +87,7 @@ class Layouts:
 
 
 class _Stretch(NamedTuple):
-    """Ticks of one layout in a row: when they were, and where they stand in the chunk."""
+    """Consecutive ticks of one layout: their times, ns, and their offsets in the chunk."""
 
     ticks: _Ticks
     times: list[int]
@@ -96,10 +96,10 @@ class _Stretch(NamedTuple):
 
 class Chunk:
     """
-    Messages of one chunk and where each stands in it.
+    Messages of one chunk and the position of each.
 
-    ``buffer`` is memory for its bytes, which grows where it must: `buffer` is the one to use
-    again once the chunk is written.
+    ``buffer`` is memory for its bytes. A larger one replaces it when needed: reuse `buffer`, not
+    the argument, once the chunk is written.
     """
 
     def __init__(self, prefix: bytes, layouts: Layouts, buffer: NDArray[np.uint8]) -> None:
@@ -137,16 +137,16 @@ class Chunk:
         self.size += ticks.size
 
     def data(self) -> memoryview:
-        """Return the content of the chunk, on its own memory."""
+        """Return the content of the chunk without a copy."""
         return self.buffer[:self.size].data
 
     @property
     def is_empty(self) -> bool:
-        """Return whether there is no message in it."""
+        """Return whether the chunk has no messages."""
         return not self._stretches
 
     def message_indices(self) -> list[tuple[int, Entries]]:
-        """Return (channel id, entries (n, 2) of time and offset) of those with messages."""
+        """Return (channel id, entries (n, 2) of time and offset) of each channel with messages."""
         pieces: dict[int, list[Entries]] = {}
         for ticks, times, starts in self._stretches:
             instants = np.array((times, starts), np.uint64).T

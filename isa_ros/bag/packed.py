@@ -1,4 +1,4 @@
-"""The messages of one tick in one block of memory, as they go into a file."""
+"""The messages of one tick in one block of memory, with the bytes of the file."""
 
 from collections.abc import Iterator, Sequence
 from typing import NamedTuple, overload
@@ -8,17 +8,17 @@ import numpy as np
 
 class Layout(NamedTuple):
     """
-    Which messages stand where in a block: (n,) each, by ascending topic.
+    Topic and position of each message in a block: (n,) each, by ascending topic.
 
-    Blocks of one layout differ in their numbers alone.
+    Blocks of one layout differ only in their numbers.
     """
 
     topics: np.ndarray
     """Index into the sorted topics, int64."""
     starts: np.ndarray
-    """Where the CDR bytes begin in the block, int64."""
+    """Offset of the CDR bytes in the block, int64."""
     sizes: np.ndarray
-    """Their number, int64."""
+    """Number of CDR bytes, int64."""
 
 
 def layout(topics: Sequence[int], starts: Sequence[int], sizes: Sequence[int]) -> Layout:
@@ -27,7 +27,7 @@ def layout(topics: Sequence[int], starts: Sequence[int], sizes: Sequence[int]) -
 
 
 class Packed(Sequence[tuple[int, bytes]]):
-    """Messages of a tick: (topic index, CDR bytes) each, without an object for each of them."""
+    """Messages of a tick as a sequence of (topic index, CDR bytes), without an object for each."""
 
     def __init__(self, block: np.ndarray, where: Layout) -> None:
         self.block = block
@@ -66,7 +66,7 @@ class Packed(Sequence[tuple[int, bytes]]):
             yield self[k]
 
     def selected(self, places: Sequence[int], topics: Sequence[int]) -> 'Packed':
-        """Return the messages at some places, under other topic indices."""
+        """Return the messages at some positions, with other topic indices."""
         chosen = np.array(places, np.int64)
         return Packed(self.block, Layout(
             np.array(topics, np.int64), self.layout.starts[chosen], self.layout.sizes[chosen]))

@@ -1,7 +1,7 @@
 """
-One file of a bag under construction: its head, chunks of whole ticks, its end.
+Writer of one file of a bag: its head, chunks of whole ticks, its end.
 
-Every file stands alone: provenance, schemas and channels are in each of them.
+Every file can be read alone: provenance, schemas and channels are in each of them.
 """
 
 from collections.abc import Mapping, Sequence
@@ -20,24 +20,24 @@ CHUNK_BYTES = 1024 * 1024
 CHUNK_TICKS = 500
 CHUNK_NS = 500_000_000
 PART, CONTINUES = 'isa_ros.part', 'isa_ros.continues'
-"""Records of a split bag: a file's number at its head, the next one's at its end."""
+"""Names of the records of a split bag: a file's number at its head, the next one's at its end."""
 NUMBER = 'number'
 
 
 class Head(NamedTuple):
-    """What every file of a bag begins with."""
+    """Content of the head of every file of a bag."""
 
     attachments: Mapping[str, bytes]
     custom: Mapping[str, str]
     topics: Sequence[tuple[Topic, str]]
     """(topic, type hash)."""
     schemas: Mapping[str, str]
-    """Text by type name."""
+    """Definition text by type name."""
 
 
 class PartWriter:
     """
-    The file of this ``number`` in a bag.
+    Writer of the file with this ``number`` in a bag.
 
     A chunk ends with the tick that reaches 1 MiB, 500 ticks or half a simulated second.
     Every method that writes raises the system's OSError.
@@ -60,7 +60,7 @@ class PartWriter:
 
     @property
     def counts(self) -> Counts:
-        """Return what complete chunks hold."""
+        """Return the counts of the complete chunks."""
         return Counts(self._start_ns, self._end_ns, tuple(self._counts))
 
     @property
@@ -72,10 +72,10 @@ class PartWriter:
             self, t_ns: int, sequence: int, messages: Sequence[tuple[int, bytes]]
             ) -> Chunk | None:
         """
-        Take the messages of one tick, maybe none.
+        Add the messages of one tick, possibly none.
 
-        Return the chunk that this tick ended, which is to be handed to `write_chunk` before
-        the next one.
+        Return the chunk that this tick completed, which must be passed to `write_chunk` before
+        the next one is complete.
         """
         if messages:
             self._chunk.add(t_ns, sequence, messages)
@@ -99,7 +99,7 @@ class PartWriter:
             self._counts[channel - 1] += count
 
     def finish(self, is_last: bool) -> None:
-        """Write what is pending and the summary; a second call does nothing."""
+        """Write pending messages and the summary; a second call does nothing."""
         if self._is_finished:
             return
         self.write_chunk(self._take_chunk())

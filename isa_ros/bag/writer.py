@@ -1,13 +1,13 @@
 """
-The recorder: a rosbag2 directory that can be read at any moment of the run.
+The recorder: writes a rosbag2 directory that can be read at any time of the run.
 
 Provenance and metadata.yaml are written before the first message. A chunk ends with a whole
-tick, holds at most half a simulated second, and is written by a thread while the next one is
-filled: a killed run loses less than a simulated second, and what is left ends with a whole tick.
-With a size to split at, the tick after the chunk that reaches it begins the next file.
+tick, contains at most half a simulated second, and is written by a thread while the next one is
+filled: a killed run loses less than a simulated second, and its bag ends with a whole tick.
+With a split size, the tick after the chunk that reaches it begins the next file.
 
-Nothing is taken from the host: the same run gives the same bytes. Compressed ones depend on
-the libraries' versions besides, zstd's or lz4's; what is in them does not.
+Nothing depends on the host: the same run gives the same bytes. The bytes of compressed chunks
+also depend on the versions of zstd and lz4, their content does not.
 """
 
 from collections.abc import Sequence
@@ -27,21 +27,21 @@ from msg_adapters.definitions import definition
 
 
 METADATA_PERIOD_S = 1.0
-"""Host time between two writings of metadata.yaml: readers need it at the end alone."""
+"""Host time between two writings of metadata.yaml; readers need it only at the end."""
 
 
 class BagWriter:
     """
-    One bag under construction.
+    Writer of one bag.
 
-    ``topics`` are sorted by name; a topic's place in them is its index. The directory must
-    not exist, unless it is to be overwritten and holds a bag: then that bag is removed, and
-    nothing else. ``path`` is the first file.
+    ``topics`` are sorted by name; a topic's index is its position. The directory must not exist,
+    except that with ``overwrite`` it may contain a bag: then only that bag is removed. ``path``
+    is the first file.
 
     Raises
     ------
     BagError
-        the directory exists or cannot be made, or topics are not sorted.
+        the directory already exists or cannot be created, or topics are not sorted.
     RunError
         the bag cannot be written, naming the file.
 
@@ -76,14 +76,14 @@ class BagWriter:
     def write_tick(
             self, t_ns: int, sequence: int, messages: Sequence[tuple[int, bytes]]) -> None:
         """
-        Record the messages of one tick: (topic index, CDR bytes), sorted by index, maybe none.
+        Record the messages of one tick: (topic index, CDR bytes), sorted by index, possibly none.
 
         ``t_ns`` is log and publish time, ``sequence`` the tick's number.
 
         Raises
         ------
         RunError
-            the bag cannot be written; what it held stays readable.
+            the bag cannot be written; the messages in it stay readable.
 
         """
         if self._error is not None:
@@ -95,19 +95,19 @@ class BagWriter:
             if chunk is not None:
                 self._end_writing()
                 self._writing = self._thread.submit(self._write, self._parts[-1], chunk)
-                if self._storage.split_bytes is not None:  # its size decides on the next tick
+                if self._storage.split_bytes is not None:  # the next tick needs the file's size
                     self._end_writing()
         except OSError as error:
             raise self._failure(error, self._path(len(self._parts) - 1)) from error
 
     def close(self) -> None:
         """
-        Write what is pending, the summary and metadata.yaml; a second call does nothing.
+        Write pending messages, the summary and metadata.yaml; a second call does nothing.
 
         Raises
         ------
         RunError
-            the bag cannot be written; it stays readable like one cut short.
+            the bag cannot be written; it stays readable like that of a killed run.
 
         """
         if self._is_closed:
@@ -131,7 +131,7 @@ class BagWriter:
             writing.result()
 
     def _write(self, part: PartWriter, chunk: Chunk) -> None:
-        """Write a chunk, and from time to time what the bag holds so far; in the thread."""
+        """Write a chunk, and metadata.yaml when it is due; runs in the thread."""
         part.write_chunk(chunk)
         split = self._storage.split_bytes
         self._is_full = split is not None and part.size >= split
@@ -146,7 +146,7 @@ class BagWriter:
     def __exit__(
             self, kind: type[BaseException] | None, error: BaseException | None,
             traceback: TracebackType | None) -> None:
-        """Close; an error of the run is not replaced by one of closing."""
+        """Close; an error while closing does not replace an error of the run."""
         try:
             self.close()
         except RunError:
@@ -154,7 +154,7 @@ class BagWriter:
                 raise
 
     def _begin_part(self) -> None:
-        """End the file that is full, if there is one, and begin the next."""
+        """Finish the current file, if there is one, and begin the next."""
         if self._parts:
             self._end_writing()
             self._parts[-1].finish(is_last=False)
@@ -169,12 +169,12 @@ class BagWriter:
         return self._metadata_path.with_name(f'{self._stem}_{number}.mcap')
 
     def _write_metadata(self) -> None:
-        """Replace metadata.yaml in one step."""
+        """Replace metadata.yaml atomically."""
         text = metadata_yaml(
             [(part.path.name, part.counts) for part in self._parts], self._head.topics,
             self._head.custom)
         temporary = self._metadata_path.with_suffix('.yaml.tmp')
-        temporary.unlink(missing_ok=True)  # never written through a link that lay there
+        temporary.unlink(missing_ok=True)  # never write through an existing link
         with temporary.open('x', encoding='utf-8') as file:
             file.write(text)
         temporary.replace(self._metadata_path)
@@ -188,7 +188,7 @@ class BagWriter:
 def _check_sorted(topics: Sequence[Topic]) -> None:
     names = [topic.name for topic in topics]
     if names != sorted(set(names)):
-        raise BagError(f'topics must be sorted by name, each once: {", ".join(names)}')
+        raise BagError(f'topics = {", ".join(names)}, must be sorted by name, each once')
 
 
 def _make_directory(directory: Path, overwrite: bool) -> None:
@@ -197,16 +197,16 @@ def _make_directory(directory: Path, overwrite: bool) -> None:
             _remove_bag(directory)
         directory.mkdir(parents=True, exist_ok=overwrite)
     except FileExistsError:
-        raise BagError(f'{directory} exists, must not, unless asked to overwrite') from None
+        raise BagError(f'{directory} already exists; overwrite replaces the bag in it') from None
     except OSError as error:
-        raise BagError(f'{directory}: cannot be made, {error.strerror}') from None
+        raise BagError(f'{directory}: cannot be created, {error.strerror}') from None
 
 
 def _remove_bag(directory: Path) -> None:
-    """Remove the bag in a directory: its metadata.yaml and MCAP files, nothing else."""
+    """Remove the bag in a directory: only its metadata.yaml and MCAP files."""
     if directory.is_dir() and not any(directory.iterdir()):
         return
     if not (directory / FILE_NAME).is_file():
-        raise BagError(f'{directory} holds no bag ({FILE_NAME}), so it is not overwritten')
+        raise BagError(f'{directory} is not a bag (no {FILE_NAME}), so it is not overwritten')
     for path in [*sorted(directory.glob('*.mcap')), directory / FILE_NAME]:
         path.unlink()

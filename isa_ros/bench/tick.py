@@ -64,7 +64,7 @@ def actuator_parts() -> dict[str, float]:
     def messages() -> None:
         for tick in range(TICKS):
             packer.pack(tick, tick, {})
-            packer.everything()
+            packer.all_messages()
     return {PLANT: seconds(plants, TICKS), MESSAGES: seconds(messages, TICKS)}
 
 
@@ -75,7 +75,7 @@ def _recorder_seconds(drop: Scenario) -> float:
     simulation.step()
     packer = packer_of(drop.run, rows)
     packer.pack(0, 0, {})
-    messages = packer.everything()
+    messages = packer.all_messages()
     with tempfile.TemporaryDirectory() as directory:
         session = prepare(request_of(_DROP, Path(directory)))
         ticks = count()

@@ -1,4 +1,4 @@
-"""The ROS 2 face: the only package that imports rclpy."""
+"""ROS 2 nodes: the only package that imports rclpy."""
 
 from isa_ros.nodes.participant import Participant
 

@@ -1,4 +1,4 @@
-"""Bring-up: from the files of a run to its bag, on ROS nodes, in processes or in one."""
+"""Bring-up of a run on ROS nodes, in several processes or in one; records a bag."""
 
 from pathlib import Path
 
@@ -17,9 +17,9 @@ def bringup(request: Request, report: Report | None = None) -> Path:
     Raises
     ------
     ConfigError, BagError
-        Nothing was started.
+        The request is invalid; nothing was started.
     RunError
-        A participant or the recorder was lost or late; the bag is readable.
+        A participant or the recorder failed or did not answer in time; the bag is readable.
     SimulationDiverged
         A state is no longer finite; the bag is readable.
     Interrupted
@@ -30,7 +30,7 @@ def bringup(request: Request, report: Report | None = None) -> Path:
 
 
 def run_session(session: Session, report: Report | None = None) -> Path:
-    """Run what was prepared; as `bringup`."""
+    """Run a prepared session; as `bringup`."""
     with StopRequest() as should_stop:
         in_one = session.request.in_process
         (in_one_process if in_one else in_processes)(session, report, should_stop)

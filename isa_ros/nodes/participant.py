@@ -1,4 +1,4 @@
-"""The one way for a user's controller to join a lockstep run."""
+"""Participation of a user's controller in lockstep runs."""
 
 from collections.abc import Callable
 
@@ -11,10 +11,10 @@ from rclpy.node import Node
 
 class Participant:
     """
-    Let ``controller`` of ``node`` take part in every run whose ``controllers`` name the node.
+    Makes ``controller`` of ``node`` take part in every run whose ``controllers`` name the node.
 
-    The coordinator waits for it at every tick: it is given the state of tick k, and what it
-    returns takes effect at tick k + 1, whatever the machine does meanwhile.
+    The coordinator waits for it at every tick: its input is the state of tick k, and its result
+    takes effect at tick k + 1, independent of the speed of the machine.
     """
 
     def __init__(self, node: Node, controller: Controller) -> None:
@@ -22,10 +22,10 @@ class Participant:
 
     def spin(self, should_stop: Callable[[], bool] | None = None) -> None:
         """
-        Take part in one run after the other until ``should_stop``, or a signal where None.
+        Take part in one run after another until ``should_stop``; None: until a signal.
 
-        What the controller raises is told to the coordinator, whose run ends with exit code
-        3, and raised.
+        An exception of the controller is sent to the coordinator, whose run then ends with exit
+        code 3, and is raised.
         """
         if should_stop is not None:
             self._end.spin(should_stop)

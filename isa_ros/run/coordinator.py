@@ -1,11 +1,10 @@
 """
-The run: one barrier per tick, free of ROS.
+The loop of a run, with one barrier per tick; no ROS.
 
-Tick k takes every actuator from t_k to t_k+1 = (k + 1) step_ns, then the load they share.
-Controllers work on the state of t_k meanwhile, and what they ask for takes effect at t_k+1.
-The sample of t_k is recorded while the actuators work on tick k, so the recorder costs a
-tick nothing as long as it is faster than they are. N ticks give N + 1 samples: the state
-at t = 0 is one of them.
+Tick k advances every actuator from t_k to t_k+1 = (k + 1) step_ns, then the surroundings.
+At the same time controllers compute with the state of t_k; their commands take effect at t_k+1.
+The sample of t_k is recorded while the actuators compute tick k: a recorder faster than the
+actuators does not lengthen a tick. N ticks give N + 1 samples, including the state at t = 0.
 """
 
 from collections.abc import Callable
@@ -21,31 +20,31 @@ from isa_ros.surroundings.surroundings import Surroundings
 
 
 class Interrupted(IsaError):
-    """A run that was asked to stop before its end."""
+    """A run that was stopped before its end."""
 
     exit_code = 130
 
 
 @dataclass(frozen=True, kw_only=True)
 class Plan:
-    """What is run, and for how long."""
+    """Content and length of a run."""
 
     step_ns: int
     rows: Rows
     n_ticks: int | None
-    """Ends at t = n_ticks step_ns; None: until stopped."""
+    """The run ends at t = n_ticks step_ns; None: when it is stopped."""
     commands: Callable[[int, Records], None]
-    """Writes over the `COMMAND` rows of one tick, which hold what controllers ask for."""
+    """Overwrites `COMMAND` rows of one tick, which contain the requests of controllers."""
     is_paused: bool = False
-    """Wait for the first `Coordinator.step` or the end of the pause."""
+    """Start paused: wait for the first `Coordinator.step` or the end of the pause."""
 
 
 Requests = Callable[['Coordinator'], None]
-"""Calls `Coordinator.pause`, `step`, `reset`, `save` or `note` for what was asked since."""
+"""Serves new requests by `Coordinator.pause`, `step`, `reset` or `save`."""
 
 
 class Coordinator:
-    """Advance actuators and their surroundings tick by tick, and tell every sample."""
+    """Advance actuators and their surroundings tick by tick; pass samples to the narrator."""
 
     def __init__(
             self, plan: Plan, transport: Transport, surroundings: Surroundings,
@@ -63,10 +62,10 @@ class Coordinator:
         self._should_stop = should_stop
         self._serve: Requests = _no_requests if requests is None else requests
         self.ticks = 0
-        """Where the run is: t = ticks step_ns."""
+        """Number of finished ticks: t = ticks step_ns."""
         self.is_paused = plan.is_paused
         self.is_reset = False
-        """Whether the run ended because it shall begin anew."""
+        """Whether the run ended by a reset, to start again at t = 0."""
 
     @property
     def t_ns(self) -> int:
@@ -77,23 +76,23 @@ class Coordinator:
         """
         Run to the end, after `Transport.join`, from t = 0 or from a saved state.
 
-        Whatever ends the run, every sample of a finished tick is handed to the recorder.
+        However the run ends, every sample of a finished tick is passed to the recorder.
 
         Raises
         ------
         Interrupted
-            Stopped before the end; the tick under way was finished if it could.
+            Stopped before the end; the current tick was finished if possible.
         RunError
-            A participant or the recorder was lost or late.
+            A participant or the recorder failed or did not answer in time.
         SimulationDiverged
             A state is no longer finite.
 
         """
         if state is not None:
             self._restore(state)
-        self._narrator.say_time(self.ticks)
+        self._narrator.publish_time(self.ticks)
         self._transport.begin()
-        self._narrator.take(self.ticks, self._rows.tuned)
+        self._narrator.publish_rows(self.ticks, self._rows.tuned)
         self._start_clocks()
         try:
             while True:
@@ -101,13 +100,13 @@ class Coordinator:
                 if self._is_over:
                     break
                 if self.is_paused:
-                    self._pass_time()
+                    self._idle()
                 else:
                     self._pace.wait(self.t_ns, self._should_stop)
                     self._advance()
         finally:
             self._narrator.record()
-            if not self.is_paused:  # else nothing was due
+            if not self.is_paused:  # a paused run has no due time
                 self._pace.end(self.t_ns)
             self._progress.end(self.t_ns)
 
@@ -126,16 +125,16 @@ class Coordinator:
         self._transport.restore(state.tick, state.participants, self._rows)
 
     def pause(self, is_paused: bool) -> None:
-        """Stop before the next tick, or go on."""
+        """Pause before the next tick, or resume."""
         if is_paused == self.is_paused:
             return
         self.is_paused = is_paused
-        self.note('pause' if is_paused else 'resume')
+        self.add_event('pause' if is_paused else 'resume')
         self._start_clocks()
 
     def step(self, n_ticks: int) -> None:
         """
-        Advance exactly ``n_ticks`` while paused; fewer only where the run ends before.
+        Advance exactly ``n_ticks`` while paused; fewer only if the run ends before.
 
         Raises
         ------
@@ -145,25 +144,25 @@ class Coordinator:
         """
         if not self.is_paused:
             raise ConfigError('step: the run is not paused, pause it first')
-        self.note(f'step {n_ticks}')
+        self.add_event(f'step {n_ticks}')
         for _ in range(n_ticks):
             if self._is_over:
                 break
             self._advance()
 
     def reset(self) -> None:
-        """End this run, so that it begins anew at t = 0 with a new bag."""
-        self.note('reset')
+        """End this run, to start again at t = 0 with a new bag."""
+        self.add_event('reset')
         self.is_reset = True
 
     def save(self) -> RunState:
         """
-        Return everything the rest of the run depends on.
+        Return the complete state of the run.
 
         Raises
         ------
         RunError
-            A participant was lost, or cannot be saved.
+            A participant failed, or cannot be saved.
 
         """
         return RunState(
@@ -172,22 +171,22 @@ class Coordinator:
 
     def set_real_time_factor(self, factor: float) -> None:
         """
-        Go on at ``factor`` times real time; 0: as fast as it can.
+        Continue at ``factor`` times real time; 0: as fast as possible.
 
         Raises
         ------
         ConfigError
-            It is negative or not finite.
+            The factor is negative or not finite.
 
         """
         self._pace.set_factor(factor)
         self._start_clocks()
 
-    def note(self, event: str) -> None:
-        """Record and publish what was done to the run at this instant."""
-        self._narrator.note(self.ticks, event)
+    def add_event(self, event: str) -> None:
+        """Record and publish an event at this instant."""
+        self._narrator.add_event(self.ticks, event)
 
-    def _pass_time(self) -> None:
+    def _idle(self) -> None:
         self._refuse_stop()
         self._transport.idle()
 
@@ -209,7 +208,7 @@ class Coordinator:
         self._plan.commands(tick, rows.commands)
         self._surroundings.ports(rows.ports)
         self._lap('commands and ports')
-        self._narrator.say_time(tick + 1)
+        self._narrator.publish_time(tick + 1)
         self._transport.send(tick, rows)
         self._lap('clock and step out')
         self._narrator.record()
@@ -219,7 +218,7 @@ class Coordinator:
         self._surroundings.advance(rows.replies)
         self._lap('body and supplies')
         self.ticks = tick + 1
-        self._narrator.take(self.ticks, self._rows.tuned)
+        self._narrator.publish_rows(self.ticks, self._rows.tuned)
         self._lap('messages')
 
 
@@ -228,4 +227,4 @@ def _no_lap(phase: str) -> None:
 
 
 def _no_requests(coordinator: Coordinator) -> None:
-    """Ask for nothing."""
+    """Do nothing."""

@@ -1,4 +1,4 @@
-"""What crosses between surroundings, actuators, controllers and recorder at a tick: rows."""
+"""Rows that surroundings, actuators, controllers and recorder exchange at a tick."""
 
 from collections.abc import Mapping, Sequence
 from typing import Protocol
@@ -19,62 +19,62 @@ def floats(rows: Records) -> Floats:
     """
     Return the same memory as plain numbers, (n, floats of a row).
 
-    Records of floats are copied ten times as fast in this form.
+    Copying records of floats takes a tenth of the time in this form.
     """
     return rows.view(np.float64).reshape(len(rows), rows.itemsize // np.float64().itemsize)
 
 
 IDLE_S = 0.005
-"""Host time between two looks at what is asked of a paused run."""
+"""Host time between two checks for requests while a run is paused."""
 
 
 class Rows:
     """
     The memory of one run's exchange, a row per actuator, (n_actuators,) each.
 
-    Overwritten tick by tick; what must last is copied.
+    Overwritten at every tick; copy rows to keep them.
     """
 
     def __init__(self, n_actuators: int, surroundings: Surroundings) -> None:
         self.ports: Records = np.zeros(n_actuators, LOAD_PORT)
-        """From the surroundings to the actuators, for the tick."""
+        """Boundary values of the tick, from the surroundings to the actuators."""
         self.commands: Records = np.zeros(n_actuators, COMMAND)
-        """What takes effect at the tick's start."""
+        """Commands that take effect at the tick's start."""
         self.replies: Records = np.zeros(n_actuators, LOAD_REPLY)
-        """From the actuators to the surroundings, at the tick's end."""
+        """Results of the tick, from the actuators to the surroundings."""
         self.samples: Records = np.zeros(n_actuators, SAMPLE)
-        """What the actuators show at the tick's start; at its end once they have answered."""
+        """Samples at the tick's start; once the actuators have answered, at its end."""
         self.applied: Records = np.zeros(n_actuators, COMMAND)
-        """What is in force since the last tick's start; of no kind where nothing is new."""
+        """Commands that took effect at the last tick's start; kinds 0 without one."""
         self.tuned: Mapping[int, Mapping[str, float]] = {}
         """Parameters that changed at the start of the last tick, SI, by row and name."""
         self.requests: Records = np.zeros(n_actuators, COMMAND)
-        """What the controllers ask for, to take effect at the next tick."""
+        """Commands of the controllers, to take effect at the next tick."""
         self.supplies: Records = surroundings.supplies
-        """`SUPPLY_SAMPLE` of the supplies; the surroundings' own memory."""
+        """`SUPPLY_SAMPLE` of the supplies; memory of the surroundings."""
         self.body: Records | None = None
-        """What the body shows, (1,); the body's own memory. None: no body."""
+        """Sample of the body, (1,); memory of the body. None: no body."""
         if surroundings.body is not None:
             self.body = surroundings.body.sample
         self.shown = Shown(self.samples, self.applied, self.supplies, self.body)
-        """The rows that messages are made of."""
+        """The rows that the messages are packed from."""
         self.reply_values, self.sample_values = floats(self.replies), floats(self.samples)
-        """The same memory as plain numbers."""
+        """The same memory as plain floats."""
 
 
 class Transport(Protocol):
-    """Actuators and controllers, wherever they run."""
+    """Connection to the actuators and controllers, in this process or in others."""
 
     def join(self, rows: Rows) -> None:
         """
         Wait until every participant is ready at t = 0.
 
-        Fills what they show and have applied. A second call begins another run.
+        Fills their samples and applied commands. A second call begins another run.
 
         Raises
         ------
         ConfigError
-            A participant has other parameters, or another run is going on.
+            A participant has other parameters, or takes part in another run.
         RunError
             A participant did not answer in time.
 
@@ -83,63 +83,63 @@ class Transport(Protocol):
 
     def restore(self, tick: int, snapshots: Sequence[bytes], rows: Rows) -> None:
         """
-        Put everyone, after `join`, where it was before ``tick``; as `join`.
+        After `join`, restore the state of every participant before ``tick``; raises as `join`.
 
-        ``snapshots`` are those of `snapshots`.
+        ``snapshots`` come from `snapshots`.
         """
         ...
 
     def begin(self) -> None:
-        """Let everyone publish the first messages: the time is known."""
+        """Make every participant publish its first messages; the time is already published."""
         ...
 
     def send(self, tick: int, rows: Rows) -> None:
-        """Set everyone to work: ports and commands, and to controllers what is shown."""
+        """Start the tick: send ports and commands, and the samples to the controllers."""
         ...
 
     def receive(self, rows: Rows) -> None:
         """
-        Wait for everyone; fill replies, samples, applied, tuned and requests.
+        Wait for all participants; fill replies, samples, applied, tuned and requests.
 
         Raises
         ------
         RunError
-            A participant was lost or late.
+            A participant failed or did not answer in time.
         SimulationDiverged
             The state of an actuator is no longer finite.
         Interrupted
-            A stop was requested and the tick does not end.
+            A stop was requested and the tick did not end.
 
         """
         ...
 
     def idle(self) -> None:
         """
-        Pass a moment in which the run is paused.
+        Wait for a moment while the run is paused.
 
         Raises
         ------
         RunError
-            A participant was lost.
+            A participant failed.
 
         """
         ...
 
     def snapshots(self) -> list[bytes]:
         """
-        Return the whole state of everyone, in the order of the participants.
+        Return the complete state of each participant, in their order.
 
         Raises
         ------
         RunError
-            A participant was lost or late, or cannot be saved.
+            A participant failed, did not answer in time, or cannot be saved.
 
         """
         ...
 
 
 class Recorder(Protocol):
-    """Where every sample goes, in canonical order."""
+    """Receives every sample of a run, in order of time."""
 
     def write_tick(
             self, t_ns: int, sequence: int, messages: Sequence[tuple[int, bytes]]) -> None:
@@ -149,7 +149,7 @@ class Recorder(Protocol):
         Raises
         ------
         RunError
-            The recorder was lost, the disk is full.
+            The sample cannot be written, for example because the disk is full.
 
         """
         ...

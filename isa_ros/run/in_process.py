@@ -10,18 +10,18 @@ from isa_ros.run.exchange import floats, IDLE_S, Records, Rows
 
 
 class Input(Protocol):
-    """Where the setpoints and requests for one actuator arrive: its node."""
+    """Input of setpoints and requests of one actuator: its node."""
 
     def serve(self) -> None:
-        """Take the setpoints and requests that have arrived; do not wait."""
+        """Process the setpoints and requests that have arrived; do not wait."""
         ...
 
 
 class InProcess:
     """
-    A `Transport` to the actuators of a group, ticked together.
+    A `Transport` to the actuators of a group, which advance together.
 
-    ``starts`` are their `START` rows, (n,); ``inputs`` one of each, or none at all.
+    ``starts`` are their `START` rows, (n,); ``inputs`` has one entry per actuator, or none.
     """
 
     def __init__(
@@ -34,10 +34,10 @@ class InProcess:
     def join(self, rows: Rows) -> None:
         """Start all at t = 0."""
         self._group.start(self._starts)
-        self._show(rows)
+        self._fill(rows)
 
     def restore(self, tick: int, snapshots: Sequence[bytes], rows: Rows) -> None:
-        """Put all where the snapshots were taken."""
+        """Restore all actuators from their snapshots."""
         actuators = self._group.actuators
         if len(snapshots) != len(actuators):
             raise ConfigError(
@@ -45,23 +45,23 @@ class InProcess:
                 f'{len(actuators)}')
         for actuator, own in zip(actuators, snapshots):
             actuator.restore(own)
-        self._show(rows)
+        self._fill(rows)
 
     def begin(self) -> None:
-        """Do nothing: the narrator publishes for all."""
+        """Do nothing: the narrator publishes for all actuators."""
 
     def send(self, tick: int, rows: Rows) -> None:
-        """Do nothing: `receive` does the work."""
+        """Do nothing: `receive` advances the actuators."""
 
     def receive(self, rows: Rows) -> None:
-        """Take what has arrived for each actuator, then advance all."""
+        """Process the inputs of each actuator, then advance all."""
         for own in self._inputs:
             own.serve()
         self._group.advance(rows.ports, rows.commands)
-        self._show(rows)
+        self._fill(rows)
 
     def idle(self) -> None:
-        """Take what has arrived for each actuator."""
+        """Process the inputs of each actuator."""
         for own in self._inputs:
             own.serve()
         time.sleep(IDLE_S)
@@ -70,7 +70,7 @@ class InProcess:
         """Return the state of every actuator."""
         return [actuator.snapshot() for actuator in self._group.actuators]
 
-    def _show(self, rows: Rows) -> None:
+    def _fill(self, rows: Rows) -> None:
         group = self._group
         rows.reply_values[:] = self._replies
         rows.sample_values[:] = self._samples

@@ -1,4 +1,4 @@
-"""A whole run in this process, without ROS: a simulation, told to a recorder."""
+"""A whole run in this process, without ROS: a simulation with a recorder."""
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
@@ -21,21 +21,21 @@ Tuned = Mapping[int, Mapping[str, float]]
 
 
 class Inputs(NamedTuple):
-    """What is fed into a run from outside, by tick."""
+    """External inputs of a run, by tick."""
 
     commands: Callable[[int, Records], None]
-    """Writes over the `COMMAND` rows of a tick."""
+    """Overwrites `COMMAND` rows of a tick."""
     tuned: Mapping[str, Tuned] = {}
-    """Parameters that change, by actuator."""
-    notes: Mapping[int, Sequence[str]] = {}
-    """Events that were recorded before a tick."""
+    """Changes of parameters, by actuator."""
+    events: Mapping[int, Sequence[str]] = {}
+    """Texts of the events recorded before a tick."""
 
 
 class LocalRun:
     """
-    A run ready to be simulated and recorded; ``topics`` are what it records, in order.
+    A run ready to be simulated and recorded; ``topics`` are the recorded ones, in order.
 
-    Its controllers do not take part: what they asked for is among the commands.
+    Its controllers do not take part: their requests are among the commands.
     """
 
     def __init__(self, run: RunConfig) -> None:
@@ -49,7 +49,7 @@ class LocalRun:
             should_stop: Callable[[], bool] = lambda: False,
             state: RunState | None = None) -> None:
         """
-        Hand every sample until t = ``n_ticks`` step_ns to ``recorder``; to be called once.
+        Pass every sample until t = ``n_ticks`` step_ns to ``recorder``; call this once.
 
         Raises
         ------
@@ -66,9 +66,9 @@ class LocalRun:
             self._run, shown(simulation), self._thinning.recorder(recorder))
         commands = np.zeros(len(simulation.names), COMMAND)
         while True:
-            narrator.take(simulation.ticks, simulation.tuned)
-            for text in inputs.notes.get(simulation.ticks, ()):
-                narrator.note(simulation.ticks, text)
+            narrator.publish_rows(simulation.ticks, simulation.tuned)
+            for text in inputs.events.get(simulation.ticks, ()):
+                narrator.add_event(simulation.ticks, text)
             narrator.record()
             if simulation.ticks >= n_ticks:
                 return
@@ -80,7 +80,7 @@ class LocalRun:
             simulation.step(commands)
 
     def _tune(self, tuned: Mapping[str, Tuned]) -> None:
-        """Set what changes at the tick that comes next, as a user of the node would."""
+        """Set the parameters that change at the next tick, as a user of the node would."""
         simulation = self._simulation
         for name, by_tick in tuned.items():
             values = by_tick.get(simulation.ticks)
@@ -89,7 +89,7 @@ class LocalRun:
 
 
 def shown(simulation: Simulation) -> Shown:
-    """Return the rows of a simulation that messages are made of."""
+    """Return the rows of a simulation that its messages are packed from."""
     body = simulation.surroundings.body
     return Shown(
         simulation.group.samples, simulation.group.applied, simulation.surroundings.supplies,

@@ -1,4 +1,4 @@
-"""What a run tells: every sample to the recorder, and to publishers what somebody listens to."""
+"""Output of a run: every sample to the recorder, and messages to topics with subscribers."""
 
 from collections.abc import Mapping, Sequence
 from typing import NamedTuple, Protocol
@@ -16,41 +16,41 @@ from msg_adapters import clock, coordinator_messages, event
 class Outlet(Protocol):
     """The publishers of one source, in the order of its topics."""
 
-    def is_heard(self) -> bool:
-        """Return whether there is a subscription; asked once a tick."""
+    def has_subscribers(self) -> bool:
+        """Return whether there is a subscription; called once a tick."""
         ...
 
-    def send(self, messages: Messages) -> None:
-        """Publish to those who subscribe."""
+    def publish(self, messages: Messages) -> None:
+        """Publish to the topics with subscriptions."""
         ...
 
 
-class Silence:
-    """An `Outlet` without subscriptions."""
+class NoOutlet:
+    """An `Outlet` without topics."""
 
-    def is_heard(self) -> bool:
+    def has_subscribers(self) -> bool:
         """Return False."""
         return False
 
-    def send(self, messages: Messages) -> None:
+    def publish(self, messages: Messages) -> None:
         """Do nothing."""
 
 
 class Outlets(NamedTuple):
-    """Where the messages of a run are published."""
+    """The publishers of a run."""
 
-    clock: Outlet = Silence()
-    events: Outlet = Silence()
-    surroundings: Outlet = Silence()
+    clock: Outlet = NoOutlet()
+    events: Outlet = NoOutlet()
+    surroundings: Outlet = NoOutlet()
     actuators: Sequence[Outlet] = ()
-    """One per actuator, in their order; none where the actuators publish for themselves."""
+    """One per actuator, in their order; empty if the actuators' own nodes publish."""
 
 
 class Narrator:
     """
-    Packs the rows of a run at each instant, for its recorder and its outlets.
+    Packs the rows of a run at each instant and passes the messages to recorder and outlets.
 
-    Nothing is packed where nothing is recorded and nobody subscribes. ``recorder`` may be None.
+    Without recorder (None) and without subscriptions nothing is packed.
     """
 
     def __init__(
@@ -64,49 +64,50 @@ class Narrator:
         self._events: list[bytes] = []
         self._unrecorded: int | None = None
 
-    def say_time(self, tick: int) -> None:
-        """Publish the time of a tick, before anything else of that instant."""
-        if self._outlets.clock.is_heard():
-            self._outlets.clock.send((clock.pack(tick * self._step_ns),))
+    def publish_time(self, tick: int) -> None:
+        """Publish the time of a tick, before all other messages of that instant."""
+        if self._outlets.clock.has_subscribers():
+            self._outlets.clock.publish((clock.pack(tick * self._step_ns),))
 
-    def note(self, tick: int, text: str) -> None:
-        """Publish and record what was done to the run before a tick."""
+    def add_event(self, tick: int, text: str) -> None:
+        """Publish and record an event before a tick: a pause, a step, a reset."""
         message = event.pack(tick * self._step_ns, text)
         self._events.append(message)
-        if self._outlets.events.is_heard():
-            self._outlets.events.send((message,))
+        if self._outlets.events.has_subscribers():
+            self._outlets.events.publish((message,))
 
-    def take(self, tick: int, tuned: Mapping[int, Mapping[str, float]]) -> None:
+    def publish_rows(self, tick: int, tuned: Mapping[int, Mapping[str, float]]) -> None:
         """
-        Pack and publish the rows as they are before ``tick``; `record` hands them on.
+        Pack and publish the rows before ``tick``; `record` passes them to the recorder.
 
         ``tuned`` are the parameters that changed at the start of the last tick, by row.
         """
         outlets = self._outlets
-        heard = [row for row, outlet in enumerate(outlets.actuators) if outlet.is_heard()]
-        shows = outlets.surroundings.is_heard()
-        if self._recorder is None and not heard and not shows:
+        subscribed = [
+            row for row, outlet in enumerate(outlets.actuators) if outlet.has_subscribers()]
+        has_surroundings = outlets.surroundings.has_subscribers()
+        if self._recorder is None and not subscribed and not has_surroundings:
             return
         t_ns = tick * self._step_ns
         self._packer.pack(t_ns, max(0, t_ns - self._step_ns), tuned)
         self._unrecorded = tick
-        for row in heard:
-            outlets.actuators[row].send(self._packer.of_actuator(row))
-        if shows:
-            outlets.surroundings.send(self._packer.of(self._surroundings))
+        for row in subscribed:
+            outlets.actuators[row].publish(self._packer.of_actuator(row))
+        if has_surroundings:
+            outlets.surroundings.publish(self._packer.of(self._surroundings))
 
     def record(self) -> None:
-        """Hand the instant that was packed last to the recorder, once."""
+        """Pass the last packed instant to the recorder, once."""
         tick, self._unrecorded = self._unrecorded, None
         if tick is None or self._recorder is None:
             return
         events, self._events = self._events, []
         self._recorder.write_tick(
-            tick * self._step_ns, tick, self._packer.everything(events))
+            tick * self._step_ns, tick, self._packer.all_messages(events))
 
 
 def packer_of(run: RunConfig, shown: Shown) -> Packer:
-    """Return what packs the rows of a run."""
+    """Return the packer of the rows of a run."""
     return Packer(
         Names([(actuator.name, actuator.sheet.is_rotary) for actuator in run.actuators],
               [(supply.name, isinstance(supply.sheet.return_line, VolumeReturn))
@@ -119,7 +120,7 @@ def topics_of(run: RunConfig, shown: Shown) -> list[Topic]:
 
 
 def _body_messages(run: RunConfig) -> BodyMessages | None:
-    """Return what makes the messages of a body; another kind is one more line here."""
+    """Return the function that makes a body's messages; add new kinds of bodies here."""
     if isinstance(run.body, LegConfig):
         return lambda columns: coordinator_messages.leg(JOINTS, columns)
     return None

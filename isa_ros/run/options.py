@@ -2,8 +2,8 @@
 The options of a run, each declared once: a field of `Request`.
 
 The arguments of `isa bringup`, the ROS parameters of the coordinator and the arguments of the
-launch file are made from `OPTIONS`, and `Request` is filled from their values. Nothing here
-imports ROS or numba: `isa --help` and launch files read it.
+launch file are made from `OPTIONS`, and `Request` is filled from their values. This module
+imports neither ROS nor numba: `isa --help` and launch files import it.
 """
 
 from collections.abc import Mapping
@@ -21,12 +21,12 @@ RosValue = bool | float | str
 
 
 class Kind(Enum):
-    """What the value of an option is."""
+    """Kind of an option's value."""
 
     CONFIG = CONFIG
-    """A run file, or a shipped one by name."""
+    """Path of a run file, or name of a shipped one."""
     SCENARIO = SCENARIOS
-    """A scenario, or a shipped one by name."""
+    """Path of a scenario file, or name of a shipped one."""
     PATH = 'path'
     NEW_FILE = 'new file'
     TEXT = 'text'
@@ -35,42 +35,42 @@ class Kind(Enum):
     NOT_NEGATIVE = '>= 0'
     FLAG = 'flag'
     NAMES = 'names'
-    """Names with commas between them on the command line."""
+    """Names, separated by commas on the command line."""
     REPEATED = 'repeated'
-    """A name for each time that it stands on the command line."""
+    """One name for each time the option is given on the command line."""
 
 
 _SHIPPED = (Kind.CONFIG, Kind.SCENARIO)
 _NAMES = (Kind.NAMES, Kind.REPEATED)
 _UNSET: Mapping[Kind, tuple[RosValue, str]] = {
     Kind.POSITIVE: (0.0, '0'), Kind.NOT_NEGATIVE: (-1.0, '< 0'), Kind.FLAG: (False, 'false')}
-"""The value of a ROS parameter that is not set, and how help names it; else an empty text."""
+"""Value of a ROS parameter that is not set, and its text in help; other kinds: an empty text."""
 _EMPTY: tuple[RosValue, str] = ('', 'empty')
 
 
 @dataclass(frozen=True, kw_only=True)
 class Option:
-    """One option: how it is named and explained, and where it can be given."""
+    """One option: its name, its help text, and the interfaces that have it."""
 
     kind: Kind
     meaning: str
     """``{config}`` stands for the run file."""
     otherwise: str = ''
-    """What holds where the option is not given."""
+    """Default, as text."""
     unit: str = ''
     metavar: str | None = None
     name: str = ''
-    """On the command line, there with dashes, and of a launch file; '': as the field."""
+    """Name on the command line (there with dashes) and in a launch file; '': that of the field."""
     parameter: str = ''
-    """Name of the ROS parameter; '': as ``name``."""
+    """Name of the ROS parameter; '': ``name``."""
     launch_default: str = ''
-    """'': as the parameter's."""
+    """'': that of the parameter."""
     is_argument: bool = True
     is_parameter: bool = True
     is_launched: bool = False
 
     field: str = ''
-    """Of `Request`."""
+    """Name of the field of `Request`."""
     default: Any = None
     is_required: bool = False
 
@@ -107,7 +107,7 @@ class Option:
         return self.launch_default or str(self.parameter_default).lower()
 
     def of_argument(self, value: Any) -> Any:
-        """Return the value for `Request` of one that the command line has checked."""
+        """Return the value for `Request` of a checked command-line argument."""
         if self.kind in _SHIPPED:
             return None if value is None else find(value, self.kind.value)
         return tuple(value) if self.kind in _NAMES else value
@@ -135,13 +135,13 @@ def _option(kind: Kind, meaning: str, **more: Any) -> Mapping[str, Option]:
 
 @dataclass(frozen=True, kw_only=True)
 class Request:
-    """What a user asks for; a field without an option is for programs only."""
+    """Options of a run; a field without an option can be set by programs only."""
 
     config: Path = field(metadata=_option(
         Kind.CONFIG, 'a run file, or a shipped one by name', metavar='CONFIG',
         parameter='config_file', launch_default='leg.yaml', is_launched=True))
     scenario: Path | None = field(default=None, metadata=_option(
-        Kind.SCENARIO, 'what is commanded: a file, or a shipped one by name', metavar='FILE',
+        Kind.SCENARIO, 'commands over time: a file, or a shipped one by name', metavar='FILE',
         parameter='scenario_file', is_launched=True))
     duration_s: float | None = field(default=None, metadata=_option(
         Kind.POSITIVE, 'simulated time', otherwise='that of the scenario, else until Ctrl-C',
@@ -155,40 +155,40 @@ class Request:
         Kind.COMPRESSION, 'of the chunks of the bag', otherwise='that of {config}, else none',
         is_launched=True))
     split_mb: float | None = field(default=None, metadata=_option(
-        Kind.NOT_NEGATIVE, 'begin another file of the bag after N MB, 0: never',
+        Kind.NOT_NEGATIVE, 'begin a new file of the bag after N MB, 0: never',
         otherwise='that of {config}', metavar='N', is_launched=True))
     real_time_factor: float | None = field(default=None, metadata=_option(
-        Kind.POSITIVE, 'not faster than X times real time', otherwise='as fast as it goes',
+        Kind.POSITIVE, 'not faster than X times real time', otherwise='as fast as possible',
         metavar='X', is_launched=True))
     in_process: bool = field(default=False, metadata=_option(
         Kind.FLAG, 'all nodes in one process: faster, and the same bytes in the bag',
         is_launched=True))
     elsewhere: tuple[str, ...] = field(default=(), metadata=_option(
-        Kind.NAMES, 'actuators that `isa actuators` starts on another host: they are waited for',
-        metavar='NAME[,NAME...]|all', is_parameter=False))
-    """`run_config.ALL` alone: all of them."""
+        Kind.NAMES, 'actuators that `isa actuators` starts on another host; the run waits for '
+        'them', metavar='NAME[,NAME...]|all', is_parameter=False))
+    """(`run_config.ALL`,): all of them."""
     controllers: tuple[str, ...] = field(default=(), metadata=_option(
-        Kind.REPEATED, 'a node of yours that is waited for at every tick', metavar='NAME',
+        Kind.REPEATED, 'a node of yours; the run waits for it at every tick', metavar='NAME',
         name='controller', parameter='controllers'))
-    """Besides those of the run file."""
+    """Added to those of the run file."""
     join_timeout_s: float = field(default=JOIN_TIMEOUT_S, metadata=_option(
-        Kind.POSITIVE, 'how long participants are waited for',
+        Kind.POSITIVE, 'longest wait for participants',
         otherwise=f'{JOIN_TIMEOUT_S:g} s', unit='s', metavar='S', name='join_timeout',
         parameter='join_timeout_s'))
     is_paused: bool = field(default=False, metadata=_option(
         Kind.FLAG, 'wait before tick 0 for /coordinator/step or the end of the pause',
         name='paused', is_launched=True))
     restore: Path | None = field(default=None, metadata=_option(
-        Kind.PATH, 'go on from a saved state', metavar='FILE'))
+        Kind.PATH, 'continue from a saved state', metavar='FILE'))
     save: Path | None = field(default=None, metadata=_option(
-        Kind.NEW_FILE, 'save the state at the end there', metavar='FILE'))
+        Kind.NEW_FILE, 'save the state at the end to a file', metavar='FILE'))
     namespace: str = field(default='', metadata=_option(
         Kind.TEXT, 'of all nodes', is_argument=False, is_parameter=False, is_launched=True))
     is_alone: bool = False
-    """This process does nothing but the run, so that what was loaded need not be collected and,
-    where nobody has had a node, actuators may begin as copies of it."""
+    """Whether this process does nothing but the run: then the loaded objects need no garbage
+    collection and, if the process has had no node yet, actuator processes may be forked."""
     laps: Laps | None = None
-    """Takes the host time of every phase of the ticks."""
+    """Measures the host time of every phase of the ticks."""
 
 
 def _declared() -> tuple[Option, ...]:

@@ -1,4 +1,4 @@
-"""Host time: how fast a run goes and how far it is. Nothing of it reaches a result."""
+"""Host time: pace and progress of a run. Results do not depend on it."""
 
 from collections.abc import Callable
 import time
@@ -7,29 +7,30 @@ from typing import NamedTuple
 from isa_ros.core.timebase import NS_PER_SECOND
 from isa_ros.errors import ConfigError
 
-SLICE_S = 0.1  # longest sleep between two looks at a signal
+SLICE_S = 0.1  # longest sleep between two checks for a signal
 REPORT_PERIOD_S = 0.2
-LARGEST_LAG_S = 0.1     # behind the pace at the end of a run that is not worth a word
-JOIN_TIMEOUT_S = 30.0  # how long participants are waited for before tick 0
+LARGEST_LAG_S = 0.1     # at the end of a run; below this lag no warning is printed
+JOIN_TIMEOUT_S = 30.0  # longest wait for participants before tick 0
 
 STARTING, JOINING, BEFORE_TICKS = 'starting', 'joining', 'between ticks'
-"""Phases of `Laps` that are no part of a tick: until everyone is called, until all are there."""
+"""Phases of `Laps` outside the ticks: until participants are called, until all have joined,
+and the time between two ticks."""
 
 
 class Progress(NamedTuple):
-    """How far a run is."""
+    """Progress of a run."""
 
     t_ns: int
     real_time_factor: float
     """Simulated over elapsed time since the start, or since the last pause."""
     time_left_s: float | None
-    """None where the end is not known."""
+    """None if the end is not known."""
     is_last: bool
 
 
 class Pace:
     """
-    Hold the run back to ``real_time_factor``; None or 0 runs as fast as it can.
+    Limits the speed of a run to ``real_time_factor``; None or 0: as fast as possible.
 
     Raises
     ------
@@ -49,34 +50,34 @@ class Pace:
         self._lag = 0.0
 
     def set_factor(self, real_time_factor: float) -> None:
-        """Keep another pace from the next `start` on; as the constructor."""
+        """Set the factor from the next `start` on; raises as the constructor."""
         if not 0.0 <= real_time_factor < float('inf'):
             raise ConfigError(
                 f'real_time_factor = {real_time_factor:g}, must be finite and >= 0 '
-                '(0: as fast as it can)')
+                '(0: as fast as possible)')
         self.factor = real_time_factor
         self._seconds_per_ns = (
             1.0 / (NS_PER_SECOND * real_time_factor) if real_time_factor else 0.0)
 
     def start(self, t_ns: int = 0) -> None:
-        """Let ``t_ns`` be now."""
+        """Take the current host time as the time of ``t_ns``."""
         self._start = self._now() - t_ns * self._seconds_per_ns
 
     def end(self, t_ns: int) -> None:
-        """Take note of how far behind the run is at its end."""
+        """Measure how far the run is behind at its end."""
         due = self._start + t_ns * self._seconds_per_ns
         self._lag = self._now() - due if self._seconds_per_ns else 0.0
 
     @property
     def shortfall(self) -> str | None:
-        """Return the one line for the user of a run that fell behind, None for one that kept."""
+        """Return the warning of a run that is behind its pace, one line; None if it is not."""
         if self._lag <= LARGEST_LAG_S:
             return None
         return (f'{self._lag:.1f} s of host time behind real_time_factor = {self.factor:g} '
                 'at the end')
 
     def wait(self, t_ns: int, should_stop: Callable[[], bool]) -> None:
-        """Sleep until ``t_ns`` is due; return early when a stop is asked for."""
+        """Sleep until ``t_ns`` is due; return early when a stop is requested."""
         if not self._seconds_per_ns:
             return
         due = self._start + t_ns * self._seconds_per_ns
@@ -85,7 +86,7 @@ class Pace:
 
 
 class Laps:
-    """Host time that each phase of the ticks has taken, for whoever measures it."""
+    """Host time of each phase of the ticks."""
 
     def __init__(self, now: Callable[[], float] = time.perf_counter) -> None:
         self.spent: dict[str, float] = {}
@@ -94,14 +95,14 @@ class Laps:
         self._last = now()
 
     def lap(self, phase: str) -> None:
-        """Charge the time since the last call to ``phase``."""
+        """Add the time since the last call to ``phase``."""
         now = self._now()
         self.spent[phase] = self.spent.get(phase, 0.0) + now - self._last
         self._last = now
 
 
 class ProgressMeter:
-    """Report the progress of a run of ``duration_ns`` (None: open end) now and then."""
+    """Report the progress of a run of ``duration_ns`` (None: open end) periodically."""
 
     def __init__(
             self, duration_ns: int | None, report: Callable[[Progress], None] | None,
@@ -114,7 +115,7 @@ class ProgressMeter:
         self._next = 0.0
 
     def start(self, t_ns: int = 0) -> None:
-        """Let ``t_ns`` be now: the factor counts from there."""
+        """Take the current host time as the time of ``t_ns``; the factor counts from there."""
         self._start_ns = t_ns
         self._start = self._now()
         self._next = self._start + REPORT_PERIOD_S

@@ -1,8 +1,8 @@
 """
-From rows to messages: the one place where what actuators and surroundings show becomes bytes.
+Packing of the rows of actuators and surroundings into serialised messages; done here only.
 
-Every message of a run is prepared once, in one block of memory. At a tick a kernel writes the
-numbers of all rows into it. Recorder and publishers get parts of the block.
+Every message of a run is encoded once, all in one block of memory. At each tick a kernel writes
+the numbers of all rows into it. Recorder and publishers receive parts of the block.
 """
 
 from collections.abc import Callable, Mapping, Sequence
@@ -22,7 +22,7 @@ from numpy.typing import NDArray
 
 Records = NDArray[np.void]
 Messages = Sequence[bytes | None]
-"""Serialised messages of one source in the order of its topics; None: nothing new."""
+"""Serialised messages of one source in the order of its topics; None: no message at this tick."""
 
 _SAMPLE, _SUPPLY = tuple(SAMPLE.names or ()), tuple(SUPPLY_SAMPLE.names or ())
 _APPLIED = tuple(name for name in COMMAND.names or () if name != 'kinds')
@@ -33,34 +33,34 @@ _COORDINATOR = '/coordinator'
 
 
 class Shown(NamedTuple):
-    """The rows that messages are made of; the same memory over a whole run."""
+    """The rows that the messages are packed from; the same memory over a whole run."""
 
     samples: Records
     """`SAMPLE`, (n,)."""
     applied: Records
-    """`COMMAND` that took effect at the tick's start, of no kind for none, (n,)."""
+    """`COMMAND` that took effect at the tick's start, kinds 0 without one, (n,)."""
     supplies: Records
     """`SUPPLY_SAMPLE`, (m,)."""
     body: Records | None
-    """What the body shows, (1,), a record of floats."""
+    """Sample of the body, (1,), a record of floats; None: no body."""
 
 
 BodyMessages = Callable[[Mapping[str, int]], Mapping[tuple[str, str], Prepared]]
-"""Takes the columns of a body's sample by field; returns its messages by (topic, type)."""
+"""Maps the columns of a body's sample, by field, to its messages by (topic, type)."""
 
 
 class Names(NamedTuple):
-    """What the messages of a run call the sources of its rows."""
+    """Names of the sources of the rows, as used in topics and frames."""
 
     actuators: Sequence[tuple[str, bool]]
-    """(name, whether it is rotary) of each."""
+    """(name, is_rotary) of each."""
     supplies: Sequence[tuple[str, bool]] = ()
-    """(name, whether its return pressure is published) of each."""
+    """(name, publishes its return pressure) of each."""
     body: BodyMessages | None = None
 
 
 def float_columns(record: np.dtype[np.void], first: int = 0) -> dict[str, int]:
-    """Return the place of every float of a record by field, ``field[k]`` in an array."""
+    """Return the column of every float of a record by field, ``field[k]`` for an array."""
     columns: dict[str, int] = {}
     for name in record.names or ():
         n = record[name].itemsize // 8
@@ -112,10 +112,10 @@ class _Target(NamedTuple):
 
 class Packer:
     """
-    Prepared messages of some rows.
+    Packs the messages of some rows.
 
-    ``topics`` are all that may come, sorted by name: of every actuator `TOPICS`, of every
-    supply its pressure, those of the body, and with ``is_run`` the clock and the events.
+    ``topics`` are all topics with messages, sorted by name: `TOPICS` of every actuator, the
+    pressure of every supply, those of the body, and with ``is_run`` the clock and the events.
     """
 
     def __init__(self, names: Names, shown: Shown, is_run: bool = True) -> None:
@@ -161,7 +161,7 @@ class Packer:
             {field: places[f'applied {field}'] for field in _APPLIED})
 
     def _bind(self) -> None:
-        """Keep the rows as plain numbers, which the kernel takes ten times as fast."""
+        """Store the rows as views of plain floats, a tenth of the time to pass to the kernel."""
         shown, template = self._shown, self._template
         n, m = len(shown.samples), len(shown.supplies)
         self._samples = shown.samples.view(np.float64).reshape(n, len(_SAMPLE))
@@ -179,9 +179,9 @@ class Packer:
             self, t_ns: int, tick_start_ns: int,
             tuned: Mapping[int, Mapping[str, float]]) -> None:
         """
-        Pack the rows as they are at ``t_ns``, the end of a tick that began at the other time.
+        Pack the rows of ``t_ns``, the end of a tick that began at ``tick_start_ns``.
 
-        ``tuned`` are the parameters that changed at its start, by row.
+        ``tuned`` are the parameters that changed at the tick's start, by row.
         """
         pack(time_word(t_ns), time_word(tick_start_ns), fluid_pressure.ATMOSPHERE,
              self._samples, self._shown.applied, self._supplies, self._body, self._words,
@@ -190,8 +190,8 @@ class Packer:
             row: applied_parameters(self._names.actuators[row][0], values, tick_start_ns)
             for row, values in tuned.items()} if tuned else {}
 
-    def everything(self, events: Sequence[bytes] = ()) -> Packed:
-        """Return all messages of the instant that was packed, in the order of `topics`."""
+    def all_messages(self, events: Sequence[bytes] = ()) -> Packed:
+        """Return all messages of the packed instant, in the order of `topics`."""
         key = (self._kinds != 0).tobytes()
         where = self._layouts.get(key)
         if where is None:
@@ -205,11 +205,11 @@ class Packer:
         return Packed.of(sorted([*packed, *extra], key=lambda message: message[0]))
 
     def _layout(self) -> Layout:
-        """Return the layout of the prepared messages without setpoints that nothing applied."""
-        silent = {f'/{name}/{_SETPOINT}' for (name, _), kinds in zip(
+        """Return the layout of this tick's messages: without setpoints where none was applied."""
+        absent = {f'/{name}/{_SETPOINT}' for (name, _), kinds in zip(
             self._names.actuators, self._kinds) if not kinds}
         present = [(self._index[name], place) for name, place in self._place.items()
-                   if name not in silent]
+                   if name not in absent]
         present.sort()
         places = [place for _, place in present]
         starts, sizes = self._template.starts, self._template.sizes

@@ -1,4 +1,4 @@
-"""Bring-up: from the files of a run to its bag, in processes or in one."""
+"""Sessions: read and check the files of a run, then run it and record its bag."""
 
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, field
@@ -32,16 +32,16 @@ Report = Callable[[Progress], None]
 
 @dataclass(frozen=True)
 class Session:
-    """One run, read and checked, before anything is started."""
+    """One run, read and checked; nothing is started yet."""
 
     request: Request
     scenario: Scenario
     out: Path
     pace: Pace
     state: RunState | None = None
-    """Where the run goes on from; None: it begins at t = 0."""
+    """State the run continues from; None: it begins at t = 0."""
     bags: list[Path] = field(default_factory=list)
-    """The bags of the run so far: `out`, and one more for each reset."""
+    """Bags of the run so far: `out`, and one more for each reset."""
 
     @property
     def run(self) -> RunConfig:
@@ -56,9 +56,9 @@ def prepare(request: Request) -> Session:
     Raises
     ------
     ConfigError
-        A file or an option that cannot be run.
+        A file or an option is invalid.
     BagError
-        The output directory exists or cannot be made.
+        The output directory already exists or cannot be created.
 
     """
     run = load_run(request.config).with_controllers(request.controllers).stored(
@@ -72,23 +72,23 @@ def prepare(request: Request) -> Session:
         scenario = scenario.lasting(request.duration_s)
     if request.in_process and request.elsewhere:
         raise ConfigError(
-            f'--elsewhere {",".join(request.elsewhere)} with --in-process: leave one out, this '
-            'process would have all actuators')
+            f'--elsewhere {",".join(request.elsewhere)} cannot be used with --in-process, which '
+            'runs all actuators in this process; leave one out')
     run.names_here(request.elsewhere)
     name = run.name if request.scenario is None else f'{run.name}_{scenario.name}'
     out = request.out or _unused(RUNS / name)
     _check_output(out, request.overwrite)
     save = request.save
     if save is not None and save.exists() and not (request.overwrite and save.is_file()):
-        raise ConfigError(f'--save {save}: exists, must not; --overwrite replaces a file')
+        raise ConfigError(f'--save {save}: already exists; --overwrite replaces a file')
     state = None
     if request.restore is not None:
         state = read_state(request.restore, scenario.run.digest)
         n_ticks, seconds = scenario.n_ticks, scenario.run.step_ns / NS_PER_SECOND
         if n_ticks is not None and state.tick >= n_ticks:
             raise ConfigError(
-                f'--restore {request.restore}: of t = {state.tick * seconds:g} s, must be before '
-                f'the end, {n_ticks * seconds:g} s')
+                f'--restore {request.restore}: t = {state.tick * seconds:g} s, must be before '
+                f'the end of the run, {n_ticks * seconds:g} s')
     return Session(request, scenario, out, Pace(request.real_time_factor), state)
 
 
@@ -106,12 +106,12 @@ def _check_output(out: Path, overwrite: bool) -> None:
     if out.exists():
         if not out.is_dir() or (any(out.iterdir()) and not (out / FILE_NAME).is_file()):
             raise BagError(
-                f'{out} exists and holds no bag ({FILE_NAME}), so it is not overwritten')
+                f'{out} exists and is not a bag (no {FILE_NAME}), so it is not overwritten')
         if not overwrite:
-            raise BagError(f'{out} exists, must not; --overwrite replaces the bag in it')
+            raise BagError(f'{out} already exists; --overwrite replaces the bag in it')
     parent = next(path for path in [out, *out.absolute().parents] if path.exists())
     if not parent.is_dir() or not os.access(parent, os.W_OK | os.X_OK):
-        raise BagError(f'{out}: cannot be made, {parent} is not writable')
+        raise BagError(f'{out}: cannot be created, {parent} is not writable')
 
 
 def record(
@@ -121,8 +121,8 @@ def record(
     """
     Join the participants of ``transport``, run, and record every sample.
 
-    ``outlets`` makes the publishers of the topics of supplies and body. A reset begins anew,
-    with a bag of its own beside the first.
+    ``outlets`` creates the publishers for the topics of supplies and body. A reset starts again
+    at t = 0, with another bag beside the first.
     """
     beginning, state, out = surroundings.snapshot(), session.state, session.out
     rows = Rows(len(session.run.actuators), surroundings)
@@ -143,7 +143,7 @@ def _record_one(
         session: Session, out: Path, state: RunState | None, transport: Transport,
         surroundings: Surroundings, rows: Rows, outlets: Outlets, report: Report | None,
         should_stop: Callable[[], bool], requests: Requests | None) -> Coordinator:
-    """Run once, to the end or to a reset, and return where it came to."""
+    """Run once, to the end or to a reset, and return the coordinator."""
     run, n_ticks = session.run, session.scenario.n_ticks
     plan = Plan(
         step_ns=run.step_ns, rows=rows, n_ticks=n_ticks,
@@ -154,7 +154,7 @@ def _record_one(
     transport.join(rows)
     laps.lap(JOINING)
     thinning = Thinning(run.record, topics_of(run, rows.shown))
-    # The first bag alone may replace one: a reset takes a directory that does not exist.
+    # Only the first bag may replace one: a reset uses a directory that does not exist.
     overwrite = session.request.overwrite and not session.bags
     with BagWriter(out, thinning.topics, provenance_of(session.scenario, state), overwrite,
                    run.record.storage) as bag:
@@ -170,7 +170,7 @@ def _record_one(
 
 def write_state(session: Session, coordinator: Coordinator, path: Path) -> None:
     """
-    Save the state of a run between two ticks to a file.
+    Write the state of a run between two ticks to a file.
 
     Raises
     ------

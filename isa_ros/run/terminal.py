@@ -1,4 +1,4 @@
-"""Progress of a run on a terminal, and only there."""
+"""Progress of a run on a terminal."""
 
 from collections.abc import Callable
 import sys
@@ -10,7 +10,7 @@ from isa_ros.text.progress import terminal_line
 
 
 def terminal_report(stream: TextIO = sys.stderr) -> Callable[[Progress], None] | None:
-    """Return what writes progress to ``stream``; None where it is no terminal."""
+    """Return a function that writes progress to ``stream``; None if it is not a terminal."""
     line = terminal_line(stream)
     if line is None:
         return None

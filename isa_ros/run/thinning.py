@@ -1,4 +1,4 @@
-"""The part of a run's samples that its configuration wants recorded."""
+"""Selection of the topics and samples to record, by the configuration of a run."""
 
 from collections.abc import Sequence
 
@@ -9,7 +9,7 @@ from isa_ros.run.exchange import Recorder
 
 
 class Thinning:
-    """Which topics are recorded, and when; ``topics`` are the recorded ones, in order."""
+    """Selects topics and their periods; ``topics`` are the recorded ones, in order."""
 
     def __init__(self, record: RecordConfig, topics: Sequence[Topic]) -> None:
         self._periods = [record.period(topic.name) for topic in topics]
@@ -19,14 +19,14 @@ class Thinning:
         self.topics = [topics[k] for k in kept]
 
     def recorder(self, recorder: Recorder) -> Recorder:
-        """Return what to hand every message to, so that ``recorder`` gets the kept ones."""
+        """Return a recorder that passes only the selected messages to ``recorder``."""
         if not self._is_needed:
             return recorder
         return _Thinned(recorder, self._periods, self._places)
 
 
 class _Thinned:
-    """Hands on what is kept, by its place among the kept topics."""
+    """Passes on the selected messages, with their indices among the recorded topics."""
 
     def __init__(
             self, recorder: Recorder, periods: Sequence[int], places: dict[int, int]) -> None:
@@ -36,7 +36,7 @@ class _Thinned:
 
     def write_tick(
             self, t_ns: int, sequence: int, messages: Sequence[tuple[int, bytes]]) -> None:
-        """Hand on the part of a tick that is kept, which may be nothing."""
+        """Pass on the selected messages of a tick, possibly none."""
         packed = Packed.of(messages)
         kept = [(place, self._places[k]) for place, k in enumerate(packed.layout.topics.tolist())
                 if self._periods[k] and sequence % self._periods[k] == 0]

@@ -1,4 +1,4 @@
-"""The kernels of a run, compiled or loaded before anything waits for them."""
+"""Compile the kernels of a run, or load them from the cache, before it starts."""
 
 from contextlib import suppress
 
@@ -15,7 +15,7 @@ def warmed_up(run: RunConfig) -> list[SmartActuator]:
     """
     Return a copy of every actuator, after one tick of a copy of the whole run.
 
-    Where that diverges the run itself will say so, and record what was before.
+    If the copy diverges, so will the run, which reports it and records the ticks before.
     """
     simulation = Simulation(idle(run))
     with suppress(SimulationDiverged):

@@ -1,11 +1,11 @@
 """
-The private wire of the lockstep: one step to all, one acknowledgement from each.
+Private wire of the lockstep: per tick, one step message to all and one answer from each.
 
-Both travel as std_msgs/UInt8MultiArray whose bytes are made here, without rclpy's encoder:
-the 16 bytes in front of the array are fixed but for its length. Every message carries the
-run's id, so that two coordinators in one domain can tell their messages apart. Little
-endian, unpadded; the layout is an implementation detail of one version of this package,
-and ``WIRE_VERSION`` is refused where it differs.
+Both are sent as std_msgs/UInt8MultiArray whose bytes are made here, without rclpy's encoder:
+the 16 bytes before the array are fixed except for its length. Every message has the run's id,
+so that messages of two coordinators in one domain are not mixed up. Little endian, unpadded;
+the layout is an implementation detail of one version of this package, and a message with
+another ``WIRE_VERSION`` is refused.
 """
 
 from collections.abc import Mapping, Sequence
@@ -30,7 +30,7 @@ _ENCAPSULATION = 0x00000100  # bytes 00 01 00 00: little endian CDR, no options
 _PREFIX = struct.Struct('<IIII')  # encapsulation, no dimensions, data_offset, array length
 _STEP = struct.Struct('<IIIIHHIQq')  # prefix; version, kind, rows, run id, tick
 _ACKNOWLEDGEMENT = struct.Struct('<IIIIHHIIIQq')
-"""Prefix; version, kind, index, parts, whether it is repeated, run id, tick."""
+"""Prefix; version, kind, index, number of parts, is_repeated, run id, tick."""
 
 _NUMBER = struct.Struct('<q')
 _ABSENT = 0xFFFFFFFF  # length of a part that is None
@@ -42,51 +42,51 @@ _COUNT = 4  # bytes of a length
 
 
 class StepKind(IntEnum):
-    """What the coordinator wants."""
+    """Kinds of messages from the coordinator."""
 
     HELLO = 1
-    """Answer if your name is listed, and start over at t = 0; ``tick`` counts the hellos."""
+    """Call of the listed participants: answer and start at t = 0; ``tick`` counts the hellos."""
     TICK = 2
     END = 3
-    """The run is over; the next hello may begin another."""
+    """The run has ended; the next hello may begin another."""
     BEGIN = 4
-    """Publish the first messages: everyone is ready and `/clock` is out. Said again while the
-    run goes on without ticks on the topic. No answer."""
+    """Publish the first messages: all participants are ready and `/clock` is published. Sent again
+    while the run continues without ticks on the topic. Not answered."""
     SAVE = 5
-    """Answer with the whole state before the next tick; ``tick`` is a number below 0, new at
-    each request, so that no answer to another one is taken for this one's."""
+    """Answer with the complete state before the next tick; ``tick`` is a number below 0, different
+    for each request, so that answers can be assigned to their request."""
     RESTORE = 6
-    """Continue from a state before the tick in the body; ``tick`` as in a save."""
+    """Continue from the state before the tick given in the body; ``tick`` as in a save."""
 
 
 class AnswerKind(IntEnum):
-    """What a participant answers."""
+    """Kinds of answers of a participant."""
 
     READY = 1
-    """To a hello: identity, digest, then the parts of its role at t = 0."""
+    """To a hello: identity, digest, then the parts of the participant's role at t = 0."""
     DONE = 2
-    """To a tick: the parts of its role at the tick's end."""
+    """To a tick: the parts of the participant's role at the tick's end."""
     DIVERGED = 3
-    """To a tick: t_ns and value, then the field that is no longer finite."""
+    """To a tick: t_ns and value, then the name of the field that is no longer finite."""
     BUSY = 4
-    """To a hello: this participant is in another run."""
+    """To a hello: this participant takes part in another run."""
     REFUSED = 5
-    """To a tick, a save or a restore: the reason why it cannot be done."""
+    """To a tick, a save or a restore: the reason of its failure."""
     UNBOUND = 6
-    """To the first sign of a run that never called this participant: its name."""
+    """To the first message of a run that has not called this participant: its name."""
     SAVED = 7
-    """To a save: the whole state."""
+    """To a save: the complete state."""
     RESTORED = 8
-    """To a restore: the parts of its role at that instant."""
+    """To a restore: the parts of the participant's role at that instant."""
 
 
-# Calling an enumeration costs a microsecond in a tick; a dictionary a twentieth.
+# Calling an enumeration takes about a microsecond per tick; a dictionary a twentieth of it.
 _STEP_KINDS = {int(kind): kind for kind in StepKind}
 _ANSWER_KINDS = {int(kind): kind for kind in AnswerKind}
 
 
 class Cast(NamedTuple):
-    """Who takes part in a run, and what controllers are shown besides the actuators."""
+    """The participants of a run, and the supplies and body whose samples controllers receive."""
 
     names: Sequence[str]
     """The participants in order: the actuators first, then the controllers."""
@@ -95,7 +95,7 @@ class Cast(NamedTuple):
     """Record type of the body's sample; None: no body."""
 
     def encode(self) -> bytes:
-        """Return what `decode` reads."""
+        """Return the bytes that `decode` reads."""
         body = None if self.body is None else [
             [name, self.body[name].base.str, self.body[name].shape]
             for name in self.body.names or ()]
@@ -103,7 +103,7 @@ class Cast(NamedTuple):
 
     @classmethod
     def decode(cls, data: bytes) -> 'Cast':
-        """Return the cast of its bytes."""
+        """Return the cast from its bytes."""
         names, supplies, body = json.loads(data)
         record = None if body is None else np.dtype(
             [(name, format_, tuple(shape)) for name, format_, shape in body])
@@ -124,7 +124,7 @@ class Step(NamedTuple):
         return Cast.decode(self.body[_NUMBER.size + self.rows * START.itemsize:])
 
     def step_ns(self) -> int:
-        """Return the length of the ticks that a hello announces."""
+        """Return the length of a tick from a hello."""
         return int(_NUMBER.unpack_from(self.body)[0])
 
     def start(self, index: int) -> np.void:
@@ -140,7 +140,7 @@ class Step(NamedTuple):
         return self._row(COMMAND, self.rows * LOAD_PORT.itemsize + index * COMMAND.itemsize)
 
     def shown(self, cast: Cast) -> Shown:
-        """Return what controllers are shown of the state before a tick; nothing is applied."""
+        """Return the rows that controllers receive: the state before a tick, nothing applied."""
         at = self.rows * (LOAD_PORT.itemsize + COMMAND.itemsize)
         samples = np.frombuffer(self.body, SAMPLE, self.rows, at)
         at += samples.nbytes
@@ -154,11 +154,11 @@ class Step(NamedTuple):
         return row
 
     def restored_tick(self) -> int:
-        """Return the tick before which a restore puts everyone."""
+        """Return the tick before which a restored run continues."""
         return int(_NUMBER.unpack_from(self.body)[0])
 
     def snapshot(self, index: int) -> bytes:
-        """Return the state from which one participant goes on."""
+        """Return the state from which one participant continues."""
         own = _split(self.body, self.rows, _NUMBER.size)[index]
         assert own is not None
         return own
@@ -171,10 +171,10 @@ class Answer(NamedTuple):
     run_id: int
     tick: int
     participant: int
-    """Its place in the hello's names."""
+    """Index into the names of the hello."""
     parts: list[bytes | None]
     is_repeated: bool
-    """To a step that had been answered before."""
+    """Whether the step had been answered before."""
 
 
 def encode_hello(
@@ -186,7 +186,7 @@ def encode_hello(
 
 
 def encode_tick(run_id: int, tick: int, rows: Rows, has_controllers: bool) -> bytes:
-    """Return the bytes of one tick: ports and commands, for controllers also what is shown."""
+    """Return the bytes of one tick: ports and commands, for controllers also the samples."""
     body = rows.ports.tobytes() + rows.commands.tobytes()
     if has_controllers:
         body += rows.samples.tobytes() + rows.supplies.tobytes()
@@ -195,17 +195,17 @@ def encode_tick(run_id: int, tick: int, rows: Rows, has_controllers: bool) -> by
 
 
 def encode_begin(run_id: int) -> bytes:
-    """Return the bytes that let the first messages be published."""
+    """Return the bytes of a begin; see `StepKind.BEGIN`."""
     return _step(StepKind.BEGIN, run_id, 0, 0, b'')
 
 
 def encode_save(run_id: int, number: int) -> bytes:
-    """Return the bytes that ask for the state before the next tick; see `StepKind.SAVE`."""
+    """Return the bytes that request the state before the next tick; see `StepKind.SAVE`."""
     return _step(StepKind.SAVE, run_id, number, 0, b'')
 
 
 def encode_restore(run_id: int, number: int, tick: int, snapshots: Sequence[bytes]) -> bytes:
-    """Return the bytes that put every participant before ``tick``; see `StepKind.SAVE`."""
+    """Return the bytes that restore every participant before ``tick``; see `StepKind.RESTORE`."""
     body = _NUMBER.pack(tick) + _join(snapshots)
     return _step(StepKind.RESTORE, run_id, number, len(snapshots), body)
 
@@ -223,12 +223,12 @@ def _step(kind: StepKind, run_id: int, tick: int, rows: int, body: bytes) -> byt
 
 def decode_step(data: bytes) -> Step:
     """
-    Return the message of a coordinator.
+    Return the message of a coordinator from its bytes.
 
     Raises
     ------
     RunError
-        It is of another version of this package.
+        The message is from another version of this package.
 
     """
     _, _, _, size, version, kind, rows, run_id, tick = _STEP.unpack_from(data)
@@ -248,12 +248,12 @@ def encode_answer(
 
 def decode_answer(data: bytes) -> Answer:
     """
-    Return the message of a participant.
+    Return the message of a participant from its bytes.
 
     Raises
     ------
     RunError
-        It is of another version of this package.
+        The message is from another version of this package.
 
     """
     _, _, _, _, version, kind, index, n, is_repeated, run_id, tick = (
@@ -289,7 +289,7 @@ def take_actuator_parts(parts: Sequence[bytes | None], row: int, rows: Rows) -> 
 
 
 def _join(parts: Sequence[bytes | None]) -> bytes:
-    """Return the lengths of all parts, then those that are there."""
+    """Return the lengths of all parts, followed by the parts that are not None."""
     lengths = [_ABSENT if part is None else len(part) for part in parts]
     return b''.join((_counts(len(parts)).pack(*lengths), *filter(None, parts)))
 
@@ -315,5 +315,5 @@ def _counts(n: int) -> struct.Struct:
 def _check_version(version: int) -> None:
     if version != WIRE_VERSION:
         raise RunError(
-            f'lockstep wire version {version} met, this isa_ros speaks {WIRE_VERSION}: '
-            'coordinator and participants must be of one installation')
+            f'lockstep wire version = {version}, must be {WIRE_VERSION}: coordinator and '
+            'participants must be of the same version of isa_ros')

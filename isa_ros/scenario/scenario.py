@@ -61,7 +61,7 @@ class Scenario:
         """
         return replace(self, n_ticks=_duration(duration, self.run.step_ns, 'duration'))
 
-    def speaks_at(self, tick: int) -> bool:
+    def has_commands_at(self, tick: int) -> bool:
         """Return whether a command of the scenario takes effect at a tick."""
         return tick in self._events or tick >= self._first_motion
 

@@ -30,6 +30,6 @@ def save(result: Result, directory: Path, overwrite: bool) -> Path:
             shown.applied['kinds'] = 0
             if tick in log.applied:
                 shown.applied[:] = log.applied[tick]
-            narrator.take(tick, {})
+            narrator.publish_rows(tick, {})
             narrator.record()
     return directory

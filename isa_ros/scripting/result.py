@@ -145,7 +145,7 @@ class Result(Mapping[str, NDArray[np.float64]]):
         Raises
         ------
         BagError
-            The directory exists and is not to be overwritten, or cannot be made.
+            The directory exists and is not to be overwritten, or cannot be created.
         RunError
             The bag cannot be written.
 

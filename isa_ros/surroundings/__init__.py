@@ -1,1 +1,1 @@
-"""Surroundings that the actuators of a run share: supplies, and the body they move."""
+"""Surroundings of the actuators of a run: the supplies, and the body that they move."""

@@ -1,4 +1,4 @@
-"""The body that actuators move together, as a run knows it: a leg, a robot, another simulator."""
+"""Interface of the body that several actuators move: a leg, a robot, another simulator."""
 
 from collections.abc import Mapping
 from typing import Protocol
@@ -7,29 +7,29 @@ import numpy as np
 from numpy.typing import NDArray
 
 Records = NDArray[np.void]
-"""Rows of a record type, one per actuator of the run where nothing else is said."""
+"""Rows of a record type, by default one per actuator of the run."""
 
 
 class Body(Protocol):
     """
-    A body that several actuators move, on the body's side of the load port (equation L1).
+    A body that several actuators move: the other side of the load port (equation L1).
 
-    One exchange a tick: the body fills the ports of its actuators, they advance by the tick,
-    and the body advances over the same interval under their mean forces. Rows of actuators that
-    do not move the body are left as they are.
+    One exchange per tick: the body fills the ports of its actuators, they advance by the tick,
+    and the body advances over the same interval with their mean forces. Rows of actuators that
+    do not move the body are left unchanged.
     """
 
     @property
     def rows(self) -> NDArray[np.int64]:
-        """Return the rows of the actuators that move it, (k,)."""
+        """Return the rows of the actuators that move the body, (k,)."""
         ...
 
     @property
     def sample(self) -> Records:
         """
-        Return what the body shows at the end of the last tick, (1,), a record of floats.
+        Return the sample at the end of the last tick, (1,), a record of floats.
 
-        The record type is the body's own; the memory stays the same and is overwritten.
+        Each kind of body has its own record type; the same memory is overwritten at every tick.
         """
         ...
 
@@ -42,18 +42,18 @@ class Body(Protocol):
         """
         Fill position and force of its actuators' `START` rows, (n_actuators,).
 
-        The position is that of the load's side of the force sensor, m or rad; the force is what
-        the actuator carries at rest, N or Nm.
+        The position is that of the load's side of the force sensor, m or rad; the force is that
+        of the actuator at rest, N or Nm.
         """
         ...
 
     def ports(self, ports: Records) -> None:
-        """Fill its actuators' `LOAD_PORT` rows for the next tick but for the pressures."""
+        """Fill its actuators' `LOAD_PORT` rows for the next tick, except the pressures."""
         ...
 
     def advance(self, replies: Records) -> None:
         """
-        Advance by one tick under the `LOAD_REPLY` rows of all actuators, (n_actuators,).
+        Advance by one tick with the `LOAD_REPLY` rows of all actuators, (n_actuators,).
 
         Raises
         ------
@@ -64,7 +64,7 @@ class Body(Protocol):
         ...
 
     def snapshot(self) -> bytes:
-        """Return the whole state; `restore` continues from it byte for byte."""
+        """Return the complete state; `restore` continues from it byte for byte."""
         ...
 
     def restore(self, snapshot: bytes) -> None:

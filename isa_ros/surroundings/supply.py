@@ -1,8 +1,8 @@
 """
-A hydraulic supply and the actuators it feeds: pump side, and the line back to its tank.
+A hydraulic supply: the pump side, and the return line to its tank.
 
-Actuators see both pressures of the tick's start over the whole tick and report the volumes that
-they drew and gave back; the supply then advances over the same interval. Pressures are gauge,
+Actuators use both pressures of the tick's start over the whole tick and report the volumes that
+they drew and returned; the supply then advances over the same interval. Pressures are gauge,
 flows leave the supply and enter the return line when positive. Equations C7-C9.
 
 Neglected: length and resistance of the pressure line, heat, air in the tank.
@@ -17,15 +17,15 @@ from isa_ros.core.units import LPM, MPA
 from isa_ros.errors import ParameterError
 import numpy as np
 
-ATMOSPHERE = 101325.0        # Pa, between gauge and the gas law's absolute pressure
-SUPPLY_STEP = 1e-4           # s, of the supply's own RK4
-_SLOWEST_TICKS = 10.0        # ticks a time constant must last (coupling.md)
+ATMOSPHERE = 101325.0        # Pa, absolute pressure of the gas law minus gauge pressure
+SUPPLY_STEP = 1e-4           # s, step of the supply's RK4
+_SLOWEST_TICKS = 10.0        # shortest time constant in ticks (coupling.md)
 _LITRE = 1e-3                # m3
 
 
 @dataclass(frozen=True, kw_only=True)
 class HeldReturn(Parameters):
-    """A return line that stays at the pressure of the tank."""
+    """A return line at the constant pressure of the tank."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -43,7 +43,7 @@ ReturnLine = HeldReturn | VolumeReturn
 
 @dataclass(frozen=True, kw_only=True)
 class ConstantSupply(Parameters):
-    """An ideal supply."""
+    """An ideal supply: constant pressure at any flow."""
 
     pressure_mpa: float = parameter('gauge supply pressure', 'MPa', gt=0.0, le=70.0)
     return_pressure_mpa: float = parameter('gauge return pressure', 'MPa', ge=0.0, le=5.0)
@@ -77,16 +77,16 @@ SUPPLY = np.dtype([
     ('p_set', 'f8'), ('p_t', 'f8'), ('v_0', 'f8'), ('p_0', 'f8'), ('n', 'f8'), ('c_line', 'f8'),
     ('q_max', 'f8'), ('lag', 'f8'), ('band', 'f8'), ('p_relief', 'f8'), ('k_relief', 'f8')])
 RETURN_LINE = np.dtype([
-    ('p_t', 'f8'),              # of the tank, Pa
+    ('p_t', 'f8'),              # pressure of the tank, Pa
     ('c', 'f8'),                # V/beta, m3/Pa
-    ('g', 'f8'),                # to the tank, m3/s/Pa
+    ('g', 'f8'),                # conductance to the tank, m3/s/Pa
 ])
 SUPPLY_SAMPLE = np.dtype([
     ('pressure', '<f8'),            # Pa gauge
     ('return_pressure', '<f8'),     # Pa gauge
-    ('pump_flow', '<f8'),           # m3/s; 0 of an ideal supply
-    ('drawn', '<f8'),               # by the actuators since t = 0, m3
-    ('returned', '<f8'),            # by the actuators since t = 0, m3
+    ('pump_flow', '<f8'),           # m3/s; 0 for an ideal supply
+    ('drawn', '<f8'),               # volume drawn by the actuators since t = 0, m3
+    ('returned', '<f8'),            # volume returned by the actuators since t = 0, m3
 ])
 """State of one supply, which is also its sample at the end of a tick."""
 SUPPLY_UNITS = {
@@ -123,7 +123,7 @@ def capacitance(pressure, supply):
     """
     Return V_0/(n P) (p_0/P)^(1/n) + V_line/beta  (C7), in m3/Pa; P absolute.
 
-    Below precharge the accumulator is empty and the line alone is left.
+    Below precharge the accumulator is empty and only the line remains.
     """
     absolute = pressure + ATMOSPHERE
     if absolute <= supply.p_0:
@@ -167,7 +167,7 @@ def return_rate(pressure, returned, line):
 
 @kernel
 def return_advance(steps, returned, lines, states):
-    """Advance the return line of ``states[0]`` with the mean flow ``returned``; RK4 as above."""
+    """Advance the return line of ``states[0]`` with the mean flow ``returned``, by RK4."""
     h, line, state = SUPPLY_STEP, lines[0], states[0]
     for _ in range(steps):
         p = state.return_pressure
@@ -183,7 +183,7 @@ class Supply:
     One supply over a run.
 
     ``flow_slope`` is the sum of the valves' largest dQ/dP in m3/s/Pa; ``state`` is the supply's
-    `SUPPLY_SAMPLE` row, shape (1,), None: a row of its own. ``name`` stands in errors.
+    `SUPPLY_SAMPLE` row, shape (1,); None: a new row is made. ``name`` is used in errors.
 
     Raises
     ------
@@ -229,21 +229,21 @@ class Supply:
         constant = float(line['c'] / line['g'])
         if constant < SUPPLY_STEP:
             raise ParameterError(
-                f'{self._name}: time constant of the return line = {constant * 1e3:.3g} ms, must '
-                f'be >= {SUPPLY_STEP * 1e3:g} ms; reduce return_line.tank_lpm_per_mpa')
+                f'{self._name}: time constant of the return line = {constant * 1e3:.3g} ms, '
+                f'must be >= {SUPPLY_STEP * 1e3:g} ms; reduce return_line.tank_lpm_per_mpa')
 
     @property
     def pressure(self) -> float:
-        """Return the gauge supply pressure in Pa, which holds for the next tick."""
+        """Return the gauge supply pressure in Pa, constant over the next tick."""
         return float(self.state['pressure'][0])
 
     @property
     def return_pressure(self) -> float:
-        """Return the gauge return pressure in Pa, which holds for the next tick."""
+        """Return the gauge return pressure in Pa, constant over the next tick."""
         return float(self.state['return_pressure'][0])
 
     def advance(self, drawn: float, returned: float = 0.0) -> None:
-        """Advance one tick in which the actuators drew and gave back these volumes (m3)."""
+        """Advance one tick in which the actuators drew and returned these volumes (m3)."""
         self.state['drawn'] += drawn
         self.state['returned'] += returned
         if self._record is not None:
@@ -253,5 +253,5 @@ class Supply:
 
     @property
     def is_constant(self) -> bool:
-        """Return whether both pressures stay as they are at t = 0."""
+        """Return whether both pressures are constant over time."""
         return self._record is None and self._line is None

@@ -1,8 +1,8 @@
 """
-Everything outside the actuators of a run: the supplies that feed them and the body they move.
+Surroundings of the actuators of a run: the supplies that feed them and the body they move.
 
-The surroundings' side of the load port (equation L1). They know neither messages nor the
-configuration: `isa_ros.config.assembly` makes them from a run.
+They are the other side of the load port (equation L1) and independent of messages and of the
+configuration; `isa_ros.config.assembly` makes them from a run.
 """
 
 from collections.abc import Sequence
@@ -15,24 +15,24 @@ import numpy as np
 
 
 class Feed(NamedTuple):
-    """One supply, and what it is connected to."""
+    """One supply and the actuators it feeds."""
 
     name: str
-    """Of the supply, by which controllers and errors know it."""
+    """Name of the supply for controllers and in errors."""
     sheet: SupplySheet
     rows: Sequence[int]
-    """Rows of the actuators that it feeds."""
+    """Rows of the fed actuators."""
     flow_slope: float
     """Sum of their valves' largest dQ/dP, m3/s/Pa."""
 
 
 class Surroundings:
     """
-    Supplies and body over a run; a run without a body has actuators on loads of their own.
+    Supplies and body over a run; in a run without a body every actuator has its own load.
 
-    ``starts`` are `START` rows, (n_actuators,), with position and force at t = 0 of those
-    actuators that do not move the body; ``sensor_stiffness`` of all of them, N/m or Nm/rad,
-    (n_actuators,).
+    ``starts`` are `START` rows, (n_actuators,), with position and force at t = 0 of the
+    actuators that do not move the body; ``sensor_stiffness`` is that of all actuators, N/m or
+    Nm/rad, (n_actuators,).
     """
 
     def __init__(
@@ -53,8 +53,8 @@ class Surroundings:
         """
         Return the `START` of every actuator, shape (n_actuators,).
 
-        An actuator that moves the body carries it: its sensor is strained by the force it
-        holds, so the piston or rotor stands beside the load by force over stiffness (S1).
+        An actuator that moves the body carries it: its force deflects the sensor, so the
+        position of piston or rotor differs from the load's by force over stiffness (S1).
         """
         starts = self._rest.copy()
         self._fill_pressures(starts)
@@ -77,7 +77,7 @@ class Surroundings:
 
     def advance(self, replies: Records) -> None:
         """
-        Advance body and supplies by one tick under the `LOAD_REPLY` of every actuator.
+        Advance body and supplies by one tick with the `LOAD_REPLY` of every actuator.
 
         Raises
         ------
@@ -92,7 +92,7 @@ class Surroundings:
             supply.advance(_sum(drawn, feed.rows), _sum(returned, feed.rows))
 
     def snapshot(self) -> bytes:
-        """Return the whole state; `restore` continues from it byte for byte."""
+        """Return the complete state; `restore` continues from it byte for byte."""
         return self.supplies.tobytes() + (b'' if self.body is None else self.body.snapshot())
 
     def restore(self, snapshot: bytes) -> None:
@@ -102,13 +102,13 @@ class Surroundings:
         Raises
         ------
         ConfigError
-            The bytes are not such a snapshot.
+            The bytes are not a snapshot of these surroundings.
 
         """
         expected = len(self.snapshot())
         if len(snapshot) != expected:
             raise ConfigError(
-                f'saved state of the surroundings: {len(snapshot)} bytes, must be {expected}')
+                f'saved state of the surroundings has {len(snapshot)} bytes, must have {expected}')
         supplies_end = self.supplies.nbytes
         self.supplies[:] = np.frombuffer(snapshot[:supplies_end], SUPPLY_SAMPLE)
         if self.body is not None:
@@ -116,7 +116,7 @@ class Surroundings:
 
 
 def _sum(values: Sequence[float], rows: Sequence[int]) -> float:
-    """Return the sum in the order of the rows: the `sum` of Python 3.12 rounds otherwise."""
+    """Return the sum in the order of the rows; `sum` of Python 3.12 rounds differently."""
     total = 0.0
     for row in rows:
         total += values[row]

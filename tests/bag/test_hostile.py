@@ -228,7 +228,7 @@ def test_hostile_state_ends_in_one_line(tmp_path, refused, state, expected):
     ({'tick': -1}, 'must be an integer >= 0'),
     ({'tick': 2}, 'begins before tick 2'),
     ({'participants': []}, 'has 0 participants, the run has 1'),
-    ({'participants': ['00']}, 'rotor: saved state of 1 bytes, must be'),
+    ({'participants': ['00']}, 'rotor: saved state has 1 bytes, must have'),
     ({'load': ''}, 'saved state of the load: 0 bytes, must be'),
     ({'requests': '00'}, 'has 1 bytes of requests, must have 48'),
 ])

@@ -240,7 +240,7 @@ def test_existing_directory_is_refused_and_left_alone(tmp_path):
     directory = tmp_path / 'rig'
     path = record(directory, 3)
     before = path.read_bytes()
-    with pytest.raises(BagError, match='rig exists, must not'):
+    with pytest.raises(BagError, match='rig already exists'):
         BagWriter(directory, TOPICS, PROVENANCE)
     assert path.read_bytes() == before
 
@@ -258,18 +258,18 @@ def test_overwriting_removes_the_bag_and_nothing_else(tmp_path):
 
 def test_directory_without_a_bag_is_not_overwritten(tmp_path):
     (tmp_path / 'thesis.mcap').write_bytes(b'data')
-    with pytest.raises(BagError, match='holds no bag'):
+    with pytest.raises(BagError, match='is not a bag'):
         BagWriter(tmp_path, TOPICS, PROVENANCE, overwrite=True)
     assert (tmp_path / 'thesis.mcap').read_bytes() == b'data'
 
 
 def test_directory_that_cannot_be_made_is_refused_by_name(tmp_path):
     (tmp_path / 'file').write_bytes(b'')
-    with pytest.raises(BagError, match='file/rig: cannot be made, Not a directory'):
+    with pytest.raises(BagError, match='file/rig: cannot be created, Not a directory'):
         BagWriter(tmp_path / 'file' / 'rig', TOPICS, PROVENANCE)
 
 
 def test_topics_out_of_order_are_refused(tmp_path):
-    with pytest.raises(BagError, match='topics must be sorted by name, each once: /hip/valve'):
+    with pytest.raises(BagError, match='topics = /hip/valve, '):
         BagWriter(tmp_path / 'rig', TOPICS[::-1], PROVENANCE)
     assert not (tmp_path / 'rig').exists()

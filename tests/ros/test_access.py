@@ -101,5 +101,5 @@ def test_security_that_is_not_there_is_refused(domain, tmp_path, monkeypatch):
     monkeypatch.setenv('ROS_SECURITY_KEYSTORE', str(tmp_path / 'keystore'))
     with actuator(tmp_path / 'log', 'knee', model='isa_v5') as process:
         assert process.exit_code() == 2
-    assert 'ROS_SECURITY_ENABLE = true asks for security' in process.errors
+    assert 'ROS_SECURITY_ENABLE = true requires security' in process.errors
     assert 'Traceback' not in process.errors

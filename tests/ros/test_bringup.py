@@ -106,5 +106,5 @@ def test_existing_output_is_refused_before_anything_starts(domain, tmp_path):
     for options in (), ('--overwrite',):
         with bringup(bag, *options) as run:
             assert run.exit_code() == 2
-        assert 'exists and holds no bag' in run.errors
+        assert 'exists and is not a bag' in run.errors
     assert [path.name for path in bag.iterdir()] == ['notes.txt']

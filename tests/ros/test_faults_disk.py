@@ -72,7 +72,7 @@ def test_a_disk_that_cannot_be_written_is_refused_before_anything_starts(
     bag = read_only_disk / 'bag'
     with bringup(bag, config=RIG, log=tmp_path / 'log') as run:
         assert run.exit_code() == 2
-    assert run.errors == f'isa: {bag}: cannot be made, {read_only_disk} is not writable\n'
+    assert run.errors == f'isa: {bag}: cannot be created, {read_only_disk} is not writable\n'
 
 
 def test_a_path_below_a_file_is_refused_before_anything_starts(domain, tmp_path):
@@ -80,7 +80,7 @@ def test_a_path_below_a_file_is_refused_before_anything_starts(domain, tmp_path)
     bag = tmp_path / 'file' / 'bag'
     with bringup(bag, config=RIG, log=tmp_path / 'log') as run:
         assert run.exit_code() == 2
-    assert run.errors == f'isa: {bag}: cannot be made, {tmp_path / "file"} is not writable\n'
+    assert run.errors == f'isa: {bag}: cannot be created, {tmp_path / "file"} is not writable\n'
     assert (tmp_path / 'file').read_text() == 'mine'
 
 

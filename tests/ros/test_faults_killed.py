@@ -54,7 +54,7 @@ def test_actuators_of_a_killed_coordinator_serve_the_next(domain, tmp_path):
             wait_for_chunk(bag, first)
             first.signal(signal.SIGKILL)
             assert first.exit_code() == -signal.SIGKILL
-        wait_for(lambda: 'the coordinator is gone or silent after' in rotor.errors, 'the warning')
+        wait_for(lambda: 'coordinator has ended or sent nothing' in rotor.errors, 'the warning')
         with coordinator(tmp_path / 'second.log', config_file=RIG, out=next_bag,
                          duration=0.05) as second:
             assert second.exit_code() == 0, second.errors

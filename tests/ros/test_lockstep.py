@@ -459,7 +459,7 @@ def test_a_skipped_tick_is_refused(observer):
     with spinning(observer.context, {'haa': Scripted(), 'kfe': Scripted()}):
         transport = make_transport(observer)
         begin(transport)
-        with pytest.raises(RunError, match='refused tick 1: tick 1 came, 0 was due'):
+        with pytest.raises(RunError, match='refused tick 1: tick = 1, must be 0'):
             tick(transport, 1)
 
 

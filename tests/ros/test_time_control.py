@@ -63,7 +63,7 @@ def test_a_paused_run_goes_exactly_as_far_as_it_is_told(observer, tmp_path, opti
         assert user.trigger('save').message == f'saved to {bag}/state_25.json'
         assert user.trigger('step').message == '24 ticks to t = 0.049000 s'
         user.wait_for(lambda: user.clocks and user.clocks[-1] == 49_000_000, 'the time')
-        assert user.trigger('reset').message == 'begins anew, was at t = 0.049000 s'
+        assert user.trigger('reset').message == 'reset at t = 0.049000 s, starts again at t = 0'
         assert user.trigger('step').message == '24 ticks to t = 0.024000 s'
         assert user.pause(False) == 'running from t = 0.024000 s'
         user.wait_for(lambda: user.clocks[-1] > 100_000_000, 'the time')

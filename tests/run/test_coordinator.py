@@ -111,10 +111,10 @@ class FakeOutlet:
     def __init__(self, log: list[str], line: Callable[[bytes], str]) -> None:
         self.log, self.line = log, line
 
-    def is_heard(self) -> bool:
+    def has_subscribers(self) -> bool:
         return True
 
-    def send(self, messages: Messages) -> None:
+    def publish(self, messages: Messages) -> None:
         data = messages[0]
         assert data is not None
         self.log.append(self.line(data))

@@ -6,7 +6,7 @@ from isa_ros.actuator.group import ActuatorGroup
 from isa_ros.config.assembly import group_of, surroundings_of
 from isa_ros.core.signals import HAS_SETPOINT
 from isa_ros.run.exchange import Rows
-from isa_ros.run.narrator import Narrator, Outlets, packer_of, Silence, topics_of
+from isa_ros.run.narrator import Narrator, NoOutlet, Outlets, packer_of, topics_of
 from isa_ros.run.packing import Messages, Packer
 from msg_adapters import clock, event
 import pytest
@@ -23,10 +23,10 @@ class FakeOutlet:
         self.log, self.name, self.has_subscription = log, name, has_subscription
         self.sent: list[Messages] = []
 
-    def is_heard(self) -> bool:
+    def has_subscribers(self) -> bool:
         return self.has_subscription
 
-    def send(self, messages: Messages) -> None:
+    def publish(self, messages: Messages) -> None:
         self.log.append(self.name)
         self.sent.append(list(messages))
 
@@ -80,9 +80,9 @@ def test_nothing_is_packed_where_nothing_is_recorded_and_nobody_subscribes(heard
     def pack(*arguments):
         pytest.fail('rows were packed')
     monkeypatch.setattr(Packer, 'pack', pack)
-    stage.narrator.say_time(1)
-    stage.narrator.note(1, 'step 1')
-    stage.narrator.take(1, {})
+    stage.narrator.publish_time(1)
+    stage.narrator.add_event(1, 'step 1')
+    stage.narrator.publish_rows(1, {})
     stage.narrator.record()
     assert stage.log == list(heard)
 
@@ -97,7 +97,7 @@ def test_one_listener_or_the_recorder_is_enough_to_pack(listener, monkeypatch):
         packed.append(arguments)
         pack(self, *arguments)
     monkeypatch.setattr(Packer, 'pack', note)
-    stage.narrator.take(3, {})
+    stage.narrator.publish_rows(3, {})
     assert packed == [(3 * STEP_NS, 2 * STEP_NS, {})]
 
 
@@ -106,7 +106,7 @@ def test_outlets_get_the_messages_of_their_own_sources():
     stage = Stage(*EVERYONE)
     stage.rows.applied[1]['kinds'] = HAS_SETPOINT
     tuned = {0: {'force.kp': 1e-7}}
-    stage.narrator.take(3, tuned)
+    stage.narrator.publish_rows(3, tuned)
     expected = stage.expected(3, tuned)
     assert stage.outlets['hip'].sent == [expected.of_actuator(0)]
     assert stage.outlets['knee'].sent == [expected.of_actuator(1)]
@@ -118,19 +118,19 @@ def test_outlets_get_the_messages_of_their_own_sources():
 def test_nothing_is_sent_where_nobody_subscribes(heard):
     """The recorder gets all of it nevertheless."""
     stage = Stage(heard)
-    stage.narrator.say_time(1)
-    stage.narrator.note(1, 'step 1')
-    stage.narrator.take(1, {})
+    stage.narrator.publish_time(1)
+    stage.narrator.add_event(1, 'step 1')
+    stage.narrator.publish_rows(1, {})
     stage.narrator.record()
     assert stage.log == [heard, 'recorder']
     assert [sequence for _, sequence, _ in stage.recorder.samples] == [1]
 
 
-def test_the_time_is_said_before_the_rest_of_its_instant():
+def test_the_time_is_published_before_the_rest_of_its_instant():
     """As a coordinator calls it: time, then the rows, then the record."""
     stage = Stage(*EVERYONE)
-    stage.narrator.say_time(2)
-    stage.narrator.take(2, {})
+    stage.narrator.publish_time(2)
+    stage.narrator.publish_rows(2, {})
     stage.narrator.record()
     assert stage.log == ['clock', 'hip', 'knee', 'surroundings', 'recorder']
     assert stage.outlets['clock'].sent == [[clock.pack(2 * STEP_NS)]]
@@ -139,12 +139,12 @@ def test_the_time_is_said_before_the_rest_of_its_instant():
 def test_an_instant_is_recorded_once_with_all_its_events():
     """What is noted after the rows were packed is of the same instant; the next one has none."""
     stage = Stage()
-    stage.narrator.note(1, 'pause')
-    stage.narrator.take(1, {})
-    stage.narrator.note(1, 'step 1')
+    stage.narrator.add_event(1, 'pause')
+    stage.narrator.publish_rows(1, {})
+    stage.narrator.add_event(1, 'step 1')
     for _ in range(2):
         stage.narrator.record()
-    stage.narrator.take(2, {})
+    stage.narrator.publish_rows(2, {})
     stage.narrator.record()
     (t_ns, sequence, first), (_, _, second) = stage.recorder.samples
     assert (t_ns, sequence) == (STEP_NS, 1)
@@ -156,24 +156,24 @@ def test_an_instant_is_recorded_once_with_all_its_events():
 def test_the_recorder_gets_the_packed_instant():
     """The rows of then, also where they have changed since."""
     stage = Stage()
-    stage.narrator.take(3, {1: {'force.kp': 1e-7}})
-    expected = list(stage.expected(3, {1: {'force.kp': 1e-7}}).everything())
+    stage.narrator.publish_rows(3, {1: {'force.kp': 1e-7}})
+    expected = list(stage.expected(3, {1: {'force.kp': 1e-7}}).all_messages())
     stage.rows.samples['position'] += 1.0
     stage.narrator.record()
     assert stage.recorder.samples == [(3 * STEP_NS, 3, expected)]
 
 
-def test_where_actuators_publish_for_themselves_the_rest_is_said():
+def test_where_actuators_publish_for_themselves_the_rest_is_published():
     """Their outlets are left out: they have processes of their own."""
     stage = Stage(*EVERYONE)
     narrator = Narrator(RUN, stage.rows.shown, stage.recorder, Outlets(
         surroundings=stage.outlets['surroundings']))
-    narrator.take(1, {})
+    narrator.publish_rows(1, {})
     narrator.record()
     assert stage.log == ['surroundings', 'recorder']
 
 
-def test_silence_is_never_heard():
-    assert not Silence().is_heard()
-    assert [Outlets().clock.is_heard(), Outlets().events.is_heard(),
-            Outlets().surroundings.is_heard(), *Outlets().actuators] == [False] * 3
+def test_an_outlet_without_topics_has_no_subscribers():
+    assert not NoOutlet().has_subscribers()
+    assert [Outlets().clock.has_subscribers(), Outlets().events.has_subscribers(),
+            Outlets().surroundings.has_subscribers(), *Outlets().actuators] == [False] * 3

@@ -90,10 +90,10 @@ def test_a_launch_file_hands_texts_on_as_parameters_of_their_type():
      'simulated time, s; 0: that of the scenario, else until Ctrl-C'),
     ('compression', 'of the chunks of the bag (default: that of CONFIG, else none)',
      'of the chunks of the bag: none, lz4, zstd; empty: that of the run file, else none'),
-    ('controllers', 'a node of yours that is waited for at every tick; may be repeated',
-     'a node of yours that is waited for at every tick; a list of names'),
-    ('join_timeout_s', 'how long participants are waited for (default: 30 s)',
-     'how long participants are waited for, s')])
+    ('controllers', 'a node of yours; the run waits for it at every tick; may be repeated',
+     'a node of yours; the run waits for it at every tick; a list of names'),
+    ('join_timeout_s', 'longest wait for participants (default: 30 s)',
+     'longest wait for participants, s')])
 def test_help_says_unit_and_default_in_each_place(field, help_, description):
     option = option_of(field)
     assert (option.argument_help, option.description) == (help_, description)

@@ -50,7 +50,7 @@ def named(packer: Packer, messages: Sequence[tuple[int, bytes]]) -> list[tuple[s
 
 def everything(packer: Packer, events: Sequence[bytes] = ()) -> dict[str, bytes]:
     """Return what is packed by topic; each topic comes once."""
-    messages = named(packer, packer.everything(events))
+    messages = named(packer, packer.all_messages(events))
     assert len({name for name, _ in messages}) == len(messages)
     return dict(messages)
 
@@ -95,7 +95,7 @@ def test_messages_come_in_the_order_of_the_topics(packer, rows):
     """Whatever the order of the sources; what is new in between as well."""
     applied(rows, 1)
     packer.pack(T_NS, TICK_NS, {0: {'force.kp': 1e-7}})
-    messages = named(packer, packer.everything([event.pack(T_NS, 'step 1')]))
+    messages = named(packer, packer.all_messages([event.pack(T_NS, 'step 1')]))
     assert [name for name, _ in messages] == sorted(name for name, _ in messages)
     assert [name for name, _ in messages] == [
         topic.name for topic in packer.topics
@@ -163,7 +163,7 @@ def test_parameters_are_said_where_they_changed(packer):
 def test_several_events_of_an_instant_keep_their_order(packer):
     packer.pack(T_NS, TICK_NS, {})
     events = [event.pack(T_NS, text) for text in ('step 1', 'resume', 'note a')]
-    assert [data for name, data in named(packer, packer.everything(events))
+    assert [data for name, data in named(packer, packer.all_messages(events))
             if name == '/coordinator/events'] == events
 
 
@@ -287,7 +287,7 @@ def test_compiled_packing_equals_its_python_source(rows, monkeypatch):
     def packed() -> list[tuple[int, bytes]]:
         packer = Packer(Names([('hip', True), ('knee', False)], [('supply', True)]), own)
         packer.pack(T_NS, TICK_NS, {})
-        return list(packer.everything())
+        return list(packer.all_messages())
     compiled = packed()
     monkeypatch.setattr(packing, 'pack', packing.pack.py_func)
     assert packed() == compiled

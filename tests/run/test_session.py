@@ -25,7 +25,7 @@ def test_a_state_beyond_the_end_is_refused(tmp_path: Path):
     state = state_at(50, tmp_path)
     request = Request(config=RIG, out=tmp_path / 'bag', restore=state, duration_s=0.05)
     with pytest.raises(ConfigError, match=(
-            f'^--restore {state}: of t = 0.05 s, must be before the end, 0.05 s$')):
+            f'^--restore {state}: t = 0.05 s, must be before the end of the run, 0.05 s$')):
         prepare(request)
     assert not (tmp_path / 'bag').exists()
 
@@ -40,7 +40,7 @@ def test_a_state_before_the_end_is_taken(tmp_path: Path):
 def test_a_saved_state_is_not_overwritten_unasked(tmp_path: Path):
     state = state_at(3, tmp_path)
     before = state.read_bytes()
-    with pytest.raises(ConfigError, match=f'^--save {state}: exists, must not; --overwrite'):
+    with pytest.raises(ConfigError, match=f'^--save {state}: already exists; --overwrite'):
         prepare(Request(config=RIG, out=tmp_path / 'bag', save=state))
     prepare(Request(config=RIG, out=tmp_path / 'bag', save=state, overwrite=True))
     assert state.read_bytes() == before
@@ -58,4 +58,4 @@ def test_a_directory_without_a_bag_is_never_replaced(tmp_path: Path, overwrite: 
     with pytest.raises(BagError) as refused:
         prepare(Request(config=RIG, out=tmp_path, overwrite=overwrite))
     assert str(refused.value) == (
-        f'{tmp_path} exists and holds no bag (metadata.yaml), so it is not overwritten')
+        f'{tmp_path} exists and is not a bag (no metadata.yaml), so it is not overwritten')

@@ -151,5 +151,5 @@ def test_bytes_are_a_uint8_multi_array(data):
     (wire.decode_step, wire.encode_end(5)),
     (wire.decode_answer, wire.encode_answer(wire.AnswerKind.BUSY, 5, 1, 0, ()))])
 def test_another_version_is_refused(decode, data):
-    with pytest.raises(RunError, match='wire version 9'):
+    with pytest.raises(RunError, match='wire version = 9, must be'):
         decode(data[:16] + b'\x09' + data[17:])

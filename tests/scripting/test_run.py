@@ -9,7 +9,7 @@ from isa_ros.errors import ConfigError, IsaError
 from isa_ros.run.local_run import Inputs, LocalRun
 import numpy as np
 import pytest
-from tests.golden.message_digests import digests, Digests
+from tests.golden.message_digests import Digests, digests
 
 STICTION = 'actuators.kfe.parameters.plant.friction.stiction'
 

@@ -79,7 +79,7 @@ def test_a_state_of_other_surroundings_is_refused(leg):
     rig = surroundings_of(hip_and_knee())
     size = len(rig.snapshot())
     with pytest.raises(ConfigError, match=(
-            rf'saved state of the surroundings: \d+ bytes, must be {size}')):
+            rf'saved state of the surroundings has \d+ bytes, must have {size}')):
         rig.restore(surroundings_of(leg).snapshot())
 
 

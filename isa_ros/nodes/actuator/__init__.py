@@ -1,1 +1,1 @@
-"""The node of one actuator: under a coordinator, or alone."""
+"""The node of one actuator: with a coordinator, or alone."""

@@ -1,4 +1,4 @@
-"""One actuator alone: its own time, at the pace of the host."""
+"""One actuator alone: it advances by itself, at a multiple of real time."""
 
 from collections.abc import Callable
 import time
@@ -9,15 +9,15 @@ from isa_ros.errors import ConfigError
 from isa_ros.nodes.actuator.node import ActuatorNode
 from rclpy.experimental.events_executor import EventsExecutor
 
-BURST_TICKS = 20        # between two looks at setpoints, services and signals
-LARGEST_LAG_S = 0.5     # a longer delay is given up instead of caught up
+BURST_TICKS = 20        # ticks between two checks for setpoints, services and signals
+LARGEST_LAG_S = 0.5     # a longer delay is skipped instead of made up for
 WARNING_PERIOD_S = 10.0
 
 
 def run_alone(
         node: ActuatorNode, real_time_factor: float, should_stop: Callable[[], bool]) -> None:
     """
-    Tick ``node`` until ``should_stop`` at ``real_time_factor``, 0: as fast as it can.
+    Advance ``node`` until ``should_stop`` at ``real_time_factor``; 0: as fast as possible.
 
     Raises
     ------
@@ -49,7 +49,7 @@ def run_alone(
                     began += lag / real_time_factor
                     node.get_logger().warning(
                         f'{lag:.1f} s of simulated time behind real_time_factor = '
-                        f'{real_time_factor:g}, given up',
+                        f'{real_time_factor:g}; the delay is not made up for',
                         throttle_duration_sec=WARNING_PERIOD_S)
                     continue
                 wait = max(0.0, ((tick + 1) * step_s - elapsed) / real_time_factor)

@@ -1,4 +1,4 @@
-"""ROS 2 face of one smart actuator: setpoints in, one tick, messages out."""
+"""ROS 2 node of one smart actuator: setpoints in, one tick, messages out."""
 
 from collections.abc import Callable, Mapping
 from typing import Any, NamedTuple
@@ -28,25 +28,25 @@ WARNING_PERIOD_S = 1.0
 
 
 class Setup(NamedTuple):
-    """What a node simulates, and on what grid of time."""
+    """The actuator that a node simulates, and its timing."""
 
     config: ActuatorConfig
     timing: Timing
     actuator: SmartActuator | None = None
-    """It lives among others; None: it is made."""
+    """One of a group of actuators; None: the node makes its own."""
 
 
 class ActuatorNode(Node):
     """
     One actuator on ROS topics; the node's name is the actuator's.
 
-    It owns neither physics nor clock: a `ParticipantEnd`, an `InProcess` transport or the loop
-    of a lone actuator calls `start` and `advance`. Setpoints, parameters and requests that
-    arrive between two ticks take effect at the next one; at the same tick a command of the
-    scenario wins.
+    It contains neither physics nor clock: a `ParticipantEnd`, an `InProcess` transport or the
+    loop of `run_alone` calls `start` and `advance`. Setpoints, parameters and requests that
+    arrive between two ticks take effect at the next one; a command of the scenario for the same
+    tick wins.
 
-    ``resolve`` returns what actuator it is, once the node's own name and parameters are known.
-    ``has_mailbox``: a `ParticipantEnd` of this node waits for its steps.
+    ``resolve`` returns the actuator for the node, whose name and parameters it can read.
+    ``has_mailbox``: a `ParticipantEnd` of this node receives its steps.
     """
 
     def __init__(
@@ -78,12 +78,12 @@ class ActuatorNode(Node):
 
     @property
     def digest(self) -> str:
-        """Return a hash of the resolved parameters and of the grid of time."""
+        """Return a hash of the resolved parameters and of the timing."""
         return participant_digest(self.actuator, self.setup.timing)
 
     @property
     def t_ns(self) -> int:
-        """Return the simulated time reached."""
+        """Return the simulated time reached, ns."""
         return self.actuator.t_ns
 
     @property
@@ -98,7 +98,7 @@ class ActuatorNode(Node):
 
     @property
     def applied(self) -> Records:
-        """Return the `COMMAND` that took effect at its start, of no kind for none, (1,)."""
+        """Return the `COMMAND` that took effect at its start, kinds 0 without one, (1,)."""
         return self.actuator.memory.applied
 
     @property
@@ -107,13 +107,13 @@ class ActuatorNode(Node):
         return self.actuator.applied_parameters
 
     def start(self, start: np.void | None) -> None:
-        """Begin anew at t = 0 from a `START` row; None: as configured."""
+        """Start at t = 0 from a `START` row; None: as configured."""
         if start is not None:
             self.actuator.start(*start.item())
 
     def advance(self, port: np.void | None = None, command: np.void | None = None) -> None:
         """
-        Take a command and advance one tick.
+        Accept a command and advance one tick.
 
         Raises
         ------
@@ -126,7 +126,7 @@ class ActuatorNode(Node):
         self.actuator.tick(port)
 
     def snapshot(self) -> bytes:
-        """Return the whole state; `restore` continues from it byte for byte."""
+        """Return the complete state; `restore` continues from it byte for byte."""
         return self.actuator.snapshot()
 
     def restore(self, snapshot: bytes) -> None:
@@ -134,27 +134,27 @@ class ActuatorNode(Node):
         self.actuator.restore(snapshot)
 
     def publish(self) -> None:
-        """Publish the state and what was applied, where there is a subscription."""
-        if not self.outlet.is_heard():
+        """Publish the state and applied commands, where there is a subscription."""
+        if not self.outlet.has_subscribers():
             return
         t_ns = self.actuator.t_ns
         tuned = self.actuator.applied_parameters
         self._packer.pack(
             t_ns, max(0, t_ns - self.setup.timing.step_ns), {0: tuned} if tuned else {})
-        self.outlet.send(self._packer.of_actuator(0))
+        self.outlet.publish(self._packer.of_actuator(0))
 
     def serve(self) -> None:
-        """Take the setpoints and requests that have arrived; do not wait."""
+        """Process the setpoints and requests that have arrived; do not wait."""
         self._inputs.serve()
         self._incompatible.check()
 
     def get_parameter(self, name: str) -> Parameter:
-        """Return a parameter; a gain as it is, whether a service or a setpoint has set it."""
+        """Return a parameter; for a gain its current value, set by a service or a setpoint."""
         tuned = None if self._tunables is None else self._tunables.get(name)
         return super().get_parameter(name) if tuned is None else tuned
 
     def check_publishers(self) -> None:
-        """Name publishers whose setpoints cannot be received."""
+        """Log publishers whose setpoints cannot be received."""
         self._incompatible.check()
 
     def _on_setpoint(self, message: JointState) -> None:

@@ -17,15 +17,15 @@ from rclpy.service import Service
 
 class TunableParameters:
     """
-    Declares ``tunables`` on ``node`` and hands what is set to ``actuator``, SI.
+    Declares ``tunables`` on ``node`` and passes new values to ``actuator``, SI.
 
-    The value of a parameter is the actuator's, whoever changed it. ``overrides`` are those of
-    the command line, in force from the first tick.
+    The value of a parameter is read from the actuator, also if a setpoint has changed it.
+    ``overrides`` are those of the command line, in force from the first tick.
 
     Raises
     ------
     ConfigError
-        An override that names no tunable of a block, or a value that is refused.
+        An override names no tunable of a block, or its value is refused.
 
     """
 
@@ -44,7 +44,7 @@ class TunableParameters:
         self.services: Sequence[Service] = [s for s in node.services if s not in others]
 
     def get(self, name: str) -> Parameter | None:
-        """Return a tunable as it will be at the next tick; None: it is none of them."""
+        """Return a tunable as it will be at the next tick; None: not a tunable."""
         if name not in self._names:
             return None
         return Parameter(name, value=self._actuator.parameter(name))
@@ -59,7 +59,7 @@ class TunableParameters:
 
 
 def descriptor(tunable: Tunable) -> ParameterDescriptor:
-    """Return unit, meaning and range of a tunable; the range includes bounds that do not."""
+    """Return unit, meaning and range of a tunable; excluded bounds are listed as constraints."""
     bounds = tunable.bounds
     relations = {'gt': '>', 'lt': '<'}
     excluded = [f'{sign} {bounds[name]:g}' for name, sign in relations.items() if name in bounds]
@@ -74,7 +74,7 @@ def descriptor(tunable: Tunable) -> ParameterDescriptor:
 def _numbers(
         name: str, overrides: Mapping[str, Parameter], tunables: Mapping[str, Tunable]
         ) -> dict[str, Any]:
-    """Return the overrides of control blocks; refuse the others of a block."""
+    """Return the overrides of tunables; refuse other keys of a control block."""
     values = {}
     for key, parameter in overrides.items():
         if key.partition('.')[0] not in VARIABLES:

@@ -1,4 +1,4 @@
-"""A process of one actuator: under a coordinator, or alone."""
+"""A process with one actuator: with a coordinator, or alone."""
 
 from collections.abc import Sequence
 from dataclasses import replace
@@ -33,9 +33,9 @@ USAGE = (
 
 def run(args: Sequence[str] | None, model: str) -> int:
     """
-    Run one actuator until it is told to stop and return the exit code.
+    Run one actuator until it is stopped and return the exit code.
 
-    It has no end of its own, so a signal is its normal one: 0, as launch expects it.
+    It ends normally by a signal only, with exit code 0 as launch expects.
     """
     with StopRequest() as should_stop:
         end_with_parent()
@@ -54,7 +54,7 @@ def run(args: Sequence[str] | None, model: str) -> int:
 def _run(model: str, should_stop: StopRequest) -> None:
     node = ActuatorNode(lambda node: _resolve(node, model), model or 'actuator', has_mailbox=True)
     try:
-        gc.freeze()  # collecting what is loaded by now would halt a tick for 60 ms
+        gc.freeze()  # garbage collection of the loaded objects would delay a tick by 60 ms
         if _boolean(node, 'lockstep'):
             ParticipantEnd(node, ActuatorRole(node)).spin(should_stop)
         else:
@@ -66,11 +66,12 @@ def _run(model: str, should_stop: StopRequest) -> None:
 def _resolve(node: Node, model: str) -> Setup:
     """Declare the node's parameters and return the actuator they describe."""
     for name, default, description in (
-            ('lockstep', False, 'move only when a coordinator ticks'),
+            ('lockstep', False, 'advance only with the ticks of a coordinator'),
             ('model', model, f'one of {", ".join(model_names())}'),
             ('config_file', '', 'run file that declares this actuator'),
             ('scenario_file', '', 'scenario that changes loads or start of that run'),
-            ('real_time_factor', 1.0, 'simulated over host time, alone; 0: as fast as it can')):
+            ('real_time_factor', 1.0,
+             'simulated over host time, if alone; 0: as fast as possible')):
         node.declare_parameter(
             name, default, ParameterDescriptor(description=description, read_only=True))
     chosen, path = _text(node, 'model'), _text(node, 'config_file')
@@ -92,7 +93,7 @@ def _from_run(run: RunConfig, name: str, model: str, in_lockstep: bool) -> Setup
     config = run.actuator(name)
     if model not in ('', config.model):
         raise ConfigError(
-            f'{run.source}: {name} is of model {config.model}, the parameter model is {model!r}')
+            f'{run.source}: {name} has model {config.model}, the parameter model = {model!r}')
     if config.load is None and not in_lockstep:
         config = replace(config, load=default_load(actuator_model(config.model, name)))
     return Setup(config, Timing(run.step_ns, run.controller_offset_ns))
@@ -114,7 +115,7 @@ def _number(node: Node, name: str) -> float:
 
 
 def main(args: Sequence[str] | None = None, model: str = '') -> None:
-    """Run one actuator node; the model is the parameter ``model`` unless it is given."""
+    """Run one actuator node; without ``model`` its parameter ``model`` names the model."""
     start_without_blas()
     raise SystemExit(run(args, model))
 
@@ -130,7 +131,7 @@ def main_isa_v5(args: Sequence[str] | None = None) -> None:
 
 
 def main_smart_manifold(args: Sequence[str] | None = None) -> None:
-    """Run one smart manifold on its rotary actuator."""
+    """Run one smart manifold with its rotary actuator."""
     main(args, 'smart_manifold')
 
 

@@ -1,4 +1,4 @@
-"""Name the publishers whose quality of service keeps their setpoints from arriving."""
+"""Warnings about publishers whose quality of service prevents their setpoints from arriving."""
 
 import time
 
@@ -11,30 +11,29 @@ PERIOD_S = 1.0
 
 class IncompatiblePublishers:
     """
-    Watch the publishers of one subscription's topic.
+    Checks the publishers of one subscription's topic.
 
-    rclpy's event says only that there is an incompatible publisher, not which one; the graph
-    does.
+    rclpy's event reports an incompatible publisher without its name; the graph has the name.
     """
 
     def __init__(self, node: Node, subscription: Subscription) -> None:
         self._node = node
         self._topic = subscription.topic_name
         self._qos = subscription.qos_profile
-        self._known: set[tuple[int, ...]] = set()
+        self._checked: set[tuple[int, ...]] = set()
         self._next = 0.0
 
     def check(self) -> None:
-        """Log every newly seen incompatible publisher; at most one look per `PERIOD_S`."""
+        """Log every new incompatible publisher; reads the graph once per `PERIOD_S`."""
         now = time.monotonic()
         if now < self._next:
             return
         self._next = now + PERIOD_S
         for publisher in self._node.get_publishers_info_by_topic(self._topic):
             identity = tuple(publisher.endpoint_gid)
-            if identity in self._known:
+            if identity in self._checked:
                 continue
-            self._known.add(identity)
+            self._checked.add(identity)
             compatibility, reason = qos_check_compatible(publisher.qos_profile, self._qos)
             if compatibility == QoSCompatibility.ERROR:
                 namespace = publisher.node_namespace.rstrip('/')

@@ -1,4 +1,4 @@
-"""ROS 2 face of the run: time, events, supplies and body on topics."""
+"""ROS 2 node of the coordinator: time, events, supplies and body on topics."""
 
 from collections.abc import Sequence
 from typing import Any
@@ -30,9 +30,9 @@ class CoordinatorNode(Node):
 
     def outlets(self, surroundings: Sequence[Topic], actuators: Sequence[Outlet]) -> Outlets:
         """
-        Advertise the topics of supplies and body, and return the publishers of a run.
+        Create the publishers of supplies and body, and return all publishers of a run.
 
-        ``actuators`` are those of the actuators in this process, none where they have their own.
+        ``actuators`` are those of the actuators in this process; empty if their own nodes publish.
         """
         shown = PreparedPublishers(
             self, [(_relative(topic.name), topic.type_name) for topic in surroundings])
@@ -40,12 +40,12 @@ class CoordinatorNode(Node):
 
     def request(self) -> Request:
         """
-        Declare the parameters of a run and return what they ask for.
+        Declare the parameters of a run and return the request they describe.
 
         Raises
         ------
         ConfigError
-            No configuration is named.
+            The parameter config_file is not set.
 
         """
         values = {option.parameter: self._declared(option)
@@ -65,14 +65,14 @@ class CoordinatorNode(Node):
 
 
 def _relative(name: str) -> str:
-    """Return a topic of the bag as the node names it, so that namespaces work."""
+    """Return the node's relative name of a topic of the bag, so that namespaces work."""
     return f'~/{name.removeprefix(_OWN)}' if name.startswith(_OWN) else name.removeprefix('/')
 
 
 class _Events(PreparedPublishers):
-    """Events are rare: subscriptions are looked for at each."""
+    """Publisher of events; they are rare, so that subscriptions are counted at each."""
 
-    def is_heard(self) -> bool:
-        """Return whether there is a subscription at this moment."""
+    def has_subscribers(self) -> bool:
+        """Return whether there is a subscription now."""
         self.refresh()
-        return super().is_heard()
+        return super().has_subscribers()

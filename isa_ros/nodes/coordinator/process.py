@@ -1,4 +1,4 @@
-"""The coordinator as a program: participants are started by someone else, or all are here."""
+"""The coordinator as a program: actuators are started separately, or run in this process."""
 
 from collections.abc import Sequence
 import sys
@@ -21,7 +21,7 @@ USAGE = (
 
 
 def main(args: Sequence[str] | None = None) -> None:
-    """Coordinate the run that the parameters name."""
+    """Coordinate the run that the parameters describe."""
     start_without_blas()
     sys.exit(_main(args))
 

@@ -1,4 +1,4 @@
-"""One run on ROS nodes: actuators in processes of their own, or all in this one."""
+"""One run on ROS nodes: one process per actuator, or all actuators in this process."""
 
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
@@ -34,11 +34,11 @@ _QUIET = {
     'use_global_arguments': False, 'enable_rosout': False,
     'parameter_overrides': [Parameter('start_type_description_service', value=False)],
 }
-"""Nodes of a bring-up have nothing a user could set from outside."""
+"""Options of a bring-up's nodes: nothing can be set from outside."""
 
 
 def in_processes(session: Session, report: Report | None, should_stop: StopRequest) -> None:
-    """Start one process per actuator, coordinate them from here, and end them."""
+    """Start one process per actuator, coordinate them from this process, and end them."""
     participants = _participants(session)
     request = session.request
     processes = actuator_processes(
@@ -47,13 +47,13 @@ def in_processes(session: Session, report: Report | None, should_stop: StopReque
     children = Children(
         processes, request.namespace, _work if request.is_alone else None)
     with defaults(), sole_coordinator(), children:
-        _settle(session)
+        _freeze_objects(session)
         with _node(request.namespace) as node:
             _coordinate(node, session, participants, report, should_stop, children.lost)
 
 
-def _settle(session: Session) -> None:
-    """Freeze loaded objects: collecting them would halt a run for 60 ms once or twice."""
+def _freeze_objects(session: Session) -> None:
+    """Exclude the loaded objects from garbage collection, which would pause a run for 60 ms."""
     if session.request.is_alone:
         gc.freeze()
 
@@ -63,7 +63,7 @@ def _work(arguments: Sequence[str]) -> int:
 
 
 def in_one_process(session: Session, report: Report | None, should_stop: StopRequest) -> None:
-    """Call the nodes of all actuators from here."""
+    """Run the nodes of all actuators in this process."""
     with defaults(), sole_coordinator(), _node(session.request.namespace) as node:
         coordinate_locally(node, session, report, should_stop)
 
@@ -85,21 +85,21 @@ def _node(namespace: str) -> Iterator[CoordinatorNode]:
 def coordinate(
         node: CoordinatorNode, session: Session, report: Report | None,
         should_stop: StopRequest) -> None:
-    """Run with participants that someone else starts."""
+    """Run with participants that are started separately."""
     participants = _participants(session)
-    _settle(session)
-    _coordinate(node, session, participants, report, should_stop, _unwatched)
+    _freeze_objects(session)
+    _coordinate(node, session, participants, report, should_stop, _none_lost)
 
 
-def _unwatched() -> None:
-    """Return None: the processes of the participants are not known here."""
+def _none_lost() -> None:
+    """Return None: the participants are not child processes."""
 
 
 def _participants(session: Session, *, are_here: bool = False) -> Participants:
     """
-    Return who takes part, with the digests that the actuators must have.
+    Return the participants, with the digests that the actuators must have.
 
-    The kernels are compiled by then, which not every child shall do at once.
+    This compiles the kernels, so that not every child process does at the same time.
     """
     run, timing = session.run, timing_of(session.run)
     surroundings = surroundings_of(run)
@@ -134,10 +134,10 @@ def _lockstep(
 def coordinate_locally(
         node: CoordinatorNode, session: Session, report: Report | None,
         should_stop: StopRequest) -> None:
-    """Run with the nodes of all actuators in this process; controllers have their own."""
+    """Run with the nodes of all actuators in this process; controllers have separate ones."""
     configs = session.run.actuators
     participants = _participants(session, are_here=True)
-    _settle(session)
+    _freeze_objects(session)
     group = group_of(session.run)
     timing = timing_of(session.run)
     actuators = [
@@ -150,7 +150,7 @@ def coordinate_locally(
         transport: Transport
         transport = local = InProcess(group, participants.starts, actuators)
         if session.run.controllers:
-            controllers = _lockstep(node, session, participants, should_stop, _unwatched)
+            controllers = _lockstep(node, session, participants, should_stop, _none_lost)
             transport = MixedTransport(local, controllers)
         _record(node, session, transport, [own.outlet for own in actuators], report, should_stop)
     finally:
@@ -163,7 +163,7 @@ def coordinate_locally(
 def _record(
         node: CoordinatorNode, session: Session, transport: Transport,
         actuators: Sequence[Outlet], report: Report | None, should_stop: StopRequest) -> None:
-    """Record the run, and serve what is asked of it."""
+    """Record the run and serve its requests."""
     surroundings = surroundings_of(session.run)
     services = RunServices(
         node, session.pace.factor, lambda coordinator: save_in_bag(session, coordinator))

@@ -1,4 +1,4 @@
-"""Pause, step, reset and save as services of the coordinator, served between two ticks."""
+"""Services of the coordinator, served between two ticks: pause, step, reset and save."""
 
 from collections.abc import Callable
 from typing import Any
@@ -18,16 +18,16 @@ LARGEST_STEP = 1_000_000_000
 REAL_TIME_FACTOR = 'real_time_factor'
 
 Save = Callable[[Coordinator], str]
-"""Saves the state of a run and returns where."""
+"""Saves the state of a run and returns the path."""
 
 
 class RunServices:
     """
-    What a user may ask of a run between two ticks.
+    Services and parameters that change a run between two ticks.
 
-    A step answers when its ticks are done, everything else at once. Needs the handles of
-    `DirectServer`: an executor would call in the middle of a tick. Without them nothing is
-    offered, and the log says so.
+    A step is answered when its ticks are finished, other requests at once. This needs the
+    handles of `DirectServer`, as an executor would run callbacks during a tick. Without them the
+    services are missing and a warning is logged.
     """
 
     def __init__(self, node: Node, real_time_factor: float, save: Save) -> None:
@@ -36,14 +36,15 @@ class RunServices:
         self._coordinator: Coordinator | None = None
         self._server: DirectServer | None = None
         if not has_handles():
-            node.get_logger().warning('this rclpy offers no pause, step, reset and save')
+            node.get_logger().warning(
+                'pause, step, reset and save are not available with this version of rclpy')
             return
         node.declare_parameter(STEP_COUNT, 1, ParameterDescriptor(
             description='ticks of one call of ~/step',
             integer_range=[IntegerRange(from_value=1, to_value=LARGEST_STEP, step=1)]))
         if not node.has_parameter(REAL_TIME_FACTOR):
             node.declare_parameter(REAL_TIME_FACTOR, real_time_factor, ParameterDescriptor(
-                description='not faster than this; 0: as fast as it can'))
+                description='largest real-time factor; 0: as fast as possible'))
         node.add_on_set_parameters_callback(self._on_parameters)
         own = [
             node.create_service(SetBool, '~/pause', self._on_pause),
@@ -55,14 +56,14 @@ class RunServices:
             [], own, [service for service in node.services if service not in own])
 
     def serve(self, coordinator: Coordinator) -> None:
-        """Answer everything that was asked since the last call."""
+        """Answer all requests since the last call."""
         if self._server is not None:
             self._coordinator = coordinator
             self._server.serve()
 
     @property
     def _run(self) -> Coordinator:
-        assert self._coordinator is not None, 'only served with a coordinator'
+        assert self._coordinator is not None, 'serve has set the coordinator'
         return self._coordinator
 
     def _on_pause(self, request: SetBool.Request, response: SetBool.Response) -> Any:
@@ -82,7 +83,7 @@ class RunServices:
             response.message = work()
             response.success = True
         except IsaError as error:
-            if error.exit_code != IsaError.exit_code:  # the run itself is over
+            if error.exit_code != IsaError.exit_code:  # the run itself has failed
                 raise
             response.message = str(error)
             response.success = False
@@ -101,7 +102,7 @@ class RunServices:
     def _reset(self) -> str:
         instant = self._instant()
         self._run.reset()
-        return f'begins anew, was at {instant}'
+        return f'reset at {instant}, starts again at t = 0'
 
     def _instant(self) -> str:
         return f't = {self._run.t_ns * 1e-9:.6f} s'

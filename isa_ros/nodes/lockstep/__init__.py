@@ -1,1 +1,1 @@
-"""Both ends of the private wire between a coordinator and its participants."""
+"""Both ends of the private wire (messages of the lockstep): coordinator and participants."""

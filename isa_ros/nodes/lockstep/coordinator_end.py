@@ -1,4 +1,4 @@
-"""The coordinator's end of the private wire: participants in processes of their own."""
+"""The coordinator's end of the private wire, to participants in other processes."""
 
 from collections.abc import Callable, Sequence
 import secrets
@@ -11,7 +11,7 @@ from isa_ros.errors import ConfigError, RunError, SimulationDiverged
 from isa_ros.nodes.lockstep.expected import Limits, Participants
 from isa_ros.nodes.lockstep.sockets import LocalWires
 from isa_ros.nodes.middleware.domain import another_coordinator, refuse_other_coordinator
-from isa_ros.nodes.middleware.mailboxes import LOOK_S, open_mailbox, SLICE_S
+from isa_ros.nodes.middleware.mailboxes import open_mailbox, SLICE_S, TOPIC_CHECK_S
 from isa_ros.nodes.middleware.qos import LOCKSTEP
 from isa_ros.run.coordinator import Interrupted
 from isa_ros.run.exchange import IDLE_S, Rows
@@ -24,21 +24,21 @@ from rclpy.node import Node
 from std_msgs.msg import UInt8MultiArray
 
 HELLO_PERIOD_S = 0.05
-STOP_GRACE_S = 1.0  # how long a tick may still take once a stop is asked for
-REPEAT_S = 1.0  # from one request of a step to the next: what was on its way may be lost
+STOP_GRACE_S = 1.0  # longest duration of a tick after a stop was requested
+REPEAT_S = 1.0  # time until an unanswered step is sent again: a message may have been lost
 _IDENTITY, _DIGEST, _FIRST = 0, 1, 2  # parts of a READY answer
-_NO_REASON = b'without a reason'
+_NO_REASON = b'no reason given'
 
 
 class LockstepTransport:
     """
-    One broadcast step and one answer per participant and tick.
+    A `Transport` with one broadcast step and one answer per participant and tick.
 
-    They are topics; sockets carry them once a run has begun whose participants are all on this
-    host, until one of these closes. The topics then show the run to nodes that are not part of
-    it, and repeat what one that is stopped may have missed.
+    They use topics; once a run has begun whose participants are all on this host, they use
+    sockets, until one of the sockets closes. Meanwhile the topics announce the run to nodes that
+    are not part of it, and repeat steps that a stopped participant may have missed.
 
-    ``watch`` is called while nothing arrives and says who is lost, if it knows.
+    ``watch`` is called while nothing arrives; it returns a text that names a lost participant.
     """
 
     def __init__(
@@ -57,33 +57,34 @@ class LockstepTransport:
         self._past_runs: set[int] = set()
         self._identities: dict[int, bytes] = {}
         self._tick = 0
-        self._remind_at = 0.0
+        self._begin_due = 0.0
         self._requests = 0
-        self._awaited = 0  # what an answer must carry for a tick: the tick, or a request's number
-        self._step, self._doing = b'', 'tick 0'
+        self._awaited = 0  # tick number that an answer must have, or the number of a request
+        self._step, self._current_step = b'', 'tick 0'
         self._publisher = node.create_publisher(UInt8MultiArray, STEP_TOPIC, LOCKSTEP)
         self._wires = LocalWires()
-        self._look_at = 0.0
+        self._next_check = 0.0
         handle: Any = self._publisher.handle
         self._send: Callable[[bytes], None] = handle.publish_raw
         self._mailbox = open_mailbox(node, ACKNOWLEDGEMENT_TOPIC)
 
     def join(self, rows: Rows) -> None:
         """
-        Say hello until all participants have answered the same one.
+        Send hellos until all participants have answered the same one.
 
-        One more hello is left its whole period, in which a second node of a name or another
-        coordinator that was discovered a little later makes itself known. A second node that
-        answers even later is noticed by `receive`.
+        Then one more hello is sent, and answers are received for its whole period, to detect a
+        second node of the same name or another coordinator that is discovered a little later. A
+        second node that answers even later is detected by `receive`.
 
         Raises
         ------
         ConfigError
-            Other parameters, a name that two nodes have, or another coordinator.
+            A participant has other parameters, two nodes have the same name, or there is another
+            coordinator.
         RunError
-            A participant did not answer in time, or was lost.
+            A participant did not answer in time, or failed.
         Interrupted
-            A stop was asked for.
+            A stop was requested.
 
         """
         if self._run_id:
@@ -101,7 +102,7 @@ class LockstepTransport:
             answers = self._hello_answers(count, is_last=bool(complete))
             refuse_other_coordinator(self._node)
             if complete:
-                self._take(rows, {k: answer.parts[_FIRST:] for k, answer in complete.items()})
+                self._fill(rows, {k: answer.parts[_FIRST:] for k, answer in complete.items()})
                 return
             if len(answers) == len(self._remote):
                 complete = answers
@@ -114,14 +115,14 @@ class LockstepTransport:
 
     def _no_answer(self, missing: Sequence[int]) -> RunError:
         names = ', '.join(self._participants[k].name for k in missing)
-        # A controller is there once its node is; an actuator may also run alone.
+        # A controller's node always joins; an actuator's may run alone instead.
         how = ' with lockstep:=true' if missing[0] < len(self._run.starts) else ''
         return RunError(
             f'{names}: no answer before tick 0 after {self._limits.join_s:g} s; start it{how} in '
             'this ROS_DOMAIN_ID')
 
     def _hello_answers(self, count: int, is_last: bool) -> dict[int, Answer]:
-        """Return the answers to the ``count``-th hello; the last one takes its whole period."""
+        """Return the answers to the ``count``-th hello; wait the whole period for the last one."""
         answers: dict[int, Answer] = {}
         end = time.monotonic() + HELLO_PERIOD_S
         while is_last or len(answers) < len(self._remote):
@@ -151,10 +152,10 @@ class LockstepTransport:
         if expected and digest.decode() != expected:
             raise ConfigError(
                 f'{name}: digest of its parameters = {digest.decode()}, must be {expected} as '
-                'configured; give both the same file')
+                'configured; start both with the same file')
 
     def _check_unbound(self, answer: Answer) -> None:
-        """Refuse a node outside of the run that has the name of one inside."""
+        """Refuse a node outside the run with the same name as a participant."""
         name = (answer.parts[0] or b'').decode()
         names = [participant.name for participant in self._participants]
         if name in names:
@@ -171,34 +172,34 @@ class LockstepTransport:
             raise RunError(f'{lost} {when}')
 
     def begin(self) -> None:
-        """Let everyone publish the first messages."""
+        """Make every participant publish its first messages."""
         self._wires.connect(self._identities)
         self._send(encode_begin(self._run_id))
 
     def send(self, tick: int, rows: Rows) -> None:
-        """Broadcast the step."""
+        """Broadcast the step of a tick."""
         self._tick = tick
         step = encode_tick(self._run_id, tick, rows, self._has_controllers)
-        self._ask(f'tick {tick}', tick, step)
+        self._send_step(f'tick {tick}', tick, step)
 
-    def _ask(self, what: str, awaited: int, step: bytes) -> None:
-        self._doing, self._awaited, self._step = what, awaited, step
+    def _send_step(self, what: str, awaited: int, step: bytes) -> None:
+        self._current_step, self._awaited, self._step = what, awaited, step
         if not self._wires.send(step):
             self._send(step)
 
     def _next_request(self) -> int:
-        """Return a number that no tick and no other request has."""
+        """Return a number below 0 that is different for each request."""
         self._requests += 1
         return -self._requests
 
     def receive(self, rows: Rows) -> None:
         """Wait for every participant; see `Transport`."""
-        self._take(rows, self._gather(AnswerKind.DONE))
+        self._fill(rows, self._gather(AnswerKind.DONE))
 
     def idle(self) -> None:
-        """Say that the run goes on, and look for lost participants and second nodes."""
-        if time.monotonic() >= self._remind_at:
-            self._remind_at = time.monotonic() + REPEAT_S
+        """Announce that the run continues, and check for lost participants and second nodes."""
+        if time.monotonic() >= self._begin_due:
+            self._begin_due = time.monotonic() + REPEAT_S
             self._send(encode_begin(self._run_id))
         self._refuse_lost(f'while paused before tick {self._tick}')
         data = self._mailbox.wait(IDLE_S)
@@ -208,23 +209,23 @@ class LockstepTransport:
     def snapshots(self) -> list[bytes]:
         """Return the state of every participant."""
         number = self._next_request()
-        self._ask('the request to save its state', number, encode_save(self._run_id, number))
+        self._send_step('the request to save its state', number, encode_save(self._run_id, number))
         parts = self._gather(AnswerKind.SAVED)
         return [parts[k][0] or b'' for k in sorted(parts)]
 
     def restore(self, tick: int, snapshots: Sequence[bytes], rows: Rows) -> None:
-        """Put everyone where the snapshots were taken."""
+        """Restore every participant from its snapshot."""
         if len(snapshots) != len(self._participants):
             raise ConfigError(
                 f'the saved state has {len(snapshots)} participants, the run has '
                 f'{len(self._participants)}')
         self._tick = tick
         number = self._next_request()
-        self._ask('the request to restore its state', number,
-                  encode_restore(self._run_id, number, tick, snapshots))
-        self._take(rows, self._gather(AnswerKind.RESTORED))
+        self._send_step('the request to restore its state', number,
+                        encode_restore(self._run_id, number, tick, snapshots))
+        self._fill(rows, self._gather(AnswerKind.RESTORED))
 
-    def _take(self, rows: Rows, parts: dict[int, list[bytes | None]]) -> None:
+    def _fill(self, rows: Rows, parts: dict[int, list[bytes | None]]) -> None:
         """Fill the rows from the answers of actuators and controllers."""
         n_actuators = len(rows.replies)
         if self._run.first_remote == 0:
@@ -244,10 +245,10 @@ class LockstepTransport:
             begin = time.monotonic()
             data = self._next_answer()
             if data is None and self._watch() is not None:
-                data = self._next_answer()  # what the lost one had still said
+                data = self._next_answer()  # may have been sent before it was lost
             if data is None:
                 self._refuse_lost(f'in tick {self._tick}')
-                # A stopped or suspended host must not look like a late participant.
+                # The time in which the host was stopped or suspended does not count.
                 waited += min(time.monotonic() - begin, 2.0 * SLICE_S)
                 self._check_waited(waited, missing)
                 if waited >= repeat_at:
@@ -264,18 +265,18 @@ class LockstepTransport:
         """Return the next message, or None if none arrives within `SLICE_S`."""
         if not self._wires.is_open:
             return self._mailbox.wait(SLICE_S)
-        if time.monotonic() >= self._look_at:
+        if time.monotonic() >= self._next_check:
             if (data := self._mailbox.take()) is not None:
                 return data
-            self._look_at = time.monotonic() + LOOK_S
-            self._send(encode_begin(self._run_id))  # else nobody outside would hear of the run
+            self._next_check = time.monotonic() + TOPIC_CHECK_S
+            self._send(encode_begin(self._run_id))  # announces the run to other nodes
         data = self._wires.wait(SLICE_S)
         if data is None and not self._wires.is_open:
-            self._send(self._step)  # again: an answer may have been lost with the sockets
+            self._send(self._step)  # repeated: an answer may have been lost with the sockets
         return data
 
     def _is_expected(self, answer: Answer, kind: AnswerKind, missing: set[int]) -> bool:
-        """Tell whether an answer counts; raise what it says instead."""
+        """Return whether an answer is one of those waited for; raise the failure it reports."""
         if answer.run_id != self._run_id or answer.kind is AnswerKind.BUSY:
             return False
         if answer.kind is AnswerKind.READY:
@@ -287,7 +288,7 @@ class LockstepTransport:
         if answer.tick != self._awaited or answer.participant not in missing:
             if answer.is_repeated:
                 return False
-            raise self._two_nodes(answer.participant)  # one answers each step once
+            raise self._two_nodes(answer.participant)  # a participant answers each step once
         if answer.kind is kind:
             return True
         reason, *rest = answer.parts
@@ -295,7 +296,7 @@ class LockstepTransport:
             t_ns, value = DIVERGENCE.unpack(reason or b'')
             raise SimulationDiverged(t_ns, (rest[0] or b'').decode(), value)
         name = self._participants[answer.participant].name
-        raise RunError(f'{name}: refused {self._doing}: {(reason or _NO_REASON).decode()}')
+        raise RunError(f'{name}: refused {self._current_step}: {(reason or _NO_REASON).decode()}')
 
     def _check_waited(self, waited: float, missing: set[int]) -> None:
         names = ', '.join(self._participants[k].name for k in sorted(missing))
@@ -303,11 +304,11 @@ class LockstepTransport:
             raise Interrupted(f'stopped in tick {self._tick}, which {names} did not end')
         if waited >= self._limits.tick_s:
             raise RunError(
-                f'{names}: no answer to {self._doing} after {waited:.1f} s, must come '
+                f'{names}: no answer to {self._current_step} after {waited:.1f} s, must come '
                 f'within {self._limits.tick_s:g} s')
 
     def close(self) -> None:
-        """Tell the participants that the run is over."""
+        """Send the end of the run to the participants."""
         self._end()
         self._publisher.wait_for_all_acked(Duration(seconds=HELLO_PERIOD_S))
 

@@ -1,4 +1,4 @@
-"""Who takes part in a run, as the coordinator knows it from the configuration."""
+"""The participants that the coordinator expects, from the configuration of a run."""
 
 from collections.abc import Sequence
 from typing import NamedTuple
@@ -8,7 +8,7 @@ from isa_ros.run.wire import Cast
 
 
 class Expected(NamedTuple):
-    """A participant of the configuration; the actuators come first, in file order."""
+    """One participant of the configuration."""
 
     name: str
     digest: str
@@ -16,19 +16,20 @@ class Expected(NamedTuple):
 
 
 class Limits(NamedTuple):
-    """How long participants are waited for, in seconds of the host."""
+    """Longest waits for participants, s of host time."""
 
     join_s: float
     tick_s: float
 
 
 class Participants(NamedTuple):
-    """Who takes part in a run, and how the actuators begin it."""
+    """The participants of a run, and the initial state of the actuators."""
 
     expected: Sequence[Expected]
+    """The actuators first, in file order, then the controllers."""
     cast: Cast
     starts: Records
     """`START` rows of the actuators, (n_actuators,)."""
     step_ns: int
     first_remote: int = 0
-    """Participants before it live in the coordinator's process and are not called here."""
+    """Index of the first participant in another process."""

@@ -1,4 +1,4 @@
-"""Actuators in the coordinator's process, controllers in their own."""
+"""Transport to actuators in the coordinator's process and controllers in other processes."""
 
 from collections.abc import Sequence
 
@@ -8,7 +8,7 @@ from isa_ros.run.in_process import InProcess
 
 
 class MixedTransport:
-    """A `Transport` to both; controllers work while the actuators are called."""
+    """A `Transport` to both; controllers compute while the actuators advance."""
 
     def __init__(self, actuators: InProcess, controllers: LockstepTransport) -> None:
         self._actuators = actuators
@@ -21,12 +21,12 @@ class MixedTransport:
         self._controllers.join(rows)
 
     def restore(self, tick: int, snapshots: Sequence[bytes], rows: Rows) -> None:
-        """Put everyone where the snapshots were taken."""
+        """Restore every participant from its snapshot."""
         self._controllers.restore(tick, snapshots, rows)
         self._actuators.restore(tick, snapshots[:len(rows.replies)], rows)
 
     def begin(self) -> None:
-        """Let the controllers begin."""
+        """Begin the run of the controllers."""
         self._actuators.begin()
         self._controllers.begin()
 
@@ -36,10 +36,10 @@ class MixedTransport:
         self._controllers.receive(rows)
 
     def idle(self) -> None:
-        """Pass a moment in which the run is paused."""
+        """Wait for a moment while the run is paused."""
         self._actuators.idle()
         self._controllers.idle()
 
     def snapshots(self) -> list[bytes]:
-        """Return the state of everyone."""
+        """Return the complete state of each participant."""
         return [*self._actuators.snapshots(), *self._controllers.snapshots()]

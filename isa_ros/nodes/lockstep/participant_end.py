@@ -8,7 +8,7 @@ from typing import Any
 from isa_ros.errors import IsaError, SimulationDiverged
 from isa_ros.nodes.lockstep.roles import Parts, Role
 from isa_ros.nodes.lockstep.sockets import LocalWire
-from isa_ros.nodes.middleware.mailboxes import LOOK_S, open_mailbox, SLICE_S
+from isa_ros.nodes.middleware.mailboxes import open_mailbox, SLICE_S, TOPIC_CHECK_S
 from isa_ros.nodes.middleware.qos import LOCKSTEP
 from isa_ros.run.wire import (
     ACKNOWLEDGEMENT_TOPIC, AnswerKind, decode_step, DIVERGENCE, encode_answer, Step, STEP_TOPIC,
@@ -17,17 +17,18 @@ from rclpy.node import Node
 from std_msgs.msg import UInt8MultiArray
 
 SILENCE_S = 5.0
-"""After it a coordinator counts as gone; one that waits or is paused speaks each second."""
+"""Time without a message after which a run counts as abandoned; a coordinator sends at least one
+message per second, also while it waits or is paused."""
 
 
 class ParticipantEnd:
     """
-    Let ``role`` take part whenever the coordinator asks, and answer.
+    Receives the steps of a coordinator, executes them with ``role`` and sends the answers.
 
-    The coordinator knows a participant by the name of its node, and waits for it at every tick.
-    One that is bound to a run answers no other coordinator until that run ends or its
-    coordinator has been silent for `SILENCE_S`; one that only seemed to be gone goes on with
-    its run. The middleware knows less: a killed one stays in its graph for a lease.
+    The coordinator identifies a participant by the name of its node and waits for it at every
+    tick. A participant that is bound to a run refuses other coordinators until that run ends or
+    its coordinator has sent nothing for `SILENCE_S`; a later message of the same coordinator
+    continues the run. The middleware's graph is not enough: it lists a killed node for a lease.
     """
 
     def __init__(self, node: Node, role: Role) -> None:
@@ -39,26 +40,26 @@ class ParticipantEnd:
         self._publisher = node.create_publisher(UInt8MultiArray, ACKNOWLEDGEMENT_TOPIC, LOCKSTEP)
         handle: Any = self._publisher.handle
         self._send: Callable[[bytes], None] = handle.publish_raw
-        self._strangers: set[int] = set()
+        self._foreign_runs: set[int] = set()
         self._wire: LocalWire | None = None
-        self._look_at = 0.0
-        self._release()
+        self._next_check = 0.0
+        self._unbind()
 
-    def _release(self) -> None:
+    def _unbind(self) -> None:
         self._close_wire()
         self._run_id = 0  # 0: bound to no run
         self._index = 0
         self._next_tick = 0
-        self._request = 0  # the last one; their numbers fall
+        self._request = 0  # number of the last request; they decrease
         self._has_begun = False
         self._first: Parts = ()
         self._answered: tuple[StepKind, int] | None = None  # kind and tick of a step
         self._last: tuple[AnswerKind, Parts] = AnswerKind.DONE, ()
-        self._heard = 0.0  # when the coordinator of this run spoke, on the host's monotonic clock
-        self._is_alone = False
+        self._last_message = 0.0  # s, monotonic clock: last message of this run's coordinator
+        self._is_abandoned = False
 
     def spin(self, should_stop: Callable[[], bool]) -> None:
-        """Take part in one run after the other until ``should_stop``."""
+        """Take part in one run after another until ``should_stop``."""
         try:
             self._spin(should_stop)
         finally:
@@ -71,29 +72,30 @@ class ParticipantEnd:
                 self._handle(decode_step(data))
                 continue
             self._role.serve()
-            is_alone = bool(self._run_id) and not self._is_led(self._mailbox.count_senders())
-            if is_alone and not self._is_alone:
+            is_abandoned = bool(self._run_id) and not self._has_coordinator(
+                self._mailbox.count_senders())
+            if is_abandoned and not self._is_abandoned:
                 self._log.warning(
-                    f'the coordinator is gone or silent after {self._next_tick} ticks; waiting '
-                    'for it or for another')
-            self._is_alone = is_alone
+                    f'the coordinator has ended or sent nothing for {SILENCE_S:g} s, after '
+                    f'{self._next_tick} ticks; waiting for it or for another one')
+            self._is_abandoned = is_abandoned
 
     def _next_step(self) -> bytes | None:
         """Return the next message, or None if none arrives within `SLICE_S`."""
         wire = self._wire_in_use()
         if wire is None:
             return self._mailbox.wait(SLICE_S)
-        if time.monotonic() >= self._look_at:
+        if time.monotonic() >= self._next_check:
             if (data := self._mailbox.take()) is not None:
                 return data
-            self._look_at = time.monotonic() + LOOK_S
+            self._next_check = time.monotonic() + TOPIC_CHECK_S
         data = wire.wait()
         if not wire.is_open:
             self._close_wire()
         return data
 
     def _wire_in_use(self) -> LocalWire | None:
-        """Return the socket to the coordinator, which waits at its own end once it has begun."""
+        """Return the socket to the coordinator, which uses it once the run has begun."""
         return self._wire if self._has_begun else None
 
     def _close_wire(self) -> None:
@@ -101,21 +103,21 @@ class ParticipantEnd:
             self._wire.close()
             self._wire = None
 
-    def _is_led(self, n_coordinators: int) -> bool:
-        """Return whether the coordinator of the run may be there and has spoken not long ago."""
-        return n_coordinators > 0 and time.monotonic() - self._heard < SILENCE_S
+    def _has_coordinator(self, n_coordinators: int) -> bool:
+        """Return whether there are coordinators and the run's own has sent a message recently."""
+        return n_coordinators > 0 and time.monotonic() - self._last_message < SILENCE_S
 
     def _handle(self, step: Step) -> None:
         if step.run_id == self._run_id:
-            self._heard = time.monotonic()
+            self._last_message = time.monotonic()
         if step.kind is StepKind.HELLO:
             self._answer_hello(step)
         elif step.run_id != self._run_id:
-            self._answer_strange(step)
+            self._answer_foreign(step)
         elif self._answered == (step.kind, step.tick):
             self._repeat(step)
         elif self._is_past(step):
-            pass  # a repeat on the topic that newer steps on the socket have overtaken
+            pass  # a repetition on the topic, older than the last step on the socket
         elif step.kind is StepKind.TICK:
             self._answer_tick(step)
         elif step.kind is StepKind.BEGIN:
@@ -127,7 +129,7 @@ class ParticipantEnd:
             self._answer_to(step, AnswerKind.RESTORED,
                             lambda: self._role.restore(step.snapshot(self._index)))
         else:
-            self._release()
+            self._unbind()
 
     def _is_past(self, step: Step) -> bool:
         if step.kind is StepKind.TICK:
@@ -138,7 +140,7 @@ class ParticipantEnd:
 
     def _answer_hello(self, step: Step) -> None:
         if step.run_id != self._run_id:
-            if self._run_id and self._is_led(self._mailbox.count_senders() - 1):
+            if self._run_id and self._has_coordinator(self._mailbox.count_senders() - 1):
                 self._send(encode_answer(AnswerKind.BUSY, step.run_id, step.tick, 0, ()))
                 return
             if not self._bind(step):
@@ -149,26 +151,26 @@ class ParticipantEnd:
             AnswerKind.READY, step.run_id, step.tick, self._index,
             (self._identity, self._role.digest, *self._first)))
 
-    def _answer_strange(self, step: Step) -> None:
-        """Give this name once to a run that goes on without it: another node may have it."""
+    def _answer_foreign(self, step: Step) -> None:
+        """Send this name once to a run that did not call it: another node may have the name."""
         if step.kind in (StepKind.TICK, StepKind.BEGIN) and not self._run_id and (
-                step.run_id not in self._strangers):
-            self._strangers.add(step.run_id)
+                step.run_id not in self._foreign_runs):
+            self._foreign_runs.add(step.run_id)
             self._send(encode_answer(
                 AnswerKind.UNBOUND, step.run_id, step.tick, 0, (self._name.encode(),)))
 
     def _bind(self, step: Step) -> bool:
-        """Join the run of a hello; return whether it calls this participant."""
-        self._release()
+        """Join the run of a hello; return whether it lists this participant."""
+        self._unbind()
         names = step.cast().names
         if self._name not in names:
-            if step.run_id not in self._strangers:
-                self._strangers.add(step.run_id)
+            if step.run_id not in self._foreign_runs:
+                self._foreign_runs.add(step.run_id)
                 self._log.warning(
-                    f'a coordinator calls {", ".join(names)}, not {self._name!r}: '
-                    'declare it in the configuration')
+                    f'the participants of a run are {", ".join(names)}, without {self._name!r}; '
+                    'declare it in the run file')
             return False
-        self._run_id, self._heard = step.run_id, time.monotonic()
+        self._run_id, self._last_message = step.run_id, time.monotonic()
         self._index = names.index(self._name)
         self._wire = LocalWire.to_run(self._run_id, self._identity, SLICE_S)
         self._role.serve()
@@ -181,28 +183,28 @@ class ParticipantEnd:
             self._role.publish()
 
     def _repeat(self, step: Step) -> None:
-        """Say once more what was said: the answer, or the first request, may have been lost."""
+        """Send the last answer again: it, or the first request, may have been lost."""
         kind, parts = self._last
-        self._say(encode_answer(
+        self._send_answer(encode_answer(
             kind, self._run_id, step.tick, self._index, parts, is_repeated=True))
 
     def _answer_tick(self, step: Step) -> None:
         self._begin()
         if step.tick != self._next_tick:
             self._answer(step, AnswerKind.REFUSED, (
-                f'tick {step.tick} came, {self._next_tick} was due'.encode(),))
+                f'tick = {step.tick}, must be {self._next_tick}'.encode(),))
             return
         self._next_tick += 1
         self._role.serve()
-        # The answer first: publishing goes on while the coordinator works.
+        # The answer first: the coordinator computes while this process publishes.
         if self._answer_to(step, AnswerKind.DONE, lambda: self._role.advance(step)):
             self._role.publish()
 
     def _answer_to(self, step: Step, kind: AnswerKind, work: Callable[[], Parts]) -> bool:
         """
-        Answer with what ``work`` gives, or with why it gives nothing.
+        Answer with the result of ``work``, or with the reason of its failure.
 
-        Whatever else it raises is told to the coordinator too, and then ends this process.
+        Exceptions other than `IsaError` are also sent to the coordinator, then end this process.
         """
         try:
             parts = work()
@@ -223,10 +225,10 @@ class ParticipantEnd:
     def _answer(self, step: Step, kind: AnswerKind, parts: Parts) -> None:
         self._answered, self._last = (step.kind, step.tick), (kind, parts)
         self._request = min(self._request, step.tick)
-        self._say(encode_answer(kind, self._run_id, step.tick, self._index, parts))
+        self._send_answer(encode_answer(kind, self._run_id, step.tick, self._index, parts))
 
-    def _say(self, answer: bytes) -> None:
-        """Answer the coordinator of the run where it waits."""
+    def _send_answer(self, answer: bytes) -> None:
+        """Send an answer to the coordinator on the socket, or else on the topic."""
         wire = self._wire_in_use()
         if wire is None or not wire.send(answer):
             self._send(answer)

@@ -1,8 +1,9 @@
 """
-What a participant of the lockstep does with a step: simulate an actuator, or control.
+Roles of a participant of the lockstep: to simulate an actuator, or to run a controller.
 
-A role answers in parts of bytes. An actuator's are its rows and the parameters that changed
-(`wire.actuator_parts`); a controller's are the `COMMAND` rows it asks for.
+A role executes the steps of the coordinator and returns the parts of its answer, as bytes: an
+actuator's are its rows and the parameters that changed (`wire.actuator_parts`), a controller's
+are the `COMMAND` rows that it requests.
 """
 
 from collections.abc import Mapping, Sequence
@@ -17,20 +18,20 @@ Parts = Sequence[bytes | None]
 
 
 class Role(Protocol):
-    """What one participant does in a run."""
+    """Executes the steps of one participant."""
 
     @property
     def digest(self) -> bytes:
-        """Return a hash of its parameters; empty: nothing to compare."""
+        """Return a hash of its parameters; empty: not compared."""
         ...
 
     def start(self, step: Step, index: int) -> Parts:
-        """Begin anew at t = 0, as the hello says to the participant at ``index``."""
+        """Start at t = 0 with the data of a hello for the participant at ``index``."""
         ...
 
     def advance(self, step: Step) -> Parts:
         """
-        Take part in one tick.
+        Execute one tick.
 
         Raises
         ------
@@ -41,15 +42,15 @@ class Role(Protocol):
         ...
 
     def publish(self) -> None:
-        """Publish what the last answer holds to those who subscribe."""
+        """Publish the results of the last answer, where there is a subscription."""
         ...
 
     def serve(self) -> None:
-        """Take what has arrived on other topics and services; do not wait."""
+        """Process messages that have arrived on other topics and services; do not wait."""
         ...
 
     def snapshot(self) -> bytes:
-        """Return the whole state."""
+        """Return the complete state."""
         ...
 
     def restore(self, snapshot: bytes) -> Parts:
@@ -58,7 +59,7 @@ class Role(Protocol):
 
 
 class Stepper(Protocol):
-    """One actuator of a run: its node. Rows are those of `SmartActuator.memory`, (1,)."""
+    """Interface of one actuator's node. Rows are those of `SmartActuator.memory`, (1,)."""
 
     @property
     def digest(self) -> str:
@@ -77,7 +78,7 @@ class Stepper(Protocol):
 
     @property
     def applied(self) -> Records:
-        """Return the `COMMAND` that took effect at its start, of no kind for none."""
+        """Return the `COMMAND` that took effect at its start; kinds 0 without one."""
         ...
 
     @property
@@ -86,12 +87,12 @@ class Stepper(Protocol):
         ...
 
     def start(self, start: np.void | None) -> None:
-        """Begin anew at t = 0 from a `START` row; None: as configured."""
+        """Start at t = 0 from a `START` row; None: as configured."""
         ...
 
     def advance(self, port: np.void | None, command: np.void | None) -> None:
         """
-        Take the command of this tick and advance.
+        Accept the command of this tick and advance.
 
         Raises
         ------
@@ -102,7 +103,7 @@ class Stepper(Protocol):
         ...
 
     def snapshot(self) -> bytes:
-        """Return the whole state; `restore` continues from it byte for byte."""
+        """Return the complete state; `restore` continues from it byte for byte."""
         ...
 
     def restore(self, snapshot: bytes) -> None:
@@ -118,16 +119,16 @@ class Stepper(Protocol):
         ...
 
     def publish(self) -> None:
-        """Publish the state and what was applied to those who subscribe."""
+        """Publish the state and applied commands, where there is a subscription."""
         ...
 
     def serve(self) -> None:
-        """Take the setpoints and requests that have arrived; do not wait."""
+        """Process the setpoints and requests that have arrived; do not wait."""
         ...
 
 
 class ActuatorRole:
-    """An actuator in the lockstep."""
+    """The role of an actuator."""
 
     def __init__(self, stepper: Stepper) -> None:
         self._stepper = stepper
@@ -142,13 +143,13 @@ class ActuatorRole:
         return self._stepper.digest.encode()
 
     def start(self, step: Step, index: int) -> Parts:
-        """Begin anew at rest, as its `START` row says."""
+        """Start at rest, at t = 0, from its `START` row."""
         self._index = index
         self._stepper.start(step.start(index))
         return self._parts()
 
     def advance(self, step: Step) -> Parts:
-        """Advance one tick under its row of ports and commands."""
+        """Advance one tick with its row of ports and commands."""
         self._stepper.advance(step.port(self._index), step.command(self._index))
         return self._parts()
 
@@ -163,7 +164,7 @@ class ActuatorRole:
 
 
 class ControllerRole:
-    """A user's controller in the lockstep."""
+    """The role of a user's controller."""
 
     digest = b''
 
@@ -174,13 +175,13 @@ class ControllerRole:
         self._step_ns = 0
 
     def start(self, step: Step, index: int) -> Parts:
-        """Tell the controller which actuators there are; it asks for nothing yet."""
+        """Start the controller with the names of the actuators; return no requests yet."""
         self._cast, self._step_ns = step.cast(), step.step_ns()
         self._seat = ControllerSeat(self._controller, self._cast.names[:step.rows])
         return self._parts()
 
     def advance(self, step: Step) -> Parts:
-        """Show the state before the tick, and return what shall take effect after it."""
+        """Call the controller with the state before the tick; return commands for the next one."""
         assert self._seat is not None, 'a run begins with a hello'
         shown = step.shown(self._cast)
         body = None if shown.body is None else shown.body.view(np.recarray)[0]
@@ -190,17 +191,17 @@ class ControllerRole:
         return self._parts()
 
     def publish(self) -> None:
-        """Do nothing: what it asks for is recorded as it takes effect."""
+        """Do nothing: its requests are recorded when they take effect."""
 
     def serve(self) -> None:
         """Do nothing: other subscriptions belong to the user's node."""
 
     def snapshot(self) -> bytes:
-        """Return the whole state of the controller."""
+        """Return the complete state of the controller."""
         return self._controller.snapshot()
 
     def restore(self, snapshot: bytes) -> Parts:
-        """Continue from a snapshot; what was asked for before is in the run's own state."""
+        """Continue from a snapshot; earlier requests are part of the run's state."""
         self._controller.restore(snapshot)
         return self._parts()
 

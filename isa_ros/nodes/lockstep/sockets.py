@@ -1,10 +1,10 @@
 """
-The private wire between processes of one host: a Unix socket to each participant.
+The private wire on one host: a Unix socket to each participant.
 
-It carries the same bytes as the topics of the wire, for half the time of a tick: the kernel
-wakes the receiver directly, without a thread of the middleware in between. Its name is abstract
-and holds the run's id, so that only a process of the same network namespace can reach it and
-nothing is left behind. Wherever something is not as it should be, a run does without.
+The bytes are those of the wire's topics, but a tick takes half the time: the kernel wakes the
+receiver directly, without a thread of the middleware. The socket's name is abstract and contains
+the run's id: only processes of the same network namespace can connect, and no file remains. If
+the sockets fail for any reason, the run continues on the topics.
 """
 
 from collections.abc import Mapping
@@ -19,17 +19,17 @@ from isa_ros.nodes.middleware.handles import has_handles
 LARGEST = 65536
 """Bytes of the largest message."""
 
-_IDENTITY_BYTES = 64  # at most
-_STRANGERS = 1000  # as many are turned away before the topics have to do
+_IDENTITY_BYTES = 64  # largest size
+_MOST_REJECTED = 1000  # connections; with more of them a run uses the topics
 _TIME = struct.Struct('@ll')  # struct timeval
 _CREDENTIALS = struct.Struct('@iII')  # struct ucred: process, user, group
 
 
 def is_possible() -> bool:
     """
-    Return whether there can be sockets: abstract names are Linux's.
+    Return whether sockets can be used: only Linux has abstract names.
 
-    Without rclpy's handles a participant's setpoints arrive only while it waits for a topic.
+    Without rclpy's handles a participant receives setpoints only while it waits for a topic.
     """
     return sys.platform == 'linux' and has_handles()
 
@@ -39,14 +39,14 @@ def _name(run_id: int) -> str:
 
 
 def _socket() -> socket.socket:
-    """Return a socket that does not wait, whatever default the process has set."""
+    """Return a non-blocking socket, also if the process has set a default timeout."""
     made = socket.socket(socket.AF_UNIX, socket.SOCK_SEQPACKET)
     made.setblocking(False)
     return made
 
 
 class LocalWire:
-    """A participant's end."""
+    """A participant's end of the socket."""
 
     def __init__(self, end: socket.socket) -> None:
         self._socket = end
@@ -54,14 +54,14 @@ class LocalWire:
 
     @staticmethod
     def to_run(run_id: int, identity: bytes, slice_s: float) -> 'LocalWire | None':
-        """Connect to the coordinator of a run and say who this is; None: it is not there."""
+        """Connect to the coordinator of a run and send ``identity``; None: not possible."""
         if not is_possible():
             return None
         end = _socket()
         try:
             end.connect(_name(run_id))
             end.send(identity)
-            # The kernel's own timeout, for which Python need not poll before it reads.
+            # The kernel's timeout: Python need not poll before it reads.
             end.setblocking(True)
             seconds, part = divmod(slice_s, 1.0)
             end.setsockopt(
@@ -72,7 +72,7 @@ class LocalWire:
         return LocalWire(end)
 
     def wait(self) -> bytes | None:
-        """Return the next message, or None if none arrives within the slice or ever."""
+        """Return the next message; None after the timeout, or if the socket is closed."""
         try:
             data = self._socket.recv(LARGEST)
         except BlockingIOError:
@@ -85,7 +85,7 @@ class LocalWire:
         return data
 
     def send(self, message: bytes) -> bool:
-        """Send; return whether it was possible."""
+        """Send a message; return whether it was sent."""
         if not self.is_open or len(message) > LARGEST:
             return False
         try:
@@ -96,13 +96,13 @@ class LocalWire:
         return True
 
     def close(self) -> None:
-        """Close; the coordinator is told so by the kernel."""
+        """Close the socket; the kernel informs the coordinator."""
         self.is_open = False
         self._socket.close()
 
 
 class LocalWires:
-    """The coordinator's ends, one to each participant of a run: all of them, or none."""
+    """The coordinator's sockets, one to each participant of a run: to all of them, or none."""
 
     def __init__(self) -> None:
         self._listening: socket.socket | None = None
@@ -113,11 +113,11 @@ class LocalWires:
 
     @property
     def is_open(self) -> bool:
-        """Return whether every participant is at the other end of one."""
+        """Return whether every participant is connected."""
         return bool(self._ends)
 
     def listen(self, run_id: int) -> None:
-        """Let the participants of a run connect."""
+        """Listen for connections of the participants of a run."""
         if not is_possible():
             return
         self._listening = _socket()
@@ -129,14 +129,14 @@ class LocalWires:
 
     def connect(self, identities: Mapping[int, bytes]) -> bool:
         """
-        Take those who have connected; return whether these are all the participants.
+        Accept the pending connections; return whether every participant is connected.
 
-        They have connected before they say over the topics that they are ready. Nobody else
-        can any more.
+        Participants connect before they answer a hello on the topics. Later connections are
+        refused.
         """
         missing = set(identities.values())
         try:
-            for _ in range(len(missing) + _STRANGERS):
+            for _ in range(len(missing) + _MOST_REJECTED):
                 if self._listening is None or not missing:
                     break
                 end, _ = self._listening.accept()
@@ -149,14 +149,14 @@ class LocalWires:
                 self._ends[end.fileno()] = end
                 self._epoll.register(end.fileno(), select.EPOLLIN)
         except OSError:
-            pass  # nobody else has connected
+            pass  # no more pending connections
         self._stop_listening()
         if missing:
             self.close()
         return self.is_open
 
     def send(self, message: bytes) -> bool:
-        """Send to all; return whether it was possible, else all are closed."""
+        """Send to all and return True; on failure close all and return False."""
         try:
             if len(message) <= LARGEST:
                 for end in self._ends.values():
@@ -171,7 +171,7 @@ class LocalWires:
         """
         Return the next message, or None if none arrives within ``timeout_s``.
 
-        Where one end is closed from the other side, all are closed at once.
+        If a participant has closed its end, all are closed.
         """
         if not self._ready:
             self._ready = [number for number, _ in self._epoll.poll(timeout_s)]

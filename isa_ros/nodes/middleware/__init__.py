@@ -1,1 +1,1 @@
-"""What the nodes use of rclpy and DDS: waiting, publishing, QoS, environment."""
+"""Adapters to rclpy and DDS: waiting, publishing, QoS, environment."""

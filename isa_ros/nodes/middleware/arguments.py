@@ -1,4 +1,4 @@
-"""The command line of an executable: ROS arguments and nothing else."""
+"""The command line of an executable: ROS arguments only."""
 
 from collections.abc import Sequence
 import sys
@@ -20,7 +20,7 @@ def init_ros(args: Sequence[str] | None, usage: str) -> None:
     Raises
     ------
     ConfigError
-        An argument that is not one of ROS, a malformed one, or a middleware that refuses.
+        An argument is not a ROS argument or is malformed, or the middleware cannot be initialised.
 
     """
     given = list(sys.argv if args is None else args)

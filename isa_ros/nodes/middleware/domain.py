@@ -1,11 +1,11 @@
 """
 One coordinator per ROS domain and host.
 
-The graph shows another coordinator only once it is discovered, 0.1 s to more than a second
-after the start. On one host, where discovery stays by default, a name in the kernel says so
-at once: it belongs to the network namespace and vanishes with the process that holds it. Where
-other hosts are found too, a run in one process waits for the graph; one in processes has to
-wait for its participants anyway.
+The ROS graph shows another coordinator only after its discovery, 0.1 s to more than a second
+after the start. On one host, to which discovery is limited by default, an abstract socket name
+detects it at once: the name belongs to the network namespace and is released with the process
+that holds it. If other hosts are discovered too, a run in one process waits for the graph; a run
+in several processes has to wait for its participants anyway.
 """
 
 from collections.abc import Iterator, Mapping
@@ -21,12 +21,12 @@ from isa_ros.nodes.middleware.environment import finds_other_hosts
 from rclpy.node import Node
 
 _VARIABLE = 'ROS_DOMAIN_ID'
-_LARGEST = 232  # above it DDS has no port numbers
+_LARGEST = 232  # DDS has no port numbers for larger ones
 _CLOCK_TOPIC = '/clock'
-_LOOK_S = 0.05
+_CHECK_S = 0.05
 
 DISCOVERY_S = 2.0
-"""In which the packaged profile finds who is there already."""
+"""Time in which the packaged profile discovers the existing nodes."""
 
 
 def domain_id() -> int:
@@ -36,7 +36,7 @@ def domain_id() -> int:
     Raises
     ------
     ConfigError
-        ROS_DOMAIN_ID is no domain.
+        ROS_DOMAIN_ID is not a domain.
 
     """
     text = os.environ.get(_VARIABLE) or '0'
@@ -48,16 +48,16 @@ def domain_id() -> int:
 @contextmanager
 def sole_coordinator() -> Iterator[None]:
     """
-    Be the only coordinator of this domain on this host while the context lasts.
+    Hold the name of this domain's only coordinator on this host within the context.
 
     Raises
     ------
     ConfigError
-        There is one already.
+        Another coordinator holds it.
 
     """
     domain = domain_id()
-    if sys.platform != 'linux':  # abstract names are Linux's; the graph is left
+    if sys.platform != 'linux':  # no abstract names; only the graph is checked
         yield
         return
     with socket.socket(socket.AF_UNIX, socket.SOCK_DGRAM) as claim:
@@ -77,7 +77,7 @@ def claim_address(domain: int) -> str:
 
 def refuse_other_coordinator(node: Node) -> None:
     """
-    Refuse to be the second one that publishes the time, as far as the graph is known.
+    Refuse to run if the graph shows a second publisher of the time.
 
     Raises
     ------
@@ -92,9 +92,9 @@ def refuse_other_coordinator(node: Node) -> None:
 def look_for_other_coordinator(
         node: Node, environment: Mapping[str, str] = os.environ) -> None:
     """
-    Refuse to be the second coordinator of a network, which takes `DISCOVERY_S` to be sure of.
+    Refuse to be the second coordinator of a network; this takes `DISCOVERY_S`.
 
-    On one host `sole_coordinator` knows at once.
+    With discovery on this host only, `sole_coordinator` is enough and there is no wait.
 
     Raises
     ------
@@ -105,12 +105,12 @@ def look_for_other_coordinator(
     deadline = time.monotonic() + (DISCOVERY_S if finds_other_hosts(environment) else 0.0)
     refuse_other_coordinator(node)
     while (left := deadline - time.monotonic()) > 0.0:
-        time.sleep(min(left, _LOOK_S))
+        time.sleep(min(left, _CHECK_S))
         refuse_other_coordinator(node)
 
 
 def another_coordinator(domain: int) -> ConfigError:
-    """Return the error of a coordinator that is not alone."""
+    """Return the error that there is another coordinator."""
     return ConfigError(
         f'another coordinator runs in {_VARIABLE} {domain}, must be the only one; end it or '
         f'set another {_VARIABLE}')

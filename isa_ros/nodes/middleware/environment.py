@@ -1,7 +1,7 @@
 """
-The middleware settings a lockstep wants, where the user has set none.
+Middleware settings for the lockstep, used unless the user has set others.
 
-Must stand before `rclpy.init`; children inherit them.
+They must be set before `rclpy.init`; child processes inherit them.
 """
 
 from collections.abc import Iterator, Mapping, MutableMapping
@@ -28,15 +28,15 @@ def set_defaults(
         environment: MutableMapping[str, str] = os.environ,
         middleware: str | None = None) -> None:
     """
-    Use a packaged Fast DDS profile and stay on this host, unless the user chose otherwise.
+    Use a packaged Fast DDS profile and limit discovery to this host, unless set by the user.
 
-    ``middleware`` is the one in use unless it is given. Fast DDS 2 reads the first of the two
-    variables of a profile, Fast DDS 3 the second.
+    ``middleware``: None for the one in use. Fast DDS 2 reads the first of the two variables of a
+    profile, Fast DDS 3 the second.
 
     Raises
     ------
     ConfigError
-        A profile of the user's is no file, which the middleware itself would pass over.
+        A profile set by the user is not a file; the middleware itself would ignore it.
 
     """
     for name in _PROFILE_VARIABLES:
@@ -49,8 +49,8 @@ def set_defaults(
     profile = NETWORK_PROFILE
     if _is_for_this_host(environment):
         if (middleware or get_rmw_implementation_identifier()).startswith(_FAST_DDS):
-            # For LOCALHOST the middleware adds transports of its own to those of a profile:
-            # UDP that listens on every interface, and shared memory that outlives a SIGKILL.
+            # For LOCALHOST the middleware adds transports to those of a profile: UDP that
+            # listens on every interface, and shared memory that remains after a SIGKILL.
             environment[_RANGE] = 'SYSTEM_DEFAULT'
             profile = LOCALHOST_PROFILE
     else:
@@ -61,7 +61,7 @@ def set_defaults(
 
 @contextmanager
 def defaults(environment: MutableMapping[str, str] = os.environ) -> Iterator[None]:
-    """Set them for a while in a process that goes on to do something else; then take them back."""
+    """Set the defaults within the context and restore the environment after it."""
     before = dict(environment)
     try:
         set_defaults(environment)
@@ -75,7 +75,7 @@ def defaults(environment: MutableMapping[str, str] = os.environ) -> Iterator[Non
 
 
 def finds_other_hosts(environment: Mapping[str, str]) -> bool:
-    """Return whether nodes of other hosts may be found, once `set_defaults` has been called."""
+    """Return whether nodes of other hosts can be discovered, after `set_defaults`."""
     is_here = (
         environment.get(_RANGE) in ('LOCALHOST', 'OFF')
         or environment.get('ROS_LOCALHOST_ONLY') == '1'
@@ -90,6 +90,6 @@ def _has_settings(environment: MutableMapping[str, str]) -> bool:
 
 
 def _is_for_this_host(environment: MutableMapping[str, str]) -> bool:
-    """Return whether no node of another host is to be found, over transports of our choice."""
+    """Return whether discovery is limited to this host and the transports are not set."""
     return environment.get(_RANGE) == 'LOCALHOST' and not any(
         name in environment for name in (_TRANSPORTS, *_OTHER_DISCOVERY))

@@ -1,4 +1,4 @@
-"""Which of rclpy's semi-private handles there are."""
+"""Availability of rclpy's semi-private handles."""
 
 from rclpy.impl.implementation_singleton import rclpy_implementation as _rclpy
 

@@ -1,9 +1,9 @@
 """
-Waiting for one topic of the private wire.
+Mailboxes: receive the messages of one topic of the private wire.
 
-An executor of rclpy builds its wait set anew on every spin, which is most of the time of a
-tick. Here one wait set lives as long as its subscription. It uses rclpy's semi-private handles;
-where these have changed, an `EventsExecutor` does the same a little slower.
+An executor of rclpy builds a new wait set on every spin, which takes most of the time of a tick.
+Here one wait set is kept as long as its subscription. It uses rclpy's semi-private handles; with
+a version of rclpy without them, a slightly slower `EventsExecutor` is used.
 """
 
 from collections import deque
@@ -17,10 +17,10 @@ from rclpy.node import Node
 from std_msgs.msg import UInt8MultiArray
 
 SLICE_S = 0.1
-"""Longest wait in one piece: a signal handler of Python runs between two pieces."""
+"""Longest single wait: Python runs signal handlers between two waits."""
 
-LOOK_S = 0.1
-"""Host time between two looks at the wire's topics while sockets carry its ticks."""
+TOPIC_CHECK_S = 0.1
+"""Host time between two checks of the wire's topics while the ticks use sockets."""
 
 _NS_PER_SECOND = 1_000_000_000
 
@@ -37,12 +37,12 @@ class Mailbox(Protocol):
         ...
 
     def count_senders(self) -> int:
-        """Return how many publishers are matched at this moment."""
+        """Return the number of matched publishers."""
         ...
 
 
 class WaitSetMailbox:
-    """A subscription with a wait set of its own."""
+    """A mailbox with a wait set of its own."""
 
     def __init__(self, node: Node, topic: str) -> None:
         self._subscription = node.create_subscription(
@@ -54,7 +54,7 @@ class WaitSetMailbox:
 
     def wait(self, timeout_s: float) -> bytes | None:
         """Return the next message, or None if none arrives within ``timeout_s``."""
-        # It returns at once while there is a message; to look before it is mostly in vain.
+        # The wait returns at once if there is a message; a check before it would rarely find one.
         wait_set = self._wait_set
         wait_set.clear_entities()
         wait_set.add_subscription(self._handle)
@@ -67,12 +67,12 @@ class WaitSetMailbox:
         return None if taken is None else taken[0]
 
     def count_senders(self) -> int:
-        """Return how many publishers are matched at this moment."""
+        """Return the number of matched publishers."""
         return int(self._handle.get_publisher_count())
 
 
 class ExecutorMailbox:
-    """The same on an executor that also serves the node's other subscriptions."""
+    """A mailbox with an executor that also serves the node's other subscriptions."""
 
     def __init__(self, node: Node, topic: str) -> None:
         self._messages: deque[bytes] = deque()
@@ -95,7 +95,7 @@ class ExecutorMailbox:
         return self.wait(0.0)
 
     def count_senders(self) -> int:
-        """Return how many publishers are matched at this moment."""
+        """Return the number of matched publishers."""
         handle: Any = self._subscription.handle
         return int(handle.get_publisher_count())
 
@@ -106,5 +106,5 @@ def open_mailbox(node: Node, topic: str) -> Mailbox:
 
 
 def _unexpected(message: bytes) -> None:
-    """Stand where rclpy asks for a callback; the mailbox takes the messages itself."""
+    """Raise an error: rclpy requires a callback, but the mailbox takes the messages itself."""
     raise RuntimeError('a mailbox must not be added to an executor')

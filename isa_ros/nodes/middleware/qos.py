@@ -1,4 +1,4 @@
-"""The qualities of service of every topic."""
+"""Qualities of service of all topics."""
 
 from rclpy.qos import DurabilityPolicy, HistoryPolicy, QoSProfile, ReliabilityPolicy
 
@@ -10,10 +10,10 @@ def _reliable(depth: int) -> QoSProfile:
 
 
 STATE = _reliable(10)
-"""What nodes publish; the profile that a bag states."""
+"""Published state; also the profile stored in a bag."""
 
 SETPOINT = _reliable(1)
-"""Only the newest setpoint counts."""
+"""Setpoints: only the newest one is kept."""
 
 LOCKSTEP = _reliable(64)
-"""The private wire: acknowledgements of all participants share one queue."""
+"""The private wire: the answers of all participants share one queue."""

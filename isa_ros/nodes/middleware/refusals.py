@@ -1,4 +1,4 @@
-"""What the middleware refuses, in one line."""
+"""Errors of the middleware as one-line errors of isa_ros."""
 
 from collections.abc import Iterator
 from contextlib import contextmanager
@@ -14,15 +14,15 @@ _OF_ARGUMENTS = (_rclpy.RCLInvalidROSArgsError, _rclpy.UnknownROSArgsError)
 @contextmanager
 def refusals() -> Iterator[None]:
     """
-    Say in one line why the middleware does not start, or makes no node.
+    Convert errors of the middleware, when it starts or creates a node, to `ConfigError`.
 
-    Errors of command-line arguments pass as they are.
+    Errors of command-line arguments are not converted.
 
     Raises
     ------
     ConfigError
-        It cannot do what the environment asks for: security that it was built without or
-        whose files are missing, for one.
+        The environment cannot be used, for example because the middleware was built without
+        security or the security files are missing.
 
     """
     try:
@@ -33,6 +33,6 @@ def refusals() -> Iterator[None]:
         reason = str(error).splitlines()[0]
         hint = ''
         if os.environ.get(_SECURITY) == 'true':
-            hint = (f'; {_SECURITY} = true asks for security, which this middleware lacks or '
-                    'finds no files for, see docs/network.md')
+            hint = (f'; {_SECURITY} = true requires security, which this middleware lacks or '
+                    'has no files for, see docs/network.md')
         raise ConfigError(f'middleware: {reason}{hint}') from error

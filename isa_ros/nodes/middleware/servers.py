@@ -1,8 +1,8 @@
 """
-Serving the setpoints and services of a node between two ticks.
+Servers: process the setpoints and service requests of a node between two ticks.
 
-They are taken directly from rclpy's semi-private handles when there is time for them; where
-these have changed, an `EventsExecutor` does the same a little slower.
+They are taken directly from rclpy's semi-private handles; with a version of rclpy without them,
+a slightly slower `EventsExecutor` is used.
 """
 
 from collections.abc import Sequence
@@ -17,10 +17,10 @@ from rclpy.service import Service
 from rclpy.subscription import Subscription
 
 SERVICE_PERIOD_S = 0.005
-"""Host time between two looks at a node's services; a setpoint is looked for at every tick."""
+"""Host time between two checks of a node's services; setpoints are checked at every tick."""
 
 SELDOM_PERIOD_S = 0.05
-"""The same for services that need not answer at once: a parameter's."""
+"""The same for services that need not answer at once: those of parameters."""
 
 
 class Server(Protocol):
@@ -32,7 +32,7 @@ class Server(Protocol):
 
 
 class DirectServer:
-    """Take what has arrived from the handles themselves, in the order given."""
+    """Takes messages and requests from the handles, in the order of the arguments."""
 
     def __init__(
             self, subscriptions: Sequence[Subscription], services: Sequence[Service],
@@ -46,7 +46,7 @@ class DirectServer:
         """Run the callbacks of everything that has arrived; do not wait."""
         self._serve_subscriptions()
         now = time.monotonic()
-        if now >= self._services_due:  # an empty look costs 5 us, a sixth of an actuator's tick
+        if now >= self._services_due:  # a check takes 5 us, a sixth of an actuator's tick
             self._services_due = now + SERVICE_PERIOD_S
             _serve(self._services)
         if now >= self._seldom_due:
@@ -55,7 +55,7 @@ class DirectServer:
 
     def _serve_subscriptions(self) -> None:
         for take_message, message_type, callback in self._subscriptions:
-            # As bytes: an empty take would cost a message object all the same.
+            # As bytes: otherwise a message object is created even if there is no message.
             while (taken := take_message(message_type, True)) is not None:
                 callback(deserialize_message(taken[0], message_type))
 
@@ -76,9 +76,9 @@ def _serve(services: Sequence[Any]) -> None:
 
 class ExecutorServer:
     """
-    Serve a node on an executor of its own, unless its mailbox's executor already does.
+    Serves a node with its own executor, unless its mailbox's executor already does.
 
-    ``node`` is None where it does.
+    ``node``: None if the mailbox's executor serves it.
     """
 
     def __init__(self, node: Node | None) -> None:
@@ -97,9 +97,9 @@ def open_server(
         node: Node, subscriptions: Sequence[Subscription], services: Sequence[Service],
         seldom: Sequence[Service], has_mailbox: bool) -> Server:
     """
-    Return what serves the node between ticks; ``has_mailbox``: it waits for steps itself.
+    Return the server of a node between ticks; ``has_mailbox``: the node also has a mailbox.
 
-    ``seldom`` are services that are looked at less often.
+    ``seldom`` are services that are checked less often.
     """
     if has_handles():
         return DirectServer(subscriptions, services, seldom)

@@ -155,7 +155,7 @@ def test_a_stranger_of_another_user_is_not_let_in(wires, monkeypatch):
 
 
 def test_repeated_foreign_connections_cause_no_delay(wires, monkeypatch):
-    monkeypatch.setattr(local_wire, '_STRANGERS', 3)
+    monkeypatch.setattr(local_wire, '_MOST_REJECTED', 3)
     strangers = [call(b'nobody') for _ in range(10)]
     ends = [call(identity) for identity in IDENTITIES.values()]
     assert not wires.connect(IDENTITIES)
