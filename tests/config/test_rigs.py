@@ -2,7 +2,7 @@
 
 import math
 
-from isa_ros.analysis.experiment import run
+from isa_ros.scripting.run import load
 import numpy as np
 import pytest
 
@@ -18,9 +18,9 @@ def drops():
     """Return (t, deflection, torque) of the three drops by their stiffness in Nm/rad."""
     found = {}
     for stiffness, name in ((150.0, 'weight_soft'), (300.0, 'weight'), (600.0, 'weight_stiff')):
-        joint = run('rig_rotary', name).traces['/rotor/joint_states']
-        position = joint['position[0]']
-        found[stiffness] = joint.t, position[0] - position, joint['effort[0]']
+        result = load('rig_rotary', name).simulate()
+        position = result['rotor.position']
+        found[stiffness] = result.time, position[0] - position, result['rotor.force']
     return found
 
 
@@ -54,25 +54,23 @@ def test_nothing_is_felt_before_the_rope_is_taut(drops):
 
 def test_pure_position_control_bears_the_weight_worse(drops):
     """Paper Fig 17: without a torque loop twice the torque, and it takes longer to settle."""
-    traces = run('rig_rotary_position', 'weight').traces
-    joint, reference = traces['/rotor/joint_states'], traces['/rotor/references']
-    assert not reference['position[1]'].any()
-    assert joint['effort[0]'].max() > 2.0 * drops[300.0][2].max()
-    late = joint.t > TAUT_S + 0.6
-    turned = joint['position[0]'][0] - joint['position[0]'][late]
+    result = load('rig_rotary_position', 'weight').simulate()
+    assert not result['rotor.force_reference'].any()
+    assert result['rotor.force'].max() > 2.0 * drops[300.0][2].max()
+    position = result['rotor.position']
+    turned = position[0] - position[result.time > TAUT_S + 0.6]
     assert np.abs(turned - turned[LAST].mean()).max() > 0.05 * turned[LAST].mean()
 
 
 def test_impacts_stay_below_the_stall_torque():
     """Paper Fig 15: the wheel hits both stops repeatedly, below 170 Nm, with spikes."""
-    traces = run('rig_rotary', 'impact').traces
-    joint, reference = traces['/rotor/joint_states'], traces['/rotor/references']['position[1]']
-    assert np.abs(joint['effort[0]']).max() < STALL
-    for beyond in (joint['position[0]'] < 0.0873, joint['position[0]'] > 1.6577):
+    result = load('rig_rotary', 'impact').simulate()
+    position, reference = result['rotor.position'], result['rotor.force_reference']
+    assert np.abs(result['rotor.force']).max() < STALL
+    for beyond in (position < 0.0873, position > 1.6577):
         assert np.count_nonzero(np.diff(beyond.astype(int)) == 1) >= 3
     # The stop absorbs at least 1 rad/s, times 20 Nms/rad; half of that in one period.
-    late = joint.t > 2.2
-    assert np.abs(np.diff(reference[late])).max() > 10.0
+    assert np.abs(np.diff(reference[result.time > 2.2])).max() > 10.0
 
 
 @pytest.mark.parametrize(('name', 'base', 'step'), [
@@ -86,42 +84,41 @@ def test_knee_s_force_follows_its_step_with_the_foot_on_the_pallet(name, base, s
     Neglected are the shank's weight (below 2 Nm) and friction at the foot, below a fifth of the
     load, at the knee's height of 0.3 m, against 0.24 m of distance.
     """
-    traces = run('rig_knee', name).traces
-    knee, joints = traces['/kfe/joint_states'], traces['/joint_states']
-    normal = traces['/coordinator/ground_contact']['wrench.force.z']
+    result = load('rig_knee', name).simulate()
+    t, normal = result.time, result['body.foot_force'][:, 2]
     for until, level in ((0.3, base), (0.7, step), (1.0, base)):
-        steady = (knee.t > until - 0.05) & (knee.t < until)
-        assert knee['effort[0]'][steady].mean() == pytest.approx(level, abs=10.0)
-    assert normal[knee.t > 0.02].min() > 0.0
-    at = np.searchsorted(knee.t, 0.69)
-    reach = 0.38 * math.sin(-joints['position[1]'][at] - joints['position[2]'][at])
-    assert normal[at] == pytest.approx(joints['effort[2]'][at] / reach, rel=0.25)
+        steady = (t > until - 0.05) & (t < until)
+        assert result['kfe.force'][steady].mean() == pytest.approx(level, abs=10.0)
+    assert normal[t > 0.02].min() > 0.0
+    at = np.searchsorted(t, 0.69)
+    _, hfe, kfe = result['body.position'][at]
+    reach = 0.38 * math.sin(-hfe - kfe)
+    assert normal[at] == pytest.approx(result['body.torque'][at, 2] / reach, rel=0.25)
 
 
 def test_knee_follows_its_sine_in_the_air():
     """Paper Fig 19: the piston within 5 % of the amplitude rms; the foot touches nothing."""
-    traces = run('rig_knee', 'knee_sine').traces
-    knee, reference = traces['/kfe/joint_states'], traces['/kfe/references']['position[0]']
-    late = knee.t > 1.1
-    error = (knee['position[0]'] - reference)[late]
+    result = load('rig_knee', 'knee_sine').simulate()
+    position, late = result['kfe.position'], result.time > 1.1
+    error = (position - result['kfe.position_reference'])[late]
     assert np.sqrt(np.mean(error * error)) < 0.05 * 0.01
-    assert np.ptp(knee['position[0]'][late]) == pytest.approx(0.02, rel=0.05)
-    assert not traces['/coordinator/ground_contact']['wrench.force.z'].any()
+    assert np.ptp(position[late]) == pytest.approx(0.02, rel=0.05)
+    assert not result['body.foot_force'].any()
 
 
 def test_knee_rig_bears_the_drop():
     """Paper Fig 20: 10 cm onto wood, knee peak above 2 kN and below its 7500 N; it stands."""
-    traces = run('rig_knee', 'drop').traces
-    normal = traces['/coordinator/ground_contact']['wrench.force.z']
-    assert 2000.0 < traces['/kfe/joint_states']['effort[0]'].max() < 7500.0
+    result = load('rig_knee', 'drop').simulate()
+    normal = result['body.foot_force'][:, 2]
+    assert 2000.0 < result['kfe.force'].max() < 7500.0
     # A whole period of its decaying swing, 2 Hz: the mean is the weight except for the decay.
     assert normal[-500:].mean() == pytest.approx(15.2 * GRAVITY, rel=0.1)
 
 
 def test_leg_of_hyq_lands_and_stands():
     """A drop of 10 cm on two ISA v2: below their 4000 N, then the weight of 11.449 kg."""
-    traces = run('hyq_leg', 'drop').traces
-    normal = traces['/coordinator/ground_contact']['wrench.force.z']
+    result = load('hyq_leg', 'drop').simulate()
+    normal = result['body.foot_force'][:, 2]
     for name in ('hfe', 'kfe'):
-        assert 500.0 < np.abs(traces[f'/{name}/joint_states']['effort[0]']).max() < 4000.0
+        assert 500.0 < np.abs(result[f'{name}.force']).max() < 4000.0
     assert normal[LAST].mean() == pytest.approx(11.449 * GRAVITY, rel=0.01)

@@ -17,7 +17,7 @@ from isa_ros.analysis.identification.force_balance import fit_friction
 from isa_ros.analysis.identification.volume_balance import (
     C_LI, COMPLIANCE, CURVE, fit_balance, Q_0)
 from isa_ros.analysis.signals.recording import Recording, recording_of, SHORTEST
-from isa_ros.analysis.signals.traces import read_traces
+from isa_ros.analysis.signals.signals import read_signals
 from isa_ros.core.units import LPM, MILLI
 from isa_ros.errors import BagError
 from isa_ros.plant.plant import LinearPlant, RotaryPlant
@@ -76,10 +76,11 @@ def identify_bag(bag: Path, actuator: str | None = None) -> Identified:
         The bag has no actuator of this name.
 
     """
-    run, traces = read_traces(bag)
+    signals = read_signals(bag)
+    run = signals.run
     found = Identified({}, {})
     for one in [run.actuator(actuator)] if actuator else run.actuators:
-        recording = recording_of(run, traces, one, bag)
+        recording = recording_of(signals, one, bag)
         moved, least = float(np.ptp(recording.position)), _least_motion(recording)
         if moved < least:
             unit = 'rad' if one.sheet.is_rotary else 'm'

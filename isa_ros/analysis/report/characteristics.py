@@ -1,13 +1,14 @@
 """
 Figures of the paper that show no signals over time: responses and characteristics.
 
-Drawn from a bag as `isa_ros.analysis.report.paper_figures`, each from the actuators that moved.
+Drawn from a run as `isa_ros.analysis.report.paper_figures`, each from the actuators that moved.
 """
 
 from collections.abc import Callable, Mapping
 
-from isa_ros.analysis.report.figures import ATMOSPHERE, stack, Traces
+from isa_ros.analysis.report.figures import stack
 from isa_ros.analysis.signals.frequency import bandwidth, chirp_response, Response
+from isa_ros.analysis.signals.signals import Signals
 from isa_ros.config.run_config import ActuatorConfig, RunConfig
 from isa_ros.core.units import LPM, MILLI, MPA
 from isa_ros.errors import ConfigError
@@ -22,86 +23,82 @@ SEGMENT_S = 0.5             # of the chirp, whose spectra are averaged
 SERIES = 'current, coils in series, mA'
 
 
-def valve_response(run: RunConfig, traces: Traces) -> Figure:
+def valve_response(signals: Signals) -> Figure:
     """Draw the response of each spool to its current, relative to K_spool, as Fig 4."""
     responses = {}
-    for actuator in moved(run, traces):
-        valve, references = _valve(actuator, traces)
-        plant = plant_record(actuator.sheet.plant)[0]
+    for actuator in moved(signals):
+        name, plant = actuator.name, plant_record(actuator.sheet.plant)[0]
         per_ampere = plant.valve.k_spool / plant.coil.parallel
-        responses[actuator.name] = _chirp(
-            references, valve['effort[0]'] * per_ampere, valve['position[0]'], run)
+        responses[name] = _chirp(
+            signals[f'{name}.current_reference'], signals[f'{name}.current'] * per_ampere,
+            signals[f'{name}.spool'], signals.run)
     return _bode('Response of the valves, as Fig 4', 'spool over current', responses)
 
 
-def force_response(run: RunConfig, traces: Traces) -> Figure:
+def force_response(signals: Signals) -> Figure:
     """Draw the response of each force or torque to its reference."""
     responses = {}
-    for actuator in moved(run, traces):
-        reference = traces[f'/{actuator.name}/references']['position[1]']
-        force = traces[f'/{actuator.name}/joint_states']['effort[0]']
-        responses[actuator.name] = _chirp(reference, reference, force, run)
-    rotary = {actuator.sheet.is_rotary for actuator in moved(run, traces)}
+    for actuator in moved(signals):
+        reference = signals[f'{actuator.name}.force_reference']
+        force = signals[f'{actuator.name}.force']
+        responses[actuator.name] = _chirp(reference, reference, force, signals.run)
+    rotary = {actuator.sheet.is_rotary for actuator in moved(signals)}
     output = ' and '.join(word for word, is_rotary in (('force', False), ('torque', True))
                           if is_rotary in rotary)
     return _bode(f'Bandwidth of the {output}', f'{output} over reference', responses)
 
 
-def flow_gain(run: RunConfig, traces: Traces) -> Figure:
+def flow_gain(signals: Signals) -> Figure:
     """Draw the flow of the open land from the supply, at 3.5 MPa, over the current, as Fig 5."""
     figure, (ax,) = _axes(1, 'Flow gain of the valves, as Fig 5')
-    supply = _gauge(traces['/coordinator/supply_pressure']['fluid_pressure'])
-    for actuator in moved(run, traces):
-        valve, _ = _valve(actuator, traces)
-        plant = plant_record(actuator.sheet.plant)[0].valve
-        spool = valve['position[0]']
-        chamber = np.where(spool > 0.0, *(
-            _gauge(traces[f'/{actuator.name}/pressure_{side}']['fluid_pressure'])
-            for side in 'ab'))
-        drop = supply - chamber
+    for actuator in moved(signals):
+        name, plant = actuator.name, plant_record(actuator.sheet.plant)[0].valve
+        spool, supply = signals[f'{name}.spool'], signals.supply_pressure(name).values
+        drop = supply - np.where(
+            spool > 0.0, signals[f'{name}.pressure_a'], signals[f'{name}.pressure_b'])
         tare = plant.c_tare * np.sqrt(supply)
-        flow = (valve['velocity[1]'] - tare) * np.sqrt(LAND_DROP / np.maximum(drop, LEAST_DROP))
+        flow = signals[f'{name}.supply_flow'] - tare
+        flow = flow * np.sqrt(LAND_DROP / np.maximum(drop, LEAST_DROP))
         used = drop > LEAST_DROP
         ax.plot(spool[used] / plant.k_spool / MILLI, np.sign(spool[used]) * flow[used] / LPM, '.',
-                markersize=2, label=f'{actuator.name} ({actuator.model})')
+                markersize=2, label=f'{name} ({actuator.model})')
     ax.set_ylabel('flow of one land at 3.5 MPa, l/min')
     return _finish(figure, (ax,), SERIES)
 
 
-def leakage(run: RunConfig, traces: Traces) -> Figure:
+def leakage(signals: Signals) -> Figure:
     """Draw the supply flow of each blocked actuator over its current, as Fig 6."""
     figure, (ax,) = _axes(1, 'Leakage of the valves, as Fig 6')
-    for actuator in moved(run, traces):
-        valve, _ = _valve(actuator, traces)
-        plant = plant_record(actuator.sheet.plant)[0].valve
+    for actuator in moved(signals):
+        name, plant = actuator.name, plant_record(actuator.sheet.plant)[0].valve
         after = slice(1, None)  # at t = 0 nothing has flowed yet
-        ax.plot(valve['position[0]'][after] / plant.k_spool / MILLI,
-                valve['velocity[1]'][after] / LPM, linewidth=1.0,
-                label=f'{actuator.name} ({actuator.model})')
+        ax.plot(signals[f'{name}.spool'][after] / plant.k_spool / MILLI,
+                signals[f'{name}.supply_flow'][after] / LPM, linewidth=1.0,
+                label=f'{name} ({actuator.model})')
     ax.set_ylabel('supply flow, l/min')
     ax.set_ylim(bottom=0.0)
     return _finish(figure, (ax,), SERIES)
 
 
-def current_step(run: RunConfig, traces: Traces) -> Figure:
+def current_step(signals: Signals) -> Figure:
     """Draw reference and current of the amplifiers over time, as Fig 8."""
-    actuators = moved(run, traces)
+    actuators = moved(signals)
     figure, axes = _axes(len(actuators), 'Steps of the current, as Fig 8')
     for ax, actuator in zip(axes, actuators):
-        valve, reference = _valve(actuator, traces)
-        t = traces[f'/{actuator.name}/valve'].t
+        t, current = signals.over_time(f'{actuator.name}.current')
+        reference = signals[f'{actuator.name}.current_reference']
         ax.plot(t, reference / MILLI, color='blue', linestyle='--', label='reference')
-        ax.plot(t, valve['effort[0]'] / MILLI, color='red', label='current')
+        ax.plot(t, current / MILLI, color='red', label='current')
         ax.set_ylabel(f'{actuator.name}, mA')
     return _finish(figure, axes, 'simulation time, s')
 
 
-RESPONSES: Mapping[str, Callable[[RunConfig, Traces], Figure]] = {
+RESPONSES: Mapping[str, Callable[[Signals], Figure]] = {
     'valve_response': valve_response, 'flow_gain': flow_gain, 'leakage': leakage,
     'current_step': current_step, 'bandwidth': force_response}
 
 
-def moved(run: RunConfig, traces: Traces) -> list[ActuatorConfig]:
+def moved(signals: Signals) -> list[ActuatorConfig]:
     """
     Return the actuators whose references moved.
 
@@ -112,24 +109,14 @@ def moved(run: RunConfig, traces: Traces) -> list[ActuatorConfig]:
 
     """
     found = []
-    for actuator in run.actuators:
-        references = traces[f'/{actuator.name}/references']
-        if any(np.ptp(references[f'position[{k}]']) > 0.0 for k in (1, 3)):
+    for actuator in signals.run.actuators:
+        if any(np.ptp(signals[f'{actuator.name}.{name}_reference']) > 0.0
+               for name in ('force', 'current')):
             found.append(actuator)
     if not found:
-        raise ConfigError(f'{run.source}: no reference moves, so there is no response to draw')
+        raise ConfigError(
+            f'{signals.run.source}: no reference moves, so there is no response to draw')
     return found
-
-
-def _valve(actuator: ActuatorConfig, traces: Traces) -> tuple[np.ndarray, np.ndarray]:
-    """Return the valve's fields, and the current reference (A) at the same times."""
-    return (traces[f'/{actuator.name}/valve'].fields,
-            traces[f'/{actuator.name}/references']['position[3]'])
-
-
-def _gauge(absolute: np.ndarray) -> np.ndarray:
-    gauge: np.ndarray = absolute - ATMOSPHERE
-    return gauge
 
 
 def _chirp(r: np.ndarray, x: np.ndarray, y: np.ndarray, run: RunConfig) -> Response:

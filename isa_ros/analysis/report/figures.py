@@ -2,77 +2,72 @@
 
 from collections.abc import Sequence
 
-from isa_ros.analysis.signals.traces import Trace
-from isa_ros.config.run_config import ActuatorConfig, RunConfig
+from isa_ros.analysis.signals.signals import Signal, Signals
+from isa_ros.config.run_config import ActuatorConfig
+from isa_ros.core.units import MPA
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 import numpy as np
 
-ATMOSPHERE = 101325.0  # Pa; FluidPressure is absolute, figures show gauge pressure
 
-Traces = dict[str, Trace]
-
-
-def figures(run: RunConfig, traces: Traces) -> dict[str, Figure]:
+def figures(signals: Signals) -> dict[str, Figure]:
     """Return the figures of a run by name: the leg first, then every actuator."""
     drawn = {}
-    if run.leg is not None:
-        drawn['leg'] = leg_figure(traces)
-    for actuator in run.actuators:
-        drawn[actuator.name] = actuator_figure(actuator, traces)
+    if signals.run.leg is not None:
+        drawn['leg'] = leg_figure(signals)
+    for actuator in signals.run.actuators:
+        drawn[actuator.name] = actuator_figure(actuator, signals)
     return drawn
 
 
-def actuator_figure(actuator: ActuatorConfig, traces: Traces) -> Figure:
+def actuator_figure(actuator: ActuatorConfig, signals: Signals) -> Figure:
     """Draw position, force, chamber pressures and valve of one actuator over time."""
     figure, (position, force, pressure, valve) = stack(
         4, f'{actuator.name} ({actuator.model}, preset {actuator.preset})', 8.6)
-    of = {topic: traces[f'/{actuator.name}/{topic}'] for topic in (
-        'joint_states', 'references', 'pressure_a', 'pressure_b', 'valve')}
     scale, unit, load = (
         (180.0 / np.pi, 'deg', 'torque, Nm') if actuator.sheet.is_rotary
         else (1e3, 'mm', 'force, N'))
-    joint, reference, spool = of['joint_states'], of['references'], of['valve']
-    _reference(position, reference.t, scale * reference['position[0]'])
-    _measured(position, joint.t, scale * joint['position[0]'])
-    position.set_ylabel(f'position, {unit}')
-    _reference(force, reference.t, reference['position[1]'])
-    _measured(force, joint.t, joint['effort[0]'])
-    force.set_ylabel(load)
-    supply = traces['/coordinator/supply_pressure']
-    for name, trace, color in (
-            ('A', of['pressure_a'], 'C0'), ('B', of['pressure_b'], 'C3'),
-            ('supply', supply, 'gray')):
-        pressure.plot(
-            trace.t, (trace['fluid_pressure'] - ATMOSPHERE) * 1e-6, label=name, color=color)
+
+    def of(field: str) -> Signal:
+        return signals.over_time(f'{actuator.name}.{field}')
+
+    for ax, field, factor, label in (
+            (position, 'position', scale, f'position, {unit}'), (force, 'force', 1.0, load),
+            (valve, 'spool', 1e3, 'spool, mm')):
+        _reference(ax, of(f'{field}_reference'), factor)
+        _measured(ax, of(field), factor)
+        ax.set_ylabel(label)
+    for name, signal, color in (
+            ('A', of('pressure_a'), 'C0'), ('B', of('pressure_b'), 'C3'),
+            ('supply', signals.supply_pressure(actuator.name), 'gray')):
+        pressure.plot(signal.t, signal.values / MPA, label=name, color=color)
     pressure.set_ylabel('pressure, MPa gauge')
-    _reference(valve, reference.t, 1e3 * reference['position[2]'])
-    _measured(valve, spool.t, 1e3 * spool['position[0]'])
-    valve.set_ylabel('spool, mm')
     return finish(figure, (position, force, pressure, valve))
 
 
-def leg_figure(traces: Traces) -> Figure:
+def leg_figure(signals: Signals) -> Figure:
     """Draw joint angles, joint torques and the ground's force on the foot over time."""
     figure, (angle, torque, contact) = stack(3, 'leg', 6.6)
-    joints, ground = traces['/joint_states'], traces['/coordinator/ground_contact']
+    angles, torques, ground = (
+        signals.over_time(f'body.{name}') for name in ('position', 'torque', 'foot_force'))
     for k, name in enumerate(('HAA', 'HFE', 'KFE')):
-        angle.plot(joints.t, np.degrees(joints[f'position[{k}]']), label=name)
-        torque.plot(joints.t, joints[f'effort[{k}]'], label=name)
+        angle.plot(angles.t, np.degrees(angles.values[:, k]), label=name)
+        torque.plot(torques.t, torques.values[:, k], label=name)
     angle.set_ylabel('joint angle, deg')
     torque.set_ylabel('joint torque, Nm')
-    for axis in 'xyz':
-        contact.plot(ground.t, ground[f'wrench.force.{axis}'], label=axis)
+    for k, axis in enumerate('xyz'):
+        contact.plot(ground.t, ground.values[:, k], label=axis)
     contact.set_ylabel('ground force, N')
     return finish(figure, (angle, torque, contact))
 
 
-def _reference(ax: Axes, t: np.ndarray, values: np.ndarray) -> None:
-    ax.plot(t, values, color='C1', linestyle='--', linewidth=1.0, label='reference')
+def _reference(ax: Axes, signal: Signal, factor: float) -> None:
+    ax.plot(signal.t, factor * signal.values, color='C1', linestyle='--', linewidth=1.0,
+            label='reference')
 
 
-def _measured(ax: Axes, t: np.ndarray, values: np.ndarray) -> None:
-    ax.plot(t, values, color='C0', linewidth=1.2, label='measured')
+def _measured(ax: Axes, signal: Signal, factor: float) -> None:
+    ax.plot(signal.t, factor * signal.values, color='C0', linewidth=1.2, label='measured')
 
 
 def stack(rows: int, title: str, height: float) -> tuple[Figure, tuple[Axes, ...]]:

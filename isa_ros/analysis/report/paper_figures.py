@@ -1,5 +1,5 @@
 """
-Figures of the paper, drawn from a bag: reference dashed blue, applied solid red.
+Figures of the paper, drawn from a run: reference dashed blue, applied solid red.
 
 A scenario may have a figure (`figure: torque_step`), which `isa report` draws first. It shows
 the knee of a leg, or the first actuator of a run without a leg.
@@ -9,8 +9,8 @@ from collections.abc import Mapping
 from typing import NamedTuple
 
 from isa_ros.analysis.report.characteristics import RESPONSES
-from isa_ros.analysis.report.figures import finish, stack, Traces
-from isa_ros.analysis.signals.traces import Trace
+from isa_ros.analysis.report.figures import finish, stack
+from isa_ros.analysis.signals.signals import Signal, Signals
 from isa_ros.config.run_config import ActuatorConfig, RunConfig
 from isa_ros.core.suggest import alternatives
 from isa_ros.errors import ConfigError
@@ -43,9 +43,9 @@ LAYOUTS: Mapping[str, Layout] = {
 """By the names of `isa_ros.scenario.scenario.FIGURES`, which also has those of `RESPONSES`."""
 
 
-def paper_figure(name: str, run: RunConfig, traces: Traces) -> Figure:
+def paper_figure(name: str, signals: Signals) -> Figure:
     """
-    Return the figure of a name, drawn from a run's traces.
+    Return the figure of a name, drawn from a run's signals.
 
     Raises
     ------
@@ -54,15 +54,15 @@ def paper_figure(name: str, run: RunConfig, traces: Traces) -> Figure:
 
     """
     if name in RESPONSES:
-        return RESPONSES[name](run, traces)
+        return RESPONSES[name](signals)
     if name not in LAYOUTS:
         raise ConfigError(f'{name} is not a figure; {alternatives(name, [*LAYOUTS, *RESPONSES])}')
     layout = LAYOUTS[name]
-    actuator = shown(run)
+    actuator = shown(signals.run)
     rows = len(layout.panels)
     figure, axes = stack(rows, f'{layout.title}: {actuator.name}', 2.6 * rows + 0.8)
     for panel, ax in zip(layout.panels, axes):
-        (draw_position if panel == POSITION else draw_force)(ax, actuator, traces)
+        (draw_position if panel == POSITION else draw_force)(ax, actuator, signals)
     return finish(figure, axes)
 
 
@@ -72,32 +72,29 @@ def shown(run: RunConfig) -> ActuatorConfig:
     return run.actuator(joints[KNEE]) if KNEE in joints else run.actuators[0]
 
 
-def draw_position(ax: Axes, actuator: ActuatorConfig, traces: Traces) -> None:
+def draw_position(ax: Axes, actuator: ActuatorConfig, signals: Signals) -> None:
     """Draw commanded and measured position of an actuator, deg or mm."""
     scale, unit = (float(np.degrees(1.0)), 'deg') if actuator.sheet.is_rotary else (1e3, 'mm')
-    joint, reference = _of(actuator, traces)
+    name = f'{actuator.name}.position'
     if not isinstance(actuator.sheet.reu.position, Off):
-        _dashed(ax, reference.t, scale * reference['position[0]'])
-    _solid(ax, joint.t, scale * joint['position[0]'], 'measured')
+        _dashed(ax, signals.over_time(f'{name}_reference'), scale)
+    _solid(ax, signals.over_time(name), scale, 'measured')
     ax.set_ylabel(f'position, {unit}')
 
 
-def draw_force(ax: Axes, actuator: ActuatorConfig, traces: Traces) -> None:
+def draw_force(ax: Axes, actuator: ActuatorConfig, signals: Signals) -> None:
     """Draw reference and applied force or torque of an actuator, N or Nm."""
-    joint, reference = _of(actuator, traces)
+    name = f'{actuator.name}.force'
     if not isinstance(actuator.sheet.reu.force, Off):
-        _dashed(ax, reference.t, reference['position[1]'])
-    _solid(ax, joint.t, joint['effort[0]'], 'applied')
+        _dashed(ax, signals.over_time(f'{name}_reference'), 1.0)
+    _solid(ax, signals.over_time(name), 1.0, 'applied')
     ax.set_ylabel('torque, Nm' if actuator.sheet.is_rotary else 'force, N')
 
 
-def _of(actuator: ActuatorConfig, traces: Traces) -> tuple[Trace, Trace]:
-    return (traces[f'/{actuator.name}/joint_states'], traces[f'/{actuator.name}/references'])
+def _dashed(ax: Axes, signal: Signal, factor: float) -> None:
+    ax.plot(signal.t, factor * signal.values, color='blue', linestyle='--', linewidth=1.1,
+            label='reference')
 
 
-def _dashed(ax: Axes, t: np.ndarray, values: np.ndarray) -> None:
-    ax.plot(t, values, color='blue', linestyle='--', linewidth=1.1, label='reference')
-
-
-def _solid(ax: Axes, t: np.ndarray, values: np.ndarray, label: str) -> None:
-    ax.plot(t, values, color='red', linewidth=1.2, label=label)
+def _solid(ax: Axes, signal: Signal, factor: float, label: str) -> None:
+    ax.plot(signal.t, factor * signal.values, color='red', linewidth=1.2, label=label)

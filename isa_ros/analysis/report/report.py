@@ -4,14 +4,14 @@ import base64
 import html
 from pathlib import Path
 
-from isa_ros.analysis.report.figures import ATMOSPHERE, figures, Traces
+from isa_ros.analysis.report.figures import figures
 from isa_ros.analysis.report.paper_figures import paper_figure
-from isa_ros.analysis.signals.traces import read_traces
+from isa_ros.analysis.signals.signals import read_signals, Signals
 from isa_ros.bag.provenance import SCENARIO
 from isa_ros.bag.reader import Bag
-from isa_ros.config.run_config import RunConfig
 from isa_ros.config.sections import Place
 from isa_ros.config.yaml_text import parse
+from isa_ros.core.units import MPA
 from isa_ros.errors import BagError
 from isa_ros.scenario.scenario import figure_of
 from isa_ros.text.page import png
@@ -42,15 +42,13 @@ def write_report(bag: Path, page: Path) -> list[Path]:
 
     """
     _refuse_others(page)
-    run, traces = read_traces(bag)
-    if '/clock' not in traces:
-        raise BagError(f'{bag}: has no samples, so there is nothing to draw')
+    signals = read_signals(bag)
     page.parent.mkdir(parents=True, exist_ok=True)
     written, images = [page], []
-    drawn = figures(run, traces)
+    drawn = figures(signals)
     name_of_paper = named_figure(bag)
     if name_of_paper is not None:
-        drawn = {name_of_paper: paper_figure(name_of_paper, run, traces)} | drawn
+        drawn = {name_of_paper: paper_figure(name_of_paper, signals)} | drawn
     for name, figure in drawn.items():
         path = page.with_name(f'{page.stem}_{name}.png')
         path.write_bytes(drawing := png(figure))
@@ -58,8 +56,8 @@ def write_report(bag: Path, page: Path) -> list[Path]:
         encoded = base64.b64encode(drawing).decode()
         images.append(f'<img alt="{html.escape(name)}" src="data:image/png;base64,{encoded}">')
     page.write_text(_PAGE.format(
-        generator=_GENERATOR, title=html.escape(run.name),
-        summary=html.escape(_summary(run, traces)), rows=_rows(extremes(run, traces)),
+        generator=_GENERATOR, title=html.escape(signals.run.name),
+        summary=html.escape(_summary(signals)), rows=_rows(extremes(signals)),
         images=''.join(images)), encoding='utf-8')
     return written
 
@@ -80,27 +78,25 @@ def named_figure(bag: Path) -> str | None:
     return figure_of(parse(Bag(bag).provenance.scenario, SCENARIO), Place(SCENARIO))
 
 
-def extremes(run: RunConfig, traces: Traces) -> list[tuple[str, float, float, str]]:
+def extremes(signals: Signals) -> list[tuple[str, float, float, str]]:
     """Return (signal, least, greatest, unit) of every actuator, and of the ground's force."""
     values = []
-    for actuator in run.actuators:
+    for actuator in signals.run.actuators:
         name = actuator.name
-        joint = traces[f'/{name}/joint_states']
-        pressures = [traces[f'/{name}/pressure_{side}']['fluid_pressure'] for side in 'ab']
-        units = ('rad', 'Nm') if actuator.sheet.is_rotary else ('m', 'N')
+        pressures = [signals[f'{name}.pressure_{side}'] / MPA for side in 'ab']
         for signal, series, unit in (
-                ('position', joint['position[0]'], units[0]),
-                ('force', joint['effort[0]'], units[1]),
-                ('pressure', (np.concatenate(pressures) - ATMOSPHERE) * 1e-6, 'MPa gauge')):
+                *((field, signals[f'{name}.{field}'], signals.unit(f'{name}.{field}'))
+                  for field in ('position', 'force')),
+                ('pressure', np.concatenate(pressures), 'MPa gauge')):
             values.append((f'{name} {signal}', float(series.min()), float(series.max()), unit))
-    if run.leg is not None:
-        ground = traces['/coordinator/ground_contact']['wrench.force.z']
+    if signals.run.leg is not None:
+        ground = signals['body.foot_force'][:, 2]
         values.append(('ground force', float(ground.min()), float(ground.max()), 'N'))
     return values
 
 
-def _summary(run: RunConfig, traces: Traces) -> str:
-    end = float(traces['/clock'].t[-1])
+def _summary(signals: Signals) -> str:
+    run, end = signals.run, float(signals.time[-1])
     return (f'{run.source}: {len(run.actuators)} actuators, {end:.3f} s of simulation time '
             f'in steps of {run.step_ns / 1e6:g} ms.')
 

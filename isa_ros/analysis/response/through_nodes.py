@@ -12,13 +12,12 @@ from pathlib import Path
 import sys
 from tempfile import TemporaryDirectory
 
-from isa_ros.analysis.report.figures import ATMOSPHERE
 from isa_ros.analysis.response import bode as bodes, step as steps
 from isa_ros.analysis.response.actuator_trace import TRACE
 from isa_ros.analysis.response.loops import Loop, PLANT
 from isa_ros.analysis.response.rig import REST_S, Rig
 from isa_ros.analysis.response.sweep import Answer, chirp_band, sections, Sweep, windows
-from isa_ros.analysis.signals.traces import read_traces, Trace
+from isa_ros.analysis.signals.signals import read_signals, Signals
 from isa_ros.config.run_config import RunConfig
 from isa_ros.config.sections import as_tree
 from isa_ros.config.yaml_text import dump, Tree
@@ -33,7 +32,7 @@ from isa_ros.surroundings.supply import SupplySheet
 import numpy as np
 
 RECORDED = ('position_reference', 'force_reference', 'spool_reference', 'current_reference')
-"""The references of a bag, in its order."""
+"""The references that nodes record."""
 
 
 def bode(
@@ -136,7 +135,7 @@ def _recorded(rig: Rig, points: list[Tree], end: int, bag: Path | None) -> np.nd
         run_session(
             prepare(Request(config=config, scenario=scenario, out=out)),
             terminal_report(sys.stderr))
-        return _trace(read_traces(out)[1], name)
+        return _trace(read_signals(out), name)
 
 
 def run_file(run: RunConfig) -> str:
@@ -158,19 +157,13 @@ def run_file(run: RunConfig) -> str:
         'actuators': dict(actuators)})
 
 
-def _trace(traces: dict[str, Trace], name: str) -> np.ndarray:
+def _trace(signals: Signals, name: str) -> np.ndarray:
     """Return the signals of a bag as a `TRACE`; NaN for what nodes do not record."""
-    joint, valve, references, high, low = (
-        traces[f'/{name}/{topic}']
-        for topic in ('joint_states', 'valve', 'references', 'pressure_a', 'pressure_b'))
-    rows = np.full(len(joint.t), math.nan, TRACE)
-    for k, field in enumerate(RECORDED):
-        rows[field] = references[f'position[{k}]']
-    rows['position'] = rows['position_measured'] = joint['position[0]']
-    rows['force'] = rows['force_measured'] = joint['effort[0]']
-    rows['velocity'] = joint['velocity[0]']
-    rows['spool'], rows['current'] = valve['position[0]'], valve['effort[0]']
-    rows['pressure_a'] = high['fluid_pressure'] - ATMOSPHERE
-    rows['pressure_b'] = low['fluid_pressure'] - ATMOSPHERE
+    rows = np.full(len(signals.time), math.nan, TRACE)
+    for field in (*RECORDED, 'position', 'force', 'velocity', 'spool', 'current', 'pressure_a',
+                  'pressure_b'):
+        rows[field] = signals[f'{name}.{field}']
+    for field in ('position', 'force'):
+        rows[f'{field}_measured'] = rows[field]
     rows['pressure'] = rows['pressure_a'] - rows['pressure_b']
     return rows

@@ -4,18 +4,18 @@ from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
 
-from isa_ros.analysis.signals.traces import Trace
-from isa_ros.config.run_config import ActuatorConfig, RunConfig
+from isa_ros.analysis.signals.signals import Signals
+from isa_ros.config.run_config import ActuatorConfig
 from isa_ros.core.units import MPA
 from isa_ros.errors import BagError
 from isa_ros.plant.plant import plant_record
-from isa_ros.surroundings.supply import ATMOSPHERE
 import numpy as np
 
-Traces = dict[str, Trace]
 SHORTEST = 0.5          # s, below which the scatter cannot be estimated
 _SLOWEST_STEP = 2e-3    # s, with which a valve of 100 Hz can just be followed
 _JITTER = 1e-6          # s, of a sample against the grid
+_SIGNALS = ('position', 'force', 'pressure_a', 'pressure_b', 'spool')
+_SUPPLY = 'supply_pressure'
 
 
 @dataclass(frozen=True)
@@ -85,37 +85,28 @@ class Recording:
         return is_whole
 
 
-def recording_of(
-        run: RunConfig, traces: Traces, actuator: ActuatorConfig, bag: Path) -> Recording:
+def recording_of(signals: Signals, actuator: ActuatorConfig, bag: Path) -> Recording:
     """
     Return one actuator's recording.
 
     Raises
     ------
     BagError
-        A topic is missing, or the topics are not sampled together.
+        A signal is missing, or the signals are not sampled together.
 
     """
-    t, signals = None, {}
-    for name, (topic, field) in {
-            'position': (f'/{actuator.name}/joint_states', 'position[0]'),
-            'force': (f'/{actuator.name}/joint_states', 'effort[0]'),
-            'pressure_a': (f'/{actuator.name}/pressure_a', 'fluid_pressure'),
-            'pressure_b': (f'/{actuator.name}/pressure_b', 'fluid_pressure'),
-            'spool': (f'/{actuator.name}/valve', 'position[0]'),
-            'supply_pressure': ('/coordinator/supply_pressure', 'fluid_pressure')}.items():
-        if topic not in traces:
-            raise BagError(f'{bag}: {topic} is missing, cannot identify {actuator.name}')
-        trace = traces[topic]
-        t = trace.t if t is None else t
-        if len(trace.t) != len(t) or np.max(np.abs(trace.t - t)) > _JITTER:
-            raise BagError(f'{bag}: {topic} is not sampled together with the others')
-        offset = ATMOSPHERE if field == 'fluid_pressure' else 0.0
-        signals[name] = np.array(trace[field], np.float64) - offset
+    t, found = None, {}
+    for name in (*_SIGNALS, _SUPPLY):
+        signal = (signals.supply_pressure(actuator.name) if name == _SUPPLY
+                  else signals.over_time(f'{actuator.name}.{name}'))
+        t = signal.t if t is None else t
+        if len(signal.t) != len(t) or np.max(np.abs(signal.t - t)) > _JITTER:
+            raise BagError(f'{bag}: {name} is not sampled together with the others')
+        found[name] = signal.values
     assert t is not None
     return Recording(
         plant=plant_record(actuator.sheet.plant)[0], step=_grid(t, bag),
-        return_pressure=run.supply_of(actuator.name).return_pressure_mpa * MPA, **signals)
+        return_pressure=signals.run.supply_of(actuator.name).return_pressure_mpa * MPA, **found)
 
 
 def _grid(t: np.ndarray, bag: Path) -> float:

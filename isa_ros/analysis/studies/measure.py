@@ -14,7 +14,6 @@ from dataclasses import dataclass, replace
 import math
 
 from isa_ros.actuator.sheet import refuse_wiring
-from isa_ros.analysis.experiment import with_overrides
 from isa_ros.analysis.response.actuator_trace import RATE_HZ
 from isa_ros.analysis.response.bode import bode
 from isa_ros.analysis.response.loops import loop_of
@@ -22,6 +21,7 @@ from isa_ros.analysis.response.rig import BLOCKED, Choice, Rig, rig
 from isa_ros.analysis.response.sweep import Sweep
 from isa_ros.analysis.signals.step_response import step_figures
 from isa_ros.analysis.studies.studies import Case, Study
+from isa_ros.config.changed_parameters import Values, with_parameters
 from isa_ros.config.sections import Place
 from isa_ros.core.timebase import NS_PER_SECOND
 from isa_ros.core.units import MILLI
@@ -154,10 +154,10 @@ def shipped(case: Case, on: Bench) -> float:
 
 def measured(case: Case, on: Bench, value: float) -> Outcome:
     """Measure a case at one value; as `results`."""
-    overrides = case.overrides(value)
-    blocked = changed(on.blocked, 'force', overrides)
+    parameters = case.parameters(value)
+    blocked = changed(on.blocked, 'force', parameters)
     wheel = changed(on.wheel, 'position', {
-        path: number for path, number in overrides.items() if not path.startswith(LOAD)})
+        path: number for path, number in parameters.items() if not path.startswith(LOAD)})
     amplitude = blocked.loop.amplitude
     mid, end = (up_and_back(placed(blocked, place)) for place in PLACES)
     trace = wheel.excite(wheel.start(), on.positions, on.velocities)
@@ -178,10 +178,9 @@ def measured(case: Case, on: Bench, value: float) -> Outcome:
         step=mid[0][:round(SHOWN_S * RATE_HZ)] / amplitude)
 
 
-def changed(given: Rig, loop: str, overrides: dict[str, float]) -> Rig:
+def changed(given: Rig, loop: str, parameters: Values) -> Rig:
     """Return a rig with some parameters replaced, and with one of its loops outermost."""
-    run = with_overrides(given.run, {given.config.name: overrides})
-    config = run.actuators[0]
+    config = with_parameters(given.config, parameters, given.run.source)
     refuse_wiring(config.sheet)
     made = loop_of(config.sheet, loop)
     return replace(given, loop=made).with_config(replace(config, sheet=made.sheet))

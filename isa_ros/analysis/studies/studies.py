@@ -25,8 +25,9 @@ class Case:
     """
     One study on one actuator.
 
-    ``paths`` are the parameters that are varied, named as in `experiment.Overrides`, each with
-    its share of the value; one that begins with ``load.`` belongs to the blocked output.
+    ``paths`` are the dotted paths of the parameters that are varied (as `with_parameters` has
+    them), each with its share of the value; one that begins with ``load.`` belongs to the
+    blocked output.
     """
 
     model: str
@@ -40,7 +41,7 @@ class Case:
         """Return the name of its gains."""
         return PRESETS[self.model]
 
-    def overrides(self, value: float) -> dict[str, float]:
+    def parameters(self, value: float) -> dict[str, float]:
         """Return the parameters at a value, in the units of their declarations."""
         return {path: value * self.unit.scale * share for path, share in self.paths}
 

@@ -5,27 +5,23 @@ The ISA v5 at the knee has the gains retuned for the leg. Figure 14 is run on th
 the rig and on rubber, figure 20 on the pallet and on the ground of `leg.yaml`.
 """
 
-from dataclasses import replace
+from collections.abc import Mapping
 import math
 
-from isa_ros.analysis.experiment import Experiment, run
 from isa_ros.analysis.report.paper_figures import draw_force, draw_position
+from isa_ros.analysis.signals.signals import signals_of
 from isa_ros.analysis.signals.step_response import step_figures, StepFigures
-from isa_ros.analysis.signals.traces import Trace
 from isa_ros.analysis.validation.entry import around, at_least, at_most, Drawing, Entry, Findings
 from isa_ros.analysis.validation.isa_v5 import cell_code, CODE
 from isa_ros.analysis.validation.plots import stacked
-from isa_ros.config.catalogue import material_section
-from isa_ros.config.paths import CONFIG, find
-from isa_ros.config.run_config import RunConfig
-from isa_ros.config.run_file import load_run
-from isa_ros.config.sections import build
 from isa_ros.core.gravity import STANDARD_GRAVITY
 from isa_ros.paper.printed import statement
-from isa_ros.surroundings.ground import Ground
+from isa_ros.scripting.result import Result
+from isa_ros.scripting.run import load, Run
 import numpy as np
 
 RIG, LEG, KNEE = 'rig_knee', 'leg', 'kfe'
+FORCE = f'{KNEE}.force'
 WOOD, RUBBER = 'wood', 'rubber'
 FORCE_STEPS = {'low': (200.0, 500.0), 'high': (1000.0, 3000.0)}  # N, of the scenarios
 STEP_AT, BACK_AT, END_AT = 0.3, 0.7, 1.0     # s, of the scenarios
@@ -38,10 +34,10 @@ STANDING = 0.5         # s, at the end of it
 
 def knee_rig() -> Findings:
     """Compare force steps, sine and drop of the knee with figures 14, 19 and 20."""
-    steps = {(level, ground): run(on_ground(ground), f'force_step_{level}')
+    steps = {(level, ground): on_ground(ground, f'force_step_{level}').simulate()
              for level in FORCE_STEPS for ground in (WOOD, RUBBER)}
-    sine = run(RIG, 'knee_sine')
-    drops = {config: run(config, 'drop', duration=DROP_S) for config in (RIG, LEG)}
+    sine = load(RIG, 'knee_sine').simulate()
+    drops = {config: load(config, 'drop').simulate(DROP_S) for config in (RIG, LEG)}
     return Findings(
         (*_force_steps(steps), *_sine(sine),
          *(entry for config, drop in drops.items() for entry in _drop(config, drop)),
@@ -49,23 +45,14 @@ def knee_rig() -> Findings:
         (_fig_14(steps), _fig_19(sine), _fig_20(drops[RIG])))
 
 
-def on_ground(material: str) -> RunConfig:
+def on_ground(material: str, scenario: str) -> Run:
     """Return the knee rig with a packaged material below the foot."""
-    rig = load_run(find(RIG, CONFIG))
-    assert rig.leg is not None
-    ground = build(Ground, *material_section(material, 'ground'))
-    return replace(rig, body=replace(rig.leg, sheet=replace(rig.leg.sheet, ground=ground)))
+    return load(RIG, scenario).replace({'leg.ground': material})
 
 
-def knee_force(experiment: Experiment) -> tuple[np.ndarray, np.ndarray]:
-    """Return times in s and the load cell's force at the knee in N, both (n,)."""
-    joint = experiment.traces[f'/{KNEE}/joint_states']
-    return joint.t, joint['effort[0]']
-
-
-def edges(experiment: Experiment, level: str) -> tuple[StepFigures, StepFigures]:
-    """Return the figures of the force step and of the step back."""
-    t, force = knee_force(experiment)
+def edges(
+        t: np.ndarray, force: np.ndarray, level: str) -> tuple[StepFigures, StepFigures]:
+    """Return the figures of the knee's force (N) in the step and in the step back, (n,)."""
     base, top = FORCE_STEPS[level]
 
     def figures(first: float, last: float, start: float, target: float) -> StepFigures:
@@ -74,9 +61,9 @@ def edges(experiment: Experiment, level: str) -> tuple[StepFigures, StepFigures]
     return figures(STEP_AT, BACK_AT, base, top), figures(BACK_AT, END_AT, top, base)
 
 
-def _force_steps(steps: dict[tuple[str, str], Experiment]) -> list[Entry]:
+def _force_steps(steps: dict[tuple[str, str], Result]) -> list[Entry]:
     entries = []
-    found = {key: edges(experiment, key[0]) for key, experiment in steps.items()}
+    found = {key: edges(result.time, result[FORCE], key[0]) for key, result in steps.items()}
     for (level, ground), both in found.items():
         entries.append(Entry(
             name=f'force_step_{level}_{ground}_error', source='section 5.2, Fig 14',
@@ -94,24 +81,24 @@ def _force_steps(steps: dict[tuple[str, str], Experiment]) -> list[Entry]:
     return entries
 
 
-def tracking(experiment: Experiment, name: str) -> tuple[float, float]:
+def tracking(signals: Mapping[str, np.ndarray], t: np.ndarray, name: str) -> tuple[float, float]:
     """
-    Return the rms errors of position and force.
+    Return the rms errors of position and force of an actuator; ``t`` (s) are the times.
 
     The position's in percent of half its reference's range, the force's in N or Nm.
     """
-    joint, reference = (
-        experiment.traces[f'/{name}/{topic}'] for topic in ('joint_states', 'references'))
-    late = joint.t >= FIRST_PERIOD
-    wanted = reference['position[0]'][late]
-    half = 0.5 * float(np.ptp(wanted))
-    return (100.0 * _rms(joint['position[0]'][late] - wanted) / half,
-            _rms((joint['effort[0]'] - reference['position[1]'])[late]))
+    late = t >= FIRST_PERIOD
+    half = 0.5 * float(np.ptp(signals[f'{name}.position_reference'][late]))
+    position, force = (
+        _rms((signals[f'{name}.{field}'] - signals[f'{name}.{field}_reference'])[late])
+        for field in ('position', 'force'))
+    return 100.0 * position / half, force
 
 
-def _sine(sine: Experiment) -> tuple[Entry, ...]:
-    rotary, _ = tracking(run('rig_rotary', 'wheel_sine'), 'rotor')
-    position, force = tracking(sine, KNEE)
+def _sine(sine: Result) -> tuple[Entry, ...]:
+    wheel = load('rig_rotary', 'wheel_sine').simulate()
+    rotary, _ = tracking(wheel, wheel.time, 'rotor')
+    position, force = tracking(sine, sine.time, KNEE)
     return (
         Entry(name='knee_sine_position', source='section 5.2, Fig 19',
               paper='similar to the rotary actuator', ours=position, unit='percent',
@@ -122,17 +109,21 @@ def _sine(sine: Experiment) -> tuple[Entry, ...]:
               tolerance=at_most(2.0 * cell_code()), tolerance_source=f'rms; twice {CODE}'))
 
 
-def touchdown(experiment: Experiment) -> float:
-    """Return the time from the release to the first contact, s."""
-    ground = experiment.traces['/coordinator/ground_contact']
-    touching = np.flatnonzero(ground['wrench.force.z'] > 0.0)
-    return float(ground.t[touching[0]] - RELEASE) if len(touching) else math.nan
+def touchdown(t: np.ndarray, normal: np.ndarray) -> float:
+    """Return the time (s) from the release to the first contact by the ground force, (n,)."""
+    touching = np.flatnonzero(normal > 0.0)
+    return float(t[touching[0]] - RELEASE) if len(touching) else math.nan
 
 
-def _drop(config: str, drop: Experiment) -> tuple[Entry, ...]:
-    t, force = knee_force(drop)
-    reference = drop.traces[f'/{KNEE}/references']['position[1]']
-    fall = touchdown(drop)
+def ground_force(result: Result) -> np.ndarray:
+    """Return the vertical force of the ground on the foot in N, (n,)."""
+    force: np.ndarray = result['body.foot_force'][:, 2]
+    return force
+
+
+def _drop(config: str, drop: Result) -> tuple[Entry, ...]:
+    t, force, reference = drop.time, drop[FORCE], drop[f'{FORCE}_reference']
+    fall = touchdown(t, ground_force(drop))
     after = t > RELEASE + fall + 0.05
     standing = t > DROP_S - STANDING
     height = 0.5 * STANDARD_GRAVITY * fall * fall
@@ -158,14 +149,13 @@ def _drop(config: str, drop: Experiment) -> tuple[Entry, ...]:
               tolerance_source=CODE))
 
 
-def _weight(drop: Experiment) -> tuple[Entry, ...]:
+def _weight(drop: Result) -> tuple[Entry, ...]:
     leg, slider = statement('leg_weight'), statement('slider_weight')
-    config = drop.run.leg
+    config = drop.scenario.run.leg
     assert config is not None
     body = config.sheet.body
     links = body.mass_scale * sum(link.mass_kg for link in (body.hip, body.thigh, body.calf))
-    ground = drop.traces['/coordinator/ground_contact']
-    standing = ground['wrench.force.z'][ground.t > DROP_S - STANDING].mean()
+    standing = ground_force(drop)[drop.time > DROP_S - STANDING].mean()
     falling = leg.number + slider.number
     return (
         Entry.of('leg_weight', leg, links, around(leg.number, by=0.05),
@@ -180,33 +170,34 @@ def _rms(values: np.ndarray) -> float:
     return float(np.sqrt(np.mean(values * values)))
 
 
-def _fig_14(steps: dict[tuple[str, str], Experiment]) -> Drawing:
+def _fig_14(steps: dict[tuple[str, str], Result]) -> Drawing:
     figure, axes = stacked('time, s', *(f'{level}: force, N' for level in FORCE_STEPS))
     for ax, level in zip(axes, FORCE_STEPS):
-        references: Trace = steps[level, WOOD].traces[f'/{KNEE}/references']
-        ax.plot(references.t, references['position[1]'], 'b--', label='reference')
+        hard = steps[level, WOOD]
+        ax.plot(hard.time, hard[f'{FORCE}_reference'], 'b--', label='reference')
         for ground, style in ((WOOD, 'r'), (RUBBER, 'C2')):
-            ax.plot(*knee_force(steps[level, ground]), style, linewidth=1.0, label=ground)
+            stepped = steps[level, ground]
+            ax.plot(stepped.time, stepped[FORCE], style, linewidth=1.0, label=ground)
         ax.legend(loc='upper right', fontsize='small')
     return Drawing(
         'fig_14', 'Force steps of the knee with the foot on wood and on rubber, as Fig 14.',
         figure)
 
 
-def _fig_19(sine: Experiment) -> Drawing:
+def _fig_19(sine: Result) -> Drawing:
     figure, (place, force) = stacked('time, s', '', '')
-    draw_position(place, sine.run.actuator(KNEE), sine.traces)
-    draw_force(force, sine.run.actuator(KNEE), sine.traces)
+    actuator, signals = sine.scenario.run.actuator(KNEE), signals_of(sine)
+    draw_position(place, actuator, signals)
+    draw_force(force, actuator, signals)
     place.legend(loc='upper right', fontsize='small')
     return Drawing('fig_19', "The knee's position follows a sine, as Fig 19; below, its force.",
                    figure)
 
 
-def _fig_20(drop: Experiment) -> Drawing:
+def _fig_20(drop: Result) -> Drawing:
     figure, (force, contact) = stacked('time, s', '', 'ground, N')
-    draw_force(force, drop.run.actuator(KNEE), drop.traces)
-    ground = drop.traces['/coordinator/ground_contact']
-    contact.plot(ground.t, ground['wrench.force.z'], 'k')
+    draw_force(force, drop.scenario.run.actuator(KNEE), signals_of(drop))
+    contact.plot(drop.time, ground_force(drop), 'k')
     contact.set_xlim(0.0, 1.5)
     force.legend(loc='upper right', fontsize='small')
     return Drawing(

@@ -7,8 +7,8 @@ The shipped run files and scenarios, with the gains of Table 4.
 import math
 from typing import NamedTuple
 
-from isa_ros.analysis.experiment import Experiment, run
 from isa_ros.analysis.report.paper_figures import draw_force, paper_figure
+from isa_ros.analysis.signals.signals import signals_of
 from isa_ros.analysis.signals.step_response import step_figures
 from isa_ros.analysis.validation.entry import around, at_least, at_most, Drawing, Entry, Findings
 from isa_ros.analysis.validation.plots import stacked
@@ -17,11 +17,14 @@ from isa_ros.loads.drop_rig import (
     DropRig, ROPE, rope_record, rope_tension, weight_acceleration, WEIGHT_STATE)
 from isa_ros.loads.wheel import Wheel
 from isa_ros.paper.printed import statement
+from isa_ros.scripting.result import Result
+from isa_ros.scripting.run import load
 import numpy as np
 from scipy.integrate import solve_ivp
 
 RIG, POSITION_RIG = 'rig_rotary', 'rig_rotary_position'
-JOINT, REFERENCES = '/rotor/joint_states', '/rotor/references'
+ROTOR = 'rotor'
+TORQUE, ANGLE = f'{ROTOR}.force', f'{ROTOR}.position'
 APART_S = 0.2       # free of the stop before an impact; less is the wheel's rebound
 NEAR_S = 0.05       # before and after an impact, in which the reference is evaluated
 WEIGHTS = (
@@ -35,17 +38,17 @@ TARGET = 'a target, not of the paper'
 
 def rotary_disturbances() -> Findings:
     """Measure impacts and weights on the wheel; draw figures 15, 17 and 18."""
-    hit = run(RIG, 'impact')
-    impedance = {name: run(RIG, name) for name, _ in WEIGHTS}
-    position = run(POSITION_RIG, MIDDLE)
+    hit = load(RIG, 'impact').simulate()
+    impedance = {name: load(RIG, name).simulate() for name, _ in WEIGHTS}
+    position = load(POSITION_RIG, MIDDLE).simulate()
     return Findings(
-        (*_impacts(hit), *_weights({k: dropped(e) for k, e in impedance.items()}),
+        (*_impacts(hit), *_weights({k: dropped(result) for k, result in impedance.items()}),
          *_position_control(dropped(impedance[MIDDLE]), dropped(position)),
          _blocked(drop_rig(position))),
         (Drawing('fig_15', 'The wheel hitting its stops repeatedly, as Fig 15.',
-                 paper_figure('impact', *hit)),
+                 paper_figure('impact', signals_of(hit))),
          Drawing('fig_17', 'The weight under pure position control, as Fig 17.',
-                 paper_figure('weight', *position)),
+                 paper_figure('weight', signals_of(position))),
          _drawing(impedance)))
 
 
@@ -59,18 +62,17 @@ class Impact(NamedTuple):
     """Share of its rise due to the velocity, not the position, percent."""
 
 
-def impacts(experiment: Experiment) -> list[Impact]:
+def impacts(result: Result) -> list[Impact]:
     """Return the impacts of the wheel on the stops of the rig, in order."""
-    joint, reference = experiment.traces[JOINT], experiment.traces[REFERENCES]
-    load = experiment.run.actuators[0].load
-    assert isinstance(load, Wheel)
-    angle, torque = joint['position[0]'], reference['position[1]']
-    stiffness = experiment.traces['/rotor/applied_setpoint']['position[1]'][-1]
-    of_velocity = torque - stiffness * (reference['position[0]'] - angle)
+    wheel = result.scenario.run.actuators[0].load
+    assert isinstance(wheel, Wheel)
+    t, angle, torque = result.time, result[ANGLE], result[f'{TORQUE}_reference']
+    stiffness = float(result.log.applied[max(result.log.applied)]['stiffness'][0])
+    of_velocity = torque - stiffness * (result[f'{ANGLE}_reference'] - angle)
     found = []
-    for k in onsets(joint.t, (angle < load.stop_low) | (angle > load.stop_high)):
-        near = np.abs(joint.t - joint.t[k]) <= NEAR_S
-        before, after = near & (joint.t < joint.t[k]), near & (joint.t >= joint.t[k])
+    for k in onsets(t, (angle < wheel.stop_low) | (angle > wheel.stop_high)):
+        near = np.abs(t - t[k]) <= NEAR_S
+        before, after = near & (t < t[k]), near & (t >= t[k])
         top = np.flatnonzero(after)[np.abs(torque[after]).argmax()]
         found.append(Impact(
             float(np.abs(torque[before]).max()), float(np.abs(torque[top])),
@@ -86,9 +88,9 @@ def onsets(t: np.ndarray, is_touching: np.ndarray) -> list[int]:
     return [int(k) for k in touching[gaps > APART_S]]
 
 
-def _impacts(experiment: Experiment) -> tuple[Entry, ...]:
-    found = impacts(experiment)
-    torque = float(np.abs(experiment.traces[JOINT]['effort[0]']).max())
+def _impacts(hit: Result) -> tuple[Entry, ...]:
+    found = impacts(hit)
+    torque = float(np.abs(hit[TORQUE]).max())
     where = statement('impact_torque').where
     return (
         Entry.of('impact_torque', statement('impact_torque'), torque, at_most(170.0),
@@ -116,28 +118,28 @@ class Drop(NamedTuple):
     """Largest torque, Nm."""
 
 
-def drop_rig(experiment: Experiment) -> DropRig:
+def drop_rig(result: Result) -> DropRig:
     """Return the load of a run with the weight."""
-    load = experiment.run.actuators[0].load
-    assert isinstance(load, DropRig)
-    return load
+    rig = result.scenario.run.actuators[0].load
+    assert isinstance(rig, DropRig)
+    return rig
 
 
-def dropped(experiment: Experiment) -> Drop:
-    """Return the response from the bag of such a run."""
-    load, joint = drop_rig(experiment), experiment.traces[JOINT]
-    turned = joint['position[0]'][0] - joint['position[0]']
-    final = float(turned[joint.t > joint.t[-1] - REST_S].mean())
-    after = joint.t - load.release_s - fall_time(load)
+def dropped(result: Result) -> Drop:
+    """Return the response from such a run."""
+    rig, t, angle = drop_rig(result), result.time, result[ANGLE]
+    turned = angle[0] - angle
+    final = float(turned[t > t[-1] - REST_S].mean())
+    after = t - rig.release_s - fall_time(rig)
     settled = step_figures(
         after[after >= 0.0], turned[after >= 0.0], 0.0, final, BAND).settling_time
     return Drop(final, math.nan if settled is None else settled,
-                float(np.abs(joint['effort[0]']).max()))
+                float(np.abs(result[TORQUE]).max()))
 
 
-def fall_time(load: DropRig) -> float:
+def fall_time(rig: DropRig) -> float:
     """Return the time of the free fall through the slack, s."""
-    return math.sqrt(2.0 * load.slack / STANDARD_GRAVITY)
+    return math.sqrt(2.0 * rig.slack / STANDARD_GRAVITY)
 
 
 def _weights(found: dict[str, Drop]) -> tuple[Entry, ...]:
@@ -175,16 +177,16 @@ def _position_control(impedance: Drop, position: Drop) -> tuple[Entry, ...]:
               tolerance_source=f'{TARGET}: of the peak at 300/20'))
 
 
-def _blocked(load: DropRig) -> Entry:
+def _blocked(rig: DropRig) -> Entry:
     return Entry.of(
-        'weight_blocked_peak', statement('weight_blocked_torque'), blocked_peak(load),
+        'weight_blocked_peak', statement('weight_blocked_torque'), blocked_peak(rig),
         at_least(250.0), 'the printed bound')
 
 
-def blocked_peak(load: DropRig) -> float:
+def blocked_peak(rig: DropRig) -> float:
     """Return the largest torque (Nm) of the rope on a wheel that does not turn  (L17-L19)."""
-    rope = np.array([rope_record(load)], ROPE).view(np.recarray)[0]
-    weight = np.array([(load.slack, 0.0, 1.0)], WEIGHT_STATE).view(np.recarray)[0]
+    rope = np.array([rope_record(rig)], ROPE).view(np.recarray)[0]
+    weight = np.array([(rig.slack, 0.0, 1.0)], WEIGHT_STATE).view(np.recarray)[0]
 
     def tension(state: np.ndarray) -> float:
         weight.fall, weight.velocity = state
@@ -192,17 +194,17 @@ def blocked_peak(load: DropRig) -> float:
 
     def rates(_: float, state: np.ndarray) -> tuple[float, float]:
         return state[1], weight_acceleration(tension(state), weight, rope)
-    swing = math.pi * math.sqrt(load.weight_kg / load.rope_stiffness)  # half of its period
+    swing = math.pi * math.sqrt(rig.weight_kg / rig.rope_stiffness)  # half of its period
     found = solve_ivp(
-        rates, (0.0, swing), (load.slack, STANDARD_GRAVITY * fall_time(load)), rtol=1e-9,
+        rates, (0.0, swing), (rig.slack, STANDARD_GRAVITY * fall_time(rig)), rtol=1e-9,
         atol=1e-12, t_eval=np.linspace(0.0, swing, 1001))
-    return load.radius * max(tension(state) for state in found.y.T)
+    return rig.radius * max(tension(state) for state in found.y.T)
 
 
-def _drawing(experiments: dict[str, Experiment]) -> Drawing:
+def _drawing(results: dict[str, Result]) -> Drawing:
     figure, axes = stacked('simulation time, s', *('' for _ in WEIGHTS))
     for ax, (name, gains) in zip(axes, WEIGHTS):
-        draw_force(ax, experiments[name].run.actuators[0], experiments[name].traces)
+        draw_force(ax, results[name].scenario.run.actuators[0], signals_of(results[name]))
         ax.set_title(gains, fontsize='small')
         ax.set_ylim(-20.0, 130.0)
     axes[0].legend(loc='upper right', fontsize='small')

@@ -5,21 +5,22 @@ The shipped run file and scenarios, with the gains of Table 4. The torque loop a
 positions and gains, which no scenario covers, is measured on the same actuator, blocked.
 """
 
-from collections.abc import Mapping
 import math
-from typing import Any
 
-from isa_ros.analysis.experiment import Experiment, run, with_overrides
 from isa_ros.analysis.report.paper_figures import paper_figure
 from isa_ros.analysis.response.bode import bode
 from isa_ros.analysis.response.rig import Choice, rig
 from isa_ros.analysis.response.step import step
 from isa_ros.analysis.response.sweep import Sweep
+from isa_ros.analysis.signals.signals import signals_of
 from isa_ros.analysis.signals.step_response import step_figures, StepFigures
 from isa_ros.analysis.validation.entry import around, at_least, at_most, Drawing, Entry, Findings
 from isa_ros.analysis.validation.sheets import model_sheet
+from isa_ros.config.changed_parameters import Values, with_parameters
 from isa_ros.paper.printed import statement
 from isa_ros.reu.block import Pid
+from isa_ros.scripting.result import Result
+from isa_ros.scripting.run import load
 import numpy as np
 
 RIG, ROTOR = 'rig_rotary', 'rotor'
@@ -36,23 +37,24 @@ HIGHER, HIGH = 1.25, 2.5    # times the torque gains of Table 4
 SLOWER_HZ = 1000.0
 STIFF_SENSOR = {'plant.mechanics.sensor_stiffness': 5e4}    # Nm/rad, the largest plausible one
 STIFF_SUPPORT = {'load.stiffness': 1e5}                     # twice that of the sheet
+STIFFER = (     # the same in the run file, and in the scenario that blocks the wheel
+    {f'actuators.{ROTOR}.parameters.plant.mechanics.sensor_stiffness': 5e4},
+    {f'scenario.loads.{ROTOR}.stiffness': 1e5})
 TARGET = 'a target, not of the paper'
-
-Overrides = Mapping[str, Any]
 
 
 def rotary_rig() -> Findings:
     """Measure torque step, bandwidth, tracking and hunting; draw figures 12 and 13."""
-    stepped, trot = run(RIG, 'step'), run(RIG, 'trot')
+    stepped, trot = (load(RIG, scenario).simulate() for scenario in ('step', 'trot'))
     return Findings(
         (*_torque_step(stepped), _bandwidth(), *_tracking(trot), *_hunting()),
         (Drawing('fig_12', 'Position and torque of the wheel following a trot at 1 m/s, as '
-                 'Fig 12.', paper_figure('position_torque_tracking', *trot)),
+                 'Fig 12.', paper_figure('position_torque_tracking', signals_of(trot))),
          Drawing('fig_13', f'Torque step of {STEP_NM:g} Nm with the wheel blocked, as Fig 13.',
-                 paper_figure('torque_step', *stepped))))
+                 paper_figure('torque_step', signals_of(stepped)))))
 
 
-def _torque_step(stepped: Experiment) -> tuple[Entry, ...]:
+def _torque_step(stepped: Result) -> tuple[Entry, ...]:
     found = _figures(stepped)
     overshoot = 100.0 * found.overshoot
     return (
@@ -68,11 +70,11 @@ def _torque_step(stepped: Experiment) -> tuple[Entry, ...]:
               reason='' if overshoot <= OVERSHOOT[1] else _overshoot_reason()))
 
 
-def _figures(stepped: Experiment) -> StepFigures:
-    """Return the figures of the scenario `step` as its bag shows them, every 1 ms."""
-    joint = stepped.traces[f'/{ROTOR}/joint_states']
-    held = (joint.t >= STEP_FROM_S) & (joint.t < STEP_TO_S)
-    return step_figures(joint.t[held] - STEP_FROM_S, joint['effort[0]'][held], 0.0, STEP_NM)
+def _figures(stepped: Result) -> StepFigures:
+    """Return the figures of the scenario `step` by the samples of the ticks, every 1 ms."""
+    t, torque = stepped.time, stepped[f'{ROTOR}.force']
+    held = (t >= STEP_FROM_S) & (t < STEP_TO_S)
+    return step_figures(t[held] - STEP_FROM_S, torque[held], 0.0, STEP_NM)
 
 
 def _ms(seconds: float | None) -> float:
@@ -100,8 +102,8 @@ def _torque_gains() -> Pid:
 
 def _overshoot_reason() -> str:
     sensor, support = (
-        100.0 * _figures(run(RIG, 'step', overrides={ROTOR: stiffer})).overshoot
-        for stiffer in (STIFF_SENSOR, STIFF_SUPPORT))
+        100.0 * _figures(load(RIG, 'step').replace(stiffer).simulate()).overshoot
+        for stiffer in STIFFER)
     return (f'torque sensor (2e4 Nm/rad) and support (5e4) of the sheet yield: {sensor:.0f} % '
             f'with the stiffest plausible sensor, 5e4, {support:.0f} % with a support of 1e5')
 
@@ -115,10 +117,11 @@ def _bandwidth() -> Entry:
         reading=f'erratum 25: -3 dB of a stepped sine of {STEP_NM:g} Nm, 10 % of the rating')
 
 
-def _tracking(trot: Experiment) -> tuple[Entry, ...]:
-    sine = _torque_error(run(RIG, 'wheel_sine'))
+def _tracking(trot: Result) -> tuple[Entry, ...]:
+    wheel = load(RIG, 'wheel_sine')
+    sine = _torque_error(wheel.simulate())
     uncompensated = _torque_error(
-        run(RIG, 'wheel_sine', overrides={ROTOR: {'reu.force.kv': 0.0}}))
+        wheel.replace({f'actuators.{ROTOR}.parameters.reu.force.kv': 0.0}).simulate())
     seen = f'{TARGET}: 5 % are hardly seen in a figure'
     return (
         Entry(name='trot_torque_error', source='section 5.1, Fig 12',
@@ -132,11 +135,10 @@ def _tracking(trot: Experiment) -> tuple[Entry, ...]:
               unit='times', tolerance=at_least(3.0), tolerance_source=TARGET))
 
 
-def _torque_error(experiment: Experiment) -> float:
-    joint, reference = (
-        experiment.traces[f'/{ROTOR}/{topic}'] for topic in ('joint_states', 'references'))
-    late = joint.t > joint.t[-1] - STRIDES * STRIDE_S
-    return relative_error(reference['position[1]'][late], joint['effort[0]'][late])
+def _torque_error(result: Result) -> float:
+    late = result.time > result.time[-1] - STRIDES * STRIDE_S
+    return relative_error(
+        result[f'{ROTOR}.force_reference'][late], result[f'{ROTOR}.force'][late])
 
 
 def relative_error(reference: np.ndarray, applied: np.ndarray) -> float:
@@ -151,7 +153,7 @@ def _hunting() -> tuple[Entry, ...]:
     hunts = 'hunting deviates by more than one code of the torque sensor'
     source = 'sections 5.1 and 6'
 
-    def thin(name: str, paper: str, change: Overrides, stiffness: Overrides, what: str) -> Entry:
+    def thin(name: str, paper: str, change: Values, stiffness: Values, what: str) -> Entry:
         ours = max(ripple(place, change) for place in (MIDDLE, STOP))
         return Entry(
             name=name, source=source, paper=paper, ours=ours, unit='Nm',
@@ -171,13 +173,13 @@ def _hunting() -> tuple[Entry, ...]:
              {'reu.force.rate_hz': SLOWER_HZ}, STIFF_SENSOR, sensor))
 
 
-def _gains(factor: float) -> Overrides:
+def _gains(factor: float) -> Values:
     force = _torque_gains()
     return {'reu.force.kp': factor * force.kp, 'reu.force.ki': factor * force.ki}
 
 
-def ripple(place: float, overrides: Overrides) -> float:
+def ripple(place: float, changes: Values) -> float:
     """Return the deviation (Nm) that remains after a step, blocked at ``place`` (deg)."""
     bench = rig(Choice(name=RIG, loop='force', position=place))
-    changed = with_overrides(bench.run, {ROTOR: overrides}).actuators[0]
+    changed = with_parameters(bench.config, changes, bench.run.source)
     return step(bench.with_config(changed), RIPPLE_S, STEP_NM).figures.ripple

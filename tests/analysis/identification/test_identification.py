@@ -5,7 +5,6 @@ import json
 import math
 from pathlib import Path
 
-from isa_ros.analysis.experiment import run
 from isa_ros.analysis.identification.flow_curves import DualGainCurve
 from isa_ros.analysis.identification.force_balance import (
     COULOMB, fit_friction, OFFSET, STICTION, STRIBECK, VISCOUS)
@@ -14,6 +13,7 @@ from isa_ros.analysis.identification.volume_balance import (
     C_LI, COMPLIANCE, CURVE, fit_balance, NULL, Q_0)
 from isa_ros.cli.main import main
 from isa_ros.plant.plant import plant_record
+from isa_ros.scripting.run import load
 import numpy as np
 import pytest
 from tests.analysis.recordings import CHANGED, noisy, recording
@@ -143,7 +143,7 @@ def test_the_shipped_scenarios_show_everything(
         config: str, scenario: str, name: str, tmp_path: Path,
         capsys: pytest.CaptureFixture[str]) -> None:
     """A bag through `isa identify`: all parameters are listed, intervals contain their values."""
-    run(config, scenario, tmp_path / 'bag')
+    load(config, scenario).simulate().save(tmp_path / 'bag')
     assert main(['identify', str(tmp_path / 'bag'), '--actuator', name,
                  '--json', str(tmp_path / 'found.json')]) == 0
     printed = capsys.readouterr().out
@@ -159,7 +159,7 @@ def test_the_shipped_scenarios_show_everything(
 def test_a_bag_without_motion_is_refused_in_one_line(
         tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     """Input that cannot be used: exit code 2."""
-    run('rig_rotary', None, tmp_path / 'bag', duration=0.1)
+    load('rig_rotary').simulate(0.1).save(tmp_path / 'bag')
     assert main(['identify', str(tmp_path / 'bag')]) == 2
     printed = capsys.readouterr().err
     assert printed.count('\n') == 1
@@ -192,7 +192,7 @@ def test_an_actuator_that_stands_is_named_beside_one_that_moves(
     """The table and the file list it with the reason."""
     (tmp_path / 'two.yaml').write_text(TWO)
     (tmp_path / 'turn.yaml').write_text(TURN)
-    run(tmp_path / 'two.yaml', tmp_path / 'turn.yaml', tmp_path / 'bag')
+    load(tmp_path / 'two.yaml', tmp_path / 'turn.yaml').simulate().save(tmp_path / 'bag')
     assert main(['identify', str(tmp_path / 'bag'), '--json', str(tmp_path / 'out.json')]) == 0
     printed = capsys.readouterr().out.splitlines()
     assert printed[0] == 'moving'

@@ -1,10 +1,16 @@
-"""Responses and characteristics drawn from bags, compared with the data sheets."""
+"""Responses and characteristics drawn from runs, compared with the data sheets."""
 
-from isa_ros.analysis.experiment import run
 from isa_ros.analysis.report.paper_figures import paper_figure
+from isa_ros.analysis.signals.signals import Signals, signals_of
 from isa_ros.errors import ConfigError
+from isa_ros.scripting.run import load
 import numpy as np
 import pytest
+
+
+def simulated(config: str, scenario: str | None, duration: float | None = None) -> Signals:
+    """Return the signals of a shipped run."""
+    return signals_of(load(config, scenario).simulate(duration))
 
 
 def curve(figure, row: int, label: str) -> tuple[np.ndarray, np.ndarray]:
@@ -23,7 +29,7 @@ def near(x: np.ndarray, y: np.ndarray, place: float, width: float) -> np.ndarray
 
 def test_flow_gain_is_figure_5():
     """0.4 l/min at 1 mA and 7.5 at 4 mA of the ULLV, 2.3 l/min per mA of the HRV, both ways."""
-    figure = paper_figure('flow_gain', *run('rig_valve', 'flow_gain'))
+    figure = paper_figure('flow_gain', simulated('rig_valve', 'flow_gain'))
     # within 0.1 mA of the place, and the 12 bit converters of pressure and spool: 5 %
     for model, place, slope, flow in (
             ('ullv', 1.0, 0.4, 0.4), ('ullv', 3.0, 2.5, 4.98), ('ullv', -3.0, 2.5, -4.98),
@@ -35,7 +41,7 @@ def test_flow_gain_is_figure_5():
 @pytest.mark.slow
 def test_valve_response_is_figure_4():
     """-3 dB at 114 Hz of eq 8 and 320 Hz of the HRV, errata 19 and 20, from a chirp of 25 %."""
-    figure = paper_figure('valve_response', *run('rig_valve', 'valve_response'))
+    figure = paper_figure('valve_response', simulated('rig_valve', 'valve_response'))
     for model, expected in (('ullv', 114.1), ('hrv', 320.0)):
         frequency, gain = curve(figure, 0, model)
         # bins of the averaged spectra are 2 Hz apart
@@ -45,7 +51,7 @@ def test_valve_response_is_figure_4():
 @pytest.mark.slow
 def test_leakage_is_figure_6():
     """0.17 and 0.5 l/min at null, 0.06 and 0.28 at full current."""
-    figure = paper_figure('leakage', *run('rig_leakage', 'leakage'))
+    figure = paper_figure('leakage', simulated('rig_leakage', 'leakage'))
     for model, at_null, tare in (('ullv', 0.17, 0.06), ('hrv', 0.5, 0.28)):
         x, y = curve(figure, 0, model)
         assert near(x, y, 0.0, 0.01).min() == pytest.approx(at_null, abs=0.03)
@@ -58,7 +64,7 @@ def test_leakage_is_figure_6():
 
 def test_current_step_shows_both_loops():
     """Section 3.1: the closed loop reaches 5 mA, 10 V on the open coil give 4.17 mA."""
-    figure = paper_figure('current_step', *run('rig_valve', 'current_step'))
+    figure = paper_figure('current_step', simulated('rig_valve', 'current_step'))
     assert figure.get_suptitle() == 'Steps of the current, as Fig 8'
     for row, expected in ((0, 5.0), (1, 10.0 / 2.4)):
         t, current = curve(figure, row, 'current')
@@ -69,7 +75,7 @@ def test_current_step_shows_both_loops():
     ('rig_rotary', 'torque_bandwidth', 'torque'), ('rig_linear', 'force_bandwidth', 'force')])
 def test_bandwidth_at_10_percent_is_50_to_100_hz(config, scenario, output):
     """Section 6: small signals of about 10 % of the rating."""
-    figure = paper_figure('bandwidth', *run(config, scenario))
+    figure = paper_figure('bandwidth', simulated(config, scenario))
     assert figure.get_suptitle() == f'Bandwidth of the {output}'
     assert figure.axes[0].get_ylabel() == f'{output} over reference, dB'
     frequency, gain = next((line.get_xdata(), line.get_ydata()) for line in figure.axes[0].lines)
@@ -80,4 +86,4 @@ def test_bandwidth_at_10_percent_is_50_to_100_hz(config, scenario, output):
 def test_a_run_that_stands_still_has_no_response():
     """One error line instead of an empty figure."""
     with pytest.raises(ConfigError, match='no reference moves'):
-        paper_figure('leakage', *run('rig_leakage', duration=0.01))
+        paper_figure('leakage', simulated('rig_leakage', None, 0.01))

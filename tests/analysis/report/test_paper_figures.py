@@ -1,22 +1,23 @@
 """Figures of the paper from a run: the right signals in the paper's colours."""
 
-from isa_ros.analysis.experiment import Experiment, run
 from isa_ros.analysis.report.characteristics import RESPONSES
 from isa_ros.analysis.report.paper_figures import LAYOUTS, paper_figure, shown
 from isa_ros.analysis.report.report import write_report
+from isa_ros.analysis.signals.signals import signals_of
 from isa_ros.config.paths import CONFIG, find
 from isa_ros.config.run_file import load_run
 from isa_ros.errors import ConfigError
 from isa_ros.scenario.scenario import FIGURES
+from isa_ros.scripting.result import Result
+from isa_ros.scripting.run import load
 import numpy as np
 import pytest
 
 
 @pytest.fixture(scope='module')
-def step(tmp_path_factory) -> tuple[Experiment, object]:
-    """Return the torque step and its bag."""
-    bag = tmp_path_factory.mktemp('figures') / 'step'
-    return run('rig_rotary', 'step', bag), bag
+def step() -> Result:
+    """Return the torque step."""
+    return load('rig_rotary', 'step').simulate()
 
 
 def test_every_name_a_scenario_may_give_has_a_figure():
@@ -24,34 +25,29 @@ def test_every_name_a_scenario_may_give_has_a_figure():
 
 
 def test_the_reference_is_dashed_blue_and_the_applied_torque_solid_red(step):
-    experiment, _ = step
-    ax, = paper_figure('torque_step', *experiment).axes
+    ax, = paper_figure('torque_step', signals_of(step)).axes
     reference, applied = ax.get_lines()
     assert (reference.get_color(), reference.get_linestyle()) == ('blue', '--')
     assert (applied.get_color(), applied.get_linestyle()) == ('red', '-')
-    assert np.array_equal(
-        applied.get_ydata(), experiment.traces['/rotor/joint_states']['effort[0]'])
+    assert np.array_equal(applied.get_ydata(), step['rotor.force'])
     # 17 Nm from 0.1 to 0.3 s, then back: the impedance has no stiffness
     assert set(np.round(reference.get_ydata(), 9)) == {0.0, 17.0}
 
 
 @pytest.mark.parametrize('name', LAYOUTS)
 def test_every_figure_can_be_drawn_from_a_rig(step, name):
-    experiment, _ = step
-    figure = paper_figure(name, *experiment)
+    figure = paper_figure(name, signals_of(step))
     labels = [ax.get_ylabel() for ax in figure.axes]
     assert len(labels) == len(LAYOUTS[name].panels)
     assert set(labels) <= {'position, deg', 'torque, Nm'}
 
 
-def test_a_reference_of_a_block_that_is_off_is_not_drawn(step):
+def test_a_reference_of_a_block_that_is_off_is_not_drawn():
     """Under pure position control the torque has no reference, as in Fig 17."""
-    experiment, _ = step
-    off = experiment.run.actuators[0].sheet.reu.pressure
-    changed = run(
-        'rig_rotary', duration=0.01,
-        overrides={'rotor': {'reu.position': off, 'reu.force': off}})
-    for ax in paper_figure('weight', *changed).axes:
+    off = {f'actuators.rotor.parameters.reu.{block}': {'kind': 'off'}
+           for block in ('position', 'force')}
+    changed = signals_of(load('rig_rotary').replace(off).simulate(0.01))
+    for ax in paper_figure('weight', changed).axes:
         assert [line.get_color() for line in ax.get_lines()] == ['red']
 
 
@@ -61,11 +57,11 @@ def test_of_a_leg_the_knee_is_shown():
 
 def test_an_unknown_figure_is_refused(step):
     with pytest.raises(ConfigError, match='torque_stop is not a figure; did you mean torque_step'):
-        paper_figure('torque_stop', *step[0])
+        paper_figure('torque_stop', signals_of(step))
 
 
 def test_the_report_begins_with_the_figure_of_the_scenario(step, tmp_path):
-    written = write_report(step[1], tmp_path / 'page.html')
+    written = write_report(step.save(tmp_path / 'bag'), tmp_path / 'page.html')
     assert [path.name for path in written] == [
         'page.html', 'page_torque_step.png', 'page_rotor.png']
     page = written[0].read_text()

@@ -3,7 +3,7 @@
 from pathlib import Path
 
 from isa_ros.analysis.report.report import extremes, write_report
-from isa_ros.analysis.signals.traces import read_traces
+from isa_ros.analysis.signals.signals import read_signals
 from isa_ros.cli.main import main
 from isa_ros.errors import BagError
 import pytest
@@ -46,10 +46,11 @@ def test_a_report_is_replaced_by_one(tmp_path):
 
 def test_extremes_are_those_of_the_signals():
     """The table's torque peak is the signal's: the overshoot of the 17 Nm step."""
-    run, traces = read_traces(GOLDEN / 'rotor_step')
-    values = {name: (low, high) for name, low, high, _ in extremes(run, traces)}
-    effort = traces['/rotor/joint_states']['effort[0]']
-    assert values['rotor force'] == (effort.min(), effort.max())
+    signals = read_signals(GOLDEN / 'rotor_step')
+    values = {name: (low, high, unit) for name, low, high, unit in extremes(signals)}
+    torque = signals['rotor.force']
+    assert values['rotor force'] == (torque.min(), torque.max(), 'Nm')
+    assert values['rotor position'][2] == 'rad'
     assert 17.0 < values['rotor force'][1] < 17.0 * 1.5
 
 

@@ -42,7 +42,7 @@ def test_every_value_can_be_run_and_one_of_them_is_the_shipped_one(study, case, 
     """All values are in range and rates divide, as a rig requires before it moves."""
     on = benches.of(case)
     for value in case.values:
-        changed(on.blocked, 'force', case.overrides(value))
+        changed(on.blocked, 'force', case.parameters(value))
     own = shipped(case, on)
     assert sum(math.isclose(value, own, rel_tol=1e-9) for value in case.values) == 1
 
@@ -57,7 +57,7 @@ def test_every_value_can_be_run_and_one_of_them_is_the_shipped_one(study, case, 
 def test_a_value_no_actuator_could_have_is_refused(name, value, expected, benches):
     case = case_of(name, 'smart_manifold')
     with pytest.raises(ConfigError, match=expected.replace('|', r'\|')):
-        changed(benches.of(case).blocked, 'force', case.overrides(value))
+        changed(benches.of(case).blocked, 'force', case.parameters(value))
 
 
 def test_coarser_converters_ripple_more(benches):
@@ -65,7 +65,7 @@ def test_coarser_converters_ripple_more(benches):
     case = case_of('adc_bits', 'smart_manifold')
     found = {}
     for bits in (8.0, 10.0, 12.0):
-        rig = changed(benches.of(case).blocked, 'force', case.overrides(bits))
+        rig = changed(benches.of(case).blocked, 'force', case.parameters(bits))
         found[bits] = max(ripple(part[REST]) for part in up_and_back(rig))
         # half of peak to peak within one quantum to either side
         assert found[bits] <= 400.0 / 2.0 ** bits
@@ -77,7 +77,7 @@ def test_backlash_hunts_at_zero_torque_only(benches):
     case = case_of('backlash', 'smart_manifold')
     on = benches.of(case)
     for half_play, hunts in ((0.0, False), (5.0, True)):
-        rig = changed(on.blocked, 'force', case.overrides(half_play))
+        rig = changed(on.blocked, 'force', case.parameters(half_play))
         loaded, released = up_and_back(rig)
         assert ripple(loaded[REST]) < QUIET * rig.loop.amplitude
         assert (ripple(released[REST]) > 0.1 * rig.loop.amplitude) == hunts
@@ -90,7 +90,7 @@ def test_overlap_takes_bandwidth_and_does_not_hunt(benches):
     case = case_of('lap', 'smart_manifold')
     found = []
     for lap in (0.0, 10.0, 20.0, 40.0):
-        rig = changed(benches.of(case).blocked, 'force', case.overrides(lap))
+        rig = changed(benches.of(case).blocked, 'force', case.parameters(lap))
         found.append(bode(rig, study_run.SWEEP, 'closed').bandwidth)
         assert all(ripple(part[REST]) < QUIET * rig.loop.amplitude for part in up_and_back(rig))
     assert found == sorted(found, reverse=True) and found[0] > 2.0 * found[-1]
@@ -104,7 +104,7 @@ def test_underlap_hunts_on_the_wheel_as_the_page_says(name, model, value, remedy
     case, found = case_of(name, model), []
     on = benches.of(case)
     for added in ({}, remedy):
-        rig = changed(on.wheel, 'position', case.overrides(value) | added)
+        rig = changed(on.wheel, 'position', case.parameters(value) | added)
         force = rig.excite(rig.start(), on.positions, on.velocities)['force']
         found.append(ripple(force[REST]))
     assert found[0] > 10.0 * found[1]
@@ -118,7 +118,7 @@ def test_what_hunts_blocked_does_so_for_the_reason_on_the_page(
         name, model, value, place, remedy, benches):
     case, found = case_of(name, model), []
     for added in ({}, remedy):
-        rig = changed(benches.of(case).blocked, 'force', case.overrides(value) | added)
+        rig = changed(benches.of(case).blocked, 'force', case.parameters(value) | added)
         found.append(max(ripple(part[REST]) for part in up_and_back(placed(rig, place))))
     assert found[1] < QUIET * rig.loop.amplitude < 0.1 * rig.loop.amplitude < found[0]
 
@@ -214,5 +214,5 @@ def test_the_command_prints_writes_and_draws_one_study(tmp_path: Path, capsys, m
 def test_a_study_is_plain_data():
     study = study_of('lap')
     assert isinstance(study, Study) and study == replace(study)
-    assert study.cases[0].overrides(5.0) == {
+    assert study.cases[0].parameters(5.0) == {
         f'plant.valve.lap.{land}_um': 5.0 for land in ('pa', 'at', 'bt', 'pb')}

@@ -2,23 +2,15 @@
 
 import math
 
-from isa_ros.analysis.experiment import Experiment, run
-from isa_ros.analysis.signals.traces import Trace
 from isa_ros.analysis.validation import knee_rig
+from isa_ros.scripting.run import load
 import numpy as np
 import pytest
 
 
-def experiment(**topics: dict[str, np.ndarray]) -> Experiment:
-    """Return an experiment of some topics over a second, one row a millisecond."""
-    t = np.arange(1000) * 1e-3
-    traces = {f'/{name.replace("__", "/")}': Trace(t, np.rec.fromarrays(
-        list(fields.values()), names=list(fields))) for name, fields in topics.items()}
-    return Experiment(None, traces)
-
-
 def test_the_ground_alone_is_replaced():
-    wood, rubber = (knee_rig.on_ground(material) for material in ('wood', 'rubber'))
+    wood, rubber = (knee_rig.on_ground(material, 'force_step_low').configuration
+                    for material in ('wood', 'rubber'))
     assert rubber.leg.sheet.ground.stiffness == 1e6 != wood.leg.sheet.ground.stiffness
     assert rubber.leg.sheet.body == wood.leg.sheet.body
 
@@ -29,7 +21,7 @@ def test_both_edges_of_a_force_step_are_measured_against_their_own_change():
     force[300:700] = 500.0
     force[310:320] = 530.0
     force[710:720] = 140.0
-    up, down = knee_rig.edges(experiment(kfe__joint_states={'effort[0]': force}), 'low')
+    up, down = knee_rig.edges(np.arange(1000) * 1e-3, force, 'low')
     assert up.overshoot == pytest.approx(0.1) and down.overshoot == pytest.approx(0.2)
     assert up.steady_error == down.steady_error == 0.0
 
@@ -39,18 +31,14 @@ def test_errors_are_those_of_the_settled_periods():
     t = np.arange(3000) * 1e-3
     wanted = 10e-3 * np.sin(2.0 * math.pi * t)
     measured = wanted + np.where(t < 1.1, 5e-3, 1e-3)
-    traces = {
-        '/kfe/joint_states': Trace(t, np.rec.fromarrays(
-            [measured, np.full(3000, 3.0)], names=['position[0]', 'effort[0]'])),
-        '/kfe/references': Trace(t, np.rec.fromarrays(
-            [wanted, np.zeros(3000)], names=['position[0]', 'position[1]']))}
-    position, force = knee_rig.tracking(Experiment(None, traces), 'kfe')
+    position, force = knee_rig.tracking({
+        'kfe.position': measured, 'kfe.position_reference': wanted,
+        'kfe.force': np.full(3000, 3.0), 'kfe.force_reference': np.zeros(3000)}, t, 'kfe')
     assert position == pytest.approx(10.0) and force == pytest.approx(3.0)
 
 
 def test_a_leg_that_never_lands_has_no_time_of_fall():
-    in_the_air = {'wrench.force.z': np.zeros(1000)}
-    assert math.isnan(knee_rig.touchdown(experiment(coordinator__ground_contact=in_the_air)))
+    assert math.isnan(knee_rig.touchdown(np.arange(1000) * 1e-3, np.zeros(1000)))
 
 
 def test_the_fall_takes_as_long_as_a_free_one():
@@ -60,5 +48,6 @@ def test_the_fall_takes_as_long_as_a_free_one():
     Until its release the leg sags by 3 mm under its impedance, 2 ms at 1.4 m/s, and contact
     is detected at ticks of 1 ms.
     """
-    fall = knee_rig.touchdown(run('rig_knee', 'drop', duration=0.3))
+    drop = load('rig_knee', 'drop').simulate(0.3)
+    fall = knee_rig.touchdown(drop.time, knee_rig.ground_force(drop))
     assert fall == pytest.approx(math.sqrt(2.0 * 0.1 / 9.80665), abs=3e-3)

@@ -3,13 +3,15 @@
 from dataclasses import replace
 import math
 
-from isa_ros.analysis.experiment import Experiment
-from isa_ros.analysis.signals.traces import Trace
 from isa_ros.analysis.validation.rotary_disturbances import (
     blocked_peak, dropped, fall_time, Impact, impacts, onsets)
 from isa_ros.config.paths import CONFIG, find
 from isa_ros.config.run_file import load_run
 from isa_ros.core.gravity import STANDARD_GRAVITY
+from isa_ros.core.signals import COMMAND, SAMPLE
+from isa_ros.scenario.scenario import idle
+from isa_ros.scripting.result import Log, Result
+from isa_ros.surroundings.supply import SUPPLY_SAMPLE
 import numpy as np
 import pytest
 from tests.sheets import own_load
@@ -17,21 +19,19 @@ from tests.sheets import own_load
 DROP = own_load('smart_manifold', 'drop_rig')
 
 
-def trace(t, **columns) -> Trace:
-    """Return a trace of columns named as ``position_0`` for position[0]."""
-    names = [f'{name[:-2]}[{name[-1]}]' for name in columns]
-    fields = np.zeros(len(t), [(name, float) for name in names])
-    for name, values in zip(names, columns.values()):
-        fields[name] = values
-    return Trace(t, fields)
-
-
-def experiment(load=None, **traces) -> Experiment:
-    """Return an artificial experiment of the rotary rig, on its wheel or another load."""
+def result_of(load=None, stiffness: float = 0.0, **signals: np.ndarray) -> Result:
+    """Return an artificial result of the rotary rig, on its wheel or another load, 1 ms apart."""
     run = load_run(find('rig_rotary', CONFIG))
     if load is not None:
         run = replace(run, actuators=(replace(run.actuators[0], load=load),))
-    return Experiment(run, {f'/rotor/{name}': found for name, found in traces.items()})
+    n = len(next(iter(signals.values())))
+    samples, applied = np.zeros((n, 1), SAMPLE), np.zeros(1, COMMAND)
+    for name, values in signals.items():
+        samples[name][:, 0] = values
+    applied['stiffness'] = stiffness
+    supplies = np.zeros((n, 1), SUPPLY_SAMPLE)
+    log = Log(samples, supplies, None, {0: np.zeros(1, COMMAND), 5: applied})
+    return Result(idle(run), log, {})
 
 
 def test_a_rebound_is_no_impact_of_its_own():
@@ -56,10 +56,8 @@ def test_a_spike_is_told_by_what_makes_it():
     angle = np.minimum(load.stop_high + 1e-3, load.stop_high + 3.0 * (t - 0.5))
     goal = angle - 0.05
     torque = 300.0 * (goal - angle) + np.where(t > 0.5005, 20.0 * 3.0, 0.0)  # from 0.501 s on
-    hit, = impacts(experiment(
-        joint_states=trace(t, position_0=angle),
-        references=trace(t, position_0=goal, position_1=torque),
-        applied_setpoint=trace(t, position_1=np.full(1000, 300.0))))
+    hit, = impacts(result_of(
+        stiffness=300.0, position=angle, position_reference=goal, force_reference=torque))
     assert hit == Impact(pytest.approx(15.0), pytest.approx(45.0), pytest.approx(100.0))
 
 
@@ -70,8 +68,7 @@ def test_the_weight_is_timed_from_when_the_rope_is_taut():
     assert 0.5 * STANDARD_GRAVITY * fall_time(DROP) ** 2 == pytest.approx(DROP.slack)
     turned = np.where(t < taut, 0.0, 0.03 * (1.0 - np.exp(-(t - taut) / 0.1)))
     torque = np.where(t < taut, 0.0, 80.0 * np.exp(-(t - taut) / 0.1))
-    found = dropped(experiment(
-        DROP, joint_states=trace(t, position_0=0.9 - turned, effort_0=-torque)))
+    found = dropped(result_of(DROP, position=0.9 - turned, force=-torque))
     # what is left of the exponential over the last 0.2 s: exp(-15)
     assert found.deflection == pytest.approx(0.03, rel=1e-6)
     # between two samples the curve bends by (dt/tau)^2/8 = 1.3e-5 of the band: 1.3e-6 s

@@ -1,0 +1,157 @@
+"""
+The signals of a run by name, whether it was simulated in memory or is read from a bag.
+
+Names, units and gauge pressures are those of `isa_ros.scripting.result.Result`: rotor.force.
+"""
+
+from collections.abc import Iterator, Mapping
+from pathlib import Path
+from typing import NamedTuple
+
+from isa_ros.analysis.signals.traces import read_traces, Trace
+from isa_ros.config.run_config import RunConfig
+from isa_ros.core.signals import SAMPLE_UNITS
+from isa_ros.errors import BagError
+from isa_ros.scripting.result import BODY, Result
+from isa_ros.surroundings.leg.port_kernel import LEG_UNITS
+from isa_ros.surroundings.supply import ATMOSPHERE, SUPPLY_UNITS
+import numpy as np
+from numpy.typing import NDArray
+
+Values = NDArray[np.float64]
+
+_ACTUATOR = {
+    'position': ('joint_states', 'position[0]'), 'velocity': ('joint_states', 'velocity[0]'),
+    'force': ('joint_states', 'effort[0]'),
+    'pressure_a': ('pressure_a', 'fluid_pressure'), 'pressure_b': ('pressure_b', 'fluid_pressure'),
+    'spool': ('valve', 'position[0]'), 'spool_velocity': ('valve', 'velocity[0]'),
+    'current': ('valve', 'effort[0]'), 'supply_volume': ('valve', 'position[1]'),
+    'supply_flow': ('valve', 'velocity[1]'),
+    'position_reference': ('references', 'position[0]'),
+    'force_reference': ('references', 'position[1]'),
+    'spool_reference': ('references', 'position[2]'),
+    'current_reference': ('references', 'position[3]')}
+"""(suffix of the topic, field) by field of a `SAMPLE`."""
+_SUPPLY = ('pressure', 'return_pressure')
+_JOINTS, _GROUND = '/joint_states', '/coordinator/ground_contact'
+_BODY = {
+    'position': (_JOINTS, [f'position[{k}]' for k in range(3)]),
+    'velocity': (_JOINTS, [f'velocity[{k}]' for k in range(3)]),
+    'torque': (_JOINTS, [f'effort[{k}]' for k in range(3)]),
+    'foot_force': (_GROUND, [f'wrench.force.{axis}' for axis in 'xyz'])}
+"""(topic, fields) by field of a `LEG_SAMPLE`."""
+
+
+class Signal(NamedTuple):
+    """One signal: times in s, (n,), and as many values or rows of values."""
+
+    t: Values
+    values: Values
+
+
+class Signals(Mapping[str, Values]):
+    """
+    Arrays by name: ``signals['rotor.force']``, (n,), or (n, k) for the k axes of a body.
+
+    A bag may hold some signals at fewer ticks than others: `over_time` gives the times too.
+    ``source`` is the name for messages.
+    """
+
+    def __init__(
+            self, run: RunConfig, signals: Mapping[str, Signal], time: Values,
+            source: str) -> None:
+        self.run = run
+        self.time = time
+        """Every tick, s."""
+        self._signals = signals
+        self._source = source
+
+    def over_time(self, name: str) -> Signal:
+        """
+        Return the times and the values of a signal.
+
+        Raises
+        ------
+        BagError
+            The signal was not recorded.
+
+        """
+        if name not in self._signals:
+            raise BagError(f'{self._source}: {name} is missing, was its topic left out?')
+        return self._signals[name]
+
+    def supply_pressure(self, actuator: str) -> Signal:
+        """Return the pressure of the supply that feeds an actuator; as `over_time`."""
+        supply = next(own.name for own in self.run.supplies if actuator in own.feeds)
+        return self.over_time(f'{supply}.pressure')
+
+    def unit(self, name: str) -> str:
+        """Return the unit of a signal."""
+        source, _, field = name.partition('.')
+        if source == BODY:
+            return LEG_UNITS[field]
+        if any(supply.name == source for supply in self.run.supplies):
+            return SUPPLY_UNITS[field]
+        linear, _, rotary = SAMPLE_UNITS[field].partition(' | ')
+        return rotary if rotary and self.run.actuator(source).sheet.is_rotary else linear
+
+    def __getitem__(self, name: str) -> Values:
+        return self.over_time(name).values
+
+    def __contains__(self, name: object) -> bool:
+        return name in self._signals
+
+    def __iter__(self) -> Iterator[str]:
+        return iter(self._signals)
+
+    def __len__(self) -> int:
+        return len(self._signals)
+
+
+def signals_of(result: Result) -> Signals:
+    """Return the signals of a run in memory."""
+    return Signals(
+        result.scenario.run, {name: Signal(result.time, result[name]) for name in result},
+        result.time, result.scenario.name)
+
+
+def read_signals(bag: Path) -> Signals:
+    """
+    Return the signals of a bag.
+
+    Raises
+    ------
+    BagError
+        As `read_traces`, or the bag has no samples.
+
+    """
+    run, traces = read_traces(bag)
+    if '/clock' not in traces:
+        raise BagError(f'{bag}: has no samples')
+    return Signals(run, dict(_named(run, traces)), traces['/clock'].t, str(bag))
+
+
+def _named(run: RunConfig, traces: Mapping[str, Trace]) -> Iterator[tuple[str, Signal]]:
+    """Yield the signals whose topics are in a bag."""
+    for actuator in run.actuators:
+        for name, (suffix, path) in _ACTUATOR.items():
+            trace = traces.get(f'/{actuator.name}/{suffix}')
+            if trace is not None:
+                yield f'{actuator.name}.{name}', _signal(trace, path)
+    for supply in run.supplies:
+        for name in _SUPPLY:
+            trace = traces.get(f'/coordinator/{supply.name}_{name}')
+            if trace is not None:
+                yield f'{supply.name}.{name}', _signal(trace, 'fluid_pressure')
+    if run.leg is not None:
+        for name, (topic, paths) in _BODY.items():
+            trace = traces.get(topic)
+            if trace is not None:
+                yield f'{BODY}.{name}', Signal(
+                    trace.t, np.stack([trace[path] for path in paths], axis=1))
+
+
+def _signal(trace: Trace, path: str) -> Signal:
+    """Return a field of a topic; absolute pressures as gauge ones."""
+    values = np.array(trace[path], np.float64)
+    return Signal(trace.t, values - ATMOSPHERE if path == 'fluid_pressure' else values)
