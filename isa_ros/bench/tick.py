@@ -1,4 +1,4 @@
-"""What a tick of the leg is made of, without ROS."""
+"""Parts of a tick of the leg, without ROS."""
 
 from collections.abc import Callable
 from itertools import count, islice
@@ -28,7 +28,7 @@ _DROP = Spec(LEG, ONE_PROCESS, TICKS)
 
 
 def tick_parts() -> list[Row]:
-    """Measure what the leg's tick is made of, without ROS; the ratio is to a whole tick."""
+    """Measure the parts of the leg's tick, without ROS; the ratio is to the whole tick."""
     drop = _drop()
     parts = actuator_parts()
     surroundings = surroundings_of(drop.run)
@@ -48,14 +48,14 @@ def tick_parts() -> list[Row]:
 
 
 class _Holder(Controller):
-    """Asks one actuator to stay where it is, at every tick."""
+    """Commands one actuator to hold its position, at every tick."""
 
     def step(self, state: State) -> dict[str, Setpoint]:
         return {'kfe': Setpoint(position=state.actuators['kfe'].position)}
 
 
 def memory_rows() -> list[Row]:
-    """Measure the leg's drop in memory beside its kernels alone, and what a controller adds."""
+    """Measure the leg's drop in memory, its kernels alone, and the time a controller adds."""
     drop = _drop()
     kernels = _kernel_seconds(drop)
     alone = _simulated(Simulation(drop))
@@ -68,7 +68,7 @@ def memory_rows() -> list[Row]:
 
 
 def _simulated(simulation: Simulation) -> float:
-    """Return the time of a tick of the first `TICKS` ones, in s."""
+    """Return the time per tick of the first `TICKS` ticks, in s."""
     def work() -> None:
         simulation.reset()
         for _ in range(TICKS):
@@ -77,7 +77,7 @@ def _simulated(simulation: Simulation) -> float:
 
 
 def _kernel_seconds(drop: Scenario) -> float:
-    """Return the time of the actuators' kernel alone, each tick under the port it really has."""
+    """Return the time of the actuators' kernel alone, with the ports of the real ticks, in s."""
     simulation = Simulation(drop)
     ports: list[np.ndarray] = []
     take: Callable[[np.ndarray], None] = simulation.surroundings.ports
@@ -100,7 +100,7 @@ def _drop() -> Scenario:
 
 
 def actuator_parts() -> dict[str, float]:
-    """Return the time that the leg's actuators and messages take for a tick, in s."""
+    """Return the time of the leg's actuators and messages for a tick, in s."""
     simulation = Simulation(_drop())
     ports = np.zeros(len(simulation.names), LOAD_PORT)
     simulation.surroundings.ports(ports)
@@ -118,7 +118,7 @@ def actuator_parts() -> dict[str, float]:
 
 
 def _recorder_seconds(drop: Scenario) -> float:
-    """Return the time of one tick's messages in the recorder, in s."""
+    """Return the time to record one tick's messages, in s."""
     simulation = Simulation(drop)
     rows = shown(simulation)
     simulation.step()

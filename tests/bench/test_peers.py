@@ -34,7 +34,7 @@ def test_a_start_is_told_from_the_others_by_its_count():
     assert step.start(1).tobytes() == starts[1].tobytes()
 
 
-def test_an_answer_crosses_with_what_was_not_said():
+def test_an_answer_crosses_with_its_absent_parts():
     reply, sample = rows(LOAD_REPLY, 1)[0], rows(SAMPLE, 1)[0]
     answer = frames.decode_answer(frames.encode_answer(2, 9, reply, sample, (None, b'abc', b'')))
     assert (answer.worker, answer.tick) == (2, 9)
