@@ -1,12 +1,12 @@
 """
-The model of a run as an object: numpy in, numpy out. Neither ROS nor messages nor a bag.
+The model of a run as an object: numpy in, numpy out; without ROS, messages and bag.
 
     simulation = Simulation(load_scenario('drop.yaml', load_run('leg.yaml')))
     while simulation.t < 1.0:
         samples = simulation.step()
     print(samples['kfe'].force)
 
-A tick is the exchange of `isa_ros.run.coordinator` without anybody to wait for.
+A tick is that of `isa_ros.run.coordinator`, in one thread and without waiting.
 """
 
 from collections.abc import Mapping, Sequence
@@ -29,11 +29,11 @@ _SNAPSHOT = 'snapshot'
 
 class Simulation:
     """
-    A run in memory, tick by tick; it begins at t = 0.
+    A run in memory, advanced tick by tick; it begins at t = 0.
 
-    Commands come from the scenario, from `command`, and from ``controllers``, which are shown
-    the state of a tick and take effect one tick later. At one tick the scenario wins over a
-    controller, and both over `command`.
+    Commands come from the scenario, from `command`, and from ``controllers``, whose commands
+    depend on the state of a tick and take effect one tick later. At the same tick the scenario
+    wins over a controller, and both over `command`.
 
     Raises
     ------
@@ -46,11 +46,11 @@ class Simulation:
         self.scenario = scenario
         run = scenario.run
         self.names = tuple(actuator.name for actuator in run.actuators)
-        """The actuators, in the order of every row."""
+        """Names of the actuators, in the order of all rows."""
         self.group = group_of(run)
-        """The actuators: what they show is in its rows."""
+        """The actuators, with their samples as rows."""
         self.surroundings = surroundings_of(run)
-        """Supplies and body: what they show is in their rows."""
+        """Supplies and body, with their samples as rows."""
         self._starts, self._beginning = (
             self.surroundings.starts(), self.surroundings.snapshot())
         self._controllers = tuple(controllers)
@@ -65,16 +65,16 @@ class Simulation:
             [feed.name for feed in self.surroundings.feeds], self.surroundings.supplies)
         """`SUPPLY_SAMPLE` by supply, likewise."""
         self.body_sample: np.record | None = None
-        """What the body shows, likewise; None without one."""
+        """Sample of the body, likewise; None without a body."""
         if self.surroundings.body is not None:
             self.body_sample = self.surroundings.body.sample.view(np.recarray)[0]
         self.reset()
 
     def reset(self) -> Mapping[str, np.record]:
         """
-        Begin anew at t = 0 and return the `samples` of then.
+        Start again at t = 0 and return the `samples` at t = 0.
 
-        What was tuned is in force again from the first tick on.
+        Tuned values are in force again from the first tick on.
         """
         self.ticks = 0
         self.surroundings.restore(self._beginning)
@@ -95,7 +95,7 @@ class Simulation:
 
     def command(self, name: str, **setpoint: float | bool | None) -> None:
         """
-        Give an actuator a setpoint that takes effect at the next tick.
+        Command an actuator; the setpoint takes effect at the next tick.
 
         The fields are those of `Setpoint`: ``position`` (m or rad), ``velocity``, ``effort``,
         ``stiffness``, ``damping``, ``is_enabled``.
@@ -103,7 +103,7 @@ class Simulation:
         Raises
         ------
         SetpointError
-            An actuator that the run does not have, or a value that cannot be one.
+            The run has no such actuator, or a value is invalid.
 
         """
         row: Records = np.zeros(len(self.names), COMMAND)
@@ -115,7 +115,7 @@ class Simulation:
         """
         Advance one tick and return the `samples` at its end.
 
-        ``commands`` are `COMMAND` rows, (n_actuators,), in the place of those of the scenario.
+        ``commands`` are `COMMAND` rows, (n_actuators,), used instead of those of the scenario.
 
         Raises
         ------
@@ -123,7 +123,7 @@ class Simulation:
             A state is no longer finite.
 
         """
-        commands = self._in_force(commands)
+        commands = self._merged(commands)
         if self._seats:
             self._control()
         self.surroundings.ports(self._ports)
@@ -131,21 +131,21 @@ class Simulation:
         self.ticks += 1
         return self.samples
 
-    def _in_force(self, given: Records | None) -> Records | None:
-        """Return the controllers' requests under what is given, else under the scenario's."""
-        speaks = given is None and self.scenario.has_commands_at(self.ticks)
-        if not (speaks or self._seats):
+    def _merged(self, given: Records | None) -> Records | None:
+        """Return the controllers' requests, overwritten by given or by the scenario's commands."""
+        is_commanded = given is None and self.scenario.has_commands_at(self.ticks)
+        if not (is_commanded or self._seats):
             return given
         self._commands[:] = self._requests
         self._requests['kinds'] = 0
-        if speaks:
+        if is_commanded:
             self.scenario.commands(self.ticks, self._commands)
         if given is not None:
             merge_requests(given, self._commands)
         return self._commands
 
     def _control(self) -> None:
-        """Show the controllers the state before the tick; what they ask for is for the next."""
+        """Call the controllers with the state before the tick; store requests for the next."""
         state = State(self.t_ns, self.samples, self.supply_samples, self.body_sample)
         for seat in self._seats:
             seat.step(state)
@@ -153,7 +153,7 @@ class Simulation:
 
     def state(self) -> RunState:
         """
-        Return everything that the rest of the run depends on, as a run on nodes saves it.
+        Return the complete state of the run, in the form that a run on nodes saves.
 
         Raises
         ------
@@ -174,7 +174,7 @@ class Simulation:
         Raises
         ------
         ConfigError
-            It is of another one.
+            The state is not one of this configuration.
 
         """
         n = len(self.names)
@@ -191,21 +191,21 @@ class Simulation:
             seat.controller.restore(own)
 
     def snapshot(self) -> bytes:
-        """Return the whole state; `restore` continues from it byte for byte. As `state`."""
+        """Return the complete state as bytes for `restore`; raises as `state`."""
         return self.state().to_json(self.scenario.run.digest, {}).encode()
 
     def restore(self, snapshot: bytes) -> Mapping[str, np.record]:
-        """Continue from a `snapshot` and return the `samples` of then; as `resume`."""
+        """Continue from a `snapshot` and return its `samples`; raises as `resume`."""
         self.resume(RunState.from_json(
             snapshot.decode(), self.scenario.run.digest, _SNAPSHOT))
         return self.samples
 
     @property
     def applied(self) -> Records:
-        """Return what took effect at the start of the last tick; `ActuatorGroup.applied`."""
+        """Return the commands applied at the start of the last tick; `ActuatorGroup.applied`."""
         return self.group.applied
 
     @property
     def tuned(self) -> Mapping[int, Mapping[str, float]]:
-        """Return the parameters that changed then; `ActuatorGroup.tuned`."""
+        """Return the parameters that changed at the same time; `ActuatorGroup.tuned`."""
         return self.group.tuned

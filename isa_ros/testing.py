@@ -1,13 +1,13 @@
 """
-Regression tests from bags, for this package and for its users.
+Regression tests from bags, for this package and its users.
 
 In a conftest.py: ``pytest_plugins = ['isa_ros.testing']``; in a test::
 
-    def test_my_leg_still_drops_like_that(assert_replays):
+    def test_my_leg_drops_as_recorded(assert_replays):
         assert_replays('bags/drop', 'bags/tolerances.yaml')
 
-Without a tolerance file every bit must be equal, which is the case on the same kind of machine
-and with the same versions. `assert_replays` may also be imported and called.
+Without a tolerance file every bit must be equal. This holds on the same kind of machine with the
+same versions. `assert_replays` may also be imported and called.
 """
 
 from collections.abc import Callable
@@ -33,8 +33,8 @@ def assert_replays(bag: Path | str, tolerances: Path | str | None = None) -> Non
     Raises
     ------
     AssertionError
-        The replay differs: first tick, topic and field with both values, and how this
-        installation differs from the one that recorded the bag.
+        The replay differs; the message has the first tick, topic and field with both values, and
+        the differences between this installation and the one that recorded the bag.
     BagError, ConfigError
         The bag or the tolerance file cannot be read, or the bag cannot be simulated.
 
@@ -56,13 +56,13 @@ def _assert_replays() -> AssertReplays:
 
 
 def _why_bits_differ(has_changes: bool) -> list[str]:
-    """Return why equal bits may not be expected; a bag has no data of its machine."""
-    known = (
+    """Return possible reasons of unequal bits; a bag has no data of its machine."""
+    versions = (
         'Versions or topics differ as listed' if has_changes else
         'Versions and topics are those of the bag')
     return [
         'No tolerances were given, so every bit must be equal, which holds with the same '
-        f'versions on the same kind of CPU. {known}; the CPU here is {_cpu()}, that of the '
+        f'versions on the same kind of CPU. {versions}; the CPU here is {_cpu()}, that of the '
         'recording is not stored in the bag. For other versions or CPUs give tolerances.']
 
 

@@ -202,7 +202,7 @@ def test_a_command_takes_effect_at_the_next_tick_once():
 
 
 @pytest.mark.parametrize(('name', 'setpoint', 'message'), [
-    ('elbow', {'position': 0.0}, "'elbow' is no actuator of the run; valid: hip, knee"),
+    ('elbow', {'position': 0.0}, "'elbow' is not an actuator of the run; valid: hip, knee"),
     ('knee', {'position': math.nan}, 'knee: setpoint position = nan, must be finite'),
     ('knee', {'position': 0.0, 'damping': -1.0}, 'knee: setpoint damping = -1.0, must be >= 0')])
 def test_a_command_that_cannot_be_is_refused(name, setpoint, message):
@@ -231,7 +231,7 @@ def test_a_controller_asks_at_tick_k_for_tick_k_plus_1():
 
 def test_a_setpoint_for_an_unknown_actuator_ends_the_tick():
     simulation = Simulation(idle(RUN), [Counter('elbow')])
-    with pytest.raises(SetpointError, match="'elbow' is no actuator of the run"):
+    with pytest.raises(SetpointError, match="'elbow' is not an actuator of the run"):
         simulation.step()
 
 

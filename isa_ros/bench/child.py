@@ -1,4 +1,4 @@
-"""Processes of the bench: Python modules of this package, wherever it is installed."""
+"""Child processes of the bench: modules of this package."""
 
 from collections.abc import Mapping, Sequence
 import os
@@ -15,16 +15,16 @@ _ROOT = Path(isa_ros.__file__).parents[1]
 
 
 def environment(added: Mapping[str, str] | None = None) -> dict[str, str]:
-    """Return this process's environment, with this package in reach."""
+    """Return this process's environment, with this package on the path of Python."""
     path = [str(_ROOT), *filter(None, [os.environ.get('PYTHONPATH')])]
     return {**os.environ, 'PYTHONPATH': os.pathsep.join(path), **(added or {})}
 
 
 def run_module(module: str, arguments: Sequence[str], timeout_s: float) -> Ended:
     """
-    Run ``python -m module STARTED *arguments`` to its end and return what it said.
+    Run ``python -m module STARTED *arguments`` to its end and return its output.
 
-    STARTED is the monotonic clock just before; a process that takes longer is killed.
+    STARTED is the monotonic clock just before; after ``timeout_s`` the process is killed.
     """
     return subprocess.run(
         [sys.executable, '-m', module, str(time.monotonic()), *arguments], env=environment(),
@@ -33,6 +33,6 @@ def run_module(module: str, arguments: Sequence[str], timeout_s: float) -> Ended
 
 
 def last_line(ended: Ended) -> str:
-    """Return why a process failed, as it said itself."""
-    said = ended.stderr.strip().splitlines()
-    return said[-1] if said else f'exit code {ended.returncode}'
+    """Return the last line of a failed process's errors."""
+    lines = ended.stderr.strip().splitlines()
+    return lines[-1] if lines else f'exit code {ended.returncode}'

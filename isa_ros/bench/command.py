@@ -1,4 +1,4 @@
-"""The command: which groups, in which order, and where the rows go."""
+"""The command `isa bench`: select groups, measure them, and write the rows."""
 
 from collections.abc import Sequence
 from pathlib import Path
@@ -16,12 +16,12 @@ from isa_ros.text.progress import counted, Progress
 
 def chosen(only: Sequence[str] | None, groups: Sequence[Group] = GROUPS) -> tuple[Group, ...]:
     """
-    Return the groups that ``only`` names, in their order; all for None.
+    Return the groups named in ``only``, in the order of ``groups``; all for None.
 
     Raises
     ------
     ConfigError
-        There is no such group.
+        A group does not exist.
 
     """
     names = [group.name for group in groups]
@@ -35,12 +35,12 @@ def bench(
         json_file: Path | None = None, only: Sequence[str] | None = None,
         out: Path | None = None) -> Report:
     """
-    Measure, print the rows as they come, and write JSON or the page if asked.
+    Measure, print each row when it is ready, and write JSON or the page if requested.
 
     Raises
     ------
     ConfigError
-        No such group, or a page that a part of it would replace.
+        A group does not exist, or only a part of an existing page was measured.
     RunError
         A run could not be completed.
 
@@ -61,7 +61,7 @@ def bench(
 
 def measured_report(
         groups: Sequence[Group], here: Machine, progress: Progress | None = None) -> Report:
-    """Measure the groups that need no runs, then do all runs, then the groups made of them."""
+    """Measure the groups without runs, then do all runs and evaluate the other groups."""
     sections: dict[str, Section] = {}
     done = Outcomes({})
     for has_runs in (False, True):

@@ -1,4 +1,4 @@
-"""Other middlewares under the leg and twelve actuators: same work, same bag, another exchange."""
+"""Leg and twelve actuators with other middlewares: same work, same bag, another exchange."""
 
 from isa_ros.bench import growth
 from isa_ros.bench.leg import IN_PROCESSES, speed_row
@@ -13,13 +13,13 @@ FLOOR = PEERS[0]
 TWELVE = next(
     spec for spec in growth.IN_PROCESSES if (spec.plant, spec.way) == ('12', PROCESSES))
 OURS = {'': IN_PROCESSES, '12 actuators, ': TWELVE}
-"""The runs of this package that peers are held against, by what their rows begin with."""
+"""The runs of this package that peers are compared with, by the prefix of their rows."""
 
 _AIMS = {'helics': Aim(1.8), 'zeromq': Aim(2.5, is_most=True)}
 
 
 def over(peer: Peer, ours: Spec) -> Spec:
-    """Return the run over a peer: twelve workers take long to start, so they do it once."""
+    """Return the run over a peer; with twelve workers, which start slowly, one round."""
     if ours is TWELVE:
         return Spec(ours.plant, peer.name, ours.ticks // 2, rounds=1)
     return Spec(ours.plant, peer.name, ours.ticks, ours.rounds)
@@ -30,7 +30,7 @@ SPECS = tuple(
 
 
 def comparison_rows(outcomes: Outcomes) -> list[Row]:
-    """Return ticks/s over each peer, and the ratios of the same rounds to isa_ros."""
+    """Return ticks/s over each peer, and the ratios to isa_ros in the same rounds."""
     return [row for before, ours in OURS.items() for row in _rows(before, ours, outcomes)]
 
 
@@ -38,7 +38,7 @@ def _rows(before: str, ours: Spec, outcomes: Outcomes) -> list[Row]:
     floor, own = outcomes.of(over(FLOOR, ours)), outcomes.of(ours)
     if not own:
         return []
-    rows = [speed_row(f'{before}isa_ros: Unix sockets, topics for who listens', own)]
+    rows = [speed_row(f'{before}isa_ros: Unix sockets, topics for subscribers', own)]
     ratios = []
     for peer in PEERS:
         spec = over(peer, ours)
@@ -62,7 +62,7 @@ def _reason(reason: str) -> str:
 
 
 def _ratio_row(before: str, peer: Peer, ours: Spec, outcomes: Outcomes) -> Row:
-    """Return ours over theirs, or theirs over ours where that is what the aim bounds."""
+    """Return the ratio of isa_ros to a peer; the inverse if the aim is an upper bound of it."""
     own, theirs = outcomes.of(ours), outcomes.of(over(peer, ours))
     aim = _AIMS.get(peer.name)
     if aim is not None and aim.is_most:

@@ -1,4 +1,4 @@
-"""The floor of every exchange: pipes to processes that do nothing."""
+"""Floor of every exchange: pipes to processes that only answer."""
 
 from multiprocessing import get_context
 from multiprocessing.connection import Connection
@@ -7,12 +7,12 @@ from isa_ros.bench.row import seconds
 from isa_ros.core.signals import LOAD_REPLY, SAMPLE
 
 TICKS = 500
-WORKERS = 3             # as many as the leg has actuators
-PIPE_BYTES = LOAD_REPLY.itemsize + SAMPLE.itemsize     # of one actuator's answer
+WORKERS = 3             # number of the leg's actuators
+PIPE_BYTES = LOAD_REPLY.itemsize + SAMPLE.itemsize     # size of one actuator's answer
 
 
 def pipe_exchange() -> float:
-    """Return the time of one exchange with `WORKERS` processes that do nothing, in s."""
+    """Return the time of one exchange with `WORKERS` processes that only answer, in s."""
     context = get_context('spawn')
     pipes = [context.Pipe() for _ in range(WORKERS)]
     workers = [context.Process(target=_answer, args=(theirs,)) for _, theirs in pipes]

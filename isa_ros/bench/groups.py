@@ -1,4 +1,4 @@
-"""Every group of rows; the package says how to add one."""
+"""All groups of rows; see `isa_ros.bench` for how to add one."""
 
 from collections.abc import Callable
 from dataclasses import dataclass
@@ -14,7 +14,7 @@ from isa_ros.bench.tick import tick_parts
 
 @dataclass(frozen=True)
 class Group:
-    """Rows that belong together, and the runs they are made from."""
+    """A group of rows, and the runs it evaluates."""
 
     name: str
     title: str
@@ -23,13 +23,13 @@ class Group:
 
 
 def _alone(rows: Callable[[], list[Row]]) -> Callable[[Outcomes], list[Row]]:
-    """Return rows that are measured in this process."""
+    """Return a group's function for rows measured in this process, without runs."""
     return lambda _: rows()
 
 
 GROUPS = (
     Group('plant', 'One actuator, one core', _alone(plant_rows)),
-    Group('cylinder', 'A valve-driven cylinder whose motion is known', _alone(cylinder_rows)),
+    Group('cylinder', 'A valve-driven cylinder with a known solution', _alone(cylinder_rows)),
     Group('tick', 'Parts of a tick of the leg, without ROS', _alone(tick_parts)),
     Group('in_memory', 'The leg in memory, without a bag', _alone(in_memory_rows)),
     Group('leg', 'The leg, recording', leg.leg_rows, lambda: leg.SPECS),

@@ -1,4 +1,4 @@
-"""From 1 to 24 actuators, each on a load of its own: a curve in one process, one in processes."""
+"""1 to 24 actuators, each with its own load: one curve in one process, one in processes."""
 
 from collections.abc import Mapping, Sequence
 
@@ -10,12 +10,12 @@ from isa_ros.bench.row import Aim, Row
 from isa_ros.bench.spec import Measured, ONE_PROCESS, PROCESSES, Spec
 
 Curve = Sequence[tuple[int, Sequence[Measured]]]
-"""(number of actuators, its runs), ascending."""
+"""(number of actuators, runs), ascending."""
 
 Curves = Mapping[str, Curve]
-"""By the way they are run."""
+"""Curves by way of running: one process or processes."""
 
-PROCESS_BYTES = 250 * 1024 * 1024       # more than an actuator's process has
+PROCESS_BYTES = 250 * 1024 * 1024       # more than the memory of an actuator's process
 
 IN_ONE_PROCESS = tuple(Spec(str(n), ONE_PROCESS, ticks, rounds=2) for n, ticks in (
     (1, 3000), (2, 3000), (3, 2500), (6, 2000), (12, 1200), (24, 600)))
@@ -25,13 +25,13 @@ _AIMS = {('12', ONE_PROCESS): Aim(1000.0), ('12', PROCESSES): Aim(500.0)}
 
 
 def specs() -> tuple[Spec, ...]:
-    """Return the runs of both curves, those that this machine has the memory for."""
+    """Return the runs of both curves, without those that need more memory than available."""
     return IN_ONE_PROCESS + tuple(
         spec for spec in IN_PROCESSES if int(spec.plant) * PROCESS_BYTES < available_memory())
 
 
 def growth_rows(outcomes: Outcomes) -> list[Row]:
-    """Return ticks/s of every number of actuators, 12 beside their aims."""
+    """Return ticks/s for each number of actuators; those of 12 have aims."""
     return [_row(spec, outcomes) for spec in IN_ONE_PROCESS + IN_PROCESSES]
 
 
@@ -46,5 +46,5 @@ def _row(spec: Spec, outcomes: Outcomes) -> Row:
 
 
 def curve(specs: Sequence[Spec], outcomes: Outcomes) -> Curve:
-    """Return what was measured for each number of actuators, ascending."""
+    """Return the runs for each number of actuators, ascending."""
     return [(int(spec.plant), runs) for spec in specs if (runs := outcomes.of(spec))]

@@ -1,4 +1,4 @@
-"""The figure of the growth: speed and memory over the number of actuators."""
+"""Figure of speed and memory over the number of actuators."""
 
 from statistics import median
 
@@ -8,13 +8,13 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 REAL_TIME = 1000.0      # ticks/s
-SPEEDS = (20, 50, 100, 200, 500, 1000, 2000, 5000, 10000)     # that are labelled
+SPEEDS = (20, 50, 100, 200, 500, 1000, 2000, 5000, 10000)     # labels of the axis, ticks/s
 MIB = 1024.0 * 1024.0
 _STYLES = ('C0o-', 'C1s-')
 
 
 def growth_figure(curves: Curves) -> Figure:
-    """Draw ticks/s and memory, one line for each way."""
+    """Draw ticks/s and memory, one line for each way of running."""
     figure = Figure(figsize=(8.0, 3.6), dpi=110, layout='constrained')
     speed, memory = figure.subplots(1, 2)
     for (name, curve), style in zip(curves.items(), _STYLES):

@@ -1,4 +1,4 @@
-"""What the host says: its processors, and the memory and processor time of processes."""
+"""Data of the host: its processors, and the memory and processor time of processes."""
 
 from dataclasses import dataclass
 import os
@@ -14,7 +14,7 @@ _USER_TIME, _SYSTEM_TIME = 11, 12   # in /proc/PID/stat after the name and the s
 
 @dataclass(frozen=True)
 class Machine:
-    """What a page of numbers must say about where they are from."""
+    """Description of the machine for a page of measurements."""
 
     processor: str
     cores: int
@@ -22,17 +22,17 @@ class Machine:
     kernel: str
     python: str
     load: float
-    """Processes that wanted a core in the minute before the bench."""
+    """Load average of the minute before the bench."""
 
     @property
     def summary(self) -> str:
-        """Return one line."""
+        """Return the description in one line."""
         return (f'{self.processor}, {self.cores} cores, {self.memory_gib:.0f} GiB, Linux '
                 f'{self.kernel}, Python {self.python}, load {self.load:.1f} before')
 
 
 def machine() -> Machine:
-    """Return this one."""
+    """Return the description of this machine."""
     pages = os.sysconf('SC_PHYS_PAGES') * os.sysconf('SC_PAGE_SIZE')
     return Machine(
         processor=_processor(), cores=len(os.sched_getaffinity(0)),
@@ -49,7 +49,7 @@ def _processor() -> str:
 
 
 def available_memory() -> int:
-    """Return how many bytes can be had without swapping."""
+    """Return the memory available without swapping, bytes."""
     for line in (_PROC / 'meminfo').read_text().splitlines():
         name, _, rest = line.partition(':')
         if name == 'MemAvailable':
@@ -67,14 +67,14 @@ def memory_of(pid: int) -> Memory:
 
 
 def processor_seconds_of(pid: int) -> float:
-    """Return the processor time a process has taken so far, of all its threads."""
+    """Return the processor time of all threads of a process so far, s."""
     after_name = (_PROC / str(pid) / 'stat').read_text().rpartition(')')[2].split()
     ticks = int(after_name[_USER_TIME]) + int(after_name[_SYSTEM_TIME])
     return ticks / os.sysconf('SC_CLK_TCK')
 
 
 def children_of(pid: int) -> list[int]:
-    """Return the processes that this one has started and that still are there."""
+    """Return the running child processes of a process."""
     return sorted(
         int(child) for listed in (_PROC / str(pid) / 'task').glob('*/children')
         for child in listed.read_text().split())

@@ -21,7 +21,7 @@ _KERNEL = 'the kernel of three actuators'
 
 
 class _Holder(Controller):
-    """Asks one actuator to stay where it is, at every tick."""
+    """Commands one actuator to hold its position, at every tick."""
 
     def step(self, state: State) -> dict[str, Setpoint]:
         return {'kfe': Setpoint(position=state.actuators['kfe'].position)}
@@ -43,7 +43,7 @@ def in_memory_rows() -> list[Row]:
 
 
 def _simulated(simulation: Simulation) -> float:
-    """Return the time of a tick of the first `TICKS` ones, in s."""
+    """Return the time per tick of the first `TICKS` ticks, in s."""
     def work() -> None:
         simulation.reset()
         for _ in range(TICKS):
@@ -52,7 +52,7 @@ def _simulated(simulation: Simulation) -> float:
 
 
 def _kernel_seconds(drop: Scenario) -> float:
-    """Return the time of the actuators' kernel alone, each tick under the port it really has."""
+    """Return the time of the actuators' kernel alone, with the ports of the real ticks, in s."""
     simulation = Simulation(drop)
     ports: list[np.ndarray] = []
     take: Callable[[np.ndarray], None] = simulation.surroundings.ports

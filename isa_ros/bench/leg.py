@@ -1,4 +1,4 @@
-"""The leg's drop, recording: three actuators in processes of their own, and in one."""
+"""The leg's drop, recorded: three actuators in separate processes, and in one."""
 
 from collections.abc import Sequence
 from statistics import median
@@ -18,10 +18,10 @@ _AIMS = {IN_PROCESSES: Aim(1500.0), IN_ONE_PROCESS: Aim(4000.0)}
 
 def leg_rows(outcomes: Outcomes) -> list[Row]:
     """
-    Return the speed of both ways beside their aims, and where a tick goes.
+    Return the speed of both ways of running with their aims, and the parts of a tick.
 
-    In processes the recorder works while the actuators do, and ``actuators`` is the wait for
-    them.
+    In processes the recorder works at the same time as the actuators, and ``actuators`` is the
+    wait for them.
     """
     pipe = pipe_exchange()
     rows = [Row(f'floor: {WORKERS} workers on pipes, no work', pipe * 1e6, 'us', 'itself', 1.0)]
@@ -42,23 +42,23 @@ def leg_rows(outcomes: Outcomes) -> list[Row]:
 
 def _actuator_phase(runs: Sequence[Measured]) -> dict[str, float]:
     """
-    Return what the phase of the actuators is spent on where they are in one process, in s.
+    Return the parts of the phase of the actuators in one process, in s.
 
-    Plant, REU and messages as they take without ROS, in this process; the rest is theirs.
+    Plant, REU and messages are measured in this process, without ROS; the rest is that of ROS.
     """
     parts = actuator_parts()
     phase = median(run.phases['actuators'] for run in runs)
-    return parts | {'ROS: publishing and listening': max(0.0, phase - sum(parts.values()))}
+    return parts | {'ROS: publishing and receiving': max(0.0, phase - sum(parts.values()))}
 
 
 def speed_row(name: str, runs: Sequence[Measured]) -> Row:
-    """Return ticks/s against real time."""
+    """Return ticks/s with the ratio to real time."""
     row = Row.of(name, [run.ticks_per_s for run in runs], 'ticks/s')
     return row.against('real time', row.number * 1e-3)
 
 
 def tick_rows(runs: Sequence[Measured], pipe: float) -> list[Row]:
-    """Return what a tick takes, of the host's time and of its processors'."""
+    """Return the host time and the processor time of a tick, with their parts."""
     row = Row.of('a tick', [run.tick * 1e6 for run in runs], 'us')
     tick = row.number * 1e-6
     rows = [row.against('pipe floor', pipe / tick)]

@@ -1,4 +1,4 @@
-"""What limits a run, from the laps of its coordinator and the processor time of its processes."""
+"""Limits of a run, from the laps of its coordinator and the processor time of its processes."""
 
 from collections.abc import Mapping, Sequence
 import os
@@ -15,7 +15,7 @@ def in_parts(parts: Mapping[str, float], scale: float, unit: str) -> str:
 
 
 def profile(runs: Sequence[Measured]) -> str:
-    """Return where a tick goes, in one sentence; medians over the runs."""
+    """Return the parts of a tick, in one sentence; medians over the runs."""
     tick = median(run.tick for run in runs)
     phases, processor = (
         median_of([run.phases for run in runs]), median_of([run.processor for run in runs]))
@@ -25,8 +25,8 @@ def profile(runs: Sequence[Measured]) -> str:
 
 
 def startup_profile(runs: Sequence[Measured]) -> str:
-    """Return where the start-up goes, in one sentence; medians over the runs."""
-    return f'from the start on: {in_parts(median_of([run.startup for run in runs]), 1.0, "s")}'
+    """Return the parts of the start-up, in one sentence; medians over the runs."""
+    return f'start-up: {in_parts(median_of([run.startup for run in runs]), 1.0, "s")}'
 
 
 def busy(runs: Sequence[Measured]) -> float:
@@ -37,5 +37,5 @@ def busy(runs: Sequence[Measured]) -> float:
 
 
 def cores() -> int:
-    """Return how many processors this process may use."""
+    """Return the number of processors that this process may use."""
     return len(os.sched_getaffinity(0))

@@ -1,8 +1,8 @@
 """
-What one actuator's process loads, in a process that does nothing else.
+Loading time of one actuator's process, measured in a process that does nothing else.
 
-`python -m ... STARTED WHAT`: STARTED is the monotonic clock of whoever started it, WHAT is
-``floor`` or ``actuator``; what was measured goes to stdout.
+`python -m ... STARTED WHAT`: STARTED is the monotonic clock at the start of the process, WHAT is
+``floor`` or ``actuator``; the measured values are written to stdout.
 """
 
 from collections.abc import Sequence
@@ -17,27 +17,27 @@ from typing import NamedTuple
 REPEATS = 3
 TIMEOUT_S = 120.0
 FLOOR, ACTUATOR = 'floor', 'actuator'
-_EVERY_NODE_NEEDS = ('numba', 'rclpy')
+_IMPORTS_OF_EVERY_NODE = ('numba', 'rclpy')
 
 
 class Loading(NamedTuple):
     """Medians over several processes."""
 
     floor: float
-    """s, until Python has imported what every node needs."""
+    """Time until Python has imported the packages of every node, s."""
     floor_bytes: float
-    """Resident then."""
+    """Resident memory after that, bytes."""
     imports: float
-    """s, until an actuator's process has imported everything."""
+    """Time until an actuator's process has finished its imports, s."""
     kernels: float
-    """s, from there until its first tick, kernels from the cache."""
+    """Time from there to its first tick, with kernels from the cache, s."""
 
 
 def main(arguments: Sequence[str]) -> None:
-    """Load, and say how long it took and, for the floor, how much it is."""
+    """Load and print the times; for the floor one time and the resident memory."""
     started, what = float(arguments[0]), arguments[1]
     if what == FLOOR:
-        for name in _EVERY_NODE_NEEDS:
+        for name in _IMPORTS_OF_EVERY_NODE:
             import_module(name)
         imported = time.monotonic() - started
         from isa_ros.bench.host import memory_of
@@ -52,17 +52,17 @@ def main(arguments: Sequence[str]) -> None:
 
 
 def median_loading() -> Loading:
-    """Return the medians over several processes of either kind, in turn."""
+    """Return the medians over several processes of both kinds, alternating."""
     return Loading(*(median(values) for values in zip(*(
-        (*_said(FLOOR), *_said(ACTUATOR)) for _ in range(REPEATS)))))
+        (*_measured(FLOOR), *_measured(ACTUATOR)) for _ in range(REPEATS)))))
 
 
-def _said(what: str) -> tuple[float, float]:
+def _measured(what: str) -> tuple[float, float]:
     from isa_ros.bench.child import last_line, run_module
     from isa_ros.errors import RunError
     ended = run_module(f'{__package__}.loading', [what], TIMEOUT_S)
     if ended.returncode:
-        raise RunError(f'a process that loads the {what}: {last_line(ended)}')
+        raise RunError(f'loading the {what} failed: {last_line(ended)}')
     first, second = json.loads(ended.stdout.splitlines()[-1])
     return first, second
 

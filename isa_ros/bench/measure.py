@@ -1,8 +1,8 @@
 """
-A process that does one measured run: `python -m ... STARTED SPEC RESULT`.
+One measured run in its own process: `python -m ... STARTED SPEC RESULT`.
 
-STARTED is the monotonic clock of whoever started it, RESULT the file it writes. Only what it
-cannot do without is imported before it looks at the clock.
+STARTED is the monotonic clock at the start of the process, RESULT the file to write. Only a few
+modules are imported before the clock is read.
 """
 
 from collections.abc import Sequence
@@ -20,7 +20,7 @@ if TYPE_CHECKING:
 
 
 def main(arguments: Sequence[str]) -> int:
-    """Run, write what was measured, and return the exit code."""
+    """Run, write the measured values, and return the exit code."""
     entered = time.monotonic()
     started, spec_text, result = arguments
     from isa_ros.bench.spec import Spec
@@ -36,9 +36,9 @@ def main(arguments: Sequence[str]) -> int:
 
 def measure(spec: 'Spec', started: float, entered: float) -> 'Measured':
     """
-    Do the run of ``spec`` here and return what it told.
+    Do the run of ``spec`` in this process and return its measured values.
 
-    ``started`` and ``entered`` are when this process was started and reached its first line.
+    ``started`` and ``entered``: monotonic clock at the start of this process and at `main`.
     """
     from isa_ros.core.without_blas import start_without_blas
     start_without_blas()
@@ -69,5 +69,5 @@ if __name__ == '__main__':
     code = main(sys.argv[1:])
     sys.stdout.flush()
     sys.stderr.flush()
-    # Without the middlewares' own ends, which are measured by nobody and not always short.
+    # Skips the shutdown of the middlewares, which may be slow and is not measured.
     os._exit(code)

@@ -1,4 +1,4 @@
-"""Memory: of every process, and of one actuator more."""
+"""Memory of every process, and the memory added by one more actuator."""
 
 from collections.abc import Sequence
 from statistics import median
@@ -13,12 +13,12 @@ _MIB = 1024.0 * 1024.0
 
 
 def specs() -> tuple[Spec, ...]:
-    """Return the runs whose memory is looked at."""
+    """Return the runs whose memory is evaluated."""
     return leg.SPECS + growth.specs()
 
 
 def memory_rows(outcomes: Outcomes) -> list[Row]:
-    """Return resident and proportional memory beside that of Python with numba and rclpy."""
+    """Return resident and proportional memory, compared with Python with numba and rclpy."""
     loading = median_loading()
     rows = [Row('floor: Python with numba and rclpy, resident', loading.floor_bytes / _MIB, 'MiB',
                 'itself', 1.0)]
@@ -31,7 +31,7 @@ def memory_rows(outcomes: Outcomes) -> list[Row]:
 
 
 def _process_rows(spec: Spec, runs: Sequence[Measured], loading: Loading) -> list[Row]:
-    """Return the sizes of the coordinator's process, of an actuator's, and of all."""
+    """Return the memory of the coordinator's process, of an actuator's, and of all processes."""
     rows = []
     actuators = [size for run in runs for size in run.memory[1:]]
     for name, sizes in (('coordinator', [run.memory[0] for run in runs]),
@@ -49,12 +49,12 @@ def _process_rows(spec: Spec, runs: Sequence[Measured], loading: Loading) -> lis
 
 
 def total(run: Measured) -> int:
-    """Return the memory that all processes of a run have together, bytes."""
+    """Return the proportional memory of all processes of a run, bytes."""
     return sum(size.proportional for size in run.memory)
 
 
 def _added_row(way: str, curve: growth.Curve) -> Row:
-    """Return the slope from the fewest to the most actuators, in proportional memory."""
+    """Return the proportional memory per added actuator, from the fewest to the most."""
     name = f'one actuator more, {way}'
     if len(curve) < 2:
         return Row(name, None, 'MiB', note='not run')

@@ -1,4 +1,4 @@
-"""The rows as text, as JSON, and as the page docs/bench.md with its figure."""
+"""Output of the rows as text, as JSON, and as the page docs/bench.md with its figure."""
 
 from dataclasses import asdict, dataclass
 import json
@@ -27,11 +27,11 @@ on
 
     {machine}
 
-Every row is a median, with the lowest and the highest in brackets; a ratio is in the direction in
-which more is better, to a floor of the same call. Whole runs take 1 ms ticks with recording, each
-run in a process of its own, in rounds of alternating order. The peers carry the same steps and
-answers between the same actuators, shared load and recorder, and give the same bag, byte for
-byte; isa_ros also looks for setpoints, requests and listeners. In processes, the phase
+Every row is a median, with the lowest and the highest value in brackets. A ratio compares it with
+a floor of the same call, so that more is better. Whole runs have ticks of 1 ms and record a bag;
+each run is in its own process, in rounds of alternating order. The peers transmit the same steps
+and answers between the same actuators, shared load and recorder, and give the same bag, byte for
+byte; isa_ros also checks for setpoints, requests and subscriptions. In processes, the phase
 *actuators* is the wait for them.
 """
 
@@ -47,7 +47,7 @@ class Section:
 
 @dataclass(frozen=True)
 class Report:
-    """Everything that one call has measured, and where."""
+    """Measurements of one call, and the machine."""
 
     machine: Machine
     sections: tuple[Section, ...]
@@ -55,7 +55,7 @@ class Report:
 
 
 def as_lines(section: Section) -> list[str]:
-    """Return the lines that a terminal shows."""
+    """Return the lines of a section for a terminal."""
     lines = [f'{section.title} ({section.name})']
     for row in section.rows:
         lines.append(padded((_indented(row, '  '), digits(row.value, 4), row.unit, _ratio(row),
@@ -72,7 +72,7 @@ def _verdict(row: Row) -> str:
 
 
 def as_tree(report: Report) -> dict[str, Any]:
-    """Return everything for JSON, every run with what it told."""
+    """Return the report for JSON, with the measured values of every run."""
     return {
         'machine': asdict(report.machine),
         'rows': [{
@@ -84,13 +84,13 @@ def as_tree(report: Report) -> dict[str, Any]:
 
 
 def write_json(report: Report, path: Path) -> None:
-    """Write everything as JSON."""
+    """Write the report as JSON."""
     path.write_text(
         json.dumps(as_tree(report), indent=2, allow_nan=False) + '\n', encoding='utf-8')
 
 
 def write_page(report: Report, directory: Path) -> list[Path]:
-    """Write bench.md, and the figure of the growth where that was measured."""
+    """Write bench.md, with the figure of the growth if that was measured."""
     page = Page(PAGE, _HEAD.format(machine=report.machine.summary))
     _aims(page, report)
     curves = {name: growth.curve(specs, report.outcomes) for name, specs in (
@@ -107,7 +107,7 @@ def write_page(report: Report, directory: Path) -> list[Path]:
 
 
 def _aims(page: Page, report: Report) -> None:
-    """Add the aims and, for each that is not reached, what limits it."""
+    """Add the aims and, for each that is not reached, its limits."""
     rows = [row for section in report.sections for row in section.rows if row.aim is not None]
     if not rows:
         return
@@ -120,7 +120,7 @@ def _aims(page: Page, report: Report) -> None:
     page.table(cells)
     missed = [row for row in rows if row.is_reached is False]
     if missed:
-        page.paragraph('What limits those that are not reached, from the laps of the coordinator:')
+        page.paragraph('Limits of those that are not reached, from the laps of the coordinator:')
         page.items(f'{row.name}: {row.note}.' for row in missed)
 
 
@@ -141,5 +141,5 @@ def _ratio(row: Row) -> str:
 
 
 def _indented(row: Row, space: str) -> str:
-    """Return the name, a part's behind a space."""
+    """Return the name; that of a part is indented."""
     return f'{space if row.part_of else ""}{row.name}'

@@ -1,4 +1,4 @@
-"""The plant alone, the plant with its REU, and a cylinder whose motion is known."""
+"""The plant alone, the plant with its REU, and a cylinder with a known solution."""
 
 from isa_ros.actuator import kernel as kernels
 from isa_ros.actuator.actuator import SmartActuator
@@ -11,18 +11,18 @@ from isa_ros.core.timebase import NS_PER_SECOND, PLANT_STEP
 import numpy as np
 
 PLANT_STEPS = 20_000
-ROOTS = 40               # in a plant step
+ROOTS = 40               # square roots in a plant step
 TICKS = 500
-HOLDS = 10_000          # of the cylinder, ten seconds
-HOLD_ROOTS = cylinder.STAGES * 4 * 2    # in a hold: four orifices, two each
+HOLDS = 10_000          # steps of the cylinder (constant input), ten seconds
+HOLD_ROOTS = cylinder.STAGES * 4 * 2    # square roots in a hold: four orifices, two each
 
 
 def plant_rows() -> list[Row]:
     """
-    Measure plant alone and plant with REU on one core, against real time.
+    Measure plant alone and plant with REU on one core, compared with real time.
 
-    The machine's own speed stands beside them: the 40 square roots of a plant step (four
-    evaluations, five orifices, two each), one after the other.
+    The floor is the speed of the machine: the 40 square roots of a plant step (four evaluations,
+    five orifices, two each), one after another.
     """
     roots = seconds(lambda: kernels.square_roots(PLANT_STEPS * ROOTS), PLANT_STEPS)
     rows = [Row(f'floor: {ROOTS} square roots', roots * 1e6, 'us', 'itself', 1.0)]
@@ -53,10 +53,10 @@ def plant_rows() -> list[Row]:
 
 def cylinder_rows() -> list[Row]:
     """
-    Measure the valve-driven cylinder in simulated s per CPU s, and its error beside it.
+    Measure the speed of the valve-driven cylinder in simulated s per CPU s, and its error.
 
-    The error is the largest of the position at any hold of ten seconds, from a solution in
-    steps of a sixteenth; the ratio is to the nanometre asked for.
+    The error is the largest position error within ten seconds, relative to a solution with steps
+    of a sixteenth; its ratio is that of the required nanometre to it.
     """
     roots = seconds(lambda: kernels.square_roots(HOLDS * HOLD_ROOTS), HOLDS, of_cpu=True)
     cylinders = cylinder.cylinder_record()
@@ -68,4 +68,4 @@ def cylinder_rows() -> list[Row]:
         Row(f'floor: {HOLD_ROOTS} square roots', roots * 1e6, 'us', 'itself', 1.0),
         Row('cylinder, order 8, a step of 1 ms', cylinder.HOLD / hold, 's/CPU s',
             'square roots', roots / hold),
-        Row('cylinder: its largest error', error, 'm', 'a nanometre', 1e-9 / error)]
+        Row('cylinder: largest error', error, 'm', 'a nanometre', 1e-9 / error)]

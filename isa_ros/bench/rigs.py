@@ -1,4 +1,4 @@
-"""Runs of any number of actuators: legs' worth of them, each on a load of its own."""
+"""Runs of any number of actuators, those of one leg after another, each with its own load."""
 
 from copy import deepcopy
 from pathlib import Path
@@ -18,12 +18,12 @@ _PATTERN: tuple[tuple[str, Tree], ...] = (
 
 
 def rigs_file(n_actuators: int) -> str:
-    """Return a run file of ``n_actuators`` that hold their places: HAA, HFE, KFE and again."""
+    """Return a run file of ``n_actuators`` that hold their positions: HAA, HFE, KFE, HAA, ..."""
     actuators: Tree = {}
     for k in range(n_actuators):
         leg, joint = divmod(k, len(_PATTERN))
         name, tree = _PATTERN[joint]
-        # A copy: a run file has no aliases.
+        # A copy: run files must not contain aliases.
         actuators[f'{name}_{leg + 1}'] = deepcopy(tree) | {'preset': 'default'}
     return dump({
         'name': f'rigs_{n_actuators}', 'step_ms': 1e3 * TICK_S, 'controller_offset_ms': 0.12,
@@ -33,7 +33,7 @@ def rigs_file(n_actuators: int) -> str:
 
 
 def request_of(spec: Spec, directory: Path) -> Request:
-    """Return the run of a spec, as the command starts it; its files are in ``directory``."""
+    """Return the request of a spec's run; its files are in ``directory``."""
     config, scenario = find('leg.yaml', CONFIG), None
     if spec.plant == LEG:
         scenario = find('drop.yaml', SCENARIOS)

@@ -1,4 +1,4 @@
-"""One measured number beside its floor and its aim, and how a short piece of work is timed."""
+"""One measured number with its floor and its aim, and the timing of short pieces of work."""
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
@@ -10,14 +10,14 @@ REPEATS = 7
 
 @dataclass(frozen=True)
 class Aim:
-    """What a value should reach."""
+    """A bound that a value should reach."""
 
     value: float
     is_most: bool = False
-    """Not more than that; else at least."""
+    """Whether it is an upper bound; otherwise a lower one."""
 
     def is_reached(self, value: float) -> bool:
-        """Tell whether a value is on the right side."""
+        """Return whether a value is within the bound."""
         return value <= self.value if self.is_most else value >= self.value
 
     def __str__(self) -> str:
@@ -27,11 +27,11 @@ class Aim:
 
 @dataclass(frozen=True)
 class Row:
-    """One measurement; ``ratio`` is in the direction in which more is better."""
+    """One measurement; ``ratio`` to the floor is defined so that more is better."""
 
     name: str
     value: float | None
-    """The median; None: not measured, and ``note`` says why."""
+    """Median; None: not measured, with the reason in ``note``."""
     unit: str
     floor: str = ''
     ratio: float | None = None
@@ -48,11 +48,11 @@ class Row:
         return cls(name, median(values), unit, lowest=min(values), highest=max(values))
 
     def against(self, floor: str, ratio: float) -> 'Row':
-        """Return the row beside what it is compared with."""
+        """Return the row with the floor that it is compared with."""
         return replace(self, floor=floor, ratio=ratio)
 
     def aiming(self, aim: Aim) -> 'Row':
-        """Return the row beside its aim."""
+        """Return the row with its aim."""
         return replace(self, aim=aim)
 
     def noting(self, note: str) -> 'Row':
@@ -71,7 +71,7 @@ class Row:
 
     @property
     def is_reached(self) -> bool | None:
-        """Tell whether the aim is reached; None: there is none, or nothing was measured."""
+        """Return whether the aim is reached; None: no aim, or no measurement."""
         if self.aim is None or self.value is None:
             return None
         return self.aim.is_reached(self.value)
@@ -79,9 +79,9 @@ class Row:
 
 def seconds(work: Callable[[], object], per: int, of_cpu: bool = False) -> float:
     """
-    Return the median time of one of the ``per`` pieces of ``work`` in s, after a warm-up.
+    Return the median time of one of the ``per`` pieces of ``work``, in s, after a warm-up.
 
-    With ``of_cpu`` the processor's time in this process instead of the wall's.
+    With ``of_cpu`` it is the processor time of this process instead of wall time.
     """
     clock = time.process_time if of_cpu else time.perf_counter
     work()

@@ -1,4 +1,4 @@
-"""A whole run that is measured, and what it told."""
+"""Specification of a measured run, and its measured values."""
 
 from collections.abc import Mapping, Sequence
 from dataclasses import asdict, dataclass
@@ -12,66 +12,66 @@ ROUNDS = 3
 COORDINATOR, ACTUATORS = 'coordinator', 'actuators'
 INTERPRETER, IMPORTS, PREPARED, JOINED, RECORDER = (
     'interpreter', 'imports of the command', 'nodes, kernels, processes started',
-    'actuators join', 'bag opened')
+    'waiting for actuators to join', 'bag opened')
 """Parts of the start-up."""
 
 
 @dataclass(frozen=True)
 class Spec:
-    """One run: what moves, in which way, for how many ticks of 1 ms."""
+    """One run: plant, way of running, and number of ticks of 1 ms."""
 
     plant: str
-    """`LEG`, the leg's drop, or how many actuators on loads of their own."""
+    """`LEG`, the leg's drop, or the number of actuators with their own loads."""
     way: str
-    """`PROCESSES`, `ONE_PROCESS`, or a peer by name."""
+    """`PROCESSES`, `ONE_PROCESS`, or the name of a peer."""
     ticks: int
     rounds: int = ROUNDS
 
     def to_json(self) -> str:
-        """Return what `from_json` reads."""
+        """Return the spec as JSON."""
         return json.dumps(asdict(self))
 
     @classmethod
     def from_json(cls, text: str) -> 'Spec':
-        """Return the spec that `to_json` wrote."""
+        """Return the spec from JSON; inverse of `to_json`."""
         return cls(**json.loads(text))
 
     def __str__(self) -> str:
-        """Return a few words for progress and messages."""
+        """Return a short description for progress and messages."""
         what = 'the leg' if self.plant == LEG else (
             f'{self.plant} actuator{"" if self.plant == "1" else "s"}')
         return f'{what}, {self.way}'
 
 
 class Memory(NamedTuple):
-    """Of one process, in bytes."""
+    """Memory of one process, bytes."""
 
     resident: int
     proportional: int
-    """Shared pages divided by those who share them: adds up over processes."""
+    """Shared pages are divided by the number of processes that share them."""
 
 
 @dataclass(frozen=True)
 class Measured:
-    """What one run told; times in s."""
+    """Measured values of one run; times in s."""
 
     ticks_per_s: float
     startup: Mapping[str, float]
-    """By part in order; they add up to the time from the process's start to tick 0."""
+    """By part, in order; the sum is the time from the start of the process to tick 0."""
     phases: Mapping[str, float]
-    """Of a tick, by what the coordinator did."""
+    """Time of a tick by phase of the coordinator."""
     processor: Mapping[str, float]
-    """Processor time of a tick: `COORDINATOR`, and `ACTUATORS` together where they are apart."""
+    """Processor time of a tick: `COORDINATOR`, and all `ACTUATORS` if in other processes."""
     memory: Sequence[Memory]
-    """At the end, the coordinator's process first."""
+    """Memory of each process at the end, that of the coordinator first."""
 
     def to_json(self) -> str:
-        """Return what `from_json` reads."""
+        """Return the values as JSON."""
         return json.dumps(asdict(self))
 
     @classmethod
     def from_json(cls, text: str) -> 'Measured':
-        """Return what `to_json` wrote."""
+        """Return the values from JSON; inverse of `to_json`."""
         tree = json.loads(text)
         return cls(**tree | {'memory': [Memory(*sizes) for sizes in tree['memory']]})
 
@@ -83,7 +83,7 @@ class Measured:
 
 @dataclass(frozen=True)
 class Failed:
-    """A run that ended before it could tell anything."""
+    """A run that failed before its values were measured."""
 
     reason: str
 

@@ -1,4 +1,4 @@
-"""Start-up with warm caches: from the start of the command to its first tick."""
+"""Start-up time with warm caches: from the start of the command to its first tick."""
 
 from isa_ros.bench import leg
 from isa_ros.bench.comparison import TWELVE
@@ -13,7 +13,7 @@ _AIM = Aim(4.0, is_most=True)
 
 
 def startup_rows(outcomes: Outcomes) -> list[Row]:
-    """Return the time to tick 0 with its parts, and those of one actuator's process alone."""
+    """Return the time to tick 0 with its parts, and that of one actuator's process alone."""
     loading = median_loading()
     rows = [
         Row('floor: Python imports numba and rclpy', loading.floor, 's', 'itself', 1.0),

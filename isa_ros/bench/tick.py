@@ -1,4 +1,4 @@
-"""What a tick of the leg is made of, without ROS."""
+"""Parts of a tick of the leg, without ROS."""
 
 from itertools import count, islice
 from pathlib import Path
@@ -26,7 +26,7 @@ _DROP = Spec(LEG, ONE_PROCESS, TICKS)
 
 
 def tick_parts() -> list[Row]:
-    """Measure what the leg's tick is made of, without ROS; the ratio is to a whole tick."""
+    """Measure the parts of the leg's tick, without ROS; the ratio is to the whole tick."""
     drop = leg_drop()
     parts = actuator_parts()
     surroundings = surroundings_of(drop.run)
@@ -51,7 +51,7 @@ def leg_drop() -> Scenario:
 
 
 def actuator_parts() -> dict[str, float]:
-    """Return the time that the leg's actuators and messages take for a tick, in s."""
+    """Return the time of the leg's actuators and messages for a tick, in s."""
     simulation = Simulation(leg_drop())
     ports = np.zeros(len(simulation.names), LOAD_PORT)
     simulation.surroundings.ports(ports)
@@ -69,7 +69,7 @@ def actuator_parts() -> dict[str, float]:
 
 
 def _recorder_seconds(drop: Scenario) -> float:
-    """Return the time of one tick's messages in the recorder, in s."""
+    """Return the time to record one tick's messages, in s."""
     simulation = Simulation(drop)
     rows = shown(simulation)
     simulation.step()

@@ -1,4 +1,4 @@
-"""Look at a run from inside its coordinator: laps, start-up, memory, processor time."""
+"""Measure a run in its coordinator's process: laps, start-up, memory, processor time."""
 
 from dataclasses import replace
 import os
@@ -12,7 +12,7 @@ from isa_ros.run.pacing import BEFORE_TICKS, JOINING, Laps, Progress, STARTING
 
 
 class FirstLaps(Laps):
-    """Laps that tell when each phase ended for the first time, and what the ticks cost."""
+    """Laps with the first end of each phase, and the processor time before the ticks."""
 
     def __init__(self) -> None:
         super().__init__()
@@ -20,7 +20,7 @@ class FirstLaps(Laps):
         self.spent_before: dict[str, float] = {}
 
     def lap(self, phase: str) -> None:
-        """Charge the time since the last call; at the first tick, note the processor time."""
+        """Add the time since the last call; at the first tick, store the processor time."""
         if phase not in self.first:
             self.first[phase] = time.monotonic()
             if phase == BEFORE_TICKS:
@@ -29,7 +29,7 @@ class FirstLaps(Laps):
 
 
 class Watch:
-    """What is known of one run; ``startup`` are the parts before it."""
+    """Measures one run; ``startup`` are the parts of the start-up before it."""
 
     def __init__(self, startup: dict[str, float]) -> None:
         self._startup = startup
@@ -44,7 +44,7 @@ class Watch:
         return replace(request, laps=self._laps)
 
     def report(self, progress: Progress) -> None:
-        """Look around at the end of the run, while its processes still are there."""
+        """Measure memory and processor time at the end of the run, while its processes exist."""
         if not progress.is_last:
             return
         self._factor = progress.real_time_factor
@@ -55,12 +55,12 @@ class Watch:
 
     def measured(self, ticks: int) -> Measured:
         """
-        Return what a run of so many ticks told.
+        Return the measured values of a run of ``ticks`` ticks.
 
         Raises
         ------
         RunError
-            It ended before its first tick.
+            The run ended before its first tick.
 
         """
         first = self._laps.first

@@ -1,4 +1,4 @@
-"""The bag of a result: its rows, told to a recorder."""
+"""Write the bag of a result."""
 
 from pathlib import Path
 

@@ -1,4 +1,4 @@
-"""What a run showed, as columns over time: names, units, arrays; a bag on demand."""
+"""Results of a run as columns over time: names, units, arrays; a bag on demand."""
 
 from collections.abc import Iterator, Mapping
 from functools import cached_property
@@ -17,7 +17,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 BODY = 'body'
-_REPORT_TICKS = 100     # between two reports of progress
+_REPORT_TICKS = 100     # ticks between two reports of progress
 
 
 class Log(NamedTuple):
@@ -30,7 +30,7 @@ class Log(NamedTuple):
     body: Records | None
     """The body's sample, (n + 1,); None without a body."""
     applied: Mapping[int, Records]
-    """`COMMAND` rows (n_actuators,) of the samples in which something took effect."""
+    """`COMMAND` rows (n_actuators,) by sample, for the samples with an applied command."""
 
 
 class Result(Mapping[str, NDArray[np.float64]]):
@@ -39,18 +39,18 @@ class Result(Mapping[str, NDArray[np.float64]]):
 
     Names are ACTUATOR.FIELD with the fields of `SAMPLE`, SUPPLY.FIELD of `SUPPLY_SAMPLE`, and
     body.FIELD; a field of several numbers gives an array of as many columns. SI, pressures
-    gauge. The arrays are views of the log: a copy is yours to change.
+    gauge. The arrays are read-only views of the log; copy them to change values.
     """
 
     def __init__(self, scenario: Scenario, log: Log, body_units: Mapping[str, str]) -> None:
         self.scenario = scenario
-        """What was simulated."""
+        """The simulated scenario."""
         self.log = log
-        """The rows behind the names."""
+        """The rows that the columns are views of."""
         run = scenario.run
         self.time: NDArray[np.float64] = (
             np.arange(len(log.samples)) * run.step_ns / NS_PER_SECOND)
-        """s, (n + 1,)."""
+        """Time of the samples, s, (n + 1,)."""
         self.units: Mapping[str, str] = dict(self._units(body_units))
         """Unit of every name."""
 
@@ -98,7 +98,7 @@ class Result(Mapping[str, NDArray[np.float64]]):
                 f'{len(self.time)} samples to t = {self.time[-1]:g} s>')
 
     def _flat(self) -> Iterator[tuple[str, NDArray[np.float64]]]:
-        """Yield every column of numbers; of an array ``name[k]``."""
+        """Yield every column of numbers; ``name[k]`` for those of an array."""
         for name, column in self.items():
             if column.ndim == 1:
                 yield name, column
@@ -140,22 +140,22 @@ class Result(Mapping[str, NDArray[np.float64]]):
 
     def save(self, directory: str | Path, *, overwrite: bool = False) -> Path:
         """
-        Write the bag that `isa bringup` records of this run, byte for byte; return its directory.
+        Write a bag with the same bytes as `isa bringup` records; return its directory.
 
         Raises
         ------
         BagError
-            The directory exists and is not to be overwritten, or cannot be created.
+            The directory already exists and ``overwrite`` is not set, or it cannot be created.
         RunError
             The bag cannot be written.
 
         """
-        from isa_ros.scripting.bag import save  # messages, which nothing else here needs
+        from isa_ros.scripting.bag import save  # imports messages, which only bags need
         return save(self, Path(directory), overwrite)
 
 
 def optional(package: str) -> Any:
-    """Return a package that is not required; raise `AnalysisError` where it is missing."""
+    """Return an optional package; raise `AnalysisError` if it is not installed."""
     from importlib import import_module
     try:
         return import_module(package)
@@ -180,7 +180,7 @@ def simulated(
     supplies = np.zeros((n, len(surroundings.supplies)), surroundings.supplies.dtype)
     body = surroundings.body
     bodies = None if body is None else np.zeros(n, body.sample.dtype)
-    # The same memory as plain numbers, which are copied ten times as fast.
+    # The same memory as plain floats: copying takes a tenth of the time.
     pairs = [(_numbers(samples, n), _numbers(group.samples, 1)[0]),
              (_numbers(supplies, n), _numbers(surroundings.supplies, 1)[0])]
     if body is not None and bodies is not None:

@@ -1,4 +1,4 @@
-"""A run as Python has it: read from files, changed by key, simulated in memory."""
+"""A run in Python: read from files, changed by key, simulated in memory."""
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
@@ -20,7 +20,7 @@ from isa_ros.scripting.tree import replaced
 from isa_ros.simulation import Simulation
 from isa_ros.text.progress import counted
 
-_SCENARIO = 'scenario.'     # begins a key of the scenario's file
+_SCENARIO = 'scenario.'     # prefix of the keys of the scenario's file
 _WORDS = re.compile(r'(?<=[a-z0-9])(?=[A-Z])')
 
 Controllers = Sequence[Controller] | Mapping[str, Controller]
@@ -28,7 +28,7 @@ Controllers = Sequence[Controller] | Mapping[str, Controller]
 
 @dataclass(frozen=True)
 class _File:
-    """The tree of a file, and its name for messages."""
+    """The content of a file, and its name for messages."""
 
     tree: Tree
     name: str
@@ -43,7 +43,7 @@ class _File:
 
 class Run:
     """
-    A configuration with its scenario, immutable; `load` makes one from files.
+    A configuration with its scenario, immutable; `load` creates one from files.
 
     Raises as `load`.
     """
@@ -59,7 +59,7 @@ class Run:
         plan = idle(run) if scenario is None else read_scenario(
             scenario.tree, scenario.place, run)
         self.scenario: Scenario = plan if duration is None else plan.lasting(duration)
-        """What is commanded when, with the resolved configuration as its ``run``."""
+        """Commands over time, with the resolved configuration as its ``run``."""
 
     @property
     def configuration(self) -> RunConfig:
@@ -81,12 +81,12 @@ class Run:
 
         ``{'actuators.kfe.parameters.plant.friction.stiction': 150.0}``; keys of the scenario's
         file begin with ``scenario.``: ``{'scenario.tracks.kfe[1].position': 0.06}``. A key may
-        name a whole section. All values are checked as if they stood in the files.
+        name a whole section. All values are checked like those of files.
 
         Raises
         ------
         ConfigError
-            A key that the files cannot have, or a value that is refused.
+            A key is unknown or malformed, or a value is refused.
 
         """
         config, scenario = self._config, self._scenario_file
@@ -101,10 +101,10 @@ class Run:
 
     def simulation(self, controllers: Controllers = ()) -> Simulation:
         """
-        Return the run as an object that is stepped by hand; see `Simulation`.
+        Return the run as an object to advance step by step; see `Simulation`.
 
-        ``controllers`` take part in every step, in their order. A mapping names them as their
-        nodes would be; else a controller has the name of its class, `Sway` sway.
+        ``controllers`` take part in every step, in their order. A mapping gives them the names of
+        nodes; otherwise a controller is named after its class: sway for `Sway`.
         """
         named = self._named(controllers)
         return Simulation(self._with_names(list(named)), list(named.values()))
@@ -115,13 +115,13 @@ class Run:
         """
         Simulate from t = 0 and return every sample, in memory.
 
-        ``duration`` in s; None: that of the scenario. ``controllers`` as in `simulation`. With
-        ``progress`` a terminal shows how far it is.
+        ``duration`` in s; None: that of the scenario. ``controllers`` as in `simulation`.
+        ``progress`` is shown on a terminal only.
 
         Raises
         ------
         ConfigError
-            There is neither a duration nor a scenario that has one.
+            Neither ``duration`` nor the scenario gives a duration.
         SimulationDiverged
             A state is no longer finite.
 
@@ -132,7 +132,7 @@ class Run:
             plan = plan.lasting(duration)
         if plan.n_ticks is None:
             raise ConfigError(
-                f'{self._config.name}: simulate needs a duration, as there is no scenario')
+                f'{self._config.name}: simulate needs a duration: there is none from a scenario')
         report = counted(sys.stderr, 'ticks', of=self._config.name) if progress else None
         return simulated(Simulation(plan, list(named.values())), plan.n_ticks, report)
 
@@ -149,7 +149,7 @@ class Run:
         return named
 
     def _with_names(self, names: Sequence[str]) -> Scenario:
-        """Return the scenario of the run with these controllers, which its file may name."""
+        """Return the scenario with these controllers, among them all those of the run file."""
         run = self.configuration
         for name in run.controllers:
             if name not in names:
@@ -167,13 +167,13 @@ def load(
     """
     Return the run of a file, or of a shipped one by name, with its scenario.
 
-    In the place of a file its content may be given, as a dictionary. ``duration`` (s),
-    ``compression`` and ``split_mb`` are the options of `isa bringup`.
+    Instead of a file its content may be given, as a dictionary. ``duration`` (s), ``compression``
+    and ``split_mb`` are the options of `isa bringup`.
 
     Raises
     ------
     ConfigError
-        A file cannot be read, or what it says cannot be run: file, key, value and bound.
+        A file cannot be read or is invalid; the message has file, key, value and bound.
 
     """
     return Run(_file(config, CONFIG), None if scenario is None else _file(scenario, SCENARIOS),

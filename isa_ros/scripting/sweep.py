@@ -1,4 +1,4 @@
-"""The same run with other values, on all cores: a table of what was measured of each."""
+"""Sweeps: simulate a run with many combinations of values, on all cores; a table of results."""
 
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
@@ -19,14 +19,15 @@ import numpy as np
 
 Measure = Callable[[Result], float]
 
-_Told = tuple[int, list[float] | BaseException]
+_Outcome = tuple[int, list[float] | BaseException]
+"""Index of a run, and its measured values or its error."""
 _DIGITS = 6
 
 
 @dataclass(frozen=True)
 class Sweep(Mapping[str, Any]):
     """
-    A table, a row for each combination of values: the last key varies fastest.
+    A table with a row for each combination of values; the last key varies fastest.
 
     ``sweep['peak']`` is the column of a measure, ``sweep['supply.pressure_mpa']`` that of a
     key; (n,) each.
@@ -68,32 +69,32 @@ def sweep(
 
     ``values`` are lists by key of `Run.replace`, ``measure`` functions from a `Result` to a
     number by name, ``duration`` (s) as in `Run.simulate`. ``workers`` is the number of
-    processes, -1: as many as there are cores. With ``progress`` a terminal shows how far it is.
+    processes, -1: one per core. ``progress`` is shown on a terminal only.
 
-    On Linux the workers are copies of this process, so that a measure may be any function;
-    elsewhere it must be one that a module defines.
+    On Linux the workers are forked, so that a measure may be any function; on other systems it
+    must be defined at the top level of a module.
 
     Raises
     ------
     ConfigError
-        A key, a value or the number of workers is refused, before anything is simulated.
+        A key, a value or the number of workers is refused; nothing has been simulated.
     SimulationDiverged
-        A state is no longer finite; the first such combination in the order of the table.
+        A state of one of the runs is no longer finite.
 
     """
     if workers != -1 and workers < 1:
         raise ConfigError(f'workers = {workers}, must be >= 1, or -1 for all cores')
     for key, given in values.items():
         if isinstance(given, str) or not len(given):
-            raise ConfigError(f'{key}: values = {given!r}, must be a list of at least one')
+            raise ConfigError(f'{key}: values = {given!r}, must be a list of at least one value')
     cases = [dict(zip(values, combination)) for combination in product(*values.values())]
     runs = [run.replace(case) for case in cases]
     n_workers = min(len(cases), os.cpu_count() or 1 if workers == -1 else workers)
     report = counted(sys.stderr, 'runs') if progress else None
-    told = (_serial(runs, duration, measure) if n_workers == 1
-            else _parallel(runs, duration, measure, n_workers))
+    outcomes = (_serial(runs, duration, measure) if n_workers == 1
+                else _parallel(runs, duration, measure, n_workers))
     rows: list[list[float]] = [[] for _ in cases]
-    for done, (k, measured) in enumerate(told, start=1):
+    for done, (k, measured) in enumerate(outcomes, start=1):
         if isinstance(measured, BaseException):
             raise measured
         rows[k] = measured
@@ -112,16 +113,16 @@ def _measured(
 
 def _serial(
         runs: Sequence[Run], duration: float | None, measure: Mapping[str, Measure]
-        ) -> Iterator[_Told]:
+        ) -> Iterator[_Outcome]:
     for k, run in enumerate(runs):
         yield k, _measured(run, duration, measure)
 
 
 def _parallel(
         runs: Sequence[Run], duration: float | None, measure: Mapping[str, Measure],
-        n_workers: int) -> Iterator[_Told]:
-    """Yield what the workers measure, as it comes; worker w does every n-th run from w on."""
-    runs[0].simulation().step()  # the kernels: loaded once, before the copies are made
+        n_workers: int) -> Iterator[_Outcome]:
+    """Yield the outcomes as they arrive; worker w of n does the runs w, w + n, w + 2 n, ..."""
+    runs[0].simulation().step()  # load the kernels once, before the fork
     context: Any = multiprocessing.get_context(
         'fork' if 'fork' in multiprocessing.get_all_start_methods() else 'spawn')
     workers, ends = [], []
@@ -137,11 +138,11 @@ def _parallel(
             for end in wait(ends):
                 assert isinstance(end, Connection)
                 try:
-                    told: _Told = end.recv()
+                    outcome: _Outcome = end.recv()
                 except EOFError:
                     ends.remove(end)
                     continue
-                yield told
+                yield outcome
         for worker in workers:
             worker.join()
             if worker.exitcode:
@@ -155,7 +156,7 @@ def _parallel(
 def _work(
         runs: Sequence[Run], duration: float | None, measure: Mapping[str, Measure], first: int,
         stride: int, end: Connection) -> None:
-    """Measure a worker's share of the runs, and send each as it is done."""
+    """Measure a worker's share of the runs, and send each outcome when it is ready."""
     for k in range(first, len(runs), stride):
         try:
             end.send((k, _measured(runs[k], duration, measure)))

@@ -1,4 +1,4 @@
-"""Single values of a tree by dotted key: ``actuators.kfe.preset``, ``tracks.kfe[1].t_s``."""
+"""Replace values of a tree by dotted key: ``actuators.kfe.preset``, ``tracks.kfe[1].t_s``."""
 
 from copy import deepcopy
 import re
@@ -15,13 +15,13 @@ def replaced(tree: Tree, key: str, value: Any, where: str) -> Tree:
     """
     Return the tree with one value, or a whole section, replaced or added.
 
-    Sections on the way are made where they are missing; whether the key and the value make
-    sense is found when the tree is read. ``where`` is the file's name.
+    Missing sections on the path are added; key and value are checked when the tree is read.
+    ``where`` is the file's name.
 
     Raises
     ------
     ConfigError
-        The key is malformed, leads through a value, or to a place that a list does not have.
+        The key is malformed, its path contains a value, or an index is beyond a list.
 
     """
     steps: list[str | int] = []
@@ -42,14 +42,14 @@ def replaced(tree: Tree, key: str, value: Any, where: str) -> Tree:
 
 
 def _entered(below: Any, step: str | int, following: str | int | None, where: str) -> Any:
-    """Return what lies at one step, an empty section where there is nothing yet."""
+    """Return the value at one step of the path; add an empty section if there is none."""
     if isinstance(step, int):
         if not isinstance(below, list) or step >= len(below):
-            n = len(below) if isinstance(below, list) else 'no'
-            raise ConfigError(f'{where}: [{step}] does not exist, there are {n} entries')
+            n = len(below) if isinstance(below, list) else 0
+            raise ConfigError(f'{where}: [{step}] does not exist, the number of entries is {n}')
         return below[step]
     if not isinstance(below, dict):
-        raise ConfigError(f'{where}: {step} is below one value, must be below a section')
+        raise ConfigError(f'{where}: {step} is below a value, must be below a section')
     if step not in below and following is not None and not isinstance(following, int):
         below[step] = {}
     return below.get(step)

@@ -1,1 +1,1 @@
-"""What a person reads: tables, the progress of long work, and Markdown pages with figures."""
+"""Text output: tables, progress of long work, and Markdown pages with figures."""

@@ -2,7 +2,7 @@
 
 
 def digits(value: float | None, n: int) -> str:
-    """Return ``n`` digits and no power of ten for a large number; - for none."""
+    """Return a number with ``n`` digits, without exponent if it is large; '-' for None."""
     if value is None:
         return '-'
     return f'{value:.0f}' if abs(value) >= 10.0 ** n else f'{value:.{n}g}'

@@ -10,11 +10,11 @@ from matplotlib.figure import Figure
 from PIL import Image
 
 FIGURES = 'figures'     # directory of the figures, beside the page
-COLORS = 64             # of a figure with a palette
+COLORS = 64             # in a figure with a palette
 
 
 class Page:
-    """Paragraphs with an empty line between any two, and figures; nothing is written yet."""
+    """A page in memory: paragraphs separated by an empty line, and figures."""
 
     def __init__(self, file_name: str, head: str) -> None:
         self._file_name = file_name
@@ -26,7 +26,7 @@ class Page:
         self.paragraph(f'## {title}')
 
     def paragraph(self, text: str) -> None:
-        """Add a paragraph; an empty one is left out."""
+        """Add a paragraph; an empty one is ignored."""
         if text:
             self._paragraphs.append(text)
 
@@ -39,7 +39,7 @@ class Page:
         self.paragraph('\n'.join(markdown(rows, sides)))
 
     def figure(self, name: str, caption: str, drawn: bytes) -> None:
-        """Add a figure, PNG, that goes to figures/NAME.png."""
+        """Add a figure, PNG; its file is figures/NAME.png."""
         path = f'{FIGURES}/{name}.png'
         self._figures[path] = drawn
         self.paragraph(f'![{caption}]({path})')
@@ -55,7 +55,7 @@ class Page:
 
 
 def png(figure: Figure) -> bytes:
-    """Return a figure as PNG, the same bytes for the same figure and matplotlib."""
+    """Return a figure as PNG; equal bytes for the same figure and version of matplotlib."""
     drawn = io.BytesIO()
     figure.savefig(drawn, format='png', metadata={'Software': None})
     return drawn.getvalue()
@@ -72,13 +72,13 @@ def png_with_palette(figure: Figure) -> bytes:
 
 def refuse_a_part(page: Path, only: Sequence[str] | None) -> None:
     """
-    Refuse to replace a page by the parts of it that ``--only`` names.
+    Refuse to replace a page by the parts of it selected with ``--only``.
 
     Raises
     ------
     ConfigError
-        The page exists, and parts of it are named.
+        The page already exists, and ``only`` selects parts of it.
 
     """
     if only and page.exists():
-        raise ConfigError(f'{page} exists, must not: --only would leave a part of it')
+        raise ConfigError(f'{page} already exists: --only would keep only a part of it')

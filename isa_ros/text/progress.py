@@ -1,4 +1,4 @@
-"""Progress of long work: one line of a terminal, written over until the work ends."""
+"""Progress of long work: one line of a terminal, overwritten until the work ends."""
 
 from collections.abc import Callable
 import time
@@ -14,15 +14,15 @@ class Line:
         self._terminal = terminal
 
     def show(self, text: str) -> None:
-        """Replace what the line shows."""
+        """Replace the text of the line."""
         self._write(text)
 
     def end(self, text: str) -> None:
-        """Leave ``text`` on the terminal and go to the next line."""
+        """Replace the text of the line and begin a new line."""
         self._write(text, '\n')
 
     def erase(self) -> None:
-        """Leave nothing on the terminal."""
+        """Clear the line."""
         self._write('')
 
     def _write(self, text: str, end: str = '') -> None:
@@ -31,25 +31,25 @@ class Line:
 
 
 def terminal_line(stream: TextIO) -> Line | None:
-    """Return the line progress is shown on; None where ``stream`` is not a terminal."""
+    """Return the line to show progress on; None if ``stream`` is not a terminal."""
     return Line(stream) if stream.isatty() else None
 
 
 class Progress(Protocol):
-    """Takes how many pieces of work are done, how many there are, and what the next one is."""
+    """Function with the numbers of finished and of all pieces, and a name of the next one."""
 
     def __call__(self, done: int, total: int, what: str = '') -> None:
-        """Show it."""
+        """Show the progress."""
 
 
 def counted(
         stream: TextIO, pieces: str, *, of: str = '', stays: bool = False,
         clock: Callable[[], float] = time.monotonic) -> Progress | None:
     """
-    Return what shows how many pieces are done and the time spent and left; None: no terminal.
+    Return a function that shows the finished pieces, time spent and time left; None: no terminal.
 
-    ``pieces`` is their plural; ``of`` what they are pieces of. At the end the line is erased,
-    unless it ``stays``.
+    ``pieces`` is their plural; ``of`` the whole that they are part of. At the end the line is
+    erased, unless it ``stays``.
     """
     line = terminal_line(stream)
     if line is None:

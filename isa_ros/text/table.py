@@ -1,8 +1,9 @@
 """
 Tables of text: columns aligned for a terminal, or Markdown.
 
-A table is its rows of cells, the header first where there is one. A string of ``l`` and ``r``
-says which columns are left- or right-aligned; its last letter holds for all that follow.
+A table is a sequence of rows of cells; the header, if any, is the first. A string of ``l`` and
+``r`` gives the alignment of each column, left or right; its last letter applies to all further
+columns.
 """
 
 from collections.abc import Sequence
@@ -34,7 +35,7 @@ def markdown(rows: Sequence[Cells], sides: str = LEFT) -> list[str]:
     header, *body = rows
     head = ''.join(f'| {cell} ' if cell else '| ' for cell in header)
     rule = '|'.join(_RULES[side] for side in _sides(sides, len(header)))
-    # A bar within a cell would end it.
+    # A bar would end the cell.
     return [f'{head}|', f'|{rule}|', *(
         f'| {" | ".join(cell.replace("|", "/") for cell in row)} |' for row in body)]
 

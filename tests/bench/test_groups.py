@@ -37,7 +37,7 @@ def test_a_missed_aim_says_where_the_tick_goes(monkeypatch):
     assert [row.value for row in parts if row.name.startswith('of it')] == pytest.approx(
         [500.0, 500.0])
     # 100 us of the 200 us tick in one process are the actuators': the rest of them is ROS.
-    assert by_name(rows)['of its actuators ROS: publishing and listening'].value == (
+    assert by_name(rows)['of its actuators ROS: publishing and receiving'].value == (
         pytest.approx(30.0))
 
 
@@ -99,7 +99,7 @@ def test_start_up_is_the_sum_of_its_parts(loading):
                            told(1000.0, 3, startup=5.0)]})))
     total = rows['the leg, processes: to tick 0']
     assert (total.lowest, total.value, total.highest) == (3.0, 5.0, 6.0)
-    assert total.is_reached is False and 'actuators join 3.75 s' in total.note
+    assert total.is_reached is False and 'waiting for actuators to join 3.75 s' in total.note
     assert rows['imports'].ratio == pytest.approx(0.25)
 
 

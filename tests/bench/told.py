@@ -11,6 +11,6 @@ def told(ticks_per_s: float, n_children: int = 0, startup: float = 2.0) -> Measu
     processor = {COORDINATOR: 0.5 * tick} | ({ACTUATORS: tick} if n_children else {})
     return Measured(
         ticks_per_s=ticks_per_s,
-        startup={'imports': 0.25 * startup, 'actuators join': 0.75 * startup},
+        startup={'imports': 0.25 * startup, 'waiting for actuators to join': 0.75 * startup},
         phases={'actuators': 0.5 * tick, 'recorder': 0.5 * tick}, processor=processor,
         memory=[Memory(100 * MIB, 80 * MIB)] + n_children * [Memory(90 * MIB, 50 * MIB)])

@@ -75,9 +75,9 @@ def test_replace_reaches_the_scenario(drop):
     ({STICTION: 'much'}, r"leg.yaml: .*stiction = 'much', must be a number in N"),
     ({'supply.pressure_bar': 207.0}, 'leg.yaml: .*the key is pressure_mpa'),
     ({'actuators..kfe': 1}, r"leg.yaml: key 'actuators..kfe' is malformed"),
-    ({'name.first': 'x'}, 'leg.yaml: name.first: first is below one value'),
+    ({'name.first': 'x'}, 'leg.yaml: name.first: first is below a value'),
     ({'scenario.tracks.kfe[7].position': 0.1},
-     r'drop.yaml: tracks.kfe\[7\].position: \[7\] does not exist, there are 1 entries'),
+     r'drop.yaml: tracks.kfe\[7\].position: \[7\] does not exist, the number of entries is 1'),
     ({'scenario.duration_s': 0.0005}, 'drop.yaml: duration_s'),
 ])
 def test_a_change_is_checked_as_if_it_stood_in_the_file(drop, changes, message):
@@ -125,7 +125,7 @@ def test_a_saved_result_is_the_bag_of_the_run(drop, tmp_path):
         saved.write_tick(tick.t_ns, tick.sequence, [(index[m.topic], m.data)
                                                     for m in tick.messages])
     assert saved.by_topic() == recorder.by_topic() != digests
-    with pytest.raises(IsaError, match='bag exists'):
+    with pytest.raises(IsaError, match='bag already exists'):
         drop.simulate().save(tmp_path / 'bag')
 
 

@@ -63,5 +63,5 @@ def test_a_part_does_not_replace_a_page(tmp_path):
     refuse_a_part(page, ['one'])    # nothing is there yet
     page.touch()
     refuse_a_part(page, None)
-    with pytest.raises(ConfigError, match='a.md exists, must not: --only would leave a part'):
+    with pytest.raises(ConfigError, match='a.md already exists: --only would keep only a part'):
         refuse_a_part(page, ['one'])

@@ -1,4 +1,4 @@
-"""Every peer, and what it needs."""
+"""All peers, and the packages they need."""
 
 from dataclasses import dataclass
 from importlib import import_module
@@ -13,7 +13,7 @@ from isa_ros.errors import ConfigError
 
 @dataclass(frozen=True)
 class Peer:
-    """A middleware; ``package`` is what its file imports, '' where Python has it."""
+    """A middleware; ``package`` is the one its file imports, '' for the standard library."""
 
     name: str
     title: str
@@ -22,7 +22,7 @@ class Peer:
 
     @property
     def is_installed(self) -> bool:
-        """Tell whether its package is there."""
+        """Return whether its package is installed."""
         return not self.package or find_spec(self.package) is not None
 
 
@@ -35,35 +35,35 @@ PEERS = (
 
 
 class Ends(Protocol):
-    """What the file of a peer has."""
+    """Interface of the file of a peer."""
 
     def coordinator_end(self, directory: Path, n_workers: int) -> Link:
-        """Open the coordinator's end; ``directory`` is this run's own."""
+        """Open the coordinator's end; only this run uses ``directory``."""
         ...
 
     def worker_end(self, directory: Path, index: int) -> Link:
-        """Open the end of one worker; the coordinator's is open."""
+        """Open the end of one worker; that of the coordinator is already open."""
         ...
 
 
 def peer(name: str) -> Peer:
     """
-    Return the peer of a name.
+    Return a peer by its name.
 
     Raises
     ------
     ConfigError
-        There is none.
+        The peer does not exist.
 
     """
     for one in PEERS:
         if one.name == name:
             return one
     names = [one.name for one in PEERS]
-    raise ConfigError(f'no peer {name!r}; {alternatives(name, names)}')
+    raise ConfigError(f'peer {name!r} is unknown; {alternatives(name, names)}')
 
 
 def ends(of: Peer) -> Ends:
-    """Return both ends of a peer that is installed."""
+    """Return the functions of an installed peer."""
     module: Ends = import_module(f'{__package__}.{of.module}')
     return module

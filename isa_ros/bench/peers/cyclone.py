@@ -1,4 +1,4 @@
-"""Cyclone DDS from Python, reliable, on this host alone."""
+"""Cyclone DDS from Python, reliable, on this host only."""
 
 import os
 from pathlib import Path
@@ -15,9 +15,9 @@ from cyclonedds.util import duration
 from isa_ros.core.signals import COMMAND, LOAD_PORT
 
 ANSWER_BYTES = 1024
-HEAD_BYTES = 64  # of a step, more than it has
-_WORKERS = 'workers'  # file in the directory of a run: how many there are
-_DEPTH = 64  # as the lockstep's own topics
+HEAD_BYTES = 64  # upper bound for the head of a step
+_WORKERS = 'workers'  # file with the number of workers, in the directory of a run
+_DEPTH = 64  # as for the topics of the lockstep
 _LOOPBACK = """
 <CycloneDDS><Domain Id="any">
   <General>
@@ -37,9 +37,9 @@ _ANY = SampleState.Any | ViewState.Any | InstanceState.Alive
 
 class Octets(NamedTuple):
     """
-    A topic of messages as they are, of up to ``size`` bytes.
+    A topic of raw messages of up to ``size`` bytes.
 
-    They stand in a field of fixed size: Python's encoder is slow with sequences.
+    The type has a field of fixed size: Python's encoder is slow with sequences.
     """
 
     topic: str
@@ -73,12 +73,12 @@ class End:
         self._wait_set.attach(self._condition)
 
     def send(self, message: bytes) -> None:
-        """Write to whoever is matched."""
+        """Write to all matched readers."""
         self._writer.write(self._message(
             length=len(message), octets=message.ljust(self._size, b'\0')))
 
     def receive(self, timeout_s: float) -> bytes | None:
-        """Take what is there, or wait for it."""
+        """Return the next message; wait for it if there is none."""
         samples = self._reader.take(condition=self._condition)
         if not samples and self._wait_set.wait(int(timeout_s * 1e9)):
             samples = self._reader.take(condition=self._condition)
@@ -88,7 +88,7 @@ class End:
         return None
 
     def close(self) -> None:
-        """Leave the domain to the end of the process, which knows the order."""
+        """Do nothing: at its end the process closes the entities in the right order."""
 
 
 def coordinator_end(directory: Path, n_workers: int) -> End:
@@ -104,7 +104,7 @@ def worker_end(directory: Path, index: int) -> End:
 
 
 def _topics(directory: Path) -> tuple[Octets, Octets]:
-    """Return the topics of steps and of answers, of this run alone."""
+    """Return the topics of steps and of answers; only this run uses them."""
     n_workers = int((directory / _WORKERS).read_text())
     step = HEAD_BYTES + n_workers * (LOAD_PORT.itemsize + COMMAND.itemsize)
     return (Octets(f'{directory.name}_steps', step),

@@ -1,10 +1,10 @@
 """
-HELICS: coordinator and workers are federates that ask a broker for time.
+HELICS: coordinator and workers are federates that request time from a broker.
 
-The coordinator is granted whole periods, the workers the halves between them: a step that is
-published at k is granted to the workers at k + 1/2, their answers to the coordinator at k + 1.
-That is one grant of time for each federate and tick, the fewest there can be. The coordinator
-asks before it records, so that this costs as little as in a run.
+The coordinator is granted times k, the workers times k + 1/2: workers receive a step published at
+k at k + 1/2, and the coordinator receives their answers at k + 1. That is one grant of time per
+federate and tick, the minimum. The coordinator requests time before it records, so that recording
+overlaps with the workers as in a run.
 """
 
 from collections import deque
@@ -15,17 +15,17 @@ import time
 import helics
 from isa_ros.errors import RunError
 
-CORE = 'tcp_ss'         # the fastest of its reliable ones; zmq, the default, is slower
-PERIOD = 1.0            # s of HELICS; a tick
+CORE = 'tcp_ss'         # the fastest reliable core; zmq, the default, is slower
+PERIOD = 1.0            # HELICS time of a tick, s
 JOIN_S = 30.0
 _POLL_S = 0.01
-_PORT = 'port'         # file in the directory of a run
+_PORT = 'port'         # file with the broker's port, in the directory of a run
 _HOST = '127.0.0.1'
 _STEPS = 'steps'
 
 
 class CoordinatorEnd:
-    """The federate of whole periods, and the broker of all."""
+    """The federate of the coordinator, and the broker."""
 
     def __init__(self, directory: Path, n_workers: int) -> None:
         name = directory.name
@@ -45,7 +45,7 @@ class CoordinatorEnd:
         self._now = 0.0
 
     def send(self, message: bytes) -> None:
-        """Publish and ask for the next period; the first time, wait for the workers."""
+        """Publish and request the next period; wait for the workers the first time."""
         if not self._is_executing:
             self._enter()
         self._take_granted()
@@ -54,7 +54,7 @@ class CoordinatorEnd:
         self._is_asked = True
 
     def receive(self, timeout_s: float) -> bytes | None:
-        """Wait for the period, however long it takes, and return one of its answers."""
+        """Wait for the period, without timeout, and return one of its answers."""
         if not self._arrived:
             self._take_granted()
         return self._arrived.popleft() if self._arrived else None
@@ -79,14 +79,14 @@ class CoordinatorEnd:
             if helics.helicsInputIsUpdated(answer))
 
     def close(self) -> None:
-        """Leave the federation and end the broker with it."""
+        """Leave the federation and end the broker."""
         self._take_granted()
         helics.helicsFederateDisconnect(self._federate)
         helics.helicsBrokerDisconnect(self._broker)
 
 
 class WorkerEnd:
-    """A federate of the halves between."""
+    """The federate of a worker."""
 
     def __init__(self, directory: Path, index: int) -> None:
         name = directory.name
@@ -99,11 +99,11 @@ class WorkerEnd:
         self._now = 0.0
 
     def send(self, message: bytes) -> None:
-        """Publish."""
+        """Publish an answer."""
         helics.helicsPublicationPublishBytes(self._answers, message)
 
     def receive(self, timeout_s: float) -> bytes | None:
-        """Wait for the next half, however long it takes, and return its step."""
+        """Wait for the next time, without timeout, and return its step."""
         self._now = helics.helicsFederateRequestTime(self._federate, self._now + PERIOD)
         if not helics.helicsInputIsUpdated(self._steps):
             return None
@@ -116,7 +116,7 @@ class WorkerEnd:
 
 
 def coordinator_end(directory: Path, n_workers: int) -> CoordinatorEnd:
-    """Start the broker and join it."""
+    """Start the broker and join the federation."""
     return CoordinatorEnd(directory, n_workers)
 
 
@@ -130,7 +130,7 @@ def _answers(index: int) -> str:
 
 
 def _free_port() -> int:
-    """Return a port of this host that nobody listens on."""
+    """Return a free TCP port of this host."""
     with socket.socket() as probe:
         probe.bind((_HOST, 0))
         port: int = probe.getsockname()[1]

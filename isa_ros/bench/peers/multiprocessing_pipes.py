@@ -1,4 +1,4 @@
-"""The floor: the pipes of multiprocessing, on sockets of this host."""
+"""The floor of the peers: pipes of multiprocessing, on Unix sockets."""
 
 from multiprocessing.connection import Client, Connection, Listener, wait
 from pathlib import Path
@@ -15,14 +15,14 @@ class CoordinatorEnd:
         self._pipes: list[Connection] = []
 
     def send(self, message: bytes) -> None:
-        """Write to every pipe; the first time, accept the workers."""
+        """Write to every pipe; accept the workers the first time."""
         while len(self._pipes) < self._n_workers:
             self._pipes.append(self._listener.accept())
         for pipe in self._pipes:
             pipe.send_bytes(message)
 
     def receive(self, timeout_s: float) -> bytes | None:
-        """Read from whichever pipe has something."""
+        """Read from one of the pipes that have a message."""
         for pipe in wait(self._pipes, timeout_s):
             assert isinstance(pipe, Connection)
             return pipe.recv_bytes()
@@ -36,17 +36,17 @@ class CoordinatorEnd:
 
 
 class WorkerEnd:
-    """One pipe."""
+    """The pipe of a worker."""
 
     def __init__(self, directory: Path) -> None:
         self._pipe = Client(str(directory / _ADDRESS), 'AF_UNIX')
 
     def send(self, message: bytes) -> None:
-        """Write."""
+        """Write to the pipe."""
         self._pipe.send_bytes(message)
 
     def receive(self, timeout_s: float) -> bytes | None:
-        """Read what arrives in time."""
+        """Read a message, or return None after the timeout."""
         return self._pipe.recv_bytes() if self._pipe.poll(timeout_s) else None
 
     def close(self) -> None:
@@ -55,7 +55,7 @@ class WorkerEnd:
 
 
 def coordinator_end(directory: Path, n_workers: int) -> CoordinatorEnd:
-    """Listen in ``directory``."""
+    """Listen on a socket in ``directory``."""
     return CoordinatorEnd(directory, n_workers)
 
 

@@ -1,4 +1,4 @@
-"""A run over a peer: the coordinator's side of it, and the workers it starts."""
+"""A run over a peer: the coordinator's transport, and the workers it starts."""
 
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
@@ -11,7 +11,7 @@ import tempfile
 from isa_ros.bench.child import environment
 from isa_ros.bench.peers.catalogue import ends, Peer
 from isa_ros.bench.peers.link import Link
-from isa_ros.bench.peers.worker import settle
+from isa_ros.bench.peers.worker import load_kernels
 from isa_ros.config.assembly import surroundings_of
 from isa_ros.config.run_config import RunConfig
 from isa_ros.errors import RunError
@@ -24,15 +24,15 @@ from isa_ros.run.wire import (
 
 START_PERIOD_S = 0.05
 SLICE_S = 0.5
-JOIN_SLICES = 1200      # of a start: a minute
-TICK_SLICES = 20        # ten seconds
+JOIN_SLICES = 1200      # hellos before tick 0: a minute
+TICK_SLICES = 20        # waits for a tick: ten seconds
 END_S = 5.0
-RUN_ID = 1              # there is one run on a link
-_NOT_HERE = 'a peer runs to its end: no pause, no saved state'
+RUN_ID = 1              # any: a link has only one run
+_NOT_SUPPORTED = 'a run over a peer cannot be paused or saved'
 
 
 class PeerTransport:
-    """A `Transport` to the workers of a `Link`, with the frames of the run's own wire."""
+    """A `Transport` to the workers of a `Link`, with the messages of the private wire."""
 
     def __init__(
             self, link: Link, run: RunConfig, starts: Records,
@@ -61,7 +61,7 @@ class PeerTransport:
         """Do nothing: no worker publishes."""
 
     def send(self, tick: int, rows: Rows) -> None:
-        """Send the step."""
+        """Send the step of a tick."""
         self._tick = tick
         self._link.send(encode_tick(RUN_ID, tick, rows, has_controllers=False))
 
@@ -74,15 +74,15 @@ class PeerTransport:
 
     def idle(self) -> None:
         """Refuse what no bench asks for."""
-        raise RunError(_NOT_HERE)
+        raise RunError(_NOT_SUPPORTED)
 
     def snapshots(self) -> list[bytes]:
         """Refuse what no bench asks for."""
-        raise RunError(_NOT_HERE)
+        raise RunError(_NOT_SUPPORTED)
 
     def restore(self, tick: int, snapshots: Sequence[bytes], rows: Rows) -> None:
         """Refuse what no bench asks for."""
-        raise RunError(_NOT_HERE)
+        raise RunError(_NOT_SUPPORTED)
 
     def _take(self, answers: dict[int, Answer], rows: Rows) -> None:
         """Fill the rows from the answers of all workers."""
@@ -91,7 +91,7 @@ class PeerTransport:
             take_actuator_parts(answer.parts, k, rows)
 
     def _answers(self, tick: int, timeout_s: float, slices: int) -> dict[int, Answer]:
-        """Return the answers to one step that come before ``slices`` waits were in vain."""
+        """Return the answers to one step; give up after ``slices`` waits without a message."""
         answers: dict[int, Answer] = {}
         while len(answers) < len(self._cast.names) and slices:
             data = self._link.receive(timeout_s)
@@ -140,7 +140,7 @@ class Workers:
                 process.wait()
 
     def lost(self) -> str | None:
-        """Say which worker has ended; None: all run."""
+        """Return a text that names a worker that has ended; None: all are running."""
         for actuator, process in zip(self._session.run.actuators, self._running):
             if process.poll() is not None:
                 return f'{actuator.name}: its worker ended with exit code {process.returncode}'
@@ -149,8 +149,8 @@ class Workers:
 
 def run_over(
         peer: Peer, session: Session, report: Report | None, should_stop: StopRequest) -> None:
-    """Run and record what was prepared, over a peer."""
-    settle(session.run)
+    """Run and record a prepared session over a peer."""
+    load_kernels(session.run)
     surroundings = surroundings_of(session.run)
     with tempfile.TemporaryDirectory(prefix='isa_bench_') as directory:
         with _open(peer, Path(directory), len(session.run.actuators)) as link, \

@@ -1,4 +1,4 @@
-"""One actuator over a peer: `python -m ... PEER DIRECTORY INDEX CONFIG [SCENARIO]`."""
+"""Worker: one actuator over a peer, `python -m ... PEER DIRECTORY INDEX CONFIG [SCENARIO]`."""
 
 from collections.abc import Sequence
 import gc
@@ -26,7 +26,7 @@ def main(arguments: Sequence[str]) -> None:
     run = _run(files)
     config = run.actuators[int(index)]
     actuator = SmartActuator(config, timing_of(run))
-    settle(run)
+    load_kernels(run)
     link = ends(peer(name)).worker_end(Path(directory), int(index))
     try:
         answer_steps(link, actuator, int(index))
@@ -34,8 +34,8 @@ def main(arguments: Sequence[str]) -> None:
         link.close()
 
 
-def settle(run: RunConfig) -> None:
-    """Load all kernels and spare the collector what is loaded, as a run of isa_ros does."""
+def load_kernels(run: RunConfig) -> None:
+    """Load all kernels and freeze the loaded objects for garbage collection, as isa_ros does."""
     warmed_up(run)
     gc.freeze()
 
@@ -48,7 +48,7 @@ def _run(files: Sequence[str]) -> RunConfig:
 
 
 def answer_steps(link: Link, actuator: SmartActuator, index: int) -> None:
-    """Take part in one run, as a participant does."""
+    """Execute and answer the steps of one run, as a participant does."""
     memory = actuator.memory
     while True:
         data = link.receive(SLICE_S)

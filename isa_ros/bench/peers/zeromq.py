@@ -1,4 +1,4 @@
-"""ZeroMQ on ipc sockets: steps are published, answers are pushed."""
+"""ZeroMQ with ipc sockets: PUB/SUB for steps, PUSH/PULL for answers."""
 
 from pathlib import Path
 
@@ -17,11 +17,11 @@ class End:
         self._timeout_ms = -1
 
     def send(self, message: bytes) -> None:
-        """Send to whoever is connected."""
+        """Send to all connected sockets."""
         self._out.send(message)
 
     def receive(self, timeout_s: float) -> bytes | None:
-        """Return the next message, or None."""
+        """Return the next message, or None after the timeout."""
         timeout_ms = int(timeout_s * 1e3)
         if timeout_ms != self._timeout_ms:
             self._in.setsockopt(zmq.RCVTIMEO, timeout_ms)
@@ -33,12 +33,12 @@ class End:
         return message
 
     def close(self) -> None:
-        """Close both sockets; what is queued goes out first."""
+        """Close both sockets after queued messages have been sent."""
         self._context.destroy(linger=1000)
 
 
 def coordinator_end(directory: Path, n_workers: int) -> End:
-    """Publish steps and pull answers, in ``directory``."""
+    """Publish steps and pull answers; the sockets are in ``directory``."""
     context = zmq.Context()
     out, into = context.socket(zmq.PUB), context.socket(zmq.PULL)
     out.bind(_address(directory, _STEPS))

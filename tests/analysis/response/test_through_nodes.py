@@ -46,4 +46,4 @@ def test_what_nodes_cannot_measure_is_one_line_before_any_starts(arguments, expe
 def test_a_bag_is_not_overwritten(tmp_path: Path, capsys):
     (tmp_path / 'bag').mkdir()
     assert cli.main(['step', 'isa_v5', '--nodes', '--bag', str(tmp_path / 'bag')]) == 2
-    assert 'exists, must not' in capsys.readouterr().err
+    assert 'already exists' in capsys.readouterr().err
