@@ -1,6 +1,5 @@
 """
-Schema of a resolved configuration: to write it as text, read it, and compare its keys with those
-of another version.
+Schema of a resolved configuration: writes, reads and compares its keys.
 
 The keys are declared once: a `Section` lists the keys of a dataclass with the kind of each, and
 every kind converts its value to a tree and back.

@@ -159,7 +159,7 @@ def run_file(run: RunConfig) -> str:
 
 
 def _trace(traces: dict[str, Trace], name: str) -> np.ndarray:
-    """Return the signals of a bag as a `TRACE`; NaN for what nodes do not record."""
+    """Return the signals of a bag as a `TRACE`; NaN for signals that nodes do not record."""
     joint, valve, references, high, low = (
         traces[f'/{name}/{topic}']
         for topic in ('joint_states', 'valve', 'references', 'pressure_a', 'pressure_b'))
