@@ -1,4 +1,4 @@
-"""One actuator alone, at real time on its default load."""
+"""One actuator alone, in real time with its default load."""
 
 from launch import LaunchDescription
 from launch.actions import DeclareLaunchArgument
@@ -14,7 +14,7 @@ def generate_launch_description() -> LaunchDescription:
         DeclareLaunchArgument('name', default_value='actuator', description='of the node'),
         DeclareLaunchArgument('namespace', default_value='', description='of the node'),
         DeclareLaunchArgument(
-            'real_time_factor', default_value='1.0', description='0: as fast as it goes'),
+            'real_time_factor', default_value='1.0', description='0: as fast as possible'),
         Node(
             package='isa_ros', executable='actuator', name=LaunchConfiguration('name'),
             namespace=LaunchConfiguration('namespace'), output='screen',

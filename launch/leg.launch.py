@@ -1,4 +1,4 @@
-"""One run of lockstep nodes: every actuator of a configuration, and the coordinator."""
+"""One run in lockstep: the nodes of every actuator of a configuration, and the coordinator."""
 
 from isa_ros.config.paths import CONFIG, find, SCENARIOS
 from isa_ros.config.run_file import load_run
@@ -38,5 +38,5 @@ def _node(process: Process, namespace: str) -> Node:
         parameters=[{
             key: ParameterValue(value, value_type=type(value))
             for key, value in process.parameters}],
-        # The end of the run is the end of its actuators.
-        on_exit=[Shutdown(reason='the run is over')] if is_coordinator else None)
+        # When the run has ended, launch ends the actuators.
+        on_exit=[Shutdown(reason='the run has ended')] if is_coordinator else None)

@@ -1,1 +1,1 @@
-"""Pure functions between signals and ROS 2 messages, and the canonical CDR encoder."""
+"""Conversion between signals and ROS 2 messages, and the canonical CDR encoder."""

@@ -13,12 +13,12 @@ STATE_TOPICS = (
     ('references', joint_state.TYPE),
     ('valve', joint_state.TYPE),
 )
-"""(topic suffix, type) of what is published at every tick, sorted by suffix."""
+"""(topic suffix, type) of the messages published at every tick, sorted by suffix."""
 
 APPLIED_SETPOINT = ('applied_setpoint', joint_state.TYPE)
 APPLIED_PARAMETERS = ('applied_parameters', applied_parameters.TYPE)
 APPLIED_TOPICS = (APPLIED_PARAMETERS, APPLIED_SETPOINT)
-"""The same of what is published when something takes effect."""
+"""(topic suffix, type) of the messages published when a command or parameter takes effect."""
 
 TOPICS = (*APPLIED_TOPICS, *STATE_TOPICS)
 
@@ -27,10 +27,10 @@ def prepared(
         name: str, is_rotary: bool, sample: Mapping[str, int], absolute: Mapping[str, int],
         applied: Mapping[str, int]) -> dict[str, Prepared]:
     """
-    Return the prepared messages of an actuator by topic suffix, but `APPLIED_PARAMETERS`.
+    Return the prepared messages of an actuator by topic suffix, without `APPLIED_PARAMETERS`.
 
-    Columns of values by field: ``sample`` of its `SAMPLE`, ``absolute`` of its pressures in Pa
-    absolute, ``applied`` of its applied `COMMAND`. Frames: ``NAME_load_cell``,
+    The arguments are columns of values by field: ``sample`` for its `SAMPLE`, ``absolute`` for its
+    pressures in Pa absolute, ``applied`` for its applied `COMMAND`. Frames: ``NAME_load_cell``,
     ``NAME_pressure_a``, ``NAME_pressure_b``; ``NAME`` for the rest.
     """
     return {

@@ -30,9 +30,10 @@ def tuned_values(data: bytes, name: str) -> dict[str, float]:
     Raises
     ------
     SetpointError
-        not of actuator ``name``, something new or deleted, a name twice, or no number.
+        the event is of another actuator, has new or deleted parameters or a name twice, or a
+        value is not a number.
     CdrError
-        the bytes are no ParameterEvent.
+        the bytes are not a ParameterEvent.
 
     """
     event = decode(data, ParameterEvent)

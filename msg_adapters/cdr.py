@@ -1,10 +1,10 @@
 """
-Canonical CDR: the one byte string of a message.
+Canonical CDR: a unique byte string for each message.
 
 XCDR1, little endian, as ROS 2 middlewares write it, with every padding byte zero:
-``rclpy.serialize_message`` leaves padding uninitialised, and a bag that is compared by its
-bytes cannot. Alignment counts from the end of the 4-byte encapsulation header; an empty
-sequence does not align its (absent) elements.
+``rclpy.serialize_message`` leaves padding uninitialised, which is not possible in bags that are
+compared byte by byte. Alignment counts from the end of the 4-byte encapsulation header; an
+empty sequence does not align its (absent) elements.
 """
 
 from collections.abc import Iterable, Sequence
@@ -29,11 +29,11 @@ _STRING = re.compile(r'string(<\d+>)?')
 
 
 class CdrError(IsaError):
-    """A message that cannot be encoded, or bytes that are no message of their type."""
+    """A message cannot be encoded, or bytes are not a message of their type."""
 
 
 class Message(Protocol):
-    """A ROS 2 message, as the generated Python classes declare themselves."""
+    """Interface of the generated Python classes of ROS 2 messages."""
 
     @classmethod
     def get_fields_and_field_types(cls) -> dict[str, str]:
@@ -41,7 +41,7 @@ class Message(Protocol):
 
 
 class FieldType(NamedTuple):
-    """Type of one field: its element type and how many of them."""
+    """Type of one field: its element type and number of elements."""
 
     item: str
     is_sequence: bool
@@ -49,14 +49,14 @@ class FieldType(NamedTuple):
 
 
 class Slot(NamedTuple):
-    """Where one primitive stands in the bytes, and its struct format character."""
+    """Offset of one primitive in the bytes, and its struct format character."""
 
     offset: int
     code: str
 
 
 def field_type(declared: str) -> FieldType:
-    """Return the parsed form of a field type such as ``sequence<double, 3>``."""
+    """Return the `FieldType` of a declaration such as ``sequence<double, 3>``."""
     if match := _SEQUENCE.fullmatch(declared):
         return FieldType(match[1], True, None)
     if match := _ARRAY.fullmatch(declared):
@@ -65,7 +65,7 @@ def field_type(declared: str) -> FieldType:
 
 
 def is_string(item: str) -> bool:
-    """Tell whether an element type is a (bounded) 8-bit string."""
+    """Return whether an element type is a (bounded) 8-bit string."""
     return _STRING.fullmatch(item) is not None
 
 
@@ -86,7 +86,7 @@ def encode(message: Message) -> bytes:
 
 def encode_with_slots(message: Message) -> tuple[bytes, dict[str, Slot]]:
     """
-    Return the canonical bytes and where each primitive stands in them.
+    Return the canonical bytes and the slot of each primitive in them.
 
     Slots are named by their path: ``header.stamp.sec``, ``position[0]``.
 
@@ -102,7 +102,7 @@ def encode_with_slots(message: Message) -> tuple[bytes, dict[str, Slot]]:
 
 
 class _Encoder:
-    """Bytes of one message under construction, and the runs of primitives in them."""
+    """Encoder of one message: its bytes so far, and the sequences of primitives in them."""
 
     def __init__(self) -> None:
         self.buffer = bytearray(ENCAPSULATION)
@@ -121,7 +121,7 @@ class _Encoder:
         return slots
 
     def add_message(self, message: Message, prefix: str) -> None:
-        """Append every field in wire order; a message without fields is one zero byte."""
+        """Append every field in wire order; one zero byte for a message without fields."""
         declared = message.get_fields_and_field_types()
         if not declared:
             self.buffer.append(0)

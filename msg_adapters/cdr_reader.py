@@ -1,4 +1,4 @@
-"""Reading messages back from their CDR bytes, every length checked before it is used."""
+"""Decode messages from their CDR bytes; every length is checked before it is used."""
 
 from collections.abc import Iterator
 from functools import cache
@@ -35,12 +35,12 @@ def message_class(type_name: str) -> type[Message]:
     except (ImportError, AttributeError) as error:
         raise CdrError(f'{type_name}: no such message type is installed ({error})') from None
     if not hasattr(found, 'get_fields_and_field_types'):
-        raise CdrError(f'{type_name}: is no message type')
+        raise CdrError(f'{type_name}: is not a message type')
     return found
 
 
 def _has_messages(package: str) -> bool:
-    """Tell whether a package may be imported: a file names it, and importing runs its code."""
+    """Return whether a package has messages; others named in a file must not be imported."""
     found = find_spec(package)
     return found is not None and any(
         (Path(folder) / 'msg' / '__init__.py').is_file()
@@ -49,12 +49,12 @@ def _has_messages(package: str) -> bool:
 
 def decode(data: bytes, cls: type[M]) -> M:
     """
-    Return the message whose CDR bytes these are; what follows its last field is ignored.
+    Return the message from its CDR bytes; bytes after its last field are ignored.
 
     Raises
     ------
     CdrError
-        the bytes are no message of this class.
+        the bytes are not a message of this class.
 
     """
     if data[:2] != ENCAPSULATION[:2]:
@@ -81,7 +81,7 @@ def flatten(message: Message, prefix: str = '') -> Iterator[tuple[str, Any]]:
 
 
 class _Decoder:
-    """Position in the bytes of one message."""
+    """Decoder of one message, with its position in the bytes."""
 
     def __init__(self, data: bytes, name: str) -> None:
         self._data = data
@@ -98,7 +98,7 @@ class _Decoder:
             value = self._field(field_type(text))
             try:
                 setattr(result, name, value)
-            except AssertionError:  # what message classes raise, for a bound of the type
+            except AssertionError:  # raised by message classes beyond a bound of the type
                 raise CdrError(f'{self._name}: {name} is beyond {text}') from None
         return result
 
@@ -114,7 +114,7 @@ class _Decoder:
             return [bytes([value]) for value in self._primitives('B', count)]
         if item in PRIMITIVES:
             return list(self._primitives(PRIMITIVES[item], count))
-        if count > len(self._data) - self._position:  # an element takes a byte or more
+        if count > len(self._data) - self._position:  # an element has at least one byte
             self._fail(f'{count} elements of {item}')
         if is_string(item):
             return [self._string() for _ in range(count)]
@@ -143,4 +143,5 @@ class _Decoder:
         return self._data[start:self._position]
 
     def _fail(self, wanted: str) -> None:
-        raise CdrError(f'{self._name}: {wanted} wanted, the message has {len(self._data)} bytes')
+        raise CdrError(
+            f'{self._name}: {wanted} do not fit, the message has {len(self._data)} bytes')

@@ -12,7 +12,7 @@ _TIME = struct.Struct('<iI')
 
 
 def clock() -> tuple[Clock, Fields]:
-    """Return the message of a time."""
+    """Return the prepared message of a time."""
     return Clock(), {'clock.sec': SEC, 'clock.nanosec': NANOSEC}
 
 

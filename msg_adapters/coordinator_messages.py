@@ -1,4 +1,4 @@
-"""The messages of the coordinator at a tick, prepared: supplies and the body."""
+"""Prepared messages of the coordinator at a tick: those of the body."""
 
 from collections.abc import Mapping, Sequence
 

@@ -1,8 +1,8 @@
 """
-Message definitions as rosbag2 stores them, from the installed message packages.
+Message definitions in the form of rosbag2, from the installed message packages.
 
-The text is the root's .msg file, then every type it needs, depth first, sorted, each once,
-behind a line of 80 ``=`` and one ``MSG: package/Type``; the hash is RIHS01 of REP-2011.
+The text is the root's .msg file, then every type it uses, depth first, sorted, each once,
+after a line of 80 ``=`` and a line ``MSG: package/Type``; the hash is RIHS01 of REP-2011.
 """
 
 from importlib.util import find_spec
@@ -24,7 +24,7 @@ _BUILT_IN = frozenset((
 
 
 class DefinitionError(IsaError):
-    """A message type whose definition is not installed."""
+    """The definition of a message type is not installed."""
 
 
 class Definition(NamedTuple):
@@ -81,7 +81,7 @@ def _share_file(type_name: str, suffix: str) -> Path:
 
 
 def _prefixes(package: str) -> list[Path]:
-    """Return where to look: what is sourced first, then around the Python package."""
+    """Return the prefixes to search: sourced ones first, then those of the Python package."""
     sourced = os.environ.get('AMENT_PREFIX_PATH', '').split(os.pathsep)
     spec = find_spec(package)
     installed = [] if spec is None or spec.origin is None else Path(spec.origin).parents

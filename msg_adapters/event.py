@@ -1,4 +1,4 @@
-"""rcl_interfaces/Log: what was done to a run, as ``~/events`` of the coordinator says it."""
+"""rcl_interfaces/Log: events of a run, such as a pause, on ``~/events`` of the coordinator."""
 
 from builtin_interfaces.msg import Time
 from msg_adapters.cdr import encode
@@ -20,12 +20,12 @@ def pack(t_ns: int, text: str) -> bytes:
 
 def text(data: bytes) -> str:
     """
-    Return what an event says; inverse of `pack`.
+    Return the text of an event; inverse of `pack`.
 
     Raises
     ------
     CdrError
-        The bytes are no Log.
+        The bytes are not a Log.
 
     """
     message: Log = decode(data, Log)

@@ -1,4 +1,4 @@
-"""sensor_msgs/FluidPressure: absolute pressures, while everything inside is gauge."""
+"""sensor_msgs/FluidPressure: absolute pressures; all pressures of the simulation are gauge."""
 
 from msg_adapters.template import Fields, STAMP
 from sensor_msgs.msg import FluidPressure

@@ -1,4 +1,4 @@
-"""sensor_msgs/JointState: joints and named scalars, arrays always full length."""
+"""sensor_msgs/JointState: joints and named scalars; all arrays have full length."""
 
 from collections.abc import Mapping, Sequence
 
@@ -21,8 +21,8 @@ def entries(n: int, **columns: Sequence[int]) -> Fields:
     """
     Return the template fields of ``n`` entries.
 
-    ``columns`` maps position, velocity, effort to value indices, (n,) or fewer: an array
-    that is shorter leaves the entries behind it zero.
+    ``columns`` maps position, velocity, effort to value indices, (n,) or fewer: with a shorter
+    array the remaining entries are zero.
     """
     fields = dict(STAMP)
     for array, indices in columns.items():

@@ -1,4 +1,4 @@
-"""Setpoints in, applied setpoints out: JointState <-> COMMAND row."""
+"""Conversion of setpoints and applied setpoints: JointState <-> COMMAND row."""
 
 from collections.abc import Mapping, Sequence
 import math
@@ -16,7 +16,7 @@ GAINS = ('stiffness', 'damping')
 
 def applied_setpoint(name: str, columns: Mapping[str, int]) -> Prepared:
     """
-    Return ``~/applied_setpoint`` of an actuator: everything in force from the tick's start on.
+    Return ``~/applied_setpoint`` of an actuator: all values in force from the tick's start on.
 
     ``columns`` are those of a COMMAND row with gains resolved, by field.
     """
@@ -33,13 +33,13 @@ def msg_to_command(message: JointState, name: str) -> np.void:
 
     Entry NAME holds position, velocity and effort; the optional entries NAME/stiffness and
     NAME/damping a gain in ``position``. Missing velocity or effort is zero, a missing gain
-    is NaN: it keeps the gain in force.
+    is NaN and leaves the gain in force unchanged.
 
     Raises
     ------
     SetpointError
-        the message is rejected as a whole: a name that is not one of these
-        or comes twice, no position, a value that is not finite, a negative gain.
+        a name is unknown or occurs twice, a position is missing, a value is not finite, or a
+        gain is negative; the whole message is rejected.
 
     """
     return _command(message, name, [name, *(f'{name}/{gain}' for gain in GAINS)])
@@ -52,9 +52,9 @@ def applied_to_command(data: bytes, name: str) -> np.void:
     Raises
     ------
     SetpointError
-        not an applied setpoint of ``name``, or a value that is not finite.
+        the message is not an applied setpoint of ``name``, or a value is not finite.
     CdrError
-        the bytes are no JointState.
+        the bytes are not a JointState.
 
     """
     message = decode(data, JointState)
@@ -75,7 +75,7 @@ def applied_to_command(data: bytes, name: str) -> np.void:
 def _command(message: JointState, name: str, known: Sequence[str]) -> np.void:
     names = list(message.name)
     if name not in names:
-        raise SetpointError(f'{name}: no such joint in the setpoint, which names {names}')
+        raise SetpointError(f'{name}: is not among the joints of the setpoint, {names}')
     _check(message, name, names, known)
     command: np.void = np.zeros(1, dtype=COMMAND)[0]
     k = names.index(name)

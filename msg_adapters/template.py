@@ -1,4 +1,4 @@
-"""Prepared messages: encoded once, then only their numbers change."""
+"""Prepared messages: encoded once; afterwards only their numbers change."""
 
 from collections.abc import Mapping, Sequence
 import struct
@@ -8,9 +8,9 @@ import numpy as np
 
 NS_PER_SECOND = 1_000_000_000
 SEC, NANOSEC = -2, -1
-"""In place of a column: the two halves of the time of the instant."""
+"""Used instead of a column: the two halves of the time of the instant."""
 START_SEC, START_NANOSEC = -4, -3
-"""The same of the time at which the tick began."""
+"""The same for the time at which the tick began."""
 
 INSTANT, TICK_START, FIRST_VALUE = 0, 1, 2
 """Words of a `Template`: the two times, then the values."""
@@ -23,7 +23,7 @@ STAMP: Fields = {'header.stamp.sec': SEC, 'header.stamp.nanosec': NANOSEC}
 START_STAMP: Fields = {'header.stamp.sec': START_SEC, 'header.stamp.nanosec': START_NANOSEC}
 
 Prepared = tuple[Message, Fields]
-"""A message, and which of its numbers change."""
+"""A message, and the fields whose numbers change."""
 
 _WORD = 8  # bytes of a double, and of a time
 _SECONDS = {SEC: INSTANT, START_SEC: TICK_START}
@@ -32,17 +32,15 @@ _NANOSECONDS = (NANOSEC, START_NANOSEC)
 
 class Template:
     """
-    Several messages in one block of memory, encoded once; then only their numbers change.
+    Several messages in one block of memory, encoded once; afterwards only their numbers change.
 
-    Doubles and times are whole words of the block: word ``places[k]`` of ``block`` holds word
-    ``sources[k]`` of a row of words: two times, then the values. Nothing else can change:
-    arrays keep their length.
+    Doubles and times are whole words of the block: word ``places[k]`` of ``block`` is word
+    ``sources[k]`` of a row of words: two times, then the values. Lengths of arrays cannot change.
 
     Raises
     ------
     CdrError
-        a field path that the message does not have, naming those it has; a field that is
-        neither a double nor a time.
+        the message has no such field path, or the field is neither a double nor a time.
 
     """
 
@@ -64,10 +62,10 @@ class Template:
             block += data
         block += bytes(-len(block) % _WORD)
         self.block = np.frombuffer(block, '<u8')
-        """The messages, one after the other, as words; to be filled in place."""
+        """The messages, one after another, as words; filled in place."""
         self.places, self.sources = np.array(places, np.int64), np.array(sources, np.int64)
         self.starts, self.sizes = np.array(starts, np.int64), np.array(sizes, np.int64)
-        """Where each message begins in the bytes of the block, and how long it is."""
+        """Offset and size of each message in the bytes of the block."""
         self._bytes = memoryview(block)
 
     def fill(self, words: np.ndarray) -> None:
@@ -75,7 +73,7 @@ class Template:
         self.block[self.places] = words[self.sources]
 
     def message(self, k: int) -> bytes:
-        """Return the CDR bytes of the ``k``-th message as they are now."""
+        """Return the current CDR bytes of the ``k``-th message."""
         start = self.starts[k]
         return bytes(self._bytes[start:start + self.sizes[k]])
 
@@ -87,12 +85,12 @@ def time_word(t_ns: int) -> int:
 
 
 def stamp(t_ns: int) -> tuple[int, int]:
-    """Return (sec, nanosec) of integer nanoseconds; no float ever touches time."""
+    """Return (sec, nanosec) of integer nanoseconds, computed without floats."""
     return divmod(t_ns, NS_PER_SECOND)
 
 
 def _offset(message: Message, slots: Mapping[str, Slot], path: str, source: int) -> int:
-    """Return where a field stands, if it is of the kind that ``source`` fills."""
+    """Return the offset of a field; refuse one of another kind than ``source``."""
     if path not in slots:
         raise CdrError(
             f'{type(message).__name__} has no number {path!r}; it has {", ".join(slots)}')

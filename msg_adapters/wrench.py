@@ -9,7 +9,7 @@ TYPE = 'geometry_msgs/msg/WrenchStamped'
 
 
 def wrench(frame_id: str) -> WrenchStamped:
-    """Return a zero wrench in that frame."""
+    """Return a zero wrench in a frame."""
     message = WrenchStamped()
     message.header.frame_id = frame_id
     return message

@@ -1,8 +1,9 @@
 """
-Draw which package of isa_ros imports which: `python scripts/draw_imports.py [FILE.svg]`.
+Draw the imports between packages of isa_ros: `python scripts/draw_imports.py [FILE.svg]`.
 
-The rows are the layers of the import contract in pyproject.toml, the number on an arrow's end
-how many modules import from it. Without a file it goes to docs/figures/imports.svg.
+The rows are the layers of the import contract in pyproject.toml; the width of an arrow grows with
+the number of importing modules, which its title shows. The default file is
+docs/figures/imports.svg.
 """
 
 import ast
@@ -16,16 +17,16 @@ ROOT = Path(__file__).resolve().parents[1]
 PACKAGE = ROOT / 'isa_ros'
 PICTURE = ROOT / 'docs' / 'figures' / 'imports.svg'
 EVERYWHERE = ('core', 'errors')
-"""Packages that nearly all others import: their arrows are left out."""
+"""Packages that nearly all others import; their arrows are left out."""
 
 WIDTH, ROW, BOX_HEIGHT, LETTER, PADDING = 860, 62, 30, 8.2, 14
-STAGGER = (0.5, 0.22, 0.78)     # places of lone packages, row by row, as a share of the width
+STAGGER = (0.5, 0.22, 0.78)     # positions of single packages, row by row, over the width
 
 Edge = tuple[str, str]
 
 
 def layers() -> list[list[str]]:
-    """Return the packages of each layer, from the top down, as the contract lists them."""
+    """Return the packages of each layer of the contract, from the top down."""
     text = (ROOT / 'pyproject.toml').read_text(encoding='utf-8')
     listed = re.search(r'^layers = \[\n(.*?)^\]', text, re.MULTILINE | re.DOTALL)
     assert listed is not None, 'pyproject.toml has a layers contract'
@@ -37,7 +38,7 @@ def imports() -> Counter[Edge]:
     edges: Counter[Edge] = Counter()
     for path in sorted(PACKAGE.rglob('*.py')):
         if path == PACKAGE / '__init__.py':
-            continue  # it loads the public names where they are used
+            continue  # it imports the public names lazily
         own = _package(path.relative_to(PACKAGE).parts[0])
         others = {_package(name.split('.')[1]) for name in _imported(path) if '.' in name}
         edges.update((own, other) for other in others if other != own)

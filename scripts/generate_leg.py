@@ -3,8 +3,8 @@ Generate isa_ros/surroundings/leg/dynamics.py: the leg's equations of motion in 
 
     python scripts/generate_leg.py [--out FILE]
 
-The generated file is committed; a test generates it again and compares the bytes, so edit
-this script, never its output. The only user of sympy.
+The generated file is committed; a test generates it again and compares the bytes: edit this
+script, not its output. Only this script uses sympy.
 
 Model (equations L6-L8 of docs/equations.md): a slider on a vertical rail carries the hip
 link, which carries thigh and calf. Frames, as in the public HyQ-REAL models: the base has x
@@ -16,8 +16,8 @@ HFE axis crosses the hip link at l_hip along -y and d_hip along x of the hip: le
 axis on HyQ-REAL, below it on HyQ.
 
 Method: Newton and Euler from the base to the foot and back, in each link's own axes, run
-on symbols: once without accelerations for the bias, once per unit acceleration for a column
-of the mass matrix; then common subexpressions are named. The angle of the calf in the
+with symbols: once without accelerations for the bias, once per unit acceleration for a column
+of the mass matrix; then common subexpressions are extracted. The angle of the calf in the
 thigh's plane is q_hfe + q_kfe, since the two axes are parallel.
 """
 
@@ -77,7 +77,7 @@ def leg_terms(q_z, q_haa, q_hfe, q_kfe, v_z, v_haa, v_hfe, v_kfe, body):
 
 
 class Printer(PythonCodePrinter):
-    """Python source without a power operator: x*x, never x**2."""
+    """Printer of Python source without the power operator: x*x instead of x**2."""
 
     def _print_Pow(self, expr, rational=False):
         base, exponent = expr.as_base_exp()
@@ -97,7 +97,7 @@ def about_z(sine, cosine):
 
 
 class Leg:
-    """Symbols and geometry; ``turns[k]`` takes link k's vectors to its parent's axes."""
+    """Symbols and geometry; ``turns[k]`` rotates link k's vectors to its parent's axes."""
 
     def __init__(self):
         """Declare the symbols; sines and cosines of the joint angles in order."""
@@ -198,7 +198,7 @@ def shorten(leg, entries):
     """
     Write M and the foot as polynomials in sines and cosines, with s23, c23 of q_hfe + q_kfe.
 
-    The bias is shorter in the links' own axes, as it is.
+    The bias is left in the links' own axes, where it is shorter.
     """
     s1, c1, s2, c2, s3, c3 = leg.trigonometry
     s23, c23 = symbols('s23', 'c23')
@@ -210,7 +210,7 @@ def shorten(leg, entries):
 
 
 def wrapped(head, text, indent):
-    """Return ``head text`` within the line width, broken before + and - under its bracket."""
+    """Return ``head text`` in lines of at most the width, broken before + and - in brackets."""
     line = f'{indent}{head}{text}'
     if len(line) < WIDTH:
         return [line]
@@ -219,7 +219,7 @@ def wrapped(head, text, indent):
     current = ' ' * columns[-1]
     for token in text.replace(' + ', '\0+ ').replace(' - ', '\0- ').split('\0'):
         if current.strip():
-            # A bracket far to the right would leave too little room for its terms below it.
+            # A bracket far to the right would leave too little width for its terms below it.
             is_deep = token.count('(') > token.count(')') and len(current) > DEEP
             if is_deep or len(current) + 1 + len(token) + 2 > WIDTH:
                 lines.append(current)

@@ -12,11 +12,11 @@ import rclpy
 from rclpy.qos import QoSProfile
 from sensor_msgs.msg import JointState
 
-PATIENCE_S = 10.0
+TIMEOUT_S = 10.0
 
 
 def main() -> int:
-    """Publish once a subscriber exists, then wait for the echo."""
+    """Publish once there is a subscriber, then wait for the applied setpoint."""
     parser = argparse.ArgumentParser(description='Send one position setpoint.')
     parser.add_argument('name')
     parser.add_argument('position', type=float, help='m, or rad for a rotary actuator')
@@ -32,7 +32,7 @@ def main() -> int:
     node.create_subscription(
         JointState, f'/{name}/applied_setpoint', on_echo, QoSProfile(depth=10))
     publisher = node.create_publisher(JointState, f'/{name}/setpoint', QoSProfile(depth=1))
-    deadline = time.monotonic() + PATIENCE_S
+    deadline = time.monotonic() + TIMEOUT_S
     has_sent = False
     while not applied and time.monotonic() < deadline:
         ready = publisher.get_subscription_count() and node.count_publishers(
@@ -42,7 +42,7 @@ def main() -> int:
             has_sent = True
         rclpy.spin_once(node, timeout_sec=0.1)
     if not applied:
-        print(f'no answer from /{name}', file=sys.stderr)
+        print(f'/{name}: no applied setpoint after {TIMEOUT_S:g} s', file=sys.stderr)
         return 3
     stamp = applied[0].header.stamp
     print(f'{name} = {applied[0].position[0]} since t = {stamp.sec}.{stamp.nanosec:09d} s')

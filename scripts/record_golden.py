@@ -1,10 +1,10 @@
 """
-Record the golden bags of tests/golden again; say in the commit which equation changed.
+Record the golden bags of tests/golden again; name the changed equation in the commit.
 
     python scripts/record_golden.py [NAME ...]
 
-They are compressed to be small, so their bytes depend on zstd's version; their messages do not,
-and the tests compare the messages.
+They are compressed, so that their bytes depend on the version of zstd. Their messages do not;
+the tests compare the messages.
 """
 
 from pathlib import Path
@@ -20,7 +20,7 @@ RUNS = {
 
 
 def main() -> None:
-    """Record the named golden bags, or every one, in one process."""
+    """Record the golden bags given as arguments, or all, in one process."""
     for name in sys.argv[1:] or RUNS:
         bag = bringup(Request(
             config=find(RUNS[name], CONFIG), scenario=GOLDEN / f'{name}.yaml',

@@ -1,4 +1,4 @@
-"""Types of command-line arguments; a wrong one is answered in one line."""
+"""Types of command-line arguments; invalid values give one-line errors."""
 
 import argparse
 import math
@@ -45,27 +45,27 @@ def count(text: str) -> int:
 
 
 def names(text: str) -> tuple[str, ...]:
-    """Return names that commas separate."""
+    """Return names from a text in which commas separate them."""
     found = tuple(text.split(','))
     if not all(found):
-        raise argparse.ArgumentTypeError(f'{text!r} must be names with commas between them')
+        raise argparse.ArgumentTypeError(f'{text!r} must be names separated by commas')
     return found
 
 
 def file_to_write(text: str) -> Path:
-    """Return the path of a file that can be written, so that nothing is measured in vain."""
+    """Return the path of a file that can be written; it is checked before a long measurement."""
     path = Path(text)
     if path.is_dir():
         raise argparse.ArgumentTypeError(f'{text} is a directory, must be a file')
     if not path.parent.is_dir():
-        raise argparse.ArgumentTypeError(f'{text}: there is no directory {path.parent}')
+        raise argparse.ArgumentTypeError(f'{text}: the directory {path.parent} does not exist')
     if not os.access(path if path.exists() else path.parent, os.W_OK):
         raise argparse.ArgumentTypeError(f'{text} is not writable')
     return path
 
 
 def directory_to_write(text: str) -> Path:
-    """Return the path of a directory that can be written or made."""
+    """Return the path of a directory that can be written or created."""
     path = Path(text)
     nearest = next(place for place in [path, *path.absolute().parents] if place.exists())
     if not nearest.is_dir():

@@ -1,7 +1,7 @@
 """
-What each command of `isa` does; a command returns whether its answer is yes.
+The commands of `isa`; each returns whether its check passed: bags equal, values reached.
 
-Imports are late on purpose: `isa --help` has no time for numba.
+Modules are imported in the functions, so that `isa --help` does not import numba.
 """
 
 from argparse import Namespace
@@ -14,14 +14,14 @@ from isa_ros.config.paths import CONFIG, find, SCENARIOS
 from isa_ros.errors import BagError, one_line
 from isa_ros.run.options import Request, request_of_arguments
 
-RUNS = Path('runs')  # where a demo goes that says nothing else
+RUNS = Path('runs')  # default directory of demos
 
 
 def demo(options: Namespace) -> bool:
-    """Drop the leg, four processes, and draw the report of it."""
+    """Drop the leg, in four processes, and draw the report of the bag."""
     out = options.out or next(path for path in _demo_directories() if not path.exists())
     if out.exists():
-        raise BagError(f'{out} exists, must not; a demo never overwrites')
+        raise BagError(f'{out} already exists; a demo does not overwrite it')
     bag = _record(Request(
         config=find('leg.yaml', CONFIG), scenario=find('drop.yaml', SCENARIOS),
         out=out / 'bag', is_alone=options.is_alone))
@@ -30,14 +30,14 @@ def demo(options: Namespace) -> bool:
 
 
 def _record(request: Request) -> Path:
-    """Run, and say where its bags are, however the run ends; return the first directory."""
+    """Run, print the paths of its bags, also after an error, and return the first."""
     from isa_ros.core.without_blas import start_without_blas
     from isa_ros.run.session import prepare
     from isa_ros.run.terminal import terminal_report
     if request.is_alone:
         start_without_blas()
     session = prepare(request)
-    # rclpy takes a third of a second to import, which a wrong option should not cost.
+    # The import of rclpy takes a third of a second; do it after the options are checked.
     from isa_ros.nodes.bringup import run_session
     try:
         return run_session(session, terminal_report(sys.stderr))
@@ -69,7 +69,7 @@ def actuators(options: Namespace) -> bool:
 
 
 def replay(options: Namespace) -> bool:
-    """Simulate a bag again from itself, and compare."""
+    """Simulate the run of a bag again and compare."""
     from isa_ros.bag.reader import Bag
     from isa_ros.replay.replay import replay as replay_bag
     from isa_ros.replay.tolerances import load_tolerances
@@ -89,7 +89,7 @@ def compare(options: Namespace) -> bool:
     expected, actual = Bag(options.expected), Bag(options.actual)
     tolerances = load_tolerances(options.tolerance, expected.types) if options.tolerance else None
     if not recorded_as(expected).thins_like(recorded_as(actual)):
-        print('not recorded alike: what both hold is compared')
+        print('recorded with different record options: comparing the samples in both bags')
     report = compare_bags(expected, actual, tolerances)
     print(report)
     return report.is_equal
@@ -147,14 +147,14 @@ def params(options: Namespace) -> bool:
 
 
 def paper(options: Namespace) -> bool:
-    """Show what the paper prints."""
+    """Show values and statements of the paper."""
     from isa_ros.paper.show import describe
     print(describe(options.name))
     return True
 
 
 def validate(options: Namespace) -> bool:
-    """Hold the actuators against the paper, number by number."""
+    """Compare the actuators with the numbers of the paper."""
     from isa_ros.analysis.validation.groups import GROUPS
     from isa_ros.analysis.validation.page import as_text, PAGE, write_json, write_page
     from isa_ros.analysis.validation.runner import chosen, is_reached, validated
@@ -174,7 +174,7 @@ def validate(options: Namespace) -> bool:
 
 
 def bench(options: Namespace) -> bool:
-    """Measure how fast this machine simulates."""
+    """Measure the speed of simulations on this machine."""
     from isa_ros.bench.command import bench as run_bench
     run_bench(options.json, options.only, options.out)
     return True

@@ -1,7 +1,7 @@
 """
-The command `isa`: arguments and exit codes. What a command does is in `isa_ros.cli.commands`.
+The command `isa`: arguments and exit codes; the commands are in `isa_ros.cli.commands`.
 
-Nothing here imports ROS or numba, so that `isa --help` answers at once.
+This module imports neither ROS nor numba, so that `isa --help` is fast.
 """
 
 import argparse
@@ -20,13 +20,13 @@ from isa_ros.cli import (
 from isa_ros.errors import IsaError, one_line
 
 DONE, ANSWER_IS_NO, WRONG_INPUT, NOT_COMPLETED, INTERRUPTED = 0, 1, 2, 3, 130
-"""Exit codes; `IsaError` children carry theirs, a diverged simulation 4 among them."""
+"""Exit codes; subclasses of `IsaError` have their own, for example 4 for divergence."""
 
 _DISK_IS_FULL = (errno.ENOSPC, errno.EDQUOT)
 
 
 class _Parser(argparse.ArgumentParser):
-    """Says what is wrong in one line."""
+    """Parser with one-line errors."""
 
     def error(self, message: str) -> NoReturn:
         self.exit(WRONG_INPUT, f'{self.prog}: {message}; see {self.prog} --help\n')
@@ -35,8 +35,8 @@ class _Parser(argparse.ArgumentParser):
 def main(arguments: Sequence[str] | None = None) -> int:
     """Run one command and return its exit code."""
     options = make_parser().parse_args(arguments)
-    options.is_alone = arguments is None  # in this process: nobody else has called
-    # Ctrl-C and SIGTERM end a command alike; a run replaces both to stop between two ticks.
+    options.is_alone = arguments is None  # called as a program, not from Python
+    # SIGTERM ends a command like Ctrl-C; a run replaces both handlers to stop between two ticks.
     before = signal.signal(signal.SIGTERM, _interrupt)
     try:
         return DONE if options.command(options) else ANSWER_IS_NO
@@ -49,14 +49,14 @@ def main(arguments: Sequence[str] | None = None) -> int:
 
 
 def _end(error: IsaError | OSError | KeyboardInterrupt) -> int:
-    """Say in one line why a command ended, and return its exit code."""
+    """Print the reason for the end of a command in one line, and return its exit code."""
     if isinstance(error, KeyboardInterrupt):
         print('isa: interrupted', file=sys.stderr)
         return INTERRUPTED
     if isinstance(error, IsaError):
         print(f'isa: {one_line(str(error))}', file=sys.stderr)
         return error.exit_code
-    if isinstance(error, BrokenPipeError):  # the reader of a pipe had enough
+    if isinstance(error, BrokenPipeError):  # the reader of a pipe has closed it
         os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
         return DONE
     where = f'{error.filename}: ' if error.filename else ''
@@ -96,7 +96,7 @@ def _actuators(parser: argparse.ArgumentParser) -> None:
         'names', nargs='*', metavar='NAME', help='an actuator of it (default: all)')
     parser.add_argument(
         '--scenario', metavar='FILE',
-        help='that of the run: it may change loads or where the run starts')
+        help='scenario of the run, which may change loads or initial positions')
 
 
 def _replay(parser: argparse.ArgumentParser) -> None:
@@ -156,18 +156,19 @@ _COMMANDS = {
     'bringup': (run_arguments.bringup, commands.bringup, 'run and record a configuration'),
     'actuators': (_actuators, commands.actuators,
                   'run actuators of a configuration for a coordinator on another host'),
-    'replay': (_replay, commands.replay, 'simulate a bag again from itself, and compare'),
-    'compare': (_compare, commands.compare, 'find the first difference of two bags'),
-    'report': (_report, commands.report, 'draw the figures of a bag, one page'),
+    'replay': (_replay, commands.replay, 'simulate the run of a bag again and compare'),
+    'compare': (_compare, commands.compare, 'find the first difference between two bags'),
+    'report': (_report, commands.report, 'draw the figures of a bag on one page'),
     'bode': (response_arguments.bode, commands.bode,
              'measure the frequency response of a loop of an actuator'),
     'step': (response_arguments.step, commands.step,
              'measure the step response of a loop of an actuator'),
     'identify': (_identify, commands.identify, 'estimate valve, oil and friction from a bag'),
     'study': (study_arguments.study, commands.study,
-              'vary one parameter against the performance of the actuators'),
+              'vary one parameter and show the performance of the actuators'),
     'params': (_params, commands.params, 'list every parameter with unit, range and source'),
-    'paper': (_paper, commands.paper, 'show what the paper prints, with the place'),
-    'validate': (_validate, commands.validate, 'hold the actuators against the paper, by number'),
-    'bench': (_bench, commands.bench, 'measure how fast this machine simulates'),
+    'paper': (_paper, commands.paper, 'show values and statements of the paper, with their place'),
+    'validate': (_validate, commands.validate,
+                 'compare the actuators with the numbers of the paper'),
+    'bench': (_bench, commands.bench, 'measure the speed of simulations on this machine'),
 }

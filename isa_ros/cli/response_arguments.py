@@ -14,10 +14,10 @@ def bode(parser: argparse.ArgumentParser) -> None:
     _rig(parser)
     parser.add_argument(
         '--of', choices=('closed', 'plant', 'open'), default='closed',
-        help='output over reference, over what the block gives inwards, or over the error')
+        help="output over reference, over the block's output, or over the error")
     parser.add_argument(
         '--method', choices=('stepped', 'chirp'), default='stepped',
-        help='one sine after the other (default), or a logarithmic chirp')
+        help='one sine after another (default), or a logarithmic chirp')
     parser.add_argument(
         '--from', dest='low', type=positive, metavar='HZ', help='lowest frequency')
     parser.add_argument(
@@ -30,29 +30,30 @@ def step(parser: argparse.ArgumentParser) -> None:
     """Add the arguments of `isa step`."""
     _rig(parser)
     parser.add_argument(
-        '--duration', type=positive, metavar='S', help='recorded after the step')
+        '--duration', type=positive, metavar='S', help='time recorded after the step')
 
 
 def _rig(parser: argparse.ArgumentParser) -> None:
     parser.add_argument('name', metavar='MODEL|CONFIG', help='isa_v5, rig_rotary.yaml, ...')
-    parser.add_argument('--actuator', metavar='NAME', help='which one of a run file')
+    parser.add_argument('--actuator', metavar='NAME', help='actuator of a run file')
     parser.add_argument(
         '--loop', choices=LOOPS, default='force',
-        help='the loop to excite, the blocks outside it off (default: force, or torque)')
+        help='the loop to excite; the blocks outside it are off (default: force, or torque)')
     shared_arguments.gains(parser, 'P')
     parser.add_argument(
         '--load', metavar='KIND',
         help="load of the model (default: blocked; for the position loop the actuator's own)")
     parser.add_argument(
-        '--position', type=number, metavar='X', help='in mm or deg (default: as configured)')
+        '--position', type=number, metavar='X',
+        help='initial position in mm or deg (default: as configured)')
     parser.add_argument(
         '--amplitude', type=positive, metavar='A',
         help='of the reference, in N, Nm, mm, deg, MPa or mA (default: 10 %% of the rated force, '
              '25 %% of spool travel and current, 1 %% of the stroke)')
     parser.add_argument(
         '--nodes', action='store_true',
-        help='measure through running nodes, from the bag they record, at their ticks')
+        help='measure with running nodes, at their ticks, from the bag that they record')
     parser.add_argument(
-        '--bag', type=Path, metavar='DIR', help='with --nodes: keep the bag there')
+        '--bag', type=Path, metavar='DIR', help='with --nodes: directory to keep the bag in')
     shared_arguments.json_file(parser)
     parser.add_argument('--out', type=file_to_write, metavar='FILE.png', help='draw the figure')

@@ -11,7 +11,7 @@ from isa_ros.run.options import COMPRESSIONS, Kind, Option, OPTIONS
 _TYPES: Mapping[Kind, Callable[[str], Any]] = {
     Kind.PATH: Path, Kind.NEW_FILE: file_to_write, Kind.POSITIVE: positive,
     Kind.NOT_NEGATIVE: not_negative, Kind.NAMES: names}
-"""What checks a value; else it is a text."""
+"""Checks of a value by kind; other kinds are texts."""
 
 
 def bringup(parser: argparse.ArgumentParser) -> None:

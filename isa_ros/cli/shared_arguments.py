@@ -1,4 +1,4 @@
-"""Arguments that several commands have."""
+"""Arguments of several commands."""
 
 import argparse
 from pathlib import Path
@@ -12,15 +12,15 @@ def bag(parser: argparse.ArgumentParser, name: str = 'bag') -> None:
 
 
 def json_file(parser: argparse.ArgumentParser, what: str = 'the numbers') -> None:
-    """Add the file for what is also printed."""
+    """Add the JSON file for the printed numbers."""
     parser.add_argument(
-        '--json', type=file_to_write, metavar='FILE', help=f'write {what} there too')
+        '--json', type=file_to_write, metavar='FILE', help=f'also write {what} to a file')
 
 
 def page_directory(parser: argparse.ArgumentParser, page: str) -> None:
     """Add the directory of a page in Markdown."""
     parser.add_argument(
-        '--out', type=directory_to_write, metavar='DIR', help=f'write {page} there')
+        '--out', type=directory_to_write, metavar='DIR', help=f'directory for {page}')
 
 
 def gains(parser: argparse.ArgumentParser, metavar: str) -> None:
@@ -29,4 +29,4 @@ def gains(parser: argparse.ArgumentParser, metavar: str) -> None:
         '--preset', metavar=metavar, help='gains of a model (default: default)')
     parser.add_argument(
         '--variant', action='append', default=[], metavar='V',
-        help='another way to model or to wire a model; may be repeated')
+        help='variant of the equations or of the wiring of a model; may be repeated')

@@ -1,4 +1,4 @@
-"""From a configuration to what is simulated: its actuators, and their surroundings."""
+"""Creates the actuators of a run and their surroundings from its configuration."""
 
 from isa_ros.actuator.actuator import Timing
 from isa_ros.actuator.group import ActuatorGroup
@@ -17,25 +17,25 @@ import numpy as np
 
 
 def timing_of(run: RunConfig) -> Timing:
-    """Return the grid of time of every actuator of a run."""
+    """Return the timing of every actuator of a run."""
     return Timing(run.step_ns, run.controller_offset_ns)
 
 
 def group_of(run: RunConfig) -> ActuatorGroup:
-    """Return the actuators of a run, each where its configuration starts it."""
+    """Return the actuators of a run, each at its initial position."""
     return ActuatorGroup(run.actuators, timing_of(run))
 
 
 def surroundings_of(run: RunConfig) -> Surroundings:
     """
-    Return the supplies of a run and the body that its actuators move, at t = 0.
+    Return the supplies of a run and the body that its actuators move, in their state at t = 0.
 
     Raises
     ------
     ParameterError
-        A supply is too small for the tick.
+        A supply is too small for the length of the tick.
     ConfigError
-        The body cannot start where it should.
+        The initial pose of the body is not possible.
 
     """
     plants = [plant_record(actuator.sheet.plant)[0] for actuator in run.actuators]
@@ -53,7 +53,7 @@ def surroundings_of(run: RunConfig) -> Surroundings:
 
 
 def _body(run: RunConfig) -> Body | None:
-    """Return the body of the kind that the run names; another kind is one more line here."""
+    """Return the body of a run; add new kinds of bodies here."""
     if isinstance(run.body, LegConfig):
         return _leg(run, run.body)
     return None

@@ -1,4 +1,4 @@
-"""A leg as the body of a run: its sheet, its actuators, where it starts."""
+"""A leg as the body of a run: its sheet, its actuators, its initial pose."""
 
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
@@ -16,7 +16,7 @@ from isa_ros.surroundings.linkage import actuator_coordinate
 
 @dataclass(frozen=True, kw_only=True)
 class LegStart(Parameters):
-    """Pose of the leg at t = 0, and the time until which its slider is held there."""
+    """Pose of the leg at t = 0, and the time at which its slider is released."""
 
     haa_deg: float = parameter('hip abduction', 'deg', ge=-180.0, le=180.0)
     hfe_deg: float = parameter('hip flexion', 'deg', ge=-180.0, le=180.0)
@@ -31,7 +31,7 @@ class LegStart(Parameters):
 
 @dataclass(frozen=True)
 class LegConfig:
-    """A leg as the body of a run: its sheet, the actuator of each joint, and its start."""
+    """A leg as the body of a run: its sheet, the actuator of each joint, and its initial pose."""
 
     model: str
     sheet: LegSheet
@@ -46,7 +46,7 @@ class LegConfig:
 
 
 class JointsKind:
-    """Which actuator moves which joint, in the order of `JOINTS`; a `Kind`."""
+    """Pairs of joint and actuator, in the order of `JOINTS`; a `Kind`."""
 
     def tree(self, value: Sequence[tuple[str, str]]) -> Tree:
         """Return the actuators by joint."""
@@ -62,5 +62,5 @@ class JointsKind:
         return tuple((joint, Plain(str).read(joints[joint], place / joint)) for joint in JOINTS)
 
     def differences(self, tree: Any, place: Place) -> Iterator[KeyDifference]:
-        """Yield nothing: the joints are those of every leg."""
+        """Yield nothing: every leg has the same joints."""
         yield from ()

@@ -1,4 +1,4 @@
-"""Names of runs, actuators, supplies and controllers, which ROS must accept as well."""
+"""Names of runs, actuators, supplies and controllers; they must also be valid in ROS."""
 
 import re
 
@@ -15,7 +15,7 @@ def refuse_bad_name(name: str, where: str) -> None:
     Raises
     ------
     ConfigError
-        The name has other characters than small letters, digits and single underscores.
+        The name has characters other than small letters, digits and single underscores.
 
     """
     if not _NAME.fullmatch(name):

@@ -1,8 +1,8 @@
 """
-How a resolved configuration is written as text, read again, and compared with another version's.
+Schema of a resolved configuration: writes, reads and compares its keys.
 
-One declaration of the keys serves all three: a `Section` lists the keys of a dataclass with the
-kind of each, and every kind turns its value into a tree and back.
+The keys are declared once: a `Section` lists the keys of a dataclass with the kind of each, and
+every kind converts its value to a tree and back.
 """
 
 from collections.abc import Iterator, Mapping, Sequence
@@ -18,15 +18,15 @@ from isa_ros.errors import ConfigError
 
 
 class KeyDifference(NamedTuple):
-    """One key that only the text or only this version has."""
+    """A key that only the text or only this version has."""
 
     text: str
     is_obstacle: bool
-    """Whether the run cannot be simulated because of it."""
+    """Whether it prevents the simulation of the run."""
 
 
 class Kind(Protocol):
-    """How the value of one key is written and read."""
+    """Conversion of the value of one key to a tree and back."""
 
     def tree(self, value: Any) -> Any:
         """Return the value as a tree of scalars, lists and sections."""
@@ -39,13 +39,13 @@ class Kind(Protocol):
         Raises
         ------
         ConfigError
-            The tree is not one that `tree` gives.
+            The tree is not the result of `tree` for any value.
 
         """
         ...
 
     def differences(self, tree: Any, place: Place) -> Iterator[KeyDifference]:
-        """Yield the keys below that differ from those of this version."""
+        """Yield the keys below ``place`` that differ from those of this version."""
         ...
 
 
@@ -88,7 +88,7 @@ class Names:
 
 @dataclass(frozen=True)
 class ParameterSet:
-    """A parameter set, or one out of a union whose section names its kind."""
+    """A parameter set, or one of a union, selected by the kind in its section."""
 
     hint: Any
 
@@ -101,7 +101,7 @@ class ParameterSet:
         return build_one_of(self.hint, written(section_at(tree, place), place), place)
 
     def differences(self, tree: Any, place: Place) -> Iterator[KeyDifference]:
-        """Yield the keys that differ, or the kind that is unknown."""
+        """Yield the keys that differ, or an unknown kind."""
         if not isinstance(tree, dict):
             return
         hint, rest = self.hint, dict(tree)
@@ -144,10 +144,10 @@ class Key:
 
     kind: Kind
     meant: str | None = None
-    """Words for what a text without the key means; the dataclass has it as default. None: every
-    text has the key, unless it is optional."""
+    """Description of the default for a text without the key; the dataclass has the default. None:
+    every text has the key, unless it is optional."""
     is_optional: bool = False
-    """Whether the value may be None, which is written as no key at all."""
+    """Whether the value may be None; then the key is not written."""
 
 
 @dataclass(frozen=True)
@@ -163,7 +163,7 @@ class Section:
                 if not (key.is_optional and getattr(value, name) is None)}
 
     def read(self, tree: Any, place: Place, **given: Any) -> Any:
-        """Return the value of a section, with ``given`` fields that it does not hold."""
+        """Return the value of a section; ``given`` are the fields that it does not contain."""
         section = section_at(tree, place)
         refuse_unknown(section, self.keys, place)
         values = dict(given)
@@ -177,7 +177,7 @@ class Section:
         return self.cls(**values)
 
     def differences(self, tree: Any, place: Place) -> Iterator[KeyDifference]:
-        """Yield the keys that differ; what is no section is refused where it is read."""
+        """Yield the keys that differ; a tree that is not a section is refused by `read`."""
         if not isinstance(tree, dict):
             return
         for name in tree:
@@ -194,7 +194,7 @@ class Section:
 
 
 class NamedSection(Protocol):
-    """A `Section`, or what stands for one in `Named`."""
+    """Interface of the sections in `Named`, such as `Section`."""
 
     def tree(self, value: Any) -> Tree:
         """Return the section of a value."""
@@ -232,7 +232,7 @@ class Named:
 
 @dataclass(frozen=True)
 class OneOf:
-    """A section out of several, which its key ``kind`` names."""
+    """One of several sections, selected by its key ``kind``."""
 
     sections: Mapping[str, Section]
 
@@ -252,7 +252,7 @@ class OneOf:
         return self.sections[str(kind)].read(rest, place)
 
     def differences(self, tree: Any, place: Place) -> Iterator[KeyDifference]:
-        """Yield the keys that differ, or the kind that is unknown."""
+        """Yield the keys that differ, or an unknown kind."""
         if not isinstance(tree, dict):
             return
         rest = dict(tree)

@@ -1,4 +1,4 @@
-"""The supplies of a run, and how a run file names them: ``supply`` for all, or ``supplies``."""
+"""Supplies of a run file: ``supply`` for all actuators, or ``supplies`` by name."""
 
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
@@ -13,7 +13,7 @@ from isa_ros.errors import ConfigError
 from isa_ros.surroundings.supply import SupplySheet, VolumeReturn
 
 SUPPLY = 'supply'
-"""Name of the only supply of a run."""
+"""Name of the supply of a run with only one."""
 
 
 @dataclass(frozen=True)
@@ -33,13 +33,14 @@ def read_supplies(
     Raises
     ------
     ConfigError
-        There is none, or both forms; a supply is not as it must be, or an actuator is fed by no
-        supply or by two.
+        Both forms are given, or neither; a supply is invalid, or an actuator is fed by no supply
+        or by two.
 
     """
     if (SUPPLY in tree) == ('supplies' in tree):
         raise ConfigError(place.has(
-            f'has {SUPPLY} and supplies, must have one' if SUPPLY in tree else f'lacks {SUPPLY}'))
+            f'has {SUPPLY} and supplies, must have only one of them' if SUPPLY in tree else
+            f'lacks {SUPPLY}'))
     if SUPPLY in tree:
         below = place / SUPPLY
         return (SupplyConfig(SUPPLY, _sheet(section_at(tree[SUPPLY], below), below),
@@ -69,13 +70,13 @@ def _sheet(section: Tree, place: Place) -> SupplySheet:
 def refuse_misfed(
         supplies: Sequence[SupplyConfig], actuators: Sequence[str], place: Place) -> None:
     """
-    Refuse supplies that do not feed every actuator once, and no other.
+    Refuse supplies that do not feed every actuator exactly once, or that feed others.
 
     Raises
     ------
     ConfigError
-        The supply and the actuator are named; or a supply has the name under which the return
-        pressure of another one is published.
+        An actuator is unknown, fed twice or not fed, or the topic of a supply's pressure is that
+        of another one's return pressure.
 
     """
     names = {supply.name for supply in supplies}
@@ -84,7 +85,7 @@ def refuse_misfed(
         if taken in names and isinstance(supply.sheet.return_line, VolumeReturn):
             raise ConfigError(
                 f'{place / taken}: the return pressure of {supply.name} is published as '
-                f'{taken}_pressure, must have another name')
+                f'{taken}_pressure; choose another name')
     fed: dict[str, str] = {}
     for supply in supplies:
         where = place / supply.name / 'feeds'
@@ -97,11 +98,12 @@ def refuse_misfed(
             fed[name] = supply.name
     for name in actuators:
         if name not in fed:
-            raise ConfigError(f'{place} feed no {name!r}; add it to the feeds of one of them')
+            raise ConfigError(
+                f'{place}: {name!r} is not fed; add it to the feeds of one of them')
 
 
 class SupplyKind:
-    """A supply's sheet with what it feeds beside it; a `Section` of `SupplyConfig`."""
+    """The keys of a supply's sheet, and ``feeds``; a `Section` of `SupplyConfig`."""
 
     cls = SupplyConfig
     _sheet = ParameterSet(SupplySheet)

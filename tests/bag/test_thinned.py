@@ -78,7 +78,7 @@ def test_thinned_bag_equals_the_whole_one_in_what_both_hold(whole, thinned, caps
     assert compare_bags(*bags).messages == thinned.n_messages
     assert main(['compare', *(str(bag.path) for bag in bags)]) == 0
     assert capsys.readouterr().out.startswith(
-        'not recorded alike: what both hold is compared\nequal: ')
+        'recorded with different record options: comparing the samples in both bags\nequal: ')
 
 
 def test_message_lost_from_a_thinned_bag_is_missed(whole, thinned, tmp_path):

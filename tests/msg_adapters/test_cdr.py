@@ -154,7 +154,7 @@ def test_length_beyond_the_bytes_is_refused():
     """2^32 - 1 names would be 4 GB of empty strings."""
     data = encode(JointState())
     names = 4 + 8 + 4 + 1 + 3
-    with pytest.raises(CdrError, match='4294967295 elements of string wanted'):
+    with pytest.raises(CdrError, match='4294967295 elements of string do not fit'):
         decode(data[:names] + b'\xff\xff\xff\xff' + data[names + 4:], JointState)
 
 

@@ -66,8 +66,8 @@ def test_any_value_that_is_not_finite_rejects_the_whole_message(value, array, en
 
 @pytest.mark.parametrize('message, said', [
     (JointState(name=['knee'], position=[0.0]),
-     r"hip: no such joint in the setpoint, which names \['knee'\]"),
-    (JointState(), r'hip: no such joint in the setpoint, which names \[\]'),
+     r"hip: is not among the joints of the setpoint, \['knee'\]"),
+    (JointState(), r'hip: is not among the joints of the setpoint, \[\]'),
     (JointState(name=['hip', 'hip/stifness'], position=[0.0, 1.0]),
      r"unknown setpoint entries \['hip/stifness'\]"),
     (JointState(name=['hip', 'hip'], position=[0.0, 1.0]), 'names an entry twice'),

@@ -1,9 +1,9 @@
 """
 `isa bode`: the frequency response of one loop, with amplitude and coherence.
 
-Closed loop Y/R, plant Y/U and open loop Y/E come from the same closed-loop run: E is R - Y,
-U what the loop's block gives inwards. The margins are those of Y/E, the loop as if it had
-unity feedback; damping and velocity terms of the block count as part of what it drives.
+Closed loop Y/R, plant Y/U and open loop Y/E are estimated from the same closed-loop run: E is
+R - Y, U the output of the loop's block to the next one inwards. The margins are those of Y/E,
+that is with unity feedback; damping and velocity terms of the block count as part of the plant.
 """
 
 from collections.abc import Sequence
@@ -21,7 +21,7 @@ import numpy as np
 
 @dataclass(frozen=True)
 class Bode:
-    """A measured response and what follows from its run."""
+    """A measured response, with bandwidth and margins from the same run."""
 
     loop: Loop
     of: str
@@ -39,7 +39,7 @@ def bode(rig: Rig, sweep: Sweep, of: str, amplitude: float | None = None) -> Bod
     Raises
     ------
     ConfigError
-        The band or the amplitude is beyond the loop, or it has no such response.
+        The band or the amplitude is too large for the loop, or it has no such response.
     SimulationDiverged
         A state is no longer finite.
 
@@ -56,19 +56,19 @@ def evaluate(
         loop: Loop, answer: Answer, of: str, amplitude: float, trace: np.ndarray) -> Bode:
     """Return a loop's response from the signals of one run, named as in `actuator_trace.TRACE`."""
     reference, y = trace[f'{loop.name}_reference'], trace[loop.name]
-    closed, opened, asked = (
+    closed, opened, requested = (
         answer.estimate(reference, loop.input_of(which, trace), y)
         for which in (CLOSED, OPEN, of))
     return Bode(
-        loop, of, asked, float(closed.gain[0]), bandwidth(closed, dc_gain=1.0), margins(opened),
-        amplitude)
+        loop, of, requested, float(closed.gain[0]), bandwidth(closed, dc_gain=1.0),
+        margins(opened), amplitude)
 
 
 _HEAD = ('frequency, Hz', 'gain', 'gain, dB', 'phase, deg', 'coherence', 'in', 'out')
 
 
 def table(measured: Bode) -> str:
-    """Return a response as a table, its bandwidth and margins below."""
+    """Return a response as a table, followed by its bandwidth and margins."""
     loop, response = measured.loop, measured.response
     unit, into = loop.response_unit(measured.of), input_unit(measured)
     head = [*_HEAD[:1], f'gain, {unit.symbol}', *_HEAD[2:5],
@@ -83,7 +83,7 @@ def table(measured: Bode) -> str:
 
 
 def conclusions(measured: Bode) -> Sequence[str]:
-    """Return what follows from the run, a line each."""
+    """Return bandwidth, margins and a warning if the coherence is low, a line each."""
     found, frequency = measured.margins, measured.response.frequency
     band = (f'{measured.bandwidth:.4g} Hz' if measured.bandwidth is not None
             else f'below {frequency[0]:.4g} Hz' if measured.first_gain < HALF_POWER
@@ -99,7 +99,7 @@ def conclusions(measured: Bode) -> Sequence[str]:
         lines.append(
             f'coherence falls to {measured.response.coherence[least]:.2g} at '
             f'{frequency[least]:.4g} Hz, below {TRUSTED:g}: the loop hunts, or noise covers the '
-            'response; do not rely on what needs these points')
+            'response; do not rely on results from these frequencies')
     return lines
 
 

@@ -1,4 +1,4 @@
-"""`isa bode` and `isa step`: measure, print, write and draw what is asked."""
+"""`isa bode` and `isa step`: measure a response, print, write and draw it."""
 
 from argparse import Namespace
 import json
@@ -15,7 +15,7 @@ import numpy as np
 
 BANDS = {'position': (0.5, 50.0), 'force': (1.0, 200.0), 'pressure': (1.0, 200.0),
          'spool': (2.0, 500.0), 'current': (10.0, 1500.0)}
-"""Hz; from well below the loop's bandwidth to where little of it is left."""
+"""Default bands, Hz; from well below the loop's bandwidth to well above it."""
 DURATIONS = {'position': 1.0, 'force': 0.5, 'pressure': 0.5, 'spool': 0.05, 'current': 0.02}
 _RESPONSES = {'closed': 'closed loop, output/reference', 'plant': 'plant, output/inward reference',
               'open': 'open loop, output/error'}
@@ -74,7 +74,8 @@ def _title(options: Namespace, bench: Rig) -> str:
 
 def _rig(options: Namespace) -> Rig:
     if options.bag is not None and not options.nodes:
-        raise ConfigError(f'--bag {options.bag} is not used: the bare actuator records none')
+        raise ConfigError(
+            f'--bag {options.bag} is not used: without --nodes no bag is recorded')
     return rig(Choice(
         name=options.name, loop=options.loop, actuator=options.actuator, preset=options.preset,
         variants=options.variant, load=options.load, position=options.position))
@@ -113,7 +114,7 @@ def _numbers(measured: bodes.Bode) -> dict[str, Any]:
 
 
 def _refuse_figure(path: Path | None) -> None:
-    """Refuse, before anything is measured, a figure in a format that cannot be drawn."""
+    """Refuse, before the measurement, a figure in an unknown format."""
     if path is None:
         return
     known = sorted(Figure().canvas.get_supported_filetypes())

@@ -40,7 +40,7 @@ def bode_figure(measured: Bode, title: str) -> Figure:
 
 
 def step_figure(measured: Step, title: str) -> Figure:
-    """Draw reference and output, and what the loop gives inwards, over time."""
+    """Draw reference and output, and the output of the loop's block, over time."""
     loop, has_inward = measured.loop, measured.inward is not None
     figure = Figure(figsize=(8.0, 6.0 if has_inward else 4.0), dpi=110, layout='constrained')
     axes = figure.subplots(

@@ -1,10 +1,11 @@
 """
-The loops of an actuator as one excites and observes them.
+The loops of an actuator, for excitation and measurement.
 
     position -> force or torque -> pressure difference -> spool -> current
 
-A loop is excited by the setpoint once every block outside it is off. All of its signals come
-from one run: reference R, output Y, error R - Y, and U, what its block gives inwards.
+With every block outside it off, a loop is excited by the setpoint. All of its signals are
+recorded in one run: reference R, output Y, error R - Y, and U, the output of its block to the next
+one inwards.
 """
 
 from dataclasses import dataclass, replace
@@ -20,15 +21,15 @@ from isa_ros.reu.lead_lag import LeadLag
 from isa_ros.reu.wiring import active, Off, VARIABLES
 import numpy as np
 
-FORCE_SHARE = 0.1       # of the rating; the paper's force bandwidth
-INNER_SHARE = 0.25      # of spool travel, current, as the paper's Table 1
-POSITION_SHARE = 0.01   # of the stroke: slow enough for the valve's flow up to tens of Hz
+FORCE_SHARE = 0.1       # amplitude over rating, as for the paper's force bandwidth
+INNER_SHARE = 0.25      # amplitude over spool travel and current, as in the paper's Table 1
+POSITION_SHARE = 0.01   # amplitude over stroke: within the valve's flow up to tens of Hz
 OPEN, PLANT, CLOSED = 'open', 'plant', 'closed'
 
 
 @dataclass(frozen=True)
 class Unit:
-    """A unit in which a user reads and writes a quantity; ``scale`` SI units each."""
+    """A unit for the user's values of a quantity; one unit is ``scale`` SI units."""
 
     symbol: str
     scale: float = 1.0
@@ -39,16 +40,16 @@ class Loop:
     """One loop of one actuator; signal names are fields of `actuator_trace.TRACE`."""
 
     name: str
-    label: str                  # force reads torque where it is one
+    label: str                  # the name, but torque for the force loop of a rotary actuator
     sheet: ActuatorSheet        # with the blocks outside the loop off
     unit: Unit                  # of reference and output
-    inward: str | None          # the signal its block gives inwards
+    inward: str | None          # the output signal of its block
     inward_unit: Unit
     quantity: str               # of the setpoint that is its reference
     per_reference: float        # that quantity per SI unit of the reference
-    rate_hz: float              # at which it takes its reference
-    amplitude: float            # to excite it with where nothing else is said, SI
-    largest: float              # amplitude that still makes sense, SI
+    rate_hz: float              # rate at which it samples its reference
+    amplitude: float            # default amplitude of the excitation, SI
+    largest: float              # largest sensible amplitude, SI
 
     def input_of(self, of: str, trace: np.ndarray) -> np.ndarray:
         """
@@ -57,7 +58,7 @@ class Loop:
         Raises
         ------
         ConfigError
-            The loop is closed inside the plant, so that it has no plant of its own.
+            The loop is closed inside the plant's equations, so that there is no Y/U.
 
         """
         reference: np.ndarray = trace[f'{self.name}_reference']
@@ -85,8 +86,8 @@ def outermost(sheet: ActuatorSheet, name: str) -> ActuatorSheet:
     """
     Return the sheet with every block outside a loop off: the setpoint becomes its reference.
 
-    A spool block that is off is no fault: the valve closes the loop by itself, mechanically,
-    and the current block then is the outermost one.
+    The spool block may be off: the valve then closes the loop mechanically, and the current
+    block is the outermost one.
 
     Raises
     ------
@@ -113,7 +114,7 @@ def loop_of(sheet: ActuatorSheet, name: str) -> Loop:
     current_per_spool = float(record['plant']['coil']['parallel']
                               / record['plant']['valve']['k_spool'])
     per_reference = 1.0
-    if is_on[0][0] == 'current':     # its setpoint counts in amperes of the series scale
+    if is_on[0][0] == 'current':     # its setpoint is in amperes of the series scale
         per_reference = 1.0 / float(record['plant']['coil']['parallel'])
         if name == 'spool':
             per_reference *= current_per_spool
@@ -133,7 +134,7 @@ def loop_of(sheet: ActuatorSheet, name: str) -> Loop:
 
 
 def _inward(alone: ActuatorSheet, names: list[str], name: str) -> str | None:
-    """Return the signal that a loop's block gives to the next one inwards."""
+    """Return the name of the signal from a loop's block to the next one inwards."""
     if name == 'current':
         return 'drive' if isinstance(alone.reu.current, LeadLag) else None
     if name not in names:
@@ -142,7 +143,7 @@ def _inward(alone: ActuatorSheet, names: list[str], name: str) -> str | None:
 
 
 def units_of(sheet: ActuatorSheet) -> dict[str, Unit]:
-    """Return the unit of every loop's signals as users read them."""
+    """Return the user's unit of every loop's signals."""
     place, force = ((Unit('deg', math.radians(1.0)), Unit('Nm')) if sheet.is_rotary
                     else (Unit('mm', MILLI), Unit('N')))
     return {'position': place, 'force': force, 'pressure': Unit('MPa', MPA),

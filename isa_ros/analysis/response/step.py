@@ -9,10 +9,10 @@ from isa_ros.analysis.signals.step_response import step_figures, StepFigures
 from isa_ros.errors import ConfigError
 import numpy as np
 
-BEFORE = 0.1                # of the duration: shown before the step
+BEFORE = 0.1                # time before the step over the duration
 SHORTEST_S, LONGEST_S = 0.01, 100.0
-BAND = 0.05                 # settling band, a share of the step
-LOST = 0.5                  # error or ripple at the end, of the step: it does not follow
+BAND = 0.05                 # settling band over the step
+LOST = 0.5                  # error or ripple at the end over the step; above: it does not follow
 
 
 @dataclass(frozen=True)
@@ -30,12 +30,12 @@ class Step:
 
 def step(rig: Rig, duration: float, amplitude: float | None = None) -> Step:
     """
-    Measure a step of a loop's reference by ``amplitude`` (the loop's unit) from its rest.
+    Measure a step of a loop's reference by ``amplitude`` (in the loop's unit) from rest.
 
     Raises
     ------
     ConfigError
-        The duration or the amplitude makes no sense.
+        The duration or the amplitude is out of range.
     SimulationDiverged
         A state is no longer finite.
 
@@ -50,7 +50,7 @@ def step(rig: Rig, duration: float, amplitude: float | None = None) -> Step:
 
 
 def check_duration(duration: float) -> None:
-    """Refuse a recording too short for its figures, or too long to be meant."""
+    """Refuse a recording that is too short for its figures or unreasonably long."""
     if not SHORTEST_S <= duration <= LONGEST_S:
         raise ConfigError(
             f'--duration = {duration:g} s, must be {SHORTEST_S:g} to {LONGEST_S:g} s')

@@ -1,9 +1,9 @@
 """
-What a frequency response is measured with: one sine after the other, or a chirp.
+Excitation for frequency responses: one sine after another, or a chirp.
 
-Excitations have amplitude 1. A frequency of the stepped sine is moved a little, so that the
-cycles that are measured fill whole periods of a grid: then a tick's worth of samples, and the
-images of a reference held over a tick, are orthogonal to it.
+Excitations have amplitude 1. The frequencies of the stepped sine are changed slightly, so that
+the measured cycles fill whole periods of a grid: then the samples of a tick, and the images of a
+reference held over a tick, are orthogonal to the sine.
 """
 
 from dataclasses import dataclass
@@ -14,22 +14,22 @@ from isa_ros.analysis.signals.frequency import chirp_response, Response, stepped
 from isa_ros.errors import ConfigError
 import numpy as np
 
-GRID_S = 1e-3       # where nothing else gives one: ten periods of the trace
-SETTLE_S = 0.2      # at each frequency, and
-SETTLE_CYCLES = 1
-WINDOW_S = 0.2      # measured at each frequency, and
-WINDOW_CYCLES = 4
-SEGMENT_CYCLES = 4  # of the lowest frequency in a segment of a chirp
+GRID_S = 1e-3       # default grid: ten periods of the trace
+SETTLE_S = 0.2      # least settling time at each frequency
+SETTLE_CYCLES = 1   # least settling cycles at each frequency
+WINDOW_S = 0.2      # least measured time at each frequency
+WINDOW_CYCLES = 4   # least measured cycles at each frequency
+SEGMENT_CYCLES = 4  # cycles of the lowest frequency in a segment of a chirp
 LEAST_SEGMENT_S = 0.5
-SEGMENTS = 16       # of a chirp
-EDGE = 1.25         # by which a chirp goes beyond its band at either end
-LARGEST_SHARE = 0.4     # of the rate at which a loop takes its reference
+SEGMENTS = 16       # number of segments of a chirp
+EDGE = 1.25         # factor by which a chirp exceeds its band at both ends
+LARGEST_SHARE = 0.4     # highest frequency over the rate at which a loop samples its reference
 TWO_PI = 2.0 * math.pi
 
 
 @dataclass(frozen=True, kw_only=True)
 class Sweep:
-    """Which frequencies, and how they are excited; Hz."""
+    """Frequencies of a measurement, Hz, and the kind of excitation."""
 
     low: float
     high: float
@@ -38,17 +38,17 @@ class Sweep:
 
     @property
     def frequencies(self) -> np.ndarray:
-        """Return what is asked for: as many points, equal distances in log f."""
+        """Return the wanted frequencies: ``points`` of them, equally spaced in log f."""
         return np.geomspace(self.low, self.high, self.points)
 
     def check(self, rate: float, what: str) -> None:
         """
-        Refuse an empty band, and one that ``what`` cannot take at ``rate`` values a second.
+        Refuse an empty band, and one that is too high for ``rate`` references per second.
 
         Raises
         ------
         ConfigError
-            The band is one of these.
+            The band is refused; ``what`` describes the rate in the message.
 
         """
         if not 0.0 < self.low < self.high:
@@ -83,7 +83,7 @@ def sections(sweep: Sweep, grid: float) -> tuple[Section, ...]:
 
 
 def windows(parts: tuple[Section, ...], rate: float, first: int) -> tuple[Window, ...]:
-    """Return where the settled samples of each section are, the first section at ``first``."""
+    """Return the windows of the settled samples; the first section begins at row ``first``."""
     found, at = [], first
     for frequency, settle, measured in parts:
         start = at + round(settle * rate)
@@ -93,7 +93,7 @@ def windows(parts: tuple[Section, ...], rate: float, first: int) -> tuple[Window
 
 
 class ChirpBand(NamedTuple):
-    """A logarithmic chirp; segments are what its spectra are averaged over."""
+    """A logarithmic chirp; its spectra are averaged over segments."""
 
     low: float
     high: float
@@ -102,7 +102,7 @@ class ChirpBand(NamedTuple):
 
 
 def chirp_band(sweep: Sweep, rate: float, grid: float) -> ChirpBand:
-    """Return the chirp of a sweep: its band and a little beyond, below half the rate."""
+    """Return the chirp of a sweep: slightly more than its band, up to half the rate."""
     segment = math.ceil(max(LEAST_SEGMENT_S, SEGMENT_CYCLES / sweep.low) / grid) * grid
     return ChirpBand(
         sweep.low / EDGE, min(EDGE * sweep.high, 0.5 * rate), SEGMENTS * segment, segment)
@@ -110,22 +110,22 @@ def chirp_band(sweep: Sweep, rate: float, grid: float) -> ChirpBand:
 
 @dataclass(frozen=True)
 class Answer:
-    """How the response is found in the samples of a run."""
+    """Estimator of the response from the samples of a run."""
 
     rate: float
-    windows: tuple[Window, ...] = ()    # of a stepped sine; none: a chirp
-    segment: float = 0.0                # of a chirp, s
+    windows: tuple[Window, ...] = ()    # of a stepped sine; empty for a chirp
+    segment: float = 0.0                # length of a segment of a chirp, s
     frequencies: np.ndarray | None = None
 
     def estimate(self, r: np.ndarray, x: np.ndarray, y: np.ndarray) -> Response:
-        """Return the response from ``x`` to ``y`` to the reference ``r``, each (n,)."""
+        """Return the response from ``x`` to ``y`` under the reference ``r``, each (n,)."""
         if self.frequencies is None:
             return stepped_response(self.windows, x, y, self.rate)
         return chirp_response(self.frequencies, self.segment, r, x, y, self.rate)
 
 
 class Excitation(NamedTuple):
-    """Values of amplitude 1, their rates of change (1/s), and how to read what they caused."""
+    """Values of amplitude 1, their rates of change (1/s), and the estimator of the response."""
 
     values: np.ndarray
     rates: np.ndarray
@@ -133,12 +133,12 @@ class Excitation(NamedTuple):
 
 
 def excitation(sweep: Sweep, rate: float) -> Excitation:
-    """Return what excites a sweep, ``rate`` values a second."""
+    """Return the excitation of a sweep, with ``rate`` values per second."""
     return (_chirp if sweep.is_chirp else _stepped)(sweep, rate)
 
 
 def _stepped(sweep: Sweep, rate: float) -> Excitation:
-    """Return one sine after the other, without a jump between them."""
+    """Return one sine after another, continuous in phase."""
     phases, slopes, phase = [], [], 0.0
     parts = sections(sweep, GRID_S)
     for frequency, settle, measured in parts:

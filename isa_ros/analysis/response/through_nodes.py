@@ -1,9 +1,9 @@
 """
-The same measurements through the running nodes: a scenario, its bag, the same estimators.
+The measurements of `bode` and `step` through running nodes: a scenario, its bag, the estimators.
 
-Everything is seen at the ticks: what the sensors read and the references in force at the end
-of each. A reference stands for a tick and is recorded at its end, so that against the bare
-actuator a response from the reference shows the hold: its gain, and up to half a tick of time.
+All signals are recorded at the ticks: the sensor readings and the references in force at the end
+of each. A reference is held for a tick and recorded at its end, so that a response from the
+reference includes the hold: its gain, and up to half a tick of delay.
 """
 
 from contextlib import ExitStack
@@ -39,7 +39,7 @@ def bode(
         rig: Rig, sweep: Sweep, of: str, amplitude: float | None, bag: Path | None
         ) -> bodes.Bode:
     """
-    Measure as `bode.bode`, through nodes; the bag is kept in ``bag``, None keeps none.
+    Measure as `bode.bode`, through nodes; ``bag`` is the directory of the bag, None: not kept.
 
     Raises
     ------
@@ -62,14 +62,14 @@ def bode(
 
 
 def step(rig: Rig, duration: float, amplitude: float | None, bag: Path | None) -> steps.Step:
-    """Measure as `step.step`, through nodes; as `bode`."""
+    """Measure as `step.step`, through nodes; ``bag`` and errors as in `bode`."""
     _refuse_unrecorded(rig.loop, '')
     steps.check_duration(duration)
     peak, tick = rig.amplitude(amplitude), rig.run.step_ns / NS_PER_SECOND
     before, after = _rest(rig), math.ceil(duration / tick)
     points = [_point(rig, 0, {}), _point(rig, before, {}, peak)]
     trace = _recorded(rig, points, before + after, bag)
-    # Row k shows the setpoint of tick k - 1: the step stands in the row after its tick.
+    # Row k has the setpoint of tick k - 1: the step is in the row after its tick.
     shown = round(steps.BEFORE * after)
     return steps.evaluate(
         rig.loop, trace[before - shown:], shown, rig.offset, peak, 1.0 / tick)
@@ -79,17 +79,17 @@ def _refuse_unrecorded(loop: Loop, of: str) -> None:
     for signal in (f'{loop.name}_reference', *([loop.inward] if of == PLANT else [])):
         if signal is not None and signal not in RECORDED:
             raise ConfigError(
-                f'--nodes: {str(signal).replace("_", " ")} is not recorded by the nodes, must be '
-                'measured on the bare actuator')
+                f'--nodes: {str(signal).replace("_", " ")} is not recorded by the nodes; measure '
+                'without --nodes')
 
 
 def _rest(rig: Rig) -> int:
-    """Return the ticks before anything is excited."""
+    """Return the number of ticks at rest before the excitation."""
     return math.ceil(REST_S * NS_PER_SECOND / rig.run.step_ns)
 
 
 def _point(rig: Rig, tick: int, motion: Tree, value: float = 0.0) -> Tree:
-    """Return a setpoint ``value`` (SI, of the loop's reference) off its rest, as a scenario's."""
+    """Return a scenario's setpoint: the loop's reference at ``value`` (SI) from its rest."""
     given = rig.loop.per_reference * value
     is_position = rig.loop.quantity == 'position'
     return {
@@ -100,7 +100,7 @@ def _point(rig: Rig, tick: int, motion: Tree, value: float = 0.0) -> Tree:
 
 def _excited(
         rig: Rig, sweep: Sweep, peak: float, rate: float) -> tuple[list[Tree], int, Answer]:
-    """Return the setpoints of a sweep, the tick it ends at, and how to read the answer."""
+    """Return the setpoints of a sweep, its last tick, and the estimator of the response."""
     loop, rest = rig.loop, _rest(rig)
     common: Tree = {'moves': loop.quantity, 'amplitude': loop.per_reference * peak}
     points = [_point(rig, 0, {})]
@@ -131,7 +131,7 @@ def _recorded(rig: Rig, points: list[Tree], end: int, bag: Path | None) -> np.nd
             'name': 'excitation', 'duration_s': end * rig.run.step_ns / NS_PER_SECOND,
             'tracks': {name: points}}))
         out = files / 'bag' if bag is None else bag
-        from isa_ros.nodes.bringup import run_session  # rclpy, which nothing else here needs
+        from isa_ros.nodes.bringup import run_session  # imports rclpy, which only this needs
         run_session(
             prepare(Request(config=config, scenario=scenario, out=out)),
             terminal_report(sys.stderr))
@@ -139,7 +139,7 @@ def _recorded(rig: Rig, points: list[Tree], end: int, bag: Path | None) -> np.nd
 
 
 def run_file(run: RunConfig) -> str:
-    """Return a run of actuators on their own loads as the text of a run file, all values in it."""
+    """Return a run of actuators with their own loads as the text of a complete run file."""
     actuators: dict[str, Tree] = {}
     for config in run.actuators:
         key, scale = (('initial_position_deg', math.radians(1.0)) if config.sheet.is_rotary
@@ -158,7 +158,7 @@ def run_file(run: RunConfig) -> str:
 
 
 def _trace(signals: Signals, name: str) -> np.ndarray:
-    """Return the signals of a bag as a `TRACE`; NaN for what nodes do not record."""
+    """Return the signals of a bag as a `TRACE`; NaN for signals that nodes do not record."""
     rows = np.full(len(signals.time), math.nan, TRACE)
     for field in (*RECORDED, 'position', 'force', 'velocity', 'spool', 'current', 'pressure_a',
                   'pressure_b'):

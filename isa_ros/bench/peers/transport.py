@@ -73,15 +73,15 @@ class PeerTransport:
         self._take(answers, rows)
 
     def idle(self) -> None:
-        """Refuse what no bench asks for."""
+        """Raise: a run over a peer supports neither pause nor saved states."""
         raise RunError(_NOT_SUPPORTED)
 
     def snapshots(self) -> list[bytes]:
-        """Refuse what no bench asks for."""
+        """Raise: a run over a peer supports neither pause nor saved states."""
         raise RunError(_NOT_SUPPORTED)
 
     def restore(self, tick: int, snapshots: Sequence[bytes], rows: Rows) -> None:
-        """Refuse what no bench asks for."""
+        """Raise: a run over a peer supports neither pause nor saved states."""
         raise RunError(_NOT_SUPPORTED)
 
     def _take(self, answers: dict[int, Answer], rows: Rows) -> None:

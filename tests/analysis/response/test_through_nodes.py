@@ -34,7 +34,7 @@ def test_a_run_file_gives_the_rig_back(choice: Choice, tmp_path: Path):
     (['bode', 'isa_v5', '--nodes', '--loop', 'current', '--to', '300', '--variant', 'explicit',
       '--of', 'plant'], '--nodes: drive is not recorded by the nodes'),
     (['bode', 'isa_v5', '--nodes', '--amplitude', '8000'], '--amplitude = 8000 N, must be <='),
-    (['bode', 'isa_v5', '--bag', 'x'], '--bag x is not used: the bare actuator records none'),
+    (['bode', 'isa_v5', '--bag', 'x'], '--bag x is not used: without --nodes no bag'),
     (['step', 'isa_v5', '--nodes', '--duration', '0.001'], '--duration = 0.001 s, must be 0.01')])
 def test_what_nodes_cannot_measure_is_one_line_before_any_starts(arguments, expected, capsys):
     assert cli.main(arguments) == 2
