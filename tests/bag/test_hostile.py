@@ -229,13 +229,13 @@ def test_hostile_state_ends_in_one_line(tmp_path, refused, state, said):
     ({'tick': 2}, 'begins before tick 2'),
     ({'participants': []}, 'has 0 participants, the run has 1'),
     ({'participants': ['00']}, 'rotor: saved state of 1 bytes, must be'),
-    ({'load': ''}, 'saved state of the load: 0 bytes, must be'),
+    ({'load': ''}, 'saved state of the surroundings: 0 bytes, must be 40'),
     ({'requests': '00'}, 'has 1 bytes of requests, must have 48'),
 ])
 def test_state_that_does_not_fit_ends_in_one_line(tmp_path, refused, change, said):
     digest = load_run(Path(__file__).parents[2] / 'config' / 'rig_rotary.yaml').digest
     state = {'format': 1, 'configuration.sha256': digest, 'versions': {}, 'tick': 0,
-             'load': '00' * 24, 'requests': '00' * 48, 'participants': ['00']} | change
+             'load': '00' * 40, 'requests': '00' * 48, 'participants': ['00']} | change
     assert said in refused('replay', with_configuration(
         tmp_path / 'bag', RIG, state=json.dumps(state)))
 
