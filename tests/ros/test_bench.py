@@ -8,7 +8,7 @@ from isa_ros.bench.rigs import request_of
 from isa_ros.bench.rounds import measured
 from isa_ros.bench.spec import ACTUATORS, COORDINATOR, LEG, Measured, ONE_PROCESS, PROCESSES, Spec
 from isa_ros.processes.stopping import StopRequest
-from isa_ros.run.local_run import LocalRun
+from isa_ros.run.local_run import Inputs, LocalRun
 from isa_ros.run.session import prepare, provenance
 import pytest
 
@@ -23,7 +23,7 @@ def test_a_run_tells_speed_phases_start_up_and_memory(way, n_processes, domain):
     """Phases are parts of the tick; every process has the memory of an interpreter at least."""
     run = measured(Spec(LEG, way, 200))
     assert isinstance(run, Measured), run
-    assert set(run.phases) >= {'actuators', 'recorder', 'leg and supply'}
+    assert set(run.phases) >= {'actuators', 'recorder', 'body and supplies'}
     assert 0.0 < sum(run.phases.values()) <= run.tick
     assert list(run.startup)[0] == 'interpreter' and 0.5 < sum(run.startup.values()) < 120.0
     assert len(run.memory) == n_processes
@@ -51,7 +51,7 @@ def test_a_run_over_a_peer_gives_the_same_bag(name, tmp_path, domain):
     local = LocalRun(session.run)
     expected = tmp_path / 'direct' / 'bag'
     with BagWriter(expected, local.topics, provenance(session)) as bag:
-        local.simulate(TICKS, session.scenario.commands, bag)
+        local.simulate(TICKS, Inputs(session.scenario.commands), bag)
     recorded = session.out / 'bag_0.mcap'
     assert recorded.stat().st_size > TICKS * 2000
     assert recorded.read_bytes() == (expected / 'bag_0.mcap').read_bytes()
