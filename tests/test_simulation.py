@@ -139,6 +139,18 @@ def test_reset_begins_anew():
     assert controller.starts == [['haa', 'hfe', 'kfe']] * 2
 
 
+def test_what_a_controller_asked_for_before_a_reset_is_forgotten():
+    """Nothing takes effect at the first tick, at which it is shown t = 0."""
+    simulation = Simulation(idle(RUN), [Counter('knee', 0.05)])
+    for _ in range(2):
+        taken = []
+        for _ in range(3):
+            simulation.step()
+            taken.append(applied_position(simulation))
+        assert taken == [None, 0.05 + 1e-4, 0.05 + 1e-4 * 2]
+        simulation.reset()
+
+
 def test_what_was_tuned_is_in_force_from_the_first_tick_after_a_reset():
     """As the parameters of a node stay set."""
     simulation = Simulation(idle(RUN))

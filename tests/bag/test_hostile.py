@@ -215,9 +215,9 @@ def test_figure_of_a_scenario_names_no_path(tmp_path, refused):
 
 @pytest.mark.parametrize('state, expected', [
     ('[' * 200_000, 'is no saved state'),
-    ('{"format": 1}', 'is no saved state'),
+    ('{"format": 2}', 'is no saved state'),
     ('x' * (16 * MEBIBYTE + 1), 'larger than 16777216 bytes'),
-    (json.dumps({'format': 1, 'configuration.sha256': 'x'}), 'saved from the configuration x'),
+    (json.dumps({'format': 2, 'configuration.sha256': 'x'}), 'saved from the configuration x'),
 ])
 def test_hostile_state_ends_in_one_line(tmp_path, refused, state, expected):
     assert expected in refused('replay', with_configuration(tmp_path / 'bag', RIG, state=state))
@@ -229,13 +229,13 @@ def test_hostile_state_ends_in_one_line(tmp_path, refused, state, expected):
     ({'tick': 2}, 'begins before tick 2'),
     ({'participants': []}, 'has 0 participants, the run has 1'),
     ({'participants': ['00']}, 'rotor: saved state has 1 bytes, must have'),
-    ({'load': ''}, 'saved state of the load: 0 bytes, must be'),
+    ({'load': ''}, 'saved state of the surroundings: 0 bytes, must be 40'),
     ({'requests': '00'}, 'has 1 bytes of requests, must have 48'),
 ])
 def test_state_that_does_not_fit_ends_in_one_line(tmp_path, refused, change, expected):
     digest = load_run(Path(__file__).parents[2] / 'config' / 'rig_rotary.yaml').digest
-    state = {'format': 1, 'configuration.sha256': digest, 'versions': {}, 'tick': 0,
-             'load': '00' * 24, 'requests': '00' * 48, 'participants': ['00']} | change
+    state = {'format': 2, 'configuration.sha256': digest, 'versions': {}, 'tick': 0,
+             'load': '00' * 40, 'requests': '00' * 48, 'participants': ['00']} | change
     assert expected in refused('replay', with_configuration(
         tmp_path / 'bag', RIG, state=json.dumps(state)))
 

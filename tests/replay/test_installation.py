@@ -116,8 +116,8 @@ def test_sections_that_came_later_are_said_and_simulated(here, replayed, tmp_pat
     code, lines, _ = replayed(rewrite(here, tmp_path / 'old', configuration=before))
     assert code == 0
     assert lines[:-1] == [
-        'configuration.yaml: controllers is missing in the bag, none is meant',
-        'configuration.yaml: record is missing in the bag, everything is meant']
+        'configuration.yaml: record is missing in the bag, everything is meant',
+        'configuration.yaml: controllers is missing in the bag, none is meant']
 
 
 def test_kind_that_is_unknown_here_is_named(here, replayed, tmp_path):

@@ -24,7 +24,7 @@ def test_a_run_tells_speed_phases_start_up_and_memory(way, n_processes, domain):
     """Phases are parts of the tick; every process has the memory of an interpreter at least."""
     run = measured(Spec(LEG, way, 200))
     assert isinstance(run, Measured), run
-    assert set(run.phases) >= {'actuators', 'recorder', 'leg and supply'}
+    assert set(run.phases) >= {'actuators', 'recorder', 'body and supplies'}
     assert 0.0 < sum(run.phases.values()) <= run.tick
     assert list(run.startup)[0] == 'interpreter' and 0.5 < sum(run.startup.values()) < 120.0
     assert len(run.memory) == n_processes
