@@ -209,7 +209,7 @@ def test_figure_of_a_scenario_names_no_path(tmp_path, refused):
             there, scenario='name: x\nfigure: ../../x\n')) as writer:
         writer.write_tick(0, 0, [(0, tick_messages(0)[0][1])])
     before = sorted(tmp_path.rglob('*'))
-    assert '/rotor/joint_states is not in the bag' in refused('report', again)
+    assert 'rotor.position_reference is missing' in refused('report', again)
     assert sorted(tmp_path.rglob('*')) == before
 
 
@@ -229,7 +229,7 @@ def test_hostile_state_ends_in_one_line(tmp_path, refused, state, expected):
     ({'tick': 2}, 'begins before tick 2'),
     ({'participants': []}, 'has 0 participants, the run has 1'),
     ({'participants': ['00']}, 'rotor: saved state has 1 bytes, must have'),
-    ({'load': ''}, 'saved state of the surroundings: 0 bytes, must be 40'),
+    ({'load': ''}, 'saved state of the surroundings has 0 bytes, must have 40'),
     ({'requests': '00'}, 'has 1 bytes of requests, must have 48'),
 ])
 def test_state_that_does_not_fit_ends_in_one_line(tmp_path, refused, change, expected):

@@ -66,7 +66,7 @@ def simulated(n_ticks: int) -> list[tuple[int, str, bytes]]:
     while True:
         packer.pack(simulation.t_ns, max(0, simulation.t_ns - run.step_ns), simulation.tuned)
         said += [(simulation.ticks, packer.topics[k].name, data)
-                 for k, data in packer.everything()]
+                 for k, data in packer.all_messages()]
         if simulation.ticks == n_ticks:
             return said
         simulation.step()
