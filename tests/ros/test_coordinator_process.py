@@ -9,7 +9,7 @@ from tests.ros.started import actuator, bringup, coordinator, RIG, started, wait
 pytestmark = pytest.mark.ros
 
 
-@pytest.mark.parametrize('module', ['actuator_process', 'coordinator_node'])
+@pytest.mark.parametrize('module', ['actuator.process', 'coordinator.process'])
 def test_a_profile_that_is_not_there_is_one_line(domain, tmp_path, monkeypatch, module):
     profile = tmp_path / 'typo.xml'
     monkeypatch.setenv('FASTRTPS_DEFAULT_PROFILES_FILE', str(profile))
