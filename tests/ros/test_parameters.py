@@ -11,6 +11,7 @@ from isa_ros.config.default_actuator import default_actuator, DEFAULT_TIMING
 from isa_ros.core.signals import START
 from isa_ros.nodes.actuator.node import ActuatorNode, Setup
 from isa_ros.replay.replay import replay, Rerun
+from isa_ros.run.packing import Messages, Packer
 from msg_adapters.applied_parameters import tuned_values
 from msg_adapters.cdr_reader import decode
 import numpy as np
@@ -193,6 +194,45 @@ def test_a_gain_tuned_in_a_run_is_recorded_with_its_tick_and_replays(
     assert content(record_again(bag, tmp_path / 'again')) == content(bag)
 
 
+class Heard:
+    """An outlet with a subscription for every topic."""
+
+    messages: Messages = ()
+
+    def is_heard(self) -> bool:
+        return True
+
+    def send(self, messages: Messages) -> None:
+        self.messages = messages
+
+
+def published(node: ActuatorNode) -> Messages:
+    """Return what a node publishes of this instant where all is subscribed."""
+    outlet = Heard()
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(node, 'outlet', outlet)
+        node.publish()
+    return outlet.messages
+
+
+def test_a_node_packs_nothing_where_nobody_subscribes(observer, monkeypatch):
+    setup = Setup(default_actuator('isa_v5', 'knee'), DEFAULT_TIMING)
+    node = ActuatorNode(
+        lambda _: setup, 'knee', has_mailbox=False, context=observer.context,
+        enable_rosout=False)
+    try:
+        node.advance()
+        expected = published(node)
+        assert [data is None for data in expected[:2]] == [True, True] and all(expected[2:])
+
+        def pack(*arguments):
+            pytest.fail('rows were packed')
+        monkeypatch.setattr(Packer, 'pack', pack)
+        node.publish()
+    finally:
+        node.destroy_node()
+
+
 def test_what_was_set_stays_set_when_another_run_begins(observer):
     """It is recorded at the first tick, since the configuration does not contain it."""
     setup = Setup(default_actuator('isa_v5', 'knee'), DEFAULT_TIMING)
@@ -206,11 +246,15 @@ def test_what_was_set_stays_set_when_another_run_begins(observer):
             result, = node.set_parameters([RosParameter(name, value=value)])
             assert result.successful
         for _ in range(2):
-            assert node.start(start)[TUNED] is None
-            messages = node.advance()
-            assert tuned_values(messages[TUNED], 'knee') == {'force.kp': 9e-8}
+            node.start(start)
+            assert published(node)[TUNED] is None and node.tuned == {}
+            node.advance()
+            messages = published(node)
+            assert tuned_values(messages[TUNED], 'knee') == node.tuned == {'force.kp': 9e-8}
             assert decode(messages[APPLIED], JointState).position[1] == 5e4
-            assert node.advance()[TUNED] is None
+            assert node.applied['stiffness'].tolist() == [5e4]
+            node.advance()
+            assert published(node)[TUNED] is None and node.tuned == {}
         gains = node.get_parameters(['force.kp', 'position.stiffness', 'force.kf'])
         assert [gain.value for gain in gains] == [9e-8, 5e4, 0.002]
     finally:
