@@ -108,17 +108,18 @@ class ActuatorGroup:
         self._end(1, broken)
         return self._memory.replies
 
-    def advance_many(self, ports: Records, commands: Records) -> TickLog:
+    def advance_many(
+            self, ports: Records, commands: Records, *, with_samples: bool = True) -> TickLog:
         """
         Advance all by a tick for each row of ``commands``, (n_ticks, n), in one call.
 
         As many calls of `advance` with the same ``ports``, but much faster where ticks are
-        short; meant for actuators with loads of their own and a constant supply. Raises as
-        `advance`.
+        short; meant for actuators with loads of their own and a constant supply. The log has
+        no row of samples unless ``with_samples``. Raises as `advance`.
         """
-        n_ticks = len(commands)
-        samples, states = (
-            np.zeros((n_ticks + 1, len(self.actuators)), record) for record in (SAMPLE, STATES))
+        n, n_ticks = len(self.actuators), len(commands)
+        states: Records = np.empty((n_ticks + 1, n), STATES)
+        samples: Records = np.empty((n_ticks + 1 if with_samples else 0, n), SAMPLE)
         if n_ticks > 0:
             self._latch()
         done, broken = kernels.actuator_ticks(

@@ -227,12 +227,13 @@ def actuator_tick(first_step, steps, incoming, commands, memory):
 
 
 @kernel
-def write_log(memory, samples, states):
-    """Copy the `SAMPLE` of every actuator and write its `STATES`, (n,) each."""
-    for n in range(len(samples)):
-        samples[n] = memory.samples[n]
+def write_log(row, memory, samples, states):
+    """Write one row of the `SAMPLE` and the `STATES` of all; no samples where these have none."""
+    for n in range(states.shape[1]):
+        if row < len(samples):
+            samples[row, n] = memory.samples[n]
         write_states(memory.bodies[n * BODIES], memory.replies[n].force, memory.constants[n],
-                     memory.reu[n], states[n])
+                     memory.reu[n], states[row, n])
 
 
 @kernel
@@ -241,12 +242,13 @@ def actuator_ticks(first_step, steps, incoming, commands, memory, samples, state
     Run `actuator_tick` for each row of ``commands``, (n_ticks, n), with constant ``incoming``.
 
     Return the number of ticks, and the place of a state that the last one broke, or -1.
-    ``samples`` and ``states``, (n_ticks + 1, n), begin with the state before the first tick.
+    ``states`` and ``samples``, (n_ticks + 1, n), begin with the state before the first tick;
+    samples of no row are left out.
     """
-    write_log(memory, samples[0], states[0])
+    write_log(0, memory, samples, states)
     for tick in range(len(commands)):
         broken = actuator_tick(first_step + tick * steps, steps, incoming, commands[tick], memory)
-        write_log(memory, samples[tick + 1], states[tick + 1])
+        write_log(tick + 1, memory, samples, states)
         if broken >= 0:
             return tick + 1, broken
     return len(commands), -1

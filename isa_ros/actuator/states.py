@@ -14,13 +14,14 @@ STATES = np.dtype([
     ('position', 'f8'),             # of the piston or rotor, m | rad
     ('velocity', 'f8'),             # m/s | rad/s
     ('force', 'f8'),                # in the force or torque sensor, N | Nm
+    ('pressure', 'f8'),             # of chamber A less that of B, Pa
     ('pressure_a', 'f8'),           # Pa gauge
     ('pressure_b', 'f8'),           # Pa gauge
     ('spool', 'f8'),                # m
     ('current', 'f8'),              # amplifier A
     ('position_reference', 'f8'),   # m | rad
     ('force_reference', 'f8'),      # N | Nm; 0 without a force block
-    ('pressure_reference', 'f8'),   # of the pressure difference, Pa; 0 without a pressure block
+    ('pressure_reference', 'f8'),   # of the difference, Pa; 0 without a pressure block
     ('spool_reference', 'f8'),      # m
     ('current_reference', 'f8'),    # amplifier A
     ('drive', 'f8'),                # output of the blocks: V with an explicit coil, else A
@@ -46,6 +47,7 @@ def write_states(body, force, actuator, reu_state, row):
     row.position = plant.mechanics.position
     row.velocity = plant.mechanics.velocity
     row.force = force
+    row.pressure = plant.chambers.p_a - plant.chambers.p_b
     row.pressure_a = plant.chambers.p_a
     row.pressure_b = plant.chambers.p_b
     row.spool = plant.valve.spool

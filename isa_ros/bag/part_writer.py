@@ -98,6 +98,10 @@ class PartWriter:
         for channel, count in counts:
             self._counts[channel - 1] += count
 
+    def discard_pending(self) -> None:
+        """Drop the messages of the incomplete chunk: those before them could not be written."""
+        self._take_chunk()
+
     def finish(self, is_last: bool) -> None:
         """Write pending messages and the summary; a second call does nothing."""
         if self._is_finished:

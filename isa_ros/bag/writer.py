@@ -89,6 +89,8 @@ class BagWriter:
         if self._error is not None:
             raise self._error
         try:
+            if self._writing is not None and self._writing.done():
+                self._end_writing()
             if self._is_full and messages:
                 self._begin_part()
             chunk = self._parts[-1].write_tick(t_ns, sequence, messages)
@@ -182,6 +184,8 @@ class BagWriter:
     def _failure(self, error: OSError, path: Path) -> RunError:
         self._error = RunError(
             f'{error.filename or path}: cannot record, {error.strerror or error}')
+        if self._parts:
+            self._parts[-1].discard_pending()
         return self._error
 
 

@@ -64,6 +64,7 @@ def test_many_ticks_are_as_many_calls(kinds):
     for tick in range(N + 1):
         assert log.samples[tick].tobytes() == single.samples.tobytes()
         exact = log.states[tick]
+        assert (exact['pressure'] == exact['pressure_a'] - exact['pressure_b']).all()
         for name in ('force', 'position', 'velocity'):
             assert exact[name].tobytes() == single.replies[name].tobytes()
         for name in ('position', 'force', 'spool', 'current'):
@@ -137,6 +138,16 @@ def test_a_tuned_parameter_is_shown_for_the_tick_in_which_it_changed(n):
         single.advance(ports(), row)
     assert many.tuned == single.tuned and bool(many.tuned) == (n == 1)
     assert many.snapshot() == single.snapshot()
+
+
+def test_samples_can_be_left_out():
+    """The states are the same."""
+    with_samples, without = group('blocked'), group('blocked')
+    given = commands(with_samples)
+    log = without.advance_many(ports(), given, with_samples=False)
+    assert log.samples.shape == (0, len(MODELS))
+    assert log.states.tobytes() == with_samples.advance_many(ports(), given).states.tobytes()
+    assert without.samples.tobytes() == with_samples.samples.tobytes()
 
 
 def test_what_was_accepted_before_takes_effect_in_the_first_tick():

@@ -1,8 +1,12 @@
 """A small recorded run for the bag tests: one actuator, a clock, exact numbers."""
 
+from collections.abc import Callable
 from pathlib import Path
+import threading
+import time
 
 from isa_ros.bag.provenance import Provenance
+from isa_ros.bag.reader import Bag
 from isa_ros.bag.writer import BagWriter
 from isa_ros.core.signals import SAMPLE
 from isa_ros.core.topic import Topic
@@ -14,6 +18,7 @@ import numpy as np
 from tests.messages import APPLIED, fill, of_actuator
 
 STEP_NS = 1_000_000
+DEADLINE_S, LOOK_S = 20.0, 0.002
 PROVENANCE = Provenance(
     configuration='name: rig\n', scenario='name: step\n', seed=7,
     versions={'isa_ros': '0.1.0', 'numpy': '2.0'})
@@ -50,3 +55,11 @@ def record(directory: Path, n_ticks: int, changed=None, **options) -> Path:
             fields = (changed or {}).get(tick, {})
             writer.write_tick(tick * STEP_NS, tick, tick_messages(tick, **fields))
     return writer.path
+
+
+def wait_for_disk(directory: Path, is_there: Callable[[Bag], bool]) -> None:
+    """Wait until the thread of a writer has written what a bag must have."""
+    deadline, never = time.monotonic() + DEADLINE_S, threading.Event()
+    while not is_there(Bag(directory)):
+        assert time.monotonic() < deadline, 'the chunk is not on disk'
+        never.wait(LOOK_S)

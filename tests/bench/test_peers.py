@@ -159,7 +159,7 @@ def test_workers_that_never_answer_are_named(leg):
     lambda transport, rows: transport.idle(), lambda transport, rows: transport.snapshots(),
     lambda transport, rows: transport.restore(0, [], rows)])
 def test_what_a_peer_cannot_do_is_refused(leg, ask):
-    with pytest.raises(RunError, match='a peer runs to its end: no pause, no saved state'):
+    with pytest.raises(RunError, match='a run over a peer cannot be paused or saved'):
         ask(*made(Silence(), leg))
 
 

@@ -5,8 +5,7 @@ from pathlib import Path
 from isa_ros.config.run_config import RunConfig
 from isa_ros.config.run_file import load_run
 from isa_ros.errors import ConfigError
-from isa_ros.surroundings.supply import (
-    AccumulatorSupply, ConstantSupply, HeldReturn, VolumeReturn)
+from isa_ros.surroundings.supply import AccumulatorSupply, ConstantSupply, HeldReturn, VolumeReturn
 import pytest
 
 CONFIG = Path(__file__).parents[2] / 'config'
@@ -83,8 +82,8 @@ def test_a_run_of_one_actuator_keeps_the_supply_of_its_own(tmp_path: Path) -> No
     (f'supplies: {{main: {CONSTANT}, feeds: [hip, knee, ankle, hip]}}}}\n',
      "supplies.main.feeds: 'hip' is already fed by main"),
     (f'supplies: {{main: {CONSTANT}, feeds: hip}}}}\n', 'supplies.main.feeds'),
-    (f'supplies: {{main: {CONSTANT}, feeds: [hip, knee]}}}}\n', "supplies feed no 'ankle'"),
-    ('supplies: {}\n', "supplies feed no 'hip'"),
+    (f'supplies: {{main: {CONSTANT}, feeds: [hip, knee]}}}}\n', "supplies: 'ankle' is not fed"),
+    ('supplies: {}\n', "supplies: 'hip' is not fed"),
     ('supplies: [main]\n', 'supplies'),
     (f'supplies: {{main: {CONSTANT}, feed: [hip, knee, ankle]}}}}\n', 'lacks feeds'),
     (f'supplies: {{main: {CONSTANT}, flow: 1, feeds: [hip, knee, ankle]}}}}\n',

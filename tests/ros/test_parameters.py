@@ -194,21 +194,21 @@ def test_a_gain_tuned_in_a_run_is_recorded_with_its_tick_and_replays(
     assert content(record_again(bag, tmp_path / 'again')) == content(bag)
 
 
-class Heard:
+class Kept:
     """An outlet with a subscription for every topic."""
 
     messages: Messages = ()
 
-    def is_heard(self) -> bool:
+    def has_subscribers(self) -> bool:
         return True
 
-    def send(self, messages: Messages) -> None:
+    def publish(self, messages: Messages) -> None:
         self.messages = messages
 
 
 def published(node: ActuatorNode) -> Messages:
     """Return what a node publishes of this instant where all is subscribed."""
-    outlet = Heard()
+    outlet = Kept()
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr(node, 'outlet', outlet)
         node.publish()

@@ -63,8 +63,8 @@ def test_what_takes_effect_at_tick_k_is_in_sample_k_plus_1():
     assert tuned_values(samples[2][topic][0], 'hip') == {'force.kp': 9e-5}
 
 
-def test_notes_are_recorded_before_their_tick():
-    samples = recorded(Inputs(nothing, notes={0: ['pause', 'step 1'], 4: ['reset']})).samples
+def test_events_are_recorded_before_their_tick():
+    samples = recorded(Inputs(nothing, events={0: ['pause', 'step 1'], 4: ['reset']})).samples
     assert {k: [event.text(data) for data in sample['/coordinator/events']]
             for k, sample in samples.items() if '/coordinator/events' in sample} == {
                 0: ['pause', 'step 1'], 4: ['reset']}

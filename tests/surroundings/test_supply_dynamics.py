@@ -52,12 +52,12 @@ def test_the_supply_keeps_the_time_of_its_ticks(step_ns):
 
 
 def test_a_restored_supply_goes_on_where_it_was():
-    """`state` holds the pump's flow too."""
+    """`state` includes the pump's flow."""
     plant, twin = (supply.Supply(SHEET, MS, flow_slope=1e-13) for _ in range(2))
     for _ in range(20):
         plant.advance(DRAWN * 1e-3)
-    twin.restore(plant.state())
+    twin.state[:] = plant.state
     for _ in range(20):
         plant.advance(DRAWN * 1e-3)
         twin.advance(DRAWN * 1e-3)
-    assert twin.state() == plant.state()
+    assert twin.state == plant.state

@@ -9,7 +9,7 @@ that is with unity feedback; damping and velocity terms of the block count as pa
 from collections.abc import Sequence
 from dataclasses import dataclass
 
-from isa_ros.analysis.response.actuator_trace import RATE_HZ
+from isa_ros.analysis.response.actuator_trace import RATE_HZ, Trace
 from isa_ros.analysis.response.loops import CLOSED, Loop, OPEN, PLANT, Unit
 from isa_ros.analysis.response.rig import Rig
 from isa_ros.analysis.response.sweep import Answer, excitation, Sweep
@@ -53,8 +53,8 @@ def bode(rig: Rig, sweep: Sweep, of: str, amplitude: float | None = None) -> Bod
 
 
 def evaluate(
-        loop: Loop, answer: Answer, of: str, amplitude: float, trace: np.ndarray) -> Bode:
-    """Return a loop's response from the signals of one run, named as in `actuator_trace.TRACE`."""
+        loop: Loop, answer: Answer, of: str, amplitude: float, trace: Trace) -> Bode:
+    """Return a loop's response from the trace of one run."""
     reference, y = trace[f'{loop.name}_reference'], trace[loop.name]
     closed, opened, requested = (
         answer.estimate(reference, loop.input_of(which, trace), y)

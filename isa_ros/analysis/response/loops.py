@@ -14,6 +14,7 @@ from typing import Any
 
 from isa_ros.actuator.actuator import PAPER_SUPPLY
 from isa_ros.actuator.sheet import actuator_record, ActuatorSheet
+from isa_ros.analysis.response.actuator_trace import Trace
 from isa_ros.core.units import MILLI, MPA
 from isa_ros.errors import ConfigError
 from isa_ros.reu.impedance import Impedance
@@ -37,7 +38,7 @@ class Unit:
 
 @dataclass(frozen=True)
 class Loop:
-    """One loop of one actuator; signal names are fields of `actuator_trace.TRACE`."""
+    """One loop of one actuator; signals have the names of a `Trace`."""
 
     name: str
     label: str                  # the name, but torque for the force loop of a rotary actuator
@@ -51,7 +52,7 @@ class Loop:
     amplitude: float            # default amplitude of the excitation, SI
     largest: float              # largest sensible amplitude, SI
 
-    def input_of(self, of: str, trace: np.ndarray) -> np.ndarray:
+    def input_of(self, of: str, trace: Trace) -> np.ndarray:
         """
         Return the input of the response ``of`` closed, plant or open loop, shape (n,).
 
@@ -61,7 +62,7 @@ class Loop:
             The loop is closed inside the plant's equations, so that there is no Y/U.
 
         """
-        reference: np.ndarray = trace[f'{self.name}_reference']
+        reference = trace[f'{self.name}_reference']
         if of == OPEN:
             error: np.ndarray = reference - trace[self.name]
             return error
@@ -71,8 +72,7 @@ class Loop:
             raise ConfigError(
                 f'--of plant: the {self.name} loop is closed inside the plant model, it has '
                 'no output; valid: closed, open')
-        inward: np.ndarray = trace[self.inward]
-        return inward
+        return trace[self.inward]
 
     def response_unit(self, of: str) -> Unit:
         """Return the unit of a response, output over input."""

@@ -7,7 +7,7 @@ import math
 from isa_ros.actuator.actuator import PAPER_SUPPLY
 from isa_ros.actuator.group import ActuatorGroup, Records
 from isa_ros.actuator.sheet import ActuatorSheet, refuse_wiring
-from isa_ros.analysis.response.actuator_trace import RATE_HZ, setpoints, TIMING, traced
+from isa_ros.analysis.response.actuator_trace import RATE_HZ, setpoints, TIMING, Trace, traced
 from isa_ros.analysis.response.loops import Loop, loop_of, Unit, units_of
 from isa_ros.config.catalogue import actuator_model, model_names
 from isa_ros.config.default_actuator import default_load, DEFAULT_TIMING
@@ -104,9 +104,9 @@ class Rig:
 
     def excite(
             self, actuator: ActuatorGroup, values: np.ndarray,
-            rates: np.ndarray | None = None) -> np.ndarray:
+            rates: np.ndarray | None = None) -> Trace:
         """
-        Excite the loop by ``values`` around its offset, SI; return the `TRACE`.
+        Excite the loop by ``values`` around its offset, SI; return the trace.
 
         ``rates`` are theirs: a position moves its velocity along, as a scenario's does.
         """

@@ -2,7 +2,7 @@
 
 from dataclasses import dataclass
 
-from isa_ros.analysis.response.actuator_trace import RATE_HZ
+from isa_ros.analysis.response.actuator_trace import RATE_HZ, Trace
 from isa_ros.analysis.response.loops import Loop
 from isa_ros.analysis.response.rig import Rig
 from isa_ros.analysis.signals.step_response import step_figures, StepFigures
@@ -57,10 +57,11 @@ def check_duration(duration: float) -> None:
 
 
 def evaluate(
-        loop: Loop, trace: np.ndarray, before: int, start: float, amplitude: float,
+        loop: Loop, trace: Trace, before: int, start: float, amplitude: float,
         rate: float) -> Step:
-    """Return a step from ``start`` at row ``before`` of signals named as in `TRACE`."""
-    t, output = (np.arange(len(trace)) - before) / rate, trace[loop.name]
+    """Return a step from ``start`` at row ``before`` of a trace."""
+    output = trace[loop.name]
+    t = (np.arange(len(output)) - before) / rate
     return Step(
         loop, amplitude, t, trace[f'{loop.name}_reference'], output,
         None if loop.inward is None else trace[loop.inward],

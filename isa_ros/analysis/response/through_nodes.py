@@ -13,14 +13,15 @@ import sys
 from tempfile import TemporaryDirectory
 
 from isa_ros.analysis.response import bode as bodes, step as steps
-from isa_ros.analysis.response.actuator_trace import TRACE
+from isa_ros.analysis.response.actuator_trace import Trace
 from isa_ros.analysis.response.loops import Loop, PLANT
 from isa_ros.analysis.response.rig import REST_S, Rig
 from isa_ros.analysis.response.sweep import Answer, chirp_band, sections, Sweep, windows
-from isa_ros.analysis.signals.signals import read_signals, Signals
+from isa_ros.analysis.signals.signals import read_signals
 from isa_ros.config.run_config import RunConfig
 from isa_ros.config.sections import as_tree
 from isa_ros.config.yaml_text import dump, Tree
+from isa_ros.core.signals import SAMPLE_UNITS
 from isa_ros.core.timebase import NS_PER_SECOND
 from isa_ros.core.units import MILLI
 from isa_ros.errors import ConfigError
@@ -32,7 +33,8 @@ from isa_ros.surroundings.supply import SupplySheet
 import numpy as np
 
 RECORDED = ('position_reference', 'force_reference', 'spool_reference', 'current_reference')
-"""The references that nodes record."""
+UNRECORDED = ('pressure_reference', 'drive')
+"""The references that nodes record, and those that they do not."""
 
 
 def bode(
@@ -57,8 +59,8 @@ def bode(
         sweep.check(rig.loop.rate_hz, f'the {rig.loop.name} loop takes its reference')
     peak = rig.amplitude(amplitude)
     points, end, answer = _excited(rig, sweep, peak, rate)
-    trace = _recorded(rig, points, end, bag)
-    return bodes.evaluate(rig.loop, answer, of, peak, trace[_rest(rig) + 1:])
+    trace = _recorded(rig, points, end, bag, first=_rest(rig) + 1)
+    return bodes.evaluate(rig.loop, answer, of, peak, trace)
 
 
 def step(rig: Rig, duration: float, amplitude: float | None, bag: Path | None) -> steps.Step:
@@ -68,11 +70,10 @@ def step(rig: Rig, duration: float, amplitude: float | None, bag: Path | None) -
     peak, tick = rig.amplitude(amplitude), rig.run.step_ns / NS_PER_SECOND
     before, after = _rest(rig), math.ceil(duration / tick)
     points = [_point(rig, 0, {}), _point(rig, before, {}, peak)]
-    trace = _recorded(rig, points, before + after, bag)
     # Row k has the setpoint of tick k - 1: the step is in the row after its tick.
     shown = round(steps.BEFORE * after)
-    return steps.evaluate(
-        rig.loop, trace[before - shown:], shown, rig.offset, peak, 1.0 / tick)
+    trace = _recorded(rig, points, before + after, bag, first=before - shown)
+    return steps.evaluate(rig.loop, trace, shown, rig.offset, peak, 1.0 / tick)
 
 
 def _refuse_unrecorded(loop: Loop, of: str) -> None:
@@ -120,8 +121,12 @@ def _excited(
     return points, tick, Answer(rate, windows(parts, rate, 0))
 
 
-def _recorded(rig: Rig, points: list[Tree], end: int, bag: Path | None) -> np.ndarray:
-    """Run a rig's actuator in processes; return its `TRACE`, a row for each tick and t = 0."""
+def _recorded(rig: Rig, points: list[Tree], end: int, bag: Path | None, first: int) -> Trace:
+    """
+    Run a rig's actuator in processes; return the recorded part of its trace, else NaN.
+
+    It has a row for the end of each tick from ``first`` on; row 0 would be t = 0.
+    """
     name = rig.config.name
     with ExitStack() as stack:
         files = Path(stack.enter_context(TemporaryDirectory(prefix='isa_')))
@@ -135,7 +140,10 @@ def _recorded(rig: Rig, points: list[Tree], end: int, bag: Path | None) -> np.nd
         run_session(
             prepare(Request(config=config, scenario=scenario, out=out)),
             terminal_report(sys.stderr))
-        return _trace(read_signals(out), name)
+        signals = read_signals(out)
+        unknown = np.full(len(signals.time) - first, math.nan)
+        return dict.fromkeys(UNRECORDED, unknown) | {
+            field: signals[f'{name}.{field}'][first:] for field in SAMPLE_UNITS}
 
 
 def run_file(run: RunConfig) -> str:
@@ -155,15 +163,3 @@ def run_file(run: RunConfig) -> str:
         'tick_timeout_s': run.tick_timeout_s,
         'supply': as_tree(run.supplies[0].sheet, SupplySheet),
         'actuators': dict(actuators)})
-
-
-def _trace(signals: Signals, name: str) -> np.ndarray:
-    """Return the signals of a bag as a `TRACE`; NaN for signals that nodes do not record."""
-    rows = np.full(len(signals.time), math.nan, TRACE)
-    for field in (*RECORDED, 'position', 'force', 'velocity', 'spool', 'current', 'pressure_a',
-                  'pressure_b'):
-        rows[field] = signals[f'{name}.{field}']
-    for field in ('position', 'force'):
-        rows[f'{field}_measured'] = rows[field]
-    rows['pressure'] = rows['pressure_a'] - rows['pressure_b']
-    return rows

@@ -137,8 +137,8 @@ def driven(sheet: ActuatorSheet, efforts: np.ndarray) -> np.ndarray:
     group = ActuatorGroup([config], replace(DEFAULT_TIMING, step_ns=PERIOD_NS))
     ports = np.zeros(1, LOAD_PORT)
     ports['supply_pressure'] = PAPER_SUPPLY
-    states: np.ndarray = group.advance_many(ports, setpoints(group, 'effort', efforts)).states
-    return states[:-1, 0]
+    log = group.advance_many(ports, setpoints(group, 'effort', efforts), with_samples=False)
+    return log.states[:-1, 0]
 
 
 def sampled_spool_loop() -> ActuatorSheet:

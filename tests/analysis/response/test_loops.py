@@ -2,7 +2,6 @@
 
 from dataclasses import replace
 
-from isa_ros.analysis.response.actuator_trace import TRACE
 from isa_ros.analysis.response.loops import loop_of, outermost, rating
 from isa_ros.errors import ConfigError
 from isa_ros.reu.wiring import active, Off, VARIABLES
@@ -60,8 +59,8 @@ def test_without_an_impedance_the_rating_is_the_hydraulic_stall():
 
 def test_open_closed_and_plant_are_ratios_of_one_run():
     loop = loop_of(actuator_sheet('isa_v5'), 'force')
-    trace = np.zeros(2, TRACE)
-    trace['force_reference'], trace['force'], trace['spool_reference'] = 3.0, 1.0, 2e-3
+    trace = {'force_reference': np.full(2, 3.0), 'force': np.ones(2),
+             'spool_reference': np.full(2, 2e-3)}
     assert list(loop.input_of('closed', trace)) == [3.0, 3.0]
     assert list(loop.input_of('open', trace)) == [2.0, 2.0]
     assert list(loop.input_of('plant', trace)) == [2e-3, 2e-3]
@@ -72,7 +71,7 @@ def test_open_closed_and_plant_are_ratios_of_one_run():
 def test_a_current_loop_closed_in_the_plant_has_no_plant():
     loop = loop_of(actuator_sheet('isa_v5'), 'current')
     with pytest.raises(ConfigError, match='--of plant: the current loop is closed inside'):
-        loop.input_of('plant', np.zeros(2, TRACE))
+        loop.input_of('plant', {'current_reference': np.zeros(2)})
 
 
 def test_nothing_changes_the_sheet_that_is_given():
