@@ -8,7 +8,7 @@ from collections.abc import Iterator, Mapping
 from pathlib import Path
 from typing import NamedTuple
 
-from isa_ros.analysis.signals.traces import read_traces, Trace
+from isa_ros.analysis.signals.traces import read_traces, seconds, Trace
 from isa_ros.config.run_config import RunConfig
 from isa_ros.core.signals import SAMPLE_UNITS
 from isa_ros.errors import BagError
@@ -109,10 +109,11 @@ class Signals(Mapping[str, Values]):
 
 
 def signals_of(result: Result) -> Signals:
-    """Return the signals of a run in memory."""
+    """Return the signals of a run in memory, over the times that its bag has, bit for bit."""
+    run = result.scenario.run
+    time = seconds(np.arange(len(result.time)) * run.step_ns)
     return Signals(
-        result.scenario.run, {name: Signal(result.time, result[name]) for name in result},
-        result.time, result.scenario.name)
+        run, {name: Signal(time, result[name]) for name in result}, time, result.scenario.name)
 
 
 def read_signals(bag: Path) -> Signals:

@@ -56,9 +56,14 @@ def read_traces(path: Path) -> tuple[RunConfig, dict[str, Trace]]:
         times.setdefault(message.topic, []).append(message.t_ns)
         messages.setdefault(message.topic, []).append(message.data)
     return RunConfig.from_yaml(bag.provenance.configuration), _Topics(path, {
-        topic: Trace(np.array(times[topic]) * 1e-9,
+        topic: Trace(seconds(np.array(times[topic])),
                      columns(messages[topic], bag.types[topic], f'{path}: {topic}'))
         for topic in times})
+
+
+def seconds(t_ns: np.ndarray) -> np.ndarray:
+    """Return integer nanoseconds as the seconds of a trace, (n,)."""
+    return t_ns * 1e-9
 
 
 def columns(messages: Sequence[bytes], type_name: str, where: str) -> np.ndarray:

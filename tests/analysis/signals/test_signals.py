@@ -38,8 +38,10 @@ def test_a_bag_has_the_signals_of_the_result(drop: Result, bag: Path) -> None:
         else:
             assert np.array_equal(read[name], in_memory[name]), name
         assert read.unit(name) == in_memory.unit(name) == drop.units[name]
+        assert np.array_equal(read.over_time(name).t, in_memory.over_time(name).t)
     # ns times 1e-9 against ns over 1e9: 1e-9, product and quotient are rounded, by at most
     # 2^-53 of 0.05 s each
+    assert np.array_equal(read.time, in_memory.time)
     assert read.time == pytest.approx(drop.time, rel=0.0, abs=2e-17)
     assert len(read) == len(list(read)) and read.run.to_yaml() == drop.scenario.run.to_yaml()
 
