@@ -44,6 +44,10 @@ class Setpoint(NamedTuple):
     """None leaves the actuator enabled or disabled, as it is."""
 
 
+_GAINS = ('stiffness', 'damping')
+_NUMBERS = ('position', 'velocity', 'effort', *_GAINS)
+
+
 class Controller:
     """Base of a user's controller; override `step`, and the other methods as needed."""
 
@@ -84,20 +88,31 @@ def fill_requests(
         if name not in names:
             raise SetpointError(
                 f'{name!r} is not an actuator of the run; valid: {", ".join(names)}')
-        numbers = [math.nan if value is None else value for value in setpoint[:5]]
-        for field, value, given in zip(Setpoint._fields, numbers, setpoint):
-            if given is not None and not math.isfinite(value):
-                raise SetpointError(f'{name}: setpoint {field} = {value}, must be finite')
-            if field in ('stiffness', 'damping') and value < 0.0:
-                raise SetpointError(f'{name}: setpoint {field} = {value}, must be >= 0')
-        kinds = HAS_SETPOINT if setpoint.is_enabled is None else HAS_SETPOINT | HAS_ENABLE
-        requests[names.index(name)] = (kinds, bool(setpoint.is_enabled), *numbers)
+        position, velocity, effort, stiffness, damping, is_enabled = setpoint
+        if not (math.isfinite(position) and math.isfinite(velocity) and math.isfinite(effort)
+                and (stiffness is None or 0.0 <= stiffness < math.inf)
+                and (damping is None or 0.0 <= damping < math.inf)):
+            raise _refusal(name, setpoint)
+        requests[names.index(name)] = (
+            HAS_SETPOINT if is_enabled is None else HAS_SETPOINT | HAS_ENABLE, bool(is_enabled),
+            position, velocity, effort, math.nan if stiffness is None else stiffness,
+            math.nan if damping is None else damping)
+
+
+def _refusal(name: str, setpoint: Setpoint) -> SetpointError:
+    """Return the error of the first value that is invalid."""
+    field, value = next(
+        (field, value) for field, value in zip(_NUMBERS, setpoint) if value is not None
+        and not (math.isfinite(value) and (value >= 0.0 or field not in _GAINS)))
+    bound = '>= 0' if math.isfinite(value) else 'finite'
+    return SetpointError(f'{name}: setpoint {field} = {value}, must be {bound}')
 
 
 def merge_requests(requests: NDArray[np.void], into: NDArray[np.void]) -> None:
     """Overwrite rows of ``into`` with those `COMMAND` rows of a controller that hold a command."""
-    given = np.flatnonzero(requests['kinds'])
-    into[given] = requests[given]
+    for row, kinds in enumerate(requests['kinds'].tolist()):
+        if kinds:
+            into[row] = requests[row]
 
 
 def by_name(names: Sequence[str], rows: NDArray[np.void]) -> dict[str, np.record]:
