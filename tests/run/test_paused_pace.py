@@ -1,27 +1,13 @@
-"""A run that was paused goes on at its pace: the time it stood still is not made up for."""
+"""A paused run continues at its pace: it does not catch up on the time of the pause."""
 
 from isa_ros.run.coordinator import Coordinator
 from isa_ros.run.pacing import Pace
 import pytest
 from tests.run.test_coordinator import Rig
+from tests.run.test_pacing import Host
 
 PAUSE_S = 60.0
 N = 8
-
-
-class Host:
-    """A clock that sleeping moves, and a pause of a minute."""
-
-    def __init__(self) -> None:
-        self.now = 100.0
-        self.naps: list[float] = []
-
-    def time(self) -> float:
-        return self.now
-
-    def sleep(self, seconds: float) -> None:
-        self.naps.append(seconds)
-        self.now += seconds
 
 
 def test_the_ticks_after_a_pause_are_as_far_apart_as_before():
