@@ -3,12 +3,14 @@
 from contextlib import suppress
 
 from isa_ros.actuator.actuator import SmartActuator
+from isa_ros.bag.message_chunk import Chunk, Layouts
 from isa_ros.config.run_config import RunConfig
 from isa_ros.errors import SimulationDiverged
 from isa_ros.run.local_run import shown
 from isa_ros.run.narrator import packer_of
 from isa_ros.scenario.scenario import idle
 from isa_ros.simulation import Simulation
+import numpy as np
 
 
 def warmed_up(run: RunConfig) -> list[SmartActuator]:
@@ -20,5 +22,7 @@ def warmed_up(run: RunConfig) -> list[SmartActuator]:
     simulation = Simulation(idle(run))
     with suppress(SimulationDiverged):
         simulation.step()
-    packer_of(run, shown(simulation)).pack(0, 0, {})
+    packer = packer_of(run, shown(simulation))
+    packer.pack(0, 0, {})
+    Chunk(b'', Layouts(), np.empty(0, np.uint8)).add(0, 0, packer.all_messages())
     return simulation.group.actuators

@@ -95,7 +95,9 @@ def test_an_actuator_that_diverges_is_named_with_state_and_time(domain, tmp_path
     with bringup(bag, '--scenario', str(scenario), config=config) as run:
         assert run.exit_code() == 4
     last = assert_replays(bag)
-    line, = run.errors.splitlines()
+    lines = run.errors.splitlines()
+    assert len(lines) == 1, lines
+    line = lines[0]
     assert line.startswith('isa: ram: plant.')
     assert line.endswith(
         f' at t = {(last + 1) * 1e-3:.6f} s, must be finite: the simulation diverged')
