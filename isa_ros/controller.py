@@ -89,23 +89,16 @@ def fill_requests(
             raise SetpointError(
                 f'{name!r} is not an actuator of the run; valid: {", ".join(names)}')
         position, velocity, effort, stiffness, damping, is_enabled = setpoint
-        if not (math.isfinite(position) and math.isfinite(velocity) and math.isfinite(effort)
-                and (stiffness is None or 0.0 <= stiffness < math.inf)
-                and (damping is None or 0.0 <= damping < math.inf)):
-            raise _refusal(name, setpoint)
+        for field, value in zip(_NUMBERS, setpoint):
+            if value is None and field in _GAINS:
+                continue
+            if not (math.isfinite(value) and (value >= 0.0 or field not in _GAINS)):
+                bound = '>= 0' if math.isfinite(value) else 'finite'
+                raise SetpointError(f'{name}: setpoint {field} = {value}, must be {bound}')
         requests[names.index(name)] = (
             HAS_SETPOINT if is_enabled is None else HAS_SETPOINT | HAS_ENABLE, bool(is_enabled),
             position, velocity, effort, math.nan if stiffness is None else stiffness,
             math.nan if damping is None else damping)
-
-
-def _refusal(name: str, setpoint: Setpoint) -> SetpointError:
-    """Return the error of the first value that is invalid."""
-    field, value = next(
-        (field, value) for field, value in zip(_NUMBERS, setpoint) if value is not None
-        and not (math.isfinite(value) and (value >= 0.0 or field not in _GAINS)))
-    bound = '>= 0' if math.isfinite(value) else 'finite'
-    return SetpointError(f'{name}: setpoint {field} = {value}, must be {bound}')
 
 
 def merge_requests(requests: NDArray[np.void], into: NDArray[np.void]) -> None:
