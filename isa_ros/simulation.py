@@ -15,14 +15,11 @@ from isa_ros.config.assembly import group_of, surroundings_of
 from isa_ros.controller import (
     by_name, Controller, ControllerSeat, fill_requests, merge_requests, Setpoint, State)
 from isa_ros.core.saved_state import RunState
-from isa_ros.core.signals import COMMAND, LOAD_PORT
+from isa_ros.core.signals import COMMAND, LOAD_PORT, Records
 from isa_ros.core.timebase import NS_PER_SECOND
 from isa_ros.errors import ConfigError
 from isa_ros.scenario.scenario import Scenario
 import numpy as np
-from numpy.typing import NDArray
-
-Records = NDArray[np.void]
 
 _SNAPSHOT = 'snapshot'
 

@@ -8,14 +8,10 @@ from isa_ros.actuator import kernel as kernels
 from isa_ros.actuator.actuator import ActuatorConfig, SmartActuator, Timing
 from isa_ros.actuator.rows import memory_of, row_of
 from isa_ros.actuator.states import STATES
-from isa_ros.core.signals import COMMAND, SAMPLE
+from isa_ros.core.signals import COMMAND, Records, SAMPLE
 from isa_ros.core.timebase import PLANT_STEP_NS
 from isa_ros.errors import ConfigError
 import numpy as np
-from numpy.typing import NDArray
-
-Records = NDArray[np.void]
-"""Rows of one of the record types of `isa_ros.core.signals`, one per actuator."""
 
 _SIZE = struct.Struct('<I')
 

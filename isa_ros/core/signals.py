@@ -9,6 +9,10 @@ Force > 0 pushes out; pressures are gauge.
 
 from isa_ros.core.timebase import FORCE_WINDOWS
 import numpy as np
+from numpy.typing import NDArray
+
+Records = NDArray[np.void]
+"""Rows of one of the record types below, one per actuator."""
 
 HAS_SETPOINT = 1
 HAS_ENABLE = 2

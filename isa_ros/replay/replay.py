@@ -13,13 +13,14 @@ from typing import NamedTuple
 from isa_ros.bag.reader import Bag
 from isa_ros.config.run_config import RunConfig
 from isa_ros.core.saved_state import RunState
+from isa_ros.core.signals import Records
 from isa_ros.errors import BagError, SetpointError
 from isa_ros.replay.compare import Comparer, Report
 from isa_ros.replay.installation import differences, refuse_obstacles, topic_differences
 from isa_ros.replay.tolerances import Tolerances
 from isa_ros.run import local_run
 from isa_ros.run.coordinator import Interrupted
-from isa_ros.run.exchange import Recorder, Records
+from isa_ros.run.exchange import Recorder
 from isa_ros.run.local_run import LocalRun
 from msg_adapters import event
 from msg_adapters.applied_parameters import tuned_values

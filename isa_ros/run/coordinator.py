@@ -11,9 +11,10 @@ from collections.abc import Callable
 from dataclasses import dataclass
 
 from isa_ros.core.saved_state import RunState
+from isa_ros.core.signals import Records
 from isa_ros.core.timebase import NS_PER_SECOND
 from isa_ros.errors import ConfigError, IsaError
-from isa_ros.run.exchange import Records, Rows, Transport
+from isa_ros.run.exchange import Rows, Transport
 from isa_ros.run.narrator import Narrator
 from isa_ros.run.pacing import BEFORE_TICKS, Laps, Pace, ProgressMeter
 from isa_ros.surroundings.surroundings import Surroundings

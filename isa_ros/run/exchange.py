@@ -3,14 +3,11 @@
 from collections.abc import Mapping, Sequence
 from typing import Protocol
 
-from isa_ros.core.signals import COMMAND, LOAD_PORT, LOAD_REPLY, SAMPLE
+from isa_ros.core.signals import COMMAND, LOAD_PORT, LOAD_REPLY, Records, SAMPLE
 from isa_ros.run.packing import Shown
 from isa_ros.surroundings.surroundings import Surroundings
 import numpy as np
 from numpy.typing import NDArray
-
-Records = NDArray[np.void]
-"""Rows of one of the record types of `isa_ros.core.signals`, one per actuator."""
 
 Floats = NDArray[np.float64]
 

@@ -6,9 +6,9 @@ from typing import NamedTuple
 
 from isa_ros.config.run_config import RunConfig
 from isa_ros.core.saved_state import RunState
-from isa_ros.core.signals import COMMAND
+from isa_ros.core.signals import COMMAND, Records
 from isa_ros.run.coordinator import Interrupted
-from isa_ros.run.exchange import Recorder, Records
+from isa_ros.run.exchange import Recorder
 from isa_ros.run.narrator import Narrator, topics_of
 from isa_ros.run.packing import Shown
 from isa_ros.run.thinning import Thinning

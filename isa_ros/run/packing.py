@@ -10,7 +10,7 @@ from typing import NamedTuple
 
 from isa_ros.bag.packed import Layout, layout, Packed
 from isa_ros.core.kernel import kernel
-from isa_ros.core.signals import COMMAND, SAMPLE
+from isa_ros.core.signals import COMMAND, Records, SAMPLE
 from isa_ros.core.topic import Topic
 from isa_ros.surroundings.supply import SUPPLY_SAMPLE
 from msg_adapters import actuator_messages, clock, event, fluid_pressure
@@ -18,9 +18,7 @@ from msg_adapters.actuator_messages import STATE_TOPICS, TOPICS
 from msg_adapters.applied_parameters import applied_parameters
 from msg_adapters.template import FIRST_VALUE, Prepared, Template, time_word
 import numpy as np
-from numpy.typing import NDArray
 
-Records = NDArray[np.void]
 Messages = Sequence[bytes | None]
 """Serialised messages of one source in the order of its topics; None: no message at this tick."""
 

@@ -15,9 +15,9 @@ import json
 import struct
 from typing import NamedTuple
 
-from isa_ros.core.signals import COMMAND, LOAD_PORT, LOAD_REPLY, SAMPLE, START
+from isa_ros.core.signals import COMMAND, LOAD_PORT, LOAD_REPLY, Records, SAMPLE, START
 from isa_ros.errors import RunError
-from isa_ros.run.exchange import Records, Rows
+from isa_ros.run.exchange import Rows
 from isa_ros.run.packing import Shown
 from isa_ros.surroundings.supply import SUPPLY_SAMPLE
 import numpy as np

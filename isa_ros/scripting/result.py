@@ -5,12 +5,12 @@ from functools import cached_property
 from pathlib import Path
 from typing import Any, NamedTuple
 
-from isa_ros.core.signals import SAMPLE, SAMPLE_UNITS
+from isa_ros.core.signals import Records, SAMPLE, SAMPLE_UNITS
 from isa_ros.core.suggest import alternatives
 from isa_ros.core.timebase import NS_PER_SECOND
 from isa_ros.errors import AnalysisError
 from isa_ros.scenario.scenario import Scenario
-from isa_ros.simulation import Records, Simulation
+from isa_ros.simulation import Simulation
 from isa_ros.surroundings.supply import SUPPLY_UNITS
 from isa_ros.text.progress import Progress
 import numpy as np

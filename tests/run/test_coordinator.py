@@ -4,10 +4,10 @@ from collections.abc import Callable, Sequence
 import itertools
 
 from isa_ros.core.saved_state import RunState
-from isa_ros.core.signals import HAS_SETPOINT
+from isa_ros.core.signals import HAS_SETPOINT, Records
 from isa_ros.errors import ConfigError, RunError, SimulationDiverged
 from isa_ros.run.coordinator import Coordinator, Interrupted, Plan
-from isa_ros.run.exchange import Records, Rows
+from isa_ros.run.exchange import Rows
 from isa_ros.run.narrator import Narrator, Outlets, topics_of
 from isa_ros.run.pacing import Pace, ProgressMeter
 from isa_ros.run.packing import Messages

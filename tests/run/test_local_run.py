@@ -3,9 +3,8 @@
 from dataclasses import replace
 
 from isa_ros.config.recording import RecordConfig
-from isa_ros.core.signals import HAS_SETPOINT
+from isa_ros.core.signals import HAS_SETPOINT, Records
 from isa_ros.run.coordinator import Interrupted
-from isa_ros.run.exchange import Records
 from isa_ros.run.local_run import Inputs, LocalRun
 from msg_adapters import event
 from msg_adapters.applied_parameters import tuned_values

@@ -7,8 +7,7 @@ from pathlib import Path
 from isa_ros.config.run_config import RunConfig
 from isa_ros.config.run_file import load_run
 from isa_ros.core.saved_state import RunState
-from isa_ros.core.signals import COMMAND, HAS_SETPOINT
-from isa_ros.run.exchange import Records
+from isa_ros.core.signals import COMMAND, HAS_SETPOINT, Records
 from isa_ros.run.local_run import Inputs, LocalRun
 from isa_ros.scenario.scenario import idle
 from isa_ros.simulation import Simulation

@@ -6,8 +6,7 @@ from functools import cache
 from pathlib import Path
 
 from isa_ros.config.run_file import load_run
-from isa_ros.core.signals import HAS_SETPOINT
-from isa_ros.run.exchange import Records
+from isa_ros.core.signals import HAS_SETPOINT, Records
 from isa_ros.run.local_run import Inputs, LocalRun
 from isa_ros.surroundings import supply
 from msg_adapters.cdr_reader import decode

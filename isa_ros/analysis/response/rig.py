@@ -5,7 +5,7 @@ from dataclasses import dataclass, replace
 import math
 
 from isa_ros.actuator.actuator import PAPER_SUPPLY
-from isa_ros.actuator.group import ActuatorGroup, Records
+from isa_ros.actuator.group import ActuatorGroup
 from isa_ros.actuator.sheet import ActuatorSheet, refuse_wiring
 from isa_ros.analysis.response.actuator_trace import RATE_HZ, setpoints, TIMING, Trace, traced
 from isa_ros.analysis.response.loops import Loop, loop_of, Unit, units_of
@@ -17,7 +17,7 @@ from isa_ros.config.run_config import ActuatorConfig, RunConfig
 from isa_ros.config.run_file import load_run
 from isa_ros.config.sections import build, kind_of, Place
 from isa_ros.config.supplies import SUPPLY, SupplyConfig
-from isa_ros.core.signals import LOAD_PORT, START
+from isa_ros.core.signals import LOAD_PORT, Records, START
 from isa_ros.core.units import MPA
 from isa_ros.errors import ConfigError
 from isa_ros.loads.sheets import LocalLoad, static_force

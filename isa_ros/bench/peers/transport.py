@@ -14,9 +14,10 @@ from isa_ros.bench.peers.link import Link
 from isa_ros.bench.peers.worker import load_kernels
 from isa_ros.config.assembly import surroundings_of
 from isa_ros.config.run_config import RunConfig
+from isa_ros.core.signals import Records
 from isa_ros.errors import RunError
 from isa_ros.processes.stopping import PARENT_VARIABLE, StopRequest
-from isa_ros.run.exchange import Records, Rows
+from isa_ros.run.exchange import Rows
 from isa_ros.run.narrator import Outlets
 from isa_ros.run.session import record, Report, Session
 from isa_ros.run.wire import (

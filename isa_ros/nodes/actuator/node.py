@@ -5,7 +5,7 @@ from typing import Any, NamedTuple
 
 from isa_ros.actuator.actuator import ActuatorConfig, participant_digest, SmartActuator, Timing
 from isa_ros.actuator.tunable import tunables
-from isa_ros.core.signals import COMMAND, HAS_ENABLE
+from isa_ros.core.signals import COMMAND, HAS_ENABLE, Records
 from isa_ros.errors import SetpointError
 from isa_ros.nodes.actuator.parameters import TunableParameters
 from isa_ros.nodes.actuator.setpoint_publishers import IncompatiblePublishers
@@ -13,7 +13,6 @@ from isa_ros.nodes.middleware.publishers import PreparedPublishers
 from isa_ros.nodes.middleware.qos import SETPOINT
 from isa_ros.nodes.middleware.refusals import refusals
 from isa_ros.nodes.middleware.servers import open_server
-from isa_ros.run.exchange import Records
 from isa_ros.run.packing import Names, Packer, Shown
 from isa_ros.surroundings.supply import SUPPLY_SAMPLE
 from msg_adapters.actuator_messages import TOPICS

@@ -3,7 +3,7 @@
 from collections.abc import Sequence
 from typing import NamedTuple
 
-from isa_ros.run.exchange import Records
+from isa_ros.core.signals import Records
 from isa_ros.run.wire import Cast
 
 

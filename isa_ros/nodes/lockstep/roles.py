@@ -10,7 +10,7 @@ from collections.abc import Mapping, Sequence
 from typing import Protocol
 
 from isa_ros.controller import by_name, Controller, ControllerSeat, State
-from isa_ros.run.exchange import Records
+from isa_ros.core.signals import Records
 from isa_ros.run.wire import actuator_parts, Cast, Step
 import numpy as np
 
