@@ -90,8 +90,10 @@ def fill_requests(
                 f'{name!r} is not an actuator of the run; valid: {", ".join(names)}')
         position, velocity, effort, stiffness, damping, is_enabled = setpoint
         for field, value in zip(_NUMBERS, setpoint):
-            if value is None and field in _GAINS:
-                continue
+            if value is None:
+                if field in _GAINS:
+                    continue
+                value = math.nan
             if not (math.isfinite(value) and (value >= 0.0 or field not in _GAINS)):
                 bound = '>= 0' if math.isfinite(value) else 'finite'
                 raise SetpointError(f'{name}: setpoint {field} = {value}, must be {bound}')
