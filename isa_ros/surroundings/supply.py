@@ -9,8 +9,8 @@ Neglected: length and resistance of the pressure line, heat, air in the tank.
 """
 
 from dataclasses import dataclass, field
-import math
 
+from isa_ros.core.elementary import exp, log
 from isa_ros.core.kernel import kernel
 from isa_ros.core.parameter import parameter, Parameters
 from isa_ros.core.units import LPM, MPA
@@ -128,7 +128,7 @@ def capacitance(pressure, supply):
     absolute = pressure + ATMOSPHERE
     if absolute <= supply.p_0:
         return supply.c_line
-    gas = supply.v_0 * math.exp(math.log(supply.p_0 / absolute) / supply.n)
+    gas = supply.v_0 * exp(log(supply.p_0 / absolute) / supply.n)
     return gas / (supply.n * absolute) + supply.c_line
 
 
