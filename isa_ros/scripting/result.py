@@ -8,6 +8,7 @@ from typing import Any, NamedTuple
 from isa_ros.core.signals import Records, SAMPLE, SAMPLE_UNITS
 from isa_ros.core.suggest import alternatives
 from isa_ros.core.timebase import NS_PER_SECOND
+from isa_ros.core.units import of_coordinate
 from isa_ros.errors import AnalysisError
 from isa_ros.scenario.scenario import Scenario
 from isa_ros.simulation import Simulation
@@ -56,9 +57,8 @@ class Result(Mapping[str, NDArray[np.float64]]):
 
     def _units(self, body_units: Mapping[str, str]) -> Iterator[tuple[str, str]]:
         for actuator in self.scenario.run.actuators:
-            kind = 1 if actuator.sheet.is_rotary else 0
             for field, unit in SAMPLE_UNITS.items():
-                yield f'{actuator.name}.{field}', unit.split(' | ')[kind if ' | ' in unit else 0]
+                yield f'{actuator.name}.{field}', of_coordinate(unit, actuator.sheet.is_rotary)
         for supply in self.scenario.run.supplies:
             for field, unit in SUPPLY_UNITS.items():
                 yield f'{supply.name}.{field}', unit
