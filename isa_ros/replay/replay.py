@@ -15,7 +15,8 @@ from isa_ros.config.run_config import RunConfig
 from isa_ros.core.saved_state import RunState
 from isa_ros.core.signals import Records
 from isa_ros.errors import BagError, SetpointError
-from isa_ros.replay.compare import Comparer, Report
+from isa_ros.replay.compare import Comparer
+from isa_ros.replay.difference import Report
 from isa_ros.replay.installation import differences, refuse_obstacles, topic_differences
 from isa_ros.replay.tolerances import Tolerances
 from isa_ros.run import local_run
