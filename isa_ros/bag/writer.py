@@ -16,6 +16,7 @@ from pathlib import Path
 import time
 from types import TracebackType
 
+from isa_ros.bag.directory import make_directory
 from isa_ros.bag.message_chunk import Chunk
 from isa_ros.bag.metadata import FILE_NAME, metadata_yaml
 from isa_ros.bag.part_writer import Head, PartWriter
@@ -35,13 +36,14 @@ class BagWriter:
     Writer of one bag.
 
     ``topics`` are sorted by name; a topic's index is its position. The directory must not exist,
-    except that with ``overwrite`` it may contain a bag: then only that bag is removed. ``path``
-    is the first file.
+    except that with ``overwrite`` it may contain a bag, which is replaced as described in
+    `isa_ros.bag.directory`. ``path`` is the first file.
 
     Raises
     ------
     BagError
-        the directory already exists or cannot be created, or topics are not sorted.
+        the directory already exists, is not replaced or cannot be created, or topics are not
+        sorted.
     RunError
         the bag cannot be written, naming the file.
 
@@ -60,7 +62,7 @@ class BagWriter:
         self._metadata_path = directory / FILE_NAME
         self._stem = directory.resolve().name
         self.path = self._path(0)
-        _make_directory(directory, overwrite)
+        make_directory(directory, overwrite)
         self._parts: list[PartWriter] = []
         self._is_full = False
         self._is_closed = False
@@ -193,24 +195,3 @@ def _check_sorted(topics: Sequence[Topic]) -> None:
     names = [topic.name for topic in topics]
     if names != sorted(set(names)):
         raise BagError(f'topics = {", ".join(names)}, must be sorted by name, each once')
-
-
-def _make_directory(directory: Path, overwrite: bool) -> None:
-    try:
-        if overwrite and directory.exists():
-            _remove_bag(directory)
-        directory.mkdir(parents=True, exist_ok=overwrite)
-    except FileExistsError:
-        raise BagError(f'{directory} already exists; overwrite replaces the bag in it') from None
-    except OSError as error:
-        raise BagError(f'{directory}: cannot be created, {error.strerror}') from None
-
-
-def _remove_bag(directory: Path) -> None:
-    """Remove the bag in a directory: only its metadata.yaml and MCAP files."""
-    if directory.is_dir() and not any(directory.iterdir()):
-        return
-    if not (directory / FILE_NAME).is_file():
-        raise BagError(f'{directory} is not a bag (no {FILE_NAME}), so it is not overwritten')
-    for path in [*sorted(directory.glob('*.mcap')), directory / FILE_NAME]:
-        path.unlink()

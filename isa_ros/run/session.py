@@ -6,7 +6,7 @@ from itertools import count
 import os
 from pathlib import Path
 
-from isa_ros.bag.metadata import FILE_NAME
+from isa_ros.bag.directory import files_to_replace
 from isa_ros.bag.provenance import installed_versions, provenance_of
 from isa_ros.bag.writer import BagWriter
 from isa_ros.config.assembly import surroundings_of
@@ -103,12 +103,7 @@ def _unused(directory: Path) -> Path:
 
 
 def _check_output(out: Path, overwrite: bool) -> None:
-    if out.exists():
-        if not out.is_dir() or (any(out.iterdir()) and not (out / FILE_NAME).is_file()):
-            raise BagError(
-                f'{out} exists and is not a bag (no {FILE_NAME}), so it is not overwritten')
-        if not overwrite:
-            raise BagError(f'{out} already exists; --overwrite replaces the bag in it')
+    files_to_replace(out, overwrite)
     parent = next(path for path in [out, *out.absolute().parents] if path.exists())
     if not parent.is_dir() or not os.access(parent, os.W_OK | os.X_OK):
         raise BagError(f'{out}: cannot be created, {parent} is not writable')
