@@ -85,7 +85,8 @@ class BagWriter:
         Raises
         ------
         RunError
-            the bag cannot be written; the messages in it stay readable.
+            the bag cannot be written, or a file of it was removed, moved or truncated by others;
+            the messages in it stay readable.
 
         """
         if self._error is not None:
@@ -111,7 +112,7 @@ class BagWriter:
         Raises
         ------
         RunError
-            the bag cannot be written; it stays readable like that of a killed run.
+            as `write_tick`; the bag stays readable like that of a killed run.
 
         """
         if self._is_closed:
@@ -122,6 +123,7 @@ class BagWriter:
             self._end_writing()
             part.finish(is_last=True)
             self._write_metadata()
+            self._check_parts()
         except OSError as error:
             raise self._failure(error, part.path) from error
         finally:
@@ -163,11 +165,17 @@ class BagWriter:
             self._end_writing()
             self._parts[-1].finish(is_last=False)
             self._parts[-1].close()
+            self._check_parts()
         number = len(self._parts)
         self._parts.append(PartWriter(
             self._path(number), number, self._head, self._storage.compression))
         self._is_full = False
         self._write_metadata()
+
+    def _check_parts(self) -> None:
+        """Raise OSError if a file, also an earlier one, is no longer as it was written."""
+        for part in self._parts:
+            part.check()
 
     def _path(self, number: int) -> Path:
         return self._metadata_path.with_name(f'{self._stem}_{number}.mcap')
