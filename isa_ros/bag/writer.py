@@ -22,6 +22,7 @@ from isa_ros.bag.metadata import FILE_NAME, metadata_yaml
 from isa_ros.bag.part_writer import Head, PartWriter
 from isa_ros.bag.provenance import Provenance
 from isa_ros.config.recording import PLAIN, Storage
+from isa_ros.core.atomic_file import replace_file
 from isa_ros.core.topic import Topic
 from isa_ros.errors import BagError, RunError
 from msg_adapters.definitions import definition
@@ -185,11 +186,7 @@ class BagWriter:
         text = metadata_yaml(
             [(part.path.name, part.counts) for part in self._parts], self._head.topics,
             self._head.custom)
-        temporary = self._metadata_path.with_suffix('.yaml.tmp')
-        temporary.unlink(missing_ok=True)  # never write through an existing link
-        with temporary.open('x', encoding='utf-8') as file:
-            file.write(text)
-        temporary.replace(self._metadata_path)
+        replace_file(self._metadata_path, text.encode(), is_durable=False)
 
     def _failure(self, error: OSError, path: Path) -> RunError:
         self._error = RunError(

@@ -12,10 +12,10 @@ from isa_ros.bag.writer import BagWriter
 from isa_ros.config.assembly import surroundings_of
 from isa_ros.config.run_config import RunConfig
 from isa_ros.config.run_file import load_run
-from isa_ros.core.saved_state import read_state, RunState
+from isa_ros.core.saved_state import read_state, RunState, write_state
 from isa_ros.core.timebase import NS_PER_SECOND
 from isa_ros.core.topic import Topic
-from isa_ros.errors import BagError, ConfigError, RunError
+from isa_ros.errors import BagError, ConfigError
 from isa_ros.run.coordinator import Coordinator, Plan, Requests
 from isa_ros.run.exchange import Rows, Transport
 from isa_ros.run.narrator import Narrator, Outlets, packer_of, topics_of
@@ -131,7 +131,7 @@ def record(
         surroundings.restore(beginning)
         out, state = _unused(session.out), None
     if session.request.save is not None:
-        write_state(session, coordinator, session.request.save)
+        save(session, coordinator, session.request.save)
 
 
 def _record_one(
@@ -163,25 +163,23 @@ def _record_one(
     return coordinator
 
 
-def write_state(session: Session, coordinator: Coordinator, path: Path) -> None:
+def save(session: Session, coordinator: Coordinator, path: Path) -> None:
     """
-    Write the state of a run between two ticks to a file.
+    Save the state of a run between two ticks in a file.
 
     Raises
     ------
     RunError
         The file cannot be written, or a participant cannot be saved.
+    SimulationDiverged
+        A number of the state is not finite.
 
     """
-    text = coordinator.save().to_json(session.run.digest, installed_versions())
-    try:
-        path.write_text(text, encoding='utf-8')
-    except OSError as error:
-        raise RunError(f'{path}: cannot save, {error.strerror}') from error
+    write_state(path, coordinator.save().to_json(session.run.digest, installed_versions()))
 
 
 def save_in_bag(session: Session, coordinator: Coordinator) -> str:
     """Save the state of a run beside the messages of its bag and return the path."""
     path = session.bags[-1] / f'state_{coordinator.ticks}.json'
-    write_state(session, coordinator, path)
+    save(session, coordinator, path)
     return str(path)
