@@ -15,7 +15,9 @@ from isa_ros.config.recording import read_record, RecordConfig
 from isa_ros.config.sections import Place
 from isa_ros.config.yaml_text import parse
 from isa_ros.core.timebase import NS_PER_SECOND
+from isa_ros.errors import BagError
 from isa_ros.replay.tolerances import Tolerances
+from msg_adapters.cdr import CdrError, encode, Message
 from msg_adapters.cdr_reader import decode, flatten, message_class
 
 ABSENT = 'absent'
@@ -74,23 +76,27 @@ class Comparer:
     ``compares``, called with topic and tick, is false are ignored on both sides. After the
     first difference nothing more is compared.
 
+    ``is_exact`` also compares what is in no field: sequence numbers, padding, and bytes after the
+    last field. Middlewares leave padding uninitialised, so it is for bags of this package only.
+
     Raises
     ------
     BagError
-        The bag is damaged.
-    CdrError
-        A message does not match its type.
+        The bag is damaged, or a message does not match its type.
 
     """
 
     def __init__(
             self, expected: Bag, topics: Sequence[str],
             tolerances: Tolerances | None = None,
-            compares: Callable[[str, int], bool] = lambda topic, sequence: True) -> None:
+            compares: Callable[[str, int], bool] = lambda topic, sequence: True,
+            is_exact: bool = False) -> None:
+        self._bag = expected
         self._types = expected.types
         self._topics = list(topics)
         self._tolerances = tolerances or Tolerances()
         self._compares = compares
+        self._is_exact = is_exact
         self._expected = self._compared(expected.ticks())
         self._ticks = self._messages = 0
         self._end_ns: int | None = None
@@ -113,7 +119,7 @@ class Comparer:
             self.difference = Difference(
                 tick.sequence, tick.t_ns, 'bag', 'log_time', tick.t_ns, t_ns)
         else:
-            self.difference = self._first_difference(tick, produced)
+            self.difference = self._first_difference(tick, sequence, produced)
             self._ticks += 1
             self._messages += len(tick.messages)
             self._end_ns = t_ns
@@ -135,12 +141,19 @@ class Comparer:
                 yield tick._replace(messages=messages)
 
     def _first_difference(
-            self, tick: Tick, produced: Sequence[tuple[str, bytes]]) -> Difference | None:
+            self, tick: Tick, sequence: int,
+            produced: Sequence[tuple[str, bytes]]) -> Difference | None:
         for message, other in zip_longest(tick.messages, produced):
             if message is None or other is None or message.topic != other[0]:
                 return _absence(tick, message, other)
+            if self._is_exact and message.sequence != sequence:
+                return Difference(
+                    tick.sequence, tick.t_ns, message.topic, 'sequence', message.sequence,
+                    sequence)
             if message.data != other[1]:
                 difference = self._field_difference(tick, message, other[1])
+                if difference is None and self._is_exact:
+                    difference = self._byte_difference(tick, message, other[1])
                 if difference is not None:
                     return difference
         return None
@@ -148,12 +161,38 @@ class Comparer:
     def _field_difference(
             self, tick: Tick, message: BagMessage, data: bytes) -> Difference | None:
         cls = message_class(self._types[message.topic])
-        pairs = zip(flatten(decode(message.data, cls)), flatten(decode(data, cls)))
+        try:
+            there = decode(data, cls)
+        except CdrError as error:
+            raise BagError(
+                f'{message.topic}, tick {tick.sequence}, compared with {self._bag.path}: '
+                f'{error}') from error
+        pairs = zip(flatten(self._decoded(message)), flatten(there))
         for (field, expected), (_, actual) in pairs:
             if not self._is_equal(message.topic, field, expected, actual):
                 return Difference(
                     tick.sequence, tick.t_ns, message.topic, field, expected, actual)
         return None
+
+    def _byte_difference(
+            self, tick: Tick, message: BagMessage, data: bytes) -> Difference | None:
+        """Return the first difference of bytes whose fields are equal or within tolerances."""
+        if self._tolerances.covers(message.topic):
+            data = encode(self._decoded(message))  # its fields, without other bytes
+        if len(message.data) != len(data):
+            return Difference(tick.sequence, tick.t_ns, message.topic, 'bytes',
+                              len(message.data), len(data))
+        for k, (expected, actual) in enumerate(zip(message.data, data)):
+            if expected != actual:
+                return Difference(
+                    tick.sequence, tick.t_ns, message.topic, f'byte {k}', expected, actual)
+        return None
+
+    def _decoded(self, message: BagMessage) -> Message:
+        try:
+            return decode(message.data, message_class(self._types[message.topic]))
+        except CdrError as error:
+            raise BagError(f'{self._bag.place_of(message)}: {error}') from error
 
     def _is_equal(self, topic: str, field: str, expected: Value, actual: Value) -> bool:
         """Return whether two values of a field are equal; -0.0 and 0.0 differ."""
@@ -172,9 +211,7 @@ def compare_bags(expected: Bag, actual: Bag, tolerances: Tolerances | None = Non
     Raises
     ------
     BagError
-        A bag is damaged.
-    CdrError
-        A message does not match its type.
+        A bag is damaged, or a message does not match its type.
 
     """
     topics = sorted(actual.types)
