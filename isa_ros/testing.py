@@ -140,7 +140,7 @@ def _compared(bag: Bag, result: Result, tolerances: Tolerances | None) -> Report
     without = {event.TOPIC[0], *(difference.topic for difference in other)}
     comparer = Comparer(
         bag, [topic.name for topic in messages.topics], tolerances,
-        lambda topic, sequence: topic not in without, is_to_end=True)
+        lambda topic, sequence: topic not in without, is_exact=True, is_to_end=True)
     for difference in other:
         comparer.note(difference)
     messages.record(comparer)

@@ -1,5 +1,7 @@
 """Numpy records whose fields have names, in kernels and in plain Python alike."""
 
+from collections.abc import Collection
+
 import numpy as np
 from numpy.typing import ArrayLike
 
@@ -41,3 +43,23 @@ def record(dtype: np.dtype[np.void], /, **fields: ArrayLike) -> np.record:
                 f'{name} = {value!r}, must be a record of {", ".join(nested.names)}')
         row[name] = value
     return row
+
+
+def first_not_finite(
+        rows: np.ndarray, may_be_nan: Collection[str] = ()) -> tuple[str, float] | None:
+    """
+    Return the path and value of the first float of some rows that is not finite, None if all are.
+
+    Fields named in ``may_be_nan`` may be NaN, but not infinite.
+    """
+    for name in rows.dtype.names or ():
+        values = np.asarray(rows[name])
+        if values.dtype.names is not None:
+            broken = first_not_finite(values, may_be_nan)
+            if broken is not None:
+                return f'{name}.{broken[0]}', broken[1]
+        elif values.dtype.kind == 'f':
+            is_broken = np.isinf(values) if name in may_be_nan else ~np.isfinite(values)
+            if is_broken.any():
+                return name, float(values[is_broken][0])
+    return None

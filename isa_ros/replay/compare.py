@@ -14,7 +14,7 @@ from isa_ros.config.sections import Place
 from isa_ros.config.yaml_text import parse
 from isa_ros.replay.difference import ABSENT, BAG, Difference, PRESENT, Report, Value
 from isa_ros.replay.tolerances import Tolerances
-from isa_ros.replay.topic_comparison import Moment, TopicComparison
+from isa_ros.replay.topic_comparison import TopicComparison
 
 _BLOCK = 256    # ticks between two comparisons of the messages with unequal bytes
 
@@ -27,12 +27,13 @@ class Comparer:
     ``compares``, called with topic and tick, is false are ignored on both sides. Unless
     ``is_to_end``, nothing more is compared once `difference` is known.
 
+    ``is_exact`` also compares what is in no field: sequence numbers, padding, and bytes after the
+    last field. Middlewares leave padding uninitialised, so it is for bags of this package only.
+
     Raises
     ------
     BagError
-        The bag is damaged.
-    CdrError
-        A message does not match its type.
+        The bag is damaged, or a message does not match its type.
 
     """
 
@@ -40,12 +41,12 @@ class Comparer:
             self, expected: Bag, topics: Sequence[str],
             tolerances: Tolerances | None = None,
             compares: Callable[[str, int], bool] = lambda topic, sequence: True, *,
-            is_to_end: bool = False) -> None:
-        self._types = expected.types
+            is_exact: bool = False, is_to_end: bool = False) -> None:
+        self._bag = expected
         self._names = list(topics)
         self._tolerances = tolerances or Tolerances()
         self._compares = compares
-        self._is_to_end = is_to_end
+        self._is_exact, self._is_to_end = is_exact, is_to_end
         self._expected = self._compared(expected.ticks())
         self._next = next(self._expected, None)
         self._topics: dict[str, TopicComparison] = {}
@@ -72,7 +73,7 @@ class Comparer:
         elif self._next.t_ns > t_ns:
             self._miss_tick(self._next, 'log_time', self._next.t_ns, t_ns)
         else:
-            self._compare_tick(self._next, actual)
+            self._compare_tick(self._next, sequence, actual)
             self._next = next(self._expected, None)
         self._in_block += 1
         if self._in_block >= _BLOCK or (BAG in self._topics and self.difference is None):
@@ -103,13 +104,14 @@ class Comparer:
     def _topic(self, name: str) -> TopicComparison:
         if name not in self._topics:
             self._topics[name] = TopicComparison(
-                name, self._types.get(name, ''), self._tolerances)
+                self._bag, name, self._tolerances, self._is_exact)
         return self._topics[name]
 
     def _miss_tick(self, tick: Tick, field: str, expected: Value, actual: Value) -> None:
         self.note(Difference(tick.sequence, tick.t_ns, BAG, field, expected, actual))
 
-    def _compare_tick(self, tick: Tick, actual: Sequence[tuple[str, bytes]]) -> None:
+    def _compare_tick(
+            self, tick: Tick, sequence: int, actual: Sequence[tuple[str, bytes]]) -> None:
         """Compare the messages of one instant, both sides sorted by topic."""
         i, j, expected = 0, 0, tick.messages
         while i < len(expected) or j < len(actual):
@@ -120,7 +122,7 @@ class Comparer:
                 self._miss_message(tick, actual[j][0], ABSENT, PRESENT)
                 j += 1
             else:
-                self._compare_messages(tick, expected[i], actual[j][1])
+                self._compare_messages(expected[i], sequence, actual[j][1])
                 i, j = i + 1, j + 1
         self._ticks += 1
         self._messages += len(expected)
@@ -129,9 +131,12 @@ class Comparer:
     def _miss_message(self, tick: Tick, topic: str, expected: str, actual: str) -> None:
         self.note(Difference(tick.sequence, tick.t_ns, topic, 'message', expected, actual))
 
-    def _compare_messages(self, tick: Tick, message: BagMessage, data: bytes) -> None:
-        if message.data != data:
-            self._topic(message.topic).add(Moment(tick.sequence, tick.t_ns), message.data, data)
+    def _compare_messages(self, message: BagMessage, sequence: int, data: bytes) -> None:
+        if self._is_exact and message.sequence != sequence:
+            self.note(Difference(message.sequence, message.t_ns, message.topic, 'sequence',
+                                 message.sequence, sequence))
+        elif message.data != data:
+            self._topic(message.topic).add(message, data)
 
     def _compare_block(self) -> None:
         """Compare the messages with unequal bytes, and find the first difference."""
@@ -161,9 +166,7 @@ def compare_bags(expected: Bag, actual: Bag, tolerances: Tolerances | None = Non
     Raises
     ------
     BagError
-        A bag is damaged.
-    CdrError
-        A message does not match its type.
+        A bag is damaged, or a message does not match its type.
 
     """
     topics = sorted(actual.types)

@@ -60,11 +60,9 @@ def compared(expected: Bag, actual: Bag, tolerances: Tolerances | None = None) -
     Raises
     ------
     BagError
-        A bag is damaged.
+        A bag is damaged, or a message does not match its type.
     ConfigError
         The configuration or the scenario in a bag is not a YAML section.
-    CdrError
-        A message does not match its type.
 
     """
     return Comparison(

@@ -49,6 +49,10 @@ class Tolerances:
         exact = self._by_field.get((topic, field))
         return exact or self._by_field.get((topic, _INDEX.sub('', field)))
 
+    def covers(self, topic: str) -> bool:
+        """Return whether a field of a topic has a tolerance."""
+        return any(own == topic for own, _ in self._by_field)
+
 
 def load_tolerances(path: Path, types: Mapping[str, str]) -> Tolerances:
     """

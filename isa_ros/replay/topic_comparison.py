@@ -7,11 +7,13 @@ that differ in more than numbers one by one.
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import Any, NamedTuple
+from typing import Any
 
+from isa_ros.bag.reader import Bag, BagMessage
+from isa_ros.errors import BagError
 from isa_ros.replay.difference import Deviation, Difference, TopicDifference
 from isa_ros.replay.tolerances import Tolerances
-from msg_adapters.cdr import Message
+from msg_adapters.cdr import CdrError, encode, Message
 from msg_adapters.cdr_reader import decode, flatten, message_class
 from msg_adapters.columns import number_columns
 import numpy as np
@@ -20,13 +22,6 @@ from numpy.typing import NDArray
 Floats = NDArray[np.float64]
 Pairs = dict[str, tuple[NDArray[Any], NDArray[Any]]]
 """Expected and actual values by field, (n,) each."""
-
-
-class Moment(NamedTuple):
-    """A tick and its time."""
-
-    tick: int
-    t_ns: int
 
 
 @dataclass
@@ -43,25 +38,26 @@ class _Worst:
 
 class TopicComparison:
     """
-    Compares pairs of messages of one topic; floats by their tolerance, all else exactly.
+    Compares messages of a bag with others of their topic; floats by tolerance, all else exactly.
 
-    Without a tolerance -0.0 and 0.0 differ; a NaN equals every NaN.
+    Without a tolerance -0.0 and 0.0 differ; a NaN equals every NaN. ``is_exact`` also compares
+    bytes that are in no field.
     """
 
-    def __init__(self, topic: str, type_name: str, tolerances: Tolerances) -> None:
+    def __init__(
+            self, bag: Bag, topic: str, tolerances: Tolerances, is_exact: bool = False) -> None:
         self.topic = topic
         self.first: Difference | None = None
-        self._type_name = type_name
+        self._bag = bag
         self._tolerances = tolerances
-        self._moments: list[Moment] = []
-        self._expected: list[bytes] = []
+        self._is_exact = is_exact
+        self._expected: list[BagMessage] = []
         self._actual: list[bytes] = []
         self._worst: dict[str, _Worst] = {}
         self._n_messages = 0
 
-    def add(self, moment: Moment, expected: bytes, actual: bytes) -> None:
+    def add(self, expected: BagMessage, actual: bytes) -> None:
         """Store two messages with unequal bytes for the next call of `compare`."""
-        self._moments.append(moment)
         self._expected.append(expected)
         self._actual.append(actual)
 
@@ -77,24 +73,32 @@ class TopicComparison:
 
         Raises
         ------
-        CdrError
-            A message does not match its type.
+        BagError
+            A message does not match its type; the error has its place in the bag.
 
         """
-        if not self._moments:
+        if not self._expected:
             return
-        moments, expected, actual = self._moments, self._expected, self._actual
-        self._moments, self._expected, self._actual = [], [], []
-        cls = message_class(self._type_name)
-        numbers = number_columns([*expected, *actual], cls)
+        messages, others = self._expected, self._actual
+        self._expected, self._actual = [], []
+        cls = message_class(self._bag.types[self.topic])
+        try:
+            numbers = number_columns([*(message.data for message in messages), *others], cls)
+        except CdrError:
+            numbers = None  # the message is decoded again below, with its place
         if numbers is not None:
-            n = len(moments)
-            self._compare_columns(moments, {
-                field: (numbers[field][:n], numbers[field][n:])
-                for field in numbers.dtype.names or ()})
+            n, names = len(messages), numbers.dtype.names or ()
+            # Only numbers differ, so a topic with tolerances has no other bytes to compare.
+            self._compare_columns(
+                messages, others,
+                {field: (numbers[field][:n], numbers[field][n:]) for field in names},
+                self._is_exact and not self._tolerances.covers(self.topic))
             return
-        for moment, one, other in zip(moments, expected, actual):
-            self._compare_columns([moment], _decoded(one, other, cls))
+        for message, other in zip(messages, others):
+            self._compare_columns(
+                [message], [other], _fields(self._decoded(message, cls),
+                                            self._decoded_other(message, other, cls)),
+                self._is_exact)
 
     @property
     def difference(self) -> TopicDifference | None:
@@ -107,21 +111,25 @@ class TopicComparison:
             None if largest is None else largest.deviation)
 
     def _compare_columns(
-            self, moments: Sequence[Moment], pairs: Pairs) -> None:
+            self, messages: Sequence[BagMessage], others: Sequence[bytes], pairs: Pairs,
+            compares_bytes: bool) -> None:
         """Compare the fields of messages, in wire order; every column is (n,)."""
-        first_of: list[str | None] = [None] * len(moments)
+        first_of: list[str | None] = [None] * len(messages)
         for field, (expected, actual) in pairs.items():
-            differs = (self._differing_floats(moments, field, expected, actual)
+            differs = (self._differing_floats(messages, field, expected, actual)
                        if expected.dtype.kind == 'f' else expected != actual)
             for k in np.flatnonzero(differs).tolist():
                 first_of[k] = first_of[k] or field
-        for moment, place, k in zip(moments, first_of, range(len(moments))):
+        for k, (message, other) in enumerate(zip(messages, others)):
+            place = first_of[k]
             if place is not None:
-                expected, actual = (column[k:k + 1].tolist()[0] for column in pairs[place])
-                self.note(Difference(*moment, self.topic, place, expected, actual))
+                values = [column[k:k + 1].tolist()[0] for column in pairs[place]]
+                self._note(message, place, *values)
+            elif compares_bytes:
+                self._compare_bytes(message, other)
 
     def _differing_floats(
-            self, moments: Sequence[Moment], field: str, expected: NDArray[Any],
+            self, messages: Sequence[BagMessage], field: str, expected: NDArray[Any],
             actual: NDArray[Any]) -> NDArray[np.bool_]:
         """Return where two columns differ, and keep their largest deviation."""
         one, other = expected.astype(np.float64), actual.astype(np.float64)
@@ -135,10 +143,27 @@ class TopicComparison:
             distance[~np.isfinite(distance)] = np.inf
             k = int(np.argmax(np.where(differs, distance, -1.0)))
             self._keep(Deviation(
-                *moments[k], field, float(one[k]), float(other[k]),
+                messages[k].sequence, messages[k].t_ns, field, float(one[k]), float(other[k]),
                 None if tolerance is None else float(tolerance.bound(one)[k])),
                 magnitude=_largest(one, other))
         return differs
+
+    def _compare_bytes(self, message: BagMessage, data: bytes) -> None:
+        """Find the first difference of bytes whose fields are equal or within tolerances."""
+        if self._tolerances.covers(self.topic):
+            cls = message_class(self._bag.types[self.topic])
+            data = encode(self._decoded(message, cls))  # its fields, without other bytes
+        if len(message.data) != len(data):
+            self._note(message, 'bytes', len(message.data), len(data))
+            return
+        for k, (expected, actual) in enumerate(zip(message.data, data)):
+            if expected != actual:
+                self._note(message, f'byte {k}', expected, actual)
+                return
+
+    def _note(self, message: BagMessage, field: str, expected: Any, actual: Any) -> None:
+        self.note(Difference(
+            message.sequence, message.t_ns, self.topic, field, expected, actual))
 
     def _keep(self, deviation: Deviation, magnitude: float) -> None:
         known = self._worst.get(deviation.field)
@@ -149,12 +174,25 @@ class TopicComparison:
         if deviation.size > known.deviation.size:
             known.deviation = deviation
 
+    def _decoded(self, message: BagMessage, cls: type[Message]) -> Message:
+        try:
+            return decode(message.data, cls)
+        except CdrError as error:
+            raise BagError(f'{self._bag.place_of(message)}: {error}') from error
 
-def _decoded(one: bytes, other: bytes, cls: type[Message]) -> Pairs:
+    def _decoded_other(
+            self, message: BagMessage, other: bytes, cls: type[Message]) -> Message:
+        try:
+            return decode(other, cls)
+        except CdrError as error:
+            raise BagError(f'{self.topic}, tick {message.sequence}, compared with '
+                           f'{self._bag.path}: {error}') from error
+
+
+def _fields(one: Message, other: Message) -> Pairs:
     """Return the fields of two messages as columns of one row, up to an unequal non-float."""
     pairs: Pairs = {}
-    for (field, expected), (_, actual) in zip(
-            flatten(decode(one, cls)), flatten(decode(other, cls))):
+    for (field, expected), (_, actual) in zip(flatten(one), flatten(other)):
         dtype = np.float64 if isinstance(expected, float) else object
         pairs[field] = np.array([expected], dtype), np.array([actual], dtype)
         if dtype is object and expected != actual:
@@ -169,7 +207,7 @@ def _is_same(one: Floats, other: Floats) -> NDArray[np.bool_]:
     return same
 
 
-def _largest(*columns_: Floats) -> float:
+def _largest(*columns: Floats) -> float:
     """Return the largest finite magnitude."""
-    return max((float(np.abs(column[np.isfinite(column)]).max(initial=0.0))
-                for column in columns_))
+    return max(float(np.abs(column[np.isfinite(column)]).max(initial=0.0))
+               for column in columns)

@@ -6,16 +6,16 @@ from itertools import count
 import os
 from pathlib import Path
 
-from isa_ros.bag.metadata import FILE_NAME
+from isa_ros.bag.directory import files_to_replace
 from isa_ros.bag.provenance import installed_versions, provenance_of
 from isa_ros.bag.writer import BagWriter
 from isa_ros.config.assembly import surroundings_of
 from isa_ros.config.run_config import RunConfig
 from isa_ros.config.run_file import load_run
-from isa_ros.core.saved_state import read_state, RunState
+from isa_ros.core.saved_state import read_state, RunState, write_state
 from isa_ros.core.timebase import NS_PER_SECOND
 from isa_ros.core.topic import Topic
-from isa_ros.errors import BagError, ConfigError, RunError
+from isa_ros.errors import BagError, ConfigError
 from isa_ros.run.coordinator import Coordinator, Plan, Requests
 from isa_ros.run.exchange import Rows, Transport
 from isa_ros.run.narrator import Narrator, Outlets, packer_of, topics_of
@@ -103,12 +103,7 @@ def _unused(directory: Path) -> Path:
 
 
 def _check_output(out: Path, overwrite: bool) -> None:
-    if out.exists():
-        if not out.is_dir() or (any(out.iterdir()) and not (out / FILE_NAME).is_file()):
-            raise BagError(
-                f'{out} exists and is not a bag (no {FILE_NAME}), so it is not overwritten')
-        if not overwrite:
-            raise BagError(f'{out} already exists; --overwrite replaces the bag in it')
+    files_to_replace(out, overwrite)
     parent = next(path for path in [out, *out.absolute().parents] if path.exists())
     if not parent.is_dir() or not os.access(parent, os.W_OK | os.X_OK):
         raise BagError(f'{out}: cannot be created, {parent} is not writable')
@@ -136,7 +131,7 @@ def record(
         surroundings.restore(beginning)
         out, state = _unused(session.out), None
     if session.request.save is not None:
-        write_state(session, coordinator, session.request.save)
+        save(session, coordinator, session.request.save)
 
 
 def _record_one(
@@ -168,25 +163,23 @@ def _record_one(
     return coordinator
 
 
-def write_state(session: Session, coordinator: Coordinator, path: Path) -> None:
+def save(session: Session, coordinator: Coordinator, path: Path) -> None:
     """
-    Write the state of a run between two ticks to a file.
+    Save the state of a run between two ticks in a file.
 
     Raises
     ------
     RunError
         The file cannot be written, or a participant cannot be saved.
+    SimulationDiverged
+        A number of the state is not finite.
 
     """
-    text = coordinator.save().to_json(session.run.digest, installed_versions())
-    try:
-        path.write_text(text, encoding='utf-8')
-    except OSError as error:
-        raise RunError(f'{path}: cannot save, {error.strerror}') from error
+    write_state(path, coordinator.save().to_json(session.run.digest, installed_versions()))
 
 
 def save_in_bag(session: Session, coordinator: Coordinator) -> str:
     """Save the state of a run beside the messages of its bag and return the path."""
     path = session.bags[-1] / f'state_{coordinator.ticks}.json'
-    write_state(session, coordinator, path)
+    save(session, coordinator, path)
     return str(path)

@@ -12,28 +12,7 @@ from msg_adapters.joint_state import joint_state
 import numpy as np
 import pytest
 from tests.bag.recorded import NAMES, PROVENANCE, record, STEP_NS, tick_messages, TOPICS
-
-N = 20
-
-
-@pytest.fixture(scope='module')
-def bag(tmp_path_factory):
-    """Return a bag of N ticks."""
-    return Bag(record(tmp_path_factory.mktemp('recorded') / 'rig', N))
-
-
-def difference(bag, ticks, tolerances=None):
-    """Return the first difference of a bag and (t_ns, sequence, messages) of each tick."""
-    comparer = Comparer(bag, NAMES, tolerances)
-    for tick in ticks:
-        comparer.write_tick(*tick)
-    return comparer.finish().difference
-
-
-def produced(n=N, **changed):
-    """Return the ticks as a run produces them; ``changed`` applies to tick 7."""
-    return [
-        (k * STEP_NS, k, tick_messages(k, **(changed if k == 7 else {}))) for k in range(n)]
+from tests.replay.ticks import difference, N, produced
 
 
 def test_equal_runs_are_reported_with_what_was_compared(bag, tmp_path):

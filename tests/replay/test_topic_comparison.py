@@ -9,16 +9,8 @@ from isa_ros.replay.tolerances import Tolerance, Tolerances
 from msg_adapters.cdr import encode
 from msg_adapters.joint_state import joint_state, TYPE as JOINT_STATE
 import numpy as np
-import pytest
 from tests.bag.recorded import PROVENANCE, record, STEP_NS
-
-N = 20
-
-
-@pytest.fixture(scope='module')
-def bag(tmp_path_factory):
-    """Return a bag of N ticks."""
-    return Bag(record(tmp_path_factory.mktemp('recorded') / 'rig', N))
+from tests.replay.ticks import N
 
 
 def test_every_topic_has_its_first_difference_and_its_largest_deviation(bag, tmp_path):
