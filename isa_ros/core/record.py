@@ -1,9 +1,10 @@
 """Numpy records whose fields have names, in kernels and in plain Python alike."""
 
 from collections.abc import Collection
+import math
 
 import numpy as np
-from numpy.typing import ArrayLike
+from numpy.typing import ArrayLike, NDArray
 
 
 def rows_of(n: int, dtype: np.dtype[np.void]) -> np.ndarray:
@@ -43,6 +44,16 @@ def record(dtype: np.dtype[np.void], /, **fields: ArrayLike) -> np.record:
                 f'{name} = {value!r}, must be a record of {", ".join(nested.names)}')
         row[name] = value
     return row
+
+
+def floats(rows: NDArray[np.void]) -> NDArray[np.float64]:
+    """
+    Return the memory of records of floats as numbers: (n, floats of a row) for rows (n, ...).
+
+    Copying records takes a tenth of the time in this form.
+    """
+    n_floats = math.prod(rows.shape[1:]) * rows.itemsize // np.dtype(np.float64).itemsize
+    return rows.view(np.float64).reshape(len(rows), n_floats)
 
 
 def first_not_finite(
