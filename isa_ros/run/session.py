@@ -18,8 +18,9 @@ from isa_ros.core.topic import Topic
 from isa_ros.errors import BagError, ConfigError
 from isa_ros.run.coordinator import Coordinator, Plan, Requests
 from isa_ros.run.exchange import Rows, Transport
-from isa_ros.run.narrator import Narrator, Outlets, packer_of, topics_of
+from isa_ros.run.narrator import Narrator, Outlets, packer_of
 from isa_ros.run.options import Request
+from isa_ros.run.packing import Packer
 from isa_ros.run.pacing import JOINING, Laps, Pace, Progress, ProgressMeter, STARTING
 from isa_ros.run.thinning import Thinning
 from isa_ros.scenario.scenario import idle, load_scenario, Scenario
@@ -66,7 +67,7 @@ def prepare(request: Request) -> Session:
     if run.record.thins:
         rows = Rows(len(run.actuators), surroundings_of(run))
         run.record.refuse_misfits(
-            [topic.name for topic in topics_of(run, rows.shown)], run.source)
+            [topic.name for topic in packer_of(run, rows.shown).topics], run.source)
     scenario = idle(run) if request.scenario is None else load_scenario(request.scenario, run)
     if request.duration_s is not None:
         scenario = scenario.lasting(request.duration_s)
@@ -121,11 +122,12 @@ def record(
     """
     beginning, state, out = surroundings.snapshot(), session.state, session.out
     rows = Rows(len(session.run.actuators), surroundings)
-    published = outlets(packer_of(session.run, rows.shown).surroundings)
+    packer = packer_of(session.run, rows.shown)
+    published = outlets(packer.surroundings)
     while True:
         coordinator = _record_one(
-            session, out, state, transport, surroundings, rows, published, report, should_stop,
-            requests)
+            session, out, state, transport, surroundings, rows, packer, published, report,
+            should_stop, requests)
         if not coordinator.is_reset:
             break
         surroundings.restore(beginning)
@@ -136,8 +138,9 @@ def record(
 
 def _record_one(
         session: Session, out: Path, state: RunState | None, transport: Transport,
-        surroundings: Surroundings, rows: Rows, outlets: Outlets, report: Report | None,
-        should_stop: Callable[[], bool], requests: Requests | None) -> Coordinator:
+        surroundings: Surroundings, rows: Rows, packer: Packer, outlets: Outlets,
+        report: Report | None, should_stop: Callable[[], bool],
+        requests: Requests | None) -> Coordinator:
     """Run once, to the end or to a reset, and return the coordinator."""
     run, n_ticks = session.run, session.scenario.n_ticks
     plan = Plan(
@@ -148,7 +151,7 @@ def _record_one(
     rows.requests['kinds'] = 0
     transport.join(rows)
     laps.lap(JOINING)
-    thinning = Thinning(run.record, topics_of(run, rows.shown))
+    thinning = Thinning(run.record, packer.topics)
     # Only the first bag may replace one: a reset uses a directory that does not exist.
     overwrite = session.request.overwrite and not session.bags
     with BagWriter(out, thinning.topics, provenance_of(session.scenario, state), overwrite,
@@ -156,7 +159,7 @@ def _record_one(
         session.bags.append(out)
         coordinator = Coordinator(
             plan, transport, surroundings,
-            Narrator(run, rows.shown, thinning.recorder(bag), outlets), pace=session.pace,
+            Narrator(packer, run.step_ns, thinning.recorder(bag), outlets), pace=session.pace,
             progress=ProgressMeter(None if n_ticks is None else n_ticks * run.step_ns, report),
             should_stop=should_stop, requests=requests, laps=session.request.laps)
         coordinator.run(state)

@@ -7,7 +7,7 @@ from isa_ros.bag.writer import BagWriter
 from isa_ros.core.signals import COMMAND
 from isa_ros.core.topic import Topic
 from isa_ros.run.exchange import Recorder
-from isa_ros.run.narrator import Narrator, topics_of
+from isa_ros.run.narrator import Narrator, packer_of
 from isa_ros.run.packing import Shown
 from isa_ros.run.thinning import Thinning
 from isa_ros.scripting.result import Result
@@ -32,14 +32,15 @@ class ResultMessages:
         self._shown = Shown(
             log.samples[0].copy(), np.zeros(len(run.actuators), COMMAND), log.supplies[0].copy(),
             None if log.body is None else log.body[:1].copy())
-        self._thinning = Thinning(run.record, topics_of(run, self._shown))
+        self._packer = packer_of(run, self._shown)
+        self._thinning = Thinning(run.record, self._packer.topics)
         self.topics: tuple[Topic, ...] = tuple(self._thinning.topics)
 
     def record(self, recorder: Recorder) -> None:
         """Pass every sample to a recorder."""
         log, shown = self._result.log, self._shown
         narrator = Narrator(
-            self._result.scenario.run, shown, self._thinning.recorder(recorder))
+            self._packer, self._result.scenario.run.step_ns, self._thinning.recorder(recorder))
         for tick in range(len(log.samples)):
             shown.samples[:] = log.samples[tick]
             shown.supplies[:] = log.supplies[tick]
