@@ -20,8 +20,8 @@ from isa_ros.run.coordinator import Coordinator, Plan, Requests
 from isa_ros.run.exchange import Rows, Transport
 from isa_ros.run.narrator import Narrator, Outlets, packer_of
 from isa_ros.run.options import Request
-from isa_ros.run.packing import Packer
 from isa_ros.run.pacing import JOINING, Laps, Pace, Progress, ProgressMeter, STARTING
+from isa_ros.run.packing import Packer
 from isa_ros.run.thinning import Thinning
 from isa_ros.scenario.scenario import idle, load_scenario, Scenario
 from isa_ros.surroundings.surroundings import Surroundings
