@@ -112,7 +112,7 @@ def assert_reproduces(
     report = _compared(recorded, result, allowed)
     if not report.is_equal:
         lines = [head, *Comparison(keys, report).lines(*_NAMES)]
-        if tolerances is None and all(key.key.startswith(VERSION) for key in keys):
+        if tolerances is None and all(key.key.startswith(VERSION) for key in keys or ()):
             lines.append(_why_bits_differ('Controllers are not stored in a bag'))
         raise AssertionError('\n'.join(lines))
 

@@ -12,6 +12,7 @@ from isa_ros import testing
 from isa_ros.bag.provenance import installed_versions
 from isa_ros.bag.reader import Bag
 from isa_ros.config import catalogue
+from isa_ros.config.paths import CONFIG, find
 from isa_ros.config.yaml_text import dump
 from isa_ros.controller import Controller, Setpoint, State
 from isa_ros.errors import BagError, ConfigError, SimulationDiverged
@@ -31,7 +32,7 @@ class Project:
 
     def __init__(self, directory: Path) -> None:
         self.config, self.scenario = directory / 'my_ram.yaml', directory / 'push.yaml'
-        shutil.copy(Path(isa_ros.__file__).parents[1] / 'config' / 'rig_linear.yaml', self.config)
+        shutil.copy(find('rig_linear', CONFIG), self.config)
         self.scenario.write_text(dump(STEP))
         self.bag = self.run().simulate().save(directory / 'bag')
 

@@ -18,7 +18,8 @@ from isa_ros.text.table import aligned
 class Comparison(NamedTuple):
     """Differing keys of the provenance, and the comparison of the messages."""
 
-    keys: Sequence[DifferingKey]
+    keys: Sequence[DifferingKey] | None
+    """None: neither run has a provenance."""
     report: Report
     is_thinned: bool = False
     """Whether the bags were to record different samples; only those of both are compared."""
@@ -41,12 +42,15 @@ class Comparison(NamedTuple):
             'is_equal': self.report.is_equal,
             'ticks': self.report.ticks, 'messages': self.report.messages,
             'end_ns': self.report.end_ns,
-            'keys': [_json(key._asdict()) for key in self.keys],
+            'keys': [_json(key._asdict()) for key in self.keys or ()],
             'topics': [_json(_tree(topic)) for topic in self.report.topics]}
 
 
-def key_lines(keys: Sequence[DifferingKey], expected: str, actual: str) -> list[str]:
+def key_lines(
+        keys: Sequence[DifferingKey] | None, expected: str, actual: str) -> list[str]:
     """Return the differing keys as text; ``expected`` and ``actual`` are the runs' names."""
+    if keys is None:
+        return ['both without configuration: comparing the messages only']
     if not keys:
         return ['configuration, scenario and versions are equal']
     return ['configuration, scenario or versions differ:', *aligned(

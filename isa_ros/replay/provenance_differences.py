@@ -36,9 +36,9 @@ def records_of(provenance: Provenance, name: str) -> Records:
 
 
 def provenance_differences(
-        expected: Records | None, actual: Records | None) -> list[DifferingKey]:
+        expected: Records | None, actual: Records | None) -> list[DifferingKey] | None:
     """
-    Return the keys in which the provenance of two runs differs.
+    Return the keys in which the provenance of two runs differs, None if neither has one.
 
     Keys of the configuration come first, then those of the scenario after ``scenario.``, then
     versions and other entries of the record.
@@ -51,7 +51,7 @@ def provenance_differences(
     """
     if expected is None or actual is None:
         texts = [None if records is None else 'present' for records in (expected, actual)]
-        return [] if expected is actual else [DifferingKey('provenance', texts[0], texts[1])]
+        return None if expected is actual else [DifferingKey('provenance', texts[0], texts[1])]
     found = configuration_differences(
         expected.section(CONFIGURATION), actual.section(CONFIGURATION))
     found += [key._replace(key=f'scenario.{key.key}') for key in section_differences(

@@ -7,7 +7,8 @@ from pathlib import Path
 import isa_ros
 from isa_ros.cli.main import main
 import pytest
-from tests.bag.recorded import record
+from tests.bag.recorded import NAMES, record, tick_messages
+from tests.replay.test_compare import foreign
 
 KP = 'actuators.ram.parameters.reu.force.kp'
 STEP = {'name': 'push', 'duration_s': 0.02, 'tracks': {'ram': [
@@ -136,3 +137,17 @@ def test_a_tolerance_is_shown_beside_the_deviation_beyond_it(
     assert compare(bags, 'kp', '--tolerance', str(path)) == 1
     line = capsys.readouterr().out.splitlines()[-1].split()
     assert (line[0], line[-1]) == ('/ram/load_cell', '0.0625')
+
+
+def test_bags_of_other_recorders_have_no_configuration(
+        bags: dict[str, Path], tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    """That is no equality of configurations."""
+    valve = dict(tick_messages(0))[NAMES.index('/hip/valve')]
+    for name in ('one', 'other'):
+        foreign(tmp_path / f'{name}.mcap', ('sensor_msgs/msg/JointState', valve))
+    others = {name: tmp_path / f'{name}.mcap' for name in ('one', 'other')}
+    assert compare(others, 'other') == 0
+    assert capsys.readouterr().out.splitlines()[0] == (
+        'both without configuration: comparing the messages only')
+    assert compare({'one': bags['one'], 'other': others['other']}, 'other') == 1
+    assert capsys.readouterr().out.splitlines()[2].split() == ['provenance', 'present', 'absent']
