@@ -7,7 +7,9 @@ the million: messages (`isa_ros.bag.message_chunk`) and the entries of their ind
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
+import errno
 import io
+import os
 from pathlib import Path
 import struct
 import zlib
@@ -51,14 +53,17 @@ class McapFile:
     Append-only MCAP file: every written record is complete on disk.
 
     ``compression`` of the chunks is none, lz4 or zstd. A failed write leaves the file as it was
-    before, so that it can still be read and finished. Every method that writes raises the
-    system's OSError.
+    before, so that it can still be read and finished. Every method that writes, and `check`,
+    raises an OSError.
     """
 
     def __init__(self, path: Path, library: str, compression: str = 'none') -> None:
         self._compression = '' if compression == 'none' else compression
         self._compress = _COMPRESSORS[compression]
-        self._file = io.FileIO(path, 'x')
+        self._path = path
+        # Appending: after a truncation by others the file stays shorter than it must be.
+        self._file = io.FileIO(path, 'x', opener=_opened_to_append)
+        self._end: os.stat_result | None = None
         self._position = 0
         self._crc = 0
         self._schemas: list[Schema] = []
@@ -77,6 +82,28 @@ class McapFile:
     def size(self) -> int:
         """Return the number of bytes written."""
         return self._position
+
+    def check(self) -> None:
+        """
+        Check that the path still leads to this file, and that it holds all that was written.
+
+        A file that was removed, moved, replaced or truncated can still be written without an
+        error, but not be read again.
+        """
+        own = self._end or os.fstat(self._file.fileno())
+        try:
+            there = os.stat(self._path)
+        except (FileNotFoundError, NotADirectoryError):
+            raise self._loss('the file was removed or moved during the run') from None
+        if not os.path.samestat(own, there):
+            raise self._loss('another file took its place during the run')
+        if there.st_size != self._position:
+            raise self._loss(
+                f'the file has {there.st_size} bytes instead of the {self._position} written: '
+                'it was changed during the run')
+
+    def _loss(self, what: str) -> OSError:
+        return OSError(errno.ESTALE, what, str(self._path))
 
     def add_schema(self, name: str, encoding: str, data: bytes) -> int:
         """Register a schema; it is written to the first chunk and the summary."""
@@ -172,6 +199,8 @@ class McapFile:
 
     def close(self) -> None:
         """Close the file, finished or not, and release its memory."""
+        if not self._file.closed:
+            self._end = os.fstat(self._file.fileno())
         self._file.close()
         self._buffers.clear()
         for records in (self._schemas, self._channels, self._chunks):
@@ -220,6 +249,10 @@ class McapFile:
                 self._crc = combined(self._crc, part[1], len(part[0]))
             else:
                 self._crc = zlib.crc32(part, self._crc)
+
+
+def _opened_to_append(path: str, flags: int) -> int:
+    return os.open(path, flags | os.O_APPEND, 0o666)
 
 
 def _compressed_by_lz4(data: Bytes) -> bytes:

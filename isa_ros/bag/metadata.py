@@ -2,6 +2,7 @@
 
 from collections.abc import Mapping, Sequence
 from functools import cache
+from itertools import takewhile
 import json
 from typing import NamedTuple
 
@@ -10,7 +11,10 @@ from isa_ros.core.topic import Topic
 VERSION = 9
 FILE_NAME = 'metadata.yaml'
 ROS_DISTRO = 'jazzy'
+SIGNATURE = ('format', 'configuration.yaml.sha256')
+"""Keys of the custom data that a bag of this package has."""
 NO_START = 2**63 - 1  # rosbag2's starting time of a bag without messages
+_ROOT = 'rosbag2_bagfile_information:'
 
 
 class Counts(NamedTuple):
@@ -48,7 +52,35 @@ def metadata_yaml(
     ``files`` are (name, counts) in order of time, ``topics`` (topic, type hash).
     """
     lines = _information(files, topics, custom)
-    return '\n'.join(['rosbag2_bagfile_information:', *_indent(lines, 2), ''])
+    return '\n'.join([_ROOT, *_indent(lines, 2), ''])
+
+
+def own_files(text: str) -> list[str] | None:
+    """
+    Return the files that a metadata.yaml of this package lists; None for any other text.
+
+    Only the form that `metadata_yaml` writes is read, with the provenance of a run in it.
+    """
+    lines = text.split('\n')
+    files = _block(lines, 'relative_file_paths')
+    custom = [line.partition(': ')[0] for line in _block(lines, 'custom_data')]
+    is_own = lines[0] == _ROOT and '  storage_identifier: mcap' in lines and all(
+        _quote(key) in custom for key in SIGNATURE)
+    if not is_own or not all(line.startswith('- ') for line in files):
+        return None
+    try:
+        names = [json.loads(line.removeprefix('- ')) for line in files]
+    except ValueError:
+        return None
+    return names if all(isinstance(name, str) for name in names) else None
+
+
+def _block(lines: Sequence[str], name: str) -> list[str]:
+    """Return the lines below a key of the information, without their indentation."""
+    if f'  {name}:' not in lines:
+        return []
+    start = lines.index(f'  {name}:') + 1
+    return [line[4:] for line in takewhile(lambda line: line.startswith('    '), lines[start:])]
 
 
 def storage_metadata(custom: Mapping[str, str]) -> str:

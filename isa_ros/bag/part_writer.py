@@ -40,7 +40,7 @@ class PartWriter:
     Writer of the file with this ``number`` in a bag.
 
     A chunk ends with the tick that reaches 1 MiB, 500 ticks or half a simulated second.
-    Every method that writes raises the system's OSError.
+    Every method that writes, and `check`, raises an OSError.
     """
 
     def __init__(self, path: Path, number: int, head: Head, compression: str) -> None:
@@ -88,7 +88,8 @@ class PartWriter:
         return self._take_chunk()
 
     def write_chunk(self, chunk: Chunk) -> None:
-        """Write a chunk to the file."""
+        """Write a chunk to the file, which must be as it was left; see `McapFile.check`."""
+        self.check()
         if chunk.is_empty:
             return
         counts = self._file.add_chunk(chunk)
@@ -97,6 +98,10 @@ class PartWriter:
         self._end_ns = chunk.end_ns
         for channel, count in counts:
             self._counts[channel - 1] += count
+
+    def check(self) -> None:
+        """Raise OSError if the file was removed, moved or changed by others."""
+        self._file.check()
 
     def discard_pending(self) -> None:
         """Drop the messages of the incomplete chunk: those before them could not be written."""

@@ -15,6 +15,7 @@ from typing import NamedTuple
 
 from isa_ros.bag.part_reader import BagMessage, PartReader
 from isa_ros.bag.provenance import Provenance, RECORD
+from isa_ros.core.timebase import NS_PER_SECOND
 from isa_ros.errors import BagError
 
 __all__ = ['Bag', 'BagMessage', 'Tick']
@@ -101,6 +102,13 @@ class Bag:
         """Yield every message in order of time."""
         for part in self._parts:
             yield from part.messages()
+
+    def place_of(self, message: BagMessage) -> str:
+        """Return where a message of the bag is, for errors: its number, topic and tick."""
+        number = next(k for k, own in enumerate(self.messages(), start=1) if own == message)
+        return (
+            f'{self.path}: message {number} of {self.n_messages}, {message.topic}, tick '
+            f'{message.sequence} (t = {message.t_ns / NS_PER_SECOND:.6f} s)')
 
     def ticks(self) -> Iterator[Tick]:
         """Yield the messages of each instant together."""

@@ -16,11 +16,13 @@ from pathlib import Path
 import time
 from types import TracebackType
 
+from isa_ros.bag.directory import make_directory
 from isa_ros.bag.message_chunk import Chunk
 from isa_ros.bag.metadata import FILE_NAME, metadata_yaml
 from isa_ros.bag.part_writer import Head, PartWriter
 from isa_ros.bag.provenance import Provenance
 from isa_ros.config.recording import PLAIN, Storage
+from isa_ros.core.atomic_file import replace_file
 from isa_ros.core.topic import Topic
 from isa_ros.errors import BagError, RunError
 from msg_adapters.definitions import definition
@@ -35,13 +37,14 @@ class BagWriter:
     Writer of one bag.
 
     ``topics`` are sorted by name; a topic's index is its position. The directory must not exist,
-    except that with ``overwrite`` it may contain a bag: then only that bag is removed. ``path``
-    is the first file.
+    except that with ``overwrite`` it may contain a bag, which is replaced as described in
+    `isa_ros.bag.directory`. ``path`` is the first file.
 
     Raises
     ------
     BagError
-        the directory already exists or cannot be created, or topics are not sorted.
+        the directory already exists, is not replaced or cannot be created, or topics are not
+        sorted.
     RunError
         the bag cannot be written, naming the file.
 
@@ -60,7 +63,7 @@ class BagWriter:
         self._metadata_path = directory / FILE_NAME
         self._stem = directory.resolve().name
         self.path = self._path(0)
-        _make_directory(directory, overwrite)
+        make_directory(directory, overwrite)
         self._parts: list[PartWriter] = []
         self._is_full = False
         self._is_closed = False
@@ -83,7 +86,8 @@ class BagWriter:
         Raises
         ------
         RunError
-            the bag cannot be written; the messages in it stay readable.
+            the bag cannot be written, or a file of it was removed, moved or truncated by others;
+            the messages in it stay readable.
 
         """
         if self._error is not None:
@@ -109,7 +113,7 @@ class BagWriter:
         Raises
         ------
         RunError
-            the bag cannot be written; it stays readable like that of a killed run.
+            as `write_tick`; the bag stays readable like that of a killed run.
 
         """
         if self._is_closed:
@@ -120,6 +124,7 @@ class BagWriter:
             self._end_writing()
             part.finish(is_last=True)
             self._write_metadata()
+            self._check_parts()
         except OSError as error:
             raise self._failure(error, part.path) from error
         finally:
@@ -161,11 +166,17 @@ class BagWriter:
             self._end_writing()
             self._parts[-1].finish(is_last=False)
             self._parts[-1].close()
+            self._check_parts()
         number = len(self._parts)
         self._parts.append(PartWriter(
             self._path(number), number, self._head, self._storage.compression))
         self._is_full = False
         self._write_metadata()
+
+    def _check_parts(self) -> None:
+        """Raise OSError if a file, also an earlier one, is no longer as it was written."""
+        for part in self._parts:
+            part.check()
 
     def _path(self, number: int) -> Path:
         return self._metadata_path.with_name(f'{self._stem}_{number}.mcap')
@@ -175,11 +186,7 @@ class BagWriter:
         text = metadata_yaml(
             [(part.path.name, part.counts) for part in self._parts], self._head.topics,
             self._head.custom)
-        temporary = self._metadata_path.with_suffix('.yaml.tmp')
-        temporary.unlink(missing_ok=True)  # never write through an existing link
-        with temporary.open('x', encoding='utf-8') as file:
-            file.write(text)
-        temporary.replace(self._metadata_path)
+        replace_file(self._metadata_path, text.encode(), is_durable=False)
 
     def _failure(self, error: OSError, path: Path) -> RunError:
         self._error = RunError(
@@ -193,24 +200,3 @@ def _check_sorted(topics: Sequence[Topic]) -> None:
     names = [topic.name for topic in topics]
     if names != sorted(set(names)):
         raise BagError(f'topics = {", ".join(names)}, must be sorted by name, each once')
-
-
-def _make_directory(directory: Path, overwrite: bool) -> None:
-    try:
-        if overwrite and directory.exists():
-            _remove_bag(directory)
-        directory.mkdir(parents=True, exist_ok=overwrite)
-    except FileExistsError:
-        raise BagError(f'{directory} already exists; overwrite replaces the bag in it') from None
-    except OSError as error:
-        raise BagError(f'{directory}: cannot be created, {error.strerror}') from None
-
-
-def _remove_bag(directory: Path) -> None:
-    """Remove the bag in a directory: only its metadata.yaml and MCAP files."""
-    if directory.is_dir() and not any(directory.iterdir()):
-        return
-    if not (directory / FILE_NAME).is_file():
-        raise BagError(f'{directory} is not a bag (no {FILE_NAME}), so it is not overwritten')
-    for path in [*sorted(directory.glob('*.mcap')), directory / FILE_NAME]:
-        path.unlink()

@@ -108,6 +108,7 @@ def _compare(parser: argparse.ArgumentParser) -> None:
     shared_arguments.bag(parser, 'expected')
     shared_arguments.bag(parser, 'actual')
     _tolerance(parser)
+    shared_arguments.json_file(parser, 'every difference')
 
 
 def _tolerance(parser: argparse.ArgumentParser) -> None:
@@ -157,7 +158,8 @@ _COMMANDS = {
     'actuators': (_actuators, commands.actuators,
                   'run actuators of a configuration for a coordinator on another host'),
     'replay': (_replay, commands.replay, 'simulate the run of a bag again and compare'),
-    'compare': (_compare, commands.compare, 'find the first difference between two bags'),
+    'compare': (_compare, commands.compare,
+                'compare the configurations and the messages of two bags'),
     'report': (_report, commands.report, 'draw the figures of a bag on one page'),
     'bode': (response_arguments.bode, commands.bode,
              'measure the frequency response of a loop of an actuator'),

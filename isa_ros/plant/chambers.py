@@ -10,10 +10,11 @@ below its vapour pressure: the volume that it lacks is that of a cavity.
 from dataclasses import dataclass
 import math
 
+from isa_ros.core.atmosphere import ATMOSPHERE
 from isa_ros.core.kernel import kernel
 from isa_ros.core.parameter import parameter, Parameters
 from isa_ros.core.record import record
-from isa_ros.core.units import ATMOSPHERE, MILLI, MILLILITRE
+from isa_ros.core.units import MILLI, MILLILITRE
 from isa_ros.errors import ParameterError
 import numpy as np
 
