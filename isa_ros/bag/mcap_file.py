@@ -102,6 +102,10 @@ class McapFile:
                 f'the file has {there.st_size} bytes instead of the {self._position} written: '
                 'it was changed during the run')
 
+    def sync(self) -> None:
+        """Wait until the disk has everything written."""
+        os.fsync(self._file.fileno())
+
     def _loss(self, what: str) -> OSError:
         return OSError(errno.ESTALE, what, str(self._path))
 

@@ -103,6 +103,10 @@ class PartWriter:
         """Raise OSError if the file was removed, moved or changed by others."""
         self._file.check()
 
+    def sync(self) -> None:
+        """Wait until the disk has everything written."""
+        self._file.sync()
+
     def discard_pending(self) -> None:
         """Drop the messages of the incomplete chunk: those before them could not be written."""
         self._take_chunk()
