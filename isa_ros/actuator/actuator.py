@@ -16,7 +16,7 @@ from isa_ros.actuator.sheet import actuator_record, ActuatorSheet
 from isa_ros.actuator.tunable import GAINS
 from isa_ros.actuator.tuning import gain_after, gains_command, Tuning
 from isa_ros.core.record import first_not_finite
-from isa_ros.core.saved_state import restored_rows, time_of, TIME_BYTES
+from isa_ros.core.saved_state import restored_rows, TIME_BYTES, time_of
 from isa_ros.core.signals import COMMAND, GAINS_OF_COMMAND, HAS_ENABLE, HAS_SETPOINT, LOAD_PORT
 from isa_ros.core.timebase import FORCE_WINDOWS, PLANT_STEP_NS, steps_in
 from isa_ros.errors import ConfigError, SimulationDiverged

@@ -18,7 +18,7 @@ from types import TracebackType
 
 from isa_ros.bag.directory import make_directory
 from isa_ros.bag.message_chunk import Chunk
-from isa_ros.bag.metadata import FILE_NAME, metadata_yaml
+from isa_ros.bag.metadata import FILE_NAME, metadata_yaml, TopicEntry
 from isa_ros.bag.part_writer import Head, PartWriter
 from isa_ros.bag.provenance import Provenance
 from isa_ros.config.recording import PLAIN, Storage
@@ -58,7 +58,7 @@ class BagWriter:
         definitions = {topic.type_name: definition(topic.type_name) for topic in topics}
         self._head = Head(
             provenance.attachments(), provenance.record(),
-            [(topic, definitions[topic.type_name].type_hash) for topic in topics],
+            [TopicEntry.of(topic, definitions[topic.type_name].type_hash) for topic in topics],
             {name: text for name, (text, _) in definitions.items()})
         self._storage = storage
         self._is_synced = is_synced

@@ -11,7 +11,7 @@ from dataclasses import dataclass
 import math
 
 from isa_ros.core.record import first_not_finite, rows_of
-from isa_ros.core.saved_state import restored_rows, time_of, TIME_BYTES
+from isa_ros.core.saved_state import restored_rows, TIME_BYTES, time_of
 from isa_ros.core.timebase import FORCE_WINDOWS, NS_PER_SECOND, steps_in
 from isa_ros.errors import ConfigError, SimulationDiverged
 from isa_ros.surroundings.leg import port_kernel as kernels
