@@ -107,6 +107,14 @@ def storage_metadata(custom: Mapping[str, str]) -> str:
     return '\n'.join(_information((), (), custom))
 
 
+def has_custom(storage: str, custom: Mapping[str, str]) -> bool:
+    """Return whether a text of `storage_metadata` has exactly this custom data."""
+    lines = storage.split('\n')
+    start = lines.index('custom_data:') + 1 if 'custom_data:' in lines else len(lines)
+    return list(takewhile(lambda line: line.startswith('  '), lines[start:])) == [
+        f'  {_quote(key)}: {_quote(value)}' for key, value in custom.items()]
+
+
 def _information(
         files: Sequence[tuple[str, Counts]], topics: Sequence[TopicEntry],
         custom: Mapping[str, str]) -> list[str]:

@@ -20,6 +20,8 @@ CHUNK_TICKS = 500
 CHUNK_NS = 500_000_000
 QOS, TYPE_HASH = 'offered_qos_profiles', 'topic_type_hash'
 """Keys of a channel's metadata, as rosbag2 has them."""
+ROSBAG2, SERIALIZED = 'rosbag2', 'serialized_metadata'
+"""Name and key of the record with rosbag2's own metadata."""
 PART, CONTINUES = 'isa_ros.part', 'isa_ros.continues'
 """Names of the records of a split bag: a file's number at its head, the next one's at its end."""
 NUMBER = 'number'
@@ -131,8 +133,7 @@ class PartWriter:
         self._file.add_metadata(RECORD, head.custom)
         if self._number:
             self._file.add_metadata(PART, {NUMBER: str(self._number)})
-        self._file.add_metadata(
-            'rosbag2', {'serialized_metadata': storage_metadata(head.custom)})
+        self._file.add_metadata(ROSBAG2, {SERIALIZED: storage_metadata(head.custom)})
         types = list(head.schemas)
         for name in types:
             self._file.add_schema(name, ENCODING, head.schemas[name].encode())

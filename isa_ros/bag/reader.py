@@ -13,7 +13,9 @@ from pathlib import Path
 import re
 from typing import NamedTuple
 
+from isa_ros.bag.metadata import has_custom
 from isa_ros.bag.part_reader import BagMessage, PartReader
+from isa_ros.bag.part_writer import ROSBAG2, SERIALIZED
 from isa_ros.bag.provenance import Provenance, RECORD
 from isa_ros.core.timebase import NS_PER_SECOND
 from isa_ros.errors import BagError
@@ -91,7 +93,13 @@ class Bag:
         first = self.parts[0]
         if not self.has_provenance:
             raise BagError(f'{self.path}: has no provenance (metadata record {RECORD})')
-        return dict(first.attachments), dict(first.metadata[RECORD])
+        attachments, record = dict(first.attachments), dict(first.metadata[RECORD])
+        # Without an end a file has no checksum over this record, but a second copy of it.
+        copy = first.metadata.get(ROSBAG2, {}).get(SERIALIZED, '')
+        if not first.is_whole and not has_custom(copy, record):
+            raise BagError(
+                f'{self.path}: damaged, the records {RECORD} and {ROSBAG2} differ in provenance')
+        return attachments, record
 
     @property
     def number(self) -> str | None:

@@ -154,7 +154,7 @@ def parse_record(opcode: int, content: bytes, where: str) -> McapRecord | None:
         return None
     try:
         parsed: McapRecord = cls.read(ReadDataStream(io.BytesIO(content)))
-    except (EndOfFile, ValueError, struct.error) as error:
+    except (EndOfFile, ValueError, OverflowError, struct.error) as error:
         raise BagError(f'{where}: malformed {cls.__name__} record ({error})') from None
     return parsed
 
