@@ -74,6 +74,7 @@ def without_checksums(patch: pytest.MonkeyPatch) -> None:
 def test_a_guard_that_is_missing_is_found(
         fuzz: Callable[..., int], plant: Plant, stored: list[Stored],
         monkeypatch: pytest.MonkeyPatch) -> None:
+    """The one of the provenance is found late; the others among the first 250 cases."""
     plant(monkeypatch)
     with pytest.raises(Broken):
         fuzz(stored, CASES, 1)
