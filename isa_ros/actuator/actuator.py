@@ -15,9 +15,8 @@ from isa_ros.actuator.rows import Memory, memory_of
 from isa_ros.actuator.sheet import actuator_record, ActuatorSheet
 from isa_ros.actuator.tunable import GAINS
 from isa_ros.actuator.tuning import gain_after, gains_command, Tuning
-from isa_ros.core.record import first_not_finite
-from isa_ros.core.saved_state import restored_rows, time_of, TIME_BYTES
-from isa_ros.core.signals import COMMAND, GAINS_OF_COMMAND, HAS_ENABLE, HAS_SETPOINT, LOAD_PORT
+from isa_ros.core.saved_state import broken_number, restored_rows, TIME_BYTES, time_of
+from isa_ros.core.signals import COMMAND, HAS_ENABLE, HAS_SETPOINT, LOAD_PORT
 from isa_ros.core.timebase import FORCE_WINDOWS, PLANT_STEP_NS, steps_in
 from isa_ros.errors import ConfigError, SimulationDiverged
 from isa_ros.loads.sheets import local_port, LocalLoad, own_record, static_force
@@ -244,7 +243,7 @@ class SmartActuator:
 
         """
         for name, rows in zip(_SAVED, self._saved):
-            broken = first_not_finite(rows, GAINS_OF_COMMAND)
+            broken = broken_number(rows)
             if broken is not None:
                 raise SimulationDiverged(
                     self.t_ns, f'{self.name}.{name}: {broken[0]}', broken[1])

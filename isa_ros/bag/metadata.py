@@ -43,13 +43,28 @@ class Counts(NamedTuple):
         return self.end_ns - self.start_ns if self.total else 0
 
 
+class TopicEntry(NamedTuple):
+    """A topic as bags describe it."""
+
+    name: str
+    type_name: str
+    qos: str
+    """Offered quality of service, YAML."""
+    type_hash: str
+
+    @classmethod
+    def of(cls, topic: Topic, type_hash: str) -> 'TopicEntry':
+        """Return the entry of a topic."""
+        return cls(topic.name, topic.type_name, topic.qos.to_yaml(), type_hash)
+
+
 def metadata_yaml(
-        files: Sequence[tuple[str, Counts]], topics: Sequence[tuple[Topic, str]],
+        files: Sequence[tuple[str, Counts]], topics: Sequence[TopicEntry],
         custom: Mapping[str, str]) -> str:
     """
     Return the text of metadata.yaml.
 
-    ``files`` are (name, counts) in order of time, ``topics`` (topic, type hash).
+    ``files`` are (name, counts) in order of time.
     """
     lines = _information(files, topics, custom)
     return '\n'.join([_ROOT, *_indent(lines, 2), ''])
@@ -92,14 +107,22 @@ def storage_metadata(custom: Mapping[str, str]) -> str:
     return '\n'.join(_information((), (), custom))
 
 
+def has_custom(storage: str, custom: Mapping[str, str]) -> bool:
+    """Return whether a text of `storage_metadata` has exactly this custom data."""
+    lines = storage.split('\n')
+    start = lines.index('custom_data:') + 1 if 'custom_data:' in lines else len(lines)
+    return list(takewhile(lambda line: line.startswith('  '), lines[start:])) == [
+        f'  {_quote(key)}: {_quote(value)}' for key, value in custom.items()]
+
+
 def _information(
-        files: Sequence[tuple[str, Counts]], topics: Sequence[tuple[Topic, str]],
+        files: Sequence[tuple[str, Counts]], topics: Sequence[TopicEntry],
         custom: Mapping[str, str]) -> list[str]:
     counts = Counts.together([part for _, part in files])
     start, duration, total = _extent(counts)
     described = [
-        line for (topic, type_hash), count in zip(topics, counts.messages)
-        for line in _topic(topic, type_hash, count)]
+        line for topic, count in zip(topics, counts.messages)
+        for line in [*_topic_metadata(topic), f'  message_count: {count}']]
     return [
         f'version: {VERSION}', 'storage_identifier: mcap', *duration, *start, total,
         *_list('topics_with_message_count', described),
@@ -122,18 +145,14 @@ def _file(name: str, counts: Counts) -> list[str]:
     return _item([f'path: {_quote(name)}', *start, *duration, total])
 
 
-def _topic(topic: Topic, type_hash: str, count: int) -> list[str]:
-    return [*_topic_metadata(topic, type_hash), f'  message_count: {count}']
-
-
 @cache
-def _topic_metadata(topic: Topic, type_hash: str) -> tuple[str, ...]:
+def _topic_metadata(topic: TopicEntry) -> tuple[str, ...]:
     return tuple(_item([
         'topic_metadata:',
         *_indent([
             f'name: {topic.name}', f'type: {topic.type_name}', 'serialization_format: cdr',
-            'offered_qos_profiles:', *_indent(topic.qos.to_yaml().split('\n'), 2),
-            f'type_description_hash: {type_hash}'], 2)]))
+            'offered_qos_profiles:', *_indent(topic.qos.split('\n'), 2),
+            f'type_description_hash: {topic.type_hash}'], 2)]))
 
 
 def _list(name: str, lines: Sequence[str]) -> list[str]:

@@ -18,11 +18,11 @@ from types import TracebackType
 
 from isa_ros.bag.directory import make_directory
 from isa_ros.bag.message_chunk import Chunk
-from isa_ros.bag.metadata import FILE_NAME, metadata_yaml
+from isa_ros.bag.metadata import FILE_NAME, metadata_yaml, TopicEntry
 from isa_ros.bag.part_writer import Head, PartWriter
 from isa_ros.bag.provenance import Provenance
 from isa_ros.config.recording import PLAIN, Storage
-from isa_ros.core.atomic_file import replace_file
+from isa_ros.core.atomic_file import replace_file, sync_directory
 from isa_ros.core.topic import Topic
 from isa_ros.errors import BagError, RunError
 from msg_adapters.definitions import definition
@@ -38,7 +38,8 @@ class BagWriter:
 
     ``topics`` are sorted by name; a topic's index is its position. The directory must not exist,
     except that with ``overwrite`` it may contain a bag, which is replaced as described in
-    `isa_ros.bag.directory`. ``path`` is the first file.
+    `isa_ros.bag.directory`. ``path`` is the first file. ``is_synced``: wait at each chunk until
+    the disk has it, otherwise the system decides when it writes what a killed process has left.
 
     Raises
     ------
@@ -52,18 +53,21 @@ class BagWriter:
 
     def __init__(
             self, directory: Path, topics: Sequence[Topic], provenance: Provenance,
-            overwrite: bool = False, storage: Storage = PLAIN) -> None:
+            overwrite: bool = False, storage: Storage = PLAIN, is_synced: bool = False) -> None:
         _check_sorted(topics)
         definitions = {topic.type_name: definition(topic.type_name) for topic in topics}
         self._head = Head(
             provenance.attachments(), provenance.record(),
-            [(topic, definitions[topic.type_name].type_hash) for topic in topics],
+            [TopicEntry.of(topic, definitions[topic.type_name].type_hash) for topic in topics],
             {name: text for name, (text, _) in definitions.items()})
         self._storage = storage
+        self._is_synced = is_synced
         self._metadata_path = directory / FILE_NAME
         self._stem = directory.resolve().name
         self.path = self._path(0)
         make_directory(directory, overwrite)
+        if is_synced:
+            sync_directory(directory.parent)
         self._parts: list[PartWriter] = []
         self._is_full = False
         self._is_closed = False
@@ -122,7 +126,7 @@ class BagWriter:
         part = self._parts[-1]
         try:
             self._end_writing()
-            part.finish(is_last=True)
+            self._finish(part, is_last=True)
             self._write_metadata()
             self._check_parts()
         except OSError as error:
@@ -140,6 +144,8 @@ class BagWriter:
     def _write(self, part: PartWriter, chunk: Chunk) -> None:
         """Write a chunk, and metadata.yaml when it is due; runs in the thread."""
         part.write_chunk(chunk)
+        if self._is_synced:
+            part.sync()
         split = self._storage.split_bytes
         self._is_full = split is not None and part.size >= split
         now = time.monotonic()
@@ -164,14 +170,21 @@ class BagWriter:
         """Finish the current file, if there is one, and begin the next."""
         if self._parts:
             self._end_writing()
-            self._parts[-1].finish(is_last=False)
+            self._finish(self._parts[-1], is_last=False)
             self._parts[-1].close()
             self._check_parts()
         number = len(self._parts)
         self._parts.append(PartWriter(
             self._path(number), number, self._head, self._storage.compression))
         self._is_full = False
+        if self._is_synced:
+            self._parts[-1].sync()
         self._write_metadata()
+
+    def _finish(self, part: PartWriter, is_last: bool) -> None:
+        part.finish(is_last)
+        if self._is_synced:
+            part.sync()
 
     def _check_parts(self) -> None:
         """Raise OSError if a file, also an earlier one, is no longer as it was written."""
@@ -186,7 +199,7 @@ class BagWriter:
         text = metadata_yaml(
             [(part.path.name, part.counts) for part in self._parts], self._head.topics,
             self._head.custom)
-        replace_file(self._metadata_path, text.encode(), is_durable=False)
+        replace_file(self._metadata_path, text.encode(), is_durable=self._is_synced)
 
     def _failure(self, error: OSError, path: Path) -> RunError:
         self._error = RunError(

@@ -81,6 +81,13 @@ def replay(options: Namespace) -> bool:
     return report.is_equal
 
 
+def recover(options: Namespace) -> bool:
+    """Complete a bag that was cut short."""
+    from isa_ros.bag.recovery import recover as recover_bag
+    print(recover_bag(options.bag, options.out, options.in_place))
+    return True
+
+
 def compare(options: Namespace) -> bool:
     """Compare the configurations and the messages of two bags."""
     from isa_ros.bag.reader import Bag

@@ -2,6 +2,7 @@
 
 from collections.abc import Collection
 import math
+from functools import cache
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -61,12 +62,14 @@ def first_not_finite(
     """
     Return the path and value of the first float of some rows that is not finite, None if all are.
 
-    Fields named in ``may_be_nan`` may be NaN, but not infinite.
+    Fields named in ``may_be_nan``, which are not nested, may be NaN, but not infinite.
     """
+    if _is_all_floats(rows.dtype) and np.isfinite(rows.view(np.float64)).all():
+        return None
     for name in rows.dtype.names or ():
         values = np.asarray(rows[name])
         if values.dtype.names is not None:
-            broken = first_not_finite(values, may_be_nan)
+            broken = first_not_finite(values.copy())
             if broken is not None:
                 return f'{name}.{broken[0]}', broken[1]
         elif values.dtype.kind == 'f':
@@ -74,3 +77,11 @@ def first_not_finite(
             if is_broken.any():
                 return name, float(values[is_broken][0])
     return None
+
+
+@cache
+def _is_all_floats(dtype: np.dtype[np.void]) -> bool:
+    """Return whether a record is the memory of floats and of nothing else."""
+    if dtype.names is None:
+        return dtype.base == np.float64
+    return all(_is_all_floats(dtype[name]) for name in dtype.names)

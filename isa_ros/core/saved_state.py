@@ -60,7 +60,7 @@ class RunState:
 
         """
         if self.requests:
-            broken = first_not_finite(np.frombuffer(self.requests, COMMAND), GAINS_OF_COMMAND)
+            broken = broken_number(np.frombuffer(self.requests, COMMAND))
             if broken is not None:
                 raise RunError(
                     f'requests: {broken[0]} = {broken[1]}, must be finite to be saved')
@@ -107,6 +107,11 @@ class RunState:
             raise ConfigError(f'{where}: is no saved state of a run ({error})') from error
 
 
+def broken_number(rows: Records) -> tuple[str, float] | None:
+    """Return field and value of a number in a state that is not finite; None: all may be saved."""
+    return first_not_finite(rows, GAINS_OF_COMMAND if rows.dtype == COMMAND else ())
+
+
 def restored_rows(
         snapshot: bytes, dtype: np.dtype[np.void], n: int, offset: int, owner: str) -> Records:
     """
@@ -119,7 +124,7 @@ def restored_rows(
 
     """
     rows: Records = np.frombuffer(snapshot, dtype, n, offset)
-    broken = first_not_finite(rows, GAINS_OF_COMMAND)
+    broken = broken_number(rows)
     if broken is not None:
         raise ConfigError(
             f'{owner}: saved state has {broken[0]} = {broken[1]}, must be finite')

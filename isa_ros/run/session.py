@@ -155,7 +155,7 @@ def _record_one(
     # Only the first bag may replace one: a reset uses a directory that does not exist.
     overwrite = session.request.overwrite and not session.bags
     with BagWriter(out, thinning.topics, provenance_of(session.scenario, state), overwrite,
-                   run.record.storage) as bag:
+                   run.record.storage, session.request.is_synced) as bag:
         session.bags.append(out)
         coordinator = Coordinator(
             plan, transport, surroundings,

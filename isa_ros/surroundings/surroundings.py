@@ -8,8 +8,7 @@ configuration; `isa_ros.config.assembly` makes them from a run.
 from collections.abc import Sequence
 from typing import NamedTuple
 
-from isa_ros.core.record import first_not_finite
-from isa_ros.core.saved_state import restored_rows
+from isa_ros.core.saved_state import broken_number, restored_rows
 from isa_ros.errors import ConfigError, RunError
 from isa_ros.surroundings.body import Body, Records
 from isa_ros.surroundings.supply import Supply, SUPPLY_SAMPLE, SupplySheet
@@ -106,7 +105,7 @@ class Surroundings:
 
         """
         for k, feed in enumerate(self.feeds):
-            broken = first_not_finite(self.supplies[k:k + 1])
+            broken = broken_number(self.supplies[k:k + 1])
             if broken is not None:
                 raise RunError(
                     f'{feed.name}: {broken[0]} = {broken[1]}, must be finite to be saved')

@@ -10,6 +10,7 @@ from tests.sheets import setpoint, smart_actuator
 
 BROKEN = pytest.mark.parametrize(('path', 'value'), [
     ('body.plant.chambers.p_a', np.nan), ('reu.force.integral', -np.inf), ('port.x0', np.nan),
+    ('port.stiffness', np.nan), ('reu.setpoint.damping', np.nan),
     ('pending.position', np.nan), ('pending.stiffness', np.inf), ('applied.effort', np.nan),
     ('reply.mean_forces', np.inf), ('sample.force', np.nan)])
 ROWS = {'body': 'bodies', 'reu': 'reu', 'port': 'ports', 'pending': 'pending',
@@ -49,7 +50,7 @@ def test_a_number_that_is_not_finite_is_not_read(
     actuator, twin = moving(), moving()
     field = broken_at(actuator, path, value)
     with monkeypatch.context() as unguarded:
-        unguarded.setattr('isa_ros.actuator.actuator.first_not_finite', lambda *given: None)
+        unguarded.setattr('isa_ros.actuator.actuator.broken_number', lambda *given: None)
         snapshot = actuator.snapshot()
     before = twin.snapshot()
     with pytest.raises(ConfigError) as refused:

@@ -10,8 +10,8 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 import math
 
-from isa_ros.core.record import first_not_finite, rows_of
-from isa_ros.core.saved_state import restored_rows, time_of, TIME_BYTES
+from isa_ros.core.record import rows_of
+from isa_ros.core.saved_state import broken_number, restored_rows, TIME_BYTES, time_of
 from isa_ros.core.timebase import FORCE_WINDOWS, NS_PER_SECOND, steps_in
 from isa_ros.errors import ConfigError, SimulationDiverged
 from isa_ros.surroundings.leg import port_kernel as kernels
@@ -173,7 +173,7 @@ class Leg:
 
         """
         for rows in (self._state, self._sample):
-            broken = first_not_finite(rows)
+            broken = broken_number(rows)
             if broken is not None:
                 raise SimulationDiverged(self._t_ns, f'leg.{broken[0]}', broken[1])
         return (self._t_ns.to_bytes(TIME_BYTES, 'little') + self._state.tobytes()
