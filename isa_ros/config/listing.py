@@ -126,6 +126,8 @@ def _load_tables(model: Model) -> Iterator[str]:
 
 
 def _value(value: Any) -> str:
+    if isinstance(value, tuple):
+        return ', '.join(_value(one) for one in value)
     return f'{value:.10g}' if isinstance(value, float) else str(value)
 
 

@@ -14,6 +14,7 @@ from isa_ros.core.timebase import PLANT_STEP
 from isa_ros.errors import ParameterError
 from isa_ros.plant import chambers, coil, friction, mechanics, relief, sensors, servo_valve, spool
 from isa_ros.plant.sensors import convert, encode
+from isa_ros.plant.valve_sheets import DataSheetValve, DualGainValve, HighResponseValve
 import numpy as np
 
 STABLE_RATE = 2.5 / PLANT_STEP  # 1/s; RK4 is stable to 2.78 on the real axis
@@ -42,8 +43,9 @@ class PlantSheet(Parameters):
     """The data sheet of one actuator's hydraulics, mechanics and sensors."""
 
     coil: coil.ClosedLoopCoil | coil.ExplicitCoil
-    spool: spool.ClosedLoopSpool | spool.DirectSpool | spool.PilotedSpool
-    valve: servo_valve.DualGainValve | servo_valve.HighResponseValve
+    spool: (spool.ClosedLoopSpool | spool.DirectSpool | spool.PilotedSpool
+            | spool.DataSheetSpool)
+    valve: DualGainValve | HighResponseValve | DataSheetValve
     oil: chambers.Oil
     relief: relief.Relief
     friction: friction.Friction
