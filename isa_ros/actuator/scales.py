@@ -15,7 +15,7 @@ from isa_ros.errors import ConfigError
 from isa_ros.plant.chambers import chambers_record, volumes
 from isa_ros.plant.coil import ClosedLoopCoil
 from isa_ros.plant.servo_valve import flow_curve, valve_record
-from isa_ros.plant.spool import ClosedLoopSpool, PilotedSpool
+from isa_ros.plant.spool import ClosedLoopSpool
 from isa_ros.reu.schedule import POINTS
 from isa_ros.reu.wiring import Off
 import numpy as np
@@ -23,6 +23,10 @@ import numpy as np
 
 def _area(sheet: ActuatorSheet) -> float:
     return sheet.plant.drive.areas[0]
+
+
+def _piston_area(sheet: ActuatorSheet, supply: float) -> float:
+    return _area(sheet)
 
 
 def _stall_out(sheet: ActuatorSheet, supply: float) -> float:
@@ -55,6 +59,11 @@ def _piston_volume(sheet: ActuatorSheet, supply: float) -> float:
             + (area_a - area_b) * 2.0 * sheet.plant.drive.stroke)
 
 
+def _piston_damping(sheet: ActuatorSheet, supply: float) -> float:
+    """Return sqrt(k m) of springs as the piston's area and of the piston's mass."""
+    return math.sqrt(_area(sheet) * _piston_volume(sheet, supply))
+
+
 def _stall_damping(sheet: ActuatorSheet, supply: float) -> float:
     """Return sqrt(k m) of springs as the stall force and of the piston's mass."""
     return math.sqrt(_stall_out(sheet, supply) * _piston_volume(sheet, supply))
@@ -79,6 +88,23 @@ def _valve_current(sheet: ActuatorSheet, supply: float) -> float:
     """Return the largest series current in A."""
     valve = sheet.plant.valve
     return valve.spool_stop_mm / valve.spool_gain_mm_per_ma * MILLI
+
+
+def _per_valve_current(sheet: ActuatorSheet, supply: float) -> float:
+    """Return the ohms that have 1 V at full current."""
+    return 1.0 / _valve_current(sheet, supply)
+
+
+def _spool_travel(sheet: ActuatorSheet, supply: float) -> float:
+    return sheet.plant.valve.spool_stop_mm * MILLI
+
+
+def _spool_frequency(sheet: ActuatorSheet, supply: float) -> float:
+    """Return the speed of the spool in rad/s: K_loop of equation 8, or half w_n over zeta."""
+    spool = sheet.plant.spool
+    if isinstance(spool, ClosedLoopSpool):
+        return spool.loop_gain_per_s
+    return spool.natural_frequency_rad_per_s / (2.0 * spool.damping_ratio)
 
 
 def _valve_stop(sheet: ActuatorSheet, supply: float) -> float:
@@ -130,17 +156,18 @@ def _output_per_speed(sheet: ActuatorSheet, supply: float) -> float:
 
 def _valve_lag(sheet: ActuatorSheet, supply: float) -> float:
     """Return the sum of the lags of spool, current and sampling, in s."""
-    spool, coil = sheet.plant.spool, sheet.plant.coil
-    lag = 1.0 / sheet.reu.current.rate_hz
-    if isinstance(spool, ClosedLoopSpool):
-        lag += 1.0 / spool.loop_gain_per_s
-    elif not isinstance(spool, PilotedSpool):
-        lag += 2.0 * spool.damping_ratio / spool.natural_frequency_rad_per_s
+    coil = sheet.plant.coil
+    lag = 1.0 / sheet.reu.current.rate_hz + 1.0 / _spool_frequency(sheet, supply)
     if isinstance(coil, ClosedLoopCoil):
         lag += 1.0 / coil.bandwidth_rad_per_s
     if not isinstance(sheet.reu.force, Off):
         lag += 1.0 / sheet.reu.force.rate_hz
     return lag
+
+
+def _valve_speed(sheet: ActuatorSheet, supply: float) -> float:
+    """Return one over the valve's lag, in rad/s."""
+    return 1.0 / _valve_lag(sheet, supply)
 
 
 def _output_per_force_rate(sheet: ActuatorSheet, supply: float) -> float:
@@ -180,12 +207,15 @@ def _supply_pressure(sheet: ActuatorSheet, supply: float) -> float:
 
 
 SCALES: Mapping[str, Callable[[ActuatorSheet, float], float]] = {
-    'stall_out': _stall_out, 'stall_in': _stall_in, 'stroke': _stroke,
+    'piston_area': _piston_area, 'stall_out': _stall_out, 'stall_in': _stall_in, 'stroke': _stroke,
     'swept_volume': _swept_volume, 'seal_length': _seal_length,
-    'piston_volume': _piston_volume, 'stall_damping': _stall_damping,
+    'piston_volume': _piston_volume, 'piston_damping': _piston_damping,
+    'stall_damping': _stall_damping,
     'stall_stiffness': _stall_stiffness, 'load_damping': _load_damping,
     'supply_pressure': _supply_pressure,
-    'valve_current': _valve_current, 'valve_stop': _valve_stop,
+    'valve_current': _valve_current, 'per_valve_current': _per_valve_current,
+    'valve_stop': _valve_stop, 'spool_travel': _spool_travel,
+    'spool_frequency': _spool_frequency, 'valve_speed': _valve_speed,
     'valve_conductance': _valve_conductance, 'full_flow': _full_flow, 'valve_lag': _valve_lag,
     'flow_knee': _flow_knee, 'flow_gain_ratio': _flow_gain_ratio,
     'output_per_speed': _output_per_speed, 'position_gain': _position_gain,
