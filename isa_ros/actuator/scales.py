@@ -150,8 +150,8 @@ def _null_flow_gain(sheet: ActuatorSheet, supply: float) -> float:
 
 
 def _output_per_speed(sheet: ActuatorSheet, supply: float) -> float:
-    """Return the valve's command for a speed of 1 m/s | rad/s."""
-    return _area(sheet) / _null_flow_gain(sheet, supply)
+    """Return the valve's command for 1 m/s | rad/s, the mean of both directions and areas."""
+    return 0.5 * sum(sheet.plant.drive.areas) / _null_flow_gain(sheet, supply)
 
 
 def _valve_lag(sheet: ActuatorSheet, supply: float) -> float:

@@ -7,7 +7,7 @@ that the file has itself is not.
 """
 
 from dataclasses import dataclass, replace
-from typing import cast
+from typing import Any
 
 from isa_ros.actuator.actuator import PAPER_SUPPLY
 from isa_ros.actuator.scales import SCALES
@@ -57,14 +57,14 @@ class Scaling:
             raise ConfigError(f'{place}: {error}') from error
         if factor == 1.0:
             return entry
-        value = entry.value
-        if isinstance(value, list):
-            return replace(
-                entry, value=[one * factor for one in value], where=str(place),
-                source=f'{entry.source}; scaled with {entry.scales_with}')
+        scaled = f'scaled with {entry.scales_with}'
         return replace(
-            entry, value=cast(float, value) * factor, where=str(place),
-            source=f'{entry.source}; scaled with {entry.scales_with}')
+            entry, value=_times(entry.value, factor), where=f'{place} ({scaled})',
+            source=f'{entry.source}; {scaled}')
+
+
+def _times(value: Any, factor: float) -> Any:
+    return [one * factor for one in value] if isinstance(value, list) else value * factor
 
 
 def scaled_sheet(
