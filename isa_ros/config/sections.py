@@ -214,11 +214,12 @@ def build(cls: type[P], section: Section, place: Place) -> P:
 
 
 def _last_written(section: Section, place: Place) -> Place:
-    """Return the place of a section in the file of its last layer, where that has a value."""
+    """Return the place of a section in the run file, if that has one of its values."""
     for key, entry in section.items():
-        file, _, path = entry.where.partition(': ') if isinstance(entry, Entry) else ('', '', '')
-        if file not in ('', place.file) and path.endswith(f'.{key}'):
-            return Place(file, path.removesuffix(f'.{key}'))
+        if isinstance(entry, Entry):
+            file, _, path = entry.where.partition(': ')
+            if entry.source == file and path.endswith(f'.{key}'):  # as `written` has it
+                return Place(file, path.removesuffix(f'.{key}'))
     return place
 
 
