@@ -146,7 +146,8 @@ def sources(section: Section, prefix: str = '') -> dict[str, str]:
     paths: dict[str, str] = {}
     for key, entry in section.items():
         if isinstance(entry, Entry):
-            paths[f'{prefix}{key}'] = entry.source
+            scales = f'; scales with {entry.scales_with}' if entry.scales_with else ''
+            paths[f'{prefix}{key}'] = entry.source + scales
         else:
             paths |= sources(entry, f'{prefix}{key}.')
     return paths

@@ -60,7 +60,7 @@ class Scaling:
         scaled = f'scaled with {entry.scales_with}'
         return replace(
             entry, value=_times(entry.value, factor), where=f'{place} ({scaled})',
-            source=f'{entry.source}; {scaled}')
+            source=f'{entry.source}; {scaled}', scales_with='')
 
 
 def _times(value: Any, factor: float) -> Any:

@@ -114,6 +114,9 @@ def test_the_table_shows_the_scaled_value_and_its_source(tmp_path: Path) -> None
     line = next(line for line in describe(str(path)).splitlines()
                 if line.startswith('reu.position.force_in '))
     assert '10720.63' in line and 'derived, A_B P_S; scaled with stall_in' in line
+    unchanged = next(line for line in describe('isa_v5').splitlines()
+                     if line.startswith('reu.position.force_in '))
+    assert ' 5174 ' in unchanged and 'derived, A_B P_S; scales with stall_in' in unchanged
     run = own()
     assert RunConfig.from_yaml(run.to_yaml()).actuators == run.actuators
     assert 'scale' not in run.to_yaml()
