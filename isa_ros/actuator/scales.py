@@ -59,11 +59,6 @@ def _piston_volume(sheet: ActuatorSheet, supply: float) -> float:
             + (area_a - area_b) * 2.0 * sheet.plant.drive.stroke)
 
 
-def _piston_damping(sheet: ActuatorSheet, supply: float) -> float:
-    """Return sqrt(k m) of springs as the piston's area and of the piston's mass."""
-    return math.sqrt(_area(sheet) * _piston_volume(sheet, supply))
-
-
 def _stall_damping(sheet: ActuatorSheet, supply: float) -> float:
     """Return sqrt(k m) of springs as the stall force and of the piston's mass."""
     return math.sqrt(_stall_out(sheet, supply) * _piston_volume(sheet, supply))
@@ -172,19 +167,21 @@ def _valve_speed(sheet: ActuatorSheet, supply: float) -> float:
 
 def _output_per_force_rate(sheet: ActuatorSheet, supply: float) -> float:
     """
-    Return the valve's command for 1 N/s | 1 Nm/s where the oil is softest, blocked  (R12).
+    Return the valve's command for 1 N/s | 1 Nm/s of the blocked actuator  (R12).
 
-    As the schedule ``oil_stiffness`` has it, this holds over the whole stroke.
+    Gains that are scheduled with ``oil_stiffness`` are lower where the oil is stiffer; this is the
+    least command over the stroke after that.
     """
     oil = chambers_record(sheet.plant.drive, sheet.plant.oil)
     valve, k_s = _valve(sheet), sheet.plant.mechanics.sensor_stiffness
-    rates = []
+    rates, in_loop = [], []
     for place in np.linspace(0.0, oil.stroke, POINTS):
         v_a, v_b = volumes(place, oil)
         per_a, per_b = oil.beta * oil.area_a / v_a, oil.beta * oil.area_b / v_b
         stiffness = per_a * oil.area_a + per_b * oil.area_b
-        rates.append((per_a * valve.f_pa + per_b * valve.f_bt) / (1.0 + stiffness / k_s))
-    return float(1.0 / (min(rates) * _null_flow_gain(sheet, supply)))
+        in_loop.append(stiffness / (1.0 + stiffness / k_s))
+        rates.append((per_a * valve.f_pa + per_b * valve.f_bt) / stiffness)
+    return float(1.0 / (min(in_loop) * max(rates) * _null_flow_gain(sheet, supply)))
 
 
 def _force_gain(sheet: ActuatorSheet, supply: float) -> float:
@@ -209,7 +206,7 @@ def _supply_pressure(sheet: ActuatorSheet, supply: float) -> float:
 SCALES: Mapping[str, Callable[[ActuatorSheet, float], float]] = {
     'piston_area': _piston_area, 'stall_out': _stall_out, 'stall_in': _stall_in, 'stroke': _stroke,
     'swept_volume': _swept_volume, 'seal_length': _seal_length,
-    'piston_volume': _piston_volume, 'piston_damping': _piston_damping,
+    'piston_volume': _piston_volume,
     'stall_damping': _stall_damping,
     'stall_stiffness': _stall_stiffness, 'load_damping': _load_damping,
     'supply_pressure': _supply_pressure,
