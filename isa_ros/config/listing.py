@@ -126,6 +126,8 @@ def _load_tables(model: Model) -> Iterator[str]:
 
 
 def _value(value: Any) -> str:
+    if isinstance(value, tuple):
+        return ', '.join(_value(one) for one in value)
     return f'{value:.10g}' if isinstance(value, float) else str(value)
 
 
@@ -144,7 +146,8 @@ def sources(section: Section, prefix: str = '') -> dict[str, str]:
     paths: dict[str, str] = {}
     for key, entry in section.items():
         if isinstance(entry, Entry):
-            paths[f'{prefix}{key}'] = entry.source
+            scales = f'; scales with {entry.scales_with}' if entry.scales_with else ''
+            paths[f'{prefix}{key}'] = entry.source + scales
         else:
             paths |= sources(entry, f'{prefix}{key}.')
     return paths

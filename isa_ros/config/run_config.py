@@ -86,6 +86,11 @@ class RunConfig:
         fed = self.actuator(name).name
         return next(own.sheet for own in self.supplies if fed in own.feeds)
 
+    def span_of(self, name: str) -> float:
+        """Return the supply pressure above return pressure of an actuator, Pa; as `actuator`."""
+        fed = self.actuator(name).name
+        return next(own.span for own in self.supplies if fed in own.feeds)
+
     def alone(self, actuator: ActuatorConfig) -> 'RunConfig':
         """Return a run of ``actuator`` alone, on the supply of the actuator of its name."""
         supply = SupplyConfig(SUPPLY, self.supply_of(actuator.name), (actuator.name,))

@@ -104,7 +104,7 @@ def test_initial_positions_are_si_and_mid_stroke_by_default(tmp_path: Path) -> N
     ('model: isa_v5, load: {kind: mass}, initial_position_mm: 100.5', 'must be <= 100 mm'),
     ('model: isa_v5, load: {kind: mass, inertia: 0}',
      'rig.yaml: actuators.ram.load.inertia = 0 kg | kg m2, must be > 0'),
-    ('load: {kind: mass}', 'rig.yaml: actuators.ram.model = None is not a model; valid: isa_v2'),
+    ('load: {kind: mass}', 'rig.yaml: actuators.ram.model = None is not a model; valid: cylinder'),
     ('model: [isa_v5], load: {kind: mass}', "actuators.ram.model = ['isa_v5'] is not a model"),
     ('model: isa_v5, load: mass', "actuators.ram.load = 'mass', must be a section"),
     ('model: isa_v5, load: {kind: mass}, parameters: {plant: {friction: {viscous: 9e5}}}',

@@ -159,7 +159,9 @@ def rig(choice: Choice) -> Rig:
         kind = kind_of(config.load, LocalLoad)
     else:
         kind = kind or model.default_load
-        config = replace(config, load=own_load({'kind': kind}, Place('--load'), model))
+        load = own_load({'kind': kind}, Place('--load'), model, config.sheet,
+                        run.span_of(config.name))
+        config = replace(config, load=load)
     return Rig(run.alone(replace(config, sheet=loop.sheet)), loop, kind)
 
 
@@ -175,7 +177,7 @@ def _of_model(choice: Choice) -> RunConfig:
     refuse_wiring(sheet)
     config = ActuatorConfig(
         choice.name, model.name, ' + '.join([preset, *choice.variants]), sheet,
-        default_load(model), 0.5 * sheet.plant.drive.stroke)
+        default_load(model, sheet), 0.5 * sheet.plant.drive.stroke)
     return RunConfig(
         choice.name, DEFAULT_TIMING.step_ns, DEFAULT_TIMING.controller_offset_ns,
         TICK_TIMEOUT_S,

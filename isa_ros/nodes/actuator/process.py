@@ -95,7 +95,8 @@ def _from_run(run: RunConfig, name: str, model: str, in_lockstep: bool) -> Setup
         raise ConfigError(
             f'{run.source}: {name} has model {config.model}, the parameter model = {model!r}')
     if config.load is None and not in_lockstep:
-        config = replace(config, load=default_load(actuator_model(config.model, name)))
+        model_of = actuator_model(config.model, name)
+        config = replace(config, load=default_load(model_of, config.sheet, run.span_of(name)))
     return Setup(config, Timing(run.step_ns, run.controller_offset_ns))
 
 
