@@ -11,7 +11,7 @@ import math
 
 from isa_ros.core.kernel import kernel
 from isa_ros.core.timebase import FORCE_WINDOWS, NS_PER_SECOND
-from isa_ros.surroundings.ground import bristle_rates
+from isa_ros.surroundings.ground import contact, lasting_shear_rates
 from isa_ros.surroundings.leg.motion import (
     actuator_accelerations, continuous, ContinuousState, Coordinates, joint_angles, joint_speeds,
     keep_continuous, leg_motion, leg_step, of_joints, shifted, solve, terms_of)
@@ -53,39 +53,44 @@ def response(j, motion):
 
 
 @kernel
-def bristle_follow(y, u, leg):
-    """Return the bristles' deflection for a displacement u of the leg: (dz'/dv) J u  (L14)."""
+def shear_follow(y, u, leg):
+    """
+    Return how far the sole's shear follows a displacement u of the leg  (L14).
+
+    (dz'/dv) J u at the present normal force: J u where the foot sticks, the part of it across
+    the friction force where it slides, 0 in the air.
+    """
     m = terms_of(y, leg)
-    if m.foot_z >= 0.0:
-        return 0.0, 0.0
     ground, s = leg.ground, PROBE_SPEED
     w_x = m.j_x_hfe * u.hfe + m.j_x_kfe * u.kfe
     w_y = m.j_y_haa * u.haa + m.j_y_hfe * u.hfe + m.j_y_kfe * u.kfe
-    x_before, y_before = bristle_rates(
-        y.bristle_x, y.bristle_y, m.foot_v_x, m.foot_v_y, True, ground)
-    x_after, y_after = bristle_rates(
-        y.bristle_x, y.bristle_y, m.foot_v_x + s * w_x, m.foot_v_y + s * w_y, True, ground)
+    _, _, _, x_before, y_before = contact(
+        m.foot_z, m.foot_v_x, m.foot_v_y, m.foot_v_z, y.shear_x, y.shear_y, ground)
+    _, _, _, x_after, y_after = contact(
+        m.foot_z, m.foot_v_x + s * w_x, m.foot_v_y + s * w_y, m.foot_v_z, y.shear_x, y.shear_y,
+        ground)
     return (x_after - x_before) / s, (y_after - y_before) / s
 
 
 @kernel
-def ahead(y, h, motion):
-    """Return y after ``h`` seconds of constant accelerations and bristle rates."""
-    a = motion.acceleration
+def ahead(y, h, motion, ground):
+    """Return y after ``h`` seconds of constant accelerations, foot velocity and normal force."""
+    a, v, force = motion.acceleration, motion.foot_velocity, motion.foot_force
+    rate_x, rate_y = lasting_shear_rates(
+        h, force[2], y.shear_x, y.shear_y, v[0], v[1], ground)
     return shifted(y, h, ContinuousState(
         z=y.v_z + 0.5 * h * a.z, q_haa=y.v_haa + 0.5 * h * a.haa,
         q_hfe=y.v_hfe + 0.5 * h * a.hfe, q_kfe=y.v_kfe + 0.5 * h * a.kfe,
-        v_z=a.z, v_haa=a.haa, v_hfe=a.hfe, v_kfe=a.kfe,
-        bristle_x=motion.bristle_rate_x, bristle_y=motion.bristle_rate_y))
+        v_z=a.z, v_haa=a.haa, v_hfe=a.hfe, v_kfe=a.kfe, shear_x=rate_x, shear_y=rate_y))
 
 
 @kernel
 def displaced(y, u, leg):
-    """Return y displaced by `PROBE_DISPLACEMENT` along u, the bristles with it  (L14)."""
-    z_x, z_y = bristle_follow(y, u, leg)
+    """Return y displaced by `PROBE_DISPLACEMENT` along u, the shear with it  (L14)."""
+    z_x, z_y = shear_follow(y, u, leg)
     return shifted(y, PROBE_DISPLACEMENT, ContinuousState(
         z=u.z, q_haa=u.haa, q_hfe=u.hfe, q_kfe=u.kfe,
-        v_z=0.0, v_haa=0.0, v_hfe=0.0, v_kfe=0.0, bristle_x=z_x, bristle_y=z_y))
+        v_z=0.0, v_haa=0.0, v_hfe=0.0, v_kfe=0.0, shear_x=z_x, shear_y=z_y))
 
 
 @kernel
@@ -93,7 +98,7 @@ def faster(y, u):
     """Return y with `PROBE_SPEED` more along u."""
     return shifted(y, PROBE_SPEED, ContinuousState(
         z=0.0, q_haa=0.0, q_hfe=0.0, q_kfe=0.0,
-        v_z=u.z, v_haa=u.haa, v_hfe=u.hfe, v_kfe=u.kfe, bristle_x=0.0, bristle_y=0.0))
+        v_z=u.z, v_haa=u.haa, v_hfe=u.hfe, v_kfe=u.kfe, shear_x=0.0, shear_y=0.0))
 
 
 @kernel
@@ -111,7 +116,7 @@ def leg_ports(states, look_ahead, rows, legs, ports):
     now = actuator_accelerations(y, f, is_held, leg)
     h = look_ahead
     later = actuator_accelerations(
-        ahead(y, h, motion), (f[0] + h * slope[0], f[1] + h * slope[1], f[2] + h * slope[2]),
+        ahead(y, h, motion, leg.ground), (f[0] + h * slope[0], f[1] + h * slope[1], f[2] + h * slope[2]),
         is_held, leg)
     speeds = joint_speeds(y)
     for j in range(3):
