@@ -80,20 +80,6 @@ def shear_rates(f_x, f_y, shear_x, shear_y, ground):
 
 
 @kernel
-def lasting_shear_rates(h, normal, shear_x, shear_y, v_x, v_y, ground):
-    """
-    Return the mean rates of the shear over ``h`` seconds of constant speed and normal force.
-
-    One implicit step of L10 and L11, with the shear at its end: a sole that slides or springs
-    back does not overshoot, although h may be many times c_t/k_t.
-    """
-    k, c = ground.tangential_stiffness, ground.tangential_damping
-    f_x, f_y = friction_forces(
-        normal, shear_x + h * v_x, shear_y + h * v_y, v_x, v_y, ground)
-    return -(f_x + k * shear_x) / (c + k * h), -(f_y + k * shear_y) / (c + k * h)
-
-
-@kernel
 def contact(height, v_x, v_y, v_z, shear_x, shear_y, ground):
     """Return the force on the foot (x, y, z; N) and the rates of the shear (m/s)."""
     normal = normal_force(height, v_z, ground)

@@ -83,7 +83,6 @@ class Motion(NamedTuple):
     lever: tuple[float, ...]             # (3,), r
     lever_rate: tuple[float, ...]        # (3,), dr/dq
     foot_position: tuple[float, ...]     # (3,), m
-    foot_velocity: tuple[float, ...]     # (3,), m/s
     foot_force: tuple[float, ...]        # (3,), from the ground, N
 
 
@@ -151,8 +150,7 @@ def leg_motion(y, f, is_held, leg):
         acceleration=acceleration, shear_rate_x=rate_x, shear_rate_y=rate_y,
         factor=m_factor, position=(x_haa, x_hfe, x_kfe), lever=(r_haa, r_hfe, r_kfe),
         lever_rate=(dr_haa, dr_hfe, dr_kfe),
-        foot_position=(m.foot_x, m.foot_y, m.foot_z),
-        foot_velocity=(m.foot_v_x, m.foot_v_y, m.foot_v_z), foot_force=(f_x, f_y, f_z))
+        foot_position=(m.foot_x, m.foot_y, m.foot_z), foot_force=(f_x, f_y, f_z))
 
 
 @kernel

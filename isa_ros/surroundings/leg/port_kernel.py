@@ -11,10 +11,11 @@ import math
 
 from isa_ros.core.kernel import kernel
 from isa_ros.core.timebase import FORCE_WINDOWS, NS_PER_SECOND
-from isa_ros.surroundings.ground import contact, lasting_shear_rates
+from isa_ros.surroundings.ground import contact
 from isa_ros.surroundings.leg.motion import (
     actuator_accelerations, continuous, ContinuousState, Coordinates, joint_angles, joint_speeds,
     keep_continuous, leg_motion, leg_step, of_joints, shifted, solve, terms_of)
+from isa_ros.surroundings.leg.prediction import matched, predicted, resolved
 import numpy as np
 
 LEG_SAMPLE = np.dtype([
@@ -73,18 +74,6 @@ def shear_follow(y, u, leg):
 
 
 @kernel
-def ahead(y, h, motion, ground):
-    """Return y after ``h`` seconds of constant accelerations, foot velocity and normal force."""
-    a, v, force = motion.acceleration, motion.foot_velocity, motion.foot_force
-    rate_x, rate_y = lasting_shear_rates(
-        h, force[2], y.shear_x, y.shear_y, v[0], v[1], ground)
-    return shifted(y, h, ContinuousState(
-        z=y.v_z + 0.5 * h * a.z, q_haa=y.v_haa + 0.5 * h * a.haa,
-        q_hfe=y.v_hfe + 0.5 * h * a.hfe, q_kfe=y.v_kfe + 0.5 * h * a.kfe,
-        v_z=a.z, v_haa=a.haa, v_hfe=a.hfe, v_kfe=a.kfe, shear_x=rate_x, shear_y=rate_y))
-
-
-@kernel
 def displaced(y, u, leg):
     """Return y displaced by `PROBE_DISPLACEMENT` along u, the shear with it  (L14)."""
     z_x, z_y = shear_follow(y, u, leg)
@@ -102,35 +91,35 @@ def faster(y, u):
 
 
 @kernel
-def leg_ports(states, look_ahead, rows, legs, ports):
+def leg_ports(states, tick, rows, legs, ports):
     """
-    Fill the `LOAD_PORT` of the three actuators  (L1, L12-L15).
+    Fill the `LOAD_PORT` of the three actuators for ``tick`` seconds  (L1, L12-L15).
 
-    Pressures are left as they are. ``look_ahead`` (s) is the distance of the jerk's
-    finite difference.
+    Pressures are left as they are.
     """
     state, leg = states[0], legs[0]
     y, is_held = continuous(state), state.is_held != 0.0
     f, slope = of_joints(state.force), of_joints(state.slope)
-    motion = leg_motion(y, f, is_held, leg)
+    motion, speeds = leg_motion(y, f, is_held, leg), joint_speeds(y)
     now = actuator_accelerations(y, f, is_held, leg)
-    h = look_ahead
-    later = actuator_accelerations(
-        ahead(y, h, motion, leg.ground), (f[0] + h * slope[0], f[1] + h * slope[1], f[2] + h * slope[2]),
-        is_held, leg)
-    speeds = joint_speeds(y)
+    y_end = predicted(y, tick, f, slope, is_held, leg)
+    end, end_speeds = leg_motion(y_end, f, is_held, leg), joint_speeds(y_end)
     for j in range(3):
         port = ports[rows[j]]
         u, inverse_mass = response(j, motion)
         port.x0, port.v0 = motion.position[j], motion.lever[j] * speeds[j]
         port.a0 = now[j]
         port.inverse_mass = inverse_mass
-        port.a_bias = now[j] - f[j] * inverse_mass
-        port.jerk = (later[j] - now[j]) / h - slope[j] * inverse_mass
-        port.stiffness = (now[j] - actuator_accelerations(
-            displaced(y, u, leg), f, is_held, leg)[j]) / PROBE_DISPLACEMENT
+        port.stiffness = resolved((now[j] - actuator_accelerations(
+            displaced(y, u, leg), f, is_held, leg)[j]) / PROBE_DISPLACEMENT, tick)
         port.damping = (now[j] - actuator_accelerations(
             faster(y, u), f, is_held, leg)[j]) / PROBE_SPEED
+        a, b = matched(
+            end.position[j] - port.x0 - tick * (port.v0 + 0.5 * tick * port.a0),
+            end.lever[j] * end_speeds[j] - port.v0 - tick * port.a0,
+            tick, port.stiffness, port.damping)
+        port.a_bias = a + now[j] - f[j] * inverse_mass
+        port.jerk = b - slope[j] * inverse_mass
 
 
 @kernel
