@@ -16,7 +16,11 @@ from isa_ros.core.contact import normal_force
 from isa_ros.core.kernel import kernel
 from isa_ros.core.parameter import parameter, Parameters
 from isa_ros.core.record import record
+from isa_ros.errors import ParameterError
 import numpy as np
+
+
+SHORTEST_RELAXATION = 1e-4  # s, of c_t/k_t; a Runge-Kutta step is stable up to 2.8 times that
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -32,6 +36,16 @@ class Ground(Parameters):
         'shear stiffness of sole and ground', 'N/m', ge=1e3, le=1e7)
     tangential_damping: float = parameter(
         'shear damping of sole and ground', 'N s/m', ge=1.0, le=1e4)
+
+    def __post_init__(self) -> None:
+        """Refuse a sole that springs back faster than the leg's steps can follow."""
+        super().__post_init__()
+        least = SHORTEST_RELAXATION * self.tangential_stiffness
+        if self.tangential_damping < least:
+            raise ParameterError(
+                f'Ground.tangential_damping = {self.tangential_damping:g} N s/m, must be >= '
+                f'{least:g} N s/m, {SHORTEST_RELAXATION:g} s of Ground.tangential_stiffness = '
+                f'{self.tangential_stiffness:g} N/m')
 
 
 GROUND = np.dtype([

@@ -7,6 +7,7 @@ from isa_ros.errors import ParameterError
 from isa_ros.surroundings import ground
 import pytest
 from tests.legs import leg_sheet
+from tests.sheets import override
 
 SHEET = leg_sheet().ground
 ROW = ground.ground_record(SHEET)
@@ -61,7 +62,7 @@ def test_a_sole_sheared_along_its_way_slides_with_exactly_the_friction(angle, sp
     assert rates == pytest.approx((0.0, 0.0), abs=4e-15 * normal / SHEET.tangential_damping)
 
 
-@given(angle=st.floats(0.0, 6.28), speed=st.floats(0.05, 3.0))
+@given(angle=st.floats(0.0, 6.28), speed=st.floats(0.5, 3.0))
 def test_a_foot_dragged_from_rest_ends_in_coulomb_friction_against_its_speed(angle, speed):
     """
     L10, L11: from any shear the friction turns against v, mu N strong.
@@ -136,3 +137,11 @@ def test_a_value_outside_its_range_is_refused(name, value, bound):
     values = {key: getattr(SHEET, key) for key in SHEET.__dataclass_fields__}
     with pytest.raises(ParameterError, match=f'Ground.{name} = .*must be {bound}'):
         ground.Ground(**(values | {name: value}))
+
+
+def test_a_sole_faster_than_the_steps_of_a_leg_is_refused():
+    """L11: c_t/k_t below a step of 0.1 ms is not resolved; 15 N s/m over 1e6 N/m are 15 us."""
+    with pytest.raises(ParameterError, match=(
+            r'Ground\.tangential_damping = 15 N s/m, must be >= 100 N s/m, 0\.0001 s of '
+            r'Ground\.tangential_stiffness = 1e\+06 N/m')):
+        override(SHEET, 'tangential_stiffness', 1e6)

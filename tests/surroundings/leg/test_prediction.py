@@ -109,7 +109,7 @@ def test_one_of_the_ticks_begins_in_the_air() -> None:
 @pytest.mark.parametrize(('k', 'd'), [
     (0.0, 0.0), (1e5, 50.0), (9.8e6, 0.0), (0.0, 2e4), (-1e5, -20.0)])
 def test_matched_coefficients_meet_place_and_speed(k: float, d: float) -> None:
-    """e'' = a + b t - k e - d e' is linear: its answer to (a, b) is the sum of those to 1 and t."""
+    """The answer of e'' = a + b t - k e - d e' to (a, b) is the sum of those to 1 and t."""
     a, b = prediction.matched(1e-5, 0.02, TICK, k, d)
     e, v, h = 0.0, 0.0, TICK / 20_000
     for i in range(20_000):
