@@ -2,7 +2,7 @@
 How exactly an impact of a leg is computed, by ground and macro step.
 
 A leg falls 10 cm with its actuators. Its ground force is followed through every tick, since an
-impact on metal is over in two; it is compared with that of ticks of 0.2 ms, whose leg is
+impact on metal lasts two ticks of 1 ms; it is compared with that of ticks of 0.2 ms, whose leg is
 integrated in steps of 40 us (with ticks of 0.1 ms the peaks are the same to 0.05 %). Four
 heights, a quarter of a millisecond of fall apart, put the impact at different places in a tick.
 The table of docs/impacts.md:
@@ -16,7 +16,7 @@ import sys
 
 from isa_ros.config.leg_config import LegConfig
 from isa_ros.config.paths import find, SCENARIOS
-from isa_ros.config.yaml_text import read
+from isa_ros.config.yaml_text import read, Tree
 from isa_ros.core.kernel import kernel
 from isa_ros.core.signals import COMMAND, LOAD_PORT
 from isa_ros.core.timebase import FORCE_WINDOWS, NS_PER_SECOND
@@ -69,10 +69,9 @@ def largest_normal_force(states, step_ns, rows, legs, replies):
 
 def simulation(ground: str, step_ms: float, height: float) -> Simulation:
     """Return the drop from ``height`` (m) on a packaged ground."""
-    scenario = read(find('drop', SCENARIOS))
-    start = {'foot_height_mm': 1e3 * height, 'release_s': RELEASE_S}
-    run = load(CONFIG, scenario | {'leg': start}).replace(
-        {'leg.ground': ground, 'step_ms': step_ms})
+    scenario: Tree = {**read(find('drop', SCENARIOS)), 'leg': {
+        'foot_height_mm': 1e3 * height, 'release_s': RELEASE_S}}
+    run = load(CONFIG, scenario).replace({'leg.ground': ground, 'step_ms': step_ms})
     return Simulation(run.scenario)
 
 
