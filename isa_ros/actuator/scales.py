@@ -165,12 +165,12 @@ def _valve_speed(sheet: ActuatorSheet, supply: float) -> float:
     return 1.0 / _valve_lag(sheet, supply)
 
 
-def _output_per_force_rate(sheet: ActuatorSheet, supply: float) -> float:
+def _flow_per_force_rate(sheet: ActuatorSheet, supply: float) -> float:
     """
-    Return the valve's command for 1 N/s | 1 Nm/s of the blocked actuator  (R12).
+    Return the flow of a land for 1 N/s | 1 Nm/s of the blocked actuator  (R12).
 
     Gains that are scheduled with ``oil_stiffness`` are lower where the oil is stiffer; this is the
-    least command over the stroke after that.
+    least flow over the stroke after that.
     """
     oil = chambers_record(sheet.plant.drive, sheet.plant.oil)
     valve, k_s = _valve(sheet), sheet.plant.mechanics.sensor_stiffness
@@ -181,7 +181,12 @@ def _output_per_force_rate(sheet: ActuatorSheet, supply: float) -> float:
         stiffness = per_a * oil.area_a + per_b * oil.area_b
         in_loop.append(stiffness / (1.0 + stiffness / k_s))
         rates.append((per_a * valve.f_pa + per_b * valve.f_bt) / stiffness)
-    return float(1.0 / (min(in_loop) * max(rates) * _null_flow_gain(sheet, supply)))
+    return float(1.0 / (min(in_loop) * max(rates)))
+
+
+def _output_per_force_rate(sheet: ActuatorSheet, supply: float) -> float:
+    """Return the valve's command for 1 N/s | 1 Nm/s of the blocked actuator."""
+    return _flow_per_force_rate(sheet, supply) / _null_flow_gain(sheet, supply)
 
 
 def _force_gain(sheet: ActuatorSheet, supply: float) -> float:
@@ -216,6 +221,6 @@ SCALES: Mapping[str, Callable[[ActuatorSheet, float], float]] = {
     'valve_conductance': _valve_conductance, 'full_flow': _full_flow, 'valve_lag': _valve_lag,
     'flow_knee': _flow_knee, 'flow_gain_ratio': _flow_gain_ratio,
     'output_per_speed': _output_per_speed, 'position_gain': _position_gain,
-    'output_per_force_rate': _output_per_force_rate, 'force_gain': _force_gain, 'force_integral_gain': _force_integral_gain,
+    'flow_per_force_rate': _flow_per_force_rate, 'force_gain': _force_gain, 'force_integral_gain': _force_integral_gain,
 }
 """The quantities by name, of a sheet and a supply pressure above return (Pa)."""

@@ -1,7 +1,9 @@
 """Values of a model follow the cylinder, valve and supply of a run file; its own values win."""
 
+from dataclasses import replace
 from pathlib import Path
 
+import isa_ros
 from isa_ros.actuator.actuator import PAPER_SUPPLY
 from isa_ros.actuator.scales import SCALES
 from isa_ros.actuator.sheet import ActuatorSheet
@@ -13,6 +15,8 @@ from isa_ros.config.run_file import run_of
 from isa_ros.config.sections import Entry, merge, Place, sourced
 from isa_ros.config.yaml_text import parse
 from isa_ros.errors import ConfigError
+from isa_ros.plant.chambers import chambers_record, oil_stiffness
+import numpy as np
 import pytest
 
 HEAD = """
@@ -72,7 +76,24 @@ def test_a_larger_bore_in_the_isa_s_model_has_its_own_ratings() -> None:
             ('oil', 'cross_port_leakage', 40.0 / 21.5)):
         value, before = (getattr(getattr(of.plant, part), name) for of in (sheet, isa))
         assert value == pytest.approx(before * factor, rel=ROUNDED, abs=0.0)
-    assert sheet.plant.valve == isa.plant.valve and sheet.reu.force == isa.reu.force
+    assert sheet.plant.valve == isa.plant.valve
+    force = sheet.reu.force
+    assert replace(force, kp=isa.reu.force.kp, ki=isa.reu.force.ki) == isa.reu.force
+
+
+@pytest.mark.parametrize('beta', [5e8, 1.4e9])
+def test_default_gains_of_the_isa_scale_with_its_oil(beta: float) -> None:
+    """The loop gain stays: K_p times the force rate per flow of oil and load cell in series."""
+    key = 'actuators.kfe.parameters.plant.oil.effective_bulk_modulus'
+    leg = isa_ros.load('leg')
+    gains, rates = [], []
+    for run in (leg, leg.replace({key: beta})):
+        sheet = run.configuration.actuator('kfe').sheet
+        oil = chambers_record(sheet.plant.drive, sheet.plant.oil)
+        stiffness = np.array([oil_stiffness(s, oil) for s in np.linspace(0.0, oil.stroke, 21)])
+        gains.append(sheet.reu.force.kp)
+        rates.append((stiffness / (1.0 + stiffness / sheet.plant.mechanics.sensor_stiffness)).min())
+    assert gains[1] * rates[1] == pytest.approx(gains[0] * rates[0], rel=1e-9, abs=0.0)
 
 
 def test_limit_and_compensation_follow_a_valve_of_two_lines() -> None:
