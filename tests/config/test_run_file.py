@@ -67,7 +67,8 @@ def test_the_leg_puts_its_actuators_where_the_linkages_say() -> None:
 
 def test_an_override_replaces_one_value_of_one_actuator(tmp_path: Path) -> None:
     plain = load_run(rig(tmp_path)).actuator('ram')
-    ram = 'model: isa_v5, load: {kind: mass}, parameters: {plant: {oil: {aeration_pressure_kpa: 2.5}}}'
+    ram = ('model: isa_v5, load: {kind: mass}, '
+           'parameters: {plant: {oil: {aeration_pressure_kpa: 2.5}}}')
     changed = load_run(rig(tmp_path, ram)).actuator('ram')
     assert changed.sheet.plant.oil.aeration_pressure_kpa == 2.5
     assert changed.sheet.reu == plain.sheet.reu
@@ -197,7 +198,8 @@ def test_a_text_from_before_a_parameter_is_read() -> None:
 
 
 def test_origins_say_which_file_a_value_comes_from(tmp_path: Path) -> None:
-    ram = 'model: isa_v5, load: {kind: mass}, parameters: {plant: {oil: {aeration_pressure_kpa: 2.5}}}'
+    ram = ('model: isa_v5, load: {kind: mass}, '
+           'parameters: {plant: {oil: {aeration_pressure_kpa: 2.5}}}')
     _, origins = read_run(rig(tmp_path, ram))
     plant = origins.actuators['ram'].sheet['plant']
     assert isinstance(plant, dict) and isinstance(plant['oil'], dict)

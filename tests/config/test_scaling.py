@@ -92,7 +92,8 @@ def test_default_gains_of_the_isa_scale_with_its_oil(beta: float) -> None:
         oil = chambers_record(sheet.plant.drive, sheet.plant.oil)
         stiffness = np.array([oil_stiffness(s, oil) for s in np.linspace(0.0, oil.stroke, 21)])
         gains.append(sheet.reu.force.kp)
-        rates.append((stiffness / (1.0 + stiffness / sheet.plant.mechanics.sensor_stiffness)).min())
+        k_s = sheet.plant.mechanics.sensor_stiffness
+        rates.append((stiffness / (1.0 + stiffness / k_s)).min())
     assert gains[1] * rates[1] == pytest.approx(gains[0] * rates[0], rel=1e-9, abs=0.0)
 
 
