@@ -203,7 +203,7 @@ def test_origins_say_which_file_a_value_comes_from(tmp_path: Path) -> None:
     _, origins = read_run(rig(tmp_path, ram))
     plant = origins.actuators['ram'].sheet['plant']
     assert isinstance(plant, dict) and isinstance(plant['oil'], dict)
-    assert plant['oil']['dead_volume_ml'].source == 'rig.yaml'  # type: ignore[union-attr]
+    assert plant['oil']['aeration_pressure_kpa'].source == 'rig.yaml'  # type: ignore[union-attr]
 
 
 @pytest.mark.parametrize(('names', 'message'), [
