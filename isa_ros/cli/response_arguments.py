@@ -34,12 +34,20 @@ def step(parser: argparse.ArgumentParser) -> None:
 
 
 def _rig(parser: argparse.ArgumentParser) -> None:
-    parser.add_argument('name', metavar='MODEL|CONFIG', help='isa_v5, rig_rotary.yaml, ...')
+    parser.add_argument(
+        'names', nargs='+', metavar='MODEL|CONFIG',
+        help='isa_v5, rig_rotary.yaml, ...; several are drawn in one figure')
     parser.add_argument('--actuator', metavar='NAME', help='actuator of a run file')
     parser.add_argument(
         '--loop', choices=LOOPS, default='force',
         help='the loop to excite; the blocks outside it are off (default: force, or torque)')
     shared_arguments.gains(parser, 'P')
+    shared_arguments.changes(
+        parser, 'another value of the actuator, or of the run file, by the key and in the unit '
+        'that isa params shows: reu.force.kp=9e-8')
+    parser.add_argument(
+        '--versus', action='append', default=[], metavar='KEY=VALUE[,KEY=VALUE...]',
+        help='measure also with these values, in the same figure; may be repeated')
     parser.add_argument(
         '--load', metavar='KIND',
         help="load of the model (default: blocked; for the position loop the actuator's own)")
