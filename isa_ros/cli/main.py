@@ -97,6 +97,7 @@ def _actuators(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         '--scenario', metavar='FILE',
         help='scenario of the run, which may change loads or initial positions')
+    shared_arguments.changes(parser, 'the values that are set for the run itself')
 
 
 def _replay(parser: argparse.ArgumentParser) -> None:
