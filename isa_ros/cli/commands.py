@@ -129,6 +129,12 @@ def step(options: Namespace) -> bool:
     return True
 
 
+def tune(options: Namespace) -> bool:
+    """Find gains of a loop for a wanted margin and bandwidth."""
+    from isa_ros.analysis.tuning.command import tune as find_gains
+    return find_gains(options)
+
+
 def identify(options: Namespace) -> bool:
     """Estimate the parameters of a bag's actuators."""
     from isa_ros.analysis.identification.identification import identify_bag, table, write_json

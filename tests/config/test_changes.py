@@ -17,7 +17,7 @@ def test_a_value_is_read_as_in_a_file(text, key, value):
 
 @pytest.mark.parametrize(('text', 'message'), [
     ('reu.force.kp', "--set 'reu.force.kp', must be KEY=VALUE"), ('=3', "--set '=3', must be"),
-    ('a=1\nb: 2', "must have one value"), ('a={b', '--set a={b: line '),
+    ('a=1\nb: 2', 'must have one value'), ('a={b', '--set a={b: line '),
     ('a=!x 1', 'tags')])
 def test_what_is_no_key_and_value_is_refused(text, message):
     with pytest.raises(ConfigError) as caught:

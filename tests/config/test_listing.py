@@ -91,8 +91,8 @@ def test_a_model_shows_its_loads() -> None:
 @pytest.mark.parametrize('name', model_names())
 def test_every_value_of_a_load_has_its_source(name: str) -> None:
     model = actuator_model(name, 'model')
-    for load, section in model.loads.items():
-        table = rows(build_one_of(LocalLoad, section, model.place / load), section)
+    for kind, section in model.loads.items():
+        table = rows(build_one_of(LocalLoad, section, model.place / kind), section)
         assert table and all(
             row.source.startswith(SOURCES) for row in table if not is_kind(row))
 

@@ -94,10 +94,10 @@ def test_a_launch_file_hands_texts_on_as_parameters_of_their_type():
      'of the chunks of the bag: none, lz4, zstd; empty: that of the run file, else none'),
     ('controllers', 'a node of yours; the run waits for it at every tick; may be repeated',
      'a node of yours; the run waits for it at every tick; a list of names'),
-    ('changes', 'another value in CONFIG, by its key and in its unit, as isa params shows them; keys '
-     'of the scenario begin with scenario.',
-     'another value in the run file, by its key and in its unit, as isa params shows them; keys of '
-     'the scenario begin with scenario.; a list of KEY=VALUE'),
+    ('changes', 'another value in CONFIG, by its key and in its unit, as isa params shows them; '
+     'keys of the scenario begin with scenario.',
+     'another value in the run file, by its key and in its unit, as isa params shows them; keys '
+     'of the scenario begin with scenario.; a list of KEY=VALUE'),
     ('join_timeout_s', 'longest wait for participants (default: 30 s)',
      'longest wait for participants, s')])
 def test_help_says_unit_and_default_in_each_place(field, help_, description):

@@ -17,7 +17,7 @@ import numpy as np
 from scipy import signal
 
 HALF_POWER = 1.0 / math.sqrt(2.0)   # -3.01 dB
-TRUSTED = 0.8        # least coherence that margins and bandwidth rely on: the rest has half the size
+TRUSTED = 0.8        # least coherence of a point that counts: the rest has half the size
 SEGMENTS = 3         # least whole segments of a chirp: one alone is always coherent
 
 
