@@ -56,13 +56,14 @@ def _transform(outputs: np.ndarray, cycles: np.ndarray) -> np.ndarray:
 @dataclass(frozen=True)
 class Parts:
     """
-    The parts of C_r or C_y: C = fixed + w (K_p (p + K_f p_f) + K_i (i + K_f i_f)).
+    The parts of C_r or C_y: C = d + K_f d_f + w (K_p (p + K_f p_f) + K_i (i + K_f i_f)).
 
-    Every block that is linear in K_p, K_i and their products with K_f has them, wherever K_f
-    acts; w is the factor of the gain schedule. (n,) each.
+    Every block that is linear in its gains and their products with K_f has them, wherever K_f
+    acts; w is the factor of the gain schedule, d the part of K_d and K_r. (n,) each.
     """
 
-    fixed: np.ndarray
+    d: np.ndarray
+    d_f: np.ndarray
     p: np.ndarray
     p_f: np.ndarray
     i: np.ndarray
@@ -71,7 +72,8 @@ class Parts:
     def at(self, kp: float, ki: float, kf: float) -> np.ndarray:
         """Return the response with these gains; a factor of the schedule is in kp and ki."""
         found: np.ndarray = (
-            self.fixed + kp * (self.p + kf * self.p_f) + ki * (self.i + kf * self.i_f))
+            self.d + kf * self.d_f + kp * (self.p + kf * self.p_f)
+            + ki * (self.i + kf * self.i_f))
         return found
 
 
@@ -79,9 +81,10 @@ def parts(sheet: Pid, frequency: np.ndarray) -> tuple[Parts, Parts]:
     """Return the parts of C_r and of C_y."""
     def both(kp: float, ki: float, kf: float) -> np.ndarray:
         return np.array(responses(replace(sheet, kp=kp, ki=ki, kf=kf), frequency))
-    fixed = both(0.0, 0.0, 0.0)
-    p, i = both(1.0, 0.0, 0.0) - fixed, both(0.0, 1.0, 0.0) - fixed
-    p_f, i_f = ((both(*gains, _KF) - fixed - without) / _KF
+    d, damped = both(0.0, 0.0, 0.0), both(0.0, 0.0, _KF)
+    p, i = both(1.0, 0.0, 0.0) - d, both(0.0, 1.0, 0.0) - d
+    p_f, i_f = ((both(*gains, _KF) - damped - without) / _KF
                 for gains, without in (((1.0, 0.0), p), ((0.0, 1.0), i)))
-    of_reference, of_measured = (Parts(*rows) for rows in zip(fixed, p, p_f, i, i_f))
+    of_reference, of_measured = (
+        Parts(*rows) for rows in zip(d, (damped - d) / _KF, p, p_f, i, i_f))
     return of_reference, of_measured

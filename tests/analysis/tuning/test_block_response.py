@@ -11,7 +11,7 @@ from tests.sheets import actuator_sheet
 FREQUENCY = np.geomspace(1.0, 1000.0, 30)
 
 
-def force_block(model: str, **values: float) -> Pid:
+def force_block(model: str, **values: float | str) -> Pid:
     """Return a force block with other values."""
     block = actuator_sheet(model).reu.force
     assert isinstance(block, Pid)
@@ -50,7 +50,9 @@ def test_damping_adds_lead_to_the_measured_value_alone():
 
 
 @pytest.mark.parametrize('model', ['isa_v5', 'isa_v2', 'smart_manifold'])
-@pytest.mark.parametrize('more', [{}, {'kd': 1e-11, 'kr': 2e-9, 'measured_filter_hz': 300.0}])
+@pytest.mark.parametrize('more', [
+    {}, {'feedback_damping': 'proportional'},
+    {'kd': 1e-11, 'kr': 2e-9, 'measured_filter_hz': 300.0}])
 def test_parts_put_together_are_the_block(model, more):
     """Any gains, any factor of the schedule: the search depends on it."""
     block = force_block(model, **more)
