@@ -185,8 +185,9 @@ def test_a_hunting_loop_has_no_margins(tmp_path: Path, capsys):
     """
     Damping fed back with four times the gain is a limit cycle of 12 % of the excitation.
 
-    Under the excitation the response is coherent (0.98 and more) and has the margins of a stable
-    loop, 6 dB and 69 deg: a sine and its harmonics see less gain than the cycle.
+    Under the excitation the response is coherent (0.97 and more) and has the margins of a stable
+    loop, 6 dB and 75 deg: the cycle of 90 N at 184 Hz is in the damping of the block, which these
+    margins count as part of the plant.
     """
     numbers, figure = tmp_path / 'bode.json', tmp_path / 'bode.svg'
     assert cli.main([
@@ -225,7 +226,7 @@ def test_a_frequency_without_coherence_is_marked_and_left_out(capsys):
         reu.pressure, kp=10.0 * reu.pressure.kp, ki=10.0 * reu.pressure.ki))
     hunting = bench.with_config(
         replace(bench.config, sheet=replace(bench.config.sheet, reu=wild)))
-    sweep = Sweep(low=20.0, high=100.0, points=4)
+    sweep = Sweep(low=20.0, high=60.0, points=4)
     lost = bode(hunting, sweep, 'closed', 0.2)
     assert not lost.response.is_trusted.any() and lost.bandwidth is None
     *rows, ripple, warning = table(lost).splitlines()
