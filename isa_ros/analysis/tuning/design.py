@@ -28,7 +28,8 @@ CORNERS = (0.025, 0.05, 0.1, 0.2, 0.4, 0.8)     # of the integral, K_i / K_p ove
 CLOSE = 0.4             # of the tolerated error: below it only the costs of K_f and corner count
 KF_COST, CORNER_COST = 0.05, 0.1    # of K_f w, and of a corner e times another, in that error
 RANGE = 30.0            # factor by which gains are searched up and down
-NUDGES = np.linspace(0.9, 1.1, 21)      # of K_p at a place, around that of the wanted bandwidth
+NUDGES = np.linspace(0.85, 1.15, 31)    # of K_p at a place, around that of the wanted bandwidth
+STEEP = 10.0            # cost of an error beyond what is tolerated, to that of one within it
 TOLERATED_DEG, TOLERATED_SHARE = 5.0, 0.1   # error of the margin; of the bandwidth as a share
 
 
@@ -185,7 +186,9 @@ def _shared(places: Sequence[Place], wanted: Wanted, gains: Gains) -> Gains:
         predicted = place.predicted(kp, gains.corner, gains.kf)
         if predicted.phase_margin is None or predicted.bandwidth is None:
             return math.inf
-        return math.hypot(*shares(wanted, predicted.phase_margin, predicted.bandwidth))
+        errors = [abs(share) for share in shares(
+            wanted, predicted.phase_margin, predicted.bandwidth)]
+        return math.hypot(*errors) + STEEP * max(0.0, max(errors) - 1.0)
     best = []
     for place, kp in zip(places, gains.kp, strict=True):
         errors = [error(place, nudge * kp) for nudge in NUDGES]

@@ -16,7 +16,7 @@ from isa_ros.analysis.response.sweep import LARGEST_SHARE, Sweep
 from isa_ros.analysis.tuning.block_response import parts, responses
 from isa_ros.analysis.tuning.design import (
     DENSE, designed, Gains, Place, plant_of, shares, Wanted)
-from isa_ros.errors import ConfigError
+from isa_ros.errors import ConfigError, IsaError
 from isa_ros.reu.block import Pid
 from isa_ros.reu.schedule import FivePoints
 from isa_ros.text.progress import Progress
@@ -33,8 +33,15 @@ LOWER = 0.8         # a bandwidth that cannot be had is lowered by this factor
 STARTS = 8          # gains tried until a loop follows and does not hunt
 QUIETER, LOUDER = 1.0 / 3.0, 3.0
 FOLLOWS = 0.05      # least gain of the closed loop at the lowest frequency
+TRUSTED = POINTS // 2   # least number of coherent points
 DIGITS = 4          # of the gains in the file
 STRAIGHT = 1e-3     # weight of a bend of the schedule against that of a value
+
+
+class NotReached(IsaError):
+    """No gains with which the loop could be measured."""
+
+    exit_code = 1
 
 
 @dataclass(frozen=True)
@@ -68,6 +75,11 @@ class Tuned:
         return max(place.error for place in self.reached)
 
     @property
+    def hunts(self) -> bool:
+        """Return whether the loop hunts at one of the places."""
+        return any(place.measured.rest.hunts for place in self.reached)
+
+    @property
     def is_reached(self) -> bool:
         """Return whether every place is quiet and within the tolerances of `shares`."""
         return self.error <= 1.0
@@ -84,8 +96,9 @@ def tune(
     Raises
     ------
     ConfigError
-        The block is not a PID, the bandwidth is beyond its rate, or no gains are found with which
-        the loop follows its reference and does not hunt.
+        The block is not a PID, or the bandwidth is beyond its rate.
+    NotReached
+        No gains are found with which the loop follows its reference and does not hunt.
     SimulationDiverged
         A state is no longer finite.
 
@@ -99,13 +112,16 @@ def tune(
             f'--bandwidth = {wanted.bandwidth:g} Hz, must be < {highest:g} Hz: the force loop '
             f'runs at {block.rate_hz:g} Hz')
     bench = _Bench(rig, wanted, tuple(strokes), amplitude, progress)
-    best = current = bench.start(replace(block, gain_schedule=_even()))
+    best = quiet = bench.start(replace(block, gain_schedule=_even()))
     aim = wanted
     for _ in range(ROUNDS):
-        gains, aim = bench.design(current, aim)
+        gains, aim = bench.design(quiet, aim)
         current = bench.measured(with_gains(block, gains, strokes))
-        gained, best = current.error < BETTER * best.error, min(
-            best, current, key=lambda tuned: tuned.error)
+        if current.hunts:   # nothing can be designed from its response
+            aim = replace(aim, bandwidth=LOWER * aim.bandwidth)
+            continue
+        quiet, gained = current, current.error < BETTER * best.error
+        best = min(best, current, key=lambda tuned: tuned.error)
         if best.error <= ENOUGH or (best.is_reached and not gained):
             break
     return best
@@ -139,16 +155,18 @@ class _Bench:
     def start(self, block: Pid) -> Tuned:
         """Return the loops with the block's own gains, or with the first that can be measured."""
         for _ in range(STARTS):
-            found = [self._at(block, share) for share in self._strokes]
-            if any(place.measured.rest.hunts for place in found):
+            found = self.measured(block)
+            responses_there = [place.measured.response for place in found.reached]
+            if found.hunts:
                 factor = QUIETER
-            elif min(place.measured.response.gain[0] for place in found) < FOLLOWS:
+            elif (min(response.gain[0] for response in responses_there) < FOLLOWS
+                    or min(response.is_trusted.sum() for response in responses_there) < TRUSTED):
                 factor = LOUDER
             else:
-                return Tuned(block, tuple(found))
+                return found
             block = replace(block, kp=factor * block.kp, ki=factor * block.ki)
-        raise ConfigError(
-            f'{self._rig.config.name}: no gains around those of the preset '
+        raise NotReached(
+            f'{self._rig.config.name}: not reached: no gains around those of the preset '
             f'(reu.force.kp = {block.kp:.3g} at last) follow the reference without hunting')
 
     def design(self, current: Tuned, wanted: Wanted) -> tuple[Gains, Wanted]:
@@ -168,9 +186,9 @@ class _Bench:
             if gains is not None:
                 return gains, wanted
             wanted = replace(wanted, bandwidth=LOWER * wanted.bandwidth)
-        raise ConfigError(
-            f'{self._rig.config.name}: no gains with a bandwidth of {wanted.bandwidth:.3g} to '
-            f'{self._wanted.bandwidth:.3g} Hz leave a gain margin')
+        raise NotReached(
+            f'{self._rig.config.name}: not reached: no gains with a bandwidth of '
+            f'{wanted.bandwidth:.3g} to {self._wanted.bandwidth:.3g} Hz leave a gain margin')
 
 
 def with_block(rig: Rig, block: Pid, share: float) -> Rig:
