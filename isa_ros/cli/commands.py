@@ -64,7 +64,7 @@ def actuators(options: Namespace) -> bool:
     """Run actuators of a configuration for a coordinator on another host."""
     from isa_ros.processes.actuator_host import host_actuators
     scenario = None if options.scenario is None else find(options.scenario, SCENARIOS)
-    host_actuators(find(options.config, CONFIG), scenario, options.names)
+    host_actuators(find(options.config, CONFIG), scenario, options.names, options.set)
     return True
 
 
@@ -119,8 +119,7 @@ def _draw(bag: Path, page: Path) -> None:
 def bode(options: Namespace) -> bool:
     """Measure the frequency response of a loop."""
     from isa_ros.analysis.response.command import bode as measure_bode
-    measure_bode(options)
-    return True
+    return measure_bode(options)
 
 
 def step(options: Namespace) -> bool:
@@ -128,6 +127,12 @@ def step(options: Namespace) -> bool:
     from isa_ros.analysis.response.command import step as measure_step
     measure_step(options)
     return True
+
+
+def tune(options: Namespace) -> bool:
+    """Find gains of a loop for a wanted margin and bandwidth."""
+    from isa_ros.analysis.tuning.command import tune as find_gains
+    return find_gains(options)
 
 
 def identify(options: Namespace) -> bool:

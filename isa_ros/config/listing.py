@@ -105,7 +105,8 @@ def _run_tables(path: str) -> Iterator[str]:
     yield _table('record', [
         row._replace(source=given) for row in rows(run.record.storage, {})])
     for actuator in run.actuators:
-        title = f'actuators.{actuator.name}: {actuator.model}, preset {actuator.preset}'
+        title = (f'actuators.{actuator.name}.parameters: {actuator.model}, '
+                 f'preset {actuator.preset}')
         origin = origins.actuators[actuator.name]
         yield _table(title, rows(actuator.sheet, origin.sheet))
         if actuator.load is not None:
@@ -114,7 +115,7 @@ def _run_tables(path: str) -> Iterator[str]:
     if run.leg is not None and origins.leg is not None:
         yield _table('leg.start', [
             row._replace(source=given) for row in rows(run.leg.start, {})])
-        yield _table(f'leg: {run.leg.model}', rows(run.leg.sheet, origins.leg))
+        yield _table(f'leg.parameters: {run.leg.model}', rows(run.leg.sheet, origins.leg))
 
 
 def _load_tables(model: Model) -> Iterator[str]:

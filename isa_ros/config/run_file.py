@@ -11,6 +11,7 @@ from pathlib import Path
 
 from isa_ros.actuator.sheet import ActuatorSheet, refuse_wiring
 from isa_ros.config.catalogue import actuator_model, leg_section, material_section, Model
+from isa_ros.config.changes import changed, Values
 from isa_ros.config.leg_config import LegConfig, LegStart
 from isa_ros.config.names import NAME_RULE, refuse_bad_name
 from isa_ros.config.own_load import load_section, refuse_beyond_stops
@@ -54,9 +55,9 @@ class Origins:
     leg: Section | None
 
 
-def load_run(path: Path | str) -> RunConfig:
+def load_run(path: Path | str, changes: Values | None = None) -> RunConfig:
     """
-    Return the resolved configuration of a run file.
+    Return the resolved configuration of a run file, with some values changed.
 
     Raises
     ------
@@ -64,7 +65,8 @@ def load_run(path: Path | str) -> RunConfig:
         The file cannot be read, or its content cannot be run.
 
     """
-    return read_run(path)[0]
+    path = Path(path)
+    return run_of(changed(read(path), changes or {}, path.name), Place(path.name))[0]
 
 
 def read_run(path: Path | str) -> tuple[RunConfig, Origins]:

@@ -28,7 +28,7 @@ END_S = 3.0
 _POLL_S = 0.01
 _ROOT = Path(isa_ros.__file__).parents[1]
 
-ParameterValue = bool | float | str
+ParameterValue = bool | float | str | tuple[str, ...]
 
 
 @dataclass(frozen=True)
@@ -51,11 +51,17 @@ class Process:
 
 def actuator_processes(
         run: RunConfig, config: Path, scenario: Path | None,
-        names: Sequence[str] | None = None) -> tuple[Process, ...]:
-    """Return the processes of the named actuators (None: all), in the order of the file."""
-    files = [('config_file', str(config.resolve()))]
+        names: Sequence[str] | None = None, changes: Sequence[str] = ()) -> tuple[Process, ...]:
+    """
+    Return the processes of the named actuators (None: all), in the order of the file.
+
+    ``changes`` are those of a `Request`.
+    """
+    files: list[tuple[str, ParameterValue]] = [('config_file', str(config.resolve()))]
     if scenario is not None:
         files.append(('scenario_file', str(scenario.resolve())))
+    if changes:
+        files.append(('set', tuple(changes)))
     return tuple(
         Process(actuator.name, 'actuator', (('lockstep', True), *files))
         for actuator in run.actuators if names is None or actuator.name in names)

@@ -19,6 +19,10 @@ COMPRESSIONS = ('none', 'lz4', 'zstd')
 
 RosValue = bool | float | str
 
+SET_HELP = (
+    'another value in {config}, by its key and in its unit, as isa params shows them; keys of the '
+    'scenario begin with scenario.')
+
 
 class Kind(Enum):
     """Kind of an option's value."""
@@ -38,10 +42,14 @@ class Kind(Enum):
     """Names, separated by commas on the command line."""
     REPEATED = 'repeated'
     """One name for each time the option is given on the command line."""
+    CHANGES = 'changes'
+    """One KEY=VALUE for each time the option is given on the command line."""
 
 
 _SHIPPED = (Kind.CONFIG, Kind.SCENARIO)
-_NAMES = (Kind.NAMES, Kind.REPEATED)
+_LISTS: Mapping[Kind, str] = {
+    Kind.NAMES: 'names', Kind.REPEATED: 'names', Kind.CHANGES: 'KEY=VALUE'}
+"""Entries of the kinds that are lists."""
 _UNSET: Mapping[Kind, tuple[RosValue, str]] = {
     Kind.POSITIVE: (0.0, '0'), Kind.NOT_NEGATIVE: (-1.0, '< 0'), Kind.FLAG: (False, 'false')}
 """Value of a ROS parameter that is not set, and its text in help; other kinds: an empty text."""
@@ -87,16 +95,16 @@ class Option:
         text = self.meaning + (f', {self.unit}' if self.unit else '')
         if self.kind is Kind.COMPRESSION:
             text += f': {", ".join(COMPRESSIONS)}'
-        if self.kind in _NAMES:
-            text += '; a list of names'
+        if self.kind in _LISTS:
+            text += f'; a list of {_LISTS[self.kind]}'
         elif self.default is None and not self.is_required:
             text += f'; {_UNSET.get(self.kind, _EMPTY)[1]}: {self.otherwise or "none"}'
         return text.format(config='the run file')
 
     @property
     def parameter_default(self) -> RosValue | None:
-        """Return the default of the ROS parameter; None: an empty list of names."""
-        if self.kind in _NAMES:
+        """Return the default of the ROS parameter; None: an empty list."""
+        if self.kind in _LISTS:
             return None
         unset: RosValue = _UNSET.get(self.kind, _EMPTY)[0]
         return unset if self.default is None else self.default
@@ -110,11 +118,11 @@ class Option:
         """Return the value for `Request` of a checked command-line argument."""
         if self.kind in _SHIPPED:
             return None if value is None else find(value, self.kind.value)
-        return tuple(value) if self.kind in _NAMES else value
+        return tuple(value) if self.kind in _LISTS else value
 
     def of_parameter(self, value: Any) -> Any:
         """Return the value for `Request` of a ROS parameter."""
-        if self.kind in _NAMES:
+        if self.kind in _LISTS:
             return tuple(value or ())
         if self.kind is Kind.NOT_NEGATIVE:
             return None if value < 0.0 else value
@@ -143,6 +151,8 @@ class Request:
     scenario: Path | None = field(default=None, metadata=_option(
         Kind.SCENARIO, 'commands over time: a file, or a shipped one by name', metavar='FILE',
         parameter='scenario_file', is_launched=True))
+    changes: tuple[str, ...] = field(default=(), metadata=_option(
+        Kind.CHANGES, SET_HELP, metavar='KEY=VALUE', name='set'))
     duration_s: float | None = field(default=None, metadata=_option(
         Kind.POSITIVE, 'simulated time', otherwise='that of the scenario, else until Ctrl-C',
         unit='s', metavar='S', name='duration', is_launched=True))

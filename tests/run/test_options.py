@@ -29,7 +29,7 @@ def test_the_ros_parameters_of_the_coordinator_keep_their_names():
     assert set(DEFAULTS) == {
         'config_file', 'scenario_file', 'out', 'duration', 'real_time_factor', 'controllers',
         'paused', 'restore', 'save', 'overwrite', 'compression', 'split_mb', 'in_process',
-        'join_timeout_s', 'sync'}
+        'join_timeout_s', 'sync', 'set'}
 
 
 def test_the_launch_file_keeps_its_arguments_and_their_defaults():
@@ -52,18 +52,20 @@ def test_parameters_that_are_set_ask_for_what_the_command_line_asks_for():
         'config_file': 'leg', 'scenario_file': 'drop', 'out': 'bag', 'duration': 0.5,
         'real_time_factor': 2.0, 'controllers': ['sway', 'hold'], 'paused': True,
         'restore': 'a.json', 'save': 'b.json', 'overwrite': True, 'compression': 'lz4',
-        'split_mb': 3.0, 'in_process': True, 'join_timeout_s': 7.0, 'sync': True}, is_alone=True)
+        'split_mb': 3.0, 'in_process': True, 'join_timeout_s': 7.0, 'sync': True,
+        'set': ['supply.pressure_mpa=14.0']}, is_alone=True)
     by_arguments = request_of_arguments({
         'config': 'leg', 'scenario': 'drop', 'out': Path('bag'), 'duration': 0.5,
         'real_time_factor': 2.0, 'controller': ['sway', 'hold'], 'paused': True,
         'restore': Path('a.json'), 'save': Path('b.json'), 'overwrite': True,
         'compression': 'lz4', 'split_mb': 3.0, 'in_process': True, 'join_timeout': 7.0,
-        'elsewhere': (), 'sync': True}, is_alone=True)
+        'elsewhere': (), 'sync': True, 'set': ['supply.pressure_mpa=14.0']}, is_alone=True)
     assert by_parameters == by_arguments == Request(
         config=LEG, scenario=find('drop', SCENARIOS), out=Path('bag'), duration_s=0.5,
         real_time_factor=2.0, controllers=('sway', 'hold'), is_paused=True,
         restore=Path('a.json'), save=Path('b.json'), overwrite=True, compression='lz4',
-        split_mb=3.0, is_synced=True, in_process=True, join_timeout_s=7.0, is_alone=True)
+        split_mb=3.0, is_synced=True, in_process=True, join_timeout_s=7.0, is_alone=True,
+        changes=('supply.pressure_mpa=14.0',))
 
 
 @pytest.mark.parametrize('field, given, expected', [
@@ -92,6 +94,10 @@ def test_a_launch_file_hands_texts_on_as_parameters_of_their_type():
      'of the chunks of the bag: none, lz4, zstd; empty: that of the run file, else none'),
     ('controllers', 'a node of yours; the run waits for it at every tick; may be repeated',
      'a node of yours; the run waits for it at every tick; a list of names'),
+    ('changes', 'another value in CONFIG, by its key and in its unit, as isa params shows them; '
+     'keys of the scenario begin with scenario.',
+     'another value in the run file, by its key and in its unit, as isa params shows them; keys '
+     'of the scenario begin with scenario.; a list of KEY=VALUE'),
     ('join_timeout_s', 'longest wait for participants (default: 30 s)',
      'longest wait for participants, s')])
 def test_help_says_unit_and_default_in_each_place(field, help_, description):

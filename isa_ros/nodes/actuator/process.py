@@ -7,6 +7,7 @@ import sys
 
 from isa_ros.actuator.actuator import Timing
 from isa_ros.config.catalogue import actuator_model, model_names
+from isa_ros.config.changes import changes_of
 from isa_ros.config.default_actuator import default_actuator, default_load, DEFAULT_TIMING
 from isa_ros.config.paths import CONFIG, find, SCENARIOS
 from isa_ros.config.run_config import RunConfig
@@ -20,9 +21,10 @@ from isa_ros.nodes.lockstep.roles import ActuatorRole
 from isa_ros.nodes.middleware.arguments import init_ros
 from isa_ros.nodes.middleware.environment import set_defaults
 from isa_ros.processes.stopping import end_with_parent, StopRequest
-from isa_ros.scenario.scenario import load_scenario
+from isa_ros.scenario.scenario import planned
 from rcl_interfaces.msg import ParameterDescriptor
 from rclpy.node import Node
+from rclpy.parameter import Parameter
 from rclpy.utilities import try_shutdown
 
 USAGE = (
@@ -70,15 +72,17 @@ def _resolve(node: Node, model: str) -> Setup:
             ('model', model, f'one of {", ".join(model_names())}'),
             ('config_file', '', 'run file that declares this actuator'),
             ('scenario_file', '', 'scenario that changes loads or start of that run'),
+            ('set', Parameter.Type.STRING_ARRAY, 'other values in these files, each KEY=VALUE'),
             ('real_time_factor', 1.0,
              'simulated over host time, if alone; 0: as fast as possible')):
         node.declare_parameter(
             name, default, ParameterDescriptor(description=description, read_only=True))
     chosen, path = _text(node, 'model'), _text(node, 'config_file')
     if path:
-        run = load_run(find(path, CONFIG))
-        if scenario := _text(node, 'scenario_file'):
-            run = load_scenario(find(scenario, SCENARIOS), run).run
+        changes = changes_of(node.get_parameter_or('set').value or ())
+        run = load_run(find(path, CONFIG), changes.run)
+        scenario = _text(node, 'scenario_file')
+        run = planned(find(scenario, SCENARIOS) if scenario else None, run, changes).run
         return _from_run(run, node.get_name(), chosen, _boolean(node, 'lockstep'))
     if _boolean(node, 'lockstep'):
         raise ConfigError(f'{node.get_name()}: lockstep needs the parameter config_file')

@@ -43,7 +43,7 @@ def in_processes(session: Session, report: Report | None, should_stop: StopReque
     request = session.request
     processes = actuator_processes(
         session.run, request.config, request.scenario,
-        session.run.names_here(request.elsewhere))
+        session.run.names_here(request.elsewhere), request.changes)
     children = Children(
         processes, request.namespace, _work if request.is_alone else None)
     with defaults(), sole_coordinator(), children:
