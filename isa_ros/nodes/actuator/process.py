@@ -19,6 +19,7 @@ from isa_ros.nodes.lockstep.participant_end import ParticipantEnd
 from isa_ros.nodes.lockstep.roles import ActuatorRole
 from isa_ros.nodes.middleware.arguments import init_ros
 from isa_ros.nodes.middleware.environment import set_defaults
+from isa_ros.nodes.middleware.parameters import declare, refuse_unknown
 from isa_ros.processes.stopping import end_with_parent, StopRequest
 from isa_ros.scenario.scenario import load_scenario
 from rcl_interfaces.msg import ParameterDescriptor
@@ -72,8 +73,7 @@ def _resolve(node: Node, model: str) -> Setup:
             ('scenario_file', '', 'scenario that changes loads or start of that run'),
             ('real_time_factor', 1.0,
              'simulated over host time, if alone; 0: as fast as possible')):
-        node.declare_parameter(
-            name, default, ParameterDescriptor(description=description, read_only=True))
+        declare(node, name, default, ParameterDescriptor(description=description, read_only=True))
     chosen, path = _text(node, 'model'), _text(node, 'config_file')
     if path:
         run = load_run(find(path, CONFIG))
@@ -83,6 +83,7 @@ def _resolve(node: Node, model: str) -> Setup:
     if _boolean(node, 'lockstep'):
         raise ConfigError(f'{node.get_name()}: lockstep needs the parameter config_file')
     if not chosen:
+        refuse_unknown(node)  # its name may be misspelt
         raise ConfigError(
             f'{node.get_name()}: set the parameter model, one of {", ".join(model_names())}, or '
             'config_file')

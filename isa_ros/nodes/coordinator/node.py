@@ -5,7 +5,8 @@ from typing import Any
 
 from isa_ros.core.topic import Topic
 from isa_ros.errors import ConfigError
-from isa_ros.nodes.coordinator.services import REAL_TIME_FACTOR
+from isa_ros.nodes.coordinator.services import REAL_TIME_FACTOR, STEP_COUNT
+from isa_ros.nodes.middleware.parameters import declare, refuse_unknown
 from isa_ros.nodes.middleware.publishers import PreparedPublishers
 from isa_ros.nodes.middleware.refusals import refusals
 from isa_ros.run.narrator import Outlet, Outlets
@@ -45,11 +46,12 @@ class CoordinatorNode(Node):
         Raises
         ------
         ConfigError
-            The parameter config_file is not set.
+            A parameter is unknown or has a wrong type, or config_file is not set.
 
         """
         values = {option.parameter: self._declared(option)
                   for option in OPTIONS if option.is_parameter}
+        refuse_unknown(self, (STEP_COUNT,))
         if not values['config_file']:
             raise ConfigError(f'{NAME}: set the parameter config_file')
         return request_of_parameters(
@@ -58,10 +60,10 @@ class CoordinatorNode(Node):
     def _declared(self, option: Option) -> Any:
         """Declare the parameter of an option and return its value."""
         default = option.parameter_default
-        return self.declare_parameter(
-            option.parameter, Parameter.Type.STRING_ARRAY if default is None else default,
+        return declare(
+            self, option.parameter, Parameter.Type.STRING_ARRAY if default is None else default,
             ParameterDescriptor(description=option.description,
-                                read_only=option.parameter != REAL_TIME_FACTOR)).value
+                                read_only=option.parameter != REAL_TIME_FACTOR))
 
 
 def _relative(name: str) -> str:

@@ -23,10 +23,11 @@ USAGE = (
 def main(args: Sequence[str] | None = None) -> None:
     """Coordinate the run that the parameters describe."""
     start_without_blas()
-    sys.exit(_main(args))
+    sys.exit(run(args))
 
 
-def _main(args: Sequence[str] | None) -> int:
+def run(args: Sequence[str] | None) -> int:
+    """Coordinate one run and return the exit code."""
     with StopRequest() as should_stop:
         try:
             set_defaults()
@@ -34,9 +35,9 @@ def _main(args: Sequence[str] | None) -> int:
             node = CoordinatorNode()
             try:
                 session = prepare(node.request())
-                run = coordinate_locally if session.request.in_process else coordinate
+                start = coordinate_locally if session.request.in_process else coordinate
                 with sole_coordinator():
-                    run(node, session, terminal_report(), should_stop)
+                    start(node, session, terminal_report(), should_stop)
                 if session.pace.shortfall:
                     node.get_logger().warning(session.pace.shortfall)
             finally:
