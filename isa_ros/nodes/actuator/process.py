@@ -18,6 +18,7 @@ from isa_ros.nodes.actuator.node import ActuatorNode, Setup
 from isa_ros.nodes.lockstep.participant_end import ParticipantEnd
 from isa_ros.nodes.lockstep.roles import ActuatorRole
 from isa_ros.nodes.middleware.arguments import init_ros
+from isa_ros.nodes.middleware.discovery import refuse_off
 from isa_ros.nodes.middleware.environment import set_defaults
 from isa_ros.nodes.middleware.parameters import declare, refuse_unknown
 from isa_ros.processes.stopping import end_with_parent, StopRequest
@@ -57,6 +58,7 @@ def _run(model: str, should_stop: StopRequest) -> None:
     try:
         gc.freeze()  # garbage collection of the loaded objects would delay a tick by 60 ms
         if _boolean(node, 'lockstep'):
+            refuse_off(node.get_name())
             ParticipantEnd(node, ActuatorRole(node)).spin(should_stop)
         else:
             run_alone(node, _number(node, 'real_time_factor'), should_stop)
