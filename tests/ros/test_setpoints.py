@@ -1,14 +1,20 @@
 """Setpoints and requests of a user, to an actuator alone and in a run."""
 
+from dataclasses import replace
+import io
 from pathlib import Path
 import signal
 
 from isa_ros.bag.reader import Bag
+from isa_ros.config.default_actuator import default_actuator, DEFAULT_TIMING
+from isa_ros.nodes.actuator.node import ActuatorNode, Setup
 from msg_adapters.cdr_reader import decode
 import pytest
+import rclpy
 from rclpy.node import Node
 from rclpy.qos import QoSProfile, ReliabilityPolicy
 from sensor_msgs.msg import JointState
+from std_msgs.msg import Float64
 from std_srvs.srv import SetBool
 from tests.ros.spinning import Spinning
 from tests.ros.started import actuator, bringup, RIG, wait_for
@@ -96,6 +102,54 @@ def test_incompatible_publisher_is_named(observer, tmp_path):
         QoSProfile(depth=1, reliability=ReliabilityPolicy.BEST_EFFORT))
     with actuator(tmp_path / 'log', 'knee', model='isa_v5') as process:
         wait_for(lambda: '/observer: its /knee/setpoint cannot be received' in process.errors)
+
+
+@pytest.fixture
+def knee(observer):
+    """Return what makes the node of an ISA v5 in this process."""
+    context, nodes = rclpy.Context(), []
+    rclpy.init(context=context)
+
+    def made(beyond: str | None = None) -> ActuatorNode:
+        config = replace(default_actuator('isa_v5', 'knee'), beyond_range=beyond)
+        nodes.append(ActuatorNode(
+            lambda _: Setup(config, DEFAULT_TIMING), 'knee', has_mailbox=False,
+            context=context))
+        return nodes[-1]
+    yield made
+    for node in nodes:
+        node.destroy_node()
+    rclpy.shutdown(context=context)
+
+
+@pytest.mark.parametrize(('beyond', 'message', 'in_force'), [
+    (None, 'setpoint rejected: knee: setpoint position = 50 m, must be 0 to 0.1 m', 0.05),
+    ('limit', 'knee: setpoint position = 50 m, limited to 0.1 m, the stroke', 0.1)])
+def test_a_setpoint_in_mm_is_reported(observer, knee, capfd, beyond, message, in_force):
+    node, log = knee(beyond), io.StringIO()
+    publisher = observer.create_publisher(JointState, '/knee/setpoint', 1)
+
+    def is_reported() -> bool:
+        publisher.publish(JointState(name=['knee'], position=[50.0]))
+        node.serve()
+        log.write(capfd.readouterr().err)
+        return message in log.getvalue()
+    wait_for(is_reported, 'the warning')
+    node.advance()
+    in_force_now = node.actuator.memory.reu['setpoint']['position'].item()
+    assert in_force_now == pytest.approx(in_force, abs=1e-6)  # a count of the encoder
+
+
+def test_a_publisher_of_another_type_is_named(observer, knee, capfd):
+    """DDS does not match it, and neither side has an event."""
+    observer.create_publisher(Float64, '/knee/setpoint', 1)
+    node, log = knee(), io.StringIO()
+    def is_named() -> bool:
+        node.check_publishers()
+        log.write(capfd.readouterr().err)
+        return ('/observer: its /knee/setpoint cannot be received: it is of type '
+                'std_msgs/msg/Float64, must be sensor_msgs/msg/JointState') in log.getvalue()
+    wait_for(is_named, 'the warning')
 
 
 def test_unknown_model_is_refused(domain, tmp_path):

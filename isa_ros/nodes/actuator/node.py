@@ -16,6 +16,7 @@ from isa_ros.nodes.middleware.servers import open_server
 from isa_ros.run.packing import Names, Packer, Shown
 from isa_ros.surroundings.supply import SUPPLY_SAMPLE
 from msg_adapters.actuator_messages import TOPICS
+from msg_adapters.joint_state import TYPE as SETPOINT_TYPE
 from msg_adapters.setpoint import msg_to_command
 import numpy as np
 from rclpy.node import Node
@@ -71,7 +72,7 @@ class ActuatorNode(Node):
         setpoints = self.create_subscription(
             JointState, '~/setpoint', self._on_setpoint, SETPOINT)
         enable = self.create_service(SetBool, '~/enable', self._on_enable)
-        self._incompatible = IncompatiblePublishers(self, setpoints)
+        self._incompatible = IncompatiblePublishers(self, setpoints, SETPOINT_TYPE)
         self._inputs = open_server(
             self, [setpoints], [enable], self._tunables.services, has_mailbox)
 
@@ -159,10 +160,13 @@ class ActuatorNode(Node):
     def _on_setpoint(self, message: JointState) -> None:
         try:
             command = msg_to_command(message, self.get_name())
+            limited = self.actuator.setpoint_range.admit(command)
         except SetpointError as error:
             self.get_logger().warning(
                 f'setpoint rejected: {error}', throttle_duration_sec=WARNING_PERIOD_S)
             return
+        if limited:
+            self.get_logger().warning(limited, throttle_duration_sec=WARNING_PERIOD_S)
         self.actuator.accept(command)
 
     def _on_enable(
