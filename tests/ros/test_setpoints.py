@@ -3,12 +3,16 @@
 from dataclasses import replace
 import io
 from pathlib import Path
+import shlex
 import signal
 
 from isa_ros.bag.reader import Bag
+from isa_ros.config.catalogue import model_names
 from isa_ros.config.default_actuator import default_actuator, DEFAULT_TIMING
+from isa_ros.nodes.actuator.alone import ready_text
 from isa_ros.nodes.actuator.node import ActuatorNode, Setup
 from msg_adapters.cdr_reader import decode
+from msg_adapters.setpoint import msg_to_command
 import pytest
 import rclpy
 from rclpy.node import Node
@@ -18,6 +22,7 @@ from std_msgs.msg import Float64
 from std_srvs.srv import SetBool
 from tests.ros.spinning import Spinning
 from tests.ros.started import actuator, bringup, RIG, wait_for
+import yaml
 
 pytestmark = pytest.mark.ros
 ARRIVAL = 1e-3  # m: a tenth of the way
@@ -69,6 +74,7 @@ def test_actuator_alone_follows_a_setpoint(observer, tmp_path):
     """One process, 1 kHz topics, and motion to a setpoint."""
     with actuator(tmp_path / 'log', 'knee', model='isa_v5') as process:
         user = User(observer, 'knee')
+        wait_for(lambda: '[knee]: ready at 1 times real time: ' in process.errors)
         user.connect()
         target = user.position() + 0.01
         user.go_to(target)
@@ -120,6 +126,25 @@ def knee(observer):
     for node in nodes:
         node.destroy_node()
     rclpy.shutdown(context=context)
+
+
+@pytest.mark.parametrize('model', model_names())
+def test_the_command_that_a_lone_actuator_prints_moves_it(observer, model):
+    """It is one line, and its setpoint is accepted as it stands."""
+    node = ActuatorNode(
+        lambda _: Setup(default_actuator(model, 'knee'), DEFAULT_TIMING), 'knee',
+        has_mailbox=False, context=observer.context, namespace='lab')
+    try:
+        text = ready_text(node, 1.0)
+        assert text.startswith('ready at 1 times real time: position ') and '\n' not in text
+        command = shlex.split(text[text.index('ros2 topic pub'):])
+        assert command[:6] == [
+            'ros2', 'topic', 'pub', '--once', '/lab/knee/setpoint', 'sensor_msgs/msg/JointState']
+        message = JointState(**yaml.safe_load(command[6]))
+        assert node.actuator.setpoint_range.admit(msg_to_command(message, 'knee')) == ''
+        assert message.position[0] != pytest.approx(node.sample[0]['position'], rel=0.1)
+    finally:
+        node.destroy_node()
 
 
 @pytest.mark.parametrize(('beyond', 'message', 'in_force'), [

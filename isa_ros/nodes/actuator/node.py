@@ -1,12 +1,13 @@
 """ROS 2 node of one smart actuator: setpoints in, one tick, messages out."""
 
 from collections.abc import Callable, Mapping
+from contextlib import suppress
 from typing import Any, NamedTuple
 
 from isa_ros.actuator.actuator import ActuatorConfig, participant_digest, SmartActuator, Timing
 from isa_ros.actuator.tunable import tunables
 from isa_ros.core.signals import COMMAND, HAS_ENABLE, Records
-from isa_ros.errors import SetpointError
+from isa_ros.errors import SetpointError, SimulationDiverged
 from isa_ros.nodes.actuator.parameters import TunableParameters
 from isa_ros.nodes.actuator.setpoint_publishers import IncompatiblePublishers
 from isa_ros.nodes.middleware.publishers import PreparedPublishers
@@ -124,6 +125,12 @@ class ActuatorNode(Node):
         if command is not None and command['kinds']:
             self.actuator.accept(command)
         self.actuator.tick(port)
+
+    def warm_up(self) -> None:
+        """Compile what a tick needs, or load it from the cache, on a copy of the actuator."""
+        with suppress(SimulationDiverged):  # so will the actuator, which reports it
+            SmartActuator(self.setup.config, self.setup.timing).tick()
+        self._packer.pack(0, 0, {})
 
     def snapshot(self) -> bytes:
         """Return the complete state; `restore` continues from it byte for byte."""

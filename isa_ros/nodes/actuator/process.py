@@ -22,6 +22,7 @@ from isa_ros.nodes.middleware.discovery import refuse_off
 from isa_ros.nodes.middleware.environment import set_defaults
 from isa_ros.nodes.middleware.parameters import declare, refuse_unknown
 from isa_ros.processes.stopping import end_with_parent, StopRequest
+from isa_ros.run.compiling import reported_compilation
 from isa_ros.scenario.scenario import load_scenario
 from rcl_interfaces.msg import ParameterDescriptor
 from rclpy.node import Node
@@ -44,7 +45,8 @@ def run(args: Sequence[str] | None, model: str) -> int:
         try:
             set_defaults()
             init_ros(args, USAGE)
-            _run(model, should_stop)
+            with reported_compilation('actuator'):
+                _run(model, should_stop)
         except IsaError as error:
             print(f'actuator: {error}', file=sys.stderr)
             return error.exit_code

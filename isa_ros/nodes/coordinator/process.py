@@ -11,6 +11,7 @@ from isa_ros.nodes.middleware.arguments import init_ros
 from isa_ros.nodes.middleware.domain import sole_coordinator
 from isa_ros.nodes.middleware.environment import set_defaults
 from isa_ros.processes.stopping import StopRequest
+from isa_ros.run.compiling import reported_compilation
 from isa_ros.run.session import prepare
 from isa_ros.run.terminal import terminal_report
 from rclpy.utilities import try_shutdown
@@ -36,7 +37,7 @@ def run(args: Sequence[str] | None) -> int:
             try:
                 session = prepare(node.request())
                 start = coordinate_locally if session.request.in_process else coordinate
-                with sole_coordinator():
+                with sole_coordinator(), reported_compilation(NAME):
                     start(node, session, terminal_report(), should_stop)
                 if session.pace.shortfall:
                     node.get_logger().warning(session.pace.shortfall)
