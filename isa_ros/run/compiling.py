@@ -12,7 +12,7 @@ from numba.core.event import Event, install_listener, Listener
 SILENT_S = 2.0  # a shorter compilation, of single small kernels, is not reported
 
 
-class CompilationReport(Listener):  # type: ignore[misc]
+class CompilationReport(Listener):
     """
     Prints one line when kernels have been compiled for `SILENT_S`; counts them on a terminal.
 

@@ -22,5 +22,5 @@ def test_a_value_that_ros_would_replace_is_refused(name, value, message):
     ({}, False), ({RANGE: ''}, False), ({RANGE: 'SUBNET'}, False), ({RANGE: 'OFF'}, True),
     ({RANGE: 'OFF', LOCALHOST_ONLY: '0'}, True), ({RANGE: 'OFF', LOCALHOST_ONLY: '1'}, False)])
 def test_discovery_is_off_unless_the_older_variable_wins(environment, off):
-    """rcl ignores the range where ROS_LOCALHOST_ONLY is 1."""
+    """In rcl: it ignores the range where ROS_LOCALHOST_ONLY is 1."""
     assert is_off(environment) is off
