@@ -15,7 +15,8 @@ from isa_ros.core.record import floats
 from isa_ros.core.signals import COMMAND, Records, SAMPLE
 from isa_ros.core.topic import Topic
 from isa_ros.surroundings.supply import SUPPLY_SAMPLE
-from msg_adapters import actuator_messages, clock, event, fluid_pressure
+from msg_adapters import (
+    actuator_messages, clock, coordinator_messages, event, fluid_pressure)
 from msg_adapters.actuator_messages import STATE_TOPICS, TOPICS
 from msg_adapters.applied_parameters import applied_parameters
 from msg_adapters.template import FIRST_VALUE, Prepared, Template, time_word
@@ -131,7 +132,8 @@ class Packer:
         for supply, shows_return in names.supplies:
             for k, suffix in enumerate(_SUPPLY_PRESSURES[:1 + shows_return]):
                 topic = Topic(f'{_COORDINATOR}/{supply}_{suffix}', fluid_pressure.TYPE)
-                found.append((topic, fluid_pressure.fluid_pressure(supply, at + k)))
+                found.append((topic, fluid_pressure.fluid_pressure(
+                    coordinator_messages.WORLD_FRAME, at + k)))
             at += len(_SUPPLY_PRESSURES)
         if names.body is not None and shown.body is not None:
             body = names.body(float_columns(shown.body.dtype, at))

@@ -116,6 +116,7 @@ def knee(observer):
     context, nodes = rclpy.Context(), []
     rclpy.init(context=context)
 
+
     def made(beyond: str | None = None) -> ActuatorNode:
         config = replace(default_actuator('isa_v5', 'knee'), beyond_range=beyond)
         nodes.append(ActuatorNode(

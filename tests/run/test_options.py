@@ -9,8 +9,8 @@ from isa_ros.config.paths import CONFIG, find, SCENARIOS
 from isa_ros.config.recording import Storage
 from isa_ros.errors import ConfigError
 from isa_ros.run.options import (
-    COMPRESSIONS, launched_elsewhere, launched_parameters, Option, OPTIONS, Request, request_of_arguments,
-    request_of_parameters)
+    COMPRESSIONS, launched_elsewhere, launched_parameters, Option, OPTIONS, Request,
+    request_of_arguments, request_of_parameters)
 import pytest
 
 ROOT = Path(__file__).parents[2]

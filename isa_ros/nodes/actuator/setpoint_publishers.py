@@ -14,8 +14,8 @@ class IncompatiblePublishers:
     """
     Checks the publishers of one subscription's topic; ``type_`` is the name of its type.
 
-    rclpy's event reports an incompatible publisher without its name, and one of another type not at
-    all; the graph has name and type.
+    rclpy's event reports an incompatible publisher without its name, and has none for one of
+    another type; the graph has name and type.
     """
 
     def __init__(self, node: Node, subscription: Subscription, type_: str) -> None:

@@ -39,6 +39,16 @@ def test_the_joint_states_hold_every_joint_that_is_not_fixed(config):
 
 
 @pytest.mark.parametrize('config', LEGS)
+def test_every_frame_is_a_link(config):
+    """Of the coordinator and of every actuator."""
+    robot, messages = published(config)
+    links = {link.get('name') for link in robot.iter('link')}
+    assert len(messages) == 3 + 3 * 7
+    frames = {topic: message.header.frame_id for topic, message in messages.items()}
+    assert {topic: frame for topic, frame in frames.items() if frame not in links} == {}
+
+
+@pytest.mark.parametrize('config', LEGS)
 def test_no_joint_has_the_name_of_an_actuator(config):
     """The entry `kfe` is the actuator's in m, `kfe_joint` the joint's in rad."""
     _, messages = published(config)
