@@ -14,9 +14,11 @@ from isa_ros.nodes.actuator.node import ActuatorNode, Setup
 from msg_adapters.cdr_reader import decode
 from msg_adapters.setpoint import msg_to_command
 import pytest
+from rcl_interfaces.msg import ParameterEvent
 import rclpy
 from rclpy.node import Node
-from rclpy.qos import QoSProfile, ReliabilityPolicy
+from rclpy.parameter import Parameter
+from rclpy.qos import DurabilityPolicy, QoSProfile, ReliabilityPolicy
 from sensor_msgs.msg import JointState
 from std_msgs.msg import Float64
 from std_srvs.srv import SetBool
@@ -164,6 +166,27 @@ def test_a_setpoint_in_mm_is_reported(observer, knee, capfd, beyond, message, in
     node.advance()
     in_force_now = node.actuator.memory.reu['setpoint']['position'].item()
     assert in_force_now == pytest.approx(in_force, abs=1e-6)  # a count of the encoder
+
+
+def test_what_was_applied_is_shown_to_a_later_subscription(observer, knee):
+    """The state is not: it is at once outdated."""
+    node = knee()
+    node.start(None)
+    node.publish()
+    node.set_parameters([Parameter('force.kp', value=9e-8)])
+    node.advance()
+    node.publish()
+    setpoints, parameters, state = [], [], []
+    kept = QoSProfile(depth=10, durability=DurabilityPolicy.TRANSIENT_LOCAL)
+    observer.create_subscription(JointState, '/knee/applied_setpoint', setpoints.append, kept)
+    observer.create_subscription(
+        ParameterEvent, '/knee/applied_parameters', parameters.append, kept)
+    observer.create_subscription(JointState, '/knee/joint_states', state.append, 10)
+    Spinning(observer).wait_for(lambda: setpoints and parameters, 'both')
+    assert [message.position[0] for message in setpoints] == [
+        pytest.approx(0.05, abs=1e-6)]  # a count of the encoder
+    assert [change.name for change in parameters[0].changed_parameters] == ['force.kp']
+    assert not state
 
 
 def test_a_publisher_of_another_type_is_named(observer, knee, capfd):

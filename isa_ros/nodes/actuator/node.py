@@ -14,9 +14,8 @@ from isa_ros.nodes.middleware.publishers import PreparedPublishers
 from isa_ros.nodes.middleware.qos import SETPOINT
 from isa_ros.nodes.middleware.refusals import refusals
 from isa_ros.nodes.middleware.servers import open_server
-from isa_ros.run.packing import Names, Packer, Shown
+from isa_ros.run.packing import Names, Packer, Shown, topics_of_actuator
 from isa_ros.surroundings.supply import SUPPLY_SAMPLE
-from msg_adapters.actuator_messages import TOPICS
 from msg_adapters.joint_state import TYPE as SETPOINT_TYPE
 from msg_adapters.setpoint import msg_to_command
 import numpy as np
@@ -67,8 +66,7 @@ class ActuatorNode(Node):
             Names([(config.name, config.sheet.is_rotary)]),
             Shown(memory.samples, memory.applied, np.zeros(0, SUPPLY_SAMPLE), None),
             is_run=False)
-        self.outlet = PreparedPublishers(
-            self, [(f'~/{suffix}', type_) for suffix, type_ in TOPICS])
+        self.outlet = PreparedPublishers(self, topics_of_actuator('~'))
         """The publishers of `TOPICS`."""
         setpoints = self.create_subscription(
             JointState, '~/setpoint', self._on_setpoint, SETPOINT)
@@ -141,11 +139,12 @@ class ActuatorNode(Node):
         self.actuator.restore(snapshot)
 
     def publish(self) -> None:
-        """Publish the state and applied commands, where there is a subscription."""
-        if not self.outlet.has_subscribers():
+        """Publish applied commands, and the state where there is a subscription."""
+        tuned = self.actuator.applied_parameters
+        has_subscribers = self.outlet.has_subscribers()
+        if not (has_subscribers or tuned or self.actuator.applied is not None):
             return
         t_ns = self.actuator.t_ns
-        tuned = self.actuator.applied_parameters
         self._packer.pack(
             t_ns, max(0, t_ns - self.setup.timing.step_ns), {0: tuned} if tuned else {})
         self.outlet.publish(self._packer.of_actuator(0))

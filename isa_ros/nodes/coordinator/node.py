@@ -1,6 +1,7 @@
 """ROS 2 node of the coordinator: time, events, supplies and body on topics."""
 
 from collections.abc import Sequence
+from dataclasses import replace
 from typing import Any
 
 from isa_ros.core.topic import Topic
@@ -26,8 +27,9 @@ class CoordinatorNode(Node):
     def __init__(self, **kwargs: Any) -> None:
         with refusals():
             super().__init__(NAME, start_parameter_services=False, **kwargs)
-        self._time = PreparedPublishers(self, [clock.TOPIC])
-        self._events = _Events(self, [(_relative(event.TOPIC[0]), event.TOPIC[1])])
+        self._time = PreparedPublishers(self, [Topic(*clock.TOPIC)])
+        self._events = _Events(
+            self, [Topic(_relative(event.TOPIC[0]), event.TOPIC[1])])
 
     def outlets(self, surroundings: Sequence[Topic], actuators: Sequence[Outlet]) -> Outlets:
         """
@@ -36,7 +38,7 @@ class CoordinatorNode(Node):
         ``actuators`` are those of the actuators in this process; empty if their own nodes publish.
         """
         shown = PreparedPublishers(
-            self, [(_relative(topic.name), topic.type_name) for topic in surroundings])
+            self, [replace(topic, name=_relative(topic.name)) for topic in surroundings])
         return Outlets(self._time, self._events, shown, actuators)
 
     def request(self) -> Request:
