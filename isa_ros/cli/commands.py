@@ -32,14 +32,18 @@ def _simulating(command: Command) -> Command:
 
 @_simulating
 def demo(options: Namespace) -> bool:
-    """Drop the leg, in four processes, and draw the report of the bag."""
+    """Drop the leg, in four processes, print what happened, and draw the report of the bag."""
+    from isa_ros.analysis.report.outcome import outcome
+    from isa_ros.analysis.report.report import write_report
+    from isa_ros.analysis.signals.signals import read_signals
     out = options.out or next(path for path in _demo_directories() if not path.exists())
     if out.exists():
         raise BagError(f'{out} already exists; a demo does not overwrite it')
     bag = _record(Request(
         config=find('leg.yaml', CONFIG), scenario=find('drop.yaml', SCENARIOS),
         out=out / 'bag', is_alone=options.is_alone))
-    _draw(bag, out / 'report.html')
+    page, *figures = write_report(bag, out / 'report.html')
+    print(f'{page}, and {len(figures)} figures beside it\n\n{outcome(read_signals(bag))}')
     return True
 
 
