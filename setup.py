@@ -34,6 +34,8 @@ setup(
     data_files=[
         ('share/ament_index/resource_index/packages', [f'resource/{NAME}']),
         (f'share/{NAME}', ['package.xml']),
+        # setup.cfg puts console scripts where `ros2 run` looks; colcon adds PREFIX/bin to PATH.
+        ('bin', ['bin/isa']),
         shared('config', '*.yaml'),
         shared('config/bad', '*.yaml'),
         shared('config/scenarios', '*.yaml'),
