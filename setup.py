@@ -40,6 +40,7 @@ setup(
         shared('config/bad', '*.yaml'),
         shared('config/scenarios', '*.yaml'),
         shared('launch', '*.launch.py'),
+        shared('rviz', '*.rviz'),
         shared('urdf', '*.urdf'),
     ],
     # The ROS wheels never stand here: a machine with apt's ROS must not pull them.

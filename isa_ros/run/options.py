@@ -138,9 +138,7 @@ class Option:
         if self.kind in _NAMES:
             return [name for name in text.split(',') if name]
         if self.kind is Kind.FLAG:
-            if text.lower() not in _FLAGS:
-                raise ConfigError(f'{self.name}:={text}, must be true or false')
-            return _FLAGS[text.lower()]
+            return flag(self.name, text)
         if self.kind in (Kind.POSITIVE, Kind.NOT_NEGATIVE):
             try:
                 return float(text)
@@ -249,6 +247,21 @@ def launched_parameters(texts: Mapping[str, str]) -> dict[str, RosValue]:
     values = {option.parameter: option.of_launch(texts[option.name]) for option in OPTIONS
               if option.is_parameter and option.kind not in _SHIPPED}
     return {name: value for name, value in values.items() if value != []}
+
+
+def flag(name: str, text: str) -> bool:
+    """
+    Return the value of a launch file's argument that is true or false.
+
+    Raises
+    ------
+    ConfigError
+        The text is neither.
+
+    """
+    if text.lower() not in _FLAGS:
+        raise ConfigError(f'{name}:={text}, must be true or false')
+    return _FLAGS[text.lower()]
 
 
 def launched_elsewhere(texts: Mapping[str, str]) -> tuple[str, ...]:

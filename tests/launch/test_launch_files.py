@@ -5,20 +5,30 @@ from pathlib import Path
 import sys
 
 from isa_ros.config.paths import CONFIG, find, SCENARIOS
+from isa_ros.errors import ConfigError
 from isa_ros.processes.processes import MODULES
 from isa_ros.run.options import OPTIONS
 import pytest
 from tests.launch import stand_ins
 from tests.launch.stand_ins import Context, ProcessExited
+import yaml
 
 LAUNCH = Path(__file__).parents[2] / 'launch'
 
 
 @pytest.fixture
-def actions(monkeypatch):
+def installed() -> dict[str, str]:
+    """Return the ROS packages that are installed, with their prefixes; to be filled."""
+    return {}
+
+
+@pytest.fixture
+def actions(monkeypatch, installed):
     """Return what gives the arguments and the other actions of a launch file."""
     for name, module in stand_ins.modules().items():
         monkeypatch.setitem(sys.modules, name, module)
+    monkeypatch.setattr(
+        'ament_index_python.packages.get_packages_with_prefixes', lambda: installed)
 
     def of(file: str):
         spec = spec_from_file_location(file.partition('.')[0], LAUNCH / file)
@@ -54,7 +64,7 @@ def parameters(node) -> dict[str, object]:
 
 def test_the_leg_has_every_argument_of_a_bring_up(actions):
     arguments, _ = actions('leg.launch.py')
-    assert set(arguments) == {option.name for option in OPTIONS}
+    assert set(arguments) == {'rviz', *(option.name for option in OPTIONS)}
     assert arguments['config']['default_value'] == 'leg.yaml'
     assert all(given['description'] for given in arguments.values())
 
@@ -89,6 +99,28 @@ def test_actuators_of_another_host_are_not_started(leg):
     assert parameters(coordinator)['controllers'] == ['sway', 'hold']
 
 
+def test_a_leg_is_shown_where_the_packages_are_installed(leg, installed):
+    """With the URDF of its model and the simulated time."""
+    installed |= {'robot_state_publisher': '/opt', 'rviz2': '/opt'}
+    publisher, rviz, *rest = leg(config='hyq_leg', namespace='lab', rviz='true')
+    description = publisher.given['parameters'][0]['robot_description'].args[0]
+    assert '<robot name="hyq_leg">' in description and len(rest) == 4
+    assert publisher.given['parameters'][0]['use_sim_time'] is True
+    assert publisher.given['namespace'] == rviz.given['namespace'] == 'lab'
+    shown = yaml.safe_load(Path(rviz.given['arguments'][1]).read_text())['Visualization Manager']
+    assert shown['Global Options']['Fixed Frame'] == 'world'
+    assert [node.given['executable'] for node in leg()][:2] == ['robot_state_publisher', 'actuator']
+
+
+@pytest.mark.parametrize(('texts', 'message'), [
+    ({'rviz': 'true'}, 'rviz:=true needs the package robot_state_publisher, not installed'),
+    ({'rviz': 'maybe'}, 'rviz:=maybe, must be true or false'),
+    ({'rviz': 'true', 'config': 'rig_rotary'}, 'rviz:=true: rig_rotary.yaml has no leg')])
+def test_rviz_without_its_packages_or_a_leg_is_refused(leg, texts, message):
+    with pytest.raises(ConfigError, match=message):
+        leg(**texts)
+
+
 def test_in_one_process_the_coordinator_is_alone_and_gets_every_argument(leg):
     coordinator, = leg(
         config='rig_rotary', scenario='step', out='bag', duration='0.5', in_process='true',
@@ -108,3 +140,5 @@ def test_one_actuator_runs_its_model_at_real_time(actions):
         'model': 'isa_v5', 'name': 'actuator', 'namespace': '', 'real_time_factor': '1.0'}
     assert node.given['executable'] == 'actuator'
     assert set(node.given['parameters'][0]) == {'model', 'real_time_factor'}
+    with pytest.raises(RuntimeError, match='actuator-1: ended with exit code 2'):
+        node.given['on_exit'](ProcessExited('actuator-1', 2), Context())
