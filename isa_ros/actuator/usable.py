@@ -3,7 +3,7 @@ Largest gains that a loop can use: those with which one count of a sensor demand
 
 With K_p > u_max / q, where u_max is the block's limit and q the smallest step of its measured
 value, a single count saturates the demand: the loop is a relay. The same holds for K_i after one
-period, and for K_d at a count within one period.
+period. Gains on speeds have no such bound, since speeds are filtered.
 """
 
 from collections.abc import Mapping
@@ -29,10 +29,10 @@ def largest_gains(sheet: ActuatorSheet) -> Mapping[str, float]:
         block = getattr(sheet.reu, variable)
         if isinstance(block, Pid):
             kp, period = block.limit / sensors[_STEPS[variable]], 1.0 / block.rate_hz
-            gains = {'kp': kp, 'ki': kp / period, 'kd': kp * period}
+            gains = {'kp': kp, 'ki': kp / period}
         elif isinstance(block, Impedance):
             stiffness = max(block.force_out, block.force_in) / sensors[_STEPS[variable]]
-            gains = {'stiffness': stiffness, 'damping': stiffness / block.rate_hz}
+            gains = {'stiffness': stiffness}
         else:
             continue
         found |= {f'{variable}.{name}': float(gain) for name, gain in gains.items()}
