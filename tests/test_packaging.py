@@ -83,9 +83,10 @@ def test_a_sourced_workspace_has_isa_on_its_path(tmp_path: Path) -> None:
          str(tmp_path / 'prefix')], cwd=copy_of_clone(tmp_path), check=True, capture_output=True,
         timeout=120)
     result = subprocess.run(
-        [tmp_path / 'prefix' / 'bin' / 'isa', '--help'], check=True, capture_output=True, text=True,
-        timeout=120, env={'PATH': str(Path(sys.executable).parent), 'PYTHONPATH': str(ROOT),
-                          'HOME': str(tmp_path)})
+        [tmp_path / 'prefix' / 'bin' / 'isa', '--help'], check=True, capture_output=True,
+        text=True, timeout=120, env={
+            'PATH': str(Path(sys.executable).parent), 'PYTHONPATH': str(ROOT),
+            'HOME': str(tmp_path)})
     assert result.stdout.startswith('usage: isa ')
 
 

@@ -16,7 +16,7 @@ SCENARIOS = 'config/scenarios'
 
 
 def share_directories() -> list[Path]:
-    """Return the directories that may hold config/, launch/, rviz/ and urdf/, the nearest first."""
+    """Return the directories that may hold config/, launch/, rviz/, urdf/, the nearest first."""
     package = Path(__file__).resolve().parents[1]
     found = [package.parent] if (package.parent / 'package.xml').is_file() else []
     # A merged or isolated colcon install, and a wheel: PREFIX/lib/python3.x/site-packages.

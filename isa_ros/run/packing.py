@@ -62,8 +62,9 @@ class Names(NamedTuple):
 
 def topics_of_actuator(prefix: str) -> list[Topic]:
     """Return `TOPICS` below ``prefix`` with their qualities of service."""
-    return [Topic(f'{prefix}/{suffix}', type_, KEPT if (suffix, type_) in APPLIED_TOPICS else Qos())
-            for suffix, type_ in TOPICS]
+    return [
+        Topic(f'{prefix}/{suffix}', type_, KEPT if (suffix, type_) in APPLIED_TOPICS else Qos())
+        for suffix, type_ in TOPICS]
 
 
 def float_columns(record: np.dtype[np.void], first: int = 0) -> dict[str, int]:

@@ -109,7 +109,8 @@ def test_a_leg_is_shown_where_the_packages_are_installed(leg, installed):
     assert publisher.given['namespace'] == rviz.given['namespace'] == 'lab'
     shown = yaml.safe_load(Path(rviz.given['arguments'][1]).read_text())['Visualization Manager']
     assert shown['Global Options']['Fixed Frame'] == 'world'
-    assert [node.given['executable'] for node in leg()][:2] == ['robot_state_publisher', 'actuator']
+    assert [node.given['executable'] for node in leg()][:2] == [
+        'robot_state_publisher', 'actuator']
 
 
 @pytest.mark.parametrize(('texts', 'message'), [

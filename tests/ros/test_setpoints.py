@@ -118,7 +118,6 @@ def knee(observer):
     context, nodes = rclpy.Context(), []
     rclpy.init(context=context)
 
-
     def made(beyond: str | None = None) -> ActuatorNode:
         config = replace(default_actuator('isa_v5', 'knee'), beyond_range=beyond)
         nodes.append(ActuatorNode(
@@ -193,6 +192,7 @@ def test_a_publisher_of_another_type_is_named(observer, knee, capfd):
     """DDS does not match it, and neither side has an event."""
     observer.create_publisher(Float64, '/knee/setpoint', 1)
     node, log = knee(), io.StringIO()
+
     def is_named() -> bool:
         node.check_publishers()
         log.write(capfd.readouterr().err)
