@@ -54,6 +54,8 @@ class ActuatorConfig:
     """Its own load; None where it moves the body."""
     initial_position: float
     """m or rad."""
+    beyond_range: str | None = None
+    """Treatment of a setpoint beyond the range, one of `BEYOND_RANGE`; None: the first."""
 
 
 @dataclass(frozen=True)
@@ -205,6 +207,7 @@ RUN = Section(RunConfig, {
     'actuators': Key(Named(Section(ActuatorConfig, {
         'model': Key(Plain(str)), 'preset': Key(Plain(str)),
         'initial_position': Key(Plain(float)),
+        'beyond_range': Key(Plain(str), is_optional=True),
         'load': Key(ParameterSet(LocalLoad), is_optional=True),
         'sheet': Key(ParameterSet(ActuatorSheet))}))),
     'controllers': Key(Names(), meant='none'),

@@ -9,7 +9,9 @@ from dataclasses import dataclass
 import math
 from pathlib import Path
 
+from isa_ros.actuator.setpoint_range import BEYOND_RANGE
 from isa_ros.actuator.sheet import ActuatorSheet, refuse_wiring
+from isa_ros.actuator.tunable import refuse_unusable
 from isa_ros.config.catalogue import actuator_model, leg_section, material_section, Model
 from isa_ros.config.changes import changed, Values
 from isa_ros.config.leg_config import LegConfig, LegStart
@@ -237,7 +239,7 @@ def _actuator(
         supply: float) -> tuple[ActuatorConfig, ActuatorOrigin]:
     refuse_unknown(tree, (
         'model', 'preset', 'variants', 'parameters', 'load', 'initial_position_mm',
-        'initial_position_deg'),
+        'initial_position_deg', 'beyond_range'),
         place)
     model = actuator_model(tree.get('model'), f'{place}.model')  # type: ignore[arg-type]
     preset = tree.get('preset', 'default')
@@ -259,8 +261,17 @@ def _actuator(
         refuse_beyond_stops(load, position, str(place))
         _refuse_sheet(sheet, LoadSide(*linearised(load)), place)
     label = ' + '.join([str(preset), *variants])
-    return (ActuatorConfig(name, model.name, label, sheet, load, position),
+    return (ActuatorConfig(
+        name, model.name, label, sheet, load, position, _beyond_range(tree, place)),
             ActuatorOrigin(section, load_layers))
+
+
+def _beyond_range(tree: Tree, place: Place) -> str | None:
+    """Return the treatment of setpoints beyond the range; None: the default one."""
+    default = BEYOND_RANGE[0]
+    beyond = tree.get('beyond_range', default)
+    check(str(place / 'beyond_range'), beyond, {'names': BEYOND_RANGE})
+    return None if beyond == default else str(beyond)
 
 
 def _parameters(tree: Tree, place: Place) -> Section:
@@ -271,9 +282,10 @@ def _parameters(tree: Tree, place: Place) -> Section:
 
 
 def _refuse_sheet(sheet: ActuatorSheet, load: LoadSide, place: Place) -> None:
-    """Refuse control blocks that do not fit, and a plant too fast for its step."""
+    """Refuse blocks that do not fit, unusable gains, and a plant too fast for its step."""
     try:
         refuse_wiring(sheet)
+        refuse_unusable(sheet)
         refuse_too_fast(plant_record(sheet.plant)[0], sheet.plant, load)
     except (ConfigError, ParameterError) as error:
         raise ConfigError(f'{place}: {error}') from error

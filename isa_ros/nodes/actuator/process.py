@@ -19,8 +19,11 @@ from isa_ros.nodes.actuator.node import ActuatorNode, Setup
 from isa_ros.nodes.lockstep.participant_end import ParticipantEnd
 from isa_ros.nodes.lockstep.roles import ActuatorRole
 from isa_ros.nodes.middleware.arguments import init_ros
+from isa_ros.nodes.middleware.discovery import refuse_off
 from isa_ros.nodes.middleware.environment import set_defaults
+from isa_ros.nodes.middleware.parameters import declare, refuse_unknown
 from isa_ros.processes.stopping import end_with_parent, StopRequest
+from isa_ros.run.compiling import reported_compilation
 from isa_ros.scenario.scenario import planned
 from rcl_interfaces.msg import ParameterDescriptor
 from rclpy.node import Node
@@ -44,7 +47,8 @@ def run(args: Sequence[str] | None, model: str) -> int:
         try:
             set_defaults()
             init_ros(args, USAGE)
-            _run(model, should_stop)
+            with reported_compilation('actuator'):
+                _run(model, should_stop)
         except IsaError as error:
             print(f'actuator: {error}', file=sys.stderr)
             return error.exit_code
@@ -58,6 +62,7 @@ def _run(model: str, should_stop: StopRequest) -> None:
     try:
         gc.freeze()  # garbage collection of the loaded objects would delay a tick by 60 ms
         if _boolean(node, 'lockstep'):
+            refuse_off(node.get_name())
             ParticipantEnd(node, ActuatorRole(node)).spin(should_stop)
         else:
             run_alone(node, _number(node, 'real_time_factor'), should_stop)
@@ -75,8 +80,7 @@ def _resolve(node: Node, model: str) -> Setup:
             ('set', Parameter.Type.STRING_ARRAY, 'other values in these files, each KEY=VALUE'),
             ('real_time_factor', 1.0,
              'simulated over host time, if alone; 0: as fast as possible')):
-        node.declare_parameter(
-            name, default, ParameterDescriptor(description=description, read_only=True))
+        declare(node, name, default, ParameterDescriptor(description=description, read_only=True))
     chosen, path = _text(node, 'model'), _text(node, 'config_file')
     if path:
         changes = changes_of(node.get_parameter_or('set').value or ())
@@ -87,6 +91,7 @@ def _resolve(node: Node, model: str) -> Setup:
     if _boolean(node, 'lockstep'):
         raise ConfigError(f'{node.get_name()}: lockstep needs the parameter config_file')
     if not chosen:
+        refuse_unknown(node)  # its name may be misspelt
         raise ConfigError(
             f'{node.get_name()}: set the parameter model, one of {", ".join(model_names())}, or '
             'config_file')
