@@ -151,6 +151,11 @@ def coordinator(log: Path, **parameters: object) -> Iterator[Started]:
         yield process
 
 
+def without_compilation(errors: str) -> list[str]:
+    """Return the lines of standard error without the report of a first run's compilation."""
+    return [line for line in errors.splitlines() if ': compiling the simulation' not in line]
+
+
 def is_alive(pid: int) -> bool:
     """Return whether a process runs; a zombie does not."""
     try:

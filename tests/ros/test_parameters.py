@@ -23,7 +23,7 @@ from rclpy.node import Node
 from rclpy.parameter import Parameter as RosParameter
 from sensor_msgs.msg import JointState
 from tests.ros.spinning import Spinning
-from tests.ros.started import actuator, bringup, coordinator, RIG
+from tests.ros.started import actuator, bringup, coordinator, RIG, without_compilation
 
 pytestmark = pytest.mark.ros
 TUNED, APPLIED = 0, 1  # places in the sorted topics
@@ -288,8 +288,8 @@ def test_a_wrong_override_is_refused_in_one_line(domain, tmp_path, name, value, 
     """Exit code 2."""
     with actuator(tmp_path / 'log', 'knee', model='isa_v5', **{name: value}) as process:
         assert process.exit_code() == 2
-    assert message in process.errors
-    assert len(process.errors.splitlines()) == 1
+    line, = without_compilation(process.errors)
+    assert message in line
 
 
 def test_a_lone_actuator_begins_with_its_override_and_says_what_changed(observer, tmp_path):
