@@ -216,6 +216,7 @@ SCALES: Mapping[str, Callable[[ActuatorSheet, float], float]] = {
     'valve_conductance': _valve_conductance, 'full_flow': _full_flow, 'valve_lag': _valve_lag,
     'flow_knee': _flow_knee, 'flow_gain_ratio': _flow_gain_ratio,
     'output_per_speed': _output_per_speed, 'position_gain': _position_gain,
-    'output_per_force_rate': _output_per_force_rate, 'force_gain': _force_gain, 'force_integral_gain': _force_integral_gain,
+    'output_per_force_rate': _output_per_force_rate,
+    'force_gain': _force_gain, 'force_integral_gain': _force_integral_gain,
 }
 """The quantities by name, of a sheet and a supply pressure above return (Pa)."""
