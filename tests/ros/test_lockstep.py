@@ -17,7 +17,8 @@ from isa_ros.nodes.lockstep.roles import ActuatorRole, ControllerRole
 from isa_ros.nodes.middleware import mailboxes, servers
 from isa_ros.run.coordinator import Interrupted
 from isa_ros.run.exchange import Rows
-from isa_ros.run.wire import Cast, encode_tick
+from isa_ros.run.wire.cast import Cast
+from isa_ros.run.wire.steps import encode_tick
 from isa_ros.surroundings.supply import SUPPLY_SAMPLE
 import numpy as np
 import pytest
