@@ -6,9 +6,12 @@ Independent of ROS; with `isa_ros.nodes.Participant` a controller takes part in 
 
 from collections.abc import Mapping, Sequence
 import math
-from typing import NamedTuple
+from numbers import Real
+import sys
+from typing import Any, NamedTuple
 
 from isa_ros.core.signals import COMMAND, HAS_ENABLE, HAS_SETPOINT
+from isa_ros.core.suggest import listed, shortened
 from isa_ros.errors import RunError, SetpointError
 import numpy as np
 from numpy.typing import NDArray
@@ -46,6 +49,7 @@ class Setpoint(NamedTuple):
 
 _GAINS = ('stiffness', 'damping')
 _NUMBERS = ('position', 'velocity', 'effort', *_GAINS)
+_LARGEST = sys.float_info.max
 
 
 class Controller:
@@ -84,23 +88,39 @@ def fill_requests(
         An actuator that the run does not have, or an invalid value.
 
     """
+    if not isinstance(setpoints, Mapping):
+        raise SetpointError(f'{_quoted(setpoints)} are no setpoints by actuator')
     for name, setpoint in setpoints.items():
         if name not in names:
             raise SetpointError(
-                f'{name!r} is not an actuator of the run; valid: {", ".join(names)}')
-        position, velocity, effort, stiffness, damping, is_enabled = setpoint
+                f'{_quoted(name)} is not an actuator of the run; valid: {listed(names)}')
+        if not isinstance(setpoint, tuple) or len(setpoint) != len(Setpoint._fields):
+            raise SetpointError(f'{name}: {_quoted(setpoint)} is not a Setpoint')
         for field, value in zip(_NUMBERS, setpoint):
-            if value is None:
-                if field in _GAINS:
-                    continue
-                value = math.nan
-            if not (math.isfinite(value) and (value >= 0.0 or field not in _GAINS)):
-                bound = '>= 0' if math.isfinite(value) else 'finite'
-                raise SetpointError(f'{name}: setpoint {field} = {value}, must be {bound}')
+            if value is not None or field not in _GAINS:
+                _refuse_number(name, field, value)
+        position, velocity, effort, stiffness, damping, is_enabled = setpoint
+        if is_enabled not in (None, False, True):
+            raise SetpointError(
+                f'{name}: setpoint is_enabled = {_quoted(is_enabled)}, must be True or False')
         requests[names.index(name)] = (
             HAS_SETPOINT if is_enabled is None else HAS_SETPOINT | HAS_ENABLE, bool(is_enabled),
             position, velocity, effort, math.nan if stiffness is None else stiffness,
             math.nan if damping is None else damping)
+
+
+def _refuse_number(name: str, field: str, value: Any) -> None:
+    if isinstance(value, bool) or not isinstance(value, Real) or (
+            _LARGEST < abs(value) < math.inf):
+        raise SetpointError(f'{name}: setpoint {field} = {_quoted(value)}, must be a number')
+    if not math.isfinite(value):
+        raise SetpointError(f'{name}: setpoint {field} = {value}, must be finite')
+    if value < 0.0 and field in _GAINS:
+        raise SetpointError(f'{name}: setpoint {field} = {value}, must be >= 0')
+
+
+def _quoted(value: Any) -> str:
+    return shortened(repr(value))
 
 
 def merge_requests(requests: NDArray[np.void], into: NDArray[np.void]) -> None:

@@ -1,6 +1,6 @@
 """Suggestions for an unknown name, for error messages."""
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 import difflib
 import re
 
@@ -28,8 +28,10 @@ def alternatives(name: str, names: Iterable[str]) -> str:
     return f'valid: {listed(names)}'
 
 
-def listed(names: list[str]) -> str:
+def listed(names: Sequence[str]) -> str:
     """Return names as a list of at most a dozen, each shortened, and the number of all."""
+    if not names:
+        return 'none'
     first = ', '.join(shortened(name) for name in names[:_MAX_NAMED])
     return first + (f', ... ({len(names)} in all)' if len(names) > _MAX_NAMED else '')
 

@@ -7,11 +7,11 @@ from isa_ros.actuator.actuator import SmartActuator
 from isa_ros.actuator.tunable import Tunable
 from isa_ros.core.suggest import alternatives
 from isa_ros.errors import ConfigError
+from isa_ros.nodes.middleware.parameter_services import open_parameter_services
 from isa_ros.reu.wiring import VARIABLES
 from rcl_interfaces.msg import FloatingPointRange, ParameterDescriptor, SetParametersResult
 from rclpy.node import Node
 from rclpy.parameter import Parameter
-from rclpy.parameter_service import ParameterService
 from rclpy.service import Service
 
 
@@ -39,9 +39,7 @@ class TunableParameters:
                 tunable.name, tunable.value, descriptor(tunable), ignore_override=True)
         actuator.tune(_numbers(node.get_name(), overrides, tunables))
         node.add_on_set_parameters_callback(self._on_set)
-        others = set(node.services)
-        ParameterService(node)
-        self.services: Sequence[Service] = [s for s in node.services if s not in others]
+        self.services: Sequence[Service] = open_parameter_services(node)
 
     def get(self, name: str) -> Parameter | None:
         """Return a tunable as it will be at the next tick; None: not a tunable."""
