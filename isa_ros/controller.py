@@ -6,8 +6,6 @@ Independent of ROS; with `isa_ros.nodes.Participant` a controller takes part in 
 
 from collections.abc import Mapping, Sequence
 import math
-from numbers import Real
-import sys
 from typing import Any, NamedTuple
 
 from isa_ros.core.signals import COMMAND, HAS_ENABLE, HAS_SETPOINT
@@ -49,7 +47,6 @@ class Setpoint(NamedTuple):
 
 _GAINS = ('stiffness', 'damping')
 _NUMBERS = ('position', 'velocity', 'effort', *_GAINS)
-_LARGEST = sys.float_info.max
 
 
 class Controller:
@@ -110,10 +107,12 @@ def fill_requests(
 
 
 def _refuse_number(name: str, field: str, value: Any) -> None:
-    if isinstance(value, bool) or not isinstance(value, Real) or (
-            _LARGEST < abs(value) < math.inf):
-        raise SetpointError(f'{name}: setpoint {field} = {_quoted(value)}, must be a number')
-    if not math.isfinite(value):
+    try:
+        is_finite = not isinstance(value, bool) and math.isfinite(value)
+    except (TypeError, OverflowError):
+        raise SetpointError(
+            f'{name}: setpoint {field} = {_quoted(value)}, must be a number') from None
+    if not is_finite:
         raise SetpointError(f'{name}: setpoint {field} = {value}, must be finite')
     if value < 0.0 and field in _GAINS:
         raise SetpointError(f'{name}: setpoint {field} = {value}, must be >= 0')

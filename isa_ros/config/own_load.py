@@ -28,7 +28,7 @@ def load_section(tree: Tree, place: Place, model: Model) -> Section:
 
     """
     kind: Any = tree.get('kind')
-    if kind not in model.loads:
+    if not isinstance(kind, str) or kind not in model.loads:
         raise ConfigError(f'{place}.kind = {kind!r}, must be one of {", ".join(model.loads)}')
     own = {key: value for key, value in tree.items() if key != 'kind'}
     section = merge(model.loads[kind], written(own, place))

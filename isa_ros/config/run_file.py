@@ -16,6 +16,7 @@ from isa_ros.config.names import NAME_RULE, refuse_bad_name
 from isa_ros.config.own_load import load_section, refuse_beyond_stops
 from isa_ros.config.recording import read_record
 from isa_ros.config.run_config import ActuatorConfig, COORDINATOR, RunConfig, Times
+from isa_ros.config.schema import Plain
 from isa_ros.config.sections import (
     build, build_one_of, Entry, merge, names_at, Place, refuse_unknown, Section, section_at,
     written)
@@ -234,10 +235,10 @@ def _actuator(
         'initial_position_deg'),
         place)
     model = actuator_model(tree.get('model'), f'{place}.model')  # type: ignore[arg-type]
-    preset = tree.get('preset', 'default')
+    preset = Plain(str).read(tree.get('preset', 'default'), place / 'preset')
     variants = names_at(tree.get('variants', []), place / 'variants')
     section = model.with_variants(
-        model.with_preset(preset, f'{place}.preset'),  # type: ignore[arg-type]
+        model.with_preset(preset, f'{place}.preset'),
         variants, f'{place}.variants')
     section = merge(section, _parameters(tree, place))
     sheet = build(ActuatorSheet, section, model.place)
@@ -250,7 +251,7 @@ def _actuator(
         load_layers = _own_load(tree, place, model)
         load = build_one_of(LocalLoad, load_layers, place / 'load')
         refuse_beyond_stops(load, position, str(place))
-    label = ' + '.join([str(preset), *variants])
+    label = ' + '.join([preset, *variants])
     return (ActuatorConfig(name, model.name, label, sheet, load, position),
             ActuatorOrigin(section, load_layers))
 
