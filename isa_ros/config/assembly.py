@@ -43,7 +43,9 @@ def surroundings_of(run: RunConfig) -> Surroundings:
     for supply in run.supplies:
         rows = [run.index(name) for name in supply.feeds]
         span = (supply.sheet.pressure_mpa - supply.sheet.return_pressure_mpa) * MPA
-        slope = sum(largest_flow_slope(plants[row].valve, span) for row in rows)
+        slope = 0.0
+        for row in rows:  # in this order: `sum` of Python 3.12 rounds differently
+            slope += largest_flow_slope(plants[row].valve, span)
         feeds.append(Feed(supply.name, supply.sheet, rows, slope))
     starts = np.zeros(len(run.actuators), START)
     starts['position'] = [actuator.initial_position for actuator in run.actuators]
