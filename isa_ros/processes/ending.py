@@ -122,7 +122,7 @@ def _meaning(error: BaseException) -> tuple[int, str]:
     if isinstance(error, BrokenPipeError):
         return DONE, ''
     if _is_out_of_memory(error):
-        return NOT_COMPLETED, f'not enough memory ({error or "an allocation failed"})'
+        return NOT_COMPLETED, f'not enough memory ({_first_line(error) or "an allocation failed"})'
     if isinstance(error, OSError):
         where = f'{error.filename}: ' if error.filename else ''
         code = NOT_COMPLETED if error.errno in _DISK_IS_FULL else WRONG_INPUT
@@ -135,6 +135,10 @@ def _meaning(error: BaseException) -> tuple[int, str]:
     return DEFECT, (
         f'a defect of isa_ros, {type(error).__name__}: {error}{_place_of(error)}; please report '
         f'this line to {REPORT_TO}; --debug shows the traceback')
+
+
+def _first_line(error: BaseException) -> str:
+    return str(error).strip().partition('\n')[0]
 
 
 def _is_out_of_memory(error: BaseException) -> bool:
