@@ -94,28 +94,25 @@ def fill_requests(
         if not isinstance(setpoint, tuple) or len(setpoint) != len(Setpoint._fields):
             raise SetpointError(f'{name}: {_quoted(setpoint)} is not a Setpoint')
         for field, value in zip(_NUMBERS, setpoint):
-            if value is not None or field not in _GAINS:
-                _refuse_number(name, field, value)
+            if value is None and field in _GAINS:
+                continue
+            try:
+                is_valid = math.isfinite(value) and (value >= 0.0 or field not in _GAINS)
+            except (TypeError, OverflowError):
+                raise _refusal(name, field, value, 'a number') from None
+            if not is_valid:
+                raise _refusal(name, field, value, '>= 0' if math.isfinite(value) else 'finite')
         position, velocity, effort, stiffness, damping, is_enabled = setpoint
-        if is_enabled not in (None, False, True):
-            raise SetpointError(
-                f'{name}: setpoint is_enabled = {_quoted(is_enabled)}, must be True or False')
+        if is_enabled is not None and not isinstance(is_enabled, (bool, np.bool_)):
+            raise _refusal(name, 'is_enabled', is_enabled, 'True or False')
         requests[names.index(name)] = (
             HAS_SETPOINT if is_enabled is None else HAS_SETPOINT | HAS_ENABLE, bool(is_enabled),
             position, velocity, effort, math.nan if stiffness is None else stiffness,
             math.nan if damping is None else damping)
 
 
-def _refuse_number(name: str, field: str, value: Any) -> None:
-    try:
-        is_finite = not isinstance(value, bool) and math.isfinite(value)
-    except (TypeError, OverflowError):
-        raise SetpointError(
-            f'{name}: setpoint {field} = {_quoted(value)}, must be a number') from None
-    if not is_finite:
-        raise SetpointError(f'{name}: setpoint {field} = {value}, must be finite')
-    if value < 0.0 and field in _GAINS:
-        raise SetpointError(f'{name}: setpoint {field} = {value}, must be >= 0')
+def _refusal(name: str, field: str, value: Any, bound: str) -> SetpointError:
+    return SetpointError(f'{name}: setpoint {field} = {_quoted(value)}, must be {bound}')
 
 
 def _quoted(value: Any) -> str:
