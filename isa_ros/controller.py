@@ -8,7 +8,7 @@ from collections.abc import Mapping, Sequence
 import math
 from typing import Any, NamedTuple
 
-from isa_ros.core.signals import COMMAND, HAS_ENABLE, HAS_SETPOINT
+from isa_ros.core.signals import HAS_ENABLE, HAS_SETPOINT
 from isa_ros.core.suggest import listed, shortened
 from isa_ros.errors import RunError, SetpointError
 import numpy as np
@@ -93,7 +93,8 @@ def fill_requests(
                 f'{_quoted(name)} is not an actuator of the run; valid: {listed(names)}')
         if not isinstance(setpoint, tuple) or len(setpoint) != len(Setpoint._fields):
             raise SetpointError(f'{name}: {_quoted(setpoint)} is not a Setpoint')
-        for field, value in zip(_NUMBERS, setpoint):
+        values: Sequence[Any] = setpoint
+        for field, value in zip(_NUMBERS, values):
             if value is None and field in _GAINS:
                 continue
             try:

@@ -26,7 +26,9 @@ from isa_ros.core.kernel import kernel
 def twice(x):
     return {factor} * x
 """
-MAIN = 'from isa_ros.caller import caller; import numba; print(caller(1.0), numba.config.CACHE_DIR)'
+MAIN = (
+    'from isa_ros.caller import caller; import numba; '
+    'print(caller(1.0), numba.config.CACHE_DIR)')
 
 
 @pytest.fixture

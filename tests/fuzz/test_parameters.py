@@ -31,7 +31,8 @@ def value(dice: random.Random) -> ParameterValue:
     """Return a value of any type, or of none."""
     return ParameterValue(
         type=dice.choice(TYPES), bool_value=dice.random() < 0.5,
-        integer_value=dice.choice((0, 1, -1, 2**63 - 1, -2**63)), double_value=dice.choice(NUMBERS),
+        integer_value=dice.choice((0, 1, -1, 2**63 - 1, -2**63)),
+        double_value=dice.choice(NUMBERS),
         string_value=dice.choice(NAMES), double_array_value=dice.choices(NUMBERS, k=2),
         string_array_value=dice.choices(NAMES, k=2), byte_array_value=[b'x'])
 

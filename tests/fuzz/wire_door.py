@@ -182,7 +182,8 @@ def participant(dice: random.Random) -> ParticipantEnd:
 
 def take(data: bytes) -> None:
     """Take an answer as the coordinator does."""
-    checks, rows = AnswerChecks(Node('coordinator'), PARTICIPANTS), _rows()  # type: ignore[arg-type]
+    node: Any = Node('coordinator')
+    checks, rows = AnswerChecks(node, PARTICIPANTS), _rows()
     answer = checks.decoded(data, RUN)
     if answer is None or answer.run_id != RUN:
         return

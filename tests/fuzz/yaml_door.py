@@ -7,10 +7,10 @@ from pathlib import Path
 import random
 from typing import Any
 
-from isa_ros.config import catalogue
-from isa_ros.config.paths import CONFIG, find, SCENARIOS
 from isa_ros.actuator.sheet import ActuatorSheet
+from isa_ros.config import catalogue
 from isa_ros.config.own_load import own_load
+from isa_ros.config.paths import CONFIG, find, SCENARIOS
 from isa_ros.config.run_config import RUN, RunConfig
 from isa_ros.config.run_file import run_of
 from isa_ros.config.sections import build, Place

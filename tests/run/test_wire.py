@@ -3,13 +3,13 @@
 from hypothesis import given, strategies
 from isa_ros.core.signals import COMMAND, LOAD_REPLY, SAMPLE, START
 from isa_ros.errors import RunError
+from isa_ros.run.exchange import Rows
 from isa_ros.run.wire.answers import Answer, AnswerKind, decode_answer, encode_answer
 from isa_ros.run.wire.cast import Cast
 from isa_ros.run.wire.parts import actuator_parts, take_actuator_parts
 from isa_ros.run.wire.steps import (
     decode_step, encode_begin, encode_end, encode_hello, encode_restore, encode_save,
     encode_tick, StepKind)
-from isa_ros.run.exchange import Rows
 from isa_ros.surroundings.leg.port_kernel import LEG_SAMPLE
 from isa_ros.surroundings.supply import SUPPLY_SAMPLE
 import numpy as np

@@ -264,7 +264,8 @@ class LockstepTransport:
         if answer.tick != self._awaited or answer.participant not in missing:
             if answer.is_repeated:
                 return False
-            raise self._answers.two_nodes(answer.participant)  # a participant answers each step once
+            # A participant answers each step once.
+            raise self._answers.two_nodes(answer.participant)
         if answer.kind is kind:
             return True
         if answer.kind is AnswerKind.DIVERGED:

@@ -7,13 +7,14 @@ from typing import Any
 
 from isa_ros.core.suggest import listed
 from isa_ros.errors import IsaError, one_line, SimulationDiverged
-from isa_ros.nodes.lockstep.roles import Parts, Role
+from isa_ros.nodes.lockstep.roles import Role
 from isa_ros.nodes.lockstep.sockets import LocalWire
 from isa_ros.nodes.middleware.mailboxes import open_mailbox, SLICE_S, TOPIC_CHECK_S
 from isa_ros.nodes.middleware.qos import LOCKSTEP
 from isa_ros.run.wire.answers import (
     ACKNOWLEDGEMENT_TOPIC, AnswerKind, DIVERGENCE, encode_answer)
 from isa_ros.run.wire.header import WireError
+from isa_ros.run.wire.parts import Parts
 from isa_ros.run.wire.steps import decode_step, Step, STEP_TOPIC, StepKind
 from rclpy.node import Node
 from std_msgs.msg import UInt8MultiArray

@@ -57,9 +57,9 @@ def refuse_actuator_parts(parts: Parts) -> None:
         They cannot be taken.
 
     """
-    if len(parts) != 2 or parts[0] is None or len(parts[0]) != _ROWS:
+    rows, tuned = parts if len(parts) == 2 else (None, None)
+    if rows is None or len(rows) != _ROWS:
         raise WireError('an answer that is not of an actuator')
-    rows, tuned = parts
     if not is_finite(np.frombuffer(rows, np.float64, _APPLIED_AT // _FLOAT)):
         raise WireError('an answer of an actuator with a number that is not finite')
     refuse_command(np.frombuffer(rows, COMMAND, 1, _APPLIED_AT)[0])
