@@ -59,12 +59,12 @@ setup(
     zip_safe=False,
     entry_points={
         'console_scripts': [
-            'actuator = isa_ros.nodes.actuator.process:main',
-            'isa_v2 = isa_ros.nodes.actuator.process:main_isa_v2',
-            'isa_v5 = isa_ros.nodes.actuator.process:main_isa_v5',
-            'smart_manifold = isa_ros.nodes.actuator.process:main_smart_manifold',
-            'coordinator = isa_ros.nodes.coordinator.process:main',
-            'isa = isa_ros.cli.main:main',
+            'actuator = isa_ros.programs.actuator:main',
+            'isa_v2 = isa_ros.programs.actuator:isa_v2',
+            'isa_v5 = isa_ros.programs.actuator:isa_v5',
+            'smart_manifold = isa_ros.programs.actuator:smart_manifold',
+            'coordinator = isa_ros.programs.coordinator:main',
+            'isa = isa_ros.programs.isa:main',
         ],
     },
 )

@@ -2,6 +2,6 @@
 
 import sys
 
-from isa_ros.cli.main import main
+from isa_ros.programs.isa import main
 
 sys.exit(main())

@@ -6,9 +6,10 @@ Independent of ROS; with `isa_ros.nodes.Participant` a controller takes part in 
 
 from collections.abc import Mapping, Sequence
 import math
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
-from isa_ros.core.signals import COMMAND, HAS_ENABLE, HAS_SETPOINT
+from isa_ros.core.signals import HAS_ENABLE, HAS_SETPOINT
+from isa_ros.core.suggest import listed, shortened
 from isa_ros.errors import RunError, SetpointError
 import numpy as np
 from numpy.typing import NDArray
@@ -84,23 +85,39 @@ def fill_requests(
         An actuator that the run does not have, or an invalid value.
 
     """
+    if not isinstance(setpoints, Mapping):
+        raise SetpointError(f'{_quoted(setpoints)} are no setpoints by actuator')
     for name, setpoint in setpoints.items():
         if name not in names:
             raise SetpointError(
-                f'{name!r} is not an actuator of the run; valid: {", ".join(names)}')
+                f'{_quoted(name)} is not an actuator of the run; valid: {listed(names)}')
+        if not isinstance(setpoint, tuple) or len(setpoint) != len(Setpoint._fields):
+            raise SetpointError(f'{name}: {_quoted(setpoint)} is not a Setpoint')
+        values: Sequence[Any] = setpoint
+        for field, value in zip(_NUMBERS, values):
+            if value is None and field in _GAINS:
+                continue
+            try:
+                is_valid = math.isfinite(value) and (value >= 0.0 or field not in _GAINS)
+            except (TypeError, OverflowError):
+                raise _refusal(name, field, value, 'a number') from None
+            if not is_valid:
+                raise _refusal(name, field, value, '>= 0' if math.isfinite(value) else 'finite')
         position, velocity, effort, stiffness, damping, is_enabled = setpoint
-        for field, value in zip(_NUMBERS, setpoint):
-            if value is None:
-                if field in _GAINS:
-                    continue
-                value = math.nan
-            if not (math.isfinite(value) and (value >= 0.0 or field not in _GAINS)):
-                bound = '>= 0' if math.isfinite(value) else 'finite'
-                raise SetpointError(f'{name}: setpoint {field} = {value}, must be {bound}')
+        if is_enabled is not None and not isinstance(is_enabled, (bool, np.bool_)):
+            raise _refusal(name, 'is_enabled', is_enabled, 'True or False')
         requests[names.index(name)] = (
             HAS_SETPOINT if is_enabled is None else HAS_SETPOINT | HAS_ENABLE, bool(is_enabled),
             position, velocity, effort, math.nan if stiffness is None else stiffness,
             math.nan if damping is None else damping)
+
+
+def _refusal(name: str, field: str, value: Any, bound: str) -> SetpointError:
+    return SetpointError(f'{name}: setpoint {field} = {_quoted(value)}, must be {bound}')
+
+
+def _quoted(value: Any) -> str:
+    return shortened(repr(value))
 
 
 def merge_requests(requests: NDArray[np.void], into: NDArray[np.void]) -> None:

@@ -4,6 +4,7 @@ from collections.abc import Mapping, Sequence
 import math
 
 from isa_ros.core.signals import COMMAND, HAS_ENABLE, HAS_SETPOINT
+from isa_ros.core.suggest import listed
 from isa_ros.errors import SetpointError
 from msg_adapters.cdr_reader import decode
 from msg_adapters.joint_state import ARRAYS, entries, joint_state
@@ -62,7 +63,7 @@ def applied_to_command(data: bytes, name: str) -> np.void:
     names = [name, *(f'{name}/{gain}' for gain in GAINS), enabled]
     if list(message.name) != names:
         raise SetpointError(
-            f'{name}: applied setpoint names {list(message.name)}, must name {names}')
+            f'{name}: applied setpoint names {listed(message.name)}, must name {listed(names)}')
     command = _command(message, name, names)
     value = message.position[names.index(enabled)]
     if value not in (0.0, 1.0):
@@ -75,7 +76,7 @@ def applied_to_command(data: bytes, name: str) -> np.void:
 def _command(message: JointState, name: str, known: Sequence[str]) -> np.void:
     names = list(message.name)
     if name not in names:
-        raise SetpointError(f'{name}: is not among the joints of the setpoint, {names}')
+        raise SetpointError(f'{name}: is not among the joints of the setpoint, {listed(names)}')
     _check(message, name, names, known)
     command: np.void = np.zeros(1, dtype=COMMAND)[0]
     k = names.index(name)
@@ -94,9 +95,10 @@ def _command(message: JointState, name: str, known: Sequence[str]) -> np.void:
 def _check(message: JointState, name: str, names: list[str], known: Sequence[str]) -> None:
     unknown = [entry for entry in names if entry not in known]
     if unknown:
-        raise SetpointError(f'{name}: unknown setpoint entries {unknown}, must be of {known}')
+        raise SetpointError(
+            f'{name}: unknown setpoint entries {listed(unknown)}, must be of {listed(known)}')
     if len(set(names)) != len(names):
-        raise SetpointError(f'{name}: setpoint names an entry twice: {names}')
+        raise SetpointError(f'{name}: setpoint names an entry twice: {listed(names)}')
     if len(message.position) != len(names):
         raise SetpointError(
             f'{name}: setpoint has {len(message.position)} positions for {len(names)} names')

@@ -13,8 +13,7 @@ from tests.approximation import refusing_approx
 settings.register_profile('isa_ros', deadline=None, derandomize=True)
 settings.load_profile('isa_ros')
 
-# pytest changes the first at every phase of a test, the first import of a kernel sets the second.
-_CHANGING = ('PYTEST_CURRENT_TEST', 'NUMBA_CACHE_DIR')
+_CHANGING = ('PYTEST_CURRENT_TEST',)  # at every phase of a test
 _NO_DOMAIN = 'none: tests.ros.domains.held_domain'
 
 

@@ -1,11 +1,9 @@
 """The kernels that most tests call, compiled by one process of all."""
 
-from pathlib import Path
-
 from isa_ros.config.paths import CONFIG, shipped
 from isa_ros.config.run_file import load_run
+from isa_ros.core.kernel_cache import CACHE
 from isa_ros.run.warm_up import warmed_up
-import numba
 from tests.locks import locked
 
 
@@ -15,8 +13,7 @@ def compile_kernels() -> None:
 
     From an empty cache one core needs about 20 s, and as many cores as try need 20 s each.
     """
-    cache = Path(numba.config.CACHE_DIR)
-    cache.mkdir(parents=True, exist_ok=True)
-    with locked(cache):
+    assert CACHE is not None, 'the tests need a directory for compiled kernels'
+    with locked(CACHE):
         for path in shipped(CONFIG).values():
             warmed_up(load_run(path))

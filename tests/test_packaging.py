@@ -8,7 +8,10 @@ import subprocess
 import sys
 from xml.etree import ElementTree
 
+from packaging.requirements import Requirement
+from packaging.utils import canonicalize_name
 import pytest
+from scripts import pin_requirements
 
 ROOT = Path(__file__).parents[1]
 SETUP = (ROOT / 'setup.py').read_text(encoding='utf-8')
@@ -101,3 +104,18 @@ def copy_of_clone(tmp_path: Path) -> Path:
         if (ROOT / name).is_file():
             shutil.copy(ROOT / name, copy / name)
     return copy
+
+
+@pytest.mark.parametrize('python', pin_requirements.PYTHONS)
+def test_what_the_requirements_need_is_pinned_too(python: str) -> None:
+    """With every Python; where the wheels of ROS are installed, whose requirements are read."""
+    known = pin_requirements.installed()
+    if 'ros-jazzy-rclpy' not in known:
+        pytest.skip('ROS is not from wheels')
+    lines = [Requirement(line) for file in ('requirements.txt', 'requirements-test.txt')
+             for line in (ROOT / file).read_text(encoding='utf-8').splitlines()
+             if line and not line.startswith('#')]
+    here = [line for line in lines if pin_requirements.applies(line, python, set())]
+    names = [canonicalize_name(line.name) for line in here]
+    assert len(names) == len(set(names))  # one version of each
+    assert pin_requirements.needed(here, python, known) == set(names)

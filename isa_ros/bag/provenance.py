@@ -25,6 +25,7 @@ RECORD = 'isa_ros'
 FORMAT = '1'
 
 VERSION = 'version.'
+PYTHON = 'python'
 _RESULT_DEPENDS_ON = ('llvmlite', 'numba', 'numpy')
 
 
@@ -104,9 +105,19 @@ def _refuse_undecodable(name: str, data: bytes, where: str) -> None:
 
 
 def installed_versions() -> dict[str, str]:
-    """Return the versions of the packages that a run's numbers depend on, by name."""
+    """
+    Return the versions of the packages that a run's numbers depend on, by name.
+
+    Of Python without the patch release, which changes no number.
+    """
     versions = {name: version(name) for name in _RESULT_DEPENDS_ON}
-    return {'isa_ros': _own_version(), 'python': platform.python_version(), **versions}
+    python = without_patch(platform.python_version())
+    return {'isa_ros': _own_version(), PYTHON: python, **versions}
+
+
+def without_patch(version_: str) -> str:
+    """Return major and minor release of a version."""
+    return '.'.join(version_.split('.')[:2])
 
 
 def _own_version() -> str:

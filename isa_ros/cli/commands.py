@@ -6,6 +6,8 @@ Modules are imported in the functions, so that `isa --help` does not import numb
 
 from argparse import Namespace
 from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+import errno
 from functools import wraps
 from itertools import count
 from pathlib import Path
@@ -60,10 +62,21 @@ def _record(request: Request) -> Path:
     try:
         return run_session(session, terminal_report(sys.stderr))
     finally:
-        for bag in session.bags:
-            print(bag)
-        if session.pace.shortfall:
-            print(f'isa: {session.pace.shortfall}', file=sys.stderr)
+        with _even_without_terminal():
+            for bag in session.bags:
+                print(bag)
+            if session.pace.shortfall:
+                print(f'isa: {session.pace.shortfall}', file=sys.stderr)
+
+
+@contextmanager
+def _even_without_terminal() -> Iterator[None]:
+    """Print nothing on a terminal that was closed: the run ends by its SIGHUP."""
+    try:
+        yield
+    except OSError as error:
+        if error.errno != errno.EIO:
+            raise
 
 
 def _demo_directories() -> Iterator[Path]:

@@ -6,23 +6,16 @@ This module imports neither ROS nor numba, so that `isa --help` is fast.
 
 import argparse
 from collections.abc import Sequence
-import errno
 import os
 from pathlib import Path
 import signal
-import sys
-import traceback
 from types import FrameType
 from typing import NoReturn
 
 from isa_ros.cli import (
     commands, response_arguments, run_arguments, shared_arguments, study_arguments)
-from isa_ros.errors import IsaError, one_line
-
-DONE, ANSWER_IS_NO, WRONG_INPUT, NOT_COMPLETED, INTERRUPTED = 0, 1, 2, 3, 130
-"""Exit codes; subclasses of `IsaError` have their own, for example 4 for divergence."""
-
-_DISK_IS_FULL = (errno.ENOSPC, errno.EDQUOT)
+from isa_ros.processes.ending import (
+    ANSWER_IS_NO, DEBUG_VARIABLE, DONE, end_of, replaced_handlers, WRONG_INPUT)
 
 
 class _Parser(argparse.ArgumentParser):
@@ -36,32 +29,26 @@ def main(arguments: Sequence[str] | None = None) -> int:
     """Run one command and return its exit code."""
     options = make_parser().parse_args(arguments)
     options.is_alone = arguments is None  # called as a program, not from Python
-    # SIGTERM ends a command like Ctrl-C; a run replaces both handlers to stop between two ticks.
-    before = signal.signal(signal.SIGTERM, _interrupt)
+    # Every signal ends a command like Ctrl-C; a run replaces the handlers to stop after its tick.
+    before = replaced_handlers(_interrupt)
+    debug = os.environ.get(DEBUG_VARIABLE, '')
+    if 'debug' in options:
+        os.environ[DEBUG_VARIABLE] = '1'  # for the processes of a run too
     try:
         return DONE if options.command(options) else ANSWER_IS_NO
-    except (IsaError, OSError, KeyboardInterrupt) as error:
-        if 'debug' in options:
-            traceback.print_exc()
-        return _end(error)
+    except (Exception, KeyboardInterrupt) as error:
+        return end_of('isa', error)
     finally:
-        signal.signal(signal.SIGTERM, before)
+        _restore(DEBUG_VARIABLE, debug)
+        for number, handler in before.items():
+            signal.signal(number, handler)
 
 
-def _end(error: IsaError | OSError | KeyboardInterrupt) -> int:
-    """Print the reason for the end of a command in one line, and return its exit code."""
-    if isinstance(error, KeyboardInterrupt):
-        print('isa: interrupted', file=sys.stderr)
-        return INTERRUPTED
-    if isinstance(error, IsaError):
-        print(f'isa: {one_line(str(error))}', file=sys.stderr)
-        return error.exit_code
-    if isinstance(error, BrokenPipeError):  # the reader of a pipe has closed it
-        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
-        return DONE
-    where = f'{error.filename}: ' if error.filename else ''
-    print(f'isa: {where}{error.strerror or error}', file=sys.stderr)
-    return NOT_COMPLETED if error.errno in _DISK_IS_FULL else WRONG_INPUT
+def _restore(variable: str, value: str) -> None:
+    if value:
+        os.environ[variable] = value
+    else:
+        os.environ.pop(variable, None)
 
 
 def _interrupt(number: int, frame: FrameType | None) -> NoReturn:

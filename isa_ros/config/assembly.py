@@ -42,7 +42,9 @@ def surroundings_of(run: RunConfig) -> Surroundings:
     feeds = []
     for supply in run.supplies:
         rows = [run.index(name) for name in supply.feeds]
-        slope = sum(largest_flow_slope(plants[row].valve, supply.span) for row in rows)
+        slope = 0.0
+        for row in rows:  # in this order: `sum` of Python 3.12 rounds differently
+            slope += largest_flow_slope(plants[row].valve, supply.span)
         feeds.append(Feed(supply.name, supply.sheet, rows, slope))
     starts = np.zeros(len(run.actuators), START)
     starts['position'] = [actuator.initial_position for actuator in run.actuators]

@@ -94,7 +94,12 @@ def actuator_model(name: str, where: str) -> Model:
 @cache
 def _model(path: Path) -> Model:
     """Return the model of a file; sections are merged by copies, so that one serves all."""
-    tree, place = read(path), Place(path.name)
+    return model_of(read(path), path.name)
+
+
+def model_of(tree: Tree, file: str) -> Model:
+    """Return the model of a file's tree; as `actuator_model`."""
+    place = Place(file)
     refuse_unknown(
         tree, ('model', 'kind', 'spool_feedback', 'plant', 'reu', 'presets', 'variants', 'loads'),
         place)
@@ -105,10 +110,10 @@ def _model(path: Path) -> Model:
         plant['kind'] = Entry(str(tree.get('kind')), str(place / 'kind'), '')
     loads = section_at(tree.get('loads'), place / 'loads')
     default = loads.pop('default', None)
-    if default not in loads:
+    if not isinstance(default, str) or default not in loads:
         raise ConfigError(f'{place}: loads.default = {default!r}; {alternatives("", loads)}')
     return Model(
-        path.stem, place, sheet,
+        file.removesuffix('.yaml'), place, sheet,
         _sections(section_at(tree.get('presets'), place / 'presets'), place / 'presets'),
         _sections(section_at(tree.get('variants', {}), place / 'variants'), place / 'variants'),
         {load: _load(load, section_at(below, place / 'loads' / load), place / 'loads' / load)

@@ -38,7 +38,7 @@ def load_section(
 
     """
     kind: Any = tree.get('kind')
-    if kind not in model.loads:
+    if not isinstance(kind, str) or kind not in model.loads:
         raise ConfigError(f'{place}.kind = {kind!r}, must be one of {", ".join(model.loads)}')
     own = {key: value for key, value in tree.items() if key != 'kind'}
     base = build(ActuatorSheet, model.with_preset(DEFAULT_PRESET, 'preset'), model.place)

@@ -190,7 +190,12 @@ class RunConfig:
             The text is not an output of `to_yaml`.
 
         """
-        run: RunConfig = RUN.read(modern(parse(text, name)), Place(name))
+        return cls.from_tree(parse(text, name), name)
+
+    @classmethod
+    def from_tree(cls, tree: Tree, name: str) -> 'RunConfig':
+        """Return the configuration of the tree of a resolved text; as `from_yaml`."""
+        run: RunConfig = RUN.read(modern(tree), Place(name))
         refuse_grid(run.step_ns, run.controller_offset_ns, name)
         for actuator in run.actuators:
             refuse_bad_name(actuator.name, f'{name}: actuators: the name')

@@ -20,6 +20,7 @@ from isa_ros.config.own_load import load_section, refuse_beyond_stops
 from isa_ros.config.recording import read_record
 from isa_ros.config.run_config import ActuatorConfig, COORDINATOR, RunConfig, Times
 from isa_ros.config.scaling import scaled_sheet
+from isa_ros.config.schema import Plain
 from isa_ros.config.sections import (
     build, build_one_of, Entry, merge, names_at, Place, refuse_unknown, Section, section_at,
     written)
@@ -242,10 +243,10 @@ def _actuator(
         'initial_position_deg', 'beyond_range'),
         place)
     model = actuator_model(tree.get('model'), f'{place}.model')  # type: ignore[arg-type]
-    preset = tree.get('preset', 'default')
+    preset = Plain(str).read(tree.get('preset', 'default'), place / 'preset')
     variants = names_at(tree.get('variants', []), place / 'variants')
     of_model = model.with_variants(
-        model.with_preset(preset, f'{place}.preset'),  # type: ignore[arg-type]
+        model.with_preset(preset, f'{place}.preset'),
         variants, f'{place}.variants')
     sheet, section = scaled_sheet(
         merge(of_model, _parameters(tree, place)), of_model, model.place, place / 'parameters',
@@ -260,7 +261,7 @@ def _actuator(
         load = build_one_of(LocalLoad, load_layers, place / 'load')
         refuse_beyond_stops(load, position, str(place))
         _refuse_sheet(sheet, LoadSide(*linearised(load)), place)
-    label = ' + '.join([str(preset), *variants])
+    label = ' + '.join([preset, *variants])
     return (ActuatorConfig(
         name, model.name, label, sheet, load, position, _beyond_range(tree, place)),
             ActuatorOrigin(section, load_layers))

@@ -110,12 +110,17 @@ class ParameterSet:
             named = [rest.pop(key) for key in KIND_KEYS if key in rest]
             if not named:
                 yield KeyDifference(f'{place / "kind"} is missing in the bag', True)
-            elif named[0] not in kinds:
+            elif not _is_one_of(named[0], kinds):
                 yield KeyDifference(f'{place}: the kind {named[0]!r} is unknown here', True)
-            if not named or named[0] not in kinds:
+            if not named or not _is_one_of(named[0], kinds):
                 return
             hint = kinds[named[0]]
         yield from _parameter_differences(hint, rest, place)
+
+
+def _is_one_of(kind: Any, kinds: Mapping[str, Any]) -> bool:
+    """Return whether a value of a file, perhaps a section or a list, is one of some kinds."""
+    return isinstance(kind, str) and kind in kinds
 
 
 def _parameter_differences(
@@ -246,7 +251,7 @@ class OneOf:
         """Return the value; as `Kind.read`."""
         rest = dict(section_at(tree, place))
         kind = rest.pop('kind', None)
-        if kind not in self.sections:
+        if not _is_one_of(kind, self.sections):
             raise ConfigError(
                 f'{place / "kind"} = {kind!r}, must be one of {", ".join(self.sections)}')
         return self.sections[str(kind)].read(rest, place)
@@ -257,7 +262,7 @@ class OneOf:
             return
         rest = dict(tree)
         kind = rest.pop('kind', None)
-        if kind in self.sections:
+        if _is_one_of(kind, self.sections):
             yield from self.sections[str(kind)].differences(rest, place)
         else:
             yield KeyDifference(f'{place}: the kind {kind!r} is unknown here', True)

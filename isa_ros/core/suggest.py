@@ -1,6 +1,6 @@
 """Suggestions for an unknown name, for error messages."""
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 import difflib
 import re
 
@@ -8,6 +8,7 @@ _UNIT = (r'(?:m3|mm|um|cm|m|mrad|rad|deg|mpa|kpa|hpa|pa|bar|psi|lpm|ml|cc|l|khz|
          r'|kg|g|kn|n|nm|ma|a|kv|v|w|j|ohm|h|celsius|percent)')
 _UNIT_SUFFIX = re.compile(rf'_(?:per_)?{_UNIT}(?:_per_{_UNIT})*$')
 _MAX_NAMED = 12  # names in a message
+_LONGEST = 60    # characters of a name in a message
 
 
 def alternatives(name: str, names: Iterable[str]) -> str:
@@ -27,6 +28,14 @@ def alternatives(name: str, names: Iterable[str]) -> str:
     return f'valid: {listed(names)}'
 
 
-def listed(names: list[str]) -> str:
-    """Return names as a list of at most a dozen."""
-    return ', '.join(names[:_MAX_NAMED]) + (', ...' if len(names) > _MAX_NAMED else '')
+def listed(names: Sequence[str]) -> str:
+    """Return names as a list of at most a dozen, each shortened, and the number of all."""
+    if not names:
+        return 'none'
+    first = ', '.join(shortened(name) for name in names[:_MAX_NAMED])
+    return first + (f', ... ({len(names)} in all)' if len(names) > _MAX_NAMED else '')
+
+
+def shortened(text: str) -> str:
+    """Return a text of at most `_LONGEST` characters."""
+    return text if len(text) <= _LONGEST else f'{text[:_LONGEST]}...'

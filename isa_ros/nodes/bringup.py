@@ -12,7 +12,7 @@ def bringup(request: Request, report: Report | None = None) -> Path:
     """
     Run and record a configuration; return the directory of its bag.
 
-    SIGINT and SIGTERM end the run after its tick and close the bag.
+    SIGINT, SIGTERM and SIGHUP end the run after its tick and close the bag.
 
     Raises
     ------

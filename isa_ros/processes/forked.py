@@ -19,13 +19,13 @@ import subprocess
 import sys
 import threading
 import time
-import traceback
 from typing import NoReturn
 import warnings
 
+from isa_ros.processes.ending import DEFECT, end_of, STOPPING
+
 _PR_SET_NAME = 15  # linux/prctl.h
 _POLL_S = 0.01
-_SIGNALS = (signal.SIGINT, signal.SIGTERM)
 
 
 def can_fork() -> bool:
@@ -56,7 +56,7 @@ class Forked:
             stream.flush()
         gc.freeze()  # a collection would write to the shared pages
         # A signal that arrives before the copy has set its handlers must not get lost in it.
-        signal.pthread_sigmask(signal.SIG_BLOCK, _SIGNALS)
+        signal.pthread_sigmask(signal.SIG_BLOCK, STOPPING)
         try:
             with warnings.catch_warnings():
                 # Python 3.12 also warns of the idle worker threads of OpenBLAS and LTTng.
@@ -65,7 +65,7 @@ class Forked:
             if not self.pid:
                 _run(name, work)
         finally:
-            signal.pthread_sigmask(signal.SIG_UNBLOCK, _SIGNALS)
+            signal.pthread_sigmask(signal.SIG_UNBLOCK, STOPPING)
             gc.unfreeze()
         self.returncode: int | None = None
 
@@ -102,19 +102,19 @@ class Forked:
 
 def _run(name: str, work: Callable[[], int]) -> NoReturn:
     """Do the work of a copy and exit, without returning to the code of the original."""
-    code = 1
+    code = DEFECT
     try:
-        for number in _SIGNALS:
+        for number in STOPPING:
             signal.signal(number, signal.SIG_DFL)
         os.setsid()
         _let_go_of_files()
         ctypes.CDLL(None).prctl(_PR_SET_NAME, name.encode())
-        signal.pthread_sigmask(signal.SIG_UNBLOCK, _SIGNALS)
+        signal.pthread_sigmask(signal.SIG_UNBLOCK, STOPPING)
         code = work()
     except SystemExit as end:
-        code = end.code if isinstance(end.code, int) else 1
-    except BaseException:
-        traceback.print_exc()
+        code = end.code if isinstance(end.code, int) else DEFECT
+    except BaseException as error:
+        code = end_of(name, error)
     finally:
         for stream in (sys.stdout, sys.stderr):
             with contextlib.suppress(OSError):

@@ -17,8 +17,8 @@ from isa_ros.processes.forked import can_fork, Forked
 from isa_ros.processes.stopping import PARENT_VARIABLE
 
 MODULES = {
-    'actuator': 'isa_ros.nodes.actuator.process',
-    'coordinator': 'isa_ros.nodes.coordinator.process',
+    'actuator': 'isa_ros.programs.actuator',
+    'coordinator': 'isa_ros.programs.coordinator',
 }
 """Module of each executable."""
 

@@ -1,10 +1,12 @@
-"""Ctrl-C and SIGTERM as a stop request that takes effect between two ticks."""
+"""Ctrl-C, SIGTERM and SIGHUP as a stop request that takes effect between two ticks."""
 
 import ctypes
 import os
 import signal
 import sys
 from types import FrameType
+
+from isa_ros.processes.ending import replaced_handlers
 
 PARENT_VARIABLE = 'ISA_ROS_PARENT'
 """Environment variable with the process id of the bring-up, with which a child ends."""
@@ -13,7 +15,7 @@ PR_SET_PDEATHSIG = 1  # linux/prctl.h
 
 
 class StopRequest:
-    """Becomes true at the first SIGINT or SIGTERM; a context manager, main thread only."""
+    """Becomes true at the first signal that asks to end; a context manager, main thread only."""
 
     def __init__(self) -> None:
         self._is_set = False
@@ -23,9 +25,7 @@ class StopRequest:
         return self._is_set
 
     def __enter__(self) -> 'StopRequest':
-        self._before = {
-            number: signal.signal(number, self._on_signal)
-            for number in (signal.SIGINT, signal.SIGTERM)}
+        self._before = replaced_handlers(self._on_signal)
         return self
 
     def __exit__(self, *_: object) -> None:

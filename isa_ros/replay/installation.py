@@ -8,7 +8,8 @@ that prevent a simulation are found before it starts.
 from collections.abc import Iterator, Mapping
 from typing import NamedTuple
 
-from isa_ros.bag.provenance import CONFIGURATION, FORMAT, installed_versions, VERSION
+from isa_ros.bag.provenance import (
+    CONFIGURATION, FORMAT, installed_versions, PYTHON, VERSION, without_patch)
 from isa_ros.bag.reader import Bag
 from isa_ros.config.sections import Place
 from isa_ros.config.yaml_text import parse
@@ -102,6 +103,8 @@ def _changed_versions(record: Mapping[str, str]) -> Iterator[str]:
     here = installed_versions()
     there = {key.removeprefix(VERSION): value
              for key, value in record.items() if key.startswith(VERSION)}
+    if PYTHON in there:  # bags of before have its patch release too
+        there[PYTHON] = without_patch(there[PYTHON])
     for name in [*there, *sorted(set(here) - set(there))]:
         if here.get(name) != there.get(name):
             yield (f'{name} is {here.get(name, "not known")} here, was '

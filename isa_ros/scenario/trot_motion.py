@@ -75,7 +75,8 @@ class GaitMotion:
     @cached_property
     def origin(self) -> float:
         """Return the position from which excursions are measured, m or rad."""
-        return 0.5 * sum(self.span) if self.rest is None else self.rest
+        low, high = self.span
+        return 0.5 * (low + high) if self.rest is None else self.rest
 
     def at(self, t_ns: int) -> Excursion:
         """

@@ -1,6 +1,7 @@
 """Progress of long work: one line of a terminal, overwritten until the work ends."""
 
 from collections.abc import Callable
+import contextlib
 import time
 from typing import Protocol, TextIO
 
@@ -26,8 +27,9 @@ class Line:
         self._write('')
 
     def _write(self, text: str, end: str = '') -> None:
-        self._terminal.write(f'{_TO_THE_LEFT}{text}{_CLEAR_THE_REST}{end}')
-        self._terminal.flush()
+        with contextlib.suppress(OSError):  # the terminal was closed: the work ends, or goes on
+            self._terminal.write(f'{_TO_THE_LEFT}{text}{_CLEAR_THE_REST}{end}')
+            self._terminal.flush()
 
 
 def terminal_line(stream: TextIO) -> Line | None:

@@ -4,6 +4,7 @@ from dataclasses import replace
 from importlib.metadata import PackageNotFoundError
 from pathlib import Path
 import re
+import sys
 
 from isa_ros.bag import provenance
 from isa_ros.bag.provenance import installed_versions, Provenance
@@ -44,6 +45,7 @@ def test_versions_are_those_that_results_depend_on():
     versions = installed_versions()
     assert sorted(versions) == ['isa_ros', 'llvmlite', 'numba', 'numpy', 'python']
     assert versions['numpy'] == np.__version__
+    assert versions['python'] == '{}.{}'.format(*sys.version_info)
     assert all(re.fullmatch(r'\d+\.\d+\S*', version) for version in versions.values())
 
 

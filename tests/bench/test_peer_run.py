@@ -27,8 +27,9 @@ from isa_ros.core.signals import COMMAND, HAS_SETPOINT, LOAD_REPLY, SAMPLE, STAR
 from isa_ros.errors import RunError
 from isa_ros.run.exchange import Rows
 from isa_ros.run.in_process import InProcess
-from isa_ros.run.wire import (
-    actuator_parts, AnswerKind, decode_step, encode_answer, encode_end, Step)
+from isa_ros.run.wire.answers import AnswerKind, encode_answer
+from isa_ros.run.wire.parts import actuator_parts
+from isa_ros.run.wire.steps import decode_step, encode_end, Step
 import numpy as np
 import pytest
 

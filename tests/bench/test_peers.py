@@ -12,9 +12,10 @@ from isa_ros.config.run_config import RunConfig
 from isa_ros.config.run_file import load_run
 from isa_ros.errors import ConfigError, RunError
 from isa_ros.run.exchange import Rows
-from isa_ros.run.wire import (
-    actuator_parts, Answer, AnswerKind, Cast, decode_answer, decode_step, encode_answer,
-    encode_end, encode_hello, encode_tick, StepKind, take_actuator_parts)
+from isa_ros.run.wire.answers import Answer, AnswerKind, decode_answer, encode_answer
+from isa_ros.run.wire.cast import Cast
+from isa_ros.run.wire.parts import actuator_parts, take_actuator_parts
+from isa_ros.run.wire.steps import decode_step, encode_end, encode_hello, encode_tick, StepKind
 import pytest
 from tests.sheets import setpoint
 

@@ -32,12 +32,13 @@ def outcome(monkeypatch: pytest.MonkeyPatch, ending: BaseException | bool, *more
     (True, 0), (False, 1), (ConfigError('x'), 2), (ParameterError('x'), 2), (BagError('x'), 2),
     (PermissionError(errno.EACCES, 'Permission denied', 'out'), 2),
     (RunError('x'), 3), (OSError(errno.ENOSPC, 'No space left on device', 'out'), 3),
-    (SimulationDiverged(1_000_000, 'spool', float('nan')), 4), (KeyboardInterrupt(), 130),
+    (SimulationDiverged(1_000_000, 'spool', float('nan')), 4), (KeyError('x'), 70),
+    (KeyboardInterrupt(), 130),
 ])
 def test_the_exit_codes_are_those_of_the_interface(
         ending: BaseException | bool, code: int, monkeypatch: pytest.MonkeyPatch,
         capsys: pytest.CaptureFixture[str]) -> None:
-    """Interface.md: 0 done, 1 no, 2 input, 3 not completed, 4 diverged, 130 interrupted."""
+    """Interface.md: 0 done, 1 no, 2 input, 3 not completed, 4 diverged, 70, 130 interrupted."""
     assert outcome(monkeypatch, ending) == code
     assert capsys.readouterr().err.count('\n') == (code > 1)
 
@@ -126,17 +127,19 @@ def test_help_imports_neither_ros_nor_numba() -> None:
     assert result.stdout == '[]\n'
 
 
-def test_sigterm_ends_a_command_like_ctrl_c(monkeypatch: pytest.MonkeyPatch) -> None:
+@pytest.mark.parametrize('number', [signal.SIGTERM, signal.SIGHUP])
+def test_a_signal_ends_a_command_like_ctrl_c(
+        number: signal.Signals, monkeypatch: pytest.MonkeyPatch) -> None:
     def command(options: Namespace) -> bool:
-        os.kill(os.getpid(), signal.SIGTERM)
+        os.kill(os.getpid(), number)
         signal.sigtimedwait([], 5.0)  # not reached: the handler raises before
         return True
 
-    before = signal.getsignal(signal.SIGTERM)
+    before = signal.getsignal(number)
     add_arguments, _, summary = cli._COMMANDS['params']
     monkeypatch.setitem(cli._COMMANDS, 'params', (add_arguments, command, summary))
     assert cli.main(['params', 'isa_v5']) == 130
-    assert signal.getsignal(signal.SIGTERM) is before
+    assert signal.getsignal(number) is before
 
 
 def test_a_reader_that_has_enough_is_no_error() -> None:

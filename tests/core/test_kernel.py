@@ -5,6 +5,7 @@ from pathlib import Path
 import threading
 from typing import Any
 
+from isa_ros.core import kernel as kernels
 from isa_ros.core.kernel import kernel
 import numba
 import pytest
@@ -20,7 +21,7 @@ def twice(x):
 def make(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> Callable[[str], Any]:
     """Return a function that makes the kernel `twice` with a cache directory of that name."""
     def kernel_of(directory: str) -> Any:
-        monkeypatch.setattr(numba.config, 'CACHE_DIR', str(tmp_path / directory))
+        monkeypatch.setattr(kernels, 'CACHE', tmp_path / directory)
         return kernel(twice)
     return kernel_of
 

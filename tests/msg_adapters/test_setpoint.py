@@ -66,10 +66,10 @@ def test_any_value_that_is_not_finite_rejects_the_whole_message(value, array, en
 
 @pytest.mark.parametrize('message, said', [
     (JointState(name=['knee'], position=[0.0]),
-     r"hip: is not among the joints of the setpoint, \['knee'\]"),
-    (JointState(), r'hip: is not among the joints of the setpoint, \[\]'),
+     'hip: is not among the joints of the setpoint, knee'),
+    (JointState(), 'hip: is not among the joints of the setpoint, none'),
     (JointState(name=['hip', 'hip/stifness'], position=[0.0, 1.0]),
-     r"unknown setpoint entries \['hip/stifness'\]"),
+     'unknown setpoint entries hip/stifness, must'),
     (JointState(name=['hip', 'hip'], position=[0.0, 1.0]), 'names an entry twice'),
     (JointState(name=['hip']), '0 positions for 1 names'),
     (JointState(name=['hip'], position=[0.0, 1.0]), '2 positions for 1 names'),
@@ -106,7 +106,7 @@ def test_applied_setpoint_names_all_that_took_effect():
 
 def test_applied_setpoint_of_another_actuator_is_refused():
     data = applied_setpoint('knee', command(), 0)
-    with pytest.raises(SetpointError, match="hip: applied setpoint names .'knee'"):
+    with pytest.raises(SetpointError, match='hip: applied setpoint names knee'):
         applied_to_command(data, 'hip')
 
 

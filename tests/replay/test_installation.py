@@ -5,14 +5,14 @@ from pathlib import Path
 import re
 
 from isa_ros.bag import provenance, writer
-from isa_ros.bag.provenance import installed_versions
+from isa_ros.bag.provenance import installed_versions, PYTHON, VERSION
 from isa_ros.bag.reader import Bag
 from isa_ros.bag.writer import BagWriter
 from isa_ros.cli.main import main
 from isa_ros.config.recording import Storage
 from isa_ros.config.run_config import RunConfig
 from isa_ros.config.run_file import load_run
-from isa_ros.replay.installation import differences
+from isa_ros.replay.installation import _changed_versions, differences
 from isa_ros.replay.replay import Rerun
 from msg_adapters.definitions import Definition, definition
 import pytest
@@ -188,3 +188,12 @@ def test_file_of_a_split_bag_is_not_replayed_alone(replayed, tmp_path):
 def test_split_and_compressed_bag_replays(here, replayed, tmp_path):
     bag = rewrite(here, tmp_path / 'rig', storage=Storage(compression='lz4', split_mb=0.001))
     assert replayed(bag)[0] == 0
+
+
+def test_a_patch_release_of_python_is_no_difference():
+    """It changes no number; bags of before have it."""
+    here = installed_versions()
+    record = {f'{VERSION}{name}': version for name, version in here.items()}
+    assert list(_changed_versions(record | {f'{VERSION}{PYTHON}': f'{here[PYTHON]}.99'})) == []
+    assert list(_changed_versions(record | {f'{VERSION}{PYTHON}': '2.7.18'})) == [
+        f'python is {here[PYTHON]} here, was 2.7']

@@ -55,7 +55,7 @@ def port(domain: int, offset: int) -> int:
 
 def refuse_used(domain: int) -> None:
     """Raise OSError if a coordinator, or any participant, that no test holds is there."""
-    with socket.socket(socket.AF_UNIX, socket.SOCK_DGRAM) as name:
+    with socket.socket(socket.AF_UNIX, socket.SOCK_STREAM) as name:
         name.bind(claim_address(domain))
     for k in range(N_PARTICIPANTS):
         with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as discovery:

@@ -137,7 +137,7 @@ def actuator(log: Path, name: str, **parameters: object) -> Iterator[Started]:
     arguments = ['--ros-args', '-r', f'__node:={name}']
     for key, value in parameters.items():
         arguments += ['-p', f'{key}:={_yaml(value)}']
-    with started(log, 'isa_ros.nodes.actuator.process', *arguments) as process:
+    with started(log, 'isa_ros.programs.actuator', *arguments) as process:
         yield process
 
 
@@ -147,7 +147,7 @@ def coordinator(log: Path, **parameters: object) -> Iterator[Started]:
     arguments = ['--ros-args']
     for key, value in parameters.items():
         arguments += ['-p', f'{key}:={_yaml(value)}']
-    with started(log, 'isa_ros.nodes.coordinator.process', *arguments) as process:
+    with started(log, 'isa_ros.programs.coordinator', *arguments) as process:
         yield process
 
 

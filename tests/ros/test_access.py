@@ -57,14 +57,15 @@ def shared_memory(pid: int) -> list[str]:
             if '/dev/shm/fastrtps' in line]
 
 
-def test_nothing_listens_on_the_network_unasked(domain, tmp_path):
+@pytest.mark.parametrize('options, n_processes', [((), 2), (('--in-process',), 1)])
+def test_nothing_listens_on_the_network_unasked(domain, tmp_path, options, n_processes):
     """Every socket of every process of a run is bound to the loopback interface."""
     bag = tmp_path / 'bag'
-    with bringup(bag, '--real-time-factor', '1', config=RIG) as run:
+    with bringup(bag, '--real-time-factor', '1', *options, config=RIG) as run:
         wait_for(lambda: (bag / 'metadata.yaml').exists() or not run.is_running(), 'tick 0')
         assert run.is_running(), run.errors
         pids = [run.pid, *run.children().values()]
-        assert len(pids) == 2
+        assert len(pids) == n_processes
         for pid in pids:
             addresses = list(bound_addresses(pid))
             assert len(addresses) >= 2  # discovery and data
@@ -72,6 +73,15 @@ def test_nothing_listens_on_the_network_unasked(domain, tmp_path):
             assert shared_memory(pid) == []  # what SIGKILL would leave behind
         run.signal(signal.SIGTERM)
         assert run.exit_code() == 130
+
+
+def test_a_lone_actuator_listens_on_loopback_only(observer, tmp_path):
+    """Once another node sees it, all its sockets are open."""
+    with actuator(tmp_path / 'log', 'knee', model='isa_v5') as process:
+        wait_for(lambda: observer.count_publishers('/knee/joint_states'), 'the actuator')
+        addresses = list(bound_addresses(process.pid))
+        assert len(addresses) >= 2
+        assert set(addresses) == {'127.0.0.1'}
 
 
 def test_a_user_who_asks_for_the_network_gets_it(domain, tmp_path, monkeypatch):

@@ -6,7 +6,7 @@ import sys
 import pytest
 
 pytestmark = pytest.mark.ros
-MODULES = ['isa_ros.nodes.actuator.process', 'isa_ros.nodes.coordinator.process']
+MODULES = ['isa_ros.programs.actuator', 'isa_ros.programs.coordinator']
 
 
 def run(module: str, *arguments: str) -> subprocess.CompletedProcess[str]:

@@ -2,7 +2,7 @@
 
 import signal
 
-from isa_ros.run.wire import ACKNOWLEDGEMENT_TOPIC
+from isa_ros.run.wire.answers import ACKNOWLEDGEMENT_TOPIC
 import pytest
 from tests.ros.started import actuator, bringup, coordinator, RIG, started, wait_for
 

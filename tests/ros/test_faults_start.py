@@ -63,7 +63,7 @@ def wait_for_children(run: Started) -> None:
 
 
 def last_line(run: Started) -> str:
-    """Return the command's message, which follows the traceback of the broken node."""
+    """Return the command's message, which follows the line of the broken node."""
     return run.errors.splitlines()[-1]
 
 
@@ -73,7 +73,7 @@ def test_an_actuator_that_does_not_start_is_named(domain, tmp_path, break_actuat
     with bringup(bag, config=RIG) as run:
         assert run.exit_code() == 3
     assert last_line(run).startswith('isa: rotor: its process ')
-    assert last_line(run).endswith(' ended with exit code 1 before tick 0')
+    assert last_line(run).endswith(' ended with exit code 70 before tick 0')
     assert not bag.exists()
 
 

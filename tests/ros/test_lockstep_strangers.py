@@ -13,14 +13,16 @@ from isa_ros.errors import ConfigError
 from isa_ros.nodes.lockstep.coordinator_end import LockstepTransport
 from isa_ros.nodes.lockstep.expected import Expected, Limits, Participants
 from isa_ros.nodes.lockstep.participant_end import ParticipantEnd
-from isa_ros.nodes.lockstep.roles import Parts
-from isa_ros.run import wire
 from isa_ros.run.exchange import Rows
-from isa_ros.run.wire import actuator_parts, Answer, AnswerKind, Cast, encode_answer
+from isa_ros.run.wire.answers import Answer, AnswerKind, decode_answer, encode_answer
+from isa_ros.run.wire.cast import Cast
+from isa_ros.run.wire.parts import actuator_parts, Parts
+from isa_ros.run.wire.steps import (
+    encode_begin, encode_end, encode_hello, encode_restore, encode_save, encode_tick, Step)
 import numpy as np
 import pytest
 from rclpy.node import Node
-from tests.ros.lockstep.participants import rows_of_two
+from tests.ros.lockstep.participants import Outside, rows_of_two
 from tests.ros.started import DEADLINE_S
 
 pytestmark = pytest.mark.ros
@@ -52,16 +54,21 @@ class Counting:
     """A role that counts what it has to do."""
 
     digest = b'same'
+    is_actuator = True
 
     def __init__(self) -> None:
         self.ticks = self.snapshots = 0
 
-    def start(self, step: wire.Step, index: int) -> Parts:
+    def check(self, step: Step) -> None:
+        """Refuse what no actuator of the run can execute."""
+        step.refuse_tick(len(NAMES), NAMES.index('kfe'))
+
+    def start(self, step: Step, index: int) -> Parts:
         """Begin anew."""
         self.ticks = 0
         return [b'start']
 
-    def advance(self, step: wire.Step) -> Parts:
+    def advance(self, step: Step) -> Parts:
         """Count a tick."""
         self.ticks += 1
         return [b'tick %d' % self.ticks]
@@ -90,16 +97,16 @@ class Participant:
         self.role = Counting()
         self._end = ParticipantEnd(node, self.role)
         self.answers: list[Answer] = []
-        self._end._send = lambda data: self.answers.append(wire.decode_answer(data))
+        self._end._send = lambda data: self.answers.append(decode_answer(data))
         starts = np.zeros(2, START)
         self.answers_to(
-            wire.encode_hello(RUN, 1, 1_000_000, starts, CAST), wire.encode_begin(RUN))
+            encode_hello(RUN, 1, 1_000_000, starts, CAST), encode_begin(RUN))
 
     def answers_to(self, *steps: bytes) -> list[tuple[AnswerKind, int, bool]]:
         """Hand steps over; return (kind, tick, is repeated) of the answers to them."""
         before = len(self.answers)
         for step in steps:
-            self._end._handle(wire.decode_step(step))
+            self._end._receive(step)
         return [(one.kind, one.tick, one.is_repeated) for one in self.answers[before:]]
 
 
@@ -113,7 +120,7 @@ def member(observer: Node) -> Iterator[Participant]:
 
 
 def tick(number: int, run: int = RUN) -> bytes:
-    return wire.encode_tick(run, number, rows_of_two(), has_controllers=False)
+    return encode_tick(run, number, rows_of_two(), has_controllers=False)
 
 
 def done(number: int, is_repeated: bool = False) -> tuple[AnswerKind, int, bool]:
@@ -135,7 +142,7 @@ def test_a_repeat_that_a_newer_tick_has_overtaken_is_dropped(member):
 
 def test_an_overtaken_request_to_save_is_dropped(member):
     """Requests count down: -1 again after -2 or after a tick is an old one."""
-    saved = [wire.encode_save(RUN, number) for number in (-1, -2)]
+    saved = [encode_save(RUN, number) for number in (-1, -2)]
     assert member.answers_to(tick(0), *saved, saved[0]) == [
         done(0), (AnswerKind.SAVED, -1, False), (AnswerKind.SAVED, -2, False)]
     assert member.answers_to(tick(1), saved[1]) == [done(1)]
@@ -144,16 +151,46 @@ def test_an_overtaken_request_to_save_is_dropped(member):
 
 def test_an_overtaken_request_to_restore_is_dropped(member):
     """Else a run that went on after it would be put back."""
-    restore = wire.encode_restore(RUN, -1, 5, [b'after 5', b'after 5'])
+    restore = encode_restore(RUN, -1, 5, [b'after 5', b'after 5'])
     assert member.answers_to(restore, tick(5), restore) == [
         (AnswerKind.RESTORED, -1, False), done(5)]
     assert member.role.ticks == 6
 
 
 def test_a_tick_of_another_run_moves_no_actuator(member):
-    assert member.answers_to(tick(0, run=RUN + 1), wire.encode_end(RUN + 1)) == []
+    assert member.answers_to(tick(0, run=RUN + 1), encode_end(RUN + 1)) == []
     assert member.role.ticks == 0
     assert member.answers_to(tick(0)) == [done(0)]
+
+
+def altered(message: bytes, at: int, value: bytes) -> bytes:
+    """Return a message with other bytes at one place."""
+    return message[:at] + value + message[at + len(value):]
+
+
+KIND, BODY_OF_A_STEP, INDEX, N_PARTS, BODY_OF_AN_ANSWER = 18, 40, 20, 24, 48
+NAN = np.float64('nan').tobytes()
+ODD_STEPS = {
+    'sixteen bytes': bytes(16), 'nothing': b'', 'kind 99': altered(tick(0), KIND, b'\x63'),
+    'cut': tick(0)[:-1], 'not finite': altered(tick(0), BODY_OF_A_STEP + 80, NAN),
+    'another version': altered(tick(0), KIND - 2, b'\x63'),
+    'a hello without names': encode_hello(RUN + 1, 1, 1_000_000, np.zeros(2, START), CAST)[:-9],
+    'a save of others': encode_restore(RUN, -1, 5, [b'after 5']),
+    'a tick of one actuator': encode_tick(RUN, 0, Rows(1, Outside(False)), has_controllers=False)}
+
+
+@pytest.mark.parametrize('odd', ODD_STEPS)
+def test_an_odd_step_is_discarded_and_the_run_goes_on(member, odd):
+    assert member.answers_to(ODD_STEPS[odd], tick(0), ODD_STEPS[odd], tick(1)) == [
+        done(0), done(1)]
+    assert member.role.ticks == 2
+
+
+def test_a_run_with_this_node_in_another_role_is_not_joined(member):
+    """Its row would be read beyond those of the actuators."""
+    others = Cast(['haa', 'hfe', 'kfe'], ['supply'], None)
+    assert member.answers_to(
+        encode_end(RUN), encode_hello(RUN + 1, 1, 1_000_000, np.zeros(2, START), others)) == []
 
 
 def answer(
@@ -193,6 +230,30 @@ class Coordination:
 def coordination(observer: Node, monkeypatch: pytest.MonkeyPatch) -> Coordination:
     """Return a coordinator's end."""
     return Coordination(observer, monkeypatch)
+
+
+def odd_answers() -> dict[str, bytes]:
+    """Return what no participant answers to tick 3."""
+    good = answer(0, 3, 1.0)
+    return {
+        'sixteen bytes': bytes(16), 'nothing': b'', 'kind 99': altered(good, KIND, b'\x63'),
+        'a million parts': altered(good, N_PARTS, (10**6).to_bytes(4, 'little')),
+        'participant 7': altered(good, INDEX, b'\x07'), 'cut': good[:-1],
+        'another version': altered(good, KIND - 2, b'\x63'),
+        'not finite': altered(good, BODY_OF_AN_ANSWER + 8, NAN),
+        'no rows': encode_answer(AnswerKind.DONE, RUN, 3, 0, [b'', None]),
+        'no identity': encode_answer(AnswerKind.READY, RUN, 3, 0, [None, b'same']),
+        'no text': encode_answer(AnswerKind.REFUSED, RUN, 3, 0, [b'\xff']),
+        'a divergence without time': encode_answer(AnswerKind.DIVERGED, RUN, 3, 0, [b'', b'x']),
+        'a state': encode_answer(AnswerKind.SAVED, RUN, 3, 0, [b''])}
+
+
+@pytest.mark.parametrize('odd', odd_answers())
+def test_an_odd_answer_is_discarded_and_the_run_goes_on(coordination, odd):
+    """The true answer of the participant is still waited for."""
+    message = odd_answers()[odd]
+    assert coordination.forces(
+        3, message, answer(1, 3, 2.0), message, answer(0, 3, 1.0)) == [1.0, 2.0]
 
 
 def test_the_answer_of_another_run_is_not_taken_for_this_ones(coordination):

@@ -3,8 +3,13 @@
 from hypothesis import given, strategies
 from isa_ros.core.signals import COMMAND, LOAD_REPLY, SAMPLE, START
 from isa_ros.errors import RunError
-from isa_ros.run import wire
 from isa_ros.run.exchange import Rows
+from isa_ros.run.wire.answers import Answer, AnswerKind, decode_answer, encode_answer
+from isa_ros.run.wire.cast import Cast
+from isa_ros.run.wire.parts import actuator_parts, take_actuator_parts
+from isa_ros.run.wire.steps import (
+    decode_step, encode_begin, encode_end, encode_hello, encode_restore, encode_save,
+    encode_tick, StepKind)
 from isa_ros.surroundings.leg.port_kernel import LEG_SAMPLE
 from isa_ros.surroundings.supply import SUPPLY_SAMPLE
 import numpy as np
@@ -44,9 +49,9 @@ def filled(n: int, n_supplies: int = 1, body: np.dtype | None = LEG_SAMPLE) -> R
     return made
 
 
-def cast(n_supplies: int = 1, body: np.dtype | None = LEG_SAMPLE) -> wire.Cast:
+def cast(n_supplies: int = 1, body: np.dtype | None = LEG_SAMPLE) -> Cast:
     """Return who takes part beside ``n_supplies`` supplies and a body."""
-    return wire.Cast(
+    return Cast(
         ['haa', 'kfe', 'controller'], [f'supply_{k}' for k in range(n_supplies)], body)
 
 
@@ -54,8 +59,8 @@ def cast(n_supplies: int = 1, body: np.dtype | None = LEG_SAMPLE) -> wire.Cast:
 def test_step_round_trip(run_id, tick, n):
     """Every row of every record type arrives bit for bit, NaN included."""
     sent = filled(n)
-    step = wire.decode_step(wire.encode_tick(run_id, tick, sent, has_controllers=False))
-    assert (step.kind, step.run_id, step.tick) == (wire.StepKind.TICK, run_id, tick)
+    step = decode_step(encode_tick(run_id, tick, sent, has_controllers=False))
+    assert (step.kind, step.run_id, step.tick) == (StepKind.TICK, run_id, tick)
     for k in range(n):
         assert step.port(k).tobytes() == sent.ports[k].tobytes()
         assert step.command(k).tobytes() == sent.commands[k].tobytes()
@@ -66,7 +71,7 @@ def test_controllers_are_shown_samples_supplies_and_body(n, n_supplies, has_body
     """In one step with the rows of the actuators; nothing is applied there."""
     body = LEG_SAMPLE if has_body else None
     sent = filled(n, n_supplies, body)
-    step = wire.decode_step(wire.encode_tick(1, 2, sent, has_controllers=True))
+    step = decode_step(encode_tick(1, 2, sent, has_controllers=True))
     shown = step.shown(cast(n_supplies, body))
     assert shown.samples.tobytes() == sent.samples.tobytes()
     assert shown.supplies.tobytes() == sent.supplies.tobytes()
@@ -81,14 +86,14 @@ def test_without_controllers_nothing_is_shown():
     alone = filled(2)
     size = alone.ports.nbytes + alone.commands.nbytes
     shown = alone.samples.nbytes + alone.supplies.nbytes + alone.body.nbytes
-    assert len(wire.decode_step(wire.encode_tick(1, 2, alone, False)).body) == size
-    assert len(wire.decode_step(wire.encode_tick(1, 2, alone, True)).body) == size + shown
+    assert len(decode_step(encode_tick(1, 2, alone, False)).body) == size
+    assert len(decode_step(encode_tick(1, 2, alone, True)).body) == size + shown
 
 
 @given(strategies.lists(strategies.binary(max_size=300), min_size=1))
 def test_restore_round_trip(snapshots):
-    step = wire.decode_step(wire.encode_restore(5, -2, 9, snapshots))
-    assert (step.kind, step.tick, step.restored_tick()) == (wire.StepKind.RESTORE, -2, 9)
+    step = decode_step(encode_restore(5, -2, 9, snapshots))
+    assert (step.kind, step.tick, step.restored_tick()) == (StepKind.RESTORE, -2, 9)
     assert [step.snapshot(k) for k in range(len(snapshots))] == snapshots
 
 
@@ -96,8 +101,8 @@ def test_restore_round_trip(snapshots):
 def test_hello_round_trip(body):
     """More names than actuators: a controller takes part without a row."""
     starts, everyone = rows(START, 2), cast(2, body)
-    step = wire.decode_step(wire.encode_hello(7, 3, 2_000_000, starts, everyone))
-    assert (step.kind, step.run_id, step.tick) == (wire.StepKind.HELLO, 7, 3)
+    step = decode_step(encode_hello(7, 3, 2_000_000, starts, everyone))
+    assert (step.kind, step.run_id, step.tick) == (StepKind.HELLO, 7, 3)
     assert step.cast() == everyone
     assert (step.rows, step.step_ns()) == (2, 2_000_000)
     assert step.start(1).tobytes() == starts[1].tobytes()
@@ -107,12 +112,12 @@ def test_hello_round_trip(body):
 def test_the_parts_of_an_actuator_fill_its_row_alone(tuned):
     """Its three rows bit for bit, and the parameters that changed; what others said stays."""
     reply, sample, applied = rows(LOAD_REPLY, 1), rows(SAMPLE, 1), rows(COMMAND, 1)
-    parts = wire.actuator_parts(reply, sample, applied, tuned)
+    parts = actuator_parts(reply, sample, applied, tuned)
     taken = filled(3)
     before = taken.samples.tobytes()
     taken.tuned = {0: {'spool.kp': 2.0}}
-    answer = wire.decode_answer(wire.encode_answer(wire.AnswerKind.DONE, 1, 2, 1, parts))
-    wire.take_actuator_parts(answer.parts, 1, taken)
+    answer = decode_answer(encode_answer(AnswerKind.DONE, 1, 2, 1, parts))
+    take_actuator_parts(answer.parts, 1, taken)
     assert taken.replies[1].tobytes() == reply.tobytes()
     assert taken.samples[1].tobytes() == sample.tobytes()
     assert taken.applied[1].tobytes() == applied.tobytes()
@@ -128,17 +133,17 @@ def test_the_parts_of_an_actuator_fill_its_row_alone(tuned):
        strategies.booleans())
 def test_answer_round_trip(run_id, tick, parts, is_repeated):
     """An absent part stays different from an empty one."""
-    data = wire.encode_answer(wire.AnswerKind.DONE, run_id, tick, 2, parts, is_repeated)
-    assert wire.decode_answer(data) == wire.Answer(
-        wire.AnswerKind.DONE, run_id, tick, 2, parts, is_repeated)
+    data = encode_answer(AnswerKind.DONE, run_id, tick, 2, parts, is_repeated)
+    assert decode_answer(data) == Answer(
+        AnswerKind.DONE, run_id, tick, 2, parts, is_repeated)
 
 
 @pytest.mark.parametrize('data', [
-    wire.encode_end(5),
-    wire.encode_begin(5),
-    wire.encode_save(5, -1),
-    wire.encode_tick(5, 1, filled(3), True),
-    wire.encode_answer(wire.AnswerKind.DONE, 5, 1, 0, [b'abc', None])])
+    encode_end(5),
+    encode_begin(5),
+    encode_save(5, -1),
+    encode_tick(5, 1, filled(3), True),
+    encode_answer(AnswerKind.DONE, 5, 1, 0, [b'abc', None])])
 def test_bytes_are_a_uint8_multi_array(data):
     """The prepared bytes are what rclpy would decode: prefix, then the array's length."""
     message = deserialize_message(data, UInt8MultiArray)
@@ -148,8 +153,8 @@ def test_bytes_are_a_uint8_multi_array(data):
 
 
 @pytest.mark.parametrize(('decode', 'data'), [
-    (wire.decode_step, wire.encode_end(5)),
-    (wire.decode_answer, wire.encode_answer(wire.AnswerKind.BUSY, 5, 1, 0, ()))])
+    (decode_step, encode_end(5)),
+    (decode_answer, encode_answer(AnswerKind.BUSY, 5, 1, 0, ()))])
 def test_another_version_is_refused(decode, data):
     with pytest.raises(RunError, match='wire version = 9, must be'):
         decode(data[:16] + b'\x09' + data[17:])

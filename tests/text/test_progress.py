@@ -1,5 +1,6 @@
 """Progress on a terminal: one line, with the time spent and left."""
 
+import errno
 import io
 
 from isa_ros.text.progress import counted, terminal_line
@@ -45,3 +46,15 @@ def test_at_the_end_the_line_is_erased_unless_it_stays(stays, expected):
     first, last = shown([(3.0, 1, 2), (7.0, 2, 2)], of='lap', stays=stays)
     assert first == 'lap: 1 of 2 runs, 3 s, 3 s left\x1b[K'
     assert last == expected
+
+
+def test_a_terminal_that_was_closed_ends_no_work():
+    """SIGHUP may be ignored, or the work has still to close its files."""
+    class Closed(Terminal):
+        def write(self, text):
+            raise OSError(errno.EIO, 'Input/output error')
+
+    line = terminal_line(Closed())
+    assert line is not None
+    line.show('half')
+    line.end('done')

@@ -20,8 +20,10 @@ from isa_ros.processes.stopping import PARENT_VARIABLE, StopRequest
 from isa_ros.run.exchange import Rows
 from isa_ros.run.narrator import Outlets
 from isa_ros.run.session import record, Report, Session
-from isa_ros.run.wire import (
-    Answer, Cast, decode_answer, encode_end, encode_hello, encode_tick, take_actuator_parts)
+from isa_ros.run.wire.answers import Answer, decode_answer
+from isa_ros.run.wire.cast import Cast
+from isa_ros.run.wire.parts import take_actuator_parts
+from isa_ros.run.wire.steps import encode_end, encode_hello, encode_tick
 
 START_PERIOD_S = 0.05
 SLICE_S = 0.5

@@ -13,7 +13,9 @@ from isa_ros.config.run_config import RunConfig
 from isa_ros.config.run_file import load_run
 from isa_ros.processes.stopping import end_with_parent
 from isa_ros.run.warm_up import warmed_up
-from isa_ros.run.wire import actuator_parts, AnswerKind, decode_step, encode_answer, StepKind
+from isa_ros.run.wire.answers import AnswerKind, encode_answer
+from isa_ros.run.wire.parts import actuator_parts
+from isa_ros.run.wire.steps import decode_step, StepKind
 from isa_ros.scenario.scenario import load_scenario
 
 SLICE_S = 0.5

@@ -7,7 +7,7 @@ from typing import Any, NamedTuple
 from isa_ros.actuator.actuator import ActuatorConfig, participant_digest, SmartActuator, Timing
 from isa_ros.actuator.tunable import tunables
 from isa_ros.core.signals import COMMAND, HAS_ENABLE, Records
-from isa_ros.errors import SetpointError, SimulationDiverged
+from isa_ros.errors import one_line, SetpointError, SimulationDiverged
 from isa_ros.nodes.actuator.parameters import TunableParameters
 from isa_ros.nodes.actuator.setpoint_publishers import IncompatiblePublishers
 from isa_ros.nodes.middleware.publishers import PreparedPublishers
@@ -169,7 +169,8 @@ class ActuatorNode(Node):
             limited = self.actuator.setpoint_range.admit(command)
         except SetpointError as error:
             self.get_logger().warning(
-                f'setpoint rejected: {error}', throttle_duration_sec=WARNING_PERIOD_S)
+                f'setpoint rejected: {one_line(str(error))}',
+                throttle_duration_sec=WARNING_PERIOD_S)
             return
         if limited:
             self.get_logger().warning(limited, throttle_duration_sec=WARNING_PERIOD_S)

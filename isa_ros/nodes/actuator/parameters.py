@@ -5,11 +5,11 @@ from collections.abc import Mapping, Sequence
 from isa_ros.actuator.actuator import SmartActuator
 from isa_ros.actuator.tunable import Tunable
 from isa_ros.errors import ConfigError
+from isa_ros.nodes.middleware.parameter_services import open_parameter_services
 from isa_ros.nodes.middleware.parameters import accept_integers, refuse_unknown
 from rcl_interfaces.msg import FloatingPointRange, ParameterDescriptor, SetParametersResult
 from rclpy.node import Node
 from rclpy.parameter import Parameter
-from rclpy.parameter_service import ParameterService
 from rclpy.service import Service
 
 
@@ -39,9 +39,7 @@ class TunableParameters:
         actuator.tune({name: overrides[name].value for name in tunables if name in overrides})
         accept_integers(node)
         node.add_on_set_parameters_callback(self._on_set)
-        others = set(node.services)
-        ParameterService(node)
-        self.services: Sequence[Service] = [s for s in node.services if s not in others]
+        self.services: Sequence[Service] = open_parameter_services(node)
 
     def get(self, name: str) -> Parameter | None:
         """Return a tunable as it will be at the next tick; None: not a tunable."""

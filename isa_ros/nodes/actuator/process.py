@@ -3,7 +3,6 @@
 from collections.abc import Sequence
 from dataclasses import replace
 import gc
-import sys
 
 from isa_ros.actuator.actuator import Timing
 from isa_ros.config.catalogue import actuator_model, model_names
@@ -13,7 +12,7 @@ from isa_ros.config.paths import CONFIG, find, SCENARIOS
 from isa_ros.config.run_config import RunConfig
 from isa_ros.config.run_file import load_run
 from isa_ros.core.without_blas import start_without_blas
-from isa_ros.errors import ConfigError, IsaError
+from isa_ros.errors import ConfigError
 from isa_ros.nodes.actuator.alone import run_alone
 from isa_ros.nodes.actuator.node import ActuatorNode, Setup
 from isa_ros.nodes.lockstep.participant_end import ParticipantEnd
@@ -22,6 +21,7 @@ from isa_ros.nodes.middleware.arguments import init_ros
 from isa_ros.nodes.middleware.discovery import refuse_off
 from isa_ros.nodes.middleware.environment import set_defaults
 from isa_ros.nodes.middleware.parameters import declare, refuse_unknown
+from isa_ros.processes.ending import DONE, end_of
 from isa_ros.processes.stopping import end_with_parent, StopRequest
 from isa_ros.run.compiling import reported_compilation
 from isa_ros.scenario.scenario import planned
@@ -49,12 +49,11 @@ def run(args: Sequence[str] | None, model: str) -> int:
             init_ros(args, USAGE)
             with reported_compilation('actuator'):
                 _run(model, should_stop)
-        except IsaError as error:
-            print(f'actuator: {error}', file=sys.stderr)
-            return error.exit_code
+        except Exception as error:
+            return end_of('actuator', error)
         finally:
             try_shutdown()
-    return 0
+    return DONE
 
 
 def _run(model: str, should_stop: StopRequest) -> None:
@@ -124,26 +123,7 @@ def _number(node: Node, name: str) -> float:
     return value
 
 
-def main(args: Sequence[str] | None = None, model: str = '') -> None:
+def main(args: Sequence[str] | None = None, model: str = '') -> int:
     """Run one actuator node; without ``model`` its parameter ``model`` names the model."""
     start_without_blas()
-    raise SystemExit(run(args, model))
-
-
-def main_isa_v2(args: Sequence[str] | None = None) -> None:
-    """Run one ISA v2."""
-    main(args, 'isa_v2')
-
-
-def main_isa_v5(args: Sequence[str] | None = None) -> None:
-    """Run one ISA v5."""
-    main(args, 'isa_v5')
-
-
-def main_smart_manifold(args: Sequence[str] | None = None) -> None:
-    """Run one smart manifold with its rotary actuator."""
-    main(args, 'smart_manifold')
-
-
-if __name__ == '__main__':
-    main()
+    return run(args, model)

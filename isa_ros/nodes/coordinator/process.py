@@ -1,15 +1,14 @@
 """The coordinator as a program: actuators are started separately, or run in this process."""
 
 from collections.abc import Sequence
-import sys
 
 from isa_ros.core.without_blas import start_without_blas
-from isa_ros.errors import IsaError
 from isa_ros.nodes.coordinator.node import CoordinatorNode, NAME
 from isa_ros.nodes.coordinator.runs import coordinate, coordinate_locally
 from isa_ros.nodes.middleware.arguments import init_ros
 from isa_ros.nodes.middleware.domain import sole_coordinator
 from isa_ros.nodes.middleware.environment import set_defaults
+from isa_ros.processes.ending import DONE, end_of
 from isa_ros.processes.stopping import StopRequest
 from isa_ros.run.compiling import reported_compilation
 from isa_ros.run.session import prepare
@@ -21,14 +20,9 @@ USAGE = (
     '[-p scenario_file:=drop.yaml] [-p out:=DIR] [-p duration:=S] [-p in_process:=true]')
 
 
-def main(args: Sequence[str] | None = None) -> None:
-    """Coordinate the run that the parameters describe."""
+def main(args: Sequence[str] | None = None) -> int:
+    """Coordinate the run that the parameters describe, and return the exit code."""
     start_without_blas()
-    sys.exit(run(args))
-
-
-def run(args: Sequence[str] | None) -> int:
-    """Coordinate one run and return the exit code."""
     with StopRequest() as should_stop:
         try:
             set_defaults()
@@ -43,13 +37,8 @@ def run(args: Sequence[str] | None) -> int:
                     node.get_logger().warning(session.pace.shortfall)
             finally:
                 node.destroy_node()
-        except IsaError as error:
-            print(f'{NAME}: {error}', file=sys.stderr)
-            return error.exit_code
+        except Exception as error:
+            return end_of(NAME, error)
         finally:
             try_shutdown()
-    return 0
-
-
-if __name__ == '__main__':
-    main()
+    return DONE

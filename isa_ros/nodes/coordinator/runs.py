@@ -24,7 +24,7 @@ from isa_ros.run.in_process import InProcess
 from isa_ros.run.narrator import Outlet
 from isa_ros.run.session import record, Report, save_in_bag, Session
 from isa_ros.run.warm_up import warmed_up
-from isa_ros.run.wire import Cast
+from isa_ros.run.wire.cast import Cast
 import rclpy
 from rclpy.node import Node
 from rclpy.parameter import Parameter

@@ -5,13 +5,13 @@ from typing import Any
 
 from isa_ros.errors import IsaError
 from isa_ros.nodes.middleware.handles import has_handles
+from isa_ros.nodes.middleware.parameter_services import open_parameter_services
 from isa_ros.nodes.middleware.parameters import accept_integers, declare
 from isa_ros.nodes.middleware.servers import DirectServer
 from isa_ros.run.coordinator import Coordinator
 from rcl_interfaces.msg import IntegerRange, ParameterDescriptor, SetParametersResult
 from rclpy.node import Node
 from rclpy.parameter import Parameter
-from rclpy.parameter_service import ParameterService
 from std_srvs.srv import SetBool, Trigger
 
 STEP_COUNT = 'step_count'
@@ -53,9 +53,8 @@ class RunServices:
             node.create_service(Trigger, '~/step', self._on_step),
             node.create_service(Trigger, '~/reset', self._on_reset),
             node.create_service(Trigger, '~/save', self._on_save)]
-        ParameterService(node)
-        self._server = DirectServer(
-            [], own, [service for service in node.services if service not in own])
+        parameters = open_parameter_services(node)
+        self._server = DirectServer(node.get_logger(), [], own, parameters)
 
     def serve(self, coordinator: Coordinator) -> None:
         """Answer all requests since the last call."""

@@ -8,16 +8,19 @@ from typing import Any
 from isa_ros.controller import merge_requests
 from isa_ros.core.signals import COMMAND
 from isa_ros.errors import ConfigError, RunError, SimulationDiverged
+from isa_ros.nodes.lockstep.answer_checks import AnswerChecks
 from isa_ros.nodes.lockstep.expected import Limits, Participants
 from isa_ros.nodes.lockstep.sockets import LocalWires
-from isa_ros.nodes.middleware.domain import another_coordinator, refuse_other_coordinator
+from isa_ros.nodes.middleware.domain import refuse_other_coordinator
 from isa_ros.nodes.middleware.mailboxes import open_mailbox, SLICE_S, TOPIC_CHECK_S
 from isa_ros.nodes.middleware.qos import LOCKSTEP
 from isa_ros.run.coordinator import Interrupted
 from isa_ros.run.exchange import IDLE_S, Rows
-from isa_ros.run.wire import (
-    ACKNOWLEDGEMENT_TOPIC, Answer, AnswerKind, decode_answer, DIVERGENCE, encode_begin, encode_end,
-    encode_hello, encode_restore, encode_save, encode_tick, STEP_TOPIC, take_actuator_parts)
+from isa_ros.run.wire.answers import (
+    ACKNOWLEDGEMENT_TOPIC, Answer, AnswerKind, DIVERGENCE, FIRST)
+from isa_ros.run.wire.parts import Parts, take_actuator_parts
+from isa_ros.run.wire.steps import (
+    encode_begin, encode_end, encode_hello, encode_restore, encode_save, encode_tick, STEP_TOPIC)
 import numpy as np
 from rclpy.duration import Duration
 from rclpy.node import Node
@@ -26,8 +29,6 @@ from std_msgs.msg import UInt8MultiArray
 HELLO_PERIOD_S = 0.05
 STOP_GRACE_S = 1.0  # longest duration of a tick after a stop was requested
 REPEAT_S = 1.0  # time until an unanswered step is sent again: a message may have been lost
-_IDENTITY, _DIGEST, _FIRST = 0, 1, 2  # parts of a READY answer
-_NO_REASON = b'no reason given'
 
 
 class LockstepTransport:
@@ -55,7 +56,7 @@ class LockstepTransport:
         self._should_stop = should_stop
         self._run_id = 0
         self._past_runs: set[int] = set()
-        self._identities: dict[int, bytes] = {}
+        self._answers = AnswerChecks(node, participants)
         self._tick = 0
         self._begin_due = 0.0
         self._requests = 0
@@ -102,7 +103,7 @@ class LockstepTransport:
             answers = self._hello_answers(count, is_last=bool(complete))
             refuse_other_coordinator(self._node)
             if complete:
-                self._fill(rows, {k: answer.parts[_FIRST:] for k, answer in complete.items()})
+                self._fill(rows, {k: answer.parts[FIRST:] for k, answer in complete.items()})
                 return
             if len(answers) == len(self._remote):
                 complete = answers
@@ -132,39 +133,12 @@ class LockstepTransport:
             data = self._mailbox.wait(left)
             if data is None:
                 continue
-            answer = decode_answer(data)
-            if answer.run_id in self._past_runs:
+            answer = self._answers.decoded(data, self._run_id)
+            if answer is None or answer.run_id in self._past_runs:
                 continue
-            self._check_ready(answer)
-            if answer.tick == count:
+            if self._answers.is_ready(answer, self._run_id) and answer.tick == count:
                 answers[answer.participant] = answer
         return answers
-
-    def _check_ready(self, answer: Answer) -> None:
-        if answer.run_id != self._run_id or answer.kind is AnswerKind.BUSY:
-            raise another_coordinator(self._node.context.get_domain_id())
-        name, expected = self._participants[answer.participant]
-        identity, digest = answer.parts[_IDENTITY], answer.parts[_DIGEST]
-        assert identity is not None and digest is not None
-        if self._identities.setdefault(answer.participant, identity) != identity or (
-                answer.participant not in self._remote):
-            raise self._two_nodes(answer.participant)
-        if expected and digest.decode() != expected:
-            raise ConfigError(
-                f'{name}: digest of its parameters = {digest.decode()}, must be {expected} as '
-                'configured; start both with the same file')
-
-    def _check_unbound(self, answer: Answer) -> None:
-        """Refuse a node outside the run with the same name as a participant."""
-        name = (answer.parts[0] or b'').decode()
-        names = [participant.name for participant in self._participants]
-        if name in names:
-            raise self._two_nodes(names.index(name))
-
-    def _two_nodes(self, participant: int) -> ConfigError:
-        return ConfigError(
-            f'{self._participants[participant].name}: two nodes of this name answer in '
-            f'ROS_DOMAIN_ID {self._node.context.get_domain_id()}, must be one')
 
     def _refuse_lost(self, when: str) -> None:
         lost = self._watch()
@@ -173,7 +147,7 @@ class LockstepTransport:
 
     def begin(self) -> None:
         """Make every participant publish its first messages."""
-        self._wires.connect(self._identities)
+        self._wires.connect(self._answers.identities)
         self._send(encode_begin(self._run_id))
 
     def send(self, tick: int, rows: Rows) -> None:
@@ -204,7 +178,9 @@ class LockstepTransport:
         self._refuse_lost(f'while paused before tick {self._tick}')
         data = self._mailbox.wait(IDLE_S)
         if data is not None:
-            self._is_expected(decode_answer(data), AnswerKind.DONE, set())
+            answer = self._answers.decoded(data, self._run_id)
+            if answer is not None:
+                self._is_expected(answer, AnswerKind.DONE, set())
 
     def snapshots(self) -> list[bytes]:
         """Return the state of every participant."""
@@ -225,7 +201,7 @@ class LockstepTransport:
                         encode_restore(self._run_id, number, tick, snapshots))
         self._fill(rows, self._gather(AnswerKind.RESTORED))
 
-    def _fill(self, rows: Rows, parts: dict[int, list[bytes | None]]) -> None:
+    def _fill(self, rows: Rows, parts: dict[int, Parts]) -> None:
         """Fill the rows from the answers of actuators and controllers."""
         n_actuators = len(rows.replies)
         if self._run.first_remote == 0:
@@ -236,9 +212,9 @@ class LockstepTransport:
             else:
                 merge_requests(np.frombuffer(parts[k][0] or b'', COMMAND), rows.requests)
 
-    def _gather(self, kind: AnswerKind) -> dict[int, list[bytes | None]]:
+    def _gather(self, kind: AnswerKind) -> dict[int, Parts]:
         """Wait until every participant has answered and return the parts of each."""
-        parts: dict[int, list[bytes | None]] = {}
+        parts: dict[int, Parts] = {}
         missing = set(self._remote)
         waited, repeat_at = 0.0, REPEAT_S
         while missing:
@@ -255,8 +231,8 @@ class LockstepTransport:
                     repeat_at += REPEAT_S
                     self._send(self._step)
                 continue
-            answer = decode_answer(data)
-            if self._is_expected(answer, kind, missing):
+            answer = self._answers.decoded(data, self._run_id)
+            if answer is not None and self._is_expected(answer, kind, missing):
                 parts[answer.participant] = answer.parts
                 missing.discard(answer.participant)
         return parts
@@ -280,23 +256,25 @@ class LockstepTransport:
         if answer.run_id != self._run_id or answer.kind is AnswerKind.BUSY:
             return False
         if answer.kind is AnswerKind.READY:
-            self._check_ready(answer)
+            self._answers.is_ready(answer, self._run_id)
             return False
         if answer.kind is AnswerKind.UNBOUND:
-            self._check_unbound(answer)
+            self._answers.check_unbound(answer)
             return False
         if answer.tick != self._awaited or answer.participant not in missing:
             if answer.is_repeated:
                 return False
-            raise self._two_nodes(answer.participant)  # a participant answers each step once
+            # A participant answers each step once.
+            raise self._answers.two_nodes(answer.participant)
         if answer.kind is kind:
             return True
-        reason, *rest = answer.parts
         if answer.kind is AnswerKind.DIVERGED:
-            t_ns, value = DIVERGENCE.unpack(reason or b'')
-            raise SimulationDiverged(t_ns, (rest[0] or b'').decode(), value)
-        name = self._participants[answer.participant].name
-        raise RunError(f'{name}: refused {self._current_step}: {(reason or _NO_REASON).decode()}')
+            t_ns, value = DIVERGENCE.unpack(answer.parts[0] or b'')
+            raise SimulationDiverged(t_ns, (answer.parts[1] or b'').decode(), value)
+        if answer.kind is not AnswerKind.REFUSED:
+            return False
+        name, reason = self._participants[answer.participant].name, answer.parts[0] or b''
+        raise RunError(f'{name}: refused {self._current_step}: {reason.decode()}')
 
     def _check_waited(self, waited: float, missing: set[int]) -> None:
         names = ', '.join(self._participants[k].name for k in sorted(missing))

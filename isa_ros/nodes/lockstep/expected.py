@@ -4,7 +4,7 @@ from collections.abc import Sequence
 from typing import NamedTuple
 
 from isa_ros.core.signals import Records
-from isa_ros.run.wire import Cast
+from isa_ros.run.wire.cast import Cast
 
 
 class Expected(NamedTuple):

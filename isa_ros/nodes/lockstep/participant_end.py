@@ -5,20 +5,25 @@ import secrets
 import time
 from typing import Any
 
-from isa_ros.errors import IsaError, SimulationDiverged
-from isa_ros.nodes.lockstep.roles import Parts, Role
+from isa_ros.core.suggest import listed
+from isa_ros.errors import IsaError, one_line, SimulationDiverged
+from isa_ros.nodes.lockstep.roles import Role
 from isa_ros.nodes.lockstep.sockets import LocalWire
 from isa_ros.nodes.middleware.mailboxes import open_mailbox, SLICE_S, TOPIC_CHECK_S
 from isa_ros.nodes.middleware.qos import LOCKSTEP
-from isa_ros.run.wire import (
-    ACKNOWLEDGEMENT_TOPIC, AnswerKind, decode_step, DIVERGENCE, encode_answer, Step, STEP_TOPIC,
-    StepKind)
+from isa_ros.run.wire.answers import (
+    ACKNOWLEDGEMENT_TOPIC, AnswerKind, DIVERGENCE, encode_answer)
+from isa_ros.run.wire.header import WireError
+from isa_ros.run.wire.parts import Parts
+from isa_ros.run.wire.steps import decode_step, Step, STEP_TOPIC, StepKind
 from rclpy.node import Node
 from std_msgs.msg import UInt8MultiArray
 
 SILENCE_S = 5.0
 """Time without a message after which a run counts as abandoned; a coordinator sends at least one
 message per second, also while it waits or is paused."""
+
+WARNING_PERIOD_S = 10.0
 
 
 class ParticipantEnd:
@@ -48,7 +53,7 @@ class ParticipantEnd:
     def _unbind(self) -> None:
         self._close_wire()
         self._run_id = 0  # 0: bound to no run
-        self._index = 0
+        self._index = self._n_participants = 0
         self._next_tick = 0
         self._request = 0  # number of the last request; they decrease
         self._has_begun = False
@@ -69,7 +74,7 @@ class ParticipantEnd:
         while not should_stop():
             data = self._next_step()
             if data is not None:
-                self._handle(decode_step(data))
+                self._receive(data)
                 continue
             self._role.serve()
             is_abandoned = bool(self._run_id) and not self._has_coordinator(
@@ -106,6 +111,25 @@ class ParticipantEnd:
     def _has_coordinator(self, n_coordinators: int) -> bool:
         """Return whether there are coordinators and the run's own has sent a message recently."""
         return n_coordinators > 0 and time.monotonic() - self._last_message < SILENCE_S
+
+    def _receive(self, data: bytes) -> None:
+        """Handle a message; discard one that is not a step, or that does not fit its run."""
+        try:
+            step = decode_step(data)
+            if step.run_id == self._run_id:
+                self._refuse_misfit(step)
+        except WireError as error:
+            self._log.warning(
+                f'a message on {STEP_TOPIC} is discarded: {error}',
+                throttle_duration_sec=WARNING_PERIOD_S)
+            return
+        self._handle(step)
+
+    def _refuse_misfit(self, step: Step) -> None:
+        if step.kind is StepKind.TICK:
+            self._role.check(step)
+        elif step.kind is StepKind.RESTORE:
+            step.refuse_restore(self._n_participants)
 
     def _handle(self, step: Step) -> None:
         if step.run_id == self._run_id:
@@ -162,16 +186,20 @@ class ParticipantEnd:
     def _bind(self, step: Step) -> bool:
         """Join the run of a hello; return whether it lists this participant."""
         self._unbind()
-        names = step.cast().names
-        if self._name not in names:
+        names = list(step.cast().names)
+        has_role = self._name in (
+            names[:step.rows] if self._role.is_actuator else names[step.rows:])
+        if not has_role:
             if step.run_id not in self._foreign_runs:
                 self._foreign_runs.add(step.run_id)
+                role = 'actuators' if self._role.is_actuator else 'controllers'
                 self._log.warning(
-                    f'the participants of a run are {", ".join(names)}, without {self._name!r}; '
-                    'declare it in the run file')
+                    one_line(f'the participants of a run are {listed(names)}, without '
+                             f'{self._name!r} among the {role}; declare it in the run file'),
+                    throttle_duration_sec=WARNING_PERIOD_S)
             return False
         self._run_id, self._last_message = step.run_id, time.monotonic()
-        self._index = names.index(self._name)
+        self._index, self._n_participants = names.index(self._name), len(names)
         self._wire = LocalWire.to_run(self._run_id, self._identity, SLICE_S)
         self._role.serve()
         self._first = self._role.start(step, self._index)
@@ -213,11 +241,11 @@ class ParticipantEnd:
                 DIVERGENCE.pack(error.t_ns, error.value), error.field.encode()))
             return False
         except IsaError as error:
-            self._answer(step, AnswerKind.REFUSED, (str(error).encode(),))
+            self._answer(step, AnswerKind.REFUSED, (_encoded(str(error)),))
             return False
         except BaseException as error:
             self._answer(step, AnswerKind.REFUSED, (
-                f'{type(error).__name__}: {error}'.encode(),))
+                _encoded(f'{type(error).__name__}: {error}'),))
             raise
         self._answer(step, kind, parts)
         return True
@@ -232,3 +260,7 @@ class ParticipantEnd:
         wire = self._wire_in_use()
         if wire is None or not wire.send(answer):
             self._send(answer)
+
+
+def _encoded(text: str) -> bytes:
+    return text.encode(errors='backslashreplace')

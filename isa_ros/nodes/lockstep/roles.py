@@ -2,23 +2,26 @@
 Roles of a participant of the lockstep: to simulate an actuator, or to run a controller.
 
 A role executes the steps of the coordinator and returns the parts of its answer, as bytes: an
-actuator's are its rows and the parameters that changed (`wire.actuator_parts`), a controller's
+actuator's are its rows and the parameters that changed (`wire.parts`), a controller's
 are the `COMMAND` rows that it requests.
 """
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from typing import Protocol
 
 from isa_ros.controller import by_name, Controller, ControllerSeat, State
 from isa_ros.core.signals import COMMAND, Records
-from isa_ros.run.wire import actuator_parts, Cast, Step
+from isa_ros.run.wire.cast import Cast
+from isa_ros.run.wire.parts import actuator_parts, Parts
+from isa_ros.run.wire.steps import Step
 import numpy as np
-
-Parts = Sequence[bytes | None]
 
 
 class Role(Protocol):
     """Executes the steps of one participant."""
+
+    is_actuator: bool
+    """Whether a hello must list it among the actuators, or among the controllers."""
 
     @property
     def digest(self) -> bytes:
@@ -27,6 +30,18 @@ class Role(Protocol):
 
     def start(self, step: Step, index: int) -> Parts:
         """Start at t = 0 with the data of a hello for the participant at ``index``."""
+        ...
+
+    def check(self, step: Step) -> None:
+        """
+        Refuse a tick before it is executed.
+
+        Raises
+        ------
+        WireError
+            It does not fit the run, or has a number that is not finite.
+
+        """
         ...
 
     def advance(self, step: Step) -> Parts:
@@ -130,9 +145,11 @@ class Stepper(Protocol):
 class ActuatorRole:
     """The role of an actuator."""
 
+    is_actuator = True
+
     def __init__(self, stepper: Stepper) -> None:
         self._stepper = stepper
-        self._index = 0
+        self._index = self._n_actuators = 0
         self.publish = stepper.publish
         self.serve = stepper.serve
         self.snapshot = stepper.snapshot
@@ -144,9 +161,13 @@ class ActuatorRole:
 
     def start(self, step: Step, index: int) -> Parts:
         """Start at rest, at t = 0, from its `START` row."""
-        self._index = index
+        self._index, self._n_actuators = index, step.rows
         self._stepper.start(step.start(index))
         return self._parts()
+
+    def check(self, step: Step) -> None:
+        """Refuse a tick of another number of actuators, or with invalid numbers."""
+        step.refuse_tick(self._n_actuators, self._index)
 
     def advance(self, step: Step) -> Parts:
         """Advance one tick with its row of ports and commands."""
@@ -167,6 +188,7 @@ class ControllerRole:
     """The role of a user's controller."""
 
     digest = b''
+    is_actuator = False
 
     def __init__(self, controller: Controller) -> None:
         self._controller = controller
@@ -181,6 +203,11 @@ class ControllerRole:
         self._seat = ControllerSeat(self._controller, self._cast.names[:step.rows])
         self._requests = np.zeros(step.rows, COMMAND)
         return self._parts()
+
+    def check(self, step: Step) -> None:
+        """Refuse a tick that does not show the state of the run."""
+        assert self._seat is not None, 'a run begins with a hello'
+        step.refuse_shown(len(self._seat.names), self._cast)
 
     def advance(self, step: Step) -> Parts:
         """Call the controller with the state before the tick; return commands for the next one."""

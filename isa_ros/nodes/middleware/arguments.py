@@ -1,21 +1,26 @@
 """The command line of an executable: ROS arguments only."""
 
 from collections.abc import Sequence
+import os
 import sys
 
 from isa_ros.errors import ConfigError
 from isa_ros.nodes.middleware.refusals import refusals
+from isa_ros.processes.ending import DEBUG_VARIABLE
 import rclpy
 from rclpy.impl.implementation_singleton import rclpy_implementation as _rclpy
 from rclpy.signals import SignalHandlerOptions
 from rclpy.utilities import remove_ros_args
 
 _HELP = ('-h', '--help')
+_DEBUG = '--debug'
 
 
 def init_ros(args: Sequence[str] | None, usage: str) -> None:
     """
     Initialise rclpy from the command line; ``--help`` prints ``usage`` and exits with 0.
+
+    With ``--debug`` an error is shown with its traceback.
 
     Raises
     ------
@@ -29,6 +34,9 @@ def init_ros(args: Sequence[str] | None, usage: str) -> None:
         if any(argument in _HELP for argument in rest):
             print(usage)
             raise SystemExit(0)
+        if _DEBUG in rest:
+            os.environ[DEBUG_VARIABLE] = '1'
+            rest.remove(_DEBUG)
         if rest:
             raise ConfigError(f'argument {rest[0]!r} is unknown; {usage}')
         with refusals():

@@ -8,6 +8,7 @@ from collections.abc import Iterator, Mapping, MutableMapping
 from contextlib import contextmanager
 import os
 from pathlib import Path
+import tempfile
 
 from isa_ros.errors import ConfigError
 from isa_ros.nodes.middleware.discovery import refuse_invalid
@@ -23,6 +24,7 @@ _TRANSPORTS = 'FASTDDS_BUILTIN_TRANSPORTS'
 _RANGE = 'ROS_AUTOMATIC_DISCOVERY_RANGE'
 _OTHER_DISCOVERY = ('ROS_LOCALHOST_ONLY', 'ROS_STATIC_PEERS')
 _FAST_DDS = 'rmw_fastrtps'
+_LOG_VARIABLES = ('ROS_LOG_DIR', 'ROS_HOME')
 
 
 def set_defaults(
@@ -30,6 +32,9 @@ def set_defaults(
         middleware: str | None = None) -> None:
     """
     Use a packaged Fast DDS profile and limit discovery to this host, unless set by the user.
+
+    Without a home directory that can be written, the log files of ROS are temporary ones: rclpy
+    does not start without them.
 
     ``middleware``: None for the one in use. Fast DDS 2 reads the first of the two variables of a
     profile, Fast DDS 3 the second.
@@ -45,6 +50,9 @@ def set_defaults(
     for name in _PROFILE_VARIABLES:
         if name in environment and not Path(environment[name]).is_file():
             raise ConfigError(f'{name} = {environment[name]}: no such file')
+    if not any(name in environment for name in _LOG_VARIABLES) and not _can_log():
+        environment[_LOG_VARIABLES[0]] = str(
+            Path(tempfile.gettempdir()) / f'isa_ros-{os.geteuid()}' / 'log')
     if not any(name in environment for name in (_RANGE, *_OTHER_DISCOVERY)):
         environment[_RANGE] = 'LOCALHOST'
     if _has_settings(environment):
@@ -70,7 +78,7 @@ def defaults(environment: MutableMapping[str, str] = os.environ) -> Iterator[Non
         set_defaults(environment)
         yield
     finally:
-        for name in (*_PROFILE_VARIABLES, _TRANSPORTS, _RANGE):  # all that it sets
+        for name in (*_PROFILE_VARIABLES, _TRANSPORTS, _RANGE, *_LOG_VARIABLES):  # all it sets
             if name in before:
                 environment[name] = before[name]
             else:
@@ -84,6 +92,16 @@ def finds_other_hosts(environment: Mapping[str, str]) -> bool:
         or environment.get('ROS_LOCALHOST_ONLY') == '1'
         or str(LOCALHOST_PROFILE) in (environment.get(name) for name in _PROFILE_VARIABLES))
     return not is_here
+
+
+def _can_log() -> bool:
+    """Return whether the middleware can make its log directory, below HOME."""
+    home = os.environ.get('HOME')
+    if not home:
+        return False
+    logs = Path(home) / '.ros' / 'log'
+    nearest = next(path for path in (logs, *logs.parents) if path.exists())
+    return nearest.is_dir() and os.access(nearest, os.W_OK | os.X_OK)
 
 
 def _has_settings(environment: MutableMapping[str, str]) -> bool:

@@ -11,6 +11,8 @@ from typing import Any, Protocol
 
 from isa_ros.nodes.middleware.handles import has_handles
 from rclpy.experimental.events_executor import EventsExecutor
+from rclpy.impl.implementation_singleton import rclpy_implementation as _rclpy
+from rclpy.impl.rcutils_logger import RcutilsLogger
 from rclpy.node import Node
 from rclpy.serialization import deserialize_message
 from rclpy.service import Service
@@ -21,6 +23,10 @@ SERVICE_PERIOD_S = 0.005
 
 SELDOM_PERIOD_S = 0.05
 """The same for services that need not answer at once: those of parameters."""
+
+WARNING_PERIOD_S = 10.0
+
+_NOT_OF_ITS_TYPE = (_rclpy.RCLError, _rclpy.RMWError)
 
 
 class Server(Protocol):
@@ -35,10 +41,11 @@ class DirectServer:
     """Takes messages and requests from the handles, in the order of the arguments."""
 
     def __init__(
-            self, subscriptions: Sequence[Subscription], services: Sequence[Service],
-            seldom: Sequence[Service] = ()) -> None:
+            self, log: RcutilsLogger, subscriptions: Sequence[Subscription],
+            services: Sequence[Service], seldom: Sequence[Service] = ()) -> None:
+        self._log = log
         self._subscriptions: list[Any] = [
-            (s.handle.take_message, s.msg_type, s.callback) for s in subscriptions]
+            (s.handle.take_message, s.msg_type, s) for s in subscriptions]
         self._services, self._seldom = _taken(services), _taken(seldom)
         self._services_due = self._seldom_due = 0.0
 
@@ -48,30 +55,43 @@ class DirectServer:
         now = time.monotonic()
         if now >= self._services_due:  # a check takes 5 us, a sixth of an actuator's tick
             self._services_due = now + SERVICE_PERIOD_S
-            _serve(self._services)
+            self._serve(self._services)
         if now >= self._seldom_due:
             self._seldom_due = now + SELDOM_PERIOD_S
-            _serve(self._seldom)
+            self._serve(self._seldom)
 
     def _serve_subscriptions(self) -> None:
-        for take_message, message_type, callback in self._subscriptions:
+        for take_message, message_type, subscription in self._subscriptions:
             # As bytes: otherwise a message object is created even if there is no message.
             while (taken := take_message(message_type, True)) is not None:
-                callback(deserialize_message(taken[0], message_type))
+                try:
+                    message = deserialize_message(taken[0], message_type)
+                except _NOT_OF_ITS_TYPE:  # bytes of a publisher of serialised messages
+                    self._discard(f'a message on {subscription.topic_name}')
+                    continue
+                subscription.callback(message)
+
+    def _serve(self, services: Sequence[Any]) -> None:
+        for take_request, service_type, service in services:
+            while True:
+                try:
+                    request, header = take_request(service_type.Request)
+                except _NOT_OF_ITS_TYPE:
+                    self._discard(f'a request to {service.srv_name}')
+                    break
+                if header is None:
+                    break
+                service.send_response(
+                    service.callback(request, service_type.Response()), header)
+
+    def _discard(self, what: str) -> None:
+        self._log.warning(
+            f'{what} is discarded: its bytes are not of its type',
+            throttle_duration_sec=WARNING_PERIOD_S)
 
 
 def _taken(services: Sequence[Service]) -> list[Any]:
     return [(s.handle.service_take_request, s.srv_type, s) for s in services]
-
-
-def _serve(services: Sequence[Any]) -> None:
-    for take_request, service_type, service in services:
-        while True:
-            request, header = take_request(service_type.Request)
-            if header is None:
-                break
-            service.send_response(
-                service.callback(request, service_type.Response()), header)
 
 
 class ExecutorServer:
@@ -102,5 +122,5 @@ def open_server(
     ``seldom`` are services that are checked less often.
     """
     if has_handles():
-        return DirectServer(subscriptions, services, seldom)
+        return DirectServer(node.get_logger(), subscriptions, services, seldom)
     return ExecutorServer(None if has_mailbox else node)

@@ -1,16 +1,26 @@
 """One coordinator per domain; on one host a second one is refused at once."""
 
+import os
+import socket
+import subprocess
+import sys
+from types import SimpleNamespace
+
 from isa_ros.errors import ConfigError
-from isa_ros.nodes.middleware.domain import domain_id, sole_coordinator
+from isa_ros.nodes.middleware import domain
+from isa_ros.nodes.middleware.domain import (
+    claim_address, domain_id, holder, look_for_other_coordinator, sole_coordinator)
 import pytest
 from tests.ros.domains import held_domain
 
+OTHER_USER = 54321
+
 
 def test_a_second_coordinator_is_refused(monkeypatch):
-    with held_domain(monkeypatch) as domain:
+    with held_domain(monkeypatch) as number:
         with sole_coordinator():
             with pytest.raises(
-                    ConfigError, match=f'another coordinator runs in ROS_DOMAIN_ID {domain}'):
+                    ConfigError, match=f'another coordinator runs in ROS_DOMAIN_ID {number}'):
                 with sole_coordinator():
                     pass
         with sole_coordinator():
@@ -36,3 +46,49 @@ def test_no_domain_is_refused(monkeypatch, text):
     monkeypatch.setenv('ROS_DOMAIN_ID', text)
     with pytest.raises(ConfigError, match='must be an integer from 0 to 232'):
         domain_id()
+
+
+@pytest.mark.parametrize('listens', [False, True])
+def test_a_name_that_another_user_holds_proves_nothing(monkeypatch, listens):
+    """The run begins; what decides is the graph, for which it waits."""
+    with held_domain(monkeypatch) as number, \
+            socket.socket(socket.AF_UNIX, socket.SOCK_STREAM) as squatter:
+        squatter.bind(claim_address(number))
+        if listens:  # as this user; the kernel names another one only to another one
+            squatter.listen()
+            monkeypatch.setattr(os, 'geteuid', lambda: OTHER_USER)
+        with sole_coordinator():
+            assert holder(number) != os.geteuid()
+
+
+def test_the_graph_decides_where_the_name_is_held_by_another_user(monkeypatch):
+    """With discovery on this host only."""
+    waited = []
+    monkeypatch.setattr(domain, 'refuse_other_coordinator', waited.append)
+    monkeypatch.setattr(domain, 'DISCOVERY_S', 0.1)
+    here = {'ROS_AUTOMATIC_DISCOVERY_RANGE': 'LOCALHOST'}
+    with held_domain(monkeypatch) as number, sole_coordinator():
+        node = SimpleNamespace(context=SimpleNamespace(get_domain_id=lambda: number))
+        look_for_other_coordinator(node, here)
+        assert len(waited) == 1
+        monkeypatch.setattr(os, 'geteuid', lambda: OTHER_USER)
+        look_for_other_coordinator(node, here)
+        assert len(waited) > 2
+
+
+@pytest.mark.skipif(os.geteuid() != 0, reason='only root becomes another user')
+def test_the_kernel_names_the_user_that_listens(monkeypatch):
+    with held_domain(monkeypatch) as number:
+        program = (
+            'import os, socket, sys\n'
+            f'os.setuid({OTHER_USER})\n'
+            's = socket.socket(socket.AF_UNIX, socket.SOCK_STREAM)\n'
+            f's.bind({claim_address(number)!r})\n'
+            's.listen()\nprint(flush=True)\nsys.stdin.read()\n')
+        with subprocess.Popen([sys.executable, '-c', program], stdin=subprocess.PIPE,
+                              stdout=subprocess.PIPE) as squatter:
+            squatter.stdout.readline()
+            assert holder(number) == OTHER_USER
+            with sole_coordinator():
+                pass
+            squatter.stdin.close()

@@ -1,5 +1,6 @@
 """The packaged middleware settings are used if the user has set none."""
 
+from pathlib import Path
 from xml.etree import ElementTree
 
 from isa_ros.errors import ConfigError
@@ -28,6 +29,24 @@ def test_by_default_the_profile_alone_says_what_listens():
     set_defaults(environment, FAST_DDS)
     assert environment == with_profile(
         LOCALHOST_PROFILE, ROS_AUTOMATIC_DISCOVERY_RANGE='SYSTEM_DEFAULT')
+
+
+@pytest.mark.parametrize('home', [None, '/dev/null', '/dev/null/none'])
+def test_without_a_home_the_logs_are_temporary(monkeypatch, tmp_path, home):
+    """Else rclpy fails to initialise."""
+    if home is None:
+        monkeypatch.delenv('HOME', raising=False)
+    else:
+        monkeypatch.setenv('HOME', home)
+    environment: dict[str, str] = {}
+    set_defaults(environment, FAST_DDS)
+    assert Path(environment.pop('ROS_LOG_DIR')).parts[-1] == 'log'
+    assert environment == with_profile(
+        LOCALHOST_PROFILE, ROS_AUTOMATIC_DISCOVERY_RANGE='SYSTEM_DEFAULT')
+    for name in ('ROS_LOG_DIR', 'ROS_HOME'):
+        own = {name: str(tmp_path)}
+        set_defaults(own, FAST_DDS)
+        assert own[name] == str(tmp_path) and len({'ROS_LOG_DIR', 'ROS_HOME'} & set(own)) == 1
 
 
 def test_children_keep_what_their_parent_has_set():

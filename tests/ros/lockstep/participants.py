@@ -13,7 +13,7 @@ from isa_ros.nodes.lockstep.expected import Expected, Limits, Participants
 from isa_ros.nodes.lockstep.participant_end import ParticipantEnd
 from isa_ros.nodes.lockstep.roles import ActuatorRole, ControllerRole
 from isa_ros.run.exchange import Rows
-from isa_ros.run.wire import Cast
+from isa_ros.run.wire.cast import Cast
 from isa_ros.surroundings.supply import SUPPLY_SAMPLE
 import numpy as np
 from rclpy.node import Node

@@ -5,7 +5,7 @@ import time
 from isa_ros.errors import ConfigError
 from isa_ros.nodes.lockstep import coordinator_end as lockstep, participant_end
 from isa_ros.nodes.lockstep.coordinator_end import LockstepTransport
-from isa_ros.run.wire import encode_tick
+from isa_ros.run.wire.steps import encode_tick
 import pytest
 from tests.ros.lockstep.participants import (
     begin, Follower, make_transport, rows_of_two, Scripted, spinning, tick)

@@ -1,0 +1,84 @@
+"""What arrives from participants: discard what is not of the run, refuse what prevents it."""
+
+from isa_ros.errors import ConfigError
+from isa_ros.nodes.lockstep.expected import Participants
+from isa_ros.nodes.middleware.domain import another_coordinator
+from isa_ros.run.wire.answers import (
+    ACKNOWLEDGEMENT_TOPIC, Answer, AnswerKind, decode_answer, DIGEST, FIRST, IDENTITY)
+from isa_ros.run.wire.header import WireError
+from isa_ros.run.wire.parts import refuse_actuator_parts, refuse_requests
+from rclpy.node import Node
+
+WARNING_PERIOD_S = 10.0
+_WITH_PARTS = {AnswerKind.READY: FIRST, AnswerKind.DONE: 0, AnswerKind.RESTORED: 0}
+"""Kinds of answers with the parts of a role, and the first of these."""
+
+
+class AnswerChecks:
+    """Checks the answers that arrive at the coordinator ``node``."""
+
+    def __init__(self, node: Node, participants: Participants) -> None:
+        self._node = node
+        self._run = participants
+        self._participants = participants.expected
+        self._remote = frozenset(
+            range(participants.first_remote, len(participants.expected)))
+        self.identities: dict[int, bytes] = {}
+        """Identity of the node of each participant that has answered."""
+
+    def decoded(self, data: bytes, run_id: int) -> Answer | None:
+        """Return an answer; None: the bytes are none of this run, and are discarded."""
+        try:
+            answer = decode_answer(data)
+            if answer.run_id == run_id:
+                self._refuse_misfit(answer)
+        except WireError as error:
+            self._node.get_logger().warning(
+                f'a message on {ACKNOWLEDGEMENT_TOPIC} is discarded: {error}',
+                throttle_duration_sec=WARNING_PERIOD_S)
+            return None
+        return answer
+
+    def _refuse_misfit(self, answer: Answer) -> None:
+        """Refuse an answer of a participant that the run does not have, or with other parts."""
+        if answer.participant >= len(self._participants):
+            raise WireError(f'an answer of participant {answer.participant}')
+        first = _WITH_PARTS.get(answer.kind)
+        if first is None:
+            return
+        n_actuators = len(self._run.starts)
+        if answer.participant < n_actuators:
+            refuse_actuator_parts(answer.parts[first:])
+        else:
+            refuse_requests(answer.parts[first:], n_actuators)
+
+    def is_ready(self, answer: Answer, run_id: int) -> bool:
+        """Return whether an answer is one to a hello; refuse those that prevent the run."""
+        if answer.run_id != run_id or answer.kind is AnswerKind.BUSY:
+            raise another_coordinator(self._node.context.get_domain_id())
+        if answer.kind is AnswerKind.UNBOUND:
+            self.check_unbound(answer)
+        if answer.kind is not AnswerKind.READY:
+            return False
+        name, expected = self._participants[answer.participant]
+        identity, digest = answer.parts[IDENTITY] or b'', answer.parts[DIGEST] or b''
+        if self.identities.setdefault(answer.participant, identity) != identity or (
+                answer.participant not in self._remote):
+            raise self.two_nodes(answer.participant)
+        if expected and digest.decode() != expected:
+            raise ConfigError(
+                f'{name}: digest of its parameters = {digest.decode()}, must be {expected} as '
+                'configured; start both with the same file')
+        return True
+
+    def check_unbound(self, answer: Answer) -> None:
+        """Refuse a node outside the run with the same name as a participant."""
+        name = (answer.parts[0] or b'').decode()
+        names = [participant.name for participant in self._participants]
+        if name in names:
+            raise self.two_nodes(names.index(name))
+
+    def two_nodes(self, participant: int) -> ConfigError:
+        return ConfigError(
+            f'{self._participants[participant].name}: two nodes of this name answer in '
+            f'ROS_DOMAIN_ID {self._node.context.get_domain_id()}, must be one')

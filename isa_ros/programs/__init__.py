@@ -1,0 +1,1 @@
+"""The programs: each loads what it runs; a signal meanwhile ends it without a traceback."""

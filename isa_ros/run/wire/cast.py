@@ -1,0 +1,75 @@
+"""The participants of a run, as a hello of the private wire lists them."""
+
+from collections.abc import Sequence
+import json
+from typing import Any, NamedTuple
+
+from isa_ros.run.wire.header import WireError
+import numpy as np
+
+MOST_NAMES = 1000
+LONGEST_NAME = 256
+_MOST_FIELDS = 100
+_LARGEST_SHAPE = 4096
+_FLOATS = '<f8'
+
+
+class Cast(NamedTuple):
+    """The participants of a run, and the supplies and body whose samples controllers receive."""
+
+    names: Sequence[str]
+    """The participants in order: the actuators first, then the controllers."""
+    supplies: Sequence[str]
+    body: np.dtype[np.void] | None
+    """Record type of the body's sample; None: no body."""
+
+    def encode(self) -> bytes:
+        """Return the bytes that `decode` reads."""
+        body = None if self.body is None else [
+            [name, self.body[name].base.str, self.body[name].shape]
+            for name in self.body.names or ()]
+        return json.dumps([list(self.names), list(self.supplies), body]).encode()
+
+    @classmethod
+    def decode(cls, data: bytes) -> 'Cast':
+        """
+        Return the cast from its bytes.
+
+        Raises
+        ------
+        WireError
+            The bytes are not a cast.
+
+        """
+        try:
+            names, supplies, body = json.loads(data)
+        except (ValueError, TypeError, RecursionError) as error:
+            raise WireError('a hello without participants') from error
+        return cls(_names(names), _names(supplies), None if body is None else _record(body))
+
+
+def _names(value: Any) -> list[str]:
+    if (isinstance(value, list) and len(value) <= MOST_NAMES
+            and all(isinstance(name, str) and len(name) <= LONGEST_NAME for name in value)
+            and len(set(value)) == len(value)):
+        return value
+    raise WireError(f'names of a hello, must be <= {MOST_NAMES} different texts')
+
+
+def _record(value: Any) -> np.dtype[np.void]:
+    """Return the record type of a body's sample: named floats, or arrays of them."""
+    if not isinstance(value, list) or not 0 < len(value) <= _MOST_FIELDS:
+        raise WireError('the record of a body in a hello is not a list of fields')
+    fields = []
+    for field in value:
+        if not isinstance(field, list) or len(field) != 3:
+            raise WireError('the record of a body in a hello has an invalid field')
+        name, kind, shape = field
+        if not (isinstance(name, str) and name.isidentifier() and kind == _FLOATS
+                and isinstance(shape, list) and len(shape) <= 2
+                and all(type(n) is int and 0 < n <= _LARGEST_SHAPE for n in shape)):
+            raise WireError('the record of a body in a hello has an invalid field')
+        fields.append((name, kind, tuple(shape)))
+    if len({name for name, _, _ in fields}) != len(fields):
+        raise WireError('the record of a body in a hello names a field twice')
+    return np.dtype(fields)

@@ -1,0 +1,171 @@
+"""
+The parts of an answer on the private wire: what a role returns of a tick.
+
+An actuator's are its rows and the parameters that changed, a controller's the `COMMAND` rows
+that it requests. What arrives is checked before any of it is taken.
+"""
+
+from collections.abc import Mapping, Sequence
+from functools import lru_cache
+import json
+import math
+import struct
+from typing import Any
+
+from isa_ros.core.signals import (
+    COMMAND, HAS_ENABLE, HAS_GAINS, HAS_SETPOINT, LOAD_REPLY, Records, SAMPLE)
+from isa_ros.run.exchange import Rows
+from isa_ros.run.wire.header import WireError
+import numpy as np
+from numpy.typing import NDArray
+
+Parts = Sequence[bytes | None]
+
+ABSENT = 0xFFFFFFFF
+"""Length of a part that is None."""
+
+MOST_TUNED = 1000
+_LONGEST_NAME = 256
+_COUNT = 4  # bytes of a length
+_FLOAT = 8
+_APPLIED_AT = LOAD_REPLY.itemsize + SAMPLE.itemsize
+_ROWS = _APPLIED_AT + COMMAND.itemsize
+_KINDS = HAS_SETPOINT | HAS_ENABLE | HAS_GAINS
+_NUMBERS = ('position', 'velocity', 'effort')
+_GAINS = ('stiffness', 'damping')
+
+
+def actuator_parts(
+        reply: Records, sample: Records, applied: Records,
+        tuned: Mapping[str, float]) -> list[bytes | None]:
+    """
+    Return the parts of an actuator's answer: its rows, and the parameters that changed.
+
+    ``reply``, ``sample`` and ``applied`` are its `LOAD_REPLY`, `SAMPLE` and `COMMAND`, (1,).
+    """
+    return [reply.tobytes() + sample.tobytes() + applied.tobytes(),
+            json.dumps(dict(tuned)).encode() if tuned else None]
+
+
+def refuse_actuator_parts(parts: Parts) -> None:
+    """
+    Refuse parts that are not those of an actuator, or that contain a number that is not finite.
+
+    Raises
+    ------
+    WireError
+        They cannot be taken.
+
+    """
+    rows, tuned = parts if len(parts) == 2 else (None, None)
+    if rows is None or len(rows) != _ROWS:
+        raise WireError('an answer that is not of an actuator')
+    if not is_finite(np.frombuffer(rows, np.float64, _APPLIED_AT // _FLOAT)):
+        raise WireError('an answer of an actuator with a number that is not finite')
+    refuse_command(np.frombuffer(rows, COMMAND, 1, _APPLIED_AT)[0])
+    if tuned is not None:
+        _tuned(tuned)
+
+
+def take_actuator_parts(parts: Parts, row: int, rows: Rows) -> None:
+    """Fill one row from the parts of an actuator's answer; inverse of `actuator_parts`."""
+    data, tuned = parts
+    assert data is not None, 'refuse_actuator_parts has checked them'
+    sample_at = LOAD_REPLY.itemsize
+    rows.reply_values[row] = np.frombuffer(data, np.float64, sample_at // _FLOAT)
+    rows.sample_values[row] = np.frombuffer(
+        data, np.float64, SAMPLE.itemsize // _FLOAT, sample_at)
+    rows.applied[row] = np.frombuffer(data, COMMAND, 1, _APPLIED_AT)[0]
+    if tuned is not None:
+        rows.tuned = {**rows.tuned, row: _tuned(tuned)}
+
+
+def _tuned(data: bytes) -> dict[str, float]:
+    """Return the parameters that changed, by name."""
+    try:
+        values: Any = json.loads(data)
+    except (ValueError, RecursionError) as error:
+        raise WireError('an answer of an actuator with unreadable parameters') from error
+    if not isinstance(values, dict) or len(values) > MOST_TUNED or not all(
+            name.isascii() and len(name) <= _LONGEST_NAME and type(value) is float
+            and math.isfinite(value) for name, value in values.items()):
+        raise WireError('an answer of an actuator with parameters that are not finite numbers')
+    return values
+
+
+def refuse_requests(parts: Parts, n_actuators: int) -> None:
+    """
+    Refuse parts that are not the `COMMAND` rows of a controller, one for each actuator.
+
+    Raises
+    ------
+    WireError
+        They cannot be taken.
+
+    """
+    if len(parts) != 1 or parts[0] is None or len(parts[0]) != n_actuators * COMMAND.itemsize:
+        raise WireError('an answer that is not of a controller')
+    for command in np.frombuffer(parts[0], COMMAND):
+        refuse_command(command)
+
+
+def refuse_command(command: np.void) -> None:
+    """
+    Refuse a `COMMAND` row that no actuator can execute; without a command, all are accepted.
+
+    Raises
+    ------
+    WireError
+        A kind, a number or a gain is invalid.
+
+    """
+    kinds = int(command['kinds'])
+    if not kinds:
+        return
+    numbers = [float(command[name]) for name in _NUMBERS] if kinds & HAS_SETPOINT else []
+    gains = [float(command[name]) for name in _GAINS] if kinds & ~HAS_ENABLE else []
+    if (kinds & ~_KINDS or kinds & HAS_ENABLE and command['is_enabled'] not in (0, 1)
+            or not all(map(math.isfinite, numbers))
+            or any(math.isinf(gain) or gain < 0.0 for gain in gains)):
+        raise WireError('a command with an invalid kind, number or gain')
+
+
+def is_finite(values: NDArray[np.float64]) -> bool:
+    """Return whether all numbers are finite; in a third of the time of `ndarray.all`."""
+    return b'\0' not in np.isfinite(values).tobytes()
+
+
+def joined(parts: Parts) -> bytes:
+    """Return the lengths of all parts, followed by the parts that are not None."""
+    lengths = [ABSENT if part is None else len(part) for part in parts]
+    return b''.join((_counts(len(parts)).pack(*lengths), *filter(None, parts)))
+
+
+def split(data: bytes, n: int) -> list[bytes | None]:
+    """
+    Return the ``n`` parts that ``data`` consists of; inverse of `joined`.
+
+    Raises
+    ------
+    WireError
+        The lengths of the parts are not that of the data.
+
+    """
+    start = _COUNT * n
+    if start > len(data):
+        raise WireError(f'{n} parts in {len(data)} bytes')
+    parts: list[bytes | None] = []
+    for length in _counts(n).unpack_from(data):
+        if length == ABSENT:
+            parts.append(None)
+            continue
+        parts.append(data[start:start + length])
+        start += length
+    if start != len(data):
+        raise WireError(f'parts up to byte {start} of {len(data)}')
+    return parts
+
+
+@lru_cache(64)
+def _counts(n: int) -> struct.Struct:
+    return struct.Struct(f'<{n}I')

@@ -1,0 +1,42 @@
+"""Altered run files, scenarios and models are read or refused in one line."""
+
+from isa_ros.config import run_file, schema, sections
+from isa_ros.core import parameter
+import pytest
+from tests.fuzz.property import Broken
+from tests.fuzz.yaml_door import fuzz
+
+CASES, MANY = 1500, 60_000
+
+
+def test_every_file_is_read_or_refused_in_one_line():
+    """Most are refused; some have only lost a key with a default."""
+    assert CASES // 2 < fuzz(CASES, 1) < CASES
+
+
+@pytest.mark.long
+def test_every_one_of_many_files_is_read_or_refused():
+    fuzz(MANY, 2)
+
+
+def accept(self, tree, place):
+    """Return a value of any type."""
+    return tree
+
+
+def unchecked(patch):
+    """Accept every number."""
+    for module in (sections, parameter):
+        patch.setattr(module, 'check', lambda where, value, declared: None)
+
+
+@pytest.mark.parametrize('plant', [
+    lambda patch: patch.setattr(run_file.Plain, 'read', accept),
+    lambda patch: patch.setattr(schema, '_is_one_of', lambda kind, kinds: kind in kinds),
+    unchecked,
+    lambda patch: patch.setattr(run_file, 'section_at', lambda tree, place: tree)])
+def test_a_guard_that_is_missing_is_found(plant, monkeypatch):
+    """Types of names, kinds and sections, and numbers that are not finite."""
+    plant(monkeypatch)
+    with pytest.raises(Broken):
+        fuzz(CASES, 1)

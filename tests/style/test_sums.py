@@ -1,0 +1,25 @@
+"""No simulated value passes through `sum`: from Python 3.12 on it rounds differently."""
+
+import ast
+from pathlib import Path
+
+import isa_ros
+
+PACKAGE = Path(isa_ros.__file__).parent
+SIMULATED = (
+    'actuator', 'config', 'core', 'loads', 'plant', 'reu', 'run', 'scenario', 'surroundings')
+OF_INTEGERS = {('actuator/actuator.py', '(rows.nbytes for rows in self._saved)')}
+
+
+def sums() -> set[tuple[str, str]]:
+    """Return (file, argument) of every call of `sum` or `math.fsum` in what is simulated."""
+    files = [path for name in SIMULATED for path in (PACKAGE / name).rglob('*.py')]
+    files += [PACKAGE / 'simulation.py', PACKAGE / 'controller.py']
+    return {
+        (str(path.relative_to(PACKAGE)), ast.unparse(call.args[0]))
+        for path in files for call in ast.walk(ast.parse(path.read_text()))
+        if isinstance(call, ast.Call) and ast.unparse(call.func) in ('sum', 'math.fsum')}
+
+
+def test_no_simulated_value_passes_through_sum() -> None:
+    assert sums() == OF_INTEGERS
