@@ -27,7 +27,7 @@ def test_equal_configurations_have_no_differences() -> None:
 @pytest.mark.parametrize(('key', 'values', 'unit'), [
     ('actuators.kfe.parameters.plant.friction.stiction', (110.0, 150.0), 'N'),
     ('actuators.haa.parameters.plant.friction.stiction', (1.5, 2.0), 'Nm'),
-    ('actuators.kfe.parameters.plant.oil.dead_volume_ml', (2.5, 3.0), 'ml'),
+    ('actuators.kfe.parameters.plant.oil.aeration_pressure_kpa', (4.0, 5.0), 'kPa'),
     ('actuators.kfe.parameters.reu.force.kp', (8e-8, 9e-8), 'm/N'),
     ('actuators.haa.parameters.reu.force.kp', (2e-5, 3e-5), 'A/Nm'),
     ('actuators.haa.parameters.reu.force.kv', (0.0, 1e-3), 'A per rad/s'),
