@@ -79,7 +79,7 @@ def test_the_example_of_the_readme_fails_as_the_readme_says(project) -> None:
     before, after = shown[2].split()[1:3]
     text = (project.path / 'my_ram.yaml').read_text()
     (project.path / 'my_ram.yaml').write_text(
-        text.replace(f'dead_volume_ml: {before}', f'dead_volume_ml: {after}'))
+        text.replace(f'inertia: {before}', f'inertia: {after}'))
     result = project.runpytest_inprocess('-q')
     result.assert_outcomes(passed=1, failed=1)
     result.stdout.fnmatch_lines([

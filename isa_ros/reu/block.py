@@ -64,7 +64,8 @@ def block_record(sheet: Pid, table: np.ndarray) -> np.record:
     smooths = sheet.measured_filter_hz > 0.0
     return record(
         BLOCK, period=1.0 / sheet.rate_hz, kp=sheet.kp, ki=sheet.ki, kd=sheet.kd, kf=sheet.kf,
-        kf_of_error=sheet.kf if sheet.feedback_damping == 'before_pid' else 0.0, kr=sheet.kr, kv=sheet.kv, offset=sheet.offset, b=sheet.setpoint_weight,
+        kf_of_error=sheet.kf if sheet.feedback_damping == 'before_pid' else 0.0,
+        kr=sheet.kr, kv=sheet.kv, offset=sheet.offset, b=sheet.setpoint_weight,
         measured_alpha=(low_pass_coefficient(sheet.measured_filter_hz, sheet.rate_hz)
                         if smooths else 1.0),
         derivative_alpha=low_pass_coefficient(sheet.derivative_filter_hz, sheet.rate_hz),
