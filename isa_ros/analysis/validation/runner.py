@@ -135,7 +135,7 @@ def run_group(group: Group) -> Result:
         findings = group.check()
     except IsaError as error:
         raise GroupFailed(f'{group.name}: {error}', error.exit_code) from error
-    names = [entry.name for entry in findings.entries]
+    names = [entry.key for entry in findings.entries]
     if len(set(names)) != len(names):
         raise ValueError(f'{group.name}: two entries have the same name: {names}')
     return Result(group.name, group.title, findings.entries, tuple(
@@ -144,16 +144,22 @@ def run_group(group: Group) -> Result:
 
 
 def only_of(result: Result, only: Sequence[str]) -> Result:
-    """Return a result with the entries that ``only`` names; all where it names the group."""
+    """
+    Return a result with the entries that ``only`` names; all where it names the group.
+
+    An entry that is measured with several sets of gains is named with or without them.
+    """
     mine = [name for name in only if name.partition('.')[0] == result.group]
     if not mine or result.group in mine:
         return result
-    names = [f'{result.group}.{entry.name}' for entry in result.entries]
+    names = [{f'{result.group}.{entry.key}', f'{result.group}.{entry.name}'}
+             for entry in result.entries]
     for name in mine:
-        if name not in names:
-            raise ConfigError(f'--only {name}: no such entry; {alternatives(name, names)}')
+        known = sorted(set().union(*names))
+        if name not in known:
+            raise ConfigError(f'--only {name}: no such entry; {alternatives(name, known)}')
     return replace(result, entries=tuple(
-        entry for entry, name in zip(result.entries, names) if name in mine))
+        entry for entry, own in zip(result.entries, names) if own.intersection(mine)))
 
 
 def is_reached(results: Sequence[Result]) -> bool:

@@ -1,6 +1,6 @@
 """Small groups of checks for the tests of the runner; a worker imports them by name."""
 
-from isa_ros.analysis.validation.entry import around, Drawing, Entry, Findings, Group
+from isa_ros.analysis.validation.entry import around, Drawing, Entry, Findings, Group, OWN, PAPER
 from isa_ros.analysis.validation.plots import plot
 from isa_ros.errors import ConfigError, SimulationDiverged
 
@@ -8,19 +8,27 @@ from isa_ros.errors import ConfigError, SimulationDiverged
 def entry(name: str, ours: float, **more) -> Entry:
     """Return an entry with 1 as the value of the paper."""
     return Entry(**{
-        'name': name, 'source': 'Fig 1', 'paper': 1.0, 'ours': ours, 'unit': 'm',
+        'name': name, 'source': PAPER, 'where': 'Fig 1', 'paper': 1.0, 'ours': ours, 'unit': 'm',
         'tolerance': around(1.0, by=0.1), 'tolerance_source': 'a tenth'} | more)
 
 
 def good() -> Findings:
     figure, ax = plot('x', 'y')
     ax.plot([0.0, 1.0], [0.0, 1.0])
-    return Findings((entry('a', 1.0), entry('b', 1.05)), (Drawing('line', 'A line.', figure),))
+    return Findings((entry('a', 1.0), entry('b', 1.05, source=OWN)),
+                    (Drawing('line', 'A line.', figure),))
 
 
 def missed() -> Findings:
     return Findings((
-        entry('far', 2.0, reason='the spring is too soft'), entry('lost', float('nan'))))
+        entry('far', 2.0, reason='the spring is too soft'),
+        entry('lost', float('nan'), source=OWN)))
+
+
+def both_gains() -> Findings:
+    return Findings((
+        entry('rise', 1.0, gains='table_4'), entry('alone', 1.0),
+        entry('rise', 2.0, gains='default', reason='slower')))
 
 
 def refused() -> Findings:
@@ -33,5 +41,6 @@ def diverged() -> Findings:
 
 GOOD = Group('good', 'Good ones', good)
 MISSED = Group('missed', 'Missed ones', missed, is_long=True)
+GAINS = Group('gains', 'Two sets of gains', both_gains)
 REFUSED = Group('refused', 'Refused', refused)
 DIVERGED = Group('diverged', 'Diverged', diverged)

@@ -55,7 +55,9 @@ def test_names_of_groups_are_different():
 def test_one_entry_by_name(capsys):
     assert main(['validate', '--only', 'actuator_data.manifold_stall']) == 0
     printed = capsys.readouterr().out
-    assert printed.endswith('1 entries: 0 reached, 1 reached as read, 0 not reached\n')
+    assert printed.endswith(
+        'paper: 1 entries, 0 reached, 1 reached as read, 0 not reached; '
+        'own: 0 entries, 0 reached, 0 reached as read, 0 not reached\n')
     assert '177.8' in printed
 
 
