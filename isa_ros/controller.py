@@ -116,19 +116,18 @@ def by_name(names: Sequence[str], rows: NDArray[np.void]) -> dict[str, np.record
 
 
 class ControllerSeat:
-    """
-    One controller of a run: shows it the state, and keeps what it asks for.
-
-    ``requests`` are `COMMAND` rows of the actuators ``names``, (n_actuators,).
-    """
+    """One controller of a run: shows it the state, and takes what it asks for."""
 
     def __init__(self, controller: Controller, names: Sequence[str]) -> None:
         self.controller = controller
         self.names = list(names)
-        self.requests: NDArray[np.void] = np.zeros(len(names), COMMAND)
         controller.start(self.names)
 
-    def step(self, state: State) -> None:
-        """Fill the requests with what takes effect one tick after ``state``."""
-        self.requests['kinds'] = 0
-        fill_requests(self.controller.step(state), self.names, self.requests)
+    def step(self, state: State, requests: NDArray[np.void]) -> None:
+        """
+        Write into ``requests`` what takes effect one tick after ``state``.
+
+        They are `COMMAND` rows of the actuators, (n_actuators,); those that the controller leaves
+        out are unchanged.
+        """
+        fill_requests(self.controller.step(state), self.names, requests)

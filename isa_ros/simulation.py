@@ -133,7 +133,7 @@ class Simulation:
         is_commanded = given is None and self.scenario.has_commands_at(self.ticks)
         if not (is_commanded or self._seats):
             return given
-        self._commands[:] = self._requests
+        self._commands, self._requests = self._requests, self._commands
         self._requests['kinds'] = 0
         if is_commanded:
             self.scenario.commands(self.ticks, self._commands)
@@ -145,8 +145,7 @@ class Simulation:
         """Call the controllers with the state before the tick; store requests for the next."""
         state = State(self.t_ns, self.samples, self.supply_samples, self.body_sample)
         for seat in self._seats:
-            seat.step(state)
-            merge_requests(seat.requests, self._requests)
+            seat.step(state, self._requests)
 
     def state(self) -> RunState:
         """

@@ -31,6 +31,9 @@ class Pid(Parameters):
     kv: float = tunable(
         'velocity compensation K_v', 'output per m/s | rad/s', ge=0.0, le=1e6)
     offset: float = tunable('added to the demand', 'output', ge=-1e6, le=1e6)
+    feedback_damping: str = choice(
+        "where K_f y' enters: in front of the whole PID, or in its proportional part only",
+        'before_pid', 'proportional')
     setpoint_weight: float = tunable('weight b of the reference', '1', ge=0.0, le=2.0)
     measured_filter_hz: float = parameter(
         'low-pass on the measured value; 0: none', 'Hz', ge=0.0, le=25e3)
@@ -45,8 +48,9 @@ class Pid(Parameters):
 
 
 BLOCK = np.dtype([
-    ('period', 'f8'), ('kp', 'f8'), ('ki', 'f8'), ('kd', 'f8'), ('kf', 'f8'), ('kr', 'f8'),
-    ('kv', 'f8'), ('offset', 'f8'), ('b', 'f8'), ('measured_alpha', 'f8'),
+    ('period', 'f8'), ('kp', 'f8'), ('ki', 'f8'), ('kd', 'f8'),
+    ('kf', 'f8'), ('kf_of_error', 'f8'),    # K_f of the proportional part, and of I and D
+    ('kr', 'f8'), ('kv', 'f8'), ('offset', 'f8'), ('b', 'f8'), ('measured_alpha', 'f8'),
     ('derivative_alpha', 'f8'), ('limit', 'f8'), ('is_clamped', 'f8'), ('retracting', 'f8'),
     ('compensation', COMPENSATION), ('schedule', 'f8', (POINTS,))])
 BLOCK_STATE = np.dtype([
@@ -59,7 +63,7 @@ def block_record(sheet: Pid, table: np.ndarray) -> np.record:
     smooths = sheet.measured_filter_hz > 0.0
     return record(
         BLOCK, period=1.0 / sheet.rate_hz, kp=sheet.kp, ki=sheet.ki, kd=sheet.kd, kf=sheet.kf,
-        kr=sheet.kr, kv=sheet.kv, offset=sheet.offset, b=sheet.setpoint_weight,
+        kf_of_error=sheet.kf if sheet.feedback_damping == 'before_pid' else 0.0, kr=sheet.kr, kv=sheet.kv, offset=sheet.offset, b=sheet.setpoint_weight,
         measured_alpha=(low_pass_coefficient(sheet.measured_filter_hz, sheet.rate_hz)
                         if smooths else 1.0),
         derivative_alpha=low_pass_coefficient(sheet.derivative_filter_hz, sheet.rate_hz),
@@ -70,12 +74,17 @@ def block_record(sheet: Pid, table: np.ndarray) -> np.record:
 
 @kernel
 def observe(reference, measured, block, state):
-    """Filter the measured value, its derivative and the derivative of the error  (R1)."""
+    """
+    Filter the measured value, its derivative and that of the error  (R1, R13).
+
+    The error that the integral and the derivative act on is e = r - y - K_f y' with the
+    damping in front of the whole PID, r - y with that of the proportional part only.
+    """
     value = low_pass(state.measured, measured, block.measured_alpha)
     rate = (value - state.measured) / block.period
     state.measured_rate = low_pass(state.measured_rate, rate, block.derivative_alpha)
     state.measured = value
-    error = reference - value
+    error = reference - value - block.kf_of_error * state.measured_rate
     rate = (error - state.error) / block.period
     state.error_rate = low_pass(state.error_rate, rate, block.derivative_alpha)
     state.error = error
@@ -116,9 +125,8 @@ def block_step(reference, measured, velocity, place, stroke, block, state):
     gain = scheduled(place, stroke, block.schedule)
     wanted = demanded(reference, velocity, gain, block, state)
     state.output = max(-block.limit, min(block.limit, wanted))
-    error = reference - state.measured
-    if state.output == wanted or error * wanted < 0.0 or block.is_clamped == 0.0:
-        state.integral += gain * block.ki * block.period * error
+    if state.output == wanted or state.error * wanted < 0.0 or block.is_clamped == 0.0:
+        state.integral += gain * block.ki * block.period * state.error
 
 
 @kernel

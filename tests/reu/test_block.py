@@ -54,12 +54,26 @@ def test_velocity_compensation_adds_its_flow():
 
 
 def test_feedback_damping_opposes_a_rising_force():
-    """R3: a force rising at r settles to - K_p K_f r."""
+    """R3: a force rising at r settles to - K_p K_f r, damped in the proportional part only."""
+    loop = record(feedback_damping='proportional')
     own, rate = state(), 1e4
     for n in range(1, 200):
-        output = step(LOOP, own, rate * n * PERIOD, rate * n * PERIOD)
+        output = step(loop, own, rate * n * PERIOD, rate * n * PERIOD)
     assert own.measured_rate == pytest.approx(rate, rel=1e-9)
     assert output == pytest.approx(-SHEET.kp * SHEET.kf * rate, rel=1e-9, abs=0.0)
+
+
+def test_damping_before_the_pid_is_that_of_a_measured_value_ahead():
+    """R13: u = (K_p + K_i/s)(r - y - K_f y') is the PI law without K_f on y + K_f y'."""
+    ahead = record(kf=0.0)
+    own, led = state(), state()
+    for n in range(1, 200):
+        measured = 50.0 * np.sin(0.1 * n)
+        output = step(LOOP, own, 30.0, measured)
+        led_output = step(ahead, led, 30.0, measured + SHEET.kf * own.measured_rate)
+        # both outputs are sums of terms of up to K_p 100 N, rounded to 1e-16 of them
+        assert output == pytest.approx(led_output, rel=0.0, abs=1e-13 * SHEET.kp * 100.0)
+    assert abs(own.integral) > 1e-8
 
 
 def test_derivative_acts_on_the_error():

@@ -10,7 +10,7 @@ from collections.abc import Mapping, Sequence
 from typing import Protocol
 
 from isa_ros.controller import by_name, Controller, ControllerSeat, State
-from isa_ros.core.signals import Records
+from isa_ros.core.signals import COMMAND, Records
 from isa_ros.run.wire import actuator_parts, Cast, Step
 import numpy as np
 
@@ -171,6 +171,7 @@ class ControllerRole:
     def __init__(self, controller: Controller) -> None:
         self._controller = controller
         self._seat: ControllerSeat | None = None
+        self._requests: Records = np.zeros(0, COMMAND)
         self._cast = Cast((), (), None)
         self._step_ns = 0
 
@@ -178,6 +179,7 @@ class ControllerRole:
         """Start the controller with the names of the actuators; return no requests yet."""
         self._cast, self._step_ns = step.cast(), step.step_ns()
         self._seat = ControllerSeat(self._controller, self._cast.names[:step.rows])
+        self._requests = np.zeros(step.rows, COMMAND)
         return self._parts()
 
     def advance(self, step: Step) -> Parts:
@@ -185,9 +187,10 @@ class ControllerRole:
         assert self._seat is not None, 'a run begins with a hello'
         shown = step.shown(self._cast)
         body = None if shown.body is None else shown.body.view(np.recarray)[0]
+        self._requests['kinds'] = 0
         self._seat.step(State(
             step.tick * self._step_ns, by_name(self._seat.names, shown.samples),
-            by_name(self._cast.supplies, shown.supplies), body))
+            by_name(self._cast.supplies, shown.supplies), body), self._requests)
         return self._parts()
 
     def publish(self) -> None:
@@ -206,5 +209,4 @@ class ControllerRole:
         return self._parts()
 
     def _parts(self) -> Parts:
-        assert self._seat is not None, 'a run begins with a hello'
-        return (self._seat.requests.tobytes(),)
+        return (self._requests.tobytes(),)
