@@ -28,8 +28,13 @@ PRESETS = (TABLE_4, RETUNED)
 STEP_NM = 17.0              # 10 % of the rating, section 6
 STRIDE_S = 1.0 / 1.7        # of the trot, and of the sine
 STRIDES = 2.0               # the last ones, after both have settled
-TROT_ERROR, TROT_PEAK = 21.4, 0.157     # percent of the amplitude and rad, with Table 4
+TROT_ERROR, TROT_PEAK = 22.5, 0.169     # percent of the amplitude and rad, with Table 4
 UNDEFINED = 'the paper does not define its rise'
+# Why the torque follows the motion less closely than our target, by the gains.
+LOOSER = {
+    TABLE_4: 'K_f in front of the whole PID holds back the integral too: in the proportional part '
+    'only the trot is at 3.0 % and K_v gains 5 times, but Fig 13 is lost (erratum 26)',
+    RETUNED: 'K_i is a fourteenth of that of Table 4'}
 DIGIT = 'approximately: half of the last printed digit'
 
 
@@ -90,11 +95,12 @@ def _tracking(actuators: Actuators, trot: Result, gains: str) -> tuple[Entry, ..
     return (
         *(Entry(name=f'{name}_torque_error', source=OWN, where='section 5.1, Fig 12',
                 paper='sufficient for locomotion', ours=error, gains=gains,
-                unit='percent of peak, rms', tolerance=(0.0, 5.0), tolerance_source=seen)
+                unit='percent of peak, rms', tolerance=(0.0, 5.0), tolerance_source=seen,
+                reason=LOOSER[gains])
           for name, error in (('trot', torque_error(trot)), ('sine', sine))),
         Entry(name='sine_torque_error_without_kv', source=OWN, where='section 3, Fig 7',
               paper='K_v injects the flow of the motion', ours=uncompensated / sine,
-              unit='times', tolerance=at_least(3.0), gains=gains,
+              unit='times', tolerance=at_least(3.0), gains=gains, reason=LOOSER[gains],
               tolerance_source='a target: without K_v at least three times as large'))
 
 
