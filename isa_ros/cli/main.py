@@ -145,8 +145,9 @@ def _validate(parser: argparse.ArgumentParser) -> None:
         help='which simulated entries notice wrong parameters; a few minutes')
     shared_arguments.json_file(parser, 'the entries')
     shared_arguments.page_directory(parser, 'validation.md and its figures, or sensitivity.md')
-    parser.epilog = ('Exits with 1 if an entry of either source, paper or own, is not reached; with '
-                     '--sensitivity, if a perturbation is not noticed.')
+    parser.epilog = (
+        'Exits with 1 if an entry of either source, paper or own, is not reached; with '
+        '--sensitivity, if a perturbation is not noticed.')
 
 
 def _bench(parser: argparse.ArgumentParser) -> None:

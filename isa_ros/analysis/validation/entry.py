@@ -1,10 +1,10 @@
 """
 One value beside ours, and the verdict.
 
-An entry states its source. `PAPER`: a statement of the paper, with an interval from the paper's own
-precision: printed digits, "approximately", a printed bound or range, or the direction of a
-comparison in words. `OWN`: our own target, a regression check; that the paper speaks of the
-quantity does not change that, as long as the interval is ours.
+An entry states its source. `PAPER`: a statement of the paper, with an interval from the paper's
+own precision: printed digits, "approximately", a printed bound or range, or the direction of a
+comparison in words. `OWN`: our own target, a regression check, also of a quantity that the paper
+speaks of, where the interval is ours.
 """
 
 from collections.abc import Callable
@@ -132,10 +132,9 @@ class Group:
     name: str
     title: str
     check: Callable[..., Findings]
+    """Without arguments; a group that `sensitivity` runs also takes `Actuators`."""
     is_long: bool = False
     """True if it takes more than a few seconds: it then starts first."""
-    simulates: bool = False
-    """True if its entries measure runs: ``check`` takes `Actuators`, for the sensitivity."""
 
 
 def around(value: float, *, by: float = 0.0, percent: float = 0.0) -> tuple[float, float]:

@@ -104,7 +104,8 @@ def _cylinder() -> Iterable[Entry]:
         apart = max(abs(float(states[round(t / cylinder.HOLD), column]) - SOLUTION[name])
                     for t in SECONDS)
         yield Entry(
-            name=f'cylinder_{name}', source=OWN, where=OTHER, paper=f'solution {SOLUTION[name]:.12g}',
+            name=f'cylinder_{name}', source=OWN, where=OTHER,
+            paper=f'solution {SOLUTION[name]:.12g}',
             ours=apart, unit=unit, tolerance=at_most(reach),
             tolerance_source='the valve-driven cylinder after 1, 5 and 10 s')
 
@@ -123,6 +124,7 @@ def _knee(config: str) -> Iterable[Entry]:
     for name, apart in (('lever', levers), ('extension', extensions)):
         if apart:
             yield Entry(
-                name=f'{config}_{name}', source=OWN, where=PUBLISHED, paper=f'{len(apart)} places of a table',
+                name=f'{config}_{name}', source=OWN, where=PUBLISHED,
+                paper=f'{len(apart)} places of a table',
                 ours=float(max(apart)), unit='mm', tolerance=at_most(HALF_DIGIT + 1e-9),
                 tolerance_source=ROUNDED)

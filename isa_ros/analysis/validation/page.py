@@ -23,7 +23,7 @@ The statements of the paper, and targets of our own, beside what the shipped act
 
 - Source `{PAPER}`: a statement of the paper, in an interval from the paper's own precision: half
   of the last printed digit, a printed bound or range, or the direction of a comparison in words.
-- Source `{OWN}`: a target of our own, or an independent result; the entry says which. These entries
+- Source `{OWN}`: a target of our own, or an independent result; the entry says which. These
   guard against regressions and say nothing about the paper.
 
 `{REACHED}`: inside the tolerance. `{AS_READ}`: inside the tolerance around the reading of a

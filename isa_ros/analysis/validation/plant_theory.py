@@ -1,9 +1,9 @@
 """
 Steady and linear solutions of the shipped plants: what a simulation is compared with.
 
-Chambers without inertia or transients: flows of the lands, cross-port leakage and the motion of the
-piston balance (C1, C2), the hydraulic force balances friction and load (M1, F1). Flows are those
-of the valve's kernels, compared with figures 5 and 6 elsewhere; all else is written anew here.
+Chambers without inertia or transients: flows of the lands, cross-port leakage and the motion of
+the piston balance (C1, C2), the hydraulic force balances friction and load (M1, F1). Flows are
+those of the valve's kernels, compared with figures 5 and 6 elsewhere; the rest is written anew.
 """
 
 import math
@@ -45,7 +45,7 @@ def presliding(model: str, force: float) -> float:
     """
     Return the travel that loads the bristle with a force below stiction, slowly, m or rad.
 
-    dz/dx = 1 - sigma_0 z/F_s  (F2), so that F = sigma_0 z is reached at -F_s/sigma_0 ln(1 - F/F_s).
+    dz/dx = 1 - sigma_0 z/F_s  (F2): F = sigma_0 z is reached at -F_s/sigma_0 ln(1 - F/F_s).
     """
     own = plant_of(model).friction
     return float(-own.stiction / own.sigma0 * math.log(1.0 - force / own.stiction))

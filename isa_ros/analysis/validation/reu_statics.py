@@ -68,12 +68,14 @@ def velocity_gain(model: str) -> float:
 
 
 def damping_time(model: str) -> float:
-    """Return K_f from a measured ramp that the reference follows, s."""
+    """Return K_f from a measured ramp that the reference follows, s: without the integral."""
     block, state = _force_block(model)
     rise = SMALL * block.limit / (block.kp * block.kf) * block.period
+    integral = 0.0
     for k in range(PERIODS):
+        integral = float(state.integral)
         block_step(k * rise, k * rise, 0.0, 0.0, 1.0, block, state)
-    return float(-state.output / (proportional_gain(model) * rise / block.period))
+    return float((integral - state.output) / (proportional_gain(model) * rise / block.period))
 
 
 def _force_gains(model: str) -> list[Entry]:

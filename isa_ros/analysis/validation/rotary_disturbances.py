@@ -208,7 +208,7 @@ def _blocked(rig: DropRig) -> Entry:
     return Entry(
         name='weight_blocked_peak', source=OWN, where='section 5.1', paper='larger than 250 Nm',
         ours=blocked_peak(rig), unit='Nm', tolerance=(250.0, 255.0),
-        tolerance_source='regression: the slack of the rope is chosen for it, so it is no evidence')
+        tolerance_source='regression: the slack of the rope is chosen for it')
 
 
 def blocked_peak(rig: DropRig) -> float:

@@ -150,7 +150,7 @@ def _neglected_inertia(actuators: Actuators) -> Entry:
     without, carried = (measured_step(each, STEP_NM).rise['0_90'] for each in (bench, heavier))
     return Entry(
         name='sensor_inertia', source=OWN, where=ratio.where,
-        paper='neglected: 2e3 times smaller than the load\'s',
+        paper='neglected: 2e3 times smaller than that of the load',
         ours=100.0 * abs(carried / without - 1.0), unit='percent', tolerance=(0.0, 1.0),
         tolerance_source='change of the 0 to 90 % rise, of 1 %, with it on the rotor',
         gains=TABLE_4)

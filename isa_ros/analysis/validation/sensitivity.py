@@ -1,13 +1,14 @@
 """
 `isa validate --sensitivity`: which simulated entry notices which wrong parameter.
 
-Each perturbation is one parameter that a reviewer would try. The groups that simulate
-(`Group.simulates`) run with it; their bars stay those of the shipped parameters. An entry that is
-reached as shipped and missed with the perturbation has noticed it. A perturbation without any,
-unless it is refused, is a hole in the validation: the command then exits with 1.
+Each perturbation is one parameter that a reviewer would try. Groups that simulate run with it:
+`behaviour` for a parameter of the plant, the force loops for one of the REU. Their bars stay those
+of the shipped parameters. An entry that is reached as shipped and missed with the perturbation has
+noticed it. A perturbation without any, unless it is refused, is a hole in the validation: the
+command then exits with 1.
 """
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from functools import partial
 from typing import NamedTuple
@@ -19,7 +20,7 @@ from isa_ros.analysis.validation.workers import in_workers
 from isa_ros.errors import ParameterError, SimulationDiverged
 from isa_ros.text.progress import Progress
 
-SIMULATED = tuple(group for group in GROUPS if group.simulates)
+PLANT, LOOPS, RELIEF = ('behaviour',), ('rotary_rig', 'isa_v5'), ('isa_v5',)
 
 
 @dataclass(frozen=True)
@@ -28,10 +29,14 @@ class Perturbation:
 
     name: str
     change: Change
+    groups: tuple[str, ...] = PLANT
+    """Names of the groups that run with it."""
 
 
 def _perturbation(name: str, factor: float, *keys: str) -> Perturbation:
-    return Perturbation(name, Change(keys, factor))
+    groups = (LOOPS if keys[0].startswith('reu.') else
+              RELIEF if keys[0].startswith('plant.relief.') else PLANT)
+    return Perturbation(name, Change(keys, factor), groups)
 
 
 MORE, LESS = 1.3, 1.0 / 1.3
@@ -69,7 +74,7 @@ PERTURBATIONS = (
     _perturbation('K_p x1.3', MORE, 'reu.force.kp'),
     _perturbation('K_i x1.3', MORE, 'reu.force.ki'),
     _perturbation('K_f /1.3', LESS, 'reu.force.kf'),
-    _perturbation('rate of the force loop /2', 0.5, 'reu.force.rate_hz'),
+    _perturbation('rate of the force loop /5', 0.2, 'reu.force.rate_hz', 'reu.spool.rate_hz'),
     _perturbation('filter of the speed /2', 0.5, 'reu.speed.filter_hz'),
 )
 
@@ -88,10 +93,10 @@ class Noticed(NamedTuple):
 
 def sensitivity(
         perturbations: Sequence[Perturbation] = PERTURBATIONS,
-        groups: Sequence[Group] = SIMULATED,
+        groups: Sequence[Group] = GROUPS,
         progress: Progress | None = None) -> tuple[Noticed, ...]:
     """
-    Run the groups as shipped and with each perturbation, in two worker processes.
+    Run groups as shipped and each perturbation in its own, in two worker processes.
 
     Raises
     ------
@@ -101,9 +106,12 @@ def sensitivity(
         A worker process was lost.
 
     """
-    changes = [None, *(each.change for each in perturbations)]
-    shipped, *changed = in_workers(
-        [partial(outcome, groups, change) for change in changes], progress)
+    def those(names: Iterable[str]) -> tuple[Group, ...]:
+        return tuple(group for group in groups if group.name in names)
+    used = {name for each in perturbations for name in each.groups}
+    calls = [partial(outcome, those(used), None), *(
+        partial(outcome, those(each.groups), each.change) for each in perturbations)]
+    shipped, *changed = in_workers(calls, progress)
     return tuple(_noticed(perturbation, shipped, found)
                  for perturbation, found in zip(perturbations, changed, strict=True))
 
@@ -135,11 +143,13 @@ def _noticed(
         perturbation: Perturbation, shipped: Outcome, changed: Outcome) -> Noticed:
     if changed.refused:
         return Noticed(perturbation, (), (), changed.refused)
+    ran = {name: is_reached for name, is_reached in shipped.verdicts.items()
+           if name.partition('.')[0] in perturbation.groups}
     return Noticed(
         perturbation,
-        tuple(name for name, is_reached in shipped.verdicts.items()
+        tuple(name for name, is_reached in ran.items()
               if is_reached and not changed.verdicts.get(name, False)),
-        tuple(name for name, is_reached in shipped.verdicts.items()
+        tuple(name for name, is_reached in ran.items()
               if not is_reached and changed.verdicts.get(name, False)))
 
 

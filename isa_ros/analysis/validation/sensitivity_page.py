@@ -14,11 +14,12 @@ _SHOWN = 4      # entries in a cell of the page; the JSON has all
 _HEAD = """# Sensitivity of the validation
 
 Which simulated entries of [validation.md](validation.md) notice a wrong parameter. Each row is one
-parameter times a factor, in all actuators, with everything else as shipped; the bars stay. An entry
-that is reached as shipped and missed with the wrong parameter has noticed it. Entries that read a
-parameter back do not count: only groups that simulate are run. A perturbation that no entry notices
-is a hole in the validation; a value that the actuators refuse cannot go unnoticed. This page is
-written by
+parameter times a factor, in all actuators, with everything else as shipped; the bars stay. An
+entry that is reached as shipped and missed with the wrong parameter has noticed it. Entries that
+read a parameter back do not count: `behaviour` runs for a parameter of the plant, `rotary_rig` and
+`isa_v5` for one of the control blocks, `isa_v5` for the relief valves. A perturbation that no
+entry notices is a hole in the validation; a value that the actuators refuse cannot go unnoticed.
+This page is written by
 
     ./isa validate --sensitivity --out docs
 
@@ -79,9 +80,10 @@ def write_page(found: Sequence[Noticed], directory: Path) -> list[Path]:
     """Write sensitivity.md into a directory; return its path."""
     page = Page(PAGE, _HEAD)
     page.paragraph(f'{summary(found)}.')
-    page.table([('perturbation', 'keys', 'factor', 'missed', 'becomes reached', 'among the missed'),
-                *((each.perturbation.name,
-                   ', '.join(f'`{key}`' for key in each.perturbation.change.keys),
-                   f'{each.perturbation.change.factor:.3g}', str(len(each.flips)),
-                   ', '.join(each.becomes_reached), _first(each)) for each in found)], 'llrrll')
+    head = 'perturbation', 'keys', 'factor', 'missed', 'becomes reached', 'among the missed'
+    page.table([head, *(
+        (each.perturbation.name,
+         ', '.join(f'`{key}`' for key in each.perturbation.change.keys),
+         f'{each.perturbation.change.factor:.3g}', str(len(each.flips)),
+         ', '.join(each.becomes_reached), _first(each)) for each in found)], 'llrrll')
     return page.write(directory)

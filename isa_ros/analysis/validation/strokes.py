@@ -102,12 +102,12 @@ def _entries(subject: Subject, found: dict[str, Sweeps]) -> list[Entry]:
     def target(name: str, where: str, paper: str, ours: float, unit: str, most: float) -> Entry:
         return Entry(
             name=f'{subject.model}_{name}', source=OWN, where=where, paper=paper, ours=ours,
-            unit=unit, tolerance=(0.0, most), tolerance_source=over)
+            unit=unit, tolerance=(0.0, most), tolerance_source=over, gains=subject.preset)
     return [
         *(Entry(name=f'{subject.model}_{name}_bandwidth', source=PAPER, where=low.where,
                 paper=f'{low.text} to {high.text}', ours=ours, unit='Hz',
                 tolerance=(low.number, high.number),
-                tolerance_source='the printed range, at every place')
+                tolerance_source='the printed range, at every place', gains=subject.preset)
           for name, ours in (('least', float(shipped.bandwidth.min())),
                              ('largest', float(shipped.bandwidth.max())))),
         target('rise_spread', 'section 2.3', 'no scheduling by direction', shipped.rise_spread,

@@ -21,8 +21,8 @@ PLATEAU = 4.0      # mA from which on figure 6 shows the tare leakage
 HRV_PEAK_BAND = 0.015   # l/min, 3 % of the scale of Fig 6: less than half of the digit of "0.5"
 ROUNDED = 'half of the last printed digit'
 DRAWN = '0.015 l/min, 3 % of the scale of Fig 6: less than half of the last printed digit'
-MATCHED = ('the narrower rod-side slots of the ISA v5 (section 2.3) leak less than the equal slots '
-           'whose peak is fitted to Fig 6')
+MATCHED = ('the narrower rod-side slots of the ISA v5 (section 2.3) leak less than the equal '
+           'slots whose peak is fitted to Fig 6')
 
 
 def valve_leakage() -> Findings:
@@ -66,8 +66,8 @@ def _leakage_of(name: str, model: str) -> list[Entry]:
         Entry.of(f'{name}_null_leakage', null, leakage(0.0, model),
                  as_printed(null) if name == 'ullv' else around(null.number, by=HRV_PEAK_BAND),
                  ROUNDED if name == 'ullv' else DRAWN),
-        Entry(name=f'{name}_leakage_peak', source=PAPER, where='Fig 6', paper='at null', ours=float(peak),
-              unit='mA', tolerance=(0.0, 0.1),
+        Entry(name=f'{name}_leakage_peak', source=PAPER, where='Fig 6', paper='at null',
+              ours=float(peak), unit='mA', tolerance=(0.0, 0.1),
               tolerance_source='0.1 mA, 1 % of the scale of Fig 6'),
         Entry.of(f'{name}_tare', plateau, worst, as_printed(plateau), ROUNDED),
     ]

@@ -1,8 +1,9 @@
 """Small groups of checks for the tests of the runner; a worker imports them by name."""
 
+from isa_ros.analysis.validation.actuators import Actuators, SHIPPED
 from isa_ros.analysis.validation.entry import around, Drawing, Entry, Findings, Group, OWN, PAPER
 from isa_ros.analysis.validation.plots import plot
-from isa_ros.errors import ConfigError, SimulationDiverged
+from isa_ros.errors import ConfigError, ParameterError, SimulationDiverged
 
 
 def entry(name: str, ours: float, **more) -> Entry:
@@ -44,3 +45,16 @@ MISSED = Group('missed', 'Missed ones', missed, is_long=True)
 GAINS = Group('gains', 'Two sets of gains', both_gains)
 REFUSED = Group('refused', 'Refused', refused)
 DIVERGED = Group('diverged', 'Diverged', diverged)
+
+
+def stiff(actuators: Actuators = SHIPPED) -> Findings:
+    """Measure 1 times the change; refuse more than 5 times as much, diverge beyond 3."""
+    ours = 1.0 if actuators.change is None else actuators.change.factor
+    if ours > 5.0:
+        raise ParameterError('stiffness = 6 N/m, must be <= 5 N/m')
+    if ours > 3.0:
+        raise SimulationDiverged(1_000_000, 'spool', float('nan'))
+    return Findings((entry('bar', ours), entry('hidden', 1.0), entry('late', 2.0 / ours)))
+
+
+STIFF = Group('stiff', 'A stiffness', stiff)

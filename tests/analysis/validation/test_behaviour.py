@@ -24,7 +24,7 @@ def test_the_free_frequency_is_that_of_springs_in_series_for_a_light_piston():
 
 @pytest.mark.parametrize('model', behaviour.MODELS)
 def test_a_steady_motion_balances_forces_and_needs_its_spool(model):
-    """The spool solved for a speed gives that speed; without friction it would be a little more."""
+    """The spool solved for a speed gives that speed; without friction it is a little more."""
     spool = behaviour.spool_at(model, 1.5)
     found = plant_theory.steady(model, spool=spool)
     assert plant_theory.steady(model, speed=found.speed).spool == pytest.approx(spool, rel=1e-6)

@@ -3,7 +3,7 @@
 import math
 
 from isa_ros.analysis.validation.entry import (
-    around, AS_READ, as_printed, at_least, at_most, Entry, NOT_REACHED, PAPER, REACHED)
+    around, as_printed, AS_READ, at_least, at_most, Entry, NOT_REACHED, PAPER, REACHED)
 from isa_ros.paper.printed import cell, statement
 import pytest
 from tests.analysis.validation.groups import entry
