@@ -21,6 +21,7 @@ REACHED = 'reached'
 AS_READ = 'reached as read'
 NOT_REACHED = 'not reached'
 VERDICTS = (REACHED, AS_READ, NOT_REACHED)
+REGRESSION = 2.0    # percent
 _READING = re.compile(r'(?:erratum|errata) \d+(?:(?:, | and )\d+)*: \S')
 
 
@@ -135,6 +136,15 @@ class Group:
     """Without arguments; a group that `sensitivity` runs also takes `Actuators`."""
     is_long: bool = False
     """True if it takes more than a few seconds: it then starts first."""
+
+
+def regression(
+        name: str, where: str, ours: float, expected: float, unit: str, gains: str) -> Entry:
+    """Return an entry that holds a value of ours, of which the paper has none, to 2 %."""
+    return Entry(
+        name=f'{name}_regression', source=OWN, where=where, paper='no such number', ours=ours,
+        unit=unit, tolerance=around(expected, percent=REGRESSION), gains=gains,
+        tolerance_source=f'regression: {REGRESSION:g} % of the value of the shipped parameters')
 
 
 def around(value: float, *, by: float = 0.0, percent: float = 0.0) -> tuple[float, float]:

@@ -14,7 +14,8 @@ from isa_ros.analysis.response.actuator_trace import RATE_HZ
 from isa_ros.analysis.response.rig import Choice, Rig
 from isa_ros.analysis.response.step import Step, step
 from isa_ros.analysis.validation.actuators import Actuators, SHIPPED
-from isa_ros.analysis.validation.entry import around, Drawing, Entry, Findings, OWN, PAPER
+from isa_ros.analysis.validation.entry import (
+    around, Drawing, Entry, Findings, OWN, PAPER, regression)
 from isa_ros.analysis.validation.plots import stacked
 from isa_ros.analysis.validation.sheets import model_sheet, plant_of
 from isa_ros.analysis.validation.torque_step import bandwidths
@@ -35,6 +36,7 @@ ENDS = (0.02, 0.98)       # of the stroke
 STIFFEST = 1e9            # N/m, the end of the load's range: 20 times the load cell
 FOOT_STIFFNESS = 1e6      # N/m
 AS_READ = 17.0            # ms, by an independent model
+BLOCKED_HZ = 66.6, 57.3   # -3 dB and -90 deg of the shipped parameters, retuned
 CODE = 'a code of the load cell, its 20 kN over 4096'
 OPENING = statement('relief_pressure').number * MPA
 FULL_RELIEF = 22.5 * MPA  # at 10 l/min
@@ -123,6 +125,9 @@ def _bandwidths(actuators: Actuators, gains: str) -> list[Entry]:
                 tolerance=(low.number, high.number), tolerance_source='the printed range',
                 reading=UNITS if gains == PRINTED else '',
                 reason=SLOW if gains == PRINTED else ''))
+    if gains == RETUNED:
+        entries += [regression(each.name, low.where, each.ours, expected, 'Hz', gains)
+                    for each, expected in zip(entries[:2], BLOCKED_HZ, strict=True)]
     return entries
 
 

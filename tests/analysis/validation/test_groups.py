@@ -17,8 +17,8 @@ LONG = [group for group in GROUPS if group.is_long]
 def section_of(result: Result, directory: Path) -> str:
     """Return the part of a page that is about one group."""
     page, *_ = write_page([result], directory)
-    _, heading, section = page.read_text().partition(f'## {result.title}\n')
-    return heading + section.rstrip()
+    _, heading, rest = page.read_text().partition(f'## {result.title}\n')
+    return heading + rest.partition('\n## ')[0].rstrip()
 
 
 def check(group, directory: Path) -> None:
