@@ -3,32 +3,53 @@ Regression tests from bags, for this package and its users.
 
 In a conftest.py: ``pytest_plugins = ['isa_ros.testing']``; in a test::
 
-    def test_my_leg_drops_as_recorded(assert_replays):
+    def test_my_leg_drops_as_recorded(assert_reproduces):
+        assert_reproduces('my_leg.yaml', 'my_drop.yaml', 'bags/drop')
+
+    def test_the_simulator_still_gives_my_bag(assert_replays):
         assert_replays('bags/drop', 'bags/tolerances.yaml')
 
+`assert_reproduces` simulates the files and controllers as they are today; it fails if one of
+them, or the simulator, gives other messages. `assert_replays` simulates the configuration and
+the inputs that are stored in the bag; only another simulator or another machine can fail it.
+
 Without a tolerance file every bit must be equal. This holds on the same kind of machine with the
-same versions. `assert_replays` may also be imported and called.
+same versions. Both functions may also be imported and called.
 """
 
 from collections.abc import Callable
 from pathlib import Path
 import platform
 
+from isa_ros.bag.provenance import provenance_of, VERSION
 from isa_ros.bag.reader import Bag
+from isa_ros.config.yaml_text import Tree
+from isa_ros.errors import BagError, SimulationDiverged
+from isa_ros.replay.compare import Comparer, retyped
+from isa_ros.replay.comparison import Comparison, key_lines
+from isa_ros.replay.difference import Report
+from isa_ros.replay.provenance_differences import (
+    provenance_differences, records_of, records_of_bag)
 from isa_ros.replay.replay import replay
-from isa_ros.replay.tolerances import load_tolerances
+from isa_ros.replay.tolerances import load_tolerances, Tolerances
+from isa_ros.scripting.bag import ResultMessages
+from isa_ros.scripting.result import Result, simulated
+from isa_ros.scripting.run import Controllers, load
+from msg_adapters import event
 import pytest
 
-__all__ = ['assert_replays', 'AssertReplays']
+__all__ = ['assert_replays', 'AssertReplays', 'assert_reproduces', 'AssertReproduces']
 
 AssertReplays = Callable[..., None]
+AssertReproduces = Callable[..., None]
 
 _CPU_INFO = Path('/proc/cpuinfo')
+_NAMES = ('in the bag', 'now')  # of both runs in a message
 
 
 def assert_replays(bag: Path | str, tolerances: Path | str | None = None) -> None:
     """
-    Simulate a bag again and compare every message.
+    Simulate a bag again, with its own configuration and inputs, and compare every message.
 
     Raises
     ------
@@ -39,13 +60,60 @@ def assert_replays(bag: Path | str, tolerances: Path | str | None = None) -> Non
         The bag or the tolerance file cannot be read, or the bag cannot be simulated.
 
     """
+    __tracebackhide__ = True
     recorded = Bag(Path(bag))
-    allowed = None if tolerances is None else load_tolerances(Path(tolerances), recorded.types)
-    report = replay(recorded, allowed)
+    report = replay(recorded, _tolerances(recorded, tolerances))
     if not report.is_equal:
         lines = [f'{bag}: {report}', *report.changes]
         if tolerances is None:
-            lines += _why_bits_differ(bool(report.changes))
+            lines.append(_why_bits_differ(
+                'Versions or topics differ as listed' if report.changes else
+                'Versions and topics are those of the bag'))
+        raise AssertionError('\n'.join(lines))
+
+
+def assert_reproduces(
+        config: str | Path | Tree, scenario: str | Path | Tree | None, bag: Path | str,
+        tolerances: Path | str | None = None, controllers: Controllers = (), *,
+        duration: float | None = None) -> None:
+    """
+    Simulate files and controllers as they are today and compare every message with a bag.
+
+    ``config``, ``scenario`` and ``duration`` (s) are those of `isa_ros.load`, ``controllers``
+    those of `Run.simulate`. Without a scenario the run lasts as long as the bag. Recorded events,
+    such as pauses, are not compared.
+
+    Raises
+    ------
+    AssertionError
+        The run differs; the message has first the keys of configuration, scenario and versions
+        that differ, with both values and unit, then the first difference, then the largest
+        deviation of each topic with field, tick, values and tolerance.
+    BagError, ConfigError
+        A file cannot be read or run, or the bag does not begin at t = 0.
+
+    """
+    __tracebackhide__ = True
+    recorded = Bag(Path(bag))
+    allowed = _tolerances(recorded, tolerances)
+    if recorded.end_ns is None or recorded.provenance.state is not None:
+        lacks = 'has no samples' if recorded.end_ns is None else 'continues a saved state'
+        raise BagError(f'{bag}: {lacks}, must be a run from t = 0')
+    simulation = load(config, scenario, duration=duration).simulation(controllers)
+    plan = simulation.scenario
+    n_ticks = recorded.end_ns // plan.run.step_ns if plan.n_ticks is None else plan.n_ticks
+    keys = provenance_differences(
+        records_of_bag(recorded), records_of(provenance_of(plan), plan.run.source))
+    head = f'{bag}: not reproduced by {plan.run.source}, scenario {plan.name}'
+    try:
+        result = simulated(simulation, n_ticks)
+    except SimulationDiverged as error:
+        raise AssertionError('\n'.join([head, *key_lines(keys, *_NAMES), str(error)])) from error
+    report = _compared(recorded, result, allowed)
+    if not report.is_equal:
+        lines = [head, *Comparison(keys, report).lines(*_NAMES)]
+        if tolerances is None and all(key.key.startswith(VERSION) for key in keys or ()):
+            lines.append(_why_bits_differ('Controllers are not stored in a bag'))
         raise AssertionError('\n'.join(lines))
 
 
@@ -55,15 +123,36 @@ def _assert_replays() -> AssertReplays:
     return assert_replays
 
 
-def _why_bits_differ(has_changes: bool) -> list[str]:
+@pytest.fixture(name='assert_reproduces')
+def _assert_reproduces() -> AssertReproduces:
+    """Return `assert_reproduces`."""
+    return assert_reproduces
+
+
+def _tolerances(bag: Bag, tolerances: Path | str | None) -> Tolerances | None:
+    return None if tolerances is None else load_tolerances(Path(tolerances), bag.types)
+
+
+def _compared(bag: Bag, result: Result, tolerances: Tolerances | None) -> Report:
+    """Return the comparison of a result with a bag; without events, which files do not give."""
+    messages = ResultMessages(result)
+    other = retyped(bag, {topic.name: topic.type_name for topic in messages.topics})
+    without = {event.TOPIC[0], *(difference.topic for difference in other)}
+    comparer = Comparer(
+        bag, [topic.name for topic in messages.topics], tolerances,
+        lambda topic, sequence: topic not in without, is_exact=True, is_to_end=True)
+    for difference in other:
+        comparer.note(difference)
+    messages.record(comparer)
+    return comparer.finish()
+
+
+def _why_bits_differ(remark: str) -> str:
     """Return possible reasons of unequal bits; a bag has no data of its machine."""
-    versions = (
-        'Versions or topics differ as listed' if has_changes else
-        'Versions and topics are those of the bag')
-    return [
+    return (
         'No tolerances were given, so every bit must be equal, which holds with the same '
-        f'versions on the same kind of CPU. {versions}; the CPU here is {_cpu()}, that of the '
-        'recording is not stored in the bag. For other versions or CPUs give tolerances.']
+        f'versions on the same kind of CPU. {remark}; the CPU here is {_cpu()}, that of the '
+        'recording is not stored in the bag. For other versions or CPUs give tolerances.')
 
 
 def _cpu() -> str:

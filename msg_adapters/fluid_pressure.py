@@ -4,12 +4,6 @@ from msg_adapters.template import Fields, STAMP
 from sensor_msgs.msg import FluidPressure
 
 TYPE = 'sensor_msgs/msg/FluidPressure'
-ATMOSPHERE = 101325.0  # Pa, ISO 2533 standard atmosphere
-
-
-def absolute(gauge: float) -> float:
-    """Return the absolute pressure (Pa) of a gauge pressure (Pa)."""
-    return gauge + ATMOSPHERE
 
 
 def fluid_pressure(frame_id: str, column: int) -> tuple[FluidPressure, Fields]:

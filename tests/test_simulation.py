@@ -12,7 +12,7 @@ from isa_ros.controller import Controller, Setpoint, State
 from isa_ros.core.signals import COMMAND, HAS_SETPOINT
 from isa_ros.errors import ConfigError, RunError, SetpointError, SimulationDiverged
 from isa_ros.run.local_run import shown
-from isa_ros.run.narrator import Narrator, topics_of
+from isa_ros.run.narrator import Narrator, packer_of
 from isa_ros.scenario.scenario import idle, load_scenario, Scenario, scenario_of
 from isa_ros.simulation import Simulation
 import numpy as np
@@ -88,9 +88,9 @@ def test_its_rows_are_those_of_a_recorded_run(config, scenario):
     run = load_run(find(config, CONFIG))
     fitted = idle(run) if scenario == 'idle' else load_scenario(find(scenario, SCENARIOS), run)
     simulation = Simulation(fitted)
-    rows = shown(simulation)
-    digests = Digests([topic.name for topic in topics_of(fitted.run, rows)])
-    narrator = Narrator(fitted.run, rows, digests)
+    packer = packer_of(fitted.run, shown(simulation))
+    digests = Digests([topic.name for topic in packer.topics])
+    narrator = Narrator(packer, fitted.run.step_ns, digests)
     while True:
         narrator.publish_rows(simulation.ticks, simulation.tuned)
         narrator.record()

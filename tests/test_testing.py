@@ -5,17 +5,22 @@ import re
 import shutil
 import struct
 
+import isa_ros
 from isa_ros.bag.provenance import installed_versions
 from isa_ros.bag.reader import Bag
 from isa_ros.bag.writer import BagWriter
 from isa_ros.config.run_config import RunConfig
+from isa_ros.config.yaml_text import parse
+from isa_ros.errors import ConfigError
 from isa_ros.replay.replay import Rerun
+from isa_ros.testing import assert_replays
 import pytest
 from tests.bag.golden import GOLDEN, rewrite
 
 pytest_plugins = ['pytester']
 
 README = (Path(__file__).parents[1] / 'README.md').read_text()
+YAML = re.findall(r'```yaml\n(.*?)```', README, re.DOTALL)
 EXAMPLE = next(block for block in re.findall(r'```python\n(.*?)```', README, re.DOTALL)
                if 'assert_replays' in block)
 BITWISE = "def test_it(assert_replays):\n    assert_replays('bags/drop')\n"
@@ -38,8 +43,13 @@ def here(tmp_path_factory) -> Path:
 
 
 @pytest.fixture
-def project(pytester):
-    """Return a user's project with the plug-in."""
+def project(pytester, here):
+    """
+    Return a user's project with the plug-in.
+
+    ``here`` has loaded numba before: pytester unloads what an inner run imports, and numba cannot
+    be loaded twice.
+    """
     pytester.makeconftest("pytest_plugins = ['isa_ros.testing']\n")
     pytester.mkdir('bags')
     return pytester
@@ -53,19 +63,39 @@ def with_a_code_more(topic: str, sequence: int, data: bytes) -> bytes:
     return data[:-8] + struct.pack('<d', value + 0.05)
 
 
-def test_the_example_of_the_readme_passes_and_fails(project) -> None:
-    """The README's tolerance file has topics of the leg, so the bag must be the leg's."""
-    shutil.copytree(GOLDEN / 'leg_touchdown', project.path / 'bags' / 'drop')
-    tolerances = next(block for block in re.findall(r'```yaml\n(.*?)```', README, re.DOTALL)
-                      if block.startswith('/kfe/'))
-    (project.path / 'bags' / 'tolerances.yaml').write_text(
-        (GOLDEN / 'leg_touchdown_tolerances.yaml').read_text())
-    project.makepyfile(test_drop=EXAMPLE.replace("pytest_plugins = ['isa_ros.testing']", ''))
-    project.runpytest_inprocess('-q').assert_outcomes(passed=1)
-    (project.path / 'bags' / 'tolerances.yaml').write_text(tolerances.replace('/kfe/', '/knee/'))
+def example(start: str) -> str:
+    """Return the YAML block of the README that begins with a text."""
+    return next(block for block in YAML if block.startswith(start))
+
+
+def test_the_example_of_the_readme_fails_as_the_readme_says(project) -> None:
+    """Each of its two tests for its own reason, with the lines that the README shows."""
+    (project.path / 'my_ram.yaml').write_text(example('name: my_ram'))
+    (project.path / 'my_step.yaml').write_text(example('name: my_step'))
+    isa_ros.load('my_ram.yaml', 'my_step.yaml').simulate().save('bags/step')
+    project.makepyfile(test_my_ram=EXAMPLE.replace("pytest_plugins = ['isa_ros.testing']", ''))
+    project.runpytest_inprocess('-q').assert_outcomes(passed=2)
+    shown = re.search(r'^    (key +in the bag .*)\n    (.*)$', README, re.MULTILINE)
+    before, after = shown[2].split()[1:3]
+    text = (project.path / 'my_ram.yaml').read_text()
+    (project.path / 'my_ram.yaml').write_text(
+        text.replace(f'dead_volume_ml: {before}', f'dead_volume_ml: {after}'))
     result = project.runpytest_inprocess('-q')
-    result.assert_outcomes(failed=1)
-    result.stdout.fnmatch_lines(['*tolerances.yaml: /knee/joint_states: no such topic*'])
+    result.assert_outcomes(passed=1, failed=1)
+    result.stdout.fnmatch_lines([
+        'E*AssertionError: bags/step: not reproduced by my_ram.yaml, scenario my_step',
+        f'E*{shown[1]}', f'E*{shown[2]}', 'E*differ: tick *', 'E*/ram/joint_states *',
+        'FAILED test_my_ram.py::test_my_files_still_give_this_step*'])
+
+
+def test_the_tolerances_of_the_readme_fit_its_example(project) -> None:
+    (project.path / 'tolerances.yaml').write_text(example('/ram/'))
+    bag = isa_ros.load(
+        parse(example('name: my_ram'), 'my_ram.yaml'), duration=0.01).simulate().save('bags/ram')
+    assert_replays(bag, 'tolerances.yaml')
+    (project.path / 'tolerances.yaml').write_text(example('/ram/').replace('/ram/', '/arm/'))
+    with pytest.raises(ConfigError, match='^tolerances.yaml: /arm/joint_states: no such topic'):
+        assert_replays(bag, 'tolerances.yaml')
 
 
 def test_every_bit_counts_without_tolerances(project, here) -> None:

@@ -15,6 +15,7 @@ from isa_ros.actuator.rows import Memory, memory_of
 from isa_ros.actuator.sheet import actuator_record, ActuatorSheet
 from isa_ros.actuator.tunable import GAINS
 from isa_ros.actuator.tuning import gain_after, gains_command, Tuning
+from isa_ros.core.saved_state import broken_number, restored_rows, TIME_BYTES, time_of
 from isa_ros.core.signals import COMMAND, HAS_ENABLE, HAS_SETPOINT, LOAD_PORT
 from isa_ros.core.timebase import FORCE_WINDOWS, PLANT_STEP_NS, steps_in
 from isa_ros.errors import ConfigError, SimulationDiverged
@@ -23,6 +24,9 @@ from isa_ros.plant.plant import read_sensors, rest_pressures
 from isa_ros.reu.cascade import initial_gains
 import numpy as np
 
+
+_SAVED = ('body', 'reu', 'port', 'pending', 'applied', 'reply', 'sample')
+"""The rows of a snapshot, in their order."""
 
 PAPER_SUPPLY = 20.7e6
 """Pa gauge: supply pressure of the paper's rigs, used if no supply is configured."""
@@ -229,8 +233,21 @@ class SmartActuator:
             self.memory.states[0, state])
 
     def snapshot(self) -> bytes:
-        """Return the complete state; `restore` continues from it byte for byte."""
-        return self.t_ns.to_bytes(8, 'little') + b''.join(
+        """
+        Return the complete state; `restore` continues from it byte for byte.
+
+        Raises
+        ------
+        SimulationDiverged
+            A number of the state is not finite.
+
+        """
+        for name, rows in zip(_SAVED, self._saved):
+            broken = broken_number(rows)
+            if broken is not None:
+                raise SimulationDiverged(
+                    self.t_ns, f'{self.name}.{name}: {broken[0]}', broken[1])
+        return self.t_ns.to_bytes(TIME_BYTES, 'little') + b''.join(
             rows.tobytes() for rows in self._saved) + self.tuning.snapshot()
 
     def restore(self, snapshot: bytes) -> None:
@@ -240,18 +257,22 @@ class SmartActuator:
         Raises
         ------
         ConfigError
-            The bytes are not a snapshot of this actuator.
+            The bytes are not a snapshot of this actuator, or a number in it is not finite.
 
         """
-        expected = 8 + sum(rows.nbytes for rows in self._saved) + self.tuning.nbytes
+        expected = TIME_BYTES + sum(rows.nbytes for rows in self._saved) + self.tuning.nbytes
         if len(snapshot) != expected:
             raise ConfigError(
                 f'{self.name}: saved state has {len(snapshot)} bytes, must have {expected}')
-        self.t_ns = int.from_bytes(snapshot[:8], 'little')
-        offset = 8
-        for rows in self._saved:
-            rows[:] = np.frombuffer(snapshot, rows.dtype, len(rows), offset)
+        t_ns = time_of(snapshot, self._timing.step_ns, self.name)
+        offset, found = TIME_BYTES, []
+        for name, rows in zip(_SAVED, self._saved):
+            found.append(restored_rows(
+                snapshot, rows.dtype, len(rows), offset, f'{self.name}.{name}'))
             offset += rows.nbytes
+        self.t_ns = t_ns
+        for rows, restored in zip(self._saved, found):
+            rows[:] = restored
         self.tuning.restore(snapshot[offset:])
 
 

@@ -13,8 +13,7 @@ from isa_ros.core.kernel import kernel
 from isa_ros.core.timebase import FORCE_WINDOWS, PLANT_STEP
 from isa_ros.loads.forces import LOAD_STATE, OWN_LOAD, own_load_force
 from isa_ros.loads.port import load_acceleration
-from isa_ros.plant.plant import PLANT, plant_rates, PLANT_STATE, read_sensors
-from isa_ros.plant.spool import stop_spool
+from isa_ros.plant.plant import PLANT, plant_rates, PLANT_STATE, read_sensors, settle
 from isa_ros.reu.cascade import cascade_step, is_due, REU
 import numpy as np
 
@@ -90,7 +89,7 @@ def body_step(h, tau, drive, port, actuator, bodies, rates, y, k):
     for j in range(STATE_SIZE):
         value = y[0, j] + h / 6.0 * (k[0, j] + 2.0 * (k[1, j] + k[2, j]) + k[3, j])
         y[0, j] = 0.0 if abs(value) < NOTHING else value
-    stop_spool(bodies[0].plant.valve, actuator.plant.valve.x_max)
+    settle(h, bodies[0].plant, port.return_pressure, actuator.plant)
 
 
 @kernel

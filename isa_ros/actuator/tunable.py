@@ -8,13 +8,12 @@ impedance are part of every setpoint; tuning one is a setpoint that changes this
 
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, fields, replace
-import re
 from typing import Any, NamedTuple
 
 from isa_ros.actuator.sheet import ActuatorSheet, refuse_wiring
 from isa_ros.core.parameter import check, Parameters
 from isa_ros.core.suggest import alternatives
-from isa_ros.core.units import MILLI, MPA
+from isa_ros.core.units import MILLI, MPA, of_coordinate
 from isa_ros.errors import ConfigError
 from isa_ros.reu.wiring import active, VARIABLES
 
@@ -35,7 +34,6 @@ _MEASURED = {
     'position': 'm | rad', 'force': 'N | Nm', 'pressure': 'Pa', 'spool': 'm', 'current': 'A'}
 """Unit of what each block controls; the current is that of coils in series."""
 _VALVE = 'm | A'  # unit, in a sheet, of an output that commands the valve
-_EITHER = re.compile(r'(\S+) \| (\S+)')
 
 
 @dataclass(frozen=True)
@@ -68,17 +66,12 @@ def _of_block(sheet: ActuatorSheet, variable: str) -> Iterator[Tunable]:
         si = _IN_SI.get(declared['unit'], _Si(declared['unit'], 1.0))
         unit = si.unit.replace(_VALVE, 'output')
         for word, means in (('output', output), ('measured', _MEASURED[variable])):
-            unit = unit.replace(word, _of_kind(means, sheet.is_rotary))
+            unit = unit.replace(word, of_coordinate(means, sheet.is_rotary))
         yield Tunable(
             name='.'.join((*path[:-1], declared['tunable'] or path[-1])),
-            value=value * si.scale, unit=_of_kind(unit, sheet.is_rotary),
+            value=value * si.scale, unit=of_coordinate(unit, sheet.is_rotary),
             bounds={name: bound * si.scale for name, bound in declared['bounds'].items()},
             doc=declared['doc'], path=path, scale=si.scale)
-
-
-def _of_kind(unit: str, is_rotary: bool) -> str:
-    """Return the linear or the rotary alternative of a unit ``linear | rotary``."""
-    return _EITHER.sub(r'\2' if is_rotary else r'\1', unit)
 
 
 def _declared(

@@ -109,8 +109,12 @@ class Tuning:
         return self._rows.tobytes()
 
     def restore(self, snapshot: bytes) -> None:
-        """Continue from a `snapshot`; raises as `accept`."""
-        self._rows[:] = np.frombuffer(snapshot).reshape(self._rows.shape)
+        """Continue from a `snapshot`; raises as `accept`, also for a value that is not finite."""
+        rows = np.frombuffer(snapshot).reshape(self._rows.shape)
+        for row, k in np.argwhere(~np.isfinite(rows)):
+            raise ConfigError(
+                f'{self._name}: saved state has {self._names[k]} = {rows[row, k]}, must be finite')
+        self._rows[:] = rows
         self._tuned_by(self._changed(_ACCEPTED))
         self._is_settled = False
         self._write()

@@ -7,13 +7,16 @@ the million: messages (`isa_ros.bag.message_chunk`) and the entries of their ind
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
+import errno
 import io
+import os
 from pathlib import Path
 import struct
+from typing import NamedTuple
 import zlib
 
 from isa_ros.bag.crc import combined
-from isa_ros.bag.message_chunk import Chunk, Layouts
+from isa_ros.bag.message_chunk import Chunk, Entries, Layouts
 import lz4.frame  # type: ignore[import-untyped]
 from mcap.data_stream import RecordBuilder
 from mcap.opcode import Opcode
@@ -37,6 +40,23 @@ _BUFFERS = 2  # one is filled while the other is written
 Bytes = bytes | memoryview
 
 
+class StoredChunk(NamedTuple):
+    """A chunk as it is in a file."""
+
+    start_ns: int
+    end_ns: int
+    size: int
+    """Bytes of its content."""
+    crc: int
+    """Of its content."""
+    compression: str
+    """'' for none."""
+    data: Bytes
+    """Its content, compressed."""
+    indices: Sequence[tuple[int, Entries]]
+    """Channel and index of its messages, sorted by channel."""
+
+
 @dataclass
 class _Totals:
     """Statistics of the whole file."""
@@ -51,14 +71,17 @@ class McapFile:
     Append-only MCAP file: every written record is complete on disk.
 
     ``compression`` of the chunks is none, lz4 or zstd. A failed write leaves the file as it was
-    before, so that it can still be read and finished. Every method that writes raises the
-    system's OSError.
+    before, so that it can still be read and finished. Every method that writes, and `check`,
+    raises an OSError.
     """
 
     def __init__(self, path: Path, library: str, compression: str = 'none') -> None:
         self._compression = '' if compression == 'none' else compression
         self._compress = _COMPRESSORS[compression]
-        self._file = io.FileIO(path, 'x')
+        self._path = path
+        # Appending: after a truncation by others the file stays shorter than it must be.
+        self._file = io.FileIO(path, 'x', opener=_opened_to_append)
+        self._end: os.stat_result | None = None
         self._position = 0
         self._crc = 0
         self._schemas: list[Schema] = []
@@ -77,6 +100,32 @@ class McapFile:
     def size(self) -> int:
         """Return the number of bytes written."""
         return self._position
+
+    def check(self) -> None:
+        """
+        Check that the path still leads to this file, and that it holds all that was written.
+
+        A file that was removed, moved, replaced or truncated can still be written without an
+        error, but not be read again.
+        """
+        own = self._end or os.fstat(self._file.fileno())
+        try:
+            there = os.stat(self._path)
+        except (FileNotFoundError, NotADirectoryError):
+            raise self._loss('the file was removed or moved during the run') from None
+        if not os.path.samestat(own, there):
+            raise self._loss('another file took its place during the run')
+        if there.st_size != self._position:
+            raise self._loss(
+                f'the file has {there.st_size} bytes instead of the {self._position} written: '
+                'it was changed during the run')
+
+    def sync(self) -> None:
+        """Wait until the disk has everything written."""
+        os.fsync(self._file.fileno())
+
+    def _loss(self, what: str) -> OSError:
+        return OSError(errno.ESTALE, what, str(self._path))
 
     def add_schema(self, name: str, encoding: str, data: bytes) -> int:
         """Register a schema; it is written to the first chunk and the summary."""
@@ -121,35 +170,38 @@ class McapFile:
     def add_chunk(self, content: Chunk) -> list[tuple[int, int]]:
         """Write a chunk and its message indices; return (channel id, messages) of each."""
         content_bytes = content.data()
-        content_crc = zlib.crc32(content_bytes)
-        data = self._compress(content_bytes)
+        indices = content.message_indices()
+        self.store(StoredChunk(
+            content.start_ns, content.end_ns, content.size, zlib.crc32(content_bytes),
+            self._compression, self._compress(content_bytes), indices))
+        if len(self._buffers) < _BUFFERS:
+            self._buffers.append(content.buffer)
+        return [(channel, len(index)) for channel, index in indices]
+
+    def store(self, chunk: StoredChunk) -> None:
+        """Write a chunk that is compressed already, and its message indices."""
         head = _bytes(ChunkRecord(
-            message_start_time=content.start_ns, message_end_time=content.end_ns,
-            uncompressed_size=content.size, uncompressed_crc=content_crc,
-            compression=self._compression, data=b''))
+            message_start_time=chunk.start_ns, message_end_time=chunk.end_ns,
+            uncompressed_size=chunk.size, uncompressed_crc=chunk.crc,
+            compression=chunk.compression, data=b''))
         # The library's record without its data, to avoid copying them.
-        length = len(head) + len(data)
-        head = head[:1] + _LENGTH.pack(length - 9) + head[9:-8] + _LENGTH.pack(len(data))
+        length = len(head) + len(chunk.data)
+        head = head[:1] + _LENGTH.pack(length - 9) + head[9:-8] + _LENGTH.pack(len(chunk.data))
         start, indices, offsets = self._position, b'', {}
-        channels = content.message_indices()
-        for channel, index in channels:
+        for channel, index in chunk.indices:
             offsets[channel] = start + length + len(indices)
             size = len(index) * _ENTRY_BYTES
             indices += _INDEX_HEADER.pack(
                 Opcode.MESSAGE_INDEX, size + _INDEX_EXCESS, channel, size)
             indices += index.astype('<u8').tobytes()
-        data_crc = content_crc if data is content_bytes else zlib.crc32(data)
-        self._append(head, (data, data_crc), indices)
+        data_crc = zlib.crc32(chunk.data) if chunk.compression else chunk.crc
+        self._append(head, (chunk.data, data_crc), indices)
         self._chunks.append(ChunkIndex(
-            message_start_time=content.start_ns, message_end_time=content.end_ns,
+            message_start_time=chunk.start_ns, message_end_time=chunk.end_ns,
             chunk_start_offset=start, chunk_length=length, message_index_offsets=offsets,
-            message_index_length=len(indices), compression=self._compression,
-            compressed_size=len(data), uncompressed_size=content.size))
-        counts = [(channel, len(index)) for channel, index in channels]
-        self._count(content, counts)
-        if len(self._buffers) < _BUFFERS:
-            self._buffers.append(content.buffer)
-        return counts
+            message_index_length=len(indices), compression=chunk.compression,
+            compressed_size=len(chunk.data), uncompressed_size=chunk.size))
+        self._count(chunk)
 
     def finish(self) -> None:
         """Write the end of the data, the summary and the footer, all or nothing."""
@@ -172,6 +224,8 @@ class McapFile:
 
     def close(self) -> None:
         """Close the file, finished or not, and release its memory."""
+        if not self._file.closed:
+            self._end = os.fstat(self._file.fileno())
         self._file.close()
         self._buffers.clear()
         for records in (self._schemas, self._channels, self._chunks):
@@ -192,13 +246,13 @@ class McapFile:
             (Opcode.ATTACHMENT_INDEX, self._attachments),
             (Opcode.METADATA_INDEX, self._metadata)]
 
-    def _count(self, content: Chunk, counts: Sequence[tuple[int, int]]) -> None:
+    def _count(self, chunk: StoredChunk) -> None:
         if self._totals.chunks == 0:
-            self._totals.start_ns = content.start_ns
-        self._totals.end_ns = content.end_ns
+            self._totals.start_ns = chunk.start_ns
+        self._totals.end_ns = chunk.end_ns
         self._totals.chunks += 1
-        for channel, count in counts:
-            self._counts[channel - 1] += count
+        for channel, index in chunk.indices:
+            self._counts[channel - 1] += len(index)
 
     def _append(self, *parts: bytes | tuple[Bytes, int]) -> None:
         """Write all parts or nothing; a part may come with its CRC."""
@@ -220,6 +274,10 @@ class McapFile:
                 self._crc = combined(self._crc, part[1], len(part[0]))
             else:
                 self._crc = zlib.crc32(part, self._crc)
+
+
+def _opened_to_append(path: str, flags: int) -> int:
+    return os.open(path, flags | os.O_APPEND, 0o666)
 
 
 def _compressed_by_lz4(data: Bytes) -> bytes:

@@ -2,6 +2,7 @@
 
 from collections.abc import Mapping, Sequence
 from functools import cache
+from itertools import takewhile
 import json
 from typing import NamedTuple
 
@@ -10,7 +11,10 @@ from isa_ros.core.topic import Topic
 VERSION = 9
 FILE_NAME = 'metadata.yaml'
 ROS_DISTRO = 'jazzy'
+SIGNATURE = ('format', 'configuration.yaml.sha256')
+"""Keys of the custom data that a bag of this package has."""
 NO_START = 2**63 - 1  # rosbag2's starting time of a bag without messages
+_ROOT = 'rosbag2_bagfile_information:'
 
 
 class Counts(NamedTuple):
@@ -39,16 +43,59 @@ class Counts(NamedTuple):
         return self.end_ns - self.start_ns if self.total else 0
 
 
+class TopicEntry(NamedTuple):
+    """A topic as bags describe it."""
+
+    name: str
+    type_name: str
+    qos: str
+    """Offered quality of service, YAML."""
+    type_hash: str
+
+    @classmethod
+    def of(cls, topic: Topic, type_hash: str) -> 'TopicEntry':
+        """Return the entry of a topic."""
+        return cls(topic.name, topic.type_name, topic.qos.to_yaml(), type_hash)
+
+
 def metadata_yaml(
-        files: Sequence[tuple[str, Counts]], topics: Sequence[tuple[Topic, str]],
+        files: Sequence[tuple[str, Counts]], topics: Sequence[TopicEntry],
         custom: Mapping[str, str]) -> str:
     """
     Return the text of metadata.yaml.
 
-    ``files`` are (name, counts) in order of time, ``topics`` (topic, type hash).
+    ``files`` are (name, counts) in order of time.
     """
     lines = _information(files, topics, custom)
-    return '\n'.join(['rosbag2_bagfile_information:', *_indent(lines, 2), ''])
+    return '\n'.join([_ROOT, *_indent(lines, 2), ''])
+
+
+def own_files(text: str) -> list[str] | None:
+    """
+    Return the files that a metadata.yaml of this package lists; None for any other text.
+
+    Only the form that `metadata_yaml` writes is read, with the provenance of a run in it.
+    """
+    lines = text.split('\n')
+    files = _block(lines, 'relative_file_paths')
+    custom = [line.partition(': ')[0] for line in _block(lines, 'custom_data')]
+    is_own = lines[0] == _ROOT and '  storage_identifier: mcap' in lines and all(
+        _quote(key) in custom for key in SIGNATURE)
+    if not is_own or not all(line.startswith('- ') for line in files):
+        return None
+    try:
+        names = [json.loads(line.removeprefix('- ')) for line in files]
+    except ValueError:
+        return None
+    return names if all(isinstance(name, str) for name in names) else None
+
+
+def _block(lines: Sequence[str], name: str) -> list[str]:
+    """Return the lines below a key of the information, without their indentation."""
+    if f'  {name}:' not in lines:
+        return []
+    start = lines.index(f'  {name}:') + 1
+    return [line[4:] for line in takewhile(lambda line: line.startswith('    '), lines[start:])]
 
 
 def storage_metadata(custom: Mapping[str, str]) -> str:
@@ -60,14 +107,22 @@ def storage_metadata(custom: Mapping[str, str]) -> str:
     return '\n'.join(_information((), (), custom))
 
 
+def has_custom(storage: str, custom: Mapping[str, str]) -> bool:
+    """Return whether a text of `storage_metadata` has exactly this custom data."""
+    lines = storage.split('\n')
+    start = lines.index('custom_data:') + 1 if 'custom_data:' in lines else len(lines)
+    return list(takewhile(lambda line: line.startswith('  '), lines[start:])) == [
+        f'  {_quote(key)}: {_quote(value)}' for key, value in custom.items()]
+
+
 def _information(
-        files: Sequence[tuple[str, Counts]], topics: Sequence[tuple[Topic, str]],
+        files: Sequence[tuple[str, Counts]], topics: Sequence[TopicEntry],
         custom: Mapping[str, str]) -> list[str]:
     counts = Counts.together([part for _, part in files])
     start, duration, total = _extent(counts)
     described = [
-        line for (topic, type_hash), count in zip(topics, counts.messages)
-        for line in _topic(topic, type_hash, count)]
+        line for topic, count in zip(topics, counts.messages)
+        for line in [*_topic_metadata(topic), f'  message_count: {count}']]
     return [
         f'version: {VERSION}', 'storage_identifier: mcap', *duration, *start, total,
         *_list('topics_with_message_count', described),
@@ -90,18 +145,14 @@ def _file(name: str, counts: Counts) -> list[str]:
     return _item([f'path: {_quote(name)}', *start, *duration, total])
 
 
-def _topic(topic: Topic, type_hash: str, count: int) -> list[str]:
-    return [*_topic_metadata(topic, type_hash), f'  message_count: {count}']
-
-
 @cache
-def _topic_metadata(topic: Topic, type_hash: str) -> tuple[str, ...]:
+def _topic_metadata(topic: TopicEntry) -> tuple[str, ...]:
     return tuple(_item([
         'topic_metadata:',
         *_indent([
             f'name: {topic.name}', f'type: {topic.type_name}', 'serialization_format: cdr',
-            'offered_qos_profiles:', *_indent(topic.qos.to_yaml().split('\n'), 2),
-            f'type_description_hash: {type_hash}'], 2)]))
+            'offered_qos_profiles:', *_indent(topic.qos.split('\n'), 2),
+            f'type_description_hash: {topic.type_hash}'], 2)]))
 
 
 def _list(name: str, lines: Sequence[str]) -> list[str]:

@@ -10,15 +10,18 @@ from typing import NamedTuple
 
 from isa_ros.bag.mcap_file import McapFile
 from isa_ros.bag.message_chunk import Chunk
-from isa_ros.bag.metadata import Counts, NO_START, storage_metadata
+from isa_ros.bag.metadata import Counts, NO_START, storage_metadata, TopicEntry
 from isa_ros.bag.provenance import MEDIA_TYPES, RECORD
-from isa_ros.core.topic import Topic
 from msg_adapters.definitions import ENCODING
 
 LIBRARY = 'isa_ros'  # without a version: the same run gives the same bytes everywhere
 CHUNK_BYTES = 1024 * 1024
 CHUNK_TICKS = 500
 CHUNK_NS = 500_000_000
+QOS, TYPE_HASH = 'offered_qos_profiles', 'topic_type_hash'
+"""Keys of a channel's metadata, as rosbag2 has them."""
+ROSBAG2, SERIALIZED = 'rosbag2', 'serialized_metadata'
+"""Name and key of the record with rosbag2's own metadata."""
 PART, CONTINUES = 'isa_ros.part', 'isa_ros.continues'
 """Names of the records of a split bag: a file's number at its head, the next one's at its end."""
 NUMBER = 'number'
@@ -29,8 +32,7 @@ class Head(NamedTuple):
 
     attachments: Mapping[str, bytes]
     custom: Mapping[str, str]
-    topics: Sequence[tuple[Topic, str]]
-    """(topic, type hash)."""
+    topics: Sequence[TopicEntry]
     schemas: Mapping[str, str]
     """Definition text by type name."""
 
@@ -40,7 +42,7 @@ class PartWriter:
     Writer of the file with this ``number`` in a bag.
 
     A chunk ends with the tick that reaches 1 MiB, 500 ticks or half a simulated second.
-    Every method that writes raises the system's OSError.
+    Every method that writes, and `check`, raises an OSError.
     """
 
     def __init__(self, path: Path, number: int, head: Head, compression: str) -> None:
@@ -88,7 +90,8 @@ class PartWriter:
         return self._take_chunk()
 
     def write_chunk(self, chunk: Chunk) -> None:
-        """Write a chunk to the file."""
+        """Write a chunk to the file, which must be as it was left; see `McapFile.check`."""
+        self.check()
         if chunk.is_empty:
             return
         counts = self._file.add_chunk(chunk)
@@ -97,6 +100,14 @@ class PartWriter:
         self._end_ns = chunk.end_ns
         for channel, count in counts:
             self._counts[channel - 1] += count
+
+    def check(self) -> None:
+        """Raise OSError if the file was removed, moved or changed by others."""
+        self._file.check()
+
+    def sync(self) -> None:
+        """Wait until the disk has everything written."""
+        self._file.sync()
 
     def discard_pending(self) -> None:
         """Drop the messages of the incomplete chunk: those before them could not be written."""
@@ -122,14 +133,13 @@ class PartWriter:
         self._file.add_metadata(RECORD, head.custom)
         if self._number:
             self._file.add_metadata(PART, {NUMBER: str(self._number)})
-        self._file.add_metadata(
-            'rosbag2', {'serialized_metadata': storage_metadata(head.custom)})
+        self._file.add_metadata(ROSBAG2, {SERIALIZED: storage_metadata(head.custom)})
         types = list(head.schemas)
         for name in types:
             self._file.add_schema(name, ENCODING, head.schemas[name].encode())
-        for topic, type_hash in head.topics:
+        for topic in head.topics:
             self._file.add_channel(topic.name, types.index(topic.type_name) + 1, {
-                'offered_qos_profiles': topic.qos.to_yaml(), 'topic_type_hash': type_hash})
+                QOS: topic.qos, TYPE_HASH: topic.type_hash})
 
     def _take_chunk(self) -> Chunk:
         chunk, self._chunk = self._chunk, self._file.new_chunk()

@@ -66,7 +66,8 @@ class Provenance:
         if record.get('format') != FORMAT:
             raise BagError(
                 f'{where}: provenance format {record.get("format")!r}, must be {FORMAT!r}')
-        expected = (CONFIGURATION, SCENARIO, *((STATE,) if STATE in attachments else ()))
+        has_state = STATE in attachments or f'{STATE}.sha256' in record
+        expected = (CONFIGURATION, SCENARIO, *((STATE,) if has_state else ()))
         for name in expected:
             if name not in attachments:
                 raise BagError(f'{where}: attachment {name} is missing')
@@ -84,7 +85,7 @@ class Provenance:
             versions={
                 key.removeprefix(VERSION): value
                 for key, value in record.items() if key.startswith(VERSION)},
-            state=attachments[STATE].decode() if STATE in attachments else None)
+            state=attachments[STATE].decode() if has_state else None)
 
 
 def provenance_of(scenario: Scenario, state: RunState | None = None) -> Provenance:

@@ -13,8 +13,11 @@ from pathlib import Path
 import re
 from typing import NamedTuple
 
+from isa_ros.bag.metadata import has_custom
 from isa_ros.bag.part_reader import BagMessage, PartReader
+from isa_ros.bag.part_writer import ROSBAG2, SERIALIZED
 from isa_ros.bag.provenance import Provenance, RECORD
+from isa_ros.core.timebase import NS_PER_SECOND
 from isa_ros.errors import BagError
 
 __all__ = ['Bag', 'BagMessage', 'Tick']
@@ -41,7 +44,7 @@ class Bag:
     of any name, or the file itself. ``types`` are the message types by topic, ``type_hashes``
     those of their definitions ('': unknown), ``n_messages`` counts the messages; ``is_whole``
     tells whether the recorder came to its end. ``start_ns`` and ``end_ns`` are None without
-    messages.
+    messages. ``parts`` are its files.
 
     Raises
     ------
@@ -53,11 +56,11 @@ class Bag:
 
     def __init__(self, path: Path) -> None:
         files = _mcap_files(path)
-        self._parts = [PartReader(file) for file in files]
-        first, last = self._parts[0], self._parts[-1]
-        self.path = first.path if len(self._parts) == 1 else path
-        _refuse_strangers(self._parts)
-        filled = [part for part in self._parts if part.n_messages]
+        self.parts = [PartReader(file) for file in files]
+        first, last = self.parts[0], self.parts[-1]
+        self.path = first.path if len(self.parts) == 1 else path
+        _refuse_strangers(self.parts)
+        filled = [part for part in self.parts if part.n_messages]
         self.types = dict(first.types)
         self.type_hashes = dict(first.type_hashes)
         self.n_messages = sum(part.n_messages for part in filled)
@@ -68,7 +71,7 @@ class Bag:
     @property
     def has_provenance(self) -> bool:
         """Return whether the bag was recorded by this package."""
-        return RECORD in self._parts[0].metadata
+        return RECORD in self.parts[0].metadata
 
     @property
     def provenance(self) -> Provenance:
@@ -87,20 +90,33 @@ class Bag:
     @property
     def provenance_records(self) -> tuple[dict[str, bytes], dict[str, str]]:
         """Return attachments and key-value record as they are; raises as `provenance`."""
-        first = self._parts[0]
+        first = self.parts[0]
         if not self.has_provenance:
             raise BagError(f'{self.path}: has no provenance (metadata record {RECORD})')
-        return dict(first.attachments), dict(first.metadata[RECORD])
+        attachments, record = dict(first.attachments), dict(first.metadata[RECORD])
+        # Without an end a file has no checksum over this record, but a second copy of it.
+        copy = first.metadata.get(ROSBAG2, {}).get(SERIALIZED, '')
+        if not first.is_whole and not has_custom(copy, record):
+            raise BagError(
+                f'{self.path}: damaged, the records {RECORD} and {ROSBAG2} differ in provenance')
+        return attachments, record
 
     @property
     def number(self) -> str | None:
         """Return the label of a single file of a split bag, None for a whole bag."""
-        return self._parts[0].number
+        return self.parts[0].number
 
     def messages(self) -> Iterator[BagMessage]:
         """Yield every message in order of time."""
-        for part in self._parts:
+        for part in self.parts:
             yield from part.messages()
+
+    def place_of(self, message: BagMessage) -> str:
+        """Return where a message of the bag is, for errors: its number, topic and tick."""
+        number = next(k for k, own in enumerate(self.messages(), start=1) if own == message)
+        return (
+            f'{self.path}: message {number} of {self.n_messages}, {message.topic}, tick '
+            f'{message.sequence} (t = {message.t_ns / NS_PER_SECOND:.6f} s)')
 
     def ticks(self) -> Iterator[Tick]:
         """Yield the messages of each instant together."""

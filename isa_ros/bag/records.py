@@ -37,15 +37,18 @@ _PARSED: dict[int, Any] = {
     Opcode.HEADER: Header, Opcode.METADATA: Metadata, Opcode.SCHEMA: Schema,
     Opcode.ATTACHMENT: Attachment, Opcode.CHUNK: Chunk,
 }
+_OF_SUMMARY = (Opcode.CHUNK_INDEX, Opcode.ATTACHMENT_INDEX, Opcode.METADATA_INDEX,
+               Opcode.STATISTICS, Opcode.SUMMARY_OFFSET)
 _PRIVATE = 0x80  # opcodes from here on are private to writers and are skipped
 
 
 class Record(NamedTuple):
-    """One record: its offset, its opcode, and its parsed form if that is needed."""
+    """One record: its offset, its opcode, its parsed form if that is needed, its bytes."""
 
     offset: int
     opcode: int
     parsed: McapRecord | None
+    content: bytes
 
 
 class End(NamedTuple):
@@ -53,6 +56,8 @@ class End(NamedTuple):
 
     is_whole: bool
     offset: int
+    rest: int
+    """Bytes behind the offset, which are of an incomplete record."""
 
 
 def read_records(file: BinaryIO, where: str) -> Iterator[Record | End]:
@@ -113,6 +118,27 @@ def chunk_content(chunk: Chunk, where: str) -> bytes:
     return data
 
 
+def chunk_records(data: bytes, where: str) -> Iterator[tuple[int, int, int]]:
+    """
+    Yield opcode, begin and end of each record in the content of a chunk.
+
+    Raises
+    ------
+    BagError
+        A record reaches beyond the end, or is of no kind.
+
+    """
+    end = 0
+    while end < len(data):
+        begin, end = end, end + _HEAD_BYTES
+        end += int.from_bytes(data[begin + 1:end], 'little')
+        if end > len(data):
+            raise BagError(f'{where}: a record reaches beyond its chunk')
+        if data[begin] == 0:
+            raise BagError(f'{where}: unknown record 0x00 in a chunk')
+        yield data[begin], begin, end
+
+
 def parse_record(opcode: int, content: bytes, where: str) -> McapRecord | None:
     """
     Return the parsed form of a record, None for one that is not needed.
@@ -128,7 +154,7 @@ def parse_record(opcode: int, content: bytes, where: str) -> McapRecord | None:
         return None
     try:
         parsed: McapRecord = cls.read(ReadDataStream(io.BytesIO(content)))
-    except (EndOfFile, ValueError, struct.error) as error:
+    except (EndOfFile, ValueError, OverflowError, struct.error) as error:
         raise BagError(f'{where}: malformed {cls.__name__} record ({error})') from None
     return parsed
 
@@ -161,6 +187,8 @@ class _Reader:
         opcode, length = head[0], int.from_bytes(head[1:], 'little')
         if opcode == 0 or max(Opcode) < opcode < _PRIVATE:
             raise self._damage(offset, f'unknown record {opcode:#04x}')
+        if opcode in _OF_SUMMARY and self._summary_crc is None:
+            raise self._damage(offset, f'record {opcode:#04x} of a summary among the data')
         if length > MAX_RECORD_BYTES:
             raise self._damage(
                 offset, f'a record of {length} bytes, must be <= {MAX_RECORD_BYTES}')
@@ -177,16 +205,16 @@ class _Reader:
             if self._summary_crc is None:
                 raise self._damage(offset, 'a footer before the end of the data section')
             self._check(offset, 'the summary', parsed.summary_crc, self._summary_crc)
-        return Record(offset, opcode, parsed)
+        return Record(offset, opcode, parsed, content)
 
     def closing(self) -> End:
         """Return the end of the file after the footer."""
         offset = self._position
         magic = self._file.read(len(MCAP0_MAGIC) + 1)
         if magic == MCAP0_MAGIC:
-            return End(True, offset)
+            return End(True, offset, 0)
         if MCAP0_MAGIC.startswith(magic):
-            return End(False, offset)
+            return End(False, offset, len(magic))
         raise self._damage(offset, 'the closing magic is missing')
 
     def _read(self, size: int) -> bytes:
@@ -215,7 +243,7 @@ class _Reader:
     def _cut(self, offset: int) -> End:
         if self._is_closed:
             raise self._damage(offset, 'a record reaches beyond the end of the file')
-        return End(False, offset)
+        return End(False, offset, self._size - offset)
 
     def _damage(self, offset: int, what: str) -> BagError:
         return BagError(f'{self._where}: damaged at byte {offset}: {what}')

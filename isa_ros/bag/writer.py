@@ -16,11 +16,13 @@ from pathlib import Path
 import time
 from types import TracebackType
 
+from isa_ros.bag.directory import make_directory
 from isa_ros.bag.message_chunk import Chunk
-from isa_ros.bag.metadata import FILE_NAME, metadata_yaml
+from isa_ros.bag.metadata import FILE_NAME, metadata_yaml, TopicEntry
 from isa_ros.bag.part_writer import Head, PartWriter
 from isa_ros.bag.provenance import Provenance
 from isa_ros.config.recording import PLAIN, Storage
+from isa_ros.core.atomic_file import replace_file, sync_directory
 from isa_ros.core.topic import Topic
 from isa_ros.errors import BagError, RunError
 from msg_adapters.definitions import definition
@@ -35,13 +37,15 @@ class BagWriter:
     Writer of one bag.
 
     ``topics`` are sorted by name; a topic's index is its position. The directory must not exist,
-    except that with ``overwrite`` it may contain a bag: then only that bag is removed. ``path``
-    is the first file.
+    except that with ``overwrite`` it may contain a bag, which is replaced as described in
+    `isa_ros.bag.directory`. ``path`` is the first file. ``is_synced``: wait at each chunk until
+    the disk has it, otherwise the system decides when it writes what a killed process has left.
 
     Raises
     ------
     BagError
-        the directory already exists or cannot be created, or topics are not sorted.
+        the directory already exists, is not replaced or cannot be created, or topics are not
+        sorted.
     RunError
         the bag cannot be written, naming the file.
 
@@ -49,18 +53,21 @@ class BagWriter:
 
     def __init__(
             self, directory: Path, topics: Sequence[Topic], provenance: Provenance,
-            overwrite: bool = False, storage: Storage = PLAIN) -> None:
+            overwrite: bool = False, storage: Storage = PLAIN, is_synced: bool = False) -> None:
         _check_sorted(topics)
         definitions = {topic.type_name: definition(topic.type_name) for topic in topics}
         self._head = Head(
             provenance.attachments(), provenance.record(),
-            [(topic, definitions[topic.type_name].type_hash) for topic in topics],
+            [TopicEntry.of(topic, definitions[topic.type_name].type_hash) for topic in topics],
             {name: text for name, (text, _) in definitions.items()})
         self._storage = storage
+        self._is_synced = is_synced
         self._metadata_path = directory / FILE_NAME
         self._stem = directory.resolve().name
         self.path = self._path(0)
-        _make_directory(directory, overwrite)
+        make_directory(directory, overwrite)
+        if is_synced:
+            sync_directory(directory.parent)
         self._parts: list[PartWriter] = []
         self._is_full = False
         self._is_closed = False
@@ -83,7 +90,8 @@ class BagWriter:
         Raises
         ------
         RunError
-            the bag cannot be written; the messages in it stay readable.
+            the bag cannot be written, or a file of it was removed, moved or truncated by others;
+            the messages in it stay readable.
 
         """
         if self._error is not None:
@@ -109,7 +117,7 @@ class BagWriter:
         Raises
         ------
         RunError
-            the bag cannot be written; it stays readable like that of a killed run.
+            as `write_tick`; the bag stays readable like that of a killed run.
 
         """
         if self._is_closed:
@@ -118,8 +126,9 @@ class BagWriter:
         part = self._parts[-1]
         try:
             self._end_writing()
-            part.finish(is_last=True)
+            self._finish(part, is_last=True)
             self._write_metadata()
+            self._check_parts()
         except OSError as error:
             raise self._failure(error, part.path) from error
         finally:
@@ -135,6 +144,8 @@ class BagWriter:
     def _write(self, part: PartWriter, chunk: Chunk) -> None:
         """Write a chunk, and metadata.yaml when it is due; runs in the thread."""
         part.write_chunk(chunk)
+        if self._is_synced:
+            part.sync()
         split = self._storage.split_bytes
         self._is_full = split is not None and part.size >= split
         now = time.monotonic()
@@ -159,13 +170,26 @@ class BagWriter:
         """Finish the current file, if there is one, and begin the next."""
         if self._parts:
             self._end_writing()
-            self._parts[-1].finish(is_last=False)
+            self._finish(self._parts[-1], is_last=False)
             self._parts[-1].close()
+            self._check_parts()
         number = len(self._parts)
         self._parts.append(PartWriter(
             self._path(number), number, self._head, self._storage.compression))
         self._is_full = False
+        if self._is_synced:
+            self._parts[-1].sync()
         self._write_metadata()
+
+    def _finish(self, part: PartWriter, is_last: bool) -> None:
+        part.finish(is_last)
+        if self._is_synced:
+            part.sync()
+
+    def _check_parts(self) -> None:
+        """Raise OSError if a file, also an earlier one, is no longer as it was written."""
+        for part in self._parts:
+            part.check()
 
     def _path(self, number: int) -> Path:
         return self._metadata_path.with_name(f'{self._stem}_{number}.mcap')
@@ -175,11 +199,7 @@ class BagWriter:
         text = metadata_yaml(
             [(part.path.name, part.counts) for part in self._parts], self._head.topics,
             self._head.custom)
-        temporary = self._metadata_path.with_suffix('.yaml.tmp')
-        temporary.unlink(missing_ok=True)  # never write through an existing link
-        with temporary.open('x', encoding='utf-8') as file:
-            file.write(text)
-        temporary.replace(self._metadata_path)
+        replace_file(self._metadata_path, text.encode(), is_durable=self._is_synced)
 
     def _failure(self, error: OSError, path: Path) -> RunError:
         self._error = RunError(
@@ -193,24 +213,3 @@ def _check_sorted(topics: Sequence[Topic]) -> None:
     names = [topic.name for topic in topics]
     if names != sorted(set(names)):
         raise BagError(f'topics = {", ".join(names)}, must be sorted by name, each once')
-
-
-def _make_directory(directory: Path, overwrite: bool) -> None:
-    try:
-        if overwrite and directory.exists():
-            _remove_bag(directory)
-        directory.mkdir(parents=True, exist_ok=overwrite)
-    except FileExistsError:
-        raise BagError(f'{directory} already exists; overwrite replaces the bag in it') from None
-    except OSError as error:
-        raise BagError(f'{directory}: cannot be created, {error.strerror}') from None
-
-
-def _remove_bag(directory: Path) -> None:
-    """Remove the bag in a directory: only its metadata.yaml and MCAP files."""
-    if directory.is_dir() and not any(directory.iterdir()):
-        return
-    if not (directory / FILE_NAME).is_file():
-        raise BagError(f'{directory} is not a bag (no {FILE_NAME}), so it is not overwritten')
-    for path in [*sorted(directory.glob('*.mcap')), directory / FILE_NAME]:
-        path.unlink()

@@ -27,12 +27,12 @@ on
 
     {machine}
 
-Every row is a median, with the lowest and the highest value in brackets. A ratio compares it with
-a floor of the same call, so that more is better. Whole runs have ticks of 1 ms and record a bag;
-each run is in its own process, in rounds of alternating order. The peers transmit the same steps
-and answers between the same actuators, shared load and recorder, and give the same bag, byte for
-byte; isa_ros also checks for setpoints, requests and subscriptions. In processes, the phase
-*actuators* is the wait for them.
+Every row is a median, of several runs with the lowest and the highest value in brackets. A ratio
+compares it with a floor of the same call, so that more is better; that of a part is its share of
+the whole. Whole runs have ticks of 1 ms and record a bag; each run is in its own process, in
+rounds of alternating order. The peers transmit the same steps and answers between the same
+actuators, surroundings and recorder, and give the same bag, byte for byte; isa_ros also checks for
+setpoints, requests and subscriptions. In processes, the phase *actuators* is the wait for them.
 """
 
 

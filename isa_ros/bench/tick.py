@@ -14,7 +14,7 @@ from isa_ros.config.paths import CONFIG, find, SCENARIOS
 from isa_ros.config.run_file import load_run
 from isa_ros.core.signals import LOAD_PORT
 from isa_ros.run.local_run import shown
-from isa_ros.run.narrator import packer_of, topics_of
+from isa_ros.run.narrator import packer_of
 from isa_ros.run.session import prepare
 from isa_ros.scenario.scenario import load_scenario, Scenario
 from isa_ros.simulation import Simulation
@@ -79,8 +79,7 @@ def _recorder_seconds(drop: Scenario) -> float:
     with tempfile.TemporaryDirectory() as directory:
         session = prepare(request_of(_DROP, Path(directory)))
         ticks = count()
-        with BagWriter(
-                session.out, topics_of(drop.run, rows), provenance_of(session.scenario)) as bag:
+        with BagWriter(session.out, packer.topics, provenance_of(session.scenario)) as bag:
             def work() -> None:
                 for tick in islice(ticks, TICKS):
                     bag.write_tick(tick * session.run.step_ns, tick, messages)

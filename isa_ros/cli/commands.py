@@ -81,18 +81,26 @@ def replay(options: Namespace) -> bool:
     return report.is_equal
 
 
+def recover(options: Namespace) -> bool:
+    """Complete a bag that was cut short."""
+    from isa_ros.bag.recovery import recover as recover_bag
+    print(recover_bag(options.bag, options.out, options.in_place))
+    return True
+
+
 def compare(options: Namespace) -> bool:
-    """Find the first difference of two bags."""
-    from isa_ros.replay.compare import compare_bags, recorded_as
+    """Compare the configurations and the messages of two bags."""
     from isa_ros.bag.reader import Bag
+    from isa_ros.replay.comparison import compared, write_json
     from isa_ros.replay.tolerances import load_tolerances
     expected, actual = Bag(options.expected), Bag(options.actual)
     tolerances = load_tolerances(options.tolerance, expected.types) if options.tolerance else None
-    if not recorded_as(expected).thins_like(recorded_as(actual)):
-        print('recorded with different record options: comparing the samples in both bags')
-    report = compare_bags(expected, actual, tolerances)
-    print(report)
-    return report.is_equal
+    comparison = compared(expected, actual, tolerances)
+    for line in comparison.lines('expected', 'actual'):
+        print(one_line(line))
+    if options.json:
+        write_json(comparison, options.json)
+    return comparison.report.is_equal
 
 
 def report(options: Namespace) -> bool:

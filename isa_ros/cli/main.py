@@ -104,10 +104,22 @@ def _replay(parser: argparse.ArgumentParser) -> None:
     _tolerance(parser)
 
 
+def _recover(parser: argparse.ArgumentParser) -> None:
+    shared_arguments.bag(parser)
+    where = parser.add_mutually_exclusive_group()
+    where.add_argument(
+        '--out', type=Path, metavar='DIR',
+        help='new directory for the complete bag (default: BAG_recovered; BAG stays as it is)')
+    where.add_argument(
+        '--in-place', action='store_true',
+        help='replace the incomplete file and metadata.yaml of BAG itself')
+
+
 def _compare(parser: argparse.ArgumentParser) -> None:
     shared_arguments.bag(parser, 'expected')
     shared_arguments.bag(parser, 'actual')
     _tolerance(parser)
+    shared_arguments.json_file(parser, 'every difference')
 
 
 def _tolerance(parser: argparse.ArgumentParser) -> None:
@@ -163,7 +175,10 @@ _COMMANDS = {
     'actuators': (_actuators, commands.actuators,
                   'run actuators of a configuration for a coordinator on another host'),
     'replay': (_replay, commands.replay, 'simulate the run of a bag again and compare'),
-    'compare': (_compare, commands.compare, 'find the first difference between two bags'),
+    'compare': (_compare, commands.compare,
+                'compare the configurations and the messages of two bags'),
+    'recover': (_recover, commands.recover,
+                'complete a bag that was cut short, so that every reader opens it'),
     'report': (_report, commands.report, 'draw the figures of a bag on one page'),
     'bode': (response_arguments.bode, commands.bode,
              'measure the frequency response of a loop of an actuator'),

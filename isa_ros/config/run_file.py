@@ -26,8 +26,9 @@ from isa_ros.core.suggest import alternatives
 from isa_ros.core.timebase import FORCE_WINDOWS, PLANT_STEP_NS
 from isa_ros.core.units import MILLI
 from isa_ros.errors import ConfigError, ParameterError
-from isa_ros.loads.sheets import LocalLoad
+from isa_ros.loads.sheets import linearised, LocalLoad
 from isa_ros.plant.plant import plant_record
+from isa_ros.plant.step_limits import LoadSide, refuse_too_fast
 from isa_ros.surroundings.leg.sheet import JOINTS, LegSheet
 
 __all__ = [
@@ -241,15 +242,16 @@ def _actuator(
         variants, f'{place}.variants')
     section = merge(section, _parameters(tree, place))
     sheet = build(ActuatorSheet, section, model.place)
-    _refuse_sheet(sheet, place)
     if joint is not None and leg is not None:
         position = _joint_position(tree, place, leg, joint, sheet)
         load, load_layers = None, {}
+        _refuse_sheet(sheet, LoadSide(), place)
     else:
         position = _initial_position(tree, place, sheet)
         load_layers = _own_load(tree, place, model)
         load = build_one_of(LocalLoad, load_layers, place / 'load')
         refuse_beyond_stops(load, position, str(place))
+        _refuse_sheet(sheet, LoadSide(*linearised(load)), place)
     label = ' + '.join([str(preset), *variants])
     return (ActuatorConfig(name, model.name, label, sheet, load, position),
             ActuatorOrigin(section, load_layers))
@@ -262,11 +264,11 @@ def _parameters(tree: Tree, place: Place) -> Section:
     return written(section_at(tree['parameters'], below), below)
 
 
-def _refuse_sheet(sheet: ActuatorSheet, place: Place) -> None:
-    """Refuse control blocks that do not fit, and a plant too stiff for its step."""
+def _refuse_sheet(sheet: ActuatorSheet, load: LoadSide, place: Place) -> None:
+    """Refuse control blocks that do not fit, and a plant too fast for its step."""
     try:
         refuse_wiring(sheet)
-        plant_record(sheet.plant)
+        refuse_too_fast(plant_record(sheet.plant)[0], sheet.plant, load)
     except (ConfigError, ParameterError) as error:
         raise ConfigError(f'{place}: {error}') from error
 

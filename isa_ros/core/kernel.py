@@ -15,10 +15,13 @@ import fcntl
 import hashlib
 import os
 from pathlib import Path
-from typing import Any
+from typing import Any, TypeVar
 
 import numba
 from numba.core.caching import FunctionCache
+from numba.extending import register_jitable
+
+_Function = TypeVar('_Function', bound=Callable[..., Any])
 
 _PACKAGE = Path(__file__).parents[1]
 _SOURCES = sorted(p for p in _PACKAGE.rglob('*.py') if b'@kernel' in p.read_bytes())
@@ -53,3 +56,9 @@ def kernel(function: Callable[..., Any]) -> Any:
     if compiled is not function:  # with NUMBA_DISABLE_JIT it is
         compiled._cache = _LockedCache(function)  # type: ignore[no-untyped-call]
     return compiled
+
+
+def kernel_function(function: _Function) -> _Function:
+    """Let kernels inline a plain function, which Python calls as it is."""
+    register_jitable(error_model='numpy', forceinline=True)(function)
+    return function

@@ -1,7 +1,11 @@
 """Numpy records whose fields have names, in kernels and in plain Python alike."""
 
+from collections.abc import Collection
+import math
+from functools import cache
+
 import numpy as np
-from numpy.typing import ArrayLike
+from numpy.typing import ArrayLike, NDArray
 
 
 def rows_of(n: int, dtype: np.dtype[np.void]) -> np.ndarray:
@@ -41,3 +45,43 @@ def record(dtype: np.dtype[np.void], /, **fields: ArrayLike) -> np.record:
                 f'{name} = {value!r}, must be a record of {", ".join(nested.names)}')
         row[name] = value
     return row
+
+
+def floats(rows: NDArray[np.void]) -> NDArray[np.float64]:
+    """
+    Return the memory of records of floats as numbers: (n, floats of a row) for rows (n, ...).
+
+    Copying records takes a tenth of the time in this form.
+    """
+    n_floats = math.prod(rows.shape[1:]) * rows.itemsize // np.dtype(np.float64).itemsize
+    return rows.view(np.float64).reshape(len(rows), n_floats)
+
+
+def first_not_finite(
+        rows: np.ndarray, may_be_nan: Collection[str] = ()) -> tuple[str, float] | None:
+    """
+    Return the path and value of the first float of some rows that is not finite, None if all are.
+
+    Fields named in ``may_be_nan``, which are not nested, may be NaN, but not infinite.
+    """
+    if _is_all_floats(rows.dtype) and np.isfinite(rows.view(np.float64)).all():
+        return None
+    for name in rows.dtype.names or ():
+        values = np.asarray(rows[name])
+        if values.dtype.names is not None:
+            broken = first_not_finite(values.copy())
+            if broken is not None:
+                return f'{name}.{broken[0]}', broken[1]
+        elif values.dtype.kind == 'f':
+            is_broken = np.isinf(values) if name in may_be_nan else ~np.isfinite(values)
+            if is_broken.any():
+                return name, float(values[is_broken][0])
+    return None
+
+
+@cache
+def _is_all_floats(dtype: np.dtype[np.void]) -> bool:
+    """Return whether a record is the memory of floats and of nothing else."""
+    if dtype.names is None:
+        return dtype.base == np.float64
+    return all(_is_all_floats(dtype[name]) for name in dtype.names)

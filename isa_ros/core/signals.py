@@ -37,6 +37,9 @@ COMMAND = np.dtype([
 ])
 """Command to one actuator, in effect from a tick boundary on."""
 
+GAINS_OF_COMMAND = ('stiffness', 'damping')
+"""Fields of a `COMMAND` that may be NaN."""
+
 SAMPLE = np.dtype([
     ('position', '<f8'),            # encoder, m | rad
     ('velocity', '<f8'),            # estimated by the REU, m/s | rad/s

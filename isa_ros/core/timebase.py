@@ -7,8 +7,9 @@ The plant steps at 20 us; every other period is a whole number of those steps.
 from isa_ros.errors import ConfigError
 
 NS_PER_SECOND = 1_000_000_000
-PLANT_STEP_NS = 20_000  # fixed RK4 step, physics section 3: stable to 76 us at the worst orifice
+PLANT_STEP_NS = 20_000  # the fixed RK4 step
 PLANT_STEP = PLANT_STEP_NS / NS_PER_SECOND
+FASTEST_RATE = 1.6 / PLANT_STEP  # 1/s; a decay that an RK4 step damps best, to 0.27
 MAX_STEP_NS = 100_000_000
 FORCE_WINDOWS = 5  # mean forces per macro step that the load receives
 

@@ -78,6 +78,20 @@ def own_record(load: LocalLoad | None) -> np.ndarray:
     return own
 
 
+def linearised(load: LocalLoad) -> tuple[float, float, float, tuple[str, str, str]]:
+    """
+    Return inertia, stiffness and damping of a load in contact, and their names in its sheet.
+
+    To ground, in units of the actuator.
+    """
+    if isinstance(load, Blocked):
+        return load.inertia, load.stiffness, load.damping, ('inertia', 'stiffness', 'damping')
+    if isinstance(load, Wheel):
+        return (load.inertia, load.stop_stiffness, load.stop_damping,
+                ('inertia', 'stop_stiffness', 'stop_damping'))
+    return load.inertia, 0.0, 0.0, ('inertia', 'stiffness', 'damping')
+
+
 def static_force(load: LocalLoad | None) -> float:
     """Return the sensor force that holds the load at rest, in N or Nm."""
     return -load.force if isinstance(load, Mass) else 0.0

@@ -1,14 +1,16 @@
 """
-The two oil chambers: volumes, pressures, and the force they make.
+The two oil chambers: volumes, pressures, cavities, and the force they make.
 
 Chamber A is the cap side: its pressure extends. ``s`` is the piston position in m (rotor
 angle in rad), 0 at the retracted end, ``area`` the piston area in m2 (displacement D_m in
-m3/rad). Pressures are gauge. Each swept volume is counted once (errata 16).
+m3/rad). Pressures are gauge. Each swept volume is counted once (errata 16). Oil does not fall
+below its vapour pressure: the volume that it lacks is that of a cavity.
 """
 
 from dataclasses import dataclass
 import math
 
+from isa_ros.core.atmosphere import ATMOSPHERE
 from isa_ros.core.kernel import kernel
 from isa_ros.core.parameter import parameter, Parameters
 from isa_ros.core.record import record
@@ -74,14 +76,19 @@ class Oil(Parameters):
     aeration_pressure_kpa: float = parameter(
         'pressure below return at which released air halves the bulk modulus',
         'kPa', gt=0.0, le=100.0)
+    vapour_pressure_kpa: float = parameter(
+        'absolute pressure at which the oil boils', 'kPa', ge=0.0, le=50.0)
     temperature_celsius: float = parameter(
         'of the oil, which shifts the null of the valve', 'celsius', ge=-30.0, le=80.0)
 
 
 CHAMBERS = np.dtype([
     ('area_a', 'f8'), ('area_b', 'f8'), ('stroke', 'f8'),
-    ('dead_volume', 'f8'), ('beta', 'f8'), ('c_li', 'f8'), ('p_air', 'f8')])
-CHAMBERS_STATE = np.dtype([('p_a', 'f8'), ('p_b', 'f8')])
+    ('dead_volume', 'f8'), ('beta', 'f8'), ('c_li', 'f8'), ('p_air', 'f8'),
+    ('p_vapour', 'f8')])    # Pa gauge
+CHAMBERS_STATE = np.dtype([
+    ('p_a', 'f8'), ('p_b', 'f8'),
+    ('cavity_a', 'f8'), ('cavity_b', 'f8')])    # m3 of vapour, 0 above the vapour pressure
 
 
 def chambers_record(drive: Cylinder | Vane, oil: Oil) -> np.record:
@@ -90,7 +97,8 @@ def chambers_record(drive: Cylinder | Vane, oil: Oil) -> np.record:
     return record(
         CHAMBERS, area_a=area_a, area_b=area_b, stroke=drive.stroke,
         dead_volume=oil.dead_volume_ml * MILLILITRE, beta=oil.effective_bulk_modulus,
-        c_li=oil.cross_port_leakage, p_air=oil.aeration_pressure_kpa * 1e3)
+        c_li=oil.cross_port_leakage, p_air=oil.aeration_pressure_kpa * 1e3,
+        p_vapour=oil.vapour_pressure_kpa * 1e3 - ATMOSPHERE)
 
 
 @kernel
@@ -106,26 +114,72 @@ def stiffening(p, p_t, chambers):
     Return the bulk modulus at pressure ``p``, in Pa  (C5).
 
     beta_eff above the return pressure; below it released air softens the oil:
-    beta_eff / (1 + (P_T - p)/p_air).
+    beta_eff / (1 + (P_T - p)/p_air), down to the vapour pressure.
     """
     if p >= p_t:
         return chambers.beta
-    return chambers.beta / (1.0 + (p_t - p) / chambers.p_air)
+    return chambers.beta / (1.0 + (p_t - max(p, chambers.p_vapour)) / chambers.p_air)
+
+
+@kernel
+def elastances(p_a, p_b, s, p_t, chambers):
+    """
+    Return (beta/V_A, beta/V_B), the pressures per volume of oil, in Pa/m3  (C1, C5).
+
+    The volumes are positive within the range of the end stops.
+    """
+    v_a, v_b = volumes(s, chambers)
+    return stiffening(p_a, p_t, chambers) / v_a, stiffening(p_b, p_t, chambers) / v_b
+
+
+@kernel
+def surpluses(q_a, q_b, p_a, p_b, v, chambers):
+    """
+    Return the oil that each chamber gains beyond what its piston sweeps, in m3/s  (C2).
+
+    Times the elastance it is dP/dt, equations 3 and 4 of the paper. ``q_a`` and ``q_b`` (m3/s)
+    are all flows into a chamber except the cross-port leakage.
+    """
+    q_li = chambers.c_li * (p_a - p_b)
+    return q_a - chambers.area_a * v - q_li, q_b + chambers.area_b * v + q_li
 
 
 @kernel
 def pressure_rates(q_a, q_b, p_a, p_b, s, v, p_t, chambers):
-    """
-    Return (dP_A/dt, dP_B/dt) in Pa/s  (C2, equations 3 and 4 of the paper).
+    """Return (dP_A/dt, dP_B/dt) in Pa/s of `surpluses` and `elastances`  (C2)."""
+    in_a, in_b = surpluses(q_a, q_b, p_a, p_b, v, chambers)
+    per_a, per_b = elastances(p_a, p_b, s, p_t, chambers)
+    return per_a * in_a, per_b * in_b
 
-    ``q_a`` and ``q_b`` (m3/s) are all flows into a chamber except the cross-port leakage.
-    The volumes are positive within the range of the end stops.
+
+@kernel
+def boiled(p, cavity, elastance, p_vapour):
     """
-    v_a, v_b = volumes(s, chambers)
-    q_li = chambers.c_li * (p_a - p_b)
-    rate_a = stiffening(p_a, p_t, chambers) / v_a * (q_a - chambers.area_a * v - q_li)
-    rate_b = stiffening(p_b, p_t, chambers) / v_b * (q_b + chambers.area_b * v + q_li)
-    return rate_a, rate_b
+    Return (pressure, cavity) with the pressure not below that of the vapour, in Pa, m3  (C11).
+
+    The oil lacks cavity + (p_vapour - p)/elastance at the vapour pressure; as long as that is
+    positive it is the cavity, so that no oil is lost.
+    """
+    lacking = cavity + (p_vapour - p) / elastance
+    if lacking > 0.0:
+        return p_vapour, lacking
+    return p_vapour - lacking * elastance, 0.0
+
+
+@kernel
+def boil(h, y, s, v, p_t, chambers):
+    """
+    Let the oil of one `CHAMBERS_STATE` boil or its cavities close, after a step of ``h`` s  (C11).
+
+    The elastance is that at the vapour pressure and, to second order, of the step's volume.
+    """
+    p_vapour = chambers.p_vapour
+    if min(y.p_a, y.p_b) < p_vapour or max(y.cavity_a, y.cavity_b) > 0.0:
+        a, b = elastances(p_vapour, p_vapour, s - 0.5 * h * v, p_t, chambers)
+        if y.p_a < p_vapour or y.cavity_a > 0.0:
+            y.p_a, y.cavity_a = boiled(y.p_a, y.cavity_a, a, p_vapour)
+        if y.p_b < p_vapour or y.cavity_b > 0.0:
+            y.p_b, y.cavity_b = boiled(y.p_b, y.cavity_b, b, p_vapour)
 
 
 @kernel

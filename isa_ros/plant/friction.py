@@ -6,11 +6,12 @@ or Nm, rad (rotary).
 """
 
 from dataclasses import dataclass
-import math
 
+from isa_ros.core.elementary import exp
 from isa_ros.core.kernel import kernel
 from isa_ros.core.parameter import parameter, Parameters
 from isa_ros.core.record import record
+from isa_ros.core.timebase import FASTEST_RATE
 import numpy as np
 
 
@@ -43,13 +44,20 @@ def friction_record(sheet: Friction) -> np.record:
 def stribeck(v, friction):
     """Return g(v) = F_c + (F_s - F_c) exp(-(v/v_s)^2), in N or Nm  (F1)."""
     ratio = v / friction.v_s
-    return friction.coulomb + (friction.stiction - friction.coulomb) * math.exp(-ratio * ratio)
+    return friction.coulomb + (friction.stiction - friction.coulomb) * exp(-ratio * ratio)
 
 
 @kernel
 def bristle_rate(v, z, friction):
-    """Return dz/dt = v - sigma0 |v| z / g(v)  (F2), in m/s or rad/s."""
-    return v - friction.sigma0 * abs(v) * z / stribeck(v, friction)
+    """
+    Return dz/dt = v - sigma0 |v| z / g(v)  (F2), in m/s or rad/s.
+
+    Bristles that would follow faster than a step resolves, do so at `FASTEST_RATE` (F4): the
+    force of steady sliding, g(v), is the same.
+    """
+    pull = friction.sigma0 * abs(v) / stribeck(v, friction)
+    rate = v - pull * z
+    return rate if pull <= FASTEST_RATE else rate * (FASTEST_RATE / pull)
 
 
 @kernel

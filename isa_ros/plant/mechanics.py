@@ -6,9 +6,9 @@ force > 0 pushes the load out. Units N, m, kg (linear) or Nm, rad, kg m2 (rotary
 """
 
 from dataclasses import dataclass
-import math
 
 from isa_ros.core.contact import one_sided
+from isa_ros.core.elementary import tanh
 from isa_ros.core.kernel import kernel
 from isa_ros.core.parameter import parameter, Parameters
 from isa_ros.core.record import record
@@ -46,7 +46,7 @@ def play(d, backlash):
     """Return phi(d) = d - j tanh(d/j), the stretch behind a play of 2 j  (M1)."""
     if backlash <= 0.0:
         return d
-    return d - backlash * math.tanh(d / backlash)
+    return d - backlash * tanh(d / backlash)
 
 
 @kernel

@@ -9,6 +9,7 @@ from dataclasses import dataclass
 from isa_ros.core.kernel import kernel
 from isa_ros.core.parameter import parameter, Parameters
 from isa_ros.core.record import record
+from isa_ros.core.timebase import FASTEST_RATE
 from isa_ros.core.units import LPM, MPA
 import numpy as np
 
@@ -49,3 +50,23 @@ def relief_flow(p, p_t, relief):
     if p < p_t:
         return -relief.c_refill * (p_t - p) * (p_t - p)
     return 0.0
+
+
+@kernel
+def eased_flow(p, p_t, surplus, elastance, relief):
+    """
+    Return `relief_flow` as a step can follow it, in m3/s  (C10).
+
+    On a chamber that gains ``surplus`` (m3/s) without these valves, with ``elastance`` (Pa/m3),
+    the pressure decays towards the one at which both are equal. A decay faster than
+    `FASTEST_RATE` has that rate: no oil is lost, and the pressure at rest is the same.
+    """
+    flow = relief_flow(p, p_t, relief)
+    if flow == 0.0:
+        return 0.0
+    slope = relief.slope if flow > 0.0 else 2.0 * relief.c_refill * (p_t - p)
+    rate = slope * elastance
+    if rate <= FASTEST_RATE:
+        return flow
+    eased = surplus + (flow - surplus) * (FASTEST_RATE / rate)
+    return max(0.0, eased) if flow > 0.0 else min(0.0, eased)

@@ -43,7 +43,7 @@ SENSORS = np.dtype([
 
 def sensors_record(sheet: Sensors) -> np.record:
     """Return the `SENSORS` record: a range and a step of one least significant bit each."""
-    codes = 2.0 ** sheet.adc_bits
+    codes = float(1 << int(sheet.adc_bits))
     pressure = sheet.pressure_range_mpa * MPA
     spool, current = sheet.spool_range_mm * MILLI, sheet.current_range_ma * MILLI
     return record(

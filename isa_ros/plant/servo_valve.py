@@ -12,9 +12,11 @@ from dataclasses import dataclass
 import math
 from typing import NamedTuple
 
+from isa_ros.core.elementary import exp
 from isa_ros.core.kernel import kernel
 from isa_ros.core.parameter import choice, parameter, Parameters
 from isa_ros.core.record import record
+from isa_ros.core.timebase import FASTEST_RATE
 from isa_ros.core.units import LPM, MICRO, MILLI, MPA
 import numpy as np
 
@@ -174,7 +176,7 @@ def flow_curve(opening, valve):
     beyond = opening - valve.x_dg
     if valve.q_rest > 0.0:
         return (valve.k_low * valve.x_dg
-                + valve.q_rest * (1.0 - math.exp(-beyond * valve.k_low / valve.q_rest)))
+                + valve.q_rest * (1.0 - exp(-beyond * valve.k_low / valve.q_rest)))
     return valve.k_low * valve.x_dg + valve.k_high * beyond
 
 
@@ -197,12 +199,11 @@ def land_flow(opening, valve):
 
 
 @kernel
-def port_flows(x, p_a, p_b, p_s, p_t, valve):
+def conductances(x, valve):
     """
-    Return (q_a, q_b, q_p, q_t) in m3/s at spool ``x`` (m) and pressures in Pa  (V7, V9).
+    Return those of the lands P-A, A-T, B-T, P-B at spool ``x``, in m3/s/sqrt(Pa)  (V7).
 
-    Equations 11 to 18 of the paper as `Q = (g + leakage) sqrt(dP / dP_ref)` for each of the
-    four lands, plus the pilot stage's tare flow from supply to return.
+    Each is f (g + leakage)/sqrt(dP_ref).
     """
     if valve.is_lapped:
         pa, bt = land_flow(x - valve.lap_pa, valve), land_flow(x - valve.lap_bt, valve)
@@ -214,9 +215,46 @@ def port_flows(x, p_a, p_b, p_s, p_t, valve):
         pa = bt = opened if x > 0.0 else leak
         at = pb = opened if x < 0.0 else leak
     scale = valve.per_root_drop
-    q_pa = valve.f_pa * (pa * scale) * signed_sqrt(p_s - p_a, valve.delta)
-    q_at = valve.f_at * (at * scale) * signed_sqrt(p_a - p_t, valve.delta)
-    q_bt = valve.f_bt * (bt * scale) * signed_sqrt(p_b - p_t, valve.delta)
-    q_pb = valve.f_pb * (pb * scale) * signed_sqrt(p_s - p_b, valve.delta)
+    return (valve.f_pa * (pa * scale), valve.f_at * (at * scale),
+            valve.f_bt * (bt * scale), valve.f_pb * (pb * scale))
+
+
+@kernel
+def smoothing(conductance, elastance, delta):
+    """
+    Return the delta of V5 for the lands of one chamber, in Pa  (V18).
+
+    At no pressure drop a chamber decays at conductance x elastance/sqrt(delta), 1/s; delta grows
+    where that would be faster than `FASTEST_RATE`: a wide-open land on little oil.
+    """
+    root = conductance * elastance / FASTEST_RATE
+    return max(delta, root * root)
+
+
+@kernel
+def eased_port_flows(x, p_a, p_b, p_s, p_t, per_a, per_b, valve):
+    """
+    Return `port_flows` as a step can follow them on chambers of elastances ``per_a``, ``per_b``.
+
+    Elastances in Pa/m3; only near no pressure drop the flows differ from `port_flows`  (V18).
+    """
+    pa, at, bt, pb = conductances(x, valve)
+    delta_a = smoothing(pa + at, per_a, valve.delta)
+    delta_b = smoothing(pb + bt, per_b, valve.delta)
+    q_pa = pa * signed_sqrt(p_s - p_a, delta_a)
+    q_at = at * signed_sqrt(p_a - p_t, delta_a)
+    q_bt = bt * signed_sqrt(p_b - p_t, delta_b)
+    q_pb = pb * signed_sqrt(p_s - p_b, delta_b)
     q_tare = valve.c_tare * signed_sqrt(p_s - p_t, valve.delta)
     return q_pa - q_at, q_pb - q_bt, q_pa + q_pb + q_tare, q_at + q_bt + q_tare
+
+
+@kernel
+def port_flows(x, p_a, p_b, p_s, p_t, valve):
+    """
+    Return (q_a, q_b, q_p, q_t) in m3/s at spool ``x`` (m) and pressures in Pa  (V7, V9).
+
+    Equations 11 to 18 of the paper as `Q = (g + leakage) sqrt(dP / dP_ref)` for each of the
+    four lands, plus the pilot stage's tare flow from supply to return.
+    """
+    return eased_port_flows(x, p_a, p_b, p_s, p_t, 0.0, 0.0, valve)

@@ -1,131 +1,98 @@
 """
-Comparing a recorded run with another, tick by tick, down to the first differing field.
+Comparing a recorded run with another, tick by tick.
 
 A `Comparer` takes messages as a `BagWriter` does, so that a replay streams its messages
-straight into it; only one tick is held in memory.
+straight into it; only some ticks are held in memory.
 """
 
-from collections.abc import Callable, Iterator, Sequence
-from dataclasses import dataclass
-from itertools import zip_longest
+from collections.abc import Callable, Iterator, Mapping, Sequence
 
 from isa_ros.bag.provenance import CONFIGURATION
 from isa_ros.bag.reader import Bag, BagMessage, Tick
 from isa_ros.config.recording import read_record, RecordConfig
 from isa_ros.config.sections import Place
 from isa_ros.config.yaml_text import parse
-from isa_ros.core.timebase import NS_PER_SECOND
+from isa_ros.replay.difference import ABSENT, BAG, Difference, PRESENT, Report, Value
 from isa_ros.replay.tolerances import Tolerances
-from msg_adapters.cdr_reader import decode, flatten, message_class
+from isa_ros.replay.topic_comparison import TopicComparison
 
-ABSENT = 'absent'
-PRESENT = 'present'
-
-Value = str | int | float | bytes | bool
-
-
-@dataclass(frozen=True)
-class Difference:
-    """First place where two runs differ."""
-
-    tick: int
-    t_ns: int
-    topic: str
-    field: str
-    expected: Value
-    actual: Value
-
-    def __str__(self) -> str:
-        """Return the one line for the user; floats with every digit."""
-        return (
-            f'tick {self.tick} (t = {self.t_ns / NS_PER_SECOND:.6f} s), {self.topic}, '
-            f'{self.field}: expected {self.expected!r}, got {self.actual!r}')
-
-
-@dataclass(frozen=True)
-class Report:
-    """Extent of the comparison, and the first difference, None for equal runs."""
-
-    ticks: int
-    messages: int
-    end_ns: int | None  # of the last tick compared
-    difference: Difference | None
-
-    @property
-    def is_equal(self) -> bool:
-        """Return whether the runs are equal within the tolerances."""
-        return self.difference is None
-
-    def __str__(self) -> str:
-        """Return the one line for the user."""
-        if self.difference is not None:
-            return f'differ: {self.difference}'
-        end = 'nothing to compare' if self.end_ns is None else (
-            f'{self.ticks} ticks, {self.messages} messages, '
-            f'up to t = {self.end_ns / NS_PER_SECOND:.6f} s')
-        return f'equal: {end}'
+_BLOCK = 256    # ticks between two comparisons of the messages with unequal bytes
 
 
 class Comparer:
     """
-    Compares the ticks that come in with those of a bag, in its order.
+    Compares the ticks that come in with those of a bag, in order of time.
 
     ``topics`` are the names for the topic indices of `write_tick`; messages for which
-    ``compares``, called with topic and tick, is false are ignored on both sides. After the
-    first difference nothing more is compared.
+    ``compares``, called with topic and tick, is false are ignored on both sides. Unless
+    ``is_to_end``, nothing more is compared once `difference` is known.
+
+    ``is_exact`` also compares what is in no field: sequence numbers, padding, and bytes after the
+    last field. Middlewares leave padding uninitialised, so it is for bags of this package only.
 
     Raises
     ------
     BagError
-        The bag is damaged.
-    CdrError
-        A message does not match its type.
+        The bag is damaged, or a message does not match its type.
 
     """
 
     def __init__(
             self, expected: Bag, topics: Sequence[str],
             tolerances: Tolerances | None = None,
-            compares: Callable[[str, int], bool] = lambda topic, sequence: True) -> None:
-        self._types = expected.types
-        self._topics = list(topics)
+            compares: Callable[[str, int], bool] = lambda topic, sequence: True, *,
+            is_exact: bool = False, is_to_end: bool = False) -> None:
+        self._bag = expected
+        self._names = list(topics)
         self._tolerances = tolerances or Tolerances()
         self._compares = compares
+        self._is_exact, self._is_to_end = is_exact, is_to_end
         self._expected = self._compared(expected.ticks())
-        self._ticks = self._messages = 0
+        self._next = next(self._expected, None)
+        self._topics: dict[str, TopicComparison] = {}
+        self._ticks = self._messages = self._in_block = 0
         self._end_ns: int | None = None
         self.difference: Difference | None = None
+        """The first difference; known some ticks later, at the latest after `finish`."""
 
     def write_tick(
             self, t_ns: int, sequence: int, messages: Sequence[tuple[int, bytes]]) -> None:
         """Compare one tick's (topic index, CDR bytes); as `BagWriter.write_tick`."""
-        if self.difference is not None:
+        if self.difference is not None and not self._is_to_end:
             return
-        produced = sorted(
+        actual = sorted(
             ((name, data) for k, data in messages
-             if self._compares(name := self._topics[k], sequence)), key=lambda pair: pair[0])
-        if not produced:
+             if self._compares(name := self._names[k], sequence)), key=lambda pair: pair[0])
+        if not actual:
             return
-        tick = next(self._expected, None)
-        if tick is None:
-            self.difference = Difference(sequence, t_ns, 'bag', 'tick', ABSENT, PRESENT)
-        elif tick.t_ns != t_ns:
-            self.difference = Difference(
-                tick.sequence, tick.t_ns, 'bag', 'log_time', tick.t_ns, t_ns)
+        while self._next is not None and self._next.t_ns < t_ns:
+            self._miss_tick(self._next, 'log_time', self._next.t_ns, t_ns)
+            self._next = next(self._expected, None)
+        if self._next is None:
+            self._miss_tick(Tick(t_ns, sequence, ()), 'tick', ABSENT, PRESENT)
+        elif self._next.t_ns > t_ns:
+            self._miss_tick(self._next, 'log_time', self._next.t_ns, t_ns)
         else:
-            self.difference = self._first_difference(tick, produced)
-            self._ticks += 1
-            self._messages += len(tick.messages)
-            self._end_ns = t_ns
+            self._compare_tick(self._next, sequence, actual)
+            self._next = next(self._expected, None)
+        self._in_block += 1
+        if self._in_block >= _BLOCK or (BAG in self._topics and self.difference is None):
+            self._compare_block()
 
     def finish(self) -> Report:
         """Return the report; ticks left over in the bag are a difference."""
-        if self.difference is None:
-            tick = next(self._expected, None)
-            if tick is not None:
-                self.difference = Difference(
-                    tick.sequence, tick.t_ns, 'bag', 'tick', PRESENT, ABSENT)
-        return Report(self._ticks, self._messages, self._end_ns, self.difference)
+        while self._next is not None and (self.difference is None or self._is_to_end):
+            self._miss_tick(self._next, 'tick', PRESENT, ABSENT)
+            self._next = next(self._expected, None)
+        self._compare_block()
+        found = [self._topics[name].difference for name in sorted(
+            self._topics, key=lambda name: (name != BAG, name))]
+        return Report(self._ticks, self._messages, self._end_ns, self.difference,
+                      [difference for difference in found if difference is not None])
+
+    def note(self, difference: Difference) -> None:
+        """Add a difference that is not one of the messages' bytes."""
+        self._topic(difference.topic).note(difference)
 
     def _compared(self, ticks: Iterator[Tick]) -> Iterator[Tick]:
         """Yield the ticks with the messages that are compared, without empty ticks."""
@@ -134,66 +101,91 @@ class Comparer:
             if messages:
                 yield tick._replace(messages=messages)
 
-    def _first_difference(
-            self, tick: Tick, produced: Sequence[tuple[str, bytes]]) -> Difference | None:
-        for message, other in zip_longest(tick.messages, produced):
-            if message is None or other is None or message.topic != other[0]:
-                return _absence(tick, message, other)
-            if message.data != other[1]:
-                difference = self._field_difference(tick, message, other[1])
-                if difference is not None:
-                    return difference
-        return None
+    def _topic(self, name: str) -> TopicComparison:
+        if name not in self._topics:
+            self._topics[name] = TopicComparison(
+                self._bag, name, self._tolerances, self._is_exact)
+        return self._topics[name]
 
-    def _field_difference(
-            self, tick: Tick, message: BagMessage, data: bytes) -> Difference | None:
-        cls = message_class(self._types[message.topic])
-        pairs = zip(flatten(decode(message.data, cls)), flatten(decode(data, cls)))
-        for (field, expected), (_, actual) in pairs:
-            if not self._is_equal(message.topic, field, expected, actual):
-                return Difference(
-                    tick.sequence, tick.t_ns, message.topic, field, expected, actual)
-        return None
+    def _miss_tick(self, tick: Tick, field: str, expected: Value, actual: Value) -> None:
+        self.note(Difference(tick.sequence, tick.t_ns, BAG, field, expected, actual))
 
-    def _is_equal(self, topic: str, field: str, expected: Value, actual: Value) -> bool:
-        """Return whether two values of a field are equal; -0.0 and 0.0 differ."""
-        if not (isinstance(expected, float) and isinstance(actual, float)):
-            return expected == actual
-        if repr(expected) == repr(actual):
-            return True
-        tolerance = self._tolerances.of(topic, field)
-        return tolerance is not None and tolerance.admits(expected, actual)
+    def _compare_tick(
+            self, tick: Tick, sequence: int, actual: Sequence[tuple[str, bytes]]) -> None:
+        """Compare the messages of one instant, both sides sorted by topic."""
+        i, j, expected = 0, 0, tick.messages
+        while i < len(expected) or j < len(actual):
+            if j == len(actual) or (i < len(expected) and expected[i].topic < actual[j][0]):
+                self._miss_message(tick, expected[i].topic, PRESENT, ABSENT)
+                i += 1
+            elif i == len(expected) or actual[j][0] < expected[i].topic:
+                self._miss_message(tick, actual[j][0], ABSENT, PRESENT)
+                j += 1
+            else:
+                self._compare_messages(expected[i], sequence, actual[j][1])
+                i, j = i + 1, j + 1
+        self._ticks += 1
+        self._messages += len(expected)
+        self._end_ns = tick.t_ns
+
+    def _miss_message(self, tick: Tick, topic: str, expected: str, actual: str) -> None:
+        self.note(Difference(tick.sequence, tick.t_ns, topic, 'message', expected, actual))
+
+    def _compare_messages(self, message: BagMessage, sequence: int, data: bytes) -> None:
+        if self._is_exact and message.sequence != sequence:
+            self.note(Difference(message.sequence, message.t_ns, message.topic, 'sequence',
+                                 message.sequence, sequence))
+        elif message.data != data:
+            self._topic(message.topic).add(message, data)
+
+    def _compare_block(self) -> None:
+        """Compare the messages with unequal bytes, and find the first difference."""
+        self._in_block = 0
+        for topic in self._topics.values():
+            topic.compare()
+        firsts = [topic.first for topic in self._topics.values() if topic.first is not None]
+        self.difference = min(firsts, key=_place, default=None)
+
+
+def _place(difference: Difference) -> tuple[int, bool, str]:
+    """Return the order of differences: by time, ticks before messages, topics by name."""
+    return difference.t_ns, difference.topic != BAG, difference.topic
+
+
+def retyped(expected: Bag, types: Mapping[str, str]) -> list[Difference]:
+    """Return the topics of a bag that have another type among ``types``, by name."""
+    return [Difference(0, expected.start_ns or 0, topic, 'type', type_name, types[topic])
+            for topic, type_name in sorted(expected.types.items())
+            if types.get(topic, type_name) != type_name]
 
 
 def compare_bags(expected: Bag, actual: Bag, tolerances: Tolerances | None = None) -> Report:
     """
-    Return the comparison of two bags, for the messages that both were configured to record.
+    Return the comparison of two bags to their end, for the messages both were to record.
 
     Raises
     ------
     BagError
-        A bag is damaged.
-    CdrError
-        A message does not match its type.
+        A bag is damaged, or a message does not match its type.
 
     """
     topics = sorted(actual.types)
-    for topic in topics:
-        type_name = expected.types.get(topic)
-        if type_name not in (None, actual.types[topic]):
-            return Report(0, 0, None, Difference(
-                0, expected.start_ns or 0, topic, 'type', str(type_name), actual.types[topic]))
+    other = retyped(expected, actual.types)
     indices = {topic: k for k, topic in enumerate(topics)}
     records = [recorded_as(expected), recorded_as(actual)]
     periods = {topic: [record.period(topic) for record in records]
-               for topic in {*expected.types, *actual.types}}
-    comparer = Comparer(expected, topics, tolerances, lambda topic, sequence: all(
-        period and sequence % period == 0 for period in periods[topic]))
+               for topic in {*expected.types, *actual.types}
+               - {difference.topic for difference in other}}
+    comparer = Comparer(
+        expected, topics, tolerances,
+        lambda topic, sequence: topic in periods and all(
+            period and sequence % period == 0 for period in periods[topic]),
+        is_to_end=True)
+    for difference in other:
+        comparer.note(difference)
     for tick in actual.ticks():
         comparer.write_tick(
             tick.t_ns, tick.sequence, [(indices[m.topic], m.data) for m in tick.messages])
-        if comparer.difference is not None:
-            break
     return comparer.finish()
 
 
@@ -212,12 +204,3 @@ def recorded_as(bag: Bag) -> RecordConfig:
     name = f'{bag.path.name}: {CONFIGURATION}'
     tree = parse(bag.provenance.configuration, name)
     return read_record(tree.get('record', {}), Place(name, 'record'))
-
-
-def _absence(
-        tick: Tick, message: BagMessage | None, other: tuple[str, bytes] | None) -> Difference:
-    """Return the difference for a message that one side lacks, the first by topic."""
-    if message is not None and (other is None or message.topic < other[0]):
-        return Difference(tick.sequence, tick.t_ns, message.topic, 'message', PRESENT, ABSENT)
-    topic = '' if other is None else other[0]
-    return Difference(tick.sequence, tick.t_ns, topic, 'message', ABSENT, PRESENT)

@@ -15,7 +15,8 @@ from isa_ros.config.run_config import RunConfig
 from isa_ros.core.saved_state import RunState
 from isa_ros.core.signals import Records
 from isa_ros.errors import BagError, SetpointError
-from isa_ros.replay.compare import Comparer, Report
+from isa_ros.replay.compare import Comparer
+from isa_ros.replay.difference import Report
 from isa_ros.replay.installation import differences, refuse_obstacles, topic_differences
 from isa_ros.replay.tolerances import Tolerances
 from isa_ros.run import local_run
@@ -24,6 +25,7 @@ from isa_ros.run.exchange import Recorder
 from isa_ros.run.local_run import LocalRun
 from msg_adapters import event
 from msg_adapters.applied_parameters import tuned_values
+from msg_adapters.cdr import CdrError
 from msg_adapters.setpoint import applied_to_command
 import numpy as np
 
@@ -85,7 +87,7 @@ def replay(
         tell(line)
     comparer = Comparer(
         bag, [topic.name for topic in again.topics], tolerances,
-        lambda topic, sequence: topic in topics.compared)
+        lambda topic, sequence: topic in topics.compared, is_exact=True)
     again.simulate(comparer, lambda: comparer.difference is not None)
     return ReplayReport(
         comparer.finish(), bag.is_whole, [*changes, *topics.lines], topics.unconfirmed)
@@ -134,11 +136,23 @@ def _recorded_state(bag: Bag, run: RunConfig) -> RunState | None:
 
 
 def recorded_events(bag: Bag) -> dict[int, list[str]]:
-    """Return the texts of the run's events, by the tick before which they happened."""
+    """
+    Return the texts of the run's events, by the tick before which they happened.
+
+    Raises
+    ------
+    BagError
+        A message is not an event.
+
+    """
     events: dict[int, list[str]] = {}
     for message in bag.messages():
         if message.topic == event.TOPIC[0]:
-            events.setdefault(message.sequence, []).append(event.text(message.data))
+            try:
+                text = event.text(message.data)
+            except CdrError as error:
+                raise BagError(f'{bag.place_of(message)}: {error}') from error
+            events.setdefault(message.sequence, []).append(text)
     return events
 
 
@@ -157,6 +171,12 @@ def recorded_inputs(bag: Bag, run: RunConfig) -> Inputs:
     Return the applied setpoints and parameters of a bag by their ticks.
 
     Sample k + 1 holds the inputs that took effect at tick k; that of t = 0 is the start.
+
+    Raises
+    ------
+    BagError
+        The bag has no samples, or a message is not an input of its actuator.
+
     """
     setpoints = {f'/{a.name}/{APPLIED}': (k, a.name) for k, a in enumerate(run.actuators)}
     parameters = {f'/{a.name}/{TUNED}': a.name for a in run.actuators}
@@ -173,8 +193,8 @@ def recorded_inputs(bag: Bag, run: RunConfig) -> Inputs:
             elif topic in parameters:
                 name = parameters[topic]
                 inputs.tuned.setdefault(name, {})[tick] = tuned_values(message.data, name)
-        except SetpointError as error:
-            raise BagError(f'{bag.path}: {topic}: {error}') from error
+        except (SetpointError, CdrError) as error:
+            raise BagError(f'{bag.place_of(message)}: {error}') from error
     if last < 0:
         raise BagError(f'{bag.path}: has no samples, so there is nothing to replay')
     return inputs._replace(n_ticks=last)

@@ -19,6 +19,8 @@ from isa_ros.config import yaml_text as strict_yaml
 from isa_ros.errors import ConfigError
 from msg_adapters.cdr import field_type, Message
 from msg_adapters.cdr_reader import message_class
+import numpy as np
+from numpy.typing import NDArray
 
 FLOATS = ('float', 'double')
 _INDEX = re.compile(r'\[\d+\]')
@@ -30,9 +32,10 @@ class Tolerance(NamedTuple):
     absolute: float = 0.0  # in the field's unit
     relative: float = 0.0  # of the expected value
 
-    def admits(self, expected: float, actual: float) -> bool:
-        """Return whether the actual value is within the tolerance; a NaN never is."""
-        return abs(actual - expected) <= self.absolute + self.relative * abs(expected)
+    def bound(self, expected: NDArray[np.float64]) -> NDArray[np.float64]:
+        """Return the allowed distance from each of the expected values, (n,)."""
+        bound: NDArray[np.float64] = self.absolute + self.relative * np.abs(expected)
+        return bound
 
 
 class Tolerances:
@@ -45,6 +48,10 @@ class Tolerances:
         """Return the tolerance of a field path; one given with the index comes first."""
         exact = self._by_field.get((topic, field))
         return exact or self._by_field.get((topic, _INDEX.sub('', field)))
+
+    def covers(self, topic: str) -> bool:
+        """Return whether a field of a topic has a tolerance."""
+        return any(own == topic for own, _ in self._by_field)
 
 
 def load_tolerances(path: Path, types: Mapping[str, str]) -> Tolerances:

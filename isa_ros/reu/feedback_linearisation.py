@@ -10,6 +10,7 @@ control of Boaventura et al. 2015, which the paper names as future work.
 from dataclasses import dataclass
 import math
 
+from isa_ros.core.elementary import log
 from isa_ros.core.kernel import kernel
 from isa_ros.core.parameter import choice, parameter, Parameters, tunable
 from isa_ros.core.record import record
@@ -89,7 +90,7 @@ def opening_of(flow, model):
         left = 1.0 - (flow - at_knee) / model.q_rest
         if left <= 0.0:
             return model.x_max
-        return min(model.x_max, model.x_dg - math.log(left) * model.q_rest / model.k_low)
+        return min(model.x_max, model.x_dg - log(left) * model.q_rest / model.k_low)
     return min(model.x_max, model.x_dg + (flow - at_knee) / model.k_high)
 
 

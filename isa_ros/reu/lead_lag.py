@@ -6,10 +6,13 @@ current (A); the gain on the demand replaces an integral, without its phase lag.
 """
 
 from dataclasses import dataclass
+import math
 
+from isa_ros.core.elementary import cos, sin
 from isa_ros.core.kernel import kernel
 from isa_ros.core.parameter import choice, parameter, Parameters, tunable
 from isa_ros.core.record import record
+from isa_ros.errors import ParameterError
 from isa_ros.reu.filters import low_pass, low_pass_coefficient
 import numpy as np
 
@@ -33,6 +36,15 @@ class LeadLag(Parameters):
     anti_windup: str = choice(
         'clamped: the integral is held while the voltage is saturated', 'clamped', 'none')
 
+    def __post_init__(self) -> None:
+        """Refuse a notch that the loop's samples cannot have."""
+        super().__post_init__()
+        highest = math.pi * self.rate_hz
+        if self.lead_rad_per_s >= highest:
+            raise ParameterError(
+                f'lead_rad_per_s = {self.lead_rad_per_s:g} rad/s, must be < {highest:g} rad/s, '
+                f'half of rate_hz = {self.rate_hz:g} Hz')
+
 
 LEAD_LAG = np.dtype([
     ('period', 'f8'), ('kpf', 'f8'), ('ki', 'f8'), ('kd', 'f8'), ('derivative_alpha', 'f8'),
@@ -49,12 +61,14 @@ def demand_gain(kp: float, static_gain: float) -> float:
 
 def lead_lag_record(sheet: LeadLag) -> np.record:
     """
-    Return the `LEAD_LAG` record of a sheet: C(s) by plain Tustin, s = 2 (z - 1)/(T (z + 1))  (R9).
+    Return the `LEAD_LAG` record of a sheet: C(s) by Tustin, s = c (z - 1)/(z + 1)  (R9).
 
     C(s) = K_p w_lag^2 (s^2 + 2 zeta_lead w_lead s + w_lead^2)
-    / (w_lead^2 (s^2 + 2 zeta_lag w_lag s + w_lag^2)), equation 1; no prewarping.
+    / (w_lead^2 (s^2 + 2 zeta_lag w_lag s + w_lag^2)), equation 1, prewarped at the notch with
+    c = w_lead/tan(w_lead T/2), so that the notch is at w_lead.
     """
-    c = 2.0 * sheet.rate_hz
+    half = 0.5 * sheet.lead_rad_per_s / sheet.rate_hz
+    c = sheet.lead_rad_per_s * cos(half) / sin(half)
 
     def quadratic(w: float, zeta: float) -> tuple[float, float, float]:
         s2, s1, s0 = c * c, 2.0 * zeta * w * c, w * w

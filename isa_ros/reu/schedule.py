@@ -8,7 +8,7 @@ from dataclasses import dataclass
 import math
 
 from isa_ros.core.kernel import kernel
-from isa_ros.core.parameter import Parameters, tunable
+from isa_ros.core.parameter import parameter, Parameters, tunable
 import numpy as np
 
 POINTS = 21
@@ -21,7 +21,11 @@ class Constant(Parameters):
 
 @dataclass(frozen=True, kw_only=True)
 class OilStiffness(Parameters):
-    """Gains divided by the stiffness in the force loop, relative to its smallest value."""
+    """Gains divided by the stiffness in the force loop: stiffer oil, smaller gains."""
+
+    reference_stiffness: float = parameter(
+        'at which the gains are as stated; 0: the smallest of this actuator', 'N/m | Nm/rad',
+        ge=0.0, le=1e12)
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -44,7 +48,7 @@ def schedule_table(sheet: Schedule, stiffness: np.ndarray) -> np.ndarray:
     loop's plant is proportional to it.
     """
     if isinstance(sheet, OilStiffness):
-        table: np.ndarray = stiffness.min() / stiffness
+        table: np.ndarray = (sheet.reference_stiffness or stiffness.min()) / stiffness
         return table
     if isinstance(sheet, ThreePoints):
         return np.interp(np.linspace(0.0, 1.0, POINTS), [0.0, 0.5, 1.0],

@@ -5,9 +5,10 @@ import time
 from typing import Protocol
 
 from isa_ros.actuator.group import ActuatorGroup
+from isa_ros.core.record import floats
 from isa_ros.core.signals import Records
 from isa_ros.errors import ConfigError
-from isa_ros.run.exchange import floats, IDLE_S, Rows
+from isa_ros.run.exchange import IDLE_S, Rows
 
 
 class Input(Protocol):

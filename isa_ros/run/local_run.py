@@ -9,7 +9,7 @@ from isa_ros.core.saved_state import RunState
 from isa_ros.core.signals import COMMAND, Records
 from isa_ros.run.coordinator import Interrupted
 from isa_ros.run.exchange import Recorder
-from isa_ros.run.narrator import Narrator, topics_of
+from isa_ros.run.narrator import Narrator, packer_of
 from isa_ros.run.packing import Shown
 from isa_ros.run.thinning import Thinning
 from isa_ros.scenario.scenario import idle
@@ -41,7 +41,8 @@ class LocalRun:
     def __init__(self, run: RunConfig) -> None:
         self._run = replace(run, controllers=())
         self._simulation = Simulation(idle(self._run))
-        self._thinning = Thinning(run.record, topics_of(self._run, shown(self._simulation)))
+        self._packer = packer_of(self._run, shown(self._simulation))
+        self._thinning = Thinning(run.record, self._packer.topics)
         self.topics = self._thinning.topics
 
     def simulate(
@@ -62,8 +63,7 @@ class LocalRun:
         simulation = self._simulation
         if state is not None:
             simulation.resume(state)
-        narrator = Narrator(
-            self._run, shown(simulation), self._thinning.recorder(recorder))
+        narrator = Narrator(self._packer, self._run.step_ns, self._thinning.recorder(recorder))
         commands = np.zeros(len(simulation.names), COMMAND)
         while True:
             narrator.publish_rows(simulation.ticks, simulation.tuned)

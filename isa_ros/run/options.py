@@ -157,6 +157,9 @@ class Request:
     split_mb: float | None = field(default=None, metadata=_option(
         Kind.NOT_NEGATIVE, 'begin a new file of the bag after N MB, 0: never',
         otherwise='that of {config}', metavar='N', is_launched=True))
+    is_synced: bool = field(default=False, metadata=_option(
+        Kind.FLAG, 'wait at each chunk of the bag until the disk has it (fsync): then a failure '
+        'of the power loses as little as a killed run', name='sync', is_launched=True))
     real_time_factor: float | None = field(default=None, metadata=_option(
         Kind.POSITIVE, 'not faster than X times real time', otherwise='as fast as possible',
         metavar='X', is_launched=True))

@@ -9,7 +9,9 @@ from collections.abc import Callable, Mapping, Sequence
 from typing import NamedTuple
 
 from isa_ros.bag.packed import Layout, layout, Packed
+from isa_ros.core.atmosphere import ATMOSPHERE
 from isa_ros.core.kernel import kernel
+from isa_ros.core.record import floats
 from isa_ros.core.signals import COMMAND, Records, SAMPLE
 from isa_ros.core.topic import Topic
 from isa_ros.surroundings.supply import SUPPLY_SAMPLE
@@ -159,13 +161,11 @@ class Packer:
             {field: places[f'applied {field}'] for field in _APPLIED})
 
     def _bind(self) -> None:
-        """Store the rows as views of plain floats, a tenth of the time to pass to the kernel."""
+        """Store the rows as plain floats, a tenth of the time to pass to the kernel."""
         shown, template = self._shown, self._template
         n, m = len(shown.samples), len(shown.supplies)
-        self._samples = shown.samples.view(np.float64).reshape(n, len(_SAMPLE))
-        self._supplies = shown.supplies.view(np.float64).reshape(m, len(_SUPPLY))
-        self._body = np.zeros(0) if shown.body is None else (
-            shown.body.view(np.float64).reshape(-1))
+        self._samples, self._supplies = floats(shown.samples), floats(shown.supplies)
+        self._body = np.zeros(0) if shown.body is None else floats(shown.body).reshape(-1)
         size = (FIRST_VALUE + n * (len(_SAMPLE) + len(_PRESSURES) + len(_APPLIED))
                 + m * len(_SUPPLY_PRESSURES) + len(self._body))
         self._words = np.zeros(size, np.uint64)
@@ -181,7 +181,7 @@ class Packer:
 
         ``tuned`` are the parameters that changed at the tick's start, by row.
         """
-        pack(time_word(t_ns), time_word(tick_start_ns), fluid_pressure.ATMOSPHERE,
+        pack(time_word(t_ns), time_word(tick_start_ns), ATMOSPHERE,
              self._samples, self._shown.applied, self._supplies, self._body, self._words,
              self._values, self._target)
         self._tuned = {

@@ -6,21 +6,22 @@ from itertools import count
 import os
 from pathlib import Path
 
-from isa_ros.bag.metadata import FILE_NAME
+from isa_ros.bag.directory import files_to_replace
 from isa_ros.bag.provenance import installed_versions, provenance_of
 from isa_ros.bag.writer import BagWriter
 from isa_ros.config.assembly import surroundings_of
 from isa_ros.config.run_config import RunConfig
 from isa_ros.config.run_file import load_run
-from isa_ros.core.saved_state import read_state, RunState
+from isa_ros.core.saved_state import read_state, RunState, write_state
 from isa_ros.core.timebase import NS_PER_SECOND
 from isa_ros.core.topic import Topic
-from isa_ros.errors import BagError, ConfigError, RunError
+from isa_ros.errors import BagError, ConfigError
 from isa_ros.run.coordinator import Coordinator, Plan, Requests
 from isa_ros.run.exchange import Rows, Transport
-from isa_ros.run.narrator import Narrator, Outlets, packer_of, topics_of
+from isa_ros.run.narrator import Narrator, Outlets, packer_of
 from isa_ros.run.options import Request
 from isa_ros.run.pacing import JOINING, Laps, Pace, Progress, ProgressMeter, STARTING
+from isa_ros.run.packing import Packer
 from isa_ros.run.thinning import Thinning
 from isa_ros.scenario.scenario import idle, load_scenario, Scenario
 from isa_ros.surroundings.surroundings import Surroundings
@@ -66,7 +67,7 @@ def prepare(request: Request) -> Session:
     if run.record.thins:
         rows = Rows(len(run.actuators), surroundings_of(run))
         run.record.refuse_misfits(
-            [topic.name for topic in topics_of(run, rows.shown)], run.source)
+            [topic.name for topic in packer_of(run, rows.shown).topics], run.source)
     scenario = idle(run) if request.scenario is None else load_scenario(request.scenario, run)
     if request.duration_s is not None:
         scenario = scenario.lasting(request.duration_s)
@@ -103,12 +104,7 @@ def _unused(directory: Path) -> Path:
 
 
 def _check_output(out: Path, overwrite: bool) -> None:
-    if out.exists():
-        if not out.is_dir() or (any(out.iterdir()) and not (out / FILE_NAME).is_file()):
-            raise BagError(
-                f'{out} exists and is not a bag (no {FILE_NAME}), so it is not overwritten')
-        if not overwrite:
-            raise BagError(f'{out} already exists; --overwrite replaces the bag in it')
+    files_to_replace(out, overwrite)
     parent = next(path for path in [out, *out.absolute().parents] if path.exists())
     if not parent.is_dir() or not os.access(parent, os.W_OK | os.X_OK):
         raise BagError(f'{out}: cannot be created, {parent} is not writable')
@@ -126,23 +122,25 @@ def record(
     """
     beginning, state, out = surroundings.snapshot(), session.state, session.out
     rows = Rows(len(session.run.actuators), surroundings)
-    published = outlets(packer_of(session.run, rows.shown).surroundings)
+    packer = packer_of(session.run, rows.shown)
+    published = outlets(packer.surroundings)
     while True:
         coordinator = _record_one(
-            session, out, state, transport, surroundings, rows, published, report, should_stop,
-            requests)
+            session, out, state, transport, surroundings, rows, packer, published, report,
+            should_stop, requests)
         if not coordinator.is_reset:
             break
         surroundings.restore(beginning)
         out, state = _unused(session.out), None
     if session.request.save is not None:
-        write_state(session, coordinator, session.request.save)
+        save(session, coordinator, session.request.save)
 
 
 def _record_one(
         session: Session, out: Path, state: RunState | None, transport: Transport,
-        surroundings: Surroundings, rows: Rows, outlets: Outlets, report: Report | None,
-        should_stop: Callable[[], bool], requests: Requests | None) -> Coordinator:
+        surroundings: Surroundings, rows: Rows, packer: Packer, outlets: Outlets,
+        report: Report | None, should_stop: Callable[[], bool],
+        requests: Requests | None) -> Coordinator:
     """Run once, to the end or to a reset, and return the coordinator."""
     run, n_ticks = session.run, session.scenario.n_ticks
     plan = Plan(
@@ -153,40 +151,38 @@ def _record_one(
     rows.requests['kinds'] = 0
     transport.join(rows)
     laps.lap(JOINING)
-    thinning = Thinning(run.record, topics_of(run, rows.shown))
+    thinning = Thinning(run.record, packer.topics)
     # Only the first bag may replace one: a reset uses a directory that does not exist.
     overwrite = session.request.overwrite and not session.bags
     with BagWriter(out, thinning.topics, provenance_of(session.scenario, state), overwrite,
-                   run.record.storage) as bag:
+                   run.record.storage, session.request.is_synced) as bag:
         session.bags.append(out)
         coordinator = Coordinator(
             plan, transport, surroundings,
-            Narrator(run, rows.shown, thinning.recorder(bag), outlets), pace=session.pace,
+            Narrator(packer, run.step_ns, thinning.recorder(bag), outlets), pace=session.pace,
             progress=ProgressMeter(None if n_ticks is None else n_ticks * run.step_ns, report),
             should_stop=should_stop, requests=requests, laps=session.request.laps)
         coordinator.run(state)
     return coordinator
 
 
-def write_state(session: Session, coordinator: Coordinator, path: Path) -> None:
+def save(session: Session, coordinator: Coordinator, path: Path) -> None:
     """
-    Write the state of a run between two ticks to a file.
+    Save the state of a run between two ticks in a file.
 
     Raises
     ------
     RunError
         The file cannot be written, or a participant cannot be saved.
+    SimulationDiverged
+        A number of the state is not finite.
 
     """
-    text = coordinator.save().to_json(session.run.digest, installed_versions())
-    try:
-        path.write_text(text, encoding='utf-8')
-    except OSError as error:
-        raise RunError(f'{path}: cannot save, {error.strerror}') from error
+    write_state(path, coordinator.save().to_json(session.run.digest, installed_versions()))
 
 
 def save_in_bag(session: Session, coordinator: Coordinator) -> str:
     """Save the state of a run beside the messages of its bag and return the path."""
     path = session.bags[-1] / f'state_{coordinator.ticks}.json'
-    write_state(session, coordinator, path)
+    save(session, coordinator, path)
     return str(path)

@@ -15,6 +15,7 @@ from dataclasses import dataclass
 import math
 from typing import NamedTuple
 
+from isa_ros.core.elementary import acos, atan2, cos, sin
 from isa_ros.core.gravity import STANDARD_GRAVITY
 from isa_ros.core.parameter import parameter, Parameters
 from isa_ros.errors import ConfigError
@@ -131,9 +132,9 @@ def leg_angles(x: float, z: float, thigh: float, calf: float) -> tuple[float, fl
         raise ConfigError(
             f'the foot is {math.hypot(x, z):.4g} m from the hip, must be '
             f'{abs(thigh - calf):.4g} to {thigh + calf:.4g} m, the reach of the leg')
-    kfe = -math.acos(cosine)
-    return (math.atan2(-x, -z)
-            - math.atan2(calf * math.sin(kfe), thigh + calf * math.cos(kfe))), kfe
+    kfe = -acos(cosine)
+    return (atan2(-x, -z)
+            - atan2(calf * sin(kfe), thigh + calf * cos(kfe))), kfe
 
 
 class TrottingLeg:
@@ -180,9 +181,9 @@ class TrottingLeg:
         """
         foot = foot_at(self._trot, stride)
         hfe, kfe = self._angles(foot)
-        s_t, c_t = self._thigh * math.sin(hfe), self._thigh * math.cos(hfe)
-        s_c, c_c = self._calf * math.sin(hfe + kfe), self._calf * math.cos(hfe + kfe)
-        scale = 1.0 / (self._thigh * self._calf * math.sin(kfe))
+        s_t, c_t = self._thigh * sin(hfe), self._thigh * cos(hfe)
+        s_c, c_c = self._calf * sin(hfe + kfe), self._calf * cos(hfe + kfe)
+        scale = 1.0 / (self._thigh * self._calf * sin(kfe))
 
         def solved(x: float, z: float) -> tuple[float, float]:
             """Return the rates of HFE and of KFE that move the foot by (x, z)."""

@@ -13,6 +13,7 @@ from typing import NamedTuple, Protocol
 from isa_ros.config.run_file import ticks_in
 from isa_ros.config.sections import as_tree
 from isa_ros.config.yaml_text import Tree
+from isa_ros.core.elementary import cos, exp, expm1, log, sin
 from isa_ros.core.parameter import check, choice, parameter, Parameters
 from isa_ros.core.timebase import NS_PER_SECOND
 from isa_ros.errors import ConfigError, ParameterError
@@ -96,7 +97,7 @@ class Sine(Waveform):
         """Return A sin(omega t) and A omega cos(omega t)."""
         omega = TWO_PI * self.frequency_hz
         phase = omega * (t_ns / NS_PER_SECOND)
-        return self._excursion(math.sin(phase), omega * math.cos(phase))
+        return self._excursion(sin(phase), omega * cos(phase))
 
     def refuse_step(self, step_ns: int, where: str) -> None:
         """Refuse a sine that the setpoints would alias."""
@@ -131,15 +132,15 @@ class Chirp(Waveform):
             cycles = swept * (self.start_hz + 0.5 * slope * swept)
             frequency = self.start_hz + slope * swept
         else:
-            growth = math.log(self.end_hz / self.start_hz) / self.duration_s
-            cycles = self.start_hz * math.expm1(growth * swept) / growth
-            frequency = self.start_hz * math.exp(growth * swept)
+            growth = log(self.end_hz / self.start_hz) / self.duration_s
+            cycles = self.start_hz * expm1(growth * swept) / growth
+            frequency = self.start_hz * exp(growth * swept)
         return TWO_PI * (cycles + self.end_hz * (t - swept)), TWO_PI * frequency
 
     def at(self, t_ns: int) -> Excursion:
         """Return A sin(phase) and A phase' cos(phase)."""
         phase, rate = self.phase(t_ns / NS_PER_SECOND)
-        return self._excursion(math.sin(phase), rate * math.cos(phase))
+        return self._excursion(sin(phase), rate * cos(phase))
 
     def refuse_step(self, step_ns: int, where: str) -> None:
         """Refuse a chirp that the setpoints would alias at one of its ends."""

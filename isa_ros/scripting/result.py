@@ -5,9 +5,11 @@ from functools import cached_property
 from pathlib import Path
 from typing import Any, NamedTuple
 
+from isa_ros.core.record import floats
 from isa_ros.core.signals import Records, SAMPLE, SAMPLE_UNITS
 from isa_ros.core.suggest import alternatives
 from isa_ros.core.timebase import NS_PER_SECOND
+from isa_ros.core.units import of_coordinate
 from isa_ros.errors import AnalysisError
 from isa_ros.scenario.scenario import Scenario
 from isa_ros.simulation import Simulation
@@ -56,9 +58,8 @@ class Result(Mapping[str, NDArray[np.float64]]):
 
     def _units(self, body_units: Mapping[str, str]) -> Iterator[tuple[str, str]]:
         for actuator in self.scenario.run.actuators:
-            kind = 1 if actuator.sheet.is_rotary else 0
             for field, unit in SAMPLE_UNITS.items():
-                yield f'{actuator.name}.{field}', unit.split(' | ')[kind if ' | ' in unit else 0]
+                yield f'{actuator.name}.{field}', of_coordinate(unit, actuator.sheet.is_rotary)
         for supply in self.scenario.run.supplies:
             for field, unit in SUPPLY_UNITS.items():
                 yield f'{supply.name}.{field}', unit
@@ -180,11 +181,10 @@ def simulated(
     supplies = np.zeros((n, len(surroundings.supplies)), surroundings.supplies.dtype)
     body = surroundings.body
     bodies = None if body is None else np.zeros(n, body.sample.dtype)
-    # The same memory as plain floats: copying takes a tenth of the time.
-    pairs = [(_numbers(samples, n), _numbers(group.samples, 1)[0]),
-             (_numbers(supplies, n), _numbers(surroundings.supplies, 1)[0])]
+    pairs = [(floats(samples), floats(group.samples).reshape(-1)),
+             (floats(supplies), floats(surroundings.supplies).reshape(-1))]
     if body is not None and bodies is not None:
-        pairs.append((_numbers(bodies, n), _numbers(body.sample, 1)[0]))
+        pairs.append((floats(bodies), floats(body.sample).reshape(-1)))
     applied: dict[int, Records] = {}
     kinds = group.applied['kinds']
     for tick in range(n):
@@ -200,7 +200,3 @@ def simulated(
         report(n_ticks, n_ticks)
     return Result(simulation.scenario, Log(samples, supplies, bodies, applied),
                   {} if body is None else body.units)
-
-
-def _numbers(rows: Records, n: int) -> NDArray[np.float64]:
-    return rows.view(np.float64).reshape(n, -1)

@@ -14,6 +14,7 @@ their mass (it is part of the leg's links).
 
 import math
 
+from isa_ros.core.elementary import cos, sin
 from isa_ros.core.kernel import kernel
 import numpy as np
 
@@ -53,9 +54,9 @@ def slider_crank(q, linkage):
     """
     gamma = linkage.sense * q + linkage.offset
     a_b = linkage.a * linkage.b
-    a_b_cos = a_b * math.cos(gamma)
+    a_b_cos = a_b * cos(gamma)
     length = math.sqrt(linkage.a * linkage.a + linkage.b * linkage.b - 2.0 * a_b_cos)
-    lever = linkage.sense * a_b * math.sin(gamma) / length
+    lever = linkage.sense * a_b * sin(gamma) / length
     return length - linkage.retracted_length, lever, (a_b_cos - lever * lever) / length
 
 
@@ -73,9 +74,9 @@ def four_bar(q, linkage):
     Valid while A-R-B is a triangle (w > 0, checked with the data sheet).
     """
     theta = linkage.sense * q + linkage.offset
-    b1_x = -linkage.sense * linkage.bk * math.sin(theta)
-    b1_y = linkage.sense * linkage.bk * math.cos(theta)
-    b2_x, b2_y = -linkage.bk * math.cos(theta), -linkage.bk * math.sin(theta)
+    b1_x = -linkage.sense * linkage.bk * sin(theta)
+    b1_y = linkage.sense * linkage.bk * cos(theta)
+    b2_x, b2_y = -linkage.bk * cos(theta), -linkage.bk * sin(theta)
     d_x, d_y = -b2_x - linkage.ak_x, -b2_y - linkage.ak_y
     # S = 1 / D^2 and its two derivatives; u and w are functions of S alone.
     square = d_x * d_x + d_y * d_y

@@ -9,15 +9,15 @@ Neglected: length and resistance of the pressure line, heat, air in the tank.
 """
 
 from dataclasses import dataclass, field
-import math
 
+from isa_ros.core.atmosphere import ATMOSPHERE
+from isa_ros.core.elementary import exp, log
 from isa_ros.core.kernel import kernel
 from isa_ros.core.parameter import parameter, Parameters
 from isa_ros.core.units import LPM, MPA
 from isa_ros.errors import ParameterError
 import numpy as np
 
-ATMOSPHERE = 101325.0        # Pa, absolute pressure of the gas law minus gauge pressure
 SUPPLY_STEP = 1e-4           # s, step of the supply's RK4
 _SLOWEST_TICKS = 10.0        # shortest time constant in ticks (coupling.md)
 _LITRE = 1e-3                # m3
@@ -128,7 +128,7 @@ def capacitance(pressure, supply):
     absolute = pressure + ATMOSPHERE
     if absolute <= supply.p_0:
         return supply.c_line
-    gas = supply.v_0 * math.exp(math.log(supply.p_0 / absolute) / supply.n)
+    gas = supply.v_0 * exp(log(supply.p_0 / absolute) / supply.n)
     return gas / (supply.n * absolute) + supply.c_line
 
 

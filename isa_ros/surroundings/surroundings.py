@@ -8,7 +8,8 @@ configuration; `isa_ros.config.assembly` makes them from a run.
 from collections.abc import Sequence
 from typing import NamedTuple
 
-from isa_ros.errors import ConfigError
+from isa_ros.core.saved_state import broken_number, restored_rows
+from isa_ros.errors import ConfigError, RunError
 from isa_ros.surroundings.body import Body, Records
 from isa_ros.surroundings.supply import Supply, SUPPLY_SAMPLE, SupplySheet
 import numpy as np
@@ -92,7 +93,22 @@ class Surroundings:
             supply.advance(_sum(drawn, feed.rows), _sum(returned, feed.rows))
 
     def snapshot(self) -> bytes:
-        """Return the complete state; `restore` continues from it byte for byte."""
+        """
+        Return the complete state; `restore` continues from it byte for byte.
+
+        Raises
+        ------
+        RunError
+            The pressure or flow of a supply is not finite.
+        SimulationDiverged
+            A number in the state of the body is not finite.
+
+        """
+        for k, feed in enumerate(self.feeds):
+            broken = broken_number(self.supplies[k:k + 1])
+            if broken is not None:
+                raise RunError(
+                    f'{feed.name}: {broken[0]} = {broken[1]}, must be finite to be saved')
         return self.supplies.tobytes() + (b'' if self.body is None else self.body.snapshot())
 
     def restore(self, snapshot: bytes) -> None:
@@ -102,15 +118,17 @@ class Surroundings:
         Raises
         ------
         ConfigError
-            The bytes are not a snapshot of these surroundings.
+            The bytes are not a snapshot of these surroundings, or a number is not finite.
 
         """
-        expected = len(self.snapshot())
+        expected = self.supplies.nbytes + (0 if self.body is None else len(self.body.snapshot()))
         if len(snapshot) != expected:
             raise ConfigError(
                 f'saved state of the surroundings has {len(snapshot)} bytes, must have {expected}')
         supplies_end = self.supplies.nbytes
-        self.supplies[:] = np.frombuffer(snapshot[:supplies_end], SUPPLY_SAMPLE)
+        self.supplies[:] = np.concatenate([
+            restored_rows(snapshot, SUPPLY_SAMPLE, 1, k * SUPPLY_SAMPLE.itemsize, feed.name)
+            for k, feed in enumerate(self.feeds)])
         if self.body is not None:
             self.body.restore(snapshot[supplies_end:])
 

@@ -8,11 +8,11 @@ import time
 from isa_ros.bag.provenance import Provenance
 from isa_ros.bag.reader import Bag
 from isa_ros.bag.writer import BagWriter
+from isa_ros.core.atmosphere import ATMOSPHERE
 from isa_ros.core.signals import SAMPLE
 from isa_ros.core.topic import Topic
 from msg_adapters import clock
 from msg_adapters.actuator_messages import APPLIED_SETPOINT, STATE_TOPICS
-from msg_adapters.fluid_pressure import ATMOSPHERE
 from msg_adapters.template import Template
 import numpy as np
 from tests.messages import APPLIED, fill, of_actuator

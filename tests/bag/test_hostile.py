@@ -14,6 +14,7 @@ from isa_ros.bag.reader import Bag
 from isa_ros.bag.writer import BagWriter
 from isa_ros.cli.main import main
 from isa_ros.config.run_file import load_run
+from isa_ros.core.saved_state import sealed
 from isa_ros.core.topic import Topic
 from isa_ros.errors import BagError, IsaError
 import lz4.frame
@@ -175,7 +176,8 @@ def test_names_in_metadata_are_never_opened(tmp_path, refused):
     assert Bag(directory).path == directory / 'rig_0.mcap'
     (directory / 'rig_0.mcap').unlink()
     assert 'holds 0 MCAP files' in refused('replay', directory)
-    record(directory, 3, overwrite=True)
+    with pytest.raises(BagError, match='which is not an MCAP file beside it'):
+        record(directory, 3, overwrite=True)
     assert secret.is_file()
 
 
@@ -188,16 +190,16 @@ def test_metadata_of_a_bag_may_be_anything(tmp_path):
 
 def test_overwriting_writes_through_no_link(tmp_path):
     """Links in a bag that is overwritten are not followed."""
-    outside = [tmp_path / name for name in ('one', 'two', 'three')]
+    outside = [tmp_path / name for name in ('one', 'two')]
     for path in outside:
         path.write_text('mine')
     directory = tmp_path / 'rig'
     record(directory, 3)
-    for name, path in zip(('metadata.yaml.tmp', 'rig_0.mcap', 'metadata.yaml'), outside):
+    for name, path in zip(('.metadata.yaml.tmp', 'rig_0.mcap'), outside):
         (directory / name).unlink(missing_ok=True)
         (directory / name).symlink_to(path)
     record(directory, 5, overwrite=True)
-    assert [path.read_text() for path in outside] == ['mine'] * 3
+    assert [path.read_text() for path in outside] == ['mine'] * 2
     assert Bag(directory).end_ns == 4 * STEP_NS
 
 
@@ -215,9 +217,11 @@ def test_figure_of_a_scenario_names_no_path(tmp_path, refused):
 
 @pytest.mark.parametrize('state, expected', [
     ('[' * 200_000, 'is no saved state'),
-    ('{"format": 2}', 'is no saved state'),
+    ('{"format": 3}', 'is damaged'),
+    (sealed({'format': 3}), 'is no saved state'),
     ('x' * (16 * MEBIBYTE + 1), 'larger than 16777216 bytes'),
-    (json.dumps({'format': 2, 'configuration.sha256': 'x'}), 'saved from the configuration x'),
+    (sealed({'format': 3, 'configuration.sha256': 'x'}), 'saved from the configuration x'),
+    (json.dumps({'format': 3, 'configuration.sha256': 'x'}), 'is damaged, its sha256 is not'),
 ])
 def test_hostile_state_ends_in_one_line(tmp_path, refused, state, expected):
     assert expected in refused('replay', with_configuration(tmp_path / 'bag', RIG, state=state))
@@ -234,10 +238,10 @@ def test_hostile_state_ends_in_one_line(tmp_path, refused, state, expected):
 ])
 def test_state_that_does_not_fit_ends_in_one_line(tmp_path, refused, change, expected):
     digest = load_run(Path(__file__).parents[2] / 'config' / 'rig_rotary.yaml').digest
-    state = {'format': 2, 'configuration.sha256': digest, 'versions': {}, 'tick': 0,
+    state = {'format': 3, 'configuration.sha256': digest, 'versions': {}, 'tick': 0,
              'load': '00' * 40, 'requests': '00' * 48, 'participants': ['00']} | change
     assert expected in refused('replay', with_configuration(
-        tmp_path / 'bag', RIG, state=json.dumps(state)))
+        tmp_path / 'bag', RIG, state=sealed(state)))
 
 
 @given(drawn=st.data())

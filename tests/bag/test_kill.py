@@ -11,6 +11,7 @@ from isa_ros.cli.main import main
 from isa_ros.config.recording import Storage
 from isa_ros.core.timebase import NS_PER_SECOND
 import pytest
+from rosbags.highlevel import AnyReader
 from rosbags.rosbag2 import Reader
 
 pytestmark = pytest.mark.slow
@@ -85,6 +86,12 @@ def test_killed_recording_reads_and_replays(tmp_path, capsys, compression, split
     lines = capsys.readouterr().out.splitlines()
     assert lines[0].startswith(f'equal: {len(sequences)} ticks, {bag.n_messages} messages')
     assert lines[1] == 'the bag was cut short there'
+    assert main(['recover', str(tmp_path / 'bag')]) == 0
+    recovered = tmp_path / 'bag_recovered'
+    assert main(['replay', str(recovered)]) == 0
+    with AnyReader([recovered]) as reader:
+        assert reader.message_count == bag.n_messages
+    assert 'cut short' not in capsys.readouterr().out
 
 
 def test_files_before_the_last_are_whole_for_other_readers(tmp_path):

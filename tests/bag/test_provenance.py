@@ -7,6 +7,7 @@ import re
 
 from isa_ros.bag import provenance
 from isa_ros.bag.provenance import installed_versions, Provenance
+from isa_ros.bag.reader import Bag
 from isa_ros.errors import BagError
 import numpy as np
 import pytest
@@ -61,3 +62,34 @@ def test_bag_holds_nothing_of_the_host(tmp_path):
     data = record(tmp_path / 'a_telling_name', 3).read_bytes()
     for text in ('a_telling_name', str(tmp_path)):
         assert text.encode() not in data, text
+
+
+def test_a_lost_state_is_missed():
+    """A run that went on from a saved state cannot be repeated from t = 0."""
+    saved = replace(PROVENANCE, state='{}')
+    assert read_back(saved.attachments(), saved.record()) == saved
+    with pytest.raises(BagError, match='attachment state.json is missing'):
+        read_back(PROVENANCE.attachments(), saved.record())
+
+
+def test_an_altered_record_of_a_bag_cut_short_is_noticed(tmp_path):
+    """Its checksum would be at the end of the file; rosbag2's record has a copy."""
+    path = record(tmp_path / 'rig', 700)
+    data = path.read_bytes()[:-100_000]
+    assert data.count(b'version.numpy') == 2
+    path.write_bytes(data.replace(b'version.numpy', b'version.numpz', 1))
+    with pytest.raises(BagError, match='the records isa_ros and rosbag2 differ in provenance'):
+        assert Bag(path).provenance
+    path.write_bytes(data)
+    assert Bag(path).provenance == PROVENANCE
+
+
+def test_an_attachment_of_an_impossible_length_is_refused(tmp_path):
+    """Its length does not fit into an index of Python."""
+    path = record(tmp_path / 'rig', 3)
+    name = b'configuration.yaml'
+    data = path.read_bytes()
+    at = data.index(name) + len(name) + len(b'application/yaml') + 4
+    path.write_bytes(data[:at] + b'\xff' * 8 + data[at + 8:])
+    with pytest.raises(BagError, match='malformed Attachment record'):
+        Bag(path)

@@ -241,39 +241,6 @@ def test_error_of_the_run_is_not_replaced_by_one_of_closing(tmp_path):
             raise KeyError('the run')
 
 
-def test_existing_directory_is_refused_and_left_alone(tmp_path):
-    directory = tmp_path / 'rig'
-    path = record(directory, 3)
-    before = path.read_bytes()
-    with pytest.raises(BagError, match='rig already exists'):
-        BagWriter(directory, TOPICS, PROVENANCE)
-    assert path.read_bytes() == before
-
-
-def test_overwriting_removes_the_bag_and_nothing_else(tmp_path):
-    directory = tmp_path / 'rig'
-    record(directory, 3)
-    (directory / 'old_0.mcap').write_bytes(b'')
-    (directory / 'figure.png').write_bytes(b'png')
-    record(directory, 5, overwrite=True)
-    assert sorted(p.name for p in directory.iterdir()) == [
-        'figure.png', 'metadata.yaml', 'rig_0.mcap']
-    assert Bag(directory).end_ns == 4 * STEP_NS
-
-
-def test_directory_without_a_bag_is_not_overwritten(tmp_path):
-    (tmp_path / 'thesis.mcap').write_bytes(b'data')
-    with pytest.raises(BagError, match='is not a bag'):
-        BagWriter(tmp_path, TOPICS, PROVENANCE, overwrite=True)
-    assert (tmp_path / 'thesis.mcap').read_bytes() == b'data'
-
-
-def test_directory_that_cannot_be_made_is_refused_by_name(tmp_path):
-    (tmp_path / 'file').write_bytes(b'')
-    with pytest.raises(BagError, match='file/rig: cannot be created, Not a directory'):
-        BagWriter(tmp_path / 'file' / 'rig', TOPICS, PROVENANCE)
-
-
 def test_topics_out_of_order_are_refused(tmp_path):
     with pytest.raises(BagError, match='topics = /hip/valve, '):
         BagWriter(tmp_path / 'rig', TOPICS[::-1], PROVENANCE)

@@ -22,11 +22,11 @@ def test_every_option_reaches_the_request(tmp_path):
         'leg', '--scenario', 'drop', '--duration', '0.5', '--out', 'bag', '--overwrite',
         '--compression', 'zstd', '--split-mb', '0', '--real-time-factor', '2', '--in-process',
         '--elsewhere', 'haa,hfe', '--controller', 'sway', '--controller', 'hold',
-        '--join-timeout', '7', '--paused', '--restore', 'a.json', '--save', str(state)
+        '--sync', '--join-timeout', '7', '--paused', '--restore', 'a.json', '--save', str(state)
     ) == Request(
         config=find('leg', CONFIG), scenario=find('drop', 'config/scenarios'), duration_s=0.5,
         out=Path('bag'), overwrite=True, compression='zstd', split_mb=0.0, real_time_factor=2.0,
-        in_process=True, elsewhere=('haa', 'hfe'), controllers=('sway', 'hold'),
+        is_synced=True, in_process=True, elsewhere=('haa', 'hfe'), controllers=('sway', 'hold'),
         join_timeout_s=7.0, is_paused=True, restore=Path('a.json'), save=state)
 
 

@@ -107,8 +107,9 @@ def test_initial_positions_are_si_and_mid_stroke_by_default(tmp_path: Path) -> N
     ('load: {kind: mass}', 'rig.yaml: actuators.ram.model = None is not a model; valid: isa_v2'),
     ('model: [isa_v5], load: {kind: mass}', "actuators.ram.model = ['isa_v5'] is not a model"),
     ('model: isa_v5, load: mass', "actuators.ram.load = 'mass', must be a section"),
-    ('model: isa_v5, load: {kind: mass}, parameters: {plant: {relief: {slope_lpm_per_mpa: 900}}}',
-     'rig.yaml: actuators.ram: relief.slope_lpm_per_mpa = 900 l/min/MPa'),
+    ('model: isa_v5, load: {kind: mass}, parameters: {plant: {friction: {viscous: 9e5}}}',
+     'rig.yaml: actuators.ram: plant.mechanics.inertia = 0.6, must be >= 6.64; or '
+     'plant.friction.viscous = 900000, must be <= 5.89e+04, for the plant step of 20 us'),
     ('model: isa_v5, load: {kind: mass}, parameters: {reu: {current: {rate_hz: 30000}}}',
      'rig.yaml: actuators.ram: current.rate_hz = 30000 Hz, its period must be whole nanosec'),
 ])

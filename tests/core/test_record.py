@@ -1,6 +1,6 @@
 """Records are filled by name, all of their fields and no others."""
 
-from isa_ros.core.record import record
+from isa_ros.core.record import floats, record
 import numpy as np
 import pytest
 
@@ -37,3 +37,15 @@ def test_a_nested_field_is_not_filled_by_place(corner):
     """A tuple, a number for all fields or a record of another type: numpy would take them."""
     with pytest.raises(TypeError, match='corner = .*, must be a record of x, y'):
         record(BOX, corner=corner, kind=7, table=np.zeros(3))
+
+
+@pytest.mark.parametrize('shape', [(3,), (3, 2), (0,), (1,)])
+def test_records_of_floats_are_seen_as_numbers_in_the_same_memory(shape):
+    """One row of numbers for each row, however many records and tables are in it."""
+    rows = np.zeros(shape, [('corner', POINT), ('table', 'f8', (3,))])
+    numbers = floats(rows)
+    per_record = 5
+    assert numbers.shape == (shape[0], per_record * int(np.prod(shape[1:])))
+    numbers[:] = np.arange(numbers.size).reshape(numbers.shape)
+    assert rows['corner']['y'].reshape(-1).tolist() == [
+        1.0 + per_record * k for k in range(rows.size)]

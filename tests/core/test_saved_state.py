@@ -1,13 +1,17 @@
-"""A saved state as text: loss-free, bound to its configuration, and refused where damaged."""
+"""A saved state as text and file: loss-free, bound to its configuration, refused if damaged."""
 
 import json
+from pathlib import Path
 
 from hypothesis import given, strategies
-from isa_ros.core.saved_state import LARGEST_BYTES, MAX_TICKS, read_state, RunState
+from isa_ros.core import saved_state
+from isa_ros.core.saved_state import (
+    LARGEST_BYTES, MAX_TICKS, read_state, RunState, sealed, write_state)
 from isa_ros.core.signals import COMMAND
-from isa_ros.errors import ConfigError
+from isa_ros.errors import ConfigError, RunError
 import numpy as np
 import pytest
+from tests.bag.test_writer import limited_files
 
 STATE = RunState(tick=7, load=b'load', participants=[b'haa', b''],
                  requests=np.zeros(2, COMMAND).tobytes())
@@ -32,11 +36,80 @@ def test_the_configuration_must_be_the_same():
     ('load', 'xyz', 'is no saved state of a run'),
     ('load', None, 'is no saved state of a run'),
     ('participants', 3, 'is no saved state of a run'),
-    ('format', 1, 'format 1, must be 2')])
-def test_a_damaged_text_is_refused(key, value, message):
-    tree = json.loads(STATE.to_json('digest', {})) | {key: value}
+    ('format', 2, 'format 2, must be 3')])
+def test_a_text_of_other_content_is_refused(key, value, message):
     with pytest.raises(ConfigError, match=message):
-        RunState.from_json(json.dumps(tree), 'digest', 'file')
+        RunState.from_json(sealed(content(STATE) | {key: value}), 'digest', 'file')
+
+
+def content(state: RunState) -> dict:
+    """Return the content of the text of a state, without its checksum."""
+    tree = json.loads(state.to_json('digest', {}))
+    del tree['sha256']
+    return tree
+
+
+def test_every_changed_digit_is_noticed():
+    """The checksum covers all that is read."""
+    text = STATE.to_json('digest', {'numpy': '2.0'})
+    for place in [k for k, letter in enumerate(text) if letter.isalnum()]:
+        changed = text[:place] + ('1' if text[place] != '1' else '0') + text[place + 1:]
+        with pytest.raises(ConfigError) as refused:
+            RunState.from_json(changed, 'digest', 'file')
+        assert '\n' not in str(refused.value)
+
+
+def test_a_text_without_a_checksum_is_refused():
+    with pytest.raises(ConfigError, match='file: is damaged, its sha256 is not that of its'):
+        RunState.from_json(json.dumps(content(STATE)), 'digest', 'file')
+
+
+@pytest.mark.parametrize('number', ['NaN', 'Infinity', '-Infinity'])
+def test_a_number_that_is_none_is_refused(number):
+    text = STATE.to_json('digest', {}).replace('"tick": 7', f'"tick": {number}')
+    with pytest.raises(ConfigError, match=f'is no saved state of a run .{number} is not a number'):
+        RunState.from_json(text, 'digest', 'file')
+
+
+def requesting(field: str, value: float) -> RunState:
+    rows = np.zeros(2, COMMAND)
+    rows[1][field] = value
+    return RunState(tick=7, load=b'', participants=[], requests=rows.tobytes())
+
+
+@pytest.mark.parametrize(('field', 'value'), [
+    ('position', np.nan), ('velocity', -np.inf), ('effort', np.nan), ('stiffness', np.inf)])
+def test_a_request_that_is_not_finite_is_neither_read_nor_written(field, value):
+    state = requesting(field, value)
+    with pytest.raises(ConfigError, match=(
+            f'^requests: saved state has {field} = {value}, must be finite$')):
+        state.rows_of_requests(2)
+    with pytest.raises(RunError, match=f'^requests: {field} = {value}, must be finite to be'):
+        state.to_json('digest', {})
+
+
+def test_a_gain_that_is_kept_is_saved():
+    """A gain of NaN keeps the one in force."""
+    state = requesting('stiffness', np.nan)
+    assert RunState.from_json(state.to_json('digest', {}), 'digest', 'file') == state
+    assert np.isnan(state.rows_of_requests(2)['stiffness'][1])
+
+
+def test_a_full_disk_leaves_the_old_file(tmp_path: Path):
+    path, text = tmp_path / 'state.json', STATE.to_json('digest', {})
+    write_state(path, text)
+    with limited_files(100), pytest.raises(RunError) as refused:
+        write_state(path, text)
+    assert str(refused.value) == f'{path}: cannot save, File too large'
+    assert [each.name for each in tmp_path.iterdir()] == ['state.json']
+    assert read_state(path, 'digest') == STATE
+
+
+def test_a_state_that_could_not_be_read_again_is_not_written(tmp_path: Path, monkeypatch):
+    monkeypatch.setattr(saved_state, 'LARGEST_BYTES', 100)
+    with pytest.raises(RunError, match=r'state.json: cannot save \d+ bytes, must be <= 100'):
+        write_state(tmp_path / 'state.json', STATE.to_json('digest', {}))
+    assert not any(tmp_path.iterdir())
 
 
 def test_requests_are_of_as_many_actuators():

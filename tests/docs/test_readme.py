@@ -3,18 +3,22 @@
 from dataclasses import replace
 from pathlib import Path
 import re
+from typing import get_args
 
 from isa_ros.config.paths import CONFIG, find, SCENARIOS
 from isa_ros.config.recording import RecordConfig
 from isa_ros.config.run_config import RunConfig
 from isa_ros.config.run_file import load_run
 from isa_ros.controller import Controller, Setpoint, State
+from isa_ros.errors import ConfigError
 from isa_ros.run.local_run import LocalRun
 from isa_ros.scenario.scenario import idle, load_scenario
 from isa_ros.simulation import Simulation
+from isa_ros.surroundings.supply import ReturnLine, SupplySheet
 import pytest
 
-README = (Path(__file__).parents[2] / 'README.md').read_text()
+ROOT = Path(__file__).parents[2]
+README = (ROOT / 'README.md').read_text()
 BLOCKS = re.findall(r'```yaml\n(.*?)```', README, re.DOTALL)
 FIGURES = [
     (config, scenario, figures)
@@ -54,6 +58,40 @@ def test_the_control_blocks_are_those_it_says(tmp_path: Path) -> None:
     kinds = {a.name: type(a.sheet.reu.force).__name__ for a in run.actuators}
     assert kinds == {'linearised': 'FeedbackLinearisation', 'scheduled': 'Pid', 'pressure': 'Off'}
     assert type(run.actuator('pressure').sheet.reu.pressure).__name__ == 'Pid'
+
+
+def test_its_supplies_are_of_every_kind(tmp_path: Path) -> None:
+    """Which can all be read, and simulated with an actuator on each."""
+    supplies = next(block for block in BLOCKS if block.startswith('supplies:'))
+    names = [name for feeds in re.findall(r'feeds: \[(.*)\]', supplies)
+             for name in feeds.split(', ')]
+    head = next(block for block in BLOCKS if block.startswith('name: my_ram'))
+    path = tmp_path / 'my_run.yaml'
+    path.write_text(head[:head.index('supply:')] + supplies + 'actuators:\n' + ''.join(
+        f'  {name}: {{model: isa_v5, load: {{kind: blocked}}}}\n' for name in names))
+    run = load_run(path)
+    assert {type(supply.sheet) for supply in run.supplies} == set(get_args(SupplySheet))
+    assert {type(supply.sheet.return_line) for supply in run.supplies} == set(
+        get_args(ReturnLine))
+    simulation = Simulation(idle(run))
+    for _ in range(10):
+        simulation.step()
+    front, rear = (simulation.supply_samples[supply.name].pressure for supply in run.supplies)
+    assert front == 20.7e6 > rear > 20e6
+
+
+def test_the_refusal_it_shows_is_that_of_the_file() -> None:
+    command, shown = re.search(
+        r'`\./isa bringup (config/bad/\w+\.yaml)`:\n\n    isa: (.*)\n', README).groups()
+    with pytest.raises(ConfigError) as refused:
+        load_run(ROOT / command)
+    assert str(refused.value) == shown
+
+
+def test_every_file_it_links_to_is_there() -> None:
+    links = set(re.findall(r'\]\((?!http|#)([^)#]+)', README))
+    assert len(links) > 8
+    assert [link for link in links if not (ROOT / link).exists()] == []
 
 
 @pytest.mark.parametrize('config, scenario, figure', FIGURES)

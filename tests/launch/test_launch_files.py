@@ -71,12 +71,12 @@ def test_the_leg_is_three_actuators_and_a_coordinator_that_ends_the_launch(leg):
 def test_in_one_process_the_coordinator_is_alone_and_gets_every_argument(leg):
     coordinator, = leg(
         config='rig_rotary', scenario='step', out='bag', duration='0.5', in_process='true',
-        real_time_factor='2', paused='1', compression='lz4', split_mb='0')
+        real_time_factor='2', paused='1', compression='lz4', split_mb='0', sync='true')
     assert parameters(coordinator) == {
         'config_file': str(find('rig_rotary', CONFIG).resolve()),
         'scenario_file': str(find('step', SCENARIOS).resolve()), 'out': 'bag',
         'duration': 0.5, 'in_process': True, 'real_time_factor': 2.0, 'paused': True,
-        'compression': 'lz4', 'split_mb': 0.0}
+        'compression': 'lz4', 'split_mb': 0.0, 'sync': True}
 
 
 def test_one_actuator_runs_its_model_at_real_time(actions):

@@ -1,7 +1,9 @@
 """Comparing runs: the first differing tick, topic and field, with both values."""
 
 from isa_ros.bag.reader import Bag
-from isa_ros.replay.compare import compare_bags, Comparer, Difference
+from isa_ros.bag.writer import BagWriter
+from isa_ros.replay.compare import compare_bags, Comparer
+from isa_ros.replay.difference import Difference
 from isa_ros.replay.tolerances import Tolerance, Tolerances
 from mcap.writer import CompressionType, Writer
 from msg_adapters.cdr import encode
@@ -9,29 +11,8 @@ from msg_adapters.definitions import definition
 from msg_adapters.joint_state import joint_state
 import numpy as np
 import pytest
-from tests.bag.recorded import NAMES, record, STEP_NS, tick_messages, TOPICS
-
-N = 20
-
-
-@pytest.fixture(scope='module')
-def bag(tmp_path_factory):
-    """Return a bag of N ticks."""
-    return Bag(record(tmp_path_factory.mktemp('recorded') / 'rig', N))
-
-
-def difference(bag, ticks, tolerances=None):
-    """Return the first difference of a bag and (t_ns, sequence, messages) of each tick."""
-    comparer = Comparer(bag, NAMES, tolerances)
-    for tick in ticks:
-        comparer.write_tick(*tick)
-    return comparer.finish().difference
-
-
-def produced(n=N, **changed):
-    """Return the ticks as a run produces them; ``changed`` applies to tick 7."""
-    return [
-        (k * STEP_NS, k, tick_messages(k, **(changed if k == 7 else {}))) for k in range(n)]
+from tests.bag.recorded import NAMES, PROVENANCE, record, STEP_NS, tick_messages, TOPICS
+from tests.replay.ticks import difference, N, produced
 
 
 def test_equal_runs_are_reported_with_what_was_compared(bag, tmp_path):
@@ -184,3 +165,71 @@ def test_cut_bag_compares_up_to_its_end(tmp_path):
     report = comparer.finish()
     assert report.is_equal
     assert report.ticks == len(ticks) == 500
+
+
+def test_absent_messages_are_counted_by_topic(bag, tmp_path):
+    path = tmp_path / 'without'
+    rewrite_without(bag, path, '/hip/valve', from_tick=5)
+    valve, = compare_bags(bag, Bag(path)).topics
+    assert (valve.n_messages, valve.first, valve.largest) == (N - 5, Difference(
+        5, 5 * STEP_NS, '/hip/valve', 'message', 'present', 'absent'), None)
+
+
+def rewrite_without(bag, path, topic, from_tick):
+    """Record a bag again, without one topic from a tick on."""
+    with BagWriter(path, TOPICS, PROVENANCE) as writer:
+        for tick in bag.ticks():
+            writer.write_tick(tick.t_ns, tick.sequence, [
+                (NAMES.index(m.topic), m.data) for m in tick.messages
+                if m.topic != topic or tick.sequence < from_tick])
+
+
+@pytest.mark.parametrize(('n', 'first'), [
+    (N - 3, (N - 3, 'present', 'absent')), (N + 3, (N, 'absent', 'present'))])
+def test_shorter_and_longer_runs_are_compared_to_the_end_of_both(bag, tmp_path, n, first):
+    other = Bag(record(tmp_path / 'other', n, {5: {'spool': 1.0}}))
+    report = compare_bags(bag, other)
+    whole, valve = report.topics
+    assert (whole.topic, whole.n_messages) == ('bag', 3)
+    assert (whole.first.tick, whole.first.expected, whole.first.actual) == first
+    assert (valve.topic, valve.n_messages, report.difference) == ('/hip/valve', 1, valve.first)
+
+
+def test_ticks_of_other_times_do_not_hide_what_follows(bag):
+    """A tick that only one run has is counted; the others are compared."""
+    comparer = Comparer(bag, NAMES, is_to_end=True)
+    for t_ns, k, messages in produced():
+        comparer.write_tick(
+            t_ns + (k == 7), k, tick_messages(k, spool=1.0) if k == 9 else messages)
+    whole, valve = comparer.finish().topics
+    assert (whole.n_messages, whole.first.field) == (2, 'log_time')
+    assert (valve.first.tick, valve.n_messages) == (9, 1)
+
+
+def test_the_first_difference_is_the_first_by_time_over_many_ticks(tmp_path):
+    """Messages are compared many ticks at a time; the earlier tick wins all the same."""
+    n = 600
+    bag = Bag(record(tmp_path / 'rig', n))
+    other = Bag(record(tmp_path / 'other', n, {
+        299: {'spool': 9.0}, 300: {'position': 9.0}, 599: {'spool': 99.0}}))
+    report = compare_bags(bag, other)
+    assert (report.difference.tick, report.difference.topic) == (299, '/hip/valve')
+    assert [(topic.topic, topic.n_messages) for topic in report.topics] == [
+        ('/hip/joint_states', 1), ('/hip/valve', 2)]
+    assert report.topics[1].largest.tick == 599
+
+
+def test_nothing_is_compared_after_the_first_difference_unless_asked(tmp_path):
+    """A replay can stop early."""
+    n = 600
+    bag = Bag(record(tmp_path / 'rig', n))
+    comparer = Comparer(bag, NAMES)
+    for tick in range(n):
+        comparer.write_tick(tick * STEP_NS, tick, tick_messages(
+            tick, **({'spool': 9.0} if tick >= 10 else {})))
+        if comparer.difference is not None:
+            break
+    assert tick < 300
+    assert comparer.difference.tick == 10
+    report = comparer.finish()
+    assert report.difference == comparer.difference and report.ticks == tick + 1

@@ -4,6 +4,7 @@ import cmath
 from dataclasses import replace
 import math
 
+from isa_ros.errors import ParameterError
 from isa_ros.reu import lead_lag
 import numpy as np
 import pytest
@@ -30,7 +31,7 @@ def test_demand_gain_is_equation_2():
 
 @pytest.mark.parametrize('hz', [10.0, 500.0, 1700.0, 3000.0])
 def test_filter_is_equation_1_by_tustin(hz):
-    """R9: C(z) on the unit circle is C(s) at s = 2/T tanh(j w T/2), from the running filter."""
+    """R9: C(z) on the unit circle is C(s) at s = c tanh(j w T/2), from the running filter."""
     state = np.zeros(1, lead_lag.LEAD_LAG_STATE).view(np.recarray)[0]
     w = 2.0 * math.pi * hz * PERIOD
     n = 4000
@@ -40,8 +41,26 @@ def test_filter_is_equation_1_by_tustin(hz):
     k = np.arange(n // 2, n)
     basis = np.stack([np.cos(w * k), -np.sin(w * k)], axis=1)
     (real, imag), *_ = np.linalg.lstsq(basis, u[n // 2:], rcond=None)
-    expected = continuous(2.0 / PERIOD * cmath.tanh(0.5j * w))
+    lead = SHEET.lead_rad_per_s
+    warped = lead / math.tan(0.5 * lead * PERIOD)
+    expected = continuous(warped * cmath.tanh(0.5j * w))
     assert complex(real, imag) / 1e-6 == pytest.approx(expected, rel=1e-6)
+
+
+def test_notch_is_at_its_frequency():
+    """R9: the numerator's zeros are at 1700 Hz, w_lead of Table 4, not at 1548 Hz."""
+    zero = np.roots([LOOP.b_0, LOOP.b_1, LOOP.b_2])[0]
+    found = abs(np.log(zero)) / PERIOD
+    assert found == pytest.approx(SHEET.lead_rad_per_s, rel=5e-3)
+    weakest = min(range(1000, 2500), key=lambda hz: abs(
+        np.polyval([LOOP.b_0, LOOP.b_1, LOOP.b_2], cmath.exp(2j * math.pi * hz * PERIOD))))
+    assert weakest / (SHEET.lead_rad_per_s / (2.0 * math.pi)) == pytest.approx(1.0, abs=0.01)
+
+
+def test_a_notch_beyond_half_the_loop_rate_is_refused():
+    """Its sampled frequency does not exist."""
+    with pytest.raises(ParameterError, match=r'lead_rad_per_s = 40000 rad/s, must be < 31415.9'):
+        replace(SHEET, lead_rad_per_s=4e4)
 
 
 def test_output_saturates_at_the_supply():

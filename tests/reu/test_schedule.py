@@ -24,7 +24,7 @@ def test_a_straight_table_is_reproduced_and_clamped(fraction):
 def test_oil_stiffness_schedule_keeps_the_loop_gain():
     """R6, C4: gain times oil stiffness in series with the sensor is the same everywhere."""
     plant = plant_row('isa_v5')
-    table = schedule_table(OilStiffness(), force_stiffness(plant))
+    table = schedule_table(OilStiffness(reference_stiffness=0.0), force_stiffness(plant))
     positions = np.linspace(0.0, plant.chambers.stroke, POINTS)
     oil = np.array([oil_stiffness(s, plant.chambers) for s in positions])
     loop = table / (1.0 / oil + 1.0 / plant.mechanics.k_s)

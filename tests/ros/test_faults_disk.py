@@ -1,6 +1,7 @@
 """The recorder's faults: the message has the file, and the written part can be used."""
 
 from collections.abc import Iterator
+import os
 from pathlib import Path
 import shutil
 import subprocess
@@ -85,7 +86,7 @@ def test_a_path_below_a_file_is_refused_before_anything_starts(domain, tmp_path)
 
 
 def test_a_directory_that_vanishes_ends_the_run(domain, tmp_path):
-    """The open file can still be written, but the next metadata.yaml cannot be created."""
+    """The open file can still be written, but never be read."""
     bag = tmp_path / 'bag'
     with bringup(bag, config=RIG, log=tmp_path / 'log') as run:
         wait_for_tick_0(bag, run)
@@ -93,6 +94,18 @@ def test_a_directory_that_vanishes_ends_the_run(domain, tmp_path):
         shutil.rmtree(bag)
         ended = fault.ended(DEADLINE_S)
     assert ended.exit_code == 3
-    assert ended.line.startswith(f'isa: {bag}/metadata.yaml')
-    assert ended.line.endswith('cannot record, No such file or directory')
+    assert ended.line == (
+        f'isa: {bag}/bag_0.mcap: cannot record, the file was removed or moved during the run')
     assert not bag.exists()
+
+
+def test_a_truncated_file_ends_the_run(domain, tmp_path):
+    """What was recorded before is lost: never exit code 0."""
+    bag = tmp_path / 'bag'
+    with bringup(bag, config=RIG, log=tmp_path / 'log') as run:
+        wait_for_chunk(bag, run)
+        fault = Fault(run, bag)
+        os.truncate(bag / 'bag_0.mcap', 1000)
+        ended = fault.ended(DEADLINE_S)
+    assert ended.exit_code == 3
+    assert ended.line.startswith(f'isa: {bag}/bag_0.mcap: cannot record, the file has 1000 bytes')

@@ -20,8 +20,8 @@ from isa_ros.run.wire import actuator_parts, Answer, AnswerKind, Cast, encode_an
 import numpy as np
 import pytest
 from rclpy.node import Node
+from tests.ros.lockstep.participants import rows_of_two
 from tests.ros.started import DEADLINE_S
-from tests.ros.test_lockstep import rows_of_two
 
 pytestmark = pytest.mark.ros
 

@@ -8,7 +8,7 @@ from isa_ros.core.signals import HAS_SETPOINT, Records
 from isa_ros.errors import ConfigError, RunError, SimulationDiverged
 from isa_ros.run.coordinator import Coordinator, Interrupted, Plan
 from isa_ros.run.exchange import Rows
-from isa_ros.run.narrator import Narrator, Outlets, topics_of
+from isa_ros.run.narrator import Narrator, Outlets, packer_of
 from isa_ros.run.pacing import Pace, ProgressMeter
 from isa_ros.run.packing import Messages
 from isa_ros.surroundings.supply import SUPPLY_SAMPLE
@@ -17,6 +17,7 @@ from msg_adapters.cdr_reader import decode
 import numpy as np
 import pytest
 from rosgraph_msgs.msg import Clock
+from tests.run.recorder import FakeRecorder
 from tests.runs import hip_and_knee
 
 STEP_NS = 1_000_000
@@ -92,19 +93,6 @@ class FakeSurroundings:
         self.supplies[:] = np.frombuffer(snapshot, SUPPLY_SAMPLE)
 
 
-class FakeRecorder:
-    """Keeps what it is given."""
-
-    def __init__(self, log: list[str]) -> None:
-        self.log = log
-        self.samples: list[tuple[int, int, list[tuple[int, bytes]]]] = []
-
-    def write_tick(
-            self, t_ns: int, sequence: int, messages: Sequence[tuple[int, bytes]]) -> None:
-        self.log.append(f'record {sequence}')
-        self.samples.append((t_ns, sequence, list(messages)))
-
-
 class FakeOutlet:
     """Writes down what is published."""
 
@@ -138,8 +126,9 @@ class Rig:
         self.looks = 0
         surroundings = FakeSurroundings(self.log)
         self.rows = Rows(2, surroundings)
-        self.topics = [topic.name for topic in topics_of(RUN, self.rows.shown)]
-        narrator = Narrator(RUN, self.rows.shown, self.recorder, Outlets(
+        packer = packer_of(RUN, self.rows.shown)
+        self.topics = [topic.name for topic in packer.topics]
+        narrator = Narrator(packer, RUN.step_ns, self.recorder, Outlets(
             clock=FakeOutlet(self.log, clock_line),
             events=FakeOutlet(self.log, lambda data: f'event {event.text(data)}'),
             surroundings=FakeOutlet(self.log, lambda data: 'publish')))

@@ -1,15 +1,14 @@
 """What a run tells, to whom, and what is not even packed."""
 
-from collections.abc import Sequence
-
 from isa_ros.actuator.group import ActuatorGroup
 from isa_ros.config.assembly import group_of, surroundings_of
 from isa_ros.core.signals import HAS_SETPOINT
 from isa_ros.run.exchange import Rows
-from isa_ros.run.narrator import Narrator, NoOutlet, Outlets, packer_of, topics_of
+from isa_ros.run.narrator import Narrator, NoOutlet, Outlets, packer_of
 from isa_ros.run.packing import Messages, Packer
 from msg_adapters import clock, event
 import pytest
+from tests.run.recorder import FakeRecorder
 from tests.runs import hip_and_knee
 
 RUN = hip_and_knee()
@@ -31,19 +30,6 @@ class FakeOutlet:
         self.sent.append(list(messages))
 
 
-class FakeRecorder:
-    """Keeps what is recorded."""
-
-    def __init__(self, log: list[str]) -> None:
-        self.log = log
-        self.samples: list[tuple[int, int, list[tuple[int, bytes]]]] = []
-
-    def write_tick(
-            self, t_ns: int, sequence: int, messages: Sequence[tuple[int, bytes]]) -> None:
-        self.log.append('recorder')
-        self.samples.append((t_ns, sequence, list(messages)))
-
-
 class Stage:
     """A narrator, with outlets of which some have a subscription."""
 
@@ -55,9 +41,10 @@ class Stage:
         self.outlets = {name: FakeOutlet(self.log, name, name in heard) for name in (
             'clock', 'events', 'surroundings', 'hip', 'knee')}
         self.recorder = FakeRecorder(self.log)
-        self.topics = [topic.name for topic in topics_of(RUN, self.rows.shown)]
+        packer = packer_of(RUN, self.rows.shown)
+        self.topics = [topic.name for topic in packer.topics]
         self.narrator = Narrator(
-            RUN, self.rows.shown, self.recorder if is_recorded else None, Outlets(
+            packer, RUN.step_ns, self.recorder if is_recorded else None, Outlets(
                 clock=self.outlets['clock'], events=self.outlets['events'],
                 surroundings=self.outlets['surroundings'],
                 actuators=[self.outlets['hip'], self.outlets['knee']]))
@@ -122,7 +109,7 @@ def test_nothing_is_sent_where_nobody_subscribes(heard):
     stage.narrator.add_event(1, 'step 1')
     stage.narrator.publish_rows(1, {})
     stage.narrator.record()
-    assert stage.log == [heard, 'recorder']
+    assert stage.log == [heard, 'record 1']
     assert [sequence for _, sequence, _ in stage.recorder.samples] == [1]
 
 
@@ -132,7 +119,7 @@ def test_the_time_is_published_before_the_rest_of_its_instant():
     stage.narrator.publish_time(2)
     stage.narrator.publish_rows(2, {})
     stage.narrator.record()
-    assert stage.log == ['clock', 'hip', 'knee', 'surroundings', 'recorder']
+    assert stage.log == ['clock', 'hip', 'knee', 'surroundings', 'record 2']
     assert stage.outlets['clock'].sent == [[clock.pack(2 * STEP_NS)]]
 
 
@@ -166,11 +153,11 @@ def test_the_recorder_gets_the_packed_instant():
 def test_where_actuators_publish_for_themselves_the_rest_is_published():
     """Their outlets are left out: they have processes of their own."""
     stage = Stage(*EVERYONE)
-    narrator = Narrator(RUN, stage.rows.shown, stage.recorder, Outlets(
+    narrator = Narrator(packer_of(RUN, stage.rows.shown), RUN.step_ns, stage.recorder, Outlets(
         surroundings=stage.outlets['surroundings']))
     narrator.publish_rows(1, {})
     narrator.record()
-    assert stage.log == ['surroundings', 'recorder']
+    assert stage.log == ['surroundings', 'record 1']
 
 
 def test_an_outlet_without_topics_has_no_subscribers():

@@ -29,14 +29,14 @@ def test_the_ros_parameters_of_the_coordinator_keep_their_names():
     assert set(DEFAULTS) == {
         'config_file', 'scenario_file', 'out', 'duration', 'real_time_factor', 'controllers',
         'paused', 'restore', 'save', 'overwrite', 'compression', 'split_mb', 'in_process',
-        'join_timeout_s'}
+        'join_timeout_s', 'sync'}
 
 
 def test_the_launch_file_keeps_its_arguments_and_their_defaults():
     assert TEXTS == {
         'config': 'leg.yaml', 'scenario': '', 'out': '', 'duration': '0.0',
         'in_process': 'false', 'real_time_factor': '0.0', 'paused': 'false', 'compression': '',
-        'split_mb': '-1.0', 'namespace': ''}
+        'split_mb': '-1.0', 'sync': 'false', 'namespace': ''}
 
 
 def test_every_field_with_an_option_is_of_the_request():
@@ -52,18 +52,18 @@ def test_parameters_that_are_set_ask_for_what_the_command_line_asks_for():
         'config_file': 'leg', 'scenario_file': 'drop', 'out': 'bag', 'duration': 0.5,
         'real_time_factor': 2.0, 'controllers': ['sway', 'hold'], 'paused': True,
         'restore': 'a.json', 'save': 'b.json', 'overwrite': True, 'compression': 'lz4',
-        'split_mb': 3.0, 'in_process': True, 'join_timeout_s': 7.0}, is_alone=True)
+        'split_mb': 3.0, 'in_process': True, 'join_timeout_s': 7.0, 'sync': True}, is_alone=True)
     by_arguments = request_of_arguments({
         'config': 'leg', 'scenario': 'drop', 'out': Path('bag'), 'duration': 0.5,
         'real_time_factor': 2.0, 'controller': ['sway', 'hold'], 'paused': True,
         'restore': Path('a.json'), 'save': Path('b.json'), 'overwrite': True,
         'compression': 'lz4', 'split_mb': 3.0, 'in_process': True, 'join_timeout': 7.0,
-        'elsewhere': ()}, is_alone=True)
+        'elsewhere': (), 'sync': True}, is_alone=True)
     assert by_parameters == by_arguments == Request(
         config=LEG, scenario=find('drop', SCENARIOS), out=Path('bag'), duration_s=0.5,
         real_time_factor=2.0, controllers=('sway', 'hold'), is_paused=True,
         restore=Path('a.json'), save=Path('b.json'), overwrite=True, compression='lz4',
-        split_mb=3.0, in_process=True, join_timeout_s=7.0, is_alone=True)
+        split_mb=3.0, is_synced=True, in_process=True, join_timeout_s=7.0, is_alone=True)
 
 
 @pytest.mark.parametrize('field, given, expected', [
@@ -78,7 +78,7 @@ def test_a_launch_file_hands_texts_on_as_parameters_of_their_type():
     """The files are handed on by `run_processes`, the namespace by launch."""
     assert launched_parameters(TEXTS) == {
         'out': '', 'duration': 0.0, 'in_process': False, 'real_time_factor': 0.0,
-        'paused': False, 'compression': '', 'split_mb': -1.0}
+        'paused': False, 'compression': '', 'split_mb': -1.0, 'sync': False}
     given = launched_parameters(TEXTS | {
         'duration': '2', 'in_process': 'True', 'paused': '1', 'compression': 'zstd'})
     assert given['duration'] == 2.0 and isinstance(given['duration'], float)

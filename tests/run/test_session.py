@@ -9,6 +9,7 @@ from isa_ros.errors import BagError, ConfigError
 from isa_ros.run.options import Request
 from isa_ros.run.session import prepare
 import pytest
+from tests.bag.recorded import record
 
 RIG = find('rig_rotary.yaml', CONFIG)
 
@@ -59,3 +60,14 @@ def test_a_directory_without_a_bag_is_never_replaced(tmp_path: Path, overwrite: 
         prepare(Request(config=RIG, out=tmp_path, overwrite=overwrite))
     assert str(refused.value) == (
         f'{tmp_path} exists and is not a bag (no metadata.yaml), so it is not overwritten')
+
+
+@pytest.mark.parametrize('overwrite', [False, True])
+def test_a_stranger_beside_a_bag_is_refused_before_anything_starts(
+        tmp_path: Path, overwrite: bool):
+    record(tmp_path / 'bag', 3)
+    (tmp_path / 'bag' / 'thesis.mcap').write_bytes(b'data')
+    with pytest.raises(BagError, match='thesis.mcap not listed in metadata.yaml, so nothing'):
+        prepare(Request(config=RIG, out=tmp_path / 'bag', overwrite=overwrite))
+    assert sorted(path.name for path in (tmp_path / 'bag').iterdir()) == [
+        'bag_0.mcap', 'metadata.yaml', 'thesis.mcap']

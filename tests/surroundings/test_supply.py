@@ -3,6 +3,7 @@
 from dataclasses import replace
 import math
 
+from isa_ros.core.atmosphere import ATMOSPHERE
 from isa_ros.core.units import LPM
 from isa_ros.errors import ParameterError
 from isa_ros.surroundings import supply
@@ -22,10 +23,10 @@ C_LINE, G_TANK = 10e-3 / 1e9, 12.0 * LPM / 1e6  # a time constant of 50 ms
 def test_capacitance_is_the_slope_of_the_gas_volume():
     """C7: dV/dP of V_0 (p_0/P)^(1/n), by central difference, plus the line."""
     record = supply.supply_record(SHEET)[0]
-    p_0, pressure, dp = 12.0e6 + supply.ATMOSPHERE, 20.0e6, 1e3
+    p_0, pressure, dp = 12.0e6 + ATMOSPHERE, 20.0e6, 1e3
 
     def gas(p: float) -> float:
-        return 0.32e-3 * (p_0 / (p + supply.ATMOSPHERE)) ** (1.0 / 1.4)
+        return 0.32e-3 * (p_0 / (p + ATMOSPHERE)) ** (1.0 / 1.4)
     slope = (gas(pressure - dp) - gas(pressure + dp)) / (2.0 * dp)
     line = 0.2e-3 / 7e8
     # the central difference itself errs by (dp/P)^2, far below 1e-6
@@ -56,7 +57,7 @@ def test_relief_valve_takes_what_is_pushed_back():
 
 def gas_volume(pressure: float) -> float:
     """Return the gas of the accumulator by its gas law, m3."""
-    return 0.32e-3 * (12.1013250e6 / (pressure + supply.ATMOSPHERE)) ** (1.0 / 1.4)
+    return 0.32e-3 * (12.1013250e6 / (pressure + ATMOSPHERE)) ** (1.0 / 1.4)
 
 
 def test_what_the_pump_gives_is_drawn_or_stored():

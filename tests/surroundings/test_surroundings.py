@@ -9,8 +9,9 @@ from isa_ros.config.run_config import RunConfig
 from isa_ros.config.run_file import load_run
 from isa_ros.config.supplies import SupplyConfig
 from isa_ros.core.signals import LOAD_PORT, LOAD_REPLY, START
-from isa_ros.errors import ConfigError, ParameterError
+from isa_ros.errors import ConfigError, ParameterError, RunError, SimulationDiverged
 from isa_ros.plant.plant import plant_record
+from isa_ros.surroundings.leg.motion import ContinuousState
 from isa_ros.surroundings.supply import ConstantSupply
 from isa_ros.surroundings.surroundings import Feed, Surroundings
 import numpy as np
@@ -229,3 +230,33 @@ def test_a_supply_too_small_is_refused_by_its_name():
     small = replace(ACCUMULATOR, gas_volume_l=1e-3, line_volume_l=1e-3)
     with pytest.raises(ParameterError, match='^second: capacitance over flow slope = '):
         surroundings_of(three_actuators(LOW, small))
+
+
+@pytest.mark.parametrize('value', [np.nan, np.inf])
+def test_a_supply_that_is_not_finite_is_neither_written_nor_read(leg: RunConfig, value: float):
+    surroundings, twin = surroundings_of(leg), surroundings_of(leg)
+    saved = bytearray(surroundings.snapshot())
+    at = surroundings.supplies.dtype.itemsize   # pressure of the second supply
+    saved[at:at + 8] = np.float64(value).tobytes()
+    with pytest.raises(ConfigError, match=f'^knee: saved state has pressure = {value}, must be'):
+        twin.restore(bytes(saved))
+    assert twin.snapshot() == surroundings.snapshot()
+    surroundings.supplies['pressure'][1] = value
+    with pytest.raises(RunError, match=f'^knee: pressure = {value}, must be finite to be saved'):
+        surroundings.snapshot()
+
+
+@pytest.mark.parametrize('value', [np.nan, -np.inf])
+def test_a_leg_that_is_not_finite_is_neither_written_nor_read(leg: RunConfig, value: float):
+    surroundings, body = surroundings_of(leg), surroundings_of(leg).body
+    saved = bytearray(body.snapshot())
+    saved[16:24] = np.float64(value).tobytes()      # behind its time and the first number
+    field = ContinuousState._fields[1]
+    with pytest.raises(ConfigError, match=f'^leg: saved state has {field} = {value}, must be'):
+        body.restore(bytes(saved))
+    body._state[field] = value
+    with pytest.raises(SimulationDiverged, match=f'^leg.{field} = {value} at t = 0'):
+        body.snapshot()
+    time = (1).to_bytes(8, 'little')
+    with pytest.raises(ConfigError, match='^leg: saved state at t = 1 ns, must be a multiple'):
+        surroundings.body.restore(time + surroundings.body.snapshot()[8:])

@@ -10,11 +10,13 @@ from typing import NamedTuple
 
 from isa_ros.analysis.signals.traces import read_traces, seconds, Trace
 from isa_ros.config.run_config import RunConfig
+from isa_ros.core.atmosphere import ATMOSPHERE
 from isa_ros.core.signals import SAMPLE_UNITS
+from isa_ros.core.units import of_coordinate
 from isa_ros.errors import BagError
 from isa_ros.scripting.result import BODY, Result
 from isa_ros.surroundings.leg.port_kernel import LEG_UNITS
-from isa_ros.surroundings.supply import ATMOSPHERE, SUPPLY_UNITS
+from isa_ros.surroundings.supply import SUPPLY_UNITS
 import numpy as np
 from numpy.typing import NDArray
 
@@ -92,8 +94,7 @@ class Signals(Mapping[str, Values]):
             return LEG_UNITS[field]
         if any(supply.name == source for supply in self.run.supplies):
             return SUPPLY_UNITS[field]
-        linear, _, rotary = SAMPLE_UNITS[field].partition(' | ')
-        return rotary if rotary and self.run.actuator(source).sheet.is_rotary else linear
+        return of_coordinate(SAMPLE_UNITS[field], self.run.actuator(source).sheet.is_rotary)
 
     def __getitem__(self, name: str) -> Values:
         return self.over_time(name).values

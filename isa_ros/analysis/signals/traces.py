@@ -8,8 +8,8 @@ from isa_ros.bag.reader import Bag
 from isa_ros.config.run_config import RunConfig
 from isa_ros.errors import BagError
 from msg_adapters import applied_parameters, event
-from msg_adapters.cdr import encode_with_slots
-from msg_adapters.cdr_reader import decode, message_class
+from msg_adapters.cdr_reader import message_class
+from msg_adapters.columns import number_columns
 import numpy as np
 
 _NO_SIGNALS = (applied_parameters.TYPE, event.TYPE)  # texts of any length
@@ -70,16 +70,13 @@ def columns(messages: Sequence[bytes], type_name: str, where: str) -> np.ndarray
     """
     Return the numbers of messages of one layout as a structured view, shape (n,).
 
-    The first message is decoded; the numbers of the others are at the same offsets as long as
-    names and array lengths are the same, which the recorder's prepared messages guarantee.
+    Raises
+    ------
+    BagError
+        The messages differ in more than their numbers.
+
     """
-    first = messages[0]
-    encoded, slots = encode_with_slots(decode(first, message_class(type_name)))
-    if encoded != first or any(len(message) != len(first) for message in messages):
+    found = number_columns(messages, message_class(type_name))
+    if found is None:
         raise BagError(f'{where}: the messages change their layout, cannot be drawn')
-    record = np.dtype({
-        'names': list(slots),
-        'formats': [f'<{slot.code}' for slot in slots.values()],
-        'offsets': [slot.offset for slot in slots.values()],
-        'itemsize': len(first)})
-    return np.frombuffer(b''.join(messages), record)
+    return found

@@ -140,8 +140,9 @@ def _oil(actuators: Actuators, model: str) -> list[Entry]:
     free = bench(actuators, model, 'mass', NEAR_END)
     shipped = bench(SHIPPED, model, 'mass').config.load
     assert isinstance(shipped, Mass)
-    released = free.begin(force=PRELOAD * stall(model))
-    ring = free.excite(released, np.zeros(round(RING_S * RATE_HZ)))['force']
+    piston = float(plant_of(model).mechanics.inertia)
+    light = free.with_config(with_parameters(
+        free.config, {'load.inertia': piston}, free.run.source))
     blocked = bench(actuators, model, 'blocked')
     support = bench(SHIPPED, model, 'blocked').config.load
     assert isinstance(support, Blocked)
@@ -153,7 +154,10 @@ def _oil(actuators: Actuators, model: str) -> list[Entry]:
     low, high = (crossing(t, force, level) for level in levels)
     start = rest_pressures(plant_of(model), PAPER_SUPPLY, 0.0, 0.0)
     return [
-        _entry(f'{model}_free_vibration', 'section 4', 1.0 / _period(ring),
+        _entry(f'{model}_light_vibration', 'section 4', _frequency(light, model),
+               free_frequency(model, NEAR_END, piston), 'Hz',
+               'the same springs under a load as light as piston or rotor', 5.0),
+        _entry(f'{model}_free_vibration', 'section 4', _frequency(free, model),
                free_frequency(model, NEAR_END, shipped.inertia), 'Hz',
                'the springs of oil and sensor at 10 % of the stroke', 5.0),
         _entry(f'{model}_pressure_gain', 'section 2.2',
@@ -164,13 +168,15 @@ def _oil(actuators: Actuators, model: str) -> list[Entry]:
                f'eqs 3 and 4 at {RISE_MA:g} mA, blocked, 10 to 30 % of the stall force', 5.0)]
 
 
-def _period(ring: np.ndarray) -> float:
-    """Return the period (s) between upward zero crossings, the mean of `CYCLES`; else NaN."""
+def _frequency(free: Rig, model: str) -> float:
+    """Return the frequency (Hz) of a released preload, the mean of `CYCLES`; NaN if fewer."""
+    ring = free.excite(free.begin(force=PRELOAD * stall(model)),
+                       np.zeros(round(RING_S * RATE_HZ)))['force']
     up = np.flatnonzero((ring[:-1] < 0.0) & (ring[1:] >= 0.0))
     if len(up) <= CYCLES:
         return float('nan')
     at = up - ring[up] / (ring[up + 1] - ring[up])
-    return float((at[CYCLES] - at[0]) / CYCLES / RATE_HZ)
+    return float(CYCLES * RATE_HZ / (at[CYCLES] - at[0]))
 
 
 def _valve(actuators: Actuators, model: str) -> list[Entry]:

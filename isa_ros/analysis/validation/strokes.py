@@ -75,7 +75,8 @@ def _bench(subject: Subject, law: str, place: float) -> Rig:
         reu = config.sheet.reu
         assert isinstance(reu.force, Pid)
         scheduled = isinstance(reu.force.gain_schedule, OilStiffness)
-        force = replace(reu.force, gain_schedule=Constant() if scheduled else OilStiffness())
+        other = Constant() if scheduled else OilStiffness(reference_stiffness=0.0)
+        force = replace(reu.force, gain_schedule=other)
         config = replace(config, sheet=replace(config.sheet, reu=replace(reu, force=force)))
     return bench.with_config(config)
 

@@ -6,9 +6,9 @@ q = (z, q_haa, q_hfe, q_kfe): height of the HAA axis above the ground (m) and jo
 (rad). M q'' + h = tau + J^T f  (L6), all SI.
 """
 
-import math
 from typing import NamedTuple
 
+from isa_ros.core.elementary import cos, sin
 from isa_ros.core.kernel import kernel
 import numpy as np
 
@@ -62,12 +62,12 @@ def leg_terms(q_z, q_haa, q_hfe, q_kfe, v_z, v_haa, v_hfe, v_kfe, body):
     Foot in the base's axes, its third coordinate is the height above the ground; the
     column of z in J is (0, 0, 1) and j_x_haa is 0.
     """
-    s1 = math.sin(q_haa)
-    c1 = math.cos(q_haa)
-    s2 = math.sin(q_hfe)
-    c2 = math.cos(q_hfe)
-    s3 = math.sin(q_kfe)
-    c3 = math.cos(q_kfe)
+    s1 = sin(q_haa)
+    c1 = cos(q_haa)
+    s2 = sin(q_hfe)
+    c2 = cos(q_hfe)
+    s3 = sin(q_kfe)
+    c3 = cos(q_kfe)
     s23 = s2*c3 + c2*s3
     c23 = c2*c3 - s2*s3
     l_hip = body.l_hip

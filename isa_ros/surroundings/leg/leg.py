@@ -11,6 +11,7 @@ from dataclasses import dataclass
 import math
 
 from isa_ros.core.record import rows_of
+from isa_ros.core.saved_state import broken_number, restored_rows, TIME_BYTES, time_of
 from isa_ros.core.timebase import FORCE_WINDOWS, NS_PER_SECOND, steps_in
 from isa_ros.errors import ConfigError, SimulationDiverged
 from isa_ros.surroundings.leg import port_kernel as kernels
@@ -162,14 +163,35 @@ class Leg:
             raise SimulationDiverged(self._t_ns, f'leg.{name}', float(self._state[name][0]))
 
     def snapshot(self) -> bytes:
-        """Return the whole state; `restore` continues from it byte for byte."""
-        return (self._t_ns.to_bytes(8, 'little') + self._state.tobytes()
+        """
+        Return the whole state; `restore` continues from it byte for byte.
+
+        Raises
+        ------
+        SimulationDiverged
+            A number of the state is not finite.
+
+        """
+        for rows in (self._state, self._sample):
+            broken = broken_number(rows)
+            if broken is not None:
+                raise SimulationDiverged(self._t_ns, f'leg.{broken[0]}', broken[1])
+        return (self._t_ns.to_bytes(TIME_BYTES, 'little') + self._state.tobytes()
                 + self._sample.tobytes())
 
     def restore(self, snapshot: bytes) -> None:
-        """Continue from a `snapshot` of a leg with the same sheet and step."""
-        self._t_ns = int.from_bytes(snapshot[:8], 'little')
-        self._state[:] = np.frombuffer(snapshot, LEG_STATE, 1, 8)
-        self._sample[:] = np.frombuffer(
-            snapshot, kernels.LEG_SAMPLE, 1, 8 + self._state.nbytes)
+        """
+        Continue from a `snapshot` of a leg with the same sheet and step.
+
+        Raises
+        ------
+        ConfigError
+            A number is not finite, or the time is not that of a tick.
+
+        """
+        t_ns = time_of(snapshot, self._step_ns, 'leg')
+        state = restored_rows(snapshot, LEG_STATE, 1, TIME_BYTES, 'leg')
+        sample = restored_rows(
+            snapshot, kernels.LEG_SAMPLE, 1, TIME_BYTES + state.nbytes, 'leg')
+        self._t_ns, self._state[:], self._sample[:] = t_ns, state, sample
         self._is_to_be_released = self._release_ns is not None and self.is_held

@@ -9,6 +9,7 @@ scripts/generate_leg.py.
 from dataclasses import dataclass
 import math
 
+from isa_ros.core.elementary import cos, sin
 from isa_ros.core.gravity import STANDARD_GRAVITY
 from isa_ros.core.parameter import parameter, Parameters
 from isa_ros.core.record import record, rows_of
@@ -144,8 +145,8 @@ def linkage_record(joint: Direct | SliderCrank | FourBar | Joint) -> np.record:
     elif isinstance(joint, FourBar):
         akh = math.radians(joint.akh_deg)
         row['kind'] = kernels.FOUR_BAR
-        row['ak_x'] = joint.ak_mm * MILLI * math.cos(akh)
-        row['ak_y'] = -joint.ak_mm * MILLI * math.sin(akh)
+        row['ak_x'] = joint.ak_mm * MILLI * cos(akh)
+        row['ak_y'] = -joint.ak_mm * MILLI * sin(akh)
         row['c_x'], row['c_y'] = joint.jk_mm * MILLI, joint.cj_mm * MILLI
         row['retracted_length'] = joint.retracted_length_mm * MILLI
         for name in ('bk', 'ar', 'br'):

@@ -1,0 +1,225 @@
+"""
+Parameters that are too fast for the plant's step, found before a run breaks.
+
+The plant is linearised where it is fastest: in its end stops, without friction's slip, with the
+valve closed and wide open; the eigenvalues tell whether the step damps what the equations damp.
+"""
+
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass, replace
+import math
+from typing import NamedTuple
+
+from isa_ros.core.timebase import FASTEST_RATE, PLANT_STEP, PLANT_STEP_NS
+from isa_ros.errors import ParameterError
+from isa_ros.plant.coil import EXPLICIT
+from isa_ros.plant.servo_valve import flow_curve
+from isa_ros.plant.spool import DIRECT, PILOTED
+import numpy as np
+from numpy.typing import NDArray
+
+_ROUNDED = 1e-9     # the growth of a state at rest, whose eigenvalue is 0, by rounding
+_FACTORS = 1e9      # a parameter is looked for between a value and that many times less or more
+_HALVINGS = 60
+_NAMED = 5          # parameters in one message
+
+
+@dataclass(frozen=True)
+class LoadSide:
+    """The load's side of the force sensor, linearised; units of the actuator."""
+
+    inertia: float = math.inf   # kg | kg m2; inf: not known here
+    stiffness: float = 0.0      # to ground, N/m | Nm/rad
+    damping: float = 0.0        # to ground, Ns/m | Nms/rad
+    names: tuple[str, str, str] = ('inertia', 'stiffness', 'damping')
+    """Names of the three in the load's sheet."""
+
+
+class _Knob(NamedTuple):
+    """One parameter: its name, its place in a `PLANT`, and whether less of it helps."""
+
+    name: str
+    path: tuple[str, str]
+    less_helps: bool
+
+
+_KNOBS = (
+    _Knob('mechanics.inertia', ('mechanics', 'inertia'), False),
+    _Knob('mechanics.sensor_stiffness', ('mechanics', 'k_s'), True),
+    _Knob('mechanics.sensor_damping', ('mechanics', 'd_s'), True),
+    _Knob('mechanics.stop_stiffness', ('mechanics', 'k_stop'), True),
+    _Knob('mechanics.stop_damping', ('mechanics', 'd_stop'), True),
+    _Knob('friction.bristle_stiffness', ('friction', 'sigma0'), True),
+    _Knob('friction.bristle_damping', ('friction', 'sigma1'), True),
+    _Knob('friction.viscous', ('friction', 'sigma2'), True),
+    _Knob('drive.bore_mm', ('chambers', 'area_a'), True),
+    _Knob('drive.displacement_cc_per_rad', ('chambers', 'area_a'), True),
+    _Knob('oil.dead_volume_ml', ('chambers', 'dead_volume'), False),
+    _Knob('oil.effective_bulk_modulus', ('chambers', 'beta'), True),
+    _Knob('oil.cross_port_leakage', ('chambers', 'c_li'), True),
+    _Knob('spool.natural_frequency_rad_per_s', ('spool', 'w_n'), True),
+    _Knob('spool.damping_ratio', ('spool', 'zeta'), True),
+    _Knob('spool.loop_gain_per_s', ('spool', 'k_loop'), True),
+    _Knob('coil.coil_inductance', ('coil', 'inductance'), False),
+    _Knob('coil.bandwidth_rad_per_s', ('coil', 'p_c'), True))
+_OF_LOAD = (('inertia', False), ('stiffness', True), ('damping', True))
+
+
+def refuse_too_fast(plant: np.record, sheet: object, load: LoadSide) -> None:
+    """
+    Refuse a `PLANT` record with a motion that the plant's step cannot follow.
+
+    Raises
+    ------
+    ParameterError
+        Names the parameters of ``sheet`` of which the change of a single one suffices, the
+        smallest change first, and their bounds.
+
+    """
+    if _is_followed(plant, load):
+        return
+    changes = [*_changes_of_plant(plant, sheet, load), *_changes_of_load(plant, load)]
+    changes.sort(key=lambda change: abs(math.log(change.factor)))
+    bounds = '; or '.join(change.bound for change in changes[:_NAMED]) or (
+        'moving part, force sensor, oil, friction and load are too fast together')
+    raise ParameterError(f'{bounds}, for the plant step of {PLANT_STEP_NS / 1e3:g} us')
+
+
+class _Change(NamedTuple):
+    """A single parameter's change that suffices."""
+
+    factor: float
+    bound: str
+
+
+def _changes_of_plant(plant: np.record, sheet: object, load: LoadSide) -> Iterator[_Change]:
+    for knob in _KNOBS:
+        part, name = knob.name.split('.')
+        value = getattr(getattr(sheet, part), name, 0.0)
+        if not value > 0.0:
+            continue
+
+        def follows(factor: float) -> bool:
+            return _is_followed(_scaled(plant, knob, factor), load)
+        factor = _least_factor(follows, knob.less_helps)
+        if factor is not None:
+            yield _change(f'plant.{knob.name}', value, factor, knob.less_helps)
+
+
+def _scaled(plant: np.record, knob: _Knob, factor: float) -> np.record:
+    """Return the record for ``factor`` times the parameter."""
+    changed = plant.copy()
+    oil = changed['chambers']
+    if knob.name == 'drive.bore_mm':        # with the rod as it is
+        rod = oil['area_a'] - oil['area_b']
+        oil['area_a'] *= factor * factor
+        oil['area_b'] = oil['area_a'] - rod
+    elif knob.name == 'drive.displacement_cc_per_rad':
+        oil['area_a'] *= factor
+        oil['area_b'] *= factor
+    else:
+        section, name = knob.path
+        changed[section][name] *= factor
+    return changed
+
+
+def _changes_of_load(plant: np.record, load: LoadSide) -> Iterator[_Change]:
+    for (field, less_helps), name in zip(_OF_LOAD, load.names):
+        value = getattr(load, field)
+
+        def follows(factor: float) -> bool:
+            return _is_followed(plant, replace(load, **{field: value * factor}))
+        if 0.0 < value < math.inf and (
+                factor := _least_factor(follows, less_helps)) is not None:
+            yield _change(f'load.{name}', value, factor, less_helps)
+
+
+def _change(name: str, value: float, factor: float, less_helps: bool) -> _Change:
+    sign = '<=' if less_helps else '>='
+    return _Change(factor, f'{name} = {value:g}, must be {sign} {value * factor:.3g}')
+
+
+def _least_factor(follows: Callable[[float], bool], less_helps: bool) -> float | None:
+    """Return the factor nearest to 1 with which the step follows, or None."""
+    widest = 1.0 / _FACTORS if less_helps else _FACTORS
+    if not follows(widest):
+        return None
+    enough, too_little = 1.0, 0.0       # exponents of the widest factor
+    for _ in range(_HALVINGS):
+        middle = 0.5 * (enough + too_little)
+        if follows(widest ** middle):
+            enough = middle
+        else:
+            too_little = middle
+    return float(widest ** enough)
+
+
+def _is_followed(plant: np.record, load: LoadSide) -> bool:
+    """Return whether a step damps what the equations damp, in every linearised state."""
+    return all(_damps(matrix) for matrix in _matrices(plant.view(np.recarray), load))
+
+
+def _damps(matrix: NDArray[np.float64]) -> bool:
+    """Return whether RK4 damps all eigenvalues of the left half plane, |R(h lambda)| <= 1."""
+    if not np.isfinite(matrix).all():
+        return False
+    z = PLANT_STEP * np.linalg.eigvals(matrix)
+    growth = np.abs(1.0 + z * (1.0 + z / 2.0 * (1.0 + z / 3.0 * (1.0 + z / 4.0))))
+    return bool(((growth <= 1.0 + _ROUNDED) | (z.real > _ROUNDED)).all())
+
+
+def _matrices(plant: np.record, load: LoadSide) -> Iterator[NDArray[np.float64]]:
+    yield _coil(plant.coil)
+    yield _spool(plant.spool)
+    for place in (0.0, plant.chambers.stroke):
+        for is_open in (False, True):
+            yield _actuator(plant, load, place, is_open)
+
+
+def _coil(coil: np.record) -> NDArray[np.float64]:
+    """Return d(i, m, m')/dt of V1 or V11."""
+    if coil.kind != EXPLICIT:
+        return np.array([[-coil.p_c]])
+    w = coil.mode_w
+    return np.array([
+        [-coil.resistance / coil.inductance, 0.0, 0.0],
+        [0.0, 0.0, 1.0], [w * w, -w * w, -2.0 * coil.mode_zeta * w]])
+
+
+def _spool(spool: np.record) -> NDArray[np.float64]:
+    """Return d(x, x', x'')/dt of V3, V10 or V13."""
+    w, zeta = spool.w_n, spool.zeta
+    if spool.kind == DIRECT:
+        return np.array([[0.0, 1.0], [-w * w, -2.0 * zeta * w]])
+    k_loop = 0.0 if spool.kind == PILOTED else spool.k_loop
+    return np.array([
+        [0.0, 1.0, 0.0], [0.0, 0.0, 1.0], [-w * w * k_loop, -w * w, -2.0 * zeta * w]])
+
+
+def _actuator(
+        plant: np.record, load: LoadSide, place: float, is_open: bool) -> NDArray[np.float64]:
+    """Return d(s, v, z, P_A, P_B, x, w)/dt in an end stop at ``place`` (M4, F3, C2)."""
+    own, rubs, oil = plant.mechanics, plant.friction, plant.chambers
+    m, per_load = own.inertia, 1.0 / load.inertia
+    damping = rubs.sigma1 + rubs.sigma2 + own.d_s + own.d_stop
+    per_a = oil.beta / (oil.dead_volume + oil.area_a * place)
+    per_b = oil.beta / (oil.dead_volume + oil.area_b * (oil.stroke - place))
+    open_a, open_b = _conductances(plant.valve, is_open)
+    open_a, open_b = min(open_a, FASTEST_RATE / per_a), min(open_b, FASTEST_RATE / per_b)
+    return np.array([
+        [0.0, 1.0, 0.0, 0.0, 0.0, 0.0, 0.0],
+        [-(own.k_s + own.k_stop) / m, -damping / m, -rubs.sigma0 / m,
+         oil.area_a / m, -oil.area_b / m, own.k_s / m, own.d_s / m],
+        [0.0, 1.0, 0.0, 0.0, 0.0, 0.0, 0.0],
+        [0.0, -per_a * oil.area_a, 0.0, -per_a * (oil.c_li + open_a), per_a * oil.c_li, 0.0, 0.0],
+        [0.0, per_b * oil.area_b, 0.0, per_b * oil.c_li, -per_b * (oil.c_li + open_b), 0.0, 0.0],
+        [0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 1.0],
+        [own.k_s * per_load, own.d_s * per_load, 0.0, 0.0, 0.0,
+         -(own.k_s + load.stiffness) * per_load, -(own.d_s + load.damping) * per_load]])
+
+
+def _conductances(valve: np.record, is_open: bool) -> tuple[float, float]:
+    """Return at least dQ/dP of both chambers at no drop over their lands, m3/s/Pa  (V5, V7)."""
+    flow = 2.0 * valve.q_0 + (flow_curve(valve.x_max, valve) if is_open else 0.0)
+    per_flow = flow * valve.per_root_drop / math.sqrt(valve.delta)
+    return max(valve.f_pa, valve.f_at) * per_flow, max(valve.f_pb, valve.f_bt) * per_flow

@@ -1,0 +1,113 @@
+"""The comparison of two runs: first their configurations, then their messages topic by topic."""
+
+from collections.abc import Sequence
+import json
+import math
+from pathlib import Path
+from typing import Any, NamedTuple
+
+from isa_ros.bag.reader import Bag
+from isa_ros.config.differences import DifferingKey
+from isa_ros.replay.compare import compare_bags, recorded_as
+from isa_ros.replay.difference import Report, TopicDifference
+from isa_ros.replay.provenance_differences import provenance_differences, records_of_bag
+from isa_ros.replay.tolerances import Tolerances
+from isa_ros.text.table import aligned
+
+
+class Comparison(NamedTuple):
+    """Differing keys of the provenance, and the comparison of the messages."""
+
+    keys: Sequence[DifferingKey] | None
+    """None: neither run has a provenance."""
+    report: Report
+    is_thinned: bool = False
+    """Whether the bags were to record different samples; only those of both are compared."""
+
+    def lines(self, expected: str, actual: str) -> list[str]:
+        """Return the text for the user; ``expected`` and ``actual`` are the runs' names."""
+        lines = key_lines(self.keys, expected, actual)
+        if self.is_thinned:
+            lines.append('recorded with different record options: comparing the samples in both')
+        lines.append(str(self.report))
+        if self.report.topics:
+            lines += aligned([
+                ('topic', 'messages', 'from tick', 'largest deviation', 'tick', expected, actual,
+                 'deviation', 'allowed'), *map(_cells, self.report.topics)])
+        return lines
+
+    def tree(self) -> dict[str, Any]:
+        """Return everything for JSON; an absent key is null."""
+        return {
+            'is_equal': self.report.is_equal,
+            'ticks': self.report.ticks, 'messages': self.report.messages,
+            'end_ns': self.report.end_ns,
+            'keys': [_json(key._asdict()) for key in self.keys or ()],
+            'topics': [_json(_tree(topic)) for topic in self.report.topics]}
+
+
+def key_lines(
+        keys: Sequence[DifferingKey] | None, expected: str, actual: str) -> list[str]:
+    """Return the differing keys as text; ``expected`` and ``actual`` are the runs' names."""
+    if keys is None:
+        return ['both without configuration: comparing the messages only']
+    if not keys:
+        return ['configuration, scenario and versions are equal']
+    return ['configuration, scenario or versions differ:', *aligned(
+        [('key', expected, actual, 'unit'), *(key.cells for key in keys)])]
+
+
+def compared(expected: Bag, actual: Bag, tolerances: Tolerances | None = None) -> Comparison:
+    """
+    Return the comparison of two bags.
+
+    Raises
+    ------
+    BagError
+        A bag is damaged, or a message does not match its type.
+    ConfigError
+        The configuration or the scenario in a bag is not a YAML section.
+
+    """
+    return Comparison(
+        provenance_differences(records_of_bag(expected), records_of_bag(actual)),
+        compare_bags(expected, actual, tolerances),
+        not recorded_as(expected).thins_like(recorded_as(actual)))
+
+
+def write_json(comparison: Comparison, path: Path) -> None:
+    """Write every difference as JSON."""
+    path.write_text(
+        json.dumps(comparison.tree(), indent=2, allow_nan=False) + '\n', encoding='utf-8')
+
+
+def _cells(topic: TopicDifference) -> tuple[str, ...]:
+    """Return a topic's row; for one without differing floats the first difference."""
+    head = (topic.topic, str(topic.n_messages), str(topic.first.tick))
+    if topic.largest is None:
+        first = topic.first
+        return (*head, first.field, str(first.tick), str(first.expected), str(first.actual),
+                '', '')
+    own = topic.largest
+    return (*head, own.field, str(own.tick), f'{own.expected:.6g}', f'{own.actual:.6g}',
+            f'{own.size:.3g}', 'none' if own.allowed is None else f'{own.allowed:.3g}')
+
+
+def _tree(topic: TopicDifference) -> dict[str, Any]:
+    first, largest = topic.first, topic.largest
+    return {
+        'topic': topic.topic, 'messages': topic.n_messages,
+        'first': {'tick': first.tick, 't_ns': first.t_ns, 'field': first.field,
+                  'expected': first.expected, 'actual': first.actual},
+        'largest': None if largest is None else largest._asdict() | {'size': largest.size}}
+
+
+def _json(value: Any) -> Any:
+    """Return a value with what JSON lacks as text."""
+    if isinstance(value, dict):
+        return {key: _json(below) for key, below in value.items()}
+    if isinstance(value, list):
+        return [_json(below) for below in value]
+    if isinstance(value, bytes):
+        return value.hex()
+    return repr(value) if isinstance(value, float) and not math.isfinite(value) else value

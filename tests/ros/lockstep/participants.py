@@ -1,0 +1,190 @@
+"""A coordinator's transport, and participants on threads."""
+
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from contextlib import contextmanager
+import threading
+import time
+
+from isa_ros.controller import Controller, Setpoint
+from isa_ros.core.signals import COMMAND, HAS_ENABLE, HAS_SETPOINT, LOAD_REPLY, SAMPLE, START
+from isa_ros.errors import SimulationDiverged
+from isa_ros.nodes.lockstep.coordinator_end import LockstepTransport
+from isa_ros.nodes.lockstep.expected import Expected, Limits, Participants
+from isa_ros.nodes.lockstep.participant_end import ParticipantEnd
+from isa_ros.nodes.lockstep.roles import ActuatorRole, ControllerRole
+from isa_ros.run.exchange import Rows
+from isa_ros.run.wire import Cast
+from isa_ros.surroundings.supply import SUPPLY_SAMPLE
+import numpy as np
+from rclpy.node import Node
+
+DEADLINE_S = 20.0  # without processes to start and kernels to compile
+PATIENT = Limits(join_s=DEADLINE_S, tick_s=DEADLINE_S)
+NAMES = ('haa', 'kfe')
+
+
+class Cart:
+    """A body of which only its sample matters."""
+
+    sample = np.zeros(1, [('height', '<f8')])
+
+
+class Outside:
+    """Surroundings of which only what they show matters."""
+
+    def __init__(self, has_body: bool) -> None:
+        self.supplies = np.zeros(1, SUPPLY_SAMPLE)
+        self.body = Cart() if has_body else None
+
+
+def rows_of_two(has_body: bool = False) -> Rows:
+    """Return the memory of a run of `NAMES`."""
+    return Rows(2, Outside(has_body))
+
+
+class Scripted:
+    """An actuator that returns the received values; its position counts its ticks."""
+
+    def __init__(self, digest: str = 'same') -> None:
+        self.digest = digest
+        self.reply, self.sample = np.zeros(1, LOAD_REPLY), np.zeros(1, SAMPLE)
+        self.applied = np.zeros(1, COMMAND)
+        self.tuned: Mapping[str, float] = {}
+        self.starts = 0
+        self.ticks = 0
+        self.published: list[float] = []
+        self.fails_at = -1
+        self.error: Exception = SimulationDiverged(7_000_000, 'kfe: spool', float('inf'))
+        self.is_late_at = -1
+        self.released = threading.Event()
+        self.pause_s = 0.0
+
+    def start(self, start: np.void | None) -> None:
+        assert start is not None
+        self.starts += 1
+        self.ticks = 0
+        self.sample['position'] = start['position']
+        self._apply(HAS_SETPOINT | HAS_ENABLE, {})
+
+    def advance(self, port: np.void | None, command: np.void | None) -> None:
+        tick, self.ticks = self.ticks, self.ticks + 1
+        if tick == self.fails_at:
+            raise self.error
+        time.sleep(self.pause_s)
+        if tick == self.is_late_at:
+            self.released.wait(DEADLINE_S)
+        if port is not None and command is not None:
+            self.reply['force'] = port['x0'] + command['position']
+        self.sample['position'] += 1.0
+        self._apply(*(HAS_SETPOINT, {'force.kp': 1e-7}) if tick == 1 else (0, {}))
+
+    def _apply(self, kinds: int, tuned: Mapping[str, float]) -> None:
+        self.applied['kinds'], self.applied['position'] = kinds, self.sample['position']
+        self.tuned = tuned
+
+    def snapshot(self) -> bytes:
+        time.sleep(self.pause_s)
+        return b'after %d' % self.ticks
+
+    def restore(self, snapshot: bytes) -> None:
+        self.ticks = int(snapshot.split()[1])
+        self.sample['position'] = 100.0 + self.ticks
+        self._apply(HAS_ENABLE, {'force.kf': float(self.ticks)})
+
+    def publish(self) -> None:
+        self.published.append(float(self.sample['position'][0]))
+
+    def serve(self) -> None:
+        pass
+
+
+class Follower(Controller):
+    """Commands HAA to the position of KFE, and keeps the states it received."""
+
+    def __init__(self) -> None:
+        self.shown: list[tuple[int, list[float]]] = []
+        self.supplies: list[dict[str, float]] = []
+        self.heights: list[float | None] = []
+        self.setpoints: dict[str, Setpoint] | None = None
+
+    def start(self, names: Sequence[str]) -> None:
+        self.names = list(names)
+
+    def step(self, state) -> dict[str, Setpoint]:
+        positions = [float(own.position) for own in state.actuators.values()]
+        self.shown.append((state.t_ns, positions))
+        self.supplies.append({name: float(own.pressure) for name, own in state.supplies.items()})
+        self.heights.append(None if state.body is None else float(state.body.height))
+        return {'haa': Setpoint(positions[1])} if self.setpoints is None else self.setpoints
+
+
+@contextmanager
+def spinning(context, steppers: dict[str, Scripted | Controller]) -> Iterator[None]:
+    """Take part with these names while the context lasts."""
+    is_over = threading.Event()
+    nodes = [Node(name, context=context, enable_rosout=False, start_parameter_services=False)
+             for name in steppers]
+    threads = [
+        threading.Thread(target=ParticipantEnd(node, role(stepper)).spin, args=(is_over.is_set,))
+        for node, stepper in zip(nodes, steppers.values())]
+    for thread in threads:
+        thread.start()
+    try:
+        yield
+    finally:
+        is_over.set()
+        for stepper in steppers.values():
+            if isinstance(stepper, Scripted):
+                stepper.released.set()
+        for thread in threads:
+            thread.join()
+        for node in nodes:
+            node.destroy_node()
+
+
+def role(stepper: Scripted | Controller) -> ActuatorRole | ControllerRole:
+    return ActuatorRole(stepper) if isinstance(stepper, Scripted) else ControllerRole(stepper)
+
+
+def make_transport(
+        node: Node, controllers: Sequence[str] = (), limits: Limits = PATIENT,
+        watch: Callable[[], str | None] = lambda: None,
+        should_stop: Callable[[], bool] = lambda: False, first_remote: int = 0,
+        has_body: bool = False) -> LockstepTransport:
+    starts = np.zeros(2, START)
+    starts['position'] = 0.25, 0.5
+    expected = [*(Expected(name, 'same') for name in NAMES),
+                *(Expected(name, '') for name in controllers)]
+    cast = Cast([own.name for own in expected], ['supply'],
+                Cart.sample.dtype if has_body else None)
+    return LockstepTransport(
+        node, Participants(expected, cast, starts, 1_000_000, first_remote), limits,
+        watch=watch, should_stop=should_stop)
+
+
+def begin(transport: LockstepTransport, rows: Rows | None = None) -> Rows:
+    """Return the rows before tick 0."""
+    rows = rows_of_two() if rows is None else rows
+    transport.join(rows)
+    transport.begin()
+    return rows
+
+
+def tick(
+        transport: LockstepTransport, number: int, rows: Rows | None = None) -> list[float]:
+    """Return the reply forces of one tick."""
+    rows = rows_of_two() if rows is None else rows
+    rows.ports['x0'], rows.commands['position'] = (1.0, 2.0), number
+    transport.send(number, rows)
+    transport.receive(rows)
+    return rows.replies['force'].tolist()
+
+
+def applied(rows: Rows) -> list[tuple[int, float]]:
+    """Return (kinds, position) of what took effect at each actuator."""
+    return list(zip(rows.applied['kinds'].tolist(), rows.applied['position'].tolist()))
+
+
+def is_by_socket(end: LockstepTransport | ParticipantEnd) -> bool:
+    """Return whether this end sends its ticks or answers by socket."""
+    return end._wires.is_open if isinstance(end, LockstepTransport) else end._wire is not None
