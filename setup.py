@@ -34,10 +34,13 @@ setup(
     data_files=[
         ('share/ament_index/resource_index/packages', [f'resource/{NAME}']),
         (f'share/{NAME}', ['package.xml']),
+        # setup.cfg puts console scripts where `ros2 run` looks; colcon adds PREFIX/bin to PATH.
+        ('bin', ['bin/isa']),
         shared('config', '*.yaml'),
         shared('config/bad', '*.yaml'),
         shared('config/scenarios', '*.yaml'),
         shared('launch', '*.launch.py'),
+        shared('rviz', '*.rviz'),
         shared('urdf', '*.urdf'),
     ],
     # The ROS wheels never stand here: a machine with apt's ROS must not pull them.

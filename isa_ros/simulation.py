@@ -10,6 +10,7 @@ A tick is that of `isa_ros.run.coordinator`, in one thread and without waiting.
 """
 
 from collections.abc import Mapping, Sequence
+import warnings
 
 from isa_ros.config.assembly import group_of, surroundings_of
 from isa_ros.controller import (
@@ -100,13 +101,17 @@ class Simulation:
         Raises
         ------
         SetpointError
-            The run has no such actuator, or a value is invalid.
+            The run has no such actuator, a value is invalid, or beyond the range of the
+            actuator; with ``beyond_range: limit`` that is a `UserWarning` instead.
 
         """
         row: Records = np.zeros(len(self.names), COMMAND)
         fill_requests({name: Setpoint(**setpoint)}, self.names, row)  # type: ignore[arg-type]
         at = self.names.index(name)
-        self.group.actuators[at].accept(row[at])
+        actuator = self.group.actuators[at]
+        if limited := actuator.setpoint_range.admit(row[at]):
+            warnings.warn(limited, stacklevel=2)
+        actuator.accept(row[at])
 
     def step(self, commands: Records | None = None) -> Mapping[str, np.record]:
         """

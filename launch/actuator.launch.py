@@ -1,5 +1,6 @@
 """One actuator alone, in real time with its default load."""
 
+from isa_ros.processes.launching import refuse_failure
 from launch import LaunchDescription
 from launch.actions import DeclareLaunchArgument
 from launch.substitutions import LaunchConfiguration
@@ -17,7 +18,7 @@ def generate_launch_description() -> LaunchDescription:
             'real_time_factor', default_value='1.0', description='0: as fast as possible'),
         Node(
             package='isa_ros', executable='actuator', name=LaunchConfiguration('name'),
-            namespace=LaunchConfiguration('namespace'), output='screen',
+            namespace=LaunchConfiguration('namespace'), output='screen', on_exit=refuse_failure,
             parameters=[{
                 'model': LaunchConfiguration('model'),
                 'real_time_factor': ParameterValue(

@@ -1,33 +1,71 @@
-"""One run in lockstep: the nodes of every actuator of a configuration, and the coordinator."""
+"""
+One run in lockstep: the nodes of every actuator of a configuration, and the coordinator.
 
-from isa_ros.config.paths import CONFIG, find, SCENARIOS
-from isa_ros.config.run_file import load_run
+A leg is also shown: by robot_state_publisher where that is installed, and with ``rviz:=true`` by
+rviz.
+"""
+
+from ament_index_python.packages import get_packages_with_prefixes
+from isa_ros.config.paths import CONFIG, find, find_drawing, SCENARIOS
+from isa_ros.config.run_file import load_run, RunConfig
+from isa_ros.errors import ConfigError
+from isa_ros.processes.launching import refuse_failure
 from isa_ros.processes.processes import Process, run_processes
-from isa_ros.run.options import launched_parameters, OPTIONS
-from launch import LaunchContext, LaunchDescription
+from isa_ros.run.options import flag, launched_elsewhere, launched_parameters, OPTIONS
+from launch import Action, LaunchContext, LaunchDescription
 from launch.actions import DeclareLaunchArgument, OpaqueFunction, Shutdown
+from launch.events.process import ProcessExited
 from launch.substitutions import LaunchConfiguration
 from launch_ros.actions import Node
 from launch_ros.parameter_descriptions import ParameterValue
-
-ARGUMENTS = [option for option in OPTIONS if option.is_launched]
 
 
 def generate_launch_description() -> LaunchDescription:
     """Return the arguments and the nodes."""
     return LaunchDescription([
         *(DeclareLaunchArgument(option.name, default_value=option.launch_text,
-                                description=option.description) for option in ARGUMENTS),
+                                description=option.description) for option in OPTIONS),
+        DeclareLaunchArgument(
+            'rviz', default_value='false', description='true: show the leg in rviz'),
         OpaqueFunction(function=_nodes)])
 
 
 def _nodes(context: LaunchContext) -> list[Node]:
     values = {option.name: LaunchConfiguration(option.name).perform(context)
-              for option in ARGUMENTS}
+              for option in OPTIONS}
     config = find(values['config'], CONFIG)
     scenario = find(values['scenario'], SCENARIOS) if values['scenario'] else None
-    return [_node(process, values['namespace']) for process in run_processes(
-        load_run(config), config, scenario, launched_parameters(values))]
+    run, namespace = load_run(config), values['namespace']
+    nodes = [_node(process, namespace) for process in run_processes(
+        run, config, scenario, launched_parameters(values), launched_elsewhere(values))]
+    has_rviz = flag('rviz', LaunchConfiguration('rviz').perform(context))
+    return [*_viewers(run, namespace, has_rviz), *nodes]
+
+
+def _viewers(run: RunConfig, namespace: str, has_rviz: bool) -> list[Node]:
+    """Return the nodes that show the leg of a run; the time is the simulation's."""
+    if run.leg is None:
+        if has_rviz:
+            raise ConfigError(f'rviz:=true: {run.source} has no leg')
+        return []
+    installed = get_packages_with_prefixes()
+    urdf = find_drawing(f'urdf/{run.leg.model}_leg.urdf').read_text(encoding='utf-8')
+    nodes = []
+    if 'robot_state_publisher' in installed:
+        nodes.append(Node(
+            package='robot_state_publisher', executable='robot_state_publisher',
+            namespace=namespace, parameters=[{
+                'robot_description': ParameterValue(urdf, value_type=str),
+                'use_sim_time': True}]))
+    if has_rviz:
+        for package in ('robot_state_publisher', 'rviz2'):
+            if package not in installed:
+                raise ConfigError(f'rviz:=true needs the package {package}, not installed')
+        nodes.append(Node(
+            package='rviz2', executable='rviz2', namespace=namespace,
+            arguments=['-d', str(find_drawing('rviz/leg.rviz'))],
+            parameters=[{'use_sim_time': True}]))
+    return nodes
 
 
 def _node(process: Process, namespace: str) -> Node:
@@ -36,7 +74,13 @@ def _node(process: Process, namespace: str) -> Node:
         package='isa_ros', executable=process.executable, name=process.name,
         namespace=namespace, output='screen',
         parameters=[{
-            key: ParameterValue(value, value_type=type(value))
+            key: ParameterValue(value, value_type=list[str] if key == 'controllers'
+                                else type(value))
             for key, value in process.parameters}],
-        # When the run has ended, launch ends the actuators.
-        on_exit=[Shutdown(reason='the run has ended')] if is_coordinator else None)
+        on_exit=_end_of_run if is_coordinator else refuse_failure)
+
+
+def _end_of_run(event: ProcessExited, context: LaunchContext) -> list[Action]:
+    """End the launch, and with it the actuators; fail if the run has failed."""
+    refuse_failure(event, context)
+    return [Shutdown(reason='the run has ended')]

@@ -30,17 +30,15 @@ def prepared(
     Return the prepared messages of an actuator by topic suffix, without `APPLIED_PARAMETERS`.
 
     The arguments are columns of values by field: ``sample`` for its `SAMPLE`, ``absolute`` for its
-    pressures in Pa absolute, ``applied`` for its applied `COMMAND`. Frames: ``NAME_load_cell``,
-    ``NAME_pressure_a``, ``NAME_pressure_b``; ``NAME`` for the rest.
+    pressures in Pa absolute, ``applied`` for its applied `COMMAND`. Frames: ``NAME_load_cell`` of
+    the load cell, ``NAME`` for the rest; the shipped URDFs have links of these names.
     """
     return {
         'applied_setpoint': setpoint.applied_setpoint(name, applied),
         'joint_states': joint_state.actuator_joint_state(name, sample),
         'load_cell': wrench.load_cell(name, is_rotary, sample),
-        'pressure_a': fluid_pressure.fluid_pressure(
-            f'{name}_pressure_a', absolute['pressure_a']),
-        'pressure_b': fluid_pressure.fluid_pressure(
-            f'{name}_pressure_b', absolute['pressure_b']),
+        'pressure_a': fluid_pressure.fluid_pressure(name, absolute['pressure_a']),
+        'pressure_b': fluid_pressure.fluid_pressure(name, absolute['pressure_b']),
         'references': joint_state.references(name, sample),
         'valve': joint_state.valve(name, sample),
     }

@@ -8,22 +8,32 @@ from msg_adapters.template import Prepared, STAMP
 WORLD_FRAME = 'world'
 JOINT_TOPIC = ('/joint_states', joint_state.TYPE)
 CONTACT_TOPIC = ('/coordinator/ground_contact', wrench.TYPE)
+SLIDER = 'slider'
+
+
+def joint_name(name: str) -> str:
+    """Return the name of a joint in the URDF; an actuator may have the same short name."""
+    return f'{name}_joint'
 
 
 def leg(joints: Sequence[str], columns: Mapping[str, int]) -> dict[tuple[str, str], Prepared]:
     """
     Return joint states and ground contact of a leg by (topic, type).
 
-    ``columns`` are those of its sample: ``position[k]`` (rad | m), ``velocity[k]`` and
-    ``torque[k]`` (Nm | N) of the ``joints`` of the URDF, ``foot_force[k]`` from the ground (N).
+    ``columns`` are those of its sample: ``position[k]`` (rad), ``velocity[k]`` and ``torque[k]``
+    (Nm) of the ``joints``, ``height`` (m) and ``height_velocity`` of the slider, ``foot_force[k]``
+    from the ground (N). The names are those of all joints of the URDF that are not fixed; the
+    slider has no drive, so that its effort is 0.
     """
     n = len(joints)
+    names = [*(joint_name(joint) for joint in joints), joint_name(SLIDER)]
     fields = joint_state.entries(
-        n, position=_of('position', columns, n), velocity=_of('velocity', columns, n),
+        n + 1, position=[*_of('position', columns, n), columns['height']],
+        velocity=[*_of('velocity', columns, n), columns['height_velocity']],
         effort=_of('torque', columns, n))
     axes = {f'wrench.force.{axis}': columns[f'foot_force[{k}]'] for k, axis in enumerate('xyz')}
     return {
-        JOINT_TOPIC: (joint_state.joint_state(WORLD_FRAME, joints), fields),
+        JOINT_TOPIC: (joint_state.joint_state(WORLD_FRAME, names), fields),
         CONTACT_TOPIC: (wrench.wrench(WORLD_FRAME), {**STAMP, **axes})}
 
 

@@ -70,13 +70,31 @@ def test_an_installed_package_finds_its_data(tmp_path: Path) -> None:
     assert result.stdout == f'{purelib}/isa_ros/__init__.py leg 1.745\n'
     scripts = {path.name for path in (tmp_path / 'prefix' / 'bin').iterdir()}
     assert {name for name, _, _ in ENTRY_POINTS} <= scripts
+    # Of the script for colcon and pip's own of that name, pip's has the interpreter.
+    isa = (tmp_path / 'prefix' / 'bin' / 'isa').read_text()
+    assert isa.startswith(f'#!{sys.executable}\n')
+
+
+def test_a_sourced_workspace_has_isa_on_its_path(tmp_path: Path) -> None:
+    """As colcon installs it: to PREFIX/bin, which it adds to PATH, and executable."""
+    pytest.importorskip('setuptools')
+    subprocess.run(
+        [sys.executable, 'setup.py', '--quiet', 'install_data', '--install-dir',
+         str(tmp_path / 'prefix')], cwd=copy_of_clone(tmp_path), check=True, capture_output=True,
+        timeout=120)
+    result = subprocess.run(
+        [tmp_path / 'prefix' / 'bin' / 'isa', '--help'], check=True, capture_output=True,
+        text=True, timeout=120, env={
+            'PATH': str(Path(sys.executable).parent), 'PYTHONPATH': str(ROOT),
+            'HOME': str(tmp_path)})
+    assert result.stdout.startswith('usage: isa ')
 
 
 def copy_of_clone(tmp_path: Path) -> Path:
     """Return a copy of the build's inputs, since the build writes beside its sources."""
     copy = tmp_path / 'clone'
     copy.mkdir()
-    for name in ('isa_ros', 'msg_adapters', 'config', 'launch', 'urdf', 'resource'):
+    for name in ('isa_ros', 'msg_adapters', 'bin', 'config', 'launch', 'rviz', 'urdf', 'resource'):
         if (ROOT / name).is_dir():
             shutil.copytree(ROOT / name, copy / name, ignore=shutil.ignore_patterns('__pycache__'))
     for name in ('setup.py', 'setup.cfg', 'pyproject.toml', 'package.xml', 'README.md', 'LICENSE'):

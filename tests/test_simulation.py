@@ -1,6 +1,7 @@
 """The model as an object: a tick, its commands, and where it can begin anew."""
 
 from collections.abc import Mapping, Sequence
+from dataclasses import replace
 import json
 import math
 import struct
@@ -216,13 +217,21 @@ def test_a_command_takes_effect_at_the_next_tick_once():
 @pytest.mark.parametrize(('name', 'setpoint', 'message'), [
     ('elbow', {'position': 0.0}, "'elbow' is not an actuator of the run; valid: hip, knee"),
     ('knee', {'position': math.nan}, 'knee: setpoint position = nan, must be finite'),
-    ('knee', {'position': 0.0, 'damping': -1.0}, 'knee: setpoint damping = -1.0, must be >= 0')])
+    ('knee', {'position': 0.0, 'damping': -1.0}, 'knee: setpoint damping = -1.0, must be >= 0'),
+    ('knee', {'position': 50.0}, 'knee: setpoint position = 50 m, must be 0 to 0.1 m, the str')])
 def test_a_command_that_cannot_be_is_refused(name, setpoint, message):
     """And changes nothing."""
     simulation, untouched = Simulation(idle(RUN)), Simulation(idle(RUN))
     with pytest.raises(SetpointError, match=message):
         simulation.command(name, **setpoint)
     assert stepped(simulation, 2) == stepped(untouched, 2)
+
+
+def test_a_command_beyond_the_range_is_limited_with_a_warning_where_configured():
+    limited = replace(RUN, actuators=tuple(
+        replace(own, beyond_range='limit') for own in RUN.actuators))
+    with pytest.warns(UserWarning, match='knee: setpoint position = 50 m, limited to 0.1 m'):
+        Simulation(idle(limited)).command('knee', position=50.0)
 
 
 def test_a_controller_asks_at_tick_k_for_tick_k_plus_1():

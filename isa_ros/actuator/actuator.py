@@ -12,6 +12,7 @@ from typing import NoReturn, Protocol
 from isa_ros.actuator import kernel as kernels
 from isa_ros.actuator.inbox import merge, write_applied
 from isa_ros.actuator.rows import Memory, memory_of
+from isa_ros.actuator.setpoint_range import SetpointRange
 from isa_ros.actuator.sheet import actuator_record, ActuatorSheet
 from isa_ros.actuator.tunable import GAINS
 from isa_ros.actuator.tuning import gain_after, gains_command, Tuning
@@ -64,6 +65,10 @@ class ActuatorConfig(Protocol):
     def initial_position(self) -> float:
         """Return the position at t = 0, m or rad."""
 
+    @property
+    def beyond_range(self) -> str | None:
+        """Return the treatment of a setpoint beyond the range; None: the default one."""
+
 
 class SmartActuator:
     """
@@ -99,6 +104,8 @@ class SmartActuator:
         self._applied = _record(self.memory.applied)
         self._incoming, self._commands = np.zeros(1, LOAD_PORT), np.zeros(1, COMMAND)
         self.digest = self._hash(constants)
+        self.setpoint_range = SetpointRange(config.name, config.sheet, config.beyond_range)
+        """The range of its setpoints, for those that come from outside."""
         self.tuning = Tuning(config.name, config.sheet, offset_steps, constants)
         """Tuned parameters, accepted and in force."""
         self.start(config.initial_position, static_force(config.load), PAPER_SUPPLY, 0.0)

@@ -10,7 +10,7 @@ from isa_ros.errors import ConfigError
 from isa_ros.plant.chambers import oil_stiffness
 from isa_ros.plant.coil import ClosedLoopCoil, ExplicitCoil
 from isa_ros.plant.plant import LinearPlant, plant_record, RotaryPlant
-from isa_ros.plant.spool import DirectSpool, PilotedSpool
+from isa_ros.plant.spool import DataSheetSpool, DirectSpool, PilotedSpool
 from isa_ros.reu.block import Pid
 from isa_ros.reu.cascade import reu_record
 from isa_ros.reu.feedback_linearisation import LINEARISED
@@ -58,7 +58,8 @@ def refuse_wiring(sheet: ActuatorSheet) -> None:
         raise ConfigError(
             f'reu.spool.kind = {_kind(reu.spool)} and plant.spool.kind = piloted: the spool '
             'loop is open; set reu.spool.kind: pid, or plant.spool.kind: closed_loop')
-    if isinstance(reu.spool, Pid) and not isinstance(plant.spool, (PilotedSpool, DirectSpool)):
+    if isinstance(reu.spool, Pid) and not isinstance(
+            plant.spool, (PilotedSpool, DirectSpool, DataSheetSpool)):
         raise ConfigError(
             'reu.spool.kind = pid and plant.spool.kind = closed_loop: equation 8 already is the '
             'closed loop of the spool; set plant.spool.kind: piloted, or reu.spool.kind: held')
@@ -80,19 +81,31 @@ def _kind(part: Parameters) -> str:
 
 def _refuse_limit_beyond_stop(sheet: ActuatorSheet) -> None:
     """Refuse an output limit beyond the valve's stop: the integral would still wind up."""
-    name, valve = valve_block(sheet.reu), sheet.plant.valve
+    name = valve_block(sheet.reu)
     if name is None:
         return
-    if isinstance(sheet.reu.spool, Off):
-        stop, unit = valve.spool_stop_mm / valve.spool_gain_mm_per_ma * MILLI, 'A'
-    else:
-        stop, unit = valve.spool_stop_mm * MILLI, 'm'
+    stop, unit = valve_stop(sheet), 'A' if isinstance(sheet.reu.spool, Off) else 'm'
     limit = getattr(sheet.reu, name).limit
     if limit > stop * (1.0 + _ROUNDED):
         raise ConfigError(
             f'reu.{name}.limit = {limit:g} {unit}, must be <= {stop:.4g} {unit}, the stop of the '
             f'spool (reu.spool.kind = {_kind(sheet.reu.spool)}: {name} commands '
             f"{'the series current' if unit == 'A' else 'the spool'})")
+
+
+def valve_stop(sheet: ActuatorSheet) -> float:
+    """Return the output at the spool's stop: m of spool, or A of series current."""
+    valve = sheet.plant.valve
+    if isinstance(sheet.reu.spool, Off):
+        return valve.spool_stop_mm / valve.spool_gain_mm_per_ma * MILLI
+    return valve.spool_stop_mm * MILLI
+
+
+def output_per_spool(sheet: ActuatorSheet) -> float:
+    """Return the output that commands the valve over the spool's travel: 1, or A/m."""
+    if isinstance(sheet.reu.spool, Off):
+        return 1.0 / sheet.plant.valve.spool_gain_mm_per_ma
+    return 1.0
 
 
 def force_stiffness(plant: np.record) -> np.ndarray:
@@ -107,7 +120,7 @@ def force_stiffness(plant: np.record) -> np.ndarray:
         for s in np.linspace(0.0, plant.chambers.stroke, POINTS)])
 
 
-def known_model(plant: np.record, output_per_spool: float) -> np.record:
+def known_model(plant: np.record, per_spool: float) -> np.record:
     """Return the `LINEARISED` record: a linearising block's model of its actuator."""
     oil, valve = plant.chambers, plant.valve
     return record(
@@ -115,17 +128,17 @@ def known_model(plant: np.record, output_per_spool: float) -> np.record:
         dead_volume=oil.dead_volume, beta=oil.beta, c_li=oil.c_li, k_s=plant.mechanics.k_s,
         k_low=valve.k_low, k_high=valve.k_high, q_rest=valve.q_rest, x_dg=valve.x_dg,
         x_max=valve.x_max, per_root_drop=valve.per_root_drop, f_pa=valve.f_pa,
-        f_at=valve.f_at, f_bt=valve.f_bt, f_pb=valve.f_pb, output_per_spool=output_per_spool)
+        f_at=valve.f_at, f_bt=valve.f_bt, f_pb=valve.f_pb, output_per_spool=per_spool,
+        has_points=valve.has_points, flow=valve.flow)
 
 
 def actuator_record(sheet: ActuatorSheet, offset_steps: int) -> np.ndarray:
     """Return the `ACTUATOR` record of a sheet without a load of its own, shape (1,)."""
     plant = plant_record(sheet.plant)
     k_spool = plant[0].valve.k_spool
-    commands_spool = not isinstance(sheet.reu.spool, Off)
     reu = reu_record(
         sheet.reu, offset_steps, plant[0].chambers.stroke, force_stiffness(plant[0]),
-        known_model(plant[0], 1.0 if commands_spool else 1.0 / k_spool),
+        known_model(plant[0], output_per_spool(sheet)),
         k_spool, plant[0].coil.parallel)
     rows = np.zeros(1, ACTUATOR)
     rows['plant'], rows['reu'] = plant, reu

@@ -8,9 +8,11 @@ impedance are part of every setpoint; tuning one is a setpoint that changes this
 
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, fields, replace
+import math
 from typing import Any, NamedTuple
 
 from isa_ros.actuator.sheet import ActuatorSheet, refuse_wiring
+from isa_ros.actuator.usable import largest_gains, REASON
 from isa_ros.core.parameter import check, Parameters
 from isa_ros.core.suggest import alternatives
 from isa_ros.core.units import MILLI, MPA, of_coordinate
@@ -44,7 +46,7 @@ class Tunable:
     value: float
     unit: str
     bounds: Mapping[str, float]
-    """Any of ``gt``, ``ge``, ``lt``, ``le``."""
+    """Any of ``gt``, ``ge``, ``lt``, ``le``; of a gain not more than `largest_gains`."""
     doc: str
     path: tuple[str, ...]
     """Its path in the sheet's REU."""
@@ -62,16 +64,20 @@ def _of_block(sheet: ActuatorSheet, variable: str) -> Iterator[Tunable]:
     inner = VARIABLES[VARIABLES.index(variable) + 1:]
     on = active(sheet.reu)
     output = next((_MEASURED[name] for name in inner if name in on), 'V')
+    largest = largest_gains(sheet)
     for path, value, declared in _declared(getattr(sheet.reu, variable), (variable,)):
         si = _IN_SI.get(declared['unit'], _Si(declared['unit'], 1.0))
         unit = si.unit.replace(_VALVE, 'output')
         for word, means in (('output', output), ('measured', _MEASURED[variable])):
             unit = unit.replace(word, of_coordinate(means, sheet.is_rotary))
+        name, bounds, doc = '.'.join(path), dict(declared['bounds']), declared['doc']
+        if largest.get(name, math.inf) < bounds.get('le', math.inf):
+            bounds['le'], doc = largest[name], f'{doc}; {REASON}'
         yield Tunable(
             name='.'.join((*path[:-1], declared['tunable'] or path[-1])),
             value=value * si.scale, unit=of_coordinate(unit, sheet.is_rotary),
-            bounds={name: bound * si.scale for name, bound in declared['bounds'].items()},
-            doc=declared['doc'], path=path, scale=si.scale)
+            bounds={name: bound * si.scale for name, bound in bounds.items()},
+            doc=doc, path=path, scale=si.scale)
 
 
 def _declared(
@@ -84,6 +90,24 @@ def _declared(
             yield from _declared(value, (*path, f.name))
         elif 'tunable' in f.metadata:
             yield (*path, f.name), value, f.metadata
+
+
+def refuse_unusable(sheet: ActuatorSheet) -> None:
+    """
+    Refuse gains that no loop of this actuator can use.
+
+    Raises
+    ------
+    ParameterError
+        A gain is greater than `largest_gains`.
+
+    """
+    for tunable in tunables(sheet).values():
+        _check(f'reu.{tunable.name}', tunable.value, tunable)
+
+
+def _check(name: str, value: float, tunable: Tunable) -> None:
+    check(name, value, {'doc': tunable.doc, 'unit': tunable.unit, 'bounds': tunable.bounds})
 
 
 def tuned(sheet: ActuatorSheet, values: Mapping[str, float]) -> ActuatorSheet:
@@ -102,8 +126,7 @@ def tuned(sheet: ActuatorSheet, values: Mapping[str, float]) -> ActuatorSheet:
         if name not in known:
             raise ConfigError(f'{name} is unknown; {alternatives(name, known)}')
         tunable = known[name]
-        check(name, value, {
-            'doc': tunable.doc, 'unit': tunable.unit, 'bounds': tunable.bounds})
+        _check(name, value, tunable)
         if value != tunable.value:  # an equal value is kept: converting it would round it
             reu = _with(reu, tunable.path, value / tunable.scale)
     if reu is not sheet.reu:

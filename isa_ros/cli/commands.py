@@ -5,7 +5,8 @@ Modules are imported in the functions, so that `isa --help` does not import numb
 """
 
 from argparse import Namespace
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
+from functools import wraps
 from itertools import count
 from pathlib import Path
 import sys
@@ -16,16 +17,33 @@ from isa_ros.run.options import Request, request_of_arguments
 
 RUNS = Path('runs')  # default directory of demos
 
+Command = Callable[[Namespace], bool]
 
+
+def _simulating(command: Command) -> Command:
+    """Return a command that reports when kernels are compiled."""
+    @wraps(command)
+    def reporting(options: Namespace) -> bool:
+        from isa_ros.run.compiling import reported_compilation
+        with reported_compilation('isa'):
+            return command(options)
+    return reporting
+
+
+@_simulating
 def demo(options: Namespace) -> bool:
-    """Drop the leg, in four processes, and draw the report of the bag."""
+    """Drop the leg, in four processes, print what happened, and draw the report of the bag."""
+    from isa_ros.analysis.report.outcome import outcome
+    from isa_ros.analysis.report.report import write_report
+    from isa_ros.analysis.signals.signals import read_signals
     out = options.out or next(path for path in _demo_directories() if not path.exists())
     if out.exists():
         raise BagError(f'{out} already exists; a demo does not overwrite it')
     bag = _record(Request(
         config=find('leg.yaml', CONFIG), scenario=find('drop.yaml', SCENARIOS),
         out=out / 'bag', is_alone=options.is_alone))
-    _draw(bag, out / 'report.html')
+    page, *figures = write_report(bag, out / 'report.html')
+    print(f'{page}, and {len(figures)} figures beside it\n\n{outcome(read_signals(bag))}')
     return True
 
 
@@ -54,6 +72,7 @@ def _demo_directories() -> Iterator[Path]:
         yield RUNS / f'demo_{number}'
 
 
+@_simulating
 def bringup(options: Namespace) -> bool:
     """Run and record a configuration."""
     _record(request_of_arguments(vars(options), is_alone=options.is_alone))
@@ -64,10 +83,11 @@ def actuators(options: Namespace) -> bool:
     """Run actuators of a configuration for a coordinator on another host."""
     from isa_ros.processes.actuator_host import host_actuators
     scenario = None if options.scenario is None else find(options.scenario, SCENARIOS)
-    host_actuators(find(options.config, CONFIG), scenario, options.names)
+    host_actuators(find(options.config, CONFIG), scenario, options.names, options.set)
     return True
 
 
+@_simulating
 def replay(options: Namespace) -> bool:
     """Simulate the run of a bag again and compare."""
     from isa_ros.bag.reader import Bag
@@ -116,18 +136,25 @@ def _draw(bag: Path, page: Path) -> None:
         print(path)
 
 
+@_simulating
 def bode(options: Namespace) -> bool:
     """Measure the frequency response of a loop."""
     from isa_ros.analysis.response.command import bode as measure_bode
-    measure_bode(options)
-    return True
+    return measure_bode(options)
 
 
+@_simulating
 def step(options: Namespace) -> bool:
     """Measure the step response of a loop."""
     from isa_ros.analysis.response.command import step as measure_step
     measure_step(options)
     return True
+
+
+def tune(options: Namespace) -> bool:
+    """Find gains of a loop for a wanted margin and bandwidth."""
+    from isa_ros.analysis.tuning.command import tune as find_gains
+    return find_gains(options)
 
 
 def identify(options: Namespace) -> bool:
@@ -140,6 +167,7 @@ def identify(options: Namespace) -> bool:
     return True
 
 
+@_simulating
 def study(options: Namespace) -> bool:
     """Vary one parameter against the performance."""
     from isa_ros.analysis.studies.command import study as run_study
@@ -147,6 +175,7 @@ def study(options: Namespace) -> bool:
     return True
 
 
+@_simulating
 def params(options: Namespace) -> bool:
     """List every parameter of a model, a leg or a run."""
     from isa_ros.config.listing import describe
@@ -161,6 +190,7 @@ def paper(options: Namespace) -> bool:
     return True
 
 
+@_simulating
 def validate(options: Namespace) -> bool:
     """Compare the actuators with the numbers of the paper."""
     if options.sensitivity:
@@ -199,6 +229,7 @@ def _sensitivity(options: Namespace) -> bool:
     return is_noticed(found)
 
 
+@_simulating
 def bench(options: Namespace) -> bool:
     """Measure the speed of simulations on this machine."""
     from isa_ros.bench.command import bench as run_bench

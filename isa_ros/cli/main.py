@@ -97,6 +97,7 @@ def _actuators(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         '--scenario', metavar='FILE',
         help='scenario of the run, which may change loads or initial positions')
+    shared_arguments.changes(parser, 'the values that are set for the run itself')
 
 
 def _replay(parser: argparse.ArgumentParser) -> None:
@@ -184,6 +185,8 @@ _COMMANDS = {
              'measure the frequency response of a loop of an actuator'),
     'step': (response_arguments.step, commands.step,
              'measure the step response of a loop of an actuator'),
+    'tune': (response_arguments.tune, commands.tune,
+             'find gains of a loop for a wanted phase margin and bandwidth over the stroke'),
     'identify': (_identify, commands.identify, 'estimate valve, oil and friction from a bag'),
     'study': (study_arguments.study, commands.study,
               'vary one parameter and show the performance of the actuators'),

@@ -1,4 +1,4 @@
-"""The arguments of `isa bode` and `isa step`."""
+"""The arguments of `isa bode`, `isa step` and `isa tune`."""
 
 import argparse
 from pathlib import Path
@@ -33,13 +33,52 @@ def step(parser: argparse.ArgumentParser) -> None:
         '--duration', type=positive, metavar='S', help='time recorded after the step')
 
 
-def _rig(parser: argparse.ArgumentParser) -> None:
+def tune(parser: argparse.ArgumentParser) -> None:
+    """Add the arguments of `isa tune`."""
     parser.add_argument('name', metavar='MODEL|CONFIG', help='isa_v5, rig_rotary.yaml, ...')
+    parser.add_argument(
+        '--loop', choices=('force',), default='force', help='the loop (default: force, or torque)')
+    parser.add_argument(
+        '--phase-margin', type=positive, default=60.0, metavar='DEG',
+        help='of the open loop output/error (default: 60 deg)')
+    parser.add_argument(
+        '--bandwidth', type=positive, default=40.0, metavar='HZ',
+        help='-3 dB of the closed loop (default: 40 Hz)')
+    parser.add_argument(
+        '--strokes', type=number, nargs='+', metavar='PERCENT',
+        help='places of the stroke to measure at (default: 5 25 50 75 95)')
+    _actuator(parser)
+    parser.add_argument(
+        '--load', metavar='KIND', help='load of the model (default: blocked)')
+    parser.add_argument(
+        '--amplitude', type=positive, metavar='A',
+        help='of the reference, in N or Nm (default: 10 %% of the rated force)')
+    shared_arguments.json_file(parser)
+    parser.add_argument(
+        '--out', type=file_to_write, metavar='FILE.yaml',
+        help='write a run file with the gains, for isa bringup')
+
+
+def _actuator(parser: argparse.ArgumentParser) -> None:
+    """Add what changes the measured actuator."""
     parser.add_argument('--actuator', metavar='NAME', help='actuator of a run file')
+    shared_arguments.gains(parser, 'P')
+    shared_arguments.changes(
+        parser, 'another value of the actuator, or of the run file, by the key and in the unit '
+        'that isa params shows: reu.force.kp=9e-8')
+
+
+def _rig(parser: argparse.ArgumentParser) -> None:
+    parser.add_argument(
+        'names', nargs='+', metavar='MODEL|CONFIG',
+        help='isa_v5, rig_rotary.yaml, ...; several are drawn in one figure')
     parser.add_argument(
         '--loop', choices=LOOPS, default='force',
         help='the loop to excite; the blocks outside it are off (default: force, or torque)')
-    shared_arguments.gains(parser, 'P')
+    _actuator(parser)
+    parser.add_argument(
+        '--versus', action='append', default=[], metavar='KEY=VALUE[,KEY=VALUE...]',
+        help='measure also with these values, in the same figure; may be repeated')
     parser.add_argument(
         '--load', metavar='KIND',
         help="load of the model (default: blocked; for the position loop the actuator's own)")

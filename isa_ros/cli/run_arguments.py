@@ -5,6 +5,7 @@ from collections.abc import Callable, Mapping
 from pathlib import Path
 from typing import Any
 
+from isa_ros.cli import shared_arguments
 from isa_ros.cli.argument_types import file_to_write, names, not_negative, positive
 from isa_ros.run.options import COMPRESSIONS, Kind, Option, OPTIONS
 
@@ -30,6 +31,8 @@ def _add(parser: argparse.ArgumentParser, option: Option) -> None:
         parser.add_argument(flag, action='store_true', **how)
     elif option.kind is Kind.COMPRESSION:
         parser.add_argument(flag, choices=COMPRESSIONS, **how)
+    elif option.kind is Kind.CHANGES:
+        shared_arguments.changes(parser, option.argument_help)
     elif option.kind is Kind.REPEATED:
         parser.add_argument(
             flag, dest=option.name, action='append', default=[], metavar=option.metavar, **how)

@@ -23,6 +23,12 @@ def page_directory(parser: argparse.ArgumentParser, page: str) -> None:
         '--out', type=directory_to_write, metavar='DIR', help=f'directory for {page}')
 
 
+def changes(parser: argparse.ArgumentParser, what: str) -> None:
+    """Add values that replace those of a model or a run file."""
+    parser.add_argument(
+        '--set', action='append', default=[], metavar='KEY=VALUE', help=f'{what}; may be repeated')
+
+
 def gains(parser: argparse.ArgumentParser, metavar: str) -> None:
     """Add preset and variants of a model."""
     parser.add_argument(

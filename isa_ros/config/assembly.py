@@ -6,7 +6,7 @@ from isa_ros.config.leg_config import LegConfig
 from isa_ros.config.run_config import RunConfig
 from isa_ros.core.signals import START
 from isa_ros.core.timebase import NS_PER_SECOND
-from isa_ros.core.units import MILLI, MPA
+from isa_ros.core.units import MILLI
 from isa_ros.loads.sheets import static_force
 from isa_ros.plant.plant import plant_record
 from isa_ros.plant.servo_valve import largest_flow_slope
@@ -42,8 +42,7 @@ def surroundings_of(run: RunConfig) -> Surroundings:
     feeds = []
     for supply in run.supplies:
         rows = [run.index(name) for name in supply.feeds]
-        span = (supply.sheet.pressure_mpa - supply.sheet.return_pressure_mpa) * MPA
-        slope = sum(largest_flow_slope(plants[row].valve, span) for row in rows)
+        slope = sum(largest_flow_slope(plants[row].valve, supply.span) for row in rows)
         feeds.append(Feed(supply.name, supply.sheet, rows, slope))
     starts = np.zeros(len(run.actuators), START)
     starts['position'] = [actuator.initial_position for actuator in run.actuators]

@@ -16,6 +16,7 @@ _MODELS = _DATA / 'models'
 _LEGS = _DATA / 'legs'
 _MATERIALS = _DATA / 'materials'
 _GAITS = _DATA / 'gaits'
+DEFAULT_PRESET = 'default'
 _PAD_KEYS = ('stiffness', 'damping')  # of the material, used by a pad
 
 

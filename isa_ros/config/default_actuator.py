@@ -1,15 +1,14 @@
 """One actuator of a packaged model on its default load, without a run file."""
 
-from isa_ros.actuator.actuator import Timing
+from isa_ros.actuator.actuator import PAPER_SUPPLY, Timing
 from isa_ros.actuator.sheet import ActuatorSheet
-from isa_ros.config.catalogue import actuator_model, Model
+from isa_ros.config.catalogue import actuator_model, DEFAULT_PRESET, Model
 from isa_ros.config.own_load import own_load
 from isa_ros.config.run_config import ActuatorConfig
 from isa_ros.config.sections import build, Place
 from isa_ros.loads.sheets import LocalLoad
 
 DEFAULT_TIMING = Timing(step_ns=1_000_000, controller_offset_ns=120_000)  # coupling.md
-PRESET = 'default'
 
 
 def default_actuator(model: str, name: str) -> ActuatorConfig:
@@ -23,11 +22,14 @@ def default_actuator(model: str, name: str) -> ActuatorConfig:
 
     """
     found = actuator_model(model, 'model')
-    sheet = build(ActuatorSheet, found.with_preset(PRESET, 'preset'), found.place)
+    sheet = build(ActuatorSheet, found.with_preset(DEFAULT_PRESET, 'preset'), found.place)
     return ActuatorConfig(
-        name, found.name, PRESET, sheet, default_load(found), 0.5 * sheet.plant.drive.stroke)
+        name, found.name, DEFAULT_PRESET, sheet, default_load(found, sheet),
+        0.5 * sheet.plant.drive.stroke)
 
 
-def default_load(model: Model) -> LocalLoad:
-    """Return the default load of a model."""
-    return own_load({'kind': model.default_load}, Place(model.name) / 'load', model)
+def default_load(
+        model: Model, sheet: ActuatorSheet, supply: float = PAPER_SUPPLY) -> LocalLoad:
+    """Return the default load of an actuator made from a model; as `own_load`."""
+    place = Place(model.name) / 'load'
+    return own_load({'kind': model.default_load}, place, model, sheet, supply)

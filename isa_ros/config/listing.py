@@ -105,7 +105,8 @@ def _run_tables(path: str) -> Iterator[str]:
     yield _table('record', [
         row._replace(source=given) for row in rows(run.record.storage, {})])
     for actuator in run.actuators:
-        title = f'actuators.{actuator.name}: {actuator.model}, preset {actuator.preset}'
+        title = (f'actuators.{actuator.name}.parameters: {actuator.model}, '
+                 f'preset {actuator.preset}')
         origin = origins.actuators[actuator.name]
         yield _table(title, rows(actuator.sheet, origin.sheet))
         if actuator.load is not None:
@@ -114,7 +115,7 @@ def _run_tables(path: str) -> Iterator[str]:
     if run.leg is not None and origins.leg is not None:
         yield _table('leg.start', [
             row._replace(source=given) for row in rows(run.leg.start, {})])
-        yield _table(f'leg: {run.leg.model}', rows(run.leg.sheet, origins.leg))
+        yield _table(f'leg.parameters: {run.leg.model}', rows(run.leg.sheet, origins.leg))
 
 
 def _load_tables(model: Model) -> Iterator[str]:
@@ -126,6 +127,8 @@ def _load_tables(model: Model) -> Iterator[str]:
 
 
 def _value(value: Any) -> str:
+    if isinstance(value, tuple):
+        return ', '.join(_value(one) for one in value)
     return f'{value:.10g}' if isinstance(value, float) else str(value)
 
 
@@ -144,7 +147,8 @@ def sources(section: Section, prefix: str = '') -> dict[str, str]:
     paths: dict[str, str] = {}
     for key, entry in section.items():
         if isinstance(entry, Entry):
-            paths[f'{prefix}{key}'] = entry.source
+            scales = f'; scales with {entry.scales_with}' if entry.scales_with else ''
+            paths[f'{prefix}{key}'] = entry.source + scales
         else:
             paths |= sources(entry, f'{prefix}{key}.')
     return paths

@@ -3,23 +3,33 @@
 from dataclasses import replace
 from typing import Any
 
-from isa_ros.config.catalogue import Model
-from isa_ros.config.sections import build_one_of, Entry, merge, Place, Section, written
+from isa_ros.actuator.actuator import PAPER_SUPPLY
+from isa_ros.actuator.sheet import ActuatorSheet
+from isa_ros.config.catalogue import DEFAULT_PRESET, Model
+from isa_ros.config.scaling import Scaling
+from isa_ros.config.sections import build, build_one_of, Entry, merge, Place, Section, written
 from isa_ros.config.yaml_text import Tree
 from isa_ros.errors import ConfigError
 from isa_ros.loads.sheets import LocalLoad
 from isa_ros.loads.wheel import Wheel
 
 
-def own_load(tree: Tree, place: Place, model: Model) -> LocalLoad:
+def own_load(
+        tree: Tree, place: Place, model: Model, sheet: ActuatorSheet,
+        supply: float = PAPER_SUPPLY) -> LocalLoad:
     """Return a load of one actuator: the model's of that kind with single values replaced."""
-    load: LocalLoad = build_one_of(LocalLoad, load_section(tree, place, model), place)
+    section = load_section(tree, place, model, sheet, supply)
+    load: LocalLoad = build_one_of(LocalLoad, section, place)
     return load
 
 
-def load_section(tree: Tree, place: Place, model: Model) -> Section:
+def load_section(
+        tree: Tree, place: Place, model: Model, sheet: ActuatorSheet, supply: float) -> Section:
     """
     Return the values of a load, each with the place where it was written.
+
+    ``sheet`` is that of an actuator made from the model, on ``supply`` Pa above return pressure:
+    the model's values scale with it.
 
     Raises
     ------
@@ -31,7 +41,9 @@ def load_section(tree: Tree, place: Place, model: Model) -> Section:
     if kind not in model.loads:
         raise ConfigError(f'{place}.kind = {kind!r}, must be one of {", ".join(model.loads)}')
     own = {key: value for key, value in tree.items() if key != 'kind'}
-    section = merge(model.loads[kind], written(own, place))
+    base = build(ActuatorSheet, model.with_preset(DEFAULT_PRESET, 'preset'), model.place)
+    scaled = Scaling(base, sheet, supply).section(model.loads[kind], place)
+    section = merge(scaled, written(own, place))
     named = section['kind']
     assert isinstance(named, Entry)
     return section | {'kind': replace(named, where=str(place / 'kind'))}

@@ -16,7 +16,7 @@ SCENARIOS = 'config/scenarios'
 
 
 def share_directories() -> list[Path]:
-    """Return the directories that may hold config/, launch/ and urdf/, the nearest first."""
+    """Return the directories that may hold config/, launch/, rviz/, urdf/, the nearest first."""
     package = Path(__file__).resolve().parents[1]
     found = [package.parent] if (package.parent / 'package.xml').is_file() else []
     # A merged or isolated colcon install, and a wheel: PREFIX/lib/python3.x/site-packages.
@@ -35,6 +35,22 @@ def shipped(directory: str) -> dict[str, Path]:
         for path in (share / directory).glob('*.yaml'):
             files.setdefault(path.name, path)
     return dict(sorted(files.items()))
+
+
+def find_drawing(name: str) -> Path:
+    """
+    Return a shipped file below ``urdf`` or ``rviz``, such as ``urdf/hyq_real_leg.urdf``.
+
+    Raises
+    ------
+    ConfigError
+        The file does not exist.
+
+    """
+    for share in share_directories():
+        if (share / name).is_file():
+            return share / name
+    raise ConfigError(f'{name}: no such shipped file')
 
 
 def find(name: str, directory: str) -> Path:

@@ -54,6 +54,8 @@ class ActuatorConfig:
     """Its own load; None where it moves the body."""
     initial_position: float
     """m or rad."""
+    beyond_range: str | None = None
+    """Treatment of a setpoint beyond the range, one of `BEYOND_RANGE`; None: the first."""
 
 
 @dataclass(frozen=True)
@@ -85,6 +87,11 @@ class RunConfig:
         """Return the sheet of the supply that feeds an actuator; as `actuator`."""
         fed = self.actuator(name).name
         return next(own.sheet for own in self.supplies if fed in own.feeds)
+
+    def span_of(self, name: str) -> float:
+        """Return the supply pressure above return pressure of an actuator, Pa; as `actuator`."""
+        fed = self.actuator(name).name
+        return next(own.span for own in self.supplies if fed in own.feeds)
 
     def alone(self, actuator: ActuatorConfig) -> 'RunConfig':
         """Return a run of ``actuator`` alone, on the supply of the actuator of its name."""
@@ -200,6 +207,7 @@ RUN = Section(RunConfig, {
     'actuators': Key(Named(Section(ActuatorConfig, {
         'model': Key(Plain(str)), 'preset': Key(Plain(str)),
         'initial_position': Key(Plain(float)),
+        'beyond_range': Key(Plain(str), is_optional=True),
         'load': Key(ParameterSet(LocalLoad), is_optional=True),
         'sheet': Key(ParameterSet(ActuatorSheet))}))),
     'controllers': Key(Names(), meant='none'),

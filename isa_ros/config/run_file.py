@@ -4,22 +4,26 @@ Reader of run files: strict YAML in data-sheet units to a `RunConfig`.
 Every error is one line with file, key, value, unit and bound.
 """
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 import math
 from pathlib import Path
 
+from isa_ros.actuator.setpoint_range import BEYOND_RANGE
 from isa_ros.actuator.sheet import ActuatorSheet, refuse_wiring
+from isa_ros.actuator.tunable import refuse_unusable
 from isa_ros.config.catalogue import actuator_model, leg_section, material_section, Model
+from isa_ros.config.changes import changed, Values
 from isa_ros.config.leg_config import LegConfig, LegStart
 from isa_ros.config.names import NAME_RULE, refuse_bad_name
 from isa_ros.config.own_load import load_section, refuse_beyond_stops
 from isa_ros.config.recording import read_record
 from isa_ros.config.run_config import ActuatorConfig, COORDINATOR, RunConfig, Times
+from isa_ros.config.scaling import scaled_sheet
 from isa_ros.config.sections import (
     build, build_one_of, Entry, merge, names_at, Place, refuse_unknown, Section, section_at,
     written)
-from isa_ros.config.supplies import read_supplies, SUPPLY
+from isa_ros.config.supplies import read_supplies, SUPPLY, SupplyConfig
 from isa_ros.config.yaml_text import read, Tree
 from isa_ros.core.parameter import check
 from isa_ros.core.suggest import alternatives
@@ -53,9 +57,9 @@ class Origins:
     leg: Section | None
 
 
-def load_run(path: Path | str) -> RunConfig:
+def load_run(path: Path | str, changes: Values | None = None) -> RunConfig:
     """
-    Return the resolved configuration of a run file.
+    Return the resolved configuration of a run file, with some values changed.
 
     Raises
     ------
@@ -63,7 +67,8 @@ def load_run(path: Path | str) -> RunConfig:
         The file cannot be read, or its content cannot be run.
 
     """
-    return read_run(path)[0]
+    path = Path(path)
+    return run_of(changed(read(path), changes or {}, path.name), Place(path.name))[0]
 
 
 def read_run(path: Path | str) -> tuple[RunConfig, Origins]:
@@ -81,12 +86,12 @@ def run_of(tree: Tree, place: Place) -> tuple[RunConfig, Origins]:
         {f: tree[f] for f in Times.__dataclass_fields__ if f in tree}, place), place)
     step_ns, offset_ns = _grid(times, place)
     leg, leg_origin = _body(tree, place, step_ns)
-    actuators, origins = _actuators(tree, place, leg)
+    supplies = read_supplies(tree, list(_section(tree, 'actuators', place)), place)
+    actuators, origins = _actuators(tree, place, leg, supplies)
     run = RunConfig(
         name=name_of(tree, 'name', place),
         step_ns=step_ns, controller_offset_ns=offset_ns, tick_timeout_s=times.tick_timeout_s,
-        supplies=read_supplies(tree, [actuator.name for actuator in actuators], place),
-        actuators=actuators, body=leg, source=place.file,
+        supplies=supplies, actuators=actuators, body=leg, source=place.file,
         record=read_record(tree.get('record', {}), place / 'record'))
     controllers = names_at(tree.get('controllers', []), place / 'controllers')
     return run.with_controllers(controllers), Origins(origins, leg_origin)
@@ -200,7 +205,7 @@ def refuse_start(start: LegStart, sheet: LegSheet, step_ns: int, place: Place) -
 
 
 def _actuators(
-        tree: Tree, place: Place, leg: LegConfig | None
+        tree: Tree, place: Place, leg: LegConfig | None, supplies: Sequence[SupplyConfig]
         ) -> tuple[tuple[ActuatorConfig, ...], dict[str, ActuatorOrigin]]:
     below = place / 'actuators'
     section = _section(tree, 'actuators', place)
@@ -216,45 +221,57 @@ def _actuators(
         joint_of[name] = joint
     if not section:
         raise ConfigError(f'{below} is empty, must name at least one actuator')
+    span_of = {name: supply.span for supply in supplies for name in supply.feeds}
     configs, origins = [], {}
     for name in section:
         name_of({name: name}, name, below)
         if name == COORDINATOR:
             raise ConfigError(f'{below / name}: the name is reserved for the coordinator')
         config, origins[name] = _actuator(
-            name, section_at(section[name], below / name), below / name, leg, joint_of.get(name))
+            name, section_at(section[name], below / name), below / name, leg, joint_of.get(name),
+            span_of[name])
         configs.append(config)
     return tuple(configs), origins
 
 
 def _actuator(
-        name: str, tree: Tree, place: Place, leg: LegConfig | None, joint: str | None
-        ) -> tuple[ActuatorConfig, ActuatorOrigin]:
+        name: str, tree: Tree, place: Place, leg: LegConfig | None, joint: str | None,
+        supply: float) -> tuple[ActuatorConfig, ActuatorOrigin]:
     refuse_unknown(tree, (
         'model', 'preset', 'variants', 'parameters', 'load', 'initial_position_mm',
-        'initial_position_deg'),
+        'initial_position_deg', 'beyond_range'),
         place)
     model = actuator_model(tree.get('model'), f'{place}.model')  # type: ignore[arg-type]
     preset = tree.get('preset', 'default')
     variants = names_at(tree.get('variants', []), place / 'variants')
-    section = model.with_variants(
+    of_model = model.with_variants(
         model.with_preset(preset, f'{place}.preset'),  # type: ignore[arg-type]
         variants, f'{place}.variants')
-    section = merge(section, _parameters(tree, place))
-    sheet = build(ActuatorSheet, section, model.place)
+    sheet, section = scaled_sheet(
+        merge(of_model, _parameters(tree, place)), of_model, model.place, place / 'parameters',
+        supply)
     if joint is not None and leg is not None:
         position = _joint_position(tree, place, leg, joint, sheet)
         load, load_layers = None, {}
         _refuse_sheet(sheet, LoadSide(), place)
     else:
         position = _initial_position(tree, place, sheet)
-        load_layers = _own_load(tree, place, model)
+        load_layers = _own_load(tree, place, model, sheet, supply)
         load = build_one_of(LocalLoad, load_layers, place / 'load')
         refuse_beyond_stops(load, position, str(place))
         _refuse_sheet(sheet, LoadSide(*linearised(load)), place)
     label = ' + '.join([str(preset), *variants])
-    return (ActuatorConfig(name, model.name, label, sheet, load, position),
+    return (ActuatorConfig(
+        name, model.name, label, sheet, load, position, _beyond_range(tree, place)),
             ActuatorOrigin(section, load_layers))
+
+
+def _beyond_range(tree: Tree, place: Place) -> str | None:
+    """Return the treatment of setpoints beyond the range; None: the default one."""
+    default = BEYOND_RANGE[0]
+    beyond = tree.get('beyond_range', default)
+    check(str(place / 'beyond_range'), beyond, {'names': BEYOND_RANGE})
+    return None if beyond == default else str(beyond)
 
 
 def _parameters(tree: Tree, place: Place) -> Section:
@@ -265,9 +282,10 @@ def _parameters(tree: Tree, place: Place) -> Section:
 
 
 def _refuse_sheet(sheet: ActuatorSheet, load: LoadSide, place: Place) -> None:
-    """Refuse control blocks that do not fit, and a plant too fast for its step."""
+    """Refuse blocks that do not fit, unusable gains, and a plant too fast for its step."""
     try:
         refuse_wiring(sheet)
+        refuse_unusable(sheet)
         refuse_too_fast(plant_record(sheet.plant)[0], sheet.plant, load)
     except (ConfigError, ParameterError) as error:
         raise ConfigError(f'{place}: {error}') from error
@@ -312,9 +330,11 @@ def _initial_position(tree: Tree, place: Place, sheet: ActuatorSheet) -> float:
     return float(tree[key]) * scale  # type: ignore[arg-type]
 
 
-def _own_load(tree: Tree, place: Place, model: Model) -> Section:
+def _own_load(
+        tree: Tree, place: Place, model: Model, sheet: ActuatorSheet, supply: float) -> Section:
     if 'load' not in tree:
         raise ConfigError(
             f'{place} has no load and moves no joint of the leg; valid kinds of '
             f'load: {", ".join(model.loads)}')
-    return load_section(section_at(tree['load'], place / 'load'), place / 'load', model)
+    return load_section(
+        section_at(tree['load'], place / 'load'), place / 'load', model, sheet, supply)

@@ -10,6 +10,7 @@ from dataclasses import dataclass, fields
 import re
 from typing import Any, get_args, get_type_hints, TypeVar
 
+from isa_ros.actuator.scales import SCALES
 from isa_ros.config.yaml_text import Scalar, Tree
 from isa_ros.core.parameter import check, Parameters
 from isa_ros.core.suggest import alternatives, listed
@@ -23,11 +24,13 @@ P = TypeVar('P', bound=Parameters)
 
 @dataclass(frozen=True)
 class Entry:
-    """One value, where it was written (``file: dotted key``) and its source."""
+    """One value, or a list of them, where it was written (``file: dotted key``), its source."""
 
-    value: Scalar
+    value: Scalar | list[Any]
     where: str
     source: str
+    scales_with: str = ''
+    """The quantity of `isa_ros.actuator.scales` that it is proportional to, '' for none."""
 
 
 Section = dict[str, 'Entry | Section']
@@ -106,8 +109,6 @@ def written(tree: Tree, place: Place) -> Section:
     for key, value in tree.items():
         if isinstance(value, dict):
             section[key] = written(value, place / key)
-        elif isinstance(value, list):
-            raise ConfigError(f'{place / key} = {value!r}, must be one value')
         else:
             section[key] = Entry(value, str(place / key), place.file)
     return section
@@ -117,10 +118,13 @@ def sourced(tree: Tree, place: Place) -> Section:
     """
     Return the values of a model's sheet, each written as ``{value: ..., source: ...}``.
 
+    A value may have the key ``scales_with``.
+
     Raises
     ------
     ConfigError
-        A value lacks its source, or the source begins with an unknown word.
+        A value lacks its source, the source begins with an unknown word, or there is no such
+        quantity to scale with.
 
     """
     section: Section = {}
@@ -132,14 +136,17 @@ def sourced(tree: Tree, place: Place) -> Section:
         if 'value' not in below and 'source' not in below:
             section[key] = sourced(below, place / key)
             continue
-        refuse_unknown(below, ('value', 'source'), place / key)
+        refuse_unknown(below, ('value', 'source', 'scales_with'), place / key)
         number, source = below.get('value'), below.get('source')
-        if isinstance(number, (dict, list)) or not isinstance(source, str):
+        if isinstance(number, dict) or not isinstance(source, str):
             raise ConfigError((place / key).has('needs a value and its source'))
         if not source.startswith(_SOURCES):
             raise ConfigError(
                 f'{place / key}.source = {source!r}, must start with {" or ".join(_SOURCES)}')
-        section[key] = Entry(number, str(place / key), source)
+        scale = below.get('scales_with', '')
+        if scale:
+            refuse_unknown([str(scale)], SCALES, place / key / 'scales_with')
+        section[key] = Entry(number, str(place / key), source, str(scale))
     return section
 
 
@@ -160,7 +167,7 @@ def merge(base: Section, over: Section) -> Section:
     return merged
 
 
-def _kind(section: Section) -> Scalar:
+def _kind(section: Section) -> Scalar | list[Any]:
     """Return the kind of a section, None for a section without one."""
     named = [entry.value for key in KIND_KEYS
              if isinstance(entry := section.get(key), Entry)]
@@ -203,7 +210,17 @@ def build(cls: type[P], section: Section, place: Place) -> P:
     try:
         return cls(**values)
     except ParameterError as error:
-        raise ParameterError(f'{place}: {error}') from error
+        raise ParameterError(f'{_last_written(section, place)}: {error}') from error
+
+
+def _last_written(section: Section, place: Place) -> Place:
+    """Return the place of a section in the run file, if that has one of its values."""
+    for key, entry in section.items():
+        if isinstance(entry, Entry):
+            file, _, path = entry.where.partition(': ')
+            if entry.source == file and path.endswith(f'.{key}'):  # as `written` has it
+                return Place(file, path.removesuffix(f'.{key}'))
+    return place
 
 
 def build_one_of(hint: Any, section: Section, place: Place) -> Any:
@@ -218,7 +235,7 @@ def build_one_of(hint: Any, section: Section, place: Place) -> Any:
         raise ConfigError(place.has(f'lacks kind, one of {", ".join(kinds)}'))
     rest = dict(section)
     kind = rest.pop(key)
-    if not isinstance(kind, Entry) or kind.value not in kinds:
+    if not isinstance(kind, Entry) or str(kind.value) not in kinds:
         value = kind.value if isinstance(kind, Entry) else 'a section'
         where = kind.where if isinstance(kind, Entry) else str(place / key)
         raise ConfigError(f'{where} = {value!r}, must be one of {", ".join(kinds)}')
@@ -255,7 +272,11 @@ def _checked(entry: Entry | Section, declared: Mapping[str, Any], place: Place) 
         unit = declared['unit'] if 'unit' in declared else ''
         raise ParameterError(f'{place} is a section, must be one value{unit and f" in {unit}"}')
     check(entry.where, entry.value, declared)
-    return entry.value if 'names' in declared else float(entry.value)  # type: ignore[arg-type]
+    if 'names' in declared:
+        return entry.value
+    if isinstance(entry.value, list):
+        return tuple(float(one) for one in entry.value)
+    return float(entry.value)  # type: ignore[arg-type]
 
 
 def as_tree(parameters: Parameters, hint: Any = None) -> Tree:
@@ -271,7 +292,8 @@ def as_tree(parameters: Parameters, hint: Any = None) -> Tree:
     for f in fields(parameters):
         value = getattr(parameters, f.name)
         is_set = isinstance(value, Parameters)
-        tree[f.name] = as_tree(value, hints[f.name]) if is_set else value
+        tree[f.name] = (as_tree(value, hints[f.name]) if is_set
+                        else list(value) if isinstance(value, tuple) else value)
     return tree
 
 

@@ -9,6 +9,7 @@ from isa_ros.config.schema import KeyDifference, Names, ParameterSet
 from isa_ros.config.sections import build_one_of, names_at, Place, section_at, written
 from isa_ros.config.yaml_text import Tree
 from isa_ros.core.suggest import alternatives
+from isa_ros.core.units import MPA
 from isa_ros.errors import ConfigError
 from isa_ros.surroundings.supply import SupplySheet, VolumeReturn
 
@@ -23,6 +24,11 @@ class SupplyConfig:
     name: str
     sheet: SupplySheet
     feeds: tuple[str, ...]
+
+    @property
+    def span(self) -> float:
+        """Return the supply pressure above return pressure, Pa."""
+        return (self.sheet.pressure_mpa - self.sheet.return_pressure_mpa) * MPA
 
 
 def read_supplies(

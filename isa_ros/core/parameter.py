@@ -38,6 +38,12 @@ def tunable(doc: str, unit: str, *, named: str | None = None, **bounds: float) -
     return field(metadata=declared.metadata | {'tunable': named or ''})
 
 
+def numbers(doc: str, unit: str, *, least: int, most: int, **bounds: float) -> Any:
+    """Declare ``least`` to ``most`` numbers in a list, each within ``bounds`` as `parameter`."""
+    declared = parameter(doc, unit, **bounds)
+    return field(metadata=declared.metadata | {'length': (least, most)})
+
+
 def choice(doc: str, *names: str) -> Any:
     """Declare one name out of a fixed list."""
     return field(metadata={'doc': doc, 'unit': '', 'names': names})
@@ -48,8 +54,8 @@ class Parameters:
     """
     Base of every parameter set: checked on construction, immutable afterwards.
 
-    Fields are floats in the unit their declaration (and their name's suffix) states,
-    names out of a list, or nested parameter sets.
+    Fields are floats in the unit their declaration (and their name's suffix) states, several
+    of them in a tuple, names out of a list, or nested parameter sets.
 
     Raises
     ------
@@ -73,6 +79,21 @@ def check(where: str, value: Any, declared: Any) -> None:
                 f'{where} = {value!r}, must be one of {", ".join(declared["names"])}')
         return
     unit = declared['unit']
+    if 'length' in declared:
+        least, most = declared['length']
+        if not isinstance(value, (list, tuple)) or not least <= len(value) <= most:
+            raise ParameterError(
+                f'{where} = {value!r}, must be a list of {least} to {most} numbers in {unit}')
+        for k, one in enumerate(value):
+            _check_number(f'{where}[{k}]', one, declared)
+        return
+    _check_number(where, value, declared)
+
+
+def _check_number(where: str, value: Any, declared: Any) -> None:
+    unit = declared['unit']
+    if isinstance(value, (list, tuple)):
+        raise ParameterError(f'{where} = {value!r}, must be one value')
     if isinstance(value, bool) or not isinstance(value, (int, float)):
         raise ParameterError(f'{where} = {value!r}, must be a number in {unit}')
     if not math.isfinite(value):

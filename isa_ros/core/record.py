@@ -1,8 +1,8 @@
 """Numpy records whose fields have names, in kernels and in plain Python alike."""
 
 from collections.abc import Collection
-import math
 from functools import cache
+import math
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray

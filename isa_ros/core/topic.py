@@ -14,6 +14,11 @@ class Qos:
     reliability: str = 'reliable'
     durability: str = 'volatile'
 
+    @property
+    def is_kept(self) -> bool:
+        """Return whether a later subscription receives the last messages too."""
+        return self.durability == 'transient_local'
+
     def to_yaml(self) -> str:
         """Return a YAML list that holds this profile, without a final newline."""
         lines = [
@@ -23,6 +28,10 @@ class Qos:
             '  liveliness: automatic', *_duration('liveliness_lease_duration'),
             '  avoid_ros_namespace_conventions: false']
         return '\n'.join(lines)
+
+
+KEPT = Qos(durability='transient_local')
+"""Of messages that are rare and stay in force."""
 
 
 @dataclass(frozen=True)

@@ -5,6 +5,7 @@ from collections.abc import Callable
 from isa_ros.controller import Controller
 from isa_ros.nodes.lockstep.participant_end import ParticipantEnd
 from isa_ros.nodes.lockstep.roles import ControllerRole
+from isa_ros.nodes.middleware.discovery import refuse_off
 from isa_ros.processes.stopping import StopRequest
 from rclpy.node import Node
 
@@ -15,9 +16,16 @@ class Participant:
 
     The coordinator waits for it at every tick: its input is the state of tick k, and its result
     takes effect at tick k + 1, independent of the speed of the machine.
+
+    Raises
+    ------
+    ConfigError
+        Discovery is switched off, so that no coordinator can find the node.
+
     """
 
     def __init__(self, node: Node, controller: Controller) -> None:
+        refuse_off(node.get_name())
         self._end = ParticipantEnd(node, ControllerRole(controller))
 
     def spin(self, should_stop: Callable[[], bool] | None = None) -> None:

@@ -14,6 +14,7 @@ from isa_ros.plant import chambers, coil, friction, mechanics, relief, sensors, 
 from isa_ros.plant.chambers import boil
 from isa_ros.plant.sensors import convert, encode
 from isa_ros.plant.spool import stop_spool
+from isa_ros.plant.valve_sheets import DataSheetValve, DualGainValve, HighResponseValve
 import numpy as np
 
 PLANT = np.dtype([
@@ -40,8 +41,9 @@ class PlantSheet(Parameters):
     """The data sheet of one actuator's hydraulics, mechanics and sensors."""
 
     coil: coil.ClosedLoopCoil | coil.ExplicitCoil
-    spool: spool.ClosedLoopSpool | spool.DirectSpool | spool.PilotedSpool
-    valve: servo_valve.DualGainValve | servo_valve.HighResponseValve
+    spool: (spool.ClosedLoopSpool | spool.DirectSpool | spool.PilotedSpool
+            | spool.DataSheetSpool)
+    valve: DualGainValve | HighResponseValve | DataSheetValve
     oil: chambers.Oil
     relief: relief.Relief
     friction: friction.Friction

@@ -8,76 +8,17 @@ The printed valve gains (eq 19) are slopes of figure 5 in l/min per mA, here per
 spool (`flow_slope`). Neglected: flow forces and hysteresis.
 """
 
-from dataclasses import dataclass
 import math
 from typing import NamedTuple
 
 from isa_ros.core.elementary import exp
 from isa_ros.core.kernel import kernel
-from isa_ros.core.parameter import choice, parameter, Parameters
+from isa_ros.core.piecewise import LINES, lines_record, y_on_lines
 from isa_ros.core.record import record
 from isa_ros.core.timebase import FASTEST_RATE
 from isa_ros.core.units import LPM, MICRO, MILLI, MPA
+from isa_ros.plant.valve_sheets import DataSheetValve, DualGainValve, HighResponseValve
 import numpy as np
-
-
-@dataclass(frozen=True, kw_only=True)
-class Lap(Parameters):
-    """Overlap of each land; negative: underlap."""
-
-    pa_um: float = parameter('land P-A', 'um', ge=-20.0, le=50.0)
-    at_um: float = parameter('land A-T', 'um', ge=-20.0, le=50.0)
-    bt_um: float = parameter('land B-T', 'um', ge=-20.0, le=50.0)
-    pb_um: float = parameter('land P-B', 'um', ge=-20.0, le=50.0)
-
-
-@dataclass(frozen=True, kw_only=True)
-class Valve(Parameters):
-    """Parameters of every valve; currents on the series scale of figure 5."""
-
-    spool_gain_mm_per_ma: float = parameter(
-        'spool travel per series current, K_spool (eq 9)', 'mm/mA', gt=0.0, le=1.0)
-    spool_stop_mm: float = parameter('largest spool travel', 'mm', gt=0.0, le=1.0)
-    land_drop_mpa: float = parameter(
-        'pressure drop over one land at the stated flows', 'MPa', gt=0.0, le=50.0)
-    null_leakage_lpm: float = parameter(
-        'leakage q_0 of one closed land at null', 'l/min', ge=0.0, le=2.0)
-    leakage_travel_um: float = parameter(
-        'travel x_l that halves the leakage of a land', 'um', gt=0.0, le=100.0)
-    tare_leakage_lpm: float = parameter(
-        'pilot-stage flow at the tare pressure', 'l/min', ge=0.0, le=2.0)
-    tare_pressure_mpa: float = parameter(
-        'supply above return pressure of the tare leakage', 'MPa', gt=0.0, le=50.0)
-    orifice_smoothing_kpa: float = parameter(
-        'pressure drop delta below which an orifice is laminar', 'kPa', gt=0.0, le=1000.0)
-    slots: str = choice(
-        "areas of the lands' slots: matched to the areas of the piston, or all equal",
-        'matched', 'equal')
-    lap: Lap
-
-
-@dataclass(frozen=True, kw_only=True)
-class DualGainValve(Valve):
-    """Ultra-low-leakage valve: a low flow gain about null, a high one beyond."""
-
-    low_gain_lpm_per_ma: float = parameter(
-        'flow gain of one land below the dual-gain point', 'l/min/mA', gt=0.0, le=100.0)
-    high_gain_lpm_per_ma: float = parameter(
-        'flow gain of one land beyond the dual-gain point', 'l/min/mA', gt=0.0, le=100.0)
-    dual_gain_point_mm: float = parameter('spool travel x_dg', 'mm', gt=0.0, le=1.0)
-
-
-@dataclass(frozen=True, kw_only=True)
-class HighResponseValve(Valve):
-    """High-response valve: one flow gain about null that falls off towards full flow."""
-
-    gain_lpm_per_ma: float = parameter(
-        'flow gain of one land up to its knee', 'l/min/mA', gt=0.0, le=100.0)
-    knee_ma: float = parameter('series current at which the gain begins to fall', 'mA',
-                               gt=0.0, le=50.0)
-    remaining_lpm: float = parameter(
-        'flow beyond that of the knee, for any current', 'l/min', gt=0.0, le=100.0)
-
 
 VALVE = np.dtype([
     ('k_spool', 'f8'),      # m/A, series scale
@@ -91,6 +32,8 @@ VALVE = np.dtype([
     ('f_pa', 'f8'), ('f_at', 'f8'), ('f_bt', 'f8'), ('f_pb', 'f8'),  # land factors
     ('is_lapped', 'f8'),
     ('lap_pa', 'f8'), ('lap_at', 'f8'), ('lap_bt', 'f8'), ('lap_pb', 'f8'),  # m
+    ('has_points', 'f8'),   # 1: flow and leakage are the two curves below
+    ('flow', LINES), ('leak', LINES),           # m3/s at dp_ref over m of spool
 ])
 
 
@@ -109,40 +52,102 @@ def land_factors(area_ratio: float) -> tuple[float, float, float, float]:
     return 1.0, math.sqrt(area_ratio), 1.0 / area_ratio, 1.0 / math.sqrt(area_ratio)
 
 
-class _Curve(NamedTuple):
-    """The flow curve's fields of a `VALVE`."""
+class Lands(NamedTuple):
+    """Factors of the four lands  (V8)."""
+
+    pa: float
+    at: float
+    bt: float
+    pb: float
+
+
+class _Metering(NamedTuple):
+    """The fields of a `VALVE` that depend on its kind."""
 
     k_low: float
     k_high: float
     q_rest: float
     x_dg: float
+    per_root_drop: float
+    q_0: float
+    x_l: float
+    c_tare: float
+    has_points: float
+    flow: np.record
+    leak: np.record
 
 
-def _curve(sheet: DualGainValve | HighResponseValve) -> _Curve:
+def _drawn(sheet: DualGainValve | HighResponseValve) -> _Metering:
+    """Return the metering of a valve whose curves are those of figures 5 and 6."""
     if isinstance(sheet, HighResponseValve):
-        return _Curve(
-            k_low=flow_slope(sheet.gain_lpm_per_ma, sheet.spool_gain_mm_per_ma), k_high=0.0,
-            q_rest=sheet.remaining_lpm * LPM,
-            x_dg=sheet.knee_ma * sheet.spool_gain_mm_per_ma * MILLI)
-    return _Curve(
-        k_low=flow_slope(sheet.low_gain_lpm_per_ma, sheet.spool_gain_mm_per_ma),
-        k_high=flow_slope(sheet.high_gain_lpm_per_ma, sheet.spool_gain_mm_per_ma),
-        q_rest=0.0, x_dg=sheet.dual_gain_point_mm * MILLI)
+        k_low, k_high = flow_slope(sheet.gain_lpm_per_ma, sheet.spool_gain_mm_per_ma), 0.0
+        q_rest = sheet.remaining_lpm * LPM
+        x_dg = sheet.knee_ma * sheet.spool_gain_mm_per_ma * MILLI
+    else:
+        k_low = flow_slope(sheet.low_gain_lpm_per_ma, sheet.spool_gain_mm_per_ma)
+        k_high = flow_slope(sheet.high_gain_lpm_per_ma, sheet.spool_gain_mm_per_ma)
+        q_rest, x_dg = 0.0, sheet.dual_gain_point_mm * MILLI
+    none = lines_record([0.0], [0.0])
+    return _Metering(
+        k_low, k_high, q_rest, x_dg, 1.0 / math.sqrt(sheet.land_drop_mpa * MPA),
+        sheet.null_leakage_lpm * LPM, sheet.leakage_travel_um * MICRO,
+        sheet.tare_leakage_lpm * LPM / math.sqrt(sheet.tare_pressure_mpa * MPA),
+        0.0, none, none)
 
 
-def valve_record(sheet: DualGainValve | HighResponseValve, area_ratio: float) -> np.record:
+def land_leakage(flow: float, total: float, lands: Lands, root_drops: float) -> float:
+    """
+    Return the leakage l of a land that gives a valve's ``total`` with both ports shut  (V16).
+
+    In m3/s at dp_ref. P-A and A-T are in series, and so are P-B and B-T: with a = f (g + l) of
+    the open land, b = f l of the closed one, each pair passes a b/sqrt(a^2 + b^2) times
+    ``root_drops``, sqrt((P_S - P_T)/dp_ref). ``flow`` is g; the open lands are P-A and B-T.
+    """
+    pairs = (lands.pa, lands.at), (lands.bt, lands.pb)
+
+    def passed(leak: float, opened: float) -> float:
+        return root_drops * sum(
+            f * opened * g * leak / math.hypot(f * opened, g * leak) for f, g in pairs)
+
+    low, high = 0.0, total / passed(1.0, 1.0)  # a land that is not open needs the most
+    while low < 0.5 * (low + high) < high:
+        middle = 0.5 * (low + high)
+        if passed(middle, flow + middle) < total:
+            low = middle
+        else:
+            high = middle
+    return high
+
+
+def _stated(sheet: DataSheetValve, lands: Lands) -> _Metering:
+    """Return the metering of a valve with points of its data sheet  (V15, V16)."""
+    k_spool, land_drop = sheet.spool_gain_mm_per_ma, 0.5 * sheet.rated_drop_mpa * MPA
+    flow = lines_record([i * k_spool * MILLI for i in sheet.flow.currents_ma],
+                        [q * LPM for q in sheet.flow.flows_lpm])
+    at, own = sheet.leakage, sheet.leakage.pressure_mpa * MPA
+    travels = [i * k_spool * MILLI for i in at.current_ma]
+    leak = lines_record(travels, [
+        land_leakage(y_on_lines(x, flow), (total - at.tare_lpm) * LPM, lands,
+                     math.sqrt(own / land_drop))
+        for x, total in zip(travels, at.total_lpm)])
+    last = len(sheet.flow.currents_ma) - 1
+    return _Metering(
+        k_low=flow.slope[0], k_high=flow.slope[last - 1], q_rest=0.0, x_dg=flow.x[1],
+        per_root_drop=1.0 / math.sqrt(land_drop), q_0=leak.y[0], x_l=flow.x[last],
+        c_tare=at.tare_lpm * LPM / math.sqrt(own), has_points=1.0, flow=flow, leak=leak)
+
+
+def valve_record(
+        sheet: DualGainValve | HighResponseValve | DataSheetValve,
+        area_ratio: float) -> np.record:
     """Return the `VALVE` record of a sheet on an actuator with A_A/A_B = ``area_ratio``."""
-    f_pa, f_at, f_bt, f_pb = land_factors(area_ratio if sheet.slots == 'matched' else 1.0)
-    laps = {f'lap_{land}': getattr(sheet.lap, f'{land}_um') * MICRO
-            for land in ('pa', 'at', 'bt', 'pb')}
+    lands = Lands(*land_factors(area_ratio if sheet.slots == 'matched' else 1.0))
+    metering = _stated(sheet, lands) if isinstance(sheet, DataSheetValve) else _drawn(sheet)
+    laps = {f'lap_{land}': getattr(sheet.lap, f'{land}_um') * MICRO for land in Lands._fields}
     return record(
-        VALVE, k_spool=sheet.spool_gain_mm_per_ma, **_curve(sheet)._asdict(),
-        x_max=sheet.spool_stop_mm * MILLI,
-        per_root_drop=1.0 / math.sqrt(sheet.land_drop_mpa * MPA),
-        q_0=sheet.null_leakage_lpm * LPM, x_l=sheet.leakage_travel_um * MICRO,
-        c_tare=sheet.tare_leakage_lpm * LPM / math.sqrt(sheet.tare_pressure_mpa * MPA),
-        delta=sheet.orifice_smoothing_kpa * 1e3,
-        f_pa=f_pa, f_at=f_at, f_bt=f_bt, f_pb=f_pb,
+        VALVE, k_spool=sheet.spool_gain_mm_per_ma, **metering._asdict(),
+        x_max=sheet.spool_stop_mm * MILLI, delta=sheet.orifice_smoothing_kpa * 1e3,
+        f_pa=lands.pa, f_at=lands.at, f_bt=lands.bt, f_pb=lands.pb,
         is_lapped=float(any(laps.values())), **laps)
 
 
@@ -169,8 +174,11 @@ def flow_curve(opening, valve):
     Return g, the flow of one open land at the reference drop  (V4), in m3/s.
 
     Continuous: k_low u up to x_dg; beyond, with slope k_high, or for a high-response valve
-    k_low x_dg + q_rest (1 - exp(-(u - x_dg) k_low/q_rest)). ``opening`` u >= 0 in m.
+    k_low x_dg + q_rest (1 - exp(-(u - x_dg) k_low/q_rest)). Of a data sheet: straight lines
+    between its points  (V15). ``opening`` u >= 0 in m.
     """
+    if valve.has_points > 0.0:
+        return y_on_lines(opening, valve.flow)
     if opening <= valve.x_dg:
         return valve.k_low * opening
     beyond = opening - valve.x_dg
@@ -182,7 +190,13 @@ def flow_curve(opening, valve):
 
 @kernel
 def leakage(travel, valve):
-    """Return q_0 x_l / (x_l + u), a land's leakage at the reference drop  (V6), in m3/s."""
+    """
+    Return q_0 x_l / (x_l + u), a land's leakage at the reference drop  (V6), in m3/s.
+
+    Of a data sheet: straight lines between the leakages of V16.
+    """
+    if valve.has_points > 0.0:
+        return y_on_lines(travel, valve.leak)
     return valve.q_0 * valve.x_l / (valve.x_l + travel)
 
 

@@ -10,7 +10,7 @@ from dataclasses import dataclass
 import math
 
 from isa_ros.core.kernel import kernel
-from isa_ros.core.parameter import parameter, Parameters
+from isa_ros.core.parameter import choice, parameter, Parameters
 from isa_ros.core.record import record
 from isa_ros.core.units import MICRO, MILLI, MPA
 import numpy as np
@@ -62,6 +62,25 @@ class PilotedSpool(Spool):
         'K_pilot, spool speed per series current', 'mm/s/mA', gt=0.0, le=1.0e4)
 
 
+@dataclass(frozen=True, kw_only=True)
+class DataSheetSpool(Parameters):
+    """A spool that follows the current as a data sheet's frequency response: equation 7."""
+
+    frequency_hz: float = parameter('frequency of the stated point', 'Hz', gt=0.0, le=1e3)
+    at: str = choice('the stated point of the response', 'minus_3_db', 'minus_90_deg')
+    damping_ratio: float = parameter('zeta of equation 7', '1', gt=0.0, le=5.0)
+    null_bias: NullBias
+
+    @property
+    def natural_frequency_rad_per_s(self) -> float:
+        """Return w_n from the point of the response  (V17)."""
+        stated = 2.0 * math.pi * self.frequency_hz
+        if self.at == 'minus_90_deg':
+            return stated
+        damped = 1.0 - 2.0 * self.damping_ratio * self.damping_ratio
+        return stated / math.sqrt(damped + math.sqrt(damped * damped + 1.0))
+
+
 SPOOL = np.dtype([
     ('kind', 'i8'), ('w_n', 'f8'), ('zeta', 'f8'),
     ('k_loop', 'f8'),       # 1/s
@@ -73,7 +92,7 @@ SPOOL = np.dtype([
 VALVE_STATE = np.dtype([('spool', 'f8'), ('velocity', 'f8'), ('acceleration', 'f8')])
 
 
-def spool_record(sheet: Spool, temperature: float) -> np.record:
+def spool_record(sheet: Spool | DataSheetSpool, temperature: float) -> np.record:
     """Return the `SPOOL` record of a sheet with oil at ``temperature`` (celsius)."""
     kind, k_loop, k_pilot = DIRECT, 0.0, 0.0
     if isinstance(sheet, ClosedLoopSpool):

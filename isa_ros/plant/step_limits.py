@@ -79,7 +79,7 @@ def refuse_too_fast(plant: np.record, sheet: object, load: LoadSide) -> None:
     if _is_followed(plant, load):
         return
     changes = [*_changes_of_plant(plant, sheet, load), *_changes_of_load(plant, load)]
-    changes.sort(key=lambda change: abs(math.log(change.factor)))
+    changes.sort(key=lambda change: max(change.factor, 1.0 / change.factor))
     bounds = '; or '.join(change.bound for change in changes[:_NAMED]) or (
         'moving part, force sensor, oil, friction and load are too fast together')
     raise ParameterError(f'{bounds}, for the plant step of {PLANT_STEP_NS / 1e3:g} us')

@@ -4,21 +4,25 @@ from collections.abc import Sequence
 from pathlib import Path
 import time
 
+from isa_ros.config.changes import changes_of
 from isa_ros.config.run_file import load_run
 from isa_ros.errors import RunError
 from isa_ros.processes.processes import actuator_processes, Children
 from isa_ros.processes.stopping import StopRequest
 from isa_ros.run.warm_up import warmed_up
-from isa_ros.scenario.scenario import load_scenario
+from isa_ros.scenario.scenario import planned
 
 LOOK_PERIOD_S = 0.1
 
 
-def host_actuators(config: Path, scenario: Path | None, names: Sequence[str]) -> None:
+def host_actuators(
+        config: Path, scenario: Path | None, names: Sequence[str],
+        texts: Sequence[str] = ()) -> None:
     """
     Start a process for each named actuator (default: for all) and keep them until a signal.
 
-    They take part in one run after the other; a signal is their normal end.
+    They take part in one run after the other; a signal is their normal end. ``texts`` are the
+    changes of a `Request`.
 
     Raises
     ------
@@ -28,11 +32,10 @@ def host_actuators(config: Path, scenario: Path | None, names: Sequence[str]) ->
         One of the processes ended.
 
     """
-    run = load_run(config)
-    if scenario is not None:
-        run = load_scenario(scenario, run).run
+    changes = changes_of(texts)
+    run = planned(scenario, load_run(config, changes.run), changes).run
     chosen = [run.actuator(name).name for name in names] or None
-    processes = actuator_processes(run, config, scenario, chosen)
+    processes = actuator_processes(run, config, scenario, chosen, texts)
     with StopRequest() as should_stop:
         warmed_up(run)
         with Children(processes) as children:

@@ -28,7 +28,7 @@ END_S = 3.0
 _POLL_S = 0.01
 _ROOT = Path(isa_ros.__file__).parents[1]
 
-ParameterValue = bool | float | str
+ParameterValue = bool | float | str | list[str] | tuple[str, ...]
 
 
 @dataclass(frozen=True)
@@ -51,11 +51,17 @@ class Process:
 
 def actuator_processes(
         run: RunConfig, config: Path, scenario: Path | None,
-        names: Sequence[str] | None = None) -> tuple[Process, ...]:
-    """Return the processes of the named actuators (None: all), in the order of the file."""
-    files = [('config_file', str(config.resolve()))]
+        names: Sequence[str] | None = None, changes: Sequence[str] = ()) -> tuple[Process, ...]:
+    """
+    Return the processes of the named actuators (None: all), in the order of the file.
+
+    ``changes`` are those of a `Request`.
+    """
+    files: list[tuple[str, ParameterValue]] = [('config_file', str(config.resolve()))]
     if scenario is not None:
         files.append(('scenario_file', str(scenario.resolve())))
+    if changes:
+        files.append(('set', tuple(changes)))
     return tuple(
         Process(actuator.name, 'actuator', (('lockstep', True), *files))
         for actuator in run.actuators if names is None or actuator.name in names)
@@ -63,11 +69,13 @@ def actuator_processes(
 
 def run_processes(
         run: RunConfig, config: Path, scenario: Path | None,
-        options: Mapping[str, ParameterValue]) -> tuple[Process, ...]:
+        options: Mapping[str, ParameterValue],
+        elsewhere: Sequence[str] = ()) -> tuple[Process, ...]:
     """
     Return every process of a run, the coordinator last.
 
     ``options`` are parameters of the coordinator; with ``in_process`` it is the only process.
+    ``elsewhere`` are the actuators that are started on another host.
     """
     files = [('config_file', str(config.resolve()))]
     if scenario is not None:
@@ -75,7 +83,8 @@ def run_processes(
     coordinator = Process('coordinator', 'coordinator', (*files, *options.items()))
     if options.get('in_process'):
         return (coordinator,)
-    return (*actuator_processes(run, config, scenario), coordinator)
+    names = run.names_here(elsewhere)
+    return (*actuator_processes(run, config, scenario, names), coordinator)
 
 
 class Children:

@@ -14,7 +14,8 @@ from isa_ros.core.record import record
 from isa_ros.reu.compensation import (
     COMPENSATION, compensation_record, dual_gain_compensation, DualGain, Linear)
 from isa_ros.reu.filters import low_pass, low_pass_coefficient
-from isa_ros.reu.schedule import Constant, OilStiffness, POINTS, scheduled, ThreePoints
+from isa_ros.reu.schedule import (
+    Constant, FivePoints, OilStiffness, POINTS, scheduled, ThreePoints)
 import numpy as np
 
 
@@ -44,7 +45,7 @@ class Pid(Parameters):
         'clamped: the integral is held while the output is saturated', 'clamped', 'none')
     retracting_factor: float = tunable(
         'factor on demands that retract, for slots of equal area', '1', gt=0.0, le=10.0)
-    gain_schedule: Constant | OilStiffness | ThreePoints
+    gain_schedule: Constant | OilStiffness | ThreePoints | FivePoints
     compensation: Linear | DualGain
 
 

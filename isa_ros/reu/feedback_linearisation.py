@@ -13,6 +13,7 @@ import math
 from isa_ros.core.elementary import log
 from isa_ros.core.kernel import kernel
 from isa_ros.core.parameter import choice, parameter, Parameters, tunable
+from isa_ros.core.piecewise import LINES, x_on_lines
 from isa_ros.core.record import record
 from isa_ros.reu.filters import low_pass, low_pass_coefficient
 import numpy as np
@@ -47,7 +48,7 @@ LINEARISED = np.dtype([
     ('beta', 'f8'), ('c_li', 'f8'), ('k_s', 'f8'),
     ('k_low', 'f8'), ('k_high', 'f8'), ('q_rest', 'f8'), ('x_dg', 'f8'), ('x_max', 'f8'),
     ('per_root_drop', 'f8'), ('f_pa', 'f8'), ('f_at', 'f8'), ('f_bt', 'f8'), ('f_pb', 'f8'),
-    ('output_per_spool', 'f8')])
+    ('output_per_spool', 'f8'), ('has_points', 'f8'), ('flow', LINES)])
 """The block's model of the actuator, SI; names as in the plant's records."""
 
 LINEARISATION = np.dtype([
@@ -81,8 +82,10 @@ def opening_of(flow, model):
     """
     Return the opening u >= 0 (m) at which a land gives ``flow`` >= 0 at dp_ref  (R11).
 
-    The inverse of the flow curve (V4), up to the spool's stop.
+    The inverse of the flow curve (V4, V15), up to the spool's stop.
     """
+    if model.has_points > 0.0:
+        return min(model.x_max, x_on_lines(flow, model.flow))
     at_knee = model.k_low * model.x_dg
     if flow <= at_knee:
         return flow / model.k_low

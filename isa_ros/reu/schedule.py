@@ -4,11 +4,11 @@ Gain scheduling: a factor over the stroke, and one on demands that retract.
 The factor over the stroke is a table at equal distances with straight lines between.
 """
 
-from dataclasses import dataclass
+from dataclasses import dataclass, fields
 import math
 
 from isa_ros.core.kernel import kernel
-from isa_ros.core.parameter import parameter, Parameters, tunable
+from isa_ros.core.parameter import Parameters, tunable
 import numpy as np
 
 POINTS = 21
@@ -21,11 +21,7 @@ class Constant(Parameters):
 
 @dataclass(frozen=True, kw_only=True)
 class OilStiffness(Parameters):
-    """Gains divided by the stiffness in the force loop: stiffer oil, smaller gains."""
-
-    reference_stiffness: float = parameter(
-        'at which the gains are as stated; 0: the smallest of this actuator', 'N/m | Nm/rad',
-        ge=0.0, le=1e12)
+    """Gains divided by the stiffness in the force loop, relative to its smallest value."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -37,7 +33,19 @@ class ThreePoints(Parameters):
     extended: float = tunable('factor at the extended end', '1', ge=0.0, le=100.0)
 
 
-Schedule = Constant | OilStiffness | ThreePoints
+@dataclass(frozen=True, kw_only=True)
+class FivePoints(Parameters):
+    """Straight lines between five factors, as `isa tune` finds them."""
+
+    retracted: float = tunable('factor at the retracted end', '1', ge=0.0, le=100.0)
+    first_quarter: float = tunable('factor at a quarter of the stroke', '1', ge=0.0, le=100.0)
+    middle: float = tunable('factor at mid stroke', '1', ge=0.0, le=100.0)
+    last_quarter: float = tunable(
+        'factor at three quarters of the stroke', '1', ge=0.0, le=100.0)
+    extended: float = tunable('factor at the extended end', '1', ge=0.0, le=100.0)
+
+
+Schedule = Constant | OilStiffness | ThreePoints | FivePoints
 
 
 def schedule_table(sheet: Schedule, stiffness: np.ndarray) -> np.ndarray:
@@ -47,13 +55,14 @@ def schedule_table(sheet: Schedule, stiffness: np.ndarray) -> np.ndarray:
     ``stiffness``, of the same shape, is the stiffness in the force loop: the gain of the
     loop's plant is proportional to it.
     """
+    table: np.ndarray = np.ones(POINTS)
     if isinstance(sheet, OilStiffness):
-        table: np.ndarray = (sheet.reference_stiffness or stiffness.min()) / stiffness
-        return table
-    if isinstance(sheet, ThreePoints):
-        return np.interp(np.linspace(0.0, 1.0, POINTS), [0.0, 0.5, 1.0],
-                         [sheet.retracted, sheet.middle, sheet.extended])
-    return np.ones(POINTS)
+        table = stiffness.min() / stiffness
+    elif isinstance(sheet, (ThreePoints, FivePoints)):
+        factors = [getattr(sheet, f.name) for f in fields(sheet)]
+        table = np.interp(
+            np.linspace(0.0, 1.0, POINTS), np.linspace(0.0, 1.0, len(factors)), factors)
+    return table
 
 
 @kernel

@@ -20,7 +20,7 @@ class Outlet(Protocol):
         ...
 
     def publish(self, messages: Messages) -> None:
-        """Publish to the topics with subscriptions."""
+        """Publish to the topics with subscriptions, and messages that are kept for later ones."""
         ...
 
 
@@ -49,7 +49,7 @@ class Narrator:
     """
     Packs the rows of a run at each instant and passes the messages to recorder and outlets.
 
-    Without recorder (None) and without subscriptions nothing is packed.
+    Without recorder (None) and without subscriptions only what was applied is packed.
     """
 
     def __init__(
@@ -83,7 +83,8 @@ class Narrator:
         """
         outlets = self._outlets
         subscribed = [
-            row for row, outlet in enumerate(outlets.actuators) if outlet.has_subscribers()]
+            row for row, outlet in enumerate(outlets.actuators)
+            if outlet.has_subscribers() or self._packer.has_applied(row) or row in tuned]
         has_surroundings = outlets.surroundings.has_subscribers()
         if self._recorder is None and not subscribed and not has_surroundings:
             return

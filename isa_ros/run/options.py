@@ -10,14 +10,20 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field, fields, MISSING, replace
 from enum import Enum
 from pathlib import Path
+import re
 from typing import Any
 
 from isa_ros.config.paths import CONFIG, find, SCENARIOS
+from isa_ros.errors import ConfigError
 from isa_ros.run.pacing import JOIN_TIMEOUT_S, Laps
 
 COMPRESSIONS = ('none', 'lz4', 'zstd')
 
-RosValue = bool | float | str
+RosValue = bool | float | str | list[str]
+
+SET_HELP = (
+    'another value in {config}, by its key and in its unit, as isa params shows them; keys of the '
+    'scenario begin with scenario.')
 
 
 class Kind(Enum):
@@ -38,14 +44,22 @@ class Kind(Enum):
     """Names, separated by commas on the command line."""
     REPEATED = 'repeated'
     """One name for each time the option is given on the command line."""
+    CHANGES = 'changes'
+    """One KEY=VALUE for each time the option is given on the command line."""
 
 
 _SHIPPED = (Kind.CONFIG, Kind.SCENARIO)
-_NAMES = (Kind.NAMES, Kind.REPEATED)
+_LISTS: Mapping[Kind, str] = {
+    Kind.NAMES: 'names', Kind.REPEATED: 'names', Kind.CHANGES: 'KEY=VALUE'}
+"""Entries of the kinds that are lists."""
+_COMMA = {
+    kind: re.compile(r',(?=[^,=\[{]+=)' if kind is Kind.CHANGES else ',') for kind in _LISTS}
+"""What separates entries in a launch file; the value of a change may have commas too."""
 _UNSET: Mapping[Kind, tuple[RosValue, str]] = {
     Kind.POSITIVE: (0.0, '0'), Kind.NOT_NEGATIVE: (-1.0, '< 0'), Kind.FLAG: (False, 'false')}
 """Value of a ROS parameter that is not set, and its text in help; other kinds: an empty text."""
 _EMPTY: tuple[RosValue, str] = ('', 'empty')
+_FLAGS = {'true': True, '1': True, 'false': False, '0': False}
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -67,7 +81,6 @@ class Option:
     """'': that of the parameter."""
     is_argument: bool = True
     is_parameter: bool = True
-    is_launched: bool = False
 
     field: str = ''
     """Name of the field of `Request`."""
@@ -87,16 +100,16 @@ class Option:
         text = self.meaning + (f', {self.unit}' if self.unit else '')
         if self.kind is Kind.COMPRESSION:
             text += f': {", ".join(COMPRESSIONS)}'
-        if self.kind in _NAMES:
-            text += '; a list of names'
+        if self.kind in _LISTS:
+            text += f'; a list of {_LISTS[self.kind]}, in a launch file separated by commas'
         elif self.default is None and not self.is_required:
             text += f'; {_UNSET.get(self.kind, _EMPTY)[1]}: {self.otherwise or "none"}'
         return text.format(config='the run file')
 
     @property
     def parameter_default(self) -> RosValue | None:
-        """Return the default of the ROS parameter; None: an empty list of names."""
-        if self.kind in _NAMES:
+        """Return the default of the ROS parameter; None: an empty list."""
+        if self.kind in _LISTS:
             return None
         unset: RosValue = _UNSET.get(self.kind, _EMPTY)[0]
         return unset if self.default is None else self.default
@@ -104,17 +117,19 @@ class Option:
     @property
     def launch_text(self) -> str:
         """Return the default of the launch file's argument."""
+        if self.kind in _LISTS:
+            return ''
         return self.launch_default or str(self.parameter_default).lower()
 
     def of_argument(self, value: Any) -> Any:
         """Return the value for `Request` of a checked command-line argument."""
         if self.kind in _SHIPPED:
             return None if value is None else find(value, self.kind.value)
-        return tuple(value) if self.kind in _NAMES else value
+        return tuple(value) if self.kind in _LISTS else value
 
     def of_parameter(self, value: Any) -> Any:
         """Return the value for `Request` of a ROS parameter."""
-        if self.kind in _NAMES:
+        if self.kind in _LISTS:
             return tuple(value or ())
         if self.kind is Kind.NOT_NEGATIVE:
             return None if value < 0.0 else value
@@ -123,10 +138,25 @@ class Option:
         return Path(value) if self.kind in (Kind.PATH, Kind.NEW_FILE) else self.of_argument(value)
 
     def of_launch(self, text: str) -> RosValue:
-        """Return the value of the ROS parameter for the text of the launch file's argument."""
+        """
+        Return the value of the ROS parameter for the text of the launch file's argument.
+
+        Raises
+        ------
+        ConfigError
+            The text is not of the option's kind.
+
+        """
+        if self.kind in _LISTS:
+            return [entry for entry in _COMMA[self.kind].split(text) if entry]
         if self.kind is Kind.FLAG:
-            return text.lower() in ('true', '1')
-        return float(text) if self.kind in (Kind.POSITIVE, Kind.NOT_NEGATIVE) else text
+            return flag(self.name, text)
+        if self.kind in (Kind.POSITIVE, Kind.NOT_NEGATIVE):
+            try:
+                return float(text)
+            except ValueError:
+                raise ConfigError(f'{self.name}:={text}, must be a number') from None
+        return text
 
 
 def _option(kind: Kind, meaning: str, **more: Any) -> Mapping[str, Option]:
@@ -139,33 +169,32 @@ class Request:
 
     config: Path = field(metadata=_option(
         Kind.CONFIG, 'a run file, or a shipped one by name', metavar='CONFIG',
-        parameter='config_file', launch_default='leg.yaml', is_launched=True))
+        parameter='config_file', launch_default='leg.yaml'))
     scenario: Path | None = field(default=None, metadata=_option(
         Kind.SCENARIO, 'commands over time: a file, or a shipped one by name', metavar='FILE',
-        parameter='scenario_file', is_launched=True))
+        parameter='scenario_file'))
+    changes: tuple[str, ...] = field(default=(), metadata=_option(
+        Kind.CHANGES, SET_HELP, metavar='KEY=VALUE', name='set'))
     duration_s: float | None = field(default=None, metadata=_option(
         Kind.POSITIVE, 'simulated time', otherwise='that of the scenario, else until Ctrl-C',
-        unit='s', metavar='S', name='duration', is_launched=True))
+        unit='s', metavar='S', name='duration'))
     out: Path | None = field(default=None, metadata=_option(
-        Kind.PATH, 'directory of the bag', otherwise='a new one in runs/', metavar='DIR',
-        is_launched=True))
+        Kind.PATH, 'directory of the bag', otherwise='a new one in runs/', metavar='DIR'))
     overwrite: bool = field(default=False, metadata=_option(
         Kind.FLAG, 'replace the bag in an existing directory'))
     compression: str | None = field(default=None, metadata=_option(
-        Kind.COMPRESSION, 'of the chunks of the bag', otherwise='that of {config}, else none',
-        is_launched=True))
+        Kind.COMPRESSION, 'of the chunks of the bag', otherwise='that of {config}, else none'))
     split_mb: float | None = field(default=None, metadata=_option(
         Kind.NOT_NEGATIVE, 'begin a new file of the bag after N MB, 0: never',
-        otherwise='that of {config}', metavar='N', is_launched=True))
+        otherwise='that of {config}', metavar='N'))
     is_synced: bool = field(default=False, metadata=_option(
         Kind.FLAG, 'wait at each chunk of the bag until the disk has it (fsync): then a failure '
-        'of the power loses as little as a killed run', name='sync', is_launched=True))
+        'of the power loses as little as a killed run', name='sync'))
     real_time_factor: float | None = field(default=None, metadata=_option(
         Kind.POSITIVE, 'not faster than X times real time', otherwise='as fast as possible',
-        metavar='X', is_launched=True))
+        metavar='X'))
     in_process: bool = field(default=False, metadata=_option(
-        Kind.FLAG, 'all nodes in one process: faster, and the same bytes in the bag',
-        is_launched=True))
+        Kind.FLAG, 'all nodes in one process: faster, and the same bytes in the bag'))
     elsewhere: tuple[str, ...] = field(default=(), metadata=_option(
         Kind.NAMES, 'actuators that `isa actuators` starts on another host; the run waits for '
         'them', metavar='NAME[,NAME...]|all', is_parameter=False))
@@ -180,13 +209,13 @@ class Request:
         parameter='join_timeout_s'))
     is_paused: bool = field(default=False, metadata=_option(
         Kind.FLAG, 'wait before tick 0 for /coordinator/step or the end of the pause',
-        name='paused', is_launched=True))
+        name='paused'))
     restore: Path | None = field(default=None, metadata=_option(
         Kind.PATH, 'continue from a saved state', metavar='FILE'))
     save: Path | None = field(default=None, metadata=_option(
         Kind.NEW_FILE, 'save the state at the end to a file', metavar='FILE'))
     namespace: str = field(default='', metadata=_option(
-        Kind.TEXT, 'of all nodes', is_argument=False, is_parameter=False, is_launched=True))
+        Kind.TEXT, 'of all nodes', is_argument=False, is_parameter=False))
     is_alone: bool = False
     """Whether this process does nothing but the run: then the loaded objects need no garbage
     collection and, if the process has had no node yet, actuator processes may be forked."""
@@ -224,6 +253,31 @@ def request_of_parameters(values: Mapping[str, Any], **more: Any) -> Request:
 
 
 def launched_parameters(texts: Mapping[str, str]) -> dict[str, RosValue]:
-    """Return the coordinator's ROS parameters, less its files, for a launch file's arguments."""
-    return {option.parameter: option.of_launch(texts[option.name]) for option in OPTIONS
-            if option.is_launched and option.is_parameter and option.kind not in _SHIPPED}
+    """
+    Return the coordinator's ROS parameters, less its files, for a launch file's arguments.
+
+    Empty lists are left out: launch has none.
+    """
+    values = {option.parameter: option.of_launch(texts[option.name]) for option in OPTIONS
+              if option.is_parameter and option.kind not in _SHIPPED}
+    return {name: value for name, value in values.items() if value != []}
+
+
+def flag(name: str, text: str) -> bool:
+    """
+    Return the value of a launch file's argument that is true or false.
+
+    Raises
+    ------
+    ConfigError
+        The text is neither.
+
+    """
+    if text.lower() not in _FLAGS:
+        raise ConfigError(f'{name}:={text}, must be true or false')
+    return _FLAGS[text.lower()]
+
+
+def launched_elsewhere(texts: Mapping[str, str]) -> tuple[str, ...]:
+    """Return the actuators that a launch file does not start."""
+    return tuple(text for text in texts['elsewhere'].split(',') if text)

@@ -13,10 +13,11 @@ from isa_ros.core.atmosphere import ATMOSPHERE
 from isa_ros.core.kernel import kernel
 from isa_ros.core.record import floats
 from isa_ros.core.signals import COMMAND, Records, SAMPLE
-from isa_ros.core.topic import Topic
+from isa_ros.core.topic import KEPT, Qos, Topic
 from isa_ros.surroundings.supply import SUPPLY_SAMPLE
-from msg_adapters import actuator_messages, clock, event, fluid_pressure
-from msg_adapters.actuator_messages import STATE_TOPICS, TOPICS
+from msg_adapters import (
+    actuator_messages, clock, coordinator_messages, event, fluid_pressure)
+from msg_adapters.actuator_messages import APPLIED_TOPICS, STATE_TOPICS, TOPICS
 from msg_adapters.applied_parameters import applied_parameters
 from msg_adapters.template import FIRST_VALUE, Prepared, Template, time_word
 import numpy as np
@@ -57,6 +58,13 @@ class Names(NamedTuple):
     supplies: Sequence[tuple[str, bool]] = ()
     """(name, publishes its return pressure) of each."""
     body: BodyMessages | None = None
+
+
+def topics_of_actuator(prefix: str) -> list[Topic]:
+    """Return `TOPICS` below ``prefix`` with their qualities of service."""
+    return [
+        Topic(f'{prefix}/{suffix}', type_, KEPT if (suffix, type_) in APPLIED_TOPICS else Qos())
+        for suffix, type_ in TOPICS]
 
 
 def float_columns(record: np.dtype[np.void], first: int = 0) -> dict[str, int]:
@@ -126,12 +134,13 @@ class Packer:
         for name, is_rotary in names.actuators:
             own = self._actuator(name, is_rotary, at)
             at += len(_SAMPLE) + len(_PRESSURES) + len(_APPLIED)
-            found += [(Topic(f'/{name}/{suffix}', type_), own.get(suffix))
-                      for suffix, type_ in TOPICS]
+            found += [(topic, own.get(topic.name.rpartition('/')[2]))
+                      for topic in topics_of_actuator(f'/{name}')]
         for supply, shows_return in names.supplies:
             for k, suffix in enumerate(_SUPPLY_PRESSURES[:1 + shows_return]):
                 topic = Topic(f'{_COORDINATOR}/{supply}_{suffix}', fluid_pressure.TYPE)
-                found.append((topic, fluid_pressure.fluid_pressure(supply, at + k)))
+                found.append((topic, fluid_pressure.fluid_pressure(
+                    coordinator_messages.WORLD_FRAME, at + k)))
             at += len(_SUPPLY_PRESSURES)
         if names.body is not None and shown.body is not None:
             body = names.body(float_columns(shown.body.dtype, at))
@@ -220,6 +229,10 @@ class Packer:
         setpoint = self._message(f'/{name}/{_SETPOINT}') if self._kinds[row] else None
         return [self._tuned.get(row), setpoint,
                 *(self._message(f'/{name}/{suffix}') for suffix, _ in STATE_TOPICS)]
+
+    def has_applied(self, row: int) -> bool:
+        """Return whether a command of an actuator took effect at the start of the last tick."""
+        return bool(self._kinds[row])
 
     def of(self, topics: Sequence[Topic]) -> list[bytes]:
         """Return the messages of some topics."""

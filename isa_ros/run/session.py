@@ -10,6 +10,7 @@ from isa_ros.bag.directory import files_to_replace
 from isa_ros.bag.provenance import installed_versions, provenance_of
 from isa_ros.bag.writer import BagWriter
 from isa_ros.config.assembly import surroundings_of
+from isa_ros.config.changes import changes_of
 from isa_ros.config.run_config import RunConfig
 from isa_ros.config.run_file import load_run
 from isa_ros.core.saved_state import read_state, RunState, write_state
@@ -23,7 +24,7 @@ from isa_ros.run.options import Request
 from isa_ros.run.pacing import JOINING, Laps, Pace, Progress, ProgressMeter, STARTING
 from isa_ros.run.packing import Packer
 from isa_ros.run.thinning import Thinning
-from isa_ros.scenario.scenario import idle, load_scenario, Scenario
+from isa_ros.scenario.scenario import planned, Scenario
 from isa_ros.surroundings.surroundings import Surroundings
 
 RUNS = Path('runs')
@@ -62,13 +63,14 @@ def prepare(request: Request) -> Session:
         The output directory already exists or cannot be created.
 
     """
-    run = load_run(request.config).with_controllers(request.controllers).stored(
+    changes = changes_of(request.changes)
+    run = load_run(request.config, changes.run).with_controllers(request.controllers).stored(
         request.compression, request.split_mb, 'record options')
     if run.record.thins:
         rows = Rows(len(run.actuators), surroundings_of(run))
         run.record.refuse_misfits(
             [topic.name for topic in packer_of(run, rows.shown).topics], run.source)
-    scenario = idle(run) if request.scenario is None else load_scenario(request.scenario, run)
+    scenario = planned(request.scenario, run, changes)
     if request.duration_s is not None:
         scenario = scenario.lasting(request.duration_s)
     if request.in_process and request.elsewhere:

@@ -12,6 +12,7 @@ from pathlib import Path
 from typing import Any
 
 from isa_ros.config.catalogue import actuator_model
+from isa_ros.config.changes import changed, Changes, SCENARIO
 from isa_ros.config.own_load import own_load, refuse_beyond_stops
 from isa_ros.config.run_config import ActuatorConfig, RunConfig
 from isa_ros.config.run_file import leg_start, name_of, refuse_reach, refuse_start, ticks_in
@@ -115,6 +116,24 @@ def load_scenario(path: Path | str, run: RunConfig) -> Scenario:
     return read_scenario(read(path), Place(path.name), run)
 
 
+def planned(path: Path | None, run: RunConfig, changes: Changes) -> Scenario:
+    """
+    Return the scenario of a file with some values changed, or without a file the idle one.
+
+    Raises
+    ------
+    ConfigError
+        As `load_scenario`, or there are changes and no file.
+
+    """
+    if path is not None:
+        return read_scenario(
+            changed(read(path), changes.scenario, path.name), Place(path.name), run)
+    for key in changes.scenario:
+        raise ConfigError(f'--set {SCENARIO}{key} is not used: the run has no scenario')
+    return idle(run)
+
+
 def scenario_of(text: str, run: RunConfig, name: str = 'scenario.yaml') -> Scenario:
     """Return the scenario of a text; as `load_scenario`."""
     return read_scenario(parse(text, name), Place(name), run)
@@ -190,7 +209,8 @@ def _with_loads(run: RunConfig, tree: Tree, place: Place) -> RunConfig:
         if actuator.load is None:
             raise ConfigError(f'{below} is not used: the load of {name} is the leg')
         model = actuator_model(actuator.model, f'{run.source}: actuators.{name}.model')
-        load = own_load(section_at(section, below), below, model)
+        load = own_load(
+            section_at(section, below), below, model, actuator.sheet, run.span_of(name))
         refuse_beyond_stops(load, actuator.initial_position, str(below))
         replaced[name] = replace(actuator, load=load)
     return replace(run, actuators=tuple(replaced.get(a.name, a) for a in run.actuators))

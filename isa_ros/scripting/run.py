@@ -7,6 +7,7 @@ import re
 import sys
 from typing import Any
 
+from isa_ros.config.changes import replaced, SCENARIO
 from isa_ros.config.paths import CONFIG, find, SCENARIOS
 from isa_ros.config.run_config import RunConfig
 from isa_ros.config.run_file import run_of
@@ -16,11 +17,9 @@ from isa_ros.controller import Controller
 from isa_ros.errors import ConfigError
 from isa_ros.scenario.scenario import idle, read_scenario, Scenario
 from isa_ros.scripting.result import Result, simulated
-from isa_ros.scripting.tree import replaced
 from isa_ros.simulation import Simulation
 from isa_ros.text.progress import counted
 
-_SCENARIO = 'scenario.'     # prefix of the keys of the scenario's file
 _WORDS = re.compile(r'(?<=[a-z0-9])(?=[A-Z])')
 
 Controllers = Sequence[Controller] | Mapping[str, Controller]
@@ -91,12 +90,12 @@ class Run:
         """
         config, scenario = self._config, self._scenario_file
         for key, value in changes.items():
-            if not key.startswith(_SCENARIO):
+            if not key.startswith(SCENARIO):
                 config = config.replaced(key, value)
             elif scenario is None:
                 raise ConfigError(f'{config.name}: {key} is not used: the run has no scenario')
             else:
-                scenario = scenario.replaced(key.removeprefix(_SCENARIO), value)
+                scenario = scenario.replaced(key.removeprefix(SCENARIO), value)
         return Run(config, scenario, **self._options)
 
     def simulation(self, controllers: Controllers = ()) -> Simulation:

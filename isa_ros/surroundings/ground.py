@@ -1,9 +1,10 @@
 """
-Foot on level ground: normal force of Hunt and Crossley, friction with bristles.
+Foot on level ground: normal force of Hunt and Crossley, friction with an elastic sole.
 
 The ground is the plane z = 0 and the foot a point. Force > 0 pushes the foot up; the ground
-never pulls. Tangential forces act along x and y of the base. Equations L9-L11 of
-docs/equations.md.
+never pulls. Tangential forces act along x and y of the base: a spring and a damper in parallel,
+the sole, in series with dry friction. Their deflection is the shear. The law never gives back
+more energy than it took, whatever the normal force does. Equations L9-L11 of docs/equations.md.
 
 Neglected: the foot's radius and rolling, uneven ground, and wear of the rubber.
 """
@@ -15,7 +16,11 @@ from isa_ros.core.contact import normal_force
 from isa_ros.core.kernel import kernel
 from isa_ros.core.parameter import parameter, Parameters
 from isa_ros.core.record import record
+from isa_ros.errors import ParameterError
 import numpy as np
+
+
+SHORTEST_RELAXATION = 1e-4  # s, of c_t/k_t; a Runge-Kutta step is stable up to 2.8 times that
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -27,21 +32,28 @@ class Ground(Parameters):
     damping: float = parameter(
         "c of the factor 1 + c d' of Hunt and Crossley", 's/m', ge=0.0, le=100.0)
     friction: float = parameter('coefficient of friction', '1', ge=0.01, le=5.0)
-    bristle_travel_mm: float = parameter(
-        'deflection of the bristles at full friction', 'mm', ge=0.05, le=100.0)
-    bristle_damping: float = parameter(
-        'friction coefficient per speed of the bristles', 's/m', ge=0.0, le=10.0)
-    bristle_relaxation_ms: float = parameter(
-        'time constant with which bristles spring back in the air', 'ms', ge=0.5, le=1000.0)
+    tangential_stiffness: float = parameter(
+        'shear stiffness of sole and ground', 'N/m', ge=1e3, le=1e7)
+    tangential_damping: float = parameter(
+        'shear damping of sole and ground', 'N s/m', ge=1.0, le=1e4)
+
+    def __post_init__(self) -> None:
+        """Refuse a sole that springs back faster than the leg's steps can follow."""
+        super().__post_init__()
+        least = SHORTEST_RELAXATION * self.tangential_stiffness
+        if self.tangential_damping < least:
+            raise ParameterError(
+                f'Ground.tangential_damping = {self.tangential_damping:g} N s/m, must be >= '
+                f'{least:g} N s/m, {SHORTEST_RELAXATION:g} s of Ground.tangential_stiffness = '
+                f'{self.tangential_stiffness:g} N/m')
 
 
 GROUND = np.dtype([
     ('stiffness', '<f8'),    # k, N/m^1.5
     ('damping', '<f8'),      # c, s/m
     ('friction', '<f8'),     # mu, 1
-    ('sigma_0', '<f8'),      # mu per bristle deflection, 1/m
-    ('sigma_1', '<f8'),      # mu per bristle speed, s/m
-    ('relaxation', '<f8'),   # 1/s
+    ('tangential_stiffness', '<f8'),   # k_t, N/m
+    ('tangential_damping', '<f8'),     # c_t, N s/m
 ])
 
 
@@ -49,43 +61,42 @@ def ground_record(sheet: Ground) -> np.record:
     """Return the `GROUND` record of a sheet."""
     return record(
         GROUND, stiffness=sheet.stiffness, damping=sheet.damping, friction=sheet.friction,
-        sigma_0=sheet.friction / (sheet.bristle_travel_mm * 1e-3), sigma_1=sheet.bristle_damping,
-        relaxation=1.0 / (sheet.bristle_relaxation_ms * 1e-3))
+        tangential_stiffness=sheet.tangential_stiffness,
+        tangential_damping=sheet.tangential_damping)
 
 
 @kernel
-def bristle_rates(z_x, z_y, v_x, v_y, is_touching, ground):
+def friction_forces(normal, shear_x, shear_y, v_x, v_y, ground):
     """
-    Return z' = v - sigma_0 |v| z / mu on the ground, z' = -z / T in the air  (L10), in m/s.
+    Return -G, cut to the friction cone mu N, with G = k_t z + c_t v  (L10), in N.
 
-    At steady sliding sigma_0 |z| = mu, whatever the normal force.
+    The sole sticks while G is inside the cone and slides with exactly mu N otherwise.
     """
-    if not is_touching:
-        return -ground.relaxation * z_x, -ground.relaxation * z_y
-    pull = ground.sigma_0 * math.sqrt(v_x * v_x + v_y * v_y) / ground.friction
-    return v_x - pull * z_x, v_y - pull * z_y
-
-
-@kernel
-def friction_forces(normal, z_x, z_y, rate_x, rate_y, ground):
-    """
-    Return -N (sigma_0 z + sigma_1 z')  (L11), in N, cut to the friction cone mu N.
-
-    The cut affects only the damping's share while the foot begins to slide.
-    """
-    f_x = -normal * (ground.sigma_0 * z_x + ground.sigma_1 * rate_x)
-    f_y = -normal * (ground.sigma_0 * z_y + ground.sigma_1 * rate_y)
+    f_x = -(ground.tangential_stiffness * shear_x + ground.tangential_damping * v_x)
+    f_y = -(ground.tangential_stiffness * shear_y + ground.tangential_damping * v_y)
     limit = ground.friction * normal
     size = math.sqrt(f_x * f_x + f_y * f_y)
     if size > limit:
-        f_x, f_y = f_x * (limit / size), f_y * (limit / size)
+        return f_x * (limit / size), f_y * (limit / size)
     return f_x, f_y
 
 
 @kernel
-def contact(height, v_x, v_y, v_z, z_x, z_y, ground):
-    """Return the force on the foot (x, y, z; N) and the bristles' rates (m/s)."""
+def shear_rates(f_x, f_y, shear_x, shear_y, ground):
+    """
+    Return z' = -(F + k_t z)/c_t  (L11), in m/s, of the shear z under the friction force F.
+
+    Sticking, it is v; sliding, k_t z follows -F with the time constant c_t/k_t; in the air the
+    sole springs back with the same. Its declared range keeps c_t > 0.
+    """
+    k, c = ground.tangential_stiffness, ground.tangential_damping
+    return -(f_x + k * shear_x) / c, -(f_y + k * shear_y) / c
+
+
+@kernel
+def contact(height, v_x, v_y, v_z, shear_x, shear_y, ground):
+    """Return the force on the foot (x, y, z; N) and the rates of the shear (m/s)."""
     normal = normal_force(height, v_z, ground)
-    rate_x, rate_y = bristle_rates(z_x, z_y, v_x, v_y, height < 0.0, ground)
-    f_x, f_y = friction_forces(normal, z_x, z_y, rate_x, rate_y, ground)
+    f_x, f_y = friction_forces(normal, shear_x, shear_y, v_x, v_y, ground)
+    rate_x, rate_y = shear_rates(f_x, f_y, shear_x, shear_y, ground)
     return f_x, f_y, normal, rate_x, rate_y

@@ -10,7 +10,7 @@ from isa_ros.bag.reader import Bag
 from isa_ros.bag.writer import BagWriter
 from isa_ros.core.atmosphere import ATMOSPHERE
 from isa_ros.core.signals import SAMPLE
-from isa_ros.core.topic import Topic
+from isa_ros.core.topic import KEPT, Topic
 from msg_adapters import clock
 from msg_adapters.actuator_messages import APPLIED_SETPOINT, STATE_TOPICS
 from msg_adapters.template import Template
@@ -23,7 +23,7 @@ PROVENANCE = Provenance(
     configuration='name: rig\n', scenario='name: step\n', seed=7,
     versions={'isa_ros': '0.1.0', 'numpy': '2.0'})
 TOPICS = tuple(sorted(
-    [Topic(*clock.TOPIC), Topic('/hip/applied_setpoint', APPLIED_SETPOINT[1])]
+    [Topic(*clock.TOPIC), Topic('/hip/applied_setpoint', APPLIED_SETPOINT[1], KEPT)]
     + [Topic(f'/hip/{suffix}', type_name) for suffix, type_name in STATE_TOPICS],
     key=lambda topic: topic.name))
 NAMES = [topic.name for topic in TOPICS]

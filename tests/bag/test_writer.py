@@ -129,11 +129,16 @@ def test_quality_of_service_is_written_as_rosbag2_does(mcap):
         'avoid_ros_namespace_conventions': False}
     read = yaml.safe_load((mcap.parent / 'metadata.yaml').read_text())
     topics = read['rosbag2_bagfile_information']['topics_with_message_count']
-    assert all(t['topic_metadata']['offered_qos_profiles'] == [profile] for t in topics)
+    kept = profile | {'durability': 'transient_local'}
+
+    def offered(topic: str) -> list[dict[str, object]]:
+        return [kept if '/applied_' in topic else profile]
+    assert all(t['topic_metadata']['offered_qos_profiles'] == offered(t['topic_metadata']['name'])
+               for t in topics)
     with mcap.open('rb') as file:
         channels = make_reader(file).get_summary().channels.values()
     assert all(
-        yaml.safe_load(c.metadata['offered_qos_profiles']) == [profile] for c in channels)
+        yaml.safe_load(c.metadata['offered_qos_profiles']) == offered(c.topic) for c in channels)
     assert {c.topic: c.metadata['topic_type_hash'] for c in channels} == {
         t['topic_metadata']['name']: t['topic_metadata']['type_description_hash']
         for t in topics}

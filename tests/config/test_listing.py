@@ -8,6 +8,7 @@ from isa_ros.config.listing import describe, Row, rows
 from isa_ros.config.sections import build, build_one_of
 from isa_ros.errors import ConfigError
 from isa_ros.loads.sheets import LocalLoad
+from isa_ros.scripting.run import load
 from isa_ros.surroundings.leg.sheet import LegSheet
 import pytest
 
@@ -23,8 +24,8 @@ def is_kind(row: Row) -> bool:
 def test_every_value_of_a_model_has_its_source(name: str) -> None:
     """Every preset and variant of a model is a whole sheet, and every value has a source."""
     model = actuator_model(name, 'model')
-    # the paper prints no gains for the ISA v2
-    assert {'default'} | ({'table_4'} if name != 'isa_v2' else set()) == set(model.presets)
+    printed = {'table_4'} if name in ('isa_v5', 'smart_manifold') else set()
+    assert {'default'} | printed == set(model.presets)
     for preset, variant in product(model.presets, ['', *model.variants]):
         section = model.with_variants(
             model.with_preset(preset, 'preset'), [variant] if variant else [], 'variant')
@@ -52,9 +53,21 @@ def test_a_row_shows_value_unit_range_and_source() -> None:
 
 def test_a_run_shows_each_actuator_and_where_its_values_come_from() -> None:
     text = describe('rig_rotary')
-    assert 'actuators.rotor: smart_manifold, preset table_4' in text
+    assert 'actuators.rotor.parameters: smart_manifold, preset table_4' in text
     assert 'actuators.rotor.load: wheel' in text
     assert '20.7   MPa' in text.replace('    ', '   ') and 'rig_rotary.yaml' in text
+
+
+@pytest.mark.parametrize('name', ['leg', 'rig_rotary'])
+def test_title_and_row_are_the_key_of_a_value(name: str) -> None:
+    """A run with the shown value written at the shown key is the same run."""
+    run = load(name)
+    tables = [text.splitlines() for text in describe(name).split('\n\n')]
+    for title, _, *body in tables:
+        key, value = next(row.split()[:2] for row in body if row.split()[1][0].isdigit())
+        section = title.partition(':')[0].partition(' of ')[0]
+        same = run.replace({f'{section}.{key}': float(value)})
+        assert same.configuration == run.configuration, key
 
 
 @pytest.mark.parametrize('name', ['rig_rotary', 'rig_rotary.yaml', 'hyq_real'])
@@ -78,8 +91,8 @@ def test_a_model_shows_its_loads() -> None:
 @pytest.mark.parametrize('name', model_names())
 def test_every_value_of_a_load_has_its_source(name: str) -> None:
     model = actuator_model(name, 'model')
-    for load, section in model.loads.items():
-        table = rows(build_one_of(LocalLoad, section, model.place / load), section)
+    for kind, section in model.loads.items():
+        table = rows(build_one_of(LocalLoad, section, model.place / kind), section)
         assert table and all(
             row.source.startswith(SOURCES) for row in table if not is_kind(row))
 

@@ -67,9 +67,10 @@ def test_the_leg_puts_its_actuators_where_the_linkages_say() -> None:
 
 def test_an_override_replaces_one_value_of_one_actuator(tmp_path: Path) -> None:
     plain = load_run(rig(tmp_path)).actuator('ram')
-    ram = 'model: isa_v5, load: {kind: mass}, parameters: {plant: {oil: {dead_volume_ml: 2.5}}}'
+    ram = ('model: isa_v5, load: {kind: mass}, '
+           'parameters: {plant: {oil: {aeration_pressure_kpa: 2.5}}}')
     changed = load_run(rig(tmp_path, ram)).actuator('ram')
-    assert changed.sheet.plant.oil.dead_volume_ml == 2.5
+    assert changed.sheet.plant.oil.aeration_pressure_kpa == 2.5
     assert changed.sheet.reu == plain.sheet.reu
     assert changed.sheet.plant.valve == plain.sheet.plant.valve
 
@@ -104,7 +105,7 @@ def test_initial_positions_are_si_and_mid_stroke_by_default(tmp_path: Path) -> N
     ('model: isa_v5, load: {kind: mass}, initial_position_mm: 100.5', 'must be <= 100 mm'),
     ('model: isa_v5, load: {kind: mass, inertia: 0}',
      'rig.yaml: actuators.ram.load.inertia = 0 kg | kg m2, must be > 0'),
-    ('load: {kind: mass}', 'rig.yaml: actuators.ram.model = None is not a model; valid: isa_v2'),
+    ('load: {kind: mass}', 'rig.yaml: actuators.ram.model = None is not a model; valid: cylinder'),
     ('model: [isa_v5], load: {kind: mass}', "actuators.ram.model = ['isa_v5'] is not a model"),
     ('model: isa_v5, load: mass', "actuators.ram.load = 'mass', must be a section"),
     ('model: isa_v5, load: {kind: mass}, parameters: {plant: {friction: {viscous: 9e5}}}',
@@ -197,11 +198,12 @@ def test_a_text_from_before_a_parameter_is_read() -> None:
 
 
 def test_origins_say_which_file_a_value_comes_from(tmp_path: Path) -> None:
-    ram = 'model: isa_v5, load: {kind: mass}, parameters: {plant: {oil: {dead_volume_ml: 2.5}}}'
+    ram = ('model: isa_v5, load: {kind: mass}, '
+           'parameters: {plant: {oil: {aeration_pressure_kpa: 2.5}}}')
     _, origins = read_run(rig(tmp_path, ram))
     plant = origins.actuators['ram'].sheet['plant']
     assert isinstance(plant, dict) and isinstance(plant['oil'], dict)
-    assert plant['oil']['dead_volume_ml'].source == 'rig.yaml'  # type: ignore[union-attr]
+    assert plant['oil']['aeration_pressure_kpa'].source == 'rig.yaml'  # type: ignore[union-attr]
 
 
 @pytest.mark.parametrize(('names', 'message'), [

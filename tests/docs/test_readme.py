@@ -43,6 +43,15 @@ def test_the_run_file_and_its_scenario_fit(tmp_path: Path) -> None:
     assert load_scenario(path, run).duration_s == 1.0
 
 
+def test_the_own_cylinder_has_its_ratings(tmp_path: Path) -> None:
+    """A_A P_S of 40 mm at 14 MPa, which is also the shipped example."""
+    path = tmp_path / 'my_cylinder.yaml'
+    path.write_text(next(block for block in BLOCKS if block.startswith('name: my_cylinder')))
+    run = load_run(path)
+    assert run.actuators == load_run(find('rig_cylinder', CONFIG)).actuators
+    assert run.actuators[0].sheet.reu.position.force_out == pytest.approx(17593.0, rel=1e-4)
+
+
 def test_the_section_record_fits_the_run_file(tmp_path: Path) -> None:
     head = next(block for block in BLOCKS if block.startswith('name: my_ram'))
     section = next(block for block in BLOCKS if block.startswith('record:'))

@@ -5,8 +5,8 @@ from collections.abc import Callable
 from isa_ros.bag import part_reader, reader, records
 from isa_ros.bag.part_reader import PartReader
 from isa_ros.bag.records import chunk_content
-from isa_ros.replay import compare
-from isa_ros.replay.compare import Comparer
+from isa_ros.replay import topic_comparison
+from isa_ros.replay.topic_comparison import TopicComparison
 from mcap.records import Chunk
 from msg_adapters import cdr_reader
 import pytest
@@ -68,8 +68,9 @@ def without_checksums(patch: pytest.MonkeyPatch) -> None:
     (chunks, lambda patch: patch.setattr(PartReader, '_register_topic', lambda *given: None)),
     (chunks, lambda patch: patch.setattr(part_reader, '_refuse_unless', lambda *given: None)),
     (messages, lambda patch: patch.setattr(cdr_reader._Decoder, '_fail', lambda *given: None)),
-    (messages, lambda patch: patch.setattr(compare, 'CdrError', ZeroDivisionError)),
-    (messages, lambda patch: patch.setattr(Comparer, '_byte_difference', lambda *given: None)),
+    (messages, lambda patch: patch.setattr(topic_comparison, 'CdrError', ZeroDivisionError)),
+    (messages, lambda patch: patch.setattr(
+        TopicComparison, '_compare_bytes', lambda *given: None)),
 ], ids=lambda value: getattr(value, '__name__', ''))
 def test_a_guard_that_is_missing_is_found(
         fuzz: Callable[..., int], plant: Plant, stored: list[Stored],

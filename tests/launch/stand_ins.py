@@ -6,7 +6,7 @@ Each class keeps what it was made with; a context is the texts of the arguments 
 
 from collections.abc import Mapping
 from types import ModuleType
-from typing import Any
+from typing import Any, NamedTuple
 
 
 class Made:
@@ -20,6 +20,10 @@ class LaunchDescription(Made):
     """The actions of a launch file."""
 
 
+class Action(Made):
+    """Any action."""
+
+
 class DeclareLaunchArgument(Made):
     """An argument: its name first, then default_value and description."""
 
@@ -30,6 +34,19 @@ class OpaqueFunction(Made):
 
 class Shutdown(Made):
     """The end of the launch."""
+
+
+class ProcessExited(NamedTuple):
+    """The event that a process has ended."""
+
+    process_name: str
+    returncode: int
+
+
+class Context(dict[str, str]):
+    """The context of a launch; `is_shutdown`: it ends already."""
+
+    is_shutdown = False
 
 
 class Node(Made):
@@ -50,10 +67,12 @@ class LaunchConfiguration(Made):
 def modules() -> dict[str, ModuleType]:
     """Return the modules by name."""
     contents: dict[str, dict[str, Any]] = {
-        'launch': {'LaunchDescription': LaunchDescription, 'LaunchContext': dict},
+        'launch': {'Action': Action, 'LaunchDescription': LaunchDescription,
+                   'LaunchContext': Context},
         'launch.actions': {
             'DeclareLaunchArgument': DeclareLaunchArgument, 'OpaqueFunction': OpaqueFunction,
             'Shutdown': Shutdown},
+        'launch.events': {}, 'launch.events.process': {'ProcessExited': ProcessExited},
         'launch.substitutions': {'LaunchConfiguration': LaunchConfiguration},
         'launch_ros': {},
         'launch_ros.actions': {'Node': Node},

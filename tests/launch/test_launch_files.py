@@ -5,18 +5,30 @@ from pathlib import Path
 import sys
 
 from isa_ros.config.paths import CONFIG, find, SCENARIOS
+from isa_ros.errors import ConfigError
 from isa_ros.processes.processes import MODULES
+from isa_ros.run.options import OPTIONS
 import pytest
 from tests.launch import stand_ins
+from tests.launch.stand_ins import Context, ProcessExited
+import yaml
 
 LAUNCH = Path(__file__).parents[2] / 'launch'
 
 
 @pytest.fixture
-def actions(monkeypatch):
+def installed() -> dict[str, str]:
+    """Return the ROS packages that are installed, with their prefixes; to be filled."""
+    return {}
+
+
+@pytest.fixture
+def actions(monkeypatch, installed):
     """Return what gives the arguments and the other actions of a launch file."""
     for name, module in stand_ins.modules().items():
         monkeypatch.setitem(sys.modules, name, module)
+    monkeypatch.setattr(
+        'ament_index_python.packages.get_packages_with_prefixes', lambda: installed)
 
     def of(file: str):
         spec = spec_from_file_location(file.partition('.')[0], LAUNCH / file)
@@ -44,15 +56,15 @@ def parameters(node) -> dict[str, object]:
     """Return the parameters of a node, each of the type that is said to be its own."""
     values = {}
     for key, value in node.given['parameters'][0].items():
-        assert value.given['value_type'] is type(value.args[0])
+        declared = value.given['value_type']
+        assert declared is type(value.args[0]) or declared == list[str]
         values[key] = value.args[0]
     return values
 
 
-def test_the_leg_has_the_arguments_of_the_interface(actions):
+def test_the_leg_has_every_argument_of_a_bring_up(actions):
     arguments, _ = actions('leg.launch.py')
-    assert {'config', 'out', 'duration', 'in_process', 'real_time_factor',
-            'namespace'} <= set(arguments)
+    assert set(arguments) == {'rviz', *(option.name for option in OPTIONS)}
     assert arguments['config']['default_value'] == 'leg.yaml'
     assert all(given['description'] for given in arguments.values())
 
@@ -64,19 +76,63 @@ def test_the_leg_is_three_actuators_and_a_coordinator_that_ends_the_launch(leg):
                for node in (*actuators, coordinator))
     assert parameters(actuators[0]) == {
         'lockstep': True, 'config_file': str(find('leg', CONFIG).resolve())}
-    assert all(node.given['on_exit'] is None for node in actuators)
-    assert isinstance(coordinator.given['on_exit'][0], stand_ins.Shutdown)
+    done, = coordinator.given['on_exit'](ProcessExited('coordinator-4', 0), Context())
+    assert isinstance(done, stand_ins.Shutdown)
+    assert all(node.given['on_exit'](ProcessExited('haa-1', 0), Context()) is None
+               for node in actuators)
+
+
+def test_the_launch_fails_with_the_run_unless_it_ends_already(leg):
+    """Launch exits with a code other than 0 after an exception only; Ctrl-C ends with 0."""
+    ending = Context()
+    ending.is_shutdown = True
+    for node in leg():
+        for code in (2, 3, -9):
+            with pytest.raises(RuntimeError, match=f'kfe-3: ended with exit code {code}'):
+                node.given['on_exit'](ProcessExited('kfe-3', code), Context())
+        node.given['on_exit'](ProcessExited('kfe-3', 130), ending)
+
+
+def test_actuators_of_another_host_are_not_started(leg):
+    *actuators, coordinator = leg(elsewhere='haa,kfe', controller='sway,hold')
+    assert [node.given['name'] for node in actuators] == ['hfe']
+    assert parameters(coordinator)['controllers'] == ['sway', 'hold']
+
+
+def test_a_leg_is_shown_where_the_packages_are_installed(leg, installed):
+    """With the URDF of its model and the simulated time."""
+    installed |= {'robot_state_publisher': '/opt', 'rviz2': '/opt'}
+    publisher, rviz, *rest = leg(config='hyq_leg', namespace='lab', rviz='true')
+    description = publisher.given['parameters'][0]['robot_description'].args[0]
+    assert '<robot name="hyq_leg">' in description and len(rest) == 4
+    assert publisher.given['parameters'][0]['use_sim_time'] is True
+    assert publisher.given['namespace'] == rviz.given['namespace'] == 'lab'
+    shown = yaml.safe_load(Path(rviz.given['arguments'][1]).read_text())['Visualization Manager']
+    assert shown['Global Options']['Fixed Frame'] == 'world'
+    assert [node.given['executable'] for node in leg()][:2] == [
+        'robot_state_publisher', 'actuator']
+
+
+@pytest.mark.parametrize(('texts', 'message'), [
+    ({'rviz': 'true'}, 'rviz:=true needs the package robot_state_publisher, not installed'),
+    ({'rviz': 'maybe'}, 'rviz:=maybe, must be true or false'),
+    ({'rviz': 'true', 'config': 'rig_rotary'}, 'rviz:=true: rig_rotary.yaml has no leg')])
+def test_rviz_without_its_packages_or_a_leg_is_refused(leg, texts, message):
+    with pytest.raises(ConfigError, match=message):
+        leg(**texts)
 
 
 def test_in_one_process_the_coordinator_is_alone_and_gets_every_argument(leg):
     coordinator, = leg(
         config='rig_rotary', scenario='step', out='bag', duration='0.5', in_process='true',
-        real_time_factor='2', paused='1', compression='lz4', split_mb='0', sync='true')
+        real_time_factor='2', paused='1', compression='lz4', split_mb='0', overwrite='true',
+        join_timeout='7', restore='a.json', save='b.json', sync='true')
     assert parameters(coordinator) == {
         'config_file': str(find('rig_rotary', CONFIG).resolve()),
         'scenario_file': str(find('step', SCENARIOS).resolve()), 'out': 'bag',
         'duration': 0.5, 'in_process': True, 'real_time_factor': 2.0, 'paused': True,
-        'compression': 'lz4', 'split_mb': 0.0, 'sync': True}
+        'compression': 'lz4', 'split_mb': 0.0, 'overwrite': True, 'join_timeout_s': 7.0,
+        'restore': 'a.json', 'save': 'b.json', 'sync': True}
 
 
 def test_one_actuator_runs_its_model_at_real_time(actions):
@@ -85,3 +141,5 @@ def test_one_actuator_runs_its_model_at_real_time(actions):
         'model': 'isa_v5', 'name': 'actuator', 'namespace': '', 'real_time_factor': '1.0'}
     assert node.given['executable'] == 'actuator'
     assert set(node.given['parameters'][0]) == {'model', 'real_time_factor'}
+    with pytest.raises(RuntimeError, match='actuator-1: ended with exit code 2'):
+        node.given['on_exit'](ProcessExited('actuator-1', 2), Context())

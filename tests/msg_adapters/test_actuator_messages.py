@@ -71,7 +71,7 @@ def test_pressures_are_the_absolute_ones(chamber):
     """As sensor_msgs/FluidPressure demands; the sample has them as gauge."""
     message = published()[f'pressure_{chamber}']
     assert message.fluid_pressure == ROW[f'absolute pressure_{chamber}']
-    assert message.header.frame_id == f'hip_pressure_{chamber}'
+    assert message.header.frame_id == 'hip'
 
 
 @pytest.mark.parametrize('is_rotary, component', [(False, 'force.x'), (True, 'torque.z')])

@@ -16,7 +16,8 @@ T_NS = 7_000_000_008
 TIMES = st.integers(0, 2**31 * 10**9 - 1)
 JOINTS = ('haa', 'hfe', 'kfe')
 LEG = {f'{field}[{k}]': 3 * place + k for place, field in enumerate(
-    ('position', 'velocity', 'torque', 'foot_force')) for k in range(3)}
+    ('position', 'velocity', 'torque', 'foot_force')) for k in range(3)} | {
+        'height': 12, 'height_velocity': 13}
 
 
 def test_clock_is_simulation_time():
@@ -41,15 +42,16 @@ def leg_messages() -> list[bytes]:
     assert list(messages) == [
         ('/joint_states', 'sensor_msgs/msg/JointState'),
         ('/coordinator/ground_contact', 'geometry_msgs/msg/WrenchStamped')]
-    return packed(list(messages.values()), np.arange(1.0, 13.0).tolist(), T_NS)
+    return packed(list(messages.values()), np.arange(1.0, 15.0).tolist(), T_NS)
 
 
-def test_leg_joints_come_in_fixed_order():
+def test_leg_joints_come_in_fixed_order_and_the_slider_last():
+    """It has no drive: effort 0."""
     message = decode(leg_messages()[0], JointState)
-    assert message.name == list(JOINTS)
-    assert list(message.position) == [1.0, 2.0, 3.0]
-    assert list(message.velocity) == [4.0, 5.0, 6.0]
-    assert list(message.effort) == [7.0, 8.0, 9.0]
+    assert message.name == ['haa_joint', 'hfe_joint', 'kfe_joint', 'slider_joint']
+    assert list(message.position) == [1.0, 2.0, 3.0, 13.0]
+    assert list(message.velocity) == [4.0, 5.0, 6.0, 14.0]
+    assert list(message.effort) == [7.0, 8.0, 9.0, 0.0]
     assert (message.header.stamp.sec, message.header.stamp.nanosec) == (7, 8)
     assert message.header.frame_id == 'world'
 

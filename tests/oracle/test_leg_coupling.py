@@ -105,10 +105,16 @@ def test_drop_at_half_a_millisecond(variant):
 
 @pytest.mark.parametrize('variant', list(VARIANTS))
 def test_drop_at_2_ms_stays_bounded(variant):
-    """Beyond the usable step forces are wrong by less than half, and the leg still lands."""
+    """
+    Beyond the usable step the leg still lands, and forces are a quarter wrong, peaks a half.
+
+    Except for the thigh's peak: behind a heavy piston its cell, damped by 1 %, is rung by the
+    impact to as much as it carries, and two samples a millisecond do not resolve it.
+    """
     errors = drop(variant)[2 * MS]
-    assert errors.rms.max() < 0.5 and errors.peak.max() < 0.5 and errors.ground[0] < 0.5
-    assert errors.angle.max() < 2.0
+    assert errors.rms.max() < 0.25 and errors.ground[0] < 0.05
+    assert errors.peak[KFE] < 0.5 and errors.peak[HFE] < 1.0
+    assert errors.angle.max() < 0.5
 
 
 @pytest.mark.parametrize('variant', list(VARIANTS))

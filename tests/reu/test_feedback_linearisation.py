@@ -6,6 +6,7 @@ from hypothesis import given, strategies as st
 from isa_ros.actuator.sheet import actuator_record
 from isa_ros.plant import chambers, servo_valve
 from isa_ros.plant.plant import plant_record
+from isa_ros.plant.valve_sheets import PointsFlow
 from isa_ros.reu import block, feedback_linearisation as fl
 from isa_ros.reu.cascade import MEASURED
 import numpy as np
@@ -47,6 +48,21 @@ def test_opening_inverts_the_flow_curve(flow):
                 flow, rel=1e-9, abs=1e-15)
         else:
             assert flow >= servo_valve.flow_curve(u, plant.valve) * (1.0 - 1e-9)
+
+
+@given(flow=st.floats(0.0, 6e-4))
+def test_opening_inverts_the_points_of_a_data_sheet(flow):
+    """R11, V15: g(u(q)) = q for a curve of three lines, up to its last point."""
+    sheet = actuator_sheet('cylinder', 'default', 'feedback_linearisation')
+    points = PointsFlow(current_ma=(0.0, 2.0, 6.0, 10.0), flow_lpm=(0.0, 1.0, 12.0, 20.0))
+    valve_sheet = replace(sheet.plant.valve, flow=points)
+    sheet = replace(sheet, plant=replace(sheet.plant, valve=valve_sheet))
+    law = actuator_record(sheet, 0).view(np.recarray)[0].reu.linearisation
+    valve = plant_record(sheet.plant)[0].valve
+    u = fl.opening_of(flow, law.model)
+    assert servo_valve.flow_curve(u, valve) == pytest.approx(
+        min(flow, 20.0 / 60e3), rel=1e-9, abs=1e-15)
+    assert u == fl.opening_of.py_func(flow, law.model)
 
 
 @given(rate=st.floats(-1.0, 1.0), velocity=st.floats(-0.02, 0.02), place=st.floats(0.05, 0.95),

@@ -4,7 +4,7 @@ from hypothesis import given, strategies as st
 from isa_ros.actuator.sheet import force_stiffness
 from isa_ros.plant.chambers import oil_stiffness
 from isa_ros.reu.schedule import (
-    Constant, OilStiffness, POINTS, schedule_table, scheduled, ThreePoints)
+    Constant, FivePoints, OilStiffness, POINTS, schedule_table, scheduled, ThreePoints)
 import numpy as np
 import pytest
 from tests.sheets import plant_row
@@ -24,7 +24,7 @@ def test_a_straight_table_is_reproduced_and_clamped(fraction):
 def test_oil_stiffness_schedule_keeps_the_loop_gain():
     """R6, C4: gain times oil stiffness in series with the sensor is the same everywhere."""
     plant = plant_row('isa_v5')
-    table = schedule_table(OilStiffness(reference_stiffness=0.0), force_stiffness(plant))
+    table = schedule_table(OilStiffness(), force_stiffness(plant))
     positions = np.linspace(0.0, plant.chambers.stroke, POINTS)
     oil = np.array([oil_stiffness(s, plant.chambers) for s in positions])
     loop = table / (1.0 / oil + 1.0 / plant.mechanics.k_s)
@@ -41,3 +41,13 @@ def test_three_points_are_joined_by_straight_lines():
     """R6: a table given by the user."""
     table = schedule_table(ThreePoints(retracted=0.5, middle=1.0, extended=2.0), np.ones(POINTS))
     assert [table[0], table[5], table[10], table[15], table[20]] == [0.5, 0.75, 1.0, 1.5, 2.0]
+
+
+def test_five_points_are_joined_by_straight_lines():
+    """R6: a table of quarters; between two of them half of each."""
+    factors = {'retracted': 0.25, 'first_quarter': 0.75, 'middle': 1.0, 'last_quarter': 0.5,
+               'extended': 2.0}
+    table = schedule_table(FivePoints(**factors), np.ones(POINTS))
+    assert list(table[::5]) == list(factors.values())
+    # the nodes are five intervals apart: 0.25 + 2/5 of 0.5
+    assert table[2] == pytest.approx(0.45, rel=1e-12, abs=0.0)

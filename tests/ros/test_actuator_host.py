@@ -24,6 +24,18 @@ def test_actuators_of_another_take_part_in_one_run_after_the_other(domain, tmp_p
         tmp_path / 'second' / 'second_0.mcap').read_bytes()
 
 
+def test_both_hosts_need_the_same_values(domain, tmp_path):
+    value = ('--set', 'actuators.rotor.parameters.reu.force.kp=2e-5')
+    with started(tmp_path / 'actuators.log', 'isa_ros', 'actuators', str(RIG), *value):
+        with bringup(tmp_path / 'same', '--duration', '0.05', '--elsewhere', 'rotor', *value,
+                     config=RIG) as run:
+            assert run.exit_code() == 0, run.errors
+        with bringup(tmp_path / 'other', '--duration', '0.05', '--elsewhere', 'rotor',
+                     config=RIG) as run:
+            assert run.exit_code() == 2
+        assert 'rotor' in run.errors and run.errors.count('\n') == 1
+
+
 def test_a_lost_actuator_ends_its_host_naming_it(domain, tmp_path):
     with started(tmp_path / 'actuators.log', 'isa_ros', 'actuators', str(RIG)) as actuators:
         # A child gets its name shortly after its start.

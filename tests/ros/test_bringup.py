@@ -5,6 +5,7 @@ import re
 import signal
 
 from isa_ros.bag.reader import Bag
+from isa_ros.config.run_config import RunConfig
 from isa_ros.nodes.bringup import bringup as bring_up
 from isa_ros.replay.replay import replay
 from isa_ros.run.options import Request
@@ -108,3 +109,18 @@ def test_existing_output_is_refused_before_anything_starts(domain, tmp_path):
             assert run.exit_code() == 2
         assert 'exists and is not a bag' in run.errors
     assert [path.name for path in bag.iterdir()] == ['notes.txt']
+
+
+def test_other_values_reach_every_process(domain, tmp_path):
+    """Values of the configuration and of the scenario: actuators compare the digests of both."""
+    values = ('--set', 'actuators.rotor.parameters.reu.force.kp=2e-5',
+              '--set', 'scenario.loads.rotor.stiffness=2e4')
+    bags = [tmp_path / 'several' / 'bag', tmp_path / 'one' / 'bag']
+    for bag, options in zip(bags, [(), ('--in-process',)]):
+        bag.parent.mkdir()
+        with bringup(bag, '--scenario', 'torque_bandwidth', '--duration', '0.05', *values,
+                     *options, config=RIG) as run:
+            assert run.exit_code() == 0, run.errors
+    assert sha256(bags[0]) == sha256(bags[1])
+    rotor, = RunConfig.from_yaml(Bag(bags[0]).provenance.configuration).actuators
+    assert (rotor.sheet.reu.force.kp, rotor.load.stiffness) == (2e-5, 2e4)

@@ -119,9 +119,13 @@ def test_every_gain_is_declared_with_unit_meaning_and_range(observer, tmp_path):
         tuner.connect()
         kp, limit, model = tuner.call(DescribeParameters.Request(
             names=['force.kp', 'force.limit', 'model'])).descriptors
-        assert kp.description == 'proportional gain K_p, m/N'
+        assert kp.description == (
+            'proportional gain K_p; with more, one count of its sensor demands the whole output, '
+            'm/N')
         span, = kp.floating_point_range
-        assert (span.from_value, span.to_value, kp.read_only) == (0.0, 1e9, False)
+        # limit over the force sensor's count: 1.78e-4 m / (20 kN / 4096)
+        assert span.from_value == 0.0 and not kp.read_only
+        assert span.to_value == pytest.approx(1.78e-4 / (20e3 / 4096), rel=1e-9, abs=0.0)
         assert limit.additional_constraints == '> 0'
         assert model.read_only
         refused = tuner.call(SetParameters.Request(parameters=[Parameter(
@@ -139,7 +143,7 @@ def test_a_refused_value_is_answered_with_the_reason_and_changes_nothing(observe
         for name, value, reason in (
                 ('force.limit', 2e-4, 'reu.force.limit = 0.0002 m, must be <= 0.000178 m'),
                 ('force.limit', 0.0, 'force.limit = 0 m, must be > 0 m'),
-                ('force.kp', -1.0, 'force.kp'),
+                ('force.kp', -1.0, 'force.kp'), ('force.kp', 1e9, 'force.kp'),
                 ('force.kq', 1.0, 'undeclared')):  # rclpy's own words
             result = tuner.tune(name, value)
             assert not result.successful and reason in result.reason
@@ -276,7 +280,8 @@ def test_an_override_on_the_command_line_wins_over_the_file_and_is_recorded_at_t
 
 @pytest.mark.parametrize(('name', 'value', 'message'), [
     ('force.kq', 1.0, 'knee: parameter force.kq is unknown; did you mean force.k'),
-    ('force.kp', -1.0, 'knee: force.kp = -1 m/N, must be >= 0 m/N (proportional gain K_p)'),
+    ('force.kp', -1.0, 'knee: force.kp = -1 m/N, must be >= 0 m/N (proportional gain K_p; '),
+    ('force.kp', 1e9, 'knee: force.kp = 1e+09 m/N, must be <= 3.64544e-05 m/N (proportional '),
     ('force.limit', 1, 'knee: reu.force.limit = 1 m, must be <= 0.000178 m'),  # an integer
 ])
 def test_a_wrong_override_is_refused_in_one_line(domain, tmp_path, name, value, message):

@@ -1,17 +1,30 @@
 """Setpoints and requests of a user, to an actuator alone and in a run."""
 
+from dataclasses import replace
+import io
 from pathlib import Path
+import shlex
 import signal
 
 from isa_ros.bag.reader import Bag
+from isa_ros.config.catalogue import model_names
+from isa_ros.config.default_actuator import default_actuator, DEFAULT_TIMING
+from isa_ros.nodes.actuator.alone import ready_text
+from isa_ros.nodes.actuator.node import ActuatorNode, Setup
 from msg_adapters.cdr_reader import decode
+from msg_adapters.setpoint import msg_to_command
 import pytest
+from rcl_interfaces.msg import ParameterEvent
+import rclpy
 from rclpy.node import Node
-from rclpy.qos import QoSProfile, ReliabilityPolicy
+from rclpy.parameter import Parameter
+from rclpy.qos import DurabilityPolicy, QoSProfile, ReliabilityPolicy
 from sensor_msgs.msg import JointState
+from std_msgs.msg import Float64
 from std_srvs.srv import SetBool
 from tests.ros.spinning import Spinning
 from tests.ros.started import actuator, bringup, RIG, wait_for
+import yaml
 
 pytestmark = pytest.mark.ros
 ARRIVAL = 1e-3  # m: a tenth of the way
@@ -63,6 +76,7 @@ def test_actuator_alone_follows_a_setpoint(observer, tmp_path):
     """One process, 1 kHz topics, and motion to a setpoint."""
     with actuator(tmp_path / 'log', 'knee', model='isa_v5') as process:
         user = User(observer, 'knee')
+        wait_for(lambda: '[knee]: ready at 1 times real time: ' in process.errors)
         user.connect()
         target = user.position() + 0.01
         user.go_to(target)
@@ -96,6 +110,95 @@ def test_incompatible_publisher_is_named(observer, tmp_path):
         QoSProfile(depth=1, reliability=ReliabilityPolicy.BEST_EFFORT))
     with actuator(tmp_path / 'log', 'knee', model='isa_v5') as process:
         wait_for(lambda: '/observer: its /knee/setpoint cannot be received' in process.errors)
+
+
+@pytest.fixture
+def knee(observer):
+    """Return what makes the node of an ISA v5 in this process."""
+    context, nodes = rclpy.Context(), []
+    rclpy.init(context=context)
+
+    def made(beyond: str | None = None) -> ActuatorNode:
+        config = replace(default_actuator('isa_v5', 'knee'), beyond_range=beyond)
+        nodes.append(ActuatorNode(
+            lambda _: Setup(config, DEFAULT_TIMING), 'knee', has_mailbox=False,
+            context=context))
+        return nodes[-1]
+    yield made
+    for node in nodes:
+        node.destroy_node()
+    rclpy.shutdown(context=context)
+
+
+@pytest.mark.parametrize('model', model_names())
+def test_the_command_that_a_lone_actuator_prints_moves_it(observer, model):
+    """It is one line, and its setpoint is accepted as it stands."""
+    node = ActuatorNode(
+        lambda _: Setup(default_actuator(model, 'knee'), DEFAULT_TIMING), 'knee',
+        has_mailbox=False, context=observer.context, namespace='lab')
+    try:
+        text = ready_text(node, 1.0)
+        assert text.startswith('ready at 1 times real time: position ') and '\n' not in text
+        command = shlex.split(text[text.index('ros2 topic pub'):])
+        assert command[:6] == [
+            'ros2', 'topic', 'pub', '--once', '/lab/knee/setpoint', 'sensor_msgs/msg/JointState']
+        message = JointState(**yaml.safe_load(command[6]))
+        assert node.actuator.setpoint_range.admit(msg_to_command(message, 'knee')) == ''
+        assert message.position[0] != pytest.approx(node.sample[0]['position'], rel=0.1)
+    finally:
+        node.destroy_node()
+
+
+@pytest.mark.parametrize(('beyond', 'message', 'in_force'), [
+    (None, 'setpoint rejected: knee: setpoint position = 50 m, must be 0 to 0.1 m', 0.05),
+    ('limit', 'knee: setpoint position = 50 m, limited to 0.1 m, the stroke', 0.1)])
+def test_a_setpoint_in_mm_is_reported(observer, knee, capfd, beyond, message, in_force):
+    node, log = knee(beyond), io.StringIO()
+    publisher = observer.create_publisher(JointState, '/knee/setpoint', 1)
+
+    def is_reported() -> bool:
+        publisher.publish(JointState(name=['knee'], position=[50.0]))
+        node.serve()
+        log.write(capfd.readouterr().err)
+        return message in log.getvalue()
+    wait_for(is_reported, 'the warning')
+    node.advance()
+    in_force_now = node.actuator.memory.reu['setpoint']['position'].item()
+    assert in_force_now == pytest.approx(in_force, abs=1e-6)  # a count of the encoder
+
+
+def test_what_was_applied_is_shown_to_a_later_subscription(observer, knee):
+    """The state is not: it is at once outdated."""
+    node = knee()
+    node.start(None)
+    node.publish()
+    node.set_parameters([Parameter('force.kp', value=9e-8)])
+    node.advance()
+    node.publish()
+    setpoints, parameters, state = [], [], []
+    kept = QoSProfile(depth=10, durability=DurabilityPolicy.TRANSIENT_LOCAL)
+    observer.create_subscription(JointState, '/knee/applied_setpoint', setpoints.append, kept)
+    observer.create_subscription(
+        ParameterEvent, '/knee/applied_parameters', parameters.append, kept)
+    observer.create_subscription(JointState, '/knee/joint_states', state.append, 10)
+    Spinning(observer).wait_for(lambda: setpoints and parameters, 'both')
+    assert [message.position[0] for message in setpoints] == [
+        pytest.approx(0.05, abs=1e-6)]  # a count of the encoder
+    assert [change.name for change in parameters[0].changed_parameters] == ['force.kp']
+    assert not state
+
+
+def test_a_publisher_of_another_type_is_named(observer, knee, capfd):
+    """DDS does not match it, and neither side has an event."""
+    observer.create_publisher(Float64, '/knee/setpoint', 1)
+    node, log = knee(), io.StringIO()
+
+    def is_named() -> bool:
+        node.check_publishers()
+        log.write(capfd.readouterr().err)
+        return ('/observer: its /knee/setpoint cannot be received: it is of type '
+                'std_msgs/msg/Float64, must be sensor_msgs/msg/JointState') in log.getvalue()
+    wait_for(is_named, 'the warning')
 
 
 def test_unknown_model_is_refused(domain, tmp_path):

@@ -126,7 +126,7 @@ def test_a_state_of_another_configuration_is_refused(domain, tmp_path):
 @pytest.mark.parametrize(('text', 'message'), [
     ('', 'is no saved state of a run'),
     ('[]', 'is no saved state of a run'),
-    ('{"format": 9}', 'format 9, must be 2')])
+    ('{"format": 9}', 'format 9, must be 3')])
 def test_what_is_no_state_is_refused(domain, tmp_path, text, message):
     state = tmp_path / 'state.json'
     state.write_text(text)

@@ -74,6 +74,17 @@ def test_nothing_is_packed_where_nothing_is_recorded_and_nobody_subscribes(heard
     assert stage.log == list(heard)
 
 
+def test_what_was_applied_is_passed_on_without_a_subscription():
+    """Its publishers keep it for later subscriptions; one actuator's is not the other's."""
+    stage = Stage(is_recorded=False)
+    stage.rows.applied['kinds'][0] = HAS_SETPOINT
+    stage.narrator.publish_rows(1, {})
+    assert stage.log == ['hip']
+    stage.rows.applied['kinds'] = 0
+    stage.narrator.publish_rows(2, {1: {'force.kp': 1e-7}})
+    assert stage.log == ['hip', 'knee']
+
+
 @pytest.mark.parametrize('listener', ['surroundings', 'hip', 'knee', None])
 def test_one_listener_or_the_recorder_is_enough_to_pack(listener, monkeypatch):
     """And packs once."""

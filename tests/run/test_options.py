@@ -7,9 +7,10 @@ import sys
 
 from isa_ros.config.paths import CONFIG, find, SCENARIOS
 from isa_ros.config.recording import Storage
+from isa_ros.errors import ConfigError
 from isa_ros.run.options import (
-    COMPRESSIONS, launched_parameters, Option, OPTIONS, Request, request_of_arguments,
-    request_of_parameters)
+    COMPRESSIONS, launched_elsewhere, launched_parameters, Option, OPTIONS, Request,
+    request_of_arguments, request_of_parameters)
 import pytest
 
 ROOT = Path(__file__).parents[2]
@@ -17,7 +18,7 @@ LEG = find('leg', CONFIG)
 BY_FIELD = {option.field: option for option in OPTIONS}
 DEFAULTS = {option.parameter: option.parameter_default for option in OPTIONS
             if option.is_parameter} | {'config_file': 'leg'}
-TEXTS = {option.name: option.launch_text for option in OPTIONS if option.is_launched}
+TEXTS = {option.name: option.launch_text for option in OPTIONS}
 
 
 def option_of(field: str) -> Option:
@@ -29,14 +30,16 @@ def test_the_ros_parameters_of_the_coordinator_keep_their_names():
     assert set(DEFAULTS) == {
         'config_file', 'scenario_file', 'out', 'duration', 'real_time_factor', 'controllers',
         'paused', 'restore', 'save', 'overwrite', 'compression', 'split_mb', 'in_process',
-        'join_timeout_s', 'sync'}
+        'join_timeout_s', 'sync', 'set'}
 
 
-def test_the_launch_file_keeps_its_arguments_and_their_defaults():
+def test_the_launch_file_has_every_option_as_an_argument():
     assert TEXTS == {
         'config': 'leg.yaml', 'scenario': '', 'out': '', 'duration': '0.0',
         'in_process': 'false', 'real_time_factor': '0.0', 'paused': 'false', 'compression': '',
-        'split_mb': '-1.0', 'sync': 'false', 'namespace': ''}
+        'split_mb': '-1.0', 'namespace': '', 'overwrite': 'false', 'elsewhere': '',
+        'controller': '', 'join_timeout': '30.0', 'restore': '', 'save': '', 'sync': 'false',
+        'set': ''}
 
 
 def test_every_field_with_an_option_is_of_the_request():
@@ -52,18 +55,20 @@ def test_parameters_that_are_set_ask_for_what_the_command_line_asks_for():
         'config_file': 'leg', 'scenario_file': 'drop', 'out': 'bag', 'duration': 0.5,
         'real_time_factor': 2.0, 'controllers': ['sway', 'hold'], 'paused': True,
         'restore': 'a.json', 'save': 'b.json', 'overwrite': True, 'compression': 'lz4',
-        'split_mb': 3.0, 'in_process': True, 'join_timeout_s': 7.0, 'sync': True}, is_alone=True)
+        'split_mb': 3.0, 'in_process': True, 'join_timeout_s': 7.0, 'sync': True,
+        'set': ['supply.pressure_mpa=14.0']}, is_alone=True)
     by_arguments = request_of_arguments({
         'config': 'leg', 'scenario': 'drop', 'out': Path('bag'), 'duration': 0.5,
         'real_time_factor': 2.0, 'controller': ['sway', 'hold'], 'paused': True,
         'restore': Path('a.json'), 'save': Path('b.json'), 'overwrite': True,
         'compression': 'lz4', 'split_mb': 3.0, 'in_process': True, 'join_timeout': 7.0,
-        'elsewhere': (), 'sync': True}, is_alone=True)
+        'elsewhere': (), 'sync': True, 'set': ['supply.pressure_mpa=14.0']}, is_alone=True)
     assert by_parameters == by_arguments == Request(
         config=LEG, scenario=find('drop', SCENARIOS), out=Path('bag'), duration_s=0.5,
         real_time_factor=2.0, controllers=('sway', 'hold'), is_paused=True,
         restore=Path('a.json'), save=Path('b.json'), overwrite=True, compression='lz4',
-        split_mb=3.0, is_synced=True, in_process=True, join_timeout_s=7.0, is_alone=True)
+        split_mb=3.0, is_synced=True, in_process=True, join_timeout_s=7.0, is_alone=True,
+        changes=('supply.pressure_mpa=14.0',))
 
 
 @pytest.mark.parametrize('field, given, expected', [
@@ -78,11 +83,24 @@ def test_a_launch_file_hands_texts_on_as_parameters_of_their_type():
     """The files are handed on by `run_processes`, the namespace by launch."""
     assert launched_parameters(TEXTS) == {
         'out': '', 'duration': 0.0, 'in_process': False, 'real_time_factor': 0.0,
-        'paused': False, 'compression': '', 'split_mb': -1.0, 'sync': False}
+        'paused': False, 'compression': '', 'split_mb': -1.0, 'overwrite': False,
+        'join_timeout_s': 30.0, 'restore': '', 'save': '', 'sync': False}
     given = launched_parameters(TEXTS | {
-        'duration': '2', 'in_process': 'True', 'paused': '1', 'compression': 'zstd'})
+        'duration': '2', 'in_process': 'True', 'paused': '1', 'compression': 'zstd',
+        'controller': 'sway,hold', 'elsewhere': 'hip,knee'})
     assert given['duration'] == 2.0 and isinstance(given['duration'], float)
     assert (given['in_process'], given['paused'], given['compression']) == (True, True, 'zstd')
+    assert given['controllers'] == ['sway', 'hold'] and 'elsewhere' not in given
+    assert launched_elsewhere(TEXTS | {'elsewhere': 'hip,knee'}) == ('hip', 'knee')
+
+
+@pytest.mark.parametrize(('name', 'text', 'message'), [
+    ('in_process', 'maybe', 'in_process:=maybe, must be true or false'),
+    ('paused', '', 'paused:=, must be true or false'),
+    ('duration', 'long', 'duration:=long, must be a number')])
+def test_a_launch_file_refuses_a_text_of_another_kind(name, text, message):
+    with pytest.raises(ConfigError, match=f'^{message}$'):
+        launched_parameters(TEXTS | {name: text})
 
 
 @pytest.mark.parametrize('field, help_, description', [
@@ -91,7 +109,13 @@ def test_a_launch_file_hands_texts_on_as_parameters_of_their_type():
     ('compression', 'of the chunks of the bag (default: that of CONFIG, else none)',
      'of the chunks of the bag: none, lz4, zstd; empty: that of the run file, else none'),
     ('controllers', 'a node of yours; the run waits for it at every tick; may be repeated',
-     'a node of yours; the run waits for it at every tick; a list of names'),
+     'a node of yours; the run waits for it at every tick; a list of names, in a launch file '
+     'separated by commas'),
+    ('changes', 'another value in CONFIG, by its key and in its unit, as isa params shows them; '
+     'keys of the scenario begin with scenario.',
+     'another value in the run file, by its key and in its unit, as isa params shows them; keys '
+     'of the scenario begin with scenario.; a list of KEY=VALUE, in a launch file separated by '
+     'commas'),
     ('join_timeout_s', 'longest wait for participants (default: 30 s)',
      'longest wait for participants, s')])
 def test_help_says_unit_and_default_in_each_place(field, help_, description):

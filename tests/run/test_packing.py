@@ -175,10 +175,10 @@ def test_pressures_are_absolute(packer, rows):
         for chamber in 'ab':
             message = decode(said[f'/{name}/pressure_{chamber}'], FluidPressure)
             assert message.fluid_pressure == rows.samples[f'pressure_{chamber}'][row] + ATMOSPHERE
-            assert message.header.frame_id == f'{name}_pressure_{chamber}'
+            assert message.header.frame_id == name
     supply = decode(said['/coordinator/supply_pressure'], FluidPressure)
     assert supply.fluid_pressure == rows.supplies['pressure'][0] + ATMOSPHERE
-    assert supply.header.frame_id == 'supply'
+    assert supply.header.frame_id == 'world'
 
 
 def test_the_numbers_of_each_row_are_in_its_own_messages(packer, rows):

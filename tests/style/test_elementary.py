@@ -9,7 +9,7 @@ PACKAGE = Path(__file__).parents[2] / 'isa_ros'
 SIMULATES = ('core', 'plant', 'reu', 'loads', 'surroundings', 'actuator', 'scenario', 'config')
 EXACT = {
     'pi', 'inf', 'nan', 'sqrt', 'floor', 'ceil', 'frexp', 'isfinite', 'isnan', 'isinf', 'isclose',
-    'copysign', 'gcd', 'radians', 'degrees', 'hypot'}
+    'copysign', 'gcd', 'prod', 'radians', 'degrees', 'hypot'}
 """
 Names of `math` whose results are rounded as IEEE 754 prescribes; `hypot` is for messages only.
 """

@@ -80,8 +80,8 @@ class Bench:
     def __init__(self, model: str, load: str) -> None:
         found = actuator_model(model, 'model')
         place = Place(found.name) / 'load'
-        fixture = own_load({'kind': load}, place, found)
         sheet = default_actuator(model, model).sheet
+        fixture = own_load({'kind': load}, place, found, sheet)
         middle = 0.5 * sheet.plant.drive.stroke
         self._constants = actuator_record(sheet, 0)
         self._constants['load'] = own_record(fixture)

@@ -21,7 +21,7 @@ from isa_ros.analysis.signals.signals import read_signals
 from isa_ros.core.units import LPM, MILLI
 from isa_ros.errors import BagError
 from isa_ros.plant.plant import LinearPlant, RotaryPlant
-from isa_ros.plant.servo_valve import DualGainValve, HighResponseValve, Valve
+from isa_ros.plant.valve_sheets import DataSheetValve, DualGainValve, HighResponseValve
 from isa_ros.text.table import aligned, GAP
 import numpy as np
 
@@ -58,10 +58,10 @@ class Estimate:
 
 @dataclass(frozen=True)
 class Identified:
-    """The estimates of every actuator that moved, and the small motion of the others."""
+    """The estimates of actuators, and why there are none of the others."""
 
     actuators: dict[str, list[Estimate]]
-    still: dict[str, str]
+    others: dict[str, str]
 
 
 def identify_bag(bag: Path, actuator: str | None = None) -> Identified:
@@ -80,16 +80,19 @@ def identify_bag(bag: Path, actuator: str | None = None) -> Identified:
     run = signals.run
     found = Identified({}, {})
     for one in [run.actuator(actuator)] if actuator else run.actuators:
+        if isinstance(one.sheet.plant.valve, DataSheetValve):
+            found.others[one.name] = 'has the flow curve of a data sheet, which is not estimated'
+            continue
         recording = recording_of(signals, one, bag)
         moved, least = float(np.ptp(recording.position)), _least_motion(recording)
         if moved < least:
             unit = 'rad' if one.sheet.is_rotary else 'm'
-            found.still[one.name] = f'moved {moved:.2g} {unit}, needs at least {least:.2g} {unit}'
+            found.others[one.name] = f'moved {moved:.2g} {unit}, needs at least {least:.2g} {unit}'
             continue
         found.actuators[one.name] = identify(recording, one.sheet.plant)
     if not found.actuators:
         raise BagError(f'{bag}: nothing to identify: ' + '; '.join(
-            f'{name} {why}' for name, why in found.still.items()))
+            f'{name} {why}' for name, why in found.others.items()))
     return found
 
 
@@ -105,6 +108,7 @@ def identify(recording: Recording, sheet: LinearPlant | RotaryPlant) -> list[Est
 def _valve_and_oil(
         recording: Recording, sheet: LinearPlant | RotaryPlant) -> list[Estimate]:
     valve, oil = sheet.valve, sheet.oil
+    assert not isinstance(valve, DataSheetValve)  # as `identify_bag` has it
     curve, names = _curve(recording, valve)
     balance = fit_balance(recording, curve)
     lacks = _TOO_SHORT.format(balance.duration) if balance.duration < SHORTEST else _UNSEPARATED
@@ -125,7 +129,9 @@ def _valve_and_oil(
     return rows
 
 
-def _curve(recording: Recording, valve: Valve) -> tuple[FlowCurve, list[_CurveRow]]:
+def _curve(
+        recording: Recording, valve: DualGainValve | HighResponseValve
+        ) -> tuple[FlowCurve, list[_CurveRow]]:
     """Return the flow curve, and (name, unit, k, SI per unit, configured) of its parameters."""
     si = recording.plant.valve
     per_ma = LPM / (valve.spool_gain_mm_per_ma * MILLI)  # m3/s per m of a l/min per mA
@@ -136,7 +142,6 @@ def _curve(recording: Recording, valve: Valve) -> tuple[FlowCurve, list[_CurveRo
             ('high flow gain', 'l/min/mA', 1, per_ma, valve.high_gain_lpm_per_ma),
             ('high flow gain', 'm3/s/m', 1, 1.0, float(si.k_high)),
             ('dual-gain point', 'mm', 2, MILLI, valve.dual_gain_point_mm)]
-    assert isinstance(valve, HighResponseValve)
     return HighResponseCurve(si.x_dg), [
         ('flow gain', 'l/min/mA', 0, per_ma, valve.gain_lpm_per_ma),
         ('flow gain', 'm3/s/m', 0, 1.0, float(si.k_low)),
@@ -190,7 +195,7 @@ def table(found: Identified) -> str:
         lines += [name, *(GAP + line for line in aligned([
             ('', 'estimate', f'{100.0 * CONFIDENCE:g} % interval', 'configured', 'unit', ''),
             *map(_cells, estimates)]))]
-    lines += [f'{name}: nothing to identify: {why}' for name, why in found.still.items()]
+    lines += [f'{name}: nothing to identify: {why}' for name, why in found.others.items()]
     return '\n'.join(lines)
 
 
@@ -209,4 +214,4 @@ def write_json(found: Identified, bag: Path, path: Path) -> None:
         'actuators': {name: [asdict(estimate) | {'holds': estimate.holds}
                              for estimate in estimates]
                       for name, estimates in found.actuators.items()},
-        'still': found.still}, indent=2) + '\n', encoding='utf-8')
+        'still': found.others}, indent=2) + '\n', encoding='utf-8')

@@ -1,13 +1,15 @@
 """`isa bode` and `isa step`: measure a response, print, write and draw it."""
 
 from argparse import Namespace
+from collections.abc import Sequence
 import json
 from pathlib import Path
 from typing import Any
 
 from isa_ros.analysis.response import bode as bodes, step as steps, through_nodes
 from isa_ros.analysis.response.figures import bode_figure, step_figure
-from isa_ros.analysis.response.rig import Choice, Rig, rig
+from isa_ros.analysis.response.rig import Rig
+from isa_ros.analysis.response.series import Member, members
 from isa_ros.analysis.response.sweep import Sweep
 from isa_ros.errors import ConfigError
 from matplotlib.figure import Figure
@@ -21,64 +23,73 @@ _RESPONSES = {'closed': 'closed loop, output/reference', 'plant': 'plant, output
               'open': 'open loop, output/error'}
 
 
-def bode(options: Namespace) -> None:
-    """Measure a frequency response."""
+def bode(options: Namespace) -> bool:
+    """Measure frequency responses; return whether all are results: none of the loops hunts."""
     _refuse_figure(options.out)
-    bench, band = _rig(options), BANDS[options.loop]
+    benches, band = members(options), BANDS[options.loop]
+    _refuse_units(options, benches)
     sweep = Sweep(
         low=options.low or band[0], high=options.high or band[1], points=options.points,
         is_chirp=options.method == 'chirp')
-    if options.nodes:
-        measured = through_nodes.bode(
-            bench, sweep, options.of, options.amplitude, options.bag)
-    else:
-        measured = bodes.bode(bench, sweep, options.of, options.amplitude)
     method = 'chirp' if sweep.is_chirp else 'stepped sine'
-    title = (f'{_title(options, bench)}\n{measured.loop.label}: {_RESPONSES[options.of]}; '
-             f'{method} of {_amplitude(measured)}')
-    print(title)
-    print(bodes.table(measured))
-    if options.json is not None:
-        _write(options.json, _setting(options, bench, measured) | _numbers(measured))
+    title, found = '', []
+    responses: list[bodes.Bode] = []
+    for label, bench in benches:
+        if options.nodes:
+            measured = through_nodes.bode(
+                bench, sweep, options.of, options.amplitude, options.bag)
+        else:
+            measured = bodes.bode(bench, sweep, options.of, options.amplitude)
+        title = (f'{_title(options, bench)}\n{measured.loop.label}: {_RESPONSES[options.of]}; '
+                 f'{method} of {_amplitude(measured)}')
+        _print(title, bodes.table(measured), is_first=not responses)
+        responses.append(measured)
+        found.append(_setting(options, bench, measured, label) | _numbers(measured))
+    _write(options.json, found)
     if options.out is not None:
-        _draw(bode_figure(measured, title), options.out)
+        if len(benches) > 1:
+            title = f'{options.loop}: {_RESPONSES[options.of]}; {method}'
+        _draw(bode_figure(responses, [label for label, _ in benches], title), options.out)
+    return not any(measured.rest.hunts for measured in responses)
 
 
 def step(options: Namespace) -> None:
-    """Measure a step response."""
+    """Measure step responses."""
     _refuse_figure(options.out)
-    bench = _rig(options)
-    duration = options.duration or DURATIONS[options.loop]
-    if options.nodes:
-        measured = through_nodes.step(bench, duration, options.amplitude, options.bag)
-    else:
-        measured = steps.step(bench, duration, options.amplitude)
-    title = f'{_title(options, bench)}\n{measured.loop.label}: step of {_amplitude(measured)}'
-    print(title)
-    print(steps.summary(measured))
-    if options.json is not None:
-        found, scale = measured.figures, measured.loop.unit.scale
-        _write(options.json, _setting(options, bench, measured) | {
-            'rise_time_s': found.rise_time, 'overshoot': found.overshoot,
-            'settling_time_s': found.settling_time, 'settling_band': steps.BAND,
-            'steady_error': found.steady_error / scale, 'ripple': found.ripple / scale,
-            't_s': measured.t.tolist(), 'reference': (measured.reference / scale).tolist(),
-            'output': (measured.output / scale).tolist()})
+    benches, duration = members(options), options.duration or DURATIONS[options.loop]
+    title, found = '', []
+    responses: list[steps.Step] = []
+    for label, bench in benches:
+        if options.nodes:
+            measured = through_nodes.step(bench, duration, options.amplitude, options.bag)
+        else:
+            measured = steps.step(bench, duration, options.amplitude)
+        title = (f'{_title(options, bench)}\n{measured.loop.label}: step of '
+                 f'{_amplitude(measured)}')
+        _print(title, steps.summary(measured), is_first=not responses)
+        responses.append(measured)
+        found.append(_setting(options, bench, measured, label) | _step_numbers(measured))
+    _write(options.json, found)
     if options.out is not None:
-        _draw(step_figure(measured, title), options.out)
+        if len(benches) > 1:
+            title = f'{options.loop}: step'
+        _draw(step_figure(responses, [label for label, _ in benches], title), options.out)
+
+
+def _refuse_units(options: Namespace, benches: Sequence[Member]) -> None:
+    """Refuse, before the measurement, a figure with responses of different units."""
+    symbols = sorted({bench.loop.response_unit(options.of).symbol for _, bench in benches})
+    if options.out is not None and len(symbols) > 1:
+        raise ConfigError(
+            f'--out {options.out}: one figure cannot have responses in {" and ".join(symbols)}')
 
 
 def _title(options: Namespace, bench: Rig) -> str:
     return f'{bench.title}, through nodes' if options.nodes else bench.title
 
 
-def _rig(options: Namespace) -> Rig:
-    if options.bag is not None and not options.nodes:
-        raise ConfigError(
-            f'--bag {options.bag} is not used: without --nodes no bag is recorded')
-    return rig(Choice(
-        name=options.name, loop=options.loop, actuator=options.actuator, preset=options.preset,
-        variants=options.variant, load=options.load, position=options.position))
+def _print(title: str, text: str, is_first: bool) -> None:
+    print(f'{title}\n{text}' if is_first else f'\n{title}\n{text}', flush=True)
 
 
 def _amplitude(measured: bodes.Bode | steps.Step) -> str:
@@ -87,30 +98,46 @@ def _amplitude(measured: bodes.Bode | steps.Step) -> str:
 
 
 def _setting(
-        options: Namespace, bench: Rig, measured: bodes.Bode | steps.Step) -> dict[str, Any]:
+        options: Namespace, bench: Rig, measured: bodes.Bode | steps.Step, label: str
+        ) -> dict[str, Any]:
     config, unit = bench.config, measured.loop.unit
-    return {
+    return ({'label': label} if label else {}) | {
         'actuator': config.name, 'model': config.model, 'preset': config.preset,
-        'through_nodes': options.nodes, 'load': bench.load,
+        'set': dict(bench.values), 'through_nodes': options.nodes, 'load': bench.load,
         'loop': options.loop, 'unit': unit.symbol,
         'initial_position': config.initial_position,
         'amplitude': measured.amplitude / unit.scale}
 
 
 def _numbers(measured: bodes.Bode) -> dict[str, Any]:
-    response, margins = measured.response, measured.margins
+    response, margins, rest = measured.response, measured.margins, measured.rest
     unit, into = measured.loop.response_unit(measured.of), bodes.input_unit(measured)
     columns = {
         'frequency_hz': response.frequency, 'gain': response.gain / unit.scale,
         'phase_deg': response.phase, 'coherence': response.coherence,
+        'is_trusted': response.is_trusted,
         'input_amplitude': response.input_amplitude / into.scale,
         'output_amplitude': response.output_amplitude / measured.loop.unit.scale}
-    return {
-        'of': measured.of, 'response_unit': unit.symbol, 'input_unit': into.symbol,
-        **{name: np.asarray(column).tolist() for name, column in columns.items()},
+    results = {
         'bandwidth_hz': measured.bandwidth,
         'gain_margin_db': margins.gain_db, 'gain_margin_hz': margins.gain_frequency,
         'phase_margin_deg': margins.phase, 'phase_margin_hz': margins.phase_frequency}
+    return {
+        'of': measured.of, 'response_unit': unit.symbol, 'input_unit': into.symbol,
+        **{name: np.asarray(column).tolist() for name, column in columns.items()},
+        'hunts': rest.hunts, 'ripple': rest.ripple / measured.loop.unit.scale,
+        'ripple_hz': rest.frequency if rest.hunts else None,
+        **(dict.fromkeys(results) if rest.hunts else results)}
+
+
+def _step_numbers(measured: steps.Step) -> dict[str, Any]:
+    found, scale = measured.figures, measured.loop.unit.scale
+    return {
+        'rise_time_s': found.rise_time, 'overshoot': found.overshoot,
+        'settling_time_s': found.settling_time, 'settling_band': steps.BAND,
+        'steady_error': found.steady_error / scale, 'ripple': found.ripple / scale,
+        't_s': measured.t.tolist(), 'reference': (measured.reference / scale).tolist(),
+        'output': (measured.output / scale).tolist()}
 
 
 def _refuse_figure(path: Path | None) -> None:
@@ -122,9 +149,12 @@ def _refuse_figure(path: Path | None) -> None:
         raise ConfigError(f'--out {path}: must end in one of .{", .".join(known)}')
 
 
-def _write(path: Path, content: dict[str, Any]) -> None:
-    path.write_text(json.dumps(content, indent=2) + '\n')
-    print(path)
+def _write(path: Path | None, found: list[dict[str, Any]]) -> None:
+    """Write the numbers of one response, or a list of those of several."""
+    if path is not None:
+        content = found[0] if len(found) == 1 else {'responses': found}
+        path.write_text(json.dumps(content, indent=2) + '\n')
+        print(path)
 
 
 def _draw(figure: Figure, path: Path) -> None:

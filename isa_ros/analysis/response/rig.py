@@ -1,48 +1,29 @@
 """One actuator on a bench, as a command names it: which, with which gains, load, place."""
 
-from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from collections.abc import Mapping
+from dataclasses import dataclass, field, replace
 import math
+from typing import Any
 
-from isa_ros.actuator.actuator import PAPER_SUPPLY
 from isa_ros.actuator.group import ActuatorGroup
-from isa_ros.actuator.sheet import ActuatorSheet, refuse_wiring
 from isa_ros.analysis.response.actuator_trace import RATE_HZ, setpoints, TIMING, Trace, traced
+from isa_ros.analysis.response.choice import Choice, Chosen, chosen
 from isa_ros.analysis.response.loops import Loop, loop_of, Unit, units_of
-from isa_ros.config.catalogue import actuator_model, model_names
-from isa_ros.config.default_actuator import default_load, DEFAULT_TIMING
+from isa_ros.config.catalogue import actuator_model
+from isa_ros.config.changes import changed
 from isa_ros.config.own_load import own_load
-from isa_ros.config.paths import CONFIG, find
 from isa_ros.config.run_config import ActuatorConfig, RunConfig
-from isa_ros.config.run_file import load_run
-from isa_ros.config.sections import build, kind_of, Place
-from isa_ros.config.supplies import SUPPLY, SupplyConfig
+from isa_ros.config.sections import kind_of, Place
 from isa_ros.core.signals import LOAD_PORT, Records, START
 from isa_ros.core.units import MPA
 from isa_ros.errors import ConfigError
 from isa_ros.loads.sheets import LocalLoad, static_force
-from isa_ros.surroundings.supply import ConstantSupply
 import numpy as np
+
+__all__ = ['BLOCKED', 'Choice', 'REST_S', 'Rig', 'rig', 'rig_of']
 
 REST_S = 0.3            # before anything is excited: several times the slowest loop's settling
 BLOCKED = 'blocked'
-PAPER = ConstantSupply(pressure_mpa=PAPER_SUPPLY / MPA, return_pressure_mpa=0.0)
-TICK_TIMEOUT_S = 5.0    # of a model's run, as in the shipped run files
-
-
-@dataclass(frozen=True, kw_only=True)
-class Choice:
-    """What a user names; None takes the default."""
-
-    name: str
-    """A packaged model, or a run file."""
-    loop: str
-    actuator: str | None = None
-    preset: str | None = None
-    variants: Sequence[str] = ()
-    load: str | None = None
-    position: float | None = None
-    """mm or deg."""
 
 
 @dataclass(frozen=True)
@@ -53,6 +34,8 @@ class Rig:
     """Of this actuator alone, as nodes would run it."""
     loop: Loop
     load: str
+    values: Mapping[str, Any] = field(default_factory=dict)
+    """Values chosen by key; they are in ``run``, and named in its title."""
 
     @property
     def config(self) -> ActuatorConfig:
@@ -69,7 +52,8 @@ class Rig:
         place = units_of(self.config.sheet)['position']
         config = self.config
         model = '' if config.name == config.model else f'{config.model}, '
-        return (f'{config.name} ({model}preset {config.preset}), {self.load} at '
+        values = ''.join(f', {key} = {value}' for key, value in self.values.items())
+        return (f'{config.name} ({model}preset {config.preset}{values}), {self.load} at '
                 f'{config.initial_position / place.scale:.4g} {place.symbol}')
 
     @property
@@ -148,58 +132,26 @@ def rig(choice: Choice) -> Rig:
         Something of the choice does not exist or does not fit.
 
     """
-    run = _of_model(choice) if choice.name in model_names() else _of_run(choice)
-    config = run.actuators[0]
+    return rig_of(chosen(choice), choice)
+
+
+def rig_of(named: Chosen, choice: Choice) -> Rig:
+    """Return the rig of a run with the chosen values; as `rig`."""
+    config = named.run.actuator(named.actuator)
     units = units_of(config.sheet)
     config = replace(config, initial_position=_place(choice.position, config, units['position']))
     loop = loop_of(config.sheet, choice.loop)
-    kind = choice.load or (None if choice.loop == 'position' else BLOCKED)
     model = actuator_model(config.model, 'model')
-    if kind is None and config.load is not None:
+    if choice.keeps_load and config.load is not None:
         kind = kind_of(config.load, LocalLoad)
     else:
-        kind = kind or model.default_load
-        config = replace(config, load=own_load({'kind': kind}, Place('--load'), model))
-    return Rig(run.alone(replace(config, sheet=loop.sheet)), loop, kind)
-
-
-def _of_model(choice: Choice) -> RunConfig:
-    if choice.actuator is not None:
-        raise ConfigError(
-            f'--actuator {choice.actuator} is not used: {choice.name} is a model, not a run file')
-    model = actuator_model(choice.name, 'model')
-    preset = choice.preset or 'default'
-    section = model.with_variants(
-        model.with_preset(preset, '--preset'), choice.variants, '--variant')
-    sheet = build(ActuatorSheet, section, model.place)
-    refuse_wiring(sheet)
-    config = ActuatorConfig(
-        choice.name, model.name, ' + '.join([preset, *choice.variants]), sheet,
-        default_load(model), 0.5 * sheet.plant.drive.stroke)
-    return RunConfig(
-        choice.name, DEFAULT_TIMING.step_ns, DEFAULT_TIMING.controller_offset_ns,
-        TICK_TIMEOUT_S,
-        (SupplyConfig(SUPPLY, PAPER, (config.name,)),), (config,), source=choice.name)
-
-
-def _of_run(choice: Choice) -> RunConfig:
-    """Return the run of a file, with the chosen actuator alone."""
-    for option, value in (('--preset', choice.preset), ('--variant', choice.variants)):
-        if value:
-            raise ConfigError(
-                f'{option} is not used: {choice.name} is no model, a run file says it itself; '
-                f'models: {", ".join(model_names())}')
-    try:
-        run = load_run(find(choice.name, CONFIG))
-    except ConfigError as error:
-        if choice.name.endswith('.yaml'):
-            raise
-        raise ConfigError(f'{error}; models: {", ".join(model_names())}') from error
-    if choice.actuator is None and len(run.actuators) > 1:
-        names = ', '.join(actuator.name for actuator in run.actuators)
-        raise ConfigError(f'{run.source} has several actuators, --actuator must name one: {names}')
-    config = run.actuators[0] if choice.actuator is None else run.actuator(choice.actuator)
-    return run.alone(config)
+        kind = choice.load or (model.default_load if choice.loop == 'position' else BLOCKED)
+        place = Place('--load')
+        tree = changed({'kind': kind}, named.load_values, place.file)
+        config = replace(config, load=own_load(
+            tree, place, model, config.sheet, named.run.span_of(config.name)))
+        kind = str(tree['kind'])
+    return Rig(named.run.alone(replace(config, sheet=loop.sheet)), loop, kind, choice.values)
 
 
 def _place(given: float | None, config: ActuatorConfig, unit: Unit) -> float:

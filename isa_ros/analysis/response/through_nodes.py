@@ -14,6 +14,7 @@ from tempfile import TemporaryDirectory
 
 from isa_ros.analysis.response import bode as bodes, step as steps
 from isa_ros.analysis.response.actuator_trace import Trace
+from isa_ros.analysis.response.at_rest import rest_of, ticks_at_rest
 from isa_ros.analysis.response.loops import Loop, PLANT
 from isa_ros.analysis.response.rig import REST_S, Rig
 from isa_ros.analysis.response.sweep import Answer, chirp_band, sections, Sweep, windows
@@ -59,8 +60,13 @@ def bode(
         sweep.check(rig.loop.rate_hz, f'the {rig.loop.name} loop takes its reference')
     peak = rig.amplitude(amplitude)
     points, end, answer = _excited(rig, sweep, peak, rate)
-    trace = _recorded(rig, points, end, bag, first=_rest(rig) + 1)
-    return bodes.evaluate(rig.loop, answer, of, peak, trace)
+    n_push, n_still = ticks_at_rest(rate)
+    points += [_point(rig, end, {}, peak), _point(rig, end + n_push, {})]
+    first = _rest(rig) + 1
+    trace = _recorded(rig, points, end + n_push + n_still, bag, first)
+    excited = {name: values[:end + 1 - first] for name, values in trace.items()}
+    return bodes.evaluate(
+        rig.loop, answer, of, peak, excited, rest_of(trace[rig.loop.name], peak, rate))
 
 
 def step(rig: Rig, duration: float, amplitude: float | None, bag: Path | None) -> steps.Step:

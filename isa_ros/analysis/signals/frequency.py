@@ -8,7 +8,7 @@ ratio of spectra would be biased by noise that the controller feeds back.
 """
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, fields
 import math
 from typing import NamedTuple
 
@@ -17,7 +17,7 @@ import numpy as np
 from scipy import signal
 
 HALF_POWER = 1.0 / math.sqrt(2.0)   # -3.01 dB
-TRUSTED = 0.5        # least coherence of a point that margins and bandwidth rely on
+TRUSTED = 0.8        # least coherence of a point that counts: the rest has half the size
 SEGMENTS = 3         # least whole segments of a chirp: one alone is always coherent
 
 
@@ -53,6 +53,18 @@ class Response:
         """Return the phase in degrees, continuous from the lowest frequency on."""
         phase: np.ndarray = np.degrees(np.unwrap(np.angle(self.value)))
         return phase
+
+    @property
+    def is_trusted(self) -> np.ndarray:
+        """Return for each point whether its coherence is at least `TRUSTED`."""
+        found: np.ndarray = self.coherence >= TRUSTED
+        return found
+
+    @property
+    def trusted(self) -> 'Response':
+        """Return the points that are trusted."""
+        kept = self.is_trusted
+        return Response(*(getattr(self, f.name)[kept] for f in fields(self)))
 
 
 class Sine(NamedTuple):
@@ -182,14 +194,18 @@ def bandwidth(response: Response, dc_gain: float | None = None) -> float | None:
     Return the frequency at which the gain first falls through -3 dB of ``dc_gain``, in Hz.
 
     None as ``dc_gain`` means the gain at the lowest frequency. Interpolated in dB over log f
-    between the two points around it; None if the gain never falls there.
+    between the two points around it; None if the gain never falls there. Points that are not
+    trusted are left out.
     """
-    level = (float(response.gain[0]) if dc_gain is None else dc_gain) * HALF_POWER
-    below = np.flatnonzero(response.gain < level)
+    kept = response.trusted
+    if not len(kept.frequency):
+        return None
+    level = (float(kept.gain[0]) if dc_gain is None else dc_gain) * HALF_POWER
+    below = np.flatnonzero(kept.gain < level)
     if not len(below) or below[0] == 0:
         return None
     k = int(below[0])
-    return _crossing(response.frequency, response.gain_db - 20.0 * math.log10(level), k)
+    return _crossing(kept.frequency, kept.gain_db - 20.0 * math.log10(level), k)
 
 
 class Margins(NamedTuple):
@@ -205,11 +221,10 @@ def margins(response: Response) -> Margins:
     """
     Return the smallest gain and phase margins of an open loop L of 1/(1 + L).
 
-    Of several crossings the one closest to instability is used. Points with a coherence below
-    `TRUSTED` are left out.
+    Of several crossings the one closest to instability is used. Points that are not trusted are
+    left out.
     """
-    kept = response.coherence >= TRUSTED
-    frequency, value = response.frequency[kept], response.value[kept]
+    frequency, value = response.trusted.frequency, response.trusted.value
     gains, phases = [], []
     with np.errstate(divide='ignore'):
         level = 20.0 * np.log10(np.abs(value))

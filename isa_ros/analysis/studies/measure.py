@@ -19,6 +19,7 @@ from isa_ros.analysis.response.bode import bode
 from isa_ros.analysis.response.loops import loop_of
 from isa_ros.analysis.response.rig import BLOCKED, Choice, Rig, rig
 from isa_ros.analysis.response.sweep import Sweep
+from isa_ros.analysis.signals.ripple import ripple, ripple_frequency
 from isa_ros.analysis.signals.step_response import step_figures
 from isa_ros.analysis.studies.studies import Case, Study
 from isa_ros.config.changed_parameters import Values, with_parameters
@@ -29,7 +30,6 @@ from isa_ros.scenario.trot import smooth_step
 from isa_ros.scenario.trot_motion import read_gait
 from isa_ros.text.progress import Progress
 import numpy as np
-from scipy import signal
 
 SMALL = 0.02            # of the step: up to three quanta of the torque sensor
 PLACES = (0.5, 0.02)    # of the stroke: steps at mid stroke and near the stop
@@ -172,7 +172,8 @@ def measured(case: Case, on: Bench, value: float) -> Outcome:
         rise=None if figures.rise_time is None else figures.rise_time * 1e3,
         overshoot=figures.overshoot * 100.0, bandwidth=bode(blocked, SWEEP, 'closed').bandwidth,
         ripple_mid=max(ripples[:2]), ripple_end=max(ripples[2:4]), ripple_wheel=ripples[4],
-        ripple_hz=frequency(rests[largest]) if ripples[largest] > SMALL * amplitude else None,
+        ripple_hz=(ripple_frequency(rests[largest], RATE_HZ)
+                   if ripples[largest] > SMALL * amplitude else None),
         force_error=_rms((trace['force'] - trace['force_reference'])[trotting]),
         position_error=_rms((trace['position'] - trace['position_reference'])[trotting]) / MILLI,
         step=mid[0][:round(SHOWN_S * RATE_HZ)] / amplitude)
@@ -217,18 +218,6 @@ def _trot(model: str, wheel: Rig) -> tuple[np.ndarray, np.ndarray]:
             (1.0 - w) * excursion.velocity - slope / FADE_S * excursion.position))
     positions, velocities = np.repeat(rows, round(period * RATE_HZ), axis=0).T
     return positions, velocities
-
-
-def ripple(values: np.ndarray) -> float:
-    """Return half of peak to peak."""
-    return 0.5 * float(np.ptp(values))
-
-
-def frequency(values: np.ndarray) -> float:
-    """Return the frequency of the largest peak in the spectrum without the drift, in Hz."""
-    window = signal.windows.hann(len(values), sym=False)
-    found = np.abs(np.fft.rfft(window * signal.detrend(values)))
-    return float((1 + int(np.argmax(found[1:]))) * RATE_HZ / len(values))
 
 
 def _rms(error: np.ndarray) -> float:

@@ -75,8 +75,7 @@ def _bench(subject: Subject, law: str, place: float) -> Rig:
         reu = config.sheet.reu
         assert isinstance(reu.force, Pid)
         scheduled = isinstance(reu.force.gain_schedule, OilStiffness)
-        other = Constant() if scheduled else OilStiffness(reference_stiffness=0.0)
-        force = replace(reu.force, gain_schedule=other)
+        force = replace(reu.force, gain_schedule=Constant() if scheduled else OilStiffness())
         config = replace(config, sheet=replace(config.sheet, reu=replace(reu, force=force)))
     return bench.with_config(config)
 

@@ -7,11 +7,13 @@ from typing import Any
 from isa_ros.core.timebase import NS_PER_SECOND
 from isa_ros.errors import ConfigError
 from isa_ros.nodes.actuator.node import ActuatorNode
+from isa_ros.nodes.middleware.discovery import is_off
 from rclpy.experimental.events_executor import EventsExecutor
 
 BURST_TICKS = 20        # ticks between two checks for setpoints, services and signals
 LARGEST_LAG_S = 0.5     # a longer delay is skipped instead of made up for
 WARNING_PERIOD_S = 10.0
+EXAMPLE = 0.1            # of the stroke: the move in the line that says how to command it
 
 
 def run_alone(
@@ -31,10 +33,12 @@ def run_alone(
         raise ConfigError(
             f'{node.get_name()}: real_time_factor = {real_time_factor:g}, must be finite and '
             '>= 0')
+    node.warm_up()
     executor: Any = EventsExecutor(context=node.context)
     executor.add_node(node)
     node.start(None)
     node.publish()
+    node.get_logger().info(ready_text(node, real_time_factor))
     step_s = node.setup.timing.step_ns / NS_PER_SECOND
     tick, began = 0, time.monotonic()
     try:
@@ -62,3 +66,18 @@ def run_alone(
     finally:
         executor.remove_node(node)
         executor.shutdown()
+
+
+def ready_text(node: ActuatorNode, real_time_factor: float) -> str:
+    """Return what runs, on which topics, and a command that moves it, in one line."""
+    config = node.setup.config
+    name, full_name = config.name, node.get_fully_qualified_name()
+    stroke, unit = config.sheet.plant.drive.stroke, 'rad' if config.sheet.is_rotary else 'm'
+    position = float(node.sample[0]['position'])
+    target = position + (EXAMPLE if position < 0.5 * stroke else -EXAMPLE) * stroke
+    pace = f'{real_time_factor:g} times real time' if real_time_factor else 'maximum speed'
+    text = (f'ready at {pace}: position {position:.4g} of 0 to {stroke:.4g} {unit} on '
+            f'{full_name}/joint_states; to move it: ros2 topic pub --once '
+            f"{full_name}/setpoint sensor_msgs/msg/JointState '{{name: [{name}], position: "
+            f"[{target:.4g}]}}'")
+    return f'{text}; discovery is off, so that only this process can' if is_off() else text

@@ -1,21 +1,22 @@
 """ROS 2 node of one smart actuator: setpoints in, one tick, messages out."""
 
 from collections.abc import Callable, Mapping
+from contextlib import suppress
 from typing import Any, NamedTuple
 
 from isa_ros.actuator.actuator import ActuatorConfig, participant_digest, SmartActuator, Timing
 from isa_ros.actuator.tunable import tunables
 from isa_ros.core.signals import COMMAND, HAS_ENABLE, Records
-from isa_ros.errors import SetpointError
+from isa_ros.errors import SetpointError, SimulationDiverged
 from isa_ros.nodes.actuator.parameters import TunableParameters
 from isa_ros.nodes.actuator.setpoint_publishers import IncompatiblePublishers
 from isa_ros.nodes.middleware.publishers import PreparedPublishers
 from isa_ros.nodes.middleware.qos import SETPOINT
 from isa_ros.nodes.middleware.refusals import refusals
 from isa_ros.nodes.middleware.servers import open_server
-from isa_ros.run.packing import Names, Packer, Shown
+from isa_ros.run.packing import Names, Packer, Shown, topics_of_actuator
 from isa_ros.surroundings.supply import SUPPLY_SAMPLE
-from msg_adapters.actuator_messages import TOPICS
+from msg_adapters.joint_state import TYPE as SETPOINT_TYPE
 from msg_adapters.setpoint import msg_to_command
 import numpy as np
 from rclpy.node import Node
@@ -65,13 +66,12 @@ class ActuatorNode(Node):
             Names([(config.name, config.sheet.is_rotary)]),
             Shown(memory.samples, memory.applied, np.zeros(0, SUPPLY_SAMPLE), None),
             is_run=False)
-        self.outlet = PreparedPublishers(
-            self, [(f'~/{suffix}', type_) for suffix, type_ in TOPICS])
+        self.outlet = PreparedPublishers(self, topics_of_actuator('~'))
         """The publishers of `TOPICS`."""
         setpoints = self.create_subscription(
             JointState, '~/setpoint', self._on_setpoint, SETPOINT)
         enable = self.create_service(SetBool, '~/enable', self._on_enable)
-        self._incompatible = IncompatiblePublishers(self, setpoints)
+        self._incompatible = IncompatiblePublishers(self, setpoints, SETPOINT_TYPE)
         self._inputs = open_server(
             self, [setpoints], [enable], self._tunables.services, has_mailbox)
 
@@ -124,6 +124,12 @@ class ActuatorNode(Node):
             self.actuator.accept(command)
         self.actuator.tick(port)
 
+    def warm_up(self) -> None:
+        """Compile what a tick needs, or load it from the cache, on a copy of the actuator."""
+        with suppress(SimulationDiverged):  # so will the actuator, which reports it
+            SmartActuator(self.setup.config, self.setup.timing).tick()
+        self._packer.pack(0, 0, {})
+
     def snapshot(self) -> bytes:
         """Return the complete state; `restore` continues from it byte for byte."""
         return self.actuator.snapshot()
@@ -133,11 +139,12 @@ class ActuatorNode(Node):
         self.actuator.restore(snapshot)
 
     def publish(self) -> None:
-        """Publish the state and applied commands, where there is a subscription."""
-        if not self.outlet.has_subscribers():
+        """Publish applied commands, and the state where there is a subscription."""
+        tuned = self.actuator.applied_parameters
+        has_subscribers = self.outlet.has_subscribers()
+        if not (has_subscribers or tuned or self.actuator.applied is not None):
             return
         t_ns = self.actuator.t_ns
-        tuned = self.actuator.applied_parameters
         self._packer.pack(
             t_ns, max(0, t_ns - self.setup.timing.step_ns), {0: tuned} if tuned else {})
         self.outlet.publish(self._packer.of_actuator(0))
@@ -159,10 +166,13 @@ class ActuatorNode(Node):
     def _on_setpoint(self, message: JointState) -> None:
         try:
             command = msg_to_command(message, self.get_name())
+            limited = self.actuator.setpoint_range.admit(command)
         except SetpointError as error:
             self.get_logger().warning(
                 f'setpoint rejected: {error}', throttle_duration_sec=WARNING_PERIOD_S)
             return
+        if limited:
+            self.get_logger().warning(limited, throttle_duration_sec=WARNING_PERIOD_S)
         self.actuator.accept(command)
 
     def _on_enable(

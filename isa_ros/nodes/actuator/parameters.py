@@ -1,13 +1,11 @@
 """The tunable values of an actuator as parameters of its node, with the standard services."""
 
 from collections.abc import Mapping, Sequence
-from typing import Any
 
 from isa_ros.actuator.actuator import SmartActuator
 from isa_ros.actuator.tunable import Tunable
-from isa_ros.core.suggest import alternatives
 from isa_ros.errors import ConfigError
-from isa_ros.reu.wiring import VARIABLES
+from isa_ros.nodes.middleware.parameters import accept_integers, refuse_unknown
 from rcl_interfaces.msg import FloatingPointRange, ParameterDescriptor, SetParametersResult
 from rclpy.node import Node
 from rclpy.parameter import Parameter
@@ -25,7 +23,7 @@ class TunableParameters:
     Raises
     ------
     ConfigError
-        An override names no tunable of a block, or its value is refused.
+        An override is of no parameter of the node, or its value is refused.
 
     """
 
@@ -37,7 +35,9 @@ class TunableParameters:
         for tunable in tunables.values():
             node.declare_parameter(
                 tunable.name, tunable.value, descriptor(tunable), ignore_override=True)
-        actuator.tune(_numbers(node.get_name(), overrides, tunables))
+        refuse_unknown(node)
+        actuator.tune({name: overrides[name].value for name in tunables if name in overrides})
+        accept_integers(node)
         node.add_on_set_parameters_callback(self._on_set)
         others = set(node.services)
         ParameterService(node)
@@ -69,18 +69,3 @@ def descriptor(tunable: Tunable) -> ParameterDescriptor:
         floating_point_range=[FloatingPointRange(
             from_value=bounds.get('ge', bounds.get('gt', 0.0)),
             to_value=bounds.get('le', bounds.get('lt', 0.0)))])
-
-
-def _numbers(
-        name: str, overrides: Mapping[str, Parameter], tunables: Mapping[str, Tunable]
-        ) -> dict[str, Any]:
-    """Return the overrides of tunables; refuse other keys of a control block."""
-    values = {}
-    for key, parameter in overrides.items():
-        if key.partition('.')[0] not in VARIABLES:
-            continue
-        if key not in tunables:
-            raise ConfigError(
-                f'{name}: parameter {key} is unknown; {alternatives(key, tunables)}')
-        values[key] = parameter.value
-    return values

@@ -7,6 +7,7 @@ import sys
 
 from isa_ros.actuator.actuator import Timing
 from isa_ros.config.catalogue import actuator_model, model_names
+from isa_ros.config.changes import changes_of
 from isa_ros.config.default_actuator import default_actuator, default_load, DEFAULT_TIMING
 from isa_ros.config.paths import CONFIG, find, SCENARIOS
 from isa_ros.config.run_config import RunConfig
@@ -18,11 +19,15 @@ from isa_ros.nodes.actuator.node import ActuatorNode, Setup
 from isa_ros.nodes.lockstep.participant_end import ParticipantEnd
 from isa_ros.nodes.lockstep.roles import ActuatorRole
 from isa_ros.nodes.middleware.arguments import init_ros
+from isa_ros.nodes.middleware.discovery import refuse_off
 from isa_ros.nodes.middleware.environment import set_defaults
+from isa_ros.nodes.middleware.parameters import declare, refuse_unknown
 from isa_ros.processes.stopping import end_with_parent, StopRequest
-from isa_ros.scenario.scenario import load_scenario
+from isa_ros.run.compiling import reported_compilation
+from isa_ros.scenario.scenario import planned
 from rcl_interfaces.msg import ParameterDescriptor
 from rclpy.node import Node
+from rclpy.parameter import Parameter
 from rclpy.utilities import try_shutdown
 
 USAGE = (
@@ -42,7 +47,8 @@ def run(args: Sequence[str] | None, model: str) -> int:
         try:
             set_defaults()
             init_ros(args, USAGE)
-            _run(model, should_stop)
+            with reported_compilation('actuator'):
+                _run(model, should_stop)
         except IsaError as error:
             print(f'actuator: {error}', file=sys.stderr)
             return error.exit_code
@@ -56,6 +62,7 @@ def _run(model: str, should_stop: StopRequest) -> None:
     try:
         gc.freeze()  # garbage collection of the loaded objects would delay a tick by 60 ms
         if _boolean(node, 'lockstep'):
+            refuse_off(node.get_name())
             ParticipantEnd(node, ActuatorRole(node)).spin(should_stop)
         else:
             run_alone(node, _number(node, 'real_time_factor'), should_stop)
@@ -70,19 +77,21 @@ def _resolve(node: Node, model: str) -> Setup:
             ('model', model, f'one of {", ".join(model_names())}'),
             ('config_file', '', 'run file that declares this actuator'),
             ('scenario_file', '', 'scenario that changes loads or start of that run'),
+            ('set', Parameter.Type.STRING_ARRAY, 'other values in these files, each KEY=VALUE'),
             ('real_time_factor', 1.0,
              'simulated over host time, if alone; 0: as fast as possible')):
-        node.declare_parameter(
-            name, default, ParameterDescriptor(description=description, read_only=True))
+        declare(node, name, default, ParameterDescriptor(description=description, read_only=True))
     chosen, path = _text(node, 'model'), _text(node, 'config_file')
     if path:
-        run = load_run(find(path, CONFIG))
-        if scenario := _text(node, 'scenario_file'):
-            run = load_scenario(find(scenario, SCENARIOS), run).run
+        changes = changes_of(node.get_parameter_or('set').value or ())
+        run = load_run(find(path, CONFIG), changes.run)
+        scenario = _text(node, 'scenario_file')
+        run = planned(find(scenario, SCENARIOS) if scenario else None, run, changes).run
         return _from_run(run, node.get_name(), chosen, _boolean(node, 'lockstep'))
     if _boolean(node, 'lockstep'):
         raise ConfigError(f'{node.get_name()}: lockstep needs the parameter config_file')
     if not chosen:
+        refuse_unknown(node)  # its name may be misspelt
         raise ConfigError(
             f'{node.get_name()}: set the parameter model, one of {", ".join(model_names())}, or '
             'config_file')
@@ -95,7 +104,8 @@ def _from_run(run: RunConfig, name: str, model: str, in_lockstep: bool) -> Setup
         raise ConfigError(
             f'{run.source}: {name} has model {config.model}, the parameter model = {model!r}')
     if config.load is None and not in_lockstep:
-        config = replace(config, load=default_load(actuator_model(config.model, name)))
+        model_of = actuator_model(config.model, name)
+        config = replace(config, load=default_load(model_of, config.sheet, run.span_of(name)))
     return Setup(config, Timing(run.step_ns, run.controller_offset_ns))
 
 

@@ -1,25 +1,28 @@
-"""Warnings about publishers whose quality of service prevents their setpoints from arriving."""
+"""Warnings about publishers whose type or quality of service keeps setpoints from arriving."""
 
 import time
 
 from rclpy.node import Node
 from rclpy.qos import qos_check_compatible, QoSCompatibility
 from rclpy.subscription import Subscription
+from rclpy.topic_endpoint_info import TopicEndpointInfo
 
 PERIOD_S = 1.0
 
 
 class IncompatiblePublishers:
     """
-    Checks the publishers of one subscription's topic.
+    Checks the publishers of one subscription's topic; ``type_`` is the name of its type.
 
-    rclpy's event reports an incompatible publisher without its name; the graph has the name.
+    rclpy's event reports an incompatible publisher without its name, and has none for one of
+    another type; the graph has name and type.
     """
 
-    def __init__(self, node: Node, subscription: Subscription) -> None:
+    def __init__(self, node: Node, subscription: Subscription, type_: str) -> None:
         self._node = node
         self._topic = subscription.topic_name
         self._qos = subscription.qos_profile
+        self._type = type_
         self._checked: set[tuple[int, ...]] = set()
         self._next = 0.0
 
@@ -34,9 +37,15 @@ class IncompatiblePublishers:
             if identity in self._checked:
                 continue
             self._checked.add(identity)
-            compatibility, reason = qos_check_compatible(publisher.qos_profile, self._qos)
-            if compatibility == QoSCompatibility.ERROR:
+            if reason := self._reason(publisher):
                 namespace = publisher.node_namespace.rstrip('/')
                 self._node.get_logger().warning(
                     f'{namespace}/{publisher.node_name}: its {self._topic} cannot be received: '
-                    f'{reason.strip()}')
+                    f'{reason}')
+
+    def _reason(self, publisher: TopicEndpointInfo) -> str:
+        """Return why messages of a publisher do not arrive; '': they do."""
+        if publisher.topic_type != self._type:
+            return f'it is of type {publisher.topic_type}, must be {self._type}'
+        compatibility, reason = qos_check_compatible(publisher.qos_profile, self._qos)
+        return str(reason).strip() if compatibility == QoSCompatibility.ERROR else ''

@@ -1,11 +1,13 @@
 """ROS 2 node of the coordinator: time, events, supplies and body on topics."""
 
 from collections.abc import Sequence
+from dataclasses import replace
 from typing import Any
 
 from isa_ros.core.topic import Topic
 from isa_ros.errors import ConfigError
-from isa_ros.nodes.coordinator.services import REAL_TIME_FACTOR
+from isa_ros.nodes.coordinator.services import REAL_TIME_FACTOR, STEP_COUNT
+from isa_ros.nodes.middleware.parameters import declare, refuse_unknown
 from isa_ros.nodes.middleware.publishers import PreparedPublishers
 from isa_ros.nodes.middleware.refusals import refusals
 from isa_ros.run.narrator import Outlet, Outlets
@@ -25,8 +27,9 @@ class CoordinatorNode(Node):
     def __init__(self, **kwargs: Any) -> None:
         with refusals():
             super().__init__(NAME, start_parameter_services=False, **kwargs)
-        self._time = PreparedPublishers(self, [clock.TOPIC])
-        self._events = _Events(self, [(_relative(event.TOPIC[0]), event.TOPIC[1])])
+        self._time = PreparedPublishers(self, [Topic(*clock.TOPIC)])
+        self._events = _Events(
+            self, [Topic(_relative(event.TOPIC[0]), event.TOPIC[1])])
 
     def outlets(self, surroundings: Sequence[Topic], actuators: Sequence[Outlet]) -> Outlets:
         """
@@ -35,7 +38,7 @@ class CoordinatorNode(Node):
         ``actuators`` are those of the actuators in this process; empty if their own nodes publish.
         """
         shown = PreparedPublishers(
-            self, [(_relative(topic.name), topic.type_name) for topic in surroundings])
+            self, [replace(topic, name=_relative(topic.name)) for topic in surroundings])
         return Outlets(self._time, self._events, shown, actuators)
 
     def request(self) -> Request:
@@ -45,11 +48,12 @@ class CoordinatorNode(Node):
         Raises
         ------
         ConfigError
-            The parameter config_file is not set.
+            A parameter is unknown or has a wrong type, or config_file is not set.
 
         """
         values = {option.parameter: self._declared(option)
                   for option in OPTIONS if option.is_parameter}
+        refuse_unknown(self, (STEP_COUNT,))
         if not values['config_file']:
             raise ConfigError(f'{NAME}: set the parameter config_file')
         return request_of_parameters(
@@ -58,10 +62,10 @@ class CoordinatorNode(Node):
     def _declared(self, option: Option) -> Any:
         """Declare the parameter of an option and return its value."""
         default = option.parameter_default
-        return self.declare_parameter(
-            option.parameter, Parameter.Type.STRING_ARRAY if default is None else default,
+        return declare(
+            self, option.parameter, Parameter.Type.STRING_ARRAY if default is None else default,
             ParameterDescriptor(description=option.description,
-                                read_only=option.parameter != REAL_TIME_FACTOR)).value
+                                read_only=option.parameter != REAL_TIME_FACTOR))
 
 
 def _relative(name: str) -> str:

@@ -11,6 +11,7 @@ from isa_ros.nodes.middleware.arguments import init_ros
 from isa_ros.nodes.middleware.domain import sole_coordinator
 from isa_ros.nodes.middleware.environment import set_defaults
 from isa_ros.processes.stopping import StopRequest
+from isa_ros.run.compiling import reported_compilation
 from isa_ros.run.session import prepare
 from isa_ros.run.terminal import terminal_report
 from rclpy.utilities import try_shutdown
@@ -23,10 +24,11 @@ USAGE = (
 def main(args: Sequence[str] | None = None) -> None:
     """Coordinate the run that the parameters describe."""
     start_without_blas()
-    sys.exit(_main(args))
+    sys.exit(run(args))
 
 
-def _main(args: Sequence[str] | None) -> int:
+def run(args: Sequence[str] | None) -> int:
+    """Coordinate one run and return the exit code."""
     with StopRequest() as should_stop:
         try:
             set_defaults()
@@ -34,9 +36,9 @@ def _main(args: Sequence[str] | None) -> int:
             node = CoordinatorNode()
             try:
                 session = prepare(node.request())
-                run = coordinate_locally if session.request.in_process else coordinate
-                with sole_coordinator():
-                    run(node, session, terminal_report(), should_stop)
+                start = coordinate_locally if session.request.in_process else coordinate
+                with sole_coordinator(), reported_compilation(NAME):
+                    start(node, session, terminal_report(), should_stop)
                 if session.pace.shortfall:
                     node.get_logger().warning(session.pace.shortfall)
             finally:

@@ -13,6 +13,7 @@ from isa_ros.nodes.coordinator.services import RunServices
 from isa_ros.nodes.lockstep.coordinator_end import LockstepTransport
 from isa_ros.nodes.lockstep.expected import Expected, Limits, Participants
 from isa_ros.nodes.lockstep.mixed_transport import MixedTransport
+from isa_ros.nodes.middleware.discovery import refuse_off
 from isa_ros.nodes.middleware.domain import look_for_other_coordinator, sole_coordinator
 from isa_ros.nodes.middleware.environment import defaults
 from isa_ros.nodes.middleware.refusals import refusals
@@ -39,17 +40,23 @@ _QUIET = {
 
 def in_processes(session: Session, report: Report | None, should_stop: StopRequest) -> None:
     """Start one process per actuator, coordinate them from this process, and end them."""
-    participants = _participants(session)
     request = session.request
-    processes = actuator_processes(
-        session.run, request.config, request.scenario,
-        session.run.names_here(request.elsewhere))
-    children = Children(
-        processes, request.namespace, _work if request.is_alone else None)
-    with defaults(), sole_coordinator(), children:
-        _freeze_objects(session)
-        with _node(request.namespace) as node:
-            _coordinate(node, session, participants, report, should_stop, children.lost)
+    with defaults(), sole_coordinator():
+        _refuse_undiscovered(session, '; or use --in-process')
+        participants = _participants(session)
+        processes = actuator_processes(
+            session.run, request.config, request.scenario,
+            session.run.names_here(request.elsewhere), request.changes)
+        with Children(
+                processes, request.namespace, _work if request.is_alone else None) as children:
+            _freeze_objects(session)
+            with _node(request.namespace) as node:
+                _coordinate(node, session, participants, report, should_stop, children.lost)
+
+
+def _refuse_undiscovered(session: Session, otherwise: str = '') -> None:
+    names = [actuator.name for actuator in session.run.actuators]
+    refuse_off(', '.join([*names, *session.run.controllers]), otherwise)
 
 
 def _freeze_objects(session: Session) -> None:
@@ -86,6 +93,7 @@ def coordinate(
         node: CoordinatorNode, session: Session, report: Report | None,
         should_stop: StopRequest) -> None:
     """Run with participants that are started separately."""
+    _refuse_undiscovered(session, '; or set in_process:=true')
     participants = _participants(session)
     _freeze_objects(session)
     _coordinate(node, session, participants, report, should_stop, _none_lost)
@@ -136,6 +144,8 @@ def coordinate_locally(
         should_stop: StopRequest) -> None:
     """Run with the nodes of all actuators in this process; controllers have separate ones."""
     configs = session.run.actuators
+    if session.run.controllers:
+        refuse_off(', '.join(session.run.controllers))
     participants = _participants(session, are_here=True)
     _freeze_objects(session)
     group = group_of(session.run)

@@ -5,6 +5,7 @@ from typing import Any
 
 from isa_ros.errors import IsaError
 from isa_ros.nodes.middleware.handles import has_handles
+from isa_ros.nodes.middleware.parameters import accept_integers, declare
 from isa_ros.nodes.middleware.servers import DirectServer
 from isa_ros.run.coordinator import Coordinator
 from rcl_interfaces.msg import IntegerRange, ParameterDescriptor, SetParametersResult
@@ -39,12 +40,13 @@ class RunServices:
             node.get_logger().warning(
                 'pause, step, reset and save are not available with this version of rclpy')
             return
-        node.declare_parameter(STEP_COUNT, 1, ParameterDescriptor(
+        declare(node, STEP_COUNT, 1, ParameterDescriptor(
             description='ticks of one call of ~/step',
             integer_range=[IntegerRange(from_value=1, to_value=LARGEST_STEP, step=1)]))
         if not node.has_parameter(REAL_TIME_FACTOR):
-            node.declare_parameter(REAL_TIME_FACTOR, real_time_factor, ParameterDescriptor(
+            declare(node, REAL_TIME_FACTOR, real_time_factor, ParameterDescriptor(
                 description='largest real-time factor; 0: as fast as possible'))
+        accept_integers(node)
         node.add_on_set_parameters_callback(self._on_parameters)
         own = [
             node.create_service(SetBool, '~/pause', self._on_pause),

@@ -10,6 +10,7 @@ import os
 from pathlib import Path
 
 from isa_ros.errors import ConfigError
+from isa_ros.nodes.middleware.discovery import refuse_invalid
 from rclpy.utilities import get_rmw_implementation_identifier
 
 LOCALHOST_PROFILE = Path(__file__).with_name('fastdds_localhost.xml')
@@ -36,9 +37,11 @@ def set_defaults(
     Raises
     ------
     ConfigError
-        A profile set by the user is not a file; the middleware itself would ignore it.
+        A profile set by the user is not a file, or a variable of the discovery has an invalid
+        value; the middleware itself would ignore both.
 
     """
+    refuse_invalid(environment)
     for name in _PROFILE_VARIABLES:
         if name in environment and not Path(environment[name]).is_file():
             raise ConfigError(f'{name} = {environment[name]}: no such file')

@@ -3,7 +3,8 @@
 from collections.abc import Sequence
 from typing import Any
 
-from isa_ros.nodes.middleware.qos import STATE
+from isa_ros.core.topic import Topic
+from isa_ros.nodes.middleware.qos import KEPT, STATE
 from isa_ros.run.packing import Messages
 from msg_adapters.cdr_reader import message_class
 from rclpy.node import Node
@@ -13,17 +14,20 @@ _REFRESH_TICKS = 20  # a new subscription is noticed within that many ticks
 
 class PreparedPublishers:
     """
-    An `Outlet` with one publisher per topic, (name, type), in the order of the messages.
+    An `Outlet` with one publisher per topic, in the order of the messages.
 
     Messages of publishers without a matched subscription are not passed to the middleware: eight
-    of them would take 36 us per tick.
+    of them would take 36 us per tick. Those of a topic that is kept always are.
     """
 
-    def __init__(self, node: Node, topics: Sequence[tuple[str, str]]) -> None:
+    def __init__(self, node: Node, topics: Sequence[Topic]) -> None:
         self._publishers = [
-            node.create_publisher(message_class(type_), name, STATE) for name, type_ in topics]
+            node.create_publisher(
+                message_class(topic.type_name), topic.name, KEPT if topic.qos.is_kept else STATE)
+            for topic in topics]
         self._handles: list[Any] = [publisher.handle for publisher in self._publishers]
-        self._subscribed: list[tuple[int, Any]] = []
+        self._is_kept = [topic.qos.is_kept for topic in topics]
+        self.refresh()
         self._countdown = 0
 
     def has_subscribers(self) -> bool:
@@ -31,11 +35,11 @@ class PreparedPublishers:
         if self._countdown == 0:
             self.refresh()
         self._countdown -= 1
-        return bool(self._subscribed)
+        return self._has_subscribers
 
     def publish(self, messages: Messages) -> None:
-        """Publish the messages that are not None on the topics with a subscription."""
-        for slot, publish_raw in self._subscribed:
+        """Publish the messages that are not None: on topics with a subscription, and kept ones."""
+        for slot, publish_raw in self._passed:
             message = messages[slot]
             if message is not None:
                 publish_raw(message)
@@ -43,6 +47,8 @@ class PreparedPublishers:
     def refresh(self) -> None:
         """Count the subscriptions again."""
         self._countdown = _REFRESH_TICKS
-        self._subscribed = [
+        subscribed = [bool(handle.get_subscription_count()) for handle in self._handles]
+        self._has_subscribers = any(subscribed)
+        self._passed: list[tuple[int, Any]] = [
             (slot, handle.publish_raw) for slot, handle in enumerate(self._handles)
-            if handle.get_subscription_count()]
+            if subscribed[slot] or self._is_kept[slot]]

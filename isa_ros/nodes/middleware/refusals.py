@@ -5,6 +5,7 @@ from contextlib import contextmanager
 import os
 
 from isa_ros.errors import ConfigError
+from rclpy.exceptions import InvalidParameterTypeException
 from rclpy.impl.implementation_singleton import rclpy_implementation as _rclpy
 
 _SECURITY = 'ROS_SECURITY_ENABLE'
@@ -22,13 +23,15 @@ def refusals() -> Iterator[None]:
     ------
     ConfigError
         The environment cannot be used, for example because the middleware was built without
-        security or the security files are missing.
+        security or the security files are missing; or a parameter of rclpy has a wrong type.
 
     """
     try:
         yield
     except _OF_ARGUMENTS:
         raise
+    except InvalidParameterTypeException as error:  # of a parameter of rclpy itself
+        raise ConfigError(f'middleware: {error}') from error
     except _rclpy.RCLError as error:
         reason = str(error).splitlines()[0]
         hint = ''

@@ -55,7 +55,7 @@ class Leg:
         self._constants = leg_record(sheet)
         self._state = rows_of(1, LEG_STATE)
         self._sample = rows_of(1, kernels.LEG_SAMPLE)
-        self._look_ahead = 0.5 * step_ns / NS_PER_SECOND
+        self._step = step_ns / NS_PER_SECOND
         self._t_ns = 0
         self._is_to_be_released = release_ns is not None
         self._start(pose)
@@ -143,7 +143,7 @@ class Leg:
         if self._is_to_be_released and self._t_ns >= (self._release_ns or 0):
             self._is_to_be_released = False
             self.release()
-        kernels.leg_ports(self._state, self._look_ahead, self.rows, self._constants, ports)
+        kernels.leg_ports(self._state, self._step, self.rows, self._constants, ports)
 
     def advance(self, replies: np.ndarray) -> None:
         """

@@ -33,8 +33,8 @@ class ContinuousState(NamedTuple):
     v_haa: float        # rad/s
     v_hfe: float
     v_kfe: float
-    bristle_x: float    # m
-    bristle_y: float
+    shear_x: float      # of the sole, m
+    shear_y: float
 
 
 LEG_STATE = np.dtype([
@@ -76,8 +76,8 @@ class Motion(NamedTuple):
     """How the leg moves at one instant; three values are those of the joints, or x y z."""
 
     acceleration: Coordinates            # m/s2, rad/s2
-    bristle_rate_x: float                # m/s
-    bristle_rate_y: float
+    shear_rate_x: float                  # m/s
+    shear_rate_y: float
     factor: Factor                       # of the mass matrix
     position: tuple[float, ...]          # (3,), of the actuators, m | rad
     lever: tuple[float, ...]             # (3,), r
@@ -138,7 +138,7 @@ def leg_motion(y, f, is_held, leg):
     x_hfe, r_hfe, dr_hfe = actuator_coordinate(y.q_hfe, leg.hfe)
     x_kfe, r_kfe, dr_kfe = actuator_coordinate(y.q_kfe, leg.kfe)
     f_x, f_y, f_z, rate_x, rate_y = contact(
-        m.foot_z, m.foot_v_x, m.foot_v_y, m.foot_v_z, y.bristle_x, y.bristle_y, leg.ground)
+        m.foot_z, m.foot_v_x, m.foot_v_y, m.foot_v_z, y.shear_x, y.shear_y, leg.ground)
     m_factor = factor(m, is_held)
     acceleration = solve(
         m_factor,
@@ -147,7 +147,7 @@ def leg_motion(y, f, is_held, leg):
         r_hfe * f_hfe + m.j_x_hfe * f_x + m.j_y_hfe * f_y + m.j_z_hfe * f_z - m.h_hfe,
         r_kfe * f_kfe + m.j_x_kfe * f_x + m.j_y_kfe * f_y + m.j_z_kfe * f_z - m.h_kfe)
     return Motion(
-        acceleration=acceleration, bristle_rate_x=rate_x, bristle_rate_y=rate_y,
+        acceleration=acceleration, shear_rate_x=rate_x, shear_rate_y=rate_y,
         factor=m_factor, position=(x_haa, x_hfe, x_kfe), lever=(r_haa, r_hfe, r_kfe),
         lever_rate=(dr_haa, dr_hfe, dr_kfe),
         foot_position=(m.foot_x, m.foot_y, m.foot_z), foot_force=(f_x, f_y, f_z))
@@ -161,7 +161,7 @@ def leg_rates(y, f, is_held, leg):
     return ContinuousState(
         z=y.v_z, q_haa=y.v_haa, q_hfe=y.v_hfe, q_kfe=y.v_kfe,
         v_z=a.z, v_haa=a.haa, v_hfe=a.hfe, v_kfe=a.kfe,
-        bristle_x=motion.bristle_rate_x, bristle_y=motion.bristle_rate_y)
+        shear_x=motion.shear_rate_x, shear_y=motion.shear_rate_y)
 
 
 @kernel
@@ -171,7 +171,7 @@ def shifted(y, h, k):
         z=y.z + h * k.z, q_haa=y.q_haa + h * k.q_haa, q_hfe=y.q_hfe + h * k.q_hfe,
         q_kfe=y.q_kfe + h * k.q_kfe, v_z=y.v_z + h * k.v_z, v_haa=y.v_haa + h * k.v_haa,
         v_hfe=y.v_hfe + h * k.v_hfe, v_kfe=y.v_kfe + h * k.v_kfe,
-        bristle_x=y.bristle_x + h * k.bristle_x, bristle_y=y.bristle_y + h * k.bristle_y)
+        shear_x=y.shear_x + h * k.shear_x, shear_y=y.shear_y + h * k.shear_y)
 
 
 @kernel
@@ -214,7 +214,7 @@ def continuous(state):
     return ContinuousState(
         z=state.z, q_haa=state.q_haa, q_hfe=state.q_hfe, q_kfe=state.q_kfe,
         v_z=state.v_z, v_haa=state.v_haa, v_hfe=state.v_hfe, v_kfe=state.v_kfe,
-        bristle_x=state.bristle_x, bristle_y=state.bristle_y)
+        shear_x=state.shear_x, shear_y=state.shear_y)
 
 
 @kernel
@@ -222,7 +222,7 @@ def keep_continuous(y, state):
     """Write a `ContinuousState` into a `LEG_STATE`."""
     state.z, state.q_haa, state.q_hfe, state.q_kfe = y.z, y.q_haa, y.q_hfe, y.q_kfe
     state.v_z, state.v_haa, state.v_hfe, state.v_kfe = y.v_z, y.v_haa, y.v_hfe, y.v_kfe
-    state.bristle_x, state.bristle_y = y.bristle_x, y.bristle_y
+    state.shear_x, state.shear_y = y.shear_x, y.shear_y
 
 
 @kernel

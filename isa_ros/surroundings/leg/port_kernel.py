@@ -11,10 +11,11 @@ import math
 
 from isa_ros.core.kernel import kernel
 from isa_ros.core.timebase import FORCE_WINDOWS, NS_PER_SECOND
-from isa_ros.surroundings.ground import bristle_rates
+from isa_ros.surroundings.ground import contact
 from isa_ros.surroundings.leg.motion import (
     actuator_accelerations, continuous, ContinuousState, Coordinates, joint_angles, joint_speeds,
     keep_continuous, leg_motion, leg_step, of_joints, shifted, solve, terms_of)
+from isa_ros.surroundings.leg.prediction import matched, predicted, resolved
 import numpy as np
 
 LEG_SAMPLE = np.dtype([
@@ -53,39 +54,32 @@ def response(j, motion):
 
 
 @kernel
-def bristle_follow(y, u, leg):
-    """Return the bristles' deflection for a displacement u of the leg: (dz'/dv) J u  (L14)."""
+def shear_follow(y, u, leg):
+    """
+    Return how far the sole's shear follows a displacement u of the leg  (L14).
+
+    (dz'/dv) J u at the present normal force: J u where the foot sticks, the part of it across
+    the friction force where it slides, 0 in the air.
+    """
     m = terms_of(y, leg)
-    if m.foot_z >= 0.0:
-        return 0.0, 0.0
     ground, s = leg.ground, PROBE_SPEED
     w_x = m.j_x_hfe * u.hfe + m.j_x_kfe * u.kfe
     w_y = m.j_y_haa * u.haa + m.j_y_hfe * u.hfe + m.j_y_kfe * u.kfe
-    x_before, y_before = bristle_rates(
-        y.bristle_x, y.bristle_y, m.foot_v_x, m.foot_v_y, True, ground)
-    x_after, y_after = bristle_rates(
-        y.bristle_x, y.bristle_y, m.foot_v_x + s * w_x, m.foot_v_y + s * w_y, True, ground)
+    _, _, _, x_before, y_before = contact(
+        m.foot_z, m.foot_v_x, m.foot_v_y, m.foot_v_z, y.shear_x, y.shear_y, ground)
+    _, _, _, x_after, y_after = contact(
+        m.foot_z, m.foot_v_x + s * w_x, m.foot_v_y + s * w_y, m.foot_v_z, y.shear_x, y.shear_y,
+        ground)
     return (x_after - x_before) / s, (y_after - y_before) / s
 
 
 @kernel
-def ahead(y, h, motion):
-    """Return y after ``h`` seconds of constant accelerations and bristle rates."""
-    a = motion.acceleration
-    return shifted(y, h, ContinuousState(
-        z=y.v_z + 0.5 * h * a.z, q_haa=y.v_haa + 0.5 * h * a.haa,
-        q_hfe=y.v_hfe + 0.5 * h * a.hfe, q_kfe=y.v_kfe + 0.5 * h * a.kfe,
-        v_z=a.z, v_haa=a.haa, v_hfe=a.hfe, v_kfe=a.kfe,
-        bristle_x=motion.bristle_rate_x, bristle_y=motion.bristle_rate_y))
-
-
-@kernel
 def displaced(y, u, leg):
-    """Return y displaced by `PROBE_DISPLACEMENT` along u, the bristles with it  (L14)."""
-    z_x, z_y = bristle_follow(y, u, leg)
+    """Return y displaced by `PROBE_DISPLACEMENT` along u, the shear with it  (L14)."""
+    z_x, z_y = shear_follow(y, u, leg)
     return shifted(y, PROBE_DISPLACEMENT, ContinuousState(
         z=u.z, q_haa=u.haa, q_hfe=u.hfe, q_kfe=u.kfe,
-        v_z=0.0, v_haa=0.0, v_hfe=0.0, v_kfe=0.0, bristle_x=z_x, bristle_y=z_y))
+        v_z=0.0, v_haa=0.0, v_hfe=0.0, v_kfe=0.0, shear_x=z_x, shear_y=z_y))
 
 
 @kernel
@@ -93,39 +87,39 @@ def faster(y, u):
     """Return y with `PROBE_SPEED` more along u."""
     return shifted(y, PROBE_SPEED, ContinuousState(
         z=0.0, q_haa=0.0, q_hfe=0.0, q_kfe=0.0,
-        v_z=u.z, v_haa=u.haa, v_hfe=u.hfe, v_kfe=u.kfe, bristle_x=0.0, bristle_y=0.0))
+        v_z=u.z, v_haa=u.haa, v_hfe=u.hfe, v_kfe=u.kfe, shear_x=0.0, shear_y=0.0))
 
 
 @kernel
-def leg_ports(states, look_ahead, rows, legs, ports):
+def leg_ports(states, tick, rows, legs, ports):
     """
-    Fill the `LOAD_PORT` of the three actuators  (L1, L12-L15).
+    Fill the `LOAD_PORT` of the three actuators for ``tick`` seconds  (L1, L12-L15).
 
-    Pressures are left as they are. ``look_ahead`` (s) is the distance of the jerk's
-    finite difference.
+    Pressures are left as they are.
     """
     state, leg = states[0], legs[0]
     y, is_held = continuous(state), state.is_held != 0.0
     f, slope = of_joints(state.force), of_joints(state.slope)
-    motion = leg_motion(y, f, is_held, leg)
+    motion, speeds = leg_motion(y, f, is_held, leg), joint_speeds(y)
     now = actuator_accelerations(y, f, is_held, leg)
-    h = look_ahead
-    later = actuator_accelerations(
-        ahead(y, h, motion), (f[0] + h * slope[0], f[1] + h * slope[1], f[2] + h * slope[2]),
-        is_held, leg)
-    speeds = joint_speeds(y)
+    y_end = predicted(y, tick, f, slope, is_held, leg)
+    end, end_speeds = leg_motion(y_end, f, is_held, leg), joint_speeds(y_end)
     for j in range(3):
         port = ports[rows[j]]
         u, inverse_mass = response(j, motion)
         port.x0, port.v0 = motion.position[j], motion.lever[j] * speeds[j]
         port.a0 = now[j]
         port.inverse_mass = inverse_mass
-        port.a_bias = now[j] - f[j] * inverse_mass
-        port.jerk = (later[j] - now[j]) / h - slope[j] * inverse_mass
-        port.stiffness = (now[j] - actuator_accelerations(
-            displaced(y, u, leg), f, is_held, leg)[j]) / PROBE_DISPLACEMENT
+        port.stiffness = resolved((now[j] - actuator_accelerations(
+            displaced(y, u, leg), f, is_held, leg)[j]) / PROBE_DISPLACEMENT, tick)
         port.damping = (now[j] - actuator_accelerations(
             faster(y, u), f, is_held, leg)[j]) / PROBE_SPEED
+        a, b = matched(
+            end.position[j] - port.x0 - tick * (port.v0 + 0.5 * tick * port.a0),
+            end.lever[j] * end_speeds[j] - port.v0 - tick * port.a0,
+            tick, port.stiffness, port.damping)
+        port.a_bias = a + now[j] - f[j] * inverse_mass
+        port.jerk = b - slope[j] * inverse_mass
 
 
 @kernel

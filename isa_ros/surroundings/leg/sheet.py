@@ -42,9 +42,12 @@ class Link(Parameters):
     com_x_m: float = parameter('centre of mass', 'm', ge=-2.0, le=2.0)
     com_y_m: float = parameter('centre of mass', 'm', ge=-2.0, le=2.0)
     com_z_m: float = parameter('centre of mass', 'm', ge=-2.0, le=2.0)
-    inertia_xx: float = parameter('at the centre of mass, before the scale', 'kg m2', gt=0.0)
-    inertia_yy: float = parameter('at the centre of mass, before the scale', 'kg m2', gt=0.0)
-    inertia_zz: float = parameter('at the centre of mass, before the scale', 'kg m2', gt=0.0)
+    inertia_xx: float = parameter(
+        'at the centre of mass, before the scale', 'kg m2', gt=0.0, le=100.0)
+    inertia_yy: float = parameter(
+        'at the centre of mass, before the scale', 'kg m2', gt=0.0, le=100.0)
+    inertia_zz: float = parameter(
+        'at the centre of mass, before the scale', 'kg m2', gt=0.0, le=100.0)
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -52,7 +55,7 @@ class Body(Parameters):
     """The rigid bodies of one leg."""
 
     mass_scale: float = parameter(
-        'factor on the masses and inertias of the three links', '1', gt=0.0, le=10.0)
+        'factor on the masses and inertias of the three links', '1', ge=0.1, le=10.0)
     hip_drop_m: float = parameter(
         'HFE axis below the HAA axis of a hanging leg', 'm', absent=0.0, ge=-2.0, le=2.0)
     slider: Slider

@@ -166,6 +166,16 @@ def test_a_bag_without_motion_is_refused_in_one_line(
     assert 'bag: nothing to identify: rotor moved' in printed
 
 
+def test_a_flow_curve_of_points_is_refused_in_one_line(
+        tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    """There is no curve with few parameters to fit: exit code 2."""
+    load('rig_cylinder').simulate(0.1).save(tmp_path / 'bag')
+    assert main(['identify', str(tmp_path / 'bag')]) == 2
+    printed = capsys.readouterr().err
+    assert printed.count('\n') == 1
+    assert 'nothing to identify: ram has the flow curve of a data sheet, which is not' in printed
+
+
 TWO = """
 name: two
 step_ms: 1.0

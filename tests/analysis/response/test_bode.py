@@ -4,7 +4,7 @@ from dataclasses import replace
 import json
 from pathlib import Path
 
-from isa_ros.analysis.response.bode import Bode, bode, conclusions
+from isa_ros.analysis.response.bode import Bode, bode, conclusions, table
 from isa_ros.analysis.response.loops import loop_of
 from isa_ros.analysis.response.rig import Choice, Rig, rig
 from isa_ros.analysis.response.step import step, summary
@@ -177,7 +177,48 @@ def test_a_pressure_loop_is_measured_like_the_others():
     assert got.response.phase[3] == pytest.approx(-90.0, abs=7.0)
 
 
-def test_a_hunting_loop_is_said_not_to_be_trusted(capsys):
+HUNTING = ('isa_v5', '--set', 'reu.force.kp=3e-7')
+BAND = ('--from', '10', '--to', '150', '--points', '8')
+
+
+def test_a_hunting_loop_has_no_margins(tmp_path: Path, capsys):
+    """
+    Damping fed back with four times the gain is a limit cycle of 12 % of the excitation.
+
+    Under the excitation the response is coherent (0.97 and more) and has the margins of a stable
+    loop, 6 dB and 75 deg: the cycle of 90 N at 184 Hz is in the damping of the block, which these
+    margins count as part of the plant.
+    """
+    numbers, figure = tmp_path / 'bode.json', tmp_path / 'bode.svg'
+    assert cli.main([
+        'bode', *HUNTING, *BAND, '--json', str(numbers), '--out', str(figure)]) == 1
+    printed, found = capsys.readouterr().out, json.loads(numbers.read_text())
+    assert 'the loop hunts: at rest it oscillates by ' in printed
+    assert 'margin: ' not in printed and '-3 dB: ' not in printed
+    assert found['hunts'] and min(found['coherence']) > 0.95
+    results = ('bandwidth_hz', 'gain_margin_db', 'phase_margin_deg')
+    assert [found[name] for name in results] == [None, None, None]
+    assert found['ripple'] > 0.05 * found['amplitude']
+    assert f'{found["ripple"]:.3g} N at {found["ripple_hz"]:.4g} Hz' in printed
+    assert 'the loop hunts: ' in figure.read_text()
+
+
+def test_the_ripple_is_that_of_the_step(capsys):
+    """The same loop at the same place: a sine has sqrt(2) of its deviation as amplitude."""
+    hunting = rig(Choice(name='isa_v5', loop='force', values={'reu.force.kp': 3e-7}))
+    rest = bode(hunting, Sweep(low=10.0, high=150.0, points=2), 'closed').rest
+    # half of peak to peak against the deviation of a cycle with harmonics
+    assert rest.ripple == pytest.approx(np.sqrt(2.0) * step(hunting, 0.5).figures.ripple, rel=0.1)
+
+
+def test_a_quiet_loop_states_its_ripple(capsys):
+    assert cli.main(['bode', 'isa_v5', *BAND]) == 0
+    printed = capsys.readouterr().out
+    assert 'open loop, phase margin: ' in printed and 'at rest, ripple: ' in printed
+    assert 'hunts' not in printed
+
+
+def test_a_frequency_without_coherence_is_marked_and_left_out(capsys):
     """A pressure difference of 2 MPa under ten times the gains: a limit cycle, not a response."""
     bench = rig(Choice(name='isa_v5', loop='pressure', variants=('pressure_control',)))
     reu = bench.config.sheet.reu
@@ -185,8 +226,11 @@ def test_a_hunting_loop_is_said_not_to_be_trusted(capsys):
         reu.pressure, kp=10.0 * reu.pressure.kp, ki=10.0 * reu.pressure.ki))
     hunting = bench.with_config(
         replace(bench.config, sheet=replace(bench.config.sheet, reu=wild)))
-    sweep = Sweep(low=20.0, high=100.0, points=4)
-    assert 'coherence falls to' in '\n'.join(conclusions(bode(hunting, sweep, 'closed', 0.2)))
+    sweep = Sweep(low=20.0, high=60.0, points=4)
+    lost = bode(hunting, sweep, 'closed', 0.2)
+    assert not lost.response.is_trusted.any() and lost.bandwidth is None
+    *rows, ripple, warning = table(lost).splitlines()
+    assert all(row.endswith('!') for row in rows[1:]) and 'coherence falls to' in warning
     assert 'coherence falls to' not in '\n'.join(conclusions(bode(bench, sweep, 'closed', 2.0)))
 
 

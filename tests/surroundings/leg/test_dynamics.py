@@ -53,7 +53,8 @@ def oracle(request):
     pin = pytest.importorskip('pinocchio')
     model = pin.buildModelFromUrdf(str(ROOT / 'urdf' / f'{request.param}_leg.urdf'))
     model.gravity.linear = np.array([0.0, 0.0, -STANDARD_GRAVITY])
-    assert [model.names[k] for k in range(1, 5)] == ['slider', 'haa', 'hfe', 'kfe']
+    assert [model.names[k] for k in range(1, 5)] == [
+        'slider_joint', 'haa_joint', 'hfe_joint', 'kfe_joint']
     return pin, model, model.createData(), request.param
 
 

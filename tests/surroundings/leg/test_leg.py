@@ -202,34 +202,6 @@ def test_effective_mass_is_that_of_the_mass_matrix(release):
             r * r * inverse[j, j], rel=1e-12, abs=0.0)
 
 
-def test_port_is_the_leg_s_motion_to_third_order():
-    """
-    L1, L12: x(t) of each actuator, forces as assumed, is x0 + v0 t + a t^2/2 + jerk t^3/6.
-
-    a = a_bias + F/m_eff = a0, third derivative = jerk + F'/m_eff. The leg is integrated in
-    steps of 1 us over t = 0.2 ms; the remainder is t^4/24 of the fourth derivative
-    (below 1e9 m/s4 in contact: 1e-7) plus the jerk's look-ahead error of as much.
-    """
-    leg = moving_leg()
-    ports = np.zeros(3, LOAD_PORT)
-    leg.ports(ports)
-    found = state(leg)
-    y, f, slope = continuous(leg), found['force'], found['slope']
-    assert leg.sample[0]['foot_force'][2] > 100.0
-    t, n = 2e-4, 200
-    for i in range(n):
-        middle = tuple(f[j] + slope[j] * (i + 0.5) * t / n for j in range(3))
-        y = kernels.leg_step(y, t / n, middle, leg.is_held, CONSTANTS)
-    for j, x in enumerate(kernels.leg_motion(y, tuple(f), leg.is_held, CONSTANTS).position):
-        p = ports[j]
-        third = p['jerk'] + slope[j] * p['inverse_mass']
-        predicted = p['x0'] + t * (p['v0'] + t * (0.5 * p['a0'] + t * third / 6.0))
-        assert p['a0'] == pytest.approx(
-            p['a_bias'] + f[j] * p['inverse_mass'], rel=1e-12, abs=0.0)
-        without_third = p['x0'] + t * (p['v0'] + t * 0.5 * p['a0'])
-        assert abs(predicted - x) < 0.2 * abs(without_third - x) + 1e-15
-
-
 def test_ground_stiffness_is_seen_through_the_port():
     """
     L14, L15: under a constant extra force the leg moves according to k and d of the port.

@@ -1,0 +1,51 @@
+"""What happened in a run, as a table of text: motion, force, pressure, settling and oil."""
+
+from isa_ros.analysis.signals.signals import Signals
+from isa_ros.config.run_config import ActuatorConfig
+from isa_ros.core.units import MILLI, MPA
+from isa_ros.text.number import digits
+from isa_ros.text.table import aligned
+import numpy as np
+
+SETTLED = 0.02  # of the motion: the usual band about the final value
+_LITRE = 1e-3   # m3
+_HEADER = ('', 'from', 'to', '', 'peak', '', 'pressure, MPa', 'settled, s', 'oil, l')
+
+
+def settling_time(t: np.ndarray, x: np.ndarray) -> float | None:
+    """
+    Return the time from which on ``x`` stays within 2 % of its range about its last value.
+
+    None: it does not move, or has not settled before the last tenth of the time.
+    """
+    band = SETTLED * float(np.ptp(x))
+    outside = np.flatnonzero(np.abs(x - x[-1]) > band)
+    if band == 0.0 or outside.size == 0:
+        return None
+    settled = float(t[outside[-1] + 1])
+    return settled if settled < t[0] + 0.9 * (t[-1] - t[0]) else None
+
+
+def outcome(signals: Signals) -> str:
+    """Return a line for each actuator, and one for the ground's force."""
+    lines = aligned([_HEADER, *(_row(signals, own) for own in signals.run.actuators)], 'lrrlrlrrr')
+    if signals.run.leg is not None:
+        ground = signals['body.foot_force'][:, 2]
+        lines.append(f'ground: at most {digits(float(ground.max()), 3)} N, '
+                     f't = {float(signals.time[int(ground.argmax())]):.3f} s')
+    lines.append('settled: within 2 % of the motion; pressure: gauge; oil: drawn from the supply')
+    return '\n'.join(lines)
+
+
+def _row(signals: Signals, own: ActuatorConfig) -> tuple[str, ...]:
+    name = own.name
+    t, x = signals.over_time(f'{name}.position')
+    scale, unit = (np.degrees(1.0), 'deg') if own.sheet.is_rotary else (1.0 / MILLI, 'mm')
+    force = np.abs(signals[f'{name}.force']).max()
+    pressures = np.concatenate([signals[f'{name}.pressure_{side}'] for side in 'ab']) / MPA
+    oil = signals[f'{name}.supply_volume'][-1] / _LITRE
+    settled = settling_time(t, x)
+    return (
+        name, f'{x.min() * scale:.1f}', f'{x.max() * scale:.1f}', unit, digits(float(force), 3),
+        signals.unit(f'{name}.force'), f'{pressures.min():.1f} to {pressures.max():.1f}',
+        '-' if settled is None else f'{settled:.3f}', f'{oil:.3f}')

@@ -1,0 +1,141 @@
+"""
+What a command measures: an actuator of a model or of a run file, with other values.
+
+A model is measured as a run file of a few lines would be: alone, on the paper's supply. Keys of
+other values are those of the run file, or of the measured actuator as `isa params` shows them for
+its model: ``reu.force.kp``, ``plant.oil.dead_volume_ml``, ``load.stiffness``, ``preset``.
+"""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
+from typing import Any, NamedTuple
+
+from isa_ros.actuator.actuator import PAPER_SUPPLY
+from isa_ros.config.catalogue import actuator_model, model_names
+from isa_ros.config.changes import changed
+from isa_ros.config.default_actuator import DEFAULT_TIMING
+from isa_ros.config.paths import CONFIG, find
+from isa_ros.config.run_config import RunConfig
+from isa_ros.config.run_file import run_of
+from isa_ros.config.sections import Place
+from isa_ros.config.yaml_text import read, Tree
+from isa_ros.core.units import MPA
+from isa_ros.errors import ConfigError
+
+TICK_TIMEOUT_S = 5.0    # of a model's run, as in the shipped run files
+LOAD = 'load'
+_OF_SHEET = ('spool_feedback', 'plant', 'reu')
+_OF_ACTUATOR = ('preset', 'variants', 'initial_position_mm', 'initial_position_deg')
+
+
+@dataclass(frozen=True, kw_only=True)
+class Choice:
+    """What a user names; None takes the default."""
+
+    name: str
+    """A packaged model, or a run file."""
+    loop: str
+    actuator: str | None = None
+    preset: str | None = None
+    variants: Sequence[str] = ()
+    load: str | None = None
+    position: float | None = None
+    """mm or deg."""
+    values: Mapping[str, Any] = field(default_factory=dict)
+    """Other values by key, in the units of the files."""
+
+    @property
+    def keeps_load(self) -> bool:
+        """Return whether the actuator is measured on the load it has."""
+        return self.load is None and self.loop == 'position'
+
+
+class Chosen(NamedTuple):
+    """A run with the chosen values, and which of its actuators is measured."""
+
+    tree: Tree
+    """Of a complete run file."""
+    place: Place
+    run: RunConfig
+    actuator: str
+    load_values: Mapping[str, Any]
+    """Other values of the load that the actuator is measured on, without their prefix."""
+
+
+def chosen(choice: Choice) -> Chosen:
+    """
+    Return the run that a user names.
+
+    Raises
+    ------
+    ConfigError
+        Something of the choice does not exist or does not fit.
+
+    """
+    if choice.name in model_names():
+        tree, place, name = _of_model(choice), Place(choice.name), choice.name
+    else:
+        tree, place = _of_file(choice)
+        name = _actuator(run_of(tree, place)[0], choice)
+    values, load_values = {}, {}
+    for key, value in choice.values.items():
+        head, _, rest = key.partition('.')
+        if head == LOAD and rest and not choice.keeps_load:
+            load_values[rest] = value
+        else:
+            values[_full(key, head, name)] = value
+    tree = changed(tree, values, place.file)
+    return Chosen(tree, place, run_of(tree, place)[0], name, load_values)
+
+
+def _full(key: str, head: str, name: str) -> str:
+    """Return the key in the run file of a key that may be the measured actuator's."""
+    if head in _OF_SHEET:
+        return f'actuators.{name}.parameters.{key}'
+    if head in (LOAD, *_OF_ACTUATOR):
+        return f'actuators.{name}.{key}'
+    return key
+
+
+def _of_model(choice: Choice) -> Tree:
+    """Return the run file of a model alone, on the paper's supply."""
+    if choice.actuator is not None:
+        raise ConfigError(
+            f'--actuator {choice.actuator} is not used: {choice.name} is a model, not a run file')
+    model = actuator_model(choice.name, 'model')
+    preset = choice.preset or 'default'
+    model.with_variants(model.with_preset(preset, '--preset'), choice.variants, '--variant')
+    actuator: Tree = {'model': model.name, 'preset': preset}
+    if choice.variants:
+        actuator['variants'] = list(choice.variants)
+    return {
+        'name': model.name, 'step_ms': DEFAULT_TIMING.step_ns * 1e-6,
+        'controller_offset_ms': DEFAULT_TIMING.controller_offset_ns * 1e-6,
+        'tick_timeout_s': TICK_TIMEOUT_S,
+        'supply': {'kind': 'constant', 'pressure_mpa': PAPER_SUPPLY / MPA,
+                   'return_pressure_mpa': 0.0},
+        'actuators': {model.name: actuator | {LOAD: {'kind': model.default_load}}}}
+
+
+def _of_file(choice: Choice) -> tuple[Tree, Place]:
+    for option, value in (('--preset', choice.preset), ('--variant', choice.variants)):
+        if value:
+            raise ConfigError(
+                f'{option} is not used: {choice.name} is no model, a run file says it itself; '
+                f'models: {", ".join(model_names())}')
+    try:
+        path = find(choice.name, CONFIG)
+    except ConfigError as error:
+        if choice.name.endswith('.yaml'):
+            raise
+        raise ConfigError(f'{error}; models: {", ".join(model_names())}') from error
+    return read(path), Place(path.name)
+
+
+def _actuator(run: RunConfig, choice: Choice) -> str:
+    if choice.actuator is not None:
+        return run.actuator(choice.actuator).name
+    if len(run.actuators) > 1:
+        names = ', '.join(actuator.name for actuator in run.actuators)
+        raise ConfigError(f'{run.source} has several actuators, --actuator must name one: {names}')
+    return run.actuators[0].name

@@ -1,0 +1,67 @@
+"""
+The rigs that one call of `isa bode` or `isa step` measures, and their labels in the figure.
+
+Every model or run file that is named, with the values of ``--set``; then, for each ``--versus``,
+all of them again with its values in addition.
+"""
+
+from argparse import Namespace
+from collections.abc import Iterator
+import re
+from typing import NamedTuple
+
+from isa_ros.analysis.response.rig import Choice, Rig, rig
+from isa_ros.config.changes import Values, values_of
+from isa_ros.errors import ConfigError
+
+_NEXT_KEY = re.compile(r',(?=[\w.\[\]]+=)')     # between two KEY=VALUE
+
+
+class Member(NamedTuple):
+    """One of the rigs; its label is empty where it is the only one."""
+
+    label: str
+    rig: Rig
+
+
+def members(options: Namespace) -> list[Member]:
+    """
+    Return the rigs that the arguments of a command name.
+
+    Raises
+    ------
+    ConfigError
+        One of them does not exist or does not fit, or a figure cannot have them all.
+
+    """
+    if options.bag is not None and not options.nodes:
+        raise ConfigError(
+            f'--bag {options.bag} is not used: without --nodes no bag is recorded')
+    common = values_of(options.set, '--set')
+    sets: list[Values] = [{}, *(
+        values_of(_NEXT_KEY.split(text), '--versus') for text in options.versus)]
+    found = [Member(_label(name, values, options), _rig(name, {**common, **values}, options))
+             for values in sets for name in options.names]
+    if len(found) == 1:
+        return [Member('', found[0].rig)]
+    if options.bag is not None:
+        raise ConfigError(f'--bag {options.bag} is the bag of one response, not of {len(found)}')
+    return found
+
+
+def _rig(name: str, values: Values, options: Namespace) -> Rig:
+    return rig(Choice(
+        name=name, loop=options.loop, actuator=options.actuator, preset=options.preset,
+        variants=options.variant, load=options.load, position=options.position, values=values))
+
+
+def _label(name: str, values: Values, options: Namespace) -> str:
+    """Return what differs between the rigs: values, and names if there are several."""
+    return ', '.join(_label_parts(name, values, len(options.names) > 1))
+
+
+def _label_parts(name: str, values: Values, has_names: bool) -> Iterator[str]:
+    if has_names or not values:
+        yield name
+    for key, value in values.items():
+        yield f'{key} = {value}'

@@ -1,0 +1,63 @@
+"""Report the compilation of kernels, which takes minutes after an installation or an edit."""
+
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+import sys
+import time
+from typing import TextIO
+
+from isa_ros.text.progress import terminal_line
+from numba.core.event import Event, install_listener, Listener
+
+SILENT_S = 2.0  # a shorter compilation, of single small kernels, is not reported
+
+
+class CompilationReport(Listener):
+    """
+    Prints one line when kernels have been compiled for `SILENT_S`; counts them on a terminal.
+
+    Kernels are compiled when the kernel that calls them is, so that reports follow each other.
+    """
+
+    def __init__(self, who: str, stream: TextIO, clock: Callable[[], float]) -> None:
+        self._who, self._stream, self._clock = who, stream, clock
+        self._line = terminal_line(stream)
+        self._began: float | None = None
+        self._is_announced = False
+        self._depth = self._finished = 0
+
+    def on_start(self, event: Event) -> None:
+        """Announce the compilation if it has lasted; show what is compiled next."""
+        now = self._clock()
+        if self._began is None:
+            self._began = now
+        self._depth += 1
+        spent = now - self._began
+        if spent < SILENT_S:
+            return
+        if not self._is_announced:
+            self._is_announced = True
+            self._stream.write(
+                f'{self._who}: compiling the simulation, once after an installation; this takes '
+                'a minute or more\n')
+            self._stream.flush()
+        if self._line is not None:
+            name = event.data['dispatcher'].__name__
+            self._line.show(f'{self._finished} kernels compiled, {spent:.0f} s: {name}')
+
+    def on_end(self, event: Event) -> None:
+        """Count a kernel; clear the terminal's line when the outermost one is finished."""
+        self._depth -= 1
+        self._finished += 1
+        if self._line is not None and self._is_announced and not self._depth:
+            self._line.erase()
+
+
+@contextmanager
+def reported_compilation(
+        who: str, stream: TextIO | None = None,
+        clock: Callable[[], float] = time.monotonic) -> Iterator[None]:
+    """Report compilations within the context on ``stream``, None: standard error."""
+    with install_listener(
+            'numba:compile', CompilationReport(who, stream or sys.stderr, clock)):
+        yield

@@ -1,0 +1,126 @@
+"""
+The port's copy of the leg against the leg, through ticks in which the foot hits the ground.
+
+The forces of the actuators are those that the port assumes, a line over the tick; the leg is
+integrated in steps of a thousandth of it.
+"""
+
+from functools import cache
+import math
+
+from isa_ros.core.signals import LOAD_PORT, LOAD_REPLY
+from isa_ros.loads.port import load_acceleration
+from isa_ros.surroundings.leg import prediction
+from isa_ros.surroundings.leg.leg import Leg, Pose
+from isa_ros.surroundings.leg.motion import (
+    continuous, joint_speeds, leg_motion, LEG_STATE, leg_step)
+from isa_ros.surroundings.leg.sheet import JOINTS, leg_record
+import numpy as np
+import pytest
+from tests.legs import leg_sheet
+
+MS = 1_000_000
+TICK, STEPS = 1e-3, 50  # s, plant steps of it
+TIME_BYTES = 8          # a snapshot begins with the time
+SHEET = leg_sheet()
+CONSTANTS = leg_record(SHEET)[0]
+
+
+@cache
+def landing(later: int) -> tuple[Leg, np.ndarray]:
+    """Return a leg ``later`` ticks after the one before it touches down, and its ports."""
+    leg = Leg(SHEET, Pose(haa=math.radians(13.0), hfe=math.radians(48.0),
+                          kfe=math.radians(-95.0), foot_height=0.0197), MS)
+    leg.release()
+    start, hold = np.array(leg.actuator_positions), np.array(leg.actuator_forces)
+    ports, replies = np.zeros(3, LOAD_PORT), np.zeros(3, LOAD_REPLY)
+    states = []
+    while len(states) < 2 or leg.sample[0]['foot_position'][2] > 0.0 or later > 0:
+        if len(states) > 1 and leg.sample[0]['foot_position'][2] < 0.0:
+            later -= 1
+        states.append(leg.snapshot())
+        leg.ports(ports)
+        force = (hold + (300.0, 1e5, 1e5) * (start - ports['x0'])
+                 - np.array((20.0, 4e3, 4e3)) * ports['v0'])
+        replies['mean_forces'], replies['force'] = force[:, None], force
+        leg.advance(replies)
+    leg.restore(states[-1])
+    leg.ports(ports)
+    return leg, ports
+
+
+def of_the_leg(leg: Leg) -> tuple[np.ndarray, np.ndarray, float]:
+    """Return places and speeds of the actuators after the tick, and the largest foot force."""
+    state = np.frombuffer(leg.snapshot(), LEG_STATE, 1, TIME_BYTES)[0]
+    y, normal = continuous(state), 0.0
+    for i in range(1000):
+        force = tuple(state['force'] + state['slope'] * (i + 0.5) * TICK / 1000)
+        y = leg_step(y, TICK / 1000, force, leg.is_held, CONSTANTS)
+        normal = max(normal, leg_motion(y, force, leg.is_held, CONSTANTS).foot_force[2])
+    end = leg_motion(y, force, leg.is_held, CONSTANTS)
+    return np.array(end.position), np.array(end.lever) * joint_speeds(y), normal
+
+
+def of_the_copy(leg: Leg, port: np.void, j: int) -> tuple[float, float]:
+    """Return place and speed of a port's copy after the tick, as an actuator integrates it."""
+    state = np.frombuffer(leg.snapshot(), LEG_STATE, 1, TIME_BYTES)[0]
+    x, v, h = float(port['x0']), float(port['v0']), TICK / STEPS
+
+    def rate(t: float, x: float, v: float) -> float:
+        return float(load_acceleration(
+            t, x, v, state['force'][j] + t * state['slope'][j], port))
+    for i in range(STEPS):
+        t = i * h
+        a_1 = rate(t, x, v)
+        a_2 = rate(t + 0.5 * h, x + 0.5 * h * v, v + 0.5 * h * a_1)
+        a_3 = rate(t + 0.5 * h, x + 0.5 * h * (v + 0.5 * h * a_1), v + 0.5 * h * a_2)
+        a_4 = rate(t + h, x + h * (v + 0.5 * h * a_2), v + h * a_3)
+        x += h * v + h * h / 6.0 * (a_1 + a_2 + a_3)
+        v += h / 6.0 * (a_1 + 2.0 * (a_2 + a_3) + a_4)
+    return x, v
+
+
+@pytest.mark.parametrize('j', range(3), ids=JOINTS)
+@pytest.mark.parametrize('later', [0, 1])
+def test_the_copy_ends_a_tick_where_the_leg_does(later: int, j: int) -> None:
+    """
+    L15, in the tick of the touch-down and in the contact.
+
+    Compared with what constant accelerations would miss, in place and in speed. In the window of
+    the touch-down a Runge-Kutta step sees the force at its middle and its end only: of the four
+    windows of contact that follow it may miss a part in twenty.
+    """
+    leg, ports = landing(later)
+    place, speed, normal = of_the_leg(leg)
+    x, v = of_the_copy(leg, ports[j], j)
+    missed = place[j] - ports['x0'][j] - TICK * (ports['v0'][j] + 0.5 * TICK * ports['a0'][j])
+    missed_speed = speed[j] - ports['v0'][j] - TICK * ports['a0'][j]
+    assert normal > 1.0
+    assert abs(x - place[j]) < 0.05 * abs(missed)
+    assert abs(v - speed[j]) < 0.05 * abs(missed_speed)
+
+
+def test_one_of_the_ticks_begins_in_the_air() -> None:
+    """The port knows of the ground before the foot has reached it."""
+    assert landing(0)[0].sample[0]['foot_position'][2] > 0.0
+    assert landing(1)[0].sample[0]['foot_position'][2] < 0.0
+
+
+@pytest.mark.parametrize(('k', 'd'), [
+    (0.0, 0.0), (1e5, 50.0), (9.8e6, 0.0), (0.0, 2e4), (-1e5, -20.0)])
+def test_matched_coefficients_meet_place_and_speed(k: float, d: float) -> None:
+    """The answer of e'' = a + b t - k e - d e' to (a, b) is the sum of those to 1 and t."""
+    a, b = prediction.matched(1e-5, 0.02, TICK, k, d)
+    e, v, h = 0.0, 0.0, TICK / 20_000
+    for i in range(20_000):
+        acceleration = a + b * (i + 0.5) * h - k * (e + 0.5 * h * v) - d * v
+        e, v = e + h * (v + 0.5 * h * acceleration), v + h * acceleration
+    # Steps of 50 ns: the midpoint's error is below h d/2 = 5e-4 of the speed.
+    assert e == pytest.approx(1e-5, rel=1e-3)
+    assert v == pytest.approx(0.02, rel=1e-3)
+
+
+def test_a_copy_swings_no_faster_than_once_in_two_ticks() -> None:
+    """The stiffness of a port is cut where a and b could not be told apart: k H^2 = pi^2."""
+    assert prediction.resolved(1e6, TICK) == 1e6
+    assert prediction.resolved(1e9, TICK) == pytest.approx((math.pi / TICK) ** 2)
