@@ -14,7 +14,7 @@ from pathlib import Path
 import sys
 
 from isa_ros.config.paths import CONFIG, find, SCENARIOS
-from isa_ros.errors import BagError, one_line
+from isa_ros.errors import BagError, ConfigError, one_line
 from isa_ros.run.options import Request, request_of_arguments
 
 RUNS = Path('runs')  # default directory of demos
@@ -206,6 +206,8 @@ def paper(options: Namespace) -> bool:
 @_simulating
 def validate(options: Namespace) -> bool:
     """Compare the actuators with the numbers of the paper."""
+    if options.sensitivity:
+        return _sensitivity(options)
     from isa_ros.analysis.validation.groups import GROUPS
     from isa_ros.analysis.validation.page import as_text, PAGE, write_json, write_page
     from isa_ros.analysis.validation.runner import chosen, is_reached, validated
@@ -222,6 +224,22 @@ def validate(options: Namespace) -> bool:
         for path in write_page(results, options.out):
             print(path)
     return is_reached(results)
+
+
+def _sensitivity(options: Namespace) -> bool:
+    from isa_ros.analysis.validation.sensitivity import is_noticed, sensitivity
+    from isa_ros.analysis.validation.sensitivity_page import as_text, write_json, write_page
+    from isa_ros.text.progress import counted
+    if options.only:
+        raise ConfigError('--only is not used with --sensitivity, which runs every perturbation')
+    found = sensitivity(progress=counted(sys.stderr, 'runs', stays=True))
+    print(as_text(found))
+    if options.json:
+        write_json(found, options.json)
+    if options.out:
+        for path in write_page(found, options.out):
+            print(path)
+    return is_noticed(found)
 
 
 @_simulating

@@ -140,8 +140,14 @@ def _paper(parser: argparse.ArgumentParser) -> None:
 def _validate(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         '--only', action='append', metavar='NAME', help='a group, or an entry as GROUP.ENTRY')
+    parser.add_argument(
+        '--sensitivity', action='store_true',
+        help='which simulated entries notice wrong parameters; a few minutes')
     shared_arguments.json_file(parser, 'the entries')
-    shared_arguments.page_directory(parser, 'validation.md and its figures')
+    shared_arguments.page_directory(parser, 'validation.md and its figures, or sensitivity.md')
+    parser.epilog = (
+        'Exits with 1 if an entry of either source, paper or own, is not reached; with '
+        '--sensitivity, if a perturbation is not noticed.')
 
 
 def _bench(parser: argparse.ArgumentParser) -> None:

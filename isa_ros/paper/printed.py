@@ -56,6 +56,16 @@ class Printed:
             raise ConfigError(f'{self.where}: {self.what} = {self.text!r} is not a number')
         return self.value
 
+    @property
+    def half_digit(self) -> float:
+        """Return half of the last digit the number is printed with; raises as `number`."""
+        _ = self.number     # refuses words
+        match = _NUMBER.fullmatch(self.text)
+        assert match is not None, 'a value was read from this text'
+        mantissa, _, exponent = match['digits'].partition('e')
+        decimals = len(mantissa.partition('.')[2])
+        return 0.5 * 10.0 ** (int(exponent or 0) - decimals)
+
 
 class Table(NamedTuple):
     """One table of the paper."""

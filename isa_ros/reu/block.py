@@ -30,7 +30,8 @@ class Pid(Parameters):
     kf: float = tunable('feedback damping K_f', 's', ge=0.0, le=0.1)
     kr: float = tunable('feed-forward of the reference', 'output/measured', ge=-1e9, le=1e9)
     kv: float = tunable(
-        'velocity compensation K_v', 'output per m/s | output per rad/s', ge=0.0, le=1e6)
+        'velocity compensation K_v; negative: it brakes', 'output per m/s | output per rad/s',
+        ge=-1e6, le=1e6)
     offset: float = tunable('added to the demand', 'output', ge=-1e6, le=1e6)
     feedback_damping: str = choice(
         "where K_f y' enters: in front of the whole PID, or in its proportional part only",

@@ -16,3 +16,11 @@ def test_an_entry_that_is_missed_is_the_answer_no(
     monkeypatch.setattr(groups, 'GROUPS', shipped)
     assert main(['validate', *only]) == code
     assert ('the spring is too soft' in capsys.readouterr().out) == (code == 1)
+
+
+def test_the_help_has_the_exit_code(capsys: pytest.CaptureFixture[str]) -> None:
+    with pytest.raises(SystemExit) as end:
+        main(['validate', '--help'])
+    assert end.value.code == 0
+    assert 'Exits with 1 if an entry of either source' in ' '.join(
+        capsys.readouterr().out.split())

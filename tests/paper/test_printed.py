@@ -4,7 +4,8 @@ from isa_ros.cli.main import main
 from isa_ros.config.sections import Place
 from isa_ros.config.yaml_text import parse
 from isa_ros.errors import ConfigError
-from isa_ros.paper.printed import cell, read_statements, read_tables, statement, statements, tables
+from isa_ros.paper.printed import (
+    cell, Printed, read_statements, read_tables, statement, statements, tables)
 import pytest
 
 TABLE = """
@@ -65,11 +66,30 @@ def test_a_statement_is_what_the_text_says(name, value, unit, where):
     assert (printed.number, printed.unit, printed.where) == (value, unit, where)
 
 
-def test_every_statement_is_a_number_with_its_place():
+def test_every_statement_is_a_number_or_words_with_its_place():
     assert len(statements()) > 40
     for printed in statements().values():
-        assert printed.value is not None
+        assert (printed.value is None) == (printed.unit == 'text')
         assert printed.where.startswith(('section', 'Fig', 'eq'))
+
+
+def test_words_of_the_paper_are_no_numbers():
+    """Neither "constant velocity" nor "eliminates" prints a 1 or a 0."""
+    for name in ('speed_ratio', 'torque_steady_error'):
+        assert statement(name).value is None and ' ' in statement(name).text
+
+
+@pytest.mark.parametrize(('text', 'half'), [
+    ('8', 0.5), ('0.17', 0.005), ('20,000*', 0.5), ('6.667e-6', 0.5e-9), ('7e8', 0.5e8),
+    ('0.22 (at 200 bar)', 0.005), ('>100', 0.5)])
+def test_half_of_the_last_printed_digit(text, half):
+    printed = Printed('Table 9', 'x', text, 1.0, 'm')
+    assert printed.half_digit == pytest.approx(half, rel=1e-12, abs=0.0)
+
+
+def test_words_have_no_last_digit():
+    with pytest.raises(ConfigError, match="'-' is not a number"):
+        cell('table_4', 'Spool K_p', 'Smart manifold').half_digit
 
 
 @pytest.mark.parametrize('change, expected', [

@@ -6,7 +6,7 @@ Pressures, volumes and forces are computed by the kernels, which reveals wrong c
 
 import math
 
-from isa_ros.analysis.validation.entry import around, Entry, Findings
+from isa_ros.analysis.validation.entry import around, as_printed, Entry, Findings, PAPER
 from isa_ros.analysis.validation.sheets import model_sheet, plant_of
 from isa_ros.core.units import LPM, MILLI, MILLILITRE, MPA
 from isa_ros.paper.printed import cell, statement
@@ -46,16 +46,16 @@ def _rotary() -> list[Entry]:
     table_2 = cell('table_2', 'Vol. displacement', 'Smart manifold')
     return [
         Entry.of('manifold_displacement', displacement, swept / oil.stroke,
-                 around(displacement.number, by=0.005e-6), ROUNDED),
+                 as_printed(displacement), ROUNDED),
         Entry.of('manifold_displacement_per_deg', table_2,
                  math.radians(swept / oil.stroke) / MILLILITRE,
-                 around(table_2.number, by=0.005), ROUNDED),
-        Entry.of('manifold_range', angle, oil.stroke, around(angle.number, by=0.0005), ROUNDED),
+                 as_printed(table_2), ROUNDED),
+        Entry.of('manifold_range', angle, oil.stroke, as_printed(angle), ROUNDED),
         Entry.of('manifold_range_deg', cell('table_2', 'Total stroke', 'Smart manifold'),
                  math.degrees(oil.stroke), around(100.0, by=0.5), ROUNDED),
         Entry.of('manifold_stall', cell('table_2', 'Stall load', 'Smart manifold'),
                  stall(ROTARY, 1.0), around(torque, percent=0.5), AREAS, reading=RATING),
-        Entry(name='manifold_total_volume', source='eqs 3, 4, 22, 23',
+        Entry(name='manifold_total_volume', source=PAPER, where='eqs 3, 4, 22, 23',
               paper='2 V_p + D_m L_m', ours=sum(volumes(0.3 * oil.stroke, oil)) / MILLILITRE,
               unit='ml', tolerance=around(
                   2.0 * cell('table_5', 'V_p', 'Value').number
@@ -75,10 +75,10 @@ def _linear(model: str, column: str) -> list[Entry]:
     stroke = cell('table_2', 'Total stroke', column)
     return [
         Entry.of(f'{model}_stroke', stroke, oil.stroke / MILLI,
-                 around(stroke.number, by=0.5), ROUNDED),
+                 as_printed(stroke), ROUNDED),
         Entry.of(f'{model}_stall_out', rating, stall(model, 1.0), around(out, percent=0.5),
                  AREAS, reading=RATING),
-        Entry(name=f'{model}_stall_back', source=f'{rating.where}, eq 5',
+        Entry(name=f'{model}_stall_back', source=PAPER, where=f'{rating.where}, eq 5',
               paper='one value for both directions', ours=-stall(model, -1.0), unit='N',
               tolerance=around(back, percent=0.5), tolerance_source=AREAS,
               reading='erratum 15: the rod takes its share when retracting'),
@@ -98,9 +98,9 @@ def _oil() -> list[Entry]:
         Entry.of('manifold_bulk_modulus', modulus, beta, around(modulus.number, percent=7.0),
                  'half of its one printed digit'),
         Entry.of('manifold_dead_volume', dead, volumes(0.0, oil)[0] / MILLILITRE,
-                 around(dead.number, by=0.5), ROUNDED),
+                 as_printed(dead), ROUNDED),
         Entry.of('manifold_cross_port_leakage', leak,
-                 -rate(0.0, LEAK_TEST) * v_a / beta / LPM, around(leak.number, by=0.005), ROUNDED,
+                 -rate(0.0, LEAK_TEST) * v_a / beta / LPM, as_printed(leak), ROUNDED,
                  reading='erratum 21: C_li = 1.833e-13 m3/s/Pa'),
     ]
 

@@ -1,4 +1,11 @@
-"""One number of the paper beside ours, and the verdict."""
+"""
+One value beside ours, and the verdict.
+
+An entry states its source. `PAPER`: a statement of the paper, with an interval from the paper's
+own precision: printed digits, "approximately", a printed bound or range, or the direction of a
+comparison in words. `OWN`: our own target, a regression check, also of a quantity that the paper
+speaks of, where the interval is ours.
+"""
 
 from collections.abc import Callable
 from dataclasses import dataclass
@@ -8,9 +15,13 @@ import re
 from isa_ros.paper.printed import Printed
 from matplotlib.figure import Figure
 
+PAPER, OWN = 'paper', 'own'
+SOURCES = (PAPER, OWN)
 REACHED = 'reached'
 AS_READ = 'reached as read'
 NOT_REACHED = 'not reached'
+VERDICTS = (REACHED, AS_READ, NOT_REACHED)
+REGRESSION = 2.0    # percent
 _READING = re.compile(r'(?:erratum|errata) \d+(?:(?:, | and )\d+)*: \S')
 
 
@@ -25,12 +36,16 @@ class Entry:
     Raises
     ------
     ValueError
-        The interval is empty, or a contradiction with the paper has no reading.
+        The source is unknown, the interval is empty or contains every value, or a contradiction
+        with the paper has no reading.
 
     """
 
     name: str
     source: str
+    """`PAPER` or `OWN`."""
+    where: str
+    """Place in the paper, or what else the entry is compared with."""
     paper: float | str
     ours: float
     unit: str
@@ -39,11 +54,17 @@ class Entry:
     reading: str = ''
     reason: str = ''
     """The cause, shown only for a value that is not reached."""
+    gains: str = ''
+    """The preset that was simulated, where an entry is measured with more than one."""
 
     def __post_init__(self) -> None:
         lowest, highest = self.tolerance
+        if self.source not in SOURCES:
+            raise ValueError(f'{self.name}: source {self.source!r}, must be one of {SOURCES}')
         if not lowest <= highest:
             raise ValueError(f'{self.name}: tolerance {self.tolerance} contains no value')
+        if math.isinf(lowest) and math.isinf(highest):
+            raise ValueError(f'{self.name}: tolerance {self.tolerance} contains every value')
         if self.reading and not _READING.match(self.reading):
             raise ValueError(f'{self.name}: reading {self.reading!r}, must begin with erratum N: ')
         if not self.reading and self._contradicts:
@@ -54,14 +75,20 @@ class Entry:
     @classmethod
     def of(
             cls, name: str, printed: Printed, ours: float, tolerance: tuple[float, float],
-            tolerance_source: str, *, reading: str = '', reason: str = '') -> 'Entry':
-        """Return the entry of a value in the paper's data."""
+            tolerance_source: str, *, unit: str = '', reading: str = '', reason: str = '',
+            gains: str = '') -> 'Entry':
+        """Return the entry of a statement in the paper's data; words need the unit of ours."""
         return cls(
-            name=name, source=printed.where,
+            name=name, source=PAPER, where=printed.where,
             paper=printed.text if printed.value is None or printed.is_bound else printed.value,
             ours=ours,
-            unit=printed.unit, tolerance=tolerance, tolerance_source=tolerance_source,
-            reading=reading, reason=reason)
+            unit=unit or printed.unit, tolerance=tolerance, tolerance_source=tolerance_source,
+            reading=reading, reason=reason, gains=gains)
+
+    @property
+    def key(self) -> str:
+        """Return the name within the group, with the gains where there are several."""
+        return f'{self.name}.{self.gains}' if self.gains else self.name
 
     @property
     def _contradicts(self) -> bool:
@@ -105,15 +132,30 @@ class Group:
 
     name: str
     title: str
-    check: Callable[[], Findings]
+    check: Callable[..., Findings]
+    """Without arguments; a group that `sensitivity` runs also takes `Actuators`."""
     is_long: bool = False
     """True if it takes more than a few seconds: it then starts first."""
+
+
+def regression(
+        name: str, where: str, ours: float, expected: float, unit: str, gains: str) -> Entry:
+    """Return an entry that holds a value of ours, of which the paper has none, to 2 %."""
+    return Entry(
+        name=f'{name}_regression', source=OWN, where=where, paper='no such number', ours=ours,
+        unit=unit, tolerance=around(expected, percent=REGRESSION), gains=gains,
+        tolerance_source=f'regression: {REGRESSION:g} % of the value of the shipped parameters')
 
 
 def around(value: float, *, by: float = 0.0, percent: float = 0.0) -> tuple[float, float]:
     """Return the interval of ``value`` plus and minus ``by`` and ``percent`` of it."""
     width = by + abs(value) * percent / 100.0
     return value - width, value + width
+
+
+def as_printed(printed: Printed) -> tuple[float, float]:
+    """Return the interval of a printed value: plus and minus half of its last printed digit."""
+    return around(printed.number, by=printed.half_digit)
 
 
 def at_least(value: float) -> tuple[float, float]:

@@ -1,6 +1,7 @@
 """Every group of checks, in the order of the paper; see the package on how to add one."""
 
 from isa_ros.analysis.validation.actuator_data import actuator_data
+from isa_ros.analysis.validation.behaviour import behaviour
 from isa_ros.analysis.validation.current_loop import current_loop
 from isa_ros.analysis.validation.entry import Group
 from isa_ros.analysis.validation.isa_v5 import isa_v5
@@ -21,6 +22,8 @@ GROUPS = (
     Group('current_loop', 'The current loop around its coil (Fig 8)', current_loop,
           is_long=True),
     Group('actuator_data', 'Data of the actuators (Tables 2, 3, 5)', actuator_data),
+    Group('behaviour', 'Friction, oil and valve in simulation', behaviour,
+          is_long=True),
     Group('reu_statics', 'Gains and rates of the control blocks (Fig 7, Table 4)', reu_statics),
     Group('rotary_rig', 'Torque control of the rotary rig (Figs 12, 13)', rotary_rig,
           is_long=True),

@@ -13,7 +13,7 @@ import math
 
 from isa_ros.analysis.accuracy import agreement, cylinder
 from isa_ros.analysis.accuracy.agreement import compare, Difference, LOADS, Piece
-from isa_ros.analysis.validation.entry import at_most, Entry, Findings
+from isa_ros.analysis.validation.entry import at_most, Entry, Findings, OWN
 from isa_ros.analysis.validation.sheets import plant_of
 from isa_ros.config.paths import CONFIG, find
 from isa_ros.config.run_file import load_run
@@ -86,13 +86,13 @@ def _plant(model: str) -> tuple[Entry, ...]:
     coarse, fine = (worst(_differences(model, STEPS, h)) for h in (
         PLANT_STEP, FINER * PLANT_STEP))
     return (
-        Entry(name=f'{model}_smooth', source=OTHER, paper=NOTHING, unit='1',
+        Entry(name=f'{model}_smooth', source=OWN, where=OTHER, paper=NOTHING, unit='1',
               ours=worst(_differences(model, SMOOTH), STATES), tolerance=at_most(LEAST_SMOOTH),
               tolerance_source='(p_c h)^4/120 of a current that jumps by 0.4, over 10 ms'),
-        Entry(name=f'{model}_sine', source=OTHER, paper=NOTHING, unit='1',
+        Entry(name=f'{model}_sine', source=OWN, where=OTHER, paper=NOTHING, unit='1',
               ours=worst(_differences(model, SINE), STATES), tolerance=at_most(kink(model)),
               tolerance_source='a slope of the flow that jumps by J within a step: J h^2/8'),
-        Entry(name=f'{model}_finer_steps', source=OTHER, paper=NOTHING, unit='1',
+        Entry(name=f'{model}_finer_steps', source=OWN, where=OTHER, paper=NOTHING, unit='1',
               ours=fine / coarse, tolerance=at_most(FINER),
               tolerance_source='steps of 5 mA in a tenth of the plant step: a jump leaves h'))
 
@@ -104,7 +104,8 @@ def _cylinder() -> Iterable[Entry]:
         apart = max(abs(float(states[round(t / cylinder.HOLD), column]) - SOLUTION[name])
                     for t in SECONDS)
         yield Entry(
-            name=f'cylinder_{name}', source=OTHER, paper=f'solution {SOLUTION[name]:.12g}',
+            name=f'cylinder_{name}', source=OWN, where=OTHER,
+            paper=f'solution {SOLUTION[name]:.12g}',
             ours=apart, unit=unit, tolerance=at_most(reach),
             tolerance_source='the valve-driven cylinder after 1, 5 and 10 s')
 
@@ -123,6 +124,7 @@ def _knee(config: str) -> Iterable[Entry]:
     for name, apart in (('lever', levers), ('extension', extensions)):
         if apart:
             yield Entry(
-                name=f'{config}_{name}', source=PUBLISHED, paper=f'{len(apart)} places of a table',
+                name=f'{config}_{name}', source=OWN, where=PUBLISHED,
+                paper=f'{len(apart)} places of a table',
                 ours=float(max(apart)), unit='mm', tolerance=at_most(HALF_DIGIT + 1e-9),
                 tolerance_source=ROUNDED)

@@ -1,19 +1,15 @@
 """Run groups of checks in two worker processes and gather what they found."""
 
 from collections.abc import Sequence
-from concurrent.futures import as_completed, ProcessPoolExecutor
-from concurrent.futures.process import BrokenProcessPool
 from dataclasses import dataclass, replace
-import multiprocessing
-import signal
+from functools import partial
 
 from isa_ros.analysis.validation.entry import Entry, Group
+from isa_ros.analysis.validation.workers import in_workers
 from isa_ros.core.suggest import alternatives
-from isa_ros.errors import ConfigError, IsaError, RunError
+from isa_ros.errors import ConfigError, IsaError
 from isa_ros.text.page import png
 from isa_ros.text.progress import Progress
-
-WORKERS = 2
 
 
 @dataclass(frozen=True)
@@ -83,42 +79,10 @@ def validated(
         A worker process was lost.
 
     """
-    before = multiprocessing.active_children()
-    # Spawned, not forked: the threads of numba and matplotlib do not survive a fork.
-    with ProcessPoolExecutor(
-            min(WORKERS, len(groups)), multiprocessing.get_context('spawn'),
-            _leave_interrupts_to_the_parent) as executor:
-        try:
-            results = _gathered(executor, groups, progress)
-        except BaseException:
-            executor.shutdown(wait=False, cancel_futures=True)
-            for process in multiprocessing.active_children():
-                if process not in before:
-                    process.terminate()
-            raise
-    return tuple(only_of(results[group.name], only or ()) for group in groups)
-
-
-def _leave_interrupts_to_the_parent() -> None:
-    signal.signal(signal.SIGINT, signal.SIG_IGN)
-    signal.signal(signal.SIGTERM, signal.SIG_DFL)
-
-
-def _gathered(
-        executor: ProcessPoolExecutor, groups: Sequence[Group],
-        progress: Progress | None) -> dict[str, Result]:
-    results: dict[str, Result] = {}
     order = sorted(groups, key=lambda group: not group.is_long)
-    futures = [executor.submit(run_group, group) for group in order]
-    for future in as_completed(futures):
-        try:
-            result = future.result()
-        except BrokenProcessPool as error:
-            raise RunError(f'validate: a worker process was lost: {error}') from error
-        results[result.group] = result
-        if progress is not None:
-            progress(len(results), len(groups))
-    return results
+    results = {result.group: result for result in in_workers(
+        [partial(run_group, group) for group in order], progress)}
+    return tuple(only_of(results[group.name], only or ()) for group in groups)
 
 
 def run_group(group: Group) -> Result:
@@ -135,7 +99,7 @@ def run_group(group: Group) -> Result:
         findings = group.check()
     except IsaError as error:
         raise GroupFailed(f'{group.name}: {error}', error.exit_code) from error
-    names = [entry.name for entry in findings.entries]
+    names = [entry.key for entry in findings.entries]
     if len(set(names)) != len(names):
         raise ValueError(f'{group.name}: two entries have the same name: {names}')
     return Result(group.name, group.title, findings.entries, tuple(
@@ -144,16 +108,22 @@ def run_group(group: Group) -> Result:
 
 
 def only_of(result: Result, only: Sequence[str]) -> Result:
-    """Return a result with the entries that ``only`` names; all where it names the group."""
+    """
+    Return a result with the entries that ``only`` names; all where it names the group.
+
+    An entry that is measured with several sets of gains is named with or without them.
+    """
     mine = [name for name in only if name.partition('.')[0] == result.group]
     if not mine or result.group in mine:
         return result
-    names = [f'{result.group}.{entry.name}' for entry in result.entries]
+    names = [{f'{result.group}.{entry.key}', f'{result.group}.{entry.name}'}
+             for entry in result.entries]
     for name in mine:
-        if name not in names:
-            raise ConfigError(f'--only {name}: no such entry; {alternatives(name, names)}')
+        known = sorted(set().union(*names))
+        if name not in known:
+            raise ConfigError(f'--only {name}: no such entry; {alternatives(name, known)}')
     return replace(result, entries=tuple(
-        entry for entry, name in zip(result.entries, names) if name in mine))
+        entry for entry, own in zip(result.entries, names) if own.intersection(mine)))
 
 
 def is_reached(results: Sequence[Result]) -> bool:

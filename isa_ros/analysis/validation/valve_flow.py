@@ -6,7 +6,8 @@ The flow of one land at 3.5 MPa against the current with both coils in series.
 
 import math
 
-from isa_ros.analysis.validation.entry import around, Drawing, Entry, Findings
+from isa_ros.analysis.validation.entry import (
+    around, as_printed, Drawing, Entry, Findings, PAPER)
 from isa_ros.analysis.validation.plots import plot
 from isa_ros.analysis.validation.sheets import plant_of
 from isa_ros.core.units import LPM, MILLI, MPA
@@ -22,7 +23,8 @@ ULLV = 'smart_manifold'  # equal slots: every land as printed
 ISA_V5 = 'isa_v5'        # the same valve, slots matched to its piston
 HRV = 'isa_v2'
 VALVES = ((HRV, 'HRV', 'blue'), (ULLV, 'ULLV', 'black'))  # colours of the paper
-LINE = '1 %: reading accuracy of a curve drawn over 5 mA'
+LINE = '1 %, less than half of the last printed digit'
+SLOPES = '0.4 l/min/mA to 1.2 mA, 2.5 l/min/mA beyond'   # of the ULLV, Fig 5 caption
 CURRENT = 'current, coils in series, mA'
 ROUNDED = 'half of the last printed digit'
 
@@ -49,23 +51,25 @@ def net_flow(current: float, model: str) -> float:
 def _flows() -> list[Entry]:
     low, high = statement('ullv_low_gain').number, statement('ullv_high_gain').number
     bend = statement('ullv_gain_change').number
-    rated = cell('table_1', 'Rated flow at 7 MPa', 'Moog ISA v5 valve').number
-    curve = 'erratum 3: the two gains are slopes of one continuous curve'
-    points = [
-        ('ullv_flow_1_ma', 1.0, low * 1.0, 'Fig 5 caption', curve),
-        ('ullv_flow_2_ma', 2.0, low * bend + high * (2.0 - bend), 'Fig 5 caption', curve),
-        ('ullv_rated_flow', 4.008, rated, 'Table 1', 'erratum 5: reached at 4.01 mA already'),
-        ('ullv_flow_5_ma', 5.0, low * bend + high * (5.0 - bend), 'Fig 5 caption', curve),
-    ]
-    entries = [
-        Entry(name=name, source=source, paper=flow, ours=net_flow(current, ULLV), unit='l/min',
-              tolerance=around(flow, percent=1.0), tolerance_source=LINE, reading=reading)
-        for name, current, flow, source, reading in points]
-    back = net_flow(-5.0, ULLV)
-    return [*entries, Entry(
-        name='ullv_flow_is_odd', source='Fig 5', paper='the same in both directions',
-        ours=back / net_flow(5.0, ULLV), unit='1', tolerance=around(-1.0, by=0.01),
-        tolerance_source=LINE)]
+    full = low * bend + high * (FULL_CURRENT - bend)
+
+    def point(name: str, current: float, flow: float) -> Entry:
+        return Entry(
+            name=name, source=PAPER, where='Fig 5 caption', paper=SLOPES,
+            ours=net_flow(current, ULLV), unit='l/min', tolerance=around(flow, percent=1.0),
+            tolerance_source=f'{flow:g} l/min by these slopes; {LINE}',
+            reading='erratum 3: the two gains are slopes of one continuous curve')
+    return [
+        point('ullv_flow_1_ma', 1.0, low),
+        point('ullv_flow_2_ma', 2.0, low * bend + high * (2.0 - bend)),
+        Entry.of('ullv_rated_flow', cell('table_1', 'Rated flow at 7 MPa', 'Moog ISA v5 valve'),
+                 net_flow(FULL_CURRENT, ULLV), around(full, percent=1.0),
+                 f'{full:g} l/min at 5 mA by the slopes of Fig 5; {LINE}',
+                 reading='erratum 5: Fig 5 passes the rated flow before the full current'),
+        Entry(name='ullv_flow_is_odd', source=PAPER, where='Fig 5 caption',
+              paper='+-2.5 l/min/mA: the same in both directions',
+              ours=net_flow(-FULL_CURRENT, ULLV) / net_flow(FULL_CURRENT, ULLV), unit='1',
+              tolerance=around(-1.0, by=0.01), tolerance_source=LINE)]
 
 
 def _slopes() -> list[Entry]:
@@ -83,10 +87,10 @@ def _slopes() -> list[Entry]:
                      - flow_curve(first * milliampere, valve))
     return [
         Entry.of('ullv_k_v_low', statement('low_valve_gain'), per_ma(0.0),
-                 around(6.667e-6, by=0.0005e-6), ROUNDED, reading=slope),
+                 as_printed(statement('low_valve_gain')), ROUNDED, reading=slope),
         Entry.of('ullv_k_v_high', statement('high_valve_gain'), per_ma(2.0),
-                 around(4.167e-5, by=0.0005e-5), ROUNDED, reading=slope),
-        Entry(name='ullv_jump_at_x_dg', source='eq 19, Fig 5', paper='none in Fig 5',
+                 as_printed(statement('high_valve_gain')), ROUNDED, reading=slope),
+        Entry(name='ullv_jump_at_x_dg', source=PAPER, where='eq 19, Fig 5', paper='none in Fig 5',
               ours=float(jump) / LPM, unit='l/min', tolerance=(0.0, gap),
               tolerance_source='two neighbouring floating-point numbers',
               reading='erratum 3: eq 19 with eq 11 would jump from 0.48 to 3.00 l/min'),
@@ -94,8 +98,9 @@ def _slopes() -> list[Entry]:
                  around(1.2, by=0.05), ROUNDED,
                  reading='erratum 4: x_dg / K_spool on the scale of coils in series'),
         Entry.of('ullv_high_gain_stroke', statement('high_gain_stroke'),
-                 100.0 * valve.x_dg / valve.x_max, around(25.0, by=2.5),
-                 'half of the step of 5 % such shares are rounded to'),
+                 100.0 * valve.x_dg / valve.x_max, as_printed(statement('high_gain_stroke')),
+                 'where the high gain begins; half of the last printed digit',
+                 reason='the 1.2 of 5 mA of Fig 5, and x_dg over K_spool 5 mA, are 24 %'),
         Entry.of('amplifier_current', statement('current_range'),
                  valve.x_max / milliampere * plant_of(ULLV).coil.parallel,
                  around(10.0, by=0.5), ROUNDED,
@@ -112,14 +117,16 @@ def _high_response() -> list[Entry]:
     return [
         Entry.of('hrv_flow_gain', gain, net_flow(1.5, HRV) - net_flow(0.5, HRV),
                  around(per_ma, percent=1.0), LINE),
-        Entry(name='hrv_flow_2_ma', source=gain.where, paper=2.0 * per_ma,
-              ours=net_flow(2.0, HRV), unit='l/min', tolerance=around(2.0 * per_ma, percent=1.0),
-              tolerance_source=LINE),
+        Entry(name='hrv_flow_2_ma', source=PAPER, where=gain.where,
+              paper='2.3 l/min/mA until near 2 mA', ours=net_flow(2.0, HRV), unit='l/min',
+              tolerance=around(2.0 * per_ma, percent=1.0),
+              tolerance_source=f'{2.0 * per_ma:g} l/min by this slope; {LINE}'),
         Entry.of('hrv_gain_falls', end, falls, around(end.number, by=0.25),
-                 'near: a gain lower by 5 % is seen within a quarter of a mA'),
-        Entry(name='hrv_gain_at_5_ma', source=gain.where, paper='less than near null',
+                 'near, one printed digit: a gain lower by 5 % within a quarter of a mA'),
+        Entry(name='hrv_gain_at_5_ma', source=PAPER, where=gain.where,
+              paper='starts decreasing',
               ours=float(gains[-1]), unit='l/min/mA', tolerance=(0.0, 0.9 * per_ma),
-              tolerance_source='a tenth less is seen in a figure'),
+              tolerance_source='less than near null: by a tenth or more'),
     ]
 
 
@@ -141,7 +148,7 @@ def _speed_ratio() -> Entry:
     ratio = -no_load_speed(FULL_CURRENT, ISA_V5) / no_load_speed(-FULL_CURRENT, ISA_V5)
     return Entry.of(
         'isa_v5_speed_ratio', statement('speed_ratio'), ratio, around(1.0, by=0.005),
-        '0.25 % smoothing of the orifices at 1 MPa, 0.2 % leakage',
+        '1, to 0.25 % smoothing of the orifices at 1 MPa and 0.2 % leakage', unit='1',
         reading='erratum 18: slots matched to the area ratio alone would give 0.830')
 
 

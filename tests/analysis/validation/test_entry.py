@@ -3,7 +3,7 @@
 import math
 
 from isa_ros.analysis.validation.entry import (
-    around, AS_READ, at_least, at_most, Entry, NOT_REACHED, REACHED)
+    around, as_printed, AS_READ, at_least, at_most, Entry, NOT_REACHED, PAPER, REACHED)
 from isa_ros.paper.printed import cell, statement
 import pytest
 from tests.analysis.validation.groups import entry
@@ -41,14 +41,31 @@ def test_an_empty_tolerance_is_no_entry():
         entry('x', 1.0, tolerance=(1.0, math.nan))
 
 
+def test_a_bar_that_cannot_fail_is_no_entry():
+    with pytest.raises(ValueError, match='contains every value'):
+        entry('x', 1.0, tolerance=(-math.inf, math.inf))
+
+
+def test_a_source_is_the_paper_or_our_own():
+    with pytest.raises(ValueError, match="source 'Fig 3', must be one of"):
+        entry('x', 1.0, source='Fig 3')
+
+
+def test_the_key_has_the_gains_where_there_are_several():
+    assert entry('rise', 1.0).key == 'rise'
+    assert entry('rise', 1.0, gains='table_4').key == 'rise.table_4'
+
+
 def test_an_entry_of_the_paper_copies_place_value_and_unit():
     made = Entry.of('x', statement('stiction'), 2.01, around(2.0, by=0.05), 'rounded')
-    assert (made.source, made.paper, made.unit) == ('section 5.1', 2.0, 'Nm')
+    assert (made.source, made.where) == (PAPER, 'section 5.1')
+    assert (made.paper, made.unit) == (2.0, 'Nm')
     words = cell('table_2', 'Valve spool feedback', 'ISA v5')
     assert Entry.of('x', words, 1.0, (0.0, 2.0), 'words').paper == 'Electric'
 
 
 def test_intervals():
+    assert as_printed(statement('torque_rise_time')) == (7.5, 8.5)
     assert around(10.0, by=1.0, percent=10.0) == (8.0, 12.0)
     assert around(-10.0, percent=10.0) == (-11.0, -9.0)
     assert at_least(3.0) == (3.0, math.inf) and at_most(3.0) == (-math.inf, 3.0)

@@ -17,8 +17,8 @@ LONG = [group for group in GROUPS if group.is_long]
 def section_of(result: Result, directory: Path) -> str:
     """Return the part of a page that is about one group."""
     page, *_ = write_page([result], directory)
-    _, heading, section = page.read_text().partition(f'## {result.title}\n')
-    return heading + section.rstrip()
+    _, heading, rest = page.read_text().partition(f'## {result.title}\n')
+    return heading + rest.partition('\n## ')[0].rstrip()
 
 
 def check(group, directory: Path) -> None:
@@ -48,6 +48,36 @@ def test_a_long_group_is_as_the_shipped_page_shows_it(group, tmp_path):
     check(group, tmp_path)
 
 
+PAGE = (DOCS / 'validation.md').read_text()
+ROWS = [line.strip('| ').split(' | ') for line in PAGE.splitlines()
+        if re.match(r'\| [a-z_0-9]+\.[a-z_0-9]+ \|', line)]
+
+
+def test_each_row_of_the_page_is_of_the_paper_or_of_our_own():
+    """The first table counts them apart; a row has a verdict for each set of gains."""
+    assert {row[1] for row in ROWS} == {'paper', 'own'}
+    for source, entries, *verdicts in re.findall(
+            r'^\| (paper|own) \| (\d+) \| (\d+) \| (\d+) \| (\d+) \|', PAGE, re.M):
+        assert int(entries) == sum(map(int, verdicts))
+        assert int(entries) >= sum(row[1] == source for row in ROWS)
+
+
+@pytest.mark.parametrize('title', [
+    'The knee rig', 'Torque control of the rotary rig', 'Force control of the ISA v5'])
+def test_both_sets_of_gains_have_their_column(title):
+    _, _, section = PAGE.partition(f'## {title}')
+    assert ' | table_4 | default | ' in section.partition('\n|---')[0]
+
+
+@pytest.mark.parametrize('name', [
+    'rotary_rig.trot_position_error', 'valve_dynamics.smart_manifold_current_pole',
+    'valve_dynamics.isa_v5_spool_damping', 'reu_statics.isa_v5_w_lag',
+    'rotary_disturbances.torque_control_oscillation', 'rotary_rig.sensor_inertia',
+    'behaviour.smart_manifold_presliding', 'rotary_rig.torque_bandwidth_90_deg'])
+def test_what_the_paper_says_has_an_entry(name):
+    assert name in [row[0] for row in ROWS]
+
+
 def test_names_of_groups_are_different():
     assert len({group.name for group in GROUPS}) == len(GROUPS)
 
@@ -55,7 +85,9 @@ def test_names_of_groups_are_different():
 def test_one_entry_by_name(capsys):
     assert main(['validate', '--only', 'actuator_data.manifold_stall']) == 0
     printed = capsys.readouterr().out
-    assert printed.endswith('1 entries: 0 reached, 1 reached as read, 0 not reached\n')
+    assert printed.endswith(
+        'paper: 1 entries, 0 reached, 1 reached as read, 0 not reached; '
+        'own: 0 entries, 0 reached, 0 reached as read, 0 not reached\n')
     assert '177.8' in printed
 
 

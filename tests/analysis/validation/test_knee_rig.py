@@ -3,16 +3,27 @@
 import math
 
 from isa_ros.analysis.validation import knee_rig
+from isa_ros.analysis.validation.actuators import SHIPPED
 from isa_ros.scripting.run import load
 import numpy as np
 import pytest
 
 
 def test_the_ground_alone_is_replaced():
-    wood, rubber = (knee_rig.on_ground(material, 'force_step_low').configuration
-                    for material in ('wood', 'rubber'))
+    wood, rubber = (
+        knee_rig.on_ground(SHIPPED, material, 'force_step_low', 'default').configuration
+        for material in ('wood', 'rubber'))
     assert rubber.leg.sheet.ground.stiffness == 1e6 != wood.leg.sheet.ground.stiffness
     assert rubber.leg.sheet.body == wood.leg.sheet.body
+
+
+def test_the_gains_are_those_of_the_knee_alone():
+    """The hip joints keep the gains that hold them."""
+    read, retuned = (knee_rig.of_preset(SHIPPED, 'rig_knee', 'drop', gains).configuration
+                     for gains in ('table_4', 'default'))
+    assert read.actuator('kfe').sheet.reu.force.kf == 0.006
+    assert retuned.actuator('kfe').sheet.reu.force.kf != 0.006
+    assert read.actuator('hfe') == retuned.actuator('hfe')
 
 
 def test_both_edges_of_a_force_step_are_measured_against_their_own_change():

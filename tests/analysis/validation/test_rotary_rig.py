@@ -1,23 +1,30 @@
 """Results of the torque checks of the rotary rig from signals and gains."""
 
-from isa_ros.analysis.validation.rotary_rig import ideal_overshoot, relative_error, ripple
+from isa_ros.analysis.signals.frequency import Response
+from isa_ros.analysis.validation.actuators import SHIPPED
+from isa_ros.analysis.validation.rotary_hunting import ripple
+from isa_ros.analysis.validation.rotary_rig import relative_error
 from isa_ros.analysis.validation.sheets import model_sheet
+from isa_ros.analysis.validation.torque_step import crossing, quarter_turn
 import numpy as np
 import pytest
-from scipy.signal import lti, step
 
 
-def test_the_overshoot_of_the_gains_is_that_of_their_transfer_function():
-    """
-    Against scipy's step response of (s/K_f + w^2) / (s^2 + s/K_f + w^2).
+def test_a_level_is_crossed_between_two_samples():
+    t, y = np.array([0.0, 1.0, 2.0]), np.array([0.0, 0.5, 1.5])
+    assert crossing(t, y, 1.0) == 1.5
+    assert crossing(t, y, 0.0) == 0.0
+    assert np.isnan(crossing(t, y, 2.0))
 
-    Sampled every 1/3000 of 15/w a peak is missed by less than (w dt)^2/2 = 1.3e-5 of the step.
-    """
-    force = model_sheet('smart_manifold').reu.force
-    slope, square = 1.0 / force.kf, force.ki / (force.kp * force.kf)
-    t = np.linspace(0.0, 15.0 / np.sqrt(square), 3001)
-    _, y = step(lti([slope, square], [1.0, slope, square]), T=t)
-    assert ideal_overshoot(force) == pytest.approx(100.0 * (y.max() - 1.0), abs=1.3e-3)
+
+def test_a_first_order_lag_turns_by_a_quarter_at_none_and_a_second_order_one_at_its_own():
+    """1/(1 + j f/f0)^2 is at -90 deg at f0; interpolated between 1 % steps over log f."""
+    hz = np.geomspace(5.0, 200.0, 372)
+    lag = 1.0 / (1.0 + 1j * hz / 40.0)
+    ones = np.ones(len(hz))
+    assert np.isnan(quarter_turn(Response(hz, lag, ones, ones, ones)))
+    # the phase bends by d2/dx2 = 1 rad at most over x = log f: (0.01)^2/8 of 1 rad per e-fold
+    assert quarter_turn(Response(hz, lag * lag, ones, ones, ones)) == pytest.approx(40.0, rel=2e-5)
 
 
 def test_the_error_is_relative_to_the_peak_of_the_reference():
@@ -31,4 +38,5 @@ def test_the_error_is_relative_to_the_peak_of_the_reference():
 def test_overrides_reach_the_blocked_actuator():
     """Five times the proportional gain is beyond any margin of the torque loop."""
     force = model_sheet('smart_manifold').reu.force
-    assert ripple(50.0, {'reu.force.kp': 5.0 * force.kp}) > 100.0 * ripple(50.0, {}) > 0.0
+    assert (ripple(SHIPPED, 50.0, {'reu.force.kp': 5.0 * force.kp})
+            > 100.0 * ripple(SHIPPED, 50.0, {}) > 0.0)

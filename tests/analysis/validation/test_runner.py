@@ -8,7 +8,7 @@ from isa_ros.analysis.validation.runner import (
 from isa_ros.cli.main import main
 from isa_ros.errors import ConfigError
 import pytest
-from tests.analysis.validation.groups import DIVERGED, GOOD, MISSED, REFUSED
+from tests.analysis.validation.groups import DIVERGED, GAINS, GOOD, MISSED, REFUSED
 from tests.text.terminal import Terminal
 
 GROUPS = (GOOD, MISSED)
@@ -59,6 +59,13 @@ def test_only_chooses_groups(only, groups):
 def test_only_keeps_the_named_entries(results):
     assert [e.name for e in only_of(results[0], ['good.b', 'missed']).entries] == ['b']
     assert only_of(results[0], ['good.b', 'good']) == results[0] == only_of(results[0], [])
+
+
+def test_only_names_both_sets_of_gains_or_one():
+    both = run_group(GAINS)
+    assert [e.key for e in only_of(both, ['gains.rise']).entries] == [
+        'rise.table_4', 'rise.default']
+    assert [e.key for e in only_of(both, ['gains.rise.default']).entries] == ['rise.default']
 
 
 def test_an_unknown_name_is_answered_with_the_near_ones(results):
