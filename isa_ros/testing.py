@@ -11,15 +11,14 @@ In a conftest.py: ``pytest_plugins = ['isa_ros.testing']``; in a test::
 
 `assert_reproduces` simulates the files and controllers as they are today; it fails if one of
 them, or the simulator, gives other messages. `assert_replays` simulates the configuration and
-the inputs that are stored in the bag; only another simulator or another machine can fail it.
+the inputs that are stored in the bag; only another simulator can fail it.
 
-Without a tolerance file every bit must be equal. This holds on the same kind of machine with the
+Without a tolerance file every bit must be equal. This holds on every x86-64 processor with the
 same versions. Both functions may also be imported and called.
 """
 
 from collections.abc import Callable
 from pathlib import Path
-import platform
 
 from isa_ros.bag.provenance import provenance_of, VERSION
 from isa_ros.bag.reader import Bag
@@ -43,7 +42,6 @@ __all__ = ['assert_replays', 'AssertReplays', 'assert_reproduces', 'AssertReprod
 AssertReplays = Callable[..., None]
 AssertReproduces = Callable[..., None]
 
-_CPU_INFO = Path('/proc/cpuinfo')
 _NAMES = ('in the bag', 'now')  # of both runs in a message
 
 
@@ -148,20 +146,7 @@ def _compared(bag: Bag, result: Result, tolerances: Tolerances | None) -> Report
 
 
 def _why_bits_differ(remark: str) -> str:
-    """Return possible reasons of unequal bits; a bag has no data of its machine."""
+    """Return possible reasons of unequal bits."""
     return (
         'No tolerances were given, so every bit must be equal, which holds with the same '
-        f'versions on the same kind of CPU. {remark}; the CPU here is {_cpu()}, that of the '
-        'recording is not stored in the bag. For other versions or CPUs give tolerances.')
-
-
-def _cpu() -> str:
-    """Return the name of this machine's processor."""
-    try:
-        for line in _CPU_INFO.read_text(encoding='utf-8', errors='replace').splitlines():
-            key, _, value = line.partition(':')
-            if key.strip() == 'model name':
-                return value.strip()
-    except OSError:
-        pass
-    return platform.machine()
+        f'versions on any x86-64 processor. {remark}. For other versions give tolerances.')

@@ -105,7 +105,7 @@ def test_every_topic_that_deviates_has_field_tick_values_and_tolerance(
 
 
 def test_deviations_within_their_tolerances_pass(project: Project, tmp_path: Path) -> None:
-    """A bound on every signal, as for another kind of machine."""
+    """A bound on every signal, as for other versions."""
     project.write(project.config, lambda text: text.replace(
         'preset: default', 'preset: default, parameters: {reu: {force: {kp: 8.0000001e-8}}}'))
     wide = '{position: 1.0, velocity: 1.0, effort: 10.0}'

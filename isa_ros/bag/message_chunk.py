@@ -140,6 +140,10 @@ class Chunk:
         """Return the content of the chunk without a copy."""
         return self.buffer[:self.size].data
 
+    def release(self) -> None:
+        """Give the memory back; the chunk must not be used any more."""
+        self.buffer = np.empty(0, np.uint8)
+
     @property
     def is_empty(self) -> bool:
         """Return whether the chunk has no messages."""

@@ -124,8 +124,9 @@ class PartWriter:
         self._is_finished = True
 
     def close(self) -> None:
-        """Close the file, finished or not."""
+        """Close the file, finished or not, and release its memory: a bag may have many."""
         self._file.close()
+        self._chunk.release()
 
     def _write_head(self, head: Head) -> None:
         for name, data in head.attachments.items():

@@ -6,8 +6,9 @@ from pathlib import Path
 import shutil
 import subprocess
 import sys
+import tracemalloc
 
-from isa_ros.bag.part_writer import CHUNK_TICKS
+from isa_ros.bag.part_writer import CHUNK_BYTES, CHUNK_TICKS
 from isa_ros.bag.reader import Bag
 from isa_ros.bag.writer import BagWriter
 from isa_ros.config.recording import Storage
@@ -62,6 +63,23 @@ def test_every_file_begins_with_the_tick_after_the_chunk_that_filled_the_last(sp
     sequences = [[tick.sequence for tick in Bag(path).ticks()] for path in files(split)]
     assert sequences == [
         list(range(500)), list(range(500, 1000)), list(range(1000, N))]
+
+
+def test_a_finished_file_keeps_no_memory_for_messages(tmp_path):
+    """A long run has many files; the buffer of a chunk is a megabyte and more."""
+    tracemalloc.start()
+    try:
+        with BagWriter(tmp_path / 'rig', TOPICS, PROVENANCE, storage=storage()) as writer:
+            used = []
+            for tick in range(7 * CHUNK_TICKS):
+                writer.write_tick(tick * STEP_NS, tick, tick_messages(tick))
+                if tick % CHUNK_TICKS == CHUNK_TICKS - 1:
+                    used.append(tracemalloc.get_traced_memory()[0])
+    finally:
+        tracemalloc.stop()
+    assert len(used) == len(files(tmp_path / 'rig')) == 7
+    # four more files: their names, counts and offsets, and not a buffer each
+    assert used[-1] - used[2] < CHUNK_BYTES
 
 
 def test_files_are_read_as_one_run(split):

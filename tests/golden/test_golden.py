@@ -21,25 +21,14 @@ CONTENTS = {
 """Run file, ticks, and the topic for which the bag was recorded."""
 
 
-def tolerances(bag: Path) -> Path:
-    return HERE / f'{bag.name}_tolerances.yaml'
-
-
 def test_there_is_a_golden_bag_of_the_leg_and_of_each_rig():
     assert [bag.name for bag in BAGS] == sorted(CONTENTS)
 
 
 @pytest.mark.golden
 @pytest.mark.parametrize('bag', BAGS, ids=lambda bag: bag.name)
-def test_golden_bag_replays(assert_replays, bag):
-    """A changed golden bag without a changed equation is a bug."""
-    assert_replays(bag, tolerances(bag))
-
-
-@pytest.mark.golden
-@pytest.mark.parametrize('bag', BAGS, ids=lambda bag: bag.name)
 def test_golden_bag_replays_bit_for_bit(assert_replays, bag):
-    """Bits equal those of the recording machine: only a changed equation may change them."""
+    """On any processor: only a changed equation may change a bit."""
     assert_replays(bag)
 
 
@@ -48,7 +37,7 @@ def test_golden_bag_replays_bit_for_bit(assert_replays, bag):
 def test_command_replays_golden_bag(bag):
     """`isa replay` as for a user, in a separate process."""
     done = subprocess.run(
-        [sys.executable, '-m', 'isa_ros', 'replay', bag, '--tolerance', tolerances(bag)],
+        [sys.executable, '-m', 'isa_ros', 'replay', bag],
         cwd=ROOT, capture_output=True, text=True, timeout=300)
     assert done.returncode == 0, done.stdout + done.stderr
     n_ticks = CONTENTS[bag.name][1]
