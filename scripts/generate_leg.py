@@ -44,9 +44,9 @@ q = (z, q_haa, q_hfe, q_kfe): height of the HAA axis above the ground (m) and jo
 (rad). M q'' + h = tau + J^T f  (L6), all SI.
 """
 
-import math
 from typing import NamedTuple
 
+from isa_ros.core.elementary import cos, sin
 from isa_ros.core.kernel import kernel
 import numpy as np
 
@@ -240,7 +240,7 @@ def assignments(leg, entries):
     shared, results = sp.cse(list(entries.values()), symbols=sp.numbered_symbols('t'))
     used = set().union(*(e.free_symbols for e in (*(e for _, e in shared), *results)))
     printer = Printer({'fully_qualified_modules': False})
-    lines = [f'{f}{k} = math.{name}(q_{joint})'
+    lines = [f'{f}{k} = {name}(q_{joint})'
              for k, joint in enumerate(COORDINATES[1:], 1)
              for f, name in (('s', 'sin'), ('c', 'cos'))]
     lines += ['s23 = s2*c3 + c2*s3', 'c23 = c2*c3 - s2*s3']

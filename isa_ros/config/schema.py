@@ -7,6 +7,7 @@ every kind converts its value to a tree and back.
 
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, fields
+import math
 from typing import Any, get_type_hints, NamedTuple, Protocol
 
 from isa_ros.config.sections import (
@@ -63,6 +64,8 @@ class Plain:
         """Return the value; as `Kind.read`."""
         if type(tree) is not self.type_:
             raise ConfigError(f'{place} = {tree!r}, must be of type {self.type_.__name__}')
+        if isinstance(tree, float) and not math.isfinite(tree):
+            raise ConfigError(f'{place} = {tree}, must be finite')
         return tree
 
     def differences(self, tree: Any, place: Place) -> Iterator[KeyDifference]:

@@ -106,8 +106,11 @@ def land_leakage(flow: float, total: float, lands: Lands, root_drops: float) -> 
     pairs = (lands.pa, lands.at), (lands.bt, lands.pb)
 
     def passed(leak: float, opened: float) -> float:
-        return root_drops * sum(
-            f * opened * g * leak / math.hypot(f * opened, g * leak) for f, g in pairs)
+        flow = 0.0
+        for f, g in pairs:
+            a, b = f * opened, g * leak
+            flow += a * b / math.sqrt(a * a + b * b)
+        return root_drops * flow
 
     low, high = 0.0, total / passed(1.0, 1.0)  # a land that is not open needs the most
     while low < 0.5 * (low + high) < high:

@@ -136,8 +136,8 @@ def _resolved(run: RunConfig, dice: random.Random) -> None:
 
 def _model(tree: Any) -> None:
     model = catalogue.model_of(tree, 'own.yaml')
-    for preset in model.presets:
-        build(ActuatorSheet, model.with_preset(preset, 'preset'), model.place)
+    sheets = [build(ActuatorSheet, model.with_preset(preset, 'preset'), model.place)
+              for preset in model.presets]
     for variant in model.variants:
         model.with_variants(model.sheet, [variant], 'variants')
-    own_load({'kind': model.default_load}, model.place, model)
+    own_load({'kind': model.default_load}, model.place, model, sheets[0])

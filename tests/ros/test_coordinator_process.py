@@ -9,11 +9,11 @@ from tests.ros.started import actuator, bringup, coordinator, RIG, started, wait
 pytestmark = pytest.mark.ros
 
 
-@pytest.mark.parametrize('module', ['actuator.process', 'coordinator.process'])
+@pytest.mark.parametrize('module', ['actuator', 'coordinator'])
 def test_a_profile_that_is_not_there_is_one_line(domain, tmp_path, monkeypatch, module):
     profile = tmp_path / 'typo.xml'
     monkeypatch.setenv('FASTRTPS_DEFAULT_PROFILES_FILE', str(profile))
-    with started(tmp_path / 'log', f'isa_ros.nodes.{module}') as node:
+    with started(tmp_path / 'log', f'isa_ros.programs.{module}') as node:
         assert node.exit_code() == 2
     who, _, line = node.errors.partition(': ')
     assert line == f'FASTRTPS_DEFAULT_PROFILES_FILE = {profile}: no such file\n', who

@@ -4,7 +4,7 @@ from collections.abc import Mapping
 
 from isa_ros.errors import ConfigError
 from isa_ros.nodes.actuator.process import run as run_actuator
-from isa_ros.nodes.coordinator.process import run as run_coordinator
+from isa_ros.nodes.coordinator.process import main as run_coordinator
 from isa_ros.nodes.coordinator.services import RunServices
 import pytest
 from rcl_interfaces.msg import Parameter, ParameterType, ParameterValue
@@ -30,7 +30,7 @@ def assert_one_line(errors: str, start: str) -> None:
 
 
 @pytest.mark.parametrize(('parameters', 'message'), [
-    ({'model': 5}, 'knee: parameter model = 5, must be a text (one of isa_v2, isa_v5, '),
+    ({'model': 5}, 'knee: parameter model = 5, must be a text (one of cylinder, isa_v2, '),
     ({'model': 'isa_v5', 'real_time_factor': 'fast'},
      "knee: parameter real_time_factor = 'fast', must be a number (simulated over host time, "),
     ({'model': 'isa_v5', 'lockstep': 1}, 'knee: parameter lockstep = 1, must be true or false ('),

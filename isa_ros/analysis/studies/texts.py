@@ -36,20 +36,20 @@ Delays within a period of the current block have no effect: overshoot stays at
 LAP = """\
 Overlap does not hunt, even at 40 um, where the ISA v5 creeps for a second or two; it slows:
 with 20 um -3 dB falls from {smart_manifold[0].bandwidth:.0f} to
-{smart_manifold[20].bandwidth:.0f} Hz in the manifold, and the error in the trot trebles.
+{smart_manifold[20].bandwidth:.0f} Hz in the manifold, and the error in the trot grows from
+{smart_manifold[0].force_error:.2g} to {smart_manifold[20].force_error:.2g} Nm.
 Underlap hunts, for at null two lands are open at once: with 5 um the manifold on its wheel by
 {smart_manifold[-5].ripple_wheel:.2g} Nm at {smart_manifold[-5].ripple_hz:.0f} Hz, which half
 the gain K_p would stop. The ISA v5 swings on its mass by {isa_v5[-5].ripple_wheel:.2g} N at
 {isa_v5[-5].ripple_hz:.2g} Hz with 5 um and by {isa_v5[-20].ripple_wheel:.0f} N with 20 um: the
 velocity compensation is now too large, and without it almost no swing is left."""
 BACKLASH = """\
-Under load the play is taken up, and the step only overshoots more. Back at zero torque the
-manifold hunts across it: near the stop with 2 mrad of half play, by
-{smart_manifold[2].ripple_end:.2g} Nm at {smart_manifold[2].ripple_hz:.0f} Hz, and with 5 mrad
-at mid stroke too, by {smart_manifold[5].ripple_mid:.2g} Nm; up to 0.5 mrad the ripple stays
-below {smart_manifold[0.5].ripple_end:.1g} Nm. The ISA v5 does not hunt up to 200 um, but -3 dB
-falls from {isa_v5[0].bandwidth:.0f} to {isa_v5[200].bandwidth:.0f} Hz. The trot is not
-affected either."""
+Under load the play is taken up, and the step overshoots more: by
+{smart_manifold[5].overshoot:.0f} % with 5 mrad of half play in the manifold, by
+{isa_v5[200].overshoot:.0f} % with 200 um in the ISA v5. Neither hunts across it, back at zero
+torque either: the ripple stays below {smart_manifold[5].ripple_end:.1g} Nm. -3 dB falls from
+{smart_manifold[0].bandwidth:.0f} to {smart_manifold[5].bandwidth:.0f} and from
+{isa_v5[0].bandwidth:.0f} to {isa_v5[200].bandwidth:.0f} Hz. The trot is not affected."""
 FRICTION = """\
 The sensor is on the load's side of the friction, which the force loop therefore compensates: ten
 times the shipped friction hardly changes the step ({smart_manifold[20].rise:.2g} instead of
