@@ -21,7 +21,7 @@ NEVER = 1_000_000 * MS
 RELEASE = 20 * MS
 DROP = 300 * MS
 STEPS = (MS // 2, MS, 2 * MS)
-HFE, KFE = 1, 2
+HAA, HFE, KFE = 0, 1, 2
 FALL = 0.1  # m; the foot arrives with 1.4 m/s
 # Impact times a quarter of a millisecond apart: any alignment of impact and tick.
 ALIGNMENTS = tuple(FALL + k * 0.25e-3 * 1.4 for k in range(4))
@@ -109,11 +109,12 @@ def test_drop_at_2_ms_stays_bounded(variant):
     Beyond the usable step the leg still lands, and forces are a quarter wrong, peaks a half.
 
     Except for the thigh's peak: behind a heavy piston its cell, damped by 1 %, is rung by the
-    impact to as much as it carries, and two samples a millisecond do not resolve it.
+    impact to as much as it carries, which samples of 2 ms do not resolve.
     """
     errors = drop(variant)[2 * MS]
     assert errors.rms.max() < 0.25 and errors.ground[0] < 0.05
-    assert errors.peak[KFE] < 0.5 and errors.peak[HFE] < 1.0
+    assert errors.peak[[HAA, KFE]].max() < 0.05
+    assert errors.peak[HFE] < (1.0 if variant == 'both' else 0.5)
     assert errors.angle.max() < 0.5
 
 
