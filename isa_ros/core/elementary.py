@@ -46,15 +46,22 @@ def _small_exp(r: float) -> float:
 
 
 @kernel_function
-def exp(x: float) -> float:
-    """Return e^x, within 1 ulp; 0 for x < -708 and inf for x > 709."""
-    if not _SMALLEST <= x <= _LARGEST:
-        return x if x != x else 0.0 if x < 0.0 else math.inf
+def _scaled_exp(x: float) -> tuple[float, float]:
+    """Return (2^k, rest) with e^x = 2^k (1 + rest) and |rest| below 0.42."""
     k = math.floor(x * _PER_LN_2 + 0.5)
     high = x - k * _LN_2_HIGH       # exact
     low = k * _LN_2_LOW
     r = high - low
-    return _power_of_two(k) * (1.0 + (r + (((high - r) - low) + _small_exp(r))))
+    return _power_of_two(k), r + (((high - r) - low) + _small_exp(r))
+
+
+@kernel_function
+def exp(x: float) -> float:
+    """Return e^x, within 1 ulp; 0 for x < -708 and inf for x > 709."""
+    if not _SMALLEST <= x <= _LARGEST:
+        return x if x != x else 0.0 if x < 0.0 else math.inf
+    power, rest = _scaled_exp(x)
+    return power * (1.0 + rest)
 
 
 @kernel_function
@@ -147,12 +154,7 @@ def expm1(x: float) -> float:
     """Return e^x - 1, within 2 ulp; -1 for x < -40, inf for x > 709."""
     if not -40.0 <= x <= _LARGEST:
         return x if x != x else -1.0 if x < 0.0 else math.inf
-    k = math.floor(x * _PER_LN_2 + 0.5)
-    high = x - k * _LN_2_HIGH
-    low = k * _LN_2_LOW
-    r = high - low
-    rest = r + (((high - r) - low) + _small_exp(r))     # of e^x = 2^k (1 + rest)
-    power = _power_of_two(k)
+    power, rest = _scaled_exp(x)
     return (power - 1.0) + power * rest
 
 
