@@ -36,32 +36,33 @@ class LoadSide:
 
 
 class _Knob(NamedTuple):
-    """One parameter: its name, its place in a `PLANT`, and whether less of it helps."""
+    """One parameter: its name, its fields in a section of `PLANT`, whether less of it helps."""
 
     name: str
-    path: tuple[str, str]
+    section: str
+    fields: tuple[str, ...]
     less_helps: bool
 
 
 _KNOBS = (
-    _Knob('mechanics.inertia', ('mechanics', 'inertia'), False),
-    _Knob('mechanics.sensor_stiffness', ('mechanics', 'k_s'), True),
-    _Knob('mechanics.sensor_damping', ('mechanics', 'd_s'), True),
-    _Knob('mechanics.stop_stiffness', ('mechanics', 'k_stop'), True),
-    _Knob('mechanics.stop_damping', ('mechanics', 'd_stop'), True),
-    _Knob('friction.bristle_stiffness', ('friction', 'sigma0'), True),
-    _Knob('friction.bristle_damping', ('friction', 'sigma1'), True),
-    _Knob('friction.viscous', ('friction', 'sigma2'), True),
-    _Knob('drive.bore_mm', ('chambers', 'area_a'), True),
-    _Knob('drive.displacement_cc_per_rad', ('chambers', 'area_a'), True),
-    _Knob('oil.dead_volume_ml', ('chambers', 'dead_volume'), False),
-    _Knob('oil.effective_bulk_modulus', ('chambers', 'beta'), True),
-    _Knob('oil.cross_port_leakage', ('chambers', 'c_li'), True),
-    _Knob('spool.natural_frequency_rad_per_s', ('spool', 'w_n'), True),
-    _Knob('spool.damping_ratio', ('spool', 'zeta'), True),
-    _Knob('spool.loop_gain_per_s', ('spool', 'k_loop'), True),
-    _Knob('coil.coil_inductance', ('coil', 'inductance'), False),
-    _Knob('coil.bandwidth_rad_per_s', ('coil', 'p_c'), True))
+    _Knob('mechanics.inertia', 'mechanics', ('inertia',), False),
+    _Knob('mechanics.sensor_stiffness', 'mechanics', ('k_s',), True),
+    _Knob('mechanics.sensor_damping', 'mechanics', ('d_s',), True),
+    _Knob('mechanics.stop_stiffness', 'mechanics', ('k_stop',), True),
+    _Knob('mechanics.stop_damping', 'mechanics', ('d_stop',), True),
+    _Knob('friction.bristle_stiffness', 'friction', ('sigma0',), True),
+    _Knob('friction.bristle_damping', 'friction', ('sigma1',), True),
+    _Knob('friction.viscous', 'friction', ('sigma2',), True),
+    _Knob('drive.bore_mm', 'chambers', ('area_a', 'area_b'), True),
+    _Knob('drive.displacement_cc_per_rad', 'chambers', ('area_a', 'area_b'), True),
+    _Knob('oil.dead_volume_ml', 'chambers', ('dead_volume',), False),
+    _Knob('oil.effective_bulk_modulus', 'chambers', ('beta',), True),
+    _Knob('oil.cross_port_leakage', 'chambers', ('c_li',), True),
+    _Knob('spool.natural_frequency_rad_per_s', 'spool', ('w_n',), True),
+    _Knob('spool.damping_ratio', 'spool', ('zeta',), True),
+    _Knob('spool.loop_gain_per_s', 'spool', ('k_loop',), True),
+    _Knob('coil.coil_inductance', 'coil', ('inductance',), False),
+    _Knob('coil.bandwidth_rad_per_s', 'coil', ('p_c',), True))
 _OF_LOAD = (('inertia', False), ('stiffness', True), ('damping', True))
 
 
@@ -109,17 +110,14 @@ def _changes_of_plant(plant: np.record, sheet: object, load: LoadSide) -> Iterat
 def _scaled(plant: np.record, knob: _Knob, factor: float) -> np.record:
     """Return the record for ``factor`` times the parameter."""
     changed = plant.copy()
-    oil = changed['chambers']
+    section = changed[knob.section]
     if knob.name == 'drive.bore_mm':        # with the rod as it is
-        rod = oil['area_a'] - oil['area_b']
-        oil['area_a'] *= factor * factor
-        oil['area_b'] = oil['area_a'] - rod
-    elif knob.name == 'drive.displacement_cc_per_rad':
-        oil['area_a'] *= factor
-        oil['area_b'] *= factor
-    else:
-        section, name = knob.path
-        changed[section][name] *= factor
+        rod = section['area_a'] - section['area_b']
+        section['area_a'] *= factor * factor
+        section['area_b'] = section['area_a'] - rod
+        return changed
+    for name in knob.fields:
+        section[name] *= factor
     return changed
 
 
