@@ -83,7 +83,7 @@ def scaled_sheet(
 
     """
     base = build(ActuatorSheet, model, model_place)
-    own = build(ActuatorSheet, section, model_place)
+    own = base if section == model else build(ActuatorSheet, section, model_place)
     if own == base and supply == PAPER_SUPPLY:
         return own, section
     for part in ('plant', 'reu'):

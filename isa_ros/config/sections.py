@@ -5,8 +5,9 @@ A later layer (preset, run file) replaces single values of an earlier one (the m
 sheet); errors are reported with the file and key at which the value was written.
 """
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass, fields
+from functools import cache
 import re
 from typing import Any, get_args, get_type_hints, TypeVar
 
@@ -20,6 +21,9 @@ _SOURCES = ('paper', 'derived', 'assumed', 'public model')
 KIND_KEYS = ('kind', 'linkage')  # keys that may hold the kind of a section
 
 P = TypeVar('P', bound=Parameters)
+
+_hints: Callable[[Any], dict[str, Any]] = cache(get_type_hints)
+"""Types of the fields of a parameter set; to resolve them takes a fifth of the time of `build`."""
 
 
 @dataclass(frozen=True)
@@ -189,7 +193,7 @@ def build(cls: type[P], section: Section, place: Place) -> P:
         A value of the wrong type or out of range; the message has its key.
 
     """
-    hints = get_type_hints(cls)
+    hints = _hints(cls)
     refuse_unknown_entries(section, [f.name for f in fields(cls)], place)
     lacking = [f.name for f in fields(cls)
                if f.name not in section and 'absent' not in f.metadata]
@@ -288,7 +292,7 @@ def as_tree(parameters: Parameters, hint: Any = None) -> Tree:
     tree: Tree = {}
     if hint is not None and not isinstance(hint, type):
         tree['kind'] = kind_of(parameters, hint)
-    hints = get_type_hints(type(parameters))
+    hints = _hints(type(parameters))
     for f in fields(parameters):
         value = getattr(parameters, f.name)
         is_set = isinstance(value, Parameters)
