@@ -1,7 +1,6 @@
 """Output of the rows as text, as JSON, and as the page docs/bench.md with its figure."""
 
 from dataclasses import asdict, dataclass
-import json
 from pathlib import Path
 from typing import Any
 
@@ -10,6 +9,7 @@ from isa_ros.bench.growth_figure import growth_figure
 from isa_ros.bench.host import Machine
 from isa_ros.bench.rounds import Outcomes
 from isa_ros.bench.row import Row
+from isa_ros.text.json_file import write_tree
 from isa_ros.text.number import digits
 from isa_ros.text.page import Page, png_with_palette
 from isa_ros.text.table import padded
@@ -85,8 +85,7 @@ def as_tree(report: Report) -> dict[str, Any]:
 
 def write_json(report: Report, path: Path) -> None:
     """Write the report as JSON."""
-    path.write_text(
-        json.dumps(as_tree(report), indent=2, allow_nan=False) + '\n', encoding='utf-8')
+    write_tree(as_tree(report), path)
 
 
 def write_page(report: Report, directory: Path) -> list[Path]:

@@ -12,6 +12,7 @@ from functools import wraps
 from itertools import count
 from pathlib import Path
 import sys
+from typing import Any
 
 from isa_ros.config.paths import CONFIG, find, SCENARIOS
 from isa_ros.errors import BagError, ConfigError, one_line
@@ -208,38 +209,38 @@ def validate(options: Namespace) -> bool:
     """Compare the actuators with the numbers of the paper."""
     if options.sensitivity:
         return _sensitivity(options)
+    from isa_ros.analysis.validation import page
     from isa_ros.analysis.validation.groups import GROUPS
-    from isa_ros.analysis.validation.page import as_text, PAGE, write_json, write_page
     from isa_ros.analysis.validation.runner import chosen, is_reached, validated
     from isa_ros.text.page import refuse_a_part
     from isa_ros.text.progress import counted
     groups = chosen(GROUPS, options.only)
     if options.out:
-        refuse_a_part(options.out / PAGE, options.only)
+        refuse_a_part(options.out / page.PAGE, options.only)
     results = validated(groups, options.only, counted(sys.stderr, 'groups', stays=True))
-    print(as_text(results))
-    if options.json:
-        write_json(results, options.json)
-    if options.out:
-        for path in write_page(results, options.out):
-            print(path)
+    _show(page, results, options)
     return is_reached(results)
 
 
 def _sensitivity(options: Namespace) -> bool:
+    from isa_ros.analysis.validation import sensitivity_page
     from isa_ros.analysis.validation.sensitivity import is_noticed, sensitivity
-    from isa_ros.analysis.validation.sensitivity_page import as_text, write_json, write_page
     from isa_ros.text.progress import counted
     if options.only:
         raise ConfigError('--only is not used with --sensitivity, which runs every perturbation')
     found = sensitivity(progress=counted(sys.stderr, 'runs', stays=True))
-    print(as_text(found))
-    if options.json:
-        write_json(found, options.json)
-    if options.out:
-        for path in write_page(found, options.out):
-            print(path)
+    _show(sensitivity_page, found, options)
     return is_noticed(found)
+
+
+def _show(page: Any, found: Any, options: Namespace) -> None:
+    """Print a validation by its module of pages, and write its JSON and its page if wanted."""
+    print(page.as_text(found))
+    if options.json:
+        page.write_json(found, options.json)
+    if options.out:
+        for path in page.write_page(found, options.out):
+            print(path)
 
 
 @_simulating

@@ -1,7 +1,6 @@
 """The comparison of two runs: first their configurations, then their messages topic by topic."""
 
 from collections.abc import Sequence
-import json
 import math
 from pathlib import Path
 from typing import Any, NamedTuple
@@ -12,6 +11,7 @@ from isa_ros.replay.compare import compare_bags, recorded_as
 from isa_ros.replay.difference import Report, TopicDifference
 from isa_ros.replay.provenance_differences import provenance_differences, records_of_bag
 from isa_ros.replay.tolerances import Tolerances
+from isa_ros.text.json_file import write_tree
 from isa_ros.text.table import aligned
 
 
@@ -77,8 +77,7 @@ def compared(expected: Bag, actual: Bag, tolerances: Tolerances | None = None) -
 
 def write_json(comparison: Comparison, path: Path) -> None:
     """Write every difference as JSON."""
-    path.write_text(
-        json.dumps(comparison.tree(), indent=2, allow_nan=False) + '\n', encoding='utf-8')
+    write_tree(comparison.tree(), path)
 
 
 def _cells(topic: TopicDifference) -> tuple[str, ...]:

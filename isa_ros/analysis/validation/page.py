@@ -1,7 +1,6 @@
 """What was found as text, as JSON, and as the page docs/validation.md with its figures."""
 
 from collections.abc import Iterable, Sequence
-import json
 import math
 from pathlib import Path
 from typing import Any, TypeVar
@@ -10,6 +9,7 @@ from isa_ros.analysis.validation.entry import (
     AS_READ, Entry, NOT_REACHED, OWN, PAPER, REACHED, SOURCES, VERDICTS)
 from isa_ros.analysis.validation.left_out import left_out
 from isa_ros.analysis.validation.runner import Result
+from isa_ros.text.json_file import write_tree
 from isa_ros.text.page import Page
 from isa_ros.text.table import aligned
 
@@ -117,8 +117,7 @@ def _finite(value: float) -> float | None:
 
 def write_json(results: Sequence[Result], path: Path) -> None:
     """Write every entry as JSON."""
-    path.write_text(
-        json.dumps(as_tree(results), indent=2, allow_nan=False) + '\n', encoding='utf-8')
+    write_tree(as_tree(results), path)
 
 
 def write_page(results: Sequence[Result], directory: Path) -> list[Path]:

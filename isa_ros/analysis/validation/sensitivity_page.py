@@ -1,11 +1,11 @@
 """The sensitivity as text, as JSON, and as the page docs/sensitivity.md."""
 
 from collections.abc import Sequence
-import json
 from pathlib import Path
 from typing import Any
 
 from isa_ros.analysis.validation.sensitivity import Noticed
+from isa_ros.text.json_file import write_tree
 from isa_ros.text.page import Page
 from isa_ros.text.table import aligned
 
@@ -72,8 +72,7 @@ def as_tree(found: Sequence[Noticed]) -> dict[str, Any]:
 
 def write_json(found: Sequence[Noticed], path: Path) -> None:
     """Write every perturbation as JSON."""
-    path.write_text(json.dumps(as_tree(found), indent=2, allow_nan=False) + '\n',
-                    encoding='utf-8')
+    write_tree(as_tree(found), path)
 
 
 def write_page(found: Sequence[Noticed], directory: Path) -> list[Path]:
