@@ -20,7 +20,8 @@ def main() -> None:
     """Run one of them."""
     parser = argparse.ArgumentParser(prog='python -m tests.soak', description=__doc__)
     parser.add_argument('name', choices=('killed', 'long'))
-    parser.add_argument('--seconds', type=float, default=600.0, help='simulated time of a run')
+    parser.add_argument('--seconds', type=float, default=600.0,
+                        help='simulated time before which a run is killed, or of the long run')
     parser.add_argument('--runs', type=int, default=10)
     parser.add_argument('--seed', type=int, default=1)
     parser.add_argument('--in-process', action='store_true')
