@@ -26,6 +26,7 @@ from isa_ros.config.sections import (
     written)
 from isa_ros.config.supplies import read_supplies, SUPPLY, SupplyConfig
 from isa_ros.config.yaml_text import read, Tree
+from isa_ros.core.noise import seed_of
 from isa_ros.core.parameter import check
 from isa_ros.core.suggest import alternatives
 from isa_ros.core.timebase import FORCE_WINDOWS, PLANT_STEP_NS
@@ -81,8 +82,8 @@ def read_run(path: Path | str) -> tuple[RunConfig, Origins]:
 def run_of(tree: Tree, place: Place) -> tuple[RunConfig, Origins]:
     """Return the run of a file's tree and what it was built from; as `load_run`."""
     refuse_unknown(tree, (
-        'name', 'step_ms', 'controller_offset_ms', 'tick_timeout_s', SUPPLY, 'supplies', 'record',
-        'actuators', 'controllers', 'leg', 'body'), place)
+        'name', 'step_ms', 'controller_offset_ms', 'tick_timeout_s', 'seed', SUPPLY, 'supplies',
+        'record', 'actuators', 'controllers', 'leg', 'body'), place)
     times = build(Times, written(
         {f: tree[f] for f in Times.__dataclass_fields__ if f in tree}, place), place)
     step_ns, offset_ns = _grid(times, place)
@@ -93,7 +94,8 @@ def run_of(tree: Tree, place: Place) -> tuple[RunConfig, Origins]:
         name=name_of(tree, 'name', place),
         step_ns=step_ns, controller_offset_ns=offset_ns, tick_timeout_s=times.tick_timeout_s,
         supplies=supplies, actuators=actuators, body=leg, source=place.file,
-        record=read_record(tree.get('record', {}), place / 'record'))
+        record=read_record(tree.get('record', {}), place / 'record'),
+        seed=seed_of(tree.get('seed', 0), str(place / 'seed')))
     controllers = names_at(tree.get('controllers', []), place / 'controllers')
     return run.with_controllers(controllers), Origins(origins, leg_origin)
 

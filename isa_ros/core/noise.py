@@ -12,9 +12,12 @@ actuator or of an inertial unit. The counter is the step of the plant and the ch
 
 import hashlib
 import math
+import operator
+from typing import Any
 
 from isa_ros.core.elementary import cos, log
 from isa_ros.core.kernel import kernel
+from isa_ros.errors import ConfigError
 import numpy as np
 
 LARGEST_SEED = 2**63 - 1
@@ -26,6 +29,26 @@ _W_0, _W_1 = np.uint64(0x9E3779B9), np.uint64(0xBB67AE85)   # its increments of 
 _WORD, _HALF = np.uint64(0xFFFFFFFF), np.uint64(32)
 _HIGH, _LOW = np.uint64(21), np.uint64(11)                  # 53 bits: 32 of one word, 21
 _ULP = 1.0 / 9007199254740992.0                             # 2^-53
+
+
+def seed_of(value: Any, where: str) -> int:
+    """
+    Return a value as a seed; ``where`` names it in the message.
+
+    Raises
+    ------
+    ConfigError
+        It is not a whole number from 0 to `LARGEST_SEED`.
+
+    """
+    try:
+        seed = -1 if isinstance(value, bool) else operator.index(value)
+    except TypeError:
+        seed = -1
+    if not 0 <= seed <= LARGEST_SEED:
+        raise ConfigError(
+            f'{where} = {value!r}, must be a whole number >= 0 and <= {LARGEST_SEED}')
+    return seed
 
 
 def noise_key(seed: int, name: str) -> int:
