@@ -58,6 +58,8 @@ class Names(NamedTuple):
     supplies: Sequence[tuple[str, bool]] = ()
     """(name, publishes its return pressure) of each."""
     body: BodyMessages | None = None
+    periods: Mapping[str, int] = {}
+    """Period in ns of the topics that do not have a message at every tick, by name."""
 
 
 def topics_of_actuator(prefix: str) -> list[Topic]:
@@ -156,7 +158,8 @@ class Packer:
         self._template = Template([message for _, message in prepared])
         self._bytes = self._template.block.view(np.uint8)
         self._tuned: dict[int, bytes] = {}
-        self._layouts: dict[bytes, Layout] = {}
+        self._layouts: dict[tuple[bytes, frozenset[str]], Layout] = {}
+        self._not_due: frozenset[str] = frozenset()
         self._bind()
 
     @staticmethod
@@ -193,13 +196,16 @@ class Packer:
         pack(time_word(t_ns), time_word(tick_start_ns), ATMOSPHERE,
              self._samples, self._shown.applied, self._supplies, self._body, self._words,
              self._values, self._target)
+        if self._names.periods:
+            self._not_due = frozenset(
+                name for name, period in self._names.periods.items() if t_ns % period)
         self._tuned = {
             row: applied_parameters(self._names.actuators[row][0], values, tick_start_ns)
             for row, values in tuned.items()} if tuned else {}
 
     def all_messages(self, events: Sequence[bytes] = ()) -> Packed:
         """Return all messages of the packed instant, in the order of `topics`."""
-        key = (self._kinds != 0).tobytes()
+        key = (self._kinds != 0).tobytes(), self._not_due
         where = self._layouts.get(key)
         if where is None:
             where = self._layouts[key] = self._layout()
@@ -212,9 +218,10 @@ class Packer:
         return Packed.of(sorted([*packed, *extra], key=lambda message: message[0]))
 
     def _layout(self) -> Layout:
-        """Return the layout of this tick's messages: without setpoints where none was applied."""
-        absent = {f'/{name}/{_SETPOINT}' for (name, _), kinds in zip(
-            self._names.actuators, self._kinds) if not kinds}
+        """Return the layout of this tick's messages: of applied setpoints, and of what is due."""
+        absent = self._not_due.union(
+            f'/{name}/{_SETPOINT}'
+            for (name, _), kinds in zip(self._names.actuators, self._kinds) if not kinds)
         present = [(self._index[name], place) for name, place in self._place.items()
                    if name not in absent]
         present.sort()
@@ -234,9 +241,10 @@ class Packer:
         """Return whether a command of an actuator took effect at the start of the last tick."""
         return bool(self._kinds[row])
 
-    def of(self, topics: Sequence[Topic]) -> list[bytes]:
-        """Return the messages of some topics."""
-        return [self._message(topic.name) for topic in topics]
+    def of(self, topics: Sequence[Topic]) -> list[bytes | None]:
+        """Return the messages of some topics; None for one that is not due."""
+        return [None if topic.name in self._not_due else self._message(topic.name)
+                for topic in topics]
 
     def _message(self, name: str) -> bytes:
         return self._template.message(self._place[name])
