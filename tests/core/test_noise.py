@@ -62,7 +62,7 @@ def test_compiled_noise_equals_its_python_source():
 
 
 def test_mean_variance_and_shape_are_those_of_the_standard_normal_distribution():
-    """Standard errors of the moments of N normal numbers: 1, sqrt(2), sqrt(6), sqrt(24)/sqrt(N)."""
+    """Standard errors of the moments of N normal numbers: roots of 1/N, 2/N, 6/N, 24/N."""
     noise = series()
     moments = [noise.mean(), noise.var() - 1.0, stats.skew(noise), stats.kurtosis(noise)]
     errors = np.sqrt(np.array([1.0, 2.0, 6.0, 24.0]) / N)

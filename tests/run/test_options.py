@@ -75,7 +75,8 @@ def test_parameters_that_are_set_ask_for_what_the_command_line_asks_for():
 
 @pytest.mark.parametrize('field, given, expected', [
     ('split_mb', 0.0, 0.0), ('split_mb', -2.0, None), ('duration_s', 0.0, None),
-    ('duration_s', -1.0, -1.0), ('seed', 0, 0), ('seed', -1, None), ('join_timeout_s', 0.0, 0.0), ('controllers', None, ())])
+    ('duration_s', -1.0, -1.0), ('seed', 0, 0), ('seed', -1, None),
+    ('join_timeout_s', 0.0, 0.0), ('controllers', None, ())])
 def test_a_parameter_means(field, given, expected):
     """0 MB is one file, below is not set; what is set and wrong is refused by the run."""
     assert option_of(field).of_parameter(given) == expected

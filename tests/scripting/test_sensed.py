@@ -167,7 +167,8 @@ def test_a_sweep_over_seeds_gives_the_spread_of_the_noise():
 @pytest.mark.parametrize('seed', [-1, 1.5, True, 'one', 2**63])
 def test_a_bad_seed_is_refused(seed):
     with pytest.raises(ConfigError, match=(
-            r'rig_linear\.yaml: seed = .*, must be a whole number >= 0 and <= 9223372036854775807')):
+            r'rig_linear\.yaml: seed = .*, must be a whole number >= 0 and <= '
+            '9223372036854775807')):
         rig(0.05).replace({'seed': seed})
 
 

@@ -105,7 +105,7 @@ def test_a_turning_joint_adds_the_centripetal_term():
 
 @pytest.mark.parametrize('link', range(len(LINKS)), ids=LINKS)
 def test_it_reads_the_second_differences_of_its_place(link):
-    """f = R^T (x'' - g) and w of R^T R', with x and R from the URDF's joints."""
+    """The specific force R^T (x'' - g) and w of R^T R', with x and R of the URDF's joints."""
     draw = np.random.default_rng(link)
     h = 1e-4
     for _ in range(20):
