@@ -124,7 +124,7 @@ def coil_current(y, coil):
 
 @kernel
 def coil_heat(y, coil):
-    """Return R i^2 in W  (V1, V11)."""
+    """Return R i^2 in W  (E8)."""
     current = coil_current(y, coil)
     return coil.resistance * current * current
 
