@@ -8,8 +8,8 @@ from sensor_msgs.msg import Temperature
 TYPE = 'sensor_msgs/msg/Temperature'
 
 
-def temperature(name: str, columns: Mapping[str, int]) -> tuple[Temperature, Fields]:
-    """Return the message of an oil's temperature (celsius); its variance, 0, means unknown."""
+def of_oil(name: str, columns: Mapping[str, int]) -> tuple[Temperature, Fields]:
+    """Return the message of the oil's temperature (celsius); its variance, 0, means unknown."""
     message = Temperature()
     message.header.frame_id = name
     return message, {**STAMP, 'temperature': columns['temperature']}

@@ -7,7 +7,6 @@ Neglected: their change with pressure, and that of density and specific heat wit
 """
 
 from dataclasses import dataclass
-import math
 
 from isa_ros.core.elementary import exp, log
 from isa_ros.core.kernel import kernel
@@ -54,9 +53,9 @@ PROPERTIES = np.dtype([
 
 def properties_record(sheet: MineralOil, celsius: float) -> np.record:
     """Return the `PROPERTIES` record of an oil whose factors are 1 at a temperature."""
-    cool, warm = (math.log(math.log(viscosity + _WALTHER)) for viscosity in (
+    cool, warm = (log(log(viscosity + _WALTHER)) for viscosity in (
         sheet.viscosity_at_40_cst, sheet.viscosity_at_100_cst))
-    log_cool, log_warm = math.log(_COOL + _KELVIN), math.log(_WARM + _KELVIN)
+    log_cool, log_warm = log(_COOL + _KELVIN), log(_WARM + _KELVIN)
     b = (cool - warm) / (log_warm - log_cool)
     own = record(PROPERTIES, a=cool + b * log_cool, b=b, celsius=celsius, viscosity=1.0,
                  per_k=sheet.compressibility_per_k)

@@ -182,7 +182,7 @@ class Packer:
             name, is_rotary, places,
             {field: places[f'{field}, absolute'] for field in _PRESSURES},
             {field: places[f'applied {field}'] for field in _APPLIED})
-        return {**messages, TEMPERATURE[0]: temperature.temperature(name, places)}
+        return {**messages, TEMPERATURE[0]: temperature.of_oil(name, places)}
 
     def _bind(self) -> None:
         """Store the rows as plain floats, a tenth of the time to pass to the kernel."""

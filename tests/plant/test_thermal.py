@@ -86,7 +86,7 @@ def test_steps_of_any_length_reach_the_same_temperatures() -> None:
 
 
 def test_at_rest_the_oil_is_warmer_by_the_losses_over_the_flow() -> None:
-    """Without heat to the air, P = rho c Q (theta - theta_S): a valve's drop warms its oil."""
+    """Without heat to the air, P = rho c Q (theta - theta_S)."""
     own, state = thermal_plant(body_to_air=0.0).thermal, state_at(40.0, 40.0)
     pressure, volume = 20.7e6, 1e-5
     for _ in range(3):      # the body needs minutes: a step is exact whatever its length
@@ -123,7 +123,8 @@ def test_warm_oil_leaks_more_rubs_less_and_is_softer() -> None:
     thinner = cold.friction.sigma2 / hot.friction.sigma2
     assert thinner == pytest.approx(3.6, abs=0.1)
     assert hot.chambers.c_li / cold.chambers.c_li == pytest.approx(thinner, rel=1e-12, abs=0.0)
-    assert hot.valve.leak_factor / cold.valve.leak_factor == pytest.approx(thinner, rel=1e-12, abs=0.0)
+    assert hot.valve.leak_factor / cold.valve.leak_factor == pytest.approx(
+        thinner, rel=1e-12, abs=0.0)
     assert hot.chambers.beta / cold.chambers.beta == pytest.approx(
         (1.0 - 10.0 * 4.5e-3) / (1.0 + 20.0 * 4.5e-3), rel=1e-12, abs=0.0)
     assert hot.spool.bias - cold.spool.bias == pytest.approx(30.0 * 2.6e-6, rel=1e-12, abs=0.0)

@@ -19,7 +19,6 @@ from isa_ros.plant.chambers import oil_stiffness
 from isa_ros.plant.oil_properties import softness, thickness
 from isa_ros.plant.plant import plant_record
 from isa_ros.scripting.run import load, Run
-from isa_ros.surroundings.supply import ConstantSupply
 from isa_ros.text.progress import Progress
 import numpy as np
 

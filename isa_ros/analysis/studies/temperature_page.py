@@ -27,13 +27,13 @@ _COLUMNS: Mapping[str, tuple[str, float]] = {
 """Title and SI of one unit of each column, by field of `Effects`."""
 _SUPPLY = 20.7 * MPA
 _MOMENTS = (1, 10, 60, 600, 3600)   # s
-_HEAD = f"""# Temperature of the oil
+_HEAD = """# Temperature of the oil
 
 By default the oil of an actuator keeps the temperature of its sheet,
 `plant.oil.temperature_celsius`. With the variant `thermal` of a model its losses heat it:
 
     actuators:
-      kfe: {{model: isa_v5, variants: [thermal]}}
+      kfe: {model: isa_v5, variants: [thermal]}
 
 Two heat capacities, the oil in the chambers and the body, are solved exactly once a tick (T4 to T6
 of [equations.md](equations.md)). Leakage, throttling and relief heat the oil, which is cooled by
@@ -56,12 +56,12 @@ This page is written by
     ./isa study temperature --out docs
 """
 _EFFECTS = f"""Three ISA v5 in a bath, `{RIG}` under the scenario `{SCENARIO}`: the supply flow of
-a valve at null, the growth of friction from 0.04 to 0.3 m/s, the frequency of 50 kg on the oil of a
-shut valve, and the spool's position without current. In brackets the same by the laws from the
-sheet; a test measures it from a bag."""
+a valve at null, the growth of friction from 0.04 to 0.3 m/s, the frequency of 50 kg on the oil
+behind a shut valve, and the spool's position without current. In brackets the same by the laws,
+from the sheet; a test measures it from a bag."""
 _STANDING = """An actuator that holds still at null, with oil of 40 celsius from the supply, in air
-of 25 celsius, by the same equations: the leakage heats the oil by at most 20.7 MPa/(rho c) = 12.2 K
-above the supply, and heats it at once, the body in minutes. Oil temperatures in celsius."""
+of 25 celsius, by the same equations: the leakage heats the oil within seconds and the body within
+minutes, to at most 20.7 MPa/(rho c) = 12.2 K above the supply. Last columns: oil, celsius."""
 
 
 def as_text(found: Sequence[Result]) -> str:
