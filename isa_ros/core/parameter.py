@@ -3,7 +3,7 @@
 from collections.abc import Callable
 from dataclasses import dataclass, field, fields
 import math
-from typing import Any
+from typing import Any, TypeVar
 
 from isa_ros.errors import ParameterError
 
@@ -44,9 +44,10 @@ def numbers(doc: str, unit: str, *, least: int, most: int, **bounds: float) -> A
     return field(metadata=declared.metadata | {'length': (least, most)})
 
 
-def choice(doc: str, *names: str) -> Any:
-    """Declare one name out of a fixed list."""
-    return field(metadata={'doc': doc, 'unit': '', 'names': names})
+def choice(doc: str, *names: str, absent: str | None = None) -> Any:
+    """Declare one name out of a fixed list; ``absent`` as in `parameter`."""
+    metadata = {'doc': doc, 'unit': '', 'names': names}
+    return field(metadata=metadata if absent is None else metadata | {'absent': absent})
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -69,6 +70,20 @@ class Parameters:
             value = getattr(self, f.name)
             if not isinstance(value, Parameters):
                 check(f'{type(self).__name__}.{f.name}', value, f.metadata)
+
+
+_P = TypeVar('_P', bound=Parameters)
+
+
+def defaults(cls: type[_P]) -> _P:
+    """Return a set of which every value is that of ``absent``."""
+    return cls(**{f.name: f.metadata['absent'] for f in fields(cls)})
+
+
+def section(cls: type[Parameters]) -> Any:
+    """Declare a nested set that a file may leave out; it then has its `defaults`."""
+    absent = defaults(cls)
+    return field(default=absent, metadata={'absent': absent})
 
 
 def check(where: str, value: Any, declared: Any) -> None:

@@ -55,6 +55,8 @@ SAMPLE = np.dtype([
     ('current_reference', '<f8'),   # amplifier (parallel) current, A
     ('supply_volume', '<f8'),       # oil drawn from the supply since t = 0, m3
     ('supply_flow', '<f8'),         # its mean over the tick, m3/s
+    ('warnings', '<f8'),            # bit set of conditions as a whole number (isa_ros.conditions)
+    ('trips', '<f8'),               # likewise
 ])
 """Values one actuator reports at the end of a tick."""
 
@@ -63,7 +65,7 @@ SAMPLE_UNITS = {
     'pressure_a': 'Pa', 'pressure_b': 'Pa', 'spool': 'm', 'spool_velocity': 'm/s',
     'current': 'A', 'position_reference': 'm | rad', 'force_reference': 'N | Nm',
     'spool_reference': 'm', 'current_reference': 'A', 'supply_volume': 'm3',
-    'supply_flow': 'm3/s'}
+    'supply_flow': 'm3/s', 'warnings': 'bits', 'trips': 'bits'}
 """Unit of each field of a `SAMPLE`: of a linear actuator | of a rotary one."""
 
 LOAD_PORT = np.dtype([
