@@ -63,7 +63,7 @@ class Overload(Parameters):
     """The force sensor is near or at its end of range."""
 
     warning: float = _level('force over the range of its sensor', '1', 0.95, 1.0)
-    trip: float = _level('force over the range of its sensor', '1', 0.99, 1.0)
+    trip: float = _level('force over the range of its sensor', '1', 0.0, 1.0)
     delay_ms: float = _delay(50.0)
     reaction: str = _reaction('disable', *REACTIONS)
 
@@ -103,7 +103,7 @@ class SupplyLow(Parameters):
     """The supply pressure is lower than the loops need."""
 
     warning: float = _level('pressure over the opening of the relief valves', '1', 0.5, 1.0)
-    trip: float = _level('pressure over the opening of the relief valves', '1', 0.1, 1.0)
+    trip: float = _level('pressure over the opening of the relief valves', '1', 0.2, 1.0)
     delay_ms: float = _delay(10.0)
     reaction: str = _reaction('disable', *_STOPPING)
 
@@ -122,8 +122,8 @@ class ReliefOpen(Parameters):
 class LoadCellImplausible(Parameters):
     """Pressures times areas, less friction and inertia, are not what the force sensor reads."""
 
-    warning: float = _level('force over the range of its sensor', '1', 0.1, 1.0)
-    trip: float = _level('force over the range of its sensor', '1', 0.2, 1.0)
+    warning: float = _level('force over the range of its sensor', '1', 0.05, 1.0)
+    trip: float = _level('force over the range of its sensor', '1', 0.1, 1.0)
     delay_ms: float = _delay(50.0)
     reaction: str = _reaction('disable', *_STOPPING)
 
@@ -132,8 +132,8 @@ class LoadCellImplausible(Parameters):
 class EncoderJump(Parameters):
     """The encoder moves further between two conversions than the piston or rotor can."""
 
-    warning: float = _level('speed over that of the valve, from its rated flow', '1', 3.0, 1e3)
-    trip: float = _level('speed over that of the valve, from its rated flow', '1', 10.0, 1e3)
+    warning: float = _level('speed over that of the valve, from its rated flow', '1', 2.0, 1e3)
+    trip: float = _level('speed over that of the valve, from its rated flow', '1', 4.0, 1e3)
     delay_ms: float = _delay(0.0)
     reaction: str = _reaction('disable', *_STOPPING)
 
