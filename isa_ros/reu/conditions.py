@@ -82,16 +82,17 @@ def shown(value: float, unit: str) -> str:
 
 
 def words(
-        name: str, value: float, level: float, delay: float = 0.0, *, is_trip: bool = False,
-        is_rotary: bool = False) -> str:
+        name: str, value: float | None, level: float, delay: float = 0.0, *,
+        is_trip: bool = False, is_rotary: bool = False) -> str:
     """
     Return one line about a condition: what, measured value, level and unit.
 
-    ``value`` and ``level`` are SI, ``delay`` (s) is the time beyond the level.
+    ``value`` (None: unknown) and ``level`` are SI, ``delay`` (s) is the time beyond the level.
     """
     condition = CONDITIONS[BITS[name]]
     unit = of_coordinate(condition.unit, is_rotary)
+    measured = '' if value is None else f' {shown(value, unit)},'
     side = 'above' if condition.is_above else 'below'
     duration = f' for {shown(delay, "s")}' if delay > 0.0 else ''
-    return (f'{condition.quantity} {shown(value, unit)}, {side} its '
-            f'{"trip" if is_trip else "warning"} level {shown(level, unit)}{duration}')
+    return (f'{condition.quantity}{measured} {side} its {"trip" if is_trip else "warning"} level '
+            f'{shown(level, unit)}{duration}')

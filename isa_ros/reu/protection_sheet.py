@@ -12,21 +12,24 @@ from isa_ros.core.parameter import choice, parameter, Parameters, section
 from isa_ros.errors import ParameterError
 from isa_ros.reu.conditions import BITS, CONDITIONS, REACTIONS
 
+_ASSUMED = 'assumed'
 _STOPPING = tuple(name for name in REACTIONS if name != 'limit')
 _TIMEOUT = ('hold', 'damp', 'disable')
 
 
-def _level(doc: str, unit: str, absent: float, most: float) -> Any:
-    return parameter(f'{doc}; 0: off', unit, absent=absent, ge=0.0, le=most)
+def _level(
+        doc: str, unit: str, absent: float, most: float, source: str = _ASSUMED) -> Any:
+    return parameter(f'{doc}; 0: off', unit, absent=absent, source=source, ge=0.0, le=most)
 
 
 def _delay(absent: float) -> Any:
     return parameter('time beyond a level before it counts, rounded up to whole conversions',
-                     'ms', absent=absent, ge=0.0, le=60e3)
+                     'ms', absent=absent, source=_ASSUMED, ge=0.0, le=60e3)
 
 
 def _reaction(absent: str, *names: str) -> Any:
-    return choice('what a trip causes; none: the condition is not watched', *names, absent=absent)
+    return choice('what a trip causes; none: the condition is not watched', *names, absent=absent,
+                  source=_ASSUMED)
 
 
 class Levels(Protocol):
@@ -93,7 +96,7 @@ class Overtemperature(Parameters):
     """The actuator is warmer than its operating temperature, 80 celsius by paper Table 2."""
 
     warning: float = _level('temperature', 'celsius', 75.0, 200.0)
-    trip: float = _level('temperature; paper Table 2: 80', 'celsius', 80.0, 200.0)
+    trip: float = _level('temperature', 'celsius', 80.0, 200.0, 'paper Table 2')
     delay_ms: float = _delay(100.0)
     reaction: str = _reaction('disable', *_STOPPING)
 
@@ -112,7 +115,8 @@ class SupplyLow(Parameters):
 class ReliefOpen(Parameters):
     """A relief valve lets oil through; paper section 2.7: from 22 MPa on."""
 
-    warning: float = _level('pressure over the opening of the relief valves', '1', 1.0, 2.0)
+    warning: float = _level('pressure over the opening of the relief valves', '1', 1.0, 2.0,
+                            'paper section 2.7, they open at 22 MPa')
     trip: float = _level('pressure over the opening of the relief valves', '1', 0.0, 2.0)
     delay_ms: float = _delay(5.0)
     reaction: str = _reaction('warn', *REACTIONS)
@@ -142,15 +146,17 @@ class EncoderJump(Parameters):
 class Protection(Parameters):
     """What the REU watches, and its reactions."""
 
-    switch: str = choice('whether any condition is watched', 'on', 'off', absent='on')
+    switch: str = choice(
+        'whether any condition is watched', 'on', 'off', absent='on', source=_ASSUMED)
     hysteresis: float = parameter(
         'part of its level by which a quantity must be back before the condition ends', '1',
-        absent=0.02, ge=0.0, le=0.5)
+        absent=0.02, source=_ASSUMED, ge=0.0, le=0.5)
     setpoint_timeout_ms: float = parameter(
         'longest time between two setpoints of an enabled actuator, counted from its first one '
-        'on; 0: off', 'ms', absent=0.0, ge=0.0, le=3.6e6)
+        'on; 0: off', 'ms', absent=0.0, source=_ASSUMED, ge=0.0,
+        le=3.6e6)
     setpoint_timeout_reaction: str = choice(
-        'what follows until the next setpoint', *_TIMEOUT, absent='hold')
+        'what follows until the next setpoint', *_TIMEOUT, absent='hold', source=_ASSUMED)
     end_of_stroke: EndOfStroke = section(EndOfStroke)
     overspeed: Overspeed = section(Overspeed)
     overload: Overload = section(Overload)
