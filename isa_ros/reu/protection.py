@@ -3,7 +3,7 @@ The REU's protection: measures every condition, judges it, and reacts.
 
 A condition counts once its quantity has been beyond a level at as many conversions in a row as
 its delay has; it ends when the quantity is back by the hysteresis. A trip whose reaction stops
-the actuator (quick_stop, disable) stays until it is cleared, also after the condition has ended.
+the actuator (quick_stop, disable) stays after its condition has ended, until it is cleared.
 Inputs are what the sensors read, not the exact states.
 """
 
@@ -14,7 +14,7 @@ from isa_ros.core.kernel import kernel
 from isa_ros.core.record import record
 from isa_ros.core.timebase import PLANT_STEP
 from isa_ros.core.units import MILLI
-from isa_ros.reu.conditions import BITS, CONDITIONS, REACTIONS
+from isa_ros.core.conditions import BITS, CONDITIONS, REACTIONS
 from isa_ros.reu.impedance import SETPOINT
 from isa_ros.reu.plausibility import (
     acceleration_step, EVIDENCE, EVIDENCE_STATE, jump_speed, unexplained_force)
@@ -55,6 +55,8 @@ PROTECTION_STATE = np.dtype([
     ('warnings', 'i8'), ('trips', 'i8'),    # bit sets of conditions
     ('reaction', 'i8'),                     # the strongest of the trips
     ('first', 'i8'),                        # bit set: the first of the present trips
+    ('present', 'i8'),                      # bit set: trips whose condition has not ended
+    ('clears', 'i8'),                       # 1: trips whose condition has ended are to be cleared
     ('inhibited', 'i8'),                    # EXTENDING, RETRACTING
     ('busy', 'i8'),                         # bit set: is counted, or has a bit
     ('setpoint_age', 'i8'),                 # conversions + 1 since the last one; 0: none yet
@@ -169,20 +171,19 @@ def judge_one(k, step, protection, own):
     bit, excess = 1 << k, protection.sign[k] * own.values[k]
     own.warning_count[k] = own.warning_count[k] + 1 if excess > protection.warning[k] else 0
     own.trip_count[k] = own.trip_count[k] + 1 if excess > protection.trip[k] else 0
-    was_warned, was_tripped = own.warnings & bit != 0, own.trips & bit != 0
+    was_warned, was_met, was_tripped = (
+        own.warnings & bit != 0, own.present & bit != 0, own.trips & bit != 0)
     warns = is_met(excess, protection.warning[k], protection.warning_end[k], was_warned,
                    own.warning_count[k], protection.delay[k])
-    trips = is_met(excess, protection.trip[k], protection.trip_end[k], was_tripped,
-                   own.trip_count[k], protection.delay[k])
-    if was_tripped and protection.reaction[k] >= QUICK_STOP:
-        trips = True
+    met = is_met(excess, protection.trip[k], protection.trip_end[k], was_met,
+                 own.trip_count[k], protection.delay[k])
+    trips = met or was_tripped and own.clears == 0 and protection.reaction[k] >= QUICK_STOP
     if warns and not was_warned:
         own.warning_since[k] = step
     if trips and not was_tripped:
         own.trip_since[k], own.trip_values[k] = step, own.values[k]
-        if own.trips == 0:
-            own.first = bit
     own.warnings = own.warnings | bit if warns else own.warnings & ~bit
+    own.present = own.present | bit if met else own.present & ~bit
     own.trips = own.trips | bit if trips else own.trips & ~bit
     is_busy = warns or trips or own.warning_count[k] > 0 or own.trip_count[k] > 0
     own.busy = own.busy | bit if is_busy else own.busy & ~bit
@@ -194,8 +195,9 @@ def judge(step, protection, own):
     for k in range(N):
         if protection.sign[k] * own.values[k] > protection.quiet[k] or own.busy >> k & 1:
             judge_one(k, step, protection, own)
-    if own.trips == 0:
-        own.first = 0
+    own.clears = 0
+    if own.trips & own.first == 0:  # the cause is cleared: of several that are left, the lowest bit
+        own.first = own.trips & -own.trips
 
 
 @kernel
@@ -272,8 +274,6 @@ def feed(own):
 
 
 @kernel
-def clear_trips(own):
-    """Forget all trips; those whose condition persists are back after their delay."""
-    own.trips, own.first, own.reaction, own.inhibited = 0, 0, NONE, 0
-    for k in range(N):
-        own.trip_count[k] = 0
+def request_clear(own):
+    """Let the next conversion clear the trips whose condition has ended."""
+    own.clears = 1

@@ -10,7 +10,7 @@ from typing import Any, Protocol
 
 from isa_ros.core.parameter import choice, parameter, Parameters, section
 from isa_ros.errors import ParameterError
-from isa_ros.reu.conditions import BITS, CONDITIONS, REACTIONS
+from isa_ros.core.conditions import BITS, CONDITIONS, REACTIONS
 
 _ASSUMED = 'assumed'
 _STOPPING = tuple(name for name in REACTIONS if name != 'limit')

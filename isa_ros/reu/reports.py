@@ -3,7 +3,7 @@
 from collections.abc import Iterator
 from typing import NamedTuple
 
-from isa_ros.reu.conditions import BITS, REACTIONS, words
+from isa_ros.core.conditions import BITS, REACTIONS, words
 import numpy as np
 
 

@@ -7,8 +7,9 @@ from hypothesis import given, settings, strategies as st
 from isa_ros.core.parameter import defaults
 from isa_ros.errors import ParameterError
 from isa_ros.reu import protection
-from isa_ros.reu.conditions import BITS, CONDITIONS, REACTIONS
-from isa_ros.reu.protection import clear_trips, feed, is_inhibited, setpoint_in_force
+from isa_ros.core.conditions import BITS, CONDITIONS, REACTIONS
+from isa_ros.reu.protection import (
+    feed, is_inhibited, request_clear, setpoint_in_force)
 from isa_ros.reu.protection_sheet import levels_of, Protection
 import numpy as np
 import pytest
@@ -116,20 +117,41 @@ def test_only_a_reaction_that_stops_is_kept_until_it_is_cleared(reaction: str) -
     stops = reaction in ('quick_stop', 'disable')
     assert watched.has('overload') == (False, stops)
     assert watched.own.reaction == (REACTIONS.index(reaction) if stops else 0)
-    clear_trips(watched.own)
+    request_clear(watched.own)
     watched.convert()
     assert (watched.own.trips, watched.own.first, watched.own.reaction) == (0, 0, 0)
 
 
-def test_a_condition_that_persists_trips_again_after_its_delay() -> None:
-    watched = Watched(only('overload', trip=0.5, delay_ms=0.2, reaction='disable'))
-    watched.show('overload', 6e3)
-    watched.convert(3)
-    clear_trips(watched.own)
-    watched.convert(2)
-    assert watched.own.trips == 0
+def test_a_trip_is_not_cleared_before_its_condition_has_ended() -> None:
+    """And a clear that came too early does not act later."""
+    watched = Watched(only('overload', 0.1, trip=0.5, delay_ms=0.2, reaction='disable'))
+    for force in (6e3, 4600.0, 4400.0):
+        watched.show('overload', force)
+        watched.convert(3)
+        assert watched.has('overload')[1]
+        if force > 5e3:
+            request_clear(watched.own)
     watched.convert()
-    assert watched.has('overload')[1]
+    assert watched.has('overload')[1] and not watched.own.present
+    request_clear(watched.own)
+    watched.convert()
+    assert watched.own.trips == 0
+
+
+def test_a_cause_that_is_cleared_gives_way_to_a_trip_that_persists() -> None:
+    levels = defaults(Protection).supply_low
+    watched = Watched(replace(
+        only('overload', trip=0.5, delay_ms=0.0, reaction='disable'),
+        supply_low=replace(levels, warning=0.5, trip=0.5, delay_ms=0.0)))
+    watched.show('overload', 6e3)
+    watched.convert()
+    watched.show('supply_low', 1e6)
+    watched.show('overload', 0.0)
+    watched.convert()
+    assert watched.own.first == 1 << BITS['overload']
+    request_clear(watched.own)
+    watched.convert()
+    assert watched.own.trips == watched.own.first == 1 << BITS['supply_low']
 
 
 def test_the_first_cause_is_kept_and_the_strongest_reaction_acts() -> None:

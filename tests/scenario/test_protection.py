@@ -2,7 +2,7 @@
 
 from isa_ros.config.paths import CONFIG, find, SCENARIOS
 from isa_ros.config.run_file import load_run
-from isa_ros.reu.conditions import BITS
+from isa_ros.core.conditions import BITS
 from isa_ros.scenario.scenario import load_scenario
 from isa_ros.simulation import Simulation
 import pytest

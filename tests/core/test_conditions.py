@@ -2,7 +2,7 @@
 
 from hypothesis import given, strategies as st
 import isa_ros
-from isa_ros.reu.conditions import BITS, CONDITIONS, conditions, shown, words
+from isa_ros.core.conditions import BITS, CONDITIONS, conditions, shown, words
 from isa_ros.reu.reports import reports
 import pytest
 from tests.reu.watched import only, Watched
