@@ -3,6 +3,8 @@
 from pathlib import Path
 import re
 
+from isa_ros.config.paths import CONFIG, find
+from isa_ros.config.run_file import load_run
 from isa_ros.core.conditions import REACTIONS
 from scripts import write_protection
 
@@ -23,6 +25,16 @@ def test_a_changed_level_is_noticed() -> None:
 def test_every_reaction_is_explained_from_the_weakest_to_the_strongest() -> None:
     named = re.findall(r'^\| `(\w+)` \| (?:[^|]*) \| (?:[^|]*)\|$', PAGE, re.MULTILINE)
     assert [name for name in named if name in REACTIONS] == list(REACTIONS)
+
+
+def test_its_example_can_be_run(tmp_path: Path) -> None:
+    """In place of the actuators of the shipped file."""
+    [example] = re.findall(r'```yaml\n(.*?)```', PAGE, re.DOTALL)
+    shipped = find('rig_linear', CONFIG).read_text(encoding='utf-8')
+    path = tmp_path / 'rig.yaml'
+    path.write_text(shipped[:shipped.index('actuators:')] + example)
+    protection = load_run(path).actuators[0].sheet.reu.protection
+    assert (protection.setpoint_timeout_ms, protection.end_of_stroke.trip) == (100.0, 0.02)
 
 
 def test_every_file_it_names_exists() -> None:
