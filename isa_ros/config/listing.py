@@ -86,9 +86,8 @@ def _rows(parameters: Parameters, source_of: Mapping[str, str], prefix: str) -> 
                 yield _kind_row(path, value, hints[f.name], source_of)
             yield from _rows(value, source_of, f'{path}.')
         else:
-            otherwise = 'assumed, the default' if 'absent' in f.metadata else ''
             yield Row(path, _value(value), f.metadata.get('unit', ''), _range(f.metadata),
-                      source_of.get(path, otherwise), f.metadata['doc'])
+                      source_of.get(path, f.metadata.get('source', '')), f.metadata['doc'])
 
 
 def _kind_row(path: str, value: Parameters, union: Any, source_of: Mapping[str, str]) -> Row:
