@@ -42,7 +42,8 @@ def _bias(unit: str, largest: float) -> Any:
 
 
 def _drift(unit: str, largest: float) -> Any:
-    return parameter('growth of the error', unit, absent=0.0, source=_IDEAL, ge=-largest, le=largest)
+    return parameter('growth of the error', unit, absent=0.0, source=_IDEAL,
+                     ge=-largest, le=largest)
 
 
 @dataclass(frozen=True, kw_only=True)
