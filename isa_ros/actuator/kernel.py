@@ -15,6 +15,7 @@ from isa_ros.core.kernel import kernel
 from isa_ros.core.timebase import FORCE_WINDOWS, PLANT_STEP
 from isa_ros.loads.forces import LOAD_STATE, OWN_LOAD, own_load_force
 from isa_ros.loads.port import load_acceleration
+from isa_ros.plant.coil import coil_heat
 from isa_ros.plant.energy import ENERGIES
 from isa_ros.plant.plant import PLANT, plant_rates, PLANT_STATE, read_sensors, settle
 from isa_ros.plant.thermal import warm
@@ -133,7 +134,7 @@ def write_sample(measured, plant, reu, sample):
 
 
 @kernel
-def loops_and_plant(step, tau, port, actuator, bodies, rates, y, k, reu_state):
+def loops_and_plant(step, tau, port, actuator, bodies, rates, y, k, reu_state, thermal):
     """Run the loops that are due at plant step ``step``, then the plant over that step."""
     body, reu = bodies[0], actuator.reu
     if is_due(step, reu.current_steps, reu.offset_steps):
@@ -146,6 +147,8 @@ def loops_and_plant(step, tau, port, actuator, bodies, rates, y, k, reu_state):
         reu_state.amplifier = reu_state.drive
     body_step(PLANT_STEP, tau, reu_state.amplifier, port, actuator,
               bodies, rates, y, k)
+    if actuator.plant.thermal.is_on:
+        thermal.coil += PLANT_STEP * coil_heat(body.plant.coil, actuator.plant.coil)
 
 
 @kernel
@@ -195,7 +198,7 @@ def tick_row(first_step, steps, port, actuator, bodies, rates, y, k, reu_state, 
         body.totals.impulse = 0.0
         for i in range(window * window_steps, (window + 1) * window_steps):
             loops_and_plant(first_step + i, i * PLANT_STEP, port, actuator,
-                            bodies, rates, y, k, reu_state)
+                            bodies, rates, y, k, reu_state, thermal)
         reply.mean_forces[window] = body.totals.impulse / (window_steps * PLANT_STEP)
     reply.force = read_sensors(
         body.plant, body.load.position, body.load.velocity, actuator.plant, read_out)

@@ -118,6 +118,7 @@ def test_without_the_model_the_plant_is_that_of_the_sheet(model: str) -> None:
 def test_warm_oil_leaks_more_rubs_less_and_is_softer() -> None:
     """By the viscosity of VG 46, 72 at 30 and 20 mm2/s at 60 celsius, and 4.5e-3/K."""
     cold, hot = thermal_plant('smart_manifold'), thermal_plant('smart_manifold')
+    own_leakage = hot.valve.q_0
     warm(30.0, cold)
     warm(60.0, hot)
     thinner = cold.friction.sigma2 / hot.friction.sigma2
@@ -125,6 +126,7 @@ def test_warm_oil_leaks_more_rubs_less_and_is_softer() -> None:
     assert hot.chambers.c_li / cold.chambers.c_li == pytest.approx(thinner, rel=1e-12, abs=0.0)
     assert hot.valve.leak_factor / cold.valve.leak_factor == pytest.approx(
         thinner, rel=1e-12, abs=0.0)
+    assert hot.valve.q_0 == own_leakage * hot.valve.leak_factor
     assert hot.chambers.beta / cold.chambers.beta == pytest.approx(
         (1.0 - 10.0 * 4.5e-3) / (1.0 + 20.0 * 4.5e-3), rel=1e-12, abs=0.0)
     assert hot.spool.bias - cold.spool.bias == pytest.approx(30.0 * 2.6e-6, rel=1e-12, abs=0.0)
