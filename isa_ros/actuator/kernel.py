@@ -20,6 +20,7 @@ from isa_ros.plant.energy import ENERGIES
 from isa_ros.plant.plant import PLANT, plant_rates, PLANT_STATE, read_sensors, settle
 from isa_ros.plant.thermal import warm
 from isa_ros.reu.cascade import cascade_step, is_due, REU
+from isa_ros.reu.protection import protect, setpoint_in_force
 import numpy as np
 
 TOTALS = np.dtype([
@@ -127,10 +128,12 @@ def write_sample(measured, plant, reu, sample):
     sample.spool = measured.spool
     sample.spool_velocity = plant.valve.velocity
     sample.current = measured.current
-    sample.position_reference = reu.setpoint.position
+    sample.position_reference = setpoint_in_force(reu).position
     sample.force_reference = reu.force_reference
     sample.spool_reference = reu.spool_reference
     sample.current_reference = reu.current_reference
+    sample.warnings = float(reu.protection.warnings)
+    sample.trips = float(reu.protection.trips)
 
 
 @kernel
@@ -140,6 +143,8 @@ def loops_and_plant(step, tau, port, actuator, bodies, rates, y, k, reu_state, t
     if is_due(step, reu.current_steps, reu.offset_steps):
         read_sensors(body.plant, body.load.position, body.load.velocity,
                      actuator.plant, reu_state.measured)
+        if reu.protection.is_on:
+            protect(step, port.supply_pressure, thermal.oil, reu.protection, reu_state)
         cascade_step(step, reu, reu_state)
     if step == actuator.load.rope.release_step:
         body.load.weight.is_released = 1.0
