@@ -11,6 +11,7 @@ from typing import NoReturn, Protocol
 
 from isa_ros.actuator import kernel as kernels
 from isa_ros.actuator.inbox import merge, write_applied
+from isa_ros.actuator.link import link_key, NONE, refuse_states
 from isa_ros.actuator.rows import Memory, memory_of
 from isa_ros.actuator.setpoint_range import SetpointRange
 from isa_ros.actuator.sheet import actuator_record, ActuatorSheet
@@ -28,6 +29,8 @@ import numpy as np
 
 _SAVED = ('body', 'reu', 'port', 'pending', 'applied', 'reply', 'sample')
 """The rows of a snapshot, in their order."""
+_SAVED_OF_LINK = ('links', 'sent', 'outbox', 'commands_sent', 'samples_sent', 'observed')
+"""Those of an actuator with a link, behind the others."""
 
 PAPER_SUPPLY = 20.7e6
 """Pa gauge: supply pressure of the paper's rigs, used if no supply is configured."""
@@ -35,10 +38,11 @@ PAPER_SUPPLY = 20.7e6
 
 @dataclass(frozen=True)
 class Timing:
-    """The tick and the offset of the REU's sampling instants from it, in nanoseconds."""
+    """The tick and the offset of the REU's sampling instants from it, ns; the seed of noise."""
 
     step_ns: int
     controller_offset_ns: int
+    seed: int = 0
 
     @property
     def steps(self) -> int:
@@ -93,9 +97,16 @@ class SmartActuator:
         constants = self.memory.constants
         constants[:] = actuator_record(config.sheet, offset_steps)
         constants['load'] = own_record(config.load)
-        self._saved = (
+        self.memory.link_keys[:] = link_key(timing.seed, config.name)
+        self.has_link = config.sheet.link.kind != NONE
+        """Whether commands and samples travel in the frames of a link."""
+        self._saved = [
             self.memory.bodies[:1], self.memory.reu, self.memory.ports, self.memory.pending,
-            self.memory.applied, self.memory.replies, self.memory.samples)
+            self.memory.applied, self.memory.replies, self.memory.samples]
+        self._saved_names = _SAVED
+        if self.has_link:
+            self._saved_names += _SAVED_OF_LINK
+            self._saved += [getattr(self.memory, name) for name in _SAVED_OF_LINK]
         # Rows with their fields as attributes, on the same memory.
         self._constants, self._body = _record(constants), _record(self.memory.bodies)
         self._reu, self._read_out = _record(self.memory.reu), _record(self.memory.read_outs)
@@ -157,6 +168,7 @@ class SmartActuator:
         reu.setpoint.stiffness, reu.setpoint.damping = initial_gains(self._config.sheet.reu)
         reu.setpoint.is_enabled = 1.0
         kernels.write_sample(self._read_out, body.plant, reu, self._sample)
+        self.memory.observed[:] = self.memory.samples
 
     @property
     def sample(self) -> np.record:
@@ -249,7 +261,7 @@ class SmartActuator:
             A number of the state is not finite.
 
         """
-        for name, rows in zip(_SAVED, self._saved):
+        for name, rows in zip(self._saved_names, self._saved):
             broken = broken_number(rows)
             if broken is not None:
                 raise SimulationDiverged(
@@ -273,13 +285,17 @@ class SmartActuator:
                 f'{self.name}: saved state has {len(snapshot)} bytes, must have {expected}')
         t_ns = time_of(snapshot, self._timing.step_ns, self.name)
         offset, found = TIME_BYTES, []
-        for name, rows in zip(_SAVED, self._saved):
+        for name, rows in zip(self._saved_names, self._saved):
             found.append(restored_rows(
                 snapshot, rows.dtype, len(rows), offset, f'{self.name}.{name}'))
             offset += rows.nbytes
+        if self.has_link:
+            refuse_states(found[len(_SAVED)], self.name)
         self.t_ns = t_ns
         for rows, restored in zip(self._saved, found):
             rows[:] = restored
+        if not self.has_link:
+            self.memory.observed[:] = self.memory.samples
         self.tuning.restore(snapshot[offset:])
 
 

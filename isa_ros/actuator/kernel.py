@@ -8,6 +8,7 @@ of floats (`BODY`), so that the integrator sees the same memory as a flat array.
 import math
 
 from isa_ros.actuator.inbox import latch, merge
+from isa_ros.actuator.link import hand_over, LINK, link_down, link_up, receive_up, SLOTS
 from isa_ros.actuator.states import write_states
 from isa_ros.core.kernel import kernel
 from isa_ros.core.timebase import FORCE_WINDOWS, PLANT_STEP
@@ -30,7 +31,7 @@ BODIES = 2  # the state and a stage of its integration
 STAGES = 4
 NOTHING = 1e-100  # any unit: smaller states are set to zero, since denormal arithmetic is slow
 
-ACTUATOR = np.dtype([('plant', PLANT), ('reu', REU), ('load', OWN_LOAD)])
+ACTUATOR = np.dtype([('plant', PLANT), ('reu', REU), ('load', OWN_LOAD), ('link', LINK)])
 """Every constant of one actuator, SI."""
 
 
@@ -171,12 +172,12 @@ def take_port(incoming, is_shared, port, body):
 
 @kernel
 def tick_row(first_step, steps, port, actuator, bodies, rates, y, k, reu_state, read_out,
-             reply, sample):
+             reply, sample, link, memory):
     """
     Advance one actuator by ``steps`` plant steps.
 
     Fills its `LOAD_REPLY` (mean force of each of the tick's windows from its impulse) and its
-    `SAMPLE` at the end of the tick.
+    `SAMPLE` at the end of the tick. ``link`` is its row where it has a link, else -1.
     """
     body = bodies[0]
     body.totals.supply_volume = 0.0
@@ -185,6 +186,8 @@ def tick_row(first_step, steps, port, actuator, bodies, rates, y, k, reu_state, 
     for window in range(FORCE_WINDOWS):
         body.totals.impulse = 0.0
         for i in range(window * window_steps, (window + 1) * window_steps):
+            if link >= 0:
+                frames_before(first_step + i, i > 0, link, body, actuator, reu_state, memory)
             loops_and_plant(first_step + i, i * PLANT_STEP, port, actuator,
                             bodies, rates, y, k, reu_state)
         reply.mean_forces[window] = body.totals.impulse / (window_steps * PLANT_STEP)
@@ -197,6 +200,32 @@ def tick_row(first_step, steps, port, actuator, bodies, rates, y, k, reu_state, 
     write_sample(read_out, body.plant, reu_state, sample)
     sample.supply_volume += reply.supply_volume
     sample.supply_flow = reply.supply_volume / (steps * PLANT_STEP)
+    if link >= 0:
+        frame_up(first_step + steps, link, memory)
+
+
+@kernel
+def frames_before(step, is_inside, n, body, actuator, reu_state, memory):
+    """
+    Exchange the frames of actuator ``n`` that are due before plant step ``step``.
+
+    One that leaves inside the tick brings the sensors' values of that instant.
+    """
+    link = actuator.link
+    if is_inside and step % link.cycle_steps == 0:
+        read_sensors(body.plant, body.load.position, body.load.velocity, actuator.plant,
+                     memory.read_outs[n])
+        write_sample(memory.read_outs[n], body.plant, reu_state, memory.samples[n])
+        frame_up(step, n, memory)
+    link_down(step, memory.link_keys[n], link, memory.links[n], memory.outbox[n:n + 1],
+              memory.commands_sent[n * SLOTS:(n + 1) * SLOTS], reu_state, memory.applied[n])
+
+
+@kernel
+def frame_up(step, n, memory):
+    """Send the sample of actuator ``n`` if a frame leaves at ``step``."""
+    link_up(step, memory.link_keys[n], memory.constants[n].link, memory.links[n],
+            memory.samples[n:n + 1], memory.samples_sent[n * SLOTS:(n + 1) * SLOTS])
 
 
 @kernel
@@ -214,11 +243,21 @@ def actuator_tick(first_step, steps, incoming, commands, memory):
         y = memory.states[n * BODIES:(n + 1) * BODIES]
         k = memory.slopes[n * STAGES:(n + 1) * STAGES]
         reu, port = memory.reu[n], memory.ports[n]
+        link = n if memory.constants[n].link.is_on else -1
         merge(commands[n], memory.pending[n])
-        latch(memory.pending[n], reu, memory.applied[n])
+        if link < 0:
+            latch(memory.pending[n], reu, memory.applied[n])
+        else:
+            memory.applied[n].kinds = 0
+            hand_over(memory.pending[n:n + 1], memory.outbox[n:n + 1], memory.sent[n:n + 1])
         take_port(incoming[n], memory.is_shared[n], port, bodies[0])
         tick_row(first_step, steps, port, memory.constants[n], bodies, rates, y, k, reu,
-                 memory.read_outs[n], memory.replies[n], memory.samples[n])
+                 memory.read_outs[n], memory.replies[n], memory.samples[n], link, memory)
+        if link < 0:
+            memory.observed[n] = memory.samples[n]
+        else:
+            receive_up(first_step + steps, memory.links[n],
+                       memory.samples_sent[n * SLOTS:(n + 1) * SLOTS], memory.observed[n:n + 1])
         broken = first_broken(y)
         if broken >= 0:
             return n * STATE_SIZE + broken

@@ -1,8 +1,9 @@
 """The data sheet of one actuator, and the SI records the kernels read."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 from isa_ros.actuator.kernel import ACTUATOR
+from isa_ros.actuator.link import link_record, LinkSheet, NO_LINK
 from isa_ros.core.parameter import choice, Parameters
 from isa_ros.core.record import record
 from isa_ros.core.units import MILLI
@@ -30,6 +31,7 @@ class ActuatorSheet(Parameters):
         "the valve's spool sensor; a mechanical feedback has none", 'electric', 'mechanic')
     plant: LinearPlant | RotaryPlant
     reu: Reu
+    link: LinkSheet = field(default=NO_LINK, metadata={'absent': NO_LINK})
 
     @property
     def is_rotary(self) -> bool:
@@ -141,5 +143,5 @@ def actuator_record(sheet: ActuatorSheet, offset_steps: int) -> np.ndarray:
         known_model(plant[0], output_per_spool(sheet)),
         k_spool, plant[0].coil.parallel)
     rows = np.zeros(1, ACTUATOR)
-    rows['plant'], rows['reu'] = plant, reu
+    rows['plant'], rows['reu'], rows['link'] = plant, reu, link_record(sheet.link)
     return rows

@@ -9,6 +9,7 @@ from isa_ros.config.catalogue import actuator_model, leg_names, leg_section, Mod
 from isa_ros.config.paths import CONFIG, find
 from isa_ros.config.run_file import read_run
 from isa_ros.config.sections import build, build_one_of, Entry, kind_of, members, Section
+from isa_ros.config.wires import wire
 from isa_ros.core.parameter import Parameters
 from isa_ros.errors import ConfigError
 from isa_ros.loads.sheets import LocalLoad
@@ -82,6 +83,9 @@ def _rows(parameters: Parameters, source_of: Mapping[str, str], prefix: str) -> 
     for f in fields(parameters):
         value, path = getattr(parameters, f.name), f'{prefix}{f.name}'
         if isinstance(value, Parameters):
+            if source_of and 'absent' in f.metadata and not any(
+                    key.startswith(f'{path}.') for key in source_of):
+                continue    # neither a model nor a run file says anything about it
             if not isinstance(hints[f.name], type):
                 yield _kind_row(path, value, hints[f.name], source_of)
             yield from _rows(value, source_of, f'{path}.')
@@ -104,6 +108,8 @@ def _run_tables(path: str) -> Iterator[str]:
             row._replace(source=given) for row in rows(supply.sheet, {})])
     yield _table('record', [
         row._replace(source=given) for row in rows(run.record.storage, {})])
+    for kind in dict.fromkeys(run.actuator(name).sheet.link.kind for name in run.linked):
+        yield _table(f'wire of links: {kind}', rows(*wire(kind)))
     for actuator in run.actuators:
         title = (f'actuators.{actuator.name}.parameters: {actuator.model}, '
                  f'preset {actuator.preset}')

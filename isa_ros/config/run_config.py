@@ -4,6 +4,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
 import hashlib
 
+from isa_ros.actuator.link import NO_LINK
 from isa_ros.actuator.sheet import ActuatorSheet
 from isa_ros.config.leg_config import JointsKind, LegConfig, LegStart
 from isa_ros.config.names import refuse_bad_name
@@ -12,6 +13,7 @@ from isa_ros.config.schema import Key, Named, Names, OneOf, ParameterSet, Plain,
 from isa_ros.config.sections import Place
 from isa_ros.config.supplies import refuse_misfed, SUPPLY, SupplyConfig, SupplyKind
 from isa_ros.config.yaml_text import dump, parse, Tree
+from isa_ros.core.noise import seed_of
 from isa_ros.core.parameter import parameter, Parameters
 from isa_ros.core.timebase import refuse_grid
 from isa_ros.errors import ConfigError
@@ -77,11 +79,18 @@ class RunConfig:
     source: str = field(default='')
     """Name of the file it was read from, without its directory."""
     record: RecordConfig = RecordConfig()
+    seed: int = 0
+    """Of all noise."""
 
     @property
     def leg(self) -> LegConfig | None:
         """Return the body where it is a leg."""
         return self.body if isinstance(self.body, LegConfig) else None
+
+    @property
+    def linked(self) -> tuple[str, ...]:
+        """Return the actuators with a link."""
+        return tuple(own.name for own in self.actuators if own.sheet.link.kind != NO_LINK.kind)
 
     def supply_of(self, name: str) -> SupplySheet:
         """Return the sheet of the supply that feeds an actuator; as `actuator`."""
@@ -197,6 +206,7 @@ class RunConfig:
         """Return the configuration of the tree of a resolved text; as `from_yaml`."""
         run: RunConfig = RUN.read(modern(tree), Place(name))
         refuse_grid(run.step_ns, run.controller_offset_ns, name)
+        seed_of(run.seed, f'{name}: seed')
         for actuator in run.actuators:
             refuse_bad_name(actuator.name, f'{name}: actuators: the name')
         refuse_misfed(
@@ -207,6 +217,7 @@ class RunConfig:
 RUN = Section(RunConfig, {
     'name': Key(Plain(str)), 'source': Key(Plain(str)), 'step_ns': Key(Plain(int)),
     'controller_offset_ns': Key(Plain(int)), 'tick_timeout_s': Key(Plain(float)),
+    'seed': Key(Plain(int), meant='0'),
     'supplies': Key(Named(SupplyKind())),
     'record': Key(RecordKind(), meant='everything'),
     'actuators': Key(Named(Section(ActuatorConfig, {

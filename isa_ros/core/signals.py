@@ -34,8 +34,9 @@ COMMAND = np.dtype([
     ('effort', '<f8'),         # feed-forward, N | Nm
     ('stiffness', '<f8'),      # N/m | Nm/rad; NaN keeps the gain in force
     ('damping', '<f8'),        # Ns/m | Nms/rad; NaN keeps the gain in force
+    ('due_step', '<i8'),       # plant step from which it is in force; 0: start of its tick
 ])
-"""Command to one actuator, in effect from a tick boundary on."""
+"""Command to one actuator, in effect from a tick boundary or a `due_step` on."""
 
 GAINS_OF_COMMAND = ('stiffness', 'damping')
 """Fields of a `COMMAND` that may be NaN."""
@@ -55,6 +56,7 @@ SAMPLE = np.dtype([
     ('current_reference', '<f8'),   # amplifier (parallel) current, A
     ('supply_volume', '<f8'),       # oil drawn from the supply since t = 0, m3
     ('supply_flow', '<f8'),         # its mean over the tick, m3/s
+    ('age', '<f8'),                 # since it was sampled, s; > 0 behind a link only
 ])
 """Values one actuator reports at the end of a tick."""
 
@@ -63,7 +65,7 @@ SAMPLE_UNITS = {
     'pressure_a': 'Pa', 'pressure_b': 'Pa', 'spool': 'm', 'spool_velocity': 'm/s',
     'current': 'A', 'position_reference': 'm | rad', 'force_reference': 'N | Nm',
     'spool_reference': 'm', 'current_reference': 'A', 'supply_volume': 'm3',
-    'supply_flow': 'm3/s'}
+    'supply_flow': 'm3/s', 'age': 's'}
 """Unit of each field of a `SAMPLE`: of a linear actuator | of a rotary one."""
 
 LOAD_PORT = np.dtype([

@@ -62,6 +62,8 @@ REU_STATE = np.dtype([
     ('current_reference', 'f8'),   # amplifier A
     ('drive', 'f8'),               # output of the blocks: A, or V
     ('amplifier', 'f8'),           # the drive after the computational delay
+    ('link_lost', 'i8'),           # 1: no frame has come for the link's watchdog time
+    ('link_lost_step', 'i8'),      # plant step at which it was last lost
 ])
 
 

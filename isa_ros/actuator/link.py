@@ -1,0 +1,232 @@
+"""
+The link of an actuator: frames from the commander to the REU, and back to the listeners.
+
+A frame leaves in each direction at every boundary of the cycle, `k` cycles after t = 0. Down, it
+carries the newest command that no frame has brought yet; up, the sample of that instant. It
+arrives after the delay and a jitter, uniform from 0 to ``jitter_us``, at the first plant step
+that is not earlier; a frame never overtakes the one before it. A lost frame does not arrive: the
+REU keeps its setpoint, listeners keep their sample, and the command goes with the next frame.
+
+Loss and jitter are noise without a state (`isa_ros.core.noise`), by the seed of the run, the name
+of the actuator, the direction and the plant step at which the frame leaves.
+"""
+
+from dataclasses import dataclass
+import math
+
+from isa_ros.actuator.inbox import latch, merge
+from isa_ros.core.kernel import kernel
+from isa_ros.core.noise import noise_key, uniforms
+from isa_ros.core.parameter import choice, parameter, Parameters
+from isa_ros.core.record import record
+from isa_ros.core.signals import Records
+from isa_ros.core.timebase import PLANT_STEP, PLANT_STEP_NS, steps_in
+from isa_ros.errors import ConfigError, ParameterError
+import numpy as np
+
+NONE = 'none'
+KINDS = (NONE, 'ethercat', 'can', 'serial')
+MOST_CYCLES = 8     # of delay
+SLOTS = 16          # frames on their way; the delay and the jitter allow 10
+_NS_PER_MS = 1_000_000
+_US_PER_MS = 1000.0
+DOWN, UP = 0, 1     # channels of the noise
+
+
+@dataclass(frozen=True, kw_only=True)
+class LinkSheet(Parameters):
+    """Timing and losses of the link of an actuator."""
+
+    kind: str = choice('the wire; none: commands and samples arrive at once', *KINDS)
+    cycle_ms: float = parameter('time from frame to frame; 0: the tick', 'ms', ge=0.0, le=100.0)
+    delay_cycles: float = parameter(
+        'time on the way, whole cycles', 'cycles', ge=0.0, le=float(MOST_CYCLES))
+    jitter_us: float = parameter(
+        'largest additional time on the way, uniform from 0', 'us', ge=0.0, le=1e5)
+    loss: float = parameter('probability that a frame is lost, each way', '1', ge=0.0, le=1.0)
+    watchdog_ms: float = parameter(
+        'time without a frame after which the REU takes the link as lost; 0: off', 'ms',
+        ge=0.0, le=1e5)
+
+    def __post_init__(self) -> None:
+        """Refuse times that are not on the grid, and a watchdog that trips without a loss."""
+        super().__post_init__()
+        if self.delay_cycles != int(self.delay_cycles):
+            raise ParameterError(
+                f'delay_cycles = {self.delay_cycles:g} cycles, must be a whole number')
+        for name in ('cycle_ms', 'watchdog_ms'):
+            _refuse_off_grid(name, getattr(self, name))
+        jitter_ms = self.jitter_us / _US_PER_MS
+        if self.cycle_ms and jitter_ms > self.cycle_ms:
+            raise ParameterError(
+                f'jitter_us = {self.jitter_us:g} us, must be <= cycle_ms = {self.cycle_ms:g} ms: '
+                'a frame arrives before the next one')
+        longest = max(1.0, self.delay_cycles) * self.cycle_ms + jitter_ms
+        if 0.0 < self.watchdog_ms <= longest:
+            raise ParameterError(
+                f'watchdog_ms = {self.watchdog_ms:g} ms, must be > {longest:g} ms, the longest '
+                'time without a frame where none is lost (cycle or delay, and jitter)')
+
+
+def _refuse_off_grid(name: str, milliseconds: float) -> None:
+    """Refuse a time that is neither 0 nor a whole number of plant steps."""
+    steps = round(milliseconds * _NS_PER_MS / PLANT_STEP_NS)
+    if abs(steps * PLANT_STEP_NS - milliseconds * _NS_PER_MS) > 1e-3:
+        raise ParameterError(
+            f'{name} = {milliseconds:g} ms, must be a multiple of the plant step '
+            f'{PLANT_STEP_NS / _NS_PER_MS:g} ms')
+
+
+NO_LINK = LinkSheet(
+    kind=NONE, cycle_ms=0.0, delay_cycles=0.0, jitter_us=0.0, loss=0.0, watchdog_ms=0.0)
+
+LINK = np.dtype([
+    ('is_on', 'i8'),
+    ('cycle_steps', 'i8'), ('delay_steps', 'i8'), ('watchdog_steps', 'i8'),
+    ('jitter_steps', 'f8'),
+    ('loss', 'f8'),
+])
+LINE = np.dtype([
+    ('first', 'i8'),            # slot of the frame that arrives next
+    ('count', 'i8'),            # frames on their way
+    ('last_due', 'i8'),         # plant step at which the last one sent arrives
+    ('due', 'i8', (SLOTS,)),    # plant step of arrival, by slot
+    ('sent', 'i8', (SLOTS,)),   # plant step of departure, by slot
+])
+"""One direction of a link. The contents of its frames lie beside it, in `SLOTS` rows."""
+
+LINK_STATE = np.dtype([
+    ('down', LINE), ('up', LINE),
+    ('last_frame', 'i8'),       # plant step at which the REU last received a frame
+    ('sampled', 'i8'),          # plant step of the sample that the listeners have
+])
+
+
+def link_record(sheet: LinkSheet) -> np.record:
+    """Return the `LINK` record of a sheet."""
+    if sheet.kind == NONE:
+        return record(LINK, **dict.fromkeys(LINK.names or (), 0))
+    cycle = steps_in(round(sheet.cycle_ms * _NS_PER_MS), 'link.cycle_ms')
+    return record(
+        LINK, is_on=1, cycle_steps=cycle, delay_steps=round(sheet.delay_cycles) * cycle,
+        watchdog_steps=round(sheet.watchdog_ms * _NS_PER_MS / PLANT_STEP_NS),
+        jitter_steps=sheet.jitter_us / _US_PER_MS * _NS_PER_MS / PLANT_STEP_NS, loss=sheet.loss)
+
+
+def link_key(seed: int, name: str) -> int:
+    """Return the key of the noise of a link: by the run's seed and the actuator's name."""
+    return noise_key(seed, f'{name}/link')
+
+
+def refuse_states(states: Records, owner: str) -> None:
+    """
+    Refuse the `LINK_STATE` rows of a saved state that no link can have.
+
+    Raises
+    ------
+    ConfigError
+        A line has more frames than slots, or a slot that does not exist.
+
+    """
+    for line in (states['down'], states['up']):
+        for name, least, most in (('first', 0, SLOTS - 1), ('count', 0, SLOTS)):
+            if not ((line[name] >= least) & (line[name] <= most)).all():
+                raise ConfigError(
+                    f'{owner}: saved state has {name} = {line[name][0]} of a link, must be '
+                    f'{least} to {most}')
+
+
+@kernel
+def put_frame(step, channel, key, link, line):
+    """
+    Send a frame at plant step ``step``: return its slot in the `LINE`, or -1 if it is lost.
+
+    It arrives at ``ceil(step + delay + jitter)``, not before the last one sent. A line whose
+    slots are all taken loses it.
+    """
+    lot, wait = uniforms(key, step, channel)
+    if lot < link.loss or line.count >= SLOTS:
+        return -1
+    due = step + link.delay_steps + int(math.ceil(link.jitter_steps * wait))
+    slot = (line.first + line.count) % SLOTS
+    line.last_due = max(due, line.last_due)
+    line.due[slot] = line.last_due
+    line.sent[slot] = step
+    line.count += 1
+    return slot
+
+
+@kernel
+def take_frame(step, line):
+    """Return the slot of the next frame that has arrived at plant step ``step``, or -1."""
+    if line.count <= 0 or line.due[line.first] > step:
+        return -1
+    slot = line.first
+    line.first = (slot + 1) % SLOTS
+    line.count -= 1
+    return slot
+
+
+@kernel
+def hand_over(pending, outbox, sent):
+    """Begin a tick: move the pending command to the outbox; ``sent`` is a copy of it."""
+    sent[0] = pending[0]
+    if pending[0].kinds:
+        merge(pending[0], outbox[0])
+        pending[0].kinds = 0
+
+
+@kernel
+def link_down(step, key, link, state, outbox, frames, reu, applied):
+    """
+    Send the command in the outbox if a frame leaves at ``step``; apply those that have arrived.
+
+    ``outbox`` (1,) and ``frames`` (SLOTS,) are `COMMAND` rows. Of several commands that arrive
+    in a tick ``applied`` has the kinds of all, and the step of the last.
+    """
+    if step % link.cycle_steps == 0:
+        slot = put_frame(step, DOWN, key, link, state.down)
+        if slot >= 0:
+            frames[slot] = outbox[0]
+            frames[slot].due_step = state.down.due[slot]
+            outbox[0].kinds = 0
+    slot = take_frame(step, state.down)
+    while slot >= 0:
+        state.last_frame = step
+        if frames[slot].kinds:
+            kinds = applied.kinds
+            latch(frames[slot], reu, applied)
+            applied.kinds |= kinds
+            applied.due_step = step
+        slot = take_frame(step, state.down)
+    watch(step, link, state, reu)
+
+
+@kernel
+def watch(step, link, state, reu):
+    """Set ``link_lost`` of a `REU_STATE` when no frame has come for the watchdog's time."""
+    if link.watchdog_steps == 0 or step - state.last_frame < link.watchdog_steps:
+        reu.link_lost = 0
+    elif reu.link_lost == 0:
+        reu.link_lost = 1
+        reu.link_lost_step = step
+
+
+@kernel
+def link_up(step, key, link, state, sample, frames):
+    """Send a `SAMPLE` (1,) if a frame leaves at ``step``; ``frames`` are (SLOTS,)."""
+    if step % link.cycle_steps == 0:
+        slot = put_frame(step, UP, key, link, state.up)
+        if slot >= 0:
+            frames[slot] = sample[0]
+
+
+@kernel
+def receive_up(step, state, frames, observed):
+    """Update the `SAMPLE` that listeners have at ``step``, (1,): the newest that has arrived."""
+    slot = take_frame(step, state.up)
+    while slot >= 0:
+        observed[0] = frames[slot]
+        state.sampled = state.up.sent[slot]
+        slot = take_frame(step, state.up)
+    observed[0].age = (step - state.sampled) * PLANT_STEP
