@@ -20,7 +20,15 @@ APPLIED_PARAMETERS = ('applied_parameters', applied_parameters.TYPE)
 APPLIED_TOPICS = (APPLIED_PARAMETERS, APPLIED_SETPOINT)
 """(topic suffix, type) of the messages published when a command or parameter takes effect."""
 
+SENT_SETPOINT = ('sent_setpoint', joint_state.TYPE)
+"""(topic suffix, type) of the messages published when a command is handed to a link."""
+
 TOPICS = (*APPLIED_TOPICS, *STATE_TOPICS)
+
+
+def topics(has_link: bool) -> tuple[tuple[str, str], ...]:
+    """Return (topic suffix, type) of all messages of an actuator, with or without a link."""
+    return (*APPLIED_TOPICS, SENT_SETPOINT, *STATE_TOPICS) if has_link else TOPICS
 
 
 def prepared(

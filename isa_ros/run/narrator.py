@@ -111,7 +111,7 @@ def packer_of(run: RunConfig, shown: Shown) -> Packer:
     return Packer(
         Names([(actuator.name, actuator.sheet.is_rotary) for actuator in run.actuators],
               [(supply.name, isinstance(supply.sheet.return_line, VolumeReturn))
-               for supply in run.supplies], _body_messages(run)), shown)
+               for supply in run.supplies], _body_messages(run), run.linked), shown)
 
 
 def _body_messages(run: RunConfig) -> BodyMessages | None:

@@ -5,7 +5,7 @@ Every message of a run is encoded once, all in one block of memory. At each tick
 the numbers of all rows into it. Recorder and publishers receive parts of the block.
 """
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Collection, Mapping, Sequence
 from typing import NamedTuple
 
 from isa_ros.bag.packed import Layout, layout, Packed
@@ -14,10 +14,12 @@ from isa_ros.core.kernel import kernel
 from isa_ros.core.record import floats
 from isa_ros.core.signals import COMMAND, Records, SAMPLE
 from isa_ros.core.topic import KEPT, Qos, Topic
+from isa_ros.run.link_packing import pack_links, with_link, WORDS
 from isa_ros.surroundings.supply import SUPPLY_SAMPLE
 from msg_adapters import (
     actuator_messages, clock, coordinator_messages, event, fluid_pressure)
-from msg_adapters.actuator_messages import APPLIED_TOPICS, STATE_TOPICS, TOPICS
+from msg_adapters.actuator_messages import (
+    APPLIED_TOPICS, SENT_SETPOINT, STATE_TOPICS, topics)
 from msg_adapters.applied_parameters import applied_parameters
 from msg_adapters.template import FIRST_VALUE, Prepared, Template, time_word
 import numpy as np
@@ -26,7 +28,7 @@ Messages = Sequence[bytes | None]
 """Serialised messages of one source in the order of its topics; None: no message at this tick."""
 
 _SAMPLE, _SUPPLY = tuple(SAMPLE.names or ()), tuple(SUPPLY_SAMPLE.names or ())
-_APPLIED = tuple(name for name in COMMAND.names or () if name != 'kinds')
+_APPLIED = tuple(name for name in COMMAND.names or () if name not in ('kinds', 'due_step'))
 _PRESSURES = ('pressure_a', 'pressure_b')
 _FIRST_PRESSURE = _SAMPLE.index(_PRESSURES[0])
 _SUPPLY_PRESSURES = ('pressure', 'return_pressure')
@@ -44,6 +46,8 @@ class Shown(NamedTuple):
     """`SUPPLY_SAMPLE`, (m,)."""
     body: Records | None
     """Sample of the body, (1,), a record of floats; None: no body."""
+    sent: Records | None = None
+    """`COMMAND` handed to the links at the tick's start, (n,); None: no links."""
 
 
 BodyMessages = Callable[[Mapping[str, int]], Mapping[tuple[str, str], Prepared]]
@@ -58,13 +62,17 @@ class Names(NamedTuple):
     supplies: Sequence[tuple[str, bool]] = ()
     """(name, publishes its return pressure) of each."""
     body: BodyMessages | None = None
+    linked: Collection[str] = ()
+    """The actuators with a link."""
 
 
-def topics_of_actuator(prefix: str) -> list[Topic]:
-    """Return `TOPICS` below ``prefix`` with their qualities of service."""
-    return [
-        Topic(f'{prefix}/{suffix}', type_, KEPT if (suffix, type_) in APPLIED_TOPICS else Qos())
-        for suffix, type_ in TOPICS]
+_KEPT = (*APPLIED_TOPICS, SENT_SETPOINT)
+
+
+def topics_of_actuator(prefix: str, has_link: bool = False) -> list[Topic]:
+    """Return the topics of an actuator below ``prefix`` with their qualities of service."""
+    return [Topic(f'{prefix}/{suffix}', type_, KEPT if (suffix, type_) in _KEPT else Qos())
+            for suffix, type_ in topics(has_link)]
 
 
 def float_columns(record: np.dtype[np.void], first: int = 0) -> dict[str, int]:
@@ -130,12 +138,17 @@ class Packer:
         self._names = names
         self._shown = shown
         found: list[tuple[Topic, Prepared | None]] = []
-        at = 0
-        for name, is_rotary in names.actuators:
+        self._links = np.array([row for row, (name, _) in enumerate(names.actuators)
+                                if name in names.linked and shown.sent is not None], np.int64)
+        at, link_at = 0, self._first_link(shown)
+        for row, (name, is_rotary) in enumerate(names.actuators):
             own = self._actuator(name, is_rotary, at)
             at += len(_SAMPLE) + len(_PRESSURES) + len(_APPLIED)
+            if row in self._links:
+                own = with_link(name, own, link_at)
+                link_at += WORDS
             found += [(topic, own.get(topic.name.rpartition('/')[2]))
-                      for topic in topics_of_actuator(f'/{name}')]
+                      for topic in topics_of_actuator(f'/{name}', row in self._links)]
         for supply, shows_return in names.supplies:
             for k, suffix in enumerate(_SUPPLY_PRESSURES[:1 + shows_return]):
                 topic = Topic(f'{_COORDINATOR}/{supply}_{suffix}', fluid_pressure.TYPE)
@@ -169,18 +182,27 @@ class Packer:
             {field: places[f'{field}, absolute'] for field in _PRESSURES},
             {field: places[f'applied {field}'] for field in _APPLIED})
 
+    @staticmethod
+    def _first_link(shown: Shown) -> int:
+        """Return the column behind all others, at which the words of the links begin."""
+        body = 0 if shown.body is None else floats(shown.body).size
+        own = len(_SAMPLE) + len(_PRESSURES) + len(_APPLIED)
+        return len(shown.samples) * own + len(shown.supplies) * len(_SUPPLY_PRESSURES) + body
+
     def _bind(self) -> None:
         """Store the rows as plain floats, a tenth of the time to pass to the kernel."""
         shown, template = self._shown, self._template
-        n, m = len(shown.samples), len(shown.supplies)
         self._samples, self._supplies = floats(shown.samples), floats(shown.supplies)
         self._body = np.zeros(0) if shown.body is None else floats(shown.body).reshape(-1)
-        size = (FIRST_VALUE + n * (len(_SAMPLE) + len(_PRESSURES) + len(_APPLIED))
-                + m * len(_SUPPLY_PRESSURES) + len(self._body))
-        self._words = np.zeros(size, np.uint64)
+        self._link_words = FIRST_VALUE + self._first_link(shown)
+        self._words = np.zeros(self._link_words + len(self._links) * WORDS, np.uint64)
         self._values = self._words.view(np.float64)
         self._target = _Target(template.block, template.places, template.sources)
+        self._ages = shown.samples['age']
         self._kinds = shown.applied['kinds']
+        self._sent_kinds = np.zeros(len(shown.samples), np.uint32)
+        if shown.sent is not None:
+            self._sent_kinds = shown.sent['kinds']
 
     def pack(
             self, t_ns: int, tick_start_ns: int,
@@ -190,6 +212,9 @@ class Packer:
 
         ``tuned`` are the parameters that changed at the tick's start, by row.
         """
+        if len(self._links):
+            pack_links(t_ns, tick_start_ns, self._link_words, self._links, self._ages,
+                       self._shown.applied, self._shown.sent, self._words, self._values)
         pack(time_word(t_ns), time_word(tick_start_ns), ATMOSPHERE,
              self._samples, self._shown.applied, self._supplies, self._body, self._words,
              self._values, self._target)
@@ -199,7 +224,7 @@ class Packer:
 
     def all_messages(self, events: Sequence[bytes] = ()) -> Packed:
         """Return all messages of the packed instant, in the order of `topics`."""
-        key = (self._kinds != 0).tobytes()
+        key = (self._kinds != 0).tobytes() + (self._sent_kinds != 0).tobytes()
         where = self._layouts.get(key)
         if where is None:
             where = self._layouts[key] = self._layout()
@@ -213,8 +238,9 @@ class Packer:
 
     def _layout(self) -> Layout:
         """Return the layout of this tick's messages: without setpoints where none was applied."""
-        absent = {f'/{name}/{_SETPOINT}' for (name, _), kinds in zip(
-            self._names.actuators, self._kinds) if not kinds}
+        absent = {f'/{name}/{suffix}' for suffix, kinds_of in (
+            (_SETPOINT, self._kinds), (_SENT, self._sent_kinds))
+            for (name, _), kinds in zip(self._names.actuators, kinds_of) if not kinds}
         present = [(self._index[name], place) for name, place in self._place.items()
                    if name not in absent]
         present.sort()
@@ -224,15 +250,16 @@ class Packer:
                       sizes[places].tolist())
 
     def of_actuator(self, row: int) -> list[bytes | None]:
-        """Return the messages of one actuator in the order of `TOPICS`."""
+        """Return the messages of one actuator in the order of `topics_of_actuator`."""
         name = self._names.actuators[row][0]
         setpoint = self._message(f'/{name}/{_SETPOINT}') if self._kinds[row] else None
-        return [self._tuned.get(row), setpoint,
+        sent = self._message(f'/{name}/{_SENT}') if self._sent_kinds[row] else None
+        return [self._tuned.get(row), setpoint, *([sent] if row in self._links else []),
                 *(self._message(f'/{name}/{suffix}') for suffix, _ in STATE_TOPICS)]
 
     def has_applied(self, row: int) -> bool:
-        """Return whether a command of an actuator took effect at the start of the last tick."""
-        return bool(self._kinds[row])
+        """Return whether a command of an actuator took effect in the last tick, or was sent."""
+        return bool(self._kinds[row] or self._sent_kinds[row])
 
     def of(self, topics: Sequence[Topic]) -> list[bytes]:
         """Return the messages of some topics."""
@@ -244,10 +271,12 @@ class Packer:
     @property
     def surroundings(self) -> list[Topic]:
         """Return the topics of supplies and body."""
-        own = {f'/{name}/{suffix}' for name, _ in self._names.actuators for suffix, _ in TOPICS}
+        own = {f'/{name}/{suffix}' for name, _ in self._names.actuators
+               for suffix, _ in topics(has_link=True)}
         return [topic for topic in self.topics
                 if topic.name not in own and topic.name not in (clock.TOPIC[0], event.TOPIC[0])]
 
 
 _SETPOINT = actuator_messages.APPLIED_SETPOINT[0]
+_SENT = SENT_SETPOINT[0]
 _PARAMETERS = actuator_messages.APPLIED_PARAMETERS[0]
