@@ -8,7 +8,8 @@ of floats (`BODY`), so that the integrator sees the same memory as a flat array.
 import math
 
 from isa_ros.actuator.inbox import latch, merge
-from isa_ros.actuator.link import hand_over, LINK, link_down, link_up, receive_up, SLOTS
+from isa_ros.actuator.link import (
+    hand_over, leaves, LINK, link_down, link_up, receive_up, SLOTS)
 from isa_ros.actuator.states import write_states
 from isa_ros.core.kernel import kernel
 from isa_ros.core.timebase import FORCE_WINDOWS, PLANT_STEP
@@ -212,7 +213,7 @@ def frames_before(step, is_inside, n, body, actuator, reu_state, memory):
     One that leaves inside the tick brings the sensors' values of that instant.
     """
     link = actuator.link
-    if is_inside and step % link.cycle_steps == 0:
+    if is_inside and leaves(step, link):
         read_sensors(body.plant, body.load.position, body.load.velocity, actuator.plant,
                      memory.read_outs[n])
         write_sample(memory.read_outs[n], body.plant, reu_state, memory.samples[n])

@@ -1,18 +1,18 @@
 """
 The link of an actuator: frames from the commander to the REU, and back to the listeners.
 
-A frame leaves in each direction at every boundary of the cycle, `k` cycles after t = 0. Down, it
-carries the newest command that no frame has brought yet; up, the sample of that instant. It
-arrives after the delay and a jitter, uniform from 0 to ``jitter_us``, at the first plant step
-that is not earlier; a frame never overtakes the one before it. A lost frame does not arrive: the
-REU keeps its setpoint, listeners keep their sample, and the command goes with the next frame.
+A frame leaves in each direction when a cycle begins, the first at t = 0, at the first plant step
+that is not earlier. Down, it carries the newest command that no frame has brought yet; up, the
+sample of that step. It arrives after the delay and a jitter, uniform from 0 to ``jitter_us``,
+again at the first plant step that is not earlier; a frame never overtakes the one before it. A
+lost frame does not arrive: the REU keeps its setpoint, listeners keep their sample, and the
+command goes with the next frame.
 
 Loss and jitter are noise without a state (`isa_ros.core.noise`), by the seed of the run, the name
 of the actuator, the direction and the plant step at which the frame leaves.
 """
 
 from dataclasses import dataclass
-import math
 
 from isa_ros.actuator.inbox import latch, merge
 from isa_ros.core.kernel import kernel
@@ -20,7 +20,7 @@ from isa_ros.core.noise import noise_key, uniforms
 from isa_ros.core.parameter import choice, parameter, Parameters
 from isa_ros.core.record import record
 from isa_ros.core.signals import Records
-from isa_ros.core.timebase import PLANT_STEP, PLANT_STEP_NS, steps_in
+from isa_ros.core.timebase import PLANT_STEP, PLANT_STEP_NS
 from isa_ros.errors import ConfigError, ParameterError
 import numpy as np
 
@@ -38,24 +38,28 @@ class LinkSheet(Parameters):
     """Timing and losses of the link of an actuator."""
 
     kind: str = choice('the wire; none: commands and samples arrive at once', *KINDS)
-    cycle_ms: float = parameter('time from frame to frame; 0: the tick', 'ms', ge=0.0, le=100.0)
+    cycle_ms: float = parameter(
+        'time from frame to frame; 0: the tick', 'ms', absent=0.0, ge=0.0, le=100.0)
     delay_cycles: float = parameter(
-        'time on the way, whole cycles', 'cycles', ge=0.0, le=float(MOST_CYCLES))
+        'time on the way, whole cycles', 'cycles', absent=0.0, ge=0.0, le=float(MOST_CYCLES))
     jitter_us: float = parameter(
-        'largest additional time on the way, uniform from 0', 'us', ge=0.0, le=1e5)
-    loss: float = parameter('probability that a frame is lost, each way', '1', ge=0.0, le=1.0)
+        'largest additional time on the way, uniform from 0', 'us', absent=0.0, ge=0.0, le=1e5)
+    loss: float = parameter(
+        'probability that a frame is lost, each way', '1', absent=0.0, ge=0.0, le=1.0)
     watchdog_ms: float = parameter(
         'time without a frame after which the REU takes the link as lost; 0: off', 'ms',
-        ge=0.0, le=1e5)
+        absent=0.0, ge=0.0, le=1e5)
 
     def __post_init__(self) -> None:
-        """Refuse times that are not on the grid, and a watchdog that trips without a loss."""
+        """Refuse a cycle below the plant step, and a watchdog that trips without a loss."""
         super().__post_init__()
         if self.delay_cycles != int(self.delay_cycles):
             raise ParameterError(
                 f'delay_cycles = {self.delay_cycles:g} cycles, must be a whole number')
-        for name in ('cycle_ms', 'watchdog_ms'):
-            _refuse_off_grid(name, getattr(self, name))
+        if 0.0 < self.cycle_ms < PLANT_STEP_NS / _NS_PER_MS:
+            raise ParameterError(
+                f'cycle_ms = {self.cycle_ms:g} ms, must be >= the plant step '
+                f'{PLANT_STEP_NS / _NS_PER_MS:g} ms, or 0 for the tick')
         jitter_ms = self.jitter_us / _US_PER_MS
         if self.cycle_ms and jitter_ms > self.cycle_ms:
             raise ParameterError(
@@ -68,22 +72,13 @@ class LinkSheet(Parameters):
                 'time without a frame where none is lost (cycle or delay, and jitter)')
 
 
-def _refuse_off_grid(name: str, milliseconds: float) -> None:
-    """Refuse a time that is neither 0 nor a whole number of plant steps."""
-    steps = round(milliseconds * _NS_PER_MS / PLANT_STEP_NS)
-    if abs(steps * PLANT_STEP_NS - milliseconds * _NS_PER_MS) > 1e-3:
-        raise ParameterError(
-            f'{name} = {milliseconds:g} ms, must be a multiple of the plant step '
-            f'{PLANT_STEP_NS / _NS_PER_MS:g} ms')
-
-
 NO_LINK = LinkSheet(
     kind=NONE, cycle_ms=0.0, delay_cycles=0.0, jitter_us=0.0, loss=0.0, watchdog_ms=0.0)
 
 LINK = np.dtype([
     ('is_on', 'i8'),
-    ('cycle_steps', 'i8'), ('delay_steps', 'i8'), ('watchdog_steps', 'i8'),
-    ('jitter_steps', 'f8'),
+    ('cycle_ns', 'i8'), ('delay_ns', 'i8'), ('watchdog_ns', 'i8'),
+    ('jitter_ns', 'f8'),
     ('loss', 'f8'),
 ])
 LINE = np.dtype([
@@ -106,11 +101,13 @@ def link_record(sheet: LinkSheet) -> np.record:
     """Return the `LINK` record of a sheet."""
     if sheet.kind == NONE:
         return record(LINK, **dict.fromkeys(LINK.names or (), 0))
-    cycle = steps_in(round(sheet.cycle_ms * _NS_PER_MS), 'link.cycle_ms')
+    cycle = round(sheet.cycle_ms * _NS_PER_MS)
+    if not cycle:
+        raise ConfigError('link.cycle_ms = 0 ms is the tick of a run, must be > 0 ms without one')
     return record(
-        LINK, is_on=1, cycle_steps=cycle, delay_steps=round(sheet.delay_cycles) * cycle,
-        watchdog_steps=round(sheet.watchdog_ms * _NS_PER_MS / PLANT_STEP_NS),
-        jitter_steps=sheet.jitter_us / _US_PER_MS * _NS_PER_MS / PLANT_STEP_NS, loss=sheet.loss)
+        LINK, is_on=1, cycle_ns=cycle, delay_ns=round(sheet.delay_cycles) * cycle,
+        watchdog_ns=round(sheet.watchdog_ms * _NS_PER_MS),
+        jitter_ns=sheet.jitter_us / _US_PER_MS * _NS_PER_MS, loss=sheet.loss)
 
 
 def link_key(seed: int, name: str) -> int:
@@ -137,17 +134,25 @@ def refuse_states(states: Records, owner: str) -> None:
 
 
 @kernel
+def leaves(step, link):
+    """Return whether a frame leaves at plant step ``step``, the first since a cycle began."""
+    return (step * PLANT_STEP_NS) % link.cycle_ns < PLANT_STEP_NS
+
+
+@kernel
 def put_frame(step, channel, key, link, line):
     """
     Send a frame at plant step ``step``: return its slot in the `LINE`, or -1 if it is lost.
 
-    It arrives at ``ceil(step + delay + jitter)``, not before the last one sent. A line whose
-    slots are all taken loses it.
+    It arrives the delay and the jitter after its cycle began, rounded up to plant steps, and not
+    before the last one sent. A line whose slots are all taken loses it.
     """
     lot, wait = uniforms(key, step, channel)
     if lot < link.loss or line.count >= SLOTS:
         return -1
-    due = step + link.delay_steps + int(math.ceil(link.jitter_steps * wait))
+    t_ns = step * PLANT_STEP_NS
+    arrival = t_ns - t_ns % link.cycle_ns + link.delay_ns + int(link.jitter_ns * wait)
+    due = (arrival + PLANT_STEP_NS - 1) // PLANT_STEP_NS
     slot = (line.first + line.count) % SLOTS
     line.last_due = max(due, line.last_due)
     line.due[slot] = line.last_due
@@ -184,7 +189,7 @@ def link_down(step, key, link, state, outbox, frames, reu, applied):
     ``outbox`` (1,) and ``frames`` (SLOTS,) are `COMMAND` rows. Of several commands that arrive
     in a tick ``applied`` has the kinds of all, and the step of the last.
     """
-    if step % link.cycle_steps == 0:
+    if leaves(step, link):
         slot = put_frame(step, DOWN, key, link, state.down)
         if slot >= 0:
             frames[slot] = outbox[0]
@@ -205,7 +210,8 @@ def link_down(step, key, link, state, outbox, frames, reu, applied):
 @kernel
 def watch(step, link, state, reu):
     """Set ``link_lost`` of a `REU_STATE` when no frame has come for the watchdog's time."""
-    if link.watchdog_steps == 0 or step - state.last_frame < link.watchdog_steps:
+    silence = (step - state.last_frame) * PLANT_STEP_NS
+    if link.watchdog_ns == 0 or silence < link.watchdog_ns:
         reu.link_lost = 0
     elif reu.link_lost == 0:
         reu.link_lost = 1
@@ -215,7 +221,7 @@ def watch(step, link, state, reu):
 @kernel
 def link_up(step, key, link, state, sample, frames):
     """Send a `SAMPLE` (1,) if a frame leaves at ``step``; ``frames`` are (SLOTS,)."""
-    if step % link.cycle_steps == 0:
+    if leaves(step, link):
         slot = put_frame(step, UP, key, link, state.up)
         if slot >= 0:
             frames[slot] = sample[0]
