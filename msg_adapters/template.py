@@ -17,7 +17,6 @@ INSTANT, TICK_START, FIRST_VALUE = 0, 1, 2
 """Words of a `Template`: the two times, then the values."""
 
 
-
 class Time(NamedTuple):
     """Used instead of a column, for the seconds of a stamp: the column whose word is the time."""
 
@@ -121,7 +120,8 @@ def _offset(
             f'{type(message).__name__} has no number {path!r}; it has {", ".join(slots)}')
     slot = slots[path]
     is_nanosec = source in _NANOSECONDS
-    expected = 'i' if isinstance(source, Time) or source in _SECONDS else 'I' if is_nanosec else 'd'
+    is_sec = isinstance(source, Time) or source in _SECONDS
+    expected = 'i' if is_sec else 'I' if is_nanosec else 'd'
     half = struct.calcsize('<I') if is_nanosec else 0
     if slot.code != expected or (slot.offset - len(ENCAPSULATION)) % _WORD != half:
         raise CdrError(

@@ -103,7 +103,7 @@ class SmartActuator:
         self._saved = [
             self.memory.bodies[:1], self.memory.reu, self.memory.ports, self.memory.pending,
             self.memory.applied, self.memory.replies, self.memory.samples]
-        self._saved_names = _SAVED
+        self._saved_names: tuple[str, ...] = _SAVED
         if self.has_link:
             self._saved_names += _SAVED_OF_LINK
             self._saved += [getattr(self.memory, name) for name in _SAVED_OF_LINK]

@@ -51,8 +51,8 @@ def link_of(run: Section, own: Section, step_ns: int, place: Place) -> Section:
     if given and 'kind' not in given:
         raise ConfigError((place / LINK).has(f'lacks kind, one of {", ".join(KINDS)}'))
     section = merge(
-        {key: Entry(value, str(place / LINK / key), 'default')
-         for key, value in as_tree(NO_LINK).items()}, given)
+        {key: Entry(getattr(NO_LINK, key), str(place / LINK / key), 'default')
+         for key in as_tree(NO_LINK)}, given)
     if _value(section['kind']) != NONE and _value(section['cycle_ms']) in (0, 0.0):
         section['cycle_ms'] = Entry(step_ns / 1e6, str(place / LINK / 'cycle_ms'), 'default')
     return section
