@@ -7,14 +7,16 @@ of floats (`BODY`), so that the integrator sees the same memory as a flat array.
 
 import math
 
+from isa_ros.actuator.energy import add_energies, stored_elastically
 from isa_ros.actuator.inbox import latch, merge
 from isa_ros.actuator.link import (
-    hand_over, leaves, LINK, link_down, link_up, receive_up, SLOTS)
+    exchange_frames, hand_over, leaves, LINK, receive_samples, send_sample)
 from isa_ros.actuator.states import write_states
 from isa_ros.core.kernel import kernel
 from isa_ros.core.timebase import FORCE_WINDOWS, PLANT_STEP
 from isa_ros.loads.forces import LOAD_STATE, OWN_LOAD, own_load_force
 from isa_ros.loads.port import load_acceleration
+from isa_ros.plant.energy import ENERGIES
 from isa_ros.plant.plant import PLANT, plant_rates, PLANT_STATE, read_sensors, settle
 from isa_ros.reu.cascade import cascade_step, is_due, REU
 import numpy as np
@@ -23,11 +25,13 @@ TOTALS = np.dtype([
     ('impulse', 'f8'),          # integral of the sensor force, Ns | Nms
     ('supply_volume', 'f8'),    # drawn from the supply, m3
     ('return_volume', 'f8'),    # given to the return, m3
+    ('energies', ENERGIES),
 ])
 BODY = np.dtype([('plant', PLANT_STATE), ('load', LOAD_STATE), ('totals', TOTALS)])
 """Every continuous state of an actuator and its load copy; floats only."""
 
 STATE_SIZE = BODY.itemsize // 8
+TOTALS_AT = STATE_SIZE - TOTALS.itemsize // 8  # no rate depends on the totals, the last states
 BODIES = 2  # the state and a stage of its integration
 STAGES = 4
 NOTHING = 1e-100  # any unit: smaller states are set to zero, since denormal arithmetic is slow
@@ -61,7 +65,8 @@ def body_rates(tau, y, drive, port, actuator, rates):
     """Write the derivative of one `BODY` into ``rates``."""
     force, q_p, q_t = plant_rates(
         y.plant, y.load.position, y.load.velocity, drive,
-        port.supply_pressure, port.return_pressure, actuator.plant, rates.plant)
+        port.supply_pressure, port.return_pressure, actuator.plant, rates.plant,
+        rates.totals.energies)
     own = own_load_force(y.load, port.x0, actuator.load, rates.load)
     rates.load.position = y.load.velocity
     rates.load.velocity = load_acceleration(
@@ -79,13 +84,13 @@ def body_step(h, tau, drive, port, actuator, bodies, rates, y, k):
     ``bodies[1]`` holds the stage; ``y`` and ``k`` are the flat views of ``bodies``, ``rates``.
     """
     body_rates(tau, bodies[0], drive, port, actuator, rates[0])
-    for j in range(STATE_SIZE):
+    for j in range(TOTALS_AT):
         y[1, j] = y[0, j] + 0.5 * h * k[0, j]
     body_rates(tau + 0.5 * h, bodies[1], drive, port, actuator, rates[1])
-    for j in range(STATE_SIZE):
+    for j in range(TOTALS_AT):
         y[1, j] = y[0, j] + 0.5 * h * k[1, j]
     body_rates(tau + 0.5 * h, bodies[1], drive, port, actuator, rates[2])
-    for j in range(STATE_SIZE):
+    for j in range(TOTALS_AT):
         y[1, j] = y[0, j] + h * k[2, j]
     body_rates(tau + h, bodies[1], drive, port, actuator, rates[3])
     for j in range(STATE_SIZE):
@@ -181,14 +186,19 @@ def tick_row(first_step, steps, port, actuator, bodies, rates, y, k, reu_state, 
     `SAMPLE` at the end of the tick. ``link`` is its row where it has a link, else -1.
     """
     body = bodies[0]
-    body.totals.supply_volume = 0.0
-    body.totals.return_volume = 0.0
+    y[0, TOTALS_AT:] = 0.0
+    elastic = stored_elastically(body, actuator.plant.mechanics)
     window_steps = steps // FORCE_WINDOWS
     for window in range(FORCE_WINDOWS):
         body.totals.impulse = 0.0
         for i in range(window * window_steps, (window + 1) * window_steps):
             if link >= 0:
-                frames_before(first_step + i, i > 0, link, body, actuator, reu_state, memory)
+                is_sampled = i > 0 and leaves(first_step + i, actuator.link)
+                if is_sampled:
+                    read_sensors(body.plant, body.load.position, body.load.velocity,
+                                 actuator.plant, read_out)
+                    write_sample(read_out, body.plant, reu_state, sample)
+                exchange_frames(first_step + i, is_sampled, link, memory)
             loops_and_plant(first_step + i, i * PLANT_STEP, port, actuator,
                             bodies, rates, y, k, reu_state)
         reply.mean_forces[window] = body.totals.impulse / (window_steps * PLANT_STEP)
@@ -201,32 +211,11 @@ def tick_row(first_step, steps, port, actuator, bodies, rates, y, k, reu_state, 
     write_sample(read_out, body.plant, reu_state, sample)
     sample.supply_volume += reply.supply_volume
     sample.supply_flow = reply.supply_volume / (steps * PLANT_STEP)
+    add_energies(reply, port, body.totals.energies,
+                 stored_elastically(body, actuator.plant.mechanics) - elastic,
+                 steps * PLANT_STEP, sample)
     if link >= 0:
-        frame_up(first_step + steps, link, memory)
-
-
-@kernel
-def frames_before(step, is_inside, n, body, actuator, reu_state, memory):
-    """
-    Exchange the frames of actuator ``n`` that are due before plant step ``step``.
-
-    One that leaves inside the tick brings the sensors' values of that instant.
-    """
-    link = actuator.link
-    if is_inside and leaves(step, link):
-        read_sensors(body.plant, body.load.position, body.load.velocity, actuator.plant,
-                     memory.read_outs[n])
-        write_sample(memory.read_outs[n], body.plant, reu_state, memory.samples[n])
-        frame_up(step, n, memory)
-    link_down(step, memory.link_keys[n], link, memory.links[n], memory.outbox[n:n + 1],
-              memory.commands_sent[n * SLOTS:(n + 1) * SLOTS], reu_state, memory.applied[n])
-
-
-@kernel
-def frame_up(step, n, memory):
-    """Send the sample of actuator ``n`` if a frame leaves at ``step``."""
-    link_up(step, memory.link_keys[n], memory.constants[n].link, memory.links[n],
-            memory.samples[n:n + 1], memory.samples_sent[n * SLOTS:(n + 1) * SLOTS])
+        send_sample(first_step + steps, link, memory)
 
 
 @kernel
@@ -249,16 +238,14 @@ def actuator_tick(first_step, steps, incoming, commands, memory):
         if link < 0:
             latch(memory.pending[n], reu, memory.applied[n])
         else:
-            memory.applied[n].kinds = 0
-            hand_over(memory.pending[n:n + 1], memory.outbox[n:n + 1], memory.sent[n:n + 1])
+            hand_over(n, memory)
         take_port(incoming[n], memory.is_shared[n], port, bodies[0])
         tick_row(first_step, steps, port, memory.constants[n], bodies, rates, y, k, reu,
                  memory.read_outs[n], memory.replies[n], memory.samples[n], link, memory)
         if link < 0:
             memory.observed[n] = memory.samples[n]
         else:
-            receive_up(first_step + steps, memory.links[n],
-                       memory.samples_sent[n * SLOTS:(n + 1) * SLOTS], memory.observed[n:n + 1])
+            receive_samples(first_step + steps, n, memory)
         broken = first_broken(y)
         if broken >= 0:
             return n * STATE_SIZE + broken

@@ -173,12 +173,27 @@ def take_frame(step, line):
 
 
 @kernel
-def hand_over(pending, outbox, sent):
-    """Begin a tick: move the pending command to the outbox; ``sent`` is a copy of it."""
-    sent[0] = pending[0]
-    if pending[0].kinds:
-        merge(pending[0], outbox[0])
-        pending[0].kinds = 0
+def hand_over(n, memory):
+    """Begin a tick of actuator ``n``: move its pending command to the outbox; store it as sent."""
+    memory.applied[n].kinds = 0
+    memory.sent[n] = memory.pending[n]
+    if memory.pending[n].kinds:
+        merge(memory.pending[n], memory.outbox[n])
+        memory.pending[n].kinds = 0
+
+
+@kernel
+def exchange_frames(step, is_sampled, n, memory):
+    """
+    Exchange the frames of actuator ``n`` that are due before plant step ``step``.
+
+    ``is_sampled``: its sample is that of this step, for a frame that leaves inside the tick.
+    """
+    if is_sampled:
+        send_sample(step, n, memory)
+    link_down(step, memory.link_keys[n], memory.constants[n].link, memory.links[n],
+              memory.outbox[n:n + 1], memory.commands_sent[n * SLOTS:(n + 1) * SLOTS],
+              memory.reu[n], memory.applied[n])
 
 
 @kernel
@@ -219,20 +234,22 @@ def watch(step, link, state, reu):
 
 
 @kernel
-def link_up(step, key, link, state, sample, frames):
-    """Send a `SAMPLE` (1,) if a frame leaves at ``step``; ``frames`` are (SLOTS,)."""
+def send_sample(step, n, memory):
+    """Send the sample of actuator ``n`` if a frame leaves at ``step``."""
+    link, line = memory.constants[n].link, memory.links[n].up
     if leaves(step, link):
-        slot = put_frame(step, UP, key, link, state.up)
+        slot = put_frame(step, UP, memory.link_keys[n], link, line)
         if slot >= 0:
-            frames[slot] = sample[0]
+            memory.samples_sent[n * SLOTS + slot] = memory.samples[n]
 
 
 @kernel
-def receive_up(step, state, frames, observed):
-    """Update the `SAMPLE` that listeners have at ``step``, (1,): the newest that has arrived."""
+def receive_samples(step, n, memory):
+    """Update the sample that listeners of actuator ``n`` have at ``step``: the newest arrived."""
+    state = memory.links[n]
     slot = take_frame(step, state.up)
     while slot >= 0:
-        observed[0] = frames[slot]
+        memory.observed[n] = memory.samples_sent[n * SLOTS + slot]
         state.sampled = state.up.sent[slot]
         slot = take_frame(step, state.up)
-    observed[0].age = (step - state.sampled) * PLANT_STEP
+    memory.observed[n].age = (step - state.sampled) * PLANT_STEP

@@ -74,7 +74,8 @@ def stiffest(impedance: type[Own], delay_cycles: int) -> float:
 
 def main() -> None:
     """Print the stiffest impedance for each delay."""
-    rows: list[Sequence[str]] = [('delay each way, ms', 'stiffest in the commander, N/m', 'in the REU, N/m')]
+    rows: list[Sequence[str]] = [
+        ('delay each way, ms', 'stiffest in the commander, N/m', 'in the REU, N/m')]
     rows += [(f'{delay}', *(f'{stiffest(impedance, delay):.3g}' for impedance in (Remote, Own)))
              for delay in DELAYS]
     print('\n'.join(aligned(rows, 'r')))

@@ -9,15 +9,17 @@ from collections.abc import Callable, Collection, Mapping, Sequence
 from typing import NamedTuple
 
 from isa_ros.bag.packed import Layout, layout, Packed
+from isa_ros.core.accounts import accounts_of
 from isa_ros.core.atmosphere import ATMOSPHERE
 from isa_ros.core.kernel import kernel
 from isa_ros.core.record import floats
 from isa_ros.core.signals import COMMAND, Records, SAMPLE
 from isa_ros.core.topic import KEPT, Qos, Topic
-from isa_ros.run.link_packing import pack_links, with_link, WORDS
+from isa_ros.run.diagnostics import energy_statuses, PERIOD_NS
+from isa_ros.run.link_packing import LinkWords
 from isa_ros.surroundings.supply import SUPPLY_SAMPLE
 from msg_adapters import (
-    actuator_messages, clock, coordinator_messages, event, fluid_pressure)
+    actuator_messages, clock, coordinator_messages, diagnostics, event, fluid_pressure)
 from msg_adapters.actuator_messages import (
     APPLIED_TOPICS, SENT_SETPOINT, STATE_TOPICS, topics)
 from msg_adapters.applied_parameters import applied_parameters
@@ -131,24 +133,23 @@ class Packer:
     Packs the messages of some rows.
 
     ``topics`` are all topics with messages, sorted by name: `TOPICS` of every actuator, the
-    pressure of every supply, those of the body, and with ``is_run`` the clock and the events.
+    pressure of every supply, those of the body, and with ``is_run`` the clock, the events, and
+    the diagnostics at every second and at the end.
     """
 
     def __init__(self, names: Names, shown: Shown, is_run: bool = True) -> None:
         self._names = names
         self._shown = shown
         found: list[tuple[Topic, Prepared | None]] = []
-        self._links = np.array([row for row, (name, _) in enumerate(names.actuators)
-                                if name in names.linked and shown.sent is not None], np.int64)
-        at, link_at = 0, self._first_link(shown)
+        self._links = LinkWords(
+            [row for row, (name, _) in enumerate(names.actuators) if name in names.linked],
+            _n_columns(shown), shown.samples, shown.applied, shown.sent)
+        at = 0
         for row, (name, is_rotary) in enumerate(names.actuators):
-            own = self._actuator(name, is_rotary, at)
+            own = self._links.messages(row, name, self._actuator(name, is_rotary, at))
             at += len(_SAMPLE) + len(_PRESSURES) + len(_APPLIED)
-            if row in self._links:
-                own = with_link(name, own, link_at)
-                link_at += WORDS
             found += [(topic, own.get(topic.name.rpartition('/')[2]))
-                      for topic in topics_of_actuator(f'/{name}', row in self._links)]
+                      for topic in topics_of_actuator(f'/{name}', row in self._links.rows)]
         for supply, shows_return in names.supplies:
             for k, suffix in enumerate(_SUPPLY_PRESSURES[:1 + shows_return]):
                 topic = Topic(f'{_COORDINATOR}/{supply}_{suffix}', fluid_pressure.TYPE)
@@ -159,7 +160,9 @@ class Packer:
             body = names.body(float_columns(shown.body.dtype, at))
             found += [(Topic(*topic), message) for topic, message in body.items()]
         if is_run:
-            found += [(Topic(*clock.TOPIC), clock.clock()), (Topic(*event.TOPIC), None)]
+            found += [(Topic(*clock.TOPIC), clock.clock()), (Topic(*event.TOPIC), None),
+                      (Topic(*diagnostics.TOPIC), None)]
+        self._is_run = is_run
         self.topics = tuple(sorted((topic for topic, _ in found), key=lambda topic: topic.name))
         if len({topic.name for topic in self.topics}) != len(self.topics):
             raise ValueError(f'a topic has two sources: {self.topics}')
@@ -169,6 +172,8 @@ class Packer:
         self._template = Template([message for _, message in prepared])
         self._bytes = self._template.block.view(np.uint8)
         self._tuned: dict[int, bytes] = {}
+        self._t_ns = 0
+        self._diagnosed: bytes | None = None
         self._layouts: dict[bytes, Layout] = {}
         self._bind()
 
@@ -182,27 +187,16 @@ class Packer:
             {field: places[f'{field}, absolute'] for field in _PRESSURES},
             {field: places[f'applied {field}'] for field in _APPLIED})
 
-    @staticmethod
-    def _first_link(shown: Shown) -> int:
-        """Return the column behind all others, at which the words of the links begin."""
-        body = 0 if shown.body is None else floats(shown.body).size
-        own = len(_SAMPLE) + len(_PRESSURES) + len(_APPLIED)
-        return len(shown.samples) * own + len(shown.supplies) * len(_SUPPLY_PRESSURES) + body
-
     def _bind(self) -> None:
         """Store the rows as plain floats, a tenth of the time to pass to the kernel."""
         shown, template = self._shown, self._template
         self._samples, self._supplies = floats(shown.samples), floats(shown.supplies)
         self._body = np.zeros(0) if shown.body is None else floats(shown.body).reshape(-1)
-        self._link_words = FIRST_VALUE + self._first_link(shown)
-        self._words = np.zeros(self._link_words + len(self._links) * WORDS, np.uint64)
+        self._words = np.zeros(
+            FIRST_VALUE + _n_columns(shown) + self._links.n_words, np.uint64)
         self._values = self._words.view(np.float64)
         self._target = _Target(template.block, template.places, template.sources)
-        self._ages = shown.samples['age']
-        self._kinds = shown.applied['kinds']
-        self._sent_kinds = np.zeros(len(shown.samples), np.uint32)
-        if shown.sent is not None:
-            self._sent_kinds = shown.sent['kinds']
+        self._kinds, self._sent_kinds = shown.applied['kinds'], self._links.sent_kinds
 
     def pack(
             self, t_ns: int, tick_start_ns: int,
@@ -212,15 +206,24 @@ class Packer:
 
         ``tuned`` are the parameters that changed at the tick's start, by row.
         """
-        if len(self._links):
-            pack_links(t_ns, tick_start_ns, self._link_words, self._links, self._ages,
-                       self._shown.applied, self._shown.sent, self._words, self._values)
+        self._links.pack(t_ns, tick_start_ns, self._words, self._values)
         pack(time_word(t_ns), time_word(tick_start_ns), ATMOSPHERE,
              self._samples, self._shown.applied, self._supplies, self._body, self._words,
              self._values, self._target)
         self._tuned = {
             row: applied_parameters(self._names.actuators[row][0], values, tick_start_ns)
             for row, values in tuned.items()} if tuned else {}
+        self._t_ns, self._diagnosed = t_ns, None
+        if self._is_run and t_ns % PERIOD_NS == 0:
+            self.diagnose()
+
+    def diagnose(self) -> bytes:
+        """Add the diagnostics to the packed instant, and return them."""
+        names, shown = self._names, self._shown
+        self._diagnosed = diagnostics.pack(self._t_ns, energy_statuses(accounts_of(
+            [name for name, _ in names.actuators], shown.samples,
+            [name for name, _ in names.supplies], shown.supplies, self._t_ns)))
+        return self._diagnosed
 
     def all_messages(self, events: Sequence[bytes] = ()) -> Packed:
         """Return all messages of the packed instant, in the order of `topics`."""
@@ -229,11 +232,13 @@ class Packer:
         if where is None:
             where = self._layouts[key] = self._layout()
         packed = Packed(self._bytes, where)
-        if not (events or self._tuned):
+        if not (events or self._tuned or self._diagnosed):
             return packed
         extra = [(self._index[event.TOPIC[0]], data) for data in events]
         extra += [(self._index[f'/{self._names.actuators[row][0]}/{_PARAMETERS}'], data)
                   for row, data in self._tuned.items()]
+        if self._diagnosed is not None:
+            extra.append((self._index[diagnostics.TOPIC[0]], self._diagnosed))
         return Packed.of(sorted([*packed, *extra], key=lambda message: message[0]))
 
     def _layout(self) -> Layout:
@@ -254,27 +259,35 @@ class Packer:
         name = self._names.actuators[row][0]
         setpoint = self._message(f'/{name}/{_SETPOINT}') if self._kinds[row] else None
         sent = self._message(f'/{name}/{_SENT}') if self._sent_kinds[row] else None
-        return [self._tuned.get(row), setpoint, *([sent] if row in self._links else []),
+        return [self._tuned.get(row), setpoint, *([sent] if row in self._links.rows else []),
                 *(self._message(f'/{name}/{suffix}') for suffix, _ in STATE_TOPICS)]
 
     def has_applied(self, row: int) -> bool:
         """Return whether a command of an actuator took effect in the last tick, or was sent."""
         return bool(self._kinds[row] or self._sent_kinds[row])
 
-    def of(self, topics: Sequence[Topic]) -> list[bytes]:
-        """Return the messages of some topics."""
-        return [self._message(topic.name) for topic in topics]
+    def of(self, topics: Sequence[Topic]) -> list[bytes | None]:
+        """Return the messages of some topics; None: none at this instant."""
+        return [self._diagnosed if topic.name == diagnostics.TOPIC[0]
+                else self._message(topic.name) for topic in topics]
 
     def _message(self, name: str) -> bytes:
         return self._template.message(self._place[name])
 
     @property
     def surroundings(self) -> list[Topic]:
-        """Return the topics of supplies and body."""
+        """Return the topics of supplies and body, and the diagnostics."""
         own = {f'/{name}/{suffix}' for name, _ in self._names.actuators
                for suffix, _ in topics(has_link=True)}
         return [topic for topic in self.topics
                 if topic.name not in own and topic.name not in (clock.TOPIC[0], event.TOPIC[0])]
+
+
+def _n_columns(shown: Shown) -> int:
+    """Return the number of values of all rows, without the words of links."""
+    body = 0 if shown.body is None else floats(shown.body).size
+    own = len(_SAMPLE) + len(_PRESSURES) + len(_APPLIED)
+    return len(shown.samples) * own + len(shown.supplies) * len(_SUPPLY_PRESSURES) + body
 
 
 _SETPOINT = actuator_messages.APPLIED_SETPOINT[0]

@@ -56,4 +56,6 @@ class ResultMessages:
                 if tick in log.sent:
                     shown.sent[:] = log.sent[tick]
             narrator.publish_rows(tick, {})
-            narrator.record()
+            if tick < len(log.samples) - 1:
+                narrator.record()
+        narrator.end()

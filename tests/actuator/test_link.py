@@ -10,6 +10,7 @@ from isa_ros.actuator.actuator import SmartActuator, Timing
 from isa_ros.actuator.group import ActuatorGroup
 from isa_ros.actuator.link import (
     DOWN, LINE, link_key, link_record, LINK_STATE, LinkSheet, put_frame, SLOTS, take_frame)
+from isa_ros.actuator.rows import Memory
 from isa_ros.actuator.sheet import ActuatorSheet
 from isa_ros.config.run_config import ActuatorConfig
 from isa_ros.core.record import rows_of
@@ -286,6 +287,30 @@ def test_a_link_without_watchdog_is_never_lost():
     for _ in range(20):
         own.tick()
     assert own.memory.reu['link_lost'][0] == 0
+
+
+def exchanged(is_compiled: bool) -> bytes:
+    """Return a memory after 30 ticks of frames alone, by kernels or by their Python source."""
+    own = actuator(linked(**LOSSY))
+    memory = Memory(*(rows.view(np.recarray) if rows.dtype.names else rows for rows in own.memory))
+    kernels = [links.hand_over, links.exchange_frames, links.send_sample, links.receive_samples]
+    hand_over, exchange, send, receive = (
+        kernels if is_compiled else [kernel.py_func for kernel in kernels])
+    for k in range(30):
+        own.accept(setpoint(position=0.05 + 1e-4 * k))
+        hand_over(0, memory)
+        for step in range(STEPS * k, STEPS * (k + 1)):
+            memory.samples.position[0] = step
+            is_sampled = step > STEPS * k and step % (STEPS // 2) == 0
+            exchange(step, is_sampled, 0, memory)
+        send(STEPS * (k + 1), 0, memory)
+        receive(STEPS * (k + 1), 0, memory)
+    assert memory.observed.position[0] > 0.0 and memory.applied.due_step[0] > 0
+    return b''.join(rows.tobytes() for rows in memory)
+
+
+def test_compiled_frames_equal_their_python_source():
+    assert exchanged(True) == exchanged(False)
 
 
 LOSSY = {'cycle_ms': 0.5, 'delay_cycles': 2, 'jitter_us': 300.0, 'loss': 0.3, 'watchdog_ms': 3.0}
