@@ -2,7 +2,8 @@
 
 from collections.abc import Mapping
 
-from msg_adapters import applied_parameters, fluid_pressure, joint_state, setpoint, wrench
+from msg_adapters import (
+    applied_parameters, fluid_pressure, joint_state, setpoint, temperature, wrench)
 from msg_adapters.template import Prepared
 
 STATE_TOPICS = (
@@ -22,13 +23,19 @@ APPLIED_TOPICS = (APPLIED_PARAMETERS, APPLIED_SETPOINT)
 
 SENT_SETPOINT = ('sent_setpoint', joint_state.TYPE)
 """(topic suffix, type) of the messages published when a command is handed to a link."""
+KEPT_TOPICS = (*APPLIED_TOPICS, SENT_SETPOINT)
+"""(topic suffix, type) of the messages that are kept for later subscriptions."""
 
 TOPICS = (*APPLIED_TOPICS, *STATE_TOPICS)
 
+TEMPERATURE = ('temperature', temperature.TYPE)
+"""(topic suffix, type) of the oil's temperature: once a second, of actuators that get warm."""
 
-def topics(has_link: bool) -> tuple[tuple[str, str], ...]:
-    """Return (topic suffix, type) of all messages of an actuator, with or without a link."""
-    return (*APPLIED_TOPICS, SENT_SETPOINT, *STATE_TOPICS) if has_link else TOPICS
+
+def topics(is_heated: bool = False, has_link: bool = False) -> tuple[tuple[str, str], ...]:
+    """Return (topic suffix, type) of all messages of an actuator."""
+    return (*APPLIED_TOPICS, *([SENT_SETPOINT] if has_link else []), *STATE_TOPICS,
+            *([TEMPERATURE] if is_heated else []))
 
 
 def prepared(

@@ -27,7 +27,7 @@ from isa_ros.reu.cascade import initial_gains
 import numpy as np
 
 
-_SAVED = ('body', 'reu', 'port', 'pending', 'applied', 'reply', 'sample')
+_SAVED = ('body', 'reu', 'port', 'pending', 'applied', 'reply', 'sample', 'thermal')
 """The rows of a snapshot, in their order."""
 _SAVED_OF_LINK = ('links', 'sent', 'outbox', 'commands_sent', 'samples_sent', 'observed')
 """Those of an actuator with a link, behind the others."""
@@ -102,7 +102,7 @@ class SmartActuator:
         """Whether commands and samples travel in the frames of a link."""
         self._saved = [
             self.memory.bodies[:1], self.memory.reu, self.memory.ports, self.memory.pending,
-            self.memory.applied, self.memory.replies, self.memory.samples]
+            self.memory.applied, self.memory.replies, self.memory.samples, self.memory.thermals]
         self._saved_names: tuple[str, ...] = _SAVED
         if self.has_link:
             self._saved_names += _SAVED_OF_LINK
@@ -112,7 +112,7 @@ class SmartActuator:
         self._reu, self._read_out = _record(self.memory.reu), _record(self.memory.read_outs)
         self._reply, self._sample = _record(self.memory.replies), _record(self.memory.samples)
         self._port, self._pending = _record(self.memory.ports), _record(self.memory.pending)
-        self._applied = _record(self.memory.applied)
+        self._applied, self._thermal = _record(self.memory.applied), _record(self.memory.thermals)
         self._incoming, self._commands = np.zeros(1, LOAD_PORT), np.zeros(1, COMMAND)
         self.digest = self._hash(constants)
         self.setpoint_range = SetpointRange(config.name, config.sheet, config.beyond_range)
@@ -149,6 +149,7 @@ class SmartActuator:
         body.load.position = position - force / plant.mechanics.k_s
         body.plant.chambers.p_a, body.plant.chambers.p_b = rest_pressures(
             plant, supply_pressure, return_pressure, force)
+        self._thermal.oil = self._thermal.body = plant.thermal.start
         self._start_loops()
         write_applied(HAS_SETPOINT | HAS_ENABLE, self._reu.setpoint, self._applied)
         self._reply.position = position
@@ -164,10 +165,11 @@ class SmartActuator:
                 (reu.position, at.position), (reu.force, at.force), (reu.spool, at.spool),
                 (reu.pressure, at.pressure_a - at.pressure_b)):
             block.measured = value
-        reu.setpoint.position = reu.measured.position
+        reu.setpoint.position = reu.protection.evidence.position = reu.measured.position
         reu.setpoint.stiffness, reu.setpoint.damping = initial_gains(self._config.sheet.reu)
         reu.setpoint.is_enabled = 1.0
         kernels.write_sample(self._read_out, body.plant, reu, self._sample)
+        self._sample.temperature = self._thermal.oil
         self.memory.observed[:] = self.memory.samples
 
     @property

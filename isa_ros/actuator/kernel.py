@@ -8,6 +8,7 @@ of floats (`BODY`), so that the integrator sees the same memory as a flat array.
 import math
 
 from isa_ros.actuator.energy import add_energies, stored_elastically
+from isa_ros.actuator.heat import take_heat
 from isa_ros.actuator.inbox import latch, merge
 from isa_ros.actuator.link import (
     exchange_frames, hand_over, leaves, LINK, receive_samples, send_sample)
@@ -18,7 +19,9 @@ from isa_ros.loads.forces import LOAD_STATE, OWN_LOAD, own_load_force
 from isa_ros.loads.port import load_acceleration
 from isa_ros.plant.energy import ENERGIES
 from isa_ros.plant.plant import PLANT, plant_rates, PLANT_STATE, read_sensors, settle
+from isa_ros.plant.thermal import warm
 from isa_ros.reu.cascade import cascade_step, is_due, REU
+from isa_ros.reu.protection import protect, setpoint_in_force
 import numpy as np
 
 TOTALS = np.dtype([
@@ -126,19 +129,27 @@ def write_sample(measured, plant, reu, sample):
     sample.spool = measured.spool
     sample.spool_velocity = plant.valve.velocity
     sample.current = measured.current
-    sample.position_reference = reu.setpoint.position
+    sample.position_reference = setpoint_in_force(reu).position
     sample.force_reference = reu.force_reference
     sample.spool_reference = reu.spool_reference
     sample.current_reference = reu.current_reference
+    sample.warnings = float(reu.protection.warnings)
+    sample.trips = float(reu.protection.trips)
 
 
 @kernel
-def loops_and_plant(step, tau, port, actuator, bodies, rates, y, k, reu_state):
-    """Run the loops that are due at plant step ``step``, then the plant over that step."""
+def loops_and_plant(step, tau, port, temperature, actuator, bodies, rates, y, k, reu_state):
+    """
+    Run the loops that are due at plant step ``step``, then the plant over that step.
+
+    ``temperature`` is that of the oil, celsius.
+    """
     body, reu = bodies[0], actuator.reu
     if is_due(step, reu.current_steps, reu.offset_steps):
         read_sensors(body.plant, body.load.position, body.load.velocity,
                      actuator.plant, reu_state.measured)
+        if reu.protection.is_on:
+            protect(step, port.supply_pressure, temperature, reu.protection, reu_state)
         cascade_step(step, reu, reu_state)
     if step == actuator.load.rope.release_step:
         body.load.weight.is_released = 1.0
@@ -178,7 +189,7 @@ def take_port(incoming, is_shared, port, body):
 
 @kernel
 def tick_row(first_step, steps, port, actuator, bodies, rates, y, k, reu_state, read_out,
-             reply, sample, link, memory):
+             reply, sample, thermal, link, memory):
     """
     Advance one actuator by ``steps`` plant steps.
 
@@ -186,6 +197,8 @@ def tick_row(first_step, steps, port, actuator, bodies, rates, y, k, reu_state, 
     `SAMPLE` at the end of the tick. ``link`` is its row where it has a link, else -1.
     """
     body = bodies[0]
+    if actuator.plant.thermal.is_on:
+        warm(thermal.oil, actuator.plant)
     y[0, TOTALS_AT:] = 0.0
     elastic = stored_elastically(body, actuator.plant.mechanics)
     window_steps = steps // FORCE_WINDOWS
@@ -199,7 +212,7 @@ def tick_row(first_step, steps, port, actuator, bodies, rates, y, k, reu_state, 
                                  actuator.plant, read_out)
                     write_sample(read_out, body.plant, reu_state, sample)
                 exchange_frames(first_step + i, is_sampled, link, memory)
-            loops_and_plant(first_step + i, i * PLANT_STEP, port, actuator,
+            loops_and_plant(first_step + i, i * PLANT_STEP, port, thermal.oil, actuator,
                             bodies, rates, y, k, reu_state)
         reply.mean_forces[window] = body.totals.impulse / (window_steps * PLANT_STEP)
     reply.force = read_sensors(
@@ -214,6 +227,9 @@ def tick_row(first_step, steps, port, actuator, bodies, rates, y, k, reu_state, 
     add_energies(reply, port, body.totals.energies,
                  stored_elastically(body, actuator.plant.mechanics) - elastic,
                  steps * PLANT_STEP, sample)
+    if actuator.plant.thermal.is_on:
+        take_heat(steps * PLANT_STEP, reply, body.totals.energies, actuator.plant.thermal, thermal)
+    sample.temperature = thermal.oil
     if link >= 0:
         send_sample(first_step + steps, link, memory)
 
@@ -241,7 +257,8 @@ def actuator_tick(first_step, steps, incoming, commands, memory):
             hand_over(n, memory)
         take_port(incoming[n], memory.is_shared[n], port, bodies[0])
         tick_row(first_step, steps, port, memory.constants[n], bodies, rates, y, k, reu,
-                 memory.read_outs[n], memory.replies[n], memory.samples[n], link, memory)
+                 memory.read_outs[n], memory.replies[n], memory.samples[n], memory.thermals[n],
+                 link, memory)
         if link < 0:
             memory.observed[n] = memory.samples[n]
         else:

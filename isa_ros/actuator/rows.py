@@ -5,6 +5,7 @@ from typing import NamedTuple
 from isa_ros.actuator import kernel as kernels
 from isa_ros.actuator.link import LINK_STATE, SLOTS
 from isa_ros.core.signals import COMMAND, LOAD_PORT, LOAD_REPLY, SAMPLE
+from isa_ros.plant.thermal import THERMAL_STATE
 from isa_ros.reu.cascade import MEASURED, REU_STATE
 import numpy as np
 
@@ -43,6 +44,8 @@ class Memory(NamedTuple):
     """`COMMAND` pending for the next tick, (n,)."""
     applied: np.ndarray
     """`COMMAND` that took effect in the last tick, at its start or from its link, (n,)."""
+    thermals: np.ndarray
+    """`THERMAL_STATE`, (n,)."""
     link_keys: np.ndarray
     """Key of the noise of each link, (n,)."""
     links: np.ndarray
@@ -68,6 +71,7 @@ def memory_of(n: int) -> Memory:
         states=kernels.flat(bodies), slopes=kernels.flat(rates), reu=np.zeros(n, REU_STATE),
         read_outs=np.zeros(n, MEASURED), replies=np.zeros(n, LOAD_REPLY),
         samples=np.zeros(n, SAMPLE), pending=np.zeros(n, COMMAND), applied=np.zeros(n, COMMAND),
+        thermals=np.zeros(n, THERMAL_STATE),
         link_keys=np.zeros(n, np.uint64), links=np.zeros(n, LINK_STATE),
         sent=np.zeros(n, COMMAND), outbox=np.zeros(n, COMMAND),
         commands_sent=np.zeros(n * SLOTS, COMMAND), samples_sent=np.zeros(n * SLOTS, SAMPLE),

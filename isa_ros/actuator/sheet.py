@@ -4,6 +4,7 @@ from dataclasses import dataclass, field
 
 from isa_ros.actuator.kernel import ACTUATOR
 from isa_ros.actuator.link import link_record, LinkSheet, NO_LINK
+from isa_ros.actuator.ratings import evidence_of, ratings_of
 from isa_ros.core.parameter import choice, Parameters
 from isa_ros.core.record import record
 from isa_ros.core.units import MILLI
@@ -16,8 +17,9 @@ from isa_ros.reu.block import Pid
 from isa_ros.reu.cascade import reu_record
 from isa_ros.reu.feedback_linearisation import LINEARISED
 from isa_ros.reu.lead_lag import LeadLag
+from isa_ros.reu.protection import protection_record
 from isa_ros.reu.schedule import POINTS
-from isa_ros.reu.wiring import Held, Off, refuse_nonsense, Reu, valve_block
+from isa_ros.reu.wiring import Held, loop_steps, Off, refuse_nonsense, Reu, valve_block
 import numpy as np
 
 _ROUNDED = 1e-3  # of a limit: a data sheet prints three digits
@@ -142,6 +144,11 @@ def actuator_record(sheet: ActuatorSheet, offset_steps: int) -> np.ndarray:
         sheet.reu, offset_steps, plant[0].chambers.stroke, force_stiffness(plant[0]),
         known_model(plant[0], output_per_spool(sheet)),
         k_spool, plant[0].coil.parallel)
+    steps = loop_steps(sheet.reu)
+    reu['protection'] = protection_record(
+        sheet.reu.protection, ratings_of(plant[0]),
+        evidence_of(plant[0], sheet.reu.speed.rate_hz, steps['speed'], offset_steps),
+        steps['current'])
     rows = np.zeros(1, ACTUATOR)
     rows['plant'], rows['reu'], rows['link'] = plant, reu, link_record(sheet.link)
     return rows

@@ -91,7 +91,7 @@ def _rows(parameters: Parameters, source_of: Mapping[str, str], prefix: str) -> 
             yield from _rows(value, source_of, f'{path}.')
         else:
             yield Row(path, _value(value), f.metadata.get('unit', ''), _range(f.metadata),
-                      source_of.get(path, ''), f.metadata['doc'])
+                      source_of.get(path, f.metadata.get('source', '')), f.metadata['doc'])
 
 
 def _kind_row(path: str, value: Parameters, union: Any, source_of: Mapping[str, str]) -> Row:

@@ -12,16 +12,18 @@ from isa_ros.bag.packed import Layout, layout, Packed
 from isa_ros.core.accounts import accounts_of
 from isa_ros.core.atmosphere import ATMOSPHERE
 from isa_ros.core.kernel import kernel
-from isa_ros.core.record import floats
+from isa_ros.core.record import float_columns, floats
 from isa_ros.core.signals import COMMAND, Records, SAMPLE
+from isa_ros.core.timebase import NS_PER_SECOND
 from isa_ros.core.topic import KEPT, Qos, Topic
 from isa_ros.run.diagnostics import energy_statuses, PERIOD_NS
 from isa_ros.run.link_packing import LinkWords
 from isa_ros.surroundings.supply import SUPPLY_SAMPLE
 from msg_adapters import (
-    actuator_messages, clock, coordinator_messages, diagnostics, event, fluid_pressure)
+    actuator_messages, clock, coordinator_messages, diagnostics, event, fluid_pressure,
+    temperature)
 from msg_adapters.actuator_messages import (
-    APPLIED_TOPICS, SENT_SETPOINT, STATE_TOPICS, topics)
+    KEPT_TOPICS, SENT_SETPOINT, STATE_TOPICS, TEMPERATURE, topics)
 from msg_adapters.applied_parameters import applied_parameters
 from msg_adapters.template import FIRST_VALUE, Prepared, Template, time_word
 import numpy as np
@@ -64,28 +66,16 @@ class Names(NamedTuple):
     supplies: Sequence[tuple[str, bool]] = ()
     """(name, publishes its return pressure) of each."""
     body: BodyMessages | None = None
+    heated: Collection[str] = ()
+    """Names of the actuators whose temperature is published."""
     linked: Collection[str] = ()
-    """The actuators with a link."""
+    """Names of the actuators with a link."""
 
 
-_KEPT = (*APPLIED_TOPICS, SENT_SETPOINT)
-
-
-def topics_of_actuator(prefix: str, has_link: bool = False) -> list[Topic]:
+def topics_of_actuator(prefix: str, is_heated: bool, has_link: bool = False) -> list[Topic]:
     """Return the topics of an actuator below ``prefix`` with their qualities of service."""
-    return [Topic(f'{prefix}/{suffix}', type_, KEPT if (suffix, type_) in _KEPT else Qos())
-            for suffix, type_ in topics(has_link)]
-
-
-def float_columns(record: np.dtype[np.void], first: int = 0) -> dict[str, int]:
-    """Return the column of every float of a record by field, ``field[k]`` for an array."""
-    columns: dict[str, int] = {}
-    for name in record.names or ():
-        n = record[name].itemsize // 8
-        for k in range(n):
-            columns[name if record[name].shape == () else f'{name}[{k}]'] = first
-            first += 1
-    return columns
+    return [Topic(f'{prefix}/{suffix}', type_, KEPT if (suffix, type_) in KEPT_TOPICS else Qos())
+            for suffix, type_ in topics(is_heated, has_link)]
 
 
 @kernel
@@ -134,7 +124,8 @@ class Packer:
 
     ``topics`` are all topics with messages, sorted by name: `TOPICS` of every actuator, the
     pressure of every supply, those of the body, and with ``is_run`` the clock, the events, and
-    the diagnostics at every second and at the end.
+    the diagnostics at every second and at the end. Temperatures have a message at t = 0 and at
+    each tick that reaches a full second.
     """
 
     def __init__(self, names: Names, shown: Shown, is_run: bool = True) -> None:
@@ -149,7 +140,8 @@ class Packer:
             own = self._links.messages(row, name, self._actuator(name, is_rotary, at))
             at += len(_SAMPLE) + len(_PRESSURES) + len(_APPLIED)
             found += [(topic, own.get(topic.name.rpartition('/')[2]))
-                      for topic in topics_of_actuator(f'/{name}', row in self._links.rows)]
+                      for topic in topics_of_actuator(
+                          f'/{name}', name in names.heated, row in self._links.rows)]
         for supply, shows_return in names.supplies:
             for k, suffix in enumerate(_SUPPLY_PRESSURES[:1 + shows_return]):
                 topic = Topic(f'{_COORDINATOR}/{supply}_{suffix}', fluid_pressure.TYPE)
@@ -174,6 +166,7 @@ class Packer:
         self._tuned: dict[int, bytes] = {}
         self._t_ns = 0
         self._diagnosed: bytes | None = None
+        self._is_full_second = False
         self._layouts: dict[bytes, Layout] = {}
         self._bind()
 
@@ -182,10 +175,11 @@ class Packer:
         places = {field: first + k for k, field in enumerate(
             (*_SAMPLE, *(f'{field}, absolute' for field in _PRESSURES),
              *(f'applied {field}' for field in _APPLIED)))}
-        return actuator_messages.prepared(
+        messages = actuator_messages.prepared(
             name, is_rotary, places,
             {field: places[f'{field}, absolute'] for field in _PRESSURES},
             {field: places[f'applied {field}'] for field in _APPLIED})
+        return {**messages, TEMPERATURE[0]: temperature.of_oil(name, places)}
 
     def _bind(self) -> None:
         """Store the rows as plain floats, a tenth of the time to pass to the kernel."""
@@ -207,6 +201,8 @@ class Packer:
         ``tuned`` are the parameters that changed at the tick's start, by row.
         """
         self._links.pack(t_ns, tick_start_ns, self._words, self._values)
+        self._is_full_second = (
+            t_ns == 0 or t_ns // NS_PER_SECOND != tick_start_ns // NS_PER_SECOND)
         pack(time_word(t_ns), time_word(tick_start_ns), ATMOSPHERE,
              self._samples, self._shown.applied, self._supplies, self._body, self._words,
              self._values, self._target)
@@ -227,7 +223,9 @@ class Packer:
 
     def all_messages(self, events: Sequence[bytes] = ()) -> Packed:
         """Return all messages of the packed instant, in the order of `topics`."""
-        key = (self._kinds != 0).tobytes() + (self._sent_kinds != 0).tobytes()
+        key = b''.join((
+            (self._kinds != 0).tobytes(), (self._sent_kinds != 0).tobytes(),
+            bytes([self._is_full_second])))
         where = self._layouts.get(key)
         if where is None:
             where = self._layouts[key] = self._layout()
@@ -242,10 +240,12 @@ class Packer:
         return Packed.of(sorted([*packed, *extra], key=lambda message: message[0]))
 
     def _layout(self) -> Layout:
-        """Return the layout of this tick's messages: without setpoints where none was applied."""
+        """Return the layout of this tick's messages: those that it has none of are left out."""
         absent = {f'/{name}/{suffix}' for suffix, kinds_of in (
             (_SETPOINT, self._kinds), (_SENT, self._sent_kinds))
             for (name, _), kinds in zip(self._names.actuators, kinds_of) if not kinds}
+        if not self._is_full_second:
+            absent |= {f'/{name}/{TEMPERATURE[0]}' for name in self._names.heated}
         present = [(self._index[name], place) for name, place in self._place.items()
                    if name not in absent]
         present.sort()
@@ -259,8 +259,13 @@ class Packer:
         name = self._names.actuators[row][0]
         setpoint = self._message(f'/{name}/{_SETPOINT}') if self._kinds[row] else None
         sent = self._message(f'/{name}/{_SENT}') if self._sent_kinds[row] else None
-        return [self._tuned.get(row), setpoint, *([sent] if row in self._links.rows else []),
-                *(self._message(f'/{name}/{suffix}') for suffix, _ in STATE_TOPICS)]
+        messages = [self._tuned.get(row), setpoint,
+                    *([sent] if row in self._links.rows else []),
+                    *(self._message(f'/{name}/{suffix}') for suffix, _ in STATE_TOPICS)]
+        if name in self._names.heated:
+            messages.append(
+                self._message(f'/{name}/{TEMPERATURE[0]}') if self._is_full_second else None)
+        return messages
 
     def has_applied(self, row: int) -> bool:
         """Return whether a command of an actuator took effect in the last tick, or was sent."""
@@ -278,7 +283,7 @@ class Packer:
     def surroundings(self) -> list[Topic]:
         """Return the topics of supplies and body, and the diagnostics."""
         own = {f'/{name}/{suffix}' for name, _ in self._names.actuators
-               for suffix, _ in topics(has_link=True)}
+               for suffix, _ in topics(is_heated=True, has_link=True)}
         return [topic for topic in self.topics
                 if topic.name not in own and topic.name not in (clock.TOPIC[0], event.TOPIC[0])]
 
