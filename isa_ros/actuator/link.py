@@ -13,6 +13,7 @@ of the actuator, the direction and the plant step at which the frame leaves.
 """
 
 from dataclasses import dataclass
+from typing import Any
 
 from isa_ros.actuator.inbox import latch, merge
 from isa_ros.core.kernel import kernel
@@ -31,24 +32,25 @@ SLOTS = 16          # frames on their way; the delay and the jitter allow 10
 _NS_PER_MS = 1_000_000
 _US_PER_MS = 1000.0
 DOWN, UP = 0, 1     # channels of the noise
+_ASSUMED = 'assumed'
+
+
+def _off(doc: str, unit: str, most: float) -> Any:
+    return parameter(doc, unit, absent=0.0, source=_ASSUMED, ge=0.0, le=most)
 
 
 @dataclass(frozen=True, kw_only=True)
 class LinkSheet(Parameters):
     """Timing and losses of the link of an actuator."""
 
-    kind: str = choice('the wire; none: commands and samples arrive at once', *KINDS)
-    cycle_ms: float = parameter(
-        'time from frame to frame; 0: the tick', 'ms', absent=0.0, ge=0.0, le=100.0)
-    delay_cycles: float = parameter(
-        'time on the way, whole cycles', 'cycles', absent=0.0, ge=0.0, le=float(MOST_CYCLES))
-    jitter_us: float = parameter(
-        'largest additional time on the way, uniform from 0', 'us', absent=0.0, ge=0.0, le=1e5)
-    loss: float = parameter(
-        'probability that a frame is lost, each way', '1', absent=0.0, ge=0.0, le=1.0)
-    watchdog_ms: float = parameter(
-        'time without a frame after which the REU takes the link as lost; 0: off', 'ms',
-        absent=0.0, ge=0.0, le=1e5)
+    kind: str = choice(
+        'the wire; none: commands and samples arrive at once', *KINDS, source=_ASSUMED)
+    cycle_ms: float = _off('time from frame to frame; 0: the tick', 'ms', 100.0)
+    delay_cycles: float = _off('time on the way, whole cycles', 'cycles', float(MOST_CYCLES))
+    jitter_us: float = _off('largest additional time on the way, uniform from 0', 'us', 1e5)
+    loss: float = _off('probability that a frame is lost, each way', '1', 1.0)
+    watchdog_ms: float = _off(
+        'time without a frame after which the REU takes the link as lost; 0: off', 'ms', 1e5)
 
     def __post_init__(self) -> None:
         """Refuse a cycle below the plant step, and a watchdog that trips without a loss."""
@@ -225,8 +227,11 @@ def link_down(step, key, link, state, outbox, frames, reu, applied):
 @kernel
 def watch(step, link, state, reu):
     """Set ``link_lost`` of a `REU_STATE` when no frame has come for the watchdog's time."""
+    if link.watchdog_ns == 0:
+        return
     silence = (step - state.last_frame) * PLANT_STEP_NS
-    if link.watchdog_ns == 0 or silence < link.watchdog_ns:
+    reu.link_silence = (step - state.last_frame) * PLANT_STEP
+    if silence < link.watchdog_ns:
         reu.link_lost = 0
     elif reu.link_lost == 0:
         reu.link_lost = 1

@@ -148,7 +148,7 @@ def actuator_record(sheet: ActuatorSheet, offset_steps: int) -> np.ndarray:
     reu['protection'] = protection_record(
         sheet.reu.protection, ratings_of(plant[0]),
         evidence_of(plant[0], sheet.reu.speed.rate_hz, steps['speed'], offset_steps),
-        steps['current'])
+        steps['current'], sheet.link.watchdog_ms * MILLI)
     rows = np.zeros(1, ACTUATOR)
     rows['plant'], rows['reu'], rows['link'] = plant, reu, link_record(sheet.link)
     return rows

@@ -83,9 +83,6 @@ def _rows(parameters: Parameters, source_of: Mapping[str, str], prefix: str) -> 
     for f in fields(parameters):
         value, path = getattr(parameters, f.name), f'{prefix}{f.name}'
         if isinstance(value, Parameters):
-            if source_of and 'absent' in f.metadata and not any(
-                    key.startswith(f'{path}.') for key in source_of):
-                continue    # neither a model nor a run file says anything about it
             if not isinstance(hints[f.name], type):
                 yield _kind_row(path, value, hints[f.name], source_of)
             yield from _rows(value, source_of, f'{path}.')

@@ -13,6 +13,7 @@ from isa_ros.actuator.link import (
 from isa_ros.actuator.rows import Memory
 from isa_ros.actuator.sheet import ActuatorSheet
 from isa_ros.config.run_config import ActuatorConfig
+from isa_ros.core.conditions import BITS, conditions
 from isa_ros.core.record import rows_of
 from isa_ros.core.timebase import PLANT_STEP
 from isa_ros.errors import ConfigError, ParameterError
@@ -280,6 +281,27 @@ def test_the_watchdog_is_exact_within_a_plant_step():
         watch(801, link, state, reu)
         assert reu.link_lost == 0
         state.last_frame, reu.link_lost_step = 500, 0
+
+
+def test_a_lost_link_trips_until_the_next_frame():
+    """
+    Frames to 10 ms, the watchdog at 13.5 ms: the setpoint is held until frames come again.
+
+    The REU looks at its conversions, every 5 plant steps from step 1 on: the first later than
+    step 675 is 676.
+    """
+    own = actuator(linked(watchdog_ms=3.5))
+    link = own.memory.constants['link']
+    own.accept(setpoint(position=0.06))
+    trips = []
+    for k in range(25):
+        link['loss'] = 1.0 if 11 <= k < 20 else 0.0
+        own.tick()
+        trips.append(conditions(own.sample.trips))
+    assert trips == [[]] * 13 + [['link_lost']] * 7 + [[]] * 5
+    protection = own.memory.reu['protection'][0]
+    assert protection['trip_since'][BITS['link_lost']] == 676
+    assert own.sample.position_reference == 0.06
 
 
 def test_a_link_without_watchdog_is_never_lost():

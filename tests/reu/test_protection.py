@@ -30,7 +30,8 @@ def rated(name: str, level: float) -> float:
 
 def test_every_condition_has_levels_or_a_timeout() -> None:
     """Keys, bits and readings of this test name the same conditions."""
-    assert set(levels_of(defaults(Protection))) == set(BITS) - {'setpoint_timeout'} == set(NAMES)
+    timeouts = {'setpoint_timeout', 'link_lost'}
+    assert set(levels_of(defaults(Protection))) == set(BITS) - timeouts == set(NAMES)
 
 
 @pytest.mark.parametrize('name', NAMES)
