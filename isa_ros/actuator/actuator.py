@@ -17,17 +17,18 @@ from isa_ros.actuator.setpoint_range import SetpointRange
 from isa_ros.actuator.sheet import actuator_record, ActuatorSheet
 from isa_ros.actuator.tunable import GAINS
 from isa_ros.actuator.tuning import gain_after, gains_command, Tuning
+from isa_ros.core.noise import noise_key
 from isa_ros.core.saved_state import broken_number, restored_rows, TIME_BYTES, time_of
 from isa_ros.core.signals import COMMAND, HAS_ENABLE, HAS_SETPOINT, LOAD_PORT
 from isa_ros.core.timebase import FORCE_WINDOWS, PLANT_STEP_NS, steps_in
 from isa_ros.errors import ConfigError, SimulationDiverged
 from isa_ros.loads.sheets import local_port, LocalLoad, own_record, static_force
-from isa_ros.plant.plant import read_sensors, rest_pressures
+from isa_ros.plant.plant import exact_force, rest_pressures, sense
 from isa_ros.reu.cascade import initial_gains
 import numpy as np
 
 
-_SAVED = ('body', 'reu', 'port', 'pending', 'applied', 'reply', 'sample', 'thermal')
+_SAVED = ('body', 'reu', 'channels', 'port', 'pending', 'applied', 'reply', 'sample', 'thermal')
 """The rows of a snapshot, in their order."""
 _SAVED_OF_LINK = ('links', 'sent', 'outbox', 'commands_sent', 'samples_sent', 'observed')
 """Those of an actuator with a link, behind the others."""
@@ -97,19 +98,21 @@ class SmartActuator:
         constants = self.memory.constants
         constants[:] = actuator_record(config.sheet, offset_steps)
         constants['load'] = own_record(config.load)
+        constants['noise_key'] = noise_key(timing.seed, config.name)
         self.memory.link_keys[:] = link_key(timing.seed, config.name)
         self.has_link = config.sheet.link.kind != NONE
         """Whether commands and samples travel in the frames of a link."""
         self._saved = [
-            self.memory.bodies[:1], self.memory.reu, self.memory.ports, self.memory.pending,
-            self.memory.applied, self.memory.replies, self.memory.samples, self.memory.thermals]
+            self.memory.bodies[:1], self.memory.reu, self.memory.channels, self.memory.ports,
+            self.memory.pending, self.memory.applied, self.memory.replies, self.memory.samples,
+            self.memory.thermals]
         self._saved_names: tuple[str, ...] = _SAVED
         if self.has_link:
             self._saved_names += _SAVED_OF_LINK
             self._saved += [getattr(self.memory, name) for name in _SAVED_OF_LINK]
         # Rows with their fields as attributes, on the same memory.
         self._constants, self._body = _record(constants), _record(self.memory.bodies)
-        self._reu, self._read_out = _record(self.memory.reu), _record(self.memory.read_outs)
+        self._reu, self._channels = _record(self.memory.reu), _record(self.memory.channels)
         self._reply, self._sample = _record(self.memory.replies), _record(self.memory.samples)
         self._port, self._pending = _record(self.memory.ports), _record(self.memory.pending)
         self._applied, self._thermal = _record(self.memory.applied), _record(self.memory.thermals)
@@ -156,10 +159,10 @@ class SmartActuator:
 
     def _start_loops(self) -> None:
         body, reu = self._body, self._reu
-        for measured in (reu.measured, self._read_out):
-            self._reply.force = read_sensors(
-                body.plant, body.load.position, body.load.velocity, self._constants.plant,
-                measured)
+        own, load = self._constants, body.load
+        self._reply.force = exact_force(body.plant, load.position, load.velocity, own.plant)
+        sense(0, own.reu.current_steps, body.plant, load.position, load.velocity, own.plant,
+              own.noise_key, self._channels, reu.measured)
         at, reu.speed.position = reu.measured, reu.measured.position
         for block, value in (
                 (reu.position, at.position), (reu.force, at.force), (reu.spool, at.spool),
@@ -168,7 +171,7 @@ class SmartActuator:
         reu.setpoint.position = reu.protection.evidence.position = reu.measured.position
         reu.setpoint.stiffness, reu.setpoint.damping = initial_gains(self._config.sheet.reu)
         reu.setpoint.is_enabled = 1.0
-        kernels.write_sample(self._read_out, body.plant, reu, self._sample)
+        kernels.write_sample(body.plant, reu, self._sample)
         self._sample.temperature = self._thermal.oil
         self.memory.observed[:] = self.memory.samples
 

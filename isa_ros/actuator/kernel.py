@@ -17,8 +17,9 @@ from isa_ros.core.kernel import kernel
 from isa_ros.core.timebase import FORCE_WINDOWS, PLANT_STEP
 from isa_ros.loads.forces import LOAD_STATE, OWN_LOAD, own_load_force
 from isa_ros.loads.port import load_acceleration
+from isa_ros.plant.coil import coil_heat
 from isa_ros.plant.energy import ENERGIES
-from isa_ros.plant.plant import PLANT, plant_rates, PLANT_STATE, read_sensors, settle
+from isa_ros.plant.plant import exact_force, PLANT, plant_rates, PLANT_STATE, sense, settle
 from isa_ros.plant.thermal import warm
 from isa_ros.reu.cascade import cascade_step, is_due, REU
 from isa_ros.reu.protection import protect, setpoint_in_force
@@ -39,7 +40,8 @@ BODIES = 2  # the state and a stage of its integration
 STAGES = 4
 NOTHING = 1e-100  # any unit: smaller states are set to zero, since denormal arithmetic is slow
 
-ACTUATOR = np.dtype([('plant', PLANT), ('reu', REU), ('load', OWN_LOAD), ('link', LINK)])
+ACTUATOR = np.dtype([
+    ('plant', PLANT), ('reu', REU), ('load', OWN_LOAD), ('link', LINK), ('noise_key', 'u8')])
 """Every constant of one actuator, SI."""
 
 
@@ -119,8 +121,9 @@ def square_roots(n):
 
 
 @kernel
-def write_sample(measured, plant, reu, sample):
-    """Fill one `SAMPLE` from the sensor readings and the loops' references."""
+def write_sample(plant, reu, sample):
+    """Fill one `SAMPLE` from the last sensor readings of the REU and its loops' references."""
+    measured = reu.measured
     sample.position = measured.position
     sample.velocity = reu.speed.velocity
     sample.force = measured.force
@@ -138,18 +141,15 @@ def write_sample(measured, plant, reu, sample):
 
 
 @kernel
-def loops_and_plant(step, tau, port, temperature, actuator, bodies, rates, y, k, reu_state):
-    """
-    Run the loops that are due at plant step ``step``, then the plant over that step.
-
-    ``temperature`` is that of the oil, celsius.
-    """
+def loops_and_plant(
+        step, tau, port, actuator, bodies, rates, y, k, reu_state, channels, thermal):
+    """Run the loops that are due at plant step ``step``, then the plant over that step."""
     body, reu = bodies[0], actuator.reu
     if is_due(step, reu.current_steps, reu.offset_steps):
-        read_sensors(body.plant, body.load.position, body.load.velocity,
-                     actuator.plant, reu_state.measured)
+        sense(step, reu.current_steps, body.plant, body.load.position, body.load.velocity,
+              actuator.plant, actuator.noise_key, channels, reu_state.measured)
         if reu.protection.is_on:
-            protect(step, port.supply_pressure, temperature, reu.protection, reu_state)
+            protect(step, port.supply_pressure, thermal.oil, reu.protection, reu_state)
         cascade_step(step, reu, reu_state)
     if step == actuator.load.rope.release_step:
         body.load.weight.is_released = 1.0
@@ -157,6 +157,8 @@ def loops_and_plant(step, tau, port, temperature, actuator, bodies, rates, y, k,
         reu_state.amplifier = reu_state.drive
     body_step(PLANT_STEP, tau, reu_state.amplifier, port, actuator,
               bodies, rates, y, k)
+    if actuator.plant.thermal.is_on:
+        thermal.coil += PLANT_STEP * coil_heat(body.plant.coil, actuator.plant.coil)
 
 
 @kernel
@@ -188,7 +190,7 @@ def take_port(incoming, is_shared, port, body):
 
 
 @kernel
-def tick_row(first_step, steps, port, actuator, bodies, rates, y, k, reu_state, read_out,
+def tick_row(first_step, steps, port, actuator, bodies, rates, y, k, reu_state, channels,
              reply, sample, thermal, link, memory):
     """
     Advance one actuator by ``steps`` plant steps.
@@ -208,20 +210,18 @@ def tick_row(first_step, steps, port, actuator, bodies, rates, y, k, reu_state, 
             if link >= 0:
                 is_sampled = i > 0 and leaves(first_step + i, actuator.link)
                 if is_sampled:
-                    read_sensors(body.plant, body.load.position, body.load.velocity,
-                                 actuator.plant, read_out)
-                    write_sample(read_out, body.plant, reu_state, sample)
+                    write_sample(body.plant, reu_state, sample)
                 exchange_frames(first_step + i, is_sampled, link, memory)
-            loops_and_plant(first_step + i, i * PLANT_STEP, port, thermal.oil, actuator,
-                            bodies, rates, y, k, reu_state)
+            loops_and_plant(first_step + i, i * PLANT_STEP, port, actuator,
+                            bodies, rates, y, k, reu_state, channels, thermal)
         reply.mean_forces[window] = body.totals.impulse / (window_steps * PLANT_STEP)
-    reply.force = read_sensors(
-        body.plant, body.load.position, body.load.velocity, actuator.plant, read_out)
+    reply.force = exact_force(
+        body.plant, body.load.position, body.load.velocity, actuator.plant)
     reply.position = body.plant.mechanics.position
     reply.velocity = body.plant.mechanics.velocity
     reply.supply_volume = body.totals.supply_volume
     reply.return_volume = body.totals.return_volume
-    write_sample(read_out, body.plant, reu_state, sample)
+    write_sample(body.plant, reu_state, sample)
     sample.supply_volume += reply.supply_volume
     sample.supply_flow = reply.supply_volume / (steps * PLANT_STEP)
     add_energies(reply, port, body.totals.energies,
@@ -257,7 +257,7 @@ def actuator_tick(first_step, steps, incoming, commands, memory):
             hand_over(n, memory)
         take_port(incoming[n], memory.is_shared[n], port, bodies[0])
         tick_row(first_step, steps, port, memory.constants[n], bodies, rates, y, k, reu,
-                 memory.read_outs[n], memory.replies[n], memory.samples[n], memory.thermals[n],
+                 memory.channels[n], memory.replies[n], memory.samples[n], memory.thermals[n],
                  link, memory)
         if link < 0:
             memory.observed[n] = memory.samples[n]

@@ -6,7 +6,7 @@ import hashlib
 
 from isa_ros.actuator.link import NO_LINK
 from isa_ros.actuator.sheet import ActuatorSheet
-from isa_ros.config.leg_config import JointsKind, LegConfig, LegStart
+from isa_ros.config.leg_config import ImuConfig, JointsKind, LegConfig, LegStart
 from isa_ros.config.names import refuse_bad_name
 from isa_ros.config.recording import RecordConfig, RecordKind
 from isa_ros.config.schema import Key, Named, Names, OneOf, ParameterSet, Plain, Section
@@ -18,6 +18,7 @@ from isa_ros.core.parameter import parameter, Parameters
 from isa_ros.core.timebase import refuse_grid
 from isa_ros.errors import ConfigError
 from isa_ros.loads.sheets import LocalLoad
+from isa_ros.surroundings.leg.inertial import Imu
 from isa_ros.surroundings.leg.sheet import LegSheet
 from isa_ros.surroundings.supply import SupplySheet
 
@@ -230,6 +231,7 @@ RUN = Section(RunConfig, {
     'body': Key(OneOf({'leg': Section(LegConfig, {
         'model': Key(Plain(str)), 'joints': Key(JointsKind()),
         'start': Key(ParameterSet(LegStart)),
+        'imus': Key(Named(Section(ImuConfig, {'sheet': Key(ParameterSet(Imu))})), meant='none'),
         'sheet': Key(ParameterSet(LegSheet))})}), is_optional=True),
 })
 """Every key of a resolved configuration."""

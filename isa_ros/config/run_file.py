@@ -14,7 +14,7 @@ from isa_ros.actuator.sheet import ActuatorSheet, refuse_wiring
 from isa_ros.actuator.tunable import refuse_unusable
 from isa_ros.config.catalogue import actuator_model, leg_section, material_section, Model
 from isa_ros.config.changes import changed, Values
-from isa_ros.config.leg_config import LegConfig, LegStart
+from isa_ros.config.leg_config import ImuConfig, LegConfig, LegStart
 from isa_ros.config.links import LINK, link_of, read_link
 from isa_ros.config.names import NAME_RULE, refuse_bad_name
 from isa_ros.config.own_load import load_section, refuse_beyond_stops
@@ -37,6 +37,7 @@ from isa_ros.errors import ConfigError, ParameterError
 from isa_ros.loads.sheets import linearised, LocalLoad
 from isa_ros.plant.plant import plant_record
 from isa_ros.plant.step_limits import LoadSide, refuse_too_fast
+from isa_ros.surroundings.leg.inertial import Imu
 from isa_ros.surroundings.leg.sheet import JOINTS, LegSheet
 
 __all__ = [
@@ -172,7 +173,7 @@ def _body(tree: Tree, place: Place, step_ns: int) -> tuple[LegConfig | None, Sec
 
 
 def _leg(leg: Tree, below: Place, step_ns: int) -> tuple[LegConfig, Section]:
-    refuse_unknown(leg, ('model', 'joints', 'ground', 'start', 'parameters'), below)
+    refuse_unknown(leg, ('model', 'joints', 'ground', 'start', 'imus', 'parameters'), below)
     model = leg.get('model')
     section, model_place = leg_section(model, f'{below}.model')  # type: ignore[arg-type]
     if 'ground' in leg:
@@ -186,8 +187,21 @@ def _leg(leg: Tree, below: Place, step_ns: int) -> tuple[LegConfig, Section]:
     refuse_unknown(joints, JOINTS, below / 'joints')
     config = LegConfig(
         str(model), sheet,
-        tuple((joint, name_of(joints, joint, below / 'joints')) for joint in JOINTS), start)
+        tuple((joint, name_of(joints, joint, below / 'joints')) for joint in JOINTS), start,
+        _imus(section_at(leg.get('imus', {}), below / 'imus'), below / 'imus', step_ns))
     return config, section
+
+
+def _imus(tree: Tree, place: Place, step_ns: int) -> tuple[ImuConfig, ...]:
+    units = []
+    for name in tree:
+        name_of({name: name}, name, place)
+        if name == COORDINATOR:
+            raise ConfigError(f'{place / name}: the name is reserved for the coordinator')
+        own = section_at(tree[name], place / name)
+        units.append(ImuConfig(name, build(Imu, written(own, place / name), place / name)))
+        units[-1].sheet.period_ns(step_ns, str(place / name))
+    return tuple(units)
 
 
 def leg_start(tree: Tree, place: Place, base: LegStart | None = None) -> LegStart:

@@ -316,4 +316,4 @@ def test_the_default_watches_all_but_the_ends_and_the_setpoints() -> None:
     constants = Watched(defaults(Protection)).constants
     is_watched = np.isfinite(constants.quiet)
     assert [name for name, k in BITS.items() if not is_watched[k]] == [
-        'setpoint_timeout', 'end_of_stroke']
+        'setpoint_timeout', 'end_of_stroke', 'link_lost']
