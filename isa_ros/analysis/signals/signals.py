@@ -34,6 +34,8 @@ _ACTUATOR = {
     'spool_reference': ('references', 'position[2]'),
     'current_reference': ('references', 'position[3]')}
 """(suffix of the topic, field) by field of a `SAMPLE`."""
+RECORDED = tuple(_ACTUATOR)
+"""Fields of a `SAMPLE` that a bag has at every tick."""
 _SUPPLY = ('pressure', 'return_pressure')
 _JOINTS, _GROUND = '/joint_states', '/coordinator/ground_contact'
 _BODY = {
