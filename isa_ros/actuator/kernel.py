@@ -143,8 +143,7 @@ def loops_and_plant(step, tau, port, actuator, bodies, rates, y, k, reu_state):
         read_sensors(body.plant, body.load.position, body.load.velocity,
                      actuator.plant, reu_state.measured)
         if reu.protection.is_on:
-            protect(step, port.supply_pressure, reu.protection.temperature, reu.protection,
-                    reu_state)
+            protect(step, port.supply_pressure, reu.protection, reu_state)
         cascade_step(step, reu, reu_state)
     if step == actuator.load.rope.release_step:
         body.load.weight.is_released = 1.0
@@ -194,6 +193,7 @@ def tick_row(first_step, steps, port, actuator, bodies, rates, y, k, reu_state, 
     body = bodies[0]
     if actuator.plant.thermal.is_on:
         warm(thermal.oil, actuator.plant)
+    reu_state.protection.temperature = thermal.oil
     y[0, TOTALS_AT:] = 0.0
     elastic = stored_elastically(body, actuator.plant.mechanics)
     window_steps = steps // FORCE_WINDOWS

@@ -9,15 +9,15 @@ from isa_ros.reu.protection import Ratings
 import numpy as np
 
 
-def ratings_of(plant: np.record, temperature: float) -> Ratings:
-    """Return the ratings of a `PLANT` record with oil of ``temperature``, celsius."""
+def ratings_of(plant: np.record) -> Ratings:
+    """Return the ratings of a `PLANT` record."""
     oil, valve, sensors = plant.chambers, plant.valve, plant.sensors
     flow = flow_curve(valve.x_max, valve) * valve.per_root_drop * math.sqrt(plant.relief.p_open)
     return Ratings(
         stroke=float(oil.stroke), speed=float(flow / min(oil.area_a, oil.area_b)),
         force_range=float(sensors.force_range), pressure_range=float(sensors.pressure_range),
         current_range=float(sensors.current_range),
-        opening_pressure=float(plant.relief.p_open), temperature=temperature)
+        opening_pressure=float(plant.relief.p_open))
 
 
 def evidence_of(

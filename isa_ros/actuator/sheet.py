@@ -144,7 +144,7 @@ def actuator_record(sheet: ActuatorSheet, offset_steps: int) -> np.ndarray:
         k_spool, plant[0].coil.parallel)
     steps = loop_steps(sheet.reu)
     reu['protection'] = protection_record(
-        sheet.reu.protection, ratings_of(plant[0], sheet.plant.oil.temperature_celsius),
+        sheet.reu.protection, ratings_of(plant[0]),
         evidence_of(plant[0], sheet.reu.speed.rate_hz, steps['speed'], offset_steps),
         steps['current'])
     rows = np.zeros(1, ACTUATOR)

@@ -39,7 +39,6 @@ EXTENDING, RETRACTING = 1, 2  # bits of the directions that are inhibited
 PROTECTION = np.dtype([
     ('is_on', 'i8'),
     ('period', 'f8'),               # of the conversions, s
-    ('temperature', 'f8'),          # of the oil, celsius
     ('stroke', 'f8'),
     ('warning', 'f8', (N,)),        # SI; levels of what is below them have their sign changed,
     ('trip', 'f8', (N,)),           # as the quantity has; infinite where off
@@ -59,6 +58,7 @@ PROTECTION_STATE = np.dtype([
     ('clears', 'i8'),                       # 1: trips whose condition has ended are to be cleared
     ('inhibited', 'i8'),                    # EXTENDING, RETRACTING
     ('busy', 'i8'),                         # bit set: is counted, or has a bit
+    ('temperature', 'f8'),                  # as the REU knows it, celsius
     ('setpoint_age', 'i8'),                 # conversions + 1 since the last one; 0: none yet
     ('warning_count', 'i8', (N,)),          # conversions in a row beyond the level
     ('trip_count', 'i8', (N,)),
@@ -81,8 +81,7 @@ class Ratings(NamedTuple):
     pressure_range: float
     current_range: float
     opening_pressure: float
-    temperature: float
-    """Of the oil, celsius."""
+    """Of the relief valves."""
 
     def of(self, name: str) -> float:
         """Return the rating of a condition, 1 for levels in the unit of its quantity."""
@@ -122,7 +121,7 @@ def protection_record(
     quiet = np.minimum(levels['warning'], levels['trip'])
     return record(
         PROTECTION, is_on=int(sheet.switch == 'on' and np.isfinite(quiet).any()), period=period,
-        temperature=ratings.temperature, stroke=ratings.stroke, **levels, quiet=quiet, sign=sign,
+        stroke=ratings.stroke, **levels, quiet=quiet, sign=sign,
         delay=delay, reaction=reaction, evidence=evidence)
 
 
@@ -130,7 +129,7 @@ _DIGITS = 9  # a delay of 10 ms is 100 periods of 0.1 ms, not 101
 
 
 @kernel
-def measure(supply_pressure, temperature, velocity, measured, setpoint, protection, own):
+def measure(supply_pressure, velocity, measured, setpoint, protection, own):
     """Write the quantity of every condition at one conversion into ``own.values``, SI."""
     values = own.values
     highest = max(measured.pressure_a, measured.pressure_b)
@@ -144,7 +143,7 @@ def measure(supply_pressure, temperature, velocity, measured, setpoint, protecti
     values[OVERLOAD] = abs(measured.force)
     values[OVERPRESSURE] = highest
     values[OVERCURRENT] = abs(measured.current)
-    values[OVERTEMPERATURE] = temperature
+    values[OVERTEMPERATURE] = own.temperature
     values[SUPPLY_LOW] = supply_pressure
     values[RELIEF_OPEN] = highest
     values[LOAD_CELL_IMPLAUSIBLE] = unexplained_force(
@@ -196,7 +195,7 @@ def judge(step, protection, own):
         if protection.sign[k] * own.values[k] > protection.quiet[k] or own.busy >> k & 1:
             judge_one(k, step, protection, own)
     own.clears = 0
-    if own.trips & own.first == 0:  # the cause is cleared: of several that are left, the lowest bit
+    if own.trips & own.first == 0:  # cleared; of several trips that are left, the lowest bit
         own.first = own.trips & -own.trips
 
 
@@ -241,12 +240,11 @@ def react(protection, state):
 
 
 @kernel
-def protect(step, supply_pressure, temperature, protection, state):
+def protect(step, supply_pressure, protection, state):
     """Measure, judge and react at one conversion; ``state`` is a `REU_STATE`."""
     own = state.protection
     acceleration_step(step, state.speed.velocity, protection.evidence, own.evidence)
-    measure(supply_pressure, temperature, state.speed.velocity, state.measured, state.setpoint,
-            protection, own)
+    measure(supply_pressure, state.speed.velocity, state.measured, state.setpoint, protection, own)
     judge(step, protection, own)
     if own.trips != 0 or own.reaction != NONE:
         react(protection, state)

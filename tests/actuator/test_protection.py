@@ -103,6 +103,20 @@ def test_a_tripped_actuator_is_disabled_until_it_is_enabled_again() -> None:
     assert abs(actuator.sample.position - 0.06) < 0.5 * abs(before - 0.06)
 
 
+@pytest.mark.parametrize(('celsius', 'names'), [(60.0, []), (60.1, ['overtemperature'])])
+def test_oil_that_is_too_warm_trips(celsius: float, names: list[str]) -> None:
+    """For longer than 100 ms, with oil of constant temperature as with oil that losses heat."""
+    sheet = override(actuator_sheet('isa_v5'), 'reu.protection.overtemperature.warning', 60.0)
+    sheet = override(sheet, 'reu.protection.overtemperature.trip', 60.0)
+    actuator = smart_actuator(
+        'isa_v5', 'mass', sheet=override(sheet, 'plant.oil.temperature_celsius', celsius),
+        timing=TICK)
+    ticks(actuator, 100)
+    assert actuator.sample.trips == 0.0
+    ticks(actuator, 2)
+    assert conditions(actuator.sample.trips) == names
+
+
 def test_limit_stops_the_piston_before_the_end() -> None:
     """With the limit at 10 % of the stroke it stops after 90 %, and comes back at once."""
     found = []
@@ -155,7 +169,7 @@ class Shadow:
         for field, error in added.items():
             setattr(self.state.measured, field, getattr(reu.measured, field) + error)
         step = actuator.t_ns // 20_000 - CONVERSION_STEPS + 1
-        protect(step, 20.7e6, 40.0, self.constants, self.state)
+        protect(step, 20.7e6, self.constants, self.state)
         self.warned |= int(self.state.protection.warnings)
         self.tripped |= int(self.state.protection.trips)
 

@@ -18,7 +18,7 @@ PERIOD = STEPS * 20e-6
 STROKE, AREA_A, AREA_B = 0.1, 4e-4, 3e-4
 RATINGS = Ratings(
     stroke=STROKE, speed=1.0, force_range=1e4, pressure_range=25e6, current_range=12.5e-3,
-    opening_pressure=22e6, temperature=40.0)
+    opening_pressure=22e6)
 SUPPLY = 20.7e6
 
 
@@ -48,7 +48,8 @@ class Watched:
         self.constants = protection_record(sheet, RATINGS, evidence, STEPS)
         self.state = np.zeros(1, REU_STATE).view(np.recarray)[0]
         self.own = self.state.protection
-        self.supply, self.temperature, self.step = SUPPLY, 40.0, 0
+        self.supply, self.step = SUPPLY, 0
+        self.own.temperature = 40.0
         measured, setpoint = self.state.measured, self.state.setpoint
         measured.position = self.own.evidence.position = 0.5 * STROKE
         setpoint.is_enabled, setpoint.stiffness, setpoint.damping = 1.0, 1e5, 4e3
@@ -57,7 +58,7 @@ class Watched:
     def convert(self, n: int = 1) -> None:
         """Take ``n`` conversions of the present readings."""
         for _ in range(n):
-            protect(self.step, self.supply, self.temperature, self.constants, self.state)
+            protect(self.step, self.supply, self.constants, self.state)
             self.step += STEPS
 
     def has(self, name: str) -> tuple[bool, bool]:
@@ -88,7 +89,8 @@ READINGS: Mapping[str, Callable[[Watched, float], None]] = {
     'overpressure': _measure('pressure_b'),
     'overcurrent': lambda watched, quantity: setattr(
         watched.state.measured, 'current', -quantity),
-    'overtemperature': lambda watched, quantity: setattr(watched, 'temperature', quantity),
+    'overtemperature': lambda watched, quantity: setattr(
+        watched.own, 'temperature', quantity),
     'supply_low': lambda watched, quantity: setattr(watched, 'supply', quantity),
     'relief_open': _measure('pressure_a'),
     'load_cell_implausible': _load_cell,
