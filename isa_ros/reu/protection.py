@@ -10,11 +10,11 @@ Inputs are what the sensors read, not the exact states.
 import math
 from typing import NamedTuple
 
+from isa_ros.core.conditions import BITS, CONDITIONS, REACTIONS
 from isa_ros.core.kernel import kernel
 from isa_ros.core.record import record
 from isa_ros.core.timebase import PLANT_STEP
 from isa_ros.core.units import MILLI
-from isa_ros.core.conditions import BITS, CONDITIONS, REACTIONS
 from isa_ros.reu.impedance import SETPOINT
 from isa_ros.reu.plausibility import (
     acceleration_step, EVIDENCE, EVIDENCE_STATE, jump_speed, unexplained_force)

@@ -4,10 +4,10 @@ from dataclasses import replace
 import math
 
 from hypothesis import given, settings, strategies as st
+from isa_ros.core.conditions import BITS, CONDITIONS, REACTIONS
 from isa_ros.core.parameter import defaults
 from isa_ros.errors import ParameterError
 from isa_ros.reu import protection
-from isa_ros.core.conditions import BITS, CONDITIONS, REACTIONS
 from isa_ros.reu.protection import (
     feed, is_inhibited, request_clear, setpoint_in_force)
 from isa_ros.reu.protection_sheet import levels_of, Protection

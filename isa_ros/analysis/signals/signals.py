@@ -35,7 +35,7 @@ _ACTUATOR = {
     'current_reference': ('references', 'position[3]'),
     'temperature': ('temperature', 'temperature')}
 """(suffix of the topic, field) by field of a `SAMPLE`."""
-RECORDED = tuple(_ACTUATOR)
+AT_EVERY_TICK = tuple(_ACTUATOR)
 """Fields of a `SAMPLE` that a bag has at every tick."""
 _SUPPLY = ('pressure', 'return_pressure')
 _JOINTS, _GROUND = '/joint_states', '/coordinator/ground_contact'
