@@ -10,11 +10,11 @@ Inputs are what the sensors read, not the exact states.
 import math
 from typing import NamedTuple
 
-from isa_ros.core.conditions import BITS, CONDITIONS, REACTIONS
 from isa_ros.core.kernel import kernel
 from isa_ros.core.record import record
 from isa_ros.core.timebase import PLANT_STEP
 from isa_ros.core.units import MILLI
+from isa_ros.core.conditions import BITS, CONDITIONS, REACTIONS
 from isa_ros.reu.impedance import SETPOINT
 from isa_ros.reu.plausibility import (
     acceleration_step, EVIDENCE, EVIDENCE_STATE, jump_speed, unexplained_force)
@@ -58,7 +58,6 @@ PROTECTION_STATE = np.dtype([
     ('clears', 'i8'),                       # 1: trips whose condition has ended are to be cleared
     ('inhibited', 'i8'),                    # EXTENDING, RETRACTING
     ('busy', 'i8'),                         # bit set: is counted, or has a bit
-    ('temperature', 'f8'),                  # as the REU knows it, celsius
     ('setpoint_age', 'i8'),                 # conversions + 1 since the last one; 0: none yet
     ('warning_count', 'i8', (N,)),          # conversions in a row beyond the level
     ('trip_count', 'i8', (N,)),
@@ -81,7 +80,6 @@ class Ratings(NamedTuple):
     pressure_range: float
     current_range: float
     opening_pressure: float
-    """Of the relief valves."""
 
     def of(self, name: str) -> float:
         """Return the rating of a condition, 1 for levels in the unit of its quantity."""
@@ -129,7 +127,7 @@ _DIGITS = 9  # a delay of 10 ms is 100 periods of 0.1 ms, not 101
 
 
 @kernel
-def measure(supply_pressure, velocity, measured, setpoint, protection, own):
+def measure(supply_pressure, temperature, velocity, measured, setpoint, protection, own):
     """Write the quantity of every condition at one conversion into ``own.values``, SI."""
     values = own.values
     highest = max(measured.pressure_a, measured.pressure_b)
@@ -143,7 +141,7 @@ def measure(supply_pressure, velocity, measured, setpoint, protection, own):
     values[OVERLOAD] = abs(measured.force)
     values[OVERPRESSURE] = highest
     values[OVERCURRENT] = abs(measured.current)
-    values[OVERTEMPERATURE] = own.temperature
+    values[OVERTEMPERATURE] = temperature
     values[SUPPLY_LOW] = supply_pressure
     values[RELIEF_OPEN] = highest
     values[LOAD_CELL_IMPLAUSIBLE] = unexplained_force(
@@ -195,7 +193,7 @@ def judge(step, protection, own):
         if protection.sign[k] * own.values[k] > protection.quiet[k] or own.busy >> k & 1:
             judge_one(k, step, protection, own)
     own.clears = 0
-    if own.trips & own.first == 0:  # cleared; of several trips that are left, the lowest bit
+    if own.trips & own.first == 0:  # the cause is cleared: of several that are left, the lowest bit
         own.first = own.trips & -own.trips
 
 
@@ -240,11 +238,12 @@ def react(protection, state):
 
 
 @kernel
-def protect(step, supply_pressure, protection, state):
+def protect(step, supply_pressure, temperature, protection, state):
     """Measure, judge and react at one conversion; ``state`` is a `REU_STATE`."""
     own = state.protection
     acceleration_step(step, state.speed.velocity, protection.evidence, own.evidence)
-    measure(supply_pressure, state.speed.velocity, state.measured, state.setpoint, protection, own)
+    measure(supply_pressure, temperature, state.speed.velocity, state.measured, state.setpoint,
+            protection, own)
     judge(step, protection, own)
     if own.trips != 0 or own.reaction != NONE:
         react(protection, state)

@@ -169,7 +169,7 @@ class Shadow:
         for field, error in added.items():
             setattr(self.state.measured, field, getattr(reu.measured, field) + error)
         step = actuator.t_ns // 20_000 - CONVERSION_STEPS + 1
-        protect(step, 20.7e6, self.constants, self.state)
+        protect(step, 20.7e6, 40.0, self.constants, self.state)
         self.warned |= int(self.state.protection.warnings)
         self.tripped |= int(self.state.protection.trips)
 

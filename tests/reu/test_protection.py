@@ -4,10 +4,10 @@ from dataclasses import replace
 import math
 
 from hypothesis import given, settings, strategies as st
-from isa_ros.core.conditions import BITS, CONDITIONS, REACTIONS
 from isa_ros.core.parameter import defaults
 from isa_ros.errors import ParameterError
 from isa_ros.reu import protection
+from isa_ros.core.conditions import BITS, CONDITIONS, REACTIONS
 from isa_ros.reu.protection import (
     feed, is_inhibited, request_clear, setpoint_in_force)
 from isa_ros.reu.protection_sheet import levels_of, Protection
@@ -157,8 +157,7 @@ def test_a_cause_that_is_cleared_gives_way_to_a_trip_that_persists() -> None:
 def test_the_first_cause_is_kept_and_the_strongest_reaction_acts() -> None:
     sheet = replace(
         only('overload', trip=0.5, delay_ms=0.0, reaction='hold'),
-        supply_low=replace(
-            defaults(Protection).supply_low, trip=0.5, delay_ms=0.0, reaction='disable'))
+        supply_low=replace(defaults(Protection).supply_low, trip=0.5, delay_ms=0.0, reaction='disable'))
     watched = Watched(sheet)
     watched.show('overload', 6e3)
     watched.convert()
@@ -264,8 +263,8 @@ def test_a_trip_is_the_same_in_plain_python() -> None:
                                ('load_cell_implausible', 3e3), ('supply_low', 1e6)):
             watched.show(name, quantity)
             for _ in range(120):
-                convert(watched.step, watched.supply, watched.constants,  # type: ignore
-                        watched.state)
+                convert(watched.step, watched.supply, watched.temperature,  # type: ignore
+                        watched.constants, watched.state)
                 watched.step += 5
                 found.append(watched.state.tobytes())
         assert watched.own.trips and watched.own.warnings

@@ -4,10 +4,10 @@ from collections.abc import Callable, Mapping
 from dataclasses import replace
 from typing import Any
 
-from isa_ros.core.conditions import BITS
 from isa_ros.core.parameter import defaults
 from isa_ros.core.record import record
 from isa_ros.reu.cascade import REU_STATE
+from isa_ros.core.conditions import BITS
 from isa_ros.reu.plausibility import EVIDENCE
 from isa_ros.reu.protection import protect, protection_record, Ratings
 from isa_ros.reu.protection_sheet import levels_of, Protection
@@ -48,8 +48,7 @@ class Watched:
         self.constants = protection_record(sheet, RATINGS, evidence, STEPS)
         self.state = np.zeros(1, REU_STATE).view(np.recarray)[0]
         self.own = self.state.protection
-        self.supply, self.step = SUPPLY, 0
-        self.own.temperature = 40.0
+        self.supply, self.temperature, self.step = SUPPLY, 40.0, 0
         measured, setpoint = self.state.measured, self.state.setpoint
         measured.position = self.own.evidence.position = 0.5 * STROKE
         setpoint.is_enabled, setpoint.stiffness, setpoint.damping = 1.0, 1e5, 4e3
@@ -58,7 +57,7 @@ class Watched:
     def convert(self, n: int = 1) -> None:
         """Take ``n`` conversions of the present readings."""
         for _ in range(n):
-            protect(self.step, self.supply, self.constants, self.state)
+            protect(self.step, self.supply, self.temperature, self.constants, self.state)
             self.step += STEPS
 
     def has(self, name: str) -> tuple[bool, bool]:
@@ -89,8 +88,7 @@ READINGS: Mapping[str, Callable[[Watched, float], None]] = {
     'overpressure': _measure('pressure_b'),
     'overcurrent': lambda watched, quantity: setattr(
         watched.state.measured, 'current', -quantity),
-    'overtemperature': lambda watched, quantity: setattr(
-        watched.own, 'temperature', quantity),
+    'overtemperature': lambda watched, quantity: setattr(watched, 'temperature', quantity),
     'supply_low': lambda watched, quantity: setattr(watched, 'supply', quantity),
     'relief_open': _measure('pressure_a'),
     'load_cell_implausible': _load_cell,
