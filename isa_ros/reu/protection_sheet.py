@@ -8,9 +8,9 @@ valve and supply. The defaults are outside of what the shipped scenarios reach.
 from dataclasses import dataclass, fields
 from typing import Any, Protocol
 
+from isa_ros.core.conditions import BITS, CONDITIONS, REACTIONS
 from isa_ros.core.parameter import choice, parameter, Parameters, section
 from isa_ros.errors import ParameterError
-from isa_ros.core.conditions import BITS, CONDITIONS, REACTIONS
 
 _ASSUMED = 'assumed'
 _STOPPING = tuple(name for name in REACTIONS if name != 'limit')
