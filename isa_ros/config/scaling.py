@@ -6,7 +6,7 @@ file with another bore, valve or supply it is multiplied by the ratio of that qu
 that the file has itself is not.
 """
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from typing import Any
 
 from isa_ros.actuator.actuator import PAPER_SUPPLY
@@ -24,6 +24,8 @@ class Scaling:
     own: ActuatorSheet
     supply: float
     """Supply above return pressure of the actuator, Pa."""
+    _factors: dict[str, float] = field(default_factory=dict, init=False, repr=False, compare=False)
+    """The ratios so far: several values scale with one quantity, and some take long to compute."""
 
     def factor(self, scale: str) -> float:
         """
@@ -35,8 +37,11 @@ class Scaling:
             The actuator does not have the quantity.
 
         """
-        quantity = SCALES[scale]
-        return quantity(self.own, self.supply) / quantity(self.model, PAPER_SUPPLY)
+        if scale not in self._factors:
+            quantity = SCALES[scale]
+            self._factors[scale] = (
+                quantity(self.own, self.supply) / quantity(self.model, PAPER_SUPPLY))
+        return self._factors[scale]
 
     def section(self, section: Section, place: Place) -> Section:
         """Return a section with its values scaled; ``place`` is where a file would have them."""
