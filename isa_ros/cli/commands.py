@@ -192,8 +192,10 @@ def study(options: Namespace) -> bool:
 @_simulating
 def params(options: Namespace) -> bool:
     """List every parameter of a model, a leg or a run."""
-    from isa_ros.config.listing import describe
-    print(describe(options.name, options.preset, options.variant))
+    from isa_ros.config.changes import values_of
+    from isa_ros.config.listing import describe, SET
+    print(describe(
+        options.name, options.preset, options.variant, values_of(options.set, SET)))
     return True
 
 

@@ -113,6 +113,14 @@ def test_unreadable_input_is_one_line_and_2(
     assert not list(tmp_path.iterdir())
 
 
+def test_params_shows_the_values_after_a_change(capsys: pytest.CaptureFixture[str]) -> None:
+    """As bode, step and bringup would use them."""
+    assert cli.main(['params', 'isa_v5', '--set', 'reu.force.kf=0.001']) == 0
+    row = next(line for line in capsys.readouterr().out.splitlines()
+               if line.startswith('reu.force.kf '))
+    assert row.split()[1] == '0.001' and ' --set ' in row
+
+
 def test_help_imports_neither_ros_nor_numba() -> None:
     """`isa --help` answers at once; numba alone costs half a second."""
     program = (
