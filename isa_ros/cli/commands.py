@@ -58,6 +58,8 @@ def _record(request: Request) -> Path:
     if request.is_alone:
         start_without_blas()
     session = prepare(request)
+    for line in session.warnings:
+        print(one_line(f'isa: {line}'), file=sys.stderr)
     # The import of rclpy takes a third of a second; do it after the options are checked.
     from isa_ros.nodes.bringup import run_session
     try:
