@@ -13,6 +13,7 @@ from typing import Any
 
 from isa_ros.config.catalogue import actuator_model
 from isa_ros.config.changes import changed, Changes, SCENARIO
+from isa_ros.config.coarse_ticks import coarse_ticks
 from isa_ros.config.own_load import own_load, refuse_beyond_stops
 from isa_ros.config.run_config import ActuatorConfig, RunConfig
 from isa_ros.config.run_file import leg_start, name_of, refuse_reach, refuse_start, ticks_in
@@ -56,7 +57,7 @@ class Scenario:
     @property
     def warnings(self) -> tuple[str, ...]:
         """Return lines to print before the run."""
-        return self.limited
+        return (*self.limited, *coarse_ticks(self.run))
 
     @property
     def duration_s(self) -> float | None:

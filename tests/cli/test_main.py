@@ -11,6 +11,7 @@ import sys
 from isa_ros.cli import main as cli
 from isa_ros.errors import (
     BagError, ConfigError, IsaError, ParameterError, RunError, SimulationDiverged)
+from isa_ros.run.session import Session
 import pytest
 
 ROOT = Path(__file__).parents[2]
@@ -119,6 +120,19 @@ def test_params_shows_the_values_after_a_change(capsys: pytest.CaptureFixture[st
     row = next(line for line in capsys.readouterr().out.splitlines()
                if line.startswith('reu.force.kf '))
     assert row.split()[1] == '0.001' and ' --set ' in row
+
+
+def test_bringup_warns_before_it_starts_anything(
+        capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch,
+        tmp_path: Path) -> None:
+    """Of ticks too long for an impact on metal; one line."""
+    def run_session(session: Session, report: object) -> Path:
+        assert 'isa: leg.yaml: on the ground of the leg' in capsys.readouterr().err
+        return session.out
+    monkeypatch.setattr('isa_ros.nodes.bringup.run_session', run_session)
+    assert cli.main(['bringup', 'leg', '--set', 'leg.ground=metal', '--out',
+                     str(tmp_path / 'bag')]) == 0
+    assert capsys.readouterr() == ('', '')
 
 
 def test_help_imports_neither_ros_nor_numba() -> None:
