@@ -5,11 +5,12 @@ from typing import NamedTuple, Protocol
 
 from isa_ros.config.leg_config import LegConfig
 from isa_ros.config.run_config import RunConfig
+from isa_ros.plant.plant import is_heated
 from isa_ros.run.exchange import Recorder
 from isa_ros.run.packing import BodyMessages, Messages, Names, Packer, Shown
 from isa_ros.surroundings.leg.sheet import JOINTS
 from isa_ros.surroundings.supply import VolumeReturn
-from msg_adapters import clock, coordinator_messages, event
+from msg_adapters import clock, coordinator_messages, diagnostics, event
 
 
 class Outlet(Protocol):
@@ -96,6 +97,16 @@ class Narrator:
         if has_surroundings:
             outlets.surroundings.publish(self._packer.of(self._surroundings))
 
+    def end(self) -> None:
+        """Add the diagnostics to the last instant if it is not recorded yet, and record it."""
+        if self._unrecorded is not None:
+            diagnosed = self._packer.diagnose()
+            if self._outlets.surroundings.has_subscribers():
+                self._outlets.surroundings.publish(
+                    [diagnosed if topic.name == diagnostics.TOPIC[0] else None
+                     for topic in self._surroundings])
+        self.record()
+
     def record(self) -> None:
         """Pass the last packed instant to the recorder, once."""
         tick, self._unrecorded = self._unrecorded, None
@@ -111,7 +122,9 @@ def packer_of(run: RunConfig, shown: Shown) -> Packer:
     return Packer(
         Names([(actuator.name, actuator.sheet.is_rotary) for actuator in run.actuators],
               [(supply.name, isinstance(supply.sheet.return_line, VolumeReturn))
-               for supply in run.supplies], _body_messages(run)), shown)
+               for supply in run.supplies], _body_messages(run),
+              [actuator.name for actuator in run.actuators if is_heated(actuator.sheet.plant)]),
+        shown)
 
 
 def _body_messages(run: RunConfig) -> BodyMessages | None:
