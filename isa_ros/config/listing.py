@@ -9,11 +9,11 @@ from isa_ros.actuator.sheet import ActuatorSheet
 from isa_ros.config.catalogue import actuator_model, leg_names, leg_section, Model, model_names
 from isa_ros.config.changes import changed, Values
 from isa_ros.config.model_run import full_key, model_run
+from isa_ros.config.parameter_sets import build, build_one_of, kind_of, members
 from isa_ros.config.paths import CONFIG, find
 from isa_ros.config.run_config import RunConfig
 from isa_ros.config.run_file import Origins, run_of
-from isa_ros.config.sections import (
-    build, build_one_of, Entry, kind_of, members, merge, Place, Section, section_at, written)
+from isa_ros.config.sections import Entry, merge, Place, Section, section_at, written
 from isa_ros.config.yaml_text import read, Tree
 from isa_ros.core.parameter import Parameters
 from isa_ros.errors import ConfigError

@@ -12,7 +12,8 @@ from typing import Any
 from isa_ros.actuator.actuator import PAPER_SUPPLY
 from isa_ros.actuator.scales import SCALES
 from isa_ros.actuator.sheet import ActuatorSheet
-from isa_ros.config.sections import build, Entry, Place, Section
+from isa_ros.config.parameter_sets import build
+from isa_ros.config.sections import Entry, Place, Section
 from isa_ros.errors import ConfigError
 
 
@@ -84,7 +85,7 @@ def scaled_sheet(
     Raises
     ------
     ConfigError
-        As `isa_ros.config.sections.build`, or a scaled value is out of its range.
+        As `isa_ros.config.parameter_sets.build`, or a scaled value is out of its range.
 
     """
     base = build(ActuatorSheet, model, model_place)

@@ -14,10 +14,12 @@ from typing import Any
 from isa_ros.config.catalogue import actuator_model
 from isa_ros.config.changes import changed, Changes, SCENARIO
 from isa_ros.config.coarse_ticks import coarse_ticks
+from isa_ros.config.names import name_of
 from isa_ros.config.own_load import own_load, refuse_beyond_stops
 from isa_ros.config.run_config import ActuatorConfig, RunConfig
-from isa_ros.config.run_file import leg_start, name_of, refuse_reach, refuse_start, ticks_in
 from isa_ros.config.sections import Place, refuse_unknown, section_at
+from isa_ros.config.starts import leg_start, refuse_reach, refuse_start
+from isa_ros.config.tick_grid import ticks_in
 from isa_ros.config.yaml_text import dump, parse, read, Tree
 from isa_ros.core.parameter import check
 from isa_ros.core.suggest import alternatives

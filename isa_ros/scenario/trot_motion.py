@@ -11,8 +11,9 @@ from functools import cached_property
 
 from isa_ros.config.catalogue import gait_section, leg_section
 from isa_ros.config.leg_config import LegConfig
+from isa_ros.config.parameter_sets import as_tree, build
 from isa_ros.config.run_config import ActuatorConfig
-from isa_ros.config.sections import as_tree, build, merge, Place, written
+from isa_ros.config.sections import merge, Place, written
 from isa_ros.config.yaml_text import Tree
 from isa_ros.core.parameter import choice, parameter
 from isa_ros.core.timebase import NS_PER_SECOND
