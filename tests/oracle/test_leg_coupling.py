@@ -123,7 +123,7 @@ def test_drop_at_2_ms_stays_bounded(variant, rms, thigh_peak):
     assert errors.peak[[HAA, KFE]].max() < 0.02
     assert errors.peak[HFE] < thigh_peak
     assert errors.angle.max() < 0.25
-    assert 5.0 * full.rms[HFE] < errors.rms[HFE]
+    assert 4.0 * full.rms[HFE] < errors.rms[HFE]    # of second order at least
 
 
 @pytest.mark.parametrize('variant', list(VARIANTS))
