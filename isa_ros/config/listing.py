@@ -109,7 +109,7 @@ def _rows(parameters: Parameters, source_of: Mapping[str, str], prefix: str) -> 
             yield from _rows(value, source_of, f'{path}.')
         else:
             yield Row(path, _value(value), f.metadata.get('unit', ''), _range(f.metadata),
-                      source_of.get(path, ''), f.metadata['doc'])
+                      source_of.get(path, f.metadata.get('source', '')), f.metadata['doc'])
 
 
 def _kind_row(path: str, value: Parameters, union: Any, source_of: Mapping[str, str]) -> Row:
@@ -139,6 +139,8 @@ def _run_tables(run: RunConfig, origins: Origins, changes: Sequence[str]) -> Ite
                         actuator.load, origin.load)
     if run.leg is not None and origins.leg is not None:
         yield table('leg.start', '', run.leg.start, None)
+        for imu in run.leg.imus:
+            yield table(f'leg.imus.{imu.name}', '', imu.sheet, None)
         yield table('leg.parameters', f': {run.leg.model}', run.leg.sheet, origins.leg)
 
 
