@@ -14,6 +14,7 @@ from isa_ros.config.paths import CONFIG, find
 from isa_ros.config.run_config import RunConfig
 from isa_ros.config.run_file import Origins, run_of
 from isa_ros.config.sections import Entry, merge, Place, Section, section_at, written
+from isa_ros.config.wires import wire
 from isa_ros.config.yaml_text import read, Tree
 from isa_ros.core.parameter import Parameters
 from isa_ros.errors import ConfigError
@@ -130,6 +131,8 @@ def _run_tables(run: RunConfig, origins: Origins, changes: Sequence[str]) -> Ite
     for supply in run.supplies:
         yield table(supply.name, f' of {run.source}', supply.sheet, None)
     yield table('record', '', run.record.storage, None)
+    for kind in dict.fromkeys(run.actuator(name).sheet.link.kind for name in run.linked):
+        yield _table(f'wire of links: {kind}', rows(*wire(kind)))
     for actuator in run.actuators:
         origin, key = origins.actuators[actuator.name], f'actuators.{actuator.name}'
         yield table(f'{key}.parameters', f': {actuator.model}, preset {actuator.preset}',
