@@ -2,7 +2,7 @@
 
 from collections.abc import Mapping
 
-from msg_adapters import applied_parameters, fluid_pressure, joint_state, setpoint, wrench
+from msg_adapters import applied_parameters, device, fluid_pressure, joint_state, setpoint, wrench
 from msg_adapters.template import Prepared
 
 STATE_TOPICS = (
@@ -20,14 +20,22 @@ APPLIED_PARAMETERS = ('applied_parameters', applied_parameters.TYPE)
 APPLIED_TOPICS = (APPLIED_PARAMETERS, APPLIED_SETPOINT)
 """(topic suffix, type) of the messages published when a command or parameter takes effect."""
 
-TOPICS = (*APPLIED_TOPICS, *STATE_TOPICS)
+DEVICE = ('device', device.TYPE)
+"""(topic suffix, type) of the device's status, published on change and every second."""
+
+KEPT_TOPICS = (*APPLIED_TOPICS, DEVICE)
+"""Topics whose last messages a later subscription receives too."""
+
+TOPICS = (*KEPT_TOPICS, *STATE_TOPICS)
 
 
 def prepared(
         name: str, is_rotary: bool, sample: Mapping[str, int], absolute: Mapping[str, int],
         applied: Mapping[str, int]) -> dict[str, Prepared]:
     """
-    Return the prepared messages of an actuator by topic suffix, without `APPLIED_PARAMETERS`.
+    Return the prepared messages of an actuator by topic suffix.
+
+    Those of `APPLIED_PARAMETERS` and `DEVICE` contain texts and cannot be prepared.
 
     The arguments are columns of values by field: ``sample`` for its `SAMPLE`, ``absolute`` for its
     pressures in Pa absolute, ``applied`` for its applied `COMMAND`. Frames: ``NAME_load_cell`` of

@@ -17,12 +17,13 @@ from isa_ros.actuator.sheet import actuator_record, ActuatorSheet
 from isa_ros.actuator.tunable import GAINS
 from isa_ros.actuator.tuning import gain_after, gains_command, Tuning
 from isa_ros.core.saved_state import broken_number, restored_rows, TIME_BYTES, time_of
-from isa_ros.core.signals import COMMAND, HAS_ENABLE, HAS_SETPOINT, LOAD_PORT
+from isa_ros.core.signals import COMMAND, HAS_ENABLE, HAS_MODE, HAS_SETPOINT, LOAD_PORT
 from isa_ros.core.timebase import FORCE_WINDOWS, PLANT_STEP_NS, steps_in
 from isa_ros.errors import ConfigError, SimulationDiverged
 from isa_ros.loads.sheets import local_port, LocalLoad, own_record, static_force
 from isa_ros.plant.plant import read_sensors, rest_pressures
 from isa_ros.reu.cascade import initial_gains
+from isa_ros.reu.wiring import first_mode, mode_of
 import numpy as np
 
 
@@ -69,6 +70,14 @@ class ActuatorConfig(Protocol):
     def beyond_range(self) -> str | None:
         """Return the treatment of a setpoint beyond the range; None: the default one."""
 
+    @property
+    def auto_enable(self) -> bool:
+        """Return whether it is enabled once it is initialised."""
+
+    @property
+    def mode(self) -> str | None:
+        """Return the mode at t = 0; None: the one with every block that is on."""
+
 
 class SmartActuator:
     """
@@ -103,6 +112,7 @@ class SmartActuator:
         self._port, self._pending = _record(self.memory.ports), _record(self.memory.pending)
         self._applied = _record(self.memory.applied)
         self._incoming, self._commands = np.zeros(1, LOAD_PORT), np.zeros(1, COMMAND)
+        self._first_mode = start_mode(config)
         self.digest = self._hash(constants)
         self.setpoint_range = SetpointRange(config.name, config.sheet, config.beyond_range)
         """The range of its setpoints, for those that come from outside."""
@@ -113,7 +123,8 @@ class SmartActuator:
     def _hash(self, constants: np.ndarray) -> str:
         """Return a hash of every resolved parameter."""
         own = self._config
-        text = f'{self._timing} {own.load} {initial_gains(own.sheet.reu)}'
+        text = (f'{self._timing} {own.load} {initial_gains(own.sheet.reu)} {self._first_mode} '
+                f'{own.auto_enable}')
         return hashlib.sha256(constants.tobytes() + text.encode()).hexdigest()[:16]
 
     def start(
@@ -139,7 +150,7 @@ class SmartActuator:
         body.plant.chambers.p_a, body.plant.chambers.p_b = rest_pressures(
             plant, supply_pressure, return_pressure, force)
         self._start_loops()
-        write_applied(HAS_SETPOINT | HAS_ENABLE, self._reu.setpoint, self._applied)
+        write_applied(HAS_SETPOINT | HAS_ENABLE, self._reu, self._applied)
         self._reply.position = position
 
     def _start_loops(self) -> None:
@@ -154,8 +165,11 @@ class SmartActuator:
                 (reu.pressure, at.pressure_a - at.pressure_b)):
             block.measured = value
         reu.setpoint.position = reu.measured.position
-        reu.setpoint.stiffness, reu.setpoint.damping = initial_gains(self._config.sheet.reu)
-        reu.setpoint.is_enabled = 1.0
+        device = reu.status
+        for setpoint in (reu.setpoint, device.stop):
+            setpoint.stiffness, setpoint.damping = initial_gains(self._config.sheet.reu)
+        device.mode = device.acting = device.requested_mode = self._first_mode
+        device.auto_enable = device.requested_enable = int(self._config.auto_enable)
         kernels.write_sample(self._read_out, body.plant, reu, self._sample)
 
     @property
@@ -202,6 +216,17 @@ class SmartActuator:
         self.tuning.accept(values)
         self.accept(gains_command(values))
 
+    @property
+    def mode(self) -> int:
+        """Return the mode as it will be at the next tick, a number of `isa_ros.core.device`."""
+        own = self._pending if int(self._pending.kinds) & HAS_MODE else None
+        return int(self._reu.status.requested_mode if own is None else own.mode)
+
+    @property
+    def state(self) -> int:
+        """Return the state of the device, a number of `isa_ros.core.device`."""
+        return int(self._reu.status.state)
+
     def parameter(self, name: str) -> float:
         """Return a tunable value as it will be at the next tick, set by parameter or command."""
         if name not in GAINS:
@@ -225,13 +250,18 @@ class SmartActuator:
         if port is not None:
             incoming = self._incoming
             incoming[0] = port
-        self.tuning.latch()
+        self.latch_tuning()
         self._commands['kinds'] = 0
         broken = kernels.actuator_tick(
             self.t_ns // PLANT_STEP_NS, self._steps, incoming, self._commands, self.memory)
         self.t_ns += self._timing.step_ns
         if broken >= 0:
             self.raise_diverged(broken)
+
+    def latch_tuning(self) -> None:
+        """Begin a tick: put tuned values in force, without a jump of the valve current."""
+        if self.tuning.latch() and self._reu.status.is_on:
+            self._reu.status.fade.begins = 1
 
     def raise_diverged(self, state: int) -> NoReturn:
         """Raise `SimulationDiverged` for a state, given by its index in `kernels.BODY`."""
@@ -281,6 +311,22 @@ class SmartActuator:
         for rows, restored in zip(self._saved, found):
             rows[:] = restored
         self.tuning.restore(snapshot[offset:])
+
+
+def start_mode(config: ActuatorConfig) -> int:
+    """
+    Return the mode in which an actuator starts.
+
+    Raises
+    ------
+    ConfigError
+        The wiring does not have the configured mode.
+
+    """
+    reu = config.sheet.reu
+    if config.mode is None:
+        return first_mode(reu)
+    return mode_of(config.mode, reu, f'{config.name}: mode')
 
 
 def participant_digest(actuator: SmartActuator, timing: Timing) -> str:

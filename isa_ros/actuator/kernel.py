@@ -14,7 +14,8 @@ from isa_ros.core.timebase import FORCE_WINDOWS, PLANT_STEP
 from isa_ros.loads.forces import LOAD_STATE, OWN_LOAD, own_load_force
 from isa_ros.loads.port import load_acceleration
 from isa_ros.plant.plant import PLANT, plant_rates, PLANT_STATE, read_sensors, settle
-from isa_ros.reu.cascade import cascade_step, is_due, REU
+from isa_ros.reu.cascade import cascade_step, is_due, position_reference, REU
+from isa_ros.reu.device import write_device
 import numpy as np
 
 TOTALS = np.dtype([
@@ -119,10 +120,11 @@ def write_sample(measured, plant, reu, sample):
     sample.spool = measured.spool
     sample.spool_velocity = plant.valve.velocity
     sample.current = measured.current
-    sample.position_reference = reu.setpoint.position
+    sample.position_reference = position_reference(reu)
     sample.force_reference = reu.force_reference
     sample.spool_reference = reu.spool_reference
     sample.current_reference = reu.current_reference
+    write_device(reu.status, sample)
 
 
 @kernel

@@ -17,6 +17,12 @@ Records = NDArray[np.void]
 HAS_SETPOINT = 1
 HAS_ENABLE = 2
 HAS_GAINS = 4
+HAS_MODE = 8
+HAS_CLEAR_FAULT = 16
+HAS_QUICK_STOP = 32
+HAS_REFERENCE = 64
+EVERY_KIND = 127
+"""All bits of `COMMAND.kinds`."""
 
 START = np.dtype([
     ('position', '<f8'),         # m | rad
@@ -34,6 +40,8 @@ COMMAND = np.dtype([
     ('effort', '<f8'),         # feed-forward, N | Nm
     ('stiffness', '<f8'),      # N/m | Nm/rad; NaN keeps the gain in force
     ('damping', '<f8'),        # Ns/m | Nms/rad; NaN keeps the gain in force
+    ('mode', '<i8'),           # of `isa_ros.core.device`: the new one, or that of the reference
+    ('reference', '<f8'),      # of that mode: amplifier A | m of spool | Pa of difference
 ])
 """Command to one actuator, in effect from a tick boundary on."""
 
@@ -55,6 +63,12 @@ SAMPLE = np.dtype([
     ('current_reference', '<f8'),   # amplifier (parallel) current, A
     ('supply_volume', '<f8'),       # oil drawn from the supply since t = 0, m3
     ('supply_flow', '<f8'),         # its mean over the tick, m3/s
+    ('device_state', '<f8'),        # number of `isa_ros.core.device.STATES`
+    ('device_mode', '<f8'),         # of `MODES`, in force or for the next enable
+    ('device_event', '<f8'),        # of `EVENTS`: the last one that changed the state or mode
+    ('warnings', '<f8'),            # bits of the conditions beyond their warning level
+    ('trips', '<f8'),               # bits of the conditions that tripped since the last clear
+    ('state_since', '<f8'),         # time of the last change of these five, s
 ])
 """Values one actuator reports at the end of a tick."""
 
@@ -63,7 +77,8 @@ SAMPLE_UNITS = {
     'pressure_a': 'Pa', 'pressure_b': 'Pa', 'spool': 'm', 'spool_velocity': 'm/s',
     'current': 'A', 'position_reference': 'm | rad', 'force_reference': 'N | Nm',
     'spool_reference': 'm', 'current_reference': 'A', 'supply_volume': 'm3',
-    'supply_flow': 'm3/s'}
+    'supply_flow': 'm3/s', 'device_state': '1', 'device_mode': '1', 'device_event': '1',
+    'warnings': '1', 'trips': '1', 'state_since': 's'}
 """Unit of each field of a `SAMPLE`: of a linear actuator | of a rotary one."""
 
 LOAD_PORT = np.dtype([

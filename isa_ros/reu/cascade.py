@@ -9,26 +9,21 @@ equation 8, current: equation 10): it only samples and holds its reference.
     position 1 kHz -> force 5 kHz -> [spool 5 kHz ->] current 10 kHz
 """
 
+from isa_ros.core.device import CURRENT, FORCE, POSITION, PRESSURE
 from isa_ros.core.kernel import kernel
+from isa_ros.core.timebase import PLANT_STEP
 from isa_ros.reu.block import BLOCK, block_record, BLOCK_STATE, block_step, Pid, rest
+from isa_ros.reu.bumpless import faded, inner_reference
+from isa_ros.reu.device import DEVICE, device_record, DEVICE_STATE, device_step, PROTECTION
 from isa_ros.reu.feedback_linearisation import (
     FeedbackLinearisation, LINEARISATION, linearisation_record, linearising_step)
 from isa_ros.reu.impedance import force_reference, IMPEDANCE, Impedance, impedance_record, SETPOINT
 from isa_ros.reu.lead_lag import LEAD_LAG, lead_lag_record, LEAD_LAG_STATE, lead_lag_step, LeadLag
 from isa_ros.reu.schedule import schedule_table
 from isa_ros.reu.speed import SPEED, speed_record, SPEED_STATE, speed_step
-from isa_ros.reu.wiring import delay_steps, Held, loop_steps, Off, Reu
+from isa_ros.reu.wiring import (
+    delay_steps, IMPEDES, KINDS, LEADS_AND_LAGS, LINEARISES, loop_steps, OFF, PID, Reu)
 import numpy as np
-
-OFF = 0
-HELD = 1
-PID = 2
-IMPEDES = 3
-LINEARISES = 4
-LEADS_AND_LAGS = 5
-_KINDS: dict[type, int] = {
-    Off: OFF, Held: HELD, Pid: PID, Impedance: IMPEDES, FeedbackLinearisation: LINEARISES,
-    LeadLag: LEADS_AND_LAGS}
 
 REU = np.dtype([
     ('speed', SPEED), ('impedance', IMPEDANCE), ('position', BLOCK), ('force', BLOCK),
@@ -42,6 +37,7 @@ REU = np.dtype([
     ('stroke', 'f8'),
     ('k_spool', 'f8'),    # m of spool per series-scale A
     ('parallel', 'f8'),   # amplifier A per series-scale A
+    ('rules', DEVICE),
 ])
 MEASURED = np.dtype([
     ('position', 'f8'), ('force', 'f8'), ('pressure_a', 'f8'), ('pressure_b', 'f8'),
@@ -62,6 +58,8 @@ REU_STATE = np.dtype([
     ('current_reference', 'f8'),   # amplifier A
     ('drive', 'f8'),               # output of the blocks: A, or V
     ('amplifier', 'f8'),           # the drive after the computational delay
+    ('status', DEVICE_STATE),
+    ('protection', PROTECTION),
 ])
 
 
@@ -80,7 +78,7 @@ def reu_record(
     row['speed'] = speed_record(reu.speed)
     for name in ('position', 'force', 'pressure', 'spool', 'current'):
         sheet = getattr(reu, name)
-        row[f'{name}_kind'] = _KINDS[type(sheet)]
+        row[f'{name}_kind'] = KINDS[type(sheet)]
         if isinstance(sheet, Pid):
             row[name] = block_record(sheet, schedule_table(sheet.gain_schedule, stiffness))
     if isinstance(reu.position, Impedance):
@@ -94,6 +92,7 @@ def reu_record(
         row[f'{name}_steps'] = period
     row['offset_steps'], row['delay_steps'] = offset_steps, delay_steps(reu, steps['current'])
     row['stroke'], row['k_spool'], row['parallel'] = stroke, k_spool, parallel
+    row['rules'] = device_record(reu.device, reu, steps['current'] * PLANT_STEP)
     return record
 
 
@@ -111,26 +110,34 @@ def is_due(step, period_steps, offset_steps):
 
 
 @kernel
+def position_reference(state):
+    """Return the position (m | rad) that the position block follows: the setpoint's or a stop's."""
+    return (state.status.stop if state.status.is_stopping else state.setpoint).position
+
+
+@kernel
 def position_reference_inwards(step, reu, state):
-    """Run the position block if it is on and due; return the next block's reference."""
-    if reu.position_kind == OFF:
-        return state.setpoint.effort
+    """Run the position block if it acts and is due; return the next block's reference."""
+    device = state.status
+    if device.acting < POSITION:
+        return inner_reference(device.acting, reu, state)
     if is_due(step, reu.position_steps, reu.offset_steps):
+        setpoint = device.stop if device.is_stopping else state.setpoint
         measured, velocity = state.measured.position, state.speed.velocity
         if reu.position_kind == IMPEDES:
             state.position.output = force_reference(
-                state.setpoint, measured, velocity, reu.impedance)
+                setpoint, measured, velocity, reu.impedance)
         else:
-            block_step(state.setpoint.position, measured, state.setpoint.velocity, measured,
+            block_step(setpoint.position, measured, setpoint.velocity, measured,
                        reu.stroke, reu.position, state.position)
     return state.position.output
 
 
 @kernel
 def force_reference_inwards(step, reference, reu, state):
-    """Run the force and pressure blocks that are on and due; return the next block's reference."""
-    place, velocity = state.measured.position, state.speed.velocity
-    if reu.force_kind != OFF:
+    """Run the force and pressure blocks that act and are due; return the next one's reference."""
+    place, velocity, acting = state.measured.position, state.speed.velocity, state.status.acting
+    if reu.force_kind != OFF and acting >= FORCE:
         state.force_reference = reference
         if is_due(step, reu.force_steps, reu.offset_steps):
             if reu.force_kind == LINEARISES:
@@ -140,7 +147,7 @@ def force_reference_inwards(step, reference, reu, state):
                 block_step(reference, state.measured.force, velocity, place, reu.stroke,
                            reu.force, state.force)
         reference = state.force.output
-    if reu.pressure_kind != OFF:
+    if reu.pressure_kind != OFF and acting >= PRESSURE:
         if is_due(step, reu.pressure_steps, reu.offset_steps):
             block_step(reference, state.measured.pressure_a - state.measured.pressure_b,
                        velocity, place, reu.stroke, reu.pressure, state.pressure)
@@ -151,11 +158,11 @@ def force_reference_inwards(step, reference, reu, state):
 @kernel
 def spool_block(step, reference, reu, state):
     """
-    Run the spool block if it is on and due; return the series-scale current, in A.
+    Run the spool block if it acts and is due; return the series-scale current, in A.
 
-    ``reference`` is the spool's in m, or that current if the block is off.
+    ``reference`` is the spool's in m, or that current without the block.
     """
-    if reu.spool_kind == OFF:
+    if reu.spool_kind == OFF or state.status.acting == CURRENT:
         state.spool_reference = reu.k_spool * reference
         return reference
     if is_due(step, reu.spool_steps, reu.offset_steps):
@@ -170,17 +177,23 @@ def spool_block(step, reference, reu, state):
 
 @kernel
 def cascade_step(step, reu, state):
-    """Run every block that is due at plant step ``step`` on ``state.measured``."""
+    """Run the device and every block that is due at plant step ``step`` on ``state.measured``."""
+    device = state.status
+    device_step(step, reu, state)
     if is_due(step, reu.speed_steps, reu.offset_steps):
         speed_step(state.measured.position, reu.speed, state.speed)
     reference = position_reference_inwards(step, reu, state)
     reference = force_reference_inwards(step, reference, reu, state)
-    if state.setpoint.is_enabled == 0.0:
+    if not device.is_on:
         rest(state.position)
         rest(state.force)
         rest(state.pressure)
         reference = 0.0
-    state.current_reference = reu.parallel * spool_block(step, reference, reu, state)
+    series = spool_block(step, reference, reu, state)
+    if device.fade.begins or device.fade.is_on:
+        series = faded(
+            series, state.current_reference / reu.parallel, reu.rules.fade, device.fade)
+    state.current_reference = reu.parallel * series
     if reu.current_kind == LEADS_AND_LAGS:
         state.drive = lead_lag_step(
             state.current_reference, state.measured.current, reu.lead_lag, state.lead_lag)

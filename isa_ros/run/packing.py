@@ -12,13 +12,16 @@ from isa_ros.bag.packed import Layout, layout, Packed
 from isa_ros.core.atmosphere import ATMOSPHERE
 from isa_ros.core.kernel import kernel
 from isa_ros.core.record import floats
+from isa_ros.core.device import FIELDS
 from isa_ros.core.signals import COMMAND, Records, SAMPLE
+from isa_ros.core.timebase import NS_PER_SECOND, PLANT_STEP_NS
 from isa_ros.core.topic import KEPT, Qos, Topic
 from isa_ros.surroundings.supply import SUPPLY_SAMPLE
 from msg_adapters import (
-    actuator_messages, clock, coordinator_messages, event, fluid_pressure)
-from msg_adapters.actuator_messages import APPLIED_TOPICS, STATE_TOPICS, TOPICS
+    actuator_messages, clock, coordinator_messages, device, event, fluid_pressure)
+from msg_adapters.actuator_messages import KEPT_TOPICS, STATE_TOPICS, TOPICS
 from msg_adapters.applied_parameters import applied_parameters
+from msg_adapters.cdr import encode
 from msg_adapters.template import FIRST_VALUE, Prepared, Template, time_word
 import numpy as np
 
@@ -26,7 +29,8 @@ Messages = Sequence[bytes | None]
 """Serialised messages of one source in the order of its topics; None: no message at this tick."""
 
 _SAMPLE, _SUPPLY = tuple(SAMPLE.names or ()), tuple(SUPPLY_SAMPLE.names or ())
-_APPLIED = tuple(name for name in COMMAND.names or () if name != 'kinds')
+_APPLIED = ('is_enabled', 'position', 'velocity', 'effort', 'stiffness', 'damping', 'mode',
+            'reference', 'kinds')
 _PRESSURES = ('pressure_a', 'pressure_b')
 _FIRST_PRESSURE = _SAMPLE.index(_PRESSURES[0])
 _SUPPLY_PRESSURES = ('pressure', 'return_pressure')
@@ -63,7 +67,7 @@ class Names(NamedTuple):
 def topics_of_actuator(prefix: str) -> list[Topic]:
     """Return `TOPICS` below ``prefix`` with their qualities of service."""
     return [
-        Topic(f'{prefix}/{suffix}', type_, KEPT if (suffix, type_) in APPLIED_TOPICS else Qos())
+        Topic(f'{prefix}/{suffix}', type_, KEPT if (suffix, type_) in KEPT_TOPICS else Qos())
         for suffix, type_ in TOPICS]
 
 
@@ -101,7 +105,9 @@ def pack(instant, tick_start, gauge_zero, samples, applied, supplies, body, word
         values[at + 2], values[at + 3] = float(command.is_enabled), command.position
         values[at + 4], values[at + 5] = command.velocity, command.effort
         values[at + 6], values[at + 7] = command.stiffness, command.damping
-        at += 8
+        values[at + 8], values[at + 9] = float(command.mode), command.reference
+        values[at + 10] = float(command.kinds)
+        at += 11
     for m in range(len(supplies)):
         values[at], values[at + 1] = supplies[m, 0] + gauge_zero, supplies[m, 1] + gauge_zero
         at += 2
@@ -156,6 +162,7 @@ class Packer:
         self._template = Template([message for _, message in prepared])
         self._bytes = self._template.block.view(np.uint8)
         self._tuned: dict[int, bytes] = {}
+        self._status: dict[int, bytes] = {}
         self._layouts: dict[bytes, Layout] = {}
         self._bind()
 
@@ -196,6 +203,14 @@ class Packer:
         self._tuned = {
             row: applied_parameters(self._names.actuators[row][0], values, tick_start_ns)
             for row, values in tuned.items()} if tuned else {}
+        self._status = {
+            row: encode(device.status(name, self._device_of(row)))
+            for row, (name, _) in enumerate(self._names.actuators)
+            if self.has_status(row, t_ns, tick_start_ns)}
+
+    def _device_of(self, row: int) -> dict[str, float]:
+        sample = self._shown.samples[row]
+        return {field: float(sample[field]) for field in FIELDS}
 
     def all_messages(self, events: Sequence[bytes] = ()) -> Packed:
         """Return all messages of the packed instant, in the order of `topics`."""
@@ -204,11 +219,13 @@ class Packer:
         if where is None:
             where = self._layouts[key] = self._layout()
         packed = Packed(self._bytes, where)
-        if not (events or self._tuned):
+        if not (events or self._tuned or self._status):
             return packed
         extra = [(self._index[event.TOPIC[0]], data) for data in events]
         extra += [(self._index[f'/{self._names.actuators[row][0]}/{_PARAMETERS}'], data)
                   for row, data in self._tuned.items()]
+        extra += [(self._index[f'/{self._names.actuators[row][0]}/{_DEVICE}'], data)
+                  for row, data in self._status.items()]
         return Packed.of(sorted([*packed, *extra], key=lambda message: message[0]))
 
     def _layout(self) -> Layout:
@@ -227,12 +244,22 @@ class Packer:
         """Return the messages of one actuator in the order of `TOPICS`."""
         name = self._names.actuators[row][0]
         setpoint = self._message(f'/{name}/{_SETPOINT}') if self._kinds[row] else None
-        return [self._tuned.get(row), setpoint,
+        return [self._tuned.get(row), setpoint, self._status.get(row),
                 *(self._message(f'/{name}/{suffix}') for suffix, _ in STATE_TOPICS)]
 
     def has_applied(self, row: int) -> bool:
         """Return whether a command of an actuator took effect at the start of the last tick."""
         return bool(self._kinds[row])
+
+    def has_status(self, row: int, t_ns: int, tick_start_ns: int) -> bool:
+        """
+        Return whether a tick has a message of an actuator's device.
+
+        It is one in which the status has changed, or a second of simulated time ended; t = 0.
+        """
+        since = self._samples[row, _SINCE] * NS_PER_SECOND
+        return bool(since > tick_start_ns - _HALF_STEP_NS
+                    or t_ns // NS_PER_SECOND != tick_start_ns // NS_PER_SECOND or t_ns == 0)
 
     def of(self, topics: Sequence[Topic]) -> list[bytes]:
         """Return the messages of some topics."""
@@ -251,3 +278,6 @@ class Packer:
 
 _SETPOINT = actuator_messages.APPLIED_SETPOINT[0]
 _PARAMETERS = actuator_messages.APPLIED_PARAMETERS[0]
+_DEVICE = actuator_messages.DEVICE[0]
+_SINCE = _SAMPLE.index('state_since')
+_HALF_STEP_NS = 0.5 * PLANT_STEP_NS

@@ -142,11 +142,12 @@ class ActuatorNode(Node):
         """Publish applied commands, and the state where there is a subscription."""
         tuned = self.actuator.applied_parameters
         has_subscribers = self.outlet.has_subscribers()
-        if not (has_subscribers or tuned or self.actuator.applied is not None):
-            return
         t_ns = self.actuator.t_ns
-        self._packer.pack(
-            t_ns, max(0, t_ns - self.setup.timing.step_ns), {0: tuned} if tuned else {})
+        start_ns = max(0, t_ns - self.setup.timing.step_ns)
+        if not (has_subscribers or tuned or self.actuator.applied is not None
+                or self._packer.has_status(0, t_ns, start_ns)):
+            return
+        self._packer.pack(t_ns, start_ns, {0: tuned} if tuned else {})
         self.outlet.publish(self._packer.of_actuator(0))
 
     def serve(self) -> None:
