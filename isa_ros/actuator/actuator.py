@@ -10,6 +10,7 @@ import hashlib
 from typing import NoReturn, Protocol
 
 from isa_ros.actuator import kernel as kernels
+from isa_ros.actuator.device import mode_after, refusal_of, start_mode
 from isa_ros.actuator.inbox import merge, write_applied
 from isa_ros.actuator.rows import Memory, memory_of
 from isa_ros.actuator.setpoint_range import SetpointRange
@@ -17,13 +18,12 @@ from isa_ros.actuator.sheet import actuator_record, ActuatorSheet
 from isa_ros.actuator.tunable import GAINS
 from isa_ros.actuator.tuning import gain_after, gains_command, Tuning
 from isa_ros.core.saved_state import broken_number, restored_rows, TIME_BYTES, time_of
-from isa_ros.core.signals import COMMAND, HAS_ENABLE, HAS_MODE, HAS_SETPOINT, LOAD_PORT
+from isa_ros.core.signals import COMMAND, HAS_ENABLE, HAS_SETPOINT, LOAD_PORT
 from isa_ros.core.timebase import FORCE_WINDOWS, PLANT_STEP_NS, steps_in
 from isa_ros.errors import ConfigError, SimulationDiverged
 from isa_ros.loads.sheets import local_port, LocalLoad, own_record, static_force
 from isa_ros.plant.plant import read_sensors, rest_pressures
 from isa_ros.reu.cascade import initial_gains
-from isa_ros.reu.wiring import first_mode, mode_of
 import numpy as np
 
 
@@ -112,7 +112,7 @@ class SmartActuator:
         self._port, self._pending = _record(self.memory.ports), _record(self.memory.pending)
         self._applied = _record(self.memory.applied)
         self._incoming, self._commands = np.zeros(1, LOAD_PORT), np.zeros(1, COMMAND)
-        self._first_mode = start_mode(config)
+        self._first_mode = start_mode(config.name, config.mode, config.sheet.reu)
         self.digest = self._hash(constants)
         self.setpoint_range = SetpointRange(config.name, config.sheet, config.beyond_range)
         """The range of its setpoints, for those that come from outside."""
@@ -206,6 +206,20 @@ class SmartActuator:
         self._commands[0] = command
         merge(_record(self._commands), self._pending)
 
+    def admit(self, command: np.void) -> str:
+        """
+        Check and accept a command from outside; return what was limited, or ''.
+
+        Raises
+        ------
+        SetpointError
+            As `SetpointRange.admit`; nothing is accepted.
+
+        """
+        limited = self.setpoint_range.admit(command, self.mode)
+        self.accept(command)
+        return limited
+
     def tune(self, values: Mapping[str, float]) -> None:
         """
         Accept new values of `tunables`, SI, all or none; they take effect at the next tick.
@@ -219,13 +233,11 @@ class SmartActuator:
     @property
     def mode(self) -> int:
         """Return the mode as it will be at the next tick, a number of `isa_ros.core.device`."""
-        own = self._pending if int(self._pending.kinds) & HAS_MODE else None
-        return int(self._reu.status.requested_mode if own is None else own.mode)
+        return mode_after(self._pending, self._reu)
 
-    @property
-    def state(self) -> int:
-        """Return the state of the device, a number of `isa_ros.core.device`."""
-        return int(self._reu.status.state)
+    def refusal(self, command: np.void) -> str:
+        """Return why a request of enable, clear or stop would change nothing, or ''."""
+        return refusal_of(command, self._pending, self._reu)
 
     def parameter(self, name: str) -> float:
         """Return a tunable value as it will be at the next tick, set by parameter or command."""
@@ -311,22 +323,6 @@ class SmartActuator:
         for rows, restored in zip(self._saved, found):
             rows[:] = restored
         self.tuning.restore(snapshot[offset:])
-
-
-def start_mode(config: ActuatorConfig) -> int:
-    """
-    Return the mode in which an actuator starts.
-
-    Raises
-    ------
-    ConfigError
-        The wiring does not have the configured mode.
-
-    """
-    reu = config.sheet.reu
-    if config.mode is None:
-        return first_mode(reu)
-    return mode_of(config.mode, reu, f'{config.name}: mode')
 
 
 def participant_digest(actuator: SmartActuator, timing: Timing) -> str:
