@@ -10,7 +10,7 @@ import hashlib
 from typing import NoReturn, Protocol
 
 from isa_ros.actuator import kernel as kernels
-from isa_ros.actuator.device import mode_after, refusal_of, start_mode
+from isa_ros.actuator.device import mode_after, mode_command, refusal_of, start_mode
 from isa_ros.actuator.inbox import merge, write_applied
 from isa_ros.actuator.rows import Memory, memory_of
 from isa_ros.actuator.setpoint_range import SetpointRange
@@ -91,6 +91,7 @@ class SmartActuator:
     def __init__(
             self, config: ActuatorConfig, timing: Timing, memory: Memory | None = None) -> None:
         self.name = config.name
+        self.sheet = config.sheet
         self.is_rotary = config.sheet.is_rotary
         self.memory = memory_of(1) if memory is None else memory
         """Its row in the memory of the tick kernel."""
@@ -118,6 +119,7 @@ class SmartActuator:
         """The range of its setpoints, for those that come from outside."""
         self.tuning = Tuning(config.name, config.sheet, offset_steps, constants)
         """Tuned parameters, accepted and in force."""
+        self._changed_mode: str | None = None
         self.start(config.initial_position, static_force(config.load), PAPER_SUPPLY, 0.0)
 
     def _hash(self, constants: np.ndarray) -> str:
@@ -140,6 +142,8 @@ class SmartActuator:
         for rows in self._saved:
             rows.fill(0)
         self.accept(gains_command(self.tuning.reset()))
+        if self._changed_mode is not None:
+            self.change_mode(self._changed_mode)
         if self._config.load is not None:
             self.memory.ports[:] = local_port(self._config.load, position)
         self._port.supply_pressure = supply_pressure
@@ -219,6 +223,19 @@ class SmartActuator:
         limited = self.setpoint_range.admit(command, self.mode)
         self.accept(command)
         return limited
+
+    def change_mode(self, mode: str) -> None:
+        """
+        Change the mode from the next tick on, and again at the start of another run.
+
+        Raises
+        ------
+        ConfigError
+            The mode does not exist, or the wiring does not have it.
+
+        """
+        self.accept(mode_command(mode, self.sheet.reu))
+        self._changed_mode = mode
 
     def tune(self, values: Mapping[str, float]) -> None:
         """

@@ -2,7 +2,7 @@
 
 from isa_ros.core.device import (
     CLEAR, DISABLE, DISABLED, ENABLE, ENABLED, FAULT, INITIALISING, state_name, STOP)
-from isa_ros.core.signals import HAS_CLEAR_FAULT, HAS_ENABLE, HAS_MODE, HAS_QUICK_STOP
+from isa_ros.core.signals import COMMAND, HAS_CLEAR_FAULT, HAS_ENABLE, HAS_MODE, HAS_QUICK_STOP
 from isa_ros.reu.device import REACTS_BY_QUICK_STOP, TRANSITIONS
 from isa_ros.reu.wiring import first_mode, mode_of, Reu
 import numpy as np
@@ -22,6 +22,13 @@ def start_mode(name: str, mode: str | None, reu: Reu) -> int:
 
     """
     return first_mode(reu) if mode is None else mode_of(mode, reu, f'{name}: mode')
+
+
+def mode_command(mode: str, reu: Reu) -> np.void:
+    """Return the `COMMAND` row that changes the mode; raises as `mode_of`."""
+    command: np.void = np.zeros(1, COMMAND)[0]
+    command['kinds'], command['mode'] = HAS_MODE, mode_of(mode, reu)
+    return command
 
 
 def mode_after(pending: np.record, reu: np.record) -> int:

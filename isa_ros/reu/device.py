@@ -191,11 +191,15 @@ def stops(device_state):
 
 @kernel
 def begin_stop(reference, reu, state):
-    """Begin to stop; ``reference`` is that of the position block, with which it takes over."""
+    """
+    Begin to stop; ``reference`` is the force (N | Nm) with which the position block takes over.
+
+    An impedance keeps the effort of the setpoint, which bears the load; without one the force.
+    """
     own, setup = state.status, reu.rules
     hold_here(own.stop, state.measured.position)
     if reu.position_kind == IMPEDES:
-        own.stop.effort = reference  # goes on bearing the load
+        own.stop.effort = state.setpoint.effort if own.acting >= FORCE else reference
     if setup.ramps > 0.0:
         own.stop.velocity = state.speed.velocity
         own.stop_steps += abs(own.stop.velocity) / (setup.deceleration * setup.period)
