@@ -24,5 +24,5 @@ class Device(Parameters):
 
 BEFORE = Device(
     initialisation_ms=0.0, quick_stop='ramp', quick_stop_deceleration=10.0,
-    quick_stop_hold_ms=200.0, fade_ms=20.0)
+    quick_stop_hold_ms=200.0, fade_ms=5.0)
 """Of a resolved configuration older than the device, which had none of its states."""

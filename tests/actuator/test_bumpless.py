@@ -68,7 +68,7 @@ def test_without_the_fade_the_same_changes_jump():
         own.accept(setpoint(effort=2000.0))
         own.change_mode('force')
     steps = []
-    for fade_ms in (20.0, 1e-3):
+    for fade_ms in (5.0, 1e-3):
         actuator = moving('isa_v5', fade_ms=fade_ms)
         currents(actuator, MOVING)
         force(actuator)
@@ -86,17 +86,17 @@ def test_the_current_does_not_jump_with_a_gain(name):
 
 
 def test_what_is_left_of_a_jump_fades_with_its_time_constant():
-    """A share e^-1 after 20 ms, nothing once it is below a nanoampere."""
+    """A share e^-1 after 5 ms, nothing once it is below a nanoampere."""
     actuator = moving('isa_v5')
     actuator.tune({'force.kp': 0.3 * actuator.parameter('force.kp')})
     currents(actuator, 1)
     fade = actuator.memory.reu['status']['fade'][0]
     first = float(fade['added'])
     assert abs(first) > 1e-6
-    currents(actuator, 200)
+    currents(actuator, 50)
     assert float(fade['added']) == pytest.approx(
-        first * np.exp(-1.0), rel=1e-12, abs=0.0)  # 200 products round to 200 eps = 4e-14
-    currents(actuator, 4000)
+        first * np.exp(-1.0), rel=1e-12, abs=0.0)  # 50 products round to 50 eps = 1e-14
+    currents(actuator, 1000)
     assert (float(fade['added']), int(fade['is_on'])) == (0.0, 0)
 
 
