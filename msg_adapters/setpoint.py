@@ -4,7 +4,8 @@ from collections.abc import Mapping, Sequence
 import math
 
 from isa_ros.core.device import MODES, REFERENCES
-from isa_ros.core.signals import COMMAND, EVERY_KIND, HAS_GAINS, HAS_REFERENCE, HAS_SETPOINT
+from isa_ros.core.signals import (
+    COMMAND, EVERY_KIND, HAS_ENABLE, HAS_GAINS, HAS_REFERENCE, HAS_SETPOINT)
 from isa_ros.core.suggest import listed
 from isa_ros.errors import SetpointError
 from msg_adapters.cdr_reader import decode
@@ -17,6 +18,7 @@ GAINS = ('stiffness', 'damping')
 _APPLIED = {'stiffness': 'stiffness', 'damping': 'damping', 'enabled': 'is_enabled',
             'mode': 'mode', 'reference': 'reference', 'changed': 'kinds'}
 """Entries of an applied setpoint, and their fields of a `COMMAND`."""
+_BEFORE_DEVICE = 4  # entries in a bag that was recorded before there were modes
 
 
 def applied_setpoint(name: str, columns: Mapping[str, int]) -> Prepared:
@@ -68,16 +70,19 @@ def applied_to_command(data: bytes, name: str) -> np.void:
     """
     message = decode(data, JointState)
     names = [name, *(f'{name}/{entry}' for entry in _APPLIED)]
-    if list(message.name) != names:
+    if list(message.name) not in (names, names[:_BEFORE_DEVICE]):
         raise SetpointError(
             f'{name}: applied setpoint names {listed(message.name)}, must name {listed(names)}')
     command = _command(message, name, names)
+    command['kinds'] = HAS_SETPOINT | HAS_ENABLE
+    values = dict(zip(_APPLIED, message.position[1:]))
     for entry, most in (('enabled', 1), ('mode', len(MODES) - 1), ('changed', EVERY_KIND)):
-        value = message.position[names.index(f'{name}/{entry}')]
+        value = values.get(entry, 0.0)
         if not (0 <= value <= most and value == int(value)):
             raise SetpointError(f'{name}/{entry} = {value}, must be a whole number <= {most}')
-        command[_APPLIED[entry]] = int(value)
-    command['reference'] = message.position[names.index(f'{name}/reference')]
+        if entry in values:
+            command[_APPLIED[entry]] = int(value)
+    command['reference'] = values.get('reference', 0.0)
     return command
 
 

@@ -58,4 +58,3 @@ def refusal_of(command: np.void, pending: np.record, reu: np.record) -> str:
         if event == CLEAR and not is_cause_gone:
             return 'the cause of the fault is not gone'
     return ''
-

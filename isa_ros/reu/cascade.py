@@ -111,7 +111,7 @@ def is_due(step, period_steps, offset_steps):
 
 @kernel
 def position_reference(state):
-    """Return the position (m | rad) that the position block follows: the setpoint's or a stop's."""
+    """Return the position (m | rad) that the position block follows: setpoint's or stop's."""
     return (state.status.stop if state.status.is_stopping else state.setpoint).position
 
 

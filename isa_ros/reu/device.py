@@ -29,7 +29,8 @@ from isa_ros.reu.wiring import first_mode, IMPEDES, possible_modes, Reu
 import numpy as np
 
 
-ALWAYS, AUTO_ENABLE, CAUSE_GONE, POSSIBLE = '', 'auto_enable', 'its cause is gone', 'it is possible'
+ALWAYS, AUTO_ENABLE = '', 'auto_enable'
+CAUSE_GONE, POSSIBLE = 'its cause is gone', 'it is possible'
 
 
 class Transition(NamedTuple):
@@ -39,7 +40,7 @@ class Transition(NamedTuple):
     event: int
     guard: str
     """A condition besides the event; '': none."""
-    next: int
+    following: int
     does: str
     """Effect on the actuator."""
 
@@ -114,7 +115,7 @@ def next_states() -> np.ndarray:
     for row in TRANSITIONS:
         for guard in _GUARDS:
             if row.guard == ALWAYS or row.guard.startswith('not ') != guard:
-                table[row.state, row.event, int(guard)] = row.next
+                table[row.state, row.event, int(guard)] = row.following
     return table.reshape(-1)
 
 

@@ -33,7 +33,7 @@ _SETPOINTS = {
 def state_table() -> list[str]:
     """Return the lines of the table of transitions."""
     return markdown([('state', 'event', 'if', 'next state', 'effect'), *(
-        (STATES[row.state], EVENTS[row.event], row.guard.replace('_', '\\_'), STATES[row.next],
+        (STATES[row.state], EVENTS[row.event], row.guard.replace('_', '\\_'), STATES[row.following],
          row.does) for row in TRANSITIONS)])
 
 
@@ -54,7 +54,7 @@ TABLES = {'states': state_table, 'events': event_table, 'modes': mode_table}
 
 
 def with_tables(page: str) -> str:
-    """Return a page with its tables, between ``<!-- table NAME -->`` and ``<!-- end -->``, anew."""
+    """Return a page with its tables anew, from ``<!-- table NAME -->`` to ``<!-- end -->``."""
     for name, table in TABLES.items():
         begin, _, rest = page.partition(f'<!-- table {name} -->\n')
         _, end, after = rest.partition('<!-- end -->\n')

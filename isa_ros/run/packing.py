@@ -10,10 +10,10 @@ from typing import NamedTuple
 
 from isa_ros.bag.packed import Layout, layout, Packed
 from isa_ros.core.atmosphere import ATMOSPHERE
+from isa_ros.core.device import FIELDS
 from isa_ros.core.kernel import kernel
 from isa_ros.core.record import floats
-from isa_ros.core.device import FIELDS
-from isa_ros.core.signals import COMMAND, Records, SAMPLE
+from isa_ros.core.signals import Records, SAMPLE
 from isa_ros.core.timebase import NS_PER_SECOND, PLANT_STEP_NS
 from isa_ros.core.topic import KEPT, Qos, Topic
 from isa_ros.surroundings.supply import SUPPLY_SAMPLE

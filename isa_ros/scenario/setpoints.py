@@ -140,7 +140,8 @@ def _event(
             raise ConfigError(
                 f'{place}.{name} is not used: a setpoint needs its position (or {HOLD!r})')
     if 'position' not in tree and device == DeviceStep():
-        raise ConfigError(place.has('needs a position, or a key of the device such as enabled or mode'))
+        raise ConfigError(
+            place.has('needs a position, or a key of the device such as enabled or mode'))
     gains = {name: _gain(tree, name, place) for name in _GAINS}
     setpoint = _setpoint(tree, place, actuator) if 'position' in tree else None
     motion = None if setpoint is None else _motion(tree, place, run, actuator, setpoint)

@@ -1,4 +1,4 @@
-"""Setpoints of all kinds to an actuator that runs: a defined state after each, one line at most."""
+"""Setpoints of all kinds to a running actuator: a defined state, and one line at most."""
 
 import math
 import random

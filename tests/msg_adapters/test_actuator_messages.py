@@ -38,7 +38,8 @@ def test_state_topics_come_sorted():
 
 def test_every_topic_but_those_with_texts_is_prepared():
     """Tuned parameters and the device are encoded as they come: their lengths vary."""
-    assert {'applied_parameters', 'device', *of_actuator('hip', False)} == {suffix for suffix, _ in TOPICS}
+    assert {'applied_parameters', 'device', *of_actuator('hip', False)} == {
+        suffix for suffix, _ in TOPICS}
 
 
 @pytest.mark.parametrize('suffix', [suffix for suffix, _ in STATE_TOPICS])

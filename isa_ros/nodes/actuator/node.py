@@ -201,7 +201,7 @@ class ActuatorNode(Node):
     def _request(self, response: Any, what: str, **request: bool) -> None:
         """Accept a request where the state of the device has a transition for it."""
         command = np.zeros(1, COMMAND)[0]
-        fill_command(self.get_name(), Setpoint(**request), command)
+        fill_command(self.get_name(), Setpoint()._replace(**request), command)
         refusal = self.actuator.refusal(command)
         if not refusal:
             self.actuator.accept(command)
