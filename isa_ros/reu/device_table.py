@@ -33,8 +33,8 @@ _SETPOINTS = {
 def state_table() -> list[str]:
     """Return the lines of the table of transitions."""
     return markdown([('state', 'event', 'if', 'next state', 'effect'), *(
-        (STATES[row.state], EVENTS[row.event], row.guard.replace('_', '\\_'), STATES[row.following],
-         row.does) for row in TRANSITIONS)])
+        (STATES[row.state], EVENTS[row.event], row.guard.replace('_', '\\_'),
+         STATES[row.following], row.does) for row in TRANSITIONS)])
 
 
 def event_table() -> list[str]:
