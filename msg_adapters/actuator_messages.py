@@ -2,7 +2,8 @@
 
 from collections.abc import Mapping
 
-from msg_adapters import applied_parameters, device, fluid_pressure, joint_state, setpoint, wrench
+from msg_adapters import (
+    applied_parameters, device, fluid_pressure, joint_state, setpoint, temperature, wrench)
 from msg_adapters.template import Prepared
 
 STATE_TOPICS = (
@@ -27,6 +28,9 @@ KEPT_TOPICS = (*APPLIED_TOPICS, DEVICE)
 """Topics whose last messages a later subscription receives too."""
 
 TOPICS = (*KEPT_TOPICS, *STATE_TOPICS)
+
+TEMPERATURE = ('temperature', temperature.TYPE)
+"""(topic suffix, type) of the oil's temperature: once a second, of actuators that get warm."""
 
 
 def prepared(

@@ -4,11 +4,12 @@ diagnostic_msgs/DiagnosticStatus: state, mode and reason of an actuator's device
 It is published on ``~/device`` on change and once a second of simulated time.
 """
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 
 from diagnostic_msgs.msg import DiagnosticStatus, KeyValue
+from isa_ros.core.conditions import conditions
 from isa_ros.core.device import (
-    CONDITIONS, event_name, FAULT, FAULT_REACTION, mode_name, QUICK_STOP, state_name)
+    event_name, FAULT, FAULT_REACTION, mode_name, QUICK_STOP, state_name)
 
 TYPE = 'diagnostic_msgs/msg/DiagnosticStatus'
 
@@ -23,13 +24,9 @@ REASONS: Mapping[str, str] = {
 _REMEDY = 'disabled until ~/clear_fault, which needs its cause to be gone'
 
 
-def words_of(bits: float, conditions: Sequence[str] = CONDITIONS) -> str:
-    """Return the names of the conditions of a bit set; '' for none."""
-    names = []
-    for bit in range(int(bits).bit_length()):
-        if int(bits) >> bit & 1:
-            names.append(conditions[bit] if bit < len(conditions) else f'condition {bit}')
-    return ', '.join(names)
+def words_of(bits: float) -> str:
+    """Return the names of the conditions of a bit set in words; '' for none."""
+    return ', '.join(name.replace('_', ' ') for name in conditions(bits))
 
 
 def status(name: str, sample: Mapping[str, float]) -> DiagnosticStatus:
@@ -42,12 +39,15 @@ def status(name: str, sample: Mapping[str, float]) -> DiagnosticStatus:
     number = int(sample['device_state'])
     state, mode = state_name(number), mode_name(sample['device_mode'])
     tripped, warned = words_of(sample['trips']), words_of(sample['warnings'])
-    reason = tripped or REASONS[event_name(sample['device_event'])]
+    is_fault = number in (FAULT_REACTION, FAULT)
+    reason = tripped if tripped and is_fault else REASONS[event_name(sample['device_event'])]
     level, message = DiagnosticStatus.OK, f'{state}, mode {mode}: {reason}'
-    if number in (QUICK_STOP, FAULT_REACTION) or warned:
+    if number in (QUICK_STOP, FAULT_REACTION) or warned or tripped:
         level = DiagnosticStatus.WARN
     if number == FAULT:
         level, message = DiagnosticStatus.ERROR, f'{state}: {reason}; {_REMEDY}'
+    if tripped and not is_fault:
+        message += f'; reacts to {tripped}'
     if warned:
         message += f'; warning: {warned}'
     values = {

@@ -3,7 +3,8 @@
 from isa_ros.core.device import (
     CLEAR, DISABLE, DISABLED, ENABLE, ENABLED, FAULT, INITIALISING, state_name, STOP)
 from isa_ros.core.signals import COMMAND, HAS_CLEAR_FAULT, HAS_ENABLE, HAS_MODE, HAS_QUICK_STOP
-from isa_ros.reu.device import REACTS_BY_QUICK_STOP, TRANSITIONS
+from isa_ros.reu.device import TRANSITIONS
+from isa_ros.reu.protection import is_cause_gone
 from isa_ros.reu.wiring import first_mode, mode_of, Reu
 import numpy as np
 
@@ -37,13 +38,14 @@ def mode_after(pending: np.record, reu: np.record) -> int:
     return int(own)
 
 
-def refusal_of(command: np.void, pending: np.record, reu: np.record) -> str:
+def refusal_of(
+        command: np.void, pending: np.record, constants: np.record, reu: np.record) -> str:
     """Return why a request of enable, clear or stop would change nothing, or ''."""
     kinds, state = int(command['kinds']), int(reu.status.state)
     if state == INITIALISING and reu.status.auto_enable:
         state = ENABLED
-    is_cause_gone = reu.protection.reaction < REACTS_BY_QUICK_STOP
-    if int(pending.kinds) & HAS_CLEAR_FAULT and is_cause_gone and state == FAULT:
+    is_gone = is_cause_gone(constants.protection, reu.protection)
+    if int(pending.kinds) & HAS_CLEAR_FAULT and is_gone and state == FAULT:
         state = DISABLED
     if int(pending.kinds) & HAS_ENABLE and state in (DISABLED, ENABLED):
         state = ENABLED if pending.is_enabled else DISABLED
@@ -55,6 +57,6 @@ def refusal_of(command: np.void, pending: np.record, reu: np.record) -> str:
         if not any(row.state == state and row.event == event for row in TRANSITIONS):
             states = [state_name(row.state) for row in TRANSITIONS if row.event == event]
             return f'the state is {state_name(state)}, {what} needs {" or ".join(states)}'
-        if event == CLEAR and not is_cause_gone:
+        if event == CLEAR and not is_gone:
             return 'the cause of the fault is not gone'
     return ''

@@ -12,6 +12,7 @@ from isa_ros.core.kernel import kernel
 from isa_ros.core.signals import (
     EVERY_KIND, HAS_ENABLE, HAS_GAINS, HAS_MODE, HAS_REFERENCE, HAS_SETPOINT)
 from isa_ros.reu.device import hold_here
+from isa_ros.reu.protection import feed
 
 WITH_GAINS = HAS_SETPOINT | HAS_GAINS
 """Kinds of commands that may contain gains."""
@@ -79,6 +80,7 @@ def latch(pending, reu, applied):
         setpoint.velocity = pending.velocity
         setpoint.effort = pending.effort
         setpoint.is_reference = 0.0
+        feed(reu.protection)
     if kinds & WITH_GAINS:
         if not math.isnan(pending.stiffness):
             setpoint.stiffness = pending.stiffness

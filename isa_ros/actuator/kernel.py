@@ -7,31 +7,38 @@ of floats (`BODY`), so that the integrator sees the same memory as a flat array.
 
 import math
 
+from isa_ros.actuator.energy import add_energies, stored_elastically
+from isa_ros.actuator.heat import take_heat
 from isa_ros.actuator.inbox import latch, merge
 from isa_ros.actuator.states import write_states
 from isa_ros.core.kernel import kernel
 from isa_ros.core.timebase import FORCE_WINDOWS, PLANT_STEP
 from isa_ros.loads.forces import LOAD_STATE, OWN_LOAD, own_load_force
 from isa_ros.loads.port import load_acceleration
-from isa_ros.plant.plant import PLANT, plant_rates, PLANT_STATE, read_sensors, settle
-from isa_ros.reu.cascade import cascade_step, is_due, position_reference, REU
+from isa_ros.plant.energy import ENERGIES
+from isa_ros.plant.plant import exact_force, PLANT, plant_rates, PLANT_STATE, sense, settle
+from isa_ros.plant.thermal import warm
+from isa_ros.reu.cascade import cascade_step, is_due, REU
 from isa_ros.reu.device import write_device
+from isa_ros.reu.protection import protect, setpoint_in_force
 import numpy as np
 
 TOTALS = np.dtype([
     ('impulse', 'f8'),          # integral of the sensor force, Ns | Nms
     ('supply_volume', 'f8'),    # drawn from the supply, m3
     ('return_volume', 'f8'),    # given to the return, m3
+    ('energies', ENERGIES),
 ])
 BODY = np.dtype([('plant', PLANT_STATE), ('load', LOAD_STATE), ('totals', TOTALS)])
 """Every continuous state of an actuator and its load copy; floats only."""
 
 STATE_SIZE = BODY.itemsize // 8
+TOTALS_AT = STATE_SIZE - TOTALS.itemsize // 8  # no rate depends on the totals, the last states
 BODIES = 2  # the state and a stage of its integration
 STAGES = 4
 NOTHING = 1e-100  # any unit: smaller states are set to zero, since denormal arithmetic is slow
 
-ACTUATOR = np.dtype([('plant', PLANT), ('reu', REU), ('load', OWN_LOAD)])
+ACTUATOR = np.dtype([('plant', PLANT), ('reu', REU), ('load', OWN_LOAD), ('noise_key', 'u8')])
 """Every constant of one actuator, SI."""
 
 
@@ -60,7 +67,8 @@ def body_rates(tau, y, drive, port, actuator, rates):
     """Write the derivative of one `BODY` into ``rates``."""
     force, q_p, q_t = plant_rates(
         y.plant, y.load.position, y.load.velocity, drive,
-        port.supply_pressure, port.return_pressure, actuator.plant, rates.plant)
+        port.supply_pressure, port.return_pressure, actuator.plant, rates.plant,
+        rates.totals.energies)
     own = own_load_force(y.load, port.x0, actuator.load, rates.load)
     rates.load.position = y.load.velocity
     rates.load.velocity = load_acceleration(
@@ -78,13 +86,13 @@ def body_step(h, tau, drive, port, actuator, bodies, rates, y, k):
     ``bodies[1]`` holds the stage; ``y`` and ``k`` are the flat views of ``bodies``, ``rates``.
     """
     body_rates(tau, bodies[0], drive, port, actuator, rates[0])
-    for j in range(STATE_SIZE):
+    for j in range(TOTALS_AT):
         y[1, j] = y[0, j] + 0.5 * h * k[0, j]
     body_rates(tau + 0.5 * h, bodies[1], drive, port, actuator, rates[1])
-    for j in range(STATE_SIZE):
+    for j in range(TOTALS_AT):
         y[1, j] = y[0, j] + 0.5 * h * k[1, j]
     body_rates(tau + 0.5 * h, bodies[1], drive, port, actuator, rates[2])
-    for j in range(STATE_SIZE):
+    for j in range(TOTALS_AT):
         y[1, j] = y[0, j] + h * k[2, j]
     body_rates(tau + h, bodies[1], drive, port, actuator, rates[3])
     for j in range(STATE_SIZE):
@@ -110,8 +118,9 @@ def square_roots(n):
 
 
 @kernel
-def write_sample(measured, plant, reu, sample):
-    """Fill one `SAMPLE` from the sensor readings and the loops' references."""
+def write_sample(plant, reu, sample):
+    """Fill one `SAMPLE` from the last sensor readings of the REU and its loops' references."""
+    measured = reu.measured
     sample.position = measured.position
     sample.velocity = reu.speed.velocity
     sample.force = measured.force
@@ -120,20 +129,29 @@ def write_sample(measured, plant, reu, sample):
     sample.spool = measured.spool
     sample.spool_velocity = plant.valve.velocity
     sample.current = measured.current
-    sample.position_reference = position_reference(reu)
+    sample.position_reference = setpoint_in_force(reu).position
     sample.force_reference = reu.force_reference
     sample.spool_reference = reu.spool_reference
     sample.current_reference = reu.current_reference
+    sample.warnings = float(reu.protection.warnings)
+    sample.trips = float(reu.protection.trips)
     write_device(reu.status, sample)
 
 
 @kernel
-def loops_and_plant(step, tau, port, actuator, bodies, rates, y, k, reu_state):
-    """Run the loops that are due at plant step ``step``, then the plant over that step."""
+def loops_and_plant(
+        step, tau, port, temperature, actuator, bodies, rates, y, k, reu_state, channels):
+    """
+    Run the loops that are due at plant step ``step``, then the plant over that step.
+
+    ``temperature`` is that of the oil, celsius.
+    """
     body, reu = bodies[0], actuator.reu
     if is_due(step, reu.current_steps, reu.offset_steps):
-        read_sensors(body.plant, body.load.position, body.load.velocity,
-                     actuator.plant, reu_state.measured)
+        sense(step, reu.current_steps, body.plant, body.load.position, body.load.velocity,
+              actuator.plant, actuator.noise_key, channels, reu_state.measured)
+        if reu.protection.is_on:
+            protect(step, port.supply_pressure, temperature, reu.protection, reu_state)
         cascade_step(step, reu, reu_state)
     if step == actuator.load.rope.release_step:
         body.load.weight.is_released = 1.0
@@ -172,8 +190,8 @@ def take_port(incoming, is_shared, port, body):
 
 
 @kernel
-def tick_row(first_step, steps, port, actuator, bodies, rates, y, k, reu_state, read_out,
-             reply, sample):
+def tick_row(first_step, steps, port, actuator, bodies, rates, y, k, reu_state, channels,
+             reply, sample, thermal):
     """
     Advance one actuator by ``steps`` plant steps.
 
@@ -181,24 +199,32 @@ def tick_row(first_step, steps, port, actuator, bodies, rates, y, k, reu_state, 
     `SAMPLE` at the end of the tick.
     """
     body = bodies[0]
-    body.totals.supply_volume = 0.0
-    body.totals.return_volume = 0.0
+    if actuator.plant.thermal.is_on:
+        warm(thermal.oil, actuator.plant)
+    y[0, TOTALS_AT:] = 0.0
+    elastic = stored_elastically(body, actuator.plant.mechanics)
     window_steps = steps // FORCE_WINDOWS
     for window in range(FORCE_WINDOWS):
         body.totals.impulse = 0.0
         for i in range(window * window_steps, (window + 1) * window_steps):
-            loops_and_plant(first_step + i, i * PLANT_STEP, port, actuator,
-                            bodies, rates, y, k, reu_state)
+            loops_and_plant(first_step + i, i * PLANT_STEP, port, thermal.oil, actuator,
+                            bodies, rates, y, k, reu_state, channels)
         reply.mean_forces[window] = body.totals.impulse / (window_steps * PLANT_STEP)
-    reply.force = read_sensors(
-        body.plant, body.load.position, body.load.velocity, actuator.plant, read_out)
+    reply.force = exact_force(
+        body.plant, body.load.position, body.load.velocity, actuator.plant)
     reply.position = body.plant.mechanics.position
     reply.velocity = body.plant.mechanics.velocity
     reply.supply_volume = body.totals.supply_volume
     reply.return_volume = body.totals.return_volume
-    write_sample(read_out, body.plant, reu_state, sample)
+    write_sample(body.plant, reu_state, sample)
     sample.supply_volume += reply.supply_volume
     sample.supply_flow = reply.supply_volume / (steps * PLANT_STEP)
+    add_energies(reply, port, body.totals.energies,
+                 stored_elastically(body, actuator.plant.mechanics) - elastic,
+                 steps * PLANT_STEP, sample)
+    if actuator.plant.thermal.is_on:
+        take_heat(steps * PLANT_STEP, reply, body.totals.energies, actuator.plant.thermal, thermal)
+    sample.temperature = thermal.oil
 
 
 @kernel
@@ -220,7 +246,7 @@ def actuator_tick(first_step, steps, incoming, commands, memory):
         latch(memory.pending[n], reu, memory.applied[n])
         take_port(incoming[n], memory.is_shared[n], port, bodies[0])
         tick_row(first_step, steps, port, memory.constants[n], bodies, rates, y, k, reu,
-                 memory.read_outs[n], memory.replies[n], memory.samples[n])
+                 memory.channels[n], memory.replies[n], memory.samples[n], memory.thermals[n])
         broken = first_broken(y)
         if broken >= 0:
             return n * STATE_SIZE + broken

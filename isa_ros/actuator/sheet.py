@@ -3,11 +3,13 @@
 from dataclasses import dataclass
 
 from isa_ros.actuator.kernel import ACTUATOR
+from isa_ros.actuator.ratings import evidence_of, ratings_of
 from isa_ros.core.parameter import choice, Parameters
 from isa_ros.core.record import record
 from isa_ros.core.units import MILLI
 from isa_ros.errors import ConfigError
 from isa_ros.plant.chambers import oil_stiffness
+from isa_ros.plant.channels import refuse_delays
 from isa_ros.plant.coil import ClosedLoopCoil, ExplicitCoil
 from isa_ros.plant.plant import LinearPlant, plant_record, RotaryPlant
 from isa_ros.plant.spool import DataSheetSpool, DirectSpool, PilotedSpool
@@ -15,8 +17,9 @@ from isa_ros.reu.block import Pid
 from isa_ros.reu.cascade import reu_record
 from isa_ros.reu.feedback_linearisation import LINEARISED
 from isa_ros.reu.lead_lag import LeadLag
+from isa_ros.reu.protection import protection_record
 from isa_ros.reu.schedule import POINTS
-from isa_ros.reu.wiring import Held, Off, refuse_nonsense, Reu, valve_block
+from isa_ros.reu.wiring import Held, loop_steps, Off, refuse_nonsense, Reu, valve_block
 import numpy as np
 
 _ROUNDED = 1e-3  # of a limit: a data sheet prints three digits
@@ -46,10 +49,13 @@ def refuse_wiring(sheet: ActuatorSheet) -> None:
     ConfigError
         A spool block without a spool sensor, a loop that would be closed twice or not at
         all, a limit beyond the spool's stop, or an error of `refuse_nonsense`.
+    ParameterError
+        A sensor's delay that the converters cannot have.
 
     """
     reu, plant = sheet.reu, sheet.plant
     refuse_nonsense(reu)
+    refuse_delays(plant.sensors.channels, loop_steps(reu)['current'])
     if sheet.spool_feedback == 'mechanic' and not isinstance(reu.spool, Off):
         raise ConfigError(
             f'reu.spool.kind = {_kind(reu.spool)}: a valve with mechanical feedback has no spool '
@@ -140,6 +146,11 @@ def actuator_record(sheet: ActuatorSheet, offset_steps: int) -> np.ndarray:
         sheet.reu, offset_steps, plant[0].chambers.stroke, force_stiffness(plant[0]),
         known_model(plant[0], output_per_spool(sheet)),
         k_spool, plant[0].coil.parallel)
+    steps = loop_steps(sheet.reu)
+    reu['protection'] = protection_record(
+        sheet.reu.protection, ratings_of(plant[0]),
+        evidence_of(plant[0], sheet.reu.speed.rate_hz, steps['speed'], offset_steps),
+        steps['current'])
     rows = np.zeros(1, ACTUATOR)
     rows['plant'], rows['reu'] = plant, reu
     return rows

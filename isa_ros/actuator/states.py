@@ -8,7 +8,7 @@ references that are not reported.
 from isa_ros.core.kernel import kernel
 from isa_ros.plant.coil import coil_current
 from isa_ros.reu.bumpless import pressure_reference
-from isa_ros.reu.cascade import position_reference
+from isa_ros.reu.protection import setpoint_in_force
 import numpy as np
 
 STATES = np.dtype([
@@ -41,7 +41,7 @@ def write_states(body, force, actuator, reu_state, row):
     row.pressure_b = plant.chambers.p_b
     row.spool = plant.valve.spool
     row.current = coil_current(plant.coil, actuator.plant.coil)
-    row.position_reference = position_reference(reu_state)
+    row.position_reference = setpoint_in_force(reu_state).position
     row.force_reference = reu_state.force_reference
     row.pressure_reference = pressure_reference(
         reu_state.status.acting, actuator.reu, reu_state)

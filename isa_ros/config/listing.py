@@ -87,7 +87,7 @@ def _rows(parameters: Parameters, source_of: Mapping[str, str], prefix: str) -> 
             yield from _rows(value, source_of, f'{path}.')
         else:
             yield Row(path, _value(value), f.metadata.get('unit', ''), _range(f.metadata),
-                      source_of.get(path, ''), f.metadata['doc'])
+                      source_of.get(path, f.metadata.get('source', '')), f.metadata['doc'])
 
 
 def _kind_row(path: str, value: Parameters, union: Any, source_of: Mapping[str, str]) -> Row:
@@ -115,6 +115,9 @@ def _run_tables(path: str) -> Iterator[str]:
     if run.leg is not None and origins.leg is not None:
         yield _table('leg.start', [
             row._replace(source=given) for row in rows(run.leg.start, {})])
+        for imu in run.leg.imus:
+            yield _table(f'leg.imus.{imu.name}', [
+                row._replace(source=given) for row in rows(imu.sheet, {})])
         yield _table(f'leg.parameters: {run.leg.model}', rows(run.leg.sheet, origins.leg))
 
 

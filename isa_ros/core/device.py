@@ -19,11 +19,8 @@ EVENTS = ('start', 'ready', 'trip', 'clear fault', 'mode', 'enable', 'disable', 
           'stop ends', 'reaction ends')
 START, READY, TRIP, CLEAR, MODE, ENABLE, DISABLE, STOP, STOP_ENDS, REACTION_ENDS = range(10)
 
-CONDITIONS: tuple[str, ...] = ()
-"""Names of the protection's conditions, in the order of their bits."""
-
 FIELDS = ('device_state', 'device_mode', 'device_event', 'warnings', 'trips', 'state_since')
-"""Fields of a `SAMPLE` that the device fills."""
+"""Fields of a `SAMPLE` that describe the device."""
 
 
 def mode_name(number: float) -> str:

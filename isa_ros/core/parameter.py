@@ -3,7 +3,7 @@
 from collections.abc import Callable
 from dataclasses import dataclass, field, fields
 import math
-from typing import Any
+from typing import Any, TypeVar
 
 from isa_ros.errors import ParameterError
 
@@ -15,16 +15,19 @@ _RELATIONS: dict[str, tuple[str, Callable[[float, float], bool]]] = {
 }
 
 
-def parameter(doc: str, unit: str, *, absent: float | None = None, **bounds: float) -> Any:
+def parameter(
+        doc: str, unit: str, *, absent: float | None = None, source: str = '',
+        **bounds: float) -> Any:
     """
     Declare one number; ``bounds`` are any of ``gt``, ``ge``, ``lt``, ``le``.
 
-    ``absent`` is the value for a resolved configuration older than the parameter.
+    ``absent`` is the value where a file has none, such as a resolved configuration older than the
+    parameter; ``source`` is that of this value.
     """
     unknown = set(bounds) - set(_RELATIONS)
     if unknown:
         raise TypeError(f'unknown bounds {sorted(unknown)}; use {sorted(_RELATIONS)}')
-    metadata = {'doc': doc, 'unit': unit, 'bounds': bounds}
+    metadata = {'doc': doc, 'unit': unit, 'bounds': bounds, 'source': source}
     return field(metadata=metadata if absent is None else metadata | {'absent': absent})
 
 
@@ -44,9 +47,10 @@ def numbers(doc: str, unit: str, *, least: int, most: int, **bounds: float) -> A
     return field(metadata=declared.metadata | {'length': (least, most)})
 
 
-def choice(doc: str, *names: str) -> Any:
-    """Declare one name out of a fixed list."""
-    return field(metadata={'doc': doc, 'unit': '', 'names': names})
+def choice(doc: str, *names: str, absent: str | None = None, source: str = '') -> Any:
+    """Declare one name out of a fixed list; ``absent`` and ``source`` as in `parameter`."""
+    metadata = {'doc': doc, 'unit': '', 'names': names, 'source': source}
+    return field(metadata=metadata if absent is None else metadata | {'absent': absent})
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -69,6 +73,20 @@ class Parameters:
             value = getattr(self, f.name)
             if not isinstance(value, Parameters):
                 check(f'{type(self).__name__}.{f.name}', value, f.metadata)
+
+
+_P = TypeVar('_P', bound=Parameters)
+
+
+def defaults(cls: type[_P]) -> _P:
+    """Return a set of which every value is that of ``absent``."""
+    return cls(**{f.name: f.metadata['absent'] for f in fields(cls)})
+
+
+def section(cls: type[Parameters]) -> Any:
+    """Declare a nested set that a file may leave out; it then has its `defaults`."""
+    absent = defaults(cls)
+    return field(default=absent, metadata={'absent': absent})
 
 
 def check(where: str, value: Any, declared: Any) -> None:

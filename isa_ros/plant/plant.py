@@ -5,15 +5,17 @@ State, rates and parameters are nested records of floats, one row per actuator
 (`PLANT_STATE`, `PLANT`); signs as in the components' headers.
 """
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 from isa_ros.core.kernel import kernel
 from isa_ros.core.parameter import Parameters
 from isa_ros.core.record import record
-from isa_ros.plant import chambers, coil, friction, mechanics, relief, sensors, servo_valve, spool
+from isa_ros.plant import (
+    chambers, coil, friction, mechanics, relief, sensors, servo_valve, spool, thermal)
 from isa_ros.plant.chambers import boil
-from isa_ros.plant.sensors import convert, encode
+from isa_ros.plant.sensors import read, read_channels
 from isa_ros.plant.spool import stop_spool
+from isa_ros.plant.thermal import LumpedThermal, NoneThermal
 from isa_ros.plant.valve_sheets import DataSheetValve, DualGainValve, HighResponseValve
 import numpy as np
 
@@ -26,6 +28,7 @@ PLANT = np.dtype([
     ('friction', friction.FRICTION),
     ('mechanics', mechanics.MECHANICS),
     ('sensors', sensors.SENSORS),
+    ('thermal', thermal.THERMAL),
 ])
 PLANT_STATE = np.dtype([
     ('coil', coil.COIL_STATE),
@@ -49,6 +52,7 @@ class PlantSheet(Parameters):
     friction: friction.Friction
     mechanics: mechanics.Mechanics
     sensors: sensors.Sensors
+    thermal: NoneThermal | LumpedThermal = field(metadata={'absent': NoneThermal()})
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -65,19 +69,31 @@ class RotaryPlant(PlantSheet):
     drive: chambers.Vane
 
 
+def is_heated(sheet: PlantSheet) -> bool:
+    """Return whether the losses heat the actuator."""
+    return isinstance(sheet.thermal, LumpedThermal)
+
+
 def plant_record(sheet: LinearPlant | RotaryPlant) -> np.recarray:
     """Return the `PLANT` record of a sheet, shape (1,)."""
     area_a, area_b = sheet.drive.areas
+    celsius = sheet.oil.temperature_celsius
+    own_spool = spool.spool_record(sheet.spool, celsius)
+    oil = chambers.chambers_record(sheet.drive, sheet.oil)
+    seals = friction.friction_record(sheet.friction)
     return np.array([record(
         PLANT,
         coil=coil.coil_record(sheet.coil),
-        spool=spool.spool_record(sheet.spool, sheet.oil.temperature_celsius),
+        spool=own_spool,
         valve=servo_valve.valve_record(sheet.valve, area_a / area_b),
-        chambers=chambers.chambers_record(sheet.drive, sheet.oil),
+        chambers=oil,
         relief=relief.relief_record(sheet.relief),
-        friction=friction.friction_record(sheet.friction),
+        friction=seals,
         mechanics=mechanics.mechanics_record(sheet.mechanics),
-        sensors=sensors.sensors_record(sheet.sensors))], PLANT).view(np.recarray)
+        sensors=sensors.sensors_record(sheet.sensors),
+        thermal=thermal.thermal_record(
+            sheet.thermal, celsius, spool.bias_per_k(sheet.spool), oil, seals, own_spool),
+        )], PLANT).view(np.recarray)
 
 
 def rest_pressures(
@@ -108,14 +124,14 @@ def rest_pressures(
 
 
 @kernel
-def plant_rates(y, x_load, v_load, drive, p_s, p_t, plant, rates):
+def plant_rates(y, x_load, v_load, drive, p_s, p_t, plant, rates, powers):
     """
     Write dy/dt of one `PLANT_STATE` into ``rates``; return (sensor force, q_p, q_t).
 
     ``drive`` is the amplifier's output: a current reference (A), or for an explicit coil a
     voltage (V). ``x_load`` and ``v_load`` are the load's side of the force sensor. Forces
     in N or Nm, flows in m3/s (equation M4: inertia * s'' = f_h - f_friction - f_sensor +
-    f_stop).
+    f_stop). ``powers``, an `ENERGIES` record, receives where the power goes, in W  (E2 to E6).
     """
     p_a, p_b = y.chambers.p_a, y.chambers.p_b
     s, v = y.mechanics.position, y.mechanics.velocity
@@ -126,25 +142,32 @@ def plant_rates(y, x_load, v_load, drive, p_s, p_t, plant, rates):
     spool.spool_rates(y.valve, current, plant.valve.k_spool, plant.spool, rates.valve)
 
     per_a, per_b = chambers.elastances(p_a, p_b, s, p_t, plant.chambers)
-    q_a, q_b, q_p, q_t = servo_valve.eased_port_flows(
+    q_a, q_b, q_p, q_t, powers.leakage, powers.throttling = servo_valve.metered(
         y.valve.spool, p_a, p_b, p_s, p_t, per_a, per_b, plant.valve)
     in_a, in_b = chambers.surpluses(q_a, q_b, p_a, p_b, v, plant.chambers)
     out_a = relief.eased_flow(p_a, p_t, in_a, per_a, plant.relief)
     out_b = relief.eased_flow(p_b, p_t, in_b, per_b, plant.relief)
     rates.chambers.p_a = per_a * (in_a - out_a)
     rates.chambers.p_b = per_b * (in_b - out_b)
+    powers.cross_port = plant.chambers.c_li * (p_a - p_b) * (p_a - p_b)
+    powers.relief = (p_a - p_t) * out_a + (p_b - p_t) * out_b
+    powers.compression = p_a * (in_a - out_a) + p_b * (in_b - out_b)
 
     z = y.friction.bristle
     z_rate = friction.bristle_rate(v, z, plant.friction)
     rates.friction.bristle = z_rate
     f_sensor = mechanics.sensor_force(s, v, x_load, v_load, plant.mechanics)
+    f_friction = friction.friction_force(v, z, z_rate, plant.friction)
+    f_stop = mechanics.stop_force(s, v, plant.chambers.stroke, plant.mechanics)
     rates.mechanics.position = v
     rates.mechanics.velocity = (
-        chambers.hydraulic_force(p_a, p_b, plant.chambers)
-        - friction.friction_force(v, z, z_rate, plant.friction)
-        - f_sensor
-        + mechanics.stop_force(s, v, plant.chambers.stroke, plant.mechanics)
+        chambers.hydraulic_force(p_a, p_b, plant.chambers) - f_friction - f_sensor + f_stop
     ) / plant.mechanics.inertia
+    slip = v - v_load
+    powers.friction = f_friction * v
+    powers.damping = plant.mechanics.d_s * slip * slip - f_stop * v
+    powers.work = f_sensor * v_load
+    powers.coil = coil.coil_heat(y.coil, plant.coil)
     return f_sensor, q_p, q_t + out_a + out_b
 
 
@@ -156,21 +179,26 @@ def settle(h, y, p_t, plant):
 
 
 @kernel
-def read_sensors(y, x_load, v_load, plant, measured):
-    """
-    Write the reading of every sensor at one instant; return the exact sensor force  (S1, S2).
+def exact_force(y, x_load, v_load, plant):
+    """Return the force in the force sensor, N or Nm."""
+    return mechanics.sensor_force(
+        y.mechanics.position, y.mechanics.velocity, x_load, v_load, plant.mechanics)
 
-    ``measured`` has the fields position, force, pressure_a, pressure_b, spool, current.
+
+@kernel
+def sense(step, period, y, x_load, v_load, plant, key, state, measured):
+    """
+    Convert every channel once, at plant step ``step``  (S1-S3).
+
+    ``period`` of the converters in plant steps, ``key`` of the noise; ``state`` is a
+    `channels.CHANNELS_STATE`, ``measured`` a record with the fields of `channels.CHANNELS`.
     """
     own = plant.sensors
-    force = mechanics.sensor_force(
-        y.mechanics.position, y.mechanics.velocity, x_load, v_load, plant.mechanics)
-    measured.position = encode(y.mechanics.position, own.encoder)
-    measured.force = convert(force, -own.force_range, own.force_range, own.force_step)
-    measured.pressure_a = convert(y.chambers.p_a, 0.0, own.pressure_range, own.pressure_step)
-    measured.pressure_b = convert(y.chambers.p_b, 0.0, own.pressure_range, own.pressure_step)
-    measured.spool = convert(y.valve.spool, -own.spool_range, own.spool_range, own.spool_step)
-    measured.current = convert(
-        coil.coil_current(y.coil, plant.coil), -own.current_range, own.current_range,
-        own.current_step)
-    return force
+    position, force = y.mechanics.position, exact_force(y, x_load, v_load, plant)
+    p_a, p_b, spool_position = y.chambers.p_a, y.chambers.p_b, y.valve.spool
+    current = coil.coil_current(y.coil, plant.coil)
+    if own.errors.are_ideal:
+        read(position, force, p_a, p_b, spool_position, current, own, measured)
+    else:
+        read_channels(step, period, position, force, p_a, p_b, spool_position, current, own,
+                      key, state, measured)

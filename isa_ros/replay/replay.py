@@ -23,7 +23,7 @@ from isa_ros.run import local_run
 from isa_ros.run.coordinator import Interrupted
 from isa_ros.run.exchange import Recorder
 from isa_ros.run.local_run import LocalRun
-from msg_adapters import event
+from msg_adapters import diagnostics, event
 from msg_adapters.applied_parameters import tuned_values
 from msg_adapters.cdr import CdrError
 from msg_adapters.setpoint import applied_to_command
@@ -87,7 +87,7 @@ def replay(
         tell(line)
     comparer = Comparer(
         bag, [topic.name for topic in again.topics], tolerances,
-        lambda topic, sequence: topic in topics.compared, is_exact=True)
+        lambda topic, sequence, t_ns: topic in topics.compared, is_exact=True)
     again.simulate(comparer, lambda: comparer.difference is not None)
     return ReplayReport(
         comparer.finish(), bag.is_whole, [*changes, *topics.lines], topics.unconfirmed)
@@ -103,7 +103,7 @@ class Rerun:
     def __init__(self, bag: Bag) -> None:
         self._run = RunConfig.from_yaml(
             bag.provenance.configuration, f'{bag.path.name}: configuration.yaml')
-        self._commands, self._tuned, self._n_ticks = recorded_inputs(bag, self._run)
+        self._inputs = recorded_inputs(bag, self._run)
         self._events = recorded_events(bag)
         self._state = _recorded_state(bag, self._run)
         self._local = LocalRun(self._run)
@@ -114,13 +114,14 @@ class Rerun:
         """Hand every sample to ``recorder`` until the end of the bag or ``should_stop``."""
         try:
             self._local.simulate(
-                self._n_ticks, local_run.Inputs(self._fill, self._tuned, self._events), recorder,
-                should_stop, self._state)
+                self._inputs.n_ticks, local_run.Inputs(
+                    self._fill, self._inputs.tuned, self._events, self._inputs.has_end),
+                recorder, should_stop, self._state)
         except Interrupted:
             pass  # should_stop was true before the end
 
     def _fill(self, tick: int, rows: Records) -> None:
-        for row, command in self._commands.get(tick, ()):
+        for row, command in self._inputs.commands.get(tick, ()):
             rows[row] = command
 
 
@@ -164,6 +165,8 @@ class Inputs(NamedTuple):
     tuned: dict[str, dict[int, dict[str, float]]]
     """Actuator -> tick -> applied parameters, SI, by name."""
     n_ticks: int
+    has_end: bool
+    """Whether the last sample has diagnostics, as that of a run that came to its end."""
 
 
 def recorded_inputs(bag: Bag, run: RunConfig) -> Inputs:
@@ -180,8 +183,8 @@ def recorded_inputs(bag: Bag, run: RunConfig) -> Inputs:
     """
     setpoints = {f'/{a.name}/{APPLIED}': (k, a.name) for k, a in enumerate(run.actuators)}
     parameters = {f'/{a.name}/{TUNED}': a.name for a in run.actuators}
-    inputs = Inputs({}, {}, -1)
-    last = -1
+    inputs = Inputs({}, {}, -1, False)
+    last = diagnosed = -1
     for message in bag.messages():
         last = message.sequence
         tick, topic = last - 1, message.topic
@@ -193,8 +196,10 @@ def recorded_inputs(bag: Bag, run: RunConfig) -> Inputs:
             elif topic in parameters:
                 name = parameters[topic]
                 inputs.tuned.setdefault(name, {})[tick] = tuned_values(message.data, name)
+            elif topic == diagnostics.TOPIC[0]:
+                diagnosed = last
         except (SetpointError, CdrError) as error:
             raise BagError(f'{bag.place_of(message)}: {error}') from error
     if last < 0:
         raise BagError(f'{bag.path}: has no samples, so there is nothing to replay')
-    return inputs._replace(n_ticks=last)
+    return inputs._replace(n_ticks=last, has_end=diagnosed == last)

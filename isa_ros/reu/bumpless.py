@@ -10,6 +10,7 @@ current and fades with a time constant. So the current is continuous whatever th
 from isa_ros.core.device import CURRENT, FORCE, IMPEDANCE, POSITION, PRESSURE, SPOOL
 from isa_ros.core.kernel import kernel
 from isa_ros.reu.block import rest, uncompensated, uncompensated_for
+from isa_ros.reu.protection import setpoint_in_force
 from isa_ros.reu.schedule import scheduled
 from isa_ros.reu.wiring import OFF, PID
 import numpy as np
@@ -124,17 +125,16 @@ def pressure_reference(mode, reu, state):
         return state.force.output
     if mode >= POSITION:
         return state.position.output
-    return inner_reference(mode, reu, state)
+    return inner_reference(mode, setpoint_in_force(state), reu)
 
 
 @kernel
-def inner_reference(mode, reu, state):
+def inner_reference(mode, setpoint, reu):
     """
     Return the setpoint of a mode without a position block, in the unit of its block.
 
     The effort, or the reference that was set after it; the current is on the series scale.
     """
-    setpoint = state.setpoint
     if setpoint.is_reference == 0.0:
         return setpoint.effort
     return setpoint.reference / reu.parallel if mode == CURRENT else setpoint.reference

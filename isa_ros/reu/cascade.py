@@ -14,11 +14,13 @@ from isa_ros.core.kernel import kernel
 from isa_ros.core.timebase import PLANT_STEP
 from isa_ros.reu.block import BLOCK, block_record, BLOCK_STATE, block_step, Pid, rest
 from isa_ros.reu.bumpless import faded, inner_reference
-from isa_ros.reu.device import DEVICE, device_record, DEVICE_STATE, device_step, PROTECTION
+from isa_ros.reu.device import DEVICE, device_record, DEVICE_STATE, device_step
 from isa_ros.reu.feedback_linearisation import (
     FeedbackLinearisation, LINEARISATION, linearisation_record, linearising_step)
 from isa_ros.reu.impedance import force_reference, IMPEDANCE, Impedance, impedance_record, SETPOINT
 from isa_ros.reu.lead_lag import LEAD_LAG, lead_lag_record, LEAD_LAG_STATE, lead_lag_step, LeadLag
+from isa_ros.reu.protection import (
+    is_inhibited, PROTECTION, PROTECTION_STATE, setpoint_in_force)
 from isa_ros.reu.schedule import schedule_table
 from isa_ros.reu.speed import SPEED, speed_record, SPEED_STATE, speed_step
 from isa_ros.reu.wiring import (
@@ -37,6 +39,7 @@ REU = np.dtype([
     ('stroke', 'f8'),
     ('k_spool', 'f8'),    # m of spool per series-scale A
     ('parallel', 'f8'),   # amplifier A per series-scale A
+    ('protection', PROTECTION),
     ('rules', DEVICE),
 ])
 MEASURED = np.dtype([
@@ -58,8 +61,8 @@ REU_STATE = np.dtype([
     ('current_reference', 'f8'),   # amplifier A
     ('drive', 'f8'),               # output of the blocks: A, or V
     ('amplifier', 'f8'),           # the drive after the computational delay
+    ('protection', PROTECTION_STATE),
     ('status', DEVICE_STATE),
-    ('protection', PROTECTION),
 ])
 
 
@@ -110,19 +113,12 @@ def is_due(step, period_steps, offset_steps):
 
 
 @kernel
-def position_reference(state):
-    """Return the position (m | rad) that the position block follows: setpoint's or stop's."""
-    return (state.status.stop if state.status.is_stopping else state.setpoint).position
-
-
-@kernel
 def position_reference_inwards(step, reu, state):
     """Run the position block if it acts and is due; return the next block's reference."""
-    device = state.status
+    device, setpoint = state.status, setpoint_in_force(state)
     if device.acting < POSITION:
-        return inner_reference(device.acting, reu, state)
+        return inner_reference(device.acting, setpoint, reu)
     if is_due(step, reu.position_steps, reu.offset_steps):
-        setpoint = device.stop if device.is_stopping else state.setpoint
         measured, velocity = state.measured.position, state.speed.velocity
         if reu.position_kind == IMPEDES:
             state.position.output = force_reference(
@@ -184,7 +180,7 @@ def cascade_step(step, reu, state):
         speed_step(state.measured.position, reu.speed, state.speed)
     reference = position_reference_inwards(step, reu, state)
     reference = force_reference_inwards(step, reference, reu, state)
-    if not device.is_on:
+    if not device.is_on or is_inhibited(reference, state.protection):
         rest(state.position)
         rest(state.force)
         rest(state.pressure)

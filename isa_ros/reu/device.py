@@ -25,6 +25,8 @@ from isa_ros.core.timebase import PLANT_STEP
 from isa_ros.reu.bumpless import FADE, start_setpoint, take_over
 from isa_ros.reu.device_sheet import Device
 from isa_ros.reu.impedance import SETPOINT
+from isa_ros.reu.protection import DISABLE as REACTS_BY_DISABLE
+from isa_ros.reu.protection import is_cause_gone, QUICK_STOP as REACTS_BY_QUICK_STOP, request_clear
 from isa_ros.reu.wiring import first_mode, IMPEDES, possible_modes, Reu
 import numpy as np
 
@@ -73,16 +75,6 @@ TRANSITIONS = (
 _GUARDS = (False, True)  # a guard of a row holds or not: two places of the kernel's table
 _IGNORED = -1
 
-NO_REACTION, WARNS, LIMITS, REACTS_BY_QUICK_STOP, REACTS_BY_DISABLE = range(5)
-"""`PROTECTION.reaction`, weakest first; the device acts on the last two."""
-
-PROTECTION = np.dtype([
-    ('warnings', 'i8'),      # bits of the conditions beyond their warning level
-    ('trips', 'i8'),         # bits of the conditions beyond their trip level
-    ('reaction', 'i8'),      # the strongest reaction of these
-])
-"""What the protection has found at a conversion."""
-
 DEVICE = np.dtype([
     ('next', 'i8', (len(STATES) * len(EVENTS) * len(_GUARDS),)),
     ('modes', 'i8'),               # bits 1 << mode of those that the wiring has
@@ -102,8 +94,7 @@ DEVICE_STATE = np.dtype([
     ('auto_enable', 'i8'),
     ('requests', 'i8'),            # kinds of the commands since the last step
     ('requested_mode', 'i8'), ('requested_enable', 'i8'),
-    ('trips', 'i8'),               # bits of all conditions that tripped since the last clear
-    ('warnings', 'i8'),            # those seen last
+    ('trips', 'i8'), ('warnings', 'i8'),   # bits of the conditions at the last step
     ('stop_steps', 'f8'),          # periods until the stop ends
     ('stop', SETPOINT),            # of the stopping movement; its gains are those of the start
     ('fade', FADE)])
@@ -154,13 +145,10 @@ def happens(event, guard, step, reu, own):
 def take_conditions(step, reu, state):
     """React to what the protection has found."""
     own, found = state.status, state.protection
-    if found.warnings != own.warnings:
-        own.warnings, own.since_step = found.warnings, step
+    if found.warnings != own.warnings or found.trips != own.trips:
+        own.warnings, own.trips, own.since_step = found.warnings, found.trips, step
     if found.reaction < REACTS_BY_QUICK_STOP:
         return
-    if found.trips & ~own.trips:
-        own.trips |= found.trips
-        own.since_step = step
     happens(TRIP, 0, step, reu, own)
     if own.state == FAULT_REACTION and found.reaction == REACTS_BY_DISABLE:
         happens(REACTION_ENDS, 0, step, reu, own)
@@ -171,9 +159,9 @@ def take_requests(step, reu, state):
     """Execute the commands that took effect since the last step."""
     own = state.status
     if own.requests & HAS_CLEAR_FAULT:
-        is_gone = int(state.protection.reaction < REACTS_BY_QUICK_STOP)
+        is_gone = int(is_cause_gone(reu.protection, state.protection))
         if happens(CLEAR, is_gone, step, reu, own):
-            own.trips = 0
+            request_clear(state.protection)
     if own.requests & HAS_MODE and own.requested_mode != own.mode:
         if happens(MODE, reu.rules.modes >> own.requested_mode & 1, step, reu, own):
             own.mode = own.requested_mode
@@ -247,7 +235,7 @@ def device_step(step, reu, state):
     """Run the device at one conversion, before the blocks."""
     own, found = state.status, state.protection
     if (own.state == ENABLED and own.requests == 0 and own.warnings == found.warnings
-            and found.reaction < REACTS_BY_QUICK_STOP):
+            and own.trips == found.trips and found.reaction < REACTS_BY_QUICK_STOP):
         return
     entered = own.state
     if entered == INITIALISING and step * PLANT_STEP >= reu.rules.initialisation:
@@ -263,8 +251,7 @@ def device_step(step, reu, state):
 
 @kernel
 def write_device(own, sample):
-    """Write state, mode, event, conditions and since when (s) into a `SAMPLE`."""
+    """Write state, mode, event and since when (s) into a `SAMPLE`."""
     sample.device_state, sample.device_mode = own.state, own.mode
     sample.device_event = own.event
-    sample.warnings, sample.trips = own.warnings, own.trips
     sample.state_since = own.since_step * PLANT_STEP

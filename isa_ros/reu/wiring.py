@@ -11,7 +11,7 @@ a block have the unit of its output: switching the next block inwards on or off 
 from dataclasses import dataclass, field
 
 from isa_ros.core.device import CURRENT, MODES
-from isa_ros.core.parameter import parameter, Parameters
+from isa_ros.core.parameter import parameter, Parameters, section
 from isa_ros.core.suggest import alternatives
 from isa_ros.core.timebase import NS_PER_SECOND, PLANT_STEP_NS, steps_in
 from isa_ros.errors import ConfigError
@@ -21,6 +21,7 @@ from isa_ros.reu.device_sheet import BEFORE, Device
 from isa_ros.reu.feedback_linearisation import FeedbackLinearisation
 from isa_ros.reu.impedance import Impedance
 from isa_ros.reu.lead_lag import LeadLag
+from isa_ros.reu.protection_sheet import Protection
 from isa_ros.reu.speed import SpeedEstimate
 
 BLOCKS = 4  # in the standard firmware (paper section 3)
@@ -59,6 +60,7 @@ class Reu(Parameters):
     device: Device = field(default=BEFORE, metadata={'absent': BEFORE})
     computation_delay_us: float = parameter(
         'from an instant of the loops to its output at the amplifier', 'us', ge=0.0, le=1e3)
+    protection: Protection = section(Protection)
 
 
 VARIABLES = ('position', 'force', 'pressure', 'spool', 'current')

@@ -29,6 +29,8 @@ class Inputs(NamedTuple):
     """Changes of parameters, by actuator."""
     events: Mapping[int, Sequence[str]] = {}
     """Texts of the events recorded before a tick."""
+    has_end: bool = True
+    """Whether the diagnostics of the last instant are recorded, as at the end of a run."""
 
 
 class LocalRun:
@@ -69,9 +71,10 @@ class LocalRun:
             narrator.publish_rows(simulation.ticks, simulation.tuned)
             for text in inputs.events.get(simulation.ticks, ()):
                 narrator.add_event(simulation.ticks, text)
-            narrator.record()
             if simulation.ticks >= n_ticks:
+                narrator.end() if inputs.has_end else narrator.record()
                 return
+            narrator.record()
             if should_stop():
                 raise Interrupted(f'stopped after {simulation.ticks} ticks')
             self._tune(inputs.tuned)

@@ -5,11 +5,13 @@ from typing import NamedTuple, Protocol
 
 from isa_ros.config.leg_config import LegConfig
 from isa_ros.config.run_config import RunConfig
+from isa_ros.plant.plant import is_heated
 from isa_ros.run.exchange import Recorder
 from isa_ros.run.packing import BodyMessages, Messages, Names, Packer, Shown
+from isa_ros.surroundings.leg.leg import fields_of_unit
 from isa_ros.surroundings.leg.sheet import JOINTS
 from isa_ros.surroundings.supply import VolumeReturn
-from msg_adapters import clock, coordinator_messages, event
+from msg_adapters import clock, coordinator_messages, diagnostics, event
 
 
 class Outlet(Protocol):
@@ -98,6 +100,16 @@ class Narrator:
         if has_surroundings:
             outlets.surroundings.publish(self._packer.of(self._surroundings))
 
+    def end(self) -> None:
+        """Add the diagnostics to the last instant if it is not recorded yet, and record it."""
+        if self._unrecorded is not None:
+            diagnosed = self._packer.diagnose()
+            if self._outlets.surroundings.has_subscribers():
+                self._outlets.surroundings.publish(
+                    [diagnosed if topic.name == diagnostics.TOPIC[0] else None
+                     for topic in self._surroundings])
+        self.record()
+
     def record(self) -> None:
         """Pass the last packed instant to the recorder, once."""
         tick, self._unrecorded = self._unrecorded, None
@@ -113,11 +125,25 @@ def packer_of(run: RunConfig, shown: Shown) -> Packer:
     return Packer(
         Names([(actuator.name, actuator.sheet.is_rotary) for actuator in run.actuators],
               [(supply.name, isinstance(supply.sheet.return_line, VolumeReturn))
-               for supply in run.supplies], _body_messages(run)), shown)
+               for supply in run.supplies], _body_messages(run),
+              [actuator.name for actuator in run.actuators if is_heated(actuator.sheet.plant)],
+              _periods(run)), shown)
 
 
 def _body_messages(run: RunConfig) -> BodyMessages | None:
     """Return the function that makes a body's messages; add new kinds of bodies here."""
     if isinstance(run.body, LegConfig):
-        return lambda columns: coordinator_messages.leg(JOINTS, columns)
+        units = {imu.name: coordinator_messages.Unit(
+            imu.sheet.link, (imu.sheet.accelerometer_sigma, imu.sheet.gyro_sigma),
+            fields_of_unit(imu.name)) for imu in run.body.imus}
+        return lambda columns: coordinator_messages.leg(JOINTS, units, columns)
     return None
+
+
+def _periods(run: RunConfig) -> dict[str, int]:
+    """Return the period in ns of a body's topics that have no message at every tick."""
+    if not isinstance(run.body, LegConfig):
+        return {}
+    periods = {coordinator_messages.imu_topic(imu.name)[0]:
+               imu.sheet.period_ns(run.step_ns, imu.name) for imu in run.body.imus}
+    return {topic: period for topic, period in periods.items() if period > run.step_ns}

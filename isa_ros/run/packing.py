@@ -5,10 +5,11 @@ Every message of a run is encoded once, all in one block of memory. At each tick
 the numbers of all rows into it. Recorder and publishers receive parts of the block.
 """
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Collection, Mapping, Sequence
 from typing import NamedTuple
 
 from isa_ros.bag.packed import Layout, layout, Packed
+from isa_ros.core.accounts import accounts_of
 from isa_ros.core.atmosphere import ATMOSPHERE
 from isa_ros.core.device import FIELDS
 from isa_ros.core.kernel import kernel
@@ -16,10 +17,12 @@ from isa_ros.core.record import floats
 from isa_ros.core.signals import Records, SAMPLE
 from isa_ros.core.timebase import NS_PER_SECOND, PLANT_STEP_NS
 from isa_ros.core.topic import KEPT, Qos, Topic
+from isa_ros.run.diagnostics import energy_statuses, PERIOD_NS
 from isa_ros.surroundings.supply import SUPPLY_SAMPLE
 from msg_adapters import (
-    actuator_messages, clock, coordinator_messages, device, event, fluid_pressure)
-from msg_adapters.actuator_messages import KEPT_TOPICS, STATE_TOPICS, TOPICS
+    actuator_messages, clock, coordinator_messages, device, diagnostics, event, fluid_pressure,
+    temperature)
+from msg_adapters.actuator_messages import KEPT_TOPICS, STATE_TOPICS, TEMPERATURE, TOPICS
 from msg_adapters.applied_parameters import applied_parameters
 from msg_adapters.cdr import encode
 from msg_adapters.template import FIRST_VALUE, Prepared, Template, time_word
@@ -62,13 +65,17 @@ class Names(NamedTuple):
     supplies: Sequence[tuple[str, bool]] = ()
     """(name, publishes its return pressure) of each."""
     body: BodyMessages | None = None
+    heated: Collection[str] = ()
+    """Names of the actuators whose temperature is published."""
+    periods: Mapping[str, int] = {}
+    """Period in ns of the topics that do not have a message at every tick, by name."""
 
 
-def topics_of_actuator(prefix: str) -> list[Topic]:
-    """Return `TOPICS` below ``prefix`` with their qualities of service."""
+def topics_of_actuator(prefix: str, is_heated: bool) -> list[Topic]:
+    """Return `TOPICS` below ``prefix`` with their qualities of service, then `TEMPERATURE`."""
     return [
         Topic(f'{prefix}/{suffix}', type_, KEPT if (suffix, type_) in KEPT_TOPICS else Qos())
-        for suffix, type_ in TOPICS]
+        for suffix, type_ in (*TOPICS, *([TEMPERATURE] if is_heated else []))]
 
 
 def float_columns(record: np.dtype[np.void], first: int = 0) -> dict[str, int]:
@@ -129,7 +136,9 @@ class Packer:
     Packs the messages of some rows.
 
     ``topics`` are all topics with messages, sorted by name: `TOPICS` of every actuator, the
-    pressure of every supply, those of the body, and with ``is_run`` the clock and the events.
+    pressure of every supply, those of the body, and with ``is_run`` the clock, the events, and
+    the diagnostics at every second and at the end. Temperatures have a message at t = 0 and at
+    each tick that reaches a full second.
     """
 
     def __init__(self, names: Names, shown: Shown, is_run: bool = True) -> None:
@@ -139,9 +148,10 @@ class Packer:
         at = 0
         for name, is_rotary in names.actuators:
             own = self._actuator(name, is_rotary, at)
+            is_heated = name in names.heated
             at += len(_SAMPLE) + len(_PRESSURES) + len(_APPLIED)
             found += [(topic, own.get(topic.name.rpartition('/')[2]))
-                      for topic in topics_of_actuator(f'/{name}')]
+                      for topic in topics_of_actuator(f'/{name}', is_heated)]
         for supply, shows_return in names.supplies:
             for k, suffix in enumerate(_SUPPLY_PRESSURES[:1 + shows_return]):
                 topic = Topic(f'{_COORDINATOR}/{supply}_{suffix}', fluid_pressure.TYPE)
@@ -152,7 +162,9 @@ class Packer:
             body = names.body(float_columns(shown.body.dtype, at))
             found += [(Topic(*topic), message) for topic, message in body.items()]
         if is_run:
-            found += [(Topic(*clock.TOPIC), clock.clock()), (Topic(*event.TOPIC), None)]
+            found += [(Topic(*clock.TOPIC), clock.clock()), (Topic(*event.TOPIC), None),
+                      (Topic(*diagnostics.TOPIC), None)]
+        self._is_run = is_run
         self.topics = tuple(sorted((topic for topic, _ in found), key=lambda topic: topic.name))
         if len({topic.name for topic in self.topics}) != len(self.topics):
             raise ValueError(f'a topic has two sources: {self.topics}')
@@ -163,7 +175,12 @@ class Packer:
         self._bytes = self._template.block.view(np.uint8)
         self._tuned: dict[int, bytes] = {}
         self._status: dict[int, bytes] = {}
-        self._layouts: dict[bytes, Layout] = {}
+        self._t_ns = 0
+        self._diagnosed: bytes | None = None
+        self._periods = dict(names.periods) | {
+            f'/{name}/{TEMPERATURE[0]}': NS_PER_SECOND for name in names.heated}
+        self._not_due: frozenset[str] = frozenset()
+        self._layouts: dict[tuple[bytes, frozenset[str]], Layout] = {}
         self._bind()
 
     @staticmethod
@@ -171,10 +188,11 @@ class Packer:
         places = {field: first + k for k, field in enumerate(
             (*_SAMPLE, *(f'{field}, absolute' for field in _PRESSURES),
              *(f'applied {field}' for field in _APPLIED)))}
-        return actuator_messages.prepared(
+        messages = actuator_messages.prepared(
             name, is_rotary, places,
             {field: places[f'{field}, absolute'] for field in _PRESSURES},
             {field: places[f'applied {field}'] for field in _APPLIED})
+        return {**messages, TEMPERATURE[0]: temperature.of_oil(name, places)}
 
     def _bind(self) -> None:
         """Store the rows as plain floats, a tenth of the time to pass to the kernel."""
@@ -200,6 +218,10 @@ class Packer:
         pack(time_word(t_ns), time_word(tick_start_ns), ATMOSPHERE,
              self._samples, self._shown.applied, self._supplies, self._body, self._words,
              self._values, self._target)
+        if self._periods:
+            self._not_due = frozenset(
+                name for name, period in self._periods.items()
+                if t_ns and t_ns // period == tick_start_ns // period)
         self._tuned = {
             row: applied_parameters(self._names.actuators[row][0], values, tick_start_ns)
             for row, values in tuned.items()} if tuned else {}
@@ -207,31 +229,45 @@ class Packer:
             row: encode(device.status(name, self._device_of(row)))
             for row, (name, _) in enumerate(self._names.actuators)
             if self.has_status(row, t_ns, tick_start_ns)}
+        self._t_ns, self._diagnosed = t_ns, None
+        if self._is_run and t_ns % PERIOD_NS == 0:
+            self.diagnose()
 
     def _device_of(self, row: int) -> dict[str, float]:
         sample = self._shown.samples[row]
         return {field: float(sample[field]) for field in FIELDS}
 
+    def diagnose(self) -> bytes:
+        """Add the diagnostics to the packed instant, and return them."""
+        names, shown = self._names, self._shown
+        self._diagnosed = diagnostics.pack(self._t_ns, energy_statuses(accounts_of(
+            [name for name, _ in names.actuators], shown.samples,
+            [name for name, _ in names.supplies], shown.supplies, self._t_ns)))
+        return self._diagnosed
+
     def all_messages(self, events: Sequence[bytes] = ()) -> Packed:
         """Return all messages of the packed instant, in the order of `topics`."""
-        key = (self._kinds != 0).tobytes()
+        key = (self._kinds != 0).tobytes(), self._not_due
         where = self._layouts.get(key)
         if where is None:
             where = self._layouts[key] = self._layout()
         packed = Packed(self._bytes, where)
-        if not (events or self._tuned or self._status):
+        if not (events or self._tuned or self._status or self._diagnosed):
             return packed
         extra = [(self._index[event.TOPIC[0]], data) for data in events]
         extra += [(self._index[f'/{self._names.actuators[row][0]}/{_PARAMETERS}'], data)
                   for row, data in self._tuned.items()]
         extra += [(self._index[f'/{self._names.actuators[row][0]}/{_DEVICE}'], data)
                   for row, data in self._status.items()]
+        if self._diagnosed is not None:
+            extra.append((self._index[diagnostics.TOPIC[0]], self._diagnosed))
         return Packed.of(sorted([*packed, *extra], key=lambda message: message[0]))
 
     def _layout(self) -> Layout:
-        """Return the layout of this tick's messages: without setpoints where none was applied."""
-        absent = {f'/{name}/{_SETPOINT}' for (name, _), kinds in zip(
-            self._names.actuators, self._kinds) if not kinds}
+        """Return the layout of this tick's messages: of applied setpoints, and of what is due."""
+        absent = self._not_due.union(
+            f'/{name}/{_SETPOINT}'
+            for (name, _), kinds in zip(self._names.actuators, self._kinds) if not kinds)
         present = [(self._index[name], place) for name, place in self._place.items()
                    if name not in absent]
         present.sort()
@@ -241,11 +277,15 @@ class Packer:
                       sizes[places].tolist())
 
     def of_actuator(self, row: int) -> list[bytes | None]:
-        """Return the messages of one actuator in the order of `TOPICS`."""
+        """Return the messages of one actuator in the order of `topics_of_actuator`."""
         name = self._names.actuators[row][0]
         setpoint = self._message(f'/{name}/{_SETPOINT}') if self._kinds[row] else None
-        return [self._tuned.get(row), setpoint, self._status.get(row),
-                *(self._message(f'/{name}/{suffix}') for suffix, _ in STATE_TOPICS)]
+        messages = [self._tuned.get(row), setpoint, self._status.get(row),
+                    *(self._message(f'/{name}/{suffix}') for suffix, _ in STATE_TOPICS)]
+        if name in self._names.heated:
+            temperature = f'/{name}/{TEMPERATURE[0]}'
+            messages.append(None if temperature in self._not_due else self._message(temperature))
+        return messages
 
     def has_applied(self, row: int) -> bool:
         """Return whether a command of an actuator took effect at the start of the last tick."""
@@ -261,17 +301,20 @@ class Packer:
         return bool(since > tick_start_ns - _HALF_STEP_NS
                     or t_ns // NS_PER_SECOND != tick_start_ns // NS_PER_SECOND or t_ns == 0)
 
-    def of(self, topics: Sequence[Topic]) -> list[bytes]:
-        """Return the messages of some topics."""
-        return [self._message(topic.name) for topic in topics]
+    def of(self, topics: Sequence[Topic]) -> list[bytes | None]:
+        """Return the messages of some topics; None: none at this instant."""
+        return [self._diagnosed if topic.name == diagnostics.TOPIC[0]
+                else None if topic.name in self._not_due
+                else self._message(topic.name) for topic in topics]
 
     def _message(self, name: str) -> bytes:
         return self._template.message(self._place[name])
 
     @property
     def surroundings(self) -> list[Topic]:
-        """Return the topics of supplies and body."""
-        own = {f'/{name}/{suffix}' for name, _ in self._names.actuators for suffix, _ in TOPICS}
+        """Return the topics of supplies and body, and the diagnostics."""
+        own = {f'/{name}/{suffix}' for name, _ in self._names.actuators
+               for suffix, _ in (*TOPICS, TEMPERATURE)}
         return [topic for topic in self.topics
                 if topic.name not in own and topic.name not in (clock.TOPIC[0], event.TOPIC[0])]
 

@@ -50,4 +50,6 @@ class ResultMessages:
             if tick in log.applied:
                 shown.applied[:] = log.applied[tick]
             narrator.publish_rows(tick, {})
-            narrator.record()
+            if tick < len(log.samples) - 1:
+                narrator.record()
+        narrator.end()

@@ -110,12 +110,12 @@ class Run:
 
     def simulate(
             self, duration: float | None = None, controllers: Controllers = (), *,
-            progress: bool = False) -> Result:
+            seed: int | None = None, progress: bool = False) -> Result:
         """
         Simulate from t = 0 and return every sample, in memory.
 
         ``duration`` in s; None: that of the scenario. ``controllers`` as in `simulation`.
-        ``progress`` is shown on a terminal only.
+        ``seed`` of all noise; None: that of the run. ``progress`` is shown on a terminal only.
 
         Raises
         ------
@@ -125,6 +125,9 @@ class Run:
             A state is no longer finite.
 
         """
+        if seed is not None:
+            return self.replace({'seed': seed}).simulate(
+                duration, controllers, progress=progress)
         named = self._named(controllers)
         plan = self._with_names(list(named))
         if duration is not None:
@@ -161,13 +164,13 @@ class Run:
 
 def load(
         config: str | Path | Tree, scenario: str | Path | Tree | None = None, *,
-        duration: float | None = None, compression: str | None = None,
+        seed: int | None = None, duration: float | None = None, compression: str | None = None,
         split_mb: float | None = None) -> Run:
     """
     Return the run of a file, or of a shipped one by name, with its scenario.
 
-    Instead of a file its content may be given, as a dictionary. ``duration`` (s), ``compression``
-    and ``split_mb`` are the options of `isa bringup`.
+    Instead of a file its content may be given, as a dictionary. ``seed``, ``duration`` (s),
+    ``compression`` and ``split_mb`` are the options of `isa bringup`.
 
     Raises
     ------
@@ -175,8 +178,9 @@ def load(
         A file cannot be read or is invalid; the message has file, key, value and bound.
 
     """
-    return Run(_file(config, CONFIG), None if scenario is None else _file(scenario, SCENARIOS),
-               duration, compression, split_mb)
+    run = Run(_file(config, CONFIG), None if scenario is None else _file(scenario, SCENARIOS),
+              duration, compression, split_mb)
+    return run if seed is None else run.replace({'seed': seed})
 
 
 def _file(given: str | Path | Tree, directory: str) -> _File:

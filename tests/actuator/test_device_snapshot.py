@@ -1,6 +1,7 @@
 """A run that is saved in any state of its devices goes on byte for byte."""
 
 from isa_ros.controller import fill_command, Setpoint
+from isa_ros.core.conditions import BITS
 from isa_ros.core.device import (
     DISABLED, ENABLED, FAULT, FAULT_REACTION, INITIALISING, QUICK_STOP)
 from isa_ros.core.signals import COMMAND
@@ -9,7 +10,8 @@ import pytest
 from tests.sheets import actuator_sheet, override, setpoint, smart_actuator
 
 TICKS = 60
-TRIP = 1 << 2
+FAILED, RATED = 1e6, 20.7e6   # Pa gauge
+TRIP = float(1 << BITS['supply_low'])
 
 
 def commanded(actuator, **values):
@@ -19,10 +21,9 @@ def commanded(actuator, **values):
     actuator.accept(command)
 
 
-def found(actuator, reaction):
-    """Let the protection have found something."""
-    own = actuator.memory.reu['protection'][0]
-    own['reaction'], own['trips'] = reaction, TRIP if reaction else 0
+def supply(actuator, pressure):
+    """Let the supply have a pressure, Pa gauge."""
+    actuator.memory.ports['supply_pressure'] = pressure
 
 
 REACHED = {
@@ -30,8 +31,8 @@ REACHED = {
     DISABLED: lambda own: commanded(own, is_enabled=False),
     ENABLED: lambda own: commanded(own, mode='spool', spool=1e-5),
     QUICK_STOP: lambda own: commanded(own, quick_stop=True),
-    FAULT_REACTION: lambda own: found(own, 3),
-    FAULT: lambda own: found(own, 4)}
+    FAULT_REACTION: lambda own: supply(own, FAILED),
+    FAULT: lambda own: supply(own, FAILED)}
 
 
 def started(state):
@@ -39,6 +40,9 @@ def started(state):
     sheet = actuator_sheet('isa_v5')
     if state == INITIALISING:
         sheet = override(sheet, 'reu.device.initialisation_ms', 50.0)
+    sheet = override(sheet, 'reu.protection.supply_low.delay_ms', 0.0)
+    if state == FAULT_REACTION:
+        sheet = override(sheet, 'reu.protection.supply_low.reaction', 'quick_stop')
     actuator = smart_actuator('isa_v5', 'mass', sheet=sheet)
     actuator.accept(setpoint(position=0.055))
     return actuator
@@ -71,12 +75,12 @@ def test_saved_in_any_state_it_goes_on_byte_for_byte(state):
 def test_a_fault_outlives_its_cause_and_is_cleared_in_a_restored_run():
     whole, restored = started(FAULT), started(FAULT)
     ticked(whole)
-    found(whole, 4)
+    supply(whole, FAILED)
     ticked(whole, 2)
-    found(whole, 0)
+    supply(whole, RATED)
     ticked(whole, 2)
     restored.restore(whole.snapshot())
     assert (restored.sample.device_state, restored.sample.trips) == (FAULT, TRIP)
     commanded(restored, clear_fault=True, is_enabled=True)
-    ticked(restored, 1)
-    assert (restored.sample.device_state, restored.sample.trips) == (ENABLED, 0)
+    ticked(restored, 2)
+    assert (restored.sample.device_state, restored.sample.trips) == (ENABLED, 0.0)

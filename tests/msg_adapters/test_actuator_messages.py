@@ -1,6 +1,7 @@
 """What an actuator publishes: interface.md's table of topics, value by value."""
 
-from isa_ros.core.device import FIELDS
+from isa_ros.core.accounts import FIELDS
+from isa_ros.core.device import FIELDS as OF_DEVICE
 from msg_adapters.actuator_messages import APPLIED_SETPOINT, STATE_TOPICS, TOPICS
 from msg_adapters.cdr_reader import decode, message_class
 import pytest
@@ -107,8 +108,9 @@ def test_actuators_together_say_what_each_says_alone():
 
 
 def test_every_value_but_the_gauge_pressures_is_published():
-    """Of these the absolute ones are; the device's are texts."""
+    """Of these the absolute ones are; energies are on `/diagnostics`, the device's are texts."""
     used = {column for _, fields in of_actuator('hip', False).values()
             for column in fields.values() if column >= 0}
     assert {value for k, value in enumerate(VALUES) if k not in used} == {
-        'sample pressure_a', 'sample pressure_b', *(f'sample {field}' for field in FIELDS)}
+        'sample pressure_a', 'sample pressure_b', 'sample power', 'sample temperature',
+        *(f'sample {field}' for field in (*OF_DEVICE, *FIELDS) if field != 'supply_volume')}

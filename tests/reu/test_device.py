@@ -15,7 +15,8 @@ from tests.sheets import actuator_sheet, MODELS, override
 
 PERIOD = 5          # plant steps between two conversions
 STOP_STEPS = 2000   # conversions: 200 ms, the shipped time at rest
-BIT = 1 << 3        # of any condition
+BIT = 1 << 3        # of any condition that disables
+QUICK_STOPS, DISABLES = 5, 6    # places of these reactions
 
 
 def constants(model='isa_v5', **values):
@@ -23,7 +24,9 @@ def constants(model='isa_v5', **values):
     sheet = actuator_sheet(model)
     for name, value in values.items():
         sheet = override(sheet, f'reu.device.{name}', value)
-    return actuator_record(sheet, 0).view(np.recarray)[0].reu
+    reu = actuator_record(sheet, 0).view(np.recarray)[0].reu
+    reu.protection.reaction[:] = DISABLES
+    return reu
 
 
 def starting(auto_enable=1):
@@ -46,9 +49,14 @@ def request(state, kinds, enable=0, mode=0):
 
 
 def find(state, reaction, bits=BIT):
-    """Let the protection have found something."""
-    state.protection.reaction = reaction
-    state.protection.trips = bits if reaction else 0
+    """Let the protection have found something; a trip that stops stays until it is cleared."""
+    own = state.protection
+    stops = reaction >= QUICK_STOPS
+    own.present = bits if stops else 0
+    latched = 0 if own.reaction < QUICK_STOPS or own.clears and not stops else own.reaction
+    own.clears = 0
+    own.reaction = max(reaction, latched)
+    own.trips = bits if own.reaction else 0
 
 
 class Expected:
@@ -57,9 +65,9 @@ class Expected:
     def __init__(self):
         self.state, self.mode, self.left = INITIALISING, IMPEDANCE, 0
 
-    def step(self, kinds, enable, mode, reaction):
+    def step(self, kinds, enable, mode, reaction, is_gone):
         """Take one conversion's requests and findings."""
-        trips = reaction >= 3
+        trips = reaction >= QUICK_STOPS
         was = self.state
         if self.state == INITIALISING:
             self.state = ENABLED
@@ -69,9 +77,9 @@ class Expected:
                 self.left = STOP_STEPS
         elif trips and self.state in (INITIALISING, DISABLED):
             self.state = FAULT
-        if reaction == 4 and self.state == FAULT_REACTION:
+        if reaction == DISABLES and self.state == FAULT_REACTION:
             self.state = FAULT
-        if kinds & HAS_CLEAR_FAULT and self.state == FAULT and not trips:
+        if kinds & HAS_CLEAR_FAULT and self.state == FAULT and is_gone:
             self.state = DISABLED
         if kinds & HAS_MODE and mode in (1, 2, 4, 6):
             self.mode = mode
@@ -95,7 +103,7 @@ def random_events(dice):
     """Return kinds, enable, mode and reaction of one conversion; mostly nothing."""
     kinds = sum(kind for kind in (HAS_ENABLE, HAS_MODE, HAS_CLEAR_FAULT, HAS_QUICK_STOP)
                 if dice.random() < 0.01)
-    reaction = dice.choice((1, 2, 3, 4)) if dice.random() < 0.004 else 0
+    reaction = dice.choice((1, 2, 5, 6)) if dice.random() < 0.004 else 0
     return kinds, dice.randrange(2), dice.randrange(1, 7), reaction
 
 
@@ -103,17 +111,16 @@ def random_events(dice):
 def test_any_sequence_of_events_leads_through_the_states_of_an_independent_device(seed):
     """20,000 conversions; every state is visited, the outputs follow from state and stop."""
     dice, reu, state, expected = random.Random(seed), constants(), starting(), Expected()
-    visited, until = set(), 0
+    visited, until, lasting = set(), 0, 0
     for k in range(20_000):
         kinds, enable, mode, reaction = random_events(dice)
-        if k >= until and reaction:
-            until = k + dice.randrange(1, 300)
-            find(state, reaction)
-        elif k >= until:
-            find(state, 0)
+        if k >= until:
+            lasting = reaction
+            until = k + dice.randrange(1, 300) if reaction else k
+        find(state, lasting)
         request(state, kinds, enable, mode)
         device.device_step(k * PERIOD, reu, state)
-        expected.step(kinds, enable, mode, int(state.protection.reaction))
+        expected.step(kinds, enable, mode, int(state.protection.reaction), lasting < QUICK_STOPS)
         own = state.status
         assert (own.state, own.mode) == (expected.state, expected.mode), k
         assert bool(own.is_on) == (own.state in (ENABLED, QUICK_STOP, FAULT_REACTION))
@@ -156,8 +163,8 @@ def test_it_initialises_for_its_time_and_is_enabled_only_if_configured():
             assert state.status.state == (INITIALISING if k < 20 else after), k
 
 
-@pytest.mark.parametrize('reaction, reached', [(1, ENABLED), (2, ENABLED), (3, FAULT_REACTION),
-                                               (4, FAULT)])
+@pytest.mark.parametrize('reaction, reached', [
+    (1, ENABLED), (2, ENABLED), (3, ENABLED), (4, ENABLED), (5, FAULT_REACTION), (6, FAULT)])
 def test_only_a_reaction_that_stops_changes_the_state(reaction, reached):
     reu, state = constants(), enabled_state(constants())
     find(state, reaction)
@@ -167,18 +174,21 @@ def test_only_a_reaction_that_stops_changes_the_state(reaction, reached):
 
 def test_a_fault_is_kept_until_it_is_cleared_and_its_cause_is_gone():
     reu, state = constants(), enabled_state(constants())
-    find(state, 4)
+    find(state, DISABLES)
     device.device_step(0, reu, state)
     request(state, HAS_CLEAR_FAULT)
+    find(state, DISABLES)
     device.device_step(5, reu, state)
     assert (state.status.state, state.status.trips) == (FAULT, BIT)
     find(state, 0)
-    device.device_step(10, reu, state)
     request(state, HAS_ENABLE, enable=1)
     device.device_step(15, reu, state)
     assert (state.status.state, state.status.trips) == (FAULT, BIT)
     request(state, HAS_CLEAR_FAULT | HAS_ENABLE, enable=1)
     device.device_step(20, reu, state)
+    assert state.status.state == ENABLED
+    find(state, 0)
+    device.device_step(25, reu, state)
     assert (state.status.state, state.status.trips) == (ENABLED, 0)
 
 
