@@ -248,7 +248,7 @@ def protect(step, supply_pressure, temperature, protection, state):
 
 @kernel
 def setpoint_in_force(state):
-    """Return the setpoint that the blocks of a `REU_STATE` follow: commanded, of a stop or of a reaction."""
+    """Return the setpoint that the blocks of a `REU_STATE` follow: its own, a stop's, a trip's."""
     if state.status.is_stopping:
         return state.status.stop
     if HOLD <= state.protection.reaction <= DAMP:

@@ -185,25 +185,25 @@ class ActuatorNode(Node):
     def _on_enable(
             self, request: SetBool.Request, response: SetBool.Response) -> SetBool.Response:
         if request.data:
-            self._request(response, 'enabled', is_enabled=True)
+            self._request(response, 'enabled', Setpoint(is_enabled=True))
         else:
-            self._request(response, 'disabled', is_enabled=False)
+            self._request(response, 'disabled', Setpoint(is_enabled=False))
         return response
 
     def _on_clear_fault(
             self, request: Trigger.Request, response: Trigger.Response) -> Trigger.Response:
-        self._request(response, 'fault cleared', clear_fault=True)
+        self._request(response, 'fault cleared', Setpoint(clear_fault=True))
         return response
 
     def _on_quick_stop(
             self, request: Trigger.Request, response: Trigger.Response) -> Trigger.Response:
-        self._request(response, 'quick stop', quick_stop=True)
+        self._request(response, 'quick stop', Setpoint(quick_stop=True))
         return response
 
-    def _request(self, response: Any, what: str, **request: bool) -> None:
+    def _request(self, response: Any, what: str, request: Setpoint) -> None:
         """Accept a request where the state of the device has a transition for it."""
         command = np.zeros(1, COMMAND)[0]
-        fill_command(self.get_name(), Setpoint()._replace(**request), command)
+        fill_command(self.get_name(), request, command)
         refusal = self.actuator.refusal(command)
         if not refusal:
             self.actuator.accept(command)
