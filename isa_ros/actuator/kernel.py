@@ -15,6 +15,7 @@ from isa_ros.core.kernel import kernel
 from isa_ros.core.timebase import FORCE_WINDOWS, PLANT_STEP
 from isa_ros.loads.forces import LOAD_STATE, OWN_LOAD, own_load_force
 from isa_ros.loads.port import load_acceleration
+from isa_ros.plant.coil import coil_heat
 from isa_ros.plant.energy import ENERGIES
 from isa_ros.plant.plant import exact_force, PLANT, plant_rates, PLANT_STATE, sense, settle
 from isa_ros.plant.thermal import warm
@@ -140,18 +141,14 @@ def write_sample(plant, reu, sample):
 
 @kernel
 def loops_and_plant(
-        step, tau, port, temperature, actuator, bodies, rates, y, k, reu_state, channels):
-    """
-    Run the loops that are due at plant step ``step``, then the plant over that step.
-
-    ``temperature`` is that of the oil, celsius.
-    """
+        step, tau, port, actuator, bodies, rates, y, k, reu_state, channels, thermal):
+    """Run the loops that are due at plant step ``step``, then the plant over that step."""
     body, reu = bodies[0], actuator.reu
     if is_due(step, reu.current_steps, reu.offset_steps):
         sense(step, reu.current_steps, body.plant, body.load.position, body.load.velocity,
               actuator.plant, actuator.noise_key, channels, reu_state.measured)
         if reu.protection.is_on:
-            protect(step, port.supply_pressure, temperature, reu.protection, reu_state)
+            protect(step, port.supply_pressure, thermal.oil, reu.protection, reu_state)
         cascade_step(step, reu, reu_state)
     if step == actuator.load.rope.release_step:
         body.load.weight.is_released = 1.0
@@ -159,6 +156,8 @@ def loops_and_plant(
         reu_state.amplifier = reu_state.drive
     body_step(PLANT_STEP, tau, reu_state.amplifier, port, actuator,
               bodies, rates, y, k)
+    if actuator.plant.thermal.is_on:
+        thermal.coil += PLANT_STEP * coil_heat(body.plant.coil, actuator.plant.coil)
 
 
 @kernel
@@ -207,8 +206,8 @@ def tick_row(first_step, steps, port, actuator, bodies, rates, y, k, reu_state, 
     for window in range(FORCE_WINDOWS):
         body.totals.impulse = 0.0
         for i in range(window * window_steps, (window + 1) * window_steps):
-            loops_and_plant(first_step + i, i * PLANT_STEP, port, thermal.oil, actuator,
-                            bodies, rates, y, k, reu_state, channels)
+            loops_and_plant(first_step + i, i * PLANT_STEP, port, actuator,
+                            bodies, rates, y, k, reu_state, channels, thermal)
         reply.mean_forces[window] = body.totals.impulse / (window_steps * PLANT_STEP)
     reply.force = exact_force(
         body.plant, body.load.position, body.load.velocity, actuator.plant)

@@ -79,20 +79,22 @@ def plant_record(sheet: LinearPlant | RotaryPlant) -> np.recarray:
     area_a, area_b = sheet.drive.areas
     celsius = sheet.oil.temperature_celsius
     own_spool = spool.spool_record(sheet.spool, celsius)
+    lands = servo_valve.valve_record(sheet.valve, area_a / area_b)
     oil = chambers.chambers_record(sheet.drive, sheet.oil)
     seals = friction.friction_record(sheet.friction)
     return np.array([record(
         PLANT,
         coil=coil.coil_record(sheet.coil),
         spool=own_spool,
-        valve=servo_valve.valve_record(sheet.valve, area_a / area_b),
+        valve=lands,
         chambers=oil,
         relief=relief.relief_record(sheet.relief),
         friction=seals,
         mechanics=mechanics.mechanics_record(sheet.mechanics),
         sensors=sensors.sensors_record(sheet.sensors),
         thermal=thermal.thermal_record(
-            sheet.thermal, celsius, spool.bias_per_k(sheet.spool), oil, seals, own_spool),
+            sheet.thermal, celsius, spool.bias_per_k(sheet.spool), oil, lands, seals,
+            own_spool),
         )], PLANT).view(np.recarray)
 
 
@@ -167,7 +169,6 @@ def plant_rates(y, x_load, v_load, drive, p_s, p_t, plant, rates, powers):
     powers.friction = f_friction * v
     powers.damping = plant.mechanics.d_s * slip * slip - f_stop * v
     powers.work = f_sensor * v_load
-    powers.coil = coil.coil_heat(y.coil, plant.coil)
     return f_sensor, q_p, q_t + out_a + out_b
 
 
