@@ -24,13 +24,21 @@ APPLIED_TOPICS = (APPLIED_PARAMETERS, APPLIED_SETPOINT)
 DEVICE = ('device', device.TYPE)
 """(topic suffix, type) of the device's status, published on change and every second."""
 
-KEPT_TOPICS = (*APPLIED_TOPICS, DEVICE)
-"""Topics whose last messages a later subscription receives too."""
+SENT_SETPOINT = ('sent_setpoint', joint_state.TYPE)
+"""(topic suffix, type) of the messages published when a command is handed to a link."""
+KEPT_TOPICS = (*APPLIED_TOPICS, SENT_SETPOINT, DEVICE)
+"""(topic suffix, type) of the messages that are kept for later subscriptions."""
 
-TOPICS = (*KEPT_TOPICS, *STATE_TOPICS)
+TOPICS = (*APPLIED_TOPICS, DEVICE, *STATE_TOPICS)
 
 TEMPERATURE = ('temperature', temperature.TYPE)
 """(topic suffix, type) of the oil's temperature: once a second, of actuators that get warm."""
+
+
+def topics(is_heated: bool = False, has_link: bool = False) -> tuple[tuple[str, str], ...]:
+    """Return (topic suffix, type) of all messages of an actuator."""
+    return (*APPLIED_TOPICS, *([SENT_SETPOINT] if has_link else []), DEVICE, *STATE_TOPICS,
+            *([TEMPERATURE] if is_heated else []))
 
 
 def prepared(

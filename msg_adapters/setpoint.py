@@ -21,6 +21,11 @@ _APPLIED = {'stiffness': 'stiffness', 'damping': 'damping', 'enabled': 'is_enabl
 _BEFORE_DEVICE = 4  # entries in a bag that was recorded before there were modes
 
 
+def applied_names(name: str) -> list[str]:
+    """Return the entries of an applied setpoint, in their order."""
+    return [name, *(f'{name}/{entry}' for entry in _APPLIED)]
+
+
 def applied_setpoint(name: str, columns: Mapping[str, int]) -> Prepared:
     """
     Return ``~/applied_setpoint`` of an actuator: all values in force from the tick's start on.
@@ -28,7 +33,7 @@ def applied_setpoint(name: str, columns: Mapping[str, int]) -> Prepared:
     ``columns`` are those of a COMMAND row with gains resolved, by field. All but the first entry
     have a number in ``position``; that of NAME/changed is the sum of the `HAS_*` of what changed.
     """
-    names = [name, *(f'{name}/{entry}' for entry in _APPLIED)]
+    names = applied_names(name)
     fields = entries(
         len(names), velocity=[columns['velocity']], effort=[columns['effort']],
         position=[columns['position'], *(columns[field] for field in _APPLIED.values())])
@@ -69,7 +74,7 @@ def applied_to_command(data: bytes, name: str) -> np.void:
 
     """
     message = decode(data, JointState)
-    names = [name, *(f'{name}/{entry}' for entry in _APPLIED)]
+    names = applied_names(name)
     if list(message.name) not in (names, names[:_BEFORE_DEVICE]):
         raise SetpointError(
             f'{name}: applied setpoint names {listed(message.name)}, must name {listed(names)}')

@@ -1,8 +1,9 @@
 """The data sheet of one actuator, and the SI records the kernels read."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 from isa_ros.actuator.kernel import ACTUATOR
+from isa_ros.actuator.link import link_record, LinkSheet, NO_LINK
 from isa_ros.actuator.ratings import evidence_of, ratings_of
 from isa_ros.core.parameter import choice, Parameters
 from isa_ros.core.record import record
@@ -33,6 +34,7 @@ class ActuatorSheet(Parameters):
         "the valve's spool sensor; a mechanical feedback has none", 'electric', 'mechanic')
     plant: LinearPlant | RotaryPlant
     reu: Reu
+    link: LinkSheet = field(default=NO_LINK, metadata={'absent': NO_LINK})
 
     @property
     def is_rotary(self) -> bool:
@@ -150,7 +152,7 @@ def actuator_record(sheet: ActuatorSheet, offset_steps: int) -> np.ndarray:
     reu['protection'] = protection_record(
         sheet.reu.protection, ratings_of(plant[0]),
         evidence_of(plant[0], sheet.reu.speed.rate_hz, steps['speed'], offset_steps),
-        steps['current'])
+        steps['current'], sheet.link.watchdog_ms * MILLI)
     rows = np.zeros(1, ACTUATOR)
-    rows['plant'], rows['reu'] = plant, reu
+    rows['plant'], rows['reu'], rows['link'] = plant, reu, link_record(sheet.link)
     return rows

@@ -24,11 +24,15 @@ def parameter(
     ``absent`` is the value where a file has none, such as a resolved configuration older than the
     parameter; ``source`` is that of this value.
     """
+    declared = _declaration(doc, unit, bounds) | {'source': source}
+    return field(metadata=declared if absent is None else declared | {'absent': absent})
+
+
+def _declaration(doc: str, unit: str, bounds: dict[str, float]) -> dict[str, Any]:
     unknown = set(bounds) - set(_RELATIONS)
     if unknown:
         raise TypeError(f'unknown bounds {sorted(unknown)}; use {sorted(_RELATIONS)}')
-    metadata = {'doc': doc, 'unit': unit, 'bounds': bounds, 'source': source}
-    return field(metadata=metadata if absent is None else metadata | {'absent': absent})
+    return {'doc': doc, 'unit': unit, 'bounds': bounds}
 
 
 def tunable(doc: str, unit: str, *, named: str | None = None, **bounds: float) -> Any:
@@ -37,14 +41,12 @@ def tunable(doc: str, unit: str, *, named: str | None = None, **bounds: float) -
 
     ``named`` is its name in SI, without a unit suffix; None: the name of the field.
     """
-    declared = parameter(doc, unit, **bounds)
-    return field(metadata=declared.metadata | {'tunable': named or ''})
+    return field(metadata=_declaration(doc, unit, bounds) | {'tunable': named or ''})
 
 
 def numbers(doc: str, unit: str, *, least: int, most: int, **bounds: float) -> Any:
     """Declare ``least`` to ``most`` numbers in a list, each within ``bounds`` as `parameter`."""
-    declared = parameter(doc, unit, **bounds)
-    return field(metadata=declared.metadata | {'length': (least, most)})
+    return field(metadata=_declaration(doc, unit, bounds) | {'length': (least, most)})
 
 
 def choice(doc: str, *names: str, absent: str | None = None, source: str = '') -> Any:

@@ -42,8 +42,9 @@ COMMAND = np.dtype([
     ('damping', '<f8'),        # Ns/m | Nms/rad; NaN keeps the gain in force
     ('mode', '<i8'),           # of `isa_ros.core.device`: the new one, or that of the reference
     ('reference', '<f8'),      # of that mode: amplifier A | m of spool | Pa of difference
+    ('due_step', '<i8'),       # plant step from which it is in force; 0: start of its tick
 ])
-"""Command to one actuator, in effect from a tick boundary on."""
+"""Command to one actuator, in effect from a tick boundary or a `due_step` on."""
 
 GAINS_OF_COMMAND = ('stiffness', 'damping')
 """Fields of a `COMMAND` that may be NaN."""
@@ -81,6 +82,7 @@ SAMPLE = np.dtype([
     ('device_mode', '<f8'),         # of `MODES`, in force or for the next enable
     ('device_event', '<f8'),        # of `EVENTS`: the last one that changed the state or mode
     ('state_since', '<f8'),         # time of the last change of these three or of the bits, s
+    ('age', '<f8'),                 # since it was sampled, s; > 0 behind a link only
 ])
 """Values one actuator reports at the end of a tick."""
 
@@ -93,7 +95,8 @@ SAMPLE_UNITS = {
     'leakage_energy': 'J', 'throttling_energy': 'J', 'cross_port_energy': 'J',
     'relief_energy': 'J', 'friction_energy': 'J', 'damping_energy': 'J', 'work': 'J',
     'stored_energy': 'J', 'temperature': 'celsius', 'warnings': 'bits', 'trips': 'bits',
-    'device_state': '1', 'device_mode': '1', 'device_event': '1', 'state_since': 's'}
+    'device_state': '1', 'device_mode': '1', 'device_event': '1', 'state_since': 's',
+    'age': 's'}
 """Unit of each field of a `SAMPLE`: of a linear actuator | of a rotary one."""
 
 LOAD_PORT = np.dtype([

@@ -48,6 +48,7 @@ class Stepper:
     def __init__(self) -> None:
         self.reply, self.sample = np.zeros(1, LOAD_REPLY), np.zeros(1, SAMPLE)
         self.applied, self.tuned = np.zeros(1, COMMAND), {'force.kp': 1e-7}
+        self.sent = np.zeros(1, COMMAND)
 
     def start(self, start: np.void) -> None:
         """Take a start."""
