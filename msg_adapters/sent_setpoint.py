@@ -9,7 +9,7 @@ import math
 
 from isa_ros.core.device import MODES
 from isa_ros.core.signals import (
-    COMMAND, EVERY_KIND, HAS_ENABLE, HAS_GAINS, HAS_MODE, HAS_REFERENCE, HAS_SETPOINT)
+    COMMAND, EVERY_KIND, HAS_ENABLE, HAS_MODE, HAS_REFERENCE, HAS_SETPOINT)
 from isa_ros.core.suggest import listed
 from isa_ros.errors import SetpointError
 from msg_adapters.cdr_reader import decode
@@ -21,7 +21,6 @@ from sensor_msgs.msg import JointState
 
 
 _ENABLED, _MODE, _REFERENCE, _CHANGED = 3, 4, 5, 6  # places of the entries
-_OF_DEVICE = EVERY_KIND ^ (HAS_SETPOINT | HAS_ENABLE | HAS_GAINS)
 
 
 def sent_setpoint(name: str, columns: Mapping[str, int]) -> Prepared:
@@ -82,17 +81,17 @@ def _read_gains(message: JointState, name: str, command: np.void) -> None:
         if math.isinf(value) or value < 0.0:
             raise SetpointError(f'{name}/{gain} = {value}, must be finite and >= 0, or NaN')
         command[gain] = value
-        if not math.isnan(value):
-            command['kinds'] |= HAS_GAINS
 
 
 def _read_device(message: JointState, name: str, command: np.void) -> None:
-    """Read mode, reference and requests: whole numbers, and a finite reference."""
+    """Read mode, reference and all kinds: whole numbers, and a finite reference."""
     mode, reference, kinds = (message.position[k] for k in (_MODE, _REFERENCE, _CHANGED))
     if not (0 <= kinds <= EVERY_KIND and kinds == int(kinds)):
         raise SetpointError(
             f'{name}/changed = {kinds}, must be a whole number <= {EVERY_KIND}')
-    kinds = int(kinds) & _OF_DEVICE
+    read, kinds = int(command['kinds']), int(kinds)
+    if kinds & (HAS_SETPOINT | HAS_ENABLE) != read:
+        raise SetpointError(f'{name}/changed = {kinds}, must name the values that are not NaN')
     if kinds & (HAS_MODE | HAS_REFERENCE):
         if not (0 < mode < len(MODES) and mode == int(mode)):
             raise SetpointError(
@@ -102,4 +101,4 @@ def _read_device(message: JointState, name: str, command: np.void) -> None:
         if not math.isfinite(reference):
             raise SetpointError(f'{name}/reference = {reference}, must be finite')
         command['reference'] = reference
-    command['kinds'] |= kinds
+    command['kinds'] = kinds

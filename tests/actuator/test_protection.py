@@ -3,10 +3,9 @@
 from typing import Any
 
 from isa_ros.actuator.actuator import SmartActuator, Timing
+from isa_ros.core.conditions import BITS, conditions
 from isa_ros.core.device import FAULT
 from isa_ros.core.signals import COMMAND, HAS_CLEAR_FAULT, HAS_ENABLE
-from isa_ros.core.conditions import BITS, conditions
-from isa_ros.core.signals import COMMAND, HAS_ENABLE
 from isa_ros.reu.protection import protect
 from isa_ros.reu.reports import reports
 import numpy as np

@@ -16,8 +16,8 @@ from tests.fuzz.property import refused
 
 NAME = 'knee'
 NAMES = (NAME, f'{NAME}/stiffness', f'{NAME}/damping', f'{NAME}/enabled', f'{NAME}/mode',
-         f'{NAME}/reference', f'{NAME}/changed', f'{NAME}/spool', f'{NAME}/current', 'hip', '', '/',
-         'é', '\x1b[2J', 'x' * 5000)
+         f'{NAME}/reference', f'{NAME}/changed', f'{NAME}/spool', f'{NAME}/current', 'hip', '',
+         '/', 'é', '\x1b[2J', 'x' * 5000)
 NUMBERS = (0.0, -0.0, 1.0, -1.0, 0.05, 1e5, 1e308, -1e308, 5e-324, math.nan, math.inf, -math.inf)
 ODD: tuple[Any, ...] = (
     *NUMBERS, None, True, '1', [], (), {}, 10**400, np.float32(1.0), np.array([1.0, 2.0]), 1j,
