@@ -36,7 +36,7 @@ def shown(n: int = 2, n_supplies: int = 1) -> Shown:
     samples, supplies = np.zeros(n, SAMPLE), np.zeros(n_supplies, SUPPLY_SAMPLE)
     samples.view(np.float64)[:] = np.arange(1.0, len(SAMPLE.names) * n + 1)
     supplies.view(np.float64)[:] = 1e6 * np.arange(1.0, len(SUPPLY_SAMPLE.names) * n_supplies + 1)
-    for field in FIELDS:
+    for field in (*FIELDS, 'age'):
         samples[field] = 0.0
     return Shown(samples, np.zeros(n, COMMAND), supplies, None)
 
