@@ -15,17 +15,35 @@ _RELATIONS: dict[str, tuple[str, Callable[[float, float], bool]]] = {
 }
 
 
-def parameter(doc: str, unit: str, *, absent: float | None = None, **bounds: float) -> Any:
+def parameter(
+        doc: str, unit: str, *, absent: float | None = None, changeable: bool = False,
+        **bounds: float) -> Any:
     """
     Declare one number; ``bounds`` are any of ``gt``, ``ge``, ``lt``, ``le``.
 
     ``absent`` is the value for a resolved configuration older than the parameter.
+    ``changeable``: it may change during a run, as a fault (`isa_ros.core.changeable`).
     """
     unknown = set(bounds) - set(_RELATIONS)
     if unknown:
         raise TypeError(f'unknown bounds {sorted(unknown)}; use {sorted(_RELATIONS)}')
-    metadata = {'doc': doc, 'unit': unit, 'bounds': bounds}
-    return field(metadata=metadata if absent is None else metadata | {'absent': absent})
+    metadata: dict[str, Any] = {'doc': doc, 'unit': unit, 'bounds': bounds}
+    if absent is not None:
+        metadata['absent'] = absent
+    if changeable:
+        metadata['changeable'] = True
+    return field(metadata=metadata)
+
+
+def fault(doc: str, unit: str, *, is_whole: bool = False, **bounds: float) -> Any:
+    """
+    Declare one number that is 0 in a sound device; sheets leave it out, and faults change it.
+
+    ``is_whole``: it is a number of things, or a yes (1) or no (0).
+    """
+    declared = parameter(doc, unit, absent=0.0, changeable=True, **bounds)
+    whole = {'is_whole': True} if is_whole else {}
+    return field(default=0.0, metadata=declared.metadata | whole)
 
 
 def tunable(doc: str, unit: str, *, named: str | None = None, **bounds: float) -> Any:
@@ -98,6 +116,8 @@ def _check_number(where: str, value: Any, declared: Any) -> None:
         raise ParameterError(f'{where} = {value!r}, must be a number in {unit}')
     if not math.isfinite(value):
         raise ParameterError(f'{where} = {value} {unit}, must be finite')
+    if 'is_whole' in declared and value != int(value):
+        raise ParameterError(f'{where} = {value:g}, must be a whole number ({declared["doc"]})')
     for name, bound in declared['bounds'].items():
         symbol, holds = _RELATIONS[name]
         if not holds(value, bound):

@@ -13,7 +13,7 @@ from isa_ros.core.record import record
 from isa_ros.plant import chambers, coil, friction, mechanics, relief, sensors, servo_valve, spool
 from isa_ros.plant.chambers import boil
 from isa_ros.plant.sensors import convert, encode
-from isa_ros.plant.spool import stop_spool
+from isa_ros.plant.spool import block_spool, stop_spool
 from isa_ros.plant.valve_sheets import DataSheetValve, DualGainValve, HighResponseValve
 import numpy as np
 
@@ -152,6 +152,8 @@ def plant_rates(y, x_load, v_load, drive, p_s, p_t, plant, rates):
 def settle(h, y, p_t, plant):
     """Apply to one `PLANT_STATE` after a step of ``h`` s what no rate can: stop and cavities."""
     stop_spool(y.valve, plant.valve.x_max)
+    if plant.spool.is_stuck > 0.0:
+        block_spool(y.valve)
     boil(h, y.chambers, y.mechanics.position, y.mechanics.velocity, p_t, plant.chambers)
 
 

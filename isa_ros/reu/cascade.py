@@ -42,6 +42,7 @@ REU = np.dtype([
     ('stroke', 'f8'),
     ('k_spool', 'f8'),    # m of spool per series-scale A
     ('parallel', 'f8'),   # amplifier A per series-scale A
+    ('is_frozen', 'f8'),
 ])
 MEASURED = np.dtype([
     ('position', 'f8'), ('force', 'f8'), ('pressure_a', 'f8'), ('pressure_b', 'f8'),
@@ -94,6 +95,7 @@ def reu_record(
         row[f'{name}_steps'] = period
     row['offset_steps'], row['delay_steps'] = offset_steps, delay_steps(reu, steps['current'])
     row['stroke'], row['k_spool'], row['parallel'] = stroke, k_spool, parallel
+    row['is_frozen'] = reu.frozen
     return record
 
 
@@ -170,7 +172,13 @@ def spool_block(step, reference, reu, state):
 
 @kernel
 def cascade_step(step, reu, state):
-    """Run every block that is due at plant step ``step`` on ``state.measured``."""
+    """
+    Run every block that is due at plant step ``step`` on ``state.measured``.
+
+    An REU that is frozen runs none: references and drive stay.
+    """
+    if reu.is_frozen > 0.0:
+        return
     if is_due(step, reu.speed_steps, reu.offset_steps):
         speed_step(state.measured.position, reu.speed, state.speed)
     reference = position_reference_inwards(step, reu, state)

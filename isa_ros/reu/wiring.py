@@ -10,7 +10,7 @@ a block have the unit of its output: switching the next block inwards on or off 
 
 from dataclasses import dataclass
 
-from isa_ros.core.parameter import parameter, Parameters
+from isa_ros.core.parameter import fault, parameter, Parameters
 from isa_ros.core.timebase import NS_PER_SECOND, PLANT_STEP_NS, steps_in
 from isa_ros.errors import ConfigError
 from isa_ros.reu.block import Pid
@@ -48,6 +48,8 @@ class Reu(Parameters):
     current: Held | LeadLag
     computation_delay_us: float = parameter(
         'from an instant of the loops to its output at the amplifier', 'us', ge=0.0, le=1e3)
+    frozen: float = fault(
+        '1: the REU has stopped, and its outputs hold', '1', is_whole=True, ge=0.0, le=1.0)
 
 
 VARIABLES = ('position', 'force', 'pressure', 'spool', 'current')
