@@ -2,13 +2,16 @@
 
 from collections.abc import Mapping, Sequence
 
-from msg_adapters import joint_state, wrench
+from msg_adapters import applied_parameters, joint_state, wrench
 from msg_adapters.template import Prepared, STAMP
 
 WORLD_FRAME = 'world'
 JOINT_TOPIC = ('/joint_states', joint_state.TYPE)
 CONTACT_TOPIC = ('/coordinator/ground_contact', wrench.TYPE)
 SLIDER = 'slider'
+APPLIED_PARAMETERS = ('/coordinator/applied_parameters', applied_parameters.TYPE)
+"""Parameters of the supplies that took effect, named SUPPLY.KEY."""
+NODE = 'coordinator'
 
 
 def joint_name(name: str) -> str:

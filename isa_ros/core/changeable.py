@@ -2,7 +2,8 @@
 Parameters that may change during a run: a fault is a change of such a parameter over time.
 
 Those marked ``changeable`` in their declaration, by the dotted key and in the unit of `isa
-params`. A new fault needs such a mark, and nothing else.
+params`; a new fault needs such a mark, and nothing else. Declared by `fault`, a parameter is
+changeable and 0 in a sound device.
 """
 
 from collections.abc import Iterator, Mapping
@@ -41,6 +42,20 @@ def _marked(parameters: Parameters, prefix: str) -> Iterator[Changeable]:
         elif 'changeable' in declared:
             yield Changeable(
                 name, value, declared['unit'], declared['bounds'], declared['doc'], declared)
+
+
+def sound(parameters: P) -> P:
+    """Return a set without faults: every `fault` is 0; the same object if there is none."""
+    found = {}
+    for f in fields(parameters):
+        value: Any = getattr(parameters, f.name)
+        if isinstance(value, Parameters):
+            without: Any = sound(value)
+        else:
+            without = 0.0 if 'is_fault' in f.metadata else value
+        if without is not value and without != value:
+            found[f.name] = without
+    return replace(parameters, **found) if found else parameters
 
 
 def with_changes(parameters: P, values: Mapping[str, float], prefix: str = '') -> P:

@@ -24,15 +24,19 @@ def parameter(
     ``absent`` is the value for a resolved configuration older than the parameter.
     ``changeable``: it may change during a run, as a fault (`isa_ros.core.changeable`).
     """
+    declared = _declaration(doc, unit, bounds)
+    if absent is not None:
+        declared['absent'] = absent
+    if changeable:
+        declared['changeable'] = True
+    return field(metadata=declared)
+
+
+def _declaration(doc: str, unit: str, bounds: dict[str, float]) -> dict[str, Any]:
     unknown = set(bounds) - set(_RELATIONS)
     if unknown:
         raise TypeError(f'unknown bounds {sorted(unknown)}; use {sorted(_RELATIONS)}')
-    metadata: dict[str, Any] = {'doc': doc, 'unit': unit, 'bounds': bounds}
-    if absent is not None:
-        metadata['absent'] = absent
-    if changeable:
-        metadata['changeable'] = True
-    return field(metadata=metadata)
+    return {'doc': doc, 'unit': unit, 'bounds': bounds}
 
 
 def fault(doc: str, unit: str, *, is_whole: bool = False, **bounds: float) -> Any:
@@ -41,9 +45,9 @@ def fault(doc: str, unit: str, *, is_whole: bool = False, **bounds: float) -> An
 
     ``is_whole``: it is a number of things, or a yes (1) or no (0).
     """
-    declared = parameter(doc, unit, absent=0.0, changeable=True, **bounds)
     whole = {'is_whole': True} if is_whole else {}
-    return field(default=0.0, metadata=declared.metadata | whole)
+    return field(default=0.0, metadata=_declaration(doc, unit, bounds) | whole | {
+        'absent': 0.0, 'changeable': True, 'is_fault': True})
 
 
 def tunable(doc: str, unit: str, *, named: str | None = None, **bounds: float) -> Any:
@@ -52,14 +56,12 @@ def tunable(doc: str, unit: str, *, named: str | None = None, **bounds: float) -
 
     ``named`` is its name in SI, without a unit suffix; None: the name of the field.
     """
-    declared = parameter(doc, unit, **bounds)
-    return field(metadata=declared.metadata | {'tunable': named or ''})
+    return field(metadata=_declaration(doc, unit, bounds) | {'tunable': named or ''})
 
 
 def numbers(doc: str, unit: str, *, least: int, most: int, **bounds: float) -> Any:
     """Declare ``least`` to ``most`` numbers in a list, each within ``bounds`` as `parameter`."""
-    declared = parameter(doc, unit, **bounds)
-    return field(metadata=declared.metadata | {'length': (least, most)})
+    return field(metadata=_declaration(doc, unit, bounds) | {'length': (least, most)})
 
 
 def choice(doc: str, *names: str) -> Any:

@@ -26,6 +26,7 @@ from isa_ros.run.local_run import LocalRun
 from msg_adapters import event
 from msg_adapters.applied_parameters import tuned_values
 from msg_adapters.cdr import CdrError
+from msg_adapters.coordinator_messages import APPLIED_PARAMETERS, NODE
 from msg_adapters.setpoint import applied_to_command
 import numpy as np
 
@@ -103,7 +104,7 @@ class Rerun:
     def __init__(self, bag: Bag) -> None:
         self._run = RunConfig.from_yaml(
             bag.provenance.configuration, f'{bag.path.name}: configuration.yaml')
-        self._commands, self._tuned, self._n_ticks = recorded_inputs(bag, self._run)
+        self._inputs = recorded_inputs(bag, self._run)
         self._events = recorded_events(bag)
         self._state = _recorded_state(bag, self._run)
         self._local = LocalRun(self._run)
@@ -114,13 +115,14 @@ class Rerun:
         """Hand every sample to ``recorder`` until the end of the bag or ``should_stop``."""
         try:
             self._local.simulate(
-                self._n_ticks, local_run.Inputs(self._fill, self._tuned, self._events), recorder,
-                should_stop, self._state)
+                self._inputs.n_ticks, local_run.Inputs(
+                    self._fill, self._inputs.tuned, self._events, self._inputs.tuned_supplies),
+                recorder, should_stop, self._state)
         except Interrupted:
             pass  # should_stop was true before the end
 
     def _fill(self, tick: int, rows: Records) -> None:
-        for row, command in self._commands.get(tick, ()):
+        for row, command in self._inputs.commands.get(tick, ()):
             rows[row] = command
 
 
@@ -162,7 +164,9 @@ class Inputs(NamedTuple):
     commands: dict[int, list[tuple[int, np.void]]]
     """Tick -> (row, `COMMAND`) of every applied setpoint."""
     tuned: dict[str, dict[int, dict[str, float]]]
-    """Actuator -> tick -> applied parameters, SI, by name."""
+    """Actuator -> tick -> applied parameters by name."""
+    tuned_supplies: dict[int, dict[str, float]]
+    """Tick -> applied parameters of the supplies by SUPPLY.KEY."""
     n_ticks: int
 
 
@@ -180,7 +184,7 @@ def recorded_inputs(bag: Bag, run: RunConfig) -> Inputs:
     """
     setpoints = {f'/{a.name}/{APPLIED}': (k, a.name) for k, a in enumerate(run.actuators)}
     parameters = {f'/{a.name}/{TUNED}': a.name for a in run.actuators}
-    inputs = Inputs({}, {}, -1)
+    inputs = Inputs({}, {}, {}, -1)
     last = -1
     for message in bag.messages():
         last = message.sequence
@@ -193,6 +197,8 @@ def recorded_inputs(bag: Bag, run: RunConfig) -> Inputs:
             elif topic in parameters:
                 name = parameters[topic]
                 inputs.tuned.setdefault(name, {})[tick] = tuned_values(message.data, name)
+            elif topic == APPLIED_PARAMETERS[0]:
+                inputs.tuned_supplies[tick] = tuned_values(message.data, NODE)
         except (SetpointError, CdrError) as error:
             raise BagError(f'{bag.place_of(message)}: {error}') from error
     if last < 0:

@@ -29,6 +29,8 @@ class Inputs(NamedTuple):
     """Changes of parameters, by actuator."""
     events: Mapping[int, Sequence[str]] = {}
     """Texts of the events recorded before a tick."""
+    tuned_supplies: Tuned = {}
+    """Changes of the supplies' parameters, by SUPPLY.KEY."""
 
 
 class LocalRun:
@@ -66,7 +68,8 @@ class LocalRun:
         narrator = Narrator(self._packer, self._run.step_ns, self._thinning.recorder(recorder))
         commands = np.zeros(len(simulation.names), COMMAND)
         while True:
-            narrator.publish_rows(simulation.ticks, simulation.tuned)
+            narrator.publish_rows(
+                simulation.ticks, simulation.tuned, simulation.tuned_supplies)
             for text in inputs.events.get(simulation.ticks, ()):
                 narrator.add_event(simulation.ticks, text)
             narrator.record()
@@ -74,15 +77,16 @@ class LocalRun:
                 return
             if should_stop():
                 raise Interrupted(f'stopped after {simulation.ticks} ticks')
-            self._tune(inputs.tuned)
+            self._tune(inputs)
             commands['kinds'] = 0
             inputs.commands(simulation.ticks, commands)
             simulation.step(commands)
 
-    def _tune(self, tuned: Mapping[str, Tuned]) -> None:
-        """Set the parameters that change at the next tick, as a user of the node would."""
+    def _tune(self, inputs: Inputs) -> None:
+        """Set the parameters that change at the next tick, as a user of the nodes would."""
         simulation = self._simulation
-        for name, by_tick in tuned.items():
+        simulation.surroundings.tune(inputs.tuned_supplies.get(simulation.ticks, {}))
+        for name, by_tick in inputs.tuned.items():
             values = by_tick.get(simulation.ticks)
             if values is not None:
                 simulation.group.actuators[simulation.names.index(name)].tune(values)

@@ -75,21 +75,24 @@ class Narrator:
         if self._outlets.events.has_subscribers():
             self._outlets.events.publish((message,))
 
-    def publish_rows(self, tick: int, tuned: Mapping[int, Mapping[str, float]]) -> None:
+    def publish_rows(
+            self, tick: int, tuned: Mapping[int, Mapping[str, float]],
+            tuned_supplies: Mapping[str, float] = {}) -> None:
         """
         Pack and publish the rows before ``tick``; `record` passes them to the recorder.
 
-        ``tuned`` are the parameters that changed at the start of the last tick, by row.
+        ``tuned`` are the parameters that changed at the start of the last tick, by row, and
+        ``tuned_supplies`` those of the supplies.
         """
         outlets = self._outlets
         subscribed = [
             row for row, outlet in enumerate(outlets.actuators)
             if outlet.has_subscribers() or self._packer.has_applied(row) or row in tuned]
-        has_surroundings = outlets.surroundings.has_subscribers()
+        has_surroundings = outlets.surroundings.has_subscribers() or bool(tuned_supplies)
         if self._recorder is None and not subscribed and not has_surroundings:
             return
         t_ns = tick * self._step_ns
-        self._packer.pack(t_ns, max(0, t_ns - self._step_ns), tuned)
+        self._packer.pack(t_ns, max(0, t_ns - self._step_ns), tuned, tuned_supplies)
         self._unrecorded = tick
         for row in subscribed:
             outlets.actuators[row].publish(self._packer.of_actuator(row))

@@ -142,6 +142,8 @@ class Packer:
                 found.append((topic, fluid_pressure.fluid_pressure(
                     coordinator_messages.WORLD_FRAME, at + k)))
             at += len(_SUPPLY_PRESSURES)
+        if names.supplies:
+            found.append((Topic(_TUNED_SUPPLIES[0], _TUNED_SUPPLIES[1], KEPT), None))
         if names.body is not None and shown.body is not None:
             body = names.body(float_columns(shown.body.dtype, at))
             found += [(Topic(*topic), message) for topic, message in body.items()]
@@ -156,6 +158,7 @@ class Packer:
         self._template = Template([message for _, message in prepared])
         self._bytes = self._template.block.view(np.uint8)
         self._tuned: dict[int, bytes] = {}
+        self._tuned_supplies: bytes | None = None
         self._layouts: dict[bytes, Layout] = {}
         self._bind()
 
@@ -183,12 +186,13 @@ class Packer:
         self._kinds = shown.applied['kinds']
 
     def pack(
-            self, t_ns: int, tick_start_ns: int,
-            tuned: Mapping[int, Mapping[str, float]]) -> None:
+            self, t_ns: int, tick_start_ns: int, tuned: Mapping[int, Mapping[str, float]],
+            tuned_supplies: Mapping[str, float] = {}) -> None:
         """
         Pack the rows of ``t_ns``, the end of a tick that began at ``tick_start_ns``.
 
-        ``tuned`` are the parameters that changed at the tick's start, by row.
+        ``tuned`` are the parameters that changed at the tick's start, by row, and
+        ``tuned_supplies`` those of the supplies.
         """
         pack(time_word(t_ns), time_word(tick_start_ns), ATMOSPHERE,
              self._samples, self._shown.applied, self._supplies, self._body, self._words,
@@ -196,6 +200,8 @@ class Packer:
         self._tuned = {
             row: applied_parameters(self._names.actuators[row][0], values, tick_start_ns)
             for row, values in tuned.items()} if tuned else {}
+        self._tuned_supplies = applied_parameters(
+            coordinator_messages.NODE, tuned_supplies, tick_start_ns) if tuned_supplies else None
 
     def all_messages(self, events: Sequence[bytes] = ()) -> Packed:
         """Return all messages of the packed instant, in the order of `topics`."""
@@ -204,11 +210,13 @@ class Packer:
         if where is None:
             where = self._layouts[key] = self._layout()
         packed = Packed(self._bytes, where)
-        if not (events or self._tuned):
+        if not (events or self._tuned or self._tuned_supplies):
             return packed
         extra = [(self._index[event.TOPIC[0]], data) for data in events]
         extra += [(self._index[f'/{self._names.actuators[row][0]}/{_PARAMETERS}'], data)
                   for row, data in self._tuned.items()]
+        if self._tuned_supplies is not None:
+            extra.append((self._index[_TUNED_SUPPLIES[0]], self._tuned_supplies))
         return Packed.of(sorted([*packed, *extra], key=lambda message: message[0]))
 
     def _layout(self) -> Layout:
@@ -234,9 +242,10 @@ class Packer:
         """Return whether a command of an actuator took effect at the start of the last tick."""
         return bool(self._kinds[row])
 
-    def of(self, topics: Sequence[Topic]) -> list[bytes]:
-        """Return the messages of some topics."""
-        return [self._message(topic.name) for topic in topics]
+    def of(self, topics: Sequence[Topic]) -> list[bytes | None]:
+        """Return the messages of some topics of supplies and body."""
+        return [self._tuned_supplies if topic.name == _TUNED_SUPPLIES[0]
+                else self._message(topic.name) for topic in topics]
 
     def _message(self, name: str) -> bytes:
         return self._template.message(self._place[name])
@@ -251,3 +260,4 @@ class Packer:
 
 _SETPOINT = actuator_messages.APPLIED_SETPOINT[0]
 _PARAMETERS = actuator_messages.APPLIED_PARAMETERS[0]
+_TUNED_SUPPLIES = coordinator_messages.APPLIED_PARAMETERS

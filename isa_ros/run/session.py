@@ -132,7 +132,7 @@ def record(
             should_stop, requests)
         if not coordinator.is_reset:
             break
-        surroundings.restore(beginning)
+        surroundings.restart(beginning)
         out, state = _unused(session.out), None
     if session.request.save is not None:
         save(session, coordinator, session.request.save)
@@ -147,7 +147,8 @@ def _record_one(
     run, n_ticks = session.run, session.scenario.n_ticks
     plan = Plan(
         step_ns=run.step_ns, rows=rows, n_ticks=n_ticks,
-        commands=session.scenario.commands, is_paused=session.request.is_paused)
+        commands=session.scenario.commands, changes=session.scenario.changes_at,
+        is_paused=session.request.is_paused)
     laps = session.request.laps or Laps()
     laps.lap(STARTING)
     rows.requests['kinds'] = 0

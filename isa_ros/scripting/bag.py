@@ -49,5 +49,6 @@ class ResultMessages:
             shown.applied['kinds'] = 0
             if tick in log.applied:
                 shown.applied[:] = log.applied[tick]
-            narrator.publish_rows(tick, {})
+            narrator.publish_rows(
+                tick, log.tuned.get(tick, {}), log.tuned_supplies.get(tick, {}))
             narrator.record()

@@ -33,6 +33,10 @@ class Log(NamedTuple):
     """The body's sample, (n + 1,); None without a body."""
     applied: Mapping[int, Records]
     """`COMMAND` rows (n_actuators,) by sample, for the samples with an applied command."""
+    tuned: Mapping[int, Mapping[int, Mapping[str, float]]] = {}
+    """Changed parameters by sample, row and name, for the samples with any."""
+    tuned_supplies: Mapping[int, Mapping[str, float]] = {}
+    """Those of the supplies, by sample and SUPPLY.KEY."""
 
 
 class Result(Mapping[str, NDArray[np.float64]]):
@@ -186,6 +190,8 @@ def simulated(
     if body is not None and bodies is not None:
         pairs.append((floats(bodies), floats(body.sample).reshape(-1)))
     applied: dict[int, Records] = {}
+    tuned: dict[int, Mapping[int, Mapping[str, float]]] = {}
+    tuned_supplies: dict[int, Mapping[str, float]] = {}
     kinds = group.applied['kinds']
     for tick in range(n):
         if tick:
@@ -194,9 +200,13 @@ def simulated(
             into[tick] = shown
         if kinds.any():
             applied[tick] = group.applied.copy()
+        if changed := simulation.tuned:
+            tuned[tick] = changed
+        if supplies_changed := simulation.tuned_supplies:
+            tuned_supplies[tick] = supplies_changed
         if report is not None and tick % _REPORT_TICKS == 0:
             report(tick, n_ticks)
     if report is not None:
         report(n_ticks, n_ticks)
-    return Result(simulation.scenario, Log(samples, supplies, bodies, applied),
-                  {} if body is None else body.units)
+    log = Log(samples, supplies, bodies, applied, tuned, tuned_supplies)
+    return Result(simulation.scenario, log, {} if body is None else body.units)

@@ -5,7 +5,7 @@ from contextlib import suppress
 from typing import Any, NamedTuple
 
 from isa_ros.actuator.actuator import ActuatorConfig, participant_digest, SmartActuator, Timing
-from isa_ros.actuator.tunable import tunables
+from isa_ros.actuator.tunable import changing
 from isa_ros.core.signals import COMMAND, HAS_ENABLE, Records
 from isa_ros.errors import one_line, SetpointError, SimulationDiverged
 from isa_ros.nodes.actuator.parameters import TunableParameters
@@ -60,7 +60,7 @@ class ActuatorNode(Node):
         self.actuator = actuator or SmartActuator(config, timing)
         """The actuator itself."""
         self._tunables = TunableParameters(
-            self, self.actuator, tunables(config.sheet), self._parameter_overrides)
+            self, self.actuator, changing(config.sheet), self._parameter_overrides)
         memory = self.actuator.memory
         self._packer = Packer(
             Names([(config.name, config.sheet.is_rotary)]),
@@ -104,6 +104,10 @@ class ActuatorNode(Node):
     def tuned(self) -> Mapping[str, float]:
         """Return the parameters that changed at its start, SI."""
         return self.actuator.applied_parameters
+
+    def tune(self, values: Mapping[str, float]) -> None:
+        """Change parameters at the start of the next tick."""
+        self.actuator.tune(values)
 
     def start(self, start: np.void | None) -> None:
         """Start at t = 0 from a `START` row; None: as configured."""

@@ -1,9 +1,10 @@
-"""The tunable values of an actuator as parameters of its node, with the standard services."""
+"""All values of an actuator that may change as parameters of its node, with their services."""
 
 from collections.abc import Mapping, Sequence
 
 from isa_ros.actuator.actuator import SmartActuator
 from isa_ros.actuator.tunable import Tunable
+from isa_ros.core.changeable import Changeable
 from isa_ros.errors import ConfigError
 from isa_ros.nodes.middleware.parameter_services import open_parameter_services
 from isa_ros.nodes.middleware.parameters import accept_integers, refuse_unknown
@@ -15,7 +16,9 @@ from rclpy.service import Service
 
 class TunableParameters:
     """
-    Declares ``tunables`` on ``node`` and passes new values to ``actuator``, SI.
+    Declares what is ``changing`` on ``node`` and passes new values to ``actuator``.
+
+    Gains are in SI, all others in the unit of `isa params`, which is part of their description.
 
     The value of a parameter is read from the actuator, also if a setpoint has changed it.
     ``overrides`` are those of the command line, in force from the first tick.
@@ -28,21 +31,21 @@ class TunableParameters:
     """
 
     def __init__(
-            self, node: Node, actuator: SmartActuator, tunables: Mapping[str, Tunable],
-            overrides: Mapping[str, Parameter]) -> None:
+            self, node: Node, actuator: SmartActuator,
+            changing: Mapping[str, Tunable | Changeable], overrides: Mapping[str, Parameter]) -> None:
         self._actuator = actuator
-        self._names = frozenset(tunables)
-        for tunable in tunables.values():
+        self._names = frozenset(changing)
+        for own in changing.values():
             node.declare_parameter(
-                tunable.name, tunable.value, descriptor(tunable), ignore_override=True)
+                own.name, own.value, descriptor(own), ignore_override=True)
         refuse_unknown(node)
-        actuator.tune({name: overrides[name].value for name in tunables if name in overrides})
+        actuator.tune({name: overrides[name].value for name in changing if name in overrides})
         accept_integers(node)
         node.add_on_set_parameters_callback(self._on_set)
         self.services: Sequence[Service] = open_parameter_services(node)
 
     def get(self, name: str) -> Parameter | None:
-        """Return a tunable as it will be at the next tick; None: not a tunable."""
+        """Return a value as it will be at the next tick; None: it does not change."""
         if name not in self._names:
             return None
         return Parameter(name, value=self._actuator.parameter(name))
@@ -56,13 +59,13 @@ class TunableParameters:
         return SetParametersResult(successful=True)
 
 
-def descriptor(tunable: Tunable) -> ParameterDescriptor:
-    """Return unit, meaning and range of a tunable; excluded bounds are listed as constraints."""
-    bounds = tunable.bounds
+def descriptor(own: Tunable | Changeable) -> ParameterDescriptor:
+    """Return unit, meaning and range of a value; excluded bounds are listed as constraints."""
+    bounds = own.bounds
     relations = {'gt': '>', 'lt': '<'}
     excluded = [f'{sign} {bounds[name]:g}' for name, sign in relations.items() if name in bounds]
     return ParameterDescriptor(
-        description=f'{tunable.doc}, {tunable.unit}',
+        description=f'{own.doc}, {own.unit}',
         additional_constraints=', '.join(excluded),
         floating_point_range=[FloatingPointRange(
             from_value=bounds.get('ge', bounds.get('gt', 0.0)),
