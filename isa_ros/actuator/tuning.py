@@ -2,14 +2,15 @@
 
 from collections.abc import Mapping
 from dataclasses import replace
+from typing import Any
 
 from isa_ros.actuator.inbox import WITH_GAINS
+from isa_ros.actuator.kernel import ACTUATOR
 from isa_ros.actuator.sheet import actuator_record, ActuatorSheet
 from isa_ros.actuator.tunable import changing, GAINS, with_changed
 from isa_ros.core.changing_values import ChangingValues
 from isa_ros.core.signals import COMMAND, HAS_GAINS
 from isa_ros.errors import ConfigError
-from isa_ros.plant.plant import plant_record
 import numpy as np
 
 
@@ -29,7 +30,8 @@ class Tuning:
         self._sheet = sheet
         self._offset_steps = offset_steps
         self._constants = constants
-        self._plant, self._reu = constants['plant'].copy(), constants['reu'].copy()
+        self._written = {
+            part: constants[part].copy() for part in ACTUATOR.names or () if hasattr(sheet, part)}
         found = changing(sheet)
         self._values = ChangingValues(
             name, list(found), [own.value for own in found.values()])
@@ -69,12 +71,12 @@ class Tuning:
             raise ConfigError(f'{self._name}: {error}') from error
 
     def _write(self) -> None:
-        """Fill the constants from the values in force."""
+        """Fill the constants from the values in force, each part from its own section."""
         own, sheet = self._sheet, self._changed_by(self._values.in_force)
-        self._constants['plant'] = (
-            self._plant if sheet.plant is own.plant else plant_record(sheet.plant))
-        self._constants['reu'] = self._reu if sheet.reu is own.reu else actuator_record(
-            replace(sheet, plant=own.plant), self._offset_steps)['reu']
+        for part, written in self._written.items():
+            section: Any = getattr(sheet, part)
+            self._constants[part] = written if section is getattr(own, part) else actuator_record(
+                replace(own, **{part: section}), self._offset_steps)[part]
 
     @property
     def applied(self) -> dict[str, float]:

@@ -12,7 +12,7 @@ from isa_ros.run.exchange import Recorder
 from isa_ros.run.narrator import Narrator, packer_of
 from isa_ros.run.packing import Shown
 from isa_ros.run.thinning import Thinning
-from isa_ros.scenario.scenario import idle
+from isa_ros.scenario.scenario import idle, Scenario
 from isa_ros.simulation import Simulation
 import numpy as np
 
@@ -31,6 +31,16 @@ class Inputs(NamedTuple):
     """Texts of the events recorded before a tick."""
     tuned_supplies: Tuned = {}
     """Changes of the supplies' parameters, by SUPPLY.KEY."""
+
+
+def inputs_of(scenario: Scenario) -> Inputs:
+    """Return the commands and the faults of a scenario."""
+    tuned: dict[str, dict[int, Mapping[str, float]]] = {}
+    for tick, changes in scenario.changes.items():
+        for row, values in changes.actuators.items():
+            tuned.setdefault(scenario.run.actuators[row].name, {})[tick] = values
+    return Inputs(scenario.commands, tuned, {}, {
+        tick: changes.supplies for tick, changes in scenario.changes.items()})
 
 
 class LocalRun:

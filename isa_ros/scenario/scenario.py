@@ -81,10 +81,11 @@ class Scenario:
 
     def changes_at(self, tick: int) -> ParameterChanges | None:
         """Return the parameters that faults change at a tick; None: none."""
-        return self._changes.get(tick)
+        return self.changes.get(tick)
 
     @cached_property
-    def _changes(self) -> Mapping[int, ParameterChanges]:
+    def changes(self) -> Mapping[int, ParameterChanges]:
+        """Return the parameters that faults change, by tick."""
         return timetable(self.faults, self.run)
 
     def has_commands_at(self, tick: int) -> bool:
