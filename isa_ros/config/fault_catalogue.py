@@ -26,6 +26,8 @@ class NamedFault(NamedTuple):
     meaning: str
     values: Mapping[str, float]
     """By the keys of `isa params`, in their units."""
+    unseen: str
+    """The reason why it may change no signal; '' for faults that do."""
 
 
 @cache
@@ -35,11 +37,11 @@ def fault_catalogue() -> Mapping[str, NamedFault]:
     for name, tree in read(_FILE).items():
         place = Place(_FILE.name, name)
         section = section_at(tree, place)
-        refuse_unknown(section, ('of', 'meaning', 'set'), place)
+        refuse_unknown(section, ('of', 'meaning', 'set', 'unseen'), place)
         check(str(place / 'of'), section.get('of'), {'names': KINDS})
         faults[name] = NamedFault(
             name, str(section['of']), str(section['meaning']),
-            numbers_at(section.get('set'), place / 'set'))
+            numbers_at(section.get('set'), place / 'set'), str(section.get('unseen', '')))
     return faults
 
 

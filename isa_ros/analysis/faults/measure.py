@@ -26,7 +26,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 VISIBLE = 4.0
-"""Steps of a signal's converter; the rig's noise is below one."""
+"""Steps of a signal's converter."""
+SOUND = 40.0
+"""Steps within which all signals are after a recovery, about 1 % of the range: where the seals
+stick and slip, two runs differ by more than `VISIBLE` for seconds."""
 MEASURED = ('position', 'force', 'pressure_a', 'pressure_b', 'spool', 'current')
 """Signals of an actuator that its REU measures."""
 DEVICE = tuple(name for name in ('warnings', 'trips', 'device_state')
@@ -65,7 +68,7 @@ class Outcome:
     """The earliest first."""
     noticed: tuple[Noticed, ...]
     recovered_s: float | None
-    """From the end of the fault, and a clear-fault, until nothing is visible; None: never."""
+    """From the end of the fault, and a clear-fault, until all is within `SOUND`; None: never."""
     diverged: str = ''
     """The message of a simulation that could not go on."""
 
@@ -113,8 +116,9 @@ def _outcome(rig: Run, fault: NamedFault, sound: Mapping[str, NDArray[np.float64
             visible.append(Visible(
                 name, units[name], float(np.argmax(is_seen) - begin) * STEP_S,
                 float(during[np.argmax(np.abs(during))])))
-        if is_seen[end:].any():
-            last = max(last, int(np.flatnonzero(is_seen)[-1]) + 1)
+        far = np.flatnonzero(np.abs(difference) > SOUND * step)
+        if len(far):
+            last = max(last, int(far[-1]) + 1)
     return Outcome(
         fault, tuple(sorted(visible, key=lambda own: own.after_s)),
         tuple(_noticed(faulty, sound, begin)),

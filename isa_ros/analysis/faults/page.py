@@ -4,7 +4,7 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
-from isa_ros.analysis.faults.measure import DEVICE, Noticed, Outcome, Visible
+from isa_ros.analysis.faults.measure import DEVICE, Noticed, Outcome, SOUND, Visible, VISIBLE
 from isa_ros.analysis.faults.rig import BEGIN_S, END_S
 from isa_ros.config.fault_catalogue import fault_catalogue, NamedFault
 from isa_ros.text.json_file import write_tree
@@ -18,7 +18,6 @@ HEADER = ('fault', 'seen first in', 'after, ms', 'largest differences', 'device'
 LIST_HEADER = ('fault', 'of', 'set', 'meaning')
 _SHOWN = {'Pa': ('MPa', 1e-6), 'm': ('mm', 1e3), 'A': ('mA', 1e3)}
 _LARGEST = 3    # signals in a row of the table
-_SEEN = 'not seen'
 _HEAD = f"""# Faults of the device
 
 Each fault of the catalogue, `./isa faults --list`, in an ISA v5 that moves 50 kg by 20 mm at 2 Hz,
@@ -28,9 +27,9 @@ ends at {END_S:g} s. Written by
     ./isa faults --out docs
 
 A fault is seen in a signal that the REU measures, or in the supply's pressure, once it differs
-from that of the same run without the fault by more than four steps of its converter; the largest
-differences are those while the fault lasts. A fault that is not seen changes nothing that this
-motion needs: relief valves that do not open, for example, are only missed at an overload. *Device*
+from that of the same run without the fault by more than {VISIBLE:g} steps of its converter. The
+largest differences are those of the first three such signals while the fault lasts. A device is
+sound again once all signals are within {SOUND:g} steps of that run, 1 % of their ranges. *Device*
 has what the actuator itself reports: warnings and trips as bit sets, its state as a number."""
 
 
@@ -58,11 +57,15 @@ def _cells(own: Outcome) -> tuple[str, ...]:
     if own.diverged:
         return (own.fault.name, own.diverged, '', '', '', '')
     first = own.visible[0] if own.visible else None
-    return (own.fault.name, _SEEN if first is None else first.signal,
+    return (own.fault.name, _unseen(own.fault) if first is None else first.signal,
             '' if first is None else f'{first.after_s * 1e3:g}',
             ', '.join(_difference(one) for one in _largest(own)),
             ', '.join(_note(one) for one in own.noticed) or ('nothing' if DEVICE else '-'),
             'not in this run' if own.recovered_s is None else f'{own.recovered_s * 1e3:g}')
+
+
+def _unseen(fault: NamedFault) -> str:
+    return f'not seen: {fault.unseen}' if fault.unseen else 'not seen'
 
 
 def _largest(own: Outcome) -> Sequence[Visible]:
