@@ -24,7 +24,7 @@ from isa_ros.bag.provenance import provenance_of, VERSION
 from isa_ros.bag.reader import Bag
 from isa_ros.config.yaml_text import Tree
 from isa_ros.errors import BagError, SimulationDiverged
-from isa_ros.replay.compare import Comparer, retyped
+from isa_ros.replay.compare import Comparer, is_of_end, retyped
 from isa_ros.replay.comparison import Comparison, key_lines
 from isa_ros.replay.difference import Report
 from isa_ros.replay.provenance_differences import (
@@ -135,10 +135,12 @@ def _compared(bag: Bag, result: Result, tolerances: Tolerances | None) -> Report
     """Return the comparison of a result with a bag; without events, which files do not give."""
     messages = ResultMessages(result)
     other = retyped(bag, {topic.name: topic.type_name for topic in messages.topics})
+    end_ns = (len(result.log.samples) - 1) * result.scenario.run.step_ns
     without = {event.TOPIC[0], *(difference.topic for difference in other)}
     comparer = Comparer(
         bag, [topic.name for topic in messages.topics], tolerances,
-        lambda topic, sequence: topic not in without, is_exact=True, is_to_end=True)
+        lambda topic, sequence, t_ns: topic not in without
+        and not is_of_end(topic, t_ns, bag.end_ns, end_ns), is_exact=True, is_to_end=True)
     for difference in other:
         comparer.note(difference)
     messages.record(comparer)

@@ -94,10 +94,11 @@ def test_its_rows_are_those_of_a_recorded_run(config, scenario):
     narrator = Narrator(packer, fitted.run.step_ns, digests)
     while True:
         narrator.publish_rows(simulation.ticks, simulation.tuned)
-        narrator.record()
         if simulation.t >= SECONDS:
             break
+        narrator.record()
         simulation.step()
+    narrator.end()
     assert digests.by_topic() == RECORDED[f'{config} {scenario}']
 
 

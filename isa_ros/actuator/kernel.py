@@ -7,12 +7,14 @@ of floats (`BODY`), so that the integrator sees the same memory as a flat array.
 
 import math
 
+from isa_ros.actuator.energy import add_energies, stored_elastically
 from isa_ros.actuator.inbox import latch, merge
 from isa_ros.actuator.states import write_states
 from isa_ros.core.kernel import kernel
 from isa_ros.core.timebase import FORCE_WINDOWS, PLANT_STEP
 from isa_ros.loads.forces import LOAD_STATE, OWN_LOAD, own_load_force
 from isa_ros.loads.port import load_acceleration
+from isa_ros.plant.energy import ENERGIES
 from isa_ros.plant.plant import PLANT, plant_rates, PLANT_STATE, read_sensors, settle
 from isa_ros.reu.cascade import cascade_step, is_due, REU
 import numpy as np
@@ -21,11 +23,13 @@ TOTALS = np.dtype([
     ('impulse', 'f8'),          # integral of the sensor force, Ns | Nms
     ('supply_volume', 'f8'),    # drawn from the supply, m3
     ('return_volume', 'f8'),    # given to the return, m3
+    ('energies', ENERGIES),
 ])
 BODY = np.dtype([('plant', PLANT_STATE), ('load', LOAD_STATE), ('totals', TOTALS)])
 """Every continuous state of an actuator and its load copy; floats only."""
 
 STATE_SIZE = BODY.itemsize // 8
+TOTALS_AT = STATE_SIZE - TOTALS.itemsize // 8  # no rate depends on the totals, the last states
 BODIES = 2  # the state and a stage of its integration
 STAGES = 4
 NOTHING = 1e-100  # any unit: smaller states are set to zero, since denormal arithmetic is slow
@@ -59,7 +63,8 @@ def body_rates(tau, y, drive, port, actuator, rates):
     """Write the derivative of one `BODY` into ``rates``."""
     force, q_p, q_t = plant_rates(
         y.plant, y.load.position, y.load.velocity, drive,
-        port.supply_pressure, port.return_pressure, actuator.plant, rates.plant)
+        port.supply_pressure, port.return_pressure, actuator.plant, rates.plant,
+        rates.totals.energies)
     own = own_load_force(y.load, port.x0, actuator.load, rates.load)
     rates.load.position = y.load.velocity
     rates.load.velocity = load_acceleration(
@@ -77,13 +82,13 @@ def body_step(h, tau, drive, port, actuator, bodies, rates, y, k):
     ``bodies[1]`` holds the stage; ``y`` and ``k`` are the flat views of ``bodies``, ``rates``.
     """
     body_rates(tau, bodies[0], drive, port, actuator, rates[0])
-    for j in range(STATE_SIZE):
+    for j in range(TOTALS_AT):
         y[1, j] = y[0, j] + 0.5 * h * k[0, j]
     body_rates(tau + 0.5 * h, bodies[1], drive, port, actuator, rates[1])
-    for j in range(STATE_SIZE):
+    for j in range(TOTALS_AT):
         y[1, j] = y[0, j] + 0.5 * h * k[1, j]
     body_rates(tau + 0.5 * h, bodies[1], drive, port, actuator, rates[2])
-    for j in range(STATE_SIZE):
+    for j in range(TOTALS_AT):
         y[1, j] = y[0, j] + h * k[2, j]
     body_rates(tau + h, bodies[1], drive, port, actuator, rates[3])
     for j in range(STATE_SIZE):
@@ -179,8 +184,8 @@ def tick_row(first_step, steps, port, actuator, bodies, rates, y, k, reu_state, 
     `SAMPLE` at the end of the tick.
     """
     body = bodies[0]
-    body.totals.supply_volume = 0.0
-    body.totals.return_volume = 0.0
+    y[0, TOTALS_AT:] = 0.0
+    elastic = stored_elastically(body, actuator.plant.mechanics)
     window_steps = steps // FORCE_WINDOWS
     for window in range(FORCE_WINDOWS):
         body.totals.impulse = 0.0
@@ -197,6 +202,9 @@ def tick_row(first_step, steps, port, actuator, bodies, rates, y, k, reu_state, 
     write_sample(read_out, body.plant, reu_state, sample)
     sample.supply_volume += reply.supply_volume
     sample.supply_flow = reply.supply_volume / (steps * PLANT_STEP)
+    add_energies(reply, port, body.totals.energies,
+                 stored_elastically(body, actuator.plant.mechanics) - elastic,
+                 steps * PLANT_STEP, sample)
 
 
 @kernel

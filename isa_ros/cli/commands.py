@@ -36,6 +36,7 @@ def _simulating(command: Command) -> Command:
 @_simulating
 def demo(options: Namespace) -> bool:
     """Drop the leg, in four processes, print what happened, and draw the report of the bag."""
+    from isa_ros.analysis.report.energy import energy_text
     from isa_ros.analysis.report.outcome import outcome
     from isa_ros.analysis.report.report import write_report
     from isa_ros.analysis.signals.signals import read_signals
@@ -46,7 +47,8 @@ def demo(options: Namespace) -> bool:
         config=find('leg.yaml', CONFIG), scenario=find('drop.yaml', SCENARIOS),
         out=out / 'bag', is_alone=options.is_alone))
     page, *figures = write_report(bag, out / 'report.html')
-    print(f'{page}, and {len(figures)} figures beside it\n\n{outcome(read_signals(bag))}')
+    print(f'{page}, and {len(figures)} figures beside it\n\n{outcome(read_signals(bag))}\n')
+    print(energy_text(bag))
     return True
 
 
@@ -138,16 +140,16 @@ def compare(options: Namespace) -> bool:
 
 
 def report(options: Namespace) -> bool:
-    """Draw the figures of a bag."""
-    bag: Path = options.bag
-    _draw(bag, options.out or (bag if bag.is_dir() else bag.parent) / 'report.html')
-    return True
-
-
-def _draw(bag: Path, page: Path) -> None:
+    """Draw the figures of a bag, and print where its oil and its energy went."""
+    from isa_ros.analysis.report.energy import energy_text
     from isa_ros.analysis.report.report import write_report
+    bag: Path = options.bag
+    page = options.out or (bag if bag.is_dir() else bag.parent) / 'report.html'
     for path in write_report(bag, page):
         print(path)
+    if table := energy_text(bag):
+        print(f'\n{table}')
+    return True
 
 
 @_simulating

@@ -55,6 +55,17 @@ SAMPLE = np.dtype([
     ('current_reference', '<f8'),   # amplifier (parallel) current, A
     ('supply_volume', '<f8'),       # oil drawn from the supply since t = 0, m3
     ('supply_flow', '<f8'),         # its mean over the tick, m3/s
+    ('power', '<f8'),               # of the oil: mean over the tick, W
+    ('peak_power', '<f8'),          # greatest since t = 0, W
+    ('hydraulic_energy', '<f8'),    # of the oil drawn less that of the oil returned, J
+    ('leakage_energy', '<f8'),      # lost to the leakage of the valve, J
+    ('throttling_energy', '<f8'),   # lost at the open lands of the valve, J
+    ('cross_port_energy', '<f8'),   # lost past the piston or vane, and to the outside, J
+    ('relief_energy', '<f8'),       # lost through relief and refill valves, J
+    ('friction_energy', '<f8'),     # lost to the seals, J
+    ('damping_energy', '<f8'),      # lost in the force sensor; taken up by the end stops, J
+    ('work', '<f8'),                # done on the load, J
+    ('stored_energy', '<f8'),       # in oil, moving part and force sensor, more than at t = 0, J
 ])
 """Values one actuator reports at the end of a tick."""
 
@@ -63,7 +74,10 @@ SAMPLE_UNITS = {
     'pressure_a': 'Pa', 'pressure_b': 'Pa', 'spool': 'm', 'spool_velocity': 'm/s',
     'current': 'A', 'position_reference': 'm | rad', 'force_reference': 'N | Nm',
     'spool_reference': 'm', 'current_reference': 'A', 'supply_volume': 'm3',
-    'supply_flow': 'm3/s'}
+    'supply_flow': 'm3/s', 'power': 'W', 'peak_power': 'W', 'hydraulic_energy': 'J',
+    'leakage_energy': 'J', 'throttling_energy': 'J', 'cross_port_energy': 'J',
+    'relief_energy': 'J', 'friction_energy': 'J', 'damping_energy': 'J', 'work': 'J',
+    'stored_energy': 'J'}
 """Unit of each field of a `SAMPLE`: of a linear actuator | of a rotary one."""
 
 LOAD_PORT = np.dtype([

@@ -165,6 +165,13 @@ def external_leakage(p, c_le):
 
 
 @kernel
+def external_loss(p_a, p_b, chambers):
+    """Return the power of `external_leakage` of both chambers, P Q_e, in W  (E3)."""
+    return (p_a * external_leakage(p_a, chambers.c_le_a)
+            + p_b * external_leakage(p_b, chambers.c_le_b))
+
+
+@kernel
 def elastances(p_a, p_b, s, p_t, chambers):
     """
     Return (beta/V_A, beta/V_B), the pressures per volume of oil, in Pa/m3  (C1, C5).

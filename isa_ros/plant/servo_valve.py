@@ -206,13 +206,13 @@ def leakage(travel, valve):
 @kernel
 def land_flow(opening, valve):
     """
-    Return g(u) of a land opened by u > 0 and its leakage  (V14), in m3/s at the reference drop.
+    Return g(u) of a land opened by u > 0 plus its leakage, and the leakage  (V14).
 
-    ``opening`` is the spool's travel in the land's direction less its lap, in m; closed
-    lands, u <= 0, leak only.
+    In m3/s at the reference drop. ``opening`` is the spool's travel in the land's direction
+    less its lap, in m; closed lands, u <= 0, leak only.
     """
     leak = leakage(abs(opening), valve)
-    return flow_curve(opening, valve) + leak if opening > 0.0 else leak
+    return (flow_curve(opening, valve) + leak if opening > 0.0 else leak), leak
 
 
 @kernel
@@ -220,20 +220,25 @@ def conductances(x, valve):
     """
     Return those of the lands P-A, A-T, B-T, P-B at spool ``x``, in m3/s/sqrt(Pa)  (V7).
 
-    Each is f (g + leakage)/sqrt(dP_ref).
+    Each is f (g + leakage)/sqrt(dP_ref). The four of the leakage alone follow.
     """
     if valve.is_lapped:
-        pa, bt = land_flow(x - valve.lap_pa, valve), land_flow(x - valve.lap_bt, valve)
-        at, pb = land_flow(-x - valve.lap_at, valve), land_flow(-x - valve.lap_pb, valve)
+        pa, leak_pa = land_flow(x - valve.lap_pa, valve)
+        bt, leak_bt = land_flow(x - valve.lap_bt, valve)
+        at, leak_at = land_flow(-x - valve.lap_at, valve)
+        pb, leak_pb = land_flow(-x - valve.lap_pb, valve)
     else:
         travel = abs(x)
         leak = leakage(travel, valve)
         opened = flow_curve(travel, valve) + leak
+        leak_pa = leak_at = leak_bt = leak_pb = leak
         pa = bt = opened if x > 0.0 else leak
         at = pb = opened if x < 0.0 else leak
     scale = valve.per_root_drop
     return (valve.f_pa * (pa * scale), valve.f_at * (at * scale),
-            valve.f_bt * (bt * scale), valve.f_pb * (pb * scale))
+            valve.f_bt * (bt * scale), valve.f_pb * (pb * scale),
+            valve.f_pa * (leak_pa * scale), valve.f_at * (leak_at * scale),
+            valve.f_bt * (leak_bt * scale), valve.f_pb * (leak_pb * scale))
 
 
 @kernel
@@ -249,21 +254,31 @@ def smoothing(conductance, elastance, delta):
 
 
 @kernel
-def eased_port_flows(x, p_a, p_b, p_s, p_t, per_a, per_b, valve):
+def metered(x, p_a, p_b, p_s, p_t, per_a, per_b, valve):
     """
-    Return `port_flows` as a step can follow them on chambers of elastances ``per_a``, ``per_b``.
+    Return (q_a, q_b, q_p, q_t) of `port_flows`, then power lost to leakage, and to throttling.
 
-    Elastances in Pa/m3; only near no pressure drop the flows differ from `port_flows`  (V18).
+    As a step can follow them on chambers of elastances ``per_a``, ``per_b``, in Pa/m3; only near
+    no pressure drop the flows differ from `port_flows`  (V18). Powers in W  (E2).
     """
-    pa, at, bt, pb = conductances(x, valve)
+    pa, at, bt, pb, leak_pa, leak_at, leak_bt, leak_pb = conductances(x, valve)
     delta_a = smoothing(pa + at, per_a, valve.delta)
     delta_b = smoothing(pb + bt, per_b, valve.delta)
-    q_pa = pa * signed_sqrt(p_s - p_a, delta_a)
-    q_at = at * signed_sqrt(p_a - p_t, delta_a)
-    q_bt = bt * signed_sqrt(p_b - p_t, delta_b)
-    q_pb = pb * signed_sqrt(p_s - p_b, delta_b)
+    root_pa = signed_sqrt(p_s - p_a, delta_a)
+    root_at = signed_sqrt(p_a - p_t, delta_a)
+    root_bt = signed_sqrt(p_b - p_t, delta_b)
+    root_pb = signed_sqrt(p_s - p_b, delta_b)
+    q_pa, q_at, q_bt, q_pb = pa * root_pa, at * root_at, bt * root_bt, pb * root_pb
     q_tare = valve.c_tare * signed_sqrt(p_s - p_t, valve.delta)
-    return q_pa - q_at, q_pb - q_bt, q_pa + q_pb + q_tare, q_at + q_bt + q_tare
+
+    w_pa, w_at = root_pa * (p_s - p_a), root_at * (p_a - p_t)
+    w_bt, w_pb = root_bt * (p_b - p_t), root_pb * (p_s - p_b)
+    leakage_power = (leak_pa * w_pa + leak_at * w_at + leak_bt * w_bt + leak_pb * w_pb
+                     + q_tare * (p_s - p_t))
+    throttling_power = ((pa - leak_pa) * w_pa + (at - leak_at) * w_at
+                        + (bt - leak_bt) * w_bt + (pb - leak_pb) * w_pb)
+    return (q_pa - q_at, q_pb - q_bt, q_pa + q_pb + q_tare, q_at + q_bt + q_tare,
+            leakage_power, throttling_power)
 
 
 @kernel
@@ -274,4 +289,5 @@ def port_flows(x, p_a, p_b, p_s, p_t, valve):
     Equations 11 to 18 of the paper as `Q = (g + leakage) sqrt(dP / dP_ref)` for each of the
     four lands, plus the pilot stage's tare flow from supply to return.
     """
-    return eased_port_flows(x, p_a, p_b, p_s, p_t, 0.0, 0.0, valve)
+    q_a, q_b, q_p, q_t, _, _ = metered(x, p_a, p_b, p_s, p_t, 0.0, 0.0, valve)
+    return q_a, q_b, q_p, q_t

@@ -15,6 +15,8 @@ from isa_ros.config.yaml_text import parse
 from isa_ros.replay.difference import ABSENT, BAG, Difference, PRESENT, Report, Value
 from isa_ros.replay.tolerances import Tolerances
 from isa_ros.replay.topic_comparison import TopicComparison
+from isa_ros.run.diagnostics import PERIOD_NS
+from msg_adapters import diagnostics
 
 _BLOCK = 256    # ticks between two comparisons of the messages with unequal bytes
 
@@ -24,7 +26,7 @@ class Comparer:
     Compares the ticks that come in with those of a bag, in order of time.
 
     ``topics`` are the names for the topic indices of `write_tick`; messages for which
-    ``compares``, called with topic and tick, is false are ignored on both sides. Unless
+    ``compares``, called with topic, tick and time, is false are ignored on both sides. Unless
     ``is_to_end``, nothing more is compared once `difference` is known.
 
     ``is_exact`` also compares what is in no field: sequence numbers, padding, and bytes after the
@@ -40,7 +42,7 @@ class Comparer:
     def __init__(
             self, expected: Bag, topics: Sequence[str],
             tolerances: Tolerances | None = None,
-            compares: Callable[[str, int], bool] = lambda topic, sequence: True, *,
+            compares: Callable[[str, int, int], bool] = lambda topic, sequence, t_ns: True, *,
             is_exact: bool = False, is_to_end: bool = False) -> None:
         self._bag = expected
         self._names = list(topics)
@@ -62,7 +64,7 @@ class Comparer:
             return
         actual = sorted(
             ((name, data) for k, data in messages
-             if self._compares(name := self._names[k], sequence)), key=lambda pair: pair[0])
+             if self._compares(name := self._names[k], sequence, t_ns)), key=lambda pair: pair[0])
         if not actual:
             return
         while self._next is not None and self._next.t_ns < t_ns:
@@ -97,7 +99,8 @@ class Comparer:
     def _compared(self, ticks: Iterator[Tick]) -> Iterator[Tick]:
         """Yield the ticks with the messages that are compared, without empty ticks."""
         for tick in ticks:
-            messages = tuple(m for m in tick.messages if self._compares(m.topic, m.sequence))
+            messages = tuple(
+                m for m in tick.messages if self._compares(m.topic, m.sequence, m.t_ns))
             if messages:
                 yield tick._replace(messages=messages)
 
@@ -159,6 +162,12 @@ def retyped(expected: Bag, types: Mapping[str, str]) -> list[Difference]:
             if types.get(topic, type_name) != type_name]
 
 
+def is_of_end(topic: str, t_ns: int, *ends_ns: int | None) -> bool:
+    """Return whether a message is the diagnostics of the end of one run while another went on."""
+    return (topic == diagnostics.TOPIC[0] and t_ns % PERIOD_NS != 0
+            and any(end_ns != t_ns for end_ns in ends_ns))
+
+
 def compare_bags(expected: Bag, actual: Bag, tolerances: Tolerances | None = None) -> Report:
     """
     Return the comparison of two bags to their end, for the messages both were to record.
@@ -178,8 +187,9 @@ def compare_bags(expected: Bag, actual: Bag, tolerances: Tolerances | None = Non
                - {difference.topic for difference in other}}
     comparer = Comparer(
         expected, topics, tolerances,
-        lambda topic, sequence: topic in periods and all(
-            period and sequence % period == 0 for period in periods[topic]),
+        lambda topic, sequence, t_ns: topic in periods and all(
+            period and sequence % period == 0 for period in periods[topic])
+        and not is_of_end(topic, t_ns, expected.end_ns, actual.end_ns),
         is_to_end=True)
     for difference in other:
         comparer.note(difference)

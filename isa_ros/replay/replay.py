@@ -23,7 +23,7 @@ from isa_ros.run import local_run
 from isa_ros.run.coordinator import Interrupted
 from isa_ros.run.exchange import Recorder
 from isa_ros.run.local_run import LocalRun
-from msg_adapters import event
+from msg_adapters import diagnostics, event
 from msg_adapters.applied_parameters import tuned_values
 from msg_adapters.cdr import CdrError
 from msg_adapters.coordinator_messages import APPLIED_PARAMETERS, NODE
@@ -88,7 +88,7 @@ def replay(
         tell(line)
     comparer = Comparer(
         bag, [topic.name for topic in again.topics], tolerances,
-        lambda topic, sequence: topic in topics.compared, is_exact=True)
+        lambda topic, sequence, t_ns: topic in topics.compared, is_exact=True)
     again.simulate(comparer, lambda: comparer.difference is not None)
     return ReplayReport(
         comparer.finish(), bag.is_whole, [*changes, *topics.lines], topics.unconfirmed)
@@ -116,7 +116,8 @@ class Rerun:
         try:
             self._local.simulate(
                 self._inputs.n_ticks, local_run.Inputs(
-                    self._fill, self._inputs.tuned, self._events, self._inputs.tuned_supplies),
+                    self._fill, self._inputs.tuned, self._events, self._inputs.has_end,
+                    self._inputs.tuned_supplies),
                 recorder, should_stop, self._state)
         except Interrupted:
             pass  # should_stop was true before the end
@@ -168,6 +169,8 @@ class Inputs(NamedTuple):
     tuned_supplies: dict[int, dict[str, float]]
     """Tick -> applied parameters of the supplies by SUPPLY.KEY."""
     n_ticks: int
+    has_end: bool
+    """Whether the last sample has diagnostics, as that of a run that came to its end."""
 
 
 def recorded_inputs(bag: Bag, run: RunConfig) -> Inputs:
@@ -184,8 +187,8 @@ def recorded_inputs(bag: Bag, run: RunConfig) -> Inputs:
     """
     setpoints = {f'/{a.name}/{APPLIED}': (k, a.name) for k, a in enumerate(run.actuators)}
     parameters = {f'/{a.name}/{TUNED}': a.name for a in run.actuators}
-    inputs = Inputs({}, {}, {}, -1)
-    last = -1
+    inputs = Inputs({}, {}, {}, -1, False)
+    last = diagnosed = -1
     for message in bag.messages():
         last = message.sequence
         tick, topic = last - 1, message.topic
@@ -199,8 +202,10 @@ def recorded_inputs(bag: Bag, run: RunConfig) -> Inputs:
                 inputs.tuned.setdefault(name, {})[tick] = tuned_values(message.data, name)
             elif topic == APPLIED_PARAMETERS[0]:
                 inputs.tuned_supplies[tick] = tuned_values(message.data, NODE)
+            elif topic == diagnostics.TOPIC[0]:
+                diagnosed = last
         except (SetpointError, CdrError) as error:
             raise BagError(f'{bag.place_of(message)}: {error}') from error
     if last < 0:
         raise BagError(f'{bag.path}: has no samples, so there is nothing to replay')
-    return inputs._replace(n_ticks=last)
+    return inputs._replace(n_ticks=last, has_end=diagnosed == last)

@@ -109,7 +109,7 @@ class Coordinator:
                     self._pace.wait(self.t_ns, self._should_stop)
                     self._advance()
         finally:
-            self._narrator.record()
+            self._narrator.end()
             if not self.is_paused:  # a paused run has no due time
                 self._pace.end(self.t_ns)
             self._progress.end(self.t_ns)

@@ -29,6 +29,8 @@ class Inputs(NamedTuple):
     """Changes of parameters, by actuator."""
     events: Mapping[int, Sequence[str]] = {}
     """Texts of the events recorded before a tick."""
+    has_end: bool = True
+    """Whether the diagnostics of the last instant are recorded, as at the end of a run."""
     tuned_supplies: Tuned = {}
     """Changes of the supplies' parameters, by SUPPLY.KEY."""
 
@@ -39,7 +41,7 @@ def inputs_of(scenario: Scenario) -> Inputs:
     for tick, changes in scenario.changes.items():
         for row, values in changes.actuators.items():
             tuned.setdefault(scenario.run.actuators[row].name, {})[tick] = values
-    return Inputs(scenario.commands, tuned, {}, {
+    return Inputs(scenario.commands, tuned, tuned_supplies={
         tick: changes.supplies for tick, changes in scenario.changes.items()})
 
 
@@ -82,9 +84,10 @@ class LocalRun:
                 simulation.ticks, simulation.tuned, simulation.tuned_supplies)
             for text in inputs.events.get(simulation.ticks, ()):
                 narrator.add_event(simulation.ticks, text)
-            narrator.record()
             if simulation.ticks >= n_ticks:
+                narrator.end() if inputs.has_end else narrator.record()
                 return
+            narrator.record()
             if should_stop():
                 raise Interrupted(f'stopped after {simulation.ticks} ticks')
             self._tune(inputs)

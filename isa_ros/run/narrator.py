@@ -9,7 +9,7 @@ from isa_ros.run.exchange import Recorder
 from isa_ros.run.packing import BodyMessages, Messages, Names, Packer, Shown
 from isa_ros.surroundings.leg.sheet import JOINTS
 from isa_ros.surroundings.supply import VolumeReturn
-from msg_adapters import clock, coordinator_messages, event
+from msg_adapters import clock, coordinator_messages, diagnostics, event
 
 
 class Outlet(Protocol):
@@ -98,6 +98,16 @@ class Narrator:
             outlets.actuators[row].publish(self._packer.of_actuator(row))
         if has_surroundings:
             outlets.surroundings.publish(self._packer.of(self._surroundings))
+
+    def end(self) -> None:
+        """Add the diagnostics to the last instant if it is not recorded yet, and record it."""
+        if self._unrecorded is not None:
+            diagnosed = self._packer.diagnose()
+            if self._outlets.surroundings.has_subscribers():
+                self._outlets.surroundings.publish(
+                    [diagnosed if topic.name == diagnostics.TOPIC[0] else None
+                     for topic in self._surroundings])
+        self.record()
 
     def record(self) -> None:
         """Pass the last packed instant to the recorder, once."""

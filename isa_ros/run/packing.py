@@ -9,14 +9,16 @@ from collections.abc import Callable, Mapping, Sequence
 from typing import NamedTuple
 
 from isa_ros.bag.packed import Layout, layout, Packed
+from isa_ros.core.accounts import accounts_of
 from isa_ros.core.atmosphere import ATMOSPHERE
 from isa_ros.core.kernel import kernel
 from isa_ros.core.record import floats
 from isa_ros.core.signals import COMMAND, Records, SAMPLE
 from isa_ros.core.topic import KEPT, Qos, Topic
+from isa_ros.run.diagnostics import energy_statuses, PERIOD_NS
 from isa_ros.surroundings.supply import SUPPLY_SAMPLE
 from msg_adapters import (
-    actuator_messages, clock, coordinator_messages, event, fluid_pressure)
+    actuator_messages, clock, coordinator_messages, diagnostics, event, fluid_pressure)
 from msg_adapters.actuator_messages import APPLIED_TOPICS, STATE_TOPICS, TOPICS
 from msg_adapters.applied_parameters import applied_parameters
 from msg_adapters.template import FIRST_VALUE, Prepared, Template, time_word
@@ -123,7 +125,8 @@ class Packer:
     Packs the messages of some rows.
 
     ``topics`` are all topics with messages, sorted by name: `TOPICS` of every actuator, the
-    pressure of every supply, those of the body, and with ``is_run`` the clock and the events.
+    pressure of every supply, those of the body, and with ``is_run`` the clock, the events, and
+    the diagnostics at every second and at the end.
     """
 
     def __init__(self, names: Names, shown: Shown, is_run: bool = True) -> None:
@@ -148,7 +151,9 @@ class Packer:
             body = names.body(float_columns(shown.body.dtype, at))
             found += [(Topic(*topic), message) for topic, message in body.items()]
         if is_run:
-            found += [(Topic(*clock.TOPIC), clock.clock()), (Topic(*event.TOPIC), None)]
+            found += [(Topic(*clock.TOPIC), clock.clock()), (Topic(*event.TOPIC), None),
+                      (Topic(*diagnostics.TOPIC), None)]
+        self._is_run = is_run
         self.topics = tuple(sorted((topic for topic, _ in found), key=lambda topic: topic.name))
         if len({topic.name for topic in self.topics}) != len(self.topics):
             raise ValueError(f'a topic has two sources: {self.topics}')
@@ -159,6 +164,8 @@ class Packer:
         self._bytes = self._template.block.view(np.uint8)
         self._tuned: dict[int, bytes] = {}
         self._tuned_supplies: bytes | None = None
+        self._t_ns = 0
+        self._diagnosed: bytes | None = None
         self._layouts: dict[bytes, Layout] = {}
         self._bind()
 
@@ -202,6 +209,17 @@ class Packer:
             for row, values in tuned.items()} if tuned else {}
         self._tuned_supplies = applied_parameters(
             coordinator_messages.NODE, tuned_supplies, tick_start_ns) if tuned_supplies else None
+        self._t_ns, self._diagnosed = t_ns, None
+        if self._is_run and t_ns % PERIOD_NS == 0:
+            self.diagnose()
+
+    def diagnose(self) -> bytes:
+        """Add the diagnostics to the packed instant, and return them."""
+        names, shown = self._names, self._shown
+        self._diagnosed = diagnostics.pack(self._t_ns, energy_statuses(accounts_of(
+            [name for name, _ in names.actuators], shown.samples,
+            [name for name, _ in names.supplies], shown.supplies, self._t_ns)))
+        return self._diagnosed
 
     def all_messages(self, events: Sequence[bytes] = ()) -> Packed:
         """Return all messages of the packed instant, in the order of `topics`."""
@@ -210,13 +228,15 @@ class Packer:
         if where is None:
             where = self._layouts[key] = self._layout()
         packed = Packed(self._bytes, where)
-        if not (events or self._tuned or self._tuned_supplies):
+        if not (events or self._tuned or self._tuned_supplies or self._diagnosed):
             return packed
         extra = [(self._index[event.TOPIC[0]], data) for data in events]
         extra += [(self._index[f'/{self._names.actuators[row][0]}/{_PARAMETERS}'], data)
                   for row, data in self._tuned.items()]
         if self._tuned_supplies is not None:
             extra.append((self._index[_TUNED_SUPPLIES[0]], self._tuned_supplies))
+        if self._diagnosed is not None:
+            extra.append((self._index[diagnostics.TOPIC[0]], self._diagnosed))
         return Packed.of(sorted([*packed, *extra], key=lambda message: message[0]))
 
     def _layout(self) -> Layout:
@@ -243,8 +263,9 @@ class Packer:
         return bool(self._kinds[row])
 
     def of(self, topics: Sequence[Topic]) -> list[bytes | None]:
-        """Return the messages of some topics of supplies and body."""
-        return [self._tuned_supplies if topic.name == _TUNED_SUPPLIES[0]
+        """Return the messages of some topics of supplies and body; None: none at this instant."""
+        rare = {_TUNED_SUPPLIES[0]: self._tuned_supplies, diagnostics.TOPIC[0]: self._diagnosed}
+        return [rare[topic.name] if topic.name in rare
                 else self._message(topic.name) for topic in topics]
 
     def _message(self, name: str) -> bytes:
@@ -252,7 +273,7 @@ class Packer:
 
     @property
     def surroundings(self) -> list[Topic]:
-        """Return the topics of supplies and body."""
+        """Return the topics of supplies and body, and the diagnostics."""
         own = {f'/{name}/{suffix}' for name, _ in self._names.actuators for suffix, _ in TOPICS}
         return [topic for topic in self.topics
                 if topic.name not in own and topic.name not in (clock.TOPIC[0], event.TOPIC[0])]

@@ -51,4 +51,6 @@ class ResultMessages:
                 shown.applied[:] = log.applied[tick]
             narrator.publish_rows(
                 tick, log.tuned.get(tick, {}), log.tuned_supplies.get(tick, {}))
-            narrator.record()
+            if tick < len(log.samples) - 1:
+                narrator.record()
+        narrator.end()

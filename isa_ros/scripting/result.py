@@ -5,6 +5,7 @@ from functools import cached_property
 from pathlib import Path
 from typing import Any, NamedTuple
 
+from isa_ros.core.accounts import Account, accounts_of
 from isa_ros.core.record import floats
 from isa_ros.core.signals import Records, SAMPLE, SAMPLE_UNITS
 from isa_ros.core.suggest import alternatives
@@ -101,6 +102,15 @@ class Result(Mapping[str, NDArray[np.float64]]):
         run = self.scenario.run
         return (f'<Result of {run.source}, {self.scenario.name}: {len(self)} signals, '
                 f'{len(self.time)} samples to t = {self.time[-1]:g} s>')
+
+    @property
+    def accounts(self) -> dict[str, Account]:
+        """Return oil and energy from t = 0 to the end by actuator and supply: key to number."""
+        run, log = self.scenario.run, self.log
+        return accounts_of(
+            [actuator.name for actuator in run.actuators], log.samples[-1],
+            [supply.name for supply in run.supplies], log.supplies[-1],
+            (len(log.samples) - 1) * run.step_ns)
 
     def _flat(self) -> Iterator[tuple[str, NDArray[np.float64]]]:
         """Yield every column of numbers; ``name[k]`` for those of an array."""

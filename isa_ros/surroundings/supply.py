@@ -3,7 +3,7 @@ A hydraulic supply: the pump side, and the return line to its tank.
 
 Actuators use both pressures of the tick's start over the whole tick and report the volumes that
 they drew and returned; the supply then advances over the same interval. Pressures are gauge,
-flows leave the supply and enter the return line when positive. Equations C7-C9.
+flows leave the supply and enter the return line when positive. Equations C7-C9, E7.
 
 Neglected: length and resistance of the pressure line, heat, air in the tank.
 """
@@ -98,11 +98,17 @@ SUPPLY_SAMPLE = np.dtype([
     ('pump_flow', '<f8'),           # m3/s; 0 for an ideal supply
     ('drawn', '<f8'),               # volume drawn by the actuators since t = 0, m3
     ('returned', '<f8'),            # volume returned by the actuators since t = 0, m3
+    ('power', '<f8'),               # of the oil drawn less that returned, mean over the tick, W
+    ('peak_power', '<f8'),          # greatest since t = 0, W
+    ('energy', '<f8'),              # integral of the power since t = 0, J
+    ('pump_energy', '<f8'),         # of the pump since t = 0, J
+    ('relief_energy', '<f8'),       # lost through the relief valve since t = 0, J
 ])
 """State of one supply, which is also its sample at the end of a tick."""
 SUPPLY_UNITS = {
     'pressure': 'Pa', 'return_pressure': 'Pa', 'pump_flow': 'm3/s', 'drawn': 'm3',
-    'returned': 'm3'}
+    'returned': 'm3', 'power': 'W', 'peak_power': 'W', 'energy': 'J', 'pump_energy': 'J',
+    'relief_energy': 'J'}
 
 
 def supply_record(sheet: AccumulatorSupply) -> np.ndarray:
@@ -150,14 +156,15 @@ def supply_rates(pressure, pump_flow, drawn, supply):
     """
     Return (dP/dt, dQ_pump/dt) with C dP/dt = Q_pump - Q_drawn - Q_relief - Q_leak  (C8).
 
-    The pump follows its pressure compensator, 0 to full flow over the band, with one lag.
-    Q_leak = k P, from the line to the outside.
+    The pump follows its pressure compensator, 0 to full flow over the band, with one lag;
+    Q_leak = k P, from the line to the outside. Then two powers: those of the pump, and of relief
+    valve and leak, P Q, in W  (E7).
     """
     demand = max(0.0, min(1.0, (supply.p_set - pressure) / supply.band)) * supply.q_max
     relief = max(0.0, supply.k_relief * (pressure - supply.p_relief))
     leak = max(0.0, supply.k_leak * pressure)
     return ((pump_flow - drawn - relief - leak) / capacitance(pressure, supply),
-            (demand - pump_flow) / supply.lag)
+            (demand - pump_flow) / supply.lag, pressure * pump_flow, pressure * (relief + leak))
 
 
 @kernel
@@ -166,12 +173,26 @@ def supply_advance(steps, drawn, supplies, states):
     h, supply, state = SUPPLY_STEP, supplies[0], states[0]
     for _ in range(steps):
         p, q = state.pressure, state.pump_flow
-        p_1, q_1 = supply_rates(p, q, drawn, supply)
-        p_2, q_2 = supply_rates(p + 0.5 * h * p_1, q + 0.5 * h * q_1, drawn, supply)
-        p_3, q_3 = supply_rates(p + 0.5 * h * p_2, q + 0.5 * h * q_2, drawn, supply)
-        p_4, q_4 = supply_rates(p + h * p_3, q + h * q_3, drawn, supply)
+        p_1, q_1, e_1, r_1 = supply_rates(p, q, drawn, supply)
+        p_2, q_2, e_2, r_2 = supply_rates(p + 0.5 * h * p_1, q + 0.5 * h * q_1, drawn, supply)
+        p_3, q_3, e_3, r_3 = supply_rates(p + 0.5 * h * p_2, q + 0.5 * h * q_2, drawn, supply)
+        p_4, q_4, e_4, r_4 = supply_rates(p + h * p_3, q + h * q_3, drawn, supply)
         state.pressure = p + h / 6.0 * (p_1 + 2.0 * (p_2 + p_3) + p_4)
         state.pump_flow = q + h / 6.0 * (q_1 + 2.0 * (q_2 + q_3) + q_4)
+        state.pump_energy += h / 6.0 * (e_1 + 2.0 * (e_2 + e_3) + e_4)
+        state.relief_energy += h / 6.0 * (r_1 + 2.0 * (r_2 + r_3) + r_4)
+
+
+@kernel
+def add_oil(drawn, returned, seconds, states):
+    """Add the volumes of one tick (m3), and their energy at the pressures held over it  (E1)."""
+    state = states[0]
+    energy = state.pressure * drawn - state.return_pressure * returned
+    state.drawn += drawn
+    state.returned += returned
+    state.power = energy / seconds
+    state.peak_power = max(state.peak_power, state.power)
+    state.energy += energy
 
 
 @kernel
@@ -279,9 +300,10 @@ class Supply:
 
     def advance(self, drawn: float, returned: float = 0.0) -> None:
         """Advance one tick in which the actuators drew and returned these volumes (m3)."""
-        self.state['drawn'] += drawn
-        self.state['returned'] += returned
-        if self._record is not None:
+        add_oil(drawn, returned, self._step, self.state)
+        if self._record is None:
+            self.state['pump_energy'] += self.state['pressure'] * drawn
+        else:
             supply_advance(self._substeps, drawn / self._step, self._record, self.state)
         if self._line is not None:
             return_advance(self._substeps, returned / self._step, self._line, self.state)

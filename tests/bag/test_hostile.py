@@ -233,13 +233,13 @@ def test_hostile_state_ends_in_one_line(tmp_path, refused, state, expected):
     ({'tick': 2}, 'begins before tick 2'),
     ({'participants': []}, 'has 0 participants, the run has 1'),
     ({'participants': ['00']}, 'rotor: saved state has 1 bytes, must have'),
-    ({'load': ''}, 'saved state of the surroundings has 0 bytes, must have 40'),
+    ({'load': ''}, 'saved state of the surroundings has 0 bytes, must have 80'),
     ({'requests': '00'}, 'has 1 bytes of requests, must have 48'),
 ])
 def test_state_that_does_not_fit_ends_in_one_line(tmp_path, refused, change, expected):
     digest = load_run(Path(__file__).parents[2] / 'config' / 'rig_rotary.yaml').digest
     state = {'format': 3, 'configuration.sha256': digest, 'versions': {}, 'tick': 0,
-             'load': '00' * 40, 'requests': '00' * 48, 'participants': ['00']} | change
+             'load': '00' * 80, 'requests': '00' * 48, 'participants': ['00']} | change
     assert expected in refused('replay', with_configuration(
         tmp_path / 'bag', RIG, state=sealed(state)))
 

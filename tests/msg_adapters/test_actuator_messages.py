@@ -1,5 +1,6 @@
 """What an actuator publishes: interface.md's table of topics, value by value."""
 
+from isa_ros.core.accounts import FIELDS
 from msg_adapters.actuator_messages import APPLIED_SETPOINT, STATE_TOPICS, TOPICS
 from msg_adapters.cdr_reader import decode, message_class
 import pytest
@@ -105,8 +106,9 @@ def test_actuators_together_say_what_each_says_alone():
 
 
 def test_every_value_but_the_gauge_pressures_is_published():
-    """Of these the absolute ones are."""
+    """Of these the absolute ones are; energies are on `/diagnostics`."""
     used = {column for _, fields in of_actuator('hip', False).values()
             for column in fields.values() if column >= 0}
     assert {value for k, value in enumerate(VALUES) if k not in used} == {
-        'sample pressure_a', 'sample pressure_b'}
+        'sample pressure_a', 'sample pressure_b', 'sample power',
+        *(f'sample {field}' for field in FIELDS if field != 'supply_volume')}

@@ -8,6 +8,7 @@ their sums and differences are exact, and so is the comparison.
 
 from hypothesis import given, strategies as st
 from isa_ros.plant import chambers, relief, servo_valve
+from isa_ros.plant.energy import no_powers
 from isa_ros.plant.plant import plant_rates, PLANT_STATE
 import numpy as np
 import pytest
@@ -61,7 +62,8 @@ def plant_flows(
     y.mechanics.position = x = 0.4 * plant.chambers.stroke
     y.valve.spool = spool
     y.chambers.p_a, y.chambers.p_b = p_a + raised, p_b + raised
-    _, q_p, q_t = plant_rates(y, x, 0.0, 0.0, SUPPLY + raised, raised, plant, rates)
+    _, q_p, q_t = plant_rates(
+        y, x, 0.0, 0.0, SUPPLY + raised, raised, plant, rates, no_powers())
     return rates.chambers.p_a, rates.chambers.p_b, q_p, q_t
 
 
@@ -78,7 +80,7 @@ def test_the_null_bias_of_a_plant_shifts_with_the_return_pressure():
     jerks = []
     for p_t in (0.0, 3.5e6):
         y, rates = (np.zeros(1, PLANT_STATE).view(np.recarray)[0] for _ in 'yr')
-        plant_rates(y, 0.0, 0.0, 0.0, SUPPLY, p_t, plant, rates)
+        plant_rates(y, 0.0, 0.0, 0.0, SUPPLY, p_t, plant, rates, no_powers())
         jerks.append(rates.valve.acceleration)
     w_n = plant.spool.w_n
     reference = plant.valve.k_spool * plant.spool.bias_t * 3.5e6

@@ -110,8 +110,9 @@ class FakeOutlet:
         return True
 
     def publish(self, messages: Messages) -> None:
-        data = next(message for message in messages if message is not None)
-        self.log.append(self.line(data))
+        data = next((message for message in messages if message is not None), None)
+        if data is not None:    # None: the diagnostics of the end
+            self.log.append(self.line(data))
 
 
 def clock_line(data: bytes) -> str:

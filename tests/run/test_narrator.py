@@ -175,3 +175,20 @@ def test_an_outlet_without_topics_has_no_subscribers():
     assert not NoOutlet().has_subscribers()
     assert [Outlets().clock.has_subscribers(), Outlets().events.has_subscribers(),
             Outlets().surroundings.has_subscribers(), *Outlets().actuators] == [False] * 3
+
+
+def test_the_end_adds_the_diagnostics_of_the_last_instant():
+    """To the bag and to who listens; where it is recorded already, to nothing."""
+    stage = Stage('surroundings')
+    stage.narrator.publish_rows(3, {})
+    stage.narrator.end()
+    stage.narrator.end()
+    expected = stage.expected(3)
+    place, data = stage.topics.index('/diagnostics'), expected.diagnose()
+    (_, sequence, messages), = stage.recorder.samples
+    assert sequence == 3 and (place, data) in messages
+    assert stage.log == ['surroundings', 'surroundings', 'record 3']
+    before, at_end = stage.outlets['surroundings'].sent
+    shown = [topic.name for topic in expected.surroundings].index('/diagnostics')
+    assert before[shown] is None and at_end[shown] == data
+    assert at_end.count(None) == len(at_end) - 1

@@ -77,7 +77,7 @@ def test_a_leg_has_every_topic_in_canonical_order():
     packer = packer_of(LEG, Rows(3, surroundings).shown)
     assert [topic.name for topic in packer.topics] == [
         '/clock', '/coordinator/applied_parameters', '/coordinator/events',
-        '/coordinator/ground_contact', '/coordinator/supply_pressure',
+        '/coordinator/ground_contact', '/coordinator/supply_pressure', '/diagnostics',
         *(f'/{name}/{suffix}' for name in ('haa', 'hfe') for suffix in SUFFIXES),
         '/joint_states', *(f'/kfe/{suffix}' for suffix in SUFFIXES)]
     types = {topic.name: topic.type_name for topic in packer.topics}
@@ -89,7 +89,7 @@ def test_a_leg_has_every_topic_in_canonical_order():
     assert [types[f'/kfe/{suffix}'] for suffix in SUFFIXES] == [type_ for _, type_ in TOPICS]
     assert [topic.name for topic in packer.surroundings] == [
         '/coordinator/applied_parameters', '/coordinator/ground_contact',
-        '/coordinator/supply_pressure', '/joint_states']
+        '/coordinator/supply_pressure', '/diagnostics', '/joint_states']
 
 
 def test_messages_come_in_the_order_of_the_topics(packer, rows):
@@ -100,7 +100,8 @@ def test_messages_come_in_the_order_of_the_topics(packer, rows):
     assert [name for name, _ in messages] == sorted(name for name, _ in messages)
     assert [name for name, _ in messages] == [
         topic.name for topic in packer.topics
-        if topic.name not in ('/hip/applied_setpoint', '/knee/applied_parameters')]
+        if topic.name not in ('/diagnostics', '/hip/applied_setpoint',
+                              '/knee/applied_parameters')]
     types = {topic.name: topic.type_name for topic in packer.topics}
     for name, data in messages:
         decode(data, message_class(types[name]))
@@ -218,10 +219,10 @@ def test_the_return_lines_of_a_run_decide_which_pressures_there_are():
     line = ConstantSupply(pressure_mpa=20.7, return_pressure_mpa=0.5, return_line=RETURN_LINE)
     assert topics(held, ACCUMULATOR) == [
         '/coordinator/applied_parameters', '/coordinator/first_pressure',
-        '/coordinator/second_pressure']
+        '/coordinator/second_pressure', '/diagnostics']
     assert topics(line, held) == [
         '/coordinator/applied_parameters', '/coordinator/first_pressure',
-        '/coordinator/first_return_pressure', '/coordinator/second_pressure']
+        '/coordinator/first_return_pressure', '/coordinator/second_pressure', '/diagnostics']
 
 
 def test_a_body_shows_the_floats_of_its_sample():

@@ -9,6 +9,7 @@ from isa_ros.errors import ParameterError
 from isa_ros.surroundings import supply
 import numpy as np
 import pytest
+from scipy.integrate import quad
 
 SHEET = supply.AccumulatorSupply(
     pressure_mpa=20.7, return_pressure_mpa=0.0, gas_volume_l=0.32, precharge_mpa=12.0,
@@ -155,3 +156,34 @@ def test_a_compiled_return_line_equals_its_python_source():
             advance(10, 1e-5 * tick, line, state)
         ends.append(state.tobytes())
     assert ends[0] == ends[1]
+
+
+def test_the_energy_of_the_pump_is_used_or_stored():
+    """E7: pump less relief valve less what was drawn is the work on the gas and on the line."""
+    record = supply.supply_record(SHEET)[0]
+    plant = supply.Supply(SHEET, MS, SLOPE)
+    given = 0.0
+    for k in range(4000):
+        flow = (8.0 if k % 1000 < 300 else -3.0 if k % 1000 < 700 else 0.5) * LPM
+        before = plant.pressure
+        plant.advance(flow * 1e-3)
+        given += 0.5 * (before + plant.pressure) * flow * 1e-3
+    found = plant.state[0]
+    assert found['relief_energy'] > 0.02 * found['pump_energy'] > 0.0
+    stored, _ = quad(lambda p: p * supply.capacitance(p, record), 20.7e6, plant.pressure)
+    throughput = found['pump_energy'] + found['relief_energy'] + abs(given)
+    remainder = found['pump_energy'] - found['relief_energy'] - given - stored
+    assert abs(remainder) < 1e-6 * throughput
+
+
+def test_the_energy_given_is_that_of_the_oil_at_both_pressures():
+    """E1 of the actuators: 20.7 MPa drawn, 0.5 MPa returned, in ticks of 1 ms."""
+    sheet = supply.ConstantSupply(pressure_mpa=20.7, return_pressure_mpa=0.5)
+    plant = supply.Supply(sheet, MS, SLOPE)
+    plant.advance(2e-6, 1e-6)
+    plant.advance(1e-6, 1e-6)
+    found = plant.state[0]
+    assert found['energy'] == pytest.approx(62.1 - 1.0, rel=1e-12, abs=0.0)
+    assert found['power'] == pytest.approx(20.2e3, rel=1e-12, abs=0.0)
+    assert found['peak_power'] == pytest.approx(40.9e3, rel=1e-12, abs=0.0)
+    assert found['pump_energy'] == pytest.approx(62.1, rel=1e-12, abs=0.0)

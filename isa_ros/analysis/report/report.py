@@ -4,8 +4,10 @@ import base64
 import html
 from pathlib import Path
 
+from isa_ros.analysis.report.energy import energy_legend, energy_table
 from isa_ros.analysis.report.figures import figures
 from isa_ros.analysis.report.paper_figures import paper_figure
+from isa_ros.analysis.signals.accounts import recorded_accounts
 from isa_ros.analysis.signals.signals import read_signals, Signals
 from isa_ros.bag.provenance import SCENARIO
 from isa_ros.bag.reader import Bag
@@ -27,7 +29,7 @@ td, th {{ padding: 0.2em 0.8em; text-align: right; }}
 td:first-child, th:first-child {{ text-align: left; }}
 img {{ max-width: 100%; }}
 </style></head>
-<body><h1>{title}</h1><p>{summary}</p><table>{rows}</table>{images}</body></html>
+<body><h1>{title}</h1><p>{summary}</p><table>{rows}</table>{images}{energy}</body></html>
 """
 
 
@@ -58,7 +60,7 @@ def write_report(bag: Path, page: Path) -> list[Path]:
     page.write_text(_PAGE.format(
         generator=_GENERATOR, title=html.escape(signals.run.name),
         summary=html.escape(_summary(signals)), rows=_rows(extremes(signals)),
-        images=''.join(images)), encoding='utf-8')
+        images=''.join(images), energy=_energy(bag)), encoding='utf-8')
     return written
 
 
@@ -99,6 +101,17 @@ def _summary(signals: Signals) -> str:
     run, end = signals.run, float(signals.time[-1])
     return (f'{run.source}: {len(run.actuators)} actuators, {end:.3f} s of simulation time '
             f'in steps of {run.step_ns / 1e6:g} ms.')
+
+
+def _energy(bag: Path) -> str:
+    """Return the table of oil and energy; nothing for a bag without diagnostics."""
+    accounts = recorded_accounts(Bag(bag))
+    if accounts is None:
+        return ''
+    head, *body = [[html.escape(cell) for cell in row] for row in energy_table(accounts)]
+    rows = ''.join(f'<tr><td>{"</td><td>".join(row)}</td></tr>' for row in body)
+    return (f'<h2>Oil and energy</h2><table><tr><th>{"</th><th>".join(head)}</th></tr>{rows}'
+            f'</table><p>{html.escape(energy_legend(accounts))}</p>')
 
 
 def _rows(values: list[tuple[str, float, float, str]]) -> str:

@@ -22,6 +22,7 @@ from isa_ros.config.default_actuator import default_actuator, DEFAULT_TIMING
 from isa_ros.core.signals import LOAD_PORT
 from isa_ros.core.units import MPA
 from isa_ros.paper.printed import cell, statement
+from isa_ros.plant.energy import no_powers
 from isa_ros.plant.plant import plant_rates, PLANT_STATE
 import numpy as np
 from scipy.optimize import brentq
@@ -103,7 +104,7 @@ def linearised(model: str) -> tuple[np.ndarray, np.ndarray]:
 
     def rate(state: np.ndarray, drive: float) -> np.ndarray:
         y.coil.current, y.valve.spool, y.valve.velocity, y.valve.acceleration = state
-        plant_rates(y, 0.0, 0.0, drive, SUPPLY, 0.0, plant, rates)
+        plant_rates(y, 0.0, 0.0, drive, SUPPLY, 0.0, plant, rates, no_powers())
         return np.array([rates.coil.current, rates.valve.spool, rates.valve.velocity,
                          rates.valve.acceleration])
     matrix = np.array([rate(SMALL * unit, 0.0) for unit in np.eye(4)]).T / SMALL

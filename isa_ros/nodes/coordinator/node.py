@@ -13,7 +13,7 @@ from isa_ros.nodes.middleware.publishers import PreparedPublishers
 from isa_ros.nodes.middleware.refusals import refusals
 from isa_ros.run.narrator import Outlet, Outlets
 from isa_ros.run.options import Option, OPTIONS, Request, request_of_parameters
-from msg_adapters import clock, event
+from msg_adapters import clock, diagnostics, event
 from rcl_interfaces.msg import ParameterDescriptor
 from rclpy.node import Node
 from rclpy.parameter import Parameter
@@ -77,7 +77,13 @@ class CoordinatorNode(Node):
 
 
 def _relative(name: str) -> str:
-    """Return the node's relative name of a topic of the bag, so that namespaces work."""
+    """
+    Return the node's relative name of a topic of the bag, so that namespaces work.
+
+    Diagnostics of all nodes of a robot are on the same topic, as their aggregators expect.
+    """
+    if name == diagnostics.TOPIC[0]:
+        return name
     return f'~/{name.removeprefix(_OWN)}' if name.startswith(_OWN) else name.removeprefix('/')
 
 

@@ -1,0 +1,78 @@
+"""
+Oil and energy of actuators and supplies since t = 0, as one account each.
+
+An account maps keys, name and unit as shown, to numbers. `/diagnostics` and the tables show them.
+"""
+
+from collections.abc import Mapping, Sequence
+from typing import NamedTuple
+
+from isa_ros.core.signals import Records
+from isa_ros.core.timebase import NS_PER_SECOND
+
+_LITRE = 1e-3    # m3
+
+Account = Mapping[str, float]
+
+
+class Entry(NamedTuple):
+    """One entry of an account: a field of a record, its name, and its unit in SI."""
+
+    field: str
+    name: str
+    unit: str
+    scale: float = 1.0
+
+    @property
+    def key(self) -> str:
+        """Return the key of the entry: name and unit."""
+        return f'{self.name} ({self.unit})'
+
+
+MEAN = Entry('', 'mean power', 'W')
+"""The energy over the time; no field."""
+PEAK = Entry('peak_power', 'peak power', 'W')
+OIL = Entry('supply_volume', 'oil drawn', 'l', _LITRE)
+ENERGY = Entry('hydraulic_energy', 'hydraulic energy', 'J')
+LEAKAGE = Entry('leakage_energy', 'valve leakage', 'J')
+THROTTLING = Entry('throttling_energy', 'throttling', 'J')
+FRICTION = Entry('friction_energy', 'friction', 'J')
+WORK = Entry('work', 'work', 'J')
+CROSS_PORT = Entry('cross_port_energy', 'cross-port leakage', 'J')
+RELIEF = Entry('relief_energy', 'relief', 'J')
+DAMPING = Entry('damping_energy', 'damping', 'J')
+STORED = Entry('stored_energy', 'stored', 'J')
+SHARES = (LEAKAGE, THROTTLING, FRICTION, WORK, CROSS_PORT, RELIEF, DAMPING, STORED)
+"""Where the energy of an actuator went; their sum is `ENERGY`."""
+
+SUPPLY_OIL = OIL._replace(field='drawn')
+SUPPLY_ENERGY = ENERGY._replace(field='energy')
+PUMP = Entry('pump_energy', 'pump', 'J')
+SUPPLY_RELIEF = Entry('relief_energy', 'relief', 'J')
+
+_OF_ACTUATOR = (OIL, PEAK, ENERGY, *SHARES)
+FIELDS = tuple(entry.field for entry in _OF_ACTUATOR)
+"""The fields of a `SAMPLE` in an account."""
+_OF_SUPPLY = (SUPPLY_OIL, PEAK, SUPPLY_ENERGY, PUMP, SUPPLY_RELIEF)
+
+
+def accounts_of(
+        actuators: Sequence[str], samples: Records, supplies: Sequence[str],
+        supply_samples: Records, t_ns: int) -> dict[str, Account]:
+    """
+    Return the accounts by name of the actuator or supply, actuators first.
+
+    ``samples`` are `SAMPLE` rows, (n,), and ``supply_samples`` `SUPPLY_SAMPLE` rows, (m,), of
+    ``t_ns``.
+    """
+    found = {name: _account(row, _OF_ACTUATOR, ENERGY, t_ns)
+             for name, row in zip(actuators, samples)}
+    return found | {name: _account(row, _OF_SUPPLY, SUPPLY_ENERGY, t_ns)
+                    for name, row in zip(supplies, supply_samples)}
+
+
+def _account(row: Mapping[str, float], entries: Sequence[Entry], energy: Entry,
+             t_ns: int) -> Account:
+    account = {entry.key: float(row[entry.field]) / entry.scale for entry in entries}
+    seconds = t_ns / NS_PER_SECOND
+    return {MEAN.key: account[energy.key] / seconds if t_ns else 0.0} | account

@@ -1,0 +1,49 @@
+"""The table of oil and energy, from a run in memory and from its bag."""
+
+import isa_ros
+from isa_ros.analysis.report.energy import energy_table, energy_text, HEADER
+from isa_ros.analysis.report.report import write_report
+from isa_ros.analysis.signals.accounts import Accounts, recorded_accounts
+from isa_ros.bag.reader import Bag
+import pytest
+
+
+@pytest.fixture(scope='module')
+def drop():
+    return isa_ros.load('leg', 'drop').simulate(0.3)
+
+
+@pytest.fixture(scope='module')
+def bag(drop, tmp_path_factory):
+    return drop.save(tmp_path_factory.mktemp('energy') / 'bag')
+
+
+def test_the_bag_has_the_table_of_the_run(drop, bag):
+    accounts = recorded_accounts(Bag(bag))
+    assert accounts.t == 0.3
+    rows = energy_table(accounts)
+    assert rows == energy_table(Accounts(0.3, drop.accounts))
+    assert rows[0] == HEADER
+    assert [row[0] for row in rows[1:]] == ['haa', 'hfe', 'kfe', 'supply']
+
+
+def test_the_shares_are_those_of_the_columns(drop, bag):
+    """And together all of the energy, as far as the digits go."""
+    head, _, _, knee, _ = energy_table(recorded_accounts(Bag(bag)))
+    cells = dict(zip(head, knee))
+    energy = drop['kfe.hydraulic_energy'][-1]
+    for name, field in (('valve leakage', 'leakage_energy'), ('throttling', 'throttling_energy'),
+                        ('friction', 'friction_energy'), ('work', 'work')):
+        share = 100.0 * drop[f'kfe.{field}'][-1] / energy
+        assert float(cells[name].split()[0]) == pytest.approx(share, abs=0.0501)
+    shares = [float(cell.split()[0]) for cell in knee[5:]]
+    assert sum(shares) == pytest.approx(100.0, abs=0.25)
+    assert float(cells['energy, J']) == pytest.approx(energy, rel=5e-3)
+
+
+def test_text_and_page_have_it(bag, tmp_path):
+    text = energy_text(bag).splitlines()
+    assert text[0].split()[:2] == ['oil,', 'l'] and text[3].startswith('kfe ')
+    assert text[5].startswith('up to t = 0.300 s')
+    page = write_report(bag, tmp_path / 'page.html')[0].read_text()
+    assert '<h2>Oil and energy</h2>' in page and '<td>kfe</td>' in page
