@@ -116,7 +116,8 @@ def supply_record(sheet: AccumulatorSupply) -> np.ndarray:
     record = np.zeros(1, SUPPLY)
     for name, value in {
             'p_set': sheet.pressure_mpa * MPA, 'p_t': sheet.return_pressure_mpa * MPA,
-            'v_0': 0.0 if sheet.accumulator_lost else sheet.gas_volume_l * _LITRE, 'p_0': sheet.precharge_mpa * MPA + ATMOSPHERE,
+            'v_0': 0.0 if sheet.accumulator_lost else sheet.gas_volume_l * _LITRE,
+            'p_0': sheet.precharge_mpa * MPA + ATMOSPHERE,
             'n': sheet.polytropic_exponent,
             'c_line': sheet.line_volume_l * _LITRE / sheet.bulk_modulus,
             'q_max': sheet.pump_flow_lpm * LPM, 'lag': sheet.pump_lag_s,

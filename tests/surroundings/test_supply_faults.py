@@ -61,6 +61,11 @@ def test_a_leaking_hose_takes_at_rest_what_the_pump_gives():
     expected = slope * ACCUMULATOR.pressure_mpa * 1e6 / (slope + k)
     assert leaking.pressure == pytest.approx(expected, rel=1e-9, abs=0.0)
     assert leaking.state['pump_flow'][0] == pytest.approx(k * expected, rel=1e-9, abs=0.0)
+    before = float(leaking.state['relief_energy'][0])
+    for _ in range(100):
+        leaking.advance(0.0)
+    assert leaking.state['relief_energy'][0] - before == pytest.approx(     # E7: P Q_leak
+        k * expected * expected * 0.1, rel=1e-9, abs=0.0)
 
 
 def test_an_open_relief_valve_takes_all_that_the_pump_gives():

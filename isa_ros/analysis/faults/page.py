@@ -4,7 +4,7 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
-from isa_ros.analysis.faults.measure import DEVICE, Noticed, Outcome, SOUND, Visible, VISIBLE
+from isa_ros.analysis.faults.measure import DEVICE, Noticed, Outcome, SOUND, VISIBLE, Visible
 from isa_ros.analysis.faults.rig import BEGIN_S, END_S
 from isa_ros.config.fault_catalogue import fault_catalogue, NamedFault
 from isa_ros.text.json_file import write_tree

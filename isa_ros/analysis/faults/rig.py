@@ -3,7 +3,7 @@
 from isa_ros.config.yaml_text import Tree
 
 STEP_S = 1e-3
-BEGIN_S, END_S, DURATION_S = 0.5, 1.0, 2.5
+BEGIN_S, END_S, DURATION_S = 0.5, 1.0, 2.2
 """Time of every fault, and length of the run."""
 
 CONFIG: Tree = {

@@ -32,7 +32,8 @@ class TunableParameters:
 
     def __init__(
             self, node: Node, actuator: SmartActuator,
-            changing: Mapping[str, Tunable | Changeable], overrides: Mapping[str, Parameter]) -> None:
+            changing: Mapping[str, Tunable | Changeable],
+            overrides: Mapping[str, Parameter]) -> None:
         self._actuator = actuator
         self._names = frozenset(changing)
         for own in changing.values():
