@@ -2,7 +2,8 @@
 
 from collections.abc import Mapping
 
-from msg_adapters import applied_parameters, fluid_pressure, joint_state, setpoint, wrench
+from msg_adapters import (
+    applied_parameters, fluid_pressure, joint_state, setpoint, temperature, wrench)
 from msg_adapters.template import Prepared
 
 STATE_TOPICS = (
@@ -21,6 +22,9 @@ APPLIED_TOPICS = (APPLIED_PARAMETERS, APPLIED_SETPOINT)
 """(topic suffix, type) of the messages published when a command or parameter takes effect."""
 
 TOPICS = (*APPLIED_TOPICS, *STATE_TOPICS)
+
+TEMPERATURE = ('temperature', temperature.TYPE)
+"""(topic suffix, type) of the oil's temperature: once a second, of actuators that get warm."""
 
 
 def prepared(

@@ -26,7 +26,7 @@ from isa_ros.reu.cascade import initial_gains
 import numpy as np
 
 
-_SAVED = ('body', 'reu', 'port', 'pending', 'applied', 'reply', 'sample')
+_SAVED = ('body', 'reu', 'port', 'pending', 'applied', 'reply', 'sample', 'thermal')
 """The rows of a snapshot, in their order."""
 
 PAPER_SUPPLY = 20.7e6
@@ -95,13 +95,13 @@ class SmartActuator:
         constants['load'] = own_record(config.load)
         self._saved = (
             self.memory.bodies[:1], self.memory.reu, self.memory.ports, self.memory.pending,
-            self.memory.applied, self.memory.replies, self.memory.samples)
+            self.memory.applied, self.memory.replies, self.memory.samples, self.memory.thermals)
         # Rows with their fields as attributes, on the same memory.
         self._constants, self._body = _record(constants), _record(self.memory.bodies)
         self._reu, self._read_out = _record(self.memory.reu), _record(self.memory.read_outs)
         self._reply, self._sample = _record(self.memory.replies), _record(self.memory.samples)
         self._port, self._pending = _record(self.memory.ports), _record(self.memory.pending)
-        self._applied = _record(self.memory.applied)
+        self._applied, self._thermal = _record(self.memory.applied), _record(self.memory.thermals)
         self._incoming, self._commands = np.zeros(1, LOAD_PORT), np.zeros(1, COMMAND)
         self.digest = self._hash(constants)
         self.setpoint_range = SetpointRange(config.name, config.sheet, config.beyond_range)
@@ -138,6 +138,7 @@ class SmartActuator:
         body.load.position = position - force / plant.mechanics.k_s
         body.plant.chambers.p_a, body.plant.chambers.p_b = rest_pressures(
             plant, supply_pressure, return_pressure, force)
+        self._thermal.oil = self._thermal.body = plant.thermal.start
         self._start_loops()
         write_applied(HAS_SETPOINT | HAS_ENABLE, self._reu.setpoint, self._applied)
         self._reply.position = position
@@ -157,6 +158,7 @@ class SmartActuator:
         reu.setpoint.stiffness, reu.setpoint.damping = initial_gains(self._config.sheet.reu)
         reu.setpoint.is_enabled = 1.0
         kernels.write_sample(self._read_out, body.plant, reu, self._sample)
+        self._sample.temperature = self._thermal.oil
 
     @property
     def sample(self) -> np.record:

@@ -8,6 +8,7 @@ of floats (`BODY`), so that the integrator sees the same memory as a flat array.
 import math
 
 from isa_ros.actuator.energy import add_energies, stored_elastically
+from isa_ros.actuator.heat import take_heat
 from isa_ros.actuator.inbox import latch, merge
 from isa_ros.actuator.states import write_states
 from isa_ros.core.kernel import kernel
@@ -16,6 +17,7 @@ from isa_ros.loads.forces import LOAD_STATE, OWN_LOAD, own_load_force
 from isa_ros.loads.port import load_acceleration
 from isa_ros.plant.energy import ENERGIES
 from isa_ros.plant.plant import PLANT, plant_rates, PLANT_STATE, read_sensors, settle
+from isa_ros.plant.thermal import warm
 from isa_ros.reu.cascade import cascade_step, is_due, REU
 import numpy as np
 
@@ -176,7 +178,7 @@ def take_port(incoming, is_shared, port, body):
 
 @kernel
 def tick_row(first_step, steps, port, actuator, bodies, rates, y, k, reu_state, read_out,
-             reply, sample):
+             reply, sample, thermal):
     """
     Advance one actuator by ``steps`` plant steps.
 
@@ -184,6 +186,8 @@ def tick_row(first_step, steps, port, actuator, bodies, rates, y, k, reu_state, 
     `SAMPLE` at the end of the tick.
     """
     body = bodies[0]
+    if actuator.plant.thermal.is_on:
+        warm(thermal.oil, actuator.plant)
     y[0, TOTALS_AT:] = 0.0
     elastic = stored_elastically(body, actuator.plant.mechanics)
     window_steps = steps // FORCE_WINDOWS
@@ -205,6 +209,9 @@ def tick_row(first_step, steps, port, actuator, bodies, rates, y, k, reu_state, 
     add_energies(reply, port, body.totals.energies,
                  stored_elastically(body, actuator.plant.mechanics) - elastic,
                  steps * PLANT_STEP, sample)
+    if actuator.plant.thermal.is_on:
+        take_heat(steps * PLANT_STEP, reply, body.totals.energies, actuator.plant.thermal, thermal)
+    sample.temperature = thermal.oil
 
 
 @kernel
@@ -226,7 +233,7 @@ def actuator_tick(first_step, steps, incoming, commands, memory):
         latch(memory.pending[n], reu, memory.applied[n])
         take_port(incoming[n], memory.is_shared[n], port, bodies[0])
         tick_row(first_step, steps, port, memory.constants[n], bodies, rates, y, k, reu,
-                 memory.read_outs[n], memory.replies[n], memory.samples[n])
+                 memory.read_outs[n], memory.replies[n], memory.samples[n], memory.thermals[n])
         broken = first_broken(y)
         if broken >= 0:
             return n * STATE_SIZE + broken

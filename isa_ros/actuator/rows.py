@@ -4,6 +4,7 @@ from typing import NamedTuple
 
 from isa_ros.actuator import kernel as kernels
 from isa_ros.core.signals import COMMAND, LOAD_PORT, LOAD_REPLY, SAMPLE
+from isa_ros.plant.thermal import THERMAL_STATE
 from isa_ros.reu.cascade import MEASURED, REU_STATE
 import numpy as np
 
@@ -41,6 +42,8 @@ class Memory(NamedTuple):
     """`COMMAND` pending for the next tick, (n,)."""
     applied: np.ndarray
     """`COMMAND` that took effect at the start of the last tick, (n,)."""
+    thermals: np.ndarray
+    """`THERMAL_STATE`, (n,)."""
 
 
 def memory_of(n: int) -> Memory:
@@ -51,7 +54,8 @@ def memory_of(n: int) -> Memory:
         constants=np.zeros(n, kernels.ACTUATOR), bodies=bodies, rates=rates,
         states=kernels.flat(bodies), slopes=kernels.flat(rates), reu=np.zeros(n, REU_STATE),
         read_outs=np.zeros(n, MEASURED), replies=np.zeros(n, LOAD_REPLY),
-        samples=np.zeros(n, SAMPLE), pending=np.zeros(n, COMMAND), applied=np.zeros(n, COMMAND))
+        samples=np.zeros(n, SAMPLE), pending=np.zeros(n, COMMAND), applied=np.zeros(n, COMMAND),
+        thermals=np.zeros(n, THERMAL_STATE))
 
 
 def row_of(memory: Memory, row: int) -> Memory:

@@ -158,6 +158,13 @@ def coil_current(y, coil):
 
 
 @kernel
+def coil_heat(y, coil):
+    """Return R i^2 in W  (E8)."""
+    current = coil_current(y, coil)
+    return coil.resistance * current * current
+
+
+@kernel
 def coil_rates(y, drive, coil, rates):
     """Write the rates of one `COIL_STATE`; ``drive``: a reference in A; explicit coil: in V."""
     if coil.kind == EXPLICIT:

@@ -5,15 +5,17 @@ State, rates and parameters are nested records of floats, one row per actuator
 (`PLANT_STATE`, `PLANT`); signs as in the components' headers.
 """
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 from isa_ros.core.kernel import kernel
 from isa_ros.core.parameter import Parameters
 from isa_ros.core.record import record
-from isa_ros.plant import chambers, coil, friction, mechanics, relief, sensors, servo_valve, spool
+from isa_ros.plant import (
+    chambers, coil, friction, mechanics, relief, sensors, servo_valve, spool, thermal)
 from isa_ros.plant.chambers import boil
 from isa_ros.plant.sensors import convert, encode
 from isa_ros.plant.spool import block_spool, stop_spool
+from isa_ros.plant.thermal import LumpedThermal, NoneThermal
 from isa_ros.plant.valve_sheets import DataSheetValve, DualGainValve, HighResponseValve
 import numpy as np
 
@@ -26,6 +28,7 @@ PLANT = np.dtype([
     ('friction', friction.FRICTION),
     ('mechanics', mechanics.MECHANICS),
     ('sensors', sensors.SENSORS),
+    ('thermal', thermal.THERMAL),
 ])
 PLANT_STATE = np.dtype([
     ('coil', coil.COIL_STATE),
@@ -49,6 +52,7 @@ class PlantSheet(Parameters):
     friction: friction.Friction
     mechanics: mechanics.Mechanics
     sensors: sensors.Sensors
+    thermal: NoneThermal | LumpedThermal = field(metadata={'absent': NoneThermal()})
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -65,19 +69,31 @@ class RotaryPlant(PlantSheet):
     drive: chambers.Vane
 
 
+def is_heated(sheet: PlantSheet) -> bool:
+    """Return whether the losses heat the actuator."""
+    return isinstance(sheet.thermal, LumpedThermal)
+
+
 def plant_record(sheet: LinearPlant | RotaryPlant) -> np.recarray:
     """Return the `PLANT` record of a sheet, shape (1,)."""
     area_a, area_b = sheet.drive.areas
+    celsius = sheet.oil.temperature_celsius
+    own_spool = spool.spool_record(sheet.spool, celsius)
+    oil = chambers.chambers_record(sheet.drive, sheet.oil)
+    seals = friction.friction_record(sheet.friction)
     return np.array([record(
         PLANT,
         coil=coil.coil_record(sheet.coil),
-        spool=spool.spool_record(sheet.spool, sheet.oil.temperature_celsius),
+        spool=own_spool,
         valve=servo_valve.valve_record(sheet.valve, area_a / area_b),
-        chambers=chambers.chambers_record(sheet.drive, sheet.oil),
+        chambers=oil,
         relief=relief.relief_record(sheet.relief),
-        friction=friction.friction_record(sheet.friction),
+        friction=seals,
         mechanics=mechanics.mechanics_record(sheet.mechanics),
-        sensors=sensors.sensors_record(sheet.sensors))], PLANT).view(np.recarray)
+        sensors=sensors.sensors_record(sheet.sensors),
+        thermal=thermal.thermal_record(
+            sheet.thermal, celsius, spool.bias_per_k(sheet.spool), oil, seals, own_spool),
+        )], PLANT).view(np.recarray)
 
 
 def rest_pressures(
@@ -152,6 +168,7 @@ def plant_rates(y, x_load, v_load, drive, p_s, p_t, plant, rates, powers):
     powers.friction = f_friction * v
     powers.damping = plant.mechanics.d_s * slip * slip - f_stop * v
     powers.work = f_sensor * v_load
+    powers.coil = coil.coil_heat(y.coil, plant.coil)
     return f_sensor, q_p, q_t + out_a + out_b
 
 

@@ -34,6 +34,7 @@ VALVE = np.dtype([
     ('lap_pa', 'f8'), ('lap_at', 'f8'), ('lap_bt', 'f8'), ('lap_pb', 'f8'),  # m
     ('has_points', 'f8'),   # 1: flow and leakage are the two curves below
     ('flow', LINES), ('leak', LINES),           # m3/s at dp_ref over m of spool
+    ('leak_factor', 'f8'),  # leakage over that of the sheet  (T3)
 ])
 
 
@@ -151,7 +152,7 @@ def valve_record(
         VALVE, k_spool=sheet.spool_gain_mm_per_ma, **metering._asdict(),
         x_max=sheet.spool_stop_mm * MILLI, delta=sheet.orifice_smoothing_kpa * 1e3,
         f_pa=lands.pa, f_at=lands.at, f_bt=lands.bt, f_pb=lands.pb,
-        is_lapped=float(any(laps.values())), **laps)
+        is_lapped=float(any(laps.values())), leak_factor=1.0, **laps)
 
 
 def largest_flow_slope(valve: np.record, span: float) -> float:
@@ -196,11 +197,11 @@ def leakage(travel, valve):
     """
     Return q_0 x_l / (x_l + u), a land's leakage at the reference drop  (V6), in m3/s.
 
-    Of a data sheet: straight lines between the leakages of V16.
+    Of a data sheet: straight lines between the leakages of V16. Both at the oil's temperature.
     """
     if valve.has_points > 0.0:
-        return y_on_lines(travel, valve.leak)
-    return valve.q_0 * valve.x_l / (valve.x_l + travel)
+        return valve.leak_factor * y_on_lines(travel, valve.leak)
+    return valve.leak_factor * (valve.q_0 * valve.x_l / (valve.x_l + travel))
 
 
 @kernel

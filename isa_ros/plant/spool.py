@@ -97,6 +97,11 @@ SPOOL = np.dtype([
 VALVE_STATE = np.dtype([('spool', 'f8'), ('velocity', 'f8'), ('acceleration', 'f8')])
 
 
+def bias_per_k(sheet: Spool | DataSheetSpool) -> float:
+    """Return b_theta of V12, in A/K on the series scale."""
+    return sheet.null_bias.temperature_ua_per_k * MICRO
+
+
 def spool_record(sheet: Spool | DataSheetSpool, temperature: float) -> np.record:
     """Return the `SPOOL` record of a sheet with oil at ``temperature`` (celsius)."""
     kind, k_loop, k_pilot = DIRECT, 0.0, 0.0
@@ -109,7 +114,7 @@ def spool_record(sheet: Spool | DataSheetSpool, temperature: float) -> np.record
     return record(
         SPOOL, kind=kind, w_n=sheet.natural_frequency_rad_per_s, zeta=sheet.damping_ratio,
         k_loop=k_loop, k_pilot=k_pilot,
-        bias=bias.current_ma * MILLI + bias.temperature_ua_per_k * MICRO * warmer,
+        bias=bias.current_ma * MILLI + bias_per_k(sheet) * warmer,
         bias_s=bias.supply_ma_per_mpa * MILLI / MPA, bias_t=bias.return_ma_per_mpa * MILLI / MPA,
         p_s_ref=bias.reference_supply_mpa * MPA, is_stuck=sheet.stuck)
 

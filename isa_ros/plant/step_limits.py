@@ -15,6 +15,7 @@ from isa_ros.errors import ParameterError
 from isa_ros.plant.coil import EXPLICIT
 from isa_ros.plant.servo_valve import flow_curve
 from isa_ros.plant.spool import DIRECT, PILOTED
+from isa_ros.plant.thermal import coldest, warm
 import numpy as np
 from numpy.typing import NDArray
 
@@ -22,6 +23,7 @@ _ROUNDED = 1e-9     # the growth of a state at rest, whose eigenvalue is 0, by r
 _FACTORS = 1e9      # a parameter is looked for between a value and that many times less or more
 _HALVINGS = 60
 _NAMED = 5          # parameters in one message
+_HOTTEST = 120.0    # celsius: beyond it seals fail, and mineral oil decays
 
 
 @dataclass(frozen=True)
@@ -77,13 +79,23 @@ def refuse_too_fast(plant: np.record, sheet: object, load: LoadSide) -> None:
         smallest change first, and their bounds.
 
     """
+    _refuse(plant, sheet, load, '')
+    if plant.thermal.is_on:
+        for celsius in (coldest(plant.thermal), _HOTTEST):
+            warmed = plant.copy()
+            warm(celsius, warmed)
+            _refuse(warmed, sheet, load, f' with oil at {celsius:g} celsius')
+
+
+def _refuse(plant: np.record, sheet: object, load: LoadSide, when: str) -> None:
+    """Refuse a `PLANT` record as `refuse_too_fast`; ``when`` ends the message."""
     if _is_followed(plant, load):
         return
     changes = [*_changes_of_plant(plant, sheet, load), *_changes_of_load(plant, load)]
     changes.sort(key=lambda change: max(change.factor, 1.0 / change.factor))
     bounds = '; or '.join(change.bound for change in changes[:_NAMED]) or (
         'moving part, force sensor, oil, friction and load are too fast together')
-    raise ParameterError(f'{bounds}, for the plant step of {PLANT_STEP_NS / 1e3:g} us')
+    raise ParameterError(f'{bounds}, for the plant step of {PLANT_STEP_NS / 1e3:g} us{when}')
 
 
 class _Change(NamedTuple):
@@ -218,6 +230,7 @@ def _actuator(
 
 def _conductances(valve: np.record, is_open: bool) -> tuple[float, float]:
     """Return at least dQ/dP of both chambers at no drop over their lands, m3/s/Pa  (V5, V7)."""
-    flow = 2.0 * valve.q_0 + (flow_curve(valve.x_max, valve) if is_open else 0.0)
+    flow = 2.0 * valve.leak_factor * valve.q_0 + (
+        flow_curve(valve.x_max, valve) if is_open else 0.0)
     per_flow = flow * valve.per_root_drop / math.sqrt(valve.delta)
     return max(valve.f_pa, valve.f_at) * per_flow, max(valve.f_pb, valve.f_bt) * per_flow

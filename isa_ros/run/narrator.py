@@ -5,6 +5,7 @@ from typing import NamedTuple, Protocol
 
 from isa_ros.config.leg_config import LegConfig
 from isa_ros.config.run_config import RunConfig
+from isa_ros.plant.plant import is_heated
 from isa_ros.run.exchange import Recorder
 from isa_ros.run.packing import BodyMessages, Messages, Names, Packer, Shown
 from isa_ros.surroundings.leg.sheet import JOINTS
@@ -124,7 +125,9 @@ def packer_of(run: RunConfig, shown: Shown) -> Packer:
     return Packer(
         Names([(actuator.name, actuator.sheet.is_rotary) for actuator in run.actuators],
               [(supply.name, isinstance(supply.sheet.return_line, VolumeReturn))
-               for supply in run.supplies], _body_messages(run)), shown)
+               for supply in run.supplies], _body_messages(run),
+              [actuator.name for actuator in run.actuators if is_heated(actuator.sheet.plant)]),
+        shown)
 
 
 def _body_messages(run: RunConfig) -> BodyMessages | None:

@@ -5,7 +5,7 @@ Every message of a run is encoded once, all in one block of memory. At each tick
 the numbers of all rows into it. Recorder and publishers receive parts of the block.
 """
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Collection, Mapping, Sequence
 from typing import NamedTuple
 
 from isa_ros.bag.packed import Layout, layout, Packed
@@ -14,12 +14,14 @@ from isa_ros.core.atmosphere import ATMOSPHERE
 from isa_ros.core.kernel import kernel
 from isa_ros.core.record import floats
 from isa_ros.core.signals import COMMAND, Records, SAMPLE
+from isa_ros.core.timebase import NS_PER_SECOND
 from isa_ros.core.topic import KEPT, Qos, Topic
 from isa_ros.run.diagnostics import energy_statuses, PERIOD_NS
 from isa_ros.surroundings.supply import SUPPLY_SAMPLE
 from msg_adapters import (
-    actuator_messages, clock, coordinator_messages, diagnostics, event, fluid_pressure)
-from msg_adapters.actuator_messages import APPLIED_TOPICS, STATE_TOPICS, TOPICS
+    actuator_messages, clock, coordinator_messages, diagnostics, event, fluid_pressure,
+    temperature)
+from msg_adapters.actuator_messages import APPLIED_TOPICS, STATE_TOPICS, TEMPERATURE, TOPICS
 from msg_adapters.applied_parameters import applied_parameters
 from msg_adapters.template import FIRST_VALUE, Prepared, Template, time_word
 import numpy as np
@@ -60,13 +62,15 @@ class Names(NamedTuple):
     supplies: Sequence[tuple[str, bool]] = ()
     """(name, publishes its return pressure) of each."""
     body: BodyMessages | None = None
+    heated: Collection[str] = ()
+    """Names of the actuators whose temperature is published."""
 
 
-def topics_of_actuator(prefix: str) -> list[Topic]:
-    """Return `TOPICS` below ``prefix`` with their qualities of service."""
+def topics_of_actuator(prefix: str, is_heated: bool) -> list[Topic]:
+    """Return `TOPICS` below ``prefix`` with their qualities of service, then `TEMPERATURE`."""
     return [
         Topic(f'{prefix}/{suffix}', type_, KEPT if (suffix, type_) in APPLIED_TOPICS else Qos())
-        for suffix, type_ in TOPICS]
+        for suffix, type_ in (*TOPICS, *([TEMPERATURE] if is_heated else []))]
 
 
 def float_columns(record: np.dtype[np.void], first: int = 0) -> dict[str, int]:
@@ -126,7 +130,8 @@ class Packer:
 
     ``topics`` are all topics with messages, sorted by name: `TOPICS` of every actuator, the
     pressure of every supply, those of the body, and with ``is_run`` the clock, the events, and
-    the diagnostics at every second and at the end.
+    the diagnostics at every second and at the end. Temperatures have a message at t = 0 and at
+    each tick that reaches a full second.
     """
 
     def __init__(self, names: Names, shown: Shown, is_run: bool = True) -> None:
@@ -136,9 +141,10 @@ class Packer:
         at = 0
         for name, is_rotary in names.actuators:
             own = self._actuator(name, is_rotary, at)
+            is_heated = name in names.heated
             at += len(_SAMPLE) + len(_PRESSURES) + len(_APPLIED)
             found += [(topic, own.get(topic.name.rpartition('/')[2]))
-                      for topic in topics_of_actuator(f'/{name}')]
+                      for topic in topics_of_actuator(f'/{name}', is_heated)]
         for supply, shows_return in names.supplies:
             for k, suffix in enumerate(_SUPPLY_PRESSURES[:1 + shows_return]):
                 topic = Topic(f'{_COORDINATOR}/{supply}_{suffix}', fluid_pressure.TYPE)
@@ -166,6 +172,7 @@ class Packer:
         self._tuned_supplies: bytes | None = None
         self._t_ns = 0
         self._diagnosed: bytes | None = None
+        self._is_full_second = False
         self._layouts: dict[bytes, Layout] = {}
         self._bind()
 
@@ -174,10 +181,11 @@ class Packer:
         places = {field: first + k for k, field in enumerate(
             (*_SAMPLE, *(f'{field}, absolute' for field in _PRESSURES),
              *(f'applied {field}' for field in _APPLIED)))}
-        return actuator_messages.prepared(
+        messages = actuator_messages.prepared(
             name, is_rotary, places,
             {field: places[f'{field}, absolute'] for field in _PRESSURES},
             {field: places[f'applied {field}'] for field in _APPLIED})
+        return {**messages, TEMPERATURE[0]: temperature.of_oil(name, places)}
 
     def _bind(self) -> None:
         """Store the rows as plain floats, a tenth of the time to pass to the kernel."""
@@ -201,6 +209,8 @@ class Packer:
         ``tuned`` are the parameters that changed at the tick's start, by row, and
         ``tuned_supplies`` those of the supplies.
         """
+        self._is_full_second = (
+            t_ns == 0 or t_ns // NS_PER_SECOND != tick_start_ns // NS_PER_SECOND)
         pack(time_word(t_ns), time_word(tick_start_ns), ATMOSPHERE,
              self._samples, self._shown.applied, self._supplies, self._body, self._words,
              self._values, self._target)
@@ -223,7 +233,7 @@ class Packer:
 
     def all_messages(self, events: Sequence[bytes] = ()) -> Packed:
         """Return all messages of the packed instant, in the order of `topics`."""
-        key = (self._kinds != 0).tobytes()
+        key = (self._kinds != 0).tobytes() + bytes([self._is_full_second])
         where = self._layouts.get(key)
         if where is None:
             where = self._layouts[key] = self._layout()
@@ -240,9 +250,11 @@ class Packer:
         return Packed.of(sorted([*packed, *extra], key=lambda message: message[0]))
 
     def _layout(self) -> Layout:
-        """Return the layout of this tick's messages: without setpoints where none was applied."""
+        """Return the layout of this tick's messages: those that it has none of are left out."""
         absent = {f'/{name}/{_SETPOINT}' for (name, _), kinds in zip(
             self._names.actuators, self._kinds) if not kinds}
+        if not self._is_full_second:
+            absent |= {f'/{name}/{TEMPERATURE[0]}' for name in self._names.heated}
         present = [(self._index[name], place) for name, place in self._place.items()
                    if name not in absent]
         present.sort()
@@ -252,11 +264,15 @@ class Packer:
                       sizes[places].tolist())
 
     def of_actuator(self, row: int) -> list[bytes | None]:
-        """Return the messages of one actuator in the order of `TOPICS`."""
+        """Return the messages of one actuator in the order of `topics_of_actuator`."""
         name = self._names.actuators[row][0]
         setpoint = self._message(f'/{name}/{_SETPOINT}') if self._kinds[row] else None
-        return [self._tuned.get(row), setpoint,
-                *(self._message(f'/{name}/{suffix}') for suffix, _ in STATE_TOPICS)]
+        messages = [self._tuned.get(row), setpoint,
+                    *(self._message(f'/{name}/{suffix}') for suffix, _ in STATE_TOPICS)]
+        if name in self._names.heated:
+            messages.append(
+                self._message(f'/{name}/{TEMPERATURE[0]}') if self._is_full_second else None)
+        return messages
 
     def has_applied(self, row: int) -> bool:
         """Return whether a command of an actuator took effect at the start of the last tick."""
@@ -274,7 +290,8 @@ class Packer:
     @property
     def surroundings(self) -> list[Topic]:
         """Return the topics of supplies and body, and the diagnostics."""
-        own = {f'/{name}/{suffix}' for name, _ in self._names.actuators for suffix, _ in TOPICS}
+        own = {f'/{name}/{suffix}' for name, _ in self._names.actuators
+               for suffix, _ in (*TOPICS, TEMPERATURE)}
         return [topic for topic in self.topics
                 if topic.name not in own and topic.name not in (clock.TOPIC[0], event.TOPIC[0])]
 

@@ -4,7 +4,8 @@ from pathlib import Path
 import re
 
 ROOT = Path(__file__).parents[2]
-NUMBER = re.compile(r'\b([VCFMSRLGE][1-9]\d?)\b')
+LETTERS = 'VCTFMSRLGE'
+NUMBER = re.compile(rf'\b([{LETTERS}][1-9]\d?)\b')
 
 
 def numbers_in_code() -> set[str]:
@@ -13,7 +14,7 @@ def numbers_in_code() -> set[str]:
     for pattern in ('plant/*.py', 'reu/*.py', 'loads/*.py', 'surroundings/**/*.py', 'core/*.py',
                     'scenario/trot*.py', 'actuator/energy.py'):
         for path in (ROOT / 'isa_ros').glob(pattern):
-            for group in re.findall(r'\(([^()]*[VCFMSRLGE][1-9][^()]*)\)', path.read_text()):
+            for group in re.findall(rf'\(([^()]*[{LETTERS}][1-9][^()]*)\)', path.read_text()):
                 found |= set(NUMBER.findall(group))
     return found
 
@@ -22,7 +23,7 @@ def numbers_in_document() -> set[str]:
     """Return the numbers the tables of the document define."""
     text = (ROOT / 'docs' / 'equations.md').read_text()
     return {row.split('|')[1].strip() for row in text.splitlines()
-            if re.match(r'\| [VCFMSRLGE]\d+ \|', row)}
+            if re.match(rf'\| [{LETTERS}]\d+ \|', row)}
 
 
 def test_every_number_in_the_code_is_documented():

@@ -32,7 +32,8 @@ _ACTUATOR = {
     'position_reference': ('references', 'position[0]'),
     'force_reference': ('references', 'position[1]'),
     'spool_reference': ('references', 'position[2]'),
-    'current_reference': ('references', 'position[3]')}
+    'current_reference': ('references', 'position[3]'),
+    'temperature': ('temperature', 'temperature')}
 """(suffix of the topic, field) by field of a `SAMPLE`."""
 _SUPPLY = ('pressure', 'return_pressure')
 _JOINTS, _GROUND = '/joint_states', '/coordinator/ground_contact'

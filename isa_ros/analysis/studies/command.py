@@ -5,7 +5,9 @@ from collections.abc import Sequence
 from dataclasses import replace
 import json
 import sys
+from typing import Any
 
+from isa_ros.analysis.studies import temperature, temperature_page
 from isa_ros.analysis.studies.measure import Benches, Result, results
 from isa_ros.analysis.studies.page import as_text, as_tree, write_page
 from isa_ros.analysis.studies.studies import only_model, STUDIES, Study, study_of
@@ -24,6 +26,9 @@ def study(options: Namespace) -> None:
         There is no such study or model, or options that do not go together.
 
     """
+    if options.name == temperature_page.NAME:
+        _temperature(options)
+        return
     chosen = _chosen(options)
     if not chosen:
         print(listing())
@@ -34,18 +39,36 @@ def study(options: Namespace) -> None:
         found = results(one, benches, counted(sys.stderr, 'values', of=one.name))
         done.append((one, found))
         print(as_text(one, found), end='\n\n' if one is not chosen[-1] else '\n', flush=True)
-    if options.json is not None:
-        options.json.write_text(
-            json.dumps([as_tree(*one) for one in done], indent=2) + '\n', encoding='utf-8')
-        print(options.json)
+    _write_json(options, [as_tree(*one) for one in done])
     if options.out is not None:
         for path in write_page(done, options.out):
             print(path)
 
 
+def _temperature(options: Namespace) -> None:
+    """Run the study of the oil's temperature, which has a rig and a page of its own."""
+    for option in ('model', 'values', 'all'):
+        if getattr(options, option):
+            raise ConfigError(f'--{option} is not used by the study {temperature_page.NAME}')
+    found = temperature.results(counted(sys.stderr, 'values', of=temperature_page.NAME))
+    print(temperature_page.as_text(found), flush=True)
+    _write_json(options, temperature_page.as_tree(found))
+    if options.out is not None:
+        for path in temperature_page.write_page(found, options.out):
+            print(path)
+
+
+def _write_json(options: Namespace, tree: Any) -> None:
+    if options.json is not None:
+        options.json.write_text(json.dumps(tree, indent=2) + '\n', encoding='utf-8')
+        print(options.json)
+
+
 def listing() -> str:
     """Return every study, a line each."""
-    return '\n'.join(aligned([(one.name, one.title) for one in STUDIES]))
+    return '\n'.join(aligned([
+        *((one.name, one.title) for one in STUDIES),
+        (temperature_page.NAME, temperature_page.TITLE)]))
 
 
 def _chosen(options: Namespace) -> tuple[Study, ...]:

@@ -21,7 +21,7 @@ def left_out() -> tuple[LeftOut, ...]:
         LeftOut(cell('table_3', 'Max current', 'ISA'),
                 'not modelled: the supply current of the board (erratum 24)'),
         LeftOut(cell('table_2', 'Operating temperature (lowest)', 'ISA v5'),
-                'the range is not enforced; temperature acts on the null bias of the valve only'),
+                'not compared: it is the range of the parameters'),
         LeftOut(cell('table_2', 'Dry weight', 'ISA v5'),
                 'not modelled: actuators have no mass of their own, the links of a leg have it'),
         LeftOut(cell('table_4', 'Position K_p', 'ISA V5'),

@@ -14,6 +14,7 @@ from isa_ros.nodes.middleware.publishers import PreparedPublishers
 from isa_ros.nodes.middleware.qos import SETPOINT
 from isa_ros.nodes.middleware.refusals import refusals
 from isa_ros.nodes.middleware.servers import open_server
+from isa_ros.plant.plant import is_heated
 from isa_ros.run.packing import Names, Packer, Shown, topics_of_actuator
 from isa_ros.surroundings.supply import SUPPLY_SAMPLE
 from msg_adapters.joint_state import TYPE as SETPOINT_TYPE
@@ -61,13 +62,14 @@ class ActuatorNode(Node):
         """The actuator itself."""
         self._tunables = TunableParameters(
             self, self.actuator, changing(config.sheet), self._parameter_overrides)
-        memory = self.actuator.memory
+        memory, heats_up = self.actuator.memory, is_heated(config.sheet.plant)
         self._packer = Packer(
-            Names([(config.name, config.sheet.is_rotary)]),
+            Names([(config.name, config.sheet.is_rotary)],
+                  heated=[config.name] if heats_up else []),
             Shown(memory.samples, memory.applied, np.zeros(0, SUPPLY_SAMPLE), None),
             is_run=False)
-        self.outlet = PreparedPublishers(self, topics_of_actuator('~'))
-        """The publishers of `TOPICS`."""
+        self.outlet = PreparedPublishers(self, topics_of_actuator('~', heats_up))
+        """The publishers of the actuator's topics."""
         setpoints = self.create_subscription(
             JointState, '~/setpoint', self._on_setpoint, SETPOINT)
         enable = self.create_service(SetBool, '~/enable', self._on_enable)
