@@ -110,7 +110,8 @@ class FakeOutlet:
         return True
 
     def publish(self, messages: Messages) -> None:
-        data = next((message for message in messages if message is not None), None)
+        # Of the surroundings the pressure of the supply; before it what was tuned.
+        data = messages[min(1, len(messages) - 1)]
         if data is not None:    # None: the diagnostics of the end
             self.log.append(self.line(data))
 
