@@ -18,6 +18,7 @@ if TYPE_CHECKING:
     from isa_ros.controller import Controller as Controller
     from isa_ros.controller import Setpoint as Setpoint
     from isa_ros.controller import State as State
+    from isa_ros.core.conditions import conditions as conditions
     from isa_ros.scripting.result import Result as Result
     from isa_ros.scripting.run import load as load
     from isa_ros.scripting.run import Run as Run
@@ -30,11 +31,11 @@ _HOMES = {
     'ActuatorGroup': 'actuator.group', 'Body': 'surroundings.body', 'Controller': 'controller',
     'Result': 'scripting.result', 'Run': 'scripting.run', 'Setpoint': 'controller',
     'Simulation': 'simulation', 'State': 'controller', 'Sweep': 'scripting.sweep',
-    'load': 'scripting.run', 'sweep': 'scripting.sweep'}
+    'conditions': 'core.conditions', 'load': 'scripting.run', 'sweep': 'scripting.sweep'}
 
 __all__ = [  # noqa: F822, the names are loaded by `__getattr__`
     'ActuatorGroup', 'Body', 'Controller', 'Result', 'Run', 'Setpoint', 'Simulation', 'State',
-    'Sweep', 'load', 'sweep']
+    'Sweep', 'conditions', 'load', 'sweep']
 
 
 def __getattr__(name: str) -> Any:

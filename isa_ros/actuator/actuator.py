@@ -154,7 +154,7 @@ class SmartActuator:
                 (reu.position, at.position), (reu.force, at.force), (reu.spool, at.spool),
                 (reu.pressure, at.pressure_a - at.pressure_b)):
             block.measured = value
-        reu.setpoint.position = reu.measured.position
+        reu.setpoint.position = reu.protection.evidence.position = reu.measured.position
         reu.setpoint.stiffness, reu.setpoint.damping = initial_gains(self._config.sheet.reu)
         reu.setpoint.is_enabled = 1.0
         kernels.write_sample(self._read_out, body.plant, reu, self._sample)

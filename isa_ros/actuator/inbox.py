@@ -9,6 +9,7 @@ import math
 
 from isa_ros.core.kernel import kernel
 from isa_ros.core.signals import HAS_ENABLE, HAS_GAINS, HAS_SETPOINT
+from isa_ros.reu.protection import feed, request_clear
 
 WITH_GAINS = HAS_SETPOINT | HAS_GAINS
 """Kinds of commands that may contain gains."""
@@ -38,7 +39,8 @@ def latch(pending, reu, applied):
     """
     Apply the pending command to a `REU_STATE` and copy it to ``applied``; without one, kinds is 0.
 
-    An actuator that is enabled again holds its last measured position.
+    An actuator that is enabled again holds its last measured position; trips whose condition has
+    ended are cleared.
     """
     kinds, setpoint = pending.kinds, reu.setpoint
     applied.kinds = kinds
@@ -50,10 +52,13 @@ def latch(pending, reu, applied):
             setpoint.velocity = 0.0
             setpoint.effort = 0.0
         setpoint.is_enabled = float(pending.is_enabled)
+        if pending.is_enabled:
+            request_clear(reu.protection)
     if kinds & HAS_SETPOINT:
         setpoint.position = pending.position
         setpoint.velocity = pending.velocity
         setpoint.effort = pending.effort
+        feed(reu.protection)
     if kinds & WITH_GAINS:
         if not math.isnan(pending.stiffness):
             setpoint.stiffness = pending.stiffness

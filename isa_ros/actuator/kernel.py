@@ -19,6 +19,7 @@ from isa_ros.plant.energy import ENERGIES
 from isa_ros.plant.plant import PLANT, plant_rates, PLANT_STATE, read_sensors, settle
 from isa_ros.plant.thermal import warm
 from isa_ros.reu.cascade import cascade_step, is_due, REU
+from isa_ros.reu.protection import protect, setpoint_in_force
 import numpy as np
 
 TOTALS = np.dtype([
@@ -126,19 +127,27 @@ def write_sample(measured, plant, reu, sample):
     sample.spool = measured.spool
     sample.spool_velocity = plant.valve.velocity
     sample.current = measured.current
-    sample.position_reference = reu.setpoint.position
+    sample.position_reference = setpoint_in_force(reu).position
     sample.force_reference = reu.force_reference
     sample.spool_reference = reu.spool_reference
     sample.current_reference = reu.current_reference
+    sample.warnings = float(reu.protection.warnings)
+    sample.trips = float(reu.protection.trips)
 
 
 @kernel
-def loops_and_plant(step, tau, port, actuator, bodies, rates, y, k, reu_state):
-    """Run the loops that are due at plant step ``step``, then the plant over that step."""
+def loops_and_plant(step, tau, port, temperature, actuator, bodies, rates, y, k, reu_state):
+    """
+    Run the loops that are due at plant step ``step``, then the plant over that step.
+
+    ``temperature`` is that of the oil, celsius.
+    """
     body, reu = bodies[0], actuator.reu
     if is_due(step, reu.current_steps, reu.offset_steps):
         read_sensors(body.plant, body.load.position, body.load.velocity,
                      actuator.plant, reu_state.measured)
+        if reu.protection.is_on and reu.is_frozen == 0.0:
+            protect(step, port.supply_pressure, temperature, reu.protection, reu_state)
         cascade_step(step, reu, reu_state)
     if step == actuator.load.rope.release_step:
         body.load.weight.is_released = 1.0
@@ -194,7 +203,7 @@ def tick_row(first_step, steps, port, actuator, bodies, rates, y, k, reu_state, 
     for window in range(FORCE_WINDOWS):
         body.totals.impulse = 0.0
         for i in range(window * window_steps, (window + 1) * window_steps):
-            loops_and_plant(first_step + i, i * PLANT_STEP, port, actuator,
+            loops_and_plant(first_step + i, i * PLANT_STEP, port, thermal.oil, actuator,
                             bodies, rates, y, k, reu_state)
         reply.mean_forces[window] = body.totals.impulse / (window_steps * PLANT_STEP)
     reply.force = read_sensors(

@@ -3,6 +3,7 @@
 from dataclasses import dataclass
 
 from isa_ros.actuator.kernel import ACTUATOR
+from isa_ros.actuator.ratings import evidence_of, ratings_of
 from isa_ros.core.changeable import sound
 from isa_ros.core.parameter import choice, Parameters
 from isa_ros.core.record import record
@@ -16,8 +17,9 @@ from isa_ros.reu.block import Pid
 from isa_ros.reu.cascade import reu_record
 from isa_ros.reu.feedback_linearisation import LINEARISED
 from isa_ros.reu.lead_lag import LeadLag
+from isa_ros.reu.protection import protection_record
 from isa_ros.reu.schedule import POINTS
-from isa_ros.reu.wiring import Held, Off, refuse_nonsense, Reu, valve_block
+from isa_ros.reu.wiring import Held, loop_steps, Off, refuse_nonsense, Reu, valve_block
 import numpy as np
 
 _ROUNDED = 1e-3  # of a limit: a data sheet prints three digits
@@ -144,6 +146,11 @@ def actuator_record(sheet: ActuatorSheet, offset_steps: int) -> np.ndarray:
         sheet.reu, offset_steps, known[0].chambers.stroke, force_stiffness(known[0]),
         known_model(known[0], output_per_spool(sheet)),
         known[0].valve.k_spool, known[0].coil.parallel)
+    steps = loop_steps(sheet.reu)
+    reu['protection'] = protection_record(
+        sheet.reu.protection, ratings_of(known[0]),
+        evidence_of(known[0], sheet.reu.speed.rate_hz, steps['speed'], offset_steps),
+        steps['current'])
     rows = np.zeros(1, ACTUATOR)
     rows['plant'], rows['reu'] = plant_record(sheet.plant), reu
     return rows

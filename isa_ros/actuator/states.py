@@ -8,6 +8,7 @@ references that are not reported.
 from isa_ros.core.kernel import kernel
 from isa_ros.plant.coil import coil_current
 from isa_ros.reu.cascade import OFF
+from isa_ros.reu.protection import setpoint_in_force
 import numpy as np
 
 STATES = np.dtype([
@@ -37,7 +38,7 @@ def pressure_reference(reu, state):
         return state.force.output
     if reu.position_kind != OFF:
         return state.position.output
-    return state.setpoint.effort
+    return setpoint_in_force(state).effort
 
 
 @kernel
@@ -52,7 +53,7 @@ def write_states(body, force, actuator, reu_state, row):
     row.pressure_b = plant.chambers.p_b
     row.spool = plant.valve.spool
     row.current = coil_current(plant.coil, actuator.plant.coil)
-    row.position_reference = reu_state.setpoint.position
+    row.position_reference = setpoint_in_force(reu_state).position
     row.force_reference = reu_state.force_reference
     row.pressure_reference = pressure_reference(actuator.reu, reu_state)
     row.spool_reference = reu_state.spool_reference

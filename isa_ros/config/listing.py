@@ -15,7 +15,6 @@ from isa_ros.loads.sheets import LocalLoad
 from isa_ros.surroundings.leg.sheet import LegSheet
 from isa_ros.text.table import aligned
 
-_SOUND = 'assumed, no fault'  # source of a fault that a sheet leaves out
 _SYMBOLS = {'gt': '>', 'ge': '>=', 'lt': '<', 'le': '<='}
 
 
@@ -88,8 +87,7 @@ def _rows(parameters: Parameters, source_of: Mapping[str, str], prefix: str) -> 
             yield from _rows(value, source_of, f'{path}.')
         else:
             yield Row(path, _value(value), f.metadata.get('unit', ''), _range(f.metadata),
-                      source_of.get(path, _SOUND if 'is_fault' in f.metadata else ''),
-                      f.metadata['doc'])
+                      source_of.get(path, f.metadata.get('source', '')), f.metadata['doc'])
 
 
 def _kind_row(path: str, value: Parameters, union: Any, source_of: Mapping[str, str]) -> Row:

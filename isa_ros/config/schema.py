@@ -139,7 +139,7 @@ def _parameter_differences(
         elif 'absent' in f.metadata:
             meant = f.metadata['absent']
             if isinstance(meant, Parameters):
-                meant = as_tree(meant, hints[f.name])['kind']
+                meant = as_tree(meant, hints[f.name]).get('kind', 'its default')
             yield KeyDifference(
                 f'{place / f.name} is missing in the bag, {meant} is meant', False)
         else:

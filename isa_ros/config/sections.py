@@ -218,12 +218,16 @@ def build(cls: type[P], section: Section, place: Place) -> P:
 
 
 def _last_written(section: Section, place: Place) -> Place:
-    """Return the place of a section in the run file, if that has one of its values."""
+    """Return the place of a section in the run file, if that has a value of it or below it."""
     for key, entry in section.items():
         if isinstance(entry, Entry):
             file, _, path = entry.where.partition(': ')
             if entry.source == file and path.endswith(f'.{key}'):  # as `written` has it
                 return Place(file, path.removesuffix(f'.{key}'))
+        else:
+            below = _last_written(entry, place / key)
+            if below != place / key:
+                return Place(below.file, below.key.removesuffix(f'.{key}'))
     return place
 
 

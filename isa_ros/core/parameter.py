@@ -3,7 +3,7 @@
 from collections.abc import Callable
 from dataclasses import dataclass, field, fields
 import math
-from typing import Any
+from typing import Any, TypeVar
 
 from isa_ros.errors import ParameterError
 
@@ -16,27 +16,21 @@ _RELATIONS: dict[str, tuple[str, Callable[[float, float], bool]]] = {
 
 
 def parameter(
-        doc: str, unit: str, *, absent: float | None = None, changeable: bool = False,
-        **bounds: float) -> Any:
+        doc: str, unit: str, *, absent: float | None = None, source: str = '',
+        changeable: bool = False, **bounds: float) -> Any:
     """
     Declare one number; ``bounds`` are any of ``gt``, ``ge``, ``lt``, ``le``.
 
-    ``absent`` is the value for a resolved configuration older than the parameter.
-    ``changeable``: it may change during a run, as a fault (`isa_ros.core.changeable`).
+    ``absent`` is the value where a file has none, such as a resolved configuration older than the
+    parameter; ``source`` is that of this value. ``changeable``: it may change during a run, as a
+    fault (`isa_ros.core.changeable`).
     """
-    declared = _declaration(doc, unit, bounds)
+    declared = _declaration(doc, unit, bounds) | {'source': source}
     if absent is not None:
         declared['absent'] = absent
     if changeable:
         declared['changeable'] = True
     return field(metadata=declared)
-
-
-def _declaration(doc: str, unit: str, bounds: dict[str, float]) -> dict[str, Any]:
-    unknown = set(bounds) - set(_RELATIONS)
-    if unknown:
-        raise TypeError(f'unknown bounds {sorted(unknown)}; use {sorted(_RELATIONS)}')
-    return {'doc': doc, 'unit': unit, 'bounds': bounds}
 
 
 def fault(doc: str, unit: str, *, is_whole: bool = False, **bounds: float) -> Any:
@@ -47,7 +41,14 @@ def fault(doc: str, unit: str, *, is_whole: bool = False, **bounds: float) -> An
     """
     whole = {'is_whole': True} if is_whole else {}
     return field(default=0.0, metadata=_declaration(doc, unit, bounds) | whole | {
-        'absent': 0.0, 'changeable': True, 'is_fault': True})
+        'absent': 0.0, 'source': 'assumed, no fault', 'changeable': True, 'is_fault': True})
+
+
+def _declaration(doc: str, unit: str, bounds: dict[str, float]) -> dict[str, Any]:
+    unknown = set(bounds) - set(_RELATIONS)
+    if unknown:
+        raise TypeError(f'unknown bounds {sorted(unknown)}; use {sorted(_RELATIONS)}')
+    return {'doc': doc, 'unit': unit, 'bounds': bounds}
 
 
 def tunable(doc: str, unit: str, *, named: str | None = None, **bounds: float) -> Any:
@@ -64,9 +65,10 @@ def numbers(doc: str, unit: str, *, least: int, most: int, **bounds: float) -> A
     return field(metadata=_declaration(doc, unit, bounds) | {'length': (least, most)})
 
 
-def choice(doc: str, *names: str) -> Any:
-    """Declare one name out of a fixed list."""
-    return field(metadata={'doc': doc, 'unit': '', 'names': names})
+def choice(doc: str, *names: str, absent: str | None = None, source: str = '') -> Any:
+    """Declare one name out of a fixed list; ``absent`` and ``source`` as in `parameter`."""
+    metadata = {'doc': doc, 'unit': '', 'names': names, 'source': source}
+    return field(metadata=metadata if absent is None else metadata | {'absent': absent})
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -89,6 +91,20 @@ class Parameters:
             value = getattr(self, f.name)
             if not isinstance(value, Parameters):
                 check(f'{type(self).__name__}.{f.name}', value, f.metadata)
+
+
+_P = TypeVar('_P', bound=Parameters)
+
+
+def defaults(cls: type[_P]) -> _P:
+    """Return a set of which every value is that of ``absent``."""
+    return cls(**{f.name: f.metadata['absent'] for f in fields(cls)})
+
+
+def section(cls: type[Parameters]) -> Any:
+    """Declare a nested set that a file may leave out; it then has its `defaults`."""
+    absent = defaults(cls)
+    return field(default=absent, metadata={'absent': absent})
 
 
 def check(where: str, value: Any, declared: Any) -> None:

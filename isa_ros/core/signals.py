@@ -67,6 +67,8 @@ SAMPLE = np.dtype([
     ('work', '<f8'),                # done on the load, J
     ('stored_energy', '<f8'),       # in oil, moving part and force sensor, more than at t = 0, J
     ('temperature', '<f8'),         # of the oil in the actuator, celsius
+    ('warnings', '<f8'),            # bit set of conditions as a whole number (isa_ros.conditions)
+    ('trips', '<f8'),               # likewise
 ])
 """Values one actuator reports at the end of a tick."""
 
@@ -78,7 +80,7 @@ SAMPLE_UNITS = {
     'supply_flow': 'm3/s', 'power': 'W', 'peak_power': 'W', 'hydraulic_energy': 'J',
     'leakage_energy': 'J', 'throttling_energy': 'J', 'cross_port_energy': 'J',
     'relief_energy': 'J', 'friction_energy': 'J', 'damping_energy': 'J', 'work': 'J',
-    'stored_energy': 'J', 'temperature': 'celsius'}
+    'stored_energy': 'J', 'temperature': 'celsius', 'warnings': 'bits', 'trips': 'bits'}
 """Unit of each field of a `SAMPLE`: of a linear actuator | of a rotary one."""
 
 LOAD_PORT = np.dtype([

@@ -15,6 +15,8 @@ from isa_ros.reu.feedback_linearisation import (
     FeedbackLinearisation, LINEARISATION, linearisation_record, linearising_step)
 from isa_ros.reu.impedance import force_reference, IMPEDANCE, Impedance, impedance_record, SETPOINT
 from isa_ros.reu.lead_lag import LEAD_LAG, lead_lag_record, LEAD_LAG_STATE, lead_lag_step, LeadLag
+from isa_ros.reu.protection import (
+    is_inhibited, PROTECTION, PROTECTION_STATE, setpoint_in_force)
 from isa_ros.reu.schedule import schedule_table
 from isa_ros.reu.speed import SPEED, speed_record, SPEED_STATE, speed_step
 from isa_ros.reu.wiring import delay_steps, Held, loop_steps, Off, Reu
@@ -43,6 +45,7 @@ REU = np.dtype([
     ('k_spool', 'f8'),    # m of spool per series-scale A
     ('parallel', 'f8'),   # amplifier A per series-scale A
     ('is_frozen', 'f8'),
+    ('protection', PROTECTION),
 ])
 MEASURED = np.dtype([
     ('position', 'f8'), ('force', 'f8'), ('pressure_a', 'f8'), ('pressure_b', 'f8'),
@@ -63,6 +66,7 @@ REU_STATE = np.dtype([
     ('current_reference', 'f8'),   # amplifier A
     ('drive', 'f8'),               # output of the blocks: A, or V
     ('amplifier', 'f8'),           # the drive after the computational delay
+    ('protection', PROTECTION_STATE),
 ])
 
 
@@ -115,15 +119,16 @@ def is_due(step, period_steps, offset_steps):
 @kernel
 def position_reference_inwards(step, reu, state):
     """Run the position block if it is on and due; return the next block's reference."""
+    setpoint = setpoint_in_force(state)
     if reu.position_kind == OFF:
-        return state.setpoint.effort
+        return setpoint.effort
     if is_due(step, reu.position_steps, reu.offset_steps):
         measured, velocity = state.measured.position, state.speed.velocity
         if reu.position_kind == IMPEDES:
             state.position.output = force_reference(
-                state.setpoint, measured, velocity, reu.impedance)
+                setpoint, measured, velocity, reu.impedance)
         else:
-            block_step(state.setpoint.position, measured, state.setpoint.velocity, measured,
+            block_step(setpoint.position, measured, setpoint.velocity, measured,
                        reu.stroke, reu.position, state.position)
     return state.position.output
 
@@ -183,7 +188,7 @@ def cascade_step(step, reu, state):
         speed_step(state.measured.position, reu.speed, state.speed)
     reference = position_reference_inwards(step, reu, state)
     reference = force_reference_inwards(step, reference, reu, state)
-    if state.setpoint.is_enabled == 0.0:
+    if state.setpoint.is_enabled == 0.0 or is_inhibited(reference, state.protection):
         rest(state.position)
         rest(state.force)
         rest(state.pressure)

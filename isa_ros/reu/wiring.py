@@ -10,7 +10,7 @@ a block have the unit of its output: switching the next block inwards on or off 
 
 from dataclasses import dataclass
 
-from isa_ros.core.parameter import fault, parameter, Parameters
+from isa_ros.core.parameter import fault, parameter, Parameters, section
 from isa_ros.core.timebase import NS_PER_SECOND, PLANT_STEP_NS, steps_in
 from isa_ros.errors import ConfigError
 from isa_ros.reu.block import Pid
@@ -18,6 +18,7 @@ from isa_ros.reu.compensation import DualGain
 from isa_ros.reu.feedback_linearisation import FeedbackLinearisation
 from isa_ros.reu.impedance import Impedance
 from isa_ros.reu.lead_lag import LeadLag
+from isa_ros.reu.protection_sheet import Protection
 from isa_ros.reu.speed import SpeedEstimate
 
 BLOCKS = 4  # in the standard firmware (paper section 3)
@@ -50,6 +51,7 @@ class Reu(Parameters):
         'from an instant of the loops to its output at the amplifier', 'us', ge=0.0, le=1e3)
     frozen: float = fault(
         '1: the REU has stopped, and its outputs hold', '1', is_whole=True, ge=0.0, le=1.0)
+    protection: Protection = section(Protection)
 
 
 VARIABLES = ('position', 'force', 'pressure', 'spool', 'current')

@@ -15,6 +15,7 @@ from isa_ros.config.fault_catalogue import ACTUATOR, fault_catalogue, named_faul
 from isa_ros.config.sections import Place
 from isa_ros.config.yaml_text import Tree
 from isa_ros.core import signals
+from isa_ros.core.conditions import BITS
 from isa_ros.core.signals import COMMAND, HAS_ENABLE, SAMPLE, SAMPLE_UNITS
 from isa_ros.core.units import of_coordinate
 from isa_ros.errors import SimulationDiverged
@@ -32,8 +33,9 @@ SOUND = 40.0
 stick and slip, two runs differ by more than `VISIBLE` for seconds."""
 MEASURED = ('position', 'force', 'pressure_a', 'pressure_b', 'spool', 'current')
 """Signals of an actuator that its REU measures."""
-DEVICE = tuple(name for name in ('warnings', 'trips', 'device_state')
-               if name in (SAMPLE.names or ()))
+_BIT_SETS = {'warnings': 'warning', 'trips': 'trip'}
+_STATE = 'device_state'
+DEVICE = tuple(name for name in (*_BIT_SETS, _STATE) if name in (SAMPLE.names or ()))
 """What an actuator says about itself."""
 _CLEARS = int(getattr(signals, 'HAS_CLEAR_FAULT', 0))
 _SUPPLY = 'supply pressure'
@@ -51,12 +53,14 @@ class Visible(NamedTuple):
 
 
 class Noticed(NamedTuple):
-    """A value of the device that differs from that of the sound run."""
+    """What the device reports of a fault, and not in the sound run."""
 
-    field: str
-    value: float
-    """The first such value."""
+    kind: str
+    """``warning``, ``trip`` or ``state``."""
+    name: str
+    """Of the condition; of a state its number."""
     after_s: float
+    """From the begin of the fault to the first sample with it."""
 
 
 @dataclass(frozen=True)
@@ -129,12 +133,20 @@ def _noticed(
         faulty: Mapping[str, NDArray[np.float64]], sound: Mapping[str, NDArray[np.float64]],
         begin: int) -> list[Noticed]:
     found = []
-    for name in DEVICE:
-        differs = np.flatnonzero(faulty[name] != sound[name])
-        if len(differs):
-            first = int(differs[0])
-            found.append(Noticed(name, float(faulty[name][first]), (first - begin) * STEP_S))
-    return found
+    for field, kind in _BIT_SETS.items():
+        if field not in DEVICE:
+            continue
+        new = faulty[field].astype(np.int64) & ~sound[field].astype(np.int64)
+        for name, bit in BITS.items():
+            ticks = np.flatnonzero(new >> bit & 1)
+            if len(ticks):
+                found.append(Noticed(kind, name, (int(ticks[0]) - begin) * STEP_S))
+    if _STATE in DEVICE:
+        ticks = np.flatnonzero(faulty[_STATE] != sound[_STATE])
+        if len(ticks):
+            found.append(Noticed(
+                'state', f'{faulty[_STATE][ticks[0]]:g}', (int(ticks[0]) - begin) * STEP_S))
+    return sorted(found, key=lambda own: own.after_s)
 
 
 def _resolution(rig: Run) -> dict[str, float]:

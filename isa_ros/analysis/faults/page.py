@@ -4,7 +4,7 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
-from isa_ros.analysis.faults.measure import DEVICE, Noticed, Outcome, SOUND, VISIBLE, Visible
+from isa_ros.analysis.faults.measure import Noticed, Outcome, SOUND, VISIBLE, Visible
 from isa_ros.analysis.faults.rig import BEGIN_S, END_S
 from isa_ros.config.fault_catalogue import fault_catalogue, NamedFault
 from isa_ros.text.json_file import write_tree
@@ -30,7 +30,7 @@ A fault is seen in a signal that the REU measures, or in the supply's pressure, 
 from that of the same run without the fault by more than {VISIBLE:g} steps of its converter. The
 largest differences are those of the first three such signals while the fault lasts. A device is
 sound again once all signals are within {SOUND:g} steps of that run, 1 % of their ranges. *Device*
-has what the actuator itself reports: warnings and trips as bit sets, its state as a number."""
+has what the actuator itself reports, its warnings, trips and state, and when."""
 
 
 def listing() -> str:
@@ -60,7 +60,7 @@ def _cells(own: Outcome) -> tuple[str, ...]:
     return (own.fault.name, _unseen(own.fault) if first is None else first.signal,
             '' if first is None else f'{first.after_s * 1e3:g}',
             ', '.join(_difference(one) for one in _largest(own)),
-            ', '.join(_note(one) for one in own.noticed) or ('nothing' if DEVICE else '-'),
+            ', '.join(_note(one) for one in own.noticed) or 'nothing',
             'not in this run' if own.recovered_s is None else f'{own.recovered_s * 1e3:g}')
 
 
@@ -79,7 +79,7 @@ def _difference(one: Visible) -> str:
 
 
 def _note(one: Noticed) -> str:
-    return f'{one.field} = {one.value:g} after {one.after_s * 1e3:g} ms'
+    return f'{one.kind} {one.name} after {one.after_s * 1e3:g} ms'
 
 
 def write_json(found: Sequence[Outcome], path: Path) -> None:

@@ -1,0 +1,276 @@
+"""
+The REU's protection: measures every condition, judges it, and reacts.
+
+A condition counts once its quantity has been beyond a level at as many conversions in a row as
+its delay has; it ends when the quantity is back by the hysteresis. A trip whose reaction stops
+the actuator (quick_stop, disable) stays after its condition has ended, until it is cleared.
+Inputs are what the sensors read, not the exact states.
+"""
+
+import math
+from typing import NamedTuple
+
+from isa_ros.core.kernel import kernel
+from isa_ros.core.record import record
+from isa_ros.core.timebase import PLANT_STEP
+from isa_ros.core.units import MILLI
+from isa_ros.core.conditions import BITS, CONDITIONS, REACTIONS
+from isa_ros.reu.impedance import SETPOINT
+from isa_ros.reu.plausibility import (
+    acceleration_step, EVIDENCE, EVIDENCE_STATE, jump_speed, unexplained_force)
+from isa_ros.reu.protection_sheet import levels_of, Protection
+import numpy as np
+
+N = len(CONDITIONS)
+NONE, WARN, LIMIT, HOLD, DAMP, QUICK_STOP, DISABLE = range(len(REACTIONS))
+SETPOINT_TIMEOUT = BITS['setpoint_timeout']
+END_OF_STROKE = BITS['end_of_stroke']
+OVERSPEED = BITS['overspeed']
+OVERLOAD = BITS['overload']
+OVERPRESSURE = BITS['overpressure']
+OVERCURRENT = BITS['overcurrent']
+OVERTEMPERATURE = BITS['overtemperature']
+SUPPLY_LOW = BITS['supply_low']
+RELIEF_OPEN = BITS['relief_open']
+LOAD_CELL_IMPLAUSIBLE = BITS['load_cell_implausible']
+ENCODER_JUMP = BITS['encoder_jump']
+EXTENDING, RETRACTING = 1, 2  # bits of the directions that are inhibited
+
+PROTECTION = np.dtype([
+    ('is_on', 'i8'),
+    ('period', 'f8'),               # of the conversions, s
+    ('stroke', 'f8'),
+    ('warning', 'f8', (N,)),        # SI; levels of what is below them have their sign changed,
+    ('trip', 'f8', (N,)),           # as the quantity has; infinite where off
+    ('warning_end', 'f8', (N,)),    # where the condition ends
+    ('trip_end', 'f8', (N,)),
+    ('quiet', 'f8', (N,)),          # up to here nothing begins and nothing is left
+    ('sign', 'f8', (N,)),
+    ('delay', 'i8', (N,)),          # conversions
+    ('reaction', 'i8', (N,)),
+    ('evidence', EVIDENCE),
+])
+PROTECTION_STATE = np.dtype([
+    ('warnings', 'i8'), ('trips', 'i8'),    # bit sets of conditions
+    ('reaction', 'i8'),                     # the strongest of the trips
+    ('first', 'i8'),                        # bit set: the first of the present trips
+    ('present', 'i8'),                      # bit set: trips whose condition has not ended
+    ('clears', 'i8'),                       # 1: trips whose condition has ended are to be cleared
+    ('inhibited', 'i8'),                    # EXTENDING, RETRACTING
+    ('busy', 'i8'),                         # bit set: is counted, or has a bit
+    ('setpoint_age', 'i8'),                 # conversions + 1 since the last one; 0: none yet
+    ('warning_count', 'i8', (N,)),          # conversions in a row beyond the level
+    ('trip_count', 'i8', (N,)),
+    ('warning_since', 'i8', (N,)),          # plant step at which the bit was set last
+    ('trip_since', 'i8', (N,)),
+    ('values', 'f8', (N,)),                 # quantities at the last conversion, SI
+    ('trip_values', 'f8', (N,)),            # quantities when the trip was set, SI
+    ('setpoint', SETPOINT),                 # in force instead of the commanded one
+    ('evidence', EVIDENCE_STATE),
+])
+
+
+class Ratings(NamedTuple):
+    """What the levels are parts of, SI."""
+
+    stroke: float
+    speed: float
+    """At full opening with the opening pressure of the relief valves over one land."""
+    force_range: float
+    pressure_range: float
+    current_range: float
+    opening_pressure: float
+
+    def of(self, name: str) -> float:
+        """Return the rating of a condition, 1 for levels in the unit of its quantity."""
+        return {
+            'end_of_stroke': self.stroke, 'overspeed': self.speed, 'encoder_jump': self.speed,
+            'overload': self.force_range, 'load_cell_implausible': self.force_range,
+            'overpressure': self.pressure_range, 'overcurrent': self.current_range,
+            'supply_low': self.opening_pressure, 'relief_open': self.opening_pressure,
+        }.get(name, 1.0)
+
+
+def protection_record(
+        sheet: Protection, ratings: Ratings, evidence: np.record, conversion_steps: int
+        ) -> np.record:
+    """Return the `PROTECTION` record of a sheet; a conversion is every ``conversion_steps``."""
+    period = conversion_steps * PLANT_STEP
+    levels = {name: np.full(N, math.inf) for name in (
+        'warning', 'trip', 'warning_end', 'trip_end')}
+    delay, reaction = np.zeros(N, np.int64), np.zeros(N, np.int64)
+    sign = np.array([1.0 if condition.is_above else -1.0 for condition in CONDITIONS])
+
+    def set_level(which: str, bit: int, level: float) -> None:
+        back = level * (1.0 - sign[bit] * sheet.hysteresis)
+        levels[which][bit], levels[f'{which}_end'][bit] = sign[bit] * level, sign[bit] * back
+
+    for name, own in levels_of(sheet).items():
+        bit, rating = BITS[name], ratings.of(name)
+        reaction[bit] = REACTIONS.index(own.reaction)
+        delay[bit] = math.ceil(round(own.delay_ms * MILLI / period, _DIGITS))
+        for which, level in (('warning', own.warning), ('trip', own.trip)):
+            if level and own.reaction != 'none':
+                set_level(which, bit, level * rating)
+    if sheet.setpoint_timeout_ms:
+        conversions = math.ceil(round(sheet.setpoint_timeout_ms * MILLI / period, _DIGITS))
+        set_level('trip', SETPOINT_TIMEOUT, conversions * period)
+        reaction[SETPOINT_TIMEOUT] = REACTIONS.index(sheet.setpoint_timeout_reaction)
+    quiet = np.minimum(levels['warning'], levels['trip'])
+    return record(
+        PROTECTION, is_on=int(sheet.switch == 'on' and np.isfinite(quiet).any()), period=period,
+        stroke=ratings.stroke, **levels, quiet=quiet, sign=sign,
+        delay=delay, reaction=reaction, evidence=evidence)
+
+
+_DIGITS = 9  # a delay of 10 ms is 100 periods of 0.1 ms, not 101
+
+
+@kernel
+def measure(supply_pressure, temperature, velocity, measured, setpoint, protection, own):
+    """Write the quantity of every condition at one conversion into ``own.values``, SI."""
+    values = own.values
+    highest = max(measured.pressure_a, measured.pressure_b)
+    if own.setpoint_age > 0:
+        if setpoint.is_enabled == 0.0:
+            own.setpoint_age = 1
+        values[SETPOINT_TIMEOUT] = (own.setpoint_age - 1) * protection.period
+        own.setpoint_age += 1
+    values[END_OF_STROKE] = min(measured.position, protection.stroke - measured.position)
+    values[OVERSPEED] = abs(velocity)
+    values[OVERLOAD] = abs(measured.force)
+    values[OVERPRESSURE] = highest
+    values[OVERCURRENT] = abs(measured.current)
+    values[OVERTEMPERATURE] = temperature
+    values[SUPPLY_LOW] = supply_pressure
+    values[RELIEF_OPEN] = highest
+    values[LOAD_CELL_IMPLAUSIBLE] = unexplained_force(
+        measured, velocity, protection.stroke, protection.evidence, own.evidence)
+    values[ENCODER_JUMP] = jump_speed(measured.position, protection.period, own.evidence)
+
+
+@kernel
+def is_met(excess, level, end, was_met, count, delay):
+    """
+    Return whether a condition counts at this conversion.
+
+    ``count`` are the conversions in a row, this one included, at which ``excess`` was beyond
+    ``level``; a condition that counted goes on until ``excess`` is not beyond ``end``.
+    """
+    if was_met:
+        return excess > end
+    return excess > level and count > delay
+
+
+@kernel
+def judge_one(k, step, protection, own):
+    """Update count and bits of condition ``k`` at plant step ``step``."""
+    bit, excess = 1 << k, protection.sign[k] * own.values[k]
+    own.warning_count[k] = own.warning_count[k] + 1 if excess > protection.warning[k] else 0
+    own.trip_count[k] = own.trip_count[k] + 1 if excess > protection.trip[k] else 0
+    was_warned, was_met, was_tripped = (
+        own.warnings & bit != 0, own.present & bit != 0, own.trips & bit != 0)
+    warns = is_met(excess, protection.warning[k], protection.warning_end[k], was_warned,
+                   own.warning_count[k], protection.delay[k])
+    met = is_met(excess, protection.trip[k], protection.trip_end[k], was_met,
+                 own.trip_count[k], protection.delay[k])
+    trips = met or was_tripped and own.clears == 0 and protection.reaction[k] >= QUICK_STOP
+    if warns and not was_warned:
+        own.warning_since[k] = step
+    if trips and not was_tripped:
+        own.trip_since[k], own.trip_values[k] = step, own.values[k]
+    own.warnings = own.warnings | bit if warns else own.warnings & ~bit
+    own.present = own.present | bit if met else own.present & ~bit
+    own.trips = own.trips | bit if trips else own.trips & ~bit
+    is_busy = warns or trips or own.warning_count[k] > 0 or own.trip_count[k] > 0
+    own.busy = own.busy | bit if is_busy else own.busy & ~bit
+
+
+@kernel
+def judge(step, protection, own):
+    """Update the bits of all conditions from ``own.values``."""
+    for k in range(N):
+        if protection.sign[k] * own.values[k] > protection.quiet[k] or own.busy >> k & 1:
+            judge_one(k, step, protection, own)
+    own.clears = 0
+    if own.trips & own.first == 0:  # the cause is cleared: of several that are left, the lowest bit
+        own.first = own.trips & -own.trips
+
+
+@kernel
+def worsening(k, velocity, measured, stroke):
+    """Return the direction in which a command of the valve makes condition ``k`` worse."""
+    if k == END_OF_STROKE:
+        extends = measured.position > 0.5 * stroke
+    elif k == OVERSPEED:
+        extends = velocity > 0.0
+    elif k == OVERLOAD:
+        extends = measured.force > 0.0
+    else:
+        extends = measured.pressure_a > measured.pressure_b
+    return EXTENDING if extends else RETRACTING
+
+
+@kernel
+def react(protection, state):
+    """
+    Take the strongest reaction of the trips of a `REU_STATE`.
+
+    hold and quick_stop: the position measured at the trip is the setpoint. damp: an impedance
+    without stiffness. disable: the valve is commanded to null.
+    """
+    own, before = state.protection, state.protection.reaction
+    own.reaction, own.inhibited = NONE, 0
+    for k in range(N):
+        if own.trips >> k & 1:
+            own.reaction = max(own.reaction, protection.reaction[k])
+            if protection.reaction[k] == LIMIT:
+                own.inhibited |= worsening(
+                    k, state.speed.velocity, state.measured, protection.stroke)
+    if own.reaction == DISABLE:
+        state.setpoint.is_enabled = 0.0
+    if HOLD <= own.reaction <= QUICK_STOP:
+        if own.reaction == DAMP or not HOLD <= before <= QUICK_STOP:
+            own.setpoint.position = state.measured.position
+        own.setpoint.stiffness = 0.0 if own.reaction == DAMP else state.setpoint.stiffness
+        own.setpoint.damping = state.setpoint.damping
+        own.setpoint.is_enabled = state.setpoint.is_enabled
+
+
+@kernel
+def protect(step, supply_pressure, temperature, protection, state):
+    """Measure, judge and react at one conversion; ``state`` is a `REU_STATE`."""
+    own = state.protection
+    acceleration_step(step, state.speed.velocity, protection.evidence, own.evidence)
+    measure(supply_pressure, temperature, state.speed.velocity, state.measured, state.setpoint,
+            protection, own)
+    judge(step, protection, own)
+    if own.trips != 0 or own.reaction != NONE:
+        react(protection, state)
+
+
+@kernel
+def setpoint_in_force(state):
+    """Return the setpoint that the blocks of a `REU_STATE` follow: commanded, or of a reaction."""
+    if HOLD <= state.protection.reaction <= QUICK_STOP:
+        return state.protection.setpoint
+    return state.setpoint
+
+
+@kernel
+def is_inhibited(command, own):
+    """Return whether a command of the valve is in a direction that a reaction inhibits."""
+    return (command > 0.0 and own.inhibited & EXTENDING != 0
+            or command < 0.0 and own.inhibited & RETRACTING != 0)
+
+
+@kernel
+def feed(own):
+    """Note that a setpoint has been received: its time begins anew."""
+    own.setpoint_age = 1
+
+
+@kernel
+def request_clear(own):
+    """Let the next conversion clear the trips whose condition has ended."""
+    own.clears = 1

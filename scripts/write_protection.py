@@ -1,0 +1,95 @@
+"""
+Write the tables of docs/protection.md from the declared conditions and the shipped models.
+
+    python scripts/write_protection.py
+"""
+
+from collections.abc import Iterator
+import math
+from pathlib import Path
+import re
+from typing import Any
+
+from isa_ros.actuator.sheet import actuator_record, ActuatorSheet
+from isa_ros.config.catalogue import actuator_model, DEFAULT_PRESET
+from isa_ros.config.sections import build
+from isa_ros.core.conditions import BITS, CONDITIONS, shown
+from isa_ros.core.parameter import defaults
+from isa_ros.core.units import of_coordinate
+from isa_ros.reu.protection_sheet import levels_of, Protection
+import numpy as np
+
+PAGE = Path(__file__).resolve().parents[1] / 'docs' / 'protection.md'
+MODELS = ('isa_v2', 'isa_v5', 'smart_manifold')
+
+
+def _table(rows: list[list[str]]) -> str:
+    head, *body = rows
+    return '\n'.join(f'| {" | ".join(row)} |' for row in [head, ['---'] * len(head), *body])
+
+
+def conditions() -> str:
+    """Return the table of the conditions: what is compared, with what, and the defaults."""
+    sheet = defaults(Protection)
+    rows = [['bit', 'condition', 'compared', 'parts of', 'warning', 'trip', 'delay', 'reaction']]
+    for name, bit in BITS.items():
+        condition = CONDITIONS[bit]
+        own: Any = levels_of(sheet).get(name)
+        warning, trip, delay, reaction = (
+            (0.0, sheet.setpoint_timeout_ms, 0.0, sheet.setpoint_timeout_reaction) if own is None
+            else (own.warning, own.trip, own.delay_ms, own.reaction))
+        rows.append([
+            str(bit), f'`{name}`', condition.quantity, condition.rating or '-',
+            *(_level(value, condition.is_above) for value in (warning, trip)),
+            f'{delay:g} ms' if delay else '-', reaction])
+    return _table(rows)
+
+
+def _level(value: float, is_above: bool) -> str:
+    return f'{">" if is_above else "<"} {value:g}' if value else 'off'
+
+
+def levels() -> str:
+    """Return the table of the levels in SI that the defaults are for shipped models."""
+    return _table([['condition', *MODELS], *_levels()])
+
+
+def _levels() -> Iterator[list[str]]:
+    found = {name: _constants(name) for name in MODELS}
+    for name, bit in BITS.items():
+        cells = []
+        for protection, is_rotary in found.values():
+            unit = of_coordinate(CONDITIONS[bit].unit, is_rotary)
+            values = [float(protection.sign[bit] * level[bit])
+                      for level in (protection.warning, protection.trip)]
+            cells.append(', '.join(
+                shown(value, unit) if math.isfinite(value) else 'off' for value in values))
+        if set(cells) != {'off, off'}:
+            yield [f'`{name}`', *cells]
+
+
+def _constants(model: str) -> tuple[np.record, bool]:
+    found = actuator_model(model, 'model')
+    sheet = build(ActuatorSheet, found.with_preset(DEFAULT_PRESET, 'preset'), found.place)
+    row = actuator_record(sheet, 0).view(np.recarray)[0]
+    return row.reu.protection, sheet.is_rotary
+
+
+def page(text: str) -> str:
+    """Return the text of the page with the tables of today."""
+    for marker, table in (('conditions', conditions()), ('levels', levels())):
+        text, n = re.subn(
+            rf'(<!-- {marker} -->\n).*?(<!-- end -->)', lambda found, body=table: (
+                f'{found[1]}{body}\n{found[2]}'), text, flags=re.DOTALL)
+        assert n == 1, f'{PAGE} has one table <!-- {marker} -->'
+    return text
+
+
+def main() -> None:
+    """Write the page."""
+    PAGE.write_text(page(PAGE.read_text(encoding='utf-8')), encoding='utf-8')
+    print(PAGE)
+
+
+if __name__ == '__main__':
+    main()

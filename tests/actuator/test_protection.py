@@ -1,0 +1,212 @@
+"""Protection of a whole actuator: what trips, when, and what it does then."""
+
+from typing import Any
+
+from isa_ros.actuator.actuator import SmartActuator, Timing
+from isa_ros.core.signals import COMMAND, HAS_ENABLE
+from isa_ros.core.conditions import BITS, conditions
+from isa_ros.reu.protection import protect
+from isa_ros.reu.reports import reports
+import numpy as np
+import pytest
+from tests.sheets import actuator_sheet, FINE, override, setpoint, smart_actuator
+
+TICK = Timing(step_ns=1_000_000, controller_offset_ns=120_000)
+OFFSET_STEPS, CONVERSION_STEPS = 6, 5
+
+
+def protected(timing: Timing = TICK, load: str = 'mass', **values: Any) -> SmartActuator:
+    """Return an ISA v5 with other values of its protection; ``__`` separates keys."""
+    sheet = actuator_sheet('isa_v5')
+    for path, value in values.items():
+        sheet = override(sheet, f'reu.protection.{path.replace("__", ".")}', value)
+    return smart_actuator('isa_v5', load, sheet=sheet, timing=timing)
+
+
+def ticks(actuator: SmartActuator, n: int) -> None:
+    for _ in range(n):
+        actuator.tick()
+
+
+def enable(actuator: SmartActuator) -> None:
+    command = np.zeros(1, COMMAND)[0]
+    command['kinds'], command['is_enabled'] = HAS_ENABLE, 1
+    actuator.accept(command)
+
+
+def own(actuator: SmartActuator) -> np.record:
+    return actuator.memory.reu.view(np.recarray)[0].protection
+
+
+def test_the_watchdog_holds_until_the_next_setpoint() -> None:
+    """20 ms are 200 conversions after the first one with the setpoint; one more is too late."""
+    actuator = protected(setpoint_timeout_ms=20.0)
+    ticks(actuator, 30)
+    assert actuator.sample.trips == 0.0  # no setpoint yet
+    actuator.accept(setpoint(position=0.06))
+    ticks(actuator, 20)
+    assert actuator.sample.trips == 0.0
+    ticks(actuator, 1)
+    assert conditions(actuator.sample.trips) == ['setpoint_timeout']
+    first = 30 * 50 + OFFSET_STEPS % CONVERSION_STEPS
+    assert own(actuator).trip_since[0] == first + 201 * CONVERSION_STEPS
+    held = actuator.sample.position_reference
+    assert 0.05 < held < 0.06
+    ticks(actuator, 300)
+    assert actuator.sample.position_reference == held
+    assert actuator.sample.position == pytest.approx(held, abs=5e-4)  # the weight of 50 kg N
+    actuator.accept(setpoint(position=0.055))
+    ticks(actuator, 1)
+    assert (actuator.sample.trips, actuator.sample.position_reference) == (0.0, 0.055)
+
+
+def test_the_watchdog_damps() -> None:
+    """The force reference is that of the damping alone, at the speed that the REU estimates."""
+    actuator = protected(setpoint_timeout_ms=5.0, setpoint_timeout_reaction='damp')
+    actuator.accept(setpoint(position=0.08))
+    ticks(actuator, 6)
+    assert actuator.sample.trips == 1.0 and abs(actuator.sample.velocity) > 1e-3
+    for _ in range(5):
+        ticks(actuator, 1)
+        damping = actuator.memory.reu['setpoint']['damping'][0]
+        assert actuator.sample.force_reference == -damping * actuator.sample.velocity
+
+
+def test_a_tripped_actuator_is_disabled_until_it_is_enabled_again() -> None:
+    """The supply fails: after 10 ms the valve is at null, and stays there when it is back."""
+    actuator = protected()
+    port = actuator.memory.ports[0].copy()
+    actuator.accept(setpoint(position=0.06))
+    ticks(actuator, 5)
+    failed = port.copy()
+    failed['supply_pressure'] = 1e6
+    for _ in range(10):
+        actuator.tick(failed)
+    assert conditions(actuator.sample.warnings) == [] and actuator.sample.trips == 0.0
+    actuator.tick(failed)
+    assert conditions(actuator.sample.trips) == ['supply_low']
+    [cause] = reports(actuator.memory.constants.view(np.recarray)[0].reu.protection,
+                      own(actuator))[:1]
+    assert cause.text == (
+        'supply pressure 1 MPa, below its trip level 4.4 MPa for 10 ms')
+    for _ in range(50):
+        actuator.tick(port)
+        actuator.accept(setpoint(position=0.06))
+    assert conditions(actuator.sample.trips) == ['supply_low']
+    assert actuator.sample.current_reference == 0.0
+    before = actuator.sample.position
+    enable(actuator)
+    ticks(actuator, 1)
+    assert actuator.sample.trips == 0.0
+    actuator.accept(setpoint(position=0.06))
+    ticks(actuator, 200)
+    assert abs(actuator.sample.position - 0.06) < 0.5 * abs(before - 0.06)
+
+
+def test_limit_stops_the_piston_before_the_end() -> None:
+    """With the limit at 10 % of the stroke it stops after 90 %, and comes back at once."""
+    found = []
+    for levels in ({}, {'end_of_stroke__trip': 0.1}):
+        actuator = protected(**levels)
+        actuator.accept(setpoint(position=0.1))
+        ticks(actuator, 1500)
+        found.append(float(actuator.sample.position))
+    assert found[0] > 0.098 and 0.09 < found[1] < 0.094
+    actuator.accept(setpoint(position=0.05))
+    ticks(actuator, 300)
+    assert actuator.sample.trips == 0.0 and actuator.sample.position < 0.08
+
+
+def test_a_snapshot_in_the_middle_of_a_delay_continues_it() -> None:
+    """Byte for byte, to the same trip at the same step."""
+    actuator, twin = (protected(setpoint_timeout_ms=30.0, setpoint_timeout_reaction='disable')
+                      for _ in range(2))
+    actuator.accept(setpoint(position=0.06))
+    ticks(actuator, 17)
+    twin.restore(actuator.snapshot())
+    ticks(actuator, 40)
+    ticks(twin, 40)
+    assert actuator.sample.trips == 1.0
+    assert twin.snapshot() == actuator.snapshot()
+
+
+def test_a_start_forgets_what_has_tripped() -> None:
+    actuator = protected(setpoint_timeout_ms=1.0, setpoint_timeout_reaction='disable')
+    actuator.accept(setpoint(position=0.06))
+    ticks(actuator, 5)
+    assert actuator.sample.trips
+    actuator.start(0.05, 0.0, 20.7e6, 0.0)
+    ticks(actuator, 5)
+    assert (actuator.sample.trips, own(actuator).first) == (0.0, 0)
+
+
+class Shadow:
+    """A second protection of a moving actuator, with readings of other sensors."""
+
+    def __init__(self, actuator: SmartActuator) -> None:
+        self.state = actuator.memory.reu.copy().view(np.recarray)[0]
+        self.constants = actuator.memory.constants.view(np.recarray)[0].reu.protection
+        self.warned = self.tripped = 0
+
+    def convert(self, actuator: SmartActuator, **added: float) -> None:
+        """Take the conversion of the last tick, with something added to its readings."""
+        reu = actuator.memory.reu.view(np.recarray)[0]
+        self.state.measured, self.state.speed = reu.measured, reu.speed
+        for field, error in added.items():
+            setattr(self.state.measured, field, getattr(reu.measured, field) + error)
+        step = actuator.t_ns // 20_000 - CONVERSION_STEPS + 1
+        protect(step, 20.7e6, 40.0, self.constants, self.state)
+        self.warned |= int(self.state.protection.warnings)
+        self.tripped |= int(self.state.protection.trips)
+
+
+def sweep(actuator: SmartActuator, n: int) -> Any:
+    """Yield after each of ``n`` conversions of a motion of 20 mm at 4 Hz."""
+    for k in range(n):
+        if k % 10 == 0:
+            actuator.accept(setpoint(position=0.05 + 0.02 * np.sin(8 * np.pi * k * 1e-4)))
+        actuator.tick()
+        yield k
+
+
+@pytest.mark.parametrize('part', [-0.15, -0.08, 0.08, 0.15])
+def test_an_offset_of_the_load_cell_is_detected(part: float) -> None:
+    """
+    Of 15 % of its range as a trip, of 8 % as a warning, both while the piston moves.
+
+    Levels are 10 and 5 %; friction of at most 1.3 % is allowed for and may add or hide as much.
+    """
+    actuator = protected(timing=FINE)
+    shadow, begins = Shadow(actuator), 500
+    offset = part * float(actuator.memory.constants['plant']['sensors']['force_range'][0])
+    for k in sweep(actuator, 4000):
+        shadow.convert(actuator, force=offset if k >= begins else 0.0)
+        if k < begins + 500:
+            assert (shadow.warned, shadow.tripped) == (0, 0)
+    bit = 1 << BITS['load_cell_implausible']
+    assert (shadow.warned, shadow.tripped) == (bit, bit if abs(part) > 0.1 else 0)
+    if abs(part) > 0.1:
+        step = int(shadow.state.protection.trip_since[BITS['load_cell_implausible']])
+        first = begins * CONVERSION_STEPS + 1
+        assert step == first + 500 * CONVERSION_STEPS  # its delay of 50 ms
+
+
+def test_noise_of_a_data_sheet_gives_no_alarm() -> None:
+    """
+    Gaussian, 0.5 % of each range and two counts of the encoder, 12 000 readings of each sensor.
+
+    The force that pressures do not explain then has 75 N of noise; its warning is at 500 N.
+    """
+    actuator, random = protected(timing=FINE), np.random.default_rng(11)
+    ranges = actuator.memory.constants['plant']['sensors'][0]
+    sigmas = {'force': 0.005 * ranges['force_range'],
+              'pressure_a': 0.005 * ranges['pressure_range'],
+              'pressure_b': 0.005 * ranges['pressure_range'],
+              'current': 0.005 * ranges['current_range'], 'position': 2.0 * ranges['encoder']}
+    shadow = Shadow(actuator)
+    for _ in sweep(actuator, 3000):
+        for _ in range(4):
+            shadow.convert(actuator, **{
+                field: float(sigma * random.standard_normal())
+                for field, sigma in sigmas.items()})
+    assert (shadow.warned, shadow.tripped) == (0, 0)

@@ -1,0 +1,318 @@
+"""Protection alone: levels, delays, hysteresis, latching, reactions."""
+
+from dataclasses import replace
+import math
+
+from hypothesis import given, settings, strategies as st
+from isa_ros.core.parameter import defaults
+from isa_ros.errors import ParameterError
+from isa_ros.reu import protection
+from isa_ros.core.conditions import BITS, CONDITIONS, REACTIONS
+from isa_ros.reu.protection import (
+    feed, is_inhibited, request_clear, setpoint_in_force)
+from isa_ros.reu.protection_sheet import levels_of, Protection
+import numpy as np
+import pytest
+from tests.reu.watched import off, only, PERIOD, RATINGS, READINGS, STROKE, Watched
+
+NAMES = tuple(READINGS)
+EPSILON = 1e-6  # of a level: the readings are sums, exact to 1e-12 of their terms
+
+
+def beyond(name: str, level: float, by: float) -> float:
+    """Return the quantity that is beyond a level by a part of it."""
+    return level * (1.0 + by if CONDITIONS[BITS[name]].is_above else 1.0 - by)
+
+
+def rated(name: str, level: float) -> float:
+    return level * RATINGS.of(name)
+
+
+def test_every_condition_has_levels_or_a_timeout() -> None:
+    """Keys, bits and readings of this test name the same conditions."""
+    assert set(levels_of(defaults(Protection))) == set(BITS) - {'setpoint_timeout'} == set(NAMES)
+
+
+@pytest.mark.parametrize('name', NAMES)
+def test_a_condition_begins_right_beyond_its_levels(name: str) -> None:
+    """The warning beyond its level, the trip beyond its own, neither of them at the level."""
+    first, second = (0.2, 0.4) if CONDITIONS[BITS[name]].is_above else (0.4, 0.2)
+    if name == 'overtemperature':
+        first, second = 70.0, 80.0
+    found = []
+    for level, by in ((first, -EPSILON), (first, EPSILON), (second, -EPSILON), (second, EPSILON)):
+        watched = Watched(only(name, warning=first, trip=second, delay_ms=0.0))
+        watched.show(name, beyond(name, rated(name, level), by))
+        watched.convert()
+        found.append(watched.has(name))
+        assert watched.own.warnings | watched.own.trips in (0, 1 << BITS[name])
+    assert found == [(False, False), (True, False), (True, False), (True, True)]
+
+
+@pytest.mark.parametrize('name', NAMES)
+def test_a_level_of_zero_or_no_reaction_is_off(name: str) -> None:
+    level = 60.0 if name == 'overtemperature' else 0.1
+    for sheet in (only(name), only(name, warning=level, trip=level, reaction='none')):
+        assert Watched(sheet).constants.is_on == 0
+
+
+def test_the_switch_turns_all_off() -> None:
+    assert Watched(defaults(Protection)).constants.is_on == 1
+    assert Watched(replace(defaults(Protection), switch='off')).constants.is_on == 0
+
+
+@pytest.mark.parametrize(('delay_ms', 'conversions'), [
+    (0.0, 0), (0.1, 1), (0.11, 2), (10.0, 100), (50.0, 500)])
+def test_the_delay_is_counted_in_conversions(delay_ms: float, conversions: int) -> None:
+    """A trip is set as many conversions after the first one beyond the level, and not before."""
+    watched = Watched(only('overload', trip=0.5, delay_ms=delay_ms))
+    watched.show('overload', 5001.0)
+    watched.convert(conversions)
+    assert watched.own.trips == 0
+    watched.convert()
+    assert watched.has('overload') == (False, True)
+    assert watched.own.trip_since[BITS['overload']] == conversions * 5
+    assert watched.own.trip_values[BITS['overload']] == 5001.0
+
+
+def test_one_conversion_inside_begins_the_delay_anew() -> None:
+    watched = Watched(only('overload', trip=0.5, delay_ms=1.0))
+    for force in (5001.0, 4999.0, 5001.0):
+        watched.show('overload', force)
+        watched.convert(10 if force > 5e3 else 1)
+    assert watched.own.trips == 0
+    watched.convert()
+    assert watched.has('overload')[1]
+
+
+@given(
+    name=st.sampled_from(('overload', 'supply_low', 'relief_open', 'end_of_stroke')),
+    level=st.floats(0.1, 0.5), hysteresis=st.floats(0.0, 0.5), delay=st.integers(0, 4),
+    factors=st.lists(st.floats(0.0, 2.0), min_size=1, max_size=40))
+@settings(max_examples=60, deadline=None)
+def test_a_warning_is_that_of_its_definition(
+        name: str, level: float, hysteresis: float, delay: int, factors: list[float]) -> None:
+    """Beyond the level for the delay it begins; it ends when back by the hysteresis."""
+    watched = Watched(only(name, hysteresis, warning=level, delay_ms=delay * PERIOD * 1e3))
+    sign = 1.0 if CONDITIONS[BITS[name]].is_above else -1.0
+    bound = rated(name, level)
+    end, warns, run = bound * (1.0 - sign * hysteresis), False, 0
+    for factor in factors:
+        quantity = factor * bound
+        watched.show(name, quantity)
+        watched.convert()
+        if name == 'end_of_stroke':
+            quantity = min(quantity, STROKE - quantity)
+        run = run + 1 if sign * quantity > sign * bound else 0
+        warns = sign * quantity > sign * end if warns else run > delay
+        assert watched.has(name) == (warns, False)
+
+
+@pytest.mark.parametrize('reaction', REACTIONS[1:])
+def test_only_a_reaction_that_stops_is_kept_until_it_is_cleared(reaction: str) -> None:
+    watched = Watched(only('overload', trip=0.5, delay_ms=0.2, reaction=reaction))
+    for force in (6e3, 0.0):
+        watched.show('overload', force)
+        watched.convert(3)
+    stops = reaction in ('quick_stop', 'disable')
+    assert watched.has('overload') == (False, stops)
+    assert watched.own.reaction == (REACTIONS.index(reaction) if stops else 0)
+    request_clear(watched.own)
+    watched.convert()
+    assert (watched.own.trips, watched.own.first, watched.own.reaction) == (0, 0, 0)
+
+
+def test_a_trip_is_not_cleared_before_its_condition_has_ended() -> None:
+    """And a clear that came too early does not act later."""
+    watched = Watched(only('overload', 0.1, trip=0.5, delay_ms=0.2, reaction='disable'))
+    for force in (6e3, 4600.0, 4400.0):
+        watched.show('overload', force)
+        watched.convert(3)
+        assert watched.has('overload')[1]
+        if force > 5e3:
+            request_clear(watched.own)
+    watched.convert()
+    assert watched.has('overload')[1] and not watched.own.present
+    request_clear(watched.own)
+    watched.convert()
+    assert watched.own.trips == 0
+
+
+def test_a_cause_that_is_cleared_gives_way_to_a_trip_that_persists() -> None:
+    levels = defaults(Protection).supply_low
+    watched = Watched(replace(
+        only('overload', trip=0.5, delay_ms=0.0, reaction='disable'),
+        supply_low=replace(levels, warning=0.5, trip=0.5, delay_ms=0.0)))
+    watched.show('overload', 6e3)
+    watched.convert()
+    watched.show('supply_low', 1e6)
+    watched.show('overload', 0.0)
+    watched.convert()
+    assert watched.own.first == 1 << BITS['overload']
+    request_clear(watched.own)
+    watched.convert()
+    assert watched.own.trips == watched.own.first == 1 << BITS['supply_low']
+
+
+def test_the_first_cause_is_kept_and_the_strongest_reaction_acts() -> None:
+    sheet = replace(
+        only('overload', trip=0.5, delay_ms=0.0, reaction='hold'),
+        supply_low=replace(defaults(Protection).supply_low, trip=0.5, delay_ms=0.0, reaction='disable'))
+    watched = Watched(sheet)
+    watched.show('overload', 6e3)
+    watched.convert()
+    assert watched.own.reaction == protection.HOLD
+    watched.show('supply_low', 1e6)
+    watched.convert()
+    assert watched.own.first == 1 << BITS['overload']
+    assert watched.own.trips == 1 << BITS['overload'] | 1 << BITS['supply_low']
+    assert watched.own.reaction == protection.DISABLE
+    assert watched.state.setpoint.is_enabled == 0.0
+
+
+@pytest.mark.parametrize('reaction', ['hold', 'quick_stop'])
+def test_hold_keeps_the_position_measured_at_the_trip(reaction: str) -> None:
+    watched = Watched(only('overload', trip=0.5, delay_ms=0.0, reaction=reaction))
+    watched.show('overload', 6e3)
+    watched.convert()
+    watched.state.measured.position = 0.06
+    watched.convert()
+    held = setpoint_in_force(watched.state)
+    assert (held.position, held.velocity, held.effort) == (0.05, 0.0, 0.0)
+    assert (held.stiffness, held.damping, held.is_enabled) == (1e5, 4e3, 1.0)
+    assert watched.state.setpoint.position == 0.02
+
+
+def test_damp_is_damping_without_stiffness() -> None:
+    """And the commanded gains are in force again afterwards."""
+    watched = Watched(only('overload', trip=0.5, delay_ms=0.0, reaction='damp'))
+    watched.show('overload', 6e3)
+    watched.convert()
+    damped = setpoint_in_force(watched.state)
+    assert (damped.stiffness, damped.damping) == (0.0, 4e3)
+    assert (damped.velocity, damped.effort) == (0.0, 0.0)
+    watched.show('overload', 0.0)
+    watched.convert()
+    assert setpoint_in_force(watched.state).stiffness == 1e5
+
+
+@pytest.mark.parametrize(('name', 'quantity', 'extends'), [
+    ('end_of_stroke', 0.099, True), ('end_of_stroke', 0.001, False),
+    ('overspeed', -2.0, True), ('overspeed', 2.0, False), ('overload', 9e3, True),
+    ('relief_open', 23e6, True), ('overpressure', 23e6, False)])
+def test_limit_inhibits_the_direction_that_makes_it_worse(
+        name: str, quantity: float, extends: bool) -> None:
+    watched = Watched(only(name, trip=0.5, delay_ms=0.0, reaction='limit'))
+    watched.show(name, quantity)
+    if name == 'overspeed':
+        watched.state.speed.velocity = -quantity
+    watched.convert()
+    assert watched.has(name)[1]
+    assert is_inhibited(1e-4, watched.own) == extends
+    assert is_inhibited(-1e-4, watched.own) == (not extends)
+    assert not is_inhibited(0.0, watched.own)
+
+
+@pytest.mark.parametrize('reaction', ['hold', 'damp', 'disable'])
+def test_the_watchdog_trips_one_conversion_after_its_time(reaction: str) -> None:
+    """And ends with the next setpoint, unless the actuator is disabled."""
+    watched = Watched(replace(
+        off(), setpoint_timeout_ms=20.0, setpoint_timeout_reaction=reaction))
+    watched.convert(1000)
+    assert watched.own.trips == 0  # before the first setpoint there is none to wait for
+    feed(watched.own)
+    watched.convert(201)
+    assert watched.own.trips == 0
+    watched.convert()
+    assert watched.own.trips == 1 << BITS['setpoint_timeout']
+    feed(watched.own)
+    watched.convert()
+    assert (watched.own.trips == 0) == (reaction != 'disable')
+
+
+def test_a_disabled_actuator_waits_for_no_setpoint() -> None:
+    watched = Watched(replace(off(), setpoint_timeout_ms=1.0))
+    feed(watched.own)
+    watched.state.setpoint.is_enabled = 0.0
+    watched.convert(100)
+    watched.state.setpoint.is_enabled = 1.0
+    watched.convert(10)  # counted from the last conversion while disabled
+    assert watched.own.trips == 0
+    watched.convert()
+    assert watched.own.trips == 1
+
+
+@given(timeout=st.integers(1, 400))
+@settings(max_examples=20, deadline=None)
+def test_every_timeout_is_counted_exactly(timeout: int) -> None:
+    """No time is a conversion longer or shorter because 0.1 ms is not a binary number."""
+    watched = Watched(replace(off(), setpoint_timeout_ms=timeout * 0.1))
+    feed(watched.own)
+    watched.convert(timeout + 1)
+    assert watched.own.trips == 0
+    watched.convert()
+    assert watched.own.trips == 1
+
+
+def test_a_trip_is_the_same_in_plain_python() -> None:
+    """Compiled and interpreted, bit by bit, through warning, trip, reaction and end."""
+    def states(convert: object) -> list[bytes]:
+        watched = Watched(replace(defaults(Protection), hysteresis=0.1))
+        found = []
+        for name, quantity in (('overcurrent', 12.45e-3), ('supply_low', 9e6),
+                               ('load_cell_implausible', 3e3), ('supply_low', 1e6)):
+            watched.show(name, quantity)
+            for _ in range(120):
+                convert(watched.step, watched.supply, watched.temperature,  # type: ignore
+                        watched.constants, watched.state)
+                watched.step += 5
+                found.append(watched.state.tobytes())
+        assert watched.own.trips and watched.own.warnings
+        return found
+    assert states(protection.protect) == states(protection.protect.py_func)
+
+
+@given(
+    name=st.sampled_from(NAMES), warning=st.floats(0.01, 0.4), trip=st.floats(0.01, 0.4))
+@settings(max_examples=60)
+def test_a_warning_beyond_its_trip_is_refused(name: str, warning: float, trip: float) -> None:
+    """With one line that names both, their values and their unit."""
+    is_above = CONDITIONS[BITS[name]].is_above
+    unit = 'celsius' if name == 'overtemperature' else '1'
+    if warning <= trip if is_above else warning >= trip:
+        only(name, warning=warning, trip=trip)
+        return
+    with pytest.raises(ParameterError) as refused:
+        only(name, warning=warning, trip=trip)
+    assert str(refused.value) == (
+        f'{name}.warning = {warning:g} {unit}, must be {"<=" if is_above else ">="} '
+        f'{name}.trip = {trip:g} {unit}')
+
+
+@pytest.mark.parametrize(('levels', 'message'), [
+    ({'delay_ms': -1.0}, 'Overload.delay_ms = -1 ms, must be >= 0 ms'),
+    ({'trip': -0.1}, 'Overload.trip = -0.1 1, must be >= 0 1'),
+    ({'trip': 1.1}, 'Overload.trip = 1.1 1, must be <= 1 1'),
+    ({'trip': math.nan}, 'Overload.trip = nan 1, must be finite'),
+    ({'reaction': 'explode'}, "Overload.reaction = 'explode', must be one of none, warn, limit"),
+])
+def test_bad_levels_are_refused(levels: dict[str, float], message: str) -> None:
+    with pytest.raises(ParameterError) as refused:
+        only('overload', **levels)
+    assert str(refused.value).startswith(message)
+
+
+def test_a_direction_is_inhibited_only_where_there_is_one() -> None:
+    for name, levels in levels_of(defaults(Protection)).items():
+        allows = 'limit' in next(
+            f for f in levels.__dataclass_fields__.values()  # type: ignore[attr-defined]
+            if f.name == 'reaction').metadata['names']
+        assert allows == (name in (
+            'end_of_stroke', 'overspeed', 'overload', 'overpressure', 'relief_open'))
+
+
+def test_the_default_watches_all_but_the_ends_and_the_setpoints() -> None:
+    constants = Watched(defaults(Protection)).constants
+    is_watched = np.isfinite(constants.quiet)
+    assert [name for name, k in BITS.items() if not is_watched[k]] == [
+        'setpoint_timeout', 'end_of_stroke']

@@ -1,0 +1,98 @@
+"""A protection alone: its records, and readings that give a condition a wanted quantity."""
+
+from collections.abc import Callable, Mapping
+from dataclasses import replace
+from typing import Any
+
+from isa_ros.core.parameter import defaults
+from isa_ros.core.record import record
+from isa_ros.reu.cascade import REU_STATE
+from isa_ros.core.conditions import BITS
+from isa_ros.reu.plausibility import EVIDENCE
+from isa_ros.reu.protection import protect, protection_record, Ratings
+from isa_ros.reu.protection_sheet import levels_of, Protection
+import numpy as np
+
+STEPS = 5                   # plant steps of a conversion
+PERIOD = STEPS * 20e-6
+STROKE, AREA_A, AREA_B = 0.1, 4e-4, 3e-4
+RATINGS = Ratings(
+    stroke=STROKE, speed=1.0, force_range=1e4, pressure_range=25e6, current_range=12.5e-3,
+    opening_pressure=22e6)
+SUPPLY = 20.7e6
+
+
+def off(names: Mapping[str, Any] = BITS) -> Protection:
+    """Return a protection of which no condition is watched."""
+    sheet = defaults(Protection)
+    return replace(sheet, **{
+        name: replace(own, reaction='none')  # type: ignore[type-var]
+        for name, own in levels_of(sheet).items() if name in names})
+
+
+def only(name: str, hysteresis: float = 0.0, **levels: Any) -> Protection:
+    """Return a protection that watches one condition."""
+    sheet = off()
+    own = replace(getattr(sheet, name), **{'warning': 0.0, 'trip': 0.0, 'reaction': 'warn'})
+    return replace(sheet, hysteresis=hysteresis, **{name: replace(own, **levels)})
+
+
+class Watched:
+    """The records of a protection; `convert` is one conversion."""
+
+    def __init__(self, sheet: Protection) -> None:
+        evidence = record(
+            EVIDENCE, area_a=AREA_A, area_b=AREA_B, force_range=RATINGS.force_range,
+            stiction=100.0, viscous=0.0, inertia=1.0, speed_rate=1000.0, speed_steps=50,
+            offset_steps=0)
+        self.constants = protection_record(sheet, RATINGS, evidence, STEPS)
+        self.state = np.zeros(1, REU_STATE).view(np.recarray)[0]
+        self.own = self.state.protection
+        self.supply, self.temperature, self.step = SUPPLY, 40.0, 0
+        measured, setpoint = self.state.measured, self.state.setpoint
+        measured.position = self.own.evidence.position = 0.5 * STROKE
+        setpoint.is_enabled, setpoint.stiffness, setpoint.damping = 1.0, 1e5, 4e3
+        setpoint.position, setpoint.velocity, setpoint.effort = 0.02, 0.1, 50.0
+
+    def convert(self, n: int = 1) -> None:
+        """Take ``n`` conversions of the present readings."""
+        for _ in range(n):
+            protect(self.step, self.supply, self.temperature, self.constants, self.state)
+            self.step += STEPS
+
+    def has(self, name: str) -> tuple[bool, bool]:
+        """Return whether a condition warns and whether it trips."""
+        bit = BITS[name]
+        return bool(self.own.warnings >> bit & 1), bool(self.own.trips >> bit & 1)
+
+    def show(self, name: str, quantity: float) -> None:
+        """Set the readings so that the next conversion gives a condition this quantity."""
+        READINGS[name](self, quantity)
+
+
+def _measure(field: str) -> Callable[[Watched, float], None]:
+    return lambda watched, quantity: setattr(watched.state.measured, field, quantity)
+
+
+def _load_cell(watched: Watched, quantity: float) -> None:
+    """Contradict pressures of 4 kN, with 100 N of friction allowed."""
+    measured = watched.state.measured
+    measured.pressure_a, measured.pressure_b = 10e6, 0.0
+    measured.force = AREA_A * 10e6 - 100.0 - quantity
+
+
+READINGS: Mapping[str, Callable[[Watched, float], None]] = {
+    'end_of_stroke': _measure('position'),
+    'overspeed': lambda watched, quantity: setattr(watched.state.speed, 'velocity', -quantity),
+    'overload': _measure('force'),
+    'overpressure': _measure('pressure_b'),
+    'overcurrent': lambda watched, quantity: setattr(
+        watched.state.measured, 'current', -quantity),
+    'overtemperature': lambda watched, quantity: setattr(watched, 'temperature', quantity),
+    'supply_low': lambda watched, quantity: setattr(watched, 'supply', quantity),
+    'relief_open': _measure('pressure_a'),
+    'load_cell_implausible': _load_cell,
+    'encoder_jump': lambda watched, quantity: setattr(
+        watched.state.measured, 'position',
+        watched.own.evidence.position + quantity * PERIOD),
+}
