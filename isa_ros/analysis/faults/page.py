@@ -13,7 +13,7 @@ from isa_ros.text.page import Page
 from isa_ros.text.table import aligned
 
 PAGE = 'device_faults.md'
-HEADER = ('fault', 'seen first in', 'after, ms', 'largest differences', 'device',
+HEADER = ('fault', 'seen first in', 'after, ms', 'largest differences, or why none', 'device',
           'sound again after, ms')
 LIST_HEADER = ('fault', 'of', 'set', 'meaning')
 _SHOWN = {'Pa': ('MPa', 1e-6), 'm': ('mm', 1e3), 'A': ('mA', 1e3)}
@@ -57,15 +57,11 @@ def _cells(own: Outcome) -> tuple[str, ...]:
     if own.diverged:
         return (own.fault.name, own.diverged, '', '', '', '')
     first = own.visible[0] if own.visible else None
-    return (own.fault.name, _unseen(own.fault) if first is None else first.signal,
+    return (own.fault.name, 'not seen' if first is None else first.signal,
             '' if first is None else f'{first.after_s * 1e3:g}',
-            ', '.join(_difference(one) for one in _largest(own)),
+            ', '.join(_difference(one) for one in _largest(own)) or own.fault.unseen,
             ', '.join(_note(one) for one in own.noticed) or 'nothing',
             'not in this run' if own.recovered_s is None else f'{own.recovered_s * 1e3:g}')
-
-
-def _unseen(fault: NamedFault) -> str:
-    return f'not seen: {fault.unseen}' if fault.unseen else 'not seen'
 
 
 def _largest(own: Outcome) -> Sequence[Visible]:
