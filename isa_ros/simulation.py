@@ -10,12 +10,14 @@ A tick is that of `isa_ros.run.coordinator`, in one thread and without waiting.
 """
 
 from collections.abc import Mapping, Sequence
+from dataclasses import replace
 import warnings
 
 from isa_ros.actuator.tunable import with_si_names
 from isa_ros.config.assembly import group_of, surroundings_of
 from isa_ros.controller import (
     by_name, Controller, ControllerSeat, fill_requests, merge_requests, Setpoint, State)
+from isa_ros.core.noise import seed_of
 from isa_ros.core.saved_state import RunState
 from isa_ros.core.signals import COMMAND, LOAD_PORT, Records
 from isa_ros.core.suggest import alternatives
@@ -44,6 +46,13 @@ class Simulation:
     """
 
     def __init__(self, scenario: Scenario, controllers: Sequence[Controller] = ()) -> None:
+        self._controllers = tuple(controllers)
+        self._seats: list[ControllerSeat] = []
+        self._assemble(scenario)
+        self.reset()
+
+    def _assemble(self, scenario: Scenario) -> None:
+        """Create actuators and surroundings, and the views on their rows."""
         self.scenario = scenario
         run = scenario.run
         self.names = tuple(actuator.name for actuator in run.actuators)
@@ -54,8 +63,6 @@ class Simulation:
         """Supplies and body, with their samples as rows."""
         self._starts, self._beginning = (
             self.surroundings.starts(), self.surroundings.snapshot())
-        self._controllers = tuple(controllers)
-        self._seats: list[ControllerSeat] = []
         n = len(self.names)
         self._ports: Records = np.zeros(n, LOAD_PORT)
         self._commands: Records = np.zeros(n, COMMAND)
@@ -69,14 +76,24 @@ class Simulation:
         """Sample of the body, likewise; None without a body."""
         if self.surroundings.body is not None:
             self.body_sample = self.surroundings.body.sample.view(np.recarray)[0]
-        self.reset()
 
-    def reset(self) -> Mapping[str, np.record]:
+    def reset(self, seed: int | None = None) -> Mapping[str, np.record]:
         """
         Start again at t = 0 and return the `samples` at t = 0.
 
-        Tuned values are in force again from the first tick on.
+        Tuned values are in force again from the first tick on. With a ``seed`` the noise is that
+        of the run with this seed: actuators and all samples are new objects, tuned values and
+        commands that are not yet in force are forgotten.
+
+        Raises
+        ------
+        ConfigError
+            The seed is not a whole number >= 0.
+
         """
+        if seed is not None:
+            run = replace(self.scenario.run, seed=seed_of(seed, 'seed'))
+            self._assemble(replace(self.scenario, run=run))
         self.ticks = 0
         self.surroundings.restart(self._beginning)
         self.group.start(self._starts)

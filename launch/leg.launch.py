@@ -74,8 +74,8 @@ def _node(process: Process, namespace: str) -> Node:
         package='isa_ros', executable=process.executable, name=process.name,
         namespace=namespace, output='screen',
         parameters=[{
-            key: ParameterValue(value, value_type=list[str] if key == 'controllers'
-                                else type(value))
+            key: ParameterValue(list(value), value_type=list[str])
+            if isinstance(value, (list, tuple)) else ParameterValue(value, value_type=type(value))
             for key, value in process.parameters}],
         on_exit=_end_of_run if is_coordinator else refuse_failure)
 

@@ -6,6 +6,7 @@ import json
 import math
 import struct
 
+import isa_ros
 from isa_ros.config.paths import CONFIG, find, SCENARIOS
 from isa_ros.config.run_file import load_run
 from isa_ros.config.supplies import SupplyConfig
@@ -139,6 +140,22 @@ def test_reset_begins_anew():
     assert simulation.ticks == 0
     assert [shows(simulation), *stepped(simulation, 150)] == first
     assert controller.starts == [['haa', 'hfe', 'kfe']] * 2
+
+
+def test_reset_with_a_seed_is_a_run_with_this_seed():
+    """As a new simulation has it; the controllers begin anew too."""
+    noisy = isa_ros.load('rig_rotary').replace(
+        {'actuators.rotor.variants': ['data_sheet_sensors']})
+    simulation = noisy.simulation([Counter('rotor', 0.05)])
+    first = [shows(simulation), *stepped(simulation, 20)]
+    fresh = noisy.replace({'seed': 4}).simulation([Counter('rotor', 0.05)])
+    samples = simulation.reset(seed=4)
+    assert samples is simulation.samples and simulation.scenario.run.seed == 4
+    second = [shows(simulation), *stepped(simulation, 20)]
+    assert second == [shows(fresh), *stepped(fresh, 20)] != first
+    assert simulation.snapshot() == fresh.snapshot()
+    with pytest.raises(ConfigError, match='seed = -1, must be a whole number >= 0'):
+        simulation.reset(seed=-1)
 
 
 def test_what_a_controller_asked_for_before_a_reset_is_forgotten():

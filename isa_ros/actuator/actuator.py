@@ -16,17 +16,18 @@ from isa_ros.actuator.setpoint_range import SetpointRange
 from isa_ros.actuator.sheet import actuator_record, ActuatorSheet
 from isa_ros.actuator.tunable import GAINS
 from isa_ros.actuator.tuning import gain_after, gains_command, Tuning
+from isa_ros.core.noise import noise_key
 from isa_ros.core.saved_state import broken_number, restored_rows, TIME_BYTES, time_of
 from isa_ros.core.signals import COMMAND, HAS_ENABLE, HAS_SETPOINT, LOAD_PORT
 from isa_ros.core.timebase import FORCE_WINDOWS, PLANT_STEP_NS, steps_in
 from isa_ros.errors import ConfigError, SimulationDiverged
 from isa_ros.loads.sheets import local_port, LocalLoad, own_record, static_force
-from isa_ros.plant.plant import read_sensors, rest_pressures
+from isa_ros.plant.plant import exact_force, rest_pressures, sense
 from isa_ros.reu.cascade import initial_gains
 import numpy as np
 
 
-_SAVED = ('body', 'reu', 'port', 'pending', 'applied', 'reply', 'sample', 'thermal')
+_SAVED = ('body', 'reu', 'channels', 'port', 'pending', 'applied', 'reply', 'sample', 'thermal')
 """The rows of a snapshot, in their order."""
 
 PAPER_SUPPLY = 20.7e6
@@ -35,10 +36,11 @@ PAPER_SUPPLY = 20.7e6
 
 @dataclass(frozen=True)
 class Timing:
-    """The tick and the offset of the REU's sampling instants from it, in nanoseconds."""
+    """The tick and the offset of the REU's sampling instants from it, ns; the seed of noise."""
 
     step_ns: int
     controller_offset_ns: int
+    seed: int = 0
 
     @property
     def steps(self) -> int:
@@ -93,12 +95,14 @@ class SmartActuator:
         constants = self.memory.constants
         constants[:] = actuator_record(config.sheet, offset_steps)
         constants['load'] = own_record(config.load)
+        constants['noise_key'] = noise_key(timing.seed, config.name)
         self._saved = (
-            self.memory.bodies[:1], self.memory.reu, self.memory.ports, self.memory.pending,
-            self.memory.applied, self.memory.replies, self.memory.samples, self.memory.thermals)
+            self.memory.bodies[:1], self.memory.reu, self.memory.channels, self.memory.ports,
+            self.memory.pending, self.memory.applied, self.memory.replies, self.memory.samples,
+            self.memory.thermals)
         # Rows with their fields as attributes, on the same memory.
         self._constants, self._body = _record(constants), _record(self.memory.bodies)
-        self._reu, self._read_out = _record(self.memory.reu), _record(self.memory.read_outs)
+        self._reu, self._channels = _record(self.memory.reu), _record(self.memory.channels)
         self._reply, self._sample = _record(self.memory.replies), _record(self.memory.samples)
         self._port, self._pending = _record(self.memory.ports), _record(self.memory.pending)
         self._applied, self._thermal = _record(self.memory.applied), _record(self.memory.thermals)
@@ -145,10 +149,10 @@ class SmartActuator:
 
     def _start_loops(self) -> None:
         body, reu = self._body, self._reu
-        for measured in (reu.measured, self._read_out):
-            self._reply.force = read_sensors(
-                body.plant, body.load.position, body.load.velocity, self._constants.plant,
-                measured)
+        own, load = self._constants, body.load
+        self._reply.force = exact_force(body.plant, load.position, load.velocity, own.plant)
+        sense(0, own.reu.current_steps, body.plant, load.position, load.velocity, own.plant,
+              own.noise_key, self._channels, reu.measured)
         at, reu.speed.position = reu.measured, reu.measured.position
         for block, value in (
                 (reu.position, at.position), (reu.force, at.force), (reu.spool, at.spool),
@@ -157,7 +161,7 @@ class SmartActuator:
         reu.setpoint.position = reu.protection.evidence.position = reu.measured.position
         reu.setpoint.stiffness, reu.setpoint.damping = initial_gains(self._config.sheet.reu)
         reu.setpoint.is_enabled = 1.0
-        kernels.write_sample(self._read_out, body.plant, reu, self._sample)
+        kernels.write_sample(body.plant, reu, self._sample)
         self._sample.temperature = self._thermal.oil
 
     @property

@@ -12,6 +12,7 @@ def take_heat(seconds, reply, energies, thermal, state):
     Oil flows in from the supply, and from the return where that refills a chamber.
     """
     oil = energies.leakage + energies.throttling + energies.cross_port + energies.relief
-    body = energies.friction + energies.damping + energies.coil
+    body = energies.friction + energies.damping + state.coil
+    state.coil = 0.0
     inflow = max(0.0, reply.supply_volume) + max(0.0, -reply.return_volume)
     heat(seconds, oil, body, inflow, thermal, state)

@@ -15,8 +15,9 @@ from isa_ros.core.kernel import kernel
 from isa_ros.core.timebase import FORCE_WINDOWS, PLANT_STEP
 from isa_ros.loads.forces import LOAD_STATE, OWN_LOAD, own_load_force
 from isa_ros.loads.port import load_acceleration
+from isa_ros.plant.coil import coil_heat
 from isa_ros.plant.energy import ENERGIES
-from isa_ros.plant.plant import PLANT, plant_rates, PLANT_STATE, read_sensors, settle
+from isa_ros.plant.plant import exact_force, PLANT, plant_rates, PLANT_STATE, sense, settle
 from isa_ros.plant.thermal import warm
 from isa_ros.reu.cascade import cascade_step, is_due, REU
 from isa_ros.reu.protection import protect, setpoint_in_force
@@ -37,7 +38,7 @@ BODIES = 2  # the state and a stage of its integration
 STAGES = 4
 NOTHING = 1e-100  # any unit: smaller states are set to zero, since denormal arithmetic is slow
 
-ACTUATOR = np.dtype([('plant', PLANT), ('reu', REU), ('load', OWN_LOAD)])
+ACTUATOR = np.dtype([('plant', PLANT), ('reu', REU), ('load', OWN_LOAD), ('noise_key', 'u8')])
 """Every constant of one actuator, SI."""
 
 
@@ -117,8 +118,9 @@ def square_roots(n):
 
 
 @kernel
-def write_sample(measured, plant, reu, sample):
-    """Fill one `SAMPLE` from the sensor readings and the loops' references."""
+def write_sample(plant, reu, sample):
+    """Fill one `SAMPLE` from the last sensor readings of the REU and its loops' references."""
+    measured = reu.measured
     sample.position = measured.position
     sample.velocity = reu.speed.velocity
     sample.force = measured.force
@@ -136,18 +138,15 @@ def write_sample(measured, plant, reu, sample):
 
 
 @kernel
-def loops_and_plant(step, tau, port, temperature, actuator, bodies, rates, y, k, reu_state):
-    """
-    Run the loops that are due at plant step ``step``, then the plant over that step.
-
-    ``temperature`` is that of the oil, celsius.
-    """
+def loops_and_plant(
+        step, tau, port, actuator, bodies, rates, y, k, reu_state, channels, thermal):
+    """Run the loops that are due at plant step ``step``, then the plant over that step."""
     body, reu = bodies[0], actuator.reu
     if is_due(step, reu.current_steps, reu.offset_steps):
-        read_sensors(body.plant, body.load.position, body.load.velocity,
-                     actuator.plant, reu_state.measured)
+        sense(step, reu.current_steps, body.plant, body.load.position, body.load.velocity,
+              actuator.plant, actuator.noise_key, channels, reu_state.measured)
         if reu.protection.is_on and reu.is_frozen == 0.0:
-            protect(step, port.supply_pressure, temperature, reu.protection, reu_state)
+            protect(step, port.supply_pressure, thermal.oil, reu.protection, reu_state)
         cascade_step(step, reu, reu_state)
     if step == actuator.load.rope.release_step:
         body.load.weight.is_released = 1.0
@@ -155,6 +154,8 @@ def loops_and_plant(step, tau, port, temperature, actuator, bodies, rates, y, k,
         reu_state.amplifier = reu_state.drive
     body_step(PLANT_STEP, tau, reu_state.amplifier, port, actuator,
               bodies, rates, y, k)
+    if actuator.plant.thermal.is_on:
+        thermal.coil += PLANT_STEP * coil_heat(body.plant.coil, actuator.plant.coil)
 
 
 @kernel
@@ -186,7 +187,7 @@ def take_port(incoming, is_shared, port, body):
 
 
 @kernel
-def tick_row(first_step, steps, port, actuator, bodies, rates, y, k, reu_state, read_out,
+def tick_row(first_step, steps, port, actuator, bodies, rates, y, k, reu_state, channels,
              reply, sample, thermal):
     """
     Advance one actuator by ``steps`` plant steps.
@@ -203,16 +204,16 @@ def tick_row(first_step, steps, port, actuator, bodies, rates, y, k, reu_state, 
     for window in range(FORCE_WINDOWS):
         body.totals.impulse = 0.0
         for i in range(window * window_steps, (window + 1) * window_steps):
-            loops_and_plant(first_step + i, i * PLANT_STEP, port, thermal.oil, actuator,
-                            bodies, rates, y, k, reu_state)
+            loops_and_plant(first_step + i, i * PLANT_STEP, port, actuator,
+                            bodies, rates, y, k, reu_state, channels, thermal)
         reply.mean_forces[window] = body.totals.impulse / (window_steps * PLANT_STEP)
-    reply.force = read_sensors(
-        body.plant, body.load.position, body.load.velocity, actuator.plant, read_out)
+    reply.force = exact_force(
+        body.plant, body.load.position, body.load.velocity, actuator.plant)
     reply.position = body.plant.mechanics.position
     reply.velocity = body.plant.mechanics.velocity
     reply.supply_volume = body.totals.supply_volume
     reply.return_volume = body.totals.return_volume
-    write_sample(read_out, body.plant, reu_state, sample)
+    write_sample(body.plant, reu_state, sample)
     sample.supply_volume += reply.supply_volume
     sample.supply_flow = reply.supply_volume / (steps * PLANT_STEP)
     add_energies(reply, port, body.totals.energies,
@@ -242,7 +243,7 @@ def actuator_tick(first_step, steps, incoming, commands, memory):
         latch(memory.pending[n], reu, memory.applied[n])
         take_port(incoming[n], memory.is_shared[n], port, bodies[0])
         tick_row(first_step, steps, port, memory.constants[n], bodies, rates, y, k, reu,
-                 memory.read_outs[n], memory.replies[n], memory.samples[n], memory.thermals[n])
+                 memory.channels[n], memory.replies[n], memory.samples[n], memory.thermals[n])
         broken = first_broken(y)
         if broken >= 0:
             return n * STATE_SIZE + broken

@@ -4,8 +4,9 @@ from typing import NamedTuple
 
 from isa_ros.actuator import kernel as kernels
 from isa_ros.core.signals import COMMAND, LOAD_PORT, LOAD_REPLY, SAMPLE
+from isa_ros.plant.channels import CHANNELS_STATE
 from isa_ros.plant.thermal import THERMAL_STATE
-from isa_ros.reu.cascade import MEASURED, REU_STATE
+from isa_ros.reu.cascade import REU_STATE
 import numpy as np
 
 
@@ -32,8 +33,8 @@ class Memory(NamedTuple):
     """The same memory as ``rates``, as floats."""
     reu: np.ndarray
     """`REU_STATE`, (n,)."""
-    read_outs: np.ndarray
-    """`MEASURED` at the tick's end, (n,)."""
+    channels: np.ndarray
+    """`CHANNELS_STATE` of the sensors, (n,)."""
     replies: np.ndarray
     """`LOAD_REPLY` of the last tick, (n,)."""
     samples: np.ndarray
@@ -53,7 +54,7 @@ def memory_of(n: int) -> Memory:
         is_shared=np.zeros(n, np.bool_), ports=np.zeros(n, LOAD_PORT),
         constants=np.zeros(n, kernels.ACTUATOR), bodies=bodies, rates=rates,
         states=kernels.flat(bodies), slopes=kernels.flat(rates), reu=np.zeros(n, REU_STATE),
-        read_outs=np.zeros(n, MEASURED), replies=np.zeros(n, LOAD_REPLY),
+        channels=np.zeros(n, CHANNELS_STATE), replies=np.zeros(n, LOAD_REPLY),
         samples=np.zeros(n, SAMPLE), pending=np.zeros(n, COMMAND), applied=np.zeros(n, COMMAND),
         thermals=np.zeros(n, THERMAL_STATE))
 

@@ -10,6 +10,7 @@ from isa_ros.core.record import record
 from isa_ros.core.units import MILLI
 from isa_ros.errors import ConfigError
 from isa_ros.plant.chambers import oil_stiffness
+from isa_ros.plant.channels import refuse_delays
 from isa_ros.plant.coil import ClosedLoopCoil, ExplicitCoil
 from isa_ros.plant.plant import LinearPlant, plant_record, RotaryPlant
 from isa_ros.plant.spool import DataSheetSpool, DirectSpool, PilotedSpool
@@ -49,10 +50,13 @@ def refuse_wiring(sheet: ActuatorSheet) -> None:
     ConfigError
         A spool block without a spool sensor, a loop that would be closed twice or not at
         all, a limit beyond the spool's stop, or an error of `refuse_nonsense`.
+    ParameterError
+        A sensor's delay that the converters cannot have.
 
     """
     reu, plant = sheet.reu, sheet.plant
     refuse_nonsense(reu)
+    refuse_delays(plant.sensors.channels, loop_steps(reu)['current'])
     if sheet.spool_feedback == 'mechanic' and not isinstance(reu.spool, Off):
         raise ConfigError(
             f'reu.spool.kind = {_kind(reu.spool)}: a valve with mechanical feedback has no spool '

@@ -93,7 +93,8 @@ def provenance_of(scenario: Scenario, state: RunState | None = None) -> Provenan
     """Return what the bag of a run says about its making; ``state`` is where it goes on from."""
     run, versions = scenario.run, installed_versions()
     return Provenance(
-        configuration=run.to_yaml(), scenario=scenario.to_yaml(), seed=0, versions=versions,
+        configuration=run.to_yaml(), scenario=scenario.to_yaml(), seed=run.seed,
+        versions=versions,
         state=None if state is None else state.to_json(run.digest, versions))
 
 

@@ -44,6 +44,17 @@ def count(text: str) -> int:
     return value
 
 
+def seed(text: str) -> int:
+    """Return a whole number >= 0; its upper bound is that of the run file's key."""
+    try:
+        value = int(text)
+    except ValueError:
+        value = -1
+    if value < 0:
+        raise argparse.ArgumentTypeError(f'{text!r} must be a whole number >= 0')
+    return value
+
+
 def names(text: str) -> tuple[str, ...]:
     """Return names from a text in which commas separate them."""
     found = tuple(text.split(','))

@@ -6,12 +6,12 @@ from pathlib import Path
 from typing import Any
 
 from isa_ros.cli import shared_arguments
-from isa_ros.cli.argument_types import file_to_write, names, not_negative, positive
+from isa_ros.cli.argument_types import file_to_write, names, not_negative, positive, seed
 from isa_ros.run.options import COMPRESSIONS, Kind, Option, OPTIONS
 
 _TYPES: Mapping[Kind, Callable[[str], Any]] = {
     Kind.PATH: Path, Kind.NEW_FILE: file_to_write, Kind.POSITIVE: positive,
-    Kind.NOT_NEGATIVE: not_negative, Kind.NAMES: names}
+    Kind.NOT_NEGATIVE: not_negative, Kind.WHOLE: seed, Kind.NAMES: names}
 """Checks of a value by kind; other kinds are texts."""
 
 

@@ -10,6 +10,7 @@ from isa_ros.config.sections import Place, refuse_unknown, section_at
 from isa_ros.config.yaml_text import Tree
 from isa_ros.core.parameter import parameter, Parameters
 from isa_ros.errors import ConfigError
+from isa_ros.surroundings.leg.inertial import Imu
 from isa_ros.surroundings.leg.sheet import JOINTS, LegSheet, linkage_record
 from isa_ros.surroundings.linkage import actuator_coordinate
 
@@ -30,14 +31,28 @@ class LegStart(Parameters):
 
 
 @dataclass(frozen=True)
+class ImuConfig:
+    """An inertial measurement unit of a leg."""
+
+    name: str
+    """Of its topic, ``/NAME/imu``."""
+    sheet: Imu
+
+
+@dataclass(frozen=True)
 class LegConfig:
-    """A leg as the body of a run: its sheet, the actuator of each joint, and its initial pose."""
+    """
+    A leg as the body of a run.
+
+    Its sheet, the actuator of each joint, its initial pose, and its inertial units.
+    """
 
     model: str
     sheet: LegSheet
     joints: tuple[tuple[str, str], ...]
     """(joint, actuator) in the order of `JOINTS`."""
     start: LegStart
+    imus: tuple[ImuConfig, ...] = ()
 
     def position_of(self, joint: str) -> float:
         """Return the position of a joint's actuator at the leg's start, m or rad  (L2)."""

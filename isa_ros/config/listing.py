@@ -115,6 +115,9 @@ def _run_tables(path: str) -> Iterator[str]:
     if run.leg is not None and origins.leg is not None:
         yield _table('leg.start', [
             row._replace(source=given) for row in rows(run.leg.start, {})])
+        for imu in run.leg.imus:
+            yield _table(f'leg.imus.{imu.name}', [
+                row._replace(source=given) for row in rows(imu.sheet, {})])
         yield _table(f'leg.parameters: {run.leg.model}', rows(run.leg.sheet, origins.leg))
 
 

@@ -5,17 +5,19 @@ from dataclasses import dataclass, field, replace
 import hashlib
 
 from isa_ros.actuator.sheet import ActuatorSheet
-from isa_ros.config.leg_config import JointsKind, LegConfig, LegStart
+from isa_ros.config.leg_config import ImuConfig, JointsKind, LegConfig, LegStart
 from isa_ros.config.names import refuse_bad_name
 from isa_ros.config.recording import RecordConfig, RecordKind
 from isa_ros.config.schema import Key, Named, Names, OneOf, ParameterSet, Plain, Section
 from isa_ros.config.sections import Place
 from isa_ros.config.supplies import refuse_misfed, SUPPLY, SupplyConfig, SupplyKind
 from isa_ros.config.yaml_text import dump, parse, Tree
+from isa_ros.core.noise import seed_of
 from isa_ros.core.parameter import parameter, Parameters
 from isa_ros.core.timebase import refuse_grid
 from isa_ros.errors import ConfigError
 from isa_ros.loads.sheets import LocalLoad
+from isa_ros.surroundings.leg.inertial import Imu
 from isa_ros.surroundings.leg.sheet import LegSheet
 from isa_ros.surroundings.supply import SupplySheet
 
@@ -77,6 +79,8 @@ class RunConfig:
     source: str = field(default='')
     """Name of the file it was read from, without its directory."""
     record: RecordConfig = RecordConfig()
+    seed: int = 0
+    """Of all noise."""
 
     @property
     def leg(self) -> LegConfig | None:
@@ -197,6 +201,7 @@ class RunConfig:
         """Return the configuration of the tree of a resolved text; as `from_yaml`."""
         run: RunConfig = RUN.read(modern(tree), Place(name))
         refuse_grid(run.step_ns, run.controller_offset_ns, name)
+        seed_of(run.seed, f'{name}: seed')
         for actuator in run.actuators:
             refuse_bad_name(actuator.name, f'{name}: actuators: the name')
         refuse_misfed(
@@ -207,6 +212,7 @@ class RunConfig:
 RUN = Section(RunConfig, {
     'name': Key(Plain(str)), 'source': Key(Plain(str)), 'step_ns': Key(Plain(int)),
     'controller_offset_ns': Key(Plain(int)), 'tick_timeout_s': Key(Plain(float)),
+    'seed': Key(Plain(int), meant='0'),
     'supplies': Key(Named(SupplyKind())),
     'record': Key(RecordKind(), meant='everything'),
     'actuators': Key(Named(Section(ActuatorConfig, {
@@ -219,6 +225,7 @@ RUN = Section(RunConfig, {
     'body': Key(OneOf({'leg': Section(LegConfig, {
         'model': Key(Plain(str)), 'joints': Key(JointsKind()),
         'start': Key(ParameterSet(LegStart)),
+        'imus': Key(Named(Section(ImuConfig, {'sheet': Key(ParameterSet(Imu))})), meant='none'),
         'sheet': Key(ParameterSet(LegSheet))})}), is_optional=True),
 })
 """Every key of a resolved configuration."""

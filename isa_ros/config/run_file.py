@@ -14,7 +14,7 @@ from isa_ros.actuator.sheet import ActuatorSheet, refuse_wiring
 from isa_ros.actuator.tunable import refuse_unusable
 from isa_ros.config.catalogue import actuator_model, leg_section, material_section, Model
 from isa_ros.config.changes import changed, Values
-from isa_ros.config.leg_config import LegConfig, LegStart
+from isa_ros.config.leg_config import ImuConfig, LegConfig, LegStart
 from isa_ros.config.names import NAME_RULE, refuse_bad_name
 from isa_ros.config.own_load import load_section, refuse_beyond_stops
 from isa_ros.config.recording import read_record
@@ -26,6 +26,7 @@ from isa_ros.config.sections import (
     written)
 from isa_ros.config.supplies import read_supplies, SUPPLY, SupplyConfig
 from isa_ros.config.yaml_text import read, Tree
+from isa_ros.core.noise import seed_of
 from isa_ros.core.parameter import check
 from isa_ros.core.suggest import alternatives
 from isa_ros.core.timebase import FORCE_WINDOWS, PLANT_STEP_NS
@@ -34,6 +35,7 @@ from isa_ros.errors import ConfigError, ParameterError
 from isa_ros.loads.sheets import linearised, LocalLoad
 from isa_ros.plant.plant import plant_record
 from isa_ros.plant.step_limits import LoadSide, refuse_too_fast
+from isa_ros.surroundings.leg.inertial import Imu
 from isa_ros.surroundings.leg.sheet import JOINTS, LegSheet
 
 __all__ = [
@@ -81,8 +83,8 @@ def read_run(path: Path | str) -> tuple[RunConfig, Origins]:
 def run_of(tree: Tree, place: Place) -> tuple[RunConfig, Origins]:
     """Return the run of a file's tree and what it was built from; as `load_run`."""
     refuse_unknown(tree, (
-        'name', 'step_ms', 'controller_offset_ms', 'tick_timeout_s', SUPPLY, 'supplies', 'record',
-        'actuators', 'controllers', 'leg', 'body'), place)
+        'name', 'step_ms', 'controller_offset_ms', 'tick_timeout_s', 'seed', SUPPLY, 'supplies',
+        'record', 'actuators', 'controllers', 'leg', 'body'), place)
     times = build(Times, written(
         {f: tree[f] for f in Times.__dataclass_fields__ if f in tree}, place), place)
     step_ns, offset_ns = _grid(times, place)
@@ -93,7 +95,8 @@ def run_of(tree: Tree, place: Place) -> tuple[RunConfig, Origins]:
         name=name_of(tree, 'name', place),
         step_ns=step_ns, controller_offset_ns=offset_ns, tick_timeout_s=times.tick_timeout_s,
         supplies=supplies, actuators=actuators, body=leg, source=place.file,
-        record=read_record(tree.get('record', {}), place / 'record'))
+        record=read_record(tree.get('record', {}), place / 'record'),
+        seed=seed_of(tree.get('seed', 0), str(place / 'seed')))
     controllers = names_at(tree.get('controllers', []), place / 'controllers')
     return run.with_controllers(controllers), Origins(origins, leg_origin)
 
@@ -167,7 +170,7 @@ def _body(tree: Tree, place: Place, step_ns: int) -> tuple[LegConfig | None, Sec
 
 
 def _leg(leg: Tree, below: Place, step_ns: int) -> tuple[LegConfig, Section]:
-    refuse_unknown(leg, ('model', 'joints', 'ground', 'start', 'parameters'), below)
+    refuse_unknown(leg, ('model', 'joints', 'ground', 'start', 'imus', 'parameters'), below)
     model = leg.get('model')
     section, model_place = leg_section(model, f'{below}.model')  # type: ignore[arg-type]
     if 'ground' in leg:
@@ -181,8 +184,21 @@ def _leg(leg: Tree, below: Place, step_ns: int) -> tuple[LegConfig, Section]:
     refuse_unknown(joints, JOINTS, below / 'joints')
     config = LegConfig(
         str(model), sheet,
-        tuple((joint, name_of(joints, joint, below / 'joints')) for joint in JOINTS), start)
+        tuple((joint, name_of(joints, joint, below / 'joints')) for joint in JOINTS), start,
+        _imus(section_at(leg.get('imus', {}), below / 'imus'), below / 'imus', step_ns))
     return config, section
+
+
+def _imus(tree: Tree, place: Place, step_ns: int) -> tuple[ImuConfig, ...]:
+    units = []
+    for name in tree:
+        name_of({name: name}, name, place)
+        if name == COORDINATOR:
+            raise ConfigError(f'{place / name}: the name is reserved for the coordinator')
+        own = section_at(tree[name], place / name)
+        units.append(ImuConfig(name, build(Imu, written(own, place / name), place / name)))
+        units[-1].sheet.period_ns(step_ns, str(place / name))
+    return tuple(units)
 
 
 def leg_start(tree: Tree, place: Place, base: LegStart | None = None) -> LegStart:

@@ -20,7 +20,6 @@ ENERGIES = np.dtype([
     ('damping', 'f8'),          # damping of the sensor, and end stops, J  (E4)
     ('work', 'f8'),             # done on the load, J  (E5)
     ('compression', 'f8'),      # taken up by the oil in the chambers, J  (E6)
-    ('coil', 'f8'),             # heat of the coils, which the amplifier brings, J  (E8)
 ])
 """Powers of one instant, W, or their integrals over time, J."""
 

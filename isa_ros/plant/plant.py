@@ -13,7 +13,7 @@ from isa_ros.core.record import record
 from isa_ros.plant import (
     chambers, coil, friction, mechanics, relief, sensors, servo_valve, spool, thermal)
 from isa_ros.plant.chambers import boil
-from isa_ros.plant.sensors import convert, encode
+from isa_ros.plant.sensors import read, read_channels
 from isa_ros.plant.spool import block_spool, stop_spool
 from isa_ros.plant.thermal import LumpedThermal, NoneThermal
 from isa_ros.plant.valve_sheets import DataSheetValve, DualGainValve, HighResponseValve
@@ -79,20 +79,22 @@ def plant_record(sheet: LinearPlant | RotaryPlant) -> np.recarray:
     area_a, area_b = sheet.drive.areas
     celsius = sheet.oil.temperature_celsius
     own_spool = spool.spool_record(sheet.spool, celsius)
+    lands = servo_valve.valve_record(sheet.valve, area_a / area_b)
     oil = chambers.chambers_record(sheet.drive, sheet.oil)
     seals = friction.friction_record(sheet.friction)
     return np.array([record(
         PLANT,
         coil=coil.coil_record(sheet.coil),
         spool=own_spool,
-        valve=servo_valve.valve_record(sheet.valve, area_a / area_b),
+        valve=lands,
         chambers=oil,
         relief=relief.relief_record(sheet.relief),
         friction=seals,
         mechanics=mechanics.mechanics_record(sheet.mechanics),
         sensors=sensors.sensors_record(sheet.sensors),
         thermal=thermal.thermal_record(
-            sheet.thermal, celsius, spool.bias_per_k(sheet.spool), oil, seals, own_spool),
+            sheet.thermal, celsius, spool.bias_per_k(sheet.spool), oil, lands, seals,
+            own_spool),
         )], PLANT).view(np.recarray)
 
 
@@ -168,7 +170,6 @@ def plant_rates(y, x_load, v_load, drive, p_s, p_t, plant, rates, powers):
     powers.friction = f_friction * v
     powers.damping = plant.mechanics.d_s * slip * slip - f_stop * v
     powers.work = f_sensor * v_load
-    powers.coil = coil.coil_heat(y.coil, plant.coil)
     return f_sensor, q_p, q_t + out_a + out_b
 
 
@@ -182,21 +183,26 @@ def settle(h, y, p_t, plant):
 
 
 @kernel
-def read_sensors(y, x_load, v_load, plant, measured):
-    """
-    Write the reading of every sensor at one instant; return the exact sensor force  (S1, S2).
+def exact_force(y, x_load, v_load, plant):
+    """Return the force in the force sensor, N or Nm."""
+    return mechanics.sensor_force(
+        y.mechanics.position, y.mechanics.velocity, x_load, v_load, plant.mechanics)
 
-    ``measured`` has the fields position, force, pressure_a, pressure_b, spool, current.
+
+@kernel
+def sense(step, period, y, x_load, v_load, plant, key, state, measured):
+    """
+    Convert every channel once, at plant step ``step``  (S1-S3).
+
+    ``period`` of the converters in plant steps, ``key`` of the noise; ``state`` is a
+    `channels.CHANNELS_STATE`, ``measured`` a record with the fields of `channels.CHANNELS`.
     """
     own = plant.sensors
-    force = mechanics.sensor_force(
-        y.mechanics.position, y.mechanics.velocity, x_load, v_load, plant.mechanics)
-    measured.position = encode(y.mechanics.position, own.encoder)
-    measured.force = convert(force, -own.force_range, own.force_range, own.force_step)
-    measured.pressure_a = convert(y.chambers.p_a, 0.0, own.pressure_range, own.pressure_step)
-    measured.pressure_b = convert(y.chambers.p_b, 0.0, own.pressure_range, own.pressure_step)
-    measured.spool = convert(y.valve.spool, -own.spool_range, own.spool_range, own.spool_step)
-    measured.current = convert(
-        coil.coil_current(y.coil, plant.coil), -own.current_range, own.current_range,
-        own.current_step)
-    return force
+    position, force = y.mechanics.position, exact_force(y, x_load, v_load, plant)
+    p_a, p_b, spool_position = y.chambers.p_a, y.chambers.p_b, y.valve.spool
+    current = coil.coil_current(y.coil, plant.coil)
+    if own.errors.are_ideal:
+        read(position, force, p_a, p_b, spool_position, current, own, measured)
+    else:
+        read_channels(step, period, position, force, p_a, p_b, spool_position, current, own,
+                      key, state, measured)

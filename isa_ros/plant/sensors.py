@@ -1,7 +1,8 @@
 """
-Sensors of the REU: 12-bit converters and the encoder.
+Sensors of the REU: 12-bit converters and the encoder, each behind its channel.
 
-All measurements that the controller uses pass through them.
+All measurements that the controller uses and that are published pass through them, once per
+period of the converters.
 """
 
 from dataclasses import dataclass
@@ -12,12 +13,14 @@ from isa_ros.core.parameter import parameter, Parameters
 from isa_ros.core.record import record
 from isa_ros.core.units import MILLI, MPA
 from isa_ros.errors import ParameterError
+from isa_ros.plant import channels
+from isa_ros.plant.channels import ideal
 import numpy as np
 
 
 @dataclass(frozen=True, kw_only=True)
 class Sensors(Parameters):
-    """Ranges and resolutions."""
+    """Ranges, resolutions, and the errors of the channels."""
 
     adc_bits: float = parameter('resolution of the converters', 'bit', ge=4, le=24)
     encoder_resolution: float = parameter('position resolution', 'm | rad', gt=0.0, le=0.01)
@@ -26,11 +29,23 @@ class Sensors(Parameters):
     spool_range_mm: float = parameter('spool sensor, +-', 'mm', gt=0.0, le=2.0)
     current_range_ma: float = parameter('current sensor, +-', 'mA', gt=0.0, le=200.0)
 
+    position: channels.PositionChannel = ideal(channels.PositionChannel)
+    force: channels.ForceChannel = ideal(channels.ForceChannel)
+    pressure_a: channels.PressureChannel = ideal(channels.PressureChannel)
+    pressure_b: channels.PressureChannel = ideal(channels.PressureChannel)
+    spool: channels.SpoolChannel = ideal(channels.SpoolChannel)
+    current: channels.CurrentChannel = ideal(channels.CurrentChannel)
+
     def __post_init__(self) -> None:
         """Refuse a resolution that is not a whole number of bits."""
         super().__post_init__()
         if self.adc_bits != int(self.adc_bits):
             raise ParameterError(f'adc_bits = {self.adc_bits:g} bit, must be a whole number')
+
+    @property
+    def channels(self) -> dict[str, channels.Channel]:
+        """Return the channels by name, in the order of `channels.CHANNELS`."""
+        return {name: getattr(self, name) for name in channels.CHANNELS}
 
 
 SENSORS = np.dtype([
@@ -38,7 +53,8 @@ SENSORS = np.dtype([
     ('force_range', 'f8'), ('force_step', 'f8'),
     ('pressure_range', 'f8'), ('pressure_step', 'f8'),
     ('spool_range', 'f8'), ('spool_step', 'f8'),
-    ('current_range', 'f8'), ('current_step', 'f8')])
+    ('current_range', 'f8'), ('current_step', 'f8'),
+    ('errors', channels.CHANNEL_ERRORS)])
 
 
 def sensors_record(sheet: Sensors) -> np.record:
@@ -51,7 +67,8 @@ def sensors_record(sheet: Sensors) -> np.record:
         force_range=sheet.force_range, force_step=2.0 * sheet.force_range / codes,
         pressure_range=pressure, pressure_step=pressure / codes,
         spool_range=spool, spool_step=2.0 * spool / codes,
-        current_range=current, current_step=2.0 * current / codes)
+        current_range=current, current_step=2.0 * current / codes,
+        errors=channels.channel_errors(sheet.channels))
 
 
 @kernel
@@ -65,3 +82,34 @@ def convert(value, lowest, highest, step):
     """Return the nearest code of a converter with full scale ``lowest`` to ``highest``  (S2)."""
     clipped = max(lowest, min(highest - step, value))
     return lowest + math.floor((clipped - lowest) / step + 0.5) * step
+
+
+@kernel
+def read(position, force, p_a, p_b, spool, current, own, measured):
+    """
+    Write the reading of each quantity  (S1, S2).
+
+    ``measured`` has the fields position, force, pressure_a, pressure_b, spool, current.
+    """
+    measured.position = encode(position, own.encoder)
+    measured.force = convert(force, -own.force_range, own.force_range, own.force_step)
+    measured.pressure_a = convert(p_a, 0.0, own.pressure_range, own.pressure_step)
+    measured.pressure_b = convert(p_b, 0.0, own.pressure_range, own.pressure_step)
+    measured.spool = convert(spool, -own.spool_range, own.spool_range, own.spool_step)
+    measured.current = convert(
+        current, -own.current_range, own.current_range, own.current_step)
+
+
+@kernel
+def read_channels(step, period, position, force, p_a, p_b, spool, current, own, key, state,
+                  measured):
+    """
+    Write the reading of each quantity behind its channel at plant step ``step``  (S1-S3).
+
+    ``period`` of the converters in plant steps, ``key`` of the noise; ``state`` is a
+    `channels.CHANNELS_STATE`.
+    """
+    channels.enter(step, period, position, force, p_a, p_b, spool, current, state)
+    channels.disturb(step, period, key, own.errors, state)
+    shown = state.shown
+    read(shown[0], shown[1], shown[2], shown[3], shown[4], shown[5], own, measured)

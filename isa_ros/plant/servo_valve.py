@@ -34,7 +34,7 @@ VALVE = np.dtype([
     ('lap_pa', 'f8'), ('lap_at', 'f8'), ('lap_bt', 'f8'), ('lap_pb', 'f8'),  # m
     ('has_points', 'f8'),   # 1: flow and leakage are the two curves below
     ('flow', LINES), ('leak', LINES),           # m3/s at dp_ref over m of spool
-    ('leak_factor', 'f8'),  # leakage over that of the sheet  (T3)
+    ('leak_factor', 'f8'),  # of the curve above  (T3)
 ])
 
 
@@ -197,11 +197,11 @@ def leakage(travel, valve):
     """
     Return q_0 x_l / (x_l + u), a land's leakage at the reference drop  (V6), in m3/s.
 
-    Of a data sheet: straight lines between the leakages of V16. Both at the oil's temperature.
+    Of a data sheet: straight lines between the leakages of V16, times a factor  (T3).
     """
     if valve.has_points > 0.0:
         return valve.leak_factor * y_on_lines(travel, valve.leak)
-    return valve.leak_factor * (valve.q_0 * valve.x_l / (valve.x_l + travel))
+    return valve.q_0 * valve.x_l / (valve.x_l + travel)
 
 
 @kernel

@@ -230,7 +230,6 @@ def _actuator(
 
 def _conductances(valve: np.record, is_open: bool) -> tuple[float, float]:
     """Return at least dQ/dP of both chambers at no drop over their lands, m3/s/Pa  (V5, V7)."""
-    flow = 2.0 * valve.leak_factor * valve.q_0 + (
-        flow_curve(valve.x_max, valve) if is_open else 0.0)
+    flow = 2.0 * valve.q_0 + (flow_curve(valve.x_max, valve) if is_open else 0.0)
     per_flow = flow * valve.per_root_drop / math.sqrt(valve.delta)
     return max(valve.f_pa, valve.f_at) * per_flow, max(valve.f_pb, valve.f_bt) * per_flow

@@ -49,28 +49,30 @@ THERMAL = np.dtype([
     ('laminar_share', 'f8'),
     ('bias_per_k', 'f8'),                                       # A/K, b_theta of V12
     ('oil', PROPERTIES),
-    ('c_li', 'f8'), ('beta', 'f8'), ('sigma2', 'f8'), ('bias', 'f8'),   # the sheet's values
+    ('c_li', 'f8'), ('q_0', 'f8'), ('beta', 'f8'), ('sigma2', 'f8'), ('bias', 'f8'),  # of the sheet
 ])
 THERMAL_STATE = np.dtype([
     ('oil', 'f8'), ('body', 'f8'),      # celsius
     ('heat', 'f8'),         # of the losses, J
     ('to_oil', 'f8'),       # carried away by the oil that flowed through, J
     ('to_air', 'f8'),       # given to the air, J
+    ('coil', 'f8'),         # heat of the coils since the begin of the tick, J
 ])
-"""Temperatures, and the heat since t = 0."""
+"""Temperatures, and the heat since t = 0 but for that of the coils."""
 
 
 def thermal_record(
         sheet: NoneThermal | LumpedThermal, celsius: float, bias_per_k: float,
-        chambers: np.record, friction: np.record, spool: np.record) -> np.record:
+        chambers: np.record, valve: np.record, friction: np.record,
+        spool: np.record) -> np.record:
     """
     Return the `THERMAL` record of a plant whose sheet holds at a temperature of the oil.
 
-    ``chambers``, ``friction`` and ``spool`` are the plant's records, ``bias_per_k`` (A/K) the
-    shift of its null; an actuator of constant temperature has zeros, and the temperature.
+    The records are those of the plant, ``bias_per_k`` (A/K) is the shift of its null; an actuator
+    of constant temperature has zeros, and the temperature.
     """
-    at_sheet = {'c_li': chambers.c_li, 'beta': chambers.beta, 'sigma2': friction.sigma2,
-                'bias': spool.bias, 'bias_per_k': bias_per_k}
+    at_sheet = {'c_li': chambers.c_li, 'q_0': valve.q_0, 'beta': chambers.beta,
+                'sigma2': friction.sigma2, 'bias': spool.bias, 'bias_per_k': bias_per_k}
     if isinstance(sheet, NoneThermal):
         return record(
             THERMAL, is_on=0.0, oil_capacity=0.0, body_capacity=0.0, oil_to_body=0.0,
@@ -105,6 +107,7 @@ def warm(celsius, plant):
     thicker = thickness(celsius, own.oil)
     plant.chambers.c_li = own.c_li / thicker
     plant.valve.leak_factor = 1.0 + own.laminar_share * (1.0 / thicker - 1.0)
+    plant.valve.q_0 = own.q_0 * plant.valve.leak_factor
     plant.friction.sigma2 = own.sigma2 * thicker
     plant.chambers.beta = own.beta / softness(celsius, own.oil)
     plant.spool.bias = own.bias + own.bias_per_k * (celsius - own.oil.celsius)

@@ -15,6 +15,7 @@ from isa_ros.config.run_config import RunConfig
 from isa_ros.errors import RunError
 from isa_ros.processes.forked import can_fork, Forked
 from isa_ros.processes.stopping import PARENT_VARIABLE
+from isa_ros.run.options import OPTION_OF, with_seed
 
 MODULES = {
     'actuator': 'isa_ros.programs.actuator',
@@ -28,7 +29,7 @@ END_S = 3.0
 _POLL_S = 0.01
 _ROOT = Path(isa_ros.__file__).parents[1]
 
-ParameterValue = bool | float | str | list[str] | tuple[str, ...]
+ParameterValue = bool | int | float | str | list[str] | tuple[str, ...]
 
 
 @dataclass(frozen=True)
@@ -74,7 +75,8 @@ def run_processes(
     """
     Return every process of a run, the coordinator last.
 
-    ``options`` are parameters of the coordinator; with ``in_process`` it is the only process.
+    ``options`` are parameters of the coordinator; with ``in_process`` it is the only process. Its
+    changes and its seed are also those of the actuators.
     ``elsewhere`` are the actuators that are started on another host.
     """
     files = [('config_file', str(config.resolve()))]
@@ -84,7 +86,14 @@ def run_processes(
     if options.get('in_process'):
         return (coordinator,)
     names = run.names_here(elsewhere)
-    return (*actuator_processes(run, config, scenario, names), coordinator)
+    return (*actuator_processes(run, config, scenario, names, _changes_in(options)), coordinator)
+
+
+def _changes_in(options: Mapping[str, ParameterValue]) -> tuple[str, ...]:
+    """Return the changes and the seed in parameters of the coordinator, as `Request` has them."""
+    request = {name: OPTION_OF[name].of_parameter(options[name])
+               for name in ('set', 'seed') if name in options}
+    return with_seed(request.get('set', ()), request.get('seed'))
 
 
 class Children:

@@ -6,7 +6,7 @@ launch file are made from `OPTIONS`, and `Request` is filled from their values. 
 imports neither ROS nor numba: `isa --help` and launch files import it.
 """
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, fields, MISSING, replace
 from enum import Enum
 from pathlib import Path
@@ -19,7 +19,7 @@ from isa_ros.run.pacing import JOIN_TIMEOUT_S, Laps
 
 COMPRESSIONS = ('none', 'lz4', 'zstd')
 
-RosValue = bool | float | str | list[str]
+RosValue = bool | int | float | str | list[str]
 
 SET_HELP = (
     'another value in {config}, by its key and in its unit, as isa params shows them; keys of the '
@@ -39,6 +39,7 @@ class Kind(Enum):
     COMPRESSION = 'compression'
     POSITIVE = '> 0'
     NOT_NEGATIVE = '>= 0'
+    WHOLE = 'whole number >= 0'
     FLAG = 'flag'
     NAMES = 'names'
     """Names, separated by commas on the command line."""
@@ -56,7 +57,8 @@ _COMMA = {
     kind: re.compile(r',(?=[^,=\[{]+=)' if kind is Kind.CHANGES else ',') for kind in _LISTS}
 """What separates entries in a launch file; the value of a change may have commas too."""
 _UNSET: Mapping[Kind, tuple[RosValue, str]] = {
-    Kind.POSITIVE: (0.0, '0'), Kind.NOT_NEGATIVE: (-1.0, '< 0'), Kind.FLAG: (False, 'false')}
+    Kind.POSITIVE: (0.0, '0'), Kind.NOT_NEGATIVE: (-1.0, '< 0'), Kind.WHOLE: (-1, '< 0'),
+    Kind.FLAG: (False, 'false')}
 """Value of a ROS parameter that is not set, and its text in help; other kinds: an empty text."""
 _EMPTY: tuple[RosValue, str] = ('', 'empty')
 _FLAGS = {'true': True, '1': True, 'false': False, '0': False}
@@ -131,7 +133,7 @@ class Option:
         """Return the value for `Request` of a ROS parameter."""
         if self.kind in _LISTS:
             return tuple(value or ())
-        if self.kind is Kind.NOT_NEGATIVE:
+        if self.kind in (Kind.NOT_NEGATIVE, Kind.WHOLE):
             return None if value < 0.0 else value
         if self.default is None and value == self.parameter_default:
             return None
@@ -156,6 +158,11 @@ class Option:
                 return float(text)
             except ValueError:
                 raise ConfigError(f'{self.name}:={text}, must be a number') from None
+        if self.kind is Kind.WHOLE:
+            try:
+                return int(text)
+            except ValueError:
+                raise ConfigError(f'{self.name}:={text}, must be a whole number') from None
         return text
 
 
@@ -175,6 +182,8 @@ class Request:
         parameter='scenario_file'))
     changes: tuple[str, ...] = field(default=(), metadata=_option(
         Kind.CHANGES, SET_HELP, metavar='KEY=VALUE', name='set'))
+    seed: int | None = field(default=None, metadata=_option(
+        Kind.WHOLE, 'of all noise of the run', otherwise='that of {config}', metavar='N'))
     duration_s: float | None = field(default=None, metadata=_option(
         Kind.POSITIVE, 'simulated time', otherwise='that of the scenario, else until Ctrl-C',
         unit='s', metavar='S', name='duration'))
@@ -222,6 +231,16 @@ class Request:
     laps: Laps | None = None
     """Measures the host time of every phase of the ticks."""
 
+    @property
+    def all_changes(self) -> tuple[str, ...]:
+        """Return `changes` and the seed, as one more of them."""
+        return with_seed(self.changes, self.seed)
+
+
+def with_seed(changes: Sequence[str], seed: int | None) -> tuple[str, ...]:
+    """Return the changes of a request and its seed, if it has one, as the last of them."""
+    return (*changes, *(() if seed is None else (f'seed={seed}',)))
+
 
 def _declared() -> tuple[Option, ...]:
     options = []
@@ -238,6 +257,9 @@ def _declared() -> tuple[Option, ...]:
 
 OPTIONS = _declared()
 """In the order of `isa bringup --help`."""
+
+OPTION_OF = {option.parameter: option for option in OPTIONS}
+"""By name of the ROS parameter."""
 
 
 def request_of_arguments(values: Mapping[str, Any], **more: Any) -> Request:

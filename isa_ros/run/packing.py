@@ -64,6 +64,8 @@ class Names(NamedTuple):
     body: BodyMessages | None = None
     heated: Collection[str] = ()
     """Names of the actuators whose temperature is published."""
+    periods: Mapping[str, int] = {}
+    """Period in ns of the topics that do not have a message at every tick, by name."""
 
 
 def topics_of_actuator(prefix: str, is_heated: bool) -> list[Topic]:
@@ -172,8 +174,10 @@ class Packer:
         self._tuned_supplies: bytes | None = None
         self._t_ns = 0
         self._diagnosed: bytes | None = None
-        self._is_full_second = False
-        self._layouts: dict[bytes, Layout] = {}
+        self._periods = dict(names.periods) | {
+            f'/{name}/{TEMPERATURE[0]}': NS_PER_SECOND for name in names.heated}
+        self._not_due: frozenset[str] = frozenset()
+        self._layouts: dict[tuple[bytes, frozenset[str]], Layout] = {}
         self._bind()
 
     @staticmethod
@@ -209,11 +213,13 @@ class Packer:
         ``tuned`` are the parameters that changed at the tick's start, by row, and
         ``tuned_supplies`` those of the supplies.
         """
-        self._is_full_second = (
-            t_ns == 0 or t_ns // NS_PER_SECOND != tick_start_ns // NS_PER_SECOND)
         pack(time_word(t_ns), time_word(tick_start_ns), ATMOSPHERE,
              self._samples, self._shown.applied, self._supplies, self._body, self._words,
              self._values, self._target)
+        if self._periods:
+            self._not_due = frozenset(
+                name for name, period in self._periods.items()
+                if t_ns and t_ns // period == tick_start_ns // period)
         self._tuned = {
             row: applied_parameters(self._names.actuators[row][0], values, tick_start_ns)
             for row, values in tuned.items()} if tuned else {}
@@ -233,7 +239,7 @@ class Packer:
 
     def all_messages(self, events: Sequence[bytes] = ()) -> Packed:
         """Return all messages of the packed instant, in the order of `topics`."""
-        key = (self._kinds != 0).tobytes() + bytes([self._is_full_second])
+        key = (self._kinds != 0).tobytes(), self._not_due
         where = self._layouts.get(key)
         if where is None:
             where = self._layouts[key] = self._layout()
@@ -250,11 +256,10 @@ class Packer:
         return Packed.of(sorted([*packed, *extra], key=lambda message: message[0]))
 
     def _layout(self) -> Layout:
-        """Return the layout of this tick's messages: those that it has none of are left out."""
-        absent = {f'/{name}/{_SETPOINT}' for (name, _), kinds in zip(
-            self._names.actuators, self._kinds) if not kinds}
-        if not self._is_full_second:
-            absent |= {f'/{name}/{TEMPERATURE[0]}' for name in self._names.heated}
+        """Return the layout of this tick's messages: of applied setpoints, and of what is due."""
+        absent = self._not_due.union(
+            f'/{name}/{_SETPOINT}'
+            for (name, _), kinds in zip(self._names.actuators, self._kinds) if not kinds)
         present = [(self._index[name], place) for name, place in self._place.items()
                    if name not in absent]
         present.sort()
@@ -270,8 +275,8 @@ class Packer:
         messages = [self._tuned.get(row), setpoint,
                     *(self._message(f'/{name}/{suffix}') for suffix, _ in STATE_TOPICS)]
         if name in self._names.heated:
-            messages.append(
-                self._message(f'/{name}/{TEMPERATURE[0]}') if self._is_full_second else None)
+            temperature = f'/{name}/{TEMPERATURE[0]}'
+            messages.append(None if temperature in self._not_due else self._message(temperature))
         return messages
 
     def has_applied(self, row: int) -> bool:
@@ -282,6 +287,7 @@ class Packer:
         """Return the messages of some topics of supplies and body; None: none at this instant."""
         rare = {_TUNED_SUPPLIES[0]: self._tuned_supplies, diagnostics.TOPIC[0]: self._diagnosed}
         return [rare[topic.name] if topic.name in rare
+                else None if topic.name in self._not_due
                 else self._message(topic.name) for topic in topics]
 
     def _message(self, name: str) -> bytes:

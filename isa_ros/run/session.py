@@ -63,7 +63,7 @@ def prepare(request: Request) -> Session:
         The output directory already exists or cannot be created.
 
     """
-    changes = changes_of(request.changes)
+    changes = changes_of(request.all_changes)
     run = load_run(request.config, changes.run).with_controllers(request.controllers).stored(
         request.compression, request.split_mb, 'record options')
     if run.record.thins:

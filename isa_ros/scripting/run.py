@@ -110,14 +110,15 @@ class Run:
 
     def simulate(
             self, duration: float | None = None, controllers: Controllers = (), *,
-            faults: Sequence[Tree] = (), progress: bool = False) -> Result:
+            faults: Sequence[Tree] = (), seed: int | None = None,
+            progress: bool = False) -> Result:
         """
         Simulate from t = 0 and return every sample, in memory.
 
         ``duration`` in s; None: that of the scenario. ``controllers`` as in `simulation`.
         ``faults`` are added to those of the scenario, each as its file would have it:
         ``{'t_s': 0.5, 'actuator': 'kfe', 'fault': 'valve_stuck', 'until_s': 0.8}``.
-        ``progress`` is shown on a terminal only.
+        ``seed`` of all noise; None: that of the run. ``progress`` is shown on a terminal only.
 
         Raises
         ------
@@ -127,6 +128,9 @@ class Run:
             A state is no longer finite.
 
         """
+        if seed is not None:
+            return self.replace({'seed': seed}).simulate(
+                duration, controllers, faults=faults, progress=progress)
         named = self._named(controllers)
         plan = self._with_names(list(named))
         if duration is not None:
@@ -166,13 +170,13 @@ class Run:
 
 def load(
         config: str | Path | Tree, scenario: str | Path | Tree | None = None, *,
-        duration: float | None = None, compression: str | None = None,
+        seed: int | None = None, duration: float | None = None, compression: str | None = None,
         split_mb: float | None = None) -> Run:
     """
     Return the run of a file, or of a shipped one by name, with its scenario.
 
-    Instead of a file its content may be given, as a dictionary. ``duration`` (s), ``compression``
-    and ``split_mb`` are the options of `isa bringup`.
+    Instead of a file its content may be given, as a dictionary. ``seed``, ``duration`` (s),
+    ``compression`` and ``split_mb`` are the options of `isa bringup`.
 
     Raises
     ------
@@ -180,8 +184,9 @@ def load(
         A file cannot be read or is invalid; the message has file, key, value and bound.
 
     """
-    return Run(_file(config, CONFIG), None if scenario is None else _file(scenario, SCENARIOS),
-               duration, compression, split_mb)
+    run = Run(_file(config, CONFIG), None if scenario is None else _file(scenario, SCENARIOS),
+              duration, compression, split_mb)
+    return run if seed is None else run.replace({'seed': seed})
 
 
 def _file(given: str | Path | Tree, directory: str) -> _File:

@@ -9,7 +9,7 @@ from isa_ros.core.signals import COMMAND, HAS_SETPOINT, LOAD_PORT, START
 from isa_ros.errors import ConfigError, SimulationDiverged
 import numpy as np
 import pytest
-from tests.sheets import MODELS, setpoint
+from tests.sheets import actuator_sheet, MODELS, setpoint
 
 CONFIGS = [
     *(default_actuator(model, model) for model in MODELS),
@@ -56,6 +56,30 @@ def test_together_they_do_what_each_does_alone():
         assert (group.applied['kinds'] != 0).tolist() == [
             bool(k and tick % 7 == 3) for k in range(len(CONFIGS))]
     assert group.t_ns == 20 * DEFAULT_TIMING.step_ns
+
+
+def test_noise_does_not_depend_on_the_grouping():
+    """It is that of an actuator's name: alone, together, or together in another order."""
+    disturbed = [replace(config, sheet=replace(config.sheet, plant=replace(
+        config.sheet.plant, sensors=actuator_sheet(
+            config.model, 'default', 'data_sheet_sensors').plant.sensors)))
+        for config in CONFIGS]
+    timing = replace(DEFAULT_TIMING, seed=7)
+    groups = [ActuatorGroup(disturbed, timing), ActuatorGroup(disturbed[::-1], timing),
+              *(ActuatorGroup([config], timing) for config in disturbed)]
+    for tick in range(5):
+        rows = ports(tick)
+        groups[0].advance(rows)
+        groups[1].advance(rows[::-1].copy())
+        for k, alone in enumerate(groups[2:]):
+            alone.advance(rows[k:k + 1])
+    together = [actuator.snapshot() for actuator in groups[0].actuators]
+    assert [actuator.snapshot() for actuator in groups[1].actuators] == together[::-1]
+    assert [group.actuators[0].snapshot() for group in groups[2:]] == together
+    other = ActuatorGroup(disturbed, DEFAULT_TIMING)
+    for tick in range(5):
+        other.advance(ports(tick))
+    assert all(actuator.snapshot() != own for actuator, own in zip(other.actuators, together))
 
 
 def test_commands_given_with_the_tick_act_as_if_accepted_before_it():

@@ -16,7 +16,8 @@ CASES = [
     *((model, 'blocked', ()) for model in MODELS),
     ('smart_manifold', 'wheel', ()), ('smart_manifold', 'drop_rig', ()),
     ('isa_v5', 'rubber', ()),
-    ('isa_v5', 'blocked', ('explicit',)), ('isa_v2', 'wheel', ('feedback_linearisation',))]
+    ('isa_v5', 'blocked', ('explicit',)), ('isa_v2', 'wheel', ('feedback_linearisation',)),
+    ('isa_v5', 'mass', ('data_sheet_sensors',))]
 """Model, load and variants."""
 
 

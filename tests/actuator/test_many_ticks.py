@@ -78,15 +78,20 @@ def test_many_ticks_are_as_many_calls(kinds):
 
 
 def test_states_are_those_behind_the_sensors():
-    """A reading is within half a code; the spool and the pressures are read linearly."""
-    of = group('blocked')
+    """
+    A reading is within half a code; the spool and the pressures are read linearly.
+
+    With a tick as long as the period of the converters, and no offset, the last conversion of a
+    tick is at its beginning.
+    """
+    of = group('blocked', timing=replace(TICK, controller_offset_ns=0))
     log = of.advance_many(ports(), commands(of))
     for k, actuator in enumerate(of.actuators):
         sensors = actuator.memory.constants['plant'][0]['sensors']
         for name, code in (('position', 'encoder'), ('force', 'force_step'),
                            ('pressure_a', 'pressure_step'), ('pressure_b', 'pressure_step'),
                            ('spool', 'spool_step'), ('current', 'current_step')):
-            apart = np.abs(log.states[name][:, k] - log.samples[name][:, k])
+            apart = np.abs(log.states[name][:-1, k] - log.samples[name][1:, k])
             # half a code, and the roundings of a value of at most 2e7
             assert apart.max() <= 0.5 * sensors[code] + 1e-8
 

@@ -22,12 +22,14 @@ def test_every_option_reaches_the_request(tmp_path):
         'leg', '--scenario', 'drop', '--duration', '0.5', '--out', 'bag', '--overwrite',
         '--compression', 'zstd', '--split-mb', '0', '--real-time-factor', '2', '--in-process',
         '--elsewhere', 'haa,hfe', '--controller', 'sway', '--controller', 'hold',
-        '--sync', '--join-timeout', '7', '--paused', '--restore', 'a.json', '--save', str(state)
+        '--sync', '--join-timeout', '7', '--paused', '--restore', 'a.json', '--save', str(state),
+        '--seed', '7'
     ) == Request(
         config=find('leg', CONFIG), scenario=find('drop', 'config/scenarios'), duration_s=0.5,
         out=Path('bag'), overwrite=True, compression='zstd', split_mb=0.0, real_time_factor=2.0,
         is_synced=True, in_process=True, elsewhere=('haa', 'hfe'), controllers=('sway', 'hold'),
-        join_timeout_s=7.0, is_paused=True, restore=Path('a.json'), save=state)
+        join_timeout_s=7.0, is_paused=True, restore=Path('a.json'), save=state,
+        seed=7)
 
 
 def test_one_call_leaves_nothing_to_the_next():

@@ -99,6 +99,15 @@ def test_actuators_of_another_host_are_not_started(leg):
     assert parameters(coordinator)['controllers'] == ['sway', 'hold']
 
 
+def test_changes_and_the_seed_reach_the_actuators_too(leg):
+    """Otherwise they would take part with other parameters, and be refused."""
+    *actuators, coordinator = leg(set='supply.pressure_mpa=14', seed='7')
+    assert parameters(coordinator)['seed'] == 7
+    assert parameters(coordinator)['set'] == ['supply.pressure_mpa=14']
+    for node in actuators:
+        assert parameters(node)['set'] == ['supply.pressure_mpa=14', 'seed=7']
+
+
 def test_a_leg_is_shown_where_the_packages_are_installed(leg, installed):
     """With the URDF of its model and the simulated time."""
     installed |= {'robot_state_publisher': '/opt', 'rviz2': '/opt'}
@@ -126,13 +135,14 @@ def test_in_one_process_the_coordinator_is_alone_and_gets_every_argument(leg):
     coordinator, = leg(
         config='rig_rotary', scenario='step', out='bag', duration='0.5', in_process='true',
         real_time_factor='2', paused='1', compression='lz4', split_mb='0', overwrite='true',
-        join_timeout='7', restore='a.json', save='b.json', sync='true')
+        join_timeout='7', restore='a.json', save='b.json', sync='true',
+        seed='7')
     assert parameters(coordinator) == {
         'config_file': str(find('rig_rotary', CONFIG).resolve()),
         'scenario_file': str(find('step', SCENARIOS).resolve()), 'out': 'bag',
         'duration': 0.5, 'in_process': True, 'real_time_factor': 2.0, 'paused': True,
         'compression': 'lz4', 'split_mb': 0.0, 'overwrite': True, 'join_timeout_s': 7.0,
-        'restore': 'a.json', 'save': 'b.json', 'sync': True}
+        'restore': 'a.json', 'save': 'b.json', 'sync': True, 'seed': 7}
 
 
 def test_one_actuator_runs_its_model_at_real_time(actions):

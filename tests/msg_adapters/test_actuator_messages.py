@@ -106,9 +106,9 @@ def test_actuators_together_say_what_each_says_alone():
 
 
 def test_every_value_but_the_gauge_pressures_is_published():
-    """Of these the absolute ones are; energies are on `/diagnostics`."""
+    """Of these the absolute ones are; energies on `/diagnostics`, the temperature if heated."""
     used = {column for _, fields in of_actuator('hip', False).values()
             for column in fields.values() if column >= 0}
     assert {value for k, value in enumerate(VALUES) if k not in used} == {
-        'sample pressure_a', 'sample pressure_b', 'sample power',
+        'sample pressure_a', 'sample pressure_b', 'sample power', 'sample temperature',
         *(f'sample {field}' for field in FIELDS if field != 'supply_volume')}

@@ -13,7 +13,8 @@ from isa_ros.actuator.sheet import actuator_record
 from isa_ros.core.contact import normal_force
 from isa_ros.core.kernel import kernel
 from isa_ros.core.timebase import PLANT_STEP, PLANT_STEP_NS
-from isa_ros.plant.plant import plant_rates, read_sensors
+from isa_ros.plant.channels import CHANNELS_STATE
+from isa_ros.plant.plant import plant_rates, sense
 from isa_ros.plant.spool import stop_spool
 from isa_ros.reu.cascade import cascade_step, is_due, REU_STATE
 from isa_ros.surroundings.leg.motion import (
@@ -50,6 +51,8 @@ class System(NamedTuple):
     """`REU_STATE`, (3,)."""
     actuators: np.ndarray
     """`ACTUATOR`, (3,)."""
+    channels: np.ndarray
+    """`CHANNELS_STATE`, (3,)."""
     legs: np.ndarray
     """`LEG`, (1,)."""
 
@@ -129,7 +132,8 @@ def sample_reus(step, y, commands, is_commanded, system):
             setpoint.position, setpoint.velocity, setpoint.effort = c[0], c[1], c[2]
             setpoint.stiffness, setpoint.damping = c[3], c[4]
         if is_due(step, reu.current_steps, reu.offset_steps):
-            read_sensors(system.bodies[0][j].plant, x[j], v[j], actuator.plant, state.measured)
+            sense(step, reu.current_steps, system.bodies[0][j].plant, x[j], v[j],
+                  actuator.plant, actuator.noise_key, system.channels[j], state.measured)
             cascade_step(step, reu, state)
         if is_due(step, reu.current_steps, reu.offset_steps + reu.delay_steps):
             state.amplifier = state.drive
@@ -178,5 +182,6 @@ def monolith(rig, actuators, leg, commands, n_rows, release_ns, aside):
     run(ROW_NS // PLANT_STEP_NS, rig.command_ns // PLANT_STEP_NS, release_ns // PLANT_STEP_NS,
         commands, y, rig.supply_pressure, System(
             bodies=bodies, rates=rates, states=floats(bodies), slopes=floats(rates), reus=reus,
-            actuators=constants, legs=leg_record(rig.leg)), trace)
+            actuators=constants, channels=np.zeros(3, CHANNELS_STATE),
+            legs=leg_record(rig.leg)), trace)
     return trace

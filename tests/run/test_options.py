@@ -30,7 +30,7 @@ def test_the_ros_parameters_of_the_coordinator_keep_their_names():
     assert set(DEFAULTS) == {
         'config_file', 'scenario_file', 'out', 'duration', 'real_time_factor', 'controllers',
         'paused', 'restore', 'save', 'overwrite', 'compression', 'split_mb', 'in_process',
-        'join_timeout_s', 'sync', 'set'}
+        'join_timeout_s', 'sync', 'set', 'seed'}
 
 
 def test_the_launch_file_has_every_option_as_an_argument():
@@ -39,7 +39,7 @@ def test_the_launch_file_has_every_option_as_an_argument():
         'in_process': 'false', 'real_time_factor': '0.0', 'paused': 'false', 'compression': '',
         'split_mb': '-1.0', 'namespace': '', 'overwrite': 'false', 'elsewhere': '',
         'controller': '', 'join_timeout': '30.0', 'restore': '', 'save': '', 'sync': 'false',
-        'set': ''}
+        'set': '', 'seed': '-1'}
 
 
 def test_every_field_with_an_option_is_of_the_request():
@@ -56,24 +56,27 @@ def test_parameters_that_are_set_ask_for_what_the_command_line_asks_for():
         'real_time_factor': 2.0, 'controllers': ['sway', 'hold'], 'paused': True,
         'restore': 'a.json', 'save': 'b.json', 'overwrite': True, 'compression': 'lz4',
         'split_mb': 3.0, 'in_process': True, 'join_timeout_s': 7.0, 'sync': True,
-        'set': ['supply.pressure_mpa=14.0']}, is_alone=True)
+        'set': ['supply.pressure_mpa=14.0'], 'seed': 7}, is_alone=True)
     by_arguments = request_of_arguments({
         'config': 'leg', 'scenario': 'drop', 'out': Path('bag'), 'duration': 0.5,
         'real_time_factor': 2.0, 'controller': ['sway', 'hold'], 'paused': True,
         'restore': Path('a.json'), 'save': Path('b.json'), 'overwrite': True,
         'compression': 'lz4', 'split_mb': 3.0, 'in_process': True, 'join_timeout': 7.0,
-        'elsewhere': (), 'sync': True, 'set': ['supply.pressure_mpa=14.0']}, is_alone=True)
+        'elsewhere': (), 'sync': True, 'set': ['supply.pressure_mpa=14.0'], 'seed': 7},
+        is_alone=True)
     assert by_parameters == by_arguments == Request(
         config=LEG, scenario=find('drop', SCENARIOS), out=Path('bag'), duration_s=0.5,
         real_time_factor=2.0, controllers=('sway', 'hold'), is_paused=True,
         restore=Path('a.json'), save=Path('b.json'), overwrite=True, compression='lz4',
         split_mb=3.0, is_synced=True, in_process=True, join_timeout_s=7.0, is_alone=True,
-        changes=('supply.pressure_mpa=14.0',))
+        changes=('supply.pressure_mpa=14.0',), seed=7)
+    assert by_arguments.all_changes == ('supply.pressure_mpa=14.0', 'seed=7')
 
 
 @pytest.mark.parametrize('field, given, expected', [
     ('split_mb', 0.0, 0.0), ('split_mb', -2.0, None), ('duration_s', 0.0, None),
-    ('duration_s', -1.0, -1.0), ('join_timeout_s', 0.0, 0.0), ('controllers', None, ())])
+    ('duration_s', -1.0, -1.0), ('seed', 0, 0), ('seed', -1, None),
+    ('join_timeout_s', 0.0, 0.0), ('controllers', None, ())])
 def test_a_parameter_means(field, given, expected):
     """0 MB is one file, below is not set; what is set and wrong is refused by the run."""
     assert option_of(field).of_parameter(given) == expected
@@ -84,7 +87,7 @@ def test_a_launch_file_hands_texts_on_as_parameters_of_their_type():
     assert launched_parameters(TEXTS) == {
         'out': '', 'duration': 0.0, 'in_process': False, 'real_time_factor': 0.0,
         'paused': False, 'compression': '', 'split_mb': -1.0, 'overwrite': False,
-        'join_timeout_s': 30.0, 'restore': '', 'save': '', 'sync': False}
+        'join_timeout_s': 30.0, 'restore': '', 'save': '', 'sync': False, 'seed': -1}
     given = launched_parameters(TEXTS | {
         'duration': '2', 'in_process': 'True', 'paused': '1', 'compression': 'zstd',
         'controller': 'sway,hold', 'elsewhere': 'hip,knee'})
@@ -97,7 +100,8 @@ def test_a_launch_file_hands_texts_on_as_parameters_of_their_type():
 @pytest.mark.parametrize(('name', 'text', 'message'), [
     ('in_process', 'maybe', 'in_process:=maybe, must be true or false'),
     ('paused', '', 'paused:=, must be true or false'),
-    ('duration', 'long', 'duration:=long, must be a number')])
+    ('duration', 'long', 'duration:=long, must be a number'),
+    ('seed', '1.5', 'seed:=1.5, must be a whole number')])
 def test_a_launch_file_refuses_a_text_of_another_kind(name, text, message):
     with pytest.raises(ConfigError, match=f'^{message}$'):
         launched_parameters(TEXTS | {name: text})

@@ -4,7 +4,7 @@ The signals of a run by name, whether it was simulated in memory or is read from
 Names, units and gauge pressures are those of `isa_ros.scripting.result.Result`: rotor.force.
 """
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from pathlib import Path
 from typing import NamedTuple
 
@@ -15,7 +15,7 @@ from isa_ros.core.signals import SAMPLE_UNITS
 from isa_ros.core.units import of_coordinate
 from isa_ros.errors import BagError
 from isa_ros.scripting.result import BODY, Result
-from isa_ros.surroundings.leg.port_kernel import LEG_UNITS
+from isa_ros.surroundings.leg.leg import fields_of_unit, units_of_sample
 from isa_ros.surroundings.supply import SUPPLY_UNITS
 import numpy as np
 from numpy.typing import NDArray
@@ -43,6 +43,9 @@ _BODY = {
     'torque': (_JOINTS, [f'effort[{k}]' for k in range(3)]),
     'foot_force': (_GROUND, [f'wrench.force.{axis}' for axis in 'xyz'])}
 """(topic, fields) by field of a `LEG_SAMPLE`."""
+_UNIT = [[f'{vector}.{axis}' for axis in 'xyz']
+         for vector in ('linear_acceleration', 'angular_velocity')]
+"""Fields of the topic of an inertial unit, in the order of `fields_of_unit`."""
 
 
 class Signal(NamedTuple):
@@ -92,7 +95,8 @@ class Signals(Mapping[str, Values]):
         """Return the unit of a signal."""
         source, _, field = name.partition('.')
         if source == BODY:
-            return LEG_UNITS[field]
+            leg = self.run.leg
+            return units_of_sample([] if leg is None else [imu.name for imu in leg.imus])[field]
         if any(supply.name == source for supply in self.run.supplies):
             return SUPPLY_UNITS[field]
         return of_coordinate(SAMPLE_UNITS[field], self.run.actuator(source).sheet.is_rotary)
@@ -150,8 +154,17 @@ def _named(run: RunConfig, traces: Mapping[str, Trace]) -> Iterator[tuple[str, S
         for name, (topic, paths) in _BODY.items():
             trace = traces.get(topic)
             if trace is not None:
-                yield f'{BODY}.{name}', Signal(
-                    trace.t, np.stack([trace[path] for path in paths], axis=1))
+                yield f'{BODY}.{name}', _vector(trace, paths)
+        for imu in run.leg.imus:
+            trace = traces.get(f'/{imu.name}/imu')
+            if trace is not None:
+                for name, paths in zip(fields_of_unit(imu.name), _UNIT):
+                    yield f'{BODY}.{name}', _vector(trace, paths)
+
+
+def _vector(trace: Trace, paths: Sequence[str]) -> Signal:
+    """Return several fields of a topic as columns."""
+    return Signal(trace.t, np.stack([trace[path] for path in paths], axis=1))
 
 
 def _signal(trace: Trace, path: str) -> Signal:

@@ -4,7 +4,7 @@ from collections.abc import Sequence
 from dataclasses import replace
 import gc
 
-from isa_ros.actuator.actuator import Timing
+from isa_ros.config.assembly import timing_of
 from isa_ros.config.catalogue import actuator_model, model_names
 from isa_ros.config.changes import changes_of
 from isa_ros.config.default_actuator import default_actuator, default_load, DEFAULT_TIMING
@@ -105,7 +105,7 @@ def _from_run(run: RunConfig, name: str, model: str, in_lockstep: bool) -> Setup
     if config.load is None and not in_lockstep:
         model_of = actuator_model(config.model, name)
         config = replace(config, load=default_load(model_of, config.sheet, run.span_of(name)))
-    return Setup(config, Timing(run.step_ns, run.controller_offset_ns))
+    return Setup(config, timing_of(run))
 
 
 def _text(node: Node, name: str) -> str:

@@ -47,7 +47,7 @@ def in_processes(session: Session, report: Report | None, should_stop: StopReque
         participants = _participants(session)
         processes = actuator_processes(
             session.run, request.config, request.scenario,
-            session.run.names_here(request.elsewhere), request.changes)
+            session.run.names_here(request.elsewhere), request.all_changes)
         with Children(
                 processes, request.namespace, _work if request.is_alone else None) as children:
             _freeze_objects(session)

@@ -9,16 +9,29 @@ run's actuators; ``rows`` are the indices of those that drive HAA, HFE and KFE.
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 import math
+from typing import NamedTuple
 
 from isa_ros.core.record import rows_of
 from isa_ros.core.saved_state import broken_number, restored_rows, TIME_BYTES, time_of
-from isa_ros.core.timebase import FORCE_WINDOWS, NS_PER_SECOND, steps_in
+from isa_ros.core.timebase import FORCE_WINDOWS, NS_PER_SECOND, PLANT_STEP_NS, steps_in
 from isa_ros.errors import ConfigError, SimulationDiverged
 from isa_ros.surroundings.leg import port_kernel as kernels
+from isa_ros.surroundings.leg.inertial import AXES, Imu, imu_record, read_imu
 from isa_ros.surroundings.leg.motion import continuous, ContinuousState, LEG_STATE, terms_of
 from isa_ros.surroundings.leg.sheet import JOINTS, leg_record, LegSheet
 from isa_ros.surroundings.linkage import actuator_coordinate
 import numpy as np
+
+
+class Unit(NamedTuple):
+    """An inertial measurement unit of a leg."""
+
+    name: str
+    sheet: Imu
+    period_ns: int
+    """Of its readings, a multiple of the tick."""
+    key: int
+    """Of its noise."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -41,11 +54,13 @@ class Leg:
     Slider, three links and the ground, advanced tick by tick: a `Body`.
 
     At t = 0 the slider is held and the actuators carry the leg (`actuator_forces`); it is
-    released before the tick that begins at ``release_ns``, None: by `release` alone.
+    released before the tick that begins at ``release_ns``, None: by `release` alone. Each of the
+    ``units`` keeps its reading in the sample until the next one.
     """
 
     def __init__(self, sheet: LegSheet, pose: Pose, step_ns: int,
-                 rows: Sequence[int] = (0, 1, 2), release_ns: int | None = None) -> None:
+                 rows: Sequence[int] = (0, 1, 2), release_ns: int | None = None,
+                 units: Sequence[Unit] = ()) -> None:
         steps_in(step_ns // FORCE_WINDOWS, 'a fifth of step_ms')
         self._refuse_pose(sheet, pose)
         self._step_ns = step_ns
@@ -54,7 +69,13 @@ class Leg:
         self._release_ns = release_ns
         self._constants = leg_record(sheet)
         self._state = rows_of(1, LEG_STATE)
-        self._sample = rows_of(1, kernels.LEG_SAMPLE)
+        self._sample = rows_of(1, sample_type([unit.name for unit in units]))
+        self._motion = self._sample.view(np.uint8)[:kernels.LEG_SAMPLE.itemsize].view(
+            rows_of(1, kernels.LEG_SAMPLE).dtype)
+        self._units = tuple(units)
+        self._imus = [imu_record(unit.sheet, unit.key) for unit in units]
+        self._readings = self._sample.view(np.uint8)[self._motion.nbytes:].view(
+            np.float64).reshape(-1, AXES)
         self._step = step_ns / NS_PER_SECOND
         self._t_ns = 0
         self._is_to_be_released = release_ns is not None
@@ -84,7 +105,15 @@ class Leg:
             force = getattr(terms, f'h_{name}') / lever
             state.force[k] = state.mean_force[k] = state.older_mean[k] = force
         kernels.fill_sample(
-            continuous(state), self.actuator_forces, True, leg, self._sample[0])
+            continuous(state), self.actuator_forces, True, leg, self._motion[0])
+        self._read_units(self.actuator_forces)
+
+    def _read_units(self, forces: tuple[float, float, float]) -> None:
+        """Read the inertial units that are due under the sensor forces (N | Nm) of now."""
+        for unit, imu, reading in zip(self._units, self._imus, self._readings):
+            if self._t_ns % unit.period_ns == 0:
+                read_imu(self._t_ns // PLANT_STEP_NS, self._state, forces, self._constants, imu,
+                         reading)
 
     @property
     def t_ns(self) -> int:
@@ -107,13 +136,17 @@ class Leg:
 
     @property
     def sample(self) -> np.ndarray:
-        """Return the `LEG_SAMPLE` at the end of the last tick, (1,); overwritten by the next."""
+        """
+        Return the sample at the end of the last tick, (1,); overwritten by the next.
+
+        The fields of `LEG_SAMPLE`, and those of `sample_type` for each inertial unit.
+        """
         return self._sample
 
     @property
     def units(self) -> Mapping[str, str]:
-        """Return the unit of each field of the `LEG_SAMPLE`."""
-        return kernels.LEG_UNITS
+        """Return the unit of each field of the sample."""
+        return units_of_sample([unit.name for unit in self._units])
 
     @property
     def is_held(self) -> bool:
@@ -156,11 +189,14 @@ class Leg:
 
         """
         broken = kernels.leg_tick(
-            self._state, self._step_ns, self.rows, self._constants, replies, self._sample)
+            self._state, self._step_ns, self.rows, self._constants, replies, self._motion)
         self._t_ns += self._step_ns
         if broken >= 0:
             name = ContinuousState._fields[broken]
             raise SimulationDiverged(self._t_ns, f'leg.{name}', float(self._state[name][0]))
+        if self._units:
+            haa, hfe, kfe = replies['force'][self.rows].tolist()
+            self._read_units((haa, hfe, kfe))
 
     def snapshot(self) -> bytes:
         """
@@ -192,6 +228,25 @@ class Leg:
         t_ns = time_of(snapshot, self._step_ns, 'leg')
         state = restored_rows(snapshot, LEG_STATE, 1, TIME_BYTES, 'leg')
         sample = restored_rows(
-            snapshot, kernels.LEG_SAMPLE, 1, TIME_BYTES + state.nbytes, 'leg')
+            snapshot, self._sample.dtype, 1, TIME_BYTES + state.nbytes, 'leg')
         self._t_ns, self._state[:], self._sample[:] = t_ns, state, sample
         self._is_to_be_released = self._release_ns is not None and self.is_held
+
+
+def fields_of_unit(name: str) -> tuple[str, str]:
+    """Return the fields of a sample with the reading of an inertial unit, of 3 numbers each."""
+    return f'{name}_specific_force', f'{name}_angular_velocity'
+
+
+def sample_type(names: Sequence[str]) -> np.dtype[np.void]:
+    """Return the type of the sample of a leg with inertial units of these names."""
+    fields = [(field, '<f8', (3,)) for name in names for field in fields_of_unit(name)]
+    return np.dtype([*kernels.LEG_SAMPLE.descr, *fields])
+
+
+def units_of_sample(names: Sequence[str]) -> dict[str, str]:
+    """Return the unit of each field of a sample with inertial units of these names."""
+    units = dict(kernels.LEG_UNITS)
+    for name in names:
+        units |= dict(zip(fields_of_unit(name), ('m/s2', 'rad/s')))
+    return units
