@@ -154,7 +154,8 @@ def with_changed(sheet: ActuatorSheet, values: Mapping[str, float]) -> ActuatorS
     Raises
     ------
     ConfigError
-        As `tuned` and `with_changes`, or the plant becomes too fast for its step.
+        As `tuned` and `with_changes`, or the plant becomes too fast for its step or does not
+        fit its REU.
 
     """
     known = changing(sheet)
@@ -165,6 +166,7 @@ def with_changed(sheet: ActuatorSheet, values: Mapping[str, float]) -> ActuatorS
     other = {name: value for name, value in values.items() if name not in own}
     changed = with_changes(tuned(sheet, own), other)
     if changed.plant is not sheet.plant:
+        refuse_wiring(changed)
         refuse_too_fast(plant_record(changed.plant)[0], changed.plant, LoadSide())
     return changed
 

@@ -130,6 +130,27 @@ def test_a_frozen_reu_holds_its_outputs_while_its_sensors_go_on():
     assert actuator.sample.pressure_a != measured
 
 
+def test_a_sensor_sticks_while_what_it_measures_goes_on_and_comes_free():
+    actuator = smart_actuator('isa_v5', 'mass', timing=TICK)
+    run(actuator, 10)
+    actuator.tune({'plant.sensors.pressure_a.stuck': 1.0})
+    run(actuator, 2)
+    held, exact = actuator.sample.pressure_a, actuator._body.plant.chambers.p_a
+    run(actuator, 20)
+    step = actuator._constants.plant.sensors.pressure_step
+    assert actuator.sample.pressure_a == held
+    assert abs(actuator._body.plant.chambers.p_a - exact) > 2.0 * step
+    actuator.tune({'plant.sensors.pressure_a.stuck': 0.0})
+    run(actuator, 2)
+    assert actuator.sample.pressure_a != held
+
+
+def test_a_delay_that_is_no_whole_number_of_conversions_is_refused_when_it_is_changed():
+    actuator = smart_actuator('isa_v5', 'mass', timing=TICK)
+    with pytest.raises(ConfigError, match='isa_v5: .*delay_ms = 0.07 ms'):
+        actuator.tune({'plant.sensors.force.delay_ms': 0.07})
+
+
 @pytest.mark.parametrize('ticks_after', [0, 1, 5])
 @pytest.mark.parametrize('faults', FAULTS)
 def test_a_snapshot_in_a_fault_continues_byte_for_byte(faults, ticks_after):

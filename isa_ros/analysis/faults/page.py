@@ -30,7 +30,8 @@ A fault is seen in a signal that the REU measures, or in the supply's pressure, 
 from that of the same run without the fault by more than {VISIBLE:g} steps of its converter. The
 largest differences are those of the first three such signals while the fault lasts. A device is
 sound again once all signals are within {SOUND:g} steps of that run, 1 % of their ranges. *Device*
-has what the actuator itself reports, its warnings, trips and state, and when."""
+has what the actuator itself reports, its warnings, trips and state, and when. A trip may keep its
+outputs off until it is cleared."""
 
 
 def listing() -> str:
