@@ -109,7 +109,7 @@ def fill_requests(
         requests[names.index(name)] = (
             HAS_SETPOINT if is_enabled is None else HAS_SETPOINT | HAS_ENABLE, bool(is_enabled),
             position, velocity, effort, math.nan if stiffness is None else stiffness,
-            math.nan if damping is None else damping)
+            math.nan if damping is None else damping, 0)
 
 
 def _refusal(name: str, field: str, value: Any, bound: str) -> SetpointError:

@@ -69,6 +69,8 @@ class Simulation:
         self._requests: Records = np.zeros(n, COMMAND)
         self.samples: Mapping[str, np.record] = by_name(self.names, self.group.samples)
         """`SAMPLE` by actuator at the end of the last tick; the next one overwrites them."""
+        self.observed: Mapping[str, np.record] = by_name(self.names, self.group.observed)
+        """The same as listeners have it: behind a link the newest that has arrived."""
         self.supply_samples: Mapping[str, np.record] = by_name(
             [feed.name for feed in self.surroundings.feeds], self.surroundings.supplies)
         """`SUPPLY_SAMPLE` by supply, likewise."""
@@ -202,7 +204,7 @@ class Simulation:
 
     def _control(self) -> None:
         """Call the controllers with the state before the tick; store requests for the next."""
-        state = State(self.t_ns, self.samples, self.supply_samples, self.body_sample)
+        state = State(self.t_ns, self.observed, self.supply_samples, self.body_sample)
         for seat in self._seats:
             seat.step(state, self._requests)
 

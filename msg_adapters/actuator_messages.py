@@ -21,10 +21,21 @@ APPLIED_PARAMETERS = ('applied_parameters', applied_parameters.TYPE)
 APPLIED_TOPICS = (APPLIED_PARAMETERS, APPLIED_SETPOINT)
 """(topic suffix, type) of the messages published when a command or parameter takes effect."""
 
+SENT_SETPOINT = ('sent_setpoint', joint_state.TYPE)
+"""(topic suffix, type) of the messages published when a command is handed to a link."""
+KEPT_TOPICS = (*APPLIED_TOPICS, SENT_SETPOINT)
+"""(topic suffix, type) of the messages that are kept for later subscriptions."""
+
 TOPICS = (*APPLIED_TOPICS, *STATE_TOPICS)
 
 TEMPERATURE = ('temperature', temperature.TYPE)
 """(topic suffix, type) of the oil's temperature: once a second, of actuators that get warm."""
+
+
+def topics(is_heated: bool = False, has_link: bool = False) -> tuple[tuple[str, str], ...]:
+    """Return (topic suffix, type) of all messages of an actuator."""
+    return (*APPLIED_TOPICS, *([SENT_SETPOINT] if has_link else []), *STATE_TOPICS,
+            *([TEMPERATURE] if is_heated else []))
 
 
 def prepared(

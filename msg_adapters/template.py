@@ -2,6 +2,7 @@
 
 from collections.abc import Mapping, Sequence
 import struct
+from typing import NamedTuple
 
 from msg_adapters.cdr import CdrError, ENCAPSULATION, encode_with_slots, Message, Slot
 import numpy as np
@@ -15,8 +16,15 @@ START_SEC, START_NANOSEC = -4, -3
 INSTANT, TICK_START, FIRST_VALUE = 0, 1, 2
 """Words of a `Template`: the two times, then the values."""
 
-Fields = Mapping[str, int]
-"""Field path -> column of the values, or one half of a time."""
+
+class Time(NamedTuple):
+    """Used instead of a column, for the seconds of a stamp: the column whose word is the time."""
+
+    column: int
+
+
+Fields = Mapping[str, int | Time]
+"""Field path -> column of the values, one half of a time, or a whole time."""
 
 STAMP: Fields = {'header.stamp.sec': SEC, 'header.stamp.nanosec': NANOSEC}
 """Paths of a header's stamp."""
@@ -25,6 +33,7 @@ START_STAMP: Fields = {'header.stamp.sec': START_SEC, 'header.stamp.nanosec': ST
 Prepared = tuple[Message, Fields]
 """A message, and the fields whose numbers change."""
 
+_STAMP_SEC = 'header.stamp.sec'
 _WORD = 8  # bytes of a double, and of a time
 _SECONDS = {SEC: INSTANT, START_SEC: TICK_START}
 _NANOSECONDS = (NANOSEC, START_NANOSEC)
@@ -56,7 +65,7 @@ class Template:
                 offset = _offset(message, slots, path, column)
                 if column not in _NANOSECONDS:
                     places.append((start + offset) // _WORD)
-                    sources.append(_SECONDS.get(column, FIRST_VALUE + column))
+                    sources.append(_source(column))
             starts.append(start)
             sizes.append(len(data))
             block += data
@@ -78,6 +87,13 @@ class Template:
         return bytes(self._bytes[start:start + self.sizes[k]])
 
 
+def stamped(prepared: Prepared, column: int) -> Prepared:
+    """Return a message whose stamp is the time in the word of a column."""
+    message, fields = prepared
+    rest = {path: source for path, source in fields.items() if path not in STAMP}
+    return message, {**rest, _STAMP_SEC: Time(column)}
+
+
 def time_word(t_ns: int) -> int:
     """Return a time as the word of a stamp: seconds in the lower half, nanoseconds above."""
     sec, nanosec = stamp(t_ns)
@@ -89,14 +105,23 @@ def stamp(t_ns: int) -> tuple[int, int]:
     return divmod(t_ns, NS_PER_SECOND)
 
 
-def _offset(message: Message, slots: Mapping[str, Slot], path: str, source: int) -> int:
+def _source(column: int | Time) -> int:
+    """Return the word that a field is filled from."""
+    if isinstance(column, Time):
+        return FIRST_VALUE + column.column
+    return _SECONDS.get(column, FIRST_VALUE + column)
+
+
+def _offset(
+        message: Message, slots: Mapping[str, Slot], path: str, source: int | Time) -> int:
     """Return the offset of a field; refuse one of another kind than ``source``."""
     if path not in slots:
         raise CdrError(
             f'{type(message).__name__} has no number {path!r}; it has {", ".join(slots)}')
     slot = slots[path]
     is_nanosec = source in _NANOSECONDS
-    expected = 'i' if source in _SECONDS else 'I' if is_nanosec else 'd'
+    is_sec = isinstance(source, Time) or source in _SECONDS
+    expected = 'i' if is_sec else 'I' if is_nanosec else 'd'
     half = struct.calcsize('<I') if is_nanosec else 0
     if slot.code != expected or (slot.offset - len(ENCAPSULATION)) % _WORD != half:
         raise CdrError(

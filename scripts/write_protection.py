@@ -36,7 +36,7 @@ def conditions() -> str:
         condition = CONDITIONS[bit]
         own: Any = levels_of(sheet).get(name)
         warning, trip, delay, reaction = (
-            (0.0, sheet.setpoint_timeout_ms, 0.0, sheet.setpoint_timeout_reaction) if own is None
+            (0.0, 0.0, 0.0, getattr(sheet, f'{name}_reaction')) if own is None
             else (own.warning, own.trip, own.delay_ms, own.reaction))
         rows.append([
             str(bit), f'`{name}`', condition.quantity, condition.rating or '-',

@@ -21,6 +21,7 @@ import numpy as np
 import pytest
 from tests.golden.message_digests import Digests, FILE, SECONDS
 from tests.runs import ACCUMULATOR, CONSTANT, hip_and_knee
+from tests.sheets import setpoint
 
 RUN = hip_and_knee([SupplyConfig('constant', CONSTANT, ('hip',)),
                     SupplyConfig('pump', ACCUMULATOR, ('knee',))])
@@ -303,7 +304,7 @@ def test_the_scenario_wins_over_a_controller_and_both_over_a_command(
 def rows_for(name: str, position: float) -> np.ndarray:
     """Return commands of one actuator alone."""
     rows = np.zeros(2, COMMAND)
-    rows[RUN.index(name)] = (HAS_SETPOINT, 0, position, 0.0, 0.0, math.nan, math.nan)
+    rows[RUN.index(name)] = setpoint(position=position)
     return rows
 
 

@@ -11,6 +11,7 @@ from typing import NoReturn, Protocol
 
 from isa_ros.actuator import kernel as kernels
 from isa_ros.actuator.inbox import merge, write_applied
+from isa_ros.actuator.link import link_key, NONE, refuse_states
 from isa_ros.actuator.rows import Memory, memory_of
 from isa_ros.actuator.setpoint_range import SetpointRange
 from isa_ros.actuator.sheet import actuator_record, ActuatorSheet
@@ -29,6 +30,8 @@ import numpy as np
 
 _SAVED = ('body', 'reu', 'channels', 'port', 'pending', 'applied', 'reply', 'sample', 'thermal')
 """The rows of a snapshot, in their order."""
+_SAVED_OF_LINK = ('links', 'sent', 'outbox', 'commands_sent', 'samples_sent', 'observed')
+"""Those of an actuator with a link, behind the others."""
 
 PAPER_SUPPLY = 20.7e6
 """Pa gauge: supply pressure of the paper's rigs, used if no supply is configured."""
@@ -96,10 +99,17 @@ class SmartActuator:
         constants[:] = actuator_record(config.sheet, offset_steps)
         constants['load'] = own_record(config.load)
         constants['noise_key'] = noise_key(timing.seed, config.name)
-        self._saved = (
+        self.memory.link_keys[:] = link_key(timing.seed, config.name)
+        self.has_link = config.sheet.link.kind != NONE
+        """Whether commands and samples travel in the frames of a link."""
+        self._saved = [
             self.memory.bodies[:1], self.memory.reu, self.memory.channels, self.memory.ports,
             self.memory.pending, self.memory.applied, self.memory.replies, self.memory.samples,
-            self.memory.thermals)
+            self.memory.thermals]
+        self._saved_names: tuple[str, ...] = _SAVED
+        if self.has_link:
+            self._saved_names += _SAVED_OF_LINK
+            self._saved += [getattr(self.memory, name) for name in _SAVED_OF_LINK]
         # Rows with their fields as attributes, on the same memory.
         self._constants, self._body = _record(constants), _record(self.memory.bodies)
         self._reu, self._channels = _record(self.memory.reu), _record(self.memory.channels)
@@ -163,6 +173,7 @@ class SmartActuator:
         reu.setpoint.is_enabled = 1.0
         kernels.write_sample(body.plant, reu, self._sample)
         self._sample.temperature = self._thermal.oil
+        self.memory.observed[:] = self.memory.samples
 
     @property
     def sample(self) -> np.record:
@@ -255,7 +266,7 @@ class SmartActuator:
             A number of the state is not finite.
 
         """
-        for name, rows in zip(_SAVED, self._saved):
+        for name, rows in zip(self._saved_names, self._saved):
             broken = broken_number(rows)
             if broken is not None:
                 raise SimulationDiverged(
@@ -279,13 +290,17 @@ class SmartActuator:
                 f'{self.name}: saved state has {len(snapshot)} bytes, must have {expected}')
         t_ns = time_of(snapshot, self._timing.step_ns, self.name)
         offset, found = TIME_BYTES, []
-        for name, rows in zip(_SAVED, self._saved):
+        for name, rows in zip(self._saved_names, self._saved):
             found.append(restored_rows(
                 snapshot, rows.dtype, len(rows), offset, f'{self.name}.{name}'))
             offset += rows.nbytes
+        if self.has_link:
+            refuse_states(found[len(_SAVED)], self.name)
         self.t_ns = t_ns
         for rows, restored in zip(self._saved, found):
             rows[:] = restored
+        if not self.has_link:
+            self.memory.observed[:] = self.memory.samples
         self.tuning.restore(snapshot[offset:])
 
 

@@ -65,9 +65,24 @@ class ActuatorGroup:
         return self._memory.samples
 
     @property
+    def observed(self) -> Records:
+        """
+        Return the `SAMPLE` of all that listeners have at the end of the last tick, (n,).
+
+        Without a link it is that of `samples`, behind one the newest that has arrived, with its
+        ``age``; overwritten.
+        """
+        return self._memory.observed
+
+    @property
+    def sent(self) -> Records:
+        """Return the `COMMAND` rows handed to the links at its start, (n,); overwritten."""
+        return self._memory.sent
+
+    @property
     def applied(self) -> Records:
         """
-        Return the commands that took effect at the start of the last tick, (n,); overwritten.
+        Return the commands that took effect in the last tick, (n,); overwritten.
 
         `COMMAND` rows: ``kinds`` is 0 without a command; otherwise a row has all values in force.
         """

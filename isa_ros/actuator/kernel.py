@@ -10,6 +10,8 @@ import math
 from isa_ros.actuator.energy import add_energies, stored_elastically
 from isa_ros.actuator.heat import take_heat
 from isa_ros.actuator.inbox import latch, merge
+from isa_ros.actuator.link import (
+    exchange_frames, hand_over, leaves, LINK, receive_samples, send_sample)
 from isa_ros.actuator.states import write_states
 from isa_ros.core.kernel import kernel
 from isa_ros.core.timebase import FORCE_WINDOWS, PLANT_STEP
@@ -38,7 +40,8 @@ BODIES = 2  # the state and a stage of its integration
 STAGES = 4
 NOTHING = 1e-100  # any unit: smaller states are set to zero, since denormal arithmetic is slow
 
-ACTUATOR = np.dtype([('plant', PLANT), ('reu', REU), ('load', OWN_LOAD), ('noise_key', 'u8')])
+ACTUATOR = np.dtype([
+    ('plant', PLANT), ('reu', REU), ('load', OWN_LOAD), ('link', LINK), ('noise_key', 'u8')])
 """Every constant of one actuator, SI."""
 
 
@@ -188,12 +191,12 @@ def take_port(incoming, is_shared, port, body):
 
 @kernel
 def tick_row(first_step, steps, port, actuator, bodies, rates, y, k, reu_state, channels,
-             reply, sample, thermal):
+             reply, sample, thermal, link, memory):
     """
     Advance one actuator by ``steps`` plant steps.
 
     Fills its `LOAD_REPLY` (mean force of each of the tick's windows from its impulse) and its
-    `SAMPLE` at the end of the tick.
+    `SAMPLE` at the end of the tick. ``link`` is its row where it has a link, else -1.
     """
     body = bodies[0]
     if actuator.plant.thermal.is_on:
@@ -204,6 +207,11 @@ def tick_row(first_step, steps, port, actuator, bodies, rates, y, k, reu_state, 
     for window in range(FORCE_WINDOWS):
         body.totals.impulse = 0.0
         for i in range(window * window_steps, (window + 1) * window_steps):
+            if link >= 0:
+                is_sampled = i > 0 and leaves(first_step + i, actuator.link)
+                if is_sampled:
+                    write_sample(body.plant, reu_state, sample)
+                exchange_frames(first_step + i, is_sampled, link, memory)
             loops_and_plant(first_step + i, i * PLANT_STEP, port, actuator,
                             bodies, rates, y, k, reu_state, channels, thermal)
         reply.mean_forces[window] = body.totals.impulse / (window_steps * PLANT_STEP)
@@ -222,6 +230,8 @@ def tick_row(first_step, steps, port, actuator, bodies, rates, y, k, reu_state, 
     if actuator.plant.thermal.is_on:
         take_heat(steps * PLANT_STEP, reply, body.totals.energies, actuator.plant.thermal, thermal)
     sample.temperature = thermal.oil
+    if link >= 0:
+        send_sample(first_step + steps, link, memory)
 
 
 @kernel
@@ -239,11 +249,20 @@ def actuator_tick(first_step, steps, incoming, commands, memory):
         y = memory.states[n * BODIES:(n + 1) * BODIES]
         k = memory.slopes[n * STAGES:(n + 1) * STAGES]
         reu, port = memory.reu[n], memory.ports[n]
+        link = n if memory.constants[n].link.is_on else -1
         merge(commands[n], memory.pending[n])
-        latch(memory.pending[n], reu, memory.applied[n])
+        if link < 0:
+            latch(memory.pending[n], reu, memory.applied[n])
+        else:
+            hand_over(n, memory)
         take_port(incoming[n], memory.is_shared[n], port, bodies[0])
         tick_row(first_step, steps, port, memory.constants[n], bodies, rates, y, k, reu,
-                 memory.channels[n], memory.replies[n], memory.samples[n], memory.thermals[n])
+                 memory.channels[n], memory.replies[n], memory.samples[n], memory.thermals[n],
+                 link, memory)
+        if link < 0:
+            memory.observed[n] = memory.samples[n]
+        else:
+            receive_samples(first_step + steps, n, memory)
         broken = first_broken(y)
         if broken >= 0:
             return n * STATE_SIZE + broken

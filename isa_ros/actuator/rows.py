@@ -3,6 +3,7 @@
 from typing import NamedTuple
 
 from isa_ros.actuator import kernel as kernels
+from isa_ros.actuator.link import LINK_STATE, SLOTS
 from isa_ros.core.signals import COMMAND, LOAD_PORT, LOAD_REPLY, SAMPLE
 from isa_ros.plant.channels import CHANNELS_STATE
 from isa_ros.plant.thermal import THERMAL_STATE
@@ -14,7 +15,8 @@ class Memory(NamedTuple):
     """
     Memory that the tick kernel reads and writes, for ``n`` actuators.
 
-    One row per actuator, except `kernels.BODIES` of ``bodies`` and `kernels.STAGES` of ``rates``.
+    One row per actuator, except `kernels.BODIES` of ``bodies``, `kernels.STAGES` of ``rates`` and
+    `SLOTS` of the frames on a link.
     """
 
     is_shared: np.ndarray
@@ -42,9 +44,23 @@ class Memory(NamedTuple):
     pending: np.ndarray
     """`COMMAND` pending for the next tick, (n,)."""
     applied: np.ndarray
-    """`COMMAND` that took effect at the start of the last tick, (n,)."""
+    """`COMMAND` that took effect in the last tick, at its start or from its link, (n,)."""
     thermals: np.ndarray
     """`THERMAL_STATE`, (n,)."""
+    link_keys: np.ndarray
+    """Key of the noise of each link, (n,)."""
+    links: np.ndarray
+    """`LINK_STATE`, (n,)."""
+    sent: np.ndarray
+    """`COMMAND` handed to the link at the start of the last tick, (n,)."""
+    outbox: np.ndarray
+    """`COMMAND` that no frame has brought to the REU yet, (n,)."""
+    commands_sent: np.ndarray
+    """`COMMAND` in frames on their way to the REU."""
+    samples_sent: np.ndarray
+    """`SAMPLE` in frames on their way to the listeners."""
+    observed: np.ndarray
+    """`SAMPLE` that the listeners have at the end of the last tick, (n,)."""
 
 
 def memory_of(n: int) -> Memory:
@@ -56,7 +72,11 @@ def memory_of(n: int) -> Memory:
         states=kernels.flat(bodies), slopes=kernels.flat(rates), reu=np.zeros(n, REU_STATE),
         channels=np.zeros(n, CHANNELS_STATE), replies=np.zeros(n, LOAD_REPLY),
         samples=np.zeros(n, SAMPLE), pending=np.zeros(n, COMMAND), applied=np.zeros(n, COMMAND),
-        thermals=np.zeros(n, THERMAL_STATE))
+        thermals=np.zeros(n, THERMAL_STATE),
+        link_keys=np.zeros(n, np.uint64), links=np.zeros(n, LINK_STATE),
+        sent=np.zeros(n, COMMAND), outbox=np.zeros(n, COMMAND),
+        commands_sent=np.zeros(n * SLOTS, COMMAND), samples_sent=np.zeros(n * SLOTS, SAMPLE),
+        observed=np.zeros(n, SAMPLE))
 
 
 def row_of(memory: Memory, row: int) -> Memory:

@@ -1,8 +1,9 @@
 """The data sheet of one actuator, and the SI records the kernels read."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 from isa_ros.actuator.kernel import ACTUATOR
+from isa_ros.actuator.link import link_record, LinkSheet, NO_LINK
 from isa_ros.actuator.ratings import evidence_of, ratings_of
 from isa_ros.core.changeable import sound
 from isa_ros.core.parameter import choice, Parameters
@@ -34,6 +35,7 @@ class ActuatorSheet(Parameters):
         "the valve's spool sensor; a mechanical feedback has none", 'electric', 'mechanic')
     plant: LinearPlant | RotaryPlant
     reu: Reu
+    link: LinkSheet = field(default=NO_LINK, metadata={'absent': NO_LINK})
 
     @property
     def is_rotary(self) -> bool:
@@ -154,7 +156,8 @@ def actuator_record(sheet: ActuatorSheet, offset_steps: int) -> np.ndarray:
     reu['protection'] = protection_record(
         sheet.reu.protection, ratings_of(known[0]),
         evidence_of(known[0], sheet.reu.speed.rate_hz, steps['speed'], offset_steps),
-        steps['current'])
+        steps['current'], sheet.link.watchdog_ms * MILLI)
     rows = np.zeros(1, ACTUATOR)
     rows['plant'], rows['reu'] = plant_record(sheet.plant), reu
+    rows['link'] = link_record(sheet.link)
     return rows

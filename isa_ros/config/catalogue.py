@@ -1,4 +1,4 @@
-"""The data that comes with the package: actuator models, legs, materials, gaits."""
+"""The data that comes with the package: actuator models, legs, materials, gaits, wires."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -16,6 +16,7 @@ _MODELS = _DATA / 'models'
 _LEGS = _DATA / 'legs'
 _MATERIALS = _DATA / 'materials'
 _GAITS = _DATA / 'gaits'
+_WIRES = _DATA / 'wires'
 DEFAULT_PRESET = 'default'
 _PAD_KEYS = ('stiffness', 'damping')  # of the material, used by a pad
 
@@ -154,6 +155,11 @@ def material_names() -> list[str]:
 def material_section(name: object, where: str) -> tuple[Section, Place]:
     """Return a packaged material as the section of a ground; as `actuator_model`."""
     return _sourced(_packaged(_MATERIALS, name, where, 'material'))
+
+
+def wire_section(name: object, where: str) -> tuple[Section, Place]:
+    """Return a packaged wire of links; as `actuator_model`."""
+    return _sourced(_packaged(_WIRES, name, where, 'wire'))
 
 
 def gait_section(name: str, where: str) -> Section:

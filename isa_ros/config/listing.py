@@ -9,6 +9,7 @@ from isa_ros.config.catalogue import actuator_model, leg_names, leg_section, Mod
 from isa_ros.config.paths import CONFIG, find
 from isa_ros.config.run_file import read_run
 from isa_ros.config.sections import build, build_one_of, Entry, kind_of, members, Section
+from isa_ros.config.wires import wire
 from isa_ros.core.parameter import Parameters
 from isa_ros.errors import ConfigError
 from isa_ros.loads.sheets import LocalLoad
@@ -104,6 +105,8 @@ def _run_tables(path: str) -> Iterator[str]:
             row._replace(source=given) for row in rows(supply.sheet, {})])
     yield _table('record', [
         row._replace(source=given) for row in rows(run.record.storage, {})])
+    for kind in dict.fromkeys(run.actuator(name).sheet.link.kind for name in run.linked):
+        yield _table(f'wire of links: {kind}', rows(*wire(kind)))
     for actuator in run.actuators:
         title = (f'actuators.{actuator.name}.parameters: {actuator.model}, '
                  f'preset {actuator.preset}')

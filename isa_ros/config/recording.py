@@ -27,6 +27,7 @@ MAX_PATTERNS = 100
 MAX_PATTERN_LENGTH = 256
 
 _EVENTS = '/coordinator/events'
+_SENT = 'sent_setpoint'
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -122,7 +123,8 @@ class RecordConfig:
 
 def replay_needs(topic: str) -> bool:
     """Return whether a topic holds inputs of a run, which are the inputs of its replay."""
-    return topic == _EVENTS or topic.rpartition('/')[2].startswith('applied_')
+    suffix = topic.rpartition('/')[2]
+    return topic == _EVENTS or suffix.startswith('applied_') or suffix == _SENT
 
 
 def read_record(value: Any, place: Place) -> RecordConfig:

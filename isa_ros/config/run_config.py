@@ -4,6 +4,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
 import hashlib
 
+from isa_ros.actuator.link import NO_LINK
 from isa_ros.actuator.sheet import ActuatorSheet
 from isa_ros.config.leg_config import ImuConfig, JointsKind, LegConfig, LegStart
 from isa_ros.config.names import refuse_bad_name
@@ -86,6 +87,11 @@ class RunConfig:
     def leg(self) -> LegConfig | None:
         """Return the body where it is a leg."""
         return self.body if isinstance(self.body, LegConfig) else None
+
+    @property
+    def linked(self) -> tuple[str, ...]:
+        """Return the actuators with a link."""
+        return tuple(own.name for own in self.actuators if own.sheet.link.kind != NO_LINK.kind)
 
     def supply_of(self, name: str) -> SupplySheet:
         """Return the sheet of the supply that feeds an actuator; as `actuator`."""

@@ -15,6 +15,7 @@ from isa_ros.actuator.tunable import refuse_unusable
 from isa_ros.config.catalogue import actuator_model, leg_section, material_section, Model
 from isa_ros.config.changes import changed, Values
 from isa_ros.config.leg_config import ImuConfig, LegConfig, LegStart
+from isa_ros.config.links import LINK, link_of, read_link
 from isa_ros.config.names import NAME_RULE, refuse_bad_name
 from isa_ros.config.own_load import load_section, refuse_beyond_stops
 from isa_ros.config.recording import read_record
@@ -25,6 +26,7 @@ from isa_ros.config.sections import (
     build, build_one_of, Entry, merge, names_at, Place, refuse_unknown, Section, section_at,
     written)
 from isa_ros.config.supplies import read_supplies, SUPPLY, SupplyConfig
+from isa_ros.config.wires import refuse_overfull
 from isa_ros.config.yaml_text import read, Tree
 from isa_ros.core.noise import seed_of
 from isa_ros.core.parameter import check
@@ -84,13 +86,14 @@ def run_of(tree: Tree, place: Place) -> tuple[RunConfig, Origins]:
     """Return the run of a file's tree and what it was built from; as `load_run`."""
     refuse_unknown(tree, (
         'name', 'step_ms', 'controller_offset_ms', 'tick_timeout_s', 'seed', SUPPLY, 'supplies',
-        'record', 'actuators', 'controllers', 'leg', 'body'), place)
+        'record', LINK, 'actuators', 'controllers', 'leg', 'body'), place)
     times = build(Times, written(
         {f: tree[f] for f in Times.__dataclass_fields__ if f in tree}, place), place)
     step_ns, offset_ns = _grid(times, place)
     leg, leg_origin = _body(tree, place, step_ns)
     supplies = read_supplies(tree, list(_section(tree, 'actuators', place)), place)
-    actuators, origins = _actuators(tree, place, leg, supplies)
+    actuators, origins = _actuators(tree, place, leg, supplies, step_ns)
+    refuse_overfull({own.name: own.sheet.link for own in actuators}, place)
     run = RunConfig(
         name=name_of(tree, 'name', place),
         step_ns=step_ns, controller_offset_ns=offset_ns, tick_timeout_s=times.tick_timeout_s,
@@ -222,9 +225,9 @@ def refuse_start(start: LegStart, sheet: LegSheet, step_ns: int, place: Place) -
 
 
 def _actuators(
-        tree: Tree, place: Place, leg: LegConfig | None, supplies: Sequence[SupplyConfig]
-        ) -> tuple[tuple[ActuatorConfig, ...], dict[str, ActuatorOrigin]]:
-    below = place / 'actuators'
+        tree: Tree, place: Place, leg: LegConfig | None, supplies: Sequence[SupplyConfig],
+        step_ns: int) -> tuple[tuple[ActuatorConfig, ...], dict[str, ActuatorOrigin]]:
+    below, shared_link = place / 'actuators', read_link(tree, place)
     section = _section(tree, 'actuators', place)
     joint_of: dict[str, str] = {}
     for joint, name in leg.joints if leg else ():
@@ -244,26 +247,27 @@ def _actuators(
         name_of({name: name}, name, below)
         if name == COORDINATOR:
             raise ConfigError(f'{below / name}: the name is reserved for the coordinator')
+        own = section_at(section[name], below / name)
+        link = link_of(shared_link, read_link(own, below / name), step_ns, below / name)
         config, origins[name] = _actuator(
-            name, section_at(section[name], below / name), below / name, leg, joint_of.get(name),
-            span_of[name])
+            name, own, below / name, leg, joint_of.get(name), span_of[name], link)
         configs.append(config)
     return tuple(configs), origins
 
 
 def _actuator(
         name: str, tree: Tree, place: Place, leg: LegConfig | None, joint: str | None,
-        supply: float) -> tuple[ActuatorConfig, ActuatorOrigin]:
+        supply: float, link: Section) -> tuple[ActuatorConfig, ActuatorOrigin]:
     refuse_unknown(tree, (
         'model', 'preset', 'variants', 'parameters', 'load', 'initial_position_mm',
-        'initial_position_deg', 'beyond_range'),
+        'initial_position_deg', 'beyond_range', LINK),
         place)
     model = actuator_model(tree.get('model'), f'{place}.model')  # type: ignore[arg-type]
     preset = Plain(str).read(tree.get('preset', 'default'), place / 'preset')
     variants = names_at(tree.get('variants', []), place / 'variants')
     of_model = model.with_variants(
         model.with_preset(preset, f'{place}.preset'),
-        variants, f'{place}.variants')
+        variants, f'{place}.variants') | {LINK: link}
     sheet, section = scaled_sheet(
         merge(of_model, _parameters(tree, place)), of_model, model.place, place / 'parameters',
         supply)

@@ -45,6 +45,7 @@ CONDITIONS = (
               'the range of the force sensor'),
     Condition('encoder_jump', 'speed between two conversions', 'm/s | rad/s',
               'the speed at full opening with the relief pressure over one land'),
+    Condition('link_lost', 'time since the last frame of the link', 's', ''),
 )
 """All conditions; the place of each is its bit."""
 

@@ -9,8 +9,9 @@ from numba.extending import register_jitable
 
 _Function = TypeVar('_Function', bound=Callable[..., Any])
 
-# No fastmath, no parallel: both may reorder roundings, and replay compares bytes. Functions that
-# a kernel calls are inlined: a call costs as much as an equation, and inlining keeps every bit.
+# No fastmath: it reorders roundings, and replay compares bytes. No parallel: it may do so, and
+# threads over rows are not faster (docs/architecture.md). Functions that a kernel calls are
+# inlined: a call costs as much as an equation, and inlining keeps every bit.
 _compile = numba.njit(nogil=True, error_model='numpy', forceinline=True)
 
 

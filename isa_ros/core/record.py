@@ -57,6 +57,17 @@ def floats(rows: NDArray[np.void]) -> NDArray[np.float64]:
     return rows.view(np.float64).reshape(len(rows), n_floats)
 
 
+def float_columns(record: np.dtype[np.void], first: int = 0) -> dict[str, int]:
+    """Return the column of every float of a record by field, ``field[k]`` for an array."""
+    columns: dict[str, int] = {}
+    for name in record.names or ():
+        n = record[name].itemsize // 8
+        for k in range(n):
+            columns[name if record[name].shape == () else f'{name}[{k}]'] = first
+            first += 1
+    return columns
+
+
 def first_not_finite(
         rows: np.ndarray, may_be_nan: Collection[str] = ()) -> tuple[str, float] | None:
     """

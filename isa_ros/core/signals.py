@@ -34,8 +34,9 @@ COMMAND = np.dtype([
     ('effort', '<f8'),         # feed-forward, N | Nm
     ('stiffness', '<f8'),      # N/m | Nm/rad; NaN keeps the gain in force
     ('damping', '<f8'),        # Ns/m | Nms/rad; NaN keeps the gain in force
+    ('due_step', '<i8'),       # plant step from which it is in force; 0: start of its tick
 ])
-"""Command to one actuator, in effect from a tick boundary on."""
+"""Command to one actuator, in effect from a tick boundary or a `due_step` on."""
 
 GAINS_OF_COMMAND = ('stiffness', 'damping')
 """Fields of a `COMMAND` that may be NaN."""
@@ -69,6 +70,7 @@ SAMPLE = np.dtype([
     ('temperature', '<f8'),         # of the oil in the actuator, celsius
     ('warnings', '<f8'),            # bit set of conditions as a whole number (isa_ros.conditions)
     ('trips', '<f8'),               # likewise
+    ('age', '<f8'),                 # since it was sampled, s; > 0 behind a link only
 ])
 """Values one actuator reports at the end of a tick."""
 
@@ -80,7 +82,8 @@ SAMPLE_UNITS = {
     'supply_flow': 'm3/s', 'power': 'W', 'peak_power': 'W', 'hydraulic_energy': 'J',
     'leakage_energy': 'J', 'throttling_energy': 'J', 'cross_port_energy': 'J',
     'relief_energy': 'J', 'friction_energy': 'J', 'damping_energy': 'J', 'work': 'J',
-    'stored_energy': 'J', 'temperature': 'celsius', 'warnings': 'bits', 'trips': 'bits'}
+    'stored_energy': 'J', 'temperature': 'celsius', 'warnings': 'bits', 'trips': 'bits',
+    'age': 's'}
 """Unit of each field of a `SAMPLE`: of a linear actuator | of a rotary one."""
 
 LOAD_PORT = np.dtype([

@@ -23,6 +23,7 @@ _ROUNDED = 1e-9     # the growth of a state at rest, whose eigenvalue is 0, by r
 _FACTORS = 1e9      # a parameter is looked for between a value and that many times less or more
 _HALVINGS = 60
 _NAMED = 5          # parameters in one message
+_SLOWER = 0.9           # half of a parameter that makes the plant fast leaves less of its rate
 _HOTTEST = 120.0    # celsius: beyond it seals fail, and mineral oil decays
 
 
@@ -95,7 +96,28 @@ def _refuse(plant: np.record, sheet: object, load: LoadSide, when: str) -> None:
     changes.sort(key=lambda change: max(change.factor, 1.0 / change.factor))
     bounds = '; or '.join(change.bound for change in changes[:_NAMED]) or (
         'moving part, force sensor, oil, friction and load are too fast together')
-    raise ParameterError(f'{bounds}, for the plant step of {PLANT_STEP_NS / 1e3:g} us{when}')
+    text = f'{bounds}, for the plant step of {PLANT_STEP_NS / 1e3:g} us{when}'
+    if len(changes) < _NAMED and (reasons := _reasons(plant, sheet, load)):
+        text += f'; {" and ".join(reasons)} make it fast together'
+    raise ParameterError(text)
+
+
+def _reasons(plant: np.record, sheet: object, load: LoadSide) -> list[str]:
+    """Return the parameters of which no single one suffices, but half of it slows the plant."""
+    fastest, found = _fastest(plant, load), []
+    for knob, value in _values(sheet):
+        def follows(factor: float) -> bool:
+            return _is_followed(_scaled(plant, knob, factor), load)
+        slower = _fastest(_scaled(plant, knob, 0.5 if knob.less_helps else 2.0), load)
+        if slower < _SLOWER * fastest and _least_factor(follows, knob.less_helps) is None:
+            found.append(f'plant.{knob.name} = {value:g}')
+    return found
+
+
+def _fastest(plant: np.record, load: LoadSide) -> float:
+    """Return the largest magnitude of all eigenvalues, 1/s."""
+    return max(float(np.abs(np.linalg.eigvals(matrix)).max())
+               for matrix in _matrices(plant.view(np.recarray), load))
 
 
 class _Change(NamedTuple):
@@ -106,17 +128,21 @@ class _Change(NamedTuple):
 
 
 def _changes_of_plant(plant: np.record, sheet: object, load: LoadSide) -> Iterator[_Change]:
-    for knob in _KNOBS:
-        part, name = knob.name.split('.')
-        value = getattr(getattr(sheet, part), name, 0.0)
-        if not value > 0.0:
-            continue
-
+    for knob, value in _values(sheet):
         def follows(factor: float) -> bool:
             return _is_followed(_scaled(plant, knob, factor), load)
         factor = _least_factor(follows, knob.less_helps)
         if factor is not None:
             yield _change(f'plant.{knob.name}', value, factor, knob.less_helps)
+
+
+def _values(sheet: object) -> Iterator[tuple[_Knob, float]]:
+    """Yield the knobs that a sheet has, and their values."""
+    for knob in _KNOBS:
+        part, name = knob.name.split('.')
+        value = getattr(getattr(sheet, part), name, 0.0)
+        if value > 0.0:
+            yield knob, value
 
 
 def _scaled(plant: np.record, knob: _Knob, factor: float) -> np.record:

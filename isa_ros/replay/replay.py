@@ -27,10 +27,12 @@ from msg_adapters import diagnostics, event
 from msg_adapters.applied_parameters import tuned_values
 from msg_adapters.cdr import CdrError
 from msg_adapters.coordinator_messages import APPLIED_PARAMETERS, NODE
+from msg_adapters.sent_setpoint import sent_to_command
 from msg_adapters.setpoint import applied_to_command
 import numpy as np
 
 APPLIED = 'applied_setpoint'
+SENT = 'sent_setpoint'
 TUNED = 'applied_parameters'
 
 
@@ -163,7 +165,7 @@ class Inputs(NamedTuple):
     """The recorded inputs of a run."""
 
     commands: dict[int, list[tuple[int, np.void]]]
-    """Tick -> (row, `COMMAND`) of every applied setpoint."""
+    """Tick -> (row, `COMMAND`) of every setpoint that was applied, or sent over a link."""
     tuned: dict[str, dict[int, dict[str, float]]]
     """Actuator -> tick -> applied parameters by name."""
     tuned_supplies: dict[int, dict[str, float]]
@@ -175,7 +177,7 @@ class Inputs(NamedTuple):
 
 def recorded_inputs(bag: Bag, run: RunConfig) -> Inputs:
     """
-    Return the applied setpoints and parameters of a bag by their ticks.
+    Return the applied setpoints and parameters of a bag by their ticks; behind a link the sent.
 
     Sample k + 1 holds the inputs that took effect at tick k; that of t = 0 is the start.
 
@@ -185,7 +187,9 @@ def recorded_inputs(bag: Bag, run: RunConfig) -> Inputs:
         The bag has no samples, or a message is not an input of its actuator.
 
     """
-    setpoints = {f'/{a.name}/{APPLIED}': (k, a.name) for k, a in enumerate(run.actuators)}
+    setpoints = {
+        f'/{a.name}/{SENT}' if a.name in run.linked else f'/{a.name}/{APPLIED}': (k, a.name)
+        for k, a in enumerate(run.actuators)}
     parameters = {f'/{a.name}/{TUNED}': a.name for a in run.actuators}
     inputs = Inputs({}, {}, {}, -1, False)
     last = diagnosed = -1
@@ -195,8 +199,8 @@ def recorded_inputs(bag: Bag, run: RunConfig) -> Inputs:
         try:
             if topic in setpoints and last:
                 row, name = setpoints[topic]
-                inputs.commands.setdefault(tick, []).append(
-                    (row, applied_to_command(message.data, name)))
+                read = sent_to_command if name in run.linked else applied_to_command
+                inputs.commands.setdefault(tick, []).append((row, read(message.data, name)))
             elif topic in parameters:
                 name = parameters[topic]
                 inputs.tuned.setdefault(name, {})[tick] = tuned_values(message.data, name)

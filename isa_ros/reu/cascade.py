@@ -67,6 +67,9 @@ REU_STATE = np.dtype([
     ('drive', 'f8'),               # output of the blocks: A, or V
     ('amplifier', 'f8'),           # the drive after the computational delay
     ('protection', PROTECTION_STATE),
+    ('link_silence', 'f8'),        # s since the last frame of a link with a watchdog
+    ('link_lost', 'i8'),           # 1: no frame has come for the link's watchdog time
+    ('link_lost_step', 'i8'),      # plant step at which it was last lost
 ])
 
 

@@ -34,6 +34,7 @@ SUPPLY_LOW = BITS['supply_low']
 RELIEF_OPEN = BITS['relief_open']
 LOAD_CELL_IMPLAUSIBLE = BITS['load_cell_implausible']
 ENCODER_JUMP = BITS['encoder_jump']
+LINK_LOST = BITS['link_lost']
 EXTENDING, RETRACTING = 1, 2  # bits of the directions that are inhibited
 
 PROTECTION = np.dtype([
@@ -92,9 +93,13 @@ class Ratings(NamedTuple):
 
 
 def protection_record(
-        sheet: Protection, ratings: Ratings, evidence: np.record, conversion_steps: int
-        ) -> np.record:
-    """Return the `PROTECTION` record of a sheet; a conversion is every ``conversion_steps``."""
+        sheet: Protection, ratings: Ratings, evidence: np.record, conversion_steps: int,
+        link_timeout: float = 0.0) -> np.record:
+    """
+    Return the `PROTECTION` record of a sheet; a conversion is every ``conversion_steps``.
+
+    ``link_timeout`` is that of the link's watchdog in s; 0: none.
+    """
     period = conversion_steps * PLANT_STEP
     levels = {name: np.full(N, math.inf) for name in (
         'warning', 'trip', 'warning_end', 'trip_end')}
@@ -116,6 +121,9 @@ def protection_record(
         conversions = math.ceil(round(sheet.setpoint_timeout_ms * MILLI / period, _DIGITS))
         set_level('trip', SETPOINT_TIMEOUT, conversions * period)
         reaction[SETPOINT_TIMEOUT] = REACTIONS.index(sheet.setpoint_timeout_reaction)
+    if link_timeout:
+        set_level('trip', LINK_LOST, link_timeout)
+        reaction[LINK_LOST] = REACTIONS.index(sheet.link_lost_reaction)
     quiet = np.minimum(levels['warning'], levels['trip'])
     return record(
         PROTECTION, is_on=int(sheet.switch == 'on' and np.isfinite(quiet).any()), period=period,
@@ -244,6 +252,7 @@ def protect(step, supply_pressure, temperature, protection, state):
     acceleration_step(step, state.speed.velocity, protection.evidence, own.evidence)
     measure(supply_pressure, temperature, state.speed.velocity, state.measured, state.setpoint,
             protection, own)
+    own.values[LINK_LOST] = state.link_silence
     judge(step, protection, own)
     if own.trips != 0 or own.reaction != NONE:
         react(protection, state)

@@ -8,9 +8,9 @@ valve and supply. The defaults are outside of what the shipped scenarios reach.
 from dataclasses import dataclass, fields
 from typing import Any, Protocol
 
+from isa_ros.core.conditions import BITS, CONDITIONS, REACTIONS
 from isa_ros.core.parameter import choice, parameter, Parameters, section
 from isa_ros.errors import ParameterError
-from isa_ros.core.conditions import BITS, CONDITIONS, REACTIONS
 
 _ASSUMED = 'assumed'
 _STOPPING = tuple(name for name in REACTIONS if name != 'limit')
@@ -33,7 +33,7 @@ def _reaction(absent: str, *names: str) -> Any:
 
 
 class Levels(Protocol):
-    """What every condition but the setpoint's timeout has."""
+    """What every condition has but the timeouts of setpoint and link."""
 
     warning: float
     trip: float
@@ -157,6 +157,9 @@ class Protection(Parameters):
         le=3.6e6)
     setpoint_timeout_reaction: str = choice(
         'what follows until the next setpoint', *_TIMEOUT, absent='hold', source=_ASSUMED)
+    link_lost_reaction: str = choice(
+        "what follows when the link's watchdog has tripped, until the next frame", *_TIMEOUT,
+        absent='hold', source=_ASSUMED)
     end_of_stroke: EndOfStroke = section(EndOfStroke)
     overspeed: Overspeed = section(Overspeed)
     overload: Overload = section(Overload)
@@ -184,5 +187,5 @@ class Protection(Parameters):
 
 
 def levels_of(sheet: Protection) -> dict[str, Levels]:
-    """Return the levels of every condition but the setpoint's timeout, by its name."""
+    """Return the levels of every condition but the timeouts of setpoint and link, by its name."""
     return {name: getattr(sheet, name) for name in BITS if hasattr(sheet, name)}

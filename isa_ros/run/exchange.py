@@ -28,9 +28,15 @@ class Rows:
         self.replies: Records = np.zeros(n_actuators, LOAD_REPLY)
         """Results of the tick, from the actuators to the surroundings."""
         self.samples: Records = np.zeros(n_actuators, SAMPLE)
-        """Samples at the tick's start; once the actuators have answered, at its end."""
+        """
+        Samples at the tick's start; once the actuators have answered, at its end.
+
+        Behind a link the newest that has arrived.
+        """
         self.applied: Records = np.zeros(n_actuators, COMMAND)
-        """Commands that took effect at the last tick's start; kinds 0 without one."""
+        """Commands that took effect in the last tick; kinds 0 without one."""
+        self.sent: Records = np.zeros(n_actuators, COMMAND)
+        """Commands handed to the links at the last tick's start; kinds 0 without one."""
         self.tuned: Mapping[int, Mapping[str, float]] = {}
         """Parameters that changed at the start of the last tick, SI, by row and name."""
         self.changes: Mapping[int, Mapping[str, float]] = {}
@@ -43,7 +49,7 @@ class Rows:
         """Sample of the body, (1,); memory of the body. None: no body."""
         if surroundings.body is not None:
             self.body = surroundings.body.sample
-        self.shown = Shown(self.samples, self.applied, self.supplies, self.body)
+        self.shown = Shown(self.samples, self.applied, self.supplies, self.body, self.sent)
         """The rows that the messages are packed from."""
         self.reply_values, self.sample_values = floats(self.replies), floats(self.samples)
         """The same memory as plain floats."""

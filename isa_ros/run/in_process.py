@@ -31,7 +31,7 @@ class InProcess:
         self._group = group
         self._starts = starts
         self._inputs = inputs
-        self._replies, self._samples = floats(group.replies), floats(group.samples)
+        self._replies, self._samples = floats(group.replies), floats(group.observed)
 
     def join(self, rows: Rows) -> None:
         """Start all at t = 0."""
@@ -79,4 +79,5 @@ class InProcess:
         rows.reply_values[:] = self._replies
         rows.sample_values[:] = self._samples
         rows.applied[:] = group.applied
+        rows.sent[:] = group.sent
         rows.tuned = group.tuned

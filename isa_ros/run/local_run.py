@@ -109,5 +109,5 @@ def shown(simulation: Simulation) -> Shown:
     """Return the rows of a simulation that its messages are packed from."""
     body = simulation.surroundings.body
     return Shown(
-        simulation.group.samples, simulation.group.applied, simulation.surroundings.supplies,
-        None if body is None else body.sample)
+        simulation.group.observed, simulation.group.applied, simulation.surroundings.supplies,
+        None if body is None else body.sample, simulation.group.sent)

@@ -128,7 +128,7 @@ def packer_of(run: RunConfig, shown: Shown) -> Packer:
               [(supply.name, isinstance(supply.sheet.return_line, VolumeReturn))
                for supply in run.supplies], _body_messages(run),
               [actuator.name for actuator in run.actuators if is_heated(actuator.sheet.plant)],
-              _periods(run)), shown)
+              _periods(run), run.linked), shown)
 
 
 def _body_messages(run: RunConfig) -> BodyMessages | None:

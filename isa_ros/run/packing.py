@@ -12,16 +12,18 @@ from isa_ros.bag.packed import Layout, layout, Packed
 from isa_ros.core.accounts import accounts_of
 from isa_ros.core.atmosphere import ATMOSPHERE
 from isa_ros.core.kernel import kernel
-from isa_ros.core.record import floats
+from isa_ros.core.record import float_columns, floats
 from isa_ros.core.signals import COMMAND, Records, SAMPLE
 from isa_ros.core.timebase import NS_PER_SECOND
 from isa_ros.core.topic import KEPT, Qos, Topic
 from isa_ros.run.diagnostics import energy_statuses, PERIOD_NS
+from isa_ros.run.link_packing import LinkWords
 from isa_ros.surroundings.supply import SUPPLY_SAMPLE
 from msg_adapters import (
     actuator_messages, clock, coordinator_messages, diagnostics, event, fluid_pressure,
     temperature)
-from msg_adapters.actuator_messages import APPLIED_TOPICS, STATE_TOPICS, TEMPERATURE, TOPICS
+from msg_adapters.actuator_messages import (
+    KEPT_TOPICS, SENT_SETPOINT, STATE_TOPICS, TEMPERATURE, topics)
 from msg_adapters.applied_parameters import applied_parameters
 from msg_adapters.template import FIRST_VALUE, Prepared, Template, time_word
 import numpy as np
@@ -30,7 +32,7 @@ Messages = Sequence[bytes | None]
 """Serialised messages of one source in the order of its topics; None: no message at this tick."""
 
 _SAMPLE, _SUPPLY = tuple(SAMPLE.names or ()), tuple(SUPPLY_SAMPLE.names or ())
-_APPLIED = tuple(name for name in COMMAND.names or () if name != 'kinds')
+_APPLIED = tuple(name for name in COMMAND.names or () if name not in ('kinds', 'due_step'))
 _PRESSURES = ('pressure_a', 'pressure_b')
 _FIRST_PRESSURE = _SAMPLE.index(_PRESSURES[0])
 _SUPPLY_PRESSURES = ('pressure', 'return_pressure')
@@ -48,6 +50,8 @@ class Shown(NamedTuple):
     """`SUPPLY_SAMPLE`, (m,)."""
     body: Records | None
     """Sample of the body, (1,), a record of floats; None: no body."""
+    sent: Records | None = None
+    """`COMMAND` handed to the links at the tick's start, (n,); None: no links."""
 
 
 BodyMessages = Callable[[Mapping[str, int]], Mapping[tuple[str, str], Prepared]]
@@ -66,24 +70,14 @@ class Names(NamedTuple):
     """Names of the actuators whose temperature is published."""
     periods: Mapping[str, int] = {}
     """Period in ns of the topics that do not have a message at every tick, by name."""
+    linked: Collection[str] = ()
+    """Names of the actuators with a link."""
 
 
-def topics_of_actuator(prefix: str, is_heated: bool) -> list[Topic]:
-    """Return `TOPICS` below ``prefix`` with their qualities of service, then `TEMPERATURE`."""
-    return [
-        Topic(f'{prefix}/{suffix}', type_, KEPT if (suffix, type_) in APPLIED_TOPICS else Qos())
-        for suffix, type_ in (*TOPICS, *([TEMPERATURE] if is_heated else []))]
-
-
-def float_columns(record: np.dtype[np.void], first: int = 0) -> dict[str, int]:
-    """Return the column of every float of a record by field, ``field[k]`` for an array."""
-    columns: dict[str, int] = {}
-    for name in record.names or ():
-        n = record[name].itemsize // 8
-        for k in range(n):
-            columns[name if record[name].shape == () else f'{name}[{k}]'] = first
-            first += 1
-    return columns
+def topics_of_actuator(prefix: str, is_heated: bool, has_link: bool = False) -> list[Topic]:
+    """Return the topics of an actuator below ``prefix`` with their qualities of service."""
+    return [Topic(f'{prefix}/{suffix}', type_, KEPT if (suffix, type_) in KEPT_TOPICS else Qos())
+            for suffix, type_ in topics(is_heated, has_link)]
 
 
 @kernel
@@ -140,13 +134,16 @@ class Packer:
         self._names = names
         self._shown = shown
         found: list[tuple[Topic, Prepared | None]] = []
+        self._links = LinkWords(
+            [row for row, (name, _) in enumerate(names.actuators) if name in names.linked],
+            _n_columns(shown), shown.samples, shown.applied, shown.sent)
         at = 0
-        for name, is_rotary in names.actuators:
-            own = self._actuator(name, is_rotary, at)
-            is_heated = name in names.heated
+        for row, (name, is_rotary) in enumerate(names.actuators):
+            own = self._links.messages(row, name, self._actuator(name, is_rotary, at))
             at += len(_SAMPLE) + len(_PRESSURES) + len(_APPLIED)
             found += [(topic, own.get(topic.name.rpartition('/')[2]))
-                      for topic in topics_of_actuator(f'/{name}', is_heated)]
+                      for topic in topics_of_actuator(
+                          f'/{name}', name in names.heated, row in self._links.rows)]
         for supply, shows_return in names.supplies:
             for k, suffix in enumerate(_SUPPLY_PRESSURES[:1 + shows_return]):
                 topic = Topic(f'{_COORDINATOR}/{supply}_{suffix}', fluid_pressure.TYPE)
@@ -177,7 +174,7 @@ class Packer:
         self._periods = dict(names.periods) | {
             f'/{name}/{TEMPERATURE[0]}': NS_PER_SECOND for name in names.heated}
         self._not_due: frozenset[str] = frozenset()
-        self._layouts: dict[tuple[bytes, frozenset[str]], Layout] = {}
+        self._layouts: dict[tuple[bytes, bytes, frozenset[str]], Layout] = {}
         self._bind()
 
     @staticmethod
@@ -194,15 +191,13 @@ class Packer:
     def _bind(self) -> None:
         """Store the rows as plain floats, a tenth of the time to pass to the kernel."""
         shown, template = self._shown, self._template
-        n, m = len(shown.samples), len(shown.supplies)
         self._samples, self._supplies = floats(shown.samples), floats(shown.supplies)
         self._body = np.zeros(0) if shown.body is None else floats(shown.body).reshape(-1)
-        size = (FIRST_VALUE + n * (len(_SAMPLE) + len(_PRESSURES) + len(_APPLIED))
-                + m * len(_SUPPLY_PRESSURES) + len(self._body))
-        self._words = np.zeros(size, np.uint64)
+        self._words = np.zeros(
+            FIRST_VALUE + _n_columns(shown) + self._links.n_words, np.uint64)
         self._values = self._words.view(np.float64)
         self._target = _Target(template.block, template.places, template.sources)
-        self._kinds = shown.applied['kinds']
+        self._kinds, self._sent_kinds = shown.applied['kinds'], self._links.sent_kinds
 
     def pack(
             self, t_ns: int, tick_start_ns: int, tuned: Mapping[int, Mapping[str, float]],
@@ -213,6 +208,7 @@ class Packer:
         ``tuned`` are the parameters that changed at the tick's start, by row, and
         ``tuned_supplies`` those of the supplies.
         """
+        self._links.pack(t_ns, tick_start_ns, self._words, self._values)
         pack(time_word(t_ns), time_word(tick_start_ns), ATMOSPHERE,
              self._samples, self._shown.applied, self._supplies, self._body, self._words,
              self._values, self._target)
@@ -239,7 +235,7 @@ class Packer:
 
     def all_messages(self, events: Sequence[bytes] = ()) -> Packed:
         """Return all messages of the packed instant, in the order of `topics`."""
-        key = (self._kinds != 0).tobytes(), self._not_due
+        key = (self._kinds != 0).tobytes(), (self._sent_kinds != 0).tobytes(), self._not_due
         where = self._layouts.get(key)
         if where is None:
             where = self._layouts[key] = self._layout()
@@ -258,8 +254,9 @@ class Packer:
     def _layout(self) -> Layout:
         """Return the layout of this tick's messages: of applied setpoints, and of what is due."""
         absent = self._not_due.union(
-            f'/{name}/{_SETPOINT}'
-            for (name, _), kinds in zip(self._names.actuators, self._kinds) if not kinds)
+            f'/{name}/{suffix}'
+            for suffix, of_all in ((_SETPOINT, self._kinds), (_SENT, self._sent_kinds))
+            for (name, _), kinds in zip(self._names.actuators, of_all) if not kinds)
         present = [(self._index[name], place) for name, place in self._place.items()
                    if name not in absent]
         present.sort()
@@ -271,17 +268,19 @@ class Packer:
     def of_actuator(self, row: int) -> list[bytes | None]:
         """Return the messages of one actuator in the order of `topics_of_actuator`."""
         name = self._names.actuators[row][0]
-        setpoint = self._message(f'/{name}/{_SETPOINT}') if self._kinds[row] else None
-        messages = [self._tuned.get(row), setpoint,
-                    *(self._message(f'/{name}/{suffix}') for suffix, _ in STATE_TOPICS)]
+        commands = [(_SETPOINT, self._kinds), (_SENT, self._sent_kinds)]
+        messages = [self._tuned.get(row), *(
+            self._message(f'/{name}/{suffix}') if kinds[row] else None
+            for suffix, kinds in commands[:1 + (row in self._links.rows)]),
+            *(self._message(f'/{name}/{suffix}') for suffix, _ in STATE_TOPICS)]
         if name in self._names.heated:
             temperature = f'/{name}/{TEMPERATURE[0]}'
             messages.append(None if temperature in self._not_due else self._message(temperature))
         return messages
 
     def has_applied(self, row: int) -> bool:
-        """Return whether a command of an actuator took effect at the start of the last tick."""
-        return bool(self._kinds[row])
+        """Return whether a command of an actuator took effect in the last tick, or was sent."""
+        return bool(self._kinds[row] or self._sent_kinds[row])
 
     def of(self, topics: Sequence[Topic]) -> list[bytes | None]:
         """Return the messages of some topics of supplies and body; None: none at this instant."""
@@ -297,11 +296,19 @@ class Packer:
     def surroundings(self) -> list[Topic]:
         """Return the topics of supplies and body, and the diagnostics."""
         own = {f'/{name}/{suffix}' for name, _ in self._names.actuators
-               for suffix, _ in (*TOPICS, TEMPERATURE)}
+               for suffix, _ in topics(is_heated=True, has_link=True)}
         return [topic for topic in self.topics
                 if topic.name not in own and topic.name not in (clock.TOPIC[0], event.TOPIC[0])]
 
 
+def _n_columns(shown: Shown) -> int:
+    """Return the number of values of all rows, without the words of links."""
+    body = 0 if shown.body is None else floats(shown.body).size
+    own = len(_SAMPLE) + len(_PRESSURES) + len(_APPLIED)
+    return len(shown.samples) * own + len(shown.supplies) * len(_SUPPLY_PRESSURES) + body
+
+
 _SETPOINT = actuator_messages.APPLIED_SETPOINT[0]
+_SENT = SENT_SETPOINT[0]
 _PARAMETERS = actuator_messages.APPLIED_PARAMETERS[0]
 _TUNED_SUPPLIES = coordinator_messages.APPLIED_PARAMETERS

@@ -31,7 +31,8 @@ class ResultMessages:
         run, log = result.scenario.run, result.log
         self._shown = Shown(
             log.samples[0].copy(), np.zeros(len(run.actuators), COMMAND), log.supplies[0].copy(),
-            None if log.body is None else log.body[:1].copy())
+            None if log.body is None else log.body[:1].copy(),
+            np.zeros(len(run.actuators), COMMAND))
         self._packer = packer_of(run, self._shown)
         self._thinning = Thinning(run.record, self._packer.topics)
         self.topics: tuple[Topic, ...] = tuple(self._thinning.topics)
@@ -39,16 +40,21 @@ class ResultMessages:
     def record(self, recorder: Recorder) -> None:
         """Pass every sample to a recorder."""
         log, shown = self._result.log, self._shown
+        samples = log.samples if log.observed is None else log.observed
         narrator = Narrator(
             self._packer, self._result.scenario.run.step_ns, self._thinning.recorder(recorder))
-        for tick in range(len(log.samples)):
-            shown.samples[:] = log.samples[tick]
+        for tick in range(len(samples)):
+            shown.samples[:] = samples[tick]
             shown.supplies[:] = log.supplies[tick]
             if shown.body is not None and log.body is not None:
                 shown.body[0] = log.body[tick]
             shown.applied['kinds'] = 0
             if tick in log.applied:
                 shown.applied[:] = log.applied[tick]
+            if shown.sent is not None:
+                shown.sent['kinds'] = 0
+                if tick in log.sent:
+                    shown.sent[:] = log.sent[tick]
             narrator.publish_rows(
                 tick, log.tuned.get(tick, {}), log.tuned_supplies.get(tick, {}))
             if tick < len(log.samples) - 1:

@@ -20,6 +20,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 BODY = 'body'
+LINK = 'link'
 _REPORT_TICKS = 100     # ticks between two reports of progress
 
 
@@ -34,6 +35,10 @@ class Log(NamedTuple):
     """The body's sample, (n + 1,); None without a body."""
     applied: Mapping[int, Records]
     """`COMMAND` rows (n_actuators,) by sample, for the samples with an applied command."""
+    observed: Records | None = None
+    """`SAMPLE` that listeners have, (n + 1, n_actuators); None: ``samples``, without a link."""
+    sent: Mapping[int, Records] = {}
+    """As ``applied``, of the commands handed to links."""
     tuned: Mapping[int, Mapping[int, Mapping[str, float]]] = {}
     """Changed parameters by sample, row and name, for the samples with any."""
     tuned_supplies: Mapping[int, Mapping[str, float]] = {}
@@ -45,7 +50,8 @@ class Result(Mapping[str, NDArray[np.float64]]):
     A run's signals over time: ``result['kfe.force']`` is an array, (n + 1,) for n ticks.
 
     Names are ACTUATOR.FIELD with the fields of `SAMPLE`, SUPPLY.FIELD of `SUPPLY_SAMPLE`, and
-    body.FIELD; a field of several numbers gives an array of as many columns. SI, pressures
+    body.FIELD; of an actuator with a link also ACTUATOR.link.FIELD, the sample that listeners
+    have; a field of several numbers gives an array of as many columns. SI, pressures
     gauge. The arrays are read-only views of the log; copy them to change values.
     """
 
@@ -64,7 +70,10 @@ class Result(Mapping[str, NDArray[np.float64]]):
     def _units(self, body_units: Mapping[str, str]) -> Iterator[tuple[str, str]]:
         for actuator in self.scenario.run.actuators:
             for field, unit in SAMPLE_UNITS.items():
-                yield f'{actuator.name}.{field}', of_coordinate(unit, actuator.sheet.is_rotary)
+                unit = of_coordinate(unit, actuator.sheet.is_rotary)
+                yield f'{actuator.name}.{field}', unit
+                if actuator.name in self.scenario.run.linked:
+                    yield f'{actuator.name}.{LINK}.{field}', unit
         for supply in self.scenario.run.supplies:
             for field, unit in SUPPLY_UNITS.items():
                 yield f'{supply.name}.{field}', unit
@@ -77,6 +86,9 @@ class Result(Mapping[str, NDArray[np.float64]]):
         sources = [*((actuator.name, log.samples[:, k]) for k, actuator in
                      enumerate(run.actuators)),
                    *((supply.name, log.supplies[:, k]) for k, supply in enumerate(run.supplies))]
+        if log.observed is not None:
+            sources += [(f'{name}.{LINK}', log.observed[:, run.index(name)])
+                        for name in run.linked]
         if log.body is not None:
             sources.append((BODY, log.body))
         columns = {}
@@ -197,12 +209,16 @@ def simulated(
     bodies = None if body is None else np.zeros(n, body.sample.dtype)
     pairs = [(floats(samples), floats(group.samples).reshape(-1)),
              (floats(supplies), floats(surroundings.supplies).reshape(-1))]
+    observed = np.zeros_like(samples) if simulation.scenario.run.linked else None
+    if observed is not None:
+        pairs.append((floats(observed), floats(group.observed).reshape(-1)))
     if body is not None and bodies is not None:
         pairs.append((floats(bodies), floats(body.sample).reshape(-1)))
     applied: dict[int, Records] = {}
+    sent: dict[int, Records] = {}
     tuned: dict[int, Mapping[int, Mapping[str, float]]] = {}
     tuned_supplies: dict[int, Mapping[str, float]] = {}
-    kinds = group.applied['kinds']
+    kinds, sent_kinds = group.applied['kinds'], group.sent['kinds']
     for tick in range(n):
         if tick:
             simulation.step()
@@ -210,6 +226,8 @@ def simulated(
             into[tick] = shown
         if kinds.any():
             applied[tick] = group.applied.copy()
+        if observed is not None and sent_kinds.any():
+            sent[tick] = group.sent.copy()
         if changed := simulation.tuned:
             tuned[tick] = changed
         if supplies_changed := simulation.tuned_supplies:
@@ -218,5 +236,5 @@ def simulated(
             report(tick, n_ticks)
     if report is not None:
         report(n_ticks, n_ticks)
-    log = Log(samples, supplies, bodies, applied, tuned, tuned_supplies)
+    log = Log(samples, supplies, bodies, applied, observed, sent, tuned, tuned_supplies)
     return Result(simulation.scenario, log, {} if body is None else body.units)

@@ -26,7 +26,8 @@ FAULTS = [{'plant.spool.stuck': 1.0}, {'plant.coil.shorted_turns': 0.5, 'reu.fro
 def test_every_value_that_may_change_is_among_those_tested():
     """A new one is added to `VALUES`."""
     found = [name for name, own in changing(actuator_sheet('isa_v5')).items()
-             if not isinstance(own, Tunable) and not name.startswith('plant.sensors.')]
+             if not isinstance(own, Tunable)
+             and not name.startswith(('plant.sensors.', 'link.'))]
     assert sorted(VALUES) == sorted(found)
 
 
@@ -149,6 +150,12 @@ def test_a_delay_that_is_no_whole_number_of_conversions_is_refused_when_it_is_ch
     actuator = smart_actuator('isa_v5', 'mass', timing=TICK)
     with pytest.raises(ConfigError, match='isa_v5: .*delay_ms = 0.07 ms'):
         actuator.tune({'plant.sensors.force.delay_ms': 0.07})
+
+
+def test_a_link_may_lose_its_frames_only_where_there_is_one():
+    actuator = smart_actuator('isa_v5', 'mass', timing=TICK)
+    with pytest.raises(ConfigError, match='isa_v5: link.loss is not used: there is no link'):
+        actuator.tune({'link.loss': 1.0})
 
 
 @pytest.mark.parametrize('ticks_after', [0, 1, 5])

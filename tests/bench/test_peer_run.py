@@ -23,7 +23,7 @@ from isa_ros.bench.rigs import rigs_file
 from isa_ros.config.assembly import group_of, surroundings_of, timing_of
 from isa_ros.config.run_config import RunConfig
 from isa_ros.config.run_file import load_run
-from isa_ros.core.signals import COMMAND, HAS_SETPOINT, LOAD_REPLY, SAMPLE, START
+from isa_ros.core.signals import COMMAND, LOAD_REPLY, SAMPLE, START
 from isa_ros.errors import RunError
 from isa_ros.run.exchange import Rows
 from isa_ros.run.in_process import InProcess
@@ -32,6 +32,7 @@ from isa_ros.run.wire.parts import actuator_parts
 from isa_ros.run.wire.steps import decode_step, encode_end, Step
 import numpy as np
 import pytest
+from tests.sheets import setpoint
 
 PIPES = ends(peer('pipes'))
 TICKS = 6
@@ -102,7 +103,7 @@ def ticks(transport: PeerTransport | InProcess, run: RunConfig) -> list[tuple[by
     for tick in range(TICKS):
         rows.commands.fill(0)
         if tick == SENT_OFF_AT:
-            rows.commands[1] = (HAS_SETPOINT, 0, 0.06, 0.0, 0.0, np.nan, np.nan)
+            rows.commands[1] = setpoint(position=0.06)
         transport.send(tick, rows)
         transport.receive(rows)
         all_rows.append(filled())

@@ -67,5 +67,5 @@ def test_everything_that_may_change_has_a_unit_a_meaning_and_two_bounds(model):
     found = changeables(actuator_sheet(model))
     assert 'plant.spool.stuck' in found and 'reu.frozen' in found
     for name, own in found.items():
-        assert own.unit and own.doc and name.partition('.')[0] in ('plant', 'reu')
+        assert own.unit and own.doc and name.partition('.')[0] in ('plant', 'reu', 'link')
         assert {'ge', 'gt'} & set(own.bounds) and {'le', 'lt'} & set(own.bounds), name

@@ -114,7 +114,8 @@ def test_a_state_that_could_not_be_read_again_is_not_written(tmp_path: Path, mon
 
 def test_requests_are_of_as_many_actuators():
     assert len(STATE.rows_of_requests(2)) == 2
-    with pytest.raises(ConfigError, match='must have 144 for the 3 actuators of the run'):
+    with pytest.raises(ConfigError, match=(
+            f'must have {3 * COMMAND.itemsize} for the 3 actuators of the run')):
         STATE.rows_of_requests(3)
 
 

@@ -2,7 +2,7 @@
 
 import hashlib
 
-from isa_ros.examples import same_bytes, sweep_dead_volume, two_gains
+from isa_ros.examples import over_a_link, same_bytes, sweep_dead_volume, two_gains
 import numpy as np
 import pytest
 
@@ -17,6 +17,14 @@ def test_two_gains_are_drawn_over_each_other(tmp_path, capsys):
     two_gains.main([str(tmp_path / 'two.png')])
     assert (tmp_path / 'two.png').read_bytes().startswith(b'\x89PNG')
     assert capsys.readouterr().out.strip().endswith('two.png')
+
+
+def test_an_impedance_over_a_link_is_softer_than_that_of_the_reu():
+    """With 8 ms each way 1e5 N/m do not settle in the commander; without a link and in the REU."""
+    stiffness = 1e5
+    assert not over_a_link.settles(over_a_link.Remote(stiffness), 8)
+    assert over_a_link.settles(over_a_link.Remote(stiffness), 0)
+    assert over_a_link.settles(over_a_link.Own(stiffness), 8)
 
 
 @pytest.mark.slow

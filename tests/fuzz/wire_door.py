@@ -49,6 +49,7 @@ class Stepper:
     def __init__(self) -> None:
         self.reply, self.sample = np.zeros(1, LOAD_REPLY), np.zeros(1, SAMPLE)
         self.applied, self.tuned = np.zeros(1, COMMAND), {'force.kp': 1e-7}
+        self.sent = np.zeros(1, COMMAND)
 
     def tune(self, values: Mapping[str, float]) -> None:
         """Take new values."""

@@ -106,9 +106,10 @@ def test_actuators_together_say_what_each_says_alone():
 
 
 def test_every_value_but_the_gauge_pressures_is_published():
-    """Of these the absolute ones are; energies on `/diagnostics`, the temperature if heated."""
+    """Of these the absolute ones are; energies are on `/diagnostics`, the age is in stamps."""
     used = {column for _, fields in of_actuator('hip', False).values()
             for column in fields.values() if column >= 0}
     assert {value for k, value in enumerate(VALUES) if k not in used} == {
-        'sample pressure_a', 'sample pressure_b', 'sample power', 'sample temperature',
+        'sample pressure_a', 'sample pressure_b', 'sample power', 'sample age',
+        'sample temperature', 'sample warnings', 'sample trips',
         *(f'sample {field}' for field in FIELDS if field != 'supply_volume')}

@@ -30,7 +30,8 @@ def rated(name: str, level: float) -> float:
 
 def test_every_condition_has_levels_or_a_timeout() -> None:
     """Keys, bits and readings of this test name the same conditions."""
-    assert set(levels_of(defaults(Protection))) == set(BITS) - {'setpoint_timeout'} == set(NAMES)
+    timeouts = {'setpoint_timeout', 'link_lost'}
+    assert set(levels_of(defaults(Protection))) == set(BITS) - timeouts == set(NAMES)
 
 
 @pytest.mark.parametrize('name', NAMES)
@@ -315,4 +316,4 @@ def test_the_default_watches_all_but_the_ends_and_the_setpoints() -> None:
     constants = Watched(defaults(Protection)).constants
     is_watched = np.isfinite(constants.quiet)
     assert [name for name, k in BITS.items() if not is_watched[k]] == [
-        'setpoint_timeout', 'end_of_stroke']
+        'setpoint_timeout', 'end_of_stroke', 'link_lost']

@@ -21,6 +21,7 @@ import pytest
 from rosgraph_msgs.msg import Clock
 from tests.run.recorder import FakeRecorder
 from tests.runs import hip_and_knee
+from tests.sheets import setpoint
 
 STEP_NS = 1_000_000
 RUN = hip_and_knee()
@@ -57,7 +58,7 @@ class FakeTransport:
         self.log.append(f'receive {self.tick}')
         rows.replies['force'] = self.tick
         if self.tick == self.asks_at:
-            rows.requests[0] = (HAS_SETPOINT, 0, 0.5, 0.0, 0.0, np.nan, np.nan)
+            rows.requests[0] = setpoint(position=0.5)
         self._answer(self.tick + 1, rows)
 
     def idle(self) -> None:

@@ -3,15 +3,15 @@
 from dataclasses import replace
 
 from isa_ros.config.recording import RecordConfig
-from isa_ros.core.signals import HAS_SETPOINT, Records
+from isa_ros.core.signals import Records
 from isa_ros.run.coordinator import Interrupted
 from isa_ros.run.local_run import Inputs, LocalRun
 from msg_adapters import event
 from msg_adapters.applied_parameters import tuned_values
 from msg_adapters.setpoint import applied_to_command
-import numpy as np
 import pytest
 from tests.runs import hip_and_knee
+from tests.sheets import setpoint
 
 RUN = hip_and_knee()
 
@@ -37,7 +37,7 @@ def nothing(tick: int, rows: Records) -> None:
 def knee_at_2(tick: int, rows: Records) -> None:
     """Command the knee at tick 2."""
     if tick == 2:
-        rows[1] = (HAS_SETPOINT, 0, 0.06, 0.0, 0.0, np.nan, np.nan)
+        rows[1] = setpoint(position=0.06)
 
 
 def recorded(inputs: Inputs, n_ticks: int = 4, run=RUN) -> Recorder:

@@ -7,12 +7,13 @@ from pathlib import Path
 from isa_ros.config.run_config import RunConfig
 from isa_ros.config.run_file import load_run
 from isa_ros.core.saved_state import RunState
-from isa_ros.core.signals import COMMAND, HAS_SETPOINT, Records
+from isa_ros.core.signals import COMMAND, Records
 from isa_ros.run.local_run import Inputs, LocalRun
 from isa_ros.scenario.scenario import idle
 from isa_ros.simulation import Simulation
 import numpy as np
 import pytest
+from tests.sheets import setpoint
 
 CONFIG = Path(__file__).parents[2] / 'config'
 NEVER_S = 1e6
@@ -44,7 +45,7 @@ def leg(release_s: float) -> RunConfig:
 def commands(tick: int, rows: Records) -> None:
     """Let the knee be pushed a little from tick 5 on, so that something moves before."""
     if tick == 5:
-        rows[2] = (HAS_SETPOINT, 0, 0.0587, 0.0, 50.0, np.nan, np.nan)
+        rows[2] = setpoint(position=0.0587, effort=50.0)
 
 
 def recorded(run: RunConfig, state: RunState | None = None) -> dict[int, Sample]:

@@ -6,13 +6,14 @@ from functools import cache
 from pathlib import Path
 
 from isa_ros.config.run_file import load_run
-from isa_ros.core.signals import HAS_SETPOINT, Records
+from isa_ros.core.signals import Records
 from isa_ros.run.local_run import Inputs, LocalRun
 from isa_ros.surroundings import supply
 from msg_adapters.cdr_reader import decode
 import numpy as np
 import pytest
 from sensor_msgs.msg import FluidPressure, JointState
+from tests.sheets import setpoint
 
 CONFIG = Path(__file__).parents[2] / 'config'
 STANDARD_ATMOSPHERE = 101_325.0  # Pa
@@ -58,7 +59,7 @@ def recorded() -> Kept:
 
     def commands(tick: int, rows: Records) -> None:
         if tick == STARTS_AT:
-            rows[1] = (HAS_SETPOINT, 0, 0.08, 0.0, 0.0, np.nan, np.nan)
+            rows[1] = setpoint(position=0.08)
     local = LocalRun(run)
     kept = Kept([topic.name for topic in local.topics])
     local.simulate(TICKS, Inputs(commands), kept)

@@ -18,11 +18,10 @@ from isa_ros.analysis.response.at_rest import rest_of, ticks_at_rest
 from isa_ros.analysis.response.loops import Loop, PLANT
 from isa_ros.analysis.response.rig import REST_S, Rig
 from isa_ros.analysis.response.sweep import Answer, chirp_band, sections, Sweep, windows
-from isa_ros.analysis.signals.signals import read_signals
+from isa_ros.analysis.signals.signals import AT_EVERY_TICK, read_signals
 from isa_ros.config.run_config import RunConfig
 from isa_ros.config.sections import as_tree
 from isa_ros.config.yaml_text import dump, Tree
-from isa_ros.core.signals import SAMPLE_UNITS
 from isa_ros.core.timebase import NS_PER_SECOND
 from isa_ros.core.units import MILLI
 from isa_ros.errors import ConfigError
@@ -149,7 +148,7 @@ def _recorded(rig: Rig, points: list[Tree], end: int, bag: Path | None, first: i
         signals = read_signals(out)
         unknown = np.full(len(signals.time) - first, math.nan)
         return dict.fromkeys(UNRECORDED, unknown) | {
-            field: signals[f'{name}.{field}'][first:] for field in SAMPLE_UNITS}
+            field: signals[f'{name}.{field}'][first:] for field in AT_EVERY_TICK}
 
 
 def run_file(run: RunConfig) -> str:

@@ -35,6 +35,8 @@ _ACTUATOR = {
     'current_reference': ('references', 'position[3]'),
     'temperature': ('temperature', 'temperature')}
 """(suffix of the topic, field) by field of a `SAMPLE`."""
+AT_EVERY_TICK = tuple(field for field in _ACTUATOR if field != 'temperature')
+"""Fields of a `SAMPLE` that every bag has at every tick."""
 _SUPPLY = ('pressure', 'return_pressure')
 _JOINTS, _GROUND = '/joint_states', '/coordinator/ground_contact'
 _BODY = {

@@ -65,10 +65,13 @@ class ActuatorNode(Node):
         memory, heats_up = self.actuator.memory, is_heated(config.sheet.plant)
         self._packer = Packer(
             Names([(config.name, config.sheet.is_rotary)],
-                  heated=[config.name] if heats_up else []),
-            Shown(memory.samples, memory.applied, np.zeros(0, SUPPLY_SAMPLE), None),
+                  heated=[config.name] if heats_up else [],
+                  linked=[config.name] if self.actuator.has_link else []),
+            Shown(memory.observed, memory.applied, np.zeros(0, SUPPLY_SAMPLE), None,
+                  memory.sent),
             is_run=False)
-        self.outlet = PreparedPublishers(self, topics_of_actuator('~', heats_up))
+        self.outlet = PreparedPublishers(
+            self, topics_of_actuator('~', heats_up, self.actuator.has_link))
         """The publishers of the actuator's topics."""
         setpoints = self.create_subscription(
             JointState, '~/setpoint', self._on_setpoint, SETPOINT)
@@ -94,13 +97,18 @@ class ActuatorNode(Node):
 
     @property
     def sample(self) -> Records:
-        """Return the `SAMPLE` at the end of the last tick, (1,)."""
-        return self.actuator.memory.samples
+        """Return the `SAMPLE` that listeners have at the end of the last tick, (1,)."""
+        return self.actuator.memory.observed
 
     @property
     def applied(self) -> Records:
-        """Return the `COMMAND` that took effect at its start, kinds 0 without one, (1,)."""
+        """Return the `COMMAND` that took effect in it, kinds 0 without one, (1,)."""
         return self.actuator.memory.applied
+
+    @property
+    def sent(self) -> Records:
+        """Return the `COMMAND` handed to the link at its start, kinds 0 without one, (1,)."""
+        return self.actuator.memory.sent
 
     @property
     def tuned(self) -> Mapping[str, float]:
@@ -148,7 +156,7 @@ class ActuatorNode(Node):
         """Publish applied commands, and the state where there is a subscription."""
         tuned = self.actuator.applied_parameters
         has_subscribers = self.outlet.has_subscribers()
-        if not (has_subscribers or tuned or self.actuator.applied is not None):
+        if not (has_subscribers or tuned or self._packer.has_applied(0)):
             return
         t_ns = self.actuator.t_ns
         self._packer.pack(

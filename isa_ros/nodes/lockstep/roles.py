@@ -92,12 +92,17 @@ class Stepper(Protocol):
 
     @property
     def sample(self) -> Records:
-        """Return the `SAMPLE` at the end of the last tick."""
+        """Return the `SAMPLE` that listeners have at the end of the last tick."""
         ...
 
     @property
     def applied(self) -> Records:
-        """Return the `COMMAND` that took effect at its start; kinds 0 without one."""
+        """Return the `COMMAND` that took effect in it; kinds 0 without one."""
+        ...
+
+    @property
+    def sent(self) -> Records:
+        """Return the `COMMAND` handed to its link at its start; kinds 0 without one."""
         ...
 
     @property
@@ -198,7 +203,7 @@ class ActuatorRole:
 
     def _parts(self) -> Parts:
         own = self._stepper
-        return actuator_parts(own.reply, own.sample, own.applied, own.tuned)
+        return actuator_parts(own.reply, own.sample, own.applied, own.tuned, own.sent)
 
 
 class ControllerRole:

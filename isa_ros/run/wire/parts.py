@@ -30,6 +30,8 @@ _COUNT = 4  # bytes of a length
 _FLOAT = 8
 _APPLIED_AT = LOAD_REPLY.itemsize + SAMPLE.itemsize
 _ROWS = _APPLIED_AT + COMMAND.itemsize
+_PARTS = 3
+_LAST_STEP = 2**46  # of the plant: 44 years
 _KINDS = HAS_SETPOINT | HAS_ENABLE | HAS_GAINS
 _NUMBERS = ('position', 'velocity', 'effort')
 _GAINS = ('stiffness', 'damping')
@@ -37,14 +39,16 @@ _GAINS = ('stiffness', 'damping')
 
 def actuator_parts(
         reply: Records, sample: Records, applied: Records,
-        tuned: Mapping[str, float]) -> list[bytes | None]:
+        tuned: Mapping[str, float], sent: Records | None = None) -> list[bytes | None]:
     """
     Return the parts of an actuator's answer: its rows, and the parameters that changed.
 
-    ``reply``, ``sample`` and ``applied`` are its `LOAD_REPLY`, `SAMPLE` and `COMMAND`, (1,).
+    ``reply``, ``sample`` and ``applied`` are its `LOAD_REPLY`, `SAMPLE` and `COMMAND`, (1,);
+    ``sent`` is the `COMMAND` handed to its link, (1,), where it has one.
     """
+    is_sent = sent is not None and sent[0]['kinds']
     return [reply.tobytes() + sample.tobytes() + applied.tobytes(),
-            tuned_part(tuned)]
+            tuned_part(tuned), sent.tobytes() if sent is not None and is_sent else None]
 
 
 def refuse_actuator_parts(parts: Parts) -> None:
@@ -57,25 +61,32 @@ def refuse_actuator_parts(parts: Parts) -> None:
         They cannot be taken.
 
     """
-    rows, tuned = parts if len(parts) == 2 else (None, None)
+    rows, tuned, sent = parts if len(parts) == _PARTS else (None, None, None)
     if rows is None or len(rows) != _ROWS:
         raise WireError('an answer that is not of an actuator')
     if not is_finite(np.frombuffer(rows, np.float64, _APPLIED_AT // _FLOAT)):
         raise WireError('an answer of an actuator with a number that is not finite')
     refuse_command(np.frombuffer(rows, COMMAND, 1, _APPLIED_AT)[0])
+    if sent is not None:
+        if len(sent) != COMMAND.itemsize:
+            raise WireError('an answer with a sent setpoint that is not a command')
+        refuse_command(np.frombuffer(sent, COMMAND)[0])
     if tuned is not None:
         tuned_of(tuned)
 
 
 def take_actuator_parts(parts: Parts, row: int, rows: Rows) -> None:
     """Fill one row from the parts of an actuator's answer; inverse of `actuator_parts`."""
-    data, tuned = parts
+    data, tuned, sent = parts
     assert data is not None, 'refuse_actuator_parts has checked them'
     sample_at = LOAD_REPLY.itemsize
     rows.reply_values[row] = np.frombuffer(data, np.float64, sample_at // _FLOAT)
     rows.sample_values[row] = np.frombuffer(
         data, np.float64, SAMPLE.itemsize // _FLOAT, sample_at)
     rows.applied[row] = np.frombuffer(data, COMMAND, 1, _APPLIED_AT)[0]
+    rows.sent['kinds'][row] = 0
+    if sent is not None:
+        rows.sent[row] = np.frombuffer(sent, COMMAND)[0]
     if tuned is not None:
         rows.tuned = {**rows.tuned, row: tuned_of(tuned)}
 
@@ -138,6 +149,7 @@ def refuse_command(command: np.void) -> None:
     numbers = [float(command[name]) for name in _NUMBERS] if kinds & HAS_SETPOINT else []
     gains = [float(command[name]) for name in _GAINS] if kinds & ~HAS_ENABLE else []
     if (kinds & ~_KINDS or kinds & HAS_ENABLE and command['is_enabled'] not in (0, 1)
+            or not 0 <= command['due_step'] <= _LAST_STEP
             or not all(map(math.isfinite, numbers))
             or any(math.isinf(gain) or gain < 0.0 for gain in gains)):
         raise WireError('a command with an invalid kind, number or gain')

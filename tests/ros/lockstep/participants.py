@@ -48,7 +48,7 @@ class Scripted:
     def __init__(self, digest: str = 'same') -> None:
         self.digest = digest
         self.reply, self.sample = np.zeros(1, LOAD_REPLY), np.zeros(1, SAMPLE)
-        self.applied = np.zeros(1, COMMAND)
+        self.applied, self.sent = np.zeros(1, COMMAND), np.zeros(1, COMMAND)
         self.tuned: Mapping[str, float] = {}
         self.starts = 0
         self.ticks = 0

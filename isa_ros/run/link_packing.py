@@ -1,0 +1,90 @@
+"""
+What a link adds to the messages of its actuator.
+
+Messages of its state have the time at which the device sampled it, and ``~/applied_setpoint`` the
+plant step at which it took effect. ``~/sent_setpoint`` is what was handed to the link.
+"""
+
+from collections.abc import Mapping, Sequence
+
+from isa_ros.core.kernel import kernel
+from isa_ros.core.signals import HAS_ENABLE, HAS_GAINS, HAS_SETPOINT, Records
+from isa_ros.core.timebase import NS_PER_SECOND, PLANT_STEP, PLANT_STEP_NS
+from msg_adapters.sent_setpoint import sent_setpoint
+from msg_adapters.template import FIRST_VALUE, Prepared, stamped
+import numpy as np
+
+_SENT = ('is_enabled', 'position', 'velocity', 'effort', 'stiffness', 'damping')
+WORDS = 2 + len(_SENT)
+"""Words of one link: times of sampling and of effect, then the values of the sent setpoint."""
+
+
+@kernel
+def time_word_of(t_ns):
+    """Return a time as the word of a stamp, as `msg_adapters.template.time_word`."""
+    return (t_ns % NS_PER_SECOND) << 32 | t_ns // NS_PER_SECOND
+
+
+@kernel
+def pack_links(t_ns, tick_start_ns, at, links, ages, applied, sent, words, values):
+    """
+    Write the words of all links from place ``at`` on.
+
+    ``links`` are the rows with a link, ``ages`` the age of every sample in s, ``applied`` and
+    ``sent`` `COMMAND` rows.
+    """
+    for row in links:
+        words[at] = time_word_of(t_ns - int(ages[row] / PLANT_STEP + 0.5) * PLANT_STEP_NS)
+        due = applied[row].due_step
+        words[at + 1] = time_word_of(due * PLANT_STEP_NS if due > 0 else tick_start_ns)
+        command = sent[row]
+        kinds = command.kinds
+        for k in range(2, WORDS):
+            values[at + k] = np.nan
+        if kinds & HAS_ENABLE:
+            values[at + 2] = float(command.is_enabled)
+        if kinds & HAS_SETPOINT:
+            values[at + 3] = command.position
+            values[at + 4] = command.velocity
+            values[at + 5] = command.effort
+        if kinds & (HAS_SETPOINT | HAS_GAINS):
+            values[at + 6] = command.stiffness
+            values[at + 7] = command.damping
+        at += WORDS
+
+
+class LinkWords:
+    """
+    The words of the links of some actuators, behind all other words of a template.
+
+    ``rows`` are the actuators with a link, ``first`` the first column of their words; the rest
+    are rows of all: their `SAMPLE`, and the `COMMAND` applied and sent.
+    """
+
+    def __init__(
+            self, rows: Sequence[int], first: int, samples: Records, applied: Records,
+            sent: Records | None) -> None:
+        self.sent_kinds = np.zeros(len(samples), np.uint32) if sent is None else sent['kinds']
+        """Kinds of the sent command of every actuator; 0: none."""
+        self.rows = () if sent is None else tuple(rows)
+        self.n_words = len(self.rows) * WORDS
+        self._first = first
+        self._numbers = np.array(self.rows, np.int64)
+        self._ages, self._applied, self._sent = samples['age'], applied, sent
+
+    def messages(
+            self, row: int, name: str, messages: Mapping[str, Prepared]) -> dict[str, Prepared]:
+        """Return the messages of an actuator, with what its link adds if it has one."""
+        if row not in self.rows:
+            return dict(messages)
+        first = self._first + WORDS * self.rows.index(row)
+        sent = {field: first + 2 + k for k, field in enumerate(_SENT)}
+        own = {suffix: stamped(message, first + (suffix == 'applied_setpoint'))
+               for suffix, message in messages.items()}
+        return own | {'sent_setpoint': sent_setpoint(name, sent)}
+
+    def pack(self, t_ns: int, tick_start_ns: int, words: np.ndarray, values: np.ndarray) -> None:
+        """Write the words; ``values`` is the float view of ``words``."""
+        if self.rows:
+            pack_links(t_ns, tick_start_ns, FIRST_VALUE + self._first, self._numbers, self._ages,
+                       self._applied, self._sent, words, values)

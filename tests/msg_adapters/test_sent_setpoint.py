@@ -1,0 +1,95 @@
+"""What was handed to a link: every command reads back, other messages are refused."""
+
+import math
+
+from hypothesis import given, strategies as st
+from isa_ros.core.signals import COMMAND, HAS_ENABLE, HAS_GAINS, HAS_SETPOINT
+from isa_ros.errors import SetpointError
+from isa_ros.run.link_packing import pack_links, WORDS
+from msg_adapters.cdr import encode
+from msg_adapters.cdr_reader import decode
+from msg_adapters.sent_setpoint import sent_setpoint, sent_to_command
+from msg_adapters.template import FIRST_VALUE, Template, time_word
+import numpy as np
+import pytest
+from sensor_msgs.msg import JointState
+
+NUMBER = st.floats(-1e6, 1e6)
+GAIN = st.just(math.nan) | st.floats(0.0, 1e6)
+T_NS, START_NS = 3_000_000_007, 2_999_000_007
+
+
+def words_of(command: np.ndarray, age: float = 0.0, due_step: int = 0, compiled: bool = True):
+    """Return the words of a link: two times, then the sent setpoint."""
+    applied = np.zeros(1, COMMAND).view(np.recarray)
+    applied['due_step'] = due_step
+    words = np.zeros(WORDS, np.uint64)
+    pack = pack_links if compiled else pack_links.py_func
+    pack(T_NS, START_NS, 0, np.array([0]), np.array([age]), applied,
+         command.view(np.recarray), words, words.view(np.float64))
+    return words
+
+
+def packed(command: np.ndarray) -> bytes:
+    """Return the message of a command."""
+    fields = ('is_enabled', 'position', 'velocity', 'effort', 'stiffness', 'damping')
+    template = Template([sent_setpoint('hip', {field: k for k, field in enumerate(fields)})])
+    words = np.zeros(FIRST_VALUE + len(fields), np.uint64)
+    words[FIRST_VALUE:] = words_of(command)[2:]
+    template.fill(words)
+    return template.message(0)
+
+
+def command_of(kinds: int, is_enabled: int, *values: float) -> np.ndarray:
+    row = np.zeros(1, COMMAND)
+    row[0] = (kinds, is_enabled, *values, *[0] * (len(COMMAND.names or ()) - 2 - len(values)))
+    return row
+
+
+@given(st.integers(1, HAS_SETPOINT | HAS_ENABLE | HAS_GAINS), st.integers(0, 1),
+       st.tuples(NUMBER, NUMBER, NUMBER, GAIN, GAIN))
+def test_a_command_reads_back_as_it_was_sent(kinds, is_enabled, values):
+    """With the gains that a setpoint may have; gains that are both NaN change nothing."""
+    command = command_of(kinds, is_enabled, *values)
+    has_gains = not all(map(math.isnan, values[3:]))
+    if kinds == HAS_GAINS and not has_gains:
+        return
+    found = sent_to_command(packed(command), 'hip')
+    takes_gains = kinds & (HAS_SETPOINT | HAS_GAINS)
+    assert int(found['kinds']) & ~HAS_GAINS == kinds & ~HAS_GAINS
+    assert bool(int(found['kinds']) & HAS_GAINS) == bool(takes_gains and has_gains)
+    if kinds & HAS_ENABLE:
+        assert found['is_enabled'] == is_enabled
+    if kinds & HAS_SETPOINT:
+        assert [found[name] for name in ('position', 'velocity', 'effort')] == list(values[:3])
+    for name, value in zip(('stiffness', 'damping'), values[3:]):
+        expected = value if takes_gains else math.nan
+        assert found[name] == expected or math.isnan(found[name]) and math.isnan(expected)
+
+
+def test_the_times_are_those_of_sampling_and_of_effect():
+    """3 ms ago; step 149,975 is at 2.9995 s. Without a step it is the start of the tick."""
+    none = np.zeros(1, COMMAND)
+    for compiled in (True, False):
+        words = words_of(none, 0.003, 149_975, compiled)
+        assert words[:2].tolist() == [time_word(T_NS - 3_000_000), time_word(2_999_500_000)]
+        assert words_of(none, compiled=compiled)[1] == time_word(START_NS)
+
+
+@pytest.mark.parametrize('changes, message', [
+    ({'name': ['hip']}, 'sent setpoint names hip, must name hip, hip/stiffness'),
+    ({'position': [0.1, math.nan, math.nan, 0.5]}, 'enabled = 0.5, must be 0.0, 1.0 or NaN'),
+    ({'position': [0.1, -1.0, math.nan, 1.0]}, 'hip/stiffness = -1.0, must be finite and >= 0'),
+    ({'position': [0.1, math.nan, math.inf, 1.0]}, 'hip/damping = inf, must be finite'),
+    ({'position': [math.nan, 1.0, 1.0, 1.0]}, 'hip: sent position = nan, must be finite'),
+    ({'position': [math.nan] * 4, 'velocity': [math.nan] * 4, 'effort': [math.nan] * 4},
+     'hip: sent setpoint without a value'),
+    ({'velocity': [0.0]}, 'with all values of each')])
+def test_another_message_is_refused(changes, message):
+    good = decode(packed(command_of(HAS_SETPOINT, 0, 0.1, 0.0, 0.0, math.nan, math.nan)),
+                  JointState)
+    for field, value in changes.items():
+        setattr(good, field, value)
+    with pytest.raises(SetpointError) as refused:
+        sent_to_command(encode(good), 'hip')
+    assert message in str(refused.value)
