@@ -15,6 +15,7 @@ from dataclasses import dataclass, fields, replace
 import math
 from typing import Any, NamedTuple
 
+from isa_ros.actuator.link import NO_LINK
 from isa_ros.actuator.sheet import ActuatorSheet, refuse_wiring
 from isa_ros.actuator.usable import largest_gains, REASON
 from isa_ros.core.changeable import Changeable, changeables, with_changes
@@ -165,6 +166,9 @@ def with_changed(sheet: ActuatorSheet, values: Mapping[str, float]) -> ActuatorS
     own = {name: value for name, value in values.items() if isinstance(known[name], Tunable)}
     other = {name: value for name, value in values.items() if name not in own}
     changed = with_changes(tuned(sheet, own), other)
+    if changed.link is not sheet.link and changed.link.kind == NO_LINK.kind:
+        key = next(name for name in other if name.startswith('link.'))
+        raise ConfigError(f'{key} is not used: there is no link, link.kind = {NO_LINK.kind}')
     if changed.plant is not sheet.plant:
         refuse_wiring(changed)
         refuse_too_fast(plant_record(changed.plant)[0], changed.plant, LoadSide())

@@ -13,6 +13,7 @@ from isa_ros.config.yaml_text import Tree
 from isa_ros.replay.replay import recorded_inputs, Rerun
 from isa_ros.scenario.scenario import idle, load_scenario, Scenario
 from isa_ros.scripting.result import Result, simulated
+from isa_ros.scripting.run import load
 from isa_ros.simulation import Simulation
 import pytest
 from tests.runs import ACCUMULATOR, hip_and_knee
@@ -132,6 +133,23 @@ def test_a_run_that_begins_again_has_its_faults_again():
         states.append(simulation.group.samples.tobytes()
                       + simulation.surroundings.supplies.tobytes())
     assert states[0] == states[1]
+
+
+def test_a_link_that_is_lost_for_a_while_replays(tmp_path):
+    """Without a frame the sample that listeners have grows old; afterwards it is young again."""
+    link = {'kind': 'can', 'cycle_ms': 1.0, 'delay_cycles': 1, 'watchdog_ms': 20.0}
+    run = load({
+        'name': 'ram', 'step_ms': 1.0, 'controller_offset_ms': 0.12, 'tick_timeout_s': 5.0,
+        'supply': {'kind': 'constant', 'pressure_mpa': 20.7, 'return_pressure_mpa': 0.0},
+        'actuators': {'ram': {'model': 'isa_v5', 'load': {'kind': 'mass'}, 'link': link}}})
+    result = run.simulate(0.1, faults=[
+        {'t_s': 0.04, 'link': 'ram', 'set': {'loss': 1.0}, 'until_s': 0.06}])
+    age = result['ram.link.age']
+    assert age[40:61].max() > 0.015 > 0.005 > max(age[20:40].max(), age[70:].max())
+    bag = result.save(tmp_path / 'bag')
+    inputs = recorded_inputs(Bag(bag), run.configuration)
+    assert inputs.tuned == {'ram': {40: {'link.loss': 1.0}, 60: {'link.loss': 0.0}}}
+    assert replayed(bag, tmp_path / 'again' / 'bag') == content(bag)
 
 
 def test_the_shipped_scenario_of_faults_replays(tmp_path):
