@@ -13,14 +13,17 @@ from collections.abc import Mapping, Sequence
 from dataclasses import replace
 import warnings
 
+from isa_ros.actuator.tunable import with_si_names
 from isa_ros.config.assembly import group_of, request_range_of, surroundings_of
 from isa_ros.controller import (
     by_name, Controller, ControllerSeat, fill_requests, merge_requests, Setpoint, State)
 from isa_ros.core.noise import seed_of
 from isa_ros.core.saved_state import RunState
 from isa_ros.core.signals import COMMAND, LOAD_PORT, Records
+from isa_ros.core.suggest import alternatives
 from isa_ros.core.timebase import NS_PER_SECOND
 from isa_ros.errors import ConfigError
+from isa_ros.scenario.faults import ParameterChanges
 from isa_ros.scenario.scenario import Scenario
 import numpy as np
 
@@ -95,7 +98,7 @@ class Simulation:
             run = replace(self.scenario.run, seed=seed_of(seed, 'seed'))
             self._assemble(replace(self.scenario, run=run))
         self.ticks = 0
-        self.surroundings.restore(self._beginning)
+        self.surroundings.restart(self._beginning)
         self.group.start(self._starts)
         self._requests['kinds'] = 0
         self._seats = [ControllerSeat(own, self.names) for own in self._controllers]
@@ -135,6 +138,31 @@ class Simulation:
         if limited := actuator.admit(row[at]):
             warnings.warn(limited, stacklevel=2)
 
+    def tune(self, name: str, values: Mapping[str, float]) -> None:
+        """
+        Change parameters of an actuator or a supply; they take effect at the next tick.
+
+        Gains by the name and in the unit of their ROS parameter, all others by the key and in the
+        unit of `isa params`: ``tune('kfe', {'force.kp': 1e-7, 'plant.spool.stuck': 1})``,
+        ``tune('supply', {'pressure_mpa': 10.0})``. All values are accepted, or none.
+
+        Raises
+        ------
+        ConfigError
+            There is no such actuator or supply, a key is unknown, or a value is refused.
+
+        """
+        if name in self.supply_samples:
+            self.surroundings.tune({f'{name}.{key}': value for key, value in values.items()})
+        else:
+            if name not in self.names:
+                known = [*self.names, *self.supply_samples]
+                raise ConfigError(
+                    f'{name!r} is not an actuator or a supply; {alternatives(name, known)}')
+            actuator = self.scenario.run.actuator(name)
+            self.group.actuators[self.names.index(name)].tune(
+                with_si_names(actuator.sheet, values))
+
     def step(self, commands: Records | None = None) -> Mapping[str, np.record]:
         """
         Advance one tick and return the `samples` at its end.
@@ -150,10 +178,19 @@ class Simulation:
         commands = self._merged(commands)
         if self._seats:
             self._control()
+        changes = self.scenario.changes_at(self.ticks)
+        if changes is not None:
+            self._change(changes)
         self.surroundings.ports(self._ports)
         self.surroundings.advance(self.group.advance(self._ports, commands))
         self.ticks += 1
         return self.samples
+
+    def _change(self, changes: ParameterChanges) -> None:
+        """Let the faults of this tick begin and end."""
+        self.surroundings.tune(changes.supplies)
+        for row, values in changes.actuators.items():
+            self.group.actuators[row].tune(values)
 
     def _merged(self, given: Records | None) -> Records | None:
         """Return the controllers' requests, overwritten by given or by the scenario's commands."""
@@ -235,3 +272,8 @@ class Simulation:
     def tuned(self) -> Mapping[int, Mapping[str, float]]:
         """Return the parameters that changed at the same time; `ActuatorGroup.tuned`."""
         return self.group.tuned
+
+    @property
+    def tuned_supplies(self) -> Mapping[str, float]:
+        """Return the supplies' parameters that changed at the same time, by SUPPLY.KEY."""
+        return self.surroundings.tuned

@@ -1,16 +1,18 @@
 """Prepared messages of the coordinator at a tick: those of the body."""
 
 from collections.abc import Mapping, Sequence
-
 from typing import NamedTuple
 
-from msg_adapters import imu, joint_state, wrench
+from msg_adapters import applied_parameters, imu, joint_state, wrench
 from msg_adapters.template import Prepared, STAMP
 
 WORLD_FRAME = 'world'
 JOINT_TOPIC = ('/joint_states', joint_state.TYPE)
 CONTACT_TOPIC = ('/coordinator/ground_contact', wrench.TYPE)
 SLIDER = 'slider'
+APPLIED_PARAMETERS = ('/coordinator/applied_parameters', applied_parameters.TYPE)
+"""Parameters of the supplies that took effect, named SUPPLY.KEY."""
+NODE = 'coordinator'
 
 
 class Unit(NamedTuple):

@@ -150,7 +150,7 @@ def loops_and_plant(
     if is_due(step, reu.current_steps, reu.offset_steps):
         sense(step, reu.current_steps, body.plant, body.load.position, body.load.velocity,
               actuator.plant, actuator.noise_key, channels, reu_state.measured)
-        if reu.protection.is_on:
+        if reu.protection.is_on and reu.is_frozen == 0.0:
             protect(step, port.supply_pressure, thermal.oil, reu.protection, reu_state)
         cascade_step(step, reu, reu_state)
     if step == actuator.load.rope.release_step:

@@ -35,8 +35,9 @@ DOWN, UP = 0, 1     # channels of the noise
 _ASSUMED = 'assumed'
 
 
-def _off(doc: str, unit: str, most: float) -> Any:
-    return parameter(doc, unit, absent=0.0, source=_ASSUMED, ge=0.0, le=most)
+def _off(doc: str, unit: str, most: float, *, changeable: bool = False) -> Any:
+    return parameter(
+        doc, unit, absent=0.0, source=_ASSUMED, changeable=changeable, ge=0.0, le=most)
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -48,7 +49,8 @@ class LinkSheet(Parameters):
     cycle_ms: float = _off('time from frame to frame; 0: the tick', 'ms', 100.0)
     delay_cycles: float = _off('time on the way, whole cycles', 'cycles', float(MOST_CYCLES))
     jitter_us: float = _off('largest additional time on the way, uniform from 0', 'us', 1e5)
-    loss: float = _off('probability that a frame is lost, each way', '1', 1.0)
+    loss: float = _off(
+        'probability that a frame is lost, each way', '1', 1.0, changeable=True)
     watchdog_ms: float = _off(
         'time without a frame after which the REU takes the link as lost; 0: off', 'ms', 1e5)
 

@@ -5,6 +5,7 @@ from dataclasses import dataclass, field
 from isa_ros.actuator.kernel import ACTUATOR
 from isa_ros.actuator.link import link_record, LinkSheet, NO_LINK
 from isa_ros.actuator.ratings import evidence_of, ratings_of
+from isa_ros.core.changeable import sound
 from isa_ros.core.parameter import choice, Parameters
 from isa_ros.core.record import record
 from isa_ros.core.units import MILLI
@@ -141,18 +142,22 @@ def known_model(plant: np.record, per_spool: float) -> np.record:
 
 
 def actuator_record(sheet: ActuatorSheet, offset_steps: int) -> np.ndarray:
-    """Return the `ACTUATOR` record of a sheet without a load of its own, shape (1,)."""
-    plant = plant_record(sheet.plant)
-    k_spool = plant[0].valve.k_spool
+    """
+    Return the `ACTUATOR` record of a sheet without a load of its own, shape (1,).
+
+    The REU knows the plant without its faults.
+    """
+    known = plant_record(sound(sheet.plant))
     reu = reu_record(
-        sheet.reu, offset_steps, plant[0].chambers.stroke, force_stiffness(plant[0]),
-        known_model(plant[0], output_per_spool(sheet)),
-        k_spool, plant[0].coil.parallel)
+        sheet.reu, offset_steps, known[0].chambers.stroke, force_stiffness(known[0]),
+        known_model(known[0], output_per_spool(sheet)),
+        known[0].valve.k_spool, known[0].coil.parallel)
     steps = loop_steps(sheet.reu)
     reu['protection'] = protection_record(
-        sheet.reu.protection, ratings_of(plant[0]),
-        evidence_of(plant[0], sheet.reu.speed.rate_hz, steps['speed'], offset_steps),
+        sheet.reu.protection, ratings_of(known[0]),
+        evidence_of(known[0], sheet.reu.speed.rate_hz, steps['speed'], offset_steps),
         steps['current'], sheet.link.watchdog_ms * MILLI)
     rows = np.zeros(1, ACTUATOR)
-    rows['plant'], rows['reu'], rows['link'] = plant, reu, link_record(sheet.link)
+    rows['plant'], rows['reu'] = plant_record(sheet.plant), reu
+    rows['link'] = link_record(sheet.link)
     return rows

@@ -1,9 +1,13 @@
 """
-Parameters that may change during a run: gains and limits of the control blocks, in SI.
+Parameters that may change during a run: gains of the control blocks, and those that fail.
 
-Named by block and parameter: ``force.kp``, ``position.stiffness``, ``force.compensation.knee``.
-Rates, filters and kinds define the structure of the loops and are fixed. The gains of the
-impedance are part of every setpoint; tuning one is a setpoint that changes this gain alone.
+Gains and limits are in SI and named by block and parameter: ``force.kp``,
+``position.stiffness``, ``force.compensation.knee``. Rates, filters and kinds define the
+structure of the loops and are fixed. The gains of the impedance are part of every setpoint;
+tuning one is a setpoint that changes this gain alone.
+
+All other parameters that may change are faults. They have key and unit of `isa params`:
+``plant.spool.stuck``, ``plant.spool.null_bias.current_ma``, ``reu.frozen``.
 """
 
 from collections.abc import Iterator, Mapping
@@ -11,12 +15,16 @@ from dataclasses import dataclass, fields, replace
 import math
 from typing import Any, NamedTuple
 
+from isa_ros.actuator.link import NO_LINK
 from isa_ros.actuator.sheet import ActuatorSheet, refuse_wiring
 from isa_ros.actuator.usable import largest_gains, REASON
+from isa_ros.core.changeable import Changeable, changeables, with_changes
 from isa_ros.core.parameter import check, Parameters
 from isa_ros.core.suggest import alternatives
 from isa_ros.core.units import MILLI, MPA, of_coordinate
 from isa_ros.errors import ConfigError
+from isa_ros.plant.plant import plant_record
+from isa_ros.plant.step_limits import LoadSide, refuse_too_fast
 from isa_ros.reu.wiring import active, VARIABLES
 
 GAINS = {'position.stiffness': 'stiffness', 'position.damping': 'damping'}
@@ -133,6 +141,50 @@ def tuned(sheet: ActuatorSheet, values: Mapping[str, float]) -> ActuatorSheet:
         sheet = replace(sheet, reu=reu)
         refuse_wiring(sheet)
     return sheet
+
+
+def changing(sheet: ActuatorSheet) -> dict[str, Tunable | Changeable]:
+    """Return all that may change during a run, by name: `tunables`, then `changeables`."""
+    return {**tunables(sheet), **changeables(sheet)}
+
+
+def with_changed(sheet: ActuatorSheet, values: Mapping[str, float]) -> ActuatorSheet:
+    """
+    Return a sheet with other values of what may change, as `changing` has it.
+
+    Raises
+    ------
+    ConfigError
+        As `tuned` and `with_changes`, or the plant becomes too fast for its step or does not
+        fit its REU.
+
+    """
+    known = changing(sheet)
+    for name in values:
+        if name not in known:
+            raise ConfigError(f'{name} is unknown; {alternatives(name, known)}')
+    own = {name: value for name, value in values.items() if isinstance(known[name], Tunable)}
+    other = {name: value for name, value in values.items() if name not in own}
+    changed = with_changes(tuned(sheet, own), other)
+    if changed.link is not sheet.link and changed.link.kind == NO_LINK.kind:
+        key = next(name for name in other if name.startswith('link.'))
+        raise ConfigError(f'{key} is not used: there is no link, link.kind = {NO_LINK.kind}')
+    if changed.plant is not sheet.plant:
+        refuse_wiring(changed)
+        refuse_too_fast(plant_record(changed.plant)[0], changed.plant, LoadSide())
+    return changed
+
+
+def with_si_names(sheet: ActuatorSheet, values: Mapping[str, float]) -> dict[str, float]:
+    """
+    Return values by the names of `changing`, given by these or by the keys of `isa params`.
+
+    A gain by its key, ``reu.force.kp_v_per_ma``, is in the unit of its sheet.
+    """
+    by_key = {f'reu.{".".join(gain.path)}': gain for gain in tunables(sheet).values()}
+    return {by_key[key].name if key in by_key else key:
+            value * by_key[key].scale if key in by_key else value
+            for key, value in values.items()}
 
 
 def _with(parameters: Any, path: tuple[str, ...], value: float) -> Any:

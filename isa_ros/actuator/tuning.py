@@ -1,23 +1,29 @@
-"""Tuned values of one actuator: accepted between two ticks, in force from the next one."""
+"""Changed values of one actuator: accepted between two ticks, in force from the next one."""
 
 from collections.abc import Mapping
+from dataclasses import replace
+from typing import Any
 
 from isa_ros.actuator.inbox import WITH_GAINS
+from isa_ros.actuator.kernel import ACTUATOR
 from isa_ros.actuator.sheet import actuator_record, ActuatorSheet
-from isa_ros.actuator.tunable import GAINS, tunables, tuned
+from isa_ros.actuator.tunable import changing, GAINS, with_changed
+from isa_ros.core.changing_values import ChangingValues
 from isa_ros.core.signals import COMMAND, HAS_GAINS
 from isa_ros.errors import ConfigError
 import numpy as np
 
-_BEFORE, _IN_FORCE, _ACCEPTED = range(3)
+_NO_LOOPS = ('plant.', 'link.')
+"""How the names of values that are not of the REU begin."""
 
 
 class Tuning:
     """
-    Keeps the REU part of an `ACTUATOR` row up to date; the states of the loops are unchanged.
+    Keeps an `ACTUATOR` row up to date; the states of plant and loops are unchanged.
 
     ``constants`` is that row, shape (1,), made from ``sheet`` with ``offset_steps``; ``name`` is
     the actuator's. Values of `GAINS` take effect with the setpoints and are only stored here.
+    The REU's own model of its actuator stays that of the sheet when the plant changes.
     """
 
     def __init__(
@@ -27,97 +33,75 @@ class Tuning:
         self._sheet = sheet
         self._offset_steps = offset_steps
         self._constants = constants
-        self._written = constants['reu'].copy()
-        found = tunables(sheet)
-        self._names = list(found)
-        self._first = np.array([tunable.value for tunable in found.values()], float)
-        # Values in force before the last tick, in force now, and in force from the next tick on.
-        self._rows = np.tile(self._first, (3, 1))
-        self._is_settled = True
+        self._written = {
+            part: constants[part].copy() for part in ACTUATOR.names or () if hasattr(sheet, part)}
+        found = changing(sheet)
+        self._values = ChangingValues(
+            name, list(found), [own.value for own in found.values()])
 
     def reset(self) -> dict[str, float]:
         """Restore the sheet's values until the next tick; return the `GAINS` accepted for it."""
-        self._rows[_BEFORE] = self._rows[_IN_FORCE] = self._first
-        self._is_settled = False
-        self._constants['reu'] = self._written
-        return {name: value for name, value in self._changed(_ACCEPTED).items() if name in GAINS}
+        accepted = self._values.restart()
+        self._write()
+        return {name: value for name, value in accepted.items() if name in GAINS}
 
     def accept(self, values: Mapping[str, float]) -> None:
         """
-        Accept new values, SI, all or none; the last of several before one tick wins.
+        Accept new values of `changing`, all or none; the last of several before one tick wins.
 
         Raises
         ------
         ConfigError
-            As `isa_ros.actuator.tunable.tuned`.
+            As `isa_ros.actuator.tunable.with_changed`.
 
         """
-        self._tuned_by(self._changed(_ACCEPTED) | dict(values))
-        for name, value in values.items():
-            self._rows[_ACCEPTED, self._names.index(name)] = value
-        self._is_settled = False
+        self._changed_by(self._values.accepted | dict(values))
+        self._values.accept(values)
 
     def value(self, name: str) -> float:
         """Return the last accepted value."""
-        return float(self._rows[_ACCEPTED, self._names.index(name)])
+        return self._values.value(name)
 
     def latch(self) -> bool:
         """Begin a tick: put the accepted values in force; return whether one of a loop changed."""
-        if self._is_settled:
+        if not self._values.latch():
             return False
-        before, in_force, accepted = self._rows
-        before[:] = in_force
-        in_force[:] = accepted
-        self._is_settled = bool((before == in_force).all())
-        if not self._is_settled:
-            self._write()
-        return bool(self.applied)
+        self._write()
+        return not all(name.startswith(_NO_LOOPS) for name in self.applied)
 
-    def _tuned_by(self, values: Mapping[str, float]) -> ActuatorSheet:
+    def _changed_by(self, values: Mapping[str, float]) -> ActuatorSheet:
         try:
-            return tuned(self._sheet, values)
+            return with_changed(self._sheet, values)
         except ConfigError as error:
             raise ConfigError(f'{self._name}: {error}') from error
 
     def _write(self) -> None:
-        changed = self._changed(_IN_FORCE)
-        self._constants['reu'] = actuator_record(
-            self._tuned_by(changed), self._offset_steps)['reu'] if changed else self._written
-
-    def _changed(self, row: int) -> dict[str, float]:
-        """Return the values of a row that differ from the sheet."""
-        return self._where(row, self._rows[row] != self._first)
-
-    def _where(self, row: int, differs: np.ndarray) -> dict[str, float]:
-        values = self._rows[row]
-        return {self._names[k]: float(values[k]) for k in np.flatnonzero(differs)}
+        """Fill the constants from the values in force, each part from its own section."""
+        own, sheet = self._sheet, self._changed_by(self._values.in_force)
+        for part, written in self._written.items():
+            section: Any = getattr(sheet, part)
+            self._constants[part] = written if section is getattr(own, part) else actuator_record(
+                replace(own, **{part: section}), self._offset_steps)[part]
 
     @property
     def applied(self) -> dict[str, float]:
         """Return the changes at the start of the last tick without `GAINS`, outermost first."""
-        if self._is_settled:
-            return {}
-        changed = self._where(_IN_FORCE, self._rows[_BEFORE] != self._rows[_IN_FORCE])
+        changed = self._values.applied
         return {name: value for name, value in changed.items() if name not in GAINS}
 
     @property
     def nbytes(self) -> int:
         """Return the size of a `snapshot`."""
-        return self._rows.nbytes
+        return self._values.nbytes
 
     def snapshot(self) -> bytes:
         """Return the state as bytes for `restore`."""
-        return self._rows.tobytes()
+        return self._values.snapshot()
 
     def restore(self, snapshot: bytes) -> None:
         """Continue from a `snapshot`; raises as `accept`, also for a value that is not finite."""
-        rows = np.frombuffer(snapshot).reshape(self._rows.shape)
-        for row, k in np.argwhere(~np.isfinite(rows)):
-            raise ConfigError(
-                f'{self._name}: saved state has {self._names[k]} = {rows[row, k]}, must be finite')
-        self._rows[:] = rows
-        self._tuned_by(self._changed(_ACCEPTED))
-        self._is_settled = False
+        self._values.restore(snapshot)
+        self._changed_by(self._values.accepted)
         self._write()
 
 

@@ -194,6 +194,13 @@ def study(options: Namespace) -> bool:
 
 
 @_simulating
+def faults(options: Namespace) -> bool:
+    """List the faults of the device, or show the effect of each."""
+    from isa_ros.analysis.faults.command import faults as show_faults
+    return show_faults(options)
+
+
+@_simulating
 def params(options: Namespace) -> bool:
     """List every parameter of a model, a leg or a run."""
     from isa_ros.config.changes import values_of

@@ -152,6 +152,14 @@ def _validate(parser: argparse.ArgumentParser) -> None:
         '--sensitivity, if a perturbation is not noticed.')
 
 
+def _faults(parser: argparse.ArgumentParser) -> None:
+    parser.add_argument('--list', action='store_true', help='only list the faults')
+    parser.add_argument(
+        '--only', action='append', metavar='NAME', help='a fault; may be repeated')
+    shared_arguments.json_file(parser)
+    shared_arguments.page_directory(parser, 'device_faults.md')
+
+
 def _bench(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         '--only', action='append', metavar='NAME', help='a group of rows; may be repeated')
@@ -179,6 +187,8 @@ _COMMANDS = {
     'identify': (_identify, commands.identify, 'estimate valve, oil and friction from a bag'),
     'study': (study_arguments.study, commands.study,
               'vary one parameter and show the performance of the actuators'),
+    'faults': (_faults, commands.faults,
+               'inject every fault of the device into a rig and show its effect'),
     'params': (_params, commands.params, 'list every parameter with unit, range and source'),
     'paper': (_paper, commands.paper, 'show values and statements of the paper, with their place'),
     'validate': (_validate, commands.validate,

@@ -17,15 +17,31 @@ _RELATIONS: dict[str, tuple[str, Callable[[float, float], bool]]] = {
 
 def parameter(
         doc: str, unit: str, *, absent: float | None = None, source: str = '',
-        **bounds: float) -> Any:
+        changeable: bool = False, **bounds: float) -> Any:
     """
     Declare one number; ``bounds`` are any of ``gt``, ``ge``, ``lt``, ``le``.
 
     ``absent`` is the value where a file has none, such as a resolved configuration older than the
-    parameter; ``source`` is that of this value.
+    parameter; ``source`` is that of this value. ``changeable``: it may change during a run, as a
+    fault (`isa_ros.core.changeable`).
     """
     declared = _declaration(doc, unit, bounds) | {'source': source}
-    return field(metadata=declared if absent is None else declared | {'absent': absent})
+    if absent is not None:
+        declared['absent'] = absent
+    if changeable:
+        declared['changeable'] = True
+    return field(metadata=declared)
+
+
+def fault(doc: str, unit: str, *, is_whole: bool = False, **bounds: float) -> Any:
+    """
+    Declare one number that is 0 in a sound device; sheets leave it out, and faults change it.
+
+    ``is_whole``: it is a number of things, or a yes (1) or no (0).
+    """
+    whole = {'is_whole': True} if is_whole else {}
+    return field(default=0.0, metadata=_declaration(doc, unit, bounds) | whole | {
+        'absent': 0.0, 'source': 'assumed, no fault', 'changeable': True, 'is_fault': True})
 
 
 def _declaration(doc: str, unit: str, bounds: dict[str, float]) -> dict[str, Any]:
@@ -118,6 +134,8 @@ def _check_number(where: str, value: Any, declared: Any) -> None:
         raise ParameterError(f'{where} = {value!r}, must be a number in {unit}')
     if not math.isfinite(value):
         raise ParameterError(f'{where} = {value} {unit}, must be finite')
+    if 'is_whole' in declared and value != int(value):
+        raise ParameterError(f'{where} = {value:g}, must be a whole number ({declared["doc"]})')
     for name, bound in declared['bounds'].items():
         symbol, holds = _RELATIONS[name]
         if not holds(value, bound):

@@ -69,7 +69,7 @@ SAMPLE = np.dtype([
     ('hydraulic_energy', '<f8'),    # of the oil drawn less that of the oil returned, J
     ('leakage_energy', '<f8'),      # lost to the leakage of the valve, J
     ('throttling_energy', '<f8'),   # lost at the open lands of the valve, J
-    ('cross_port_energy', '<f8'),   # lost past the piston or vane, J
+    ('cross_port_energy', '<f8'),   # lost past the piston or vane, and to the outside, J
     ('relief_energy', '<f8'),       # lost through relief and refill valves, J
     ('friction_energy', '<f8'),     # lost to the seals, J
     ('damping_energy', '<f8'),      # lost in the force sensor; taken up by the end stops, J

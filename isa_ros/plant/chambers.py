@@ -4,15 +4,17 @@ The two oil chambers: volumes, pressures, cavities, and the force they make.
 Chamber A is the cap side: its pressure extends. ``s`` is the piston position in m (rotor
 angle in rad), 0 at the retracted end, ``area`` the piston area in m2 (displacement D_m in
 m3/rad). Pressures are gauge. Each swept volume is counted once (errata 16). Oil does not fall
-below its vapour pressure: the volume that it lacks is that of a cavity.
+below its vapour pressure: the volume that it lacks is that of a cavity. Neglected: the volume
+that entrained air needs when it expands, but for the bulk modulus; the air does not leave.
 """
 
 from dataclasses import dataclass
 import math
 
 from isa_ros.core.atmosphere import ATMOSPHERE
+from isa_ros.core.elementary import exp, log
 from isa_ros.core.kernel import kernel
-from isa_ros.core.parameter import parameter, Parameters
+from isa_ros.core.parameter import fault, parameter, Parameters
 from isa_ros.core.record import record
 from isa_ros.core.units import MILLI, MILLILITRE
 from isa_ros.errors import ParameterError
@@ -72,7 +74,8 @@ class Oil(Parameters):
 
     effective_bulk_modulus: float = parameter('beta_eff', 'Pa', gt=0.0, le=2.0e9)
     dead_volume_ml: float = parameter('V_p of each chamber', 'ml', gt=0.0, le=1000.0)
-    cross_port_leakage: float = parameter('C_li', 'm3/s/Pa', ge=0.0, le=1e-11)
+    cross_port_leakage: float = parameter(
+        'C_li', 'm3/s/Pa', changeable=True, ge=0.0, le=1e-11)
     aeration_pressure_kpa: float = parameter(
         'pressure below return at which released air halves the bulk modulus',
         'kPa', gt=0.0, le=100.0)
@@ -80,12 +83,21 @@ class Oil(Parameters):
         'absolute pressure at which the oil boils', 'kPa', ge=0.0, le=50.0)
     temperature_celsius: float = parameter(
         'of the oil, which shifts the null of the valve', 'celsius', ge=-30.0, le=80.0)
+    entrained_air: float = fault(
+        'volume of air per volume of oil and air, at atmospheric pressure', '1', ge=0.0, le=0.2)
+    external_leakage_a: float = fault(
+        'C_le, from chamber A to the outside', 'm3/s/Pa', ge=0.0, le=1e-11)
+    external_leakage_b: float = fault(
+        'C_le, from chamber B to the outside', 'm3/s/Pa', ge=0.0, le=1e-11)
 
 
 CHAMBERS = np.dtype([
     ('area_a', 'f8'), ('area_b', 'f8'), ('stroke', 'f8'),
     ('dead_volume', 'f8'), ('beta', 'f8'), ('c_li', 'f8'), ('p_air', 'f8'),
-    ('p_vapour', 'f8')])    # Pa gauge
+    ('p_vapour', 'f8'),     # Pa gauge
+    ('air', 'f8'), ('c_le_a', 'f8'), ('c_le_b', 'f8')])
+AIR_EXPONENT = 1.4          # 1, kappa of air: it is compressed without exchange of heat
+LEAST_AIR_PRESSURE = 1e3    # Pa absolute, at which the air of C12 is not thinned any further
 CHAMBERS_STATE = np.dtype([
     ('p_a', 'f8'), ('p_b', 'f8'),
     ('cavity_a', 'f8'), ('cavity_b', 'f8')])    # m3 of vapour, 0 above the vapour pressure
@@ -98,7 +110,8 @@ def chambers_record(drive: Cylinder | Vane, oil: Oil) -> np.record:
         CHAMBERS, area_a=area_a, area_b=area_b, stroke=drive.stroke,
         dead_volume=oil.dead_volume_ml * MILLILITRE, beta=oil.effective_bulk_modulus,
         c_li=oil.cross_port_leakage, p_air=oil.aeration_pressure_kpa * 1e3,
-        p_vapour=oil.vapour_pressure_kpa * 1e3 - ATMOSPHERE)
+        p_vapour=oil.vapour_pressure_kpa * 1e3 - ATMOSPHERE, air=oil.entrained_air,
+        c_le_a=oil.external_leakage_a, c_le_b=oil.external_leakage_b)
 
 
 @kernel
@@ -122,6 +135,43 @@ def stiffening(p, p_t, chambers):
 
 
 @kernel
+def aerated(p, beta, air):
+    """
+    Return the bulk modulus of oil of modulus ``beta`` with entrained air, in Pa  (C12).
+
+    (a r + 1 - a) / (a r/(kappa p) + (1 - a)/beta) with r = (p_0/p)^(1/kappa), p absolute: air of
+    the share a of the volume at atmospheric pressure p_0, in series with the oil. At no less
+    than `LEAST_AIR_PRESSURE`, so that nothing is divided by zero.
+    """
+    absolute = max(p + ATMOSPHERE, LEAST_AIR_PRESSURE)
+    bubbles = air * exp(log(ATMOSPHERE / absolute) / AIR_EXPONENT)
+    return (bubbles + 1.0 - air) / (
+        bubbles / (AIR_EXPONENT * absolute) + (1.0 - air) / beta)
+
+
+@kernel
+def modulus(p, p_t, chambers):
+    """Return `stiffening`, with entrained air `aerated`, in Pa  (C5, C12)."""
+    beta = stiffening(p, p_t, chambers)
+    if chambers.air > 0.0:
+        beta = aerated(max(p, chambers.p_vapour), beta, chambers.air)
+    return beta
+
+
+@kernel
+def external_leakage(p, c_le):
+    """Return C_le max(0, P), the leakage from a chamber to the outside, in m3/s  (C13)."""
+    return c_le * max(0.0, p)
+
+
+@kernel
+def external_loss(p_a, p_b, chambers):
+    """Return the power of `external_leakage` of both chambers, P Q_e, in W  (E3)."""
+    return (p_a * external_leakage(p_a, chambers.c_le_a)
+            + p_b * external_leakage(p_b, chambers.c_le_b))
+
+
+@kernel
 def elastances(p_a, p_b, s, p_t, chambers):
     """
     Return (beta/V_A, beta/V_B), the pressures per volume of oil, in Pa/m3  (C1, C5).
@@ -129,7 +179,7 @@ def elastances(p_a, p_b, s, p_t, chambers):
     The volumes are positive within the range of the end stops.
     """
     v_a, v_b = volumes(s, chambers)
-    return stiffening(p_a, p_t, chambers) / v_a, stiffening(p_b, p_t, chambers) / v_b
+    return modulus(p_a, p_t, chambers) / v_a, modulus(p_b, p_t, chambers) / v_b
 
 
 @kernel
@@ -138,10 +188,11 @@ def surpluses(q_a, q_b, p_a, p_b, v, chambers):
     Return the oil that each chamber gains beyond what its piston sweeps, in m3/s  (C2).
 
     Times the elastance it is dP/dt, equations 3 and 4 of the paper. ``q_a`` and ``q_b`` (m3/s)
-    are all flows into a chamber except the cross-port leakage.
+    are all flows into a chamber except the cross-port leakage and those to the outside  (C13).
     """
     q_li = chambers.c_li * (p_a - p_b)
-    return q_a - chambers.area_a * v - q_li, q_b + chambers.area_b * v + q_li
+    return (q_a - chambers.area_a * v - q_li - external_leakage(p_a, chambers.c_le_a),
+            q_b + chambers.area_b * v + q_li - external_leakage(p_b, chambers.c_le_b))
 
 
 @kernel

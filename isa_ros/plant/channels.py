@@ -34,16 +34,17 @@ _IDEAL = 'assumed, ideal'
 
 def _sigma(unit: str, largest: float) -> Any:
     return parameter('white noise of a conversion, standard deviation', unit, absent=0.0,
-                     source=_IDEAL, ge=0.0, le=largest)
+                     source=_IDEAL, changeable=True, ge=0.0, le=largest)
 
 
 def _bias(unit: str, largest: float) -> Any:
-    return parameter('constant error', unit, absent=0.0, source=_IDEAL, ge=-largest, le=largest)
+    return parameter('constant error', unit, absent=0.0, source=_IDEAL, changeable=True,
+                     ge=-largest, le=largest)
 
 
 def _drift(unit: str, largest: float) -> Any:
     return parameter('growth of the error', unit, absent=0.0, source=_IDEAL,
-                     ge=-largest, le=largest)
+                     changeable=True, ge=-largest, le=largest)
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -51,9 +52,11 @@ class Channel(Parameters):
     """Errors of any channel."""
 
     delay_ms: float = parameter(
-        'age of what is read, whole conversions', 'ms', absent=0.0, source=_IDEAL, ge=0.0, le=1e3)
+        'age of what is read, whole conversions', 'ms', absent=0.0, source=_IDEAL,
+        changeable=True, ge=0.0, le=1e3)
     stuck: float = parameter(
-        '1: the reading stays as it is', '1', absent=0.0, source=_IDEAL, ge=0.0, le=1.0)
+        '1: the reading stays as it is', '1', absent=0.0, source=_IDEAL, changeable=True,
+        ge=0.0, le=1.0)
 
     def __post_init__(self) -> None:
         """Refuse a channel that is stuck by a part."""

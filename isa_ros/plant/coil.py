@@ -5,15 +5,17 @@ Equation 10 of the paper IS the closed current loop: it is never combined with a
 Currents are the amplifier's, in A. The valve curves' series scale is the current through
 both coils in series that moves the valve as far. Positive current extends.
 
-Neglected: the mutual inductance of the two coils; by `ClosedLoopCoil` also the 1.8 kHz mode
-and the sampling of the current loop.
+Neglected: the mutual inductance of the two coils, and the time in which the current divides
+between a sound coil and one with shorted turns; by `ClosedLoopCoil` also the 1.8 kHz mode and the
+sampling of the current loop.
 """
 
 from dataclasses import dataclass
 import math
+from typing import NamedTuple
 
 from isa_ros.core.kernel import kernel
-from isa_ros.core.parameter import choice, parameter, Parameters
+from isa_ros.core.parameter import choice, fault, parameter, Parameters
 from isa_ros.core.record import record
 import numpy as np
 
@@ -28,9 +30,14 @@ class Coil(Parameters):
 
     coils: str = choice(
         'how the two coils are wired; one_open: parallel, with one of them broken', *_COILS)
-    supply_voltage: float = parameter('amplifier saturation', 'V', gt=0.0, le=100.0)
+    supply_voltage: float = parameter(
+        'amplifier saturation', 'V', changeable=True, gt=0.0, le=100.0)
     coil_resistance: float = parameter('of one coil', 'ohm', gt=0.0, le=1.0e5)
     coil_inductance: float = parameter('of one coil', 'H', gt=0.0, le=200.0)
+    open_coils: float = fault(
+        'coils whose wire is broken, besides that of one_open', '1', is_whole=True, ge=0.0, le=2.0)
+    shorted_turns: float = fault(
+        'share of the turns of one coil that are shorted', '1', ge=0.0, le=0.95)
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -59,23 +66,51 @@ COIL = np.dtype([
 COIL_STATE = np.dtype([('current', 'f8'), ('mode', 'f8'), ('mode_rate', 'f8')])
 
 
-def circuit(sheet: Coil) -> tuple[float, float, float]:
+class Circuit(NamedTuple):
+    """The two coils as the amplifier has them."""
+
+    resistance: float
+    """ohm."""
+    inductance: float
+    """H."""
+    per_series: float
+    """Amplifier current per series-scale current."""
+    is_closed: bool
+    """Whether a current can flow."""
+
+
+def circuit(sheet: Coil) -> Circuit:
     """
-    Return resistance (ohm), inductance (H) and amplifier current per series-scale current.
+    Return the circuit of the coils that are sound, and of one with shorted turns  (V19).
 
     Two coils in parallel share the current; with the same current a single coil moves the
-    valve half as far.
+    valve half as far. Of the share 1 - s of its turns a coil has R (1 - s) and L (1 - s)^2; a
+    single coil that is left is the one with the short.
     """
-    coils_in_row, branches = {
-        'parallel': (1.0, 2.0), 'series': (2.0, 1.0), 'one_open': (1.0, 1.0)}[sheet.coils]
-    per_series = 1.0 if sheet.coils == 'series' else 2.0
-    return (sheet.coil_resistance * coils_in_row / branches,
-            sheet.coil_inductance * coils_in_row / branches, per_series)
+    turns = 1.0 - sheet.shorted_turns
+    r_1, l_1 = sheet.coil_resistance, sheet.coil_inductance
+    r_2, l_2 = r_1 * turns, l_1 * turns * turns
+    n_open = sheet.open_coils + (sheet.coils == 'one_open')
+    if sheet.coils == 'series':
+        if not turns < 1.0:
+            return Circuit(2.0 * r_1, 2.0 * l_1, 1.0, n_open == 0)
+        return Circuit(r_1 + r_2, l_1 + l_2, 2.0 / (1.0 + turns), n_open == 0)
+    if n_open > 0:
+        return Circuit(r_2, l_2, 2.0 / turns, n_open < 2)
+    if not turns < 1.0:
+        return Circuit(0.5 * r_1, 0.5 * l_1, 2.0, True)
+    return Circuit(r_1 * r_2 / (r_1 + r_2), l_1 * l_2 / (l_1 + l_2),
+                   (1.0 + turns) / turns, True)
 
 
 def coil_record(sheet: ClosedLoopCoil | ExplicitCoil) -> np.record:
-    """Return the `COIL` record of a sheet; what the other kind of coil has is zero."""
-    resistance, inductance, per_series = circuit(sheet)
+    """
+    Return the `COIL` record of a sheet; what the other kind of coil has is zero.
+
+    Without a closed circuit the amplifier's voltage does not reach the coils: their current
+    decays with L/R.
+    """
+    wired = circuit(sheet)
     kind, p_c, mode_w, mode_share, mode_zeta = CLOSED_LOOP, 0.0, 0.0, 0.0, 0.0
     if isinstance(sheet, ExplicitCoil):
         kind, mode_w = EXPLICIT, 2.0 * math.pi * sheet.mode_frequency_hz
@@ -83,9 +118,9 @@ def coil_record(sheet: ClosedLoopCoil | ExplicitCoil) -> np.record:
     else:
         p_c = sheet.bandwidth_rad_per_s
     return record(
-        COIL, kind=kind, voltage=sheet.supply_voltage, resistance=resistance,
-        inductance=inductance, parallel=per_series, p_c=p_c, mode_w=mode_w,
-        mode_share=mode_share, mode_zeta=mode_zeta)
+        COIL, kind=kind, voltage=sheet.supply_voltage if wired.is_closed else 0.0,
+        resistance=wired.resistance, inductance=wired.inductance, parallel=wired.per_series,
+        p_c=p_c, mode_w=mode_w, mode_share=mode_share, mode_zeta=mode_zeta)
 
 
 @kernel

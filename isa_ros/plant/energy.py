@@ -14,7 +14,7 @@ _LN_2 = 0.6931471805599453
 ENERGIES = np.dtype([
     ('leakage', 'f8'),          # through the lands and the pilot stage of the valve, J  (E2)
     ('throttling', 'f8'),       # at the open lands, J  (E2)
-    ('cross_port', 'f8'),       # leakage past the piston or vane, J  (E3)
+    ('cross_port', 'f8'),       # leakage past the piston or vane, and to the outside, J  (E3)
     ('relief', 'f8'),           # relief and refill valves, J  (E3)
     ('friction', 'f8'),         # seals, J  (E4)
     ('damping', 'f8'),          # damping of the sensor, and end stops, J  (E4)

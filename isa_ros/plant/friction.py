@@ -19,8 +19,10 @@ import numpy as np
 class Friction(Parameters):
     """LuGre friction."""
 
-    stiction: float = parameter('force that breaks away', 'N | Nm', gt=0.0, le=1e5)
-    coulomb: float = parameter('force at higher speed', 'N | Nm', gt=0.0, le=1e5)
+    stiction: float = parameter(
+        'force that breaks away', 'N | Nm', changeable=True, gt=0.0, le=1e5)
+    coulomb: float = parameter(
+        'force at higher speed', 'N | Nm', changeable=True, gt=0.0, le=1e5)
     bristle_stiffness: float = parameter('sigma0', 'N/m | Nm/rad', gt=0.0, le=1e9)
     bristle_damping: float = parameter('sigma1', 'Ns/m | Nms/rad', ge=0.0, le=1e6)
     viscous: float = parameter('sigma2', 'Ns/m | Nms/rad', ge=0.0, le=1e6)

@@ -14,7 +14,7 @@ from isa_ros.plant import (
     chambers, coil, friction, mechanics, relief, sensors, servo_valve, spool, thermal)
 from isa_ros.plant.chambers import boil
 from isa_ros.plant.sensors import read, read_channels
-from isa_ros.plant.spool import stop_spool
+from isa_ros.plant.spool import block_spool, stop_spool
 from isa_ros.plant.thermal import LumpedThermal, NoneThermal
 from isa_ros.plant.valve_sheets import DataSheetValve, DualGainValve, HighResponseValve
 import numpy as np
@@ -151,7 +151,8 @@ def plant_rates(y, x_load, v_load, drive, p_s, p_t, plant, rates, powers):
     out_b = relief.eased_flow(p_b, p_t, in_b, per_b, plant.relief)
     rates.chambers.p_a = per_a * (in_a - out_a)
     rates.chambers.p_b = per_b * (in_b - out_b)
-    powers.cross_port = plant.chambers.c_li * (p_a - p_b) * (p_a - p_b)
+    powers.cross_port = (plant.chambers.c_li * (p_a - p_b) * (p_a - p_b)
+                         + chambers.external_loss(p_a, p_b, plant.chambers))
     powers.relief = (p_a - p_t) * out_a + (p_b - p_t) * out_b
     powers.compression = p_a * (in_a - out_a) + p_b * (in_b - out_b)
 
@@ -176,6 +177,8 @@ def plant_rates(y, x_load, v_load, drive, p_s, p_t, plant, rates, powers):
 def settle(h, y, p_t, plant):
     """Apply to one `PLANT_STATE` after a step of ``h`` s what no rate can: stop and cavities."""
     stop_spool(y.valve, plant.valve.x_max)
+    if plant.spool.is_stuck > 0.0:
+        block_spool(y.valve)
     boil(h, y.chambers, y.mechanics.position, y.mechanics.velocity, p_t, plant.chambers)
 
 

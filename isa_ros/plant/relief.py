@@ -18,7 +18,8 @@ import numpy as np
 class Relief(Parameters):
     """Relief and anti-cavitation valves of one chamber."""
 
-    opening_pressure_mpa: float = parameter('gauge pressure that opens it', 'MPa', gt=0.0, le=70.0)
+    opening_pressure_mpa: float = parameter(
+        'gauge pressure that opens it', 'MPa', changeable=True, gt=0.0, le=70.0)
     slope_lpm_per_mpa: float = parameter(
         'relief flow per pressure above opening', 'l/min/MPa', gt=0.0, le=1000.0)
     refill_lpm: float = parameter(

@@ -10,7 +10,7 @@ from dataclasses import dataclass
 import math
 
 from isa_ros.core.kernel import kernel
-from isa_ros.core.parameter import choice, parameter, Parameters
+from isa_ros.core.parameter import choice, fault, parameter, Parameters
 from isa_ros.core.record import record
 from isa_ros.core.units import MICRO, MILLI, MPA
 import numpy as np
@@ -18,13 +18,15 @@ import numpy as np
 CLOSED_LOOP = 0
 DIRECT = 1
 PILOTED = 2
+STUCK = '1: the spool is blocked and holds its position'
 
 
 @dataclass(frozen=True, kw_only=True)
 class NullBias(Parameters):
     """The current that holds the spool off its null, and its shifts."""
 
-    current_ma: float = parameter('at the reference conditions', 'mA', ge=-2.0, le=2.0)
+    current_ma: float = parameter(
+        'at the reference conditions', 'mA', changeable=True, ge=-2.0, le=2.0)
     supply_ma_per_mpa: float = parameter('shift with supply pressure', 'mA/MPa', ge=-0.5, le=0.5)
     return_ma_per_mpa: float = parameter('shift with return pressure', 'mA/MPa', ge=-0.5, le=0.5)
     temperature_ua_per_k: float = parameter('shift with oil temperature', 'uA/K', ge=-50, le=50)
@@ -40,6 +42,7 @@ class Spool(Parameters):
         'w_n of equations 7 and 8', 'rad/s', gt=0.0, le=2.0e4)
     damping_ratio: float = parameter('zeta of equations 7 and 8', '1', gt=0.0, le=5.0)
     null_bias: NullBias
+    stuck: float = fault(STUCK, '1', is_whole=True, ge=0.0, le=1.0)
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -70,6 +73,7 @@ class DataSheetSpool(Parameters):
     at: str = choice('the stated point of the response', 'minus_3_db', 'minus_90_deg')
     damping_ratio: float = parameter('zeta of equation 7', '1', gt=0.0, le=5.0)
     null_bias: NullBias
+    stuck: float = fault(STUCK, '1', is_whole=True, ge=0.0, le=1.0)
 
     @property
     def natural_frequency_rad_per_s(self) -> float:
@@ -88,6 +92,7 @@ SPOOL = np.dtype([
     ('bias', 'f8'),         # A, series scale, temperature included
     ('bias_s', 'f8'), ('bias_t', 'f8'),     # A/Pa
     ('p_s_ref', 'f8'),      # Pa
+    ('is_stuck', 'f8'),
 ])
 VALVE_STATE = np.dtype([('spool', 'f8'), ('velocity', 'f8'), ('acceleration', 'f8')])
 
@@ -111,7 +116,7 @@ def spool_record(sheet: Spool | DataSheetSpool, temperature: float) -> np.record
         k_loop=k_loop, k_pilot=k_pilot,
         bias=bias.current_ma * MILLI + bias_per_k(sheet) * warmer,
         bias_s=bias.supply_ma_per_mpa * MILLI / MPA, bias_t=bias.return_ma_per_mpa * MILLI / MPA,
-        p_s_ref=bias.reference_supply_mpa * MPA)
+        p_s_ref=bias.reference_supply_mpa * MPA, is_stuck=sheet.stuck)
 
 
 @kernel
@@ -154,7 +159,14 @@ def spool_acceleration(reference, spool, velocity, w_n, zeta):
 
 @kernel
 def spool_rates(y, current, k_spool, spool, rates):
-    """Write the rates of one `VALVE_STATE` under a series-scale current, bias included."""
+    """
+    Write the rates of one `VALVE_STATE` under a series-scale current, bias included.
+
+    A blocked spool has none: x' = 0  (V20).
+    """
+    if spool.is_stuck > 0.0:
+        rates.spool, rates.velocity, rates.acceleration = 0.0, 0.0, 0.0
+        return
     rates.spool = y.velocity
     if spool.kind == DIRECT:
         rates.velocity = spool_acceleration(
@@ -166,6 +178,13 @@ def spool_rates(y, current, k_spool, spool, rates):
         rates.acceleration = piloted_jerk(current, y, spool)
     else:
         rates.acceleration = spool_jerk(spool_reference(current, k_spool), y, spool)
+
+
+@kernel
+def block_spool(y):
+    """Hold the spool where it is blocked: its speed is zero at once  (V20)."""
+    y.velocity = 0.0
+    y.acceleration = 0.0
 
 
 @kernel

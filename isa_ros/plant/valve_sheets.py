@@ -32,7 +32,7 @@ class Valve(Parameters):
     land_drop_mpa: float = parameter(
         'pressure drop over one land at the stated flows', 'MPa', gt=0.0, le=50.0)
     null_leakage_lpm: float = parameter(
-        'leakage q_0 of one closed land at null', 'l/min', ge=0.0, le=2.0)
+        'leakage q_0 of one closed land at null', 'l/min', changeable=True, ge=0.0, le=2.0)
     leakage_travel_um: float = parameter(
         'travel x_l that halves the leakage of a land', 'um', gt=0.0, le=100.0)
     tare_leakage_lpm: float = parameter(

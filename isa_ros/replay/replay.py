@@ -26,6 +26,7 @@ from isa_ros.run.local_run import LocalRun
 from msg_adapters import diagnostics, event
 from msg_adapters.applied_parameters import tuned_values
 from msg_adapters.cdr import CdrError
+from msg_adapters.coordinator_messages import APPLIED_PARAMETERS, NODE
 from msg_adapters.sent_setpoint import sent_to_command
 from msg_adapters.setpoint import applied_to_command
 import numpy as np
@@ -117,7 +118,8 @@ class Rerun:
         try:
             self._local.simulate(
                 self._inputs.n_ticks, local_run.Inputs(
-                    self._fill, self._inputs.tuned, self._events, self._inputs.has_end),
+                    self._fill, self._inputs.tuned, self._events, self._inputs.has_end,
+                    self._inputs.tuned_supplies),
                 recorder, should_stop, self._state)
         except Interrupted:
             pass  # should_stop was true before the end
@@ -165,7 +167,9 @@ class Inputs(NamedTuple):
     commands: dict[int, list[tuple[int, np.void]]]
     """Tick -> (row, `COMMAND`) of every setpoint that was applied, or sent over a link."""
     tuned: dict[str, dict[int, dict[str, float]]]
-    """Actuator -> tick -> applied parameters, SI, by name."""
+    """Actuator -> tick -> applied parameters by name."""
+    tuned_supplies: dict[int, dict[str, float]]
+    """Tick -> applied parameters of the supplies by SUPPLY.KEY."""
     n_ticks: int
     has_end: bool
     """Whether the last sample has diagnostics, as that of a run that came to its end."""
@@ -187,7 +191,7 @@ def recorded_inputs(bag: Bag, run: RunConfig) -> Inputs:
         f'/{a.name}/{SENT}' if a.name in run.linked else f'/{a.name}/{APPLIED}': (k, a.name)
         for k, a in enumerate(run.actuators)}
     parameters = {f'/{a.name}/{TUNED}': a.name for a in run.actuators}
-    inputs = Inputs({}, {}, -1, False)
+    inputs = Inputs({}, {}, {}, -1, False)
     last = diagnosed = -1
     for message in bag.messages():
         last = message.sequence
@@ -200,6 +204,8 @@ def recorded_inputs(bag: Bag, run: RunConfig) -> Inputs:
             elif topic in parameters:
                 name = parameters[topic]
                 inputs.tuned.setdefault(name, {})[tick] = tuned_values(message.data, name)
+            elif topic == APPLIED_PARAMETERS[0]:
+                inputs.tuned_supplies[tick] = tuned_values(message.data, NODE)
             elif topic == diagnostics.TOPIC[0]:
                 diagnosed = last
         except (SetpointError, CdrError) as error:

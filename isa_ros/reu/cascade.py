@@ -39,6 +39,7 @@ REU = np.dtype([
     ('stroke', 'f8'),
     ('k_spool', 'f8'),    # m of spool per series-scale A
     ('parallel', 'f8'),   # amplifier A per series-scale A
+    ('is_frozen', 'f8'),
     ('protection', PROTECTION),
     ('rules', DEVICE),
 ])
@@ -99,6 +100,7 @@ def reu_record(
     row['offset_steps'], row['delay_steps'] = offset_steps, delay_steps(reu, steps['current'])
     row['stroke'], row['k_spool'], row['parallel'] = stroke, k_spool, parallel
     row['rules'] = device_record(reu.device, reu, steps['current'] * PLANT_STEP)
+    row['is_frozen'] = reu.frozen
     return record
 
 
@@ -176,7 +178,13 @@ def spool_block(step, reference, reu, state):
 
 @kernel
 def cascade_step(step, reu, state):
-    """Run the device and every block that is due at plant step ``step`` on ``state.measured``."""
+    """
+    Run the device and every block that is due at plant step ``step`` on ``state.measured``.
+
+    An REU that is frozen runs none: references and drive stay.
+    """
+    if reu.is_frozen > 0.0:
+        return
     device = state.status
     device_step(step, reu, state)
     if is_due(step, reu.speed_steps, reu.offset_steps):

@@ -11,7 +11,7 @@ a block have the unit of its output: switching the next block inwards on or off 
 from dataclasses import dataclass, field
 
 from isa_ros.core.device import CURRENT, MODES
-from isa_ros.core.parameter import parameter, Parameters, section
+from isa_ros.core.parameter import fault, parameter, Parameters, section
 from isa_ros.core.suggest import alternatives
 from isa_ros.core.timebase import NS_PER_SECOND, PLANT_STEP_NS, steps_in
 from isa_ros.errors import ConfigError
@@ -60,6 +60,8 @@ class Reu(Parameters):
     device: Device = field(default=BEFORE, metadata={'absent': BEFORE})
     computation_delay_us: float = parameter(
         'from an instant of the loops to its output at the amplifier', 'us', ge=0.0, le=1e3)
+    frozen: float = fault(
+        '1: the REU has stopped, and its outputs hold', '1', is_whole=True, ge=0.0, le=1.0)
     protection: Protection = section(Protection)
 
 

@@ -17,6 +17,7 @@ from isa_ros.errors import ConfigError, IsaError
 from isa_ros.run.exchange import Rows, Transport
 from isa_ros.run.narrator import Narrator
 from isa_ros.run.pacing import BEFORE_TICKS, Laps, Pace, ProgressMeter
+from isa_ros.scenario.faults import ParameterChanges
 from isa_ros.surroundings.surroundings import Surroundings
 
 
@@ -42,6 +43,8 @@ class Plan:
     """Overwrites `COMMAND` rows of one tick, which contain the requests of controllers."""
     admit: Callable[[int, Records], None] = admit_all
     """Refuses or limits those requests, given the time in ns, before they become commands."""
+    changes: Callable[[int], ParameterChanges | None] = lambda tick: None
+    """Returns the parameters that faults change at a tick's start."""
     is_paused: bool = False
     """Start paused: wait for the first `Coordinator.step` or the end of the pause."""
 
@@ -99,7 +102,7 @@ class Coordinator:
             self._restore(state)
         self._narrator.publish_time(self.ticks)
         self._transport.begin()
-        self._narrator.publish_rows(self.ticks, self._rows.tuned)
+        self._narrator.publish_rows(self.ticks, self._rows.tuned, self._surroundings.tuned)
         self._start_clocks()
         try:
             while True:
@@ -214,6 +217,7 @@ class Coordinator:
         rows.requests['kinds'] = 0
         self._plan.admit(self.t_ns, rows.commands)
         self._plan.commands(tick, rows.commands)
+        self._change(tick)
         self._surroundings.ports(rows.ports)
         self._lap('commands and ports')
         self._narrator.publish_time(tick + 1)
@@ -226,8 +230,15 @@ class Coordinator:
         self._surroundings.advance(rows.replies)
         self._lap('body and supplies')
         self.ticks = tick + 1
-        self._narrator.publish_rows(self.ticks, self._rows.tuned)
+        self._narrator.publish_rows(self.ticks, self._rows.tuned, self._surroundings.tuned)
         self._lap('messages')
+
+    def _change(self, tick: int) -> None:
+        """Let the faults of a tick begin and end."""
+        changes = self._plan.changes(tick)
+        self._rows.changes = {} if changes is None else changes.actuators
+        if changes is not None:
+            self._surroundings.tune(changes.supplies)
 
 
 def _no_lap(phase: str) -> None:

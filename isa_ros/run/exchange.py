@@ -39,6 +39,8 @@ class Rows:
         """Commands handed to the links at the last tick's start; kinds 0 without one."""
         self.tuned: Mapping[int, Mapping[str, float]] = {}
         """Parameters that changed at the start of the last tick, SI, by row and name."""
+        self.changes: Mapping[int, Mapping[str, float]] = {}
+        """Parameters that faults change at the tick's start, by row and name."""
         self.requests: Records = np.zeros(n_actuators, COMMAND)
         """Commands of the controllers, to take effect at the next tick."""
         self.supplies: Records = surroundings.supplies
@@ -85,7 +87,7 @@ class Transport(Protocol):
         ...
 
     def send(self, tick: int, rows: Rows) -> None:
-        """Start the tick: send ports and commands, and the samples to the controllers."""
+        """Start the tick: send changes, ports, commands, and the samples to the controllers."""
         ...
 
     def receive(self, rows: Rows) -> None:

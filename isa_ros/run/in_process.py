@@ -56,9 +56,11 @@ class InProcess:
         """Do nothing: `receive` advances the actuators."""
 
     def receive(self, rows: Rows) -> None:
-        """Process the inputs of each actuator, then advance all."""
+        """Process the inputs of each actuator and the tick's changes, then advance all."""
         for own in self._inputs:
             own.serve()
+        for row, values in rows.changes.items():
+            self._group.actuators[row].tune(values)
         self._group.advance(rows.ports, rows.commands)
         self._fill(rows)
 

@@ -12,7 +12,7 @@ from isa_ros.run.exchange import Recorder
 from isa_ros.run.narrator import Narrator, packer_of
 from isa_ros.run.packing import Shown
 from isa_ros.run.thinning import Thinning
-from isa_ros.scenario.scenario import idle
+from isa_ros.scenario.scenario import idle, Scenario
 from isa_ros.simulation import Simulation
 import numpy as np
 
@@ -31,6 +31,18 @@ class Inputs(NamedTuple):
     """Texts of the events recorded before a tick."""
     has_end: bool = True
     """Whether the diagnostics of the last instant are recorded, as at the end of a run."""
+    tuned_supplies: Tuned = {}
+    """Changes of the supplies' parameters, by SUPPLY.KEY."""
+
+
+def inputs_of(scenario: Scenario) -> Inputs:
+    """Return the commands and the faults of a scenario."""
+    tuned: dict[str, dict[int, Mapping[str, float]]] = {}
+    for tick, changes in scenario.changes.items():
+        for row, values in changes.actuators.items():
+            tuned.setdefault(scenario.run.actuators[row].name, {})[tick] = values
+    return Inputs(scenario.commands, tuned, tuned_supplies={
+        tick: changes.supplies for tick, changes in scenario.changes.items()})
 
 
 class LocalRun:
@@ -68,7 +80,8 @@ class LocalRun:
         narrator = Narrator(self._packer, self._run.step_ns, self._thinning.recorder(recorder))
         commands = np.zeros(len(simulation.names), COMMAND)
         while True:
-            narrator.publish_rows(simulation.ticks, simulation.tuned)
+            narrator.publish_rows(
+                simulation.ticks, simulation.tuned, simulation.tuned_supplies)
             for text in inputs.events.get(simulation.ticks, ()):
                 narrator.add_event(simulation.ticks, text)
             if simulation.ticks >= n_ticks:
@@ -77,15 +90,16 @@ class LocalRun:
             narrator.record()
             if should_stop():
                 raise Interrupted(f'stopped after {simulation.ticks} ticks')
-            self._tune(inputs.tuned)
+            self._tune(inputs)
             commands['kinds'] = 0
             inputs.commands(simulation.ticks, commands)
             simulation.step(commands)
 
-    def _tune(self, tuned: Mapping[str, Tuned]) -> None:
-        """Set the parameters that change at the next tick, as a user of the node would."""
+    def _tune(self, inputs: Inputs) -> None:
+        """Set the parameters that change at the next tick, as a user of the nodes would."""
         simulation = self._simulation
-        for name, by_tick in tuned.items():
+        simulation.surroundings.tune(inputs.tuned_supplies.get(simulation.ticks, {}))
+        for name, by_tick in inputs.tuned.items():
             values = by_tick.get(simulation.ticks)
             if values is not None:
                 simulation.group.actuators[simulation.names.index(name)].tune(values)

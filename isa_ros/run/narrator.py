@@ -77,11 +77,14 @@ class Narrator:
         if self._outlets.events.has_subscribers():
             self._outlets.events.publish((message,))
 
-    def publish_rows(self, tick: int, tuned: Mapping[int, Mapping[str, float]]) -> None:
+    def publish_rows(
+            self, tick: int, tuned: Mapping[int, Mapping[str, float]],
+            tuned_supplies: Mapping[str, float] = {}) -> None:
         """
         Pack and publish the rows before ``tick``; `record` passes them to the recorder.
 
-        ``tuned`` are the parameters that changed at the start of the last tick, by row.
+        ``tuned`` are the parameters that changed at the start of the last tick, by row, and
+        ``tuned_supplies`` those of the supplies.
         """
         outlets, packer = self._outlets, self._packer
         t_ns = tick * self._step_ns
@@ -90,10 +93,10 @@ class Narrator:
             row for row, outlet in enumerate(outlets.actuators)
             if outlet.has_subscribers() or packer.has_applied(row) or row in tuned
             or packer.has_status(row, t_ns, start_ns)]
-        has_surroundings = outlets.surroundings.has_subscribers()
+        has_surroundings = outlets.surroundings.has_subscribers() or bool(tuned_supplies)
         if self._recorder is None and not subscribed and not has_surroundings:
             return
-        packer.pack(t_ns, start_ns, tuned)
+        packer.pack(t_ns, start_ns, tuned, tuned_supplies)
         self._unrecorded = tick
         for row in subscribed:
             outlets.actuators[row].publish(self._packer.of_actuator(row))

@@ -155,6 +155,8 @@ class Packer:
                 found.append((topic, fluid_pressure.fluid_pressure(
                     coordinator_messages.WORLD_FRAME, at + k)))
             at += len(_SUPPLY_PRESSURES)
+        if names.supplies:
+            found.append((Topic(_TUNED_SUPPLIES[0], _TUNED_SUPPLIES[1], KEPT), None))
         if names.body is not None and shown.body is not None:
             body = names.body(float_columns(shown.body.dtype, at))
             found += [(Topic(*topic), message) for topic, message in body.items()]
@@ -172,6 +174,7 @@ class Packer:
         self._bytes = self._template.block.view(np.uint8)
         self._tuned: dict[int, bytes] = {}
         self._status: dict[int, bytes] = {}
+        self._tuned_supplies: bytes | None = None
         self._t_ns = 0
         self._diagnosed: bytes | None = None
         self._periods = dict(names.periods) | {
@@ -203,12 +206,13 @@ class Packer:
         self._kinds, self._sent_kinds = shown.applied['kinds'], self._links.sent_kinds
 
     def pack(
-            self, t_ns: int, tick_start_ns: int,
-            tuned: Mapping[int, Mapping[str, float]]) -> None:
+            self, t_ns: int, tick_start_ns: int, tuned: Mapping[int, Mapping[str, float]],
+            tuned_supplies: Mapping[str, float] = {}) -> None:
         """
         Pack the rows of ``t_ns``, the end of a tick that began at ``tick_start_ns``.
 
-        ``tuned`` are the parameters that changed at the tick's start, by row.
+        ``tuned`` are the parameters that changed at the tick's start, by row, and
+        ``tuned_supplies`` those of the supplies.
         """
         self._links.pack(t_ns, tick_start_ns, self._words, self._values)
         pack(time_word(t_ns), time_word(tick_start_ns), ATMOSPHERE,
@@ -225,6 +229,8 @@ class Packer:
             row: encode(device.status(name, self._device_of(row)))
             for row, (name, _) in enumerate(self._names.actuators)
             if self.has_status(row, t_ns, tick_start_ns)}
+        self._tuned_supplies = applied_parameters(
+            coordinator_messages.NODE, tuned_supplies, tick_start_ns) if tuned_supplies else None
         self._t_ns, self._diagnosed = t_ns, None
         if self._is_run and t_ns % PERIOD_NS == 0:
             self.diagnose()
@@ -248,13 +254,16 @@ class Packer:
         if where is None:
             where = self._layouts[key] = self._layout()
         packed = Packed(self._bytes, where)
-        if not (events or self._tuned or self._status or self._diagnosed):
+        if not (events or self._tuned or self._status or self._tuned_supplies
+                or self._diagnosed):
             return packed
         extra = [(self._index[event.TOPIC[0]], data) for data in events]
         extra += [(self._index[f'/{self._names.actuators[row][0]}/{_PARAMETERS}'], data)
                   for row, data in self._tuned.items()]
         extra += [(self._index[f'/{self._names.actuators[row][0]}/{_DEVICE}'], data)
                   for row, data in self._status.items()]
+        if self._tuned_supplies is not None:
+            extra.append((self._index[_TUNED_SUPPLIES[0]], self._tuned_supplies))
         if self._diagnosed is not None:
             extra.append((self._index[diagnostics.TOPIC[0]], self._diagnosed))
         return Packed.of(sorted([*packed, *extra], key=lambda message: message[0]))
@@ -303,8 +312,9 @@ class Packer:
                     or t_ns // NS_PER_SECOND != tick_start_ns // NS_PER_SECOND or t_ns == 0)
 
     def of(self, topics: Sequence[Topic]) -> list[bytes | None]:
-        """Return the messages of some topics; None: none at this instant."""
-        return [self._diagnosed if topic.name == diagnostics.TOPIC[0]
+        """Return the messages of some topics of supplies and body; None: none at this instant."""
+        rare = {_TUNED_SUPPLIES[0]: self._tuned_supplies, diagnostics.TOPIC[0]: self._diagnosed}
+        return [rare[topic.name] if topic.name in rare
                 else None if topic.name in self._not_due
                 else self._message(topic.name) for topic in topics]
 
@@ -331,5 +341,6 @@ _SETPOINT = actuator_messages.APPLIED_SETPOINT[0]
 _SENT = SENT_SETPOINT[0]
 _PARAMETERS = actuator_messages.APPLIED_PARAMETERS[0]
 _DEVICE = actuator_messages.DEVICE[0]
+_TUNED_SUPPLIES = coordinator_messages.APPLIED_PARAMETERS
 _SINCE, _AGE = _SAMPLE.index('state_since'), _SAMPLE.index('age')
 _HALF_STEP_NS = 0.5 * PLANT_STEP_NS

@@ -143,7 +143,7 @@ def record(
             should_stop, requests, warn)
         if not coordinator.is_reset:
             break
-        surroundings.restore(beginning)
+        surroundings.restart(beginning)
         out, state = _unused(session.out), None
     if session.request.save is not None:
         save(session, coordinator, session.request.save)
@@ -159,6 +159,7 @@ def _record_one(
     plan = Plan(
         step_ns=run.step_ns, rows=rows, n_ticks=n_ticks,
         commands=session.scenario.commands, admit=_admission(run, warn),
+        changes=session.scenario.changes_at,
         is_paused=session.request.is_paused)
     laps = session.request.laps or Laps()
     laps.lap(STARTING)

@@ -1,10 +1,11 @@
 """
-Scenarios: the commands of each actuator by tick, and changes of the rig that they need.
+Scenarios: the commands of each actuator by tick, faults, and changes of the rig for them.
 
 Values are SI with the names of the setpoint topic. A scenario that replaces loads or the start
 of the leg gives its own `run`: the configuration to simulate, record and replay.
 """
 
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from functools import cached_property
 import math
@@ -25,6 +26,7 @@ from isa_ros.core.parameter import check
 from isa_ros.core.suggest import alternatives
 from isa_ros.core.timebase import NS_PER_SECOND
 from isa_ros.errors import ConfigError
+from isa_ros.scenario.faults import Fault, ParameterChanges, read_faults, timetable
 from isa_ros.scenario.range_check import ACCEPT, within_range
 from isa_ros.scenario.setpoints import MAX_DURATION, read_track
 from isa_ros.scenario.track import event_tree, Track
@@ -55,6 +57,7 @@ class Scenario:
     """Whether setpoints beyond the range of their actuators are taken as they are."""
     limited: tuple[str, ...] = field(default=(), compare=False)
     """Lines on the setpoints that are limited to the range of their actuators."""
+    faults: tuple[Fault, ...] = ()
 
     @property
     def warnings(self) -> tuple[str, ...]:
@@ -77,6 +80,29 @@ class Scenario:
 
         """
         return replace(self, n_ticks=_duration(duration, self.run.step_ns, 'duration'))
+
+    def with_faults(self, faults: Sequence[Tree]) -> 'Scenario':
+        """
+        Return the scenario with more faults, as its file would have them.
+
+        Raises
+        ------
+        ConfigError
+            As `read_faults`.
+
+        """
+        place = Place(self.name, 'faults')
+        trees = [*(fault.tree(self.run.step_ns) for fault in self.faults), *faults]
+        return replace(self, faults=read_faults(trees, place, self.run, self.n_ticks))
+
+    def changes_at(self, tick: int) -> ParameterChanges | None:
+        """Return the parameters that faults change at a tick; None: none."""
+        return self.changes.get(tick)
+
+    @cached_property
+    def changes(self) -> Mapping[int, ParameterChanges]:
+        """Return the parameters that faults change, by tick."""
+        return timetable(self.faults, self.run)
 
     def has_commands_at(self, tick: int) -> bool:
         """Return whether a command of the scenario takes effect at a tick."""
@@ -111,6 +137,8 @@ class Scenario:
         tree['tracks'] = {
             track.actuator: [event_tree(event, self.run.step_ns) for event in track.events]
             for track in self.tracks}
+        if self.faults:
+            tree['faults'] = [fault.tree(self.run.step_ns) for fault in self.faults]
         return dump(tree)
 
 
@@ -160,7 +188,7 @@ def scenario_of(text: str, run: RunConfig, name: str = 'scenario.yaml') -> Scena
 def read_scenario(tree: Tree, place: Place, run: RunConfig) -> Scenario:
     """Return the scenario of a file's tree; as `load_scenario`."""
     refuse_unknown(
-        tree, ('name', 'figure', 'duration_s', BEYOND, 'leg', 'loads', 'tracks'), place)
+        tree, ('name', 'figure', 'duration_s', BEYOND, 'leg', 'loads', 'tracks', 'faults'), place)
     name = name_of(tree, 'name', place)
     n_ticks = _duration(tree.get('duration_s'), run.step_ns, f'{place}: duration_s')
     run = _with_loads(_with_leg(run, tree, place), tree, place)
@@ -176,8 +204,9 @@ def read_scenario(tree: Tree, place: Place, run: RunConfig) -> Scenario:
             track, run.actuator(name_there), run.step_ns, accepts_beyond, below)
         tracks.append(track)
         limited += lines
+    faults = read_faults(tree.get('faults', []), place / 'faults', run, n_ticks)
     return Scenario(name, run, n_ticks, tuple(tracks), figure_of(tree, place), accepts_beyond,
-                    tuple(limited))
+                    tuple(limited), faults)
 
 
 def _accepts_beyond(tree: Tree, place: Place) -> bool:

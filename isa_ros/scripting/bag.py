@@ -55,7 +55,8 @@ class ResultMessages:
                 shown.sent['kinds'] = 0
                 if tick in log.sent:
                     shown.sent[:] = log.sent[tick]
-            narrator.publish_rows(tick, {})
+            narrator.publish_rows(
+                tick, log.tuned.get(tick, {}), log.tuned_supplies.get(tick, {}))
             if tick < len(log.samples) - 1:
                 narrator.record()
         narrator.end()

@@ -39,6 +39,10 @@ class Log(NamedTuple):
     """`SAMPLE` that listeners have, (n + 1, n_actuators); None: ``samples``, without a link."""
     sent: Mapping[int, Records] = {}
     """As ``applied``, of the commands handed to links."""
+    tuned: Mapping[int, Mapping[int, Mapping[str, float]]] = {}
+    """Changed parameters by sample, row and name, for the samples with any."""
+    tuned_supplies: Mapping[int, Mapping[str, float]] = {}
+    """Those of the supplies, by sample and SUPPLY.KEY."""
 
 
 class Result(Mapping[str, NDArray[np.float64]]):
@@ -212,6 +216,8 @@ def simulated(
         pairs.append((floats(bodies), floats(body.sample).reshape(-1)))
     applied: dict[int, Records] = {}
     sent: dict[int, Records] = {}
+    tuned: dict[int, Mapping[int, Mapping[str, float]]] = {}
+    tuned_supplies: dict[int, Mapping[str, float]] = {}
     kinds, sent_kinds = group.applied['kinds'], group.sent['kinds']
     for tick in range(n):
         if tick:
@@ -222,9 +228,13 @@ def simulated(
             applied[tick] = group.applied.copy()
         if observed is not None and sent_kinds.any():
             sent[tick] = group.sent.copy()
+        if changed := simulation.tuned:
+            tuned[tick] = changed
+        if supplies_changed := simulation.tuned_supplies:
+            tuned_supplies[tick] = supplies_changed
         if report is not None and tick % _REPORT_TICKS == 0:
             report(tick, n_ticks)
     if report is not None:
         report(n_ticks, n_ticks)
-    return Result(simulation.scenario, Log(samples, supplies, bodies, applied, observed, sent),
-                  {} if body is None else body.units)
+    log = Log(samples, supplies, bodies, applied, observed, sent, tuned, tuned_supplies)
+    return Result(simulation.scenario, log, {} if body is None else body.units)

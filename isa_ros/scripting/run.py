@@ -111,33 +111,39 @@ class Run:
 
     def simulate(
             self, duration: float | None = None, controllers: Controllers = (), *,
-            seed: int | None = None, progress: bool = False) -> Result:
+            faults: Sequence[Tree] = (), seed: int | None = None,
+            progress: bool = False) -> Result:
         """
         Simulate from t = 0 and return every sample, in memory.
 
         ``duration`` in s; None: that of the scenario. ``controllers`` as in `simulation`.
+        ``faults`` are added to those of the scenario, each as its file would have it:
+        ``{'t_s': 0.5, 'actuator': 'kfe', 'fault': 'valve_stuck', 'until_s': 0.8}``.
         ``seed`` of all noise; None: that of the run. ``progress`` is shown on a terminal only.
 
         Raises
         ------
         ConfigError
-            Neither ``duration`` nor the scenario gives a duration.
+            Neither ``duration`` nor the scenario gives a duration, or a fault is refused.
         SimulationDiverged
             A state is no longer finite.
 
         """
         if seed is not None:
             return self.replace({'seed': seed}).simulate(
-                duration, controllers, progress=progress)
+                duration, controllers, faults=faults, progress=progress)
         named = self._named(controllers)
         plan = self._with_names(list(named))
         if duration is not None:
             plan = plan.lasting(duration)
-        if plan.n_ticks is None:
+        n_ticks = plan.n_ticks
+        if n_ticks is None:
             raise ConfigError(
                 f'{self._config.name}: simulate needs a duration: there is none from a scenario')
+        if faults:
+            plan = plan.with_faults(faults)
         report = counted(sys.stderr, 'ticks', of=self._config.name) if progress else None
-        return simulated(Simulation(plan, list(named.values())), plan.n_ticks, report)
+        return simulated(Simulation(plan, list(named.values())), n_ticks, report)
 
     def _named(self, controllers: Controllers) -> dict[str, Controller]:
         if isinstance(controllers, Mapping):

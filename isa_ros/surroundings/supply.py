@@ -13,7 +13,7 @@ from dataclasses import dataclass, field
 from isa_ros.core.atmosphere import ATMOSPHERE
 from isa_ros.core.elementary import exp, log
 from isa_ros.core.kernel import kernel
-from isa_ros.core.parameter import parameter, Parameters
+from isa_ros.core.parameter import fault, parameter, Parameters
 from isa_ros.core.units import LPM, MPA
 from isa_ros.errors import ParameterError
 import numpy as np
@@ -35,7 +35,7 @@ class VolumeReturn(Parameters):
     oil_volume_l: float = parameter('oil in the return line', 'l', gt=0.0, le=100.0)
     bulk_modulus: float = parameter('effective, of the return line', 'Pa', gt=0.0, le=2e9)
     tank_lpm_per_mpa: float = parameter(
-        'flow to the tank per pressure above it', 'l/min/MPa', gt=0.0, le=1e4)
+        'flow to the tank per pressure above it', 'l/min/MPa', changeable=True, gt=0.0, le=1e4)
 
 
 ReturnLine = HeldReturn | VolumeReturn
@@ -45,8 +45,10 @@ ReturnLine = HeldReturn | VolumeReturn
 class ConstantSupply(Parameters):
     """An ideal supply: constant pressure at any flow."""
 
-    pressure_mpa: float = parameter('gauge supply pressure', 'MPa', gt=0.0, le=70.0)
-    return_pressure_mpa: float = parameter('gauge return pressure', 'MPa', ge=0.0, le=5.0)
+    pressure_mpa: float = parameter(
+        'gauge supply pressure', 'MPa', changeable=True, gt=0.0, le=70.0)
+    return_pressure_mpa: float = parameter(
+        'gauge return pressure', 'MPa', changeable=True, ge=0.0, le=5.0)
     return_line: ReturnLine = field(default=HeldReturn(), metadata={'absent': HeldReturn()})
 
 
@@ -54,20 +56,28 @@ class ConstantSupply(Parameters):
 class AccumulatorSupply(Parameters):
     """A pressure-compensated pump with gas accumulator, line and relief valve."""
 
-    pressure_mpa: float = parameter('gauge pressure the pump holds', 'MPa', gt=0.0, le=70.0)
-    return_pressure_mpa: float = parameter('gauge return pressure', 'MPa', ge=0.0, le=5.0)
+    pressure_mpa: float = parameter(
+        'gauge pressure the pump holds', 'MPa', changeable=True, gt=0.0, le=70.0)
+    return_pressure_mpa: float = parameter(
+        'gauge return pressure', 'MPa', changeable=True, ge=0.0, le=5.0)
     gas_volume_l: float = parameter('accumulator gas volume at precharge', 'l', gt=0.0, le=100.0)
     precharge_mpa: float = parameter('gauge gas precharge', 'MPa', gt=0.0, le=70.0)
     polytropic_exponent: float = parameter('n of the gas law', '1', ge=1.0, le=1.7)
     line_volume_l: float = parameter('oil in the line', 'l', gt=0.0, le=100.0)
     bulk_modulus: float = parameter('effective, of the line', 'Pa', gt=0.0, le=2e9)
-    pump_flow_lpm: float = parameter('largest pump flow', 'l/min', gt=0.0, le=1000.0)
+    pump_flow_lpm: float = parameter(
+        'largest pump flow; 0: the pump stands', 'l/min', changeable=True, ge=0.0, le=1000.0)
     pump_lag_s: float = parameter('pump time constant', 's', ge=1e-3, le=10.0)
     pump_band_mpa: float = parameter(
         'pressure below the set point at full flow', 'MPa', gt=0.0, le=10.0)
-    relief_mpa: float = parameter('gauge pressure of the relief valve', 'MPa', gt=0.0, le=70.0)
+    relief_mpa: float = parameter(
+        'gauge pressure of the relief valve', 'MPa', changeable=True, gt=0.0, le=70.0)
     relief_lpm_per_mpa: float = parameter(
         'relief flow per pressure above opening', 'l/min/MPa', gt=0.0, le=1e3)
+    accumulator_lost: float = fault(
+        '1: the accumulator has lost its gas', '1', is_whole=True, ge=0.0, le=1.0)
+    line_leakage_lpm_per_mpa: float = fault(
+        'flow from the pressure line to the outside per pressure', 'l/min/MPa', ge=0.0, le=10.0)
     return_line: ReturnLine = field(default=HeldReturn(), metadata={'absent': HeldReturn()})
 
 
@@ -75,7 +85,8 @@ SupplySheet = ConstantSupply | AccumulatorSupply
 
 SUPPLY = np.dtype([
     ('p_set', 'f8'), ('p_t', 'f8'), ('v_0', 'f8'), ('p_0', 'f8'), ('n', 'f8'), ('c_line', 'f8'),
-    ('q_max', 'f8'), ('lag', 'f8'), ('band', 'f8'), ('p_relief', 'f8'), ('k_relief', 'f8')])
+    ('q_max', 'f8'), ('lag', 'f8'), ('band', 'f8'), ('p_relief', 'f8'), ('k_relief', 'f8'),
+    ('k_leak', 'f8')])
 RETURN_LINE = np.dtype([
     ('p_t', 'f8'),              # pressure of the tank, Pa
     ('c', 'f8'),                # V/beta, m3/Pa
@@ -105,12 +116,14 @@ def supply_record(sheet: AccumulatorSupply) -> np.ndarray:
     record = np.zeros(1, SUPPLY)
     for name, value in {
             'p_set': sheet.pressure_mpa * MPA, 'p_t': sheet.return_pressure_mpa * MPA,
-            'v_0': sheet.gas_volume_l * _LITRE, 'p_0': sheet.precharge_mpa * MPA + ATMOSPHERE,
+            'v_0': 0.0 if sheet.accumulator_lost else sheet.gas_volume_l * _LITRE,
+            'p_0': sheet.precharge_mpa * MPA + ATMOSPHERE,
             'n': sheet.polytropic_exponent,
             'c_line': sheet.line_volume_l * _LITRE / sheet.bulk_modulus,
             'q_max': sheet.pump_flow_lpm * LPM, 'lag': sheet.pump_lag_s,
             'band': sheet.pump_band_mpa * MPA, 'p_relief': sheet.relief_mpa * MPA,
-            'k_relief': sheet.relief_lpm_per_mpa * LPM / MPA}.items():
+            'k_relief': sheet.relief_lpm_per_mpa * LPM / MPA,
+            'k_leak': sheet.line_leakage_lpm_per_mpa * LPM / MPA}.items():
         record[name] = value
     return record
 
@@ -129,7 +142,8 @@ def capacitance(pressure, supply):
     """
     Return V_0/(n P) (p_0/P)^(1/n) + V_line/beta  (C7), in m3/Pa; P absolute.
 
-    Below precharge the accumulator is empty and only the line remains.
+    Below precharge the accumulator is empty and only the line remains; likewise with V_0 = 0, an
+    accumulator that has lost its gas.
     """
     absolute = pressure + ATMOSPHERE
     if absolute <= supply.p_0:
@@ -141,15 +155,17 @@ def capacitance(pressure, supply):
 @kernel
 def supply_rates(pressure, pump_flow, drawn, supply):
     """
-    Return (dP/dt, dQ_pump/dt) with C dP/dt = Q_pump - Q_drawn - Q_relief  (C8), and two powers.
+    Return (dP/dt, dQ_pump/dt) with C dP/dt = Q_pump - Q_drawn - Q_relief - Q_leak  (C8).
 
-    The pump follows its pressure compensator, 0 to full flow over the band, with one lag. The
-    powers are those of the pump and of the relief valve, P Q, in W  (E7).
+    The pump follows its pressure compensator, 0 to full flow over the band, with one lag;
+    Q_leak = k P, from the line to the outside. Then two powers: those of the pump, and of relief
+    valve and leak, P Q, in W  (E7).
     """
     demand = max(0.0, min(1.0, (supply.p_set - pressure) / supply.band)) * supply.q_max
     relief = max(0.0, supply.k_relief * (pressure - supply.p_relief))
-    return ((pump_flow - drawn - relief) / capacitance(pressure, supply),
-            (demand - pump_flow) / supply.lag, pressure * pump_flow, pressure * relief)
+    leak = max(0.0, supply.k_leak * pressure)
+    return ((pump_flow - drawn - relief - leak) / capacitance(pressure, supply),
+            (demand - pump_flow) / supply.lag, pressure * pump_flow, pressure * (relief + leak))
 
 
 @kernel
@@ -219,27 +235,47 @@ class Supply:
             state: np.ndarray | None = None, name: str = 'supply') -> None:
         self._name = name
         self._step = step_ns * 1e-9
+        self._flow_slope = flow_slope
         self._substeps = round(self._step / SUPPLY_STEP)
         self.state = np.zeros(1, SUPPLY_SAMPLE) if state is None else state
-        tank_pressure = sheet.return_pressure_mpa * MPA
         self.state['pressure'] = sheet.pressure_mpa * MPA
-        self.state['return_pressure'] = tank_pressure
-        self._record: np.ndarray | None = None
-        self._line: np.ndarray | None = None
-        if isinstance(sheet, AccumulatorSupply):
-            self._record = supply_record(sheet)
-            self._refuse_small(
-                'capacitance', capacitance(self.pressure, self._record[0]), flow_slope,
-                'gas_volume_l')
-        if isinstance(sheet.return_line, VolumeReturn):
-            self._line = return_record(sheet.return_line, tank_pressure)
-            self._refuse_small(
-                'capacitance of the return line', float(self._line['c'][0]), flow_slope,
-                'return_line.oil_volume_l')
-            self._refuse_fast(self._line[0])
+        self.state['return_pressure'] = sheet.return_pressure_mpa * MPA
+        self._record, self._line = self._records(sheet)
 
-    def _refuse_small(self, what: str, c: float, flow_slope: float, key: str) -> None:
-        holds, bound = c / flow_slope, _SLOWEST_TICKS * self._step
+    def change(self, sheet: SupplySheet) -> None:
+        """
+        Continue with other values of the sheet: pressure and pump flow keep theirs.
+
+        Only an ideal supply, and a return line that is held, take the new pressure at once.
+        Raises as the class.
+        """
+        self._record, self._line = self._records(sheet)
+        if self._record is None:
+            self.state['pressure'] = sheet.pressure_mpa * MPA
+        if self._line is None:
+            self.state['return_pressure'] = sheet.return_pressure_mpa * MPA
+
+    def refuse(self, sheet: SupplySheet) -> None:
+        """Refuse a sheet with which `change` cannot continue; raises as the class."""
+        self._records(sheet)
+
+    def _records(self, sheet: SupplySheet) -> tuple[np.ndarray | None, np.ndarray | None]:
+        """Return the `SUPPLY` and the `RETURN_LINE` of a sheet, None for what is ideal."""
+        supply = line = None
+        if isinstance(sheet, AccumulatorSupply):
+            supply = supply_record(sheet)
+            self._refuse_small(
+                'capacitance', capacitance(sheet.pressure_mpa * MPA, supply[0]), 'gas_volume_l')
+        if isinstance(sheet.return_line, VolumeReturn):
+            line = return_record(sheet.return_line, sheet.return_pressure_mpa * MPA)
+            self._refuse_small(
+                'capacitance of the return line', float(line['c'][0]),
+                'return_line.oil_volume_l')
+            self._refuse_fast(line[0])
+        return supply, line
+
+    def _refuse_small(self, what: str, c: float, key: str) -> None:
+        holds, bound = c / self._flow_slope, _SLOWEST_TICKS * self._step
         if holds < bound:
             raise ParameterError(
                 f'{self._name}: {what} over flow slope = {holds * 1e3:.3g} ms, '

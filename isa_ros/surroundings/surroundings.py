@@ -5,10 +5,13 @@ They are the other side of the load port (equation L1) and independent of messag
 configuration; `isa_ros.config.assembly` makes them from a run.
 """
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from typing import NamedTuple
 
+from isa_ros.core.changeable import Changeable, changeables, with_changes
+from isa_ros.core.changing_values import ChangingValues
 from isa_ros.core.saved_state import broken_number, restored_rows
+from isa_ros.core.suggest import alternatives
 from isa_ros.errors import ConfigError, RunError
 from isa_ros.surroundings.body import Body, Records
 from isa_ros.surroundings.supply import Supply, SUPPLY_SAMPLE, SupplySheet
@@ -46,6 +49,12 @@ class Surroundings:
         self._supplies = [
             Supply(feed.sheet, step_ns, feed.flow_slope, self.supplies[k:k + 1], feed.name)
             for k, feed in enumerate(feeds)]
+        self.changing: Mapping[str, Changeable] = {
+            name: own for feed in feeds
+            for name, own in changeables(feed.sheet, f'{feed.name}.').items()}
+        """All that may change during a run, by SUPPLY.KEY."""
+        self._values = ChangingValues(
+            'supplies', list(self.changing), [own.value for own in self.changing.values()])
         self._rows = [np.array(feed.rows, np.int64) for feed in feeds]
         self._rest = starts.copy()
         self._sensor_stiffness = sensor_stiffness
@@ -66,7 +75,13 @@ class Surroundings:
         return starts
 
     def ports(self, ports: Records) -> None:
-        """Fill the `LOAD_PORT` of every actuator for the next tick, shape (n_actuators,)."""
+        """
+        Fill the `LOAD_PORT` of every actuator for the next tick, shape (n_actuators,).
+
+        The tick begins: values that were tuned take effect.
+        """
+        if self._values.latch():
+            self._change_supplies()
         self._fill_pressures(ports)
         if self.body is not None:
             self.body.ports(ports)
@@ -75,6 +90,44 @@ class Surroundings:
         for supply, fed in zip(self._supplies, self._rows):
             rows['supply_pressure'][fed] = supply.pressure
             rows['return_pressure'][fed] = supply.return_pressure
+
+    def tune(self, values: Mapping[str, float]) -> None:
+        """
+        Accept new values of `changing`, all or none; they take effect at the next tick.
+
+        The last of several before one tick wins; pressures and pump flow are kept.
+
+        Raises
+        ------
+        ConfigError
+            An unknown name, a value out of its range, or a supply too small for the tick.
+
+        """
+        for name in values:
+            if name not in self.changing:
+                raise ConfigError(f'{name} is unknown; {alternatives(name, self.changing)}')
+        for supply, sheet in self._sheets(self._values.accepted | dict(values)):
+            supply.refuse(sheet)
+        self._values.accept(values)
+
+    def tuned_value(self, name: str) -> float:
+        """Return the last accepted value of one of `changing`."""
+        return self._values.value(name)
+
+    @property
+    def tuned(self) -> dict[str, float]:
+        """Return the values of `changing` that changed at the start of the last tick."""
+        return self._values.applied
+
+    def _sheets(self, values: Mapping[str, float]) -> Iterator[tuple[Supply, SupplySheet]]:
+        for supply, feed in zip(self._supplies, self.feeds):
+            prefix = f'{feed.name}.'
+            own = {name: value for name, value in values.items() if name.startswith(prefix)}
+            yield supply, with_changes(feed.sheet, own, prefix)
+
+    def _change_supplies(self) -> None:
+        for supply, sheet in self._sheets(self._values.in_force):
+            supply.change(sheet)
 
     def advance(self, replies: Records) -> None:
         """
@@ -109,7 +162,8 @@ class Surroundings:
             if broken is not None:
                 raise RunError(
                     f'{feed.name}: {broken[0]} = {broken[1]}, must be finite to be saved')
-        return self.supplies.tobytes() + (b'' if self.body is None else self.body.snapshot())
+        return self.supplies.tobytes() + self._values.snapshot() + (
+            b'' if self.body is None else self.body.snapshot())
 
     def restore(self, snapshot: bytes) -> None:
         """
@@ -121,16 +175,27 @@ class Surroundings:
             The bytes are not a snapshot of these surroundings, or a number is not finite.
 
         """
-        expected = self.supplies.nbytes + (0 if self.body is None else len(self.body.snapshot()))
+        supplies_end = self.supplies.nbytes
+        values_end = supplies_end + self._values.nbytes
+        expected = values_end + (0 if self.body is None else len(self.body.snapshot()))
         if len(snapshot) != expected:
             raise ConfigError(
                 f'saved state of the surroundings has {len(snapshot)} bytes, must have {expected}')
-        supplies_end = self.supplies.nbytes
-        self.supplies[:] = np.concatenate([
+        supplies = np.concatenate([
             restored_rows(snapshot, SUPPLY_SAMPLE, 1, k * SUPPLY_SAMPLE.itemsize, feed.name)
             for k, feed in enumerate(self.feeds)])
+        self._values.restore(snapshot[supplies_end:values_end])
+        list(self._sheets(self._values.accepted))   # refuses what cannot be
+        self._change_supplies()
+        self.supplies[:] = supplies
         if self.body is not None:
-            self.body.restore(snapshot[supplies_end:])
+            self.body.restore(snapshot[values_end:])
+
+    def restart(self, beginning: bytes) -> None:
+        """Return to the `snapshot` of t = 0; tuned values stay, in force from the first tick."""
+        accepted = self._values.accepted
+        self.restore(beginning)
+        self._values.accept(accepted)
 
 
 def _sum(values: Sequence[float], rows: Sequence[int]) -> float:

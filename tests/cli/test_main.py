@@ -90,7 +90,7 @@ def test_wrong_usage_is_one_line_and_2(
     (['params', 'isa_v5', '--preset', 'fast'], "isa: preset = 'fast' is not a preset of isa_v5"),
     (['bringup', 'no_such_run'], 'isa: no_such_run: no such file; shipped: hyq_leg.yaml'),
     (['bringup', 'leg', '--scenario', 'fly'],
-     'isa: fly: no such file; shipped: current_step.yaml, drop.yaml'),
+     'isa: fly: no such file; shipped: current_step.yaml, device_faults.yaml, drop.yaml'),
     (['bringup', 'leg', '--scenario', 'step'],
      'isa: step.yaml: loads.rotor is unknown: leg.yaml: no actuator'),
     (['bringup', 'leg', '--duration', '0.0005'],

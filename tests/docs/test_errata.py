@@ -79,13 +79,13 @@ def current_loop_poles(lag: float, lead_damping: float, lag_damping: float) -> n
     section = model.with_variants(model.with_preset('table_4', 'test'), ['explicit'], 'test')
     sheet = build(ActuatorSheet, section, model.place)
     assert isinstance(sheet.reu.current, LeadLag)
-    resistance, inductance, _ = circuit(sheet.plant.coil)
+    coils = circuit(sheet.plant.coil)
     loop = lead_lag_record(replace(
         sheet.reu.current, lag_rad_per_s=lag, lead_damping=lead_damping,
         lag_damping=lag_damping))
-    decay = math.exp(-resistance / inductance / sheet.reu.current.rate_hz)
+    decay = math.exp(-coils.resistance / coils.inductance / sheet.reu.current.rate_hz)
     poles: np.ndarray = np.roots(np.polyadd(
-        np.polymul([loop.b_0, loop.b_1, loop.b_2], [0.0, (1.0 - decay) / resistance]),
+        np.polymul([loop.b_0, loop.b_1, loop.b_2], [0.0, (1.0 - decay) / coils.resistance]),
         np.polymul([1.0, loop.a_1, loop.a_2], [1.0, -decay])))
     return poles
 

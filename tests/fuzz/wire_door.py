@@ -1,6 +1,6 @@
 """The private wire: altered steps at a participant's end, altered answers at the coordinator's."""
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from contextlib import ExitStack
 import random
 from types import SimpleNamespace
@@ -22,7 +22,8 @@ from isa_ros.run.wire.answers import AnswerKind, encode_answer, FIRST
 from isa_ros.run.wire.cast import Cast
 from isa_ros.run.wire.parts import actuator_parts, take_actuator_parts
 from isa_ros.run.wire.steps import (
-    encode_begin, encode_end, encode_hello, encode_restore, encode_save, encode_tick)
+    encode_begin, encode_change, encode_end, encode_hello, encode_restore, encode_save,
+    encode_tick)
 from isa_ros.surroundings.leg.port_kernel import LEG_SAMPLE
 from isa_ros.surroundings.supply import SUPPLY_SAMPLE
 import numpy as np
@@ -52,6 +53,10 @@ class Stepper:
         self.reply, self.sample = np.zeros(1, LOAD_REPLY), np.zeros(1, SAMPLE)
         self.applied, self.tuned = np.zeros(1, COMMAND), {'force.kp': 1e-7}
         self.sent = np.zeros(1, COMMAND)
+
+    def tune(self, values: Mapping[str, float]) -> None:
+        """Take new values."""
+        assert_finite(list(values.values()))
 
     def start(self, start: np.void) -> None:
         """Take a start."""
@@ -128,7 +133,9 @@ def steps() -> list[bytes]:
         encode_hello(RUN + 1, 1, 1_000_000, starts, CAST), encode_begin(RUN),
         encode_tick(RUN, 0, rows, True), encode_tick(RUN, 1, rows, True),
         encode_tick(RUN, 1, rows, True), encode_save(RUN, -1),
-        encode_restore(RUN, -2, 5, [b'one', b'two', b'three']), encode_end(RUN)]
+        encode_restore(RUN, -2, 5, [b'one', b'two', b'three']),
+        encode_change(RUN, -3, {0: {'plant.spool.stuck': 1.0}, 1: {'force.kp': 1e-7}}, 3),
+        encode_tick(RUN, 5, rows, True), encode_end(RUN)]
 
 
 def answers() -> list[bytes]:
@@ -140,7 +147,8 @@ def answers() -> list[bytes]:
     requests = [np.repeat(applied, N_ACTUATORS).tobytes()]
     of = {AnswerKind.READY: [b'identity', b'same', *own], AnswerKind.BUSY: [],
           AnswerKind.DIVERGED: [bytes(16), b'plant'], AnswerKind.REFUSED: [b'why'],
-          AnswerKind.UNBOUND: [b'knee'], AnswerKind.SAVED: [b'state']}
+          AnswerKind.UNBOUND: [b'knee'], AnswerKind.SAVED: [b'state'],
+          AnswerKind.CHANGED: []}
     found = [encode_answer(kind, RUN, 3, 1, parts) for kind, parts in of.items()]
     for kind in (AnswerKind.DONE, AnswerKind.DONE, AnswerKind.RESTORED):
         found += [encode_answer(kind, RUN, 3, 1, own), encode_answer(kind, RUN, 3, 2, requests)]

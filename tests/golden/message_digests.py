@@ -15,7 +15,7 @@ import struct
 from isa_ros.config.paths import CONFIG, SCENARIOS, shipped
 from isa_ros.config.run_file import load_run
 from isa_ros.errors import ConfigError
-from isa_ros.run.local_run import Inputs, LocalRun
+from isa_ros.run.local_run import inputs_of, LocalRun
 from isa_ros.scenario.scenario import idle, load_scenario, Scenario
 
 FILE = Path(__file__).with_suffix('.json')
@@ -60,7 +60,7 @@ def digests(scenario: Scenario) -> dict[str, str]:
     local = LocalRun(scenario.run)
     recorder = Digests([topic.name for topic in local.topics])
     local.simulate(
-        round(SECONDS * 1e9 / scenario.run.step_ns), Inputs(scenario.commands), recorder)
+        round(SECONDS * 1e9 / scenario.run.step_ns), inputs_of(scenario), recorder)
     return recorder.by_topic()
 
 

@@ -1,7 +1,8 @@
 """The barrier and the run, with fakes for actuators, surroundings and recorder."""
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 import itertools
+from typing import Any
 
 from isa_ros.core.saved_state import RunState
 from isa_ros.core.signals import HAS_SETPOINT, Records
@@ -11,6 +12,7 @@ from isa_ros.run.exchange import Rows
 from isa_ros.run.narrator import Narrator, Outlets, packer_of
 from isa_ros.run.pacing import Pace, ProgressMeter
 from isa_ros.run.packing import Messages
+from isa_ros.scenario.faults import ParameterChanges
 from isa_ros.surroundings.supply import SUPPLY_SAMPLE
 from msg_adapters import event
 from msg_adapters.cdr_reader import decode
@@ -79,6 +81,11 @@ class FakeSurroundings:
     def __init__(self, log: list[str]) -> None:
         self.log = log
         self.supplies = np.zeros(1, SUPPLY_SAMPLE)
+        self.tuned: dict[str, float] = {}
+
+    def tune(self, values: Mapping[str, float]) -> None:
+        self.log.append(f'tune {dict(values)}')
+        self.tuned = dict(values)
 
     def ports(self, ports: Records) -> None:
         ports['x0'] = self.supplies['pressure']
@@ -104,7 +111,8 @@ class FakeOutlet:
         return True
 
     def publish(self, messages: Messages) -> None:
-        data = messages[0]
+        # Of the surroundings the pressure of the supply; before it what was tuned.
+        data = messages[min(1, len(messages) - 1)]
         if data is not None:    # None: the diagnostics of the end
             self.log.append(self.line(data))
 
@@ -118,7 +126,7 @@ class Rig:
     """One coordinator with its fakes, and the narrator of a run."""
 
     def __init__(
-            self, n_ticks: int | None = 3, pace: Pace | None = None, **plan: bool) -> None:
+            self, n_ticks: int | None = 3, pace: Pace | None = None, **plan: Any) -> None:
         self.asked: dict[int, Callable[[Coordinator], object]] = {}
         self.log: list[str] = []
         self.transport = FakeTransport(self.log)
@@ -335,3 +343,19 @@ def test_another_pace_counts_from_now():
     assert rig.sequences == [0, 1, 2]
     with pytest.raises(ConfigError, match='real_time_factor = -1'):
         rig.coordinator.set_real_time_factor(-1.0)
+
+
+def test_faults_change_supplies_and_actuators_before_the_tick_of_their_time():
+    """And only there: the transport finds them in its rows when it starts that tick."""
+    at_1 = ParameterChanges({1: {'plant.spool.stuck': 1.0}}, {'supply.pressure_mpa': 10.0})
+    seen = []
+    rig = Rig(3, changes={1: at_1}.get)
+    sent = rig.transport.send
+
+    def send(tick: int, rows: Rows) -> None:
+        seen.append((tick, dict(rows.changes), 'tune' in rig.log[-1]))
+        sent(tick, rows)
+    rig.transport.send = send
+    rig.run()
+    assert [changes for _, changes, _ in seen] == [{}, dict(at_1.actuators), {}]
+    assert [line for line in rig.log if 'tune' in line] == ["tune {'supply.pressure_mpa': 10.0}"]

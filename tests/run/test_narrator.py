@@ -110,7 +110,7 @@ def test_one_listener_or_the_recorder_is_enough_to_pack(listener, monkeypatch):
         pack(self, *arguments)
     monkeypatch.setattr(Packer, 'pack', note)
     stage.narrator.publish_rows(3, {})
-    assert packed == [(3 * STEP_NS, 2 * STEP_NS, {})]
+    assert packed == [(3 * STEP_NS, 2 * STEP_NS, {}, {})]
 
 
 def test_outlets_get_the_messages_of_their_own_sources():

@@ -80,8 +80,8 @@ def test_a_leg_has_every_topic_in_canonical_order():
     surroundings = surroundings_of(LEG)
     packer = packer_of(LEG, Rows(3, surroundings).shown)
     assert [topic.name for topic in packer.topics] == [
-        '/clock', '/coordinator/events', '/coordinator/ground_contact',
-        '/coordinator/supply_pressure', '/diagnostics',
+        '/clock', '/coordinator/applied_parameters', '/coordinator/events',
+        '/coordinator/ground_contact', '/coordinator/supply_pressure', '/diagnostics',
         *(f'/{name}/{suffix}' for name in ('haa', 'hfe') for suffix in SUFFIXES),
         '/joint_states', *(f'/kfe/{suffix}' for suffix in SUFFIXES)]
     types = {topic.name: topic.type_name for topic in packer.topics}
@@ -92,14 +92,14 @@ def test_a_leg_has_every_topic_in_canonical_order():
     assert types['/joint_states'] == 'sensor_msgs/msg/JointState'
     assert [types[f'/kfe/{suffix}'] for suffix in SUFFIXES] == [type_ for _, type_ in TOPICS]
     assert [topic.name for topic in packer.surroundings] == [
-        '/coordinator/ground_contact', '/coordinator/supply_pressure', '/diagnostics',
-        '/joint_states']
+        '/coordinator/applied_parameters', '/coordinator/ground_contact',
+        '/coordinator/supply_pressure', '/diagnostics', '/joint_states']
 
 
 def test_messages_come_in_the_order_of_the_topics(packer, rows):
     """Whatever the order of the sources; what is new in between as well."""
     applied(rows, 1)
-    packer.pack(T_NS, TICK_NS, {0: {'force.kp': 1e-7}})
+    packer.pack(T_NS, TICK_NS, {0: {'force.kp': 1e-7}}, {'supply.pressure_mpa': 10.0})
     messages = named(packer, packer.all_messages([event.pack(T_NS, 'step 1')]))
     assert [name for name, _ in messages] == sorted(name for name, _ in messages)
     assert [name for name, _ in messages] == [
@@ -222,10 +222,11 @@ def test_the_return_lines_of_a_run_decide_which_pressures_there_are():
     held = ConstantSupply(pressure_mpa=20.7, return_pressure_mpa=0.5)
     line = ConstantSupply(pressure_mpa=20.7, return_pressure_mpa=0.5, return_line=RETURN_LINE)
     assert topics(held, ACCUMULATOR) == [
-        '/coordinator/first_pressure', '/coordinator/second_pressure', '/diagnostics']
-    assert topics(line, held) == [
-        '/coordinator/first_pressure', '/coordinator/first_return_pressure',
+        '/coordinator/applied_parameters', '/coordinator/first_pressure',
         '/coordinator/second_pressure', '/diagnostics']
+    assert topics(line, held) == [
+        '/coordinator/applied_parameters', '/coordinator/first_pressure',
+        '/coordinator/first_return_pressure', '/coordinator/second_pressure', '/diagnostics']
 
 
 def test_a_body_shows_the_floats_of_its_sample():

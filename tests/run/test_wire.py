@@ -6,10 +6,11 @@ from isa_ros.errors import RunError
 from isa_ros.run.exchange import Rows
 from isa_ros.run.wire.answers import Answer, AnswerKind, decode_answer, encode_answer
 from isa_ros.run.wire.cast import Cast
+from isa_ros.run.wire.header import WireError
 from isa_ros.run.wire.parts import actuator_parts, take_actuator_parts
 from isa_ros.run.wire.steps import (
-    decode_step, encode_begin, encode_end, encode_hello, encode_restore, encode_save,
-    encode_tick, StepKind)
+    decode_step, encode_begin, encode_change, encode_end, encode_hello, encode_restore,
+    encode_save, encode_tick, StepKind)
 from isa_ros.surroundings.leg.port_kernel import LEG_SAMPLE
 from isa_ros.surroundings.supply import SUPPLY_SAMPLE
 import numpy as np
@@ -95,6 +96,24 @@ def test_restore_round_trip(snapshots):
     step = decode_step(encode_restore(5, -2, 9, snapshots))
     assert (step.kind, step.tick, step.restored_tick()) == (StepKind.RESTORE, -2, 9)
     assert [step.snapshot(k) for k in range(len(snapshots))] == snapshots
+
+
+@given(strategies.dictionaries(strategies.integers(0, 3), strategies.dictionaries(
+    strategies.sampled_from(('force.kp', 'plant.spool.stuck', 'reu.frozen')),
+    strategies.floats(allow_nan=False, allow_infinity=False), max_size=3), max_size=4))
+def test_change_round_trip(changes):
+    """Each participant finds its own values, and those without any none."""
+    step = decode_step(encode_change(5, -3, changes, 4))
+    assert (step.kind, step.tick, step.rows) == (StepKind.CHANGE, -3, 4)
+    assert [step.changes(k) for k in range(4)] == [changes.get(k, {}) for k in range(4)]
+    with pytest.raises(WireError, match='changes of 4 participants, must be of 3'):
+        step.refuse_change(3)
+
+
+@pytest.mark.parametrize('value', [float('nan'), float('inf')])
+def test_a_change_to_no_finite_number_is_refused(value):
+    with pytest.raises(WireError, match='parameters that are not finite numbers'):
+        decode_step(encode_change(5, -3, {0: {'reu.frozen': value}}, 1))
 
 
 @pytest.mark.parametrize('body', [None, LEG_SAMPLE])

@@ -5,7 +5,7 @@ from contextlib import suppress
 from typing import Any, NamedTuple
 
 from isa_ros.actuator.actuator import ActuatorConfig, participant_digest, SmartActuator, Timing
-from isa_ros.actuator.tunable import tunables
+from isa_ros.actuator.tunable import changing
 from isa_ros.controller import fill_command, Setpoint
 from isa_ros.core.signals import COMMAND, Records
 from isa_ros.errors import one_line, SetpointError, SimulationDiverged
@@ -62,7 +62,7 @@ class ActuatorNode(Node):
         self.actuator = actuator or SmartActuator(config, timing)
         """The actuator itself."""
         self._tunables = TunableParameters(
-            self, self.actuator, tunables(config.sheet), self._parameter_overrides)
+            self, self.actuator, changing(config.sheet), self._parameter_overrides)
         memory, heats_up = self.actuator.memory, is_heated(config.sheet.plant)
         self._packer = Packer(
             Names([(config.name, config.sheet.is_rotary)],
@@ -118,6 +118,10 @@ class ActuatorNode(Node):
     def tuned(self) -> Mapping[str, float]:
         """Return the parameters that changed at its start, SI."""
         return self.actuator.applied_parameters
+
+    def tune(self, values: Mapping[str, float]) -> None:
+        """Change parameters at the start of the next tick."""
+        self.actuator.tune(values)
 
     def start(self, start: np.void | None) -> None:
         """Start at t = 0 from a `START` row; None: as configured."""

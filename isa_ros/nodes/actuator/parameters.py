@@ -1,9 +1,10 @@
-"""The tunable values of an actuator as parameters of its node, with the standard services."""
+"""All values of an actuator that may change as parameters of its node, with their services."""
 
 from collections.abc import Mapping, Sequence
 
 from isa_ros.actuator.actuator import SmartActuator
 from isa_ros.actuator.tunable import Tunable
+from isa_ros.core.changeable import Changeable
 from isa_ros.core.device import MODES
 from isa_ros.errors import ConfigError
 from isa_ros.nodes.middleware.parameter_services import open_parameter_services
@@ -21,7 +22,9 @@ MODE = 'mode'
 
 class TunableParameters:
     """
-    Declares ``tunables`` and the mode on ``node``, and passes new values to ``actuator``, SI.
+    Declares what is ``changing`` and the mode on ``node``, and passes new values to ``actuator``.
+
+    Gains are in SI, all others in the unit of `isa params`, which is part of their description.
 
     The value of a parameter is read from the actuator, also if a setpoint has changed it.
     ``overrides`` are those of the command line, in force from the first tick.
@@ -34,18 +37,19 @@ class TunableParameters:
     """
 
     def __init__(
-            self, node: Node, actuator: SmartActuator, tunables: Mapping[str, Tunable],
+            self, node: Node, actuator: SmartActuator,
+            changing: Mapping[str, Tunable | Changeable],
             overrides: Mapping[str, Parameter]) -> None:
         self._actuator = actuator
-        self._names = frozenset(tunables)
-        for tunable in tunables.values():
+        self._names = frozenset(changing)
+        for own in changing.values():
             node.declare_parameter(
-                tunable.name, tunable.value, descriptor(tunable), ignore_override=True)
+                own.name, own.value, descriptor(own), ignore_override=True)
         mode = self._declare_mode(node)
         refuse_unknown(node)
         if mode is not None:
             actuator.change_mode(mode)
-        actuator.tune({name: overrides[name].value for name in tunables if name in overrides})
+        actuator.tune({name: overrides[name].value for name in changing if name in overrides})
         accept_integers(node)
         node.add_on_set_parameters_callback(self._on_set)
         self.services: Sequence[Service] = open_parameter_services(node)
@@ -61,7 +65,7 @@ class TunableParameters:
         return own if MODE in node._parameter_overrides else None
 
     def get(self, name: str) -> Parameter | None:
-        """Return a tunable or the mode as it will be at the next tick; None: neither."""
+        """Return a value or the mode as it will be at the next tick; None: neither."""
         if name == MODE:
             return Parameter(name, value=MODES[self._actuator.mode])
         if name not in self._names:
@@ -82,13 +86,13 @@ class TunableParameters:
         return SetParametersResult(successful=True)
 
 
-def descriptor(tunable: Tunable) -> ParameterDescriptor:
-    """Return unit, meaning and range of a tunable; excluded bounds are listed as constraints."""
-    bounds = tunable.bounds
+def descriptor(own: Tunable | Changeable) -> ParameterDescriptor:
+    """Return unit, meaning and range of a value; excluded bounds are listed as constraints."""
+    bounds = own.bounds
     relations = {'gt': '>', 'lt': '<'}
     excluded = [f'{sign} {bounds[name]:g}' for name, sign in relations.items() if name in bounds]
     return ParameterDescriptor(
-        description=f'{tunable.doc}, {tunable.unit}',
+        description=f'{own.doc}, {own.unit}',
         additional_constraints=', '.join(excluded),
         floating_point_range=[FloatingPointRange(
             from_value=bounds.get('ge', bounds.get('gt', 0.0)),

@@ -6,6 +6,7 @@ from typing import Any
 
 from isa_ros.core.topic import Topic
 from isa_ros.errors import ConfigError
+from isa_ros.nodes.coordinator.parameters import SupplyParameters
 from isa_ros.nodes.coordinator.services import REAL_TIME_FACTOR, STEP_COUNT
 from isa_ros.nodes.middleware.parameters import declare, refuse_unknown
 from isa_ros.nodes.middleware.publishers import PreparedPublishers
@@ -25,11 +26,18 @@ class CoordinatorNode(Node):
     """Publish time, events, supplies and body of a run."""
 
     def __init__(self, **kwargs: Any) -> None:
+        self.supplies: SupplyParameters | None = None
+        """Parameters of the supplies, once there is a run."""
         with refusals():
             super().__init__(NAME, start_parameter_services=False, **kwargs)
         self._time = PreparedPublishers(self, [Topic(*clock.TOPIC)])
         self._events = _Events(
             self, [Topic(_relative(event.TOPIC[0]), event.TOPIC[1])])
+
+    def get_parameter(self, name: str) -> Parameter:
+        """Return a parameter; of a supply its current value, set by a service or a fault."""
+        changed = None if self.supplies is None else self.supplies.get(name)
+        return super().get_parameter(name) if changed is None else changed
 
     def outlets(self, surroundings: Sequence[Topic], actuators: Sequence[Outlet]) -> Outlets:
         """

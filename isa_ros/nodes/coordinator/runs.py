@@ -9,6 +9,7 @@ from isa_ros.config.assembly import group_of, surroundings_of, timing_of
 from isa_ros.nodes.actuator.node import ActuatorNode, Setup
 from isa_ros.nodes.actuator.process import run
 from isa_ros.nodes.coordinator.node import CoordinatorNode
+from isa_ros.nodes.coordinator.parameters import SupplyParameters
 from isa_ros.nodes.coordinator.services import RunServices
 from isa_ros.nodes.lockstep.coordinator_end import LockstepTransport
 from isa_ros.nodes.lockstep.expected import Expected, Limits, Participants
@@ -175,8 +176,10 @@ def _record(
         actuators: Sequence[Outlet], report: Report | None, should_stop: StopRequest) -> None:
     """Record the run and serve its requests."""
     surroundings = surroundings_of(session.run)
+    supplies = node.supplies = SupplyParameters(node, surroundings)
     services = RunServices(
-        node, session.pace.factor, lambda coordinator: save_in_bag(session, coordinator))
+        node, session.pace.factor, lambda coordinator: save_in_bag(session, coordinator),
+        supplies)
     record(session, transport, surroundings, lambda topics: node.outlets(topics, actuators),
            report, should_stop, services.serve, node.get_logger().warning)
 

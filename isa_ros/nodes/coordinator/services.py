@@ -4,6 +4,7 @@ from collections.abc import Callable
 from typing import Any
 
 from isa_ros.errors import IsaError
+from isa_ros.nodes.coordinator.parameters import SupplyParameters
 from isa_ros.nodes.middleware.handles import has_handles
 from isa_ros.nodes.middleware.parameter_services import open_parameter_services
 from isa_ros.nodes.middleware.parameters import accept_integers, declare
@@ -31,9 +32,12 @@ class RunServices:
     services are missing and a warning is logged.
     """
 
-    def __init__(self, node: Node, real_time_factor: float, save: Save) -> None:
+    def __init__(
+            self, node: Node, real_time_factor: float, save: Save,
+            supplies: SupplyParameters | None = None) -> None:
         self._node = node
         self._save = save
+        self._supplies = supplies
         self._coordinator: Coordinator | None = None
         self._server: DirectServer | None = None
         if not has_handles():
@@ -115,4 +119,6 @@ class RunServices:
                     self._run.set_real_time_factor(parameter.value)
                 except IsaError as error:
                     return SetParametersResult(successful=False, reason=str(error))
+        if self._supplies is not None:
+            return self._supplies.on_set(parameters)
         return SetParametersResult(successful=True)

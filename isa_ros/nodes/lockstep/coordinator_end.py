@@ -1,6 +1,6 @@
 """The coordinator's end of the private wire, to participants in other processes."""
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 import secrets
 import time
 from typing import Any
@@ -20,7 +20,8 @@ from isa_ros.run.wire.answers import (
     ACKNOWLEDGEMENT_TOPIC, Answer, AnswerKind, DIVERGENCE, FIRST)
 from isa_ros.run.wire.parts import Parts, take_actuator_parts
 from isa_ros.run.wire.steps import (
-    encode_begin, encode_end, encode_hello, encode_restore, encode_save, encode_tick, STEP_TOPIC)
+    encode_begin, encode_change, encode_end, encode_hello, encode_restore, encode_save,
+    encode_tick, STEP_TOPIC)
 import numpy as np
 from rclpy.duration import Duration
 from rclpy.node import Node
@@ -151,10 +152,18 @@ class LockstepTransport:
         self._send(encode_begin(self._run_id))
 
     def send(self, tick: int, rows: Rows) -> None:
-        """Broadcast the step of a tick."""
+        """Broadcast the changes of parameters, if there are any, and the step of a tick."""
         self._tick = tick
+        if rows.changes and self._run.first_remote == 0:
+            self._change(rows.changes)
         step = encode_tick(self._run_id, tick, rows, self._has_controllers)
         self._send_step(f'tick {tick}', tick, step)
+
+    def _change(self, changes: Mapping[int, Mapping[str, float]]) -> None:
+        number = self._next_request()
+        self._send_step('the change of parameters', number, encode_change(
+            self._run_id, number, changes, len(self._participants)))
+        self._gather(AnswerKind.CHANGED)
 
     def _send_step(self, what: str, awaited: int, step: bytes) -> None:
         self._current_step, self._awaited, self._step = what, awaited, step

@@ -130,6 +130,8 @@ class ParticipantEnd:
             self._role.check(step)
         elif step.kind is StepKind.RESTORE:
             step.refuse_restore(self._n_participants)
+        elif step.kind is StepKind.CHANGE:
+            step.refuse_change(self._n_participants)
 
     def _handle(self, step: Step) -> None:
         if step.run_id == self._run_id:
@@ -148,6 +150,9 @@ class ParticipantEnd:
             self._begin()
         elif step.kind is StepKind.SAVE:
             self._answer_to(step, AnswerKind.SAVED, lambda: (self._role.snapshot(),))
+        elif step.kind is StepKind.CHANGE:
+            self._answer_to(step, AnswerKind.CHANGED, lambda: self._role.change(
+                step.changes(self._index)))
         elif step.kind is StepKind.RESTORE:
             self._next_tick = step.restored_tick()
             self._answer_to(step, AnswerKind.RESTORED,
@@ -158,7 +163,7 @@ class ParticipantEnd:
     def _is_past(self, step: Step) -> bool:
         if step.kind is StepKind.TICK:
             return step.tick < self._next_tick
-        if step.kind in (StepKind.SAVE, StepKind.RESTORE):
+        if step.kind in (StepKind.SAVE, StepKind.RESTORE, StepKind.CHANGE):
             return step.tick >= self._request
         return False
 

@@ -56,6 +56,10 @@ class Role(Protocol):
         """
         ...
 
+    def change(self, values: Mapping[str, float]) -> Parts:
+        """Change parameters at the start of the next tick; return no parts."""
+        ...
+
     def publish(self) -> None:
         """Publish the results of the last answer, where there is a subscription."""
         ...
@@ -104,6 +108,10 @@ class Stepper(Protocol):
     @property
     def tuned(self) -> Mapping[str, float]:
         """Return the parameters that changed at its start, SI."""
+        ...
+
+    def tune(self, values: Mapping[str, float]) -> None:
+        """Change parameters at the start of the next tick."""
         ...
 
     def start(self, start: np.void | None) -> None:
@@ -155,6 +163,7 @@ class ActuatorRole:
     def __init__(self, stepper: Stepper) -> None:
         self._stepper = stepper
         self._index = self._n_actuators = 0
+        self._changes: Mapping[str, float] = {}
         self.publish = stepper.publish
         self.serve = stepper.serve
         self.snapshot = stepper.snapshot
@@ -175,9 +184,17 @@ class ActuatorRole:
         step.refuse_tick(self._n_actuators, self._index)
 
     def advance(self, step: Step) -> Parts:
-        """Advance one tick with its row of ports and commands."""
+        """Advance one tick with its row of ports and commands, and the changes before it."""
+        if self._changes:   # after `serve`: the scenario wins over other requests
+            self._stepper.tune(self._changes)
+            self._changes = {}
         self._stepper.advance(step.port(self._index), step.command(self._index))
         return self._parts()
+
+    def change(self, values: Mapping[str, float]) -> Parts:
+        """Keep the changes for the next tick."""
+        self._changes = values
+        return ()
 
     def restore(self, snapshot: bytes) -> Parts:
         """Continue from a snapshot."""
@@ -224,6 +241,10 @@ class ControllerRole:
             step.tick * self._step_ns, by_name(self._seat.names, shown.samples),
             by_name(self._cast.supplies, shown.supplies), body), self._requests)
         return self._parts()
+
+    def change(self, values: Mapping[str, float]) -> Parts:
+        """Do nothing: a controller has no parameters of the device."""
+        return ()
 
     def publish(self) -> None:
         """Do nothing: its requests are recorded when they take effect."""

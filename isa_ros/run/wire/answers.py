@@ -41,6 +41,8 @@ class AnswerKind(IntEnum):
     """To a save: the complete state."""
     RESTORED = 8
     """To a restore: the parts of the participant's role at that instant."""
+    CHANGED = 9
+    """To a change of parameters: no parts."""
 
 
 # Calling an enumeration takes about a microsecond per tick; a dictionary a twentieth of it.

@@ -50,8 +50,7 @@ def actuator_parts(
     """
     is_sent = sent is not None and sent[0]['kinds']
     return [reply.tobytes() + sample.tobytes() + applied.tobytes(),
-            json.dumps(dict(tuned)).encode() if tuned else None,
-            sent.tobytes() if sent is not None and is_sent else None]
+            tuned_part(tuned), sent.tobytes() if sent is not None and is_sent else None]
 
 
 def refuse_actuator_parts(parts: Parts) -> None:
@@ -75,7 +74,7 @@ def refuse_actuator_parts(parts: Parts) -> None:
             raise WireError('an answer with a sent setpoint that is not a command')
         refuse_command(np.frombuffer(sent, COMMAND)[0])
     if tuned is not None:
-        _tuned(tuned)
+        tuned_of(tuned)
 
 
 def take_actuator_parts(parts: Parts, row: int, rows: Rows) -> None:
@@ -91,19 +90,32 @@ def take_actuator_parts(parts: Parts, row: int, rows: Rows) -> None:
     if sent is not None:
         rows.sent[row] = np.frombuffer(sent, COMMAND)[0]
     if tuned is not None:
-        rows.tuned = {**rows.tuned, row: _tuned(tuned)}
+        rows.tuned = {**rows.tuned, row: tuned_of(tuned)}
 
 
-def _tuned(data: bytes) -> dict[str, float]:
-    """Return the parameters that changed, by name."""
+def tuned_part(values: Mapping[str, float]) -> bytes | None:
+    """Return the part of some parameters that change; None for none."""
+    return json.dumps(dict(values)).encode() if values else None
+
+
+def tuned_of(data: bytes) -> dict[str, float]:
+    """
+    Return the parameters that change, by name; inverse of `tuned_part`.
+
+    Raises
+    ------
+    WireError
+        They are not finite numbers by name.
+
+    """
     try:
         values: Any = json.loads(data)
     except (ValueError, RecursionError) as error:
-        raise WireError('an answer of an actuator with unreadable parameters') from error
+        raise WireError('a message with unreadable parameters') from error
     if not isinstance(values, dict) or len(values) > MOST_TUNED or not all(
             name.isascii() and len(name) <= _LONGEST_NAME and type(value) is float
             and math.isfinite(value) for name, value in values.items()):
-        raise WireError('an answer of an actuator with parameters that are not finite numbers')
+        raise WireError('a message with parameters that are not finite numbers')
     return values
 
 

@@ -1,6 +1,6 @@
 """Steps: the messages of the coordinator."""
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from enum import IntEnum
 import struct
 from typing import NamedTuple
@@ -10,7 +10,8 @@ from isa_ros.run.exchange import Rows
 from isa_ros.run.packing import Shown
 from isa_ros.run.wire.cast import Cast
 from isa_ros.run.wire.header import opened, prefix, VERSION, WireError
-from isa_ros.run.wire.parts import is_finite, joined, refuse_command, split
+from isa_ros.run.wire.parts import (
+    is_finite, joined, refuse_command, split, tuned_of, tuned_part)
 from isa_ros.surroundings.supply import SUPPLY_SAMPLE
 import numpy as np
 
@@ -37,6 +38,8 @@ class StepKind(IntEnum):
     for each request, so that answers can be assigned to their request."""
     RESTORE = 6
     """Continue from the state before the tick given in the body; ``tick`` as in a save."""
+    CHANGE = 7
+    """Change parameters at the start of the next tick; ``tick`` as in a save."""
 
 
 # Calling an enumeration takes about a microsecond per tick; a dictionary a twentieth of it.
@@ -94,6 +97,11 @@ class Step(NamedTuple):
         """Return the state from which one participant continues."""
         return split(self.body[_NUMBER.size:], self.rows)[index] or b''
 
+    def changes(self, index: int) -> dict[str, float]:
+        """Return the parameters of one actuator that change at the next tick."""
+        part = split(self.body, self.rows)[index]
+        return {} if part is None else tuned_of(part)
+
     def refuse_tick(self, n_actuators: int, index: int) -> None:
         """
         Refuse a tick that the actuator at ``index`` of a run with ``n_actuators`` cannot execute.
@@ -120,6 +128,12 @@ class Step(NamedTuple):
             raise WireError(f'a tick of {len(self.body)} bytes, must be {at + size}')
         if not is_finite(np.frombuffer(self.body, np.float64, size // 8, at)):
             raise WireError('a tick with a number that is not finite')
+
+    def refuse_change(self, n_participants: int) -> None:
+        """Refuse changes of another number of participants; as `refuse_tick`."""
+        if self.rows != n_participants:
+            raise WireError(
+                f'changes of {self.rows} participants, must be of {n_participants}')
 
     def refuse_restore(self, n_participants: int) -> None:
         """Refuse a request to restore another number of participants; as `refuse_tick`."""
@@ -161,6 +175,14 @@ def encode_restore(run_id: int, number: int, tick: int, snapshots: Sequence[byte
     return _step(StepKind.RESTORE, run_id, number, len(snapshots), body)
 
 
+def encode_change(
+        run_id: int, number: int, changes: Mapping[int, Mapping[str, float]],
+        n_participants: int) -> bytes:
+    """Return the bytes that change parameters at the next tick, by participant."""
+    body = joined([tuned_part(changes.get(k, {})) for k in range(n_participants)])
+    return _step(StepKind.CHANGE, run_id, number, n_participants, body)
+
+
 def encode_end(run_id: int) -> bytes:
     """Return the bytes that end a run."""
     return _step(StepKind.END, run_id, 0, 0, b'')
@@ -198,6 +220,10 @@ def decode_step(data: bytes) -> Step:
         _refuse_hello(step)
     elif step.kind is StepKind.RESTORE:
         split(body[_NUMBER.size:], rows)
+    elif step.kind is StepKind.CHANGE:
+        for part in split(body, rows):
+            if part is not None:
+                tuned_of(part)
     return step
 
 

@@ -53,11 +53,15 @@ class Scripted:
         self.starts = 0
         self.ticks = 0
         self.published: list[float] = []
+        self.changes: list[dict[str, float]] = []
         self.fails_at = -1
         self.error: Exception = SimulationDiverged(7_000_000, 'kfe: spool', float('inf'))
         self.is_late_at = -1
         self.released = threading.Event()
         self.pause_s = 0.0
+
+    def tune(self, values: Mapping[str, float]) -> None:
+        self.changes.append(dict(values))
 
     def start(self, start: np.void | None) -> None:
         assert start is not None

@@ -57,6 +57,24 @@ def test_a_lost_answer_is_given_again_without_another_tick(observer, ends, carri
     assert steppers['haa'].ticks == steppers['kfe'].ticks == 50
 
 
+@pytest.mark.parametrize('is_answer', [False, True], ids=['change', 'answer'])
+def test_a_lost_change_of_parameters_is_made_once(observer, ends, carrier, is_answer):
+    """Each actuator has its own values at the tick that follows, and at no other."""
+    steppers = {'haa': Scripted(), 'kfe': Scripted()}
+    with spinning(observer.context, steppers):
+        transport = make_transport(observer)
+        rows = begin(transport)
+        tick(transport, 0, rows)
+        drop_next(ends[1] if is_answer else transport, carrier)
+        rows.changes = {1: {'plant.spool.stuck': 1.0}}
+        assert tick(transport, 1, rows) == [2.0, 3.0]
+        rows.changes = {}
+        assert tick(transport, 2, rows) == [3.0, 4.0]
+    assert (steppers['haa'].changes, steppers['kfe'].changes) == (
+        [], [{'plant.spool.stuck': 1.0}])
+    assert steppers['kfe'].ticks == 3
+
+
 def test_a_lost_state_is_given_again(observer, ends, carrier):
     """A state is saved once for repeated requests; a later request saves a new one."""
     steppers = {'haa': Scripted(), 'kfe': Scripted()}

@@ -1,0 +1,1 @@
+"""`isa faults`: every fault of the device injected into a running rig."""

@@ -1,0 +1,39 @@
+"""`isa faults`: list the faults of the device, or inject them into a rig and show what happens."""
+
+from argparse import Namespace
+import sys
+
+from isa_ros.analysis.faults import page
+from isa_ros.analysis.faults.measure import outcomes
+from isa_ros.errors import ConfigError
+from isa_ros.text.page import refuse_a_part
+from isa_ros.text.progress import counted
+
+
+def faults(options: Namespace) -> bool:
+    """
+    Do what is asked for; return whether every faulty run could be simulated to its end.
+
+    Raises
+    ------
+    ConfigError
+        A fault is unknown, or options do not go together.
+
+    """
+    if options.list:
+        for option in ('only', 'json', 'out'):
+            if getattr(options, option) is not None:
+                raise ConfigError(f'--{option} is not used with --list')
+        print(page.listing())
+        return True
+    if options.out is not None:
+        refuse_a_part(options.out / page.PAGE, options.only)
+    found = outcomes(options.only, counted(sys.stderr, 'faults', stays=True))
+    print(page.as_text(found))
+    if options.json is not None:
+        page.write_json(found, options.json)
+        print(options.json)
+    if options.out is not None:
+        for path in page.write_page(found, options.out):
+            print(path)
+    return not any(own.diverged for own in found)

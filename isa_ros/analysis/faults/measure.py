@@ -1,0 +1,189 @@
+"""
+Faults injected one by one into a running rig, against the same run without a fault.
+
+A fault is *visible* in a signal that the REU measures, or in the supply's pressure, once it
+differs from that of the sound run by more than `VISIBLE` steps of its converter. What the device
+itself makes of it are its warnings, trips and state, where a `SAMPLE` has them.
+"""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
+from typing import NamedTuple
+
+from isa_ros.analysis.faults.rig import BEGIN_S, CONFIG, DURATION_S, END_S, MOTION, STEP_S
+from isa_ros.config.fault_catalogue import ACTUATOR, fault_catalogue, named_fault, NamedFault
+from isa_ros.config.sections import Place
+from isa_ros.config.yaml_text import Tree
+from isa_ros.core import signals
+from isa_ros.core.conditions import BITS
+from isa_ros.core.signals import COMMAND, HAS_ENABLE, SAMPLE, SAMPLE_UNITS
+from isa_ros.core.units import of_coordinate
+from isa_ros.errors import SimulationDiverged
+from isa_ros.plant.sensors import sensors_record
+from isa_ros.scripting.run import load, Run
+from isa_ros.simulation import Simulation
+from isa_ros.text.progress import Progress
+import numpy as np
+from numpy.typing import NDArray
+
+VISIBLE = 4.0
+"""Steps of a signal's converter."""
+SOUND = 40.0
+"""Steps within which all signals are after a recovery, about 1 % of the range: where the seals
+stick and slip, two runs differ by more than `VISIBLE` for seconds."""
+MEASURED = ('position', 'force', 'pressure_a', 'pressure_b', 'spool', 'current')
+"""Signals of an actuator that its REU measures."""
+_BIT_SETS = {'warnings': 'warning', 'trips': 'trip'}
+_STATE = 'device_state'
+DEVICE = tuple(name for name in (*_BIT_SETS, _STATE) if name in (SAMPLE.names or ()))
+"""What an actuator says about itself."""
+_CLEARS = int(getattr(signals, 'HAS_CLEAR_FAULT', 0))
+_SUPPLY = 'supply pressure'
+
+
+class Visible(NamedTuple):
+    """A signal in which a fault is visible."""
+
+    signal: str
+    unit: str
+    after_s: float
+    """From the begin of the fault to the first sample in which it is."""
+    largest: float
+    """Largest difference from the sound run while the fault lasts, signed."""
+
+
+class Noticed(NamedTuple):
+    """What the device reports of a fault, and not in the sound run."""
+
+    kind: str
+    """``warning``, ``trip`` or ``state``."""
+    name: str
+    """Of the condition; of a state its number."""
+    after_s: float
+    """From the begin of the fault to the first sample with it."""
+
+
+@dataclass(frozen=True)
+class Outcome:
+    """The effect of one fault."""
+
+    fault: NamedFault
+    visible: tuple[Visible, ...]
+    """The earliest first."""
+    noticed: tuple[Noticed, ...]
+    recovered_s: float | None
+    """From the end of the fault, and a clear-fault, until all is within `SOUND`; None: never."""
+    diverged: str = ''
+    """The message of a simulation that could not go on."""
+
+
+def outcomes(
+        names: Sequence[str] | None = None, report: Progress | None = None) -> list[Outcome]:
+    """
+    Return the outcome of each fault of the catalogue, or of those named, in their order.
+
+    Raises
+    ------
+    ConfigError
+        A name is unknown.
+
+    """
+    chosen = [named_fault(name, Place('--only')) for name in names] if names else list(
+        fault_catalogue().values())
+    rig = load(CONFIG, MOTION)
+    sound = _recorded(rig, ())
+    found = []
+    for k, fault in enumerate(chosen):
+        if report is not None:
+            report(k, len(chosen))
+        found.append(_outcome(rig, fault, sound))
+    if report is not None:
+        report(len(chosen), len(chosen))
+    return found
+
+
+def _outcome(rig: Run, fault: NamedFault, sound: Mapping[str, NDArray[np.float64]]) -> Outcome:
+    target = 'ram' if fault.of == ACTUATOR else 'supply'
+    tree: Tree = {'t_s': BEGIN_S, fault.of: target, 'fault': fault.name, 'until_s': END_S}
+    try:
+        faulty = _recorded(rig, (tree,))
+    except SimulationDiverged as error:
+        return Outcome(fault, (), (), None, str(error))
+    begin, end = round(BEGIN_S / STEP_S), round(END_S / STEP_S)
+    resolution, units = _resolution(rig), _units(rig)
+    visible, last = [], end
+    for name, step in resolution.items():
+        difference = faulty[name] - sound[name]
+        is_seen = np.abs(difference) > VISIBLE * step
+        if is_seen[:end + 1].any():
+            during = difference[begin:end + 1]
+            visible.append(Visible(
+                name, units[name], float(np.argmax(is_seen) - begin) * STEP_S,
+                float(during[np.argmax(np.abs(during))])))
+        far = np.flatnonzero(np.abs(difference) > SOUND * step)
+        if len(far):
+            last = max(last, int(far[-1]) + 1)
+    return Outcome(
+        fault, tuple(sorted(visible, key=lambda own: own.after_s)),
+        tuple(_noticed(faulty, sound, begin)),
+        None if last >= len(faulty[_SUPPLY]) else (last - end) * STEP_S)
+
+
+def _noticed(
+        faulty: Mapping[str, NDArray[np.float64]], sound: Mapping[str, NDArray[np.float64]],
+        begin: int) -> list[Noticed]:
+    found = []
+    for field, kind in _BIT_SETS.items():
+        if field not in DEVICE:
+            continue
+        new = faulty[field].astype(np.int64) & ~sound[field].astype(np.int64)
+        for name, bit in BITS.items():
+            ticks = np.flatnonzero(new >> bit & 1)
+            if len(ticks):
+                found.append(Noticed(kind, name, (int(ticks[0]) - begin) * STEP_S))
+    if _STATE in DEVICE:
+        ticks = np.flatnonzero(faulty[_STATE] != sound[_STATE])
+        if len(ticks):
+            found.append(Noticed(
+                'state', f'{faulty[_STATE][ticks[0]]:g}', (int(ticks[0]) - begin) * STEP_S))
+    return sorted(found, key=lambda own: own.after_s)
+
+
+def _resolution(rig: Run) -> dict[str, float]:
+    """Return the step of the converter of every signal, SI."""
+    own = sensors_record(rig.configuration.actuator('ram').sheet.plant.sensors)
+    steps = {'position': own.encoder, 'pressure_a': own.pressure_step,
+             'pressure_b': own.pressure_step, _SUPPLY: own.pressure_step}
+    return {name: float(steps[name] if name in steps else own[f'{name}_step'])
+            for name in (*MEASURED, _SUPPLY)}
+
+
+def _units(rig: Run) -> dict[str, str]:
+    is_rotary = rig.configuration.actuator('ram').sheet.is_rotary
+    return {_SUPPLY: 'Pa'} | {
+        name: of_coordinate(SAMPLE_UNITS[name], is_rotary) for name in MEASURED}
+
+
+def _recorded(rig: Run, faults: Sequence[Tree]) -> dict[str, NDArray[np.float64]]:
+    """Return the signals of a run with some faults, which are cleared at their end."""
+    scenario = rig.scenario.with_faults(faults)
+    simulation = Simulation(replace(scenario, run=rig.configuration))
+    n, end = round(DURATION_S / STEP_S), round(END_S / STEP_S)
+    rows = np.zeros(n + 1, SAMPLE)
+    pressure = np.zeros(n + 1)
+    for tick in range(n + 1):
+        if tick:
+            simulation.step()
+        rows[tick] = simulation.group.samples[0]
+        pressure[tick] = simulation.surroundings.supplies['pressure'][0]
+        if tick in (end, end + 1) and faults and _CLEARS:
+            _clear(simulation, tick == end)
+    return {_SUPPLY: pressure} | {name: rows[name] for name in (*MEASURED, *DEVICE)}
+
+
+def _clear(simulation: Simulation, is_first: bool) -> None:
+    """Clear the fault that the device keeps, then enable it again."""
+    command = np.zeros(1, COMMAND)[0]
+    command['kinds'] = _CLEARS if is_first else HAS_ENABLE
+    command['is_enabled'] = 1
+    simulation.group.actuators[0].accept(command)

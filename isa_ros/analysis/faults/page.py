@@ -1,0 +1,104 @@
+"""Outcomes of faults as text, as JSON, and as the page docs/device_faults.md."""
+
+from collections.abc import Sequence
+from pathlib import Path
+from typing import Any
+
+from isa_ros.analysis.faults.measure import Noticed, Outcome, SOUND, VISIBLE, Visible
+from isa_ros.analysis.faults.rig import BEGIN_S, END_S
+from isa_ros.config.fault_catalogue import fault_catalogue, NamedFault
+from isa_ros.text.json_file import write_tree
+from isa_ros.text.number import digits
+from isa_ros.text.page import Page
+from isa_ros.text.table import aligned
+
+PAGE = 'device_faults.md'
+HEADER = ('fault', 'seen first in', 'after, ms', 'largest differences, or why none', 'device',
+          'sound again after, ms')
+LIST_HEADER = ('fault', 'of', 'set', 'meaning')
+_SHOWN = {'Pa': ('MPa', 1e-6), 'm': ('mm', 1e3), 'A': ('mA', 1e3)}
+_LARGEST = 3    # signals in a row of the table
+_HEAD = f"""# Faults of the device
+
+Each fault of the catalogue, `./isa faults --list`, in an ISA v5 that moves 50 kg by 20 mm at 2 Hz,
+fed by a pump with an accumulator. It begins at {BEGIN_S:g} s, where the piston is fastest, and
+ends at {END_S:g} s. Written by
+
+    ./isa faults --out docs
+
+A fault is seen in a signal that the REU measures, or in the supply's pressure, once it differs
+from that of the same run without the fault by more than {VISIBLE:g} steps of its converter. The
+largest differences are those of the first three such signals while the fault lasts. A device is
+sound again once all signals are within {SOUND:g} steps of that run, 1 % of their ranges. *Device*
+has what the actuator itself reports, its warnings, trips and state, and when. A trip may keep its
+outputs off until it is cleared."""
+
+
+def listing() -> str:
+    """Return every fault of the catalogue, a line each."""
+    return '\n'.join(aligned([LIST_HEADER, *(
+        (fault.name, fault.of, _set(fault), fault.meaning)
+        for fault in fault_catalogue().values())]))
+
+
+def _set(fault: NamedFault) -> str:
+    return ', '.join(f'{key}: {value:g}' for key, value in fault.values.items())
+
+
+def as_text(found: Sequence[Outcome]) -> str:
+    """Return the table for a terminal."""
+    return '\n'.join(aligned(_rows(found)))
+
+
+def _rows(found: Sequence[Outcome]) -> list[tuple[str, ...]]:
+    return [HEADER, *(_cells(own) for own in found)]
+
+
+def _cells(own: Outcome) -> tuple[str, ...]:
+    if own.diverged:
+        return (own.fault.name, own.diverged, '', '', '', '')
+    first = own.visible[0] if own.visible else None
+    return (own.fault.name, 'not seen' if first is None else first.signal,
+            '' if first is None else f'{first.after_s * 1e3:g}',
+            ', '.join(_difference(one) for one in _largest(own)) or own.fault.unseen,
+            ', '.join(_note(one) for one in own.noticed) or 'nothing',
+            'not in this run' if own.recovered_s is None else f'{own.recovered_s * 1e3:g}')
+
+
+def _largest(own: Outcome) -> Sequence[Visible]:
+    """Return the signals that a person would look at first: the earliest ones."""
+    return own.visible[:_LARGEST]
+
+
+def _difference(one: Visible) -> str:
+    unit, scale = _SHOWN.get(one.unit, (one.unit, 1.0))
+    return f'{one.signal} {digits(one.largest * scale, 3)} {unit}'
+
+
+def _note(one: Noticed) -> str:
+    return f'{one.kind} {one.name} after {one.after_s * 1e3:g} ms'
+
+
+def write_json(found: Sequence[Outcome], path: Path) -> None:
+    """Write every outcome as JSON."""
+    write_tree({'faults': [_tree(own) for own in found]}, path)
+
+
+def _tree(own: Outcome) -> dict[str, Any]:
+    return {
+        'name': own.fault.name, 'of': own.fault.of, 'set': dict(own.fault.values),
+        'visible': [one._asdict() for one in own.visible],
+        'noticed': [one._asdict() for one in own.noticed],
+        'recovered_s': own.recovered_s, 'diverged': own.diverged}
+
+
+def write_page(found: Sequence[Outcome], directory: Path) -> list[Path]:
+    """Write the page; return its path."""
+    page = Page(PAGE, _HEAD)
+    page.section('Effects')
+    page.table(_rows(found))
+    page.section('The catalogue')
+    page.table([LIST_HEADER, *(
+        (f'`{fault.name}`', fault.of, f'`{_set(fault)}`', fault.meaning)
+        for fault in fault_catalogue().values())])
+    return page.write(directory)

@@ -1,0 +1,99 @@
+"""Named values that change between two ticks: accepted, in force from the next tick, echoed."""
+
+from collections.abc import Mapping, Sequence
+
+from isa_ros.errors import ConfigError
+import numpy as np
+
+_BEFORE, _IN_FORCE, _ACCEPTED = range(3)
+
+
+class ChangingValues:
+    """
+    Values in force before the last tick, in force now, and in force from the next tick on.
+
+    ``names`` have the values ``first`` at t = 0; ``owner`` is named in errors. The values are
+    checked by whoever accepts them.
+    """
+
+    def __init__(self, owner: str, names: Sequence[str], first: Sequence[float]) -> None:
+        self._owner = owner
+        self._place = {name: k for k, name in enumerate(names)}
+        self._names = list(names)
+        self._first = np.array(first, float)
+        self._rows = np.tile(self._first, (3, 1))
+        self._is_settled = True
+
+    def restart(self) -> dict[str, float]:
+        """Put the first values in force until the next tick; return what is accepted for it."""
+        self._rows[_BEFORE] = self._rows[_IN_FORCE] = self._first
+        self._is_settled = False
+        return self.accepted
+
+    def accept(self, values: Mapping[str, float]) -> None:
+        """Accept new values of known names; the last of several before one tick wins."""
+        for name, value in values.items():
+            self._rows[_ACCEPTED, self._place[name]] = value
+        self._is_settled = False
+
+    def value(self, name: str) -> float:
+        """Return the last accepted value."""
+        return float(self._rows[_ACCEPTED, self._place[name]])
+
+    def latch(self) -> bool:
+        """Begin a tick: put the accepted values in force; return whether any has changed."""
+        if self._is_settled:
+            return False
+        before, in_force, accepted = self._rows
+        before[:] = in_force
+        in_force[:] = accepted
+        self._is_settled = bool((before == in_force).all())
+        return not self._is_settled
+
+    @property
+    def accepted(self) -> dict[str, float]:
+        """Return the accepted values that are not the first ones."""
+        return self._where(_ACCEPTED, self._rows[_ACCEPTED] != self._first)
+
+    @property
+    def in_force(self) -> dict[str, float]:
+        """Return the values in force that are not the first ones."""
+        return self._where(_IN_FORCE, self._rows[_IN_FORCE] != self._first)
+
+    @property
+    def applied(self) -> dict[str, float]:
+        """Return the changes at the start of the last tick."""
+        if self._is_settled:
+            return {}
+        return self._where(_IN_FORCE, self._rows[_BEFORE] != self._rows[_IN_FORCE])
+
+    def _where(self, row: int, differs: np.ndarray) -> dict[str, float]:
+        values = self._rows[row]
+        return {self._names[k]: float(values[k]) for k in np.flatnonzero(differs)}
+
+    @property
+    def nbytes(self) -> int:
+        """Return the size of a `snapshot`."""
+        return self._rows.nbytes
+
+    def snapshot(self) -> bytes:
+        """Return the state as bytes for `restore`."""
+        return self._rows.tobytes()
+
+    def restore(self, snapshot: bytes) -> None:
+        """
+        Continue from a `snapshot`.
+
+        Raises
+        ------
+        ConfigError
+            A value is not finite.
+
+        """
+        rows = np.frombuffer(snapshot).reshape(self._rows.shape)
+        for row, k in np.argwhere(~np.isfinite(rows)):
+            raise ConfigError(
+                f'{self._owner}: saved state has {self._names[k]} = {rows[row, k]}, '
+                'must be finite')
+        self._rows[:] = rows
+        self._is_settled = False

@@ -1,0 +1,160 @@
+"""Faults of the device replay: what was recorded is enough, to the byte."""
+
+from pathlib import Path
+import random
+
+from isa_ros.bag.reader import Bag
+from isa_ros.bag.writer import BagWriter
+from isa_ros.config.fault_catalogue import ACTUATOR, fault_catalogue
+from isa_ros.config.paths import CONFIG, find, SCENARIOS
+from isa_ros.config.run_file import load_run
+from isa_ros.config.supplies import SupplyConfig
+from isa_ros.config.yaml_text import Tree
+from isa_ros.replay.replay import recorded_inputs, Rerun
+from isa_ros.scenario.scenario import idle, load_scenario, Scenario
+from isa_ros.scripting.result import Result, simulated
+from isa_ros.scripting.run import load
+from isa_ros.simulation import Simulation
+import pytest
+from tests.runs import ACCUMULATOR, hip_and_knee
+
+RUN = hip_and_knee([SupplyConfig('pump', ACCUMULATOR, ('hip', 'knee'))])
+TICKS = 120
+FEW, MANY = 2, 100
+
+
+def drawn(seed: int) -> list[Tree]:
+    """Return a schedule of faults of the catalogue, overlapping and of any length."""
+    own = random.Random(seed)
+    faults: list[Tree] = []
+    for name in own.sample(sorted(fault_catalogue()), own.randint(1, 6)):
+        of = fault_catalogue()[name].of
+        begin = own.randrange(TICKS)
+        tree: Tree = {'t_s': begin * 1e-3, 'fault': name,
+                      of: own.choice(('hip', 'knee')) if of == ACTUATOR else 'pump'}
+        if own.random() < 0.7:
+            tree['until_s'] = (begin + own.randint(1, 60)) * 1e-3
+        faults.append(tree)
+    return faults
+
+
+def result_of(scenario: Scenario) -> Result:
+    assert scenario.n_ticks is not None
+    return simulated(Simulation(scenario), scenario.n_ticks)
+
+
+def content(bag: Path) -> bytes:
+    path, = bag.glob('*.mcap')
+    return path.read_bytes()
+
+
+def replayed(bag: Path, out: Path) -> bytes:
+    """Return the bytes of the bag that a replay records."""
+    again = Rerun(Bag(bag))
+    with BagWriter(out, again.topics, Bag(bag).provenance) as writer:
+        again.simulate(writer)
+    return content(out)
+
+
+def check(seed: int, directory: Path) -> int:
+    """Replay one schedule; return the number of recorded changes."""
+    scenario = idle(RUN, TICKS * 1e-3).with_faults(drawn(seed))
+    bag = result_of(scenario).save(directory / f'{seed}')
+    assert replayed(bag, directory / 'again' / f'{seed}') == content(bag), drawn(seed)
+    inputs = recorded_inputs(Bag(bag), RUN)
+    return sum(map(len, inputs.tuned.values())) + len(inputs.tuned_supplies)
+
+
+def test_any_schedule_of_faults_replays_byte_for_byte(tmp_path):
+    changes = [check(seed, tmp_path) for seed in range(FEW)]
+    assert min(changes) > 0
+
+
+@pytest.mark.long
+def test_a_hundred_schedules_of_faults_replay_byte_for_byte(tmp_path):
+    changes = [check(seed, tmp_path) for seed in range(MANY)]
+    assert min(changes) > 0 and sum(changes) > 3 * MANY
+
+
+def test_what_is_recorded_is_what_changed_at_its_tick(tmp_path):
+    """Begin and end of each fault, of actuators and supplies, and nothing at tick 0."""
+    scenario = idle(RUN, 0.1).with_faults([
+        {'t_s': 0.02, 'actuator': 'knee', 'fault': 'valve_stuck', 'until_s': 0.05},
+        {'t_s': 0.03, 'supply': 'pump', 'fault': 'pump_trip'}])
+    inputs = recorded_inputs(Bag(result_of(scenario).save(tmp_path / 'bag')), RUN)
+    assert inputs.tuned == {
+        'knee': {20: {'plant.spool.stuck': 1.0}, 50: {'plant.spool.stuck': 0.0}}}
+    assert inputs.tuned_supplies == {30: {'pump.pump_flow_lpm': 0.0}}
+
+
+def test_a_value_changed_by_a_program_replays_as_one_of_a_scenario(tmp_path):
+    """The same bytes of messages, whether the fault was planned or came from `tune`."""
+    planned = idle(RUN, 0.1).with_faults([
+        {'t_s': 0.02, 'actuator': 'knee', 'fault': 'valve_stuck'},
+        {'t_s': 0.03, 'supply': 'pump', 'fault': 'pump_trip'}])
+    one, two = Simulation(planned), Simulation(idle(RUN, 0.1))
+    for tick in range(100):
+        if tick == 20:
+            two.tune('knee', {'plant.spool.stuck': 1})
+        if tick == 30:
+            two.tune('pump', {'pump_flow_lpm': 0})
+        one.step(), two.step()
+        assert (one.tuned, one.tuned_supplies) == (two.tuned, two.tuned_supplies)
+        assert one.group.samples.tobytes() == two.group.samples.tobytes()
+        assert one.surroundings.supplies.tobytes() == two.surroundings.supplies.tobytes()
+
+
+@pytest.mark.parametrize('saved_at', [20, 25, 30, 31, 55])
+def test_a_run_saved_in_a_fault_goes_on_in_it(saved_at):
+    """Before, at, in and after each change; the twin is made anew from the bytes."""
+    scenario = idle(RUN, 0.1).with_faults([
+        {'t_s': 0.02, 'actuator': 'knee', 'fault': 'internal_leak', 'until_s': 0.05},
+        {'t_s': 0.03, 'supply': 'pump', 'fault': 'pump_trip', 'until_s': 0.06}])
+    first, twin = Simulation(scenario), Simulation(scenario)
+    for _ in range(saved_at):
+        first.step()
+    twin.restore(first.snapshot())
+    for _ in range(saved_at, 100):
+        first.step(), twin.step()
+        assert (twin.tuned, twin.tuned_supplies) == (first.tuned, first.tuned_supplies)
+        assert twin.group.samples.tobytes() == first.group.samples.tobytes()
+    assert twin.snapshot() == first.snapshot()
+
+
+def test_a_run_that_begins_again_has_its_faults_again():
+    scenario = idle(RUN, 0.1).with_faults([
+        {'t_s': 0.02, 'actuator': 'knee', 'fault': 'valve_stuck'},
+        {'t_s': 0.03, 'supply': 'pump', 'fault': 'pump_trip'}])
+    simulation, states = Simulation(scenario), []
+    for _ in range(2):
+        simulation.reset()
+        for _ in range(60):
+            simulation.step()
+        states.append(simulation.group.samples.tobytes()
+                      + simulation.surroundings.supplies.tobytes())
+    assert states[0] == states[1]
+
+
+def test_a_link_that_is_lost_for_a_while_replays(tmp_path):
+    """Without a frame the sample that listeners have grows old; afterwards it is young again."""
+    link = {'kind': 'can', 'cycle_ms': 1.0, 'delay_cycles': 1, 'watchdog_ms': 20.0}
+    run = load({
+        'name': 'ram', 'step_ms': 1.0, 'controller_offset_ms': 0.12, 'tick_timeout_s': 5.0,
+        'supply': {'kind': 'constant', 'pressure_mpa': 20.7, 'return_pressure_mpa': 0.0},
+        'actuators': {'ram': {'model': 'isa_v5', 'load': {'kind': 'mass'}, 'link': link}}})
+    result = run.simulate(0.1, faults=[
+        {'t_s': 0.04, 'link': 'ram', 'set': {'loss': 1.0}, 'until_s': 0.06}])
+    age = result['ram.link.age']
+    assert age[40:61].max() > 0.015 > 0.005 > max(age[20:40].max(), age[70:].max())
+    bag = result.save(tmp_path / 'bag')
+    inputs = recorded_inputs(Bag(bag), run.configuration)
+    assert inputs.tuned == {'ram': {40: {'link.loss': 1.0}, 60: {'link.loss': 0.0}}}
+    assert replayed(bag, tmp_path / 'again' / 'bag') == content(bag)
+
+
+def test_the_shipped_scenario_of_faults_replays(tmp_path):
+    run = load_run(find('leg.yaml', CONFIG))
+    scenario = load_scenario(find('device_faults.yaml', SCENARIOS), run)
+    bag = result_of(scenario).save(tmp_path / 'bag')
+    assert len(recorded_inputs(Bag(bag), run).tuned['kfe']) == 4
+    assert replayed(bag, tmp_path / 'again' / 'bag') == content(bag)

@@ -1,0 +1,150 @@
+"""Faults of a scenario: when values change and come back, and what is refused in one line."""
+
+from collections.abc import Mapping
+from dataclasses import replace
+from typing import Any
+
+from isa_ros.config.fault_catalogue import ACTUATOR, fault_catalogue, SUPPLY
+from isa_ros.config.run_config import RunConfig
+from isa_ros.config.sections import Place
+from isa_ros.config.supplies import SupplyConfig
+from isa_ros.core.timebase import NS_PER_SECOND
+from isa_ros.errors import ConfigError
+from isa_ros.scenario.faults import Fault, read_faults, timetable
+from isa_ros.scenario.scenario import idle, scenario_of
+import pytest
+from tests.runs import ACCUMULATOR, hip_and_knee
+
+RUN = hip_and_knee([SupplyConfig('pump', ACCUMULATOR, ('hip', 'knee'))])
+STUCK, LEAK = 'plant.spool.stuck', 'plant.oil.cross_port_leakage'
+SOUND_LEAK = RUN.actuator('knee').sheet.plant.oil.cross_port_leakage
+
+
+def faults(*trees: Any, run: RunConfig = RUN) -> tuple[Fault, ...]:
+    """Return the faults of a run of 1 s."""
+    return read_faults(list(trees), Place('s.yaml', 'faults'), run, 1000)
+
+
+def knee(*trees: Mapping[str, Any]) -> dict[int, dict[str, float]]:
+    """Return what changes of the knee by tick."""
+    found = timetable(faults(*({'actuator': 'knee'} | dict(tree) for tree in trees)), RUN)
+    return {tick: dict(own.actuators[1]) for tick, own in found.items() if 1 in own.actuators}
+
+
+def test_a_fault_begins_at_its_tick_and_ends_at_its_tick():
+    """At tick 0 the value is that of the sheet, for a run that begins again."""
+    assert knee({'t_s': 0.5, 'set': {STUCK: 1}, 'until_s': 0.8}) == {
+        0: {STUCK: 0.0}, 500: {STUCK: 1.0}, 800: {STUCK: 0.0}}
+
+
+def test_a_fault_from_the_beginning_and_without_end_is_there_at_tick_0():
+    assert knee({'t_s': 0.0, 'set': {STUCK: 1}}) == {0: {STUCK: 1.0}}
+
+
+def test_of_two_faults_of_one_parameter_the_later_counts_and_then_the_earlier_again():
+    leaks = ({'t_s': 0.1, 'set': {LEAK: 1e-12}, 'until_s': 0.6},
+             {'t_s': 0.3, 'set': {LEAK: 2e-12}, 'until_s': 0.4})
+    expected = {0: {LEAK: SOUND_LEAK}, 100: {LEAK: 1e-12}, 300: {LEAK: 2e-12},
+                400: {LEAK: 1e-12}, 600: {LEAK: SOUND_LEAK}}
+    assert knee(*leaks) == knee(*reversed(leaks)) == expected
+
+
+def test_a_fault_that_ends_while_a_later_one_lasts_changes_nothing():
+    assert knee({'t_s': 0.1, 'set': {LEAK: 1e-12}, 'until_s': 0.4},
+                {'t_s': 0.3, 'set': {LEAK: 2e-12}}) == {
+        0: {LEAK: SOUND_LEAK}, 100: {LEAK: 1e-12}, 300: {LEAK: 2e-12}}
+
+
+@pytest.mark.parametrize('name', fault_catalogue())
+def test_every_fault_of_the_catalogue_fits_and_changes_something(name):
+    own = fault_catalogue()[name]
+    target = 'knee' if own.of == ACTUATOR else 'pump'
+    one, = faults({'t_s': 0.5, own.of: target, 'fault': name})
+    assert dict(one.values) == dict(own.values) and own.meaning
+    changes = timetable([one], RUN)[500]
+    assert changes.supplies if own.of == SUPPLY else changes.actuators[1]
+
+
+def test_a_named_fault_takes_another_size_and_more_keys():
+    one, = faults({'t_s': 0.5, 'actuator': 'knee', 'fault': 'internal_leak',
+                   'set': {LEAK: 5e-12, STUCK: 1}})
+    assert one.values == {LEAK: 5e-12, STUCK: 1.0}
+
+
+def test_a_gain_is_given_in_si_by_its_name_or_in_the_unit_of_its_key():
+    one, two = faults({'t_s': 0.5, 'actuator': 'knee', 'set': {'force.kp': 1e-7}},
+                      {'t_s': 0.5, 'actuator': 'knee', 'set': {'reu.force.kp': 1e-7}})
+    assert one.values == two.values == {'force.kp': 1e-7}
+
+
+def test_a_scenario_is_written_as_it_was_read():
+    text = ('name: broken\nduration_s: 1.0\nfaults:\n'
+            '- {t_s: 0.5, actuator: knee, fault: valve_stuck, until_s: 0.8}\n'
+            '- {t_s: 0.25, supply: pump, set: {pump_flow_lpm: 0}}\n')
+    scenario = scenario_of(text, RUN)
+    again = scenario_of(scenario.to_yaml(), RUN)
+    assert again.faults == scenario.faults and len(again.faults) == 2
+    assert [tick for tick in range(1000) if scenario.changes_at(tick) is not None] == [
+        0, 250, 500, 800]
+    assert 'faults' not in idle(RUN, 1.0).to_yaml()
+
+
+@pytest.mark.parametrize(('tree', 'message'), [
+    ({'t_s': 0.1, 'actuator': 'knee', 'fault': 'valve_stck'},
+     r"faults\[0\].fault = 'valve_stck' is unknown; did you mean valve_stuck?"),
+    ({'t_s': 0.1, 'actuator': 'knee', 'fault': 'pump_trip'},
+     r"faults\[0\].fault = 'pump_trip' is a fault of the supply, must be one of the actuator"),
+    ({'t_s': 0.1, 'actuator': 'elbow', 'fault': 'valve_stuck'},
+     r"faults\[0\].fault: rig.yaml: no actuator 'elbow'; valid: hip, knee"),
+    ({'t_s': 0.1, 'supply': 'pumpe', 'fault': 'pump_trip'},
+     r"faults\[0\].fault: 'pumpe' is not a supply; did you mean pump?"),
+    ({'t_s': 0.1, 'actuator': 'knee', 'set': {'plant.spool.stuk': 1}},
+     r'faults\[0\].set: plant.spool.stuk is unknown or does not change during a run; did you'),
+    ({'t_s': 0.1, 'actuator': 'knee', 'set': {'plant.drive.bore_mm': 20}},
+     r'plant.drive.bore_mm is unknown or does not change during a run'),
+    ({'t_s': 0.1, 'actuator': 'knee', 'set': {STUCK: 0.5}},
+     r'plant.spool.stuck = 0.5, must be a whole number'),
+    ({'t_s': 0.1, 'actuator': 'knee', 'set': {LEAK: 1.0}},
+     r'cross_port_leakage = 1 m3/s/Pa, must be <= 1e-11 m3/s/Pa'),
+    ({'t_s': 0.1, 'actuator': 'knee', 'set': {STUCK: True}},
+     r'set.plant.spool.stuck = True, must be a number'),
+    ({'t_s': 0.1, 'actuator': 'knee', 'set': {STUCK: float('nan')}}, 'must be finite'),
+    ({'t_s': 0.1, 'actuator': 'knee', 'set': {}}, r'faults\[0\].set is empty'),
+    ({'t_s': 0.1, 'actuator': 'knee'}, r'faults\[0\] needs set, or fault'),
+    ({'t_s': 0.1, 'fault': 'valve_stuck'}, r'faults\[0\] has no target, must have one of'),
+    ({'t_s': 0.1, 'actuator': 'knee', 'supply': 'pump', 'fault': 'pump_trip'},
+     r'faults\[0\] has actuator and supply, must have one of'),
+    ({'t_s': 0.1, 'actuator': 'knee', 'set': {STUCK: 1}, 'until_s': 0.1},
+     r'faults\[0\].until_s = 0.1 s, must be > t_s = 0.1 s'),
+    ({'t_s': 0.1005, 'actuator': 'knee', 'set': {STUCK: 1}},
+     r'faults\[0\].t_s = 0.1005 s, must be a multiple of'),
+    ({'t_s': 1.0, 'actuator': 'knee', 'set': {STUCK: 1}},
+     r'faults\[0\].t_s = 1 s, must be < duration_s = 1 s'),
+    ({'t_s': -1.0, 'actuator': 'knee', 'set': {STUCK: 1}}, r't_s = -1 s, must be >= 0 s'),
+    ({'actuator': 'knee', 'set': {STUCK: 1}}, r'faults\[0\].t_s = None, must be a number'),
+    ({'t_s': 0.1, 'actuator': 'knee', 'set': {STUCK: 1}, 'till_s': 2},
+     r'faults\[0\].till_s is unknown; did you mean until_s?'),
+    ({'t_s': 0.1, 'link': 'knee', 'set': {'colour': 0.1}}, r'link.colour is unknown'),
+    ('valve_stuck', r"faults\[0\] = 'valve_stuck', must be a section")])
+def test_a_bad_fault_is_refused_in_one_line_with_its_place(tree, message):
+    with pytest.raises(ConfigError, match=message) as raised:
+        faults(tree)
+    assert str(raised.value).startswith('s.yaml: faults[0]') and '\n' not in str(raised.value)
+
+
+def test_values_that_are_refused_together_are_refused_with_their_time():
+    """An accumulator whose line alone cannot hold the pressure over a tick."""
+    small = replace(ACCUMULATOR, line_volume_l=0.001)
+    run = hip_and_knee([SupplyConfig('pump', small, ('hip', 'knee'))])
+    with pytest.raises(ConfigError, match=r's.yaml: faults: at 0.2 s, pump: capacitance over'):
+        faults({'t_s': 0.2, 'supply': 'pump', 'fault': 'accumulator_empty'}, run=run)
+
+
+def test_faults_that_are_no_list_are_refused():
+    with pytest.raises(ConfigError, match="faults = 'x', must be a list of faults"):
+        read_faults('x', Place('s.yaml', 'faults'), RUN, None)
+
+
+def test_a_fault_is_written_at_its_time():
+    one, = faults({'t_s': 0.123, 'actuator': 'knee', 'set': {STUCK: 1}})
+    assert one.tree(RUN.step_ns)['t_s'] == 123 * RUN.step_ns / NS_PER_SECOND
