@@ -13,7 +13,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import replace
 import warnings
 
-from isa_ros.config.assembly import group_of, surroundings_of
+from isa_ros.config.assembly import group_of, request_range_of, surroundings_of
 from isa_ros.controller import (
     by_name, Controller, ControllerSeat, fill_requests, merge_requests, Setpoint, State)
 from isa_ros.core.noise import seed_of
@@ -33,7 +33,8 @@ class Simulation:
 
     Commands come from the scenario, from `command`, and from ``controllers``, whose commands
     depend on the state of a tick and take effect one tick later. At the same tick the scenario
-    wins over a controller, and both over `command`.
+    wins over a controller, and both over `command`. A request of a controller beyond the range of
+    its actuator is refused or limited, with a `UserWarning`.
 
     Raises
     ------
@@ -98,6 +99,8 @@ class Simulation:
         self.group.start(self._starts)
         self._requests['kinds'] = 0
         self._seats = [ControllerSeat(own, self.names) for own in self._controllers]
+        if self._seats:
+            self._request_range = request_range_of(self.scenario.run)
         return self.samples
 
     @property
@@ -159,6 +162,9 @@ class Simulation:
             return given
         self._commands, self._requests = self._requests, self._commands
         self._requests['kinds'] = 0
+        if self._seats:
+            for line in self._request_range.admit(self.t_ns, self._commands):
+                warnings.warn(line, stacklevel=3)
         if is_commanded:
             self.scenario.commands(self.ticks, self._commands)
         if given is not None:

@@ -1,18 +1,21 @@
 """
 The range of an actuator's setpoints: stroke, rated force, usable gains, valve and modes.
 
-A setpoint from a topic or from Python that leaves the range is refused, or limited to it where
-the configuration says ``beyond_range: limit``; both are reported.
+A setpoint that leaves the range is refused, or limited to it where the configuration says
+``beyond_range: limit``; both are reported. Setpoints of topics, of Python and of controllers are
+checked at every one, those of scenarios when the file is read.
 """
 
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping, Sequence
 import math
 from typing import NamedTuple
 
 from isa_ros.actuator.sheet import ActuatorSheet
 from isa_ros.actuator.tunable import GAINS, tunables
-from isa_ros.core.device import CURRENT, MODES, PRESSURE, SPOOL
-from isa_ros.core.signals import HAS_MODE, HAS_REFERENCE, HAS_SETPOINT
+from isa_ros.core.device import CURRENT, MODES, NO_MODE, PRESSURE, SPOOL
+from isa_ros.core.record import floats
+from isa_ros.core.signals import COMMAND, HAS_MODE, HAS_REFERENCE, HAS_SETPOINT, Records
+from isa_ros.core.timebase import NS_PER_SECOND
 from isa_ros.core.units import MILLI, MPA
 from isa_ros.errors import ConfigError, SetpointError
 from isa_ros.plant.coil import coil_record
@@ -23,6 +26,9 @@ import numpy as np
 LIMIT = 'limit'
 BEYOND_RANGE = ('refuse', LIMIT)
 """What happens to a setpoint beyond the range: the first is the default."""
+REPORT_NS = NS_PER_SECOND
+"""Simulated time between two reports of requests to one actuator."""
+_FLOAT_BYTES = 8
 
 
 class Bounds(NamedTuple):
@@ -63,6 +69,35 @@ def reference_bounds(sheet: ActuatorSheet) -> Mapping[int, Bounds]:
         PRESSURE: Bounds(-pressure, pressure, 'Pa', 'the range of the pressure sensors')}
 
 
+class Beyond(NamedTuple):
+    """A field of a setpoint that leaves its range."""
+
+    field: str
+    value: float
+    bounds: Bounds
+
+    @property
+    def shown(self) -> str:
+        """Return field, value and unit."""
+        return f'{self.field} = {self.value:g} {self.bounds.unit}'
+
+    @property
+    def nearest(self) -> float:
+        """Return the value of the range that is nearest."""
+        return min(max(self.value, self.bounds.low), self.bounds.high)
+
+    @property
+    def refusal(self) -> str:
+        """Return what the value must be."""
+        low, high, unit, what = self.bounds
+        return f'must be {low:g} to {high:g} {unit}, {what}'
+
+    @property
+    def limitation(self) -> str:
+        """Return what the value is limited to."""
+        return f'limited to {self.nearest:g} {self.bounds.unit}, {self.bounds.what}'
+
+
 class SetpointRange:
     """
     Checks the setpoints of actuator ``name``.
@@ -72,16 +107,32 @@ class SetpointRange:
 
     def __init__(self, name: str, sheet: ActuatorSheet, beyond: str | None = None) -> None:
         self._name = name
-        self._limits = beyond == LIMIT
+        self.limits = beyond == LIMIT
+        """Whether a setpoint beyond the range is limited to it; otherwise it is refused."""
+        self.bounds = setpoint_bounds(sheet)
+        """The range of each field that has one."""
         self._reu = sheet.reu
-        self._bounds = setpoint_bounds(sheet)
         self._references = reference_bounds(sheet)
 
-    def admit(self, command: np.void, mode: int) -> str:
+    def beyond(self, command: np.void, mode: int = NO_MODE) -> Iterator[Beyond]:
+        """Return the fields of a `COMMAND` row that leave their range, the reference of a mode."""
+        kinds = int(command['kinds'])
+        found = list(self.bounds.items()) if kinds & HAS_SETPOINT else []
+        for field, bounds in found:
+            value = float(command[field])
+            if not math.isnan(value) and not bounds.low <= value <= bounds.high:
+                yield Beyond(field, value, bounds)
+        if kinds & HAS_REFERENCE and mode in self._references:
+            value, bounds = float(command['reference']), self._references[mode]
+            if not bounds.low <= value <= bounds.high:
+                yield Beyond(MODES[mode], value, bounds)
+
+    def admit(self, command: np.void, mode: int | None = None) -> str:
         """
         Limit the fields of a `COMMAND` row in place, and return what was limited, or ''.
 
-        ``mode`` is the one in force at the next tick, without this command.
+        ``mode`` is the one in force at the next tick, without this command; None: unknown, the
+        device ignores a reference of another one.
 
         Raises
         ------
@@ -91,16 +142,19 @@ class SetpointRange:
 
         """
         kinds = int(command['kinds'])
-        mode = int(command['mode']) if kinds & HAS_MODE else mode
+        if mode is None or kinds & HAS_MODE:
+            mode = int(command['mode'])
         self._refuse_mode(command, kinds, mode)
         limited = []
-        if kinds & HAS_SETPOINT:
-            limited = [self._limited(command, field, field, bounds)
-                       for field, bounds in self._bounds.items()]
-        if kinds & HAS_REFERENCE:
-            limited.append(
-                self._limited(command, 'reference', MODES[mode], self._references[mode]))
-        return '; '.join(text for text in limited if text)
+        for found in self.beyond(command, mode):
+            text = f'{self._name}: setpoint {found.shown}'
+            if not self.limits:
+                raise SetpointError(
+                    f'{text}, {found.refusal}; the key beyond_range: {LIMIT} of the actuator '
+                    'limits it instead')
+            command[found.field if found.field in self.bounds else 'reference'] = found.nearest
+            limited.append(f'{text}, {found.limitation}')
+        return '; '.join(limited)
 
     def _refuse_mode(self, command: np.void, kinds: int, mode: int) -> None:
         if kinds & HAS_MODE:
@@ -113,16 +167,45 @@ class SetpointRange:
                 f"{self._name}: setpoint {MODES[int(command['mode'])]} is not of the mode in "
                 f'force, {MODES[mode]}; change the mode first')
 
-    def _limited(self, command: np.void, field: str, name: str, bounds: Bounds) -> str:
-        """Limit one field; return what was limited, or ''."""
-        low, high, unit, what = bounds
-        value = float(command[field])
-        if math.isnan(value) or low <= value <= high:
-            return ''
-        text = f'{self._name}: setpoint {name} = {value:g} {unit}'
-        if not self._limits:
-            raise SetpointError(
-                f'{text}, must be {low:g} to {high:g} {unit}, {what}; the key beyond_range: '
-                f'{LIMIT} of the actuator limits it instead')
-        command[field] = min(max(value, low), high)
-        return f'{text}, limited to {float(command[field]):g} {unit}, {what}'
+
+class RequestRange:
+    """
+    Checks what controllers request of the actuators of a run, at every tick.
+
+    ``ranges`` are those of the actuators, in the order of the rows.
+    """
+
+    def __init__(self, ranges: Sequence[SetpointRange]) -> None:
+        self._ranges = ranges
+        self._low = np.full((len(ranges), COMMAND.itemsize // _FLOAT_BYTES), -math.inf)
+        self._high = -self._low
+        low, high = self._low.view(COMMAND)[:, 0], self._high.view(COMMAND)[:, 0]
+        for row, own in enumerate(ranges):
+            for field, bounds in own.bounds.items():
+                low[field][row], high[field][row] = bounds.low, bounds.high
+        self._is_low, self._is_high = self._is_beyond = np.zeros((2, *self._low.shape), np.bool_)
+        self._next_report = [0] * len(ranges)
+
+    def admit(self, t_ns: int, requests: Records) -> Sequence[str]:
+        """
+        Limit or delete the `COMMAND` rows (n_actuators,) of requests beyond the range, in place.
+
+        Returns lines that report it, at most one in `REPORT_NS` per actuator. A request that is
+        refused is deleted as a whole, with its enabling.
+        """
+        values = floats(requests)
+        np.less(values, self._low, self._is_low)
+        np.greater(values, self._high, self._is_high)
+        if not np.count_nonzero(self._is_beyond):
+            return ()
+        lines = []
+        for row, own in enumerate(self._ranges):
+            try:
+                text = own.admit(requests[row])
+            except SetpointError as error:
+                text = f'refused: {error}'
+                requests[row] = np.zeros((), COMMAND)
+            if text and t_ns >= self._next_report[row]:
+                self._next_report[row] = t_ns + REPORT_NS
+                lines.append(f"t = {t_ns / NS_PER_SECOND:g} s: a controller's request, {text}")
+        return lines

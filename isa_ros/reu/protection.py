@@ -10,11 +10,11 @@ Inputs are what the sensors read, not the exact states.
 import math
 from typing import NamedTuple
 
+from isa_ros.core.conditions import BITS, CONDITIONS, REACTIONS
 from isa_ros.core.kernel import kernel
 from isa_ros.core.record import record
 from isa_ros.core.timebase import PLANT_STEP
 from isa_ros.core.units import MILLI
-from isa_ros.core.conditions import BITS, CONDITIONS, REACTIONS
 from isa_ros.reu.impedance import SETPOINT
 from isa_ros.reu.plausibility import (
     acceleration_step, EVIDENCE, EVIDENCE_STATE, jump_speed, unexplained_force)
@@ -201,7 +201,7 @@ def judge(step, protection, own):
         if protection.sign[k] * own.values[k] > protection.quiet[k] or own.busy >> k & 1:
             judge_one(k, step, protection, own)
     own.clears = 0
-    if own.trips & own.first == 0:  # the cause is cleared: of several that are left, the lowest bit
+    if own.trips & own.first == 0:  # cleared; of several trips that are left, the lowest bit
         own.first = own.trips & -own.trips
 
 

@@ -1,9 +1,10 @@
 """Setpoints beyond the stroke, the rated force or the usable gains: refused, or limited."""
 
-from isa_ros.actuator.setpoint_range import SetpointRange
+from isa_ros.actuator.setpoint_range import RequestRange, SetpointRange
 from isa_ros.core.device import CURRENT, IMPEDANCE, PRESSURE, SPOOL
-from isa_ros.core.signals import HAS_ENABLE, HAS_MODE, HAS_REFERENCE
+from isa_ros.core.signals import COMMAND, HAS_ENABLE, HAS_MODE, HAS_REFERENCE
 from isa_ros.errors import SetpointError
+import numpy as np
 import pytest
 from tests.sheets import actuator_sheet, MODELS, setpoint
 
@@ -87,3 +88,54 @@ def test_a_mode_that_the_wiring_does_not_have_is_refused_with_the_reason():
         own.admit(reference(SPOOL, 0.0, HAS_MODE), IMPEDANCE)
     assert str(error.value) == (
         'hip: mode = spool: reu.spool.kind = off; possible: current, force, impedance')
+
+
+def request_range(beyond: str | None = None) -> RequestRange:
+    """Return the range of the requests to a rotor and a knee."""
+    return RequestRange([
+        SetpointRange('hip', actuator_sheet('smart_manifold')),
+        SetpointRange('knee', actuator_sheet('isa_v5'), beyond)])
+
+
+def requests_to_the_knee(**values: float) -> np.ndarray:
+    rows = np.zeros(2, COMMAND)
+    rows[1] = setpoint(**values)
+    return rows
+
+
+def test_a_request_beyond_the_range_is_deleted_as_a_whole():
+    rows = requests_to_the_knee(position=50.0)
+    rows['kinds'][1] |= HAS_ENABLE
+    rows[0] = setpoint(position=1.0)
+    hip = rows[0].tobytes()
+    line, = request_range().admit(12_000_000, rows)
+    assert line.startswith("t = 0.012 s: a controller's request, refused: knee: setpoint position "
+                           '= 50 m, must be 0 to 0.1 m, the stroke; ')
+    assert rows[1].tobytes() == bytes(COMMAND.itemsize) and rows[0].tobytes() == hip
+
+
+def test_a_request_is_limited_where_configured():
+    rows = requests_to_the_knee(position=0.05, effort=1e5)
+    line, = request_range('limit').admit(0, rows)
+    assert line.endswith('knee: setpoint effort = 100000 N, limited to 7500 N, the rated force')
+    assert rows['effort'].tolist() == [0.0, 7500.0] and rows['position'][1] == 0.05
+
+
+@pytest.mark.parametrize('field', ['position', 'effort', 'stiffness', 'damping'])
+def test_each_field_with_a_range_is_noticed(field):
+    """At both bounds it is admitted, unchanged; one step of a double beyond it is not."""
+    low, high, _, _ = SetpointRange('knee', actuator_sheet('isa_v5')).bounds[field]
+    for value, away in ((low, -np.inf), (high, np.inf)):
+        rows = requests_to_the_knee(**{'position': 0.05, field: value})
+        before = rows.tobytes()
+        assert request_range().admit(0, rows) == () and rows.tobytes() == before
+        rows[field][1] = np.nextafter(value, away)
+        assert len(request_range().admit(0, rows)) == 1 and rows['kinds'][1] == 0
+
+
+def test_reports_of_one_actuator_are_a_second_apart():
+    own, ticks = request_range(), []
+    for tick in range(2500):
+        if own.admit(tick * 1_000_000, requests_to_the_knee(position=50.0)):
+            ticks.append(tick)
+    assert ticks == [0, 1000, 2000]

@@ -4,10 +4,10 @@ from collections.abc import Callable, Mapping
 from dataclasses import replace
 from typing import Any
 
+from isa_ros.core.conditions import BITS
 from isa_ros.core.parameter import defaults
 from isa_ros.core.record import record
 from isa_ros.reu.cascade import REU_STATE
-from isa_ros.core.conditions import BITS
 from isa_ros.reu.plausibility import EVIDENCE
 from isa_ros.reu.protection import protect, protection_record, Ratings
 from isa_ros.reu.protection_sheet import levels_of, Protection

@@ -142,7 +142,7 @@ def test_enabling_alone_is_no_setpoint(rotary: RunConfig) -> None:
     ('  - {t_s: 0, position: .nan}\n', 'rotor[0].position = nan rad, must be finite'),
     ('  - {t_s: 0, position: 0.8, effort: .inf}\n', 'effort = inf N | Nm, must be finite'),
     ('  - {t_s: 0, position: held}\n', "position = 'held', must be a number in rad"),
-    ('  - {t_s: 0, position: 50}\n', 'position = 50 rad, must be <= 3.49 rad'),
+    ('  - {t_s: 0, position: 50}\n', 'position = 50 rad, must be 0 to 1.745 rad, the stroke'),
     ('  - {t_s: 0, position_deg: 50}\n', 'position_deg is unknown; the key is position, in SI'),
     ('  - {t_s: 0, position: 0.8, stiffness: -1}\n', 'stiffness = -1 N/m | Nm/rad, must be >= 0'),
     ('  - {t_s: 0, position: 0.8, enabled: 1}\n', 'enabled = 1, must be true or false'),

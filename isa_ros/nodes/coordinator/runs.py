@@ -178,7 +178,7 @@ def _record(
     services = RunServices(
         node, session.pace.factor, lambda coordinator: save_in_bag(session, coordinator))
     record(session, transport, surroundings, lambda topics: node.outlets(topics, actuators),
-           report, should_stop, services.serve)
+           report, should_stop, services.serve, node.get_logger().warning)
 
 
 def _resolver(setup: Setup) -> Callable[[Node], Setup]:
