@@ -123,8 +123,8 @@ class SetpointRange:
         if kinds & HAS_SETPOINT:
             for field, bounds in self.bounds.items():
                 yield from _beyond(field, field, command, bounds)
-        if kinds & HAS_REFERENCE:
-            mode = int(command['mode'])
+        mode = int(command['mode'])
+        if kinds & HAS_REFERENCE and mode in self._references:
             yield from _beyond('reference', MODES[mode], command, self._references[mode])
 
     def admit(self, command: np.void, mode: int | None = None) -> str:
