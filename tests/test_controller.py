@@ -22,7 +22,7 @@ def test_a_setpoint_fills_the_row_of_its_actuator():
     """A missing gain keeps the one in force; other actuators receive no command."""
     rows = requests(kfe=Setpoint(0.1, 0.2, 30.0, damping=400.0))
     assert rows['kinds'].tolist() == [0, HAS_SETPOINT]
-    kinds, _, position, velocity, effort, stiffness, damping = rows[1].item()
+    kinds, _, position, velocity, effort, stiffness, damping, _ = rows[1].item()
     assert (position, velocity, effort, damping) == (0.1, 0.2, 30.0, 400.0)
     assert math.isnan(stiffness)
 
