@@ -113,27 +113,27 @@ class Simulation:
         """Return the simulated time, s."""
         return self.t_ns / NS_PER_SECOND
 
-    def command(self, name: str, **setpoint: float | bool | None) -> None:
+    def command(self, name: str, **setpoint: float | bool | str | None) -> None:
         """
-        Command an actuator; the setpoint takes effect at the next tick.
+        Command an actuator; it takes effect at the next tick.
 
         The fields are those of `Setpoint`: ``position`` (m or rad), ``velocity``, ``effort``,
-        ``stiffness``, ``damping``, ``is_enabled``.
+        ``stiffness``, ``damping``, ``is_enabled``; ``mode``, and ``current`` (A), ``spool`` (m) or
+        ``pressure`` (Pa) in the mode of that name; ``clear_fault``, ``quick_stop``.
 
         Raises
         ------
         SetpointError
-            The run has no such actuator, a value is invalid, or beyond the range of the
-            actuator; with ``beyond_range: limit`` that is a `UserWarning` instead.
+            The run has no such actuator, a value is invalid, not of the mode, or beyond the
+            range of the actuator; with ``beyond_range: limit`` that is a `UserWarning` instead.
 
         """
         row: Records = np.zeros(len(self.names), COMMAND)
         fill_requests({name: Setpoint(**setpoint)}, self.names, row)  # type: ignore[arg-type]
         at = self.names.index(name)
         actuator = self.group.actuators[at]
-        if limited := actuator.setpoint_range.admit(row[at]):
+        if limited := actuator.admit(row[at]):
             warnings.warn(limited, stacklevel=2)
-        actuator.accept(row[at])
 
     def step(self, commands: Records | None = None) -> Mapping[str, np.record]:
         """

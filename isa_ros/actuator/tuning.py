@@ -61,16 +61,17 @@ class Tuning:
         """Return the last accepted value."""
         return float(self._rows[_ACCEPTED, self._names.index(name)])
 
-    def latch(self) -> None:
-        """Begin a tick: put the accepted values in force."""
+    def latch(self) -> bool:
+        """Begin a tick: put the accepted values in force; return whether one of a loop changed."""
         if self._is_settled:
-            return
+            return False
         before, in_force, accepted = self._rows
         before[:] = in_force
         in_force[:] = accepted
         self._is_settled = bool((before == in_force).all())
         if not self._is_settled:
             self._write()
+        return bool(self.applied)
 
     def _tuned_by(self, values: Mapping[str, float]) -> ActuatorSheet:
         try:

@@ -36,6 +36,7 @@ from isa_ros.errors import ConfigError, ParameterError
 from isa_ros.loads.sheets import linearised, LocalLoad
 from isa_ros.plant.plant import plant_record
 from isa_ros.plant.step_limits import LoadSide, refuse_too_fast
+from isa_ros.reu.wiring import mode_of
 from isa_ros.surroundings.leg.inertial import Imu
 from isa_ros.surroundings.leg.sheet import JOINTS, LegSheet
 
@@ -190,7 +191,7 @@ def _actuator(
         supply: float, link: Section) -> tuple[ActuatorConfig, ActuatorOrigin]:
     refuse_unknown(tree, (
         'model', 'preset', 'variants', 'parameters', 'load', 'initial_position_mm',
-        'initial_position_deg', 'beyond_range', LINK),
+        'initial_position_deg', 'beyond_range', 'auto_enable', 'mode', LINK),
         place)
     model = actuator_model(tree.get('model'), f'{place}.model')  # type: ignore[arg-type]
     preset = Plain(str).read(tree.get('preset', 'default'), place / 'preset')
@@ -213,7 +214,9 @@ def _actuator(
         _refuse_sheet(sheet, LoadSide(*linearised(load)), place)
     label = ' + '.join([preset, *variants])
     return (ActuatorConfig(
-        name, model.name, label, sheet, load, position, _beyond_range(tree, place)),
+        name, model.name, label, sheet, load, position, _beyond_range(tree, place),
+        Plain(bool).read(tree.get('auto_enable', True), place / 'auto_enable'),
+        _mode(tree, place, sheet)),
             ActuatorOrigin(section, load_layers))
 
 
@@ -223,6 +226,15 @@ def _beyond_range(tree: Tree, place: Place) -> str | None:
     beyond = tree.get('beyond_range', default)
     check(str(place / 'beyond_range'), beyond, {'names': BEYOND_RANGE})
     return None if beyond == default else str(beyond)
+
+
+def _mode(tree: Tree, place: Place, sheet: ActuatorSheet) -> str | None:
+    """Return the mode at t = 0; None: the one with every block that is on."""
+    mode = tree.get('mode')
+    if mode is not None:
+        mode_of(str(mode), sheet.reu, str(place / 'mode'))
+        return str(mode)
+    return None
 
 
 def _parameters(tree: Tree, place: Place) -> Section:

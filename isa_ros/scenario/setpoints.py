@@ -12,6 +12,8 @@ from isa_ros.config.yaml_text import Tree
 from isa_ros.core.parameter import check
 from isa_ros.core.timebase import NS_PER_SECOND
 from isa_ros.errors import ConfigError
+from isa_ros.scenario.device_steps import (
+    DEVICE_KEYS, DeviceStep, mode_before, read_device_step)
 from isa_ros.scenario.track import Event, GAIT, MOTIONS, Setpoint, Track
 from isa_ros.scenario.trot_motion import read_gait
 from isa_ros.scenario.waveforms import Motion, POSITION, WAVEFORMS
@@ -38,10 +40,10 @@ def read_track(run: RunConfig, name: str, points: Any, place: Place, n_ticks: in
     if not isinstance(points, list) or not points:
         raise ConfigError(f'{place} = {points!r}, must be a list of setpoints')
     events: list[Event] = []
-    step_ns = run.step_ns
+    step_ns, mode = run.step_ns, mode_before(run.actuator(name))
     for k, point in enumerate(points):
         below = Place(place.file, f'{place.key}[{k}]')
-        event = _event(section_at(point, below), below, run, run.actuator(name))
+        event = _event(section_at(point, below), below, run, run.actuator(name), mode)
         if event.tick >= n_ticks:
             raise ConfigError(
                 f'{below}.t_s = {event.tick * step_ns / NS_PER_SECOND:g} s, must be < '
@@ -51,29 +53,30 @@ def read_track(run: RunConfig, name: str, points: Any, place: Place, n_ticks: in
                 f'{below}.t_s = {event.tick * step_ns / NS_PER_SECOND:g} s, must be > the '
                 f'one before it, {events[-1].tick * step_ns / NS_PER_SECOND:g} s')
         events.append(event)
+        mode = event.device.mode or mode
     return Track(name, tuple(events))
 
 
-def _event(tree: Tree, place: Place, run: RunConfig, actuator: ActuatorConfig) -> Event:
+def _event(
+        tree: Tree, place: Place, run: RunConfig, actuator: ActuatorConfig, mode: int) -> Event:
     refuse_unknown(tree, (
-        't_s', 'position', 'velocity', 'effort', 'stiffness', 'damping', 'enabled', *MOTIONS),
+        't_s', 'position', 'velocity', 'effort', 'stiffness', 'damping', *DEVICE_KEYS, *MOTIONS),
         place)
     check(f'{place}.t_s', tree.get('t_s'), {
         'doc': 'time', 'unit': 's', 'bounds': {'ge': 0.0, 'le': MAX_DURATION}})
     tick = ticks_in(float(tree['t_s']), run.step_ns, f'{place}.t_s')  # type: ignore[arg-type]
-    is_enabled = tree.get('enabled')
-    if is_enabled is not None and not isinstance(is_enabled, bool):
-        raise ConfigError(f'{place}.enabled = {is_enabled!r}, must be true or false')
-    for name in set(tree) - {'t_s', 'enabled', 'position'}:
+    device = read_device_step(tree, place, actuator, mode)
+    for name in set(tree) - {'t_s', 'position', *DEVICE_KEYS}:
         if 'position' not in tree:
             raise ConfigError(
                 f'{place}.{name} is not used: a setpoint needs its position (or {HOLD!r})')
-    if 'position' not in tree and is_enabled is None:
-        raise ConfigError(place.has('needs a position or enabled'))
+    if 'position' not in tree and device == DeviceStep():
+        raise ConfigError(
+            place.has('needs a position, or a key of the device such as enabled or mode'))
     gains = {name: _gain(tree, name, place) for name in _GAINS}
     setpoint = _setpoint(tree, place, actuator) if 'position' in tree else None
     motion = None if setpoint is None else _motion(tree, place, run, actuator, setpoint)
-    return Event(tick, setpoint, gains['stiffness'], gains['damping'], is_enabled, motion)
+    return Event(tick, setpoint, gains['stiffness'], gains['damping'], motion, device)
 
 
 def _motion(tree: Tree, place: Place, run: RunConfig, actuator: ActuatorConfig,

@@ -12,8 +12,9 @@ from isa_ros.actuator.setpoint_range import SetpointRange
 from isa_ros.config.parameter_sets import as_tree
 from isa_ros.config.yaml_text import Tree
 from isa_ros.core.parameter import parameter, Parameters
-from isa_ros.core.signals import GAINS_OF_COMMAND, HAS_ENABLE, HAS_SETPOINT
+from isa_ros.core.signals import GAINS_OF_COMMAND, HAS_SETPOINT
 from isa_ros.core.timebase import NS_PER_SECOND
+from isa_ros.scenario.device_steps import DeviceStep
 from isa_ros.scenario.waveforms import Excursion, MAX_EFFORT, Motion, WAVEFORMS
 import numpy as np
 
@@ -39,8 +40,8 @@ class Event:
     setpoint: Setpoint | None
     stiffness: float | None
     damping: float | None
-    is_enabled: bool | None
     motion: Motion | None
+    device: DeviceStep
     limits: SetpointRange | None = field(default=None, compare=False, repr=False)
     """Limits each setpoint to this range; None: no setpoint leaves it, or may."""
 
@@ -56,9 +57,8 @@ class Event:
                 _REST if motion is None else motion.at((tick - self.tick) * step_ns), row)
             if self.limits is not None:
                 self.limits.admit(row)
-        if self.is_enabled is not None and tick == self.tick:
-            row['kinds'] |= HAS_ENABLE
-            row['is_enabled'] = int(self.is_enabled)
+        if tick == self.tick:
+            self.device.write(row)
 
     def write_setpoint(self, added: Excursion, row: np.void) -> None:
         """Fill a `COMMAND` row with the setpoint at an excursion of the motion."""
@@ -97,8 +97,7 @@ def event_tree(event: Event, step_ns: int) -> Tree:
     for name in GAINS_OF_COMMAND:
         if getattr(event, name) is not None:
             tree[name] = getattr(event, name)
-    if event.is_enabled is not None:
-        tree['enabled'] = event.is_enabled
+    tree |= event.device.tree()
     if event.motion is not None:
         tree[motion_key(event.motion)] = event.motion.tree()
     return tree

@@ -168,7 +168,6 @@ def test_the_first_cause_is_kept_and_the_strongest_reaction_acts() -> None:
     assert watched.own.first == 1 << BITS['overload']
     assert watched.own.trips == 1 << BITS['overload'] | 1 << BITS['supply_low']
     assert watched.own.reaction == protection.DISABLE
-    assert watched.state.setpoint.is_enabled == 0.0
 
 
 def test_a_trip_is_the_same_in_plain_python() -> None:

@@ -51,7 +51,8 @@ class Watched:
         self.supply, self.temperature, self.step = SUPPLY, 40.0, 0
         measured, setpoint = self.state.measured, self.state.setpoint
         measured.position = self.own.evidence.position = 0.5 * STROKE
-        setpoint.is_enabled, setpoint.stiffness, setpoint.damping = 1.0, 1e5, 4e3
+        self.state.status.is_on = 1
+        setpoint.stiffness, setpoint.damping = 1e5, 4e3
         setpoint.position, setpoint.velocity, setpoint.effort = 0.02, 0.1, 50.0
 
     def convert(self, n: int = 1) -> None:

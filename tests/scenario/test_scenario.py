@@ -147,7 +147,7 @@ def test_enabling_alone_is_no_setpoint(rotary: RunConfig) -> None:
     ('  - {t_s: 0, position: 0.8, stiffness: -1}\n', 'stiffness = -1 N/m | Nm/rad, must be >= 0'),
     ('  - {t_s: 0, position: 0.8, enabled: 1}\n', 'enabled = 1, must be true or false'),
     ('  - {t_s: 0, effort: 3.0}\n', 'effort is not used: a setpoint needs its position'),
-    ('  - {t_s: 0}\n', 'rotor[0] needs a position or enabled'),
+    ('  - {t_s: 0}\n', 'rotor[0] needs a position, or a key of the device'),
     ('  - {t_s: 0, position: 0.8, stifness: 3}\n', 'stifness is unknown; did you mean stiffness'),
     ('  - {t_s: 0, position: 0.8, sine: {amplitude: 1, frequency_hz: 0}}\n',
      'sine.frequency_hz = 0 Hz, must be > 0 Hz'),
