@@ -213,4 +213,4 @@ class RequestRange:
             if text and t_ns >= self._next_report[row]:
                 self._next_report[row] = t_ns + REPORT_NS
                 lines.append(f"t = {t_ns / NS_PER_SECOND:g} s: a controller's request, {text}")
-        return lines
+        return tuple(lines)

@@ -67,6 +67,8 @@ def simulated(n_ticks: int, controller: Controller) -> list[tuple[int, str, byte
     packer = packer_of(run, shown(simulation))
     while True:
         packer.pack(simulation.t_ns, max(0, simulation.t_ns - run.step_ns), simulation.tuned)
+        if simulation.ticks == n_ticks:
+            packer.diagnose()   # as a recorder gets it at the end of a run
         said += [(simulation.ticks, packer.topics[k].name, data)
                  for k, data in packer.all_messages()]
         if simulation.ticks == n_ticks:
