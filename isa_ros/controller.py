@@ -8,7 +8,9 @@ from collections.abc import Mapping, Sequence
 import math
 from typing import Any, NamedTuple
 
-from isa_ros.core.signals import HAS_ENABLE, HAS_SETPOINT
+from isa_ros.core.device import MODES, REFERENCES
+from isa_ros.core.signals import (
+    HAS_CLEAR_FAULT, HAS_ENABLE, HAS_MODE, HAS_QUICK_STOP, HAS_REFERENCE, HAS_SETPOINT)
 from isa_ros.core.suggest import listed, shortened
 from isa_ros.errors import RunError, SetpointError
 import numpy as np
@@ -32,9 +34,15 @@ class State(NamedTuple):
 
 
 class Setpoint(NamedTuple):
-    """The impedance setpoint of one actuator; m, m/s, N, N/m, Ns/m or rad, rad/s, Nm, ..."""
+    """
+    The command to one actuator; m, m/s, N, N/m, Ns/m or rad, rad/s, Nm, ...
 
-    position: float
+    With a position it is an impedance setpoint. At most one of ``current``, ``spool`` and
+    ``pressure`` is given, the setpoint of the mode of that name.
+    """
+
+    position: float | None = None
+    """None: velocity, effort and gains must not be given either."""
     velocity: float = 0.0
     effort: float = 0.0
     """Feed-forward force or torque."""
@@ -43,6 +51,16 @@ class Setpoint(NamedTuple):
     damping: float | None = None
     is_enabled: bool | None = None
     """None leaves the actuator enabled or disabled, as it is."""
+    mode: str | None = None
+    """current, spool, pressure, force, position or impedance; None keeps the mode."""
+    current: float | None = None
+    """Of the amplifier, A."""
+    spool: float | None = None
+    """m."""
+    pressure: float | None = None
+    """Of chamber A less that of B, Pa."""
+    clear_fault: bool = False
+    quick_stop: bool = False
 
 
 _GAINS = ('stiffness', 'damping')
@@ -93,23 +111,74 @@ def fill_requests(
                 f'{_quoted(name)} is not an actuator of the run; valid: {listed(names)}')
         if not isinstance(setpoint, tuple) or len(setpoint) != len(Setpoint._fields):
             raise SetpointError(f'{name}: {_quoted(setpoint)} is not a Setpoint')
-        values: Sequence[Any] = setpoint
-        for field, value in zip(_NUMBERS, values):
-            if value is None and field in _GAINS:
-                continue
-            try:
-                is_valid = math.isfinite(value) and (value >= 0.0 or field not in _GAINS)
-            except (TypeError, OverflowError):
-                raise _refusal(name, field, value, 'a number') from None
-            if not is_valid:
-                raise _refusal(name, field, value, '>= 0' if math.isfinite(value) else 'finite')
-        position, velocity, effort, stiffness, damping, is_enabled = setpoint
-        if is_enabled is not None and not isinstance(is_enabled, (bool, np.bool_)):
-            raise _refusal(name, 'is_enabled', is_enabled, 'True or False')
-        requests[names.index(name)] = (
-            HAS_SETPOINT if is_enabled is None else HAS_SETPOINT | HAS_ENABLE, bool(is_enabled),
-            position, velocity, effort, math.nan if stiffness is None else stiffness,
-            math.nan if damping is None else damping, 0)
+        fill_command(name, Setpoint(*setpoint), requests[names.index(name)])
+
+
+def fill_command(name: str, setpoint: Setpoint, row: np.void) -> None:
+    """
+    Write the command of actuator ``name`` into its `COMMAND` row.
+
+    Raises
+    ------
+    SetpointError
+        A value is invalid, or does not go with the others.
+
+    """
+    kinds = _fill_setpoint(name, setpoint, row) | _fill_mode(name, setpoint, row)
+    for field in ('is_enabled', 'clear_fault', 'quick_stop'):
+        value = getattr(setpoint, field)
+        if value is not None and not isinstance(value, (bool, np.bool_)):
+            raise _refusal(name, field, value, 'True or False')
+    if setpoint.is_enabled is not None:
+        kinds |= HAS_ENABLE
+        row['is_enabled'] = bool(setpoint.is_enabled)
+    row['kinds'] = (kinds | (HAS_CLEAR_FAULT if setpoint.clear_fault else 0)
+                    | (HAS_QUICK_STOP if setpoint.quick_stop else 0))
+
+
+def _fill_setpoint(name: str, setpoint: Setpoint, row: np.void) -> int:
+    """Write the impedance setpoint; return `HAS_SETPOINT`, or 0 without one."""
+    has_position = setpoint.position is not None
+    for field in _NUMBERS:
+        value = getattr(setpoint, field)
+        if value is None and (field in _GAINS or not has_position):
+            row[field] = math.nan if field in _GAINS else 0.0
+            continue
+        _check(name, field, value)
+        if not has_position and (field in _GAINS or value != 0.0):
+            raise SetpointError(f'{name}: setpoint {field} = {value:g} needs its position')
+        row[field] = value
+    return HAS_SETPOINT if has_position else 0
+
+
+def _fill_mode(name: str, setpoint: Setpoint, row: np.void) -> int:
+    """Write mode and reference; return their kinds."""
+    kinds = 0
+    if setpoint.mode is not None:
+        if setpoint.mode not in MODES[1:]:
+            raise _refusal(name, 'mode', setpoint.mode, f'one of {listed(MODES[1:])}')
+        row['mode'] = MODES.index(setpoint.mode)
+        kinds = HAS_MODE
+    given = [field for field in REFERENCES if getattr(setpoint, field) is not None]
+    if len(given) > 1:
+        raise SetpointError(
+            f'{name}: setpoint has {" and ".join(given)}, must be the one of its mode')
+    for field in given:
+        _check(name, field, getattr(setpoint, field))
+        if kinds and row['mode'] != REFERENCES[field]:
+            raise SetpointError(f'{name}: setpoint {field} is not of mode {setpoint.mode}')
+        row['mode'], row['reference'] = REFERENCES[field], getattr(setpoint, field)
+        kinds |= HAS_REFERENCE
+    return kinds
+
+
+def _check(name: str, field: str, value: Any) -> None:
+    try:
+        is_valid = math.isfinite(value) and (value >= 0.0 or field not in _GAINS)
+    except (TypeError, OverflowError):
+        raise _refusal(name, field, value, 'a number') from None
+    if not is_valid:
+        raise _refusal(name, field, value, '>= 0' if math.isfinite(value) else 'finite')
 
 
 def _refusal(name: str, field: str, value: Any, bound: str) -> SetpointError:

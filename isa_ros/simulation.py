@@ -14,7 +14,7 @@ from dataclasses import replace
 import warnings
 
 from isa_ros.actuator.tunable import with_si_names
-from isa_ros.config.assembly import group_of, surroundings_of
+from isa_ros.config.assembly import group_of, request_range_of, surroundings_of
 from isa_ros.controller import (
     by_name, Controller, ControllerSeat, fill_requests, merge_requests, Setpoint, State)
 from isa_ros.core.noise import seed_of
@@ -36,7 +36,8 @@ class Simulation:
 
     Commands come from the scenario, from `command`, and from ``controllers``, whose commands
     depend on the state of a tick and take effect one tick later. At the same tick the scenario
-    wins over a controller, and both over `command`.
+    wins over a controller, and both over `command`. A request of a controller beyond the range of
+    its actuator is refused or limited, with a `UserWarning`.
 
     Raises
     ------
@@ -101,6 +102,8 @@ class Simulation:
         self.group.start(self._starts)
         self._requests['kinds'] = 0
         self._seats = [ControllerSeat(own, self.names) for own in self._controllers]
+        if self._seats:
+            self._request_range = request_range_of(self.scenario.run)
         return self.samples
 
     @property
@@ -113,27 +116,27 @@ class Simulation:
         """Return the simulated time, s."""
         return self.t_ns / NS_PER_SECOND
 
-    def command(self, name: str, **setpoint: float | bool | None) -> None:
+    def command(self, name: str, **setpoint: float | bool | str | None) -> None:
         """
-        Command an actuator; the setpoint takes effect at the next tick.
+        Command an actuator; it takes effect at the next tick.
 
         The fields are those of `Setpoint`: ``position`` (m or rad), ``velocity``, ``effort``,
-        ``stiffness``, ``damping``, ``is_enabled``.
+        ``stiffness``, ``damping``, ``is_enabled``; ``mode``, and ``current`` (A), ``spool`` (m) or
+        ``pressure`` (Pa) in the mode of that name; ``clear_fault``, ``quick_stop``.
 
         Raises
         ------
         SetpointError
-            The run has no such actuator, a value is invalid, or beyond the range of the
-            actuator; with ``beyond_range: limit`` that is a `UserWarning` instead.
+            The run has no such actuator, a value is invalid, not of the mode, or beyond the
+            range of the actuator; with ``beyond_range: limit`` that is a `UserWarning` instead.
 
         """
         row: Records = np.zeros(len(self.names), COMMAND)
         fill_requests({name: Setpoint(**setpoint)}, self.names, row)  # type: ignore[arg-type]
         at = self.names.index(name)
         actuator = self.group.actuators[at]
-        if limited := actuator.setpoint_range.admit(row[at]):
+        if limited := actuator.admit(row[at]):
             warnings.warn(limited, stacklevel=2)
-        actuator.accept(row[at])
 
     def tune(self, name: str, values: Mapping[str, float]) -> None:
         """
@@ -196,6 +199,9 @@ class Simulation:
             return given
         self._commands, self._requests = self._requests, self._commands
         self._requests['kinds'] = 0
+        if self._seats:
+            for line in self._request_range.admit(self.t_ns, self._commands):
+                warnings.warn(line, stacklevel=3)
         if is_commanded:
             self.scenario.commands(self.ticks, self._commands)
         if given is not None:

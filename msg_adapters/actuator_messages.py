@@ -3,7 +3,7 @@
 from collections.abc import Mapping
 
 from msg_adapters import (
-    applied_parameters, fluid_pressure, joint_state, setpoint, temperature, wrench)
+    applied_parameters, device, fluid_pressure, joint_state, setpoint, temperature, wrench)
 from msg_adapters.template import Prepared
 
 STATE_TOPICS = (
@@ -21,12 +21,15 @@ APPLIED_PARAMETERS = ('applied_parameters', applied_parameters.TYPE)
 APPLIED_TOPICS = (APPLIED_PARAMETERS, APPLIED_SETPOINT)
 """(topic suffix, type) of the messages published when a command or parameter takes effect."""
 
+DEVICE = ('device', device.TYPE)
+"""(topic suffix, type) of the device's status, published on change and every second."""
+
 SENT_SETPOINT = ('sent_setpoint', joint_state.TYPE)
 """(topic suffix, type) of the messages published when a command is handed to a link."""
-KEPT_TOPICS = (*APPLIED_TOPICS, SENT_SETPOINT)
+KEPT_TOPICS = (*APPLIED_TOPICS, SENT_SETPOINT, DEVICE)
 """(topic suffix, type) of the messages that are kept for later subscriptions."""
 
-TOPICS = (*APPLIED_TOPICS, *STATE_TOPICS)
+TOPICS = (*APPLIED_TOPICS, DEVICE, *STATE_TOPICS)
 
 TEMPERATURE = ('temperature', temperature.TYPE)
 """(topic suffix, type) of the oil's temperature: once a second, of actuators that get warm."""
@@ -34,7 +37,7 @@ TEMPERATURE = ('temperature', temperature.TYPE)
 
 def topics(is_heated: bool = False, has_link: bool = False) -> tuple[tuple[str, str], ...]:
     """Return (topic suffix, type) of all messages of an actuator."""
-    return (*APPLIED_TOPICS, *([SENT_SETPOINT] if has_link else []), *STATE_TOPICS,
+    return (*APPLIED_TOPICS, *([SENT_SETPOINT] if has_link else []), DEVICE, *STATE_TOPICS,
             *([TEMPERATURE] if is_heated else []))
 
 
@@ -42,7 +45,9 @@ def prepared(
         name: str, is_rotary: bool, sample: Mapping[str, int], absolute: Mapping[str, int],
         applied: Mapping[str, int]) -> dict[str, Prepared]:
     """
-    Return the prepared messages of an actuator by topic suffix, without `APPLIED_PARAMETERS`.
+    Return the prepared messages of an actuator by topic suffix.
+
+    Those of `APPLIED_PARAMETERS` and `DEVICE` contain texts and cannot be prepared.
 
     The arguments are columns of values by field: ``sample`` for its `SAMPLE`, ``absolute`` for its
     pressures in Pa absolute, ``applied`` for its applied `COMMAND`. Frames: ``NAME_load_cell`` of

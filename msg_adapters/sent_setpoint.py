@@ -7,15 +7,20 @@ Its entries are those of an applied setpoint; a value that the command does not 
 from collections.abc import Mapping
 import math
 
-from isa_ros.core.signals import COMMAND, HAS_ENABLE, HAS_GAINS, HAS_SETPOINT
+from isa_ros.core.device import MODES
+from isa_ros.core.signals import (
+    COMMAND, EVERY_KIND, HAS_ENABLE, HAS_MODE, HAS_REFERENCE, HAS_SETPOINT)
 from isa_ros.core.suggest import listed
 from isa_ros.errors import SetpointError
 from msg_adapters.cdr_reader import decode
 from msg_adapters.joint_state import ARRAYS
-from msg_adapters.setpoint import applied_setpoint, GAINS
+from msg_adapters.setpoint import applied_names, applied_setpoint, GAINS
 from msg_adapters.template import Prepared
 import numpy as np
 from sensor_msgs.msg import JointState
+
+
+_ENABLED, _MODE, _REFERENCE, _CHANGED = 3, 4, 5, 6  # places of the entries
 
 
 def sent_setpoint(name: str, columns: Mapping[str, int]) -> Prepared:
@@ -36,7 +41,7 @@ def sent_to_command(data: bytes, name: str) -> np.void:
 
     """
     message = decode(data, JointState)
-    names = [name, *(f'{name}/{gain}' for gain in GAINS), f'{name}/enabled']
+    names = applied_names(name)
     if list(message.name) != names or any(
             len(getattr(message, field)) != len(names) for field in ARRAYS):
         raise SetpointError(
@@ -45,12 +50,13 @@ def sent_to_command(data: bytes, name: str) -> np.void:
     command: np.void = np.zeros(1, COMMAND)[0]
     _read_setpoint(message, name, command)
     _read_gains(message, name, command)
-    enabled = message.position[-1]
+    enabled = message.position[_ENABLED]
     if not math.isnan(enabled):
         if enabled not in (0.0, 1.0):
-            raise SetpointError(f'{names[-1]} = {enabled}, must be 0.0, 1.0 or NaN')
+            raise SetpointError(f'{names[_ENABLED]} = {enabled}, must be 0.0, 1.0 or NaN')
         command['kinds'] |= HAS_ENABLE
         command['is_enabled'] = int(enabled)
+    _read_device(message, name, command)
     if not command['kinds']:
         raise SetpointError(f'{name}: sent setpoint without a value')
     return command
@@ -75,5 +81,24 @@ def _read_gains(message: JointState, name: str, command: np.void) -> None:
         if math.isinf(value) or value < 0.0:
             raise SetpointError(f'{name}/{gain} = {value}, must be finite and >= 0, or NaN')
         command[gain] = value
-        if not math.isnan(value):
-            command['kinds'] |= HAS_GAINS
+
+
+def _read_device(message: JointState, name: str, command: np.void) -> None:
+    """Read mode, reference and all kinds: whole numbers, and a finite reference."""
+    mode, reference, kinds = (message.position[k] for k in (_MODE, _REFERENCE, _CHANGED))
+    if not (0 <= kinds <= EVERY_KIND and kinds == int(kinds)):
+        raise SetpointError(
+            f'{name}/changed = {kinds}, must be a whole number <= {EVERY_KIND}')
+    read, kinds = int(command['kinds']), int(kinds)
+    if kinds & (HAS_SETPOINT | HAS_ENABLE) != read:
+        raise SetpointError(f'{name}/changed = {kinds}, must name the values that are not NaN')
+    if kinds & (HAS_MODE | HAS_REFERENCE):
+        if not (0 < mode < len(MODES) and mode == int(mode)):
+            raise SetpointError(
+                f'{name}/mode = {mode}, must be a whole number > 0 and < {len(MODES)}')
+        command['mode'] = int(mode)
+    if kinds & HAS_REFERENCE:
+        if not math.isfinite(reference):
+            raise SetpointError(f'{name}/reference = {reference}, must be finite')
+        command['reference'] = reference
+    command['kinds'] = kinds

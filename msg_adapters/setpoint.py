@@ -3,7 +3,9 @@
 from collections.abc import Mapping, Sequence
 import math
 
-from isa_ros.core.signals import COMMAND, HAS_ENABLE, HAS_SETPOINT
+from isa_ros.core.device import MODES, REFERENCES
+from isa_ros.core.signals import (
+    COMMAND, EVERY_KIND, HAS_ENABLE, HAS_GAINS, HAS_REFERENCE, HAS_SETPOINT)
 from isa_ros.core.suggest import listed
 from isa_ros.errors import SetpointError
 from msg_adapters.cdr_reader import decode
@@ -13,18 +15,28 @@ import numpy as np
 from sensor_msgs.msg import JointState
 
 GAINS = ('stiffness', 'damping')
+_APPLIED = {'stiffness': 'stiffness', 'damping': 'damping', 'enabled': 'is_enabled',
+            'mode': 'mode', 'reference': 'reference', 'changed': 'kinds'}
+"""Entries of an applied setpoint, and their fields of a `COMMAND`."""
+_BEFORE_DEVICE = 4  # entries in a bag that was recorded before there were modes
+
+
+def applied_names(name: str) -> list[str]:
+    """Return the entries of an applied setpoint, in their order."""
+    return [name, *(f'{name}/{entry}' for entry in _APPLIED)]
 
 
 def applied_setpoint(name: str, columns: Mapping[str, int]) -> Prepared:
     """
     Return ``~/applied_setpoint`` of an actuator: all values in force from the tick's start on.
 
-    ``columns`` are those of a COMMAND row with gains resolved, by field.
+    ``columns`` are those of a COMMAND row with gains resolved, by field. All but the first entry
+    have a number in ``position``; that of NAME/changed is the sum of the `HAS_*` of what changed.
     """
-    names = [name, *(f'{name}/{gain}' for gain in GAINS), f'{name}/enabled']
+    names = applied_names(name)
     fields = entries(
         len(names), velocity=[columns['velocity']], effort=[columns['effort']],
-        position=[columns[field] for field in ('position', *GAINS, 'is_enabled')])
+        position=[columns['position'], *(columns[field] for field in _APPLIED.values())])
     return joint_state(name, names), {**fields, **START_STAMP}
 
 
@@ -34,16 +46,19 @@ def msg_to_command(message: JointState, name: str) -> np.void:
 
     Entry NAME holds position, velocity and effort; the optional entries NAME/stiffness and
     NAME/damping a gain in ``position``. Missing velocity or effort is zero, a missing gain
-    is NaN and leaves the gain in force unchanged.
+    is NaN and leaves the gain in force unchanged. The entry NAME/current (amplifier A),
+    NAME/spool (m) or NAME/pressure (Pa of difference) is the setpoint of that mode, and may be
+    the only one.
 
     Raises
     ------
     SetpointError
-        a name is unknown or occurs twice, a position is missing, a value is not finite, or a
-        gain is negative; the whole message is rejected.
+        a name is unknown or occurs twice, a position is missing, a value is not finite, a gain
+        is negative, or there are references of two modes; the whole message is rejected.
 
     """
-    return _command(message, name, [name, *(f'{name}/{gain}' for gain in GAINS)])
+    return _command(message, name, [
+        name, *(f'{name}/{entry}' for entry in (*GAINS, *REFERENCES))])
 
 
 def applied_to_command(data: bytes, name: str) -> np.void:
@@ -59,36 +74,50 @@ def applied_to_command(data: bytes, name: str) -> np.void:
 
     """
     message = decode(data, JointState)
-    enabled = f'{name}/enabled'
-    names = [name, *(f'{name}/{gain}' for gain in GAINS), enabled]
-    if list(message.name) != names:
+    names = applied_names(name)
+    if list(message.name) not in (names, names[:_BEFORE_DEVICE]):
         raise SetpointError(
             f'{name}: applied setpoint names {listed(message.name)}, must name {listed(names)}')
     command = _command(message, name, names)
-    value = message.position[names.index(enabled)]
-    if value not in (0.0, 1.0):
-        raise SetpointError(f'{enabled} = {value}, must be 0.0 or 1.0')
-    command['kinds'] |= HAS_ENABLE
-    command['is_enabled'] = int(value)
+    command['kinds'] = HAS_SETPOINT | HAS_ENABLE
+    values = dict(zip(_APPLIED, message.position[1:]))
+    for entry, most in (('enabled', 1), ('mode', len(MODES) - 1), ('changed', EVERY_KIND)):
+        value = values.get(entry, 0.0)
+        if not (0 <= value <= most and value == int(value)):
+            raise SetpointError(f'{name}/{entry} = {value}, must be a whole number <= {most}')
+        if entry in values:
+            command[_APPLIED[entry]] = int(value)
+    command['reference'] = values.get('reference', 0.0)
     return command
 
 
 def _command(message: JointState, name: str, known: Sequence[str]) -> np.void:
     names = list(message.name)
-    if name not in names:
+    references = [entry for entry in REFERENCES if f'{name}/{entry}' in names]
+    if name not in names and not references:
         raise SetpointError(f'{name}: is not among the joints of the setpoint, {listed(names)}')
     _check(message, name, names, known)
     command: np.void = np.zeros(1, dtype=COMMAND)[0]
-    k = names.index(name)
-    command['kinds'] = HAS_SETPOINT
-    for field in ARRAYS:
-        values = getattr(message, field)
-        command[field] = values[k] if k < len(values) else 0.0
+    if name in names:
+        k = names.index(name)
+        command['kinds'] = HAS_SETPOINT
+        for field in ARRAYS:
+            values = getattr(message, field)
+            command[field] = values[k] if k < len(values) else 0.0
     for gain in GAINS:
         entry = f'{name}/{gain}'
         command[gain] = message.position[names.index(entry)] if entry in names else math.nan
         if command[gain] < 0.0:
             raise SetpointError(f'{entry} = {command[gain]}, must be >= 0')
+        if entry in names and name not in names:
+            command['kinds'] = HAS_GAINS
+    if len(references) > 1:
+        raise SetpointError(
+            f'{name}: setpoint has {" and ".join(references)}, must be the one of its mode')
+    for entry in references:
+        command['kinds'] |= HAS_REFERENCE
+        command['mode'] = REFERENCES[entry]
+        command['reference'] = message.position[names.index(f'{name}/{entry}')]
     return command
 
 

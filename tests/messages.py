@@ -8,7 +8,7 @@ from msg_adapters.template import (
     FIRST_VALUE, INSTANT, Prepared, Template, TICK_START, time_word)
 import numpy as np
 
-APPLIED = tuple(name for name in COMMAND.names or () if name not in ('kinds', 'due_step'))
+APPLIED = tuple(name for name in COMMAND.names or () if name != 'due_step')
 """Fields of an applied setpoint, in the order of `COMMAND`."""
 
 VALUES = tuple(

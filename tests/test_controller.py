@@ -3,7 +3,8 @@
 import math
 
 from isa_ros.controller import Controller, fill_requests, merge_requests, Setpoint
-from isa_ros.core.signals import COMMAND, HAS_ENABLE, HAS_SETPOINT
+from isa_ros.core.signals import (
+    COMMAND, HAS_CLEAR_FAULT, HAS_ENABLE, HAS_MODE, HAS_QUICK_STOP, HAS_REFERENCE, HAS_SETPOINT)
 from isa_ros.errors import RunError, SetpointError
 import numpy as np
 import pytest
@@ -22,7 +23,7 @@ def test_a_setpoint_fills_the_row_of_its_actuator():
     """A missing gain keeps the one in force; other actuators receive no command."""
     rows = requests(kfe=Setpoint(0.1, 0.2, 30.0, damping=400.0))
     assert rows['kinds'].tolist() == [0, HAS_SETPOINT]
-    kinds, _, position, velocity, effort, stiffness, damping = rows[1].item()
+    _, _, position, velocity, effort, stiffness, damping, *_ = rows[1].item()
     assert (position, velocity, effort, damping) == (0.1, 0.2, 30.0, 400.0)
     assert math.isnan(stiffness)
 
@@ -34,7 +35,24 @@ def test_enabling_comes_with_the_setpoint(is_enabled):
     assert row['is_enabled'] == is_enabled
 
 
+@pytest.mark.parametrize(('setpoint', 'kinds', 'mode', 'reference'), [
+    (Setpoint(mode='force'), HAS_MODE, 4, 0.0),
+    (Setpoint(mode='spool', spool=1e-4), HAS_MODE | HAS_REFERENCE, 2, 1e-4),
+    (Setpoint(current=1e-3), HAS_REFERENCE, 1, 1e-3),
+    (Setpoint(clear_fault=True, is_enabled=True), HAS_CLEAR_FAULT | HAS_ENABLE, 0, 0.0),
+    (Setpoint(quick_stop=True), HAS_QUICK_STOP, 0, 0.0)])
+def test_the_device_is_commanded_without_a_position(setpoint, kinds, mode, reference):
+    row = requests(haa=setpoint)[0]
+    assert (row['kinds'], row['mode'], row['reference']) == (kinds, mode, reference)
+
+
 @pytest.mark.parametrize(('setpoint', 'message'), [
+    (Setpoint(effort=5.0), 'haa: setpoint effort = 5 needs its position'),
+    (Setpoint(mode='speed'), "haa: setpoint mode = 'speed', must be one of current, spool, press"),
+    (Setpoint(spool=1e-4, current=1.0), 'haa: setpoint has current and spool, must be the one'),
+    (Setpoint(mode='force', spool=1e-4), 'haa: setpoint spool is not of mode force'),
+    (Setpoint(spool=math.inf), 'haa: setpoint spool = inf, must be finite'),
+    (Setpoint(quick_stop=1), 'haa: setpoint quick_stop = 1, must be True or False'),
     (Setpoint(math.nan), 'haa: setpoint position = nan, must be finite'),
     (Setpoint(0.0, effort=math.inf), 'haa: setpoint effort = inf, must be finite'),
     (Setpoint(0.0, damping=math.nan), 'haa: setpoint damping = nan, must be finite'),

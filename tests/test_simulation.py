@@ -269,6 +269,32 @@ def test_a_controller_asks_at_tick_k_for_tick_k_plus_1():
     assert taken == [None, 1e-4, 1e-4 * 2, 1e-4 * 3]
 
 
+class InMillimetres(Counter):
+    """Asks for millimetres in tick 1 and 2, otherwise for metres."""
+
+    def step(self, state: State) -> Mapping[str, Setpoint]:
+        asked = super().step(state)
+        if self.count not in (2, 3):
+            return asked
+        return {self.name: Setpoint(1e3 * asked[self.name].position + 50.0)}
+
+
+@pytest.mark.parametrize(('beyond', 'says', 'taken'), [
+    (None, 'refused: knee: setpoint position = 50.2 m, must be 0 to 0.1 m, the stroke', None),
+    ('limit', 'knee: setpoint position = 50.2 m, limited to 0.1 m, the stroke', 0.1)])
+def test_a_request_beyond_the_range_is_refused_or_limited_with_a_warning(beyond, says, taken):
+    """The first one is reported; without a request the actuator keeps its setpoint."""
+    run = replace(RUN, actuators=tuple(
+        replace(own, beyond_range=beyond) for own in RUN.actuators))
+    simulation, applied = Simulation(idle(run), [InMillimetres()]), []
+    with pytest.warns(UserWarning, match=says) as caught:
+        for _ in range(5):
+            simulation.step()
+            applied.append(applied_position(simulation))
+    assert [str(warning.message)[:11] for warning in caught] == ['t = 0.002 s']
+    assert applied == [None, 1e-4, taken, taken, 4e-4]
+
+
 def test_a_setpoint_for_an_unknown_actuator_ends_the_tick():
     simulation = Simulation(idle(RUN), [Counter('elbow')])
     with pytest.raises(SetpointError, match="'elbow' is not an actuator of the run"):
@@ -276,10 +302,10 @@ def test_a_setpoint_for_an_unknown_actuator_ends_the_tick():
 
 
 def test_of_two_controllers_the_later_wins_where_both_ask():
-    simulation = Simulation(idle(RUN), [Counter('knee'), Counter('hip'), Counter('knee', 0.5)])
+    simulation = Simulation(idle(RUN), [Counter('knee'), Counter('hip'), Counter('knee', 0.05)])
     simulation.step()
     simulation.step()
-    assert applied_position(simulation) == 0.5 + 1e-4
+    assert applied_position(simulation) == 0.05 + 1e-4
     assert applied_position(simulation, 'hip') == 1e-4
 
 

@@ -10,6 +10,7 @@ import hashlib
 from typing import NoReturn, Protocol
 
 from isa_ros.actuator import kernel as kernels
+from isa_ros.actuator.device import mode_after, mode_command, refusal_of, start_mode
 from isa_ros.actuator.inbox import merge, write_applied
 from isa_ros.actuator.link import link_key, NONE, refuse_states
 from isa_ros.actuator.rows import Memory, memory_of
@@ -74,6 +75,14 @@ class ActuatorConfig(Protocol):
     def beyond_range(self) -> str | None:
         """Return the treatment of a setpoint beyond the range; None: the default one."""
 
+    @property
+    def auto_enable(self) -> bool:
+        """Return whether it is enabled once it is initialised."""
+
+    @property
+    def mode(self) -> str | None:
+        """Return the mode at t = 0; None: the one with every block that is on."""
+
 
 class SmartActuator:
     """
@@ -87,6 +96,7 @@ class SmartActuator:
     def __init__(
             self, config: ActuatorConfig, timing: Timing, memory: Memory | None = None) -> None:
         self.name = config.name
+        self.sheet = config.sheet
         self.is_rotary = config.sheet.is_rotary
         self.memory = memory_of(1) if memory is None else memory
         """Its row in the memory of the tick kernel."""
@@ -117,17 +127,20 @@ class SmartActuator:
         self._port, self._pending = _record(self.memory.ports), _record(self.memory.pending)
         self._applied, self._thermal = _record(self.memory.applied), _record(self.memory.thermals)
         self._incoming, self._commands = np.zeros(1, LOAD_PORT), np.zeros(1, COMMAND)
+        self._first_mode = start_mode(config.name, config.mode, config.sheet.reu)
         self.digest = self._hash(constants)
         self.setpoint_range = SetpointRange(config.name, config.sheet, config.beyond_range)
         """The range of its setpoints, for those that come from outside."""
         self.tuning = Tuning(config.name, config.sheet, offset_steps, constants)
         """Tuned parameters, accepted and in force."""
+        self._changed_mode: str | None = None
         self.start(config.initial_position, static_force(config.load), PAPER_SUPPLY, 0.0)
 
     def _hash(self, constants: np.ndarray) -> str:
         """Return a hash of every resolved parameter."""
         own = self._config
-        text = f'{self._timing} {own.load} {initial_gains(own.sheet.reu)}'
+        text = (f'{self._timing} {own.load} {initial_gains(own.sheet.reu)} {self._first_mode} '
+                f'{own.auto_enable}')
         return hashlib.sha256(constants.tobytes() + text.encode()).hexdigest()[:16]
 
     def start(
@@ -143,6 +156,8 @@ class SmartActuator:
         for rows in self._saved:
             rows.fill(0)
         self.accept(gains_command(self.tuning.reset()))
+        if self._changed_mode is not None:
+            self.change_mode(self._changed_mode)
         if self._config.load is not None:
             self.memory.ports[:] = local_port(self._config.load, position)
         self._port.supply_pressure = supply_pressure
@@ -154,7 +169,7 @@ class SmartActuator:
             plant, supply_pressure, return_pressure, force)
         self._thermal.oil = self._thermal.body = plant.thermal.start
         self._start_loops()
-        write_applied(HAS_SETPOINT | HAS_ENABLE, self._reu.setpoint, self._applied)
+        write_applied(HAS_SETPOINT | HAS_ENABLE, self._reu, self._applied)
         self._reply.position = position
 
     def _start_loops(self) -> None:
@@ -169,8 +184,11 @@ class SmartActuator:
                 (reu.pressure, at.pressure_a - at.pressure_b)):
             block.measured = value
         reu.setpoint.position = reu.protection.evidence.position = reu.measured.position
-        reu.setpoint.stiffness, reu.setpoint.damping = initial_gains(self._config.sheet.reu)
-        reu.setpoint.is_enabled = 1.0
+        device = reu.status
+        for setpoint in (reu.setpoint, device.stop):
+            setpoint.stiffness, setpoint.damping = initial_gains(self._config.sheet.reu)
+        device.mode = device.acting = device.requested_mode = self._first_mode
+        device.auto_enable = device.requested_enable = int(self._config.auto_enable)
         kernels.write_sample(body.plant, reu, self._sample)
         self._sample.temperature = self._thermal.oil
         self.memory.observed[:] = self.memory.samples
@@ -209,6 +227,33 @@ class SmartActuator:
         self._commands[0] = command
         merge(_record(self._commands), self._pending)
 
+    def admit(self, command: np.void) -> str:
+        """
+        Check and accept a command from outside; return what was limited, or ''.
+
+        Raises
+        ------
+        SetpointError
+            As `SetpointRange.admit`; nothing is accepted.
+
+        """
+        limited = self.setpoint_range.admit(command, self.mode)
+        self.accept(command)
+        return limited
+
+    def change_mode(self, mode: str) -> None:
+        """
+        Change the mode from the next tick on, and again at the start of another run.
+
+        Raises
+        ------
+        ConfigError
+            The mode does not exist, or the wiring does not have it.
+
+        """
+        self.accept(mode_command(mode, self.sheet.reu))
+        self._changed_mode = mode
+
     def tune(self, values: Mapping[str, float]) -> None:
         """
         Accept new values of `tunables`, SI, all or none; they take effect at the next tick.
@@ -218,6 +263,16 @@ class SmartActuator:
         """
         self.tuning.accept(values)
         self.accept(gains_command(values))
+
+    @property
+    def mode(self) -> int:
+        """Return the mode as it will be at the next tick, a number of `isa_ros.core.device`."""
+        return mode_after(self._pending, self._reu)
+
+    def refusal(self, command: np.void) -> str:
+        """Return why a request of enable, clear or stop would change nothing, or ''."""
+        return refusal_of(
+            command, self._pending, self._constants.reu, self._reu)
 
     def parameter(self, name: str) -> float:
         """Return a tunable value as it will be at the next tick, set by parameter or command."""
@@ -242,13 +297,18 @@ class SmartActuator:
         if port is not None:
             incoming = self._incoming
             incoming[0] = port
-        self.tuning.latch()
+        self.latch_tuning()
         self._commands['kinds'] = 0
         broken = kernels.actuator_tick(
             self.t_ns // PLANT_STEP_NS, self._steps, incoming, self._commands, self.memory)
         self.t_ns += self._timing.step_ns
         if broken >= 0:
             self.raise_diverged(broken)
+
+    def latch_tuning(self) -> None:
+        """Begin a tick: put tuned values in force, without a jump of the valve current."""
+        if self.tuning.latch() and self._reu.status.is_on:
+            self._reu.status.fade.begins = 1
 
     def raise_diverged(self, state: int) -> NoReturn:
         """Raise `SimulationDiverged` for a state, given by its index in `kernels.BODY`."""

@@ -144,7 +144,7 @@ class ActuatorGroup:
     def _latch(self) -> None:
         """Let changed parameters take effect."""
         for actuator in self.actuators:
-            actuator.tuning.latch()
+            actuator.latch_tuning()
 
     def _end(self, n_ticks: int, broken: int) -> None:
         """Move the time on by as many ticks; refuse a state that is no longer finite."""

@@ -7,22 +7,32 @@ it with `merge`; `latch` applies it at the start of a tick.
 
 import math
 
+from isa_ros.core.device import ENABLED, INITIALISING
 from isa_ros.core.kernel import kernel
-from isa_ros.core.signals import HAS_ENABLE, HAS_GAINS, HAS_SETPOINT
-from isa_ros.reu.protection import feed, request_clear
+from isa_ros.core.signals import (
+    EVERY_KIND, HAS_ENABLE, HAS_GAINS, HAS_MODE, HAS_REFERENCE, HAS_SETPOINT)
+from isa_ros.reu.device import hold_here
+from isa_ros.reu.protection import feed
 
 WITH_GAINS = HAS_SETPOINT | HAS_GAINS
 """Kinds of commands that may contain gains."""
 
+NO_REFERENCE = EVERY_KIND ^ HAS_REFERENCE
+
 
 @kernel
 def merge(command, pending):
-    """Add a command: the last of several wins; a gain of NaN leaves the pending one unchanged."""
+    """
+    Add a command: the last of several wins; a gain of NaN leaves the pending one unchanged.
+
+    A reference for another mode than the pending one is discarded.
+    """
     kinds = command.kinds
     if kinds & HAS_SETPOINT:
         pending.position = command.position
         pending.velocity = command.velocity
         pending.effort = command.effort
+        pending.kinds &= NO_REFERENCE
     if kinds & WITH_GAINS:
         is_first = not pending.kinds & WITH_GAINS
         if is_first or not math.isnan(command.stiffness):
@@ -31,6 +41,16 @@ def merge(command, pending):
             pending.damping = command.damping
     if kinds & HAS_ENABLE:
         pending.is_enabled = command.is_enabled
+    if kinds & HAS_MODE and pending.mode != command.mode:
+        pending.kinds &= NO_REFERENCE
+        pending.mode = command.mode
+    if kinds & HAS_REFERENCE:
+        if not pending.kinds & HAS_MODE:
+            pending.mode = command.mode
+        if pending.mode == command.mode:
+            pending.reference = command.reference
+        else:
+            kinds &= NO_REFERENCE
     pending.kinds |= kinds
 
 
@@ -39,40 +59,57 @@ def latch(pending, reu, applied):
     """
     Apply the pending command to a `REU_STATE` and copy it to ``applied``; without one, kinds is 0.
 
-    An actuator that is enabled again holds its last measured position; trips whose condition has
-    ended are cleared.
+    An actuator that is enabled again holds its last measured position. The device takes mode,
+    enable and requests at its next step.
     """
-    kinds, setpoint = pending.kinds, reu.setpoint
-    applied.kinds = kinds
-    if not kinds:
+    setpoint, device = reu.setpoint, reu.status
+    applied.kinds = 0
+    if not pending.kinds:
         return
+    if pending.kinds & HAS_MODE:
+        device.requested_mode = pending.mode
+    if pending.kinds & HAS_REFERENCE and pending.mode != device.requested_mode:
+        pending.kinds &= NO_REFERENCE
+    kinds = pending.kinds
     if kinds & HAS_ENABLE:
-        if pending.is_enabled and setpoint.is_enabled == 0.0:
-            setpoint.position = reu.measured.position
-            setpoint.velocity = 0.0
-            setpoint.effort = 0.0
-        setpoint.is_enabled = float(pending.is_enabled)
-        if pending.is_enabled:
-            request_clear(reu.protection)
+        if pending.is_enabled and device.state != ENABLED:
+            hold_here(setpoint, reu.measured.position)
+        device.requested_enable = int(pending.is_enabled)
     if kinds & HAS_SETPOINT:
         setpoint.position = pending.position
         setpoint.velocity = pending.velocity
         setpoint.effort = pending.effort
+        setpoint.is_reference = 0.0
         feed(reu.protection)
     if kinds & WITH_GAINS:
         if not math.isnan(pending.stiffness):
             setpoint.stiffness = pending.stiffness
         if not math.isnan(pending.damping):
             setpoint.damping = pending.damping
+        if not kinds & HAS_SETPOINT and device.is_on:
+            device.fade.begins = 1
+    if kinds & HAS_REFERENCE:
+        setpoint.reference = pending.reference
+        setpoint.is_reference = 1.0
+    device.requests |= kinds
     pending.kinds = 0
-    write_applied(kinds, setpoint, applied)
+    write_applied(kinds, reu, applied)
 
 
 @kernel
-def write_applied(kinds, setpoint, applied):
-    """Fill a `COMMAND` row with all values in force; ``kinds`` are those that changed."""
+def write_applied(kinds, reu, applied):
+    """
+    Fill a `COMMAND` row with all values in force; ``kinds`` are those that changed.
+
+    Mode and enable are those requested, where the command has them.
+    """
+    setpoint, device = reu.setpoint, reu.status
     applied.kinds = kinds
-    applied.is_enabled = int(setpoint.is_enabled)
+    applied.is_enabled = int(
+        device.state == ENABLED or (device.state == INITIALISING and device.auto_enable != 0))
+    if kinds & HAS_ENABLE:
+        applied.is_enabled = device.requested_enable
     applied.position, applied.velocity = setpoint.position, setpoint.velocity
     applied.effort = setpoint.effort
     applied.stiffness, applied.damping = setpoint.stiffness, setpoint.damping
+    applied.mode, applied.reference = device.requested_mode, setpoint.reference

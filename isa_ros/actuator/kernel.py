@@ -22,6 +22,7 @@ from isa_ros.plant.energy import ENERGIES
 from isa_ros.plant.plant import exact_force, PLANT, plant_rates, PLANT_STATE, sense, settle
 from isa_ros.plant.thermal import warm
 from isa_ros.reu.cascade import cascade_step, is_due, REU
+from isa_ros.reu.device import write_device
 from isa_ros.reu.protection import protect, setpoint_in_force
 import numpy as np
 
@@ -138,6 +139,7 @@ def write_sample(plant, reu, sample):
     sample.current_reference = reu.current_reference
     sample.warnings = float(reu.protection.warnings)
     sample.trips = float(reu.protection.trips)
+    write_device(reu.status, sample)
 
 
 @kernel

@@ -2,8 +2,8 @@
 The link of an actuator: frames from the commander to the REU, and back to the listeners.
 
 A frame leaves in each direction when a cycle begins, the first at t = 0, at the first plant step
-that is not earlier. Down, it carries the newest command that no frame has brought yet; up, the
-sample of that step. It arrives after the delay and a jitter, uniform from 0 to ``jitter_us``,
+that is not earlier. Down, it carries the newest command that no frame has brought yet; up, what
+the REU has sensed last. It arrives after the delay and a jitter, uniform from 0 to ``jitter_us``,
 again at the first plant step that is not earlier; a frame never overtakes the one before it. A
 lost frame does not arrive: the REU keeps its setpoint, listeners keep their sample, and the
 command goes with the next frame.

@@ -1,25 +1,35 @@
 """
-The range of an actuator's setpoints: its stroke, its rated force and its usable gains.
+The range of an actuator's setpoints: stroke, rated force, usable gains, valve and modes.
 
-A setpoint from a topic or from Python that leaves the range is refused, or limited to it where
-the configuration says ``beyond_range: limit``; both are reported.
+A setpoint that leaves the range is refused, or limited to it where the configuration says
+``beyond_range: limit``; both are reported. Setpoints of topics, of Python and of controllers are
+checked at every one, those of scenarios when the file is read.
 """
 
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping, Sequence
 import math
 from typing import NamedTuple
 
 from isa_ros.actuator.sheet import ActuatorSheet
 from isa_ros.actuator.tunable import GAINS, tunables
-from isa_ros.core.signals import HAS_SETPOINT
-from isa_ros.errors import SetpointError
+from isa_ros.core.device import CURRENT, MODES, PRESSURE, SPOOL
+from isa_ros.core.record import floats
+from isa_ros.core.signals import COMMAND, HAS_MODE, HAS_REFERENCE, HAS_SETPOINT, Records
+from isa_ros.core.timebase import NS_PER_SECOND
+from isa_ros.core.units import MILLI, MPA
+from isa_ros.errors import ConfigError, SetpointError
+from isa_ros.plant.coil import coil_record
 from isa_ros.reu.impedance import Impedance
-from isa_ros.reu.wiring import Off
+from isa_ros.reu.wiring import mode_of, Off
 import numpy as np
 
 LIMIT = 'limit'
 BEYOND_RANGE = ('refuse', LIMIT)
 """What happens to a setpoint beyond the range: the first is the default."""
+REPORT_NS = NS_PER_SECOND
+"""Simulated time between two reports of requests to one actuator."""
+_FLOAT_BYTES = 8
+_OF_A_MODE = HAS_MODE | HAS_REFERENCE
 
 
 class Bounds(NamedTuple):
@@ -49,6 +59,48 @@ def setpoint_bounds(sheet: ActuatorSheet) -> Mapping[str, Bounds]:
     return bounds
 
 
+def reference_bounds(sheet: ActuatorSheet) -> Mapping[int, Bounds]:
+    """Return the ranges of the references by their mode."""
+    valve, pressure = sheet.plant.valve, sheet.plant.sensors.pressure_range_mpa * MPA
+    spool = valve.spool_stop_mm * MILLI
+    current = coil_record(sheet.plant.coil).parallel * spool / valve.spool_gain_mm_per_ma
+    return {
+        SPOOL: Bounds(-spool, spool, 'm', 'the stop of the spool'),
+        CURRENT: Bounds(-current, current, 'A', 'the stop of the spool'),
+        PRESSURE: Bounds(-pressure, pressure, 'Pa', 'the range of the pressure sensors')}
+
+
+class Beyond(NamedTuple):
+    """A field of a setpoint that leaves its range."""
+
+    field: str
+    name: str
+    """As users know the field: a reference has the name of its mode."""
+    value: float
+    bounds: Bounds
+
+    @property
+    def shown(self) -> str:
+        """Return name, value and unit."""
+        return f'{self.name} = {self.value:g} {self.bounds.unit}'
+
+    @property
+    def nearest(self) -> float:
+        """Return the value of the range that is nearest."""
+        return min(max(self.value, self.bounds.low), self.bounds.high)
+
+    @property
+    def refusal(self) -> str:
+        """Return what the value must be."""
+        low, high, unit, what = self.bounds
+        return f'must be {low:g} to {high:g} {unit}, {what}'
+
+    @property
+    def limitation(self) -> str:
+        """Return what the value is limited to."""
+        return f'limited to {self.nearest:g} {self.bounds.unit}, {self.bounds.what}'
+
+
 class SetpointRange:
     """
     Checks the setpoints of actuator ``name``.
@@ -58,31 +110,107 @@ class SetpointRange:
 
     def __init__(self, name: str, sheet: ActuatorSheet, beyond: str | None = None) -> None:
         self._name = name
-        self._limits = beyond == LIMIT
-        self._bounds = setpoint_bounds(sheet)
+        self.limits = beyond == LIMIT
+        """Whether a setpoint beyond the range is limited to it; otherwise it is refused."""
+        self.bounds = setpoint_bounds(sheet)
+        """The range of each field that has one."""
+        self._reu = sheet.reu
+        self._references = reference_bounds(sheet)
 
-    def admit(self, command: np.void) -> str:
+    def beyond(self, command: np.void) -> Iterator[Beyond]:
+        """Return the fields of a `COMMAND` row that leave their range."""
+        kinds = int(command['kinds'])
+        if kinds & HAS_SETPOINT:
+            for field, bounds in self.bounds.items():
+                yield from _beyond(field, field, command, bounds)
+        if kinds & HAS_REFERENCE:
+            mode = int(command['mode'])
+            yield from _beyond('reference', MODES[mode], command, self._references[mode])
+
+    def admit(self, command: np.void, mode: int | None = None) -> str:
         """
         Limit the fields of a `COMMAND` row in place, and return what was limited, or ''.
+
+        ``mode`` is the one in force at the next tick, without this command; None: not known.
 
         Raises
         ------
         SetpointError
-            A field is beyond its range and is not limited; the whole setpoint is refused.
+            A field is beyond its range and is not limited, the wiring does not have the mode, or
+            a reference is of another mode; the whole setpoint is refused.
 
         """
-        if not int(command['kinds']) & HAS_SETPOINT:
-            return ''
+        self._refuse_mode(command, mode)
         limited = []
-        for field, (low, high, unit, what) in self._bounds.items():
-            value = float(command[field])
-            if math.isnan(value) or low <= value <= high:
-                continue
-            text = f'{self._name}: setpoint {field} = {value:g} {unit}'
-            if not self._limits:
+        for found in self.beyond(command):
+            text = f'{self._name}: setpoint {found.shown}'
+            if not self.limits:
                 raise SetpointError(
-                    f'{text}, must be {low:g} to {high:g} {unit}, {what}; the key beyond_range: '
-                    f'{LIMIT} of the actuator limits it instead')
-            command[field] = min(max(value, low), high)
-            limited.append(f'{text}, limited to {float(command[field]):g} {unit}, {what}')
+                    f'{text}, {found.refusal}; the key beyond_range: {LIMIT} of the actuator '
+                    'limits it instead')
+            command[found.field] = found.nearest
+            limited.append(f'{text}, {found.limitation}')
         return '; '.join(limited)
+
+    def _refuse_mode(self, command: np.void, mode: int | None) -> None:
+        kinds, own = int(command['kinds']), int(command['mode'])
+        if kinds & HAS_MODE:
+            try:
+                mode_of(MODES[own], self._reu, f'{self._name}: mode')
+            except ConfigError as error:
+                raise SetpointError(str(error)) from error
+        elif kinds & HAS_REFERENCE and mode is not None and own != mode:
+            raise SetpointError(
+                f'{self._name}: setpoint {MODES[own]} is not of the mode in force, '
+                f'{MODES[mode]}; change the mode first')
+
+
+def _beyond(field: str, name: str, command: np.void, bounds: Bounds) -> Iterator[Beyond]:
+    """Yield the field if its value leaves its range; NaN keeps a gain."""
+    value = float(command[field])
+    if not math.isnan(value) and not bounds.low <= value <= bounds.high:
+        yield Beyond(field, name, value, bounds)
+
+
+class RequestRange:
+    """
+    Checks what controllers request of the actuators of a run, at every tick.
+
+    ``ranges`` are those of the actuators, in the order of the rows.
+    """
+
+    def __init__(self, ranges: Sequence[SetpointRange]) -> None:
+        self._ranges = ranges
+        self._low = np.full((len(ranges), COMMAND.itemsize // _FLOAT_BYTES), -math.inf)
+        self._high = -self._low
+        low, high = self._low.view(COMMAND)[:, 0], self._high.view(COMMAND)[:, 0]
+        for row, own in enumerate(ranges):
+            for field, bounds in own.bounds.items():
+                low[field][row], high[field][row] = bounds.low, bounds.high
+        self._is_low, self._is_high = self._is_beyond = np.zeros((2, *self._low.shape), np.bool_)
+        self._next_report = [0] * len(ranges)
+
+    def admit(self, t_ns: int, requests: Records) -> Sequence[str]:
+        """
+        Limit or delete the `COMMAND` rows (n_actuators,) of requests beyond the range, in place.
+
+        Returns lines that report it, at most one in `REPORT_NS` per actuator. A request that is
+        refused is deleted as a whole, with its enabling.
+        """
+        values = floats(requests)
+        np.less(values, self._low, self._is_low)
+        np.greater(values, self._high, self._is_high)
+        if not np.count_nonzero(self._is_beyond) and not (
+                requests['kinds'] & _OF_A_MODE).any():
+            return ()
+        lines = []
+        for row, own in enumerate(self._ranges):
+            try:
+                text = own.admit(requests[row])
+            except SetpointError as error:
+                text = f'refused: {error}'
+                requests[row] = np.zeros((), COMMAND)
+            if text and t_ns >= self._next_report[row]:
+                self._next_report[row] = t_ns + REPORT_NS
+                lines.append(f"t = {t_ns / NS_PER_SECOND:g} s: a controller's request, {text}")
+        return lines

@@ -7,7 +7,7 @@ references that are not reported.
 
 from isa_ros.core.kernel import kernel
 from isa_ros.plant.coil import coil_current
-from isa_ros.reu.cascade import OFF
+from isa_ros.reu.bumpless import pressure_reference
 from isa_ros.reu.protection import setpoint_in_force
 import numpy as np
 
@@ -30,18 +30,6 @@ STATES = np.dtype([
 
 
 @kernel
-def pressure_reference(reu, state):
-    """Return the reference of the pressure block in Pa, which the next block outwards gives."""
-    if reu.pressure_kind == OFF:
-        return 0.0
-    if reu.force_kind != OFF:
-        return state.force.output
-    if reu.position_kind != OFF:
-        return state.position.output
-    return setpoint_in_force(state).effort
-
-
-@kernel
 def write_states(body, force, actuator, reu_state, row):
     """Fill one `STATES` row from a `BODY`, its sensor force (N | Nm) and a `REU_STATE`."""
     plant = body.plant
@@ -55,7 +43,8 @@ def write_states(body, force, actuator, reu_state, row):
     row.current = coil_current(plant.coil, actuator.plant.coil)
     row.position_reference = setpoint_in_force(reu_state).position
     row.force_reference = reu_state.force_reference
-    row.pressure_reference = pressure_reference(actuator.reu, reu_state)
+    row.pressure_reference = pressure_reference(
+        reu_state.status.acting, actuator.reu, reu_state)
     row.spool_reference = reu_state.spool_reference
     row.current_reference = reu_state.current_reference
     row.drive = reu_state.drive

@@ -13,6 +13,8 @@ from isa_ros.core.signals import COMMAND, HAS_GAINS
 from isa_ros.errors import ConfigError
 import numpy as np
 
+_NO_LOOP = ('plant.', 'reu.', 'link.')  # keys of faults: what a loop does changes by itself
+
 
 class Tuning:
     """
@@ -59,10 +61,11 @@ class Tuning:
         """Return the last accepted value."""
         return self._values.value(name)
 
-    def latch(self) -> None:
-        """Begin a tick: put the accepted values in force."""
+    def latch(self) -> bool:
+        """Begin a tick: put the accepted values in force; return whether one of a loop changed."""
         if self._values.latch():
             self._write()
+        return any(not name.startswith(_NO_LOOP) for name in self.applied)
 
     def _changed_by(self, values: Mapping[str, float]) -> ActuatorSheet:
         try:

@@ -60,6 +60,8 @@ def _record(request: Request) -> Path:
     if request.is_alone:
         start_without_blas()
     session = prepare(request)
+    for line in session.warnings:
+        print(one_line(f'isa: {line}'), file=sys.stderr)
     # The import of rclpy takes a third of a second; do it after the options are checked.
     from isa_ros.nodes.bringup import run_session
     try:
@@ -201,8 +203,10 @@ def faults(options: Namespace) -> bool:
 @_simulating
 def params(options: Namespace) -> bool:
     """List every parameter of a model, a leg or a run."""
-    from isa_ros.config.listing import describe
-    print(describe(options.name, options.preset, options.variant))
+    from isa_ros.config.changes import values_of
+    from isa_ros.config.listing import describe, SET
+    print(describe(
+        options.name, options.preset, options.variant, values_of(options.set, SET)))
     return True
 
 

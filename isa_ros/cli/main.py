@@ -130,6 +130,8 @@ def _identify(parser: argparse.ArgumentParser) -> None:
 def _params(parser: argparse.ArgumentParser) -> None:
     parser.add_argument('name', metavar='MODEL|CONFIG', help='isa_v5, hyq_real, leg.yaml, ...')
     shared_arguments.gains(parser, 'NAME')
+    shared_arguments.changes(
+        parser, 'list with another value, by its key and in its unit: plant.drive.bore_mm=40')
 
 
 def _paper(parser: argparse.ArgumentParser) -> None:

@@ -2,6 +2,7 @@
 
 from isa_ros.actuator.actuator import Timing
 from isa_ros.actuator.group import ActuatorGroup
+from isa_ros.actuator.setpoint_range import RequestRange, SetpointRange
 from isa_ros.config.leg_config import LegConfig
 from isa_ros.config.run_config import RunConfig
 from isa_ros.core.noise import noise_key
@@ -25,6 +26,13 @@ def timing_of(run: RunConfig) -> Timing:
 def group_of(run: RunConfig) -> ActuatorGroup:
     """Return the actuators of a run, each at its initial position."""
     return ActuatorGroup(run.actuators, timing_of(run))
+
+
+def request_range_of(run: RunConfig) -> RequestRange:
+    """Return what checks the requests of the controllers of a run."""
+    return RequestRange([
+        SetpointRange(actuator.name, actuator.sheet, actuator.beyond_range)
+        for actuator in run.actuators])
 
 
 def surroundings_of(run: RunConfig) -> Surroundings:

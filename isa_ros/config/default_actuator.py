@@ -4,8 +4,9 @@ from isa_ros.actuator.actuator import PAPER_SUPPLY, Timing
 from isa_ros.actuator.sheet import ActuatorSheet
 from isa_ros.config.catalogue import actuator_model, DEFAULT_PRESET, Model
 from isa_ros.config.own_load import own_load
+from isa_ros.config.parameter_sets import build
 from isa_ros.config.run_config import ActuatorConfig
-from isa_ros.config.sections import build, Place
+from isa_ros.config.sections import Place
 from isa_ros.loads.sheets import LocalLoad
 
 DEFAULT_TIMING = Timing(step_ns=1_000_000, controller_offset_ns=120_000)  # coupling.md

@@ -11,8 +11,9 @@ Links of a run file: ``link`` for all actuators, and in an actuator's section fo
 from typing import Any
 
 from isa_ros.actuator.link import KINDS, LinkSheet, NO_LINK, NONE
+from isa_ros.config.parameter_sets import as_tree
 from isa_ros.config.sections import (
-    as_tree, Entry, merge, Place, refuse_unknown, Section, section_at, written)
+    Entry, merge, Place, refuse_unknown, Section, section_at, written)
 from isa_ros.config.yaml_text import Tree
 from isa_ros.errors import ConfigError
 

@@ -2,20 +2,28 @@
 
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import fields
+from types import MappingProxyType
 from typing import Any, get_type_hints, NamedTuple
 
 from isa_ros.actuator.sheet import ActuatorSheet
 from isa_ros.config.catalogue import actuator_model, leg_names, leg_section, Model, model_names
+from isa_ros.config.changes import changed, Values
+from isa_ros.config.model_run import full_key, model_run
+from isa_ros.config.parameter_sets import build, build_one_of, kind_of, members
 from isa_ros.config.paths import CONFIG, find
-from isa_ros.config.run_file import read_run
-from isa_ros.config.sections import build, build_one_of, Entry, kind_of, members, Section
+from isa_ros.config.run_config import RunConfig
+from isa_ros.config.run_file import Origins, run_of
+from isa_ros.config.sections import Entry, merge, Place, Section, section_at, written
 from isa_ros.config.wires import wire
+from isa_ros.config.yaml_text import read, Tree
 from isa_ros.core.parameter import Parameters
 from isa_ros.errors import ConfigError
 from isa_ros.loads.sheets import LocalLoad
 from isa_ros.surroundings.leg.sheet import LegSheet
 from isa_ros.text.table import aligned
 
+SET = '--set'
+"""Source of a value that the command line gives."""
 _SYMBOLS = {'gt': '>', 'ge': '>=', 'lt': '<', 'le': '<='}
 
 
@@ -33,21 +41,25 @@ class Row(NamedTuple):
 HEADER = Row('parameter', 'value', 'unit', 'range', 'source', 'meaning')
 
 
-def describe(name: str, preset: str | None = None, variants: Sequence[str] = ()) -> str:
+def describe(name: str, preset: str | None = None, variants: Sequence[str] = (),
+             values: Values = MappingProxyType({})) -> str:
     """
     Return the table of a packaged model or leg, or of a run file.
 
     ``preset`` (None: the default one) and ``variants`` apply to a model; a run file has its
-    own.
+    own. ``values`` replace others by their keys: those of the run file, or of the actuator
+    where there is one only. A model with other values is listed on its own load alone.
 
     Raises
     ------
     ConfigError
-        The name is unknown, the run file cannot be run, or a preset or variants are given for
-        a leg or a run file.
+        The name is unknown, the run file cannot be run, a preset or variants are given for
+        a leg or a run file, or a value is refused.
 
     """
     if name in model_names():
+        if values:
+            return _described(model_run(name, preset, variants), Place(name), values)
         preset = preset or 'default'
         model = actuator_model(name, 'model')
         section = model.with_variants(
@@ -64,13 +76,23 @@ def describe(name: str, preset: str | None = None, variants: Sequence[str] = ())
                 f'models: {", ".join(model_names())}')
     if name in leg_names():
         section, place = leg_section(name, 'leg')
+        section = merge(section, written(changed({}, values, name), Place(SET)))
         return _table(name, rows(build(LegSheet, section, place), section))
     try:
         path = find(name, CONFIG)
     except ConfigError as error:
         known = ', '.join([*model_names(), *leg_names()])
         raise ConfigError(f'{error}; models and legs: {known}') from error
-    return '\n\n'.join(_run_tables(str(path)))
+    return _described(read(path), Place(path.name), values)
+
+
+def _described(tree: Tree, place: Place, values: Values) -> str:
+    """Return the tables of a run file's tree with other values."""
+    names = list(section_at(tree.get('actuators', {}), place / 'actuators'))
+    if len(names) == 1:
+        values = {full_key(key, names[0]): value for key, value in values.items()}
+    run, origins = run_of(changed(tree, values, place.file), place)
+    return '\n\n'.join(_run_tables(run, origins, tuple(values)))
 
 
 def rows(parameters: Parameters, section: Section) -> list[Row]:
@@ -97,31 +119,41 @@ def _kind_row(path: str, value: Parameters, union: Any, source_of: Mapping[str, 
                source_of.get(f'{path}.kind', ''), doc)
 
 
-def _run_tables(path: str) -> Iterator[str]:
-    run, origins = read_run(path)
-    given = f'{run.source}'
+def _run_tables(run: RunConfig, origins: Origins, changes: Sequence[str]) -> Iterator[str]:
+    """Return the tables of a run; values at the keys ``changes`` have the source `SET`."""
+    def table(key: str, title: str, parameters: Parameters, section: Section | None) -> str:
+        found = rows(parameters, section or {})
+        if section is None:
+            found = [row._replace(source=run.source) for row in found]
+        return _table(key + title, [
+            row._replace(source=SET) if _is_among(f'{key}.{row.parameter}', changes) else row
+            for row in found])
     for supply in run.supplies:
-        yield _table(f'{supply.name} of {given}', [
-            row._replace(source=given) for row in rows(supply.sheet, {})])
-    yield _table('record', [
-        row._replace(source=given) for row in rows(run.record.storage, {})])
+        yield table(supply.name, f' of {run.source}', supply.sheet, None)
+    yield table('record', '', run.record.storage, None)
     for kind in dict.fromkeys(run.actuator(name).sheet.link.kind for name in run.linked):
         yield _table(f'wire of links: {kind}', rows(*wire(kind)))
     for actuator in run.actuators:
-        title = (f'actuators.{actuator.name}.parameters: {actuator.model}, '
-                 f'preset {actuator.preset}')
-        origin = origins.actuators[actuator.name]
-        yield _table(title, rows(actuator.sheet, origin.sheet))
+        origin, key = origins.actuators[actuator.name], f'actuators.{actuator.name}'
+        yield table(f'{key}.parameters', f': {actuator.model}, preset {actuator.preset}',
+                    actuator.sheet, origin.sheet)
         if actuator.load is not None:
-            yield _table(f'actuators.{actuator.name}.load: {kind_of(actuator.load, LocalLoad)}',
-                         rows(actuator.load, origin.load))
+            yield table(f'{key}.load', f': {kind_of(actuator.load, LocalLoad)}',
+                        actuator.load, origin.load)
     if run.leg is not None and origins.leg is not None:
-        yield _table('leg.start', [
-            row._replace(source=given) for row in rows(run.leg.start, {})])
+        yield table('leg.start', '', run.leg.start, None)
         for imu in run.leg.imus:
-            yield _table(f'leg.imus.{imu.name}', [
-                row._replace(source=given) for row in rows(imu.sheet, {})])
-        yield _table(f'leg.parameters: {run.leg.model}', rows(run.leg.sheet, origins.leg))
+            yield table(f'leg.imus.{imu.name}', '', imu.sheet, None)
+        yield table('leg.parameters', f': {run.leg.model}', run.leg.sheet, origins.leg)
+
+
+def _is_among(key: str, changes: Sequence[str]) -> bool:
+    """Return whether a key, or a section that it is in, is among those of changes."""
+    ways = [key]                    # the same place of a run file
+    for old, new in (('leg.', 'body.'), ('', 'supplies.')):
+        if key.startswith(old):
+            ways.append(new + key.removeprefix(old))
+    return any(f'{way}.'.startswith(f'{change}.') for change in changes for way in ways)
 
 
 def _load_tables(model: Model) -> Iterator[str]:

@@ -2,6 +2,8 @@
 
 import re
 
+from isa_ros.config.sections import Place
+from isa_ros.config.yaml_text import Tree
 from isa_ros.errors import ConfigError
 
 NAME_RULE = 'must be small letters, digits and single underscores'
@@ -20,3 +22,14 @@ def refuse_bad_name(name: str, where: str) -> None:
     """
     if not _NAME.fullmatch(name):
         raise ConfigError(f'{where} = {name!r}, {NAME_RULE}')
+
+
+def name_of(tree: Tree, key: str, place: Place) -> str:
+    """Return a name that ROS can use; small letters, digits and single underscores."""
+    if key not in tree:
+        raise ConfigError(place.has(f'lacks {key}'))
+    value = tree[key]
+    if not isinstance(value, str):
+        raise ConfigError(f'{place / key} = {value!r}, {NAME_RULE}')
+    refuse_bad_name(value, str(place / key))
+    return value

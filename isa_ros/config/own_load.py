@@ -6,8 +6,9 @@ from typing import Any
 from isa_ros.actuator.actuator import PAPER_SUPPLY
 from isa_ros.actuator.sheet import ActuatorSheet
 from isa_ros.config.catalogue import DEFAULT_PRESET, Model
+from isa_ros.config.parameter_sets import build, build_one_of
 from isa_ros.config.scaling import Scaling
-from isa_ros.config.sections import build, build_one_of, Entry, merge, Place, Section, written
+from isa_ros.config.sections import Entry, merge, Place, Section, written
 from isa_ros.config.yaml_text import Tree
 from isa_ros.errors import ConfigError
 from isa_ros.loads.sheets import LocalLoad

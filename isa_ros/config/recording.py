@@ -15,8 +15,9 @@ from dataclasses import dataclass, replace
 from fnmatch import fnmatchcase
 from typing import Any
 
+from isa_ros.config.parameter_sets import as_tree, build
 from isa_ros.config.schema import KeyDifference
-from isa_ros.config.sections import as_tree, build, Place, refuse_unknown, section_at, written
+from isa_ros.config.sections import Place, refuse_unknown, section_at, written
 from isa_ros.config.yaml_text import Tree
 from isa_ros.core.parameter import choice, parameter, Parameters
 from isa_ros.errors import ConfigError

@@ -59,6 +59,10 @@ class ActuatorConfig:
     """m or rad."""
     beyond_range: str | None = None
     """Treatment of a setpoint beyond the range, one of `BEYOND_RANGE`; None: the first."""
+    auto_enable: bool = True
+    """Whether it is enabled once it is initialised."""
+    mode: str | None = None
+    """Mode at t = 0; None: the one with every block that is on."""
 
 
 @dataclass(frozen=True)
@@ -225,6 +229,8 @@ RUN = Section(RunConfig, {
         'model': Key(Plain(str)), 'preset': Key(Plain(str)),
         'initial_position': Key(Plain(float)),
         'beyond_range': Key(Plain(str), is_optional=True),
+        'auto_enable': Key(Plain(bool), meant='true'),
+        'mode': Key(Plain(str), is_optional=True),
         'load': Key(ParameterSet(LocalLoad), is_optional=True),
         'sheet': Key(ParameterSet(ActuatorSheet))}))),
     'controllers': Key(Names(), meant='none'),

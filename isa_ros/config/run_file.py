@@ -6,7 +6,6 @@ Every error is one line with file, key, value, unit and bound.
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-import math
 from pathlib import Path
 
 from isa_ros.actuator.setpoint_range import BEYOND_RANGE
@@ -16,34 +15,33 @@ from isa_ros.config.catalogue import actuator_model, leg_section, material_secti
 from isa_ros.config.changes import changed, Values
 from isa_ros.config.leg_config import ImuConfig, LegConfig, LegStart
 from isa_ros.config.links import LINK, link_of, read_link
-from isa_ros.config.names import NAME_RULE, refuse_bad_name
+from isa_ros.config.names import name_of
 from isa_ros.config.own_load import load_section, refuse_beyond_stops
+from isa_ros.config.parameter_sets import build, build_one_of
 from isa_ros.config.recording import read_record
 from isa_ros.config.run_config import ActuatorConfig, COORDINATOR, RunConfig, Times
 from isa_ros.config.scaling import scaled_sheet
 from isa_ros.config.schema import Plain
 from isa_ros.config.sections import (
-    build, build_one_of, Entry, merge, names_at, Place, refuse_unknown, Section, section_at,
-    written)
+    merge, names_at, Place, refuse_unknown, Section, section_at, written)
+from isa_ros.config.starts import initial_position, joint_position, leg_start, refuse_start
 from isa_ros.config.supplies import read_supplies, SUPPLY, SupplyConfig
+from isa_ros.config.tick_grid import on_grid
 from isa_ros.config.wires import refuse_overfull
 from isa_ros.config.yaml_text import read, Tree
 from isa_ros.core.noise import seed_of
 from isa_ros.core.parameter import check
 from isa_ros.core.suggest import alternatives
-from isa_ros.core.timebase import FORCE_WINDOWS, PLANT_STEP_NS
-from isa_ros.core.units import MILLI
 from isa_ros.errors import ConfigError, ParameterError
 from isa_ros.loads.sheets import linearised, LocalLoad
 from isa_ros.plant.plant import plant_record
 from isa_ros.plant.step_limits import LoadSide, refuse_too_fast
+from isa_ros.reu.wiring import mode_of
 from isa_ros.surroundings.leg.inertial import Imu
 from isa_ros.surroundings.leg.sheet import JOINTS, LegSheet
 
 __all__ = [
     'ActuatorConfig', 'LegConfig', 'LegStart', 'load_run', 'Origins', 'read_run', 'RunConfig']
-
-_TICK_GRID_NS = FORCE_WINDOWS * PLANT_STEP_NS
 
 
 @dataclass(frozen=True)
@@ -89,7 +87,7 @@ def run_of(tree: Tree, place: Place) -> tuple[RunConfig, Origins]:
         'record', LINK, 'actuators', 'controllers', 'leg', 'body'), place)
     times = build(Times, written(
         {f: tree[f] for f in Times.__dataclass_fields__ if f in tree}, place), place)
-    step_ns, offset_ns = _grid(times, place)
+    step_ns, offset_ns = on_grid(times, place)
     leg, leg_origin = _body(tree, place, step_ns)
     supplies = read_supplies(tree, list(_section(tree, 'actuators', place)), place)
     actuators, origins = _actuators(tree, place, leg, supplies, step_ns)
@@ -102,53 +100,6 @@ def run_of(tree: Tree, place: Place) -> tuple[RunConfig, Origins]:
         seed=seed_of(tree.get('seed', 0), str(place / 'seed')))
     controllers = names_at(tree.get('controllers', []), place / 'controllers')
     return run.with_controllers(controllers), Origins(origins, leg_origin)
-
-
-def ticks_in(seconds: float, step_ns: int, where: str) -> int:
-    """
-    Return a time in ticks; ``where`` is its name in messages.
-
-    Raises
-    ------
-    ConfigError
-        The time is not a whole number of macro steps; the message has both.
-
-    """
-    ticks = round(seconds * 1e9 / step_ns)
-    if abs(ticks * step_ns - seconds * 1e9) > 1.0:  # 1 ns, far above a double's rounding
-        raise ConfigError(
-            f'{where} = {seconds:g} s, must be a multiple of step_ms = {step_ns / 1e6:g} ms')
-    return ticks
-
-
-def name_of(tree: Tree, key: str, place: Place) -> str:
-    """Return a name that ROS can use; small letters, digits and single underscores."""
-    if key not in tree:
-        raise ConfigError(place.has(f'lacks {key}'))
-    value = tree[key]
-    if not isinstance(value, str):
-        raise ConfigError(f'{place / key} = {value!r}, {NAME_RULE}')
-    refuse_bad_name(value, str(place / key))
-    return value
-
-
-def _grid(times: Times, place: Place) -> tuple[int, int]:
-    step_ns = round(times.step_ms * 1e6)
-    if step_ns % _TICK_GRID_NS or abs(step_ns - times.step_ms * 1e6) > 1e-3:
-        raise ConfigError(
-            f'{place}: step_ms = {times.step_ms:g} ms, must be a multiple of '
-            f'{_TICK_GRID_NS / 1e6:g} ms ({FORCE_WINDOWS} windows of plant steps of '
-            f'{PLANT_STEP_NS / 1e6:g} ms)')
-    offset_ns = round(times.controller_offset_ms * 1e6)
-    if offset_ns % PLANT_STEP_NS or abs(offset_ns - times.controller_offset_ms * 1e6) > 1e-3:
-        raise ConfigError(
-            f'{place}: controller_offset_ms = {times.controller_offset_ms:g} ms, must be a '
-            f'multiple of the plant step {PLANT_STEP_NS / 1e6:g} ms')
-    if offset_ns >= step_ns:
-        raise ConfigError(
-            f'{place}: controller_offset_ms = {times.controller_offset_ms:g} ms, must be < '
-            f'step_ms = {times.step_ms:g} ms')
-    return step_ns, offset_ns
 
 
 def _section(tree: Tree, key: str, place: Place) -> Tree:
@@ -204,26 +155,6 @@ def _imus(tree: Tree, place: Place, step_ns: int) -> tuple[ImuConfig, ...]:
     return tuple(units)
 
 
-def leg_start(tree: Tree, place: Place, base: LegStart | None = None) -> LegStart:
-    """Return the start of a leg; keys missing in the section are as in ``base``."""
-    section = written(tree, place)
-    if base is not None:
-        section = {f: Entry(getattr(base, f), str(place / f), '')
-                   for f in LegStart.__dataclass_fields__} | section
-    return build(LegStart, section, place)
-
-
-def refuse_start(start: LegStart, sheet: LegSheet, step_ns: int, place: Place) -> None:
-    """Refuse joint angles outside the joints' ranges and a release between two ticks."""
-    for joint in JOINTS:
-        angle, limits = getattr(start, f'{joint}_deg'), getattr(sheet, joint)
-        if not limits.low_deg <= angle <= limits.high_deg:
-            raise ConfigError(
-                f'{place}.{joint}_deg = {angle:g} deg, must be within its range '
-                f'{limits.low_deg:g} to {limits.high_deg:g} deg')
-    ticks_in(start.release_s, step_ns, f'{place}.release_s')
-
-
 def _actuators(
         tree: Tree, place: Place, leg: LegConfig | None, supplies: Sequence[SupplyConfig],
         step_ns: int) -> tuple[tuple[ActuatorConfig, ...], dict[str, ActuatorOrigin]]:
@@ -260,7 +191,7 @@ def _actuator(
         supply: float, link: Section) -> tuple[ActuatorConfig, ActuatorOrigin]:
     refuse_unknown(tree, (
         'model', 'preset', 'variants', 'parameters', 'load', 'initial_position_mm',
-        'initial_position_deg', 'beyond_range', LINK),
+        'initial_position_deg', 'beyond_range', 'auto_enable', 'mode', LINK),
         place)
     model = actuator_model(tree.get('model'), f'{place}.model')  # type: ignore[arg-type]
     preset = Plain(str).read(tree.get('preset', 'default'), place / 'preset')
@@ -272,18 +203,20 @@ def _actuator(
         merge(of_model, _parameters(tree, place)), of_model, model.place, place / 'parameters',
         supply)
     if joint is not None and leg is not None:
-        position = _joint_position(tree, place, leg, joint, sheet)
+        position = joint_position(tree, place, leg, joint, sheet)
         load, load_layers = None, {}
         _refuse_sheet(sheet, LoadSide(), place)
     else:
-        position = _initial_position(tree, place, sheet)
+        position = initial_position(tree, place, sheet)
         load_layers = _own_load(tree, place, model, sheet, supply)
         load = build_one_of(LocalLoad, load_layers, place / 'load')
         refuse_beyond_stops(load, position, str(place))
         _refuse_sheet(sheet, LoadSide(*linearised(load)), place)
     label = ' + '.join([preset, *variants])
     return (ActuatorConfig(
-        name, model.name, label, sheet, load, position, _beyond_range(tree, place)),
+        name, model.name, label, sheet, load, position, _beyond_range(tree, place),
+        Plain(bool).read(tree.get('auto_enable', True), place / 'auto_enable'),
+        _mode(tree, place, sheet)),
             ActuatorOrigin(section, load_layers))
 
 
@@ -293,6 +226,15 @@ def _beyond_range(tree: Tree, place: Place) -> str | None:
     beyond = tree.get('beyond_range', default)
     check(str(place / 'beyond_range'), beyond, {'names': BEYOND_RANGE})
     return None if beyond == default else str(beyond)
+
+
+def _mode(tree: Tree, place: Place, sheet: ActuatorSheet) -> str | None:
+    """Return the mode at t = 0; None: the one with every block that is on."""
+    mode = tree.get('mode')
+    if mode is not None:
+        mode_of(str(mode), sheet.reu, str(place / 'mode'))
+        return str(mode)
+    return None
 
 
 def _parameters(tree: Tree, place: Place) -> Section:
@@ -310,45 +252,6 @@ def _refuse_sheet(sheet: ActuatorSheet, load: LoadSide, place: Place) -> None:
         refuse_too_fast(plant_record(sheet.plant)[0], sheet.plant, load)
     except (ConfigError, ParameterError) as error:
         raise ConfigError(f'{place}: {error}') from error
-
-
-def _joint_position(
-        tree: Tree, place: Place, leg: LegConfig, joint: str, sheet: ActuatorSheet) -> float:
-    for key in ('load', 'initial_position_mm', 'initial_position_deg'):
-        if key in tree:
-            raise ConfigError(
-                f'{place / key} is not used: the actuator moves {joint} of the leg, '
-                f'which gives its load and start')
-    refuse_reach(leg, joint, sheet, str(place))
-    return leg.position_of(joint)
-
-
-def refuse_reach(leg: LegConfig, joint: str, sheet: ActuatorSheet, where: str) -> None:
-    """Refuse a start of the leg that is outside the stroke of a joint's actuator."""
-    position, stroke = leg.position_of(joint), sheet.plant.drive.stroke
-    if not 0.0 <= position <= stroke:
-        scale, unit = (math.degrees(1.0), 'deg') if sheet.is_rotary else (1.0 / MILLI, 'mm')
-        raise ConfigError(
-            f'{where}: the start of the leg, {joint} = {math.degrees(leg.start.angle(joint)):g} '
-            f'deg, puts it at {position * scale:.4g} {unit}, must be within its 0 to '
-            f'{stroke * scale:.4g} {unit}')
-
-
-def _initial_position(tree: Tree, place: Place, sheet: ActuatorSheet) -> float:
-    key, other, scale = (
-        ('initial_position_deg', 'initial_position_mm', math.radians(1.0)) if sheet.is_rotary
-        else ('initial_position_mm', 'initial_position_deg', MILLI))
-    kind = 'rotary' if sheet.is_rotary else 'linear'
-    if other in tree:
-        raise ConfigError(f'{place / other} is unknown: the actuator is {kind}, the key is {key}')
-    stroke = sheet.plant.drive.stroke
-    if key not in tree:
-        return 0.5 * stroke
-    bounds = {'ge': 0.0, 'le': stroke / scale}
-    unit = key.rpartition('_')[2]
-    check(f'{place / key}', tree[key], {
-        'doc': 'within the stroke', 'unit': unit, 'bounds': bounds})
-    return float(tree[key]) * scale  # type: ignore[arg-type]
 
 
 def _own_load(

@@ -6,13 +6,14 @@ file with another bore, valve or supply it is multiplied by the ratio of that qu
 that the file has itself is not.
 """
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from typing import Any
 
 from isa_ros.actuator.actuator import PAPER_SUPPLY
 from isa_ros.actuator.scales import SCALES
 from isa_ros.actuator.sheet import ActuatorSheet
-from isa_ros.config.sections import build, Entry, Place, Section
+from isa_ros.config.parameter_sets import build
+from isa_ros.config.sections import Entry, Place, Section
 from isa_ros.errors import ConfigError
 
 
@@ -24,6 +25,8 @@ class Scaling:
     own: ActuatorSheet
     supply: float
     """Supply above return pressure of the actuator, Pa."""
+    _factors: dict[str, float] = field(default_factory=dict, init=False, repr=False, compare=False)
+    """The ratios so far: several values scale with one quantity, and some take long to compute."""
 
     def factor(self, scale: str) -> float:
         """
@@ -35,8 +38,11 @@ class Scaling:
             The actuator does not have the quantity.
 
         """
-        quantity = SCALES[scale]
-        return quantity(self.own, self.supply) / quantity(self.model, PAPER_SUPPLY)
+        if scale not in self._factors:
+            quantity = SCALES[scale]
+            self._factors[scale] = (
+                quantity(self.own, self.supply) / quantity(self.model, PAPER_SUPPLY))
+        return self._factors[scale]
 
     def section(self, section: Section, place: Place) -> Section:
         """Return a section with its values scaled; ``place`` is where a file would have them."""
@@ -79,7 +85,7 @@ def scaled_sheet(
     Raises
     ------
     ConfigError
-        As `isa_ros.config.sections.build`, or a scaled value is out of its range.
+        As `isa_ros.config.parameter_sets.build`, or a scaled value is out of its range.
 
     """
     base = build(ActuatorSheet, model, model_place)

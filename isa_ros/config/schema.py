@@ -10,9 +10,8 @@ from dataclasses import dataclass, fields
 import math
 from typing import Any, get_type_hints, NamedTuple, Protocol
 
-from isa_ros.config.sections import (
-    as_tree, build_one_of, KIND_KEYS, members, names_at, Place, refuse_unknown, section_at,
-    written)
+from isa_ros.config.parameter_sets import as_tree, build_one_of, members
+from isa_ros.config.sections import KIND_KEYS, names_at, Place, refuse_unknown, section_at, written
 from isa_ros.config.yaml_text import Tree
 from isa_ros.core.parameter import Parameters
 from isa_ros.errors import ConfigError

@@ -5,8 +5,9 @@ from dataclasses import dataclass
 from typing import Any
 
 from isa_ros.config.names import refuse_bad_name
+from isa_ros.config.parameter_sets import build_one_of
 from isa_ros.config.schema import KeyDifference, Names, ParameterSet
-from isa_ros.config.sections import build_one_of, names_at, Place, section_at, written
+from isa_ros.config.sections import names_at, Place, section_at, written
 from isa_ros.config.yaml_text import Tree
 from isa_ros.core.suggest import alternatives
 from isa_ros.core.units import MPA

@@ -11,7 +11,8 @@ import math
 
 from isa_ros.actuator.link import LinkSheet, NONE
 from isa_ros.config.catalogue import wire_section
-from isa_ros.config.sections import build, Place, Section
+from isa_ros.config.parameter_sets import build
+from isa_ros.config.sections import Place, Section
 from isa_ros.core.parameter import parameter, Parameters
 from isa_ros.errors import ConfigError
 

@@ -17,6 +17,12 @@ Records = NDArray[np.void]
 HAS_SETPOINT = 1
 HAS_ENABLE = 2
 HAS_GAINS = 4
+HAS_MODE = 8
+HAS_CLEAR_FAULT = 16
+HAS_QUICK_STOP = 32
+HAS_REFERENCE = 64
+EVERY_KIND = 127
+"""All bits of `COMMAND.kinds`."""
 
 START = np.dtype([
     ('position', '<f8'),         # m | rad
@@ -34,6 +40,8 @@ COMMAND = np.dtype([
     ('effort', '<f8'),         # feed-forward, N | Nm
     ('stiffness', '<f8'),      # N/m | Nm/rad; NaN keeps the gain in force
     ('damping', '<f8'),        # Ns/m | Nms/rad; NaN keeps the gain in force
+    ('mode', '<i8'),           # of `isa_ros.core.device`: the new one, or that of the reference
+    ('reference', '<f8'),      # of that mode: amplifier A | m of spool | Pa of difference
     ('due_step', '<i8'),       # plant step from which it is in force; 0: start of its tick
 ])
 """Command to one actuator, in effect from a tick boundary or a `due_step` on."""
@@ -70,6 +78,10 @@ SAMPLE = np.dtype([
     ('temperature', '<f8'),         # of the oil in the actuator, celsius
     ('warnings', '<f8'),            # bit set of conditions as a whole number (isa_ros.conditions)
     ('trips', '<f8'),               # likewise
+    ('device_state', '<f8'),        # number of `isa_ros.core.device.STATES`
+    ('device_mode', '<f8'),         # of `MODES`, in force or for the next enable
+    ('device_event', '<f8'),        # of `EVENTS`: the last one that changed the state or mode
+    ('state_since', '<f8'),         # time of the last change of these three or of the bits, s
     ('age', '<f8'),                 # since it was sampled, s; > 0 behind a link only
 ])
 """Values one actuator reports at the end of a tick."""
@@ -83,6 +95,7 @@ SAMPLE_UNITS = {
     'leakage_energy': 'J', 'throttling_energy': 'J', 'cross_port_energy': 'J',
     'relief_energy': 'J', 'friction_energy': 'J', 'damping_energy': 'J', 'work': 'J',
     'stored_energy': 'J', 'temperature': 'celsius', 'warnings': 'bits', 'trips': 'bits',
+    'device_state': '1', 'device_mode': '1', 'device_event': '1', 'state_since': 's',
     'age': 's'}
 """Unit of each field of a `SAMPLE`: of a linear actuator | of a rotary one."""
 

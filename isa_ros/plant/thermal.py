@@ -49,7 +49,8 @@ THERMAL = np.dtype([
     ('laminar_share', 'f8'),
     ('bias_per_k', 'f8'),                                       # A/K, b_theta of V12
     ('oil', PROPERTIES),
-    ('c_li', 'f8'), ('q_0', 'f8'), ('beta', 'f8'), ('sigma2', 'f8'), ('bias', 'f8'),  # of the sheet
+    # The values of the sheet:
+    ('c_li', 'f8'), ('q_0', 'f8'), ('beta', 'f8'), ('sigma2', 'f8'), ('bias', 'f8'),
 ])
 THERMAL_STATE = np.dtype([
     ('oil', 'f8'), ('body', 'f8'),      # celsius

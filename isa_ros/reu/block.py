@@ -12,7 +12,7 @@ from isa_ros.core.kernel import kernel
 from isa_ros.core.parameter import choice, parameter, Parameters, tunable
 from isa_ros.core.record import record
 from isa_ros.reu.compensation import (
-    COMPENSATION, compensation_record, dual_gain_compensation, DualGain, Linear)
+    COMPENSATION, compensation_record, dual_gain_compensation, DualGain, flow_curve, Linear)
 from isa_ros.reu.filters import low_pass, low_pass_coefficient
 from isa_ros.reu.schedule import (
     Constant, FivePoints, OilStiffness, POINTS, scheduled, ThreePoints)
@@ -94,6 +94,18 @@ def observe(reference, measured, block, state):
 
 
 @kernel
+def uncompensated(reference, velocity, gain, block, state):
+    """Return the demand of a block  (R3) before the factor on retracting, in the output's unit."""
+    feedback = (gain * block.kp * (block.b * reference - state.measured
+                                   - block.kf * state.measured_rate)
+                + state.integral + block.kd * state.error_rate)
+    ahead, of_speed = block.kr * reference + block.offset, block.kv * velocity
+    if block.compensation.of_velocity:
+        of_speed = dual_gain_compensation(of_speed, block.compensation)
+    return feedback + of_speed + ahead
+
+
+@kernel
 def demanded(reference, velocity, gain, block, state):
     """
     Return the demand of a block  (R3), in the output's unit.
@@ -102,18 +114,21 @@ def demanded(reference, velocity, gain, block, state):
     is the schedule's w. A retracting demand is scaled  (R7) before the flow curve is
     compensated  (R4), so that the flow is scaled alike.
     """
-    feedback = (gain * block.kp * (block.b * reference - state.measured
-                                   - block.kf * state.measured_rate)
-                + state.integral + block.kd * state.error_rate)
-    ahead, of_speed = block.kr * reference + block.offset, block.kv * velocity
-    if block.compensation.of_velocity:
-        of_speed = dual_gain_compensation(of_speed, block.compensation)
-    demand = feedback + of_speed + ahead
+    demand = uncompensated(reference, velocity, gain, block, state)
     if demand < 0.0:
         demand *= block.retracting
     if block.compensation.of_velocity:
         return demand
     return dual_gain_compensation(demand, block.compensation)
+
+
+@kernel
+def uncompensated_for(output, block):
+    """Return the demand before factor and compensation that gives ``output``  (R4, R7)."""
+    demand = output
+    if not block.compensation.of_velocity:
+        demand = flow_curve(output, block.compensation)
+    return demand / block.retracting if demand < 0.0 else demand
 
 
 @kernel

@@ -9,8 +9,12 @@ equation 8, current: equation 10): it only samples and holds its reference.
     position 1 kHz -> force 5 kHz -> [spool 5 kHz ->] current 10 kHz
 """
 
+from isa_ros.core.device import CURRENT, FORCE, POSITION, PRESSURE
 from isa_ros.core.kernel import kernel
+from isa_ros.core.timebase import PLANT_STEP
 from isa_ros.reu.block import BLOCK, block_record, BLOCK_STATE, block_step, Pid, rest
+from isa_ros.reu.bumpless import faded, inner_reference
+from isa_ros.reu.device import DEVICE, device_record, DEVICE_STATE, device_step
 from isa_ros.reu.feedback_linearisation import (
     FeedbackLinearisation, LINEARISATION, linearisation_record, linearising_step)
 from isa_ros.reu.impedance import force_reference, IMPEDANCE, Impedance, impedance_record, SETPOINT
@@ -19,18 +23,9 @@ from isa_ros.reu.protection import (
     is_inhibited, PROTECTION, PROTECTION_STATE, setpoint_in_force)
 from isa_ros.reu.schedule import schedule_table
 from isa_ros.reu.speed import SPEED, speed_record, SPEED_STATE, speed_step
-from isa_ros.reu.wiring import delay_steps, Held, loop_steps, Off, Reu
+from isa_ros.reu.wiring import (
+    delay_steps, IMPEDES, KINDS, LEADS_AND_LAGS, LINEARISES, loop_steps, OFF, PID, Reu)
 import numpy as np
-
-OFF = 0
-HELD = 1
-PID = 2
-IMPEDES = 3
-LINEARISES = 4
-LEADS_AND_LAGS = 5
-_KINDS: dict[type, int] = {
-    Off: OFF, Held: HELD, Pid: PID, Impedance: IMPEDES, FeedbackLinearisation: LINEARISES,
-    LeadLag: LEADS_AND_LAGS}
 
 REU = np.dtype([
     ('speed', SPEED), ('impedance', IMPEDANCE), ('position', BLOCK), ('force', BLOCK),
@@ -46,6 +41,7 @@ REU = np.dtype([
     ('parallel', 'f8'),   # amplifier A per series-scale A
     ('is_frozen', 'f8'),
     ('protection', PROTECTION),
+    ('rules', DEVICE),
 ])
 MEASURED = np.dtype([
     ('position', 'f8'), ('force', 'f8'), ('pressure_a', 'f8'), ('pressure_b', 'f8'),
@@ -67,6 +63,7 @@ REU_STATE = np.dtype([
     ('drive', 'f8'),               # output of the blocks: A, or V
     ('amplifier', 'f8'),           # the drive after the computational delay
     ('protection', PROTECTION_STATE),
+    ('status', DEVICE_STATE),
     ('link_silence', 'f8'),        # s since the last frame of a link with a watchdog
     ('link_lost', 'i8'),           # 1: no frame has come for the link's watchdog time
     ('link_lost_step', 'i8'),      # plant step at which it was last lost
@@ -88,7 +85,7 @@ def reu_record(
     row['speed'] = speed_record(reu.speed)
     for name in ('position', 'force', 'pressure', 'spool', 'current'):
         sheet = getattr(reu, name)
-        row[f'{name}_kind'] = _KINDS[type(sheet)]
+        row[f'{name}_kind'] = KINDS[type(sheet)]
         if isinstance(sheet, Pid):
             row[name] = block_record(sheet, schedule_table(sheet.gain_schedule, stiffness))
     if isinstance(reu.position, Impedance):
@@ -103,6 +100,7 @@ def reu_record(
     row['offset_steps'], row['delay_steps'] = offset_steps, delay_steps(reu, steps['current'])
     row['stroke'], row['k_spool'], row['parallel'] = stroke, k_spool, parallel
     row['is_frozen'] = reu.frozen
+    row['rules'] = device_record(reu.device, reu, steps['current'] * PLANT_STEP)
     return record
 
 
@@ -121,10 +119,10 @@ def is_due(step, period_steps, offset_steps):
 
 @kernel
 def position_reference_inwards(step, reu, state):
-    """Run the position block if it is on and due; return the next block's reference."""
-    setpoint = setpoint_in_force(state)
-    if reu.position_kind == OFF:
-        return setpoint.effort
+    """Run the position block if it acts and is due; return the next block's reference."""
+    device, setpoint = state.status, setpoint_in_force(state)
+    if device.acting < POSITION:
+        return inner_reference(device.acting, setpoint, reu)
     if is_due(step, reu.position_steps, reu.offset_steps):
         measured, velocity = state.measured.position, state.speed.velocity
         if reu.position_kind == IMPEDES:
@@ -138,9 +136,9 @@ def position_reference_inwards(step, reu, state):
 
 @kernel
 def force_reference_inwards(step, reference, reu, state):
-    """Run the force and pressure blocks that are on and due; return the next block's reference."""
-    place, velocity = state.measured.position, state.speed.velocity
-    if reu.force_kind != OFF:
+    """Run the force and pressure blocks that act and are due; return the next one's reference."""
+    place, velocity, acting = state.measured.position, state.speed.velocity, state.status.acting
+    if reu.force_kind != OFF and acting >= FORCE:
         state.force_reference = reference
         if is_due(step, reu.force_steps, reu.offset_steps):
             if reu.force_kind == LINEARISES:
@@ -150,7 +148,7 @@ def force_reference_inwards(step, reference, reu, state):
                 block_step(reference, state.measured.force, velocity, place, reu.stroke,
                            reu.force, state.force)
         reference = state.force.output
-    if reu.pressure_kind != OFF:
+    if reu.pressure_kind != OFF and acting >= PRESSURE:
         if is_due(step, reu.pressure_steps, reu.offset_steps):
             block_step(reference, state.measured.pressure_a - state.measured.pressure_b,
                        velocity, place, reu.stroke, reu.pressure, state.pressure)
@@ -161,11 +159,11 @@ def force_reference_inwards(step, reference, reu, state):
 @kernel
 def spool_block(step, reference, reu, state):
     """
-    Run the spool block if it is on and due; return the series-scale current, in A.
+    Run the spool block if it acts and is due; return the series-scale current, in A.
 
-    ``reference`` is the spool's in m, or that current if the block is off.
+    ``reference`` is the spool's in m, or that current without the block.
     """
-    if reu.spool_kind == OFF:
+    if reu.spool_kind == OFF or state.status.acting == CURRENT:
         state.spool_reference = reu.k_spool * reference
         return reference
     if is_due(step, reu.spool_steps, reu.offset_steps):
@@ -181,22 +179,28 @@ def spool_block(step, reference, reu, state):
 @kernel
 def cascade_step(step, reu, state):
     """
-    Run every block that is due at plant step ``step`` on ``state.measured``.
+    Run the device and every block that is due at plant step ``step`` on ``state.measured``.
 
     An REU that is frozen runs none: references and drive stay.
     """
     if reu.is_frozen > 0.0:
         return
+    device = state.status
+    device_step(step, reu, state)
     if is_due(step, reu.speed_steps, reu.offset_steps):
         speed_step(state.measured.position, reu.speed, state.speed)
     reference = position_reference_inwards(step, reu, state)
     reference = force_reference_inwards(step, reference, reu, state)
-    if state.setpoint.is_enabled == 0.0 or is_inhibited(reference, state.protection):
+    if not device.is_on or is_inhibited(reference, state.protection):
         rest(state.position)
         rest(state.force)
         rest(state.pressure)
         reference = 0.0
-    state.current_reference = reu.parallel * spool_block(step, reference, reu, state)
+    series = spool_block(step, reference, reu, state)
+    if device.fade.begins or device.fade.is_on:
+        series = faded(
+            series, state.current_reference / reu.parallel, reu.rules.fade, device.fade)
+    state.current_reference = reu.parallel * series
     if reu.current_kind == LEADS_AND_LAGS:
         state.drive = lead_lag_step(
             state.current_reference, state.measured.current, reu.lead_lag, state.lead_lag)

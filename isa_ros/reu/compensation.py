@@ -55,3 +55,14 @@ def dual_gain_compensation(demand, compensation):
     if demand < -knee:
         return -knee + compensation.slope * (demand + knee)
     return demand
+
+
+@kernel
+def flow_curve(output, compensation):
+    """Return the demand whose `dual_gain_compensation` is ``output``  (R4), in its unit."""
+    knee = compensation.knee
+    if output > knee:
+        return knee + (output - knee) / compensation.slope
+    if output < -knee:
+        return -knee + (output + knee) / compensation.slope
+    return output

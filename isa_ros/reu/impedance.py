@@ -26,7 +26,9 @@ class Impedance(Parameters):
 IMPEDANCE = np.dtype([('force_out', 'f8'), ('force_in', 'f8')])
 SETPOINT = np.dtype([
     ('position', 'f8'), ('velocity', 'f8'), ('effort', 'f8'),
-    ('stiffness', 'f8'), ('damping', 'f8'), ('is_enabled', 'f8')])
+    ('stiffness', 'f8'), ('damping', 'f8'),
+    ('reference', 'f8'),      # of the modes current, spool and pressure: A, m, Pa
+    ('is_reference', 'f8')])  # 1: it is their setpoint; 0: the effort is
 
 
 def impedance_record(sheet: Impedance) -> np.record:

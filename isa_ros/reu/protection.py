@@ -10,11 +10,11 @@ Inputs are what the sensors read, not the exact states.
 import math
 from typing import NamedTuple
 
+from isa_ros.core.conditions import BITS, CONDITIONS, REACTIONS
 from isa_ros.core.kernel import kernel
 from isa_ros.core.record import record
 from isa_ros.core.timebase import PLANT_STEP
 from isa_ros.core.units import MILLI
-from isa_ros.core.conditions import BITS, CONDITIONS, REACTIONS
 from isa_ros.reu.impedance import SETPOINT
 from isa_ros.reu.plausibility import (
     acceleration_step, EVIDENCE, EVIDENCE_STATE, jump_speed, unexplained_force)
@@ -135,12 +135,12 @@ _DIGITS = 9  # a delay of 10 ms is 100 periods of 0.1 ms, not 101
 
 
 @kernel
-def measure(supply_pressure, temperature, velocity, measured, setpoint, protection, own):
+def measure(supply_pressure, temperature, velocity, measured, is_on, protection, own):
     """Write the quantity of every condition at one conversion into ``own.values``, SI."""
     values = own.values
     highest = max(measured.pressure_a, measured.pressure_b)
     if own.setpoint_age > 0:
-        if setpoint.is_enabled == 0.0:
+        if not is_on:
             own.setpoint_age = 1
         values[SETPOINT_TIMEOUT] = (own.setpoint_age - 1) * protection.period
         own.setpoint_age += 1
@@ -201,7 +201,7 @@ def judge(step, protection, own):
         if protection.sign[k] * own.values[k] > protection.quiet[k] or own.busy >> k & 1:
             judge_one(k, step, protection, own)
     own.clears = 0
-    if own.trips & own.first == 0:  # the cause is cleared: of several that are left, the lowest bit
+    if own.trips & own.first == 0:  # cleared; of several trips that are left, the lowest bit
         own.first = own.trips & -own.trips
 
 
@@ -224,8 +224,8 @@ def react(protection, state):
     """
     Take the strongest reaction of the trips of a `REU_STATE`.
 
-    hold and quick_stop: the position measured at the trip is the setpoint. damp: an impedance
-    without stiffness. disable: the valve is commanded to null.
+    hold: the position measured at the trip is the setpoint. damp: an impedance without
+    stiffness. The device reacts to quick_stop and disable.
     """
     own, before = state.protection, state.protection.reaction
     own.reaction, own.inhibited = NONE, 0
@@ -235,14 +235,11 @@ def react(protection, state):
             if protection.reaction[k] == LIMIT:
                 own.inhibited |= worsening(
                     k, state.speed.velocity, state.measured, protection.stroke)
-    if own.reaction == DISABLE:
-        state.setpoint.is_enabled = 0.0
-    if HOLD <= own.reaction <= QUICK_STOP:
-        if own.reaction == DAMP or not HOLD <= before <= QUICK_STOP:
+    if HOLD <= own.reaction <= DAMP:
+        if own.reaction == DAMP or not HOLD <= before <= DAMP:
             own.setpoint.position = state.measured.position
         own.setpoint.stiffness = 0.0 if own.reaction == DAMP else state.setpoint.stiffness
         own.setpoint.damping = state.setpoint.damping
-        own.setpoint.is_enabled = state.setpoint.is_enabled
 
 
 @kernel
@@ -250,8 +247,8 @@ def protect(step, supply_pressure, temperature, protection, state):
     """Measure, judge and react at one conversion; ``state`` is a `REU_STATE`."""
     own = state.protection
     acceleration_step(step, state.speed.velocity, protection.evidence, own.evidence)
-    measure(supply_pressure, temperature, state.speed.velocity, state.measured, state.setpoint,
-            protection, own)
+    measure(supply_pressure, temperature, state.speed.velocity, state.measured,
+            state.status.is_on, protection, own)
     own.values[LINK_LOST] = state.link_silence
     judge(step, protection, own)
     if own.trips != 0 or own.reaction != NONE:
@@ -260,8 +257,10 @@ def protect(step, supply_pressure, temperature, protection, state):
 
 @kernel
 def setpoint_in_force(state):
-    """Return the setpoint that the blocks of a `REU_STATE` follow: commanded, or of a reaction."""
-    if HOLD <= state.protection.reaction <= QUICK_STOP:
+    """Return the setpoint that the blocks of a `REU_STATE` follow: its own, a stop's, a trip's."""
+    if state.status.is_stopping:
+        return state.status.stop
+    if HOLD <= state.protection.reaction <= DAMP:
         return state.protection.setpoint
     return state.setpoint
 
@@ -283,3 +282,12 @@ def feed(own):
 def request_clear(own):
     """Let the next conversion clear the trips whose condition has ended."""
     own.clears = 1
+
+
+@kernel
+def is_cause_gone(protection, own):
+    """Return whether the condition of every trip that stops the actuator has ended."""
+    for k in range(N):
+        if own.present >> k & 1 and protection.reaction[k] >= QUICK_STOP:
+            return False
+    return True

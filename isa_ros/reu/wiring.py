@@ -8,13 +8,16 @@ that is on. With all but the current block off the REU is a plain valve amplifie
 a block have the unit of its output: switching the next block inwards on or off changes it.
 """
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
+from isa_ros.core.device import CURRENT, MODES
 from isa_ros.core.parameter import fault, parameter, Parameters, section
+from isa_ros.core.suggest import alternatives
 from isa_ros.core.timebase import NS_PER_SECOND, PLANT_STEP_NS, steps_in
 from isa_ros.errors import ConfigError
 from isa_ros.reu.block import Pid
 from isa_ros.reu.compensation import DualGain
+from isa_ros.reu.device_sheet import BEFORE, Device
 from isa_ros.reu.feedback_linearisation import FeedbackLinearisation
 from isa_ros.reu.impedance import Impedance
 from isa_ros.reu.lead_lag import LeadLag
@@ -37,6 +40,13 @@ class Held(Parameters):
     rate_hz: float = parameter('loop rate', 'Hz', gt=0.0, le=50e3)
 
 
+OFF, HELD, PID, IMPEDES, LINEARISES, LEADS_AND_LAGS = range(6)
+KINDS: dict[type, int] = {
+    Off: OFF, Held: HELD, Pid: PID, Impedance: IMPEDES, FeedbackLinearisation: LINEARISES,
+    LeadLag: LEADS_AND_LAGS}
+"""The kinds of blocks as numbers, for the kernels."""
+
+
 @dataclass(frozen=True, kw_only=True)
 class Reu(Parameters):
     """The control blocks by the variable they control, outermost first."""
@@ -47,6 +57,7 @@ class Reu(Parameters):
     pressure: Off | Pid
     spool: Off | Held | Pid
     current: Held | LeadLag
+    device: Device = field(default=BEFORE, metadata={'absent': BEFORE})
     computation_delay_us: float = parameter(
         'from an instant of the loops to its output at the amplifier', 'us', ge=0.0, le=1e3)
     frozen: float = fault(
@@ -86,6 +97,52 @@ def refuse_nonsense(reu: Reu) -> None:
             'set reu.position.kind: pid for pure position control')
     _refuse_far_from_valve(reu)
     delay_steps(reu, loop_steps(reu)['current'])
+
+
+def block_of(mode: int, reu: Reu) -> Parameters:
+    """Return the outermost block of a mode, which may be off or of another kind."""
+    name = MODES[mode]
+    block: Parameters = getattr(reu, 'position' if name == 'impedance' else name)
+    return block
+
+
+def possible_modes(reu: Reu) -> tuple[int, ...]:
+    """Return the modes that the wiring has, innermost first."""
+    return tuple(mode for mode in range(CURRENT, len(MODES)) if not why_impossible(mode, reu))
+
+
+def first_mode(reu: Reu) -> int:
+    """Return the mode with every block that is on, in which an actuator starts."""
+    return possible_modes(reu)[-1]
+
+
+def why_impossible(mode: int, reu: Reu) -> str:
+    """Return why the wiring does not have a mode, or ''."""
+    name, block = MODES[mode], block_of(mode, reu)
+    if name == 'impedance' and not isinstance(block, Impedance):
+        return 'reu.position.kind is not impedance'
+    if name == 'position' and isinstance(block, Impedance):
+        return 'reu.position.kind = impedance, must be pid'
+    return f'reu.{name}.kind = off' if isinstance(block, Off) else ''
+
+
+def mode_of(name: str, reu: Reu, where: str = 'mode') -> int:
+    """
+    Return the number of a mode.
+
+    Raises
+    ------
+    ConfigError
+        The mode does not exist, or the wiring does not have it.
+
+    """
+    if name not in MODES[CURRENT:]:
+        raise ConfigError(f'{where} = {name!r} is unknown; {alternatives(name, MODES[CURRENT:])}')
+    mode = MODES.index(name)
+    if why := why_impossible(mode, reu):
+        names = ', '.join(MODES[possible] for possible in possible_modes(reu))
+        raise ConfigError(f'{where} = {name}: {why}; possible: {names}')
+    return mode
 
 
 def valve_block(reu: Reu) -> str | None:

@@ -27,6 +27,10 @@ class Interrupted(IsaError):
     exit_code = 130
 
 
+def admit_all(t_ns: int, requests: Records) -> None:
+    """Admit every request."""
+
+
 @dataclass(frozen=True, kw_only=True)
 class Plan:
     """Content and length of a run."""
@@ -39,6 +43,8 @@ class Plan:
     """Overwrites `COMMAND` rows of one tick, which contain the requests of controllers."""
     changes: Callable[[int], ParameterChanges | None] = lambda tick: None
     """Returns the parameters that faults change at a tick's start."""
+    admit: Callable[[int, Records], None] = admit_all
+    """Refuses or limits those requests, given the time in ns, before they become commands."""
     is_paused: bool = False
     """Start paused: wait for the first `Coordinator.step` or the end of the pause."""
 
@@ -209,6 +215,7 @@ class Coordinator:
         self._lap(BEFORE_TICKS)
         rows.commands[:] = rows.requests
         rows.requests['kinds'] = 0
+        self._plan.admit(self.t_ns, rows.commands)
         self._plan.commands(tick, rows.commands)
         self._change(tick)
         self._surroundings.ports(rows.ports)

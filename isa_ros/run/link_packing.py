@@ -8,13 +8,15 @@ plant step at which it took effect. ``~/sent_setpoint`` is what was handed to th
 from collections.abc import Mapping, Sequence
 
 from isa_ros.core.kernel import kernel
-from isa_ros.core.signals import HAS_ENABLE, HAS_GAINS, HAS_SETPOINT, Records
+from isa_ros.core.signals import (
+    HAS_ENABLE, HAS_GAINS, HAS_MODE, HAS_REFERENCE, HAS_SETPOINT, Records)
 from isa_ros.core.timebase import NS_PER_SECOND, PLANT_STEP, PLANT_STEP_NS
 from msg_adapters.sent_setpoint import sent_setpoint
 from msg_adapters.template import FIRST_VALUE, Prepared, stamped
 import numpy as np
 
-_SENT = ('is_enabled', 'position', 'velocity', 'effort', 'stiffness', 'damping')
+_SENT = ('is_enabled', 'position', 'velocity', 'effort', 'stiffness', 'damping', 'mode',
+         'reference', 'kinds')
 WORDS = 2 + len(_SENT)
 """Words of one link: times of sampling and of effect, then the values of the sent setpoint."""
 
@@ -50,6 +52,11 @@ def pack_links(t_ns, tick_start_ns, at, links, ages, applied, sent, words, value
         if kinds & (HAS_SETPOINT | HAS_GAINS):
             values[at + 6] = command.stiffness
             values[at + 7] = command.damping
+        if kinds & (HAS_MODE | HAS_REFERENCE):
+            values[at + 8] = float(command.mode)
+        if kinds & HAS_REFERENCE:
+            values[at + 9] = command.reference
+        values[at + 10] = float(kinds)
         at += WORDS
 
 

@@ -86,15 +86,17 @@ class Narrator:
         ``tuned`` are the parameters that changed at the start of the last tick, by row, and
         ``tuned_supplies`` those of the supplies.
         """
-        outlets = self._outlets
+        outlets, packer = self._outlets, self._packer
+        t_ns = tick * self._step_ns
+        start_ns = max(0, t_ns - self._step_ns)
         subscribed = [
             row for row, outlet in enumerate(outlets.actuators)
-            if outlet.has_subscribers() or self._packer.has_applied(row) or row in tuned]
+            if outlet.has_subscribers() or packer.has_applied(row) or row in tuned
+            or packer.has_status(row, t_ns, start_ns)]
         has_surroundings = outlets.surroundings.has_subscribers() or bool(tuned_supplies)
         if self._recorder is None and not subscribed and not has_surroundings:
             return
-        t_ns = tick * self._step_ns
-        self._packer.pack(t_ns, max(0, t_ns - self._step_ns), tuned, tuned_supplies)
+        packer.pack(t_ns, start_ns, tuned, tuned_supplies)
         self._unrecorded = tick
         for row in subscribed:
             outlets.actuators[row].publish(self._packer.of_actuator(row))

@@ -11,20 +11,22 @@ from typing import NamedTuple
 from isa_ros.bag.packed import Layout, layout, Packed
 from isa_ros.core.accounts import accounts_of
 from isa_ros.core.atmosphere import ATMOSPHERE
+from isa_ros.core.device import FIELDS
 from isa_ros.core.kernel import kernel
 from isa_ros.core.record import float_columns, floats
-from isa_ros.core.signals import COMMAND, Records, SAMPLE
-from isa_ros.core.timebase import NS_PER_SECOND
+from isa_ros.core.signals import Records, SAMPLE
+from isa_ros.core.timebase import NS_PER_SECOND, PLANT_STEP_NS
 from isa_ros.core.topic import KEPT, Qos, Topic
 from isa_ros.run.diagnostics import energy_statuses, PERIOD_NS
 from isa_ros.run.link_packing import LinkWords
 from isa_ros.surroundings.supply import SUPPLY_SAMPLE
 from msg_adapters import (
-    actuator_messages, clock, coordinator_messages, diagnostics, event, fluid_pressure,
+    actuator_messages, clock, coordinator_messages, device, diagnostics, event, fluid_pressure,
     temperature)
 from msg_adapters.actuator_messages import (
     KEPT_TOPICS, SENT_SETPOINT, STATE_TOPICS, TEMPERATURE, topics)
 from msg_adapters.applied_parameters import applied_parameters
+from msg_adapters.cdr import encode
 from msg_adapters.template import FIRST_VALUE, Prepared, Template, time_word
 import numpy as np
 
@@ -32,7 +34,8 @@ Messages = Sequence[bytes | None]
 """Serialised messages of one source in the order of its topics; None: no message at this tick."""
 
 _SAMPLE, _SUPPLY = tuple(SAMPLE.names or ()), tuple(SUPPLY_SAMPLE.names or ())
-_APPLIED = tuple(name for name in COMMAND.names or () if name not in ('kinds', 'due_step'))
+_APPLIED = ('is_enabled', 'position', 'velocity', 'effort', 'stiffness', 'damping', 'mode',
+            'reference', 'kinds')
 _PRESSURES = ('pressure_a', 'pressure_b')
 _FIRST_PRESSURE = _SAMPLE.index(_PRESSURES[0])
 _SUPPLY_PRESSURES = ('pressure', 'return_pressure')
@@ -103,7 +106,9 @@ def pack(instant, tick_start, gauge_zero, samples, applied, supplies, body, word
         values[at + 2], values[at + 3] = float(command.is_enabled), command.position
         values[at + 4], values[at + 5] = command.velocity, command.effort
         values[at + 6], values[at + 7] = command.stiffness, command.damping
-        at += 8
+        values[at + 8], values[at + 9] = float(command.mode), command.reference
+        values[at + 10] = float(command.kinds)
+        at += 11
     for m in range(len(supplies)):
         values[at], values[at + 1] = supplies[m, 0] + gauge_zero, supplies[m, 1] + gauge_zero
         at += 2
@@ -169,6 +174,7 @@ class Packer:
         self._bytes = self._template.block.view(np.uint8)
         self._tuned: dict[int, bytes] = {}
         self._tuned_supplies: bytes | None = None
+        self._status: dict[int, bytes] = {}
         self._t_ns = 0
         self._diagnosed: bytes | None = None
         self._periods = dict(names.periods) | {
@@ -221,9 +227,17 @@ class Packer:
             for row, values in tuned.items()} if tuned else {}
         self._tuned_supplies = applied_parameters(
             coordinator_messages.NODE, tuned_supplies, tick_start_ns) if tuned_supplies else None
+        self._status = {
+            row: encode(device.status(name, self._device_of(row)))
+            for row, (name, _) in enumerate(self._names.actuators)
+            if self.has_status(row, t_ns, tick_start_ns)}
         self._t_ns, self._diagnosed = t_ns, None
         if self._is_run and t_ns % PERIOD_NS == 0:
             self.diagnose()
+
+    def _device_of(self, row: int) -> dict[str, float]:
+        sample = self._shown.samples[row]
+        return {field: float(sample[field]) for field in FIELDS}
 
     def diagnose(self) -> bytes:
         """Add the diagnostics to the packed instant, and return them."""
@@ -240,13 +254,16 @@ class Packer:
         if where is None:
             where = self._layouts[key] = self._layout()
         packed = Packed(self._bytes, where)
-        if not (events or self._tuned or self._tuned_supplies or self._diagnosed):
+        if not (events or self._tuned or self._tuned_supplies or self._status
+                or self._diagnosed):
             return packed
         extra = [(self._index[event.TOPIC[0]], data) for data in events]
         extra += [(self._index[f'/{self._names.actuators[row][0]}/{_PARAMETERS}'], data)
                   for row, data in self._tuned.items()]
         if self._tuned_supplies is not None:
             extra.append((self._index[_TUNED_SUPPLIES[0]], self._tuned_supplies))
+        extra += [(self._index[f'/{self._names.actuators[row][0]}/{_DEVICE}'], data)
+                  for row, data in self._status.items()]
         if self._diagnosed is not None:
             extra.append((self._index[diagnostics.TOPIC[0]], self._diagnosed))
         return Packed.of(sorted([*packed, *extra], key=lambda message: message[0]))
@@ -272,6 +289,7 @@ class Packer:
         messages = [self._tuned.get(row), *(
             self._message(f'/{name}/{suffix}') if kinds[row] else None
             for suffix, kinds in commands[:1 + (row in self._links.rows)]),
+            self._status.get(row),
             *(self._message(f'/{name}/{suffix}') for suffix, _ in STATE_TOPICS)]
         if name in self._names.heated:
             temperature = f'/{name}/{TEMPERATURE[0]}'
@@ -281,6 +299,17 @@ class Packer:
     def has_applied(self, row: int) -> bool:
         """Return whether a command of an actuator took effect in the last tick, or was sent."""
         return bool(self._kinds[row] or self._sent_kinds[row])
+
+    def has_status(self, row: int, t_ns: int, tick_start_ns: int) -> bool:
+        """
+        Return whether a tick has a message of an actuator's device.
+
+        It is one in which the status has changed, as far as it has arrived over a link, or a
+        second of simulated time ended; t = 0.
+        """
+        since = (self._samples[row, _SINCE] + self._samples[row, _AGE]) * NS_PER_SECOND
+        return bool(since > tick_start_ns - _HALF_STEP_NS
+                    or t_ns // NS_PER_SECOND != tick_start_ns // NS_PER_SECOND or t_ns == 0)
 
     def of(self, topics: Sequence[Topic]) -> list[bytes | None]:
         """Return the messages of some topics of supplies and body; None: none at this instant."""
@@ -312,3 +341,6 @@ _SETPOINT = actuator_messages.APPLIED_SETPOINT[0]
 _SENT = SENT_SETPOINT[0]
 _PARAMETERS = actuator_messages.APPLIED_PARAMETERS[0]
 _TUNED_SUPPLIES = coordinator_messages.APPLIED_PARAMETERS
+_DEVICE = actuator_messages.DEVICE[0]
+_SINCE, _AGE = _SAMPLE.index('state_since'), _SAMPLE.index('age')
+_HALF_STEP_NS = 0.5 * PLANT_STEP_NS

@@ -9,15 +9,16 @@ from pathlib import Path
 from isa_ros.bag.directory import files_to_replace
 from isa_ros.bag.provenance import installed_versions, provenance_of
 from isa_ros.bag.writer import BagWriter
-from isa_ros.config.assembly import surroundings_of
+from isa_ros.config.assembly import request_range_of, surroundings_of
 from isa_ros.config.changes import changes_of
 from isa_ros.config.run_config import RunConfig
 from isa_ros.config.run_file import load_run
 from isa_ros.core.saved_state import read_state, RunState, write_state
+from isa_ros.core.signals import Records
 from isa_ros.core.timebase import NS_PER_SECOND
 from isa_ros.core.topic import Topic
 from isa_ros.errors import BagError, ConfigError
-from isa_ros.run.coordinator import Coordinator, Plan, Requests
+from isa_ros.run.coordinator import admit_all, Coordinator, Plan, Requests
 from isa_ros.run.exchange import Rows, Transport
 from isa_ros.run.narrator import Narrator, Outlets, packer_of
 from isa_ros.run.options import Request
@@ -49,6 +50,11 @@ class Session:
     def run(self) -> RunConfig:
         """Return the configuration that is simulated and recorded."""
         return self.scenario.run
+
+    @property
+    def warnings(self) -> tuple[str, ...]:
+        """Return lines to print before the run."""
+        return self.scenario.warnings
 
 
 def prepare(request: Request) -> Session:
@@ -112,15 +118,20 @@ def _check_output(out: Path, overwrite: bool) -> None:
         raise BagError(f'{out}: cannot be created, {parent} is not writable')
 
 
+def _no_warning(line: str) -> None:
+    """Print nothing."""
+
+
 def record(
         session: Session, transport: Transport, surroundings: Surroundings,
         outlets: Callable[[Sequence[Topic]], Outlets], report: Report | None,
-        should_stop: Callable[[], bool], requests: Requests | None = None) -> None:
+        should_stop: Callable[[], bool], requests: Requests | None = None,
+        warn: Callable[[str], object] = _no_warning) -> None:
     """
     Join the participants of ``transport``, run, and record every sample.
 
     ``outlets`` creates the publishers for the topics of supplies and body. A reset starts again
-    at t = 0, with another bag beside the first.
+    at t = 0, with another bag beside the first. ``warn`` prints a line.
     """
     beginning, state, out = surroundings.snapshot(), session.state, session.out
     rows = Rows(len(session.run.actuators), surroundings)
@@ -129,7 +140,7 @@ def record(
     while True:
         coordinator = _record_one(
             session, out, state, transport, surroundings, rows, packer, published, report,
-            should_stop, requests)
+            should_stop, requests, warn)
         if not coordinator.is_reset:
             break
         surroundings.restart(beginning)
@@ -142,12 +153,13 @@ def _record_one(
         session: Session, out: Path, state: RunState | None, transport: Transport,
         surroundings: Surroundings, rows: Rows, packer: Packer, outlets: Outlets,
         report: Report | None, should_stop: Callable[[], bool],
-        requests: Requests | None) -> Coordinator:
+        requests: Requests | None, warn: Callable[[str], object]) -> Coordinator:
     """Run once, to the end or to a reset, and return the coordinator."""
     run, n_ticks = session.run, session.scenario.n_ticks
     plan = Plan(
         step_ns=run.step_ns, rows=rows, n_ticks=n_ticks,
         commands=session.scenario.commands, changes=session.scenario.changes_at,
+        admit=_admission(run, warn),
         is_paused=session.request.is_paused)
     laps = session.request.laps or Laps()
     laps.lap(STARTING)
@@ -167,6 +179,19 @@ def _record_one(
             should_stop=should_stop, requests=requests, laps=session.request.laps)
         coordinator.run(state)
     return coordinator
+
+
+def _admission(
+        run: RunConfig, warn: Callable[[str], object]) -> Callable[[int, Records], None]:
+    """Return what checks the requests of a run's controllers, and reports by ``warn``."""
+    if not run.controllers:
+        return admit_all
+    request_range = request_range_of(run)
+
+    def admit(t_ns: int, requests: Records) -> None:
+        for line in request_range.admit(t_ns, requests):
+            warn(line)
+    return admit
 
 
 def save(session: Session, coordinator: Coordinator, path: Path) -> None:

@@ -6,7 +6,7 @@ of the leg gives its own `run`: the configuration to simulate, record and replay
 """
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from functools import cached_property
 import math
 from pathlib import Path
@@ -14,17 +14,22 @@ from typing import Any
 
 from isa_ros.config.catalogue import actuator_model
 from isa_ros.config.changes import changed, Changes, SCENARIO
+from isa_ros.config.coarse_ticks import coarse_ticks
+from isa_ros.config.names import name_of
 from isa_ros.config.own_load import own_load, refuse_beyond_stops
 from isa_ros.config.run_config import ActuatorConfig, RunConfig
-from isa_ros.config.run_file import leg_start, name_of, refuse_reach, refuse_start, ticks_in
 from isa_ros.config.sections import Place, refuse_unknown, section_at
+from isa_ros.config.starts import leg_start, refuse_reach, refuse_start
+from isa_ros.config.tick_grid import ticks_in
 from isa_ros.config.yaml_text import dump, parse, read, Tree
 from isa_ros.core.parameter import check
 from isa_ros.core.suggest import alternatives
 from isa_ros.core.timebase import NS_PER_SECOND
 from isa_ros.errors import ConfigError
 from isa_ros.scenario.faults import Fault, ParameterChanges, read_faults, timetable
-from isa_ros.scenario.setpoints import event_tree, MAX_DURATION, read_track, Track
+from isa_ros.scenario.range_check import ACCEPT, within_range
+from isa_ros.scenario.setpoints import MAX_DURATION, read_track
+from isa_ros.scenario.track import event_tree, Track
 import numpy as np
 from numpy.typing import NDArray
 
@@ -32,6 +37,8 @@ FIGURES = (
     'position_torque_tracking', 'torque_step', 'force_step', 'impact', 'weight', 'knee_sine',
     'leg_drop', 'valve_response', 'flow_gain', 'leakage', 'current_step', 'bandwidth')
 """Figures of the paper that a scenario may be drawn as; `analysis.report` draws them."""
+
+BEYOND = 'beyond_range'
 
 
 @dataclass(frozen=True)
@@ -46,7 +53,16 @@ class Scenario:
     tracks: tuple[Track, ...]
     figure: str | None = None
     """One of `FIGURES`, which `isa report` draws first."""
+    accepts_beyond: bool = False
+    """Whether setpoints beyond the range of their actuators are taken as they are."""
+    limited: tuple[str, ...] = field(default=(), compare=False)
+    """Lines on the setpoints that are limited to the range of their actuators."""
     faults: tuple[Fault, ...] = ()
+
+    @property
+    def warnings(self) -> tuple[str, ...]:
+        """Return lines to print before the run."""
+        return (*self.limited, *coarse_ticks(self.run))
 
     @property
     def duration_s(self) -> float | None:
@@ -116,6 +132,8 @@ class Scenario:
             tree['figure'] = self.figure
         if self.duration_s is not None:
             tree['duration_s'] = self.duration_s
+        if self.accepts_beyond:
+            tree[BEYOND] = ACCEPT
         tree['tracks'] = {
             track.actuator: [event_tree(event, self.run.step_ns) for event in track.events]
             for track in self.tracks}
@@ -170,18 +188,32 @@ def scenario_of(text: str, run: RunConfig, name: str = 'scenario.yaml') -> Scena
 def read_scenario(tree: Tree, place: Place, run: RunConfig) -> Scenario:
     """Return the scenario of a file's tree; as `load_scenario`."""
     refuse_unknown(
-        tree, ('name', 'figure', 'duration_s', 'leg', 'loads', 'tracks', 'faults'), place)
+        tree, ('name', 'figure', 'duration_s', BEYOND, 'leg', 'loads', 'tracks', 'faults'), place)
     name = name_of(tree, 'name', place)
     n_ticks = _duration(tree.get('duration_s'), run.step_ns, f'{place}: duration_s')
     run = _with_loads(_with_leg(run, tree, place), tree, place)
     sections = section_at(tree.get('tracks', {}), place / 'tracks')
-    tracks = []
-    for actuator, points in sections.items():
-        _refuse_stranger(actuator, run, place / 'tracks' / actuator)
-        tracks.append(
-            read_track(run, actuator, points, place / 'tracks' / actuator, n_ticks))
+    accepts_beyond = _accepts_beyond(tree, place)
+    tracks: list[Track] = []
+    limited: list[str] = []
+    for name_there, points in sections.items():
+        below = place / 'tracks' / name_there
+        _refuse_stranger(name_there, run, below)
+        track = read_track(run, name_there, points, below, n_ticks)
+        track, lines = within_range(
+            track, run.actuator(name_there), run.step_ns, accepts_beyond, below)
+        tracks.append(track)
+        limited += lines
     faults = read_faults(tree.get('faults', []), place / 'faults', run, n_ticks)
-    return Scenario(name, run, n_ticks, tuple(tracks), figure_of(tree, place), faults)
+    return Scenario(name, run, n_ticks, tuple(tracks), figure_of(tree, place), accepts_beyond,
+                    tuple(limited), faults)
+
+
+def _accepts_beyond(tree: Tree, place: Place) -> bool:
+    if BEYOND not in tree:
+        return False
+    check(str(place / BEYOND), tree[BEYOND], {'names': (ACCEPT,)})
+    return True
 
 
 def figure_of(tree: Tree, place: Place) -> str | None:

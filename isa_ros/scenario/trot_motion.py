@@ -11,8 +11,9 @@ from functools import cached_property
 
 from isa_ros.config.catalogue import gait_section, leg_section
 from isa_ros.config.leg_config import LegConfig
+from isa_ros.config.parameter_sets import as_tree, build
 from isa_ros.config.run_config import ActuatorConfig
-from isa_ros.config.sections import as_tree, build, merge, Place, written
+from isa_ros.config.sections import merge, Place, written
 from isa_ros.config.yaml_text import Tree
 from isa_ros.core.parameter import choice, parameter
 from isa_ros.core.timebase import NS_PER_SECOND
@@ -69,8 +70,20 @@ class GaitMotion:
     @cached_property
     def span(self) -> tuple[float, float]:
         """Return the least and the greatest position of a stride, m or rad."""
-        positions = [self._joint(k / CHECKED_INSTANTS)[0] for k in range(CHECKED_INSTANTS)]
+        positions = [position for position, _, _ in self._stride]
         return min(positions), max(positions)
+
+    @cached_property
+    def _stride(self) -> list[tuple[float, float, float]]:
+        """Return position, velocity and effort of the actuator at the instants of a stride."""
+        return [self._joint(k / CHECKED_INSTANTS) for k in range(CHECKED_INSTANTS)]
+
+    def reach(self) -> tuple[Excursion, Excursion]:
+        """Return the least and the greatest position and effort, those of the start with them."""
+        low, high = (end - self.origin for end in self.span)
+        efforts = [0.0, *(self.gait.feed_forward * effort for _, _, effort in self._stride)]
+        return (Excursion(min(low, 0.0), 0.0, min(efforts)),
+                Excursion(max(high, 0.0), 0.0, max(efforts)))
 
     @cached_property
     def origin(self) -> float:

@@ -8,10 +8,10 @@ that the damping of the impedance does not brake it; one of the effort changes t
 from abc import ABC, abstractmethod
 from dataclasses import dataclass
 import math
-from typing import NamedTuple, Protocol
+from typing import ClassVar, NamedTuple, Protocol
 
-from isa_ros.config.run_file import ticks_in
-from isa_ros.config.sections import as_tree
+from isa_ros.config.parameter_sets import as_tree
+from isa_ros.config.tick_grid import ticks_in
 from isa_ros.config.yaml_text import Tree
 from isa_ros.core.elementary import cos, exp, expm1, log, sin
 from isa_ros.core.parameter import check, choice, parameter, Parameters
@@ -40,6 +40,10 @@ class Motion(Protocol):
         """Return the excursion ``t_ns`` after the event."""
         ...
 
+    def reach(self) -> tuple[Excursion, Excursion]:
+        """Return the least and the greatest position and effort that it ever has."""
+        ...
+
     def tree(self) -> Tree:
         """Return its section of a scenario file."""
         ...
@@ -48,6 +52,9 @@ class Motion(Protocol):
 @dataclass(frozen=True, kw_only=True)
 class Waveform(Parameters, ABC):
     """Parameters of every waveform; by default it moves the position."""
+
+    ENDS: ClassVar[tuple[float, float]] = (-1.0, 1.0)
+    """Least and greatest value, in amplitudes."""
 
     moves: str = choice('quantity it is added to', POSITION, EFFORT)
     amplitude: float = parameter('amplitude', UNITS, ge=-MAX_EFFORT, le=MAX_EFFORT)
@@ -63,6 +70,11 @@ class Waveform(Parameters, ABC):
     def tree(self) -> Tree:
         """Return its section of a scenario file."""
         return as_tree(self)
+
+    def reach(self) -> tuple[Excursion, Excursion]:
+        """Return the least and the greatest excursion, without their velocities."""
+        low, high = self.ENDS if self.amplitude >= 0.0 else self.ENDS[::-1]
+        return self._excursion(low, 0.0), self._excursion(high, 0.0)
 
     @abstractmethod
     def at(self, t_ns: int) -> Excursion:
@@ -151,6 +163,8 @@ class Chirp(Waveform):
 @dataclass(frozen=True, kw_only=True)
 class Pulse(Waveform):
     """A train of steps: the amplitude for a width, then zero until the period is over."""
+
+    ENDS = (0.0, 1.0)
 
     period_s: float = parameter('from one step to the next', 's', gt=0.0, le=1e5)
     width_s: float = parameter('of a step', 's', gt=0.0, le=1e5)

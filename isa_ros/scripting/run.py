@@ -6,6 +6,7 @@ from pathlib import Path
 import re
 import sys
 from typing import Any
+import warnings
 
 from isa_ros.config.changes import replaced, SCENARIO
 from isa_ros.config.paths import CONFIG, find, SCENARIOS
@@ -157,13 +158,19 @@ class Run:
         return named
 
     def _with_names(self, names: Sequence[str]) -> Scenario:
-        """Return the scenario with these controllers, among them all those of the run file."""
+        """
+        Return the scenario with these controllers, among them all those of the run file.
+
+        What a run on nodes prints before it begins is a `UserWarning`.
+        """
         run = self.configuration
         for name in run.controllers:
             if name not in names:
                 raise ConfigError(
                     f'{self._config.name}: controllers: {name!r} takes part in this run; give it '
                     'as one of the controllers')
+        for line in self.scenario.warnings:
+            warnings.warn(line, stacklevel=3)
         added = [name for name in names if name not in run.controllers]
         return replace(self.scenario, run=run.with_controllers(added))
 

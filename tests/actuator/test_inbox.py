@@ -4,7 +4,9 @@ import math
 
 from hypothesis import given, strategies as st
 from isa_ros.actuator import inbox
-from isa_ros.core.signals import COMMAND, HAS_ENABLE, HAS_GAINS, HAS_SETPOINT
+from isa_ros.core.device import CURRENT, DISABLED, ENABLED, IMPEDANCE, SPOOL
+from isa_ros.core.signals import (
+    COMMAND, EVERY_KIND, HAS_ENABLE, HAS_GAINS, HAS_MODE, HAS_REFERENCE, HAS_SETPOINT)
 from isa_ros.reu.cascade import REU_STATE
 import numpy as np
 import pytest
@@ -13,7 +15,8 @@ EVERYTHING = HAS_SETPOINT | HAS_ENABLE | HAS_GAINS
 NUMBERS = st.floats(-1e6, 1e6)
 GAINS = st.just(math.nan) | st.floats(0.0, 1e6)
 COMMANDS = st.tuples(
-    st.integers(0, EVERYTHING), st.integers(0, 1), NUMBERS, NUMBERS, NUMBERS, GAINS, GAINS)
+    st.integers(0, EVERY_KIND), st.integers(0, 1), NUMBERS, NUMBERS, NUMBERS, GAINS, GAINS,
+    st.integers(1, 6), NUMBERS)
 
 
 def row(*values: float) -> np.record:
@@ -24,13 +27,16 @@ def row(*values: float) -> np.record:
     return rows.view(np.recarray)[0]
 
 
-def reu_at(position: float, is_enabled: float = 1.0) -> np.record:
+def reu_at(position: float, state: int = ENABLED, mode: int = IMPEDANCE) -> np.record:
     """Return a `REU_STATE` that measures a position and has a setpoint in force."""
     reu = np.zeros(1, REU_STATE).view(np.recarray)[0]
     reu.measured.position = position
     setpoint = reu.setpoint
     setpoint.position, setpoint.velocity, setpoint.effort = 0.04, 0.5, 20.0
-    setpoint.stiffness, setpoint.damping, setpoint.is_enabled = 300.0, 20.0, is_enabled
+    setpoint.stiffness, setpoint.damping = 300.0, 20.0
+    own = reu.status
+    own.state, own.is_on = state, int(state == ENABLED)
+    own.mode = own.acting = own.requested_mode = mode
     return reu
 
 
@@ -55,9 +61,9 @@ def values(command: np.record) -> tuple[float, ...]:
 
 
 def in_force(reu: np.record) -> list[float]:
-    """Return position, velocity, effort, stiffness, damping and whether it is enabled."""
+    """Return position, velocity, effort, stiffness and damping."""
     own = reu.setpoint
-    return [own.position, own.velocity, own.effort, own.stiffness, own.damping, own.is_enabled]
+    return [own.position, own.velocity, own.effort, own.stiffness, own.damping]
 
 
 def test_of_two_setpoints_the_last_wins():
@@ -94,41 +100,41 @@ def test_gains_that_waited_for_an_earlier_tick_are_not_taken_again():
 def test_a_gain_that_is_nan_keeps_the_one_in_force():
     reu = reu_at(0.03)
     applied = latched(merged(row(HAS_SETPOINT, 0, 0.02, 2.0, 5.0, math.nan, 6.0)), reu)
-    assert in_force(reu) == [0.02, 2.0, 5.0, 300.0, 6.0, 1.0]
+    assert in_force(reu) == [0.02, 2.0, 5.0, 300.0, 6.0]
     assert values(applied) == (HAS_SETPOINT, 1, 0.02, 2.0, 5.0, 300.0, 6.0)
 
 
 def test_gains_alone_leave_the_setpoint():
     reu = reu_at(0.03)
     applied = latched(merged(row(HAS_GAINS, 0, 9.0, 9.0, 9.0, 150.0, math.nan)), reu)
-    assert in_force(reu) == [0.04, 0.5, 20.0, 150.0, 20.0, 1.0]
+    assert in_force(reu) == [0.04, 0.5, 20.0, 150.0, 20.0]
     assert values(applied) == (HAS_GAINS, 1, 0.04, 0.5, 20.0, 150.0, 20.0)
 
 
 def test_enabled_anew_it_holds_where_it_is():
     """The position measured last, at rest and without feed-forward; the gains stay."""
-    reu = reu_at(0.03, is_enabled=0.0)
+    reu = reu_at(0.03, state=DISABLED)
     applied = latched(merged(row(HAS_ENABLE, 1, 0.0, 0.0, 0.0, math.nan, math.nan)), reu)
-    assert in_force(reu) == [0.03, 0.0, 0.0, 300.0, 20.0, 1.0]
+    assert in_force(reu) == [0.03, 0.0, 0.0, 300.0, 20.0]
     assert values(applied) == (HAS_ENABLE, 1, 0.03, 0.0, 0.0, 300.0, 20.0)
 
 
 def test_enabled_twice_it_keeps_its_setpoint():
     reu = reu_at(0.03)
     latched(merged(row(HAS_ENABLE, 1, 0.0, 0.0, 0.0, math.nan, math.nan)), reu)
-    assert in_force(reu) == [0.04, 0.5, 20.0, 300.0, 20.0, 1.0]
+    assert in_force(reu) == [0.04, 0.5, 20.0, 300.0, 20.0]
 
 
 def test_enabled_with_a_setpoint_it_goes_there():
-    reu = reu_at(0.03, is_enabled=0.0)
+    reu = reu_at(0.03, state=DISABLED)
     latched(merged(row(HAS_ENABLE | HAS_SETPOINT, 1, 0.05, 0.1, 0.0, math.nan, math.nan)), reu)
-    assert in_force(reu) == [0.05, 0.1, 0.0, 300.0, 20.0, 1.0]
+    assert in_force(reu) == [0.05, 0.1, 0.0, 300.0, 20.0]
 
 
 def test_disabled_it_keeps_its_setpoint_for_whoever_reads_it():
     reu = reu_at(0.03)
     latched(merged(row(HAS_ENABLE, 0, 0.0, 0.0, 0.0, math.nan, math.nan)), reu)
-    assert in_force(reu) == [0.04, 0.5, 20.0, 300.0, 20.0, 0.0]
+    assert in_force(reu) == [0.04, 0.5, 20.0, 300.0, 20.0]
 
 
 def test_where_nothing_waits_nothing_changes_or_is_noted():
@@ -146,13 +152,47 @@ def test_what_took_effect_waits_no_longer():
     assert latched(pending, reu).kinds == 0
 
 
-@pytest.mark.parametrize('is_enabled', [0.0, 1.0])
+def reference(mode: int, value: float, kinds: int = HAS_REFERENCE) -> np.record:
+    """Return a command with a reference of a mode."""
+    return row(kinds, 0, 0.0, 0.0, 0.0, math.nan, math.nan, mode, value)
+
+
+def test_a_reference_is_taken_by_its_own_mode_only():
+    """One of another mode has another unit: it is discarded and not noted as applied."""
+    reu = reu_at(0.03, mode=SPOOL)
+    assert latched(merged(reference(CURRENT, 1e-3)), reu).kinds == 0
+    assert (reu.setpoint.reference, reu.setpoint.is_reference) == (0.0, 0.0)
+    assert latched(merged(reference(SPOOL, 1e-4)), reu).kinds == HAS_REFERENCE
+    assert (reu.setpoint.reference, reu.setpoint.is_reference) == (1e-4, 1.0)
+
+
+def test_a_reference_that_waits_is_discarded_with_its_mode():
+    """Of two modes before one tick the last wins, with its own reference or none."""
+    with_mode = HAS_MODE | HAS_REFERENCE
+    pending = merged(reference(SPOOL, 1e-4, with_mode), reference(CURRENT, 0.0, HAS_MODE))
+    assert (pending.kinds, pending.mode) == (HAS_MODE, CURRENT)
+    pending = merged(reference(SPOOL, 1e-4, HAS_MODE), reference(CURRENT, 1e-3))
+    assert (pending.kinds, pending.mode) == (HAS_MODE, SPOOL)
+    pending = merged(reference(SPOOL, 1e-4, with_mode), reference(SPOOL, 2e-4))
+    assert (pending.kinds, pending.reference) == (with_mode, 2e-4)
+
+
+def test_an_effort_after_a_reference_wins_and_the_other_way_round():
+    effort = row(HAS_SETPOINT, 0, 0.0, 0.0, 1e-3, math.nan, math.nan)
+    reu = reu_at(0.03, mode=CURRENT)
+    latched(merged(reference(CURRENT, 2e-3), effort), reu)
+    assert reu.setpoint.is_reference == 0.0
+    latched(merged(effort, reference(CURRENT, 2e-3)), reu)
+    assert (reu.setpoint.is_reference, reu.setpoint.reference) == (1.0, 2e-3)
+
+
+@pytest.mark.parametrize('state', [DISABLED, ENABLED])
 @given(commands=st.lists(COMMANDS, max_size=4))
-def test_compiled_commands_equal_their_python_source(is_enabled, commands):
+def test_compiled_commands_equal_their_python_source(state, commands):
     """Merged one after the other, then latched: the same bytes."""
     ends = []
     for merge, latch in ((inbox.merge, inbox.latch), (inbox.merge.py_func, inbox.latch.py_func)):
-        pending, reu, applied = row(), reu_at(0.03, is_enabled), row()
+        pending, reu, applied = row(), reu_at(0.03, state), row()
         for command in commands:
             merge(row(*command), pending)
         waiting = pending.tobytes()

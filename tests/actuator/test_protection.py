@@ -4,7 +4,8 @@ from typing import Any
 
 from isa_ros.actuator.actuator import SmartActuator, Timing
 from isa_ros.core.conditions import BITS, conditions
-from isa_ros.core.signals import COMMAND, HAS_ENABLE
+from isa_ros.core.device import FAULT
+from isa_ros.core.signals import COMMAND, HAS_CLEAR_FAULT, HAS_ENABLE
 from isa_ros.reu.protection import protect
 from isa_ros.reu.reports import reports
 import numpy as np
@@ -28,9 +29,10 @@ def ticks(actuator: SmartActuator, n: int) -> None:
         actuator.tick()
 
 
-def enable(actuator: SmartActuator) -> None:
+def clear(actuator: SmartActuator) -> None:
+    """Clear the fault, and enable again in the same tick."""
     command = np.zeros(1, COMMAND)[0]
-    command['kinds'], command['is_enabled'] = HAS_ENABLE, 1
+    command['kinds'], command['is_enabled'] = HAS_ENABLE | HAS_CLEAR_FAULT, 1
     actuator.accept(command)
 
 
@@ -72,7 +74,7 @@ def test_the_watchdog_damps() -> None:
         assert actuator.sample.force_reference == -damping * actuator.sample.velocity
 
 
-def test_a_tripped_actuator_is_disabled_until_it_is_enabled_again() -> None:
+def test_a_tripped_actuator_is_in_fault_until_it_is_cleared() -> None:
     """The supply fails: after 10 ms the valve is at null, and stays there when it is back."""
     actuator = protected()
     port = actuator.memory.ports[0].copy()
@@ -94,8 +96,9 @@ def test_a_tripped_actuator_is_disabled_until_it_is_enabled_again() -> None:
         actuator.accept(setpoint(position=0.06))
     assert conditions(actuator.sample.trips) == ['supply_low']
     assert actuator.sample.current_reference == 0.0
+    assert actuator.sample.device_state == FAULT
     before = actuator.sample.position
-    enable(actuator)
+    clear(actuator)
     ticks(actuator, 1)
     assert actuator.sample.trips == 0.0
     actuator.accept(setpoint(position=0.06))

@@ -1,8 +1,10 @@
 """Setpoints beyond the stroke, the rated force or the usable gains: refused, or limited."""
 
-from isa_ros.actuator.setpoint_range import SetpointRange
-from isa_ros.core.signals import HAS_ENABLE
+from isa_ros.actuator.setpoint_range import RequestRange, SetpointRange
+from isa_ros.core.device import CURRENT, IMPEDANCE, PRESSURE, SPOOL
+from isa_ros.core.signals import COMMAND, HAS_ENABLE, HAS_MODE, HAS_REFERENCE
 from isa_ros.errors import SetpointError
+import numpy as np
 import pytest
 from tests.sheets import actuator_sheet, MODELS, setpoint
 
@@ -19,7 +21,7 @@ BEYOND = [
 def test_it_is_refused_with_value_bound_and_the_key(values, message):
     own = SetpointRange('knee', actuator_sheet('isa_v5'))
     with pytest.raises(SetpointError) as error:
-        own.admit(setpoint(**values))
+        own.admit(setpoint(**values), IMPEDANCE)
     assert str(error.value).startswith(message)
     assert 'beyond_range: limit' in str(error.value)
 
@@ -27,7 +29,7 @@ def test_it_is_refused_with_value_bound_and_the_key(values, message):
 def test_it_is_limited_where_configured_and_every_field_is_named():
     own = SetpointRange('knee', actuator_sheet('isa_v5'), 'limit')
     command = setpoint(position=50.0, effort=-6000.0, damping=10.0)
-    assert own.admit(command) == (
+    assert own.admit(command, IMPEDANCE) == (
         'knee: setpoint position = 50 m, limited to 0.1 m, the stroke; '
         'knee: setpoint effort = -6000 N, limited to -5174 N, the rated force')
     assert command[['position', 'effort', 'damping']].item() == (0.1, -5174.0, 10.0)
@@ -39,17 +41,111 @@ def test_the_ends_of_the_stroke_are_within_and_unchanged(model, end):
     sheet = actuator_sheet(model)
     command = setpoint(position=end * sheet.plant.drive.stroke)
     before = command.copy()
-    assert SetpointRange(model, sheet).admit(command) == ''
+    assert SetpointRange(model, sheet).admit(command, IMPEDANCE) == ''
     assert command.tobytes() == before.tobytes()
 
 
 def test_a_position_that_no_block_uses_has_no_range():
     """With the valve amplifier the effort is a current."""
     own = SetpointRange('valve', actuator_sheet('isa_v5', 'default', 'valve_amplifier'))
-    assert own.admit(setpoint(position=50.0, effort=0.005)) == ''
+    assert own.admit(setpoint(position=50.0, effort=0.005), CURRENT) == ''
 
 
 def test_enabling_alone_is_no_setpoint():
     command = setpoint(position=50.0)
     command['kinds'] = HAS_ENABLE
-    assert SetpointRange('knee', actuator_sheet('isa_v5')).admit(command) == ''
+    assert SetpointRange('knee', actuator_sheet('isa_v5')).admit(command, IMPEDANCE) == ''
+
+
+def reference(mode, value, kinds=HAS_REFERENCE):
+    """Return a command with a reference of a mode."""
+    command = setpoint(mode=mode, reference=value)
+    command['kinds'] = kinds
+    return command
+
+
+@pytest.mark.parametrize(('mode', 'value', 'message'), [
+    (SPOOL, 1e-3, 'knee: setpoint spool = 0.001 m, must be -0.000'),
+    (CURRENT, 0.1, 'knee: setpoint current = 0.1 A, must be -0.0'),
+    (PRESSURE, -1e9, 'knee: setpoint pressure = -1e')])
+def test_a_reference_beyond_valve_or_sensor_is_refused(mode, value, message):
+    own = SetpointRange('knee', actuator_sheet('isa_v5', 'default', 'pressure_control'))
+    with pytest.raises(SetpointError) as error:
+        own.admit(reference(mode, value), mode)
+    assert str(error.value).startswith(message)
+
+
+def test_a_reference_of_another_mode_is_refused_with_the_mode_in_force():
+    own = SetpointRange('knee', actuator_sheet('isa_v5'))
+    with pytest.raises(SetpointError, match='setpoint spool is not of the mode in force, force'):
+        own.admit(reference(SPOOL, 1e-5), 4)
+    assert own.admit(reference(SPOOL, 1e-5, HAS_MODE | HAS_REFERENCE), 4) == ''
+
+
+def test_a_mode_that_the_wiring_does_not_have_is_refused_with_the_reason():
+    own = SetpointRange('hip', actuator_sheet('smart_manifold'))
+    with pytest.raises(SetpointError) as error:
+        own.admit(reference(SPOOL, 0.0, HAS_MODE), IMPEDANCE)
+    assert str(error.value) == (
+        'hip: mode = spool: reu.spool.kind = off; possible: current, force, impedance')
+
+
+def request_range(beyond: str | None = None) -> RequestRange:
+    """Return the range of the requests to a rotor and a knee."""
+    return RequestRange([
+        SetpointRange('hip', actuator_sheet('smart_manifold')),
+        SetpointRange('knee', actuator_sheet('isa_v5'), beyond)])
+
+
+def requests_to_the_knee(**values: float) -> np.ndarray:
+    rows = np.zeros(2, COMMAND)
+    rows[1] = setpoint(**values)
+    return rows
+
+
+def test_a_request_beyond_the_range_is_deleted_as_a_whole():
+    rows = requests_to_the_knee(position=50.0)
+    rows['kinds'][1] |= HAS_ENABLE
+    rows[0] = setpoint(position=1.0)
+    hip = rows[0].tobytes()
+    line, = request_range().admit(12_000_000, rows)
+    assert line.startswith("t = 0.012 s: a controller's request, refused: knee: setpoint position "
+                           '= 50 m, must be 0 to 0.1 m, the stroke; ')
+    assert rows[1].tobytes() == bytes(COMMAND.itemsize) and rows[0].tobytes() == hip
+
+
+def test_a_request_is_limited_where_configured():
+    rows = requests_to_the_knee(position=0.05, effort=1e5)
+    line, = request_range('limit').admit(0, rows)
+    assert line.endswith('knee: setpoint effort = 100000 N, limited to 7500 N, the rated force')
+    assert rows['effort'].tolist() == [0.0, 7500.0] and rows['position'][1] == 0.05
+
+
+@pytest.mark.parametrize('field', ['position', 'effort', 'stiffness', 'damping'])
+def test_each_field_with_a_range_is_noticed(field):
+    """At both bounds it is admitted, unchanged; one step of a double beyond it is not."""
+    low, high, _, _ = SetpointRange('knee', actuator_sheet('isa_v5')).bounds[field]
+    for value, away in ((low, -np.inf), (high, np.inf)):
+        rows = requests_to_the_knee(**{'position': 0.05, field: value})
+        before = rows.tobytes()
+        assert request_range().admit(0, rows) == () and rows.tobytes() == before
+        rows[field][1] = np.nextafter(value, away)
+        assert len(request_range().admit(0, rows)) == 1 and rows['kinds'][1] == 0
+
+
+def test_reports_of_one_actuator_are_a_second_apart():
+    own, ticks = request_range(), []
+    for tick in range(2500):
+        if own.admit(tick * 1_000_000, requests_to_the_knee(position=50.0)):
+            ticks.append(tick)
+    assert ticks == [0, 1000, 2000]
+
+
+def test_a_request_with_a_mode_is_checked_too():
+    """Of a reference the range; the mode in force is that of the actuator."""
+    rows = np.zeros(2, COMMAND)
+    rows[1] = reference(SPOOL, 1e-3)
+    line, = request_range().admit(0, rows)
+    assert 'refused: knee: setpoint spool = 0.001 m, must be' in line and rows['kinds'][1] == 0
+    rows[1] = reference(SPOOL, 1e-5)
+    assert request_range().admit(0, rows) == () and rows['kinds'][1] == HAS_REFERENCE

@@ -11,6 +11,7 @@ import sys
 from isa_ros.cli import main as cli
 from isa_ros.errors import (
     BagError, ConfigError, IsaError, ParameterError, RunError, SimulationDiverged)
+from isa_ros.run.session import Session
 import pytest
 
 ROOT = Path(__file__).parents[2]
@@ -111,6 +112,27 @@ def test_unreadable_input_is_one_line_and_2(
     printed = capsys.readouterr().err
     assert printed.startswith(expected) and printed.count('\n') == 1
     assert not list(tmp_path.iterdir())
+
+
+def test_params_shows_the_values_after_a_change(capsys: pytest.CaptureFixture[str]) -> None:
+    """As bode, step and bringup would use them."""
+    assert cli.main(['params', 'isa_v5', '--set', 'reu.force.kf=0.001']) == 0
+    row = next(line for line in capsys.readouterr().out.splitlines()
+               if line.startswith('reu.force.kf '))
+    assert row.split()[1] == '0.001' and ' --set ' in row
+
+
+def test_bringup_warns_before_it_starts_anything(
+        capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch,
+        tmp_path: Path) -> None:
+    """Of ticks too long for an impact on metal; one line."""
+    def run_session(session: Session, report: object) -> Path:
+        assert 'isa: leg.yaml: on the ground of the leg' in capsys.readouterr().err
+        return session.out
+    monkeypatch.setattr('isa_ros.nodes.bringup.run_session', run_session)
+    assert cli.main(['bringup', 'leg', '--set', 'leg.ground=metal', '--out',
+                     str(tmp_path / 'bag')]) == 0
+    assert capsys.readouterr() == ('', '')
 
 
 def test_help_imports_neither_ros_nor_numba() -> None:

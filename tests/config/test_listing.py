@@ -1,12 +1,13 @@
 """`isa params`: every parameter once, with its source."""
 
 from itertools import product
+import re
 
 from isa_ros.actuator.sheet import ActuatorSheet
 from isa_ros.config.catalogue import actuator_model, leg_names, leg_section, model_names
 from isa_ros.config.listing import describe, Row, rows
-from isa_ros.config.sections import build, build_one_of
-from isa_ros.errors import ConfigError
+from isa_ros.config.parameter_sets import build, build_one_of
+from isa_ros.errors import ConfigError, IsaError
 from isa_ros.loads.sheets import LocalLoad
 from isa_ros.scripting.run import load
 from isa_ros.surroundings.leg.sheet import LegSheet
@@ -104,3 +105,49 @@ def test_a_variant_is_shown_with_its_kinds() -> None:
     assert kind.split()[1:5] == ['explicit', 'closed_loop', '|', 'explicit']
     assert 'plant.coil.mode_frequency_hz' in text
     assert 'variants: feedback_linearisation, explicit' in text
+
+
+def shown(text: str, parameter: str) -> list[str]:
+    """Return value and source of the first row of a parameter."""
+    cells = next(re.split(' {2,}', line) for line in text.splitlines()
+                 if line.startswith(f'{parameter} '))
+    return [cells[1], cells[-2]]
+
+
+def test_a_changed_value_is_shown_with_what_follows_from_it() -> None:
+    """A_A P_S of 40 mm at 14 MPa is 3.46 times that of 21.5 mm; the stops are the load's."""
+    text = describe('isa_v5', values={
+        'plant.drive.bore_mm': 40, 'supply.pressure_mpa': 14.0, 'load.kind': 'wheel'})
+    assert shown(text, 'plant.drive.bore_mm') == ['40', '--set']
+    assert shown(text, 'pressure_mpa') == ['14', '--set']
+    value, source = shown(text, 'reu.position.force_out')
+    assert float(value) == pytest.approx(7500.0 * 14.0 / 20.7 * (40.0 / 21.5) ** 2, rel=1e-5)
+    assert source.endswith('scaled with stall_out')
+    assert 'actuators.isa_v5.load: wheel' in text
+    assert shown(describe('isa_v5'), 'plant.drive.bore_mm') == ['21.5', 'paper Table 2']
+
+
+def test_a_changed_value_of_a_run_file_has_its_key() -> None:
+    """A key of the actuator suffices where there is one; a section changes all of its values."""
+    text = describe('leg', values={
+        'actuators.kfe.parameters.reu.force.kp': 4e-8, 'leg.ground': 'wood',
+        'leg.start': {'haa_deg': 0.0, 'hfe_deg': 41.3, 'kfe_deg': -80.0, 'foot_height_mm': 50.0,
+                      'release_s': 0.0}})
+    hfe, kfe = text.index('actuators.hfe.parameters'), text.index('actuators.kfe.parameters')
+    assert shown(text[hfe:kfe], 'reu.force.kp')[1] != '--set'
+    assert shown(text[kfe:], 'reu.force.kp') == ['4e-08', '--set']
+    assert shown(text, 'ground.stiffness')[0] == '10000000'
+    assert shown(text, 'foot_height_mm') == ['50', '--set']
+    assert shown(describe('rig_rotary', values={'reu.force.kf': 0}), 'reu.force.kf') == [
+        '0', '--set']
+    assert shown(describe('hyq_real', values={'ground.damping': 1}), 'ground.damping') == [
+        '1', '--set']
+
+
+@pytest.mark.parametrize(('name', 'key', 'message'), [
+    ('isa_v5', 'reu.force.kq', 'reu.force.kq is unknown; valid: rate_hz'),
+    ('leg', 'reu.force.kp', 'leg.yaml: reu is unknown; valid: name'),
+    ('hyq_real', 'ground.friction', '--set: ground.friction = -1 1, must be >= 0.01 1')])
+def test_a_changed_value_is_checked(name: str, key: str, message: str) -> None:
+    with pytest.raises(IsaError, match=message):
+        describe(name, values={key: -1})

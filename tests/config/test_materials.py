@@ -2,7 +2,7 @@
 
 from isa_ros.config.catalogue import material_names, material_section
 from isa_ros.config.listing import rows
-from isa_ros.config.sections import build
+from isa_ros.config.parameter_sets import build
 from isa_ros.errors import ConfigError
 from isa_ros.surroundings.ground import Ground
 import pytest

@@ -1,36 +1,17 @@
 """Run files: the shipped ones, overrides, and the resolved text."""
 
-import math
 from pathlib import Path
 
-from hypothesis import given, HealthCheck, settings, strategies as st
 from isa_ros.config.run_config import RunConfig
-from isa_ros.config.run_file import load_run, read_run, ticks_in
+from isa_ros.config.run_file import load_run, read_run
 from isa_ros.errors import ConfigError
 from isa_ros.loads.sheets import Blocked, Mass
 from isa_ros.loads.wheel import Wheel
 import pytest
+from tests.config.rig_file import rig
 
 CONFIG = Path(__file__).parents[2] / 'config'
 SHIPPED = sorted(CONFIG.glob('*.yaml'))
-
-RIG = """\
-name: rig
-step_ms: {step}
-controller_offset_ms: 0.12
-tick_timeout_s: 5.0
-supply: {{kind: constant, pressure_mpa: 20.7, return_pressure_mpa: 0.0}}
-actuators:
-  ram: {{{ram}}}
-  rotor: {{model: smart_manifold, load: {{kind: wheel, inertia: 0.4}}}}
-"""
-
-
-def rig(tmp_path: Path, ram: str = 'model: isa_v5, load: {kind: mass}', step: str = '1') -> Path:
-    """Return the file of a run with a cylinder and a rotary actuator."""
-    path = tmp_path / 'rig.yaml'
-    path.write_text(RIG.format(step=step, ram=ram), encoding='utf-8')
-    return path
 
 
 @pytest.mark.parametrize('path', SHIPPED, ids=lambda path: path.stem)
@@ -49,20 +30,6 @@ def test_the_leg_is_the_one_of_the_design() -> None:
     assert [(a.name, a.model, a.load) for a in run.actuators] == [
         ('haa', 'smart_manifold', None), ('hfe', 'isa_v5', None), ('kfe', 'isa_v5', None)]
     assert (run.step_ns, run.controller_offset_ns) == (1_000_000, 120_000)
-
-
-def test_the_leg_puts_its_actuators_where_the_linkages_say() -> None:
-    """
-    Physics.md, section 2: knee extension 44.5 mm at -80 deg, piston = extension + 14.1 mm.
-
-    The hip's slider-crank: L^2 = 356^2 + 45^2 - 2 356 45 cos(41.3 + 20 deg), x = L - 299 mm.
-    """
-    run = load_run(CONFIG / 'leg.yaml')
-    positions = {a.name: a.initial_position for a in run.actuators}
-    assert positions['kfe'] * 1e3 == pytest.approx(44.5 + 14.1, abs=0.05)  # 0.1 mm is printed
-    length = math.sqrt(
-        356.0**2 + 45.0**2 - 2.0 * 356.0 * 45.0 * math.cos(math.radians(41.3 + 20.0)))
-    assert positions['hfe'] * 1e3 == pytest.approx(length - 299.0, rel=1e-12)
 
 
 def test_an_override_replaces_one_value_of_one_actuator(tmp_path: Path) -> None:
@@ -88,14 +55,6 @@ def test_own_loads_take_the_values_of_the_model_but_for_those_given(tmp_path: Pa
     ram, rotor = run.actuators
     assert isinstance(ram.load, Mass) and ram.load.inertia == 50.0
     assert isinstance(rotor.load, Wheel) and rotor.load.inertia == 0.4
-
-
-def test_initial_positions_are_si_and_mid_stroke_by_default(tmp_path: Path) -> None:
-    ram = 'model: isa_v5, load: {kind: mass}, initial_position_mm: 30'
-    run = load_run(rig(tmp_path, ram))
-    assert run.actuator('ram').initial_position == pytest.approx(
-        0.030, rel=1e-15, abs=0.0)
-    assert run.actuator('rotor').initial_position == 0.5 * 1.745
 
 
 @pytest.mark.parametrize('ram, expected', [
@@ -144,30 +103,6 @@ def test_a_load_is_named_or_of_its_kind(tmp_path: Path, load: str, name: str) ->
     assert type(run.actuator('ram').load).__name__ == name
     assert f'kind: {name.lower()}' in run.to_yaml()
     assert RunConfig.from_yaml(run.to_yaml()) == run
-
-
-@pytest.mark.parametrize('step', ['0.1', '0.5', '2', '100'])
-def test_macro_steps_on_the_grid_are_taken(tmp_path: Path, step: str) -> None:
-    path = rig(tmp_path, step=step)
-    if float(step) <= 0.12:
-        with pytest.raises(ConfigError, match='controller_offset_ms = 0.12 ms, must be < step'):
-            load_run(path)
-    else:
-        assert load_run(path).step_ns == round(float(step) * 1e6)
-
-
-@pytest.mark.parametrize('step', ['0.25', '1.00001', '0.02', '0'])
-def test_macro_steps_off_the_grid_are_refused(tmp_path: Path, step: str) -> None:
-    """A tick holds five equal force windows of whole plant steps: 0.1 ms."""
-    with pytest.raises(ConfigError, match='rig.yaml: step_ms = '):
-        load_run(rig(tmp_path, step=step))
-
-
-@settings(suppress_health_check=[HealthCheck.function_scoped_fixture])
-@given(tick=st.integers(0, 10**9))
-def test_every_tick_is_found_from_its_seconds(tick: int) -> None:
-    """t_k = k H is exact in nanoseconds, and in seconds to a double's rounding."""
-    assert ticks_in(tick * 1_000_000 / 1e9, 1_000_000, 't') == tick
 
 
 def test_the_digest_changes_with_any_parameter(tmp_path: Path) -> None:

@@ -1,5 +1,6 @@
 """Values of a model follow the cylinder, valve and supply of a run file; its own values win."""
 
+from collections.abc import Callable
 from dataclasses import replace
 from pathlib import Path
 
@@ -7,6 +8,7 @@ import isa_ros
 from isa_ros.actuator.actuator import PAPER_SUPPLY
 from isa_ros.actuator.scales import SCALES
 from isa_ros.actuator.sheet import ActuatorSheet
+from isa_ros.config import scaling
 from isa_ros.config.catalogue import actuator_model, model_names
 from isa_ros.config.default_actuator import default_actuator
 from isa_ros.config.listing import describe
@@ -18,6 +20,8 @@ from isa_ros.errors import ConfigError
 from isa_ros.plant.chambers import chambers_record, oil_stiffness
 import numpy as np
 import pytest
+
+Quantity = Callable[[ActuatorSheet, float], float]
 
 HEAD = """
 name: own
@@ -152,6 +156,21 @@ def test_every_quantity_is_finite_and_positive_for_every_model_that_has_it() -> 
                 assert 0.0 < quantity(sheet, PAPER_SUPPLY) < 1e18
             except ConfigError as error:
                 assert 'two straight lines' in str(error)
+
+
+def test_a_quantity_is_computed_once_for_all_values_that_scale_with_it(monkeypatch) -> None:
+    """Of the model and of the own actuator, for its plant and for its REU: four at most."""
+    counts: dict[str, int] = {}
+
+    def counted(name: str, quantity: Quantity) -> Quantity:
+        def counting(sheet: ActuatorSheet, supply: float) -> float:
+            counts[name] = counts.get(name, 0) + 1
+            return quantity(sheet, supply)
+        return counting
+    monkeypatch.setattr(scaling, 'SCALES', {
+        name: counted(name, quantity) for name, quantity in SCALES.items()})
+    own()
+    assert counts['piston_area'] >= 2 and max(counts.values()) <= 4, counts
 
 
 @pytest.mark.parametrize(('values', 'message'), [

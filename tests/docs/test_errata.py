@@ -7,7 +7,8 @@ import re
 
 from isa_ros.actuator.sheet import ActuatorSheet
 from isa_ros.config.catalogue import actuator_model, model_names
-from isa_ros.config.sections import build, merge, Section
+from isa_ros.config.parameter_sets import build
+from isa_ros.config.sections import merge, Section
 from isa_ros.plant.coil import circuit
 from isa_ros.plant.servo_valve import flow_slope
 from isa_ros.reu.lead_lag import lead_lag_record, LeadLag

@@ -5,7 +5,7 @@ import random
 from typing import Any
 
 from isa_ros.controller import fill_requests, Setpoint
-from isa_ros.core.signals import COMMAND
+from isa_ros.core.signals import COMMAND, EVERY_KIND
 from msg_adapters.setpoint import applied_to_command, msg_to_command
 import numpy as np
 from rclpy.impl.implementation_singleton import rclpy_implementation as _rclpy
@@ -15,14 +15,17 @@ from tests.fuzz.bytes_of import altered
 from tests.fuzz.property import refused
 
 NAME = 'knee'
-NAMES = (NAME, f'{NAME}/stiffness', f'{NAME}/damping', f'{NAME}/enabled', 'hip', '', '/', 'é',
-         '\x1b[2J', 'x' * 5000)
+NAMES = (NAME, f'{NAME}/stiffness', f'{NAME}/damping', f'{NAME}/enabled', f'{NAME}/mode',
+         f'{NAME}/reference', f'{NAME}/changed', f'{NAME}/spool', f'{NAME}/current', 'hip', '',
+         '/', 'é', '\x1b[2J', 'x' * 5000)
 NUMBERS = (0.0, -0.0, 1.0, -1.0, 0.05, 1e5, 1e308, -1e308, 5e-324, math.nan, math.inf, -math.inf)
 ODD: tuple[Any, ...] = (
     *NUMBERS, None, True, '1', [], (), {}, 10**400, np.float32(1.0), np.array([1.0, 2.0]), 1j,
     object)
 APPLIED = JointState(
-    name=list(NAMES[:4]), position=[0.05, 1e5, 4e3, 1.0], velocity=[0.0] * 4, effort=[0.0] * 4)
+    name=list(NAMES[:7]), position=[0.05, 1e5, 4e3, 1.0, 6.0, 0.0, 3.0], velocity=[0.0] * 7,
+    effort=[0.0] * 7)
+MODES = (None, None, 'force', 'spool', 'speed', '', 5)
 
 
 def message(dice: random.Random) -> JointState:
@@ -40,7 +43,10 @@ def controlled(dice: random.Random) -> Any:
     if dice.random() < 0.05:
         return dice.choice(ODD)
     values = [dice.choice(ODD if dice.random() < 0.2 else NUMBERS[:6]) for _ in range(6)]
-    setpoint: Any = Setpoint(*values[:5], is_enabled=dice.choice((None, True, False, values[5])))
+    setpoint: Any = Setpoint(
+        *values[:5], is_enabled=dice.choice((None, True, False, values[5])),
+        mode=dice.choice(MODES), spool=dice.choice((None, None, None, values[5])),
+        quick_stop=dice.choice((False, False, True, values[4])))
     if dice.random() < 0.1:
         setpoint = dice.choice((*ODD, values, tuple(values[:3])))
     return {dice.choice((NAME, NAME, NAME, 'hip', 5, None, 'x' * 5000)): setpoint}
@@ -74,7 +80,8 @@ DOORS = (_of_message, _of_message, _of_bytes, _of_bag, _of_controller)
 
 def assert_valid(command: np.void) -> None:
     """Assert that a command has finite numbers, and gains that are NaN or >= 0."""
-    assert command['kinds'] in (1, 3) and command['is_enabled'] in (0, 1), command
+    assert 0 <= command['kinds'] <= EVERY_KIND and command['is_enabled'] in (0, 1), command
+    assert 0 <= command['mode'] <= 6 and math.isfinite(command['reference']), command
     assert all(math.isfinite(command[name]) for name in ('position', 'velocity', 'effort'))
     assert not any(command[gain] < 0.0 or math.isinf(command[gain])
                    for gain in ('stiffness', 'damping')), command

@@ -1,6 +1,6 @@
 """Altered run files, scenarios and models are read or refused in one line."""
 
-from isa_ros.config import run_file, schema, sections
+from isa_ros.config import parameter_sets, run_file, schema
 from isa_ros.core import parameter
 import pytest
 from tests.fuzz.property import Broken
@@ -26,7 +26,7 @@ def accept(self, tree, place):
 
 def unchecked(patch):
     """Accept every number."""
-    for module in (sections, parameter):
+    for module in (parameter_sets, parameter):
         patch.setattr(module, 'check', lambda where, value, declared: None)
 
 

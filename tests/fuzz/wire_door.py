@@ -8,7 +8,10 @@ from typing import Any
 from unittest.mock import patch
 
 from isa_ros.controller import Controller, merge_requests, Setpoint, State
-from isa_ros.core.signals import COMMAND, LOAD_REPLY, SAMPLE, START
+from isa_ros.core.device import MODES
+from isa_ros.core.signals import (
+    COMMAND, EVERY_KIND, HAS_GAINS, HAS_MODE, HAS_REFERENCE, HAS_SETPOINT, LOAD_REPLY, SAMPLE,
+    START)
 from isa_ros.nodes.lockstep import participant_end
 from isa_ros.nodes.lockstep.answer_checks import AnswerChecks
 from isa_ros.nodes.lockstep.expected import Expected, Participants
@@ -105,10 +108,14 @@ def assert_finite(values: Sequence[float]) -> None:
 def assert_command(command: np.void) -> None:
     """Assert that a command is one that an actuator can execute."""
     kinds = int(command['kinds'])
-    assert kinds < 8
+    assert kinds <= EVERY_KIND
+    if kinds & (HAS_MODE | HAS_REFERENCE):
+        assert 0 < command['mode'] < len(MODES)
+    if kinds & HAS_REFERENCE:
+        assert_finite([command['reference']])
     if kinds & 1:
         assert_finite([command[name] for name in ('position', 'velocity', 'effort')])
-    if kinds & ~2:
+    if kinds & (HAS_SETPOINT | HAS_GAINS):
         assert not any(command[name] < 0.0 or np.isinf(command[name])
                        for name in ('stiffness', 'damping'))
 

@@ -1,6 +1,7 @@
 """What an actuator publishes: interface.md's table of topics, value by value."""
 
 from isa_ros.core.accounts import FIELDS
+from isa_ros.core.device import FIELDS as OF_DEVICE
 from msg_adapters.actuator_messages import APPLIED_SETPOINT, STATE_TOPICS, TOPICS
 from msg_adapters.cdr_reader import decode, message_class
 import pytest
@@ -36,9 +37,10 @@ def test_state_topics_come_sorted():
     assert topics == sorted(topics)
 
 
-def test_every_topic_but_that_of_parameters_is_prepared():
-    """Tuned parameters are encoded as they come: their number varies."""
-    assert {'applied_parameters', *of_actuator('hip', False)} == {suffix for suffix, _ in TOPICS}
+def test_every_topic_but_those_with_texts_is_prepared():
+    """Tuned parameters and the device are encoded as they come: their lengths vary."""
+    assert {'applied_parameters', 'device', *of_actuator('hip', False)} == {
+        suffix for suffix, _ in TOPICS}
 
 
 @pytest.mark.parametrize('suffix', [suffix for suffix, _ in STATE_TOPICS])
@@ -90,7 +92,7 @@ def test_what_was_applied_carries_the_tick_s_start():
     message = published()[APPLIED_SETPOINT[0]]
     assert (message.header.stamp.sec, message.header.stamp.nanosec) == (1, 9)
     assert list(message.position) == [ROW[f'applied {field}'] for field in (
-        'position', 'stiffness', 'damping', 'is_enabled')]
+        'position', 'stiffness', 'damping', 'is_enabled', 'mode', 'reference', 'kinds')]
 
 
 def test_actuators_together_say_what_each_says_alone():
@@ -106,10 +108,10 @@ def test_actuators_together_say_what_each_says_alone():
 
 
 def test_every_value_but_the_gauge_pressures_is_published():
-    """Of these the absolute ones are; energies are on `/diagnostics`, the age is in stamps."""
+    """Of these the absolute ones are; energies, device and age are elsewhere."""
     used = {column for _, fields in of_actuator('hip', False).values()
             for column in fields.values() if column >= 0}
     assert {value for k, value in enumerate(VALUES) if k not in used} == {
         'sample pressure_a', 'sample pressure_b', 'sample power', 'sample age',
-        'sample temperature', 'sample warnings', 'sample trips',
-        *(f'sample {field}' for field in FIELDS if field != 'supply_volume')}
+        'sample temperature',
+        *(f'sample {field}' for field in (*OF_DEVICE, *FIELDS) if field != 'supply_volume')}

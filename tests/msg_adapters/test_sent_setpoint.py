@@ -3,7 +3,9 @@
 import math
 
 from hypothesis import given, strategies as st
-from isa_ros.core.signals import COMMAND, HAS_ENABLE, HAS_GAINS, HAS_SETPOINT
+from isa_ros.core.signals import (
+    COMMAND, HAS_CLEAR_FAULT, HAS_ENABLE, HAS_GAINS, HAS_MODE, HAS_QUICK_STOP, HAS_REFERENCE,
+    HAS_SETPOINT)
 from isa_ros.errors import SetpointError
 from isa_ros.run.link_packing import pack_links, WORDS
 from msg_adapters.cdr import encode
@@ -17,6 +19,8 @@ from sensor_msgs.msg import JointState
 NUMBER = st.floats(-1e6, 1e6)
 GAIN = st.just(math.nan) | st.floats(0.0, 1e6)
 T_NS, START_NS = 3_000_000_007, 2_999_000_007
+OTHERS = (math.nan, math.nan, float(HAS_SETPOINT | HAS_ENABLE))
+"""Entries mode, reference and changed of a setpoint with enable."""
 
 
 def words_of(command: np.ndarray, age: float = 0.0, due_step: int = 0, compiled: bool = True):
@@ -32,7 +36,8 @@ def words_of(command: np.ndarray, age: float = 0.0, due_step: int = 0, compiled:
 
 def packed(command: np.ndarray) -> bytes:
     """Return the message of a command."""
-    fields = ('is_enabled', 'position', 'velocity', 'effort', 'stiffness', 'damping')
+    fields = ('is_enabled', 'position', 'velocity', 'effort', 'stiffness', 'damping', 'mode',
+              'reference', 'kinds')
     template = Template([sent_setpoint('hip', {field: k for k, field in enumerate(fields)})])
     words = np.zeros(FIRST_VALUE + len(fields), np.uint64)
     words[FIRST_VALUE:] = words_of(command)[2:]
@@ -49,15 +54,11 @@ def command_of(kinds: int, is_enabled: int, *values: float) -> np.ndarray:
 @given(st.integers(1, HAS_SETPOINT | HAS_ENABLE | HAS_GAINS), st.integers(0, 1),
        st.tuples(NUMBER, NUMBER, NUMBER, GAIN, GAIN))
 def test_a_command_reads_back_as_it_was_sent(kinds, is_enabled, values):
-    """With the gains that a setpoint may have; gains that are both NaN change nothing."""
+    """With the gains that a setpoint may have, and with its kinds."""
     command = command_of(kinds, is_enabled, *values)
-    has_gains = not all(map(math.isnan, values[3:]))
-    if kinds == HAS_GAINS and not has_gains:
-        return
     found = sent_to_command(packed(command), 'hip')
     takes_gains = kinds & (HAS_SETPOINT | HAS_GAINS)
-    assert int(found['kinds']) & ~HAS_GAINS == kinds & ~HAS_GAINS
-    assert bool(int(found['kinds']) & HAS_GAINS) == bool(takes_gains and has_gains)
+    assert found['kinds'] == kinds
     if kinds & HAS_ENABLE:
         assert found['is_enabled'] == is_enabled
     if kinds & HAS_SETPOINT:
@@ -65,6 +66,15 @@ def test_a_command_reads_back_as_it_was_sent(kinds, is_enabled, values):
     for name, value in zip(('stiffness', 'damping'), values[3:]):
         expected = value if takes_gains else math.nan
         assert found[name] == expected or math.isnan(found[name]) and math.isnan(expected)
+
+
+@given(st.integers(1, 6), NUMBER)
+def test_a_mode_its_reference_and_requests_read_back(mode, reference):
+    kinds = HAS_MODE | HAS_REFERENCE | HAS_QUICK_STOP | HAS_CLEAR_FAULT
+    command = command_of(kinds, 0)
+    command['mode'], command['reference'] = mode, reference
+    found = sent_to_command(packed(command), 'hip')
+    assert (found['kinds'], found['mode'], found['reference']) == (kinds, mode, reference)
 
 
 def test_the_times_are_those_of_sampling_and_of_effect():
@@ -78,11 +88,13 @@ def test_the_times_are_those_of_sampling_and_of_effect():
 
 @pytest.mark.parametrize('changes, message', [
     ({'name': ['hip']}, 'sent setpoint names hip, must name hip, hip/stiffness'),
-    ({'position': [0.1, math.nan, math.nan, 0.5]}, 'enabled = 0.5, must be 0.0, 1.0 or NaN'),
-    ({'position': [0.1, -1.0, math.nan, 1.0]}, 'hip/stiffness = -1.0, must be finite and >= 0'),
-    ({'position': [0.1, math.nan, math.inf, 1.0]}, 'hip/damping = inf, must be finite'),
-    ({'position': [math.nan, 1.0, 1.0, 1.0]}, 'hip: sent position = nan, must be finite'),
-    ({'position': [math.nan] * 4, 'velocity': [math.nan] * 4, 'effort': [math.nan] * 4},
+    ({'position': [0.1, math.nan, math.nan, 0.5, *OTHERS]}, 'enabled = 0.5, must be 0.0, 1.0 or NaN'),
+    ({'position': [0.1, -1.0, math.nan, 1.0, *OTHERS]}, 'hip/stiffness = -1.0, must be finite and >= 0'),
+    ({'position': [0.1, math.nan, math.inf, 1.0, *OTHERS]}, 'hip/damping = inf, must be finite'),
+    ({'position': [math.nan, 1.0, 1.0, 1.0, *OTHERS]}, 'hip: sent position = nan, must be finite'),
+    ({'position': [0.1, *[math.nan] * 5, 3.0]}, 'hip/changed = 3, must name the values'),
+    ({'position': [0.1, *[math.nan] * 5, 9.0]}, 'hip/mode = nan, must be a whole number'),
+    ({'position': [*[math.nan] * 6, 0.0], 'velocity': [math.nan] * 7, 'effort': [math.nan] * 7},
      'hip: sent setpoint without a value'),
     ({'velocity': [0.0]}, 'with all values of each')])
 def test_another_message_is_refused(changes, message):

@@ -3,7 +3,7 @@
 import math
 
 from hypothesis import given, settings, strategies as st
-from isa_ros.core.signals import COMMAND, HAS_ENABLE, HAS_SETPOINT
+from isa_ros.core.signals import COMMAND, EVERY_KIND, HAS_REFERENCE, HAS_SETPOINT
 from isa_ros.errors import SetpointError
 from msg_adapters.cdr import encode
 from msg_adapters.cdr_reader import decode
@@ -64,7 +64,19 @@ def test_any_value_that_is_not_finite_rejects_the_whole_message(value, array, en
         msg_to_command(message, 'hip')
 
 
+@pytest.mark.parametrize(('entry', 'mode'), [('current', 1), ('spool', 2), ('pressure', 3)])
+def test_the_reference_of_a_mode_is_an_entry_with_or_without_a_setpoint(entry, mode):
+    row = msg_to_command(JointState(name=[f'hip/{entry}'], position=[1e-3]), 'hip')
+    assert (row['kinds'], row['mode'], row['reference']) == (HAS_REFERENCE, mode, 1e-3)
+    row = msg_to_command(
+        JointState(name=['hip', f'hip/{entry}'], position=[0.5, 1e-3]), 'hip')
+    assert row['kinds'] == HAS_SETPOINT | HAS_REFERENCE
+
+
 @pytest.mark.parametrize('message, said', [
+    (JointState(name=['hip/spool', 'hip/current'], position=[0.0, 0.0]),
+     'hip: setpoint has current and spool, must be the one of its mode'),
+    (JointState(name=['hip/spool'], position=[math.nan]), 'hip/spool: setpoint position = nan'),
     (JointState(name=['knee'], position=[0.0]),
      'hip: is not among the joints of the setpoint, knee'),
     (JointState(), 'hip: is not among the joints of the setpoint, none'),
@@ -83,23 +95,25 @@ def test_malformed_setpoint_is_refused(message, said):
 
 
 @given(position=finite, velocity=finite, effort=finite, stiffness=positive, damping=positive,
-       is_enabled=st.integers(0, 1), t_ns=st.integers(0, 10**12))
+       is_enabled=st.integers(0, 1), mode=st.integers(0, 6), reference=finite,
+       kinds=st.integers(0, EVERY_KIND), t_ns=st.integers(0, 10**12))
 @settings(deadline=None)
 def test_applied_setpoint_comes_back_bit_for_bit(t_ns, **values):
     """Replay feeds the recorded applied setpoints, so the round trip must be exact."""
-    row = command(kinds=HAS_SETPOINT | HAS_ENABLE, **values)
+    row = command(**values)
     data = applied_setpoint('hip', row, t_ns)
     assert applied_to_command(data, 'hip').tobytes() == row.tobytes()
 
 
 def test_applied_setpoint_names_all_that_took_effect():
     row = command(position=0.5, velocity=1.0, effort=2.0, stiffness=300.0, damping=20.0,
-                  is_enabled=1)
+                  is_enabled=1, mode=6, reference=1e-4, kinds=9)
     message = decode(applied_setpoint('hip', row, 3_000_000_004), JointState)
-    assert message.name == ['hip', 'hip/stiffness', 'hip/damping', 'hip/enabled']
-    assert list(message.position) == [0.5, 300.0, 20.0, 1.0]
-    assert list(message.velocity) == [1.0, 0.0, 0.0, 0.0]
-    assert list(message.effort) == [2.0, 0.0, 0.0, 0.0]
+    assert message.name == ['hip', 'hip/stiffness', 'hip/damping', 'hip/enabled', 'hip/mode',
+                            'hip/reference', 'hip/changed']
+    assert list(message.position) == [0.5, 300.0, 20.0, 1.0, 6.0, 1e-4, 9.0]
+    assert list(message.velocity) == [1.0, *[0.0] * 6]
+    assert list(message.effort) == [2.0, *[0.0] * 6]
     assert (message.header.stamp.sec, message.header.stamp.nanosec) == (3, 4)
     assert message.header.frame_id == 'hip'
 
@@ -110,8 +124,13 @@ def test_applied_setpoint_of_another_actuator_is_refused():
         applied_to_command(data, 'hip')
 
 
-def test_applied_enable_is_zero_or_one():
-    message = decode(applied_setpoint('hip', command(), 0), JointState)
-    message.position[3] = 0.5
-    with pytest.raises(SetpointError, match='hip/enabled = 0.5, must be 0.0 or 1.0'):
-        applied_to_command(encode(message), 'hip')
+@pytest.mark.parametrize(('entry', 'value', 'message'), [
+    (3, 0.5, 'hip/enabled = 0.5, must be a whole number <= 1'),
+    (3, 2.0, 'hip/enabled = 2.0, must be a whole number <= 1'),
+    (4, 7.0, 'hip/mode = 7.0, must be a whole number <= 6'),
+    (6, -1.0, 'hip/changed = -1.0, must be a whole number <= 127')])
+def test_numbers_of_an_applied_setpoint_are_whole_and_known(entry, value, message):
+    found = decode(applied_setpoint('hip', command(), 0), JointState)
+    found.position[entry] = value
+    with pytest.raises(SetpointError, match=message):
+        applied_to_command(encode(found), 'hip')

@@ -103,19 +103,27 @@ def test_drop_at_half_a_millisecond(variant):
     assert (3.0 * half.rms < full.rms).all()
 
 
-@pytest.mark.parametrize('variant', list(VARIANTS))
-def test_drop_at_2_ms_stays_bounded(variant):
+@pytest.mark.parametrize(('variant', 'rms', 'thigh_peak'), [
+    # measured: 0.068 and 0.04; 0.149 and 0.43; 0.095 and 0.30; 0.181 and 0.69
+    ('shipped', 0.07, 0.05), ('light_damping', 0.16, 0.45), ('heavy_piston', 0.10, 0.32),
+    ('both', 0.19, 0.72)])
+def test_drop_at_2_ms_stays_bounded(variant, rms, thigh_peak):
     """
-    Beyond the usable step the leg still lands, and forces are a quarter wrong, peaks a half.
+    Beyond the usable step the leg still lands, with the errors measured, a tenth for rounding up.
 
-    Except for the thigh's peak: behind a heavy piston its cell, damped by 1 %, is rung by the
-    impact to as much as it carries, which samples of 2 ms do not resolve.
+    The thigh's peak is the worst. The impact is 14 ms long, 7 ticks; at the end of each the port's
+    straight line in time is wrong, which strikes the thigh's cell. The oracle's hardly rings, but
+    damped by 1 % behind 1.6 kg (895 Hz) it takes 18 ms to fade, so that the strokes add up: 940 N
+    on a force of 1216 N, a peak 69 % too large. It is the error of the step, not an instability:
+    in ticks of 1.5, 1 and 0.5 ms it is 250, 62 and 6 N, and after the impact it fades. 0.6 kg
+    (1456 Hz) need 11 ms; the shipped damping ends a stroke within a tick, in 0.6 or 0.2 ms.
     """
-    errors = drop(variant)[2 * MS]
-    assert errors.rms.max() < 0.25 and errors.ground[0] < 0.05
-    assert errors.peak[[HAA, KFE]].max() < 0.05
-    assert errors.peak[HFE] < (1.0 if variant == 'both' else 0.5)
-    assert errors.angle.max() < 0.5
+    errors, full = drop(variant)[2 * MS], drop(variant)[MS]
+    assert errors.rms.max() < rms and errors.ground[0] < 0.01
+    assert errors.peak[[HAA, KFE]].max() < 0.02
+    assert errors.peak[HFE] < thigh_peak
+    assert errors.angle.max() < 0.25
+    assert 4.0 * full.rms[HFE] < errors.rms[HFE]    # of second order at least
 
 
 @pytest.mark.parametrize('variant', list(VARIANTS))

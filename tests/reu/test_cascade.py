@@ -8,6 +8,7 @@ from isa_ros.reu.compensation import Linear
 from isa_ros.reu.wiring import Off
 import numpy as np
 import pytest
+from tests.reu.states import disable, enabled_state
 from tests.sheets import actuator_sheet, MODELS, override
 
 
@@ -16,9 +17,7 @@ def loops(
     """Return (constants, state) of an enabled cascade."""
     sheet = actuator_sheet(model, 'default', *variants)
     reu = actuator_record(sheet, offset_steps).view(np.recarray)[0].reu
-    state = np.zeros(1, cascade.REU_STATE).view(np.recarray)[0]
-    state.setpoint.is_enabled = 1.0
-    return reu, state
+    return reu, enabled_state(reu)
 
 
 def test_a_loop_samples_at_its_own_instants_only():
@@ -61,7 +60,7 @@ def test_a_disabled_actuator_commands_null():
     reu, state = loops('isa_v5')
     state.setpoint.effort = 100.0
     cascade.cascade_step(0, reu, state)
-    state.setpoint.is_enabled = 0.0
+    disable(state)
     cascade.cascade_step(10, reu, state)
     assert (state.current_reference, state.spool_reference, state.force.integral) == (0, 0, 0)
 
@@ -82,8 +81,8 @@ def test_without_position_block_the_effort_goes_to_the_force_block_at_its_rate()
     sheet = replace(sheet, reu=replace(sheet.reu, position=Off()))
     refuse_wiring(sheet)
     reu = actuator_record(sheet, 0).view(np.recarray)[0].reu
-    state = np.zeros(1, cascade.REU_STATE).view(np.recarray)[0]
-    state.setpoint.is_enabled, state.setpoint.effort = 1.0, 10.0
+    state = enabled_state(reu)
+    state.setpoint.effort = 10.0
     cascade.cascade_step(5, reu, state)
     assert (state.force_reference, state.force.output) == (10.0, 0.0)
     cascade.cascade_step(10, reu, state)
@@ -95,8 +94,8 @@ def test_pure_position_control_feeds_the_setpoint_s_velocity_forward():
     sheet = override(
         actuator_sheet('smart_manifold', 'default', 'position_control'), 'reu.position.kv', 1e-3)
     reu = actuator_record(sheet, 0).view(np.recarray)[0].reu
-    state = np.zeros(1, cascade.REU_STATE).view(np.recarray)[0]
-    state.setpoint.is_enabled, state.setpoint.velocity = 1.0, 0.5
+    state = enabled_state(reu)
+    state.setpoint.velocity = 0.5
     cascade.cascade_step(0, reu, state)
     assert state.position.output == pytest.approx(1e-3 * 0.5)
 
@@ -118,8 +117,7 @@ def test_a_pressure_block_controls_the_difference():
     sheet = replace(sheet, reu=reu_sheet)
     refuse_wiring(sheet)
     reu = actuator_record(sheet, 0).view(np.recarray)[0].reu
-    state = np.zeros(1, cascade.REU_STATE).view(np.recarray)[0]
-    state.setpoint.is_enabled = 1.0
+    state = enabled_state(reu)
     state.setpoint.effort = 5e6
     state.measured.pressure_a, state.measured.pressure_b = 9e6, 7e6
     state.pressure.measured = 2e6
@@ -145,12 +143,12 @@ def test_a_disabled_position_or_pressure_block_forgets_its_integral():
     sheet = override(sheet, 'reu.position.rate_hz', 1000.0)
     refuse_wiring(sheet)
     reu = actuator_record(sheet, 0).view(np.recarray)[0].reu
-    state = np.zeros(1, cascade.REU_STATE).view(np.recarray)[0]
-    state.setpoint.is_enabled, state.setpoint.position = 1.0, 0.1
+    state = enabled_state(reu)
+    state.setpoint.position = 0.1
     for instant in (0, 50, 100):
         cascade.cascade_step(instant, reu, state)
     assert state.position.integral > 0.0 and state.pressure.integral > 0.0
-    state.setpoint.is_enabled = 0.0
+    disable(state)
     cascade.cascade_step(105, reu, state)
     assert (state.position.integral, state.pressure.integral) == (0.0, 0.0)
     assert (state.position.output, state.pressure.output) == (0.0, 0.0)
@@ -163,8 +161,8 @@ def test_spool_and_current_blocks_feed_back_what_is_measured():
     sheet = replace(sheet, reu=replace(sheet.reu, position=Off(), force=Off()))
     refuse_wiring(sheet)
     reu = actuator_record(sheet, 0).view(np.recarray)[0].reu
-    state = np.zeros(1, cascade.REU_STATE).view(np.recarray)[0]
-    state.setpoint.is_enabled, state.setpoint.effort = 1.0, 5e-5
+    state = enabled_state(reu)
+    state.setpoint.effort = 5e-5
     state.measured.spool = state.spool.measured = 5e-5
     cascade.cascade_step(0, reu, state)
     assert (state.current_reference, state.drive) == (0.0, 0.0)

@@ -4,10 +4,10 @@ from collections.abc import Callable, Mapping
 from dataclasses import replace
 from typing import Any
 
+from isa_ros.core.conditions import BITS
 from isa_ros.core.parameter import defaults
 from isa_ros.core.record import record
 from isa_ros.reu.cascade import REU_STATE
-from isa_ros.core.conditions import BITS
 from isa_ros.reu.plausibility import EVIDENCE
 from isa_ros.reu.protection import protect, protection_record, Ratings
 from isa_ros.reu.protection_sheet import levels_of, Protection
@@ -51,7 +51,8 @@ class Watched:
         self.supply, self.temperature, self.step = SUPPLY, 40.0, 0
         measured, setpoint = self.state.measured, self.state.setpoint
         measured.position = self.own.evidence.position = 0.5 * STROKE
-        setpoint.is_enabled, setpoint.stiffness, setpoint.damping = 1.0, 1e5, 4e3
+        self.state.status.is_on = 1
+        setpoint.stiffness, setpoint.damping = 1e5, 4e3
         setpoint.position, setpoint.velocity, setpoint.effort = 0.02, 0.1, 50.0
 
     def convert(self, n: int = 1) -> None:

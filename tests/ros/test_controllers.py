@@ -6,6 +6,7 @@ import signal
 
 from isa_ros.bag.reader import Bag
 from isa_ros.config.run_file import load_run
+from isa_ros.controller import Controller
 from isa_ros.examples.sway import Sway
 from isa_ros.replay.replay import replay
 from isa_ros.run.local_run import shown
@@ -15,6 +16,7 @@ from isa_ros.simulation import Simulation
 from msg_adapters.cdr_reader import decode
 import pytest
 from sensor_msgs.msg import JointState
+from tests.ros.in_millimetres import InMillimetres
 from tests.ros.started import bringup, LEG, started, wait_for
 
 pytestmark = pytest.mark.ros
@@ -58,10 +60,10 @@ def test_a_controller_in_the_lockstep_gives_the_same_bytes_every_time(domain, tm
         assert replay(Bag(bag)).is_equal
 
 
-def simulated(n_ticks: int) -> list[tuple[int, str, bytes]]:
-    """Return (sequence, topic, data) of the leg with the controller in memory."""
+def simulated(n_ticks: int, controller: Controller) -> list[tuple[int, str, bytes]]:
+    """Return (sequence, topic, data) of the leg with a controller in memory."""
     run = load_run(LEG)
-    simulation, said = Simulation(idle(run), [Sway()]), []
+    simulation, said = Simulation(idle(run), [controller]), []
     packer = packer_of(run, shown(simulation))
     while True:
         packer.pack(simulation.t_ns, max(0, simulation.t_ns - run.step_ns), simulation.tuned)
@@ -78,7 +80,25 @@ def test_a_controller_in_memory_gives_the_bytes_of_one_in_the_lockstep(domain, t
     with started(tmp_path / 'sway.log', SWAY):
         record(bag, '--duration', '0.1')
     assert [(message.sequence, message.topic, message.data)
-            for message in Bag(bag).messages()] == simulated(100)
+            for message in Bag(bag).messages()] == simulated(100, Sway())
+
+
+def test_a_request_beyond_the_range_is_refused_alike_in_processes_and_in_memory(domain, tmp_path):
+    """Each tenth one is; the run's output has one line, and replay the same bytes."""
+    bag = tmp_path / 'run' / 'bag'
+    bag.parent.mkdir()
+    with started(tmp_path / 'sway.log', 'tests.ros.in_millimetres'):
+        with bringup(bag, '--controller', 'sway', '--duration', '0.05') as run:
+            assert run.exit_code() == 0, run.errors
+    line, = (line for line in run.errors.splitlines() if 'setpoint' in line)
+    assert line.endswith(
+        "t = 0.001 s: a controller's request, refused: hfe: setpoint position = 38 m, must be 0 "
+        'to 0.1 m, the stroke; the key beyond_range: limit of the actuator limits it instead')
+    assert [tick for tick, _ in setpoints(bag)] == [k for k in range(1, 50) if k % 10 != 1]
+    assert replay(Bag(bag)).is_equal
+    with pytest.warns(UserWarning, match='hfe: setpoint position = 38 m'):
+        assert [(message.sequence, message.topic, message.data)
+                for message in Bag(bag).messages()] == simulated(50, InMillimetres())
 
 
 def test_a_controller_that_is_not_there_is_named(domain, tmp_path):

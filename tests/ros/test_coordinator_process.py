@@ -4,7 +4,7 @@ import signal
 
 from isa_ros.run.wire.answers import ACKNOWLEDGEMENT_TOPIC
 import pytest
-from tests.ros.started import actuator, bringup, coordinator, RIG, started, wait_for
+from tests.ros.started import actuator, bringup, coordinator, LEG, RIG, started, wait_for
 
 pytestmark = pytest.mark.ros
 
@@ -26,6 +26,18 @@ def test_missing_participant_is_named(domain, tmp_path):
         assert run.exit_code() == 3
     assert 'rotor: no answer before tick 0 after 0.5 s' in run.errors
     assert not bag.exists()
+
+
+def test_ticks_too_long_for_the_ground_are_reported_before_the_wait(domain, tmp_path):
+    config = tmp_path / 'leg.yaml'
+    config.write_text(LEG.read_text().replace(
+        '  model: hyq_real', '  model: hyq_real\n  ground: metal'))
+    with coordinator(tmp_path / 'coordinator.log', config_file=config, out=tmp_path / 'bag',
+                     join_timeout_s=0.1) as run:
+        assert run.exit_code() == 3
+    lines = run.errors.splitlines()
+    warned, = (k for k, line in enumerate(lines) if 'an impact lasts 1.8 ms' in line)
+    assert 'no answer before tick 0' in lines[-1] and warned < len(lines) - 1
 
 
 def test_participants_may_be_started_by_hand_and_used_again(domain, tmp_path):

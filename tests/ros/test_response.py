@@ -13,7 +13,7 @@ pytestmark = pytest.mark.ros
 ROOT = Path(__file__).parents[2]
 COMMON = ('smart_manifold', '--preset', 'table_4')
 HOLD_S = 1e-3           # a setpoint is held for a tick
-INTO_HOLD_S = 0.38e-3   # from the middle of the hold, 0.12 + 0.5 ms, to its record at the end
+INTO_HOLD_S = 0.30e-3  # from the middle of the hold, 0.12 + 0.5 ms, to the conversion at 0.92
 BARE_S = 0.1e-3         # half a period of the force block, in the bare measurement
 
 

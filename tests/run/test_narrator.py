@@ -38,6 +38,7 @@ class Stage:
         self.group: ActuatorGroup = group_of(RUN)
         self.rows = Rows(2, surroundings_of(RUN))
         self.rows.samples[:] = self.group.samples
+        self.rows.samples['state_since'] = -1.0  # the device has nothing new
         self.outlets = {name: FakeOutlet(self.log, name, name in heard) for name in (
             'clock', 'events', 'surroundings', 'hip', 'knee')}
         self.recorder = FakeRecorder(self.log)
@@ -83,6 +84,19 @@ def test_what_was_applied_is_passed_on_without_a_subscription():
     stage.rows.applied['kinds'] = 0
     stage.narrator.publish_rows(2, {1: {'force.kp': 1e-7}})
     assert stage.log == ['hip', 'knee']
+
+
+def test_a_change_of_the_device_is_passed_on_without_a_subscription():
+    """Of one actuator alone, and at that tick alone; a second of simulated time is one too."""
+    stage = Stage(is_recorded=False)
+    stage.rows.samples['state_since'][1] = 1.5 * STEP_NS * 1e-9
+    for tick in (3, 4):
+        stage.narrator.publish_rows(tick, {})
+    assert stage.log == []
+    stage.narrator.publish_rows(2, {})
+    assert stage.log == ['knee']
+    stage.narrator.publish_rows(10**9 // STEP_NS, {})
+    assert stage.log == ['knee', 'hip', 'knee']
 
 
 @pytest.mark.parametrize('listener', ['surroundings', 'hip', 'knee', None])

@@ -2,10 +2,12 @@
 
 from collections.abc import Sequence
 
+from diagnostic_msgs.msg import DiagnosticStatus
 from isa_ros.config.assembly import group_of, surroundings_of
 from isa_ros.config.paths import CONFIG, find
 from isa_ros.config.run_file import load_run
 from isa_ros.config.supplies import SupplyConfig
+from isa_ros.core.device import ENABLED, FIELDS, IMPEDANCE
 from isa_ros.core.signals import COMMAND, HAS_ENABLE, HAS_GAINS, HAS_SETPOINT, SAMPLE
 from isa_ros.run import packing
 from isa_ros.run.exchange import Rows
@@ -24,16 +26,18 @@ from tests.runs import ACCUMULATOR, hip_and_knee, RETURN_LINE
 
 LEG = load_run(find('leg.yaml', CONFIG))
 TICK_NS, T_NS = 6_000_000, 7_000_000
-SUFFIXES = ('applied_parameters', 'applied_setpoint', 'joint_states', 'load_cell', 'pressure_a',
-            'pressure_b', 'references', 'valve')
+SUFFIXES = ('applied_parameters', 'applied_setpoint', 'device', 'joint_states', 'load_cell',
+            'pressure_a', 'pressure_b', 'references', 'valve')
 ATMOSPHERE = 101325.0  # Pa, ISO 2533
 
 
 def shown(n: int = 2, n_supplies: int = 1) -> Shown:
-    """Return rows whose numbers all differ; nothing is applied."""
+    """Return rows whose numbers all differ but those of the device; nothing is applied."""
     samples, supplies = np.zeros(n, SAMPLE), np.zeros(n_supplies, SUPPLY_SAMPLE)
     samples.view(np.float64)[:] = np.arange(1.0, len(SAMPLE.names) * n + 1)
     supplies.view(np.float64)[:] = 1e6 * np.arange(1.0, len(SUPPLY_SAMPLE.names) * n_supplies + 1)
+    for field in (*FIELDS, 'age'):
+        samples[field] = 0.0
     return Shown(samples, np.zeros(n, COMMAND), supplies, None)
 
 
@@ -100,8 +104,8 @@ def test_messages_come_in_the_order_of_the_topics(packer, rows):
     assert [name for name, _ in messages] == sorted(name for name, _ in messages)
     assert [name for name, _ in messages] == [
         topic.name for topic in packer.topics
-        if topic.name not in ('/diagnostics', '/hip/applied_setpoint',
-                              '/knee/applied_parameters')]
+        if topic.name not in ('/diagnostics', '/hip/applied_setpoint', '/hip/device',
+                              '/knee/applied_parameters', '/knee/device')]
     types = {topic.name: topic.type_name for topic in packer.topics}
     for name, data in messages:
         decode(data, message_class(types[name]))
@@ -145,7 +149,7 @@ def test_an_applied_setpoint_holds_everything_in_force(packer, rows):
     applied(rows, 0, **values)
     packer.pack(T_NS, TICK_NS, {})
     message = decode(everything(packer)['/hip/applied_setpoint'], JointState)
-    assert list(message.position) == [0.5, 300.0, 20.0, 1.0]
+    assert list(message.position) == [0.5, 300.0, 20.0, 1.0, 0.0, 0.0, 1.0]
     assert (message.velocity[0], message.effort[0]) == (1.0, 2.0)
 
 
@@ -273,11 +277,28 @@ def test_the_first_messages_are_of_t_0():
     group.start(surroundings.starts())
     packer = packer_of(run, Shown(group.samples, group.applied, surroundings.supplies, None))
     packer.pack(0, 0, group.tuned)
-    parameters, setpoint, joint_states, *_ = packer.of_actuator(1)
+    parameters, setpoint, device, joint_states, *_ = packer.of_actuator(1)
     assert parameters is None
     assert stamp_ns(decode(joint_states, JointState)) == 0
     first = decode(setpoint, JointState)
     assert (first.name[0], stamp_ns(first), first.position[3]) == ('knee', 0, 1.0)
+    assert decode(device, DiagnosticStatus).message.startswith('initialising, mode impedance')
+
+
+def test_the_device_speaks_on_change_and_once_a_second(packer, rows):
+    """From the rows alone, so that a restored run tells the same."""
+    row = rows.samples[1]
+    row['device_state'], row['device_mode'], row['state_since'] = ENABLED, IMPEDANCE, 6.5e-3
+    said = []
+    for t_ns in (TICK_NS, T_NS, T_NS + 1_000_000, 999_000_000, 10**9, 10**9 + 1_000_000):
+        packer.pack(t_ns, t_ns - 1_000_000, {})
+        found = everything(packer)
+        said.append([name for name in ('hip', 'knee') if f'/{name}/device' in found])
+    assert said == [['knee'], ['knee'], [], [], ['hip', 'knee'], []]
+    packer.pack(T_NS, TICK_NS, {})
+    status = decode(everything(packer)['/knee/device'], DiagnosticStatus)
+    values = {entry.key: entry.value for entry in status.values}
+    assert (status.level, status.name, values['since_s']) == (b'\0', 'knee', '0.006500')
 
 
 def test_compiled_packing_equals_its_python_source(rows, monkeypatch):

@@ -4,6 +4,8 @@ import subprocess
 import sys
 
 import isa_ros
+from isa_ros.config.paths import CONFIG, find
+from isa_ros.config.yaml_text import read
 from isa_ros.controller import Controller, Setpoint
 from isa_ros.errors import ConfigError, IsaError
 from isa_ros.run.local_run import Inputs, LocalRun
@@ -182,3 +184,17 @@ def test_the_arrays_of_two_runs_are_independent(drop):
     first, second = drop.simulate(0.005), drop.simulate(0.005)
     assert np.array_equal(first['kfe.force'], second['kfe.force'])
     assert not np.shares_memory(first['kfe.force'], second['kfe.force'])
+
+
+def test_a_setpoint_that_is_limited_is_reported_before_the_run():
+    """As a `UserWarning` here, and as a line of a run on nodes."""
+    far = {'name': 'far', 'duration_s': 0.002, 'tracks': {
+        'kfe': [{'t_s': 0.0, 'position': 0.05, 'effort': 1e4}]}}
+    with pytest.raises(ConfigError, match=r'far.yaml: tracks.kfe\[0\].effort = 10000 N, must be'):
+        isa_ros.load('leg', far)
+    leg = read(find('leg', CONFIG))
+    leg['actuators']['kfe']['beyond_range'] = 'limit'
+    with pytest.warns(UserWarning, match=(
+            r'far.yaml: tracks.kfe\[0\].effort = 10000 N, limited to 7500 N, the rated force')):
+        result = isa_ros.load(leg, far).simulate()
+    assert result.log.applied[1]['effort'].tolist() == [0.0, 0.0, 7500.0]

@@ -1,31 +1,23 @@
 """
 What a command measures: an actuator of a model or of a run file, with other values.
 
-A model is measured as a run file of a few lines would be: alone, on the paper's supply. Keys of
-other values are those of the run file, or of the measured actuator as `isa params` shows them for
-its model: ``reu.force.kp``, ``plant.oil.dead_volume_ml``, ``load.stiffness``, ``preset``.
+A model is measured in the run of `isa_ros.config.model_run`. Keys of other values are those of the
+run file, or of the measured actuator.
 """
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import Any, NamedTuple
 
-from isa_ros.actuator.actuator import PAPER_SUPPLY
-from isa_ros.config.catalogue import actuator_model, model_names
+from isa_ros.config.catalogue import model_names
 from isa_ros.config.changes import changed
-from isa_ros.config.default_actuator import DEFAULT_TIMING
+from isa_ros.config.model_run import full_key, LOAD, model_run
 from isa_ros.config.paths import CONFIG, find
 from isa_ros.config.run_config import RunConfig
 from isa_ros.config.run_file import run_of
 from isa_ros.config.sections import Place
 from isa_ros.config.yaml_text import read, Tree
-from isa_ros.core.units import MPA
 from isa_ros.errors import ConfigError
-
-TICK_TIMEOUT_S = 5.0    # of a model's run, as in the shipped run files
-LOAD = 'load'
-_OF_SHEET = ('spool_feedback', 'plant', 'reu')
-_OF_ACTUATOR = ('preset', 'variants', 'initial_position_mm', 'initial_position_deg')
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -83,38 +75,16 @@ def chosen(choice: Choice) -> Chosen:
         if head == LOAD and rest and not choice.keeps_load:
             load_values[rest] = value
         else:
-            values[_full(key, head, name)] = value
+            values[full_key(key, name)] = value
     tree = changed(tree, values, place.file)
     return Chosen(tree, place, run_of(tree, place)[0], name, load_values)
 
 
-def _full(key: str, head: str, name: str) -> str:
-    """Return the key in the run file of a key that may be the measured actuator's."""
-    if head in _OF_SHEET:
-        return f'actuators.{name}.parameters.{key}'
-    if head in (LOAD, *_OF_ACTUATOR):
-        return f'actuators.{name}.{key}'
-    return key
-
-
 def _of_model(choice: Choice) -> Tree:
-    """Return the run file of a model alone, on the paper's supply."""
     if choice.actuator is not None:
         raise ConfigError(
             f'--actuator {choice.actuator} is not used: {choice.name} is a model, not a run file')
-    model = actuator_model(choice.name, 'model')
-    preset = choice.preset or 'default'
-    model.with_variants(model.with_preset(preset, '--preset'), choice.variants, '--variant')
-    actuator: Tree = {'model': model.name, 'preset': preset}
-    if choice.variants:
-        actuator['variants'] = list(choice.variants)
-    return {
-        'name': model.name, 'step_ms': DEFAULT_TIMING.step_ns * 1e-6,
-        'controller_offset_ms': DEFAULT_TIMING.controller_offset_ns * 1e-6,
-        'tick_timeout_s': TICK_TIMEOUT_S,
-        'supply': {'kind': 'constant', 'pressure_mpa': PAPER_SUPPLY / MPA,
-                   'return_pressure_mpa': 0.0},
-        'actuators': {model.name: actuator | {LOAD: {'kind': model.default_load}}}}
+    return model_run(choice.name, choice.preset, choice.variants)
 
 
 def _of_file(choice: Choice) -> tuple[Tree, Place]:

@@ -12,8 +12,9 @@ from isa_ros.analysis.response.loops import Loop, loop_of, Unit, units_of
 from isa_ros.config.catalogue import actuator_model
 from isa_ros.config.changes import changed
 from isa_ros.config.own_load import own_load
+from isa_ros.config.parameter_sets import kind_of
 from isa_ros.config.run_config import ActuatorConfig, RunConfig
-from isa_ros.config.sections import kind_of, Place
+from isa_ros.config.sections import Place
 from isa_ros.core.signals import LOAD_PORT, Records, START
 from isa_ros.core.units import MPA
 from isa_ros.errors import ConfigError

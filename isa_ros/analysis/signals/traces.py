@@ -7,12 +7,13 @@ from pathlib import Path
 from isa_ros.bag.reader import Bag
 from isa_ros.config.run_config import RunConfig
 from isa_ros.errors import BagError
-from msg_adapters import applied_parameters, diagnostics, event
+from msg_adapters import applied_parameters, device, diagnostics, event
 from msg_adapters.cdr_reader import message_class
 from msg_adapters.columns import number_columns
 import numpy as np
 
-_NO_SIGNALS = (applied_parameters.TYPE, diagnostics.TYPE, event.TYPE)  # texts of any length
+_NO_SIGNALS = (  # texts of any length
+    applied_parameters.TYPE, device.TYPE, diagnostics.TYPE, event.TYPE)
 
 
 @dataclass(frozen=True)

@@ -8,7 +8,7 @@ from typing import Any
 from isa_ros.actuator.sheet import ActuatorSheet
 from isa_ros.analysis.studies.temperature import Effects, leakage_at_null, Result, RIG, SCENARIO
 from isa_ros.config.catalogue import actuator_model, model_names
-from isa_ros.config.sections import build
+from isa_ros.config.parameter_sets import build
 from isa_ros.core.units import LPM, MICRO, MPA
 from isa_ros.plant.oil_properties import thickness
 from isa_ros.plant.plant import plant_record
@@ -49,7 +49,9 @@ compressibility that grows by 0.45 % of that of the sheet per kelvin, from the f
 and 0.86 at 160 degF of The Lee Company); and on the null of the valve (V12). At the temperature of
 the sheet all factors are exactly 1. A linearising block and gains keep the model of the sheet.
 Neglected: the density's change, heat of compression, which is a fifth of the heat of throttling,
-and the influence of the viscosity on turbulent flow, on spool and pilot stage.
+and the influence of the viscosity on turbulent flow, on spool and pilot stage. A temperature of
+start, supply or air at which friction is too fast for the plant's step is refused, as -30 celsius
+is for the ISA v5.
 
 This page is written by
 

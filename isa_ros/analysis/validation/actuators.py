@@ -11,8 +11,8 @@ from typing import Any
 
 from isa_ros.analysis.response.rig import Choice, Rig, rig
 from isa_ros.config.changed_parameters import with_parameters
+from isa_ros.config.parameter_sets import kind_of
 from isa_ros.config.run_config import ActuatorConfig
-from isa_ros.config.sections import kind_of
 from isa_ros.loads.sheets import LocalLoad
 from isa_ros.scripting.run import load, Run
 

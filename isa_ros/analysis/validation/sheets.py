@@ -4,7 +4,7 @@ from functools import cache
 
 from isa_ros.actuator.sheet import ActuatorSheet
 from isa_ros.config.catalogue import actuator_model
-from isa_ros.config.sections import build
+from isa_ros.config.parameter_sets import build
 from isa_ros.plant.plant import plant_record
 import numpy as np
 

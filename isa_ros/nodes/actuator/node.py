@@ -6,7 +6,8 @@ from typing import Any, NamedTuple
 
 from isa_ros.actuator.actuator import ActuatorConfig, participant_digest, SmartActuator, Timing
 from isa_ros.actuator.tunable import changing
-from isa_ros.core.signals import COMMAND, HAS_ENABLE, Records
+from isa_ros.controller import fill_command, Setpoint
+from isa_ros.core.signals import COMMAND, Records
 from isa_ros.errors import one_line, SetpointError, SimulationDiverged
 from isa_ros.nodes.actuator.parameters import TunableParameters
 from isa_ros.nodes.actuator.setpoint_publishers import IncompatiblePublishers
@@ -23,7 +24,7 @@ import numpy as np
 from rclpy.node import Node
 from rclpy.parameter import Parameter
 from sensor_msgs.msg import JointState
-from std_srvs.srv import SetBool
+from std_srvs.srv import SetBool, Trigger
 
 WARNING_PERIOD_S = 1.0
 
@@ -75,10 +76,13 @@ class ActuatorNode(Node):
         """The publishers of the actuator's topics."""
         setpoints = self.create_subscription(
             JointState, '~/setpoint', self._on_setpoint, SETPOINT)
-        enable = self.create_service(SetBool, '~/enable', self._on_enable)
+        services = [
+            self.create_service(SetBool, '~/enable', self._on_enable),
+            self.create_service(Trigger, '~/clear_fault', self._on_clear_fault),
+            self.create_service(Trigger, '~/quick_stop', self._on_quick_stop)]
         self._incompatible = IncompatiblePublishers(self, setpoints, SETPOINT_TYPE)
         self._inputs = open_server(
-            self, [setpoints], [enable], self._tunables.services, has_mailbox)
+            self, [setpoints], services, self._tunables.services, has_mailbox)
 
     @property
     def digest(self) -> str:
@@ -156,11 +160,12 @@ class ActuatorNode(Node):
         """Publish applied commands, and the state where there is a subscription."""
         tuned = self.actuator.applied_parameters
         has_subscribers = self.outlet.has_subscribers()
-        if not (has_subscribers or tuned or self._packer.has_applied(0)):
-            return
         t_ns = self.actuator.t_ns
-        self._packer.pack(
-            t_ns, max(0, t_ns - self.setup.timing.step_ns), {0: tuned} if tuned else {})
+        start_ns = max(0, t_ns - self.setup.timing.step_ns)
+        if not (has_subscribers or tuned or self._packer.has_applied(0)
+                or self._packer.has_status(0, t_ns, start_ns)):
+            return
+        self._packer.pack(t_ns, start_ns, {0: tuned} if tuned else {})
         self.outlet.publish(self._packer.of_actuator(0))
 
     def serve(self) -> None:
@@ -180,7 +185,7 @@ class ActuatorNode(Node):
     def _on_setpoint(self, message: JointState) -> None:
         try:
             command = msg_to_command(message, self.get_name())
-            limited = self.actuator.setpoint_range.admit(command)
+            limited = self.actuator.admit(command)
         except SetpointError as error:
             self.get_logger().warning(
                 f'setpoint rejected: {one_line(str(error))}',
@@ -188,15 +193,31 @@ class ActuatorNode(Node):
             return
         if limited:
             self.get_logger().warning(limited, throttle_duration_sec=WARNING_PERIOD_S)
-        self.actuator.accept(command)
 
     def _on_enable(
             self, request: SetBool.Request, response: SetBool.Response) -> SetBool.Response:
-        command = np.zeros(1, COMMAND)[0]
-        command['kinds'] = HAS_ENABLE
-        command['is_enabled'] = request.data
-        self.actuator.accept(command)
-        response.success = True
-        response.message = (
-            f'{"enabled" if request.data else "disabled"} from t = {self.t_ns * 1e-9:.6f} s')
+        if request.data:
+            self._request(response, 'enabled', Setpoint(is_enabled=True))
+        else:
+            self._request(response, 'disabled', Setpoint(is_enabled=False))
         return response
+
+    def _on_clear_fault(
+            self, request: Trigger.Request, response: Trigger.Response) -> Trigger.Response:
+        self._request(response, 'fault cleared', Setpoint(clear_fault=True))
+        return response
+
+    def _on_quick_stop(
+            self, request: Trigger.Request, response: Trigger.Response) -> Trigger.Response:
+        self._request(response, 'quick stop', Setpoint(quick_stop=True))
+        return response
+
+    def _request(self, response: Any, what: str, request: Setpoint) -> None:
+        """Accept a request where the state of the device has a transition for it."""
+        command = np.zeros(1, COMMAND)[0]
+        fill_command(self.get_name(), request, command)
+        refusal = self.actuator.refusal(command)
+        if not refusal:
+            self.actuator.accept(command)
+        response.success = not refusal
+        response.message = refusal or f'{what} from t = {self.t_ns * 1e-9:.6f} s'

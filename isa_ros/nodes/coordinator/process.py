@@ -3,6 +3,7 @@
 from collections.abc import Sequence
 
 from isa_ros.core.without_blas import start_without_blas
+from isa_ros.errors import one_line
 from isa_ros.nodes.coordinator.node import CoordinatorNode, NAME
 from isa_ros.nodes.coordinator.runs import coordinate, coordinate_locally
 from isa_ros.nodes.middleware.arguments import init_ros
@@ -30,6 +31,8 @@ def main(args: Sequence[str] | None = None) -> int:
             node = CoordinatorNode()
             try:
                 session = prepare(node.request())
+                for line in session.warnings:
+                    node.get_logger().warning(one_line(line))
                 start = coordinate_locally if session.request.in_process else coordinate
                 with sole_coordinator(), reported_compilation(NAME):
                     start(node, session, terminal_report(), should_stop)

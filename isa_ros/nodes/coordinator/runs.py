@@ -181,7 +181,7 @@ def _record(
         node, session.pace.factor, lambda coordinator: save_in_bag(session, coordinator),
         supplies)
     record(session, transport, surroundings, lambda topics: node.outlets(topics, actuators),
-           report, should_stop, services.serve)
+           report, should_stop, services.serve, node.get_logger().warning)
 
 
 def _resolver(setup: Setup) -> Callable[[Node], Setup]:

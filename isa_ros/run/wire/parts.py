@@ -12,8 +12,11 @@ import math
 import struct
 from typing import Any
 
+from isa_ros.actuator.inbox import WITH_GAINS
+from isa_ros.core.device import MODES
 from isa_ros.core.signals import (
-    COMMAND, HAS_ENABLE, HAS_GAINS, HAS_SETPOINT, LOAD_REPLY, Records, SAMPLE)
+    COMMAND, EVERY_KIND, HAS_ENABLE, HAS_MODE, HAS_REFERENCE, HAS_SETPOINT, LOAD_REPLY, Records,
+    SAMPLE)
 from isa_ros.run.exchange import Rows
 from isa_ros.run.wire.header import WireError
 import numpy as np
@@ -32,7 +35,6 @@ _APPLIED_AT = LOAD_REPLY.itemsize + SAMPLE.itemsize
 _ROWS = _APPLIED_AT + COMMAND.itemsize
 _PARTS = 3
 _LAST_STEP = 2**46  # of the plant: 44 years
-_KINDS = HAS_SETPOINT | HAS_ENABLE | HAS_GAINS
 _NUMBERS = ('position', 'velocity', 'effort')
 _GAINS = ('stiffness', 'damping')
 
@@ -147,8 +149,12 @@ def refuse_command(command: np.void) -> None:
     if not kinds:
         return
     numbers = [float(command[name]) for name in _NUMBERS] if kinds & HAS_SETPOINT else []
-    gains = [float(command[name]) for name in _GAINS] if kinds & ~HAS_ENABLE else []
-    if (kinds & ~_KINDS or kinds & HAS_ENABLE and command['is_enabled'] not in (0, 1)
+    gains = [float(command[name]) for name in _GAINS] if kinds & WITH_GAINS else []
+    if kinds & HAS_REFERENCE:
+        numbers.append(float(command['reference']))
+    has_mode = kinds & (HAS_MODE | HAS_REFERENCE)
+    if (kinds & ~EVERY_KIND or kinds & HAS_ENABLE and command['is_enabled'] not in (0, 1)
+            or has_mode and not 0 < command['mode'] < len(MODES)
             or not 0 <= command['due_step'] <= _LAST_STEP
             or not all(map(math.isfinite, numbers))
             or any(math.isinf(gain) or gain < 0.0 for gain in gains)):

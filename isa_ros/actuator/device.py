@@ -1,0 +1,62 @@
+"""Mode at the start, and answers to requests: what a device accepts in its state."""
+
+from isa_ros.core.device import (
+    CLEAR, DISABLE, DISABLED, ENABLE, ENABLED, FAULT, INITIALISING, state_name, STOP)
+from isa_ros.core.signals import COMMAND, HAS_CLEAR_FAULT, HAS_ENABLE, HAS_MODE, HAS_QUICK_STOP
+from isa_ros.reu.device import TRANSITIONS
+from isa_ros.reu.protection import is_cause_gone
+from isa_ros.reu.wiring import first_mode, mode_of, Reu
+import numpy as np
+
+_STAYS = {ENABLE: ENABLED, DISABLE: DISABLED}
+"""The state in which an event changes nothing, and is right to do so."""
+
+
+def start_mode(name: str, mode: str | None, reu: Reu) -> int:
+    """
+    Return the mode in which an actuator starts, a number of `isa_ros.core.device`.
+
+    Raises
+    ------
+    ConfigError
+        The wiring does not have the configured mode.
+
+    """
+    return first_mode(reu) if mode is None else mode_of(mode, reu, f'{name}: mode')
+
+
+def mode_command(mode: str, reu: Reu) -> np.void:
+    """Return the `COMMAND` row that changes the mode; raises as `mode_of`."""
+    command: np.void = np.zeros(1, COMMAND)[0]
+    command['kinds'], command['mode'] = HAS_MODE, mode_of(mode, reu)
+    return command
+
+
+def mode_after(pending: np.record, reu: np.record) -> int:
+    """Return the mode after the ``pending`` `COMMAND` has taken effect on a `REU_STATE`."""
+    own = pending.mode if int(pending.kinds) & HAS_MODE else reu.status.requested_mode
+    return int(own)
+
+
+def refusal_of(
+        command: np.void, pending: np.record, constants: np.record, reu: np.record) -> str:
+    """Return why a request of enable, clear or stop would change nothing, or ''."""
+    kinds, state = int(command['kinds']), int(reu.status.state)
+    if state == INITIALISING and reu.status.auto_enable:
+        state = ENABLED
+    is_gone = is_cause_gone(constants.protection, reu.protection)
+    if int(pending.kinds) & HAS_CLEAR_FAULT and is_gone and state == FAULT:
+        state = DISABLED
+    if int(pending.kinds) & HAS_ENABLE and state in (DISABLED, ENABLED):
+        state = ENABLED if pending.is_enabled else DISABLED
+    for kind, event, what in (
+            (HAS_ENABLE, ENABLE if command['is_enabled'] else DISABLE, 'enable'),
+            (HAS_CLEAR_FAULT, CLEAR, 'clear_fault'), (HAS_QUICK_STOP, STOP, 'quick_stop')):
+        if not kinds & kind or _STAYS.get(event) == state:
+            continue
+        if not any(row.state == state and row.event == event for row in TRANSITIONS):
+            states = [state_name(row.state) for row in TRANSITIONS if row.event == event]
+            return f'the state is {state_name(state)}, {what} needs {" or ".join(states)}'
+        if event == CLEAR and not is_gone:
+            return 'the cause of the fault is not gone'
+    return ''

@@ -1,0 +1,38 @@
+"""
+Names of the states, modes and events of an actuator's device, and their numbers.
+
+A number is the place of a name in its list; `SAMPLE` and `COMMAND` hold numbers. What they do is
+in `isa_ros.reu.device`.
+"""
+
+STATES = ('initialising', 'disabled', 'enabled', 'quick stop', 'fault reaction', 'fault')
+INITIALISING, DISABLED, ENABLED, QUICK_STOP, FAULT_REACTION, FAULT = range(6)
+
+MODES = ('none', 'current', 'spool', 'pressure', 'force', 'position', 'impedance')
+NO_MODE, CURRENT, SPOOL, PRESSURE, FORCE, POSITION, IMPEDANCE = range(7)
+"""A mode is named after its outermost block; the blocks inside of it run too."""
+
+REFERENCES = {'current': CURRENT, 'spool': SPOOL, 'pressure': PRESSURE}
+"""The modes whose setpoint is one number: amplifier A, m of spool, Pa of pressure difference."""
+
+EVENTS = ('start', 'ready', 'trip', 'clear fault', 'mode', 'enable', 'disable', 'quick stop',
+          'stop ends', 'reaction ends')
+START, READY, TRIP, CLEAR, MODE, ENABLE, DISABLE, STOP, STOP_ENDS, REACTION_ENDS = range(10)
+
+FIELDS = ('device_state', 'device_mode', 'device_event', 'warnings', 'trips', 'state_since')
+"""Fields of a `SAMPLE` that describe the device."""
+
+
+def mode_name(number: float) -> str:
+    """Return the name of a mode by its number."""
+    return MODES[int(number)]
+
+
+def state_name(number: float) -> str:
+    """Return the name of a state by its number."""
+    return STATES[int(number)]
+
+
+def event_name(number: float) -> str:
+    """Return the name of an event by its number."""
+    return EVENTS[int(number)]

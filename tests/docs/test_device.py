@@ -1,0 +1,29 @@
+"""The tables of docs/device.md are the data that the device runs on."""
+
+from pathlib import Path
+
+from isa_ros.core.device import EVENTS
+from isa_ros.reu import device_table
+from isa_ros.reu.device import TRANSITIONS
+import pytest
+
+PAGE = Path(__file__).parents[2] / 'docs' / 'device.md'
+
+
+def test_the_tables_of_the_page_are_those_of_the_device():
+    """Else run scripts/draw_device.py."""
+    text = PAGE.read_text(encoding='utf-8')
+    assert device_table.with_tables(text) == text
+    for lines in (device_table.state_table(), device_table.mode_table()):
+        assert '\n'.join(lines) in text
+
+
+def test_a_changed_transition_changes_the_page(monkeypatch):
+    text = PAGE.read_text(encoding='utf-8')
+    monkeypatch.setattr(device_table, 'TRANSITIONS', TRANSITIONS[:-1])
+    assert device_table.with_tables(text) != text
+
+
+@pytest.mark.parametrize('event', EVENTS)
+def test_every_event_has_its_cause(event):
+    assert device_table.EVENT_WORDS[event]

@@ -1,0 +1,103 @@
+"""What the trips of a protection cause: held, damped and inhibited commands; the watchdog."""
+
+from dataclasses import replace
+
+from hypothesis import given, settings, strategies as st
+from isa_ros.core.conditions import BITS
+from isa_ros.core.parameter import defaults
+from isa_ros.reu.protection import feed, is_inhibited, setpoint_in_force
+from isa_ros.reu.protection_sheet import levels_of, Protection
+import pytest
+from tests.reu.watched import off, only, Watched
+
+
+def test_hold_keeps_the_position_measured_at_the_trip() -> None:
+    watched = Watched(only('overload', trip=0.5, delay_ms=0.0, reaction='hold'))
+    watched.show('overload', 6e3)
+    watched.convert()
+    watched.state.measured.position = 0.06
+    watched.convert()
+    held = setpoint_in_force(watched.state)
+    assert (held.position, held.velocity, held.effort) == (0.05, 0.0, 0.0)
+    assert (held.stiffness, held.damping) == (1e5, 4e3)
+    assert watched.state.setpoint.position == 0.02
+
+
+def test_damp_is_damping_without_stiffness() -> None:
+    """And the commanded gains are in force again afterwards."""
+    watched = Watched(only('overload', trip=0.5, delay_ms=0.0, reaction='damp'))
+    watched.show('overload', 6e3)
+    watched.convert()
+    damped = setpoint_in_force(watched.state)
+    assert (damped.stiffness, damped.damping) == (0.0, 4e3)
+    assert (damped.velocity, damped.effort) == (0.0, 0.0)
+    watched.show('overload', 0.0)
+    watched.convert()
+    assert setpoint_in_force(watched.state).stiffness == 1e5
+
+
+@pytest.mark.parametrize(('name', 'quantity', 'extends'), [
+    ('end_of_stroke', 0.099, True), ('end_of_stroke', 0.001, False),
+    ('overspeed', -2.0, True), ('overspeed', 2.0, False), ('overload', 9e3, True),
+    ('relief_open', 23e6, True), ('overpressure', 23e6, False)])
+def test_limit_inhibits_the_direction_that_makes_it_worse(
+        name: str, quantity: float, extends: bool) -> None:
+    watched = Watched(only(name, trip=0.5, delay_ms=0.0, reaction='limit'))
+    watched.show(name, quantity)
+    if name == 'overspeed':
+        watched.state.speed.velocity = -quantity
+    watched.convert()
+    assert watched.has(name)[1]
+    assert is_inhibited(1e-4, watched.own) == extends
+    assert is_inhibited(-1e-4, watched.own) == (not extends)
+    assert not is_inhibited(0.0, watched.own)
+
+
+@pytest.mark.parametrize('reaction', ['hold', 'damp', 'disable'])
+def test_the_watchdog_trips_one_conversion_after_its_time(reaction: str) -> None:
+    """And ends with the next setpoint, unless the actuator is disabled."""
+    watched = Watched(replace(
+        off(), setpoint_timeout_ms=20.0, setpoint_timeout_reaction=reaction))
+    watched.convert(1000)
+    assert watched.own.trips == 0  # before the first setpoint there is none to wait for
+    feed(watched.own)
+    watched.convert(201)
+    assert watched.own.trips == 0
+    watched.convert()
+    assert watched.own.trips == 1 << BITS['setpoint_timeout']
+    feed(watched.own)
+    watched.convert()
+    assert (watched.own.trips == 0) == (reaction != 'disable')
+
+
+def test_a_disabled_actuator_waits_for_no_setpoint() -> None:
+    watched = Watched(replace(off(), setpoint_timeout_ms=1.0))
+    feed(watched.own)
+    watched.state.status.is_on = 0
+    watched.convert(100)
+    watched.state.status.is_on = 1
+    watched.convert(10)  # counted from the last conversion while disabled
+    assert watched.own.trips == 0
+    watched.convert()
+    assert watched.own.trips == 1
+
+
+@given(timeout=st.integers(1, 400))
+@settings(max_examples=20, deadline=None)
+def test_every_timeout_is_counted_exactly(timeout: int) -> None:
+    """No time is a conversion longer or shorter because 0.1 ms is not a binary number."""
+    watched = Watched(replace(off(), setpoint_timeout_ms=timeout * 0.1))
+    feed(watched.own)
+    watched.convert(timeout + 1)
+    assert watched.own.trips == 0
+    watched.convert()
+    assert watched.own.trips == 1
+
+
+def test_a_direction_is_inhibited_only_where_there_is_one() -> None:
+    for name, levels in levels_of(defaults(Protection)).items():
+        allows = 'limit' in next(
+            f for f in levels.__dataclass_fields__.values()  # type: ignore[attr-defined]
+            if f.name == 'reaction').metadata['names']
+        assert allows == (name in (
+            'end_of_stroke', 'overspeed', 'overload', 'overpressure', 'relief_open'))
