@@ -95,7 +95,7 @@ CHAMBERS = np.dtype([
     ('area_a', 'f8'), ('area_b', 'f8'), ('stroke', 'f8'),
     ('dead_volume', 'f8'), ('beta', 'f8'), ('c_li', 'f8'), ('p_air', 'f8'),
     ('p_vapour', 'f8'),     # Pa gauge
-    ('air', 'f8'), ('c_le_a', 'f8'), ('c_le_b', 'f8')])
+    ('air', 'f8'), ('leaks_out', 'f8'), ('c_le_a', 'f8'), ('c_le_b', 'f8')])
 AIR_EXPONENT = 1.4          # 1, kappa of air: it is compressed without exchange of heat
 LEAST_AIR_PRESSURE = 1e3    # Pa absolute, at which the air of C12 is not thinned any further
 CHAMBERS_STATE = np.dtype([
@@ -111,6 +111,7 @@ def chambers_record(drive: Cylinder | Vane, oil: Oil) -> np.record:
         dead_volume=oil.dead_volume_ml * MILLILITRE, beta=oil.effective_bulk_modulus,
         c_li=oil.cross_port_leakage, p_air=oil.aeration_pressure_kpa * 1e3,
         p_vapour=oil.vapour_pressure_kpa * 1e3 - ATMOSPHERE, air=oil.entrained_air,
+        leaks_out=float(oil.external_leakage_a + oil.external_leakage_b > 0.0),
         c_le_a=oil.external_leakage_a, c_le_b=oil.external_leakage_b)
 
 
@@ -191,8 +192,11 @@ def surpluses(q_a, q_b, p_a, p_b, v, chambers):
     are all flows into a chamber except the cross-port leakage and those to the outside  (C13).
     """
     q_li = chambers.c_li * (p_a - p_b)
-    return (q_a - chambers.area_a * v - q_li - external_leakage(p_a, chambers.c_le_a),
-            q_b + chambers.area_b * v + q_li - external_leakage(p_b, chambers.c_le_b))
+    in_a, in_b = q_a - chambers.area_a * v - q_li, q_b + chambers.area_b * v + q_li
+    if chambers.leaks_out > 0.0:
+        in_a -= external_leakage(p_a, chambers.c_le_a)
+        in_b -= external_leakage(p_b, chambers.c_le_b)
+    return in_a, in_b
 
 
 @kernel

@@ -151,8 +151,9 @@ def plant_rates(y, x_load, v_load, drive, p_s, p_t, plant, rates, powers):
     out_b = relief.eased_flow(p_b, p_t, in_b, per_b, plant.relief)
     rates.chambers.p_a = per_a * (in_a - out_a)
     rates.chambers.p_b = per_b * (in_b - out_b)
-    powers.cross_port = (plant.chambers.c_li * (p_a - p_b) * (p_a - p_b)
-                         + chambers.external_loss(p_a, p_b, plant.chambers))
+    powers.cross_port = plant.chambers.c_li * (p_a - p_b) * (p_a - p_b)
+    if plant.chambers.leaks_out > 0.0:
+        powers.cross_port += chambers.external_loss(p_a, p_b, plant.chambers)
     powers.relief = (p_a - p_t) * out_a + (p_b - p_t) * out_b
     powers.compression = p_a * (in_a - out_a) + p_b * (in_b - out_b)
 

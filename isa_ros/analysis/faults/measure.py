@@ -16,6 +16,7 @@ from isa_ros.config.sections import Place
 from isa_ros.config.yaml_text import Tree
 from isa_ros.core import signals
 from isa_ros.core.conditions import BITS
+from isa_ros.core.device import STATES
 from isa_ros.core.signals import COMMAND, HAS_ENABLE, SAMPLE, SAMPLE_UNITS
 from isa_ros.core.units import of_coordinate
 from isa_ros.errors import SimulationDiverged
@@ -58,7 +59,7 @@ class Noticed(NamedTuple):
     kind: str
     """``warning``, ``trip`` or ``state``."""
     name: str
-    """Of the condition; of a state its number."""
+    """Of the condition; or the state."""
     after_s: float
     """From the begin of the fault to the first sample with it."""
 
@@ -145,7 +146,8 @@ def _noticed(
         ticks = np.flatnonzero(faulty[_STATE] != sound[_STATE])
         if len(ticks):
             found.append(Noticed(
-                'state', f'{faulty[_STATE][ticks[0]]:g}', (int(ticks[0]) - begin) * STEP_S))
+                'state', STATES[int(faulty[_STATE][ticks[0]])],
+                (int(ticks[0]) - begin) * STEP_S))
     return sorted(found, key=lambda own: own.after_s)
 
 
