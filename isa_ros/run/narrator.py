@@ -92,7 +92,7 @@ class Narrator:
         subscribed = [
             row for row, outlet in enumerate(outlets.actuators)
             if outlet.has_subscribers() or packer.has_applied(row) or row in tuned
-            or packer.has_status(row, t_ns, start_ns)]
+            or packer.rare.has_device(row, t_ns, start_ns)]
         has_surroundings = outlets.surroundings.has_subscribers() or bool(tuned_supplies)
         if self._recorder is None and not subscribed and not has_surroundings:
             return
@@ -106,7 +106,7 @@ class Narrator:
     def end(self) -> None:
         """Add the diagnostics to the last instant if it is not recorded yet, and record it."""
         if self._unrecorded is not None:
-            diagnosed = self._packer.diagnose()
+            diagnosed = self._packer.rare.diagnose()
             if self._outlets.surroundings.has_subscribers():
                 self._outlets.surroundings.publish(
                     [diagnosed if topic.name == diagnostics.TOPIC[0] else None

@@ -9,24 +9,20 @@ from collections.abc import Callable, Collection, Mapping, Sequence
 from typing import NamedTuple
 
 from isa_ros.bag.packed import Layout, layout, Packed
-from isa_ros.core.accounts import accounts_of
 from isa_ros.core.atmosphere import ATMOSPHERE
-from isa_ros.core.device import FIELDS
 from isa_ros.core.kernel import kernel
 from isa_ros.core.record import float_columns, floats
 from isa_ros.core.signals import Records, SAMPLE
-from isa_ros.core.timebase import NS_PER_SECOND, PLANT_STEP_NS
+from isa_ros.core.timebase import NS_PER_SECOND
 from isa_ros.core.topic import KEPT, Qos, Topic
-from isa_ros.run.diagnostics import energy_statuses, PERIOD_NS
 from isa_ros.run.link_packing import LinkWords
+from isa_ros.run.rare_messages import DEVICE, DIAGNOSTICS, OF_SUPPLIES, PARAMETERS, RareMessages
 from isa_ros.surroundings.supply import SUPPLY_SAMPLE
 from msg_adapters import (
-    actuator_messages, clock, coordinator_messages, device, diagnostics, event, fluid_pressure,
+    actuator_messages, clock, coordinator_messages, diagnostics, event, fluid_pressure,
     temperature)
 from msg_adapters.actuator_messages import (
     KEPT_TOPICS, SENT_SETPOINT, STATE_TOPICS, TEMPERATURE, topics)
-from msg_adapters.applied_parameters import applied_parameters
-from msg_adapters.cdr import encode
 from msg_adapters.template import FIRST_VALUE, Prepared, Template, time_word
 import numpy as np
 
@@ -156,14 +152,13 @@ class Packer:
                     coordinator_messages.WORLD_FRAME, at + k)))
             at += len(_SUPPLY_PRESSURES)
         if names.supplies:
-            found.append((Topic(_TUNED_SUPPLIES[0], _TUNED_SUPPLIES[1], KEPT), None))
+            found.append((Topic(*coordinator_messages.APPLIED_PARAMETERS, KEPT), None))
         if names.body is not None and shown.body is not None:
             body = names.body(float_columns(shown.body.dtype, at))
             found += [(Topic(*topic), message) for topic, message in body.items()]
         if is_run:
             found += [(Topic(*clock.TOPIC), clock.clock()), (Topic(*event.TOPIC), None),
                       (Topic(*diagnostics.TOPIC), None)]
-        self._is_run = is_run
         self.topics = tuple(sorted((topic for topic, _ in found), key=lambda topic: topic.name))
         if len({topic.name for topic in self.topics}) != len(self.topics):
             raise ValueError(f'a topic has two sources: {self.topics}')
@@ -172,11 +167,10 @@ class Packer:
         self._index = {topic.name: k for k, topic in enumerate(self.topics)}
         self._template = Template([message for _, message in prepared])
         self._bytes = self._template.block.view(np.uint8)
-        self._tuned: dict[int, bytes] = {}
-        self._status: dict[int, bytes] = {}
-        self._tuned_supplies: bytes | None = None
-        self._t_ns = 0
-        self._diagnosed: bytes | None = None
+        self.rare = RareMessages(
+            [name for name, _ in names.actuators], shown.samples,
+            [name for name, _ in names.supplies], shown.supplies, is_run)
+        """The messages that are encoded as they come."""
         self._periods = dict(names.periods) | {
             f'/{name}/{TEMPERATURE[0]}': NS_PER_SECOND for name in names.heated}
         self._not_due: frozenset[str] = frozenset()
@@ -222,30 +216,7 @@ class Packer:
             self._not_due = frozenset(
                 name for name, period in self._periods.items()
                 if t_ns and t_ns // period == tick_start_ns // period)
-        self._tuned = {
-            row: applied_parameters(self._names.actuators[row][0], values, tick_start_ns)
-            for row, values in tuned.items()} if tuned else {}
-        self._status = {
-            row: encode(device.status(name, self._device_of(row)))
-            for row, (name, _) in enumerate(self._names.actuators)
-            if self.has_status(row, t_ns, tick_start_ns)}
-        self._tuned_supplies = applied_parameters(
-            coordinator_messages.NODE, tuned_supplies, tick_start_ns) if tuned_supplies else None
-        self._t_ns, self._diagnosed = t_ns, None
-        if self._is_run and t_ns % PERIOD_NS == 0:
-            self.diagnose()
-
-    def _device_of(self, row: int) -> dict[str, float]:
-        sample = self._shown.samples[row]
-        return {field: float(sample[field]) for field in FIELDS}
-
-    def diagnose(self) -> bytes:
-        """Add the diagnostics to the packed instant, and return them."""
-        names, shown = self._names, self._shown
-        self._diagnosed = diagnostics.pack(self._t_ns, energy_statuses(accounts_of(
-            [name for name, _ in names.actuators], shown.samples,
-            [name for name, _ in names.supplies], shown.supplies, self._t_ns)))
-        return self._diagnosed
+        self.rare.pack(t_ns, tick_start_ns, tuned, tuned_supplies)
 
     def all_messages(self, events: Sequence[bytes] = ()) -> Packed:
         """Return all messages of the packed instant, in the order of `topics`."""
@@ -254,18 +225,10 @@ class Packer:
         if where is None:
             where = self._layouts[key] = self._layout()
         packed = Packed(self._bytes, where)
-        if not (events or self._tuned or self._status or self._tuned_supplies
-                or self._diagnosed):
+        extra = [(self._index[topic], data) for topic, data in self.rare.items()]
+        extra += [(self._index[event.TOPIC[0]], data) for data in events]
+        if not extra:
             return packed
-        extra = [(self._index[event.TOPIC[0]], data) for data in events]
-        extra += [(self._index[f'/{self._names.actuators[row][0]}/{_PARAMETERS}'], data)
-                  for row, data in self._tuned.items()]
-        extra += [(self._index[f'/{self._names.actuators[row][0]}/{_DEVICE}'], data)
-                  for row, data in self._status.items()]
-        if self._tuned_supplies is not None:
-            extra.append((self._index[_TUNED_SUPPLIES[0]], self._tuned_supplies))
-        if self._diagnosed is not None:
-            extra.append((self._index[diagnostics.TOPIC[0]], self._diagnosed))
         return Packed.of(sorted([*packed, *extra], key=lambda message: message[0]))
 
     def _layout(self) -> Layout:
@@ -286,10 +249,10 @@ class Packer:
         """Return the messages of one actuator in the order of `topics_of_actuator`."""
         name = self._names.actuators[row][0]
         commands = [(_SETPOINT, self._kinds), (_SENT, self._sent_kinds)]
-        messages = [self._tuned.get(row), *(
+        messages = [self.rare.get(f'/{name}/{PARAMETERS}'), *(
             self._message(f'/{name}/{suffix}') if kinds[row] else None
             for suffix, kinds in commands[:1 + (row in self._links.rows)]),
-            self._status.get(row),
+            self.rare.get(f'/{name}/{DEVICE}'),
             *(self._message(f'/{name}/{suffix}') for suffix, _ in STATE_TOPICS)]
         if name in self._names.heated:
             temperature = f'/{name}/{TEMPERATURE[0]}'
@@ -300,21 +263,9 @@ class Packer:
         """Return whether a command of an actuator took effect in the last tick, or was sent."""
         return bool(self._kinds[row] or self._sent_kinds[row])
 
-    def has_status(self, row: int, t_ns: int, tick_start_ns: int) -> bool:
-        """
-        Return whether a tick has a message of an actuator's device.
-
-        It is one in which the status has changed, as far as it has arrived over a link, or a
-        second of simulated time ended; t = 0.
-        """
-        since = (self._samples[row, _SINCE] + self._samples[row, _AGE]) * NS_PER_SECOND
-        return bool(since > tick_start_ns - _HALF_STEP_NS
-                    or t_ns // NS_PER_SECOND != tick_start_ns // NS_PER_SECOND or t_ns == 0)
-
     def of(self, topics: Sequence[Topic]) -> list[bytes | None]:
         """Return the messages of some topics of supplies and body; None: none at this instant."""
-        rare = {_TUNED_SUPPLIES[0]: self._tuned_supplies, diagnostics.TOPIC[0]: self._diagnosed}
-        return [rare[topic.name] if topic.name in rare
+        return [self.rare.get(topic.name) if topic.name in (OF_SUPPLIES, DIAGNOSTICS)
                 else None if topic.name in self._not_due
                 else self._message(topic.name) for topic in topics]
 
@@ -339,8 +290,3 @@ def _n_columns(shown: Shown) -> int:
 
 _SETPOINT = actuator_messages.APPLIED_SETPOINT[0]
 _SENT = SENT_SETPOINT[0]
-_PARAMETERS = actuator_messages.APPLIED_PARAMETERS[0]
-_DEVICE = actuator_messages.DEVICE[0]
-_TUNED_SUPPLIES = coordinator_messages.APPLIED_PARAMETERS
-_SINCE, _AGE = _SAMPLE.index('state_since'), _SAMPLE.index('age')
-_HALF_STEP_NS = 0.5 * PLANT_STEP_NS

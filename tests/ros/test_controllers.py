@@ -68,7 +68,7 @@ def simulated(n_ticks: int, controller: Controller) -> list[tuple[int, str, byte
     while True:
         packer.pack(simulation.t_ns, max(0, simulation.t_ns - run.step_ns), simulation.tuned)
         if simulation.ticks == n_ticks:
-            packer.diagnose()   # as a recorder gets it at the end of a run
+            packer.rare.diagnose()   # as a recorder gets it at the end of a run
         said += [(simulation.ticks, packer.topics[k].name, data)
                  for k, data in packer.all_messages()]
         if simulation.ticks == n_ticks:

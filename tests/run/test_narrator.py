@@ -198,7 +198,7 @@ def test_the_end_adds_the_diagnostics_of_the_last_instant():
     stage.narrator.end()
     stage.narrator.end()
     expected = stage.expected(3)
-    place, data = stage.topics.index('/diagnostics'), expected.diagnose()
+    place, data = stage.topics.index('/diagnostics'), expected.rare.diagnose()
     (_, sequence, messages), = stage.recorder.samples
     assert sequence == 3 and (place, data) in messages
     assert stage.log == ['surroundings', 'surroundings', 'record 3']

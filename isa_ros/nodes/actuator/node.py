@@ -163,7 +163,7 @@ class ActuatorNode(Node):
         t_ns = self.actuator.t_ns
         start_ns = max(0, t_ns - self.setup.timing.step_ns)
         if not (has_subscribers or tuned or self._packer.has_applied(0)
-                or self._packer.has_status(0, t_ns, start_ns)):
+                or self._packer.rare.has_device(0, t_ns, start_ns)):
             return
         self._packer.pack(t_ns, start_ns, {0: tuned} if tuned else {})
         self.outlet.publish(self._packer.of_actuator(0))

@@ -1,0 +1,96 @@
+"""
+Messages of a tick that are encoded as they come: changed parameters, devices, diagnostics.
+
+They have texts, or values of any number, so that they have no place in a prepared block.
+"""
+
+from collections.abc import Iterator, Mapping, Sequence
+
+from diagnostic_msgs.msg import DiagnosticStatus
+from isa_ros.core.accounts import accounts_of
+from isa_ros.core.device import FIELDS
+from isa_ros.core.record import floats
+from isa_ros.core.signals import Records, SAMPLE
+from isa_ros.core.timebase import NS_PER_SECOND, PLANT_STEP_NS
+from isa_ros.run.diagnostics import device_statuses, energy_statuses, PERIOD_NS
+from msg_adapters import actuator_messages, coordinator_messages, device, diagnostics
+from msg_adapters.applied_parameters import applied_parameters
+from msg_adapters.cdr import encode
+
+PARAMETERS, DEVICE = actuator_messages.APPLIED_PARAMETERS[0], actuator_messages.DEVICE[0]
+OF_SUPPLIES = coordinator_messages.APPLIED_PARAMETERS[0]
+DIAGNOSTICS = diagnostics.TOPIC[0]
+_FIELDS = tuple(SAMPLE.names or ())
+_SINCE, _AGE = _FIELDS.index('state_since'), _FIELDS.index('age')
+_HALF_STEP_NS = 0.5 * PLANT_STEP_NS
+
+
+class RareMessages:
+    """
+    The messages of the last tick by topic; `pack` replaces them.
+
+    ``actuators`` and ``supplies`` are names, ``samples`` and ``supply_samples`` their rows.
+    ``is_run``: there are diagnostics of them all, every second, on change and at the end.
+    """
+
+    def __init__(
+            self, actuators: Sequence[str], samples: Records, supplies: Sequence[str],
+            supply_samples: Records, is_run: bool) -> None:
+        self._actuators, self._samples = actuators, samples
+        self._supplies, self._supply_samples = supplies, supply_samples
+        self._values = floats(samples)
+        self._is_run = is_run
+        self._t_ns = 0
+        self._found: dict[str, bytes] = {}
+
+    def pack(
+            self, t_ns: int, tick_start_ns: int, tuned: Mapping[int, Mapping[str, float]],
+            tuned_supplies: Mapping[str, float]) -> None:
+        """Encode the messages of ``t_ns``; arguments as `isa_ros.run.packing.Packer.pack`."""
+        self._t_ns = t_ns
+        self._found = {}
+        for row, values in tuned.items():
+            name = self._actuators[row]
+            self._found[f'/{name}/{PARAMETERS}'] = applied_parameters(name, values, tick_start_ns)
+        if tuned_supplies:
+            self._found[OF_SUPPLIES] = applied_parameters(
+                coordinator_messages.NODE, tuned_supplies, tick_start_ns)
+        changed = [row for row in range(len(self._actuators))
+                   if self.has_device(row, t_ns, tick_start_ns)]
+        for row in changed:
+            self._found[f'/{self._actuators[row]}/{DEVICE}'] = encode(self._device(row))
+        if self._is_run and (changed or t_ns % PERIOD_NS == 0):
+            self.diagnose()
+
+    def has_device(self, row: int, t_ns: int, tick_start_ns: int) -> bool:
+        """
+        Return whether a tick has a message of an actuator's device.
+
+        It is one in which the status has changed, as far as it has arrived over a link, or a
+        second of simulated time ended; t = 0.
+        """
+        since = (self._values[row, _SINCE] + self._values[row, _AGE]) * NS_PER_SECOND
+        return bool(since > tick_start_ns - _HALF_STEP_NS
+                    or t_ns // NS_PER_SECOND != tick_start_ns // NS_PER_SECOND or t_ns == 0)
+
+    def diagnose(self) -> bytes:
+        """Add the diagnostics of all, and return them."""
+        self._found[DIAGNOSTICS] = found = diagnostics.pack(self._t_ns, [
+            *device_statuses(map(self._device, range(len(self._actuators)))),
+            *energy_statuses(accounts_of(
+                self._actuators, self._samples, self._supplies, self._supply_samples,
+                self._t_ns))])
+        return found
+
+    def _device(self, row: int) -> DiagnosticStatus:
+        sample = self._samples[row]
+        return device.status(
+            self._actuators[row], {field: float(sample[field]) for field in FIELDS})
+
+    def get(self, topic: str) -> bytes | None:
+        """Return the message of a topic, or None."""
+        return self._found.get(topic)
+
+    def items(self) -> Iterator[tuple[str, bytes]]:
+        """Yield topics and messages."""
+        yield from self._found.items()
