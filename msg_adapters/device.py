@@ -10,8 +10,11 @@ from diagnostic_msgs.msg import DiagnosticStatus, KeyValue
 from isa_ros.core.conditions import conditions
 from isa_ros.core.device import (
     event_name, FAULT, FAULT_REACTION, mode_name, QUICK_STOP, state_name)
+from msg_adapters.cdr import encode
+from msg_adapters.diagnostics import Status
 
 TYPE = 'diagnostic_msgs/msg/DiagnosticStatus'
+TASK = 'device'
 
 REASONS: Mapping[str, str] = {
     'start': 'the run has started', 'ready': 'initialised', 'trip': 'a condition has tripped',
@@ -56,3 +59,15 @@ def status(name: str, sample: Mapping[str, float]) -> DiagnosticStatus:
     return DiagnosticStatus(
         level=level, name=name, message=message, hardware_id=name,
         values=[KeyValue(key=key, value=value) for key, value in values.items()])
+
+
+def pack(name: str, sample: Mapping[str, float]) -> bytes:
+    """Return the CDR bytes of `status`."""
+    return encode(status(name, sample))
+
+
+def joined(name: str, sample: Mapping[str, float]) -> Status:
+    """Return `status` as one of `/diagnostics`."""
+    own = status(name, sample)
+    return Status(name, TASK, own.message, {pair.key: pair.value for pair in own.values},
+                  own.level)

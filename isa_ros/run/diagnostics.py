@@ -1,8 +1,7 @@
-"""Statuses of a run for `/diagnostics`: devices, oil and energy."""
+"""Statuses of a run for `/diagnostics`: oil and energy."""
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Mapping
 
-from diagnostic_msgs.msg import DiagnosticStatus
 from isa_ros.core.accounts import Account, MEAN, OIL, PEAK
 from isa_ros.core.timebase import NS_PER_SECOND
 from isa_ros.text.number import digits
@@ -12,15 +11,6 @@ PERIOD_NS = NS_PER_SECOND
 """Of the diagnostics, simulated time."""
 ENERGY = 'oil and energy'
 """Task of a status with an `Account`."""
-DEVICE = 'device'
-"""Task of a status of an actuator's device."""
-
-
-def device_statuses(devices: Iterable[DiagnosticStatus]) -> list[Status]:
-    """Return the status of each device, as on its own topic."""
-    return [Status(own.hardware_id, DEVICE, own.message,
-                   {pair.key: pair.value for pair in own.values}, own.level)
-            for own in devices]
 
 
 def energy_statuses(accounts: Mapping[str, Account]) -> list[Status]:

@@ -6,16 +6,14 @@ They have texts, or values of any number, so that they have no place in a prepar
 
 from collections.abc import Iterator, Mapping, Sequence
 
-from diagnostic_msgs.msg import DiagnosticStatus
 from isa_ros.core.accounts import accounts_of
 from isa_ros.core.device import FIELDS
 from isa_ros.core.record import floats
 from isa_ros.core.signals import Records, SAMPLE
 from isa_ros.core.timebase import NS_PER_SECOND, PLANT_STEP_NS
-from isa_ros.run.diagnostics import device_statuses, energy_statuses, PERIOD_NS
+from isa_ros.run.diagnostics import energy_statuses, PERIOD_NS
 from msg_adapters import actuator_messages, coordinator_messages, device, diagnostics
 from msg_adapters.applied_parameters import applied_parameters
-from msg_adapters.cdr import encode
 
 PARAMETERS, DEVICE = actuator_messages.APPLIED_PARAMETERS[0], actuator_messages.DEVICE[0]
 OF_SUPPLIES = coordinator_messages.APPLIED_PARAMETERS[0]
@@ -58,7 +56,8 @@ class RareMessages:
         changed = [row for row in range(len(self._actuators))
                    if self.has_device(row, t_ns, tick_start_ns)]
         for row in changed:
-            self._found[f'/{self._actuators[row]}/{DEVICE}'] = encode(self._device(row))
+            name = self._actuators[row]
+            self._found[f'/{name}/{DEVICE}'] = device.pack(name, self._device(row))
         if self._is_run and (changed or t_ns % PERIOD_NS == 0):
             self.diagnose()
 
@@ -76,16 +75,16 @@ class RareMessages:
     def diagnose(self) -> bytes:
         """Add the diagnostics of all, and return them."""
         self._found[DIAGNOSTICS] = found = diagnostics.pack(self._t_ns, [
-            *device_statuses(map(self._device, range(len(self._actuators)))),
+            *(device.joined(name, self._device(row))
+              for row, name in enumerate(self._actuators)),
             *energy_statuses(accounts_of(
                 self._actuators, self._samples, self._supplies, self._supply_samples,
                 self._t_ns))])
         return found
 
-    def _device(self, row: int) -> DiagnosticStatus:
+    def _device(self, row: int) -> dict[str, float]:
         sample = self._samples[row]
-        return device.status(
-            self._actuators[row], {field: float(sample[field]) for field in FIELDS})
+        return {field: float(sample[field]) for field in FIELDS}
 
     def get(self, topic: str) -> bytes | None:
         """Return the message of a topic, or None."""

@@ -10,7 +10,9 @@ SIMULATED = (
     'actuator', 'config', 'core', 'loads', 'plant', 'reu', 'run', 'scenario', 'surroundings')
 EXACT = {
     ('actuator/actuator.py', '(rows.nbytes for rows in self._saved)'),
-    ('actuator/scales.py', 'sheet.plant.drive.areas')}
+    ('actuator/scales.py', 'sheet.plant.drive.areas'),
+    ('reu/device.py', '(1 << mode for mode in possible_modes(reu))'),
+    ('scenario/device_steps.py', '(kind for name, kind in _REQUESTS.items() if tree.get(name))')}
 """Sums of integers, or of two numbers."""
 
 
