@@ -225,9 +225,10 @@ def test_a_node_packs_nothing_where_nobody_subscribes(observer, monkeypatch):
         lambda _: setup, 'knee', has_mailbox=False, context=observer.context,
         enable_rosout=False)
     try:
-        node.advance()
+        for _ in range(2):     # in the first tick the device is ready, which it says
+            node.advance()
         expected = published(node)
-        assert [data is None for data in expected[:2]] == [True, True] and all(expected[2:])
+        assert expected[:3] == [None] * 3 and all(expected[3:])
 
         def pack(*arguments):
             pytest.fail('rows were packed')

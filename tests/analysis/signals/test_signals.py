@@ -4,6 +4,7 @@ from pathlib import Path
 
 from isa_ros.analysis.signals.signals import read_signals, signals_of
 from isa_ros.core.accounts import FIELDS
+from isa_ros.core.device import FIELDS as DEVICE
 from isa_ros.errors import BagError
 from isa_ros.scripting.result import Result
 from isa_ros.scripting.run import load
@@ -30,10 +31,10 @@ def test_a_bag_has_the_signals_of_the_result(drop: Result, bag: Path) -> None:
     """
     Bit for bit, but for pressures, which messages hold as absolute ones.
 
-    Energies and temperatures are there once a second at most; no topic has the conditions.
+    Energies, temperatures and devices are there once a second or on change; ages are in stamps.
     """
     read, in_memory = read_signals(bag), signals_of(drop)
-    at_times = {'power', 'temperature', 'warnings', 'trips', *FIELDS} - {'supply_volume'}
+    at_times = {'power', 'temperature', 'age', *DEVICE, *FIELDS} - {'supply_volume'}
     expected = {name for name in drop if name.startswith(('haa.', 'hfe.', 'kfe.'))
                 and name[4:] not in at_times}
     expected |= {f'body.{name}' for name in PUBLISHED} | {'supply.pressure'}

@@ -8,6 +8,7 @@ import sys
 
 from isa_ros.analysis.response.bode import bode
 from isa_ros.analysis.signals.ripple import ripple
+from isa_ros.analysis.studies import temperature_page
 from isa_ros.analysis.studies import measure as study_run
 from isa_ros.analysis.studies.measure import (
     Benches, changed, Outcome, placed, Result, shipped, up_and_back)
@@ -166,7 +167,8 @@ def test_the_page_in_docs_shows_every_study():
 def test_without_a_name_the_studies_are_listed(capsys):
     assert cli.main(['study']) == 0
     lines = capsys.readouterr().out.splitlines()
-    assert [line.split()[0] for line in lines] == [study.name for study in STUDIES]
+    assert [line.split()[0] for line in lines] == [
+        *(study.name for study in STUDIES), temperature_page.NAME]
 
 
 @pytest.mark.parametrize(('arguments', 'expected'), [
