@@ -8,8 +8,7 @@ import sys
 
 from isa_ros.analysis.response.bode import bode
 from isa_ros.analysis.signals.ripple import ripple
-from isa_ros.analysis.studies import temperature_page
-from isa_ros.analysis.studies import measure as study_run
+from isa_ros.analysis.studies import measure as study_run, temperature_page
 from isa_ros.analysis.studies.measure import (
     Benches, changed, Outcome, placed, Result, shipped, up_and_back)
 from isa_ros.analysis.studies.page import seen
