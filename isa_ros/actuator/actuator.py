@@ -14,6 +14,7 @@ from isa_ros.actuator.device import mode_after, mode_command, refusal_of, start_
 from isa_ros.actuator.inbox import merge, write_applied
 from isa_ros.actuator.link import link_key, NONE, refuse_states
 from isa_ros.actuator.rows import Memory, memory_of
+from isa_ros.actuator.saved_ranges import refuse_beyond
 from isa_ros.actuator.setpoint_range import SetpointRange
 from isa_ros.actuator.sheet import actuator_record, ActuatorSheet
 from isa_ros.actuator.tunable import GAINS
@@ -341,7 +342,8 @@ class SmartActuator:
         Raises
         ------
         ConfigError
-            The bytes are not a snapshot of this actuator, or a number in it is not finite.
+            The bytes are not a snapshot of this actuator, or a number in it is not finite or
+            beyond its range.
 
         """
         expected = TIME_BYTES + sum(rows.nbytes for rows in self._saved) + self.tuning.nbytes
@@ -354,6 +356,7 @@ class SmartActuator:
             found.append(restored_rows(
                 snapshot, rows.dtype, len(rows), offset, f'{self.name}.{name}'))
             offset += rows.nbytes
+        refuse_beyond(self.name, zip(self._saved_names, found))
         if self.has_link:
             refuse_states(found[len(_SAVED)], self.name)
         self.t_ns = t_ns
