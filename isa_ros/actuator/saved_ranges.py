@@ -6,6 +6,7 @@ not theirs. Steps and counts may be any; floats are checked to be finite.
 """
 
 from collections.abc import Iterable, Iterator, Mapping
+from typing import Any
 
 from isa_ros.core.conditions import CONDITIONS, REACTIONS
 from isa_ros.core.device import EVENTS, MODES, STATES
@@ -50,7 +51,7 @@ def refuse_beyond(name: str, found: Iterable[tuple[str, Records]]) -> None:
                     f'{name}.{part}: saved state has {field} = {beyond}, must be 0 to {largest}')
 
 
-def _fields(rows: Records, prefix: str = '') -> Iterator[tuple[str, Records]]:
+def _fields(rows: Any, prefix: str = '') -> Iterator[tuple[str, Any]]:
     """Yield the fields of rows that are no records, with dotted names."""
     for field in rows.dtype.names or ():
         below, dotted = rows[field], f'{prefix}{field}'

@@ -29,6 +29,8 @@ class Comparer:
     ``compares``, called with topic, tick and time, is false are ignored on both sides. Unless
     ``is_to_end``, nothing more is compared once `difference` is known.
 
+    With ``tolerances`` the diagnostics are ignored: their numbers are texts.
+
     ``is_exact`` also compares what is in no field: sequence numbers, padding, and bytes after the
     last field. Middlewares leave padding uninitialised, so it is for bags of this package only.
 
@@ -47,7 +49,9 @@ class Comparer:
         self._bag = expected
         self._names = list(topics)
         self._tolerances = tolerances or Tolerances()
-        self._compares = compares
+        self._compares = compares if tolerances is None else (
+            lambda topic, sequence, t_ns: topic != diagnostics.TOPIC[0]
+            and compares(topic, sequence, t_ns))
         self._is_exact, self._is_to_end = is_exact, is_to_end
         self._expected = self._compared(expected.ticks())
         self._next = next(self._expected, None)

@@ -78,4 +78,4 @@ def test_a_guard_that_is_missing_is_found(
     """The one of the provenance is found late; the others among the first 250 cases."""
     plant(monkeypatch)
     with pytest.raises(Broken):
-        fuzz(stored, CASES, 1)
+        fuzz(stored, 10 * CASES, 1)

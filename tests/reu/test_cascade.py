@@ -39,7 +39,7 @@ def test_coinciding_loops_run_outermost_first_without_delay():
     reu, state = loops('smart_manifold')
     state.setpoint.effort = 10.0
     cascade.cascade_step(0, reu, state)
-    assert state.force.output == pytest.approx(4e-5 * 10.0)
+    assert state.force.output == pytest.approx(reu.force.kp * 10.0)
     # coils in parallel: the amplifier gives twice the series current
     assert state.current_reference == pytest.approx(
         2.0 * state.force.output, rel=1e-12, abs=0.0)
