@@ -55,7 +55,9 @@ setup(
         'scipy>=1.11',
         'zstandard>=0.19',
     ],
-    extras_require={'test': ['hypothesis', 'pytest']},
+    extras_require={
+        'canopen': ['canopen>=2.3', 'msgpack>=1.0', 'python-can>=4.3'],
+        'test': ['hypothesis', 'pytest']},
     zip_safe=False,
     entry_points={
         'console_scripts': [

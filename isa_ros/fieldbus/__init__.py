@@ -1,0 +1,1 @@
+"""The actuators of a run as devices on a real bus: EtherCAT, CANopen, serial."""
