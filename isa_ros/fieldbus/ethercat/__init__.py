@@ -1,0 +1,1 @@
+"""EtherCAT slaves in software: frames, registers, state machine, mailbox and process data."""
