@@ -17,6 +17,7 @@ PACES = (FRAME, REAL_TIME)
 PROFILES = ('cia402', 'cia408')
 
 BITRATE, BAUD = 1_000_000, 3_000_000
+"""Of CAN and of the serial line, bit/s."""
 WATCHDOG_MS = 100.0
 
 

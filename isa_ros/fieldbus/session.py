@@ -80,13 +80,13 @@ def prepare_bus(
     """
     Return a checked session whose commands come from the master on a line.
 
-    The line is opened once to see that it can be, and again when the kernels are compiled and
-    the nodes are ready. ``tell`` prints what happens on the bus.
+    The line is opened when the kernels are compiled and the nodes are ready. ``tell`` prints what
+    happens on the bus.
 
     Raises
     ------
     ConfigError
-        As `isa_ros.run.session.prepare`, or the run or the line cannot be used.
+        As `isa_ros.run.session.prepare`, or the run cannot be used on a bus.
 
     """
     is_real_time = request.pace == REAL_TIME
@@ -97,7 +97,6 @@ def prepare_bus(
     session = prepare(request.run, commanded_by_bus)
     refuse_tracks(session.scenario)
     run = session.run
-    open_line(devices_of(run, request.profile), run.step_ns).close()
     pace = ServedPace(run.step_ns) if is_real_time else None
 
     @contextmanager

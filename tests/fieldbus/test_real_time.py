@@ -8,7 +8,7 @@ from isa_ros.fieldbus.real_time import (
 from isa_ros.fieldbus.source import FrameSource
 import numpy as np
 import pytest
-from tests.fieldbus.toys import ENABLE, SILENCE, ToyDevice, ToyLine
+from tests.fieldbus.toy_line import ENABLE, SILENCE, ToyDevice, ToyLine
 
 STEP_NS = 1_000_000
 

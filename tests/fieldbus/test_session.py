@@ -13,7 +13,7 @@ from isa_ros.run.coordinator import Interrupted
 from isa_ros.run.options import Request
 from isa_ros.run.without_ros import run_without_ros
 import pytest
-from tests.fieldbus.toys import ENABLE, SILENCE, ToyLine, toys_of
+from tests.fieldbus.toy_line import ENABLE, SILENCE, ToyLine, toys_of
 
 MASTER = [(0, 0), (0, 0), (6, 0), *[(ENABLE, 100 * k) for k in range(30)]]
 
@@ -74,13 +74,14 @@ def test_actuators_wait_for_their_master(tmp_path: Path):
     assert [actuator.auto_enable for actuator in run.actuators] == [False]
 
 
-def test_a_line_that_cannot_be_opened_is_refused_at_once(tmp_path: Path):
+def test_a_line_that_cannot_be_opened_leaves_no_bag(tmp_path: Path):
     def refuse(devices, step_ns):
         raise ConfigError('--interface ecs: no such interface')
+    run = prepare_bus(
+        BusRequest(run=Request(config=find('rig_linear', CONFIG), out=tmp_path / 'bag'),
+                   bus=ETHERCAT, interface='ecs'), toys_of, refuse, print)
     with pytest.raises(ConfigError, match='--interface ecs: no such interface'):
-        prepare_bus(
-            BusRequest(run=Request(config=find('rig_linear', CONFIG), out=tmp_path / 'bag'),
-                       bus=ETHERCAT, interface='ecs'), toys_of, refuse, print)
+        run_without_ros(run.session, None, lambda: False)
     assert not (tmp_path / 'bag').exists()
 
 
@@ -114,4 +115,4 @@ def test_a_line_is_closed_however_a_run_ends(tmp_path: Path):
                    bus=ETHERCAT, interface='toy'), toys_of, opened, lambda line: None)
     with pytest.raises(Interrupted, match='stopped at t = 0.000000 s'):
         run_without_ros(run.session, None, lambda: True)
-    assert [line.log[-1:] for line in lines] == [['close'], ['close']]
+    assert [line.log[-1:] for line in lines] == [['close']]

@@ -6,7 +6,7 @@ from isa_ros.run import pacing
 from isa_ros.scenario.faults import ParameterChanges
 import numpy as np
 import pytest
-from tests.fieldbus.toys import ENABLE, SILENCE, ToyDevice, ToyLine
+from tests.fieldbus.toy_line import ENABLE, SILENCE, ToyDevice, ToyLine
 
 
 class Bus:

@@ -11,7 +11,7 @@ import struct
 from isa_ros.fieldbus import abort
 from isa_ros.fieldbus.abort import SdoAbort
 from isa_ros.fieldbus.device import BusDevice, Emergency
-from isa_ros.fieldbus.ethercat.mailbox import (
+from isa_ros.fieldbus.ethercat.slave_mailbox import (
     CAPACITY, MailError, TOO_SHORT, UNSUPPORTED_SERVICE)
 from isa_ros.fieldbus.ethercat.sdo_information import answer_information
 

@@ -16,7 +16,7 @@ from isa_ros.fieldbus.ethercat.registers import (
     PDI_WATCHDOG_COUNTER, power_on, RECEIVE_TIMES, Register, RX_ERRORS, SPEED_START,
     STATION_ADDRESS, STATION_ALIAS, SYNC_ACTIVATION, SYNC_MANAGER, SYNC_MANAGER_SETUP,
     SYNC_MANAGER_SIZE, SYSTEM_TIME, TIME_OFFSET, UNIT_ERRORS, WATCHDOG_COUNTER, writable)
-from isa_ros.fieldbus.ethercat.sync_manager import SyncManager, sync_managers
+from isa_ros.fieldbus.ethercat.sync_manager import sync_managers, SyncManager
 
 _WRITABLE = writable()
 _CLEARED = (RX_ERRORS, FORWARDED_ERRORS, UNIT_ERRORS, PDI_ERRORS, LOST_LINKS, WATCHDOG_COUNTER,

@@ -86,8 +86,8 @@ class EthercatLine:
         """Let the kernel end a wait, which takes one system call a frame instead of two."""
         self._timeout = timeout
         microseconds = max(1, round(timeout * _MICROSECONDS))
-        self._socket.setsockopt(
-            socket.SOL_SOCKET, socket.SO_RCVTIMEO, _TIME.pack(*divmod(microseconds, _MICROSECONDS)))
+        value = _TIME.pack(*divmod(microseconds, _MICROSECONDS))
+        self._socket.setsockopt(socket.SOL_SOCKET, socket.SO_RCVTIMEO, value)
 
     def _send(self, size: int) -> None:
         """Return a frame to the master; one that the interface refuses is lost."""

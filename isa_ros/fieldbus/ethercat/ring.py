@@ -171,7 +171,8 @@ def _access(slave: Slave, frame: bytearray, datagram: Datagram, reads: bool, wri
         content = slave.controller.read(datagram.offset, end - start)
         if content is not None:
             count += 1
-            frame[start:end] = _merged(content, sent) if datagram.command in _BROADCAST else content
+            is_merged = datagram.command in _BROADCAST
+            frame[start:end] = _merged(content, sent) if is_merged else content
     if writes and slave.controller.write(datagram.offset, sent):
         count += 2 if reads else 1
     return count

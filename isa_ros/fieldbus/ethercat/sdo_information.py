@@ -10,7 +10,7 @@ import struct
 
 from isa_ros.fieldbus import abort
 from isa_ros.fieldbus.abort import SdoAbort
-from isa_ros.fieldbus.ethercat.mailbox import MailError, TOO_SHORT
+from isa_ros.fieldbus.ethercat.slave_mailbox import MailError, TOO_SHORT
 from isa_ros.fieldbus.objects import Entry, Object, ObjectTable
 
 _HEADER = struct.Struct('<BBH')

@@ -9,7 +9,7 @@ from isa_ros.fieldbus.ethercat.clock import DistributedClock, SharedClock
 from isa_ros.fieldbus.ethercat.coe import CanOverEthercat
 from isa_ros.fieldbus.ethercat.controller import AL_EVENT, Controller
 from isa_ros.fieldbus.ethercat.layout import AREAS
-from isa_ros.fieldbus.ethercat.mailbox import Mailbox
+from isa_ros.fieldbus.ethercat.slave_mailbox import Mailbox
 from isa_ros.fieldbus.ethercat.registers import DL_STATUS
 from isa_ros.fieldbus.ethercat.sii import build_sii, process_data_sizes
 from isa_ros.fieldbus.ethercat.sync_manager import (
