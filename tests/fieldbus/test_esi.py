@@ -77,7 +77,7 @@ def test_defaults_are_the_bytes_of_the_device(devices, root):
 def test_process_data_are_as_long_as_their_sync_managers(devices, root):
     for device in devices:
         found = described(root)[device.identity.product]
-        managers = [one for one in found.findall('Sm')]
+        managers = found.findall('Sm')
         assert [one.text for one in managers] == ['MBoxOut', 'MBoxIn', 'Outputs', 'Inputs']
         for tag, place in (('RxPdo', 2), ('TxPdo', 3)):
             bits = sum(int(one.text) for pdo in found.findall(f"{tag}[@Sm='{place}']")
