@@ -55,8 +55,11 @@ def _describe(parser: argparse.ArgumentParser) -> None:
     _profile(parser)
     what = parser.add_mutually_exclusive_group(required=True)
     what.add_argument(
-        '--eds', type=file_to_write, metavar='FILE',
-        help='write the electronic data sheet of CANopen; of several actuators FILE_NAME.eds')
+        '--esi', type=file_to_write, metavar='FILE.xml', help='write the XML file of EtherCAT')
+    what.add_argument(
+        '--eds', type=file_to_write, metavar='FILE.eds',
+        help='write the data sheet of CANopen; for each of several actuators a FILE_NAME.eds')
+    what.add_argument('--table', action='store_true', help='print all objects')
 
 
 def _run(parser: argparse.ArgumentParser) -> None:

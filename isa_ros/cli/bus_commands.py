@@ -65,12 +65,13 @@ def serve(options: Namespace) -> bool:
 def describe(options: Namespace) -> bool:
     """Write what a master wants to know of the devices."""
     from isa_ros.config.run_file import load_run
+    from isa_ros.fieldbus.description import described, tables_of
     from isa_ros.fieldbus.devices import devices_of
-    from isa_ros.fieldbus.eds import eds_text
     devices = devices_of(load_run(find(options.config, CONFIG)), options.profile)
-    for device in devices:
-        path = options.eds if len(devices) == 1 else options.eds.with_stem(
-            f'{options.eds.stem}_{device.name}')
-        path.write_text(eds_text(device), encoding='ascii')
+    if options.table:
+        print(tables_of(devices))
+        return True
+    for path, text in described(devices, options.esi, options.eds).items():
+        path.write_text(text, encoding='utf-8')
         print(path)
     return True

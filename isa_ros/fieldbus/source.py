@@ -43,8 +43,10 @@ class FrameSource:
         end = time.monotonic() + SLICE_S
         left = SLICE_S
         while left > 0.0:
-            if self._line.serve(left) and self.begins():
-                return True
+            if self._line.serve(left):
+                if self.begins():
+                    return True
+                self._line.update()     # the master sees the same sample again
             left = end - time.monotonic()
         return False
 
@@ -58,6 +60,10 @@ class FrameSource:
         for device, sample in zip(self._devices, samples):
             device.take_sample(sample, tick)
         self._line.update()
+
+    def end(self, tick: int, samples: Records) -> None:
+        """Let the master have the last samples where the line sends them by itself."""
+        self.show(tick, samples)
 
     def begins(self) -> bool:
         """Return whether simulated time runs, now that a cycle has begun."""

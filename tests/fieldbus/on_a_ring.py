@@ -8,13 +8,11 @@ from collections.abc import Sequence
 from contextlib import redirect_stdout
 from dataclasses import asdict, dataclass
 import io
+from itertools import count
 import json
 import math
 import os
 from pathlib import Path
-import random
-import signal
-import subprocess
 import sys
 import time
 from typing import Any
@@ -22,8 +20,9 @@ from typing import Any
 from isa_ros.bench.bus_ring import MASTER_END, SLAVE_END
 from isa_ros.examples import ethercat_master
 import pysoem
+from tests.fieldbus.served import served, stalls
 
-READY_S, END_S = 120.0, 60.0
+LONGEST_STALL = 0.3
 CYCLES, FIRST_ENABLED, SWITCHED = 120, 30, 10
 """Of the master that does not look at its inputs."""
 FIFO = 20
@@ -54,42 +53,22 @@ def main(arguments: Sequence[str]) -> None:
     plan = Plan(**tree | {'options': tuple(tree['options'])})
     if plan.is_first:
         os.sched_setscheduler(0, os.SCHED_FIFO, os.sched_param(FIFO))
-    slaves = subprocess.Popen(
-        [sys.executable, '-m', 'isa_ros', 'bus', 'ethercat', plan.config, '--interface',
-         SLAVE_END, '--out', plan.bag, '--no-ros', *plan.options],
-        stdin=subprocess.DEVNULL, stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True)
-    lines, lost, printed = [], 0, io.StringIO()
-    try:
-        assert slaves.stderr is not None
-        for line in slaves.stderr:
-            lines.append(line.strip())
-            if 'wait for a master' in line:
-                break
-        else:
-            raise SystemExit(lines[-1])
-        with redirect_stdout(printed):
-            lost = blind(plan) if plan.is_blind else example(plan)
-        lines += slaves.communicate(timeout=END_S)[1].splitlines()
-    finally:
-        if slaves.poll() is None:
-            slaves.send_signal(signal.SIGINT)
-            slaves.communicate(timeout=END_S)
+    printed = io.StringIO()
+    with served('ethercat', plan.config, '--interface', SLAVE_END, '--out', plan.bag,
+                *plan.options) as slaves, redirect_stdout(printed):
+        lost = blind(plan) if plan.is_blind else example(plan)
     Path(arguments[1]).write_text(json.dumps({
-        'printed': printed.getvalue().splitlines(), 'lines': lines, 'lost': lost,
-        'code': slaves.returncode}))
+        'printed': printed.getvalue().splitlines(), 'lines': slaves.lines, 'lost': lost,
+        'code': slaves.code}))
 
 
 def example(plan: Plan) -> int:
     """Run the example's master, with pauses between cycles."""
-    rng = random.Random(3)
-    cycles = set(rng.sample(range(ethercat_master.CYCLES), plan.stalls))
-    exchange, count = ethercat_master.exchange, 0
+    pauses = stalls(3, ethercat_master.CYCLES, plan.stalls, LONGEST_STALL)
+    exchange, cycles = ethercat_master.exchange, count()
 
     def stalling(master: Any) -> None:
-        nonlocal count
-        count += 1
-        if count in cycles:
-            time.sleep(rng.uniform(0.0, 0.3))
+        time.sleep(pauses.get(next(cycles), 0.0))
         exchange(master)
     ethercat_master.exchange = stalling
     ethercat_master.main([MASTER_END])

@@ -124,7 +124,8 @@ def test_a_plant_slower_than_the_masters_timeout_changes_nothing(tmp_path: Path)
 def test_in_real_time_silence_is_an_event_that_is_replayed(tmp_path: Path):
     """The master ends after 120 cycles; the run goes on to 0.6 s."""
     ended = ran(tmp_path, Plan(
-        str(tmp_path / 'bag'), ('--duration', '0.6', '--pace', 'real_time'), is_blind=True, config='rig_linear'))
+        str(tmp_path / 'bag'), ('--duration', '0.6', '--pace', 'real_time'), is_blind=True,
+        config='rig_linear'))
     bag = Bag(ended.bag)
     ((_, texts),) = recorded_events(bag).items()
     assert texts == ['bus: no process data for 100 ms']
