@@ -55,4 +55,3 @@ def stalls(seed: int, n_cycles: int, count: int, longest: float) -> dict[int, fl
     """Return random pauses in s by cycle."""
     rng = random.Random(seed)
     return {cycle: rng.uniform(0.0, longest) for cycle in rng.sample(range(n_cycles), count)}
-

@@ -65,7 +65,7 @@ def test_a_run_that_is_reset_gives_the_sample_at_0_again():
 
 
 def test_the_last_samples_are_sent_too():
-    """CANopen and the serial line answer a cycle with the state after it."""
+    """On CANopen and the serial line a cycle is answered with the state after it."""
     bus = Bus((6, 0))
     bus.is_due(0)
     bus.samples['position'] = 7.0
