@@ -1,12 +1,12 @@
 """The data sheet of one actuator, and the SI records the kernels read."""
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 
 from isa_ros.actuator.kernel import ACTUATOR
 from isa_ros.actuator.link import link_record, LinkSheet, NO_LINK
 from isa_ros.actuator.ratings import evidence_of, ratings_of
 from isa_ros.core.changeable import sound
-from isa_ros.core.parameter import choice, Parameters
+from isa_ros.core.parameter import choice, nested, Parameters
 from isa_ros.core.record import record
 from isa_ros.core.units import MILLI
 from isa_ros.errors import ConfigError
@@ -35,7 +35,7 @@ class ActuatorSheet(Parameters):
         "the valve's spool sensor; a mechanical feedback has none", 'electric', 'mechanic')
     plant: LinearPlant | RotaryPlant
     reu: Reu
-    link: LinkSheet = field(default=NO_LINK, metadata={'absent': NO_LINK})
+    link: LinkSheet = nested(NO_LINK)
 
     @property
     def is_rotary(self) -> bool:

@@ -101,10 +101,14 @@ def defaults(cls: type[_P]) -> _P:
     return cls(**{f.name: f.metadata['absent'] for f in fields(cls)})
 
 
+def nested(absent: Parameters) -> Any:
+    """Declare a nested set that a file may leave out; it then is ``absent``."""
+    return field(default=absent, metadata={'absent': absent})
+
+
 def section(cls: type[Parameters]) -> Any:
     """Declare a nested set that a file may leave out; it then has its `defaults`."""
-    absent = defaults(cls)
-    return field(default=absent, metadata={'absent': absent})
+    return nested(defaults(cls))
 
 
 def check(where: str, value: Any, declared: Any) -> None:
