@@ -110,7 +110,7 @@ class SmartActuator:
         constants[:] = actuator_record(config.sheet, offset_steps)
         constants['load'] = own_record(config.load)
         constants['noise_key'] = noise_key(timing.seed, config.name)
-        self.memory.link_keys[:] = link_key(timing.seed, config.name)
+        constants['link_key'] = link_key(timing.seed, config.name)
         self.has_link = config.sheet.link.kind != NONE
         """Whether commands and samples travel in the frames of a link."""
         self._saved = [

@@ -42,7 +42,8 @@ STAGES = 4
 NOTHING = 1e-100  # any unit: smaller states are set to zero, since denormal arithmetic is slow
 
 ACTUATOR = np.dtype([
-    ('plant', PLANT), ('reu', REU), ('load', OWN_LOAD), ('link', LINK), ('noise_key', 'u8')])
+    ('plant', PLANT), ('reu', REU), ('load', OWN_LOAD), ('link', LINK), ('noise_key', 'u8'),
+    ('link_key', 'u8')])
 """Every constant of one actuator, SI."""
 
 

@@ -47,8 +47,6 @@ class Memory(NamedTuple):
     """`COMMAND` that took effect in the last tick, at its start or from its link, (n,)."""
     thermals: np.ndarray
     """`THERMAL_STATE`, (n,)."""
-    link_keys: np.ndarray
-    """Key of the noise of each link, (n,)."""
     links: np.ndarray
     """`LINK_STATE`, (n,)."""
     sent: np.ndarray
@@ -72,8 +70,7 @@ def memory_of(n: int) -> Memory:
         states=kernels.flat(bodies), slopes=kernels.flat(rates), reu=np.zeros(n, REU_STATE),
         channels=np.zeros(n, CHANNELS_STATE), replies=np.zeros(n, LOAD_REPLY),
         samples=np.zeros(n, SAMPLE), pending=np.zeros(n, COMMAND), applied=np.zeros(n, COMMAND),
-        thermals=np.zeros(n, THERMAL_STATE),
-        link_keys=np.zeros(n, np.uint64), links=np.zeros(n, LINK_STATE),
+        thermals=np.zeros(n, THERMAL_STATE), links=np.zeros(n, LINK_STATE),
         sent=np.zeros(n, COMMAND), outbox=np.zeros(n, COMMAND),
         commands_sent=np.zeros(n * SLOTS, COMMAND), samples_sent=np.zeros(n * SLOTS, SAMPLE),
         observed=np.zeros(n, SAMPLE))
