@@ -10,7 +10,8 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import NamedTuple
 
-from isa_ros.analysis.faults.rig import BEGIN_S, CONFIG, DURATION_S, END_S, MOTION, STEP_S
+from isa_ros.analysis.faults.rig import (
+    BEGIN_S, CLEAR_S, CONFIG, DURATION_S, END_S, MOTION, STEP_S)
 from isa_ros.config.fault_catalogue import ACTUATOR, fault_catalogue, named_fault, NamedFault
 from isa_ros.config.sections import Place
 from isa_ros.config.yaml_text import Tree
@@ -170,7 +171,7 @@ def _recorded(rig: Run, faults: Sequence[Tree]) -> dict[str, NDArray[np.float64]
     """Return the signals of a run with some faults, which are cleared at their end."""
     scenario = rig.scenario.with_faults(faults)
     simulation = Simulation(replace(scenario, run=rig.configuration))
-    n, end = round(DURATION_S / STEP_S), round(END_S / STEP_S)
+    n, clear = round(DURATION_S / STEP_S), round(CLEAR_S / STEP_S)
     rows = np.zeros(n + 1, SAMPLE)
     pressure = np.zeros(n + 1)
     for tick in range(n + 1):
@@ -178,8 +179,8 @@ def _recorded(rig: Run, faults: Sequence[Tree]) -> dict[str, NDArray[np.float64]
             simulation.step()
         rows[tick] = simulation.group.samples[0]
         pressure[tick] = simulation.surroundings.supplies['pressure'][0]
-        if tick in (end, end + 1) and faults and _CLEARS:
-            _clear(simulation, tick == end)
+        if tick in (clear, clear + 1) and faults and _CLEARS:
+            _clear(simulation, tick == clear)
     return {_SUPPLY: pressure} | {name: rows[name] for name in (*MEASURED, *DEVICE)}
 
 

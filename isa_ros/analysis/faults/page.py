@@ -5,7 +5,7 @@ from pathlib import Path
 from typing import Any
 
 from isa_ros.analysis.faults.measure import Noticed, Outcome, SOUND, VISIBLE, Visible
-from isa_ros.analysis.faults.rig import BEGIN_S, END_S
+from isa_ros.analysis.faults.rig import BEGIN_S, CLEAR_S, END_S
 from isa_ros.config.fault_catalogue import fault_catalogue, NamedFault
 from isa_ros.text.json_file import write_tree
 from isa_ros.text.number import digits
@@ -30,8 +30,8 @@ A fault is seen in a signal that the REU measures, or in the supply's pressure, 
 from that of the same run without the fault by more than {VISIBLE:g} steps of its converter. The
 largest differences are those of the first three such signals while the fault lasts. A device is
 sound again once all signals are within {SOUND:g} steps of that run, 1 % of their ranges. *Device*
-has what the actuator itself reports, its warnings, trips and state, and when. A trip may keep its
-outputs off until it is cleared."""
+has what the actuator itself reports, its warnings, trips and state, and when. A trip keeps its
+outputs off until it is cleared: `~/clear_fault`, then `~/enable`, at {CLEAR_S:g} s."""
 
 
 def listing() -> str:
