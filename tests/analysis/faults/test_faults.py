@@ -81,6 +81,20 @@ def test_a_shifted_null_is_a_warning(found):
     assert set(noticed(found['null_shift'])) == {'warning spool_deviation'}
 
 
+def test_the_words_of_diagnostics_are_those_of_the_gravest_level(found):
+    """A fault with its cause, else a warning; nothing if the device does not notice."""
+    for own in found.values():
+        kinds = {one.kind for one in own.noticed}
+        assert own.message.startswith('fault: ') == ('state' in kinds)
+        assert ('warning: ' in own.message) >= (kinds == {'warning'})
+        assert bool(own.message) == bool(kinds)
+    assert found['valve_stuck'].message == (
+        'fault: spool deviation; disabled until ~/clear_fault, which needs its cause to be gone; '
+        'warning: spool deviation')
+    assert found['null_shift'].message == (
+        'enabled, mode impedance: initialised; warning: spool deviation')
+
+
 def test_table_list_page_and_json_have_every_fault(found, tmp_path, capsys):
     text, listed = page.as_text(list(found.values())), page.listing()
     page.write_json(list(found.values()), tmp_path / 'faults.json')
@@ -89,6 +103,7 @@ def test_table_list_page_and_json_have_every_fault(found, tmp_path, capsys):
     assert [one['name'] for one in tree] == list(found)
     for name, own in fault_catalogue().items():
         assert name in text and own.meaning in listed and f'`{name}`' in path.read_text()
+        assert found[name].message in text and found[name].message in path.read_text()
         assert all(key in listed for key in own.values)
     assert f'{VISIBLE:g} steps' in path.read_text() and MEASURED[0] in path.read_text()
 
