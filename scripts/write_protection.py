@@ -25,7 +25,7 @@ MODELS = ('isa_v2', 'isa_v5', 'smart_manifold')
 
 
 def conditions() -> list[str]:
-    """Return the lines of the table of the conditions: what is compared, with what, and the defaults."""
+    """Return the lines of the table of what is compared, with what, and the defaults."""
     sheet = defaults(Protection)
     rows = [['bit', 'condition', 'compared', 'parts of', 'warning', 'trip', 'delay', 'reaction']]
     for name, bit in BITS.items():

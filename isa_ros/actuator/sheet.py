@@ -152,11 +152,10 @@ def actuator_record(sheet: ActuatorSheet, offset_steps: int) -> np.ndarray:
         sheet.reu, offset_steps, known[0].chambers.stroke, force_stiffness(known[0]),
         known_model(known[0], output_per_spool(sheet)),
         known[0].valve.k_spool, known[0].coil.parallel)
-    steps = loop_steps(sheet.reu)
     reu['protection'] = protection_record(
         sheet.reu.protection, ratings_of(known[0]),
-        evidence_of(known[0], sheet.reu.speed.rate_hz, steps['speed'], offset_steps),
-        steps['current'], sheet.link.watchdog_ms * MILLI)
+        evidence_of(known[0], sheet.reu, sheet.spool_feedback == 'electric', offset_steps),
+        loop_steps(sheet.reu)['current'], sheet.link.watchdog_ms * MILLI)
     rows = np.zeros(1, ACTUATOR)
     rows['plant'], rows['reu'] = plant_record(sheet.plant), reu
     rows['link'] = link_record(sheet.link)
