@@ -24,7 +24,7 @@ from isa_ros.fieldbus.canopen.node import Handler, Node
 from isa_ros.fieldbus.canopen.port import CanPort, Frame, monotonic
 from isa_ros.fieldbus.device import BusDevice
 
-_MOST_FRAMES = 1000     # handled beyond the time of a call of `serve`
+MOST_FRAMES = 1000     # handled beyond the time of a call of `serve`
 _NMT_SIZE = 2
 
 
@@ -114,7 +114,7 @@ class CanopenLine:
         assert self.port is not None, 'the line has been opened'
         now = monotonic()
         deadline, handled = now + timeout, 0
-        while handled < _MOST_FRAMES or now < deadline:
+        while handled < MOST_FRAMES or now < deadline:
             frame = self.port.receive(min(deadline, self._beat(now)) - now)
             now = monotonic()
             if frame is None:

@@ -70,7 +70,7 @@ def test_a_reset_boots_with_the_communication_of_power_on(master, toys, command)
     master.write(0x1017, 0, 5000, 2)
     master.write(0x1801, 1, 0x80000281, 4)
     master.write(0x1A01, 0, 0, 1)
-    master.write(0x2100, 1, 0x3F800000, 4)
+    master.write(0x2010, 1, 0x3F800000, 4)
     master.command(START)
     master.received()
     master.command(command, 1)
@@ -81,7 +81,7 @@ def test_a_reset_boots_with_the_communication_of_power_on(master, toys, command)
     assert master.read(0x1801, 1) == b'\x81\x02\0\0'
     assert master.read(0x1A01) == b'\x02'
     is_kept = command == RESET_COMMUNICATION
-    assert toys[0].values[0x2100, 1] == (1.0 if is_kept else 0.0)
+    assert toys[0].values[0x2010, 1] == (1.0 if is_kept else 0.0)
 
 
 def test_heartbeats_have_the_state_and_follow_the_wall_clock(master, monkeypatch):

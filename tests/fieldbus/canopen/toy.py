@@ -17,7 +17,7 @@ I8, I16, I32, F32 = DataType.INTEGER8, DataType.INTEGER16, DataType.INTEGER32, D
 MAPPINGS = {
     0x1600: ((0x6040, 0, 16), (0x6060, 0, 8), (0x6071, 0, 16)),
     0x1601: ((0x607A, 0, 32), (0x60FF, 0, 32)),
-    0x1602: ((0x2100, 1, 32), (0x2100, 2, 32)),
+    0x1602: ((0x2010, 1, 32), (0x2010, 2, 32)),
     0x1A00: ((0x6041, 0, 16), (0x6061, 0, 8), (0x6077, 0, 16)),
     0x1A01: ((0x6064, 0, 32), (0x606C, 0, 32)),
     0x1A02: ((0x603F, 0, 16),),
@@ -62,8 +62,14 @@ def toy_table(name: str) -> ObjectTable:
             ('Vendor id', U32, 'const', VENDOR, ''), ('Product code', U32, 'const', 7, ''),
             ('Revision', U32, 'const', 1, ''), ('Serial number', U32, 'const', 1, '')]),
         *map(_mapping, MAPPINGS),
-        _record(0x2100, 'Impedance', [
-            ('Stiffness', F32, 'rw', 0.0, 'rx'), ('Damping', F32, 'rw', 0.0, 'rx')]),
+        _record(0x2002, 'MIT ranges', [
+            ('Position', F32, 'rw', 0.065535, ''), ('Velocity', F32, 'rw', 0.5, ''),
+            ('Stiffness', F32, 'rw', 4095.0, ''), ('Damping', F32, 'rw', 40.95, ''),
+            ('Effort', F32, 'rw', 1023.75, '')]),
+        _record(0x2010, 'Impedance', [
+            ('Stiffness', F32, 'rw', 0.0, 'rx'), ('Damping', F32, 'rw', 0.0, 'rx'),
+            ('Effort', F32, 'rw', 0.0, 'rx')]),
+        _record(0x2022, 'Force', [('Measured force', F32, 'ro', 0.0, 'tx')]),
         _var(0x2200, 'Note', DataType.VISIBLE_STRING, 'rw', 'first note'),
         _var(0x603F, 'Error code', U16, 'ro', pdo='tx'),
         _var(0x6040, 'Control word', U16, pdo='rx'),
@@ -202,12 +208,20 @@ class ToyDrive:
         else:
             self.state = STEPS.get((self.state, word & 0xF), self.state)
         torque = int(self.values[0x6071, 0]) if self.state == 'enabled' else 0
+        if self.state == 'enabled' and self.values[0x6060, 0] == -1:
+            torque = round(self._impedance_force())
         self.velocity += torque - self.velocity // 20
         self.position += self.velocity // 1000
         self.ticks += 1
         self.values.update({
             (0x6041, 0): STATUS[self.state], (0x6061, 0): self.values[0x6060, 0],
-            (0x6077, 0): torque, (0x6064, 0): self.position, (0x606C, 0): self.velocity})
+            (0x6077, 0): torque, (0x2022, 1): float(torque), (0x6064, 0): self.position, (0x606C, 0): self.velocity})
+
+    def _impedance_force(self) -> float:
+        position = 1e-6 * (int(self.values[0x607A, 0]) - self.position)
+        velocity = 1e-6 * (int(self.values[0x60FF, 0]) - self.velocity)
+        return (float(self.values[0x2010, 1]) * position + float(self.values[0x2010, 2]) * velocity
+                + float(self.values[0x2010, 3]))
 
     def _fail(self, code: int) -> None:
         self.state, self.values[0x603F, 0], self._register = 'fault', code, 0x05
