@@ -1,6 +1,6 @@
 """One actuator of a run as a `BusDevice`: dictionary, process data, and a drive of a profile."""
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from typing import Protocol
 
 from isa_ros.actuator.tunable import tuned
@@ -16,7 +16,7 @@ from isa_ros.fieldbus.objects import Entry, ObjectTable, Value
 from isa_ros.fieldbus.process_data import is_changed_in_preop, ProcessData
 import numpy as np
 
-_ERROR_REGISTER, _ERROR_CODE = (0x1001, 0), (0x603F, 0)
+_ERROR_REGISTER, _ERROR_CODE, _CONTROL = (0x1001, 0), (0x603F, 0), (0x6040, 0)
 
 
 class Drive(Protocol):
@@ -25,10 +25,6 @@ class Drive(Protocol):
     @property
     def actuals(self) -> Actuals:
         """Return the functions of the values that it computes."""
-
-    @property
-    def is_wanted(self) -> bool:
-        """Return whether the control word is not 0."""
 
     def admit(self, entry: Entry, value: Value) -> None:
         """Refuse a value that is written; raises `SdoAbort`."""
@@ -131,7 +127,7 @@ class ActuatorDevice:
                 self._changes[self._tunables[key].name] = float(self._values[key])
             elif key == (ERROR_FIELD, 0):
                 delete_errors(self._values)
-        self._take_received()
+        self._take_received(keys)
 
     # Process data.
 
@@ -150,11 +146,12 @@ class ActuatorDevice:
             self._faults.note(PDO_LENGTH)
             return
         self._values.update(zip(layout.keys, layout.packing.unpack_from(data)))
-        self._take_received()
+        self._take_received(layout.keys)
 
-    def _take_received(self) -> None:
+    def _take_received(self, keys: Sequence[Key]) -> None:
         self._drive.received()
-        self.is_wanted = self.is_wanted or self._drive.is_wanted
+        if not self.is_wanted and _CONTROL in keys:
+            self.is_wanted = self._values[_CONTROL] != 0
 
     def transmit(self, pdo: int) -> bytes:
         """Return process data."""

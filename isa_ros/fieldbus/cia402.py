@@ -87,11 +87,6 @@ class Drive402:
         else:
             self._values[LAST_REFUSAL] = self._refusal(mode)
 
-    @property
-    def is_wanted(self) -> bool:
-        """Return whether the control word is not 0."""
-        return self._values[objects.CONTROL] != 0
-
     def begin_operation(self) -> None:
         """Enter the state operational."""
         self._is_remote = True

@@ -9,10 +9,11 @@ from isa_ros.config.run_config import ActuatorConfig, RunConfig
 from isa_ros.core.conditions import BITS
 from isa_ros.core.suggest import alternatives
 from isa_ros.errors import ConfigError
+from isa_ros.fieldbus import cia402_objects, cia408_objects
 from isa_ros.fieldbus.actuator_device import ActuatorDevice, Drive
 from isa_ros.fieldbus.axis import Axis
 from isa_ros.fieldbus.cia402 import Drive402
-from isa_ros.fieldbus.cia402_objects import cia402_objects, DEVICE_TYPE, PDOS_402
+from isa_ros.fieldbus.cia408 import Drive408
 from isa_ros.fieldbus.communication_area import (
     canopen_objects, error_objects, ethercat_objects, identity_objects, pdo_objects)
 from isa_ros.fieldbus.device import BusDevice, Identity, VENDOR
@@ -42,7 +43,12 @@ def _drive_402(axis: Axis, values: dict[Key, Value], faults: Faults) -> Drive:
 
 
 PROFILES: Mapping[str, Profile] = {
-    'cia402': Profile(DEVICE_TYPE, cia402_objects, PDOS_402, _drive_402)}
+    'cia402': Profile(
+        cia402_objects.DEVICE_TYPE, cia402_objects.cia402_objects, cia402_objects.PDOS_402,
+        _drive_402),
+    'cia408': Profile(
+        cia408_objects.DEVICE_TYPE, cia408_objects.cia408_objects, cia408_objects.PDOS_408,
+        Drive408)}
 """The personalities by name; the first is the default."""
 
 

@@ -63,6 +63,12 @@ def test_time_is_wanted_from_the_first_control_word_on(rig):
     assert rig.device.is_wanted
 
 
+def test_the_end_of_operation_does_not_begin_time(rig):
+    rig.device.end_operation(is_lost=False)
+    Master(rig).download(0x6066, 0, 1)
+    assert not rig.device.is_wanted
+
+
 def test_a_control_word_by_sdo_counts_as_well(rig):
     Master(rig).download(0x6040, 0, SHUTDOWN)
     assert rig.device.is_wanted

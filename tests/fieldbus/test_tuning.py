@@ -16,6 +16,11 @@ def master():
     return Master(Rig())
 
 
+def single(value):
+    """Return a number rounded to single precision."""
+    return struct.unpack('<f', struct.pack('<f', value))[0]
+
+
 def place(master, name):
     return next((one.index, one.subindex) for one in master.device.table.entries
                 if one.name == name)
@@ -28,15 +33,14 @@ def test_every_tunable_of_the_reu_is_an_object(name):
     for own in tunables(run.actuators[0].sheet).values():
         key = place(master, own.name)
         entry = master.device.table.entry(*key)
-        assert master.upload(*key) == struct.unpack('<f', struct.pack('<f', own.value))[0]
+        assert master.upload(*key) == single(own.value)
         assert (entry.unit, entry.access) == (own.unit, 'rw')
 
 
 def test_a_gain_is_in_force_at_the_next_tick_and_recorded(master):
     master.download(*place(master, 'force.kp'), 1e-7)
-    expected = struct.unpack('<f', struct.pack('<f', 1e-7))[0]
     master.cycle(0)
-    assert master.rig.simulation.tuned == {0: {'force.kp': expected}}
+    assert master.rig.simulation.tuned == {0: {'force.kp': single(1e-7)}}
     master.cycle(0)
     assert master.rig.simulation.tuned == {}
 
@@ -70,5 +74,5 @@ def test_the_reason_of_the_reu_is_an_object(master):
 
 def test_a_gain_that_is_tuned_elsewhere_shows(master):
     master.device.take_changes({'force.kp': 2e-7, 'plant.spool.stuck': 1.0})
-    assert master.upload(*place(master, 'force.kp')) == struct.unpack('<f', struct.pack('<f', 2e-7))[0]
+    assert master.upload(*place(master, 'force.kp')) == single(2e-7)
     assert master.device.changes() == {}
