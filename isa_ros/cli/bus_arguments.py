@@ -29,7 +29,7 @@ def _ethercat(parser: argparse.ArgumentParser) -> None:
         help='network interface of the ring, for example one end of a veth pair')
 
 
-def _canopen(parser: argparse.ArgumentParser) -> None:
+def _can(parser: argparse.ArgumentParser) -> None:
     _run(parser)
     parser.add_argument(
         '--interface', required=True, metavar='NAME',
@@ -38,6 +38,9 @@ def _canopen(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         '--bitrate', type=count, default=request.OF_THE_WIRE, metavar='BIT/S',
         help='of the bus (default: 1000000)')
+    parser.add_argument(
+        '--first-node', type=count, default=1, metavar='N',
+        help='number of the first actuator (default: %(default)s)')
 
 
 def _serial(parser: argparse.ArgumentParser) -> None:
@@ -86,7 +89,8 @@ def _profile(parser: argparse.ArgumentParser) -> None:
 
 _BUSES = {
     request.ETHERCAT: (_ethercat, 'serve an EtherCAT master on a network interface'),
-    request.CANOPEN: (_canopen, 'serve a CANopen master on a CAN interface'),
+    request.CANOPEN: (_can, 'serve a CANopen master on a CAN interface'),
+    request.MIT: (_can, 'serve a master of MIT-mode motors on a CAN interface'),
     request.SERIAL: (_serial, 'serve a master on a serial line'),
     DESCRIBE: (_describe, 'write what a master wants to know of the devices'),
 }

@@ -23,7 +23,8 @@ def bus(options: Namespace) -> bool:
 def bus_request_of(options: Namespace) -> BusRequest:
     """Return the request of the command line."""
     values = vars(options)
-    own = {name: values[name] for name in ('interface', 'channel', 'bitrate', 'path', 'baud')
+    own = {name: values[name] for name in (
+        'interface', 'channel', 'bitrate', 'first_node', 'path', 'baud')
            if name in values}
     return BusRequest(
         run=request_of_arguments(values, in_process=True, is_alone=options.is_alone),

@@ -7,7 +7,8 @@ from typing import Any
 
 from isa_ros.cli import shared_arguments
 from isa_ros.cli.argument_types import file_to_write, names, not_negative, positive, seed
-from isa_ros.run.options import COMPRESSIONS, Kind, Option, OPTIONS
+from isa_ros.run.option import COMPRESSIONS, Kind, Option
+from isa_ros.run.options import OPTIONS
 
 _TYPES: Mapping[Kind, Callable[[str], Any]] = {
     Kind.PATH: Path, Kind.NEW_FILE: file_to_write, Kind.POSITIVE: positive,
