@@ -61,6 +61,7 @@ def toy_table(name: str) -> ObjectTable:
     return ObjectTable([
         _var(0x1000, 'Device type', U32, 'const', 0x20192),
         _var(0x1008, 'Device name', DataType.VISIBLE_STRING, 'const', name),
+        _var(0x1009, 'Manufacturer hardware version', DataType.VISIBLE_STRING, 'const', 'toy'),
         _record(0x1018, 'Identity', [
             ('Vendor id', U32, 'const', VENDOR, ''), ('Product code', U32, 'const', 7, ''),
             ('Revision', U32, 'const', 1, ''), ('Serial number', U32, 'const', 1, '')]),
