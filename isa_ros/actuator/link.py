@@ -195,7 +195,7 @@ def exchange_frames(step, is_sampled, n, memory):
     """
     if is_sampled:
         send_sample(step, n, memory)
-    link_down(step, memory.link_keys[n], memory.constants[n].link, memory.links[n],
+    link_down(step, memory.constants[n].link_key, memory.constants[n].link, memory.links[n],
               memory.outbox[n:n + 1], memory.commands_sent[n * SLOTS:(n + 1) * SLOTS],
               memory.reu[n], memory.applied[n])
 
@@ -243,9 +243,9 @@ def watch(step, link, state, reu):
 @kernel
 def send_sample(step, n, memory):
     """Send the sample of actuator ``n`` if a frame leaves at ``step``."""
-    link, line = memory.constants[n].link, memory.links[n].up
-    if leaves(step, link):
-        slot = put_frame(step, UP, memory.link_keys[n], link, line)
+    own, line = memory.constants[n], memory.links[n].up
+    if leaves(step, own.link):
+        slot = put_frame(step, UP, own.link_key, own.link, line)
         if slot >= 0:
             memory.samples_sent[n * SLOTS + slot] = memory.samples[n]
 

@@ -6,6 +6,7 @@ The control word counts at the start of a tick, the sample at its end.
 """
 
 from collections.abc import Callable
+import math
 
 from isa_ros.core.device import ENABLED, FAULT, FAULT_REACTION, INITIALISING, QUICK_STOP
 from isa_ros.core.signals import HAS_CLEAR_FAULT, HAS_ENABLE, HAS_QUICK_STOP
@@ -194,7 +195,8 @@ class Drive402:
         """Return the sum of efforts, limited; N or Nm."""
         per_mille = self._axis.rated_force * MILLI
         value = sum(int(self._values[key]) for key in keys) * per_mille
-        value += float(self._values[EFFORT])
+        effort = float(self._values[EFFORT])
+        value += 0.0 if math.isnan(effort) else effort
         largest = int(self._values[objects.MAX_TORQUE]) * per_mille
         return self._limiter.limited(
             value, -min(largest, self._axis.force_in), min(largest, self._axis.force_out))

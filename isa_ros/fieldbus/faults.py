@@ -43,6 +43,8 @@ CONDITION_CODES: Mapping[str, ErrorCode] = {
     'load_cell_implausible': ErrorCode(0x7300, _PROFILE, 'sensor: here the load cell'),
     'encoder_jump': ErrorCode(0x7320, _PROFILE, 'position sensor'),
     'link_lost': ErrorCode(0x8100, _COMMUNICATION, 'communication: the link inside the actuator'),
+    'spool_deviation': ErrorCode(
+        0xFF0C, _MANUFACTURER, 'manufacturer: spool away from its reference'),
 }
 """Error code of each condition of `isa_ros.core.conditions`."""
 

@@ -23,7 +23,7 @@ class Limiter:
     is_limited: bool = False
 
     def limited(self, value: float, low: float, high: float) -> float:
-        """Return the nearest value of the range; of NaN the lower one."""
+        """Return the nearest value of the range."""
         if low <= value <= high:
             return value
         self.is_limited = True

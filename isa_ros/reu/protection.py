@@ -17,7 +17,7 @@ from isa_ros.core.timebase import PLANT_STEP
 from isa_ros.core.units import MILLI
 from isa_ros.reu.impedance import SETPOINT
 from isa_ros.reu.plausibility import (
-    acceleration_step, EVIDENCE, EVIDENCE_STATE, jump_speed, unexplained_force)
+    acceleration_step, EVIDENCE, EVIDENCE_STATE, jump_speed, spool_deviation, unexplained_force)
 from isa_ros.reu.protection_sheet import levels_of, Protection
 import numpy as np
 
@@ -35,6 +35,7 @@ RELIEF_OPEN = BITS['relief_open']
 LOAD_CELL_IMPLAUSIBLE = BITS['load_cell_implausible']
 ENCODER_JUMP = BITS['encoder_jump']
 LINK_LOST = BITS['link_lost']
+SPOOL_DEVIATION = BITS['spool_deviation']
 EXTENDING, RETRACTING = 1, 2  # bits of the directions that are inhibited
 
 PROTECTION = np.dtype([
@@ -81,6 +82,7 @@ class Ratings(NamedTuple):
     pressure_range: float
     current_range: float
     opening_pressure: float
+    spool_stop: float
 
     def of(self, name: str) -> float:
         """Return the rating of a condition, 1 for levels in the unit of its quantity."""
@@ -89,6 +91,7 @@ class Ratings(NamedTuple):
             'overload': self.force_range, 'load_cell_implausible': self.force_range,
             'overpressure': self.pressure_range, 'overcurrent': self.current_range,
             'supply_low': self.opening_pressure, 'relief_open': self.opening_pressure,
+            'spool_deviation': self.spool_stop,
         }.get(name, 1.0)
 
 
@@ -115,7 +118,8 @@ def protection_record(
         reaction[bit] = REACTIONS.index(own.reaction)
         delay[bit] = math.ceil(round(own.delay_ms * MILLI / period, _DIGITS))
         for which, level in (('warning', own.warning), ('trip', own.trip)):
-            if level and own.reaction != 'none':
+            if level and own.reaction != 'none' and (
+                    bit != SPOOL_DEVIATION or evidence.valve.is_watched):
                 set_level(which, bit, level * rating)
     if sheet.setpoint_timeout_ms:
         conversions = math.ceil(round(sheet.setpoint_timeout_ms * MILLI / period, _DIGITS))
@@ -250,6 +254,7 @@ def protect(step, supply_pressure, temperature, protection, state):
     measure(supply_pressure, temperature, state.speed.velocity, state.measured,
             state.status.is_on, protection, own)
     own.values[LINK_LOST] = state.link_silence
+    own.values[SPOOL_DEVIATION] = spool_deviation(state, protection.evidence)
     judge(step, protection, own)
     if own.trips != 0 or own.reaction != NONE:
         react(protection, state)

@@ -169,6 +169,7 @@ class Shadow:
         """Take the conversion of the last tick, with something added to its readings."""
         reu = actuator.memory.reu.view(np.recarray)[0]
         self.state.measured, self.state.speed = reu.measured, reu.speed
+        self.state.current_reference = reu.current_reference
         for field, error in added.items():
             setattr(self.state.measured, field, getattr(reu.measured, field) + error)
         step = actuator.t_ns // 20_000 - CONVERSION_STEPS + 1

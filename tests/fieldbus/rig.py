@@ -56,6 +56,7 @@ class Master:
             if self.device.table.entry(*key).data_type.name == 'REAL32':
                 self.outputs[key] = float('nan')
         self.inputs = {}
+        self._layouts = {pdo: (self.layout(pdo), self.mapped(pdo)) for pdo in pdos}
         self.device.begin_operation()
 
     def upload(self, index, subindex=0):
@@ -92,11 +93,12 @@ class Master:
             self.outputs[CONTROL, 0] = control
         for index, value in targets.items():
             self.outputs[int(index[1:], 16), 0] = value
-        self.device.receive(
-            self.receive, self.layout(self.receive).pack(*self.outputs.values()))
+        layout, _ = self._layouts[self.receive]
+        self.device.receive(self.receive, layout.pack(*self.outputs.values()))
         self.rig.tick()
-        values = self.layout(self.transmit).unpack(self.device.transmit(self.transmit))
-        self.inputs = dict(zip(self.mapped(self.transmit), values, strict=True))
+        layout, keys = self._layouts[self.transmit]
+        values = layout.unpack(self.device.transmit(self.transmit))
+        self.inputs = dict(zip(keys, values, strict=True))
         return self.inputs[STATUS, 0]
 
     def cycle_until(self, is_reached, control=None, most=1000):

@@ -8,7 +8,7 @@ from isa_ros.core.conditions import BITS
 from isa_ros.core.parameter import defaults
 from isa_ros.core.record import record
 from isa_ros.reu.cascade import REU_STATE
-from isa_ros.reu.plausibility import EVIDENCE
+from isa_ros.reu.plausibility import EVIDENCE, VALVE_EVIDENCE
 from isa_ros.reu.protection import protect, protection_record, Ratings
 from isa_ros.reu.protection_sheet import levels_of, Protection
 import numpy as np
@@ -16,9 +16,10 @@ import numpy as np
 STEPS = 5                   # plant steps of a conversion
 PERIOD = STEPS * 20e-6
 STROKE, AREA_A, AREA_B = 0.1, 4e-4, 3e-4
+SPOOL_GAIN, SPOOL_LAG = 0.02, 3e-3     # m per A of the amplifier, s
 RATINGS = Ratings(
     stroke=STROKE, speed=1.0, force_range=1e4, pressure_range=25e6, current_range=12.5e-3,
-    opening_pressure=22e6)
+    opening_pressure=22e6, spool_stop=2e-4)
 SUPPLY = 20.7e6
 
 
@@ -44,7 +45,9 @@ class Watched:
         evidence = record(
             EVIDENCE, area_a=AREA_A, area_b=AREA_B, force_range=RATINGS.force_range,
             stiction=100.0, viscous=0.0, inertia=1.0, speed_rate=1000.0, speed_steps=50,
-            offset_steps=0)
+            offset_steps=0, valve=record(
+                VALVE_EVIDENCE, is_watched=1, is_piloted=0, gain=SPOOL_GAIN,
+                stop=RATINGS.spool_stop, share=PERIOD / (SPOOL_LAG + PERIOD)))
         self.constants = protection_record(sheet, RATINGS, evidence, STEPS)
         self.state = np.zeros(1, REU_STATE).view(np.recarray)[0]
         self.own = self.state.protection
@@ -96,4 +99,5 @@ READINGS: Mapping[str, Callable[[Watched, float], None]] = {
     'encoder_jump': lambda watched, quantity: setattr(
         watched.state.measured, 'position',
         watched.own.evidence.position + quantity * PERIOD),
+    'spool_deviation': _measure('spool'),
 }
