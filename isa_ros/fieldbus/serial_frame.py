@@ -47,11 +47,16 @@ def packed(frame: SerialFrame) -> bytes:
 
 
 class FrameReader:
-    """Finds the frames in a stream of bytes."""
+    """
+    Finds the frames in a stream of bytes.
+
+    A frame that is announced and not there yet, because its length has been changed on the way, is
+    given up as soon as a whole one follows.
+    """
 
     def __init__(self) -> None:
         self.discarded = 0
-        """Frames with a wrong CRC."""
+        """Frames with a wrong CRC, or given up."""
         self._bytes = bytearray()
 
     def feed(self, data: bytes) -> None:
@@ -61,18 +66,13 @@ class FrameReader:
     def take(self) -> SerialFrame | None:
         """Return the next whole frame, None until more bytes are there."""
         while self._find_start():
-            _, kind, number, length = _HEAD.unpack_from(self._bytes)
-            if length > MOST_CONTENT:
-                del self._bytes[0]
-                continue
-            end = OVERHEAD + length
-            if len(self._bytes) < end:
-                return None
-            checked = bytes(self._bytes[len(START):end - _CRC.size])
-            if _crc(checked) == _CRC.unpack_from(self._bytes, end - _CRC.size)[0]:
+            end = self._end(0)
+            if end > len(self._bytes):
+                return self._later()
+            if end and (frame := self._frame(0, end)) is not None:
                 del self._bytes[:end]
-                return SerialFrame(kind, number, checked[_HEAD.size - len(START):])
-            self.discarded += 1
+                return frame
+            self.discarded += end > 0
             del self._bytes[0]  # the next frame may begin within this one
         return None
 
@@ -83,6 +83,32 @@ class FrameReader:
             place = len(self._bytes) - self._bytes.endswith(START[:1])
         del self._bytes[:place]
         return len(self._bytes) >= _HEAD.size
+
+    def _end(self, place: int) -> int:
+        """Return the end of the frame that begins at a place, 0 if no frame is that long."""
+        length: int = _HEAD.unpack_from(self._bytes, place)[-1]
+        return place + OVERHEAD + length if length <= MOST_CONTENT else 0
+
+    def _frame(self, place: int, end: int) -> SerialFrame | None:
+        """Return the frame between two places, None if its CRC is wrong."""
+        checked = bytes(self._bytes[place + len(START):end - _CRC.size])
+        if _crc(checked) != _CRC.unpack_from(self._bytes, end - _CRC.size)[0]:
+            return None
+        return SerialFrame(checked[0], checked[1], checked[_HEAD.size - len(START):])
+
+    def _later(self) -> SerialFrame | None:
+        """Return a whole frame behind the first start, and give up what is before it."""
+        place = self._bytes.find(START, 1)
+        while 0 < place <= len(self._bytes) - _HEAD.size:
+            end = self._end(place)
+            if place < end <= len(self._bytes):
+                frame = self._frame(place, end)
+                if frame is not None:
+                    self.discarded += 1
+                    del self._bytes[:end]
+                    return frame
+            place = self._bytes.find(START, place + 1)
+        return None
 
 
 def _crc(data: bytes) -> int:

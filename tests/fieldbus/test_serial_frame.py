@@ -45,8 +45,8 @@ def test_a_changed_byte_is_never_a_frame_and_the_next_frame_is_found(frame, plac
     changed[place % len(changed)] ^= change
     reader = FrameReader()
     reader.feed(bytes(changed))
-    # a length that has become longer swallows what follows, until that is refused too
-    reader.feed(packed(FRAME) + bytes(MOST_CONTENT + OVERHEAD))
+    assert taken(reader) == []
+    reader.feed(packed(FRAME))
     assert taken(reader) == [FRAME]
 
 
@@ -62,8 +62,17 @@ def test_noise_before_a_frame_is_dropped(noise):
     reader = FrameReader()
     reader.feed(noise)
     assert taken(reader) == []
-    reader.feed(packed(FRAME) + bytes(MOST_CONTENT))
+    reader.feed(packed(FRAME))
     assert taken(reader) == [FRAME]
+
+
+def test_a_frame_that_is_cut_short_is_given_up_for_a_whole_one():
+    reader = FrameReader()
+    reader.feed(packed(FRAME)[:-3])
+    assert taken(reader) == []
+    reader.feed(packed(FRAME._replace(number=8)))
+    assert taken(reader) == [FRAME._replace(number=8)]
+    assert reader.discarded == 1
 
 
 def test_a_length_beyond_the_largest_is_no_frame():

@@ -9,6 +9,7 @@ from isa_ros.fieldbus.device import Emergency
 
 # Codes of CiA 301, table 26.
 NO_ERROR = 0x0000
+BUS_OVERFULL = 0x8100       # communication, generic: NMT start refused
 HEARTBEAT_LOST = 0x8130
 PDO_TOO_SHORT = 0x8210
 PDO_TOO_LONG = 0x8220

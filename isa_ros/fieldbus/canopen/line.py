@@ -20,7 +20,7 @@ from isa_ros.errors import ConfigError
 from isa_ros.fieldbus.canopen.capacity import CyclicFrame, refuse_overfull
 from isa_ros.fieldbus.canopen.identifiers import (
     FIRST_NODE, HEARTBEAT, LAST_NODE, NMT, SDO_REQUEST, SYNC)
-from isa_ros.fieldbus.canopen.node import Handler, Node
+from isa_ros.fieldbus.canopen.node import Handler, NmtCommand, NmtState, Node
 from isa_ros.fieldbus.canopen.port import CanPort, Frame, monotonic
 from isa_ros.fieldbus.device import BusDevice
 
@@ -47,8 +47,8 @@ def canopen_line(
     """
     refuse_nodes(devices, first_node)
     rate = bitrate or default_bitrate()
-    line = CanopenLine(devices, step_ns, first_node)
-    line.refuse_overfull(rate)
+    line = CanopenLine(devices, step_ns, first_node, rate)
+    line.refuse_overfull(line.nodes)
     line.begin(CanPort(interface, channel, rate, options))
     return line
 
@@ -78,20 +78,21 @@ def refuse_nodes(devices: Sequence[BusDevice], first_node: int) -> None:
 class CanopenLine:
     """The nodes of a run on their bus, a `Line`."""
 
-    def __init__(self, devices: Sequence[BusDevice], step_ns: int, first_node: int) -> None:
+    def __init__(self, devices: Sequence[BusDevice], step_ns: int, first_node: int,
+                 bitrate: int) -> None:
         self.nodes = [Node(device, number, step_ns, self._send)
                       for number, device in enumerate(devices, first_node)]
         self.port: CanPort | None = None
-        self._step_ns = step_ns
+        self._step_ns, self._bitrate = step_ns, bitrate
         self._handlers: dict[int, list[Handler]] | None = None
         self._waiting: list[Frame] | None = None
 
-    def refuse_overfull(self, bitrate: int) -> None:
-        """Refuse the PDOs of power-on if the bus does not carry them; raises `ConfigError`."""
+    def refuse_overfull(self, nodes: Sequence[Node]) -> None:
+        """Refuse the PDOs of nodes if the bus does not carry them; raises `ConfigError`."""
         refuse_overfull(
             [CyclicFrame(SYNC, 0)],
-            {node.device.name: node.cyclic_frames() for node in self.nodes},
-            bitrate, self._step_ns)
+            {node.device.name: node.cyclic_frames() for node in nodes},
+            self._bitrate, self._step_ns)
 
     def begin(self, port: CanPort) -> None:
         """Begin on a bus: send the boot-up messages."""
@@ -166,10 +167,22 @@ class CanopenLine:
         if len(data) != _NMT_SIZE:
             return
         command, number = data
-        for node in self.nodes:
-            if number in (0, node.number):
+        addressed = [node for node in self.nodes if number in (0, node.number)]
+        if command != NmtCommand.START or self._can_start(addressed):
+            for node in addressed:
                 node.command(command, monotonic())
         self._handlers = None
+
+    def _can_start(self, addressed: Sequence[Node]) -> bool:
+        """Return whether the bus carries the PDOs with those that the master has switched on."""
+        try:
+            self.refuse_overfull([node for node in self.nodes if node in addressed
+                                  or node.state == NmtState.OPERATIONAL])
+        except ConfigError as refused:
+            for node in addressed:
+                node.refuse_start(str(refused))
+            return False
+        return True
 
     def _states(self) -> list[int]:
         return [node.state for node in self.nodes]

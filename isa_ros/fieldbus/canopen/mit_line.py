@@ -10,11 +10,13 @@ tick. SDO is served too, with the ranges of the frames in object 0x2002.
 
 from collections.abc import Mapping, Sequence
 
+from isa_ros.errors import ConfigError
 from isa_ros.fieldbus.canopen.capacity import CyclicFrame, refuse_overfull
-from isa_ros.fieldbus.canopen.identifiers import FIRST_NODE, SDO_ANSWER, SDO_REQUEST
+from isa_ros.fieldbus.canopen.identifiers import (
+    FIRST_NODE, LARGEST, SDO_ANSWER, SDO_REQUEST)
 from isa_ros.fieldbus.canopen.line import default_bitrate, MOST_FRAMES, refuse_nodes
 from isa_ros.fieldbus.canopen.mit_frames import ANSWER_BYTES, COMMAND_BYTES, special_of
-from isa_ros.fieldbus.canopen.mit_motor import MitMotor
+from isa_ros.fieldbus.canopen.mit_motor import has_impedance, MitMotor
 from isa_ros.fieldbus.canopen.port import CanPort, Frame, monotonic
 from isa_ros.fieldbus.canopen.sdo import SdoServer
 from isa_ros.fieldbus.device import BusDevice
@@ -34,12 +36,27 @@ def mit_line(
 
     """
     refuse_nodes(devices, first_node)
+    _refuse_motors(devices, first_node, answer_id)
     rate = bitrate or default_bitrate()
     frames = {
         device.name: [CyclicFrame(number, COMMAND_BYTES), CyclicFrame(answer_id, ANSWER_BYTES)]
         for number, device in enumerate(devices, first_node)}
     refuse_overfull([], frames, rate, step_ns)
     return MitLine(devices, CanPort(interface, channel, rate, options), first_node, answer_id)
+
+
+def _refuse_motors(devices: Sequence[BusDevice], first_node: int, answer_id: int) -> None:
+    """Refuse actuators without an impedance mode, and answers that would be commands."""
+    for device in devices:
+        if not has_impedance(device):
+            raise ConfigError(
+                f'{device.name}: has no impedance mode, which MIT-mode frames command; an '
+                'actuator of profile cia402 with a position block of kind impedance has it')
+    last = first_node + len(devices) - 1
+    if first_node <= answer_id <= last or not 0 <= answer_id <= LARGEST:
+        raise ConfigError(
+            f'answer_id = {answer_id}: must be 0 to {LARGEST} and no motor, which are '
+            f'{first_node} to {last}')
 
 
 class MitLine:

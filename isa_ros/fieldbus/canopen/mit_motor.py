@@ -18,11 +18,19 @@ _CONTROL, _STATUS, _MODE = (0x6040, 0), (0x6041, 0), (0x6060, 0)
 _TARGET_POSITION, _TARGET_VELOCITY = (0x607A, 0), (0x60FF, 0)
 _POSITION, _VELOCITY, _FORCE = (0x6064, 0), (0x606C, 0), (0x2022, 1)
 _IMPEDANCE = -1
+_SUPPORTED, _HAS_IMPEDANCE = (0x6502, 0), 1 << 16
 _SHUTDOWN, _SWITCH_ON, _ENABLE_OPERATION, _RESET_FAULT = 0x06, 0x07, 0x0F, 0x80
 _IS_FAULTY, _DISABLED = 0x08, 0x40      # bits of the status word
 _STATE_MASK, _READY, _SWITCHED_ON, _ENABLED = 0x6F, 0x21, 0x23, 0x27
 _NEXT = {_READY: _SWITCH_ON, _SWITCHED_ON: _ENABLE_OPERATION, _ENABLED: _ENABLE_OPERATION}
 """Control word by the state that the status word shows."""
+
+
+def has_impedance(device: BusDevice) -> bool:
+    """Return whether a device has the impedance mode of the profile CiA 402."""
+    if _SUPPORTED not in device.table:
+        return False
+    return bool(int.from_bytes(device.read(*_SUPPORTED), 'little') & _HAS_IMPEDANCE)
 
 
 class MitMotor:

@@ -16,7 +16,7 @@ from isa_ros.fieldbus.canopen.communication import (
     TRANSMIT_MAPPINGS, TRANSMIT_PARAMETERS)
 from isa_ros.fieldbus.canopen.dictionary import mappings, NodeDictionary
 from isa_ros.fieldbus.canopen.errors import (
-    HEARTBEAT_LOST, NodeErrors, PDO_OVERDUE, PDO_TOO_LONG, PDO_TOO_SHORT, SYNC_LENGTH)
+    BUS_OVERFULL, HEARTBEAT_LOST, NodeErrors, PDO_OVERDUE, PDO_TOO_LONG, PDO_TOO_SHORT, SYNC_LENGTH)
 from isa_ros.fieldbus.canopen.heartbeat import HeartbeatConsumer, HeartbeatProducer
 from isa_ros.fieldbus.canopen.identifiers import (
     HEARTBEAT, LARGEST, SDO_ANSWER, SDO_REQUEST)
@@ -24,6 +24,7 @@ from isa_ros.fieldbus.canopen.pdo import Pdo, ReceivePdo, TransmitPdo
 from isa_ros.fieldbus.canopen.sdo import SdoServer
 from isa_ros.fieldbus.canopen.startup import Startup
 from isa_ros.fieldbus.device import BusDevice
+from isa_ros.fieldbus.manufacturer_area import LAST_REFUSAL
 
 Send = Callable[[int, bytes], None]
 Handler = Callable[[bytes], bool]
@@ -104,6 +105,12 @@ class Node:
             self.boot(now)
         self.report_emergencies()
 
+    def refuse_start(self, reason: str) -> None:
+        """Stay preoperational, with an emergency and the reason as a text."""
+        if LAST_REFUSAL in self.device.table:
+            self.device.store(*LAST_REFUSAL, reason)
+        self.errors.begin(BUS_OVERFULL, self.number, is_sent=self.is_talking)
+
     def lose(self, state: NmtState | None = None) -> None:
         """Leave operation because the bus is lost, by default as the object 0x1029 says."""
         if state is None:
@@ -121,6 +128,7 @@ class Node:
         if state == before:
             return
         if state == NmtState.OPERATIONAL:
+            self.errors.end(BUS_OVERFULL, is_sent=True)
             for pdo in self.pdos():
                 pdo.begin(self.communication, self.device)
             self.device.begin_operation()
@@ -137,9 +145,8 @@ class Node:
 
     def cyclic_frames(self) -> list[CyclicFrame]:
         """Return the PDOs that are on, as frames of a cycle."""
-        for pdo in self.pdos():
-            pdo.begin(self.communication, self.device)
-        return [CyclicFrame(pdo.identifier, pdo.size) for pdo in self.pdos() if pdo.is_on]
+        frames = (pdo.cyclic_frame(self.communication, self.device) for pdo in self.pdos())
+        return [frame for frame in frames if frame is not None]
 
     def handlers(self) -> Iterator[tuple[int, Handler]]:
         """Iterate over the identifiers that the node receives, with their handlers."""

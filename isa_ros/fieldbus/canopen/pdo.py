@@ -4,6 +4,7 @@ The process data objects of a node: when one that arrives takes effect, and when
 Time is simulated: a SYNC is a tick. Remote requests (types 252 and 253) are not offered.
 """
 
+from isa_ros.fieldbus.canopen.capacity import CyclicFrame
 from isa_ros.fieldbus.canopen.communication import (
     COB_ID, Communication, EVENT_TIMER, INHIBIT_TIME, MOST_SYNCS, SYNC_START, TRANSMISSION)
 from isa_ros.fieldbus.canopen.identifiers import INVALID, LARGEST
@@ -29,12 +30,19 @@ class Pdo:
 
     def begin(self, communication: Communication, device: BusDevice) -> None:
         """Take the parameters and the mapping; they do not change before the next time."""
-        cob_id = communication.value(self.parameters, COB_ID)
-        self.size = device.size(self.mapping)
-        self.identifier = cob_id & LARGEST
-        self.is_on = not cob_id & INVALID and self.size > 0
+        frame = self.cyclic_frame(communication, device)
+        self.is_on = frame is not None
+        if frame is not None:
+            self.identifier, self.size = frame
         self.transmission = communication.value(self.parameters, TRANSMISSION)
         self.timer_ns = communication.value(self.parameters, EVENT_TIMER) * _NS_PER_MS
+
+    def cyclic_frame(
+            self, communication: Communication, device: BusDevice) -> CyclicFrame | None:
+        """Return it as a frame of a cycle, None while it is off."""
+        cob_id = communication.value(self.parameters, COB_ID)
+        size = device.size(self.mapping)
+        return None if cob_id & INVALID or not size else CyclicFrame(cob_id & LARGEST, size)
 
     @property
     def is_synchronous(self) -> bool:

@@ -7,7 +7,8 @@ from isa_ros.fieldbus.canopen.capacity import CyclicFrame, frame_bits, refuse_ov
 from isa_ros.fieldbus.canopen.line import canopen_line
 import pytest
 from tests.fieldbus.canopen.toy import ToyDrive
-from tests.fieldbus.canopen.virtual_bus import STEP_NS
+from tests.fieldbus.canopen.virtual_bus import (
+    PREOPERATIONAL, RESET_COMMUNICATION, START, STEP_NS, virtual_master)
 
 POLYNOMIAL = 0x4599     # of CAN's check, x^15 + ...
 
@@ -89,3 +90,21 @@ def test_a_full_bus_is_not_refused():
     refuse_overfull([], {'kfe': [frame]}, 1000 * bits, STEP_NS)
     with pytest.raises(ConfigError):
         refuse_overfull([], {'kfe': [frame]}, 1000 * bits - 1, STEP_NS)
+
+
+def test_nodes_that_the_master_makes_too_long_do_not_start():
+    toys = [ToyDrive('hfe'), ToyDrive('kfe')]
+    with virtual_master(toys) as master:
+        master.write(0x1402, 1, 0x401, 4)
+        master.received()
+        master.command(START)
+        assert [node.state for node in master.line.nodes] == [PREOPERATIONAL] * 2
+        assert master.received()[0] == (0x81, b'\x00\x81\x11\x01\0\0\0\0')
+        assert toys[0].values[0x2003, 0] == (
+            'step_ms = 1 ms, must be >= 1.119 ms: 2 actuators (hfe, kfe) need SYNC 53 + 598 + 468 '
+            '= 1119 bit a tick, CAN at 1 Mbit/s carries 1000 bit')
+        master.command(START, 1)
+        assert master.cycle()[0][0] == 0x181
+        master.command(RESET_COMMUNICATION)
+        master.command(START)
+        assert len(master.cycle()) == 4

@@ -1,17 +1,21 @@
 """MIT-mode frames: coding, enabling, the tick of several motors, faults and capacity."""
 
 from collections.abc import Iterator
-from contextlib import contextmanager
+from contextlib import contextmanager, ExitStack
 import struct
 import uuid
 
 import can
 from hypothesis import given, strategies as st
+import isa_ros
+from isa_ros.core.signals import COMMAND
 from isa_ros.errors import ConfigError
 from isa_ros.fieldbus.canopen.mit_frames import (
     Answer, answer_frame, answer_of, Command, command_frame, command_of, DISABLE, ENABLE, Range,
     Ranges, SET_ZERO, special_frame, special_of)
 from isa_ros.fieldbus.canopen.mit_line import mit_line, MitLine
+from isa_ros.fieldbus.devices import devices_of
+import numpy as np
 import pytest
 from tests.fieldbus.canopen.toy import ToyDrive
 from tests.fieldbus.canopen.virtual_bus import STEP_NS
@@ -202,3 +206,42 @@ def test_four_motors_fit_in_a_millisecond_and_five_do_not():
         pass
     with pytest.raises(ConfigError, match='5 actuators .* need .* = 12.. bit a tick'):
         mit_line([ToyDrive(str(k)) for k in range(5)], 'virtual', 'mit', STEP_NS)
+
+
+def test_an_actuator_without_impedance_is_no_motor():
+    run = isa_ros.load('rig_linear').configuration
+    with pytest.raises(ConfigError, match='has no impedance mode'):
+        mit_line(devices_of(run, 'cia408'), 'virtual', 'mit', STEP_NS)
+
+
+@pytest.mark.parametrize('answer_id', [1, -1, 0x800])
+def test_answers_are_no_commands(answer_id):
+    with pytest.raises(ConfigError, match=f'answer_id = {answer_id}: must be 0 to 2047'):
+        mit_line([ToyDrive()], 'virtual', 'mit', STEP_NS, answer_id=answer_id)
+
+
+def test_a_real_actuator_follows_a_motor_command():
+    """A position 2 mm away, reached within 0.2 mm (12 bit of stiffness) in 0.3 s."""
+    with ExitStack() as stack:
+        simulation = isa_ros.load('rig_linear').simulation()
+        device, = devices_of(simulation.scenario.run)
+        commands = np.zeros(1, COMMAND)
+        channel = uuid.uuid4().hex
+        bus = stack.enter_context(can.Bus(interface='virtual', channel=channel))
+        line = mit_line([device], 'virtual', channel, STEP_NS)
+        stack.callback(line.close)
+        device.take_sample(simulation.group.samples[0], 0)
+        ranges = line.motors[1].ranges
+        start = float(simulation.group.samples[0]['position'])
+        stiffness, damping = (struct.unpack('<f', device.read(0x2010, k))[0] for k in (1, 2))
+        frame = command_frame(Command(start + 2e-3, 0.0, stiffness, damping, 0.0), ranges)
+        bus.send(can.Message(arbitration_id=1, data=special_frame(ENABLE), is_extended_id=False))
+        for k in range(300):
+            bus.send(can.Message(arbitration_id=1, data=frame, is_extended_id=False))
+            assert line.serve(0.0)
+            device.fill_command(commands[0])
+            simulation.step(commands)
+            device.take_sample(simulation.group.samples[0], k + 1)
+            line.update()
+        position = float(simulation.group.samples[0]['position'])
+        assert abs(position - start - 2e-3) < 2e-4

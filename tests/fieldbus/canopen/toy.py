@@ -61,6 +61,7 @@ def toy_table(name: str) -> ObjectTable:
     return ObjectTable([
         _var(0x1000, 'Device type', U32, 'const', 0x20192),
         _var(0x1008, 'Device name', DataType.VISIBLE_STRING, 'const', name),
+        _var(0x1009, 'Manufacturer hardware version', DataType.VISIBLE_STRING, 'const', 'toy'),
         _record(0x1018, 'Identity', [
             ('Vendor id', U32, 'const', VENDOR, ''), ('Product code', U32, 'const', 7, ''),
             ('Revision', U32, 'const', 1, ''), ('Serial number', U32, 'const', 1, '')]),
@@ -71,6 +72,7 @@ def toy_table(name: str) -> ObjectTable:
             ('Position', F32, 'rw', 0.065535, ''), ('Velocity', F32, 'rw', 0.5, ''),
             ('Stiffness', F32, 'rw', 4095.0, ''), ('Damping', F32, 'rw', 40.95, ''),
             ('Effort', F32, 'rw', 1023.75, '')]),
+        _var(0x2003, 'Last refusal', DataType.VISIBLE_STRING, 'ro', ''),
         _record(0x2010, 'Impedance', [
             ('Stiffness', F32, 'rw', 0.0, 'rx'), ('Damping', F32, 'rw', 0.0, 'rx'),
             ('Effort', F32, 'rw', 0.0, 'rx')]),
@@ -87,7 +89,7 @@ def toy_table(name: str) -> ObjectTable:
         _var(0x6077, 'Torque actual value', I16, 'ro', pdo='tx', unit='N', scale=1.0),
         _var(0x607A, 'Target position', I32, pdo='rx', unit='m', scale=1e-6),
         _var(0x60FF, 'Target velocity', I32, pdo='rx', unit='m/s', scale=1e-6),
-        _var(0x6502, 'Supported drive modes', U32, 'ro', 0x380)])
+        _var(0x6502, 'Supported drive modes', U32, 'ro', 0x10380)])
 
 
 class ToyDrive:
