@@ -23,7 +23,7 @@ from isa_ros.plant.plant import exact_force, PLANT, plant_rates, PLANT_STATE, se
 from isa_ros.plant.thermal import warm
 from isa_ros.reu.cascade import cascade_step, is_due, REU
 from isa_ros.reu.device import write_device
-from isa_ros.reu.protection import protect, setpoint_in_force
+from isa_ros.reu.reactions import protect, setpoint_in_force
 import numpy as np
 
 TOTALS = np.dtype([
