@@ -10,6 +10,7 @@ import hashlib
 from typing import NoReturn, Protocol
 
 from isa_ros.actuator import kernel as kernels
+from isa_ros.actuator.body import state_name
 from isa_ros.actuator.device import mode_after, mode_command, refusal_of, start_mode
 from isa_ros.actuator.inbox import merge, write_applied
 from isa_ros.actuator.link import link_key, NONE, refuse_states
@@ -312,9 +313,9 @@ class SmartActuator:
             self._reu.status.fade.begins = 1
 
     def raise_diverged(self, state: int) -> NoReturn:
-        """Raise `SimulationDiverged` for a state, given by its index in `kernels.BODY`."""
+        """Raise `SimulationDiverged` for a state, given by its index in `BODY`."""
         raise SimulationDiverged(
-            self.t_ns, f'{self.name}: {kernels.state_name(state)}',
+            self.t_ns, f'{self.name}: {state_name(state)}',
             self.memory.states[0, state])
 
     def snapshot(self) -> bytes:

@@ -178,13 +178,7 @@ def spool_block(step, reference, reu, state):
 
 @kernel
 def cascade_step(step, reu, state):
-    """
-    Run the device and every block that is due at plant step ``step`` on ``state.measured``.
-
-    An REU that is frozen runs none: references and drive stay.
-    """
-    if reu.is_frozen > 0.0:
-        return
+    """Run the device and every block that is due at plant step ``step`` on ``state.measured``."""
     device = state.status
     device_step(step, reu, state)
     if is_due(step, reu.speed_steps, reu.offset_steps):

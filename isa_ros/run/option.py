@@ -77,6 +77,8 @@ class Option:
     """'': that of the parameter."""
     is_argument: bool = True
     is_parameter: bool = True
+    is_of_bus: bool = True
+    """Whether `isa bus` has it, of those on the command line."""
 
     field: str = ''
     """Name of the field of `Request`."""

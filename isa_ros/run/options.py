@@ -56,19 +56,20 @@ class Request:
         Kind.POSITIVE, 'not faster than X times real time', otherwise='as fast as possible',
         metavar='X'))
     in_process: bool = field(default=False, metadata=_option(
-        Kind.FLAG, 'all nodes in one process: faster, and the same bytes in the bag'))
+        Kind.FLAG, 'all nodes in one process: faster, and the same bytes in the bag',
+        is_of_bus=False))
     elsewhere: tuple[str, ...] = field(default=(), metadata=_option(
         Kind.NAMES, 'actuators that `isa actuators` starts on another host; the run waits for '
-        'them', metavar='NAME[,NAME...]|all', is_parameter=False))
+        'them', metavar='NAME[,NAME...]|all', is_parameter=False, is_of_bus=False))
     """(`run_config.ALL`,): all of them."""
     controllers: tuple[str, ...] = field(default=(), metadata=_option(
         Kind.REPEATED, 'a node of yours; the run waits for it at every tick', metavar='NAME',
-        name='controller', parameter='controllers'))
+        name='controller', parameter='controllers', is_of_bus=False))
     """Added to those of the run file."""
     join_timeout_s: float = field(default=JOIN_TIMEOUT_S, metadata=_option(
         Kind.POSITIVE, 'longest wait for participants',
         otherwise=f'{JOIN_TIMEOUT_S:g} s', unit='s', metavar='S', name='join_timeout',
-        parameter='join_timeout_s'))
+        parameter='join_timeout_s', is_of_bus=False))
     is_paused: bool = field(default=False, metadata=_option(
         Kind.FLAG, 'wait before tick 0 for /coordinator/step or the end of the pause',
         name='paused'))
@@ -116,9 +117,10 @@ OPTION_OF = {option.parameter: option for option in OPTIONS}
 
 
 def request_of_arguments(values: Mapping[str, Any], **more: Any) -> Request:
-    """Return the request of the command line's values, by the names of their options."""
+    """Return the request of a command line's values, by the names of the options it has."""
     return Request(**{option.field: option.of_argument(values[option.name])
-                      for option in OPTIONS if option.is_argument}, **more)
+                      for option in OPTIONS
+                      if option.is_argument and option.name in values}, **more)
 
 
 def request_of_parameters(values: Mapping[str, Any], **more: Any) -> Request:

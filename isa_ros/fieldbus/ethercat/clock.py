@@ -1,0 +1,91 @@
+"""
+Distributed clocks in simulated time.
+
+All slaves share one local clock, which advances by the interval of a tick when a tick is over and
+stands still otherwise. A frame reaches the slave at position k `HOP_NS` k later than the first, on
+its way back from the last of n slaves 2 (n - 1 - k) `HOP_NS` later at port 1: a master that
+measures delays finds these. System time is local time plus the offset that the master writes, so
+that its epoch is the master's. The clocks do not drift: a time written to 0x0910 by the reference
+clock's datagram takes effect at once and leaves no difference.
+"""
+
+from isa_ros.fieldbus.ethercat.registers import (
+    ACTIVATION_STATUS, RECEIVE_TIMES, SYNC0_CYCLE, SYNC_ACTIVATION, SYNC_START, SYSTEM_TIME,
+    TIME_DELAY, TIME_OFFSET, UNIT_RECEIVE_TIME)
+
+HOP_NS = 500
+"""Assumed: a cable of a few metres and the way through two ports, ns."""
+_WRAP = (1 << 64) - 1
+_LOW = (1 << 32) - 1
+_CYCLIC, _SYNC0 = 1, 2
+_PENDING_SYNC0, _START_IN_THE_PAST = 1, 4
+
+
+class SharedClock:
+    """Local time of all slaves of a line."""
+
+    def __init__(self, step_ns: int) -> None:
+        self.step_ns = step_ns
+        self.now_ns = 0
+
+    def advance(self) -> None:
+        """Let one tick pass."""
+        self.now_ns += self.step_ns
+
+
+class DistributedClock:
+    """The clock of the slave at a position among ``n_slaves``."""
+
+    def __init__(
+            self, memory: bytearray, shared: SharedClock, position: int, n_slaves: int) -> None:
+        self._memory, self._shared = memory, shared
+        self._arrival_ns = position * HOP_NS
+        self._return_ns = self._arrival_ns + 2 * (n_slaves - 1 - position) * HOP_NS
+        self._correction_ns = 0
+
+    @property
+    def _local_ns(self) -> int:
+        """Return the local time at which the present frame reaches the slave."""
+        return self._shared.now_ns + self._arrival_ns
+
+    @property
+    def system_ns(self) -> int:
+        """Return the system time at which the present frame reaches the slave."""
+        return self._local_ns + TIME_OFFSET.value(self._memory) + self._correction_ns & _WRAP
+
+    def refresh(self) -> None:
+        """Write the system time into its register."""
+        SYSTEM_TIME.put(self._memory, self.system_ns)
+
+    def latch(self) -> None:
+        """Store the receive times of the present frame."""
+        UNIT_RECEIVE_TIME.put(self._memory, self._local_ns)
+        for port, time_ns in enumerate((self._local_ns, self._shared.now_ns + self._return_ns)):
+            at = RECEIVE_TIMES.address + 4 * port
+            self._memory[at:at + 4] = (time_ns & _LOW).to_bytes(4, 'little')
+
+    def restart(self) -> None:
+        """Forget what the control loop has corrected."""
+        self._correction_ns = 0
+
+    def follow(self, received: bytes) -> None:
+        """Take the reference clock's time; its low 32 bits are enough."""
+        sent = int.from_bytes(received[:4], 'little') + TIME_DELAY.value(self._memory)
+        difference = sent - self.system_ns & _LOW
+        self._correction_ns += difference - (1 << 32) if difference >> 31 else difference
+
+    def note_activation(self) -> None:
+        """Show whether SYNC0 waits for its start, and whether that was in the past already."""
+        activation = self._memory[SYNC_ACTIVATION.address]
+        status = 0
+        if activation & _CYCLIC and activation & _SYNC0:
+            is_past = SYNC_START.value(self._memory) <= self.system_ns
+            status = _PENDING_SYNC0 | (_START_IN_THE_PAST if is_past else 0)
+        ACTIVATION_STATUS.put(self._memory, status)
+
+    def is_cycle_right(self) -> bool:
+        """Return whether SYNC0 is off, or comes once per tick."""
+        activation = self._memory[SYNC_ACTIVATION.address]
+        if not (activation & _CYCLIC and activation & _SYNC0):
+            return True
+        return SYNC0_CYCLE.value(self._memory) == self._shared.step_ns

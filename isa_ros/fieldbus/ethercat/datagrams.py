@@ -1,0 +1,100 @@
+"""
+Frames of EtherCAT: Ethernet header, EtherCAT header, datagrams (ETG.1000.4).
+
+A datagram is command (1 byte), index (1), address (4), length and flags (2), IRQ (2), data and the
+working counter (2).
+"""
+
+from enum import IntEnum
+import struct
+from typing import NamedTuple
+
+ETHERTYPE = 0x88A4
+ETHERNET_HEADER, FRAME_HEADER, DATAGRAM_HEADER, COUNTER = 14, 2, 10, 2
+FIRST_DATAGRAM = ETHERNET_HEADER + FRAME_HEADER
+LENGTH = 0x07FF
+"""Bits of a datagram's length."""
+HAS_NEXT = 0x8000
+"""Flag: another datagram follows."""
+TYPE_DATAGRAMS = 1
+"""Type of a frame in the top four bits of its header."""
+LONGEST_FRAME = 1514
+"""Ethernet frame without its check sequence."""
+
+HEADER = struct.Struct('<BBHHHH')
+"""Command, index, slave or low address, offset or high address, length and flags, IRQ."""
+
+
+class Command(IntEnum):
+    """What a datagram does."""
+
+    NOP = 0
+    APRD = 1
+    APWR = 2
+    APRW = 3
+    FPRD = 4
+    FPWR = 5
+    FPRW = 6
+    BRD = 7
+    BWR = 8
+    BRW = 9
+    LRD = 10
+    LWR = 11
+    LRW = 12
+    ARMW = 13
+    FRMW = 14
+
+
+class Datagram(NamedTuple):
+    """Place and header of a datagram in a frame."""
+
+    command: int
+    at: int
+    """Offset of the header."""
+    slave: int
+    """Position or station address; the low half of a logical address."""
+    offset: int
+    """Address in the slave's memory; the high half of a logical address."""
+    data: int
+    """Offset of the data."""
+    end: int
+    """End of the data, where the working counter is."""
+
+    @property
+    def logical(self) -> int:
+        """Return the logical address."""
+        return self.slave | self.offset << 16
+
+
+class Datagrams(NamedTuple):
+    """The datagrams of a frame up to the first that does not fit."""
+
+    found: list[Datagram]
+    is_whole: bool
+    """Whether the frame contains all the datagrams it announces."""
+
+
+def is_ethercat(frame: bytearray, size: int) -> bool:
+    """Return whether an Ethernet frame contains EtherCAT datagrams."""
+    return (size >= FIRST_DATAGRAM and frame[12] == ETHERTYPE >> 8
+            and frame[13] == ETHERTYPE & 0xFF and frame[15] >> 4 == TYPE_DATAGRAMS)
+
+
+def datagrams(frame: bytearray, size: int) -> Datagrams:
+    """Return the datagrams of an EtherCAT frame of ``size`` bytes."""
+    found: list[Datagram] = []
+    limit = FIRST_DATAGRAM + ((frame[14] | frame[15] << 8) & LENGTH)
+    if limit > size:
+        return Datagrams(found, False)
+    at = FIRST_DATAGRAM
+    while at + DATAGRAM_HEADER + COUNTER <= limit:
+        command, _, slave, offset, length, _ = HEADER.unpack_from(frame, at)
+        start = at + DATAGRAM_HEADER
+        end = start + (length & LENGTH)
+        if end + COUNTER > limit:
+            break
+        found.append(Datagram(command, at, slave, offset, start, end))
+        if not length & HAS_NEXT:
+            return Datagrams(found, True)
+        at = end + COUNTER
+    return Datagrams(found, False)

@@ -1,0 +1,190 @@
+"""
+A ring of slaves: every frame passes all of them in their order and returns to the master.
+
+The working counter of a datagram grows by 1 for each slave that was read, and by 1 for each that
+was written; by 2 for a write of a datagram that also reads.
+"""
+
+from collections.abc import Sequence
+import struct
+
+from isa_ros.fieldbus.device import BusDevice
+from isa_ros.fieldbus.ethercat.application_layer import State
+from isa_ros.fieldbus.ethercat.clock import SharedClock
+from isa_ros.fieldbus.ethercat.controller import DL_EVENT
+from isa_ros.fieldbus.ethercat.cycle import Cycle, Range
+from isa_ros.fieldbus.ethercat.datagrams import (
+    Command, Datagram, Datagrams, datagrams, is_ethercat)
+from isa_ros.fieldbus.ethercat.logical import execute, plan, Step
+from isa_ros.fieldbus.ethercat.registers import EVENTS, LOST_LINKS, UNIT_ERRORS
+from isa_ros.fieldbus.ethercat.slave import Slave
+
+_WORD = struct.Struct('<H')
+_WRAP = 0xFFFF
+_SOURCE, _LOCAL = 6, 0x02
+"""First byte of the source address, and its bit for a locally administered one."""
+_SLAVE, _IRQ = 2, 8
+"""Offsets in a datagram's header."""
+_LOGICAL = (Command.LRD, Command.LWR, Command.LRW)
+_LOGICAL_WRITES = (Command.LWR, Command.LRW)
+_POSITION = (Command.APRD, Command.APWR, Command.APRW, Command.ARMW)
+_STATION = (Command.FPRD, Command.FPWR, Command.FPRW, Command.FRMW)
+_BROADCAST = (Command.BRD, Command.BWR, Command.BRW)
+_MULTIPLE_WRITES = (Command.ARMW, Command.FRMW)
+_READS = (Command.APRD, Command.APRW, Command.FPRD, Command.FPRW, Command.BRD, Command.BRW)
+_WRITES = (Command.APWR, Command.APRW, Command.FPWR, Command.FPRW, Command.BWR, Command.BRW)
+
+
+class Ring:
+    """The slaves of devices, the first next to the master."""
+
+    def __init__(self, devices: Sequence[BusDevice], step_ns: int) -> None:
+        self.clock = SharedClock(step_ns)
+        self.cycle = Cycle()
+        self._plans: dict[tuple[int, int, int, int], list[Step]] = {}
+        self._awaited: list[Slave] | None = None
+        self._is_operational = False
+        self.slaves = [Slave(device, position, len(devices), self.clock, self._replan)
+                       for position, device in enumerate(devices)]
+        self._memories = [slave.controller.memory for slave in self.slaves]
+
+    def _replan(self) -> None:
+        """Forget what was planned: a master has configured a slave."""
+        self._plans.clear()
+        self._awaited = None
+        self.cycle.forget()
+
+    def take(self, frame: bytearray, size: int) -> Datagrams | None:
+        """Return the datagrams of a frame, None if it is not EtherCAT."""
+        return datagrams(frame, size) if is_ethercat(frame, size) else None
+
+    def is_next_cycle(self, taken: Datagrams) -> bool:
+        """Return whether a frame begins a cycle while another is not complete."""
+        return self.cycle.is_open and self.cycle.is_over(_writes(taken))
+
+    def process(self, frame: bytearray, taken: Datagrams) -> None:
+        """Let a frame pass all slaves, in place."""
+        frame[_SOURCE] |= _LOCAL
+        irq = self._irq()
+        for datagram in taken.found:
+            command = datagram.command
+            if command in _LOGICAL:
+                self._add(frame, datagram.end, self._logical(frame, datagram))
+            elif command != Command.NOP:
+                self._add(frame, datagram.end, self._physical(frame, datagram))
+            if irq:
+                at = datagram.at + _IRQ
+                _WORD.pack_into(frame, at, _WORD.unpack_from(frame, at)[0] | irq)
+        if not taken.is_whole:
+            for slave in self.slaves:
+                slave.controller.count(UNIT_ERRORS)
+        writes = _writes(taken)
+        if writes and any(slave.has_new_outputs for slave in self.slaves):
+            self.cycle.add(writes)
+
+    def _add(self, frame: bytearray, at: int, count: int) -> None:
+        """Add to a working counter."""
+        _WORD.pack_into(frame, at, _WORD.unpack_from(frame, at)[0] + count & _WRAP)
+
+    def _irq(self) -> int:
+        """Return the events of all slaves that their masks let through."""
+        irq = 0
+        for memory, slave in zip(self._memories, self.slaves):
+            if memory[EVENTS.address]:
+                irq |= slave.controller.irq
+        return irq
+
+    def _logical(self, frame: bytearray, datagram: Datagram) -> int:
+        """Exchange logical memory; return the count."""
+        key = (datagram.command, datagram.logical, datagram.data, datagram.end)
+        steps = self._plans.get(key)
+        if steps is None:
+            steps = self._plans[key] = plan(self.slaves, datagram)
+        return execute(steps, frame, datagram)
+
+    def _physical(self, frame: bytearray, datagram: Datagram) -> int:
+        """Access the memories of the slaves addressed; return the count."""
+        command, count = datagram.command, 0
+        for position, slave in enumerate(self.slaves):
+            if command in _STATION:
+                is_addressed = datagram.slave in slave.controller.addresses
+            elif command in _POSITION:
+                is_addressed = datagram.slave + position & _WRAP == 0
+            else:
+                is_addressed = command in _BROADCAST
+            if command in _MULTIPLE_WRITES:
+                count += _access(slave, frame, datagram, is_addressed, not is_addressed)
+            elif is_addressed:
+                count += _access(
+                    slave, frame, datagram, command in _READS, command in _WRITES)
+        if command in _POSITION or command in _BROADCAST:
+            _WORD.pack_into(frame, datagram.at + _SLAVE, datagram.slave + len(self.slaves) & _WRAP)
+        return count
+
+    @property
+    def is_complete(self) -> bool:
+        """Return whether the outputs of all slaves have been written in this cycle."""
+        if not self.cycle.is_open:
+            return False
+        if self._awaited is None:
+            self._awaited = [slave for slave in self.slaves if slave.is_written_by_master]
+        return all(slave.has_new_outputs for slave in self._awaited)
+
+    def end_cycle(self) -> bool:
+        """
+        Hand the outputs of a cycle to the devices; return whether it is a tick.
+
+        It is from the first cycle in the state operational on, until all slaves are in INIT or
+        PREOP: a slave that has fallen to SAFEOP still moves.
+        """
+        self.cycle.end()
+        states = [slave.state for slave in self.slaves]
+        self._is_operational = max(states) >= (
+            State.SAFEOP if self._is_operational else State.OP)
+        for slave in self.slaves:
+            slave.end_cycle()
+        return self._is_operational
+
+    def lose_link(self) -> None:
+        """Count that the link to the master was lost."""
+        controller = self.slaves[0].controller
+        controller.count(LOST_LINKS)
+        controller.note_event(DL_EVENT)
+
+    def miss(self) -> None:
+        """Let the watchdogs of all slaves expire."""
+        for slave in self.slaves:
+            slave.miss()
+
+    def update(self) -> None:
+        """Let a tick pass: clocks, inputs and emergencies."""
+        self.clock.advance()
+        for slave in self.slaves:
+            slave.update()
+
+
+def _access(slave: Slave, frame: bytearray, datagram: Datagram, reads: bool, writes: bool) -> int:
+    """Access the memory of one slave; return what it adds to the working counter."""
+    start, end, count = datagram.data, datagram.end, 0
+    sent = bytes(frame[start:end])
+    if reads:
+        content = slave.controller.read(datagram.offset, end - start)
+        if content is not None:
+            count += 1
+            is_merged = datagram.command in _BROADCAST
+            frame[start:end] = _merged(content, sent) if is_merged else content
+    if writes and slave.controller.write(datagram.offset, sent):
+        count += 2 if reads else 1
+    return count
+
+
+def _merged(content: bytes, sent: bytes) -> bytes:
+    """Return the bits that are set in either."""
+    return (int.from_bytes(content, 'little') | int.from_bytes(sent, 'little')).to_bytes(
+        len(content), 'little')
+
+
+def _writes(taken: Datagrams) -> list[Range]:
+    """Return the logical addresses that a frame writes."""
+    return [(one.logical, one.logical + one.end - one.data) for one in taken.found
+            if one.command in _LOGICAL_WRITES]

@@ -1,0 +1,202 @@
+"""A slave: the controller, and the application that connects it to a device."""
+
+from collections.abc import Callable
+
+from isa_ros.fieldbus.device import BusDevice, RECEIVE_ASSIGNMENT, TRANSMIT_ASSIGNMENT
+from isa_ros.fieldbus.ethercat import al_codes
+from isa_ros.fieldbus.ethercat.application_layer import ApplicationLayer, State
+from isa_ros.fieldbus.ethercat.clock import DistributedClock, SharedClock
+from isa_ros.fieldbus.ethercat.coe import CanOverEthercat
+from isa_ros.fieldbus.ethercat.controller import AL_EVENT, Controller
+from isa_ros.fieldbus.ethercat.layout import AREAS
+from isa_ros.fieldbus.ethercat.slave_mailbox import Mailbox
+from isa_ros.fieldbus.ethercat.registers import DL_STATUS
+from isa_ros.fieldbus.ethercat.sii import build_sii, process_data_sizes
+from isa_ros.fieldbus.ethercat.sync_manager import (
+    INPUTS, MAILBOX_IN, MAILBOX_OUT, OUTPUTS, SyncManager)
+from isa_ros.fieldbus.ethercat.watchdog import Watchdog
+
+_FROM_MASTER = {MAILBOX_OUT: True, MAILBOX_IN: False, OUTPUTS: True, INPUTS: False}
+_APPLICATION_RUNS, _PORT_0, _PORT_1 = 0x0001, 0x0210, 0x0820
+_CLOSED_1, _CLOSED_2, _CLOSED_3 = 0x0400, 0x1000, 0x4000
+"""DL status: link and communication of a port, or its loop closed."""
+
+
+class Slave:
+    """One device at its position in the ring."""
+
+    def __init__(self, device: BusDevice, position: int, n_slaves: int, shared: SharedClock,
+                 on_change: Callable[[], None]) -> None:
+        self.device = device
+        self.controller = Controller(build_sii(device))
+        memory = self.controller.memory
+        is_last = position == n_slaves - 1
+        DL_STATUS.put(memory, _APPLICATION_RUNS | _PORT_0 | _CLOSED_2 | _CLOSED_3 | (
+            _CLOSED_1 if is_last else _PORT_1))
+        self._sync = self.controller.sync
+        self._step_ns = shared.step_ns
+        self._on_change = on_change
+        self._clock = DistributedClock(memory, shared, position, n_slaves)
+        self._coe = CanOverEthercat(device)
+        self._mailbox = Mailbox(self._sync[MAILBOX_OUT], self._sync[MAILBOX_IN], self._coe)
+        self._sync[OUTPUTS].lock(True)
+        self._sync[INPUTS].lock(True)
+        self.watchdog = Watchdog(memory, shared.step_ns)
+        self._al = ApplicationLayer(memory, self)
+        self._received: list[tuple[int, int, int]] = []
+        self._transmitted: list[int] = []
+        self.has_new_outputs = False
+        """Whether the master has written the outputs in this cycle."""
+        self.controller.attach(
+            self._clock, on_control=self._take_control, on_buffer=self._take_buffer,
+            on_setup=self._check_setup)
+
+    @property
+    def state(self) -> State:
+        """Return the state of the slave."""
+        return self._al.state
+
+    def refusal(self, state: State) -> int:
+        """Return why a state cannot be, as a code of `al_codes`; 0 if it can."""
+        if state == State.PREOP:
+            is_right = self._fits(MAILBOX_OUT, AREAS[MAILBOX_OUT].length) and self._fits(
+                MAILBOX_IN, AREAS[MAILBOX_IN].length)
+            return al_codes.NO_ERROR if is_right else al_codes.INVALID_MAILBOX
+        return self._process_data_refusal()
+
+    def _process_data_refusal(self) -> int:
+        """Return why process data cannot be exchanged, 0 if they can."""
+        sizes = process_data_sizes(self.device)
+        for manager, code in (
+                (OUTPUTS, al_codes.INVALID_OUTPUTS), (INPUTS, al_codes.INVALID_INPUTS)):
+            if not self._fits(manager, sizes[manager]):
+                return code
+        if self._is_watched and 0 < self.watchdog.time_ns < self._step_ns:
+            return al_codes.INVALID_WATCHDOG
+        if not self._clock.is_cycle_right():
+            return al_codes.SYNC0_CYCLE_TIME
+        return al_codes.NO_ERROR
+
+    def _fits(self, manager: int, length: int) -> bool:
+        """Return whether a sync manager is as the application needs it; of 0 bytes: off."""
+        setup, area = self._sync[manager].setup, AREAS[manager]
+        if not length:
+            return not setup.is_active or not setup.length
+        return (setup.is_active and setup.length == length <= area.length
+                and setup.start == area.start
+                and setup.is_from_master == _FROM_MASTER[manager]
+                and setup.is_mailbox == (manager in (MAILBOX_OUT, MAILBOX_IN)))
+
+    @property
+    def _is_watched(self) -> bool:
+        """Return whether the watchdog watches the outputs."""
+        return self._sync[OUTPUTS].setup.has_watchdog and self._sync[OUTPUTS].covers
+
+    def change(self, old: State, new: State, is_lost: bool) -> None:
+        """Act on a change of state; ``is_lost``: the master did not ask for it."""
+        self._coe.is_preoperational = new == State.PREOP
+        if old == State.OP:
+            self.device.end_operation(is_lost)
+        if old == State.INIT:
+            self._mailbox.start()
+        elif new == State.INIT:
+            self._mailbox.stop()
+        is_exchanging = new in (State.SAFEOP, State.OP)
+        if is_exchanging and old == State.PREOP:
+            self._assign()
+        if is_exchanging != (old in (State.SAFEOP, State.OP)):
+            self._sync[OUTPUTS].lock(not is_exchanging)
+            self._sync[INPUTS].lock(not is_exchanging)
+        if is_exchanging:
+            self.put_inputs()
+        if new == State.OP:
+            self.watchdog.feed()
+            self.device.begin_operation()
+        if is_lost:
+            self.controller.note_event(AL_EVENT)
+
+    def _assign(self) -> None:
+        """Note which PDOs are in the buffers, and where."""
+        self._received, at = [], 0
+        for pdo in self.device.assigned(RECEIVE_ASSIGNMENT):
+            size = self.device.size(pdo)
+            self._received.append((pdo, at, at + size))
+            at += size
+        self._transmitted = self.device.assigned(TRANSMIT_ASSIGNMENT)
+        self.has_new_outputs = False
+
+    def is_whole_buffer(self, start: int, end: int, is_output: bool) -> bool:
+        """Return whether these addresses are all of an open buffer of process data."""
+        manager = self._sync[OUTPUTS if is_output else INPUTS]
+        setup = manager.setup
+        return (manager.covers and not manager.is_locked and not setup.is_mailbox
+                and setup.is_from_master == is_output
+                and (start, end) == (manager.start, manager.end))
+
+    @property
+    def is_written_by_master(self) -> bool:
+        """Return whether a master writes the outputs through an FMMU."""
+        manager = self._sync[OUTPUTS]
+        return self.state in (State.SAFEOP, State.OP) and manager.covers and any(
+            one.writes and one.physical < manager.end
+            and one.physical + one.length > manager.start for one in self.controller.fmmus)
+
+    def _take_control(self) -> None:
+        self._al.control()
+        self._on_change()
+
+    def _check_setup(self) -> None:
+        """Fall back if sync managers no longer fit the state."""
+        if self.state != State.INIT and self.refusal(State.PREOP):
+            self._al.fall(State.INIT, al_codes.INVALID_MAILBOX)
+        elif self.state in (State.SAFEOP, State.OP):
+            sizes = process_data_sizes(self.device)
+            if not self._fits(OUTPUTS, sizes[OUTPUTS]):
+                self._al.fall(State.PREOP, al_codes.INVALID_OUTPUTS)
+            elif not self._fits(INPUTS, sizes[INPUTS]):
+                self._al.fall(State.PREOP, al_codes.INVALID_INPUTS)
+        self._mailbox.repeat()
+        self._on_change()
+
+    def _take_buffer(self, manager: SyncManager) -> None:
+        """Act on a buffer that the master has filled or emptied."""
+        if manager.number == MAILBOX_OUT:
+            self._mailbox.receive()
+        elif manager.number == MAILBOX_IN:
+            self._mailbox.note_read()
+        elif manager.number == OUTPUTS:
+            self.has_new_outputs = True
+
+    def end_cycle(self) -> None:
+        """Hand new outputs to the device, or count a cycle without them."""
+        if self.has_new_outputs:
+            self.has_new_outputs = False
+            self.watchdog.feed()
+            outputs = self._sync[OUTPUTS].take()
+            if self.state == State.OP:
+                for pdo, start, end in self._received:
+                    self.device.receive(pdo, outputs[start:end])
+        elif self.state == State.OP and self._is_watched and self.watchdog.miss():
+            self._lose()
+
+    def miss(self) -> None:
+        """Let the watchdog expire: nothing has arrived for its wall time."""
+        if self.state == State.OP and self._is_watched and self.watchdog.expire():
+            self._lose()
+
+    def _lose(self) -> None:
+        self._al.fall(State.SAFEOP, al_codes.WATCHDOG)
+        self._on_change()
+
+    def update(self) -> None:
+        """Take the device's new state as inputs, and its emergencies as mails."""
+        if self.state in (State.SAFEOP, State.OP):
+            self.put_inputs()
+        for emergency in self.device.emergencies():
+            if self.state != State.INIT:
+                self._mailbox.post_emergency(emergency)
+
+    def put_inputs(self) -> None:
+        """Fill the buffer of inputs."""
+        if self._transmitted:
+            self._sync[INPUTS].put(b''.join(map(self.device.transmit, self._transmitted)))

@@ -1,0 +1,33 @@
+"""The interface of a bus that serves masters; each kind of bus has its own package or file."""
+
+from typing import Protocol
+
+
+class Line(Protocol):
+    """
+    The slaves of a run on one bus, whose devices are `BusDevice` objects.
+
+    The run gives the devices the samples of t_k, calls `update`, and then `serve` until the cycle
+    begins that is tick k.
+    """
+
+    def serve(self, timeout: float) -> bool:
+        """
+        Answer the frames that arrive within ``timeout`` seconds; 0: those that are there.
+
+        Return True as soon as a cycle has begun: a datagram that writes logical memory while the
+        slaves are operational, or a SYNC. Frames behind it wait for the next call.
+        """
+        ...
+
+    def update(self) -> None:
+        """Take the devices' new samples as inputs; simulated time has advanced by one tick."""
+        ...
+
+    def miss(self) -> None:
+        """Let the watchdog of every slave in operation expire: no process data for its time."""
+        ...
+
+    def close(self) -> None:
+        """Leave the bus."""
+        ...
