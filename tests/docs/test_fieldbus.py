@@ -1,24 +1,15 @@
 """docs/fieldbus.md and the faults of the device as a master sees them."""
 
-from importlib.util import module_from_spec, spec_from_file_location
 from pathlib import Path
 from types import ModuleType
 
 from isa_ros.config.fault_catalogue import fault_catalogue
 from isa_ros.examples import canopen_master, ethercat_master
 import pytest
+from scripts import write_bus_faults
+from scripts.write_bus_faults import row_of, seen
 
 ROOT = Path(__file__).parents[2]
-
-
-@pytest.fixture(scope='module')
-def script() -> ModuleType:
-    """Return the script that writes the page."""
-    spec = spec_from_file_location('write_bus_faults', ROOT / 'scripts' / 'write_bus_faults.py')
-    assert spec is not None and spec.loader is not None
-    module = module_from_spec(spec)
-    spec.loader.exec_module(module)
-    return module
 
 
 def text() -> str:
@@ -26,16 +17,16 @@ def text() -> str:
 
 
 @pytest.mark.slow
-def test_a_row_of_the_faults_is_that_of_today(script: ModuleType):
+def test_a_row_of_the_faults_is_that_of_today():
     """The sensor that the example loses too: the trip is reset three times while it lasts."""
-    row = script.row_of(script.seen(fault_catalogue()['pressure_a_lost']), script.seen(None))
+    row = row_of(seen(fault_catalogue()['pressure_a_lost']), seen(None))
     assert f'| `pressure_a_lost` | {" | ".join(row)} |' in text()
     assert 'fault 51' in row[0] and row[1] == '0x7300'
 
 
 @pytest.mark.long
-def test_the_table_of_faults_is_that_of_today(script: ModuleType):
-    assert script.page(text()) == text()
+def test_the_table_of_faults_is_that_of_today():
+    assert write_bus_faults.page(text()) == text()
 
 
 def test_every_fault_of_the_catalogue_is_in_the_page():
