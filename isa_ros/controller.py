@@ -10,7 +10,8 @@ from typing import Any, NamedTuple
 
 from isa_ros.core.device import MODES, REFERENCES
 from isa_ros.core.signals import (
-    HAS_CLEAR_FAULT, HAS_ENABLE, HAS_MODE, HAS_QUICK_STOP, HAS_REFERENCE, HAS_SETPOINT)
+    GAINS_OF_COMMAND, HAS_CLEAR_FAULT, HAS_ENABLE, HAS_MODE, HAS_QUICK_STOP, HAS_REFERENCE,
+    HAS_SETPOINT)
 from isa_ros.core.suggest import listed, shortened
 from isa_ros.errors import RunError, SetpointError
 import numpy as np
@@ -63,8 +64,7 @@ class Setpoint(NamedTuple):
     quick_stop: bool = False
 
 
-_GAINS = ('stiffness', 'damping')
-_NUMBERS = ('position', 'velocity', 'effort', *_GAINS)
+_NUMBERS = ('position', 'velocity', 'effort', *GAINS_OF_COMMAND)
 
 
 class Controller:
@@ -141,11 +141,11 @@ def _fill_setpoint(name: str, setpoint: Setpoint, row: np.void) -> int:
     has_position = setpoint.position is not None
     for field in _NUMBERS:
         value = getattr(setpoint, field)
-        if value is None and (field in _GAINS or not has_position):
-            row[field] = math.nan if field in _GAINS else 0.0
+        if value is None and (field in GAINS_OF_COMMAND or not has_position):
+            row[field] = math.nan if field in GAINS_OF_COMMAND else 0.0
             continue
         _check(name, field, value)
-        if not has_position and (field in _GAINS or value != 0.0):
+        if not has_position and (field in GAINS_OF_COMMAND or value != 0.0):
             raise SetpointError(f'{name}: setpoint {field} = {value:g} needs its position')
         row[field] = value
     return HAS_SETPOINT if has_position else 0
@@ -174,7 +174,7 @@ def _fill_mode(name: str, setpoint: Setpoint, row: np.void) -> int:
 
 def _check(name: str, field: str, value: Any) -> None:
     try:
-        is_valid = math.isfinite(value) and (value >= 0.0 or field not in _GAINS)
+        is_valid = math.isfinite(value) and (value >= 0.0 or field not in GAINS_OF_COMMAND)
     except (TypeError, OverflowError):
         raise _refusal(name, field, value, 'a number') from None
     if not is_valid:

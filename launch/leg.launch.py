@@ -11,7 +11,8 @@ from isa_ros.config.run_file import load_run, RunConfig
 from isa_ros.errors import ConfigError
 from isa_ros.processes.launching import refuse_failure
 from isa_ros.processes.processes import Process, run_processes
-from isa_ros.run.options import flag, launched_elsewhere, launched_parameters, OPTIONS
+from isa_ros.run.option import flag
+from isa_ros.run.options import launched_elsewhere, launched_parameters, OPTIONS
 from launch import Action, LaunchContext, LaunchDescription
 from launch.actions import DeclareLaunchArgument, OpaqueFunction, Shutdown
 from launch.events.process import ProcessExited

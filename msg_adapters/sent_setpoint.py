@@ -4,18 +4,16 @@ sensor_msgs/JointState ``~/sent_setpoint``: what was handed to the link of an ac
 Its entries are those of an applied setpoint; a value that the command does not have is NaN.
 """
 
-from collections.abc import Mapping
 import math
 
 from isa_ros.core.device import MODES
 from isa_ros.core.signals import (
-    COMMAND, EVERY_KIND, HAS_ENABLE, HAS_MODE, HAS_REFERENCE, HAS_SETPOINT)
+    COMMAND, EVERY_KIND, GAINS_OF_COMMAND, HAS_ENABLE, HAS_MODE, HAS_REFERENCE, HAS_SETPOINT)
 from isa_ros.core.suggest import listed
 from isa_ros.errors import SetpointError
 from msg_adapters.cdr_reader import decode
 from msg_adapters.joint_state import ARRAYS
-from msg_adapters.setpoint import applied_names, applied_setpoint, GAINS
-from msg_adapters.template import Prepared
+from msg_adapters.setpoint import applied_names
 import numpy as np
 from sensor_msgs.msg import JointState
 
@@ -23,14 +21,9 @@ from sensor_msgs.msg import JointState
 _ENABLED, _MODE, _REFERENCE, _CHANGED = 3, 4, 5, 6  # places of the entries
 
 
-def sent_setpoint(name: str, columns: Mapping[str, int]) -> Prepared:
-    """Return the message of an actuator; ``columns`` as in `applied_setpoint`."""
-    return applied_setpoint(name, columns)
-
-
 def sent_to_command(data: bytes, name: str) -> np.void:
     """
-    Return the COMMAND row of a recorded sent setpoint; inverse of `sent_setpoint`.
+    Return the COMMAND row of a recorded sent setpoint; inverse of `setpoint.applied_setpoint`.
 
     Raises
     ------
@@ -76,7 +69,7 @@ def _read_setpoint(message: JointState, name: str, command: np.void) -> None:
 
 def _read_gains(message: JointState, name: str, command: np.void) -> None:
     """Read the gains; NaN keeps the gain in force."""
-    for k, gain in enumerate(GAINS, 1):
+    for k, gain in enumerate(GAINS_OF_COMMAND, 1):
         value = message.position[k]
         if math.isinf(value) or value < 0.0:
             raise SetpointError(f'{name}/{gain} = {value}, must be finite and >= 0, or NaN')

@@ -5,7 +5,7 @@ import math
 
 from isa_ros.core.device import MODES, REFERENCES
 from isa_ros.core.signals import (
-    COMMAND, EVERY_KIND, HAS_ENABLE, HAS_GAINS, HAS_REFERENCE, HAS_SETPOINT)
+    COMMAND, EVERY_KIND, GAINS_OF_COMMAND, HAS_ENABLE, HAS_GAINS, HAS_REFERENCE, HAS_SETPOINT)
 from isa_ros.core.suggest import listed
 from isa_ros.errors import SetpointError
 from msg_adapters.cdr_reader import decode
@@ -14,7 +14,6 @@ from msg_adapters.template import Prepared, START_STAMP
 import numpy as np
 from sensor_msgs.msg import JointState
 
-GAINS = ('stiffness', 'damping')
 _APPLIED = {'stiffness': 'stiffness', 'damping': 'damping', 'enabled': 'is_enabled',
             'mode': 'mode', 'reference': 'reference', 'changed': 'kinds'}
 """Entries of an applied setpoint, and their fields of a `COMMAND`."""
@@ -58,7 +57,7 @@ def msg_to_command(message: JointState, name: str) -> np.void:
 
     """
     return _command(message, name, [
-        name, *(f'{name}/{entry}' for entry in (*GAINS, *REFERENCES))])
+        name, *(f'{name}/{entry}' for entry in (*GAINS_OF_COMMAND, *REFERENCES))])
 
 
 def applied_to_command(data: bytes, name: str) -> np.void:
@@ -104,7 +103,7 @@ def _command(message: JointState, name: str, known: Sequence[str]) -> np.void:
         for field in ARRAYS:
             values = getattr(message, field)
             command[field] = values[k] if k < len(values) else 0.0
-    for gain in GAINS:
+    for gain in GAINS_OF_COMMAND:
         entry = f'{name}/{gain}'
         command[gain] = message.position[names.index(entry)] if entry in names else math.nan
         if command[gain] < 0.0:

@@ -11,21 +11,11 @@ from pathlib import Path
 
 from isa_ros.analysis.validation.readings import (
     LINEAR, linear_readings, ROTARY, rotary_readings, table)
+from isa_ros.text.marked import with_parts
 from isa_ros.text.table import markdown
 
 PAGE = Path(__file__).parents[1] / 'docs' / 'paper-errata.md'
-MARKERS = {ROTARY: '<!-- readings of the rotary column -->',
-           LINEAR: '<!-- readings of the ISA v5 column -->'}
-END = '<!-- end -->'
-
-
-def with_table(page: str, marker: str, lines: list[str]) -> str:
-    """Return a page with the lines between a marker and the next `END`."""
-    head, found, rest = page.partition(marker)
-    _, ends, tail = rest.partition(END)
-    if not found or not ends:
-        raise SystemExit(f'{marker} ... {END} not found in the page')
-    return '\n'.join([f'{head}{marker}', '', *lines, '', f'{END}{tail}'])
+MARKERS = {ROTARY: 'readings of the rotary column', LINEAR: 'readings of the ISA v5 column'}
 
 
 def main() -> None:
@@ -37,7 +27,7 @@ def main() -> None:
     for model, readings in ((ROTARY, rotary_readings()), (LINEAR, linear_readings())):
         lines = markdown(table(readings, model))
         print('\n'.join(lines))
-        page = with_table(page, MARKERS[model], lines)
+        page = with_parts(page, {MARKERS[model]: lines})
     page_path.write_text(page, encoding='utf-8')
 
 

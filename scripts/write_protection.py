@@ -7,7 +7,6 @@ Write the tables of docs/protection.md from the declared conditions and the ship
 from collections.abc import Iterator
 import math
 from pathlib import Path
-import re
 from typing import Any
 
 from isa_ros.actuator.sheet import actuator_record, ActuatorSheet
@@ -17,19 +16,16 @@ from isa_ros.core.conditions import BITS, CONDITIONS, shown
 from isa_ros.core.parameter import defaults
 from isa_ros.core.units import of_coordinate
 from isa_ros.reu.protection_sheet import levels_of, Protection
+from isa_ros.text.marked import with_parts
+from isa_ros.text.table import markdown
 import numpy as np
 
 PAGE = Path(__file__).resolve().parents[1] / 'docs' / 'protection.md'
 MODELS = ('isa_v2', 'isa_v5', 'smart_manifold')
 
 
-def _table(rows: list[list[str]]) -> str:
-    head, *body = rows
-    return '\n'.join(f'| {" | ".join(row)} |' for row in [head, ['---'] * len(head), *body])
-
-
-def conditions() -> str:
-    """Return the table of the conditions: what is compared, with what, and the defaults."""
+def conditions() -> list[str]:
+    """Return the lines of the table of what is compared, with what, and the defaults."""
     sheet = defaults(Protection)
     rows = [['bit', 'condition', 'compared', 'parts of', 'warning', 'trip', 'delay', 'reaction']]
     for name, bit in BITS.items():
@@ -42,16 +38,16 @@ def conditions() -> str:
             str(bit), f'`{name}`', condition.quantity, condition.rating or '-',
             *(_level(value, condition.is_above) for value in (warning, trip)),
             f'{delay:g} ms' if delay else '-', reaction])
-    return _table(rows)
+    return markdown(rows)
 
 
 def _level(value: float, is_above: bool) -> str:
     return f'{">" if is_above else "<"} {value:g}' if value else 'off'
 
 
-def levels() -> str:
-    """Return the table of the levels in SI that the defaults are for shipped models."""
-    return _table([['condition', *MODELS], *_levels()])
+def levels() -> list[str]:
+    """Return the lines of the table of the levels in SI that the defaults are, by model."""
+    return markdown([['condition', *MODELS], *_levels()])
 
 
 def _levels() -> Iterator[list[str]]:
@@ -77,12 +73,7 @@ def _constants(model: str) -> tuple[np.record, bool]:
 
 def page(text: str) -> str:
     """Return the text of the page with the tables of today."""
-    for marker, table in (('conditions', conditions()), ('levels', levels())):
-        text, n = re.subn(
-            rf'(<!-- {marker} -->\n).*?(<!-- end -->)', lambda found, body=table: (
-                f'{found[1]}{body}\n{found[2]}'), text, flags=re.DOTALL)
-        assert n == 1, f'{PAGE} has one table <!-- {marker} -->'
-    return text
+    return with_parts(text, {'conditions': conditions(), 'levels': levels()})
 
 
 def main() -> None:

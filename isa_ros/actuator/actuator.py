@@ -10,6 +10,7 @@ import hashlib
 from typing import NoReturn, Protocol
 
 from isa_ros.actuator import kernel as kernels
+from isa_ros.actuator.body import state_name
 from isa_ros.actuator.device import mode_after, mode_command, refusal_of, start_mode
 from isa_ros.actuator.inbox import merge, write_applied
 from isa_ros.actuator.link import link_key, NONE, refuse_states
@@ -110,7 +111,7 @@ class SmartActuator:
         constants[:] = actuator_record(config.sheet, offset_steps)
         constants['load'] = own_record(config.load)
         constants['noise_key'] = noise_key(timing.seed, config.name)
-        self.memory.link_keys[:] = link_key(timing.seed, config.name)
+        constants['link_key'] = link_key(timing.seed, config.name)
         self.has_link = config.sheet.link.kind != NONE
         """Whether commands and samples travel in the frames of a link."""
         self._saved = [
@@ -312,9 +313,9 @@ class SmartActuator:
             self._reu.status.fade.begins = 1
 
     def raise_diverged(self, state: int) -> NoReturn:
-        """Raise `SimulationDiverged` for a state, given by its index in `kernels.BODY`."""
+        """Raise `SimulationDiverged` for a state, given by its index in `BODY`."""
         raise SimulationDiverged(
-            self.t_ns, f'{self.name}: {kernels.state_name(state)}',
+            self.t_ns, f'{self.name}: {state_name(state)}',
             self.memory.states[0, state])
 
     def snapshot(self) -> bytes:

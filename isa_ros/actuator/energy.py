@@ -2,6 +2,17 @@
 
 from isa_ros.core.kernel import kernel
 from isa_ros.plant.energy import elastic_energy
+from isa_ros.plant.servo_valve import tare_flow
+
+
+@kernel
+def add_tare(seconds, port, valve, totals):
+    """Add oil and loss of the pilot stage, whose flow is constant over a tick  (V9, E2)."""
+    drop = port.supply_pressure - port.return_pressure
+    volume = seconds * tare_flow(port.supply_pressure, port.return_pressure, valve)
+    totals.supply_volume += volume
+    totals.return_volume += volume
+    totals.energies.leakage += volume * drop
 
 
 @kernel

@@ -6,6 +6,7 @@ from typing import NamedTuple
 
 from isa_ros.actuator import kernel as kernels
 from isa_ros.actuator.actuator import ActuatorConfig, SmartActuator, Timing
+from isa_ros.actuator.body import STATE_SIZE
 from isa_ros.actuator.rows import memory_of, row_of
 from isa_ros.actuator.states import STATES
 from isa_ros.core.signals import COMMAND, Records, SAMPLE
@@ -151,7 +152,7 @@ class ActuatorGroup:
         for actuator in self.actuators:
             actuator.t_ns += n_ticks * self._timing.step_ns
         if broken >= 0:
-            row, state = divmod(broken, kernels.STATE_SIZE)
+            row, state = divmod(broken, STATE_SIZE)
             self.actuators[row].raise_diverged(state)
 
     def snapshot(self) -> bytes:

@@ -1,13 +1,14 @@
 """
 One tick of one actuator: the REU's instants and the plant's steps in time order.
 
-Composes plant, REU and load copy into one kernel. The continuous states live in one record
-of floats (`BODY`), so that the integrator sees the same memory as a flat array.
+Composes plant, REU and load copy (`body`) into one kernel.
 """
 
 import math
 
-from isa_ros.actuator.energy import add_energies, stored_elastically
+from isa_ros.actuator.body import (
+    BODIES, body_step, end_steps, simpson, STAGES, STATE_SIZE, TOTALS_AT)
+from isa_ros.actuator.energy import add_energies, add_tare, stored_elastically
 from isa_ros.actuator.heat import take_heat
 from isa_ros.actuator.inbox import latch, merge
 from isa_ros.actuator.link import (
@@ -15,110 +16,19 @@ from isa_ros.actuator.link import (
 from isa_ros.actuator.states import write_states
 from isa_ros.core.kernel import kernel
 from isa_ros.core.timebase import FORCE_WINDOWS, PLANT_STEP
-from isa_ros.loads.forces import LOAD_STATE, OWN_LOAD, own_load_force
-from isa_ros.loads.port import load_acceleration
+from isa_ros.loads.forces import OWN_LOAD
 from isa_ros.plant.coil import coil_heat
-from isa_ros.plant.energy import ENERGIES
-from isa_ros.plant.plant import exact_force, PLANT, plant_rates, PLANT_STATE, sense, settle
+from isa_ros.plant.plant import exact_force, PLANT, sense
 from isa_ros.plant.thermal import warm
 from isa_ros.reu.cascade import cascade_step, is_due, REU
 from isa_ros.reu.device import write_device
-from isa_ros.reu.protection import protect, setpoint_in_force
+from isa_ros.reu.reactions import protect, setpoint_in_force
 import numpy as np
 
-TOTALS = np.dtype([
-    ('impulse', 'f8'),          # integral of the sensor force, Ns | Nms
-    ('supply_volume', 'f8'),    # drawn from the supply, m3
-    ('return_volume', 'f8'),    # given to the return, m3
-    ('energies', ENERGIES),
-])
-BODY = np.dtype([('plant', PLANT_STATE), ('load', LOAD_STATE), ('totals', TOTALS)])
-"""Every continuous state of an actuator and its load copy; floats only."""
-
-STATE_SIZE = BODY.itemsize // 8
-TOTALS_AT = STATE_SIZE - TOTALS.itemsize // 8  # no rate depends on the totals, the last states
-BODIES = 2  # the state and a stage of its integration
-STAGES = 4
-NOTHING = 1e-100  # any unit: smaller states are set to zero, since denormal arithmetic is slow
-
 ACTUATOR = np.dtype([
-    ('plant', PLANT), ('reu', REU), ('load', OWN_LOAD), ('link', LINK), ('noise_key', 'u8')])
+    ('plant', PLANT), ('reu', REU), ('load', OWN_LOAD), ('link', LINK), ('noise_key', 'u8'),
+    ('link_key', 'u8')])
 """Every constant of one actuator, SI."""
-
-
-def scratch(n: int = 1) -> tuple[np.ndarray, np.ndarray]:
-    """Return the memory of ``n`` actuators: `BODIES` `BODY` rows and `STAGES` rate rows each."""
-    return np.zeros(n * BODIES, BODY), np.zeros(n * STAGES, BODY)
-
-
-def flat(rows: np.ndarray) -> np.ndarray:
-    """Return the same memory of `BODY` rows as floats, shape (rows, STATE_SIZE)."""
-    return rows.view(np.float64).reshape(len(rows), STATE_SIZE)
-
-
-def state_name(index: int) -> str:
-    """Return the dotted name of one state of `BODY` by its place in the flat array."""
-    def walk(record: np.dtype, prefix: str) -> list[str]:
-        if record.names is None:
-            return [prefix]
-        return [name for field in record.names
-                for name in walk(record[field], f'{prefix}.{field}' if prefix else field)]
-    return walk(BODY, '')[index]
-
-
-@kernel
-def body_rates(tau, y, drive, port, actuator, rates):
-    """Write the derivative of one `BODY` into ``rates``."""
-    force, q_p, q_t = plant_rates(
-        y.plant, y.load.position, y.load.velocity, drive,
-        port.supply_pressure, port.return_pressure, actuator.plant, rates.plant,
-        rates.totals.energies)
-    own = own_load_force(y.load, port.x0, actuator.load, rates.load)
-    rates.load.position = y.load.velocity
-    rates.load.velocity = load_acceleration(
-        tau, y.load.position, y.load.velocity, force + own, port)
-    rates.totals.impulse = force
-    rates.totals.supply_volume = q_p
-    rates.totals.return_volume = q_t
-
-
-@kernel
-def body_step(h, tau, drive, port, actuator, bodies, rates, y, k):
-    """
-    Advance ``bodies[0]`` by one classical Runge-Kutta step of ``h`` seconds.
-
-    ``bodies[1]`` holds the stage; ``y`` and ``k`` are the flat views of ``bodies``, ``rates``.
-    """
-    body_rates(tau, bodies[0], drive, port, actuator, rates[0])
-    for j in range(TOTALS_AT):
-        y[1, j] = y[0, j] + 0.5 * h * k[0, j]
-    body_rates(tau + 0.5 * h, bodies[1], drive, port, actuator, rates[1])
-    for j in range(TOTALS_AT):
-        y[1, j] = y[0, j] + 0.5 * h * k[1, j]
-    body_rates(tau + 0.5 * h, bodies[1], drive, port, actuator, rates[2])
-    for j in range(TOTALS_AT):
-        y[1, j] = y[0, j] + h * k[2, j]
-    body_rates(tau + h, bodies[1], drive, port, actuator, rates[3])
-    for j in range(STATE_SIZE):
-        value = y[0, j] + h / 6.0 * (k[0, j] + 2.0 * (k[1, j] + k[2, j]) + k[3, j])
-        y[0, j] = 0.0 if abs(value) < NOTHING else value
-    settle(h, bodies[0].plant, port.return_pressure, actuator.plant)
-
-
-@kernel
-def body_steps(n, h, drive, port, actuator, bodies, rates, y, k):
-    """Take ``n`` steps of `body_step` under a constant drive and port."""
-    for i in range(n):
-        body_step(h, i * h, drive, port, actuator, bodies, rates, y, k)
-
-
-@kernel
-def square_roots(n):
-    """Take ``n`` square roots, one after the other: the yardstick of `isa bench`."""
-    x = 2.0
-    for _ in range(n):
-        x = math.sqrt(x + 1.0)
-    return x
 
 
 @kernel
@@ -144,21 +54,22 @@ def write_sample(plant, reu, sample):
 
 @kernel
 def loops_and_plant(
-        step, tau, port, actuator, bodies, rates, y, k, reu_state, channels, thermal):
+        step, tau, port, actuator, bodies, rates, y, k, weight, reu_state, channels, thermal):
     """Run the loops that are due at plant step ``step``, then the plant over that step."""
     body, reu = bodies[0], actuator.reu
     if is_due(step, reu.current_steps, reu.offset_steps):
         sense(step, reu.current_steps, body.plant, body.load.position, body.load.velocity,
               actuator.plant, actuator.noise_key, channels, reu_state.measured)
-        if reu.protection.is_on and reu.is_frozen == 0.0:
-            protect(step, port.supply_pressure, thermal.oil, reu.protection, reu_state)
-        cascade_step(step, reu, reu_state)
+        if reu.is_frozen == 0.0:  # else references and drive stay
+            if reu.protection.is_on:
+                protect(step, port.supply_pressure, thermal.oil, reu.protection, reu_state)
+            cascade_step(step, reu, reu_state)
     if step == actuator.load.rope.release_step:
         body.load.weight.is_released = 1.0
     if is_due(step, reu.current_steps, reu.offset_steps + reu.delay_steps):
         reu_state.amplifier = reu_state.drive
     body_step(PLANT_STEP, tau, reu_state.amplifier, port, actuator,
-              bodies, rates, y, k)
+              bodies, rates, y, k, weight)
     if actuator.plant.thermal.is_on:
         thermal.coil += PLANT_STEP * coil_heat(body.plant.coil, actuator.plant.coil)
 
@@ -215,8 +126,12 @@ def tick_row(first_step, steps, port, actuator, bodies, rates, y, k, reu_state, 
                     write_sample(body.plant, reu_state, sample)
                 exchange_frames(first_step + i, is_sampled, link, memory)
             loops_and_plant(first_step + i, i * PLANT_STEP, port, actuator,
-                            bodies, rates, y, k, reu_state, channels, thermal)
+                            bodies, rates, y, k, PLANT_STEP * simpson(i, steps), reu_state,
+                            channels, thermal)
         reply.mean_forces[window] = body.totals.impulse / (window_steps * PLANT_STEP)
+    end_steps(steps * PLANT_STEP, PLANT_STEP * simpson(steps, steps), reu_state.amplifier, port,
+              actuator, bodies, rates, y, k)
+    add_tare(steps * PLANT_STEP, port, actuator.plant.valve, body.totals)
     reply.force = exact_force(
         body.plant, body.load.position, body.load.velocity, actuator.plant)
     reply.position = body.plant.mechanics.position

@@ -47,8 +47,10 @@ class LinkSheet(Parameters):
     kind: str = choice(
         'the wire; none: commands and samples arrive at once', *KINDS, source=_ASSUMED)
     cycle_ms: float = _off('time from frame to frame; 0: the tick', 'ms', 100.0)
-    delay_cycles: float = _off('time on the way, whole cycles', 'cycles', float(MOST_CYCLES))
-    jitter_us: float = _off('largest additional time on the way, uniform from 0', 'us', 1e5)
+    delay_cycles: float = _off(
+        'time on the way, whole cycles', 'cycles', float(MOST_CYCLES), changeable=True)
+    jitter_us: float = _off(
+        'largest additional time on the way, uniform from 0', 'us', 1e5, changeable=True)
     loss: float = _off(
         'probability that a frame is lost, each way', '1', 1.0, changeable=True)
     watchdog_ms: float = _off(
@@ -195,7 +197,7 @@ def exchange_frames(step, is_sampled, n, memory):
     """
     if is_sampled:
         send_sample(step, n, memory)
-    link_down(step, memory.link_keys[n], memory.constants[n].link, memory.links[n],
+    link_down(step, memory.constants[n].link_key, memory.constants[n].link, memory.links[n],
               memory.outbox[n:n + 1], memory.commands_sent[n * SLOTS:(n + 1) * SLOTS],
               memory.reu[n], memory.applied[n])
 
@@ -243,9 +245,9 @@ def watch(step, link, state, reu):
 @kernel
 def send_sample(step, n, memory):
     """Send the sample of actuator ``n`` if a frame leaves at ``step``."""
-    link, line = memory.constants[n].link, memory.links[n].up
-    if leaves(step, link):
-        slot = put_frame(step, UP, memory.link_keys[n], link, line)
+    own, line = memory.constants[n], memory.links[n].up
+    if leaves(step, own.link):
+        slot = put_frame(step, UP, own.link_key, own.link, line)
         if slot >= 0:
             memory.samples_sent[n * SLOTS + slot] = memory.samples[n]
 

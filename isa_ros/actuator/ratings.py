@@ -3,9 +3,15 @@
 import math
 
 from isa_ros.core.record import record
+from isa_ros.core.timebase import PLANT_STEP
+from isa_ros.core.units import MILLI
 from isa_ros.plant.servo_valve import flow_curve
-from isa_ros.reu.plausibility import EVIDENCE
+from isa_ros.plant.spool import CLOSED_LOOP, PILOTED
+from isa_ros.reu.block import Pid
+from isa_ros.reu.lead_lag import LeadLag
+from isa_ros.reu.plausibility import EVIDENCE, VALVE_EVIDENCE
 from isa_ros.reu.protection import Ratings
+from isa_ros.reu.wiring import loop_steps, Reu
 import numpy as np
 
 
@@ -17,14 +23,45 @@ def ratings_of(plant: np.record) -> Ratings:
         stroke=float(oil.stroke), speed=float(flow / min(oil.area_a, oil.area_b)),
         force_range=float(sensors.force_range), pressure_range=float(sensors.pressure_range),
         current_range=float(sensors.current_range),
-        opening_pressure=float(plant.relief.p_open))
+        opening_pressure=float(plant.relief.p_open), spool_stop=float(valve.x_max))
 
 
 def evidence_of(
-        plant: np.record, speed_rate: float, speed_steps: int, offset_steps: int) -> np.record:
-    """Return the `EVIDENCE` record of a `PLANT` record and its REU's speed estimate."""
+        plant: np.record, reu: Reu, has_spool_sensor: bool, offset_steps: int) -> np.record:
+    """Return the `EVIDENCE` record of a `PLANT` record and its REU."""
+    steps = loop_steps(reu)
     return record(
         EVIDENCE, area_a=plant.chambers.area_a, area_b=plant.chambers.area_b,
         force_range=plant.sensors.force_range, stiction=plant.friction.stiction,
-        viscous=plant.friction.sigma2, inertia=plant.mechanics.inertia, speed_rate=speed_rate,
-        speed_steps=speed_steps, offset_steps=offset_steps)
+        viscous=plant.friction.sigma2, inertia=plant.mechanics.inertia,
+        speed_rate=reu.speed.rate_hz, speed_steps=steps['speed'], offset_steps=offset_steps,
+        valve=_valve_evidence(plant, reu, has_spool_sensor, steps['current'] * PLANT_STEP))
+
+
+def _valve_evidence(
+        plant: np.record, reu: Reu, has_sensor: bool, period: float) -> np.record:
+    """
+    Return the `VALVE_EVIDENCE` of a valve whose spool is read every ``period`` seconds.
+
+    A piloted spool follows the reference of its loop in the REU, and is not watched if that loop
+    has no K_p; any other follows the current.
+    """
+    own, lag = plant.spool, _current_lag(plant.coil, reu)
+    if own.kind == PILOTED:
+        k_p = reu.spool.kp if isinstance(reu.spool, Pid) else 0.0
+        is_closed, gain = k_p > 0.0, 1.0
+        spool_lag = 1.0 / (own.k_pilot * k_p) if is_closed else 0.0
+    else:
+        is_closed, gain = True, plant.valve.k_spool / plant.coil.parallel
+        spool_lag = 1.0 / own.k_loop if own.kind == CLOSED_LOOP else 2.0 * own.zeta / own.w_n
+    return record(
+        VALVE_EVIDENCE, is_watched=int(has_sensor and is_closed),
+        is_piloted=int(own.kind == PILOTED), gain=gain, stop=plant.valve.x_max,
+        share=period / (lag + spool_lag + period))
+
+
+def _current_lag(coil: np.record, reu: Reu) -> float:
+    """Return the lag of the closed current loop, 1/p_c of V1 or L/(R + K_p) of V11, in s."""
+    if isinstance(reu.current, LeadLag):
+        return float(coil.inductance / (coil.resistance + reu.current.kp_v_per_ma / MILLI))
+    return float(1.0 / coil.p_c)

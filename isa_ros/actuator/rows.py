@@ -2,7 +2,8 @@
 
 from typing import NamedTuple
 
-from isa_ros.actuator import kernel as kernels
+from isa_ros.actuator.body import flat, scratch
+from isa_ros.actuator.kernel import ACTUATOR
 from isa_ros.actuator.link import LINK_STATE, SLOTS
 from isa_ros.core.signals import COMMAND, LOAD_PORT, LOAD_REPLY, SAMPLE
 from isa_ros.plant.channels import CHANNELS_STATE
@@ -15,7 +16,7 @@ class Memory(NamedTuple):
     """
     Memory that the tick kernel reads and writes, for ``n`` actuators.
 
-    One row per actuator, except `kernels.BODIES` of ``bodies``, `kernels.STAGES` of ``rates`` and
+    One row per actuator, except `body.BODIES` of ``bodies``, `body.STAGES` of ``rates`` and
     `SLOTS` of the frames on a link.
     """
 
@@ -47,8 +48,6 @@ class Memory(NamedTuple):
     """`COMMAND` that took effect in the last tick, at its start or from its link, (n,)."""
     thermals: np.ndarray
     """`THERMAL_STATE`, (n,)."""
-    link_keys: np.ndarray
-    """Key of the noise of each link, (n,)."""
     links: np.ndarray
     """`LINK_STATE`, (n,)."""
     sent: np.ndarray
@@ -65,15 +64,14 @@ class Memory(NamedTuple):
 
 def memory_of(n: int) -> Memory:
     """Return the memory of ``n`` actuators, all zero."""
-    bodies, rates = kernels.scratch(n)
+    bodies, rates = scratch(n)
     return Memory(
         is_shared=np.zeros(n, np.bool_), ports=np.zeros(n, LOAD_PORT),
-        constants=np.zeros(n, kernels.ACTUATOR), bodies=bodies, rates=rates,
-        states=kernels.flat(bodies), slopes=kernels.flat(rates), reu=np.zeros(n, REU_STATE),
+        constants=np.zeros(n, ACTUATOR), bodies=bodies, rates=rates,
+        states=flat(bodies), slopes=flat(rates), reu=np.zeros(n, REU_STATE),
         channels=np.zeros(n, CHANNELS_STATE), replies=np.zeros(n, LOAD_REPLY),
         samples=np.zeros(n, SAMPLE), pending=np.zeros(n, COMMAND), applied=np.zeros(n, COMMAND),
-        thermals=np.zeros(n, THERMAL_STATE),
-        link_keys=np.zeros(n, np.uint64), links=np.zeros(n, LINK_STATE),
+        thermals=np.zeros(n, THERMAL_STATE), links=np.zeros(n, LINK_STATE),
         sent=np.zeros(n, COMMAND), outbox=np.zeros(n, COMMAND),
         commands_sent=np.zeros(n * SLOTS, COMMAND), samples_sent=np.zeros(n * SLOTS, SAMPLE),
         observed=np.zeros(n, SAMPLE))

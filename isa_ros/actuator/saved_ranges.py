@@ -12,9 +12,10 @@ from isa_ros.core.conditions import CONDITIONS, REACTIONS
 from isa_ros.core.device import EVENTS, MODES, STATES
 from isa_ros.core.signals import EVERY_KIND, Records
 from isa_ros.errors import ConfigError
+from isa_ros.reu.protection import EXTENDING, RETRACTING
 
 _FLAG, _BITS, _MODE = 1, (1 << len(CONDITIONS)) - 1, len(MODES) - 1
-_DIRECTIONS = 3     # both bits of the inhibited directions
+_DIRECTIONS = EXTENDING | RETRACTING
 
 LARGEST: Mapping[str, int] = {
     'status.state': len(STATES) - 1, 'status.event': len(EVENTS) - 1,

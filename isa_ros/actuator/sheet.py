@@ -1,12 +1,12 @@
 """The data sheet of one actuator, and the SI records the kernels read."""
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 
 from isa_ros.actuator.kernel import ACTUATOR
 from isa_ros.actuator.link import link_record, LinkSheet, NO_LINK
 from isa_ros.actuator.ratings import evidence_of, ratings_of
 from isa_ros.core.changeable import sound
-from isa_ros.core.parameter import choice, Parameters
+from isa_ros.core.parameter import choice, nested, Parameters
 from isa_ros.core.record import record
 from isa_ros.core.units import MILLI
 from isa_ros.errors import ConfigError
@@ -35,7 +35,7 @@ class ActuatorSheet(Parameters):
         "the valve's spool sensor; a mechanical feedback has none", 'electric', 'mechanic')
     plant: LinearPlant | RotaryPlant
     reu: Reu
-    link: LinkSheet = field(default=NO_LINK, metadata={'absent': NO_LINK})
+    link: LinkSheet = nested(NO_LINK)
 
     @property
     def is_rotary(self) -> bool:
@@ -152,11 +152,10 @@ def actuator_record(sheet: ActuatorSheet, offset_steps: int) -> np.ndarray:
         sheet.reu, offset_steps, known[0].chambers.stroke, force_stiffness(known[0]),
         known_model(known[0], output_per_spool(sheet)),
         known[0].valve.k_spool, known[0].coil.parallel)
-    steps = loop_steps(sheet.reu)
     reu['protection'] = protection_record(
         sheet.reu.protection, ratings_of(known[0]),
-        evidence_of(known[0], sheet.reu.speed.rate_hz, steps['speed'], offset_steps),
-        steps['current'], sheet.link.watchdog_ms * MILLI)
+        evidence_of(known[0], sheet.reu, sheet.spool_feedback == 'electric', offset_steps),
+        loop_steps(sheet.reu)['current'], sheet.link.watchdog_ms * MILLI)
     rows = np.zeros(1, ACTUATOR)
     rows['plant'], rows['reu'] = plant_record(sheet.plant), reu
     rows['link'] = link_record(sheet.link)

@@ -19,7 +19,7 @@ from isa_ros.actuator.link import NO_LINK
 from isa_ros.actuator.sheet import ActuatorSheet, refuse_wiring
 from isa_ros.actuator.usable import largest_gains, REASON
 from isa_ros.core.changeable import Changeable, changeables, with_changes
-from isa_ros.core.parameter import check, Parameters
+from isa_ros.core.parameter import check, Parameters, with_value
 from isa_ros.core.suggest import alternatives
 from isa_ros.core.units import MILLI, MPA, of_coordinate
 from isa_ros.errors import ConfigError
@@ -136,7 +136,7 @@ def tuned(sheet: ActuatorSheet, values: Mapping[str, float]) -> ActuatorSheet:
         tunable = known[name]
         _check(name, value, tunable)
         if value != tunable.value:  # an equal value is kept: converting it would round it
-            reu = _with(reu, tunable.path, value / tunable.scale)
+            reu = with_value(reu, tunable.path, value / tunable.scale)
     if reu is not sheet.reu:
         sheet = replace(sheet, reu=reu)
         refuse_wiring(sheet)
@@ -185,10 +185,3 @@ def with_si_names(sheet: ActuatorSheet, values: Mapping[str, float]) -> dict[str
     return {by_key[key].name if key in by_key else key:
             value * by_key[key].scale if key in by_key else value
             for key, value in values.items()}
-
-
-def _with(parameters: Any, path: tuple[str, ...], value: float) -> Any:
-    head, *rest = path
-    below = getattr(parameters, head)
-    return replace(parameters, **{
-        head: _with(below, tuple(rest), value) if rest else value})

@@ -1,6 +1,6 @@
 """The plant alone, the plant with its REU, and a cylinder with a known solution."""
 
-from isa_ros.actuator import kernel as kernels
+from isa_ros.actuator import body as kernels
 from isa_ros.actuator.actuator import SmartActuator
 from isa_ros.actuator.sheet import actuator_record
 from isa_ros.analysis.accuracy import cylinder

@@ -12,18 +12,21 @@ from functools import wraps
 from itertools import count
 from pathlib import Path
 import sys
-from typing import Any
+from typing import Any, TYPE_CHECKING
 
 from isa_ros.config.paths import CONFIG, find, SCENARIOS
 from isa_ros.errors import BagError, ConfigError, one_line
 from isa_ros.run.options import Request, request_of_arguments
+
+if TYPE_CHECKING:
+    from isa_ros.run.session import Report, Session
 
 RUNS = Path('runs')  # default directory of demos
 
 Command = Callable[[Namespace], bool]
 
 
-def _simulating(command: Command) -> Command:
+def simulating(command: Command) -> Command:
     """Return a command that reports when kernels are compiled."""
     @wraps(command)
     def reporting(options: Namespace) -> bool:
@@ -33,7 +36,7 @@ def _simulating(command: Command) -> Command:
     return reporting
 
 
-@_simulating
+@simulating
 def demo(options: Namespace) -> bool:
     """Drop the leg, in four processes, print what happened, and draw the report of the bag."""
     from isa_ros.analysis.report.energy import energy_text
@@ -56,22 +59,36 @@ def _record(request: Request) -> Path:
     """Run, print the paths of its bags, also after an error, and return the first."""
     from isa_ros.core.without_blas import start_without_blas
     from isa_ros.run.session import prepare
-    from isa_ros.run.terminal import terminal_report
     if request.is_alone:
         start_without_blas()
     session = prepare(request)
+
+    def run(report: 'Report | None') -> None:
+        # The import of rclpy takes a third of a second; do it after the options are checked.
+        from isa_ros.nodes.bringup import run_session
+        run_session(session, report)
+    recorded(session, run)
+    return session.out
+
+
+def recorded(session: 'Session', run: 'Callable[[Report | None], None]') -> None:
+    """Print the warnings of a session, run it, and print the paths of its bags."""
+    from isa_ros.run.terminal import terminal_report
     for line in session.warnings:
-        print(one_line(f'isa: {line}'), file=sys.stderr)
-    # The import of rclpy takes a third of a second; do it after the options are checked.
-    from isa_ros.nodes.bringup import run_session
+        tell(line)
     try:
-        return run_session(session, terminal_report(sys.stderr))
+        run(terminal_report(sys.stderr))
     finally:
         with _even_without_terminal():
             for bag in session.bags:
                 print(bag)
             if session.pace.shortfall:
-                print(f'isa: {session.pace.shortfall}', file=sys.stderr)
+                tell(session.pace.shortfall)
+
+
+def tell(line: str) -> None:
+    """Print a line about a run for the user."""
+    print(one_line(f'isa: {line}'), file=sys.stderr, flush=True)
 
 
 @contextmanager
@@ -90,7 +107,7 @@ def _demo_directories() -> Iterator[Path]:
         yield RUNS / f'demo_{number}'
 
 
-@_simulating
+@simulating
 def bringup(options: Namespace) -> bool:
     """Run and record a configuration."""
     _record(request_of_arguments(vars(options), is_alone=options.is_alone))
@@ -105,7 +122,7 @@ def actuators(options: Namespace) -> bool:
     return True
 
 
-@_simulating
+@simulating
 def replay(options: Namespace) -> bool:
     """Simulate the run of a bag again and compare."""
     from isa_ros.bag.reader import Bag
@@ -154,14 +171,14 @@ def report(options: Namespace) -> bool:
     return True
 
 
-@_simulating
+@simulating
 def bode(options: Namespace) -> bool:
     """Measure the frequency response of a loop."""
     from isa_ros.analysis.response.command import bode as measure_bode
     return measure_bode(options)
 
 
-@_simulating
+@simulating
 def step(options: Namespace) -> bool:
     """Measure the step response of a loop."""
     from isa_ros.analysis.response.command import step as measure_step
@@ -185,7 +202,7 @@ def identify(options: Namespace) -> bool:
     return True
 
 
-@_simulating
+@simulating
 def study(options: Namespace) -> bool:
     """Vary one parameter against the performance."""
     from isa_ros.analysis.studies.command import study as run_study
@@ -193,14 +210,14 @@ def study(options: Namespace) -> bool:
     return True
 
 
-@_simulating
+@simulating
 def faults(options: Namespace) -> bool:
     """List the faults of the device, or show the effect of each."""
     from isa_ros.analysis.faults.command import faults as show_faults
     return show_faults(options)
 
 
-@_simulating
+@simulating
 def params(options: Namespace) -> bool:
     """List every parameter of a model, a leg or a run."""
     from isa_ros.config.changes import values_of
@@ -217,7 +234,7 @@ def paper(options: Namespace) -> bool:
     return True
 
 
-@_simulating
+@simulating
 def validate(options: Namespace) -> bool:
     """Compare the actuators with the numbers of the paper."""
     if options.sensitivity:
@@ -256,7 +273,7 @@ def _show(page: Any, found: Any, options: Namespace) -> None:
             print(path)
 
 
-@_simulating
+@simulating
 def bench(options: Namespace) -> bool:
     """Measure the speed of simulations on this machine."""
     from isa_ros.bench.command import bench as run_bench

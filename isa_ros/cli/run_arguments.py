@@ -1,13 +1,14 @@
-"""The arguments of `isa bringup`, made from the options of a run."""
+"""Arguments made from the options of a run: those of `isa bringup`, and of `isa bus`."""
 
 import argparse
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
 from isa_ros.cli import shared_arguments
 from isa_ros.cli.argument_types import file_to_write, names, not_negative, positive, seed
-from isa_ros.run.options import COMPRESSIONS, Kind, Option, OPTIONS
+from isa_ros.run.option import COMPRESSIONS, Kind, Option
+from isa_ros.run.options import OPTIONS
 
 _TYPES: Mapping[Kind, Callable[[str], Any]] = {
     Kind.PATH: Path, Kind.NEW_FILE: file_to_write, Kind.POSITIVE: positive,
@@ -17,7 +18,12 @@ _TYPES: Mapping[Kind, Callable[[str], Any]] = {
 
 def bringup(parser: argparse.ArgumentParser) -> None:
     """Add the arguments of `isa bringup`."""
-    for option in OPTIONS:
+    run_options(parser, OPTIONS)
+
+
+def run_options(parser: argparse.ArgumentParser, options: Sequence[Option]) -> None:
+    """Add options of a run, where they are for the command line."""
+    for option in options:
         if option.is_argument:
             _add(parser, option)
 

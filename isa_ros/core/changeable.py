@@ -10,7 +10,7 @@ from collections.abc import Iterator, Mapping
 from dataclasses import fields, replace
 from typing import Any, NamedTuple, TypeVar
 
-from isa_ros.core.parameter import check, Parameters
+from isa_ros.core.parameter import check, Parameters, with_value
 from isa_ros.core.suggest import alternatives
 from isa_ros.errors import ConfigError, ParameterError
 
@@ -79,13 +79,7 @@ def with_changes(parameters: P, values: Mapping[str, float], prefix: str = '') -
         if value == known[name].value:
             continue
         try:
-            changed = _with(changed, name.removeprefix(prefix).split('.'), float(value))
+            changed = with_value(changed, name.removeprefix(prefix).split('.'), float(value))
         except ParameterError as error:
             raise ParameterError(f'{name}: {error}') from error
     return changed
-
-
-def _with(parameters: Any, path: list[str], value: float) -> Any:
-    head, *rest = path
-    return replace(parameters, **{
-        head: _with(getattr(parameters, head), rest, value) if rest else value})

@@ -46,6 +46,8 @@ CONDITIONS = (
     Condition('encoder_jump', 'speed between two conversions', 'm/s | rad/s',
               'the speed at full opening with the relief pressure over one land'),
     Condition('link_lost', 'time since the last frame of the link', 's', ''),
+    Condition('spool_deviation', 'distance of the spool from where its reference puts it', 'm',
+              'the stop of the spool'),
 )
 """All conditions; the place of each is its bit."""
 

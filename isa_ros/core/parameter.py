@@ -1,7 +1,7 @@
 """One declaration per parameter: its unit, its range and its meaning."""
 
-from collections.abc import Callable
-from dataclasses import dataclass, field, fields
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, field, fields, replace
 import math
 from typing import Any, TypeVar
 
@@ -101,10 +101,21 @@ def defaults(cls: type[_P]) -> _P:
     return cls(**{f.name: f.metadata['absent'] for f in fields(cls)})
 
 
+def nested(absent: Parameters) -> Any:
+    """Declare a nested set that a file may leave out; it then is ``absent``."""
+    return field(default=absent, metadata={'absent': absent})
+
+
 def section(cls: type[Parameters]) -> Any:
     """Declare a nested set that a file may leave out; it then has its `defaults`."""
-    absent = defaults(cls)
-    return field(default=absent, metadata={'absent': absent})
+    return nested(defaults(cls))
+
+
+def with_value(parameters: Any, path: Sequence[str], value: float) -> Any:
+    """Return a set with another value of one parameter, given by its path through nested sets."""
+    head, *rest = path
+    return replace(parameters, **{
+        head: with_value(getattr(parameters, head), rest, value) if rest else value})
 
 
 def check(where: str, value: Any, declared: Any) -> None:

@@ -47,7 +47,7 @@ COMMAND = np.dtype([
 """Command to one actuator, in effect from a tick boundary or a `due_step` on."""
 
 GAINS_OF_COMMAND = ('stiffness', 'damping')
-"""Fields of a `COMMAND` that may be NaN."""
+"""Fields of a `COMMAND` that may be NaN: the gains of the impedance."""
 
 SAMPLE = np.dtype([
     ('position', '<f8'),            # encoder, m | rad

@@ -1,5 +1,6 @@
 """What a bus sees of one actuator: objects, process data, and the state of the bus."""
 
+from collections.abc import Mapping
 from typing import NamedTuple, Protocol
 
 from isa_ros.fieldbus.objects import ObjectTable, Value
@@ -92,3 +93,6 @@ class BusDevice(Protocol):
 
     def changes(self) -> dict[str, float]:
         """Return gains and limits written since the last call, SI, as `SmartActuator.tune`."""
+
+    def take_changes(self, values: Mapping[str, float]) -> None:
+        """Show gains and limits that took effect, also those changed from elsewhere; SI."""

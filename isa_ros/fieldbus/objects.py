@@ -104,6 +104,12 @@ class Entry:
     low: float = -math.inf
     high: float = math.inf
     """Range of what may be written, in counts."""
+    choices: tuple[int, ...] = ()
+    """The only values that may be written; (): all of the range."""
+    source: str = ''
+    """Field of `SAMPLE` that it shows; '': another value."""
+    adds_node: bool = False
+    """Whether the default grows by the CANopen node id."""
 
     @property
     def bits(self) -> int:
@@ -193,3 +199,15 @@ class ObjectTable:
     def on(self, bus: str) -> 'ObjectTable':
         """Return the table of one bus, ``ethercat`` or ``canopen``."""
         return ObjectTable([one for one in self.objects if one.bus in ('', bus)])
+
+
+def variable(entry: Entry, bus: str = '') -> Object:
+    """Return an object that is one entry."""
+    return Object(entry.index, entry.name, Kind.VAR, (entry,), bus)
+
+
+def record_of(index: int, name: str, entries: Sequence[Entry], bus: str = '') -> Object:
+    """Return a record: entries of subindex 1 on, behind their highest subindex."""
+    count = Entry(
+        index, 0, 'Highest subindex', DataType.UNSIGNED8, 'const', entries[-1].subindex)
+    return Object(index, name, Kind.RECORD, (count, *entries), bus)

@@ -166,10 +166,13 @@ def external_leakage(p, c_le):
 
 
 @kernel
-def external_loss(p_a, p_b, chambers):
-    """Return the power of `external_leakage` of both chambers, P Q_e, in W  (E3)."""
-    return (p_a * external_leakage(p_a, chambers.c_le_a)
-            + p_b * external_leakage(p_b, chambers.c_le_b))
+def leakage_loss(p_a, p_b, chambers):
+    """Return the power of the leakage past the piston and of `external_leakage`, in W  (E3)."""
+    loss = chambers.c_li * (p_a - p_b) * (p_a - p_b)
+    if chambers.leaks_out > 0.0:
+        loss += (p_a * external_leakage(p_a, chambers.c_le_a)
+                 + p_b * external_leakage(p_b, chambers.c_le_b))
+    return loss
 
 
 @kernel

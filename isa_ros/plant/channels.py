@@ -12,7 +12,7 @@ channel keeps its reading; if it is stuck at the first conversion, that one is k
 """
 
 from collections.abc import Mapping
-from dataclasses import dataclass, field, fields
+from dataclasses import dataclass
 from typing import Any
 
 from isa_ros.core.kernel import kernel
@@ -108,12 +108,6 @@ class CurrentChannel(Channel):
     sigma: float = _sigma('A', 0.01)
     bias: float = _bias('A', 0.2)
     drift_per_s: float = _drift('A/s', 0.2)
-
-
-def ideal(cls: type[Any]) -> Any:
-    """Declare the channel of a class, without errors unless some are given."""
-    values = {f.name: f.metadata['absent'] for f in fields(cls)}
-    return field(metadata={'absent': cls(**values)})
 
 
 CHANNEL_ERRORS = np.dtype([

@@ -126,14 +126,15 @@ def rest_pressures(
 
 
 @kernel
-def plant_rates(y, x_load, v_load, drive, p_s, p_t, plant, rates, powers):
+def plant_rates(y, x_load, v_load, drive, p_s, p_t, plant, rates, counts, powers):
     """
     Write dy/dt of one `PLANT_STATE` into ``rates``; return (sensor force, q_p, q_t).
 
     ``drive`` is the amplifier's output: a current reference (A), or for an explicit coil a
     voltage (V). ``x_load`` and ``v_load`` are the load's side of the force sensor. Forces
     in N or Nm, flows in m3/s (equation M4: inertia * s'' = f_h - f_friction - f_sensor +
-    f_stop). ``powers``, an `ENERGIES` record, receives where the power goes, in W  (E2 to E6).
+    f_stop). ``powers``, an `ENERGIES` record, receives where the power goes, in W, if it
+    ``counts``  (E2 to E6).
     """
     p_a, p_b = y.chambers.p_a, y.chambers.p_b
     s, v = y.mechanics.position, y.mechanics.velocity
@@ -144,18 +145,14 @@ def plant_rates(y, x_load, v_load, drive, p_s, p_t, plant, rates, powers):
     spool.spool_rates(y.valve, current, plant.valve.k_spool, plant.spool, rates.valve)
 
     per_a, per_b = chambers.elastances(p_a, p_b, s, p_t, plant.chambers)
-    q_a, q_b, q_p, q_t, powers.leakage, powers.throttling = servo_valve.metered(
-        y.valve.spool, p_a, p_b, p_s, p_t, per_a, per_b, plant.valve)
+    opened, leaks = servo_valve.conductances(y.valve.spool, plant.valve)
+    roots = servo_valve.root_drops(opened, p_a, p_b, p_s, p_t, per_a, per_b, plant.valve)
+    q_a, q_b, q_p, q_t = servo_valve.metered(opened, roots)
     in_a, in_b = chambers.surpluses(q_a, q_b, p_a, p_b, v, plant.chambers)
     out_a = relief.eased_flow(p_a, p_t, in_a, per_a, plant.relief)
     out_b = relief.eased_flow(p_b, p_t, in_b, per_b, plant.relief)
     rates.chambers.p_a = per_a * (in_a - out_a)
     rates.chambers.p_b = per_b * (in_b - out_b)
-    powers.cross_port = plant.chambers.c_li * (p_a - p_b) * (p_a - p_b)
-    if plant.chambers.leaks_out > 0.0:
-        powers.cross_port += chambers.external_loss(p_a, p_b, plant.chambers)
-    powers.relief = (p_a - p_t) * out_a + (p_b - p_t) * out_b
-    powers.compression = p_a * (in_a - out_a) + p_b * (in_b - out_b)
 
     z = y.friction.bristle
     z_rate = friction.bristle_rate(v, z, plant.friction)
@@ -167,10 +164,16 @@ def plant_rates(y, x_load, v_load, drive, p_s, p_t, plant, rates, powers):
     rates.mechanics.velocity = (
         chambers.hydraulic_force(p_a, p_b, plant.chambers) - f_friction - f_sensor + f_stop
     ) / plant.mechanics.inertia
-    slip = v - v_load
-    powers.friction = f_friction * v
-    powers.damping = plant.mechanics.d_s * slip * slip - f_stop * v
-    powers.work = f_sensor * v_load
+    if counts:
+        powers.leakage, powers.throttling = servo_valve.land_losses(
+            opened, leaks, roots, p_a, p_b, p_s, p_t)
+        powers.cross_port = chambers.leakage_loss(p_a, p_b, plant.chambers)
+        powers.relief = (p_a - p_t) * out_a + (p_b - p_t) * out_b
+        powers.compression = p_a * (in_a - out_a) + p_b * (in_b - out_b)
+        slip = v - v_load
+        powers.friction = f_friction * v
+        powers.damping = plant.mechanics.d_s * slip * slip - f_stop * v
+        powers.work = f_sensor * v_load
     return f_sensor, q_p, q_t + out_a + out_b
 
 

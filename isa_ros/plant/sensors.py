@@ -9,12 +9,11 @@ from dataclasses import dataclass
 import math
 
 from isa_ros.core.kernel import kernel
-from isa_ros.core.parameter import parameter, Parameters
+from isa_ros.core.parameter import parameter, Parameters, section
 from isa_ros.core.record import record
 from isa_ros.core.units import MILLI, MPA
 from isa_ros.errors import ParameterError
 from isa_ros.plant import channels
-from isa_ros.plant.channels import ideal
 import numpy as np
 
 
@@ -29,12 +28,12 @@ class Sensors(Parameters):
     spool_range_mm: float = parameter('spool sensor, +-', 'mm', gt=0.0, le=2.0)
     current_range_ma: float = parameter('current sensor, +-', 'mA', gt=0.0, le=200.0)
 
-    position: channels.PositionChannel = ideal(channels.PositionChannel)
-    force: channels.ForceChannel = ideal(channels.ForceChannel)
-    pressure_a: channels.PressureChannel = ideal(channels.PressureChannel)
-    pressure_b: channels.PressureChannel = ideal(channels.PressureChannel)
-    spool: channels.SpoolChannel = ideal(channels.SpoolChannel)
-    current: channels.CurrentChannel = ideal(channels.CurrentChannel)
+    position: channels.PositionChannel = section(channels.PositionChannel)
+    force: channels.ForceChannel = section(channels.ForceChannel)
+    pressure_a: channels.PressureChannel = section(channels.PressureChannel)
+    pressure_b: channels.PressureChannel = section(channels.PressureChannel)
+    spool: channels.SpoolChannel = section(channels.SpoolChannel)
+    current: channels.CurrentChannel = section(channels.CurrentChannel)
 
     def __post_init__(self) -> None:
         """Refuse a resolution that is not a whole number of bits."""

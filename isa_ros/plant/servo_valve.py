@@ -221,7 +221,7 @@ def conductances(x, valve):
     """
     Return those of the lands P-A, A-T, B-T, P-B at spool ``x``, in m3/s/sqrt(Pa)  (V7).
 
-    Each is f (g + leakage)/sqrt(dP_ref). The four of the leakage alone follow.
+    Each is f (g + leakage)/sqrt(dP_ref). The second four are those of the leakage alone.
     """
     if valve.is_lapped:
         pa, leak_pa = land_flow(x - valve.lap_pa, valve)
@@ -236,10 +236,10 @@ def conductances(x, valve):
         pa = bt = opened if x > 0.0 else leak
         at = pb = opened if x < 0.0 else leak
     scale = valve.per_root_drop
-    return (valve.f_pa * (pa * scale), valve.f_at * (at * scale),
-            valve.f_bt * (bt * scale), valve.f_pb * (pb * scale),
-            valve.f_pa * (leak_pa * scale), valve.f_at * (leak_at * scale),
-            valve.f_bt * (leak_bt * scale), valve.f_pb * (leak_pb * scale))
+    return ((valve.f_pa * (pa * scale), valve.f_at * (at * scale),
+             valve.f_bt * (bt * scale), valve.f_pb * (pb * scale)),
+            (valve.f_pa * (leak_pa * scale), valve.f_at * (leak_at * scale),
+             valve.f_bt * (leak_bt * scale), valve.f_pb * (leak_pb * scale)))
 
 
 @kernel
@@ -255,31 +255,42 @@ def smoothing(conductance, elastance, delta):
 
 
 @kernel
-def metered(x, p_a, p_b, p_s, p_t, per_a, per_b, valve):
+def root_drops(opened, p_a, p_b, p_s, p_t, per_a, per_b, valve):
     """
-    Return (q_a, q_b, q_p, q_t) of `port_flows`, then power lost to leakage, and to throttling.
+    Return S(dP) of the lands P-A, A-T, B-T, P-B as a step can follow it  (V5, V18), in sqrt(Pa).
 
-    As a step can follow them on chambers of elastances ``per_a``, ``per_b``, in Pa/m3; only near
-    no pressure drop the flows differ from `port_flows`  (V18). Powers in W  (E2).
+    On chambers of elastances ``per_a``, ``per_b``, in Pa/m3; 0: exactly V5.
     """
-    pa, at, bt, pb, leak_pa, leak_at, leak_bt, leak_pb = conductances(x, valve)
+    pa, at, bt, pb = opened
     delta_a = smoothing(pa + at, per_a, valve.delta)
     delta_b = smoothing(pb + bt, per_b, valve.delta)
-    root_pa = signed_sqrt(p_s - p_a, delta_a)
-    root_at = signed_sqrt(p_a - p_t, delta_a)
-    root_bt = signed_sqrt(p_b - p_t, delta_b)
-    root_pb = signed_sqrt(p_s - p_b, delta_b)
-    q_pa, q_at, q_bt, q_pb = pa * root_pa, at * root_at, bt * root_bt, pb * root_pb
-    q_tare = valve.c_tare * signed_sqrt(p_s - p_t, valve.delta)
+    return (signed_sqrt(p_s - p_a, delta_a), signed_sqrt(p_a - p_t, delta_a),
+            signed_sqrt(p_b - p_t, delta_b), signed_sqrt(p_s - p_b, delta_b))
 
-    w_pa, w_at = root_pa * (p_s - p_a), root_at * (p_a - p_t)
-    w_bt, w_pb = root_bt * (p_b - p_t), root_pb * (p_s - p_b)
-    leakage_power = (leak_pa * w_pa + leak_at * w_at + leak_bt * w_bt + leak_pb * w_pb
-                     + q_tare * (p_s - p_t))
-    throttling_power = ((pa - leak_pa) * w_pa + (at - leak_at) * w_at
-                        + (bt - leak_bt) * w_bt + (pb - leak_pb) * w_pb)
-    return (q_pa - q_at, q_pb - q_bt, q_pa + q_pb + q_tare, q_at + q_bt + q_tare,
-            leakage_power, throttling_power)
+
+@kernel
+def metered(opened, roots):
+    """Return (q_a, q_b, q_p, q_t) of the lands, in m3/s  (V7, V9)."""
+    q_pa, q_at = opened[0] * roots[0], opened[1] * roots[1]
+    q_bt, q_pb = opened[2] * roots[2], opened[3] * roots[3]
+    return q_pa - q_at, q_pb - q_bt, q_pa + q_pb, q_at + q_bt
+
+
+@kernel
+def land_losses(opened, leaks, roots, p_a, p_b, p_s, p_t):
+    """Return the powers that the lands lose to leakage and to throttling, in W  (E2)."""
+    w_pa, w_at = roots[0] * (p_s - p_a), roots[1] * (p_a - p_t)
+    w_bt, w_pb = roots[2] * (p_b - p_t), roots[3] * (p_s - p_b)
+    leakage = leaks[0] * w_pa + leaks[1] * w_at + leaks[2] * w_bt + leaks[3] * w_pb
+    throttling = ((opened[0] - leaks[0]) * w_pa + (opened[1] - leaks[1]) * w_at
+                  + (opened[2] - leaks[2]) * w_bt + (opened[3] - leaks[3]) * w_pb)
+    return leakage, throttling
+
+
+@kernel
+def tare_flow(p_s, p_t, valve):
+    """Return the flow of the pilot stage from supply to return, in m3/s  (V9)."""
+    return valve.c_tare * signed_sqrt(p_s - p_t, valve.delta)
 
 
 @kernel
@@ -290,5 +301,8 @@ def port_flows(x, p_a, p_b, p_s, p_t, valve):
     Equations 11 to 18 of the paper as `Q = (g + leakage) sqrt(dP / dP_ref)` for each of the
     four lands, plus the pilot stage's tare flow from supply to return.
     """
-    q_a, q_b, q_p, q_t, _, _ = metered(x, p_a, p_b, p_s, p_t, 0.0, 0.0, valve)
-    return q_a, q_b, q_p, q_t
+    opened, _ = conductances(x, valve)
+    q_a, q_b, q_p, q_t = metered(
+        opened, root_drops(opened, p_a, p_b, p_s, p_t, 0.0, 0.0, valve))
+    q_tare = tare_flow(p_s, p_t, valve)
+    return q_a, q_b, q_p + q_tare, q_t + q_tare

@@ -4,6 +4,7 @@ from collections.abc import Mapping
 
 from isa_ros.core.device import EVENTS, MODES, STATES
 from isa_ros.reu.device import TRANSITIONS
+from isa_ros.text.marked import with_parts
 from isa_ros.text.table import markdown
 
 EVENT_WORDS: Mapping[str, str] = {
@@ -54,10 +55,5 @@ TABLES = {'states': state_table, 'events': event_table, 'modes': mode_table}
 
 
 def with_tables(page: str) -> str:
-    """Return a page with its tables anew, from ``<!-- table NAME -->`` to ``<!-- end -->``."""
-    for name, table in TABLES.items():
-        begin, _, rest = page.partition(f'<!-- table {name} -->\n')
-        _, end, after = rest.partition('<!-- end -->\n')
-        lines = '\n'.join(table())
-        page = f'{begin}<!-- table {name} -->\n\n{lines}\n\n{end}{after}'
-    return page
+    """Return a page with its tables anew, each marked ``table NAME``."""
+    return with_parts(page, {f'table {name}': table() for name, table in TABLES.items()})

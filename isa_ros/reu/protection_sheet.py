@@ -143,6 +143,16 @@ class EncoderJump(Parameters):
 
 
 @dataclass(frozen=True, kw_only=True)
+class SpoolDeviation(Parameters):
+    """The spool is not where its reference puts it after the lag of a sound valve."""
+
+    warning: float = _level('distance over the stop of the spool', '1', 0.05, 2.0)
+    trip: float = _level('distance over the stop of the spool', '1', 0.15, 2.0)
+    delay_ms: float = _delay(50.0)
+    reaction: str = _reaction('disable', *_STOPPING)
+
+
+@dataclass(frozen=True, kw_only=True)
 class Protection(Parameters):
     """What the REU watches, and its reactions."""
 
@@ -170,6 +180,7 @@ class Protection(Parameters):
     relief_open: ReliefOpen = section(ReliefOpen)
     load_cell_implausible: LoadCellImplausible = section(LoadCellImplausible)
     encoder_jump: EncoderJump = section(EncoderJump)
+    spool_deviation: SpoolDeviation = section(SpoolDeviation)
 
     def __post_init__(self) -> None:
         """Refuse a warning that comes later than its trip."""

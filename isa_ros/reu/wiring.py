@@ -8,10 +8,10 @@ that is on. With all but the current block off the REU is a plain valve amplifie
 a block have the unit of its output: switching the next block inwards on or off changes it.
 """
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 
 from isa_ros.core.device import CURRENT, MODES
-from isa_ros.core.parameter import fault, parameter, Parameters, section
+from isa_ros.core.parameter import fault, nested, parameter, Parameters, section
 from isa_ros.core.suggest import alternatives
 from isa_ros.core.timebase import NS_PER_SECOND, PLANT_STEP_NS, steps_in
 from isa_ros.errors import ConfigError
@@ -57,7 +57,7 @@ class Reu(Parameters):
     pressure: Off | Pid
     spool: Off | Held | Pid
     current: Held | LeadLag
-    device: Device = field(default=BEFORE, metadata={'absent': BEFORE})
+    device: Device = nested(BEFORE)
     computation_delay_us: float = parameter(
         'from an instant of the loops to its output at the amplifier', 'us', ge=0.0, le=1e3)
     frozen: float = fault(

@@ -17,7 +17,7 @@ from isa_ros.errors import ConfigError, IsaError
 from isa_ros.run.exchange import Rows, Transport
 from isa_ros.run.narrator import Narrator
 from isa_ros.run.pacing import BEFORE_TICKS, Laps, Pace, ProgressMeter
-from isa_ros.scenario.faults import ParameterChanges
+from isa_ros.run.source import Source
 from isa_ros.surroundings.surroundings import Surroundings
 
 
@@ -39,12 +39,10 @@ class Plan:
     rows: Rows
     n_ticks: int | None
     """The run ends at t = n_ticks step_ns; None: when it is stopped."""
-    commands: Callable[[int, Records], None]
+    source: Source
     """Overwrites `COMMAND` rows of one tick, which contain the requests of controllers."""
     admit: Callable[[int, Records], None] = admit_all
     """Refuses or limits those requests, given the time in ns, before they become commands."""
-    changes: Callable[[int], ParameterChanges | None] = lambda tick: None
-    """Returns the parameters that faults change at a tick's start."""
     is_paused: bool = False
     """Start paused: wait for the first `Coordinator.step` or the end of the pause."""
 
@@ -104,6 +102,7 @@ class Coordinator:
         self._transport.begin()
         self._narrator.publish_rows(self.ticks, self._rows.tuned, self._surroundings.tuned)
         self._start_clocks()
+        first = self.ticks
         try:
             while True:
                 self._serve(self)
@@ -111,7 +110,9 @@ class Coordinator:
                     break
                 if self.is_paused:
                     self._idle()
-                else:
+                elif self._is_due():
+                    if self.ticks == first:
+                        self._start_clocks()    # host time before the first tick does not count
                     self._pace.wait(self.t_ns, self._should_stop)
                     self._advance()
         finally:
@@ -158,6 +159,8 @@ class Coordinator:
         for _ in range(n_ticks):
             if self._is_over:
                 break
+            while not self._is_due():
+                pass
             self._advance()
 
     def reset(self) -> None:
@@ -200,6 +203,14 @@ class Coordinator:
         self._refuse_stop()
         self._transport.idle()
 
+    def _is_due(self) -> bool:
+        """Return whether the commands of the next tick are there, after a moment's wait."""
+        is_due = self._plan.source.is_due(self.ticks, self._rows.samples)
+        if not is_due:
+            self._refuse_stop()
+            self._transport.idle(0.0)
+        return is_due
+
     def _advance(self) -> None:
         self._refuse_stop()
         self._tick(self.ticks)
@@ -216,7 +227,9 @@ class Coordinator:
         rows.commands[:] = rows.requests
         rows.requests['kinds'] = 0
         self._plan.admit(self.t_ns, rows.commands)
-        self._plan.commands(tick, rows.commands)
+        self._plan.source.commands(tick, rows.commands)
+        for event in self._plan.source.events(tick):
+            self.add_event(event)
         self._change(tick)
         self._surroundings.ports(rows.ports)
         self._lap('commands and ports')
@@ -234,8 +247,8 @@ class Coordinator:
         self._lap('messages')
 
     def _change(self, tick: int) -> None:
-        """Let the faults of a tick begin and end."""
-        changes = self._plan.changes(tick)
+        """Change the parameters that the source changes at a tick."""
+        changes = self._plan.source.changes(tick)
         self._rows.changes = {} if changes is None else changes.actuators
         if changes is not None:
             self._surroundings.tune(changes.supplies)

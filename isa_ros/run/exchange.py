@@ -106,9 +106,9 @@ class Transport(Protocol):
         """
         ...
 
-    def idle(self) -> None:
+    def idle(self, seconds: float = IDLE_S) -> None:
         """
-        Wait for a moment while the run is paused.
+        Wait for a moment while the run waits; process the inputs of actuators in this process.
 
         Raises
         ------

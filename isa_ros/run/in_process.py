@@ -64,11 +64,11 @@ class InProcess:
         self._group.advance(rows.ports, rows.commands)
         self._fill(rows)
 
-    def idle(self) -> None:
-        """Process the inputs of each actuator."""
+    def idle(self, seconds: float = IDLE_S) -> None:
+        """Process the inputs of each actuator, then wait."""
         for own in self._inputs:
             own.serve()
-        time.sleep(IDLE_S)
+        time.sleep(seconds)
 
     def snapshots(self) -> list[bytes]:
         """Return the state of every actuator."""

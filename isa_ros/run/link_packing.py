@@ -11,7 +11,7 @@ from isa_ros.core.kernel import kernel
 from isa_ros.core.signals import (
     HAS_ENABLE, HAS_GAINS, HAS_MODE, HAS_REFERENCE, HAS_SETPOINT, Records)
 from isa_ros.core.timebase import NS_PER_SECOND, PLANT_STEP, PLANT_STEP_NS
-from msg_adapters.sent_setpoint import sent_setpoint
+from msg_adapters.setpoint import applied_setpoint
 from msg_adapters.template import FIRST_VALUE, Prepared, stamped
 import numpy as np
 
@@ -88,7 +88,7 @@ class LinkWords:
         sent = {field: first + 2 + k for k, field in enumerate(_SENT)}
         own = {suffix: stamped(message, first + (suffix == 'applied_setpoint'))
                for suffix, message in messages.items()}
-        return own | {'sent_setpoint': sent_setpoint(name, sent)}
+        return own | {'sent_setpoint': applied_setpoint(name, sent)}
 
     def pack(self, t_ns: int, tick_start_ns: int, words: np.ndarray, values: np.ndarray) -> None:
         """Write the words; ``values`` is the float view of ``words``."""

@@ -65,8 +65,12 @@ class Pace:
 
     def end(self, t_ns: int) -> None:
         """Measure how far the run is behind at its end."""
+        self._lag = self.lateness(t_ns)
+
+    def lateness(self, t_ns: int) -> float:
+        """Return the host time since ``t_ns`` was due, s; 0 without a pace."""
         due = self._start + t_ns * self._seconds_per_ns
-        self._lag = self._now() - due if self._seconds_per_ns else 0.0
+        return self._now() - due if self._seconds_per_ns else 0.0
 
     @property
     def shortfall(self) -> str | None:

@@ -1,6 +1,7 @@
 """Sessions: read and check the files of a run, then run it and record its bag."""
 
 from collections.abc import Callable, Iterator, Sequence
+from contextlib import AbstractContextManager, nullcontext
 from dataclasses import dataclass, field
 from itertools import count
 import os
@@ -24,6 +25,7 @@ from isa_ros.run.narrator import Narrator, Outlets, packer_of
 from isa_ros.run.options import Request
 from isa_ros.run.pacing import JOINING, Laps, Pace, Progress, ProgressMeter, STARTING
 from isa_ros.run.packing import Packer
+from isa_ros.run.source import ScenarioSource, Source
 from isa_ros.run.thinning import Thinning
 from isa_ros.scenario.scenario import planned, Scenario
 from isa_ros.surroundings.surroundings import Surroundings
@@ -43,6 +45,8 @@ class Session:
     pace: Pace
     state: RunState | None = None
     """State the run continues from; None: it begins at t = 0."""
+    source: Callable[[], AbstractContextManager[Source]] | None = None
+    """Opens the source of the commands, once all participants are ready; None: the scenario."""
     bags: list[Path] = field(default_factory=list)
     """Bags of the run so far: `out`, and one more for each reset."""
 
@@ -56,10 +60,22 @@ class Session:
         """Return lines to print before the run."""
         return self.scenario.warnings
 
+    def opened_source(self) -> AbstractContextManager[Source]:
+        """Return the source of the commands."""
+        return nullcontext(ScenarioSource(self.scenario)) if self.source is None else self.source()
 
-def prepare(request: Request) -> Session:
+
+def _unchanged(run: RunConfig) -> RunConfig:
+    """Return the run itself."""
+    return run
+
+
+def prepare(
+        request: Request, adapted: Callable[[RunConfig], RunConfig] = _unchanged) -> Session:
     """
     Read the files of a run and check that its bag can be made.
+
+    ``adapted`` returns the run of the file as it is simulated and recorded.
 
     Raises
     ------
@@ -70,8 +86,8 @@ def prepare(request: Request) -> Session:
 
     """
     changes = changes_of(request.all_changes)
-    run = load_run(request.config, changes.run).with_controllers(request.controllers).stored(
-        request.compression, request.split_mb, 'record options')
+    run = adapted(load_run(request.config, changes.run)).with_controllers(
+        request.controllers).stored(request.compression, request.split_mb, 'record options')
     if run.record.thins:
         rows = Rows(len(run.actuators), surroundings_of(run))
         run.record.refuse_misfits(
@@ -137,30 +153,29 @@ def record(
     rows = Rows(len(session.run.actuators), surroundings)
     packer = packer_of(session.run, rows.shown)
     published = outlets(packer.surroundings)
-    while True:
-        coordinator = _record_one(
-            session, out, state, transport, surroundings, rows, packer, published, report,
-            should_stop, requests, warn)
-        if not coordinator.is_reset:
-            break
-        surroundings.restart(beginning)
-        out, state = _unused(session.out), None
+    with session.opened_source() as source:
+        while True:
+            coordinator = _record_one(
+                session, source, out, state, transport, surroundings, rows, packer, published,
+                report, should_stop, requests, warn)
+            if not coordinator.is_reset:
+                break
+            surroundings.restart(beginning)
+            out, state = _unused(session.out), None
     if session.request.save is not None:
         save(session, coordinator, session.request.save)
 
 
 def _record_one(
-        session: Session, out: Path, state: RunState | None, transport: Transport,
-        surroundings: Surroundings, rows: Rows, packer: Packer, outlets: Outlets,
-        report: Report | None, should_stop: Callable[[], bool],
+        session: Session, source: Source, out: Path, state: RunState | None,
+        transport: Transport, surroundings: Surroundings, rows: Rows, packer: Packer,
+        outlets: Outlets, report: Report | None, should_stop: Callable[[], bool],
         requests: Requests | None, warn: Callable[[str], object]) -> Coordinator:
     """Run once, to the end or to a reset, and return the coordinator."""
     run, n_ticks = session.run, session.scenario.n_ticks
     plan = Plan(
-        step_ns=run.step_ns, rows=rows, n_ticks=n_ticks,
-        commands=session.scenario.commands, admit=_admission(run, warn),
-        changes=session.scenario.changes_at,
-        is_paused=session.request.is_paused)
+        step_ns=run.step_ns, rows=rows, n_ticks=n_ticks, source=source,
+        admit=_admission(run, warn), is_paused=session.request.is_paused)
     laps = session.request.laps or Laps()
     laps.lap(STARTING)
     rows.requests['kinds'] = 0

@@ -8,12 +8,12 @@ flows leave the supply and enter the return line when positive. Equations C7-C9,
 Neglected: length and resistance of the pressure line, heat, air in the tank.
 """
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 
 from isa_ros.core.atmosphere import ATMOSPHERE
 from isa_ros.core.elementary import exp, log
 from isa_ros.core.kernel import kernel
-from isa_ros.core.parameter import fault, parameter, Parameters
+from isa_ros.core.parameter import fault, nested, parameter, Parameters
 from isa_ros.core.units import LPM, MPA
 from isa_ros.errors import ParameterError
 import numpy as np
@@ -49,7 +49,7 @@ class ConstantSupply(Parameters):
         'gauge supply pressure', 'MPa', changeable=True, gt=0.0, le=70.0)
     return_pressure_mpa: float = parameter(
         'gauge return pressure', 'MPa', changeable=True, ge=0.0, le=5.0)
-    return_line: ReturnLine = field(default=HeldReturn(), metadata={'absent': HeldReturn()})
+    return_line: ReturnLine = nested(HeldReturn())
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -78,7 +78,7 @@ class AccumulatorSupply(Parameters):
         '1: the accumulator has lost its gas', '1', is_whole=True, ge=0.0, le=1.0)
     line_leakage_lpm_per_mpa: float = fault(
         'flow from the pressure line to the outside per pressure', 'l/min/MPa', ge=0.0, le=10.0)
-    return_line: ReturnLine = field(default=HeldReturn(), metadata={'absent': HeldReturn()})
+    return_line: ReturnLine = nested(HeldReturn())
 
 
 SupplySheet = ConstantSupply | AccumulatorSupply

@@ -11,8 +11,8 @@ from tests.sheets import (
     actuator_sheet, MODELS, override, own_load, setpoint, smart_actuator)
 
 TICK = 1e-4     # s
-CLOSES = 1e-10  # of the throughput
-IMPACTS = 1e-4  # with relief valves, boiling oil and end stops: errors of the integration
+CLOSES = 1e-6   # of the throughput: Simpson's rule over the plant steps
+IMPACTS = 1e-3  # with relief valves, boiling oil and end stops, whose powers change within a step
 
 
 def account(actuator: SmartActuator) -> dict[str, float]:

@@ -10,7 +10,8 @@ from isa_ros.errors import SetpointError
 from isa_ros.run.link_packing import pack_links, WORDS
 from msg_adapters.cdr import encode
 from msg_adapters.cdr_reader import decode
-from msg_adapters.sent_setpoint import sent_setpoint, sent_to_command
+from msg_adapters.sent_setpoint import sent_to_command
+from msg_adapters.setpoint import applied_setpoint
 from msg_adapters.template import FIRST_VALUE, Template, time_word
 import numpy as np
 import pytest
@@ -38,7 +39,7 @@ def packed(command: np.ndarray) -> bytes:
     """Return the message of a command."""
     fields = ('is_enabled', 'position', 'velocity', 'effort', 'stiffness', 'damping', 'mode',
               'reference', 'kinds')
-    template = Template([sent_setpoint('hip', {field: k for k, field in enumerate(fields)})])
+    template = Template([applied_setpoint('hip', {field: k for k, field in enumerate(fields)})])
     words = np.zeros(FIRST_VALUE + len(fields), np.uint64)
     words[FIRST_VALUE:] = words_of(command)[2:]
     template.fill(words)

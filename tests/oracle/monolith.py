@@ -8,7 +8,8 @@ package; ports, mean forces, ticks and the leg's own step do not occur here.
 
 from typing import NamedTuple
 
-from isa_ros.actuator.kernel import ACTUATOR, BODY, STATE_SIZE
+from isa_ros.actuator.body import BODY, STATE_SIZE
+from isa_ros.actuator.kernel import ACTUATOR
 from isa_ros.actuator.sheet import actuator_record
 from isa_ros.core.contact import normal_force
 from isa_ros.core.kernel import kernel
@@ -79,7 +80,8 @@ def system_rates(bodies, y, supply_pressure, is_held, system, rates):
     for j in range(3):
         force, _, _ = plant_rates(
             bodies[j].plant, x[j], v[j], system.reus[j].amplifier, supply_pressure, 0.0,
-            system.actuators[j].plant, rates[j].plant, rates[j].totals.energies)
+            system.actuators[j].plant, rates[j].plant, False,
+            rates[j].totals.energies)
         bodies[j].load.position, bodies[j].load.velocity = x[j], v[j]
         rates[j].totals.impulse = force
     f = (rates[0].totals.impulse, rates[1].totals.impulse, rates[2].totals.impulse)

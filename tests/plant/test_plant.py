@@ -3,7 +3,7 @@
 import math
 
 from hypothesis import given, strategies as st
-from isa_ros.actuator import kernel as kernels
+from isa_ros.actuator import body as kernels
 from isa_ros.actuator.sheet import actuator_record, ActuatorSheet
 from isa_ros.core.signals import LOAD_PORT
 from isa_ros.core.timebase import PLANT_STEP
@@ -101,7 +101,7 @@ def rates_at(
     y.mechanics.position = x = 0.5 * plant.chambers.stroke
     for name, value in chamber.items():
         setattr(y.chambers, name, value)
-    return rates, plant_rates(y, x, 0.0, 0.0, supply, 0.0, plant, rates, no_powers())
+    return rates, plant_rates(y, x, 0.0, 0.0, supply, 0.0, plant, rates, False, no_powers())
 
 
 @pytest.mark.parametrize(('p_a', 'p_b'), [(9e6, 12e6), (23e6, 5e6), (5e6, 23e6)])
@@ -140,7 +140,7 @@ def test_the_valve_feels_the_resonance_of_its_coil():
     plant = plant_record(sheet.plant)[0]
     y, rates = (np.zeros(1, PLANT_STATE).view(np.recarray)[0] for _ in 'yr')
     y.coil.mode = 1e-3
-    plant_rates(y, 0.0, 0.0, 0.0, SUPPLY, 0.0, plant, rates, no_powers())
+    plant_rates(y, 0.0, 0.0, 0.0, SUPPLY, 0.0, plant, rates, False, no_powers())
     series = plant.coil.mode_share * 1e-3 / 2.0
     w_n = plant.spool.w_n
     assert rates.valve.acceleration == pytest.approx(w_n * w_n * plant.spool.k_pilot * series)

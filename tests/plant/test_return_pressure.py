@@ -63,7 +63,7 @@ def plant_flows(
     y.valve.spool = spool
     y.chambers.p_a, y.chambers.p_b = p_a + raised, p_b + raised
     _, q_p, q_t = plant_rates(
-        y, x, 0.0, 0.0, SUPPLY + raised, raised, plant, rates, no_powers())
+        y, x, 0.0, 0.0, SUPPLY + raised, raised, plant, rates, False, no_powers())
     return rates.chambers.p_a, rates.chambers.p_b, q_p, q_t
 
 
@@ -80,7 +80,7 @@ def test_the_null_bias_of_a_plant_shifts_with_the_return_pressure():
     jerks = []
     for p_t in (0.0, 3.5e6):
         y, rates = (np.zeros(1, PLANT_STATE).view(np.recarray)[0] for _ in 'yr')
-        plant_rates(y, 0.0, 0.0, 0.0, SUPPLY, p_t, plant, rates, no_powers())
+        plant_rates(y, 0.0, 0.0, 0.0, SUPPLY, p_t, plant, rates, False, no_powers())
         jerks.append(rates.valve.acceleration)
     w_n = plant.spool.w_n
     reference = plant.valve.k_spool * plant.spool.bias_t * 3.5e6

@@ -1,9 +1,12 @@
 """What pressures, force sensor and encoder must have in common."""
 
 from hypothesis import given, strategies as st
+from isa_ros.core.conditions import BITS
+from isa_ros.core.device import CURRENT, SPOOL
 import numpy as np
 import pytest
-from tests.reu.watched import AREA_A, AREA_B, only, PERIOD, STROKE, Watched
+from tests.reu.watched import (
+    AREA_A, AREA_B, only, PERIOD, RATINGS, SPOOL_GAIN, SPOOL_LAG, STROKE, Watched)
 
 FRICTION = 100.0
 
@@ -71,3 +74,54 @@ def test_a_jump_is_a_speed_over_one_conversion(step: float) -> None:
     assert watched.own.values[10] == abs(0.05 + step - 0.05) / PERIOD
     watched.convert()
     assert watched.own.values[10] == 0.0
+
+
+def spool_deviations(watched: Watched, n: int) -> list[float]:
+    """Return the deviation of the spool at each of ``n`` conversions."""
+    found = []
+    for _ in range(n):
+        watched.convert()
+        found.append(float(watched.own.values[BITS['spool_deviation']]))
+    return found
+
+
+@given(st.floats(-0.1, 0.1))
+def test_a_spool_is_expected_to_follow_its_reference_with_the_lag_of_its_valve(
+        current: float) -> None:
+    """R15: of a step of the current (T/(T + dt))^n are left; the stops bound it."""
+    watched = Watched(only('spool_deviation', trip=0.5))
+    watched.state.current_reference = current
+    found = np.array(spool_deviations(watched, 100))  # the spool stays at null
+    end = min(abs(SPOOL_GAIN * current), RATINGS.spool_stop)
+    left = (SPOOL_LAG / (SPOOL_LAG + PERIOD)) ** np.arange(1, 101)
+    # each conversion rounds a number up to the stop, or one without a normal form
+    assert np.allclose(found, end * (1.0 - left), rtol=0.0, atol=100 * 2.3e-16 * end + 1e-300)
+
+
+def test_a_spool_that_follows_with_that_lag_does_not_deviate() -> None:
+    watched = Watched(only('spool_deviation', trip=0.5))
+    watched.state.current_reference = 5e-3
+    for _ in range(100):
+        at = watched.state.measured.spool
+        watched.state.measured.spool = at + PERIOD / (SPOOL_LAG + PERIOD) * (1e-4 - at)
+        # the difference of two numbers of 1e-4 m
+        assert spool_deviations(watched, 1)[0] <= 1e-19
+
+
+def test_a_piloted_spool_has_the_reference_of_its_loop_and_none_without_it() -> None:
+    watched = Watched(only('spool_deviation', trip=0.5))
+    valve, state = watched.constants.evidence.valve, watched.state
+    valve.is_piloted, valve.gain = 1, 1.0
+    state.current_reference, state.spool_reference = 7e-3, 1e-4
+    state.status.acting = SPOOL
+    assert spool_deviations(watched, 300)[-1] == pytest.approx(1e-4, rel=1e-4)  # e^-10 are left
+    state.status.acting, state.measured.spool = CURRENT, -5e-5
+    assert spool_deviations(watched, 2) == [0.0, 0.0]
+    assert watched.own.evidence.spool == -5e-5  # from where the loop begins again
+
+
+def test_a_valve_without_a_spool_sensor_is_not_watched() -> None:
+    watched = Watched(only('spool_deviation', trip=0.5))
+    watched.constants.evidence.valve.is_watched = 0
+    watched.state.current_reference = 5e-3
+    assert spool_deviations(watched, 100) == [0.0] * 100

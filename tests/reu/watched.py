@@ -5,20 +5,23 @@ from dataclasses import replace
 from typing import Any
 
 from isa_ros.core.conditions import BITS
+from isa_ros.core.device import IMPEDANCE
 from isa_ros.core.parameter import defaults
 from isa_ros.core.record import record
 from isa_ros.reu.cascade import REU_STATE
-from isa_ros.reu.plausibility import EVIDENCE
-from isa_ros.reu.protection import protect, protection_record, Ratings
+from isa_ros.reu.plausibility import EVIDENCE, VALVE_EVIDENCE
+from isa_ros.reu.protection import protection_record, Ratings
 from isa_ros.reu.protection_sheet import levels_of, Protection
+from isa_ros.reu.reactions import protect
 import numpy as np
 
 STEPS = 5                   # plant steps of a conversion
 PERIOD = STEPS * 20e-6
 STROKE, AREA_A, AREA_B = 0.1, 4e-4, 3e-4
+SPOOL_GAIN, SPOOL_LAG = 0.02, 3e-3     # m per A of the amplifier, s
 RATINGS = Ratings(
     stroke=STROKE, speed=1.0, force_range=1e4, pressure_range=25e6, current_range=12.5e-3,
-    opening_pressure=22e6)
+    opening_pressure=22e6, spool_stop=2e-4)
 SUPPLY = 20.7e6
 
 
@@ -44,14 +47,16 @@ class Watched:
         evidence = record(
             EVIDENCE, area_a=AREA_A, area_b=AREA_B, force_range=RATINGS.force_range,
             stiction=100.0, viscous=0.0, inertia=1.0, speed_rate=1000.0, speed_steps=50,
-            offset_steps=0)
+            offset_steps=0, valve=record(
+                VALVE_EVIDENCE, is_watched=1, is_piloted=0, gain=SPOOL_GAIN,
+                stop=RATINGS.spool_stop, share=PERIOD / (SPOOL_LAG + PERIOD)))
         self.constants = protection_record(sheet, RATINGS, evidence, STEPS)
         self.state = np.zeros(1, REU_STATE).view(np.recarray)[0]
         self.own = self.state.protection
         self.supply, self.temperature, self.step = SUPPLY, 40.0, 0
         measured, setpoint = self.state.measured, self.state.setpoint
         measured.position = self.own.evidence.position = 0.5 * STROKE
-        self.state.status.is_on = 1
+        self.state.status.is_on, self.state.status.mode = 1, IMPEDANCE
         setpoint.stiffness, setpoint.damping = 1e5, 4e3
         setpoint.position, setpoint.velocity, setpoint.effort = 0.02, 0.1, 50.0
 
@@ -96,4 +101,5 @@ READINGS: Mapping[str, Callable[[Watched, float], None]] = {
     'encoder_jump': lambda watched, quantity: setattr(
         watched.state.measured, 'position',
         watched.own.evidence.position + quantity * PERIOD),
+    'spool_deviation': _measure('spool'),
 }

@@ -8,7 +8,7 @@ from isa_ros.core.saved_state import RunState
 from isa_ros.core.signals import HAS_SETPOINT, Records
 from isa_ros.errors import ConfigError, RunError, SimulationDiverged
 from isa_ros.run.coordinator import Coordinator, Interrupted, Plan
-from isa_ros.run.exchange import Rows
+from isa_ros.run.exchange import IDLE_S, Rows
 from isa_ros.run.narrator import Narrator, Outlets, packer_of
 from isa_ros.run.pacing import Pace, ProgressMeter
 from isa_ros.run.packing import Messages
@@ -61,8 +61,8 @@ class FakeTransport:
             rows.requests[0] = setpoint(position=0.5)
         self._answer(self.tick + 1, rows)
 
-    def idle(self) -> None:
-        self.log.append('idle')
+    def idle(self, seconds: float = IDLE_S) -> None:
+        self.log.append('idle' if seconds else 'inputs')
 
     def snapshots(self) -> list[bytes]:
         return [b'b', b'a']
@@ -101,6 +101,29 @@ class FakeSurroundings:
         self.supplies[:] = np.frombuffer(snapshot, SUPPLY_SAMPLE)
 
 
+class FakeSource:
+    """Commands the second actuator by the tick; a test gives waits, events and changes."""
+
+    def __init__(
+            self, log: list[str], changes: Callable[[int], ParameterChanges | None]) -> None:
+        self.log, self.changes = log, changes
+        self.waits: dict[int, int] = {}
+        self.happened: dict[int, str] = {}
+
+    def is_due(self, tick: int, samples: Records) -> bool:
+        if self.waits.get(tick, 0):
+            self.waits[tick] -= 1
+            self.log.append(f'no command {tick} position={samples["position"][0]:g}')
+            return False
+        return True
+
+    def commands(self, tick: int, out: Records) -> None:
+        out['kinds'][1] = tick
+
+    def events(self, tick: int) -> list[str]:
+        return [self.happened[tick]] if tick in self.happened else []
+
+
 class FakeOutlet:
     """Writes down what is published."""
 
@@ -126,10 +149,13 @@ class Rig:
     """One coordinator with its fakes, and the narrator of a run."""
 
     def __init__(
-            self, n_ticks: int | None = 3, pace: Pace | None = None, **plan: Any) -> None:
+            self, n_ticks: int | None = 3, pace: Pace | None = None,
+            changes: Callable[[int], ParameterChanges | None] = lambda tick: None,
+            **plan: Any) -> None:
         self.asked: dict[int, Callable[[Coordinator], object]] = {}
         self.log: list[str] = []
         self.transport = FakeTransport(self.log)
+        self.source = FakeSource(self.log, changes)
         self.recorder = FakeRecorder(self.log)
         self.stops_at: int | None = None
         self.looks = 0
@@ -142,13 +168,10 @@ class Rig:
             events=FakeOutlet(self.log, lambda data: f'event {event.text(data)}'),
             surroundings=FakeOutlet(self.log, lambda data: 'publish')))
         self.coordinator = Coordinator(
-            Plan(step_ns=STEP_NS, rows=self.rows, n_ticks=n_ticks, commands=self.command, **plan),
+            Plan(step_ns=STEP_NS, rows=self.rows, n_ticks=n_ticks, source=self.source, **plan),
             self.transport, surroundings, narrator,
             pace=pace or Pace(), progress=ProgressMeter(None, None), should_stop=self.should_stop,
             requests=self.ask)
-
-    def command(self, tick: int, rows: Records) -> None:
-        rows['kinds'][1] = tick
 
     def ask(self, coordinator: Coordinator) -> None:
         """Ask for what a test wants at this look, counted from 0."""
@@ -359,3 +382,57 @@ def test_faults_change_supplies_and_actuators_before_the_tick_of_their_time():
     rig.run()
     assert [changes for _, changes, _ in seen] == [{}, dict(at_1.actuators), {}]
     assert [line for line in rig.log if 'tune' in line] == ["tune {'supply.pressure_mpa': 10.0}"]
+
+
+def test_a_tick_waits_for_its_commands():
+    """Requests and the inputs of actuators are served meanwhile, with the sample of the tick."""
+    rig = Rig(2)
+    rig.source.waits = {1: 2}
+    rig.run()
+    start = rig.log.index('no command 1 position=1')
+    assert rig.log[start:start + 5] == [
+        'no command 1 position=1', 'inputs', 'no command 1 position=1', 'inputs',
+        'clock 2000000']
+    assert rig.looks == 2 + 2 + 1
+    assert rig.sequences == [0, 1, 2]
+
+
+def test_a_step_waits_for_the_commands_of_each_tick():
+    rig = Rig(3, is_paused=True)
+    rig.source.waits = {0: 1, 1: 1}
+    rig.asked = {0: lambda run: run.step(2), 2: lambda run: run.pause(False)}
+    rig.run()
+    assert rig.sequences == [0, 1, 2, 3]
+    assert rig.log.index('no command 1 position=1') < rig.log.index('idle')
+
+
+def test_a_stop_ends_the_wait_for_commands():
+    rig = Rig(3)
+    rig.source.waits, rig.stops_at = {1: 1_000_000}, 1
+    with pytest.raises(Interrupted, match='after 1 ticks'):
+        rig.run()
+    assert rig.sequences == [0, 1]
+
+
+def test_events_of_the_source_are_recorded_at_their_tick():
+    rig = Rig(3)
+    rig.source.happened = {2: 'bus lost'}
+    rig.run()
+    assert rig.events == {2: ['bus lost']}
+
+
+def test_host_time_before_the_first_tick_does_not_count():
+    """A minute passes before the first commands: the run is not behind its pace then."""
+    host = [0.0]
+
+    def sleep(seconds: float) -> None:
+        host[0] += seconds
+    pace = Pace(1.0, lambda: host[0], sleep)
+    rig = Rig(2, pace=pace)
+    rig.source.waits = {0: 1}
+
+    def wait_a_minute(coordinator: Coordinator) -> None:
+        host[0] += 60.0
+    rig.asked = {0: wait_a_minute, 1: wait_a_minute}
+    rig.run()
+    assert pace.shortfall is None

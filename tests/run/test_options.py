@@ -8,9 +8,10 @@ import sys
 from isa_ros.config.paths import CONFIG, find, SCENARIOS
 from isa_ros.config.recording import Storage
 from isa_ros.errors import ConfigError
+from isa_ros.run.option import COMPRESSIONS, Option
 from isa_ros.run.options import (
-    COMPRESSIONS, launched_elsewhere, launched_parameters, Option, OPTIONS, Request,
-    request_of_arguments, request_of_parameters)
+    launched_elsewhere, launched_parameters, OPTIONS, Request, request_of_arguments,
+    request_of_parameters)
 import pytest
 
 ROOT = Path(__file__).parents[2]

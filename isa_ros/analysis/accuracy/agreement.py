@@ -11,7 +11,7 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 import math
 
-from isa_ros.actuator import kernel as kernels
+from isa_ros.actuator import body as kernels
 from isa_ros.actuator.sheet import actuator_record
 from isa_ros.config.catalogue import actuator_model
 from isa_ros.config.default_actuator import default_actuator
@@ -71,7 +71,7 @@ class Difference:
 @kernel
 def rates_of_first(tau, drive, ports, actuators, bodies, rates):
     """Write the derivative of ``bodies[0]`` into ``rates[0]``."""
-    kernels.body_rates(tau, bodies[0], drive, ports[0], actuators[0], rates[0])
+    kernels.body_rates(tau, bodies[0], drive, ports[0], actuators[0], rates[0], True)
 
 
 class Bench:

@@ -10,20 +10,23 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import NamedTuple
 
-from isa_ros.analysis.faults.rig import BEGIN_S, CONFIG, DURATION_S, END_S, MOTION, STEP_S
+from isa_ros.analysis.faults.rig import (
+    BEGIN_S, CLEAR_S, CONFIG, DURATION_S, END_S, LINK, MOTION, STEP_S)
 from isa_ros.config.fault_catalogue import ACTUATOR, fault_catalogue, named_fault, NamedFault
 from isa_ros.config.sections import Place
 from isa_ros.config.yaml_text import Tree
-from isa_ros.core import signals
 from isa_ros.core.conditions import BITS
 from isa_ros.core.device import STATES
-from isa_ros.core.signals import COMMAND, HAS_ENABLE, SAMPLE, SAMPLE_UNITS
+from isa_ros.core.signals import (
+    COMMAND, HAS_CLEAR_FAULT, HAS_ENABLE, SAMPLE, SAMPLE_UNITS)
 from isa_ros.core.units import of_coordinate
 from isa_ros.errors import SimulationDiverged
 from isa_ros.plant.sensors import sensors_record
 from isa_ros.scripting.run import load, Run
 from isa_ros.simulation import Simulation
 from isa_ros.text.progress import Progress
+from msg_adapters import device
+from msg_adapters.diagnostics import OK
 import numpy as np
 from numpy.typing import NDArray
 
@@ -36,9 +39,8 @@ MEASURED = ('position', 'force', 'pressure_a', 'pressure_b', 'spool', 'current')
 """Signals of an actuator that its REU measures."""
 _BIT_SETS = {'warnings': 'warning', 'trips': 'trip'}
 _STATE = 'device_state'
-DEVICE = tuple(name for name in (*_BIT_SETS, _STATE) if name in (SAMPLE.names or ()))
-"""What an actuator says about itself."""
-_CLEARS = int(getattr(signals, 'HAS_CLEAR_FAULT', 0))
+_DEVICE = (_STATE, 'device_mode', 'device_event', *_BIT_SETS, 'state_since')
+"""Fields of a `SAMPLE` in which an actuator reports of itself."""
 _SUPPLY = 'supply pressure'
 
 
@@ -74,6 +76,8 @@ class Outcome:
     noticed: tuple[Noticed, ...]
     recovered_s: float | None
     """From the end of the fault, and a clear-fault, until all is within `SOUND`; None: never."""
+    message: str
+    """The first of the gravest level in the words of `/diagnostics`; '': all is well."""
     diverged: str = ''
     """The message of a simulation that could not go on."""
 
@@ -91,13 +95,14 @@ def outcomes(
     """
     chosen = [named_fault(name, Place('--only')) for name in names] if names else list(
         fault_catalogue().values())
-    rig = load(CONFIG, MOTION)
-    sound = _recorded(rig, ())
+    plain, linked = load(CONFIG, MOTION), load({**CONFIG, 'link': LINK}, MOTION)
+    sound = {rig: _recorded(rig, ()) for rig in (plain, linked)}
     found = []
     for k, fault in enumerate(chosen):
         if report is not None:
             report(k, len(chosen))
-        found.append(_outcome(rig, fault, sound))
+        rig = linked if any(key.startswith('link.') for key in fault.values) else plain
+        found.append(_outcome(rig, fault, sound[rig]))
     if report is not None:
         report(len(chosen), len(chosen))
     return found
@@ -109,7 +114,7 @@ def _outcome(rig: Run, fault: NamedFault, sound: Mapping[str, NDArray[np.float64
     try:
         faulty = _recorded(rig, (tree,))
     except SimulationDiverged as error:
-        return Outcome(fault, (), (), None, str(error))
+        return Outcome(fault, (), (), None, '', str(error))
     begin, end = round(BEGIN_S / STEP_S), round(END_S / STEP_S)
     resolution, units = _resolution(rig), _units(rig)
     visible, last = [], end
@@ -127,7 +132,16 @@ def _outcome(rig: Run, fault: NamedFault, sound: Mapping[str, NDArray[np.float64
     return Outcome(
         fault, tuple(sorted(visible, key=lambda own: own.after_s)),
         tuple(_noticed(faulty, sound, begin)),
-        None if last >= len(faulty[_SUPPLY]) else (last - end) * STEP_S)
+        None if last >= len(faulty[_SUPPLY]) else (last - end) * STEP_S, _message(faulty))
+
+
+def _message(faulty: Mapping[str, NDArray[np.float64]]) -> str:
+    """Return the words of the first sample at the gravest level, or '' if that is OK."""
+    told = np.array([faulty[name] for name in _DEVICE]).T
+    changes = [0, *np.flatnonzero((told[1:] != told[:-1]).any(axis=1)) + 1]
+    statuses = [device.joined('ram', dict(zip(_DEVICE, told[tick]))) for tick in changes]
+    gravest = max(statuses, key=lambda status: status.level)
+    return '' if gravest.level == OK else gravest.message
 
 
 def _noticed(
@@ -135,19 +149,15 @@ def _noticed(
         begin: int) -> list[Noticed]:
     found = []
     for field, kind in _BIT_SETS.items():
-        if field not in DEVICE:
-            continue
         new = faulty[field].astype(np.int64) & ~sound[field].astype(np.int64)
         for name, bit in BITS.items():
             ticks = np.flatnonzero(new >> bit & 1)
             if len(ticks):
                 found.append(Noticed(kind, name, (int(ticks[0]) - begin) * STEP_S))
-    if _STATE in DEVICE:
-        ticks = np.flatnonzero(faulty[_STATE] != sound[_STATE])
-        if len(ticks):
-            found.append(Noticed(
-                'state', STATES[int(faulty[_STATE][ticks[0]])],
-                (int(ticks[0]) - begin) * STEP_S))
+    ticks = np.flatnonzero(faulty[_STATE] != sound[_STATE])
+    if len(ticks):
+        found.append(Noticed(
+            'state', STATES[int(faulty[_STATE][ticks[0]])], (int(ticks[0]) - begin) * STEP_S))
     return sorted(found, key=lambda own: own.after_s)
 
 
@@ -170,7 +180,7 @@ def _recorded(rig: Run, faults: Sequence[Tree]) -> dict[str, NDArray[np.float64]
     """Return the signals of a run with some faults, which are cleared at their end."""
     scenario = rig.scenario.with_faults(faults)
     simulation = Simulation(replace(scenario, run=rig.configuration))
-    n, end = round(DURATION_S / STEP_S), round(END_S / STEP_S)
+    n, clear = round(DURATION_S / STEP_S), round(CLEAR_S / STEP_S)
     rows = np.zeros(n + 1, SAMPLE)
     pressure = np.zeros(n + 1)
     for tick in range(n + 1):
@@ -178,14 +188,14 @@ def _recorded(rig: Run, faults: Sequence[Tree]) -> dict[str, NDArray[np.float64]
             simulation.step()
         rows[tick] = simulation.group.samples[0]
         pressure[tick] = simulation.surroundings.supplies['pressure'][0]
-        if tick in (end, end + 1) and faults and _CLEARS:
-            _clear(simulation, tick == end)
-    return {_SUPPLY: pressure} | {name: rows[name] for name in (*MEASURED, *DEVICE)}
+        if tick in (clear, clear + 1) and faults:
+            _clear(simulation, tick == clear)
+    return {_SUPPLY: pressure} | {name: rows[name] for name in (*MEASURED, *_DEVICE)}
 
 
 def _clear(simulation: Simulation, is_first: bool) -> None:
     """Clear the fault that the device keeps, then enable it again."""
     command = np.zeros(1, COMMAND)[0]
-    command['kinds'] = _CLEARS if is_first else HAS_ENABLE
+    command['kinds'] = HAS_CLEAR_FAULT if is_first else HAS_ENABLE
     command['is_enabled'] = 1
     simulation.group.actuators[0].accept(command)

@@ -5,7 +5,7 @@ from pathlib import Path
 from typing import Any
 
 from isa_ros.analysis.faults.measure import Noticed, Outcome, SOUND, VISIBLE, Visible
-from isa_ros.analysis.faults.rig import BEGIN_S, END_S
+from isa_ros.analysis.faults.rig import BEGIN_S, CLEAR_S, END_S, LINK
 from isa_ros.config.fault_catalogue import fault_catalogue, NamedFault
 from isa_ros.text.json_file import write_tree
 from isa_ros.text.number import digits
@@ -15,6 +15,7 @@ from isa_ros.text.table import aligned
 PAGE = 'device_faults.md'
 HEADER = ('fault', 'seen first in', 'after, ms', 'largest differences, or why none', 'device',
           'sound again after, ms')
+MESSAGE_HEADER = ('fault', 'message on /diagnostics')
 LIST_HEADER = ('fault', 'of', 'set', 'meaning')
 _SHOWN = {'Pa': ('MPa', 1e-6), 'm': ('mm', 1e3), 'A': ('mA', 1e3)}
 _LARGEST = 3    # signals in a row of the table
@@ -22,7 +23,8 @@ _HEAD = f"""# Faults of the device
 
 Each fault of the catalogue, `./isa faults --list`, in an ISA v5 that moves 50 kg by 20 mm at 2 Hz,
 fed by a pump with an accumulator. It begins at {BEGIN_S:g} s, where the piston is fastest, and
-ends at {END_S:g} s. Written by
+ends at {END_S:g} s. For a fault of the link there is one, with frames each ms and a watchdog of
+{LINK['watchdog_ms']:g} ms. Written by
 
     ./isa faults --out docs
 
@@ -30,8 +32,12 @@ A fault is seen in a signal that the REU measures, or in the supply's pressure, 
 from that of the same run without the fault by more than {VISIBLE:g} steps of its converter. The
 largest differences are those of the first three such signals while the fault lasts. A device is
 sound again once all signals are within {SOUND:g} steps of that run, 1 % of their ranges. *Device*
-has what the actuator itself reports, its warnings, trips and state, and when. A trip may keep its
-outputs off until it is cleared."""
+has what the actuator itself reports, its warnings, trips and state, and when. A trip keeps its
+outputs off until it is cleared: `~/clear_fault`, then `~/enable`, at {CLEAR_S:g} s."""
+
+_MESSAGES = """The message of the device on `~/device` and, as the task *device*, on
+`/diagnostics`: the first one of the gravest level. With all other faults it is that of a sound
+device, `enabled, mode impedance: initialised`. While its link is lost it does not arrive."""
 
 
 def listing() -> str:
@@ -46,8 +52,9 @@ def _set(fault: NamedFault) -> str:
 
 
 def as_text(found: Sequence[Outcome]) -> str:
-    """Return the table for a terminal."""
-    return '\n'.join(aligned(_rows(found)))
+    """Return the tables for a terminal: effects, and messages if there is one."""
+    tables = [_rows(found), _messages(found)]
+    return '\n\n'.join('\n'.join(aligned(rows)) for rows in tables if len(rows) > 1)
 
 
 def _rows(found: Sequence[Outcome]) -> list[tuple[str, ...]]:
@@ -63,6 +70,10 @@ def _cells(own: Outcome) -> tuple[str, ...]:
             ', '.join(_difference(one) for one in _largest(own)) or own.fault.unseen,
             ', '.join(_note(one) for one in own.noticed) or 'nothing',
             'not in this run' if own.recovered_s is None else f'{own.recovered_s * 1e3:g}')
+
+
+def _messages(found: Sequence[Outcome]) -> list[tuple[str, ...]]:
+    return [MESSAGE_HEADER, *((own.fault.name, own.message) for own in found if own.message)]
 
 
 def _largest(own: Outcome) -> Sequence[Visible]:
@@ -89,7 +100,7 @@ def _tree(own: Outcome) -> dict[str, Any]:
         'name': own.fault.name, 'of': own.fault.of, 'set': dict(own.fault.values),
         'visible': [one._asdict() for one in own.visible],
         'noticed': [one._asdict() for one in own.noticed],
-        'recovered_s': own.recovered_s, 'diverged': own.diverged}
+        'recovered_s': own.recovered_s, 'message': own.message, 'diverged': own.diverged}
 
 
 def write_page(found: Sequence[Outcome], directory: Path) -> list[Path]:
@@ -97,6 +108,10 @@ def write_page(found: Sequence[Outcome], directory: Path) -> list[Path]:
     page = Page(PAGE, _HEAD)
     page.section('Effects')
     page.table(_rows(found))
+    if messages := _messages(found)[1:]:
+        page.section('Messages')
+        page.paragraph(_MESSAGES)
+        page.table([MESSAGE_HEADER, *messages])
     page.section('The catalogue')
     page.table([LIST_HEADER, *(
         (f'`{fault.name}`', fault.of, f'`{_set(fault)}`', fault.meaning)

@@ -5,6 +5,8 @@ from isa_ros.config.yaml_text import Tree
 STEP_S = 1e-3
 BEGIN_S, END_S, DURATION_S = 0.5, 1.0, 2.2
 """Time of every fault, and length of the run."""
+CLEAR_S = 1.1
+"""When what the device has kept of a fault is cleared: the causes of all have ended by then."""
 
 CONFIG: Tree = {
     'name': 'fault_rig', 'step_ms': 1.0, 'controller_offset_ms': 0.12, 'tick_timeout_s': 5.0,
@@ -18,6 +20,8 @@ CONFIG: Tree = {
         'model': 'isa_v5', 'preset': 'default', 'load': {'kind': 'mass'},
         'initial_position_mm': 50.0}}}
 """A mass of 50 kg, and an accumulator that feeds its motion."""
+LINK: Tree = {'kind': 'ethercat', 'delay_cycles': 1, 'watchdog_ms': 10.0}
+"""Between commander and REU, for the faults of a link; the others have none."""
 
 MOTION: Tree = {
     'name': 'sine', 'duration_s': DURATION_S, 'tracks': {'ram': [

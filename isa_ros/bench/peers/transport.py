@@ -17,7 +17,7 @@ from isa_ros.config.run_config import RunConfig
 from isa_ros.core.signals import Records
 from isa_ros.errors import RunError
 from isa_ros.processes.stopping import PARENT_VARIABLE, StopRequest
-from isa_ros.run.exchange import Rows
+from isa_ros.run.exchange import IDLE_S, Rows
 from isa_ros.run.narrator import Outlets
 from isa_ros.run.session import record, Report, Session
 from isa_ros.run.wire.answers import Answer, decode_answer
@@ -75,7 +75,7 @@ class PeerTransport:
             raise RunError(f'{self._missing(answers)}: no answer to tick {self._tick}')
         self._take(answers, rows)
 
-    def idle(self) -> None:
+    def idle(self, seconds: float = IDLE_S) -> None:
         """Raise: a run over a peer supports neither pause nor saved states."""
         raise RunError(_NOT_SUPPORTED)
 

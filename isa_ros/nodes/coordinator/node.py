@@ -12,7 +12,8 @@ from isa_ros.nodes.middleware.parameters import declare, refuse_unknown
 from isa_ros.nodes.middleware.publishers import PreparedPublishers
 from isa_ros.nodes.middleware.refusals import refusals
 from isa_ros.run.narrator import Outlet, Outlets
-from isa_ros.run.options import Option, OPTIONS, Request, request_of_parameters
+from isa_ros.run.option import Option
+from isa_ros.run.options import OPTIONS, Request, request_of_parameters
 from msg_adapters import clock, diagnostics, event
 from rcl_interfaces.msg import ParameterDescriptor
 from rclpy.node import Node

@@ -179,13 +179,13 @@ class LockstepTransport:
         """Wait for every participant; see `Transport`."""
         self._fill(rows, self._gather(AnswerKind.DONE))
 
-    def idle(self) -> None:
+    def idle(self, seconds: float = IDLE_S) -> None:
         """Announce that the run continues, and check for lost participants and second nodes."""
         if time.monotonic() >= self._begin_due:
             self._begin_due = time.monotonic() + REPEAT_S
             self._send(encode_begin(self._run_id))
-        self._refuse_lost(f'while paused before tick {self._tick}')
-        data = self._mailbox.wait(IDLE_S)
+        self._refuse_lost(f'while waiting before tick {self._tick}')
+        data = self._mailbox.wait(seconds)
         if data is not None:
             answer = self._answers.decoded(data, self._run_id)
             if answer is not None:

@@ -3,7 +3,7 @@
 from collections.abc import Sequence
 
 from isa_ros.nodes.lockstep.coordinator_end import LockstepTransport
-from isa_ros.run.exchange import Rows
+from isa_ros.run.exchange import IDLE_S, Rows
 from isa_ros.run.in_process import InProcess
 
 
@@ -35,10 +35,10 @@ class MixedTransport:
         self._actuators.receive(rows)
         self._controllers.receive(rows)
 
-    def idle(self) -> None:
-        """Wait for a moment while the run is paused."""
-        self._actuators.idle()
-        self._controllers.idle()
+    def idle(self, seconds: float = IDLE_S) -> None:
+        """Wait for a moment while the run waits."""
+        self._actuators.idle(seconds)
+        self._controllers.idle(seconds)
 
     def snapshots(self) -> list[bytes]:
         """Return the complete state of each participant."""

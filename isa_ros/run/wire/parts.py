@@ -15,8 +15,8 @@ from typing import Any
 from isa_ros.actuator.inbox import WITH_GAINS
 from isa_ros.core.device import MODES
 from isa_ros.core.signals import (
-    COMMAND, EVERY_KIND, HAS_ENABLE, HAS_MODE, HAS_REFERENCE, HAS_SETPOINT, LOAD_REPLY, Records,
-    SAMPLE)
+    COMMAND, EVERY_KIND, GAINS_OF_COMMAND, HAS_ENABLE, HAS_MODE, HAS_REFERENCE, HAS_SETPOINT,
+    LOAD_REPLY, Records, SAMPLE)
 from isa_ros.run.exchange import Rows
 from isa_ros.run.wire.header import WireError
 import numpy as np
@@ -36,7 +36,6 @@ _ROWS = _APPLIED_AT + COMMAND.itemsize
 _PARTS = 3
 _LAST_STEP = 2**46  # of the plant: 44 years
 _NUMBERS = ('position', 'velocity', 'effort')
-_GAINS = ('stiffness', 'damping')
 
 
 def actuator_parts(
@@ -149,7 +148,7 @@ def refuse_command(command: np.void) -> None:
     if not kinds:
         return
     numbers = [float(command[name]) for name in _NUMBERS] if kinds & HAS_SETPOINT else []
-    gains = [float(command[name]) for name in _GAINS] if kinds & WITH_GAINS else []
+    gains = [float(command[name]) for name in GAINS_OF_COMMAND] if kinds & WITH_GAINS else []
     if kinds & HAS_REFERENCE:
         numbers.append(float(command['reference']))
     has_mode = kinds & (HAS_MODE | HAS_REFERENCE)

@@ -60,7 +60,39 @@ def test_a_low_supply_is_warned_of(found):
     """Half of the 22 MPa at which the relief valves open, below which the open one of 5 MPa is."""
     assert [(one.kind, one.name) for one in found['supply_relief_stuck_open'].noticed] == [
         ('warning', 'supply_low')]
-    assert not found['valve_stuck'].noticed
+
+
+def noticed(own: Outcome) -> dict[str, float]:
+    """Return what the device itself reports, with the time of each in ms, rounded."""
+    return {f'{one.kind} {one.name}': round(one.after_s * 1e3) for one in own.noticed}
+
+
+@pytest.mark.parametrize('name', [
+    'valve_stuck', 'coils_open', 'amplifier_weak', 'spool_sensor_stuck'])
+def test_a_spool_that_does_not_follow_is_reported_and_stops_the_actuator(found, name):
+    """51 ms after it begins to deviate, which the motion decides."""
+    own = noticed(found[name])
+    assert set(own) >= {'trip spool_deviation', 'state fault'}
+    assert 51 <= own['trip spool_deviation'] <= 200
+    assert own['state fault'] == own['trip spool_deviation']
+
+
+def test_a_shifted_null_is_a_warning(found):
+    assert set(noticed(found['null_shift'])) == {'warning spool_deviation'}
+
+
+def test_the_words_of_diagnostics_are_those_of_the_gravest_level(found):
+    """A fault with its cause, else a warning; nothing if the device does not notice."""
+    for own in found.values():
+        kinds = {one.kind for one in own.noticed}
+        assert own.message.startswith('fault: ') == ('state' in kinds)
+        assert ('warning: ' in own.message) >= (kinds == {'warning'})
+        assert bool(own.message) == bool(kinds)
+    assert found['valve_stuck'].message == (
+        'fault: spool deviation; disabled until ~/clear_fault, which needs its cause to be gone; '
+        'warning: spool deviation')
+    assert found['null_shift'].message == (
+        'enabled, mode impedance: initialised; warning: spool deviation')
 
 
 def test_table_list_page_and_json_have_every_fault(found, tmp_path, capsys):
@@ -71,6 +103,7 @@ def test_table_list_page_and_json_have_every_fault(found, tmp_path, capsys):
     assert [one['name'] for one in tree] == list(found)
     for name, own in fault_catalogue().items():
         assert name in text and own.meaning in listed and f'`{name}`' in path.read_text()
+        assert found[name].message in text and found[name].message in path.read_text()
         assert all(key in listed for key in own.values)
     assert f'{VISIBLE:g} steps' in path.read_text() and MEASURED[0] in path.read_text()
 

@@ -1,0 +1,258 @@
+"""
+A node of CANopen: NMT state, objects and process data of one actuator.
+
+States (CiA 301, 7.3.2): initialising -> (boot-up message) preoperational <-> operational,
+stopped. SDO is answered while preoperational and operational, process data are exchanged while
+operational, EMCY is sent in both.
+"""
+
+from collections.abc import Callable, Iterator
+from enum import IntEnum
+
+from isa_ros.fieldbus.canopen.capacity import CyclicFrame
+from isa_ros.fieldbus.canopen.communication import (
+    Communication, ERROR_BEHAVIOUR, ERROR_HISTORY, HEARTBEAT_CONSUMED,
+    HEARTBEAT_PRODUCED, RECEIVE_MAPPINGS, RECEIVE_PARAMETERS, SYNC_ID, SYNC_OVERFLOW,
+    TRANSMIT_MAPPINGS, TRANSMIT_PARAMETERS)
+from isa_ros.fieldbus.canopen.dictionary import mappings, NodeDictionary
+from isa_ros.fieldbus.canopen.errors import (
+    HEARTBEAT_LOST, NodeErrors, PDO_OVERDUE, PDO_TOO_LONG, PDO_TOO_SHORT, SYNC_LENGTH)
+from isa_ros.fieldbus.canopen.heartbeat import HeartbeatConsumer, HeartbeatProducer
+from isa_ros.fieldbus.canopen.identifiers import (
+    HEARTBEAT, LARGEST, SDO_ANSWER, SDO_REQUEST)
+from isa_ros.fieldbus.canopen.pdo import Pdo, ReceivePdo, TransmitPdo
+from isa_ros.fieldbus.canopen.sdo import SdoServer
+from isa_ros.fieldbus.canopen.startup import Startup
+from isa_ros.fieldbus.device import BusDevice
+
+Send = Callable[[int, bytes], None]
+Handler = Callable[[bytes], bool]
+"""Handles the data of a frame; returns whether a cycle has begun."""
+
+
+class NmtState(IntEnum):
+    """States of a node, as its heartbeat has them."""
+
+    INITIALISING = 0x00
+    STOPPED = 0x04
+    OPERATIONAL = 0x05
+    PREOPERATIONAL = 0x7F
+
+
+class NmtCommand(IntEnum):
+    """Commands of the NMT master."""
+
+    START = 0x01
+    STOP = 0x02
+    ENTER_PREOPERATIONAL = 0x80
+    RESET_NODE = 0x81
+    RESET_COMMUNICATION = 0x82
+
+
+_ENTERED = {
+    NmtCommand.START: NmtState.OPERATIONAL, NmtCommand.STOP: NmtState.STOPPED,
+    NmtCommand.ENTER_PREOPERATIONAL: NmtState.PREOPERATIONAL}
+_AFTER_ERROR = (NmtState.PREOPERATIONAL, None, NmtState.STOPPED)
+
+
+class Node:
+    """One actuator on the bus."""
+
+    def __init__(self, device: BusDevice, node: int, step_ns: int, send: Send) -> None:
+        self.device, self.number = device, node
+        self.state = NmtState.INITIALISING
+        receive = mappings(device, RECEIVE_MAPPINGS)
+        transmit = mappings(device, TRANSMIT_MAPPINGS)
+        self.communication = Communication(device.table, node)
+        self.errors = NodeErrors(self.communication, send)
+        self.receive = [ReceivePdo(one - RECEIVE_MAPPINGS + RECEIVE_PARAMETERS, one)
+                        for one in receive]
+        self.transmit = [TransmitPdo(one - TRANSMIT_MAPPINGS + TRANSMIT_PARAMETERS, one)
+                         for one in transmit]
+        self.is_synced = False
+        """Whether a SYNC has begun a cycle that `update` has not ended yet."""
+        self._step_ns = step_ns
+        self._send = send
+        self._sdo = SdoServer(NodeDictionary(
+            device, self.communication, self.errors,
+            is_preoperational=lambda: self.state == NmtState.PREOPERATIONAL,
+            follow=self._follow))
+        self._produced, self._consumed = HeartbeatProducer(), HeartbeatConsumer()
+        self._counter: int | None = None
+        self._has_wrong_sync = False
+        self._startup = Startup(device)
+
+    # NMT
+
+    def boot(self, now: float) -> None:
+        """Send the boot-up message, then be preoperational."""
+        self._send(HEARTBEAT + self.number, bytes([NmtState.INITIALISING]))
+        self.state = NmtState.PREOPERATIONAL
+        self._produced.set_period(self.communication.value(HEARTBEAT_PRODUCED), now)
+
+    def command(self, command: int, now: float) -> None:
+        """Obey the NMT master; unknown commands are ignored."""
+        if command in _ENTERED:
+            self._enter(_ENTERED[NmtCommand(command)])
+        elif command in (NmtCommand.RESET_NODE, NmtCommand.RESET_COMMUNICATION):
+            self._enter(NmtState.INITIALISING)
+            self.communication.reset()
+            self.errors.reset()
+            self._sdo.reset()
+            self._consumed.set_watched([])
+            self._startup.restore(is_whole=command == NmtCommand.RESET_NODE)
+            self.boot(now)
+        self.report_emergencies()
+
+    def lose(self, state: NmtState | None = None) -> None:
+        """Leave operation because the bus is lost, by default as the object 0x1029 says."""
+        if state is None:
+            state = _AFTER_ERROR[self.communication.value(ERROR_BEHAVIOUR, 1)]
+        if self.state == NmtState.OPERATIONAL:
+            if state is None:   # no change: the drive alone takes it as lost
+                self.device.end_operation(is_lost=True)
+                self.device.begin_operation()
+            else:
+                self._enter(state, is_lost=True)
+        self.report_emergencies()
+
+    def _enter(self, state: NmtState, *, is_lost: bool = False) -> None:
+        before, self.state = self.state, state
+        if state == before:
+            return
+        if state == NmtState.OPERATIONAL:
+            for pdo in self.pdos():
+                pdo.begin(self.communication, self.device)
+            self.device.begin_operation()
+        elif before == NmtState.OPERATIONAL:
+            self.is_synced = False
+            self.device.end_operation(is_lost)
+
+    # Frames
+
+    def pdos(self) -> Iterator[Pdo]:
+        """Iterate over the PDOs of both directions."""
+        yield from self.receive
+        yield from self.transmit
+
+    def cyclic_frames(self) -> list[CyclicFrame]:
+        """Return the PDOs that are on, as frames of a cycle."""
+        for pdo in self.pdos():
+            pdo.begin(self.communication, self.device)
+        return [CyclicFrame(pdo.identifier, pdo.size) for pdo in self.pdos() if pdo.is_on]
+
+    def handlers(self) -> Iterator[tuple[int, Handler]]:
+        """Iterate over the identifiers that the node receives, with their handlers."""
+        yield SDO_REQUEST + self.number, self._on_sdo
+        yield self.communication.value(SYNC_ID) & LARGEST, self._on_sync
+        for node in self._consumed.nodes():
+            yield HEARTBEAT + node, self._on_heartbeat(node)
+        if self.state == NmtState.OPERATIONAL:
+            for pdo in self.receive:
+                if pdo.is_on:
+                    yield pdo.identifier, self._on_pdo(pdo)
+
+    def _on_sdo(self, data: bytes) -> bool:
+        if self.is_talking:
+            answer = self._sdo.answer(data)
+            self.report_emergencies()
+            if answer is not None:
+                self._send(SDO_ANSWER + self.number, answer)
+        return False
+
+    def _on_heartbeat(self, node: int) -> Handler:
+        def take(data: bytes) -> bool:
+            self._consumed.take(node)
+            self.errors.end(HEARTBEAT_LOST, is_sent=self.is_talking)
+            return False
+        return take
+
+    def _on_pdo(self, pdo: ReceivePdo) -> Handler:
+        def take(data: bytes) -> bool:
+            if len(data) != pdo.size:
+                if not pdo.has_wrong_length:
+                    code = PDO_TOO_SHORT if len(data) < pdo.size else PDO_TOO_LONG
+                    self.errors.begin(code, pdo.mapping - RECEIVE_MAPPINGS + 1, is_sent=True)
+                pdo.has_wrong_length = True
+                if len(data) < pdo.size:
+                    return False
+            elif pdo.has_wrong_length:
+                pdo.has_wrong_length = False
+                for code in (PDO_TOO_SHORT, PDO_TOO_LONG):
+                    self.errors.end(code, is_sent=True)
+            self.errors.end(PDO_OVERDUE, is_sent=True)
+            pdo.take(data, self.device)
+            return False
+        return take
+
+    def _on_sync(self, data: bytes) -> bool:
+        if self.state != NmtState.OPERATIONAL:
+            return False
+        has_counter = self.communication.value(SYNC_OVERFLOW) > 0
+        if len(data) != has_counter:
+            if not self._has_wrong_sync:
+                self.errors.begin(SYNC_LENGTH, len(data), is_sent=True)
+            self._has_wrong_sync = True
+            return False
+        if self._has_wrong_sync:
+            self._has_wrong_sync = False
+            self.errors.end(SYNC_LENGTH, is_sent=True)
+        self._counter = data[0] if has_counter else None
+        self.is_synced = True
+        for pdo in self.receive:
+            if pdo.is_on:
+                pdo.sync(self.device)
+        return True
+
+    # Time
+
+    def update(self) -> None:
+        """End a cycle: the device has its new sample. Report errors, send process data."""
+        self.report_emergencies()
+        if not self.is_synced:
+            return
+        self.is_synced = False
+        for pdo in self.transmit:
+            if pdo.is_on:
+                data = pdo.due(self.device, self._counter, self._step_ns)
+                if data is not None:
+                    self._send(pdo.identifier, data)
+        self._watch()
+
+    def _watch(self) -> None:
+        overdue = [pdo for pdo in self.receive if pdo.is_on and pdo.is_overdue(self._step_ns)]
+        for pdo in overdue:
+            self.errors.begin(PDO_OVERDUE, pdo.mapping - RECEIVE_MAPPINGS + 1, is_sent=True)
+        lost = self._consumed.lost(self._step_ns)
+        for node in lost:
+            self.errors.begin(HEARTBEAT_LOST, node, is_sent=True)
+        if overdue or lost:
+            self.lose()
+
+    def beat(self, now: float) -> None:
+        """Send a heartbeat if one is due at the wall time ``now`` (s)."""
+        if self._produced.is_due(now):
+            self._send(HEARTBEAT + self.number, bytes([self.state]))
+
+    def next_beat(self, now: float) -> float | None:
+        """Return the wall time (s) until the next heartbeat, None without any."""
+        return self._produced.wait(now)
+
+    @property
+    def is_talking(self) -> bool:
+        """Return whether the state allows SDO and EMCY."""
+        return self.state in (NmtState.PREOPERATIONAL, NmtState.OPERATIONAL)
+
+    def report_emergencies(self) -> None:
+        """Send what the device reports."""
+        for emergency in self.device.emergencies():
+            self.errors.take(emergency, is_sent=self.is_talking)
+
+    def _follow(self, index: int) -> None:
+        """Let a communication object that has been written take effect."""
+        if index == HEARTBEAT_PRODUCED:
+            self._produced.set_period(self.communication.value(index), 0.0)
+        elif index == HEARTBEAT_CONSUMED:
+            self._consumed.set_watched(self.communication.values(index))
+        elif index == ERROR_HISTORY:
+            self.errors.clear_history()

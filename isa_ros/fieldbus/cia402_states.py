@@ -1,0 +1,132 @@
+"""
+States of a CiA 402 drive and what changes them, as data.
+
+The numbers are those of the profile. One transition happens in a tick, so that a master sees each
+state; only what the REU reports by itself (a fault, the end of a stop) may add another one.
+"""
+
+from collections.abc import Mapping
+from enum import Enum
+from typing import NamedTuple
+
+FAULT_RESET = 1 << 7
+"""Bit of the controlword whose rising edge resets a fault."""
+
+
+class State(Enum):
+    """States by name and status word; `STATE_MASK` are the bits that tell."""
+
+    NOT_READY = ('not ready to switch on', 0x00)
+    SWITCH_ON_DISABLED = ('switch on disabled', 0x40)
+    READY = ('ready to switch on', 0x21)
+    SWITCHED_ON = ('switched on', 0x23)
+    OPERATION_ENABLED = ('operation enabled', 0x27)
+    QUICK_STOP = ('quick stop active', 0x07)
+    FAULT_REACTION = ('fault reaction active', 0x0F)
+    FAULT = ('fault', 0x08)
+
+    def __init__(self, words: str, bits: int) -> None:
+        self.words = words
+        self.bits = bits
+
+
+STATE_MASK = 0x6F
+
+
+class Event(Enum):
+    """What may change the state: commands of the control word, and what the REU reports."""
+
+    INITIALISED = 'the first sample'
+    SHUTDOWN = 'shutdown'
+    SWITCH_ON = 'switch on, or disable operation'
+    ENABLE = 'enable operation'
+    DISABLE_VOLTAGE = 'disable voltage'
+    STOP = 'quick stop'
+    LOCAL_STOP = 'a quick stop from elsewhere'
+    DROPPED = 'disabled from elsewhere'
+    STOPPED = 'the REU is disabled'
+    FAULT = 'a fault'
+    REACTION_ENDS = "the REU's outputs are off"
+    RESET = 'fault reset'
+
+
+class Command(NamedTuple):
+    """A pattern of the control word."""
+
+    mask: int
+    value: int
+    event: Event
+
+
+COMMANDS = (
+    Command(0x87, 0x06, Event.SHUTDOWN), Command(0x8F, 0x07, Event.SWITCH_ON),
+    Command(0x8F, 0x0F, Event.ENABLE), Command(0x82, 0x00, Event.DISABLE_VOLTAGE),
+    Command(0x86, 0x02, Event.STOP))
+"""Every pattern; a word that fits none changes nothing."""
+
+REU_DISABLED, ENDS_OFF, STAYS = (
+    'the REU is disabled', 'option code 0 or 2', 'option code 6, and the REU is disabled')
+
+
+class Transition(NamedTuple):
+    """One row of the table of states."""
+
+    number: int
+    state: State
+    event: Event
+    guard: str
+    """A condition besides the event; '': none."""
+    following: State
+    does: str
+
+
+_SHOWN, _OFF = 'nothing', 'the REU is disabled: valve to null'
+_NO_FAULT = tuple(state for state in State if state not in (State.FAULT_REACTION, State.FAULT))
+
+TRANSITIONS = (
+    Transition(1, State.NOT_READY, Event.INITIALISED, '', State.SWITCH_ON_DISABLED, _SHOWN),
+    Transition(2, State.SWITCH_ON_DISABLED, Event.SHUTDOWN, '', State.READY, _SHOWN),
+    Transition(3, State.READY, Event.SWITCH_ON, '', State.SWITCHED_ON, _SHOWN),
+    Transition(3, State.READY, Event.ENABLE, '', State.SWITCHED_ON, 'then transition 4'),
+    Transition(4, State.SWITCHED_ON, Event.ENABLE, REU_DISABLED, State.OPERATION_ENABLED,
+               'the REU is enabled in the mode of operation'),
+    Transition(5, State.OPERATION_ENABLED, Event.SWITCH_ON, '', State.SWITCHED_ON, _OFF),
+    Transition(6, State.SWITCHED_ON, Event.SHUTDOWN, '', State.READY, _SHOWN),
+    Transition(7, State.READY, Event.DISABLE_VOLTAGE, '', State.SWITCH_ON_DISABLED, _SHOWN),
+    Transition(7, State.READY, Event.STOP, '', State.SWITCH_ON_DISABLED, _SHOWN),
+    Transition(8, State.OPERATION_ENABLED, Event.SHUTDOWN, '', State.READY, _OFF),
+    Transition(9, State.OPERATION_ENABLED, Event.DISABLE_VOLTAGE, '', State.SWITCH_ON_DISABLED,
+               _OFF),
+    Transition(9, State.OPERATION_ENABLED, Event.DROPPED, '', State.SWITCH_ON_DISABLED,
+               'it was `~/enable` with false, for example'),
+    Transition(10, State.SWITCHED_ON, Event.DISABLE_VOLTAGE, '', State.SWITCH_ON_DISABLED,
+               _SHOWN),
+    Transition(10, State.SWITCHED_ON, Event.STOP, '', State.SWITCH_ON_DISABLED, _SHOWN),
+    Transition(11, State.OPERATION_ENABLED, Event.STOP, '', State.QUICK_STOP,
+               'the quick stop of the REU; with option code 0 it is disabled'),
+    Transition(11, State.OPERATION_ENABLED, Event.LOCAL_STOP, '', State.QUICK_STOP,
+               'it was `~/quick_stop`, for example'),
+    Transition(12, State.QUICK_STOP, Event.STOPPED, ENDS_OFF, State.SWITCH_ON_DISABLED, _SHOWN),
+    Transition(12, State.QUICK_STOP, Event.DISABLE_VOLTAGE, '', State.SWITCH_ON_DISABLED, _OFF),
+    *(Transition(13, state, Event.FAULT, '', State.FAULT_REACTION,
+                 'the reaction of the condition; of the bus and of the following error a quick '
+                 'stop') for state in _NO_FAULT),
+    Transition(14, State.FAULT_REACTION, Event.REACTION_ENDS, '', State.FAULT, _SHOWN),
+    Transition(15, State.FAULT, Event.RESET, 'its cause is gone', State.SWITCH_ON_DISABLED,
+               'the fault is forgotten'),
+    Transition(16, State.QUICK_STOP, Event.ENABLE, STAYS, State.OPERATION_ENABLED,
+               'the REU is enabled again'),
+)
+"""Every transition after power-on (0); an event without a row for a state is ignored there."""
+
+FOLLOWING: Mapping[tuple[State, Event], Transition] = {
+    (row.state, row.event): row for row in TRANSITIONS}
+"""The row of each state and event."""
+
+
+def command_of(control: int) -> Event | None:
+    """Return the command of a control word; None: it has none."""
+    for mask, value, event in COMMANDS:
+        if control & mask == value:
+            return event
+    return None

@@ -1,0 +1,122 @@
+"""
+States of a CiA 408 device (fluid power) and what changes them, as data.
+
+The bits D, H and M of the control word name the state that is wanted; the device goes there one
+transition a tick. The numbers are those of public manuals of valves with this profile.
+"""
+
+from collections.abc import Mapping
+from enum import Enum
+from typing import NamedTuple
+
+D, H, M, R = 1, 2, 4, 8
+"""Bits of control word and status word; R is the reset of a fault, and ready."""
+STATE_MASK = D | H | M | R
+
+
+class State(Enum):
+    """States by name, bits of the status word, and how far they are: see `level_of`."""
+
+    NOT_READY = ('NOT READY', 0, 0)
+    INIT = ('INIT', R, 0)
+    DISABLED = ('DISABLED', R | D, 1)
+    HOLD = ('HOLD', R | H | D, 2)
+    ACTIVE = ('ACTIVE', R | M | H | D, 3)
+    FAULT_INIT = ('FAULT_INIT', 0, 0)
+    FAULT_DISABLED = ('FAULT_DISABLED', D, 1)
+    FAULT_HOLD = ('FAULT_HOLD', H | D, 2)
+    FAULT_REACTION = ('FAULT_REACTION', M | H | D, 3)
+
+    def __init__(self, words: str, bits: int, level: int) -> None:
+        self.words = words
+        self.bits = bits
+        self.level = level
+
+
+FAULTS = (State.FAULT_INIT, State.FAULT_DISABLED, State.FAULT_HOLD)
+"""States that a reset ends."""
+HOLDING = (State.HOLD, State.ACTIVE, State.FAULT_HOLD, State.FAULT_REACTION)
+"""States in which the outputs of the REU may be on."""
+
+
+class Event(Enum):
+    """What may change the state."""
+
+    INITIALISED = 'the first sample'
+    RISE = 'the control word wants a higher state'
+    FALL = 'the control word wants a lower state'
+    FAULT = 'a fault'
+    REACTION_ENDS = 'the reaction is over'
+    RESET = 'R rises'
+    DROPPED = 'disabled or stopped from elsewhere'
+
+
+MAY_ENABLE, HOLDS, WAS_DISABLED, WAS_INIT, CAUSE_GONE = (
+    'the REU is disabled', 'the REU holds', 'the REU is off, it was DISABLED or above',
+    'the REU is off, it was INIT', 'its cause is gone')
+
+
+class Transition(NamedTuple):
+    """One row of the table of states."""
+
+    number: str
+    state: State
+    event: Event
+    guard: str
+    """A condition besides the event; '': none."""
+    following: State
+    does: str
+
+
+_SHOWN, _OFF = 'nothing', 'the REU is disabled: valve to null'
+_HOLDS = 'the REU is enabled in the control mode, with the hold setpoint'
+
+TRANSITIONS = (
+    Transition('1', State.NOT_READY, Event.INITIALISED, '', State.INIT, _SHOWN),
+    Transition('2', State.INIT, Event.RISE, '', State.DISABLED, _SHOWN),
+    Transition('3', State.DISABLED, Event.RISE, MAY_ENABLE, State.HOLD, _HOLDS),
+    Transition('4', State.HOLD, Event.RISE, '', State.ACTIVE, 'the setpoint of the bus'),
+    Transition('5', State.ACTIVE, Event.FALL, '', State.HOLD, 'the hold setpoint'),
+    Transition('6', State.HOLD, Event.FALL, '', State.DISABLED, _OFF),
+    Transition('7', State.DISABLED, Event.FALL, '', State.INIT, _SHOWN),
+    *(Transition('8', state, Event.FAULT, '', State.FAULT_REACTION,
+                 'the reaction of the condition; of a lost bus the hold setpoint')
+      for state in (State.INIT, State.DISABLED, State.HOLD, State.ACTIVE, State.FAULT_HOLD)),
+    Transition('9', State.FAULT_REACTION, Event.REACTION_ENDS, HOLDS, State.FAULT_HOLD,
+               'the hold setpoint'),
+    Transition('10', State.FAULT_DISABLED, Event.RESET, CAUSE_GONE, State.DISABLED,
+               'the fault is forgotten'),
+    Transition('11', State.FAULT_HOLD, Event.RESET, CAUSE_GONE, State.HOLD,
+               'the fault is forgotten'),
+    Transition('12', State.FAULT_REACTION, Event.REACTION_ENDS, WAS_DISABLED,
+               State.FAULT_DISABLED, _SHOWN),
+    Transition('13', State.FAULT_REACTION, Event.REACTION_ENDS, WAS_INIT, State.FAULT_INIT,
+               _SHOWN),
+    Transition('14', State.FAULT_INIT, Event.RESET, CAUSE_GONE, State.INIT,
+               'the fault is forgotten'),
+    Transition('15', State.FAULT_HOLD, Event.FALL, '', State.FAULT_DISABLED, _OFF),
+    Transition('16', State.FAULT_DISABLED, Event.FALL, '', State.FAULT_INIT, _SHOWN),
+    *(Transition('', state, Event.DROPPED, '', State.DISABLED,
+                 'H must fall before it is enabled again')
+      for state in (State.HOLD, State.ACTIVE)),
+)
+"""Every transition after power-on (0); an event without a row for a state is ignored there."""
+
+FOLLOWING: Mapping[tuple[State, Event], tuple[Transition, ...]] = {
+    (row.state, row.event): tuple(
+        other for other in TRANSITIONS if (other.state, other.event) == (row.state, row.event))
+    for row in TRANSITIONS}
+"""The rows of each state and event; the first whose guard holds counts."""
+
+
+def level_of(control: int) -> int:
+    """Return the state that a control word wants: 0 INIT, 1 DISABLED, 2 HOLD, 3 ACTIVE."""
+    for level, bit in enumerate((D, H, M)):
+        if not control & bit:
+            return level
+    return State.ACTIVE.level
+
+
+def control_of(level: int) -> int:
+    """Return a control word that wants a state."""
+    return (1 << level) - 1

@@ -1,0 +1,161 @@
+"""
+The master of a bus as the source of a run's commands, in real-time pace: a tick is a step of time.
+
+A tick begins when it is due by the host's clock, whether or not the master has sent process data;
+the last ones are used. The line is served until then. Silence of the master for the watchdog's
+time is a loss of the bus, an event of the run. Ticks that come late are made up for.
+"""
+
+from collections.abc import Callable, Iterator, Sequence
+from contextlib import contextmanager
+import os
+import time
+
+from isa_ros.core.signals import Records
+from isa_ros.core.timebase import NS_PER_SECOND
+from isa_ros.fieldbus.line import Line
+from isa_ros.fieldbus.source import FrameSource
+from isa_ros.run.pacing import Pace
+from isa_ros.scenario.faults import ParameterChanges
+
+PRIORITY = 50   # of SCHED_FIFO, in the middle of its range
+N_BINS, BINS_PER_SECOND = 100_000, 1_000_000  # lateness to the microsecond, up to 0.1 s
+
+
+class Lateness:
+    """How late ticks of a length in s began: their number by microseconds of lateness."""
+
+    def __init__(self, step: float) -> None:
+        self._step = step
+        self._counts = [0] * N_BINS
+        self.n_ticks = 0
+        self.n_late = 0
+        """Ticks that began more than a tick late."""
+        self.n_stale = 0
+        """Ticks without new process data."""
+        self.largest = 0.0
+
+    def add(self, seconds: float) -> None:
+        """Count a tick."""
+        self.n_ticks += 1
+        self.n_late += seconds > self._step
+        self.largest = max(self.largest, seconds)
+        self._counts[min(max(int(seconds * BINS_PER_SECOND), 0), N_BINS - 1)] += 1
+
+    def percentile(self, share: float) -> float:
+        """Return the lateness in s that a share of the ticks did not exceed, up to 0.1 s."""
+        left = share * self.n_ticks
+        for k, count in enumerate(self._counts):
+            left -= count
+            if left <= 0.0:
+                return (k + 1) / BINS_PER_SECOND
+        return N_BINS / BINS_PER_SECOND
+
+    def __str__(self) -> str:
+        """Return the summary of a run, one line."""
+        if not self.n_ticks:
+            return 'no tick: no master has sent a control word'
+        p50, p99, largest = (f'{1e6 * seconds:.0f}' for seconds in (
+            self.percentile(0.5), self.percentile(0.99), self.largest))
+        return (f'{self.n_ticks} ticks in real time: lateness p50 {p50} us, p99 {p99} us, max '
+                f'{largest} us; {self.n_late} more than a tick late, {self.n_stale} without new '
+                'process data')
+
+
+class ServedPace(Pace):
+    """Real time: ``serve``, called with the seconds until a tick is due, is what waits."""
+
+    def __init__(
+            self, step_ns: int, serve: Callable[[float], None] = time.sleep,
+            now: Callable[[], float] = time.monotonic) -> None:
+        super().__init__(1.0, now, self._wait)
+        self.serve = serve
+        self.times = Lateness(step_ns / NS_PER_SECOND)
+        """How late the ticks began."""
+
+    def wait(self, t_ns: int, should_stop: Callable[[], bool]) -> None:
+        """Serve until ``t_ns`` is due; return early when a stop is requested."""
+        super().wait(t_ns, should_stop)
+        self.times.add(self.lateness(t_ns))
+
+    def _wait(self, seconds: float) -> None:
+        self.serve(seconds)
+
+
+class RealTimeSource:
+    """
+    A `Source` that never waits once time has begun: ``pace`` serves the line between ticks.
+
+    ``watchdog`` is the silence in s after which the bus counts as lost.
+    """
+
+    def __init__(
+            self, frames: FrameSource, line: Line, pace: ServedPace, watchdog: float,
+            now: Callable[[], float] = time.monotonic) -> None:
+        self._frames, self._line, self._pace = frames, line, pace
+        self._watchdog, self._now = watchdog, now
+        self._last = 0.0
+        self._is_fresh = self._is_watched = False
+        self._events: list[str] = []
+        pace.serve = self.serve
+        self.changes: Callable[[int], ParameterChanges | None] = frames.changes
+
+    def is_due(self, tick: int, samples: Records) -> bool:
+        """Return True once time has begun; before, serve the line for a moment."""
+        if self._frames.has_begun:
+            self._frames.show(tick, samples)
+        elif self._frames.is_due(tick, samples):
+            self._note_cycle()
+        return self._frames.has_begun
+
+    def serve(self, seconds: float) -> None:
+        """Serve the line for at most some seconds, or until a cycle begins."""
+        if self._line.serve(seconds):
+            self._note_cycle()
+
+    def _note_cycle(self) -> None:
+        self._last = self._now()
+        self._is_fresh = self._is_watched = True
+
+    def commands(self, tick: int, out: Records) -> None:
+        """Write what the master commanded last, after the watchdog has looked at its age."""
+        if not self._is_fresh:
+            self.serve(0.0)
+        if not self._is_fresh:
+            self._pace.times.n_stale += 1
+            if self._is_watched and self._now() - self._last > self._watchdog:
+                self._is_watched = False
+                self._line.miss()
+                self._events.append(
+                    f'bus: no process data for {1e3 * self._watchdog:g} ms')
+        self._is_fresh = False
+        self._frames.commands(tick, out)
+
+    def events(self, tick: int) -> Sequence[str]:
+        """Return the trips of the watchdog since the last tick."""
+        events, self._events = self._events, []
+        return events
+
+
+@contextmanager
+def scheduled_first(warn: Callable[[str], object]) -> Iterator[None]:
+    """
+    Schedule this thread before all others (SCHED_FIFO); where this is not allowed, say so.
+
+    Threads that it starts are scheduled as usual.
+    """
+    before = os.sched_getscheduler(0)
+    parameters = os.sched_getparam(0)
+    try:
+        os.sched_setscheduler(
+            0, os.SCHED_FIFO | os.SCHED_RESET_ON_FORK, os.sched_param(PRIORITY))
+    except PermissionError:
+        warn('real-time pace without SCHED_FIFO: ticks may begin milliseconds late; it needs '
+             'CAP_SYS_NICE, or rtprio in /etc/security/limits.conf')
+        yield
+        return
+    try:
+        yield
+    finally:
+        # Without the flag it is refused to a user who may use SCHED_FIFO by a limit.
+        os.sched_setscheduler(0, before | os.SCHED_RESET_ON_FORK, parameters)

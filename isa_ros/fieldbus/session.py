@@ -1,0 +1,118 @@
+"""Sessions whose commands come from the master of a bus."""
+
+from collections.abc import Callable, Iterator, Sequence
+from contextlib import contextmanager
+from dataclasses import dataclass, replace
+
+from isa_ros.config.run_config import RunConfig
+from isa_ros.errors import ConfigError
+from isa_ros.fieldbus.device import BusDevice
+from isa_ros.fieldbus.line import Line
+from isa_ros.fieldbus.real_time import RealTimeSource, scheduled_first, ServedPace
+from isa_ros.fieldbus.request import BusRequest, REAL_TIME
+from isa_ros.fieldbus.source import FrameSource
+from isa_ros.run.session import prepare, Session
+from isa_ros.run.source import Source
+from isa_ros.scenario.scenario import Scenario
+
+OpenLine = Callable[[Sequence[BusDevice], int], Line]
+"""Opens a line with the devices of a run, whose tick has a length in ns."""
+
+Tell = Callable[[str], object]
+"""Prints a line for the user."""
+
+
+@dataclass(frozen=True)
+class BusRun:
+    """A session on a bus; ``pace`` is that of real-time pace, None in frame pace."""
+
+    session: Session
+    pace: ServedPace | None
+
+    @property
+    def summary(self) -> str | None:
+        """Return a line for the end of the run."""
+        return None if self.pace is None else str(self.pace.times)
+
+
+def commanded_by_bus(run: RunConfig) -> RunConfig:
+    """
+    Return a run whose actuators wait for a master to enable them.
+
+    Raises
+    ------
+    ConfigError
+        An actuator has a modelled link, or the run has controllers.
+
+    """
+    if run.linked:
+        raise ConfigError(
+            f'{run.source}: link of {", ".join(run.linked)}: must be none under isa bus, whose '
+            'bus is the link')
+    if run.controllers:
+        raise ConfigError(
+            f'{run.source}: controllers = {", ".join(run.controllers)}: not used under isa bus, '
+            'whose master commands the actuators')
+    return replace(run, actuators=tuple(
+        replace(actuator, auto_enable=False) for actuator in run.actuators))
+
+
+def refuse_tracks(scenario: Scenario) -> None:
+    """
+    Refuse a scenario that commands actuators; its faults, loads and start are welcome.
+
+    Raises
+    ------
+    ConfigError
+        It has tracks.
+
+    """
+    if scenario.tracks:
+        names = ', '.join(track.actuator for track in scenario.tracks)
+        raise ConfigError(
+            f'scenario {scenario.name}: tracks of {names}: not used under isa bus, whose master '
+            'commands the actuators; its faults, loads and start are')
+
+
+def prepare_bus(
+        request: BusRequest, devices_of: Callable[[RunConfig, str], Sequence[BusDevice]],
+        open_line: OpenLine, tell: Tell) -> BusRun:
+    """
+    Return a checked session whose commands come from the master on a line.
+
+    The line is opened when the kernels are compiled and the nodes are ready. ``tell`` prints what
+    happens on the bus.
+
+    Raises
+    ------
+    ConfigError
+        As `isa_ros.run.session.prepare`, or the run cannot be used on a bus.
+
+    """
+    is_real_time = request.pace == REAL_TIME
+    if is_real_time and request.run.real_time_factor is not None:
+        raise ConfigError(
+            f'--real-time-factor {request.run.real_time_factor:g} is not used with '
+            f'--pace {REAL_TIME}; leave one out')
+    session = prepare(request.run, commanded_by_bus)
+    refuse_tracks(session.scenario)
+    run = session.run
+    pace = ServedPace(run.step_ns) if is_real_time else None
+
+    @contextmanager
+    def opened() -> Iterator[Source]:
+        devices = devices_of(run, request.profile)
+        line = open_line(devices, run.step_ns)
+        try:
+            tell(f'{", ".join(device.name for device in devices)} wait for a master on '
+                 f'{request.place}')
+            source = FrameSource(line, devices, session.scenario.changes_at)
+            if pace is None:
+                yield source
+            else:
+                with scheduled_first(tell):
+                    yield RealTimeSource(source, line, pace, 1e-3 * request.watchdog_ms)
+        finally:
+            line.close()
+    return BusRun(
+        replace(session, source=opened, pace=session.pace if pace is None else pace), pace)

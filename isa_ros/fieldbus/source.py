@@ -1,0 +1,80 @@
+"""
+The master of a bus as the source of a run's commands, in frame pace: a cycle is a tick.
+
+Before tick k the devices have the sample of t_k; the line is then served until a cycle begins, and
+what the master has sent by then are the commands of tick k. Simulated time begins with the first
+control word that is not 0; cycles before it are served without ticks, so that a bag does not
+depend on how long a master needs to come up. Host time is not read.
+"""
+
+from collections.abc import Callable, Sequence
+import time
+
+from isa_ros.core.signals import Records
+from isa_ros.fieldbus.device import BusDevice
+from isa_ros.fieldbus.line import Line
+from isa_ros.run.pacing import SLICE_S
+from isa_ros.scenario.faults import ParameterChanges
+
+Faults = Callable[[int], ParameterChanges | None]
+"""Returns the parameters that faults change at a tick; None: none."""
+
+
+class FrameSource:
+    """
+    A `Source` whose ticks are the cycles of a line.
+
+    ``devices`` are in the order of the actuators' rows.
+    """
+
+    def __init__(self, line: Line, devices: Sequence[BusDevice], faults: Faults) -> None:
+        self._line, self._devices, self._faults = line, devices, faults
+        self._shown: int | None = None
+        self.has_begun = False
+        """Whether simulated time has begun."""
+
+    def is_due(self, tick: int, samples: Records) -> bool:
+        """Serve the line for at most `SLICE_S`; return whether the cycle of the tick began."""
+        self.show(tick, samples)
+        end = time.monotonic() + SLICE_S
+        left = SLICE_S
+        while left > 0.0:
+            if self._line.serve(left) and self.begins():
+                return True
+            left = end - time.monotonic()
+        return False
+
+    def show(self, tick: int, samples: Records) -> None:
+        """Give the devices the samples of a tick, once."""
+        if tick == self._shown:
+            return
+        self._shown = tick
+        for device, sample in zip(self._devices, samples):
+            device.take_sample(sample, tick)
+        self._line.update()
+
+    def begins(self) -> bool:
+        """Return whether simulated time runs, now that a cycle has begun."""
+        if not self.has_begun:
+            self.has_begun = any(device.is_wanted for device in self._devices)
+        return self.has_begun
+
+    def commands(self, tick: int, out: Records) -> None:
+        """Write what the master commands."""
+        for device, command in zip(self._devices, out):
+            device.fill_command(command)
+
+    def events(self, tick: int) -> Sequence[str]:
+        """Return no events."""
+        return ()
+
+    def changes(self, tick: int) -> ParameterChanges | None:
+        """Return the faults of the tick, and what the master has written over SDO."""
+        faults = self._faults(tick)
+        written = {row: values for row, device in enumerate(self._devices)
+                   if (values := device.changes())}
+        if faults is None or not written:
+            return ParameterChanges(written, {}) if written else faults
+        return faults._replace(actuators={
+            row: {**faults.actuators.get(row, {}), **written.get(row, {})}
+            for row in sorted({*faults.actuators, *written})})

@@ -1,0 +1,51 @@
+"""Where the commands of a run come from: its scenario, or the master of a bus."""
+
+from collections.abc import Sequence
+from typing import Protocol
+
+from isa_ros.core.signals import Records
+from isa_ros.scenario.faults import ParameterChanges
+from isa_ros.scenario.scenario import Scenario
+
+
+class Source(Protocol):
+    """
+    Commands and changes of parameters, tick by tick.
+
+    For each tick the run calls `is_due` until it is true, then the others, in their order here.
+    """
+
+    def is_due(self, tick: int, samples: Records) -> bool:
+        """
+        Return whether the commands of a tick are there, after at most a moment's wait.
+
+        ``samples`` are the `SAMPLE` rows at the tick's start, (n_actuators,).
+        """
+        ...
+
+    def commands(self, tick: int, out: Records) -> None:
+        """Overwrite the `COMMAND` rows of a tick, (n_actuators,), where it commands."""
+        ...
+
+    def events(self, tick: int) -> Sequence[str]:
+        """Return what happened since the last tick and belongs into the bag."""
+        ...
+
+    def changes(self, tick: int) -> ParameterChanges | None:
+        """Return the parameters that change at a tick; None: none."""
+        ...
+
+
+class ScenarioSource:
+    """The commands and faults of a scenario, which never wait."""
+
+    def __init__(self, scenario: Scenario) -> None:
+        self.commands, self.changes = scenario.commands, scenario.changes_at
+
+    def is_due(self, tick: int, samples: Records) -> bool:
+        """Return True."""
+        return True
+
+    def events(self, tick: int) -> Sequence[str]:
+        """Return no events."""
+        return ()

@@ -1,0 +1,154 @@
+"""The SDO server: expedited and segmented transfers, and each abort code."""
+
+from hypothesis import given, strategies as st
+from isa_ros.fieldbus.abort import NO_OBJECT, SdoAbort
+from isa_ros.fieldbus.canopen.sdo import MOST_BYTES, SdoServer
+import pytest
+
+NUMBER, TEXT = (0x2000, 1), (0x2001, 0)
+
+
+class Values:
+    """A dictionary of a number of 4 bytes and a text."""
+
+    def __init__(self) -> None:
+        self.content = {NUMBER: b'\x01\x02\x03\x04', TEXT: b''}
+
+    def read(self, index: int, subindex: int) -> bytes:
+        self.size(index, subindex)
+        return self.content[index, subindex]
+
+    def write(self, index: int, subindex: int, data: bytes) -> None:
+        self.size(index, subindex)
+        self.content[index, subindex] = data
+
+    def size(self, index: int, subindex: int) -> int:
+        if (index, subindex) not in self.content:
+            raise SdoAbort(NO_OBJECT)
+        return 4 if (index, subindex) == NUMBER else 0
+
+
+def request(command: int, key: tuple[int, int], data: bytes = b'') -> bytes:
+    index, subindex = key
+    return (bytes([command]) + index.to_bytes(2, 'little') + bytes([subindex]) + data).ljust(
+        8, b'\0')
+
+
+def uploaded(server: SdoServer, key: tuple[int, int]) -> bytes:
+    """Read an object as a client does; each answer has the toggle bit of its request."""
+    answer = server.answer(request(0x40, key))
+    if answer[0] & 2:
+        return answer[4:8 - (answer[0] >> 2 & 3)]
+    size, data, toggle = int.from_bytes(answer[4:], 'little'), b'', 0
+    while True:
+        answer = server.answer(bytes([0x60 | toggle]) + bytes(7))
+        assert answer[0] & 0xF0 == toggle
+        data += answer[1:8 - (answer[0] >> 1 & 7)]
+        toggle ^= 0x10
+        if answer[0] & 1:
+            assert len(data) == size
+            return data
+
+
+def downloaded(server: SdoServer, key: tuple[int, int], data: bytes, announced: int) -> bytes:
+    """Write an object in segments; return the last answer."""
+    answer = server.answer(request(0x21, key, announced.to_bytes(4, 'little')))
+    toggle = 0
+    while answer[0] != 0x80:
+        part, data = data[:7], data[7:]
+        command = toggle | 7 - len(part) << 1 | (0 if data else 1)
+        answer = server.answer(bytes([command]) + part.ljust(7, b'\0'))
+        toggle ^= 0x10
+        if not data:
+            break
+    return answer
+
+
+def code(answer: bytes | None) -> int:
+    assert answer is not None and answer[0] == 0x80
+    return int.from_bytes(answer[4:], 'little')
+
+
+@given(st.binary(max_size=60))
+def test_what_is_written_in_segments_is_read_back(data):
+    values = Values()
+    server = SdoServer(values)
+    answer = downloaded(server, TEXT, data, len(data))
+    assert answer[0] >> 5 == 1
+    assert values.content[TEXT] == data
+    assert uploaded(server, TEXT) == data
+
+
+@pytest.mark.parametrize('size', [1, 2, 3, 4])
+def test_up_to_four_bytes_are_one_frame(size):
+    server = SdoServer(Values())
+    command = 0x23 | 4 - size << 2
+    assert server.answer(request(command, TEXT, b'abcd')) == request(0x60, TEXT)
+    assert uploaded(server, TEXT) == b'abcd'[:size]
+
+
+def test_an_expedited_download_without_size_has_that_of_the_type():
+    values = Values()
+    SdoServer(values).answer(request(0x22, NUMBER, b'wxyz'))
+    assert values.content[NUMBER] == b'wxyz'
+
+
+@pytest.mark.parametrize('data', [b'', b'\x40', bytes(7), bytes(9)])
+def test_a_frame_of_other_than_eight_bytes_is_no_request(data):
+    assert SdoServer(Values()).answer(data) is None
+
+
+@pytest.mark.parametrize(('command', 'name'), [(0xA0, 'upload'), (0xC6, 'download')])
+def test_block_transfers_are_refused(command, name):
+    answer = SdoServer(Values()).answer(request(command, NUMBER))
+    assert code(answer) == 0x05040001
+    assert answer[1:4] == b'\x00\x20\x01'
+
+
+@pytest.mark.parametrize('command', [0x00, 0x60, 0x71])
+def test_a_segment_without_a_transfer_is_refused(command):
+    assert code(SdoServer(Values()).answer(bytes([command]) + bytes(7))) == 0x05040001
+
+
+def test_a_segment_with_the_same_toggle_bit_is_refused_and_ends_the_transfer():
+    values = Values()
+    server = SdoServer(values)
+    server.answer(request(0x21, TEXT, (20).to_bytes(4, 'little')))
+    server.answer(b'\x00abcdefg')
+    assert code(server.answer(b'\x00abcdefg')) == 0x05030000
+    assert code(server.answer(b'\x10abcdefg')) == 0x05040001
+    assert values.content[TEXT] == b''
+
+
+@pytest.mark.parametrize(('announced', 'expected'), [(3, 0x06070012), (30, 0x06070013)])
+def test_another_length_than_announced_is_refused(announced, expected):
+    values = Values()
+    assert code(downloaded(SdoServer(values), TEXT, b'0123456789', announced)) == expected
+    assert values.content[TEXT] == b''
+
+
+def test_a_value_that_is_too_long_is_refused_before_and_while_it_is_sent():
+    server = SdoServer(Values())
+    assert code(server.answer(
+        request(0x21, TEXT, (MOST_BYTES + 1).to_bytes(4, 'little')))) == 0x05040005
+    answer = server.answer(request(0x20, TEXT))
+    toggle, sent = 0, 0
+    while answer[0] != 0x80:
+        answer = server.answer(bytes([toggle]) + bytes(7))
+        toggle, sent = toggle ^ 0x10, sent + 7
+    assert code(answer) == 0x05040005
+    assert MOST_BYTES < sent <= MOST_BYTES + 7
+
+
+def test_an_abort_of_the_client_ends_the_transfer_without_an_answer():
+    server = SdoServer(Values())
+    server.answer(request(0x21, TEXT))
+    assert server.answer(request(0x80, TEXT)) is None
+    assert code(server.answer(bytes(8))) == 0x05040001
+
+
+def test_what_the_dictionary_refuses_is_aborted_with_its_object():
+    answer = SdoServer(Values()).answer(request(0x40, (0x1234, 5)))
+    assert answer == bytes([0x80, 0x34, 0x12, 5]) + (0x06020000).to_bytes(4, 'little')
+    answer = downloaded(SdoServer(Values()), (0x1234, 5), b'12345', 5)
+    assert code(answer) == 0x06020000
