@@ -35,7 +35,8 @@ class Plan:
 
     bag: str
     options: tuple[str, ...] = ()
-    """Of `isa bus ethercat`, besides interface, bag and ``--no-ros``."""
+    """Of `isa bus ethercat`, besides interface and bag."""
+    has_ros: bool = False
     config: str = 'leg'
     stalls: int = 0
     """Pauses of the example's master, of up to 0.3 s."""
@@ -55,7 +56,7 @@ def main(arguments: Sequence[str]) -> None:
         os.sched_setscheduler(0, os.SCHED_FIFO, os.sched_param(FIFO))
     printed = io.StringIO()
     with served('ethercat', plan.config, '--interface', SLAVE_END, '--out', plan.bag,
-                *plan.options) as slaves, redirect_stdout(printed):
+                *plan.options, has_ros=plan.has_ros) as slaves, redirect_stdout(printed):
         lost = blind(plan) if plan.is_blind else example(plan)
     Path(arguments[1]).write_text(json.dumps({
         'printed': printed.getvalue().splitlines(), 'lines': slaves.lines, 'lost': lost,

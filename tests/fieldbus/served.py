@@ -2,6 +2,7 @@
 
 from collections.abc import Iterator
 from contextlib import contextmanager
+import os
 import random
 import signal
 import subprocess
@@ -35,10 +36,11 @@ class Served:
 
 
 @contextmanager
-def served(*arguments: str) -> Iterator[Served]:
-    """Start `isa bus` without ROS; after an error of the master interrupt it."""
+def served(*arguments: str, has_ros: bool = False) -> Iterator[Served]:
+    """Start `isa bus`; after an error of the master interrupt it."""
     process = subprocess.Popen(
-        [sys.executable, '-m', 'isa_ros', 'bus', *arguments, '--no-ros'],
+        [sys.executable, '-m', 'isa_ros', 'bus', *arguments, *(() if has_ros else ('--no-ros',))],
+        env={**os.environ, 'ROS_DOMAIN_ID': '1'},   # the namespace has no other node
         stdin=subprocess.DEVNULL, stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True)
     own = Served(process)
     try:

@@ -90,6 +90,11 @@ def test_the_bag_is_replayed_without_a_master(free: Ended):
     assert report.report.ticks == TICKS + 1
 
 
+@pytest.mark.ros
+def test_nodes_beside_the_bus_change_no_byte(free: Ended, tmp_path: Path):
+    assert example(tmp_path, 'with_nodes', has_ros=True).sha256 == free.sha256
+
+
 def test_a_master_that_stalls_gives_the_same_bytes(free: Ended, tmp_path: Path):
     """Eight times for up to 0.3 s; no watchdog trips, for it counts simulated time."""
     stalled = example(tmp_path, 'stalled', stalls=8)
