@@ -186,7 +186,7 @@ def lost(nth: str) -> Mapping[str, Any]:
         first, counters = inputs(master)[0][0], []
         for k in range(_CYCLES):
             command(master, k)
-            counters.append(cycle(master, 20_000))
+            counters.append(cycle(master))
         command(master, 0)
         while cycle(master) < 0:
             pass
