@@ -11,15 +11,15 @@ from enum import IntEnum
 
 from isa_ros.fieldbus.canopen.capacity import CyclicFrame
 from isa_ros.fieldbus.canopen.communication import (
-    Communication, ERROR_BEHAVIOUR, ERROR_HISTORY, HEARTBEAT_CONSUMED,
-    HEARTBEAT_PRODUCED, RECEIVE_MAPPINGS, RECEIVE_PARAMETERS, SYNC_ID, SYNC_OVERFLOW,
-    TRANSMIT_MAPPINGS, TRANSMIT_PARAMETERS)
+    Communication, ERROR_BEHAVIOUR, ERROR_HISTORY, HEARTBEAT_CONSUMED, HEARTBEAT_PRODUCED,
+    RECEIVE_MAPPINGS, RECEIVE_PARAMETERS, SYNC_ID, SYNC_OVERFLOW, TRANSMIT_MAPPINGS,
+    TRANSMIT_PARAMETERS)
 from isa_ros.fieldbus.canopen.dictionary import mappings, NodeDictionary
 from isa_ros.fieldbus.canopen.errors import (
-    BUS_OVERFULL, HEARTBEAT_LOST, NodeErrors, PDO_OVERDUE, PDO_TOO_LONG, PDO_TOO_SHORT, SYNC_LENGTH)
+    BUS_OVERFULL, HEARTBEAT_LOST, NodeErrors, PDO_OVERDUE, PDO_TOO_LONG, PDO_TOO_SHORT,
+    SYNC_LENGTH)
 from isa_ros.fieldbus.canopen.heartbeat import HeartbeatConsumer, HeartbeatProducer
-from isa_ros.fieldbus.canopen.identifiers import (
-    HEARTBEAT, LARGEST, SDO_ANSWER, SDO_REQUEST)
+from isa_ros.fieldbus.canopen.identifiers import HEARTBEAT, LARGEST, SDO_ANSWER, SDO_REQUEST
 from isa_ros.fieldbus.canopen.pdo import Pdo, ReceivePdo, TransmitPdo
 from isa_ros.fieldbus.canopen.sdo import SdoServer
 from isa_ros.fieldbus.canopen.startup import Startup
