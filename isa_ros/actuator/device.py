@@ -4,7 +4,7 @@ from isa_ros.core.device import (
     CLEAR, DISABLE, DISABLED, ENABLE, ENABLED, FAULT, INITIALISING, state_name, STOP)
 from isa_ros.core.signals import COMMAND, HAS_CLEAR_FAULT, HAS_ENABLE, HAS_MODE, HAS_QUICK_STOP
 from isa_ros.reu.device import TRANSITIONS
-from isa_ros.reu.protection import is_cause_gone
+from isa_ros.reu.reactions import is_cause_gone
 from isa_ros.reu.wiring import first_mode, mode_of, Reu
 import numpy as np
 
@@ -44,7 +44,7 @@ def refusal_of(
     kinds, state = int(command['kinds']), int(reu.status.state)
     if state == INITIALISING and reu.status.auto_enable:
         state = ENABLED
-    is_gone = is_cause_gone(constants.protection, reu.protection)
+    is_gone = is_cause_gone(constants.protection, reu)
     if int(pending.kinds) & HAS_CLEAR_FAULT and is_gone and state == FAULT:
         state = DISABLED
     if int(pending.kinds) & HAS_ENABLE and state in (DISABLED, ENABLED):

@@ -22,7 +22,7 @@ from isa_ros.plant.plant import exact_force, PLANT, sense
 from isa_ros.plant.thermal import warm
 from isa_ros.reu.cascade import cascade_step, is_due, REU
 from isa_ros.reu.device import write_device
-from isa_ros.reu.protection import protect, setpoint_in_force
+from isa_ros.reu.reactions import protect, setpoint_in_force
 import numpy as np
 
 ACTUATOR = np.dtype([

@@ -47,8 +47,10 @@ class LinkSheet(Parameters):
     kind: str = choice(
         'the wire; none: commands and samples arrive at once', *KINDS, source=_ASSUMED)
     cycle_ms: float = _off('time from frame to frame; 0: the tick', 'ms', 100.0)
-    delay_cycles: float = _off('time on the way, whole cycles', 'cycles', float(MOST_CYCLES))
-    jitter_us: float = _off('largest additional time on the way, uniform from 0', 'us', 1e5)
+    delay_cycles: float = _off(
+        'time on the way, whole cycles', 'cycles', float(MOST_CYCLES), changeable=True)
+    jitter_us: float = _off(
+        'largest additional time on the way, uniform from 0', 'us', 1e5, changeable=True)
     loss: float = _off(
         'probability that a frame is lost, each way', '1', 1.0, changeable=True)
     watchdog_ms: float = _off(

@@ -8,7 +8,7 @@ references that are not reported.
 from isa_ros.core.kernel import kernel
 from isa_ros.plant.coil import coil_current
 from isa_ros.reu.bumpless import pressure_reference
-from isa_ros.reu.protection import setpoint_in_force
+from isa_ros.reu.reactions import setpoint_in_force
 import numpy as np
 
 STATES = np.dtype([

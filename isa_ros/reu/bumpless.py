@@ -10,7 +10,7 @@ current and fades with a time constant. So the current is continuous whatever th
 from isa_ros.core.device import CURRENT, FORCE, IMPEDANCE, POSITION, PRESSURE, SPOOL
 from isa_ros.core.kernel import kernel
 from isa_ros.reu.block import rest, uncompensated, uncompensated_for
-from isa_ros.reu.protection import setpoint_in_force
+from isa_ros.reu.reactions import setpoint_in_force
 from isa_ros.reu.schedule import scheduled
 from isa_ros.reu.wiring import OFF, PID
 import numpy as np

@@ -26,7 +26,8 @@ from isa_ros.reu.bumpless import FADE, start_setpoint, take_over
 from isa_ros.reu.device_sheet import Device
 from isa_ros.reu.impedance import SETPOINT
 from isa_ros.reu.protection import DISABLE as REACTS_BY_DISABLE
-from isa_ros.reu.protection import is_cause_gone, QUICK_STOP as REACTS_BY_QUICK_STOP, request_clear
+from isa_ros.reu.protection import QUICK_STOP as REACTS_BY_QUICK_STOP, request_clear
+from isa_ros.reu.reactions import is_cause_gone
 from isa_ros.reu.wiring import first_mode, IMPEDES, possible_modes, Reu
 import numpy as np
 
@@ -159,7 +160,7 @@ def take_requests(step, reu, state):
     """Execute the commands that took effect since the last step."""
     own = state.status
     if own.requests & HAS_CLEAR_FAULT:
-        is_gone = int(is_cause_gone(reu.protection, state.protection))
+        is_gone = int(is_cause_gone(reu.protection, state))
         if happens(CLEAR, is_gone, step, reu, own):
             request_clear(state.protection)
     if own.requests & HAS_MODE and own.requested_mode != own.mode:

@@ -1,5 +1,5 @@
 """
-The REU's protection: measures every condition, judges it, and reacts.
+The REU's protection: measures every condition and judges it; `isa_ros.reu.reactions` reacts.
 
 A condition counts once its quantity has been beyond a level at as many conversions in a row as
 its delay has; it ends when the quantity is back by the hysteresis. A trip whose reaction stops
@@ -11,13 +11,13 @@ import math
 from typing import NamedTuple
 
 from isa_ros.core.conditions import BITS, CONDITIONS, REACTIONS
+from isa_ros.core.device import POSITION
 from isa_ros.core.kernel import kernel
 from isa_ros.core.record import record
 from isa_ros.core.timebase import PLANT_STEP
 from isa_ros.core.units import MILLI
 from isa_ros.reu.impedance import SETPOINT
-from isa_ros.reu.plausibility import (
-    acceleration_step, EVIDENCE, EVIDENCE_STATE, jump_speed, spool_deviation, unexplained_force)
+from isa_ros.reu.plausibility import EVIDENCE, EVIDENCE_STATE, jump_speed, unexplained_force
 from isa_ros.reu.protection_sheet import levels_of, Protection
 import numpy as np
 
@@ -175,8 +175,21 @@ def is_met(excess, level, end, was_met, count, delay):
 
 
 @kernel
-def judge_one(k, step, protection, own):
-    """Update count and bits of condition ``k`` at plant step ``step``."""
+def reaction_of(k, mode, protection):
+    """
+    Return the reaction to a trip of condition ``k`` in a mode.
+
+    Without a position block there is nothing that holds or damps: then it is a quick stop.
+    """
+    reaction = protection.reaction[k]
+    if HOLD <= reaction <= DAMP and mode < POSITION:
+        return QUICK_STOP
+    return reaction
+
+
+@kernel
+def judge_one(k, step, mode, protection, own):
+    """Update count and bits of condition ``k`` at plant step ``step`` in a mode."""
     bit, excess = 1 << k, protection.sign[k] * own.values[k]
     own.warning_count[k] = own.warning_count[k] + 1 if excess > protection.warning[k] else 0
     own.trip_count[k] = own.trip_count[k] + 1 if excess > protection.trip[k] else 0
@@ -186,7 +199,8 @@ def judge_one(k, step, protection, own):
                    own.warning_count[k], protection.delay[k])
     met = is_met(excess, protection.trip[k], protection.trip_end[k], was_met,
                  own.trip_count[k], protection.delay[k])
-    trips = met or was_tripped and own.clears == 0 and protection.reaction[k] >= QUICK_STOP
+    trips = met or (
+        was_tripped and own.clears == 0 and reaction_of(k, mode, protection) >= QUICK_STOP)
     if warns and not was_warned:
         own.warning_since[k] = step
     if trips and not was_tripped:
@@ -199,82 +213,14 @@ def judge_one(k, step, protection, own):
 
 
 @kernel
-def judge(step, protection, own):
-    """Update the bits of all conditions from ``own.values``."""
+def judge(step, mode, protection, own):
+    """Update the bits of all conditions from ``own.values``, in a mode."""
     for k in range(N):
         if protection.sign[k] * own.values[k] > protection.quiet[k] or own.busy >> k & 1:
-            judge_one(k, step, protection, own)
+            judge_one(k, step, mode, protection, own)
     own.clears = 0
     if own.trips & own.first == 0:  # cleared; of several trips that are left, the lowest bit
         own.first = own.trips & -own.trips
-
-
-@kernel
-def worsening(k, velocity, measured, stroke):
-    """Return the direction in which a command of the valve makes condition ``k`` worse."""
-    if k == END_OF_STROKE:
-        extends = measured.position > 0.5 * stroke
-    elif k == OVERSPEED:
-        extends = velocity > 0.0
-    elif k == OVERLOAD:
-        extends = measured.force > 0.0
-    else:
-        extends = measured.pressure_a > measured.pressure_b
-    return EXTENDING if extends else RETRACTING
-
-
-@kernel
-def react(protection, state):
-    """
-    Take the strongest reaction of the trips of a `REU_STATE`.
-
-    hold: the position measured at the trip is the setpoint. damp: an impedance without
-    stiffness. The device reacts to quick_stop and disable.
-    """
-    own, before = state.protection, state.protection.reaction
-    own.reaction, own.inhibited = NONE, 0
-    for k in range(N):
-        if own.trips >> k & 1:
-            own.reaction = max(own.reaction, protection.reaction[k])
-            if protection.reaction[k] == LIMIT:
-                own.inhibited |= worsening(
-                    k, state.speed.velocity, state.measured, protection.stroke)
-    if HOLD <= own.reaction <= DAMP:
-        if own.reaction == DAMP or not HOLD <= before <= DAMP:
-            own.setpoint.position = state.measured.position
-        own.setpoint.stiffness = 0.0 if own.reaction == DAMP else state.setpoint.stiffness
-        own.setpoint.damping = state.setpoint.damping
-
-
-@kernel
-def protect(step, supply_pressure, temperature, protection, state):
-    """Measure, judge and react at one conversion; ``state`` is a `REU_STATE`."""
-    own = state.protection
-    acceleration_step(step, state.speed.velocity, protection.evidence, own.evidence)
-    measure(supply_pressure, temperature, state.speed.velocity, state.measured,
-            state.status.is_on, protection, own)
-    own.values[LINK_LOST] = state.link_silence
-    own.values[SPOOL_DEVIATION] = spool_deviation(state, protection.evidence)
-    judge(step, protection, own)
-    if own.trips != 0 or own.reaction != NONE:
-        react(protection, state)
-
-
-@kernel
-def setpoint_in_force(state):
-    """Return the setpoint that the blocks of a `REU_STATE` follow: its own, a stop's, a trip's."""
-    if state.status.is_stopping:
-        return state.status.stop
-    if HOLD <= state.protection.reaction <= DAMP:
-        return state.protection.setpoint
-    return state.setpoint
-
-
-@kernel
-def is_inhibited(command, own):
-    """Return whether a command of the valve is in a direction that a reaction inhibits."""
-    return (command > 0.0 and own.inhibited & EXTENDING != 0
-            or command < 0.0 and own.inhibited & RETRACTING != 0)
 
 
 @kernel
@@ -287,12 +233,3 @@ def feed(own):
 def request_clear(own):
     """Let the next conversion clear the trips whose condition has ended."""
     own.clears = 1
-
-
-@kernel
-def is_cause_gone(protection, own):
-    """Return whether the condition of every trip that stops the actuator has ended."""
-    for k in range(N):
-        if own.present >> k & 1 and protection.reaction[k] >= QUICK_STOP:
-            return False
-    return True

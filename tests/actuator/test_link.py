@@ -255,6 +255,42 @@ def test_no_frame_overtakes_another_one_and_kernels_equal_their_source(changes):
     assert all(count <= 10 for slot, count in (e for e in logs[0] if len(e) == 2))
 
 
+def test_a_delay_that_changes_during_a_run_keeps_the_order_of_the_frames():
+    """Longer from tick 10 on: two ticks bring no frame. Shorter from 20 on: tick 22 has three."""
+    own = actuator(linked(delay_cycles=1.0))
+    applied = []
+    for k in range(30):
+        if k in (10, 20):
+            own.tune({'link.delay_cycles': 3.0 if k == 10 else 1.0})
+        own.accept(setpoint(position=0.05 + 1e-5 * k))
+        own.tick()
+        applied.append(round((own.sample.position_reference - 0.05) / 1e-5))
+    assert applied[1:] == [
+        *range(10), 9, 9, *range(10, 19), *range(21, 29)]
+
+
+def test_a_jitter_that_changes_during_a_run_makes_frames_late():
+    own = actuator(linked())
+    due = []
+    for jitter_us in (0.0, 800.0, 0.0):
+        own.tune({'link.jitter_us': jitter_us})
+        for _ in range(20):
+            own.accept(setpoint(position=0.06))
+            own.tick()
+            due.append(int(own.applied.due_step) % STEPS)
+    assert set(due[1:20]) == set(due[41:]) == {0} and 0 < max(due[20:40]) <= 40
+
+
+@pytest.mark.parametrize(('values', 'message'), [
+    ({'link.delay_cycles': 4.0}, 'watchdog_ms = 3.5 ms, must be > 4 ms'),
+    ({'link.delay_cycles': 0.5}, 'delay_cycles = 0.5 cycles, must be a whole number'),
+    ({'link.jitter_us': 1500.0}, 'jitter_us = 1500 us, must be <= cycle_ms = 1 ms')])
+def test_a_link_is_not_changed_into_one_that_cannot_be(values, message):
+    own = actuator(linked(watchdog_ms=3.5))
+    with pytest.raises(ConfigError, match=message):
+        own.tune(values)
+
+
 def test_the_watchdog_trips_at_its_step_and_recovers_with_the_next_frame():
     """Frames to 10 ms, then none: lost 3.5 ms later, at step 500 + 175; back at 20 ms."""
     own = actuator(linked(watchdog_ms=3.5))

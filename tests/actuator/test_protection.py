@@ -4,9 +4,9 @@ from typing import Any
 
 from isa_ros.actuator.actuator import SmartActuator, Timing
 from isa_ros.core.conditions import BITS, conditions
-from isa_ros.core.device import FAULT
-from isa_ros.core.signals import COMMAND, HAS_CLEAR_FAULT, HAS_ENABLE
-from isa_ros.reu.protection import protect
+from isa_ros.core.device import ENABLED, FAULT, FAULT_REACTION, FORCE
+from isa_ros.core.signals import COMMAND, HAS_CLEAR_FAULT, HAS_ENABLE, HAS_MODE, HAS_SETPOINT
+from isa_ros.reu.reactions import protect
 from isa_ros.reu.reports import reports
 import numpy as np
 import pytest
@@ -72,6 +72,49 @@ def test_the_watchdog_damps() -> None:
         ticks(actuator, 1)
         damping = actuator.memory.reu['setpoint']['damping'][0]
         assert actuator.sample.force_reference == -damping * actuator.sample.velocity
+
+
+@pytest.mark.parametrize('reaction', ['hold', 'damp'])
+def test_in_the_mode_of_the_force_the_watchdog_stops_quickly(reaction: str) -> None:
+    """
+    With a force of 0 N the load of 50 kg would go on at its 0.04 m/s, 7.6 mm in 190 ms.
+
+    The position block of the stop bears the 100 N of the setpoint with 1e5 N/m, 1 mm, and needs
+    0.08 mm to rest at 10 m/s2.
+    """
+    actuator = protected(setpoint_timeout_ms=20.0, setpoint_timeout_reaction=reaction)
+    command = setpoint(effort=100.0)
+    command['kinds'], command['mode'] = HAS_SETPOINT | HAS_MODE, FORCE
+    actuator.accept(command)
+    ticks(actuator, 22)
+    assert conditions(actuator.sample.trips) == ['setpoint_timeout']
+    assert actuator.sample.device_state == FAULT_REACTION
+    at = float(actuator.sample.position)
+    ticks(actuator, 190)
+    assert 5e-4 < actuator.sample.position - at < 1.1e-3
+    assert abs(actuator.sample.velocity) < 5e-3
+    ticks(actuator, 50)
+    assert actuator.sample.device_state == FAULT and actuator.sample.current_reference == 0.0
+    clear(actuator)
+    ticks(actuator, 1)
+    assert (actuator.sample.device_state, actuator.sample.trips) == (ENABLED, 0.0)
+
+
+@pytest.mark.parametrize('variant', ['valve_amplifier', 'pressure_control'])
+def test_without_any_position_block_the_watchdog_closes_the_valve(variant: str) -> None:
+    """At once: there is nothing else that a quick stop can do."""
+    sheet = actuator_sheet('isa_v5', 'default', variant)
+    for key, value in (('timeout_ms', 5.0), ('timeout_reaction', 'hold')):
+        sheet = override(sheet, f'reu.protection.setpoint_{key}', value)
+    actuator = smart_actuator('isa_v5', 'mass', sheet=sheet, timing=TICK)
+    actuator.accept(setpoint(effort=2e-3 if variant == 'valve_amplifier' else 2e6))
+    ticks(actuator, 5)
+    assert actuator.sample.current_reference != 0.0
+    ticks(actuator, 1)
+    assert conditions(actuator.sample.trips) == ['setpoint_timeout']
+    assert actuator.sample.device_state == FAULT_REACTION
+    ticks(actuator, 100)
+    assert abs(actuator.sample.current_reference) < 1e-9
 
 
 def test_a_tripped_actuator_is_in_fault_until_it_is_cleared() -> None:

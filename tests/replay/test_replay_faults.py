@@ -16,9 +16,9 @@ from isa_ros.scripting.result import Result, simulated
 from isa_ros.scripting.run import load
 from isa_ros.simulation import Simulation
 import pytest
-from tests.runs import ACCUMULATOR, hip_and_knee
+from tests.runs import ACCUMULATOR, BUS, hip_and_knee
 
-RUN = hip_and_knee([SupplyConfig('pump', ACCUMULATOR, ('hip', 'knee'))])
+RUN = hip_and_knee([SupplyConfig('pump', ACCUMULATOR, ('hip', 'knee'))], BUS)
 TICKS = 120
 FEW, MANY = 2, 100
 

@@ -10,6 +10,7 @@ from isa_ros.errors import ParameterError
 from isa_ros.reu import protection
 from isa_ros.reu.protection import request_clear
 from isa_ros.reu.protection_sheet import levels_of, Protection
+from isa_ros.reu.reactions import protect
 import numpy as np
 import pytest
 from tests.reu.watched import only, PERIOD, RATINGS, READINGS, STROKE, Watched
@@ -185,7 +186,7 @@ def test_a_trip_is_the_same_in_plain_python() -> None:
                 found.append(watched.state.tobytes())
         assert watched.own.trips and watched.own.warnings
         return found
-    assert states(protection.protect) == states(protection.protect.py_func)
+    assert states(protect) == states(protect.py_func)
 
 
 @given(

@@ -4,9 +4,11 @@ from dataclasses import replace
 
 from hypothesis import given, settings, strategies as st
 from isa_ros.core.conditions import BITS
+from isa_ros.core.device import CURRENT, FORCE, PRESSURE, SPOOL
 from isa_ros.core.parameter import defaults
-from isa_ros.reu.protection import feed, is_inhibited, setpoint_in_force
+from isa_ros.reu.protection import feed, NONE, QUICK_STOP, request_clear
 from isa_ros.reu.protection_sheet import levels_of, Protection
+from isa_ros.reu.reactions import is_cause_gone, is_inhibited, setpoint_in_force
 import pytest
 from tests.reu.watched import off, only, Watched
 
@@ -34,6 +36,27 @@ def test_damp_is_damping_without_stiffness() -> None:
     watched.show('overload', 0.0)
     watched.convert()
     assert setpoint_in_force(watched.state).stiffness == 1e5
+
+
+@pytest.mark.parametrize('mode', [CURRENT, SPOOL, PRESSURE, FORCE])
+@pytest.mark.parametrize('reaction', ['hold', 'damp'])
+def test_without_a_position_block_in_the_mode_both_are_a_quick_stop(
+        reaction: str, mode: int) -> None:
+    """Which stays until it is cleared, as any trip that stops the actuator."""
+    watched = Watched(only('overload', trip=0.5, delay_ms=0.0, reaction=reaction))
+    watched.state.status.mode = mode
+    watched.show('overload', 6e3)
+    watched.convert()
+    assert watched.own.reaction == QUICK_STOP
+    assert setpoint_in_force(watched.state).effort == 50.0  # until the device begins to stop
+    assert not is_cause_gone(watched.constants, watched.state)
+    watched.show('overload', 0.0)
+    watched.convert(2)
+    assert watched.has('overload') == (False, True)
+    assert is_cause_gone(watched.constants, watched.state)
+    request_clear(watched.own)
+    watched.convert()
+    assert watched.has('overload') == (False, False) and watched.own.reaction == NONE
 
 
 @pytest.mark.parametrize(('name', 'quantity', 'extends'), [

@@ -5,12 +5,14 @@ from dataclasses import replace
 from typing import Any
 
 from isa_ros.core.conditions import BITS
+from isa_ros.core.device import IMPEDANCE
 from isa_ros.core.parameter import defaults
 from isa_ros.core.record import record
 from isa_ros.reu.cascade import REU_STATE
 from isa_ros.reu.plausibility import EVIDENCE, VALVE_EVIDENCE
-from isa_ros.reu.protection import protect, protection_record, Ratings
+from isa_ros.reu.protection import protection_record, Ratings
 from isa_ros.reu.protection_sheet import levels_of, Protection
+from isa_ros.reu.reactions import protect
 import numpy as np
 
 STEPS = 5                   # plant steps of a conversion
@@ -54,7 +56,7 @@ class Watched:
         self.supply, self.temperature, self.step = SUPPLY, 40.0, 0
         measured, setpoint = self.state.measured, self.state.setpoint
         measured.position = self.own.evidence.position = 0.5 * STROKE
-        self.state.status.is_on = 1
+        self.state.status.is_on, self.state.status.mode = 1, IMPEDANCE
         setpoint.stiffness, setpoint.damping = 1e5, 4e3
         setpoint.position, setpoint.velocity, setpoint.effort = 0.02, 0.1, 50.0
 

@@ -132,6 +132,15 @@ def bringup(
 
 
 @contextmanager
+def rig_until_stopped(bag: Path, *options: str) -> Iterator[Started]:
+    """Run the rig in real time while the context lasts, then stop it by SIGTERM."""
+    with bringup(bag, '--real-time-factor', '1', *options, config=RIG) as process:
+        yield process
+        process.signal(signal.SIGTERM)
+        assert process.exit_code() == 130, process.errors
+
+
+@contextmanager
 def actuator(log: Path, name: str, **parameters: object) -> Iterator[Started]:
     """Run an actuator node."""
     arguments = ['--ros-args', '-r', f'__node:={name}']

@@ -1,7 +1,6 @@
 """The device over ROS: its topic, services and mode, in a run that replays."""
 
 import math
-import signal
 import time
 
 from diagnostic_msgs.msg import DiagnosticStatus
@@ -18,7 +17,7 @@ from rclpy.node import Node
 from sensor_msgs.msg import JointState
 from std_srvs.srv import SetBool, Trigger
 from tests.ros.spinning import Spinning
-from tests.ros.started import bringup, RIG
+from tests.ros.started import rig_until_stopped
 
 pytestmark = pytest.mark.ros
 MANY = 10_000
@@ -72,7 +71,7 @@ class Operator:
 def test_it_is_operated_during_a_run_that_replays(observer, tmp_path, options):
     """Mode, refusals with their reason, quick stop, enable; the bag replays byte for byte."""
     bag = tmp_path / 'bag'
-    with bringup(bag, '--real-time-factor', '1', *options, config=RIG) as run:
+    with rig_until_stopped(bag, *options):
         user = Operator(observer, 'rotor')
         user.connect()
         assert user.wait_for('enabled', 'impedance').level == DiagnosticStatus.OK
@@ -94,8 +93,6 @@ def test_it_is_operated_during_a_run_that_replays(observer, tmp_path, options):
         assert not user.call('quick_stop', Trigger.Request()).success
         assert user.call('enable', SetBool.Request(data=True)).success
         user.wait_for('enabled', 'force')
-        run.signal(signal.SIGTERM)
-        assert run.exit_code() == 130
     states = [decode(message.data, DiagnosticStatus).message.partition(',')[0]
               for message in Bag(bag).messages() if message.topic == '/rotor/device']
     changes = [state for k, state in enumerate(states) if k == 0 or state != states[k - 1]]

@@ -2,15 +2,14 @@
 
 import hashlib
 from pathlib import Path
-import signal
 
 from isa_ros.bag.reader import Bag
 from isa_ros.config.paths import CONFIG, find, SCENARIOS
 from isa_ros.replay.replay import recorded_inputs, replay
 from isa_ros.scripting.run import load
 import pytest
-from tests.ros.started import bringup
-from tests.ros.test_parameters import RIG, Tuner
+from tests.ros.started import bringup, RIG, rig_until_stopped
+from tests.ros.test_parameters import Tuner
 
 pytestmark = [pytest.mark.ros, pytest.mark.slow]
 FAULTS = find('device_faults.yaml', SCENARIOS)
@@ -42,7 +41,7 @@ def test_what_is_set_in_a_run_is_recorded_with_its_tick_and_replays(
         observer, tmp_path, options):
     """Of an actuator by its node, of a supply by the coordinator's; refusals say why."""
     bag = tmp_path / 'bag'
-    with bringup(bag, '--real-time-factor', '1', *options, config=RIG) as process:
+    with rig_until_stopped(bag, *options):
         rotor = Tuner(observer, 'rotor')
         rotor.connect()
         assert rotor.tune('plant.spool.stuck', 1.0).successful
@@ -56,8 +55,6 @@ def test_what_is_set_in_a_run_is_recorded_with_its_tick_and_replays(
         assert supplies.tune('supply.pressure_mpa', 12.0).successful
         assert supplies.get('supply.pressure_mpa') == [12.0]
         supplies.wait_for(lambda: supplies.events, 'what took effect')
-        process.signal(signal.SIGTERM)
-        assert process.exit_code() == 130
     run = load(RIG).configuration
     inputs = recorded_inputs(Bag(bag), run)
     assert [list(inputs.tuned['rotor'].values()), list(inputs.tuned_supplies.values())] == [

@@ -1,5 +1,5 @@
 """
-One run with disturbed sensors, seven ways of running it, one sha256.
+One run with disturbed sensors, faults and lossy links, seven ways of running it, one sha256.
 
 The reference is one process; each of the other ways is compared with it.
 """
@@ -16,23 +16,15 @@ import sys
 import threading
 import time
 
-import isa_ros
-from isa_ros.config.changes import changes_of
 import pytest
+from tests.disturbed import disturbed_run, OPTIONS, SEED as RUN_SEED, TICKS
 from tests.ros.domains import held_domain
 from tests.ros.hosts import ADDRESSES, Host, two_hosts, two_lossy_hosts, why_no_hosts
 from tests.ros.started import bringup, DROP, LEG, started, wait_for
 
 pytestmark = [pytest.mark.ros, pytest.mark.slow]
-TICKS = 300
-DISTURBED = (
-    *(text for name in ('haa', 'hfe', 'kfe')
-      for text in ('--set', f'actuators.{name}.variants=[data_sheet_sensors]')),
-    '--set', 'leg.imus.trunk={link: slider_link, accelerometer_sigma: 0.03, gyro_sigma: 6.0e-4}')
-"""Noise, bias and delay of the sensors, and an inertial unit."""
-SENSOR_SEED = 5
 RUN = ('--scenario', str(DROP), '--duration', f'{TICKS * 1e-3}', '--join-timeout', '100',
-       *DISTURBED, '--seed', str(SENSOR_SEED))
+       *OPTIONS, '--seed', str(RUN_SEED))
 CORES = 2
 STOP_S = 2.0  # less than the leg's tick_timeout_s
 LOSS, SEED = 0.01, 4
@@ -75,7 +67,7 @@ def with_a_stopped_actuator(bag: Path, monkeypatch: pytest.MonkeyPatch) -> None:
 def with_actuators_on(host: Host, bag: Path, own: Host) -> None:
     """Record on one host with all actuators on another, where a signal is their normal end."""
     with started(bag.with_name('actuators.log'), 'isa_ros', 'actuators', str(LEG),
-                 '--scenario', str(DROP), *DISTURBED, '--set', f'seed={SENSOR_SEED}',
+                 '--scenario', str(DROP), *OPTIONS, '--set', f'seed={RUN_SEED}',
                  prefix=host.enter) as actuators:
         record(bag, '--elsewhere', 'all', prefix=own.enter)
         actuators.signal(signal.SIGTERM)
@@ -103,9 +95,7 @@ def on_two_hosts_with_loss(bag: Path, monkeypatch: pytest.MonkeyPatch) -> None:
 
 def in_memory(bag: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """Without nodes, from Python."""
-    changes = changes_of(DISTURBED[1::2]).run
-    isa_ros.load(LEG, DROP, seed=SENSOR_SEED, duration=TICKS * 1e-3).replace(
-        changes).simulate().save(bag)
+    disturbed_run().simulate().save(bag)
 
 
 WAYS = (in_memory, in_processes, with_loaded_cores, with_a_stopped_actuator, on_two_hosts,

@@ -13,9 +13,9 @@ from isa_ros.errors import ConfigError
 from isa_ros.scenario.faults import Fault, read_faults, timetable
 from isa_ros.scenario.scenario import idle, scenario_of
 import pytest
-from tests.runs import ACCUMULATOR, hip_and_knee
+from tests.runs import ACCUMULATOR, BUS, hip_and_knee
 
-RUN = hip_and_knee([SupplyConfig('pump', ACCUMULATOR, ('hip', 'knee'))])
+RUN = hip_and_knee([SupplyConfig('pump', ACCUMULATOR, ('hip', 'knee'))], BUS)
 STUCK, LEAK = 'plant.spool.stuck', 'plant.oil.cross_port_leakage'
 SOUND_LEAK = RUN.actuator('knee').sheet.plant.oil.cross_port_leakage
 
@@ -135,7 +135,7 @@ def test_a_bad_fault_is_refused_in_one_line_with_its_place(tree, message):
 def test_values_that_are_refused_together_are_refused_with_their_time():
     """An accumulator whose line alone cannot hold the pressure over a tick."""
     small = replace(ACCUMULATOR, line_volume_l=0.001)
-    run = hip_and_knee([SupplyConfig('pump', small, ('hip', 'knee'))])
+    run = hip_and_knee([SupplyConfig('pump', small, ('hip', 'knee'))], BUS)
     with pytest.raises(ConfigError, match=r's.yaml: faults: at 0.2 s, pump: capacitance over'):
         faults({'t_s': 0.2, 'supply': 'pump', 'fault': 'accumulator_empty'}, run=run)
 

@@ -11,7 +11,7 @@ from dataclasses import dataclass, replace
 from typing import NamedTuple
 
 from isa_ros.analysis.faults.rig import (
-    BEGIN_S, CLEAR_S, CONFIG, DURATION_S, END_S, MOTION, STEP_S)
+    BEGIN_S, CLEAR_S, CONFIG, DURATION_S, END_S, LINK, MOTION, STEP_S)
 from isa_ros.config.fault_catalogue import ACTUATOR, fault_catalogue, named_fault, NamedFault
 from isa_ros.config.sections import Place
 from isa_ros.config.yaml_text import Tree
@@ -95,13 +95,14 @@ def outcomes(
     """
     chosen = [named_fault(name, Place('--only')) for name in names] if names else list(
         fault_catalogue().values())
-    rig = load(CONFIG, MOTION)
-    sound = _recorded(rig, ())
+    plain, linked = load(CONFIG, MOTION), load({**CONFIG, 'link': LINK}, MOTION)
+    sound = {rig: _recorded(rig, ()) for rig in (plain, linked)}
     found = []
     for k, fault in enumerate(chosen):
         if report is not None:
             report(k, len(chosen))
-        found.append(_outcome(rig, fault, sound))
+        rig = linked if any(key.startswith('link.') for key in fault.values) else plain
+        found.append(_outcome(rig, fault, sound[rig]))
     if report is not None:
         report(len(chosen), len(chosen))
     return found

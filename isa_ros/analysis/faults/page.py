@@ -5,7 +5,7 @@ from pathlib import Path
 from typing import Any
 
 from isa_ros.analysis.faults.measure import Noticed, Outcome, SOUND, VISIBLE, Visible
-from isa_ros.analysis.faults.rig import BEGIN_S, CLEAR_S, END_S
+from isa_ros.analysis.faults.rig import BEGIN_S, CLEAR_S, END_S, LINK
 from isa_ros.config.fault_catalogue import fault_catalogue, NamedFault
 from isa_ros.text.json_file import write_tree
 from isa_ros.text.number import digits
@@ -23,7 +23,8 @@ _HEAD = f"""# Faults of the device
 
 Each fault of the catalogue, `./isa faults --list`, in an ISA v5 that moves 50 kg by 20 mm at 2 Hz,
 fed by a pump with an accumulator. It begins at {BEGIN_S:g} s, where the piston is fastest, and
-ends at {END_S:g} s. Written by
+ends at {END_S:g} s. For a fault of the link there is one, with frames each ms and a watchdog of
+{LINK['watchdog_ms']:g} ms. Written by
 
     ./isa faults --out docs
 
@@ -36,7 +37,7 @@ outputs off until it is cleared: `~/clear_fault`, then `~/enable`, at {CLEAR_S:g
 
 _MESSAGES = """The message of the device on `~/device` and, as the task *device*, on
 `/diagnostics`: the first one of the gravest level. With all other faults it is that of a sound
-device, `enabled, mode impedance: initialised`."""
+device, `enabled, mode impedance: initialised`. While its link is lost it does not arrive."""
 
 
 def listing() -> str:

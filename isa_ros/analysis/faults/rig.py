@@ -20,6 +20,8 @@ CONFIG: Tree = {
         'model': 'isa_v5', 'preset': 'default', 'load': {'kind': 'mass'},
         'initial_position_mm': 50.0}}}
 """A mass of 50 kg, and an accumulator that feeds its motion."""
+LINK: Tree = {'kind': 'ethercat', 'delay_cycles': 1, 'watchdog_ms': 10.0}
+"""Between commander and REU, for the faults of a link; the others have none."""
 
 MOTION: Tree = {
     'name': 'sine', 'duration_s': DURATION_S, 'tracks': {'ram': [

@@ -58,8 +58,7 @@ def communication_objects(step_ns: int) -> list[Object]:
         variable(Entry(HEARTBEAT_PRODUCED, 0, 'Producer heartbeat time', _U16, 'rw', 0, 's',
                        _MILLISECOND, meaning='wall time; 0: off'), _BUS),
         variable(Entry(SYNC_OVERFLOW, 0, 'Synchronous counter overflow value', _U8, 'rw',
-                       high=MOST_SYNCS,
-                       meaning='0: SYNC without a counter; else the highest counter'), _BUS),
+                       meaning='0: SYNC without a counter; 2 to 240: the highest counter'), _BUS),
         record_of(ERROR_BEHAVIOUR, 'Error behaviour', [
             Entry(ERROR_BEHAVIOUR, 1, 'Communication error', _U8, 'rw', choices=(0, 1, 2),
                   meaning='0: preoperational, 1: no change, 2: stopped')], _BUS),
@@ -161,7 +160,7 @@ class Communication:
             _refuse_identifier(value)
             if index == SYNC_ID and value & ~LARGEST:  # generates it, or is off
                 raise SdoAbort(OUT_OF_RANGE)
-        elif index == SYNC_OVERFLOW and value == 1:
+        elif index == SYNC_OVERFLOW and (value == 1 or value > MOST_SYNCS):
             raise SdoAbort(OUT_OF_RANGE)
         elif index >= RECEIVE_PARAMETERS:
             self._refuse_of_pdo(index, subindex, value)

@@ -11,9 +11,9 @@ import struct
 from isa_ros.fieldbus import abort
 from isa_ros.fieldbus.abort import SdoAbort
 from isa_ros.fieldbus.device import BusDevice, Emergency
+from isa_ros.fieldbus.ethercat.sdo_information import answer_information
 from isa_ros.fieldbus.ethercat.slave_mailbox import (
     CAPACITY, MailError, TOO_SHORT, UNSUPPORTED_SERVICE)
-from isa_ros.fieldbus.ethercat.sdo_information import answer_information
 
 _SERVICE = struct.Struct('<H')
 _SERVICE_BITS = 12

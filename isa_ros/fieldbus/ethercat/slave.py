@@ -10,9 +10,9 @@ from isa_ros.fieldbus.ethercat.coe import CanOverEthercat
 from isa_ros.fieldbus.ethercat.controller import AL_EVENT, Controller
 from isa_ros.fieldbus.ethercat.fmmu import Fmmu
 from isa_ros.fieldbus.ethercat.layout import AREAS
-from isa_ros.fieldbus.ethercat.slave_mailbox import Mailbox
 from isa_ros.fieldbus.ethercat.registers import DL_STATUS
 from isa_ros.fieldbus.ethercat.sii import build_sii, process_data_sizes
+from isa_ros.fieldbus.ethercat.slave_mailbox import Mailbox
 from isa_ros.fieldbus.ethercat.sync_manager import (
     INPUTS, MAILBOX_IN, MAILBOX_OUT, OUTPUTS, SyncManager)
 from isa_ros.fieldbus.ethercat.watchdog import Watchdog
