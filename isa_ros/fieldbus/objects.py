@@ -47,7 +47,7 @@ class DataType(Enum):
     def pack(self, value: Value) -> bytes:
         """Return the bytes of a value; an integer or a real number beyond the range saturates."""
         if isinstance(value, str):
-            return value.encode('ascii')
+            return value.encode('ascii', errors='replace')
         if self.code == 'f':
             return struct.pack('<f', min(max(float(value), -_LARGEST_REAL32), _LARGEST_REAL32)
                                if math.isfinite(value) else value)
