@@ -5,6 +5,7 @@ from isa_ros.actuator.kernel import write_sample
 from isa_ros.actuator.rows import Memory, row_record
 from isa_ros.core.signals import HAS_ENABLE, HAS_SETPOINT
 from isa_ros.plant.plant import exact_force, rest_pressures, sense
+from isa_ros.plant.temperature_sensor import read_temperature
 from isa_ros.reu.cascade import initial_gains
 from isa_ros.reu.wiring import Reu
 
@@ -51,6 +52,8 @@ def rest_loops(memory: Memory, sheet: Reu, mode: int, is_enabled: bool) -> None:
     device.auto_enable = device.requested_enable = int(is_enabled)
     sample = row_record(memory.samples)
     write_sample(body.plant, reu, sample)
-    sample.temperature = row_record(memory.thermals).oil
+    thermal = row_record(memory.thermals)
+    sample.temperature = thermal.sensed = read_temperature(
+        0, thermal.oil, own.noise_key, own.plant.sensors.temperature, thermal.sensed)
     memory.observed[:] = memory.samples
     write_applied(HAS_SETPOINT | HAS_ENABLE, reu, row_record(memory.applied))
