@@ -4,6 +4,7 @@ from collections.abc import Callable
 from dataclasses import dataclass
 
 from isa_ros.bench import comparison, growth, leg, memory, startup
+from isa_ros.bench.bus import bus_rows
 from isa_ros.bench.in_memory import in_memory_rows
 from isa_ros.bench.plant import cylinder_rows, plant_rows
 from isa_ros.bench.rounds import Outcomes
@@ -36,6 +37,7 @@ GROUPS = (
     Group('peers', 'The same exchange over other middlewares', comparison.comparison_rows,
           lambda: comparison.SPECS),
     Group('growth', 'From 1 to 24 actuators, recording', growth.growth_rows, growth.specs),
+    Group('bus', 'The actuators on EtherCAT, recording', _alone(bus_rows)),
     Group('startup', 'Start-up, caches warm', startup.startup_rows, lambda: startup.SPECS),
     Group('memory', 'Memory', memory.memory_rows, memory.specs),
 )

@@ -32,15 +32,20 @@ def rigs_file(n_actuators: int) -> str:
         'actuators': actuators})
 
 
+def config_of(plant: str, directory: Path) -> Path:
+    """Return the run file of a spec's plant, which may be new in ``directory``."""
+    if plant == LEG:
+        return find('leg.yaml', CONFIG)
+    config = directory / f'rigs_{plant}.yaml'
+    config.write_text(rigs_file(int(plant)), encoding='utf-8')
+    return config
+
+
 def request_of(spec: Spec, directory: Path) -> Request:
     """Return the request of a spec's run; its files are in ``directory``."""
-    config, scenario = find('leg.yaml', CONFIG), None
-    if spec.plant == LEG:
-        scenario = find('drop.yaml', SCENARIOS)
-    else:
-        config = directory / f'rigs_{spec.plant}.yaml'
-        config.write_text(rigs_file(int(spec.plant)), encoding='utf-8')
     return Request(
-        config=config, scenario=scenario, out=directory / 'bag',
+        config=config_of(spec.plant, directory),
+        scenario=find('drop.yaml', SCENARIOS) if spec.plant == LEG else None,
+        out=directory / 'bag',
         duration_s=spec.ticks * TICK_S, in_process=spec.way == ONE_PROCESS, join_timeout_s=120.0,
         is_alone=True)

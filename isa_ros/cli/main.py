@@ -13,7 +13,8 @@ from types import FrameType
 from typing import NoReturn
 
 from isa_ros.cli import (
-    commands, response_arguments, run_arguments, shared_arguments, study_arguments)
+    bus_arguments, bus_commands, commands, response_arguments, run_arguments, shared_arguments,
+    study_arguments)
 from isa_ros.processes.ending import (
     ANSWER_IS_NO, DEBUG_VARIABLE, DONE, end_of, replaced_handlers, WRONG_INPUT)
 
@@ -170,6 +171,8 @@ def _bench(parser: argparse.ArgumentParser) -> None:
 _COMMANDS = {
     'demo': (_demo, commands.demo, 'drop the leg by 10 cm, record it, and draw a report'),
     'bringup': (run_arguments.bringup, commands.bringup, 'run and record a configuration'),
+    'bus': (bus_arguments.bus, bus_commands.bus,
+            'serve the master of a real bus: EtherCAT, CANopen or a serial line'),
     'actuators': (_actuators, commands.actuators,
                   'run actuators of a configuration for a coordinator on another host'),
     'replay': (_replay, commands.replay, 'simulate the run of a bag again and compare'),

@@ -5,13 +5,16 @@ Positions are counted in micrometres or microradians and velocities in these per
 per mille of the rated force or torque. Extending and pushing out are positive.
 """
 
+from isa_ros.actuator.ratings import ratings_of
 from isa_ros.actuator.setpoint_range import reference_bounds, setpoint_bounds
 from isa_ros.config.run_config import ActuatorConfig
+from isa_ros.core.changeable import sound
 from isa_ros.core.device import (
     DISABLED, ENABLED, FAULT, FORCE, INITIALISING, QUICK_STOP, SPOOL)
 from isa_ros.core.signals import SAMPLE
 from isa_ros.core.timebase import NS_PER_SECOND
 from isa_ros.core.units import MICRO, MILLI, MPA, of_coordinate
+from isa_ros.plant.plant import plant_record
 from isa_ros.reu.cascade import initial_gains
 from isa_ros.reu.impedance import Impedance
 from isa_ros.reu.wiring import first_mode, possible_modes
@@ -51,6 +54,8 @@ class Axis:
             self.force_out, self.force_in = position.force_out, position.force_in
         self.rated_force = max(self.force_out, self.force_in)
         """N or Nm: that of the impedance; without one the range of the force sensor."""
+        self.rated_speed = ratings_of(plant_record(sound(sheet.plant))[0]).speed
+        """m/s or rad/s at full opening, with the opening pressure of the relief over one land."""
         self.gains = initial_gains(sheet.reu)
         bounds = setpoint_bounds(sheet)
         self.largest_gains = tuple(

@@ -2,6 +2,7 @@
 
 from collections.abc import Mapping
 
+from isa_ros.fieldbus.canopen.communication import pdo_parameters
 from isa_ros.fieldbus.device import Identity, RECEIVE_ASSIGNMENT, TRANSMIT_ASSIGNMENT
 from isa_ros.fieldbus.dictionary import Key
 from isa_ros.fieldbus.objects import DataType, Entry, Kind, Object, record_of, variable
@@ -12,12 +13,9 @@ ERROR_FIELD = 0x1003
 """Object with the last errors."""
 ERRORS_KEPT = 8
 _U8, _U16, _U32 = DataType.UNSIGNED8, DataType.UNSIGNED16, DataType.UNSIGNED32
-_INVALID = 1 << 31
-"""Bit of a COB-ID whose PDO is not used."""
-_SYNCHRONOUS = 1
-"""Transmission type: with every SYNC."""
-_RECEIVE_COB, _TRANSMIT_COB = 0x200, 0x180
-_MICROSECOND, _MILLISECOND, _NANOSECOND = 1e-6, 1e-3, 1e-9
+_PDOS_ON = 2
+"""PDOs of CANopen in each direction that are on at power-on."""
+_NANOSECOND = 1e-9
 _FREE_RUN, _SYNC_MANAGER, _SYNC0 = 0, 1, 2
 
 
@@ -55,49 +53,12 @@ def error_objects() -> list[Object]:
             for k in range(1, ERRORS_KEPT + 1))))]
 
 
-def canopen_objects(step_ns: int) -> list[Object]:
-    """Return the services of CANopen, without the PDOs."""
-    def entry(
-            index: int, subindex: int, name: str, data_type: DataType, default: int, access: str,
-            *, unit: str = '', scale: float = 1.0, adds_node: bool = False, meaning: str = ''
-            ) -> Entry:
-        return Entry(index, subindex, name, data_type, access, default, unit, scale,
-                     meaning=meaning, adds_node=adds_node)
-    bus = 'canopen'
-    return [
-        variable(entry(0x1005, 0, 'COB-ID SYNC', _U32, 0x80, 'const'), bus),
-        variable(entry(0x1006, 0, 'Communication cycle period', _U32, step_ns // 1000, 'const',
-                       unit='s', scale=_MICROSECOND, meaning='the tick'), bus),
-        variable(entry(0x1014, 0, 'COB-ID EMCY', _U32, 0x80, 'const', adds_node=True), bus),
-        Object(0x1016, 'Consumer heartbeat time', Kind.ARRAY, (
-            Entry(0x1016, 0, 'Highest subindex', _U8, 'const', 1),
-            entry(0x1016, 1, 'Heartbeat of the master', _U32, 0, 'rw',
-                  meaning='node id << 16 | time in ms; 0: not watched')), bus),
-        variable(entry(0x1017, 0, 'Producer heartbeat time', _U16, 0, 'rw', unit='s',
-                       scale=_MILLISECOND, meaning='0: off'), bus),
-        record_of(0x1200, 'SDO server parameter', [
-            entry(0x1200, 1, 'COB-ID client to server', _U32, 0x600, 'const', adds_node=True),
-            entry(0x1200, 2, 'COB-ID server to client', _U32, 0x580, 'const', adds_node=True)],
-            bus)]
-
-
-def _pdo_parameter(place: int, is_receive: bool, is_used: bool) -> Object:
-    index = (0x1400 if is_receive else 0x1800) + place
-    cob = (_RECEIVE_COB if is_receive else _TRANSMIT_COB) + 0x100 * place
-    return record_of(
-        index, f'{"RPDO" if is_receive else "TPDO"} {place + 1} parameter', [
-            Entry(index, 1, 'COB-ID', _U32, 'rw', cob if is_used else cob | _INVALID,
-                  meaning='bit 31: not used', adds_node=True),
-            Entry(index, 2, 'Transmission type', _U8, 'rw', _SYNCHRONOUS,
-                  meaning='1: with every SYNC')], 'canopen')
-
-
 def pdo_objects(pdos: Mapping[int, Mapped], entries: dict[Key, Entry]) -> list[Object]:
     """Return mappings, assignments and PDO parameters; ``pdos`` are the mappings by index."""
     return [
         *(mapping_object(pdo, mapped, entries) for pdo, mapped in pdos.items()),
         assignment_object(RECEIVE_ASSIGNMENT), assignment_object(TRANSMIT_ASSIGNMENT),
-        *(_pdo_parameter(place, first == RECEIVE, place < 2 and bool(pdos[first + place]))
+        *(pdo_parameters(first + place, is_on=place < _PDOS_ON and bool(pdos[first + place]))
           for first in (RECEIVE, TRANSMIT) for place in range(CAN_PDOS))]
 
 

@@ -12,10 +12,11 @@ from isa_ros.errors import ConfigError
 from isa_ros.fieldbus import cia402_objects, cia408_objects
 from isa_ros.fieldbus.actuator_device import ActuatorDevice, Drive
 from isa_ros.fieldbus.axis import Axis
+from isa_ros.fieldbus.canopen.communication import communication_objects
 from isa_ros.fieldbus.cia402 import Drive402
 from isa_ros.fieldbus.cia408 import Drive408
 from isa_ros.fieldbus.communication_area import (
-    canopen_objects, error_objects, ethercat_objects, identity_objects, pdo_objects)
+    error_objects, ethercat_objects, identity_objects, pdo_objects)
 from isa_ros.fieldbus.device import BusDevice, Identity, VENDOR
 from isa_ros.fieldbus.dictionary import Key
 from isa_ros.fieldbus.faults import Faults
@@ -78,7 +79,7 @@ def _device(
 def _table(axis: Axis, serial: int, profile: Profile) -> tuple[Identity, ObjectTable]:
     """Return identity and table; the product is that of all actuators with equal entries."""
     objects = [
-        *error_objects(), *canopen_objects(axis.step_ns), *ethercat_objects(axis.step_ns),
+        *error_objects(), *communication_objects(axis.step_ns), *ethercat_objects(axis.step_ns),
         *manufacturer_objects(axis), *profile.objects(axis)]
     entries = {(entry.index, entry.subindex): entry for one in objects for entry in one.entries}
     objects += pdo_objects(profile.pdos, entries)

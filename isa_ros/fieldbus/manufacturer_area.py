@@ -12,6 +12,10 @@ from isa_ros.reu.wiring import VARIABLES
 LAST_REFUSAL = (0x2003, 0)
 """Why the last request of the master was refused, as a text."""
 STIFFNESS, DAMPING, EFFORT = (0x2010, 1), (0x2010, 2), (0x2010, 3)
+MIT_RANGES = 0x2002
+"""Object with the ranges of MIT-mode frames."""
+_GAIN_RANGE = 10.0
+_LEAST_RANGE = 1e-6
 _REU = 0x2030
 """Object of the position block; those of the inner blocks follow."""
 _F32 = DataType.REAL32
@@ -42,7 +46,7 @@ _STATES = (
 def manufacturer_objects(axis: Axis) -> list[Object]:
     """Return the objects of the manufacturer's area of an actuator."""
     return [
-        _increments(axis), _ranges(axis),
+        _increments(axis), _ranges(axis), _mit_ranges(axis),
         variable(Entry(*LAST_REFUSAL, 'Last refusal', DataType.VISIBLE_STRING, 'ro', '',
                        meaning='why the last request was refused')),
         _impedance(axis),
@@ -81,6 +85,23 @@ def _ranges(axis: Axis) -> Object:
         entry(1, 'Stroke', 'm | rad', axis.stroke),
         entry(2, 'Rated force, pushing out', 'N | Nm', axis.force_out),
         entry(3, 'Rated force, pulling in', 'N | Nm', axis.force_in)])
+
+
+def _mit_ranges(axis: Axis) -> Object:
+    """Return the scales of MIT-mode frames, whose 12 bits need ranges near what is used."""
+    def entry(subindex: int, name: str, unit: str, value: float, meaning: str) -> Entry:
+        return Entry(MIT_RANGES, subindex, name, _F32, 'rw', value, axis.unit(unit),
+                     meaning=meaning, low=_LEAST_RANGE)
+    stiffness, damping = axis.gains
+    return record_of(MIT_RANGES, 'Ranges of MIT-mode frames', [
+        entry(1, 'Position', 'm | rad', axis.stroke, 'plus and minus; at first the stroke'),
+        entry(2, 'Velocity', 'm/s | rad/s', axis.rated_speed,
+              'plus and minus; at first that at full opening with the relief pressure'),
+        entry(3, 'Stiffness', 'N/m | Nm/rad', _GAIN_RANGE * stiffness or 1.0,
+              'from 0; at first 10 times the gain of the configuration'),
+        entry(4, 'Damping', 'Ns/m | Nms/rad', _GAIN_RANGE * damping or 1.0,
+              'from 0; at first 10 times the gain of the configuration'),
+        entry(5, 'Effort', 'N | Nm', axis.rated_force, 'plus and minus; at first the rated')])
 
 
 def _impedance(axis: Axis) -> Object:

@@ -16,8 +16,8 @@ PACES = (FRAME, REAL_TIME)
 
 PROFILES = ('cia402', 'cia408')
 
-BITRATE, BAUD = 1_000_000, 3_000_000
-"""Of CAN and of the serial line, bit/s."""
+OF_THE_WIRE = 0
+"""A rate that stands for that of `isa_ros/config/data/wires`."""
 WATCHDOG_MS = 100.0
 
 
@@ -32,11 +32,11 @@ class BusRequest:
     """Network interface of EtherCAT; interface of python-can."""
     channel: str = ''
     """Of python-can."""
-    bitrate: int = BITRATE
+    bitrate: int = OF_THE_WIRE
     """Of the CAN bus, bit/s."""
     path: Path = Path()
     """Of the serial device."""
-    baud: int = BAUD
+    baud: int = OF_THE_WIRE
     """Of the serial line, bit/s."""
     pace: str = FRAME
     """One of `PACES`."""

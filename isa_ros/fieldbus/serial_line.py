@@ -1,5 +1,5 @@
 """
-The actuators of a run on one serial line: a request with all setpoints, its answer with all states.
+The actuators of a run on one serial line: a request with all setpoints, an answer with all states.
 
 The content of a request of process data are the PDOs that each device has assigned (0x1C12), one
 actuator after the other; its answer has those of 0x1C13, behind status and counter. Each request
@@ -38,8 +38,7 @@ class Part(NamedTuple):
 
 
 def serial_line(
-        devices: Sequence[BusDevice], path: Path | str, step_ns: int, *,
-        baud: int = 0) -> 'SerialLine':
+        devices: Sequence[BusDevice], path: Path | str, baud: int, step_ns: int) -> 'SerialLine':
     """
     Open a serial line for the devices; ``baud`` 0: the rate of the wire ``serial``.
 

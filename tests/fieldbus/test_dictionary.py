@@ -33,6 +33,11 @@ def packed(entry, value):
     return struct.pack(f'<{FORMATS[entry.data_type.name]}', value)
 
 
+def beyond(entry, bound, side):
+    """Return a value beyond a bound: for a real number far enough for single precision."""
+    return bound + side * (1 if entry.data_type.is_integer else 1 + abs(bound))
+
+
 def plain(device):
     """Yield the entries that are not written by the rules of mappings."""
     return (one for one in device.table.entries if not is_changed_in_preop(one.index))
@@ -81,12 +86,12 @@ def test_values_beyond_the_range_are_refused_by_side(device):
         if not entry.is_writable or entry.choices:
             continue
         if math.isfinite(entry.high):
-            data = packed(entry, entry.high * 2 + 1)
+            data = packed(entry, beyond(entry, entry.high, 1))
             assert refused(device.write, entry.index, entry.subindex, data,
                            is_preoperational=False) == abort.TOO_HIGH
             checked += 1
         if math.isfinite(entry.low):
-            data = packed(entry, entry.low - abs(entry.low) - 1)
+            data = packed(entry, beyond(entry, entry.low, -1))
             assert refused(device.write, entry.index, entry.subindex, data,
                            is_preoperational=False) == abort.TOO_LOW
             checked += 1

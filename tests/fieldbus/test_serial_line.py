@@ -1,4 +1,4 @@
-"""The serial line: a request is a tick, objects, wrong checks, capacity, and its pseudo terminal."""
+"""The serial line: a request is a tick; objects, wrong checks, capacity, the pseudo terminal."""
 
 from collections.abc import Iterator
 from contextlib import contextmanager
@@ -52,7 +52,7 @@ class Master:
 
 @contextmanager
 def serial_master(path: Path, *toys: ToyDrive) -> Iterator[Master]:
-    line = serial_line(toys, path, STEP_NS)
+    line = serial_line(toys, path, 0, STEP_NS)
     handle = os.open(path, os.O_RDWR | os.O_NOCTTY | os.O_NONBLOCK)
     try:
         yield Master(line, list(toys), handle)
@@ -179,23 +179,23 @@ def test_a_file_in_the_way_is_not_touched(tmp_path):
     path = tmp_path / 'line'
     path.write_text('mine')
     with pytest.raises(ConfigError, match='exists and is no serial device'):
-        serial_line([ToyDrive()], path, STEP_NS)
+        serial_line([ToyDrive()], path, 0, STEP_NS)
     assert path.read_text() == 'mine'
 
 
 def test_a_folder_that_is_missing_is_one_line(tmp_path):
     with pytest.raises(ConfigError, match='cannot be opened: .*No such file'):
-        serial_line([ToyDrive()], tmp_path / 'none' / 'line', STEP_NS)
+        serial_line([ToyDrive()], tmp_path / 'none' / 'line', 0, STEP_NS)
 
 
 def test_a_serial_device_has_its_rate_set(tmp_path):
     own, device = os.openpty()
     tty.setraw(device)
     name = os.ttyname(device)
-    line = serial_line([ToyDrive()], name, STEP_NS, baud=1_000_000)
+    line = serial_line([ToyDrive()], name, 1_000_000, STEP_NS)
     assert termios.tcgetattr(device)[4:6] == [termios.B1000000] * 2
     with pytest.raises(ConfigError, match='baud = 1234567 is no rate of it; one of 50, 75'):
-        serial_line([ToyDrive()], name, STEP_NS, baud=1_234_567)
+        serial_line([ToyDrive()], name, 1_234_567, STEP_NS)
     os.close(own)
     os.close(device)
     with pytest.raises(RunError, match='is lost'):
@@ -207,8 +207,8 @@ def test_frames_that_the_line_does_not_carry_are_refused_with_the_arithmetic(tmp
     """Request 8 + 26 bytes, answer 8 + 6 + 26 bytes, 2 turns, 10 bit each."""
     toys = [ToyDrive('hfe'), ToyDrive('kfe')]
     with pytest.raises(ConfigError) as refused:
-        serial_line(toys, tmp_path / 'line', STEP_NS, baud=500_000)
+        serial_line(toys, tmp_path / 'line', 500_000, STEP_NS)
     assert str(refused.value) == (
         'baud = 500000, must be >= 760000: 2 actuators (hfe, kfe) need 10 x (request 34 + answer '
         '40 + turns 2) = 760 bit a tick, 500000 baud carries 500 bit in 1 ms')
-    serial_line(toys, tmp_path / 'line', STEP_NS, baud=760_000).close()
+    serial_line(toys, tmp_path / 'line', 760_000, STEP_NS).close()

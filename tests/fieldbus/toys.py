@@ -101,9 +101,11 @@ class Toy:
         return values[0] + b'\0' + b''.join(values[1:])
 
     def write_all(self, index: int, data: bytes, *, is_preoperational: bool) -> None:
-        """Write all entries."""
+        """Write as many entries as there are data."""
         at = 2
         for entry in self.table.at(index).entries:
+            if entry.subindex and at >= len(data):
+                break
             size = entry.bits // 8
             start = at if entry.subindex else 0
             self.write(index, entry.subindex, data[start:start + size],

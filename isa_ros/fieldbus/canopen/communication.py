@@ -1,19 +1,20 @@
 """
 The communication objects of a node, 0x1001 to 0x1FFF: what CANopen adds to an actuator's table.
 
-They are data like the table: `communication_objects` makes them for a node, and EDS and dictionary
-have the same. COB-IDs, transmission types and the SYNC are writable while preoperational, and
-those of a PDO only while it is off, as CiA 301 has it.
+`communication_objects` and `pdo_parameters` are part of the table, so that dictionary and EDS have
+the same; a `Communication` keeps their values for one node. COB-IDs, transmission types and the
+SYNC are writable while preoperational, and those of a PDO only while it is off, as CiA 301 has it.
 """
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 
-from isa_ros.fieldbus.abort import (
-    OUT_OF_RANGE, READ_ONLY, SdoAbort, TOO_HIGH, TOO_LOW, WRITE_ONLY, WRONG_STATE)
+from isa_ros.fieldbus.abort import OUT_OF_RANGE, READ_ONLY, SdoAbort, WRITE_ONLY, WRONG_STATE
 from isa_ros.fieldbus.canopen.identifiers import (
     EMERGENCY, EXTENDED, INVALID, is_restricted, LARGEST, RECEIVE, SDO_ANSWER, SDO_REQUEST, SYNC,
     TRANSMIT)
-from isa_ros.fieldbus.objects import DataType, Entry, Kind, Object, ObjectTable, Value
+from isa_ros.fieldbus.dictionary import refuse_beyond
+from isa_ros.fieldbus.objects import (
+    DataType, Entry, Kind, Object, ObjectTable, record_of, Value, variable)
 
 ERROR_REGISTER, ERROR_HISTORY = 0x1001, 0x1003
 SYNC_ID, CYCLE_PERIOD, SYNC_OVERFLOW = 0x1005, 0x1006, 0x1019
@@ -30,48 +31,82 @@ CONSUMERS = 4           # producers of a heartbeat that a node can watch
 COB_ID, TRANSMISSION, INHIBIT_TIME, EVENT_TIMER, SYNC_START = 1, 2, 3, 5, 6
 MOST_SYNCS = 240        # transmission types up to it are synchronous
 _EVENT_TYPES = (254, 255)
-_PDOS_ON = 2            # of each direction, at the start
+_BUS = 'canopen'
+_NS_PER_US = 1000
+_MICROSECOND, _MILLISECOND, _INHIBIT = 1e-6, 1e-3, 1e-4     # s of a count
 _U8, _U16, _U32 = DataType.UNSIGNED8, DataType.UNSIGNED16, DataType.UNSIGNED32
+_WHILE_PREOPERATIONAL = (SYNC_ID, CYCLE_PERIOD, SYNC_OVERFLOW)
+_MAPPING_INDICES = (*range(RECEIVE_MAPPINGS, TRANSMIT_PARAMETERS),
+                    *range(TRANSMIT_MAPPINGS, TRANSMIT_MAPPINGS + 0x200))
 
 
-def communication_objects(
-        node: int, receive: Sequence[int], transmit: Sequence[int], cycle_us: int) -> list[Object]:
-    """
-    Return the communication objects of a node.
-
-    ``receive`` and ``transmit`` are the mappings of the device, 0x1600 on and 0x1A00 on.
-    """
+def communication_objects(step_ns: int) -> list[Object]:
+    """Return the services of CANopen without the PDOs, of a run with this tick."""
+    cycle_us = step_ns // _NS_PER_US
     return [
-        _var(ERROR_REGISTER, 'Error register', _U8, 'ro',
-             meaning='bit 0 any, 1 current, 2 voltage, 3 temperature, 4 communication, 5 profile'),
-        _errors(),
-        _var(SYNC_ID, 'COB-ID SYNC', _U32, default=SYNC, meaning='the tick'),
-        _var(CYCLE_PERIOD, 'Communication cycle period', _U32, default=cycle_us,
-             meaning='us; the tick of the run, or 0: not checked'),
-        _var(EMERGENCY_ID, 'COB-ID EMCY', _U32, default=EMERGENCY + node),
-        _array(HEARTBEAT_CONSUMED, 'Consumer heartbeat time', [0] * CONSUMERS,
-               'node << 16 | ms of simulated time; 0: off'),
-        _var(HEARTBEAT_PRODUCED, 'Producer heartbeat time', _U16,
-             meaning='ms of wall time; 0: off'),
-        _var(SYNC_OVERFLOW, 'Synchronous counter overflow value', _U8,
-             meaning='0: SYNC without counter; 2 to 240: the highest counter'),
-        _record(ERROR_BEHAVIOUR, 'Error behaviour', [
-            (1, 'Communication error', _U8, 'rw', 0,
-             '0: preoperational, 1: no change, 2: stopped')]),
-        _record(SDO_SERVER, 'SDO server parameter', [
-            (1, 'COB-ID client to server', _U32, 'ro', SDO_REQUEST + node, ''),
-            (2, 'COB-ID server to client', _U32, 'ro', SDO_ANSWER + node, '')]),
-        *(_receive_parameters(mapping, node) for mapping in receive),
-        *(_transmit_parameters(mapping, node) for mapping in transmit)]
+        variable(Entry(SYNC_ID, 0, 'COB-ID SYNC', _U32, 'rw', SYNC, meaning='the tick'), _BUS),
+        variable(Entry(CYCLE_PERIOD, 0, 'Communication cycle period', _U32, 'rw', cycle_us, 's',
+                       _MICROSECOND, choices=(0, cycle_us), meaning='the tick; 0: not checked'),
+                 _BUS),
+        variable(Entry(EMERGENCY_ID, 0, 'COB-ID EMCY', _U32, 'rw', EMERGENCY, adds_node=True,
+                       meaning='bit 31: off'), _BUS),
+        Object(HEARTBEAT_CONSUMED, 'Consumer heartbeat time', Kind.ARRAY, (
+            Entry(HEARTBEAT_CONSUMED, 0, 'Highest subindex', _U8, 'const', CONSUMERS),
+            *(Entry(HEARTBEAT_CONSUMED, k, f'Consumer heartbeat time {k}', _U32, 'rw',
+                    meaning='node << 16 | ms of simulated time; 0: off')
+              for k in range(1, CONSUMERS + 1))), _BUS),
+        variable(Entry(HEARTBEAT_PRODUCED, 0, 'Producer heartbeat time', _U16, 'rw', 0, 's',
+                       _MILLISECOND, meaning='wall time; 0: off'), _BUS),
+        variable(Entry(SYNC_OVERFLOW, 0, 'Synchronous counter overflow value', _U8, 'rw',
+                       meaning='0: SYNC without a counter; 2 to 240: the highest counter'), _BUS),
+        record_of(ERROR_BEHAVIOUR, 'Error behaviour', [
+            Entry(ERROR_BEHAVIOUR, 1, 'Communication error', _U8, 'rw', choices=(0, 1, 2),
+                  meaning='0: preoperational, 1: no change, 2: stopped')], _BUS),
+        record_of(SDO_SERVER, 'SDO server parameter', [
+            Entry(SDO_SERVER, 1, 'COB-ID client to server', _U32, 'const', SDO_REQUEST,
+                  adds_node=True),
+            Entry(SDO_SERVER, 2, 'COB-ID server to client', _U32, 'const', SDO_ANSWER,
+                  adds_node=True)], _BUS)]
+
+
+def pdo_parameters(mapping: int, *, is_on: bool) -> Object:
+    """Return the communication parameters of the PDO with this mapping; on at power-on or not."""
+    if mapping < TRANSMIT_MAPPINGS:
+        place, index, bases = mapping - RECEIVE_MAPPINGS, RECEIVE_PARAMETERS, RECEIVE
+        kinds = '0 to 240: with the next SYNC; 254, 255: at once'
+        timer = 'simulated time without it that is an error; 0: off'
+    else:
+        place, index, bases = mapping - TRANSMIT_MAPPINGS, TRANSMIT_PARAMETERS, TRANSMIT
+        kinds = '0: after a SYNC, if changed; n to 240: after every n-th; 254, 255: if changed'
+        timer = 'of types 254 and 255: longest time between two; 0: off'
+    index += place
+    is_transmit = bases is TRANSMIT
+    rows = [
+        Entry(index, COB_ID, 'COB-ID', _U32, 'rw', bases[place] | (0 if is_on else INVALID),
+              adds_node=True, meaning='bit 31: off'),
+        Entry(index, TRANSMISSION, 'Transmission type', _U8, 'rw', 1, meaning=kinds)]
+    if is_transmit:
+        rows.append(Entry(index, INHIBIT_TIME, 'Inhibit time', _U16, 'rw', 0, 's', _INHIBIT,
+                          meaning='of types 254 and 255: shortest time between two'))
+    rows.append(Entry(index, EVENT_TIMER, 'Event timer', _U16, 'rw', 0, 's', _MILLISECOND,
+                      meaning=timer))
+    if is_transmit:
+        rows.append(Entry(index, SYNC_START, 'SYNC start value', _U8, 'rw',
+                          meaning='counter of the first SYNC; 0: any'))
+    return record_of(index, f'{"TPDO" if is_transmit else "RPDO"} {place + 1} communication '
+                     'parameter', rows, _BUS)
 
 
 class Communication:
     """The values of the communication objects of a node."""
 
-    def __init__(self, objects: Sequence[Object]) -> None:
-        self.table = ObjectTable(objects)
+    def __init__(self, table: ObjectTable, node: int) -> None:
+        """``table`` is that of the device; it has these objects, those of errors, and others."""
+        self.table = ObjectTable([
+            one for one in table if one.bus == _BUS and one.index not in _MAPPING_INDICES
+            or one.index in (ERROR_REGISTER, ERROR_HISTORY)])
+        self._node = node
         self._values: dict[tuple[int, int], Value] = {}
-        self.cycle_us = self._default(CYCLE_PERIOD, 0)
         self.reset()
 
     def __contains__(self, index: object) -> bool:
@@ -80,7 +115,10 @@ class Communication:
 
     def reset(self) -> None:
         """Set all values to those at power-on."""
-        self._values = {(one.index, one.subindex): one.default for one in self.table.entries}
+        self._values = {
+            (one.index, one.subindex):
+                int(one.default) + self._node if one.adds_node else one.default
+            for one in self.table.entries}
 
     def value(self, index: int, subindex: int = 0) -> int:
         """Return a value; all of these are whole numbers."""
@@ -104,10 +142,7 @@ class Communication:
         if not entry.is_writable:
             raise SdoAbort(READ_ONLY)
         value = int(entry.data_type.unpack(data))
-        if value > entry.high:
-            raise SdoAbort(TOO_HIGH)
-        if value < entry.low:
-            raise SdoAbort(TOO_LOW)
+        refuse_beyond(entry, value)
         self._refuse(index, subindex, value, is_preoperational)
         self._values[index, subindex] = value
 
@@ -117,22 +152,15 @@ class Communication:
         for k in range(ERRORS_KEPT):
             self._values[ERROR_HISTORY, k + 1] = codes[k] if k < len(codes) else 0
 
-    def _default(self, index: int, subindex: int) -> int:
-        return int(self.table.entry(index, subindex).default)
-
     def _refuse(self, index: int, subindex: int, value: int, is_preoperational: bool) -> None:
         if index in _WHILE_PREOPERATIONAL or index >= RECEIVE_PARAMETERS:
             if not is_preoperational:
                 raise SdoAbort(WRONG_STATE)
-        if index == ERROR_HISTORY and value:
-            raise SdoAbort(OUT_OF_RANGE)
         if index in (SYNC_ID, EMERGENCY_ID):
             _refuse_identifier(value)
             if index == SYNC_ID and value & ~LARGEST:  # generates it, or is off
                 raise SdoAbort(OUT_OF_RANGE)
-        elif index == CYCLE_PERIOD and value not in (0, self.cycle_us):
-            raise SdoAbort(OUT_OF_RANGE)
-        elif index == SYNC_OVERFLOW and value == 1:
+        elif index == SYNC_OVERFLOW and (value == 1 or value > MOST_SYNCS):
             raise SdoAbort(OUT_OF_RANGE)
         elif index >= RECEIVE_PARAMETERS:
             self._refuse_of_pdo(index, subindex, value)
@@ -145,73 +173,12 @@ class Communication:
             if is_on and not value & INVALID and (value ^ self.value(index, COB_ID)) & LARGEST:
                 raise SdoAbort(WRONG_STATE)
         elif subindex == TRANSMISSION:
-            if not (value <= MOST_SYNCS or value in _EVENT_TYPES):
+            if value > MOST_SYNCS and value not in _EVENT_TYPES:
                 raise SdoAbort(OUT_OF_RANGE)
         elif subindex in (INHIBIT_TIME, SYNC_START) and is_on and is_transmit:
             raise SdoAbort(WRONG_STATE)
 
 
-_WHILE_PREOPERATIONAL = (SYNC_ID, CYCLE_PERIOD, SYNC_OVERFLOW)
-
-
 def _refuse_identifier(value: int) -> None:
     if value & EXTENDED or not value & INVALID and is_restricted(value & EXTENDED - 1):
         raise SdoAbort(OUT_OF_RANGE)
-
-
-def _receive_parameters(mapping: int, node: int) -> Object:
-    k = mapping - RECEIVE_MAPPINGS
-    return _record(RECEIVE_PARAMETERS + k, f'RPDO {k + 1} communication parameter', [
-        (COB_ID, 'COB-ID', _U32, 'rw', _cob_id(RECEIVE, k, node), 'bit 31: off'),
-        (TRANSMISSION, 'Transmission type', _U8, 'rw', 1,
-         '0 to 240: with the next SYNC; 254, 255: at once'),
-        (EVENT_TIMER, 'Event timer', _U16, 'rw', 0,
-         'ms of simulated time without it that are an error; 0: off')])
-
-
-def _transmit_parameters(mapping: int, node: int) -> Object:
-    k = mapping - TRANSMIT_MAPPINGS
-    return _record(TRANSMIT_PARAMETERS + k, f'TPDO {k + 1} communication parameter', [
-        (COB_ID, 'COB-ID', _U32, 'rw', _cob_id(TRANSMIT, k, node), 'bit 31: off'),
-        (TRANSMISSION, 'Transmission type', _U8, 'rw', 1,
-         '0: after a SYNC, if changed; n to 240: after every n-th; 254, 255: if changed'),
-        (INHIBIT_TIME, 'Inhibit time', _U16, 'rw', 0, '100 us, of types 254 and 255'),
-        (EVENT_TIMER, 'Event timer', _U16, 'rw', 0, 'ms, of types 254 and 255'),
-        (SYNC_START, 'SYNC start value', _U8, 'rw', 0, 'counter of the first SYNC; 0: any')])
-
-
-def _cob_id(bases: Sequence[int], k: int, node: int) -> int:
-    if k >= len(bases):
-        return INVALID
-    return bases[k] + node | (0 if k < _PDOS_ON else INVALID)
-
-
-def _errors() -> Object:
-    return Object(ERROR_HISTORY, 'Pre-defined error field', Kind.ARRAY, (
-        Entry(ERROR_HISTORY, 0, 'Number of errors', _U8, 'rw', meaning='0 clears them'),
-        *(Entry(ERROR_HISTORY, k, f'Error {k}', _U32, meaning='code; the newest is error 1')
-          for k in range(1, ERRORS_KEPT + 1))), bus='canopen')
-
-
-def _var(index: int, name: str, data_type: DataType, access: str = 'rw', default: int = 0,
-         meaning: str = '') -> Object:
-    high: Mapping[int, float] = {SYNC_OVERFLOW: MOST_SYNCS}
-    entry = Entry(index, 0, name, data_type, access, default, meaning=meaning,
-                  high=high.get(index, float('inf')))
-    return Object(index, name, Kind.VAR, (entry,), bus='canopen')
-
-
-def _array(index: int, name: str, defaults: Sequence[int], meaning: str) -> Object:
-    return Object(index, name, Kind.ARRAY, (
-        Entry(index, 0, 'Highest subindex', _U8, 'const', len(defaults)),
-        *(Entry(index, k, f'{name} {k}', _U32, 'rw', default, meaning=meaning)
-          for k, default in enumerate(defaults, 1))), bus='canopen')
-
-
-def _record(index: int, name: str,
-            rows: Sequence[tuple[int, str, DataType, str, int, str]]) -> Object:
-    return Object(index, name, Kind.RECORD, (
-        Entry(index, 0, 'Highest subindex', _U8, 'const', rows[-1][0]),
-        *(Entry(index, subindex, text, data_type, access, default, meaning=meaning,
-                high=2 if index == ERROR_BEHAVIOUR else float('inf'))
-          for subindex, text, data_type, access, default, meaning in rows)), bus='canopen')

@@ -3,12 +3,11 @@
 from collections.abc import Callable
 
 from isa_ros.fieldbus.abort import PDO_TOO_LONG, SdoAbort, UNSUPPORTED_ACCESS
-from isa_ros.fieldbus.canopen.communication import (
-    COB_ID, Communication, ERROR_REGISTER, RECEIVE_MAPPINGS, TRANSMIT_MAPPINGS,
-    TRANSMIT_PARAMETERS)
+from isa_ros.fieldbus.canopen.communication import COB_ID, Communication, ERROR_REGISTER
 from isa_ros.fieldbus.canopen.errors import NodeErrors
 from isa_ros.fieldbus.canopen.identifiers import INVALID, MOST_BYTES
 from isa_ros.fieldbus.device import BusDevice
+from isa_ros.fieldbus.process_data import is_mapping
 
 _MAPPINGS = 0x200   # indices of each direction, as far behind the parameters
 
@@ -39,7 +38,7 @@ class NodeDictionary:
             self._communication.write(
                 index, subindex, data, is_preoperational=self._is_preoperational())
             self._follow(index)
-        elif _is_mapping(index):
+        elif is_mapping(index):
             self._write_mapping(index, subindex, data)
         else:
             self._write_to_device(index, subindex, data)
@@ -69,8 +68,3 @@ def mappings(device: BusDevice, first: int) -> list[int]:
     """Return the mappings of a direction that fit into a frame."""
     return [one.index for one in device.table
             if first <= one.index < first + _MAPPINGS and device.size(one.index) <= MOST_BYTES]
-
-
-def _is_mapping(index: int) -> bool:
-    return RECEIVE_MAPPINGS <= index < TRANSMIT_PARAMETERS \
-        or TRANSMIT_MAPPINGS <= index < TRANSMIT_MAPPINGS + _MAPPINGS

@@ -1,10 +1,10 @@
 """
-MIT-mode frames: impedance control of electric legs, five numbers in 8 bytes, most significant first.
+MIT-mode frames, the impedance control of electric legs: five numbers in 8 bytes.
 
 Command: position 16 bits, velocity 12, stiffness 12, damping 12, effort 12. Answer: number of the
-motor 8 bits, position 16, velocity 12, effort 12. A number of n bits is a linear scale from the low
-end of its range (all bits 0) to the high end (all bits 1). So the zero of a symmetric range lies
-between two codes: the nearest is half a step of it away.
+motor 8 bits, position 16, velocity 12, effort 12. The most significant bit is first. A number of n
+bits is a linear scale from the low end of its range (all bits 0) to the high end (all bits 1). So
+the zero of a symmetric range lies between two codes: the nearest is half a step of it away.
 """
 
 from collections.abc import Sequence

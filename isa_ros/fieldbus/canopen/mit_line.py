@@ -2,10 +2,10 @@
 The actuators of a run as MIT-mode motors on one CAN bus, numbers as those of CANopen nodes.
 
 A command frame has the identifier of its motor; each frame to a motor is answered at once, with
-the state at the end of the last tick, by the identifier ``answer_id`` (0, as the published firmware
-does; there is no NMT here). A tick begins when all motors have a new command. Where a motor gets a
-second one before, it begins without the others, and the second belongs to the next tick. SDO is
-served too, with the ranges of the frames in object 0x2002.
+the state at the end of the last tick, by the identifier ``answer_id`` (0, as the published
+firmware does; there is no NMT here). A tick begins when all motors have a new command. Where a
+motor gets a second one before, it begins without the others, and the second belongs to the next
+tick. SDO is served too, with the ranges of the frames in object 0x2002.
 """
 
 from collections.abc import Mapping, Sequence

@@ -3,22 +3,20 @@ One actuator behind MIT-mode frames: commands become objects of its CiA 402 driv
 
 The impedance mode (-1) is driven: target position and velocity in counts, stiffness, damping and
 effort in SI. ``enable`` resets a fault and leads the drive to operation enabled, one state a tick;
-``disable`` switches it off, and so does a fault until the next ``enable``. ``set zero`` makes the present position 0 in the frames only: the
-encoder is absolute, and objects and bag keep their positions.
+``disable`` switches it off, and so does a fault until the next ``enable``. ``set zero`` makes the
+present position 0 in the frames only: the encoder is absolute, and objects and bag keep theirs.
 """
 
 from isa_ros.fieldbus.abort import SdoAbort
 from isa_ros.fieldbus.canopen.mit_frames import (
     Answer, answer_frame, Command, command_of, DISABLE, ENABLE, Range, Ranges, SET_ZERO)
 from isa_ros.fieldbus.device import BusDevice
+from isa_ros.fieldbus.manufacturer_area import DAMPING, EFFORT, MIT_RANGES, STIFFNESS
 from isa_ros.fieldbus.objects import Value
 
-RANGES = 0x2002
-"""Object with the ends of the scales: position, velocity, stiffness, damping, effort; SI."""
 _CONTROL, _STATUS, _MODE = (0x6040, 0), (0x6041, 0), (0x6060, 0)
 _TARGET_POSITION, _TARGET_VELOCITY = (0x607A, 0), (0x60FF, 0)
 _POSITION, _VELOCITY, _FORCE = (0x6064, 0), (0x606C, 0), (0x2022, 1)
-_STIFFNESS, _DAMPING, _EFFORT = (0x2010, 1), (0x2010, 2), (0x2010, 3)
 _IMPEDANCE = -1
 _SHUTDOWN, _SWITCH_ON, _ENABLE_OPERATION, _RESET_FAULT = 0x06, 0x07, 0x0F, 0x80
 _IS_FAULTY, _DISABLED = 0x08, 0x40      # bits of the status word
@@ -44,7 +42,7 @@ class MitMotor:
     @property
     def ranges(self) -> Ranges:
         """Return the scales of its frames."""
-        ends = [float(self._value((RANGES, k))) for k in range(1, 6)]
+        ends = [float(self._value((MIT_RANGES, k))) for k in range(1, 6)]
         position, velocity, stiffness, damping, effort = ends
         return Ranges(Range(-position, position), Range(-velocity, velocity),
                       Range(0.0, stiffness), Range(0.0, damping), Range(-effort, effort))
@@ -71,9 +69,9 @@ class MitMotor:
         self._write(_TARGET_POSITION,
                     round(command.position / self._scale(_TARGET_POSITION)) + self._zero)
         self._write(_TARGET_VELOCITY, round(command.velocity / self._scale(_TARGET_VELOCITY)))
-        self._write(_STIFFNESS, command.stiffness)
-        self._write(_DAMPING, command.damping)
-        self._write(_EFFORT, command.effort)
+        self._write(STIFFNESS, command.stiffness)
+        self._write(DAMPING, command.damping)
+        self._write(EFFORT, command.effort)
 
     def answer(self) -> bytes:
         """Return the frame with the state at the end of the last tick."""

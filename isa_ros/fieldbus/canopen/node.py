@@ -11,7 +11,7 @@ from enum import IntEnum
 
 from isa_ros.fieldbus.canopen.capacity import CyclicFrame
 from isa_ros.fieldbus.canopen.communication import (
-    Communication, communication_objects, ERROR_BEHAVIOUR, ERROR_HISTORY, HEARTBEAT_CONSUMED,
+    Communication, ERROR_BEHAVIOUR, ERROR_HISTORY, HEARTBEAT_CONSUMED,
     HEARTBEAT_PRODUCED, RECEIVE_MAPPINGS, RECEIVE_PARAMETERS, SYNC_ID, SYNC_OVERFLOW,
     TRANSMIT_MAPPINGS, TRANSMIT_PARAMETERS)
 from isa_ros.fieldbus.canopen.dictionary import mappings, NodeDictionary
@@ -25,7 +25,6 @@ from isa_ros.fieldbus.canopen.sdo import SdoServer
 from isa_ros.fieldbus.canopen.startup import Startup
 from isa_ros.fieldbus.device import BusDevice
 
-_NS_PER_US = 1000
 Send = Callable[[int, bytes], None]
 Handler = Callable[[bytes], bool]
 """Handles the data of a frame; returns whether a cycle has begun."""
@@ -64,8 +63,7 @@ class Node:
         self.state = NmtState.INITIALISING
         receive = mappings(device, RECEIVE_MAPPINGS)
         transmit = mappings(device, TRANSMIT_MAPPINGS)
-        self.communication = Communication(communication_objects(
-            node, receive, transmit, step_ns // _NS_PER_US))
+        self.communication = Communication(device.table, node)
         self.errors = NodeErrors(self.communication, send)
         self.receive = [ReceivePdo(one - RECEIVE_MAPPINGS + RECEIVE_PARAMETERS, one)
                         for one in receive]

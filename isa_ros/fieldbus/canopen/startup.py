@@ -2,8 +2,9 @@
 
 from isa_ros.fieldbus.abort import SdoAbort
 from isa_ros.fieldbus.device import BusDevice
+from isa_ros.fieldbus.process_data import is_mapping
 
-_FIRST_MAPPING, _LAST_MAPPING = 0x1600, 0x1BFF
+_LAST_OF_COMMUNICATION = 0x1FFF
 
 
 class Startup:
@@ -19,12 +20,12 @@ class Startup:
         """Write back the mappings, and with ``is_whole`` (reset node) all other values too."""
         indices = dict.fromkeys(index for index, _ in self._values)
         for index in indices:
-            if _FIRST_MAPPING <= index <= _LAST_MAPPING:
+            if is_mapping(index):
                 self._restore_mapping(index)
         if not is_whole:
             return
         for (index, subindex), data in self._values.items():
-            if index > _LAST_MAPPING:
+            if index > _LAST_OF_COMMUNICATION:
                 self._write(index, subindex, data)
 
     def _restore_mapping(self, index: int) -> None:

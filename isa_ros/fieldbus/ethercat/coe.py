@@ -11,9 +11,9 @@ import struct
 from isa_ros.fieldbus import abort
 from isa_ros.fieldbus.abort import SdoAbort
 from isa_ros.fieldbus.device import BusDevice, Emergency
+from isa_ros.fieldbus.ethercat.sdo_information import answer_information
 from isa_ros.fieldbus.ethercat.slave_mailbox import (
     CAPACITY, MailError, TOO_SHORT, UNSUPPORTED_SERVICE)
-from isa_ros.fieldbus.ethercat.sdo_information import answer_information
 
 _SERVICE = struct.Struct('<H')
 _SERVICE_BITS = 12
@@ -99,7 +99,12 @@ class CanOverEthercat:
             return [_aborted(index, subindex, refused)]
 
     def _upload(self, command: int, index: int, subindex: int) -> bytes:
-        """Answer with the content of an entry or object, or with its first part."""
+        """
+        Answer with the content of an entry or object.
+
+        Of one that does not fit into a mail only the size is sent, as CANopen does: all known
+        masters accept it, and not all accept a first part here.
+        """
         is_complete = bool(command & _COMPLETE)
         content = self._read(index, subindex, is_complete)
         flags = _UPLOADED << _COMMAND_BITS | (command & _COMPLETE) | _HAS_SIZE
@@ -108,10 +113,11 @@ class CanOverEthercat:
             return _response(struct.pack(
                 '<BHB', flags | _EXPEDITED | unused << 2, index, subindex) + content.ljust(
                     _EXPEDITED_SIZE, b'\0'))
-        room = CAPACITY - _SERVICE.size - _INITIATE.size
-        if len(content) > room:
-            self._transfer = _Transfer(index, subindex, is_complete, content[room:], 0)
-        return _response(_INITIATE.pack(flags, index, subindex, len(content)) + content[:room])
+        head = _INITIATE.pack(flags, index, subindex, len(content))
+        if _SERVICE.size + len(head) + len(content) <= CAPACITY:
+            return _response(head + content)
+        self._transfer = _Transfer(index, subindex, is_complete, content, 0)
+        return _response(head)
 
     def _read(self, index: int, subindex: int, is_complete: bool) -> bytes:
         if not is_complete:

@@ -2,9 +2,10 @@
 Which frames belong to one cycle.
 
 A process image that is too large for one frame, or that a master writes device by device, takes
-several frames. They are one cycle, hence one tick. It is complete when the outputs of all slaves
-have been written. If frames are lost it never is: then the frame that writes the first address of
-a cycle again, or any address that was written in this cycle, begins the next one.
+several frames. They are one cycle, hence one tick. It is complete when all outputs that are mapped
+have been written and all inputs read. If frames are lost it never is: then the frame that writes
+the first address of a cycle again, or any address that was written in this cycle, begins the next
+one.
 """
 
 from collections.abc import Sequence

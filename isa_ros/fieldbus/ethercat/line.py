@@ -48,7 +48,7 @@ class EthercatLine:
         """Answer frames for ``timeout`` seconds, or until a cycle is a tick: then True."""
         deadline = time.monotonic() + timeout
         while self._held is not None or self._receive(timeout):
-            if self._answer():
+            if self._held is not None and self._answer():
                 return True
             if timeout > 0.0:
                 timeout = max(0.0, deadline - time.monotonic())
@@ -66,7 +66,7 @@ class EthercatLine:
         return self.ring.is_complete and self.ring.end_cycle()
 
     def _receive(self, timeout: float) -> bool:
-        """Hold the next frame of EtherCAT; return False if none arrives in time."""
+        """Receive a frame, and hold it if it is EtherCAT; return False if none arrives in time."""
         try:
             if timeout != self._timeout:
                 self._set_timeout(timeout)
@@ -80,7 +80,7 @@ class EthercatLine:
         taken = self.ring.take(self._frame, size)
         if taken is not None:
             self._held = size, taken
-        return taken is not None
+        return True
 
     def _set_timeout(self, timeout: float) -> None:
         """Let the kernel end a wait, which takes one system call a frame instead of two."""

@@ -11,7 +11,7 @@ from typing import NamedTuple
 
 from isa_ros.fieldbus.ethercat.datagrams import Command, Datagram
 from isa_ros.fieldbus.ethercat.fmmu import copy_bits, Fmmu, Window, window
-from isa_ros.fieldbus.ethercat.slave import Slave
+from isa_ros.fieldbus.ethercat.slave import READ, Slave, WRITTEN
 
 _READ_COUNT = 1
 _WRITE_COUNT = {Command.LWR: 1, Command.LRW: 2}
@@ -32,6 +32,8 @@ class Step(NamedTuple):
     """If any of them needs the controller: all; else none."""
     increment: int
     """What the copies add to the working counter."""
+    exchanged: int
+    """What the copies exchange: bits of `Slave.exchanged`."""
 
 
 def plan(slaves: Sequence[Slave], datagram: Datagram) -> list[Step]:
@@ -41,7 +43,7 @@ def plan(slaves: Sequence[Slave], datagram: Datagram) -> list[Step]:
         windows = tuple(_windows(slave, datagram))
         if windows:
             steps.append(_direct(slave, datagram, windows) or Step(
-                slave, slave.controller.memory, (), (), windows, 0))
+                slave, slave.controller.memory, (), (), windows, 0, 0))
     return steps
 
 
@@ -71,18 +73,20 @@ def _direct(slave: Slave, datagram: Datagram,
         (writes if fmmu.writes else reads).append((start, end, at, at + end - start))
     count = (_WRITE_COUNT[Command(datagram.command)] if writes else 0) + (
         _READ_COUNT if reads else 0)
-    return Step(slave, slave.controller.memory, tuple(writes), tuple(reads), (), count)
+    exchanged = (WRITTEN if writes else 0) | (READ if reads else 0)
+    return Step(
+        slave, slave.controller.memory, tuple(writes), tuple(reads), (), count, exchanged)
 
 
 def execute(steps: Sequence[Step], frame: bytearray, datagram: Datagram) -> int:
     """Exchange a datagram's data with the slaves; return what to add to the working counter."""
     counter = 0
-    for slave, memory, writes, reads, windows, increment in steps:
+    for slave, memory, writes, reads, windows, increment, exchanged in steps:
         for start, end, at, behind in writes:
             memory[start:end] = frame[at:behind]
-            slave.has_new_outputs = True
         for start, end, at, behind in reads:
             frame[at:behind] = memory[start:end]
+        slave.exchanged |= exchanged
         counter += increment if not windows else _by_controller(slave, windows, frame, datagram)
     return counter
 

@@ -17,7 +17,7 @@ from isa_ros.fieldbus.ethercat.datagrams import (
     Command, Datagram, Datagrams, datagrams, is_ethercat)
 from isa_ros.fieldbus.ethercat.logical import execute, plan, Step
 from isa_ros.fieldbus.ethercat.registers import EVENTS, LOST_LINKS, UNIT_ERRORS
-from isa_ros.fieldbus.ethercat.slave import Slave
+from isa_ros.fieldbus.ethercat.slave import Slave, WRITTEN
 
 _WORD = struct.Struct('<H')
 _WRAP = 0xFFFF
@@ -42,7 +42,7 @@ class Ring:
         self.clock = SharedClock(step_ns)
         self.cycle = Cycle()
         self._plans: dict[tuple[int, int, int, int], list[Step]] = {}
-        self._awaited: list[Slave] | None = None
+        self._awaited: list[tuple[Slave, int]] | None = None
         self._is_operational = False
         self.slaves = [Slave(device, position, len(devices), self.clock, self._replan)
                        for position, device in enumerate(devices)]
@@ -79,7 +79,7 @@ class Ring:
             for slave in self.slaves:
                 slave.controller.count(UNIT_ERRORS)
         writes = _writes(taken)
-        if writes and any(slave.has_new_outputs for slave in self.slaves):
+        if writes and any(slave.exchanged & WRITTEN for slave in self.slaves):
             self.cycle.add(writes)
 
     def _add(self, frame: bytearray, at: int, count: int) -> None:
@@ -123,12 +123,12 @@ class Ring:
 
     @property
     def is_complete(self) -> bool:
-        """Return whether the outputs of all slaves have been written in this cycle."""
+        """Return whether all process data have been exchanged in this cycle."""
         if not self.cycle.is_open:
             return False
         if self._awaited is None:
-            self._awaited = [slave for slave in self.slaves if slave.is_written_by_master]
-        return all(slave.has_new_outputs for slave in self._awaited)
+            self._awaited = [(slave, slave.awaited) for slave in self.slaves]
+        return all(slave.exchanged & awaited == awaited for slave, awaited in self._awaited)
 
     def end_cycle(self) -> bool:
         """

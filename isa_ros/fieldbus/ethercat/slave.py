@@ -8,14 +8,16 @@ from isa_ros.fieldbus.ethercat.application_layer import ApplicationLayer, State
 from isa_ros.fieldbus.ethercat.clock import DistributedClock, SharedClock
 from isa_ros.fieldbus.ethercat.coe import CanOverEthercat
 from isa_ros.fieldbus.ethercat.controller import AL_EVENT, Controller
+from isa_ros.fieldbus.ethercat.fmmu import Fmmu
 from isa_ros.fieldbus.ethercat.layout import AREAS
-from isa_ros.fieldbus.ethercat.slave_mailbox import Mailbox
 from isa_ros.fieldbus.ethercat.registers import DL_STATUS
 from isa_ros.fieldbus.ethercat.sii import build_sii, process_data_sizes
+from isa_ros.fieldbus.ethercat.slave_mailbox import Mailbox
 from isa_ros.fieldbus.ethercat.sync_manager import (
     INPUTS, MAILBOX_IN, MAILBOX_OUT, OUTPUTS, SyncManager)
 from isa_ros.fieldbus.ethercat.watchdog import Watchdog
 
+WRITTEN, READ = 1, 2
 _FROM_MASTER = {MAILBOX_OUT: True, MAILBOX_IN: False, OUTPUTS: True, INPUTS: False}
 _APPLICATION_RUNS, _PORT_0, _PORT_1 = 0x0001, 0x0210, 0x0820
 _CLOSED_1, _CLOSED_2, _CLOSED_3 = 0x0400, 0x1000, 0x4000
@@ -45,8 +47,8 @@ class Slave:
         self._al = ApplicationLayer(memory, self)
         self._received: list[tuple[int, int, int]] = []
         self._transmitted: list[int] = []
-        self.has_new_outputs = False
-        """Whether the master has written the outputs in this cycle."""
+        self.exchanged = 0
+        """Bits `WRITTEN`, `READ`: what the master has exchanged in this cycle."""
         self.controller.attach(
             self._clock, on_control=self._take_control, on_buffer=self._take_buffer,
             on_setup=self._check_setup)
@@ -123,7 +125,7 @@ class Slave:
             self._received.append((pdo, at, at + size))
             at += size
         self._transmitted = self.device.assigned(TRANSMIT_ASSIGNMENT)
-        self.has_new_outputs = False
+        self.exchanged = 0
 
     def is_whole_buffer(self, start: int, end: int, is_output: bool) -> bool:
         """Return whether these addresses are all of an open buffer of process data."""
@@ -134,12 +136,19 @@ class Slave:
                 and (start, end) == (manager.start, manager.end))
 
     @property
-    def is_written_by_master(self) -> bool:
-        """Return whether a master writes the outputs through an FMMU."""
-        manager = self._sync[OUTPUTS]
-        return self.state in (State.SAFEOP, State.OP) and manager.covers and any(
-            one.writes and one.physical < manager.end
-            and one.physical + one.length > manager.start for one in self.controller.fmmus)
+    def awaited(self) -> int:
+        """Return what a cycle exchanges through FMMUs, as bits `WRITTEN` and `READ`."""
+        if self.state not in (State.SAFEOP, State.OP):
+            return 0
+        fmmus = self.controller.fmmus
+        return (WRITTEN if any(one.writes and self._reaches(one, OUTPUTS) for one in fmmus) else 0
+                ) | (READ if any(one.reads and self._reaches(one, INPUTS) for one in fmmus) else 0)
+
+    def _reaches(self, fmmu: Fmmu, number: int) -> bool:
+        """Return whether an FMMU maps any of a sync manager's buffer."""
+        manager = self._sync[number]
+        return (manager.covers and fmmu.physical < manager.end
+                and fmmu.physical + fmmu.length > manager.start)
 
     def _take_control(self) -> None:
         self._al.control()
@@ -165,12 +174,14 @@ class Slave:
         elif manager.number == MAILBOX_IN:
             self._mailbox.note_read()
         elif manager.number == OUTPUTS:
-            self.has_new_outputs = True
+            self.exchanged |= WRITTEN
+        elif manager.number == INPUTS:
+            self.exchanged |= READ
 
     def end_cycle(self) -> None:
         """Hand new outputs to the device, or count a cycle without them."""
-        if self.has_new_outputs:
-            self.has_new_outputs = False
+        exchanged, self.exchanged = self.exchanged, 0
+        if exchanged & WRITTEN:
             self.watchdog.feed()
             outputs = self._sync[OUTPUTS].take()
             if self.state == State.OP:

@@ -137,4 +137,4 @@ def test_a_missed_bus_is_lost_by_the_error_behaviour(master, toys, behaviour, st
 def test_an_unknown_error_behaviour_is_refused(master):
     with pytest.raises(Refused) as refused:
         master.write(0x1029, 1, 3, 1)
-    assert refused.value.code == 0x06090031
+    assert refused.value.code == 0x06090030

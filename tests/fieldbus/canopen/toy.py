@@ -6,10 +6,13 @@ A tick of it is `ToyDrive.tick`; what it does is exact and needs no plant.
 
 from isa_ros.fieldbus.abort import (
     NOT_EMPTIED_FIRST, NOT_MAPPABLE, OUT_OF_RANGE, READ_ONLY, SdoAbort, WRITE_ONLY, WRONG_STATE)
+from isa_ros.fieldbus.canopen.communication import communication_objects, pdo_parameters
+from isa_ros.fieldbus.communication_area import error_objects
 from isa_ros.fieldbus.device import Emergency, Identity, VENDOR
 from isa_ros.fieldbus.objects import DataType, Entry, Kind, Object, ObjectTable, Value
 import numpy as np
 
+STEP_NS = 1_000_000
 FAULT_CODE = 0x3210
 LOST = 0x8180
 U8, U16, U32 = DataType.UNSIGNED8, DataType.UNSIGNED16, DataType.UNSIGNED32
@@ -61,7 +64,9 @@ def toy_table(name: str) -> ObjectTable:
         _record(0x1018, 'Identity', [
             ('Vendor id', U32, 'const', VENDOR, ''), ('Product code', U32, 'const', 7, ''),
             ('Revision', U32, 'const', 1, ''), ('Serial number', U32, 'const', 1, '')]),
+        *error_objects(), *communication_objects(STEP_NS),
         *map(_mapping, MAPPINGS),
+        *(pdo_parameters(one, is_on=one & 0xFF < 2) for one in MAPPINGS),
         _record(0x2002, 'MIT ranges', [
             ('Position', F32, 'rw', 0.065535, ''), ('Velocity', F32, 'rw', 0.5, ''),
             ('Stiffness', F32, 'rw', 4095.0, ''), ('Damping', F32, 'rw', 40.95, ''),
@@ -215,13 +220,14 @@ class ToyDrive:
         self.ticks += 1
         self.values.update({
             (0x6041, 0): STATUS[self.state], (0x6061, 0): self.values[0x6060, 0],
-            (0x6077, 0): torque, (0x2022, 1): float(torque), (0x6064, 0): self.position, (0x606C, 0): self.velocity})
+            (0x6077, 0): torque, (0x2022, 1): float(torque), (0x6064, 0): self.position,
+            (0x606C, 0): self.velocity})
 
     def _impedance_force(self) -> float:
         position = 1e-6 * (int(self.values[0x607A, 0]) - self.position)
         velocity = 1e-6 * (int(self.values[0x60FF, 0]) - self.velocity)
-        return (float(self.values[0x2010, 1]) * position + float(self.values[0x2010, 2]) * velocity
-                + float(self.values[0x2010, 3]))
+        stiffness, damping, effort = (float(self.values[0x2010, k]) for k in (1, 2, 3))
+        return stiffness * position + damping * velocity + effort
 
     def _fail(self, code: int) -> None:
         self.state, self.values[0x603F, 0], self._register = 'fault', code, 0x05

@@ -1,0 +1,77 @@
+"""Measured cycles of an EtherCAT ring, each in a network namespace of its own."""
+
+from collections.abc import Sequence
+from dataclasses import asdict, dataclass
+from functools import cache
+import json
+from pathlib import Path
+import shutil
+import subprocess
+import sys
+import tempfile
+from typing import NamedTuple
+
+from isa_ros.bench.child import environment, last_line
+from isa_ros.fieldbus.request import FRAME, REAL_TIME
+
+FLOOR = 'floor'
+"""Slaves without a plant: frames, objects and process data only."""
+WAYS = (FLOOR, FRAME, REAL_TIME)
+SLAVE_END, MASTER_END = 'ecs', 'ecm'
+"""The two ends of the pair of interfaces."""
+NEW_NAMESPACE = (
+    'unshare', '--user', '--map-root-user', '--net', 'sh', '-c',
+    f'ip link add {SLAVE_END} type veth peer name {MASTER_END} && ip link set lo up && '
+    f'ip link set {SLAVE_END} up && ip link set {MASTER_END} up && exec "$@"', 'sh')
+"""Runs a command in a network namespace with a pair of interfaces, without root."""
+TIMEOUT_S = 300.0
+
+
+@dataclass(frozen=True)
+class Ring:
+    """A ring to measure."""
+
+    plant: str
+    """As that of `Spec`."""
+    way: str
+    """One of `WAYS`."""
+    cycles: int
+
+
+class Cycles(NamedTuple):
+    """Measured cycles, times in s."""
+
+    per_s: float
+    median: float
+    """Round trip of a frame."""
+    p99: float
+    log: Sequence[str] = ()
+    """Lines of the slaves about real time."""
+
+
+@cache
+def missing() -> str:
+    """Return why a ring cannot be measured here; '' if it can."""
+    for program in ('unshare', 'ip'):
+        if shutil.which(program) is None:
+            return f'{program} is not installed'
+    ended = subprocess.run(
+        [*NEW_NAMESPACE, sys.executable, '-c', 'import pysoem'], env=environment(),
+        stdin=subprocess.DEVNULL, capture_output=True, text=True)
+    if ended.returncode:
+        reason = last_line(ended)
+        return f'{reason}: requirements-test.txt' if 'pysoem' in reason else reason
+    return ''
+
+
+def measured(ring: Ring) -> Cycles | str:
+    """Measure a ring in a namespace; return its cycles, or why there are none."""
+    with tempfile.TemporaryDirectory(prefix='isa_bench_') as directory:
+        result = Path(directory) / 'cycles.json'
+        ended = subprocess.run(
+            [*NEW_NAMESPACE, sys.executable, '-m', 'isa_ros.bench.bus_master', '0',
+             json.dumps(asdict(ring)), str(result)], env=environment(),
+            stdin=subprocess.DEVNULL, capture_output=True, text=True, timeout=TIMEOUT_S)
+        if ended.returncode:
+            return last_line(ended)
+        return Cycles(**json.loads(result.read_text(encoding='utf-8')))

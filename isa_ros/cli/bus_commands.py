@@ -1,0 +1,76 @@
+"""The command `isa bus`; its modules are imported in the functions, as in `commands`."""
+
+from argparse import Namespace
+from typing import TYPE_CHECKING
+
+from isa_ros.cli.bus_arguments import DESCRIBE
+from isa_ros.cli.commands import recorded, simulating, tell
+from isa_ros.config.paths import CONFIG, find
+from isa_ros.fieldbus.request import BusRequest
+from isa_ros.run.options import request_of_arguments
+
+if TYPE_CHECKING:
+    from isa_ros.run.session import Report
+
+
+def bus(options: Namespace) -> bool:
+    """Run with the master of a bus, or describe the devices of a run."""
+    if options.bus == DESCRIBE:
+        return describe(options)
+    return serve(options)
+
+
+def bus_request_of(options: Namespace) -> BusRequest:
+    """Return the request of the command line."""
+    values = vars(options)
+    own = {name: values[name] for name in ('interface', 'channel', 'bitrate', 'path', 'baud')
+           if name in values}
+    return BusRequest(
+        run=request_of_arguments(values, in_process=True, is_alone=options.is_alone),
+        bus=options.bus, pace=options.pace, profile=options.profile,
+        watchdog_ms=options.watchdog_ms, has_ros=not options.no_ros, **own)
+
+
+@simulating
+def serve(options: Namespace) -> bool:
+    """Run and record a configuration whose commands come from the master of a bus."""
+    from isa_ros.core.without_blas import start_without_blas
+    from isa_ros.fieldbus.devices import devices_of
+    from isa_ros.fieldbus.lines import line_of, refuse_unusable
+    from isa_ros.fieldbus.session import prepare_bus
+    request = bus_request_of(options)
+    if request.run.is_alone:
+        start_without_blas()
+    prepared = prepare_bus(request, devices_of, line_of(request), tell)
+    refuse_unusable(request)
+    session = prepared.session
+
+    def run(report: 'Report | None') -> None:
+        if request.has_ros:
+            from isa_ros.nodes.bringup import run_session
+            run_session(session, report)
+            return
+        from isa_ros.processes.stopping import StopRequest
+        from isa_ros.run.without_ros import run_without_ros
+        with StopRequest() as should_stop:
+            run_without_ros(session, report, should_stop)
+    try:
+        recorded(session, run)
+    finally:
+        if prepared.summary is not None:
+            tell(prepared.summary)
+    return True
+
+
+def describe(options: Namespace) -> bool:
+    """Write what a master wants to know of the devices."""
+    from isa_ros.config.run_file import load_run
+    from isa_ros.fieldbus.devices import devices_of
+    from isa_ros.fieldbus.eds import eds_text
+    devices = devices_of(load_run(find(options.config, CONFIG)), options.profile)
+    for device in devices:
+        path = options.eds if len(devices) == 1 else options.eds.with_stem(
+            f'{options.eds.stem}_{device.name}')
+        path.write_text(eds_text(device), encoding='ascii')
+        print(path)
+    return True
