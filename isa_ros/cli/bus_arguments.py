@@ -29,7 +29,7 @@ def _ethercat(parser: argparse.ArgumentParser) -> None:
         help='network interface of the ring, for example one end of a veth pair')
 
 
-def _canopen(parser: argparse.ArgumentParser) -> None:
+def _can(parser: argparse.ArgumentParser) -> None:
     _run(parser)
     parser.add_argument(
         '--interface', required=True, metavar='NAME',
@@ -38,6 +38,9 @@ def _canopen(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         '--bitrate', type=count, default=request.OF_THE_WIRE, metavar='BIT/S',
         help='of the bus (default: 1000000)')
+    parser.add_argument(
+        '--first-node', type=count, default=1, metavar='N',
+        help='number of the first actuator (default: %(default)s)')
 
 
 def _serial(parser: argparse.ArgumentParser) -> None:
@@ -55,8 +58,11 @@ def _describe(parser: argparse.ArgumentParser) -> None:
     _profile(parser)
     what = parser.add_mutually_exclusive_group(required=True)
     what.add_argument(
-        '--eds', type=file_to_write, metavar='FILE',
-        help='write the electronic data sheet of CANopen; of several actuators FILE_NAME.eds')
+        '--esi', type=file_to_write, metavar='FILE.xml', help='write the XML file of EtherCAT')
+    what.add_argument(
+        '--eds', type=file_to_write, metavar='FILE.eds',
+        help='write the data sheet of CANopen; for each of several actuators a FILE_NAME.eds')
+    what.add_argument('--table', action='store_true', help='print all objects')
 
 
 def _run(parser: argparse.ArgumentParser) -> None:
@@ -83,7 +89,8 @@ def _profile(parser: argparse.ArgumentParser) -> None:
 
 _BUSES = {
     request.ETHERCAT: (_ethercat, 'serve an EtherCAT master on a network interface'),
-    request.CANOPEN: (_canopen, 'serve a CANopen master on a CAN interface'),
+    request.CANOPEN: (_can, 'serve a CANopen master on a CAN interface'),
+    request.MIT: (_can, 'serve a master of MIT-mode motors on a CAN interface'),
     request.SERIAL: (_serial, 'serve a master on a serial line'),
     DESCRIBE: (_describe, 'write what a master wants to know of the devices'),
 }

@@ -23,7 +23,8 @@ def bus(options: Namespace) -> bool:
 def bus_request_of(options: Namespace) -> BusRequest:
     """Return the request of the command line."""
     values = vars(options)
-    own = {name: values[name] for name in ('interface', 'channel', 'bitrate', 'path', 'baud')
+    own = {name: values[name] for name in (
+        'interface', 'channel', 'bitrate', 'first_node', 'path', 'baud')
            if name in values}
     return BusRequest(
         run=request_of_arguments(values, in_process=True, is_alone=options.is_alone),
@@ -65,12 +66,13 @@ def serve(options: Namespace) -> bool:
 def describe(options: Namespace) -> bool:
     """Write what a master wants to know of the devices."""
     from isa_ros.config.run_file import load_run
+    from isa_ros.fieldbus.description import described, tables_of
     from isa_ros.fieldbus.devices import devices_of
-    from isa_ros.fieldbus.eds import eds_text
     devices = devices_of(load_run(find(options.config, CONFIG)), options.profile)
-    for device in devices:
-        path = options.eds if len(devices) == 1 else options.eds.with_stem(
-            f'{options.eds.stem}_{device.name}')
-        path.write_text(eds_text(device), encoding='ascii')
+    if options.table:
+        print(tables_of(devices))
+        return True
+    for path, text in described(devices, options.esi, options.eds).items():
+        path.write_text(text, encoding='utf-8')
         print(path)
     return True

@@ -1,7 +1,9 @@
 """
 An EtherCAT master (pysoem) that brings a leg up, moves it, sees a fault and recovers.
 
-    python -m isa_ros.examples.ethercat_master ecm      # docs/fieldbus.md: the leg on the other end
+    python -m isa_ros.examples.ethercat_master ecm
+
+`docs/fieldbus.md` says how to start the leg on the other end of the interface.
 """
 
 from collections.abc import Iterator, Sequence

@@ -1,6 +1,6 @@
 """The kinds of buses; add a new one here. A run imports the modules of its own bus only."""
 
-from isa_ros.fieldbus.request import BusRequest, CANOPEN, ETHERCAT
+from isa_ros.fieldbus.request import BusRequest, CANOPEN, ETHERCAT, MIT
 from isa_ros.fieldbus.session import OpenLine
 
 
@@ -12,7 +12,13 @@ def line_of(request: BusRequest) -> OpenLine:
     if request.bus == CANOPEN:
         from isa_ros.fieldbus.canopen.line import canopen_line
         return lambda devices, step_ns: canopen_line(
-            devices, request.interface, request.channel, step_ns, bitrate=request.bitrate)
+            devices, request.interface, request.channel, step_ns, bitrate=request.bitrate,
+            first_node=request.first_node)
+    if request.bus == MIT:
+        from isa_ros.fieldbus.canopen.mit_line import mit_line
+        return lambda devices, step_ns: mit_line(
+            devices, request.interface, request.channel, step_ns, bitrate=request.bitrate,
+            first_node=request.first_node)
     from isa_ros.fieldbus.serial_line import serial_line
     return lambda devices, step_ns: serial_line(
         devices, request.path, request.baud, step_ns)

@@ -8,6 +8,7 @@ from isa_ros.fieldbus.device import BusDevice
 from isa_ros.fieldbus.faults import CONDITION_CODES, ErrorCode, OWN_CODES
 from isa_ros.fieldbus.objects import Entry, Kind, Object, ObjectTable
 from isa_ros.fieldbus.process_data import is_mapping, RECEIVE, TRANSMIT
+from isa_ros.text.marked import with_parts
 from isa_ros.text.table import aligned, markdown
 
 Rows = list[tuple[str, ...]]
@@ -156,10 +157,7 @@ def tables(device_402: BusDevice, device_408: BusDevice) -> Mapping[str, Callabl
 
 
 def with_tables(page: str, device_402: BusDevice, device_408: BusDevice) -> str:
-    """Return a page with its tables anew, from ``<!-- table NAME -->`` to ``<!-- end -->``."""
-    for name, rows in tables(device_402, device_408).items():
-        begin, _, rest = page.partition(f'<!-- table {name} -->\n')
-        _, end, after = rest.partition('<!-- end -->\n')
-        lines = '\n'.join(markdown(rows()))
-        page = f'{begin}<!-- table {name} -->\n\n{lines}\n\n{end}{after}'
-    return page
+    """Return a page with its tables anew; `isa_ros.text.marked` has the form of their marks."""
+    return with_parts(page, {
+        f'table {name}': markdown(rows())
+        for name, rows in tables(device_402, device_408).items()})

@@ -99,6 +99,7 @@ class RealTimeSource:
         self._events: list[str] = []
         pace.serve = self.serve
         self.changes: Callable[[int], ParameterChanges | None] = frames.changes
+        self.end: Callable[[int, Records], None] = frames.end
 
     def is_due(self, tick: int, samples: Records) -> bool:
         """Return True once time has begun; before, serve the line for a moment."""

@@ -9,7 +9,7 @@ from pathlib import Path
 
 from isa_ros.run.options import Request
 
-ETHERCAT, CANOPEN, SERIAL = 'ethercat', 'canopen', 'serial'
+ETHERCAT, CANOPEN, MIT, SERIAL = 'ethercat', 'canopen', 'mit', 'serial'
 
 FRAME, REAL_TIME = 'frame', 'real_time'
 PACES = (FRAME, REAL_TIME)
@@ -27,13 +27,15 @@ class BusRequest:
 
     run: Request
     bus: str
-    """`ETHERCAT`, `CANOPEN` or `SERIAL`."""
+    """`ETHERCAT`, `CANOPEN`, `MIT` or `SERIAL`."""
     interface: str = ''
     """Network interface of EtherCAT; interface of python-can."""
     channel: str = ''
     """Of python-can."""
     bitrate: int = OF_THE_WIRE
     """Of the CAN bus, bit/s."""
+    first_node: int = 1
+    """Number of the first actuator on the CAN bus."""
     path: Path = Path()
     """Of the serial device."""
     baud: int = OF_THE_WIRE

@@ -104,9 +104,10 @@ def prepare_bus(
         devices = devices_of(run, request.profile)
         line = open_line(devices, run.step_ns)
         try:
-            tell(f'{", ".join(device.name for device in devices)} wait for a master on '
-                 f'{request.place}')
-            source = FrameSource(line, devices, session.scenario.changes_at)
+            names = ', '.join(device.name for device in devices)
+            source = FrameSource(
+                line, devices, session.scenario.changes_at,
+                lambda: tell(f'{names} wait for a master on {request.place}'))
             if pace is None:
                 yield source
             else:

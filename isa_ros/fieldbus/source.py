@@ -24,11 +24,15 @@ class FrameSource:
     """
     A `Source` whose ticks are the cycles of a line.
 
-    ``devices`` are in the order of the actuators' rows.
+    ``devices`` are in the order of the actuators' rows; ``ready`` is called when the line begins
+    to be served.
     """
 
-    def __init__(self, line: Line, devices: Sequence[BusDevice], faults: Faults) -> None:
+    def __init__(
+            self, line: Line, devices: Sequence[BusDevice], faults: Faults,
+            ready: Callable[[], object] = lambda: None) -> None:
         self._line, self._devices, self._faults = line, devices, faults
+        self._ready = ready
         self._shown: int | None = None
         self.has_begun = False
         """Whether simulated time has begun."""
@@ -39,8 +43,10 @@ class FrameSource:
         end = time.monotonic() + SLICE_S
         left = SLICE_S
         while left > 0.0:
-            if self._line.serve(left) and self.begins():
-                return True
+            if self._line.serve(left):
+                if self.begins():
+                    return True
+                self._line.update()     # the master sees the same sample again
             left = end - time.monotonic()
         return False
 
@@ -48,10 +54,16 @@ class FrameSource:
         """Give the devices the samples of a tick, once."""
         if tick == self._shown:
             return
+        if self._shown is None:
+            self._ready()
         self._shown = tick
         for device, sample in zip(self._devices, samples):
             device.take_sample(sample, tick)
         self._line.update()
+
+    def end(self, tick: int, samples: Records) -> None:
+        """Let the master have the last samples where the line sends them by itself."""
+        self.show(tick, samples)
 
     def begins(self) -> bool:
         """Return whether simulated time runs, now that a cycle has begun."""

@@ -107,6 +107,7 @@ class Coordinator:
             while True:
                 self._serve(self)
                 if self._is_over:
+                    self._plan.source.end(self.ticks, self._rows.samples)
                     break
                 if self.is_paused:
                     self._idle()

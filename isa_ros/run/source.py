@@ -35,6 +35,10 @@ class Source(Protocol):
         """Return the parameters that change at a tick; None: none."""
         ...
 
+    def end(self, tick: int, samples: Records) -> None:
+        """Take the samples at the end of the run, before a tick that does not begin."""
+        ...
+
 
 class ScenarioSource:
     """The commands and faults of a scenario, which never wait."""
@@ -49,3 +53,6 @@ class ScenarioSource:
     def events(self, tick: int) -> Sequence[str]:
         """Return no events."""
         return ()
+
+    def end(self, tick: int, samples: Records) -> None:
+        """Do nothing."""

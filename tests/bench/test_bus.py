@@ -12,7 +12,7 @@ FLOOR, LEG = Cycles(20_000.0, 40e-6, 80e-6), Cycles(2500.0, 400e-6, 1600e-6)
 
 def test_a_plant_is_compared_with_real_time_and_with_slaves_without_one():
     """2500 cycles of 1 ms in a second; 40 us of the 400 us are the floor's."""
-    rows = frame_rows('the leg', FLOOR, LEG, Aim(2000.0))
+    rows = frame_rows('the leg', [FLOOR], [LEG], Aim(2000.0))
     speed, *parts = rows
     assert (speed.value, speed.ratio, speed.is_reached) == (2500.0, 2.5, True)
     assert [row.value for row in parts] == pytest.approx([40.0, 400.0, 80.0, 1600.0], rel=1e-9)
@@ -20,8 +20,17 @@ def test_a_plant_is_compared_with_real_time_and_with_slaves_without_one():
     assert {row.part_of for row in parts} == {'the leg, frame pace'}
 
 
+def test_a_missed_aim_says_what_a_cycle_takes():
+    """Medians of the rounds."""
+    slow = LEG._replace(per_s=1000.0)
+    (speed, *_) = frame_rows('the leg', [FLOOR] * 3, [slow, LEG, slow], Aim(2000.0))
+    assert (speed.value, speed.lowest, speed.highest) == (1000.0, 1000.0, 2500.0)
+    assert speed.note.startswith('of a cycle of 1000 us: floor: round trip without a plant')
+
+
 def test_a_ring_that_cannot_be_measured_says_why(monkeypatch: pytest.MonkeyPatch):
-    (row,) = frame_rows('the leg', FLOOR, 'cycle 7: working counter -1, must be 9', None)
+    (row,) = frame_rows(
+        'the leg', [FLOOR], ['cycle 7: working counter -1, must be 9'], None)
     assert (row.value, row.note) == (None, 'cycle 7: working counter -1, must be 9')
     monkeypatch.setattr(bus, 'missing', lambda: 'unshare is not installed')
     (row,) = bus_rows()

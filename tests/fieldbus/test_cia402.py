@@ -310,7 +310,9 @@ TRIPS = {
     'overtemperature': {'warning': 0.0, 'trip': 1.0, 'delay_ms': 0.0},
     'supply_low': {'warning': 0.0, 'trip': 1.0, 'delay_ms': 0.0},
     'relief_open': {'warning': 0.0, 'trip': 0.01, 'delay_ms': 0.0, 'reaction': 'disable'},
-    'encoder_jump': {'warning': 0.0, 'trip': 1e-6, 'delay_ms': 0.0}}
+    'load_cell_implausible': {'warning': 0.0, 'trip': 0.1, 'delay_ms': 0.0},
+    'encoder_jump': {'warning': 0.0, 'trip': 1e-6, 'delay_ms': 0.0},
+    'spool_deviation': {'warning': 0.0, 'trip': 1e-5, 'delay_ms': 0.0}}
 """Levels that are met while the actuator moves, by condition."""
 
 
@@ -326,6 +328,8 @@ def tripping(condition):
 @pytest.mark.parametrize('condition', TRIPS)
 def test_a_trip_of_the_device_is_a_fault_with_its_code(condition):
     rig = tripping(condition)
+    if condition == 'load_cell_implausible':
+        rig.simulation.tune('ram', {'plant.sensors.force.bias': 3000.0})
     master = Master(rig)
     for k, control in enumerate((SHUTDOWN, SWITCH_ON, ENABLE, ENABLE, *[ENABLE] * 100)):
         if state(master.cycle(control, x6060=CSV, x60FF=50000)) == 'FAULT':

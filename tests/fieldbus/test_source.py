@@ -32,12 +32,13 @@ def short_slice(monkeypatch: pytest.MonkeyPatch) -> None:
 
 
 def test_time_begins_with_the_first_control_word():
-    """Cycles before it are served without a tick."""
+    """Cycles before it are answered without a tick: with the sample of t = 0."""
     bus = Bus((0, 0), (0, 0), (6, 0), (0, 0))
     assert bus.is_due(0)
-    assert bus.line.log == ['update', 'cycle 0', 'cycle 0', 'cycle 6']
+    assert bus.line.log == ['update', 'cycle 0', 'update', 'cycle 0', 'update', 'cycle 6']
+    assert bus.devices[0].samples == [(0, 0.0)]
     assert bus.is_due(1)
-    assert bus.line.log[4:] == ['update', 'cycle 0']
+    assert bus.line.log[6:] == ['update', 'cycle 0']
 
 
 def test_a_silent_master_makes_no_tick():
@@ -61,6 +62,16 @@ def test_a_run_that_is_reset_gives_the_sample_at_0_again():
     bus = Bus((6, 0), (6, 0), (6, 0))
     assert [bus.is_due(0), bus.is_due(1), bus.is_due(0)] == [True] * 3
     assert [tick for tick, _ in bus.devices[0].samples] == [0, 1, 0]
+
+
+def test_the_last_samples_are_sent_too():
+    """On CANopen and the serial line a cycle is answered with the state after it."""
+    bus = Bus((6, 0))
+    bus.is_due(0)
+    bus.samples['position'] = 7.0
+    bus.source.end(1, bus.samples)
+    assert bus.devices[0].samples[-1] == (1, 7.0)
+    assert bus.line.log[-1] == 'update'
 
 
 def test_what_the_master_sent_is_the_command_of_the_tick():

@@ -123,6 +123,9 @@ class FakeSource:
     def events(self, tick: int) -> list[str]:
         return [self.happened[tick]] if tick in self.happened else []
 
+    def end(self, tick: int, samples: Records) -> None:
+        self.ended = tick, float(samples['position'][0])
+
 
 class FakeOutlet:
     """Writes down what is published."""
@@ -419,6 +422,12 @@ def test_events_of_the_source_are_recorded_at_their_tick():
     rig.source.happened = {2: 'bus lost'}
     rig.run()
     assert rig.events == {2: ['bus lost']}
+
+
+def test_the_source_has_the_last_samples():
+    rig = Rig(3)
+    rig.run()
+    assert rig.source.ended == (3, 3.0)
 
 
 def test_host_time_before_the_first_tick_does_not_count():

@@ -16,7 +16,7 @@ from isa_ros.fieldbus.ethercat.registers import (
 HOP_NS = 500
 """Assumed: a cable of a few metres and the way through two ports, ns."""
 _WRAP = (1 << 64) - 1
-_LOW = (1 << 32) - 1
+_LOW, _LOW_SIZE = (1 << 32) - 1, 4
 _CYCLIC, _SYNC0 = 1, 2
 _PENDING_SYNC0, _START_IN_THE_PAST = 1, 4
 
@@ -41,17 +41,13 @@ class DistributedClock:
         self._memory, self._shared = memory, shared
         self._arrival_ns = position * HOP_NS
         self._return_ns = self._arrival_ns + 2 * (n_slaves - 1 - position) * HOP_NS
-        self._correction_ns = 0
-
-    @property
-    def _local_ns(self) -> int:
-        """Return the local time at which the present frame reaches the slave."""
-        return self._shared.now_ns + self._arrival_ns
+        self._offset_ns, self._delay_ns = self._arrival_ns, 0
+        """From the shared clock to system time at the slave, with what the loop has corrected."""
 
     @property
     def system_ns(self) -> int:
         """Return the system time at which the present frame reaches the slave."""
-        return self._local_ns + TIME_OFFSET.value(self._memory) + self._correction_ns & _WRAP
+        return self._shared.now_ns + self._offset_ns & _WRAP
 
     def refresh(self) -> None:
         """Write the system time into its register."""
@@ -59,20 +55,25 @@ class DistributedClock:
 
     def latch(self) -> None:
         """Store the receive times of the present frame."""
-        UNIT_RECEIVE_TIME.put(self._memory, self._local_ns)
-        for port, time_ns in enumerate((self._local_ns, self._shared.now_ns + self._return_ns)):
+        local_ns = self._shared.now_ns + self._arrival_ns
+        UNIT_RECEIVE_TIME.put(self._memory, local_ns)
+        for port, time_ns in enumerate((local_ns, self._shared.now_ns + self._return_ns)):
             at = RECEIVE_TIMES.address + 4 * port
             self._memory[at:at + 4] = (time_ns & _LOW).to_bytes(4, 'little')
 
     def restart(self) -> None:
-        """Forget what the control loop has corrected."""
-        self._correction_ns = 0
+        """Take offset and delay, and forget what the control loop has corrected."""
+        self._offset_ns = self._arrival_ns + TIME_OFFSET.value(self._memory)
+        self._delay_ns = TIME_DELAY.value(self._memory)
 
     def follow(self, received: bytes) -> None:
         """Take the reference clock's time; its low 32 bits are enough."""
-        sent = int.from_bytes(received[:4], 'little') + TIME_DELAY.value(self._memory)
-        difference = sent - self.system_ns & _LOW
-        self._correction_ns += difference - (1 << 32) if difference >> 31 else difference
+        if len(received) < _LOW_SIZE:
+            return
+        sent = int.from_bytes(received[:_LOW_SIZE], 'little') + self._delay_ns
+        difference = sent - self._shared.now_ns - self._offset_ns & _LOW
+        if difference:
+            self._offset_ns += difference - (1 << 32) if difference >> 31 else difference
 
     def note_activation(self) -> None:
         """Show whether SYNC0 waits for its start, and whether that was in the past already."""

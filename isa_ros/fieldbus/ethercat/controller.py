@@ -15,7 +15,8 @@ from isa_ros.fieldbus.ethercat.registers import (
     FMMU_ENTRY, FORWARDED_ERRORS, LOST_LINKS, MEMORY, N_SYNC_MANAGERS, PDI_ERRORS,
     PDI_WATCHDOG_COUNTER, power_on, RECEIVE_TIMES, Register, RX_ERRORS, SPEED_START,
     STATION_ADDRESS, STATION_ALIAS, SYNC_ACTIVATION, SYNC_MANAGER, SYNC_MANAGER_SETUP,
-    SYNC_MANAGER_SIZE, SYSTEM_TIME, TIME_OFFSET, UNIT_ERRORS, WATCHDOG_COUNTER, writable)
+    SYNC_MANAGER_SIZE, SYSTEM_TIME, TIME_DELAY, TIME_OFFSET, UNIT_ERRORS, WATCHDOG_COUNTER,
+    writable)
 from isa_ros.fieldbus.ethercat.sync_manager import sync_managers, SyncManager
 
 _WRITABLE = writable()
@@ -26,6 +27,12 @@ _USE_ALIAS = 0x01
 DL_EVENT, AL_EVENT = 0x04, 0x08
 _MOST = 0xFF
 _LAST_SYNC_MANAGER = SYNC_MANAGER + N_SYNC_MANAGERS * SYNC_MANAGER_SIZE
+_SYSTEM_TIME, _SYSTEM_TIME_END = SYSTEM_TIME.address, SYSTEM_TIME.end
+
+
+def irq_of(memory: bytearray) -> int:
+    """Return the events of a slave that the master wants to see."""
+    return EVENT_MASK.value(memory) & EVENTS.value(memory)
 
 
 class Controller:
@@ -54,7 +61,8 @@ class Controller:
                 (STATION_ADDRESS, self._take_addresses), (DL_CONTROL, self._take_addresses),
                 (AL_CONTROL, on_control), (EEPROM_CONTROL, self._use_eeprom),
                 (FMMU_ENTRY, self._take_fmmus), (RECEIVE_TIMES, clock.latch),
-                (TIME_OFFSET, clock.restart), (SPEED_START, clock.restart),
+                (TIME_OFFSET, clock.restart), (TIME_DELAY, clock.restart),
+                (SPEED_START, clock.restart),
                 (SYNC_ACTIVATION, clock.note_activation),
                 *((one, self._clearing(one)) for one in _CLEARED)))
         self._on_buffer, self._on_setup = on_buffer, on_setup
@@ -66,25 +74,23 @@ class Controller:
             return self._read_buffer(address, end)
         if end > MEMORY:
             return None
-        if address < SYSTEM_TIME.end and end > SYSTEM_TIME.address:
+        if address < _SYSTEM_TIME_END and end > _SYSTEM_TIME:
             self._clock.refresh()
         content = bytes(self.memory[address:end])
-        if address <= DL_STATUS.address < end:
-            self.memory[EVENTS.address] &= ~DL_EVENT
-        if address <= AL_STATUS.address < end:
-            self.memory[EVENTS.address] &= ~AL_EVENT
+        if self.memory[EVENTS.address]:
+            self._note_status_read(address, end)
         return content
 
     def write(self, address: int, content: bytes) -> bool:
         """Write as a master; return whether any of it can be written."""
+        if address == _SYSTEM_TIME:
+            self._clock.follow(content)
+            return True
         end = address + len(content)
         if address >= MEMORY:
             return self._write_buffer(address, end, content)
         if end > MEMORY:
             return False
-        if SYSTEM_TIME.address == address:
-            self._clock.follow(content)
-            return True
         mask = _WRITABLE[address:end]
         if not any(mask):
             return False
@@ -97,16 +103,15 @@ class Controller:
                 effect()
         return True
 
-    @property
-    def irq(self) -> int:
-        """Return the events that the master wants to see."""
-        memory = self.memory
-        return ((memory[EVENT_MASK.address] & memory[EVENTS.address])
-                | (memory[EVENT_MASK.address + 1] & memory[EVENTS.address + 1]) << 8)
-
     def note_event(self, event: int) -> None:
         """Set an event that lasts until the master reads its cause."""
         self.memory[EVENTS.address] |= event
+
+    def _note_status_read(self, address: int, end: int) -> None:
+        """Clear the events whose cause is read."""
+        for register, event in ((DL_STATUS, DL_EVENT), (AL_STATUS, AL_EVENT)):
+            if address <= register.address < end:
+                self.memory[EVENTS.address] &= ~event
 
     def count(self, register: Register, offset: int = 0) -> None:
         """Count an error in a register, up to 255."""

@@ -5,6 +5,7 @@ A datagram is command (1 byte), index (1), address (4), length and flags (2), IR
 working counter (2).
 """
 
+from collections.abc import Iterator, Sequence
 from enum import IntEnum
 import struct
 from typing import NamedTuple
@@ -21,6 +22,8 @@ TYPE_DATAGRAMS = 1
 LONGEST_FRAME = 1514
 """Ethernet frame without its check sequence."""
 
+_PROTOCOL, _ADDRESS, _IRQ = 12, 2, 8
+"""Offsets: of the protocol in a frame, of address and IRQ in a datagram."""
 HEADER = struct.Struct('<BBHHHH')
 """Command, index, slave or low address, offset or high address, length and flags, IRQ."""
 
@@ -43,6 +46,9 @@ class Command(IntEnum):
     LRW = 12
     ARMW = 13
     FRMW = 14
+
+
+LOGICAL_WRITES = (Command.LWR, Command.LRW)
 
 
 class Datagram(NamedTuple):
@@ -69,9 +75,24 @@ class Datagram(NamedTuple):
 class Datagrams(NamedTuple):
     """The datagrams of a frame up to the first that does not fit."""
 
-    found: list[Datagram]
+    found: tuple[Datagram, ...]
     is_whole: bool
     """Whether the frame contains all the datagrams it announces."""
+    writes: tuple[tuple[int, int], ...]
+    """Logical addresses that are written: the first one, and the one behind the last."""
+    size: int
+    """Bytes of the frame."""
+    headers: tuple[tuple[int, bytes], ...]
+    """Where the frame says how it is laid out, and what it says there."""
+
+    def describe(self, frame: bytearray, size: int) -> bool:
+        """Return whether another frame has the same datagrams, with any data."""
+        if size != self.size:
+            return False
+        for at, header in self.headers:
+            if frame[at:at + len(header)] != header:
+                return False
+        return True
 
 
 def is_ethercat(frame: bytearray, size: int) -> bool:
@@ -84,17 +105,27 @@ def datagrams(frame: bytearray, size: int) -> Datagrams:
     """Return the datagrams of an EtherCAT frame of ``size`` bytes."""
     found: list[Datagram] = []
     limit = FIRST_DATAGRAM + ((frame[14] | frame[15] << 8) & LENGTH)
-    if limit > size:
-        return Datagrams(found, False)
-    at = FIRST_DATAGRAM
-    while at + DATAGRAM_HEADER + COUNTER <= limit:
+    at = FIRST_DATAGRAM if limit <= size else limit
+    has_next = True
+    while has_next and at + DATAGRAM_HEADER + COUNTER <= limit:
         command, _, slave, offset, length, _ = HEADER.unpack_from(frame, at)
         start = at + DATAGRAM_HEADER
         end = start + (length & LENGTH)
         if end + COUNTER > limit:
             break
         found.append(Datagram(command, at, slave, offset, start, end))
-        if not length & HAS_NEXT:
-            return Datagrams(found, True)
+        has_next = bool(length & HAS_NEXT)
         at = end + COUNTER
-    return Datagrams(found, False)
+    return Datagrams(
+        tuple(found), not has_next,
+        tuple((one.logical, one.logical + one.end - one.data) for one in found
+              if one.command in LOGICAL_WRITES),
+        size, tuple(_headers(frame, found)))
+
+
+def _headers(frame: bytearray, found: Sequence[Datagram]) -> Iterator[tuple[int, bytes]]:
+    """Yield what datagrams with other data have in common: all but index and IRQ."""
+    yield _PROTOCOL, bytes(frame[_PROTOCOL:FIRST_DATAGRAM])
+    for one in found:
+        yield one.at, bytes(frame[one.at:one.at + 1])
+        yield one.at + _ADDRESS, bytes(frame[one.at + _ADDRESS:one.at + _IRQ])

@@ -2,8 +2,8 @@
 Datagrams on logical memory, through the FMMUs of all slaves.
 
 What a datagram copies between frame and slaves changes only when a master configures: it is
-planned once and kept. Whole buffers of process data are copied directly; everything else, such as
-single bits or the status of a mailbox, goes through the controller.
+planned once and kept. Whole buffers of process data and the status of mailboxes are copied
+directly; everything else, such as single bits, goes through the controller.
 """
 
 from collections.abc import Sequence
@@ -11,6 +11,8 @@ from typing import NamedTuple
 
 from isa_ros.fieldbus.ethercat.datagrams import Command, Datagram
 from isa_ros.fieldbus.ethercat.fmmu import copy_bits, Fmmu, Window, window
+from isa_ros.fieldbus.ethercat.registers import (
+    N_SYNC_MANAGERS, SYNC_MANAGER, SYNC_MANAGER_SIZE)
 from isa_ros.fieldbus.ethercat.slave import READ, Slave, WRITTEN
 
 _READ_COUNT = 1
@@ -33,7 +35,7 @@ class Step(NamedTuple):
     increment: int
     """What the copies add to the working counter."""
     exchanged: int
-    """What the copies exchange: bits of `Slave.exchanged`."""
+    """Process data that the copies exchange: bits of `Slave.exchanged`."""
 
 
 def plan(slaves: Sequence[Slave], datagram: Datagram) -> list[Step]:
@@ -63,19 +65,26 @@ def _direct(slave: Slave, datagram: Datagram,
     """Return the copies of whole buffers, None if there is anything else to do."""
     writes: list[Copy] = []
     reads: list[Copy] = []
+    exchanged = 0
     for fmmu, reached in windows:
         start, end = reached.addresses
         if not fmmu.is_bytewise or fmmu.reads == fmmu.writes:
             return None
-        if not slave.is_whole_buffer(start, end, fmmu.writes):
+        if slave.is_whole_buffer(start, end, fmmu.writes):
+            exchanged |= WRITTEN if fmmu.writes else READ
+        elif fmmu.writes or not _is_status(start, end):
             return None
         at = datagram.data + (reached.first >> 3)
         (writes if fmmu.writes else reads).append((start, end, at, at + end - start))
     count = (_WRITE_COUNT[Command(datagram.command)] if writes else 0) + (
         _READ_COUNT if reads else 0)
-    exchanged = (WRITTEN if writes else 0) | (READ if reads else 0)
     return Step(
         slave, slave.controller.memory, tuple(writes), tuple(reads), (), count, exchanged)
+
+
+def _is_status(start: int, end: int) -> bool:
+    """Return whether these are registers of sync managers, which a read does not change."""
+    return SYNC_MANAGER <= start and end <= SYNC_MANAGER + N_SYNC_MANAGERS * SYNC_MANAGER_SIZE
 
 
 def execute(steps: Sequence[Step], frame: bytearray, datagram: Datagram) -> int:

@@ -11,8 +11,8 @@ import struct
 from isa_ros.fieldbus.device import BusDevice
 from isa_ros.fieldbus.ethercat.application_layer import State
 from isa_ros.fieldbus.ethercat.clock import SharedClock
-from isa_ros.fieldbus.ethercat.controller import DL_EVENT
-from isa_ros.fieldbus.ethercat.cycle import Cycle, Range
+from isa_ros.fieldbus.ethercat.controller import DL_EVENT, irq_of
+from isa_ros.fieldbus.ethercat.cycle import Cycle
 from isa_ros.fieldbus.ethercat.datagrams import (
     Command, Datagram, Datagrams, datagrams, is_ethercat)
 from isa_ros.fieldbus.ethercat.logical import execute, plan, Step
@@ -21,16 +21,17 @@ from isa_ros.fieldbus.ethercat.slave import Slave, WRITTEN
 
 _WORD = struct.Struct('<H')
 _WRAP = 0xFFFF
+_EVENTS = EVENTS.address
 _SOURCE, _LOCAL = 6, 0x02
 """First byte of the source address, and its bit for a locally administered one."""
 _SLAVE, _IRQ = 2, 8
 """Offsets in a datagram's header."""
 _LOGICAL = (Command.LRD, Command.LWR, Command.LRW)
-_LOGICAL_WRITES = (Command.LWR, Command.LRW)
 _POSITION = (Command.APRD, Command.APWR, Command.APRW, Command.ARMW)
 _STATION = (Command.FPRD, Command.FPWR, Command.FPRW, Command.FRMW)
 _BROADCAST = (Command.BRD, Command.BWR, Command.BRW)
-_MULTIPLE_WRITES = (Command.ARMW, Command.FRMW)
+_MULTIPLE = (Command.ARMW, Command.FRMW)
+_PHYSICAL = (*_POSITION, *_STATION, *_BROADCAST)
 _READS = (Command.APRD, Command.APRW, Command.FPRD, Command.FPRW, Command.BRD, Command.BRW)
 _WRITES = (Command.APWR, Command.APRW, Command.FPWR, Command.FPRW, Command.BWR, Command.BRW)
 
@@ -42,8 +43,10 @@ class Ring:
         self.clock = SharedClock(step_ns)
         self.cycle = Cycle()
         self._plans: dict[tuple[int, int, int, int], list[Step]] = {}
-        self._awaited: list[tuple[Slave, int]] | None = None
-        self._is_operational = False
+        self._taken: Datagrams | None = None
+        self._awaited: list[tuple[Slave, int]] = []
+        self._highest = State.INIT
+        self._is_operational = self._is_surveyed = False
         self.slaves = [Slave(device, position, len(devices), self.clock, self._replan)
                        for position, device in enumerate(devices)]
         self._memories = [slave.controller.memory for slave in self.slaves]
@@ -51,16 +54,26 @@ class Ring:
     def _replan(self) -> None:
         """Forget what was planned: a master has configured a slave."""
         self._plans.clear()
-        self._awaited = None
+        self._is_surveyed = False
         self.cycle.forget()
+
+    def _survey(self) -> None:
+        """Note what a cycle exchanges, and the highest state."""
+        self._awaited = [(slave, slave.awaited) for slave in self.slaves]
+        self._highest = max(slave.state for slave in self.slaves)
+        self._is_surveyed = True
 
     def take(self, frame: bytearray, size: int) -> Datagrams | None:
         """Return the datagrams of a frame, None if it is not EtherCAT."""
-        return datagrams(frame, size) if is_ethercat(frame, size) else None
+        if self._taken is None or not self._taken.describe(frame, size):
+            if not is_ethercat(frame, size):
+                return None
+            self._taken = datagrams(frame, size)
+        return self._taken
 
     def is_next_cycle(self, taken: Datagrams) -> bool:
         """Return whether a frame begins a cycle while another is not complete."""
-        return self.cycle.is_open and self.cycle.is_over(_writes(taken))
+        return self.cycle.is_open and self.cycle.is_over(taken.writes)
 
     def process(self, frame: bytearray, taken: Datagrams) -> None:
         """Let a frame pass all slaves, in place."""
@@ -70,7 +83,7 @@ class Ring:
             command = datagram.command
             if command in _LOGICAL:
                 self._add(frame, datagram.end, self._logical(frame, datagram))
-            elif command != Command.NOP:
+            elif command in _PHYSICAL:
                 self._add(frame, datagram.end, self._physical(frame, datagram))
             if irq:
                 at = datagram.at + _IRQ
@@ -78,9 +91,8 @@ class Ring:
         if not taken.is_whole:
             for slave in self.slaves:
                 slave.controller.count(UNIT_ERRORS)
-        writes = _writes(taken)
-        if writes and any(slave.exchanged & WRITTEN for slave in self.slaves):
-            self.cycle.add(writes)
+        if taken.writes and any(slave.exchanged & WRITTEN for slave in self.slaves):
+            self.cycle.add(taken.writes)
 
     def _add(self, frame: bytearray, at: int, count: int) -> None:
         """Add to a working counter."""
@@ -89,9 +101,9 @@ class Ring:
     def _irq(self) -> int:
         """Return the events of all slaves that their masks let through."""
         irq = 0
-        for memory, slave in zip(self._memories, self.slaves):
-            if memory[EVENTS.address]:
-                irq |= slave.controller.irq
+        for memory in self._memories:
+            if memory[_EVENTS]:
+                irq |= irq_of(memory)
         return irq
 
     def _logical(self, frame: bytearray, datagram: Datagram) -> int:
@@ -104,21 +116,21 @@ class Ring:
 
     def _physical(self, frame: bytearray, datagram: Datagram) -> int:
         """Access the memories of the slaves addressed; return the count."""
-        command, count = datagram.command, 0
+        command, wanted, count = datagram.command, datagram.slave, 0
+        reads, writes, is_multiple = command in _READS, command in _WRITES, command in _MULTIPLE
+        is_station, is_position = command in _STATION, command in _POSITION
+        is_broadcast = command in _BROADCAST
         for position, slave in enumerate(self.slaves):
-            if command in _STATION:
-                is_addressed = datagram.slave in slave.controller.addresses
-            elif command in _POSITION:
-                is_addressed = datagram.slave + position & _WRAP == 0
+            if is_station:
+                is_addressed = wanted in slave.controller.addresses
             else:
-                is_addressed = command in _BROADCAST
-            if command in _MULTIPLE_WRITES:
+                is_addressed = is_broadcast or wanted + position & _WRAP == 0
+            if is_multiple:
                 count += _access(slave, frame, datagram, is_addressed, not is_addressed)
             elif is_addressed:
-                count += _access(
-                    slave, frame, datagram, command in _READS, command in _WRITES)
-        if command in _POSITION or command in _BROADCAST:
-            _WORD.pack_into(frame, datagram.at + _SLAVE, datagram.slave + len(self.slaves) & _WRAP)
+                count += _access(slave, frame, datagram, reads, writes)
+        if is_position or is_broadcast:
+            _WORD.pack_into(frame, datagram.at + _SLAVE, wanted + len(self.slaves) & _WRAP)
         return count
 
     @property
@@ -126,9 +138,12 @@ class Ring:
         """Return whether all process data have been exchanged in this cycle."""
         if not self.cycle.is_open:
             return False
-        if self._awaited is None:
-            self._awaited = [(slave, slave.awaited) for slave in self.slaves]
-        return all(slave.exchanged & awaited == awaited for slave, awaited in self._awaited)
+        if not self._is_surveyed:
+            self._survey()
+        for slave, awaited in self._awaited:
+            if slave.exchanged & awaited != awaited:
+                return False
+        return True
 
     def end_cycle(self) -> bool:
         """
@@ -138,8 +153,9 @@ class Ring:
         PREOP: a slave that has fallen to SAFEOP still moves.
         """
         self.cycle.end()
-        states = [slave.state for slave in self.slaves]
-        self._is_operational = max(states) >= (
+        if not self._is_surveyed:
+            self._survey()
+        self._is_operational = self._highest >= (
             State.SAFEOP if self._is_operational else State.OP)
         for slave in self.slaves:
             slave.end_cycle()
@@ -182,9 +198,3 @@ def _merged(content: bytes, sent: bytes) -> bytes:
     """Return the bits that are set in either."""
     return (int.from_bytes(content, 'little') | int.from_bytes(sent, 'little')).to_bytes(
         len(content), 'little')
-
-
-def _writes(taken: Datagrams) -> list[Range]:
-    """Return the logical addresses that a frame writes."""
-    return [(one.logical, one.logical + one.end - one.data) for one in taken.found
-            if one.command in _LOGICAL_WRITES]

@@ -45,6 +45,7 @@ class Slave:
         self._sync[INPUTS].lock(True)
         self.watchdog = Watchdog(memory, shared.step_ns)
         self._al = ApplicationLayer(memory, self)
+        self.state = State.INIT
         self._received: list[tuple[int, int, int]] = []
         self._transmitted: list[int] = []
         self.exchanged = 0
@@ -52,11 +53,6 @@ class Slave:
         self.controller.attach(
             self._clock, on_control=self._take_control, on_buffer=self._take_buffer,
             on_setup=self._check_setup)
-
-    @property
-    def state(self) -> State:
-        """Return the state of the slave."""
-        return self._al.state
 
     def refusal(self, state: State) -> int:
         """Return why a state cannot be, as a code of `al_codes`; 0 if it can."""
@@ -96,6 +92,7 @@ class Slave:
 
     def change(self, old: State, new: State, is_lost: bool) -> None:
         """Act on a change of state; ``is_lost``: the master did not ask for it."""
+        self.state = new
         self._coe.is_preoperational = new == State.PREOP
         if old == State.OP:
             self.device.end_operation(is_lost)

@@ -13,6 +13,7 @@ _CLOCK_NS = 40
 """Period of the controller's clock of 25 MHz, ns."""
 _DIVIDER_OFFSET = 2
 _MOST = 0xFF
+_STATUS = WATCHDOG_STATUS.address
 
 
 class Watchdog:
@@ -31,7 +32,7 @@ class Watchdog:
     def feed(self) -> None:
         """Note that the outputs were written."""
         self._missed_ns = 0
-        self._memory[WATCHDOG_STATUS.address] = 1
+        self._memory[_STATUS] = 1
 
     def miss(self) -> bool:
         """Note a cycle without outputs; return whether the watchdog has expired with it."""
@@ -40,9 +41,9 @@ class Watchdog:
 
     def expire(self) -> bool:
         """Expire, unless it is off or has expired already; return whether it did now."""
-        if not self.time_ns or not self._memory[WATCHDOG_STATUS.address] & 1:
+        if not self.time_ns or not self._memory[_STATUS] & 1:
             return False
         at = WATCHDOG_COUNTER.address
         self._memory[at] = min(self._memory[at] + 1, _MOST)
-        self._memory[WATCHDOG_STATUS.address] = 0
+        self._memory[_STATUS] = 0
         return True

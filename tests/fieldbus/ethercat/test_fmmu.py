@@ -71,6 +71,20 @@ def test_the_full_bit_of_a_mailbox_is_read_at_a_bit_of_logical_memory():
     assert master.send(Sent(LRD, 64, b'\x41'))[0].data == b'\x61'
 
 
+def test_the_status_of_a_mailbox_comes_with_the_process_data():
+    """As SOEM maps it: byte 0x080D behind the inputs, in the same datagram."""
+    master = RawMaster()
+    master.bring_up(OP)
+    master.write(0x0620, struct.pack('<IHBBHBBB', 12, 1, 0, 7, 0x080D, 0, 1, 1).ljust(16, b'\0'))
+    answer = master.send(Sent(LRW, 0, struct.pack('<Hi', 15, 3).ljust(13, b'\0')))[0]
+    assert (answer.data[12], answer.counter) == (0, 3)
+    master.post(struct.pack('<HBHBI', 0x2000, 0x40, 0x1000, 0, 0))
+    answer = master.send(Sent(LRW, 0, bytes(13)))[0]
+    assert (answer.data[12] & 8, answer.counter) == (8, 3)
+    assert struct.unpack_from('<Hi', answer.data, 6) == (1, 3)
+    assert master.ticks == 2
+
+
 def test_a_written_bit_leaves_the_others():
     master = RawMaster()
     master.write(0x0600, struct.pack('<IHBBHBBB', 8, 1, 0, 0, 0x2F00, 6, 2, 1).ljust(16, b'\0'))

@@ -1,0 +1,42 @@
+"""docs/fieldbus.md and the faults of the device as a master sees them."""
+
+from pathlib import Path
+from types import ModuleType
+
+from isa_ros.config.fault_catalogue import fault_catalogue
+from isa_ros.examples import canopen_master, ethercat_master
+import pytest
+from scripts import write_bus_faults
+from scripts.write_bus_faults import row_of, seen
+
+ROOT = Path(__file__).parents[2]
+
+
+def text() -> str:
+    return (ROOT / 'docs' / 'fieldbus.md').read_text(encoding='utf-8')
+
+
+@pytest.mark.slow
+def test_a_row_of_the_faults_is_that_of_today():
+    """The sensor that the example loses too: the trip is reset three times while it lasts."""
+    row = row_of(seen(fault_catalogue()['pressure_a_lost']), seen(None))
+    assert f'| `pressure_a_lost` | {" | ".join(row)} |' in text()
+    assert 'fault 51' in row[0] and row[1] == '0x7300'
+
+
+@pytest.mark.long
+def test_the_table_of_faults_is_that_of_today():
+    assert write_bus_faults.page(text()) == text()
+
+
+def test_every_fault_of_the_catalogue_is_in_the_page():
+    missing = [fault.name for fault in fault_catalogue().values() if f'`{fault.name}`' not in text()
+               and not any(key.startswith('link.') for key in fault.values)]
+    assert not missing
+
+
+@pytest.mark.parametrize('example', [ethercat_master, canopen_master])
+def test_an_example_is_of_at_most_60_lines(example: ModuleType):
+    """Without empty ones."""
+    lines = Path(str(example.__file__)).read_text(encoding='utf-8').splitlines()
+    assert sum(bool(line.strip()) for line in lines) <= 60
