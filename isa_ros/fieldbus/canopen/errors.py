@@ -29,7 +29,7 @@ class NodeErrors:
         self._communication = communication
         self._send = send
         self._history: list[int] = []
-        self._present: list[int] = []
+        self._present: set[tuple[int, int]] = set()     # code, and what it is about
         self._device_register = 0
 
     def reset(self) -> None:
@@ -54,15 +54,14 @@ class NodeErrors:
         self._report(emergency.code, emergency.data, is_sent)
 
     def begin(self, code: int, source: int, *, is_sent: bool) -> None:
-        """Begin an error of communication; ``source``: the node or PDO it is about."""
-        if code not in self._present:
-            self._present.append(code)
+        """Begin an error of communication; ``source``: the node or PDO it is about, else 0."""
+        self._present.add((code, source))
         self._report(code, bytes([source & 0xFF]), is_sent)
 
-    def end(self, code: int, *, is_sent: bool) -> None:
+    def end(self, code: int, source: int, *, is_sent: bool) -> None:
         """End an error of communication; a message without error says that none is left."""
-        if code in self._present:
-            self._present.remove(code)
+        if (code, source) in self._present:
+            self._present.remove((code, source))
             if not self.register:
                 self._report(NO_ERROR, b'', is_sent)
 

@@ -11,15 +11,15 @@ from enum import IntEnum
 
 from isa_ros.fieldbus.canopen.capacity import CyclicFrame
 from isa_ros.fieldbus.canopen.communication import (
-    Communication, ERROR_BEHAVIOUR, ERROR_HISTORY, HEARTBEAT_CONSUMED,
-    HEARTBEAT_PRODUCED, RECEIVE_MAPPINGS, RECEIVE_PARAMETERS, SYNC_ID, SYNC_OVERFLOW,
-    TRANSMIT_MAPPINGS, TRANSMIT_PARAMETERS)
+    Communication, ERROR_BEHAVIOUR, ERROR_HISTORY, HEARTBEAT_CONSUMED, HEARTBEAT_PRODUCED,
+    RECEIVE_MAPPINGS, RECEIVE_PARAMETERS, SYNC_ID, SYNC_OVERFLOW, TRANSMIT_MAPPINGS,
+    TRANSMIT_PARAMETERS)
 from isa_ros.fieldbus.canopen.dictionary import mappings, NodeDictionary
 from isa_ros.fieldbus.canopen.errors import (
-    BUS_OVERFULL, HEARTBEAT_LOST, NodeErrors, PDO_OVERDUE, PDO_TOO_LONG, PDO_TOO_SHORT, SYNC_LENGTH)
+    BUS_OVERFULL, HEARTBEAT_LOST, NodeErrors, PDO_OVERDUE, PDO_TOO_LONG, PDO_TOO_SHORT,
+    SYNC_LENGTH)
 from isa_ros.fieldbus.canopen.heartbeat import HeartbeatConsumer, HeartbeatProducer
-from isa_ros.fieldbus.canopen.identifiers import (
-    HEARTBEAT, LARGEST, SDO_ANSWER, SDO_REQUEST)
+from isa_ros.fieldbus.canopen.identifiers import HEARTBEAT, LARGEST, SDO_ANSWER, SDO_REQUEST
 from isa_ros.fieldbus.canopen.pdo import Pdo, ReceivePdo, TransmitPdo
 from isa_ros.fieldbus.canopen.sdo import SdoServer
 from isa_ros.fieldbus.canopen.startup import Startup
@@ -128,7 +128,7 @@ class Node:
         if state == before:
             return
         if state == NmtState.OPERATIONAL:
-            self.errors.end(BUS_OVERFULL, is_sent=True)
+            self.errors.end(BUS_OVERFULL, self.number, is_sent=True)
             for pdo in self.pdos():
                 pdo.begin(self.communication, self.device)
             self.device.begin_operation()
@@ -170,24 +170,26 @@ class Node:
     def _on_heartbeat(self, node: int) -> Handler:
         def take(data: bytes) -> bool:
             self._consumed.take(node)
-            self.errors.end(HEARTBEAT_LOST, is_sent=self.is_talking)
+            self.errors.end(HEARTBEAT_LOST, node, is_sent=self.is_talking)
             return False
         return take
 
     def _on_pdo(self, pdo: ReceivePdo) -> Handler:
+        number = pdo.mapping - RECEIVE_MAPPINGS + 1
+
         def take(data: bytes) -> bool:
             if len(data) != pdo.size:
                 if not pdo.has_wrong_length:
                     code = PDO_TOO_SHORT if len(data) < pdo.size else PDO_TOO_LONG
-                    self.errors.begin(code, pdo.mapping - RECEIVE_MAPPINGS + 1, is_sent=True)
+                    self.errors.begin(code, number, is_sent=True)
                 pdo.has_wrong_length = True
                 if len(data) < pdo.size:
                     return False
             elif pdo.has_wrong_length:
                 pdo.has_wrong_length = False
                 for code in (PDO_TOO_SHORT, PDO_TOO_LONG):
-                    self.errors.end(code, is_sent=True)
-            self.errors.end(PDO_OVERDUE, is_sent=True)
+                    self.errors.end(code, number, is_sent=True)
+            self.errors.end(PDO_OVERDUE, number, is_sent=True)
             pdo.take(data, self.device)
             return False
         return take
@@ -198,12 +200,12 @@ class Node:
         has_counter = self.communication.value(SYNC_OVERFLOW) > 0
         if len(data) != has_counter:
             if not self._has_wrong_sync:
-                self.errors.begin(SYNC_LENGTH, len(data), is_sent=True)
+                self.errors.begin(SYNC_LENGTH, 0, is_sent=True)
             self._has_wrong_sync = True
             return False
         if self._has_wrong_sync:
             self._has_wrong_sync = False
-            self.errors.end(SYNC_LENGTH, is_sent=True)
+            self.errors.end(SYNC_LENGTH, 0, is_sent=True)
         self._counter = data[0] if has_counter else None
         self.is_synced = True
         for pdo in self.receive:

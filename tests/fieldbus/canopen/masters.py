@@ -1,7 +1,7 @@
 """
 Masters that know nothing of the package, each with a server of its own in this network namespace.
 
-``python -m tests.fieldbus.canopen.masters NAME FOLDER [STALL]`` prints what the master saw, as
+``python -m tests.fieldbus.canopen.masters NAME BUS FOLDER STALL`` prints what the master saw, as
 JSON.
 """
 
@@ -21,10 +21,14 @@ import can
 import canopen
 from canopen.profiles.p402 import BaseNode402
 
-BUS = {'interface': 'udp_multicast', 'channel': '239.74.163.2'}
+GROUP, CAN = '239.74.163.2', 'can0'
+BUSES = {
+    'udp_multicast': (GROUP, ['ip link set lo up multicast on',
+                              f'ip route add {GROUP} dev lo']),
+    'socketcan': (CAN, [f'ip link add {CAN} type vcan', f'ip link set {CAN} up'])}
+"""Channel of each interface, and the commands that make it."""
 SYNC_PERIOD = 10e-3     # s, of the library's thread; above what a tick takes on loaded cores
 DEADLINE = 30.0         # s, for what takes milliseconds
-FOLLOWING_ERROR = 0x8611
 
 
 class PatientNode(BaseNode402):     # type: ignore[misc]
@@ -35,11 +39,15 @@ class PatientNode(BaseNode402):     # type: ignore[misc]
     TIMEOUT_SWITCH_STATE_SINGLE = TIMEOUT_CHECK_TPDO = DEADLINE
 
 
+Bus = dict[str, str]
+"""Interface and channel of python-can."""
+
+
 @contextmanager
-def server(*arguments: str) -> Iterator[dict[str, Any]]:
+def server(at: Bus, *arguments: str) -> Iterator[dict[str, Any]]:
     """Run a server; at the end the dictionary has its ticks and digest."""
     command = [sys.executable, '-m', 'tests.fieldbus.canopen.serve', *arguments,
-               '--interface', BUS['interface'], '--channel', BUS['channel']]
+               '--interface', at['interface'], '--channel', at['channel']]
     result: dict[str, Any] = {}
     child = subprocess.Popen(
         command, stdin=subprocess.PIPE, stdout=subprocess.PIPE, text=True)
@@ -54,13 +62,13 @@ def server(*arguments: str) -> Iterator[dict[str, Any]]:
             child.wait()
 
 
-def base_node_402(folder: Path) -> dict[str, Any]:
+def base_node_402(at: Bus, folder: Path, stall: float) -> dict[str, Any]:
     """Drive a real actuator by `canopen` and its EDS, through a fault and back."""
     seen: dict[str, Any] = {}
     eds = folder / 'actuator.eds'
-    with server('--config', 'rig_linear', '--eds', str(eds)) as result:
+    with server(at, '--config', 'rig_linear', '--eds', str(eds)) as result:
         network = canopen.Network()
-        network.connect(**BUS)
+        network.connect(**at)
         node = PatientNode(1, str(eds))
         network.add_node(node)
         try:
@@ -114,11 +122,11 @@ def _heartbeat(node: BaseNode402) -> str:
     return state
 
 
-def one_thread(folder: Path, stall: float) -> dict[str, Any]:
+def one_thread(at: Bus, folder: Path, stall: float) -> dict[str, Any]:
     """Command a sine of force, RPDOs and then SYNC, the next cycle after the last TPDO."""
     draw, seen = random.Random(3), {'lost': 0}
-    with server('--config', 'rig_linear') as result:
-        with can.Bus(**BUS) as bus:
+    with server(at, '--config', 'rig_linear') as result:
+        with can.Bus(**at) as bus:
             send(bus, 0x000, b'\x82\x00')
             while receive(bus) != (0x701, b'\0'):
                 pass
@@ -151,14 +159,17 @@ def receive(bus: can.BusABC) -> tuple[int, bytes] | None:
     return None if message is None else (message.arbitration_id, bytes(message.data))
 
 
+MASTERS = {'base_node_402': base_node_402, 'one_thread': one_thread}
+
+
 def main() -> None:
-    """Run the named master in this namespace."""
-    subprocess.run(['ip', 'link', 'set', 'lo', 'up', 'multicast', 'on'], check=True)
-    subprocess.run(['ip', 'route', 'add', '224.0.0.0/4', 'dev', 'lo'], check=True)
-    name, folder, stall = sys.argv[1], Path(sys.argv[2]), float(sys.argv[3])
-    masters = {'base_node_402': lambda: base_node_402(folder),
-               'one_thread': lambda: one_thread(folder, stall)}
-    print(json.dumps(masters[name]()))
+    """Run the named master on a new bus in this namespace."""
+    name, interface, folder, stall = sys.argv[1:]
+    channel, commands = BUSES[interface]
+    for command in commands:
+        subprocess.run(command.split(), check=True)
+    at = {'interface': interface, 'channel': channel}
+    print(json.dumps(MASTERS[name](at, Path(folder), float(stall))))
 
 
 if __name__ == '__main__':

@@ -13,14 +13,14 @@ from pathlib import Path
 import select
 import sys
 
+import isa_ros
+from isa_ros.core.signals import COMMAND
 from isa_ros.fieldbus.canopen.line import canopen_line
 from isa_ros.fieldbus.canopen.mit_line import mit_line
 from isa_ros.fieldbus.device import BusDevice
 from isa_ros.fieldbus.devices import devices_of
 from isa_ros.fieldbus.eds import eds_text
 from isa_ros.fieldbus.line import Line
-import isa_ros
-from isa_ros.core.signals import COMMAND
 import numpy as np
 from tests.fieldbus.canopen.toy import ToyDrive
 

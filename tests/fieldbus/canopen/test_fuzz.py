@@ -20,7 +20,7 @@ Sent = tuple[int, bytes]
 
 
 def true_frames(device: BusDevice) -> list[Sent]:
-    """Return what a master sends to node 1: NMT, SYNC, PDOs, heartbeats, and SDO of all objects."""
+    """Return what a master sends to node 1: NMT, SYNC, PDOs, heartbeats, SDO of all objects."""
     frames = [(0x000, bytes([command, node])) for command in (1, 2, 0x80, 0x81, 0x82)
               for node in (0, 1)]
     frames += [(0x080, b''), (0x080, b'\x01'), (0x701, b'\x05'), (0x77F, b'\x7f')] * 5
@@ -32,7 +32,8 @@ def true_frames(device: BusDevice) -> list[Sent]:
         data = device.read(entry.index, entry.subindex)
         frames.append((0x601, b'\x40' + head + bytes(4)))
         if len(data) <= 4:
-            frames.append((0x601, bytes([0x23 | 4 - len(data) << 2]) + head + data.ljust(4, b'\0')))
+            command = bytes([0x23 | 4 - len(data) << 2])
+            frames.append((0x601, command + head + data.ljust(4, b'\0')))
         frames.append((0x601, b'\x21' + head + struct.pack('<I', len(data))))
     frames += [(0x601, bytes([command]) + b'segment') for command in
                (0x00, 0x10, 0x01, 0x11, 0x60, 0x70, 0x80, 0xA0, 0xC0, 0xFF)] * 20

@@ -1,4 +1,4 @@
-"""Masters of `canopen` and of python-can drive a real actuator over UDP, in processes."""
+"""Masters of `canopen` and of python-can drive a real actuator, each in processes of its own."""
 
 from collections.abc import Callable, Iterator
 import json
@@ -13,34 +13,44 @@ NAMESPACE = ('unshare', '--map-root-user', '--net')
 FAULT, STALL = 0x8611, 0.1     # following error; s
 DEADLINE = 240.0               # s, kernels may have to be compiled first
 Seen = Callable[[str], dict[str, Any]]
-RUNS = {'base_node_402': ('base_node_402', 0.0), 'free': ('one_thread', 0.0),
-        'stalled': ('one_thread', STALL)}
+RUNS = {
+    'base_node_402': ('base_node_402', 'udp_multicast', 0.0),
+    'free': ('one_thread', 'udp_multicast', 0.0),
+    'stalled': ('one_thread', 'udp_multicast', STALL),
+    'socketcan': ('one_thread', 'socketcan', 0.0)}
+"""Master, interface and longest stall."""
 
 
-def refusal() -> str:
-    """Return why there is no network namespace, '' if there is."""
+def refusal(*command: str) -> str:
+    """Return why a command is refused in a network namespace, '' if it is not."""
     try:
-        ended = subprocess.run([*NAMESPACE, 'ip', 'link', 'set', 'lo', 'up'],
-                               capture_output=True, text=True)
+        ended = subprocess.run([*NAMESPACE, *command], capture_output=True, text=True)
     except OSError as error:
         return str(error)
     return ended.stderr.strip() if ended.returncode else ''
 
 
 @pytest.fixture(scope='module')
-def seen(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Seen]:
+def refused() -> dict[str, str]:
+    """Return why an interface is not there, by its name."""
+    return {'udp_multicast': refusal('ip', 'link', 'set', 'lo', 'up'),
+            'socketcan': refusal('ip', 'link', 'add', 'can0', 'type', 'vcan')}
+
+
+@pytest.fixture(scope='module')
+def seen(tmp_path_factory: pytest.TempPathFactory, refused: dict[str, str]) -> Iterator[Seen]:
     """Run each master in a namespace of its own, side by side; return what one saw."""
-    if refusal():
-        pytest.skip(f'no network namespace: {refusal()}')
     children = {
         name: subprocess.Popen(
-            [*NAMESPACE, sys.executable, '-m', 'tests.fieldbus.canopen.masters', master,
+            [*NAMESPACE, sys.executable, '-m', 'tests.fieldbus.canopen.masters', master, interface,
              str(tmp_path_factory.mktemp(name)), str(stall)],
             stdout=subprocess.PIPE, text=True, cwd=Path(__file__).parents[3])
-        for name, (master, stall) in RUNS.items()}
+        for name, (master, interface, stall) in RUNS.items() if not refused[interface]}
     results: dict[str, dict[str, Any]] = {}
 
     def result(name: str) -> dict[str, Any]:
+        if name not in children:
+            pytest.skip(f'no {RUNS[name][1]} here: {refused[RUNS[name][1]]}')
         if name not in results:
             output, _ = children[name].communicate(timeout=DEADLINE)
             results[name] = json.loads(output)
@@ -71,9 +81,10 @@ def test_base_node_402_sees_a_fault_resets_it_and_enables_again(seen):
     assert result['after'] == ['OPERATION ENABLED', 0, 0]
 
 
-def test_a_stalled_master_gets_the_same_bytes_as_a_free_one(seen):
-    free, stalled = seen('free'), seen('stalled')
-    assert free['lost'] == stalled['lost'] == 0
-    assert free['status'] == 0x27
-    assert free == stalled
-    assert free['ticks'] == 400
+@pytest.mark.parametrize('other', ['stalled', 'socketcan'])
+def test_a_master_gets_the_same_bytes_free_stalled_and_on_another_bus(seen, other):
+    expected, found = seen('free'), seen(other)
+    assert expected['lost'] == 0
+    assert expected['status'] == 0x27
+    assert expected['ticks'] == 400
+    assert found == expected

@@ -2,6 +2,9 @@
 
 from collections.abc import Iterator
 
+import isa_ros
+from isa_ros.fieldbus.devices import devices_of
+from isa_ros.fieldbus.manufacturer_area import tunable_keys
 import pytest
 from tests.fieldbus.canopen.toy import ToyDrive
 from tests.fieldbus.canopen.virtual_bus import (
@@ -122,6 +125,35 @@ def test_a_watched_heartbeat_is_lost_by_simulated_time(master, toys):
     master.send(0x77F, b'\x05')
     assert (0x81, bytes(8)) in master.received()
     assert master.read(0x1001) == b'\0'
+
+
+def test_of_two_lost_heartbeats_one_that_is_back_leaves_the_error(master):
+    for k, node in enumerate((0x7E, 0x7F), 1):
+        master.write(0x1016, k, node << 16 | 1, 4)
+    master.command(START)
+    for identifier in (0x77E, 0x77F):
+        master.send(identifier, b'\x05')
+    for _ in range(2):
+        master.cycle()
+    assert master.read(0x1003) == b'\x02'
+    master.send(0x77E, b'\x05')
+    assert master.read(0x1001) == b'\x11'
+    master.send(0x77F, b'\x05')
+    assert master.read(0x1001) == b'\0'
+
+
+def test_a_reset_returns_gains_of_the_reu_and_reports_them_to_the_run():
+    device, = devices_of(isa_ros.load('rig_linear').configuration)
+    key, = (key for key, one in tunable_keys(device._axis).items() if one.name == 'force.kp')
+    entry = device.table.entry(*key)
+    with virtual_master([device]) as master:
+        value = int.from_bytes(entry.data_type.pack(float(entry.default) / 2), 'little')
+        master.write(*key, value, 4)
+        assert list(device.changes()) == ['force.kp']
+        master.command(RESET_NODE)
+        assert master.read(*key) == entry.data_type.pack(entry.default)
+        assert device.changes() == {'force.kp': pytest.approx(
+            entry.default, rel=2.0 ** -24, abs=0.0)}    # rounded to REAL32
 
 
 @pytest.mark.parametrize(('behaviour', 'state'), [
