@@ -37,9 +37,9 @@ def frame_rows(
         aim: Aim | None) -> list[Row]:
     """Return the rows of a plant in frame pace: a cycle is a tick."""
     reasons = [one for one in (*floors, *runs) if isinstance(one, str)]
-    if reasons:
-        return [Row(f'{title}, frame pace', None, 'ticks/s', note=reasons[0])]
     floor, own = ([one for one in many if isinstance(one, Cycles)] for many in (floors, runs))
+    if not floor or not own:
+        return [Row(f'{title}, frame pace', None, 'ticks/s', note=reasons[0])]
     speed = Row.of(f'{title}, frame pace', [run.per_s for run in own], 'ticks/s')
     speed = speed.against('real time', speed.number * 1e-3)
     below = []
@@ -55,6 +55,9 @@ def frame_rows(
         speed = speed.noting(
             f'of a cycle of {1e6 / speed.number:.0f} us: '
             + ', '.join(f'{row.name} {row.number:.0f} us' for row in below))
+    if reasons:     # of a loaded host: a master gives up after its timeouts
+        note = f'{len(reasons)} of {len(floors) + len(runs)} runs failed: {reasons[0]}'
+        speed = speed.noting('; '.join(filter(None, [speed.note, note])))
     return [speed, *(row.under(speed) for row in below)]
 
 

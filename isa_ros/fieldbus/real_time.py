@@ -143,13 +143,13 @@ def scheduled_first(warn: Callable[[str], object]) -> Iterator[None]:
     """
     Schedule this thread before all others (SCHED_FIFO); where this is not allowed, say so.
 
-    Threads that it starts are scheduled as usual.
+    Threads that it starts meanwhile inherit it: the recorder's shares the lock of the interpreter,
+    and would hold it while other programs have the processor.
     """
     before = os.sched_getscheduler(0)
     parameters = os.sched_getparam(0)
     try:
-        os.sched_setscheduler(
-            0, os.SCHED_FIFO | os.SCHED_RESET_ON_FORK, os.sched_param(PRIORITY))
+        os.sched_setscheduler(0, os.SCHED_FIFO, os.sched_param(PRIORITY))
     except PermissionError:
         warn('real-time pace without SCHED_FIFO: ticks may begin milliseconds late; it needs '
              'CAP_SYS_NICE, or rtprio in /etc/security/limits.conf')
@@ -158,5 +158,4 @@ def scheduled_first(warn: Callable[[str], object]) -> Iterator[None]:
     try:
         yield
     finally:
-        # Without the flag it is refused to a user who may use SCHED_FIFO by a limit.
-        os.sched_setscheduler(0, before | os.SCHED_RESET_ON_FORK, parameters)
+        os.sched_setscheduler(0, before, parameters)

@@ -37,6 +37,11 @@ def test_a_ring_that_cannot_be_measured_says_why(monkeypatch: pytest.MonkeyPatch
     assert (row.value, row.note) == (None, 'unshare is not installed')
 
 
+def test_a_run_that_failed_is_mentioned():
+    speed, *_ = frame_rows('the leg', [FLOOR, FLOOR], [LEG, 'no slaves on ecm'], None)
+    assert (speed.value, speed.note) == (2500.0, '1 of 4 runs failed: no slaves on ecm')
+
+
 def test_lateness_is_read_from_the_log_of_the_slaves():
     """As `Lateness` writes it at the end of a run."""
     times = Lateness(1e-3)

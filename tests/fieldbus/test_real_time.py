@@ -116,5 +116,4 @@ def test_the_schedule_is_restored(monkeypatch: pytest.MonkeyPatch):
     monkeypatch.setattr('os.sched_setscheduler', lambda *arguments: calls.append(arguments[1]))
     with scheduled_first(calls.append):
         pass
-    assert calls == [os.SCHED_FIFO | os.SCHED_RESET_ON_FORK,
-                     os.SCHED_OTHER | os.SCHED_RESET_ON_FORK]
+    assert calls == [os.SCHED_FIFO, os.SCHED_OTHER]

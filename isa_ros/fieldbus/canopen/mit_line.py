@@ -150,6 +150,7 @@ class _Objects:
 
     def write(self, index: int, subindex: int, data: bytes) -> None:
         self._device.write(index, subindex, data, is_preoperational=not self._motor.is_on)
+        self._motor.take_ranges()
 
     def size(self, index: int, subindex: int) -> int:
         return self._device.table.entry(index, subindex).data_type.bits + 7 >> 3

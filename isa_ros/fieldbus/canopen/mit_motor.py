@@ -9,7 +9,7 @@ present position 0 in the frames only: the encoder is absolute, and objects and 
 
 from isa_ros.fieldbus.abort import SdoAbort
 from isa_ros.fieldbus.canopen.mit_frames import (
-    Answer, answer_frame, Command, command_of, DISABLE, ENABLE, Range, Ranges, SET_ZERO)
+    Answer, answer_frame, command_of, DISABLE, ENABLE, Range, Ranges, SET_ZERO)
 from isa_ros.fieldbus.device import BusDevice
 from isa_ros.fieldbus.manufacturer_area import DAMPING, EFFORT, MIT_RANGES, STIFFNESS
 from isa_ros.fieldbus.objects import Value
@@ -46,14 +46,15 @@ class MitMotor:
         self._word = 0
         self._is_operational = False
         self._may_reset = False
+        self.take_ranges()
 
-    @property
-    def ranges(self) -> Ranges:
-        """Return the scales of its frames."""
+    def take_ranges(self) -> None:
+        """Take the scales of the frames from the objects, which a master may have written."""
         ends = [float(self._value((MIT_RANGES, k))) for k in range(1, 6)]
         position, velocity, stiffness, damping, effort = ends
-        return Ranges(Range(-position, position), Range(-velocity, velocity),
-                      Range(0.0, stiffness), Range(0.0, damping), Range(-effort, effort))
+        self.ranges = Ranges(
+            Range(-position, position), Range(-velocity, velocity), Range(0.0, stiffness),
+            Range(0.0, damping), Range(-effort, effort))
 
     def special(self, kind: int) -> None:
         """Obey a special frame."""
@@ -72,7 +73,7 @@ class MitMotor:
         self.is_new = True
         if not self.is_on:
             return
-        command = Command(*command_of(data, self.ranges))
+        command = command_of(data, self.ranges)
         self._write(_MODE, _IMPEDANCE)
         self._write(_TARGET_POSITION,
                     round(command.position / self._scale(_TARGET_POSITION)) + self._zero)
