@@ -11,7 +11,7 @@ from isa_ros.fieldbus.communication_area import ERROR_FIELD
 from isa_ros.fieldbus.device import Emergency, Identity
 from isa_ros.fieldbus.dictionary import Actuals, Dictionary, Key
 from isa_ros.fieldbus.faults import delete_errors, Faults, PDO_LENGTH
-from isa_ros.fieldbus.manufacturer_area import LAST_REFUSAL, tunable_keys
+from isa_ros.fieldbus.manufacturer_area import note_refusal, tunable_keys
 from isa_ros.fieldbus.objects import Entry, ObjectTable, Value
 from isa_ros.fieldbus.process_data import is_changed_in_preop, ProcessData
 import numpy as np
@@ -118,7 +118,7 @@ class ActuatorDevice:
         try:
             tuned(self._axis.sheet, changed | {own.name: float(value)})
         except ConfigError as error:
-            self._values[LAST_REFUSAL] = str(error)
+            note_refusal(self._values, str(error))
             raise SdoAbort(OUT_OF_RANGE) from error
 
     def _written(self, keys: list[Key]) -> None:

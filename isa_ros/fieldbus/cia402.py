@@ -19,7 +19,7 @@ from isa_ros.fieldbus.cia402_states import (
     command_of, ENDS_OFF, Event, FAULT_RESET, FOLLOWING, REU_DISABLED, State, STAYS)
 from isa_ros.fieldbus.dictionary import Key
 from isa_ros.fieldbus.faults import BUS_LOST, Faults, FOLLOWING_ERROR
-from isa_ros.fieldbus.manufacturer_area import DAMPING, EFFORT, LAST_REFUSAL, STIFFNESS
+from isa_ros.fieldbus.manufacturer_area import DAMPING, EFFORT, note_refusal, STIFFNESS
 from isa_ros.fieldbus.objects import Entry, Value
 from isa_ros.fieldbus.setpoints import change_mode, enable, Gains, Limiter, setpoint
 import numpy as np
@@ -64,7 +64,7 @@ class Drive402:
         """Refuse a value that is written; raises `SdoAbort`."""
         key = entry.index, entry.subindex
         if key == objects.MODE and value not in self._modes:
-            self._values[LAST_REFUSAL] = self._refusal(int(value))
+            note_refusal(self._values, self._refusal(int(value)))
             raise SdoAbort(OUT_OF_RANGE)
         if key in (objects.LEAST_POSITION, objects.LARGEST_POSITION):
             least, largest = (
@@ -86,7 +86,7 @@ class Drive402:
             self._mode = mode
             self._demand = self._axis.position
         else:
-            self._values[LAST_REFUSAL] = self._refusal(mode)
+            note_refusal(self._values, self._refusal(mode))
 
     def begin_operation(self) -> None:
         """Enter the state operational."""

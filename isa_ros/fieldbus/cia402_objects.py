@@ -81,12 +81,17 @@ def modes_of(axis: Axis) -> dict[int, int]:
     return found
 
 
-def interpolation_period(step_ns: int) -> tuple[int, int]:
-    """Return the tick as 0x60C2 has it: a number, and the power of ten of its seconds."""
+def interpolation_period(step_ns: int) -> tuple[int, int] | None:
+    """
+    Return the tick as 0x60C2 has it: a number of 8 bits, and the power of ten of its seconds.
+
+    None: it has more digits.
+    """
     for exponent in range(_SHORTEST_EXPONENT + 1):
         unit_ns = NS_PER_SECOND // 10 ** exponent
         if step_ns % unit_ns == 0:
-            return step_ns // unit_ns, -exponent
+            value = step_ns // unit_ns
+            return (value, -exponent) if value <= _U8.limits[1] else None
     raise AssertionError('a tick is a whole number of nanoseconds')
 
 
@@ -192,13 +197,16 @@ def _torque_objects(axis: Axis) -> list[Object]:
 
 def _unit_objects(axis: Axis) -> list[Object]:
     unit = _MICRO_RADIANS if axis.sheet.is_rotary else _MICRO_METRES
-    value, exponent = interpolation_period(axis.step_ns)
     words = 'CiA 303-2: micrometre or microradian'
-    return [
+    units = [
         _one((0x60A8, 0), 'SI unit position', _U32, 'const', unit, meaning=words),
         _one((0x60A9, 0), 'SI unit velocity', _U32, 'const', unit | _PER_SECOND,
-             meaning=f'{words} per second'),
-        record_of(0x60C2, 'Interpolation time period', [
-            Entry(0x60C2, 1, 'Value', _U8, 'rw', value, choices=(value,), meaning='of the tick'),
-            Entry(0x60C2, 2, 'Exponent', _I8, 'rw', exponent, choices=(exponent,),
-                  meaning='power of ten, s')])]
+             meaning=f'{words} per second')]
+    period = interpolation_period(axis.step_ns)
+    if period is None:
+        return units
+    value, exponent = period
+    return [*units, record_of(0x60C2, 'Interpolation time period', [
+        Entry(0x60C2, 1, 'Value', _U8, 'rw', value, choices=(value,), meaning='of the tick'),
+        Entry(0x60C2, 2, 'Exponent', _I8, 'rw', exponent, choices=(exponent,),
+              meaning='power of ten, s')])]

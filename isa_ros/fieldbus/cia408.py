@@ -17,7 +17,7 @@ from isa_ros.fieldbus.cia408_states import (
     WAS_DISABLED, WAS_INIT)
 from isa_ros.fieldbus.dictionary import Key
 from isa_ros.fieldbus.faults import BUS_LOST, Faults
-from isa_ros.fieldbus.manufacturer_area import LAST_REFUSAL
+from isa_ros.fieldbus.manufacturer_area import note_refusal
 from isa_ros.fieldbus.objects import Entry, Value
 from isa_ros.fieldbus.setpoints import change_mode, enable, Limiter, reference, setpoint
 import numpy as np
@@ -60,8 +60,8 @@ class Drive408:
             self._demand = self._axis.position
         else:
             known = ', '.join(map(str, sorted(self._modes)))
-            self._values[LAST_REFUSAL] = (
-                f'control mode {mode} does not exist here; there are {known}')
+            note_refusal(
+                self._values, f'control mode {mode} does not exist here; there are {known}')
 
     def begin_operation(self) -> None:
         """Enter the state operational; nothing depends on it."""

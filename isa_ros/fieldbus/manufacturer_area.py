@@ -6,11 +6,12 @@ import math
 from isa_ros.actuator.tunable import Tunable, tunables
 from isa_ros.fieldbus.axis import Axis, FULL_SCALE, INCREMENT, PER_MILLE
 from isa_ros.fieldbus.dictionary import Key
-from isa_ros.fieldbus.objects import DataType, Entry, Object, record_of, variable
+from isa_ros.fieldbus.objects import DataType, Entry, Object, record_of, Value, variable
 from isa_ros.reu.wiring import VARIABLES
 
 LAST_REFUSAL = (0x2003, 0)
 """Why the last request of the master was refused, as a text."""
+_LONGEST = 255
 STIFFNESS, DAMPING, EFFORT = (0x2010, 1), (0x2010, 2), (0x2010, 3)
 MIT_RANGES = 0x2002
 """Object with the ranges of MIT-mode frames."""
@@ -43,12 +44,17 @@ _STATES = (
     ('device_event', 'Last event', DataType.UNSIGNED8))
 
 
+def note_refusal(values: dict[Key, Value], reason: str) -> None:
+    """Keep why a request was refused, in the values of a dictionary."""
+    values[LAST_REFUSAL] = reason[:_LONGEST]
+
+
 def manufacturer_objects(axis: Axis) -> list[Object]:
     """Return the objects of the manufacturer's area of an actuator."""
     return [
         _increments(axis), _ranges(axis), _mit_ranges(axis),
         variable(Entry(*LAST_REFUSAL, 'Last refusal', DataType.VISIBLE_STRING, 'ro', '',
-                       meaning='why the last request was refused')),
+                       meaning='why the last request was refused', longest=_LONGEST)),
         _impedance(axis),
         *(record_of(index, name, [
             Entry(index, k + 1, words, _F32, unit=axis.unit(unit), pdo='tx', source=field)

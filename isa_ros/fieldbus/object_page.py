@@ -1,6 +1,8 @@
 """The tables of docs/objects.md and of `isa bus describe`, from the data of the devices."""
 
 from collections.abc import Callable, Iterator, Mapping, Sequence
+from itertools import groupby
+import re
 
 from isa_ros.core.conditions import CONDITIONS
 from isa_ros.fieldbus import cia402_objects, cia402_states, cia408_objects, cia408_states
@@ -13,35 +15,57 @@ from isa_ros.text.table import aligned, markdown
 
 Rows = list[tuple[str, ...]]
 HEADER = ('index', 'sub', 'name', 'type', 'access', 'PDO', 'unit', 'SI per count', 'meaning')
+_NUMBER = re.compile(r' \d ')
 _COMMUNICATION, _MANUFACTURER, _PROFILE = (
     range(0x1000, 0x2000), range(0x2000, 0x6000), range(0x6000, 0xA000))
 
 
 def object_rows(objects: Sequence[Object]) -> Rows:
-    """Return a row for each entry; equal entries of an array share one."""
-    return [HEADER, *(row for one in objects for row in _rows(one))]
+    """
+    Return a row for each entry.
+
+    Equal entries of an array share one, so do consecutive objects that differ by their number;
+    the highest subindex of a record has none.
+    """
+    rows: Rows = [HEADER]
+    for _, group in groupby(enumerate(objects), _alike):
+        alike = [one for _, one in group]
+        rows += _rows(alike[0], alike[-1].index)
+    return rows
 
 
-def _rows(one: Object) -> Iterator[tuple[str, ...]]:
+def _alike(place: tuple[int, Object]) -> tuple[object, ...]:
+    """Return what consecutive objects have in common that share their rows."""
+    k, one = place
     if one.kind is Kind.VAR:
-        yield _row(one.entries[0], one.name)
-        return
+        return one.index,
+    return one.index - k, _without_number(one.name), tuple(
+        _row('', entry, '') for entry in one.entries)
+
+
+def _without_number(name: str) -> str:
+    return _NUMBER.sub(' n ', name)
+
+
+def _rows(one: Object, last: int) -> Iterator[tuple[str, ...]]:
+    """Yield the rows of an object, and of those alike up to index ``last``."""
+    index, name = f'0x{one.index:04X}', one.name
+    if last != one.index:
+        index, name = f'{index}..0x{last:04X}', _without_number(name)
     first, *others = one.entries
-    yield _row(first, one.name)
-    if one.kind is Kind.ARRAY and len({_described(entry) for entry in others}) == 1:
-        yield _row(others[0], f'entries of {one.name}', f'1..{others[-1].subindex}')
-        return
-    for entry in others:
-        yield _row(entry, entry.name)
+    if one.kind is Kind.VAR:
+        yield _row(index, first, name)
+    elif one.kind is Kind.ARRAY and len({_row('', entry, '', '') for entry in others}) == 1:
+        yield _row(index, first, f'{name}: number of entries')
+        yield _row(index, others[0], f'{name}: entries', f'1..{others[-1].subindex}')
+    else:
+        for entry in others:
+            yield _row(index, entry, name if entry.name == name else f'{name}: {entry.name}')
 
 
-def _described(entry: Entry) -> tuple[str, ...]:
-    return _row(entry, '', '')
-
-
-def _row(entry: Entry, name: str, subindex: str | None = None) -> tuple[str, ...]:
+def _row(index: str, entry: Entry, name: str, subindex: str | None = None) -> tuple[str, ...]:
     return (
-        f'0x{entry.index:04X}', str(entry.subindex) if subindex is None else subindex, name,
+        index, str(entry.subindex) if subindex is None else subindex, name,
         entry.data_type.name, entry.access, entry.pdo, entry.unit,
         f'{entry.scale:g}' if entry.scale != 1.0 else '', entry.meaning)
 

@@ -47,7 +47,7 @@ class DataType(Enum):
     def pack(self, value: Value) -> bytes:
         """Return the bytes of a value; an integer or a real number beyond the range saturates."""
         if isinstance(value, str):
-            return value.encode('ascii')
+            return value.encode('ascii', errors='replace')
         if self.code == 'f':
             return struct.pack('<f', min(max(float(value), -_LARGEST_REAL32), _LARGEST_REAL32)
                                if math.isfinite(value) else value)
@@ -110,11 +110,13 @@ class Entry:
     """Field of `SAMPLE` that it shows; '': another value."""
     adds_node: bool = False
     """Whether the default grows by the CANopen node id."""
+    longest: int = 0
+    """Bytes of the longest text, where it is longer than the default."""
 
     @property
     def bits(self) -> int:
-        """Return the length in a PDO."""
-        return self.data_type.bits or 8 * len(str(self.default))
+        """Return the length; of a text the longest."""
+        return self.data_type.bits or 8 * max(self.longest, len(str(self.default)))
 
     @property
     def is_readable(self) -> bool:

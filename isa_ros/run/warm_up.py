@@ -23,6 +23,8 @@ def warmed_up(run: RunConfig) -> list[SmartActuator]:
     with suppress(SimulationDiverged):
         simulation.step()
     packer = packer_of(run, shown(simulation))
-    packer.pack(0, 0, {})
-    Chunk(b'', Layouts(), np.empty(0, np.uint8)).add(0, 0, packer.all_messages())
+    chunk = Chunk(b'', Layouts(), np.empty(0, np.uint8))
+    for t_ns in (0, run.step_ns):   # with and without messages that are rare
+        packer.pack(t_ns, t_ns, {})
+        chunk.add(t_ns, 0, packer.all_messages())
     return simulation.group.actuators

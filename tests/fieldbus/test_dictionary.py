@@ -4,7 +4,6 @@ import math
 import struct
 
 import isa_ros
-from isa_ros.errors import ConfigError
 from isa_ros.fieldbus import abort
 from isa_ros.fieldbus.abort import SdoAbort
 from isa_ros.fieldbus.devices import devices_of, PROFILES
@@ -159,18 +158,3 @@ def test_complete_access_writes_all_entries_or_none(device):
 def test_the_bus_itself_sets_what_is_constant_for_masters(device):
     device.store(0x1014, 0, 0x85)
     assert device.read(0x1014, 0) == b'\x85\0\0\0'
-
-
-def test_actuators_of_a_kind_share_a_product_and_others_do_not():
-    haa, hfe, kfe = devices_of(RUNS['leg'])
-    assert hfe.identity.product == kfe.identity.product != haa.identity.product
-    assert [one.identity.serial for one in (haa, hfe, kfe)] == [1, 2, 3]
-    assert {one.identity.vendor for one in (haa, hfe, kfe)} == {0xBAD}
-    assert [one.read(0x1008, 0) for one in (haa, hfe, kfe)] == [b'haa', b'hfe', b'kfe']
-    for one in (haa, hfe, kfe):
-        assert one.read_all(0x1018) == b'\4\0' + struct.pack('<4I', *one.identity)
-
-
-def test_an_unknown_profile_is_refused():
-    with pytest.raises(ConfigError, match="'cia403' is unknown; did you mean"):
-        devices_of(RUNS['leg'], 'cia403')

@@ -69,7 +69,9 @@ def test_a_gain_that_the_reu_refuses_is_refused_as_a_whole(master, name, value, 
 def test_the_reason_of_the_reu_is_an_object(master):
     with pytest.raises(SdoAbort):
         master.download(*place(master, 'force.limit'), 0.1)
-    assert 'force.limit' in master.upload(0x2003)
+    reason = master.upload(0x2003)
+    assert 'force.limit' in reason
+    assert len(reason) <= master.device.table.entry(0x2003).bits // 8 == 255
 
 
 def test_a_gain_that_is_tuned_elsewhere_shows(master):

@@ -1,9 +1,12 @@
 """Frames on EtherCAT: random ones and altered true ones, at slaves in any state."""
 
+from collections.abc import Callable
 import random
 import struct
 
+import isa_ros
 from isa_ros.fieldbus.device import Emergency
+from isa_ros.fieldbus.devices import devices_of
 from isa_ros.fieldbus.ethercat.datagrams import LONGEST_FRAME
 from tests.fieldbus.ethercat.raw_master import (
     APRD, APWR, at, BRD, BWR, FPRD, frame_of, FRMW, INIT, LRD, LRW, LWR, OP, PREOP, RawMaster,
@@ -12,6 +15,7 @@ from tests.fieldbus.toys import Toy
 from tests.fuzz.bytes_of import altered
 from tests.fuzz.property import Broken
 
+LEG = isa_ros.load('leg').configuration
 FRAMES_EACH = 25
 """Frames that one ring gets before a new one is made."""
 STATES = (INIT, PREOP, SAFEOP, OP)
@@ -23,14 +27,23 @@ OFFSETS = (0x0000, 0x0010, 0x0100, 0x0110, 0x0120, 0x0130, 0x0300, 0x0400, 0x042
            0x0920, 0x0981, 0x09A0, 0x0FFE, 0x1000, 0x1100, 0x1200, 0x1E00, 0x2FFF, 0xFFFF)
 
 
-def ring(state: int) -> RawMaster:
-    """Return two slaves in a state, one of them with mails that wait."""
+def toys(state: int) -> RawMaster:
+    """Return two toys in a state, one of them with mails that wait."""
     master = RawMaster(Toy('a'), Toy('b', 2, filler=3))
     if state > INIT:
         master.bring_up(state)
         master.toys[1].pending = [Emergency(0x1000, 1, b'12345')]
         master.tick()
     return master
+
+
+def actuators(state: int) -> RawMaster:
+    """Return the actuators of the leg in a state, of one profile or the other."""
+    found = RawMaster(*devices_of(LEG, 'cia402' if state in (PREOP, OP) else 'cia408'))
+    found.tick = found.line.update
+    if state > INIT:
+        found.bring_up(state)
+    return found
 
 
 def mail(dice: random.Random) -> bytes:
@@ -104,15 +117,15 @@ def check(master: RawMaster, sent: bytes) -> bool:
         assert len(memory) == 0x3000
         assert memory[0x0130] & 0x0F == slave.state and slave.state in STATES
         assert memory[0x0000:0x0008] == bytes((0x11, 0, 0, 0, 8, 8, 8, 0x0F))
-        assert toy.is_operational == (slave.state == OP)
-        assert all(len(one) in (6, 18) for one in toy.received)
+        if isinstance(toy, Toy):
+            assert toy.is_operational == (slave.state == OP)
+            assert all(len(one) in (6, 18) for one in toy.received)
     return bool(found)
 
 
-def fuzz(cases: int, seed: int) -> int:
+def fuzz(cases: int, seed: int, ring: Callable[[int], RawMaster] = toys) -> int:
     """Send that many frames; return how many were answered."""
     dice, answered = random.Random(seed), 0
-    master = ring(OP)
     for k in range(cases):
         if k % FRAMES_EACH == 0:
             master = ring(STATES[k // FRAMES_EACH % len(STATES)])

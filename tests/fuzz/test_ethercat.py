@@ -4,14 +4,18 @@ from isa_ros.fieldbus.ethercat import controller, datagrams, ring
 from isa_ros.fieldbus.ethercat.application_layer import ApplicationLayer
 from isa_ros.fieldbus.ethercat.slave import Slave
 import pytest
-from tests.fuzz.ethercat_door import fuzz
+from tests.fuzz.ethercat_door import actuators, fuzz
 from tests.fuzz.property import Broken
 
-CASES, MANY = 10_000, 300_000
+CASES, FEW, MANY = 10_000, 1500, 300_000
 
 
 def test_every_frame_is_answered_or_discarded():
     assert fuzz(CASES, 1) > CASES // 2
+
+
+def test_every_frame_to_actuators_is_answered_or_discarded():
+    assert fuzz(FEW, 3, actuators) > FEW // 2
 
 
 @pytest.mark.long

@@ -68,7 +68,7 @@ class EthercatLine:
     def _receive(self, timeout: float) -> bool:
         """Receive a frame, and hold it if it is EtherCAT; return False if none arrives in time."""
         try:
-            if timeout != self._timeout:
+            if 0.0 < timeout != self._timeout:
                 self._set_timeout(timeout)
             size = self._socket.recv_into(
                 self._frame, 0, socket.MSG_DONTWAIT if timeout <= 0.0 else 0)

@@ -45,7 +45,6 @@ class Slave:
         self._sync[INPUTS].lock(True)
         self.watchdog = Watchdog(memory, shared.step_ns)
         self._al = ApplicationLayer(memory, self)
-        self.state = State.INIT
         self._received: list[tuple[int, int, int]] = []
         self._transmitted: list[int] = []
         self.exchanged = 0
@@ -53,6 +52,11 @@ class Slave:
         self.controller.attach(
             self._clock, on_control=self._take_control, on_buffer=self._take_buffer,
             on_setup=self._check_setup)
+
+    @property
+    def state(self) -> State:
+        """Return the state of the slave."""
+        return self._al.state
 
     def refusal(self, state: State) -> int:
         """Return why a state cannot be, as a code of `al_codes`; 0 if it can."""
@@ -92,7 +96,6 @@ class Slave:
 
     def change(self, old: State, new: State, is_lost: bool) -> None:
         """Act on a change of state; ``is_lost``: the master did not ask for it."""
-        self.state = new
         self._coe.is_preoperational = new == State.PREOP
         if old == State.OP:
             self.device.end_operation(is_lost)
@@ -135,7 +138,7 @@ class Slave:
     @property
     def awaited(self) -> int:
         """Return what a cycle exchanges through FMMUs, as bits `WRITTEN` and `READ`."""
-        if self.state not in (State.SAFEOP, State.OP):
+        if self._al.state not in (State.SAFEOP, State.OP):
             return 0
         fmmus = self.controller.fmmus
         return (WRITTEN if any(one.writes and self._reaches(one, OUTPUTS) for one in fmmus) else 0
@@ -153,9 +156,9 @@ class Slave:
 
     def _check_setup(self) -> None:
         """Fall back if sync managers no longer fit the state."""
-        if self.state != State.INIT and self.refusal(State.PREOP):
+        if self._al.state != State.INIT and self.refusal(State.PREOP):
             self._al.fall(State.INIT, al_codes.INVALID_MAILBOX)
-        elif self.state in (State.SAFEOP, State.OP):
+        elif self._al.state in (State.SAFEOP, State.OP):
             sizes = process_data_sizes(self.device)
             if not self._fits(OUTPUTS, sizes[OUTPUTS]):
                 self._al.fall(State.PREOP, al_codes.INVALID_OUTPUTS)
@@ -181,15 +184,15 @@ class Slave:
         if exchanged & WRITTEN:
             self.watchdog.feed()
             outputs = self._sync[OUTPUTS].take()
-            if self.state == State.OP:
+            if self._al.state == State.OP:
                 for pdo, start, end in self._received:
                     self.device.receive(pdo, outputs[start:end])
-        elif self.state == State.OP and self._is_watched and self.watchdog.miss():
+        elif self._al.state == State.OP and self._is_watched and self.watchdog.miss():
             self._lose()
 
     def miss(self) -> None:
         """Let the watchdog expire: nothing has arrived for its wall time."""
-        if self.state == State.OP and self._is_watched and self.watchdog.expire():
+        if self._al.state == State.OP and self._is_watched and self.watchdog.expire():
             self._lose()
 
     def _lose(self) -> None:
@@ -198,10 +201,10 @@ class Slave:
 
     def update(self) -> None:
         """Take the device's new state as inputs, and its emergencies as mails."""
-        if self.state in (State.SAFEOP, State.OP):
+        if self._al.state in (State.SAFEOP, State.OP):
             self.put_inputs()
         for emergency in self.device.emergencies():
-            if self.state != State.INIT:
+            if self._al.state != State.INIT:
                 self._mailbox.post_emergency(emergency)
 
     def put_inputs(self) -> None:

@@ -148,7 +148,7 @@ class RawMaster:
     def configure_process_data(
             self, slave: int = 0, sizes: tuple[int, int] | None = None) -> None:
         """Write sync managers 2 and 3 and FMMUs: outputs at 0x1000 * slave, inputs behind."""
-        out, into = sizes or (self.toys[slave].size(0x1600), self.toys[slave].size(0x1A00))
+        out, into = sizes or self.sizes(slave)
         self.write(0x0810, struct.pack('<HHBBBB', 0x1200, out, 0x64, 0, 1, 0), slave)
         self.write(0x0818, struct.pack('<HHBBBB', 0x1E00, into, 0x20, 0, 1, 0), slave)
         self.write(0x0600, struct.pack(
@@ -156,6 +156,12 @@ class RawMaster:
         self.write(0x0610, struct.pack(
             '<IHBBHBBB', 0x1000 * slave + out, into, 0, 7, 0x1E00, 0, 1, 1).ljust(16, b'\0'),
             slave)
+
+    def sizes(self, slave: int) -> tuple[int, int]:
+        """Return the bytes of outputs and inputs by the PDOs assigned."""
+        toy = self.toys[slave]
+        out, into = (sum(map(toy.size, toy.assigned(one))) for one in (0x1C12, 0x1C13))
+        return out, into
 
     def request(self, state: int, slave: int = 0) -> tuple[int, int]:
         """Ask for a state; return AL status and AL status code."""
@@ -176,9 +182,9 @@ class RawMaster:
     def exchange(self, *outputs: bytes) -> list[Answer]:
         """Exchange process data, one datagram a slave in one frame; inputs follow outputs."""
         sent = []
-        for slave, toy in enumerate(self.toys):
+        for slave in range(len(self.toys)):
             own = outputs[slave] if slave < len(outputs) else b''
-            size = toy.size(0x1600) + toy.size(0x1A00)
+            size = sum(self.sizes(slave))
             sent.append(Sent(LRW, 0x1000 * slave, own.ljust(size, b'\0')))
         return self.send(*sent)
 

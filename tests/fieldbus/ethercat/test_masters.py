@@ -39,7 +39,8 @@ def test_soem_reads_and_writes_objects():
     assert found['file'] == 2
 
 
-@pytest.mark.parametrize('n', [1, 3, 12])
+@pytest.mark.parametrize(
+    'n', [1, pytest.param(3, marks=pytest.mark.slow), pytest.param(12, marks=pytest.mark.slow)])
 def test_kickcat_operates_slaves(n):
     found = run('kick', str(n))
     assert found['sizes'] == [[6, 6]] * n

@@ -95,6 +95,14 @@ def test_the_source_address_of_an_answer_is_local(three):
     assert three.wire.outgoing[-1][6:12] == bytes.fromhex('030101010101')
 
 
+def test_the_ports_show_the_place_in_the_line(three):
+    """Links at bits 4 and 5; two bits a port from bit 8 on: 2 communicates, 1 is closed."""
+    statuses = [three.number(0x0110, 2, slave) for slave in range(3)]
+    assert [one >> 4 & 0xF for one in statuses] == [3, 3, 1]
+    assert [[one >> 8 + 2 * port & 3 for port in range(4)] for one in statuses] == [
+        [2, 2, 1, 1], [2, 2, 1, 1], [2, 1, 1, 1]]
+
+
 def test_a_write_of_what_is_read_only_does_not_count(three):
     assert three.write(0x0000, b'\xff') == 0
     assert three.number(0x0000, 1) == 0x11

@@ -92,7 +92,7 @@ def test_silence_in_frame_pace_stops_time():
 @row('the master is silent, real-time pace (pysoem)', 'AL status 0x14, code 0x001B; drive fault',
      'SAFEOP with acknowledgement (0x14), then OP; then the reset of the drive')
 def test_silence_in_real_time_trips_the_watchdog():
-    found = run('silence', '0.05', '10')
+    found = run('silence', '0.3', '10')
     assert found['after'] == [[SAFEOP | ERROR, 0x1B]] * 2
     assert found['acknowledged'] == [[SAFEOP, 0]] * 2
     assert found['recovered'] == [[OP, 0]] * 2
