@@ -5,10 +5,10 @@ State, rates and parameters are nested records of floats, one row per actuator
 (`PLANT_STATE`, `PLANT`); signs as in the components' headers.
 """
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 
 from isa_ros.core.kernel import kernel
-from isa_ros.core.parameter import Parameters
+from isa_ros.core.parameter import nested, Parameters
 from isa_ros.core.record import record
 from isa_ros.plant import (
     chambers, coil, friction, mechanics, relief, sensors, servo_valve, spool, thermal,
@@ -53,7 +53,7 @@ class PlantSheet(Parameters):
     friction: friction.Friction
     mechanics: mechanics.Mechanics
     sensors: sensors.Sensors
-    thermal: NoneThermal | LumpedThermal = field(metadata={'absent': NoneThermal()})
+    thermal: NoneThermal | LumpedThermal = nested(NoneThermal())
 
 
 @dataclass(frozen=True, kw_only=True)
