@@ -80,7 +80,6 @@ def latch(pending, reu, applied):
         setpoint.velocity = pending.velocity
         setpoint.effort = pending.effort
         setpoint.is_reference = 0.0
-        feed(reu.protection)
     if kinds & WITH_GAINS:
         if not math.isnan(pending.stiffness):
             setpoint.stiffness = pending.stiffness
@@ -91,6 +90,8 @@ def latch(pending, reu, applied):
     if kinds & HAS_REFERENCE:
         setpoint.reference = pending.reference
         setpoint.is_reference = 1.0
+    if kinds & (HAS_SETPOINT | HAS_REFERENCE):
+        feed(reu.protection)
     device.requests |= kinds
     pending.kinds = 0
     write_applied(kinds, reu, applied)

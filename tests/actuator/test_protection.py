@@ -4,8 +4,9 @@ from typing import Any
 
 from isa_ros.actuator.actuator import SmartActuator, Timing
 from isa_ros.core.conditions import BITS, conditions
-from isa_ros.core.device import ENABLED, FAULT, FAULT_REACTION, FORCE
-from isa_ros.core.signals import COMMAND, HAS_CLEAR_FAULT, HAS_ENABLE, HAS_MODE, HAS_SETPOINT
+from isa_ros.core.device import ENABLED, FAULT, FAULT_REACTION, FORCE, SPOOL
+from isa_ros.core.signals import (
+    COMMAND, HAS_CLEAR_FAULT, HAS_ENABLE, HAS_MODE, HAS_REFERENCE, HAS_SETPOINT)
 from isa_ros.reu.reactions import protect
 from isa_ros.reu.reports import reports
 import numpy as np
@@ -60,6 +61,19 @@ def test_the_watchdog_holds_until_the_next_setpoint() -> None:
     actuator.accept(setpoint(position=0.055))
     ticks(actuator, 1)
     assert (actuator.sample.trips, actuator.sample.position_reference) == (0.0, 0.055)
+
+
+def test_a_reference_of_the_spool_is_a_setpoint_for_the_watchdog() -> None:
+    actuator = protected(setpoint_timeout_ms=20.0, setpoint_timeout_reaction='disable')
+    command = np.zeros(1, COMMAND)[0]
+    command['kinds'], command['mode'] = HAS_MODE | HAS_REFERENCE, SPOOL
+    for _ in range(4):
+        actuator.accept(command)
+        ticks(actuator, 10)
+        command['kinds'] = HAS_REFERENCE
+    assert actuator.sample.trips == 0.0
+    ticks(actuator, 11)
+    assert conditions(actuator.sample.trips) == ['setpoint_timeout']
 
 
 def test_the_watchdog_damps() -> None:
