@@ -7,7 +7,8 @@ from isa_ros.actuator.link import LinkSheet, NO_LINK
 from isa_ros.config.default_actuator import default_actuator
 from isa_ros.config.run_config import ActuatorConfig, RunConfig
 from isa_ros.config.supplies import SupplyConfig
-from isa_ros.surroundings.supply import AccumulatorSupply, ConstantSupply, VolumeReturn
+from isa_ros.surroundings.return_line import VolumeReturn
+from isa_ros.surroundings.supply import AccumulatorSupply, ConstantSupply
 
 CONSTANT = ConstantSupply(pressure_mpa=20.7, return_pressure_mpa=0.0)
 RETURN_LINE = VolumeReturn(oil_volume_l=0.5, bulk_modulus=1e9, tank_lpm_per_mpa=40.0)

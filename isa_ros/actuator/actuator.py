@@ -7,34 +7,29 @@ The same class is used by a single node, by many nodes in one process, and by re
 from collections.abc import Mapping
 from dataclasses import dataclass
 import hashlib
-from typing import NoReturn, Protocol
+from typing import NoReturn
 
 from isa_ros.actuator import kernel as kernels
 from isa_ros.actuator.body import state_name
+from isa_ros.actuator.config import ActuatorConfig
 from isa_ros.actuator.device import mode_after, mode_command, refusal_of, start_mode
-from isa_ros.actuator.inbox import merge, write_applied
-from isa_ros.actuator.link import link_key, NONE, refuse_states
-from isa_ros.actuator.rows import Memory, memory_of
-from isa_ros.actuator.saved_ranges import refuse_beyond
+from isa_ros.actuator.inbox import merge
+from isa_ros.actuator.link import link_key, NONE
+from isa_ros.actuator.rest import rest_loops, rest_plant
+from isa_ros.actuator.rows import Memory, memory_of, row_record
+from isa_ros.actuator.saved_rows import SavedRows
 from isa_ros.actuator.setpoint_range import SetpointRange
-from isa_ros.actuator.sheet import actuator_record, ActuatorSheet
+from isa_ros.actuator.sheet import actuator_record
 from isa_ros.actuator.tunable import GAINS
 from isa_ros.actuator.tuning import gain_after, gains_command, Tuning
 from isa_ros.core.noise import noise_key
-from isa_ros.core.saved_state import broken_number, restored_rows, TIME_BYTES, time_of
-from isa_ros.core.signals import COMMAND, HAS_ENABLE, HAS_SETPOINT, LOAD_PORT
+from isa_ros.core.saved_state import TIME_BYTES, time_of
+from isa_ros.core.signals import COMMAND, LOAD_PORT
 from isa_ros.core.timebase import FORCE_WINDOWS, PLANT_STEP_NS, steps_in
 from isa_ros.errors import ConfigError, SimulationDiverged
-from isa_ros.loads.sheets import local_port, LocalLoad, own_record, static_force
-from isa_ros.plant.plant import exact_force, rest_pressures, sense
+from isa_ros.loads.sheets import local_port, own_record, static_force
 from isa_ros.reu.cascade import initial_gains
 import numpy as np
-
-
-_SAVED = ('body', 'reu', 'channels', 'port', 'pending', 'applied', 'reply', 'sample', 'thermal')
-"""The rows of a snapshot, in their order."""
-_SAVED_OF_LINK = ('links', 'sent', 'outbox', 'commands_sent', 'samples_sent', 'observed')
-"""Those of an actuator with a link, behind the others."""
 
 PAPER_SUPPLY = 20.7e6
 """Pa gauge: supply pressure of the paper's rigs, used if no supply is configured."""
@@ -52,38 +47,6 @@ class Timing:
     def steps(self) -> int:
         """Return the plant steps of one tick, a multiple of the force windows."""
         return steps_in(self.step_ns // FORCE_WINDOWS, 'a fifth of step_ms') * FORCE_WINDOWS
-
-
-class ActuatorConfig(Protocol):
-    """Configuration of an actuator; `isa_ros.config.run_file` provides it."""
-
-    @property
-    def name(self) -> str:
-        """Return the name of the actuator and of its node."""
-
-    @property
-    def sheet(self) -> ActuatorSheet:
-        """Return its data sheet."""
-
-    @property
-    def load(self) -> LocalLoad | None:
-        """Return its own load; None if it moves a body."""
-
-    @property
-    def initial_position(self) -> float:
-        """Return the position at t = 0, m or rad."""
-
-    @property
-    def beyond_range(self) -> str | None:
-        """Return the treatment of a setpoint beyond the range; None: the default one."""
-
-    @property
-    def auto_enable(self) -> bool:
-        """Return whether it is enabled once it is initialised."""
-
-    @property
-    def mode(self) -> str | None:
-        """Return the mode at t = 0; None: the one with every block that is on."""
 
 
 class SmartActuator:
@@ -114,20 +77,13 @@ class SmartActuator:
         constants['link_key'] = link_key(timing.seed, config.name)
         self.has_link = config.sheet.link.kind != NONE
         """Whether commands and samples travel in the frames of a link."""
-        self._saved = [
-            self.memory.bodies[:1], self.memory.reu, self.memory.channels, self.memory.ports,
-            self.memory.pending, self.memory.applied, self.memory.replies, self.memory.samples,
-            self.memory.thermals]
-        self._saved_names: tuple[str, ...] = _SAVED
-        if self.has_link:
-            self._saved_names += _SAVED_OF_LINK
-            self._saved += [getattr(self.memory, name) for name in _SAVED_OF_LINK]
+        self._saved = SavedRows(config.name, self.memory, self.has_link)
         # Rows with their fields as attributes, on the same memory.
-        self._constants, self._body = _record(constants), _record(self.memory.bodies)
-        self._reu, self._channels = _record(self.memory.reu), _record(self.memory.channels)
-        self._reply, self._sample = _record(self.memory.replies), _record(self.memory.samples)
-        self._port, self._pending = _record(self.memory.ports), _record(self.memory.pending)
-        self._applied, self._thermal = _record(self.memory.applied), _record(self.memory.thermals)
+        self._constants, self._body = row_record(constants), row_record(self.memory.bodies)
+        self._reu, self._pending = row_record(self.memory.reu), row_record(self.memory.pending)
+        self._applied, self._reply, self._sample = (
+            row_record(rows) for rows in (
+                self.memory.applied, self.memory.replies, self.memory.samples))
         self._incoming, self._commands = np.zeros(1, LOAD_PORT), np.zeros(1, COMMAND)
         self._first_mode = start_mode(config.name, config.mode, config.sheet.reu)
         self.digest = self._hash(constants)
@@ -155,45 +111,15 @@ class SmartActuator:
         values stay, and are in force again from the first tick on.
         """
         self.t_ns = 0
-        for rows in self._saved:
-            rows.fill(0)
+        self._saved.clear()
         self.accept(gains_command(self.tuning.reset()))
         if self._changed_mode is not None:
             self.change_mode(self._changed_mode)
         if self._config.load is not None:
             self.memory.ports[:] = local_port(self._config.load, position)
-        self._port.supply_pressure = supply_pressure
-        self._port.return_pressure = return_pressure
-        body, plant = self._body, self._constants.plant
-        body.plant.mechanics.position = position
-        body.load.position = position - force / plant.mechanics.k_s
-        body.plant.chambers.p_a, body.plant.chambers.p_b = rest_pressures(
-            plant, supply_pressure, return_pressure, force)
-        self._thermal.oil = self._thermal.body = plant.thermal.start
-        self._start_loops()
-        write_applied(HAS_SETPOINT | HAS_ENABLE, self._reu, self._applied)
-        self._reply.position = position
-
-    def _start_loops(self) -> None:
-        body, reu = self._body, self._reu
-        own, load = self._constants, body.load
-        self._reply.force = exact_force(body.plant, load.position, load.velocity, own.plant)
-        sense(0, own.reu.current_steps, body.plant, load.position, load.velocity, own.plant,
-              own.noise_key, self._channels, reu.measured)
-        at, reu.speed.position = reu.measured, reu.measured.position
-        for block, value in (
-                (reu.position, at.position), (reu.force, at.force), (reu.spool, at.spool),
-                (reu.pressure, at.pressure_a - at.pressure_b)):
-            block.measured = value
-        reu.setpoint.position = reu.protection.evidence.position = reu.measured.position
-        device = reu.status
-        for setpoint in (reu.setpoint, device.stop):
-            setpoint.stiffness, setpoint.damping = initial_gains(self._config.sheet.reu)
-        device.mode = device.acting = device.requested_mode = self._first_mode
-        device.auto_enable = device.requested_enable = int(self._config.auto_enable)
-        kernels.write_sample(body.plant, reu, self._sample)
-        self._sample.temperature = self._thermal.oil
-        self.memory.observed[:] = self.memory.samples
+        rest_plant(self.memory, position, force, supply_pressure, return_pressure)
+        rest_loops(self.memory, self._config.sheet.reu, self._first_mode,
+                   self._config.auto_enable)
 
     @property
     def sample(self) -> np.record:
@@ -227,7 +153,7 @@ class SmartActuator:
         The last of several before one tick wins; a gain of NaN leaves the pending one unchanged.
         """
         self._commands[0] = command
-        merge(_record(self._commands), self._pending)
+        merge(row_record(self._commands), self._pending)
 
     def admit(self, command: np.void) -> str:
         """
@@ -328,13 +254,8 @@ class SmartActuator:
             A number of the state is not finite.
 
         """
-        for name, rows in zip(self._saved_names, self._saved):
-            broken = broken_number(rows)
-            if broken is not None:
-                raise SimulationDiverged(
-                    self.t_ns, f'{self.name}.{name}: {broken[0]}', broken[1])
-        return self.t_ns.to_bytes(TIME_BYTES, 'little') + b''.join(
-            rows.tobytes() for rows in self._saved) + self.tuning.snapshot()
+        state = self._saved.snapshot(self.t_ns)
+        return self.t_ns.to_bytes(TIME_BYTES, 'little') + state + self.tuning.snapshot()
 
     def restore(self, snapshot: bytes) -> None:
         """
@@ -347,33 +268,17 @@ class SmartActuator:
             beyond its range.
 
         """
-        expected = TIME_BYTES + sum(rows.nbytes for rows in self._saved) + self.tuning.nbytes
+        expected = TIME_BYTES + self._saved.nbytes + self.tuning.nbytes
         if len(snapshot) != expected:
             raise ConfigError(
                 f'{self.name}: saved state has {len(snapshot)} bytes, must have {expected}')
         t_ns = time_of(snapshot, self._timing.step_ns, self.name)
-        offset, found = TIME_BYTES, []
-        for name, rows in zip(self._saved_names, self._saved):
-            found.append(restored_rows(
-                snapshot, rows.dtype, len(rows), offset, f'{self.name}.{name}'))
-            offset += rows.nbytes
-        refuse_beyond(self.name, zip(self._saved_names, found))
-        if self.has_link:
-            refuse_states(found[len(_SAVED)], self.name)
+        found = self._saved.read(snapshot, TIME_BYTES)
         self.t_ns = t_ns
-        for rows, restored in zip(self._saved, found):
-            rows[:] = restored
-        if not self.has_link:
-            self.memory.observed[:] = self.memory.samples
-        self.tuning.restore(snapshot[offset:])
+        self._saved.restore(found)
+        self.tuning.restore(snapshot[TIME_BYTES + self._saved.nbytes:])
 
 
 def participant_digest(actuator: SmartActuator, timing: Timing) -> str:
     """Return a hash of the parameters and the timing of an actuator."""
     return f'{actuator.digest}/{timing.step_ns}/{timing.controller_offset_ns}'
-
-
-def _record(rows: np.ndarray) -> np.record:
-    """Return the first row with its fields as attributes, on the same memory."""
-    row: np.record = rows.view(np.recarray)[0]
-    return row

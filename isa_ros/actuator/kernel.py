@@ -19,6 +19,7 @@ from isa_ros.core.timebase import FORCE_WINDOWS, PLANT_STEP
 from isa_ros.loads.forces import OWN_LOAD
 from isa_ros.plant.coil import coil_heat
 from isa_ros.plant.plant import exact_force, PLANT, sense
+from isa_ros.plant.temperature_sensor import read_temperature
 from isa_ros.plant.thermal import warm
 from isa_ros.reu.cascade import cascade_step, is_due, REU
 from isa_ros.reu.device import write_device
@@ -62,7 +63,7 @@ def loops_and_plant(
               actuator.plant, actuator.noise_key, channels, reu_state.measured)
         if reu.is_frozen == 0.0:  # else references and drive stay
             if reu.protection.is_on:
-                protect(step, port.supply_pressure, thermal.oil, reu.protection, reu_state)
+                protect(step, port.supply_pressure, thermal.sensed, reu.protection, reu_state)
             cascade_step(step, reu, reu_state)
     if step == actuator.load.rope.release_step:
         body.load.weight.is_released = 1.0
@@ -146,7 +147,9 @@ def tick_row(first_step, steps, port, actuator, bodies, rates, y, k, reu_state, 
                  steps * PLANT_STEP, sample)
     if actuator.plant.thermal.is_on:
         take_heat(steps * PLANT_STEP, reply, body.totals.energies, actuator.plant.thermal, thermal)
-    sample.temperature = thermal.oil
+    sample.temperature = thermal.sensed = read_temperature(
+        first_step + steps, thermal.oil, actuator.noise_key, actuator.plant.sensors.temperature,
+        thermal.sensed)
     if link >= 0:
         send_sample(first_step + steps, link, memory)
 

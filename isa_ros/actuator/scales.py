@@ -14,8 +14,9 @@ from isa_ros.core.units import MILLI
 from isa_ros.errors import ConfigError
 from isa_ros.plant.chambers import chambers_record, volumes
 from isa_ros.plant.coil import ClosedLoopCoil
-from isa_ros.plant.servo_valve import flow_curve, valve_record
+from isa_ros.plant.servo_valve import flow_curve
 from isa_ros.plant.spool import ClosedLoopSpool
+from isa_ros.plant.valve_record import valve_record
 from isa_ros.reu.schedule import POINTS
 from isa_ros.reu.wiring import Off
 import numpy as np

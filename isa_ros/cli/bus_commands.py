@@ -43,10 +43,11 @@ def serve(options: Namespace) -> bool:
     if request.run.is_alone:
         start_without_blas()
     prepared = prepare_bus(request, devices_of, line_of(request), tell)
-    refuse_unusable(request)
+    run = prepared.session.run
+    refuse_unusable(request, devices_of(run, request.profile), run.step_ns)
     session = prepared.session
 
-    def run(report: 'Report | None') -> None:
+    def serving(report: 'Report | None') -> None:
         if request.has_ros:
             from isa_ros.nodes.bringup import run_session
             run_session(session, report)
@@ -56,7 +57,7 @@ def serve(options: Namespace) -> bool:
         with StopRequest() as should_stop:
             run_without_ros(session, report, should_stop)
     try:
-        recorded(session, run)
+        recorded(session, serving)
     finally:
         if prepared.summary is not None:
             tell(prepared.summary)

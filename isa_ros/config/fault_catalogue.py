@@ -28,6 +28,8 @@ class NamedFault(NamedTuple):
     """By the keys of `isa params`, in their units."""
     unseen: str
     """The reason why it may change no signal; '' for faults that do."""
+    unreported: str
+    """The reason why the device of `isa faults` reports nothing of it; '' for the others."""
 
 
 @cache
@@ -37,11 +39,12 @@ def fault_catalogue() -> Mapping[str, NamedFault]:
     for name, tree in read(_FILE).items():
         place = Place(_FILE.name, name)
         section = section_at(tree, place)
-        refuse_unknown(section, ('of', 'meaning', 'set', 'unseen'), place)
+        refuse_unknown(section, ('of', 'meaning', 'set', 'unseen', 'unreported'), place)
         check(str(place / 'of'), section.get('of'), {'names': KINDS})
         faults[name] = NamedFault(
             name, str(section['of']), str(section['meaning']),
-            numbers_at(section.get('set'), place / 'set'), str(section.get('unseen', '')))
+            numbers_at(section.get('set'), place / 'set'), str(section.get('unseen', '')),
+            str(section.get('unreported', '')))
     return faults
 
 

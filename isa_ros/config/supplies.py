@@ -12,7 +12,8 @@ from isa_ros.config.yaml_text import Tree
 from isa_ros.core.suggest import alternatives
 from isa_ros.core.units import MPA
 from isa_ros.errors import ConfigError
-from isa_ros.surroundings.supply import SupplySheet, VolumeReturn
+from isa_ros.surroundings.return_line import VolumeReturn
+from isa_ros.surroundings.supply import SupplySheet
 
 SUPPLY = 'supply'
 """Name of the supply of a run with only one."""

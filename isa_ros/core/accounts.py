@@ -9,8 +9,7 @@ from typing import NamedTuple
 
 from isa_ros.core.signals import Records
 from isa_ros.core.timebase import NS_PER_SECOND
-
-_LITRE = 1e-3    # m3
+from isa_ros.core.units import LITRE
 
 Account = Mapping[str, float]
 
@@ -32,7 +31,7 @@ class Entry(NamedTuple):
 MEAN = Entry('', 'mean power', 'W')
 """The energy over the time; no field."""
 PEAK = Entry('peak_power', 'peak power', 'W')
-OIL = Entry('supply_volume', 'oil drawn', 'l', _LITRE)
+OIL = Entry('supply_volume', 'oil drawn', 'l', LITRE)
 ENERGY = Entry('hydraulic_energy', 'hydraulic energy', 'J')
 LEAKAGE = Entry('leakage_energy', 'valve leakage', 'J')
 THROTTLING = Entry('throttling_energy', 'throttling', 'J')

@@ -75,7 +75,7 @@ SAMPLE = np.dtype([
     ('damping_energy', '<f8'),      # lost in the force sensor; taken up by the end stops, J
     ('work', '<f8'),                # done on the load, J
     ('stored_energy', '<f8'),       # in oil, moving part and force sensor, more than at t = 0, J
-    ('temperature', '<f8'),         # of the oil in the actuator, celsius
+    ('temperature', '<f8'),         # of the oil in the actuator, as sensed, celsius
     ('warnings', '<f8'),            # bit set of conditions as a whole number (isa_ros.conditions)
     ('trips', '<f8'),               # likewise
     ('device_state', '<f8'),        # number of `isa_ros.core.device.STATES`

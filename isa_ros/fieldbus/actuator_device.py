@@ -156,7 +156,7 @@ class ActuatorDevice:
     def transmit(self, pdo: int) -> bytes:
         """Return process data."""
         layout = self._process_data.layout(pdo)
-        return layout.packing.pack(*[self._dictionary.value(key) for key in layout.keys])
+        return layout.packing.pack(*map(self._dictionary.value, layout.keys))
 
     # Bus and run.
 

@@ -48,9 +48,14 @@ def serial_line(
         The frames of a tick do not fit the rate, or the line cannot be opened.
 
     """
-    rate = baud or round(wire('serial')[0].bit_rate_mbit * 1e6)
+    rate = baud or default_baud()
     refuse_overfull(devices, rate, step_ns)
     return SerialLine(devices, SerialPort(Path(path), rate))
+
+
+def default_baud() -> int:
+    """Return the rate (bit/s) of the wire ``serial``."""
+    return round(wire('serial')[0].bit_rate_mbit * 1e6)
 
 
 def refuse_overfull(devices: Sequence[BusDevice], baud: int, step_ns: int) -> None:

@@ -5,13 +5,14 @@ State, rates and parameters are nested records of floats, one row per actuator
 (`PLANT_STATE`, `PLANT`); signs as in the components' headers.
 """
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 
 from isa_ros.core.kernel import kernel
-from isa_ros.core.parameter import Parameters
+from isa_ros.core.parameter import nested, Parameters
 from isa_ros.core.record import record
 from isa_ros.plant import (
-    chambers, coil, friction, mechanics, relief, sensors, servo_valve, spool, thermal)
+    chambers, coil, friction, mechanics, relief, sensors, servo_valve, spool, thermal,
+    valve_record)
 from isa_ros.plant.chambers import boil
 from isa_ros.plant.sensors import read, read_channels
 from isa_ros.plant.spool import block_spool, stop_spool
@@ -22,7 +23,7 @@ import numpy as np
 PLANT = np.dtype([
     ('coil', coil.COIL),
     ('spool', spool.SPOOL),
-    ('valve', servo_valve.VALVE),
+    ('valve', valve_record.VALVE),
     ('chambers', chambers.CHAMBERS),
     ('relief', relief.RELIEF),
     ('friction', friction.FRICTION),
@@ -52,7 +53,7 @@ class PlantSheet(Parameters):
     friction: friction.Friction
     mechanics: mechanics.Mechanics
     sensors: sensors.Sensors
-    thermal: NoneThermal | LumpedThermal = field(metadata={'absent': NoneThermal()})
+    thermal: NoneThermal | LumpedThermal = nested(NoneThermal())
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -79,7 +80,7 @@ def plant_record(sheet: LinearPlant | RotaryPlant) -> np.recarray:
     area_a, area_b = sheet.drive.areas
     celsius = sheet.oil.temperature_celsius
     own_spool = spool.spool_record(sheet.spool, celsius)
-    lands = servo_valve.valve_record(sheet.valve, area_a / area_b)
+    lands = valve_record.valve_record(sheet.valve, area_a / area_b)
     oil = chambers.chambers_record(sheet.drive, sheet.oil)
     seals = friction.friction_record(sheet.friction)
     return np.array([record(

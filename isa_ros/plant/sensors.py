@@ -14,6 +14,8 @@ from isa_ros.core.record import record
 from isa_ros.core.units import MILLI, MPA
 from isa_ros.errors import ParameterError
 from isa_ros.plant import channels
+from isa_ros.plant.temperature_sensor import (
+    TEMPERATURE_SENSOR, temperature_sensor_record, TemperatureSensor)
 import numpy as np
 
 
@@ -34,6 +36,7 @@ class Sensors(Parameters):
     pressure_b: channels.PressureChannel = section(channels.PressureChannel)
     spool: channels.SpoolChannel = section(channels.SpoolChannel)
     current: channels.CurrentChannel = section(channels.CurrentChannel)
+    temperature: TemperatureSensor = section(TemperatureSensor)
 
     def __post_init__(self) -> None:
         """Refuse a resolution that is not a whole number of bits."""
@@ -53,7 +56,8 @@ SENSORS = np.dtype([
     ('pressure_range', 'f8'), ('pressure_step', 'f8'),
     ('spool_range', 'f8'), ('spool_step', 'f8'),
     ('current_range', 'f8'), ('current_step', 'f8'),
-    ('errors', channels.CHANNEL_ERRORS)])
+    ('errors', channels.CHANNEL_ERRORS),
+    ('temperature', TEMPERATURE_SENSOR)])
 
 
 def sensors_record(sheet: Sensors) -> np.record:
@@ -67,7 +71,8 @@ def sensors_record(sheet: Sensors) -> np.record:
         pressure_range=pressure, pressure_step=pressure / codes,
         spool_range=spool, spool_step=2.0 * spool / codes,
         current_range=current, current_step=2.0 * current / codes,
-        errors=channels.channel_errors(sheet.channels))
+        errors=channels.channel_errors(sheet.channels),
+        temperature=temperature_sensor_record(sheet.temperature))
 
 
 @kernel

@@ -58,6 +58,7 @@ THERMAL_STATE = np.dtype([
     ('to_oil', 'f8'),       # carried away by the oil that flowed through, J
     ('to_air', 'f8'),       # given to the air, J
     ('coil', 'f8'),         # heat of the coils since the begin of the tick, J
+    ('sensed', 'f8'),       # last reading of the oil's temperature, celsius
 ])
 """Temperatures, and the heat since t = 0 but for that of the coils."""
 

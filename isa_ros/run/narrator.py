@@ -10,7 +10,7 @@ from isa_ros.run.exchange import Recorder
 from isa_ros.run.packing import BodyMessages, Messages, Names, Packer, Shown
 from isa_ros.surroundings.leg.leg import fields_of_unit
 from isa_ros.surroundings.leg.sheet import JOINTS
-from isa_ros.surroundings.supply import VolumeReturn
+from isa_ros.surroundings.return_line import VolumeReturn
 from msg_adapters import clock, coordinator_messages, diagnostics, event
 
 

@@ -1,11 +1,12 @@
 """
-A hydraulic supply: the pump side, and the return line to its tank.
+A hydraulic supply: the pump side, and the supply as a whole.
 
 Actuators use both pressures of the tick's start over the whole tick and report the volumes that
 they drew and returned; the supply then advances over the same interval. Pressures are gauge,
-flows leave the supply and enter the return line when positive. Equations C7-C9, E7.
+flows leave the supply and enter the return line when positive. Equations C7, C8, E7; the return
+line is `isa_ros.surroundings.return_line`.
 
-Neglected: length and resistance of the pressure line, heat, air in the tank.
+Neglected: length and resistance of the pressure line, heat.
 """
 
 from dataclasses import dataclass
@@ -14,31 +15,13 @@ from isa_ros.core.atmosphere import ATMOSPHERE
 from isa_ros.core.elementary import exp, log
 from isa_ros.core.kernel import kernel
 from isa_ros.core.parameter import fault, nested, parameter, Parameters
-from isa_ros.core.units import LPM, MPA
+from isa_ros.core.units import LITRE, LPM, MPA
 from isa_ros.errors import ParameterError
+from isa_ros.surroundings.return_line import (
+    HeldReturn, return_advance, return_record, ReturnLine, SUPPLY_STEP, VolumeReturn)
 import numpy as np
 
-SUPPLY_STEP = 1e-4           # s, step of the supply's RK4
 _SLOWEST_TICKS = 10.0        # shortest time constant in ticks (coupling.md)
-_LITRE = 1e-3                # m3
-
-
-@dataclass(frozen=True, kw_only=True)
-class HeldReturn(Parameters):
-    """A return line at the constant pressure of the tank."""
-
-
-@dataclass(frozen=True, kw_only=True)
-class VolumeReturn(Parameters):
-    """A return line with a volume of oil, separated from the tank by a filter or a long hose."""
-
-    oil_volume_l: float = parameter('oil in the return line', 'l', gt=0.0, le=100.0)
-    bulk_modulus: float = parameter('effective, of the return line', 'Pa', gt=0.0, le=2e9)
-    tank_lpm_per_mpa: float = parameter(
-        'flow to the tank per pressure above it', 'l/min/MPa', changeable=True, gt=0.0, le=1e4)
-
-
-ReturnLine = HeldReturn | VolumeReturn
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -87,11 +70,6 @@ SUPPLY = np.dtype([
     ('p_set', 'f8'), ('p_t', 'f8'), ('v_0', 'f8'), ('p_0', 'f8'), ('n', 'f8'), ('c_line', 'f8'),
     ('q_max', 'f8'), ('lag', 'f8'), ('band', 'f8'), ('p_relief', 'f8'), ('k_relief', 'f8'),
     ('k_leak', 'f8')])
-RETURN_LINE = np.dtype([
-    ('p_t', 'f8'),              # pressure of the tank, Pa
-    ('c', 'f8'),                # V/beta, m3/Pa
-    ('g', 'f8'),                # conductance to the tank, m3/s/Pa
-])
 SUPPLY_SAMPLE = np.dtype([
     ('pressure', '<f8'),            # Pa gauge
     ('return_pressure', '<f8'),     # Pa gauge
@@ -116,24 +94,15 @@ def supply_record(sheet: AccumulatorSupply) -> np.ndarray:
     record = np.zeros(1, SUPPLY)
     for name, value in {
             'p_set': sheet.pressure_mpa * MPA, 'p_t': sheet.return_pressure_mpa * MPA,
-            'v_0': 0.0 if sheet.accumulator_lost else sheet.gas_volume_l * _LITRE,
+            'v_0': 0.0 if sheet.accumulator_lost else sheet.gas_volume_l * LITRE,
             'p_0': sheet.precharge_mpa * MPA + ATMOSPHERE,
             'n': sheet.polytropic_exponent,
-            'c_line': sheet.line_volume_l * _LITRE / sheet.bulk_modulus,
+            'c_line': sheet.line_volume_l * LITRE / sheet.bulk_modulus,
             'q_max': sheet.pump_flow_lpm * LPM, 'lag': sheet.pump_lag_s,
             'band': sheet.pump_band_mpa * MPA, 'p_relief': sheet.relief_mpa * MPA,
             'k_relief': sheet.relief_lpm_per_mpa * LPM / MPA,
             'k_leak': sheet.line_leakage_lpm_per_mpa * LPM / MPA}.items():
         record[name] = value
-    return record
-
-
-def return_record(line: VolumeReturn, tank_pressure: float) -> np.ndarray:
-    """Return the `RETURN_LINE` record of a return line with a volume, shape (1,)."""
-    record = np.zeros(1, RETURN_LINE)
-    record['p_t'] = tank_pressure
-    record['c'] = line.oil_volume_l * _LITRE / line.bulk_modulus
-    record['g'] = line.tank_lpm_per_mpa * LPM / MPA
     return record
 
 
@@ -194,25 +163,6 @@ def add_oil(drawn, returned, seconds, states):
     state.power = energy / seconds
     state.peak_power = max(state.peak_power, state.power)
     state.energy += energy
-
-
-@kernel
-def return_rate(pressure, returned, line):
-    """Return dP/dt of the return line: C dP/dt = Q_returned - G (P - P_tank)  (C9), in Pa/s."""
-    return (returned - line.g * (pressure - line.p_t)) / line.c
-
-
-@kernel
-def return_advance(steps, returned, lines, states):
-    """Advance the return line of ``states[0]`` with the mean flow ``returned``, by RK4."""
-    h, line, state = SUPPLY_STEP, lines[0], states[0]
-    for _ in range(steps):
-        p = state.return_pressure
-        p_1 = return_rate(p, returned, line)
-        p_2 = return_rate(p + 0.5 * h * p_1, returned, line)
-        p_3 = return_rate(p + 0.5 * h * p_2, returned, line)
-        p_4 = return_rate(p + h * p_3, returned, line)
-        state.return_pressure = p + h / 6.0 * (p_1 + 2.0 * (p_2 + p_3) + p_4)
 
 
 class Supply:

@@ -163,6 +163,21 @@ def test_oil_that_is_too_warm_trips(celsius: float, names: list[str]) -> None:
     assert conditions(actuator.sample.trips) == names
 
 
+def test_what_trips_is_the_temperature_that_is_sensed() -> None:
+    """Oil of 40 celsius: a sensor with 45 K too many trips after its 100 ms, and is published."""
+    actuator = protected()
+    ticks(actuator, 10)
+    assert actuator.sample.temperature == 40.0
+    actuator.tune({'plant.sensors.temperature.bias': 45.0})
+    ticks(actuator, 101)
+    assert (actuator.sample.temperature, actuator.sample.trips) == (85.0, 0.0)
+    ticks(actuator, 1)
+    assert conditions(actuator.sample.trips) == ['overtemperature']
+    actuator.tune({'plant.sensors.temperature.bias': 0.0, 'plant.sensors.temperature.stuck': 1.0})
+    ticks(actuator, 5)
+    assert actuator.sample.temperature == 85.0
+
+
 def test_limit_stops_the_piston_before_the_end() -> None:
     """With the limit at 10 % of the stroke it stops after 90 %, and comes back at once."""
     found = []

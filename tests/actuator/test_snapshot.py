@@ -50,7 +50,7 @@ def test_a_number_that_is_not_finite_is_not_read(
     actuator, twin = moving(), moving()
     field = broken_at(actuator, path, value)
     with monkeypatch.context() as unguarded:
-        unguarded.setattr('isa_ros.actuator.actuator.broken_number', lambda *given: None)
+        unguarded.setattr('isa_ros.actuator.saved_rows.broken_number', lambda *given: None)
         snapshot = actuator.snapshot()
     before = twin.snapshot()
     with pytest.raises(ConfigError) as refused:

@@ -5,7 +5,8 @@ from pathlib import Path
 from isa_ros.config.run_config import RunConfig
 from isa_ros.config.run_file import load_run
 from isa_ros.errors import ConfigError
-from isa_ros.surroundings.supply import AccumulatorSupply, ConstantSupply, HeldReturn, VolumeReturn
+from isa_ros.surroundings.return_line import HeldReturn, VolumeReturn
+from isa_ros.surroundings.supply import AccumulatorSupply, ConstantSupply
 import pytest
 
 CONFIG = Path(__file__).parents[2] / 'config'

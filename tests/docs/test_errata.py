@@ -10,7 +10,7 @@ from isa_ros.config.catalogue import actuator_model, model_names
 from isa_ros.config.parameter_sets import build
 from isa_ros.config.sections import merge, Section
 from isa_ros.plant.coil import circuit
-from isa_ros.plant.servo_valve import flow_slope
+from isa_ros.plant.valve_record import flow_slope
 from isa_ros.reu.lead_lag import lead_lag_record, LeadLag
 import numpy as np
 import pytest

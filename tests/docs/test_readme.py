@@ -14,7 +14,8 @@ from isa_ros.errors import ConfigError
 from isa_ros.run.local_run import LocalRun
 from isa_ros.scenario.scenario import idle, load_scenario
 from isa_ros.simulation import Simulation
-from isa_ros.surroundings.supply import ReturnLine, SupplySheet
+from isa_ros.surroundings.return_line import ReturnLine
+from isa_ros.surroundings.supply import SupplySheet
 import pytest
 
 ROOT = Path(__file__).parents[2]

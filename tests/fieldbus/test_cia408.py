@@ -75,10 +75,10 @@ def test_every_state_and_event_is_in_the_table():
 def test_axis_position_follows_the_setpoint_and_hold_keeps_the_position(rig):
     master = active(rig)
     start = master.upload(0x6610, 1)
-    for k in range(1000):
-        master.outputs[POSITION] = start + 10 * k
+    for k in range(500):
+        master.outputs[POSITION] = start + 20 * k
         master.cycle(ACTIVE)
-    assert master.upload(0x6610, 1) == start + 9990
+    assert master.upload(0x6610, 1) == start + 9980
     assert master.inputs[0x6601, 1] == round(rig.sample['position'] * 1e6)
     master.cycle(HOLD)
     held = master.upload(0x6610, 1)

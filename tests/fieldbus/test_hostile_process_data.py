@@ -28,7 +28,7 @@ STEPS = st.lists(st.tuples(
 
 @pytest.mark.parametrize('name', RUNS)
 @pytest.mark.parametrize('profile', PROFILES)
-@settings(max_examples=25, deadline=None)
+@settings(max_examples=15, deadline=None)
 @given(steps=STEPS, trips=st.integers(0, 4095))
 def test_every_command_is_admitted(name, profile, steps, trips):
     own = RUNS[name].actuators[0]
@@ -76,7 +76,7 @@ def test_without_the_limits_a_command_is_not_admitted(monkeypatch):
 
 
 @pytest.mark.parametrize('profile', PROFILES)
-@settings(max_examples=80, deadline=None)
+@settings(max_examples=60, deadline=None)
 @given(index=st.one_of(st.integers(0, 0xFFFF), st.sampled_from(range(0x1000, 0x2040)),
                        st.sampled_from(range(0x6000, 0x6700))),
        subindex=st.integers(0, 255), data=st.binary(max_size=80), is_preoperational=st.booleans(),

@@ -31,6 +31,7 @@ def device_of(name):
     return device, sample, command
 
 
+DEVICES = {name: device_of(name) for name in RUNS}
 LINEAR = device_of('rig_linear')
 RATED = 7500.0
 
@@ -40,7 +41,7 @@ RATED = 7500.0
 @given(share=st.floats(-1.5, 1.5))
 def test_what_is_measured_is_right_to_half_a_count(name, share):
     """Beyond the type it saturates; a real number has 24 bits."""
-    device, sample, _ = device_of(name)
+    device, sample, _ = DEVICES[name]
     table = [one for one in device.table.entries if one.source and not one.source.startswith(
         ('device_', 'warnings', 'trips'))]
     for entry in table:

@@ -8,6 +8,7 @@ from isa_ros.core.units import LPM, MILLI, MPA
 from isa_ros.errors import ParameterError
 from isa_ros.plant import servo_valve
 from isa_ros.plant.spool import DataSheetSpool, NullBias
+from isa_ros.plant.valve_record import valve_record
 from isa_ros.plant.valve_sheets import DataSheetValve, Lap, PointsFlow, StatedLeakage, StraightFlow
 import numpy as np
 import pytest
@@ -34,7 +35,7 @@ pressures = st.floats(0.0, 16e6)
 
 def valve(sheet: DataSheetValve = SHEET, ratio: float = RATIO) -> np.record:
     """Return the `VALVE` record of a sheet."""
-    return servo_valve.valve_record(sheet, ratio)
+    return valve_record(sheet, ratio)
 
 
 def rated_flow(current_ma: float, record: np.record) -> float:

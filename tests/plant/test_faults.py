@@ -66,10 +66,15 @@ def test_without_a_closed_circuit_the_current_decays_with_l_over_r(wired, n_open
 
 
 def test_with_one_coil_the_amplifiers_voltage_gives_half_the_current():
-    """U/R instead of U/(R/2), whatever is commanded: the force loop cannot open the valve."""
+    """
+    U/R instead of U/(R/2), whatever is commanded: the force loop cannot open the valve.
+
+    Without the protection, which disables an actuator whose spool does not follow.
+    """
     held = []
     for n_open in (0.0, 1.0):
-        actuator = smart_actuator('isa_v5', 'blocked')
+        actuator = smart_actuator(
+            'isa_v5', 'blocked', sheet=override(SHEET, 'reu.protection.switch', 'off'))
         actuator.tune({'plant.coil.open_coils': n_open, 'plant.coil.supply_voltage': 4.0})
         actuator.accept(setpoint(position=0.05, effort=1e5))
         # 20 time constants L/R of the slower circuit

@@ -9,7 +9,7 @@ PACKAGE = Path(isa_ros.__file__).parent
 SIMULATED = (
     'actuator', 'config', 'core', 'loads', 'plant', 'reu', 'run', 'scenario', 'surroundings')
 EXACT = {
-    ('actuator/actuator.py', '(rows.nbytes for rows in self._saved)'),
+    ('actuator/saved_rows.py', '(rows.nbytes for rows in self._rows)'),
     ('actuator/scales.py', 'sheet.plant.drive.areas'),
     ('reu/device.py', '(1 << mode for mode in possible_modes(reu))'),
     ('scenario/device_steps.py', '(kind for name, kind in _REQUESTS.items() if tree.get(name))')}

@@ -6,7 +6,7 @@ import math
 from isa_ros.core.atmosphere import ATMOSPHERE
 from isa_ros.core.units import LPM
 from isa_ros.errors import ParameterError
-from isa_ros.surroundings import supply
+from isa_ros.surroundings import return_line, supply
 import numpy as np
 import pytest
 from scipy.integrate import quad
@@ -17,7 +17,7 @@ SHEET = supply.AccumulatorSupply(
     pump_lag_s=0.03, pump_band_mpa=0.5, relief_mpa=22.5, relief_lpm_per_mpa=24.0)
 MS = 1_000_000
 SLOPE = 2e-12  # m3/s/Pa, of three valves wide open
-LINE = supply.VolumeReturn(oil_volume_l=10.0, bulk_modulus=1e9, tank_lpm_per_mpa=12.0)
+LINE = return_line.VolumeReturn(oil_volume_l=10.0, bulk_modulus=1e9, tank_lpm_per_mpa=12.0)
 C_LINE, G_TANK = 10e-3 / 1e9, 12.0 * LPM / 1e6  # a time constant of 50 ms
 
 
@@ -148,9 +148,9 @@ def test_compiled_rates_equal_their_python_source():
 
 
 def test_a_compiled_return_line_equals_its_python_source():
-    line = supply.return_record(LINE, 0.5e6).view(np.recarray)
+    line = return_line.return_record(LINE, 0.5e6).view(np.recarray)
     ends = []
-    for advance in (supply.return_advance, supply.return_advance.py_func):
+    for advance in (return_line.return_advance, return_line.return_advance.py_func):
         state = np.zeros(1, supply.SUPPLY_SAMPLE).view(np.recarray)
         for tick in range(50):
             advance(10, 1e-5 * tick, line, state)

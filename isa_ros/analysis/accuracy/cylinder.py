@@ -16,7 +16,7 @@ import math
 
 from isa_ros.core.kernel import kernel
 from isa_ros.core.units import LPM, MILLI, MPA
-from isa_ros.plant import chambers, servo_valve, spool
+from isa_ros.plant import chambers, servo_valve, spool, valve_record
 import numpy as np
 from scipy.integrate import DOP853
 
@@ -26,7 +26,7 @@ STAGES = 12                                       # evaluations in a step
 _NEWTON_STEPS = 6  # from a secant: its error is squared each time, 1e-1 to below 1e-16 in five
 
 CYLINDER = np.dtype([
-    ('valve', servo_valve.VALVE), ('spool', spool.SPOOL), ('chambers', chambers.CHAMBERS),
+    ('valve', valve_record.VALVE), ('spool', spool.SPOOL), ('chambers', chambers.CHAMBERS),
     ('p_s', 'f8'), ('p_t', 'f8'),                               # Pa
     ('mass', 'f8'), ('damping', 'f8'), ('stiffness', 'f8'),     # kg, Ns/m, N/m
     ('gain', 'f8'), ('amplitude', 'f8'), ('omega', 'f8'),       # 1/m, m, rad/s

@@ -68,8 +68,12 @@ def _cells(own: Outcome) -> tuple[str, ...]:
     return (own.fault.name, 'not seen' if first is None else first.signal,
             '' if first is None else f'{first.after_s * 1e3:g}',
             ', '.join(_difference(one) for one in _largest(own)) or own.fault.unseen,
-            ', '.join(_note(one) for one in own.noticed) or 'nothing',
+            ', '.join(_note(one) for one in own.noticed) or _nothing(own.fault),
             'not in this run' if own.recovered_s is None else f'{own.recovered_s * 1e3:g}')
+
+
+def _nothing(fault: NamedFault) -> str:
+    return f'nothing: {fault.unreported}' if fault.unreported else 'nothing'
 
 
 def _messages(found: Sequence[Outcome]) -> list[tuple[str, ...]]:

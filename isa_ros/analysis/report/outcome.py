@@ -2,13 +2,12 @@
 
 from isa_ros.analysis.signals.signals import Signals
 from isa_ros.config.run_config import ActuatorConfig
-from isa_ros.core.units import MILLI, MPA
+from isa_ros.core.units import LITRE, MILLI, MPA
 from isa_ros.text.number import digits
 from isa_ros.text.table import aligned
 import numpy as np
 
 SETTLED = 0.02  # of the motion: the usual band about the final value
-_LITRE = 1e-3   # m3
 _HEADER = ('', 'from', 'to', '', 'peak', '', 'pressure, MPa', 'settled, s', 'oil, l')
 
 
@@ -43,7 +42,7 @@ def _row(signals: Signals, own: ActuatorConfig) -> tuple[str, ...]:
     scale, unit = (np.degrees(1.0), 'deg') if own.sheet.is_rotary else (1.0 / MILLI, 'mm')
     force = np.abs(signals[f'{name}.force']).max()
     pressures = np.concatenate([signals[f'{name}.pressure_{side}'] for side in 'ab']) / MPA
-    oil = signals[f'{name}.supply_volume'][-1] / _LITRE
+    oil = signals[f'{name}.supply_volume'][-1] / LITRE
     settled = settling_time(t, x)
     return (
         name, f'{x.min() * scale:.1f}', f'{x.max() * scale:.1f}', unit, digits(float(force), 3),

@@ -45,11 +45,27 @@ def canopen_line(
         such interface, or the bus cannot be opened.
 
     """
-    refuse_nodes(devices, first_node)
     rate = bitrate or default_bitrate()
-    line = CanopenLine(devices, step_ns, first_node, rate)
-    line.refuse_overfull(line.nodes)
+    line = planned_line(devices, step_ns, rate, first_node)
     line.begin(CanPort(interface, channel, rate, options))
+    return line
+
+
+def planned_line(
+        devices: Sequence[BusDevice], step_ns: int, bitrate: int,
+        first_node: int) -> 'CanopenLine':
+    """
+    Return a line that has not begun on a bus.
+
+    Raises
+    ------
+    ConfigError
+        The frames of a tick do not fit the bit rate, or there are no such nodes.
+
+    """
+    refuse_nodes(devices, first_node)
+    line = CanopenLine(devices, step_ns, first_node, bitrate)
+    line.refuse_overfull(line.nodes)
     return line
 
 

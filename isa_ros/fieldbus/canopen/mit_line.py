@@ -35,17 +35,32 @@ def mit_line(
         As `canopen_line`.
 
     """
-    refuse_nodes(devices, first_node)
-    _refuse_motors(devices, first_node, answer_id)
     rate = bitrate or default_bitrate()
-    frames = {
-        device.name: [CyclicFrame(number, COMMAND_BYTES), CyclicFrame(answer_id, ANSWER_BYTES)]
-        for number, device in enumerate(devices, first_node)}
-    refuse_overfull([], frames, rate, step_ns)
+    refuse_motors(devices, step_ns, rate, first_node, answer_id)
     return MitLine(devices, CanPort(interface, channel, rate, options), first_node, answer_id)
 
 
-def _refuse_motors(devices: Sequence[BusDevice], first_node: int, answer_id: int) -> None:
+def refuse_motors(
+        devices: Sequence[BusDevice], step_ns: int, bitrate: int, first_node: int,
+        answer_id: int = 0) -> None:
+    """
+    Refuse what cannot be motors on a bus.
+
+    Raises
+    ------
+    ConfigError
+        The frames of a tick do not fit the bit rate, there are no such numbers, an actuator has
+        no impedance mode, or answers would be commands.
+
+    """
+    refuse_nodes(devices, first_node)
+    _refuse_kinds(devices, first_node, answer_id)
+    refuse_overfull([], {
+        device.name: [CyclicFrame(number, COMMAND_BYTES), CyclicFrame(answer_id, ANSWER_BYTES)]
+        for number, device in enumerate(devices, first_node)}, bitrate, step_ns)
+
+
+def _refuse_kinds(devices: Sequence[BusDevice], first_node: int, answer_id: int) -> None:
     """Refuse actuators without an impedance mode, and answers that would be commands."""
     for device in devices:
         if not has_impedance(device):

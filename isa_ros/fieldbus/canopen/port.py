@@ -7,6 +7,8 @@ decode.
 """
 
 from collections.abc import Mapping
+import errno
+import logging
 import time
 from typing import NamedTuple, TYPE_CHECKING
 
@@ -16,6 +18,8 @@ if TYPE_CHECKING:
     import can
 
 _INSTALL = "pip install 'isa_ros[canopen]'"
+_NEEDED = {'serial module': "pip install 'python-can[serial]'", 'msgpack': _INSTALL}
+"""What interfaces need besides python-can, by what its errors say."""
 _SPURIOUS = (ValueError, IndexError)    # of python-can: a frame that it cannot decode
 
 
@@ -47,6 +51,8 @@ class CanPort:
             or the bus cannot be opened.
 
         """
+        # Its warnings would be a second line beside an error of ours.
+        logging.getLogger('can').addHandler(logging.NullHandler())
         try:
             import can
         except ImportError as error:
@@ -119,8 +125,11 @@ def _opened(interface: str, channel: str, bitrate: int,
 
 
 def _hint(reason: BaseException) -> str:
-    if isinstance(reason, ImportError) or 'install' in str(reason) or 'modul' in str(reason):
-        return f'; {_INSTALL}'
+    for module, command in _NEEDED.items():
+        if module in str(reason):
+            return f'; install it by {command}'
+    if isinstance(reason, OSError) and reason.errno == errno.EAFNOSUPPORT:
+        return '; this kernel has no SocketCAN, but udp_multicast needs none'
     return ''
 
 

@@ -4,7 +4,8 @@ from collections.abc import Callable, Mapping
 from contextlib import suppress
 from typing import Any, NamedTuple
 
-from isa_ros.actuator.actuator import ActuatorConfig, participant_digest, SmartActuator, Timing
+from isa_ros.actuator.actuator import participant_digest, SmartActuator, Timing
+from isa_ros.actuator.config import ActuatorConfig
 from isa_ros.actuator.tunable import changing
 from isa_ros.controller import fill_command, Setpoint
 from isa_ros.core.signals import COMMAND, Records

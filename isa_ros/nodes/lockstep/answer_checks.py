@@ -1,10 +1,10 @@
 """What arrives from participants: discard what is not of the run, refuse what prevents it."""
 
-from isa_ros.errors import ConfigError
+from isa_ros.errors import ConfigError, RunError, SimulationDiverged
 from isa_ros.nodes.lockstep.expected import Participants
 from isa_ros.nodes.middleware.domain import another_coordinator
 from isa_ros.run.wire.answers import (
-    ACKNOWLEDGEMENT_TOPIC, Answer, AnswerKind, decode_answer, DIGEST, FIRST, IDENTITY)
+    ACKNOWLEDGEMENT_TOPIC, Answer, AnswerKind, decode_answer, DIGEST, DIVERGENCE, FIRST, IDENTITY)
 from isa_ros.run.wire.header import WireError
 from isa_ros.run.wire.parts import refuse_actuator_parts, refuse_requests
 from rclpy.node import Node
@@ -77,6 +77,25 @@ class AnswerChecks:
         names = [participant.name for participant in self._participants]
         if name in names:
             raise self.two_nodes(names.index(name))
+
+    def refuse_failure(self, answer: Answer, step: str) -> None:
+        """
+        Raise the failure that an answer to a step reports.
+
+        Raises
+        ------
+        SimulationDiverged
+            A state of the participant is no longer finite.
+        RunError
+            The participant refused the step.
+
+        """
+        if answer.kind is AnswerKind.DIVERGED:
+            t_ns, value = DIVERGENCE.unpack(answer.parts[0] or b'')
+            raise SimulationDiverged(t_ns, (answer.parts[1] or b'').decode(), value)
+        if answer.kind is AnswerKind.REFUSED:
+            name, reason = self._participants[answer.participant].name, answer.parts[0] or b''
+            raise RunError(f'{name}: refused {step}: {reason.decode()}')
 
     def two_nodes(self, participant: int) -> ConfigError:
         return ConfigError(

@@ -7,7 +7,7 @@ from typing import Any
 
 from isa_ros.controller import merge_requests
 from isa_ros.core.signals import COMMAND
-from isa_ros.errors import ConfigError, RunError, SimulationDiverged
+from isa_ros.errors import ConfigError, RunError
 from isa_ros.nodes.lockstep.answer_checks import AnswerChecks
 from isa_ros.nodes.lockstep.expected import Limits, Participants
 from isa_ros.nodes.lockstep.sockets import LocalWires
@@ -16,8 +16,7 @@ from isa_ros.nodes.middleware.mailboxes import open_mailbox, SLICE_S, TOPIC_CHEC
 from isa_ros.nodes.middleware.qos import LOCKSTEP
 from isa_ros.run.coordinator import Interrupted
 from isa_ros.run.exchange import IDLE_S, Rows
-from isa_ros.run.wire.answers import (
-    ACKNOWLEDGEMENT_TOPIC, Answer, AnswerKind, DIVERGENCE, FIRST)
+from isa_ros.run.wire.answers import ACKNOWLEDGEMENT_TOPIC, Answer, AnswerKind, FIRST
 from isa_ros.run.wire.parts import Parts, take_actuator_parts
 from isa_ros.run.wire.steps import (
     encode_begin, encode_change, encode_end, encode_hello, encode_restore, encode_save,
@@ -261,7 +260,7 @@ class LockstepTransport:
         return data
 
     def _is_expected(self, answer: Answer, kind: AnswerKind, missing: set[int]) -> bool:
-        """Return whether an answer is one of those waited for; raise the failure it reports."""
+        """Return whether an answer is one of those waited for; refuse what prevents the run."""
         if answer.run_id != self._run_id or answer.kind is AnswerKind.BUSY:
             return False
         if answer.kind is AnswerKind.READY:
@@ -275,15 +274,8 @@ class LockstepTransport:
                 return False
             # A participant answers each step once.
             raise self._answers.two_nodes(answer.participant)
-        if answer.kind is kind:
-            return True
-        if answer.kind is AnswerKind.DIVERGED:
-            t_ns, value = DIVERGENCE.unpack(answer.parts[0] or b'')
-            raise SimulationDiverged(t_ns, (answer.parts[1] or b'').decode(), value)
-        if answer.kind is not AnswerKind.REFUSED:
-            return False
-        name, reason = self._participants[answer.participant].name, answer.parts[0] or b''
-        raise RunError(f'{name}: refused {self._current_step}: {reason.decode()}')
+        self._answers.refuse_failure(answer, self._current_step)
+        return answer.kind is kind
 
     def _check_waited(self, waited: float, missing: set[int]) -> None:
         names = ', '.join(self._participants[k].name for k in sorted(missing))

@@ -32,6 +32,12 @@ def test_a_fault_that_is_not_seen_says_why_and_no_other_does(found):
     assert unseen == {name for name, own in fault_catalogue().items() if own.unseen}
 
 
+def test_a_fault_that_the_device_does_not_report_says_why_and_no_other_does(found):
+    unreported = {name for name, own in found.items() if not own.noticed}
+    assert unreported == {
+        name for name, own in fault_catalogue().items() if own.unseen or own.unreported}
+
+
 def test_what_is_seen_is_in_order_and_while_the_fault_lasts(found):
     for own in found.values():
         times = [one.after_s for one in own.visible]

@@ -42,7 +42,9 @@ def test_a_missing_library_is_named_with_how_to_install_it(monkeypatch):
 
 def test_an_interface_without_its_own_library_is_one_line(monkeypatch):
     monkeypatch.setattr('can.interfaces.slcan.serial', None)
-    assert 'pip install' in refusal('slcan', '/dev/null')
+    assert "pip install 'python-can[serial]'" in refusal('slcan', '/dev/null')
+    monkeypatch.setattr('can.interfaces.udp_multicast.utils.msgpack', None)
+    assert "pip install 'isa_ros[canopen]'" in refusal('udp_multicast', '239.74.163.2')
 
 
 @pytest.mark.parametrize('message', [
