@@ -1,14 +1,17 @@
 """Sessions whose commands come from a bus: what is refused, and the bag of a run on toys."""
 
 import hashlib
+import math
 from pathlib import Path
+import struct
 
 from isa_ros.bag.reader import Bag
 from isa_ros.config.paths import CONFIG, find, SCENARIOS
 from isa_ros.errors import ConfigError
+from isa_ros.fieldbus.devices import devices_of
 from isa_ros.fieldbus.request import BusRequest, ETHERCAT, REAL_TIME
 from isa_ros.fieldbus.session import BusRun, prepare_bus
-from isa_ros.replay.replay import recorded_events, replay
+from isa_ros.replay.replay import recorded_events, recorded_inputs, replay
 from isa_ros.run.coordinator import Interrupted
 from isa_ros.run.options import Request
 from isa_ros.run.without_ros import run_without_ros
@@ -116,3 +119,35 @@ def test_a_line_is_closed_however_a_run_ends(tmp_path: Path):
     with pytest.raises(Interrupted, match='stopped at t = 0.000000 s'):
         run_without_ros(run.session, None, lambda: True)
     assert [line.log[-1:] for line in lines] == [['close']]
+
+
+class GainLine(ToyLine):
+    """Writes the gain of the force loop over SDO in its tenth cycle."""
+
+    WRITTEN = 3e-5
+
+    def serve(self, timeout: float) -> bool:
+        device = self.devices[0]
+        cycle = self.log.count('cycle')
+        control = (0x06, 0x07, 0x0F)[min(cycle, 2)]
+        device.receive(0x1610, struct.pack(
+            '<Hbxiiihhff', control, 8, 50_000, 0, 0, 0, 0, math.nan, math.nan))
+        if cycle == 10:
+            (key,) = [(entry.index, entry.subindex) for entry in device.table.entries
+                      if entry.name == 'force.kp']
+            device.write(*key, struct.pack('<f', self.WRITTEN), is_preoperational=False)
+        self.log.append('cycle')
+        return True
+
+
+def test_a_gain_written_over_sdo_is_recorded_and_replayed(tmp_path: Path):
+    """As one set by a ROS parameter: with the tick at which it took effect."""
+    run = prepare_bus(
+        BusRequest(run=Request(config=find('rig_linear', CONFIG), out=tmp_path / 'bag',
+                               duration_s=0.03), bus=ETHERCAT, interface='toy'),
+        devices_of, lambda devices, step_ns: GainLine(devices, ()), lambda line: None)
+    run_without_ros(run.session, None, lambda: False)
+    bag = Bag(tmp_path / 'bag')
+    ((_, values),) = recorded_inputs(bag, run.session.run).tuned['ram'].items()
+    assert values == {'force.kp': struct.unpack('<f', struct.pack('<f', GainLine.WRITTEN))[0]}
+    assert replay(bag).is_equal
