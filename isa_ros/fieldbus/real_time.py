@@ -100,6 +100,7 @@ class RealTimeSource:
         pace.serve = self.serve
         self.changes: Callable[[int], ParameterChanges | None] = frames.changes
         self.end: Callable[[int, Records], None] = frames.end
+        self.take_tuned = frames.take_tuned
 
     def is_due(self, tick: int, samples: Records) -> bool:
         """Return True once time has begun; before, serve the line for a moment."""

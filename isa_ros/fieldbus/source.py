@@ -7,7 +7,7 @@ control word that is not 0; cycles before it are served without ticks, so that a
 depend on how long a master needs to come up. Host time is not read.
 """
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 import time
 
 from isa_ros.core.signals import Records
@@ -60,6 +60,11 @@ class FrameSource:
         for device, sample in zip(self._devices, samples):
             device.take_sample(sample, tick)
         self._line.update()
+
+    def take_tuned(self, tuned: Mapping[int, Mapping[str, float]]) -> None:
+        """Let the objects of the devices show gains and limits, whoever changed them."""
+        for row, values in tuned.items():
+            self._devices[row].take_changes(values)
 
     def end(self, tick: int, samples: Records) -> None:
         """Let the master have the last samples where the line sends them by itself."""

@@ -240,6 +240,8 @@ class Coordinator:
         self._narrator.record()
         self._lap('recorder')
         self._transport.receive(rows)
+        if rows.tuned:
+            self._plan.source.take_tuned(rows.tuned)
         self._lap('actuators')
         self._surroundings.advance(rows.replies)
         self._lap('body and supplies')

@@ -1,6 +1,6 @@
 """Where the commands of a run come from: its scenario, or the master of a bus."""
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from typing import Protocol
 
 from isa_ros.core.signals import Records
@@ -35,6 +35,10 @@ class Source(Protocol):
         """Return the parameters that change at a tick; None: none."""
         ...
 
+    def take_tuned(self, tuned: Mapping[int, Mapping[str, float]]) -> None:
+        """Take the parameters that changed at the start of the last tick, SI, by row and name."""
+        ...
+
     def end(self, tick: int, samples: Records) -> None:
         """Take the samples at the end of the run, before a tick that does not begin."""
         ...
@@ -53,6 +57,9 @@ class ScenarioSource:
     def events(self, tick: int) -> Sequence[str]:
         """Return no events."""
         return ()
+
+    def take_tuned(self, tuned: Mapping[int, Mapping[str, float]]) -> None:
+        """Do nothing."""
 
     def end(self, tick: int, samples: Records) -> None:
         """Do nothing."""

@@ -92,3 +92,9 @@ def test_what_is_written_over_sdo_changes_parameters_beside_the_faults():
     bus.devices[1].written = {'force.kp': 3.0}
     assert bus.source.changes(3) == ParameterChanges(
         {0: {'plant.spool.stuck': 1.0}, 1: {'force.kp': 3.0}}, {'supply.pressure_mpa': 14.0})
+
+
+def test_what_is_tuned_elsewhere_reaches_its_device():
+    bus = Bus((6, 0))
+    bus.source.take_tuned({1: {'force.kp': 2e-7}})
+    assert [device.shown for device in bus.devices] == [{}, {'force.kp': 2e-7}]

@@ -1,6 +1,6 @@
 """A line whose master is a list, and devices with a control word and a position only."""
 
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 import struct
 
 from isa_ros.config.run_config import RunConfig
@@ -23,6 +23,7 @@ class ToyDevice(BusDevice):
         self.is_wanted = False
         self.samples: list[tuple[int, float]] = []
         self.written: dict[str, float] = {}
+        self.shown: dict[str, float] = {}
         self.output = (0, 0)
 
     def receive(self, pdo: int, data: bytes) -> None:
@@ -42,6 +43,9 @@ class ToyDevice(BusDevice):
     def changes(self) -> dict[str, float]:
         written, self.written = self.written, {}
         return written
+
+    def take_changes(self, values: Mapping[str, float]) -> None:
+        self.shown |= values
 
 
 Cycle = tuple[int, int] | None

@@ -109,6 +109,7 @@ class FakeSource:
         self.log, self.changes = log, changes
         self.waits: dict[int, int] = {}
         self.happened: dict[int, str] = {}
+        self.told: dict[int, Mapping[int, Mapping[str, float]]] = {}
 
     def is_due(self, tick: int, samples: Records) -> bool:
         if self.waits.get(tick, 0):
@@ -122,6 +123,9 @@ class FakeSource:
 
     def events(self, tick: int) -> list[str]:
         return [self.happened[tick]] if tick in self.happened else []
+
+    def take_tuned(self, tuned: Mapping[int, Mapping[str, float]]) -> None:
+        self.told[len(self.log)] = tuned
 
     def end(self, tick: int, samples: Records) -> None:
         self.ended = tick, float(samples['position'][0])
@@ -422,6 +426,13 @@ def test_events_of_the_source_are_recorded_at_their_tick():
     rig.source.happened = {2: 'bus lost'}
     rig.run()
     assert rig.events == {2: ['bus lost']}
+
+
+def test_the_source_sees_what_is_tuned():
+    """After the tick at whose start it changed, and only then."""
+    rig = Rig(3)
+    rig.run()
+    assert rig.source.told == {rig.log.index('receive 1') + 1: {1: {'force.kp': 1e-7}}}
 
 
 def test_the_source_has_the_last_samples():
