@@ -142,6 +142,7 @@ def tick_row(first_step, steps, port, actuator, bodies, rates, y, k, reu_state, 
     write_sample(body.plant, reu_state, sample)
     sample.supply_volume += reply.supply_volume
     sample.supply_flow = reply.supply_volume / (steps * PLANT_STEP)
+    sample.supply_pressure = port.supply_pressure
     add_energies(reply, port, body.totals.energies,
                  stored_elastically(body, actuator.plant.mechanics) - elastic,
                  steps * PLANT_STEP, sample)

@@ -52,6 +52,7 @@ def rest_loops(memory: Memory, sheet: Reu, mode: int, is_enabled: bool) -> None:
     device.auto_enable = device.requested_enable = int(is_enabled)
     sample = row_record(memory.samples)
     write_sample(body.plant, reu, sample)
+    sample.supply_pressure = row_record(memory.ports).supply_pressure
     thermal = row_record(memory.thermals)
     sample.temperature = thermal.sensed = read_temperature(
         0, thermal.oil, own.noise_key, own.plant.sensors.temperature, thermal.sensed)

@@ -83,6 +83,7 @@ SAMPLE = np.dtype([
     ('device_event', '<f8'),        # of `EVENTS`: the last one that changed the state or mode
     ('state_since', '<f8'),         # time of the last change of these three or of the bits, s
     ('age', '<f8'),                 # since it was sampled, s; > 0 behind a link only
+    ('supply_pressure', '<f8'),     # that the REU measures, Pa gauge
 ])
 """Values one actuator reports at the end of a tick."""
 
@@ -96,7 +97,7 @@ SAMPLE_UNITS = {
     'relief_energy': 'J', 'friction_energy': 'J', 'damping_energy': 'J', 'work': 'J',
     'stored_energy': 'J', 'temperature': 'celsius', 'warnings': 'bits', 'trips': 'bits',
     'device_state': '1', 'device_mode': '1', 'device_event': '1', 'state_since': 's',
-    'age': 's'}
+    'age': 's', 'supply_pressure': 'Pa'}
 """Unit of each field of a `SAMPLE`: of a linear actuator | of a rotary one."""
 
 LOAD_PORT = np.dtype([

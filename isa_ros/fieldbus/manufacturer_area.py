@@ -37,7 +37,8 @@ _SIGNALS: Sequence[tuple[int, str, Sequence[tuple[str, str, str]]]] = (
     (0x2024, 'Supply', (
         ('supply_flow', 'Flow drawn, mean of the tick', 'm3/s'),
         ('supply_volume', 'Oil drawn', 'm3'), ('power', 'Power of the oil', 'W'),
-        ('peak_power', 'Peak power of the oil', 'W'))),
+        ('peak_power', 'Peak power of the oil', 'W'),
+        ('supply_pressure', 'Supply pressure', 'Pa'))),
 )
 _STATES = (
     ('device_state', 'State', DataType.UNSIGNED8), ('device_mode', 'Mode', DataType.UNSIGNED8),

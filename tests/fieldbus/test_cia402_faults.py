@@ -95,6 +95,7 @@ def test_a_fault_is_reset_by_a_rising_edge_once_its_cause_is_gone():
     master = faulted()
     code = CONDITION_CODES['supply_low'].code
     assert master.upload(0x603F) == code
+    assert master.upload(0x2024, 5) == 1e6
     for word in (VOLTAGE_OFF, RESET, RESET):
         assert state(master.cycle(word)) == 'FAULT'
     without_supply(master.rig, False)

@@ -108,10 +108,10 @@ def test_actuators_together_say_what_each_says_alone():
 
 
 def test_every_value_but_the_gauge_pressures_is_published():
-    """Of these the absolute ones are; energies, device and age are elsewhere."""
+    """Of these the absolute ones are; energies, device, age and supply are elsewhere."""
     used = {column for _, fields in of_actuator('hip', False).values()
             for column in fields.values() if column >= 0}
     assert {value for k, value in enumerate(VALUES) if k not in used} == {
         'sample pressure_a', 'sample pressure_b', 'sample power', 'sample age',
-        'sample temperature',
+        'sample temperature', 'sample supply_pressure',
         *(f'sample {field}' for field in (*OF_DEVICE, *FIELDS) if field != 'supply_volume')}
