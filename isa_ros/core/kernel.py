@@ -19,7 +19,7 @@ def kernel(function: Callable[..., Any]) -> Any:
     """Compile a function for each combination of argument types, and keep that on disk."""
     compiled: Any = _compile(function)
     if compiled is not function:  # with NUMBA_DISABLE_JIT it is
-        compiled._cache = cache_of(function, CACHE)
+        compiled._cache = cache_of(compiled, CACHE)
     return compiled
 
 

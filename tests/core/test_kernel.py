@@ -2,16 +2,12 @@
 
 from collections.abc import Callable
 from pathlib import Path
-import threading
 from typing import Any
 
 from isa_ros.core import kernel as kernels
 from isa_ros.core.kernel import kernel
 import numba
 import pytest
-
-BLOCKED_S = 0.2  # one that is not kept waiting needs a millisecond
-
 
 def twice(x):
     return x + x
@@ -33,25 +29,28 @@ def test_a_second_process_loads_what_the_first_has_compiled(make):
     assert sum(other.stats.cache_hits.values()) == 1
 
 
-def test_two_processes_that_save_at_once_keep_each_its_own_version(make):
-    """One for integers is saved while the other has read the index to add one for floats."""
+def test_versions_for_other_types_are_files_of_their_own(make):
     compiled = make('own')
     assert (compiled(3), compiled(1.5)) == (6, 3.0)
-    integers, floats = compiled.overloads.items()
-    second = threading.Thread(target=make('shared')._cache.save_overload, args=integers)
-    first = make('shared')._cache
-    write_index = first._cache_file._save_index
-
-    def save_index(overloads: dict[Any, str]) -> None:
-        second.start()
-        second.join(BLOCKED_S)
-        write_index(overloads)
-    first._cache_file._save_index = save_index
-    first.save_overload(*floats)
-    second.join()
-    loaded = make('shared')
+    loaded = make('own')
     assert (loaded(3), loaded(1.5)) == (6, 3.0)
     assert sum(loaded.stats.cache_hits.values()) == 2
+
+
+@pytest.mark.parametrize('damage', [
+    lambda data, other: b'', lambda data, other: data[:-1], lambda data, other: other,
+    lambda data, other: data[:50] + bytes([data[50] ^ 1]) + data[51:]])
+def test_a_damaged_or_renamed_file_is_compiled_again(make, tmp_path, damage):
+    compiled = make('own')
+    assert (compiled(3), compiled(1.5)) == (6, 3.0)
+    first, second = sorted((tmp_path / 'own').iterdir())
+    one, two = first.read_bytes(), second.read_bytes()
+    first.write_bytes(damage(one, two))
+    second.write_bytes(damage(two, one))
+    loaded = make('own')
+    assert (loaded(3), loaded(1.5)) == (6, 3.0)
+    assert sum(loaded.stats.cache_misses.values()) == 2
+    assert len({first.read_bytes(), second.read_bytes()}) == 2
 
 
 def test_without_compiling_a_kernel_is_the_function(monkeypatch):

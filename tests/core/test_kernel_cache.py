@@ -9,7 +9,7 @@ import sys
 
 import isa_ros
 from isa_ros.core import kernel_cache
-from isa_ros.core.kernel_cache import cache_directory, cache_of
+from isa_ros.core.kernel_cache import cache_directories
 import pytest
 
 PACKAGE = Path(isa_ros.__file__).parent
@@ -76,8 +76,8 @@ def test_a_home_that_cannot_be_written_is_replaced(
             'Path.home = staticmethod(home)\n')
     said, errors = called(package, TMPDIR=str(temporary), **environment)
     assert (said.split()[0], errors) == ('2.0', '')
-    assert list(temporary.glob(f'isa_ros-{os.geteuid()}/*/*/*.nbc'))
-    assert not list((package / 'isa_ros').rglob('*.nb?'))
+    assert list(temporary.glob(f'isa_ros-{os.geteuid()}/kernels/callee.twice-*'))
+    assert not list((package / 'isa_ros').rglob('*.twice-*'))
 
 
 def test_without_any_directory_one_line_says_so(package: Path) -> None:
@@ -96,11 +96,10 @@ def test_a_directory_that_others_can_write_is_not_used(
     first, second = tmp_path / 'first' / 'isa_ros', tmp_path / 'second'
     monkeypatch.setenv('NUMBA_CACHE_DIR', str(first.parent))
     monkeypatch.setenv('XDG_CACHE_HOME', str(second))
-    found = cache_directory()
-    assert found is not None and found.parent == first
+    assert cache_directories() == (first / 'kernels', (first / 'kernels',))
     first.chmod(0o777)
-    found = cache_directory()
-    assert found is not None and found.parent == second / 'isa_ros'
+    second = second / 'isa_ros' / 'kernels'
+    assert cache_directories() == (second, (second,))
 
 
 def twice(x):
@@ -115,29 +114,7 @@ def test_a_full_disk_is_one_line_and_the_kernel_runs(
     monkeypatch.setattr(kernels, 'CACHE', tmp_path)
     compiled = kernels.kernel(twice)
     monkeypatch.setattr(
-        compiled._cache._cache_file, 'save', lambda *_: (_ for _ in ()).throw(OSError(28, 'full')))
+        kernel_cache, '_write', lambda *_: (_ for _ in ()).throw(OSError(28, 'full')))
     assert (compiled(3), compiled(1.5)) == (6, 3.0)
     line, = capsys.readouterr().err.splitlines()
     assert 'cannot be kept, full' in line
-
-
-def test_a_damaged_cache_is_not_read(tmp_path: Path) -> None:
-    cache = cache_of(twice, tmp_path)
-    Path(cache.cache_path).mkdir(parents=True, exist_ok=True)
-    Path(cache._cache_file._index_path).write_bytes(b'\x80')
-    assert cache.load_overload((), _Target()) is None
-
-
-class _Target:
-    """A target of which only what the key needs matters."""
-
-    def refresh(self) -> None:
-        """Do nothing."""
-
-    def codegen(self) -> '_Target':
-        """Return itself."""
-        return self
-
-    def magic_tuple(self) -> tuple[str, ...]:
-        """Return no features."""
-        return ()
