@@ -22,7 +22,7 @@ from pathlib import Path
 
 from isa_ros.bag.provenance import provenance_of, VERSION
 from isa_ros.bag.reader import Bag
-from isa_ros.config.yaml_text import Tree
+from isa_ros.config.text.yaml_text import Tree
 from isa_ros.errors import BagError, SimulationDiverged
 from isa_ros.replay.compare import Comparer, is_of_end, retyped
 from isa_ros.replay.comparison import Comparison, key_lines

@@ -7,7 +7,7 @@ rviz.
 
 from ament_index_python.packages import get_packages_with_prefixes
 from isa_ros.config.paths import CONFIG, find, find_drawing, SCENARIOS
-from isa_ros.config.run_file import load_run, RunConfig
+from isa_ros.config.runs.run_file import load_run, RunConfig
 from isa_ros.errors import ConfigError
 from isa_ros.processes.launching import refuse_failure
 from isa_ros.processes.processes import Process, run_processes

@@ -8,7 +8,7 @@ from dataclasses import replace
 from pathlib import Path
 
 from isa_ros.actuator.actuator import SmartActuator, Timing
-from isa_ros.config.default_actuator import default_actuator
+from isa_ros.config.runs.default_actuator import default_actuator
 from isa_ros.controller import fill_command, Setpoint
 from isa_ros.core.signals import COMMAND
 from isa_ros.reu.device_table import with_tables

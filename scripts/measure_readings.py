@@ -9,10 +9,10 @@ Takes about a minute. The tables stand between two markers of the page; the rest
 import argparse
 from pathlib import Path
 
-from isa_ros.analysis.validation.readings import (
-    LINEAR, linear_readings, ROTARY, rotary_readings, table)
 from isa_ros.text.marked import with_parts
 from isa_ros.text.table import markdown
+from isa_ros.validation.readings import (
+    LINEAR, linear_readings, ROTARY, rotary_readings, table)
 
 PAGE = Path(__file__).parents[1] / 'docs' / 'paper-errata.md'
 MARKERS = {ROTARY: 'readings of the rotary column', LINEAR: 'readings of the ISA v5 column'}

@@ -15,9 +15,9 @@ import struct
 from typing import NamedTuple
 
 from isa_ros.analysis.faults.rig import BEGIN_S, CONFIG, DURATION_S, END_S, STEP_S
-from isa_ros.config.fault_catalogue import ACTUATOR, fault_catalogue, NamedFault
+from isa_ros.config.models.fault_catalogue import ACTUATOR, fault_catalogue, NamedFault
 from isa_ros.core.signals import COMMAND
-from isa_ros.fieldbus.devices import devices_of
+from isa_ros.fieldbus.device.devices import devices_of
 from isa_ros.fieldbus.session import commanded_by_bus
 from isa_ros.scenario.scenario import idle
 from isa_ros.scripting.run import load

@@ -12,11 +12,11 @@ from isa_ros.fieldbus.canopen.capacity import cycle_bits, CyclicFrame, frame_bit
 from isa_ros.fieldbus.canopen.identifiers import SYNC
 from isa_ros.fieldbus.canopen.line import CanopenLine, default_bitrate
 from isa_ros.fieldbus.canopen.mit_frames import ANSWER_BYTES, COMMAND_BYTES
-from isa_ros.fieldbus.device import BusDevice, RECEIVE_ASSIGNMENT, TRANSMIT_ASSIGNMENT
-from isa_ros.fieldbus.devices import devices_of
-from isa_ros.fieldbus.manufacturer_area import MIT_RANGES
-from isa_ros.fieldbus.serial_frame import STATUS
-from isa_ros.fieldbus.serial_line import parts
+from isa_ros.fieldbus.device.bus_device import BusDevice, RECEIVE_ASSIGNMENT, TRANSMIT_ASSIGNMENT
+from isa_ros.fieldbus.device.devices import devices_of
+from isa_ros.fieldbus.device.manufacturer_area import MIT_RANGES
+from isa_ros.fieldbus.serial.frame import STATUS
+from isa_ros.fieldbus.serial.line import parts
 from isa_ros.text.marked import with_parts
 from isa_ros.text.table import markdown
 

@@ -7,8 +7,8 @@ Write the tables of docs/objects.md from the object table of the leg's last actu
 from pathlib import Path
 
 import isa_ros
-from isa_ros.fieldbus.devices import devices_of
-from isa_ros.fieldbus.object_page import with_tables
+from isa_ros.fieldbus.description.object_page import with_tables
+from isa_ros.fieldbus.device.devices import devices_of
 
 PAGE = Path(__file__).resolve().parents[1] / 'docs' / 'objects.md'
 

@@ -10,8 +10,8 @@ from pathlib import Path
 from typing import Any
 
 from isa_ros.actuator.sheet import actuator_record, ActuatorSheet
-from isa_ros.config.catalogue import actuator_model, DEFAULT_PRESET
-from isa_ros.config.parameter_sets import build
+from isa_ros.config.models.catalogue import actuator_model, DEFAULT_PRESET
+from isa_ros.config.text.parameter_sets import build
 from isa_ros.core.conditions import BITS, CONDITIONS, shown
 from isa_ros.core.parameter import defaults
 from isa_ros.core.units import of_coordinate

@@ -3,8 +3,8 @@
 from pathlib import Path
 
 import isa_ros
-from isa_ros.config.changes import values_of
 from isa_ros.config.paths import CONFIG, find, SCENARIOS
+from isa_ros.config.text.changes import values_of
 from isa_ros.scripting.run import Run
 
 TICKS = 300

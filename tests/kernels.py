@@ -1,7 +1,7 @@
 """The kernels that most tests call, compiled by one process of all."""
 
 from isa_ros.config.paths import CONFIG, shipped
-from isa_ros.config.run_file import load_run
+from isa_ros.config.runs.run_file import load_run
 from isa_ros.core.kernel_cache import CACHE
 from isa_ros.run.warm_up import warmed_up
 from tests.locks import locked

@@ -1,7 +1,7 @@
 """The shipped legs, for the tests."""
 
-from isa_ros.config.catalogue import leg_section
-from isa_ros.config.parameter_sets import build
+from isa_ros.config.models.catalogue import leg_section
+from isa_ros.config.text.parameter_sets import build
 from isa_ros.surroundings.leg.sheet import LegSheet
 
 

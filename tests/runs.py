@@ -4,9 +4,9 @@ from collections.abc import Sequence
 from dataclasses import replace
 
 from isa_ros.actuator.link import LinkSheet, NO_LINK
-from isa_ros.config.default_actuator import default_actuator
-from isa_ros.config.run_config import ActuatorConfig, RunConfig
-from isa_ros.config.supplies import SupplyConfig
+from isa_ros.config.runs.default_actuator import default_actuator
+from isa_ros.config.runs.run_config import ActuatorConfig, RunConfig
+from isa_ros.config.runs.supplies import SupplyConfig
 from isa_ros.surroundings.return_line import VolumeReturn
 from isa_ros.surroundings.supply import AccumulatorSupply, ConstantSupply
 

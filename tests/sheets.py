@@ -5,10 +5,10 @@ from typing import Any
 
 from isa_ros.actuator.actuator import SmartActuator, Timing
 from isa_ros.actuator.sheet import ActuatorSheet
-from isa_ros.config.catalogue import actuator_model
-from isa_ros.config.parameter_sets import build, build_one_of
-from isa_ros.config.run_config import ActuatorConfig
-from isa_ros.config.sections import Entry
+from isa_ros.config.models.catalogue import actuator_model
+from isa_ros.config.runs.run_config import ActuatorConfig
+from isa_ros.config.text.parameter_sets import build, build_one_of
+from isa_ros.config.text.sections import Entry
 from isa_ros.core.parameter import Parameters
 from isa_ros.core.signals import COMMAND, HAS_SETPOINT
 from isa_ros.loads.sheets import LocalLoad

@@ -5,8 +5,8 @@ import math
 from pathlib import Path
 
 from isa_ros.actuator.actuator import SmartActuator
-from isa_ros.config.run_config import RunConfig
-from isa_ros.config.run_file import load_run
+from isa_ros.config.runs.run_config import RunConfig
+from isa_ros.config.runs.run_file import load_run
 from isa_ros.plant import servo_valve
 from isa_ros.plant.chambers import hydraulic_force
 from isa_ros.plant.plant import plant_record

@@ -63,7 +63,8 @@ def test_an_installed_package_finds_its_data(tmp_path: Path) -> None:
          str(copy_of_clone(tmp_path))], check=True, capture_output=True, timeout=120)
     purelib = next((tmp_path / 'prefix').glob('lib/python3*/site-packages'))
     program = (
-        'from isa_ros.config.run_file import load_run; from isa_ros.config.paths import find\n'
+        'from isa_ros.config.runs.run_file import load_run\n'
+        'from isa_ros.config.paths import find\n'
         'from isa_ros.paper.printed import cell\n'
         'import isa_ros; print(isa_ros.__file__, load_run(find("leg", "config")).name, '
         'cell("table_5", "L_m", "Value").number)')

@@ -8,8 +8,8 @@ import struct
 
 import isa_ros
 from isa_ros.config.paths import CONFIG, find, SCENARIOS
-from isa_ros.config.run_file import load_run
-from isa_ros.config.supplies import SupplyConfig
+from isa_ros.config.runs.run_file import load_run
+from isa_ros.config.runs.supplies import SupplyConfig
 from isa_ros.controller import Controller, Setpoint, State
 from isa_ros.core.signals import COMMAND, HAS_SETPOINT
 from isa_ros.errors import ConfigError, RunError, SetpointError, SimulationDiverged

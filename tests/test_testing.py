@@ -9,8 +9,8 @@ import isa_ros
 from isa_ros.bag.provenance import installed_versions
 from isa_ros.bag.reader import Bag
 from isa_ros.bag.writer import BagWriter
-from isa_ros.config.run_config import RunConfig
-from isa_ros.config.yaml_text import parse
+from isa_ros.config.runs.run_config import RunConfig
+from isa_ros.config.text.yaml_text import parse
 from isa_ros.errors import ConfigError
 from isa_ros.replay.replay import Rerun
 from isa_ros.testing import assert_replays

@@ -11,9 +11,9 @@ import isa_ros
 from isa_ros import testing
 from isa_ros.bag.provenance import installed_versions
 from isa_ros.bag.reader import Bag
-from isa_ros.config import catalogue
+from isa_ros.config.models import catalogue
 from isa_ros.config.paths import CONFIG, find
-from isa_ros.config.yaml_text import dump
+from isa_ros.config.text.yaml_text import dump
 from isa_ros.controller import Controller, Setpoint, State
 from isa_ros.errors import BagError, ConfigError, SimulationDiverged
 from isa_ros.testing import assert_replays, assert_reproduces

@@ -7,7 +7,7 @@ from isa_ros.loads.sheets import LocalLoad
 
 
 class ActuatorConfig(Protocol):
-    """Configuration of an actuator; `isa_ros.config.run_file` provides it."""
+    """Configuration of an actuator; `isa_ros.config.runs.run_file` provides it."""
 
     @property
     def name(self) -> str:

@@ -5,9 +5,9 @@ from contextlib import suppress
 from pathlib import Path
 import sys
 
-from isa_ros.config.run_file import load_run
+from isa_ros.config.runs.run_file import load_run
 from isa_ros.core.signals import COMMAND, SAMPLE
-from isa_ros.fieldbus.devices import devices_of
+from isa_ros.fieldbus.device.devices import devices_of
 from isa_ros.fieldbus.ethercat import ethercat_line
 from isa_ros.fieldbus.request import PROFILES
 import numpy as np

@@ -5,7 +5,7 @@ from isa_ros.actuator.actuator import SmartActuator
 from isa_ros.actuator.sheet import actuator_record
 from isa_ros.analysis.accuracy import cylinder
 from isa_ros.bench.row import Row, seconds
-from isa_ros.config.default_actuator import default_actuator, DEFAULT_TIMING
+from isa_ros.config.runs.default_actuator import default_actuator, DEFAULT_TIMING
 from isa_ros.core.signals import LOAD_PORT
 from isa_ros.core.timebase import NS_PER_SECOND, PLANT_STEP
 import numpy as np

@@ -5,7 +5,7 @@ from pathlib import Path
 
 from isa_ros.bench.spec import LEG, ONE_PROCESS, Spec
 from isa_ros.config.paths import CONFIG, find, SCENARIOS
-from isa_ros.config.yaml_text import dump, Tree
+from isa_ros.config.text.yaml_text import dump, Tree
 from isa_ros.run.options import Request
 
 TICK_S = 1e-3

@@ -11,7 +11,7 @@ from isa_ros.bench.row import Row, seconds
 from isa_ros.bench.spec import LEG, ONE_PROCESS, Spec
 from isa_ros.config.assembly import group_of, surroundings_of
 from isa_ros.config.paths import CONFIG, find, SCENARIOS
-from isa_ros.config.run_file import load_run
+from isa_ros.config.runs.run_file import load_run
 from isa_ros.core.signals import LOAD_PORT
 from isa_ros.run.local_run import shown
 from isa_ros.run.narrator import packer_of

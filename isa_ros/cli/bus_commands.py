@@ -36,7 +36,7 @@ def bus_request_of(options: Namespace) -> BusRequest:
 def serve(options: Namespace) -> bool:
     """Run and record a configuration whose commands come from the master of a bus."""
     from isa_ros.core.without_blas import start_without_blas
-    from isa_ros.fieldbus.devices import devices_of
+    from isa_ros.fieldbus.device.devices import devices_of
     from isa_ros.fieldbus.lines import line_of, refuse_unusable
     from isa_ros.fieldbus.session import prepare_bus
     request = bus_request_of(options)
@@ -66,9 +66,9 @@ def serve(options: Namespace) -> bool:
 
 def describe(options: Namespace) -> bool:
     """Write what a master wants to know of the devices."""
-    from isa_ros.config.run_file import load_run
-    from isa_ros.fieldbus.description import described, tables_of
-    from isa_ros.fieldbus.devices import devices_of
+    from isa_ros.config.runs.run_file import load_run
+    from isa_ros.fieldbus.description.files import described, tables_of
+    from isa_ros.fieldbus.device.devices import devices_of
     devices = devices_of(load_run(find(options.config, CONFIG)), options.profile)
     if options.table:
         print(tables_of(devices))

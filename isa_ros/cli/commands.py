@@ -220,7 +220,7 @@ def faults(options: Namespace) -> bool:
 @simulating
 def params(options: Namespace) -> bool:
     """List every parameter of a model, a leg or a run."""
-    from isa_ros.config.changes import values_of
+    from isa_ros.config.text.changes import values_of
     from isa_ros.config.listing import describe, SET
     print(describe(
         options.name, options.preset, options.variant, values_of(options.set, SET)))
@@ -239,9 +239,9 @@ def validate(options: Namespace) -> bool:
     """Compare the actuators with the numbers of the paper."""
     if options.sensitivity:
         return _sensitivity(options)
-    from isa_ros.analysis.validation import page
-    from isa_ros.analysis.validation.groups import GROUPS
-    from isa_ros.analysis.validation.runner import chosen, is_reached, validated
+    from isa_ros.validation import page
+    from isa_ros.validation.groups import GROUPS
+    from isa_ros.validation.runner import chosen, is_reached, validated
     from isa_ros.text.page import refuse_a_part
     from isa_ros.text.progress import counted
     groups = chosen(GROUPS, options.only)
@@ -253,8 +253,8 @@ def validate(options: Namespace) -> bool:
 
 
 def _sensitivity(options: Namespace) -> bool:
-    from isa_ros.analysis.validation import sensitivity_page
-    from isa_ros.analysis.validation.sensitivity import is_noticed, sensitivity
+    from isa_ros.validation import sensitivity_page
+    from isa_ros.validation.sensitivity import is_noticed, sensitivity
     from isa_ros.text.progress import counted
     if options.only:
         raise ConfigError('--only is not used with --sensitivity, which runs every perturbation')

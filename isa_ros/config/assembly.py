@@ -3,8 +3,8 @@
 from isa_ros.actuator.actuator import Timing
 from isa_ros.actuator.group import ActuatorGroup
 from isa_ros.actuator.setpoint_range import RequestRange, SetpointRange
-from isa_ros.config.leg_config import LegConfig
-from isa_ros.config.run_config import RunConfig
+from isa_ros.config.runs.leg_config import LegConfig
+from isa_ros.config.runs.run_config import RunConfig
 from isa_ros.core.noise import noise_key
 from isa_ros.core.signals import START
 from isa_ros.core.timebase import NS_PER_SECOND

@@ -12,9 +12,9 @@ from typing import Any, NamedTuple
 
 from isa_ros.actuator.tunable import tunables
 from isa_ros.config.listing import rows
-from isa_ros.config.run_config import ActuatorConfig, modern, RUN, RunConfig
-from isa_ros.config.sections import Place
-from isa_ros.config.yaml_text import Tree
+from isa_ros.config.runs.run_config import ActuatorConfig, modern, RUN, RunConfig
+from isa_ros.config.text.sections import Place
+from isa_ros.config.text.yaml_text import Tree
 from isa_ros.core.parameter import Parameters
 from isa_ros.core.units import of_coordinate
 from isa_ros.errors import ConfigError

@@ -6,16 +6,17 @@ from types import MappingProxyType
 from typing import Any, get_type_hints, NamedTuple
 
 from isa_ros.actuator.sheet import ActuatorSheet
-from isa_ros.config.catalogue import actuator_model, leg_names, leg_section, Model, model_names
-from isa_ros.config.changes import changed, Values
-from isa_ros.config.model_run import full_key, model_run
-from isa_ros.config.parameter_sets import build, build_one_of, kind_of, members
+from isa_ros.config.models.catalogue import (
+    actuator_model, leg_names, leg_section, Model, model_names)
+from isa_ros.config.models.wires import wire
 from isa_ros.config.paths import CONFIG, find
-from isa_ros.config.run_config import RunConfig
-from isa_ros.config.run_file import Origins, run_of
-from isa_ros.config.sections import Entry, merge, Place, Section, section_at, written
-from isa_ros.config.wires import wire
-from isa_ros.config.yaml_text import read, Tree
+from isa_ros.config.runs.model_run import full_key, model_run
+from isa_ros.config.runs.run_config import RunConfig
+from isa_ros.config.runs.run_file import Origins, run_of
+from isa_ros.config.text.changes import changed, Values
+from isa_ros.config.text.parameter_sets import build, build_one_of, kind_of, members
+from isa_ros.config.text.sections import Entry, merge, Place, Section, section_at, written
+from isa_ros.config.text.yaml_text import read, Tree
 from isa_ros.core.parameter import Parameters
 from isa_ros.errors import ConfigError
 from isa_ros.loads.sheets import LocalLoad

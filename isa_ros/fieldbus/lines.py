@@ -2,7 +2,7 @@
 
 from collections.abc import Sequence
 
-from isa_ros.fieldbus.device import BusDevice
+from isa_ros.fieldbus.device.bus_device import BusDevice
 from isa_ros.fieldbus.request import BusRequest, CANOPEN, ETHERCAT, MIT, SERIAL
 from isa_ros.fieldbus.session import OpenLine
 
@@ -22,7 +22,7 @@ def line_of(request: BusRequest) -> OpenLine:
         return lambda devices, step_ns: mit_line(
             devices, request.interface, request.channel, step_ns, bitrate=request.bitrate,
             first_node=request.first_node)
-    from isa_ros.fieldbus.serial_line import serial_line
+    from isa_ros.fieldbus.serial.line import serial_line
     return lambda devices, step_ns: serial_line(
         devices, request.path, request.baud, step_ns)
 
@@ -44,8 +44,8 @@ def refuse_unusable(request: BusRequest, devices: Sequence[BusDevice], step_ns: 
         from isa_ros.fieldbus.ethercat.interface import open_interface
         open_interface(request.interface).close()
     elif request.bus == SERIAL:
-        from isa_ros.fieldbus.serial_line import default_baud, refuse_overfull
-        from isa_ros.fieldbus.serial_port import SerialPort
+        from isa_ros.fieldbus.serial.line import default_baud, refuse_overfull
+        from isa_ros.fieldbus.serial.port import SerialPort
         refuse_overfull(devices, request.baud or default_baud(), step_ns)
         SerialPort(request.path, request.baud or default_baud()).close()
     else:

@@ -4,9 +4,9 @@ from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass, replace
 
-from isa_ros.config.run_config import RunConfig
+from isa_ros.config.runs.run_config import RunConfig
 from isa_ros.errors import ConfigError
-from isa_ros.fieldbus.device import BusDevice
+from isa_ros.fieldbus.device.bus_device import BusDevice
 from isa_ros.fieldbus.line import Line
 from isa_ros.fieldbus.real_time import RealTimeSource, scheduled_first, ServedPace
 from isa_ros.fieldbus.request import BusRequest, REAL_TIME

@@ -11,7 +11,7 @@ from collections.abc import Callable, Mapping, Sequence
 import time
 
 from isa_ros.core.signals import Records
-from isa_ros.fieldbus.device import BusDevice
+from isa_ros.fieldbus.device.bus_device import BusDevice
 from isa_ros.fieldbus.line import Line
 from isa_ros.run.pacing import SLICE_S
 from isa_ros.scenario.faults import ParameterChanges

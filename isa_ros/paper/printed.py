@@ -11,8 +11,8 @@ from pathlib import Path
 import re
 from typing import Any, NamedTuple
 
-from isa_ros.config.sections import Place, refuse_unknown, section_at
-from isa_ros.config.yaml_text import read, Tree
+from isa_ros.config.text.sections import Place, refuse_unknown, section_at
+from isa_ros.config.text.yaml_text import read, Tree
 from isa_ros.core.suggest import alternatives
 from isa_ros.errors import ConfigError
 

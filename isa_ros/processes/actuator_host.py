@@ -4,8 +4,8 @@ from collections.abc import Sequence
 from pathlib import Path
 import time
 
-from isa_ros.config.changes import changes_of
-from isa_ros.config.run_file import load_run
+from isa_ros.config.runs.run_file import load_run
+from isa_ros.config.text.changes import changes_of
 from isa_ros.errors import RunError
 from isa_ros.processes.processes import actuator_processes, Children
 from isa_ros.processes.stopping import StopRequest

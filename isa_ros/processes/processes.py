@@ -11,7 +11,7 @@ import sys
 import time
 
 import isa_ros
-from isa_ros.config.run_config import RunConfig
+from isa_ros.config.runs.run_config import RunConfig
 from isa_ros.errors import RunError
 from isa_ros.processes.forked import can_fork, Forked
 from isa_ros.processes.stopping import PARENT_VARIABLE

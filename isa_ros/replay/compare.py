@@ -9,9 +9,9 @@ from collections.abc import Callable, Iterator, Mapping, Sequence
 
 from isa_ros.bag.provenance import CONFIGURATION
 from isa_ros.bag.reader import Bag, BagMessage, Tick
-from isa_ros.config.recording import read_record, RecordConfig
-from isa_ros.config.sections import Place
-from isa_ros.config.yaml_text import parse
+from isa_ros.config.runs.recording import read_record, RecordConfig
+from isa_ros.config.text.sections import Place
+from isa_ros.config.text.yaml_text import parse
 from isa_ros.replay.difference import ABSENT, BAG, Difference, PRESENT, Report, Value
 from isa_ros.replay.tolerances import Tolerances
 from isa_ros.replay.topic_comparison import TopicComparison

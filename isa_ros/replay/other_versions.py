@@ -2,10 +2,10 @@
 
 from collections.abc import Iterator
 
-from isa_ros.config.run_config import modern, RUN
-from isa_ros.config.schema import KeyDifference
-from isa_ros.config.sections import Place
-from isa_ros.config.yaml_text import Tree
+from isa_ros.config.runs.run_config import modern, RUN
+from isa_ros.config.text.schema import KeyDifference
+from isa_ros.config.text.sections import Place
+from isa_ros.config.text.yaml_text import Tree
 
 
 def key_differences(tree: Tree, place: Place) -> Iterator[KeyDifference]:

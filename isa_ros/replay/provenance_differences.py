@@ -7,7 +7,7 @@ from isa_ros.bag.provenance import CONFIGURATION, Provenance, SCENARIO
 from isa_ros.bag.reader import Bag
 from isa_ros.config.differences import (
     configuration_differences, DifferingKey, section_differences)
-from isa_ros.config.yaml_text import parse, Tree
+from isa_ros.config.text.yaml_text import parse, Tree
 
 _DIGESTS = (f'{CONFIGURATION}.sha256', f'{SCENARIO}.sha256')   # of texts compared by key
 

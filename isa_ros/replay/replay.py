@@ -11,7 +11,7 @@ from dataclasses import dataclass, replace
 from typing import NamedTuple
 
 from isa_ros.bag.reader import Bag
-from isa_ros.config.run_config import RunConfig
+from isa_ros.config.runs.run_config import RunConfig
 from isa_ros.core.saved_state import RunState
 from isa_ros.core.signals import Records
 from isa_ros.errors import BagError, SetpointError

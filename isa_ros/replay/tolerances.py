@@ -15,7 +15,7 @@ from pathlib import Path
 import re
 from typing import NamedTuple
 
-from isa_ros.config import yaml_text as strict_yaml
+from isa_ros.config.text import yaml_text as strict_yaml
 from isa_ros.errors import ConfigError
 from msg_adapters.cdr import field_type, Message
 from msg_adapters.cdr_reader import message_class

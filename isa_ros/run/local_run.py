@@ -4,7 +4,7 @@ from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
 from typing import NamedTuple
 
-from isa_ros.config.run_config import RunConfig
+from isa_ros.config.runs.run_config import RunConfig
 from isa_ros.core.saved_state import RunState
 from isa_ros.core.signals import COMMAND, Records
 from isa_ros.run.coordinator import Interrupted

@@ -3,8 +3,8 @@
 from collections.abc import Mapping, Sequence
 from typing import NamedTuple, Protocol
 
-from isa_ros.config.leg_config import LegConfig
-from isa_ros.config.run_config import RunConfig
+from isa_ros.config.runs.leg_config import LegConfig
+from isa_ros.config.runs.run_config import RunConfig
 from isa_ros.plant.plant import is_heated
 from isa_ros.run.exchange import Recorder
 from isa_ros.run.packing import BodyMessages, Messages, Names, Packer, Shown

@@ -11,9 +11,9 @@ from isa_ros.bag.directory import files_to_replace
 from isa_ros.bag.provenance import installed_versions, provenance_of
 from isa_ros.bag.writer import BagWriter
 from isa_ros.config.assembly import request_range_of, surroundings_of
-from isa_ros.config.changes import changes_of
-from isa_ros.config.run_config import RunConfig
-from isa_ros.config.run_file import load_run
+from isa_ros.config.runs.run_config import RunConfig
+from isa_ros.config.runs.run_file import load_run
+from isa_ros.config.text.changes import changes_of
 from isa_ros.core.saved_state import read_state, RunState, write_state
 from isa_ros.core.signals import Records
 from isa_ros.core.timebase import NS_PER_SECOND

@@ -4,7 +4,7 @@ from contextlib import suppress
 
 from isa_ros.actuator.actuator import SmartActuator
 from isa_ros.bag.message_chunk import Chunk, Layouts
-from isa_ros.config.run_config import RunConfig
+from isa_ros.config.runs.run_config import RunConfig
 from isa_ros.errors import SimulationDiverged
 from isa_ros.run.local_run import shown
 from isa_ros.run.narrator import packer_of

@@ -6,9 +6,9 @@ from typing import Any
 
 from isa_ros.actuator.device import start_mode
 from isa_ros.actuator.setpoint_range import reference_bounds
-from isa_ros.config.run_config import ActuatorConfig
-from isa_ros.config.sections import Place
-from isa_ros.config.yaml_text import Tree
+from isa_ros.config.runs.run_config import ActuatorConfig
+from isa_ros.config.text.sections import Place
+from isa_ros.config.text.yaml_text import Tree
 from isa_ros.core.device import MODES, REFERENCES
 from isa_ros.core.parameter import check
 from isa_ros.core.signals import (

@@ -16,11 +16,11 @@ from typing import Any, NamedTuple
 
 from isa_ros.actuator.tunable import changing, with_changed, with_si_names
 from isa_ros.config.assembly import surroundings_of
-from isa_ros.config.fault_catalogue import ACTUATOR, KINDS, named_fault, numbers_at, SUPPLY
-from isa_ros.config.run_config import RunConfig
-from isa_ros.config.sections import Place, refuse_unknown, section_at
-from isa_ros.config.tick_grid import ticks_in
-from isa_ros.config.yaml_text import Tree
+from isa_ros.config.models.fault_catalogue import ACTUATOR, KINDS, named_fault, numbers_at, SUPPLY
+from isa_ros.config.runs.run_config import RunConfig
+from isa_ros.config.runs.tick_grid import ticks_in
+from isa_ros.config.text.sections import Place, refuse_unknown, section_at
+from isa_ros.config.text.yaml_text import Tree
 from isa_ros.core.changeable import changeables
 from isa_ros.core.parameter import check
 from isa_ros.core.suggest import alternatives

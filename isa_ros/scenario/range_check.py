@@ -10,8 +10,8 @@ from collections.abc import Iterator
 from dataclasses import replace
 
 from isa_ros.actuator.setpoint_range import Beyond, SetpointRange
-from isa_ros.config.run_config import ActuatorConfig
-from isa_ros.config.sections import Place
+from isa_ros.config.runs.run_config import ActuatorConfig
+from isa_ros.config.text.sections import Place
 from isa_ros.core.parameter import check
 from isa_ros.core.signals import COMMAND
 from isa_ros.core.timebase import NS_PER_SECOND

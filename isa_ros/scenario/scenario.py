@@ -12,16 +12,16 @@ import math
 from pathlib import Path
 from typing import Any
 
-from isa_ros.config.catalogue import actuator_model
-from isa_ros.config.changes import changed, Changes, SCENARIO
-from isa_ros.config.coarse_ticks import coarse_ticks
-from isa_ros.config.names import name_of
-from isa_ros.config.own_load import own_load, refuse_beyond_stops
-from isa_ros.config.run_config import ActuatorConfig, RunConfig
-from isa_ros.config.sections import Place, refuse_unknown, section_at
-from isa_ros.config.starts import leg_start, refuse_reach, refuse_start
-from isa_ros.config.tick_grid import ticks_in
-from isa_ros.config.yaml_text import dump, parse, read, Tree
+from isa_ros.config.models.catalogue import actuator_model
+from isa_ros.config.models.own_load import own_load, refuse_beyond_stops
+from isa_ros.config.runs.coarse_ticks import coarse_ticks
+from isa_ros.config.runs.run_config import ActuatorConfig, RunConfig
+from isa_ros.config.runs.starts import leg_start, refuse_reach, refuse_start
+from isa_ros.config.runs.tick_grid import ticks_in
+from isa_ros.config.text.changes import changed, Changes, SCENARIO
+from isa_ros.config.text.names import name_of
+from isa_ros.config.text.sections import Place, refuse_unknown, section_at
+from isa_ros.config.text.yaml_text import dump, parse, read, Tree
 from isa_ros.core.parameter import check
 from isa_ros.core.suggest import alternatives
 from isa_ros.core.timebase import NS_PER_SECOND

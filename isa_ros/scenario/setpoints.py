@@ -4,11 +4,11 @@ from collections.abc import Mapping
 from dataclasses import fields
 from typing import Any
 
-from isa_ros.config.parameter_sets import build
-from isa_ros.config.run_config import ActuatorConfig, RunConfig
-from isa_ros.config.sections import Place, refuse_unknown, section_at, written
-from isa_ros.config.tick_grid import ticks_in
-from isa_ros.config.yaml_text import Tree
+from isa_ros.config.runs.run_config import ActuatorConfig, RunConfig
+from isa_ros.config.runs.tick_grid import ticks_in
+from isa_ros.config.text.parameter_sets import build
+from isa_ros.config.text.sections import Place, refuse_unknown, section_at, written
+from isa_ros.config.text.yaml_text import Tree
 from isa_ros.core.parameter import check
 from isa_ros.core.timebase import NS_PER_SECOND
 from isa_ros.errors import ConfigError

@@ -9,8 +9,8 @@ from dataclasses import dataclass, field
 import math
 
 from isa_ros.actuator.setpoint_range import SetpointRange
-from isa_ros.config.parameter_sets import as_tree
-from isa_ros.config.yaml_text import Tree
+from isa_ros.config.text.parameter_sets import as_tree
+from isa_ros.config.text.yaml_text import Tree
 from isa_ros.core.parameter import parameter, Parameters
 from isa_ros.core.signals import GAINS_OF_COMMAND, HAS_SETPOINT
 from isa_ros.core.timebase import NS_PER_SECOND

@@ -9,12 +9,12 @@ the joint itself, a linear one through the linkage of the joint. Equations G1 to
 from dataclasses import dataclass, field
 from functools import cached_property
 
-from isa_ros.config.catalogue import gait_section, leg_section
-from isa_ros.config.leg_config import LegConfig
-from isa_ros.config.parameter_sets import as_tree, build
-from isa_ros.config.run_config import ActuatorConfig
-from isa_ros.config.sections import merge, Place, written
-from isa_ros.config.yaml_text import Tree
+from isa_ros.config.models.catalogue import gait_section, leg_section
+from isa_ros.config.runs.leg_config import LegConfig
+from isa_ros.config.runs.run_config import ActuatorConfig
+from isa_ros.config.text.parameter_sets import as_tree, build
+from isa_ros.config.text.sections import merge, Place, written
+from isa_ros.config.text.yaml_text import Tree
 from isa_ros.core.parameter import choice, parameter
 from isa_ros.core.timebase import NS_PER_SECOND
 from isa_ros.errors import ConfigError

@@ -10,9 +10,9 @@ from dataclasses import dataclass
 import math
 from typing import ClassVar, NamedTuple, Protocol
 
-from isa_ros.config.parameter_sets import as_tree
-from isa_ros.config.tick_grid import ticks_in
-from isa_ros.config.yaml_text import Tree
+from isa_ros.config.runs.tick_grid import ticks_in
+from isa_ros.config.text.parameter_sets import as_tree
+from isa_ros.config.text.yaml_text import Tree
 from isa_ros.core.elementary import cos, exp, expm1, log, sin
 from isa_ros.core.parameter import check, choice, parameter, Parameters
 from isa_ros.core.timebase import NS_PER_SECOND

@@ -8,12 +8,12 @@ import sys
 from typing import Any
 import warnings
 
-from isa_ros.config.changes import replaced, SCENARIO
 from isa_ros.config.paths import CONFIG, find, SCENARIOS
-from isa_ros.config.run_config import RunConfig
-from isa_ros.config.run_file import run_of
-from isa_ros.config.sections import Place
-from isa_ros.config.yaml_text import read, Tree
+from isa_ros.config.runs.run_config import RunConfig
+from isa_ros.config.runs.run_file import run_of
+from isa_ros.config.text.changes import replaced, SCENARIO
+from isa_ros.config.text.sections import Place
+from isa_ros.config.text.yaml_text import read, Tree
 from isa_ros.controller import Controller
 from isa_ros.errors import ConfigError
 from isa_ros.scenario.scenario import idle, read_scenario, Scenario

@@ -4,7 +4,7 @@ from dataclasses import replace
 
 from isa_ros.actuator.actuator import SmartActuator
 from isa_ros.actuator.group import ActuatorGroup
-from isa_ros.config.default_actuator import default_actuator, DEFAULT_TIMING
+from isa_ros.config.runs.default_actuator import default_actuator, DEFAULT_TIMING
 from isa_ros.core.signals import COMMAND, HAS_SETPOINT, LOAD_PORT, START
 from isa_ros.errors import ConfigError, SimulationDiverged
 import numpy as np

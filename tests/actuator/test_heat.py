@@ -5,7 +5,7 @@ from dataclasses import replace
 from isa_ros.actuator.actuator import SmartActuator, Timing
 from isa_ros.actuator.group import ActuatorGroup
 from isa_ros.actuator.sheet import ActuatorSheet
-from isa_ros.config.run_config import ActuatorConfig
+from isa_ros.config.runs.run_config import ActuatorConfig
 from isa_ros.core.signals import LOAD_PORT
 from isa_ros.errors import ParameterError
 from isa_ros.plant.plant import plant_record

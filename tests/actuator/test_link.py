@@ -12,7 +12,7 @@ from isa_ros.actuator.link import (
     DOWN, LINE, link_key, link_record, LINK_STATE, LinkSheet, put_frame, SLOTS, take_frame)
 from isa_ros.actuator.rows import Memory
 from isa_ros.actuator.sheet import ActuatorSheet
-from isa_ros.config.run_config import ActuatorConfig
+from isa_ros.config.runs.run_config import ActuatorConfig
 from isa_ros.core.conditions import BITS, conditions
 from isa_ros.core.record import rows_of
 from isa_ros.core.timebase import PLANT_STEP

@@ -8,7 +8,7 @@ import sys
 from isa_ros.actuator.actuator import Timing
 from isa_ros.actuator.group import ActuatorGroup
 from isa_ros.actuator.states import STATES
-from isa_ros.config.run_config import ActuatorConfig
+from isa_ros.config.runs.run_config import ActuatorConfig
 from isa_ros.core.signals import COMMAND, HAS_GAINS, HAS_SETPOINT, LOAD_PORT
 from isa_ros.errors import SimulationDiverged
 from isa_ros.reu.wiring import Off

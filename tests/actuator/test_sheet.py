@@ -3,7 +3,7 @@
 from dataclasses import replace
 
 from isa_ros.actuator.sheet import actuator_record, ActuatorSheet, refuse_wiring
-from isa_ros.config.catalogue import actuator_model
+from isa_ros.config.models.catalogue import actuator_model
 from isa_ros.errors import ConfigError
 from isa_ros.reu.wiring import Held, Off
 import pytest

@@ -5,7 +5,7 @@ import math
 
 from isa_ros.actuator.sheet import actuator_record, ActuatorSheet
 from isa_ros.actuator.tunable import tunables, tuned
-from isa_ros.config.catalogue import actuator_model, model_names
+from isa_ros.config.models.catalogue import actuator_model, model_names
 from isa_ros.errors import ConfigError, ParameterError
 from isa_ros.reu.schedule import ThreePoints
 from isa_ros.reu.wiring import active

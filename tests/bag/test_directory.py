@@ -4,7 +4,7 @@ from pathlib import Path
 
 from isa_ros.bag.reader import Bag
 from isa_ros.bag.writer import BagWriter
-from isa_ros.config.recording import Storage
+from isa_ros.config.runs.recording import Storage
 from isa_ros.errors import BagError
 import pytest
 from rosbags.rosbag2 import Writer

@@ -14,7 +14,7 @@ from isa_ros.bag.reader import Bag
 from isa_ros.bag.writer import BagWriter
 from isa_ros.cli.main import main
 from isa_ros.config.assembly import surroundings_of
-from isa_ros.config.run_file import load_run
+from isa_ros.config.runs.run_file import load_run
 from isa_ros.core.saved_state import sealed
 from isa_ros.core.signals import COMMAND
 from isa_ros.core.topic import Topic

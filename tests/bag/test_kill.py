@@ -8,7 +8,7 @@ import sys
 
 from isa_ros.bag.reader import Bag
 from isa_ros.cli.main import main
-from isa_ros.config.recording import Storage
+from isa_ros.config.runs.recording import Storage
 from isa_ros.core.timebase import NS_PER_SECOND
 import pytest
 from rosbags.highlevel import AnyReader
@@ -25,7 +25,7 @@ import sys
 
 from isa_ros.bag.provenance import installed_versions, Provenance
 from isa_ros.bag.writer import BagWriter
-from isa_ros.config.run_file import load_run
+from isa_ros.config.runs.run_file import load_run
 from isa_ros.run.local_run import Inputs, LocalRun
 from isa_ros.scenario.scenario import load_scenario
 

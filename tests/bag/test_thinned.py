@@ -7,8 +7,8 @@ import struct
 from isa_ros.bag.reader import Bag
 from isa_ros.bag.writer import BagWriter
 from isa_ros.cli.main import main
-from isa_ros.config.recording import RecordConfig
-from isa_ros.config.run_config import RunConfig
+from isa_ros.config.runs.recording import RecordConfig
+from isa_ros.config.runs.run_config import RunConfig
 from isa_ros.replay.compare import compare_bags
 from isa_ros.replay.replay import replay, Rerun
 import pytest

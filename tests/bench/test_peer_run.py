@@ -21,8 +21,8 @@ from isa_ros.bench.peers.transport import PeerTransport, RUN_ID
 from isa_ros.bench.peers.worker import answer_steps
 from isa_ros.bench.rigs import rigs_file
 from isa_ros.config.assembly import group_of, surroundings_of, timing_of
-from isa_ros.config.run_config import RunConfig
-from isa_ros.config.run_file import load_run
+from isa_ros.config.runs.run_config import RunConfig
+from isa_ros.config.runs.run_file import load_run
 from isa_ros.core.signals import COMMAND, LOAD_REPLY, SAMPLE, START
 from isa_ros.errors import RunError
 from isa_ros.run.exchange import Rows

@@ -8,8 +8,8 @@ from isa_ros.bench.peers.transport import PeerTransport
 from isa_ros.bench.peers.worker import answer_steps
 from isa_ros.config.assembly import surroundings_of, timing_of
 from isa_ros.config.paths import CONFIG, find
-from isa_ros.config.run_config import RunConfig
-from isa_ros.config.run_file import load_run
+from isa_ros.config.runs.run_config import RunConfig
+from isa_ros.config.runs.run_file import load_run
 from isa_ros.errors import ConfigError, RunError
 from isa_ros.run.exchange import Rows
 from isa_ros.run.wire.answers import Answer, AnswerKind, decode_answer, encode_answer

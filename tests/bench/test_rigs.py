@@ -2,7 +2,7 @@
 
 from isa_ros.bench.rigs import request_of
 from isa_ros.bench.spec import LEG, ONE_PROCESS, PROCESSES, Spec
-from isa_ros.config.run_file import load_run
+from isa_ros.config.runs.run_file import load_run
 
 
 def test_twelve_actuators_are_four_legs_on_loads_of_their_own(tmp_path):

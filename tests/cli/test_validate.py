@@ -1,9 +1,9 @@
 """The exit code of `isa validate`: 0 where all entries are reached, 1 where one is not."""
 
-from isa_ros.analysis.validation import groups
 from isa_ros.cli.main import main
+from isa_ros.validation import groups
 import pytest
-from tests.analysis.validation.groups import GOOD, MISSED
+from tests.validation.groups import GOOD, MISSED
 
 
 @pytest.mark.parametrize(('shipped', 'only', 'code'), [

@@ -5,8 +5,8 @@ from dataclasses import replace
 import isa_ros
 from isa_ros.config.differences import (
     configuration_differences, DifferingKey, section_differences)
-from isa_ros.config.run_config import RunConfig
-from isa_ros.config.yaml_text import dump, parse, Tree
+from isa_ros.config.runs.run_config import RunConfig
+from isa_ros.config.text.yaml_text import dump, parse, Tree
 import pytest
 from tests.runs import hip_and_knee
 

@@ -4,9 +4,9 @@ from itertools import product
 import re
 
 from isa_ros.actuator.sheet import ActuatorSheet
-from isa_ros.config.catalogue import actuator_model, leg_names, leg_section, model_names
 from isa_ros.config.listing import describe, Row, rows
-from isa_ros.config.parameter_sets import build, build_one_of
+from isa_ros.config.models.catalogue import actuator_model, leg_names, leg_section, model_names
+from isa_ros.config.text.parameter_sets import build, build_one_of
 from isa_ros.errors import ConfigError, IsaError
 from isa_ros.loads.sheets import LocalLoad
 from isa_ros.scripting.run import load

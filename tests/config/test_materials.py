@@ -1,8 +1,8 @@
 """Named materials: whole data with sources, selectable under the foot and before a load."""
 
-from isa_ros.config.catalogue import material_names, material_section
 from isa_ros.config.listing import rows
-from isa_ros.config.parameter_sets import build
+from isa_ros.config.models.catalogue import material_names, material_section
+from isa_ros.config.text.parameter_sets import build
 from isa_ros.errors import ConfigError
 from isa_ros.surroundings.ground import Ground
 import pytest

@@ -2,7 +2,7 @@
 
 from dataclasses import dataclass, replace
 
-from isa_ros.config.catalogue import model_names
+from isa_ros.config.models.catalogue import model_names
 from isa_ros.core.changeable import changeables, sound, with_changes
 from isa_ros.core.parameter import fault, parameter, Parameters
 from isa_ros.errors import ConfigError, ParameterError

@@ -9,6 +9,7 @@ from isa_ros.core.kernel import kernel
 import numba
 import pytest
 
+
 def twice(x):
     return x + x
 

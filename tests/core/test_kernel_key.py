@@ -1,9 +1,8 @@
 """What a compiled kernel depends on."""
 
+from isa_ros.core.kernel_key import is_unchanged, kernel_digest, UnknownValue, value_text
 import numpy as np
 import pytest
-
-from isa_ros.core.kernel_key import is_unchanged, kernel_digest, UnknownValue, value_text
 
 SOURCE = """
 {remark}
@@ -30,8 +29,8 @@ def caller(x, b={default}):
 def other(x):
     return x
 """
-FIRST = dict(remark='', constant=1.0, kind='f8', entry=2.0, unused=1, added=1, doc='"""One."""',
-             default=1.0)
+FIRST = {'remark': '', 'constant': 1.0, 'kind': 'f8', 'entry': 2.0, 'unused': 1, 'added': 1,
+         'doc': '"""One."""', 'default': 1.0}
 
 
 def digests(**changes):
@@ -78,7 +77,8 @@ def test_a_value_of_unknown_kind_is_refused():
 
 
 def test_all_of_a_dtype_is_seen():
-    kinds = [np.dtype([('a', 'f8'), ('b', 'f4')]), np.dtype([('a', 'f8'), ('b', 'f4')], align=True),
+    kinds = [np.dtype([('a', 'f8'), ('b', 'f4')]),
+             np.dtype([('a', 'f8'), ('b', 'f4')], align=True),
              np.dtype([('b', 'f8'), ('a', 'f4')]), np.dtype([('a', 'f8'), ('b', 'f4', 1)]),
              np.dtype([('a', 'f8'), ('b', 'f4', 2)]), np.dtype([('a', '>f8'), ('b', 'f4')])]
     assert len({value_text(kind) for kind in kinds}) >= 5

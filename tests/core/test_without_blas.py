@@ -7,7 +7,7 @@ PROGRAM = """
 import sys
 from isa_ros.core.without_blas import start_without_blas
 {start}
-from isa_ros.config.default_actuator import default_actuator, DEFAULT_TIMING
+from isa_ros.config.runs.default_actuator import default_actuator, DEFAULT_TIMING
 from isa_ros.actuator.actuator import SmartActuator
 actuator = SmartActuator(default_actuator('isa_v5', 'ram'), DEFAULT_TIMING)
 for _ in range(5):

@@ -6,9 +6,9 @@ from pathlib import Path
 import re
 
 from isa_ros.actuator.sheet import ActuatorSheet
-from isa_ros.config.catalogue import actuator_model, model_names
-from isa_ros.config.parameter_sets import build
-from isa_ros.config.sections import merge, Section
+from isa_ros.config.models.catalogue import actuator_model, model_names
+from isa_ros.config.text.parameter_sets import build
+from isa_ros.config.text.sections import merge, Section
 from isa_ros.plant.coil import circuit
 from isa_ros.plant.valve_record import flow_slope
 from isa_ros.reu.lead_lag import lead_lag_record, LeadLag

@@ -3,7 +3,7 @@
 from pathlib import Path
 from types import ModuleType
 
-from isa_ros.config.fault_catalogue import fault_catalogue
+from isa_ros.config.models.fault_catalogue import fault_catalogue
 from isa_ros.examples import canopen_master, ethercat_master
 import pytest
 from scripts import write_bus_faults

@@ -5,7 +5,7 @@ import re
 
 from isa_ros.actuator.scales import SCALES
 from isa_ros.config.paths import CONFIG, find
-from isa_ros.config.run_file import load_run
+from isa_ros.config.runs.run_file import load_run
 from isa_ros.plant.valve_sheets import PointsFlow
 import pytest
 

@@ -4,7 +4,7 @@ from pathlib import Path
 import re
 
 from isa_ros.config.paths import CONFIG, find
-from isa_ros.config.run_file import load_run
+from isa_ros.config.runs.run_file import load_run
 from isa_ros.core.conditions import REACTIONS
 from scripts import write_protection
 

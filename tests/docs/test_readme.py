@@ -6,9 +6,9 @@ import re
 from typing import get_args
 
 from isa_ros.config.paths import CONFIG, find, SCENARIOS
-from isa_ros.config.recording import RecordConfig
-from isa_ros.config.run_config import RunConfig
-from isa_ros.config.run_file import load_run
+from isa_ros.config.runs.recording import RecordConfig
+from isa_ros.config.runs.run_config import RunConfig
+from isa_ros.config.runs.run_file import load_run
 from isa_ros.controller import Controller, Setpoint, State
 from isa_ros.errors import ConfigError
 from isa_ros.run.local_run import LocalRun

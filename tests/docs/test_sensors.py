@@ -4,7 +4,7 @@ from dataclasses import fields
 from pathlib import Path
 import re
 
-from isa_ros.config.run_file import load_run
+from isa_ros.config.runs.run_file import load_run
 from isa_ros.plant.channels import CHANNELS, LINE, PositionChannel
 from isa_ros.surroundings.leg.inertial import LINKS
 from tests.sheets import actuator_sheet

@@ -9,7 +9,7 @@ import struct
 
 import isa_ros
 from isa_ros.core.signals import COMMAND
-from isa_ros.fieldbus.devices import devices_of
+from isa_ros.fieldbus.device.devices import devices_of
 import numpy as np
 
 FORMATS = {'BOOLEAN': '?', 'INTEGER8': 'b', 'INTEGER16': 'h', 'INTEGER32': 'i', 'UNSIGNED8': 'B',

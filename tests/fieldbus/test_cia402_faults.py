@@ -1,8 +1,8 @@
 """Faults of a CiA 402 drive in front of a real actuator: trips, lost bus, following error."""
 
 from isa_ros.core.conditions import BITS
-from isa_ros.fieldbus.abort import OUT_OF_RANGE, SdoAbort
-from isa_ros.fieldbus.faults import BUS_LOST, CONDITION_CODES, FOLLOWING_ERROR
+from isa_ros.fieldbus.device.abort import OUT_OF_RANGE, SdoAbort
+from isa_ros.fieldbus.device.faults import BUS_LOST, CONDITION_CODES, FOLLOWING_ERROR
 import numpy as np
 import pytest
 

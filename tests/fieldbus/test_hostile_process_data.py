@@ -7,9 +7,9 @@ import isa_ros
 from isa_ros.actuator.setpoint_range import SetpointRange
 from isa_ros.core.signals import COMMAND, EVERY_KIND, SAMPLE
 from isa_ros.errors import SetpointError
-from isa_ros.fieldbus.abort import SdoAbort
-from isa_ros.fieldbus.devices import devices_of, PROFILES
-from isa_ros.fieldbus.setpoints import Limiter
+from isa_ros.fieldbus.device.abort import SdoAbort
+from isa_ros.fieldbus.device.devices import devices_of, PROFILES
+from isa_ros.fieldbus.device.setpoints import Limiter
 import numpy as np
 import pytest
 

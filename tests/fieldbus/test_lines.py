@@ -6,7 +6,7 @@ from pathlib import Path
 import isa_ros
 from isa_ros.config.paths import CONFIG, find
 from isa_ros.errors import ConfigError
-from isa_ros.fieldbus.devices import devices_of
+from isa_ros.fieldbus.device.devices import devices_of
 from isa_ros.fieldbus.lines import refuse_unusable
 from isa_ros.fieldbus.request import BusRequest, CANOPEN, MIT, SERIAL
 from isa_ros.run.options import Request

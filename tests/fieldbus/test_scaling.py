@@ -5,7 +5,7 @@ import struct
 from hypothesis import given, settings, strategies as st
 import isa_ros
 from isa_ros.core.signals import COMMAND, SAMPLE
-from isa_ros.fieldbus.devices import devices_of
+from isa_ros.fieldbus.device.devices import devices_of
 import numpy as np
 import pytest
 

@@ -8,7 +8,7 @@ import struct
 from isa_ros.bag.reader import Bag
 from isa_ros.config.paths import CONFIG, find, SCENARIOS
 from isa_ros.errors import ConfigError
-from isa_ros.fieldbus.devices import devices_of
+from isa_ros.fieldbus.device.devices import devices_of
 from isa_ros.fieldbus.request import BusRequest, ETHERCAT, REAL_TIME
 from isa_ros.fieldbus.session import BusRun, prepare_bus
 from isa_ros.replay.replay import recorded_events, recorded_inputs, replay

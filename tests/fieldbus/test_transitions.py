@@ -1,10 +1,11 @@
 """A master takes a real actuator through every transition of both profiles."""
 
 import isa_ros
-from isa_ros.fieldbus import cia402_states, cia408_states
-from isa_ros.fieldbus.cia402 import Drive402
-from isa_ros.fieldbus.cia408 import Drive408
-from isa_ros.fieldbus.devices import devices_of
+from isa_ros.fieldbus.device import cia402_states
+from isa_ros.fieldbus.device import cia408_states
+from isa_ros.fieldbus.device.cia402 import Drive402
+from isa_ros.fieldbus.device.cia408 import Drive408
+from isa_ros.fieldbus.device.devices import devices_of
 import pytest
 
 from .rig import Master, Rig

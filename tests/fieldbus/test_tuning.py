@@ -4,8 +4,8 @@ import struct
 
 import isa_ros
 from isa_ros.actuator.tunable import tunables
-from isa_ros.fieldbus import abort
-from isa_ros.fieldbus.abort import SdoAbort
+from isa_ros.fieldbus.device import abort
+from isa_ros.fieldbus.device.abort import SdoAbort
 import pytest
 
 from .rig import Master, Rig

@@ -3,9 +3,9 @@
 from collections.abc import Callable, Iterable, Mapping, Sequence
 import struct
 
-from isa_ros.config.run_config import RunConfig
+from isa_ros.config.runs.run_config import RunConfig
 from isa_ros.core.signals import HAS_ENABLE, HAS_SETPOINT
-from isa_ros.fieldbus.device import BusDevice
+from isa_ros.fieldbus.device.bus_device import BusDevice
 import numpy as np
 
 OUTPUT = struct.Struct('<Hi')     # control word; position, um | urad

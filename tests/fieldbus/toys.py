@@ -2,10 +2,10 @@
 
 import struct
 
-from isa_ros.fieldbus import abort
-from isa_ros.fieldbus.abort import SdoAbort
-from isa_ros.fieldbus.device import Emergency, Identity, VENDOR
-from isa_ros.fieldbus.objects import DataType, Entry, Kind, Object, ObjectTable, Value
+from isa_ros.fieldbus.device import abort
+from isa_ros.fieldbus.device.abort import SdoAbort
+from isa_ros.fieldbus.device.bus_device import Emergency, Identity, VENDOR
+from isa_ros.fieldbus.device.objects import DataType, Entry, Kind, Object, ObjectTable, Value
 import numpy as np
 
 LONG_TEXT = ''.join(chr(33 + k % 90) for k in range(700))

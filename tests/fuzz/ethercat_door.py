@@ -5,8 +5,8 @@ import random
 import struct
 
 import isa_ros
-from isa_ros.fieldbus.device import Emergency
-from isa_ros.fieldbus.devices import devices_of
+from isa_ros.fieldbus.device.bus_device import Emergency
+from isa_ros.fieldbus.device.devices import devices_of
 from isa_ros.fieldbus.ethercat.datagrams import LONGEST_FRAME
 from tests.fieldbus.ethercat.raw_master import (
     APRD, APWR, at, BRD, BWR, FPRD, frame_of, FRMW, INIT, LRD, LRW, LWR, OP, PREOP, RawMaster,

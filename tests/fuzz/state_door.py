@@ -11,7 +11,7 @@ import json
 import random
 from typing import Any
 
-from isa_ros.config.run_config import RunConfig
+from isa_ros.config.runs.run_config import RunConfig
 from isa_ros.core.saved_state import RunState, sealed
 from isa_ros.core.signals import SAMPLE
 from isa_ros.scenario.scenario import idle

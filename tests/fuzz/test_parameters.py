@@ -4,7 +4,7 @@ import math
 import random
 from types import SimpleNamespace
 
-from isa_ros.config.default_actuator import default_actuator, DEFAULT_TIMING
+from isa_ros.config.runs.default_actuator import default_actuator, DEFAULT_TIMING
 from isa_ros.nodes.actuator.node import ActuatorNode, Setup
 from isa_ros.nodes.coordinator.services import RunServices
 from isa_ros.nodes.middleware import parameter_services

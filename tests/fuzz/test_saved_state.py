@@ -3,7 +3,7 @@
 from collections.abc import Callable
 
 from isa_ros.config.paths import CONFIG, find
-from isa_ros.config.run_file import load_run
+from isa_ros.config.runs.run_file import load_run
 from isa_ros.core import saved_state
 from isa_ros.core.saved_state import RunState
 import pytest

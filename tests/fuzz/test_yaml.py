@@ -1,6 +1,8 @@
 """Altered run files, scenarios and models are read or refused in one line."""
 
-from isa_ros.config import parameter_sets, run_file, schema
+from isa_ros.config.runs import run_file
+from isa_ros.config.text import parameter_sets
+from isa_ros.config.text import schema
 from isa_ros.core import parameter
 import pytest
 from tests.fuzz.property import Broken

@@ -13,7 +13,7 @@ from pathlib import Path
 import struct
 
 from isa_ros.config.paths import CONFIG, SCENARIOS, shipped
-from isa_ros.config.run_file import load_run
+from isa_ros.config.runs.run_file import load_run
 from isa_ros.errors import ConfigError
 from isa_ros.run.local_run import inputs_of, LocalRun
 from isa_ros.scenario.scenario import idle, load_scenario, Scenario

@@ -12,7 +12,7 @@ ROOT = Path(__file__).parents[2]
 PROGRAM = """
 import hashlib, json
 from isa_ros.config.paths import CONFIG, SCENARIOS, shipped
-from isa_ros.config.run_file import load_run
+from isa_ros.config.runs.run_file import load_run
 from isa_ros.scenario.scenario import load_scenario
 from tests.golden.message_digests import digests
 run = load_run(shipped(CONFIG)['leg.yaml'])

@@ -5,7 +5,7 @@ import subprocess
 import sys
 
 from isa_ros.bag.reader import Bag
-from isa_ros.config.run_config import RunConfig
+from isa_ros.config.runs.run_config import RunConfig
 import pytest
 
 pytest_plugins = ['isa_ros.testing']

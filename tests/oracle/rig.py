@@ -5,7 +5,7 @@ import math
 
 from isa_ros.actuator.actuator import SmartActuator, Timing
 from isa_ros.actuator.sheet import ActuatorSheet
-from isa_ros.config.run_config import ActuatorConfig
+from isa_ros.config.runs.run_config import ActuatorConfig
 from isa_ros.core.signals import LOAD_PORT, LOAD_REPLY
 from isa_ros.surroundings.leg.leg import Leg, Pose
 from isa_ros.surroundings.leg.sheet import LegSheet

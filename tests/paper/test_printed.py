@@ -1,8 +1,8 @@
 """The paper as data: spot checks of printed values, and a strict loader."""
 
 from isa_ros.cli.main import main
-from isa_ros.config.sections import Place
-from isa_ros.config.yaml_text import parse
+from isa_ros.config.text.sections import Place
+from isa_ros.config.text.yaml_text import parse
 from isa_ros.errors import ConfigError
 from isa_ros.paper.printed import (
     cell, Printed, read_statements, read_tables, statement, statements, tables)

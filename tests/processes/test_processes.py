@@ -8,7 +8,7 @@ import signal
 import subprocess
 import time
 
-from isa_ros.config.run_file import load_run
+from isa_ros.config.runs.run_file import load_run
 from isa_ros.errors import RunError
 from isa_ros.processes import processes
 from isa_ros.processes.processes import actuator_processes, Children, Process, run_processes

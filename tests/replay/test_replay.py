@@ -6,7 +6,7 @@ import shutil
 from isa_ros.bag.reader import Bag
 from isa_ros.bag.writer import BagWriter
 from isa_ros.cli.main import main
-from isa_ros.config.run_config import RunConfig
+from isa_ros.config.runs.run_config import RunConfig
 from isa_ros.errors import BagError
 from isa_ros.replay.replay import recorded_inputs, replay, Rerun
 from msg_adapters import event

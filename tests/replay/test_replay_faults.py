@@ -5,11 +5,11 @@ import random
 
 from isa_ros.bag.reader import Bag
 from isa_ros.bag.writer import BagWriter
-from isa_ros.config.fault_catalogue import ACTUATOR, fault_catalogue
+from isa_ros.config.models.fault_catalogue import ACTUATOR, fault_catalogue
 from isa_ros.config.paths import CONFIG, find, SCENARIOS
-from isa_ros.config.run_file import load_run
-from isa_ros.config.supplies import SupplyConfig
-from isa_ros.config.yaml_text import Tree
+from isa_ros.config.runs.run_file import load_run
+from isa_ros.config.runs.supplies import SupplyConfig
+from isa_ros.config.text.yaml_text import Tree
 from isa_ros.replay.replay import recorded_inputs, Rerun
 from isa_ros.scenario.scenario import idle, load_scenario, Scenario
 from isa_ros.scripting.result import Result, simulated

@@ -6,7 +6,7 @@ from isa_ros.analysis.signals.traces import read_traces
 from isa_ros.bag.reader import Bag
 from isa_ros.bag.writer import BagWriter
 from isa_ros.cli.main import main
-from isa_ros.config.run_config import RunConfig
+from isa_ros.config.runs.run_config import RunConfig
 from isa_ros.core.topic import Topic
 from isa_ros.replay.replay import recorded_inputs, replay, Rerun
 from isa_ros.run.local_run import Inputs, LocalRun

@@ -5,7 +5,7 @@ import re
 import signal
 
 from isa_ros.bag.reader import Bag
-from isa_ros.config.run_config import RunConfig
+from isa_ros.config.runs.run_config import RunConfig
 from isa_ros.nodes.bringup import bringup as bring_up
 from isa_ros.replay.replay import replay
 from isa_ros.run.options import Request

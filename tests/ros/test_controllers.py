@@ -5,7 +5,7 @@ from pathlib import Path
 import signal
 
 from isa_ros.bag.reader import Bag
-from isa_ros.config.run_file import load_run
+from isa_ros.config.runs.run_file import load_run
 from isa_ros.controller import Controller
 from isa_ros.examples.sway import Sway
 from isa_ros.replay.replay import replay

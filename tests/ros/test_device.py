@@ -5,7 +5,7 @@ import time
 
 from diagnostic_msgs.msg import DiagnosticStatus
 from isa_ros.bag.reader import Bag
-from isa_ros.config.default_actuator import default_actuator, DEFAULT_TIMING
+from isa_ros.config.runs.default_actuator import default_actuator, DEFAULT_TIMING
 from isa_ros.nodes.actuator.node import ActuatorNode, Setup
 from isa_ros.nodes.middleware.qos import KEPT
 from isa_ros.replay.replay import replay

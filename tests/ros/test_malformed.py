@@ -1,6 +1,6 @@
 """Requests and messages that no tool sends: each is answered or discarded, and the run goes on."""
 
-from isa_ros.config.default_actuator import default_actuator, DEFAULT_TIMING
+from isa_ros.config.runs.default_actuator import default_actuator, DEFAULT_TIMING
 from isa_ros.nodes.actuator.node import ActuatorNode, Setup
 from isa_ros.nodes.middleware import servers
 import pytest

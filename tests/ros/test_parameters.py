@@ -6,7 +6,7 @@ from typing import Any
 
 from isa_ros.bag.reader import Bag
 from isa_ros.bag.writer import BagWriter
-from isa_ros.config.default_actuator import default_actuator, DEFAULT_TIMING
+from isa_ros.config.runs.default_actuator import default_actuator, DEFAULT_TIMING
 from isa_ros.core.signals import START
 from isa_ros.nodes.actuator.node import ActuatorNode, Setup
 from isa_ros.replay.replay import replay, Rerun

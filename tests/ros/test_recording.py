@@ -6,8 +6,8 @@ import signal
 
 from isa_ros.bag.reader import Bag
 from isa_ros.cli.main import main
-from isa_ros.config.recording import Storage
-from isa_ros.config.run_config import RunConfig
+from isa_ros.config.runs.recording import Storage
+from isa_ros.config.runs.run_config import RunConfig
 import pytest
 from rosbags.rosbag2 import Reader
 from tests.ros.started import bringup, coordinator, LEG, RIG, wait_for

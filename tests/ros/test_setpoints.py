@@ -7,8 +7,8 @@ import shlex
 import signal
 
 from isa_ros.bag.reader import Bag
-from isa_ros.config.catalogue import model_names
-from isa_ros.config.default_actuator import default_actuator, DEFAULT_TIMING
+from isa_ros.config.models.catalogue import model_names
+from isa_ros.config.runs.default_actuator import default_actuator, DEFAULT_TIMING
 from isa_ros.nodes.actuator.alone import ready_text
 from isa_ros.nodes.actuator.node import ActuatorNode, Setup
 from msg_adapters.cdr_reader import decode

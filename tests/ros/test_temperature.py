@@ -1,7 +1,7 @@
 """The temperature of the oil on a topic of the actuator's node."""
 
-from isa_ros.config.default_actuator import default_actuator, DEFAULT_TIMING
-from isa_ros.config.run_config import ActuatorConfig
+from isa_ros.config.runs.default_actuator import default_actuator, DEFAULT_TIMING
+from isa_ros.config.runs.run_config import ActuatorConfig
 from isa_ros.nodes.actuator.node import ActuatorNode, Setup
 import pytest
 from rclpy.node import Node

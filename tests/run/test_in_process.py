@@ -2,7 +2,7 @@
 
 from isa_ros.actuator.group import ActuatorGroup
 from isa_ros.config.assembly import surroundings_of
-from isa_ros.config.default_actuator import default_actuator, DEFAULT_TIMING
+from isa_ros.config.runs.default_actuator import default_actuator, DEFAULT_TIMING
 from isa_ros.core.signals import HAS_SETPOINT, START
 from isa_ros.errors import ConfigError
 from isa_ros.run.exchange import Rows

@@ -6,7 +6,7 @@ import hashlib
 
 import isa_ros
 from isa_ros.bag.reader import Bag, BagMessage
-from isa_ros.config.recording import replay_needs
+from isa_ros.config.runs.recording import replay_needs
 from isa_ros.controller import Controller, Setpoint, State
 from isa_ros.core.timebase import PLANT_STEP_NS
 from isa_ros.replay.replay import replay

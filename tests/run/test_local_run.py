@@ -2,7 +2,7 @@
 
 from dataclasses import replace
 
-from isa_ros.config.recording import RecordConfig
+from isa_ros.config.runs.recording import RecordConfig
 from isa_ros.core.signals import Records
 from isa_ros.run.coordinator import Interrupted
 from isa_ros.run.local_run import Inputs, LocalRun

@@ -5,8 +5,8 @@ from collections.abc import Sequence
 from diagnostic_msgs.msg import DiagnosticStatus
 from isa_ros.config.assembly import group_of, surroundings_of
 from isa_ros.config.paths import CONFIG, find
-from isa_ros.config.run_file import load_run
-from isa_ros.config.supplies import SupplyConfig
+from isa_ros.config.runs.run_file import load_run
+from isa_ros.config.runs.supplies import SupplyConfig
 from isa_ros.core.device import ENABLED, FIELDS, IMPEDANCE
 from isa_ros.core.signals import COMMAND, HAS_ENABLE, HAS_GAINS, HAS_SETPOINT, SAMPLE
 from isa_ros.run import packing

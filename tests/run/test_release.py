@@ -4,8 +4,8 @@ from collections.abc import Sequence
 from dataclasses import replace
 from pathlib import Path
 
-from isa_ros.config.run_config import RunConfig
-from isa_ros.config.run_file import load_run
+from isa_ros.config.runs.run_config import RunConfig
+from isa_ros.config.runs.run_file import load_run
 from isa_ros.core.saved_state import RunState
 from isa_ros.core.signals import COMMAND, Records
 from isa_ros.run.local_run import Inputs, LocalRun

@@ -3,7 +3,7 @@
 from pathlib import Path
 
 from isa_ros.config.paths import CONFIG, find
-from isa_ros.config.run_file import load_run
+from isa_ros.config.runs.run_file import load_run
 from isa_ros.core.saved_state import RunState
 from isa_ros.errors import BagError, ConfigError
 from isa_ros.run.options import Request

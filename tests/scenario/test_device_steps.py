@@ -3,7 +3,7 @@
 from dataclasses import replace
 
 from isa_ros.config.paths import CONFIG, find
-from isa_ros.config.run_file import load_run
+from isa_ros.config.runs.run_file import load_run
 from isa_ros.core.device import CURRENT, DISABLED, ENABLED, FORCE, IMPEDANCE, QUICK_STOP
 from isa_ros.errors import ConfigError
 from isa_ros.scenario.scenario import idle, scenario_of

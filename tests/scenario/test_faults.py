@@ -4,10 +4,10 @@ from collections.abc import Mapping
 from dataclasses import replace
 from typing import Any
 
-from isa_ros.config.fault_catalogue import ACTUATOR, fault_catalogue, SUPPLY
-from isa_ros.config.run_config import RunConfig
-from isa_ros.config.sections import Place
-from isa_ros.config.supplies import SupplyConfig
+from isa_ros.config.models.fault_catalogue import ACTUATOR, fault_catalogue, SUPPLY
+from isa_ros.config.runs.run_config import RunConfig
+from isa_ros.config.runs.supplies import SupplyConfig
+from isa_ros.config.text.sections import Place
 from isa_ros.core.timebase import NS_PER_SECOND
 from isa_ros.errors import ConfigError
 from isa_ros.scenario.faults import Fault, read_faults, timetable

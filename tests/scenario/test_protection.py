@@ -1,7 +1,7 @@
 """No shipped scenario trips, and none of them makes a sound sensor implausible."""
 
 from isa_ros.config.paths import CONFIG, find, SCENARIOS
-from isa_ros.config.run_file import load_run
+from isa_ros.config.runs.run_file import load_run
 from isa_ros.core.conditions import BITS
 from isa_ros.scenario.scenario import load_scenario
 from isa_ros.simulation import Simulation

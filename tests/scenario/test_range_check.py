@@ -2,7 +2,7 @@
 
 from dataclasses import replace
 
-from isa_ros.config.run_config import RunConfig
+from isa_ros.config.runs.run_config import RunConfig
 from isa_ros.core.signals import COMMAND
 from isa_ros.errors import ConfigError
 from isa_ros.scenario.scenario import Scenario, scenario_of

@@ -3,8 +3,8 @@
 import math
 from pathlib import Path
 
-from isa_ros.config.run_config import RunConfig
-from isa_ros.config.run_file import load_run
+from isa_ros.config.runs.run_config import RunConfig
+from isa_ros.config.runs.run_file import load_run
 from isa_ros.core.signals import COMMAND, HAS_ENABLE, HAS_SETPOINT
 from isa_ros.errors import ConfigError
 from isa_ros.loads.sheets import Blocked

@@ -3,9 +3,9 @@
 from pathlib import Path
 
 from isa_ros.actuator.actuator import SmartActuator, Timing
-from isa_ros.config.run_config import ActuatorConfig, RunConfig
-from isa_ros.config.run_file import load_run
-from isa_ros.config.sections import Place
+from isa_ros.config.runs.run_config import ActuatorConfig, RunConfig
+from isa_ros.config.runs.run_file import load_run
+from isa_ros.config.text.sections import Place
 from isa_ros.core.signals import COMMAND
 from isa_ros.errors import ConfigError
 from isa_ros.scenario.scenario import load_scenario

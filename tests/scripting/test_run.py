@@ -5,7 +5,7 @@ import sys
 
 import isa_ros
 from isa_ros.config.paths import CONFIG, find
-from isa_ros.config.yaml_text import read
+from isa_ros.config.text.yaml_text import read
 from isa_ros.controller import Controller, Setpoint
 from isa_ros.errors import ConfigError, IsaError
 from isa_ros.run.local_run import Inputs, LocalRun

@@ -1,7 +1,7 @@
 """Surroundings of a run whose actuators stand still."""
 
 from isa_ros.config.assembly import surroundings_of
-from isa_ros.config.run_config import RunConfig
+from isa_ros.config.runs.run_config import RunConfig
 from isa_ros.core.signals import LOAD_PORT, LOAD_REPLY
 from isa_ros.surroundings.surroundings import Surroundings
 import numpy as np

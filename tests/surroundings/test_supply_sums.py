@@ -5,7 +5,7 @@ from dataclasses import replace
 from functools import cache
 from pathlib import Path
 
-from isa_ros.config.run_file import load_run
+from isa_ros.config.runs.run_file import load_run
 from isa_ros.core.signals import Records
 from isa_ros.run.local_run import Inputs, LocalRun
 from isa_ros.surroundings import supply

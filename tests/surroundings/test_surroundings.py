@@ -3,11 +3,11 @@
 from dataclasses import replace
 
 from isa_ros.config.assembly import group_of, surroundings_of
-from isa_ros.config.default_actuator import default_actuator
 from isa_ros.config.paths import CONFIG, find
-from isa_ros.config.run_config import RunConfig
-from isa_ros.config.run_file import load_run
-from isa_ros.config.supplies import SupplyConfig
+from isa_ros.config.runs.default_actuator import default_actuator
+from isa_ros.config.runs.run_config import RunConfig
+from isa_ros.config.runs.run_file import load_run
+from isa_ros.config.runs.supplies import SupplyConfig
 from isa_ros.core.signals import LOAD_PORT, LOAD_REPLY, START
 from isa_ros.errors import ConfigError, ParameterError, RunError, SimulationDiverged
 from isa_ros.plant.plant import plant_record

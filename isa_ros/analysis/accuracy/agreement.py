@@ -13,10 +13,10 @@ import math
 
 from isa_ros.actuator import body as kernels
 from isa_ros.actuator.sheet import actuator_record
-from isa_ros.config.catalogue import actuator_model
-from isa_ros.config.default_actuator import default_actuator
-from isa_ros.config.own_load import own_load
-from isa_ros.config.sections import Place
+from isa_ros.config.models.catalogue import actuator_model
+from isa_ros.config.models.own_load import own_load
+from isa_ros.config.runs.default_actuator import default_actuator
+from isa_ros.config.text.sections import Place
 from isa_ros.core.kernel import kernel
 from isa_ros.core.timebase import PLANT_STEP
 from isa_ros.loads.sheets import local_port, own_record

@@ -14,9 +14,9 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 import sys
 
-from isa_ros.config.leg_config import LegConfig
 from isa_ros.config.paths import find, SCENARIOS
-from isa_ros.config.yaml_text import read, Tree
+from isa_ros.config.runs.leg_config import LegConfig
+from isa_ros.config.text.yaml_text import read, Tree
 from isa_ros.core.kernel import kernel
 from isa_ros.core.signals import COMMAND, LOAD_PORT
 from isa_ros.core.timebase import FORCE_WINDOWS, NS_PER_SECOND

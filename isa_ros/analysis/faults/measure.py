@@ -12,9 +12,10 @@ from typing import NamedTuple
 
 from isa_ros.analysis.faults.rig import (
     BEGIN_S, CLEAR_S, CONFIG, DURATION_S, END_S, LINK, MOTION, STEP_S)
-from isa_ros.config.fault_catalogue import ACTUATOR, fault_catalogue, named_fault, NamedFault
-from isa_ros.config.sections import Place
-from isa_ros.config.yaml_text import Tree
+from isa_ros.config.models.fault_catalogue import (
+    ACTUATOR, fault_catalogue, named_fault, NamedFault)
+from isa_ros.config.text.sections import Place
+from isa_ros.config.text.yaml_text import Tree
 from isa_ros.core.conditions import BITS
 from isa_ros.core.device import STATES
 from isa_ros.core.signals import (

@@ -6,7 +6,7 @@ from typing import Any
 
 from isa_ros.analysis.faults.measure import Noticed, Outcome, SOUND, VISIBLE, Visible
 from isa_ros.analysis.faults.rig import BEGIN_S, CLEAR_S, END_S, LINK
-from isa_ros.config.fault_catalogue import fault_catalogue, NamedFault
+from isa_ros.config.models.fault_catalogue import fault_catalogue, NamedFault
 from isa_ros.text.json_file import write_tree
 from isa_ros.text.number import digits
 from isa_ros.text.page import Page

@@ -1,6 +1,6 @@
 """The rig into which faults are injected: an ISA v5 that moves a mass, on a pump."""
 
-from isa_ros.config.yaml_text import Tree
+from isa_ros.config.text.yaml_text import Tree
 
 STEP_S = 1e-3
 BEGIN_S, END_S, DURATION_S = 0.5, 1.0, 2.2

@@ -9,7 +9,7 @@ from collections.abc import Callable, Mapping
 from isa_ros.analysis.report.figures import stack
 from isa_ros.analysis.signals.frequency import bandwidth, chirp_response, Response
 from isa_ros.analysis.signals.signals import Signals
-from isa_ros.config.run_config import ActuatorConfig, RunConfig
+from isa_ros.config.runs.run_config import ActuatorConfig, RunConfig
 from isa_ros.core.units import LPM, MILLI, MPA
 from isa_ros.errors import ConfigError
 from isa_ros.plant.plant import plant_record

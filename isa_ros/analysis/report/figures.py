@@ -3,7 +3,7 @@
 from collections.abc import Sequence
 
 from isa_ros.analysis.signals.signals import Signal, Signals
-from isa_ros.config.run_config import ActuatorConfig
+from isa_ros.config.runs.run_config import ActuatorConfig
 from isa_ros.core.units import MPA
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure

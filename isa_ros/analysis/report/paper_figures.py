@@ -11,7 +11,7 @@ from typing import NamedTuple
 from isa_ros.analysis.report.characteristics import RESPONSES
 from isa_ros.analysis.report.figures import finish, stack
 from isa_ros.analysis.signals.signals import Signal, Signals
-from isa_ros.config.run_config import ActuatorConfig, RunConfig
+from isa_ros.config.runs.run_config import ActuatorConfig, RunConfig
 from isa_ros.core.suggest import alternatives
 from isa_ros.errors import ConfigError
 from isa_ros.reu.wiring import Off

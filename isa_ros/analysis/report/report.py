@@ -11,8 +11,8 @@ from isa_ros.analysis.signals.accounts import recorded_accounts
 from isa_ros.analysis.signals.signals import read_signals, Signals
 from isa_ros.bag.provenance import SCENARIO
 from isa_ros.bag.reader import Bag
-from isa_ros.config.sections import Place
-from isa_ros.config.yaml_text import parse
+from isa_ros.config.text.sections import Place
+from isa_ros.config.text.yaml_text import parse
 from isa_ros.core.units import MPA
 from isa_ros.errors import BagError
 from isa_ros.scenario.scenario import figure_of

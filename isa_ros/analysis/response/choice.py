@@ -1,22 +1,22 @@
 """
 What a command measures: an actuator of a model or of a run file, with other values.
 
-A model is measured in the run of `isa_ros.config.model_run`. Keys of other values are those of the
-run file, or of the measured actuator.
+A model is measured in the run of `isa_ros.config.runs.model_run`. Keys of other values are those
+of the run file, or of the measured actuator.
 """
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import Any, NamedTuple
 
-from isa_ros.config.catalogue import model_names
-from isa_ros.config.changes import changed
-from isa_ros.config.model_run import full_key, LOAD, model_run
+from isa_ros.config.models.catalogue import model_names
 from isa_ros.config.paths import CONFIG, find
-from isa_ros.config.run_config import RunConfig
-from isa_ros.config.run_file import run_of
-from isa_ros.config.sections import Place
-from isa_ros.config.yaml_text import read, Tree
+from isa_ros.config.runs.model_run import full_key, LOAD, model_run
+from isa_ros.config.runs.run_config import RunConfig
+from isa_ros.config.runs.run_file import run_of
+from isa_ros.config.text.changes import changed
+from isa_ros.config.text.sections import Place
+from isa_ros.config.text.yaml_text import read, Tree
 from isa_ros.errors import ConfigError
 
 

@@ -9,12 +9,12 @@ from isa_ros.actuator.group import ActuatorGroup
 from isa_ros.analysis.response.actuator_trace import RATE_HZ, setpoints, TIMING, Trace, traced
 from isa_ros.analysis.response.choice import Choice, Chosen, chosen
 from isa_ros.analysis.response.loops import Loop, loop_of, Unit, units_of
-from isa_ros.config.catalogue import actuator_model
-from isa_ros.config.changes import changed
-from isa_ros.config.own_load import own_load
-from isa_ros.config.parameter_sets import kind_of
-from isa_ros.config.run_config import ActuatorConfig, RunConfig
-from isa_ros.config.sections import Place
+from isa_ros.config.models.catalogue import actuator_model
+from isa_ros.config.models.own_load import own_load
+from isa_ros.config.runs.run_config import ActuatorConfig, RunConfig
+from isa_ros.config.text.changes import changed
+from isa_ros.config.text.parameter_sets import kind_of
+from isa_ros.config.text.sections import Place
 from isa_ros.core.signals import LOAD_PORT, Records, START
 from isa_ros.core.units import MPA
 from isa_ros.errors import ConfigError

@@ -11,7 +11,7 @@ import re
 from typing import NamedTuple
 
 from isa_ros.analysis.response.rig import Choice, Rig, rig
-from isa_ros.config.changes import Values, values_of
+from isa_ros.config.text.changes import Values, values_of
 from isa_ros.errors import ConfigError
 
 _NEXT_KEY = re.compile(r',(?=[\w.\[\]]+=)')     # between two KEY=VALUE

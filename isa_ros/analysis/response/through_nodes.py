@@ -19,9 +19,9 @@ from isa_ros.analysis.response.loops import Loop, PLANT
 from isa_ros.analysis.response.rig import REST_S, Rig
 from isa_ros.analysis.response.sweep import Answer, chirp_band, sections, Sweep, windows
 from isa_ros.analysis.signals.signals import AT_EVERY_TICK, read_signals
-from isa_ros.config.parameter_sets import as_tree
-from isa_ros.config.run_config import RunConfig
-from isa_ros.config.yaml_text import dump, Tree
+from isa_ros.config.runs.run_config import RunConfig
+from isa_ros.config.text.parameter_sets import as_tree
+from isa_ros.config.text.yaml_text import dump, Tree
 from isa_ros.core.timebase import NS_PER_SECOND
 from isa_ros.core.units import MILLI
 from isa_ros.errors import ConfigError

@@ -5,7 +5,7 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 
 from isa_ros.analysis.signals.signals import Signals
-from isa_ros.config.run_config import ActuatorConfig
+from isa_ros.config.runs.run_config import ActuatorConfig
 from isa_ros.core.units import MPA
 from isa_ros.errors import BagError
 from isa_ros.plant.plant import plant_record

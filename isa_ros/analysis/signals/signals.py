@@ -9,7 +9,7 @@ from pathlib import Path
 from typing import NamedTuple
 
 from isa_ros.analysis.signals.traces import read_traces, seconds, Trace
-from isa_ros.config.run_config import RunConfig
+from isa_ros.config.runs.run_config import RunConfig
 from isa_ros.core.atmosphere import ATMOSPHERE
 from isa_ros.core.signals import SAMPLE_UNITS
 from isa_ros.core.units import of_coordinate

@@ -5,7 +5,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from isa_ros.bag.reader import Bag
-from isa_ros.config.run_config import RunConfig
+from isa_ros.config.runs.run_config import RunConfig
 from isa_ros.errors import BagError
 from msg_adapters import applied_parameters, device, diagnostics, event
 from msg_adapters.cdr_reader import message_class

@@ -22,8 +22,8 @@ from isa_ros.analysis.response.sweep import Sweep
 from isa_ros.analysis.signals.ripple import ripple, ripple_frequency
 from isa_ros.analysis.signals.step_response import step_figures
 from isa_ros.analysis.studies.studies import Case, Study
-from isa_ros.config.changed_parameters import Values, with_parameters
-from isa_ros.config.sections import Place
+from isa_ros.config.runs.changed_parameters import Values, with_parameters
+from isa_ros.config.text.sections import Place
 from isa_ros.core.timebase import NS_PER_SECOND
 from isa_ros.core.units import MILLI
 from isa_ros.scenario.trot import smooth_step

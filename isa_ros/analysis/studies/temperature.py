@@ -13,7 +13,7 @@ from dataclasses import dataclass
 import math
 
 from isa_ros.analysis.signals.signals import Signal, Signals, signals_of
-from isa_ros.config.run_config import RunConfig
+from isa_ros.config.runs.run_config import RunConfig
 from isa_ros.core.units import MPA
 from isa_ros.plant.chambers import oil_stiffness
 from isa_ros.plant.oil_properties import softness, thickness

@@ -7,8 +7,8 @@ from typing import Any
 
 from isa_ros.actuator.sheet import ActuatorSheet
 from isa_ros.analysis.studies.temperature import Effects, leakage_at_null, Result, RIG, SCENARIO
-from isa_ros.config.catalogue import actuator_model, model_names
-from isa_ros.config.parameter_sets import build
+from isa_ros.config.models.catalogue import actuator_model, model_names
+from isa_ros.config.text.parameter_sets import build
 from isa_ros.core.units import LPM, MICRO, MPA
 from isa_ros.plant.oil_properties import thickness
 from isa_ros.plant.plant import plant_record

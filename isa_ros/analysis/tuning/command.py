@@ -11,9 +11,9 @@ from isa_ros.analysis.response.loops import units_of
 from isa_ros.analysis.response.rig import Rig, rig_of
 from isa_ros.analysis.tuning.design import TOLERATED_DEG, TOLERATED_SHARE, Wanted
 from isa_ros.analysis.tuning.tune import factors, Reached, STROKES, tune as tuned_block, Tuned
-from isa_ros.config.changes import changed, values_of
-from isa_ros.config.parameter_sets import as_tree
-from isa_ros.config.yaml_text import dump, Tree
+from isa_ros.config.text.changes import changed, values_of
+from isa_ros.config.text.parameter_sets import as_tree
+from isa_ros.config.text.yaml_text import dump, Tree
 from isa_ros.errors import ConfigError
 from isa_ros.reu.schedule import Schedule
 from isa_ros.text.progress import counted

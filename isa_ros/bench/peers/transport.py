@@ -13,7 +13,7 @@ from isa_ros.bench.peers.catalogue import ends, Peer
 from isa_ros.bench.peers.link import Link
 from isa_ros.bench.peers.worker import load_kernels
 from isa_ros.config.assembly import surroundings_of
-from isa_ros.config.run_config import RunConfig
+from isa_ros.config.runs.run_config import RunConfig
 from isa_ros.core.signals import Records
 from isa_ros.errors import RunError
 from isa_ros.processes.stopping import PARENT_VARIABLE, StopRequest

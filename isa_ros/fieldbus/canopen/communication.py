@@ -8,12 +8,13 @@ SYNC are writable while preoperational, and those of a PDO only while it is off,
 
 from collections.abc import Sequence
 
-from isa_ros.fieldbus.abort import OUT_OF_RANGE, READ_ONLY, SdoAbort, WRITE_ONLY, WRONG_STATE
 from isa_ros.fieldbus.canopen.identifiers import (
     EMERGENCY, EXTENDED, INVALID, is_restricted, LARGEST, RECEIVE, SDO_ANSWER, SDO_REQUEST, SYNC,
     TRANSMIT)
-from isa_ros.fieldbus.dictionary import refuse_beyond
-from isa_ros.fieldbus.objects import (
+from isa_ros.fieldbus.device.abort import (
+    OUT_OF_RANGE, READ_ONLY, SdoAbort, WRITE_ONLY, WRONG_STATE)
+from isa_ros.fieldbus.device.dictionary import refuse_beyond
+from isa_ros.fieldbus.device.objects import (
     DataType, Entry, Kind, Object, ObjectTable, record_of, Value, variable)
 
 ERROR_REGISTER, ERROR_HISTORY = 0x1001, 0x1003

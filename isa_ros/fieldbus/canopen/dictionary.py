@@ -2,12 +2,12 @@
 
 from collections.abc import Callable
 
-from isa_ros.fieldbus.abort import PDO_TOO_LONG, SdoAbort, UNSUPPORTED_ACCESS
 from isa_ros.fieldbus.canopen.communication import COB_ID, Communication, ERROR_REGISTER
 from isa_ros.fieldbus.canopen.errors import NodeErrors
 from isa_ros.fieldbus.canopen.identifiers import INVALID, MOST_BYTES
-from isa_ros.fieldbus.device import BusDevice
-from isa_ros.fieldbus.process_data import is_mapping
+from isa_ros.fieldbus.device.abort import PDO_TOO_LONG, SdoAbort, UNSUPPORTED_ACCESS
+from isa_ros.fieldbus.device.bus_device import BusDevice
+from isa_ros.fieldbus.device.process_data import is_mapping
 
 _MAPPINGS = 0x200   # indices of each direction, as far behind the parameters
 

@@ -5,7 +5,7 @@ import struct
 
 from isa_ros.fieldbus.canopen.communication import Communication, EMERGENCY_ID, ERRORS_KEPT
 from isa_ros.fieldbus.canopen.identifiers import INVALID, LARGEST
-from isa_ros.fieldbus.device import Emergency
+from isa_ros.fieldbus.device.bus_device import Emergency
 
 # Codes of CiA 301, table 26.
 NO_ERROR = 0x0000

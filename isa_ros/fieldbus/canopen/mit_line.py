@@ -19,7 +19,7 @@ from isa_ros.fieldbus.canopen.mit_frames import ANSWER_BYTES, COMMAND_BYTES, spe
 from isa_ros.fieldbus.canopen.mit_motor import has_impedance, MitMotor
 from isa_ros.fieldbus.canopen.port import CanPort, Frame, monotonic
 from isa_ros.fieldbus.canopen.sdo import SdoServer
-from isa_ros.fieldbus.device import BusDevice
+from isa_ros.fieldbus.device.bus_device import BusDevice
 
 
 def mit_line(

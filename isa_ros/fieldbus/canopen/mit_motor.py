@@ -7,12 +7,12 @@ effort in SI. ``enable`` resets a fault and leads the drive to operation enabled
 present position 0 in the frames only: the encoder is absolute, and objects and bag keep theirs.
 """
 
-from isa_ros.fieldbus.abort import SdoAbort
 from isa_ros.fieldbus.canopen.mit_frames import (
     Answer, answer_frame, command_of, DISABLE, ENABLE, Range, Ranges, SET_ZERO)
-from isa_ros.fieldbus.device import BusDevice
-from isa_ros.fieldbus.manufacturer_area import DAMPING, EFFORT, MIT_RANGES, STIFFNESS
-from isa_ros.fieldbus.objects import Value
+from isa_ros.fieldbus.device.abort import SdoAbort
+from isa_ros.fieldbus.device.bus_device import BusDevice
+from isa_ros.fieldbus.device.manufacturer_area import DAMPING, EFFORT, MIT_RANGES, STIFFNESS
+from isa_ros.fieldbus.device.objects import Value
 
 _CONTROL, _STATUS, _MODE = (0x6040, 0), (0x6041, 0), (0x6060, 0)
 _TARGET_POSITION, _TARGET_VELOCITY = (0x607A, 0), (0x60FF, 0)

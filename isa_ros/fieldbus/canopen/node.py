@@ -23,8 +23,8 @@ from isa_ros.fieldbus.canopen.identifiers import HEARTBEAT, LARGEST, SDO_ANSWER,
 from isa_ros.fieldbus.canopen.pdo import Pdo, ReceivePdo, TransmitPdo
 from isa_ros.fieldbus.canopen.sdo import SdoServer
 from isa_ros.fieldbus.canopen.startup import Startup
-from isa_ros.fieldbus.device import BusDevice
-from isa_ros.fieldbus.manufacturer_area import LAST_REFUSAL
+from isa_ros.fieldbus.device.bus_device import BusDevice
+from isa_ros.fieldbus.device.manufacturer_area import LAST_REFUSAL
 
 Send = Callable[[int, bytes], None]
 Handler = Callable[[bytes], bool]

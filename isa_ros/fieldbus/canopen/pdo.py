@@ -8,7 +8,7 @@ from isa_ros.fieldbus.canopen.capacity import CyclicFrame
 from isa_ros.fieldbus.canopen.communication import (
     COB_ID, Communication, EVENT_TIMER, INHIBIT_TIME, MOST_SYNCS, SYNC_START, TRANSMISSION)
 from isa_ros.fieldbus.canopen.identifiers import INVALID, LARGEST
-from isa_ros.fieldbus.device import BusDevice
+from isa_ros.fieldbus.device.bus_device import BusDevice
 
 _NS_PER_MS = 1_000_000
 _NS_PER_INHIBIT = 100_000

@@ -9,7 +9,7 @@ from dataclasses import dataclass, field
 import struct
 from typing import Protocol
 
-from isa_ros.fieldbus.abort import (
+from isa_ros.fieldbus.device.abort import (
     OUT_OF_MEMORY, SdoAbort, TOGGLE_BIT, TOO_LONG, TOO_SHORT, UNKNOWN_COMMAND)
 
 SIZE = 8                # bytes of every request and answer

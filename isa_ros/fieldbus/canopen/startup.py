@@ -1,8 +1,8 @@
 """The values of a device's objects when the bus was opened, to which a reset returns."""
 
-from isa_ros.fieldbus.abort import SdoAbort
-from isa_ros.fieldbus.device import BusDevice
-from isa_ros.fieldbus.process_data import is_mapping
+from isa_ros.fieldbus.device.abort import SdoAbort
+from isa_ros.fieldbus.device.bus_device import BusDevice
+from isa_ros.fieldbus.device.process_data import is_mapping
 
 _LAST_OF_COMMUNICATION = 0x1FFF
 

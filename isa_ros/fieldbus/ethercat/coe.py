@@ -8,9 +8,9 @@ command (1 byte), index (2), subindex (1) and 4 bytes of data or size.
 from collections.abc import Iterable
 import struct
 
-from isa_ros.fieldbus import abort
-from isa_ros.fieldbus.abort import SdoAbort
-from isa_ros.fieldbus.device import BusDevice, Emergency
+from isa_ros.fieldbus.device import abort
+from isa_ros.fieldbus.device.abort import SdoAbort
+from isa_ros.fieldbus.device.bus_device import BusDevice, Emergency
 from isa_ros.fieldbus.ethercat.sdo_information import answer_information
 from isa_ros.fieldbus.ethercat.slave_mailbox import (
     CAPACITY, MailError, TOO_SHORT, UNSUPPORTED_SERVICE)

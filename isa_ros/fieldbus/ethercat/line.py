@@ -8,7 +8,7 @@ import struct
 import time
 
 from isa_ros.errors import RunError
-from isa_ros.fieldbus.device import BusDevice
+from isa_ros.fieldbus.device.bus_device import BusDevice
 from isa_ros.fieldbus.ethercat.datagrams import Datagrams
 from isa_ros.fieldbus.ethercat.interface import open_interface
 from isa_ros.fieldbus.ethercat.ring import Ring

@@ -8,7 +8,7 @@ was written; by 2 for a write of a datagram that also reads.
 from collections.abc import Sequence
 import struct
 
-from isa_ros.fieldbus.device import BusDevice
+from isa_ros.fieldbus.device.bus_device import BusDevice
 from isa_ros.fieldbus.ethercat.application_layer import State
 from isa_ros.fieldbus.ethercat.clock import SharedClock
 from isa_ros.fieldbus.ethercat.controller import DL_EVENT, irq_of

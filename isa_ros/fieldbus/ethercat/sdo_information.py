@@ -8,10 +8,10 @@ fragments left (2), then the content of the operation.
 from collections.abc import Iterator, Sequence
 import struct
 
-from isa_ros.fieldbus import abort
-from isa_ros.fieldbus.abort import SdoAbort
+from isa_ros.fieldbus.device import abort
+from isa_ros.fieldbus.device.abort import SdoAbort
+from isa_ros.fieldbus.device.objects import Entry, Object, ObjectTable
 from isa_ros.fieldbus.ethercat.slave_mailbox import MailError, TOO_SHORT
-from isa_ros.fieldbus.objects import Entry, Object, ObjectTable
 
 _HEADER = struct.Struct('<BBH')
 _LIST, _LIST_ANSWER, _OBJECT, _OBJECT_ANSWER, _ENTRY, _ENTRY_ANSWER, _ERROR = range(1, 8)

@@ -8,7 +8,7 @@ slave is called, which mailboxes it has, and which sync managers carry its proce
 from collections.abc import Iterable, Sequence
 import struct
 
-from isa_ros.fieldbus.device import BusDevice, RECEIVE_ASSIGNMENT, TRANSMIT_ASSIGNMENT
+from isa_ros.fieldbus.device.bus_device import BusDevice, RECEIVE_ASSIGNMENT, TRANSMIT_ASSIGNMENT
 from isa_ros.fieldbus.ethercat.layout import Area, AREAS
 from isa_ros.fieldbus.ethercat.sync_manager import INPUTS, MAILBOX_IN, MAILBOX_OUT, OUTPUTS
 

@@ -2,7 +2,7 @@
 
 from collections.abc import Callable
 
-from isa_ros.fieldbus.device import BusDevice, RECEIVE_ASSIGNMENT, TRANSMIT_ASSIGNMENT
+from isa_ros.fieldbus.device.bus_device import BusDevice, RECEIVE_ASSIGNMENT, TRANSMIT_ASSIGNMENT
 from isa_ros.fieldbus.ethercat import al_codes
 from isa_ros.fieldbus.ethercat.application_layer import ApplicationLayer, State
 from isa_ros.fieldbus.ethercat.clock import DistributedClock, SharedClock

@@ -11,7 +11,7 @@ from collections.abc import Iterable
 import struct
 from typing import Protocol
 
-from isa_ros.fieldbus.device import Emergency
+from isa_ros.fieldbus.device.bus_device import Emergency
 from isa_ros.fieldbus.ethercat.layout import MAILBOX_LENGTH
 from isa_ros.fieldbus.ethercat.sync_manager import SyncManager
 

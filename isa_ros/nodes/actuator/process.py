@@ -5,12 +5,12 @@ from dataclasses import replace
 import gc
 
 from isa_ros.config.assembly import timing_of
-from isa_ros.config.catalogue import actuator_model, model_names
-from isa_ros.config.changes import changes_of
-from isa_ros.config.default_actuator import default_actuator, default_load, DEFAULT_TIMING
+from isa_ros.config.models.catalogue import actuator_model, model_names
 from isa_ros.config.paths import CONFIG, find, SCENARIOS
-from isa_ros.config.run_config import RunConfig
-from isa_ros.config.run_file import load_run
+from isa_ros.config.runs.default_actuator import default_actuator, default_load, DEFAULT_TIMING
+from isa_ros.config.runs.run_config import RunConfig
+from isa_ros.config.runs.run_file import load_run
+from isa_ros.config.text.changes import changes_of
 from isa_ros.core.without_blas import start_without_blas
 from isa_ros.errors import ConfigError
 from isa_ros.nodes.actuator.alone import run_alone

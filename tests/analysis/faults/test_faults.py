@@ -7,7 +7,7 @@ from isa_ros.analysis.faults import page
 from isa_ros.analysis.faults.measure import MEASURED, Outcome, outcomes, VISIBLE
 from isa_ros.analysis.faults.rig import END_S, STEP_S
 from isa_ros.cli.main import main
-from isa_ros.config.fault_catalogue import fault_catalogue
+from isa_ros.config.models.fault_catalogue import fault_catalogue
 from isa_ros.errors import ConfigError
 import pytest
 

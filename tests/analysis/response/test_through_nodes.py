@@ -5,7 +5,7 @@ from pathlib import Path
 from isa_ros.analysis.response.rig import Choice, rig
 from isa_ros.analysis.response.through_nodes import run_file
 from isa_ros.cli import main as cli
-from isa_ros.config.run_file import load_run
+from isa_ros.config.runs.run_file import load_run
 import pytest
 
 

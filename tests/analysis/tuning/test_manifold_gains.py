@@ -5,9 +5,9 @@ from isa_ros.analysis.response.bode import Bode, bode
 from isa_ros.analysis.response.rig import Choice, rig
 from isa_ros.analysis.response.sweep import Sweep
 from isa_ros.analysis.tuning.tune import STROKES
-from isa_ros.analysis.validation.actuators import SHIPPED
-from isa_ros.analysis.validation.rotary_rig import of_preset, torque_error
-from isa_ros.config.default_actuator import default_actuator
+from isa_ros.config.runs.default_actuator import default_actuator
+from isa_ros.validation.actuators import SHIPPED
+from isa_ros.validation.rotary_rig import of_preset, torque_error
 import numpy as np
 import pytest
 

@@ -10,7 +10,7 @@ from isa_ros.analysis.response.sweep import Sweep
 from isa_ros.analysis.tuning.design import Gains
 from isa_ros.analysis.tuning.tune import factors, NODES, schedule_through, STROKES, with_gains
 from isa_ros.cli import main as cli
-from isa_ros.config.yaml_text import dump
+from isa_ros.config.text.yaml_text import dump
 from isa_ros.reu.block import Pid
 import numpy as np
 import pytest

@@ -17,9 +17,9 @@ import isa_ros
 from isa_ros.core.signals import COMMAND
 from isa_ros.fieldbus.canopen.line import canopen_line
 from isa_ros.fieldbus.canopen.mit_line import mit_line
-from isa_ros.fieldbus.device import BusDevice
-from isa_ros.fieldbus.devices import devices_of
-from isa_ros.fieldbus.eds import eds_text
+from isa_ros.fieldbus.description.eds import eds_text
+from isa_ros.fieldbus.device.bus_device import BusDevice
+from isa_ros.fieldbus.device.devices import devices_of
 from isa_ros.fieldbus.line import Line
 import numpy as np
 from tests.fieldbus.canopen.toy import ToyDrive

@@ -1,7 +1,7 @@
 """What frames take of a bus, against the frames themselves."""
 
 from hypothesis import given, strategies as st
-from isa_ros.config.wires import wire
+from isa_ros.config.models.wires import wire
 from isa_ros.errors import ConfigError
 from isa_ros.fieldbus.canopen.capacity import CyclicFrame, frame_bits, refuse_overfull
 from isa_ros.fieldbus.canopen.line import canopen_line

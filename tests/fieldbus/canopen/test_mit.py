@@ -14,7 +14,7 @@ from isa_ros.fieldbus.canopen.mit_frames import (
     Answer, answer_frame, answer_of, Command, command_frame, command_of, DISABLE, ENABLE, Range,
     Ranges, SET_ZERO, special_frame, special_of)
 from isa_ros.fieldbus.canopen.mit_line import mit_line, MitLine
-from isa_ros.fieldbus.devices import devices_of
+from isa_ros.fieldbus.device.devices import devices_of
 import numpy as np
 import pytest
 from tests.fieldbus.canopen.toy import ToyDrive

@@ -3,8 +3,8 @@
 from collections.abc import Iterator
 
 import isa_ros
-from isa_ros.fieldbus.devices import devices_of
-from isa_ros.fieldbus.manufacturer_area import tunable_keys
+from isa_ros.fieldbus.device.devices import devices_of
+from isa_ros.fieldbus.device.manufacturer_area import tunable_keys
 import pytest
 from tests.fieldbus.canopen.toy import ToyDrive
 from tests.fieldbus.canopen.virtual_bus import (

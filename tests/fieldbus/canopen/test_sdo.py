@@ -1,8 +1,8 @@
 """The SDO server: expedited and segmented transfers, and each abort code."""
 
 from hypothesis import given, strategies as st
-from isa_ros.fieldbus.abort import NO_OBJECT, SdoAbort
 from isa_ros.fieldbus.canopen.sdo import MOST_BYTES, SdoServer
+from isa_ros.fieldbus.device.abort import NO_OBJECT, SdoAbort
 import pytest
 
 NUMBER, TEXT = (0x2000, 1), (0x2001, 0)

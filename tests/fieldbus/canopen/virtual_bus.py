@@ -6,7 +6,7 @@ import uuid
 
 import can
 from isa_ros.fieldbus.canopen.line import canopen_line, CanopenLine
-from isa_ros.fieldbus.device import BusDevice
+from isa_ros.fieldbus.device.bus_device import BusDevice
 
 STEP_NS = 1_000_000
 PREOPERATIONAL, OPERATIONAL, STOPPED = 0x7F, 0x05, 0x04

@@ -2,7 +2,7 @@
 
 import struct
 
-from isa_ros.fieldbus import abort
+from isa_ros.fieldbus.device import abort
 import pytest
 from tests.fieldbus.ethercat.raw_master import PREOP, RawMaster
 

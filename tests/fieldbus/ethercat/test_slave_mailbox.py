@@ -2,7 +2,7 @@
 
 import struct
 
-from isa_ros.fieldbus.device import Emergency
+from isa_ros.fieldbus.device.bus_device import Emergency
 from isa_ros.fieldbus.ethercat.slave_mailbox import MOST_WAITING
 import pytest
 from tests.fieldbus.ethercat.raw_master import PREOP, RawMaster

@@ -10,7 +10,7 @@ from dataclasses import fields
 import random
 
 from isa_ros.config.paths import find, SCENARIOS
-from isa_ros.config.yaml_text import read
+from isa_ros.config.text.yaml_text import read
 from isa_ros.core.parameter import Parameters
 from isa_ros.errors import IsaError, SimulationDiverged
 from isa_ros.scripting.run import load, Run

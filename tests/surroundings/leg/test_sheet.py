@@ -4,7 +4,7 @@ from dataclasses import replace
 import math
 from pathlib import Path
 
-from isa_ros.config.catalogue import leg_names
+from isa_ros.config.models.catalogue import leg_names
 from isa_ros.errors import ParameterError
 from isa_ros.surroundings import linkage
 from isa_ros.surroundings.leg.sheet import body_record, leg_record, linkage_record

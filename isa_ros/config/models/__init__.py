@@ -1,0 +1,1 @@
+"""Models of actuators: their sheets, presets, variants, loads, wires and named faults."""

@@ -1,0 +1,82 @@
+"""The named faults of the device that come with the package, as data."""
+
+from collections.abc import Mapping
+from functools import cache
+from pathlib import Path
+from typing import NamedTuple
+
+from isa_ros.config.text.sections import Place, refuse_unknown, section_at
+from isa_ros.config.text.yaml_text import read
+from isa_ros.core.parameter import check
+from isa_ros.core.suggest import alternatives
+from isa_ros.errors import ConfigError
+
+ACTUATOR, SUPPLY = 'actuator', 'supply'
+KINDS = (ACTUATOR, SUPPLY)
+_FILE = Path(__file__).parents[1] / 'data' / 'faults' / 'device.yaml'
+_NUMBER = {'doc': 'value', 'unit': 'the unit of its key', 'bounds': {}}
+
+
+class NamedFault(NamedTuple):
+    """One fault of the catalogue."""
+
+    name: str
+    of: str
+    """One of `KINDS`."""
+    meaning: str
+    values: Mapping[str, float]
+    """By the keys of `isa params`, in their units."""
+    unseen: str
+    """The reason why it may change no signal; '' for faults that do."""
+    unreported: str
+    """The reason why the device of `isa faults` reports nothing of it; '' for the others."""
+
+
+@cache
+def fault_catalogue() -> Mapping[str, NamedFault]:
+    """Return the faults by name, in the order of the file."""
+    faults: dict[str, NamedFault] = {}
+    for name, tree in read(_FILE).items():
+        place = Place(_FILE.name, name)
+        section = section_at(tree, place)
+        refuse_unknown(section, ('of', 'meaning', 'set', 'unseen', 'unreported'), place)
+        check(str(place / 'of'), section.get('of'), {'names': KINDS})
+        faults[name] = NamedFault(
+            name, str(section['of']), str(section['meaning']),
+            numbers_at(section.get('set'), place / 'set'), str(section.get('unseen', '')),
+            str(section.get('unreported', '')))
+    return faults
+
+
+def named_fault(name: str, place: Place) -> NamedFault:
+    """
+    Return a fault of the catalogue; ``place`` has the name.
+
+    Raises
+    ------
+    ConfigError
+        There is no such fault.
+
+    """
+    known = fault_catalogue()
+    if name not in known:
+        raise ConfigError(f'{place} = {name!r} is unknown; {alternatives(str(name), known)}')
+    return known[name]
+
+
+def numbers_at(value: object, place: Place) -> dict[str, float]:
+    """
+    Return a section of numbers by dotted keys.
+
+    Raises
+    ------
+    ConfigError
+        It is empty or not a section, or a value is not a finite number.
+
+    """
+    section = section_at(value, place)
+    if not section:
+        raise ConfigError(place.has('is empty, must have a key and its value'))
+    for key, number in section.items():
+        check(f'{place}.{key}', number, _NUMBER)
+    return {key: float(number) for key, number in section.items()}  # type: ignore[arg-type]

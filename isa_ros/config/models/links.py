@@ -1,0 +1,63 @@
+"""
+Links of a run file: ``link`` for all actuators, and in an actuator's section for itself.
+
+::
+
+    link: {kind: ethercat, cycle_ms: 1, delay_cycles: 1, watchdog_ms: 10}
+    actuators:
+      kfe: {link: {loss: 0.01}}     # the rest is as above
+"""
+
+from typing import Any
+
+from isa_ros.actuator.link import KINDS, LinkSheet, NO_LINK, NONE
+from isa_ros.config.text.parameter_sets import as_tree
+from isa_ros.config.text.sections import (
+    Entry, merge, Place, refuse_unknown, Section, section_at, written)
+from isa_ros.config.text.yaml_text import Tree
+from isa_ros.errors import ConfigError
+
+LINK = 'link'
+
+
+def read_link(tree: Tree, place: Place) -> Section:
+    """
+    Return the keys of the section ``link`` below a place; none without the section.
+
+    Raises
+    ------
+    ConfigError
+        It is not a section, or has an unknown key.
+
+    """
+    below = place / LINK
+    section = section_at(tree.get(LINK, {}), below)
+    refuse_unknown(section, LinkSheet.__dataclass_fields__, below)
+    return written(section, below)
+
+
+def link_of(run: Section, own: Section, step_ns: int, place: Place) -> Section:
+    """
+    Return the whole section of an actuator's link: its own keys, else those of the run.
+
+    What neither has is 0, and the cycle then the tick. Without a kind there is no link.
+
+    Raises
+    ------
+    ConfigError
+        Keys are given, but no kind.
+
+    """
+    given: Section = {**run, **own}
+    if given and 'kind' not in given:
+        raise ConfigError((place / LINK).has(f'lacks kind, one of {", ".join(KINDS)}'))
+    section = merge(
+        {key: Entry(getattr(NO_LINK, key), str(place / LINK / key), 'default')
+         for key in as_tree(NO_LINK)}, given)
+    if _value(section['kind']) != NONE and _value(section['cycle_ms']) in (0, 0.0):
+        section['cycle_ms'] = Entry(step_ns / 1e6, str(place / LINK / 'cycle_ms'), 'default')
+    return section
+
+
+def _value(entry: Any) -> Any:
+    return entry.value if isinstance(entry, Entry) else entry

@@ -1,0 +1,66 @@
+"""The load of a single actuator: the model's values, replaced by those of a file."""
+
+from dataclasses import replace
+from typing import Any
+
+from isa_ros.actuator.actuator import PAPER_SUPPLY
+from isa_ros.actuator.sheet import ActuatorSheet
+from isa_ros.config.models.catalogue import DEFAULT_PRESET, Model
+from isa_ros.config.models.scaling import Scaling
+from isa_ros.config.text.parameter_sets import build, build_one_of
+from isa_ros.config.text.sections import Entry, merge, Place, Section, written
+from isa_ros.config.text.yaml_text import Tree
+from isa_ros.errors import ConfigError
+from isa_ros.loads.sheets import LocalLoad
+from isa_ros.loads.wheel import Wheel
+
+
+def own_load(
+        tree: Tree, place: Place, model: Model, sheet: ActuatorSheet,
+        supply: float = PAPER_SUPPLY) -> LocalLoad:
+    """Return a load of one actuator: the model's of that kind with single values replaced."""
+    section = load_section(tree, place, model, sheet, supply)
+    load: LocalLoad = build_one_of(LocalLoad, section, place)
+    return load
+
+
+def load_section(
+        tree: Tree, place: Place, model: Model, sheet: ActuatorSheet, supply: float) -> Section:
+    """
+    Return the values of a load, each with the place where it was written.
+
+    ``sheet`` is that of an actuator made from the model, on ``supply`` Pa above return pressure:
+    the model's values scale with it.
+
+    Raises
+    ------
+    ConfigError
+        The model has no load of this kind.
+
+    """
+    kind: Any = tree.get('kind')
+    if not isinstance(kind, str) or kind not in model.loads:
+        raise ConfigError(f'{place}.kind = {kind!r}, must be one of {", ".join(model.loads)}')
+    own = {key: value for key, value in tree.items() if key != 'kind'}
+    base = build(ActuatorSheet, model.with_preset(DEFAULT_PRESET, 'preset'), model.place)
+    scaled = Scaling(base, sheet, supply).section(model.loads[kind], place)
+    section = merge(scaled, written(own, place))
+    named = section['kind']
+    assert isinstance(named, Entry)
+    return section | {'kind': replace(named, where=str(place / 'kind'))}
+
+
+def refuse_beyond_stops(load: LocalLoad, position: float, where: str) -> None:
+    """
+    Refuse a start outside the end stops of the load.
+
+    Raises
+    ------
+    ConfigError
+        The start is outside, where the stops would push the load back with a jolt.
+
+    """
+    if isinstance(load, Wheel) and not load.stop_low <= position <= load.stop_high:
+        raise ConfigError(
+            f'{where}: starts at {position:.4g} m | rad, must be between the stops of its load, '
+            f'{load.stop_low:g} and {load.stop_high:g}')

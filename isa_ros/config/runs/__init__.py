@@ -1,0 +1,1 @@
+"""Runs: their files, and what these are resolved to."""

@@ -1,0 +1,56 @@
+"""
+The run file of one model alone, and the keys of its actuator.
+
+What is measured or listed of a model is what a run file of a few lines would give: alone, on the
+paper's supply. Keys of its values are those of the actuator as `isa params` shows them for the
+model: ``reu.force.kp``, ``plant.oil.dead_volume_ml``, ``load.stiffness``, ``preset``.
+"""
+
+from collections.abc import Sequence
+
+from isa_ros.actuator.actuator import PAPER_SUPPLY
+from isa_ros.config.models.catalogue import actuator_model, DEFAULT_PRESET
+from isa_ros.config.runs.default_actuator import DEFAULT_TIMING
+from isa_ros.config.text.yaml_text import Tree
+from isa_ros.core.units import MPA
+
+LOAD = 'load'
+_TICK_TIMEOUT_S = 5.0   # as in the shipped run files
+_OF_SHEET = ('spool_feedback', 'plant', 'reu')
+_OF_ACTUATOR = (
+    LOAD, 'preset', 'variants', 'initial_position_mm', 'initial_position_deg', 'beyond_range')
+
+
+def model_run(name: str, preset: str | None = None, variants: Sequence[str] = ()) -> Tree:
+    """
+    Return the run file of a model alone, on its default load and the paper's supply.
+
+    Raises
+    ------
+    ConfigError
+        There is no such model, preset or variant.
+
+    """
+    model = actuator_model(name, 'model')
+    preset = preset or DEFAULT_PRESET
+    model.with_variants(model.with_preset(preset, '--preset'), variants, '--variant')
+    actuator: Tree = {'model': model.name, 'preset': preset}
+    if variants:
+        actuator['variants'] = list(variants)
+    return {
+        'name': model.name, 'step_ms': DEFAULT_TIMING.step_ns * 1e-6,
+        'controller_offset_ms': DEFAULT_TIMING.controller_offset_ns * 1e-6,
+        'tick_timeout_s': _TICK_TIMEOUT_S,
+        'supply': {'kind': 'constant', 'pressure_mpa': PAPER_SUPPLY / MPA,
+                   'return_pressure_mpa': 0.0},
+        'actuators': {model.name: actuator | {LOAD: {'kind': model.default_load}}}}
+
+
+def full_key(key: str, actuator: str) -> str:
+    """Return the key in a run file of a key that may be one of ``actuator``."""
+    head = key.partition('.')[0]
+    if head in _OF_SHEET:
+        return f'actuators.{actuator}.parameters.{key}'
+    if head in _OF_ACTUATOR:
+        return f'actuators.{actuator}.{key}'
+    return key

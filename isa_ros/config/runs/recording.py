@@ -1,0 +1,204 @@
+"""
+Recorded topics of a run and the format of its files: the section `record` of a run file.
+
+::
+
+    record:
+      compression: zstd              # none, lz4, zstd
+      split_mb: 100                  # a new file after so many MB; 0: one file
+      leave_out: [/*/references]     # topics; * stands for any text
+      decimate: {/*/pressure_?: 10}  # only the samples of every tenth tick
+"""
+
+from collections.abc import Iterable, Iterator
+from dataclasses import dataclass, replace
+from fnmatch import fnmatchcase
+from typing import Any
+
+from isa_ros.config.text.parameter_sets import as_tree, build
+from isa_ros.config.text.schema import KeyDifference
+from isa_ros.config.text.sections import Place, refuse_unknown, section_at, written
+from isa_ros.config.text.yaml_text import Tree
+from isa_ros.core.parameter import choice, parameter, Parameters
+from isa_ros.errors import ConfigError
+
+BYTES_PER_MB = 1_000_000
+MAX_PERIOD = 10_000    # ticks between two samples of a topic
+MAX_PATTERNS = 100
+MAX_PATTERN_LENGTH = 256
+
+_EVENTS = '/coordinator/events'
+_SENT = 'sent_setpoint'
+
+
+@dataclass(frozen=True, kw_only=True)
+class Storage(Parameters):
+    """Compression and splitting of a bag's files."""
+
+    compression: str = choice('of every chunk of a bag', 'none', 'lz4', 'zstd')
+    split_mb: float = parameter(
+        'size after which the next file of a bag begins; 0: one file', 'MB', ge=0.0, le=1e6)
+
+    @property
+    def split_bytes(self) -> int | None:
+        """Return the size after which the next file begins, None for one file."""
+        return round(self.split_mb * BYTES_PER_MB) if self.split_mb else None
+
+
+PLAIN = Storage(compression='none', split_mb=0.0)
+
+
+@dataclass(frozen=True)
+class RecordConfig:
+    """Storage, and the topics that are left out or decimated."""
+
+    storage: Storage = PLAIN
+    leave_out: tuple[str, ...] = ()
+    """Patterns of topics that are not recorded."""
+    decimate: tuple[tuple[str, int], ...] = ()
+    """(pattern of topics, n): recorded at every n-th tick; the first matching pattern counts."""
+
+    @property
+    def thins(self) -> bool:
+        """Return whether anything is left out or decimated."""
+        return bool(self.leave_out or self.decimate)
+
+    def thins_like(self, other: 'RecordConfig') -> bool:
+        """Return whether another configuration leaves out and decimates the same."""
+        return (self.leave_out, self.decimate) == (other.leave_out, other.decimate)
+
+    def period(self, topic: str) -> int:
+        """Return the period of recording a topic in ticks, 0 for never."""
+        if replay_needs(topic):
+            return 1
+        if any(fnmatchcase(topic, pattern) for pattern in self.leave_out):
+            return 0
+        return next((n for pattern, n in self.decimate if fnmatchcase(topic, pattern)), 1)
+
+    def refuse_misfits(self, topics: Iterable[str], source: str) -> None:
+        """
+        Refuse patterns that match no topic of a run, or one that replay needs.
+
+        Raises
+        ------
+        ConfigError
+            One of the patterns is refused; the message has its file and key.
+
+        """
+        topics, place = sorted(topics), Place(source, 'record')
+        for pattern in self.leave_out:
+            for topic in _fitting(pattern, topics, place / 'leave_out'):
+                if replay_needs(topic):
+                    raise ConfigError(
+                        f'{place / "leave_out"} = {pattern!r} leaves out {topic}, which a '
+                        'replay needs')
+        for pattern, _ in self.decimate:
+            fitting = _fitting(pattern, topics, place / 'decimate')
+            if all(replay_needs(topic) for topic in fitting):
+                raise ConfigError(
+                    f'{place / "decimate"} = {pattern!r} decimates {fitting[0]}, of which a '
+                    'replay needs every message')
+
+    def stored(
+            self, compression: str | None, split_mb: float | None,
+            where: str) -> 'RecordConfig':
+        """
+        Return a copy with the values given at ``where``; None leaves a value unchanged.
+
+        Raises
+        ------
+        ConfigError
+            A value is unknown or out of range.
+
+        """
+        given = {'compression': compression, 'split_mb': split_mb}
+        values: Tree = {key: value for key, value in given.items() if value is not None}
+        place = Place(where)
+        return replace(self, storage=_storage(values, place, self.storage))
+
+    def to_tree(self) -> Tree:
+        """Return the section, the inverse of `read_record`."""
+        return as_tree(self.storage) | {
+            'leave_out': list(self.leave_out), 'decimate': dict(self.decimate)}
+
+
+def replay_needs(topic: str) -> bool:
+    """Return whether a topic holds inputs of a run, which are the inputs of its replay."""
+    suffix = topic.rpartition('/')[2]
+    return topic == _EVENTS or suffix.startswith('applied_') or suffix == _SENT
+
+
+def read_record(value: Any, place: Place) -> RecordConfig:
+    """
+    Return the configuration of a section `record`; missing keys have their defaults.
+
+    Raises
+    ------
+    ConfigError
+        A key or value is invalid; the message has file, key and value.
+
+    """
+    tree = section_at(value, place)
+    keys = tuple(Storage.__dataclass_fields__)
+    refuse_unknown(tree, (*keys, 'leave_out', 'decimate'), place)
+    storage: Tree = {key: tree[key] for key in keys if key in tree}
+    patterns = tree.get('leave_out', [])
+    if not isinstance(patterns, list):
+        raise ConfigError(f'{place / "leave_out"} = {patterns!r}, must be a list of topics')
+    periods = section_at(tree.get('decimate', {}), place / 'decimate')
+    for key, found in (('leave_out', patterns), ('decimate', periods)):
+        if len(found) > MAX_PATTERNS:
+            raise ConfigError(
+                f'{place / key} has {len(found)} patterns, must be <= {MAX_PATTERNS}')
+    return RecordConfig(
+        _storage(storage, place, PLAIN),
+        tuple(_pattern(pattern, place / 'leave_out') for pattern in patterns),
+        tuple((_pattern(pattern, place / 'decimate'), _period(n, place / 'decimate' / pattern))
+              for pattern, n in periods.items()))
+
+
+def _storage(tree: Tree, place: Place, base: Storage) -> Storage:
+    return build(Storage, written(as_tree(base) | tree, place), place)
+
+
+def _pattern(value: Any, place: Place) -> str:
+    if isinstance(value, str) and value.startswith(('/', '*')) and (
+            len(value) <= MAX_PATTERN_LENGTH):
+        return value
+    raise ConfigError(
+        f'{place} = {value!r}, must be a topic like /hip/valve or a pattern like /*/valve of '
+        f'<= {MAX_PATTERN_LENGTH} characters')
+
+
+def _period(value: Any, place: Place) -> int:
+    if type(value) is int and 2 <= value <= MAX_PERIOD:
+        return value
+    raise ConfigError(
+        f'{place} = {value!r}, must be a whole number of ticks >= 2 and <= {MAX_PERIOD}')
+
+
+def _fitting(pattern: str, topics: Iterable[str], place: Place) -> list[str]:
+    fitting = [topic for topic in topics if fnmatchcase(topic, pattern)]
+    if not fitting:
+        raise ConfigError(
+            f'{place} = {pattern!r} matches no topic; valid: {", ".join(topics)}')
+    return fitting
+
+
+class RecordKind:
+    """What is recorded; a `Kind`."""
+
+    def tree(self, value: RecordConfig) -> Tree:
+        """Return the section."""
+        return value.to_tree()
+
+    def read(self, tree: Any, place: Place) -> RecordConfig:
+        """Return the section; as `Kind.read`."""
+        return read_record(tree, place)
+
+    def differences(self, tree: Any, place: Place) -> Iterator[KeyDifference]:
+        """Yield keys that are unknown; a key that is missing has its default."""
+        known = RecordConfig().to_tree()
+        for key in tree if isinstance(tree, dict) else ():
+            if key not in known:
+                yield KeyDifference(f'{place / key} is unknown here', True)

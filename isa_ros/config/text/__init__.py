@@ -1,0 +1,1 @@
+"""Text of configurations: YAML with origins, sections in layers, keys, parameter sets."""

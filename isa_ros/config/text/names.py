@@ -1,0 +1,35 @@
+"""Names of runs, actuators, supplies and controllers; they must also be valid in ROS."""
+
+import re
+
+from isa_ros.config.text.sections import Place
+from isa_ros.config.text.yaml_text import Tree
+from isa_ros.errors import ConfigError
+
+NAME_RULE = 'must be small letters, digits and single underscores'
+_NAME = re.compile(r'[a-z](?:_?[a-z0-9])*')
+
+
+def refuse_bad_name(name: str, where: str) -> None:
+    """
+    Refuse a name that ROS does not allow for a node.
+
+    Raises
+    ------
+    ConfigError
+        The name has characters other than small letters, digits and single underscores.
+
+    """
+    if not _NAME.fullmatch(name):
+        raise ConfigError(f'{where} = {name!r}, {NAME_RULE}')
+
+
+def name_of(tree: Tree, key: str, place: Place) -> str:
+    """Return a name that ROS can use; small letters, digits and single underscores."""
+    if key not in tree:
+        raise ConfigError(place.has(f'lacks {key}'))
+    value = tree[key]
+    if not isinstance(value, str):
+        raise ConfigError(f'{place / key} = {value!r}, {NAME_RULE}')
+    refuse_bad_name(value, str(place / key))
+    return value

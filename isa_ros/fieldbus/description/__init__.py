@@ -1,0 +1,1 @@
+"""Descriptions of devices, from the one table of objects."""

@@ -1,0 +1,113 @@
+"""
+The electronic data sheet (EDS, CiA 306) of a device on CANopen, from its object table.
+
+Besides the keys of the standard it has ``Unit``, ``Factor`` (SI per count) and ``Description``,
+which the Python package `canopen` reads and other tools ignore.
+"""
+
+from collections.abc import Iterator
+
+from isa_ros.fieldbus.device.bus_device import BusDevice
+from isa_ros.fieldbus.device.objects import DataType, Entry, Kind, Object
+from isa_ros.fieldbus.device.process_data import CAN_PDOS
+
+VENDOR_NAME = 'isa_ros (placeholder, no assigned vendor id)'
+_DATE = '11-22-2026'
+"""Of revision 1 of the object tables."""
+_BAUD_RATES = (10, 20, 50, 125, 250, 500, 800, 1000)
+_MANDATORY = (0x1000, 0x1001, 0x1018)
+_MANUFACTURER = range(0x2000, 0x6000)
+_ACCESS = {'rx': 'rww', 'tx': 'ro'}
+"""Access of mappable entries."""
+_KINDS = {Kind.VAR: '0x7', Kind.ARRAY: '0x8', Kind.RECORD: '0x9'}
+
+
+def eds_text(device: BusDevice) -> str:
+    """Return the EDS of a device."""
+    return '\n'.join(_lines(device)) + '\n'
+
+
+def _lines(device: BusDevice) -> Iterator[str]:
+    objects = device.table.on('canopen').objects
+    model = device.read(0x1009, 0).decode('ascii')
+    yield from _section('FileInfo', [
+        ('FileName', f'{model}.eds'), ('FileVersion', '1'),
+        ('FileRevision', str(device.identity.revision)), ('EDSVersion', '4.0'),
+        ('Description', f'simulated hydraulic actuator {model}'), ('CreationTime', '12:00AM'),
+        ('CreationDate', _DATE), ('CreatedBy', 'isa_ros'), ('ModificationTime', '12:00AM'),
+        ('ModificationDate', _DATE), ('ModifiedBy', 'isa_ros')])
+    yield from _device_information(device, model)
+    yield from _section('DummyUsage', [(f'Dummy{k:04X}', '0') for k in range(1, 8)])
+    yield from _section('Comments', [('Lines', '0')])
+    groups = {
+        'MandatoryObjects': [one for one in objects if one.index in _MANDATORY],
+        'OptionalObjects': [one for one in objects if one.index not in _MANDATORY
+                            and one.index not in _MANUFACTURER],
+        'ManufacturerObjects': [one for one in objects if one.index in _MANUFACTURER]}
+    for name, group in groups.items():
+        yield from _section(name, [('SupportedObjects', str(len(group))), *(
+            (str(k + 1), f'0x{one.index:04X}') for k, one in enumerate(group))])
+    for one in objects:
+        yield from _object(one)
+
+
+def _section(name: str, keys: list[tuple[str, str]]) -> Iterator[str]:
+    yield f'[{name}]'
+    yield from (f'{key}={value}' for key, value in keys)
+    yield ''
+
+
+def _device_information(device: BusDevice, model: str) -> Iterator[str]:
+    identity = device.identity
+    return _section('DeviceInfo', [
+        ('VendorName', VENDOR_NAME), ('VendorNumber', f'0x{identity.vendor:08X}'),
+        ('ProductName', model), ('ProductNumber', f'0x{identity.product:08X}'),
+        ('RevisionNumber', f'0x{identity.revision:08X}'), ('OrderCode', model),
+        *((f'BaudRate_{rate}', '1') for rate in _BAUD_RATES),
+        ('SimpleBootUpMaster', '0'), ('SimpleBootUpSlave', '1'), ('Granularity', '8'),
+        ('DynamicChannelsSupported', '0'), ('CompactPDO', '0'), ('GroupMessaging', '0'),
+        ('NrOfRXPDO', str(CAN_PDOS)), ('NrOfTXPDO', str(CAN_PDOS)), ('LSS_Supported', '0')])
+
+
+def _object(one: Object) -> Iterator[str]:
+    section = f'{one.index:04X}'
+    if one.kind is Kind.VAR:
+        return _section(section, [('ParameterName', one.name), *_entry(one.entries[0])])
+    return _record(section, one)
+
+
+def _record(section: str, one: Object) -> Iterator[str]:
+    yield from _section(section, [
+        ('ParameterName', one.name), ('ObjectType', _KINDS[one.kind]),
+        ('SubNumber', str(len(one.entries)))])
+    for entry in one.entries:
+        yield from _section(f'{section}sub{entry.subindex:X}', [
+            ('ParameterName', entry.name), *_entry(entry)])
+
+
+def _entry(entry: Entry) -> list[tuple[str, str]]:
+    keys = [
+        ('ObjectType', _KINDS[Kind.VAR]), ('DataType', f'0x{entry.data_type.number:04X}'),
+        ('AccessType', _ACCESS.get(entry.pdo, entry.access)), ('DefaultValue', _default(entry)),
+        ('PDOMapping', str(int(bool(entry.pdo))))]
+    if entry.data_type.is_integer and entry.is_writable:
+        low, high = entry.data_type.limits
+        if entry.low > low:
+            keys.append(('LowLimit', str(int(entry.low))))
+        if entry.high < high:
+            keys.append(('HighLimit', str(int(entry.high))))
+    if entry.scale != 1.0:
+        keys.append(('Factor', repr(entry.scale)))
+    if entry.unit:
+        keys.append(('Unit', entry.unit))
+    if entry.meaning:
+        keys.append(('Description', entry.meaning.replace(';', ',')))
+    return keys
+
+
+def _default(entry: Entry) -> str:
+    if entry.adds_node:
+        return f'$NODEID+0x{int(entry.default):X}'
+    if entry.data_type is DataType.REAL32:
+        return repr(float(entry.default))
+    return str(entry.default)

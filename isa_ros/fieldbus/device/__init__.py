@@ -1,0 +1,1 @@
+"""The device that a master sees: objects, profiles and states of one actuator."""

@@ -1,0 +1,203 @@
+"""One actuator of a run as a `BusDevice`: dictionary, process data, and a drive of a profile."""
+
+from collections.abc import Callable, Mapping, Sequence
+from typing import Protocol
+
+from isa_ros.actuator.tunable import tuned
+from isa_ros.errors import ConfigError
+from isa_ros.fieldbus.device.abort import OUT_OF_RANGE, SdoAbort
+from isa_ros.fieldbus.device.axis import Axis, FIELDS
+from isa_ros.fieldbus.device.bus_device import Emergency, Identity
+from isa_ros.fieldbus.device.communication_area import ERROR_FIELD
+from isa_ros.fieldbus.device.dictionary import Actuals, Dictionary, Key
+from isa_ros.fieldbus.device.faults import delete_errors, Faults, PDO_LENGTH
+from isa_ros.fieldbus.device.manufacturer_area import note_refusal, tunable_keys
+from isa_ros.fieldbus.device.objects import Entry, ObjectTable, Value
+from isa_ros.fieldbus.device.process_data import is_changed_in_preop, ProcessData
+import numpy as np
+
+_ERROR_REGISTER, _ERROR_CODE, _CONTROL = (0x1001, 0), (0x603F, 0), (0x6040, 0)
+
+
+class Drive(Protocol):
+    """A profile: what control words and targets mean for the REU."""
+
+    @property
+    def actuals(self) -> Actuals:
+        """Return the functions of the values that it computes."""
+
+    def admit(self, entry: Entry, value: Value) -> None:
+        """Refuse a value that is written; raises `SdoAbort`."""
+
+    def received(self) -> None:
+        """Take what the master has written."""
+
+    def begin_operation(self) -> None:
+        """Enter the state operational of the bus."""
+
+    def end_operation(self, is_lost: bool) -> None:
+        """Leave the state operational of the bus."""
+
+    def take_sample(self) -> None:
+        """Follow the new sample of the axis."""
+
+    def fill_command(self, command: np.void) -> None:
+        """Write the `COMMAND` of a tick."""
+
+
+class ActuatorDevice:
+    """
+    A `BusDevice`.
+
+    ``drive_of`` makes the drive of a profile from axis, dictionary values and faults.
+    """
+
+    def __init__(
+            self, axis: Axis, identity: Identity, table: ObjectTable,
+            drive_of: Callable[[Axis, dict[Key, Value], Faults], Drive]) -> None:
+        self.name, self.identity, self.table = axis.name, identity, table
+        self.is_wanted = False
+        self._axis = axis
+        self._actuals: dict[Key, Callable[[], Value]] = {}
+        self._dictionary = Dictionary(table, self._actuals, self._admit)
+        values = self._values = self._dictionary.values
+        self._faults = Faults(axis.sheet.reu.protection, values)
+        self._process_data = ProcessData(table, values)
+        self._tunables = tunable_keys(axis)
+        self._changes: dict[str, float] = {}
+        self._drive = drive_of(axis, values, self._faults)
+        self._actuals |= {
+            _ERROR_REGISTER: lambda: self._faults.register,
+            _ERROR_CODE: lambda: self._faults.code,
+            **{(one.index, one.subindex): _measured(axis, one)
+               for one in table.entries if one.source},
+            **self._drive.actuals}
+
+    # Objects.
+
+    def read(self, index: int, subindex: int) -> bytes:
+        """Return the bytes of an entry; raises `SdoAbort`."""
+        return self._dictionary.read(index, subindex)
+
+    def write(
+            self, index: int, subindex: int, data: bytes, *, is_preoperational: bool) -> None:
+        """Write an entry; raises `SdoAbort`."""
+        if is_changed_in_preop(index):
+            value = self._dictionary.admitted(self.table.entry(index, subindex), data)
+            self._process_data.write(index, subindex, int(value), is_preoperational)
+            return
+        self._dictionary.write(index, subindex, data)
+        self._written([(index, subindex)])
+
+    def read_all(self, index: int) -> bytes:
+        """Return all entries of an object; raises `SdoAbort`."""
+        if is_changed_in_preop(index) and index in self.table:
+            return self._process_data.read_all(index)
+        return self._dictionary.read_all(index)
+
+    def write_all(self, index: int, data: bytes, *, is_preoperational: bool) -> None:
+        """Write all entries of an object; raises `SdoAbort`."""
+        if is_changed_in_preop(index) and index in self.table:
+            self._process_data.write_all(index, data, is_preoperational)
+            return
+        self._dictionary.write_all(index, data)
+        self._written([(index, entry.subindex) for entry in self.table.at(index).entries])
+
+    def store(self, index: int, subindex: int, value: Value) -> None:
+        """Set an entry on behalf of the bus itself, without checks."""
+        self._values[index, subindex] = value
+
+    def _admit(self, entry: Entry, value: Value) -> None:
+        """Refuse a value by the rules of the REU or the drive."""
+        own = self._tunables.get((entry.index, entry.subindex))
+        if own is None:
+            self._drive.admit(entry, value)
+            return
+        changed = {one.name: float(self._values[key]) for key, one in self._tunables.items()
+                   if self._values[key] != one.value}
+        try:
+            tuned(self._axis.sheet, changed | {own.name: float(value)})
+        except ConfigError as error:
+            note_refusal(self._values, str(error))
+            raise SdoAbort(OUT_OF_RANGE) from error
+
+    def _written(self, keys: list[Key]) -> None:
+        for key in keys:
+            if key in self._tunables:
+                self._changes[self._tunables[key].name] = float(self._values[key])
+            elif key == (ERROR_FIELD, 0):
+                delete_errors(self._values)
+        self._take_received(keys)
+
+    # Process data.
+
+    def assigned(self, assignment: int) -> list[int]:
+        """Return the PDOs of EtherCAT's assignment."""
+        return self._process_data.assigned(assignment)
+
+    def size(self, pdo: int) -> int:
+        """Return the bytes of a PDO; raises `SdoAbort` for one that does not exist."""
+        return self._process_data.layout(pdo).packing.size
+
+    def receive(self, pdo: int, data: bytes) -> None:
+        """Take process data; those that are too short are reported and not used."""
+        layout = self._process_data.layout(pdo)
+        if len(data) < layout.packing.size:
+            self._faults.note(PDO_LENGTH)
+            return
+        self._values.update(zip(layout.keys, layout.packing.unpack_from(data)))
+        self._take_received(layout.keys)
+
+    def _take_received(self, keys: Sequence[Key]) -> None:
+        self._drive.received()
+        if not self.is_wanted and _CONTROL in keys:
+            self.is_wanted = self._values[_CONTROL] != 0
+
+    def transmit(self, pdo: int) -> bytes:
+        """Return process data."""
+        layout = self._process_data.layout(pdo)
+        return layout.packing.pack(*map(self._dictionary.value, layout.keys))
+
+    # Bus and run.
+
+    def begin_operation(self) -> None:
+        """Note that the bus has entered the state operational."""
+        self._drive.begin_operation()
+
+    def end_operation(self, is_lost: bool) -> None:
+        """Note that the bus has left it."""
+        self._drive.end_operation(is_lost)
+
+    def emergencies(self) -> list[Emergency]:
+        """Return the emergency messages since the last call."""
+        return self._faults.emergencies()
+
+    def take_sample(self, sample: np.void, tick: int) -> None:
+        """Take the sample at the start of a tick."""
+        self._axis.take_sample(sample)
+        self._faults.take_trips(int(self._axis.field('trips')))
+        self._drive.take_sample()
+
+    def fill_command(self, command: np.void) -> None:
+        """Write the `COMMAND` of this tick."""
+        self._drive.fill_command(command)
+
+    def changes(self) -> dict[str, float]:
+        """Return gains and limits written since the last call, SI."""
+        found, self._changes = self._changes, {}
+        return found
+
+    def take_changes(self, values: Mapping[str, float]) -> None:
+        """Show gains and limits that were changed from elsewhere, SI, by name."""
+        for key, one in self._tunables.items():
+            if one.name in values:
+                self._values[key] = values[one.name]
+
+
+def _measured(axis: Axis, entry: Entry) -> Callable[[], Value]:
+    """Return a function that returns a field of the sample as the entry counts it."""
+    place, scale = FIELDS[entry.source], entry.scale
+    if not entry.data_type.is_integer:
+        return lambda: axis.sample[place]
+    low, high = entry.data_type.limits
+    return lambda: min(max(round(axis.sample[place] / scale), low), high)

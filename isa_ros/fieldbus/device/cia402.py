@@ -1,0 +1,280 @@
+"""
+A CiA 402 drive on top of the REU's own device.
+
+States above `switch on disabled` are the drive's; the REU is enabled in `operation enabled` only.
+The control word counts at the start of a tick, the sample at its end.
+"""
+
+from collections.abc import Callable
+import math
+
+from isa_ros.core.device import ENABLED, FAULT, FAULT_REACTION, INITIALISING, QUICK_STOP
+from isa_ros.core.signals import HAS_CLEAR_FAULT, HAS_ENABLE, HAS_QUICK_STOP
+from isa_ros.core.units import MILLI
+from isa_ros.fieldbus.device import cia402_objects as objects
+from isa_ros.fieldbus.device.abort import INCOMPATIBLE, OUT_OF_RANGE, SdoAbort
+from isa_ros.fieldbus.device.axis import Axis, COUNTS
+from isa_ros.fieldbus.device.cia402_objects import (
+    CSP, CST, CSV, IMPEDANCE_MODE, NO_MODE, REFUSED_MODES)
+from isa_ros.fieldbus.device.cia402_states import (
+    command_of, ENDS_OFF, Event, FAULT_RESET, FOLLOWING, REU_DISABLED, State, STAYS)
+from isa_ros.fieldbus.device.dictionary import Key
+from isa_ros.fieldbus.device.faults import BUS_LOST, Faults, FOLLOWING_ERROR
+from isa_ros.fieldbus.device.manufacturer_area import DAMPING, EFFORT, note_refusal, STIFFNESS
+from isa_ros.fieldbus.device.objects import Entry, Value
+from isa_ros.fieldbus.device.setpoints import change_mode, enable, Gains, Limiter, setpoint
+import numpy as np
+
+VOLTAGE, WARNING, REMOTE, LIMITED, FOLLOWS, LATE = (1 << bit for bit in (4, 7, 9, 11, 12, 13))
+"""Further bits of the status word."""
+_STOP_WORD = 0x02
+"""Control word of a quick stop."""
+_NOT_WATCHED = 0xFFFFFFFF
+
+
+class Drive402:
+    """The drive of one actuator; ``values`` are those of its dictionary."""
+
+    def __init__(
+            self, axis: Axis, values: dict[Key, Value], faults: Faults,
+            supply_low: int) -> None:
+        self.state = State.NOT_READY
+        self._axis, self._values, self._faults = axis, values, faults
+        self._supply_low = supply_low
+        self._modes = objects.modes_of(axis)
+        self._mode = NO_MODE
+        self._control = 0
+        self._limiter = Limiter()
+        self._gains = Gains(axis, values)
+        self._demand = 0.0
+        self._late_s = 0.0
+        self._is_remote = self._was_on = False
+        self._has_start = False
+        self._setpoints = {
+            NO_MODE: self._holding, CSP: self._position, CSV: self._velocity, CST: self._torque,
+            IMPEDANCE_MODE: self._impedance}
+        self.actuals: dict[Key, Callable[[], Value]] = {
+            objects.STATUS: self.status, objects.MODE_SHOWN: lambda: self._mode,
+            objects.POSITION_DEMAND: lambda: round(self._shown_demand * COUNTS),
+            objects.FOLLOWING_ERROR: lambda: round(self._deviation * COUNTS)}
+        """Functions of the values that this drive computes."""
+
+    # Side of the bus.
+
+    def admit(self, entry: Entry, value: Value) -> None:
+        """Refuse a value that is written; raises `SdoAbort`."""
+        key = entry.index, entry.subindex
+        if key == objects.MODE and value not in self._modes:
+            note_refusal(self._values, self._refusal(int(value)))
+            raise SdoAbort(OUT_OF_RANGE)
+        if key in (objects.LEAST_POSITION, objects.LARGEST_POSITION):
+            least, largest = (
+                value if key == one else self._values[one]
+                for one in (objects.LEAST_POSITION, objects.LARGEST_POSITION))
+            if float(least) > float(largest):
+                raise SdoAbort(INCOMPATIBLE)
+
+    def _refusal(self, mode: int) -> str:
+        known = ', '.join(map(str, sorted(self._modes)))
+        return REFUSED_MODES.get(mode, f'mode {mode} does not exist here; there are {known}')
+
+    def received(self) -> None:
+        """Take what the master has written: the mode of operation counts at once."""
+        mode = int(self._values[objects.MODE])
+        if mode == self._mode:
+            return
+        if mode in self._modes:
+            self._mode = mode
+            self._demand = self._axis.position
+        else:
+            note_refusal(self._values, self._refusal(mode))
+
+    def begin_operation(self) -> None:
+        """Enter the state operational."""
+        self._is_remote = True
+
+    def end_operation(self, is_lost: bool) -> None:
+        """Leave it: stop as by a quick stop, and with a fault if the bus is lost."""
+        self._is_remote = False
+        self._values[objects.CONTROL] = _STOP_WORD
+        if is_lost:
+            self._faults.add(BUS_LOST)
+            self._happens(Event.FAULT)
+            self._end_reaction()
+
+    def status(self) -> int:
+        """Return the status word."""
+        axis, state = self._axis, self.state
+        word = state.bits | REMOTE * self._is_remote
+        warnings = int(axis.field('warnings'))
+        word |= WARNING * bool(warnings)
+        word |= VOLTAGE * (not (warnings | int(axis.field('trips'))) & self._supply_low)
+        if state is State.OPERATION_ENABLED:
+            word |= LIMITED * self._limiter.is_limited
+            word |= FOLLOWS * (axis.state == ENABLED and self._mode != NO_MODE)
+            word |= LATE * (self._late_s > 0.0)
+        return word
+
+    # Side of the run.
+
+    def take_sample(self) -> None:
+        """Follow what the REU reports."""
+        axis = self._axis
+        if not self._has_start:
+            self._has_start = True
+            self._values[objects.TARGET_POSITION] = round(axis.position * COUNTS)
+        self._happens(Event.INITIALISED)
+        self._watch_deviation()
+        if axis.state in (FAULT_REACTION, FAULT) or self._faults.has_own:
+            self._happens(Event.FAULT)
+        self._end_reaction()
+        if axis.is_disabled:
+            self._happens(Event.STOPPED)
+            if not self._faults.has_own:
+                self._happens(Event.RESET)
+        if self.state is State.OPERATION_ENABLED:
+            if axis.state == QUICK_STOP:
+                self._happens(Event.LOCAL_STOP)
+            elif axis.is_disabled and self._was_on:
+                self._happens(Event.DROPPED)
+            self._was_on |= axis.state == ENABLED
+
+    def fill_command(self, command: np.void) -> None:
+        """Write the command of a tick."""
+        control = int(self._values[objects.CONTROL])
+        is_reset = bool(control & ~self._control & FAULT_RESET)
+        self._control = control
+        kinds = 0
+        if self.state is State.FAULT and is_reset:
+            kinds |= self._reset()
+        elif (event := command_of(control)) is not None:
+            self._happens(event)
+        command['kinds'] = kinds | self._kinds(command)
+
+    def _reset(self) -> int:
+        """Reset a fault: that of the drive at once, that of the REU by a command."""
+        self._faults.clear()
+        if self._axis.is_disabled:
+            self._happens(Event.RESET)
+        return HAS_CLEAR_FAULT if self._axis.state == FAULT else 0
+
+    def _kinds(self, command: np.void) -> int:
+        """Write what the state demands of the REU; return the kinds."""
+        axis, state = self._axis, self.state
+        if state is State.OPERATION_ENABLED:
+            return self._operate(command)
+        if state in (State.QUICK_STOP, State.FAULT_REACTION):
+            if axis.state != ENABLED:
+                return 0
+            if state is State.FAULT_REACTION or self._values[objects.QUICK_STOP_OPTION]:
+                return HAS_QUICK_STOP
+        elif not (axis.is_on or axis.state == INITIALISING):
+            return 0
+        command['is_enabled'] = 0
+        return HAS_ENABLE
+
+    def _operate(self, command: np.void) -> int:
+        wanted, kinds = self._modes[self._mode], 0
+        if self._axis.state != ENABLED:
+            self._demand = self._axis.position
+            kinds = enable(command, wanted)
+        elif wanted and int(self._axis.field('device_mode')) != wanted:
+            kinds = change_mode(command, wanted)
+        self._limiter.is_limited = False
+        return kinds | self._setpoints[self._mode](command)
+
+    # Setpoints of the modes.
+
+    def _si(self, key: Key) -> float:
+        return int(self._values[key]) / COUNTS
+
+    def _limited_position(self, position: float) -> float:
+        return self._limiter.limited(
+            position, self._si(objects.LEAST_POSITION), self._si(objects.LARGEST_POSITION))
+
+    def _force(self, *keys: Key) -> float:
+        """Return the sum of efforts, limited; N or Nm."""
+        per_mille = self._axis.rated_force * MILLI
+        value = sum(int(self._values[key]) for key in keys) * per_mille
+        effort = float(self._values[EFFORT])
+        value += 0.0 if math.isnan(effort) else effort
+        largest = int(self._values[objects.MAX_TORQUE]) * per_mille
+        return self._limiter.limited(
+            value, -min(largest, self._axis.force_in), min(largest, self._axis.force_out))
+
+    def _holding(self, command: np.void) -> int:
+        return 0
+
+    def _position(self, command: np.void) -> int:
+        self._demand = self._limited_position(self._si(objects.TARGET_POSITION))
+        return setpoint(command, self._demand, self._si(objects.VELOCITY_OFFSET),
+                        self._force(objects.TORQUE_OFFSET), self._gains.of_block())
+
+    def _velocity(self, command: np.void) -> int:
+        largest = self._si(objects.MAX_SPEED)
+        velocity = self._limiter.limited(
+            self._si(objects.TARGET_VELOCITY) + self._si(objects.VELOCITY_OFFSET),
+            -largest, largest)
+        self._demand = self._limited_position(self._demand + velocity * self._axis.step)
+        return setpoint(command, self._demand, velocity, self._force(objects.TORQUE_OFFSET),
+                        self._gains.of_block())
+
+    def _torque(self, command: np.void) -> int:
+        return setpoint(command, self._axis.position, 0.0,
+                        self._force(objects.TARGET_TORQUE, objects.TORQUE_OFFSET))
+
+    def _impedance(self, command: np.void) -> int:
+        self._demand = self._limited_position(self._si(objects.TARGET_POSITION))
+        gains = self._gains.commanded(
+            float(self._values[STIFFNESS]), float(self._values[DAMPING]), self._limiter)
+        return setpoint(command, self._demand, self._si(objects.TARGET_VELOCITY),
+                        self._force(objects.TARGET_TORQUE, objects.TORQUE_OFFSET), gains)
+
+    # Following error.
+
+    @property
+    def _has_demand(self) -> bool:
+        return self.state is State.OPERATION_ENABLED and self._mode in (CSP, CSV, IMPEDANCE_MODE)
+
+    @property
+    def _shown_demand(self) -> float:
+        return self._demand if self._has_demand else self._axis.position
+
+    @property
+    def _deviation(self) -> float:
+        return self._shown_demand - self._axis.position
+
+    def _watch_deviation(self) -> None:
+        """Count how long the following error is beyond its window; too long is a fault."""
+        window = int(self._values[objects.WINDOW])
+        if (window == _NOT_WATCHED or self._mode not in (CSP, CSV)
+                or abs(self._deviation) <= window / COUNTS):
+            self._late_s = 0.0
+            return
+        self._late_s += self._axis.step
+        if self._late_s > int(self._values[objects.TIMEOUT]) * MILLI:
+            self._faults.add(FOLLOWING_ERROR)
+
+    # States.
+
+    def _end_reaction(self) -> None:
+        if self._axis.is_off:
+            self._happens(Event.REACTION_ENDS)
+
+    def _happens(self, event: Event) -> None:
+        """Let an event happen; without a row of the table, or its guard, nothing changes."""
+        row = FOLLOWING.get((self.state, event))
+        if row is None or not self._holds(row.guard):
+            return
+        self.state = row.following
+        self._was_on = False
+        if event is Event.RESET:
+            self._faults.end()
+
+    def _holds(self, guard: str) -> bool:
+        stays = self._values[objects.QUICK_STOP_OPTION] == objects.QUICK_STOP_STAYS
+        if guard == ENDS_OFF:
+            return not stays
+        if guard == STAYS:
+            return stays and self._axis.is_disabled
+        return guard != REU_DISABLED or self._axis.is_disabled

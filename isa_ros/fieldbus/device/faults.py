@@ -1,0 +1,157 @@
+"""
+Errors as a bus reports them: conditions of the device as error codes, EMCY and error register.
+
+A trip whose reaction stops the actuator is a fault: its code stays in 0x603F until the fault is
+reset. Every trip sends an emergency message, and one with code 0 follows when the last is gone.
+"""
+
+from collections.abc import Mapping
+from typing import NamedTuple
+
+from isa_ros.core.conditions import BITS
+from isa_ros.fieldbus.device.bus_device import Emergency
+from isa_ros.fieldbus.device.communication_area import ERROR_FIELD, ERRORS_KEPT
+from isa_ros.fieldbus.device.dictionary import Key
+from isa_ros.fieldbus.device.objects import Value
+from isa_ros.reu.protection_sheet import Protection
+
+_GENERIC, _CURRENT, _VOLTAGE, _TEMPERATURE = 1, 1 << 1, 1 << 2, 1 << 3
+_COMMUNICATION, _PROFILE, _MANUFACTURER = 1 << 4, 1 << 5, 1 << 7
+
+
+class ErrorCode(NamedTuple):
+    """What one error is reported as."""
+
+    code: int
+    """Of CiA 301 and 402; 0xFF00 and above: of the manufacturer."""
+    register: int
+    """Bit of 0x1001 besides that of any error."""
+    words: str
+    """Meaning of the code in the profile."""
+
+
+CONDITION_CODES: Mapping[str, ErrorCode] = {
+    'setpoint_timeout': ErrorCode(0xFF00, _MANUFACTURER, 'manufacturer: setpoint timeout'),
+    'end_of_stroke': ErrorCode(0x8612, _PROFILE, 'reference limit'),
+    'overspeed': ErrorCode(0x8400, _PROFILE, 'velocity speed controller'),
+    'overload': ErrorCode(0x8311, _PROFILE, 'excess torque'),
+    'overpressure': ErrorCode(0xFF04, _MANUFACTURER, 'manufacturer: overpressure'),
+    'overcurrent': ErrorCode(0x2310, _CURRENT, 'continuous over current'),
+    'overtemperature': ErrorCode(0x4310, _TEMPERATURE, 'excess temperature drive'),
+    'supply_low': ErrorCode(0x3120, _VOLTAGE, 'mains under-voltage: here the oil supply'),
+    'relief_open': ErrorCode(0xFF08, _MANUFACTURER, 'manufacturer: relief valve open'),
+    'load_cell_implausible': ErrorCode(0x7300, _PROFILE, 'sensor: here the load cell'),
+    'encoder_jump': ErrorCode(0x7320, _PROFILE, 'position sensor'),
+    'link_lost': ErrorCode(0x8100, _COMMUNICATION, 'communication: the link inside the actuator'),
+    'spool_deviation': ErrorCode(
+        0xFF0C, _MANUFACTURER, 'manufacturer: spool away from its reference'),
+}
+"""Error code of each condition of `isa_ros.core.conditions`."""
+
+BUS_LOST = ErrorCode(0x8180, _COMMUNICATION, 'communication: the bus is lost')
+FOLLOWING_ERROR = ErrorCode(0x8611, _PROFILE, 'following error')
+PDO_LENGTH = ErrorCode(0x8210, _COMMUNICATION, 'PDO not processed due to length error')
+OWN_CODES = (BUS_LOST, FOLLOWING_ERROR, PDO_LENGTH)
+"""Errors that the bus interface finds by itself."""
+
+_CODE_OF_BIT = {bit: CONDITION_CODES[name] for name, bit in BITS.items()}
+_STOPPING = ('quick_stop', 'disable')
+_WORD = 0xFFFF
+_DATA_BYTES = 5
+
+
+def stopping_bits(sheet: Protection) -> int:
+    """Return the conditions whose trip stops the actuator, as a bit set."""
+    return sum(1 << bit for name, bit in BITS.items() if reaction_of(sheet, name) in _STOPPING)
+
+
+def reaction_of(sheet: Protection, condition: str) -> str:
+    """Return the reaction to the trip of a condition."""
+    levels = getattr(sheet, condition, None)
+    found: str = getattr(sheet, f'{condition}_reaction') if levels is None else levels.reaction
+    return found
+
+
+class Faults:
+    """The errors of one device; ``values`` are those of its dictionary, with the error field."""
+
+    def __init__(self, sheet: Protection, values: dict[Key, Value]) -> None:
+        self._stopping = stopping_bits(sheet)
+        self._values = values
+        self._trips = 0
+        self._own: list[ErrorCode] = []
+        self._new: list[Emergency] = []
+        self.code = 0
+        """Of the fault, as in 0x603F; 0: none."""
+
+    @property
+    def has_own(self) -> bool:
+        """Return whether an error of the bus interface keeps the fault."""
+        return bool(self._own)
+
+    @property
+    def register(self) -> int:
+        """Return the error register 0x1001."""
+        found = 0
+        for bit, error in _CODE_OF_BIT.items():
+            if self._trips >> bit & 1:
+                found |= error.register | _GENERIC
+        for error in self._own:
+            found |= error.register | _GENERIC
+        return found
+
+    def take_trips(self, trips: int) -> None:
+        """Take the bit set of a sample: report what is new, and when all is gone."""
+        if trips == self._trips:
+            return
+        new, self._trips = trips & ~self._trips, trips
+        for bit, error in _CODE_OF_BIT.items():
+            if new >> bit & 1:
+                if not self.code and self._stopping >> bit & 1:
+                    self.code = error.code
+                self._report(error.code)
+        if not (new or trips or self._own):
+            self._report(0)
+
+    def add(self, error: ErrorCode) -> None:
+        """Add an error of the bus interface, which lasts until `clear`."""
+        if error not in self._own:
+            self._own.append(error)
+            self.code = self.code or error.code
+            self._report(error.code)
+
+    def note(self, error: ErrorCode) -> None:
+        """Report an error that does not last."""
+        self._report(error.code, error.register | _GENERIC)
+
+    def clear(self) -> None:
+        """Forget the errors of the bus interface; those of the device stay."""
+        if self._own:
+            self._own.clear()
+            if not self._trips:
+                self._report(0)
+
+    def end(self) -> None:
+        """Forget the code: the fault has been reset."""
+        self.code = 0
+
+    def emergencies(self) -> list[Emergency]:
+        """Return the messages since the last call."""
+        found, self._new = self._new, []
+        return found
+
+    def _report(self, code: int, register: int = 0) -> None:
+        data = self._trips.to_bytes(_DATA_BYTES, 'little')
+        self._new.append(Emergency(code, self.register | register, data))
+        if code:
+            kept = [int(self._values[ERROR_FIELD, k]) for k in range(1, ERRORS_KEPT)]
+            for k, value in enumerate([code | (self._trips & _WORD) << 16, *kept]):
+                self._values[ERROR_FIELD, k + 1] = value
+            count = int(self._values[ERROR_FIELD, 0])
+            self._values[ERROR_FIELD, 0] = min(count + 1, ERRORS_KEPT)
+
+
+def delete_errors(values: dict[Key, Value]) -> None:
+    """Delete the pre-defined error field of a dictionary."""
+    for k in range(ERRORS_KEPT + 1):
+        values[ERROR_FIELD, k] = 0

@@ -1,0 +1,143 @@
+"""Objects 0x2000 to 0x5FFF: increments, further signals, and the gains and limits of the REU."""
+
+from collections.abc import Sequence
+import math
+
+from isa_ros.actuator.tunable import Tunable, tunables
+from isa_ros.fieldbus.device.axis import Axis, FULL_SCALE, INCREMENT, PER_MILLE
+from isa_ros.fieldbus.device.dictionary import Key
+from isa_ros.fieldbus.device.objects import DataType, Entry, Object, record_of, Value, variable
+from isa_ros.reu.wiring import VARIABLES
+
+LAST_REFUSAL = (0x2003, 0)
+"""Why the last request of the master was refused, as a text."""
+_LONGEST = 255
+STIFFNESS, DAMPING, EFFORT = (0x2010, 1), (0x2010, 2), (0x2010, 3)
+MIT_RANGES = 0x2002
+"""Object with the ranges of MIT-mode frames."""
+_GAIN_RANGE = 10.0
+_LEAST_RANGE = 1e-6
+_REU = 0x2030
+"""Object of the position block; those of the inner blocks follow."""
+_F32 = DataType.REAL32
+_BITS = 'bit set, see docs/protection.md'
+
+_SIGNALS: Sequence[tuple[int, str, Sequence[tuple[str, str, str]]]] = (
+    (0x2020, 'Pressures', (
+        ('pressure_a', 'Pressure of chamber A', 'Pa'),
+        ('pressure_b', 'Pressure of chamber B', 'Pa'))),
+    (0x2021, 'Valve', (
+        ('spool', 'Spool position', 'm'), ('spool_velocity', 'Spool velocity', 'm/s'),
+        ('current', 'Current of the amplifier', 'A'),
+        ('spool_reference', 'Spool reference', 'm'),
+        ('current_reference', 'Current reference', 'A'))),
+    (0x2022, 'Force', (
+        ('force', 'Measured force', 'N | Nm'), ('force_reference', 'Force reference', 'N | Nm'))),
+    (0x2023, 'Temperature', (('temperature', 'Oil in the actuator', 'celsius'),)),
+    (0x2024, 'Supply', (
+        ('supply_flow', 'Flow drawn, mean of the tick', 'm3/s'),
+        ('supply_volume', 'Oil drawn', 'm3'), ('power', 'Power of the oil', 'W'),
+        ('peak_power', 'Peak power of the oil', 'W'),
+        ('supply_pressure', 'Supply pressure', 'Pa'))),
+)
+_STATES = (
+    ('device_state', 'State', DataType.UNSIGNED8), ('device_mode', 'Mode', DataType.UNSIGNED8),
+    ('device_event', 'Last event', DataType.UNSIGNED8))
+
+
+def note_refusal(values: dict[Key, Value], reason: str) -> None:
+    """Keep why a request was refused, in the values of a dictionary."""
+    values[LAST_REFUSAL] = reason[:_LONGEST]
+
+
+def manufacturer_objects(axis: Axis) -> list[Object]:
+    """Return the objects of the manufacturer's area of an actuator."""
+    return [
+        _increments(axis), _ranges(axis), _mit_ranges(axis),
+        variable(Entry(*LAST_REFUSAL, 'Last refusal', DataType.VISIBLE_STRING, 'ro', '',
+                       meaning='why the last request was refused', longest=_LONGEST)),
+        _impedance(axis),
+        *(record_of(index, name, [
+            Entry(index, k + 1, words, _F32, unit=axis.unit(unit), pdo='tx', source=field)
+            for k, (field, words, unit) in enumerate(signals)])
+          for index, name, signals in _SIGNALS),
+        record_of(0x2025, 'Conditions', [
+            Entry(0x2025, 1, 'Warnings', DataType.UNSIGNED32, pdo='tx', source='warnings',
+                  meaning=_BITS),
+            Entry(0x2025, 2, 'Trips', DataType.UNSIGNED32, pdo='tx', source='trips',
+                  meaning=_BITS)]),
+        record_of(0x2026, 'Device of the REU', [
+            *(Entry(0x2026, k + 1, name, data_type, pdo='tx', source=field,
+                    meaning='number, see docs/device.md')
+              for k, (field, name, data_type) in enumerate(_STATES)),
+            Entry(0x2026, 4, 'Since', _F32, unit='s', pdo='tx', source='state_since')]),
+        *_tunable_objects(axis)]
+
+
+def _increments(axis: Axis) -> Object:
+    def entry(subindex: int, name: str, unit: str, value: float) -> Entry:
+        return Entry(0x2000, subindex, name, _F32, 'const', value, axis.unit(unit))
+    return record_of(0x2000, 'Increments', [
+        entry(1, 'Position per count', 'm | rad', INCREMENT),
+        entry(2, 'Velocity per count', 'm/s | rad/s', INCREMENT),
+        entry(3, 'Force per mille', 'N | Nm', axis.rated_force * PER_MILLE),
+        entry(4, 'Spool per count of CiA 408', 'm', axis.spool_stop / FULL_SCALE),
+        entry(5, 'Pressure per count of CiA 408', 'Pa', axis.pressure_range / FULL_SCALE)])
+
+
+def _ranges(axis: Axis) -> Object:
+    def entry(subindex: int, name: str, unit: str, value: float) -> Entry:
+        return Entry(0x2001, subindex, name, _F32, 'const', value, axis.unit(unit))
+    return record_of(0x2001, 'Ranges', [
+        entry(1, 'Stroke', 'm | rad', axis.stroke),
+        entry(2, 'Rated force, pushing out', 'N | Nm', axis.force_out),
+        entry(3, 'Rated force, pulling in', 'N | Nm', axis.force_in)])
+
+
+def _mit_ranges(axis: Axis) -> Object:
+    """Return the scales of MIT-mode frames, whose 12 bits need ranges near what is used."""
+    def entry(subindex: int, name: str, unit: str, value: float, meaning: str) -> Entry:
+        return Entry(MIT_RANGES, subindex, name, _F32, 'rw', value, axis.unit(unit),
+                     meaning=meaning, low=_LEAST_RANGE)
+    stiffness, damping = axis.gains
+    return record_of(MIT_RANGES, 'Ranges of MIT-mode frames', [
+        entry(1, 'Position', 'm | rad', axis.stroke, 'plus and minus; at first the stroke'),
+        entry(2, 'Velocity', 'm/s | rad/s', axis.rated_speed,
+              'plus and minus; at first that at full opening with the relief pressure'),
+        entry(3, 'Stiffness', 'N/m | Nm/rad', _GAIN_RANGE * stiffness or 1.0,
+              'from 0; at first 10 times the gain of the configuration'),
+        entry(4, 'Damping', 'Ns/m | Nms/rad', _GAIN_RANGE * damping or 1.0,
+              'from 0; at first 10 times the gain of the configuration'),
+        entry(5, 'Effort', 'N | Nm', axis.rated_force, 'plus and minus; at first the rated')])
+
+
+def _impedance(axis: Axis) -> Object:
+    stiffness, damping = axis.gains
+    return record_of(0x2010, 'Impedance', [
+        Entry(*STIFFNESS, 'Stiffness', _F32, 'rw', stiffness, axis.unit('N/m | Nm/rad'),
+              pdo='rx', meaning='of mode -1; NaN in a PDO: the one in force'),
+        Entry(*DAMPING, 'Damping', _F32, 'rw', damping, axis.unit('Ns/m | Nms/rad'),
+              pdo='rx', meaning='of mode -1; NaN in a PDO: the one in force'),
+        Entry(*EFFORT, 'Effort', _F32, 'rw', 0.0, axis.unit('N | Nm'), pdo='rx',
+              meaning='added to target torque and torque offset')])
+
+
+def tunable_keys(axis: Axis) -> dict[Key, Tunable]:
+    """Return the gains and limits of the REU by their place in the dictionary."""
+    found: dict[Key, Tunable] = {}
+    for tunable in tunables(axis.sheet).values():
+        index = _REU + VARIABLES.index(tunable.path[0])
+        found[index, 1 + sum(key[0] == index for key in found)] = tunable
+    return found
+
+
+def _tunable_objects(axis: Axis) -> list[Object]:
+    blocks: dict[int, list[Entry]] = {}
+    for (index, subindex), one in tunable_keys(axis).items():
+        low = one.bounds.get('ge', one.bounds.get('gt', -math.inf))
+        high = one.bounds.get('le', one.bounds.get('lt', math.inf))
+        blocks.setdefault(index, []).append(Entry(
+            index, subindex, one.name, _F32, 'rw', one.value, one.unit, low=low, high=high,
+            meaning=one.doc))
+    return [record_of(index, f'REU: {VARIABLES[index - _REU]} block', entries)
+            for index, entries in blocks.items()]

@@ -1,0 +1,1 @@
+"""A serial line: frames with a checksum over a terminal."""

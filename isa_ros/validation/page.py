@@ -1,0 +1,175 @@
+"""What was found as text, as JSON, and as the page docs/validation.md with its figures."""
+
+from collections.abc import Iterable, Sequence
+import math
+from pathlib import Path
+from typing import Any, TypeVar
+
+from isa_ros.text.json_file import write_tree
+from isa_ros.text.page import Page
+from isa_ros.text.table import aligned
+from isa_ros.validation.entry import (
+    AS_READ, Entry, NOT_REACHED, OWN, PAPER, REACHED, SOURCES, VERDICTS)
+from isa_ros.validation.left_out import left_out
+from isa_ros.validation.runner import Result
+
+PAGE = 'validation.md'
+T = TypeVar('T')
+_DIGITS = 4   # of values
+_BOUND_DIGITS = 6   # of tolerances, which may be narrower than the digits of a value
+_HEAD = f"""# Validation
+
+The statements of the paper, and targets of our own, beside what the shipped actuators give.
+
+- Source `{PAPER}`: a statement of the paper, in an interval from the paper's own precision: half
+  of the last printed digit, a printed bound or range, or the direction of a comparison in words.
+- Source `{OWN}`: a target of our own, or an independent result; the entry says which. These
+  guard against regressions and say nothing about the paper.
+
+`{REACHED}`: inside the tolerance. `{AS_READ}`: inside the tolerance around the reading of a
+printed value that contradicts the paper itself ([paper-errata.md](paper-errata.md)).
+`{NOT_REACHED}`: outside; the cause is below the table. Where two sets of gains are simulated, each
+has its column: `table_4`, the gains of Table 4 as they are read, and `default`, the retuned ones
+that are shipped. Which parameter is noticed by which entry is in [sensitivity.md](sensitivity.md).
+
+This page and its figures are written by
+
+    ./isa validate --out docs
+
+The command exits with 0 if every entry is reached or reached as read, and with 1 if any of either
+source is not reached. `--only GROUP` or `--only GROUP.ENTRY` runs a part.
+"""
+
+
+def as_text(results: Sequence[Result]) -> str:
+    """Return the table a terminal shows."""
+    blocks = []
+    for result in results:
+        lines = aligned([('', 'source', 'paper', 'ours', 'unit', 'tolerance', 'verdict'), *(
+            (f'{result.group}.{e.key}', e.source, number(e.paper), number(e.ours), unit(e),
+             interval(e), e.verdict) for e in result.entries)])
+        blocks.append('\n'.join([result.title, *lines, *_missed(result)]))
+    return '\n\n'.join([*blocks, summary(results)])
+
+
+def summary(results: Sequence[Result]) -> str:
+    """Return how many entries of each source have which verdict, in one line."""
+    return '; '.join(
+        f'{source}: {sum(counts)} entries, ' + ', '.join(
+            f'{count} {verdict}' for count, verdict in zip(counts, VERDICTS, strict=True))
+        for source, counts in _counted(results).items())
+
+
+def _counted(results: Sequence[Result]) -> dict[str, list[int]]:
+    """Return the number of entries by source and, in the order of `VERDICTS`, by verdict."""
+    entries = [entry for result in results for entry in result.entries]
+    return {source: [
+        sum(entry.source == source and entry.verdict == verdict for entry in entries)
+        for verdict in VERDICTS] for source in SOURCES}
+
+
+def _missed(result: Result) -> list[str]:
+    return [f'{result.group}.{e.key} is not reached: {e.reason or "for no known reason"}'
+            for e in result.entries if not e.is_reached]
+
+
+def number(value: float | str) -> str:
+    """Return a value with as many digits as are shown."""
+    return value if isinstance(value, str) else f'{value:.{_DIGITS}g}'
+
+
+def unit(entry: Entry) -> str:
+    """Return the unit, nothing for a plain number."""
+    return '' if entry.unit == '1' else entry.unit
+
+
+def interval(entry: Entry) -> str:
+    """Return the tolerance: lowest to highest, or its one bound."""
+    lowest, highest = entry.tolerance
+    if math.isinf(highest):
+        return f'>= {lowest:.{_BOUND_DIGITS}g}'
+    if math.isinf(lowest):
+        return f'<= {highest:.{_BOUND_DIGITS}g}'
+    return f'{lowest:.{_BOUND_DIGITS}g} to {highest:.{_BOUND_DIGITS}g}'
+
+
+def as_tree(results: Sequence[Result]) -> list[dict[str, Any]]:
+    """Return every entry for JSON; a bound that is not there, and NaN, is null."""
+    return [{
+        'name': f'{result.group}.{entry.key}',
+        'source': entry.source,
+        'where': entry.where,
+        'gains': entry.gains,
+        'paper': entry.paper,
+        'ours': _finite(entry.ours),
+        'unit': entry.unit,
+        'tolerance': [_finite(bound) for bound in entry.tolerance],
+        'tolerance_source': entry.tolerance_source,
+        'reading': entry.reading,
+        'verdict': entry.verdict,
+        'reason': '' if entry.is_reached else entry.reason,
+    } for result in results for entry in result.entries]
+
+
+def _finite(value: float) -> float | None:
+    return float(value) if math.isfinite(value) else None
+
+
+def write_json(results: Sequence[Result], path: Path) -> None:
+    """Write every entry as JSON."""
+    write_tree(as_tree(results), path)
+
+
+def write_page(results: Sequence[Result], directory: Path) -> list[Path]:
+    """Write validation.md and figures/validation_*.png into a directory; return their paths."""
+    page = Page(PAGE, _HEAD)
+    page.table([('source', 'entries', *VERDICTS), *(
+        (source, str(sum(counts)), *map(str, counts))
+        for source, counts in _counted(results).items())], 'lr')
+    for result in results:
+        page.section(result.title)
+        page.table(_rows(result))
+        page.items(_missed(result))
+        for picture in result.pictures:
+            page.figure(f'validation_{picture.name}', picture.caption, picture.png)
+            page.paragraph(picture.caption)
+    page.section('Printed, and not compared')
+    page.table([('where', 'what', 'printed', 'why not'), *(
+        (printed.where, printed.what, f'{printed.text} {printed.unit}', why)
+        for printed, why in left_out())])
+    return page.write(directory)
+
+
+def _rows(result: Result) -> list[tuple[str, ...]]:
+    """Return the table of a group: a row a check, with a column for each set of gains."""
+    sets = _in_order(entry.gains for entry in result.entries)
+    checks = _in_order(_same(entry) for entry in result.entries)
+    head = ('entry', 'source', 'where', 'paper', *(gains or 'ours' for gains in sets), 'unit',
+            'tolerance', 'from', 'reading', 'verdict')
+    return [head, *(
+        _cells(result.group, sets, {
+            entry.gains: entry for entry in result.entries if _same(entry) == check})
+        for check in checks)]
+
+
+def _same(entry: Entry) -> tuple[str, tuple[float, float]]:
+    """Return what the entries of one row have in common; their gains differ."""
+    return entry.name, entry.tolerance
+
+
+def _in_order(values: Iterable[T]) -> list[T]:
+    return list(dict.fromkeys(values))
+
+
+def _cells(group: str, sets: Sequence[str], found: dict[str, Entry]) -> tuple[str, ...]:
+    """Return a row of the page's table; ``found`` are its entries by their gains."""
+    first = next(iter(found.values()))
+    verdicts = {gains: f'**{each.verdict}**' if each.verdict == NOT_REACHED else each.verdict
+                for gains, each in found.items()}
+    same = len(set(verdicts.values())) == 1 and len(sets) == len(found)
+    return (f'{group}.{first.name}', first.source, first.where, number(first.paper),
+            *(number(found[gains].ours) if gains in found else '' for gains in sets),
+            unit(first), interval(first), first.tolerance_source,
+            '; '.join(_in_order(each.reading for each in found.values() if each.reading)),
+            verdicts[first.gains] if same or not first.gains else ', '.join(
+                f'{gains}: {verdict}' for gains, verdict in verdicts.items()))

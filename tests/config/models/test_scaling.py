@@ -1,0 +1,188 @@
+"""Values of a model follow the cylinder, valve and supply of a run file; its own values win."""
+
+from collections.abc import Callable
+from dataclasses import replace
+from pathlib import Path
+
+import isa_ros
+from isa_ros.actuator.actuator import PAPER_SUPPLY
+from isa_ros.actuator.scales import SCALES
+from isa_ros.actuator.sheet import ActuatorSheet
+from isa_ros.config.listing import describe
+from isa_ros.config.models import scaling
+from isa_ros.config.models.catalogue import actuator_model, model_names
+from isa_ros.config.runs.default_actuator import default_actuator
+from isa_ros.config.runs.run_config import RunConfig
+from isa_ros.config.runs.run_file import run_of
+from isa_ros.config.text.sections import Entry, merge, Place, sourced
+from isa_ros.config.text.yaml_text import parse
+from isa_ros.errors import ConfigError
+from isa_ros.plant.chambers import chambers_record, oil_stiffness
+import numpy as np
+import pytest
+
+Quantity = Callable[[ActuatorSheet, float], float]
+
+HEAD = """
+name: own
+step_ms: 1.0
+controller_offset_ms: 0.12
+tick_timeout_s: 5.0
+supply: {kind: constant, pressure_mpa: %g, return_pressure_mpa: 0.0}
+actuators:
+  ram:
+    model: %s
+    load: {kind: %s}
+    parameters:
+"""
+OWN = '      plant: {drive: {bore_mm: 40.0, rod_mm: 25.0}}\n'
+A_A, A_B = 1256.637e-6, 765.763e-6  # m2, of 40/25 mm
+ISA_A, ISA_B = 363.050e-6, 249.953e-6  # m2, of 21.5/12 mm
+ROUNDED = 1e-5  # of the areas above
+TWO_LINES = """
+        valve:
+          kind: data_sheet
+          rated_drop_mpa: 7.0
+          spool_travel_mm: 0.2
+          flow: {kind: points, current_ma: [0, 2, 10], flow_lpm: [0, 2, 18]}
+          leakage: {pressure_mpa: 14.0, current_ma: [0], total_lpm: [0.2], tare_lpm: 0.1}
+          orifice_smoothing_kpa: 100.0
+          slots: matched
+          lap: {pa_um: 0.0, at_um: 0.0, bt_um: 0.0, pb_um: 0.0}
+"""
+
+
+def own(parameters: str = OWN, model: str = 'isa_v5', supply: float = 14.0,
+        load: str = 'mass') -> RunConfig:
+    """Return a run with one actuator of a model, changed by ``parameters``."""
+    text = HEAD % (supply, model, load) + parameters
+    return run_of(parse(text, 'own.yaml'), Place('own.yaml'))[0]
+
+
+def sheet_of(run: RunConfig) -> ActuatorSheet:
+    """Return the sheet of the only actuator."""
+    return run.actuators[0].sheet
+
+
+def test_a_larger_bore_in_the_isa_s_model_has_its_own_ratings() -> None:
+    """The ISA v5's ratings, 7500 and 5174 N at 20.7 MPa, for other areas and 14 MPa."""
+    sheet, isa = sheet_of(own()), default_actuator('isa_v5', 'isa').sheet
+    position = sheet.reu.position
+    assert position.force_out == pytest.approx(
+        7500.0 * A_A / ISA_A * 14.0 / 20.7, rel=ROUNDED, abs=0.0)
+    assert position.force_in == pytest.approx(
+        5174.0 * A_B / ISA_B * 14.0 / 20.7, rel=ROUNDED, abs=0.0)
+    assert position.force_in == pytest.approx(A_B * 14e6, rel=1e-4, abs=0.0)  # 5174 is rounded
+    for part, name, factor in (
+            ('sensors', 'force_range', A_A / ISA_A),
+            ('friction', 'coulomb', A_A / ISA_A),
+            ('mechanics', 'stop_stiffness', A_A / ISA_A),
+            ('oil', 'cross_port_leakage', 40.0 / 21.5)):
+        value, before = (getattr(getattr(of.plant, part), name) for of in (sheet, isa))
+        assert value == pytest.approx(before * factor, rel=ROUNDED, abs=0.0)
+    assert sheet.plant.valve == isa.plant.valve
+    force = sheet.reu.force
+    assert replace(force, kp=isa.reu.force.kp, ki=isa.reu.force.ki) == isa.reu.force
+
+
+@pytest.mark.parametrize('beta', [5e8, 1.4e9])
+def test_default_gains_of_the_isa_scale_with_its_oil(beta: float) -> None:
+    """The loop gain stays: K_p times the force rate per flow of oil and load cell in series."""
+    key = 'actuators.kfe.parameters.plant.oil.effective_bulk_modulus'
+    leg = isa_ros.load('leg')
+    gains, rates = [], []
+    for run in (leg, leg.replace({key: beta})):
+        sheet = run.configuration.actuator('kfe').sheet
+        oil = chambers_record(sheet.plant.drive, sheet.plant.oil)
+        stiffness = np.array([oil_stiffness(s, oil) for s in np.linspace(0.0, oil.stroke, 21)])
+        gains.append(sheet.reu.force.kp)
+        k_s = sheet.plant.mechanics.sensor_stiffness
+        rates.append((stiffness / (1.0 + stiffness / k_s)).min())
+    assert gains[1] * rates[1] == pytest.approx(gains[0] * rates[0], rel=1e-9, abs=0.0)
+
+
+def test_limit_and_compensation_follow_a_valve_of_two_lines() -> None:
+    """V15: to 2 of 10 mA 1 l/min/mA, then 2; 0.2 mm of spool at 10 mA."""
+    force = sheet_of(own('      plant:' + TWO_LINES)).reu.force
+    assert force.limit == pytest.approx(2e-4, rel=1e-12, abs=0.0)
+    assert force.compensation.knee == pytest.approx(0.4e-4, rel=1e-12, abs=0.0)
+    # 0.16 is the ISA's 0.4 over 2.5
+    assert force.compensation.slope == pytest.approx(0.5, rel=1e-12, abs=0.0)
+
+
+def test_a_value_of_the_run_file_is_not_scaled() -> None:
+    changed = OWN + '      reu: {position: {force_in: 1000.0}}\n'
+    position = sheet_of(own(changed)).reu.position
+    assert position.force_in == 1000.0
+    assert position.force_out == sheet_of(own()).reu.position.force_out
+
+
+@pytest.mark.parametrize('name', model_names())
+def test_a_model_as_it_is_has_its_values_bit_for_bit(name: str) -> None:
+    """At 20.7 MPa nothing is scaled, and a restated dimension changes nothing."""
+    run = own('      {}\n', name, 20.7, actuator_model(name, 'test').default_load)
+    alone = default_actuator(name, 'ram')
+    assert (sheet_of(run), run.actuators[0].load) == (alone.sheet, alone.load)
+    restated = own('      plant: {drive: {bore_mm: 21.5}}\n', supply=20.7)
+    assert sheet_of(restated) == default_actuator('isa_v5', 'ram').sheet
+
+
+def test_the_stops_of_a_load_follow_the_stroke() -> None:
+    run = own('      plant: {drive: {stroke_mm: 50.0}}\n', load='wheel')
+    load = run.actuators[0].load
+    assert (load.stop_low, load.stop_high) == pytest.approx((0.0025, 0.0475), rel=1e-12, abs=0.0)
+
+
+def test_the_table_shows_the_scaled_value_and_its_source(tmp_path: Path) -> None:
+    """`isa params` of the file, and the configuration that is recorded."""
+    path = tmp_path / 'own.yaml'
+    path.write_text(HEAD % (14.0, 'isa_v5', 'mass') + OWN)
+    line = next(line for line in describe(str(path)).splitlines()
+                if line.startswith('reu.position.force_in '))
+    assert '10720.63' in line and 'derived, A_B P_S; scaled with stall_in' in line
+    unchanged = next(line for line in describe('isa_v5').splitlines()
+                     if line.startswith('reu.position.force_in '))
+    assert ' 5174 ' in unchanged and 'derived, A_B P_S; scales with stall_in' in unchanged
+    run = own()
+    assert RunConfig.from_yaml(run.to_yaml()).actuators == run.actuators
+    assert 'scale' not in run.to_yaml()
+
+
+def test_every_quantity_is_finite_and_positive_for_every_model_that_has_it() -> None:
+    for name in model_names():
+        sheet = default_actuator(name, name).sheet
+        for quantity in SCALES.values():
+            try:
+                assert 0.0 < quantity(sheet, PAPER_SUPPLY) < 1e18
+            except ConfigError as error:
+                assert 'two straight lines' in str(error)
+
+
+def test_a_quantity_is_computed_once_for_all_values_that_scale_with_it(monkeypatch) -> None:
+    """Of the model and of the own actuator, for its plant and for its REU: four at most."""
+    counts: dict[str, int] = {}
+
+    def counted(name: str, quantity: Quantity) -> Quantity:
+        def counting(sheet: ActuatorSheet, supply: float) -> float:
+            counts[name] = counts.get(name, 0) + 1
+            return quantity(sheet, supply)
+        return counting
+    monkeypatch.setattr(scaling, 'SCALES', {
+        name: counted(name, quantity) for name, quantity in SCALES.items()})
+    own()
+    assert counts['piston_area'] >= 2 and max(counts.values()) <= 4, counts
+
+
+@pytest.mark.parametrize(('values', 'message'), [
+    ({'scales_with': 'stall'}, 'm.yaml: gain.scales_with.stall is unknown; did you mean stall_'),
+    ({'scales': 'stall_out'}, 'm.yaml: gain.scales is unknown; did you mean scales_with'),
+])
+def test_an_unknown_quantity_is_refused(values: dict[str, str], message: str) -> None:
+    with pytest.raises(ConfigError, match=message):
+        sourced({'gain': {'value': 1.0, 'source': 'assumed', **values}}, Place('m.yaml'))
+
+
+def test_a_replaced_value_does_not_scale() -> None:
+    """A later layer replaces the value with its quantity."""
+    old, new = Entry(1.0, 'm.yaml: a', 'assumed', 'stroke'), Entry(2.0, 'r.yaml: a', 'r.yaml')
+    assert merge({'a': old}, {'a': new}) == {'a': new}

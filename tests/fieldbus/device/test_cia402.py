@@ -1,0 +1,269 @@
+"""A CiA 402 drive in front of a real actuator: states, modes, scaling, limits."""
+
+import math
+
+from isa_ros.fieldbus.device.abort import INCOMPATIBLE, OUT_OF_RANGE, SdoAbort
+from isa_ros.fieldbus.device.cia402_states import Event, State, TRANSITIONS
+from isa_ros.fieldbus.device.devices import devices_of
+import pytest
+
+from ..master_402 import (
+    CSP, CST, CSV, ENABLE, enabled, IMPEDANCE, is_in, MODE_SHOWN, POSITION, RESET, SHUTDOWN, state,
+    STOP, SWITCH_ON, TORQUE, VELOCITY, VOLTAGE_OFF)
+from ..rig import Master, Rig
+
+
+@pytest.fixture
+def rig():
+    return Rig()
+
+
+def test_before_the_first_sample_the_drive_is_not_ready(rig):
+    device, = devices_of(rig.simulation.scenario.run)
+    assert state(int.from_bytes(device.read(0x6041, 0), 'little')) == 'NOT_READY'
+
+
+def test_time_is_wanted_from_the_first_control_word_on(rig):
+    master = Master(rig)
+    master.cycle(0)
+    assert not rig.device.is_wanted
+    master.cycle(SHUTDOWN)
+    assert rig.device.is_wanted
+    master.cycle(0)
+    assert rig.device.is_wanted
+
+
+def test_the_end_of_operation_does_not_begin_time(rig):
+    rig.device.end_operation(is_lost=False)
+    Master(rig).download(0x6066, 0, 1)
+    assert not rig.device.is_wanted
+
+
+def test_a_control_word_by_sdo_counts_as_well(rig):
+    Master(rig).download(0x6040, 0, SHUTDOWN)
+    assert rig.device.is_wanted
+
+
+@pytest.mark.parametrize(('words', 'states'), [
+    ((SHUTDOWN, SWITCH_ON, ENABLE), ('READY', 'SWITCHED_ON', 'OPERATION_ENABLED')),
+    ((SHUTDOWN, ENABLE, ENABLE), ('READY', 'SWITCHED_ON', 'OPERATION_ENABLED')),
+    ((SHUTDOWN, VOLTAGE_OFF), ('READY', 'SWITCH_ON_DISABLED')),
+    ((SHUTDOWN, STOP), ('READY', 'SWITCH_ON_DISABLED')),
+    ((SHUTDOWN, SWITCH_ON, SHUTDOWN), ('READY', 'SWITCHED_ON', 'READY')),
+    ((SHUTDOWN, SWITCH_ON, VOLTAGE_OFF), ('READY', 'SWITCHED_ON', 'SWITCH_ON_DISABLED')),
+    ((SHUTDOWN, SWITCH_ON, STOP), ('READY', 'SWITCHED_ON', 'SWITCH_ON_DISABLED')),
+    ((SHUTDOWN, SWITCH_ON, ENABLE, SWITCH_ON),
+     ('READY', 'SWITCHED_ON', 'OPERATION_ENABLED', 'SWITCHED_ON')),
+    ((SHUTDOWN, SWITCH_ON, ENABLE, SHUTDOWN),
+     ('READY', 'SWITCHED_ON', 'OPERATION_ENABLED', 'READY')),
+    ((SHUTDOWN, SWITCH_ON, ENABLE, VOLTAGE_OFF),
+     ('READY', 'SWITCHED_ON', 'OPERATION_ENABLED', 'SWITCH_ON_DISABLED')),
+    ((SHUTDOWN, SWITCH_ON, ENABLE, STOP),
+     ('READY', 'SWITCHED_ON', 'OPERATION_ENABLED', 'QUICK_STOP')),
+    ((SHUTDOWN, SWITCH_ON, ENABLE, STOP, VOLTAGE_OFF),
+     ('READY', 'SWITCHED_ON', 'OPERATION_ENABLED', 'QUICK_STOP', 'SWITCH_ON_DISABLED')),
+    ((SWITCH_ON, ENABLE), ('SWITCH_ON_DISABLED', 'SWITCH_ON_DISABLED')),
+    ((SHUTDOWN, RESET | SWITCH_ON), ('READY', 'READY')),
+])
+def test_control_words_lead_through_the_states(rig, words, states):
+    master = Master(rig)
+    assert state(master.cycle(VOLTAGE_OFF)) == 'SWITCH_ON_DISABLED'
+    assert tuple(state(master.cycle(word)) for word in words) == states
+    is_on = states[-1] == 'OPERATION_ENABLED' or states[-1] == 'QUICK_STOP'
+    master.cycle(words[-1])
+    assert (rig.sample['device_state'] in (2, 3)) == is_on
+
+
+def test_a_quick_stop_ends_switched_on_disabled_by_option_2(rig):
+    master = enabled(rig)
+    assert state(master.cycle(STOP)) == 'QUICK_STOP'
+    assert state(master.cycle(ENABLE)) == 'QUICK_STOP'
+    master.cycle_until(is_in('SWITCH_ON_DISABLED'), ENABLE)
+    assert rig.sample['device_state'] == 1
+    assert rig.simulation.ticks >= 200  # `quick_stop_hold_ms` of the sheet
+
+
+def test_a_quick_stop_stays_by_option_6_and_operation_goes_on(rig):
+    master = enabled(rig)
+    master.download(0x605A, 0, 6)
+    master.cycle(STOP)
+    for _ in range(300):
+        assert state(master.cycle(STOP)) == 'QUICK_STOP'
+    assert rig.sample['device_state'] == 1
+    assert state(master.cycle(ENABLE)) == 'OPERATION_ENABLED'
+    master.cycle(ENABLE)
+    assert rig.sample['device_state'] == 2
+
+
+def test_a_quick_stop_is_off_at_once_by_option_0(rig):
+    master = enabled(rig)
+    master.download(0x605A, 0, 0)
+    assert state(master.cycle(STOP)) == 'SWITCH_ON_DISABLED'
+    assert rig.sample['device_state'] == 1
+
+
+def test_what_is_disabled_or_stopped_from_elsewhere_is_followed(rig):
+    master = enabled(rig)
+    rig.simulation.command('ram', is_enabled=False)
+    rig.commands['kinds'] = 0
+    rig.simulation.step(rig.commands)
+    rig.device.take_sample(rig.sample, rig.simulation.ticks)
+    assert state(master.upload(0x6041)) == 'SWITCH_ON_DISABLED'
+    other = enabled(Rig())
+    other.rig.simulation.command('ram', quick_stop=True)
+    assert state(other.cycle(ENABLE)) == 'QUICK_STOP'
+
+
+def test_every_transition_has_a_row_and_every_state_a_way_out():
+    assert {row.number for row in TRANSITIONS} == set(range(1, 17))
+    assert {row.state for row in TRANSITIONS} == set(State)
+    assert {row.event for row in TRANSITIONS} == set(Event)
+
+
+# Modes.
+
+def test_position_mode_moves_to_the_target_in_micrometres(rig):
+    master = enabled(rig)
+    start = master.upload(0x6064)
+    for k in range(700):
+        target = start + min(20 * k, 10000)
+        master.cycle(ENABLE, x607A=target)
+    # Stiffness 1e5 N/m bears 50 kg: 490 N are 4.9 mm; without effort it hangs that much lower.
+    assert abs(master.inputs[POSITION] - target) < 5200
+    assert master.inputs[POSITION] == round(rig.sample['position'] * 1e6)
+    assert master.upload(0x6062) == target
+    assert master.upload(0x60F4) == target - master.inputs[POSITION]
+
+
+def test_velocity_mode_integrates_the_target_velocity(rig):
+    master = enabled(rig, CSV)
+    start = master.upload(0x6062)
+    for _ in range(200):
+        master.cycle(ENABLE, x60FF=50000)
+    assert master.upload(0x6062) - start == pytest.approx(200 * 50, abs=50)
+    for _ in range(100):
+        master.cycle(ENABLE)
+    # The friction of the seals is the only load along the reference: it lags, but as fast.
+    assert master.inputs[VELOCITY] == pytest.approx(50000, rel=0.15)
+
+
+def test_torque_mode_gives_the_force_in_per_mille_of_the_rated_one(rig):
+    master = enabled(rig, CST)
+    rated = master.upload(0x6076) * 1e-3
+    assert rated == 7500.0
+    for _ in range(60):
+        master.cycle(ENABLE, x6071=100, x60B2=20)
+    assert rig.sample['force_reference'] == pytest.approx(0.12 * rated)
+    assert master.inputs[TORQUE] == round(rig.sample['force'] / rated * 1000)
+    assert rig.sample['device_mode'] == 4
+
+
+def test_impedance_mode_takes_stiffness_and_damping_of_the_process_data(rig):
+    master = enabled(rig, IMPEDANCE)
+    master.outputs[0x2010, 1], master.outputs[0x2010, 2] = 2.5e4, 1500.0
+    master.cycle(ENABLE)
+    assert rig.sample['device_mode'] == 6
+    applied = rig.simulation.applied[0]
+    assert (applied['stiffness'], applied['damping']) == (2.5e4, 1500.0)
+    master.outputs[0x2010, 1] = math.nan
+    master.cycle(ENABLE)
+    assert rig.simulation.applied[0]['stiffness'] == 2.5e4
+
+
+def test_position_mode_restores_the_gains_of_the_block(rig):
+    master = enabled(rig, IMPEDANCE)
+    master.outputs[0x2010, 1], master.outputs[0x2010, 2] = 2.5e4, 1500.0
+    master.cycle(ENABLE)
+    master.cycle(ENABLE, x6060=CSP)
+    applied = rig.simulation.applied[0]
+    assert (applied['stiffness'], applied['damping']) == (1e5, 4000.0)
+
+
+def test_no_mode_holds_the_position(rig):
+    master = enabled(rig, 0)
+    start = rig.sample['position']
+    for _ in range(50):
+        word = master.cycle(ENABLE)
+    assert not word & 1 << 12
+    assert rig.sample['position'] == pytest.approx(start, abs=0.006)  # 490 N of 1e5 N/m
+
+
+def test_modes_change_while_enabled(rig):
+    master = enabled(rig, CSP)
+    for mode, own in ((CST, 4), (CSV, 6), (IMPEDANCE, 6), (CSP, 6)):
+        master.cycle(ENABLE, x6060=mode)
+        assert (master.inputs[MODE_SHOWN], rig.sample['device_mode']) == (mode, own)
+
+
+@pytest.mark.parametrize(('mode', 'reason'), [
+    (6, 'homing finds nothing: the encoder is absolute'),
+    (1, 'profile position needs a trajectory in the drive: send one in mode 8'),
+    (5, 'mode 5 does not exist here; there are -1, 0, 8, 9, 10')])
+def test_other_modes_are_refused_with_a_reason(rig, mode, reason):
+    master = enabled(rig)
+    with pytest.raises(SdoAbort) as refused:
+        master.download(0x6060, 0, mode)
+    assert refused.value.code == OUT_OF_RANGE
+    assert master.upload(0x2003) == reason
+    other = enabled(Rig())
+    other.cycle(ENABLE, x6060=mode)
+    assert other.inputs[MODE_SHOWN] == CSP
+    assert other.upload(0x2003) == reason
+
+
+@pytest.mark.parametrize(('config', 'bits'), [
+    ('rig_linear', 1 << 7 | 1 << 8 | 1 << 9 | 1 << 16),
+    ('rig_rotary_position', 1 << 7 | 1 << 8), ('rig_valve', 0)])
+def test_supported_modes_are_those_of_the_wiring(config, bits):
+    assert int.from_bytes(Rig(config).device.read(0x6502, 0), 'little') == bits
+
+
+def test_a_rotary_actuator_counts_microradians():
+    rig = Rig('rig_rotary_position')
+    master = enabled(rig)
+    assert master.upload(0x60A8) == 0xFA100000
+    assert master.inputs[POSITION] == round(rig.sample['position'] * 1e6)
+
+
+# Limits.
+
+def test_targets_beyond_the_limits_are_limited_and_say_so(rig):
+    master = enabled(rig)
+    assert not master.cycle(ENABLE) & 1 << 11
+    assert master.cycle(ENABLE, x607A=100001) & 1 << 11
+    assert rig.simulation.applied[0]['position'] == 0.1
+    master.download(0x607D, 2, 60000)
+    assert master.cycle(ENABLE, x607A=60001) & 1 << 11
+    assert rig.simulation.applied[0]['position'] == 0.06
+    assert not master.cycle(ENABLE, x607A=60000) & 1 << 11
+
+
+def test_limits_that_cross_are_refused(rig):
+    master = Master(rig)
+    master.download(0x607D, 2, 60000)
+    with pytest.raises(SdoAbort) as refused:
+        master.download(0x607D, 1, 60001)
+    assert refused.value.code == INCOMPATIBLE
+
+
+def test_forces_are_limited_to_max_torque_and_to_the_rated_ones(rig):
+    master = enabled(rig, CST)
+    assert master.cycle(ENABLE, x6071=-1000) & 1 << 11
+    assert rig.simulation.applied[0]['effort'] == -5174.0
+    master.download(0x6072, 0, 100)
+    master.cycle(ENABLE, x6071=-1000)
+    assert rig.simulation.applied[0]['effort'] == -750.0
+
+
+def test_a_drive_on_the_four_pdos_of_canopen_is_the_same(rig):
+    master = Master(rig, (0x1600, 0x1A00))
+    for control in (SHUTDOWN, SWITCH_ON, ENABLE, ENABLE):
+        word = master.cycle(control, x6060=CST, x6071=50)
+    assert state(word) == 'OPERATION_ENABLED'
+    assert rig.simulation.applied[0]['effort'] == 375.0
+
+
+def test_an_actuator_that_enables_itself_is_disabled_at_the_first_tick(rig):
+    assert rig.simulation.scenario.run.actuators[0].auto_enable
+    Master(rig).cycle(SHUTDOWN)
+    assert rig.sample['device_state'] == 1

@@ -1,0 +1,105 @@
+"""The shipped groups: each entry is reached or has a reason, and its references exist."""
+
+from pathlib import Path
+import re
+
+from isa_ros.cli.main import main
+from isa_ros.validation.groups import GROUPS
+from isa_ros.validation.page import write_page
+from isa_ros.validation.runner import Result, run_group
+import pytest
+
+DOCS = Path(__file__).parents[2] / 'docs'
+QUICK = [group for group in GROUPS if not group.is_long]
+LONG = [group for group in GROUPS if group.is_long]
+
+
+def section_of(result: Result, directory: Path) -> str:
+    """Return the part of a page that is about one group."""
+    page, *_ = write_page([result], directory)
+    _, heading, rest = page.read_text().partition(f'## {result.title}\n')
+    return heading + rest.partition('\n## ')[0].rstrip()
+
+
+def check(group, directory: Path) -> None:
+    """Check a group against its section of docs/validation.md."""
+    result = run_group(group)
+    assert all(entry.is_reached or entry.reason for entry in result.entries)
+    errata = set(re.findall(r'^\| (\d+) \|', (DOCS / 'paper-errata.md').read_text(), re.M))
+    for entry in result.entries:
+        cited = re.findall(r'\d+', entry.reading.partition(':')[0])
+        assert set(cited) <= errata
+    page = (DOCS / 'validation.md').read_text()
+    assert section_of(result, directory) in page
+    for picture in result.pictures:
+        assert f'(figures/validation_{picture.name}.png)' in page
+        assert (DOCS / 'figures' / f'validation_{picture.name}.png').is_file()
+
+
+@pytest.mark.parametrize('group', QUICK, ids=[group.name for group in QUICK])
+def test_a_group_is_as_the_shipped_page_shows_it(group, tmp_path):
+    """`isa validate --out docs` was run after the last change."""
+    check(group, tmp_path)
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize('group', LONG, ids=[group.name for group in LONG])
+def test_a_long_group_is_as_the_shipped_page_shows_it(group, tmp_path):
+    check(group, tmp_path)
+
+
+PAGE = (DOCS / 'validation.md').read_text()
+ROWS = [line.strip('| ').split(' | ') for line in PAGE.splitlines()
+        if re.match(r'\| [a-z_0-9]+\.[a-z_0-9]+ \|', line)]
+
+
+def test_each_row_of_the_page_is_of_the_paper_or_of_our_own():
+    """The first table counts them apart; a row has a verdict for each set of gains."""
+    assert {row[1] for row in ROWS} == {'paper', 'own'}
+    for source, entries, *verdicts in re.findall(
+            r'^\| (paper|own) \| (\d+) \| (\d+) \| (\d+) \| (\d+) \|', PAGE, re.M):
+        assert int(entries) == sum(map(int, verdicts))
+        assert int(entries) >= sum(row[1] == source for row in ROWS)
+
+
+@pytest.mark.parametrize('title', [
+    'The knee rig', 'Torque control of the rotary rig', 'Force control of the ISA v5'])
+def test_both_sets_of_gains_have_their_column(title):
+    _, _, section = PAGE.partition(f'## {title}')
+    assert ' | table_4 | default | ' in section.partition('\n|---')[0]
+
+
+@pytest.mark.parametrize('name', [
+    'rotary_rig.trot_position_error', 'valve_dynamics.smart_manifold_current_pole',
+    'valve_dynamics.isa_v5_spool_damping', 'reu_statics.isa_v5_w_lag',
+    'rotary_disturbances.torque_control_oscillation', 'rotary_rig.sensor_inertia',
+    'behaviour.smart_manifold_presliding', 'rotary_rig.torque_bandwidth_90_deg'])
+def test_what_the_paper_says_has_an_entry(name):
+    assert name in [row[0] for row in ROWS]
+
+
+def test_names_of_groups_are_different():
+    assert len({group.name for group in GROUPS}) == len(GROUPS)
+
+
+def test_one_entry_by_name(capsys):
+    assert main(['validate', '--only', 'actuator_data.manifold_stall']) == 0
+    printed = capsys.readouterr().out
+    assert printed.endswith(
+        'paper: 1 entries, 0 reached, 1 reached as read, 0 not reached; '
+        'own: 0 entries, 0 reached, 0 reached as read, 0 not reached\n')
+    assert '177.8' in printed
+
+
+def test_a_part_does_not_overwrite_the_page(tmp_path, capsys):
+    """`--only` with the directory of a whole page."""
+    (tmp_path / 'validation.md').write_text('whole')
+    assert main(['validate', '--only', 'valve_flow', '--out', str(tmp_path)]) == 2
+    assert 'validation.md already exists' in capsys.readouterr().err
+    assert (tmp_path / 'validation.md').read_text() == 'whole'
+
+
+def test_an_unknown_group_is_one_line_and_2(capsys):
+    assert main(['validate', '--only', 'valve_flows']) == 2
+    printed = capsys.readouterr().err
+    assert printed == 'isa: --only valve_flows: no such group; did you mean valve_flow?\n'
