@@ -7,6 +7,7 @@ newtons for a linear actuator, radians and newton metres for a rotary one.
 Force > 0 pushes out; pressures are gauge.
 """
 
+from isa_ros.core.fields import Field, record_type
 from isa_ros.core.timebase import FORCE_WINDOWS
 import numpy as np
 from numpy.typing import NDArray
@@ -49,56 +50,44 @@ COMMAND = np.dtype([
 GAINS_OF_COMMAND = ('stiffness', 'damping')
 """Fields of a `COMMAND` that may be NaN: the gains of the impedance."""
 
-SAMPLE = np.dtype([
-    ('position', '<f8'),            # encoder, m | rad
-    ('velocity', '<f8'),            # estimated by the REU, m/s | rad/s
-    ('force', '<f8'),               # load cell or torque sensor, N | Nm
-    ('pressure_a', '<f8'),          # Pa gauge
-    ('pressure_b', '<f8'),          # Pa gauge
-    ('spool', '<f8'),               # m
-    ('spool_velocity', '<f8'),      # m/s
-    ('current', '<f8'),             # amplifier (parallel) current, A
-    ('position_reference', '<f8'),  # m | rad
-    ('force_reference', '<f8'),     # N | Nm
-    ('spool_reference', '<f8'),     # m
-    ('current_reference', '<f8'),   # amplifier (parallel) current, A
-    ('supply_volume', '<f8'),       # oil drawn from the supply since t = 0, m3
-    ('supply_flow', '<f8'),         # its mean over the tick, m3/s
-    ('power', '<f8'),               # of the oil: mean over the tick, W
-    ('peak_power', '<f8'),          # greatest since t = 0, W
-    ('hydraulic_energy', '<f8'),    # of the oil drawn less that of the oil returned, J
-    ('leakage_energy', '<f8'),      # lost to the leakage of the valve, J
-    ('throttling_energy', '<f8'),   # lost at the open lands of the valve, J
-    ('cross_port_energy', '<f8'),   # lost past the piston or vane, and to the outside, J
-    ('relief_energy', '<f8'),       # lost through relief and refill valves, J
-    ('friction_energy', '<f8'),     # lost to the seals, J
-    ('damping_energy', '<f8'),      # lost in the force sensor; taken up by the end stops, J
-    ('work', '<f8'),                # done on the load, J
-    ('stored_energy', '<f8'),       # in oil, moving part and force sensor, more than at t = 0, J
-    ('temperature', '<f8'),         # of the oil in the actuator, as sensed, celsius
-    ('warnings', '<f8'),            # bit set of conditions as a whole number (isa_ros.conditions)
-    ('trips', '<f8'),               # likewise
-    ('device_state', '<f8'),        # number of `isa_ros.core.device.STATES`
-    ('device_mode', '<f8'),         # of `MODES`, in force or for the next enable
-    ('device_event', '<f8'),        # of `EVENTS`: the last one that changed the state or mode
-    ('state_since', '<f8'),         # time of the last change of these three or of the bits, s
-    ('age', '<f8'),                 # since it was sampled, s; > 0 behind a link only
-    ('supply_pressure', '<f8'),     # that the REU measures, Pa gauge
-])
-"""Values one actuator reports at the end of a tick."""
-
-SAMPLE_UNITS = {
-    'position': 'm | rad', 'velocity': 'm/s | rad/s', 'force': 'N | Nm',
-    'pressure_a': 'Pa', 'pressure_b': 'Pa', 'spool': 'm', 'spool_velocity': 'm/s',
-    'current': 'A', 'position_reference': 'm | rad', 'force_reference': 'N | Nm',
-    'spool_reference': 'm', 'current_reference': 'A', 'supply_volume': 'm3',
-    'supply_flow': 'm3/s', 'power': 'W', 'peak_power': 'W', 'hydraulic_energy': 'J',
-    'leakage_energy': 'J', 'throttling_energy': 'J', 'cross_port_energy': 'J',
-    'relief_energy': 'J', 'friction_energy': 'J', 'damping_energy': 'J', 'work': 'J',
-    'stored_energy': 'J', 'temperature': 'celsius', 'warnings': 'bits', 'trips': 'bits',
-    'device_state': '1', 'device_mode': '1', 'device_event': '1', 'state_since': 's',
-    'age': 's', 'supply_pressure': 'Pa'}
-"""Unit of each field of a `SAMPLE`: of a linear actuator | of a rotary one."""
+SAMPLE_FIELDS = (
+    Field('position', 'm | rad', 'read by the encoder'),
+    Field('velocity', 'm/s | rad/s', 'estimated by the REU'),
+    Field('force', 'N | Nm', 'read by the load cell or torque sensor'),
+    Field('pressure_a', 'Pa', 'of chamber A, as sensed, gauge'),
+    Field('pressure_b', 'Pa', 'of chamber B, as sensed, gauge'),
+    Field('spool', 'm', 'of its position sensor'),
+    Field('spool_velocity', 'm/s', 'exact, without a sensor'),
+    Field('current', 'A', 'of the amplifier, as sensed'),
+    Field('position_reference', 'm | rad', 'in force in the position block'),
+    Field('force_reference', 'N | Nm', 'of the force block'),
+    Field('spool_reference', 'm', 'of the spool block'),
+    Field('current_reference', 'A', 'of the amplifier'),
+    Field('supply_volume', 'm3', 'oil drawn from the supply since t = 0'),
+    Field('supply_flow', 'm3/s', 'oil drawn, mean over the tick'),
+    Field('power', 'W', 'of the oil, mean over the tick'),
+    Field('peak_power', 'W', 'greatest power since t = 0'),
+    Field('hydraulic_energy', 'J', 'of the oil drawn less that of the oil returned'),
+    Field('leakage_energy', 'J', 'lost to the leakage of the valve'),
+    Field('throttling_energy', 'J', 'lost at the open lands of the valve'),
+    Field('cross_port_energy', 'J', 'lost past the piston or vane, and to the outside'),
+    Field('relief_energy', 'J', 'lost through relief and refill valves'),
+    Field('friction_energy', 'J', 'lost to the seals'),
+    Field('damping_energy', 'J', 'lost in the force sensor; taken up by the end stops'),
+    Field('work', 'J', 'done on the load'),
+    Field('stored_energy', 'J', 'in oil, moving part and force sensor, more than at t = 0'),
+    Field('temperature', 'celsius', 'of the oil in the actuator, as sensed'),
+    Field('warnings', 'bits', 'set of conditions as a whole number (isa_ros.conditions)'),
+    Field('trips', 'bits', 'likewise'),
+    Field('device_state', '1', 'number of `isa_ros.core.device.STATES`'),
+    Field('device_mode', '1', 'number of `MODES`, in force or for the next enable'),
+    Field('device_event', '1', 'number of `EVENTS`: the last that changed the state or mode'),
+    Field('state_since', 's', 'time of the last change of these three or of the bits'),
+    Field('age', 's', 'since it was sampled; > 0 behind a link only'),
+    Field('supply_pressure', 'Pa', 'measured by the REU, gauge'),
+)
+"""The values one actuator reports at the end of a tick."""
+SAMPLE = record_type(SAMPLE_FIELDS)
 
 LOAD_PORT = np.dtype([
     ('x0', '<f8'),               # load position at the tick, m | rad

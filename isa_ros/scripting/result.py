@@ -6,15 +6,15 @@ from pathlib import Path
 from typing import Any, NamedTuple
 
 from isa_ros.core.accounts import Account, accounts_of
+from isa_ros.core.fields import units_of
 from isa_ros.core.record import floats
-from isa_ros.core.signals import Records, SAMPLE, SAMPLE_UNITS
+from isa_ros.core.signals import Records, SAMPLE, SAMPLE_FIELDS
 from isa_ros.core.suggest import alternatives
 from isa_ros.core.timebase import NS_PER_SECOND
-from isa_ros.core.units import of_coordinate
 from isa_ros.errors import AnalysisError
 from isa_ros.scenario.scenario import Scenario
 from isa_ros.simulation import Simulation
-from isa_ros.surroundings.supply import SUPPLY_UNITS
+from isa_ros.surroundings.supply import SUPPLY_FIELDS
 from isa_ros.text.progress import Progress
 import numpy as np
 from numpy.typing import NDArray
@@ -69,13 +69,12 @@ class Result(Mapping[str, NDArray[np.float64]]):
 
     def _units(self, body_units: Mapping[str, str]) -> Iterator[tuple[str, str]]:
         for actuator in self.scenario.run.actuators:
-            for field, unit in SAMPLE_UNITS.items():
-                unit = of_coordinate(unit, actuator.sheet.is_rotary)
+            for field, unit in units_of(SAMPLE_FIELDS, actuator.sheet.is_rotary).items():
                 yield f'{actuator.name}.{field}', unit
                 if actuator.name in self.scenario.run.linked:
                     yield f'{actuator.name}.{LINK}.{field}', unit
         for supply in self.scenario.run.supplies:
-            for field, unit in SUPPLY_UNITS.items():
+            for field, unit in units_of(SUPPLY_FIELDS).items():
                 yield f'{supply.name}.{field}', unit
         for field, unit in body_units.items():
             yield f'{BODY}.{field}', unit

@@ -13,6 +13,7 @@ from dataclasses import dataclass
 
 from isa_ros.core.atmosphere import ATMOSPHERE
 from isa_ros.core.elementary import exp, log
+from isa_ros.core.fields import Field, record_type
 from isa_ros.core.kernel import kernel
 from isa_ros.core.parameter import fault, nested, parameter, Parameters
 from isa_ros.core.units import LITRE, LPM, MPA
@@ -70,23 +71,20 @@ SUPPLY = np.dtype([
     ('p_set', 'f8'), ('p_t', 'f8'), ('v_0', 'f8'), ('p_0', 'f8'), ('n', 'f8'), ('c_line', 'f8'),
     ('q_max', 'f8'), ('lag', 'f8'), ('band', 'f8'), ('p_relief', 'f8'), ('k_relief', 'f8'),
     ('k_leak', 'f8')])
-SUPPLY_SAMPLE = np.dtype([
-    ('pressure', '<f8'),            # Pa gauge
-    ('return_pressure', '<f8'),     # Pa gauge
-    ('pump_flow', '<f8'),           # m3/s; 0 for an ideal supply
-    ('drawn', '<f8'),               # volume drawn by the actuators since t = 0, m3
-    ('returned', '<f8'),            # volume returned by the actuators since t = 0, m3
-    ('power', '<f8'),               # of the oil drawn less that returned, mean over the tick, W
-    ('peak_power', '<f8'),          # greatest since t = 0, W
-    ('energy', '<f8'),              # integral of the power since t = 0, J
-    ('pump_energy', '<f8'),         # of the pump since t = 0, J
-    ('relief_energy', '<f8'),       # lost through the relief valve since t = 0, J
-])
-"""State of one supply, which is also its sample at the end of a tick."""
-SUPPLY_UNITS = {
-    'pressure': 'Pa', 'return_pressure': 'Pa', 'pump_flow': 'm3/s', 'drawn': 'm3',
-    'returned': 'm3', 'power': 'W', 'peak_power': 'W', 'energy': 'J', 'pump_energy': 'J',
-    'relief_energy': 'J'}
+SUPPLY_FIELDS = (
+    Field('pressure', 'Pa', 'gauge'),
+    Field('return_pressure', 'Pa', 'gauge'),
+    Field('pump_flow', 'm3/s', '0 for an ideal supply'),
+    Field('drawn', 'm3', 'volume drawn by the actuators since t = 0'),
+    Field('returned', 'm3', 'volume returned by the actuators since t = 0'),
+    Field('power', 'W', 'of the oil drawn less that returned, mean over the tick'),
+    Field('peak_power', 'W', 'greatest power since t = 0'),
+    Field('energy', 'J', 'integral of the power since t = 0'),
+    Field('pump_energy', 'J', 'of the pump since t = 0'),
+    Field('relief_energy', 'J', 'lost through the relief valve since t = 0'),
+)
+"""The state of one supply, which is also its sample at the end of a tick."""
+SUPPLY_SAMPLE = record_type(SUPPLY_FIELDS)
 
 
 def supply_record(sheet: AccumulatorSupply) -> np.ndarray:

@@ -18,9 +18,9 @@ from isa_ros.config.text.sections import Place
 from isa_ros.config.text.yaml_text import Tree
 from isa_ros.core.conditions import BITS
 from isa_ros.core.device import STATES
+from isa_ros.core.fields import units_of
 from isa_ros.core.signals import (
-    COMMAND, HAS_CLEAR_FAULT, HAS_ENABLE, SAMPLE, SAMPLE_UNITS)
-from isa_ros.core.units import of_coordinate
+    COMMAND, HAS_CLEAR_FAULT, HAS_ENABLE, SAMPLE, SAMPLE_FIELDS)
 from isa_ros.errors import SimulationDiverged
 from isa_ros.plant.sensors import sensors_record
 from isa_ros.scripting.run import load, Run
@@ -173,8 +173,7 @@ def _resolution(rig: Run) -> dict[str, float]:
 
 def _units(rig: Run) -> dict[str, str]:
     is_rotary = rig.configuration.actuator('ram').sheet.is_rotary
-    return {_SUPPLY: 'Pa'} | {
-        name: of_coordinate(SAMPLE_UNITS[name], is_rotary) for name in MEASURED}
+    return {_SUPPLY: 'Pa'} | units_of(SAMPLE_FIELDS, is_rotary)
 
 
 def _recorded(rig: Run, faults: Sequence[Tree]) -> dict[str, NDArray[np.float64]]:

@@ -11,12 +11,12 @@ from typing import NamedTuple
 from isa_ros.analysis.signals.traces import read_traces, seconds, Trace
 from isa_ros.config.runs.run_config import RunConfig
 from isa_ros.core.atmosphere import ATMOSPHERE
-from isa_ros.core.signals import SAMPLE_UNITS
-from isa_ros.core.units import of_coordinate
+from isa_ros.core.fields import units_of
+from isa_ros.core.signals import SAMPLE_FIELDS
 from isa_ros.errors import BagError
 from isa_ros.scripting.result import BODY, Result
-from isa_ros.surroundings.leg.leg import fields_of_unit, units_of_sample
-from isa_ros.surroundings.supply import SUPPLY_UNITS
+from isa_ros.surroundings.leg.leg import fields_of_unit, sample_fields
+from isa_ros.surroundings.supply import SUPPLY_FIELDS
 import numpy as np
 from numpy.typing import NDArray
 
@@ -98,10 +98,11 @@ class Signals(Mapping[str, Values]):
         source, _, field = name.partition('.')
         if source == BODY:
             leg = self.run.leg
-            return units_of_sample([] if leg is None else [imu.name for imu in leg.imus])[field]
+            imus = [] if leg is None else [imu.name for imu in leg.imus]
+            return units_of(sample_fields(imus))[field]
         if any(supply.name == source for supply in self.run.supplies):
-            return SUPPLY_UNITS[field]
-        return of_coordinate(SAMPLE_UNITS[field], self.run.actuator(source).sheet.is_rotary)
+            return units_of(SUPPLY_FIELDS)[field]
+        return units_of(SAMPLE_FIELDS, self.run.actuator(source).sheet.is_rotary)[field]
 
     def __getitem__(self, name: str) -> Values:
         return self.over_time(name).values

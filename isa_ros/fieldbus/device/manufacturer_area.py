@@ -1,9 +1,11 @@
 """Objects 0x2000 to 0x5FFF: increments, further signals, and the gains and limits of the REU."""
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 import math
 
 from isa_ros.actuator.tunable import Tunable, tunables
+from isa_ros.core.fields import units_of
+from isa_ros.core.signals import SAMPLE_FIELDS
 from isa_ros.fieldbus.device.axis import Axis, FULL_SCALE, INCREMENT, PER_MILLE
 from isa_ros.fieldbus.device.dictionary import Key
 from isa_ros.fieldbus.device.objects import DataType, Entry, Object, record_of, Value, variable
@@ -22,24 +24,21 @@ _REU = 0x2030
 _F32 = DataType.REAL32
 _BITS = 'bit set, see docs/protection.md'
 
-_SIGNALS: Sequence[tuple[int, str, Sequence[tuple[str, str, str]]]] = (
-    (0x2020, 'Pressures', (
-        ('pressure_a', 'Pressure of chamber A', 'Pa'),
-        ('pressure_b', 'Pressure of chamber B', 'Pa'))),
-    (0x2021, 'Valve', (
-        ('spool', 'Spool position', 'm'), ('spool_velocity', 'Spool velocity', 'm/s'),
-        ('current', 'Current of the amplifier', 'A'),
-        ('spool_reference', 'Spool reference', 'm'),
-        ('current_reference', 'Current reference', 'A'))),
-    (0x2022, 'Force', (
-        ('force', 'Measured force', 'N | Nm'), ('force_reference', 'Force reference', 'N | Nm'))),
-    (0x2023, 'Temperature', (('temperature', 'Oil in the actuator', 'celsius'),)),
-    (0x2024, 'Supply', (
-        ('supply_flow', 'Flow drawn, mean of the tick', 'm3/s'),
-        ('supply_volume', 'Oil drawn', 'm3'), ('power', 'Power of the oil', 'W'),
-        ('peak_power', 'Peak power of the oil', 'W'),
-        ('supply_pressure', 'Supply pressure', 'Pa'))),
+_SIGNALS: Sequence[tuple[int, str, Mapping[str, str]]] = (
+    (0x2020, 'Pressures', {
+        'pressure_a': 'Pressure of chamber A', 'pressure_b': 'Pressure of chamber B'}),
+    (0x2021, 'Valve', {
+        'spool': 'Spool position', 'spool_velocity': 'Spool velocity',
+        'current': 'Current of the amplifier', 'spool_reference': 'Spool reference',
+        'current_reference': 'Current reference'}),
+    (0x2022, 'Force', {'force': 'Measured force', 'force_reference': 'Force reference'}),
+    (0x2023, 'Temperature', {'temperature': 'Oil in the actuator'}),
+    (0x2024, 'Supply', {
+        'supply_flow': 'Flow drawn, mean of the tick', 'supply_volume': 'Oil drawn',
+        'power': 'Power of the oil', 'peak_power': 'Peak power of the oil',
+        'supply_pressure': 'Supply pressure'}),
 )
+"""Index and name of a record, and the names of its entries by field of `SAMPLE`."""
 _STATES = (
     ('device_state', 'State', DataType.UNSIGNED8), ('device_mode', 'Mode', DataType.UNSIGNED8),
     ('device_event', 'Last event', DataType.UNSIGNED8))
@@ -52,14 +51,15 @@ def note_refusal(values: dict[Key, Value], reason: str) -> None:
 
 def manufacturer_objects(axis: Axis) -> list[Object]:
     """Return the objects of the manufacturer's area of an actuator."""
+    units = units_of(SAMPLE_FIELDS, axis.sheet.is_rotary)
     return [
         _increments(axis), _ranges(axis), _mit_ranges(axis),
         variable(Entry(*LAST_REFUSAL, 'Last refusal', DataType.VISIBLE_STRING, 'ro', '',
                        meaning='why the last request was refused', longest=_LONGEST)),
         _impedance(axis),
         *(record_of(index, name, [
-            Entry(index, k + 1, words, _F32, unit=axis.unit(unit), pdo='tx', source=field)
-            for k, (field, words, unit) in enumerate(signals)])
+            Entry(index, subindex, words, _F32, unit=units[field], pdo='tx', source=field)
+            for subindex, (field, words) in enumerate(signals.items(), 1)])
           for index, name, signals in _SIGNALS),
         record_of(0x2025, 'Conditions', [
             Entry(0x2025, 1, 'Warnings', DataType.UNSIGNED32, pdo='tx', source='warnings',

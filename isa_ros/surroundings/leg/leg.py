@@ -11,6 +11,7 @@ from dataclasses import dataclass
 import math
 from typing import NamedTuple
 
+from isa_ros.core.fields import Field, record_type, units_of
 from isa_ros.core.record import rows_of
 from isa_ros.core.saved_state import broken_number, restored_rows, TIME_BYTES, time_of
 from isa_ros.core.timebase import FORCE_WINDOWS, NS_PER_SECOND, PLANT_STEP_NS, steps_in
@@ -69,7 +70,8 @@ class Leg:
         self._release_ns = release_ns
         self._constants = leg_record(sheet)
         self._state = rows_of(1, LEG_STATE)
-        self._sample = rows_of(1, sample_type([unit.name for unit in units]))
+        self._fields = sample_fields([unit.name for unit in units])
+        self._sample = rows_of(1, record_type(self._fields))
         self._motion = self._sample.view(np.uint8)[:kernels.LEG_SAMPLE.itemsize].view(
             rows_of(1, kernels.LEG_SAMPLE).dtype)
         self._units = tuple(units)
@@ -139,14 +141,14 @@ class Leg:
         """
         Return the sample at the end of the last tick, (1,); overwritten by the next.
 
-        The fields of `LEG_SAMPLE`, and those of `sample_type` for each inertial unit.
+        Its fields are `sample_fields`.
         """
         return self._sample
 
     @property
     def units(self) -> Mapping[str, str]:
         """Return the unit of each field of the sample."""
-        return units_of_sample([unit.name for unit in self._units])
+        return units_of(self._fields)
 
     @property
     def is_held(self) -> bool:
@@ -238,15 +240,9 @@ def fields_of_unit(name: str) -> tuple[str, str]:
     return f'{name}_specific_force', f'{name}_angular_velocity'
 
 
-def sample_type(names: Sequence[str]) -> np.dtype[np.void]:
-    """Return the type of the sample of a leg with inertial units of these names."""
-    fields = [(field, '<f8', (3,)) for name in names for field in fields_of_unit(name)]
-    return np.dtype([*kernels.LEG_SAMPLE.descr, *fields])
-
-
-def units_of_sample(names: Sequence[str]) -> dict[str, str]:
-    """Return the unit of each field of a sample with inertial units of these names."""
-    units = dict(kernels.LEG_UNITS)
-    for name in names:
-        units |= dict(zip(fields_of_unit(name), ('m/s2', 'rad/s')))
-    return units
+def sample_fields(names: Sequence[str]) -> tuple[Field, ...]:
+    """Return the fields of the sample of a leg with inertial units of these names."""
+    readings = (('m/s2', 'in link axes'), ('rad/s', 'in link axes'))
+    return (*kernels.LEG_FIELDS, *(
+        Field(field, *reading, (3,))
+        for name in names for field, reading in zip(fields_of_unit(name), readings)))

@@ -9,6 +9,7 @@ the forces kept from tick to tick.
 
 import math
 
+from isa_ros.core.fields import Field, record_type
 from isa_ros.core.kernel import kernel
 from isa_ros.core.timebase import FORCE_WINDOWS, NS_PER_SECOND
 from isa_ros.surroundings.ground import contact
@@ -16,21 +17,18 @@ from isa_ros.surroundings.leg.motion import (
     actuator_accelerations, continuous, ContinuousState, Coordinates, joint_angles, joint_speeds,
     keep_continuous, leg_motion, leg_step, of_joints, shifted, solve, terms_of)
 from isa_ros.surroundings.leg.prediction import matched, predicted, resolved
-import numpy as np
 
-LEG_SAMPLE = np.dtype([
-    ('position', '<f8', (3,)),        # joint angles, rad
-    ('velocity', '<f8', (3,)),        # rad/s
-    ('torque', '<f8', (3,)),          # lever times sensor force, Nm
-    ('foot_force', '<f8', (3,)),      # from the ground, base axes, N
-    ('foot_position', '<f8', (3,)),   # base axes, z above the ground, m
-    ('height', '<f8'),                # HAA axis above the ground, m
-    ('height_velocity', '<f8'),       # m/s
-])
-"""What a leg shows at the end of a tick."""
-LEG_UNITS = {
-    'position': 'rad', 'velocity': 'rad/s', 'torque': 'Nm', 'foot_force': 'N',
-    'foot_position': 'm', 'height': 'm', 'height_velocity': 'm/s'}
+LEG_FIELDS = (
+    Field('position', 'rad', 'joint angles', (3,)),
+    Field('velocity', 'rad/s', 'of the joints', (3,)),
+    Field('torque', 'Nm', 'lever times sensor force', (3,)),
+    Field('foot_force', 'N', 'from the ground, base axes', (3,)),
+    Field('foot_position', 'm', 'base axes, z above the ground', (3,)),
+    Field('height', 'm', 'HAA axis above the ground'),
+    Field('height_velocity', 'm/s', 'of the HAA axis'),
+)
+"""The sample of a leg at the end of a tick."""
+LEG_SAMPLE = record_type(LEG_FIELDS)
 
 SUBSTEP_NS = 100_000        # longest Runge-Kutta step of the leg, coupling.md
 PROBE_DISPLACEMENT = 1e-7   # m | rad: 1e-3 of the smallest depth at which the ground matters

@@ -1,0 +1,35 @@
+"""
+Write the tables of docs/signals.md from the fields of all samples.
+
+    python scripts/write_signals.py
+"""
+
+from collections.abc import Sequence
+from pathlib import Path
+
+from isa_ros.core.fields import Field
+from isa_ros.core.signals import SAMPLE_FIELDS
+from isa_ros.surroundings.leg.leg import sample_fields
+from isa_ros.surroundings.supply import SUPPLY_FIELDS
+from isa_ros.text.marked import with_parts
+from isa_ros.text.table import markdown
+
+PAGE = Path(__file__).resolve().parents[1] / 'docs' / 'signals.md'
+
+
+def lines(fields: Sequence[Field]) -> list[str]:
+    """Return the lines of a table with one row a field."""
+    return markdown([['field', 'unit', 'meaning'], *(
+        [f'`{field.name}`' + ''.join(f', {n} values' for n in field.shape),
+         field.unit.replace(' | ', ' or '), field.meaning] for field in fields)])
+
+
+def page(text: str) -> str:
+    """Return the text of the page with the tables of today."""
+    return with_parts(text, {
+        'actuator': lines(SAMPLE_FIELDS), 'supply': lines(SUPPLY_FIELDS),
+        'leg': lines(sample_fields(['UNIT']))})
+
+
+if __name__ == '__main__':
+    PAGE.write_text(page(PAGE.read_text(encoding='utf-8')), encoding='utf-8')
