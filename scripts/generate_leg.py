@@ -1,5 +1,5 @@
 """
-Generate isa_ros/surroundings/leg/dynamics.py: the leg's equations of motion in closed form.
+Generate isa_ros/surroundings/bodies/leg/dynamics.py: the leg's equations of motion in closed form.
 
     python scripts/generate_leg.py [--out FILE]
 
@@ -29,7 +29,7 @@ import sympy as sp
 from sympy.printing.precedence import PRECEDENCE
 from sympy.printing.pycode import PythonCodePrinter
 
-TARGET = Path(__file__).resolve().parents[1] / 'isa_ros' / 'surroundings' / 'leg' / 'dynamics.py'
+TARGET = Path(__file__).resolve().parents[1] / 'isa_ros' / 'surroundings' / 'bodies' / 'leg' / 'dynamics.py'
 LINKS = ('hip', 'thigh', 'calf')
 COORDINATES = ('z', 'haa', 'hfe', 'kfe')
 AXES = ('x', 'y', 'z')
@@ -252,7 +252,7 @@ def assignments(leg, entries):
 
 
 def generate():
-    """Return the source of isa_ros/surroundings/leg/dynamics.py."""
+    """Return the source of isa_ros/surroundings/bodies/leg/dynamics.py."""
     leg = Leg()
     entries = outputs(leg)
     shorten(leg, entries)

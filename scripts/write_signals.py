@@ -9,7 +9,7 @@ from pathlib import Path
 
 from isa_ros.core.fields import Field
 from isa_ros.core.signals import SAMPLE_FIELDS
-from isa_ros.surroundings.leg.leg import sample_fields
+from isa_ros.surroundings.bodies.leg.leg import sample_fields
 from isa_ros.surroundings.supply import SUPPLY_FIELDS
 from isa_ros.text.marked import with_parts
 from isa_ros.text.table import markdown

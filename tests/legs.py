@@ -2,7 +2,7 @@
 
 from isa_ros.config.models.catalogue import leg_section
 from isa_ros.config.text.parameter_sets import build
-from isa_ros.surroundings.leg.sheet import LegSheet
+from isa_ros.surroundings.bodies.leg.sheet import LegSheet
 
 
 def leg_sheet(name: str = 'hyq_real') -> LegSheet:

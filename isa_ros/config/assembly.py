@@ -12,8 +12,8 @@ from isa_ros.core.units import MILLI
 from isa_ros.loads.sheets import static_force
 from isa_ros.plant.plant import plant_record
 from isa_ros.plant.servo_valve import largest_flow_slope
+from isa_ros.surroundings.bodies.leg.leg import Leg, Pose, Unit
 from isa_ros.surroundings.body import Body
-from isa_ros.surroundings.leg.leg import Leg, Pose, Unit
 from isa_ros.surroundings.surroundings import Feed, Surroundings
 import numpy as np
 

@@ -20,7 +20,7 @@ from isa_ros.config.text.yaml_text import read, Tree
 from isa_ros.core.parameter import Parameters
 from isa_ros.errors import ConfigError
 from isa_ros.loads.sheets import LocalLoad
-from isa_ros.surroundings.leg.sheet import LegSheet
+from isa_ros.surroundings.bodies.leg.sheet import LegSheet
 from isa_ros.text.table import aligned
 
 SET = '--set'

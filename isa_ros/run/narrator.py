@@ -8,8 +8,8 @@ from isa_ros.config.runs.run_config import RunConfig
 from isa_ros.plant.plant import is_heated
 from isa_ros.run.exchange import Recorder
 from isa_ros.run.packing import BodyMessages, Messages, Names, Packer, Shown
-from isa_ros.surroundings.leg.leg import fields_of_unit
-from isa_ros.surroundings.leg.sheet import JOINTS
+from isa_ros.surroundings.bodies.leg.leg import fields_of_unit
+from isa_ros.surroundings.bodies.leg.sheet import JOINTS
 from isa_ros.surroundings.return_line import VolumeReturn
 from msg_adapters import clock, coordinator_messages, diagnostics, event
 

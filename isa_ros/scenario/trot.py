@@ -19,8 +19,8 @@ from isa_ros.core.elementary import acos, atan2, cos, sin
 from isa_ros.core.gravity import STANDARD_GRAVITY
 from isa_ros.core.parameter import parameter, Parameters
 from isa_ros.errors import ConfigError
-from isa_ros.surroundings.leg.dynamics import leg_terms
-from isa_ros.surroundings.leg.sheet import body_record, JOINTS, LegSheet
+from isa_ros.surroundings.bodies.leg.dynamics import leg_terms
+from isa_ros.surroundings.bodies.leg.sheet import body_record, JOINTS, LegSheet
 import numpy as np
 
 CHECKED_INSTANTS = 400  # of a stride, at which a leg must reach its foothold

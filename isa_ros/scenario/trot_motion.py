@@ -20,7 +20,7 @@ from isa_ros.core.timebase import NS_PER_SECOND
 from isa_ros.errors import ConfigError
 from isa_ros.scenario.trot import CHECKED_INSTANTS, smooth_step, Trot, TrottingLeg
 from isa_ros.scenario.waveforms import Excursion
-from isa_ros.surroundings.leg.sheet import Direct, JOINTS, LegSheet, linkage_record
+from isa_ros.surroundings.bodies.leg.sheet import Direct, JOINTS, LegSheet, linkage_record
 from isa_ros.surroundings.linkage import actuator_coordinate
 import numpy as np
 

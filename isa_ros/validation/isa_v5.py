@@ -18,8 +18,8 @@ from isa_ros.config.runs.run_file import load_run
 from isa_ros.core.units import MILLI, MPA
 from isa_ros.loads.sheets import Blocked, Mass
 from isa_ros.paper.printed import statement
-from isa_ros.surroundings.leg.dynamics import leg_terms
-from isa_ros.surroundings.leg.sheet import body_record, JOINTS, linkage_record
+from isa_ros.surroundings.bodies.leg.dynamics import leg_terms
+from isa_ros.surroundings.bodies.leg.sheet import body_record, JOINTS, linkage_record
 from isa_ros.surroundings.linkage import actuator_coordinate
 from isa_ros.validation.actuators import Actuators, SHIPPED
 from isa_ros.validation.entry import (

@@ -10,7 +10,7 @@ from isa_ros.config.text.parameter_sets import build, build_one_of
 from isa_ros.errors import ConfigError, IsaError
 from isa_ros.loads.sheets import LocalLoad
 from isa_ros.scripting.run import load
-from isa_ros.surroundings.leg.sheet import LegSheet
+from isa_ros.surroundings.bodies.leg.sheet import LegSheet
 import pytest
 
 SOURCES = ('paper', 'derived', 'assumed', 'public model')

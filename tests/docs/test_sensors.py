@@ -6,7 +6,7 @@ import re
 
 from isa_ros.config.runs.run_file import load_run
 from isa_ros.plant.channels import CHANNELS, LINE, PositionChannel
-from isa_ros.surroundings.leg.inertial import LINKS
+from isa_ros.surroundings.bodies.leg.inertial import LINKS
 from tests.sheets import actuator_sheet
 
 PAGE = (Path(__file__).parents[2] / 'docs' / 'sensors.md').read_text()

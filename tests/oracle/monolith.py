@@ -18,9 +18,9 @@ from isa_ros.plant.channels import CHANNELS_STATE
 from isa_ros.plant.plant import plant_rates, sense
 from isa_ros.plant.spool import stop_spool
 from isa_ros.reu.cascade import cascade_step, is_due, REU_STATE
-from isa_ros.surroundings.leg.motion import (
+from isa_ros.surroundings.bodies.leg.motion import (
     continuous, joint_angles, leg_rates, LEG_STATE, shifted, terms_of)
-from isa_ros.surroundings.leg.sheet import leg_record
+from isa_ros.surroundings.bodies.leg.sheet import leg_record
 from isa_ros.surroundings.linkage import actuator_coordinate
 import numpy as np
 

@@ -7,8 +7,8 @@ from isa_ros.actuator.actuator import SmartActuator, Timing
 from isa_ros.actuator.sheet import ActuatorSheet
 from isa_ros.config.runs.run_config import ActuatorConfig
 from isa_ros.core.signals import LOAD_PORT, LOAD_REPLY
-from isa_ros.surroundings.leg.leg import Leg, Pose
-from isa_ros.surroundings.leg.sheet import LegSheet
+from isa_ros.surroundings.bodies.leg.leg import Leg, Pose
+from isa_ros.surroundings.bodies.leg.sheet import LegSheet
 import numpy as np
 from tests.legs import leg_sheet
 from tests.oracle.monolith import monolith, ROW_NS, TRACE

@@ -7,8 +7,8 @@ from pathlib import Path
 from hypothesis import given, strategies as st
 from isa_ros.errors import ConfigError
 from isa_ros.scenario.trot import foot_at, leg_angles, Trot, TrottingLeg
-from isa_ros.surroundings.leg.dynamics import leg_terms
-from isa_ros.surroundings.leg.sheet import body_record, STANDARD_GRAVITY
+from isa_ros.surroundings.bodies.leg.dynamics import leg_terms
+from isa_ros.surroundings.bodies.leg.sheet import body_record, STANDARD_GRAVITY
 import numpy as np
 import pytest
 from tests.legs import leg_sheet

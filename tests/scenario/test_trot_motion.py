@@ -10,7 +10,7 @@ from isa_ros.core.signals import COMMAND
 from isa_ros.errors import ConfigError
 from isa_ros.scenario.scenario import load_scenario
 from isa_ros.scenario.trot_motion import GaitMotion, read_gait
-from isa_ros.surroundings.leg.sheet import linkage_record
+from isa_ros.surroundings.bodies.leg.sheet import linkage_record
 from isa_ros.surroundings.linkage import actuator_coordinate
 import numpy as np
 import pytest

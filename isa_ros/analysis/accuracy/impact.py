@@ -22,10 +22,10 @@ from isa_ros.core.signals import COMMAND, LOAD_PORT
 from isa_ros.core.timebase import FORCE_WINDOWS, NS_PER_SECOND
 from isa_ros.scripting.run import load
 from isa_ros.simulation import Simulation
-from isa_ros.surroundings.leg.leg import Leg
-from isa_ros.surroundings.leg.motion import continuous, leg_motion, LEG_STATE, leg_step
-from isa_ros.surroundings.leg.port_kernel import mean_forces
-from isa_ros.surroundings.leg.sheet import leg_record
+from isa_ros.surroundings.bodies.leg.leg import Leg
+from isa_ros.surroundings.bodies.leg.motion import continuous, leg_motion, LEG_STATE, leg_step
+from isa_ros.surroundings.bodies.leg.port_kernel import mean_forces
+from isa_ros.surroundings.bodies.leg.sheet import leg_record
 import numpy as np
 
 CONFIG = 'leg'

@@ -15,7 +15,7 @@ from isa_ros.core.fields import units_of
 from isa_ros.core.signals import SAMPLE_FIELDS
 from isa_ros.errors import BagError
 from isa_ros.scripting.result import BODY, Result
-from isa_ros.surroundings.leg.leg import fields_of_unit, sample_fields
+from isa_ros.surroundings.bodies.leg.leg import fields_of_unit, sample_fields
 from isa_ros.surroundings.supply import SUPPLY_FIELDS
 import numpy as np
 from numpy.typing import NDArray

@@ -10,7 +10,7 @@ bounds are from drops of the HyQ-REAL leg on grounds of 1e7 to 1e9 N/m^1.5 with 
 from isa_ros.config.runs.run_config import RunConfig
 from isa_ros.core.timebase import NS_PER_SECOND
 from isa_ros.core.units import MILLI
-from isa_ros.surroundings.leg.impact import contact_time
+from isa_ros.surroundings.bodies.leg.impact import contact_time
 
 LEAST_TICKS = 3.0   # of an impact: with fewer, its peaks missed up to 7 %, with more 1.2 %
 ENOUGH_TICKS = 5.0  # with so many they missed less than 1 %

@@ -10,8 +10,8 @@ from isa_ros.config.text.sections import Place, refuse_unknown, section_at
 from isa_ros.config.text.yaml_text import Tree
 from isa_ros.core.parameter import parameter, Parameters
 from isa_ros.errors import ConfigError
-from isa_ros.surroundings.leg.inertial import Imu
-from isa_ros.surroundings.leg.sheet import JOINTS, LegSheet, linkage_record
+from isa_ros.surroundings.bodies.leg.inertial import Imu
+from isa_ros.surroundings.bodies.leg.sheet import JOINTS, LegSheet, linkage_record
 from isa_ros.surroundings.linkage import actuator_coordinate
 
 

@@ -18,8 +18,8 @@ from isa_ros.core.parameter import parameter, Parameters
 from isa_ros.core.timebase import refuse_grid
 from isa_ros.errors import ConfigError
 from isa_ros.loads.sheets import LocalLoad
-from isa_ros.surroundings.leg.inertial import Imu
-from isa_ros.surroundings.leg.sheet import LegSheet
+from isa_ros.surroundings.bodies.leg.inertial import Imu
+from isa_ros.surroundings.bodies.leg.sheet import LegSheet
 from isa_ros.surroundings.supply import SupplySheet
 
 

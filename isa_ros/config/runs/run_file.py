@@ -37,8 +37,8 @@ from isa_ros.loads.sheets import linearised, LocalLoad
 from isa_ros.plant.plant import plant_record
 from isa_ros.plant.step_limits import LoadSide, refuse_too_fast
 from isa_ros.reu.wiring import mode_of
-from isa_ros.surroundings.leg.inertial import Imu
-from isa_ros.surroundings.leg.sheet import JOINTS, LegSheet
+from isa_ros.surroundings.bodies.leg.inertial import Imu
+from isa_ros.surroundings.bodies.leg.sheet import JOINTS, LegSheet
 
 __all__ = [
     'ActuatorConfig', 'LegConfig', 'LegStart', 'load_run', 'Origins', 'read_run', 'RunConfig']

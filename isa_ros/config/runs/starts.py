@@ -11,7 +11,7 @@ from isa_ros.config.text.yaml_text import Tree
 from isa_ros.core.parameter import check
 from isa_ros.core.units import MILLI
 from isa_ros.errors import ConfigError
-from isa_ros.surroundings.leg.sheet import JOINTS, LegSheet
+from isa_ros.surroundings.bodies.leg.sheet import JOINTS, LegSheet
 
 
 def leg_start(tree: Tree, place: Place, base: LegStart | None = None) -> LegStart:

@@ -4,8 +4,8 @@ import math
 
 from isa_ros.core.signals import LOAD_REPLY
 from isa_ros.core.timebase import FORCE_WINDOWS
-from isa_ros.surroundings.leg.leg import Leg, Pose
-from isa_ros.surroundings.leg.motion import LEG_STATE
+from isa_ros.surroundings.bodies.leg.leg import Leg, Pose
+from isa_ros.surroundings.bodies.leg.motion import LEG_STATE
 import numpy as np
 import pytest
 from tests.legs import leg_sheet

@@ -11,9 +11,10 @@ Neglected: friction of joints and rail, compliance of links and joints.
 from typing import NamedTuple
 
 from isa_ros.core.kernel import kernel
+from isa_ros.surroundings.bodies.leg.dynamics import LEG_BODY, leg_terms
 from isa_ros.surroundings.ground import contact, GROUND
-from isa_ros.surroundings.leg.dynamics import LEG_BODY, leg_terms
 from isa_ros.surroundings.linkage import actuator_coordinate, LINKAGE
+from isa_ros.surroundings.port import kept_forces
 import numpy as np
 
 
@@ -39,10 +40,7 @@ class ContinuousState(NamedTuple):
 
 LEG_STATE = np.dtype([
     *((name, '<f8') for name in ContinuousState._fields),
-    ('force', '<f8', (3,)),       # estimated at the tick's end, N | Nm
-    ('slope', '<f8', (3,)),       # its slope, N/s | Nm/s
-    ('mean_force', '<f8', (3,)),  # over the last tick, N | Nm
-    ('older_mean', '<f8', (3,)),  # over the tick before, N | Nm
+    *kept_forces(3),
     ('is_held', '<f8'),           # 1.0: the slider is locked
 ])
 """The state of a leg that persists from tick to tick."""

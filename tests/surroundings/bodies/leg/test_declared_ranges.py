@@ -14,7 +14,7 @@ from isa_ros.config.text.yaml_text import read
 from isa_ros.core.parameter import Parameters
 from isa_ros.errors import IsaError, SimulationDiverged
 from isa_ros.scripting.run import load, Run
-from isa_ros.surroundings.leg.sheet import JOINTS
+from isa_ros.surroundings.bodies.leg.sheet import JOINTS
 import numpy as np
 import pytest
 from tests.legs import leg_sheet

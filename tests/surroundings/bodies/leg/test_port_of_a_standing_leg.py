@@ -11,9 +11,9 @@ from functools import cache
 import math
 
 from isa_ros.core.signals import LOAD_PORT, LOAD_REPLY
-from isa_ros.surroundings.leg.leg import Leg, Pose
-from isa_ros.surroundings.leg.motion import continuous, leg_motion, LEG_STATE, leg_step
-from isa_ros.surroundings.leg.sheet import JOINTS, leg_record
+from isa_ros.surroundings.bodies.leg.leg import Leg, Pose
+from isa_ros.surroundings.bodies.leg.motion import continuous, leg_motion, LEG_STATE, leg_step
+from isa_ros.surroundings.bodies.leg.sheet import JOINTS, leg_record
 import numpy as np
 import pytest
 from tests.legs import leg_sheet

@@ -5,13 +5,13 @@ import math
 from pathlib import Path
 
 from hypothesis import given, settings, strategies as st
-from isa_ros.surroundings.leg.dynamics import LEG_BODY, leg_terms
-from isa_ros.surroundings.leg.sheet import body_record, STANDARD_GRAVITY
+from isa_ros.surroundings.bodies.leg.dynamics import LEG_BODY, leg_terms
+from isa_ros.surroundings.bodies.leg.sheet import body_record, STANDARD_GRAVITY
 import numpy as np
 import pytest
 from tests.legs import leg_sheet
 
-ROOT = Path(__file__).resolve().parents[3]
+ROOT = Path(__file__).resolve().parents[4]
 LEGS = ('hyq_real', 'hyq')
 BODY = body_record(leg_sheet().body)[0]
 BODIES = {name: body_record(leg_sheet(name).body)[0] for name in LEGS}

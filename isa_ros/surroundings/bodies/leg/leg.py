@@ -16,10 +16,10 @@ from isa_ros.core.record import rows_of
 from isa_ros.core.saved_state import broken_number, restored_rows, TIME_BYTES, time_of
 from isa_ros.core.timebase import FORCE_WINDOWS, NS_PER_SECOND, PLANT_STEP_NS, steps_in
 from isa_ros.errors import ConfigError, SimulationDiverged
-from isa_ros.surroundings.leg import port_kernel as kernels
-from isa_ros.surroundings.leg.inertial import AXES, Imu, imu_record, read_imu
-from isa_ros.surroundings.leg.motion import continuous, ContinuousState, LEG_STATE, terms_of
-from isa_ros.surroundings.leg.sheet import JOINTS, leg_record, LegSheet
+from isa_ros.surroundings.bodies.leg import port_kernel as kernels
+from isa_ros.surroundings.bodies.leg.inertial import AXES, Imu, imu_record, read_imu
+from isa_ros.surroundings.bodies.leg.motion import continuous, ContinuousState, LEG_STATE, terms_of
+from isa_ros.surroundings.bodies.leg.sheet import JOINTS, leg_record, LegSheet
 from isa_ros.surroundings.linkage import actuator_coordinate
 import numpy as np
 

@@ -2,9 +2,9 @@
 
 import math
 
-from isa_ros.surroundings.leg import motion as kernels
-from isa_ros.surroundings.leg.impact import contact_time, foot_mass, IMPACT_SPEED
-from isa_ros.surroundings.leg.sheet import leg_record
+from isa_ros.surroundings.bodies.leg import motion as kernels
+from isa_ros.surroundings.bodies.leg.impact import contact_time, foot_mass, IMPACT_SPEED
+from isa_ros.surroundings.bodies.leg.sheet import leg_record
 import numpy as np
 import pytest
 from scipy.integrate import solve_ivp

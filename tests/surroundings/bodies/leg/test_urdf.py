@@ -11,7 +11,7 @@ from isa_ros.run.narrator import packer_of
 from msg_adapters.cdr_reader import decode, message_class
 import pytest
 
-URDF = Path(__file__).resolve().parents[3] / 'urdf'
+URDF = Path(__file__).resolve().parents[4] / 'urdf'
 LEGS = ('leg', 'hyq_leg', 'rig_knee')
 
 

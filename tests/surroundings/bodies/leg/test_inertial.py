@@ -8,11 +8,11 @@ from isa_ros.core.noise import noise_key
 from isa_ros.core.record import rows_of
 from isa_ros.core.signals import LOAD_REPLY
 from isa_ros.errors import ParameterError
-from isa_ros.surroundings.leg import inertial
-from isa_ros.surroundings.leg.inertial import carried, Imu, link_motion, LINKS
-from isa_ros.surroundings.leg.leg import Leg, Pose, Unit
-from isa_ros.surroundings.leg.motion import ContinuousState, Coordinates
-from isa_ros.surroundings.leg.sheet import body_record
+from isa_ros.surroundings.bodies.leg import inertial
+from isa_ros.surroundings.bodies.leg.inertial import carried, Imu, link_motion, LINKS
+from isa_ros.surroundings.bodies.leg.leg import Leg, Pose, Unit
+from isa_ros.surroundings.bodies.leg.motion import ContinuousState, Coordinates
+from isa_ros.surroundings.bodies.leg.sheet import body_record
 import numpy as np
 import pytest
 from scipy import stats

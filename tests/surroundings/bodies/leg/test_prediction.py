@@ -10,11 +10,10 @@ import math
 
 from isa_ros.core.signals import LOAD_PORT, LOAD_REPLY
 from isa_ros.loads.port import load_acceleration
-from isa_ros.surroundings.leg import prediction
-from isa_ros.surroundings.leg.leg import Leg, Pose
-from isa_ros.surroundings.leg.motion import (
+from isa_ros.surroundings.bodies.leg.leg import Leg, Pose
+from isa_ros.surroundings.bodies.leg.motion import (
     continuous, joint_speeds, leg_motion, LEG_STATE, leg_step)
-from isa_ros.surroundings.leg.sheet import JOINTS, leg_record
+from isa_ros.surroundings.bodies.leg.sheet import JOINTS, leg_record
 import numpy as np
 import pytest
 from tests.legs import leg_sheet
@@ -104,23 +103,3 @@ def test_one_of_the_ticks_begins_in_the_air() -> None:
     """The port knows of the ground before the foot has reached it."""
     assert landing(0)[0].sample[0]['foot_position'][2] > 0.0
     assert landing(1)[0].sample[0]['foot_position'][2] < 0.0
-
-
-@pytest.mark.parametrize(('k', 'd'), [
-    (0.0, 0.0), (1e5, 50.0), (9.8e6, 0.0), (0.0, 2e4), (-1e5, -20.0)])
-def test_matched_coefficients_meet_place_and_speed(k: float, d: float) -> None:
-    """The answer of e'' = a + b t - k e - d e' to (a, b) is the sum of those to 1 and t."""
-    a, b = prediction.matched(1e-5, 0.02, TICK, k, d)
-    e, v, h = 0.0, 0.0, TICK / 20_000
-    for i in range(20_000):
-        acceleration = a + b * (i + 0.5) * h - k * (e + 0.5 * h * v) - d * v
-        e, v = e + h * (v + 0.5 * h * acceleration), v + h * acceleration
-    # Steps of 50 ns: the midpoint's error is below h d/2 = 5e-4 of the speed.
-    assert e == pytest.approx(1e-5, rel=1e-3)
-    assert v == pytest.approx(0.02, rel=1e-3)
-
-
-def test_a_copy_swings_no_faster_than_once_in_two_ticks() -> None:
-    """The stiffness of a port is cut where a and b could not be told apart: k H^2 = pi^2."""
-    assert prediction.resolved(1e6, TICK) == 1e6
-    assert prediction.resolved(1e9, TICK) == pytest.approx((math.pi / TICK) ** 2)

@@ -7,8 +7,8 @@ per cent, friction, and the leg's weight.
 """
 
 from isa_ros.core.elementary import exp, log
-from isa_ros.surroundings.leg.motion import ContinuousState, factor, solve, terms_of
-from isa_ros.surroundings.leg.sheet import leg_record, LegSheet
+from isa_ros.surroundings.bodies.leg.motion import ContinuousState, factor, solve, terms_of
+from isa_ros.surroundings.bodies.leg.sheet import leg_record, LegSheet
 
 IMPACT_SPEED = 1.0  # m/s, a fall of 5 cm; at four times the speed the time is a quarter shorter
 _SHARE, _EXPONENT = 5.0 / 4.0, 2.0 / 5.0    # of the energy, m v^2/2 = (2/5) k d^2.5

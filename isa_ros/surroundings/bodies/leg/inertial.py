@@ -27,7 +27,7 @@ from isa_ros.core.record import record
 from isa_ros.core.timebase import NS_PER_SECOND
 from isa_ros.core.units import MILLI
 from isa_ros.errors import ParameterError
-from isa_ros.surroundings.leg.motion import continuous, leg_motion
+from isa_ros.surroundings.bodies.leg.motion import continuous, leg_motion
 import numpy as np
 
 LINKS = ('slider_link', 'hip', 'thigh', 'calf')

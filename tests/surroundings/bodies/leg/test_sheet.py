@@ -7,13 +7,13 @@ from pathlib import Path
 from isa_ros.config.models.catalogue import leg_names
 from isa_ros.errors import ParameterError
 from isa_ros.surroundings import linkage
-from isa_ros.surroundings.leg.sheet import body_record, leg_record, linkage_record
+from isa_ros.surroundings.bodies.leg.sheet import body_record, leg_record, linkage_record
 import pytest
 from tests.legs import leg_sheet
 import yaml
 
 SHEET = leg_sheet()
-ROOT = Path(__file__).resolve().parents[3]
+ROOT = Path(__file__).resolve().parents[4]
 
 
 def test_records_are_si():

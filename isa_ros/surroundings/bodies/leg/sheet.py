@@ -15,9 +15,9 @@ from isa_ros.core.parameter import parameter, Parameters
 from isa_ros.core.record import record, rows_of
 from isa_ros.errors import ParameterError
 from isa_ros.surroundings import linkage as kernels
+from isa_ros.surroundings.bodies.leg.dynamics import LEG_BODY
+from isa_ros.surroundings.bodies.leg.motion import LEG
 from isa_ros.surroundings.ground import Ground, ground_record
-from isa_ros.surroundings.leg.dynamics import LEG_BODY
-from isa_ros.surroundings.leg.motion import LEG
 import numpy as np
 
 JOINTS = ('haa', 'hfe', 'kfe')

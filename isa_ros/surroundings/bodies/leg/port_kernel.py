@@ -1,10 +1,10 @@
 """
 Exchange of a leg with its three actuators: load ports down, a tick under their forces.
 
-States, joints and ``leg`` as in `surroundings.leg.motion`. ``states``, ``legs`` and ``samples``
-are one `LEG_STATE`, `LEG` and `LEG_SAMPLE`, (1,) each; ``rows`` (3,) are the places of the three
-actuators in ``ports`` and ``replies``. L1 is the port, L12-L16 are its coefficients for a leg and
-the forces kept from tick to tick.
+States, joints and ``leg`` as in `motion`. ``states``, ``legs`` and ``samples`` are one
+`LEG_STATE`, `LEG` and `LEG_SAMPLE`, (1,) each; ``rows`` (3,) are the places of the three actuators
+in ``ports`` and ``replies``. L1 is the port, L12-L14 are its coefficients for a leg; L15 and L16
+are those of any body (`isa_ros.surroundings.port`).
 """
 
 import math
@@ -12,11 +12,12 @@ import math
 from isa_ros.core.fields import Field, record_type
 from isa_ros.core.kernel import kernel
 from isa_ros.core.timebase import FORCE_WINDOWS, NS_PER_SECOND
-from isa_ros.surroundings.ground import contact
-from isa_ros.surroundings.leg.motion import (
+from isa_ros.surroundings.bodies.leg.motion import (
     actuator_accelerations, continuous, ContinuousState, Coordinates, joint_angles, joint_speeds,
     keep_continuous, leg_motion, leg_step, of_joints, shifted, solve, terms_of)
-from isa_ros.surroundings.leg.prediction import matched, predicted, resolved
+from isa_ros.surroundings.ground import contact
+from isa_ros.surroundings.port import assumed_force, keep_forces, match_ports, resolved
+import numpy as np
 
 LEG_FIELDS = (
     Field('position', 'rad', 'joint angles', (3,)),
@@ -89,6 +90,18 @@ def faster(y, u):
 
 
 @kernel
+def predicted(y, tick, f, slope, is_held, leg):
+    """Return y a tick of ``tick`` seconds later under the assumed forces, a step a window."""
+    h = tick / FORCE_WINDOWS
+    for window in range(FORCE_WINDOWS):
+        t = (window + 0.5) * h
+        y = leg_step(y, h, (
+            assumed_force(f[0], slope[0], t), assumed_force(f[1], slope[1], t),
+            assumed_force(f[2], slope[2], t)), is_held, leg)
+    return y
+
+
+@kernel
 def leg_ports(states, tick, rows, legs, ports):
     """
     Fill the `LOAD_PORT` of the three actuators for ``tick`` seconds  (L1, L12-L15).
@@ -100,8 +113,6 @@ def leg_ports(states, tick, rows, legs, ports):
     f, slope = of_joints(state.force), of_joints(state.slope)
     motion, speeds = leg_motion(y, f, is_held, leg), joint_speeds(y)
     now = actuator_accelerations(y, f, is_held, leg)
-    y_end = predicted(y, tick, f, slope, is_held, leg)
-    end, end_speeds = leg_motion(y_end, f, is_held, leg), joint_speeds(y_end)
     for j in range(3):
         port = ports[rows[j]]
         u, inverse_mass = response(j, motion)
@@ -112,12 +123,11 @@ def leg_ports(states, tick, rows, legs, ports):
             displaced(y, u, leg), f, is_held, leg)[j]) / PROBE_DISPLACEMENT, tick)
         port.damping = (now[j] - actuator_accelerations(
             faster(y, u), f, is_held, leg)[j]) / PROBE_SPEED
-        a, b = matched(
-            end.position[j] - port.x0 - tick * (port.v0 + 0.5 * tick * port.a0),
-            end.lever[j] * end_speeds[j] - port.v0 - tick * port.a0,
-            tick, port.stiffness, port.damping)
-        port.a_bias = a + now[j] - f[j] * inverse_mass
-        port.jerk = b - slope[j] * inverse_mass
+    y = predicted(y, tick, f, slope, is_held, leg)
+    end, (v_haa, v_hfe, v_kfe) = leg_motion(y, f, is_held, leg), joint_speeds(y)
+    r_haa, r_hfe, r_kfe = end.lever
+    match_ports(ports, rows, tick, state, end.position,
+                (r_haa * v_haa, r_hfe * v_hfe, r_kfe * v_kfe))
 
 
 @kernel
@@ -174,43 +184,3 @@ def leg_tick(states, step_ns, rows, legs, replies, samples):
         end_force = (replies[rows[0]].force, replies[rows[1]].force, replies[rows[2]].force)
         fill_sample(y, end_force, is_held, leg, samples[0])
     return broken
-
-
-@kernel
-def window_line(means):
-    """
-    Return (mean, slope per window, R^2) of the line through a tick's window means.
-
-    R^2, the share of their spread that is a trend, is 0 for equal means.
-    """
-    n = float(FORCE_WINDOWS)
-    mean, moment, spread = 0.0, 0.0, 0.0
-    for window in range(FORCE_WINDOWS):
-        mean += means[window] / n
-    for window in range(FORCE_WINDOWS):
-        departure = means[window] - mean
-        moment += (window - 0.5 * (n - 1.0)) * departure
-        spread += departure * departure
-    slope = 12.0 * moment / (n * (n * n - 1.0))
-    return mean, slope, slope * moment / spread if spread > 0.0 else 0.0
-
-
-@kernel
-def keep_forces(state, step, rows, replies):
-    """
-    Keep the force that each port will assume of the other actuators, and its slope  (L16).
-
-    Mean of the tick, slope F' = R^4 F'_line + (1 - R^4) (mean - mean two ticks ago) / (2 H),
-    force at the tick's end = mean + F' H / 2. A trend within the tick is weighted by how well
-    a line fits it: if the ringing of a load cell reached the other actuators as a trend, the
-    exchange would feed it (with a damping ratio of 0.01 it grows when it beats with the ticks).
-    """
-    for j in range(3):
-        mean, rise, r_2 = window_line(replies[rows[j]].mean_forces)
-        trust = r_2 * r_2
-        slope = (trust * rise * FORCE_WINDOWS / step
-                 + (1.0 - trust) * (mean - state.older_mean[j]) / (2.0 * step))
-        state.older_mean[j] = state.mean_force[j]
-        state.mean_force[j] = mean
-        state.slope[j] = slope
-        state.force[j] = mean + 0.5 * step * slope

@@ -9,9 +9,9 @@ import sys
 from isa_ros.core.record import rows_of
 from isa_ros.core.signals import LOAD_PORT, LOAD_REPLY
 from isa_ros.errors import ConfigError, SimulationDiverged
-from isa_ros.surroundings.leg import motion as kernels
-from isa_ros.surroundings.leg.leg import Leg, Pose
-from isa_ros.surroundings.leg.sheet import JOINTS, leg_record, STANDARD_GRAVITY
+from isa_ros.surroundings.bodies.leg import motion as kernels
+from isa_ros.surroundings.bodies.leg.leg import Leg, Pose
+from isa_ros.surroundings.bodies.leg.sheet import JOINTS, leg_record, STANDARD_GRAVITY
 from isa_ros.surroundings.linkage import actuator_coordinate
 import numpy as np
 import pytest
@@ -318,7 +318,7 @@ def test_a_macro_step_that_does_not_divide_is_refused():
 PURE = """
 import sys
 import numpy as np
-import tests.surroundings.leg.test_leg as t
+import tests.surroundings.bodies.leg.test_leg as t
 from isa_ros.core.record import rows_of
 from isa_ros.core.signals import LOAD_PORT
 leg = t.hanging(pose=t.Pose(haa=0.2, hfe=0.8, kfe=-1.6, foot_height=0.002))
@@ -342,6 +342,6 @@ def test_compiled_leg_equals_its_python_source():
         environment = dict(os.environ, NUMBA_DISABLE_JIT=disable)
         outputs.append(subprocess.run(
             [sys.executable, '-c', PURE], env=environment, check=True, capture_output=True,
-            cwd=Path(__file__).resolve().parents[3]).stdout)
+            cwd=Path(__file__).resolve().parents[4]).stdout)
     assert outputs[0] == outputs[1]
     assert len(outputs[0]) > 100

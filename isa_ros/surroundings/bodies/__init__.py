@@ -1,0 +1,1 @@
+"""The kinds of bodies, a folder or a file each."""
