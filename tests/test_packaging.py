@@ -72,6 +72,8 @@ def test_an_installed_package_finds_its_data(tmp_path: Path) -> None:
         [sys.executable, '-c', program], cwd=tmp_path, check=True, capture_output=True, text=True,
         env={'PYTHONPATH': str(purelib), 'PATH': '', 'HOME': str(tmp_path)}, timeout=120)
     assert result.stdout == f'{purelib}/isa_ros/__init__.py leg 1.745\n'
+    assert {path.name for path in purelib.iterdir() if path.is_dir()} == {
+        'isa_ros', 'msg_adapters', *(path.name for path in purelib.glob('*.dist-info'))}
     scripts = {path.name for path in (tmp_path / 'prefix' / 'bin').iterdir()}
     assert {name for name, _, _ in ENTRY_POINTS} <= scripts
     # Of the script for colcon and pip's own of that name, pip's has the interpreter.
@@ -98,7 +100,8 @@ def copy_of_clone(tmp_path: Path) -> Path:
     """Return a copy of the build's inputs, since the build writes beside its sources."""
     copy = tmp_path / 'clone'
     copy.mkdir()
-    for name in ('isa_ros', 'msg_adapters', 'bin', 'config', 'launch', 'rviz', 'urdf', 'resource'):
+    for name in ('isa_ros', 'msg_adapters', 'benchmarks', 'scripts', 'bin', 'config', 'launch',
+                 'rviz', 'urdf', 'resource'):
         if (ROOT / name).is_dir():
             shutil.copytree(ROOT / name, copy / name, ignore=shutil.ignore_patterns('__pycache__'))
     for name in ('setup.py', 'setup.cfg', 'pyproject.toml', 'package.xml', 'README.md', 'LICENSE'):

@@ -4,7 +4,7 @@ from collections.abc import Sequence
 from pathlib import Path
 import sys
 
-from isa_ros.bench.groups import Group, GROUPS
+from isa_ros.bench.groups import Group, groups
 from isa_ros.bench.host import Machine, machine
 from isa_ros.bench.page import as_lines, HEAD, PAGE, Report, Section, write_json, write_page
 from isa_ros.bench.rounds import Outcomes, outcomes
@@ -14,21 +14,24 @@ from isa_ros.text.page import refuse_a_part
 from isa_ros.text.progress import counted, Progress
 
 
-def chosen(only: Sequence[str] | None, groups: Sequence[Group] = GROUPS) -> tuple[Group, ...]:
+def chosen(only: Sequence[str] | None) -> tuple[Group, ...]:
     """
-    Return the groups named in ``only``, in the order of ``groups``; all for None.
+    Return the groups named in ``only``, in their own order; for None all that can be measured.
 
     Raises
     ------
     ConfigError
-        A group does not exist.
+        A group does not exist, or cannot be measured here.
 
     """
-    names = [group.name for group in groups]
+    by_name = {group.name: group for group in groups()}
     for name in only or ():
-        if name not in names:
-            raise ConfigError(f'--only {name}: no such group; {alternatives(name, names)}')
-    return tuple(group for group in groups if not only or group.name in only)
+        if name not in by_name:
+            raise ConfigError(f'--only {name}: no such group; {alternatives(name, by_name)}')
+        if reason := by_name[name].missing():
+            raise ConfigError(f'--only {name}: {reason}')
+    return tuple(group for name, group in by_name.items()
+                 if (name in only if only else not group.missing()))
 
 
 def bench(
@@ -40,17 +43,18 @@ def bench(
     Raises
     ------
     ConfigError
-        A group does not exist, or only a part of an existing page was measured.
+        A group does not exist or cannot be measured here, or only a part of an existing page
+        was measured.
     RunError
         A run could not be completed.
 
     """
-    groups = chosen(only)
+    measured = chosen(only)
     if out is not None:
         refuse_a_part(out / PAGE, only)
     here = machine()
     print(f'{here.summary}\n{HEAD}')
-    report = measured_report(groups, here, counted(sys.stderr, 'runs'))
+    report = measured_report(measured, here, counted(sys.stderr, 'runs'))
     if json_file is not None:
         write_json(report, json_file)
     if out is not None:

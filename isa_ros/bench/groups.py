@@ -2,15 +2,24 @@
 
 from collections.abc import Callable
 from dataclasses import dataclass
+from importlib import import_module
+from pathlib import Path
+import sys
 
-from isa_ros.bench import comparison, growth, leg, memory, startup
-from isa_ros.bench.bus import bus_rows
+import isa_ros
+from isa_ros.bench import growth, leg, memory, startup
 from isa_ros.bench.in_memory import in_memory_rows
 from isa_ros.bench.plant import cylinder_rows, plant_rows
 from isa_ros.bench.rounds import Outcomes
 from isa_ros.bench.row import Row
 from isa_ros.bench.spec import Spec
 from isa_ros.bench.tick import tick_parts
+
+CHECKOUT = Path(isa_ros.__file__).parents[1]
+BENCHMARKS = 'benchmarks'
+"""Folder of a checkout with further groups; it is not installed."""
+OF_BENCHMARKS = ('peers', 'bus')
+"""Names of its groups."""
 
 
 @dataclass(frozen=True)
@@ -21,23 +30,37 @@ class Group:
     title: str
     rows: Callable[[Outcomes], list[Row]]
     specs: Callable[[], tuple[Spec, ...]] = tuple
+    missing: Callable[[], str] = str
+    """Returns why the group cannot be measured here; '' if it can."""
 
 
-def _alone(rows: Callable[[], list[Row]]) -> Callable[[Outcomes], list[Row]]:
+def alone(rows: Callable[[], list[Row]]) -> Callable[[Outcomes], list[Row]]:
     """Return a group's function for rows measured in this process, without runs."""
     return lambda _: rows()
 
 
 GROUPS = (
-    Group('plant', 'One actuator, one core', _alone(plant_rows)),
-    Group('cylinder', 'A valve-driven cylinder with a known solution', _alone(cylinder_rows)),
-    Group('tick', 'Parts of a tick of the leg, without ROS', _alone(tick_parts)),
-    Group('in_memory', 'The leg in memory, without a bag', _alone(in_memory_rows)),
+    Group('plant', 'One actuator, one core', alone(plant_rows)),
+    Group('cylinder', 'A valve-driven cylinder with a known solution', alone(cylinder_rows)),
+    Group('tick', 'Parts of a tick of the leg, without ROS', alone(tick_parts)),
+    Group('in_memory', 'The leg in memory, without a bag', alone(in_memory_rows)),
     Group('leg', 'The leg, recording', leg.leg_rows, lambda: leg.SPECS),
-    Group('peers', 'The same exchange over other middlewares', comparison.comparison_rows,
-          lambda: comparison.SPECS),
     Group('growth', 'From 1 to 24 actuators, recording', growth.growth_rows, growth.specs),
-    Group('bus', 'The actuators on EtherCAT, recording', _alone(bus_rows)),
     Group('startup', 'Start-up, caches warm', startup.startup_rows, lambda: startup.SPECS),
     Group('memory', 'Memory', memory.memory_rows, memory.specs),
 )
+
+
+def groups() -> tuple[Group, ...]:
+    """Return all groups, those of this package first."""
+    if not (CHECKOUT / BENCHMARKS / 'peers').is_dir():
+        return GROUPS + tuple(
+            Group(name, '', alone(list), missing=_needs_a_checkout) for name in OF_BENCHMARKS)
+    if str(CHECKOUT) not in sys.path:  # an editable installation puts its packages there only
+        sys.path.append(str(CHECKOUT))
+    added: tuple[Group, ...] = import_module(f'{BENCHMARKS}.groups').GROUPS
+    return GROUPS + added
+
+
+def _needs_a_checkout() -> str:
+    return f'needs a checkout of isa_ros: its folder {BENCHMARKS} is not installed'

@@ -21,6 +21,7 @@ IN_ONE_PROCESS = tuple(Spec(str(n), ONE_PROCESS, ticks, rounds=2) for n, ticks i
     (1, 3000), (2, 3000), (3, 2500), (6, 2000), (12, 1200), (24, 600)))
 IN_PROCESSES = tuple(Spec(str(n), PROCESSES, ticks, rounds) for n, ticks, rounds in (
     (1, 1500, 2), (2, 1500, 2), (3, 1500, 2), (6, 1000, 2), (12, 600, 2), (24, 300, 1)))
+TWELVE = next(spec for spec in IN_PROCESSES if spec.plant == '12')
 _AIMS = {('12', ONE_PROCESS): Aim(1000.0), ('12', PROCESSES): Aim(500.0)}
 
 

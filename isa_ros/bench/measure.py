@@ -52,17 +52,12 @@ def measure(spec: 'Spec', started: float, entered: float) -> 'Measured':
 
 
 def _run(spec: 'Spec', request: 'Request', report: 'Report') -> None:
-    from isa_ros.bench.spec import ONE_PROCESS, PROCESSES
-    from isa_ros.run.session import prepare
-    from isa_ros.nodes.bringup import bringup
-    if spec.way in (PROCESSES, ONE_PROCESS):
-        bringup(request, report)
+    if spec.is_over_peer:
+        from importlib import import_module
+        import_module('benchmarks.peers.transport').bench_over(spec.way, request, report)
         return
-    from isa_ros.bench.peers.catalogue import peer
-    from isa_ros.bench.peers.transport import run_over
-    from isa_ros.processes.stopping import StopRequest
-    with StopRequest() as should_stop:
-        run_over(peer(spec.way), prepare(request), report, should_stop)
+    from isa_ros.nodes.bringup import bringup
+    bringup(request, report)
 
 
 if __name__ == '__main__':

@@ -6,7 +6,6 @@ import subprocess
 import tempfile
 
 from isa_ros.bench.child import last_line, run_module
-from isa_ros.bench.peers.catalogue import PEERS
 from isa_ros.bench.spec import Failed, Measured, Spec
 from isa_ros.errors import RunError
 from isa_ros.text.progress import Progress
@@ -79,11 +78,8 @@ def outcomes(specs: Sequence[Spec], progress: Progress | None = None) -> Outcome
 
 
 def _outcome(spec: Spec) -> Measured | Failed:
-    peer = next((one for one in PEERS if one.name == spec.way), None)
-    if peer is not None and not peer.is_installed:
-        return Failed('not installed')
     result = measured(spec)
-    if isinstance(result, Failed) and peer is None:
+    if isinstance(result, Failed) and not spec.is_over_peer:
         raise RunError(f'{spec}: {result.reason}')
     return result
 

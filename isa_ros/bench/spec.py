@@ -23,9 +23,14 @@ class Spec:
     plant: str
     """`LEG`, the leg's drop, or the number of actuators with their own loads."""
     way: str
-    """`PROCESSES`, `ONE_PROCESS`, or the name of a peer."""
+    """`PROCESSES`, `ONE_PROCESS`, or the name of a peer of `benchmarks`."""
     ticks: int
     rounds: int = ROUNDS
+
+    @property
+    def is_over_peer(self) -> bool:
+        """Return whether a peer transmits the steps."""
+        return self.way not in (PROCESSES, ONE_PROCESS)
 
     def to_json(self) -> str:
         """Return the spec as JSON."""

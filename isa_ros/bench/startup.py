@@ -1,7 +1,7 @@
 """Start-up time with warm caches: from the start of the command to its first tick."""
 
 from isa_ros.bench import leg
-from isa_ros.bench.comparison import TWELVE
+from isa_ros.bench.growth import TWELVE
 from isa_ros.bench.limits import startup_profile
 from isa_ros.bench.loading import median_loading
 from isa_ros.bench.rounds import Outcomes

@@ -2,9 +2,9 @@
 
 import sys
 
-from isa_ros.bench import command, rounds
+from isa_ros.bench import command, groups, rounds
 from isa_ros.bench.command import chosen
-from isa_ros.bench.groups import Group, GROUPS
+from isa_ros.bench.groups import alone, Group, GROUPS
 from isa_ros.bench.row import Row
 from isa_ros.bench.spec import LEG, ONE_PROCESS, Spec
 from isa_ros.cli.main import main
@@ -14,7 +14,7 @@ from tests.text.terminal import Terminal
 
 
 def test_groups_are_chosen_by_name_in_their_own_order():
-    assert chosen(None) == GROUPS
+    assert chosen(None)[:len(GROUPS)] == GROUPS
     assert [group.name for group in chosen(['tick', 'plant'])] == ['plant', 'tick']
 
 
@@ -22,6 +22,25 @@ def test_a_wrong_group_is_answered_with_the_right_one(capsys):
     assert main(['bench', '--only', 'peer']) == 2
     assert capsys.readouterr().err == (
         'isa: --only peer: no such group; did you mean peers?\n')
+
+
+def test_without_a_checkout_the_groups_of_benchmarks_are_left_out(monkeypatch, tmp_path, capsys):
+    assert {'peers', 'bus'} == {group.name for group in groups.groups()[len(GROUPS):]}
+    monkeypatch.setattr(groups, 'CHECKOUT', tmp_path)
+    assert chosen(None) == GROUPS
+    for name in ('peers', 'bus'):
+        assert main(['bench', '--only', name]) == 2
+        assert capsys.readouterr().err == (
+            f'isa: --only {name}: needs a checkout of isa_ros: its folder benchmarks is not '
+            'installed\n')
+
+
+def test_a_group_that_cannot_be_measured_is_left_out_or_says_why(monkeypatch, capsys):
+    absent = Group('bus', 'A bus', alone(list), missing=lambda: 'unshare is not installed')
+    monkeypatch.setattr(command, 'groups', lambda: (*GROUPS, absent))
+    assert chosen(None) == GROUPS
+    assert main(['bench', '--only', 'bus']) == 2
+    assert capsys.readouterr().err == 'isa: --only bus: unshare is not installed\n'
 
 
 def test_a_part_does_not_replace_the_page(tmp_path, capsys):

@@ -1,9 +1,9 @@
 """Rows of the groups from the results of runs."""
 
-from isa_ros.bench import comparison, growth, leg, memory, startup
+from isa_ros.bench import growth, leg, memory, startup
 from isa_ros.bench.loading import Loading
 from isa_ros.bench.rounds import Outcomes
-from isa_ros.bench.spec import Failed, LEG, ONE_PROCESS, PROCESSES, Spec
+from isa_ros.bench.spec import ONE_PROCESS, PROCESSES
 import pytest
 from tests.bench.told import MIB, told
 
@@ -39,38 +39,6 @@ def test_a_missed_aim_says_where_the_tick_goes(monkeypatch):
     # 100 us of the 200 us tick in one process are the actuators': the rest of them is ROS.
     assert by_name(rows)['of its actuators ROS: publishing and receiving'].value == (
         pytest.approx(30.0))
-
-
-def test_peers_are_compared_round_by_round():
-    """In the round with half the speed both are half as fast: the ratio is unchanged."""
-    def peer(name: str) -> Spec:
-        return Spec(LEG, name, leg.IN_PROCESSES.ticks)
-    rows = by_name(comparison.comparison_rows(Outcomes({
-        leg.IN_PROCESSES: [told(1000.0, 3), told(500.0, 3)],
-        peer('pipes'): [told(2000.0, 3), told(1000.0, 3)],
-        peer('zeromq'): [told(1500.0, 3), told(750.0, 3)],
-        peer('helics'): [told(400.0, 3), told(200.0, 3)],
-        peer('cyclone'): [Failed('not installed')]})))
-    helics, zeromq = rows['isa_ros over HELICS'], rows['ZeroMQ ipc over isa_ros']
-    assert (helics.lowest, helics.value, helics.highest) == (2.5, 2.5, 2.5)
-    assert helics.is_reached and zeromq.value == 1.5 and zeromq.is_reached
-    missing = rows['Cyclone DDS from Python']
-    assert missing.value is None and missing.note == 'not installed: requirements-bench.txt'
-    assert 'isa_ros over Cyclone DDS from Python' not in rows
-    assert rows['ZeroMQ ipc'].ratio == pytest.approx(0.75)
-
-
-def test_twelve_actuators_over_peers_have_the_aims_of_the_leg():
-    ours = comparison.TWELVE
-    over = {peer.name: comparison.over(peer, ours) for peer in comparison.PEERS}
-    rows = by_name(comparison.comparison_rows(Outcomes({
-        ours: [told(600.0, 12), told(500.0, 12)], over['pipes']: [told(400.0, 12)],
-        over['zeromq']: [told(1800.0, 12)], over['helics']: [told(400.0, 12)]})))
-    assert rows['12 actuators, isa_ros over HELICS'].value == pytest.approx(1.5)
-    assert rows['12 actuators, isa_ros over HELICS'].is_reached is False
-    assert rows['12 actuators, ZeroMQ ipc over isa_ros'].value == pytest.approx(3.0)
-    assert rows['12 actuators, ZeroMQ ipc over isa_ros'].is_reached is False
-    assert not [name for name in rows if name.startswith('isa_ros')]  # no leg was run
 
 
 def test_twelve_actuators_have_aims_and_what_was_not_run_says_so():

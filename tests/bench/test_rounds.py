@@ -4,7 +4,6 @@ from itertools import pairwise
 from statistics import mean
 
 from isa_ros.bench import rounds
-from isa_ros.bench.peers.catalogue import Peer
 from isa_ros.bench.spec import Failed, LEG, Measured, ONE_PROCESS, PROCESSES, Spec
 from isa_ros.errors import RunError
 import pytest
@@ -33,12 +32,6 @@ def test_a_spec_and_what_it_told_cross_as_json():
     run = told(1000.0, 3)
     assert Spec.from_json(A.to_json()) == A
     assert Measured.from_json(run.to_json()) == run
-
-
-def test_a_peer_that_is_not_installed_is_told_and_not_run(monkeypatch):
-    monkeypatch.setattr(rounds, 'PEERS', (Peer('ether', 'Ether', 'ether', 'no_such_package'),))
-    spec = Spec(LEG, 'ether', 10, rounds=1)
-    assert rounds.outcomes([spec]).reason(spec) == 'not installed'
 
 
 def test_a_run_of_our_own_that_fails_ends_the_bench(monkeypatch):

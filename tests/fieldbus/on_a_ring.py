@@ -1,7 +1,7 @@
 """
 A run of `isa bus ethercat` and its master in one network namespace: `python -m ... PLAN RESULT`.
 
-PLAN is a `Plan` as JSON. It must run in the namespace: `isa_ros.bench.bus_ring.NEW_NAMESPACE`.
+PLAN is a `Plan` as JSON. It must run in the namespace: `benchmarks.bus_ring.NEW_NAMESPACE`.
 """
 
 from collections.abc import Sequence
@@ -17,7 +17,7 @@ import sys
 import time
 from typing import Any
 
-from isa_ros.bench.bus_ring import MASTER_END, SLAVE_END
+from benchmarks.bus_ring import MASTER_END, SLAVE_END
 from isa_ros.examples import ethercat_master
 import pysoem
 from tests.fieldbus.served import served, stalls

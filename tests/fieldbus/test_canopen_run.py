@@ -5,8 +5,8 @@ from pathlib import Path
 import subprocess
 import sys
 
+from benchmarks.bus_ring import missing, NEW_NAMESPACE
 from isa_ros.bag.reader import Bag
-from isa_ros.bench.bus_ring import missing, NEW_NAMESPACE
 from isa_ros.bench.child import environment
 from isa_ros.replay.replay import replay
 import pytest

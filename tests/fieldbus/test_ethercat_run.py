@@ -8,8 +8,8 @@ import subprocess
 import sys
 from typing import Any
 
+from benchmarks.bus_ring import missing, NEW_NAMESPACE
 from isa_ros.bag.reader import Bag
-from isa_ros.bench.bus_ring import missing, NEW_NAMESPACE
 from isa_ros.bench.child import environment
 from isa_ros.replay.replay import recorded_events, replay
 from msg_adapters.cdr_reader import decode

@@ -6,7 +6,7 @@ from ament_flake8.main import main_with_errors
 import pytest
 
 ROOT = Path(__file__).parents[2]
-CODE = ('isa_ros', 'msg_adapters', 'launch', 'scripts', 'tests', 'setup.py')
+CODE = ('isa_ros', 'msg_adapters', 'benchmarks', 'launch', 'scripts', 'tests', 'setup.py')
 
 
 @pytest.mark.linter

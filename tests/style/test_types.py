@@ -1,4 +1,4 @@
-"""Types: mypy --strict on both packages, relaxed for kernels only (pyproject.toml)."""
+"""Types: mypy --strict on all packages, relaxed for kernels only (pyproject.toml)."""
 
 from pathlib import Path
 import subprocess

@@ -6,7 +6,7 @@ from importlib.util import find_spec
 from pathlib import Path
 from typing import Protocol
 
-from isa_ros.bench.peers.link import Link
+from benchmarks.peers.link import Link
 from isa_ros.core.suggest import alternatives
 from isa_ros.errors import ConfigError
 
@@ -32,6 +32,11 @@ PEERS = (
     Peer('cyclone', 'Cyclone DDS from Python', 'cyclone', 'cyclonedds'),
     Peer('helics', 'HELICS', 'federates', 'helics'),
 )
+
+
+def installed() -> list[Peer]:
+    """Return the peers whose packages are installed."""
+    return [peer for peer in PEERS if peer.is_installed]
 
 
 class Ends(Protocol):

@@ -8,10 +8,10 @@ import subprocess
 import sys
 import tempfile
 
+from benchmarks.peers.catalogue import ends, Peer, peer
+from benchmarks.peers.link import Link
+from benchmarks.peers.worker import load_kernels
 from isa_ros.bench.child import environment
-from isa_ros.bench.peers.catalogue import ends, Peer
-from isa_ros.bench.peers.link import Link
-from isa_ros.bench.peers.worker import load_kernels
 from isa_ros.config.assembly import surroundings_of
 from isa_ros.config.runs.run_config import RunConfig
 from isa_ros.core.signals import Records
@@ -19,7 +19,8 @@ from isa_ros.errors import RunError
 from isa_ros.processes.stopping import PARENT_VARIABLE, StopRequest
 from isa_ros.run.exchange import IDLE_S, Rows
 from isa_ros.run.narrator import Outlets
-from isa_ros.run.session import record, Report, Session
+from isa_ros.run.options import Request
+from isa_ros.run.session import prepare, record, Report, Session
 from isa_ros.run.wire.answers import Answer, decode_answer
 from isa_ros.run.wire.cast import Cast
 from isa_ros.run.wire.parts import take_actuator_parts
@@ -148,6 +149,12 @@ class Workers:
             if process.poll() is not None:
                 return f'{actuator.name}: its worker ended with exit code {process.returncode}'
         return None
+
+
+def bench_over(name: str, request: Request, report: Report) -> None:
+    """Do a measured run over the peer of that name, until its end or Ctrl-C."""
+    with StopRequest() as should_stop:
+        run_over(peer(name), prepare(request), report, should_stop)
 
 
 def run_over(

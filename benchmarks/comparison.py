@@ -1,17 +1,15 @@
 """Leg and twelve actuators with other middlewares: same work, same bag, another exchange."""
 
-from isa_ros.bench import growth
+from benchmarks.peers.catalogue import installed, Peer, PEERS
+from isa_ros.bench.growth import TWELVE
 from isa_ros.bench.leg import IN_PROCESSES, speed_row
 from isa_ros.bench.limits import profile
-from isa_ros.bench.peers.catalogue import Peer, PEERS
 from isa_ros.bench.rounds import Outcomes
 from isa_ros.bench.row import Aim, Row
-from isa_ros.bench.spec import PROCESSES, Spec
+from isa_ros.bench.spec import Spec
 
 REQUIREMENTS = 'requirements-bench.txt'
 FLOOR = PEERS[0]
-TWELVE = next(
-    spec for spec in growth.IN_PROCESSES if (spec.plant, spec.way) == ('12', PROCESSES))
 OURS = {'': IN_PROCESSES, '12 actuators, ': TWELVE}
 """The runs of this package that peers are compared with, by the prefix of their rows."""
 
@@ -25,13 +23,19 @@ def over(peer: Peer, ours: Spec) -> Spec:
     return Spec(ours.plant, peer.name, ours.ticks, ours.rounds)
 
 
-SPECS = tuple(
-    spec for ours in OURS.values() for spec in (ours, *(over(peer, ours) for peer in PEERS)))
+def specs() -> tuple[Spec, ...]:
+    """Return the runs of this package, and those over the installed peers."""
+    return tuple(spec for ours in OURS.values() for spec in (
+        ours, *(over(peer, ours) for peer in installed())))
 
 
 def comparison_rows(outcomes: Outcomes) -> list[Row]:
-    """Return ticks/s over each peer, and the ratios to isa_ros in the same rounds."""
-    return [row for before, ours in OURS.items() for row in _rows(before, ours, outcomes)]
+    """Return ticks/s over each installed peer, and the ratios to isa_ros in the same rounds."""
+    rows = [row for before, ours in OURS.items() for row in _rows(before, ours, outcomes)]
+    absent = ', '.join(peer.title for peer in PEERS if peer not in installed())
+    if rows and absent:
+        rows[0] = rows[0].noting(f'not installed: {absent}: {REQUIREMENTS}')
+    return rows
 
 
 def _rows(before: str, ours: Spec, outcomes: Outcomes) -> list[Row]:
@@ -40,12 +44,12 @@ def _rows(before: str, ours: Spec, outcomes: Outcomes) -> list[Row]:
         return []
     rows = [speed_row(f'{before}isa_ros: Unix sockets, topics for subscribers', own)]
     ratios = []
-    for peer in PEERS:
+    for peer in installed():
         spec = over(peer, ours)
         theirs = outcomes.of(spec)
         if not theirs:
             rows.append(Row(
-                f'{before}{peer.title}', None, 'ticks/s', note=_reason(outcomes.reason(spec))))
+                f'{before}{peer.title}', None, 'ticks/s', note=outcomes.reason(spec)))
             continue
         rows.append(speed_row(f'{before}{peer.title}', theirs))
         if peer is not FLOOR:
@@ -55,10 +59,6 @@ def _rows(before: str, ours: Spec, outcomes: Outcomes) -> list[Row]:
         rows = [row if row.value is None else row.against(FLOOR.title, row.value / pipes)
                 for row in rows]
     return rows + ratios
-
-
-def _reason(reason: str) -> str:
-    return f'{reason}: {REQUIREMENTS}' if reason == 'not installed' else reason
 
 
 def _ratio_row(before: str, peer: Peer, ours: Spec, outcomes: Outcomes) -> Row:

@@ -2,10 +2,10 @@
 
 from collections.abc import Callable
 
+from benchmarks.peers.catalogue import peer
+from benchmarks.peers.transport import PeerTransport
+from benchmarks.peers.worker import answer_steps
 from isa_ros.actuator.actuator import SmartActuator
-from isa_ros.bench.peers.catalogue import peer
-from isa_ros.bench.peers.transport import PeerTransport
-from isa_ros.bench.peers.worker import answer_steps
 from isa_ros.config.assembly import surroundings_of, timing_of
 from isa_ros.config.paths import CONFIG, find
 from isa_ros.config.runs.run_config import RunConfig

@@ -13,12 +13,12 @@ from pathlib import Path
 import tempfile
 import threading
 
+from benchmarks.peers import catalogue
+from benchmarks.peers.catalogue import ends, peer, PEERS
+from benchmarks.peers.link import Link
+from benchmarks.peers.transport import PeerTransport, RUN_ID
+from benchmarks.peers.worker import answer_steps
 from isa_ros.actuator.actuator import SmartActuator
-from isa_ros.bench.peers import catalogue
-from isa_ros.bench.peers.catalogue import ends, peer, PEERS
-from isa_ros.bench.peers.link import Link
-from isa_ros.bench.peers.transport import PeerTransport, RUN_ID
-from isa_ros.bench.peers.worker import answer_steps
 from isa_ros.bench.rigs import rigs_file
 from isa_ros.config.assembly import group_of, surroundings_of, timing_of
 from isa_ros.config.runs.run_config import RunConfig

@@ -69,7 +69,7 @@ def measured(ring: Ring) -> Cycles | str:
     with tempfile.TemporaryDirectory(prefix='isa_bench_') as directory:
         result = Path(directory) / 'cycles.json'
         ended = subprocess.run(
-            [*NEW_NAMESPACE, sys.executable, '-m', 'isa_ros.bench.bus_master', '0',
+            [*NEW_NAMESPACE, sys.executable, '-m', 'benchmarks.bus_master', '0',
              json.dumps(asdict(ring)), str(result)], env=environment(),
             stdin=subprocess.DEVNULL, capture_output=True, text=True, timeout=TIMEOUT_S)
         if ended.returncode:

@@ -5,9 +5,9 @@ import gc
 from pathlib import Path
 import sys
 
+from benchmarks.peers.catalogue import ends, peer
+from benchmarks.peers.link import Link
 from isa_ros.actuator.actuator import SmartActuator
-from isa_ros.bench.peers.catalogue import ends, peer
-from isa_ros.bench.peers.link import Link
 from isa_ros.config.assembly import timing_of
 from isa_ros.config.runs.run_config import RunConfig
 from isa_ros.config.runs.run_file import load_run

@@ -19,7 +19,7 @@ import tempfile
 import time
 from typing import Any
 
-from isa_ros.bench.bus_ring import Cycles, FLOOR, MASTER_END, Ring, SLAVE_END
+from benchmarks.bus_ring import Cycles, FLOOR, MASTER_END, Ring, SLAVE_END
 from isa_ros.bench.child import environment
 from isa_ros.bench.rigs import config_of
 from isa_ros.errors import RunError
@@ -58,7 +58,7 @@ def slaves(ring: Ring, directory: Path) -> Iterator[list[str]]:
     """Start the slaves of a ring, wait until they are ready, and end them; yield their log."""
     config = str(config_of(ring.plant, directory))
     if ring.way == FLOOR:
-        command = ['-m', 'isa_ros.bench.bus_floor', config, SLAVE_END]
+        command = ['-m', 'benchmarks.bus_floor', config, SLAVE_END]
     else:
         command = ['-m', 'isa_ros', 'bus', 'ethercat', config, '--interface', SLAVE_END,
                    '--out', str(directory / 'bag'), '--pace', ring.way]

@@ -1,0 +1,5 @@
+"""
+Rows of `isa bench` that need a checkout: other middlewares, and the master of a bus.
+
+This folder is not installed. `isa_ros.bench` says how a group of rows is added.
+"""
