@@ -35,7 +35,7 @@ def conditions() -> list[str]:
             (0.0, 0.0, 0.0, getattr(sheet, f'{name}_reaction')) if own is None
             else (own.warning, own.trip, own.delay_ms, own.reaction))
         rows.append([
-            str(bit), f'`{name}`', condition.quantity, condition.rating or '-',
+            str(bit), f'`{name}`', condition.quantity, condition.rating_words or '-',
             *(_level(value, condition.is_above) for value in (warning, trip)),
             f'{delay:g} ms' if delay else '-', reaction])
     return markdown(rows)

@@ -7,8 +7,9 @@ the actuator (quick_stop, disable) stays after its condition has ended, until it
 Inputs are what the sensors read, not the exact states.
 """
 
+from collections import namedtuple
 import math
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 from isa_ros.core.conditions import BITS, CONDITIONS, REACTIONS
 from isa_ros.core.device import POSITION
@@ -17,25 +18,15 @@ from isa_ros.core.record import record
 from isa_ros.core.timebase import PLANT_STEP
 from isa_ros.core.units import MILLI
 from isa_ros.reu.impedance import SETPOINT
-from isa_ros.reu.plausibility import EVIDENCE, EVIDENCE_STATE, jump_speed, unexplained_force
+from isa_ros.reu.plausibility import (
+    EVIDENCE, EVIDENCE_STATE, jump_speed, spool_deviation, unexplained_force)
 from isa_ros.reu.protection_sheet import levels_of, Protection
 import numpy as np
 
 N = len(CONDITIONS)
 NONE, WARN, LIMIT, HOLD, DAMP, QUICK_STOP, DISABLE = range(len(REACTIONS))
-SETPOINT_TIMEOUT = BITS['setpoint_timeout']
-END_OF_STROKE = BITS['end_of_stroke']
-OVERSPEED = BITS['overspeed']
-OVERLOAD = BITS['overload']
-OVERPRESSURE = BITS['overpressure']
-OVERCURRENT = BITS['overcurrent']
-OVERTEMPERATURE = BITS['overtemperature']
-SUPPLY_LOW = BITS['supply_low']
-RELIEF_OPEN = BITS['relief_open']
-LOAD_CELL_IMPLAUSIBLE = BITS['load_cell_implausible']
-ENCODER_JUMP = BITS['encoder_jump']
-LINK_LOST = BITS['link_lost']
-SPOOL_DEVIATION = BITS['spool_deviation']
+_Bits = namedtuple('_Bits', BITS)  # type: ignore[misc]
+BIT: Any = _Bits(*BITS.values())  # for kernels, which read it by name: BIT.overload
 EXTENDING, RETRACTING = 1, 2  # bits of the directions that are inhibited
 
 PROTECTION = np.dtype([
@@ -73,7 +64,7 @@ PROTECTION_STATE = np.dtype([
 
 
 class Ratings(NamedTuple):
-    """What the levels are parts of, SI."""
+    """What the levels are parts of, SI; a field for each of `isa_ros.core.conditions.RATINGS`."""
 
     stroke: float
     speed: float
@@ -86,13 +77,8 @@ class Ratings(NamedTuple):
 
     def of(self, name: str) -> float:
         """Return the rating of a condition, 1 for levels in the unit of its quantity."""
-        return {
-            'end_of_stroke': self.stroke, 'overspeed': self.speed, 'encoder_jump': self.speed,
-            'overload': self.force_range, 'load_cell_implausible': self.force_range,
-            'overpressure': self.pressure_range, 'overcurrent': self.current_range,
-            'supply_low': self.opening_pressure, 'relief_open': self.opening_pressure,
-            'spool_deviation': self.spool_stop,
-        }.get(name, 1.0)
+        rating = CONDITIONS[BITS[name]].rating
+        return getattr(self, rating) if rating else 1.0
 
 
 def protection_record(
@@ -119,15 +105,15 @@ def protection_record(
         delay[bit] = math.ceil(round(own.delay_ms * MILLI / period, _DIGITS))
         for which, level in (('warning', own.warning), ('trip', own.trip)):
             if level and own.reaction != 'none' and (
-                    bit != SPOOL_DEVIATION or evidence.valve.is_watched):
+                    bit != BIT.spool_deviation or evidence.valve.is_watched):
                 set_level(which, bit, level * rating)
     if sheet.setpoint_timeout_ms:
         conversions = math.ceil(round(sheet.setpoint_timeout_ms * MILLI / period, _DIGITS))
-        set_level('trip', SETPOINT_TIMEOUT, conversions * period)
-        reaction[SETPOINT_TIMEOUT] = REACTIONS.index(sheet.setpoint_timeout_reaction)
+        set_level('trip', BIT.setpoint_timeout, conversions * period)
+        reaction[BIT.setpoint_timeout] = REACTIONS.index(sheet.setpoint_timeout_reaction)
     if link_timeout:
-        set_level('trip', LINK_LOST, link_timeout)
-        reaction[LINK_LOST] = REACTIONS.index(sheet.link_lost_reaction)
+        set_level('trip', BIT.link_lost, link_timeout)
+        reaction[BIT.link_lost] = REACTIONS.index(sheet.link_lost_reaction)
     quiet = np.minimum(levels['warning'], levels['trip'])
     return record(
         PROTECTION, is_on=int(sheet.switch == 'on' and np.isfinite(quiet).any()), period=period,
@@ -139,26 +125,28 @@ _DIGITS = 9  # a delay of 10 ms is 100 periods of 0.1 ms, not 101
 
 
 @kernel
-def measure(supply_pressure, temperature, velocity, measured, is_on, protection, own):
-    """Write the quantity of every condition at one conversion into ``own.values``, SI."""
+def measure(supply_pressure, temperature, protection, state):
+    """Write the quantity of every condition at one conversion, SI; ``state`` is a `REU_STATE`."""
+    own, measured, velocity = state.protection, state.measured, state.speed.velocity
     values = own.values
-    highest = max(measured.pressure_a, measured.pressure_b)
     if own.setpoint_age > 0:
-        if not is_on:
+        if not state.status.is_on:
             own.setpoint_age = 1
-        values[SETPOINT_TIMEOUT] = (own.setpoint_age - 1) * protection.period
+        values[BIT.setpoint_timeout] = (own.setpoint_age - 1) * protection.period
         own.setpoint_age += 1
-    values[END_OF_STROKE] = min(measured.position, protection.stroke - measured.position)
-    values[OVERSPEED] = abs(velocity)
-    values[OVERLOAD] = abs(measured.force)
-    values[OVERPRESSURE] = highest
-    values[OVERCURRENT] = abs(measured.current)
-    values[OVERTEMPERATURE] = temperature
-    values[SUPPLY_LOW] = supply_pressure
-    values[RELIEF_OPEN] = highest
-    values[LOAD_CELL_IMPLAUSIBLE] = unexplained_force(
+    values[BIT.end_of_stroke] = min(measured.position, protection.stroke - measured.position)
+    values[BIT.overspeed] = abs(velocity)
+    values[BIT.overload] = abs(measured.force)
+    values[BIT.overpressure] = max(measured.pressure_a, measured.pressure_b)
+    values[BIT.overcurrent] = abs(measured.current)
+    values[BIT.overtemperature] = temperature
+    values[BIT.supply_low] = supply_pressure
+    values[BIT.relief_open] = max(measured.pressure_a, measured.pressure_b)
+    values[BIT.load_cell_implausible] = unexplained_force(
         measured, velocity, protection.stroke, protection.evidence, own.evidence)
-    values[ENCODER_JUMP] = jump_speed(measured.position, protection.period, own.evidence)
+    values[BIT.encoder_jump] = jump_speed(measured.position, protection.period, own.evidence)
+    values[BIT.link_lost] = state.link_silence
+    values[BIT.spool_deviation] = spool_deviation(state, protection.evidence)
 
 
 @kernel

@@ -6,20 +6,20 @@ all trips acts. The device of `isa_ros.reu.device` stops quickly, or disables.
 """
 
 from isa_ros.core.kernel import kernel
-from isa_ros.reu.plausibility import acceleration_step, spool_deviation
+from isa_ros.reu.plausibility import acceleration_step
 from isa_ros.reu.protection import (
-    DAMP, END_OF_STROKE, EXTENDING, HOLD, judge, LIMIT, LINK_LOST, measure, N, NONE, OVERLOAD,
-    OVERSPEED, QUICK_STOP, reaction_of, RETRACTING, SPOOL_DEVIATION)
+    BIT, DAMP, EXTENDING, HOLD, judge, LIMIT, measure, N, NONE, QUICK_STOP, reaction_of,
+    RETRACTING)
 
 
 @kernel
 def worsening(k, velocity, measured, stroke):
     """Return the direction in which a command of the valve makes condition ``k`` worse."""
-    if k == END_OF_STROKE:
+    if k == BIT.end_of_stroke:
         extends = measured.position > 0.5 * stroke
-    elif k == OVERSPEED:
+    elif k == BIT.overspeed:
         extends = velocity > 0.0
-    elif k == OVERLOAD:
+    elif k == BIT.overload:
         extends = measured.force > 0.0
     else:
         extends = measured.pressure_a > measured.pressure_b
@@ -54,10 +54,7 @@ def protect(step, supply_pressure, temperature, protection, state):
     """Measure, judge and react at one conversion; ``state`` is a `REU_STATE`."""
     own = state.protection
     acceleration_step(step, state.speed.velocity, protection.evidence, own.evidence)
-    measure(supply_pressure, temperature, state.speed.velocity, state.measured,
-            state.status.is_on, protection, own)
-    own.values[LINK_LOST] = state.link_silence
-    own.values[SPOOL_DEVIATION] = spool_deviation(state, protection.evidence)
+    measure(supply_pressure, temperature, protection, state)
     judge(step, state.status.mode, protection, own)
     if own.trips != 0 or own.reaction != NONE:
         react(protection, state)

@@ -1,8 +1,8 @@
 """Faults of a CiA 402 drive in front of a real actuator: trips, lost bus, following error."""
 
-from isa_ros.core.conditions import BITS
+from isa_ros.core.conditions import BITS, CONDITIONS
 from isa_ros.fieldbus.device.abort import OUT_OF_RANGE, SdoAbort
-from isa_ros.fieldbus.device.faults import BUS_LOST, CONDITION_CODES, FOLLOWING_ERROR
+from isa_ros.fieldbus.device.faults import BUS_LOST, FOLLOWING_ERROR
 import numpy as np
 import pytest
 
@@ -66,7 +66,7 @@ def test_a_trip_of_the_device_is_a_fault_with_its_code(condition):
         if condition == 'setpoint_timeout' and k > 5:
             rig.simulation.step(np.zeros(1, rig.commands.dtype))
             rig.simulation.step(np.zeros(1, rig.commands.dtype))
-    own = CONDITION_CODES[condition]
+    own = CONDITIONS[BITS[condition]].error
     assert state(master.upload(0x6041)) == 'FAULT'
     assert master.upload(0x603F) == own.code
     assert master.upload(0x1001) & (own.register | 1) == own.register | 1
@@ -93,7 +93,7 @@ def faulted():
 
 def test_a_fault_is_reset_by_a_rising_edge_once_its_cause_is_gone():
     master = faulted()
-    code = CONDITION_CODES['supply_low'].code
+    code = CONDITIONS[BITS['supply_low']].error.code
     assert master.upload(0x603F) == code
     assert master.upload(0x2024, 5) == 1e6
     for word in (VOLTAGE_OFF, RESET, RESET):

@@ -4,13 +4,13 @@ from collections.abc import Callable, Iterator, Mapping, Sequence
 from itertools import groupby
 import re
 
-from isa_ros.core.conditions import CONDITIONS
+from isa_ros.core.conditions import CONDITIONS, ErrorCode
 from isa_ros.fieldbus.device import cia402_objects
 from isa_ros.fieldbus.device import cia402_states
 from isa_ros.fieldbus.device import cia408_objects
 from isa_ros.fieldbus.device import cia408_states
 from isa_ros.fieldbus.device.bus_device import BusDevice
-from isa_ros.fieldbus.device.faults import CONDITION_CODES, ErrorCode, OWN_CODES
+from isa_ros.fieldbus.device.faults import OWN_CODES
 from isa_ros.fieldbus.device.objects import Entry, Kind, Object, ObjectTable
 from isa_ros.fieldbus.device.process_data import is_mapping, RECEIVE, TRANSMIT
 from isa_ros.text.marked import with_parts
@@ -161,7 +161,7 @@ def error_rows() -> Rows:
     """Return the error codes: of the conditions of the device, then of the bus interface."""
     rows: Rows = [('condition', 'code', 'register', 'meaning in the profile')]
     for condition in CONDITIONS:
-        rows.append((f'`{condition.name}`', *_code(CONDITION_CODES[condition.name])))
+        rows.append((f'`{condition.name}`', *_code(condition.error)))
     return [*rows, *(('the bus interface', *_code(one)) for one in OWN_CODES)]
 
 

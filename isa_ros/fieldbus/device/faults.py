@@ -5,56 +5,21 @@ A trip whose reaction stops the actuator is a fault: its code stays in 0x603F un
 reset. Every trip sends an emergency message, and one with code 0 follows when the last is gone.
 """
 
-from collections.abc import Mapping
-from typing import NamedTuple
-
-from isa_ros.core.conditions import BITS
+from isa_ros.core.conditions import BITS, COMMUNICATION, CONDITIONS, ErrorCode, PROFILE
 from isa_ros.fieldbus.device.bus_device import Emergency
 from isa_ros.fieldbus.device.communication_area import ERROR_FIELD, ERRORS_KEPT
 from isa_ros.fieldbus.device.dictionary import Key
 from isa_ros.fieldbus.device.objects import Value
 from isa_ros.reu.protection_sheet import Protection
 
-_GENERIC, _CURRENT, _VOLTAGE, _TEMPERATURE = 1, 1 << 1, 1 << 2, 1 << 3
-_COMMUNICATION, _PROFILE, _MANUFACTURER = 1 << 4, 1 << 5, 1 << 7
+_GENERIC = 1
 
-
-class ErrorCode(NamedTuple):
-    """What one error is reported as."""
-
-    code: int
-    """Of CiA 301 and 402; 0xFF00 and above: of the manufacturer."""
-    register: int
-    """Bit of 0x1001 besides that of any error."""
-    words: str
-    """Meaning of the code in the profile."""
-
-
-CONDITION_CODES: Mapping[str, ErrorCode] = {
-    'setpoint_timeout': ErrorCode(0xFF00, _MANUFACTURER, 'manufacturer: setpoint timeout'),
-    'end_of_stroke': ErrorCode(0x8612, _PROFILE, 'reference limit'),
-    'overspeed': ErrorCode(0x8400, _PROFILE, 'velocity speed controller'),
-    'overload': ErrorCode(0x8311, _PROFILE, 'excess torque'),
-    'overpressure': ErrorCode(0xFF04, _MANUFACTURER, 'manufacturer: overpressure'),
-    'overcurrent': ErrorCode(0x2310, _CURRENT, 'continuous over current'),
-    'overtemperature': ErrorCode(0x4310, _TEMPERATURE, 'excess temperature drive'),
-    'supply_low': ErrorCode(0x3120, _VOLTAGE, 'mains under-voltage: here the oil supply'),
-    'relief_open': ErrorCode(0xFF08, _MANUFACTURER, 'manufacturer: relief valve open'),
-    'load_cell_implausible': ErrorCode(0x7300, _PROFILE, 'sensor: here the load cell'),
-    'encoder_jump': ErrorCode(0x7320, _PROFILE, 'position sensor'),
-    'link_lost': ErrorCode(0x8100, _COMMUNICATION, 'communication: the link inside the actuator'),
-    'spool_deviation': ErrorCode(
-        0xFF0C, _MANUFACTURER, 'manufacturer: spool away from its reference'),
-}
-"""Error code of each condition of `isa_ros.core.conditions`."""
-
-BUS_LOST = ErrorCode(0x8180, _COMMUNICATION, 'communication: the bus is lost')
-FOLLOWING_ERROR = ErrorCode(0x8611, _PROFILE, 'following error')
-PDO_LENGTH = ErrorCode(0x8210, _COMMUNICATION, 'PDO not processed due to length error')
+BUS_LOST = ErrorCode(0x8180, COMMUNICATION, 'communication: the bus is lost')
+FOLLOWING_ERROR = ErrorCode(0x8611, PROFILE, 'following error')
+PDO_LENGTH = ErrorCode(0x8210, COMMUNICATION, 'PDO not processed due to length error')
 OWN_CODES = (BUS_LOST, FOLLOWING_ERROR, PDO_LENGTH)
 """Errors that the bus interface finds by itself."""
 
-_CODE_OF_BIT = {bit: CONDITION_CODES[name] for name, bit in BITS.items()}
 _STOPPING = ('quick_stop', 'disable')
 _WORD = 0xFFFF
 _DATA_BYTES = 5
@@ -93,9 +58,9 @@ class Faults:
     def register(self) -> int:
         """Return the error register 0x1001."""
         found = 0
-        for bit, error in _CODE_OF_BIT.items():
+        for bit, condition in enumerate(CONDITIONS):
             if self._trips >> bit & 1:
-                found |= error.register | _GENERIC
+                found |= condition.error.register | _GENERIC
         for error in self._own:
             found |= error.register | _GENERIC
         return found
@@ -105,11 +70,11 @@ class Faults:
         if trips == self._trips:
             return
         new, self._trips = trips & ~self._trips, trips
-        for bit, error in _CODE_OF_BIT.items():
+        for bit, condition in enumerate(CONDITIONS):
             if new >> bit & 1:
                 if not self.code and self._stopping >> bit & 1:
-                    self.code = error.code
-                self._report(error.code)
+                    self.code = condition.error.code
+                self._report(condition.error.code)
         if not (new or trips or self._own):
             self._report(0)
 

@@ -1,9 +1,10 @@
 """A CiA 408 device in front of a real actuator: states, control modes, scaling, faults."""
 
+from isa_ros.core.conditions import BITS, CONDITIONS
 from isa_ros.fieldbus.device.abort import OUT_OF_RANGE, SdoAbort
 from isa_ros.fieldbus.device.cia408_states import Event, State, TRANSITIONS
 from isa_ros.fieldbus.device.devices import devices_of
-from isa_ros.fieldbus.device.faults import BUS_LOST, CONDITION_CODES
+from isa_ros.fieldbus.device.faults import BUS_LOST
 import pytest
 
 from ..rig import Master, Rig
@@ -178,7 +179,7 @@ def test_a_fault_of_the_device_disables_it_until_it_is_reset(rig, word, fault, a
         master.cycle(word)
     without_supply(rig, True)
     master.cycle_until(lambda shown: state(shown) == fault, word & DISABLED, most=100)
-    code = CONDITION_CODES['supply_low'].code
+    code = CONDITIONS[BITS['supply_low']].error.code
     assert master.upload(0x603F) == code
     assert state(master.cycle(word & DISABLED | RESET)) == fault
     without_supply(rig, False)

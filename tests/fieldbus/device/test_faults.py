@@ -1,10 +1,10 @@
 """Conditions of the device as error codes, emergency messages, and the error register."""
 
 import isa_ros
-from isa_ros.core.conditions import BITS
+from isa_ros.core.conditions import BITS, CONDITIONS
 from isa_ros.core.signals import SAMPLE
 from isa_ros.fieldbus.device.devices import devices_of
-from isa_ros.fieldbus.device.faults import CONDITION_CODES, OWN_CODES, reaction_of, stopping_bits
+from isa_ros.fieldbus.device.faults import OWN_CODES, reaction_of, stopping_bits
 import numpy as np
 import pytest
 
@@ -36,14 +36,14 @@ class Fed:
 
 
 def test_every_condition_has_a_code_of_its_own():
-    assert set(CONDITION_CODES) == set(BITS)
-    codes = [one.code for one in (*CONDITION_CODES.values(), *OWN_CODES)]
+    errors = [condition.error for condition in CONDITIONS]
+    codes = [one.code for one in (*errors, *OWN_CODES)]
     assert len(set(codes)) == len(codes)
 
 
 @pytest.mark.parametrize('condition', BITS)
 def test_the_register_has_the_bit_of_the_code(condition):
-    own = CONDITION_CODES[condition]
+    own = CONDITIONS[BITS[condition]].error
     expected = 1 << 4 if own.code >> 8 in (0x81, 0x82) else (
         1 << 5 if own.code >> 12 == 8 else REGISTER_OF[own.code >> 12])
     assert own.register == expected
@@ -52,7 +52,7 @@ def test_the_register_has_the_bit_of_the_code(condition):
 @pytest.mark.parametrize('condition', BITS)
 def test_each_trip_is_reported_once_and_its_end_too(condition):
     fed, bit = Fed(), 1 << BITS[condition]
-    own = CONDITION_CODES[condition]
+    own = CONDITIONS[BITS[condition]].error
     is_stopping = bool(stopping_bits(PROTECTION) & bit)
     assert is_stopping == (reaction_of(PROTECTION, condition) in ('quick_stop', 'disable'))
     state = FAULT if is_stopping else 1
@@ -69,8 +69,8 @@ def test_the_code_of_a_fault_is_that_of_its_first_cause():
     fed = Fed()
     first, later = 1 << BITS['supply_low'], 1 << BITS['overtemperature']
     fed.take(first, FAULT)
-    assert fed.take(first | later, FAULT) == [CONDITION_CODES['overtemperature'].code]
-    assert fed.upload(0x603F) == CONDITION_CODES['supply_low'].code
+    assert fed.take(first | later, FAULT) == [CONDITIONS[BITS['overtemperature']].error.code]
+    assert fed.upload(0x603F) == CONDITIONS[BITS['supply_low']].error.code
     assert fed.take(later, FAULT) == []
     assert fed.take(0, 1) == [0]
 
@@ -80,9 +80,8 @@ def test_the_error_field_keeps_the_last_eight_newest_first():
     for bit in range(10):
         fed.take(1 << bit)
     assert fed.upload(0x1003) == 8
-    codes = {bit: CONDITION_CODES[name].code for name, bit in BITS.items()}
     assert [fed.upload(0x1003, k) & 0xFFFF for k in range(1, 9)] == [
-        codes[bit] for bit in range(9, 1, -1)]
+        CONDITIONS[bit].error.code for bit in range(9, 1, -1)]
 
 
 def test_the_data_of_a_message_are_the_bits_of_all_trips():

@@ -1,0 +1,67 @@
+"""A copy of the package in which an extension is made, to see what it takes and whether it runs."""
+
+import os
+from pathlib import Path
+import shutil
+import subprocess
+import sys
+
+ROOT = Path(__file__).parents[2]
+_COPIED = ('isa_ros', 'msg_adapters', 'config', 'docs', 'scripts', 'urdf')
+_SKIPPED = shutil.ignore_patterns('__pycache__')
+
+
+class PatchedCopy:
+    """The package below a directory; ``touched`` are the files changed or added, sorted."""
+
+    def __init__(self, directory: Path) -> None:
+        self._root = directory / 'patched'
+        for name in _COPIED:
+            shutil.copytree(ROOT / name, self._root / name, ignore=_SKIPPED)
+        shutil.copy(ROOT / 'package.xml', self._root)
+        shutil.copy(ROOT / 'pyproject.toml', self._root)
+        self._touched: set[str] = set()
+
+    @property
+    def touched(self) -> list[str]:
+        """Return the paths of all files that differ from the package's by hand."""
+        return sorted(self._touched)
+
+    def replace(self, path: str, old: str, new: str) -> None:
+        """Replace a text that a file has exactly once."""
+        text = (self._root / path).read_text(encoding='utf-8')
+        found = text.count(old)
+        if found != 1:
+            raise ValueError(f'{path} has {found} times, must have once: {old!r}')
+        (self._root / path).write_text(text.replace(old, new), encoding='utf-8')
+        self._touched.add(path)
+
+    def add(self, path: str, text: str) -> None:
+        """Add a file that does not exist yet."""
+        with (self._root / path).open('x', encoding='utf-8') as file:
+            file.write(text)
+        self._touched.add(path)
+
+    def read(self, path: str) -> str:
+        """Return the text of a file."""
+        return (self._root / path).read_text(encoding='utf-8')
+
+    def isa(self, *arguments: str) -> str:
+        """Return what `isa` prints."""
+        return self._run('-m', 'isa_ros', *arguments)
+
+    def python(self, program: str) -> str:
+        """Return what a Python program prints."""
+        return self._run('-c', program)
+
+    def script(self, path: str) -> str:
+        """Return what a script of the copy prints."""
+        return self._run(path)
+
+    def _run(self, *arguments: str) -> str:
+        done = subprocess.run(
+            [sys.executable, *arguments], cwd=self._root, capture_output=True, text=True,
+            check=False, env={**os.environ, 'PYTHONPATH': os.pathsep.join(
+                [str(self._root), os.environ.get('PYTHONPATH', '')])})
+        assert done.returncode == 0, done.stdout + done.stderr
+        return done.stdout
