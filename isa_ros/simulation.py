@@ -13,7 +13,6 @@ from collections.abc import Mapping, Sequence
 from dataclasses import replace
 import warnings
 
-from isa_ros.actuator.tunable import with_si_names
 from isa_ros.config.assembly import group_of, request_range_of, surroundings_of
 from isa_ros.controller import (
     by_name, Controller, ControllerSeat, fill_requests, merge_requests, Setpoint, State)
@@ -142,9 +141,9 @@ class Simulation:
         """
         Change parameters of an actuator or a supply; they take effect at the next tick.
 
-        Gains by the name and in the unit of their ROS parameter, all others by the key and in the
-        unit of `isa params`: ``tune('kfe', {'force.kp': 1e-7, 'plant.spool.stuck': 1})``,
-        ``tune('supply', {'pressure_mpa': 10.0})``. All values are accepted, or none.
+        Values by the keys and in the units of `isa params`: ``tune('kfe', {'reu.force.kp': 1e-7,
+        'plant.spool.stuck': 1})``, ``tune('supply', {'pressure_mpa': 10.0})``. All values are
+        accepted, or none.
 
         Raises
         ------
@@ -159,9 +158,7 @@ class Simulation:
                 known = [*self.names, *self.supply_samples]
                 raise ConfigError(
                     f'{name!r} is not an actuator or a supply; {alternatives(name, known)}')
-            actuator = self.scenario.run.actuator(name)
-            self.group.actuators[self.names.index(name)].tune(
-                with_si_names(actuator.sheet, values))
+            self.group.actuators[self.names.index(name)].tune(values)
 
     def step(self, commands: Records | None = None) -> Mapping[str, np.record]:
         """

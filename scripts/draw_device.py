@@ -64,7 +64,7 @@ def gains(fade_ms: float) -> np.ndarray:
     own, found = actuator(fade_ms), []
     for k in range(round(2.0 * BEFORE_MS / TICK_MS)):
         if k == round(GAIN_MS / TICK_MS):
-            own.tune({'force.kv': GAIN_SHARE * own.parameter('force.kv')})
+            own.tune({'reu.force.kv': GAIN_SHARE * own.parameter('reu.force.kv')})
         own.tick()
         found.append(float(own.sample.current_reference) * 1e3)
     return np.array(found)

@@ -184,13 +184,13 @@ class SmartActuator:
 
     def tune(self, values: Mapping[str, float]) -> None:
         """
-        Accept new values of `tunables`, SI, all or none; they take effect at the next tick.
+        Accept new values by the keys and in the units of `isa params`, all or none.
 
-        The last of several before one tick wins; the loops keep their states. A gain of the
-        impedance is a command for this gain only. Raises as `isa_ros.actuator.tunable.tuned`.
+        They take effect at the next tick; the last of several before one tick wins; the loops
+        keep their states. A gain of the impedance is a command for this gain only. Raises as
+        `isa_ros.actuator.tunable.with_changed`.
         """
-        self.tuning.accept(values)
-        self.accept(gains_command(values))
+        self.accept(gains_command(self.tuning.accept(values)))
 
     @property
     def mode(self) -> int:
@@ -203,10 +203,11 @@ class SmartActuator:
             command, self._pending, self._constants.reu, self._reu)
 
     def parameter(self, name: str) -> float:
-        """Return a tunable value as it will be at the next tick, set by parameter or command."""
-        if name not in GAINS:
-            return self.tuning.value(name)
-        return gain_after(name, self._pending, self._reu)
+        """Return a value as it will be at the next tick, set by `tune` or by a command."""
+        own = self.tuning.known(name)
+        value = (gain_after(own.name, self._pending, self._reu) if own.name in GAINS
+                 else self.tuning.value(own.name))
+        return value if name == own.name else value / own.scale
 
     def tick(self, port: np.void | None = None) -> None:
         """

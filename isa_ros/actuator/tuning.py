@@ -7,7 +7,8 @@ from typing import Any
 from isa_ros.actuator.inbox import WITH_GAINS
 from isa_ros.actuator.kernel import ACTUATOR
 from isa_ros.actuator.sheet import actuator_record, ActuatorSheet
-from isa_ros.actuator.tunable import changing, GAINS, with_changed
+from isa_ros.actuator.tunable import changing, GAINS, named, with_changed
+from isa_ros.core.changeable import Changeable
 from isa_ros.core.changing_values import ChangingValues
 from isa_ros.core.signals import COMMAND, HAS_GAINS
 from isa_ros.errors import ConfigError
@@ -35,9 +36,9 @@ class Tuning:
         self._constants = constants
         self._written = {
             part: constants[part].copy() for part in ACTUATOR.names or () if hasattr(sheet, part)}
-        found = changing(sheet)
+        self._known = changing(sheet)
         self._values = ChangingValues(
-            name, list(found), [own.value for own in found.values()])
+            name, list(self._known), [own.value for own in self._known.values()])
 
     def reset(self) -> dict[str, float]:
         """Restore the sheet's values until the next tick; return the `GAINS` accepted for it."""
@@ -45,9 +46,11 @@ class Tuning:
         self._write()
         return {name: value for name, value in accepted.items() if name in GAINS}
 
-    def accept(self, values: Mapping[str, float]) -> None:
+    def accept(self, values: Mapping[str, float]) -> Mapping[str, float]:
         """
-        Accept new values of `changing`, all or none; the last of several before one tick wins.
+        Accept new values by key or `named`, all or none; return them `named`.
+
+        The last of several before one tick wins.
 
         Raises
         ------
@@ -55,8 +58,18 @@ class Tuning:
             As `isa_ros.actuator.tunable.with_changed`.
 
         """
-        self._changed_by(self._values.accepted | dict(values))
+        try:
+            values = named(self._known, values)
+        except ConfigError as error:
+            raise ConfigError(f'{self._name}: {error}') from error
+        self._changed_by(self._values.accepted | values)
         self._values.accept(values)
+        return values
+
+    def known(self, name: str) -> Changeable:
+        """Return one of `changing` by its key or its name."""
+        return self._known.get(name) or next(
+            own for own in self._known.values() if own.key == name)
 
     def value(self, name: str) -> float:
         """Return the last accepted value."""
@@ -71,7 +84,7 @@ class Tuning:
 
     def _changed_by(self, values: Mapping[str, float]) -> ActuatorSheet:
         try:
-            return with_changed(self._sheet, values)
+            return with_changed(self._sheet, values, self._known)
         except ConfigError as error:
             raise ConfigError(f'{self._name}: {error}') from error
 

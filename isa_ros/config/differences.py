@@ -101,7 +101,7 @@ def _units_of_actuator(actuator: ActuatorConfig) -> Iterator[tuple[str, str]]:
         yield from _units_of(actuator.load, 'load').items()
     for gain in tunables(actuator.sheet).values():  # m/N where the sheet has output/measured
         if gain.scale == 1.0:
-            yield '.'.join(('sheet', 'reu', *gain.path)), gain.unit
+            yield f'sheet.{gain.key}', gain.unit
 
 
 def _units_of(parameters: Parameters, key: str) -> dict[str, str]:

@@ -10,7 +10,7 @@ from collections.abc import Iterator, Mapping
 from dataclasses import fields, replace
 from typing import Any, NamedTuple, TypeVar
 
-from isa_ros.core.parameter import check, Parameters, with_value
+from isa_ros.core.parameter import check, Parameters, replaced
 from isa_ros.core.suggest import alternatives
 from isa_ros.errors import ConfigError, ParameterError
 
@@ -21,27 +21,57 @@ class Changeable(NamedTuple):
     """One parameter that may change during a run, as its sheet has it."""
 
     name: str
-    """Its dotted key."""
+    """That of its values in messages and saved states: its dotted key, of a gain another one."""
     value: float
-    unit: str
-    bounds: Mapping[str, float]
-    doc: str
     declared: Mapping[str, Any]
+    """Meaning, unit and bounds of its values."""
+    key: str
+    """Its dotted path in the set."""
+    scale: float = 1.0
+    """One unit of the set in that of its values."""
+    unit_of_set: str = ''
+    """That unit where it is another one."""
+
+    @property
+    def keyed(self) -> 'Changeable':
+        """Return it by its key and in the unit of the set."""
+        bounds = {bound: limit / self.scale for bound, limit in self.bounds.items()}
+        return Changeable(self.key, self.value / self.scale, {
+            **self.declared, 'unit': self.unit_of_set or self.unit, 'bounds': bounds}, self.key)
+
+    @property
+    def unit(self) -> str:
+        """Return the unit of its values."""
+        return str(self.declared['unit'])
+
+    @property
+    def bounds(self) -> Mapping[str, float]:
+        """Return any of ``gt``, ``ge``, ``lt``, ``le``."""
+        bounds: Mapping[str, float] = self.declared['bounds']
+        return bounds
+
+    @property
+    def doc(self) -> str:
+        """Return its meaning."""
+        return str(self.declared['doc'])
 
 
 def changeables(parameters: Parameters, prefix: str = '') -> dict[str, Changeable]:
     """Return the changeable parameters of a set by key; ``prefix`` is in front of each."""
-    return {own.name: own for own in _marked(parameters, prefix)}
+    return {f'{prefix}{key}': Changeable(f'{prefix}{key}', value, declared, key)
+            for key, value, declared in marked(parameters, 'changeable')}
 
 
-def _marked(parameters: Parameters, prefix: str) -> Iterator[Changeable]:
+def marked(
+        parameters: Parameters, mark: str, prefix: str = ''
+        ) -> Iterator[tuple[str, float, Mapping[str, Any]]]:
+    """Yield dotted key, value and declaration of the parameters with a mark."""
     for f in fields(parameters):
-        value, name, declared = getattr(parameters, f.name), f'{prefix}{f.name}', f.metadata
+        value, key = getattr(parameters, f.name), f'{prefix}{f.name}'
         if isinstance(value, Parameters):
-            yield from _marked(value, f'{name}.')
-        elif 'changeable' in declared:
-            yield Changeable(
-                name, value, declared['unit'], declared['bounds'], declared['doc'], declared)
+            yield from marked(value, mark, f'{key}.')
+        elif mark in f.metadata:
+            yield key, value, f.metadata
 
 
 def sound(parameters: P) -> P:
@@ -58,28 +88,30 @@ def sound(parameters: P) -> P:
     return replace(parameters, **found) if found else parameters
 
 
-def with_changes(parameters: P, values: Mapping[str, float], prefix: str = '') -> P:
+def with_changes(
+        parameters: P, known: Mapping[str, Changeable], values: Mapping[str, float]) -> P:
     """
-    Return a set with other values of its `changeables`.
+    Return a set with other values by the names of ``known``; equal values are kept as they are.
 
     Raises
     ------
     ConfigError
-        A key is unknown.
+        A name is unknown.
     ParameterError
         A value is out of its range, or contradicts another one.
 
     """
-    known = changeables(parameters, prefix)
     changed = parameters
     for name, value in values.items():
         if name not in known:
-            raise ConfigError(f'{name} is unknown; {alternatives(name, known)}')
-        check(name, value, known[name].declared)
-        if value == known[name].value:
+            keys = [one.key for one in known.values()]
+            raise ConfigError(f'{name} is unknown; {alternatives(name, keys)}')
+        own = known[name]
+        check(name, value, own.declared)
+        if value == own.value:
             continue
         try:
-            changed = with_value(changed, name.removeprefix(prefix).split('.'), float(value))
+            changed = replaced(changed, own.key, value / own.scale)
         except ParameterError as error:
             raise ParameterError(f'{name}: {error}') from error
     return changed

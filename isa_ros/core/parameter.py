@@ -1,11 +1,12 @@
 """One declaration per parameter: its unit, its range and its meaning."""
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable
 from dataclasses import dataclass, field, fields, replace
 import math
 from typing import Any, TypeVar
 
-from isa_ros.errors import ParameterError
+from isa_ros.core.suggest import alternatives
+from isa_ros.errors import ConfigError, ParameterError
 
 _RELATIONS: dict[str, tuple[str, Callable[[float, float], bool]]] = {
     'gt': ('>', lambda value, bound: value > bound),
@@ -111,11 +112,30 @@ def section(cls: type[Parameters]) -> Any:
     return nested(defaults(cls))
 
 
-def with_value(parameters: Any, path: Sequence[str], value: float) -> Any:
-    """Return a set with another value of one parameter, given by its path through nested sets."""
-    head, *rest = path
-    return replace(parameters, **{
-        head: with_value(getattr(parameters, head), rest, value) if rest else value})
+def replaced(parameters: _P, key: str, value: Any, where: str = '') -> _P:
+    """
+    Return a set with another value of one parameter, or section, by its dotted key.
+
+    ``where`` is in front of the key in messages.
+
+    Raises
+    ------
+    ConfigError
+        There is no such parameter.
+    ParameterError
+        The value is out of its range, or contradicts another one.
+
+    """
+    head, _, rest = key.partition('.')
+    names = [f.name for f in fields(parameters)]
+    if head not in names:
+        raise ConfigError(f'{where}{head} is unknown; {alternatives(head, names)}')
+    if rest:
+        below = getattr(parameters, head)
+        if not isinstance(below, Parameters):
+            raise ConfigError(f'{where}{head} is one value, has no {rest}')
+        value = replaced(below, rest, value, f'{where}{head}.')
+    return replace(parameters, **{head: value})
 
 
 def check(where: str, value: Any, declared: Any) -> None:

@@ -5,23 +5,23 @@ Faults of a scenario: changes of declared parameters over time.
     - {t_s: 0.5, actuator: kfe, set: {plant.spool.stuck: 1}, until_s: 0.8}
     - {t_s: 0.6, supply: supply, fault: pump_trip}
 
-Keys and units are those of `isa params`; a gain may also have its name and unit of the ROS
-parameter, ``force.kp``. From ``until_s`` on a parameter has the value that it has without the
-fault: that of another fault that still lasts, the latest first, else of the data sheet.
+Keys and units are those of `isa params`. From ``until_s`` on a parameter has the value that it
+has without the fault: that of another fault that still lasts, the latest first, else of the data
+sheet.
 """
 
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any, NamedTuple
 
-from isa_ros.actuator.tunable import changing, with_changed, with_si_names
+from isa_ros.actuator.tunable import changing, named, with_changed
 from isa_ros.config.assembly import surroundings_of
 from isa_ros.config.models.fault_catalogue import ACTUATOR, KINDS, named_fault, numbers_at, SUPPLY
 from isa_ros.config.runs.run_config import RunConfig
 from isa_ros.config.runs.tick_grid import ticks_in
 from isa_ros.config.text.sections import Place, refuse_unknown, section_at
 from isa_ros.config.text.yaml_text import Tree
-from isa_ros.core.changeable import changeables
+from isa_ros.core.changeable import Changeable, changeables
 from isa_ros.core.parameter import check
 from isa_ros.core.suggest import alternatives
 from isa_ros.core.timebase import NS_PER_SECOND
@@ -45,7 +45,7 @@ class Fault:
     target: str
     """Name of the actuator or supply."""
     values: Mapping[str, float]
-    """By the names of `isa_ros.actuator.tunable.changing`, or by key of the supply."""
+    """By the names that messages have, of `changing`, or by key of the supply."""
 
     def tree(self, step_ns: int) -> Tree:
         """Return the fault as a scenario file has it."""
@@ -109,15 +109,15 @@ def _fault(tree: Tree, place: Place, run: RunConfig) -> Fault:
             return Fault(tick, until, SUPPLY, target, values)
         prefix = f'{LINK}.' if of == LINK else ''
         sheet = run.actuator(target).sheet
-        named = with_si_names(
-            sheet, {f'{prefix}{key}': value for key, value in values.items()})
-        _refuse_keys(named, changing(sheet), where)
-        with_changed(sheet, named)
+        known = changing(sheet)
+        values = named(known, {f'{prefix}{key}': value for key, value in values.items()})
+        _refuse_keys(values, known, where)
+        with_changed(sheet, values, known)
     except ConfigError as error:
         if str(error).startswith(where):
             raise
         raise ConfigError(f'{where}: {error}') from error
-    return Fault(tick, until, ACTUATOR, target, named)
+    return Fault(tick, until, ACTUATOR, target, values)
 
 
 def _target(tree: Tree, place: Place) -> tuple[str, str]:
@@ -151,19 +151,19 @@ def _values(tree: Tree, of: str, place: Place) -> dict[str, float]:
     return values
 
 
-def _supply_keys(run: RunConfig, name: str) -> Mapping[str, object]:
+def _supply_keys(run: RunConfig, name: str) -> Mapping[str, Changeable]:
     by_name = {supply.name: supply for supply in run.supplies}
     if name not in by_name:
         raise ConfigError(f'{name!r} is not a supply; {alternatives(name, by_name)}')
     return changeables(by_name[name].sheet)
 
 
-def _refuse_keys(values: Mapping[str, float], known: Mapping[str, object], where: str) -> None:
+def _refuse_keys(values: Mapping[str, float], known: Mapping[str, Changeable], where: str) -> None:
     for key in values:
         if key not in known:
             raise ConfigError(
                 f'{where}: {key} is unknown or does not change during a run; '
-                f'{alternatives(key, known)}')
+                f'{alternatives(key, [own.key for own in known.values()])}')
 
 
 def _refuse_after_end(fault: Fault, place: Place, step_ns: int, n_ticks: int | None) -> None:

@@ -123,7 +123,8 @@ class Surroundings:
         for supply, feed in zip(self._supplies, self.feeds):
             prefix = f'{feed.name}.'
             own = {name: value for name, value in values.items() if name.startswith(prefix)}
-            yield supply, with_changes(feed.sheet, own, prefix)
+            yield supply, with_changes(
+                feed.sheet, changeables(feed.sheet, prefix), own)
 
     def _change_supplies(self) -> None:
         for supply, sheet in self._sheets(self._values.in_force):

@@ -1,7 +1,7 @@
 """Faults of an actuator as changed values: in force from a tick on, and as if in the sheet."""
 
 from isa_ros.actuator.sheet import actuator_record
-from isa_ros.actuator.tunable import changing, Tunable, with_si_names
+from isa_ros.actuator.tunable import changing, named, tunables
 from isa_ros.core.changeable import changeables
 from isa_ros.errors import ConfigError
 from isa_ros.loads.sheets import Mass
@@ -25,8 +25,8 @@ FAULTS = [{'plant.spool.stuck': 1.0}, {'plant.coil.shorted_turns': 0.5, 'reu.fro
 
 def test_every_value_that_may_change_is_among_those_tested():
     """A new one is added to `VALUES`."""
-    found = [name for name, own in changing(actuator_sheet('isa_v5')).items()
-             if not isinstance(own, Tunable)
+    sheet = actuator_sheet('isa_v5')
+    found = [name for name in changing(sheet) if name not in tunables(sheet)
              and not name.startswith(('plant.sensors.', 'link.'))]
     assert sorted(VALUES) == sorted(found)
 
@@ -183,5 +183,5 @@ def test_a_plant_too_fast_for_its_step_is_refused_when_it_is_changed():
 
 def test_a_gain_by_its_key_is_converted_and_all_others_stay():
     sheet = actuator_sheet('isa_v5', 'default', 'explicit')
-    assert with_si_names(sheet, {'reu.current.kp_v_per_ma': 2.0, 'plant.spool.stuck': 1.0}) == {
+    assert named(changing(sheet), {'reu.current.kp_v_per_ma': 2.0, 'plant.spool.stuck': 1.0}) == {
         'current.kp': 2000.0, 'plant.spool.stuck': 1.0}

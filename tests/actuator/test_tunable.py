@@ -4,7 +4,7 @@ from dataclasses import replace
 import math
 
 from isa_ros.actuator.sheet import actuator_record, ActuatorSheet
-from isa_ros.actuator.tunable import tunables, tuned
+from isa_ros.actuator.tunable import tunables, with_changed
 from isa_ros.config.models.catalogue import actuator_model, model_names
 from isa_ros.errors import ConfigError, ParameterError
 from isa_ros.reu.schedule import ThreePoints
@@ -29,7 +29,7 @@ def test_every_tunable_is_si_within_its_range_and_has_a_meaning(model, variant):
         assert not any(word in tunable.unit for word in NOT_SI), (name, tunable.unit)
         assert tunable.doc and {'ge', 'gt'} & set(tunable.bounds)
         assert 'le' in tunable.bounds  # a ROS range has two ends
-    assert tuned(sheet, {name: t.value for name, t in tunables(sheet).items()}) is sheet
+    assert with_changed(sheet, {name: t.value for name, t in tunables(sheet).items()}) is sheet
 
 
 @pytest.mark.parametrize(('model', 'variant'), EVERY)
@@ -41,7 +41,7 @@ def test_every_tunable_changes_a_constant_of_the_loops_and_nothing_of_the_plant(
         value = 0.9 * tunable.value or 0.5 * min(1.0, tunable.bounds['le'])
         if name.endswith('.limit'):
             value = 0.5 * tunable.value
-        after = actuator_record(tuned(sheet, {name: value}), 6)
+        after = actuator_record(with_changed(sheet, {name: value}), 6)
         assert after['plant'].tobytes() == before['plant'].tobytes()
         is_gain = name in ('position.stiffness', 'position.damping')
         assert (after['reu'].tobytes() == before['reu'].tobytes()) == is_gain, name
@@ -77,7 +77,7 @@ def test_a_sheet_in_other_units_is_tuned_in_si(variant, name, field, per_unit):
     tunable = tunables(sheet)[name]
     block = name.partition('.')[0]
     assert tunable.value == pytest.approx(getattr(getattr(sheet.reu, block), field) * per_unit)
-    changed = tuned(sheet, {name: 0.5 * tunable.value})
+    changed = with_changed(sheet, {name: 0.5 * tunable.value})
     assert tunables(changed)[name].value == pytest.approx(0.5 * tunable.value)
 
 
@@ -87,7 +87,7 @@ def test_the_factors_of_a_schedule_are_tunable_where_there_is_one():
     force = replace(sheet.reu.force, gain_schedule=three)
     scheduled = replace(sheet, reu=replace(sheet.reu, force=force))
     assert tunables(scheduled)['force.gain_schedule.extended'].value == 0.7
-    changed = tuned(scheduled, {'force.gain_schedule.extended': 0.6, 'force.kp': 1e-7})
+    changed = with_changed(scheduled, {'force.gain_schedule.extended': 0.6, 'force.kp': 1e-7})
     assert changed.reu.force.gain_schedule.extended == 0.6
     assert changed.reu.force.kp == 1e-7
     assert 'force.gain_schedule.extended' not in tunables(sheet)
@@ -104,5 +104,5 @@ def test_the_factors_of_a_schedule_are_tunable_where_there_is_one():
 def test_what_cannot_be_is_refused_in_one_line(name, value, error, message):
     """The message has name, value, unit and bound."""
     with pytest.raises(error, match=message) as raised:
-        tuned(actuator_sheet('isa_v5'), {name: value})
+        with_changed(actuator_sheet('isa_v5'), {name: value})
     assert '\n' not in str(raised.value)

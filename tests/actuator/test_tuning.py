@@ -161,3 +161,40 @@ def test_a_state_saved_before_the_tuning_brings_back_what_was_in_force_then():
     actuator.tick()
     actuator.restore(first)
     assert actuator._constants.tobytes() == begin
+
+
+@pytest.mark.parametrize(('key', 'name', 'unit'), [
+    ('reu.current.kp_v_per_ma', 'current.kp', 1e3), ('reu.position.stiffness',
+                                                     'position.stiffness', 1.0)])
+def test_a_gain_has_its_key_and_unit_of_the_sheet_and_its_name_of_messages_in_si(
+        key, name, unit):
+    by_key, by_name = (smart_actuator(
+        'isa_v5', 'mass', timing=TICK, sheet=actuator_sheet('isa_v5', 'default', 'explicit'))
+        for _ in range(2))
+    assert by_key.parameter(name) == by_key.parameter(key) * unit
+    value = 0.5 * by_key.parameter(key)
+    by_key.tune({key: value})
+    by_name.tune({name: value * unit})
+    assert by_key.parameter(key) == value and by_key.parameter(name) == value * unit
+    assert run(by_key, 5) == run(by_name, 5)
+    assert by_key.snapshot() == by_name.snapshot()
+
+
+def test_messages_have_a_gain_by_its_name_in_si():
+    actuator = smart_actuator(
+        'isa_v5', 'mass', timing=TICK, sheet=actuator_sheet('isa_v5', 'default', 'explicit'))
+    actuator.tune({'reu.current.kp_v_per_ma': 2.0, 'plant.spool.stuck': 1.0})
+    actuator.tick()
+    assert actuator.applied_parameters == {'current.kp': 2000.0, 'plant.spool.stuck': 1.0}
+
+
+@pytest.mark.parametrize(('values', 'message'), [
+    ({'reu.current.kp_v_per_ma': 2000.0},
+     r'isa_v5: reu.current.kp_v_per_ma = 2000 V/mA, must be <= 1000 V/mA \(K_p of eq'),
+    ({'reu.current.kp_v_per_a': 2.0},
+     'isa_v5: reu.current.kp_v_per_a is unknown; .*reu.current.kp_v_per_ma')])
+def test_a_refused_value_is_named_as_it_was_given(values, message):
+    actuator = smart_actuator(
+        'isa_v5', 'mass', timing=TICK, sheet=actuator_sheet('isa_v5', 'default', 'explicit'))
+    with pytest.raises(ConfigError, match=message):
+        actuator.tune(values)

@@ -2,7 +2,7 @@
 
 from dataclasses import replace
 
-from isa_ros.actuator.tunable import refuse_unusable, tunables, tuned
+from isa_ros.actuator.tunable import refuse_unusable, tunables, with_changed
 from isa_ros.actuator.usable import largest_gains
 from isa_ros.errors import ParameterError
 from isa_ros.plant.sensors import sensors_record
@@ -42,7 +42,7 @@ def test_a_gain_beyond_it_is_refused_by_configuration_and_parameter(model, gain)
         refuse_unusable(override(sheet, f'reu.force.{gain}', beyond))
     tunable = tunables(sheet)[f'force.{gain}']
     with pytest.raises(ParameterError, match=f'^force.{gain} = .*one count of its sensor'):
-        tuned(sheet, {tunable.name: 1.01 * tunable.bounds['le']})
+        with_changed(sheet, {tunable.name: 1.01 * tunable.bounds['le']})
 
 
 @pytest.mark.parametrize('model', MODELS)

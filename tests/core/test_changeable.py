@@ -41,10 +41,10 @@ def test_what_is_marked_is_found_with_value_unit_and_bounds():
 
 
 def test_a_change_leaves_all_others_and_an_equal_value_the_object():
-    changed = with_changes(SHEET, {'right.stuck': 0, 'right.offset_mm': 0.5})
+    changed = with_changes(SHEET, changeables(SHEET), {'right.stuck': 0, 'right.offset_mm': 0.5})
     assert changed.right == Channel(range_mm=2.0, offset_mm=0.5)
     assert changed.left is LEFT
-    assert with_changes(SHEET, {'left.offset_mm': 0.1}) is SHEET
+    assert with_changes(SHEET, changeables(SHEET), {'left.offset_mm': 0.1}) is SHEET
 
 
 def test_a_device_without_faults_keeps_what_is_no_fault():
@@ -58,7 +58,7 @@ def test_a_device_without_faults_keeps_what_is_no_fault():
     ('left.stuck', 0.5, ParameterError, 'left.stuck = 0.5, must be a whole number')])
 def test_what_cannot_change_so_is_refused(key, value, error, message):
     with pytest.raises(error, match=message):
-        with_changes(SHEET, {key: value})
+        with_changes(SHEET, changeables(SHEET), {key: value})
 
 
 @pytest.mark.parametrize('model', model_names())

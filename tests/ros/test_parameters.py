@@ -117,8 +117,10 @@ def test_every_gain_is_declared_with_unit_meaning_and_range(observer, tmp_path):
     with actuator(tmp_path / 'log', 'knee', model='isa_v5'):
         tuner = Tuner(observer, 'knee')
         tuner.connect()
-        kp, limit, model = tuner.call(DescribeParameters.Request(
-            names=['force.kp', 'force.limit', 'model'])).descriptors
+        kp, limit, model, old = tuner.call(DescribeParameters.Request(
+            names=['reu.force.kp', 'reu.force.limit', 'model', 'force.kp'])).descriptors
+        old.name = kp.name
+        assert old == kp
         assert kp.description == (
             'proportional gain K_p; with more, one count of its sensor demands the whole output, '
             'm/N')
@@ -185,9 +187,10 @@ def test_a_gain_tuned_in_a_run_is_recorded_with_its_tick_and_replays(
         tuner = Tuner(observer, 'rotor')
         tuner.connect()
         for value in (KP, 2.0 * KP):
-            assert tuner.tune('force.kp', value).successful
+            assert tuner.tune('reu.force.kp', value).successful
+            assert tuner.get('reu.force.kp', 'force.kp') == [value, value]
             tuner.let_run()
-        assert tuner.tune('position.damping', 25.0).successful
+        assert tuner.tune('reu.position.damping', 25.0).successful
         tuner.let_run()
     found = recorded(bag, 'rotor')
     assert [values for *_, values in found] == [{'force.kp': KP}, {'force.kp': 2.0 * KP}]
@@ -269,7 +272,8 @@ def test_an_override_on_the_command_line_wins_over_the_file_and_is_recorded_at_t
     """The digest stays that of the file, so the run is not refused; the bag replays."""
     bag = tmp_path / 'bag'
     parameters: dict[str, object] = {
-        'config_file': RIG, 'lockstep': True, 'force.kp': KP, 'position.stiffness': 200.0}
+        'config_file': RIG, 'lockstep': True, 'reu.force.kp': KP,
+        'position.stiffness': 200.0}
     with actuator(tmp_path / 'log', 'rotor', **parameters):
         with coordinator(tmp_path / 'run', config_file=RIG, out=bag, duration=0.05) as run:
             assert run.exit_code() == 0, run.errors

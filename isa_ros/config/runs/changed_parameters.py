@@ -1,13 +1,12 @@
 """Single parameters of an actuator replaced by dotted path, where no run file is at hand."""
 
 from collections.abc import Mapping
-from dataclasses import fields, replace
+from dataclasses import replace
 from typing import Any
 
 from isa_ros.config.runs.run_config import ActuatorConfig
-from isa_ros.core.parameter import Parameters
-from isa_ros.core.suggest import alternatives
-from isa_ros.errors import ConfigError, ParameterError
+from isa_ros.core.parameter import Parameters, replaced
+from isa_ros.errors import ParameterError
 
 Values = Mapping[str, Any]
 """Values in data-sheet units by dotted path: plant..., reu... or load...."""
@@ -25,30 +24,15 @@ def with_parameters(actuator: ActuatorConfig, values: Values, where: str) -> Act
         There is no such parameter, or the value is outside its range.
 
     """
+    where = f'{where}: {actuator.name}.'
     for path, value in values.items():
-        actuator = _changed(actuator, path, value, f'{where}: {actuator.name}')
+        head, _, rest = path.partition('.')
+        try:
+            if head == 'load' and isinstance(actuator.load, Parameters):
+                load = replaced(actuator.load, rest, value, f'{where}{head}.')
+                actuator = replace(actuator, load=load)
+            else:
+                actuator = replace(actuator, sheet=replaced(actuator.sheet, path, value, where))
+        except ParameterError as error:
+            raise ParameterError(f'{where}{path}: {error}') from error
     return actuator
-
-
-def _changed(actuator: ActuatorConfig, path: str, value: Any, where: str) -> ActuatorConfig:
-    head, _, rest = path.partition('.')
-    try:
-        if head == 'load' and isinstance(actuator.load, Parameters):
-            return replace(actuator, load=_replaced(
-                actuator.load, rest, value, f'{where}.{head}'))
-        return replace(actuator, sheet=_replaced(actuator.sheet, path, value, where))
-    except ParameterError as error:
-        raise ParameterError(f'{where}.{path}: {error}') from error
-
-
-def _replaced(parameters: Any, path: str, value: Any, where: str) -> Any:
-    head, _, rest = path.partition('.')
-    names = [f.name for f in fields(parameters)]
-    if head not in names:
-        raise ConfigError(f'{where}.{head} is unknown; {alternatives(head, names)}')
-    if rest:
-        below = getattr(parameters, head)
-        if not isinstance(below, Parameters):
-            raise ConfigError(f'{where}.{head} is one value, has no {rest}')
-        value = _replaced(below, rest, value, f'{where}.{head}')
-    return replace(parameters, **{head: value})

@@ -3,7 +3,7 @@
 from collections.abc import Callable, Mapping, Sequence
 from typing import Protocol
 
-from isa_ros.actuator.tunable import tuned
+from isa_ros.actuator.tunable import with_changed
 from isa_ros.errors import ConfigError
 from isa_ros.fieldbus.device.abort import OUT_OF_RANGE, SdoAbort
 from isa_ros.fieldbus.device.axis import Axis, FIELDS
@@ -116,7 +116,7 @@ class ActuatorDevice:
         changed = {one.name: float(self._values[key]) for key, one in self._tunables.items()
                    if self._values[key] != one.value}
         try:
-            tuned(self._axis.sheet, changed | {own.name: float(value)})
+            with_changed(self._axis.sheet, changed | {own.name: float(value)})
         except ConfigError as error:
             note_refusal(self._values, str(error))
             raise SdoAbort(OUT_OF_RANGE) from error

@@ -3,7 +3,8 @@
 from collections.abc import Mapping, Sequence
 import math
 
-from isa_ros.actuator.tunable import Tunable, tunables
+from isa_ros.actuator.tunable import tunables
+from isa_ros.core.changeable import Changeable
 from isa_ros.core.fields import units_of
 from isa_ros.core.signals import SAMPLE_FIELDS
 from isa_ros.fieldbus.device.axis import Axis, FULL_SCALE, INCREMENT, PER_MILLE
@@ -122,11 +123,11 @@ def _impedance(axis: Axis) -> Object:
               meaning='added to target torque and torque offset')])
 
 
-def tunable_keys(axis: Axis) -> dict[Key, Tunable]:
+def tunable_keys(axis: Axis) -> dict[Key, Changeable]:
     """Return the gains and limits of the REU by their place in the dictionary."""
-    found: dict[Key, Tunable] = {}
+    found: dict[Key, Changeable] = {}
     for tunable in tunables(axis.sheet).values():
-        index = _REU + VARIABLES.index(tunable.path[0])
+        index = _REU + VARIABLES.index(tunable.name.partition('.')[0])
         found[index, 1 + sum(key[0] == index for key in found)] = tunable
     return found
 

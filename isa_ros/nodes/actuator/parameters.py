@@ -3,7 +3,6 @@
 from collections.abc import Mapping, Sequence
 
 from isa_ros.actuator.actuator import SmartActuator
-from isa_ros.actuator.tunable import Tunable
 from isa_ros.core.changeable import Changeable
 from isa_ros.core.device import MODES
 from isa_ros.errors import ConfigError
@@ -24,7 +23,8 @@ class TunableParameters:
     """
     Declares what is ``changing`` and the mode on ``node``, and passes new values to ``actuator``.
 
-    Gains are in SI, all others in the unit of `isa params`, which is part of their description.
+    Names and units are those of `isa params`; the unit is part of the description. A gain also has
+    its name of messages, in SI, as it was declared before: ``force.kp`` for ``reu.force.kp``.
 
     The value of a parameter is read from the actuator, also if a setpoint has changed it.
     ``overrides`` are those of the command line, in force from the first tick.
@@ -38,18 +38,18 @@ class TunableParameters:
 
     def __init__(
             self, node: Node, actuator: SmartActuator,
-            changing: Mapping[str, Tunable | Changeable],
+            changing: Mapping[str, Changeable],
             overrides: Mapping[str, Parameter]) -> None:
         self._actuator = actuator
-        self._names = frozenset(changing)
-        for own in changing.values():
-            node.declare_parameter(
-                own.name, own.value, descriptor(own), ignore_override=True)
+        declared = {one.name: one for own in changing.values() for one in (own.keyed, own)}
+        self._names = frozenset(declared)
+        for name, own in declared.items():
+            node.declare_parameter(name, own.value, descriptor(own), ignore_override=True)
         mode = self._declare_mode(node)
         refuse_unknown(node)
         if mode is not None:
             actuator.change_mode(mode)
-        actuator.tune({name: overrides[name].value for name in changing if name in overrides})
+        actuator.tune({name: overrides[name].value for name in declared if name in overrides})
         accept_integers(node)
         node.add_on_set_parameters_callback(self._on_set)
         self.services: Sequence[Service] = open_parameter_services(node)
@@ -86,7 +86,7 @@ class TunableParameters:
         return SetParametersResult(successful=True)
 
 
-def descriptor(own: Tunable | Changeable) -> ParameterDescriptor:
+def descriptor(own: Changeable) -> ParameterDescriptor:
     """Return unit, meaning and range of a value; excluded bounds are listed as constraints."""
     bounds = own.bounds
     relations = {'gt': '>', 'lt': '<'}
