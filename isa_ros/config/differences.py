@@ -12,7 +12,9 @@ from typing import Any, NamedTuple
 
 from isa_ros.actuator.tunable import tunables
 from isa_ros.config.listing import rows
-from isa_ros.config.runs.run_config import ActuatorConfig, modern, RUN, RunConfig
+from isa_ros.config.runs.run_config import RUN, RunConfig
+from isa_ros.config.runs.supplies import SUPPLY
+from isa_ros.config.text.keys import KeyDifference
 from isa_ros.config.text.sections import Place
 from isa_ros.config.text.yaml_text import Tree
 from isa_ros.core.parameter import Parameters
@@ -75,37 +77,44 @@ def _has_sections(value: Any) -> bool:
     return isinstance(value, list) and any(isinstance(entry, dict) for entry in value)
 
 
+def key_differences(tree: Tree, place: Place) -> Iterator[KeyDifference]:
+    """Yield what a resolved configuration has that is unknown here, and what it lacks."""
+    yield from RUN.differences(modern(tree), place)
+
+
+def modern(tree: Tree) -> Tree:
+    """Return the tree of a resolved configuration that may still say ``supply`` and ``leg``."""
+    tree = dict(tree)
+    actuators, supply = tree.get('actuators'), tree.get(SUPPLY)
+    if isinstance(supply, dict) and isinstance(actuators, dict) and 'supplies' not in tree:
+        del tree[SUPPLY]
+        tree['supplies'] = {SUPPLY: supply | {'feeds': list(actuators)}}
+    if isinstance(tree.get('leg'), dict) and 'body' not in tree:
+        leg: Tree = {'kind': 'leg'}
+        tree['body'] = leg | tree.pop('leg')  # type: ignore[operator]
+    return tree
+
+
 def _units(tree: Tree) -> dict[str, str]:
     """Return the unit of every number by key; of nothing where another version wrote it."""
     try:
-        run: RunConfig = RUN.read(tree, Place(''))
+        run = RunConfig.from_tree(tree, '')
     except ConfigError:
         return {}
-    units = {'step_ns': 'ns', 'controller_offset_ns': 'ns', 'tick_timeout_s': 's'}
-    units |= _units_of(run.record.storage, 'record')
-    for supply in run.supplies:
-        units |= _units_of(supply.sheet, f'supplies.{supply.name}')
+    units: dict[str, str] = {}
+    for key, value, row in RUN.leaves(run, ''):
+        if isinstance(value, Parameters):
+            units |= {f'{key}.{below.parameter}': below.unit for below in rows(value, {})}
+        else:
+            units[key] = row.kind.unit
     for actuator in run.actuators:
-        key = f'actuators.{actuator.name}'
-        units |= {f'{key}.{name}': of_coordinate(unit, actuator.sheet.is_rotary)
-                  for name, unit in _units_of_actuator(actuator)}
-    if run.leg is not None:
-        units |= _units_of(run.leg.start, 'body.start') | _units_of(run.leg.sheet, 'body.sheet')
+        own = f'actuators.{actuator.name}.'
+        for gain in tunables(actuator.sheet).values():  # m/N where the sheet has output/measured
+            if gain.scale == 1.0:
+                units[f'{own}sheet.{gain.key}'] = gain.unit
+        units |= {key: of_coordinate(unit, actuator.sheet.is_rotary)
+                  for key, unit in units.items() if key.startswith(own)}
     return units
-
-
-def _units_of_actuator(actuator: ActuatorConfig) -> Iterator[tuple[str, str]]:
-    yield 'initial_position', 'm | rad'
-    yield from _units_of(actuator.sheet, 'sheet').items()
-    if actuator.load is not None:
-        yield from _units_of(actuator.load, 'load').items()
-    for gain in tunables(actuator.sheet).values():  # m/N where the sheet has output/measured
-        if gain.scale == 1.0:
-            yield f'sheet.{gain.key}', gain.unit
-
-
-def _units_of(parameters: Parameters, key: str) -> dict[str, str]:
-    return {f'{key}.{row.parameter}': row.unit for row in rows(parameters, {})}
 
 
 def _shown(value: Any) -> str:

@@ -2,6 +2,7 @@
 
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import fields
+import re
 from types import MappingProxyType
 from typing import Any, get_type_hints, NamedTuple
 
@@ -11,8 +12,7 @@ from isa_ros.config.models.catalogue import (
 from isa_ros.config.models.wires import wire
 from isa_ros.config.paths import CONFIG, find
 from isa_ros.config.runs.model_run import full_key, model_run
-from isa_ros.config.runs.run_config import RunConfig
-from isa_ros.config.runs.run_file import Origins, run_of
+from isa_ros.config.runs.run_config import Origins, RUN, run_of, RunConfig
 from isa_ros.config.text.changes import changed, Values
 from isa_ros.config.text.parameter_sets import build, build_one_of, kind_of, members
 from isa_ros.config.text.sections import Entry, merge, Place, Section, section_at, written
@@ -122,30 +122,38 @@ def _kind_row(path: str, value: Parameters, union: Any, source_of: Mapping[str, 
 
 def _run_tables(run: RunConfig, origins: Origins, changes: Sequence[str]) -> Iterator[str]:
     """Return the tables of a run; values at the keys ``changes`` have the source `SET`."""
-    def table(key: str, title: str, parameters: Parameters, section: Section | None) -> str:
+    kinds = dict.fromkeys(run.actuator(name).sheet.link.kind for name in run.linked)
+    wires = [_table(f'wire of links: {kind}', rows(*wire(kind))) for kind in kinds]
+    for key, parameters, _ in RUN.leaves(run, ''):
+        if not isinstance(parameters, Parameters):
+            continue
+        if key.startswith('actuators.'):
+            yield from wires
+            wires = []
+        title, about = _title(run, key, parameters)
+        section = origins.get(key)
         found = rows(parameters, section or {})
         if section is None:
             found = [row._replace(source=run.source) for row in found]
-        return _table(key + title, [
-            row._replace(source=SET) if _is_among(f'{key}.{row.parameter}', changes) else row
+        yield _table(title + about, [
+            row._replace(source=SET) if _is_among(f'{title}.{row.parameter}', changes) else row
             for row in found])
-    for supply in run.supplies:
-        yield table(supply.name, f' of {run.source}', supply.sheet, None)
-    yield table('record', '', run.record.storage, None)
-    for kind in dict.fromkeys(run.actuator(name).sheet.link.kind for name in run.linked):
-        yield _table(f'wire of links: {kind}', rows(*wire(kind)))
-    for actuator in run.actuators:
-        origin, key = origins.actuators[actuator.name], f'actuators.{actuator.name}'
-        yield table(f'{key}.parameters', f': {actuator.model}, preset {actuator.preset}',
-                    actuator.sheet, origin.sheet)
-        if actuator.load is not None:
-            yield table(f'{key}.load', f': {kind_of(actuator.load, LocalLoad)}',
-                        actuator.load, origin.load)
-    if run.leg is not None and origins.leg is not None:
-        yield table('leg.start', '', run.leg.start, None)
-        for imu in run.leg.imus:
-            yield table(f'leg.imus.{imu.name}', '', imu.sheet, None)
-        yield table('leg.parameters', f': {run.leg.model}', run.leg.sheet, origins.leg)
+
+
+def _title(run: RunConfig, key: str, parameters: Parameters) -> tuple[str, str]:
+    """Return the key in a run file of a set of a resolved text, and what is said about it."""
+    head, _, name = key.partition('.')
+    if head == 'supplies':
+        return name, f' of {run.source}'
+    if head == 'actuators':
+        name, _, part = name.partition('.')
+        if part == 'load':
+            return key, f': {kind_of(parameters, LocalLoad)}'
+        own = run.actuator(name)
+        return f'{head}.{name}.parameters', f': {own.model}, preset {own.preset}'
+    if key == 'body.sheet' and run.leg is not None:
+        return 'leg.parameters', f': {run.leg.model}'
+    return re.sub('^body', 'leg', key).removesuffix('.sheet'), ''
 
 
 def _is_among(key: str, changes: Sequence[str]) -> bool:

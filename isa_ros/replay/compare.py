@@ -9,7 +9,7 @@ from collections.abc import Callable, Iterator, Mapping, Sequence
 
 from isa_ros.bag.provenance import CONFIGURATION
 from isa_ros.bag.reader import Bag, BagMessage, Tick
-from isa_ros.config.runs.recording import read_record, RecordConfig
+from isa_ros.config.runs.recording import RECORD, RecordConfig
 from isa_ros.config.text.sections import Place
 from isa_ros.config.text.yaml_text import parse
 from isa_ros.replay.difference import ABSENT, BAG, Difference, PRESENT, Report, Value
@@ -217,4 +217,5 @@ def recorded_as(bag: Bag) -> RecordConfig:
         return RecordConfig()
     name = f'{bag.path.name}: {CONFIGURATION}'
     tree = parse(bag.provenance.configuration, name)
-    return read_record(tree.get('record', {}), Place(name, 'record'))
+    record: RecordConfig = RECORD.read(tree.get('record', {}), Place(name, 'record'))
+    return record

@@ -11,11 +11,11 @@ from typing import NamedTuple
 from isa_ros.bag.provenance import (
     CONFIGURATION, FORMAT, installed_versions, PYTHON, VERSION, without_patch)
 from isa_ros.bag.reader import Bag
+from isa_ros.config.differences import key_differences
 from isa_ros.config.text.sections import Place
 from isa_ros.config.text.yaml_text import parse
 from isa_ros.core.topic import Topic
 from isa_ros.errors import BagError
-from isa_ros.replay.other_versions import key_differences
 from msg_adapters.definitions import definition
 
 _NAMED = 3  # obstacles listed in the error message

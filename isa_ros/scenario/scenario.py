@@ -15,8 +15,8 @@ from typing import Any
 from isa_ros.config.models.catalogue import actuator_model
 from isa_ros.config.models.own_load import own_load, refuse_beyond_stops
 from isa_ros.config.runs.coarse_ticks import coarse_ticks
+from isa_ros.config.runs.leg_config import leg_start, refuse_reach, refuse_start
 from isa_ros.config.runs.run_config import ActuatorConfig, RunConfig
-from isa_ros.config.runs.starts import leg_start, refuse_reach, refuse_start
 from isa_ros.config.runs.tick_grid import ticks_in
 from isa_ros.config.text.changes import changed, Changes, SCENARIO
 from isa_ros.config.text.names import name_of

@@ -9,8 +9,7 @@ from typing import Any
 import warnings
 
 from isa_ros.config.paths import CONFIG, find, SCENARIOS
-from isa_ros.config.runs.run_config import RunConfig
-from isa_ros.config.runs.run_file import run_of
+from isa_ros.config.runs.run_config import run_of, RunConfig
 from isa_ros.config.text.changes import replaced, SCENARIO
 from isa_ros.config.text.sections import Place
 from isa_ros.config.text.yaml_text import read, Tree

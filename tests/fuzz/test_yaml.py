@@ -1,8 +1,6 @@
 """Altered run files, scenarios and models are read or refused in one line."""
 
-from isa_ros.config.runs import run_file
-from isa_ros.config.text import parameter_sets
-from isa_ros.config.text import schema
+from isa_ros.config.text import keys, parameter_sets
 from isa_ros.core import parameter
 import pytest
 from tests.fuzz.property import Broken
@@ -33,10 +31,10 @@ def unchecked(patch):
 
 
 @pytest.mark.parametrize('plant', [
-    lambda patch: patch.setattr(run_file.Plain, 'read', accept),
-    lambda patch: patch.setattr(schema, '_is_one_of', lambda kind, kinds: kind in kinds),
+    lambda patch: patch.setattr(keys.Plain, 'read', accept),
+    lambda patch: patch.setattr(keys, '_is_one_of', lambda kind, kinds: kind in kinds),
     unchecked,
-    lambda patch: patch.setattr(run_file, 'section_at', lambda tree, place: tree)])
+    lambda patch: patch.setattr(keys, 'section_at', lambda tree, place: tree)])
 def test_a_guard_that_is_missing_is_found(plant, monkeypatch):
     """Types of names, kinds and sections, and numbers that are not finite."""
     plant(monkeypatch)

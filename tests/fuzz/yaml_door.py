@@ -11,8 +11,7 @@ from isa_ros.actuator.sheet import ActuatorSheet
 from isa_ros.config.models import catalogue
 from isa_ros.config.models.own_load import own_load
 from isa_ros.config.paths import CONFIG, find, SCENARIOS
-from isa_ros.config.runs.run_config import RUN, RunConfig
-from isa_ros.config.runs.run_file import run_of
+from isa_ros.config.runs.run_config import RUN, run_of, RunConfig
 from isa_ros.config.text.parameter_sets import build
 from isa_ros.config.text.sections import Place
 from isa_ros.config.text.yaml_text import parse, read

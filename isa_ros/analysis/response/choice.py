@@ -12,8 +12,7 @@ from typing import Any, NamedTuple
 from isa_ros.config.models.catalogue import model_names
 from isa_ros.config.paths import CONFIG, find
 from isa_ros.config.runs.model_run import full_key, LOAD, model_run
-from isa_ros.config.runs.run_config import RunConfig
-from isa_ros.config.runs.run_file import run_of
+from isa_ros.config.runs.run_config import run_of, RunConfig
 from isa_ros.config.text.changes import changed
 from isa_ros.config.text.sections import Place
 from isa_ros.config.text.yaml_text import read, Tree

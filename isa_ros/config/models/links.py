@@ -11,29 +11,25 @@ Links of a run file: ``link`` for all actuators, and in an actuator's section fo
 from typing import Any
 
 from isa_ros.actuator.link import KINDS, LinkSheet, NO_LINK, NONE
+from isa_ros.config.text.keys import Layer
 from isa_ros.config.text.parameter_sets import as_tree
-from isa_ros.config.text.sections import (
-    Entry, merge, Place, refuse_unknown, Section, section_at, written)
-from isa_ros.config.text.yaml_text import Tree
+from isa_ros.config.text.sections import Entry, merge, Place, refuse_unknown, Section
 from isa_ros.errors import ConfigError
 
 LINK = 'link'
 
 
-def read_link(tree: Tree, place: Place) -> Section:
-    """
-    Return the keys of the section ``link`` below a place; none without the section.
+class LinkLayer(Layer):
+    """Keys of a link; those that are left out are those of another section."""
 
-    Raises
-    ------
-    ConfigError
-        It is not a section, or has an unknown key.
+    def __init__(self) -> None:
+        super().__init__(LinkSheet)
 
-    """
-    below = place / LINK
-    section = section_at(tree.get(LINK, {}), below)
-    refuse_unknown(section, LinkSheet.__dataclass_fields__, below)
-    return written(section, below)
+    def read(self, tree: Any, place: Place) -> Section:
+        """Return the section; as `Kind.read`."""
+        section = super().read(tree, place)
+        refuse_unknown(section, LinkSheet.__dataclass_fields__, place)
+        return section
 
 
 def link_of(run: Section, own: Section, step_ns: int, place: Place) -> Section:

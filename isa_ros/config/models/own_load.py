@@ -1,7 +1,6 @@
 """The load of a single actuator: the model's values, replaced by those of a file."""
 
 from dataclasses import replace
-from typing import Any
 
 from isa_ros.actuator.actuator import PAPER_SUPPLY
 from isa_ros.actuator.sheet import ActuatorSheet
@@ -19,15 +18,15 @@ def own_load(
         tree: Tree, place: Place, model: Model, sheet: ActuatorSheet,
         supply: float = PAPER_SUPPLY) -> LocalLoad:
     """Return a load of one actuator: the model's of that kind with single values replaced."""
-    section = load_section(tree, place, model, sheet, supply)
+    section = load_section(written(tree, place), place, model, sheet, supply)
     load: LocalLoad = build_one_of(LocalLoad, section, place)
     return load
 
 
 def load_section(
-        tree: Tree, place: Place, model: Model, sheet: ActuatorSheet, supply: float) -> Section:
+        own: Section, place: Place, model: Model, sheet: ActuatorSheet, supply: float) -> Section:
     """
-    Return the values of a load, each with the place where it was written.
+    Return the values of a load: those of ``own``, else those of the model's load of that kind.
 
     ``sheet`` is that of an actuator made from the model, on ``supply`` Pa above return pressure:
     the model's values scale with it.
@@ -38,16 +37,16 @@ def load_section(
         The model has no load of this kind.
 
     """
-    kind: Any = tree.get('kind')
+    rest = dict(own)
+    named = rest.pop('kind', None)
+    kind = named.value if isinstance(named, Entry) else named
     if not isinstance(kind, str) or kind not in model.loads:
         raise ConfigError(f'{place}.kind = {kind!r}, must be one of {", ".join(model.loads)}')
-    own = {key: value for key, value in tree.items() if key != 'kind'}
     base = build(ActuatorSheet, model.with_preset(DEFAULT_PRESET, 'preset'), model.place)
-    scaled = Scaling(base, sheet, supply).section(model.loads[kind], place)
-    section = merge(scaled, written(own, place))
-    named = section['kind']
-    assert isinstance(named, Entry)
-    return section | {'kind': replace(named, where=str(place / 'kind'))}
+    section = merge(Scaling(base, sheet, supply).section(model.loads[kind], place), rest)
+    of_model = section['kind']
+    assert isinstance(of_model, Entry)
+    return section | {'kind': replace(of_model, where=str(place / 'kind'))}
 
 
 def refuse_beyond_stops(load: LocalLoad, position: float, where: str) -> None:

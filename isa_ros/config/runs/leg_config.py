@@ -1,14 +1,19 @@
-"""A leg as the body of a run: its sheet, its actuators, its initial pose."""
+"""A leg as the body of a run: its keys, its sheet, its actuators, its initial pose."""
 
-from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 import math
-from typing import Any
+from typing import Any, ClassVar
 
-from isa_ros.config.text.schema import KeyDifference, Plain
-from isa_ros.config.text.sections import Place, refuse_unknown, section_at
+from isa_ros.actuator.sheet import ActuatorSheet
+from isa_ros.config.models.catalogue import leg_section, material_section
+from isa_ros.config.runs.tick_grid import ticks_in
+from isa_ros.config.text.keys import (
+    AnyValue, InText, Key, Layer, Name, Named, ParameterSet, Plain, Table)
+from isa_ros.config.text.parameter_sets import build
+from isa_ros.config.text.sections import Entry, merge, Place, Section, section_at, written
 from isa_ros.config.text.yaml_text import Tree
 from isa_ros.core.parameter import parameter, Parameters
+from isa_ros.core.units import MILLI
 from isa_ros.errors import ConfigError
 from isa_ros.surroundings.bodies.leg.inertial import Imu
 from isa_ros.surroundings.bodies.leg.sheet import JOINTS, LegSheet, linkage_record
@@ -47,6 +52,8 @@ class LegConfig:
     Its sheet, the actuator of each joint, its initial pose, and its inertial units.
     """
 
+    kind: ClassVar[str] = 'leg'
+
     model: str
     sheet: LegSheet
     joints: tuple[tuple[str, str], ...]
@@ -60,22 +67,91 @@ class LegConfig:
         return float(actuator_coordinate(self.start.angle(joint), linkage)[0])
 
 
-class JointsKind:
-    """Pairs of joint and actuator, in the order of `JOINTS`; a `Kind`."""
+class _ImuKind(Table):
+    """The keys of a unit, in a resolved text below ``sheet``."""
 
-    def tree(self, value: Sequence[tuple[str, str]]) -> Tree:
-        """Return the actuators by joint."""
-        return dict(value)
+    def read(self, tree: Any, place: Place) -> Any:
+        """Return the unit; as `Kind.read`."""
+        if 'sheet' in section_at(tree, place):
+            return super().read(tree, place)['sheet']
+        return self.keys[0].kind.read(tree, place)
 
-    def read(self, tree: Any, place: Place) -> tuple[tuple[str, str], ...]:
-        """Return (joint, actuator) of every joint; as `Kind.read`."""
-        joints = section_at(tree, place)
-        refuse_unknown(joints, JOINTS, place)
-        for joint in JOINTS:
-            if joint not in joints:
-                raise ConfigError(place.has(f'lacks {joint}'))
-        return tuple((joint, Plain(str).read(joints[joint], place / joint)) for joint in JOINTS)
 
-    def differences(self, tree: Any, place: Place) -> Iterator[KeyDifference]:
-        """Yield nothing: every leg has the same joints."""
-        yield from ()
+_IMU = _ImuKind((Key('sheet', ParameterSet(Imu), 'the unit'),))
+
+LEG = Table((
+    Key('model', AnyValue('name'), 'the packaged leg', None, in_text=InText.ALWAYS),
+    Key('joints', Table(tuple(
+        Key(joint, Name(), f'the actuator that moves {joint}') for joint in JOINTS)),
+        'the actuator of each joint', of=lambda leg: dict(leg.joints)),
+    Key('ground', AnyValue('name'), 'the material under the foot', None, 'of the model',
+        in_text=InText.NEVER),
+    Key('start', ParameterSet(LegStart), 'pose at t = 0'),
+    Key('imus', Named(_IMU), 'inertial measurement units', {}),
+    Key('parameters', Layer(LegSheet), 'values that replace those of the model', {},
+        in_text=InText.NEVER),
+    Key('sheet', Layer(LegSheet), 'the whole sheet inline: of the model only the name is used',
+        None, in_text=InText.ONLY)))
+
+
+def leg_of(
+        values: dict[str, Any], place: Place, step_ns: int,
+        is_checked: bool) -> tuple[LegConfig, Section]:
+    """
+    Return a leg, and the section that its sheet was built from.
+
+    ``values`` are those of `LEG`; ``is_checked`` as in `isa_ros.config.runs.actuator_config`.
+
+    Raises
+    ------
+    ConfigError
+        The model or the ground does not exist, or the start is beyond a joint's range.
+
+    """
+    name = values['model']
+    if values['sheet'] is not None:
+        Plain(str).read(name, place / 'model')
+        section, section_place = values['sheet'], place / 'sheet'
+    else:
+        section, section_place = leg_section(name, f'{place}.model')
+    if values['ground'] is not None:
+        ground, _ = material_section(values['ground'], f'{place}.ground')
+        section = merge(section, {'ground': ground})
+    section = merge(section, values['parameters'])
+    sheet = build(LegSheet, section, section_place)
+    if is_checked:
+        refuse_start(values['start'], sheet, step_ns, place / 'start')
+        for own, imu in values['imus'].items():
+            imu.period_ns(step_ns, str(place / 'imus' / own))
+    return LegConfig(
+        name, sheet, tuple(values['joints'].items()), values['start'],
+        tuple(ImuConfig(own, imu) for own, imu in values['imus'].items())), section
+
+
+def leg_start(tree: Tree, place: Place, base: LegStart) -> LegStart:
+    """Return the start of a leg; keys missing in the section are as in ``base``."""
+    default: Section = {f: Entry(getattr(base, f), str(place / f), '')
+                        for f in LegStart.__dataclass_fields__}
+    return build(LegStart, default | written(tree, place), place)
+
+
+def refuse_start(start: LegStart, sheet: LegSheet, step_ns: int, place: Place) -> None:
+    """Refuse joint angles outside the joints' ranges and a release between two ticks."""
+    for joint in JOINTS:
+        angle, limits = getattr(start, f'{joint}_deg'), getattr(sheet, joint)
+        if not limits.low_deg <= angle <= limits.high_deg:
+            raise ConfigError(
+                f'{place}.{joint}_deg = {angle:g} deg, must be within its range '
+                f'{limits.low_deg:g} to {limits.high_deg:g} deg')
+    ticks_in(start.release_s, step_ns, f'{place}.release_s')
+
+
+def refuse_reach(leg: LegConfig, joint: str, sheet: ActuatorSheet, where: str) -> None:
+    """Refuse a start of the leg that is outside the stroke of a joint's actuator."""
+    position, stroke = leg.position_of(joint), sheet.plant.drive.stroke
+    if not 0.0 <= position <= stroke:
+        scale, unit = (math.degrees(1.0), 'deg') if sheet.is_rotary else (1.0 / MILLI, 'mm')
+        raise ConfigError(
+            f'{where}: the start of the leg, {joint} = {math.degrees(leg.start.angle(joint)):g} '
+            f'deg, puts it at {position * scale:.4g} {unit}, must be within its 0 to '
+            f'{stroke * scale:.4g} {unit}')

@@ -10,16 +10,16 @@ Recorded topics of a run and the format of its files: the section `record` of a 
       decimate: {/*/pressure_?: 10}  # only the samples of every tenth tick
 """
 
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, replace
 from fnmatch import fnmatchcase
 from typing import Any
 
+from isa_ros.config.text.keys import Key, Kind, ParameterSet, Table
 from isa_ros.config.text.parameter_sets import as_tree, build
-from isa_ros.config.text.schema import KeyDifference
-from isa_ros.config.text.sections import Place, refuse_unknown, section_at, written
+from isa_ros.config.text.sections import Place, section_at, written
 from isa_ros.config.text.yaml_text import Tree
-from isa_ros.core.parameter import choice, parameter, Parameters
+from isa_ros.core.parameter import choice, defaults, parameter, Parameters
 from isa_ros.errors import ConfigError
 
 BYTES_PER_MB = 1_000_000
@@ -35,9 +35,10 @@ _SENT = 'sent_setpoint'
 class Storage(Parameters):
     """Compression and splitting of a bag's files."""
 
-    compression: str = choice('of every chunk of a bag', 'none', 'lz4', 'zstd')
+    compression: str = choice('of every chunk of a bag', 'none', 'lz4', 'zstd', absent='none')
     split_mb: float = parameter(
-        'size after which the next file of a bag begins; 0: one file', 'MB', ge=0.0, le=1e6)
+        'size after which the next file of a bag begins; 0: one file', 'MB', absent=0.0, ge=0.0,
+        le=1e6)
 
     @property
     def split_bytes(self) -> int | None:
@@ -45,7 +46,7 @@ class Storage(Parameters):
         return round(self.split_mb * BYTES_PER_MB) if self.split_mb else None
 
 
-PLAIN = Storage(compression='none', split_mb=0.0)
+PLAIN = defaults(Storage)
 
 
 @dataclass(frozen=True)
@@ -114,12 +115,8 @@ class RecordConfig:
         given = {'compression': compression, 'split_mb': split_mb}
         values: Tree = {key: value for key, value in given.items() if value is not None}
         place = Place(where)
-        return replace(self, storage=_storage(values, place, self.storage))
-
-    def to_tree(self) -> Tree:
-        """Return the section, the inverse of `read_record`."""
-        return as_tree(self.storage) | {
-            'leave_out': list(self.leave_out), 'decimate': dict(self.decimate)}
+        return replace(self, storage=build(
+            Storage, written(as_tree(self.storage) | values, place), place))
 
 
 def replay_needs(topic: str) -> bool:
@@ -128,37 +125,55 @@ def replay_needs(topic: str) -> bool:
     return topic == _EVENTS or suffix.startswith('applied_') or suffix == _SENT
 
 
-def read_record(value: Any, place: Place) -> RecordConfig:
-    """
-    Return the configuration of a section `record`; missing keys have their defaults.
+class _Patterns(Kind):
+    """Topics, or patterns of topics, in a list."""
 
-    Raises
-    ------
-    ConfigError
-        A key or value is invalid; the message has file, key and value.
+    words = 'list of topics'
 
-    """
-    tree = section_at(value, place)
-    keys = tuple(Storage.__dataclass_fields__)
-    refuse_unknown(tree, (*keys, 'leave_out', 'decimate'), place)
-    storage: Tree = {key: tree[key] for key in keys if key in tree}
-    patterns = tree.get('leave_out', [])
-    if not isinstance(patterns, list):
-        raise ConfigError(f'{place / "leave_out"} = {patterns!r}, must be a list of topics')
-    periods = section_at(tree.get('decimate', {}), place / 'decimate')
-    for key, found in (('leave_out', patterns), ('decimate', periods)):
-        if len(found) > MAX_PATTERNS:
-            raise ConfigError(
-                f'{place / key} has {len(found)} patterns, must be <= {MAX_PATTERNS}')
-    return RecordConfig(
-        _storage(storage, place, PLAIN),
-        tuple(_pattern(pattern, place / 'leave_out') for pattern in patterns),
-        tuple((_pattern(pattern, place / 'decimate'), _period(n, place / 'decimate' / pattern))
-              for pattern, n in periods.items()))
+    def tree(self, value: Sequence[str]) -> list[str]:
+        """Return the list."""
+        return list(value)
+
+    def read(self, tree: Any, place: Place) -> tuple[str, ...]:
+        """Return the patterns; as `Kind.read`."""
+        if not isinstance(tree, list):
+            raise ConfigError(f'{place} = {tree!r}, must be a list of topics')
+        return tuple(_pattern(pattern, place) for pattern in _few(tree, place))
 
 
-def _storage(tree: Tree, place: Place, base: Storage) -> Storage:
-    return build(Storage, written(as_tree(base) | tree, place), place)
+class _Periods(Kind):
+    """Numbers of ticks by pattern."""
+
+    words = 'whole number by topic'
+
+    def tree(self, value: Sequence[tuple[str, int]]) -> Tree:
+        """Return the section."""
+        return dict(value)
+
+    def read(self, tree: Any, place: Place) -> tuple[tuple[str, int], ...]:
+        """Return (pattern, ticks) of each; as `Kind.read`."""
+        return tuple((_pattern(pattern, place), _period(n, place / pattern))
+                     for pattern, n in _few(section_at(tree, place), place).items())
+
+
+class _RecordKind(Table):
+    """The section; read as a `RecordConfig`."""
+
+    def read(self, tree: Any, place: Place) -> Any:
+        """Return the configuration; as `Kind.read`."""
+        return RecordConfig(**super().read(tree, place))
+
+
+RECORD = _RecordKind((
+    Key('leave_out', _Patterns(), 'topics that are not recorded; * stands for any text', []),
+    Key('decimate', _Periods(), 'topics of which only every n-th tick is recorded', {})),
+    rest=Key('storage', ParameterSet(Storage), 'the files of the bag'))
+
+
+def _few(found: Any, place: Place) -> Any:
+    if len(found) > MAX_PATTERNS:
+        raise ConfigError(f'{place} has {len(found)} patterns, must be <= {MAX_PATTERNS}')
+    return found
 
 
 def _pattern(value: Any, place: Place) -> str:
@@ -183,22 +198,3 @@ def _fitting(pattern: str, topics: Iterable[str], place: Place) -> list[str]:
         raise ConfigError(
             f'{place} = {pattern!r} matches no topic; valid: {", ".join(topics)}')
     return fitting
-
-
-class RecordKind:
-    """What is recorded; a `Kind`."""
-
-    def tree(self, value: RecordConfig) -> Tree:
-        """Return the section."""
-        return value.to_tree()
-
-    def read(self, tree: Any, place: Place) -> RecordConfig:
-        """Return the section; as `Kind.read`."""
-        return read_record(tree, place)
-
-    def differences(self, tree: Any, place: Place) -> Iterator[KeyDifference]:
-        """Yield keys that are unknown; a key that is missing has its default."""
-        known = RecordConfig().to_tree()
-        for key in tree if isinstance(tree, dict) else ():
-            if key not in known:
-                yield KeyDifference(f'{place / key} is unknown here', True)

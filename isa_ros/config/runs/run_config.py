@@ -1,27 +1,30 @@
-"""The resolved configuration of one run: every parameter filled in, immutable, loss-free text."""
+"""The configuration of one run: its keys, every parameter filled in, immutable, loss-free text."""
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
 import hashlib
+from typing import Any
 
 from isa_ros.actuator.link import NO_LINK
-from isa_ros.actuator.sheet import ActuatorSheet
-from isa_ros.config.runs.leg_config import ImuConfig, JointsKind, LegConfig, LegStart
-from isa_ros.config.runs.recording import RecordConfig, RecordKind
-from isa_ros.config.runs.supplies import refuse_misfed, SUPPLY, SupplyConfig, SupplyKind
+from isa_ros.config.models.links import LINK, LinkLayer
+from isa_ros.config.models.wires import refuse_overfull
+from isa_ros.config.runs.actuator_config import ACTUATOR, actuator_of, ActuatorConfig, Around
+from isa_ros.config.runs.leg_config import LEG, leg_of, LegConfig, LegStart
+from isa_ros.config.runs.recording import RECORD, RecordConfig
+from isa_ros.config.runs.supplies import supplies_of, SUPPLY, SUPPLY_KEYS, SupplyConfig
+from isa_ros.config.runs.tick_grid import on_grid
+from isa_ros.config.text.keys import (
+    InText, Key, Kind, Name, Named, Names, number, OneOf, ParameterSet, Plain, Table)
 from isa_ros.config.text.names import refuse_bad_name
-from isa_ros.config.text.schema import Key, Named, Names, OneOf, ParameterSet, Plain, Section
-from isa_ros.config.text.sections import Place
+from isa_ros.config.text.sections import Place, Section
 from isa_ros.config.text.yaml_text import dump, parse, Tree
 from isa_ros.core.noise import seed_of
-from isa_ros.core.parameter import parameter, Parameters
+from isa_ros.core.suggest import alternatives
 from isa_ros.core.timebase import refuse_grid
 from isa_ros.errors import ConfigError
-from isa_ros.loads.sheets import LocalLoad
-from isa_ros.surroundings.bodies.leg.inertial import Imu
-from isa_ros.surroundings.bodies.leg.sheet import LegSheet
 from isa_ros.surroundings.supply import SupplySheet
 
+__all__ = ['ActuatorConfig', 'ALL', 'COORDINATOR', 'LegConfig', 'RUN', 'RunConfig', 'run_of']
 
 COORDINATOR = 'coordinator'
 """Name of the coordinator's node; participants must have other names."""
@@ -30,39 +33,8 @@ ALL = 'all'
 """Stands for every actuator of a run."""
 
 
-@dataclass(frozen=True, kw_only=True)
-class Times(Parameters):
-    """Timing of the lockstep."""
-
-    step_ms: float = parameter('macro step H', 'ms', gt=0.0, le=100.0)
-    controller_offset_ms: float = parameter(
-        'offset of the samples of the REU from the ticks', 'ms', ge=0.0, le=100.0)
-    tick_timeout_s: float = parameter(
-        'host time after which a participant counts as lost', 's', gt=0.0, le=3600.0)
-
-
 BodyConfig = LegConfig
 """The body that several actuators move; a union once there is another kind."""
-
-
-@dataclass(frozen=True)
-class ActuatorConfig:
-    """One actuator with its whole data sheet."""
-
-    name: str
-    model: str
-    preset: str
-    sheet: ActuatorSheet
-    load: LocalLoad | None
-    """Its own load; None where it moves the body."""
-    initial_position: float
-    """m or rad."""
-    beyond_range: str | None = None
-    """Treatment of a setpoint beyond the range, one of `BEYOND_RANGE`; None: the first."""
-    auto_enable: bool = True
-    """Whether it is enabled once it is initialised."""
-    mode: str | None = None
-    """Mode at t = 0; None: the one with every block that is on."""
 
 
 @dataclass(frozen=True)
@@ -209,48 +181,126 @@ class RunConfig:
     @classmethod
     def from_tree(cls, tree: Tree, name: str) -> 'RunConfig':
         """Return the configuration of the tree of a resolved text; as `from_yaml`."""
-        run: RunConfig = RUN.read(modern(tree), Place(name))
-        refuse_grid(run.step_ns, run.controller_offset_ns, name)
-        seed_of(run.seed, f'{name}: seed')
-        for actuator in run.actuators:
-            refuse_bad_name(actuator.name, f'{name}: actuators: the name')
-        refuse_misfed(
-            run.supplies, [actuator.name for actuator in run.actuators], Place(name, 'supplies'))
-        return run
+        return run_of(tree, Place(name), is_checked=False)[0]
 
 
-RUN = Section(RunConfig, {
-    'name': Key(Plain(str)), 'source': Key(Plain(str)), 'step_ns': Key(Plain(int)),
-    'controller_offset_ns': Key(Plain(int)), 'tick_timeout_s': Key(Plain(float)),
-    'seed': Key(Plain(int), meant='0'),
-    'supplies': Key(Named(SupplyKind())),
-    'record': Key(RecordKind(), meant='everything'),
-    'actuators': Key(Named(Section(ActuatorConfig, {
-        'model': Key(Plain(str)), 'preset': Key(Plain(str)),
-        'initial_position': Key(Plain(float)),
-        'beyond_range': Key(Plain(str), is_optional=True),
-        'auto_enable': Key(Plain(bool), meant='true'),
-        'mode': Key(Plain(str), is_optional=True),
-        'load': Key(ParameterSet(LocalLoad), is_optional=True),
-        'sheet': Key(ParameterSet(ActuatorSheet))}))),
-    'controllers': Key(Names(), meant='none'),
-    'body': Key(OneOf({'leg': Section(LegConfig, {
-        'model': Key(Plain(str)), 'joints': Key(JointsKind()),
-        'start': Key(ParameterSet(LegStart)),
-        'imus': Key(Named(Section(ImuConfig, {'sheet': Key(ParameterSet(Imu))})), meant='none'),
-        'sheet': Key(ParameterSet(LegSheet))})}), is_optional=True),
-})
-"""Every key of a resolved configuration."""
+class _Seed(Kind):
+    """The seed of all noise."""
+
+    words = 'whole number'
+
+    def read(self, tree: Any, place: Place) -> int:
+        """Return the seed; as `Kind.read`."""
+        return seed_of(tree, str(place))
 
 
-def modern(tree: Tree) -> Tree:
-    """Return the tree of a resolved configuration that may still say ``supply`` and ``leg``."""
-    tree = dict(tree)
-    actuators, supply = tree.get('actuators'), tree.get(SUPPLY)
-    if isinstance(supply, dict) and isinstance(actuators, dict) and 'supplies' not in tree:
-        del tree[SUPPLY]
-        tree['supplies'] = {SUPPLY: supply | {'feeds': list(actuators)}}
-    if isinstance(tree.get('leg'), dict) and 'body' not in tree:
-        leg: Tree = {'kind': 'leg'}
-        tree['body'] = leg | tree.pop('leg')  # type: ignore[operator]
-    return tree
+BODIES: Mapping[str, Table] = {LegConfig.kind: LEG}
+"""The keys of every kind of body."""
+
+RUN = Table((
+    Key('name', Name(), 'the name of the run', in_text=InText.ALWAYS),
+    Key('source', Plain(str), 'the file that the run was resolved from', None,
+        'the name of the file', in_text=InText.ONLY),
+    number('step_ms', 'ms', 'macro step H', 1.0, in_text=InText.NEVER, gt=0.0, le=100.0),
+    number('controller_offset_ms', 'ms', 'offset of the samples of the REU from the ticks', 0.12,
+           in_text=InText.NEVER, ge=0.0, le=100.0),
+    Key('step_ns', Plain(int, 'ns'), 'the macro step instead of `step_ms`', None,
+        in_text=InText.ONLY, instead_of=('step_ms',)),
+    Key('controller_offset_ns', Plain(int, 'ns'), 'the offset instead of `controller_offset_ms`',
+        None, in_text=InText.ONLY, instead_of=('controller_offset_ms',)),
+    number('tick_timeout_s', 's', 'host time after which a participant counts as lost', 5.0,
+           gt=0.0, le=3600.0),
+    Key('seed', _Seed(), 'of all noise', 0),
+    Key(SUPPLY, ParameterSet(SupplySheet), 'the supply of all actuators', None,
+        in_text=InText.NEVER),
+    Key('supplies', Named(SUPPLY_KEYS), 'several supplies, instead of `supply`', None,
+        in_text=InText.ALWAYS, instead_of=(SUPPLY,)),
+    Key('record', RECORD, 'what is recorded', {}, 'everything'),
+    Key(LINK, LinkLayer(), 'the link of all actuators', {}, in_text=InText.NEVER),
+    Key('actuators', Named(ACTUATOR), 'the actuators by name; records have their order'),
+    Key('controllers', Names(), 'nodes, besides the actuators, that every tick waits for', []),
+    Key('leg', LEG, 'a body of the kind leg', None, in_text=InText.NEVER),
+    Key('body', OneOf(BODIES), 'what several actuators move together', None)))
+"""Every key of a run file, and of a resolved text."""
+
+
+Origins = Mapping[str, Section]
+"""The layered sections that sheets and loads were built from, by key of the resolved text."""
+
+
+def run_of(tree: Tree, place: Place, is_checked: bool = True) -> tuple[RunConfig, Origins]:
+    """
+    Return the run of a file's tree, and what it was built from.
+
+    ``is_checked``: whether the parts must fit together, too. Those of the text in a bag have been
+    checked when it was recorded, perhaps by another version.
+
+    Raises
+    ------
+    ConfigError
+        The content cannot be run.
+
+    """
+    values = RUN.read(tree, place)
+    step_ns, offset_ns = _times(values, place)
+    leg, origins = _body(values, place, step_ns, is_checked)
+    supplies = supplies_of(values, list(values['actuators']), place)
+    actuators = []
+    below, joint_of = place / 'actuators', _joints(leg, values['actuators'], place)
+    span_of = {name: supply.span for supply in supplies for name in supply.feeds}
+    for name, own in values['actuators'].items():
+        if name == COORDINATOR:
+            raise ConfigError(f'{below / name}: the name is reserved for the coordinator')
+        actuator, layers = actuator_of(name, own, below / name, Around(
+            step_ns, values[LINK], span_of[name], leg, joint_of.get(name), is_checked))
+        actuators.append(actuator)
+        origins |= {f'actuators.{name}.{key}': layer for key, layer in layers.items()}
+    if is_checked:
+        refuse_overfull({own.name: own.sheet.link for own in actuators}, place)
+    source = place.file if values['source'] is None else values['source']
+    return RunConfig(
+        values['name'], step_ns, offset_ns, values['tick_timeout_s'], supplies, tuple(actuators),
+        leg, source=source, record=values['record'], seed=values['seed'],
+    ).with_controllers(values['controllers']), origins
+
+
+def _times(values: dict[str, Any], place: Place) -> tuple[int, int]:
+    """Return macro step and offset of the REU's samples, ns."""
+    step_ms, offset_ms = (
+        values[f'{name}_ms'] if values[f'{name}_ns'] is None else values[f'{name}_ns'] / 1e6
+        for name in ('step', 'controller_offset'))
+    times = on_grid(step_ms, offset_ms, place)
+    refuse_grid(*times, str(place))
+    return times
+
+
+def _body(
+        values: dict[str, Any], place: Place, step_ns: int,
+        is_checked: bool) -> tuple[LegConfig | None, dict[str, Section]]:
+    """Return the body that the actuators move, and the section it was built from."""
+    leg, body = values['leg'], values['body']
+    if leg is not None and body is not None:
+        raise ConfigError(place.has('has leg and body, must have one; leg is a body of that kind'))
+    if leg is None and body is None:
+        return None, {}
+    below = place / ('body' if leg is None else 'leg')
+    config, section = leg_of(body if leg is None else leg, below, step_ns, is_checked)
+    return config, {'body.sheet': section}
+
+
+def _joints(
+        leg: LegConfig | None, actuators: Mapping[str, Any], place: Place) -> dict[str, str]:
+    """Return the joints of the leg by actuator."""
+    if not actuators:
+        raise ConfigError(f'{place / "actuators"} is empty, must name at least one actuator')
+    joint_of: dict[str, str] = {}
+    for joint, name in leg.joints if leg else ():
+        if name not in actuators:
+            raise ConfigError(
+                f'{place}: leg.joints.{joint} = {name!r} is not an actuator; '
+                f'{alternatives(name, actuators)}')
+        if name in joint_of:
+            raise ConfigError(
+                f'{place}: leg.joints.{joint} = {name!r} already moves {joint_of[name]}')
+        joint_of[name] = joint
+    return joint_of

@@ -1,14 +1,11 @@
 """Supplies of a run file: ``supply`` for all actuators, or ``supplies`` by name."""
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any
 
-from isa_ros.config.text.names import refuse_bad_name
-from isa_ros.config.text.parameter_sets import build_one_of
-from isa_ros.config.text.schema import KeyDifference, Names, ParameterSet
-from isa_ros.config.text.sections import names_at, Place, section_at, written
-from isa_ros.config.text.yaml_text import Tree
+from isa_ros.config.text.keys import Key, Names, ParameterSet, Table
+from isa_ros.config.text.sections import Place
 from isa_ros.core.suggest import alternatives
 from isa_ros.core.units import MPA
 from isa_ros.errors import ConfigError
@@ -33,46 +30,30 @@ class SupplyConfig:
         return (self.sheet.pressure_mpa - self.sheet.return_pressure_mpa) * MPA
 
 
-def read_supplies(
-        tree: Tree, actuators: Sequence[str], place: Place) -> tuple[SupplyConfig, ...]:
+SUPPLY_KEYS = Table(
+    (Key('feeds', Names(), 'the names of the actuators it feeds'),),
+    rest=Key('sheet', ParameterSet(SupplySheet), 'the supply'))
+
+
+def supplies_of(
+        values: dict[str, Any], actuators: Sequence[str],
+        place: Place) -> tuple[SupplyConfig, ...]:
     """
-    Return the supplies of a run file with the names of the actuators that they feed.
+    Return the supplies of a run file, whose values are ``supply`` or ``supplies``.
 
     Raises
     ------
     ConfigError
-        Both forms are given, or neither; a supply is invalid, or an actuator is fed by no supply
-        or by two.
+        There is neither; or as `refuse_misfed`.
 
     """
-    if (SUPPLY in tree) == ('supplies' in tree):
-        raise ConfigError(place.has(
-            f'has {SUPPLY} and supplies, must have only one of them' if SUPPLY in tree else
-            f'lacks {SUPPLY}'))
-    if SUPPLY in tree:
-        below = place / SUPPLY
-        return (SupplyConfig(SUPPLY, _sheet(section_at(tree[SUPPLY], below), below),
-                             tuple(actuators)),)
-    below = place / 'supplies'
-    supplies = tuple(
-        _named(name, section_at(section, below / name), below / name)
-        for name, section in section_at(tree['supplies'], below).items())
-    refuse_misfed(supplies, actuators, below)
+    if values[SUPPLY] is not None:
+        return (SupplyConfig(SUPPLY, values[SUPPLY], tuple(actuators)),)
+    if values['supplies'] is None:
+        raise ConfigError(place.has(f'lacks {SUPPLY}'))
+    supplies = tuple(SupplyConfig(name, **own) for name, own in values['supplies'].items())
+    refuse_misfed(supplies, actuators, place / 'supplies')
     return supplies
-
-
-def _named(name: str, section: Tree, place: Place) -> SupplyConfig:
-    refuse_bad_name(name, f'{place}: the name')
-    rest: dict[str, Any] = dict(section)
-    if 'feeds' not in rest:
-        raise ConfigError(place.has('lacks feeds, the names of the actuators it feeds'))
-    feeds = names_at(rest.pop('feeds'), place / 'feeds')
-    return SupplyConfig(name, _sheet(rest, place), tuple(feeds))
-
-
-def _sheet(section: Tree, place: Place) -> SupplySheet:
-    sheet: SupplySheet = build_one_of(SupplySheet, written(section, place), place)
-    return sheet
 
 
 def refuse_misfed(
@@ -108,31 +89,3 @@ def refuse_misfed(
         if name not in fed:
             raise ConfigError(
                 f'{place}: {name!r} is not fed; add it to the feeds of one of them')
-
-
-class SupplyKind:
-    """The keys of a supply's sheet, and ``feeds``; a `Section` of `SupplyConfig`."""
-
-    cls = SupplyConfig
-    _sheet = ParameterSet(SupplySheet)
-
-    def tree(self, value: SupplyConfig) -> Tree:
-        """Return the sheet's section with the names of the actuators."""
-        tree = self._sheet.tree(value.sheet)
-        tree['feeds'] = list(value.feeds)
-        return tree
-
-    def read(self, tree: Any, place: Place, **given: Any) -> SupplyConfig:
-        """Return the supply; as `Kind.read`."""
-        rest = dict(section_at(tree, place))
-        feeds = Names().read(rest.pop('feeds', None), place / 'feeds')
-        return SupplyConfig(sheet=self._sheet.read(rest, place), feeds=feeds, **given)
-
-    def differences(self, tree: Any, place: Place) -> Iterator[KeyDifference]:
-        """Yield the keys of the sheet that differ, and ``feeds`` where it is missing."""
-        if not isinstance(tree, dict):
-            return
-        yield from self._sheet.differences(
-            {key: value for key, value in tree.items() if key != 'feeds'}, place)
-        if 'feeds' not in tree:
-            yield KeyDifference(f'{place / "feeds"} is missing in the bag', True)

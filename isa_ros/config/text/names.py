@@ -2,6 +2,8 @@
 
 import re
 
+from typing import Any
+
 from isa_ros.config.text.sections import Place
 from isa_ros.config.text.yaml_text import Tree
 from isa_ros.errors import ConfigError
@@ -10,17 +12,17 @@ NAME_RULE = 'must be small letters, digits and single underscores'
 _NAME = re.compile(r'[a-z](?:_?[a-z0-9])*')
 
 
-def refuse_bad_name(name: str, where: str) -> None:
+def refuse_bad_name(name: Any, where: str) -> None:
     """
     Refuse a name that ROS does not allow for a node.
 
     Raises
     ------
     ConfigError
-        The name has characters other than small letters, digits and single underscores.
+        It is not text, or has characters other than small letters, digits and single underscores.
 
     """
-    if not _NAME.fullmatch(name):
+    if not isinstance(name, str) or not _NAME.fullmatch(name):
         raise ConfigError(f'{where} = {name!r}, {NAME_RULE}')
 
 
@@ -28,8 +30,5 @@ def name_of(tree: Tree, key: str, place: Place) -> str:
     """Return a name that ROS can use; small letters, digits and single underscores."""
     if key not in tree:
         raise ConfigError(place.has(f'lacks {key}'))
-    value = tree[key]
-    if not isinstance(value, str):
-        raise ConfigError(f'{place / key} = {value!r}, {NAME_RULE}')
-    refuse_bad_name(value, str(place / key))
-    return value
+    refuse_bad_name(tree[key], str(place / key))
+    return str(tree[key])

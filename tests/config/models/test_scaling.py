@@ -12,8 +12,7 @@ from isa_ros.config.listing import describe
 from isa_ros.config.models import scaling
 from isa_ros.config.models.catalogue import actuator_model, model_names
 from isa_ros.config.runs.default_actuator import default_actuator
-from isa_ros.config.runs.run_config import RunConfig
-from isa_ros.config.runs.run_file import run_of
+from isa_ros.config.runs.run_config import run_of, RunConfig
 from isa_ros.config.text.sections import Entry, merge, Place, sourced
 from isa_ros.config.text.yaml_text import parse
 from isa_ros.errors import ConfigError

@@ -3,7 +3,7 @@
 from pathlib import Path
 
 from isa_ros.cli.main import main
-from isa_ros.config.runs.recording import read_record, RecordConfig, Storage
+from isa_ros.config.runs.recording import RECORD, RecordConfig, Storage
 from isa_ros.config.runs.run_config import RunConfig
 from isa_ros.config.runs.run_file import load_run
 from isa_ros.config.text.sections import Place
@@ -27,7 +27,8 @@ ALL = """record:
 
 
 def record(text: str) -> RecordConfig:
-    return read_record(parse(text, 'x.yaml')['record'], Place('x.yaml', 'record'))
+    found: RecordConfig = RECORD.read(parse(text, 'x.yaml')['record'], Place('x.yaml', 'record'))
+    return found
 
 
 def with_record(tmp_path: Path, text: str) -> Path:

@@ -2,8 +2,10 @@
 
 from pathlib import Path
 
-from isa_ros.config.runs.run_config import RunConfig
-from isa_ros.config.runs.run_file import load_run, read_run
+from isa_ros.config.runs.run_config import run_of, RunConfig
+from isa_ros.config.runs.run_file import load_run
+from isa_ros.config.text.sections import Place
+from isa_ros.config.text.yaml_text import read
 from isa_ros.errors import ConfigError
 from isa_ros.loads.sheets import Blocked, Mass
 from isa_ros.loads.wheel import Wheel
@@ -114,7 +116,7 @@ def test_the_digest_changes_with_any_parameter(tmp_path: Path) -> None:
 @pytest.mark.parametrize('old, new, expected', [
     ('step_ns: 1000000', 'step_ns: 1.0', 'step_ns = 1.0, must be of type int'),
     ('preset: default', 'presets: default', 'actuators.haa.presets is unknown'),
-    ('    preset: default\n', '', 'actuators.haa lacks preset'),
+    ('    model: smart_manifold\n', '', 'actuators.haa.model = None, must be of type str'),
     ('stroke_mm: 100.0', 'stroke_mm: -1', 'drive.stroke_mm = -1 mm, must be > 0 mm'),
 ])
 def test_a_damaged_resolved_text_is_refused(old: str, new: str, expected: str) -> None:
@@ -135,8 +137,8 @@ def test_a_text_from_before_a_parameter_is_read() -> None:
 def test_origins_say_which_file_a_value_comes_from(tmp_path: Path) -> None:
     ram = ('model: isa_v5, load: {kind: mass}, '
            'parameters: {plant: {oil: {aeration_pressure_kpa: 2.5}}}')
-    _, origins = read_run(rig(tmp_path, ram))
-    plant = origins.actuators['ram'].sheet['plant']
+    _, origins = run_of(read(rig(tmp_path, ram)), Place('rig.yaml'))
+    plant = origins['actuators.ram.sheet']['plant']
     assert isinstance(plant, dict) and isinstance(plant['oil'], dict)
     assert plant['oil']['aeration_pressure_kpa'].source == 'rig.yaml'  # type: ignore[union-attr]
 

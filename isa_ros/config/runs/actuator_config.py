@@ -1,0 +1,216 @@
+"""One actuator of a run: its keys, and its sheet, made from a model or given as a whole."""
+
+from dataclasses import dataclass
+import math
+from typing import Any, NamedTuple
+
+from isa_ros.actuator.setpoint_range import BEYOND_RANGE
+from isa_ros.actuator.sheet import ActuatorSheet, refuse_wiring
+from isa_ros.actuator.tunable import refuse_unusable
+from isa_ros.config.models.catalogue import actuator_model, DEFAULT_PRESET, Model
+from isa_ros.config.models.links import LINK, link_of, LinkLayer
+from isa_ros.config.models.own_load import load_section, refuse_beyond_stops
+from isa_ros.config.models.scaling import scaled_sheet
+from isa_ros.config.runs.leg_config import LegConfig, refuse_reach
+from isa_ros.config.text.keys import (
+    AnyValue, Choice, InText, Key, Layer, Names, number, Plain, Table)
+from isa_ros.config.text.parameter_sets import build, build_one_of, members
+from isa_ros.config.text.sections import merge, Place, Section
+from isa_ros.core.parameter import check
+from isa_ros.core.units import MILLI
+from isa_ros.errors import ConfigError, ParameterError
+from isa_ros.loads.sheets import linearised, LocalLoad
+from isa_ros.plant.plant import plant_record
+from isa_ros.plant.step_limits import LoadSide, refuse_too_fast
+from isa_ros.reu.wiring import mode_of
+
+_ROUNDING = 1e-12   # m or rad, of a position given in mm or deg
+
+
+@dataclass(frozen=True)
+class ActuatorConfig:
+    """One actuator with its whole data sheet."""
+
+    name: str
+    model: str
+    preset: str
+    sheet: ActuatorSheet
+    load: LocalLoad | None
+    """Its own load; None where it moves the body."""
+    initial_position: float
+    """m or rad."""
+    beyond_range: str | None = None
+    """Treatment of a setpoint beyond the range, one of `BEYOND_RANGE`; None: the first."""
+    auto_enable: bool = True
+    """Whether it is enabled once it is initialised."""
+    mode: str | None = None
+    """Mode at t = 0; None: the one with every block that is on."""
+
+
+ACTUATOR = Table((
+    Key('model', AnyValue('name'), 'the packaged model', None, in_text=InText.ALWAYS),
+    Key('preset', Plain(str), 'the gains of the model', DEFAULT_PRESET),
+    Key('variants', Names(), 'variants of the model, in their order', [], in_text=InText.NEVER),
+    Key('parameters', Layer(ActuatorSheet), 'values of the sheet that replace those of the model',
+        {}, in_text=InText.NEVER),
+    Key(LINK, LinkLayer(), 'its own link; what it leaves out is as for all', {},
+        in_text=InText.NEVER),
+    number('initial_position_mm', 'mm', 'start of a linear actuator on a load of its own', None,
+           meant='mid stroke', in_text=InText.NEVER),
+    number('initial_position_deg', 'deg', 'start of a rotary actuator on a load of its own', None,
+           meant='mid stroke', in_text=InText.NEVER),
+    number('initial_position', 'm | rad', 'start of any actuator, in SI', None,
+           in_text=InText.ONLY,
+           instead_of=('initial_position_mm', 'initial_position_deg')),
+    Key('beyond_range', Choice(BEYOND_RANGE), 'treatment of a setpoint beyond the range', None,
+        meant=BEYOND_RANGE[0]),
+    Key('auto_enable', Plain(bool), 'whether it is enabled once it is initialised', True),
+    Key('mode', AnyValue('name'), 'mode at t = 0', None, meant='every block that is on'),
+    Key('load', Layer(LocalLoad),
+        'its own load, by a kind of the model; values that it leaves out are those of the model; '
+        'an actuator of a body has none', None),
+    Key('sheet', Layer(ActuatorSheet),
+        'the whole sheet inline: of the model only the name is used, and `load` is complete', None,
+        in_text=InText.ONLY)))
+
+
+class Around(NamedTuple):
+    """The part of a run that the section of an actuator depends on."""
+
+    step_ns: int
+    link: Section
+    """Of all actuators."""
+    span: float
+    """Supply pressure above return pressure, Pa."""
+    leg: LegConfig | None
+    joint: str | None
+    """The joint of the leg that it moves."""
+    is_checked: bool
+    """False for a text that was checked when it was written, perhaps by another version."""
+
+
+def actuator_of(
+        name: str, values: dict[str, Any], place: Place,
+        around: Around) -> tuple[ActuatorConfig, dict[str, Section]]:
+    """
+    Return an actuator, and the sections that its sheet and load were built from.
+
+    ``values`` are those of `ACTUATOR`.
+
+    Raises
+    ------
+    ConfigError
+        The model, preset or a variant does not exist, or values do not fit together.
+
+    """
+    sheet, layers, model = _sheet(values, place, around)
+    load, load_side = None, LoadSide()
+    if around.joint is not None and around.leg is not None:
+        position = _joint_position(values, place, around.leg, around.joint, sheet)
+    else:
+        position = _initial_position(values, place, sheet)
+        own = _load_section(values, place, model, sheet, around)
+        if own is not None:
+            layers['load'] = own
+            load = build_one_of(LocalLoad, own, place / 'load')
+            refuse_beyond_stops(load, position, str(place))
+            load_side = LoadSide(*linearised(load))
+    if around.is_checked:
+        check(str(place / 'initial_position'), position, {
+            'doc': 'within the stroke', 'unit': 'rad' if sheet.is_rotary else 'm',
+            'bounds': {'ge': 0.0, 'le': sheet.plant.drive.stroke + _ROUNDING}})
+        _refuse_sheet(sheet, load_side, place)
+    beyond, mode = values['beyond_range'], values['mode']
+    if mode is not None:
+        mode_of(str(mode), sheet.reu, str(place / 'mode'))
+    label = ' + '.join([values['preset'], *values['variants']])
+    return ActuatorConfig(
+        name, values['model'], label, sheet, load, position,
+        None if beyond == BEYOND_RANGE[0] else beyond, values['auto_enable'],
+        None if mode is None else str(mode)), layers
+
+
+def _sheet(
+        values: dict[str, Any], place: Place,
+        around: Around) -> tuple[ActuatorSheet, dict[str, Section], Model | None]:
+    """Return sheet, its section by the key ``sheet``, and the model unless it is inline."""
+    parameters, link, inline = values['parameters'], values[LINK], values['sheet']
+    if inline is not None:
+        Plain(str).read(values['model'], place / 'model')
+        given: Section = {**around.link, **link}
+        section = merge(merge(inline, parameters), {LINK: given} if given else {})
+        return build(ActuatorSheet, section, place / 'sheet'), {'sheet': section}, None
+    model = actuator_model(values['model'], f'{place}.model')
+    of_model = model.with_variants(
+        model.with_preset(values['preset'], f'{place}.preset'), values['variants'],
+        f'{place}.variants') | {LINK: link_of(around.link, link, around.step_ns, place)}
+    sheet, section = scaled_sheet(
+        merge(of_model, parameters), of_model, model.place, place / 'parameters', around.span)
+    return sheet, {'sheet': section}, model
+
+
+def _joint_position(
+        values: dict[str, Any], place: Place, leg: LegConfig, joint: str,
+        sheet: ActuatorSheet) -> float:
+    """Return where an actuator starts that moves a joint of the leg, m or rad."""
+    unused = ['load', 'initial_position_mm', 'initial_position_deg']
+    for key in unused if values['sheet'] is not None else [*unused, 'initial_position']:
+        if values[key] is not None:
+            raise ConfigError(
+                f'{place / key} is not used: the actuator moves {joint} of the leg, '
+                f'which gives its load and start')
+    if values['initial_position'] is not None:
+        return values['initial_position']  # type: ignore[no-any-return]
+    refuse_reach(leg, joint, sheet, str(place))
+    return leg.position_of(joint)
+
+
+def _initial_position(values: dict[str, Any], place: Place, sheet: ActuatorSheet) -> float:
+    """
+    Return where an actuator on its own load starts, m or rad; by default at mid stroke.
+
+    Raises
+    ------
+    ConfigError
+        The key has the other kind's unit, or the value is outside the stroke.
+
+    """
+    key, other, unit, scale = (
+        ('initial_position_deg', 'initial_position_mm', 'deg', math.radians(1.0))
+        if sheet.is_rotary
+        else ('initial_position_mm', 'initial_position_deg', 'mm', MILLI))
+    kind = 'rotary' if sheet.is_rotary else 'linear'
+    if values[other] is not None:
+        raise ConfigError(f'{place / other} is unknown: the actuator is {kind}, the key is {key}')
+    stroke = sheet.plant.drive.stroke
+    if values[key] is None:
+        given: float | None = values['initial_position']
+        return 0.5 * stroke if given is None else given
+    check(f'{place / key}', values[key], {
+        'doc': 'within the stroke', 'unit': unit, 'bounds': {'ge': 0.0, 'le': stroke / scale}})
+    return float(values[key]) * scale
+
+
+def _load_section(
+        values: dict[str, Any], place: Place, model: Model | None, sheet: ActuatorSheet,
+        around: Around) -> Section | None:
+    if values['load'] is None:
+        if not around.is_checked:
+            return None
+        kinds = members(LocalLoad) if model is None else model.loads
+        raise ConfigError(
+            f'{place} has no load and moves no joint of the leg; valid kinds of '
+            f'load: {", ".join(kinds)}')
+    load: Section = values['load']
+    return load if model is None else load_section(
+        load, place / 'load', model, sheet, around.span)
+
+
+def _refuse_sheet(sheet: ActuatorSheet, load: LoadSide, place: Place) -> None:
+    """Refuse blocks that do not fit, unusable gains, and a plant too fast for its step."""
+    try:
+        refuse_wiring(sheet)
+        refuse_unusable(sheet)
+        refuse_too_fast(plant_record(sheet.plant)[0], sheet.plant, load)
+    except (ConfigError, ParameterError) as error:
+        raise ConfigError(f'{place}: {error}') from error

@@ -1,0 +1,422 @@
+"""
+Tables of the keys of a run file: one row a key, from which it is read, written and compared.
+
+A row has the key's name, kind, meaning and default, and says whether a resolved text has the key.
+A kind converts the value of a key to a tree of a file and back. `leaves` walks all values of a
+configuration with their rows, for lists of values and units; docs/run_file.md shows the rows.
+"""
+
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from dataclasses import dataclass, fields
+from enum import Enum
+from typing import Any, get_type_hints, NamedTuple
+
+from isa_ros.config.text.names import refuse_bad_name
+from isa_ros.config.text.parameter_sets import as_tree, build_one_of, members
+from isa_ros.config.text.sections import (
+    KIND_KEYS, names_at, Place, refuse_unknown, Section, section_at, written)
+from isa_ros.config.text.yaml_text import Tree
+from isa_ros.core.parameter import check, Parameters
+from isa_ros.core.suggest import listed
+from isa_ros.errors import ConfigError
+
+REQUIRED = object()
+"""Default of a key that every file has."""
+
+
+class KeyDifference(NamedTuple):
+    """A key that only the text or only this version has."""
+
+    text: str
+    is_obstacle: bool
+    """Whether it prevents the simulation of the run."""
+
+
+class Leaf(NamedTuple):
+    """A value of a configuration, or one of its parameter sets, with its row."""
+
+    key: str
+    """Dotted, as in the resolved text."""
+    value: Any
+    row: 'Key'
+
+
+class Kind:
+    """Conversion of the value of one key to a tree and back; written as it is by default."""
+
+    words = ''
+    """Of the values, for the reference page."""
+    unit = ''
+
+    def read(self, tree: Any, place: Place) -> Any:
+        """
+        Return the value of a tree; inverse of `tree`.
+
+        Raises
+        ------
+        ConfigError
+            The tree is not one of this kind.
+
+        """
+        return tree
+
+    def tree(self, value: Any) -> Any:
+        """Return the value as a tree of scalars, lists and sections."""
+        return value
+
+    def differences(self, tree: Any, place: Place) -> Iterator[KeyDifference]:
+        """Yield the keys below ``place`` that differ from those of this version."""
+        yield from ()
+
+    def leaves(self, value: Any, key: str, row: 'Key') -> Iterator[Leaf]:
+        """Yield the values below ``key``, whose row is ``row``."""
+        yield Leaf(key, value, row)
+
+
+@dataclass(frozen=True)
+class AnyValue(Kind):
+    """A value that is checked with the data that it names."""
+
+    words: str
+
+
+@dataclass(frozen=True)
+class Plain(Kind):
+    """One scalar of exactly this type."""
+
+    type_: type
+    unit: str = ''
+
+    @property
+    def words(self) -> str:  # type: ignore[override]
+        """Return the type as a reader knows it."""
+        return {str: 'text', bool: 'true or false', int: 'whole number'}[self.type_]
+
+    def read(self, tree: Any, place: Place) -> Any:
+        """Return the value; as `Kind.read`."""
+        if type(tree) is not self.type_:
+            raise ConfigError(f'{place} = {tree!r}, must be of type {self.type_.__name__}')
+        return tree
+
+
+@dataclass(frozen=True)
+class Number(Kind):
+    """A finite number in a unit, within bounds."""
+
+    doc: str
+    bounds: Mapping[str, float]
+    unit: str
+    words = 'number'
+
+    def read(self, tree: Any, place: Place) -> float:
+        """Return the value; as `Kind.read`."""
+        check(str(place), tree, {'doc': self.doc, 'unit': self.unit, 'bounds': self.bounds})
+        return float(tree)
+
+
+@dataclass(frozen=True)
+class Choice(Kind):
+    """One name out of a list."""
+
+    names: Sequence[str]
+
+    @property
+    def words(self) -> str:  # type: ignore[override]
+        """Return the names."""
+        return ' or '.join(self.names)
+
+    def read(self, tree: Any, place: Place) -> Any:
+        """Return the value; as `Kind.read`."""
+        check(str(place), tree, {'names': self.names})
+        return tree
+
+
+class Name(Kind):
+    """A name that ROS allows for a node."""
+
+    words = 'name'
+
+    def read(self, tree: Any, place: Place) -> Any:
+        """Return the value; as `Kind.read`."""
+        refuse_bad_name(tree, str(place))
+        return tree
+
+
+class Names(Kind):
+    """A list of names."""
+
+    words = 'list of names'
+
+    def tree(self, value: Sequence[str]) -> list[str]:
+        """Return the list."""
+        return list(value)
+
+    def read(self, tree: Any, place: Place) -> tuple[str, ...]:
+        """Return the names; as `Kind.read`."""
+        return tuple(names_at(tree, place))
+
+
+@dataclass(frozen=True)
+class ParameterSet(Kind):
+    """A parameter set, or one of a union, selected by the kind in its section."""
+
+    hint: Any
+    words = 'section'
+
+    def tree(self, value: Parameters) -> Tree:
+        """Return the section."""
+        return as_tree(value, self.hint)
+
+    def read(self, tree: Any, place: Place) -> Any:
+        """Return the checked set; as `Kind.read`."""
+        return build_one_of(self.hint, written(section_at(tree, place), place), place)
+
+    def differences(self, tree: Any, place: Place) -> Iterator[KeyDifference]:
+        """Yield the keys that differ, or an unknown kind."""
+        if not isinstance(tree, dict):
+            return
+        hint, rest = self.hint, dict(tree)
+        if not isinstance(hint, type):
+            kinds = members(hint)
+            named = [rest.pop(key) for key in KIND_KEYS if key in rest]
+            if not named:
+                yield KeyDifference(f'{place / "kind"} is missing in the bag', True)
+            elif not _is_one_of(named[0], kinds):
+                yield KeyDifference(f'{place}: the kind {named[0]!r} is unknown here', True)
+            if not named or not _is_one_of(named[0], kinds):
+                return
+            hint = kinds[named[0]]
+        yield from _parameter_differences(hint, rest, place)
+
+
+class Layer(ParameterSet):
+    """Values of a parameter set that replace those of a model, each with its place."""
+
+    def read(self, tree: Any, place: Place) -> Section:
+        """Return the section; as `Kind.read`."""
+        return written(section_at(tree, place), place)
+
+
+def _is_one_of(kind: Any, kinds: Mapping[str, Any]) -> bool:
+    """Return whether a value of a file, perhaps a section or a list, is one of some kinds."""
+    return isinstance(kind, str) and kind in kinds
+
+
+def _parameter_differences(
+        cls: type[Parameters], tree: Tree, place: Place) -> Iterator[KeyDifference]:
+    hints = get_type_hints(cls)
+    for key in tree:
+        if key not in hints:
+            yield KeyDifference(f'{place / key} is unknown here', True)
+    for f in fields(cls):
+        if f.name in tree:
+            if 'doc' not in f.metadata:
+                yield from ParameterSet(hints[f.name]).differences(tree[f.name], place / f.name)
+        elif 'absent' in f.metadata:
+            meant = f.metadata['absent']
+            if isinstance(meant, Parameters):
+                meant = as_tree(meant, hints[f.name]).get('kind', 'its default')
+            yield KeyDifference(
+                f'{place / f.name} is missing in the bag, {meant} is meant', False)
+        else:
+            yield KeyDifference(f'{place / f.name} is missing in the bag', True)
+
+
+class InText(Enum):
+    """Presence of a key in a resolved text."""
+
+    NEVER = 'resolved into other keys'
+    IF_ANY = 'unless it is None'
+    ALWAYS = 'a text without it cannot be simulated'
+    ONLY = 'as before, and hardly in a file written by hand: never suggested for a wrong key'
+
+
+@dataclass(frozen=True)
+class Key:
+    """One key of a section: one row of a `Table`."""
+
+    name: str
+    kind: Kind
+    meaning: str
+    default: Any = REQUIRED
+    """As a file would have it; None: no value."""
+    meant: str = ''
+    """Words for the default, '' for the default itself."""
+    in_text: InText = InText.IF_ANY
+    instead_of: tuple[str, ...] = ()
+    """Keys that a section with this one does not have."""
+    of: Callable[[Any], Any] | None = None
+    """Returns the value from the configuration of the section; None: its field of this name."""
+
+    @property
+    def default_words(self) -> str:
+        """Return the default as text, '' for none."""
+        if self.meant or self.default in (REQUIRED, None):
+            return self.meant
+        if isinstance(self.default, (list, dict)) and not self.default:
+            return 'none'
+        return str(self.default).lower()
+
+    def value(self, config: Any) -> Any:
+        """Return the value from the configuration of the section."""
+        if self.of is not None:
+            return self.of(config)
+        return config[self.name] if isinstance(config, dict) else getattr(config, self.name)
+
+    def read(self, section: Tree, place: Place) -> Any:
+        """Return the value in a section, or the default."""
+        given = section.get(self.name, self.default)
+        if given is None and self.name not in section:
+            return None
+        return self.kind.read(given, place / self.name)
+
+
+def number(name: str, unit: str, meaning: str, default: float | None, *, meant: str = '',
+           in_text: InText = InText.IF_ANY, instead_of: tuple[str, ...] = (),
+           **bounds: float) -> Key:
+    """Return the row of a number; ``bounds`` as those of `isa_ros.core.parameter.parameter`."""
+    return Key(name, Number(meaning, bounds, unit), meaning, default, meant, in_text, instead_of)
+
+
+@dataclass(frozen=True)
+class Table(Kind):
+    """The keys of a section, in the order in which they are written."""
+
+    keys: tuple[Key, ...]
+    rest: Key | None = None
+    """Row of a parameter set whose keys stand beside the others."""
+    words = 'section'
+
+    @property
+    def names(self) -> list[str]:
+        """Return the names of the rows."""
+        return [key.name for key in self.keys]
+
+    def read(self, tree: Any, place: Place) -> dict[str, Any]:
+        """Return the values by row; as `Kind.read`."""
+        section = section_at(tree, place)
+        if self.rest is None:
+            refuse_unknown(
+                self._rest_of(section),
+                [key.name for key in self.keys if key.in_text is not InText.ONLY], place)
+        lacking = [key for key in self.keys
+                   if key.default is REQUIRED and key.name not in section]
+        if lacking:
+            meaning = f', {lacking[0].meaning}' if len(lacking) == 1 else ''
+            raise ConfigError(place.has(
+                f'lacks {listed([key.name for key in lacking])}{meaning}'))
+        for key in self.keys:
+            for other in key.instead_of if key.name in section else ():
+                if other in section:
+                    raise ConfigError(place.has(
+                        f'has {other} and {key.name}, must have only one of them'))
+        values = {key.name: key.read(section, place) for key in self.keys}
+        if self.rest is not None:
+            values[self.rest.name] = self.rest.kind.read(self._rest_of(section), place)
+        return values
+
+    def _rest_of(self, section: Tree) -> Tree:
+        return {name: value for name, value in section.items() if name not in self.names}
+
+    def tree(self, value: Any) -> Tree:
+        """Return the section of a configuration."""
+        tree: Tree = {} if self.rest is None else self.rest.kind.tree(self.rest.value(value))
+        for key in self.keys:
+            own = None if key.in_text is InText.NEVER else key.value(value)
+            if own is not None:
+                tree[key.name] = key.kind.tree(own)
+        return tree
+
+    def differences(self, tree: Any, place: Place) -> Iterator[KeyDifference]:
+        """Yield the keys that differ; a tree that is not a section is refused by `read`."""
+        if not isinstance(tree, dict):
+            return
+        if self.rest is not None:
+            yield from self.rest.kind.differences(self._rest_of(tree), place)
+        for name in tree if self.rest is None else ():
+            if name not in self.names:
+                yield KeyDifference(f'{place / name} is unknown here', True)
+        for key in self.keys:
+            missing = f'{place / key.name} is missing in the bag'
+            if key.name in tree:
+                yield from key.kind.differences(tree[key.name], place / key.name)
+            elif key.in_text in (InText.ALWAYS, InText.ONLY) or key.default is REQUIRED:
+                yield KeyDifference(missing, True)
+            elif key.in_text is InText.IF_ANY and key.default is not None:
+                yield KeyDifference(f'{missing}, {key.default_words} is meant', False)
+
+    def leaves(self, value: Any, key: str, row: Key | None = None) -> Iterator[Leaf]:
+        """Yield the values of a section."""
+        if self.rest is not None:
+            yield from self.rest.kind.leaves(self.rest.value(value), key, self.rest)
+        for below in self.keys:
+            own = None if below.in_text is InText.NEVER else below.value(value)
+            if own is not None:
+                yield from below.kind.leaves(
+                    own, f'{key}.{below.name}' if key else below.name, below)
+
+
+@dataclass(frozen=True)
+class Named(Kind):
+    """Sections by name, each of a configuration that has its name as a field."""
+
+    section: Kind
+    words = 'sections by name'
+
+    def tree(self, value: Sequence[Any]) -> Tree:
+        """Return the sections by name."""
+        return {item.name: self.section.tree(item) for item in value}
+
+    def read(self, tree: Any, place: Place) -> dict[str, Any]:
+        """Return the values by name; as `Kind.read`."""
+        values = {}
+        for name, below in section_at(tree, place).items():
+            refuse_bad_name(name, f'{place / name}: the name')
+            values[name] = self.section.read(below, place / name)
+        return values
+
+    def differences(self, tree: Any, place: Place) -> Iterator[KeyDifference]:
+        """Yield the keys that differ, section by section."""
+        for name, below in tree.items() if isinstance(tree, dict) else ():
+            yield from self.section.differences(below, place / name)
+
+    def leaves(self, value: Sequence[Any], key: str, row: Key) -> Iterator[Leaf]:
+        """Yield the values of all sections."""
+        for item in value:
+            yield from self.section.leaves(item, f'{key}.{item.name}', row)
+
+
+@dataclass(frozen=True)
+class OneOf(Kind):
+    """One of several sections, selected by its key ``kind``; a configuration has its kind."""
+
+    tables: Mapping[str, Table]
+    words = 'section'
+
+    def tree(self, value: Any) -> Tree:
+        """Return the section with its kind."""
+        return {'kind': value.kind} | self.tables[value.kind].tree(value)
+
+    def read(self, tree: Any, place: Place) -> dict[str, Any]:
+        """Return the values with their kind; as `Kind.read`."""
+        rest = dict(section_at(tree, place))
+        kind = rest.pop('kind', None)
+        if not _is_one_of(kind, self.tables):
+            raise ConfigError(
+                f'{place / "kind"} = {kind!r}, must be one of {", ".join(self.tables)}')
+        return {'kind': kind} | self.tables[str(kind)].read(rest, place)
+
+    def differences(self, tree: Any, place: Place) -> Iterator[KeyDifference]:
+        """Yield the keys that differ, or an unknown kind."""
+        if not isinstance(tree, dict):
+            return
+        rest = dict(tree)
+        kind = rest.pop('kind', None)
+        if _is_one_of(kind, self.tables):
+            yield from self.tables[str(kind)].differences(rest, place)
+        else:
+            yield KeyDifference(f'{place}: the kind {kind!r} is unknown here', True)
+
+    def leaves(self, value: Any, key: str, row: Key) -> Iterator[Leaf]:
+        """Yield the values of the section."""
+        yield from self.tables[value.kind].leaves(value, key)
