@@ -7,7 +7,7 @@ integrated in steps of 40 us (with ticks of 0.1 ms the peaks are the same to 0.0
 heights, a quarter of a millisecond of fall apart, put the impact at different places in a tick.
 The table of docs/impacts.md:
 
-    python -m isa_ros.analysis.accuracy.impact
+    python scripts/measure_impacts.py
 """
 
 from collections.abc import Sequence

@@ -3,9 +3,9 @@
 from pathlib import Path
 
 from isa_ros.text.table import markdown
-from isa_ros.validation.readings import (
-    LINEAR, linear_readings, ROTARY, rotary_readings, table)
 import pytest
+from scripts.measure_readings import (
+    LINEAR, linear_readings, ROTARY, rotary_readings, table)
 
 TEXT = (Path(__file__).parents[2] / 'docs' / 'paper-errata.md').read_text(encoding='utf-8')
 BOTH = pytest.mark.parametrize(('readings', 'model'), [

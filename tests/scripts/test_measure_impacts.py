@@ -2,10 +2,10 @@
 
 from pathlib import Path
 
-from isa_ros.analysis.accuracy import impact
 import pytest
+from scripts import measure_impacts as impact
 
-PAGE = Path(__file__).resolve().parents[3] / 'docs/impacts.md'
+PAGE = Path(__file__).resolve().parents[2] / 'docs/impacts.md'
 HALF_DIGIT = 0.05  # percent
 
 
