@@ -15,7 +15,6 @@ import struct
 from typing import NamedTuple
 import zlib
 
-from isa_ros.bag.crc import combined
 from isa_ros.bag.message_chunk import Chunk, Entries, Layouts
 import lz4.frame  # type: ignore[import-untyped]
 from mcap.data_stream import RecordBuilder
@@ -194,8 +193,7 @@ class McapFile:
             indices += _INDEX_HEADER.pack(
                 Opcode.MESSAGE_INDEX, size + _INDEX_EXCESS, channel, size)
             indices += index.astype('<u8').tobytes()
-        data_crc = zlib.crc32(chunk.data) if chunk.compression else chunk.crc
-        self._append(head, (chunk.data, data_crc), indices)
+        self._append(head, chunk.data, indices)
         self._chunks.append(ChunkIndex(
             message_start_time=chunk.start_ns, message_end_time=chunk.end_ns,
             chunk_start_offset=start, chunk_length=length, message_index_offsets=offsets,
@@ -254,12 +252,12 @@ class McapFile:
         for channel, index in chunk.indices:
             self._counts[channel - 1] += len(index)
 
-    def _append(self, *parts: bytes | tuple[Bytes, int]) -> None:
-        """Write all parts or nothing; a part may come with its CRC."""
+    def _append(self, *parts: Bytes) -> None:
+        """Write all parts or nothing."""
         written = 0
         try:
             for part in parts:
-                rest = memoryview(part[0] if isinstance(part, tuple) else part)
+                rest = memoryview(part)
                 while rest:
                     n = self._file.write(rest) or 0
                     written += n
@@ -270,10 +268,7 @@ class McapFile:
             raise
         self._position += written
         for part in parts:
-            if isinstance(part, tuple):
-                self._crc = combined(self._crc, part[1], len(part[0]))
-            else:
-                self._crc = zlib.crc32(part, self._crc)
+            self._crc = zlib.crc32(part, self._crc)
 
 
 def _opened_to_append(path: str, flags: int) -> int:
