@@ -5,14 +5,13 @@ from isa_ros.actuator.group import ActuatorGroup
 from isa_ros.actuator.setpoint_range import RequestRange, SetpointRange
 from isa_ros.config.runs.leg_config import LegConfig
 from isa_ros.config.runs.run_config import RunConfig
-from isa_ros.core.noise import noise_key
 from isa_ros.core.signals import START
 from isa_ros.core.timebase import NS_PER_SECOND
 from isa_ros.core.units import MILLI
 from isa_ros.loads.sheets import static_force
 from isa_ros.plant.plant import plant_record
 from isa_ros.plant.servo_valve import largest_flow_slope
-from isa_ros.surroundings.bodies.leg.leg import Leg, Pose, Unit
+from isa_ros.surroundings.bodies.leg.leg import Leg, Pose
 from isa_ros.surroundings.body import Body
 from isa_ros.surroundings.surroundings import Feed, Surroundings
 import numpy as np
@@ -74,6 +73,4 @@ def _leg(run: RunConfig, leg: LegConfig) -> Leg:
     pose = Pose(haa=start.angle('haa'), hfe=start.angle('hfe'), kfe=start.angle('kfe'),
                 foot_height=start.foot_height_mm * MILLI)
     return Leg(leg.sheet, pose, run.step_ns, [run.index(name) for _, name in leg.joints],
-               release_ns=round(start.release_s * NS_PER_SECOND), units=[
-                   Unit(imu.name, imu.sheet, imu.sheet.period_ns(run.step_ns, imu.name),
-                        noise_key(run.seed, f'{imu.name}/imu')) for imu in leg.imus])
+               release_ns=round(start.release_s * NS_PER_SECOND), units=leg.units(run.step_ns, run.seed))

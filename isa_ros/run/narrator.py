@@ -3,15 +3,12 @@
 from collections.abc import Mapping, Sequence
 from typing import NamedTuple, Protocol
 
-from isa_ros.config.runs.leg_config import LegConfig
 from isa_ros.config.runs.run_config import RunConfig
 from isa_ros.plant.plant import is_heated
 from isa_ros.run.exchange import Recorder
-from isa_ros.run.packing import BodyMessages, Messages, Names, Packer, Shown
-from isa_ros.surroundings.bodies.leg.leg import fields_of_unit
-from isa_ros.surroundings.bodies.leg.sheet import JOINTS
+from isa_ros.run.packing import Messages, Names, Packer, Shown
 from isa_ros.surroundings.return_line import VolumeReturn
-from msg_adapters import clock, coordinator_messages, diagnostics, event
+from msg_adapters import clock, diagnostics, event
 
 
 class Outlet(Protocol):
@@ -128,25 +125,7 @@ def packer_of(run: RunConfig, shown: Shown) -> Packer:
     return Packer(
         Names([(actuator.name, actuator.sheet.is_rotary) for actuator in run.actuators],
               [(supply.name, isinstance(supply.sheet.return_line, VolumeReturn))
-               for supply in run.supplies], _body_messages(run),
+               for supply in run.supplies],
+              () if run.body is None else run.body.messages(run.step_ns),
               [actuator.name for actuator in run.actuators if is_heated(actuator.sheet.plant)],
-              _periods(run), run.linked), shown)
-
-
-def _body_messages(run: RunConfig) -> BodyMessages | None:
-    """Return the function that makes a body's messages; add new kinds of bodies here."""
-    if isinstance(run.body, LegConfig):
-        units = {imu.name: coordinator_messages.Unit(
-            imu.sheet.link, (imu.sheet.accelerometer_sigma, imu.sheet.gyro_sigma),
-            fields_of_unit(imu.name)) for imu in run.body.imus}
-        return lambda columns: coordinator_messages.leg(JOINTS, units, columns)
-    return None
-
-
-def _periods(run: RunConfig) -> dict[str, int]:
-    """Return the period in ns of a body's topics that have no message at every tick."""
-    if not isinstance(run.body, LegConfig):
-        return {}
-    periods = {coordinator_messages.imu_topic(imu.name)[0]:
-               imu.sheet.period_ns(run.step_ns, imu.name) for imu in run.body.imus}
-    return {topic: period for topic, period in periods.items() if period > run.step_ns}
+              run.linked), shown)

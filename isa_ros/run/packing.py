@@ -5,7 +5,7 @@ Every message of a run is encoded once, all in one block of memory. At each tick
 the numbers of all rows into it. Recorder and publishers receive parts of the block.
 """
 
-from collections.abc import Callable, Collection, Mapping, Sequence
+from collections.abc import Collection, Mapping, Sequence
 from typing import NamedTuple
 
 from isa_ros.bag.packed import Layout, layout, Packed
@@ -15,8 +15,10 @@ from isa_ros.core.record import float_columns, floats
 from isa_ros.core.signals import Records, SAMPLE
 from isa_ros.core.timebase import NS_PER_SECOND
 from isa_ros.core.topic import KEPT, Qos, Topic
+from isa_ros.run.body_messages import prepared, type_of
 from isa_ros.run.link_packing import LinkWords
 from isa_ros.run.rare_messages import DEVICE, DIAGNOSTICS, OF_SUPPLIES, PARAMETERS, RareMessages
+from isa_ros.surroundings.messages import BodyMessage
 from isa_ros.surroundings.supply import SUPPLY_SAMPLE
 from msg_adapters import (
     actuator_messages, clock, coordinator_messages, diagnostics, event, fluid_pressure,
@@ -53,10 +55,6 @@ class Shown(NamedTuple):
     """`COMMAND` handed to the links at the tick's start, (n,); None: no links."""
 
 
-BodyMessages = Callable[[Mapping[str, int]], Mapping[tuple[str, str], Prepared]]
-"""Maps the columns of a body's sample, by field, to its messages by (topic, type)."""
-
-
 class Names(NamedTuple):
     """Names of the sources of the rows, as used in topics and frames."""
 
@@ -64,11 +62,10 @@ class Names(NamedTuple):
     """(name, is_rotary) of each."""
     supplies: Sequence[tuple[str, bool]] = ()
     """(name, publishes its return pressure) of each."""
-    body: BodyMessages | None = None
+    body: Sequence[BodyMessage] = ()
+    """What is published of the body's sample."""
     heated: Collection[str] = ()
     """Names of the actuators whose temperature is published."""
-    periods: Mapping[str, int] = {}
-    """Period in ns of the topics that do not have a message at every tick, by name."""
     linked: Collection[str] = ()
     """Names of the actuators with a link."""
 
@@ -153,25 +150,26 @@ class Packer:
             at += len(_SUPPLY_PRESSURES)
         if names.supplies:
             found.append((Topic(*coordinator_messages.APPLIED_PARAMETERS, KEPT), None))
-        if names.body is not None and shown.body is not None:
-            body = names.body(float_columns(shown.body.dtype, at))
-            found += [(Topic(*topic), message) for topic, message in body.items()]
+        if shown.body is not None:
+            columns = float_columns(shown.body.dtype, at)
+            found += [(Topic(own.topic, type_of(own)), prepared(own, columns))
+                      for own in names.body]
         if is_run:
             found += [(Topic(*clock.TOPIC), clock.clock()), (Topic(*event.TOPIC), None),
                       (Topic(*diagnostics.TOPIC), None)]
         self.topics = tuple(sorted((topic for topic, _ in found), key=lambda topic: topic.name))
         if len({topic.name for topic in self.topics}) != len(self.topics):
             raise ValueError(f'a topic has two sources: {self.topics}')
-        prepared = [(topic, message) for topic, message in found if message is not None]
-        self._place = {topic.name: k for k, (topic, _) in enumerate(prepared)}
+        packed = [(topic, message) for topic, message in found if message is not None]
+        self._place = {topic.name: k for k, (topic, _) in enumerate(packed)}
         self._index = {topic.name: k for k, topic in enumerate(self.topics)}
-        self._template = Template([message for _, message in prepared])
+        self._template = Template([message for _, message in packed])
         self._bytes = self._template.block.view(np.uint8)
         self.rare = RareMessages(
             [name for name, _ in names.actuators], shown.samples,
             [name for name, _ in names.supplies], shown.supplies, is_run)
         """The messages that are encoded as they come."""
-        self._periods = dict(names.periods) | {
+        self._periods = {own.topic: own.period_ns for own in names.body if own.period_ns} | {
             f'/{name}/{TEMPERATURE[0]}': NS_PER_SECOND for name in names.heated}
         self._not_due: frozenset[str] = frozenset()
         self._layouts: dict[tuple[bytes, bytes, frozenset[str]], Layout] = {}

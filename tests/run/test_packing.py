@@ -13,6 +13,7 @@ from isa_ros.run import packing
 from isa_ros.run.exchange import Rows
 from isa_ros.run.narrator import packer_of
 from isa_ros.run.packing import Names, Packer, Shown
+from isa_ros.surroundings.messages import JointStates
 from isa_ros.surroundings.supply import ConstantSupply, SUPPLY_SAMPLE
 from msg_adapters import event
 from msg_adapters.actuator_messages import TOPICS
@@ -115,8 +116,7 @@ def test_messages_come_in_the_order_of_the_topics(packer, rows):
     Names([('knee', False), ('knee', False)], [('supply', False)]),
     Names([('hip', False), ('knee', False)], [('main', True), ('main_return', False)]),
     Names([('hip', False), ('coordinator', False)], [('supply', False)],
-          lambda columns: {('/coordinator/valve', 'sensor_msgs/msg/JointState'): (
-              JointState(), {})})])
+          [JointStates('/coordinator/valve', [], [], [], [])])])
 def test_a_topic_has_one_source(names):
     """The last: of the same name, and even of the same type."""
     of_body = shown(2, len(names.supplies))._replace(body=np.zeros(1, [('height', '<f8')]))
@@ -231,21 +231,13 @@ def test_the_return_lines_of_a_run_decide_which_pressures_there_are():
 
 def test_a_body_shows_the_floats_of_its_sample():
     """By the columns of its own record type, arrays element by element."""
-    seen: dict[str, int] = {}
-
-    def messages(columns):
-        seen.update(columns)
-        message = JointState(name=['a', 'b'], position=[0.0, 0.0])
-        return {('/body', 'sensor_msgs/msg/JointState'): (message, {
-            'position[0]': columns['height'], 'position[1]': columns['angle[1]']})}
-
+    messages = [JointStates('/body', ['a', 'b'], ['height', 'angle[1]'], [], [])]
     body = np.zeros(1, [('angle', '<f8', (2,)), ('height', '<f8')])
     packer = Packer(Names([('hip', True)], [('supply', False)], messages),
                     shown(1)._replace(body=body))
     body['angle'], body['height'] = (0.25, 0.5), 2.0
     packer.pack(T_NS, TICK_NS, {})
     assert list(decode(everything(packer)['/body'], JointState).position) == [2.0, 0.5]
-    assert list(seen) == ['angle[0]', 'angle[1]', 'height']
 
 
 def test_one_actuator_is_said_as_its_node_publishes_it(packer, rows):

@@ -14,8 +14,8 @@ from isa_ros.core.atmosphere import ATMOSPHERE
 from isa_ros.core.fields import units_of
 from isa_ros.core.signals import SAMPLE_FIELDS
 from isa_ros.errors import BagError
+from isa_ros.run.body_messages import by_field
 from isa_ros.scripting.result import BODY, Result
-from isa_ros.surroundings.bodies.leg.leg import fields_of_unit, sample_fields
 from isa_ros.surroundings.supply import SUPPLY_FIELDS
 import numpy as np
 from numpy.typing import NDArray
@@ -38,16 +38,6 @@ _ACTUATOR = {
 AT_EVERY_TICK = tuple(field for field in _ACTUATOR if field != 'temperature')
 """Fields of a `SAMPLE` that every bag has at every tick."""
 _SUPPLY = ('pressure', 'return_pressure')
-_JOINTS, _GROUND = '/joint_states', '/coordinator/ground_contact'
-_BODY = {
-    'position': (_JOINTS, [f'position[{k}]' for k in range(3)]),
-    'velocity': (_JOINTS, [f'velocity[{k}]' for k in range(3)]),
-    'torque': (_JOINTS, [f'effort[{k}]' for k in range(3)]),
-    'foot_force': (_GROUND, [f'wrench.force.{axis}' for axis in 'xyz'])}
-"""(topic, fields) by field of a `LEG_SAMPLE`."""
-_UNIT = [[f'{vector}.{axis}' for axis in 'xyz']
-         for vector in ('linear_acceleration', 'angular_velocity')]
-"""Fields of the topic of an inertial unit, in the order of `fields_of_unit`."""
 
 
 class Signal(NamedTuple):
@@ -97,9 +87,7 @@ class Signals(Mapping[str, Values]):
         """Return the unit of a signal."""
         source, _, field = name.partition('.')
         if source == BODY:
-            leg = self.run.leg
-            imus = [] if leg is None else [imu.name for imu in leg.imus]
-            return units_of(sample_fields(imus))[field]
+            return units_of(() if self.run.body is None else self.run.body.fields)[field]
         if any(supply.name == source for supply in self.run.supplies):
             return units_of(SUPPLY_FIELDS)[field]
         return units_of(SAMPLE_FIELDS, self.run.actuator(source).sheet.is_rotary)[field]
@@ -153,16 +141,14 @@ def _named(run: RunConfig, traces: Mapping[str, Trace]) -> Iterator[tuple[str, S
             trace = traces.get(f'/coordinator/{supply.name}_{name}')
             if trace is not None:
                 yield f'{supply.name}.{name}', _signal(trace, 'fluid_pressure')
-    if run.leg is not None:
-        for name, (topic, paths) in _BODY.items():
-            trace = traces.get(topic)
+    if run.body is not None:
+        fields = {field.name: field for field in run.body.fields}
+        for message in run.body.messages(run.step_ns):
+            trace = traces.get(message.topic)
             if trace is not None:
-                yield f'{BODY}.{name}', _vector(trace, paths)
-        for imu in run.leg.imus:
-            trace = traces.get(f'/{imu.name}/imu')
-            if trace is not None:
-                for name, paths in zip(fields_of_unit(imu.name), _UNIT):
-                    yield f'{BODY}.{name}', _vector(trace, paths)
+                for name, paths in by_field(message):
+                    yield f'{BODY}.{name}', (_vector(trace, paths) if fields[name].shape
+                                             else _signal(trace, paths[0]))
 
 
 def _vector(trace: Trace, paths: Sequence[str]) -> Signal:

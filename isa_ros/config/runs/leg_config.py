@@ -1,5 +1,6 @@
 """A leg as the body of a run: its keys, its sheet, its actuators, its initial pose."""
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 import math
 from typing import Any, ClassVar
@@ -12,12 +13,17 @@ from isa_ros.config.text.keys import (
 from isa_ros.config.text.parameter_sets import build
 from isa_ros.config.text.sections import Entry, merge, Place, Section, section_at, written
 from isa_ros.config.text.yaml_text import Tree
+from isa_ros.core.fields import Field
+from isa_ros.core.noise import noise_key
 from isa_ros.core.parameter import parameter, Parameters
 from isa_ros.core.units import MILLI
 from isa_ros.errors import ConfigError
 from isa_ros.surroundings.bodies.leg.inertial import Imu
+from isa_ros.surroundings.bodies.leg.leg import sample_fields, Unit
+from isa_ros.surroundings.bodies.leg.messages import leg_messages
 from isa_ros.surroundings.bodies.leg.sheet import JOINTS, LegSheet, linkage_record
 from isa_ros.surroundings.linkage import actuator_coordinate
+from isa_ros.surroundings.messages import BodyMessage
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -65,6 +71,21 @@ class LegConfig:
         """Return the position of a joint's actuator at the leg's start, m or rad  (L2)."""
         linkage = linkage_record(getattr(self.sheet, joint))
         return float(actuator_coordinate(self.start.angle(joint), linkage)[0])
+
+    def units(self, step_ns: int, seed: int) -> list[Unit]:
+        """Return the inertial units; ``seed`` is that of the run's noise."""
+        return [Unit(imu.name, imu.sheet, imu.sheet.period_ns(step_ns, imu.name),
+                     noise_key(seed, f'{imu.name}/imu')) for imu in self.imus]
+
+    @property
+    def fields(self) -> Sequence[Field]:
+        """Return the fields of its sample."""
+        return sample_fields([imu.name for imu in self.imus])
+
+    def messages(self, step_ns: int) -> Sequence[BodyMessage]:
+        """Return what is published of its sample."""
+        return leg_messages(
+            '/joint_states', '/coordinator/ground_contact', self.units(step_ns, seed=0))
 
 
 class _ImuKind(Table):

@@ -11,7 +11,8 @@ from isa_ros.scripting.run import load
 import numpy as np
 import pytest
 
-PUBLISHED = ('position', 'velocity', 'torque', 'foot_force')    # of the leg's sample
+PUBLISHED = (   # of the leg's sample
+    'position', 'velocity', 'torque', 'foot_force', 'height', 'height_velocity')
 GAUGE = 2e-9    # Pa: half a step of a float of 20.7 MPa, added and taken away once each
 
 

@@ -1,0 +1,38 @@
+"""Messages of a leg: its joints and the slider, the ground's force, its inertial units."""
+
+from collections.abc import Sequence
+
+from isa_ros.surroundings.bodies.leg.leg import fields_of_unit, Unit
+from isa_ros.surroundings.bodies.leg.sheet import JOINTS
+from isa_ros.surroundings.messages import BodyMessage, columns, Force, Inertial, JointStates
+
+SLIDER = 'slider'
+
+
+def joint_name(name: str) -> str:
+    """Return the name of a joint in the URDF; an actuator may have the same short name."""
+    return f'{name}_joint'
+
+
+def leg_messages(
+        joint_topic: str, contact_topic: str, units: Sequence[Unit]) -> tuple[BodyMessage, ...]:
+    """
+    Return the messages of a leg.
+
+    The joints are all those of the URDF that are not fixed; the slider has no drive.
+    """
+    return (
+        JointStates(
+            joint_topic, [joint_name(joint) for joint in (*JOINTS, SLIDER)],
+            [*columns('position'), 'height'], [*columns('velocity'), 'height_velocity'],
+            columns('torque')),
+        Force(contact_topic, columns('foot_force')),
+        *(_inertial(unit) for unit in units))
+
+
+def _inertial(unit: Unit) -> Inertial:
+    force, turning = fields_of_unit(unit.name)
+    return Inertial(
+        f'/{unit.name}/imu', unit.sheet.link,
+        (unit.sheet.accelerometer_sigma, unit.sheet.gyro_sigma), columns(force),
+        columns(turning), unit.period_ns)

@@ -1,0 +1,55 @@
+"""
+Messages of a body as data: the columns of its sample that are published, and their topics.
+
+`isa_ros.run.body_messages` makes them, and reads them again from a bag; nothing else needs to know
+of a body's topics. A column is one number of the sample: ``height``, or ``position[0]``.
+"""
+
+from collections.abc import Sequence
+from typing import NamedTuple
+
+
+class JointStates(NamedTuple):
+    """Position (rad | m), speed and effort (Nm | N) of joints: sensor_msgs/JointState."""
+
+    topic: str
+    names: Sequence[str]
+    """Of the joints, as in the URDF."""
+    position: Sequence[str]
+    """Columns in the order of the names."""
+    velocity: Sequence[str]
+    effort: Sequence[str]
+    """Shorter if the last joints have no drive: their effort is 0."""
+    period_ns: int = 0
+    """0: at every tick."""
+
+
+class Force(NamedTuple):
+    """A force in the world's axes, N: geometry_msgs/WrenchStamped."""
+
+    topic: str
+    force: Sequence[str]
+    """Columns of x, y and z."""
+    period_ns: int = 0
+
+
+class Inertial(NamedTuple):
+    """Reading of an inertial unit in the axes of its link: sensor_msgs/Imu."""
+
+    topic: str
+    link: str
+    sigmas: tuple[float, float]
+    """Standard deviation of specific force (m/s2) and angular velocity (rad/s), 0: not known."""
+    force: Sequence[str]
+    """Columns of the specific force, m/s2; at rest it points up."""
+    turning: Sequence[str]
+    """Columns of the angular velocity, rad/s."""
+    period_ns: int = 0
+
+
+BodyMessage = JointStates | Force | Inertial
+
+
+def columns(field: str, n: int = 3) -> list[str]:
+    """Return the columns of a field of ``n`` numbers."""
+    return [f'{field}[{k}]' for k in range(n)]
