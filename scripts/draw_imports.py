@@ -1,23 +1,37 @@
 """
-Draw the imports between packages of isa_ros: `python scripts/draw_imports.py [FILE.svg]`.
+Draw and count the imports between packages of isa_ros, and between the rooms of a folder.
 
-The rows are the layers of the import contract in pyproject.toml; the width of an arrow grows with
-the number of importing modules, which its title shows. The default file is
-docs/figures/imports.svg.
+    python scripts/draw_imports.py                      # writes docs/figures/imports*.svg
+    python scripts/draw_imports.py --count [FOLDER]     # isa_ros, isa_ros/fieldbus, ...
+
+A *room* of a folder is a module or package directly in it; `__init__` is one where it imports
+something. Rooms of the whole, isa_ros, are also msg_adapters, scripts and launch. An *arrow* is a
+room that imports from another one, however often. The *floors* are the rooms of the longest way
+down, where rooms that import each other in a circle are on one floor. *Circles* are counted
+between rooms, and between all modules of the folder. An arrow points *upward* if the layers of
+the import contract in pyproject.toml forbid it; within a folder, if it is part of a circle.
+
+In the drawing of the whole, the rows are those layers; in others, the floors. The width of an
+arrow grows with the number of importing modules, which its title shows.
 """
 
 import ast
 from collections import Counter
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
+from functools import cache
 from pathlib import Path
 import re
 import sys
 
 ROOT = Path(__file__).resolve().parents[1]
-PACKAGE = ROOT / 'isa_ros'
-PICTURE = ROOT / 'docs' / 'figures' / 'imports.svg'
+WHOLE = 'isa_ros'
+BESIDES = ('msg_adapters', 'scripts', 'launch')
+"""Folders beside isa_ros that are rooms of the whole."""
 EVERYWHERE = ('core', 'errors')
-"""Packages that nearly all others import; their arrows are left out."""
+"""Packages that nearly all others import; their arrows are left out of the drawing."""
+DRAWN = {WHOLE: 'imports.svg', 'isa_ros/fieldbus': 'imports_fieldbus.svg',
+         'isa_ros/config': 'imports_config.svg'}
+"""Folders with a drawing in docs/figures."""
 
 WIDTH, ROW, BOX_HEIGHT, LETTER, PADDING = 860, 62, 30, 8.2, 14
 STAGGER = (0.5, 0.22, 0.78)     # positions of single packages, row by row, over the width
@@ -33,34 +47,116 @@ def layers() -> list[list[str]]:
     return [line.split(' | ') for line in re.findall(r'"([^"]+)"', listed[1])]
 
 
-def imports() -> Counter[Edge]:
-    """Return how many modules of one package import from another."""
+@cache
+def module_imports(root: Path = ROOT) -> dict[str, frozenset[str]]:
+    """Return what each module of the package, and of the folders beside it, imports of them."""
+    modules = {'.'.join(path.relative_to(root).with_suffix('').parts): path
+               for top in (WHOLE, *BESIDES) for path in sorted((root / top).rglob('*.py'))}
+    return {name: frozenset(_imported(name, path, modules)) - {name}
+            for name, path in modules.items()}
+
+
+def _imported(module: str, path: Path, modules: Iterable[str]) -> Iterator[str]:
+    for node in ast.walk(ast.parse(path.read_text(encoding='utf-8'))):
+        if isinstance(node, ast.Import):
+            names = [alias.name for alias in node.names]
+        elif isinstance(node, ast.ImportFrom):
+            package = '.'.join(module.split('.')[:-node.level]) if node.level else ''
+            names = [f'{package}.{node.module or ""}'.strip('.') + f'.{alias.name}'
+                     for alias in node.names]
+        else:
+            continue
+        for name in names:
+            while name and name not in modules and f'{name}.__init__' not in modules:
+                name = name.rpartition('.')[0]
+            if name:
+                yield name if name in modules else f'{name}.__init__'
+
+
+def _room(module: str, folder: str) -> str | None:
+    """Return the room of a module; None: it is not in the folder."""
+    inside, name = folder.replace('/', '.') + '.', module.partition('.')[0]
+    if module.startswith(inside):
+        return module[len(inside):].partition('.')[0]
+    return name if folder == WHOLE and name in BESIDES else None
+
+
+def imports(folder: str = WHOLE, root: Path = ROOT) -> Counter[Edge]:
+    """Return how many modules of one room of a folder import from another."""
     edges: Counter[Edge] = Counter()
-    for path in sorted(PACKAGE.rglob('*.py')):
-        if path == PACKAGE / '__init__.py':
-            continue  # it imports the public names lazily
-        own = _package(path.relative_to(PACKAGE).parts[0])
-        others = {_package(name.split('.')[1]) for name in _imported(path) if '.' in name}
-        edges.update((own, other) for other in others if other != own)
+    for module, imported in module_imports(root).items():
+        own = _room(module, folder)
+        others = {_room(other, folder) for other in imported} - {own, None}
+        edges.update((own, other) for other in others if own is not None and other is not None)
     return edges
 
 
-def _package(part: str) -> str:
-    return part.removesuffix('.py')
+def rooms(folder: str, root: Path = ROOT) -> set[str]:
+    """Return the rooms of a folder."""
+    found = {_room(module, folder) for module in module_imports(root)}
+    importing = {edge[0] for edge in imports(folder, root)}
+    return {room for room in found
+            if room is not None and (room != '__init__' or room in importing)}
 
 
-def _imported(path: Path) -> Iterator[str]:
-    for node in ast.walk(ast.parse(path.read_text(encoding='utf-8'))):
-        if isinstance(node, ast.ImportFrom) and (node.module or '').startswith('isa_ros'):
-            if node.module == 'isa_ros':
-                yield from (f'isa_ros.{alias.name}' for alias in node.names
-                            if (PACKAGE / alias.name).exists())
-            elif node.module is not None:
-                yield node.module
+def reached(edges: Iterable[Edge]) -> dict[str, set[str]]:
+    """Return what each name reaches by arrows, itself only where it is on a circle."""
+    following: dict[str, set[str]] = {}
+    for one, other in edges:
+        following.setdefault(one, set()).add(other)
+    found = {}
+    for name in following:
+        seen: set[str] = set()
+        waiting = [name]
+        while waiting:
+            new = following.get(waiting.pop(), set()) - seen
+            seen |= new
+            waiting += new
+        found[name] = seen
+    return found
+
+
+def circles(edges: Iterable[Edge]) -> set[frozenset[str]]:
+    """Return the groups of names that import each other, directly or not."""
+    ways = reached(edges)
+    return {frozenset(other for other in found if name in ways.get(other, ()))
+            for name, found in ways.items() if name in found}
+
+
+def floors(folder: str, root: Path = ROOT) -> list[list[str]]:
+    """Return the rooms of a folder by floor, from the top down, each below all that import it."""
+    names, edges = rooms(folder, root), set(imports(folder, root))
+    alike = {name: group for group in circles(edges) for name in group}
+    groups = {alike.get(name, frozenset((name,))) for name in names}
+
+    @cache
+    def height(group: frozenset[str]) -> int:
+        below = {alike.get(other, frozenset((other,))) for one, other in edges if one in group}
+        return 1 + max(map(height, below - {group}), default=0)
+
+    found: list[list[str]] = [[] for _ in range(max(map(height, groups)))]
+    for group in groups:
+        found[-height(group)] += group
+    return [sorted(floor) for floor in found]
+
+
+def counts(folder: str, root: Path = ROOT) -> dict[str, int]:
+    """Return the figures of a folder."""
+    edges = set(imports(folder, root))
+    modules = {(module, other) for module, imported in module_imports(root).items()
+               for other in imported if _room(module, folder) and _room(other, folder)}
+    around = circles(edges)
+    row = {name: k for k, names in enumerate(layers()) for name in names}
+    upward = [edge for edge in edges if (
+        edge[0] in row and edge[1] in row and row[edge[0]] >= row[edge[1]] if folder == WHOLE
+        else any(edge[0] in group and edge[1] in group for group in around))]
+    return {'rooms': len(rooms(folder, root)), 'floors': len(floors(folder, root)),
+            'arrows': len(edges), 'circles': len(around),
+            'circles of modules': len(circles(modules)), 'upward arrows': len(upward)}
 
 
 def places(rows: list[list[str]]) -> dict[str, tuple[float, float]]:
-    """Return the middle of every package's box."""
+    """Return the middle of every room's box."""
     found = {}
     for k, names in enumerate(rows):
         for n, name in enumerate(names):
@@ -69,9 +165,10 @@ def places(rows: list[list[str]]) -> dict[str, tuple[float, float]]:
     return found
 
 
-def picture() -> str:
-    """Return the drawing as SVG."""
-    rows = [names for names in layers() if names != ['__main__']]
+def picture(folder: str = WHOLE) -> str:
+    """Return the drawing of a folder as SVG."""
+    rows = floors(folder) if folder != WHOLE else [
+        names for names in layers() if names != ['__main__']]
     at, height = places(rows), ROW * len(rows)
     lines = [
         f'<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 {WIDTH} {height}" '
@@ -79,8 +176,8 @@ def picture() -> str:
         f'<rect width="{WIDTH}" height="{height}" fill="white"/>',
         '<marker id="tip" viewBox="0 0 8 8" refX="7" refY="4" markerWidth="7" markerHeight="7" '
         'orient="auto"><path d="M0,0 L8,4 L0,8 z" fill="#6b87a8"/></marker>']
-    for (upper, lower), count in sorted(imports().items()):
-        if lower in EVERYWHERE or upper not in at or lower not in at:
+    for (upper, lower), count in sorted(imports(folder).items()):
+        if folder == WHOLE and lower in EVERYWHERE or upper not in at or lower not in at:
             continue
         (x_0, y_0), (x_1, y_1) = at[upper], at[lower]
         y_0, y_1 = y_0 + 0.5 * BOX_HEIGHT, y_1 - 0.5 * BOX_HEIGHT
@@ -101,11 +198,20 @@ def picture() -> str:
     return '\n'.join([*lines, '</svg>', ''])
 
 
+def drawing(folder: str) -> Path:
+    """Return the file of a folder's drawing."""
+    return ROOT / 'docs' / 'figures' / DRAWN[folder]
+
+
 def main() -> None:
-    """Write the drawing."""
-    path = Path(sys.argv[1]) if len(sys.argv) > 1 else PICTURE
-    path.write_text(picture(), encoding='utf-8')
-    print(path)
+    """Write the drawings, or print the figures."""
+    if sys.argv[1:2] == ['--count']:
+        for folder in sys.argv[2:] or DRAWN:
+            print(f'{folder}:', ', '.join(f'{n} {name}' for name, n in counts(folder).items()))
+        return
+    for folder in DRAWN:
+        drawing(folder).write_text(picture(folder), encoding='utf-8')
+        print(drawing(folder))
 
 
 if __name__ == '__main__':

@@ -9,10 +9,10 @@ from pathlib import Path
 
 import isa_ros
 from isa_ros.fieldbus.canopen.capacity import cycle_bits, CyclicFrame, frame_bits
-from isa_ros.fieldbus.canopen.identifiers import SYNC
 from isa_ros.fieldbus.canopen.line import CanopenLine, default_bitrate
 from isa_ros.fieldbus.canopen.mit_frames import ANSWER_BYTES, COMMAND_BYTES
 from isa_ros.fieldbus.device.bus_device import BusDevice, RECEIVE_ASSIGNMENT, TRANSMIT_ASSIGNMENT
+from isa_ros.fieldbus.device.can_identifiers import SYNC
 from isa_ros.fieldbus.device.devices import devices_of
 from isa_ros.fieldbus.device.manufacturer_area import MIT_RANGES
 from isa_ros.fieldbus.serial.frame import STATUS

@@ -2,11 +2,13 @@
 
 from collections.abc import Callable
 
-from isa_ros.fieldbus.canopen.communication import COB_ID, Communication, ERROR_REGISTER
+from isa_ros.fieldbus.canopen.communication import Communication
 from isa_ros.fieldbus.canopen.errors import NodeErrors
-from isa_ros.fieldbus.canopen.identifiers import INVALID, MOST_BYTES
 from isa_ros.fieldbus.device.abort import PDO_TOO_LONG, SdoAbort, UNSUPPORTED_ACCESS
 from isa_ros.fieldbus.device.bus_device import BusDevice
+from isa_ros.fieldbus.device.can_identifiers import INVALID, MOST_BYTES
+from isa_ros.fieldbus.device.canopen_objects import COB_ID
+from isa_ros.fieldbus.device.communication_area import ERROR_REGISTER
 from isa_ros.fieldbus.device.process_data import is_mapping
 
 _MAPPINGS = 0x200   # indices of each direction, as far behind the parameters

@@ -3,9 +3,11 @@
 from collections.abc import Callable
 import struct
 
-from isa_ros.fieldbus.canopen.communication import Communication, EMERGENCY_ID, ERRORS_KEPT
-from isa_ros.fieldbus.canopen.identifiers import INVALID, LARGEST
+from isa_ros.fieldbus.canopen.communication import Communication
 from isa_ros.fieldbus.device.bus_device import Emergency
+from isa_ros.fieldbus.device.can_identifiers import INVALID, LARGEST
+from isa_ros.fieldbus.device.canopen_objects import EMERGENCY_ID
+from isa_ros.fieldbus.device.communication_area import ERRORS_KEPT
 
 # Codes of CiA 301, table 26.
 NO_ERROR = 0x0000

@@ -8,7 +8,7 @@ bag, so its time counts ticks: a stalled master never trips it in frame pace.
 
 from collections.abc import Iterable
 
-from isa_ros.fieldbus.canopen.identifiers import FIRST_NODE, LAST_NODE
+from isa_ros.fieldbus.device.can_identifiers import FIRST_NODE, LAST_NODE
 
 _S_PER_MS = 1e-3
 _NS_PER_MS = 1_000_000

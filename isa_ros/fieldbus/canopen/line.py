@@ -18,11 +18,11 @@ from collections.abc import Mapping, Sequence
 from isa_ros.config.models.wires import wire
 from isa_ros.errors import ConfigError
 from isa_ros.fieldbus.canopen.capacity import CyclicFrame, refuse_overfull
-from isa_ros.fieldbus.canopen.identifiers import (
-    FIRST_NODE, HEARTBEAT, LAST_NODE, NMT, SDO_REQUEST, SYNC)
 from isa_ros.fieldbus.canopen.node import Handler, NmtCommand, NmtState, Node
 from isa_ros.fieldbus.canopen.port import CanPort, Frame, monotonic
 from isa_ros.fieldbus.device.bus_device import BusDevice
+from isa_ros.fieldbus.device.can_identifiers import (
+    FIRST_NODE, HEARTBEAT, LAST_NODE, NMT, SDO_REQUEST, SYNC)
 
 MOST_FRAMES = 1000     # handled beyond the time of a call of `serve`
 _NMT_SIZE = 2

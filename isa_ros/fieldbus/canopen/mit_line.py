@@ -12,14 +12,13 @@ from collections.abc import Mapping, Sequence
 
 from isa_ros.errors import ConfigError
 from isa_ros.fieldbus.canopen.capacity import CyclicFrame, refuse_overfull
-from isa_ros.fieldbus.canopen.identifiers import (
-    FIRST_NODE, LARGEST, SDO_ANSWER, SDO_REQUEST)
 from isa_ros.fieldbus.canopen.line import default_bitrate, MOST_FRAMES, refuse_nodes
 from isa_ros.fieldbus.canopen.mit_frames import ANSWER_BYTES, COMMAND_BYTES, special_of
 from isa_ros.fieldbus.canopen.mit_motor import has_impedance, MitMotor
 from isa_ros.fieldbus.canopen.port import CanPort, Frame, monotonic
 from isa_ros.fieldbus.canopen.sdo import SdoServer
 from isa_ros.fieldbus.device.bus_device import BusDevice
+from isa_ros.fieldbus.device.can_identifiers import FIRST_NODE, LARGEST, SDO_ANSWER, SDO_REQUEST
 
 
 def mit_line(

@@ -10,20 +10,21 @@ from collections.abc import Callable, Iterator
 from enum import IntEnum
 
 from isa_ros.fieldbus.canopen.capacity import CyclicFrame
-from isa_ros.fieldbus.canopen.communication import (
-    Communication, ERROR_BEHAVIOUR, ERROR_HISTORY, HEARTBEAT_CONSUMED, HEARTBEAT_PRODUCED,
-    RECEIVE_MAPPINGS, RECEIVE_PARAMETERS, SYNC_ID, SYNC_OVERFLOW, TRANSMIT_MAPPINGS,
-    TRANSMIT_PARAMETERS)
+from isa_ros.fieldbus.canopen.communication import Communication
 from isa_ros.fieldbus.canopen.dictionary import mappings, NodeDictionary
 from isa_ros.fieldbus.canopen.errors import (
     BUS_OVERFULL, HEARTBEAT_LOST, NodeErrors, PDO_OVERDUE, PDO_TOO_LONG, PDO_TOO_SHORT,
     SYNC_LENGTH)
 from isa_ros.fieldbus.canopen.heartbeat import HeartbeatConsumer, HeartbeatProducer
-from isa_ros.fieldbus.canopen.identifiers import HEARTBEAT, LARGEST, SDO_ANSWER, SDO_REQUEST
 from isa_ros.fieldbus.canopen.pdo import Pdo, ReceivePdo, TransmitPdo
 from isa_ros.fieldbus.canopen.sdo import SdoServer
 from isa_ros.fieldbus.canopen.startup import Startup
 from isa_ros.fieldbus.device.bus_device import BusDevice
+from isa_ros.fieldbus.device.can_identifiers import HEARTBEAT, LARGEST, SDO_ANSWER, SDO_REQUEST
+from isa_ros.fieldbus.device.canopen_objects import (
+    ERROR_BEHAVIOUR, HEARTBEAT_CONSUMED, HEARTBEAT_PRODUCED, RECEIVE_MAPPINGS, RECEIVE_PARAMETERS,
+    SYNC_ID, SYNC_OVERFLOW, TRANSMIT_MAPPINGS, TRANSMIT_PARAMETERS)
+from isa_ros.fieldbus.device.communication_area import ERROR_FIELD
 from isa_ros.fieldbus.device.manufacturer_area import LAST_REFUSAL
 
 Send = Callable[[int, bytes], None]
@@ -263,5 +264,5 @@ class Node:
             self._produced.set_period(self.communication.value(index), 0.0)
         elif index == HEARTBEAT_CONSUMED:
             self._consumed.set_watched(self.communication.values(index))
-        elif index == ERROR_HISTORY:
+        elif index == ERROR_FIELD:
             self.errors.clear_history()

@@ -5,10 +5,11 @@ Time is simulated: a SYNC is a tick. Remote requests (types 252 and 253) are not
 """
 
 from isa_ros.fieldbus.canopen.capacity import CyclicFrame
-from isa_ros.fieldbus.canopen.communication import (
-    COB_ID, Communication, EVENT_TIMER, INHIBIT_TIME, MOST_SYNCS, SYNC_START, TRANSMISSION)
-from isa_ros.fieldbus.canopen.identifiers import INVALID, LARGEST
+from isa_ros.fieldbus.canopen.communication import Communication, MOST_SYNCS
 from isa_ros.fieldbus.device.bus_device import BusDevice
+from isa_ros.fieldbus.device.can_identifiers import INVALID, LARGEST
+from isa_ros.fieldbus.device.canopen_objects import (
+    COB_ID, EVENT_TIMER, INHIBIT_TIME, SYNC_START, TRANSMISSION)
 
 _NS_PER_MS = 1_000_000
 _NS_PER_INHIBIT = 100_000

@@ -2,13 +2,14 @@
 
 from collections.abc import Mapping
 
-from isa_ros.fieldbus.canopen.communication import pdo_parameters
 from isa_ros.fieldbus.device.bus_device import Identity, RECEIVE_ASSIGNMENT, TRANSMIT_ASSIGNMENT
+from isa_ros.fieldbus.device.canopen_objects import pdo_parameters
 from isa_ros.fieldbus.device.dictionary import Key
 from isa_ros.fieldbus.device.objects import DataType, Entry, Kind, Object, record_of, variable
 from isa_ros.fieldbus.device.process_data import (
     assignment_object, CAN_PDOS, Mapped, mapping_object, RECEIVE, TRANSMIT)
 
+ERROR_REGISTER = 0x1001
 ERROR_FIELD = 0x1003
 """Object with the last errors."""
 ERRORS_KEPT = 8
@@ -45,7 +46,7 @@ def error_objects() -> list[Object]:
     count = Entry(ERROR_FIELD, 0, 'Number of errors', _U8, 'rw', meaning='0 deletes them',
                   choices=(0,))
     return [
-        variable(Entry(0x1001, 0, 'Error register', _U8, pdo='tx',
+        variable(Entry(ERROR_REGISTER, 0, 'Error register', _U8, pdo='tx',
                        meaning='bits: 0 any, 1 current, 2 voltage, 3 temperature, '
                                '4 communication, 5 profile, 7 manufacturer')),
         Object(ERROR_FIELD, 'Pre-defined error field', Kind.ARRAY, (count, *(

@@ -9,12 +9,11 @@ from isa_ros.config.runs.run_config import ActuatorConfig, RunConfig
 from isa_ros.core.conditions import BITS
 from isa_ros.core.suggest import alternatives
 from isa_ros.errors import ConfigError
-from isa_ros.fieldbus.canopen.communication import communication_objects
-from isa_ros.fieldbus.device import cia402_objects
-from isa_ros.fieldbus.device import cia408_objects
+from isa_ros.fieldbus.device import cia402_objects, cia408_objects
 from isa_ros.fieldbus.device.actuator_device import ActuatorDevice, Drive
 from isa_ros.fieldbus.device.axis import Axis
 from isa_ros.fieldbus.device.bus_device import BusDevice, Identity, VENDOR
+from isa_ros.fieldbus.device.canopen_objects import communication_objects
 from isa_ros.fieldbus.device.cia402 import Drive402
 from isa_ros.fieldbus.device.cia408 import Drive408
 from isa_ros.fieldbus.device.communication_area import (

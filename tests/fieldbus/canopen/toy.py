@@ -4,10 +4,10 @@ A toy drive with the seam of `BusDevice`: CiA 402, a mass that follows its torqu
 A tick of it is `ToyDrive.tick`; what it does is exact and needs no plant.
 """
 
-from isa_ros.fieldbus.canopen.communication import communication_objects, pdo_parameters
 from isa_ros.fieldbus.device.abort import (
     NOT_EMPTIED_FIRST, NOT_MAPPABLE, OUT_OF_RANGE, READ_ONLY, SdoAbort, WRITE_ONLY, WRONG_STATE)
 from isa_ros.fieldbus.device.bus_device import Emergency, Identity, VENDOR
+from isa_ros.fieldbus.device.canopen_objects import communication_objects, pdo_parameters
 from isa_ros.fieldbus.device.communication_area import error_objects
 from isa_ros.fieldbus.device.objects import DataType, Entry, Kind, Object, ObjectTable, Value
 import numpy as np
