@@ -5,13 +5,14 @@ from dataclasses import replace
 from typing import Any
 
 from isa_ros.actuator.inbox import WITH_GAINS
-from isa_ros.actuator.kernel import ACTUATOR
+from isa_ros.actuator.link import link_record
 from isa_ros.actuator.sheet import actuator_record, ActuatorSheet
 from isa_ros.actuator.tunable import changing, GAINS, named, with_changed
 from isa_ros.core.changeable import Changeable
 from isa_ros.core.changing_values import ChangingValues
 from isa_ros.core.signals import COMMAND, HAS_GAINS
 from isa_ros.errors import ConfigError
+from isa_ros.plant.plant import plant_record
 import numpy as np
 
 _NO_LOOPS = ('plant.', 'link.')
@@ -34,8 +35,7 @@ class Tuning:
         self._sheet = sheet
         self._offset_steps = offset_steps
         self._constants = constants
-        self._written = {
-            part: constants[part].copy() for part in ACTUATOR.names or () if hasattr(sheet, part)}
+        self._written = {part: constants[part].copy() for part in ('plant', 'reu', 'link')}
         self._known = changing(sheet)
         self._values = ChangingValues(
             name, list(self._known), [own.value for own in self._known.values()])
@@ -93,8 +93,15 @@ class Tuning:
         own, sheet = self._sheet, self._changed_by(self._values.in_force)
         for part, written in self._written.items():
             section: Any = getattr(sheet, part)
-            self._constants[part] = written if section is getattr(own, part) else actuator_record(
-                replace(own, **{part: section}), self._offset_steps)[part]
+            if section is getattr(own, part):
+                self._constants[part] = written
+            elif part == 'plant':
+                self._constants[part] = plant_record(section)
+            elif part == 'link':
+                self._constants[part] = link_record(section)
+            else:
+                self._constants[part] = actuator_record(
+                    replace(own, reu=section), self._offset_steps)[part]
 
     @property
     def applied(self) -> dict[str, float]:
