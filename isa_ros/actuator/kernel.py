@@ -42,7 +42,7 @@ def write_sample(plant, reu, sample):
     sample.pressure_a = measured.pressure_a
     sample.pressure_b = measured.pressure_b
     sample.spool = measured.spool
-    sample.spool_velocity = plant.valve.velocity
+    sample.spool_velocity = plant.spool.velocity
     sample.current = measured.current
     sample.position_reference = setpoint_in_force(reu).position
     sample.force_reference = reu.force_reference

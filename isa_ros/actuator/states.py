@@ -39,7 +39,7 @@ def write_states(body, force, actuator, reu_state, row):
     row.pressure = plant.chambers.p_a - plant.chambers.p_b
     row.pressure_a = plant.chambers.p_a
     row.pressure_b = plant.chambers.p_b
-    row.spool = plant.valve.spool
+    row.spool = plant.spool.position
     row.current = coil_current(plant.coil, actuator.plant.coil)
     row.position_reference = setpoint_in_force(reu_state).position
     row.force_reference = reu_state.force_reference

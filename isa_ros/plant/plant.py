@@ -33,7 +33,7 @@ PLANT = np.dtype([
 ])
 PLANT_STATE = np.dtype([
     ('coil', coil.COIL_STATE),
-    ('valve', spool.VALVE_STATE),
+    ('spool', spool.SPOOL_STATE),
     ('chambers', chambers.CHAMBERS_STATE),
     ('friction', friction.FRICTION_STATE),
     ('mechanics', mechanics.MECHANICS_STATE),
@@ -143,10 +143,10 @@ def plant_rates(y, x_load, v_load, drive, p_s, p_t, plant, rates, counts, powers
     coil.coil_rates(y.coil, drive, plant.coil, rates.coil)
     current = (coil.coil_current(y.coil, plant.coil) / plant.coil.parallel
                + spool.null_bias(p_s, p_t, plant.spool))
-    spool.spool_rates(y.valve, current, plant.valve.k_spool, plant.spool, rates.valve)
+    spool.spool_rates(y.spool, current, plant.valve.k_spool, plant.spool, rates.spool)
 
     per_a, per_b = chambers.elastances(p_a, p_b, s, p_t, plant.chambers)
-    opened, leaks = servo_valve.conductances(y.valve.spool, plant.valve)
+    opened, leaks = servo_valve.conductances(y.spool.position, plant.valve)
     roots = servo_valve.root_drops(opened, p_a, p_b, p_s, p_t, per_a, per_b, plant.valve)
     q_a, q_b, q_p, q_t = servo_valve.metered(opened, roots)
     in_a, in_b = chambers.surpluses(q_a, q_b, p_a, p_b, v, plant.chambers)
@@ -181,9 +181,9 @@ def plant_rates(y, x_load, v_load, drive, p_s, p_t, plant, rates, counts, powers
 @kernel
 def settle(h, y, p_t, plant):
     """Apply to one `PLANT_STATE` after a step of ``h`` s what no rate can: stop and cavities."""
-    stop_spool(y.valve, plant.valve.x_max)
+    stop_spool(y.spool, plant.valve.x_max)
     if plant.spool.is_stuck > 0.0:
-        block_spool(y.valve)
+        block_spool(y.spool)
     boil(h, y.chambers, y.mechanics.position, y.mechanics.velocity, p_t, plant.chambers)
 
 
@@ -204,7 +204,7 @@ def sense(step, period, y, x_load, v_load, plant, key, state, measured):
     """
     own = plant.sensors
     position, force = y.mechanics.position, exact_force(y, x_load, v_load, plant)
-    p_a, p_b, spool_position = y.chambers.p_a, y.chambers.p_b, y.valve.spool
+    p_a, p_b, spool_position = y.chambers.p_a, y.chambers.p_b, y.spool.position
     current = coil.coil_current(y.coil, plant.coil)
     if own.errors.are_ideal:
         read(position, force, p_a, p_b, spool_position, current, own, measured)

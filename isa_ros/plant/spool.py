@@ -94,7 +94,7 @@ SPOOL = np.dtype([
     ('p_s_ref', 'f8'),      # Pa
     ('is_stuck', 'f8'),
 ])
-VALVE_STATE = np.dtype([('spool', 'f8'), ('velocity', 'f8'), ('acceleration', 'f8')])
+SPOOL_STATE = np.dtype([('position', 'f8'), ('velocity', 'f8'), ('acceleration', 'f8')])
 
 
 def bias_per_k(sheet: Spool | DataSheetSpool) -> float:
@@ -136,10 +136,10 @@ def spool_jerk(reference, y, spool):
     """
     Return w_n^2 (K_loop (x_r - x) - x') - 2 zeta w_n x''  (V3), in m/s3.
 
-    Equation 8 of the paper in the time domain; ``y`` is a `VALVE_STATE` record.
+    Equation 8 of the paper in the time domain; ``y`` is a `SPOOL_STATE` record.
     """
     w_n = spool.w_n
-    return (w_n * w_n * (spool.k_loop * (reference - y.spool) - y.velocity)
+    return (w_n * w_n * (spool.k_loop * (reference - y.position) - y.velocity)
             - 2.0 * spool.zeta * w_n * y.acceleration)
 
 
@@ -160,17 +160,17 @@ def spool_acceleration(reference, spool, velocity, w_n, zeta):
 @kernel
 def spool_rates(y, current, k_spool, spool, rates):
     """
-    Write the rates of one `VALVE_STATE` under a series-scale current, bias included.
+    Write the rates of one `SPOOL_STATE` under a series-scale current, bias included.
 
     A blocked spool has none: x' = 0  (V20).
     """
     if spool.is_stuck > 0.0:
-        rates.spool, rates.velocity, rates.acceleration = 0.0, 0.0, 0.0
+        rates.position, rates.velocity, rates.acceleration = 0.0, 0.0, 0.0
         return
-    rates.spool = y.velocity
+    rates.position = y.velocity
     if spool.kind == DIRECT:
         rates.velocity = spool_acceleration(
-            spool_reference(current, k_spool), y.spool, y.velocity, spool.w_n, spool.zeta)
+            spool_reference(current, k_spool), y.position, y.velocity, spool.w_n, spool.zeta)
         rates.acceleration = 0.0
         return
     rates.velocity = y.acceleration
@@ -190,8 +190,8 @@ def block_spool(y):
 @kernel
 def stop_spool(y, x_max):
     """Hold the spool at its mechanical stop; the impact is plastic, so its speed is zero."""
-    if abs(y.spool) > x_max:
-        y.spool = math.copysign(x_max, y.spool)
-        if y.velocity * y.spool > 0.0:
+    if abs(y.position) > x_max:
+        y.position = math.copysign(x_max, y.position)
+        if y.velocity * y.position > 0.0:
             y.velocity = 0.0
             y.acceleration = 0.0

@@ -103,10 +103,10 @@ def linearised(model: str) -> tuple[np.ndarray, np.ndarray]:
     y, rates = rows[0], rows[1]
 
     def rate(state: np.ndarray, drive: float) -> np.ndarray:
-        y.coil.current, y.valve.spool, y.valve.velocity, y.valve.acceleration = state
+        y.coil.current, y.spool.position, y.spool.velocity, y.spool.acceleration = state
         plant_rates(y, 0.0, 0.0, drive, SUPPLY, 0.0, plant, rates, False, no_powers())
-        return np.array([rates.coil.current, rates.valve.spool, rates.valve.velocity,
-                         rates.valve.acceleration])
+        return np.array([rates.coil.current, rates.spool.position, rates.spool.velocity,
+                         rates.spool.acceleration])
     matrix = np.array([rate(SMALL * unit, 0.0) for unit in np.eye(4)]).T / SMALL
     return matrix, rate(np.zeros(4), SMALL) / SMALL
 

@@ -79,7 +79,7 @@ def test_the_balance_of_one_instant_closes(model, x, p_a, p_b, v, v_load, place,
     plant = plant_row(model)
     y, rates = np.zeros(2, PLANT_STATE).view(np.recarray)
     powers = no_powers()
-    y.valve.spool, y.chambers.p_a, y.chambers.p_b = x, p_a, p_b
+    y.spool.position, y.chambers.p_a, y.chambers.p_b = x, p_a, p_b
     y.mechanics.position = s = place * plant.chambers.stroke
     y.mechanics.velocity, y.friction.bristle = v, z
     _, q_p, q_t = plant_rates(y, s - stretch, v_load, 0.0, SUPPLY, BACK, plant, rates, True,

@@ -183,15 +183,15 @@ def test_a_blocked_spool_stays_exactly_where_it_is_and_leaves_at_once():
         actuator.tick()
     assert actuator.sample.spool_velocity != 0.0
     actuator.tune({'plant.spool.stuck': 1.0})
-    at = actuator._body.plant.valve.spool
+    at = actuator._body.plant.spool.position
     for _ in range(50):
         actuator.tick()
-        valve = actuator._body.plant.valve
-        assert (valve.spool, valve.velocity, valve.acceleration) == (at, 0.0, 0.0)
+        own = actuator._body.plant.spool
+        assert (own.position, own.velocity, own.acceleration) == (at, 0.0, 0.0)
     actuator.tune({'plant.spool.stuck': 0.0})
     for _ in range(5):
         actuator.tick()
-    assert actuator._body.plant.valve.spool != at
+    assert actuator._body.plant.spool.position != at
 
 
 def test_a_shifted_null_moves_the_spool_by_its_current():
@@ -218,7 +218,7 @@ def test_a_broken_relief_spring_holds_the_pressure_where_its_flow_is_the_valves(
     slope = SHEET.plant.relief.slope_lpm_per_mpa / 6e4 / 1e6
     from isa_ros.plant.servo_valve import port_flows
     q_a, *_ = port_flows(
-        body.valve.spool, body.chambers.p_a, body.chambers.p_b, 20.7e6, 0.0, row.valve)
+        body.spool.position, body.chambers.p_a, body.chambers.p_b, 20.7e6, 0.0, row.valve)
     leak = row.chambers.c_li * (body.chambers.p_a - body.chambers.p_b)
     assert body.chambers.p_a == pytest.approx(
         1e6 + (q_a - leak) / slope, rel=1e-6, abs=0.0)

@@ -43,7 +43,7 @@ class Body:
         """Return all states, scaled to order one."""
         chamber = self.row.plant.chambers
         return np.array([
-            chamber.p_a / 1e7, chamber.p_b / 1e7, self.row.plant.valve.spool / 1e-4,
+            chamber.p_a / 1e7, chamber.p_b / 1e7, self.row.plant.spool.position / 1e-4,
             self.row.plant.mechanics.position, self.row.load.velocity])
 
 
@@ -131,7 +131,7 @@ def test_a_null_bias_drives_the_spool_its_own_way():
     plant = plant_row('smart_manifold')
     more, _ = rates_at(plant, supply=SUPPLY + 7e6, p_a=1e7, p_b=1e7)
     less, _ = rates_at(plant, supply=SUPPLY - 7e6, p_a=1e7, p_b=1e7)
-    assert more.valve.acceleration > 0.0 > less.valve.acceleration
+    assert more.spool.acceleration > 0.0 > less.spool.acceleration
 
 
 def test_the_valve_feels_the_resonance_of_its_coil():
@@ -143,7 +143,7 @@ def test_the_valve_feels_the_resonance_of_its_coil():
     plant_rates(y, 0.0, 0.0, 0.0, SUPPLY, 0.0, plant, rates, False, no_powers())
     series = plant.coil.mode_share * 1e-3 / 2.0
     w_n = plant.spool.w_n
-    assert rates.valve.acceleration == pytest.approx(w_n * w_n * plant.spool.k_pilot * series)
+    assert rates.spool.acceleration == pytest.approx(w_n * w_n * plant.spool.k_pilot * series)
 
 
 @given(x=st.floats(-178e-6, 178e-6), p_a=st.floats(0.0, 22e6), p_b=st.floats(0.0, 22e6),
@@ -219,8 +219,8 @@ def test_the_spool_stays_within_its_stops():
     """A current beyond the range ends at the stop, at rest."""
     body = Body(actuator_sheet('isa_v5'), 0.05, current=0.0108)
     body.run(0.1)
-    assert body.row.plant.valve.spool <= 178e-6
-    assert body.row.plant.valve.spool == pytest.approx(178e-6, rel=0.01)
+    assert body.row.plant.spool.position <= 178e-6
+    assert body.row.plant.spool.position == pytest.approx(178e-6, rel=0.01)
 
 
 @pytest.mark.parametrize('model', MODELS)

@@ -60,7 +60,7 @@ def plant_flows(
     """Return both pressures' rates, q_p and q_t of a resting plant, all raised alike."""
     y, rates = (np.zeros(1, PLANT_STATE).view(np.recarray)[0] for _ in 'yr')
     y.mechanics.position = x = 0.4 * plant.chambers.stroke
-    y.valve.spool = spool
+    y.spool.position = spool
     y.chambers.p_a, y.chambers.p_b = p_a + raised, p_b + raised
     _, q_p, q_t = plant_rates(
         y, x, 0.0, 0.0, SUPPLY + raised, raised, plant, rates, False, no_powers())
@@ -81,7 +81,7 @@ def test_the_null_bias_of_a_plant_shifts_with_the_return_pressure():
     for p_t in (0.0, 3.5e6):
         y, rates = (np.zeros(1, PLANT_STATE).view(np.recarray)[0] for _ in 'yr')
         plant_rates(y, 0.0, 0.0, 0.0, SUPPLY, p_t, plant, rates, False, no_powers())
-        jerks.append(rates.valve.acceleration)
+        jerks.append(rates.spool.acceleration)
     w_n = plant.spool.w_n
     reference = plant.valve.k_spool * plant.spool.bias_t * 3.5e6
     assert jerks[1] - jerks[0] == pytest.approx(

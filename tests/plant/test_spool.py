@@ -16,8 +16,8 @@ EXPLICIT = plant_record(actuator_sheet('isa_v5', 'table_4', 'explicit').plant)[0
 
 
 def valve_state(*values: float) -> np.record:
-    """Return a `VALVE_STATE` row."""
-    return np.array([values or (0.0, 0.0, 0.0)], spool.VALVE_STATE).view(np.recarray)[0]
+    """Return a `SPOOL_STATE` row."""
+    return np.array([values or (0.0, 0.0, 0.0)], spool.SPOOL_STATE).view(np.recarray)[0]
 
 
 def linear(plant: np.record, with_current_pole: bool) -> tuple[np.ndarray, np.ndarray]:
@@ -27,7 +27,7 @@ def linear(plant: np.record, with_current_pole: bool) -> tuple[np.ndarray, np.nd
         spool.spool_rates(
             own, y[3] if with_current_pole else u, plant.valve.k_spool, plant.spool, out)
         amplifier = coil.current_rate(y[3], u, plant.coil)
-        return np.array([out.spool, out.velocity, out.acceleration, amplifier])
+        return np.array([out.position, out.velocity, out.acceleration, amplifier])
     # small enough for the voltage limit
     matrix = np.array([rates(1e-6 * e, 0.0) for e in np.eye(4)]).T / 1e-6
     return matrix, rates(np.zeros(4), 1e-6) / 1e-6
@@ -69,7 +69,7 @@ def test_piloted_spool_with_its_loop_is_equation_8():
     per_metre = sheet.reu.spool.kp  # A per m of error
     assert per_metre * EXPLICIT.spool.k_pilot == pytest.approx(540.0, rel=5e-3)
     own = valve_state(2e-5, 1e-3, 3.0)
-    error = 5e-5 - own.spool
+    error = 5e-5 - own.position
     closed = spool.spool_jerk(5e-5, own, MANIFOLD.spool)
     opened = spool.piloted_jerk(540.0 / EXPLICIT.spool.k_pilot * error, own, EXPLICIT.spool)
     assert opened == pytest.approx(closed, rel=1e-12)
@@ -103,11 +103,11 @@ def test_the_stop_holds_the_spool(x, v):
     """Beyond 0.178 mm the spool is at the stop, without speed into it."""
     y, x_max = valve_state(x, v, 1.0), MANIFOLD.valve.x_max
     spool.stop_spool(y, x_max)
-    assert abs(y.spool) <= x_max
+    assert abs(y.position) <= x_max
     if abs(x) > x_max:
-        assert y.velocity * y.spool <= 0.0
+        assert y.velocity * y.position <= 0.0
     else:
-        assert (y.spool, y.velocity) == (x, v)
+        assert (y.position, y.velocity) == (x, v)
 
 
 @given(beyond=st.floats(1e-9, 1e-3), v=st.floats(1e-9, 1.0), a=st.floats(-1e4, 1e4),
@@ -117,7 +117,7 @@ def test_the_stop_takes_speed_and_acceleration_of_a_spool_that_runs_into_it(beyo
     x_max = MANIFOLD.valve.x_max
     y = valve_state(side * (x_max + beyond), side * v, side * a)
     spool.stop_spool(y, x_max)
-    assert (y.spool, y.velocity, y.acceleration) == (side * x_max, 0.0, 0.0)
+    assert (y.position, y.velocity, y.acceleration) == (side * x_max, 0.0, 0.0)
 
 
 @given(v=st.floats(0.0, 1.0), a=st.floats(-1e4, 1e4), side=st.sampled_from([1.0, -1.0]))
@@ -126,7 +126,7 @@ def test_the_stop_lets_a_spool_go_that_leaves_it(v, a, side):
     x_max = MANIFOLD.valve.x_max
     y = valve_state(side * (x_max + 1e-9), -side * v, side * a)
     spool.stop_spool(y, x_max)
-    assert (y.spool, y.velocity, y.acceleration) == (side * x_max, -side * v, side * a)
+    assert (y.position, y.velocity, y.acceleration) == (side * x_max, -side * v, side * a)
 
 
 @given(current=st.floats(-5e-3, 5e-3), x=st.floats(-2e-4, 2e-4), v=st.floats(-0.2, 0.2))

@@ -80,7 +80,7 @@ def test_a_request_that_cannot_be_done_is_answered_and_the_run_goes_on(services,
 @pytest.mark.parametrize('name', ['step', 'save', 'reset'])
 @pytest.mark.parametrize('error', [
     RunError('kfe: no answer to tick 3 after 5.0 s'),
-    SimulationDiverged(3_000_000, 'kfe: plant.valve.spool', float('nan')),
+    SimulationDiverged(3_000_000, 'kfe: plant.spool.position', float('nan')),
     Interrupted('stopped at t = 0.003 s')], ids=lambda error: type(error).__name__)
 def test_an_error_that_ends_the_run_ends_it(services, name, error):
     """A service that answered it would leave a run without its participant going on."""
