@@ -199,21 +199,3 @@ def merge_requests(requests: NDArray[np.void], into: NDArray[np.void]) -> None:
 def by_name(names: Sequence[str], rows: NDArray[np.void]) -> dict[str, np.record]:
     """Return rows with their fields as attributes, on the same memory, by name."""
     return dict(zip(names, rows.view(np.recarray)))
-
-
-class ControllerSeat:
-    """One controller of a run: shows it the state, and takes what it asks for."""
-
-    def __init__(self, controller: Controller, names: Sequence[str]) -> None:
-        self.controller = controller
-        self.names = list(names)
-        controller.start(self.names)
-
-    def step(self, state: State, requests: NDArray[np.void]) -> None:
-        """
-        Write into ``requests`` what takes effect one tick after ``state``.
-
-        They are `COMMAND` rows of the actuators, (n_actuators,); those that the controller leaves
-        out are unchanged.
-        """
-        fill_requests(self.controller.step(state), self.names, requests)

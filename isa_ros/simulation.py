@@ -6,7 +6,7 @@ The model of a run as an object: numpy in, numpy out; without ROS, messages and 
         samples = simulation.step()
     print(samples['kfe'].force)
 
-A tick is that of `isa_ros.run.coordinator`, in one thread and without waiting.
+A tick is that of every run (`isa_ros.tick.tick_loop`), in one thread and without waiting.
 """
 
 from collections.abc import Mapping, Sequence
@@ -14,19 +14,27 @@ from dataclasses import replace
 import warnings
 
 from isa_ros.config.assembly import group_of, request_range_of, surroundings_of
-from isa_ros.controller import (
-    by_name, Controller, ControllerSeat, fill_requests, merge_requests, Setpoint, State)
+from isa_ros.controller import by_name, Controller, fill_requests, Setpoint
 from isa_ros.core.noise import seed_of
 from isa_ros.core.saved_state import RunState
-from isa_ros.core.signals import COMMAND, LOAD_PORT, Records
+from isa_ros.core.signals import COMMAND, Records
 from isa_ros.core.suggest import alternatives
 from isa_ros.core.timebase import NS_PER_SECOND
 from isa_ros.errors import ConfigError
-from isa_ros.scenario.faults import ParameterChanges
 from isa_ros.scenario.scenario import Scenario
+from isa_ros.tick.exchange import Rows
+from isa_ros.tick.in_process import InProcess
+from isa_ros.tick.source import ScheduledSource
+from isa_ros.tick.tick_loop import TickLoop
 import numpy as np
 
 _SNAPSHOT = 'snapshot'
+_CALLER = 5     # of `Simulation.step`, counted from `_warn`
+
+
+def _warn(line: str) -> None:
+    """Warn whoever advances the simulation."""
+    warnings.warn(line, stacklevel=_CALLER)
 
 
 class Simulation:
@@ -47,7 +55,6 @@ class Simulation:
 
     def __init__(self, scenario: Scenario, controllers: Sequence[Controller] = ()) -> None:
         self._controllers = tuple(controllers)
-        self._seats: list[ControllerSeat] = []
         self._assemble(scenario)
         self.reset()
 
@@ -61,18 +68,21 @@ class Simulation:
         """The actuators, with their samples as rows."""
         self.surroundings = surroundings_of(run)
         """Supplies and body, with their samples as rows."""
-        self._starts, self._beginning = (
-            self.surroundings.starts(), self.surroundings.snapshot())
-        n = len(self.names)
-        self._ports: Records = np.zeros(n, LOAD_PORT)
-        self._commands: Records = np.zeros(n, COMMAND)
-        self._requests: Records = np.zeros(n, COMMAND)
+        supplies = [feed.name for feed in self.surroundings.feeds]
+        transport = InProcess(
+            self.group, self.surroundings.starts(), (), self._controllers, supplies)
+        self.loop = TickLoop(
+            run.step_ns, transport, self.surroundings,
+            Rows(len(self.names), self.surroundings, self.group),
+            ScheduledSource(scenario.commands, scenario.changes),
+            request_range=request_range_of(run) if self._controllers else None, warn=_warn)
+        """The ticks of the run; its sinks take the rows of each instant."""
         self.samples: Mapping[str, np.record] = by_name(self.names, self.group.samples)
         """`SAMPLE` by actuator at the end of the last tick; the next one overwrites them."""
         self.observed: Mapping[str, np.record] = by_name(self.names, self.group.observed)
         """The same as listeners have it: behind a link the newest that has arrived."""
         self.supply_samples: Mapping[str, np.record] = by_name(
-            [feed.name for feed in self.surroundings.feeds], self.surroundings.supplies)
+            supplies, self.surroundings.supplies)
         """`SUPPLY_SAMPLE` by supply, likewise."""
         self.body_sample: np.record | None = None
         """Sample of the body, likewise; None without a body."""
@@ -96,19 +106,18 @@ class Simulation:
         if seed is not None:
             run = replace(self.scenario.run, seed=seed_of(seed, 'seed'))
             self._assemble(replace(self.scenario, run=run))
-        self.ticks = 0
-        self.surroundings.restart(self._beginning)
-        self.group.start(self._starts)
-        self._requests['kinds'] = 0
-        self._seats = [ControllerSeat(own, self.names) for own in self._controllers]
-        if self._seats:
-            self._request_range = request_range_of(self.scenario.run)
+        self.loop.join()
         return self.samples
+
+    @property
+    def ticks(self) -> int:
+        """Return the number of finished ticks."""
+        return self.loop.ticks
 
     @property
     def t_ns(self) -> int:
         """Return the simulated time, ns."""
-        return self.ticks * self.scenario.run.step_ns
+        return self.loop.t_ns
 
     @property
     def t(self) -> float:
@@ -172,44 +181,8 @@ class Simulation:
             A state is no longer finite.
 
         """
-        commands = self._merged(commands)
-        if self._seats:
-            self._control()
-        changes = self.scenario.changes_at(self.ticks)
-        if changes is not None:
-            self._change(changes)
-        self.surroundings.ports(self._ports)
-        self.surroundings.advance(self.group.advance(self._ports, commands))
-        self.ticks += 1
+        self.loop.advance(commands)
         return self.samples
-
-    def _change(self, changes: ParameterChanges) -> None:
-        """Let the faults of this tick begin and end."""
-        self.surroundings.tune(changes.supplies)
-        for row, values in changes.actuators.items():
-            self.group.actuators[row].tune(values)
-
-    def _merged(self, given: Records | None) -> Records | None:
-        """Return the controllers' requests, overwritten by given or by the scenario's commands."""
-        is_commanded = given is None and self.scenario.has_commands_at(self.ticks)
-        if not (is_commanded or self._seats):
-            return given
-        self._commands, self._requests = self._requests, self._commands
-        self._requests['kinds'] = 0
-        if self._seats:
-            for line in self._request_range.admit(self.t_ns, self._commands):
-                warnings.warn(line, stacklevel=3)
-        if is_commanded:
-            self.scenario.commands(self.ticks, self._commands)
-        if given is not None:
-            merge_requests(given, self._commands)
-        return self._commands
-
-    def _control(self) -> None:
-        """Call the controllers with the state before the tick; store requests for the next."""
-        state = State(self.t_ns, self.observed, self.supply_samples, self.body_sample)
-        for seat in self._seats:
-            seat.step(state, self._requests)
 
     def state(self) -> RunState:
         """
@@ -221,11 +194,7 @@ class Simulation:
             A controller cannot be saved.
 
         """
-        return RunState(
-            tick=self.ticks, load=self.surroundings.snapshot(),
-            participants=[*(actuator.snapshot() for actuator in self.group.actuators),
-                          *(seat.controller.snapshot() for seat in self._seats)],
-            requests=self._requests.tobytes())
+        return self.loop.save()
 
     def resume(self, state: RunState) -> None:
         """
@@ -237,18 +206,7 @@ class Simulation:
             The state is not one of this configuration.
 
         """
-        n = len(self.names)
-        if len(state.participants) != n + len(self._seats):
-            raise ConfigError(
-                f'the saved state has {len(state.participants)} participants, the run has '
-                f'{n + len(self._seats)}')
-        self.ticks = state.tick
-        self.surroundings.restore(state.load)
-        self._requests[:] = state.rows_of_requests(n)
-        for actuator, own in zip(self.group.actuators, state.participants):
-            actuator.restore(own)
-        for seat, own in zip(self._seats, state.participants[n:]):
-            seat.controller.restore(own)
+        self.loop.restore(state)
 
     def snapshot(self) -> bytes:
         """Return the complete state as bytes for `restore`; raises as `state`."""

@@ -133,7 +133,7 @@ def _tolerances(bag: Bag, tolerances: Path | str | None) -> Tolerances | None:
 
 def _compared(bag: Bag, result: Result, tolerances: Tolerances | None) -> Report:
     """Return the comparison of a result with a bag; without events, which files do not give."""
-    messages = ResultMessages(result)
+    messages = ResultMessages(result.scenario, result.log)
     other = retyped(bag, {topic.name: topic.type_name for topic in messages.topics})
     end_ns = (len(result.log.samples) - 1) * result.scenario.run.step_ns
     without = {event.TOPIC[0], *(difference.topic for difference in other)}

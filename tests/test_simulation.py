@@ -13,7 +13,6 @@ from isa_ros.config.runs.supplies import SupplyConfig
 from isa_ros.controller import Controller, Setpoint, State
 from isa_ros.core.signals import COMMAND, HAS_SETPOINT
 from isa_ros.errors import ConfigError, RunError, SetpointError, SimulationDiverged
-from isa_ros.run.local_run import shown
 from isa_ros.run.narrator import Narrator, packer_of
 from isa_ros.scenario.scenario import idle, load_scenario, Scenario, scenario_of
 from isa_ros.simulation import Simulation
@@ -91,16 +90,13 @@ def test_its_rows_are_those_of_a_recorded_run(config, scenario):
     run = load_run(find(config, CONFIG))
     fitted = idle(run) if scenario == 'idle' else load_scenario(find(scenario, SCENARIOS), run)
     simulation = Simulation(fitted)
-    packer = packer_of(fitted.run, shown(simulation))
+    packer = packer_of(fitted.run, simulation.loop.rows.shown)
     digests = Digests([topic.name for topic in packer.topics])
-    narrator = Narrator(packer, fitted.run.step_ns, digests)
-    while True:
-        narrator.publish_rows(simulation.ticks, simulation.tuned)
-        if simulation.t >= SECONDS:
-            break
-        narrator.record()
+    simulation.loop.sinks = [Narrator(packer, fitted.run.step_ns, digests)]
+    simulation.loop.begin()
+    while simulation.t < SECONDS:
         simulation.step()
-    narrator.end()
+    simulation.loop.end()
     assert digests.by_topic() == RECORDED[f'{config} {scenario}']
 
 

@@ -17,7 +17,6 @@ from isa_ros.config.runs.run_config import RunConfig
 from isa_ros.core.signals import Records
 from isa_ros.errors import RunError
 from isa_ros.processes.stopping import PARENT_VARIABLE, StopRequest
-from isa_ros.run.exchange import IDLE_S, Rows
 from isa_ros.run.narrator import Outlets
 from isa_ros.run.options import Request
 from isa_ros.run.session import prepare, record, Report, Session
@@ -25,6 +24,7 @@ from isa_ros.run.wire.answers import Answer, decode_answer
 from isa_ros.run.wire.cast import Cast
 from isa_ros.run.wire.parts import take_actuator_parts
 from isa_ros.run.wire.steps import encode_end, encode_hello, encode_tick
+from isa_ros.tick.exchange import IDLE_S, Rows
 
 START_PERIOD_S = 0.05
 SLICE_S = 0.5
@@ -37,6 +37,8 @@ _NOT_SUPPORTED = 'a run over a peer cannot be paused or saved'
 
 class PeerTransport:
     """A `Transport` to the workers of a `Link`, with the messages of the private wire."""
+
+    group = None
 
     def __init__(
             self, link: Link, run: RunConfig, starts: Records,

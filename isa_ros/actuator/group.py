@@ -49,6 +49,7 @@ class ActuatorGroup:
             SmartActuator(config, timing, row_of(self._memory, k))
             for k, config in enumerate(configs)]
         """The same actuators one by one, in the order of ``configs``."""
+        self._values = [actuator.tuning.values for actuator in self.actuators]
         self._no_commands: Records = np.zeros(len(configs), COMMAND)
 
     @property
@@ -93,8 +94,9 @@ class ActuatorGroup:
     @property
     def tuned(self) -> dict[int, Mapping[str, float]]:
         """Return the parameters that changed at the start of the last tick, SI, by row."""
-        return {row: changed for row, actuator in enumerate(self.actuators)
-                if (changed := actuator.applied_parameters)}
+        return {row: changed for row, values in enumerate(self._values)
+                if not values.is_settled
+                and (changed := self.actuators[row].applied_parameters)}
 
     def start(self, starts: Records) -> None:
         """Put all at rest at t = 0 according to their `START` rows, (n,)."""
@@ -145,8 +147,9 @@ class ActuatorGroup:
 
     def _latch(self) -> None:
         """Let changed parameters take effect."""
-        for actuator in self.actuators:
-            actuator.latch_tuning()
+        for actuator, values in zip(self.actuators, self._values):
+            if not values.is_settled:
+                actuator.latch_tuning()
 
     def _end(self, n_ticks: int, broken: int) -> None:
         """Move the time on by as many ticks; refuse a state that is no longer finite."""

@@ -37,12 +37,13 @@ class Tuning:
         self._constants = constants
         self._written = {part: constants[part].copy() for part in ('plant', 'reu', 'link')}
         self._known = changing(sheet)
-        self._values = ChangingValues(
+        self.values = ChangingValues(
             name, list(self._known), [own.value for own in self._known.values()])
+        """All that may change."""
 
     def reset(self) -> dict[str, float]:
         """Restore the sheet's values until the next tick; return the `GAINS` accepted for it."""
-        accepted = self._values.restart()
+        accepted = self.values.restart()
         self._write()
         return {name: value for name, value in accepted.items() if name in GAINS}
 
@@ -62,8 +63,8 @@ class Tuning:
             values = named(self._known, values)
         except ConfigError as error:
             raise ConfigError(f'{self._name}: {error}') from error
-        self._changed_by(self._values.accepted | values)
-        self._values.accept(values)
+        self._changed_by(self.values.accepted | values)
+        self.values.accept(values)
         return values
 
     def known(self, name: str) -> Changeable:
@@ -73,11 +74,11 @@ class Tuning:
 
     def value(self, name: str) -> float:
         """Return the last accepted value."""
-        return self._values.value(name)
+        return self.values.value(name)
 
     def latch(self) -> bool:
         """Begin a tick: put the accepted values in force; return whether one of a loop changed."""
-        if not self._values.latch():
+        if not self.values.latch():
             return False
         self._write()
         return not all(name.startswith(_NO_LOOPS) for name in self.applied)
@@ -90,7 +91,7 @@ class Tuning:
 
     def _write(self) -> None:
         """Fill the constants from the values in force, each part from its own section."""
-        own, sheet = self._sheet, self._changed_by(self._values.in_force)
+        own, sheet = self._sheet, self._changed_by(self.values.in_force)
         for part, written in self._written.items():
             section: Any = getattr(sheet, part)
             if section is getattr(own, part):
@@ -106,22 +107,22 @@ class Tuning:
     @property
     def applied(self) -> dict[str, float]:
         """Return the changes at the start of the last tick without `GAINS`, outermost first."""
-        changed = self._values.applied
+        changed = self.values.applied
         return {name: value for name, value in changed.items() if name not in GAINS}
 
     @property
     def nbytes(self) -> int:
         """Return the size of a `snapshot`."""
-        return self._values.nbytes
+        return self.values.nbytes
 
     def snapshot(self) -> bytes:
         """Return the state as bytes for `restore`."""
-        return self._values.snapshot()
+        return self.values.snapshot()
 
     def restore(self, snapshot: bytes) -> None:
         """Continue from a `snapshot`; raises as `accept`, also for a value that is not finite."""
-        self._values.restore(snapshot)
-        self._changed_by(self._values.accepted)
+        self.values.restore(snapshot)
+        self._changed_by(self.values.accepted)
         self._write()
 
 

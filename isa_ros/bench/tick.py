@@ -13,7 +13,6 @@ from isa_ros.config.assembly import group_of, surroundings_of
 from isa_ros.config.paths import CONFIG, find, SCENARIOS
 from isa_ros.config.runs.run_file import load_run
 from isa_ros.core.signals import LOAD_PORT
-from isa_ros.run.local_run import shown
 from isa_ros.run.narrator import packer_of
 from isa_ros.run.session import prepare
 from isa_ros.scenario.scenario import load_scenario, Scenario
@@ -55,7 +54,7 @@ def actuator_parts() -> dict[str, float]:
     simulation = Simulation(leg_drop())
     ports = np.zeros(len(simulation.names), LOAD_PORT)
     simulation.surroundings.ports(ports)
-    packer = packer_of(simulation.scenario.run, shown(simulation))
+    packer = packer_of(simulation.scenario.run, simulation.loop.rows.shown)
 
     def plants() -> None:
         for _ in range(TICKS):
@@ -71,7 +70,7 @@ def actuator_parts() -> dict[str, float]:
 def _recorder_seconds(drop: Scenario) -> float:
     """Return the time to record one tick's messages, in s."""
     simulation = Simulation(drop)
-    rows = shown(simulation)
+    rows = simulation.loop.rows.shown
     simulation.step()
     packer = packer_of(drop.run, rows)
     packer.pack(0, 0, {})

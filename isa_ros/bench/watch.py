@@ -8,7 +8,8 @@ from isa_ros.bench.host import children_of, memory_of, processor_seconds_of
 from isa_ros.bench.spec import ACTUATORS, COORDINATOR, JOINED, Measured, Memory, PREPARED, RECORDER
 from isa_ros.errors import RunError
 from isa_ros.run.options import Request
-from isa_ros.run.pacing import BEFORE_TICKS, JOINING, Laps, Progress, STARTING
+from isa_ros.run.pacing import JOINING, Laps, Progress, STARTING
+from isa_ros.tick.tick_loop import BEFORE_TICKS
 
 
 class FirstLaps(Laps):

@@ -22,19 +22,20 @@ class ChangingValues:
         self._names = list(names)
         self._first = np.array(first, float)
         self._rows = np.tile(self._first, (3, 1))
-        self._is_settled = True
+        self.is_settled = True
+        """Whether no value changed at the start of the last tick, or changes at the next."""
 
     def restart(self) -> dict[str, float]:
         """Put the first values in force until the next tick; return what is accepted for it."""
         self._rows[_BEFORE] = self._rows[_IN_FORCE] = self._first
-        self._is_settled = False
+        self.is_settled = False
         return self.accepted
 
     def accept(self, values: Mapping[str, float]) -> None:
         """Accept new values of known names; the last of several before one tick wins."""
         for name, value in values.items():
             self._rows[_ACCEPTED, self._place[name]] = value
-        self._is_settled = False
+        self.is_settled = False
 
     def value(self, name: str) -> float:
         """Return the last accepted value."""
@@ -42,13 +43,13 @@ class ChangingValues:
 
     def latch(self) -> bool:
         """Begin a tick: put the accepted values in force; return whether any has changed."""
-        if self._is_settled:
+        if self.is_settled:
             return False
         before, in_force, accepted = self._rows
         before[:] = in_force
         in_force[:] = accepted
-        self._is_settled = bool((before == in_force).all())
-        return not self._is_settled
+        self.is_settled = bool((before == in_force).all())
+        return not self.is_settled
 
     @property
     def accepted(self) -> dict[str, float]:
@@ -63,7 +64,7 @@ class ChangingValues:
     @property
     def applied(self) -> dict[str, float]:
         """Return the changes at the start of the last tick."""
-        if self._is_settled:
+        if self.is_settled:
             return {}
         return self._where(_IN_FORCE, self._rows[_BEFORE] != self._rows[_IN_FORCE])
 
@@ -96,4 +97,4 @@ class ChangingValues:
                 f'{self._owner}: saved state has {self._names[k]} = {rows[row, k]}, '
                 'must be finite')
         self._rows[:] = rows
-        self._is_settled = False
+        self.is_settled = False

@@ -99,7 +99,7 @@ class RealTimeSource:
         self._events: list[str] = []
         pace.serve = self.serve
         self.changes: Callable[[int], ParameterChanges | None] = frames.changes
-        self.end: Callable[[int, Records], None] = frames.end
+        self.end: Callable[[int, Records], Sequence[str]] = frames.end
         self.take_tuned = frames.take_tuned
 
     def is_due(self, tick: int, samples: Records) -> bool:

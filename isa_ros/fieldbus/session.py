@@ -12,8 +12,8 @@ from isa_ros.fieldbus.real_time import RealTimeSource, scheduled_first, ServedPa
 from isa_ros.fieldbus.request import BusRequest, REAL_TIME
 from isa_ros.fieldbus.source import FrameSource
 from isa_ros.run.session import prepare, Session
-from isa_ros.run.source import Source
 from isa_ros.scenario.scenario import Scenario
+from isa_ros.tick.source import Source
 
 OpenLine = Callable[[Sequence[BusDevice], int], Line]
 """Opens a line with the devices of a run, whose tick has a length in ns."""
@@ -106,7 +106,7 @@ def prepare_bus(
         try:
             names = ', '.join(device.name for device in devices)
             source = FrameSource(
-                line, devices, session.scenario.changes_at,
+                line, devices, session.scenario.changes.get,
                 lambda: tell(f'{names} wait for a master on {request.place}'))
             if pace is None:
                 yield source

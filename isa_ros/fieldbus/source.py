@@ -66,9 +66,10 @@ class FrameSource:
         for row, values in tuned.items():
             self._devices[row].take_changes(values)
 
-    def end(self, tick: int, samples: Records) -> None:
+    def end(self, tick: int, samples: Records) -> Sequence[str]:
         """Let the master have the last samples where the line sends them by itself."""
         self.show(tick, samples)
+        return ()
 
     def begins(self) -> bool:
         """Return whether simulated time runs, now that a cycle has begun."""

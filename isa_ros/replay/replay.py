@@ -8,6 +8,7 @@ needed.
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
+from itertools import chain
 from typing import NamedTuple
 
 from isa_ros.bag.reader import Bag
@@ -19,10 +20,11 @@ from isa_ros.replay.compare import Comparer
 from isa_ros.replay.difference import Report
 from isa_ros.replay.installation import differences, refuse_obstacles, topic_differences
 from isa_ros.replay.tolerances import Tolerances
-from isa_ros.run import local_run
 from isa_ros.run.coordinator import Interrupted
-from isa_ros.run.exchange import Recorder
 from isa_ros.run.local_run import LocalRun
+from isa_ros.run.narrator import Recorder
+from isa_ros.scenario.faults import ParameterChanges
+from isa_ros.tick.source import ScheduledSource
 from msg_adapters import diagnostics, event
 from msg_adapters.applied_parameters import tuned_values
 from msg_adapters.cdr import CdrError
@@ -107,7 +109,8 @@ class Rerun:
         self._run = RunConfig.from_yaml(
             bag.provenance.configuration, f'{bag.path.name}: configuration.yaml')
         self._inputs = recorded_inputs(bag, self._run)
-        self._events = recorded_events(bag)
+        self._source = ScheduledSource(
+            self._fill, _changes(self._inputs, self._run), recorded_events(bag))
         self._state = _recorded_state(bag, self._run)
         self._local = LocalRun(self._run)
         self.topics = self._local.topics
@@ -117,16 +120,23 @@ class Rerun:
         """Hand every sample to ``recorder`` until the end of the bag or ``should_stop``."""
         try:
             self._local.simulate(
-                self._inputs.n_ticks, local_run.Inputs(
-                    self._fill, self._inputs.tuned, self._events, self._inputs.has_end,
-                    self._inputs.tuned_supplies),
-                recorder, should_stop, self._state)
+                self._inputs.n_ticks, self._source, recorder, should_stop, self._state,
+                has_end=self._inputs.has_end)
         except Interrupted:
             pass  # should_stop was true before the end
 
     def _fill(self, tick: int, rows: Records) -> None:
         for row, command in self._inputs.commands.get(tick, ()):
             rows[row] = command
+
+
+def _changes(inputs: 'Inputs', run: RunConfig) -> dict[int, ParameterChanges]:
+    """Return the recorded changes of parameters by tick."""
+    return {
+        tick: ParameterChanges(
+            {run.index(name): by_tick[tick] for name, by_tick in inputs.tuned.items()
+             if tick in by_tick}, inputs.tuned_supplies.get(tick, {}))
+        for tick in {*inputs.tuned_supplies, *chain.from_iterable(inputs.tuned.values())}}
 
 
 def _recorded_state(bag: Bag, run: RunConfig) -> RunState | None:

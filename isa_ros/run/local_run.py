@@ -1,48 +1,16 @@
-"""A whole run in this process, without ROS: a simulation with a recorder."""
+"""A whole run in this process, without ROS: its ticks with a recorder."""
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import replace
-from typing import NamedTuple
 
 from isa_ros.config.runs.run_config import RunConfig
 from isa_ros.core.saved_state import RunState
-from isa_ros.core.signals import COMMAND, Records
 from isa_ros.run.coordinator import Interrupted
-from isa_ros.run.exchange import Recorder
-from isa_ros.run.narrator import Narrator, packer_of
-from isa_ros.run.packing import Shown
+from isa_ros.run.narrator import Narrator, packer_of, Recorder
 from isa_ros.run.thinning import Thinning
-from isa_ros.scenario.scenario import idle, Scenario
+from isa_ros.scenario.scenario import idle
 from isa_ros.simulation import Simulation
-import numpy as np
-
-Tuned = Mapping[int, Mapping[str, float]]
-"""Tick -> new values of an actuator's parameters, SI, by name."""
-
-
-class Inputs(NamedTuple):
-    """External inputs of a run, by tick."""
-
-    commands: Callable[[int, Records], None]
-    """Overwrites `COMMAND` rows of a tick."""
-    tuned: Mapping[str, Tuned] = {}
-    """Changes of parameters, by actuator."""
-    events: Mapping[int, Sequence[str]] = {}
-    """Texts of the events recorded before a tick."""
-    has_end: bool = True
-    """Whether the diagnostics of the last instant are recorded, as at the end of a run."""
-    tuned_supplies: Tuned = {}
-    """Changes of the supplies' parameters, by SUPPLY.KEY."""
-
-
-def inputs_of(scenario: Scenario) -> Inputs:
-    """Return the commands and the faults of a scenario."""
-    tuned: dict[str, dict[int, Mapping[str, float]]] = {}
-    for tick, changes in scenario.changes.items():
-        for row, values in changes.actuators.items():
-            tuned.setdefault(scenario.run.actuators[row].name, {})[tick] = values
-    return Inputs(scenario.commands, tuned, tuned_supplies={
-        tick: changes.supplies for tick, changes in scenario.changes.items()})
+from isa_ros.tick.source import Source
 
 
 class LocalRun:
@@ -54,60 +22,44 @@ class LocalRun:
 
     def __init__(self, run: RunConfig) -> None:
         self._run = replace(run, controllers=())
-        self._simulation = Simulation(idle(self._run))
-        self._packer = packer_of(self._run, shown(self._simulation))
+        self._loop = Simulation(idle(self._run)).loop
+        self._packer = packer_of(self._run, self._loop.rows.shown)
         self._thinning = Thinning(run.record, self._packer.topics)
         self.topics = self._thinning.topics
 
     def simulate(
-            self, n_ticks: int, inputs: Inputs, recorder: Recorder,
+            self, n_ticks: int, source: Source, recorder: Recorder,
             should_stop: Callable[[], bool] = lambda: False,
-            state: RunState | None = None) -> None:
+            state: RunState | None = None, *, has_end: bool = True) -> None:
         """
         Pass every sample until t = ``n_ticks`` step_ns to ``recorder``; call this once.
+
+        ``has_end``: record the diagnostics of the last instant, as at the end of a run.
 
         Raises
         ------
         SimulationDiverged
             A state is no longer finite.
         Interrupted
-            ``should_stop`` was true before the end.
+            ``should_stop`` was true after a sample.
 
         """
-        simulation = self._simulation
-        if state is not None:
-            simulation.resume(state)
-        narrator = Narrator(self._packer, self._run.step_ns, self._thinning.recorder(recorder))
-        commands = np.zeros(len(simulation.names), COMMAND)
-        while True:
-            narrator.publish_rows(
-                simulation.ticks, simulation.tuned, simulation.tuned_supplies)
-            for text in inputs.events.get(simulation.ticks, ()):
-                narrator.add_event(simulation.ticks, text)
-            if simulation.ticks >= n_ticks:
-                narrator.end() if inputs.has_end else narrator.record()
-                return
-            narrator.record()
-            if should_stop():
-                raise Interrupted(f'stopped after {simulation.ticks} ticks')
-            self._tune(inputs)
-            commands['kinds'] = 0
-            inputs.commands(simulation.ticks, commands)
-            simulation.step(commands)
-
-    def _tune(self, inputs: Inputs) -> None:
-        """Set the parameters that change at the next tick, as a user of the nodes would."""
-        simulation = self._simulation
-        simulation.surroundings.tune(inputs.tuned_supplies.get(simulation.ticks, {}))
-        for name, by_tick in inputs.tuned.items():
-            values = by_tick.get(simulation.ticks)
-            if values is not None:
-                simulation.group.actuators[simulation.names.index(name)].tune(values)
+        self._loop.source = source
+        self._loop.sinks = (Narrator(
+            self._packer, self._run.step_ns,
+            self._thinning.recorder(_Stoppable(recorder, should_stop)), has_end=has_end),)
+        self._loop.run(n_ticks, state)
 
 
-def shown(simulation: Simulation) -> Shown:
-    """Return the rows of a simulation that its messages are packed from."""
-    body = simulation.surroundings.body
-    return Shown(
-        simulation.group.observed, simulation.group.applied, simulation.surroundings.supplies,
-        None if body is None else body.sample, simulation.group.sent)
+class _Stoppable:
+    """Ends the run after the sample at which ``should_stop`` becomes true."""
+
+    def __init__(self, recorder: Recorder, should_stop: Callable[[], bool]) -> None:
+        self._recorder, self._should_stop = recorder, should_stop
+
+    def write_tick(
+            self, t_ns: int, sequence: int, messages: Sequence[tuple[int, bytes]]) -> None:
+        """Pass the messages on, then raise `Interrupted` if the run is to stop."""
+        self._recorder.write_tick(t_ns, sequence, messages)
+        if self._should_stop():
+            raise Interrupted(f'stopped after {sequence} ticks')

@@ -1,14 +1,31 @@
 """Output of a run: every sample to the recorder, and messages to topics with subscribers."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from typing import NamedTuple, Protocol
 
 from isa_ros.config.runs.run_config import RunConfig
 from isa_ros.plant.plant import is_heated
-from isa_ros.run.exchange import Recorder
-from isa_ros.run.packing import Messages, Names, Packer, Shown
+from isa_ros.run.packing import Messages, Names, Packer
 from isa_ros.surroundings.return_line import VolumeReturn
+from isa_ros.tick.exchange import Rows, RowSink, Shown
 from msg_adapters import clock, diagnostics, event
+
+
+class Recorder(Protocol):
+    """Receives every sample of a run, in order of time."""
+
+    def write_tick(
+            self, t_ns: int, sequence: int, messages: Sequence[tuple[int, bytes]]) -> None:
+        """
+        Append one sample: (index into the sorted topics, CDR) with ascending index.
+
+        Raises
+        ------
+        RunError
+            The sample cannot be written, for example because the disk is full.
+
+        """
+        ...
 
 
 class Outlet(Protocol):
@@ -44,25 +61,27 @@ class Outlets(NamedTuple):
     """One per actuator, in their order; empty if the actuators' own nodes publish."""
 
 
-class Narrator:
+class Narrator(RowSink):
     """
     Packs the rows of a run at each instant and passes the messages to recorder and outlets.
 
-    Without recorder (None) and without subscriptions only what was applied is packed.
+    Without recorder (None) and without subscriptions only what was applied is packed. Without
+    ``has_end`` the run was cut off, and its last instant has no diagnostics.
     """
 
     def __init__(
             self, packer: Packer, step_ns: int, recorder: Recorder | None = None,
-            outlets: Outlets = Outlets()) -> None:
+            outlets: Outlets = Outlets(), *, has_end: bool = True) -> None:
         self._packer = packer
         self._step_ns = step_ns
         self._recorder = recorder
         self._outlets = outlets
+        self._has_end = has_end
         self._surroundings = packer.surroundings
         self._events: list[bytes] = []
         self._unrecorded: int | None = None
 
-    def publish_time(self, tick: int) -> None:
+    def take_time(self, tick: int) -> None:
         """Publish the time of a tick, before all other messages of that instant."""
         if self._outlets.clock.has_subscribers():
             self._outlets.clock.publish((clock.pack(tick * self._step_ns),))
@@ -74,26 +93,20 @@ class Narrator:
         if self._outlets.events.has_subscribers():
             self._outlets.events.publish((message,))
 
-    def publish_rows(
-            self, tick: int, tuned: Mapping[int, Mapping[str, float]],
-            tuned_supplies: Mapping[str, float] = {}) -> None:
-        """
-        Pack and publish the rows before ``tick``; `record` passes them to the recorder.
-
-        ``tuned`` are the parameters that changed at the start of the last tick, by row, and
-        ``tuned_supplies`` those of the supplies.
-        """
+    def take(self, tick: int, rows: Rows) -> None:
+        """Pack and publish the rows before ``tick``; `record` passes them to the recorder."""
         outlets, packer = self._outlets, self._packer
         t_ns = tick * self._step_ns
         start_ns = max(0, t_ns - self._step_ns)
         subscribed = [
             row for row, outlet in enumerate(outlets.actuators)
-            if outlet.has_subscribers() or packer.has_applied(row) or row in tuned
+            if outlet.has_subscribers() or packer.has_applied(row) or row in rows.tuned
             or packer.rare.has_device(row, t_ns, start_ns)]
-        has_surroundings = outlets.surroundings.has_subscribers() or bool(tuned_supplies)
+        has_surroundings = outlets.surroundings.has_subscribers() or bool(
+            rows.tuned_supplies)
         if self._recorder is None and not subscribed and not has_surroundings:
             return
-        packer.pack(t_ns, start_ns, tuned, tuned_supplies)
+        packer.pack(t_ns, start_ns, rows.tuned, rows.tuned_supplies)
         self._unrecorded = tick
         for row in subscribed:
             outlets.actuators[row].publish(self._packer.of_actuator(row))
@@ -102,7 +115,7 @@ class Narrator:
 
     def end(self) -> None:
         """Add the diagnostics to the last instant if it is not recorded yet, and record it."""
-        if self._unrecorded is not None:
+        if self._unrecorded is not None and self._has_end:
             diagnosed = self._packer.rare.diagnose()
             if self._outlets.surroundings.has_subscribers():
                 self._outlets.surroundings.publish(

@@ -12,9 +12,8 @@ REPORT_PERIOD_S = 0.2
 LARGEST_LAG_S = 0.1     # at the end of a run; below this lag no warning is printed
 JOIN_TIMEOUT_S = 30.0  # longest wait for participants before tick 0
 
-STARTING, JOINING, BEFORE_TICKS = 'starting', 'joining', 'between ticks'
-"""Phases of `Laps` outside the ticks: until participants are called, until all have joined,
-and the time between two ticks."""
+STARTING, JOINING = 'starting', 'joining'
+"""Phases of `Laps` before the ticks: until participants are called, and until all have joined."""
 
 
 class Progress(NamedTuple):

@@ -12,7 +12,7 @@ from isa_ros.bag.packed import Layout, layout, Packed
 from isa_ros.core.atmosphere import ATMOSPHERE
 from isa_ros.core.kernel import kernel
 from isa_ros.core.record import float_columns, floats
-from isa_ros.core.signals import Records, SAMPLE
+from isa_ros.core.signals import SAMPLE
 from isa_ros.core.timebase import NS_PER_SECOND
 from isa_ros.core.topic import KEPT, Qos, Topic
 from isa_ros.run.body_messages import prepared, type_of
@@ -20,6 +20,7 @@ from isa_ros.run.link_packing import LinkWords
 from isa_ros.run.rare_messages import DEVICE, DIAGNOSTICS, OF_SUPPLIES, PARAMETERS, RareMessages
 from isa_ros.surroundings.messages import BodyMessage
 from isa_ros.surroundings.supply import SUPPLY_SAMPLE
+from isa_ros.tick.exchange import Shown
 from msg_adapters import (
     actuator_messages, clock, coordinator_messages, diagnostics, event, fluid_pressure,
     temperature)
@@ -38,21 +39,6 @@ _PRESSURES = ('pressure_a', 'pressure_b')
 _FIRST_PRESSURE = _SAMPLE.index(_PRESSURES[0])
 _SUPPLY_PRESSURES = ('pressure', 'return_pressure')
 _COORDINATOR = '/coordinator'
-
-
-class Shown(NamedTuple):
-    """The rows that the messages are packed from; the same memory over a whole run."""
-
-    samples: Records
-    """`SAMPLE`, (n,)."""
-    applied: Records
-    """`COMMAND` that took effect at the tick's start, kinds 0 without one, (n,)."""
-    supplies: Records
-    """`SUPPLY_SAMPLE`, (m,)."""
-    body: Records | None
-    """Sample of the body, (1,), a record of floats; None: no body."""
-    sent: Records | None = None
-    """`COMMAND` handed to the links at the tick's start, (n,); None: no links."""
 
 
 class Names(NamedTuple):

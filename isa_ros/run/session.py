@@ -15,20 +15,19 @@ from isa_ros.config.runs.run_config import RunConfig
 from isa_ros.config.runs.run_file import load_run
 from isa_ros.config.text.changes import changes_of
 from isa_ros.core.saved_state import read_state, RunState, write_state
-from isa_ros.core.signals import Records
 from isa_ros.core.timebase import NS_PER_SECOND
 from isa_ros.core.topic import Topic
 from isa_ros.errors import BagError, ConfigError
-from isa_ros.run.coordinator import admit_all, Coordinator, Plan, Requests
-from isa_ros.run.exchange import Rows, Transport
+from isa_ros.run.coordinator import Coordinator, Requests
 from isa_ros.run.narrator import Narrator, Outlets, packer_of
 from isa_ros.run.options import Request
-from isa_ros.run.pacing import JOINING, Laps, Pace, Progress, ProgressMeter, STARTING
-from isa_ros.run.packing import Packer
-from isa_ros.run.source import ScenarioSource, Source
+from isa_ros.run.pacing import JOINING, Pace, Progress, ProgressMeter, STARTING
 from isa_ros.run.thinning import Thinning
 from isa_ros.scenario.scenario import planned, Scenario
 from isa_ros.surroundings.surroundings import Surroundings
+from isa_ros.tick.exchange import Rows, Transport
+from isa_ros.tick.source import ScheduledSource, Source
+from isa_ros.tick.tick_loop import ignore, TickLoop
 
 RUNS = Path('runs')
 
@@ -62,7 +61,9 @@ class Session:
 
     def opened_source(self) -> AbstractContextManager[Source]:
         """Return the source of the commands."""
-        return nullcontext(ScenarioSource(self.scenario)) if self.source is None else self.source()
+        if self.source is not None:
+            return self.source()
+        return nullcontext(ScheduledSource(self.scenario.commands, self.scenario.changes))
 
 
 def _unchanged(run: RunConfig) -> RunConfig:
@@ -149,64 +150,40 @@ def record(
     ``outlets`` creates the publishers for the topics of supplies and body. A reset starts again
     at t = 0, with another bag beside the first. ``warn`` prints a line.
     """
-    beginning, state, out = surroundings.snapshot(), session.state, session.out
-    rows = Rows(len(session.run.actuators), surroundings)
-    packer = packer_of(session.run, rows.shown)
+    run, laps = session.run, session.request.laps
+    lap = ignore if laps is None else laps.lap
+    rows = Rows(len(run.actuators), surroundings, transport.group)
+    packer = packer_of(run, rows.shown)
     published = outlets(packer.surroundings)
+    thinning = Thinning(run.record, packer.topics)
+    n_ticks, state, out = session.scenario.n_ticks, session.state, session.out
     with session.opened_source() as source:
+        loop = TickLoop(
+            run.step_ns, transport, surroundings, rows, source,
+            request_range=request_range_of(run) if run.controllers else None, warn=warn,
+            lap=lap)
         while True:
-            coordinator = _record_one(
-                session, source, out, state, transport, surroundings, rows, packer, published,
-                report, should_stop, requests, warn)
+            lap(STARTING)
+            loop.join()
+            lap(JOINING)
+            # Only the first bag may replace one: a reset uses a directory that does not exist.
+            overwrite = session.request.overwrite and not session.bags
+            with BagWriter(out, thinning.topics, provenance_of(session.scenario, state),
+                           overwrite, run.record.storage, session.request.is_synced) as bag:
+                session.bags.append(out)
+                loop.sinks = (
+                    Narrator(packer, run.step_ns, thinning.recorder(bag), published),)
+                coordinator = Coordinator(
+                    loop, n_ticks, pace=session.pace, progress=ProgressMeter(
+                        None if n_ticks is None else n_ticks * run.step_ns, report),
+                    should_stop=should_stop, requests=requests,
+                    is_paused=session.request.is_paused)
+                coordinator.run(state)
             if not coordinator.is_reset:
                 break
-            surroundings.restart(beginning)
             out, state = _unused(session.out), None
     if session.request.save is not None:
         save(session, coordinator, session.request.save)
-
-
-def _record_one(
-        session: Session, source: Source, out: Path, state: RunState | None,
-        transport: Transport, surroundings: Surroundings, rows: Rows, packer: Packer,
-        outlets: Outlets, report: Report | None, should_stop: Callable[[], bool],
-        requests: Requests | None, warn: Callable[[str], object]) -> Coordinator:
-    """Run once, to the end or to a reset, and return the coordinator."""
-    run, n_ticks = session.run, session.scenario.n_ticks
-    plan = Plan(
-        step_ns=run.step_ns, rows=rows, n_ticks=n_ticks, source=source,
-        admit=_admission(run, warn), is_paused=session.request.is_paused)
-    laps = session.request.laps or Laps()
-    laps.lap(STARTING)
-    rows.requests['kinds'] = 0
-    transport.join(rows)
-    laps.lap(JOINING)
-    thinning = Thinning(run.record, packer.topics)
-    # Only the first bag may replace one: a reset uses a directory that does not exist.
-    overwrite = session.request.overwrite and not session.bags
-    with BagWriter(out, thinning.topics, provenance_of(session.scenario, state), overwrite,
-                   run.record.storage, session.request.is_synced) as bag:
-        session.bags.append(out)
-        coordinator = Coordinator(
-            plan, transport, surroundings,
-            Narrator(packer, run.step_ns, thinning.recorder(bag), outlets), pace=session.pace,
-            progress=ProgressMeter(None if n_ticks is None else n_ticks * run.step_ns, report),
-            should_stop=should_stop, requests=requests, laps=session.request.laps)
-        coordinator.run(state)
-    return coordinator
-
-
-def _admission(
-        run: RunConfig, warn: Callable[[str], object]) -> Callable[[int, Records], None]:
-    """Return what checks the requests of a run's controllers, and reports by ``warn``."""
-    if not run.controllers:
-        return admit_all
-    request_range = request_range_of(run)
-
-    def admit(t_ns: int, requests: Records) -> None:
-        for line in request_range.admit(t_ns, requests):
-            warn(line)
-    return admit
 
 
 def save(session: Session, coordinator: Coordinator, path: Path) -> None:

@@ -6,7 +6,6 @@ from isa_ros.actuator.actuator import SmartActuator
 from isa_ros.bag.message_chunk import Chunk, Layouts
 from isa_ros.config.runs.run_config import RunConfig
 from isa_ros.errors import SimulationDiverged
-from isa_ros.run.local_run import shown
 from isa_ros.run.narrator import packer_of
 from isa_ros.scenario.scenario import idle
 from isa_ros.simulation import Simulation
@@ -22,7 +21,7 @@ def warmed_up(run: RunConfig) -> list[SmartActuator]:
     simulation = Simulation(idle(run))
     with suppress(SimulationDiverged):
         simulation.step()
-    packer = packer_of(run, shown(simulation))
+    packer = packer_of(run, simulation.loop.rows.shown)
     chunk = Chunk(b'', Layouts(), np.empty(0, np.uint8))
     for t_ns in (0, run.step_ns):   # with and without messages that are rare
         packer.pack(t_ns, t_ns, {})

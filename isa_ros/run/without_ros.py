@@ -3,10 +3,10 @@
 from collections.abc import Callable
 
 from isa_ros.config.assembly import group_of, surroundings_of
-from isa_ros.run.in_process import InProcess
 from isa_ros.run.narrator import Outlets
 from isa_ros.run.session import record, Report, Session
 from isa_ros.run.warm_up import warmed_up
+from isa_ros.tick.in_process import InProcess
 
 
 def run_without_ros(

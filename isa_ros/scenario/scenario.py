@@ -95,10 +95,6 @@ class Scenario:
         trees = [*(fault.tree(self.run.step_ns) for fault in self.faults), *faults]
         return replace(self, faults=read_faults(trees, place, self.run, self.n_ticks))
 
-    def changes_at(self, tick: int) -> ParameterChanges | None:
-        """Return the parameters that faults change at a tick; None: none."""
-        return self.changes.get(tick)
-
     @cached_property
     def changes(self) -> Mapping[int, ParameterChanges]:
         """Return the parameters that faults change, by tick."""
@@ -120,6 +116,8 @@ class Scenario:
 
     def commands(self, tick: int, out: NDArray[np.void]) -> None:
         """Write this tick's commands into ``out``, `COMMAND` rows of shape (n_actuators,)."""
+        if not self.has_commands_at(tick):
+            return
         for track in self.tracks:
             event = track.at(tick)
             if event is not None:

@@ -3,16 +3,16 @@
 from collections.abc import Iterator, Mapping
 from functools import cached_property
 from pathlib import Path
-from typing import Any, NamedTuple
+from typing import Any
 
 from isa_ros.core.accounts import Account, accounts_of
 from isa_ros.core.fields import units_of
-from isa_ros.core.record import floats
-from isa_ros.core.signals import Records, SAMPLE, SAMPLE_FIELDS
+from isa_ros.core.signals import SAMPLE_FIELDS
 from isa_ros.core.suggest import alternatives
 from isa_ros.core.timebase import NS_PER_SECOND
 from isa_ros.errors import AnalysisError
 from isa_ros.scenario.scenario import Scenario
+from isa_ros.scripting.log import Log, LogSink
 from isa_ros.simulation import Simulation
 from isa_ros.surroundings.supply import SUPPLY_FIELDS
 from isa_ros.text.progress import Progress
@@ -21,28 +21,6 @@ from numpy.typing import NDArray
 
 BODY = 'body'
 LINK = 'link'
-_REPORT_TICKS = 100     # ticks between two reports of progress
-
-
-class Log(NamedTuple):
-    """Every row of a run: n + 1 samples of n ticks."""
-
-    samples: Records
-    """`SAMPLE`, (n + 1, n_actuators)."""
-    supplies: Records
-    """`SUPPLY_SAMPLE`, (n + 1, n_supplies)."""
-    body: Records | None
-    """The body's sample, (n + 1,); None without a body."""
-    applied: Mapping[int, Records]
-    """`COMMAND` rows (n_actuators,) by sample, for the samples with an applied command."""
-    observed: Records | None = None
-    """`SAMPLE` that listeners have, (n + 1, n_actuators); None: ``samples``, without a link."""
-    sent: Mapping[int, Records] = {}
-    """As ``applied``, of the commands handed to links."""
-    tuned: Mapping[int, Mapping[int, Mapping[str, float]]] = {}
-    """Changed parameters by sample, row and name, for the samples with any."""
-    tuned_supplies: Mapping[int, Mapping[str, float]] = {}
-    """Those of the supplies, by sample and SUPPLY.KEY."""
 
 
 class Result(Mapping[str, NDArray[np.float64]]):
@@ -177,7 +155,7 @@ class Result(Mapping[str, NDArray[np.float64]]):
 
         """
         from isa_ros.scripting.bag import save  # imports messages, which only bags need
-        return save(self, Path(directory), overwrite)
+        return save(self.scenario, self.log, Path(directory), overwrite)
 
 
 def optional(package: str) -> Any:
@@ -200,40 +178,8 @@ def simulated(
         A state is no longer finite.
 
     """
-    group, surroundings = simulation.group, simulation.surroundings
-    n = n_ticks + 1
-    samples = np.zeros((n, len(group.samples)), SAMPLE)
-    supplies = np.zeros((n, len(surroundings.supplies)), surroundings.supplies.dtype)
-    body = surroundings.body
-    bodies = None if body is None else np.zeros(n, body.sample.dtype)
-    pairs = [(floats(samples), floats(group.samples).reshape(-1)),
-             (floats(supplies), floats(surroundings.supplies).reshape(-1))]
-    observed = np.zeros_like(samples) if simulation.scenario.run.linked else None
-    if observed is not None:
-        pairs.append((floats(observed), floats(group.observed).reshape(-1)))
-    if body is not None and bodies is not None:
-        pairs.append((floats(bodies), floats(body.sample).reshape(-1)))
-    applied: dict[int, Records] = {}
-    sent: dict[int, Records] = {}
-    tuned: dict[int, Mapping[int, Mapping[str, float]]] = {}
-    tuned_supplies: dict[int, Mapping[str, float]] = {}
-    kinds, sent_kinds = group.applied['kinds'], group.sent['kinds']
-    for tick in range(n):
-        if tick:
-            simulation.step()
-        for into, shown in pairs:
-            into[tick] = shown
-        if kinds.any():
-            applied[tick] = group.applied.copy()
-        if observed is not None and sent_kinds.any():
-            sent[tick] = group.sent.copy()
-        if changed := simulation.tuned:
-            tuned[tick] = changed
-        if supplies_changed := simulation.tuned_supplies:
-            tuned_supplies[tick] = supplies_changed
-        if report is not None and tick % _REPORT_TICKS == 0:
-            report(tick, n_ticks)
-    if report is not None:
-        report(n_ticks, n_ticks)
-    log = Log(samples, supplies, bodies, applied, observed, sent, tuned, tuned_supplies)
-    return Result(simulation.scenario, log, {} if body is None else body.units)
+    log = LogSink(simulation, n_ticks, report)
+    simulation.loop.sinks = (log,)
+    simulation.loop.run(n_ticks)
+    body = simulation.surroundings.body
+    return Result(simulation.scenario, log.log, {} if body is None else body.units)

@@ -26,8 +26,9 @@ import sys
 from isa_ros.bag.provenance import installed_versions, Provenance
 from isa_ros.bag.writer import BagWriter
 from isa_ros.config.runs.run_file import load_run
-from isa_ros.run.local_run import Inputs, LocalRun
+from isa_ros.run.local_run import LocalRun
 from isa_ros.scenario.scenario import load_scenario
+from isa_ros.tick.source import ScheduledSource
 
 out, compression, split_mb = sys.argv[1:]
 scenario = load_scenario('config/scenarios/trot.yaml', load_run('config/rig_rotary.yaml').stored(
@@ -44,7 +45,7 @@ class Telling:
 with BagWriter(Path(out), local.topics, Provenance(
         scenario.run.to_yaml(), scenario.to_yaml(), 0, installed_versions()),
         storage=scenario.run.record.storage) as bag:
-    local.simulate(1_000_000, Inputs(scenario.commands), Telling())
+    local.simulate(1_000_000, ScheduledSource(scenario.commands), Telling())
 """
 
 

@@ -7,8 +7,9 @@ from isa_ros.bag.writer import BagWriter
 from isa_ros.bench.rigs import request_of
 from isa_ros.bench.spec import PROCESSES, Spec
 from isa_ros.processes.stopping import StopRequest
-from isa_ros.run.local_run import Inputs, LocalRun
+from isa_ros.run.local_run import LocalRun
 from isa_ros.run.session import prepare
+from isa_ros.tick.source import ScheduledSource
 import pytest
 from tests.ros.conftest import domain  # noqa: F401
 
@@ -29,7 +30,7 @@ def test_a_run_over_a_peer_gives_the_same_bag(name, tmp_path):
     local = LocalRun(session.run)
     expected = tmp_path / 'direct' / 'bag'
     with BagWriter(expected, local.topics, provenance_of(session.scenario)) as bag:
-        local.simulate(TICKS, Inputs(session.scenario.commands), bag)
+        local.simulate(TICKS, ScheduledSource(session.scenario.commands), bag)
     recorded = session.out / 'bag_0.mcap'
     assert recorded.stat().st_size > TICKS * 2000
     assert recorded.read_bytes() == (expected / 'bag_0.mcap').read_bytes()

@@ -25,11 +25,11 @@ from isa_ros.config.runs.run_config import RunConfig
 from isa_ros.config.runs.run_file import load_run
 from isa_ros.core.signals import COMMAND, LOAD_REPLY, SAMPLE, START
 from isa_ros.errors import RunError
-from isa_ros.run.exchange import Rows
-from isa_ros.run.in_process import InProcess
 from isa_ros.run.wire.answers import AnswerKind, encode_answer
 from isa_ros.run.wire.parts import actuator_parts
 from isa_ros.run.wire.steps import decode_step, encode_end, Step
+from isa_ros.tick.exchange import Rows
+from isa_ros.tick.in_process import InProcess
 import numpy as np
 import pytest
 from tests.sheets import setpoint
@@ -48,9 +48,9 @@ def run(tmp_path_factory: pytest.TempPathFactory) -> RunConfig:
     return load_run(path)
 
 
-def rows_of(run: RunConfig) -> Rows:
+def rows_of(run: RunConfig, transport: PeerTransport | InProcess) -> Rows:
     """Return the memory of a run at a supply pressure that lasts."""
-    rows = Rows(len(run.actuators), surroundings_of(run))
+    rows = Rows(len(run.actuators), surroundings_of(run), transport.group)
     rows.ports['supply_pressure'] = 20.7e6
     return rows
 
@@ -93,7 +93,7 @@ def over_pipes(run: RunConfig) -> Iterator[Link]:
 
 def ticks(transport: PeerTransport | InProcess, run: RunConfig) -> list[tuple[bytes, ...]]:
     """Return what the actuators fill into the rows, at the start and in a run of `TICKS`."""
-    rows = rows_of(run)
+    rows = rows_of(run, transport)
 
     def filled() -> tuple[bytes, ...]:
         return rows.replies.tobytes(), rows.samples.tobytes(), rows.applied.tobytes()
@@ -157,8 +157,9 @@ def test_late_answers_to_an_earlier_start_do_not_count(run):
             return [answered(0, step.tick, 1.0)]
         return [answered(1, 1, -9.0), answered(1, 2, -9.0), answered(1, step.tick, 2.0),
                 answered(0, step.tick, 1.0)]
-    rows = rows_of(run)
-    PeerTransport(Scripted(answers), run, starts(run), lambda: None).join(rows)
+    transport = PeerTransport(Scripted(answers), run, starts(run), lambda: None)
+    rows = rows_of(run, transport)
+    transport.join(rows)
     assert sent == [1, 2, 3]
     assert rows.replies['force'].tolist() == [1.0, 2.0]
 
@@ -168,7 +169,7 @@ def test_the_answer_to_another_tick_does_not_count(run):
     transport = PeerTransport(
         Scripted(lambda step: [answered(0, step.tick, 1.0), answered(1, step.tick - 1, -9.0)]),
         run, starts(run), lambda: None)
-    rows = rows_of(run)
+    rows = rows_of(run, transport)
     transport.send(4, rows)
     with pytest.raises(RunError, match=f'^{run.actuators[1].name}: no answer to tick 4$'):
         transport.receive(rows)

@@ -11,11 +11,11 @@ from isa_ros.config.paths import CONFIG, find
 from isa_ros.config.runs.run_config import RunConfig
 from isa_ros.config.runs.run_file import load_run
 from isa_ros.errors import ConfigError, RunError
-from isa_ros.run.exchange import Rows
 from isa_ros.run.wire.answers import Answer, AnswerKind, decode_answer, encode_answer
 from isa_ros.run.wire.cast import Cast
 from isa_ros.run.wire.parts import actuator_parts, take_actuator_parts
 from isa_ros.run.wire.steps import decode_step, encode_end, encode_hello, encode_tick, StepKind
+from isa_ros.tick.exchange import Rows
 import pytest
 from tests.sheets import setpoint
 

@@ -17,7 +17,6 @@ from isa_ros.nodes.lockstep.answer_checks import AnswerChecks
 from isa_ros.nodes.lockstep.expected import Expected, Participants
 from isa_ros.nodes.lockstep.participant_end import ParticipantEnd
 from isa_ros.nodes.lockstep.roles import ActuatorRole, ControllerRole
-from isa_ros.run.exchange import Rows
 from isa_ros.run.wire.answers import AnswerKind, encode_answer, FIRST
 from isa_ros.run.wire.cast import Cast
 from isa_ros.run.wire.parts import actuator_parts, take_actuator_parts
@@ -26,6 +25,7 @@ from isa_ros.run.wire.steps import (
     encode_tick)
 from isa_ros.surroundings.bodies.leg.port_kernel import LEG_SAMPLE
 from isa_ros.surroundings.supply import SUPPLY_SAMPLE
+from isa_ros.tick.exchange import Rows
 import numpy as np
 from tests.fuzz.bytes_of import altered
 from tests.fuzz.property import refused

@@ -15,8 +15,9 @@ import struct
 from isa_ros.config.paths import CONFIG, SCENARIOS, shipped
 from isa_ros.config.runs.run_file import load_run
 from isa_ros.errors import ConfigError
-from isa_ros.run.local_run import inputs_of, LocalRun
+from isa_ros.run.local_run import LocalRun
 from isa_ros.scenario.scenario import idle, load_scenario, Scenario
+from isa_ros.tick.source import ScheduledSource
 
 FILE = Path(__file__).with_suffix('.json')
 SECONDS = 0.3
@@ -60,7 +61,8 @@ def digests(scenario: Scenario) -> dict[str, str]:
     local = LocalRun(scenario.run)
     recorder = Digests([topic.name for topic in local.topics])
     local.simulate(
-        round(SECONDS * 1e9 / scenario.run.step_ns), inputs_of(scenario), recorder)
+        round(SECONDS * 1e9 / scenario.run.step_ns),
+        ScheduledSource(scenario.commands, scenario.changes), recorder)
     return recorder.by_topic()
 
 

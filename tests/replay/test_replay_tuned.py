@@ -9,7 +9,9 @@ from isa_ros.cli.main import main
 from isa_ros.config.runs.run_config import RunConfig
 from isa_ros.core.topic import Topic
 from isa_ros.replay.replay import recorded_inputs, replay, Rerun
-from isa_ros.run.local_run import Inputs, LocalRun
+from isa_ros.run.local_run import LocalRun
+from isa_ros.scenario.faults import ParameterChanges
+from isa_ros.tick.source import ScheduledSource
 from msg_adapters.applied_parameters import applied_parameters, TYPE
 import pytest
 
@@ -17,6 +19,9 @@ GOLDEN = Path(__file__).parents[1] / 'golden' / 'leg_touchdown'
 TOPIC = '/kfe/applied_parameters'
 TUNED = {'kfe': {0: {'force.kp': 9e-8}, 30: {'force.kp': 1.1e-7, 'force.kf': 1e-3}},
          'haa': {30: {'force.limit': 4e-3}}}
+CHANGES = {
+    0: ParameterChanges({2: TUNED['kfe'][0]}, {}),
+    30: ParameterChanges({2: TUNED['kfe'][30], 0: TUNED['haa'][30]}, {})}
 N_TICKS = 60
 
 
@@ -27,7 +32,7 @@ def tuned(tmp_path_factory) -> Path:
     local = LocalRun(RunConfig.from_yaml(provenance.configuration))
     directory = tmp_path_factory.mktemp('bags') / 'tuned'
     with BagWriter(directory, local.topics, provenance) as writer:
-        local.simulate(N_TICKS, Inputs(lambda tick, rows: None, TUNED), writer)
+        local.simulate(N_TICKS, ScheduledSource(lambda tick, rows: None, CHANGES), writer)
     return directory
 
 

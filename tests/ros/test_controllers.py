@@ -9,7 +9,6 @@ from isa_ros.config.runs.run_file import load_run
 from isa_ros.controller import Controller
 from isa_ros.examples.sway import Sway
 from isa_ros.replay.replay import replay
-from isa_ros.run.local_run import shown
 from isa_ros.run.narrator import packer_of
 from isa_ros.scenario.scenario import idle
 from isa_ros.simulation import Simulation
@@ -64,7 +63,7 @@ def simulated(n_ticks: int, controller: Controller) -> list[tuple[int, str, byte
     """Return (sequence, topic, data) of the leg with a controller in memory."""
     run = load_run(LEG)
     simulation, said = Simulation(idle(run), [controller]), []
-    packer = packer_of(run, shown(simulation))
+    packer = packer_of(run, simulation.loop.rows.shown)
     while True:
         packer.pack(simulation.t_ns, max(0, simulation.t_ns - run.step_ns), simulation.tuned)
         if simulation.ticks == n_ticks:

@@ -2,7 +2,6 @@
 
 import isa_ros
 from isa_ros.nodes.coordinator.node import CoordinatorNode
-from isa_ros.run.local_run import shown
 from isa_ros.run.narrator import Narrator, packer_of
 import pytest
 from rclpy.node import Node
@@ -17,7 +16,7 @@ def test_a_unit_publishes_its_readings_at_its_own_rate(observer: Node) -> None:
     simulation = isa_ros.load('leg').replace(
         {'leg.imus': {'kfe': {'link': 'thigh'}}}).simulation()
     run = simulation.scenario.run
-    packer = packer_of(run, shown(simulation))
+    packer = packer_of(run, simulation.loop.rows.shown)
     node = CoordinatorNode(context=observer.context, enable_rosout=False)
     try:
         heard: list[Imu] = []
@@ -33,7 +32,7 @@ def test_a_unit_publishes_its_readings_at_its_own_rate(observer: Node) -> None:
         narrator = Narrator(packer, run.step_ns, outlets=outlets)
         expected = []
         for _ in range(51):
-            narrator.publish_rows(simulation.ticks, {})
+            narrator.take(simulation.ticks, simulation.loop.rows)
             if simulation.ticks % 10 == 0:
                 expected.append(simulation.body_sample.kfe_specific_force.tolist())
             simulation.step()

@@ -13,12 +13,12 @@ from isa_ros.errors import ConfigError
 from isa_ros.nodes.lockstep.coordinator_end import LockstepTransport
 from isa_ros.nodes.lockstep.expected import Expected, Limits, Participants
 from isa_ros.nodes.lockstep.participant_end import ParticipantEnd
-from isa_ros.run.exchange import Rows
 from isa_ros.run.wire.answers import Answer, AnswerKind, decode_answer, encode_answer
 from isa_ros.run.wire.cast import Cast
 from isa_ros.run.wire.parts import actuator_parts, Parts
 from isa_ros.run.wire.steps import (
     encode_begin, encode_end, encode_hello, encode_restore, encode_save, encode_tick, Step)
+from isa_ros.tick.exchange import Rows
 import numpy as np
 import pytest
 from rclpy.node import Node

@@ -7,13 +7,14 @@ from typing import Any
 from isa_ros.core.saved_state import RunState
 from isa_ros.core.signals import HAS_SETPOINT, Records
 from isa_ros.errors import ConfigError, RunError, SimulationDiverged
-from isa_ros.run.coordinator import Coordinator, Interrupted, Plan
-from isa_ros.run.exchange import IDLE_S, Rows
+from isa_ros.run.coordinator import Coordinator, Interrupted
 from isa_ros.run.narrator import Narrator, Outlets, packer_of
 from isa_ros.run.pacing import Pace, ProgressMeter
 from isa_ros.run.packing import Messages
 from isa_ros.scenario.faults import ParameterChanges
 from isa_ros.surroundings.supply import SUPPLY_SAMPLE
+from isa_ros.tick.exchange import IDLE_S, Rows
+from isa_ros.tick.tick_loop import TickLoop
 from msg_adapters import event
 from msg_adapters.cdr_reader import decode
 import numpy as np
@@ -97,6 +98,9 @@ class FakeSurroundings:
     def snapshot(self) -> bytes:
         return self.supplies.tobytes()
 
+    def restart(self, beginning: bytes) -> None:
+        self.restore(beginning)
+
     def restore(self, snapshot: bytes) -> None:
         self.supplies[:] = np.frombuffer(snapshot, SUPPLY_SAMPLE)
 
@@ -127,8 +131,9 @@ class FakeSource:
     def take_tuned(self, tuned: Mapping[int, Mapping[str, float]]) -> None:
         self.told[len(self.log)] = tuned
 
-    def end(self, tick: int, samples: Records) -> None:
+    def end(self, tick: int, samples: Records) -> list[str]:
         self.ended = tick, float(samples['position'][0])
+        return self.events(tick)
 
 
 class FakeOutlet:
@@ -174,11 +179,11 @@ class Rig:
             clock=FakeOutlet(self.log, clock_line),
             events=FakeOutlet(self.log, lambda data: f'event {event.text(data)}'),
             surroundings=FakeOutlet(self.log, lambda data: 'publish')))
+        self.loop = TickLoop(STEP_NS, self.transport, surroundings, self.rows, self.source)
+        self.loop.sinks = (narrator,)
         self.coordinator = Coordinator(
-            Plan(step_ns=STEP_NS, rows=self.rows, n_ticks=n_ticks, source=self.source, **plan),
-            self.transport, surroundings, narrator,
-            pace=pace or Pace(), progress=ProgressMeter(None, None), should_stop=self.should_stop,
-            requests=self.ask)
+            self.loop, n_ticks, **plan, pace=pace or Pace(),
+            progress=ProgressMeter(None, None), should_stop=self.should_stop, requests=self.ask)
 
     def ask(self, coordinator: Coordinator) -> None:
         """Ask for what a test wants at this look, counted from 0."""
@@ -189,7 +194,7 @@ class Rig:
         return self.coordinator.ticks == self.stops_at
 
     def run(self, state: RunState | None = None) -> None:
-        self.transport.join(self.rows)
+        self.loop.join()
         self.coordinator.run(state)
 
     @property

@@ -5,7 +5,9 @@ from dataclasses import replace
 from isa_ros.config.runs.recording import RecordConfig
 from isa_ros.core.signals import Records
 from isa_ros.run.coordinator import Interrupted
-from isa_ros.run.local_run import Inputs, LocalRun
+from isa_ros.run.local_run import LocalRun
+from isa_ros.scenario.faults import ParameterChanges
+from isa_ros.tick.source import ScheduledSource as Scheduled
 from msg_adapters import event
 from msg_adapters.applied_parameters import tuned_values
 from msg_adapters.setpoint import applied_to_command
@@ -40,7 +42,7 @@ def knee_at_2(tick: int, rows: Records) -> None:
         rows[1] = setpoint(position=0.06)
 
 
-def recorded(inputs: Inputs, n_ticks: int = 4, run=RUN) -> Recorder:
+def recorded(inputs: Scheduled, n_ticks: int = 4, run=RUN) -> Recorder:
     local = LocalRun(run)
     recorder = Recorder(local)
     local.simulate(n_ticks, inputs, recorder)
@@ -48,12 +50,13 @@ def recorded(inputs: Inputs, n_ticks: int = 4, run=RUN) -> Recorder:
 
 
 def test_n_ticks_give_n_plus_1_samples():
-    assert list(recorded(Inputs(nothing)).samples) == [0, 1, 2, 3, 4]
+    assert list(recorded(Scheduled(nothing)).samples) == [0, 1, 2, 3, 4]
 
 
 def test_what_takes_effect_at_tick_k_is_in_sample_k_plus_1():
     """Commands once, parameters as well; the first sample has what the run starts with."""
-    samples = recorded(Inputs(knee_at_2, {'hip': {1: {'force.kp': 9e-5}}})).samples
+    tuned = {1: ParameterChanges({0: {'force.kp': 9e-5}}, {})}
+    samples = recorded(Scheduled(knee_at_2, tuned)).samples
     topic = '/knee/applied_setpoint'
     assert [k for k, sample in samples.items() if topic in sample] == [0, 3]
     assert applied_to_command(samples[3][topic][0], 'knee')['position'] == 0.06
@@ -63,7 +66,7 @@ def test_what_takes_effect_at_tick_k_is_in_sample_k_plus_1():
 
 
 def test_events_are_recorded_before_their_tick():
-    samples = recorded(Inputs(nothing, events={0: ['pause', 'step 1'], 4: ['reset']})).samples
+    samples = recorded(Scheduled(nothing, events={0: ['pause', 'step 1'], 4: ['reset']})).samples
     assert {k: [event.text(data) for data in sample['/coordinator/events']]
             for k, sample in samples.items() if '/coordinator/events' in sample} == {
                 0: ['pause', 'step 1'], 4: ['reset']}
@@ -73,7 +76,7 @@ def test_it_records_what_the_run_wants_recorded():
     """The kept topics alone, the decimated ones at every n-th tick."""
     record = RecordConfig(leave_out=('/*/valve',), decimate=(('/hip/load_cell', 2),))
     run = replace(RUN, record=record)
-    thinned, whole = recorded(Inputs(knee_at_2), run=run), recorded(Inputs(knee_at_2))
+    thinned, whole = recorded(Scheduled(knee_at_2), run=run), recorded(Scheduled(knee_at_2))
     assert thinned.samples == {
         k: {topic: data for topic, data in sample.items() if not topic.endswith('/valve')
             and not (topic == '/hip/load_cell' and k % 2)}
@@ -85,5 +88,5 @@ def test_it_stops_when_asked():
     local = LocalRun(RUN)
     recorder = Recorder(local)
     with pytest.raises(Interrupted, match='stopped after 2 ticks'):
-        local.simulate(9, Inputs(nothing), recorder, lambda: len(recorder.samples) == 3)
+        local.simulate(9, Scheduled(nothing), recorder, lambda: len(recorder.samples) == 3)
     assert list(recorder.samples) == [0, 1, 2]

@@ -3,9 +3,9 @@
 from isa_ros.actuator.group import ActuatorGroup
 from isa_ros.config.assembly import group_of, surroundings_of
 from isa_ros.core.signals import HAS_SETPOINT
-from isa_ros.run.exchange import Rows
 from isa_ros.run.narrator import Narrator, NoOutlet, Outlets, packer_of
 from isa_ros.run.packing import Messages, Packer
+from isa_ros.tick.exchange import Rows
 from msg_adapters import clock, event
 import pytest
 from tests.run.recorder import FakeRecorder
@@ -50,6 +50,11 @@ class Stage:
                 surroundings=self.outlets['surroundings'],
                 actuators=[self.outlets['hip'], self.outlets['knee']]))
 
+    def take(self, tick: int, tuned=None) -> None:
+        """Give the narrator the rows before a tick."""
+        self.rows.tuned = tuned or {}
+        self.narrator.take(tick, self.rows)
+
     def expected(self, tick: int, tuned=None) -> Packer:
         """Return a packer of the run that has packed this instant."""
         packer = packer_of(RUN, self.rows.shown)
@@ -68,9 +73,9 @@ def test_nothing_is_packed_where_nothing_is_recorded_and_nobody_subscribes(heard
     def pack(*arguments):
         pytest.fail('rows were packed')
     monkeypatch.setattr(Packer, 'pack', pack)
-    stage.narrator.publish_time(1)
+    stage.narrator.take_time(1)
     stage.narrator.add_event(1, 'step 1')
-    stage.narrator.publish_rows(1, {})
+    stage.take(1)
     stage.narrator.record()
     assert stage.log == list(heard)
 
@@ -79,10 +84,10 @@ def test_what_was_applied_is_passed_on_without_a_subscription():
     """Its publishers keep it for later subscriptions; one actuator's is not the other's."""
     stage = Stage(is_recorded=False)
     stage.rows.applied['kinds'][0] = HAS_SETPOINT
-    stage.narrator.publish_rows(1, {})
+    stage.take(1)
     assert stage.log == ['hip']
     stage.rows.applied['kinds'] = 0
-    stage.narrator.publish_rows(2, {1: {'force.kp': 1e-7}})
+    stage.take(2, {1: {'force.kp': 1e-7}})
     assert stage.log == ['hip', 'knee']
 
 
@@ -91,11 +96,11 @@ def test_a_change_of_the_device_is_passed_on_without_a_subscription():
     stage = Stage(is_recorded=False)
     stage.rows.samples['state_since'][1] = 1.5 * STEP_NS * 1e-9
     for tick in (3, 4):
-        stage.narrator.publish_rows(tick, {})
+        stage.take(tick)
     assert stage.log == []
-    stage.narrator.publish_rows(2, {})
+    stage.take(2)
     assert stage.log == ['knee']
-    stage.narrator.publish_rows(10**9 // STEP_NS, {})
+    stage.take(10**9 // STEP_NS)
     assert stage.log == ['knee', 'hip', 'knee']
 
 
@@ -109,7 +114,7 @@ def test_one_listener_or_the_recorder_is_enough_to_pack(listener, monkeypatch):
         packed.append(arguments)
         pack(self, *arguments)
     monkeypatch.setattr(Packer, 'pack', note)
-    stage.narrator.publish_rows(3, {})
+    stage.take(3)
     assert packed == [(3 * STEP_NS, 2 * STEP_NS, {}, {})]
 
 
@@ -118,7 +123,7 @@ def test_outlets_get_the_messages_of_their_own_sources():
     stage = Stage(*EVERYONE)
     stage.rows.applied[1]['kinds'] = HAS_SETPOINT
     tuned = {0: {'force.kp': 1e-7}}
-    stage.narrator.publish_rows(3, tuned)
+    stage.take(3, tuned)
     expected = stage.expected(3, tuned)
     assert stage.outlets['hip'].sent == [expected.of_actuator(0)]
     assert stage.outlets['knee'].sent == [expected.of_actuator(1)]
@@ -130,9 +135,9 @@ def test_outlets_get_the_messages_of_their_own_sources():
 def test_nothing_is_sent_where_nobody_subscribes(heard):
     """The recorder gets all of it nevertheless."""
     stage = Stage(heard)
-    stage.narrator.publish_time(1)
+    stage.narrator.take_time(1)
     stage.narrator.add_event(1, 'step 1')
-    stage.narrator.publish_rows(1, {})
+    stage.take(1)
     stage.narrator.record()
     assert stage.log == [heard, 'record 1']
     assert [sequence for _, sequence, _ in stage.recorder.samples] == [1]
@@ -141,8 +146,8 @@ def test_nothing_is_sent_where_nobody_subscribes(heard):
 def test_the_time_is_published_before_the_rest_of_its_instant():
     """As a coordinator calls it: time, then the rows, then the record."""
     stage = Stage(*EVERYONE)
-    stage.narrator.publish_time(2)
-    stage.narrator.publish_rows(2, {})
+    stage.narrator.take_time(2)
+    stage.take(2)
     stage.narrator.record()
     assert stage.log == ['clock', 'hip', 'knee', 'surroundings', 'record 2']
     assert stage.outlets['clock'].sent == [[clock.pack(2 * STEP_NS)]]
@@ -152,11 +157,11 @@ def test_an_instant_is_recorded_once_with_all_its_events():
     """What is noted after the rows were packed is of the same instant; the next one has none."""
     stage = Stage()
     stage.narrator.add_event(1, 'pause')
-    stage.narrator.publish_rows(1, {})
+    stage.take(1)
     stage.narrator.add_event(1, 'step 1')
     for _ in range(2):
         stage.narrator.record()
-    stage.narrator.publish_rows(2, {})
+    stage.take(2)
     stage.narrator.record()
     (t_ns, sequence, first), (_, _, second) = stage.recorder.samples
     assert (t_ns, sequence) == (STEP_NS, 1)
@@ -168,7 +173,7 @@ def test_an_instant_is_recorded_once_with_all_its_events():
 def test_the_recorder_gets_the_packed_instant():
     """The rows of then, also where they have changed since."""
     stage = Stage()
-    stage.narrator.publish_rows(3, {1: {'force.kp': 1e-7}})
+    stage.take(3, {1: {'force.kp': 1e-7}})
     expected = list(stage.expected(3, {1: {'force.kp': 1e-7}}).all_messages())
     stage.rows.samples['position'] += 1.0
     stage.narrator.record()
@@ -180,7 +185,7 @@ def test_where_actuators_publish_for_themselves_the_rest_is_published():
     stage = Stage(*EVERYONE)
     narrator = Narrator(packer_of(RUN, stage.rows.shown), RUN.step_ns, stage.recorder, Outlets(
         surroundings=stage.outlets['surroundings']))
-    narrator.publish_rows(1, {})
+    narrator.take(1, stage.rows)
     narrator.record()
     assert stage.log == ['surroundings', 'record 1']
 
@@ -194,7 +199,7 @@ def test_an_outlet_without_topics_has_no_subscribers():
 def test_the_end_adds_the_diagnostics_of_the_last_instant():
     """To the bag and to who listens; where it is recorded already, to nothing."""
     stage = Stage('surroundings')
-    stage.narrator.publish_rows(3, {})
+    stage.take(3)
     stage.narrator.end()
     stage.narrator.end()
     expected = stage.expected(3)

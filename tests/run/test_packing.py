@@ -10,11 +10,11 @@ from isa_ros.config.runs.supplies import SupplyConfig
 from isa_ros.core.device import ENABLED, FIELDS, IMPEDANCE
 from isa_ros.core.signals import COMMAND, HAS_ENABLE, HAS_GAINS, HAS_SETPOINT, SAMPLE
 from isa_ros.run import packing
-from isa_ros.run.exchange import Rows
 from isa_ros.run.narrator import packer_of
-from isa_ros.run.packing import Names, Packer, Shown
+from isa_ros.run.packing import Names, Packer
 from isa_ros.surroundings.messages import JointStates
 from isa_ros.surroundings.supply import ConstantSupply, SUPPLY_SAMPLE
+from isa_ros.tick.exchange import Rows, Shown
 from msg_adapters import event
 from msg_adapters.actuator_messages import TOPICS
 from msg_adapters.applied_parameters import tuned_values

@@ -8,9 +8,10 @@ from isa_ros.config.runs.run_config import RunConfig
 from isa_ros.config.runs.run_file import load_run
 from isa_ros.core.saved_state import RunState
 from isa_ros.core.signals import COMMAND, Records
-from isa_ros.run.local_run import Inputs, LocalRun
+from isa_ros.run.local_run import LocalRun
 from isa_ros.scenario.scenario import idle
 from isa_ros.simulation import Simulation
+from isa_ros.tick.source import ScheduledSource
 import numpy as np
 import pytest
 from tests.sheets import setpoint
@@ -51,7 +52,7 @@ def commands(tick: int, rows: Records) -> None:
 def recorded(run: RunConfig, state: RunState | None = None) -> dict[int, Sample]:
     """Return the samples of a run."""
     kept = Kept()
-    LocalRun(run).simulate(TICKS, Inputs(commands), kept, state=state)
+    LocalRun(run).simulate(TICKS, ScheduledSource(commands), kept, state=state)
     return kept.samples
 
 

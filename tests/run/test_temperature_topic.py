@@ -5,9 +5,10 @@ from pathlib import Path
 import isa_ros
 from isa_ros.bag.reader import Bag
 from isa_ros.core.signals import COMMAND, SAMPLE
-from isa_ros.run.packing import Names, Packer, Shown, topics_of_actuator
+from isa_ros.run.packing import Names, Packer, topics_of_actuator
 from isa_ros.surroundings.supply import SUPPLY_SAMPLE
 from isa_ros.testing import assert_replays
+from isa_ros.tick.exchange import Shown
 from msg_adapters.cdr_reader import decode
 import numpy as np
 import pytest

@@ -3,7 +3,6 @@
 from hypothesis import given, strategies
 from isa_ros.core.signals import COMMAND, LOAD_REPLY, SAMPLE, START
 from isa_ros.errors import RunError
-from isa_ros.run.exchange import Rows
 from isa_ros.run.wire.answers import Answer, AnswerKind, decode_answer, encode_answer
 from isa_ros.run.wire.cast import Cast
 from isa_ros.run.wire.header import WireError
@@ -13,6 +12,7 @@ from isa_ros.run.wire.steps import (
     encode_save, encode_tick, StepKind)
 from isa_ros.surroundings.bodies.leg.port_kernel import LEG_SAMPLE
 from isa_ros.surroundings.supply import SUPPLY_SAMPLE
+from isa_ros.tick.exchange import Rows
 import numpy as np
 import pytest
 from rclpy.serialization import deserialize_message

@@ -84,7 +84,7 @@ def test_a_scenario_is_written_as_it_was_read():
     scenario = scenario_of(text, RUN)
     again = scenario_of(scenario.to_yaml(), RUN)
     assert again.faults == scenario.faults and len(again.faults) == 2
-    assert [tick for tick in range(1000) if scenario.changes_at(tick) is not None] == [
+    assert [tick for tick in range(1000) if tick in scenario.changes] == [
         0, 250, 500, 800]
     assert 'faults' not in idle(RUN, 1.0).to_yaml()
 

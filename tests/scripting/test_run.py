@@ -8,7 +8,8 @@ from isa_ros.config.paths import CONFIG, find
 from isa_ros.config.text.yaml_text import read
 from isa_ros.controller import Controller, Setpoint
 from isa_ros.errors import ConfigError, IsaError
-from isa_ros.run.local_run import Inputs, LocalRun
+from isa_ros.run.local_run import LocalRun
+from isa_ros.tick.source import ScheduledSource
 import numpy as np
 import pytest
 from tests.golden.message_digests import Digests, digests
@@ -120,7 +121,7 @@ def test_a_saved_result_is_the_bag_of_the_run(drop, tmp_path):
     bag = Bag(drop.simulate().save(tmp_path / 'bag'))
     local = LocalRun(drop.configuration)
     recorder = Digests([topic.name for topic in local.topics])
-    local.simulate(30, Inputs(drop.scenario.commands), recorder)
+    local.simulate(30, ScheduledSource(drop.scenario.commands), recorder)
     saved = Digests([topic.name for topic in local.topics])
     index = {topic.name: k for k, topic in enumerate(local.topics)}
     for tick in bag.ticks():

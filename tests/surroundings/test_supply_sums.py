@@ -7,8 +7,9 @@ from pathlib import Path
 
 from isa_ros.config.runs.run_file import load_run
 from isa_ros.core.signals import Records
-from isa_ros.run.local_run import Inputs, LocalRun
+from isa_ros.run.local_run import LocalRun
 from isa_ros.surroundings import supply
+from isa_ros.tick.source import ScheduledSource
 from msg_adapters.cdr_reader import decode
 import numpy as np
 import pytest
@@ -62,7 +63,7 @@ def recorded() -> Kept:
             rows[1] = setpoint(position=0.08)
     local = LocalRun(run)
     kept = Kept([topic.name for topic in local.topics])
-    local.simulate(TICKS, Inputs(commands), kept)
+    local.simulate(TICKS, ScheduledSource(commands), kept)
     return kept
 
 

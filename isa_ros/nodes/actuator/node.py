@@ -17,8 +17,9 @@ from isa_ros.nodes.middleware.qos import SETPOINT
 from isa_ros.nodes.middleware.refusals import refusals
 from isa_ros.nodes.middleware.servers import open_server
 from isa_ros.plant.plant import is_heated
-from isa_ros.run.packing import Names, Packer, Shown, topics_of_actuator
+from isa_ros.run.packing import Names, Packer, topics_of_actuator
 from isa_ros.surroundings.supply import SUPPLY_SAMPLE
+from isa_ros.tick.exchange import Shown
 from msg_adapters.joint_state import TYPE as SETPOINT_TYPE
 from msg_adapters.setpoint import msg_to_command
 import numpy as np

@@ -20,12 +20,12 @@ from isa_ros.nodes.middleware.environment import defaults
 from isa_ros.nodes.middleware.refusals import refusals
 from isa_ros.processes.processes import actuator_processes, Children
 from isa_ros.processes.stopping import StopRequest
-from isa_ros.run.exchange import Transport
-from isa_ros.run.in_process import InProcess
 from isa_ros.run.narrator import Outlet
 from isa_ros.run.session import record, Report, save_in_bag, Session
 from isa_ros.run.warm_up import warmed_up
 from isa_ros.run.wire.cast import Cast
+from isa_ros.tick.exchange import Transport
+from isa_ros.tick.in_process import InProcess
 import rclpy
 from rclpy.node import Node
 from rclpy.parameter import Parameter

@@ -15,12 +15,12 @@ from isa_ros.nodes.middleware.domain import refuse_other_coordinator
 from isa_ros.nodes.middleware.mailboxes import open_mailbox, SLICE_S, TOPIC_CHECK_S
 from isa_ros.nodes.middleware.qos import LOCKSTEP
 from isa_ros.run.coordinator import Interrupted
-from isa_ros.run.exchange import IDLE_S, Rows
 from isa_ros.run.wire.answers import ACKNOWLEDGEMENT_TOPIC, Answer, AnswerKind, FIRST
 from isa_ros.run.wire.parts import Parts, take_actuator_parts
 from isa_ros.run.wire.steps import (
     encode_begin, encode_change, encode_end, encode_hello, encode_restore, encode_save,
     encode_tick, STEP_TOPIC)
+from isa_ros.tick.exchange import IDLE_S, Rows
 import numpy as np
 from rclpy.duration import Duration
 from rclpy.node import Node
@@ -41,6 +41,8 @@ class LockstepTransport:
 
     ``watch`` is called while nothing arrives; it returns a text that names a lost participant.
     """
+
+    group = None
 
     def __init__(
             self, node: Node, participants: Participants, limits: Limits, *,

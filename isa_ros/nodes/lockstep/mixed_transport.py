@@ -3,8 +3,8 @@
 from collections.abc import Sequence
 
 from isa_ros.nodes.lockstep.coordinator_end import LockstepTransport
-from isa_ros.run.exchange import IDLE_S, Rows
-from isa_ros.run.in_process import InProcess
+from isa_ros.tick.exchange import IDLE_S, Rows
+from isa_ros.tick.in_process import InProcess
 
 
 class MixedTransport:
@@ -13,6 +13,7 @@ class MixedTransport:
     def __init__(self, actuators: InProcess, controllers: LockstepTransport) -> None:
         self._actuators = actuators
         self._controllers = controllers
+        self.group = actuators.group
         self.send = controllers.send
 
     def join(self, rows: Rows) -> None:

@@ -6,10 +6,10 @@ actuator's are its rows and the parameters that changed (`wire.parts`), a contro
 are the `COMMAND` rows that it requests.
 """
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from typing import Protocol
 
-from isa_ros.controller import by_name, Controller, ControllerSeat, State
+from isa_ros.controller import by_name, Controller, fill_requests, State
 from isa_ros.core.signals import COMMAND, Records
 from isa_ros.run.wire.cast import Cast
 from isa_ros.run.wire.parts import actuator_parts, Parts
@@ -214,7 +214,7 @@ class ControllerRole:
 
     def __init__(self, controller: Controller) -> None:
         self._controller = controller
-        self._seat: ControllerSeat | None = None
+        self._names: Sequence[str] = ()
         self._requests: Records = np.zeros(0, COMMAND)
         self._cast = Cast((), (), None)
         self._step_ns = 0
@@ -222,24 +222,24 @@ class ControllerRole:
     def start(self, step: Step, index: int) -> Parts:
         """Start the controller with the names of the actuators; return no requests yet."""
         self._cast, self._step_ns = step.cast(), step.step_ns()
-        self._seat = ControllerSeat(self._controller, self._cast.names[:step.rows])
+        self._names = self._cast.names[:step.rows]
+        self._controller.start(list(self._names))
         self._requests = np.zeros(step.rows, COMMAND)
         return self._parts()
 
     def check(self, step: Step) -> None:
         """Refuse a tick that does not show the state of the run."""
-        assert self._seat is not None, 'a run begins with a hello'
-        step.refuse_shown(len(self._seat.names), self._cast)
+        step.refuse_shown(len(self._names), self._cast)
 
     def advance(self, step: Step) -> Parts:
         """Call the controller with the state before the tick; return commands for the next one."""
-        assert self._seat is not None, 'a run begins with a hello'
         shown = step.shown(self._cast)
         body = None if shown.body is None else shown.body.view(np.recarray)[0]
         self._requests['kinds'] = 0
-        self._seat.step(State(
-            step.tick * self._step_ns, by_name(self._seat.names, shown.samples),
-            by_name(self._cast.supplies, shown.supplies), body), self._requests)
+        state = State(
+            step.tick * self._step_ns, by_name(self._names, shown.samples),
+            by_name(self._cast.supplies, shown.supplies), body)
+        fill_requests(self._controller.step(state), self._names, self._requests)
         return self._parts()
 
     def change(self, values: Mapping[str, float]) -> Parts:

@@ -17,8 +17,8 @@ from isa_ros.core.device import MODES
 from isa_ros.core.signals import (
     COMMAND, EVERY_KIND, GAINS_OF_COMMAND, HAS_ENABLE, HAS_MODE, HAS_REFERENCE, HAS_SETPOINT,
     LOAD_REPLY, Records, SAMPLE)
-from isa_ros.run.exchange import Rows
 from isa_ros.run.wire.header import WireError
+from isa_ros.tick.exchange import Rows
 import numpy as np
 from numpy.typing import NDArray
 

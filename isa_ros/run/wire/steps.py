@@ -6,13 +6,12 @@ import struct
 from typing import NamedTuple
 
 from isa_ros.core.signals import COMMAND, LOAD_PORT, Records, SAMPLE, START
-from isa_ros.run.exchange import Rows
-from isa_ros.run.packing import Shown
 from isa_ros.run.wire.cast import Cast
 from isa_ros.run.wire.header import opened, prefix, VERSION, WireError
 from isa_ros.run.wire.parts import (
     is_finite, joined, refuse_command, split, tuned_of, tuned_part)
 from isa_ros.surroundings.supply import SUPPLY_SAMPLE
+from isa_ros.tick.exchange import Rows, Shown
 import numpy as np
 
 STEP_TOPIC = '/_isa/step'

@@ -12,9 +12,9 @@ from isa_ros.nodes.lockstep.coordinator_end import LockstepTransport
 from isa_ros.nodes.lockstep.expected import Expected, Limits, Participants
 from isa_ros.nodes.lockstep.participant_end import ParticipantEnd
 from isa_ros.nodes.lockstep.roles import ActuatorRole, ControllerRole
-from isa_ros.run.exchange import Rows
 from isa_ros.run.wire.cast import Cast
 from isa_ros.surroundings.supply import SUPPLY_SAMPLE
+from isa_ros.tick.exchange import Rows
 import numpy as np
 from rclpy.node import Node
 

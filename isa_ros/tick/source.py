@@ -1,11 +1,10 @@
-"""Where the commands of a run come from: its scenario, or the master of a bus."""
+"""Where the commands of a run come from: its scenario, a bag, or the master of a bus."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from typing import Protocol
 
 from isa_ros.core.signals import Records
 from isa_ros.scenario.faults import ParameterChanges
-from isa_ros.scenario.scenario import Scenario
 
 
 class Source(Protocol):
@@ -39,27 +38,40 @@ class Source(Protocol):
         """Take the parameters that changed at the start of the last tick, SI, by row and name."""
         ...
 
-    def end(self, tick: int, samples: Records) -> None:
-        """Take the samples at the end of the run, before a tick that does not begin."""
+    def end(self, tick: int, samples: Records) -> Sequence[str]:
+        """
+        Take the samples at the end of the run, before a tick that does not begin.
+
+        Returns what belongs into the bag there.
+        """
         ...
 
 
-class ScenarioSource:
-    """The commands and faults of a scenario, which never wait."""
+class ScheduledSource:
+    """
+    A `Source` that is known in advance and never waits: a scenario, or what a bag has recorded.
 
-    def __init__(self, scenario: Scenario) -> None:
-        self.commands, self.changes = scenario.commands, scenario.changes_at
+    ``commands`` overwrites `COMMAND` rows of a tick, as `Scenario.commands`; ``changes`` and
+    ``events`` are given by tick.
+    """
+
+    def __init__(
+            self, commands: Callable[[int, Records], None],
+            changes: Mapping[int, ParameterChanges] = {},
+            events: Mapping[int, Sequence[str]] = {}) -> None:
+        self.commands, self.changes, self._events = commands, changes.get, events
 
     def is_due(self, tick: int, samples: Records) -> bool:
         """Return True."""
         return True
 
     def events(self, tick: int) -> Sequence[str]:
-        """Return no events."""
-        return ()
+        """Return the events before a tick."""
+        return self._events.get(tick, ())
 
     def take_tuned(self, tuned: Mapping[int, Mapping[str, float]]) -> None:
         """Do nothing."""
 
-    def end(self, tick: int, samples: Records) -> None:
-        """Do nothing."""
+    def end(self, tick: int, samples: Records) -> Sequence[str]:
+        """Return the events at the end."""
+        return self.events(tick)

@@ -5,8 +5,8 @@ from isa_ros.config.assembly import surroundings_of
 from isa_ros.config.runs.default_actuator import default_actuator, DEFAULT_TIMING
 from isa_ros.core.signals import HAS_SETPOINT, START
 from isa_ros.errors import ConfigError
-from isa_ros.run.exchange import Rows
-from isa_ros.run.in_process import InProcess
+from isa_ros.tick.exchange import Rows
+from isa_ros.tick.in_process import InProcess
 import numpy as np
 import pytest
 from tests.runs import run_of
@@ -35,9 +35,9 @@ def make_transport(inputs=(), group: ActuatorGroup | None = None) -> InProcess:
     return InProcess(group or make_group(), starts, inputs)
 
 
-def make_rows() -> Rows:
+def make_rows(transport: InProcess) -> Rows:
     """Return the memory of a run in which only the second actuator is commanded."""
-    rows = Rows(len(CONFIGS), surroundings_of(run_of(*CONFIGS)))
+    rows = Rows(len(CONFIGS), surroundings_of(run_of(*CONFIGS)), transport.group)
     rows.ports['supply_pressure'] = 20.7e6
     rows.commands['stiffness'] = rows.commands['damping'] = np.nan
     rows.commands['kinds'], rows.commands['position'] = (0, HAS_SETPOINT), 0.05
@@ -51,8 +51,9 @@ def said(rows: Rows) -> tuple:
 
 def test_everyone_starts_where_its_row_says():
     """With the initial setpoint in force, and the parameters that the configuration says."""
-    rows = make_rows()
-    make_transport().join(rows)
+    transport = make_transport()
+    rows = make_rows(transport)
+    transport.join(rows)
     # The sensor of a start without force is not strained: the encoder reads the position.
     assert rows.samples['position'].tolist() == [
         pytest.approx(0.03, abs=1e-6), pytest.approx(0.04, abs=1e-6)]
@@ -66,7 +67,8 @@ def test_all_serve_their_inputs_before_the_tick():
     log: list[str] = []
     group = make_group()
     inputs = [Input(own.name, log) for own in CONFIGS]
-    rows, transport = make_rows(), make_transport(inputs, group)
+    transport = make_transport(inputs, group)
+    rows = make_rows(transport)
     transport.join(rows)
     transport.begin()
     transport.send(0, rows)
@@ -80,13 +82,14 @@ def test_all_serve_their_inputs_before_the_tick():
 def test_a_paused_run_serves_its_inputs():
     log: list[str] = []
     transport = make_transport([Input(own.name, log) for own in CONFIGS])
-    transport.join(make_rows())
+    transport.join(make_rows(transport))
     transport.idle()
     assert log == ['hip serves', 'knee serves']
 
 
 def test_a_command_reaches_its_actuator_alone():
-    rows, transport = make_rows(), make_transport()
+    transport = make_transport()
+    rows = make_rows(transport)
     transport.join(rows)
     transport.receive(rows)
     assert rows.applied['kinds'].tolist() == [0, HAS_SETPOINT]
@@ -96,7 +99,8 @@ def test_a_command_reaches_its_actuator_alone():
 
 def test_each_goes_on_from_its_own_snapshot():
     """What is shown first is of the instant it goes on from, and the rest is the same."""
-    rows, transport = make_rows(), make_transport()
+    transport = make_transport()
+    rows = make_rows(transport)
     transport.join(rows)
     transport.receive(rows)
     then, snapshots = said(rows), transport.snapshots()
@@ -105,7 +109,8 @@ def test_each_goes_on_from_its_own_snapshot():
     for _ in range(3):
         transport.receive(rows)
         later.append(said(rows))
-    other, fresh = make_transport(), make_rows()
+    other = make_transport()
+    fresh = make_rows(other)
     other.join(fresh)
     other.restore(1, snapshots, fresh)
     assert said(fresh) == then
@@ -120,7 +125,8 @@ def test_each_goes_on_from_its_own_snapshot():
 def test_a_second_run_begins_as_the_first():
     """What was commanded and tuned in the first is forgotten."""
     group = make_group()
-    rows, transport = make_rows(), make_transport(group=group)
+    transport = make_transport(group=group)
+    rows = make_rows(transport)
     runs = []
     for _ in range(2):
         transport.join(rows)

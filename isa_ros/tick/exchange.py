@@ -1,11 +1,12 @@
-"""Rows that surroundings, actuators, controllers and recorder exchange at a tick."""
+"""Rows that surroundings, actuators and controllers exchange at a tick; who carries and takes."""
 
 from collections.abc import Mapping, Sequence
-from typing import Protocol
+from typing import NamedTuple, Protocol
 
+from isa_ros.actuator.group import ActuatorGroup
+from isa_ros.actuator.rows import memory_of
 from isa_ros.core.record import floats
-from isa_ros.core.signals import COMMAND, LOAD_PORT, LOAD_REPLY, Records, SAMPLE
-from isa_ros.run.packing import Shown
+from isa_ros.core.signals import COMMAND, LOAD_PORT, Records
 from isa_ros.surroundings.surroundings import Surroundings
 import numpy as np
 
@@ -13,32 +14,53 @@ IDLE_S = 0.005
 """Host time between two checks for requests while a run is paused."""
 
 
+class Shown(NamedTuple):
+    """The rows that the messages are packed from; the same memory over a whole run."""
+
+    samples: Records
+    """`SAMPLE`, (n,)."""
+    applied: Records
+    """`COMMAND` that took effect at the tick's start, kinds 0 without one, (n,)."""
+    supplies: Records
+    """`SUPPLY_SAMPLE`, (m,)."""
+    body: Records | None
+    """Sample of the body, (1,), a record of floats; None: no body."""
+    sent: Records | None = None
+    """`COMMAND` handed to the links at the tick's start, (n,); None: no links."""
+
+
 class Rows:
     """
     The memory of one run's exchange, a row per actuator, (n_actuators,) each.
 
-    Overwritten at every tick; copy rows to keep them.
+    Overwritten at every tick; copy rows to keep them. Those that actuators write are
+    the rows of their ``group`` in this process; None: the actuators are in others.
     """
 
-    def __init__(self, n_actuators: int, surroundings: Surroundings) -> None:
+    def __init__(
+            self, n_actuators: int, surroundings: Surroundings,
+            group: ActuatorGroup | None = None) -> None:
+        written = memory_of(n_actuators) if group is None else group
         self.ports: Records = np.zeros(n_actuators, LOAD_PORT)
         """Boundary values of the tick, from the surroundings to the actuators."""
         self.commands: Records = np.zeros(n_actuators, COMMAND)
         """Commands that take effect at the tick's start."""
-        self.replies: Records = np.zeros(n_actuators, LOAD_REPLY)
+        self.replies: Records = written.replies
         """Results of the tick, from the actuators to the surroundings."""
-        self.samples: Records = np.zeros(n_actuators, SAMPLE)
+        self.samples: Records = written.observed
         """
         Samples at the tick's start; once the actuators have answered, at its end.
 
         Behind a link the newest that has arrived.
         """
-        self.applied: Records = np.zeros(n_actuators, COMMAND)
+        self.applied: Records = written.applied
         """Commands that took effect in the last tick; kinds 0 without one."""
-        self.sent: Records = np.zeros(n_actuators, COMMAND)
+        self.sent: Records = written.sent
         """Commands handed to the links at the last tick's start; kinds 0 without one."""
         self.tuned: Mapping[int, Mapping[str, float]] = {}
         """Parameters that changed at the start of the last tick, SI, by row and name."""
+        self.tuned_supplies: Mapping[str, float] = {}
+        """Those of the supplies, by SUPPLY.KEY."""
         self.changes: Mapping[int, Mapping[str, float]] = {}
         """Parameters that faults change at the tick's start, by row and name."""
         self.requests: Records = np.zeros(n_actuators, COMMAND)
@@ -53,10 +75,26 @@ class Rows:
         """The rows that the messages are packed from."""
         self.reply_values, self.sample_values = floats(self.replies), floats(self.samples)
         """The same memory as plain floats."""
+        self._command_words = self.commands.view(np.uint64)
+        self._request_words = self.requests.view(np.uint64)
+
+    def take_requests(self) -> None:
+        """Make the requests the commands of this tick, and begin with no requests."""
+        self._command_words[:] = self._request_words
+        self._request_words[:] = 0
+
+    def clear_requests(self) -> None:
+        """Forget the requests."""
+        self._request_words[:] = 0
 
 
 class Transport(Protocol):
     """Connection to the actuators and controllers, in this process or in others."""
+
+    @property
+    def group(self) -> ActuatorGroup | None:
+        """Return the actuators if they are in this process, for `Rows`."""
+        ...
 
     def join(self, rows: Rows) -> None:
         """
@@ -131,18 +169,20 @@ class Transport(Protocol):
         ...
 
 
-class Recorder(Protocol):
-    """Receives every sample of a run, in order of time."""
+class RowSink:
+    """Takes the rows of a run at each instant; override `take`, and other methods as needed."""
 
-    def write_tick(
-            self, t_ns: int, sequence: int, messages: Sequence[tuple[int, bytes]]) -> None:
-        """
-        Append one sample: (index into the sorted topics, CDR) with ascending index.
+    def take_time(self, tick: int) -> None:
+        """Take the time of the instant before ``tick``, which the run computes next."""
 
-        Raises
-        ------
-        RunError
-            The sample cannot be written, for example because the disk is full.
+    def take(self, tick: int, rows: Rows) -> None:
+        """Take the rows before ``tick``, which the next tick overwrites."""
 
-        """
-        ...
+    def add_event(self, tick: int, text: str) -> None:
+        """Take an event before ``tick``: a pause, a step, a reset."""
+
+    def record(self) -> None:
+        """Finish with the last rows, while the actuators compute the next ones."""
+
+    def end(self) -> None:
+        """Finish with the last rows of the run."""

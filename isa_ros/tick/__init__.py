@@ -1,0 +1,1 @@
+"""The tick of a run: rows between actuators, surroundings and controllers."""

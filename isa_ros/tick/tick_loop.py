@@ -1,0 +1,187 @@
+"""
+The tick of a run, over actuators and controllers in this process or in others; no messages.
+
+Tick k advances every actuator from t_k to t_k+1 = (k + 1) step_ns, then the surroundings.
+At the same time controllers compute with the state of t_k; their commands take effect at t_k+1.
+The rows of t_k are recorded while the actuators compute tick k: a recorder faster than the
+actuators does not lengthen a tick. N ticks give N + 1 samples, including the state at t = 0.
+"""
+
+from collections.abc import Callable, Sequence
+
+from isa_ros.actuator.setpoint_range import RequestRange
+from isa_ros.controller import merge_requests
+from isa_ros.core.saved_state import RunState
+from isa_ros.core.signals import Records
+from isa_ros.surroundings.surroundings import Surroundings
+from isa_ros.tick.exchange import Rows, RowSink, Transport
+from isa_ros.tick.source import Source
+
+BEFORE_TICKS = 'between ticks'
+"""Phase of the host time between two ticks."""
+
+
+def ignore(line: str) -> None:
+    """Do nothing with a line."""
+
+
+class TickLoop:
+    """
+    Advances a run tick by tick and gives its rows to ``sinks`` at each instant.
+
+    ``request_range`` refuses or limits the requests of controllers (None: without controllers)
+    and reports by ``warn``; ``lap`` measures the host time of each phase of a tick.
+    """
+
+    def __init__(
+            self, step_ns: int, transport: Transport, surroundings: Surroundings, rows: Rows,
+            source: Source, *, request_range: RequestRange | None = None,
+            warn: Callable[[str], object] = ignore,
+            lap: Callable[[str], None] = ignore) -> None:
+        self._step_ns = step_ns
+        self.transport = transport
+        """Connection to actuators and controllers."""
+        self._surroundings = surroundings
+        self._beginning = surroundings.snapshot()
+        self.rows = rows
+        """The rows that are exchanged."""
+        self.source = source
+        """Commands and changes of parameters by tick."""
+        self.sinks: Sequence[RowSink] = ()
+        """Take the rows of each instant."""
+        self.ticks = 0
+        """Number of finished ticks: t = ticks step_ns."""
+        self._request_range, self._warn, self._lap = request_range, warn, lap
+
+    @property
+    def t_ns(self) -> int:
+        """Return the simulated time reached."""
+        return self.ticks * self._step_ns
+
+    def join(self) -> None:
+        """Put all at t = 0; tuned values stay. Raises as `Transport.join`."""
+        self.ticks = 0
+        self.rows.clear_requests()
+        self._surroundings.restart(self._beginning)
+        self.transport.join(self.rows)
+
+    def begin(self, state: RunState | None = None) -> None:
+        """After `join`, give out the first instant: t = 0, or that of a saved state."""
+        if state is not None:
+            self.restore(state)
+        for sink in self.sinks:
+            sink.take_time(self.ticks)
+        self.transport.begin()
+        for sink in self.sinks:
+            sink.take(self.ticks, self.rows)
+
+    def advance(self, given: Records | None = None) -> None:
+        """
+        Advance one tick; ``given`` are `COMMAND` rows instead of those of the source.
+
+        Raises
+        ------
+        RunError
+            A participant or the recorder failed or did not answer in time.
+        SimulationDiverged
+            A state is no longer finite.
+
+        """
+        rows, tick = self.rows, self.ticks
+        self._lap(BEFORE_TICKS)
+        self._command(given)
+        self._surroundings.ports(rows.ports)
+        self._lap('commands and ports')
+        for sink in self.sinks:
+            sink.take_time(tick + 1)
+        self.transport.send(tick, rows)
+        self._lap('clock and step out')
+        for sink in self.sinks:
+            sink.record()
+        self._lap('recorder')
+        self.transport.receive(rows)
+        if rows.tuned:
+            self.source.take_tuned(rows.tuned)
+        self._lap('actuators')
+        self._surroundings.advance(rows.replies)
+        rows.tuned_supplies = self._surroundings.tuned
+        self._lap('body and supplies')
+        self.ticks = tick + 1
+        for sink in self.sinks:
+            sink.take(self.ticks, rows)
+        self._lap('messages')
+
+    def _command(self, given: Records | None) -> None:
+        """
+        Fill the commands of this tick, and change the parameters that the source changes.
+
+        Given rows, or else the source, win over what the controllers requested in the last tick.
+        """
+        rows, tick = self.rows, self.ticks
+        rows.take_requests()
+        if self._request_range is not None:
+            for line in self._request_range.admit(self.t_ns, rows.commands):
+                self._warn(line)
+        if given is None:
+            self.source.commands(tick, rows.commands)
+        else:
+            merge_requests(given, rows.commands)
+        for text in self.source.events(tick):
+            self.add_event(text)
+        changes = self.source.changes(tick)
+        rows.changes = {} if changes is None else changes.actuators
+        if changes is not None:
+            self._surroundings.tune(changes.supplies)
+
+    def add_event(self, text: str) -> None:
+        """Give out an event at this instant."""
+        for sink in self.sinks:
+            sink.add_event(self.ticks, text)
+
+    def finish(self) -> None:
+        """Give the last samples to the source, and out what happened since the last tick."""
+        for text in self.source.end(self.ticks, self.rows.samples):
+            self.add_event(text)
+
+    def end(self) -> None:
+        """Let the sinks finish, however the run ended."""
+        for sink in self.sinks:
+            sink.end()
+
+    def run(self, n_ticks: int, state: RunState | None = None) -> None:
+        """After `join`, advance to t = n_ticks step_ns; raises as `advance`."""
+        self.begin(state)
+        while self.ticks < n_ticks:
+            self.advance()
+        self.finish()
+        self.end()
+
+    def save(self) -> RunState:
+        """
+        Return the complete state of the run.
+
+        Raises
+        ------
+        RunError
+            A participant failed, or cannot be saved.
+
+        """
+        return RunState(
+            tick=self.ticks, load=self._surroundings.snapshot(),
+            participants=self.transport.snapshots(), requests=self.rows.requests.tobytes())
+
+    def restore(self, state: RunState) -> None:
+        """
+        Continue from a `save` of the same configuration.
+
+        Raises
+        ------
+        ConfigError
+            The state is not one of this configuration.
+
+        """
+        requests = state.rows_of_requests(len(self.rows.requests))
+        self.transport.restore(state.tick, state.participants, self.rows)
+        self._surroundings.restore(state.load)
+        self.rows.requests[:] = requests
+        self.ticks = state.tick
