@@ -15,7 +15,6 @@ from dataclasses import dataclass
 import sys
 
 from isa_ros.config.paths import find, SCENARIOS
-from isa_ros.config.runs.leg_config import LegConfig
 from isa_ros.config.text.yaml_text import read, Tree
 from isa_ros.core.kernel import kernel
 from isa_ros.core.signals import COMMAND, LOAD_PORT
@@ -78,9 +77,9 @@ def simulation(ground: str, step_ms: float, height: float) -> Simulation:
 def peaks(ground: str, step_ms: float, height: float) -> Peaks:
     """Return the `Peaks` of a drop."""
     drop = simulation(ground, step_ms, height)
-    run, body = drop.scenario.run, drop.surroundings.body
-    assert isinstance(body, Leg) and isinstance(run.body, LegConfig)
-    legs, knee = leg_record(run.body.sheet), body.rows[-1]
+    run, (body,) = drop.scenario.run, drop.surroundings.bodies.values()
+    assert isinstance(body, Leg) and run.leg is not None
+    legs, knee = leg_record(run.leg.sheet), body.rows[-1]
     ports, commands = (np.zeros(len(run.actuators), kind) for kind in (LOAD_PORT, COMMAND))
     found = Peaks(0.0, 0.0, 0.0)
     for tick in range(round(END_S * NS_PER_SECOND / run.step_ns)):

@@ -27,7 +27,7 @@ def run_of(
     if supplies is None:
         supplies = [SupplyConfig('supply', CONSTANT, tuple(own.name for own in actuators))]
     return RunConfig(
-        'rig', 1_000_000, 120_000, 5.0, tuple(supplies), actuators, None, tuple(controllers),
+        'rig', 1_000_000, 120_000, 5.0, tuple(supplies), actuators, (), tuple(controllers),
         'rig.yaml')
 
 

@@ -1,18 +1,17 @@
 """Creates the actuators of a run and their surroundings from its configuration."""
 
+from collections.abc import Mapping
+from types import MappingProxyType
+
 from isa_ros.actuator.actuator import Timing
 from isa_ros.actuator.group import ActuatorGroup
 from isa_ros.actuator.setpoint_range import RequestRange, SetpointRange
-from isa_ros.config.runs.leg_config import LegConfig
+from isa_ros.config.runs.body_config import BodyFactory, Made
 from isa_ros.config.runs.run_config import RunConfig
 from isa_ros.core.signals import START
-from isa_ros.core.timebase import NS_PER_SECOND
-from isa_ros.core.units import MILLI
 from isa_ros.loads.sheets import static_force
 from isa_ros.plant.plant import plant_record
 from isa_ros.plant.servo_valve import largest_flow_slope
-from isa_ros.surroundings.bodies.leg.leg import Leg, Pose
-from isa_ros.surroundings.body import Body
 from isa_ros.surroundings.surroundings import Feed, Surroundings
 import numpy as np
 
@@ -34,16 +33,20 @@ def request_range_of(run: RunConfig) -> RequestRange:
         for actuator in run.actuators])
 
 
-def surroundings_of(run: RunConfig) -> Surroundings:
+def surroundings_of(
+        run: RunConfig, factories: Mapping[str, BodyFactory] = MappingProxyType({})
+        ) -> Surroundings:
     """
-    Return the supplies of a run and the body that its actuators move, in their state at t = 0.
+    Return the supplies of a run and the bodies that its actuators move, in their state at t = 0.
+
+    ``factories`` by name make the bodies that are external.
 
     Raises
     ------
     ParameterError
         A supply is too small for the length of the tick.
     ConfigError
-        The initial pose of the body is not possible.
+        The initial pose of a body is not possible, or an external one has no factory.
 
     """
     plants = [plant_record(actuator.sheet.plant)[0] for actuator in run.actuators]
@@ -58,19 +61,7 @@ def surroundings_of(run: RunConfig) -> Surroundings:
     starts['position'] = [actuator.initial_position for actuator in run.actuators]
     starts['force'] = [static_force(actuator.load) for actuator in run.actuators]
     return Surroundings(
-        feeds, _body(run), starts, [plant.mechanics.k_s for plant in plants], run.step_ns)
-
-
-def _body(run: RunConfig) -> Body | None:
-    """Return the body of a run; add new kinds of bodies here."""
-    if isinstance(run.body, LegConfig):
-        return _leg(run, run.body)
-    return None
-
-
-def _leg(run: RunConfig, leg: LegConfig) -> Leg:
-    start = leg.start
-    pose = Pose(haa=start.angle('haa'), hfe=start.angle('hfe'), kfe=start.angle('kfe'),
-                foot_height=start.foot_height_mm * MILLI)
-    return Leg(leg.sheet, pose, run.step_ns, [run.index(name) for _, name in leg.joints],
-               release_ns=round(start.release_s * NS_PER_SECOND), units=leg.units(run.step_ns, run.seed))
+        feeds, {own.name: own.body(Made(
+            run.step_ns, run.seed, [run.index(name) for _, name in own.joints],
+            factories.get(own.name))) for own in run.bodies},
+        starts, [plant.mechanics.k_s for plant in plants], run.step_ns)

@@ -2,7 +2,6 @@
 
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import fields
-import re
 from types import MappingProxyType
 from typing import Any, get_type_hints, NamedTuple
 
@@ -149,11 +148,17 @@ def _title(run: RunConfig, key: str, parameters: Parameters) -> tuple[str, str]:
         name, _, part = name.partition('.')
         if part == 'load':
             return key, f': {kind_of(parameters, LocalLoad)}'
-        own = run.actuator(name)
-        return f'{head}.{name}.parameters', f': {own.model}, preset {own.preset}'
-    if key == 'body.sheet' and run.leg is not None:
-        return 'leg.parameters', f': {run.leg.model}'
-    return re.sub('^body', 'leg', key).removesuffix('.sheet'), ''
+        actuator = run.actuator(name)
+        return (f'{head}.{name}.parameters',
+                f': {actuator.model}, preset {actuator.preset}')
+    for body in run.bodies:
+        of_body = f'bodies.{body.name}.' if head == 'bodies' else 'body.'
+        if key.startswith(of_body):
+            own = key.removeprefix(of_body)
+            if own == 'sheet':
+                return f'{body.label}.parameters', f': {body.model}'
+            return f'{body.label}.{own}'.removesuffix('.sheet'), ''
+    return key, ''
 
 
 def _is_among(key: str, changes: Sequence[str]) -> bool:

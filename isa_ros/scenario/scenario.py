@@ -14,8 +14,7 @@ from typing import Any
 
 from isa_ros.config.models.catalogue import actuator_model
 from isa_ros.config.models.own_load import own_load, refuse_beyond_stops
-from isa_ros.config.runs.coarse_ticks import coarse_ticks
-from isa_ros.config.runs.leg_config import leg_start, refuse_reach, refuse_start
+from isa_ros.config.runs.body_config import BodyConfig
 from isa_ros.config.runs.run_config import ActuatorConfig, RunConfig
 from isa_ros.config.runs.tick_grid import ticks_in
 from isa_ros.config.text.changes import changed, Changes, SCENARIO
@@ -62,7 +61,9 @@ class Scenario:
     @property
     def warnings(self) -> tuple[str, ...]:
         """Return lines to print before the run."""
-        return (*self.limited, *coarse_ticks(self.run))
+        return (*self.limited, *(
+            f'{self.run.source}: {line}' for body in self.run.bodies
+            for line in body.warnings(self.run.step_ns)))
 
     @property
     def duration_s(self) -> float | None:
@@ -186,10 +187,10 @@ def scenario_of(text: str, run: RunConfig, name: str = 'scenario.yaml') -> Scena
 def read_scenario(tree: Tree, place: Place, run: RunConfig) -> Scenario:
     """Return the scenario of a file's tree; as `load_scenario`."""
     refuse_unknown(
-        tree, ('name', 'figure', 'duration_s', BEYOND, 'leg', 'loads', 'tracks', 'faults'), place)
+        tree, ('name', 'figure', 'duration_s', BEYOND, 'leg', 'bodies', 'loads', 'tracks', 'faults'), place)
     name = name_of(tree, 'name', place)
     n_ticks = _duration(tree.get('duration_s'), run.step_ns, f'{place}: duration_s')
-    run = _with_loads(_with_leg(run, tree, place), tree, place)
+    run = _with_loads(_with_starts(run, tree, place), tree, place)
     sections = section_at(tree.get('tracks', {}), place / 'tracks')
     accepts_beyond = _accepts_beyond(tree, place)
     tracks: list[Track] = []
@@ -244,18 +245,24 @@ def _refuse_stranger(name: str, run: RunConfig, place: Place) -> None:
         raise ConfigError(f'{place} is unknown: {error}') from error
 
 
-def _with_leg(run: RunConfig, tree: Tree, place: Place) -> RunConfig:
-    if 'leg' not in tree:
-        return run
-    below = place / 'leg'
-    if run.leg is None:
-        raise ConfigError(f'{below} is not used: {run.source} has no leg')
-    start = leg_start(section_at(tree['leg'], below), below, run.leg.start)
-    refuse_start(start, run.leg.sheet, run.step_ns, below)
-    run = run.with_start(start)
-    for joint, actuator in run.leg.joints if run.leg else ():
-        if run.leg is not None:
-            refuse_reach(run.leg, joint, run.actuator(actuator).sheet, str(below))
+def _with_starts(run: RunConfig, tree: Tree, place: Place) -> RunConfig:
+    """Return the run with the starts of bodies: of ``leg``, the only one, or by name."""
+    starts: list[tuple[BodyConfig, Place, Any]] = []
+    if 'leg' in tree:
+        if run.leg is None:
+            raise ConfigError(f'{place / "leg"} is not used: {run.source} has no leg')
+        starts.append((run.leg, place / 'leg', tree['leg']))
+    for name, section in section_at(tree.get('bodies', {}), place / 'bodies').items():
+        below, body = place / 'bodies' / name, run.body(name)
+        if body is None:
+            names = [own.name for own in run.bodies]
+            raise ConfigError(f'{below} is not a body; {alternatives(name, names)}')
+        starts.append((body, below, section))
+    for body, below, section in starts:
+        body = body.started(section_at(section, below), below, run.step_ns)
+        run = run.with_body(body)
+        for joint, actuator in body.joints:
+            body.refuse_reach(joint, run.actuator(actuator).sheet, str(below))
     return run
 
 
@@ -266,8 +273,9 @@ def _with_loads(run: RunConfig, tree: Tree, place: Place) -> RunConfig:
         below = place / 'loads' / name
         _refuse_stranger(name, run, below)
         actuator = run.actuator(name)
-        if actuator.load is None:
-            raise ConfigError(f'{below} is not used: the load of {name} is the leg')
+        body = run.body_of(name)
+        if body is not None:
+            raise ConfigError(f'{below} is not used: the load of {name} is {body.called}')
         model = actuator_model(actuator.model, f'{run.source}: actuators.{name}.model')
         load = own_load(
             section_at(section, below), below, model, actuator.sheet, run.span_of(name))

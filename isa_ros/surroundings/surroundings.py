@@ -1,5 +1,5 @@
 """
-Surroundings of the actuators of a run: the supplies that feed them and the body they move.
+Surroundings of the actuators of a run: the supplies that feed them and the bodies they move.
 
 They are the other side of the load port (equation L1) and independent of messages and of the
 configuration; `isa_ros.config.assembly` makes them from a run.
@@ -32,18 +32,19 @@ class Feed(NamedTuple):
 
 class Surroundings:
     """
-    Supplies and body over a run; in a run without a body every actuator has its own load.
+    Supplies and bodies over a run; an actuator that moves no body has its own load.
 
     ``starts`` are `START` rows, (n_actuators,), with position and force at t = 0 of the
-    actuators that do not move the body; ``sensor_stiffness`` is that of all actuators, N/m or
+    actuators that do not move a body; ``sensor_stiffness`` is that of all actuators, N/m or
     Nm/rad, (n_actuators,).
     """
 
     def __init__(
-            self, feeds: Sequence[Feed], body: Body | None, starts: Records,
+            self, feeds: Sequence[Feed], bodies: Mapping[str, Body], starts: Records,
             sensor_stiffness: Sequence[float], step_ns: int) -> None:
         self.feeds = tuple(feeds)
-        self.body = body
+        self.bodies = dict(bodies)
+        """By name, in the order of the run."""
         self.supplies: Records = np.zeros(len(feeds), SUPPLY_SAMPLE)
         """`SUPPLY_SAMPLE` of every supply at the end of the last tick; overwritten."""
         self._supplies = [
@@ -59,18 +60,23 @@ class Surroundings:
         self._rest = starts.copy()
         self._sensor_stiffness = sensor_stiffness
 
+    @property
+    def body(self) -> Body | None:
+        """Return the first body; None: there is none."""
+        return next(iter(self.bodies.values()), None)
+
     def starts(self) -> Records:
         """
         Return the `START` of every actuator, shape (n_actuators,).
 
-        An actuator that moves the body carries it: its force deflects the sensor, so the
+        An actuator that moves a body carries it: its force deflects the sensor, so the
         position of piston or rotor differs from the load's by force over stiffness (S1).
         """
         starts = self._rest.copy()
         self._fill_pressures(starts)
-        if self.body is not None:
-            self.body.starts(starts)
-            for row in self.body.rows:
+        for body in self.bodies.values():
+            body.starts(starts)
+            for row in body.rows:
                 starts[row]['position'] += starts[row]['force'] / self._sensor_stiffness[row]
         return starts
 
@@ -83,8 +89,8 @@ class Surroundings:
         if self._values.latch():
             self._change_supplies()
         self._fill_pressures(ports)
-        if self.body is not None:
-            self.body.ports(ports)
+        for body in self.bodies.values():
+            body.ports(ports)
 
     def _fill_pressures(self, rows: Records) -> None:
         for supply, fed in zip(self._supplies, self._rows):
@@ -132,16 +138,16 @@ class Surroundings:
 
     def advance(self, replies: Records) -> None:
         """
-        Advance body and supplies by one tick with the `LOAD_REPLY` of every actuator.
+        Advance bodies and supplies by one tick with the `LOAD_REPLY` of every actuator.
 
         Raises
         ------
         SimulationDiverged
-            A state of the body is no longer finite.
+            A state of a body is no longer finite.
 
         """
-        if self.body is not None:
-            self.body.advance(replies)
+        for body in self.bodies.values():
+            body.advance(replies)
         drawn, returned = replies['supply_volume'].tolist(), replies['return_volume'].tolist()
         for supply, feed in zip(self._supplies, self.feeds):
             supply.advance(_sum(drawn, feed.rows), _sum(returned, feed.rows))
@@ -155,7 +161,7 @@ class Surroundings:
         RunError
             The pressure or flow of a supply is not finite.
         SimulationDiverged
-            A number in the state of the body is not finite.
+            A number in the state of a body is not finite.
 
         """
         for k, feed in enumerate(self.feeds):
@@ -163,8 +169,8 @@ class Surroundings:
             if broken is not None:
                 raise RunError(
                     f'{feed.name}: {broken[0]} = {broken[1]}, must be finite to be saved')
-        return self.supplies.tobytes() + self._values.snapshot() + (
-            b'' if self.body is None else self.body.snapshot())
+        return b''.join([self.supplies.tobytes(), self._values.snapshot(),
+                         *(body.snapshot() for body in self.bodies.values())])
 
     def restore(self, snapshot: bytes) -> None:
         """
@@ -178,7 +184,8 @@ class Surroundings:
         """
         supplies_end = self.supplies.nbytes
         values_end = supplies_end + self._values.nbytes
-        expected = values_end + (0 if self.body is None else len(self.body.snapshot()))
+        sizes = [len(body.snapshot()) for body in self.bodies.values()]
+        expected = values_end + sum(sizes)
         if len(snapshot) != expected:
             raise ConfigError(
                 f'saved state of the surroundings has {len(snapshot)} bytes, must have {expected}')
@@ -189,8 +196,10 @@ class Surroundings:
         list(self._sheets(self._values.accepted))   # refuses what cannot be
         self._change_supplies()
         self.supplies[:] = supplies
-        if self.body is not None:
-            self.body.restore(snapshot[values_end:])
+        at = values_end
+        for body, size in zip(self.bodies.values(), sizes):
+            body.restore(snapshot[at:at + size])
+            at += size
 
     def restart(self, beginning: bytes) -> None:
         """Return to the `snapshot` of t = 0; tuned values stay, in force from the first tick."""

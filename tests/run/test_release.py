@@ -39,8 +39,8 @@ class Kept:
 def leg(release_s: float) -> RunConfig:
     """Return the shipped leg, hanging 0.1 m above the ground until its release."""
     run = load_run(CONFIG / 'leg.yaml')
-    start = replace(run.body.start, foot_height_mm=100.0, release_s=release_s)
-    return replace(run, body=replace(run.body, start=start))
+    start = replace(run.leg.start, foot_height_mm=100.0, release_s=release_s)
+    return run.with_body(replace(run.leg, start=start))
 
 
 def commands(tick: int, rows: Records) -> None:

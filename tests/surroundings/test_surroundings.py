@@ -20,7 +20,8 @@ from tests.runs import ACCUMULATOR, CONSTANT, hip_and_knee, RETURN_LINE, run_of
 from tests.sheets import setpoint
 
 LEG = load_run(find('leg.yaml', CONFIG))
-HELD = LEG.with_start(replace(LEG.leg.start, release_s=0.03, foot_height_mm=50.0))
+HELD = LEG.with_body(replace(LEG.leg, start=replace(
+    LEG.leg.start, release_s=0.03, foot_height_mm=50.0)))
 """The leg of which the slider is held for 30 ticks."""
 
 RETURNING = ConstantSupply(
@@ -54,8 +55,7 @@ def moved(surroundings: Surroundings, given: np.ndarray, ticks: int) -> list[byt
         surroundings.ports(ports)
         surroundings.advance(given)
         shown += [ports.tobytes(), surroundings.supplies.tobytes()]
-        if surroundings.body is not None:
-            shown.append(surroundings.body.sample.tobytes())
+        shown += [body.sample.tobytes() for body in surroundings.bodies.values()]
     return shown
 
 
@@ -66,7 +66,7 @@ def test_restored_surroundings_go_on_byte_for_byte(leg):
     moved(surroundings, given, 20)
     saved, supplies = surroundings.snapshot(), surroundings.supplies.tobytes()
     rest = moved(surroundings, given, 40)
-    assert not surroundings.body.is_held
+    assert not surroundings.bodies['body'].is_held
     other = surroundings_of(leg)
     for again in (surroundings, other):
         again.restore(saved)
@@ -90,9 +90,9 @@ def test_what_the_surroundings_show_at_the_start(leg):
     assert surroundings.supplies['pressure'].tolist() == [20.7e6, 20.7e6]
     assert surroundings.supplies['return_pressure'].tolist() == [0.0, 0.5e6]
     start = leg.leg.start
-    assert surroundings.body.sample['position'][0].tolist() == [
+    assert surroundings.bodies['body'].sample['position'][0].tolist() == [
         start.angle(joint) for joint in ('haa', 'hfe', 'kfe')]
-    assert surroundings_of(hip_and_knee()).body is None
+    assert surroundings_of(hip_and_knee()).bodies == {}
 
 
 def test_an_actuator_stands_beside_the_body_by_the_strain_of_its_sensor():
@@ -101,7 +101,7 @@ def test_an_actuator_stands_beside_the_body_by_the_strain_of_its_sensor():
     run = fed_by(run, SupplyConfig('supply', CONSTANT, tuple(a.name for a in run.actuators)))
     surroundings = surroundings_of(run)
     starts = surroundings.starts()
-    body = surroundings.body
+    body = surroundings.bodies['body']
     assert starts['position'][0] == run.actuators[0].initial_position
     assert starts['force'][1:].tolist() == list(body.actuator_forces)
     for row in (1, 2, 3):
@@ -141,7 +141,7 @@ def test_any_body_is_moved_by_its_own_rows():
     feed = Feed('supply', CONSTANT, [0, 1, 2], 1e-12)
 
     def made() -> Surroundings:
-        return Surroundings([feed], Cart(1), starts, [1e6, 2e6, 4e6], 1_000_000)
+        return Surroundings([feed], {'cart': Cart(1)}, starts, [1e6, 2e6, 4e6], 1_000_000)
     surroundings = made()
     assert surroundings.starts()['position'].tolist() == [0.1, 0.25 + 100.0 / 2e6, 0.1]
     assert starts['position'].tolist() == [0.1] * 3
@@ -248,7 +248,7 @@ def test_a_supply_that_is_not_finite_is_neither_written_nor_read(leg: RunConfig,
 
 @pytest.mark.parametrize('value', [np.nan, -np.inf])
 def test_a_leg_that_is_not_finite_is_neither_written_nor_read(leg: RunConfig, value: float):
-    surroundings, body = surroundings_of(leg), surroundings_of(leg).body
+    surroundings, body = surroundings_of(leg), surroundings_of(leg).bodies['body']
     saved = bytearray(body.snapshot())
     saved[16:24] = np.float64(value).tobytes()      # behind its time and the first number
     field = ContinuousState._fields[1]
@@ -259,4 +259,4 @@ def test_a_leg_that_is_not_finite_is_neither_written_nor_read(leg: RunConfig, va
         body.snapshot()
     time = (1).to_bytes(8, 'little')
     with pytest.raises(ConfigError, match='^leg: saved state at t = 1 ns, must be a multiple'):
-        surroundings.body.restore(time + surroundings.body.snapshot()[8:])
+        surroundings.bodies['body'].restore(time + surroundings.bodies['body'].snapshot()[8:])

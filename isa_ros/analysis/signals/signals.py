@@ -15,7 +15,7 @@ from isa_ros.core.fields import units_of
 from isa_ros.core.signals import SAMPLE_FIELDS
 from isa_ros.errors import BagError
 from isa_ros.run.body_messages import by_field
-from isa_ros.scripting.result import BODY, Result
+from isa_ros.scripting.result import Result
 from isa_ros.surroundings.supply import SUPPLY_FIELDS
 import numpy as np
 from numpy.typing import NDArray
@@ -86,8 +86,9 @@ class Signals(Mapping[str, Values]):
     def unit(self, name: str) -> str:
         """Return the unit of a signal."""
         source, _, field = name.partition('.')
-        if source == BODY:
-            return units_of(() if self.run.body is None else self.run.body.fields)[field]
+        body = self.run.body(source)
+        if body is not None:
+            return units_of(body.fields)[field]
         if any(supply.name == source for supply in self.run.supplies):
             return units_of(SUPPLY_FIELDS)[field]
         return units_of(SAMPLE_FIELDS, self.run.actuator(source).sheet.is_rotary)[field]
@@ -141,14 +142,14 @@ def _named(run: RunConfig, traces: Mapping[str, Trace]) -> Iterator[tuple[str, S
             trace = traces.get(f'/coordinator/{supply.name}_{name}')
             if trace is not None:
                 yield f'{supply.name}.{name}', _signal(trace, 'fluid_pressure')
-    if run.body is not None:
-        fields = {field.name: field for field in run.body.fields}
-        for message in run.body.messages(run.step_ns):
+    for body in run.bodies:
+        fields = {field.name: field for field in body.fields}
+        for message in body.messages(run.step_ns):
             trace = traces.get(message.topic)
             if trace is not None:
                 for name, paths in by_field(message):
-                    yield f'{BODY}.{name}', (_vector(trace, paths) if fields[name].shape
-                                             else _signal(trace, paths[0]))
+                    yield f'{body.name}.{name}', (_vector(trace, paths) if fields[name].shape
+                                                  else _signal(trace, paths[0]))
 
 
 def _vector(trace: Trace, paths: Sequence[str]) -> Signal:

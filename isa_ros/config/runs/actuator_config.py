@@ -11,7 +11,7 @@ from isa_ros.config.models.catalogue import actuator_model, DEFAULT_PRESET, Mode
 from isa_ros.config.models.links import LINK, link_of, LinkLayer
 from isa_ros.config.models.own_load import load_section, refuse_beyond_stops
 from isa_ros.config.models.scaling import scaled_sheet
-from isa_ros.config.runs.leg_config import LegConfig, refuse_reach
+from isa_ros.config.runs.body_config import BodyConfig
 from isa_ros.config.text.keys import (
     AnyValue, Choice, InText, Key, Layer, Names, number, Plain, Table)
 from isa_ros.config.text.parameter_sets import build, build_one_of, members
@@ -82,9 +82,8 @@ class Around(NamedTuple):
     """Of all actuators."""
     span: float
     """Supply pressure above return pressure, Pa."""
-    leg: LegConfig | None
-    joint: str | None
-    """The joint of the leg that it moves."""
+    moved: tuple[BodyConfig, str] | None
+    """The body and its joint that it moves."""
     is_checked: bool
     """False for a text that was checked when it was written, perhaps by another version."""
 
@@ -105,8 +104,8 @@ def actuator_of(
     """
     sheet, layers, model = _sheet(values, place, around)
     load, load_side = None, LoadSide()
-    if around.joint is not None and around.leg is not None:
-        position = _joint_position(values, place, around.leg, around.joint, sheet)
+    if around.moved is not None:
+        position = _joint_position(values, place, *around.moved, sheet)
     else:
         position = _initial_position(values, place, sheet)
         own = _load_section(values, place, model, sheet, around)
@@ -150,19 +149,24 @@ def _sheet(
 
 
 def _joint_position(
-        values: dict[str, Any], place: Place, leg: LegConfig, joint: str,
+        values: dict[str, Any], place: Place, body: BodyConfig, joint: str,
         sheet: ActuatorSheet) -> float:
-    """Return where an actuator starts that moves a joint of the leg, m or rad."""
-    unused = ['load', 'initial_position_mm', 'initial_position_deg']
-    for key in unused if values['sheet'] is not None else [*unused, 'initial_position']:
+    """Return where an actuator starts that moves a joint of a body, m or rad."""
+    start = body.position_of(joint)
+    unused = ['load'] if start is None else [
+        'load', 'initial_position_mm', 'initial_position_deg',
+        *(['initial_position'] if values['sheet'] is None else [])]
+    for key in unused:
         if values[key] is not None:
             raise ConfigError(
-                f'{place / key} is not used: the actuator moves {joint} of the leg, '
-                f'which gives its load and start')
+                f'{place / key} is not used: the actuator moves {joint} of {body.called}, '
+                f'which gives its load{"" if start is None else " and start"}')
+    if start is None:
+        return _initial_position(values, place, sheet)
     if values['initial_position'] is not None:
         return values['initial_position']  # type: ignore[no-any-return]
-    refuse_reach(leg, joint, sheet, str(place))
-    return leg.position_of(joint)
+    body.refuse_reach(joint, sheet, str(place))
+    return start
 
 
 def _initial_position(values: dict[str, Any], place: Place, sheet: ActuatorSheet) -> float:

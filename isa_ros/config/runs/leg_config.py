@@ -1,12 +1,14 @@
 """A leg as the body of a run: its keys, its sheet, its actuators, its initial pose."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 import math
 from typing import Any, ClassVar
 
 from isa_ros.actuator.sheet import ActuatorSheet
 from isa_ros.config.models.catalogue import leg_section, material_section
+from isa_ros.config.runs.body_config import BODY, BodyConfig, Made
+from isa_ros.config.runs.coarse_ticks import coarse_ticks
 from isa_ros.config.runs.tick_grid import ticks_in
 from isa_ros.config.text.keys import (
     AnyValue, InText, Key, Layer, Name, Named, ParameterSet, Plain, Table)
@@ -16,10 +18,11 @@ from isa_ros.config.text.yaml_text import Tree
 from isa_ros.core.fields import Field
 from isa_ros.core.noise import noise_key
 from isa_ros.core.parameter import parameter, Parameters
+from isa_ros.core.timebase import NS_PER_SECOND
 from isa_ros.core.units import MILLI
 from isa_ros.errors import ConfigError
 from isa_ros.surroundings.bodies.leg.inertial import Imu
-from isa_ros.surroundings.bodies.leg.leg import sample_fields, Unit
+from isa_ros.surroundings.bodies.leg.leg import Leg, Pose, sample_fields, Unit
 from isa_ros.surroundings.bodies.leg.messages import leg_messages
 from isa_ros.surroundings.bodies.leg.sheet import JOINTS, LegSheet, linkage_record
 from isa_ros.surroundings.linkage import actuator_coordinate
@@ -50,44 +53,6 @@ class ImuConfig:
     sheet: Imu
 
 
-@dataclass(frozen=True)
-class LegConfig:
-    """
-    A leg as the body of a run.
-
-    Its sheet, the actuator of each joint, its initial pose, and its inertial units.
-    """
-
-    kind: ClassVar[str] = 'leg'
-
-    model: str
-    sheet: LegSheet
-    joints: tuple[tuple[str, str], ...]
-    """(joint, actuator) in the order of `JOINTS`."""
-    start: LegStart
-    imus: tuple[ImuConfig, ...] = ()
-
-    def position_of(self, joint: str) -> float:
-        """Return the position of a joint's actuator at the leg's start, m or rad  (L2)."""
-        linkage = linkage_record(getattr(self.sheet, joint))
-        return float(actuator_coordinate(self.start.angle(joint), linkage)[0])
-
-    def units(self, step_ns: int, seed: int) -> list[Unit]:
-        """Return the inertial units; ``seed`` is that of the run's noise."""
-        return [Unit(imu.name, imu.sheet, imu.sheet.period_ns(step_ns, imu.name),
-                     noise_key(seed, f'{imu.name}/imu')) for imu in self.imus]
-
-    @property
-    def fields(self) -> Sequence[Field]:
-        """Return the fields of its sample."""
-        return sample_fields([imu.name for imu in self.imus])
-
-    def messages(self, step_ns: int) -> Sequence[BodyMessage]:
-        """Return what is published of its sample."""
-        return leg_messages(
-            '/joint_states', '/coordinator/ground_contact', self.units(step_ns, seed=0))
-
-
 class _ImuKind(Table):
     """The keys of a unit, in a resolved text below ``sheet``."""
 
@@ -100,79 +65,118 @@ class _ImuKind(Table):
 
 _IMU = _ImuKind((Key('sheet', ParameterSet(Imu), 'the unit'),))
 
-LEG = Table((
-    Key('model', AnyValue('name'), 'the packaged leg', None, in_text=InText.ALWAYS),
-    Key('joints', Table(tuple(
-        Key(joint, Name(), f'the actuator that moves {joint}') for joint in JOINTS)),
-        'the actuator of each joint', of=lambda leg: dict(leg.joints)),
-    Key('ground', AnyValue('name'), 'the material under the foot', None, 'of the model',
-        in_text=InText.NEVER),
-    Key('start', ParameterSet(LegStart), 'pose at t = 0'),
-    Key('imus', Named(_IMU), 'inertial measurement units', {}),
-    Key('parameters', Layer(LegSheet), 'values that replace those of the model', {},
-        in_text=InText.NEVER),
-    Key('sheet', Layer(LegSheet), 'the whole sheet inline: of the model only the name is used',
-        None, in_text=InText.ONLY)))
 
-
-def leg_of(
-        values: dict[str, Any], place: Place, step_ns: int,
-        is_checked: bool) -> tuple[LegConfig, Section]:
+@dataclass(frozen=True, kw_only=True)
+class LegConfig(BodyConfig):
     """
-    Return a leg, and the section that its sheet was built from.
+    A leg as a body of a run.
 
-    ``values`` are those of `LEG`; ``is_checked`` as in `isa_ros.config.runs.actuator_config`.
-
-    Raises
-    ------
-    ConfigError
-        The model or the ground does not exist, or the start is beyond a joint's range.
-
+    Its sheet, the actuator of each joint, its initial pose, and its inertial units.
     """
-    name = values['model']
-    if values['sheet'] is not None:
-        Plain(str).read(name, place / 'model')
-        section, section_place = values['sheet'], place / 'sheet'
-    else:
-        section, section_place = leg_section(name, f'{place}.model')
-    if values['ground'] is not None:
-        ground, _ = material_section(values['ground'], f'{place}.ground')
-        section = merge(section, {'ground': ground})
-    section = merge(section, values['parameters'])
-    sheet = build(LegSheet, section, section_place)
-    if is_checked:
-        refuse_start(values['start'], sheet, step_ns, place / 'start')
-        for own, imu in values['imus'].items():
-            imu.period_ns(step_ns, str(place / 'imus' / own))
-    return LegConfig(
-        name, sheet, tuple(values['joints'].items()), values['start'],
-        tuple(ImuConfig(own, imu) for own, imu in values['imus'].items())), section
 
+    kind: ClassVar[str] = 'leg'
+    KEYS: ClassVar[Table] = Table((
+        Key('model', AnyValue('name'), 'the packaged leg', None, in_text=InText.ALWAYS),
+        Key('joints', Table(tuple(
+            Key(joint, Name(), f'the actuator that moves {joint}') for joint in JOINTS)),
+            'the actuator of each joint', of=lambda leg: dict(leg.joints)),
+        Key('ground', AnyValue('name'), 'the material under the foot', None, 'of the model',
+            in_text=InText.NEVER),
+        Key('start', ParameterSet(LegStart), 'pose at t = 0'),
+        Key('imus', Named(_IMU), 'inertial measurement units', {}),
+        Key('parameters', Layer(LegSheet), 'values that replace those of the model', {},
+            in_text=InText.NEVER),
+        Key('sheet', Layer(LegSheet), 'the whole sheet inline: of the model only the name is used',
+            None, in_text=InText.ONLY)))
 
-def leg_start(tree: Tree, place: Place, base: LegStart) -> LegStart:
-    """Return the start of a leg; keys missing in the section are as in ``base``."""
-    default: Section = {f: Entry(getattr(base, f), str(place / f), '')
-                        for f in LegStart.__dataclass_fields__}
-    return build(LegStart, default | written(tree, place), place)
+    sheet: LegSheet
+    start: LegStart
+    imus: tuple[ImuConfig, ...] = ()
 
+    @classmethod
+    def of(cls, name: str, values: dict[str, Any], place: Place, step_ns: int,
+           is_checked: bool) -> tuple[BodyConfig, Section]:
+        """Return a leg, and the section that its sheet was built from; as `BodyConfig.of`."""
+        model = values['model']
+        if values['sheet'] is not None:
+            Plain(str).read(model, place / 'model')
+            section, section_place = values['sheet'], place / 'sheet'
+        else:
+            section, section_place = leg_section(model, f'{place}.model')
+        if values['ground'] is not None:
+            ground, _ = material_section(values['ground'], f'{place}.ground')
+            section = merge(section, {'ground': ground})
+        section = merge(section, values['parameters'])
+        leg = cls(name=name, model=model, sheet=build(LegSheet, section, section_place),
+                  joints=tuple(values['joints'].items()), start=values['start'],
+                  imus=tuple(ImuConfig(own, imu) for own, imu in values['imus'].items()))
+        if is_checked:
+            leg.refuse_start(step_ns, place / 'start')
+            for imu in leg.imus:
+                imu.sheet.period_ns(step_ns, str(place / 'imus' / imu.name))
+        return leg, section
 
-def refuse_start(start: LegStart, sheet: LegSheet, step_ns: int, place: Place) -> None:
-    """Refuse joint angles outside the joints' ranges and a release between two ticks."""
-    for joint in JOINTS:
-        angle, limits = getattr(start, f'{joint}_deg'), getattr(sheet, joint)
-        if not limits.low_deg <= angle <= limits.high_deg:
+    @property
+    def label(self) -> str:
+        """Return ``leg``, the short form, if it is the body of the run."""
+        return self.kind if self.name == BODY else f'bodies.{self.name}'
+
+    def position_of(self, joint: str) -> float:
+        """Return the position of a joint's actuator at the leg's start, m or rad  (L2)."""
+        linkage = linkage_record(getattr(self.sheet, joint))
+        return float(actuator_coordinate(self.start.angle(joint), linkage)[0])
+
+    def refuse_reach(self, joint: str, sheet: ActuatorSheet, where: str) -> None:
+        """Refuse a start of the leg that is outside the stroke of a joint's actuator."""
+        position, stroke = self.position_of(joint), sheet.plant.drive.stroke
+        if not 0.0 <= position <= stroke:
+            scale, unit = (math.degrees(1.0), 'deg') if sheet.is_rotary else (1.0 / MILLI, 'mm')
             raise ConfigError(
-                f'{place}.{joint}_deg = {angle:g} deg, must be within its range '
-                f'{limits.low_deg:g} to {limits.high_deg:g} deg')
-    ticks_in(start.release_s, step_ns, f'{place}.release_s')
+                f'{where}: the start of {self.called}, {joint} = '
+                f'{math.degrees(self.start.angle(joint)):g} deg, puts it at '
+                f'{position * scale:.4g} {unit}, must be within its 0 to '
+                f'{stroke * scale:.4g} {unit}')
 
+    def refuse_start(self, step_ns: int, place: Place) -> None:
+        """Refuse joint angles outside the joints' ranges and a release between two ticks."""
+        for joint in JOINTS:
+            angle, limits = getattr(self.start, f'{joint}_deg'), getattr(self.sheet, joint)
+            if not limits.low_deg <= angle <= limits.high_deg:
+                raise ConfigError(
+                    f'{place}.{joint}_deg = {angle:g} deg, must be within its range '
+                    f'{limits.low_deg:g} to {limits.high_deg:g} deg')
+        ticks_in(self.start.release_s, step_ns, f'{place}.release_s')
 
-def refuse_reach(leg: LegConfig, joint: str, sheet: ActuatorSheet, where: str) -> None:
-    """Refuse a start of the leg that is outside the stroke of a joint's actuator."""
-    position, stroke = leg.position_of(joint), sheet.plant.drive.stroke
-    if not 0.0 <= position <= stroke:
-        scale, unit = (math.degrees(1.0), 'deg') if sheet.is_rotary else (1.0 / MILLI, 'mm')
-        raise ConfigError(
-            f'{where}: the start of the leg, {joint} = {math.degrees(leg.start.angle(joint)):g} '
-            f'deg, puts it at {position * scale:.4g} {unit}, must be within its 0 to '
-            f'{stroke * scale:.4g} {unit}')
+    def started(self, tree: Tree, place: Place, step_ns: int) -> 'LegConfig':
+        """Return it with another start; keys missing in the section are as before."""
+        default: Section = {f: Entry(getattr(self.start, f), str(place / f), '')
+                            for f in LegStart.__dataclass_fields__}
+        leg = replace(self, start=build(LegStart, default | written(tree, place), place))
+        leg.refuse_start(step_ns, place)
+        return leg
+
+    def warnings(self, step_ns: int) -> Sequence[str]:
+        """Return a line if the ticks are too long for the ground."""
+        return coarse_ticks(
+            self.called, self.sheet, (self.start.angle(joint) for joint in JOINTS), step_ns)
+
+    @property
+    def fields(self) -> Sequence[Field]:
+        """Return the fields of its sample."""
+        return sample_fields([imu.name for imu in self.imus])
+
+    def messages(self, step_ns: int) -> Sequence[BodyMessage]:
+        """Return joints, contact of the foot, and readings of its inertial units."""
+        return leg_messages(self.prefix, self._units(step_ns, seed=0))
+
+    def body(self, made: Made) -> Leg:
+        """Return the leg; as `BodyConfig.body`."""
+        pose = Pose(**{joint: self.start.angle(joint) for joint in JOINTS},
+                    foot_height=self.start.foot_height_mm * MILLI)
+        return Leg(self.sheet, pose, made.step_ns, made.rows,
+                   release_ns=round(self.start.release_s * NS_PER_SECOND),
+                   units=self._units(made.step_ns, made.seed))
+
+    def _units(self, step_ns: int, seed: int) -> list[Unit]:
+        return [Unit(imu.name, imu.sheet, imu.sheet.period_ns(step_ns, imu.name),
+                     noise_key(seed, f'{self.prefix}{imu.name}/imu')) for imu in self.imus]

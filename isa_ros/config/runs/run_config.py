@@ -9,7 +9,9 @@ from isa_ros.actuator.link import NO_LINK
 from isa_ros.config.models.links import LINK, LinkLayer
 from isa_ros.config.models.wires import refuse_overfull
 from isa_ros.config.runs.actuator_config import ACTUATOR, actuator_of, ActuatorConfig, Around
-from isa_ros.config.runs.leg_config import LEG, leg_of, LegConfig, LegStart
+from isa_ros.config.runs.body_config import BODY, BodyConfig
+from isa_ros.config.runs.body_kinds import BODY_KINDS
+from isa_ros.config.runs.leg_config import LegConfig
 from isa_ros.config.runs.recording import RECORD, RecordConfig
 from isa_ros.config.runs.supplies import supplies_of, SUPPLY, SUPPLY_KEYS, SupplyConfig
 from isa_ros.config.runs.tick_grid import on_grid
@@ -33,10 +35,6 @@ ALL = 'all'
 """Stands for every actuator of a run."""
 
 
-BodyConfig = LegConfig
-"""The body that several actuators move; a union once there is another kind."""
-
-
 @dataclass(frozen=True)
 class RunConfig:
     """Everything that defines a run, except the setpoints."""
@@ -49,8 +47,8 @@ class RunConfig:
     """Each actuator is fed by exactly one of them."""
     actuators: tuple[ActuatorConfig, ...]
     """In the order of the file, which is the order of every record."""
-    body: BodyConfig | None = None
-    """What several actuators move together; None: each has a load of its own."""
+    bodies: tuple[BodyConfig, ...] = ()
+    """What several actuators move together; all others have a load of their own."""
     controllers: tuple[str, ...] = ()
     """Names of the nodes, besides the actuators, that every tick waits for."""
     source: str = field(default='')
@@ -61,8 +59,18 @@ class RunConfig:
 
     @property
     def leg(self) -> LegConfig | None:
-        """Return the body where it is a leg."""
-        return self.body if isinstance(self.body, LegConfig) else None
+        """Return the leg of the run; None without one, or with several."""
+        legs = [own for own in self.bodies if isinstance(own, LegConfig)]
+        return legs[0] if len(legs) == 1 else None
+
+    def body(self, name: str) -> BodyConfig | None:
+        """Return the body of a name; None: the run has none."""
+        return next((own for own in self.bodies if own.name == name), None)
+
+    def body_of(self, actuator: str) -> BodyConfig | None:
+        """Return the body that an actuator moves; None: it has a load of its own."""
+        return next((own for own in self.bodies
+                     if any(actuator == name for _, name in own.joints)), None)
 
     @property
     def linked(self) -> tuple[str, ...]:
@@ -82,7 +90,7 @@ class RunConfig:
     def alone(self, actuator: ActuatorConfig) -> 'RunConfig':
         """Return a run of ``actuator`` alone, on the supply of the actuator of its name."""
         supply = SupplyConfig(SUPPLY, self.supply_of(actuator.name), (actuator.name,))
-        return replace(self, actuators=(actuator,), supplies=(supply,), body=None)
+        return replace(self, actuators=(actuator,), supplies=(supply,), bodies=())
 
     @property
     def digest(self) -> str:
@@ -146,15 +154,16 @@ class RunConfig:
                     f'taken: {", ".join([*taken, *every[:k]])}')
         return replace(self, controllers=every)
 
-    def with_start(self, start: LegStart) -> 'RunConfig':
-        """Return the run with another start of its leg and of the actuators on it."""
-        if self.leg is None:
-            raise ConfigError(f'{self.source}: the run has no leg that could start at {start}')
-        leg = replace(self.leg, start=start)
-        joint_of = {actuator: joint for joint, actuator in leg.joints}
-        return replace(self, body=leg, actuators=tuple(
-            replace(a, initial_position=leg.position_of(joint_of[a.name]))
-            if a.name in joint_of else a for a in self.actuators))
+    def with_body(self, body: BodyConfig) -> 'RunConfig':
+        """Return the run with another start of a body and of the actuators on it."""
+        joint_of = {actuator: joint for joint, actuator in body.joints}
+
+        def started(own: ActuatorConfig) -> ActuatorConfig:
+            start = body.position_of(joint_of[own.name]) if own.name in joint_of else None
+            return own if start is None else replace(own, initial_position=start)
+        return replace(
+            self, bodies=tuple(body if own.name == body.name else own for own in self.bodies),
+            actuators=tuple(map(started, self.actuators)))
 
     def stored(
             self, compression: str | None, split_mb: float | None, where: str) -> 'RunConfig':
@@ -194,8 +203,12 @@ class _Seed(Kind):
         return seed_of(tree, str(place))
 
 
-BODIES: Mapping[str, Table] = {LegConfig.kind: LEG}
-"""The keys of every kind of body."""
+def _only(run: RunConfig) -> BodyConfig | None:
+    """Return the body of a run file with ``body``."""
+    return run.body(BODY) if len(run.bodies) == 1 else None
+
+
+_BODY = OneOf({name: kind.KEYS for name, kind in BODY_KINDS.items()})
 
 RUN = Table((
     Key('name', Name(), 'the name of the run', in_text=InText.ALWAYS),
@@ -219,8 +232,11 @@ RUN = Table((
     Key(LINK, LinkLayer(), 'the link of all actuators', {}, in_text=InText.NEVER),
     Key('actuators', Named(ACTUATOR), 'the actuators by name; records have their order'),
     Key('controllers', Names(), 'nodes, besides the actuators, that every tick waits for', []),
-    Key('leg', LEG, 'a body of the kind leg', None, in_text=InText.NEVER),
-    Key('body', OneOf(BODIES), 'what several actuators move together', None)))
+    Key('leg', LegConfig.KEYS, 'a body of the kind leg', None, in_text=InText.NEVER),
+    Key(BODY, _BODY, 'what several actuators move together', None, of=_only),
+    Key('bodies', Named(_BODY), 'several bodies by name, instead of `body`', None,
+        instead_of=('leg', BODY),
+        of=lambda run: run.bodies if run.bodies and _only(run) is None else None)))
 """Every key of a run file, and of a resolved text."""
 
 
@@ -243,16 +259,16 @@ def run_of(tree: Tree, place: Place, is_checked: bool = True) -> tuple[RunConfig
     """
     values = RUN.read(tree, place)
     step_ns, offset_ns = _times(values, place)
-    leg, origins = _body(values, place, step_ns, is_checked)
+    bodies, origins = _bodies(values, place, step_ns, is_checked)
     supplies = supplies_of(values, list(values['actuators']), place)
     actuators = []
-    below, joint_of = place / 'actuators', _joints(leg, values['actuators'], place)
+    below, moved = place / 'actuators', _moved(bodies, values['actuators'], place)
     span_of = {name: supply.span for supply in supplies for name in supply.feeds}
     for name, own in values['actuators'].items():
         if name == COORDINATOR:
             raise ConfigError(f'{below / name}: the name is reserved for the coordinator')
         actuator, layers = actuator_of(name, own, below / name, Around(
-            step_ns, values[LINK], span_of[name], leg, joint_of.get(name), is_checked))
+            step_ns, values[LINK], span_of[name], moved.get(name), is_checked))
         actuators.append(actuator)
         origins |= {f'actuators.{name}.{key}': layer for key, layer in layers.items()}
     if is_checked:
@@ -260,7 +276,7 @@ def run_of(tree: Tree, place: Place, is_checked: bool = True) -> tuple[RunConfig
     source = place.file if values['source'] is None else values['source']
     return RunConfig(
         values['name'], step_ns, offset_ns, values['tick_timeout_s'], supplies, tuple(actuators),
-        leg, source=source, record=values['record'], seed=values['seed'],
+        bodies, source=source, record=values['record'], seed=values['seed'],
     ).with_controllers(values['controllers']), origins
 
 
@@ -274,33 +290,45 @@ def _times(values: dict[str, Any], place: Place) -> tuple[int, int]:
     return times
 
 
-def _body(
+def _bodies(
         values: dict[str, Any], place: Place, step_ns: int,
-        is_checked: bool) -> tuple[LegConfig | None, dict[str, Section]]:
-    """Return the body that the actuators move, and the section it was built from."""
-    leg, body = values['leg'], values['body']
+        is_checked: bool) -> tuple[tuple[BodyConfig, ...], dict[str, Section]]:
+    """Return the bodies that the actuators move, and the sections they were built from."""
+    leg, body, named = values['leg'], values[BODY], values['bodies']
     if leg is not None and body is not None:
         raise ConfigError(place.has('has leg and body, must have one; leg is a body of that kind'))
-    if leg is None and body is None:
-        return None, {}
-    below = place / ('body' if leg is None else 'leg')
-    config, section = leg_of(body if leg is None else leg, below, step_ns, is_checked)
-    return config, {'body.sheet': section}
+    found = {BODY: (BODY, place / BODY, body)} if body is not None else {
+        name: (f'bodies.{name}', place / 'bodies' / name, own)
+        for name, own in (named or {}).items()}
+    if leg is not None:
+        found = {BODY: (BODY, place / 'leg', {'kind': LegConfig.kind} | leg)}
+    taken = [COORDINATOR, *values['actuators'], *(values['supplies'] or [SUPPLY])]
+    bodies, origins = [], {}
+    for name, (key, below, own) in found.items():
+        if name != BODY and name in taken:
+            raise ConfigError(f'{below}: the name {name!r} is taken; taken: {", ".join(taken)}')
+        config, section = BODY_KINDS[own['kind']].of(name, own, below, step_ns, is_checked)
+        bodies.append(config)
+        if section:
+            origins[f'{key}.sheet'] = section
+    return tuple(bodies), origins
 
 
-def _joints(
-        leg: LegConfig | None, actuators: Mapping[str, Any], place: Place) -> dict[str, str]:
-    """Return the joints of the leg by actuator."""
+def _moved(
+        bodies: Sequence[BodyConfig], actuators: Mapping[str, Any],
+        place: Place) -> dict[str, tuple[BodyConfig, str]]:
+    """Return what each actuator on a body moves: the body, and its joint."""
     if not actuators:
         raise ConfigError(f'{place / "actuators"} is empty, must name at least one actuator')
-    joint_of: dict[str, str] = {}
-    for joint, name in leg.joints if leg else ():
-        if name not in actuators:
-            raise ConfigError(
-                f'{place}: leg.joints.{joint} = {name!r} is not an actuator; '
-                f'{alternatives(name, actuators)}')
-        if name in joint_of:
-            raise ConfigError(
-                f'{place}: leg.joints.{joint} = {name!r} already moves {joint_of[name]}')
-        joint_of[name] = joint
-    return joint_of
+    moved: dict[str, tuple[BodyConfig, str]] = {}
+    for body in bodies:
+        for joint, name in body.joints:
+            where = f'{place}: {body.key_of(joint)} = {name!r}'
+            if name not in actuators:
+                raise ConfigError(f'{where} is not an actuator; {alternatives(name, actuators)}')
+            if name in moved:
+                other, taken = moved[name]
+                raise ConfigError(f'{where} already moves {taken}' + (
+                    '' if other is body else f' of {other.called}'))
+            moved[name] = body, joint
+    return moved

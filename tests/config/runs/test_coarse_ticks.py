@@ -2,15 +2,20 @@
 
 import isa_ros
 from isa_ros.config.paths import CONFIG, shipped
-from isa_ros.config.runs.coarse_ticks import coarse_ticks
 from isa_ros.config.runs.run_config import RunConfig
 from isa_ros.config.runs.run_file import load_run
+from isa_ros.scenario.scenario import idle
 import pytest
 
 
 def leg(ground: str, step_ms: float) -> RunConfig:
     """Return the shipped leg on a material, with another tick."""
     return isa_ros.load('leg').replace({'leg.ground': ground, 'step_ms': step_ms}).configuration
+
+
+def coarse_ticks(run: RunConfig) -> tuple[str, ...]:
+    """Return the lines that are printed before a run."""
+    return idle(run).warnings
 
 
 def test_metal_at_a_millisecond_names_stiffness_tick_and_remedy() -> None:

@@ -109,7 +109,7 @@ def test_a_body_of_kind_leg_is_the_leg(tmp_path: Path, file: str) -> None:
     path.write_text(text.replace('\nleg:\n', '\nbody:\n  kind: leg\n'), encoding='utf-8')
     run, plain = load_run(path), load_run(CONFIG / file)
     assert run == plain and run.digest == plain.digest
-    assert run.leg is run.body is not None
+    assert run.bodies == (run.leg,)
 
 
 @pytest.mark.parametrize(('body', 'message'), [

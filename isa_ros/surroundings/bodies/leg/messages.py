@@ -14,25 +14,24 @@ def joint_name(name: str) -> str:
     return f'{name}_joint'
 
 
-def leg_messages(
-        joint_topic: str, contact_topic: str, units: Sequence[Unit]) -> tuple[BodyMessage, ...]:
+def leg_messages(prefix: str, units: Sequence[Unit]) -> tuple[BodyMessage, ...]:
     """
-    Return the messages of a leg.
+    Return the messages of a leg; ``prefix`` is '' for the only body of a run, else ``NAME/``.
 
     The joints are all those of the URDF that are not fixed; the slider has no drive.
     """
     return (
         JointStates(
-            joint_topic, [joint_name(joint) for joint in (*JOINTS, SLIDER)],
+            f'/{prefix}joint_states', [joint_name(joint) for joint in (*JOINTS, SLIDER)],
             [*columns('position'), 'height'], [*columns('velocity'), 'height_velocity'],
             columns('torque')),
-        Force(contact_topic, columns('foot_force')),
-        *(_inertial(unit) for unit in units))
+        Force(f'/{prefix or "coordinator/"}ground_contact', columns('foot_force')),
+        *(_inertial(prefix, unit) for unit in units))
 
 
-def _inertial(unit: Unit) -> Inertial:
+def _inertial(prefix: str, unit: Unit) -> Inertial:
     force, turning = fields_of_unit(unit.name)
     return Inertial(
-        f'/{unit.name}/imu', unit.sheet.link,
+        f'/{prefix}{unit.name}/imu', f'{prefix}{unit.sheet.link}',
         (unit.sheet.accelerometer_sigma, unit.sheet.gyro_sigma), columns(force),
         columns(turning), unit.period_ns)

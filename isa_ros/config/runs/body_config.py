@@ -1,0 +1,130 @@
+"""
+A body of a run: what a kind of bodies declares, and all that others need to know of it.
+
+A kind is one class, derived from `BodyConfig`, and one row in `isa_ros.config.runs.body_kinds`.
+"""
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from typing import ClassVar, NamedTuple
+
+from isa_ros.actuator.sheet import ActuatorSheet
+from isa_ros.config.text.keys import Table
+from isa_ros.config.text.sections import Place, Section
+from isa_ros.config.text.yaml_text import Tree
+from isa_ros.core.fields import Field
+from isa_ros.errors import ConfigError
+from isa_ros.surroundings.body import Body
+from isa_ros.surroundings.messages import BodyMessage
+import numpy as np
+from numpy.typing import NDArray
+
+BODY = 'body'
+"""Name of the body of a run file with ``body`` or ``leg``: its topics have no name in front."""
+
+BodyFactory = Callable[[NDArray[np.int64], float], Body]
+"""
+Returns a new body at t = 0, called once for every simulation.
+
+The arguments are the rows of its actuators, (k,), in the order of the run file, and the tick in s.
+"""
+
+
+class Made(NamedTuple):
+    """What a body of a run is made with."""
+
+    step_ns: int
+    seed: int
+    """Of the run's noise."""
+    rows: Sequence[int]
+    """Of its actuators, in the order of its joints."""
+    factory: BodyFactory | None
+    """Given by the caller of a simulation."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class BodyConfig:
+    """A body that several actuators move; each kind replaces the methods that it needs."""
+
+    kind: ClassVar[str]
+    """Of a section ``{kind: ...}``."""
+    KEYS: ClassVar[Table]
+    """Of its section, the kind left out."""
+
+    name: str = BODY
+    """Of its topics and of the columns of a result."""
+    joints: tuple[tuple[str, str], ...]
+    """(joint, actuator that moves it), in the order of its rows."""
+    model: str = ''
+    """Of its data sheet, if there are several."""
+
+    @classmethod
+    def of(cls, name: str, values: dict[str, object], place: Place, step_ns: int,
+           is_checked: bool) -> 'tuple[BodyConfig, Section]':
+        """
+        Return the body of the values of `KEYS`, and the section that its sheet was built from.
+
+        ``is_checked`` as in `isa_ros.config.runs.run_config.run_of`.
+
+        Raises
+        ------
+        ConfigError
+            Values do not fit together.
+
+        """
+        raise NotImplementedError
+
+    def body(self, made: Made) -> Body:
+        """Return the body itself at t = 0; raises `ConfigError` if its start is not possible."""
+        raise NotImplementedError
+
+    @property
+    def label(self) -> str:
+        """Return the key of its section, for messages and lists."""
+        return BODY if self.name == BODY else f'bodies.{self.name}'
+
+    @property
+    def called(self) -> str:
+        """Return how messages call it."""
+        return f'the {self.kind}' if self.name == BODY else f'the {self.kind} {self.name}'
+
+    def key_of(self, joint: str) -> str:
+        """Return the key that names the actuator of a joint."""
+        return f'{self.label}.joints.{joint}'
+
+    @property
+    def prefix(self) -> str:
+        """Return what stands in front of the names of its topics, frames and noise."""
+        return '' if self.name == BODY else f'{self.name}/'
+
+    @property
+    def fields(self) -> Sequence[Field]:
+        """Return the fields of its sample, as far as the configuration knows them."""
+        return ()
+
+    def messages(self, step_ns: int) -> Sequence[BodyMessage]:
+        """Return what is published and recorded of its sample."""
+        return ()
+
+    def position_of(self, joint: str) -> float | None:
+        """Return where a joint's actuator starts, m or rad; None: its section says so."""
+        return None
+
+    def refuse_reach(self, joint: str, sheet: ActuatorSheet, where: str) -> None:
+        """Raise `ConfigError` if the start is outside the stroke of a joint's actuator."""
+
+    def started(self, tree: Tree, place: Place, step_ns: int) -> 'BodyConfig':
+        """
+        Return it with the start that a scenario gives.
+
+        Raises
+        ------
+        ConfigError
+            It has no such start, or the start is not possible.
+
+        """
+        raise ConfigError(f'{place} is not used: a scenario cannot start {self.called}')
+
+    def warnings(self, step_ns: int) -> Sequence[str]:
+        """Return lines that are printed before a run."""
+        return ()
