@@ -11,7 +11,10 @@ LOOPS = ('position', 'force', 'pressure', 'spool', 'current')
 
 def bode(parser: argparse.ArgumentParser) -> None:
     """Add the arguments of `isa bode`."""
-    _rig(parser)
+    _rig(parser, '*')
+    parser.add_argument(
+        '--bag', type=Path, metavar='BAG',
+        help='evaluate a bag instead, of a scenario that sweeps the reference of the loop')
     parser.add_argument(
         '--of', choices=('closed', 'plant', 'open'), default='closed',
         help="output over reference, over the block's output, or over the error")
@@ -28,7 +31,7 @@ def bode(parser: argparse.ArgumentParser) -> None:
 
 def step(parser: argparse.ArgumentParser) -> None:
     """Add the arguments of `isa step`."""
-    _rig(parser)
+    _rig(parser, '+')
     parser.add_argument(
         '--duration', type=positive, metavar='S', help='time recorded after the step')
 
@@ -68,9 +71,9 @@ def _actuator(parser: argparse.ArgumentParser) -> None:
         'that isa params shows: reu.force.kp=9e-8')
 
 
-def _rig(parser: argparse.ArgumentParser) -> None:
+def _rig(parser: argparse.ArgumentParser, names: str) -> None:
     parser.add_argument(
-        'names', nargs='+', metavar='MODEL|CONFIG',
+        'names', nargs=names, metavar='MODEL|CONFIG',
         help='isa_v5, rig_rotary.yaml, ...; several are drawn in one figure')
     parser.add_argument(
         '--loop', choices=LOOPS, default='force',
@@ -89,10 +92,5 @@ def _rig(parser: argparse.ArgumentParser) -> None:
         '--amplitude', type=positive, metavar='A',
         help='of the reference, in N, Nm, mm, deg, MPa or mA (default: 10 %% of the rated force, '
              '25 %% of spool travel and current, 1 %% of the stroke)')
-    parser.add_argument(
-        '--nodes', action='store_true',
-        help='measure with running nodes, at their ticks, from the bag that they record')
-    parser.add_argument(
-        '--bag', type=Path, metavar='DIR', help='with --nodes: directory to keep the bag in')
     shared_arguments.json_file(parser)
     parser.add_argument('--out', type=file_to_write, metavar='FILE.png', help='draw the figure')

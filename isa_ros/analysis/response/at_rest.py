@@ -7,6 +7,7 @@ is pushed once, which starts a cycle that needs a push, and then stands still at
 point of the excitation until what remains is ripple.
 """
 
+import math
 from typing import NamedTuple
 
 from isa_ros.analysis.signals.ripple import ripple, ripple_frequency
@@ -23,11 +24,16 @@ class Rest(NamedTuple):
     """A loop without excitation."""
 
     ripple: float
-    """Half of peak to peak of the output without its drift, SI."""
+    """Half of peak to peak of the output without its drift, SI; NaN: not recorded."""
     frequency: float
     """Of the largest part of the ripple, Hz."""
     amplitude: float
     """Of the excitation, SI."""
+
+    @property
+    def is_known(self) -> bool:
+        """Return whether the loop was recorded at rest."""
+        return not math.isnan(self.ripple)
 
     @property
     def share(self) -> float:

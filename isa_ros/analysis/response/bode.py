@@ -124,6 +124,8 @@ def _figures(measured: Bode) -> Iterator[str]:
 
 def _ripple(measured: Bode) -> str:
     rest, unit = measured.rest, measured.loop.unit
+    if not rest.is_known:
+        return 'at rest: not recorded, so that the loop may hunt'
     size = f'{rest.ripple / unit.scale:.3g} {unit.symbol}'
     share = f'{rest.share * 100.0:.2g} % of the excitation'
     if not rest.hunts:

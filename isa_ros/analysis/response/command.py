@@ -6,11 +6,11 @@ import json
 from pathlib import Path
 from typing import Any
 
-from isa_ros.analysis.response import bode as bodes, step as steps, through_nodes
+from isa_ros.analysis.response import bode as bodes, from_bag, step as steps
 from isa_ros.analysis.response.figures import bode_figure, step_figure
 from isa_ros.analysis.response.rig import Rig
-from isa_ros.analysis.response.series import Member, members
-from isa_ros.analysis.response.sweep import Sweep
+from isa_ros.analysis.response.series import Member, members, refuse_beside_a_bag
+from isa_ros.analysis.response.sweep import LARGEST_SHARE, Sweep
 from isa_ros.errors import ConfigError
 from matplotlib.figure import Figure
 import numpy as np
@@ -26,21 +26,27 @@ _RESPONSES = {'closed': 'closed loop, output/reference', 'plant': 'plant, output
 def bode(options: Namespace) -> bool:
     """Measure frequency responses; return whether all are results: none of the loops hunts."""
     _refuse_figure(options.out)
-    benches, band = members(options), BANDS[options.loop]
+    low, high = BANDS[options.loop]
+    if options.bag is None:
+        recorded, benches = None, members(options)
+    else:
+        refuse_beside_a_bag(options)
+        recorded = from_bag.recorded(options.bag, options.actuator, options.loop)
+        benches = [Member('', recorded.rig)]
+        low, high = max(low, recorded.lowest()), min(high, LARGEST_SHARE * recorded.rate)
     _refuse_units(options, benches)
     sweep = Sweep(
-        low=options.low or band[0], high=options.high or band[1], points=options.points,
+        low=options.low or low, high=options.high or high, points=options.points,
         is_chirp=options.method == 'chirp')
-    method = 'chirp' if sweep.is_chirp else 'stepped sine'
+    method = (f'as in {options.bag},' if recorded else 'chirp' if sweep.is_chirp
+              else 'stepped sine')
     title, found = '', []
     responses: list[bodes.Bode] = []
     for label, bench in benches:
-        if options.nodes:
-            measured = through_nodes.bode(
-                bench, sweep, options.of, options.amplitude, options.bag)
-        else:
-            measured = bodes.bode(bench, sweep, options.of, options.amplitude)
-        title = (f'{_title(options, bench)}\n{measured.loop.label}: {_RESPONSES[options.of]}; '
+        measured = (
+            from_bag.bode(recorded, sweep, options.of, options.bag) if recorded
+            else bodes.bode(bench, sweep, options.of, options.amplitude))
+        title = (f'{bench.title}\n{measured.loop.label}: {_RESPONSES[options.of]}; '
                  f'{method} of {_amplitude(measured)}')
         _print(title, bodes.table(measured), is_first=not responses)
         responses.append(measured)
@@ -60,11 +66,8 @@ def step(options: Namespace) -> None:
     title, found = '', []
     responses: list[steps.Step] = []
     for label, bench in benches:
-        if options.nodes:
-            measured = through_nodes.step(bench, duration, options.amplitude, options.bag)
-        else:
-            measured = steps.step(bench, duration, options.amplitude)
-        title = (f'{_title(options, bench)}\n{measured.loop.label}: step of '
+        measured = steps.step(bench, duration, options.amplitude)
+        title = (f'{bench.title}\n{measured.loop.label}: step of '
                  f'{_amplitude(measured)}')
         _print(title, steps.summary(measured), is_first=not responses)
         responses.append(measured)
@@ -84,10 +87,6 @@ def _refuse_units(options: Namespace, benches: Sequence[Member]) -> None:
             f'--out {options.out}: one figure cannot have responses in {" and ".join(symbols)}')
 
 
-def _title(options: Namespace, bench: Rig) -> str:
-    return f'{bench.title}, through nodes' if options.nodes else bench.title
-
-
 def _print(title: str, text: str, is_first: bool) -> None:
     print(f'{title}\n{text}' if is_first else f'\n{title}\n{text}', flush=True)
 
@@ -103,7 +102,7 @@ def _setting(
     config, unit = bench.config, measured.loop.unit
     return ({'label': label} if label else {}) | {
         'actuator': config.name, 'model': config.model, 'preset': config.preset,
-        'set': dict(bench.values), 'through_nodes': options.nodes, 'load': bench.load,
+        'set': dict(bench.values), 'load': bench.load,
         'loop': options.loop, 'unit': unit.symbol,
         'initial_position': config.initial_position,
         'amplitude': measured.amplitude / unit.scale}
@@ -125,9 +124,10 @@ def _numbers(measured: bodes.Bode) -> dict[str, Any]:
     return {
         'of': measured.of, 'response_unit': unit.symbol, 'input_unit': into.symbol,
         **{name: np.asarray(column).tolist() for name, column in columns.items()},
-        'hunts': rest.hunts, 'ripple': rest.ripple / measured.loop.unit.scale,
+        'hunts': rest.hunts if rest.is_known else None,
+        'ripple': rest.ripple / measured.loop.unit.scale if rest.is_known else None,
         'ripple_hz': rest.frequency if rest.hunts else None,
-        **(dict.fromkeys(results) if rest.hunts else results)}
+        **(dict.fromkeys(results) if measured.rest.hunts else results)}
 
 
 def _step_numbers(measured: steps.Step) -> dict[str, Any]:

@@ -34,9 +34,8 @@ def members(options: Namespace) -> list[Member]:
         One of them does not exist or does not fit, or a figure cannot have them all.
 
     """
-    if options.bag is not None and not options.nodes:
-        raise ConfigError(
-            f'--bag {options.bag} is not used: without --nodes no bag is recorded')
+    if not options.names:
+        raise ConfigError('MODEL|CONFIG is missing; isa bode takes --bag BAG instead')
     common = values_of(options.set, '--set')
     sets: list[Values] = [{}, *(
         values_of(_NEXT_KEY.split(text), '--versus') for text in options.versus)]
@@ -44,9 +43,17 @@ def members(options: Namespace) -> list[Member]:
              for values in sets for name in options.names]
     if len(found) == 1:
         return [Member('', found[0].rig)]
-    if options.bag is not None:
-        raise ConfigError(f'--bag {options.bag} is the bag of one response, not of {len(found)}')
     return found
+
+
+def refuse_beside_a_bag(options: Namespace) -> None:
+    """Refuse arguments that choose what a bag has chosen."""
+    given = [*options.names, *(
+        f'--{name}' for name in ('preset', 'variant', 'set', 'versus', 'load', 'position',
+                                 'amplitude') if getattr(options, name))]
+    if given:
+        raise ConfigError(
+            f'--bag {options.bag}: {", ".join(given)} cannot be chosen, it is as recorded')
 
 
 def _rig(name: str, values: Values, options: Namespace) -> Rig:

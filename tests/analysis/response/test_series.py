@@ -6,8 +6,6 @@ from pathlib import Path
 from isa_ros.analysis.response.series import members
 from isa_ros.cli import main as cli
 from isa_ros.cli.main import make_parser
-from isa_ros.errors import ConfigError
-import pytest
 
 SHORT = ('--from', '20', '--to', '100', '--points', '3')
 
@@ -45,13 +43,6 @@ def test_values_may_hold_commas():
         '--loop', 'position'])
     assert members(options)[1].rig.values == {
         'variants': ['explicit', 'position_control'], 'load.inertia': 2}
-
-
-def test_one_bag_holds_one_response():
-    options = make_parser().parse_args(
-        ['bode', 'isa_v5', 'isa_v2', '--nodes', '--bag', 'x'])
-    with pytest.raises(ConfigError, match='--bag x is the bag of one response, not of 2'):
-        members(options)
 
 
 def test_bode_overlays_prints_and_writes_all(tmp_path: Path, capsys):
