@@ -14,7 +14,7 @@ from isa_ros.actuator.tunable import tunables
 from isa_ros.config.listing import rows
 from isa_ros.config.runs.run_config import RUN, RunConfig
 from isa_ros.config.runs.supplies import SUPPLY
-from isa_ros.config.text.keys import KeyDifference
+from isa_ros.config.text.keys import differences, KeyDifference
 from isa_ros.config.text.sections import Place
 from isa_ros.config.text.yaml_text import Tree
 from isa_ros.core.parameter import Parameters
@@ -79,7 +79,7 @@ def _has_sections(value: Any) -> bool:
 
 def key_differences(tree: Tree, place: Place) -> Iterator[KeyDifference]:
     """Yield what a resolved configuration has that is unknown here, and what it lacks."""
-    yield from RUN.differences(modern(tree), place)
+    yield from differences(RUN, modern(tree), place)
 
 
 def modern(tree: Tree) -> Tree:

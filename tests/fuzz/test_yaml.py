@@ -31,8 +31,8 @@ def unchecked(patch):
 
 
 @pytest.mark.parametrize('plant', [
-    lambda patch: patch.setattr(keys.Plain, 'read', accept),
-    lambda patch: patch.setattr(keys, '_is_one_of', lambda kind, kinds: kind in kinds),
+    lambda patch: patch.setattr(keys.Value, 'read', accept),
+    lambda patch: patch.setattr(keys, '_of_kind', lambda kind, kinds, place: kinds[kind]),
     unchecked,
     lambda patch: patch.setattr(keys, 'section_at', lambda tree, place: tree)])
 def test_a_guard_that_is_missing_is_found(plant, monkeypatch):

@@ -12,6 +12,7 @@ from isa_ros.config.models import catalogue
 from isa_ros.config.models.own_load import own_load
 from isa_ros.config.paths import CONFIG, find, SCENARIOS
 from isa_ros.config.runs.run_config import RUN, run_of, RunConfig
+from isa_ros.config.text.keys import differences
 from isa_ros.config.text.parameter_sets import build
 from isa_ros.config.text.sections import Place
 from isa_ros.config.text.yaml_text import parse, read
@@ -129,7 +130,7 @@ def _scenario(run: RunConfig, tree: Any, dice: random.Random) -> None:
 
 def _resolved(run: RunConfig, dice: random.Random) -> None:
     tree = altered(RUN.tree(run), dice)
-    for difference in RUN.differences(tree, Place('resolved.yaml')):
+    for difference in differences(RUN, tree, Place('resolved.yaml')):
         assert difference.text
     assert_well_defined(RunConfig.from_tree(tree, 'resolved.yaml'))
 

@@ -13,7 +13,7 @@ from isa_ros.config.models.own_load import load_section, refuse_beyond_stops
 from isa_ros.config.models.scaling import scaled_sheet
 from isa_ros.config.runs.body_config import BodyConfig
 from isa_ros.config.text.keys import (
-    AnyValue, Choice, InText, Key, Layer, Names, number, Plain, Table)
+    ANY_NAME, choice_of, FLAG, InText, Key, Layer, NAMES, number, of_type, Table, TEXT)
 from isa_ros.config.text.parameter_sets import build, build_one_of, members
 from isa_ros.config.text.sections import merge, Place, Section
 from isa_ros.core.parameter import check
@@ -48,9 +48,9 @@ class ActuatorConfig:
 
 
 ACTUATOR = Table((
-    Key('model', AnyValue('name'), 'the packaged model', None, in_text=InText.ALWAYS),
-    Key('preset', Plain(str), 'the gains of the model', DEFAULT_PRESET),
-    Key('variants', Names(), 'variants of the model, in their order', [], in_text=InText.NEVER),
+    Key('model', ANY_NAME, 'the packaged model', None, in_text=InText.ALWAYS),
+    Key('preset', TEXT, 'the gains of the model', DEFAULT_PRESET),
+    Key('variants', NAMES, 'variants of the model, in their order', [], in_text=InText.NEVER),
     Key('parameters', Layer(ActuatorSheet), 'values of the sheet that replace those of the model',
         {}, in_text=InText.NEVER),
     Key(LINK, LinkLayer(), 'its own link; what it leaves out is as for all', {},
@@ -62,10 +62,10 @@ ACTUATOR = Table((
     number('initial_position', 'm | rad', 'start of any actuator, in SI', None,
            in_text=InText.ONLY,
            instead_of=('initial_position_mm', 'initial_position_deg')),
-    Key('beyond_range', Choice(BEYOND_RANGE), 'treatment of a setpoint beyond the range', None,
+    Key('beyond_range', choice_of(BEYOND_RANGE), 'treatment of a setpoint beyond the range', None,
         meant=BEYOND_RANGE[0]),
-    Key('auto_enable', Plain(bool), 'whether it is enabled once it is initialised', True),
-    Key('mode', AnyValue('name'), 'mode at t = 0', None, meant='every block that is on'),
+    Key('auto_enable', FLAG, 'whether it is enabled once it is initialised', True),
+    Key('mode', ANY_NAME, 'mode at t = 0', None, meant='every block that is on'),
     Key('load', Layer(LocalLoad),
         'its own load, by a kind of the model; values that it leaves out are those of the model; '
         'an actuator of a body has none', None),
@@ -135,7 +135,7 @@ def _sheet(
     """Return sheet, its section by the key ``sheet``, and the model unless it is inline."""
     parameters, link, inline = values['parameters'], values[LINK], values['sheet']
     if inline is not None:
-        Plain(str).read(values['model'], place / 'model')
+        of_type(values['model'], str, place / 'model')
         given: Section = {**around.link, **link}
         section = merge(merge(inline, parameters), {LINK: given} if given else {})
         return build(ActuatorSheet, section, place / 'sheet'), {'sheet': section}, None

@@ -11,7 +11,7 @@ from isa_ros.config.runs.body_config import BODY, BodyConfig, Made
 from isa_ros.config.runs.coarse_ticks import coarse_ticks
 from isa_ros.config.runs.tick_grid import ticks_in
 from isa_ros.config.text.keys import (
-    AnyValue, InText, Key, Layer, Name, Named, ParameterSet, Plain, Table)
+    ANY_NAME, InText, Key, Layer, NAME, Named, of_type, ParameterSet, Table)
 from isa_ros.config.text.parameter_sets import build
 from isa_ros.config.text.sections import Entry, merge, Place, Section, section_at, written
 from isa_ros.config.text.yaml_text import Tree
@@ -76,11 +76,11 @@ class LegConfig(BodyConfig):
 
     kind: ClassVar[str] = 'leg'
     KEYS: ClassVar[Table] = Table((
-        Key('model', AnyValue('name'), 'the packaged leg', None, in_text=InText.ALWAYS),
+        Key('model', ANY_NAME, 'the packaged leg', None, in_text=InText.ALWAYS),
         Key('joints', Table(tuple(
-            Key(joint, Name(), f'the actuator that moves {joint}') for joint in JOINTS)),
+            Key(joint, NAME, f'the actuator that moves {joint}') for joint in JOINTS)),
             'the actuator of each joint', of=lambda leg: dict(leg.joints)),
-        Key('ground', AnyValue('name'), 'the material under the foot', None, 'of the model',
+        Key('ground', ANY_NAME, 'the material under the foot', None, 'of the model',
             in_text=InText.NEVER),
         Key('start', ParameterSet(LegStart), 'pose at t = 0'),
         Key('imus', Named(_IMU), 'inertial measurement units', {}),
@@ -99,7 +99,7 @@ class LegConfig(BodyConfig):
         """Return a leg, and the section that its sheet was built from; as `BodyConfig.of`."""
         model = values['model']
         if values['sheet'] is not None:
-            Plain(str).read(model, place / 'model')
+            of_type(model, str, place / 'model')
             section, section_place = values['sheet'], place / 'sheet'
         else:
             section, section_place = leg_section(model, f'{place}.model')

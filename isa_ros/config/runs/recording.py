@@ -10,12 +10,12 @@ Recorded topics of a run and the format of its files: the section `record` of a 
       decimate: {/*/pressure_?: 10}  # only the samples of every tenth tick
 """
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable
 from dataclasses import dataclass, replace
 from fnmatch import fnmatchcase
 from typing import Any
 
-from isa_ros.config.text.keys import Key, Kind, ParameterSet, Table
+from isa_ros.config.text.keys import Key, ParameterSet, Table, Value
 from isa_ros.config.text.parameter_sets import as_tree, build
 from isa_ros.config.text.sections import Place, section_at, written
 from isa_ros.config.text.yaml_text import Tree
@@ -125,37 +125,6 @@ def replay_needs(topic: str) -> bool:
     return topic == _EVENTS or suffix.startswith('applied_') or suffix == _SENT
 
 
-class _Patterns(Kind):
-    """Topics, or patterns of topics, in a list."""
-
-    words = 'list of topics'
-
-    def tree(self, value: Sequence[str]) -> list[str]:
-        """Return the list."""
-        return list(value)
-
-    def read(self, tree: Any, place: Place) -> tuple[str, ...]:
-        """Return the patterns; as `Kind.read`."""
-        if not isinstance(tree, list):
-            raise ConfigError(f'{place} = {tree!r}, must be a list of topics')
-        return tuple(_pattern(pattern, place) for pattern in _few(tree, place))
-
-
-class _Periods(Kind):
-    """Numbers of ticks by pattern."""
-
-    words = 'whole number by topic'
-
-    def tree(self, value: Sequence[tuple[str, int]]) -> Tree:
-        """Return the section."""
-        return dict(value)
-
-    def read(self, tree: Any, place: Place) -> tuple[tuple[str, int], ...]:
-        """Return (pattern, ticks) of each; as `Kind.read`."""
-        return tuple((_pattern(pattern, place), _period(n, place / pattern))
-                     for pattern, n in _few(section_at(tree, place), place).items())
-
-
 class _RecordKind(Table):
     """The section; read as a `RecordConfig`."""
 
@@ -164,9 +133,23 @@ class _RecordKind(Table):
         return RecordConfig(**super().read(tree, place))
 
 
+def _patterns(value: Any, place: Place) -> tuple[str, ...]:
+    if not isinstance(value, list):
+        raise ConfigError(f'{place} = {value!r}, must be a list of topics')
+    return tuple(_pattern(pattern, place) for pattern in _few(value, place))
+
+
+def _periods(value: Any, place: Place) -> tuple[tuple[str, int], ...]:
+    return tuple((_pattern(pattern, place), _period(n, place / pattern))
+                 for pattern, n in _few(section_at(value, place), place).items())
+
+
 RECORD = _RecordKind((
-    Key('leave_out', _Patterns(), 'topics that are not recorded; * stands for any text', []),
-    Key('decimate', _Periods(), 'topics of which only every n-th tick is recorded', {})),
+    Key('leave_out', Value('list of topics', _patterns),
+        'topics that are not recorded; * stands for any text', []),
+    Key('decimate', Value('whole numbers by topic', _periods),
+        'topics of which only every n-th tick is recorded', {},
+        of=lambda record: dict(record.decimate))),
     rest=Key('storage', ParameterSet(Storage), 'the files of the bag'))
 
 

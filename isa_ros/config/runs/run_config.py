@@ -16,7 +16,7 @@ from isa_ros.config.runs.recording import RECORD, RecordConfig
 from isa_ros.config.runs.supplies import supplies_of, SUPPLY, SUPPLY_KEYS, SupplyConfig
 from isa_ros.config.runs.tick_grid import on_grid
 from isa_ros.config.text.keys import (
-    InText, Key, Kind, Name, Named, Names, number, OneOf, ParameterSet, Plain, Table)
+    InText, Key, NAME, Named, NAMES, NANOSECONDS, number, OneOf, ParameterSet, Table, TEXT, Value)
 from isa_ros.config.text.names import refuse_bad_name
 from isa_ros.config.text.sections import Place, Section
 from isa_ros.config.text.yaml_text import dump, parse, Tree
@@ -193,16 +193,6 @@ class RunConfig:
         return run_of(tree, Place(name), is_checked=False)[0]
 
 
-class _Seed(Kind):
-    """The seed of all noise."""
-
-    words = 'whole number'
-
-    def read(self, tree: Any, place: Place) -> int:
-        """Return the seed; as `Kind.read`."""
-        return seed_of(tree, str(place))
-
-
 def _only(run: RunConfig) -> BodyConfig | None:
     """Return the body of a run file with ``body``."""
     return run.body(BODY) if len(run.bodies) == 1 else None
@@ -211,19 +201,20 @@ def _only(run: RunConfig) -> BodyConfig | None:
 _BODY = OneOf({name: kind.KEYS for name, kind in BODY_KINDS.items()})
 
 RUN = Table((
-    Key('name', Name(), 'the name of the run', in_text=InText.ALWAYS),
-    Key('source', Plain(str), 'the file that the run was resolved from', None,
+    Key('name', NAME, 'the name of the run', in_text=InText.ALWAYS),
+    Key('source', TEXT, 'the file that the run was resolved from', None,
         'the name of the file', in_text=InText.ONLY),
     number('step_ms', 'ms', 'macro step H', 1.0, in_text=InText.NEVER, gt=0.0, le=100.0),
     number('controller_offset_ms', 'ms', 'offset of the samples of the REU from the ticks', 0.12,
            in_text=InText.NEVER, ge=0.0, le=100.0),
-    Key('step_ns', Plain(int, 'ns'), 'the macro step instead of `step_ms`', None,
+    Key('step_ns', NANOSECONDS, 'the macro step instead of `step_ms`', None,
         in_text=InText.ONLY, instead_of=('step_ms',)),
-    Key('controller_offset_ns', Plain(int, 'ns'), 'the offset instead of `controller_offset_ms`',
+    Key('controller_offset_ns', NANOSECONDS, 'the offset instead of `controller_offset_ms`',
         None, in_text=InText.ONLY, instead_of=('controller_offset_ms',)),
     number('tick_timeout_s', 's', 'host time after which a participant counts as lost', 5.0,
            gt=0.0, le=3600.0),
-    Key('seed', _Seed(), 'of all noise', 0),
+    Key('seed', Value('whole number', lambda value, place: seed_of(value, str(place))),
+        'of all noise', 0),
     Key(SUPPLY, ParameterSet(SupplySheet), 'the supply of all actuators', None,
         in_text=InText.NEVER),
     Key('supplies', Named(SUPPLY_KEYS), 'several supplies, instead of `supply`', None,
@@ -231,7 +222,7 @@ RUN = Table((
     Key('record', RECORD, 'what is recorded', {}, 'everything'),
     Key(LINK, LinkLayer(), 'the link of all actuators', {}, in_text=InText.NEVER),
     Key('actuators', Named(ACTUATOR), 'the actuators by name; records have their order'),
-    Key('controllers', Names(), 'nodes, besides the actuators, that every tick waits for', []),
+    Key('controllers', NAMES, 'nodes, besides the actuators, that every tick waits for', []),
     Key('leg', LegConfig.KEYS, 'a body of the kind leg', None, in_text=InText.NEVER),
     Key(BODY, _BODY, 'what several actuators move together', None, of=_only),
     Key('bodies', Named(_BODY), 'several bodies by name, instead of `body`', None,

@@ -4,7 +4,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any
 
-from isa_ros.config.text.keys import Key, Names, ParameterSet, Table
+from isa_ros.config.text.keys import Key, NAMES, ParameterSet, Table
 from isa_ros.config.text.sections import Place
 from isa_ros.core.suggest import alternatives
 from isa_ros.core.units import MPA
@@ -31,7 +31,7 @@ class SupplyConfig:
 
 
 SUPPLY_KEYS = Table(
-    (Key('feeds', Names(), 'the names of the actuators it feeds'),),
+    (Key('feeds', NAMES, 'the names of the actuators it feeds'),),
     rest=Key('sheet', ParameterSet(SupplySheet), 'the supply'))
 
 

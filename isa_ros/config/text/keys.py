@@ -44,7 +44,7 @@ class Leaf(NamedTuple):
 class Kind:
     """Conversion of the value of one key to a tree and back; written as it is by default."""
 
-    words = ''
+    words: str
     """Of the values, for the reference page."""
     unit = ''
 
@@ -62,98 +62,55 @@ class Kind:
 
     def tree(self, value: Any) -> Any:
         """Return the value as a tree of scalars, lists and sections."""
-        return value
+        return list(value) if isinstance(value, tuple) else value
 
-    def differences(self, tree: Any, place: Place) -> Iterator[KeyDifference]:
-        """Yield the keys below ``place`` that differ from those of this version."""
-        yield from ()
+    def rows(self, tree: Any, place: Place) -> 'Mapping[str, Key] | KeyDifference':
+        """Return the rows of the section ``tree`` of this kind, or why they are unknown here."""
+        return {}
 
     def leaves(self, value: Any, key: str, row: 'Key') -> Iterator[Leaf]:
         """Yield the values below ``key``, whose row is ``row``."""
         yield Leaf(key, value, row)
 
 
-@dataclass(frozen=True)
-class AnyValue(Kind):
-    """A value that is checked with the data that it names."""
+class Value(Kind):
+    """One value, or a list of them, which ``check`` returns or refuses at a place."""
 
-    words: str
-
-
-@dataclass(frozen=True)
-class Plain(Kind):
-    """One scalar of exactly this type."""
-
-    type_: type
-    unit: str = ''
-
-    @property
-    def words(self) -> str:  # type: ignore[override]
-        """Return the type as a reader knows it."""
-        return {str: 'text', bool: 'true or false', int: 'whole number'}[self.type_]
+    def __init__(self, words: str, check: Callable[[Any, Place], Any], unit: str = '') -> None:
+        self.words, self.unit, self._check = words, unit, check
 
     def read(self, tree: Any, place: Place) -> Any:
         """Return the value; as `Kind.read`."""
-        if type(tree) is not self.type_:
-            raise ConfigError(f'{place} = {tree!r}, must be of type {self.type_.__name__}')
-        return tree
+        return self._check(tree, place)
 
 
-@dataclass(frozen=True)
-class Number(Kind):
-    """A finite number in a unit, within bounds."""
-
-    doc: str
-    bounds: Mapping[str, float]
-    unit: str
-    words = 'number'
-
-    def read(self, tree: Any, place: Place) -> float:
-        """Return the value; as `Kind.read`."""
-        check(str(place), tree, {'doc': self.doc, 'unit': self.unit, 'bounds': self.bounds})
-        return float(tree)
+def of_type(value: Any, type_: type, place: Place) -> Any:
+    """Return a value of exactly this type; as `Kind.read`."""
+    if type(value) is not type_:
+        raise ConfigError(f'{place} = {value!r}, must be of type {type_.__name__}')
+    return value
 
 
-@dataclass(frozen=True)
-class Choice(Kind):
-    """One name out of a list."""
-
-    names: Sequence[str]
-
-    @property
-    def words(self) -> str:  # type: ignore[override]
-        """Return the names."""
-        return ' or '.join(self.names)
-
-    def read(self, tree: Any, place: Place) -> Any:
-        """Return the value; as `Kind.read`."""
-        check(str(place), tree, {'names': self.names})
-        return tree
+def _name(value: Any, place: Place) -> Any:
+    refuse_bad_name(value, str(place))
+    return value
 
 
-class Name(Kind):
-    """A name that ROS allows for a node."""
-
-    words = 'name'
-
-    def read(self, tree: Any, place: Place) -> Any:
-        """Return the value; as `Kind.read`."""
-        refuse_bad_name(tree, str(place))
-        return tree
+def choice_of(names: Sequence[str]) -> Value:
+    """Return the kind of one name out of a list."""
+    def checked(value: Any, place: Place) -> Any:
+        check(str(place), value, {'names': names})
+        return value
+    return Value(' or '.join(names), checked)
 
 
-class Names(Kind):
-    """A list of names."""
-
-    words = 'list of names'
-
-    def tree(self, value: Sequence[str]) -> list[str]:
-        """Return the list."""
-        return list(value)
-
-    def read(self, tree: Any, place: Place) -> tuple[str, ...]:
-        """Return the names; as `Kind.read`."""
-        return tuple(names_at(tree, place))
+ANY_NAME = Value('name', lambda value, place: value)
+"""A name that is checked with the data that it names."""
+NAME = Value('name', _name)
+NAMES = Value('list of names', lambda value, place: tuple(names_at(value, place)))
+TEXT = Value('text', lambda value, place: of_type(value, str, place))
+FLAG = Value('true or false', lambda value, place: of_type(value, bool, place))
+NANOSECONDS = Value('whole number', lambda value, place: of_type(value, int, place), 'ns')
 
 
 @dataclass(frozen=True)
@@ -171,22 +128,17 @@ class ParameterSet(Kind):
         """Return the checked set; as `Kind.read`."""
         return build_one_of(self.hint, written(section_at(tree, place), place), place)
 
-    def differences(self, tree: Any, place: Place) -> Iterator[KeyDifference]:
-        """Yield the keys that differ, or an unknown kind."""
-        if not isinstance(tree, dict):
-            return
-        hint, rest = self.hint, dict(tree)
-        if not isinstance(hint, type):
-            kinds = members(hint)
-            named = [rest.pop(key) for key in KIND_KEYS if key in rest]
-            if not named:
-                yield KeyDifference(f'{place / "kind"} is missing in the bag', True)
-            elif not _is_one_of(named[0], kinds):
-                yield KeyDifference(f'{place}: the kind {named[0]!r} is unknown here', True)
-            if not named or not _is_one_of(named[0], kinds):
-                return
-            hint = kinds[named[0]]
-        yield from _parameter_differences(hint, rest, place)
+    def rows(self, tree: Any, place: Place) -> 'Mapping[str, Key] | KeyDifference':
+        """Return a row for each parameter, and for the kind."""
+        if isinstance(self.hint, type):
+            return parameter_rows(self.hint)
+        kinds = members(self.hint)
+        for name in KIND_KEYS:
+            if name in tree:
+                found = _of_kind(tree[name], kinds, place)
+                return found if isinstance(found, KeyDifference) else {
+                    name: Key(name, ANY_NAME, ''), **parameter_rows(found)}
+        return KeyDifference(f'{place / "kind"} is missing in the bag', True)
 
 
 class Layer(ParameterSet):
@@ -197,29 +149,48 @@ class Layer(ParameterSet):
         return written(section_at(tree, place), place)
 
 
-def _is_one_of(kind: Any, kinds: Mapping[str, Any]) -> bool:
-    """Return whether a value of a file, perhaps a section or a list, is one of some kinds."""
-    return isinstance(kind, str) and kind in kinds
+def _of_kind(kind: Any, kinds: Mapping[str, Any], place: Place) -> Any:
+    """Return the one of some kinds that a file names, perhaps with a section or a list."""
+    if isinstance(kind, str) and kind in kinds:
+        return kinds[kind]
+    return KeyDifference(f'{place}: the kind {kind!r} is unknown here', True)
 
 
-def _parameter_differences(
-        cls: type[Parameters], tree: Tree, place: Place) -> Iterator[KeyDifference]:
+def parameter_rows(cls: type[Parameters]) -> dict[str, 'Key']:
+    """Return the rows of the fields of a parameter set by name."""
     hints = get_type_hints(cls)
-    for key in tree:
-        if key not in hints:
-            yield KeyDifference(f'{place / key} is unknown here', True)
-    for f in fields(cls):
-        if f.name in tree:
-            if 'doc' not in f.metadata:
-                yield from ParameterSet(hints[f.name]).differences(tree[f.name], place / f.name)
-        elif 'absent' in f.metadata:
-            meant = f.metadata['absent']
-            if isinstance(meant, Parameters):
-                meant = as_tree(meant, hints[f.name]).get('kind', 'its default')
-            yield KeyDifference(
-                f'{place / f.name} is missing in the bag, {meant} is meant', False)
-        else:
-            yield KeyDifference(f'{place / f.name} is missing in the bag', True)
+    return {f.name: Key(
+        f.name, ANY_NAME if 'doc' in f.metadata else ParameterSet(hints[f.name]),
+        f.metadata.get('doc', ''), _default(f.metadata, hints[f.name])) for f in fields(cls)}
+
+
+def _default(declared: Mapping[str, Any], hint: Any) -> Any:
+    """Return the value of a parameter that a file leaves out, as text, or `REQUIRED`."""
+    absent = declared.get('absent', REQUIRED)
+    if isinstance(absent, Parameters):
+        return as_tree(absent, hint).get('kind', 'its default')
+    return absent
+
+
+def differences(kind: Kind, tree: Any, place: Place) -> Iterator[KeyDifference]:
+    """Yield the keys below ``place`` that differ from those of this version."""
+    if not isinstance(tree, dict):
+        return  # refused by `read`
+    rows = kind.rows(tree, place)
+    if isinstance(rows, KeyDifference):
+        yield rows
+        return
+    for name in tree if rows else ():
+        if name not in rows:
+            yield KeyDifference(f'{place / name} is unknown here', True)
+    for name, key in rows.items():
+        missing = f'{place / name} is missing in the bag'
+        if name in tree:
+            yield from differences(key.kind, tree[name], place / name)
+        elif key.in_text in (InText.ALWAYS, InText.ONLY) or key.default is REQUIRED:
+            yield KeyDifference(missing, True)
+        elif key.in_text is InText.IF_ANY and key.default is not None:
+            yield KeyDifference(f'{missing}, {key.default_words} is meant', False)
 
 
 class InText(Enum):
@@ -275,7 +246,11 @@ def number(name: str, unit: str, meaning: str, default: float | None, *, meant: 
            in_text: InText = InText.IF_ANY, instead_of: tuple[str, ...] = (),
            **bounds: float) -> Key:
     """Return the row of a number; ``bounds`` as those of `isa_ros.core.parameter.parameter`."""
-    return Key(name, Number(meaning, bounds, unit), meaning, default, meant, in_text, instead_of)
+    def checked(value: Any, place: Place) -> float:
+        check(str(place), value, {'doc': meaning, 'unit': unit, 'bounds': bounds})
+        return float(value)
+    return Key(
+        name, Value('number', checked, unit), meaning, default, meant, in_text, instead_of)
 
 
 @dataclass(frozen=True)
@@ -327,23 +302,11 @@ class Table(Kind):
                 tree[key.name] = key.kind.tree(own)
         return tree
 
-    def differences(self, tree: Any, place: Place) -> Iterator[KeyDifference]:
-        """Yield the keys that differ; a tree that is not a section is refused by `read`."""
-        if not isinstance(tree, dict):
-            return
-        if self.rest is not None:
-            yield from self.rest.kind.differences(self._rest_of(tree), place)
-        for name in tree if self.rest is None else ():
-            if name not in self.names:
-                yield KeyDifference(f'{place / name} is unknown here', True)
-        for key in self.keys:
-            missing = f'{place / key.name} is missing in the bag'
-            if key.name in tree:
-                yield from key.kind.differences(tree[key.name], place / key.name)
-            elif key.in_text in (InText.ALWAYS, InText.ONLY) or key.default is REQUIRED:
-                yield KeyDifference(missing, True)
-            elif key.in_text is InText.IF_ANY and key.default is not None:
-                yield KeyDifference(f'{missing}, {key.default_words} is meant', False)
+    def rows(self, tree: Any, place: Place) -> 'Mapping[str, Key] | KeyDifference':
+        """Return the rows, and those of the set whose keys stand beside them."""
+        rest = {} if self.rest is None else self.rest.kind.rows(tree, place)
+        return rest if isinstance(rest, KeyDifference) else {
+            **rest, **{key.name: key for key in self.keys}}
 
     def leaves(self, value: Any, key: str, row: Key | None = None) -> Iterator[Leaf]:
         """Yield the values of a section."""
@@ -375,10 +338,9 @@ class Named(Kind):
             values[name] = self.section.read(below, place / name)
         return values
 
-    def differences(self, tree: Any, place: Place) -> Iterator[KeyDifference]:
-        """Yield the keys that differ, section by section."""
-        for name, below in tree.items() if isinstance(tree, dict) else ():
-            yield from self.section.differences(below, place / name)
+    def rows(self, tree: Any, place: Place) -> 'Mapping[str, Key] | KeyDifference':
+        """Return a row for each section."""
+        return {name: Key(name, self.section, '') for name in tree}
 
     def leaves(self, value: Sequence[Any], key: str, row: Key) -> Iterator[Leaf]:
         """Yield the values of all sections."""
@@ -401,21 +363,16 @@ class OneOf(Kind):
         """Return the values with their kind; as `Kind.read`."""
         rest = dict(section_at(tree, place))
         kind = rest.pop('kind', None)
-        if not _is_one_of(kind, self.tables):
+        if not isinstance(kind, str) or kind not in self.tables:
             raise ConfigError(
                 f'{place / "kind"} = {kind!r}, must be one of {", ".join(self.tables)}')
-        return {'kind': kind} | self.tables[str(kind)].read(rest, place)
+        return {'kind': kind} | self.tables[kind].read(rest, place)
 
-    def differences(self, tree: Any, place: Place) -> Iterator[KeyDifference]:
-        """Yield the keys that differ, or an unknown kind."""
-        if not isinstance(tree, dict):
-            return
-        rest = dict(tree)
-        kind = rest.pop('kind', None)
-        if _is_one_of(kind, self.tables):
-            yield from self.tables[str(kind)].differences(rest, place)
-        else:
-            yield KeyDifference(f'{place}: the kind {kind!r} is unknown here', True)
+    def rows(self, tree: Any, place: Place) -> 'Mapping[str, Key] | KeyDifference':
+        """Return the rows of the section's kind, and one for the kind."""
+        found = _of_kind(tree.get('kind'), self.tables, place)
+        return found if isinstance(found, KeyDifference) else {
+            'kind': Key('kind', ANY_NAME, ''), **found.rows(tree, place)}
 
     def leaves(self, value: Any, key: str, row: Key) -> Iterator[Leaf]:
         """Yield the values of the section."""
