@@ -13,6 +13,7 @@ from isa_ros.config.paths import CONFIG, find
 from isa_ros.config.runs.model_run import full_key, model_run
 from isa_ros.config.runs.run_config import Origins, RUN, run_of, RunConfig
 from isa_ros.config.text.changes import changed, Values
+from isa_ros.config.text.keys import Leaf
 from isa_ros.config.text.parameter_sets import build, build_one_of, kind_of, members
 from isa_ros.config.text.sections import Entry, merge, Place, Section, section_at, written
 from isa_ros.config.text.yaml_text import read, Tree
@@ -121,6 +122,9 @@ def _kind_row(path: str, value: Parameters, union: Any, source_of: Mapping[str, 
 
 def _run_tables(run: RunConfig, origins: Origins, changes: Sequence[str]) -> Iterator[str]:
     """Return the tables of a run; values at the keys ``changes`` have the source `SET`."""
+    yield _table(f'values of {run.source}', [
+        _single(leaf, SET if _is_among(leaf.key, changes) else run.source)
+        for leaf in RUN.leaves(run, '') if not isinstance(leaf.value, Parameters)])
     kinds = dict.fromkeys(run.actuator(name).sheet.link.kind for name in run.linked)
     wires = [_table(f'wire of links: {kind}', rows(*wire(kind))) for kind in kinds]
     for key, parameters, _ in RUN.leaves(run, ''):
@@ -137,6 +141,14 @@ def _run_tables(run: RunConfig, origins: Origins, changes: Sequence[str]) -> Ite
         yield _table(title + about, [
             row._replace(source=SET) if _is_among(f'{title}.{row.parameter}', changes) else row
             for row in found])
+
+
+def _single(leaf: Leaf, source: str) -> Row:
+    """Return the row of a single value that is the default, or else from ``source``."""
+    row = leaf.row
+    if row.kind.tree(leaf.value) == row.default:
+        return Row(leaf.key, row.default_words, row.kind.unit, '', 'default', row.meaning)
+    return Row(leaf.key, _value(leaf.value), row.kind.unit, '', source, row.meaning)
 
 
 def _title(run: RunConfig, key: str, parameters: Parameters) -> tuple[str, str]:

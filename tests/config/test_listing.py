@@ -64,11 +64,21 @@ def test_title_and_row_are_the_key_of_a_value(name: str) -> None:
     """A run with the shown value written at the shown key is the same run."""
     run = load(name)
     tables = [text.splitlines() for text in describe(name).split('\n\n')]
-    for title, _, *body in tables:
+    for title, _, *body in tables[1:]:      # the first one has the keys of the resolved text
         key, value = next(row.split()[:2] for row in body if row.split()[1][0].isdigit())
         section = title.partition(':')[0].partition(' of ')[0]
         same = run.replace({f'{section}.{key}': float(value)})
         assert same.configuration == run.configuration, key
+
+
+def test_single_values_have_their_keys() -> None:
+    """Those of the resolved text; what the file leaves out is a default."""
+    text = describe('rig_rotary', values={'tick_timeout_s': 6.0})
+    assert text.startswith('values of rig_rotary.yaml\n')
+    assert shown(text, 'tick_timeout_s') == ['6', '--set']
+    assert shown(text, 'seed') == ['0', 'default']
+    assert shown(text, 'actuators.rotor.preset') == ['table_4', 'rig_rotary.yaml']
+    assert re.search(r'^step_ns +1000000 +ns +rig_rotary.yaml +the macro step', text, re.M)
 
 
 @pytest.mark.parametrize('name', ['rig_rotary', 'rig_rotary.yaml', 'hyq_real'])

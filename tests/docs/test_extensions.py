@@ -1,6 +1,7 @@
 """Rows of "Places for extensions" of docs/architecture.md, each made in a copy of the package."""
 
 from pathlib import Path
+import re
 
 import pytest
 from tests.docs.patched_copy import PatchedCopy
@@ -30,6 +31,29 @@ device, = devices_of(run.configuration)
 device.take_sample(sample, 0)
 print(*(f'{one.code:04X} {one.register:02X}' for one in device.emergencies()))
 '''
+_SEED = "    Key('seed', Value("
+_KEY = f"""    number('room_celsius', 'Celsius', 'the air around the run', 20.0, ge=-50.0),
+{_SEED}"""
+_RUNS = """
+import isa_ros
+from isa_ros.config.differences import configuration_differences, key_differences
+from isa_ros.config.runs.run_config import RunConfig
+from isa_ros.config.text.sections import Place
+from isa_ros.config.text.yaml_text import parse
+from isa_ros.errors import ConfigError
+rig = isa_ros.load('rig_linear')
+assert rig.configuration.room_celsius == 20.0
+warm = rig.replace({'room_celsius': 30}).configuration
+text = warm.to_yaml()
+assert RunConfig.from_yaml(text) == warm and warm.digest != rig.configuration.digest
+print(*configuration_differences(parse(text, ''), parse(rig.configuration.to_yaml(), '')))
+older = parse(text.replace('room_celsius: 30.0\\n', ''), '')
+print(*key_differences(older, Place('old')))
+try:
+    rig.replace({'room_celsius': -60})
+except ConfigError as error:
+    print(error)
+"""
 
 
 @pytest.fixture
@@ -65,3 +89,26 @@ def test_a_condition_is_a_row_and_a_line(copied: PatchedCopy) -> None:
     assert '\n| 13 | `undervoltage` | supply pressure |' in copied.read('docs/protection.md')
     copied.script('scripts/write_objects.py')
     assert '\n| `undervoltage` | 0xFF10 | 0x81 |' in copied.read('docs/objects.md')
+
+
+def test_a_key_of_a_run_file_is_a_row(copied: PatchedCopy) -> None:
+    """And a field for its value: read, checked, written, compared, listed and on the page."""
+    path = 'isa_ros/config/runs/run_config.py'
+    copied.replace(path, _SEED, _KEY)
+    field = '    seed: int = 0\n'
+    copied.replace(path, field, f'{field}    room_celsius: float = 20.0\n')
+    assert copied.touched == [path]
+    compared, lacking, refused = copied.python(_RUNS).splitlines()
+    assert compared == (
+        "DifferingKey(key='room_celsius', expected=30.0, actual=20.0, unit='Celsius')")
+    assert lacking == (
+        "KeyDifference(text='old: room_celsius is missing in the bag, 20.0 is meant', "
+        'is_obstacle=False)')
+    assert refused == (
+        'rig_linear.yaml: room_celsius = -60 Celsius, must be >= -50 Celsius (the air around the '
+        'run)')
+    listed = copied.isa('params', 'rig_linear', '--set', 'room_celsius=25')
+    assert re.search(r'^room_celsius +25 +Celsius +--set +the air around the run$', listed, re.M)
+    copied.script('scripts/write_run_file.py')
+    assert ('\n| `room_celsius` | number, Celsius | 20.0 | the air around the run | yes |'
+            in copied.read('docs/run_file.md'))

@@ -48,7 +48,7 @@ class ActuatorConfig:
 
 
 ACTUATOR = Table((
-    Key('model', ANY_NAME, 'the packaged model', None, in_text=InText.ALWAYS),
+    Key('model', ANY_NAME, 'the packaged model', None, 'required', InText.ALWAYS),
     Key('preset', TEXT, 'the gains of the model', DEFAULT_PRESET),
     Key('variants', NAMES, 'variants of the model, in their order', [], in_text=InText.NEVER),
     Key('parameters', Layer(ActuatorSheet), 'values of the sheet that replace those of the model',
@@ -68,7 +68,7 @@ ACTUATOR = Table((
     Key('mode', ANY_NAME, 'mode at t = 0', None, meant='every block that is on'),
     Key('load', Layer(LocalLoad),
         'its own load, by a kind of the model; values that it leaves out are those of the model; '
-        'an actuator of a body has none', None),
+        'an actuator of a body has none', None, 'required'),
     Key('sheet', Layer(ActuatorSheet),
         'the whole sheet inline: of the model only the name is used, and `load` is complete', None,
         in_text=InText.ONLY)))

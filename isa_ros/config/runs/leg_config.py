@@ -76,7 +76,7 @@ class LegConfig(BodyConfig):
 
     kind: ClassVar[str] = 'leg'
     KEYS: ClassVar[Table] = Table((
-        Key('model', ANY_NAME, 'the packaged leg', None, in_text=InText.ALWAYS),
+        Key('model', ANY_NAME, 'the packaged leg', None, 'required', InText.ALWAYS),
         Key('joints', Table(tuple(
             Key(joint, NAME, f'the actuator that moves {joint}') for joint in JOINTS)),
             'the actuator of each joint', of=lambda leg: dict(leg.joints)),

@@ -216,7 +216,7 @@ RUN = Table((
     Key('seed', Value('whole number', lambda value, place: seed_of(value, str(place))),
         'of all noise', 0),
     Key(SUPPLY, ParameterSet(SupplySheet), 'the supply of all actuators', None,
-        in_text=InText.NEVER),
+        'required, or `supplies`', InText.NEVER),
     Key('supplies', Named(SUPPLY_KEYS), 'several supplies, instead of `supply`', None,
         in_text=InText.ALWAYS, instead_of=(SUPPLY,)),
     Key('record', RECORD, 'what is recorded', {}, 'everything'),
@@ -264,11 +264,13 @@ def run_of(tree: Tree, place: Place, is_checked: bool = True) -> tuple[RunConfig
         origins |= {f'actuators.{name}.{key}': layer for key, layer in layers.items()}
     if is_checked:
         refuse_overfull({own.name: own.sheet.link for own in actuators}, place)
-    source = place.file if values['source'] is None else values['source']
-    return RunConfig(
-        values['name'], step_ns, offset_ns, values['tick_timeout_s'], supplies, tuple(actuators),
-        bodies, source=source, record=values['record'], seed=values['seed'],
-    ).with_controllers(values['controllers']), origins
+    values |= {
+        'step_ns': step_ns, 'controller_offset_ns': offset_ns, 'supplies': supplies,
+        'bodies': bodies, 'actuators': tuple(actuators), 'source': values['source'] or place.file}
+    controllers = values.pop('controllers')
+    run = RunConfig(**{name: values[name] for name in RunConfig.__dataclass_fields__
+                       if name in values})
+    return run.with_controllers(controllers), origins
 
 
 def _times(values: dict[str, Any], place: Place) -> tuple[int, int]:

@@ -1,11 +1,14 @@
 """Run files: the shipped ones, overrides, and the resolved text."""
 
 from pathlib import Path
+import re
+from typing import Any
 
 from isa_ros.config.runs.run_config import run_of, RunConfig
 from isa_ros.config.runs.run_file import load_run
+from isa_ros.config.text.changes import replaced
 from isa_ros.config.text.sections import Place
-from isa_ros.config.text.yaml_text import read
+from isa_ros.config.text.yaml_text import dump, parse, read
 from isa_ros.errors import ConfigError
 from isa_ros.loads.sheets import Blocked, Mass
 from isa_ros.loads.wheel import Wheel
@@ -24,6 +27,100 @@ def test_a_shipped_run_survives_its_resolved_text(path: Path) -> None:
     assert again == run
     assert again.to_yaml() == run.to_yaml() and again.digest == run.digest
     assert str(path.parent) not in run.to_yaml()
+
+
+@pytest.mark.parametrize('path', SHIPPED, ids=lambda path: path.stem)
+def test_a_resolved_text_is_a_run_file(path: Path, tmp_path: Path) -> None:
+    """Of the same run, bit for bit, under any name."""
+    run = load_run(path)
+    again = tmp_path / 'again.yaml'
+    again.write_text(run.to_yaml(), encoding='utf-8')
+    assert load_run(again) == run
+    assert load_run(again).digest == run.digest
+
+
+def inline(tmp_path: Path, changes: dict[str, Any]) -> RunConfig:
+    """Return the run of a resolved text with some values changed."""
+    path = tmp_path / 'inline.yaml'
+    path.write_text(load_run(rig(tmp_path)).to_yaml(), encoding='utf-8')
+    return load_run(path, changes)
+
+
+def test_of_an_inline_sheet_only_the_name_of_the_model_is_used(tmp_path: Path) -> None:
+    """Values are replaced in the sheet itself or below parameters; a link of all applies."""
+    plain = load_run(rig(tmp_path)).actuator('ram')
+    ram = inline(tmp_path, {
+        'actuators.ram.model': 'my_own', 'actuators.ram.sheet.plant.drive.bore_mm': 30.0,
+        'actuators.ram.parameters': {'reu': {'force': {'kf': 0.0}}},
+        'link': {'kind': 'can', 'cycle_ms': 2.0}}).actuator('ram')
+    assert (ram.model, ram.preset, ram.load) == ('my_own', plain.preset, plain.load)
+    assert (ram.sheet.plant.drive.bore_mm, ram.sheet.reu.force.kf) == (30.0, 0.0)
+    assert ram.sheet.plant.oil == plain.sheet.plant.oil     # nothing scales
+    assert (ram.sheet.link.kind, ram.sheet.link.cycle_ms) == ('can', 2.0)
+
+
+@pytest.mark.parametrize(('changes', 'expected'), [
+    ({'step_ms': 2.0}, 'has step_ms and step_ns, must have only one of them'),
+    ({'controller_offset_ms': 0.2}, 'has controller_offset_ms and controller_offset_ns, must'),
+    ({'step_ns': 1_000_001}, 'step_ms = 1 ms, must be a multiple of 0.1 ms'),
+    ({'actuators.ram.initial_position_mm': 1.0},
+     'actuators.ram has initial_position_mm and initial_position, must have only one of them'),
+    ({'actuators.ram.initial_position': 0.101},
+     'actuators.ram.initial_position = 0.101 m, must be <= 0.1 m (within the stroke)'),
+    ({'actuators.ram.initial_position': -0.1}, 'initial_position = -0.1 m, must be >= 0 m'),
+    ({'actuators.ram.load': {'kind': 'mass'}}, 'actuators.ram.load lacks inertia, force'),
+    ({'actuators.ram.model': 5}, 'actuators.ram.model = 5, must be of type str'),
+    ({'actuators.ram.sheet': {}}, 'actuators.ram.sheet lacks spool_feedback, plant, reu'),
+    ({'actuators.ram.sheet.reu.force.kp': 1.0}, 'actuators.ram: reu.force.kp = 1 m/N, must be'),
+])
+def test_an_inline_sheet_is_checked(
+        tmp_path: Path, changes: dict[str, Any], expected: str) -> None:
+    with pytest.raises(ConfigError) as caught:
+        inline(tmp_path, changes)
+    assert str(caught.value).startswith('inline.yaml: ') and expected in str(caught.value)
+
+
+def test_an_inline_actuator_needs_a_load(tmp_path: Path) -> None:
+    """Except in the text of a bag, which was checked when it was recorded."""
+    text = dump(replaced(parse(
+        load_run(rig(tmp_path)).to_yaml(), 't'), 'actuators.ram.load', None, 't'))
+    text = text.replace('    load: null\n', '')
+    path = tmp_path / 'inline.yaml'
+    path.write_text(text)
+    with pytest.raises(ConfigError, match='actuators.ram has no load and moves no joint of the l'):
+        load_run(path)
+    assert RunConfig.from_yaml(text).actuator('ram').load is None
+
+
+def test_what_does_not_fit_together_is_read_from_a_bag(tmp_path: Path) -> None:
+    """Another version may have simulated what this one refuses."""
+    text = load_run(rig(tmp_path)).to_yaml()
+    wild, count = re.subn(r'kp: 8.0e-08', 'kp: 1.0', text, count=1)
+    assert count == 1
+    assert RunConfig.from_yaml(wild).actuator('ram').sheet.reu.force.kp == 1.0
+
+
+def test_a_joint_of_a_leg_may_have_a_sheet_of_its_own(tmp_path: Path) -> None:
+    """Its position is that of the joint unless the file has one."""
+    path = tmp_path / 'leg.yaml'
+    path.write_text(load_run(CONFIG / 'leg.yaml').to_yaml(), encoding='utf-8')
+    run = load_run(path, {'actuators.kfe.initial_position': 0.01})
+    assert run.actuator('kfe').initial_position == 0.01
+    with pytest.raises(ConfigError, match='kfe.load is not used: the actuator moves kfe of the l'):
+        load_run(path, {'actuators.kfe.load': {'kind': 'blocked'}})
+    plain = CONFIG / 'leg.yaml'
+    with pytest.raises(ConfigError, match='kfe.initial_position is not used: the actuator moves'):
+        load_run(plain, {'actuators.kfe.initial_position': 0.01})
+
+
+def test_times_have_defaults(tmp_path: Path) -> None:
+    """Those that most shipped files have."""
+    text = (CONFIG / 'rig_linear.yaml').read_text(encoding='utf-8')
+    short = '\n'.join(line for line in text.splitlines() if not line.startswith(
+        ('step_ms', 'controller_offset_ms', 'tick_timeout_s')))
+    path = tmp_path / 'rig_linear.yaml'
+    path.write_text(short, encoding='utf-8')
+    assert load_run(path) == load_run(CONFIG / 'rig_linear.yaml')
 
 
 def test_the_leg_is_the_one_of_the_design() -> None:

@@ -1,0 +1,77 @@
+"""
+Write the tables of docs/run_file.md from the rows of the keys of a run file.
+
+    python scripts/write_run_file.py
+"""
+
+from collections.abc import Iterator
+from dataclasses import fields
+from pathlib import Path
+
+from isa_ros.actuator.link import LinkSheet
+from isa_ros.config.runs.actuator_config import ACTUATOR
+from isa_ros.config.runs.external_config import ExternalConfig
+from isa_ros.config.runs.leg_config import LegConfig, LegStart
+from isa_ros.config.runs.recording import RECORD, Storage
+from isa_ros.config.runs.run_config import RUN
+from isa_ros.config.runs.supplies import SUPPLY_KEYS
+from isa_ros.config.text.keys import InText, parameter_rows, REQUIRED, Table
+from isa_ros.config.text.parameter_sets import members
+from isa_ros.core.parameter import Parameters
+from isa_ros.surroundings.bodies.leg.inertial import Imu
+from isa_ros.surroundings.return_line import ReturnLine
+from isa_ros.surroundings.supply import SupplySheet
+from isa_ros.text.marked import with_parts
+from isa_ros.text.table import markdown
+
+PAGE = Path(__file__).resolve().parents[1] / 'docs' / 'run_file.md'
+_HEADER = ['key', 'value', 'default', 'meaning']
+_IN_TEXT = {InText.NEVER: 'no', InText.IF_ANY: 'yes', InText.ALWAYS: 'yes', InText.ONLY: 'only'}
+
+
+def keys(table: Table) -> list[str]:
+    """Return the lines of the table of a section's keys."""
+    return markdown([[*_HEADER, 'resolved text'], *(
+        [f'`{key.name}`', f'{key.kind.words}, {key.kind.unit}' if key.kind.unit
+         else key.kind.words, _default(key.default, key.default_words), key.meaning,
+         _IN_TEXT[key.in_text]] for key in table.keys)])
+
+
+def parameters(*sets: type[Parameters]) -> list[str]:
+    """Return the lines of the table of the keys of parameter sets, each once."""
+    rows = {row[0]: row for cls in sets for row in _parameters(cls)}
+    return markdown([_HEADER, *rows.values()])
+
+
+def _parameters(cls: type[Parameters]) -> Iterator[list[str]]:
+    rows = parameter_rows(cls)
+    for f in fields(cls):
+        row = rows[f.name]
+        if 'doc' in f.metadata:
+            value = ' or '.join(f.metadata['names']) if 'names' in f.metadata else (
+                f'number, {f.metadata["unit"]}')
+            yield [f'`{f.name}`', value, _default(row.default, row.default_words), row.meaning]
+
+
+def by_kind(union: object) -> list[str]:
+    """Return the lines of the table of the keys of each kind."""
+    return markdown([['kind', *_HEADER], *(
+        [f'`{kind}`', *row] for kind, cls in members(union).items() for row in _parameters(cls))])
+
+
+def _default(default: object, words: str) -> str:
+    return 'required' if default is REQUIRED else words or '-'
+
+
+def page(text: str) -> str:
+    """Return the text of the page with the tables of today."""
+    return with_parts(text, {
+        'run': keys(RUN), 'supplies': keys(SUPPLY_KEYS), 'supply': by_kind(SupplySheet),
+        'return line': by_kind(ReturnLine), 'record': keys(RECORD),
+        'storage': parameters(Storage), 'link': parameters(LinkSheet),
+        'actuator': keys(ACTUATOR), 'leg': keys(LegConfig.KEYS), 'start': parameters(LegStart),
+        'imu': parameters(Imu), 'external': keys(ExternalConfig.KEYS)})
+
+
+if __name__ == '__main__':
+    PAGE.write_text(page(PAGE.read_text(encoding='utf-8')), encoding='utf-8')
