@@ -26,12 +26,17 @@ class State(NamedTuple):
     """`SAMPLE` by actuator: ``state.actuators['knee'].position``; SI, pressures gauge."""
     supplies: Mapping[str, np.record]
     """`SUPPLY_SAMPLE` by supply: ``state.supplies['supply'].pressure``, Pa gauge."""
-    body: np.record | None
+    bodies: Mapping[str, np.record]
     """
-    The sample of the body that the actuators move, None without one.
+    The sample of each body that actuators move, by its name.
 
     Of a leg: ``position``, ``velocity``, ``torque`` of its joints, ``foot_force``, ... (3,).
     """
+
+    @property
+    def body(self) -> np.record | None:
+        """Return the sample of the only body; None without one, or with several."""
+        return only_of(self.bodies)
 
 
 class Setpoint(NamedTuple):
@@ -194,6 +199,16 @@ def merge_requests(requests: NDArray[np.void], into: NDArray[np.void]) -> None:
     for row, kinds in enumerate(requests['kinds'].tolist()):
         if kinds:
             into[row] = requests[row]
+
+
+def only_rows(rows: Mapping[str, NDArray[np.void]]) -> dict[str, np.record]:
+    """Return the only row of each array, (1,), with its fields as attributes, by name."""
+    return {name: own.view(np.recarray)[0] for name, own in rows.items()}
+
+
+def only_of(records: Mapping[str, np.record]) -> np.record | None:
+    """Return the only record; None without one, or with several."""
+    return next(iter(records.values())) if len(records) == 1 else None
 
 
 def by_name(names: Sequence[str], rows: NDArray[np.void]) -> dict[str, np.record]:

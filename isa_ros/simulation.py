@@ -11,10 +11,13 @@ A tick is that of every run (`isa_ros.tick.tick_loop`), in one thread and withou
 
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
+from types import MappingProxyType
 import warnings
 
 from isa_ros.config.assembly import group_of, request_range_of, surroundings_of
-from isa_ros.controller import by_name, Controller, fill_requests, Setpoint
+from isa_ros.config.runs.body_config import BodyFactory
+from isa_ros.controller import (
+    by_name, Controller, fill_requests, only_of, only_rows, Setpoint)
 from isa_ros.core.noise import seed_of
 from isa_ros.core.saved_state import RunState
 from isa_ros.core.signals import COMMAND, Records
@@ -44,7 +47,8 @@ class Simulation:
     Commands come from the scenario, from `command`, and from ``controllers``, whose commands
     depend on the state of a tick and take effect one tick later. At the same tick the scenario
     wins over a controller, and both over `command`. A request of a controller beyond the range of
-    its actuator is refused or limited, with a `UserWarning`.
+    its actuator is refused or limited, with a `UserWarning`. ``factories`` make the bodies of the
+    kind external, by name.
 
     Raises
     ------
@@ -53,8 +57,10 @@ class Simulation:
 
     """
 
-    def __init__(self, scenario: Scenario, controllers: Sequence[Controller] = ()) -> None:
-        self._controllers = tuple(controllers)
+    def __init__(
+            self, scenario: Scenario, controllers: Sequence[Controller] = (),
+            factories: Mapping[str, BodyFactory] = MappingProxyType({})) -> None:
+        self._controllers, self._factories = tuple(controllers), factories
         self._assemble(scenario)
         self.reset()
 
@@ -66,8 +72,8 @@ class Simulation:
         """Names of the actuators, in the order of all rows."""
         self.group = group_of(run)
         """The actuators, with their samples as rows."""
-        self.surroundings = surroundings_of(run)
-        """Supplies and body, with their samples as rows."""
+        self.surroundings = surroundings_of(run, self._factories)
+        """Supplies and bodies, with their samples as rows."""
         supplies = [feed.name for feed in self.surroundings.feeds]
         transport = InProcess(
             self.group, self.surroundings.starts(), (), self._controllers, supplies)
@@ -84,10 +90,8 @@ class Simulation:
         self.supply_samples: Mapping[str, np.record] = by_name(
             supplies, self.surroundings.supplies)
         """`SUPPLY_SAMPLE` by supply, likewise."""
-        self.body_sample: np.record | None = None
-        """Sample of the body, likewise; None without a body."""
-        if self.surroundings.body is not None:
-            self.body_sample = self.surroundings.body.sample.view(np.recarray)[0]
+        self.body_samples: Mapping[str, np.record] = only_rows(self.loop.rows.bodies)
+        """Sample of each body by name, likewise."""
 
     def reset(self, seed: int | None = None) -> Mapping[str, np.record]:
         """
@@ -108,6 +112,11 @@ class Simulation:
             self._assemble(replace(self.scenario, run=run))
         self.loop.join()
         return self.samples
+
+    @property
+    def body_sample(self) -> np.record | None:
+        """Return the sample of the only body; None without one, or with several."""
+        return only_of(self.body_samples)
 
     @property
     def ticks(self) -> int:

@@ -46,7 +46,7 @@ class PeerTransport:
         self._link = link
         self._cast = Cast(
             [actuator.name for actuator in run.actuators],
-            [supply.name for supply in run.supplies], None)
+            [supply.name for supply in run.supplies], {})
         self._step_ns = run.step_ns
         self._starts = starts
         self._lost = lost

@@ -139,6 +139,6 @@ def packer_of(run: RunConfig, shown: Shown) -> Packer:
         Names([(actuator.name, actuator.sheet.is_rotary) for actuator in run.actuators],
               [(supply.name, isinstance(supply.sheet.return_line, VolumeReturn))
                for supply in run.supplies],
-              run.bodies[0].messages(run.step_ns) if run.bodies else (),
+              {body.name: body.messages(run.step_ns) for body in run.bodies},
               [actuator.name for actuator in run.actuators if is_heated(actuator.sheet.plant)],
               run.linked), shown)

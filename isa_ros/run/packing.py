@@ -48,8 +48,8 @@ class Names(NamedTuple):
     """(name, is_rotary) of each."""
     supplies: Sequence[tuple[str, bool]] = ()
     """(name, publishes its return pressure) of each."""
-    body: Sequence[BodyMessage] = ()
-    """What is published of the body's sample."""
+    bodies: Mapping[str, Sequence[BodyMessage]] = {}
+    """What is published of each body's sample."""
     heated: Collection[str] = ()
     """Names of the actuators whose temperature is published."""
     linked: Collection[str] = ()
@@ -136,10 +136,12 @@ class Packer:
             at += len(_SUPPLY_PRESSURES)
         if names.supplies:
             found.append((Topic(*coordinator_messages.APPLIED_PARAMETERS, KEPT), None))
-        if shown.body is not None:
-            columns = float_columns(shown.body.dtype, at)
+        of_bodies = [own for messages in names.bodies.values() for own in messages]
+        for body, sample in shown.bodies.items():
+            columns = float_columns(sample.dtype, at)
+            at += floats(sample).size
             found += [(Topic(own.topic, type_of(own)), prepared(own, columns))
-                      for own in names.body]
+                      for own in names.bodies.get(body, ())]
         if is_run:
             found += [(Topic(*clock.TOPIC), clock.clock()), (Topic(*event.TOPIC), None),
                       (Topic(*diagnostics.TOPIC), None)]
@@ -155,7 +157,7 @@ class Packer:
             [name for name, _ in names.actuators], shown.samples,
             [name for name, _ in names.supplies], shown.supplies, is_run)
         """The messages that are encoded as they come."""
-        self._periods = {own.topic: own.period_ns for own in names.body if own.period_ns} | {
+        self._periods = {own.topic: own.period_ns for own in of_bodies if own.period_ns} | {
             f'/{name}/{TEMPERATURE[0]}': NS_PER_SECOND for name in names.heated}
         self._not_due: frozenset[str] = frozenset()
         self._layouts: dict[tuple[bytes, bytes, frozenset[str]], Layout] = {}
@@ -176,7 +178,9 @@ class Packer:
         """Store the rows as plain floats, a tenth of the time to pass to the kernel."""
         shown, template = self._shown, self._template
         self._samples, self._supplies = floats(shown.samples), floats(shown.supplies)
-        self._body = np.zeros(0) if shown.body is None else floats(shown.body).reshape(-1)
+        self._bodies = [floats(sample).reshape(-1) for sample in shown.bodies.values()]
+        self._of_bodies = self._bodies[0] if len(self._bodies) == 1 else np.concatenate(
+            [np.zeros(0), *self._bodies])
         self._words = np.zeros(
             FIRST_VALUE + _n_columns(shown) + self._links.n_words, np.uint64)
         self._values = self._words.view(np.float64)
@@ -193,8 +197,10 @@ class Packer:
         ``tuned_supplies`` those of the supplies.
         """
         self._links.pack(t_ns, tick_start_ns, self._words, self._values)
+        if len(self._bodies) > 1:
+            np.concatenate(self._bodies, out=self._of_bodies)
         pack(time_word(t_ns), time_word(tick_start_ns), ATMOSPHERE,
-             self._samples, self._shown.applied, self._supplies, self._body, self._words,
+             self._samples, self._shown.applied, self._supplies, self._of_bodies, self._words,
              self._values, self._target)
         if self._periods:
             self._not_due = frozenset(
@@ -267,7 +273,7 @@ class Packer:
 
 def _n_columns(shown: Shown) -> int:
     """Return the number of values of all rows, without the words of links."""
-    body = 0 if shown.body is None else floats(shown.body).size
+    body = sum(floats(sample).size for sample in shown.bodies.values())
     own = len(_SAMPLE) + len(_PRESSURES) + len(_APPLIED)
     return len(shown.samples) * own + len(shown.supplies) * len(_SUPPLY_PRESSURES) + body
 

@@ -6,6 +6,7 @@ from isa_ros.bag.provenance import provenance_of
 from isa_ros.bag.writer import BagWriter
 from isa_ros.config.assembly import surroundings_of
 from isa_ros.core.topic import Topic
+from isa_ros.errors import BagError
 from isa_ros.run.narrator import Narrator, packer_of, Recorder
 from isa_ros.run.thinning import Thinning
 from isa_ros.scenario.scenario import Scenario
@@ -15,6 +16,10 @@ from isa_ros.tick.exchange import Rows
 
 def save(scenario: Scenario, log: Log, directory: Path, overwrite: bool) -> Path:
     """Write the bag of a result; as `Result.save`."""
+    for body in scenario.run.bodies:
+        if body.is_given:
+            raise BagError(f'{directory}: cannot be saved: {body.label} is external, and its '
+                           'load ports are not recorded, so that the bag could not be replayed')
     messages = ResultMessages(scenario, log)
     with BagWriter(directory, messages.topics, provenance_of(scenario), overwrite,
                    scenario.run.record.storage) as bag:
@@ -42,8 +47,8 @@ class ResultMessages:
             narrator.record()
             rows.samples[:] = samples[tick]
             rows.supplies[:] = log.supplies[tick]
-            if rows.body is not None and log.body is not None:
-                rows.body[0] = log.body[tick]
+            for name, sample in rows.bodies.items():
+                sample[0] = log.bodies[name][tick]
             for into, by_tick in ((rows.applied, log.applied), (rows.sent, log.sent)):
                 into['kinds'] = 0
                 if tick in by_tick:

@@ -20,8 +20,8 @@ class Log(NamedTuple):
     """`SAMPLE`, (n + 1, n_actuators)."""
     supplies: Records
     """`SUPPLY_SAMPLE`, (n + 1, n_supplies)."""
-    body: Records | None
-    """The body's sample, (n + 1,); None without a body."""
+    bodies: Mapping[str, Records]
+    """The sample of each body by name, (n + 1,)."""
     applied: Mapping[int, Records]
     """`COMMAND` rows (n_actuators,) by sample, for the samples with an applied command."""
     observed: Records | None = None
@@ -54,7 +54,7 @@ class LogSink(RowSink):
         self._tuned_supplies: dict[int, Mapping[str, float]] = {}
         self.log = Log(
             log_of(samples, len(samples)), log_of(rows.supplies, len(rows.supplies)),
-            None if rows.body is None else log_of(rows.body), self._applied,
+            {name: log_of(sample) for name, sample in rows.bodies.items()}, self._applied,
             log_of(rows.samples, len(samples)) if is_linked else None, self._sent, self._tuned,
             self._tuned_supplies)
         self._kinds, self._sent_kinds = rows.applied['kinds'], rows.sent['kinds']

@@ -19,7 +19,6 @@ from isa_ros.text.progress import Progress
 import numpy as np
 from numpy.typing import NDArray
 
-BODY = 'body'
 LINK = 'link'
 
 
@@ -28,12 +27,14 @@ class Result(Mapping[str, NDArray[np.float64]]):
     A run's signals over time: ``result['kfe.force']`` is an array, (n + 1,) for n ticks.
 
     Names are ACTUATOR.FIELD with the fields of `SAMPLE`, SUPPLY.FIELD of `SUPPLY_SAMPLE`, and
-    body.FIELD; of an actuator with a link also ACTUATOR.link.FIELD, the sample that listeners
+    BODY.FIELD by the name of a body, ``body`` for the only one; of an actuator with a link also ACTUATOR.link.FIELD, the sample that listeners
     have; a field of several numbers gives an array of as many columns. SI, pressures
     gauge. The arrays are read-only views of the log; copy them to change values.
     """
 
-    def __init__(self, scenario: Scenario, log: Log, body_units: Mapping[str, str]) -> None:
+    def __init__(
+            self, scenario: Scenario, log: Log,
+            body_units: Mapping[str, Mapping[str, str]]) -> None:
         self.scenario = scenario
         """The simulated scenario."""
         self.log = log
@@ -45,7 +46,8 @@ class Result(Mapping[str, NDArray[np.float64]]):
         self.units: Mapping[str, str] = dict(self._units(body_units))
         """Unit of every name."""
 
-    def _units(self, body_units: Mapping[str, str]) -> Iterator[tuple[str, str]]:
+    def _units(
+            self, body_units: Mapping[str, Mapping[str, str]]) -> Iterator[tuple[str, str]]:
         for actuator in self.scenario.run.actuators:
             for field, unit in units_of(SAMPLE_FIELDS, actuator.sheet.is_rotary).items():
                 yield f'{actuator.name}.{field}', unit
@@ -54,8 +56,9 @@ class Result(Mapping[str, NDArray[np.float64]]):
         for supply in self.scenario.run.supplies:
             for field, unit in units_of(SUPPLY_FIELDS).items():
                 yield f'{supply.name}.{field}', unit
-        for field, unit in body_units.items():
-            yield f'{BODY}.{field}', unit
+        for name, units in body_units.items():
+            for field, unit in units.items():
+                yield f'{name}.{field}', unit
 
     @cached_property
     def _columns(self) -> dict[str, NDArray[np.float64]]:
@@ -66,8 +69,7 @@ class Result(Mapping[str, NDArray[np.float64]]):
         if log.observed is not None:
             sources += [(f'{name}.{LINK}', log.observed[:, run.index(name)])
                         for name in run.linked]
-        if log.body is not None:
-            sources.append((BODY, log.body))
+        sources += log.bodies.items()
         columns = {}
         for source, rows in sources:
             for field in rows.dtype.names or ():
@@ -149,7 +151,8 @@ class Result(Mapping[str, NDArray[np.float64]]):
         Raises
         ------
         BagError
-            The directory already exists and ``overwrite`` is not set, or it cannot be created.
+            The directory already exists and ``overwrite`` is not set, or it cannot be created; or
+            a body was given by the caller, whose ports a bag does not have.
         RunError
             The bag cannot be written.
 
@@ -181,5 +184,5 @@ def simulated(
     log = LogSink(simulation, n_ticks, report)
     simulation.loop.sinks = (log,)
     simulation.loop.run(n_ticks)
-    body = simulation.surroundings.body
-    return Result(simulation.scenario, log.log, {} if body is None else body.units)
+    return Result(simulation.scenario, log.log, {
+        name: body.units for name, body in simulation.surroundings.bodies.items()})

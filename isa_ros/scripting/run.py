@@ -9,11 +9,13 @@ from typing import Any
 import warnings
 
 from isa_ros.config.paths import CONFIG, find, SCENARIOS
+from isa_ros.config.runs.body_config import BodyFactory
 from isa_ros.config.runs.run_config import run_of, RunConfig
 from isa_ros.config.text.changes import replaced, SCENARIO
 from isa_ros.config.text.sections import Place
 from isa_ros.config.text.yaml_text import read, Tree
 from isa_ros.controller import Controller
+from isa_ros.core.suggest import alternatives
 from isa_ros.errors import ConfigError
 from isa_ros.scenario.scenario import idle, read_scenario, Scenario
 from isa_ros.scripting.result import Result, simulated
@@ -23,6 +25,7 @@ from isa_ros.text.progress import counted
 _WORDS = re.compile(r'(?<=[a-z0-9])(?=[A-Z])')
 
 Controllers = Sequence[Controller] | Mapping[str, Controller]
+Factories = BodyFactory | Mapping[str, BodyFactory]
 
 
 @dataclass(frozen=True)
@@ -98,24 +101,37 @@ class Run:
                 scenario = scenario.replaced(key.removeprefix(SCENARIO), value)
         return Run(config, scenario, **self._options)
 
-    def simulation(self, controllers: Controllers = ()) -> Simulation:
+    def simulation(
+            self, controllers: Controllers = (), *, body: Factories | None = None) -> Simulation:
         """
         Return the run as an object to advance step by step; see `Simulation`.
 
         ``controllers`` take part in every step, in their order. A mapping gives them the names of
         nodes; otherwise a controller is named after its class: sway for `Sway`.
+
+        ``body`` makes the body of a run with ``body: {kind: external, actuators: [...]}``: it is
+        called with the rows of these k actuators, (k,), and the tick in s, and returns an object
+        with the Protocol `isa_ros.Body` at t = 0. A mapping has one for each external body.
+
+        Raises
+        ------
+        ConfigError
+            An external body is not given, or one is given that the run does not have.
+
         """
         named = self._named(controllers)
-        return Simulation(self._with_names(list(named)), list(named.values()))
+        return Simulation(
+            self._with_names(list(named)), list(named.values()), self._factories(body))
 
     def simulate(
             self, duration: float | None = None, controllers: Controllers = (), *,
-            faults: Sequence[Tree] = (), seed: int | None = None,
-            progress: bool = False) -> Result:
+            faults: Sequence[Tree] = (), seed: int | None = None, progress: bool = False,
+            body: Factories | None = None) -> Result:
         """
         Simulate from t = 0 and return every sample, in memory.
 
-        ``duration`` in s; None: that of the scenario. ``controllers`` as in `simulation`.
+        ``duration`` in s; None: that of the scenario. ``controllers`` and ``body`` as in
+        `simulation`; a result with a body that was given cannot be saved as a bag.
         ``faults`` are added to those of the scenario, each as its file would have it:
         ``{'t_s': 0.5, 'actuator': 'kfe', 'fault': 'valve_stuck', 'until_s': 0.8}``.
         ``seed`` of all noise; None: that of the run. ``progress`` is shown on a terminal only.
@@ -130,7 +146,7 @@ class Run:
         """
         if seed is not None:
             return self.replace({'seed': seed}).simulate(
-                duration, controllers, faults=faults, progress=progress)
+                duration, controllers, faults=faults, progress=progress, body=body)
         named = self._named(controllers)
         plan = self._with_names(list(named))
         if duration is not None:
@@ -142,7 +158,8 @@ class Run:
         if faults:
             plan = plan.with_faults(faults)
         report = counted(sys.stderr, 'ticks', of=self._config.name) if progress else None
-        return simulated(Simulation(plan, list(named.values())), n_ticks, report)
+        return simulated(
+            Simulation(plan, list(named.values()), self._factories(body)), n_ticks, report)
 
     def _named(self, controllers: Controllers) -> dict[str, Controller]:
         if isinstance(controllers, Mapping):
@@ -155,6 +172,24 @@ class Run:
                     f'two controllers are named {name}; give a mapping from names to controllers')
             named[name] = controller
         return named
+
+    def _factories(self, body: Factories | None) -> Mapping[str, BodyFactory]:
+        """Return what makes the external bodies, by name."""
+        external = [own.name for own in self.configuration.bodies if own.is_given]
+        if body is None:
+            return {}
+        if not isinstance(body, Mapping):
+            if len(external) != 1:
+                raise ConfigError(
+                    f'{self._config.name}: body is one factory, the run has {len(external)} '
+                    'bodies of the kind external')
+            return {external[0]: body}
+        for name in body:
+            if name not in external:
+                raise ConfigError(
+                    f'{self._config.name}: {name!r} is not a body of the kind external; '
+                    f'{alternatives(name, external)}')
+        return body
 
     def _with_names(self, names: Sequence[str]) -> Scenario:
         """

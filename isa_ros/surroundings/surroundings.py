@@ -60,11 +60,6 @@ class Surroundings:
         self._rest = starts.copy()
         self._sensor_stiffness = sensor_stiffness
 
-    @property
-    def body(self) -> Body | None:
-        """Return the first body; None: there is none."""
-        return next(iter(self.bodies.values()), None)
-
     def starts(self) -> Records:
         """
         Return the `START` of every actuator, shape (n_actuators,).

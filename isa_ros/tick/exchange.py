@@ -23,8 +23,8 @@ class Shown(NamedTuple):
     """`COMMAND` that took effect at the tick's start, kinds 0 without one, (n,)."""
     supplies: Records
     """`SUPPLY_SAMPLE`, (m,)."""
-    body: Records | None
-    """Sample of the body, (1,), a record of floats; None: no body."""
+    bodies: Mapping[str, Records]
+    """Sample of each body by name, (1,), a record of floats."""
     sent: Records | None = None
     """`COMMAND` handed to the links at the tick's start, (n,); None: no links."""
 
@@ -67,11 +67,10 @@ class Rows:
         """Commands of the controllers, to take effect at the next tick."""
         self.supplies: Records = surroundings.supplies
         """`SUPPLY_SAMPLE` of the supplies; memory of the surroundings."""
-        self.body: Records | None = None
-        """Sample of the body, (1,); memory of the body. None: no body."""
-        if surroundings.body is not None:
-            self.body = surroundings.body.sample
-        self.shown = Shown(self.samples, self.applied, self.supplies, self.body, self.sent)
+        self.bodies: Mapping[str, Records] = {
+            name: body.sample for name, body in surroundings.bodies.items()}
+        """Sample of each body by name, (1,); memory of the bodies."""
+        self.shown = Shown(self.samples, self.applied, self.supplies, self.bodies, self.sent)
         """The rows that the messages are packed from."""
         self.reply_values, self.sample_values = floats(self.replies), floats(self.samples)
         """The same memory as plain floats."""

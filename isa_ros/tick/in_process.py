@@ -6,11 +6,10 @@ from typing import Protocol
 
 from isa_ros.actuator.actuator import SmartActuator
 from isa_ros.actuator.group import ActuatorGroup
-from isa_ros.controller import by_name, Controller, fill_requests, State
+from isa_ros.controller import by_name, Controller, fill_requests, only_rows, State
 from isa_ros.core.signals import Records
 from isa_ros.errors import ConfigError
 from isa_ros.tick.exchange import IDLE_S, Rows
-import numpy as np
 
 
 class Input(Protocol):
@@ -47,7 +46,7 @@ class InProcess:
         rows.tuned = {}
         self._state = State(
             0, by_name(self._names, rows.samples), by_name(self._supplies, rows.supplies),
-            None if rows.body is None else rows.body.view(np.recarray)[0])
+            only_rows(rows.bodies))
         for controller in self._controllers:
             controller.start(list(self._names))
 

@@ -46,7 +46,7 @@ def test_a_worker_does_what_an_actuator_of_the_run_does(leg):
     starts, exchange = surroundings.starts(), Rows(3, surroundings)
     surroundings.ports(exchange.ports)
     exchange.commands[1] = setpoint(position=0.03)
-    index, cast = 1, Cast([own.name for own in leg.actuators], ['supply'], None)
+    index, cast = 1, Cast([own.name for own in leg.actuators], ['supply'], {})
     link = Script(encode_hello(1, 4, leg.step_ns, starts, cast),
                   encode_tick(1, 0, exchange, False), encode_end(1))
     worker, own = (SmartActuator(leg.actuators[index], timing_of(leg)) for _ in range(2))

@@ -32,7 +32,7 @@ from tests.fuzz.property import refused
 
 RUN = 4711
 NAMES = ['haa', 'kfe', 'sway']
-CAST = Cast(NAMES, ['supply'], LEG_SAMPLE)
+CAST = Cast(NAMES, ['supply'], {'body': LEG_SAMPLE})
 N_ACTUATORS = 2
 
 
@@ -41,7 +41,7 @@ class Outside:
 
     def __init__(self) -> None:
         self.supplies = np.zeros(1, SUPPLY_SAMPLE)
-        self.body = SimpleNamespace(sample=np.zeros(1, LEG_SAMPLE))
+        self.bodies = {'body': SimpleNamespace(sample=np.zeros(1, LEG_SAMPLE))}
 
 
 class Stepper:
@@ -88,8 +88,9 @@ class Sway(Controller):
         """Take a state."""
         for sample in (*state.actuators.values(), *state.supplies.values()):
             assert_finite(sample.item())
-        assert state.body is not None
-        assert np.isfinite(state.body['position']).all()
+        for body in state.bodies.values():
+            assert_finite(body['height'].item())
+            assert np.isfinite(body['position']).all()
         return {'kfe': Setpoint(0.05)}
 
     def snapshot(self) -> bytes:

@@ -29,7 +29,7 @@ pytestmark = pytest.mark.ros
 
 RUN = 4711
 NAMES = ('haa', 'kfe')
-CAST = Cast(NAMES, ['supply'], None)
+CAST = Cast(NAMES, ['supply'], {})
 LIMITS = Limits(join_s=DEADLINE_S, tick_s=0.05)
 
 
@@ -188,7 +188,7 @@ def test_an_odd_step_is_discarded_and_the_run_goes_on(member, odd):
 
 def test_a_run_with_this_node_in_another_role_is_not_joined(member):
     """Its row would be read beyond those of the actuators."""
-    others = Cast(['haa', 'hfe', 'kfe'], ['supply'], None)
+    others = Cast(['haa', 'hfe', 'kfe'], ['supply'], {})
     assert member.answers_to(
         encode_end(RUN), encode_hello(RUN + 1, 1, 1_000_000, np.zeros(2, START), others)) == []
 

@@ -12,6 +12,7 @@ from isa_ros.run.narrator import Narrator, Outlets, packer_of
 from isa_ros.run.pacing import Pace, ProgressMeter
 from isa_ros.run.packing import Messages
 from isa_ros.scenario.faults import ParameterChanges
+from isa_ros.surroundings.body import Body
 from isa_ros.surroundings.supply import SUPPLY_SAMPLE
 from isa_ros.tick.exchange import IDLE_S, Rows
 from isa_ros.tick.tick_loop import TickLoop
@@ -77,7 +78,7 @@ class FakeTransport:
 class FakeSurroundings:
     """Surroundings whose position and pressure count the ticks."""
 
-    body = None
+    bodies: dict[str, Body] = {}
 
     def __init__(self, log: list[str]) -> None:
         self.log = log

@@ -39,7 +39,7 @@ def shown(n: int = 2, n_supplies: int = 1) -> Shown:
     supplies.view(np.float64)[:] = 1e6 * np.arange(1.0, len(SUPPLY_SAMPLE.names) * n_supplies + 1)
     for field in (*FIELDS, 'age'):
         samples[field] = 0.0
-    return Shown(samples, np.zeros(n, COMMAND), supplies, None)
+    return Shown(samples, np.zeros(n, COMMAND), supplies, {})
 
 
 def applied(rows: Shown, row: int, kinds: int = HAS_SETPOINT, **values: float) -> None:
@@ -116,10 +116,11 @@ def test_messages_come_in_the_order_of_the_topics(packer, rows):
     Names([('knee', False), ('knee', False)], [('supply', False)]),
     Names([('hip', False), ('knee', False)], [('main', True), ('main_return', False)]),
     Names([('hip', False), ('coordinator', False)], [('supply', False)],
-          [JointStates('/coordinator/valve', [], [], [], [])])])
+          {'body': [JointStates('/coordinator/valve', [], [], [], [])]})])
 def test_a_topic_has_one_source(names):
     """The last: of the same name, and even of the same type."""
-    of_body = shown(2, len(names.supplies))._replace(body=np.zeros(1, [('height', '<f8')]))
+    of_body = shown(2, len(names.supplies))._replace(
+        bodies={'body': np.zeros(1, [('height', '<f8')])})
     with pytest.raises(ValueError, match='a topic has two sources'):
         Packer(names, of_body)
 
@@ -233,11 +234,27 @@ def test_a_body_shows_the_floats_of_its_sample():
     """By the columns of its own record type, arrays element by element."""
     messages = [JointStates('/body', ['a', 'b'], ['height', 'angle[1]'], [], [])]
     body = np.zeros(1, [('angle', '<f8', (2,)), ('height', '<f8')])
-    packer = Packer(Names([('hip', True)], [('supply', False)], messages),
-                    shown(1)._replace(body=body))
+    packer = Packer(Names([('hip', True)], [('supply', False)], {'cart': messages}),
+                    shown(1)._replace(bodies={'cart': body}))
     body['angle'], body['height'] = (0.25, 0.5), 2.0
     packer.pack(T_NS, TICK_NS, {})
     assert list(decode(everything(packer)['/body'], JointState).position) == [2.0, 0.5]
+
+
+def test_each_of_several_bodies_shows_its_own_floats():
+    """At every packing anew, though their samples are not one memory."""
+    names = {name: [JointStates(f'/{name}/joints', ['a'], ['angle[1]'], [], ['load'])]
+             for name in ('left', 'right')}
+    bodies = {name: np.zeros(1, [('angle', '<f8', (2,)), ('load', '<f8')]) for name in names}
+    packer = Packer(Names([('hip', True)], [('supply', False)], names),
+                    shown(1)._replace(bodies=bodies))
+    for scale in (1.0, 10.0):
+        for k, body in enumerate(bodies.values(), start=1):
+            body['angle'], body['load'] = (0.0, k * scale), -k * scale
+        packer.pack(T_NS, TICK_NS, {})
+        for k, name in enumerate(names, start=1):
+            found = decode(everything(packer)[f'/{name}/joints'], JointState)
+            assert (found.position[0], found.effort[0]) == (k * scale, -k * scale)
 
 
 def test_one_actuator_is_said_as_its_node_publishes_it(packer, rows):
@@ -255,7 +272,7 @@ def test_an_actuator_alone_says_what_it_says_among_others(packer, rows):
     """Its node has neither clock nor events."""
     applied(rows, 1)
     packer.pack(T_NS, TICK_NS, {})
-    own = Shown(rows.samples[1:], rows.applied[1:], np.zeros(0, SUPPLY_SAMPLE), None)
+    own = Shown(rows.samples[1:], rows.applied[1:], np.zeros(0, SUPPLY_SAMPLE), {})
     alone = Packer(Names([('knee', False)]), own, is_run=False)
     alone.pack(T_NS, TICK_NS, {})
     assert [topic.name for topic in alone.topics] == [f'/knee/{suffix}' for suffix in SUFFIXES]
@@ -267,7 +284,7 @@ def test_the_first_messages_are_of_t_0():
     run = hip_and_knee()
     group, surroundings = group_of(run), surroundings_of(run)
     group.start(surroundings.starts())
-    packer = packer_of(run, Shown(group.samples, group.applied, surroundings.supplies, None))
+    packer = packer_of(run, Shown(group.samples, group.applied, surroundings.supplies, {}))
     packer.pack(0, 0, group.tuned)
     parameters, setpoint, device, joint_states, *_ = packer.of_actuator(1)
     assert parameters is None

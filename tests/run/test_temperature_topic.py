@@ -24,7 +24,7 @@ def packer() -> Packer:
     """Return the packer of two actuators, of which the knee is heated to 47 celsius."""
     samples = np.zeros(2, SAMPLE)
     samples['temperature'] = 40.0, 47.0
-    rows = Shown(samples, np.zeros(2, COMMAND), np.zeros(1, SUPPLY_SAMPLE), None)
+    rows = Shown(samples, np.zeros(2, COMMAND), np.zeros(1, SUPPLY_SAMPLE), {})
     return Packer(Names([('hip', True), ('knee', False)], [('supply', False)], heated=['knee']),
                   rows)
 

@@ -1,5 +1,7 @@
 """The private wire: what is encoded is decoded, and is what the message type says."""
 
+from collections.abc import Mapping
+
 from hypothesis import given, strategies
 from isa_ros.core.signals import COMMAND, LOAD_REPLY, SAMPLE, START
 from isa_ros.errors import RunError
@@ -27,6 +29,11 @@ def rows(dtype: np.dtype, n: int) -> np.ndarray:
     return np.frombuffer(bytes(k % 251 for k in range(n * dtype.itemsize)), dtype).copy()
 
 
+LEG = {'leg': LEG_SAMPLE}
+TWO = {'leg': LEG_SAMPLE, 'cart': np.dtype([('height', '<f8')])}
+BODIES = strategies.sampled_from([{}, LEG, TWO])
+
+
 class Shows:
     """A body of which only its sample matters."""
 
@@ -37,23 +44,23 @@ class Shows:
 class Outside:
     """Surroundings of which only what they show matters."""
 
-    def __init__(self, n_supplies: int, body: np.dtype | None) -> None:
+    def __init__(self, n_supplies: int, bodies: Mapping[str, np.dtype]) -> None:
         self.supplies = rows(SUPPLY_SAMPLE, n_supplies)
-        self.body = None if body is None else Shows(body)
+        self.bodies = {name: Shows(record) for name, record in bodies.items()}
 
 
-def filled(n: int, n_supplies: int = 1, body: np.dtype | None = LEG_SAMPLE) -> Rows:
+def filled(n: int, n_supplies: int = 1, bodies: Mapping[str, np.dtype] = LEG) -> Rows:
     """Return an exchange of ``n`` actuators whose bytes all differ."""
-    made = Rows(n, Outside(n_supplies, body))
+    made = Rows(n, Outside(n_supplies, bodies))
     for name in ('ports', 'commands', 'samples'):
         getattr(made, name)[:] = rows(getattr(made, name).dtype, n)
     return made
 
 
-def cast(n_supplies: int = 1, body: np.dtype | None = LEG_SAMPLE) -> Cast:
-    """Return who takes part beside ``n_supplies`` supplies and a body."""
+def cast(n_supplies: int = 1, bodies: Mapping[str, np.dtype] = LEG) -> Cast:
+    """Return who takes part beside ``n_supplies`` supplies and some bodies."""
     return Cast(
-        ['haa', 'kfe', 'controller'], [f'supply_{k}' for k in range(n_supplies)], body)
+        ['haa', 'kfe', 'controller'], [f'supply_{k}' for k in range(n_supplies)], bodies)
 
 
 @given(RUN_IDS, TICKS, strategies.integers(0, 12))
@@ -67,17 +74,17 @@ def test_step_round_trip(run_id, tick, n):
         assert step.command(k).tobytes() == sent.commands[k].tobytes()
 
 
-@given(strategies.integers(0, 5), strategies.integers(1, 3), strategies.booleans())
-def test_controllers_are_shown_samples_supplies_and_body(n, n_supplies, has_body):
+@given(strategies.integers(0, 5), strategies.integers(1, 3), BODIES)
+def test_controllers_are_shown_samples_supplies_and_bodies(n, n_supplies, bodies):
     """In one step with the rows of the actuators; nothing is applied there."""
-    body = LEG_SAMPLE if has_body else None
-    sent = filled(n, n_supplies, body)
+    sent = filled(n, n_supplies, bodies)
     step = decode_step(encode_tick(1, 2, sent, has_controllers=True))
-    shown = step.shown(cast(n_supplies, body))
+    shown = step.shown(cast(n_supplies, bodies))
     assert shown.samples.tobytes() == sent.samples.tobytes()
     assert shown.supplies.tobytes() == sent.supplies.tobytes()
-    assert (None if shown.body is None else shown.body.tobytes()) == (
-        None if sent.body is None else sent.body.tobytes())
+    assert list(shown.bodies) == list(bodies)
+    for name, sample in shown.bodies.items():
+        assert sample.dtype == bodies[name] and sample.tobytes() == sent.bodies[name].tobytes()
     assert shown.applied['kinds'].tolist() == [0] * n
     assert [step.port(k).tobytes() for k in range(n)] == [port.tobytes() for port in sent.ports]
 
@@ -86,7 +93,7 @@ def test_without_controllers_nothing_is_shown():
     """A tick is as short as its ports and commands."""
     alone = filled(2)
     size = alone.ports.nbytes + alone.commands.nbytes
-    shown = alone.samples.nbytes + alone.supplies.nbytes + alone.body.nbytes
+    shown = alone.samples.nbytes + alone.supplies.nbytes + alone.bodies['leg'].nbytes
     assert len(decode_step(encode_tick(1, 2, alone, False)).body) == size
     assert len(decode_step(encode_tick(1, 2, alone, True)).body) == size + shown
 
@@ -116,10 +123,10 @@ def test_a_change_to_no_finite_number_is_refused(value):
         decode_step(encode_change(5, -3, {0: {'reu.frozen': value}}, 1))
 
 
-@pytest.mark.parametrize('body', [None, LEG_SAMPLE])
-def test_hello_round_trip(body):
+@pytest.mark.parametrize('bodies', [{}, LEG, TWO])
+def test_hello_round_trip(bodies):
     """More names than actuators: a controller takes part without a row."""
-    starts, everyone = rows(START, 2), cast(2, body)
+    starts, everyone = rows(START, 2), cast(2, bodies)
     step = decode_step(encode_hello(7, 3, 2_000_000, starts, everyone))
     assert (step.kind, step.run_id, step.tick) == (StepKind.HELLO, 7, 3)
     assert step.cast() == everyone

@@ -71,7 +71,7 @@ def test_restored_surroundings_go_on_byte_for_byte(leg):
     for again in (surroundings, other):
         again.restore(saved)
         assert again.supplies.tobytes() == supplies
-        assert again.body.is_held
+        assert again.bodies['body'].is_held
         assert moved(again, given, 40) == rest
         assert again.snapshot() == surroundings.snapshot()
 

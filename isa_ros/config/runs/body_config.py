@@ -50,6 +50,8 @@ class BodyConfig:
     """Of a section ``{kind: ...}``."""
     KEYS: ClassVar[Table]
     """Of its section, the kind left out."""
+    is_given: ClassVar[bool] = False
+    """Whether the caller of a simulation makes it."""
 
     name: str = BODY
     """Of its topics and of the columns of a result."""

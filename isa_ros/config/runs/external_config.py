@@ -17,6 +17,7 @@ class ExternalConfig(BodyConfig):
     """A body that is made by ``body`` of `isa_ros.scripting.run.Run.simulate`, in memory only."""
 
     kind: ClassVar[str] = 'external'
+    is_given: ClassVar[bool] = True
     KEYS: ClassVar[Table] = Table((
         Key('actuators', NAMES, 'the actuators that move it, in the order of its rows',
             of=lambda own: [actuator for _, actuator in own.joints]),))

@@ -70,7 +70,7 @@ class ActuatorNode(Node):
             Names([(config.name, config.sheet.is_rotary)],
                   heated=[config.name] if heats_up else [],
                   linked=[config.name] if self.actuator.has_link else []),
-            Shown(memory.observed, memory.applied, np.zeros(0, SUPPLY_SAMPLE), None,
+            Shown(memory.observed, memory.applied, np.zeros(0, SUPPLY_SAMPLE), {},
                   memory.sent),
             is_run=False)
         self.outlet = PreparedPublishers(

@@ -115,8 +115,8 @@ def _participants(session: Session, *, are_here: bool = False) -> Participants:
     expected = [Expected(actuator.name, '' if are_here else participant_digest(actuator, timing))
                 for actuator in warmed_up(run)]
     expected += [Expected(name, '') for name in run.controllers]
-    body = None if surroundings.body is None else surroundings.body.sample.dtype
-    cast = Cast([own.name for own in expected], [own.name for own in run.supplies], body)
+    bodies = {name: body.sample.dtype for name, body in surroundings.bodies.items()}
+    cast = Cast([own.name for own in expected], [own.name for own in run.supplies], bodies)
     return Participants(
         expected, cast, surroundings.starts(), run.step_ns,
         first_remote=len(run.actuators) if are_here else 0)

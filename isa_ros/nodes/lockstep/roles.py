@@ -9,7 +9,7 @@ are the `COMMAND` rows that it requests.
 from collections.abc import Mapping, Sequence
 from typing import Protocol
 
-from isa_ros.controller import by_name, Controller, fill_requests, State
+from isa_ros.controller import by_name, Controller, fill_requests, only_rows, State
 from isa_ros.core.signals import COMMAND, Records
 from isa_ros.run.wire.cast import Cast
 from isa_ros.run.wire.parts import actuator_parts, Parts
@@ -216,7 +216,7 @@ class ControllerRole:
         self._controller = controller
         self._names: Sequence[str] = ()
         self._requests: Records = np.zeros(0, COMMAND)
-        self._cast = Cast((), (), None)
+        self._cast = Cast((), (), {})
         self._step_ns = 0
 
     def start(self, step: Step, index: int) -> Parts:
@@ -234,11 +234,10 @@ class ControllerRole:
     def advance(self, step: Step) -> Parts:
         """Call the controller with the state before the tick; return commands for the next one."""
         shown = step.shown(self._cast)
-        body = None if shown.body is None else shown.body.view(np.recarray)[0]
         self._requests['kinds'] = 0
         state = State(
             step.tick * self._step_ns, by_name(self._names, shown.samples),
-            by_name(self._cast.supplies, shown.supplies), body)
+            by_name(self._cast.supplies, shown.supplies), only_rows(shown.bodies))
         fill_requests(self._controller.step(state), self._names, self._requests)
         return self._parts()
 

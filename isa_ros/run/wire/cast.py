@@ -1,6 +1,6 @@
 """The participants of a run, as a hello of the private wire lists them."""
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 import json
 from typing import Any, NamedTuple
 
@@ -15,20 +15,20 @@ _FLOATS = '<f8'
 
 
 class Cast(NamedTuple):
-    """The participants of a run, and the supplies and body whose samples controllers receive."""
+    """The participants of a run, and the supplies and bodies whose samples controllers receive."""
 
     names: Sequence[str]
     """The participants in order: the actuators first, then the controllers."""
     supplies: Sequence[str]
-    body: np.dtype[np.void] | None
-    """Record type of the body's sample; None: no body."""
+    bodies: Mapping[str, np.dtype[np.void]]
+    """Record type of the sample of each body, by name."""
 
     def encode(self) -> bytes:
         """Return the bytes that `decode` reads."""
-        body = None if self.body is None else [
-            [name, self.body[name].base.str, self.body[name].shape]
-            for name in self.body.names or ()]
-        return json.dumps([list(self.names), list(self.supplies), body]).encode()
+        bodies = [
+            [body, [[name, own[name].base.str, own[name].shape] for name in own.names or ()]]
+            for body, own in self.bodies.items()]
+        return json.dumps([list(self.names), list(self.supplies), bodies]).encode()
 
     @classmethod
     def decode(cls, data: bytes) -> 'Cast':
@@ -42,10 +42,10 @@ class Cast(NamedTuple):
 
         """
         try:
-            names, supplies, body = json.loads(data)
+            names, supplies, bodies = json.loads(data)
         except (ValueError, TypeError, RecursionError) as error:
             raise WireError('a hello without participants') from error
-        return cls(_names(names), _names(supplies), None if body is None else _record(body))
+        return cls(_names(names), _names(supplies), _records(bodies))
 
 
 def _names(value: Any) -> list[str]:
@@ -54,6 +54,15 @@ def _names(value: Any) -> list[str]:
             and len(set(value)) == len(value)):
         return value
     raise WireError(f'names of a hello, must be <= {MOST_NAMES} different texts')
+
+
+def _records(value: Any) -> dict[str, np.dtype[np.void]]:
+    """Return the record type of each body's sample by name."""
+    if not isinstance(value, list) or not all(
+            isinstance(entry, list) and len(entry) == 2 for entry in value):
+        raise WireError('the bodies of a hello are not a list of names and records')
+    names = _names([name for name, _ in value])
+    return {name: _record(fields) for name, (_, fields) in zip(names, value)}
 
 
 def _record(value: Any) -> np.dtype[np.void]:

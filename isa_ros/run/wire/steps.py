@@ -81,8 +81,11 @@ class Step(NamedTuple):
         at += samples.nbytes
         supplies = np.frombuffer(self.body, SUPPLY_SAMPLE, len(cast.supplies), at)
         at += supplies.nbytes
-        body = None if cast.body is None else np.frombuffer(self.body, cast.body, 1, at)
-        return Shown(samples, np.zeros(self.rows, COMMAND), supplies, body)
+        bodies = {}
+        for name, record in cast.bodies.items():
+            bodies[name] = np.frombuffer(self.body, record, 1, at)
+            at += record.itemsize
+        return Shown(samples, np.zeros(self.rows, COMMAND), supplies, bodies)
 
     def _row(self, record: np.dtype[np.void], offset: int) -> np.void:
         row: np.void = np.frombuffer(self.body, record, 1, offset)[0]
@@ -121,8 +124,8 @@ class Step(NamedTuple):
     def refuse_shown(self, n_actuators: int, cast: Cast) -> None:
         """Refuse a tick that does not show a controller the state of its run; `refuse_tick`."""
         at = n_actuators * (LOAD_PORT.itemsize + COMMAND.itemsize)
-        size = n_actuators * SAMPLE.itemsize + len(cast.supplies) * SUPPLY_SAMPLE.itemsize + (
-            0 if cast.body is None else cast.body.itemsize)
+        size = n_actuators * SAMPLE.itemsize + len(cast.supplies) * SUPPLY_SAMPLE.itemsize + sum(
+            record.itemsize for record in cast.bodies.values())
         if self.rows != n_actuators or len(self.body) != at + size:
             raise WireError(f'a tick of {len(self.body)} bytes, must be {at + size}')
         if not is_finite(np.frombuffer(self.body, np.float64, size // 8, at)):
@@ -154,7 +157,7 @@ def encode_tick(run_id: int, tick: int, rows: Rows, has_controllers: bool) -> by
     body = rows.ports.tobytes() + rows.commands.tobytes()
     if has_controllers:
         body += rows.samples.tobytes() + rows.supplies.tobytes()
-        body += b'' if rows.body is None else rows.body.tobytes()
+        body += b''.join(sample.tobytes() for sample in rows.bodies.values())
     return _step(StepKind.TICK, run_id, tick, len(rows.ports), body)
 
 

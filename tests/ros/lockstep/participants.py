@@ -34,7 +34,7 @@ class Outside:
 
     def __init__(self, has_body: bool) -> None:
         self.supplies = np.zeros(1, SUPPLY_SAMPLE)
-        self.body = Cart() if has_body else None
+        self.bodies = {'cart': Cart()} if has_body else {}
 
 
 def rows_of_two(has_body: bool = False) -> Rows:
@@ -160,7 +160,7 @@ def make_transport(
     expected = [*(Expected(name, 'same') for name in NAMES),
                 *(Expected(name, '') for name in controllers)]
     cast = Cast([own.name for own in expected], ['supply'],
-                Cart.sample.dtype if has_body else None)
+                {'cart': Cart.sample.dtype} if has_body else {})
     return LockstepTransport(
         node, Participants(expected, cast, starts, 1_000_000, first_remote), limits,
         watch=watch, should_stop=should_stop)

@@ -39,8 +39,8 @@ def test_a_controller_receives_supplies_and_body(observer, has_body):
         begin(transport, rows)
         for number in range(2):
             rows.supplies['pressure'] = 20e6 - number
-            if rows.body is not None:
-                rows.body['height'] = 0.5 + number
+            for body in rows.bodies.values():
+                body['height'] = 0.5 + number
             tick(transport, number, rows)
     assert controller.supplies == [{'supply': 20e6}, {'supply': 20e6 - 1.0}]
     assert controller.heights == ([0.5, 1.5] if has_body else [None, None])
