@@ -1,11 +1,12 @@
-"""The decorator that compiles every kernel of this package."""
+"""The decorators of what this package compiles."""
 
 from collections.abc import Callable
 from typing import Any, TypeVar
 
 from isa_ros.core.kernel_cache import CACHE, cache_of
 import numba
-from numba.extending import register_jitable
+from numba import types
+from numba.core.registry import cpu_target
 
 _Function = TypeVar('_Function', bound=Callable[..., Any])
 
@@ -24,6 +25,9 @@ def kernel(function: Callable[..., Any]) -> Any:
 
 
 def kernel_function(function: _Function) -> _Function:
-    """Let kernels inline a plain function, which Python calls as it is."""
-    register_jitable(error_model='numpy', forceinline=True)(function)
+    """Return a function that Python calls as it is, and kernels as the kernel made of it."""
+    compiled = kernel(function)
+    if compiled is not function:
+        setattr(function, 'kernel', compiled)   # numba's type refers to it weakly
+        cpu_target.typing_context.insert_global(function, types.Dispatcher(compiled))
     return function

@@ -1,14 +1,15 @@
 """
 The directory in which compiled kernels are kept.
 
-One file is one kernel for one combination of argument types. Its name holds a digest of all that
-the machine code depends on: the kernel and what it calls (`kernel_key`), the argument types, the
-processor, and the versions of the compiler. So an edit compiles what depends on it, again if it is
-taken back only when the old file has been swept, and sources at another path share the files.
+One file holds one kernel, compiled for one combination of argument types. Its name contains a
+digest of all that the machine code depends on: the kernel and what it calls (`kernel_key`), the
+argument types, the processor, and the versions of the compiler. So an edit compiles what depends
+on it and nothing else, an edit taken back finds the old files until they are swept, and sources
+at another path share the files.
 
-No lock is needed: a file is written aside and put in place at once, and two processes that
-compile the same kernel write the same. numba's own cache has one index for all types of a kernel,
-which two writers damage, and does not see an edit in another file.
+No lock is needed: a file is written aside and then renamed, and two processes that compile the
+same kernel write the same. numba's own cache does not notice an edit in another file, and finds
+kernels by the path of their source.
 """
 
 from collections.abc import Iterator
@@ -28,12 +29,15 @@ from isa_ros.core.kernel_key import (
     environment, is_unchanged, kernel_digest, type_text, UnknownValue)
 from llvmlite.binding import parse_bitcode
 from numba.core.caching import _Cache
-from numba.core.compiler import CompileResult
+from numba.core.codegen import JITCodeLibrary
+from numba.core.compiler import compile_result
 from numba.core.serialize import dumps
 
-_FORM = 1
+_FORM = 2                   # of a file; others are not read
 _DAY = 86400.0
-_KEPT_DAYS, _KEPT_BYTES = 30, 256 << 20
+_KEPT_DAYS = 30             # since a kernel was last loaded
+_KEPT_BYTES = 256 << 20     # about ten times the kernels of this package
+_DIGEST_BYTES = 16
 
 
 def _candidates() -> Iterator[Path]:
@@ -93,8 +97,8 @@ def _environment() -> str:
 
 
 def _check(name: str, body: bytes | memoryview) -> bytes:
-    """Return what tells a damaged or renamed file."""
-    check = hashlib.blake2b(name.encode(), digest_size=16)
+    """Return the digest by which a damaged or renamed file is noticed."""
+    check = hashlib.blake2b(name.encode(), digest_size=_DIGEST_BYTES)
     check.update(body)
     return check.digest()
 
@@ -102,17 +106,16 @@ def _check(name: str, body: bytes | memoryview) -> bytes:
 def _read(path: Path) -> Any:
     """Return what a file holds, None if there is none or it is damaged."""
     try:
-        with path.open('rb') as file:
-            used = os.fstat(file.fileno()).st_mtime
-            data = file.read()
+        data = path.read_bytes()
+        used = path.stat().st_mtime
     except OSError:
         return None
-    body = memoryview(data)[16:]
-    if _check(path.name, body) != data[:16]:
+    body = memoryview(data)[_DIGEST_BYTES:]
+    if _check(path.name, body) != data[:_DIGEST_BYTES]:
         return None
     if time.time() - used > _DAY:
         with contextlib.suppress(OSError):
-            os.utime(path)      # the sweep goes by it
+            os.utime(path)      # the time of last use, for `_sweep`
     return pickle.loads(body)
 
 
@@ -132,83 +135,69 @@ def _write(path: Path, reduced: Any) -> None:
 
 @cache
 def _sweep(directory: Path) -> None:
-    """Delete, once in a process, what nobody has read for long, and old files beyond a size."""
+    """Delete, once in a process, files not used for long, and the oldest beyond a total size."""
+    earlier_form = directory.parent.glob('[0-9a-f]' * 16 + '/*/*.nb[ci]')
     found = []
-    for path in [*directory.iterdir(), *directory.parent.glob('[0-9a-f]' * 16 + '/*/*.nb[ci]')]:
+    for path in (*directory.iterdir(), *earlier_form):
         with contextlib.suppress(OSError):
             status = path.stat()
             found.append((status.st_mtime, status.st_size, path))
-    oldest, size = time.time() - _KEPT_DAYS * _DAY, 0
-    for used, more, path in sorted(found, reverse=True):
-        size += more
-        if used < oldest or size > _KEPT_BYTES:
+    oldest, total = time.time() - _KEPT_DAYS * _DAY, 0
+    for used, size, path in sorted(found, reverse=True):
+        total += size
+        if used < oldest or total > _KEPT_BYTES:
             with contextlib.suppress(OSError):
                 path.unlink()
 
 
+class _Library(JITCodeLibrary):
+    """The machine code of a kept kernel; its bitcode is parsed when another kernel inlines it."""
+
+    bitcode = b''
+
+    def _get_module_for_linking(self) -> Any:
+        if self._shared_module is None and self.bitcode:
+            self._shared_module = parse_bitcode(self.bitcode)
+        return super()._get_module_for_linking()  # type: ignore[no-untyped-call]
+
+
 def _reduced(cres: Any) -> tuple[Any, ...]:
-    """Return what is written: without the text of types, and with the names that it defines."""
-    (name, _, (code, bitcode)), *middle = cres._reduce()
-    middle[5] = ''
-    defined = [value.name for value in _values(cres.library._get_module_for_linking())
-               if not value.is_declaration]
-    return name, code, bitcode, defined, middle
-
-
-def _values(module: Any) -> Iterator[Any]:
-    """Yield the functions and variables of a module."""
-    yield from module.functions
-    yield from module.global_variables
+    """Return what is kept of a compiled version; inverse of `_rebuilt`."""
+    (name, _, (code, bitcode)), fndesc, environment_, signature, *_, referenced = cres._reduce()
+    module = cres.library._get_module_for_linking()
+    defined = [value.name for values in (module.functions, module.global_variables)
+               for value in values if not value.is_declaration]
+    return name, code, bitcode, defined, fndesc, environment_, signature, referenced
 
 
 def _rebuilt(context: Any, name: str, code: bytes, bitcode: bytes, defined: list[str],
-             middle: list[Any]) -> Any:
+             fndesc: Any, environment_: Any, signature: Any, referenced: Any) -> Any:
     """
-    Return a compiled version, as numba does, but for its bitcode.
+    Return a compiled version, as numba's `CompileResult._rebuild` does, but for its bitcode.
 
-    Only a kernel that inlines it needs that, and parsing it is most of the time of loading.
+    Parsing that takes longer than all else, and few kernels of a start are inlined.
     """
     codegen = context.codegen()
-    library = codegen.create_library(name)
-    library.enable_object_caching()
-    library._set_compiled_object(code)
-    library._finalize_final_module()
+    library = _Library(codegen, name)  # type: ignore[no-untyped-call]
+    library.bitcode = bitcode
+    library.enable_object_caching()  # type: ignore[no-untyped-call]
+    library._set_compiled_object(code)  # type: ignore[no-untyped-call]
+    library._finalize_final_module()  # type: ignore[no-untyped-call]
     codegen._engine._defined_symbols.update(defined)
-
-    def module_for_linking() -> Any:
-        if library._shared_module is None:
-            library._shared_module = parse_bitcode(bitcode)
-        return library._shared_module
-
-    library._get_module_for_linking = module_for_linking
-
-    class _Codegen:
-        """Hands the library to numba's way of building the rest."""
-
-        @staticmethod
-        def unserialize_library(_: Any) -> Any:
-            return library
-
-    class _Context:
-        """The target context, with this library."""
-
-        typing_context = context.typing_context
-
-        def codegen(self) -> Any:
-            return _Codegen
-
-        def get_executable(self, *arguments: Any) -> Any:
-            return context.get_executable(*arguments)
-
-    found = CompileResult._rebuild(_Context(), None, *middle)  # type: ignore[no-untyped-call]
-    return found._replace(target_context=context)
+    for each in referenced:
+        codegen.set_env(each.env_name, each)
+    return compile_result(  # type: ignore[no-untyped-call]
+        target_context=context, typing_context=context.typing_context, library=library,
+        entry_point=context.get_executable(library, fndesc, environment_),
+        environment=environment_, fndesc=fndesc, signature=signature, objectmode=False,
+        lifted=(), type_annotation='', reload_init=(), referenced_envs=referenced)
 
 
 class KernelCache(_Cache):
-    """What numba asks for the compiled versions of one kernel."""
+    """The compiled versions of one kernel, as numba asks for them."""
 
     def __init__(self, kernel: Any, write: Path | None, read: tuple[Path, ...]) -> None:
-        """Look at nothing yet: what the kernel names may not be defined."""
+        """Note the kernel; functions that it calls may be defined later than it."""
         self._kernel, self._write, self._read = kernel, write, read
 
     @property
@@ -217,53 +206,51 @@ class KernelCache(_Cache):
         return None if self._write is None else str(self._write)
 
     def enable(self) -> None:
-        """Do nothing: it is."""
+        """Do nothing: it always is."""
 
     def disable(self) -> None:
         """Keep and load nothing from now on."""
         self._write, self._read = None, ()
 
     def flush(self) -> None:
-        """Do nothing: what is stale is never read."""
+        """Do nothing: a file that is out of date is never read."""
 
-    def name_of(self, sig: Any, codegen: Any) -> str:
+    def _name(self, sig: Any, codegen: Any) -> str:
         """Return the name of the file for a combination of argument types."""
-        args = getattr(sig, 'args', sig)
-        asked = (f'{_FORM} {_environment()} {codegen.magic_tuple()} '
-                 f'{",".join(map(type_text, args))}')
+        types = ','.join(map(type_text, getattr(sig, 'args', sig)))
+        asked = f'{_FORM} {_environment()} {codegen.magic_tuple()} {types}'
         function = self._kernel.py_func
-        return (f'{function.__module__.rpartition(".")[2]}.{function.__qualname__}-'
+        name = f'{function.__module__.rpartition(".")[2]}.{function.__qualname__}'
+        return (f'{name.replace("<", "").replace(">", "")}-'
                 f'{hashlib.sha256(asked.encode()).hexdigest()[:16]}-'
-                f'{kernel_digest(self._kernel).hex()[:32]}').replace('<', '').replace('>', '')
+                f'{kernel_digest(self._kernel).hex()[:32]}')
 
     def load_overload(self, sig: Any, target_context: Any) -> Any:
-        """Return a compiled version, None if there is none that can be read."""
+        """Return a compiled version, None if no file has it."""
         target_context.refresh()
-        try:
-            name = self.name_of(sig, target_context.codegen())
-        except UnknownValue:
-            return None
-        for directory in self._read:
-            with contextlib.suppress(Exception):     # damaged in whatever way: it is compiled
-                reduced = _read(directory / name)
-                if reduced is not None:
-                    return _rebuilt(target_context, *reduced)
+        with contextlib.suppress(UnknownValue):     # not kept either
+            name = self._name(sig, target_context.codegen())
+            try:
+                for directory in self._read:
+                    kept = _read(directory / name)
+                    if kept is not None:
+                        return _rebuilt(target_context, *kept)
+            except Exception as error:  # of numba: the file is whole, and of this version
+                _say_not_kept(f'as loading them fails with {error!r}')
         return None
 
     def save_overload(self, sig: Any, cres: Any) -> None:
-        """Save one compiled version."""
+        """Keep a compiled version, if it is what its name says."""
         if cres.library.has_dynamic_globals or cres.lifted:
             return
         if self._write is None:
             _say_not_kept('no directory is writable')
             return
         try:
-            if not is_unchanged(self._kernel, kernel_digest(self._kernel)):
-                return
-            path = self._write / self.name_of(sig, cres.codegen)
-            self._write.mkdir(mode=0o700, parents=True, exist_ok=True)
-            _write(path, _reduced(cres))
-            _sweep(self._write)
+            if is_unchanged(self._kernel):
+                self._write.mkdir(mode=0o700, parents=True, exist_ok=True)
+                _write(self._write / self._name(sig, cres.codegen), _reduced(cres))
+                _sweep(self._write)
         except UnknownValue as error:
             _say_not_kept(f'as {self._kernel.__name__} names a value of type {error}')
         except OSError as error:

@@ -1,18 +1,20 @@
 """
-What a compiled kernel depends on, as a text that changes if and only if one of these does.
+The digest of a kernel: it changes if and only if something changes that the kernel depends on.
 
-A kernel is the bytecode of its function without line numbers and docstrings, its default values,
-and all that it names: the values of constants, wherever they are defined, the fields of types, and
-the functions that it calls, with all that those name. numba reads the same, when it compiles.
+A kernel depends on the bytecode of its function, its default values, and all that it names: the
+values of constants, in whatever module they are defined, the fields of types, and the functions
+that it calls, with all that those name in turn. Line numbers, docstrings and paths are left out.
+numba reads the same when it compiles.
 """
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterable, Iterator
 import dis
 from enum import EnumMeta
+from functools import cache
 import hashlib
 import sys
 from types import BuiltinFunctionType, CodeType, FunctionType, ModuleType
-from typing import Any
+from typing import Any, NamedTuple
 
 import llvmlite
 import numba
@@ -20,46 +22,49 @@ from numba import types
 from numba.core.dispatcher import Dispatcher
 import numpy as np
 
-_NAMED = frozenset(dis.opmap[name] for name in ('LOAD_GLOBAL', 'LOAD_NAME'))
-_ATTRIBUTES = frozenset(dis.opmap[name] for name in ('LOAD_ATTR', 'LOAD_METHOD')
-                        if name in dis.opmap)
-_CONSTANTS = frozenset(dis.hasconst)
-_NAMES = frozenset(dis.hasname)
-_EXTENDED = dis.EXTENDED_ARG
+# What is left out of bytecode: places for the interpreter's notes, and what -OO leaves of asserts.
 _SKIPPED = frozenset(dis.opmap[name] for name in ('CACHE', 'NOP') if name in dis.opmap)
-# The lowest bits of these arguments are flags.
-_SHIFTS = {dis.opmap['LOAD_GLOBAL']: 1 if sys.version_info >= (3, 11) else 0,
-           dis.opmap['LOAD_ATTR']: 1 if sys.version_info >= (3, 12) else 0}
+_LOAD_GLOBAL = dis.opmap['LOAD_GLOBAL']
+_LOAD_ATTRIBUTE = frozenset(
+    dis.opmap[name] for name in ('LOAD_ATTR', 'LOAD_METHOD') if name in dis.opmap)
+# The lowest bit of these arguments is a flag; above it is the index of a name.
+_FLAGGED = {_LOAD_GLOBAL: sys.version_info >= (3, 11),
+            dis.opmap['LOAD_ATTR']: sys.version_info >= (3, 12)}
+_HAS_DOCSTRING = 0x4000000      # a flag of code, of Python 3.13 and later
 _BY_NAME = frozenset(('builtins', 'llvmlite', 'math', 'numba', 'numpy', 'operator'))
+"""Packages of which a name says all: their versions are part of `environment`."""
 _SETTINGS = ('BOUNDSCHECK', 'DEBUGINFO_DEFAULT', 'DISABLE_INTEL_SVML', 'FULL_TRACEBACKS',
              'LLVM_REFPRUNE_FLAGS', 'LLVM_REFPRUNE_PASS', 'LOOP_VECTORIZE', 'OPT', 'SLP_VECTORIZE')
-_NOTHING = object()
 
 
 class UnknownValue(Exception):
-    """A kernel names something of which is not known what a compiler reads in it."""
+    """A kernel names a value of a type of which it is not known what the compiler reads."""
 
 
 def environment() -> str:
-    """Return what all kernels depend on, beside the processor."""
+    """Return what all kernels depend on, besides the processor: versions and numba's settings."""
     settings: Any = numba.config
     return repr((sys.implementation.cache_tag, sys.version_info[:2], numba.__version__,
                  llvmlite.__version__, np.__version__.split('.')[:2],
                  [str(getattr(settings, name, None)) for name in _SETTINGS]))
 
 
-def _called(value: Any) -> Callable[..., Any] | None:
-    """Return the plain function of a kernel or a function whose code matters."""
+def _function_of(value: Any) -> Any:
+    """Return the Python function of a kernel or function whose code matters, None for others."""
     if isinstance(value, Dispatcher):
-        function: Callable[..., Any] = value.py_func
-        return function
-    if isinstance(value, FunctionType) and value.__module__.partition('.')[0] not in _BY_NAME:
-        return value
-    return None
+        return value.py_func
+    is_own = isinstance(value, FunctionType) and _package(value) not in _BY_NAME
+    return value if is_own else None
+
+
+def _package(function: Any) -> str:
+    """Return the package that defines a function."""
+    package: str = (function.__module__ or '').partition('.')[0]
+    return package
 
 
 def _dtype_text(dtype: np.dtype[Any]) -> str:
-    """Return all of a dtype that a compiler sees."""
+    """Return all of a dtype that the compiler reads."""
     if dtype.subdtype:
         return f'{_dtype_text(dtype.subdtype[0])}{dtype.subdtype[1]}'
     if dtype.fields is None:
@@ -72,51 +77,55 @@ def _dtype_text(dtype: np.dtype[Any]) -> str:
 def _class_text(kind: type) -> str:
     """Return a class: its name, the fields of a tuple, the values of an enumeration."""
     if isinstance(kind, EnumMeta):
-        values: dict[str, Any] = dict(kind.__members__)
-        members = [f'{name}={value_text(member.value)}' for name, member in values.items()]
+        members: dict[str, Any] = dict(kind.__members__)
+        parts = [f'{name}={value_text(member.value)}' for name, member in members.items()]
     else:
-        members = list(getattr(kind, '_fields', ()))
-    return f'class {kind.__module__}.{kind.__qualname__} {members}'
+        parts = list(getattr(kind, '_fields', ()))
+    return f'class {kind.__module__}.{kind.__qualname__} {parts}'
 
 
 def value_text(value: Any) -> str:
-    """Return a constant as a text, equal for equal constants only."""
+    """
+    Return a constant as a text, equal for equal constants only.
+
+    Functions and modules are named here; `kernel_digest` follows the functions.
+
+    Raises
+    ------
+    UnknownValue
+        It is not known what the compiler reads of such a value.
+
+    """
     kind: Any = type(value)
-    if value is None or value is _NOTHING or kind in (bool, int, float, complex, str, bytes):
-        return f'{kind.__name__} {value!r}' if value is not _NOTHING else 'undefined'
-    if isinstance(value, tuple | list | frozenset):
-        parts = [value_text(part) for part in value]
-        if isinstance(value, frozenset):
-            parts.sort()
-        return f'{_class_text(kind)}({",".join(parts)})'
-    if isinstance(value, np.generic):
-        return f'{_dtype_text(value.dtype)} {value.tobytes().hex()}'
-    if isinstance(value, np.ndarray):
-        return (f'array {_dtype_text(value.dtype)} {value.shape} {value.strides} '
-                f'{hashlib.sha256(value.tobytes()).hexdigest()}')
+    if value is None or kind in (bool, int, float, complex, str, bytes):
+        return f'{kind.__name__} {value!r}'
+    if isinstance(value, tuple):
+        return f'{_class_text(kind)}({",".join(map(value_text, value))})'
+    if isinstance(value, frozenset):
+        return f'{_class_text(kind)}({",".join(sorted(map(value_text, value)))})'
+    if isinstance(value, np.generic | np.ndarray):
+        return f'{_dtype_text(value.dtype)} {value.shape} {value.strides} {value.tobytes().hex()}'
     if isinstance(value, np.dtype):
         return f'dtype {_dtype_text(value)}'
     if isinstance(kind, EnumMeta):
         return f'{_class_text(kind)}.{value.name}'
     if isinstance(value, CodeType):
-        return 'code ' + ';'.join(_code_texts(value, {}, []))
-    function: Any = _called(value)
-    if function is not None or isinstance(value, FunctionType):
-        function = function or value
-        return f'function {function.__module__}.{function.__qualname__}'
+        return f'code {_code_text(value)}'
     if isinstance(value, type):
         return _class_text(value)
     if isinstance(value, types.Type):
         return type_text(value)
-    if isinstance(value, BuiltinFunctionType | np.ufunc):
-        return f'builtin {getattr(value, "__module__", "")}.{value.__name__}'
+    if isinstance(value, Dispatcher | FunctionType | BuiltinFunctionType | np.ufunc):
+        function: Any = _function_of(value) or value
+        return (f'function {getattr(function, "__module__", "")}.'
+                f'{getattr(function, "__qualname__", function.__name__)}')
     if isinstance(value, ModuleType):
         return f'module {value.__name__}'
     raise UnknownValue(f'{kind.__module__}.{kind.__qualname__}')
 
 
 def type_text(kind: Any) -> str:
-    """Return one of numba's types; the names of most say all."""
+    """Return the type of an argument; the names of most of numba's types say all."""
     inner: Any = kind
     if isinstance(kind, types.BaseNamedTuple):
         return f'{_class_text(inner.instance_class)}({",".join(map(type_text, inner.types))})'
@@ -128,105 +137,108 @@ def type_text(kind: Any) -> str:
 
 
 def _instructions(code: CodeType) -> Iterator[tuple[int, int]]:
-    """Yield (operation, argument); the bytecode as it was compiled, not as it is run."""
-    raw, extended = code.co_code, 0
-    for operation, argument in zip(raw[::2], raw[1::2]):
-        if operation == _EXTENDED:
+    """Yield (operation, argument) of the bytecode, an extended argument put together."""
+    extended = 0
+    for operation, argument in zip(code.co_code[::2], code.co_code[1::2]):
+        if operation == dis.EXTENDED_ARG:
             extended = (extended | argument) << 8
         elif operation not in _SKIPPED:
             yield operation, extended | argument
             extended = 0
 
 
-def _code_texts(code: CodeType, names: dict[str, Any], found: list[Any]) -> list[str]:
-    """Return what one code does; to ``found`` go the values of names, with their names."""
+def _name_in(code: CodeType, operation: int, argument: int) -> str:
+    """Return the name that an instruction reads."""
+    return code.co_names[argument >> _FLAGGED.get(operation, 0)]
+
+
+def _code_text(code: CodeType) -> str:
+    """Return what code does, with constants and names in the place of their indices."""
     texts = [f'{code.co_argcount},{code.co_posonlyargcount},{code.co_kwonlyargcount},'
-             f'{code.co_flags & ~0x4000000}',    # not: whether it has a docstring
+             f'{code.co_flags & ~_HAS_DOCSTRING}',
              ','.join(code.co_varnames + code.co_freevars + code.co_cellvars),
              getattr(code, 'co_exceptiontable', b'').hex()]
-    owner: Any = None       # of which the next instruction may name an attribute
     for operation, argument in _instructions(code):
-        before, owner = owner, None
-        if operation in _CONSTANTS:
-            texts.append(f'{operation} {value_text(code.co_consts[argument])}')
-            if isinstance(code.co_consts[argument], CodeType):
-                _code_texts(code.co_consts[argument], names, found)
-        elif operation in _NAMES:
-            name = code.co_names[argument >> _SHIFTS.get(operation, 0)]
-            texts.append(f'{operation} {argument & _SHIFTS.get(operation, 0)} {name}')
-            if operation in _NAMED:
-                value = names.get(name, _NOTHING)
-                found.append((name, value))
-                owner = (name, value)
-            elif operation in _ATTRIBUTES and before and isinstance(before[1], ModuleType):
-                name = f'{before[0]}.{name}'
-                value = getattr(before[1], name.rpartition('.')[2], _NOTHING)
-                found.append((name, value))
-                owner = (name, value)
+        if operation in dis.hasconst:
+            what = value_text(code.co_consts[argument])
+        elif operation in dis.hasname:
+            flag = argument & _FLAGGED.get(operation, 0)
+            what = f'{flag} {_name_in(code, operation, argument)}'
         else:
-            texts.append(f'{operation} {argument}')
-    return texts
+            what = str(argument)
+        texts.append(f'{operation} {what}')
+    return '\n'.join(texts)
 
 
-class _Own:
-    """What one function is, without those it calls."""
-
-    def __init__(self, function: Any, options: str) -> None:
-        """Read the code and what it names."""
-        found: list[tuple[Any, Any]] = []
-        names = {**vars(sys.modules['builtins']), **function.__globals__}
-        texts = _code_texts(function.__code__, names, found)
-        cells = zip(function.__code__.co_freevars, function.__closure__ or ())
-        found += [(name, cell.cell_contents) for name, cell in cells]
-        found += enumerate(function.__defaults__ or ())
-        found += sorted((function.__kwdefaults__ or {}).items())
-        values = dict(found)
-        self.calls: list[Any] = []
-        for value in values.values():
-            self.calls += [part for part in (value if type(value) in (tuple, list) else (value,))
-                           if _called(part) is not None]
-        texts += [f'{name} = {value_text(value)}' for name, value in values.items()]
-        self.text = (f'{function.__module__}.{function.__qualname__} {options}\n'
-                     + '\n'.join(texts)).encode()
+def _named(code: CodeType, names: dict[str, Any]) -> Iterator[tuple[str, Any]]:
+    """Yield what code and the functions defined in it name, with the attributes of modules."""
+    owner, value = '', None     # a name, and what it stands for if the last instruction read it
+    for operation, argument in _instructions(code):
+        is_attribute = operation in _LOAD_ATTRIBUTE and isinstance(value, ModuleType)
+        if operation == _LOAD_GLOBAL or is_attribute:
+            name = _name_in(code, operation, argument)
+            value = getattr(value, name, None) if is_attribute else names.get(name)
+            owner = f'{owner}.{name}' if is_attribute else name
+            yield owner, value
+        else:
+            value = None
+    for constant in code.co_consts:
+        if isinstance(constant, CodeType):
+            yield from _named(constant, names)
 
 
-_SEEN: dict[Any, _Own] = {}
+class _Function(NamedTuple):
+    """One function: its own text, and the functions that it names."""
+
+    text: bytes
+    calls: list[Any]
 
 
-def _own(function: Any, options: str, seen: dict[Any, _Own]) -> _Own:
-    """Return what a function is, read once."""
-    found = seen.get(function)
-    if found is None:
-        found = seen[function] = _Own(function, options)
-    return found
+def _read(function: Any, options: str) -> _Function:
+    """Read the code of a function and what it names."""
+    code = function.__code__
+    names = {**vars(sys.modules['builtins']), **function.__globals__}
+    values = [*_named(code, names),
+              *zip(code.co_freevars, (cell.cell_contents for cell in function.__closure__ or ())),
+              *enumerate(function.__defaults__ or ()),
+              *sorted((function.__kwdefaults__ or {}).items())]
+    texts = [f'{function.__module__}.{function.__qualname__} {options}', _code_text(code),
+             *dict.fromkeys(f'{name} = {value_text(value)}' for name, value in values)]
+    return _Function('\n'.join(texts).encode(), list(_functions(value for _, value in values)))
 
 
-def _options(value: Any) -> str:
-    """Return the options a kernel is compiled with."""
-    return repr(sorted(value.targetoptions.items())) if isinstance(value, Dispatcher) else ''
+def _functions(values: Iterable[Any]) -> Iterator[Any]:
+    """Yield the kernels and functions among values, and in tuples among them."""
+    for value in values:
+        if isinstance(value, tuple):
+            yield from _functions(value)
+        elif _function_of(value) is not None:
+            yield value
 
 
-def _digest(kernel: Any, seen: dict[Any, _Own]) -> bytes:
-    """Return the digest of a kernel and of all that it calls, directly or not."""
-    reached, waiting = {}, [kernel]
+_read_once = cache(_read)
+
+
+def _digest(kernel: Any, read: Callable[[Any, str], _Function]) -> bytes:
+    """Return the digest of the functions that a kernel reaches, in the order of finding them."""
+    reached: dict[Any, bytes] = {}      # so that calls in a circle end
+    waiting = [kernel]
     while waiting:
         value = waiting.pop()
-        function = _called(value)
+        function = _function_of(value)
         if function not in reached:
-            reached[function] = own = _own(function, _options(value), seen)
-            waiting += reversed(own.calls)
-    return hashlib.sha256(b'\0'.join(own.text for own in reached.values())).digest()
+            is_kernel = isinstance(value, Dispatcher)
+            options = repr(sorted(value.targetoptions.items())) if is_kernel else ''
+            reached[function], calls = read(function, options)
+            waiting += reversed(calls)
+    return hashlib.sha256(b'\0'.join(reached.values())).digest()
 
 
 def kernel_digest(kernel: Any) -> bytes:
-    """
-    Return the digest of a kernel, with the values at the first look, which numba freezes too.
-
-    Cycles of calls are harmless: it is the digest of the set of functions reached, in order.
-    """
-    return _digest(kernel, _SEEN)
+    """Return the digest of a kernel, with the values that each function named at first sight."""
+    return _digest(kernel, _read_once)
 
 
-def is_unchanged(kernel: Any, digest: bytes) -> bool:
-    """Return whether no constant has got another value since: what was compiled may mix both."""
-    return _digest(kernel, {}) == digest
+def is_unchanged(kernel: Any) -> bool:
+    """Return whether all values are those at first sight: compiled code may mix old and new."""
+    return _digest(kernel, _read) == kernel_digest(kernel)

@@ -5,6 +5,7 @@ from pathlib import Path
 from typing import Any
 
 from isa_ros.core import kernel as kernels
+from isa_ros.core import kernel_cache
 from isa_ros.core.kernel import kernel
 import numba
 import pytest
@@ -52,6 +53,18 @@ def test_a_damaged_or_renamed_file_is_compiled_again(make, tmp_path, damage):
     assert (loaded(3), loaded(1.5)) == (6, 3.0)
     assert sum(loaded.stats.cache_misses.values()) == 2
     assert len({first.read_bytes(), second.read_bytes()}) == 2
+
+
+def test_a_numba_that_cannot_load_what_it_kept_is_one_line(make, monkeypatch, capsys):
+    """Silence would mean that every start compiles."""
+    assert make('own')(3) == 6
+    monkeypatch.setattr(kernel_cache, 'compile_result', lambda **_: {}['missing'])
+    kernel_cache._say_not_kept.cache_clear()
+    loaded = make('own')
+    assert loaded(3) == 6
+    assert sum(loaded.stats.cache_misses.values()) == 1
+    line, = capsys.readouterr().err.splitlines()
+    assert "loading them fails with KeyError('missing'): every start compiles them" in line
 
 
 def test_without_compiling_a_kernel_is_the_function(monkeypatch):
