@@ -20,7 +20,7 @@ same versions. Both functions may also be imported and called.
 from collections.abc import Callable
 from pathlib import Path
 
-from isa_ros.bag.provenance import provenance_of, VERSION
+from isa_ros.bag.provenance import VERSION
 from isa_ros.bag.reader import Bag
 from isa_ros.config.text.yaml_text import Tree
 from isa_ros.errors import BagError, SimulationDiverged
@@ -31,6 +31,7 @@ from isa_ros.replay.provenance_differences import (
     provenance_differences, records_of, records_of_bag)
 from isa_ros.replay.replay import replay
 from isa_ros.replay.tolerances import load_tolerances, Tolerances
+from isa_ros.run.provenance import provenance_of
 from isa_ros.scripting.bag import ResultMessages
 from isa_ros.scripting.result import Result, simulated
 from isa_ros.scripting.run import Controllers, load

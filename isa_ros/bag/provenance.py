@@ -12,9 +12,7 @@ from pathlib import Path
 import platform
 from xml.etree import ElementTree
 
-from isa_ros.core.saved_state import RunState
 from isa_ros.errors import BagError
-from isa_ros.scenario.scenario import Scenario
 
 CONFIGURATION = 'configuration.yaml'
 SCENARIO = 'scenario.yaml'
@@ -26,6 +24,8 @@ FORMAT = '1'
 
 VERSION = 'version.'
 PYTHON = 'python'
+KERNELS = 'kernels'
+"""Among the versions: a digest of the kernels of a tick (`isa_ros.run.provenance`)."""
 _RESULT_DEPENDS_ON = ('llvmlite', 'numba', 'numpy')
 
 
@@ -83,19 +83,8 @@ class Provenance:
             configuration=attachments[CONFIGURATION].decode(),
             scenario=attachments[SCENARIO].decode(),
             seed=seed,
-            versions={
-                key.removeprefix(VERSION): value
-                for key, value in record.items() if key.startswith(VERSION)},
+            versions=versions_of(record),
             state=attachments[STATE].decode() if has_state else None)
-
-
-def provenance_of(scenario: Scenario, state: RunState | None = None) -> Provenance:
-    """Return what the bag of a run says about its making; ``state`` is where it goes on from."""
-    run, versions = scenario.run, installed_versions()
-    return Provenance(
-        configuration=run.to_yaml(), scenario=scenario.to_yaml(), seed=run.seed,
-        versions=versions,
-        state=None if state is None else state.to_json(run.digest, versions))
 
 
 def _refuse_undecodable(name: str, data: bytes, where: str) -> None:
@@ -114,6 +103,22 @@ def installed_versions() -> dict[str, str]:
     versions = {name: version(name) for name in _RESULT_DEPENDS_ON}
     python = without_patch(platform.python_version())
     return {'isa_ros': _own_version(), PYTHON: python, **versions}
+
+
+def versions_of(record: Mapping[str, str]) -> dict[str, str]:
+    """Return the versions in a bag's record, by name."""
+    return {key.removeprefix(VERSION): value
+            for key, value in record.items() if key.startswith(VERSION)}
+
+
+def have_comparable_kernels(versions: Mapping[str, str], others: Mapping[str, str]) -> bool:
+    """
+    Return whether different digests of kernels mean different equations.
+
+    Earlier bags have no digest, and each minor release of Python has its own.
+    """
+    pythons = {without_patch(each.get(PYTHON, '')) for each in (versions, others)}
+    return KERNELS in versions and KERNELS in others and len(pythons) == 1
 
 
 def without_patch(version_: str) -> str:

@@ -4,7 +4,6 @@ from itertools import count, islice
 from pathlib import Path
 import tempfile
 
-from isa_ros.bag.provenance import provenance_of
 from isa_ros.bag.writer import BagWriter
 from isa_ros.bench.rigs import request_of
 from isa_ros.bench.row import Row, seconds
@@ -14,6 +13,7 @@ from isa_ros.config.paths import CONFIG, find, SCENARIOS
 from isa_ros.config.runs.run_file import load_run
 from isa_ros.core.signals import LOAD_PORT
 from isa_ros.run.narrator import packer_of
+from isa_ros.run.provenance import provenance_of
 from isa_ros.run.session import prepare
 from isa_ros.scenario.scenario import load_scenario, Scenario
 from isa_ros.simulation import Simulation

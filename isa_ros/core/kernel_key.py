@@ -219,10 +219,10 @@ def _functions(values: Iterable[Any]) -> Iterator[Any]:
 _read_once = cache(_read)
 
 
-def _digest(kernel: Any, read: Callable[[Any, str], _Function]) -> bytes:
-    """Return the digest of the functions that a kernel reaches, in the order of finding them."""
+def _digest(kernels: Iterable[Any], read: Callable[[Any, str], _Function]) -> bytes:
+    """Return the digest of the functions that kernels reach, in the order of finding them."""
     reached: dict[Any, bytes] = {}      # so that calls in a circle end
-    waiting = [kernel]
+    waiting = list(kernels)
     while waiting:
         value = waiting.pop()
         function = _function_of(value)
@@ -234,11 +234,16 @@ def _digest(kernel: Any, read: Callable[[Any, str], _Function]) -> bytes:
     return hashlib.sha256(b'\0'.join(reached.values())).digest()
 
 
+def digest_of(kernels: Iterable[Any]) -> bytes:
+    """Return one digest of several kernels, with the values that each named at first sight."""
+    return _digest(kernels, _read_once)
+
+
 def kernel_digest(kernel: Any) -> bytes:
-    """Return the digest of a kernel, with the values that each function named at first sight."""
-    return _digest(kernel, _read_once)
+    """Return the digest of one kernel."""
+    return digest_of([kernel])
 
 
 def is_unchanged(kernel: Any) -> bool:
     """Return whether all values are those at first sight: compiled code may mix old and new."""
-    return _digest(kernel, _read) == kernel_digest(kernel)
+    return _digest([kernel], _read) == kernel_digest(kernel)

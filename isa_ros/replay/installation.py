@@ -9,13 +9,14 @@ from collections.abc import Iterator, Mapping
 from typing import NamedTuple
 
 from isa_ros.bag.provenance import (
-    CONFIGURATION, FORMAT, installed_versions, PYTHON, VERSION, without_patch)
+    CONFIGURATION, FORMAT, have_comparable_kernels, KERNELS, PYTHON, versions_of, without_patch)
 from isa_ros.bag.reader import Bag
 from isa_ros.config.differences import key_differences
 from isa_ros.config.text.sections import Place
 from isa_ros.config.text.yaml_text import parse
 from isa_ros.core.topic import Topic
 from isa_ros.errors import BagError
+from isa_ros.run.provenance import recorded_versions
 from msg_adapters.definitions import definition
 
 _NAMED = 3  # obstacles listed in the error message
@@ -100,9 +101,10 @@ def topic_differences(bag: Bag, topics: list[Topic]) -> TopicDifferences:
 
 
 def _changed_versions(record: Mapping[str, str]) -> Iterator[str]:
-    here = installed_versions()
-    there = {key.removeprefix(VERSION): value
-             for key, value in record.items() if key.startswith(VERSION)}
+    here, there = recorded_versions(), versions_of(record)
+    if not have_comparable_kernels(here, there):
+        here, there = ({name: value for name, value in versions.items() if name != KERNELS}
+                       for versions in (here, there))
     if PYTHON in there:  # bags of before have its patch release too
         there[PYTHON] = without_patch(there[PYTHON])
     for name in [*there, *sorted(set(here) - set(there))]:

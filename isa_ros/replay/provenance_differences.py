@@ -3,7 +3,8 @@
 from collections.abc import Mapping
 from typing import NamedTuple
 
-from isa_ros.bag.provenance import CONFIGURATION, Provenance, SCENARIO
+from isa_ros.bag.provenance import (
+    CONFIGURATION, have_comparable_kernels, KERNELS, Provenance, SCENARIO, VERSION, versions_of)
 from isa_ros.bag.reader import Bag
 from isa_ros.config.differences import (
     configuration_differences, DifferingKey, section_differences)
@@ -56,5 +57,8 @@ def provenance_differences(
         expected.section(CONFIGURATION), actual.section(CONFIGURATION))
     found += [key._replace(key=f'scenario.{key.key}') for key in section_differences(
         expected.section(SCENARIO), actual.section(SCENARIO))]
+    left_out = set(_DIGESTS)
+    if not have_comparable_kernels(versions_of(expected.record), versions_of(actual.record)):
+        left_out.add(VERSION + KERNELS)
     return found + [key for key in section_differences(expected.record, actual.record)
-                    if key.key not in _DIGESTS]
+                    if key.key not in left_out]

@@ -8,7 +8,7 @@ import os
 from pathlib import Path
 
 from isa_ros.bag.directory import files_to_replace
-from isa_ros.bag.provenance import installed_versions, provenance_of
+from isa_ros.bag.provenance import installed_versions
 from isa_ros.bag.writer import BagWriter
 from isa_ros.config.assembly import request_range_of, surroundings_of
 from isa_ros.config.runs.run_config import RunConfig
@@ -22,6 +22,7 @@ from isa_ros.run.coordinator import Coordinator, Requests
 from isa_ros.run.narrator import Narrator, Outlets, packer_of
 from isa_ros.run.options import Request
 from isa_ros.run.pacing import JOINING, Pace, Progress, ProgressMeter, STARTING
+from isa_ros.run.provenance import provenance_of
 from isa_ros.run.thinning import Thinning
 from isa_ros.scenario.scenario import planned, Scenario
 from isa_ros.surroundings.surroundings import Surroundings

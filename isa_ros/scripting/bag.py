@@ -2,12 +2,12 @@
 
 from pathlib import Path
 
-from isa_ros.bag.provenance import provenance_of
 from isa_ros.bag.writer import BagWriter
 from isa_ros.config.assembly import surroundings_of
 from isa_ros.core.topic import Topic
 from isa_ros.errors import BagError
 from isa_ros.run.narrator import Narrator, packer_of, Recorder
+from isa_ros.run.provenance import provenance_of
 from isa_ros.run.thinning import Thinning
 from isa_ros.scenario.scenario import Scenario
 from isa_ros.scripting.log import Log

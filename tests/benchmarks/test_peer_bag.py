@@ -2,12 +2,12 @@
 
 from benchmarks.peers.catalogue import peer, PEERS
 from benchmarks.peers.transport import run_over
-from isa_ros.bag.provenance import provenance_of
 from isa_ros.bag.writer import BagWriter
 from isa_ros.bench.rigs import request_of
 from isa_ros.bench.spec import PROCESSES, Spec
 from isa_ros.processes.stopping import StopRequest
 from isa_ros.run.local_run import LocalRun
+from isa_ros.run.provenance import provenance_of
 from isa_ros.run.session import prepare
 from isa_ros.tick.source import ScheduledSource
 import pytest

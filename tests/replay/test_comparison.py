@@ -6,6 +6,7 @@ from pathlib import Path
 
 import isa_ros
 from isa_ros.cli.main import main
+from isa_ros.run import provenance
 import pytest
 from tests.bag.recorded import NAMES, record, tick_messages
 from tests.replay.test_compare import foreign
@@ -44,6 +45,20 @@ def test_equal_bags_are_said_to_be_equal(
     first, second = capsys.readouterr().out.splitlines()
     assert first == 'configuration, scenario and versions are equal'
     assert second.startswith('equal: 21 ticks, ')
+
+
+def test_edited_kernels_are_one_line(
+        tmp_path: Path, bags: dict[str, Path], capsys: pytest.CaptureFixture[str],
+        monkeypatch: pytest.MonkeyPatch) -> None:
+    """Also where the messages are equal; the version of the package has not changed."""
+    with monkeypatch.context() as patch:
+        patch.setattr(provenance, 'tick_digest', lambda: '0123456789abcdef')
+        edited = push(tmp_path / 'edited', {})
+    main(['compare', str(bags['one']), str(edited)])
+    head, _, line, equal = capsys.readouterr().out.splitlines()
+    assert head == 'configuration, scenario or versions differ:'
+    assert line.split() == ['version.kernels', provenance.tick_digest(), '0123456789abcdef']
+    assert equal.startswith('equal: 21 ticks, ')
 
 
 def test_a_gain_that_differs_comes_first(

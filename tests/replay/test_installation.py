@@ -5,7 +5,7 @@ from pathlib import Path
 import re
 
 from isa_ros.bag import provenance, writer
-from isa_ros.bag.provenance import installed_versions, PYTHON, VERSION
+from isa_ros.bag.provenance import installed_versions, KERNELS, PYTHON, VERSION
 from isa_ros.bag.reader import Bag
 from isa_ros.bag.writer import BagWriter
 from isa_ros.cli.main import main
@@ -14,6 +14,7 @@ from isa_ros.config.runs.run_config import RunConfig
 from isa_ros.config.runs.run_file import load_run
 from isa_ros.replay.installation import _changed_versions, differences
 from isa_ros.replay.replay import Rerun
+from isa_ros.run.provenance import recorded_versions
 from msg_adapters.definitions import Definition, definition
 import pytest
 from tests.bag.golden import GOLDEN, rewrite
@@ -197,3 +198,17 @@ def test_a_patch_release_of_python_is_no_difference():
     assert list(_changed_versions(record | {f'{VERSION}{PYTHON}': f'{here[PYTHON]}.99'})) == []
     assert list(_changed_versions(record | {f'{VERSION}{PYTHON}': '2.7.18'})) == [
         f'python is {here[PYTHON]} here, was 2.7']
+
+
+def test_other_kernels_are_one_line_if_they_can_be_compared(here, replayed, tmp_path):
+    """Bags of before have no digest of kernels, and another Python has another one."""
+    own = recorded_versions()
+    for name, change, expected in (
+            ('edited', {KERNELS: 'f' * 16}, [f'{KERNELS} is {own[KERNELS]} here, was {"f" * 16}']),
+            ('python', {KERNELS: 'f' * 16, PYTHON: '3.7'},
+             [f'python is {own[PYTHON]} here, was 3.7']),
+            ('same', {}, [])):
+        code, lines, _ = replayed(rewrite(here, tmp_path / name, versions=own | change))
+        assert (code, lines[:-1]) == (0, expected)
+    assert KERNELS not in here.provenance.versions
+    assert replayed(here.path.parent)[1][:-1] == []
