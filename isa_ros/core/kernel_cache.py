@@ -150,6 +150,16 @@ def _sweep(directory: Path) -> None:
                 path.unlink()
 
 
+def is_kept(kernel: Any) -> bool:
+    """Return whether a kernel as it is now is kept, for whatever types of arguments."""
+    return any(True for place in _READ for _ in place.glob(f'*-{_digest(kernel)}'))
+
+
+def _digest(kernel: Any) -> str:
+    """Return the digest of a kernel as names of files have it."""
+    return kernel_digest(kernel).hex()[:32]
+
+
 class _Library(JITCodeLibrary):
     """The machine code of a kept kernel; its bitcode is parsed when another kernel inlines it."""
 
@@ -223,7 +233,7 @@ class KernelCache(_Cache):
         name = f'{function.__module__.rpartition(".")[2]}.{function.__qualname__}'
         return (f'{name.replace("<", "").replace(">", "")}-'
                 f'{hashlib.sha256(asked.encode()).hexdigest()[:16]}-'
-                f'{kernel_digest(self._kernel).hex()[:32]}')
+                f'{_digest(self._kernel)}')
 
     def load_overload(self, sig: Any, target_context: Any) -> Any:
         """Return a compiled version, None if no file has it."""

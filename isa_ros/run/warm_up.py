@@ -1,15 +1,25 @@
 """Compile the kernels of a run, or load them from the cache, before it starts."""
 
-from contextlib import suppress
+from collections.abc import Iterator
+from contextlib import contextmanager, suppress
+import os
+import subprocess
+import sys
 
 from isa_ros.actuator.actuator import SmartActuator
+from isa_ros.actuator.kernel import actuator_tick
 from isa_ros.bag.message_chunk import Chunk, Layouts
+from isa_ros.config.assembly import group_of, surroundings_of
 from isa_ros.config.runs.run_config import RunConfig
+from isa_ros.core.kernel_cache import is_kept
+from isa_ros.core.signals import LOAD_PORT, LOAD_REPLY
 from isa_ros.errors import SimulationDiverged
 from isa_ros.run.narrator import packer_of
 from isa_ros.scenario.scenario import idle
 from isa_ros.simulation import Simulation
 import numpy as np
+
+_OTHER = [sys.executable, '-c', f'import {__name__} as w; w.compile_surroundings()']
 
 
 def warmed_up(run: RunConfig) -> list[SmartActuator]:
@@ -18,6 +28,8 @@ def warmed_up(run: RunConfig) -> list[SmartActuator]:
 
     If the copy diverges, so will the run, which reports it and records the ticks before.
     """
+    if run.body is not None and not is_kept(actuator_tick) and len(os.sched_getaffinity(0)) > 1:
+        _compile_by_two(run)
     simulation = Simulation(idle(run))
     with suppress(SimulationDiverged):
         simulation.step()
@@ -27,3 +39,34 @@ def warmed_up(run: RunConfig) -> list[SmartActuator]:
         packer.pack(t_ns, t_ns, {})
         chunk.add(t_ns, 0, packer.all_messages())
     return simulation.group.actuators
+
+
+def _compile_by_two(run: RunConfig) -> None:
+    """Compile the actuators here, and the body and supplies in a process that keeps them."""
+    with _other_process(run.to_yaml()), suppress(SimulationDiverged):
+        group_of(run).advance(np.zeros(len(run.actuators), LOAD_PORT))
+
+
+@contextmanager
+def _other_process(configuration: str) -> Iterator['subprocess.Popen[str]']:
+    """Compile the surroundings meanwhile; what that process does not keep is compiled here."""
+    with subprocess.Popen(_OTHER, stdin=subprocess.PIPE, text=True,
+                          stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL) as other:
+        try:
+            assert other.stdin is not None
+            with suppress(BrokenPipeError), other.stdin:
+                other.stdin.write(configuration)
+            yield other
+        except BaseException:
+            other.kill()
+            raise
+
+
+def compile_surroundings() -> None:
+    """Compile body and supplies of the configuration on standard input, of actuators at rest."""
+    run = RunConfig.from_yaml(sys.stdin.read())
+    surroundings = surroundings_of(run)
+    surroundings.starts()
+    surroundings.ports(np.zeros(len(run.actuators), LOAD_PORT))
+    with suppress(SimulationDiverged):
+        surroundings.advance(np.zeros(len(run.actuators), LOAD_REPLY))

@@ -4,10 +4,14 @@ import os
 from pathlib import Path
 import re
 import shutil
+import signal
 import subprocess
 import sys
 
 import isa_ros
+from isa_ros.config.paths import CONFIG, shipped
+from isa_ros.config.runs.run_file import load_run
+from isa_ros.run import warm_up
 import pytest
 
 PACKAGES = Path(isa_ros.__file__).parents[1]
@@ -23,6 +27,15 @@ with install_recorder('numba:compile') as compiled:
 from isa_ros.actuator.kernel import actuator_tick
 print(isa_ros.__file__, [event.data['dispatcher'].__name__ for _, event in compiled.buffer],
       bool(actuator_tick.stats.cache_hits))
+"""
+
+LEG = load_run(shipped(CONFIG)['leg.yaml'])
+SURROUNDINGS = """
+from isa_ros.run.warm_up import compile_surroundings
+compile_surroundings()
+from isa_ros.actuator.kernel import actuator_tick
+from isa_ros.surroundings.bodies.leg.port_kernel import leg_ports, leg_tick
+print(actuator_tick.signatures, len(leg_ports.signatures), len(leg_tick.signatures))
 """
 
 
@@ -46,3 +59,50 @@ def test_a_copy_with_other_words_compiles_nothing(compiled_kernels: None, copy: 
         [sys.executable, '-c', START], cwd=copy, env=os.environ | {'PYTHONPATH': str(copy)},
         capture_output=True, text=True, timeout=300.0)
     assert (done.stdout, done.stderr) == (f'{copy}/isa_ros/__init__.py [] True\n', '')
+
+
+def test_another_process_compiles_the_surroundings_without_the_actuators() -> None:
+    done = subprocess.run([sys.executable, '-c', SURROUNDINGS], input=LEG.to_yaml(),
+                          capture_output=True, text=True, timeout=300.0)
+    assert (done.stdout, done.stderr) == ('[] 1 1\n', '')
+
+
+@pytest.mark.parametrize('other', [None, 'raise SystemExit(1)'])
+def test_a_first_start_compiles_by_two_processes(
+        monkeypatch: pytest.MonkeyPatch, other: str | None) -> None:
+    """If the other one fails, this one compiles all."""
+    began = []
+    with monkeypatch.context() as patch:
+        patch.setattr(warm_up, 'is_kept', lambda kernel: False)
+        patch.setattr(warm_up.os, 'sched_getaffinity', lambda _: {0, 1})
+        if other is not None:
+            patch.setattr(warm_up, '_OTHER', [sys.executable, '-c', other])
+
+        class Began(subprocess.Popen[str]):
+            def __init__(self, *arguments: object, **options: object) -> None:
+                super().__init__(*arguments, **options)  # type: ignore[call-overload]
+                began.append(self)
+
+        patch.setattr(warm_up.subprocess, 'Popen', Began)
+        by_two = warm_up.warmed_up(LEG)
+    one, = began
+    assert one.returncode == (0 if other is None else 1)
+    assert [each.snapshot() for each in by_two] == [
+        each.snapshot() for each in warm_up.warmed_up(LEG)]
+
+
+@pytest.mark.parametrize('why', ['kept', 'one core', 'no body'])
+def test_another_process_starts_only_if_it_helps(
+        monkeypatch: pytest.MonkeyPatch, why: str) -> None:
+    monkeypatch.setattr(warm_up, 'is_kept', lambda kernel: why == 'kept')
+    monkeypatch.setattr(
+        warm_up.os, 'sched_getaffinity', lambda _: {0} if why == 'one core' else {0, 1})
+    monkeypatch.setattr(warm_up, '_compile_by_two', lambda _: pytest.fail('a process started'))
+    warm_up.warmed_up(load_run(shipped(CONFIG)['rig_rotary.yaml']) if why == 'no body' else LEG)
+
+
+def test_an_interrupt_ends_the_other_process(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(warm_up, '_OTHER', ['sleep', '300'])
+    with pytest.raises(KeyboardInterrupt), warm_up._other_process('') as other:
+        raise KeyboardInterrupt
+    assert other.returncode == -signal.SIGKILL
