@@ -28,7 +28,7 @@ def warmed_up(run: RunConfig) -> list[SmartActuator]:
 
     If the copy diverges, so will the run, which reports it and records the ticks before.
     """
-    if run.body is not None and not is_kept(actuator_tick) and len(os.sched_getaffinity(0)) > 1:
+    if run.bodies and not is_kept(actuator_tick) and len(os.sched_getaffinity(0)) > 1:
         _compile_by_two(run)
     simulation = Simulation(idle(run))
     with suppress(SimulationDiverged):
