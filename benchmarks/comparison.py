@@ -1,12 +1,11 @@
 """Leg and twelve actuators with other middlewares: same work, same bag, another exchange."""
 
 from benchmarks.peers.catalogue import installed, Peer, PEERS
-from isa_ros.bench.growth import TWELVE
 from isa_ros.bench.leg import IN_PROCESSES, speed_row
 from isa_ros.bench.limits import profile
 from isa_ros.bench.rounds import Outcomes
 from isa_ros.bench.row import Aim, Row
-from isa_ros.bench.spec import Spec
+from isa_ros.bench.spec import Spec, TWELVE
 
 REQUIREMENTS = 'requirements-bench.txt'
 FLOOR = PEERS[0]

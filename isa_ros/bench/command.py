@@ -74,7 +74,8 @@ def measured_report(
             done = outcomes(list(dict.fromkeys(
                 spec for group in below for spec in group.specs())), progress)
         for group in below:
-            section = Section(group.name, group.title, tuple(group.rows(done)))
+            section = Section(
+                group.name, group.title, tuple(group.rows(done)), group.drawing(done))
             print('\n'.join(as_lines(section)), flush=True)
             sections[group.name] = section
     return Report(here, tuple(sections[group.name] for group in groups), done)

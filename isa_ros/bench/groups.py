@@ -7,8 +7,9 @@ from pathlib import Path
 import sys
 
 import isa_ros
-from isa_ros.bench import growth, leg, memory, startup
+from isa_ros.bench import leg, memory, startup
 from isa_ros.bench.in_memory import in_memory_rows
+from isa_ros.bench.page import Drawing
 from isa_ros.bench.plant import cylinder_rows, plant_rows
 from isa_ros.bench.rounds import Outcomes
 from isa_ros.bench.row import Row
@@ -18,7 +19,7 @@ from isa_ros.bench.tick import tick_parts
 CHECKOUT = Path(isa_ros.__file__).parents[1]
 BENCHMARKS = 'benchmarks'
 """Folder of a checkout with further groups; it is not installed."""
-OF_BENCHMARKS = ('peers', 'bus')
+OF_BENCHMARKS = ('growth', 'peers', 'bus')
 """Names of its groups."""
 
 
@@ -30,6 +31,7 @@ class Group:
     title: str
     rows: Callable[[Outcomes], list[Row]]
     specs: Callable[[], tuple[Spec, ...]] = tuple
+    drawing: Callable[[Outcomes], Drawing | None] = lambda _: None
     missing: Callable[[], str] = str
     """Returns why the group cannot be measured here; '' if it can."""
 
@@ -45,9 +47,8 @@ GROUPS = (
     Group('tick', 'Parts of a tick of the leg, without ROS', alone(tick_parts)),
     Group('in_memory', 'The leg in memory, without a bag', alone(in_memory_rows)),
     Group('leg', 'The leg, recording', leg.leg_rows, lambda: leg.SPECS),
-    Group('growth', 'From 1 to 24 actuators, recording', growth.growth_rows, growth.specs),
     Group('startup', 'Start-up, caches warm', startup.startup_rows, lambda: startup.SPECS),
-    Group('memory', 'Memory', memory.memory_rows, memory.specs),
+    Group('memory', 'Memory', memory.memory_rows, lambda: leg.SPECS),
 )
 
 

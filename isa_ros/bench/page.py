@@ -2,10 +2,8 @@
 
 from dataclasses import asdict, dataclass
 from pathlib import Path
-from typing import Any
+from typing import Any, NamedTuple
 
-from isa_ros.bench import growth
-from isa_ros.bench.growth_figure import growth_figure
 from isa_ros.bench.host import Machine
 from isa_ros.bench.rounds import Outcomes
 from isa_ros.bench.row import Row
@@ -13,8 +11,9 @@ from isa_ros.text.json_file import write_tree
 from isa_ros.text.number import digits
 from isa_ros.text.page import Page, png_with_palette
 from isa_ros.text.table import padded
+from matplotlib.figure import Figure
 
-PAGE, FIGURE = 'bench.md', 'bench_growth'
+PAGE = 'bench.md'
 _WIDTHS, _SIDES = (52, 9, 7, 8, 0), 'lrlrl'
 HEAD = padded(('measurement', 'median', 'unit', 'ratio', 'to'), _WIDTHS, _SIDES)
 _HEAD = """# How fast, and what limits it
@@ -36,6 +35,13 @@ setpoints, requests and subscriptions. In processes, the phase *actuators* is th
 """
 
 
+class Drawing(NamedTuple):
+    """A figure of a group."""
+
+    caption: str
+    figure: Figure
+
+
 @dataclass(frozen=True)
 class Section:
     """The rows of one group."""
@@ -43,6 +49,7 @@ class Section:
     name: str
     title: str
     rows: tuple[Row, ...]
+    drawing: Drawing | None = None
 
 
 @dataclass(frozen=True)
@@ -89,19 +96,16 @@ def write_json(report: Report, path: Path) -> None:
 
 
 def write_page(report: Report, directory: Path) -> list[Path]:
-    """Write bench.md, with the figure of the growth if that was measured."""
+    """Write bench.md, with the figures of the groups."""
     page = Page(PAGE, _HEAD.format(machine=report.machine.summary))
     _aims(page, report)
-    curves = {name: growth.curve(specs, report.outcomes) for name, specs in (
-        ('one process', growth.IN_ONE_PROCESS), ('processes', growth.IN_PROCESSES))}
-    has_figure = all(len(curve) > 1 for curve in curves.values())
     for section in report.sections:
         page.section(section.title)
         page.paragraph(f'`isa bench --only {section.name}`')
         page.table([('', 'median', 'unit', 'ratio', 'to'), *map(_cells, section.rows)])
-        if section.name == 'growth' and has_figure:
-            page.figure(FIGURE, 'Ticks per second over the number of actuators',
-                        png_with_palette(growth_figure(curves)))
+        if section.drawing is not None:
+            page.figure(f'bench_{section.name}', section.drawing.caption,
+                        png_with_palette(section.drawing.figure))
     return page.write(directory)
 
 

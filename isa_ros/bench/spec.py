@@ -48,6 +48,9 @@ class Spec:
         return f'{what}, {self.way}'
 
 
+TWELVE = Spec('12', PROCESSES, 600, rounds=2)
+
+
 class Memory(NamedTuple):
     """Memory of one process, bytes."""
 

@@ -1,12 +1,11 @@
 """Start-up time with warm caches: from the start of the command to its first tick."""
 
 from isa_ros.bench import leg
-from isa_ros.bench.growth import TWELVE
 from isa_ros.bench.limits import startup_profile
 from isa_ros.bench.loading import median_loading
 from isa_ros.bench.rounds import Outcomes
 from isa_ros.bench.row import Aim, Row
-from isa_ros.bench.spec import median_of, Spec
+from isa_ros.bench.spec import median_of, Spec, TWELVE
 
 SPECS = (*leg.SPECS, TWELVE)
 _AIM = Aim(4.0, is_most=True)

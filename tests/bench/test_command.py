@@ -25,10 +25,10 @@ def test_a_wrong_group_is_answered_with_the_right_one(capsys):
 
 
 def test_without_a_checkout_the_groups_of_benchmarks_are_left_out(monkeypatch, tmp_path, capsys):
-    assert {'peers', 'bus'} == {group.name for group in groups.groups()[len(GROUPS):]}
+    assert {'growth', 'peers', 'bus'} == {group.name for group in groups.groups()[len(GROUPS):]}
     monkeypatch.setattr(groups, 'CHECKOUT', tmp_path)
     assert chosen(None) == GROUPS
-    for name in ('peers', 'bus'):
+    for name in ('growth', 'peers', 'bus'):
         assert main(['bench', '--only', name]) == 2
         assert capsys.readouterr().err == (
             f'isa: --only {name}: needs a checkout of isa_ros: its folder benchmarks is not '

@@ -1,9 +1,8 @@
 """Rows of the groups from the results of runs."""
 
-from isa_ros.bench import growth, leg, memory, startup
+from isa_ros.bench import leg, memory, startup
 from isa_ros.bench.loading import Loading
 from isa_ros.bench.rounds import Outcomes
-from isa_ros.bench.spec import ONE_PROCESS, PROCESSES
 import pytest
 from tests.bench.told import MIB, told
 
@@ -41,22 +40,10 @@ def test_a_missed_aim_says_where_the_tick_goes(monkeypatch):
         pytest.approx(30.0))
 
 
-def test_twelve_actuators_have_aims_and_what_was_not_run_says_so():
-    twelve = [next(s for s in specs if s.plant == '12')
-              for specs in (growth.IN_ONE_PROCESS, growth.IN_PROCESSES)]
-    rows = by_name(growth.growth_rows(Outcomes({spec: [told(700.0, 12)] for spec in twelve})))
-    assert rows['12 actuators, one process'].is_reached is False
-    assert rows['12 actuators, processes'].is_reached is True
-    assert rows['24 actuators, processes'].value is None
-
-
-def test_one_actuator_more_costs_what_its_process_has(loading):
-    """80 MiB for the coordinator, 50 for each actuator, from 1 to 12."""
-    one, twelve = (next(s for s in growth.IN_PROCESSES if s.plant == n) for n in ('1', '12'))
+def test_memory_is_that_of_all_processes(loading):
+    """80 MiB for the coordinator, 50 for each actuator; the floor is half of the latter."""
     rows = by_name(memory.memory_rows(Outcomes({
-        one: [told(900.0, 1)], twelve: [told(300.0, 12)],
         leg.IN_PROCESSES: [told(1000.0, 3)], leg.IN_ONE_PROCESS: [told(4000.0)]})))
-    assert rows['one actuator more, in processes, 1 to 12'].value == pytest.approx(50.0)
     assert rows['leg, processes: all together, proportional'].value == pytest.approx(230.0)
     assert rows['leg, processes: an actuator, resident'].ratio == pytest.approx(0.5)
 
@@ -69,10 +56,3 @@ def test_start_up_is_the_sum_of_its_parts(loading):
     assert (total.lowest, total.value, total.highest) == (3.0, 5.0, 6.0)
     assert total.is_reached is False and 'waiting for actuators to join 3.75 s' in total.note
     assert rows['imports'].ratio == pytest.approx(0.25)
-
-
-def test_24_processes_are_left_out_where_memory_is_short(monkeypatch):
-    monkeypatch.setattr(growth, 'available_memory', lambda: 13 * growth.PROCESS_BYTES)
-    wanted = growth.specs()
-    assert {s.plant for s in wanted if s.way == PROCESSES} == {'1', '2', '3', '6', '12'}
-    assert '24' in {s.plant for s in wanted if s.way == ONE_PROCESS}

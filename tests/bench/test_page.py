@@ -2,7 +2,7 @@
 
 import json
 
-from isa_ros.bench import growth
+from benchmarks import growth
 from isa_ros.bench.host import Machine
 from isa_ros.bench.page import as_lines, Report, Section, write_json, write_page
 from isa_ros.bench.rounds import Outcomes
@@ -24,8 +24,9 @@ def report() -> Report:
         Row('HELICS', None, 'ticks/s', note='not installed: requirements-bench.txt'))
     outcomes = Outcomes({spec: [told(3000.0 / int(spec.plant))]
                          for spec in growth.IN_ONE_PROCESS + growth.IN_PROCESSES})
-    return Report(MACHINE, (Section('leg', 'The leg', rows), Section('growth', 'Growth', ())),
-                  outcomes)
+    return Report(MACHINE, (
+        Section('leg', 'The leg', rows),
+        Section('growth', 'Growth', (), growth.drawing(outcomes))), outcomes)
 
 
 def test_the_page_names_machine_aims_and_limits(report, tmp_path):
@@ -60,6 +61,6 @@ def test_a_terminal_shows_the_limit_below_its_row(report):
     assert lines[2].strip() == 'of a tick of 909 us: actuators 700 us'
 
 
-def test_no_figure_without_both_curves(report, tmp_path):
-    empty = Report(report.machine, report.sections, Outcomes({}))
+def test_a_group_without_a_drawing_has_no_figure(report, tmp_path):
+    empty = Report(report.machine, report.sections[:1], Outcomes({}))
     assert write_page(empty, tmp_path) == [tmp_path / 'bench.md']

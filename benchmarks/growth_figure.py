@@ -1,19 +1,22 @@
 """Figure of speed and memory over the number of actuators."""
 
+from collections.abc import Mapping, Sequence
 from statistics import median
 
-from isa_ros.bench.growth import Curve, Curves
+from isa_ros.bench.memory import MIB, total
 from isa_ros.bench.spec import Measured
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
+Curve = Sequence[tuple[int, Sequence[Measured]]]
+"""(number of actuators, runs), ascending."""
+
 REAL_TIME = 1000.0      # ticks/s
 SPEEDS = (20, 50, 100, 200, 500, 1000, 2000, 5000, 10000)     # labels of the axis, ticks/s
-MIB = 1024.0 * 1024.0
 _STYLES = ('C0o-', 'C1s-')
 
 
-def growth_figure(curves: Curves) -> Figure:
+def growth_figure(curves: Mapping[str, Curve]) -> Figure:
     """Draw ticks/s and memory, one line for each way of running."""
     figure = Figure(figsize=(8.0, 3.6), dpi=110, layout='constrained')
     speed, memory = figure.subplots(1, 2)
@@ -21,7 +24,7 @@ def growth_figure(curves: Curves) -> Figure:
         numbers = [n for n, _ in curve]
         speed.loglog(numbers, [median(run.ticks_per_s for run in runs) for _, runs in curve],
                      style, markersize=4, label=name)
-        memory.plot(numbers, [median(map(_mebibytes, runs)) for _, runs in curve],
+        memory.plot(numbers, [median(map(total, runs)) / MIB for _, runs in curve],
                     style, markersize=4, label=name)
     speed.axhline(REAL_TIME, color='gray', linestyle='--', linewidth=0.8, label='real time')
     lowest, highest = speed.get_ylim()
@@ -30,10 +33,6 @@ def growth_figure(curves: Curves) -> Figure:
     for ax, label in ((speed, 'ticks of 1 ms per second'), (memory, 'memory together, MiB')):
         _finish(ax, label, max(curves.values(), key=len))
     return figure
-
-
-def _mebibytes(run: Measured) -> float:
-    return sum(size.proportional for size in run.memory) / MIB
 
 
 def _finish(ax: Axes, label: str, curve: Curve) -> None:
