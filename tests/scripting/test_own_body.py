@@ -2,6 +2,7 @@
 
 from collections.abc import Mapping
 from pathlib import Path
+import re
 
 import isa_ros
 from isa_ros.config.runs.run_config import RunConfig
@@ -185,3 +186,12 @@ def test_its_text_is_read_back() -> None:
 def test_a_section_that_cannot_be_is_refused(changes: dict[str, object], message: str) -> None:
     with pytest.raises(ConfigError, match=message):
         rig(**changes)
+
+
+def test_the_program_of_the_page_runs(capsys: pytest.CaptureFixture[str]) -> None:
+    """It prints place and force: the piston holds its start at mid stroke, 10 mm ahead."""
+    page = (Path(__file__).parents[2] / 'docs' / 'bodies.md').read_text(encoding='utf-8')
+    program, = re.findall(r'```python\n(.*?)```', page, re.DOTALL)
+    exec(program, {})
+    place, force = map(float, capsys.readouterr().out.split())
+    assert place == pytest.approx(0.05, abs=0.01) and abs(force) < 1e4
