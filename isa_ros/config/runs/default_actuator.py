@@ -1,11 +1,14 @@
 """One actuator of a packaged model on its default load, without a run file."""
 
+from dataclasses import replace
+
 from isa_ros.actuator.actuator import PAPER_SUPPLY, Timing
 from isa_ros.actuator.sheet import ActuatorSheet
-from isa_ros.config.models.catalogue import actuator_model, DEFAULT_PRESET, Model
+from isa_ros.config.models.catalogue import Model
 from isa_ros.config.models.own_load import own_load
-from isa_ros.config.runs.run_config import ActuatorConfig
-from isa_ros.config.text.parameter_sets import build
+from isa_ros.config.runs.actuator_config import ActuatorConfig
+from isa_ros.config.runs.model_run import model_run
+from isa_ros.config.runs.run_config import run_of
 from isa_ros.config.text.sections import Place
 from isa_ros.loads.sheets import LocalLoad
 
@@ -22,11 +25,8 @@ def default_actuator(model: str, name: str) -> ActuatorConfig:
         The model does not exist.
 
     """
-    found = actuator_model(model, 'model')
-    sheet = build(ActuatorSheet, found.with_preset(DEFAULT_PRESET, 'preset'), found.place)
-    return ActuatorConfig(
-        name, found.name, DEFAULT_PRESET, sheet, default_load(found, sheet),
-        0.5 * sheet.plant.drive.stroke)
+    run, _ = run_of(model_run(model), Place(model))
+    return replace(run.actuators[0], name=name)
 
 
 def default_load(

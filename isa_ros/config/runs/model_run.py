@@ -10,12 +10,10 @@ from collections.abc import Sequence
 
 from isa_ros.actuator.actuator import PAPER_SUPPLY
 from isa_ros.config.models.catalogue import actuator_model, DEFAULT_PRESET
-from isa_ros.config.runs.default_actuator import DEFAULT_TIMING
 from isa_ros.config.text.yaml_text import Tree
 from isa_ros.core.units import MPA
 
 LOAD = 'load'
-_TICK_TIMEOUT_S = 5.0   # as in the shipped run files
 _OF_SHEET = ('spool_feedback', 'plant', 'reu')
 _OF_ACTUATOR = (
     LOAD, 'preset', 'variants', 'initial_position_mm', 'initial_position_deg', 'beyond_range')
@@ -38,9 +36,7 @@ def model_run(name: str, preset: str | None = None, variants: Sequence[str] = ()
     if variants:
         actuator['variants'] = list(variants)
     return {
-        'name': model.name, 'step_ms': DEFAULT_TIMING.step_ns * 1e-6,
-        'controller_offset_ms': DEFAULT_TIMING.controller_offset_ns * 1e-6,
-        'tick_timeout_s': _TICK_TIMEOUT_S,
+        'name': model.name,
         'supply': {'kind': 'constant', 'pressure_mpa': PAPER_SUPPLY / MPA,
                    'return_pressure_mpa': 0.0},
         'actuators': {model.name: actuator | {LOAD: {'kind': model.default_load}}}}

@@ -22,7 +22,6 @@ from isa_ros.config.text.sections import Place, Section
 from isa_ros.config.text.yaml_text import dump, parse, Tree
 from isa_ros.core.noise import seed_of
 from isa_ros.core.suggest import alternatives
-from isa_ros.core.timebase import refuse_grid
 from isa_ros.errors import ConfigError
 from isa_ros.surroundings.supply import SupplySheet
 
@@ -200,13 +199,16 @@ def _only(run: RunConfig) -> BodyConfig | None:
 
 _BODY = OneOf({name: kind.KEYS for name, kind in BODY_KINDS.items()})
 
+_STEP = number('step_ms', 'ms', 'macro step H', 1.0, in_text=InText.NEVER, gt=0.0, le=100.0)
+_OFFSET = number(
+    'controller_offset_ms', 'ms', 'offset of the samples of the REU from the ticks', 0.12,
+    in_text=InText.NEVER, ge=0.0, le=100.0)
+
 RUN = Table((
     Key('name', NAME, 'the name of the run', in_text=InText.ALWAYS),
     Key('source', TEXT, 'the file that the run was resolved from', None,
         'the name of the file', in_text=InText.ONLY),
-    number('step_ms', 'ms', 'macro step H', 1.0, in_text=InText.NEVER, gt=0.0, le=100.0),
-    number('controller_offset_ms', 'ms', 'offset of the samples of the REU from the ticks', 0.12,
-           in_text=InText.NEVER, ge=0.0, le=100.0),
+    _STEP, _OFFSET,
     Key('step_ns', NANOSECONDS, 'the macro step instead of `step_ms`', None,
         in_text=InText.ONLY, instead_of=('step_ms',)),
     Key('controller_offset_ns', NANOSECONDS, 'the offset instead of `controller_offset_ms`',
@@ -275,12 +277,10 @@ def run_of(tree: Tree, place: Place, is_checked: bool = True) -> tuple[RunConfig
 
 def _times(values: dict[str, Any], place: Place) -> tuple[int, int]:
     """Return macro step and offset of the REU's samples, ns."""
-    step_ms, offset_ms = (
-        values[f'{name}_ms'] if values[f'{name}_ns'] is None else values[f'{name}_ns'] / 1e6
-        for name in ('step', 'controller_offset'))
-    times = on_grid(step_ms, offset_ms, place)
-    refuse_grid(*times, str(place))
-    return times
+    def in_ms(key: Key, ns: int | None) -> Any:
+        return values[key.name] if ns is None else key.kind.read(ns / 1e6, place / key.name)
+    return on_grid(in_ms(_STEP, values['step_ns']),
+                   in_ms(_OFFSET, values['controller_offset_ns']), place)
 
 
 def _bodies(

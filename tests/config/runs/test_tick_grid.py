@@ -3,8 +3,10 @@
 from pathlib import Path
 
 from hypothesis import given, strategies as st
+from isa_ros.config.runs.run_config import RunConfig
 from isa_ros.config.runs.run_file import load_run
 from isa_ros.config.runs.tick_grid import ticks_in
+from isa_ros.core.timebase import PLANT_STEP_NS
 from isa_ros.errors import ConfigError
 import pytest
 from tests.config.rig_file import rig
@@ -25,6 +27,46 @@ def test_macro_steps_off_the_grid_are_refused(tmp_path: Path, step: str) -> None
     """A tick holds five equal force windows of whole plant steps: 0.1 ms."""
     with pytest.raises(ConfigError, match='rig.yaml: step_ms = '):
         load_run(rig(tmp_path, step=step))
+
+
+STEP_NS = 1_000_000
+
+
+def run_of(tmp_path: Path, **times_ns: int) -> RunConfig:
+    """Return the run of a text with these times, which have the unit ns there."""
+    path = tmp_path / 'resolved.yaml'
+    path.write_text(load_run(rig(tmp_path)).to_yaml(), encoding='utf-8')
+    return load_run(path, times_ns)
+
+
+@pytest.mark.parametrize('offset_ns', [0, PLANT_STEP_NS, STEP_NS - PLANT_STEP_NS])
+def test_an_offset_within_the_step_is_taken(tmp_path: Path, offset_ns: int) -> None:
+    """A controller samples at k step + offset: from the tick itself to the last plant step."""
+    assert run_of(tmp_path, controller_offset_ns=offset_ns).controller_offset_ns == offset_ns
+
+
+@pytest.mark.parametrize(('offset_ns', 'bound'), [
+    (STEP_NS, '< step_ms'), (STEP_NS + PLANT_STEP_NS, '< step_ms'), (-PLANT_STEP_NS, '>= 0 ms'),
+    (PLANT_STEP_NS + 1, 'a multiple of the plant step 0.02 ms')])
+def test_an_offset_outside_the_step_or_between_plant_steps_is_refused(
+        tmp_path: Path, offset_ns: int, bound: str) -> None:
+    """At a whole step it would be the next tick's, whose command it must not yet have."""
+    with pytest.raises(ConfigError, match=f'controller_offset_ms = .* ms, must be {bound}'):
+        run_of(tmp_path, controller_offset_ns=offset_ns)
+
+
+@pytest.mark.parametrize('step_ns', [0, -100_000, 90_000, 100_100_000])
+def test_a_step_without_five_windows_of_plant_steps_is_refused(
+        tmp_path: Path, step_ns: int) -> None:
+    """Five windows of whole plant steps: multiples of 0.1 ms up to 100 ms."""
+    with pytest.raises(ConfigError, match=r'resolved.yaml: step_ms = .* ms, must be'):
+        run_of(tmp_path, step_ns=step_ns, controller_offset_ns=0)
+
+
+@pytest.mark.parametrize('step_ns', [100_000, 700_000, 100_000_000])
+def test_both_ends_of_the_range_are_taken(tmp_path: Path, step_ns: int) -> None:
+    """The largest step is one that may be."""
+    assert run_of(tmp_path, step_ns=step_ns, controller_offset_ns=0).step_ns == step_ns
 
 
 @given(tick=st.integers(0, 10**9))
