@@ -7,6 +7,7 @@ from types import SimpleNamespace
 from typing import Any
 from unittest.mock import patch
 
+from isa_ros.actuator.rows import memory_of
 from isa_ros.controller import Controller, merge_requests, Setpoint, State
 from isa_ros.core.device import MODES
 from isa_ros.core.signals import (
@@ -44,28 +45,30 @@ class Outside:
         self.bodies = {'body': SimpleNamespace(sample=np.zeros(1, LEG_SAMPLE))}
 
 
-class Stepper:
-    """An actuator that accepts finite numbers only."""
+class StrictActuator:
+    """An actuator, and its node, that accepts finite numbers only."""
 
     digest = 'same'
+    applied_parameters = {'force.kp': 1e-7}
 
     def __init__(self) -> None:
-        self.reply, self.sample = np.zeros(1, LOAD_REPLY), np.zeros(1, SAMPLE)
-        self.applied, self.tuned = np.zeros(1, COMMAND), {'force.kp': 1e-7}
-        self.sent = np.zeros(1, COMMAND)
+        self.actuator, self.memory = self, memory_of(1)
 
     def tune(self, values: Mapping[str, float]) -> None:
         """Take new values."""
         assert_finite(list(values.values()))
 
-    def start(self, start: np.void) -> None:
+    def start(self, *start: float) -> None:
         """Take a start."""
-        assert_finite(start.item())
+        assert_finite(start)
 
-    def advance(self, port: np.void, command: np.void) -> None:
+    def accept(self, command: np.void) -> None:
+        """Take a command."""
+        assert_command(command)
+
+    def tick(self, port: np.void) -> None:
         """Take a tick."""
         assert_finite(port.item())
-        assert_command(command)
 
     def publish(self) -> None:
         """Publish nothing."""
@@ -191,7 +194,7 @@ def participant(dice: random.Random) -> ParticipantEnd:
     is_actuator = dice.random() < 0.6
     end = ParticipantEnd(
         Node('kfe' if is_actuator else 'sway'),  # type: ignore[arg-type]
-        ActuatorRole(Stepper()) if is_actuator else ControllerRole(Sway()))
+        ActuatorRole(StrictActuator()) if is_actuator else ControllerRole(Sway()))
     end._receive(encode_hello(RUN, 1, 1_000_000, np.zeros(N_ACTUATORS, START), CAST))
     end._receive(encode_tick(RUN, 0, _rows(), True))
     return end

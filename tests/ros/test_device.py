@@ -112,14 +112,14 @@ def test_ten_thousand_bad_setpoints_leave_its_state_and_a_line_a_second(observer
         JointState(name=['knee'], position=[50.0]), JointState(name=['knee'] * 9000),
         JointState(name=['knee/spool'], position=[1e-5])]
     try:
-        node.advance()
-        before, began = node.applied.tobytes(), time.monotonic()
+        node.actuator.tick()
+        before, began = node.actuator.memory.applied.tobytes(), time.monotonic()
         for k in range(MANY):
             node._on_setpoint(bad[k % len(bad)])
         seconds = time.monotonic() - began
-        node.advance()
-        assert node.applied['kinds'] == 0 and before is not None
-        assert node.sample['device_state'] == 2
+        node.actuator.tick()
+        assert node.actuator.memory.applied['kinds'] == 0 and before is not None
+        assert node.actuator.memory.observed['device_state'] == 2
     finally:
         node.destroy_node()
     lines = capfd.readouterr().err.count('setpoint rejected')

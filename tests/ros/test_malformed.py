@@ -77,8 +77,8 @@ def test_a_setpoint_that_is_none_is_discarded(observer, knee):
     def accepted(message) -> bool:
         publisher.publish(message)
         knee.serve()
-        knee.advance()
-        return bool(knee.applied['kinds'][0])
+        knee.actuator.tick()
+        return bool(knee.actuator.memory.applied['kinds'][0])
     assert not any(accepted(bytes(k)) for k in (1, 4, 16, 400))
     wait_for(lambda: accepted(JointState(name=['knee'], position=[0.04])), 'the setpoint')
 

@@ -227,7 +227,7 @@ def test_a_node_packs_nothing_where_nobody_subscribes(observer, monkeypatch):
         enable_rosout=False)
     try:
         for _ in range(2):     # in the first tick the device is ready, which it says
-            node.advance()
+            node.actuator.tick()
         expected = published(node)
         assert expected[:3] == [None] * 3 and all(expected[3:])
 
@@ -252,15 +252,16 @@ def test_what_was_set_stays_set_when_another_run_begins(observer):
             result, = node.set_parameters([RosParameter(name, value=value)])
             assert result.successful
         for _ in range(2):
-            node.start(start)
-            assert published(node)[TUNED] is None and node.tuned == {}
-            node.advance()
+            node.actuator.start(*start.item())
+            assert published(node)[TUNED] is None and node.actuator.applied_parameters == {}
+            node.actuator.tick()
             messages = published(node)
-            assert tuned_values(messages[TUNED], 'knee') == node.tuned == {'force.kp': 9e-8}
+            tuned = tuned_values(messages[TUNED], 'knee')
+            assert tuned == node.actuator.applied_parameters == {'force.kp': 9e-8}
             assert decode(messages[APPLIED], JointState).position[1] == 5e4
-            assert node.applied['stiffness'].tolist() == [5e4]
-            node.advance()
-            assert published(node)[TUNED] is None and node.tuned == {}
+            assert node.actuator.memory.applied['stiffness'].tolist() == [5e4]
+            node.actuator.tick()
+            assert published(node)[TUNED] is None and node.actuator.applied_parameters == {}
         gains = node.get_parameters(['force.kp', 'position.stiffness', 'force.kf'])
         assert [gain.value for gain in gains] == [9e-8, 5e4, 0.002]
     finally:

@@ -144,7 +144,8 @@ def test_the_command_that_a_lone_actuator_prints_moves_it(observer, model):
             'ros2', 'topic', 'pub', '--once', '/lab/knee/setpoint', 'sensor_msgs/msg/JointState']
         message = JointState(**yaml.safe_load(command[6]))
         assert node.actuator.setpoint_range.admit(msg_to_command(message, 'knee')) == ''
-        assert message.position[0] != pytest.approx(node.sample[0]['position'], rel=0.1)
+        assert message.position[0] != pytest.approx(
+            node.actuator.memory.observed[0]['position'], rel=0.1)
     finally:
         node.destroy_node()
 
@@ -162,7 +163,7 @@ def test_a_setpoint_in_mm_is_reported(observer, knee, capfd, beyond, message, in
         log.write(capfd.readouterr().err)
         return message in log.getvalue()
     wait_for(is_reported, 'the warning')
-    node.advance()
+    node.actuator.tick()
     in_force_now = node.actuator.memory.reu['setpoint']['position'].item()
     assert in_force_now == pytest.approx(in_force, abs=1e-6)  # a count of the encoder
 
@@ -170,10 +171,9 @@ def test_a_setpoint_in_mm_is_reported(observer, knee, capfd, beyond, message, in
 def test_what_was_applied_is_shown_to_a_later_subscription(observer, knee):
     """The state is not: it is at once outdated."""
     node = knee()
-    node.start(None)
     node.publish()
     node.set_parameters([Parameter('force.kp', value=9e-8)])
-    node.advance()
+    node.actuator.tick()
     node.publish()
     setpoints, parameters, state = [], [], []
     kept = QoSProfile(depth=10, durability=DurabilityPolicy.TRANSIENT_LOCAL)

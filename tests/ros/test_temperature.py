@@ -39,10 +39,9 @@ def test_a_heated_actuator_publishes_its_temperature(
             lambda: node.count_subscribers('/knee/temperature') and any(
                 handle.get_subscription_count() for handle in node.outlet._handles), 'a match')
         node.outlet.refresh()
-        node.start(None)
         node.publish()
         for _ in range(1500):
-            node.advance()
+            node.actuator.tick()
             node.publish()
         spinning.wait_for(lambda: len(heard) == 2, 'two temperatures')
         assert [message.header.stamp.sec for message in heard] == [0, 1]

@@ -36,7 +36,6 @@ def run_alone(
     node.warm_up()
     executor: Any = EventsExecutor(context=node.context)
     executor.add_node(node)
-    node.start(None)
     node.publish()
     node.get_logger().info(ready_text(node, real_time_factor))
     step_s = node.setup.timing.step_ns / NS_PER_SECOND
@@ -58,7 +57,7 @@ def run_alone(
                     continue
                 wait = max(0.0, ((tick + 1) * step_s - elapsed) / real_time_factor)
             for _ in range(min(due - tick, BURST_TICKS)):
-                node.advance()
+                node.actuator.tick()
                 node.publish()
                 tick += 1
             executor.spin_once(min(wait, LARGEST_LAG_S) if due <= tick else 0.0)
@@ -73,7 +72,7 @@ def ready_text(node: ActuatorNode, real_time_factor: float) -> str:
     config = node.setup.config
     name, full_name = config.name, node.get_fully_qualified_name()
     stroke, unit = config.sheet.plant.drive.stroke, 'rad' if config.sheet.is_rotary else 'm'
-    position = float(node.sample[0]['position'])
+    position = float(node.actuator.memory.observed[0]['position'])
     target = position + (EXAMPLE if position < 0.5 * stroke else -EXAMPLE) * stroke
     pace = f'{real_time_factor:g} times real time' if real_time_factor else 'maximum speed'
     text = (f'ready at {pace}: position {position:.4g} of 0 to {stroke:.4g} {unit} on '

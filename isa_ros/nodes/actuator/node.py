@@ -1,6 +1,6 @@
 """ROS 2 node of one smart actuator: setpoints in, one tick, messages out."""
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable
 from contextlib import suppress
 from typing import Any, NamedTuple
 
@@ -8,7 +8,7 @@ from isa_ros.actuator.actuator import participant_digest, SmartActuator, Timing
 from isa_ros.actuator.config import ActuatorConfig
 from isa_ros.actuator.tunable import changing
 from isa_ros.controller import fill_command, Setpoint
-from isa_ros.core.signals import COMMAND, Records
+from isa_ros.core.signals import COMMAND
 from isa_ros.errors import one_line, SetpointError, SimulationDiverged
 from isa_ros.nodes.actuator.parameters import TunableParameters
 from isa_ros.nodes.actuator.setpoint_publishers import IncompatiblePublishers
@@ -45,7 +45,7 @@ class ActuatorNode(Node):
     One actuator on ROS topics; the node's name is the actuator's.
 
     It contains neither physics nor clock: a `ParticipantEnd`, an `InProcess` transport or the
-    loop of `run_alone` calls `start` and `advance`. Setpoints, parameters and requests that
+    loop of `run_alone` advances its `actuator`. Setpoints, parameters and requests that
     arrive between two ticks take effect at the next one; a command of the scenario for the same
     tick wins.
 
@@ -91,72 +91,11 @@ class ActuatorNode(Node):
         """Return a hash of the resolved parameters and of the timing."""
         return participant_digest(self.actuator, self.setup.timing)
 
-    @property
-    def t_ns(self) -> int:
-        """Return the simulated time reached, ns."""
-        return self.actuator.t_ns
-
-    @property
-    def reply(self) -> Records:
-        """Return the `LOAD_REPLY` of the last tick, (1,)."""
-        return self.actuator.memory.replies
-
-    @property
-    def sample(self) -> Records:
-        """Return the `SAMPLE` that listeners have at the end of the last tick, (1,)."""
-        return self.actuator.memory.observed
-
-    @property
-    def applied(self) -> Records:
-        """Return the `COMMAND` that took effect in it, kinds 0 without one, (1,)."""
-        return self.actuator.memory.applied
-
-    @property
-    def sent(self) -> Records:
-        """Return the `COMMAND` handed to the link at its start, kinds 0 without one, (1,)."""
-        return self.actuator.memory.sent
-
-    @property
-    def tuned(self) -> Mapping[str, float]:
-        """Return the parameters that changed at its start, SI."""
-        return self.actuator.applied_parameters
-
-    def tune(self, values: Mapping[str, float]) -> None:
-        """Change parameters at the start of the next tick."""
-        self.actuator.tune(values)
-
-    def start(self, start: np.void | None) -> None:
-        """Start at t = 0 from a `START` row; None: as configured."""
-        if start is not None:
-            self.actuator.start(*start.item())
-
-    def advance(self, port: np.void | None = None, command: np.void | None = None) -> None:
-        """
-        Accept a command and advance one tick.
-
-        Raises
-        ------
-        SimulationDiverged
-            A state is no longer finite.
-
-        """
-        if command is not None and command['kinds']:
-            self.actuator.accept(command)
-        self.actuator.tick(port)
-
     def warm_up(self) -> None:
         """Compile what a tick needs, or load it from the cache, on a copy of the actuator."""
         with suppress(SimulationDiverged):  # so will the actuator, which reports it
             SmartActuator(self.setup.config, self.setup.timing).tick()
         self._packer.pack(0, 0, {})
-
-    def snapshot(self) -> bytes:
-        """Return the complete state; `restore` continues from it byte for byte."""
-        return self.actuator.snapshot()
-
-    def restore(self, snapshot: bytes) -> None:
-        """Continue from a `snapshot`."""
-        self.actuator.restore(snapshot)
 
     def publish(self) -> None:
         """Publish applied commands, and the state where there is a subscription."""
@@ -222,4 +161,4 @@ class ActuatorNode(Node):
         if not refusal:
             self.actuator.accept(command)
         response.success = not refusal
-        response.message = refusal or f'{what} from t = {self.t_ns * 1e-9:.6f} s'
+        response.message = refusal or f'{what} from t = {self.actuator.t_ns * 1e-9:.6f} s'

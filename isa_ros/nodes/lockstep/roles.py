@@ -11,6 +11,7 @@ from typing import Protocol
 
 from isa_ros.controller import by_name, Controller, fill_requests, only_rows, State
 from isa_ros.core.signals import COMMAND, Records
+from isa_ros.nodes.actuator.node import ActuatorNode
 from isa_ros.run.wire.cast import Cast
 from isa_ros.run.wire.parts import actuator_parts, Parts
 from isa_ros.run.wire.steps import Step
@@ -77,106 +78,24 @@ class Role(Protocol):
         ...
 
 
-class Stepper(Protocol):
-    """Interface of one actuator's node. Rows are those of `SmartActuator.memory`, (1,)."""
-
-    @property
-    def digest(self) -> str:
-        """Return a hash of its resolved parameters."""
-        ...
-
-    @property
-    def reply(self) -> Records:
-        """Return the `LOAD_REPLY` of the last tick."""
-        ...
-
-    @property
-    def sample(self) -> Records:
-        """Return the `SAMPLE` that listeners have at the end of the last tick."""
-        ...
-
-    @property
-    def applied(self) -> Records:
-        """Return the `COMMAND` that took effect in it; kinds 0 without one."""
-        ...
-
-    @property
-    def sent(self) -> Records:
-        """Return the `COMMAND` handed to its link at its start; kinds 0 without one."""
-        ...
-
-    @property
-    def tuned(self) -> Mapping[str, float]:
-        """Return the parameters that changed at its start, SI."""
-        ...
-
-    def tune(self, values: Mapping[str, float]) -> None:
-        """Change parameters at the start of the next tick."""
-        ...
-
-    def start(self, start: np.void | None) -> None:
-        """Start at t = 0 from a `START` row; None: as configured."""
-        ...
-
-    def advance(self, port: np.void | None, command: np.void | None) -> None:
-        """
-        Accept the command of this tick and advance.
-
-        Raises
-        ------
-        SimulationDiverged
-            A state is no longer finite.
-
-        """
-        ...
-
-    def snapshot(self) -> bytes:
-        """Return the complete state; `restore` continues from it byte for byte."""
-        ...
-
-    def restore(self, snapshot: bytes) -> None:
-        """
-        Continue from a `snapshot`.
-
-        Raises
-        ------
-        ConfigError
-            The bytes are not a snapshot of an actuator with these parameters.
-
-        """
-        ...
-
-    def publish(self) -> None:
-        """Publish the state and applied commands, where there is a subscription."""
-        ...
-
-    def serve(self) -> None:
-        """Process the setpoints and requests that have arrived; do not wait."""
-        ...
-
-
 class ActuatorRole:
-    """The role of an actuator."""
+    """The role of the actuator of a node."""
 
     is_actuator = True
 
-    def __init__(self, stepper: Stepper) -> None:
-        self._stepper = stepper
+    def __init__(self, node: ActuatorNode) -> None:
+        self._actuator = node.actuator
         self._index = self._n_actuators = 0
         self._changes: Mapping[str, float] = {}
-        self.publish = stepper.publish
-        self.serve = stepper.serve
-        self.snapshot = stepper.snapshot
-
-    @property
-    def digest(self) -> bytes:
-        """Return a hash of its parameters."""
-        return self._stepper.digest.encode()
+        self.digest = node.digest.encode()
+        self.publish = node.publish
+        self.serve = node.serve
+        self.snapshot = node.actuator.snapshot
 
     def start(self, step: Step, index: int) -> Parts:
         """Start at rest, at t = 0, from its `START` row."""
         self._index, self._n_actuators = index, step.rows
-        self._stepper.start(step.start(index))
+        self._actuator.start(*step.start(index).item())
         return self._parts()
 
     def check(self, step: Step) -> None:
@@ -186,9 +105,12 @@ class ActuatorRole:
     def advance(self, step: Step) -> Parts:
         """Advance one tick with its row of ports and commands, and the changes before it."""
         if self._changes:   # after `serve`: the scenario wins over other requests
-            self._stepper.tune(self._changes)
+            self._actuator.tune(self._changes)
             self._changes = {}
-        self._stepper.advance(step.port(self._index), step.command(self._index))
+        command = step.command(self._index)
+        if command['kinds']:
+            self._actuator.accept(command)
+        self._actuator.tick(step.port(self._index))
         return self._parts()
 
     def change(self, values: Mapping[str, float]) -> Parts:
@@ -198,12 +120,13 @@ class ActuatorRole:
 
     def restore(self, snapshot: bytes) -> Parts:
         """Continue from a snapshot."""
-        self._stepper.restore(snapshot)
+        self._actuator.restore(snapshot)
         return self._parts()
 
     def _parts(self) -> Parts:
-        own = self._stepper
-        return actuator_parts(own.reply, own.sample, own.applied, own.tuned, own.sent)
+        own = self._actuator.memory
+        return actuator_parts(own.replies, own.observed, own.applied,
+                              self._actuator.applied_parameters, own.sent)
 
 
 class ControllerRole:

@@ -5,8 +5,9 @@ from contextlib import contextmanager
 import threading
 import time
 
+from isa_ros.actuator.rows import memory_of
 from isa_ros.controller import Controller, Setpoint
-from isa_ros.core.signals import COMMAND, HAS_ENABLE, HAS_SETPOINT, LOAD_REPLY, SAMPLE, START
+from isa_ros.core.signals import HAS_ENABLE, HAS_SETPOINT, START
 from isa_ros.errors import SimulationDiverged
 from isa_ros.nodes.lockstep.coordinator_end import LockstepTransport
 from isa_ros.nodes.lockstep.expected import Expected, Limits, Participants
@@ -47,9 +48,10 @@ class Scripted:
 
     def __init__(self, digest: str = 'same') -> None:
         self.digest = digest
-        self.reply, self.sample = np.zeros(1, LOAD_REPLY), np.zeros(1, SAMPLE)
-        self.applied, self.sent = np.zeros(1, COMMAND), np.zeros(1, COMMAND)
-        self.tuned: Mapping[str, float] = {}
+        self.actuator = self    # its node and itself
+        self.memory = memory_of(1)
+        self.applied_parameters: Mapping[str, float] = {}
+        self.target = 0.0
         self.starts = 0
         self.ticks = 0
         self.published: list[float] = []
@@ -63,28 +65,32 @@ class Scripted:
     def tune(self, values: Mapping[str, float]) -> None:
         self.changes.append(dict(values))
 
-    def start(self, start: np.void | None) -> None:
-        assert start is not None
+    def start(
+            self, position: float, force: float, supply_pressure: float,
+            return_pressure: float) -> None:
         self.starts += 1
         self.ticks = 0
-        self.sample['position'] = start['position']
+        self.memory.observed['position'] = position
         self._apply(HAS_SETPOINT | HAS_ENABLE, {})
 
-    def advance(self, port: np.void | None, command: np.void | None) -> None:
+    def accept(self, command: np.void) -> None:
+        self.target = float(command['position'])
+
+    def tick(self, port: np.void) -> None:
         tick, self.ticks = self.ticks, self.ticks + 1
         if tick == self.fails_at:
             raise self.error
         time.sleep(self.pause_s)
         if tick == self.is_late_at:
             self.released.wait(DEADLINE_S)
-        if port is not None and command is not None:
-            self.reply['force'] = port['x0'] + command['position']
-        self.sample['position'] += 1.0
+        self.memory.replies['force'] = port['x0'] + self.target
+        self.memory.observed['position'] += 1.0
         self._apply(*(HAS_SETPOINT, {'force.kp': 1e-7}) if tick == 1 else (0, {}))
 
     def _apply(self, kinds: int, tuned: Mapping[str, float]) -> None:
-        self.applied['kinds'], self.applied['position'] = kinds, self.sample['position']
-        self.tuned = tuned
+        applied = self.memory.applied
+        applied['kinds'], applied['position'] = kinds, self.memory.observed['position']
+        self.applied_parameters = tuned
 
     def snapshot(self) -> bytes:
         time.sleep(self.pause_s)
@@ -92,11 +98,11 @@ class Scripted:
 
     def restore(self, snapshot: bytes) -> None:
         self.ticks = int(snapshot.split()[1])
-        self.sample['position'] = 100.0 + self.ticks
+        self.memory.observed['position'] = 100.0 + self.ticks
         self._apply(HAS_ENABLE, {'force.kf': float(self.ticks)})
 
     def publish(self) -> None:
-        self.published.append(float(self.sample['position'][0]))
+        self.published.append(float(self.memory.observed['position'][0]))
 
     def serve(self) -> None:
         pass
@@ -178,7 +184,8 @@ def tick(
         transport: LockstepTransport, number: int, rows: Rows | None = None) -> list[float]:
     """Return the reply forces of one tick."""
     rows = rows_of_two() if rows is None else rows
-    rows.ports['x0'], rows.commands['position'] = (1.0, 2.0), number
+    rows.ports['x0'] = 1.0, 2.0
+    rows.commands['kinds'], rows.commands['position'] = HAS_SETPOINT, number
     transport.send(number, rows)
     transport.receive(rows)
     return rows.replies['force'].tolist()
