@@ -21,7 +21,7 @@ from isa_ros.bag.message_chunk import Chunk
 from isa_ros.bag.metadata import FILE_NAME, metadata_yaml, TopicEntry
 from isa_ros.bag.part_writer import Head, PartWriter
 from isa_ros.bag.provenance import Provenance
-from isa_ros.config.runs.recording import PLAIN, Storage
+from isa_ros.bag.storage import PLAIN, Storage
 from isa_ros.core.atomic_file import replace_file, sync_directory
 from isa_ros.core.topic import Topic
 from isa_ros.errors import BagError, RunError

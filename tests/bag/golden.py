@@ -5,8 +5,8 @@ from dataclasses import replace
 from pathlib import Path
 
 from isa_ros.bag.reader import Bag
+from isa_ros.bag.storage import PLAIN, Storage
 from isa_ros.bag.writer import BagWriter
-from isa_ros.config.runs.recording import PLAIN, Storage
 from isa_ros.core.topic import Topic
 
 GOLDEN = Path(__file__).parents[1] / 'golden'

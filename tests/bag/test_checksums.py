@@ -11,7 +11,7 @@ import struct
 from typing import NamedTuple
 import zlib
 
-from isa_ros.config.runs.recording import Storage
+from isa_ros.bag.storage import Storage
 import lz4.frame
 from mcap.opcode import Opcode
 from mcap.writer import MCAP0_MAGIC

@@ -4,7 +4,7 @@ from collections import Counter
 from pathlib import Path
 from typing import Any
 
-from isa_ros.config.runs.recording import Storage
+from isa_ros.bag.storage import Storage
 from mcap.reader import make_reader
 import pytest
 from tests.bag.recorded import NAMES, record, tick_messages

@@ -3,8 +3,8 @@
 from pathlib import Path
 
 from isa_ros.bag.reader import Bag
+from isa_ros.bag.storage import Storage
 from isa_ros.bag.writer import BagWriter
-from isa_ros.config.runs.recording import Storage
 from isa_ros.errors import BagError
 import pytest
 from rosbags.rosbag2 import Writer

@@ -7,8 +7,8 @@ import subprocess
 import sys
 
 from isa_ros.bag.reader import Bag
+from isa_ros.bag.storage import Storage
 from isa_ros.cli.main import main
-from isa_ros.config.runs.recording import Storage
 from isa_ros.core.timebase import NS_PER_SECOND
 import pytest
 from rosbags.highlevel import AnyReader

@@ -7,8 +7,8 @@ import shutil
 
 from isa_ros.bag.part_writer import CHUNK_TICKS
 from isa_ros.bag.reader import Bag
+from isa_ros.bag.storage import Storage
 from isa_ros.bag.writer import BagWriter
-from isa_ros.config.runs.recording import Storage
 from isa_ros.errors import RunError
 import pytest
 from tests.bag.recorded import PROVENANCE, STEP_NS, tick_messages, TOPICS, wait_for_disk

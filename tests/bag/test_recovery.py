@@ -6,8 +6,8 @@ from pathlib import Path
 from isa_ros.bag import part_writer
 from isa_ros.bag.reader import Bag
 from isa_ros.bag.recovery import recover
+from isa_ros.bag.storage import Storage
 from isa_ros.cli.main import main
-from isa_ros.config.runs.recording import Storage
 from isa_ros.errors import BagError
 from mcap.opcode import Opcode
 from mcap.reader import make_reader

@@ -10,8 +10,8 @@ import tracemalloc
 
 from isa_ros.bag.part_writer import CHUNK_BYTES, CHUNK_TICKS
 from isa_ros.bag.reader import Bag
+from isa_ros.bag.storage import Storage
 from isa_ros.bag.writer import BagWriter
-from isa_ros.config.runs.recording import Storage
 from isa_ros.errors import BagError, RunError
 from mcap.reader import make_reader
 import pytest

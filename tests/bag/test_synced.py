@@ -4,8 +4,8 @@ import os
 from pathlib import Path
 
 from isa_ros.bag.part_writer import CHUNK_TICKS
+from isa_ros.bag.storage import Storage
 from isa_ros.bag.writer import BagWriter
-from isa_ros.config.runs.recording import Storage
 import pytest
 from tests.bag.recorded import PROVENANCE, record, STEP_NS, tick_messages, TOPICS, wait_for_disk
 

@@ -14,8 +14,8 @@ from typing import NamedTuple
 from isa_ros.bag import part_writer, records
 from isa_ros.bag.provenance import Provenance
 from isa_ros.bag.reader import Bag, BagMessage
+from isa_ros.bag.storage import Storage
 from isa_ros.bag.writer import BagWriter
-from isa_ros.config.runs.recording import Storage
 from isa_ros.config.runs.run_config import RunConfig
 from isa_ros.core.topic import Topic
 from isa_ros.errors import IsaError

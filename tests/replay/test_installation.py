@@ -7,9 +7,9 @@ import re
 from isa_ros.bag import provenance, writer
 from isa_ros.bag.provenance import installed_versions, KERNELS, PYTHON, VERSION
 from isa_ros.bag.reader import Bag
+from isa_ros.bag.storage import Storage
 from isa_ros.bag.writer import BagWriter
 from isa_ros.cli.main import main
-from isa_ros.config.runs.recording import Storage
 from isa_ros.config.runs.run_config import RunConfig
 from isa_ros.config.runs.run_file import load_run
 from isa_ros.replay.installation import _changed_versions, differences

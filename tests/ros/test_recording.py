@@ -5,8 +5,8 @@ from pathlib import Path
 import signal
 
 from isa_ros.bag.reader import Bag
+from isa_ros.bag.storage import Storage
 from isa_ros.cli.main import main
-from isa_ros.config.runs.recording import Storage
 from isa_ros.config.runs.run_config import RunConfig
 import pytest
 from rosbags.rosbag2 import Reader

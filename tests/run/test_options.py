@@ -5,8 +5,8 @@ from pathlib import Path
 import subprocess
 import sys
 
+from isa_ros.bag.storage import Storage
 from isa_ros.config.paths import CONFIG, find, SCENARIOS
-from isa_ros.config.runs.recording import Storage
 from isa_ros.errors import ConfigError
 from isa_ros.run.option import COMPRESSIONS, Option
 from isa_ros.run.options import (

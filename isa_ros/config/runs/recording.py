@@ -15,38 +15,19 @@ from dataclasses import dataclass, replace
 from fnmatch import fnmatchcase
 from typing import Any
 
+from isa_ros.bag.storage import PLAIN, Storage
 from isa_ros.config.text.keys import Key, ParameterSet, Table, Value
 from isa_ros.config.text.parameter_sets import as_tree, build
 from isa_ros.config.text.sections import Place, section_at, written
 from isa_ros.config.text.yaml_text import Tree
-from isa_ros.core.parameter import choice, defaults, parameter, Parameters
 from isa_ros.errors import ConfigError
 
-BYTES_PER_MB = 1_000_000
 MAX_PERIOD = 10_000    # ticks between two samples of a topic
 MAX_PATTERNS = 100
 MAX_PATTERN_LENGTH = 256
 
 _EVENTS = '/coordinator/events'
 _SENT = 'sent_setpoint'
-
-
-@dataclass(frozen=True, kw_only=True)
-class Storage(Parameters):
-    """Compression and splitting of a bag's files."""
-
-    compression: str = choice('of every chunk of a bag', 'none', 'lz4', 'zstd', absent='none')
-    split_mb: float = parameter(
-        'size after which the next file of a bag begins; 0: one file', 'MB', absent=0.0, ge=0.0,
-        le=1e6)
-
-    @property
-    def split_bytes(self) -> int | None:
-        """Return the size after which the next file begins, None for one file."""
-        return round(self.split_mb * BYTES_PER_MB) if self.split_mb else None
-
-
-PLAIN = defaults(Storage)
 
 
 @dataclass(frozen=True)

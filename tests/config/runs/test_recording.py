@@ -2,8 +2,9 @@
 
 from pathlib import Path
 
+from isa_ros.bag.storage import Storage
 from isa_ros.cli.main import main
-from isa_ros.config.runs.recording import RECORD, RecordConfig, Storage
+from isa_ros.config.runs.recording import RECORD, RecordConfig
 from isa_ros.config.runs.run_config import RunConfig
 from isa_ros.config.runs.run_file import load_run
 from isa_ros.config.text.sections import Place

@@ -4,8 +4,9 @@ from dataclasses import replace
 from pathlib import Path
 import re
 
+from isa_ros.bag.storage import Storage
 from isa_ros.config.differences import key_differences, modern
-from isa_ros.config.runs.recording import RecordConfig, Storage
+from isa_ros.config.runs.recording import RecordConfig
 from isa_ros.config.runs.run_config import RUN, RunConfig
 from isa_ros.config.runs.run_file import load_run
 from isa_ros.config.runs.supplies import SupplyConfig
