@@ -153,8 +153,9 @@ class ActuatorGroup:
 
     def _end(self, n_ticks: int, broken: int) -> None:
         """Move the time on by as many ticks; refuse a state that is no longer finite."""
+        passed_ns = n_ticks * self._timing.step_ns
         for actuator in self.actuators:
-            actuator.t_ns += n_ticks * self._timing.step_ns
+            actuator.t_ns += passed_ns
         if broken >= 0:
             row, state = divmod(broken, STATE_SIZE)
             self.actuators[row].raise_diverged(state)

@@ -181,7 +181,7 @@ class TickLoop:
 
         """
         requests = state.rows_of_requests(len(self.rows.requests))
-        self.transport.restore(state.tick, state.participants, self.rows)
         self._surroundings.restore(state.load)
+        self.transport.restore(state.tick, state.participants, self.rows)
         self.rows.requests[:] = requests
         self.ticks = state.tick

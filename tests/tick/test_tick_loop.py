@@ -143,7 +143,7 @@ def test_a_second_beginning_forgets_requests_and_keeps_what_was_tuned():
     assert taken(simulation) == [None, None]
 
 
-def test_a_state_that_does_not_fit_changes_nothing():
+def test_a_run_does_not_go_on_from_a_state_that_does_not_fit():
     """Saved with a controller, restored without."""
     saved = Simulation(idle(RUN), [AsksOnce(0)])
     saved.step()
