@@ -20,7 +20,7 @@ from isa_ros.core.gravity import STANDARD_GRAVITY
 from isa_ros.core.parameter import parameter, Parameters
 from isa_ros.errors import ConfigError
 from isa_ros.surroundings.bodies.leg.dynamics import leg_terms
-from isa_ros.surroundings.bodies.leg.sheet import body_record, JOINTS, LegSheet
+from isa_ros.surroundings.bodies.leg.sheet import body_record, LegSheet
 import numpy as np
 
 CHECKED_INSTANTS = 400  # of a stride, at which a leg must reach its foothold
@@ -53,7 +53,7 @@ class Foot(NamedTuple):
 
 
 class Joints(NamedTuple):
-    """Angles (rad), speeds (rad/s) and torques (Nm) in the order of `JOINTS`."""
+    """Angles (rad), speeds (rad/s) and torques (Nm) in the order of the leg's joints."""
 
     angle: tuple[float, float, float]
     speed: tuple[float, float, float]
@@ -163,8 +163,7 @@ class TrottingLeg:
                 for k in range(CHECKED_INSTANTS)])
         except ConfigError as error:
             raise ConfigError(f'{cause}: {error}') from error
-        for name, taken in zip(JOINTS, angles.T):
-            joint = getattr(sheet, name)
+        for (name, joint), taken in zip(sheet.joints.items(), angles.T):
             if not (joint.low_deg <= taken.min() and taken.max() <= joint.high_deg):
                 raise ConfigError(
                     f'{cause} moves {name} from {taken.min():.4g} to {taken.max():.4g} deg, must '

@@ -19,7 +19,7 @@ from isa_ros.core.units import MILLI, MPA
 from isa_ros.loads.sheets import Blocked, Mass
 from isa_ros.paper.printed import statement
 from isa_ros.surroundings.bodies.leg.dynamics import leg_terms
-from isa_ros.surroundings.bodies.leg.sheet import body_record, JOINTS, linkage_record
+from isa_ros.surroundings.bodies.leg.sheet import body_record, linkage_record
 from isa_ros.surroundings.linkage import actuator_coordinate
 from isa_ros.validation.actuators import Actuators, SHIPPED
 from isa_ros.validation.entry import (
@@ -79,7 +79,7 @@ def foot(actuators: Actuators, preset: str) -> Rig:
     """Return the force loop with the foot of the knee rig on a spring."""
     leg = load_run(find('rig_knee', CONFIG)).leg
     assert leg is not None
-    haa, hfe, kfe = (leg.start.angle(joint) for joint in JOINTS)
+    haa, hfe, kfe = leg.start.angles
     terms = leg_terms(0.0, haa, hfe, kfe, 0.0, 0.0, 0.0, 0.0, body_record(leg.sheet.body)[0])
     place, lever, _ = actuator_coordinate(kfe, linkage_record(leg.sheet.kfe))
     found = blocked(actuators, preset)

@@ -39,7 +39,7 @@ SHOWN_S = 0.1           # of a step in a figure
 SWEEP = Sweep(low=10.0, high=160.0, points=9)
 WHEEL = 'wheel'
 LOAD = 'load.'          # prefix of a parameter of the blocked output
-JOINTS = {'smart_manifold': 'hfe', 'isa_v5': 'kfe'}     # joint of the trot by model
+TROT_JOINTS = {'smart_manifold': 'hfe', 'isa_v5': 'kfe'}     # joint of the trot by model
 ROUNDING = 1e-9         # of a value in its unit
 SETPOINT_NS = 1_000_000     # between setpoints of a run
 GROWN_S, TROT_S, FADE_S, STAND_S = 0.6, 1.2, 0.3, 0.9   # 0.6 s: start_s of the packaged trot
@@ -205,7 +205,7 @@ def up_and_back(blocked: Rig) -> tuple[np.ndarray, np.ndarray]:
 def _trot(model: str, wheel: Rig) -> tuple[np.ndarray, np.ndarray]:
     """Return positions and velocities of a trot, held as a run holds its setpoints."""
     gait = read_gait(
-        {'joint': JOINTS[model], 'feed_forward': 0.0}, Place('trot'), wheel.config, None,
+        {'joint': TROT_JOINTS[model], 'feed_forward': 0.0}, Place('trot'), wheel.config, None,
         wheel.config.initial_position)
     period = SETPOINT_NS / NS_PER_SECOND
     rows = []

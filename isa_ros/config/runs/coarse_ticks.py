@@ -7,8 +7,6 @@ bounds are from drops of the HyQ-REAL leg on grounds of 1e7 to 1e9 N/m^1.5 with 
 1 ms, docs/impacts.md.
 """
 
-from collections.abc import Iterable
-
 from isa_ros.core.timebase import NS_PER_SECOND
 from isa_ros.core.units import MILLI
 from isa_ros.surroundings.bodies.leg.impact import contact_time
@@ -20,14 +18,14 @@ _STEPS_MS = (0.5, 0.2, 0.1)     # of which a scenario's times are likely multipl
 
 
 def coarse_ticks(
-        called: str, sheet: LegSheet, angles: Iterable[float], step_ns: int) -> tuple[str, ...]:
+        called: str, sheet: LegSheet, angles: tuple[float, float, float],
+        step_ns: int) -> tuple[str, ...]:
     """
     Return a line if ticks are too long for the ground under a leg.
 
     ``angles`` (rad) are those of its joints at the start; messages call it ``called``.
     """
-    haa, hfe, kfe = angles
-    time, step = contact_time(sheet, (haa, hfe, kfe)), step_ns / NS_PER_SECOND
+    time, step = contact_time(sheet, angles), step_ns / NS_PER_SECOND
     if time >= LEAST_TICKS * step:
         return ()
     fine = next((step_ms for step_ms in _STEPS_MS if time >= ENOUGH_TICKS * step_ms * MILLI),

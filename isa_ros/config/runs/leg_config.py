@@ -43,6 +43,12 @@ class LegStart(Parameters):
         """Return the angle of a joint of `JOINTS`, rad."""
         return math.radians(getattr(self, f'{joint}_deg'))
 
+    @property
+    def angles(self) -> tuple[float, float, float]:
+        """Return the angles in the order of `JOINTS`, rad."""
+        haa, hfe, kfe = map(self.angle, JOINTS)
+        return haa, hfe, kfe
+
 
 @dataclass(frozen=True)
 class ImuConfig:
@@ -158,7 +164,7 @@ class LegConfig(BodyConfig):
     def warnings(self, step_ns: int) -> Sequence[str]:
         """Return a line if the ticks are too long for the ground."""
         return coarse_ticks(
-            self.called, self.sheet, (self.start.angle(joint) for joint in JOINTS), step_ns)
+            self.called, self.sheet, self.start.angles, step_ns)
 
     @property
     def fields(self) -> Sequence[Field]:

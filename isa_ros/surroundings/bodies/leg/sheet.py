@@ -135,6 +135,11 @@ class LegSheet(Parameters):
     kfe: Direct | SliderCrank | FourBar
     ground: Ground
 
+    @property
+    def joints(self) -> dict[str, Joint]:
+        """Return the joints by name, in the order of `JOINTS`."""
+        return {name: getattr(self, name) for name in JOINTS}
+
 
 def linkage_record(joint: Direct | SliderCrank | FourBar | Joint) -> np.record:
     """Return the `LINKAGE` record of a joint's sheet, SI."""
