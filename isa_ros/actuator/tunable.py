@@ -13,14 +13,13 @@ place that translates; such names are also accepted from users, as before.
 
 from collections.abc import Mapping
 import math
-from typing import NamedTuple
 
 from isa_ros.actuator.link import NO_LINK
 from isa_ros.actuator.sheet import ActuatorSheet, refuse_wiring
 from isa_ros.actuator.usable import largest_gains, REASON
 from isa_ros.core.changeable import Changeable, changeables, marked, with_changes
 from isa_ros.core.parameter import check
-from isa_ros.core.units import MILLI, MPA, of_coordinate
+from isa_ros.core.units import in_si, of_coordinate
 from isa_ros.errors import ConfigError
 from isa_ros.plant.plant import plant_record
 from isa_ros.plant.step_limits import LoadSide, refuse_too_fast
@@ -28,17 +27,6 @@ from isa_ros.reu.wiring import active, VARIABLES
 
 GAINS = {'position.stiffness': 'stiffness', 'position.damping': 'damping'}
 """The gains that are part of every setpoint, and their names in a `COMMAND`."""
-
-
-class _Si(NamedTuple):
-    unit: str
-    scale: float  # SI per unit of the sheet
-
-
-_KPA = 1e3
-_IN_SI = {
-    'kPa': _Si('Pa', _KPA), 'MPa': _Si('Pa', MPA), 'V/mA': _Si('V/A', 1.0 / MILLI),
-    'V/(mA s)': _Si('V/(A s)', 1.0 / MILLI), 'V s/mA': _Si('V s/A', 1.0 / MILLI)}
 _MEASURED = {
     'position': 'm | rad', 'force': 'N | Nm', 'pressure': 'Pa', 'spool': 'm', 'current': 'A'}
 """Unit of what each block controls; the current is that of coils in series."""
@@ -54,8 +42,8 @@ def tunables(sheet: ActuatorSheet) -> dict[str, Changeable]:
         output = next((_MEASURED[name] for name in inner if name in on), 'V')
         block = getattr(sheet.reu, variable)
         for key, value, declared in marked(block, 'tunable', f'{variable}.'):
-            si = _IN_SI.get(declared['unit'], _Si(declared['unit'], 1.0))
-            unit = si.unit.replace(_VALVE, 'output')
+            si = in_si(declared['unit'])
+            unit = si.si.replace(_VALVE, 'output')
             for word, means in (('output', output), ('measured', _MEASURED[variable])):
                 unit = unit.replace(word, of_coordinate(means, sheet.is_rotary))
             bounds, doc = dict(declared['bounds']), declared['doc']

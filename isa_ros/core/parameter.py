@@ -6,6 +6,7 @@ import math
 from typing import Any, TypeVar
 
 from isa_ros.core.suggest import alternatives
+from isa_ros.core.units import in_si
 from isa_ros.errors import ConfigError, ParameterError
 
 _RELATIONS: dict[str, tuple[str, Callable[[float, float], bool]]] = {
@@ -49,6 +50,7 @@ def _declaration(doc: str, unit: str, bounds: dict[str, float]) -> dict[str, Any
     unknown = set(bounds) - set(_RELATIONS)
     if unknown:
         raise TypeError(f'unknown bounds {sorted(unknown)}; use {sorted(_RELATIONS)}')
+    in_si(unit)
     return {'doc': doc, 'unit': unit, 'bounds': bounds}
 
 
