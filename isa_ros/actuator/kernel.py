@@ -18,7 +18,8 @@ from isa_ros.core.kernel import kernel
 from isa_ros.core.timebase import FORCE_WINDOWS, PLANT_STEP
 from isa_ros.loads.forces import OWN_LOAD
 from isa_ros.plant.coil import coil_heat
-from isa_ros.plant.plant import exact_force, PLANT, sense
+from isa_ros.plant.plant import exact_force, PLANT
+from isa_ros.plant.sensors import sense
 from isa_ros.plant.temperature_sensor import read_temperature
 from isa_ros.plant.thermal import warm
 from isa_ros.reu.cascade import cascade_step, is_due, REU

@@ -4,7 +4,8 @@ from isa_ros.actuator.inbox import write_applied
 from isa_ros.actuator.kernel import write_sample
 from isa_ros.actuator.rows import Memory, row_record
 from isa_ros.core.signals import HAS_ENABLE, HAS_SETPOINT
-from isa_ros.plant.plant import exact_force, rest_pressures, sense
+from isa_ros.plant.plant import exact_force, rest_pressures
+from isa_ros.plant.sensors import sense
 from isa_ros.plant.temperature_sensor import read_temperature
 from isa_ros.reu.cascade import initial_gains
 from isa_ros.reu.wiring import Reu

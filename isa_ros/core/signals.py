@@ -50,6 +50,18 @@ COMMAND = np.dtype([
 GAINS_OF_COMMAND = ('stiffness', 'damping')
 """Fields of a `COMMAND` that may be NaN: the gains of the impedance."""
 
+MEASURED = np.dtype([
+    ('position', 'f8'),          # encoder, m | rad
+    ('force', 'f8'),             # load cell or torque sensor, N | Nm
+    ('pressure_a', 'f8'),        # Pa gauge
+    ('pressure_b', 'f8'),        # Pa gauge
+    ('spool', 'f8'),             # m
+    ('current', 'f8'),           # of the amplifier, A
+])
+"""The last readings of the channels of one actuator's sensors."""
+CHANNELS = tuple(MEASURED.names or ())
+"""In the order of all arrays of channels, and of their noise."""
+
 SAMPLE_FIELDS = (
     Field('position', 'm | rad', 'read by the encoder'),
     Field('velocity', 'm/s | rad/s', 'estimated by the REU'),

@@ -19,13 +19,12 @@ from isa_ros.core.kernel import kernel
 from isa_ros.core.noise import normal
 from isa_ros.core.parameter import parameter, Parameters
 from isa_ros.core.record import record
+from isa_ros.core.signals import CHANNELS
 from isa_ros.core.timebase import PLANT_STEP, PLANT_STEP_NS
 from isa_ros.core.units import MILLI
 from isa_ros.errors import ParameterError
 import numpy as np
 
-CHANNELS = ('position', 'force', 'pressure_a', 'pressure_b', 'spool', 'current')
-"""In the order of all arrays and of the noise."""
 N_CHANNELS = len(CHANNELS)
 LINE = 128  # conversions that a delay line holds
 _MS_PER_STEP = PLANT_STEP_NS * 1e-6
@@ -167,9 +166,9 @@ def refuse_delays(channels: Mapping[str, Any], period_steps: int) -> None:
 
 
 @kernel
-def enter(step, period, position, force, p_a, p_b, spool, current, state):
+def enter(step, period, state):
     """
-    Put the exact values of the conversion at plant step ``step`` into the delay line.
+    Return the place in the delay line for the exact values of the conversion at ``step``.
 
     After a gap of more than a ``period`` the line is empty before, and t_0 is now.
     """
@@ -179,9 +178,7 @@ def enter(step, period, position, force, p_a, p_b, spool, current, state):
         state.slot += 1
         state.filled = min(state.filled + 1, LINE)
     state.step = step
-    values = state.line[state.slot % LINE]
-    values[0], values[1], values[2], values[3] = position, force, p_a, p_b
-    values[4], values[5] = spool, current
+    return state.line[state.slot % LINE]
 
 
 @kernel

@@ -14,7 +14,6 @@ from isa_ros.plant import (
     chambers, coil, friction, mechanics, relief, sensors, servo_valve, spool, thermal,
     valve_record)
 from isa_ros.plant.chambers import boil
-from isa_ros.plant.sensors import read, read_channels
 from isa_ros.plant.spool import block_spool, stop_spool
 from isa_ros.plant.thermal import LumpedThermal, NoneThermal
 from isa_ros.plant.valve_sheets import DataSheetValve, DualGainValve, HighResponseValve
@@ -192,22 +191,3 @@ def exact_force(y, x_load, v_load, plant):
     """Return the force in the force sensor, N or Nm."""
     return mechanics.sensor_force(
         y.mechanics.position, y.mechanics.velocity, x_load, v_load, plant.mechanics)
-
-
-@kernel
-def sense(step, period, y, x_load, v_load, plant, key, state, measured):
-    """
-    Convert every channel once, at plant step ``step``  (S1-S3).
-
-    ``period`` of the converters in plant steps, ``key`` of the noise; ``state`` is a
-    `channels.CHANNELS_STATE`, ``measured`` a record with the fields of `channels.CHANNELS`.
-    """
-    own = plant.sensors
-    position, force = y.mechanics.position, exact_force(y, x_load, v_load, plant)
-    p_a, p_b, spool_position = y.chambers.p_a, y.chambers.p_b, y.spool.position
-    current = coil.coil_current(y.coil, plant.coil)
-    if own.errors.are_ideal:
-        read(position, force, p_a, p_b, spool_position, current, own, measured)
-    else:
-        read_channels(step, period, position, force, p_a, p_b, spool_position, current, own,
-                      key, state, measured)

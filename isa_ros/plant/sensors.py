@@ -11,9 +11,12 @@ import math
 from isa_ros.core.kernel import kernel
 from isa_ros.core.parameter import parameter, Parameters, section
 from isa_ros.core.record import record
+from isa_ros.core.signals import CHANNELS
 from isa_ros.core.units import MILLI, MPA
 from isa_ros.errors import ParameterError
 from isa_ros.plant import channels
+from isa_ros.plant.coil import coil_current
+from isa_ros.plant.mechanics import sensor_force
 from isa_ros.plant.temperature_sensor import (
     TEMPERATURE_SENSOR, temperature_sensor_record, TemperatureSensor)
 import numpy as np
@@ -46,8 +49,8 @@ class Sensors(Parameters):
 
     @property
     def channels(self) -> dict[str, channels.Channel]:
-        """Return the channels by name, in the order of `channels.CHANNELS`."""
-        return {name: getattr(self, name) for name in channels.CHANNELS}
+        """Return the channels by name, in the order of `CHANNELS`."""
+        return {name: getattr(self, name) for name in CHANNELS}
 
 
 SENSORS = np.dtype([
@@ -89,31 +92,50 @@ def convert(value, lowest, highest, step):
 
 
 @kernel
-def read(position, force, p_a, p_b, spool, current, own, measured):
+def sense(step, period, y, x_load, v_load, plant, key, state, measured):
     """
-    Write the reading of each quantity  (S1, S2).
+    Convert every channel once, at plant step ``step``  (S1-S3).
 
-    ``measured`` has the fields position, force, pressure_a, pressure_b, spool, current.
+    ``y`` is a `PLANT_STATE`; ``x_load`` and ``v_load`` are the load's side of the force sensor,
+    ``period`` that of the converters in plant steps, ``key`` of the noise, ``state`` a
+    `channels.CHANNELS_STATE`, ``measured`` a `MEASURED`.
     """
-    measured.position = encode(position, own.encoder)
-    measured.force = convert(force, -own.force_range, own.force_range, own.force_step)
-    measured.pressure_a = convert(p_a, 0.0, own.pressure_range, own.pressure_step)
-    measured.pressure_b = convert(p_b, 0.0, own.pressure_range, own.pressure_step)
-    measured.spool = convert(spool, -own.spool_range, own.spool_range, own.spool_step)
-    measured.current = convert(
-        current, -own.current_range, own.current_range, own.current_step)
+    own, at = plant.sensors, y.mechanics
+    measured.position = at.position
+    measured.force = sensor_force(at.position, at.velocity, x_load, v_load, plant.mechanics)
+    measured.pressure_a, measured.pressure_b = y.chambers.p_a, y.chambers.p_b
+    measured.spool = y.spool.position
+    measured.current = coil_current(y.coil, plant.coil)
+    if not own.errors.are_ideal:
+        disturb(step, period, own.errors, key, state, measured)
+    read(own, measured)
 
 
 @kernel
-def read_channels(step, period, position, force, p_a, p_b, spool, current, own, key, state,
-                  measured):
-    """
-    Write the reading of each quantity behind its channel at plant step ``step``  (S1-S3).
-
-    ``period`` of the converters in plant steps, ``key`` of the noise; ``state`` is a
-    `channels.CHANNELS_STATE`.
-    """
-    channels.enter(step, period, position, force, p_a, p_b, spool, current, state)
-    channels.disturb(step, period, key, own.errors, state)
+def disturb(step, period, errors, key, state, measured):
+    """Replace exact values by what their channels show the converters  (S3)."""
+    exact = channels.enter(step, period, state)
+    exact[0], exact[1] = measured.position, measured.force
+    exact[2], exact[3] = measured.pressure_a, measured.pressure_b
+    exact[4], exact[5] = measured.spool, measured.current
+    channels.disturb(step, period, key, errors, state)
     shown = state.shown
-    read(shown[0], shown[1], shown[2], shown[3], shown[4], shown[5], own, measured)
+    measured.position, measured.force = shown[0], shown[1]
+    measured.pressure_a, measured.pressure_b = shown[2], shown[3]
+    measured.spool, measured.current = shown[4], shown[5]
+
+
+@kernel
+def read(own, measured):
+    """Replace values by the readings of encoder and converters  (S1, S2)."""
+    measured.position = encode(measured.position, own.encoder)
+    measured.force = convert(
+        measured.force, -own.force_range, own.force_range, own.force_step)
+    measured.pressure_a = convert(
+        measured.pressure_a, 0.0, own.pressure_range, own.pressure_step)
+    measured.pressure_b = convert(
+        measured.pressure_b, 0.0, own.pressure_range, own.pressure_step)
+    measured.spool = convert(
+        measured.spool, -own.spool_range, own.spool_range, own.spool_step)
+    measured.current = convert(
+        measured.current, -own.current_range, own.current_range, own.current_step)

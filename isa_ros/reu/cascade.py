@@ -11,6 +11,7 @@ equation 8, current: equation 10): it only samples and holds its reference.
 
 from isa_ros.core.device import CURRENT, FORCE, POSITION, PRESSURE
 from isa_ros.core.kernel import kernel
+from isa_ros.core.signals import MEASURED
 from isa_ros.core.timebase import PLANT_STEP
 from isa_ros.reu.block import BLOCK, block_record, BLOCK_STATE, block_step, Pid, rest
 from isa_ros.reu.bumpless import faded, inner_reference
@@ -43,11 +44,6 @@ REU = np.dtype([
     ('protection', PROTECTION),
     ('rules', DEVICE),
 ])
-MEASURED = np.dtype([
-    ('position', 'f8'), ('force', 'f8'), ('pressure_a', 'f8'), ('pressure_b', 'f8'),
-    ('spool', 'f8'), ('current', 'f8')])
-"""The last sensor readings: encoder m | rad, N | Nm, Pa gauge, m, amplifier A."""
-
 REU_STATE = np.dtype([
     ('measured', MEASURED),
     ('setpoint', SETPOINT),

@@ -54,6 +54,25 @@ try:
 except ConfigError as error:
     print(error)
 """
+_CHANNEL = """
+
+@dataclass(frozen=True, kw_only=True)
+class TachometerChannel(Channel):
+
+    sigma: float = _sigma('m/s | rad/s', 1.0)
+    bias: float = _bias('m/s | rad/s', 10.0)
+    drift_per_s: float = _drift('m/s2 | rad/s2', 1.0)
+
+
+CHANNEL_ERRORS = """
+_SENSES = """
+import isa_ros
+run = isa_ros.load('rig_linear', duration=0.05).replace({
+    'actuators.ram.parameters.plant.sensors.tachometer.bias': 1.0})
+result = run.simulate()
+difference = result['ram.tachometer'][1:] - result['ram.velocity'][1:]
+print(result.units['ram.tachometer'], abs(difference - 1.0).max() < 0.1)
+"""
 
 
 @pytest.fixture
@@ -112,3 +131,33 @@ def test_a_key_of_a_run_file_is_a_row(copied: PatchedCopy) -> None:
     copied.script('scripts/write_run_file.py')
     assert ('\n| `room_celsius` | number, Celsius | 20.0 | the air around the run | yes |'
             in copied.read('docs/run_file.md'))
+
+
+@pytest.mark.slow
+def test_a_sensor_is_a_channel_and_a_row_of_the_sample(copied: PatchedCopy) -> None:
+    """Its errors, noise, parameters and faults; result, units and pages."""
+    signals, sensors = 'isa_ros/core/signals.py', 'isa_ros/plant/sensors.py'
+    last = '])\n"""The last readings of the channels'
+    copied.replace(signals, last, f"    ('tachometer', 'f8'),\n{last}")
+    last = ')\n"""The values one actuator reports'
+    copied.replace(
+        signals, last, f"    Field('tachometer', 'm/s | rad/s', 'as sensed'),\n{last}")
+    copied.replace('isa_ros/plant/channels.py', '\nCHANNEL_ERRORS = ', _CHANNEL)
+    last = '    temperature: TemperatureSensor ='
+    copied.replace(
+        sensors, last, '    tachometer: channels.TachometerChannel = section('
+        f'channels.TachometerChannel)\n{last}')
+    for old, new in (
+            ('    if not own.errors.are_ideal:\n', 'measured.tachometer = at.velocity'),
+            ('    channels.disturb(', 'exact[6] = measured.tachometer'),
+            ('\n\n@kernel\ndef read(', 'measured.tachometer = shown[6]')):
+        copied.replace(sensors, old, f'    {new}\n{old}')
+    copied.replace(
+        'isa_ros/actuator/kernel.py', '    sample.current = measured.current\n',
+        '    sample.current = measured.current\n    sample.tachometer = measured.tachometer\n')
+    assert len(copied.touched) == 4
+    assert copied.python(_SENSES) == 'm/s True\n'
+    parameters = copied.isa('params', 'isa_v5')
+    assert 'plant.sensors.tachometer.stuck ' in parameters
+    copied.script('scripts/write_signals.py')
+    assert '\n| `tachometer` | m/s or rad/s | as sensed |' in copied.read('docs/signals.md')

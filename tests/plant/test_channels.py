@@ -2,10 +2,11 @@
 
 from dataclasses import replace
 
+from isa_ros.core.signals import CHANNELS
 from isa_ros.errors import ParameterError
 from isa_ros.plant import channels
 from isa_ros.plant.channels import (
-    channel_errors, CHANNELS, CHANNELS_STATE, disturb, enter, LINE, N_CHANNELS, refuse_delays)
+    channel_errors, CHANNELS_STATE, disturb, enter, LINE, N_CHANNELS, refuse_delays)
 import numpy as np
 import pytest
 from tests.sheets import actuator_sheet
@@ -31,7 +32,7 @@ def shown(own, n, first=1, state=None):
     rows = np.empty((n, N_CHANNELS))
     for i in range(n):
         step = first + i * PERIOD
-        enter(step, PERIOD, *(1000.0 * k + i for k in range(N_CHANNELS)), state)
+        enter(step, PERIOD, state)[:] = [1000.0 * k + i for k in range(N_CHANNELS)]
         disturb(step, PERIOD, KEY, own, state)
         rows[i] = state.shown
     return rows

@@ -4,11 +4,11 @@ from dataclasses import replace
 
 from hypothesis import given, strategies as st
 from isa_ros.actuator.sheet import actuator_record
+from isa_ros.core.signals import MEASURED
 from isa_ros.plant import chambers, servo_valve
 from isa_ros.plant.plant import plant_record
 from isa_ros.plant.valve_sheets import PointsFlow
 from isa_ros.reu import block, feedback_linearisation as fl
-from isa_ros.reu.cascade import MEASURED
 import numpy as np
 import pytest
 from tests.sheets import actuator_sheet, MODELS, override

@@ -10,8 +10,8 @@ import math
 
 import isa_ros
 from isa_ros.analysis.signals.signals import read_signals
+from isa_ros.core.signals import CHANNELS
 from isa_ros.errors import ConfigError
-from isa_ros.plant.channels import CHANNELS
 from isa_ros.testing import assert_replays
 import numpy as np
 import pytest

@@ -20,7 +20,7 @@ from isa_ros.core.conditions import BITS
 from isa_ros.core.device import STATES
 from isa_ros.core.fields import units_of
 from isa_ros.core.signals import (
-    COMMAND, HAS_CLEAR_FAULT, HAS_ENABLE, SAMPLE, SAMPLE_FIELDS)
+    CHANNELS, COMMAND, HAS_CLEAR_FAULT, HAS_ENABLE, SAMPLE, SAMPLE_FIELDS)
 from isa_ros.errors import SimulationDiverged
 from isa_ros.plant.sensors import sensors_record
 from isa_ros.scripting.run import load, Run
@@ -36,8 +36,6 @@ VISIBLE = 4.0
 SOUND = 40.0
 """Steps within which all signals are after a recovery, about 1 % of the range: where the seals
 stick and slip, two runs differ by more than `VISIBLE` for seconds."""
-MEASURED = ('position', 'force', 'pressure_a', 'pressure_b', 'spool', 'current')
-"""Signals of an actuator that its REU measures."""
 _BIT_SETS = {'warnings': 'warning', 'trips': 'trip'}
 _STATE = 'device_state'
 _DEVICE = (_STATE, 'device_mode', 'device_event', *_BIT_SETS, 'state_since')
@@ -168,7 +166,7 @@ def _resolution(rig: Run) -> dict[str, float]:
     steps = {'position': own.encoder, 'pressure_a': own.pressure_step,
              'pressure_b': own.pressure_step, _SUPPLY: own.pressure_step}
     return {name: float(steps[name] if name in steps else own[f'{name}_step'])
-            for name in (*MEASURED, _SUPPLY)}
+            for name in (*CHANNELS, _SUPPLY)}
 
 
 def _units(rig: Run) -> dict[str, str]:
@@ -190,7 +188,7 @@ def _recorded(rig: Run, faults: Sequence[Tree]) -> dict[str, NDArray[np.float64]
         pressure[tick] = simulation.surroundings.supplies['pressure'][0]
         if tick in (clear, clear + 1) and faults:
             _clear(simulation, tick == clear)
-    return {_SUPPLY: pressure} | {name: rows[name] for name in (*MEASURED, *_DEVICE)}
+    return {_SUPPLY: pressure} | {name: rows[name] for name in (*CHANNELS, *_DEVICE)}
 
 
 def _clear(simulation: Simulation, is_first: bool) -> None:

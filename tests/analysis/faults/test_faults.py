@@ -4,10 +4,11 @@ import json
 from pathlib import Path
 
 from isa_ros.analysis.faults import page
-from isa_ros.analysis.faults.measure import MEASURED, Outcome, outcomes, VISIBLE
+from isa_ros.analysis.faults.measure import Outcome, outcomes, VISIBLE
 from isa_ros.analysis.faults.rig import END_S, STEP_S
 from isa_ros.cli.main import main
 from isa_ros.config.models.fault_catalogue import fault_catalogue
+from isa_ros.core.signals import CHANNELS
 from isa_ros.errors import ConfigError
 import pytest
 
@@ -111,7 +112,7 @@ def test_table_list_page_and_json_have_every_fault(found, tmp_path, capsys):
         assert name in text and own.meaning in listed and f'`{name}`' in path.read_text()
         assert found[name].message in text and found[name].message in path.read_text()
         assert all(key in listed for key in own.values)
-    assert f'{VISIBLE:g} steps' in path.read_text() and MEASURED[0] in path.read_text()
+    assert f'{VISIBLE:g} steps' in path.read_text() and CHANNELS[0] in path.read_text()
 
 
 def test_the_page_of_the_documentation_names_every_fault():
