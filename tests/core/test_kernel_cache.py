@@ -6,10 +6,14 @@ from pathlib import Path
 import shutil
 import subprocess
 import sys
+import time
 
 import isa_ros
+from isa_ros.core import kernel as kernels
 from isa_ros.core import kernel_cache
-from isa_ros.core.kernel_cache import cache_directories
+from isa_ros.core.kernel_cache import cache_directories, is_kept
+import numba
+import numpy as np
 import pytest
 
 PACKAGE = Path(isa_ros.__file__).parent
@@ -109,7 +113,6 @@ def twice(x):
 def test_a_full_disk_is_one_line_and_the_kernel_runs(
         monkeypatch: pytest.MonkeyPatch, tmp_path: Path,
         capsys: pytest.CaptureFixture[str]) -> None:
-    from isa_ros.core import kernel as kernels
     kernel_cache._say_not_kept.cache_clear()
     monkeypatch.setattr(kernels, 'CACHE', tmp_path)
     compiled = kernels.kernel(twice)
@@ -118,3 +121,105 @@ def test_a_full_disk_is_one_line_and_the_kernel_runs(
     assert (compiled(3), compiled(1.5)) == (6, 3.0)
     line, = capsys.readouterr().err.splitlines()
     assert 'cannot be kept, full' in line
+
+
+def test_a_directory_that_can_only_be_read_is_read(
+        monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
+    """A root user writes everywhere, so that the refusal is played."""
+    first, second = tmp_path / 'first' / 'isa_ros', tmp_path / 'second' / 'isa_ros'
+    (first / 'kernels').mkdir(parents=True)
+    monkeypatch.setenv('NUMBA_CACHE_DIR', str(first.parent))
+    monkeypatch.setenv('XDG_CACHE_HOME', str(second.parent))
+    monkeypatch.setattr(
+        kernel_cache.os, 'access', lambda path, mode: first not in (path, path.parent))
+    assert cache_directories() == (
+        second / 'kernels', (first / 'kernels', second / 'kernels'))
+
+
+@pytest.mark.parametrize(('owner', 'mode', 'expected'), [
+    (os.geteuid(), 0o700, True), (0, 0o755, True), (12_345, 0o700, False),
+    (os.geteuid(), 0o702, False)])
+def test_only_the_user_and_root_are_trusted(owner: int, mode: int, expected: bool) -> None:
+    class Directory:
+        def stat(self) -> os.stat_result:
+            return os.stat_result((0o40000 | mode, 0, 0, 0, owner, 0, 0, 0, 0, 0))
+
+    assert kernel_cache._is_trusted(Directory()) is expected  # type: ignore[arg-type]
+
+
+def filled(directory: Path, sizes_and_days: Mapping[str, tuple[int, float]]) -> None:
+    """Make files of these sizes that were used so many days ago."""
+    for name, (size, days) in sizes_and_days.items():
+        path = directory / name
+        path.parent.mkdir(parents=True, exist_ok=True)
+        with path.open('wb') as file:
+            file.truncate(size)     # takes no room
+        used = time.time() - days * 86_400.0
+        os.utime(path, (used, used))
+
+
+def test_what_is_old_or_too_much_is_swept(tmp_path: Path) -> None:
+    """The earlier form had a directory for each state of the sources; other files stay."""
+    earlier = '0123456789abcdef/plant/valve.nbc'
+    filled(tmp_path, {
+        'kernels/used': (100, 29.9), 'kernels/unused': (100, 30.1), 'kernels/.part': (100, 31.0),
+        earlier: (100, 31.0), 'other/file': (100, 99.0)})
+    kernel_cache._sweep.__wrapped__(tmp_path / 'kernels')
+    left = {str(path.relative_to(tmp_path)) for path in tmp_path.rglob('*') if path.is_file()}
+    assert left == {'kernels/used', 'other/file'}
+    filled(tmp_path, {f'kernels/{days}': (100 << 20, days) for days in (1, 2, 3)})
+    kernel_cache._sweep.__wrapped__(tmp_path / 'kernels')
+    assert {path.name for path in (tmp_path / 'kernels').iterdir()} == {'1', '2'}
+
+
+def test_what_is_loaded_counts_as_used(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
+    monkeypatch.setattr(kernels, 'CACHE', tmp_path)
+    assert kernels.kernel(twice)(3) == 6
+    path, = tmp_path.iterdir()
+    for days, is_noted in ((0.9, False), (1.1, True)):
+        used = time.time() - days * 86_400.0
+        os.utime(path, (used, used))
+        assert kernels.kernel(twice)(3) == 6
+        assert (path.stat().st_mtime > used + 1.0) == is_noted
+
+
+def test_other_processors_and_versions_are_other_files(monkeypatch: pytest.MonkeyPatch) -> None:
+    class Codegen:
+        def __init__(self, processor: str) -> None:
+            self.processor = processor
+
+        def magic_tuple(self) -> tuple[str, ...]:
+            return 'x86_64', self.processor
+
+    cache = kernels.kernel(twice)._cache
+    types = (numba.int64,)
+    first = cache._name(types, Codegen('skylake'))
+    assert first != cache._name(types, Codegen('zen4'))
+    monkeypatch.setattr(kernel_cache, '_environment', lambda: 'numba 99')
+    assert first != cache._name(types, Codegen('skylake'))
+
+
+LARGE = np.zeros(200_000)
+
+
+def first_of(x):
+    return LARGE[x]
+
+
+def test_an_array_that_stays_outside_the_code_is_not_kept(
+        monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
+    """Above 1 MB the code has its address, which is another one in another process."""
+    monkeypatch.setattr(kernels, 'CACHE', tmp_path)
+    assert kernels.kernel(first_of)(3) == 0.0
+    assert not list(tmp_path.iterdir())
+
+
+def test_a_kernel_is_kept_once_it_is_compiled(
+        monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
+    monkeypatch.setattr(kernels, 'CACHE', tmp_path)
+    monkeypatch.setattr(kernel_cache, '_READ', (tmp_path,))
+    one, other = kernels.kernel(twice), kernels.kernel(first_of)
+    assert not is_kept(one)
+    one(3)
+    assert is_kept(one)
+    assert not is_kept(other)

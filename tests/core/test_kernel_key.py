@@ -1,6 +1,12 @@
 """What a compiled kernel depends on."""
 
-from isa_ros.core.kernel_key import is_unchanged, kernel_digest, UnknownValue, value_text
+import dis
+from typing import NamedTuple
+
+from isa_ros.core import kernel_key
+from isa_ros.core.kernel_key import (
+    is_unchanged, kernel_digest, type_text, UnknownValue, value_text)
+import numba
 import numpy as np
 import pytest
 
@@ -83,3 +89,89 @@ def test_all_of_a_dtype_is_seen():
              np.dtype([('b', 'f8'), ('a', 'f4')]), np.dtype([('a', 'f8'), ('b', 'f4', 1)]),
              np.dtype([('a', 'f8'), ('b', 'f4', 2)]), np.dtype([('a', '>f8'), ('b', 'f4')])]
     assert len({value_text(kind) for kind in kinds}) >= 5
+
+
+def one(source: str) -> bytes:
+    """Return the digest of the kernel `f` of a source."""
+    space = {'__name__': 'somewhere'}
+    exec('from enum import IntEnum\nfrom typing import NamedTuple\nimport numba\n'
+         f'import numpy as np\nfrom isa_ros.core.kernel import kernel\n{source}', space)
+    return kernel_digest(space['f'])
+
+
+CALL = '@kernel\ndef f(x):\n    return C'
+MADE = 'def made(c):\n    @kernel\n    def f(x):\n        return x + c\n    return f\nf = made({})'
+CODE = '@kernel\ndef g(x):\n    return x + {}\n'
+OWN = '@kernel\ndef f({}):\n    return 1'
+TRY = '@kernel\ndef f(x):\n{}    try:\n{}        b = 1\n    except Exception:\n        b = 2\n'
+SUM = '@kernel\ndef f(x):\n    return (' + ', '.join(f'x + {k}.5' for k in range(300)) + ', {})'
+
+
+@pytest.mark.parametrize(('first', 'second'), [
+    (MADE.format(1), MADE.format(2)),
+    (OWN.format('x, *, b=1'), OWN.format('x, *, b=2')),
+    (OWN.format('x'), OWN.format('y')), (OWN.format('x'), OWN.format('*x')),
+    (OWN.format('x'), OWN.format('x').replace('f(', 'g(') + '\nf = g'),
+    (f'C = 1\n{CALL.replace("C", "(lambda y: y + C)(x)")}',
+     f'C = 2\n{CALL.replace("C", "(lambda y: y + C)(x)")}'),
+    (CODE.format(1) + f'C = (g, (g, 2))\n{CALL}[0](x)',
+     CODE.format(2) + f'C = (g, (g, 2))\n{CALL}[0](x)'),
+    (CODE.format(1) + f'C = ((g,), 2)\n{CALL}[0][0](x)',
+     CODE.format(2) + f'C = ((g,), 2)\n{CALL}[0][0](x)'),
+    ('@numba.njit(error_model="numpy")\ndef f(x):\n    return x',
+     '@numba.njit(error_model="python")\ndef f(x):\n    return x'),
+    (f'class C(IntEnum):\n    A = 1\n{CALL}.A', f'class C(IntEnum):\n    A = 2\n{CALL}.A'),
+    (f'class E(IntEnum):\n    A = 1\n    B = 2\nC = E.A\n{CALL}',
+     f'class E(IntEnum):\n    A = 1\n    B = 2\nC = E.B\n{CALL}'),
+    (f'class C(NamedTuple):\n    a: int\n{CALL}(x)',
+     f'class C(NamedTuple):\n    b: int\n{CALL}(x)'),
+    (f'C = np.zeros((2, 3))\n{CALL}', f'C = np.zeros((3, 2))\n{CALL}'),
+    (f'C = np.zeros((2, 2))\n{CALL}', f'C = np.zeros((2, 2), order="F")\n{CALL}'),
+    (f'C = frozenset((1, 2))\n{CALL}', f'C = frozenset((1, 3))\n{CALL}'),
+    (TRY.format('    a = 1\n', ''), TRY.format('', '        a = 1\n')),
+    (SUM.format(1), SUM.format(2))])
+def test_all_that_a_kernel_is_changes_its_digest(first, second):
+    assert one(first) == one(first) != one(second)
+
+
+def test_instructions_are_those_of_dis():
+    """Also with arguments of three bytes."""
+    code = compile('x = 1\n' + '\n'.join(f'y{k} = {k}.5' for k in range(66_000)), 'large', 'exec')
+    left_out = ('EXTENDED_ARG', 'CACHE', 'NOP')
+    assert list(kernel_key._instructions(code)) == [
+        (each.opcode, each.arg or 0) for each in dis.get_instructions(code)
+        if each.opname not in left_out]
+
+
+class Pair(NamedTuple):
+    a: int
+    b: int
+
+
+def other_pair() -> type:
+    class Pair(NamedTuple):
+        a: int
+        c: int
+    Pair.__qualname__ = 'Pair'
+    return Pair
+
+
+def test_types_of_arguments_are_told_apart():
+    values = [1, 1.0, (1, 1.0), (1.0, 1), Pair(1, 2), other_pair()(1, 2), np.zeros(2),
+              np.zeros(2, 'f4'), np.zeros((2, 2)), np.zeros(2, [('a', 'f8')]),
+              np.zeros(2, [('b', 'f8')]), np.zeros(2, [('a', 'f8'), ('b', 'f8')]), True, 'text']
+    texts = {type_text(numba.typeof(value)) for value in values}
+    assert len(texts) == len(values)
+
+
+def test_a_kernel_as_an_argument_is_refused():
+    with pytest.raises(UnknownValue):
+        type_text(numba.typeof(numba.njit(lambda x: x)))
+
+
+def test_all_of_a_dtype_is_in_its_text():
+    """A field at another place, and padding at the end."""
+    kinds = [np.dtype({'names': ['a'], 'formats': ['f8'], 'offsets': [at], 'itemsize': size})
+             for at, size in ((0, 8), (0, 16), (8, 16))]
+    kinds += [np.dtype([('a', 'f8')], align=True)]
+    assert len({value_text(kind) for kind in kinds}) == 4
