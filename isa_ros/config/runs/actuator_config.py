@@ -137,8 +137,10 @@ def _sheet(
     parameters, link, inline = values['parameters'], values[LINK], values['sheet']
     if inline is not None:
         of_type(values['model'], str, place / 'model')
-        given: Section = {**around.link, **link}
-        section = merge(merge(inline, parameters), {LINK: given} if given else {})
+        section = merge(inline, parameters)
+        given, below = {**around.link, **link}, section.get(LINK, {})
+        if given and isinstance(below, dict):
+            section[LINK] = link_of(below, given, around.step_ns, place)
         return build(ActuatorSheet, section, place / 'sheet'), {'sheet': section}, None
     model = actuator_model(values['model'], f'{place}.model')
     of_model = model.with_variants(

@@ -52,11 +52,12 @@ def test_of_an_inline_sheet_only_the_name_of_the_model_is_used(tmp_path: Path) -
     ram = inline(tmp_path, {
         'actuators.ram.model': 'my_own', 'actuators.ram.sheet.plant.drive.bore_mm': 30.0,
         'actuators.ram.parameters': {'reu': {'force': {'kf': 0.0}}},
-        'link': {'kind': 'can', 'cycle_ms': 2.0}}).actuator('ram')
+        'link': {'kind': 'can', 'loss': 0.1}}).actuator('ram')
     assert (ram.model, ram.preset, ram.load) == ('my_own', plain.preset, plain.load)
     assert (ram.sheet.plant.drive.bore_mm, ram.sheet.reu.force.kf) == (30.0, 0.0)
     assert ram.sheet.plant.oil == plain.sheet.plant.oil     # nothing scales
-    assert (ram.sheet.link.kind, ram.sheet.link.cycle_ms) == ('can', 2.0)
+    link = ram.sheet.link
+    assert (link.kind, link.loss, link.cycle_ms) == ('can', 0.1, 1.0)     # the tick
 
 
 @pytest.mark.parametrize(('changes', 'expected'), [
@@ -112,6 +113,16 @@ def test_a_joint_of_a_leg_may_have_a_sheet_of_its_own(tmp_path: Path) -> None:
     plain = CONFIG / 'leg.yaml'
     with pytest.raises(ConfigError, match='kfe.initial_position is not used: the actuator moves'):
         load_run(plain, {'actuators.kfe.initial_position': 0.01})
+
+
+def test_inertial_units_of_a_resolved_text_are_those_of_the_file(tmp_path: Path) -> None:
+    """Their keys stand below a sheet of their own there."""
+    run = load_run(CONFIG / 'leg.yaml', {'leg.imus': {'trunk': {'link': 'hip', 'x_mm': 30.0}}})
+    text = run.to_yaml()
+    assert re.search(r'^ +trunk:\n +sheet: \{link: hip, ', text, re.MULTILINE)
+    assert RunConfig.from_yaml(text) == run
+    with pytest.raises(ConfigError, match=r'^leg.yaml: leg.imus.trunk.y_m is unknown'):
+        load_run(CONFIG / 'leg.yaml', {'leg.imus': {'trunk': {'link': 'hip', 'y_m': 0.0}}})
 
 
 def test_times_have_defaults(tmp_path: Path) -> None:
