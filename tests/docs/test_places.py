@@ -5,6 +5,8 @@ from pathlib import Path
 import re
 import textwrap
 
+import isa_ros
+from isa_ros.tick.exchange import Rows, RowSink
 import pytest
 from tests.docs.patched_copy import PatchedCopy, ROOT
 
@@ -15,13 +17,16 @@ CASES = {
     'supply': 'test_places.test_a_supply_is_one_file',
     'load of one actuator': 'test_places.test_a_load_is_a_set_a_force_and_values',
     'wire of a link': 'test_places.test_a_wire_is_its_values_and_a_name',
+    'topic of an actuator': 'test_places.test_a_topic_of_an_actuator_is_one_file',
+    'object on a bus': 'test_places.test_an_object_with_a_source_is_one_word',
+    'option of a run': 'test_places.test_an_option_of_a_run_is_a_field',
+    'output of a run': 'test_places.test_an_output_of_a_run_is_a_sink',
+    'fault of the device': 'test_places.test_a_fault_is_a_mark',
 }
 """Case by row: a test of this folder that makes the extension in a copy."""
 WITHOUT_CASE = {
-    'sensor', 'sensor on a link of the leg', 'fault of the device',
-    'quantity that values of a model scale with', 'control block', 'topic of an actuator',
-    'object on a bus', 'bus', 'source of commands', 'output of a run', 'option of a run',
-    'middleware of the bench'}
+    'sensor', 'sensor on a link of the leg', 'quantity that values of a model scale with',
+    'control block', 'bus', 'source of commands', 'middleware of the bench'}
 """Rows that no test executes."""
 
 RAIL = textwrap.dedent('''\
@@ -294,3 +299,76 @@ def test_a_wire_is_its_values_and_a_name(copied: PatchedCopy) -> None:
     assert copied.python(
         "import isa_ros; run = isa_ros.load('rig_linear').replace({'link': {'kind': 'canfd', "
         "'cycle_ms': 1.0}}); print(run.simulate(0.002)['ram.link.age'].shape)") == '(3,)\n'
+
+
+@pytest.mark.slow
+def test_a_topic_of_an_actuator_is_one_file(copied: PatchedCopy) -> None:
+    """Bag and replay have it."""
+    path = 'msg_adapters/actuator_messages.py'
+    copied.replace(path, "    ('valve', joint_state.TYPE),\n",
+                   "    ('valve', joint_state.TYPE),\n    ('wear', joint_state.TYPE),\n")
+    copied.replace(path, "        'valve': joint_state.valve(name, sample),\n",
+                   "        'valve': joint_state.valve(name, sample),\n"
+                   "        'wear': joint_state.references(name, sample),\n")
+    assert touched(copied) == files_of('topic of an actuator')
+    assert copied.python(
+        "import isa_ros; from isa_ros.bag.reader import Bag; from isa_ros.replay.replay import "
+        "replay; bag = Bag(isa_ros.load('rig_linear').simulate(0.002).save('bag')); "
+        "print(bag.types['/ram/wear'], replay(bag).is_equal)") == (
+            'sensor_msgs/msg/JointState True\n')
+
+
+@pytest.mark.slow
+def test_an_object_with_a_source_is_one_word(copied: PatchedCopy) -> None:
+    """Its unit, type and place follow; the table of a bus shows it."""
+    copied.replace(
+        'isa_ros/fieldbus/device/manufacturer_area.py', "{'temperature': 'Oil in the actuator'}",
+        "{'temperature': 'Oil in the actuator', 'age': 'Age of this sample'}")
+    assert touched(copied) <= files_of('object on a bus') and len(copied.touched) == 1
+    assert 'Age of this sample' in copied.isa('bus', 'describe', 'rig_linear', '--table')
+
+
+def test_an_option_of_a_run_is_a_field(copied: PatchedCopy) -> None:
+    """The command has it."""
+    path = 'isa_ros/run/options.py'
+    flag = "    is_synced: bool = field(default=False"
+    copied.replace(path, flag, '    is_tried: bool = field(default=False, metadata=_option(\n'
+                   f"        Kind.FLAG, 'only an example', name='tried'))\n{flag}")
+    assert touched(copied) == files_of('option of a run')
+    assert re.search(r'--tried +only an example', copied.isa('bringup', '--help'))
+
+
+def test_an_output_of_a_run_is_a_sink() -> None:
+    """It takes the rows of each instant."""
+    simulation = isa_ros.load('rig_linear').simulation()
+    seen: list[tuple[int, float]] = []
+
+    class Place(RowSink):
+        """Keeps the place of the first actuator."""
+
+        def take(self, tick: int, rows: Rows) -> None:
+            """Keep it."""
+            seen.append((tick, float(rows.samples['position'][0])))
+    simulation.loop.sinks = (Place(),)
+    simulation.loop.run(3)
+    assert [tick for tick, _ in seen] == [0, 1, 2, 3]
+    assert seen[-1][1] == simulation.samples['ram'].position
+
+
+@pytest.mark.slow
+def test_a_fault_is_a_mark(copied: PatchedCopy) -> None:
+    """A parameter that is marked can change in a run, by its key and in its unit."""
+    copied.replace('isa_ros/surroundings/supply.py', "'relief flow per pressure above opening', "
+                   "'l/min/MPa', gt=0.0", "'relief flow per pressure above opening', "
+                   "'l/min/MPa', changeable=True, gt=0.0")
+    assert len(copied.touched) == 1
+    program = (
+        "import isa_ros; run = isa_ros.load('rig_linear').replace({'supply': dict(kind="
+        "'accumulator', pressure_mpa=20.0, return_pressure_mpa=0.0, gas_volume_l=1.0, "
+        "precharge_mpa=10.0, polytropic_exponent=1.2, line_volume_l=0.5, bulk_modulus=1e9, "
+        "pump_flow_lpm=20.0, pump_lag_s=0.05, pump_band_mpa=1.0, relief_mpa=15.0, "
+        "relief_lpm_per_mpa=1.0)}); s = run.simulation(); "
+        "s.tune('supply', {'relief_lpm_per_mpa': 50.0}); "
+        "o = run.simulation(); [(s.step(), o.step()) for _ in range(50)]; "
+        "print(s.supply_samples['supply'].pressure < o.supply_samples['supply'].pressure - 1e4)")
+    assert copied.python(program) == 'True\n'
