@@ -26,6 +26,7 @@ if TYPE_CHECKING:
     from isa_ros.scripting.sweep import sweep as sweep
     from isa_ros.simulation import Simulation as Simulation
     from isa_ros.surroundings.body import Body as Body
+    __version__: str
 
 _HOMES = {
     'ActuatorGroup': 'actuator.group', 'Body': 'surroundings.body', 'Controller': 'controller',
@@ -40,6 +41,9 @@ __all__ = [  # noqa: F822, the names are loaded by `__getattr__`
 
 def __getattr__(name: str) -> Any:
     """Load a public name where it is used first."""
+    if name == '__version__':
+        from isa_ros.bag.provenance import own_version
+        return own_version()
     if name not in _HOMES:
         raise AttributeError(f'module {__name__!r} has no attribute {name!r}')
     return getattr(import_module(f'{__name__}.{_HOMES[name]}'), name)

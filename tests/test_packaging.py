@@ -8,6 +8,8 @@ import subprocess
 import sys
 from xml.etree import ElementTree
 
+import isa_ros
+from isa_ros.cli.main import main
 from packaging.requirements import Requirement
 from packaging.utils import canonicalize_name
 import pytest
@@ -21,6 +23,15 @@ ENTRY_POINTS = re.findall(r"'(\w+) = ([\w.]+):(\w+)'", SETUP)
 def test_the_version_is_the_same_for_python_and_ros() -> None:
     version = ElementTree.parse(ROOT / 'package.xml').findtext('version')
     assert f"version='{version}'" in SETUP
+
+
+def test_the_version_is_shown(capsys: pytest.CaptureFixture[str]) -> None:
+    """That of the installation, or of the source tree."""
+    with pytest.raises(SystemExit) as ended:
+        main(['--version'])
+    assert ended.value.code == 0
+    assert capsys.readouterr().out == f'isa_ros {isa_ros.__version__}\n'
+    assert f"version='{isa_ros.__version__}'" in SETUP
 
 
 def test_the_executables_of_the_interface_are_there() -> None:

@@ -102,7 +102,7 @@ def installed_versions() -> dict[str, str]:
     """
     versions = {name: version(name) for name in _RESULT_DEPENDS_ON}
     python = without_patch(platform.python_version())
-    return {'isa_ros': _own_version(), PYTHON: python, **versions}
+    return {'isa_ros': own_version(), PYTHON: python, **versions}
 
 
 def versions_of(record: Mapping[str, str]) -> dict[str, str]:
@@ -126,7 +126,7 @@ def without_patch(version_: str) -> str:
     return '.'.join(version_.split('.')[:2])
 
 
-def _own_version() -> str:
+def own_version() -> str:
     """Return the installed version, or that of the source tree if none is installed."""
     try:
         return version('isa_ros')

@@ -12,9 +12,10 @@ import signal
 from types import FrameType
 from typing import NoReturn
 
+import isa_ros
 from isa_ros.cli import (
-    bus_arguments, bus_commands, commands, response_arguments, run_arguments, shared_arguments,
-    study_arguments)
+    bus_arguments, bus_commands, commands, response_arguments, run_arguments, shared_arguments)
+from isa_ros.cli.argument_types import number
 from isa_ros.processes.ending import (
     ANSWER_IS_NO, DEBUG_VARIABLE, DONE, end_of, replaced_handlers, WRONG_INPUT)
 
@@ -24,6 +25,14 @@ class _Parser(argparse.ArgumentParser):
 
     def error(self, message: str) -> NoReturn:
         self.exit(WRONG_INPUT, f'{self.prog}: {message}; see {self.prog} --help\n')
+
+
+class _Version(argparse.Action):
+    """Print the version and end; the version is read only then."""
+
+    def __call__(self, parser: argparse.ArgumentParser, *_: object) -> NoReturn:
+        print(f'isa_ros {isa_ros.__version__}')
+        parser.exit(DONE)
 
 
 def main(arguments: Sequence[str] | None = None) -> int:
@@ -41,8 +50,8 @@ def main(arguments: Sequence[str] | None = None) -> int:
         return end_of('isa', error)
     finally:
         _restore(DEBUG_VARIABLE, debug)
-        for number, handler in before.items():
-            signal.signal(number, handler)
+        for own, handler in before.items():
+            signal.signal(own, handler)
 
 
 def _restore(variable: str, value: str) -> None:
@@ -65,6 +74,8 @@ def make_parser() -> argparse.ArgumentParser:
     parser = _Parser(
         prog='isa', parents=[common],
         description='Hydraulic integrated smart actuators, simulated in lockstep.')
+    parser.add_argument(
+        '--version', action=_Version, nargs=0, help='show the version of isa_ros and end')
     subparsers = parser.add_subparsers(metavar='COMMAND', required=True)
     for name, (add_arguments, command, summary) in _COMMANDS.items():
         below = subparsers.add_parser(name, parents=[common], help=summary, description=summary)
@@ -153,6 +164,19 @@ def _validate(parser: argparse.ArgumentParser) -> None:
         '--sensitivity, if a perturbation is not noticed.')
 
 
+def _study(parser: argparse.ArgumentParser) -> None:
+    parser.add_argument(
+        'name', metavar='NAME', nargs='?', help='a study (default: list all studies)')
+    parser.add_argument(
+        '--all', action='store_true', help='run those of studies.md, about a minute')
+    parser.add_argument('--model', metavar='M', help='only this actuator (default: all)')
+    parser.add_argument(
+        '--values', type=number, nargs='+', metavar='V',
+        help='values instead of those of the study, in the unit of its table')
+    shared_arguments.json_file(parser)
+    shared_arguments.page_directory(parser, 'studies.md and its figures, or temperature.md')
+
+
 def _faults(parser: argparse.ArgumentParser) -> None:
     parser.add_argument('--list', action='store_true', help='only list the faults')
     parser.add_argument(
@@ -188,7 +212,7 @@ _COMMANDS = {
     'tune': (response_arguments.tune, commands.tune,
              'find gains of a loop for a wanted phase margin and bandwidth over the stroke'),
     'identify': (_identify, commands.identify, 'estimate valve, oil and friction from a bag'),
-    'study': (study_arguments.study, commands.study,
+    'study': (_study, commands.study,
               'vary one parameter and show the performance of the actuators'),
     'faults': (_faults, commands.faults,
                'inject every fault of the device into a rig and show its effect'),
