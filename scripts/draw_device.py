@@ -41,7 +41,7 @@ EVENT_WORDS: Mapping[str, str] = {
     'quick stop': '`~/quick_stop`',
     'stop ends': 'the reference was at rest for `quick_stop_hold_ms`',
     'reaction ends': 'the same, or at once if the reaction is disable'}
-"""What causes each event of `isa_ros.core.device.EVENTS`."""
+"""Cause of each event of `isa_ros.core.device.EVENTS`."""
 
 _BLOCKS = {
     'current': 'current', 'spool': 'spool, current', 'pressure': 'pressure, spool, current',

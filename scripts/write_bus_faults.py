@@ -39,7 +39,7 @@ STATES = {0x40: ('switch on disabled', 0x06), 0x21: ('ready to switch on', 0x07)
 
 
 class Seen(NamedTuple):
-    """What the master sees in one cycle."""
+    """The values that the master receives in one cycle."""
 
     status: int
     error: int

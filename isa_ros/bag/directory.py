@@ -3,7 +3,7 @@ The directory of a bag: where one may be created, and which files it may replace
 
 Only a bag of this package is replaced, and only the files that its metadata.yaml lists are
 deleted. Other MCAP files beside them are never touched; with them in the directory the new bag
-could not be told from them, so nothing is replaced.
+could not be distinguished from them, so nothing is replaced.
 """
 
 from pathlib import Path

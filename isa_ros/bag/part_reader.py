@@ -47,7 +47,7 @@ class PartReader:
     One MCAP file.
 
     ``types`` are the message types by topic, ``type_hashes`` those of their definitions, ''
-    where the file has none; ``is_whole`` tells whether the recorder came to its end.
+    where the file has none; ``is_whole`` is whether the recorder came to its end.
     ``start_ns`` and ``end_ns`` are None without messages; ``cut_bytes`` are behind the last
     complete record. ``schemas`` and ``channels`` are the declared ones by id.
 

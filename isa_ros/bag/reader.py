@@ -43,7 +43,7 @@ class Bag:
     ``path`` is a rosbag2 directory with NAME_0.mcap, NAME_1.mcap, ..., or with one MCAP file
     of any name, or the file itself. ``types`` are the message types by topic, ``type_hashes``
     those of their definitions ('': unknown), ``n_messages`` counts the messages; ``is_whole``
-    tells whether the recorder came to its end. ``start_ns`` and ``end_ns`` are None without
+    is whether the recorder came to its end. ``start_ns`` and ``end_ns`` are None without
     messages. ``parts`` are its files.
 
     Raises

@@ -33,7 +33,7 @@ SUFFIX = '_recovered'
 
 
 class Recovery(NamedTuple):
-    """What was recovered."""
+    """The result of a recovery."""
 
     directory: Path
     n_messages: int
@@ -60,7 +60,7 @@ class _File(NamedTuple):
     name: str
     number: int
     part: PartReader
-    """What it is made from."""
+    """The file that it is made from."""
     has_messages: bool = True
     """False: of ``part``, the first file, only the head is used."""
 

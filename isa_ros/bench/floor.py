@@ -1,4 +1,8 @@
-"""Floor of every exchange: pipes to processes that only answer."""
+"""
+Floor of every exchange: pipes to processes that only answer.
+
+The processes import this module, which is why it imports little.
+"""
 
 from multiprocessing import get_context
 from multiprocessing.connection import Connection

@@ -5,7 +5,7 @@ import os
 from statistics import median
 
 from isa_ros.bench.spec import Measured, median_of
-from isa_ros.text.number import digits
+from isa_ros.text.table import digits
 
 
 def in_parts(parts: Mapping[str, float], scale: float, unit: str) -> str:

@@ -8,9 +8,8 @@ from isa_ros.bench.host import Machine
 from isa_ros.bench.rounds import Outcomes
 from isa_ros.bench.row import Row
 from isa_ros.text.json_file import write_tree
-from isa_ros.text.number import digits
 from isa_ros.text.page import Page, png_with_palette
-from isa_ros.text.table import padded
+from isa_ros.text.table import digits, padded
 from matplotlib.figure import Figure
 
 PAGE = 'bench.md'

@@ -4,7 +4,7 @@ from argparse import Namespace
 from typing import TYPE_CHECKING
 
 from isa_ros.cli.bus_arguments import DESCRIBE
-from isa_ros.cli.commands import recorded, simulating, tell
+from isa_ros.cli.commands import print_line, recorded, simulating
 from isa_ros.config.paths import CONFIG, find
 from isa_ros.fieldbus.request import BusRequest
 from isa_ros.run.options import request_of_arguments
@@ -42,7 +42,7 @@ def serve(options: Namespace) -> bool:
     request = bus_request_of(options)
     if request.run.is_alone:
         start_without_blas()
-    prepared = prepare_bus(request, devices_of, line_of(request), tell)
+    prepared = prepare_bus(request, devices_of, line_of(request), print_line)
     run = prepared.session.run
     refuse_unusable(request, devices_of(run, request.profile), run.step_ns)
     session = prepared.session
@@ -60,12 +60,12 @@ def serve(options: Namespace) -> bool:
         recorded(session, serving)
     finally:
         if prepared.summary is not None:
-            tell(prepared.summary)
+            print_line(prepared.summary)
     return True
 
 
 def describe(options: Namespace) -> bool:
-    """Write what a master wants to know of the devices."""
+    """Write the description of the devices for a master."""
     from isa_ros.config.runs.run_file import load_run
     from isa_ros.fieldbus.description.files import described, tables_of
     from isa_ros.fieldbus.device.devices import devices_of

@@ -75,7 +75,7 @@ def recorded(session: 'Session', run: 'Callable[[Report | None], None]') -> None
     """Print the warnings of a session, run it, and print the paths of its bags."""
     from isa_ros.run.terminal import terminal_report
     for line in session.warnings:
-        tell(line)
+        print_line(line)
     try:
         run(terminal_report(sys.stderr))
     finally:
@@ -83,10 +83,10 @@ def recorded(session: 'Session', run: 'Callable[[Report | None], None]') -> None
             for bag in session.bags:
                 print(bag)
             if session.pace.shortfall:
-                tell(session.pace.shortfall)
+                print_line(session.pace.shortfall)
 
 
-def tell(line: str) -> None:
+def print_line(line: str) -> None:
     """Print a line about a run for the user."""
     print(one_line(f'isa: {line}'), file=sys.stderr, flush=True)
 

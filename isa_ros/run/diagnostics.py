@@ -4,7 +4,7 @@ from collections.abc import Mapping
 
 from isa_ros.core.accounts import Account, MEAN, OIL, PEAK
 from isa_ros.core.timebase import NS_PER_SECOND
-from isa_ros.text.number import digits
+from isa_ros.text.table import digits
 from msg_adapters.diagnostics import Status
 
 PERIOD_NS = NS_PER_SECOND

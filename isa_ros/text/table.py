@@ -1,5 +1,5 @@
 """
-Tables of text: columns aligned for a terminal, or Markdown.
+Tables of text: columns aligned for a terminal, or Markdown, and the numbers in them.
 
 A table is a sequence of rows of cells; the header, if any, is the first. A string of ``l`` and
 ``r`` gives the alignment of each column, left or right; its last letter applies to all further
@@ -42,3 +42,10 @@ def markdown(rows: Sequence[Cells], sides: str = LEFT) -> list[str]:
 
 def _sides(sides: str, n_columns: int) -> str:
     return sides.ljust(n_columns, sides[-1])[:n_columns]
+
+
+def digits(value: float | None, n: int) -> str:
+    """Return a number with ``n`` digits, without exponent if it is large; '-' for None."""
+    if value is None:
+        return '-'
+    return f'{value:.0f}' if abs(value) >= 10.0 ** n else f'{value:.{n}g}'

@@ -1,4 +1,4 @@
-"""What the paper prints and no entry compares, each with the reason."""
+"""Values that the paper prints and no entry compares, each with the reason."""
 
 from typing import NamedTuple
 

@@ -1,4 +1,4 @@
-"""What was found as text, as JSON, and as the page docs/validation.md with its figures."""
+"""The entries as text, as JSON, and as the page docs/validation.md with its figures."""
 
 from collections.abc import Iterable, Sequence
 import math

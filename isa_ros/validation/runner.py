@@ -23,7 +23,7 @@ class Picture:
 
 @dataclass(frozen=True)
 class Result:
-    """What a group found, as it crosses from a worker."""
+    """The result of a group, as a worker process returns it."""
 
     group: str
     title: str

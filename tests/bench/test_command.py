@@ -9,7 +9,7 @@ from isa_ros.bench.row import Row
 from isa_ros.bench.spec import LEG, ONE_PROCESS, Spec
 from isa_ros.cli.main import main
 import pytest
-from tests.bench.told import told
+from tests.bench.artificial import ran
 from tests.text.terminal import Terminal
 
 
@@ -71,7 +71,7 @@ def test_a_terminal_shows_the_next_run_and_nothing_is_left_at_the_end(monkeypatc
     spec = Spec(LEG, ONE_PROCESS, 10, rounds=2)
     group = Group('own', 'A group', lambda _: [], lambda: (spec,))
     monkeypatch.setattr(command, 'chosen', lambda only: (group,))
-    monkeypatch.setattr(rounds, 'measured', lambda spec: told(1000.0))
+    monkeypatch.setattr(rounds, 'measured', lambda spec: ran(1000.0))
     monkeypatch.setattr(sys, 'stderr', Terminal())
     assert main(['bench']) == 0
     assert sys.stderr.getvalue() == (

@@ -4,7 +4,7 @@ from isa_ros.bench import leg, memory, startup
 from isa_ros.bench.loading import Loading
 from isa_ros.bench.rounds import Outcomes
 import pytest
-from tests.bench.told import MIB, told
+from tests.bench.artificial import MIB, ran
 
 
 def by_name(rows):
@@ -26,7 +26,7 @@ def test_a_missed_aim_says_where_the_tick_goes(monkeypatch):
     monkeypatch.setattr(leg, 'pipe_exchange', lambda: 100e-6)
     monkeypatch.setattr(leg, 'actuator_parts', lambda: {'plant': 60e-6, 'messages': 10e-6})
     monkeypatch.setattr('isa_ros.bench.limits.cores', lambda: 2)
-    outcomes = Outcomes({leg.IN_PROCESSES: [told(1000.0, 3)], leg.IN_ONE_PROCESS: [told(5000.0)]})
+    outcomes = Outcomes({leg.IN_PROCESSES: [ran(1000.0, 3)], leg.IN_ONE_PROCESS: [ran(5000.0)]})
     rows = leg.leg_rows(outcomes)
     missed = [row for row in rows if row.is_reached is False]
     assert [row.name for row in missed] == ['leg, processes']
@@ -43,15 +43,15 @@ def test_a_missed_aim_says_where_the_tick_goes(monkeypatch):
 def test_memory_is_that_of_all_processes(loading):
     """80 MiB for the coordinator, 50 for each actuator; the floor is half of the latter."""
     rows = by_name(memory.memory_rows(Outcomes({
-        leg.IN_PROCESSES: [told(1000.0, 3)], leg.IN_ONE_PROCESS: [told(4000.0)]})))
+        leg.IN_PROCESSES: [ran(1000.0, 3)], leg.IN_ONE_PROCESS: [ran(4000.0)]})))
     assert rows['leg, processes: all together, proportional'].value == pytest.approx(230.0)
     assert rows['leg, processes: an actuator, resident'].ratio == pytest.approx(0.5)
 
 
 def test_start_up_is_the_sum_of_its_parts(loading):
     rows = by_name(startup.startup_rows(Outcomes({
-        leg.IN_PROCESSES: [told(1000.0, 3, startup=3.0), told(1000.0, 3, startup=6.0),
-                           told(1000.0, 3, startup=5.0)]})))
+        leg.IN_PROCESSES: [ran(1000.0, 3, startup=3.0), ran(1000.0, 3, startup=6.0),
+                           ran(1000.0, 3, startup=5.0)]})))
     total = rows['the leg, processes: to tick 0']
     assert (total.lowest, total.value, total.highest) == (3.0, 5.0, 6.0)
     assert total.is_reached is False and 'waiting for actuators to join 3.75 s' in total.note

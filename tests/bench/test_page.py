@@ -8,7 +8,7 @@ from isa_ros.bench.page import as_lines, Report, Section, write_json, write_page
 from isa_ros.bench.rounds import Outcomes
 from isa_ros.bench.row import Aim, Row
 import pytest
-from tests.bench.told import told
+from tests.bench.artificial import ran
 
 MACHINE = Machine('A processor @ 1 GHz', 2, 8.0, '6.0', '3.11.7', 0.5)
 
@@ -22,7 +22,7 @@ def report() -> Report:
         Row.of('start', [3.0], 's').aiming(Aim(4.0, is_most=True)),
         Row('a tick', 909.0, 'us', part_of='leg, processes'),
         Row('HELICS', None, 'ticks/s', note='not installed: requirements-bench.txt'))
-    outcomes = Outcomes({spec: [told(3000.0 / int(spec.plant))]
+    outcomes = Outcomes({spec: [ran(3000.0 / int(spec.plant))]
                          for spec in growth.IN_ONE_PROCESS + growth.IN_PROCESSES})
     return Report(MACHINE, (
         Section('leg', 'The leg', rows),

@@ -7,7 +7,7 @@ from isa_ros.bench import rounds
 from isa_ros.bench.spec import Failed, LEG, Measured, ONE_PROCESS, PROCESSES, Spec
 from isa_ros.errors import RunError
 import pytest
-from tests.bench.told import told
+from tests.bench.artificial import ran
 
 A, B, C = (Spec(str(n), ONE_PROCESS, 100, rounds=2) for n in (1, 2, 3))
 
@@ -29,7 +29,7 @@ def test_fewer_rounds_are_the_middle_ones():
 
 
 def test_a_spec_and_what_it_told_cross_as_json():
-    run = told(1000.0, 3)
+    run = ran(1000.0, 3)
     assert Spec.from_json(A.to_json()) == A
     assert Measured.from_json(run.to_json()) == run
 
@@ -42,7 +42,7 @@ def test_a_run_of_our_own_that_fails_ends_the_bench(monkeypatch):
 
 def test_a_peer_that_fails_leaves_the_others(monkeypatch):
     monkeypatch.setattr(
-        rounds, 'measured', lambda s: Failed('no route') if s.way == 'pipes' else told(1000.0))
+        rounds, 'measured', lambda s: Failed('no route') if s.way == 'pipes' else ran(1000.0))
     peer, own = Spec(LEG, 'pipes', 10), Spec(LEG, PROCESSES, 10)
     outcomes = rounds.outcomes([peer, own])
     assert outcomes.reason(peer) == 'no route' and not outcomes.of(peer)
@@ -50,7 +50,7 @@ def test_a_peer_that_fails_leaves_the_others(monkeypatch):
 
 
 def test_progress_counts_every_run(monkeypatch):
-    monkeypatch.setattr(rounds, 'measured', lambda spec: told(1000.0))
+    monkeypatch.setattr(rounds, 'measured', lambda spec: ran(1000.0))
     seen = []
     rounds.outcomes([A, B], lambda done, total, what: seen.append((done, total, what)))
     assert seen == [(0, 4, str(A)), (1, 4, str(B)), (2, 4, str(B)), (3, 4, str(A)), (4, 4, '')]

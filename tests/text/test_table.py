@@ -1,7 +1,7 @@
 """Columns of a table, on a terminal and in Markdown."""
 
 from hypothesis import given, strategies as st
-from isa_ros.text.table import aligned, GAP, markdown, padded, RIGHT
+from isa_ros.text.table import aligned, digits, GAP, markdown, padded, RIGHT
 import pytest
 
 ROWS = [('', 'value', 'unit'), ('bore', '21.5', 'mm'), ('stroke', '120', '')]
@@ -49,3 +49,10 @@ def test_markdown_has_a_rule_below_its_header():
 
 def test_a_bar_does_not_end_a_cell_of_markdown():
     assert markdown([('unit',), ('m | rad',)])[2] == '| m / rad |'
+
+
+@pytest.mark.parametrize('value, n, expected', [
+    (None, 3, '-'), (0.0, 3, '0'), (0.012345, 3, '0.0123'), (999.4, 3, '999'),
+    (1000.0, 3, '1000'), (-41712.3, 3, '-41712'), (9999.0, 4, '9999'), (12345.0, 4, '12345')])
+def test_a_large_number_has_no_power_of_ten(value, n, expected):
+    assert digits(value, n) == expected

@@ -55,7 +55,7 @@ class Visible(NamedTuple):
 
 
 class Noticed(NamedTuple):
-    """What the device reports of a fault, and not in the sound run."""
+    """Reports of the device on a fault, without those of the sound run."""
 
     kind: str
     """``warning``, ``trip`` or ``state``."""
@@ -136,9 +136,9 @@ def _outcome(rig: Run, fault: NamedFault, sound: Mapping[str, NDArray[np.float64
 
 def _message(faulty: Mapping[str, NDArray[np.float64]]) -> str:
     """Return the words of the first sample at the gravest level, or '' if that is OK."""
-    told = np.array([faulty[name] for name in _DEVICE]).T
-    changes = [0, *np.flatnonzero((told[1:] != told[:-1]).any(axis=1)) + 1]
-    statuses = [device.joined('ram', dict(zip(_DEVICE, told[tick]))) for tick in changes]
+    reported = np.array([faulty[name] for name in _DEVICE]).T
+    changes = [0, *np.flatnonzero((reported[1:] != reported[:-1]).any(axis=1)) + 1]
+    statuses = [device.joined('ram', dict(zip(_DEVICE, reported[tick]))) for tick in changes]
     gravest = max(statuses, key=lambda status: status.level)
     return '' if gravest.level == OK else gravest.message
 

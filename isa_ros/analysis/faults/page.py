@@ -8,9 +8,8 @@ from isa_ros.analysis.faults.measure import Noticed, Outcome, SOUND, VISIBLE, Vi
 from isa_ros.analysis.faults.rig import BEGIN_S, CLEAR_S, END_S, LINK
 from isa_ros.config.models.fault_catalogue import fault_catalogue, NamedFault
 from isa_ros.text.json_file import write_tree
-from isa_ros.text.number import digits
 from isa_ros.text.page import Page
-from isa_ros.text.table import aligned
+from isa_ros.text.table import aligned, digits
 
 PAGE = 'device_faults.md'
 HEADER = ('fault', 'seen first in', 'after, ms', 'largest differences, or why none', 'device',

@@ -1,4 +1,4 @@
-"""Where the oil and its energy went, as a table: a line for each actuator and each supply."""
+"""Oil and energy of a run as a table: a line for each actuator and each supply."""
 
 from collections.abc import Sequence
 from pathlib import Path
@@ -8,8 +8,7 @@ from isa_ros.bag.reader import Bag
 from isa_ros.core.accounts import (
     Account, CROSS_PORT, DAMPING, ENERGY, FRICTION, LEAKAGE, MEAN, OIL, PEAK, RELIEF, STORED,
     THROTTLING, WORK)
-from isa_ros.text.number import digits
-from isa_ros.text.table import aligned
+from isa_ros.text.table import aligned, digits
 
 HEADER = ('', 'oil, l', 'mean, W', 'peak, W', 'energy, J', 'valve leakage', 'throttling',
           'friction', 'work', 'rest')

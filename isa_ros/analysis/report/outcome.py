@@ -1,10 +1,9 @@
-"""What happened in a run, as a table of text: motion, force, pressure, settling and oil."""
+"""Results of a run as a table of text: motion, force, pressure, settling and oil."""
 
 from isa_ros.analysis.signals.signals import Signals
 from isa_ros.config.runs.run_config import ActuatorConfig
 from isa_ros.core.units import LITRE, MILLI, MPA
-from isa_ros.text.number import digits
-from isa_ros.text.table import aligned
+from isa_ros.text.table import aligned, digits
 import numpy as np
 
 SETTLED = 0.02  # of the motion: the usual band about the final value

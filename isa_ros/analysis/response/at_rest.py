@@ -10,7 +10,7 @@ point of the excitation until what remains is ripple.
 import math
 from typing import NamedTuple
 
-from isa_ros.analysis.signals.ripple import ripple, ripple_frequency
+from isa_ros.analysis.signals.frequency import ripple, ripple_frequency
 import numpy as np
 from scipy import signal
 

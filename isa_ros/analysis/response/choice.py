@@ -21,7 +21,7 @@ from isa_ros.errors import ConfigError
 
 @dataclass(frozen=True, kw_only=True)
 class Choice:
-    """What a user names; None takes the default."""
+    """The rig that a user names; None takes the default."""
 
     name: str
     """A packaged model, or a run file."""

@@ -11,7 +11,7 @@ from matplotlib.figure import Figure
 import numpy as np
 
 _ON_OUTPUT = {CLOSED: 'Y/R', PLANT: 'Y/U'}
-_HUNTING = {'linestyle': ':', 'alpha': 0.6}     # the style of a response that is no result
+_HUNTING = {'linestyle': ':', 'alpha': 0.6}     # the style of a response of a loop that hunts
 _WARNING = 'C3'
 
 

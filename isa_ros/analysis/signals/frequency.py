@@ -256,3 +256,15 @@ def _crossing(frequency: np.ndarray, values: np.ndarray, k: int) -> float:
 def _between(frequency: np.ndarray, values: np.ndarray, k: int, at: float) -> float:
     logs = np.log(frequency[k - 1:k + 1])
     return float(np.interp(math.log(at), logs, values[k - 1:k + 1]))
+
+
+def ripple(values: np.ndarray) -> float:
+    """Return the ripple of a signal that should stand still: half of peak to peak."""
+    return 0.5 * float(np.ptp(values))
+
+
+def ripple_frequency(values: np.ndarray, rate: float) -> float:
+    """Return the frequency of a ripple: of the largest peak without the drift, in Hz."""
+    window = signal.windows.hann(len(values), sym=False)
+    found = np.abs(np.fft.rfft(window * signal.detrend(values)))
+    return float((1 + int(np.argmax(found[1:]))) * rate / len(values))

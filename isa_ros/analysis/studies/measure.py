@@ -19,7 +19,7 @@ from isa_ros.analysis.response.bode import bode
 from isa_ros.analysis.response.loops import loop_of
 from isa_ros.analysis.response.rig import BLOCKED, Choice, Rig, rig
 from isa_ros.analysis.response.sweep import Sweep
-from isa_ros.analysis.signals.ripple import ripple, ripple_frequency
+from isa_ros.analysis.signals.frequency import ripple, ripple_frequency
 from isa_ros.analysis.signals.step_response import step_figures
 from isa_ros.analysis.studies.studies import Case, Study
 from isa_ros.config.runs.changed_parameters import Values, with_parameters

@@ -9,9 +9,8 @@ from typing import Any
 from isa_ros.analysis.studies.figure import study_figure
 from isa_ros.analysis.studies.measure import Outcome, Result, RIPPLE_S
 from isa_ros.analysis.studies.studies import Case, STUDIES, Study
-from isa_ros.text.number import digits
 from isa_ros.text.page import Page, png_with_palette
-from isa_ros.text.table import aligned, RIGHT
+from isa_ros.text.table import aligned, digits, RIGHT
 
 PAGE = 'studies.md'
 LINE = 99       # characters

@@ -34,7 +34,7 @@ _PUSH_S, _SWING_S = 0.3, 0.34   # of the push, and the end of the valve's motion
 
 @dataclass(frozen=True)
 class Effects:
-    """What the temperature changes."""
+    """The values that depend on the temperature."""
 
     leakage: float
     """Flow from supply to return at null, m3/s."""
@@ -74,7 +74,7 @@ def results(progress: Progress | None = None) -> list[Result]:
 
 
 def measured(signals: Signals) -> Effects:
-    """Return the effects that the signals of the rig show."""
+    """Return the effects measured from the signals of the rig."""
     areas = signals.run.actuator(RUB).sheet.plant.drive.areas
     friction, speed = [], []
     for window in (_SLOW_S, _FAST_S):

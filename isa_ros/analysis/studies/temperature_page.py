@@ -13,9 +13,8 @@ from isa_ros.core.units import LPM, MICRO, MPA
 from isa_ros.plant.oil_properties import thickness
 from isa_ros.plant.plant import plant_record
 from isa_ros.plant.thermal import heat, THERMAL_STATE
-from isa_ros.text.number import digits
 from isa_ros.text.page import Page
-from isa_ros.text.table import aligned, RIGHT
+from isa_ros.text.table import aligned, digits, RIGHT
 import numpy as np
 
 NAME, TITLE = 'temperature', 'Temperature of the oil, from 30 to 60 celsius'

@@ -2,7 +2,7 @@
 
 import math
 
-from isa_ros.analysis.signals.ripple import ripple, ripple_frequency
+from isa_ros.analysis.signals.frequency import ripple, ripple_frequency
 import numpy as np
 import pytest
 

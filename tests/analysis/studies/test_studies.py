@@ -7,7 +7,7 @@ from pathlib import Path
 import sys
 
 from isa_ros.analysis.response.bode import bode
-from isa_ros.analysis.signals.ripple import ripple
+from isa_ros.analysis.signals.frequency import ripple
 from isa_ros.analysis.studies import measure as study_run, temperature_page
 from isa_ros.analysis.studies.measure import (
     Benches, changed, Outcome, placed, Result, shipped, up_and_back)
@@ -16,7 +16,7 @@ from isa_ros.analysis.studies.studies import Case, STUDIES, Study, study_of
 from isa_ros.cli import main as cli
 from isa_ros.errors import ConfigError
 from isa_ros.reu.schedule import Constant
-from isa_ros.text.number import digits
+from isa_ros.text.table import digits
 import numpy as np
 import pytest
 from tests.text.terminal import Terminal

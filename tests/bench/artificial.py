@@ -5,7 +5,7 @@ from isa_ros.bench.spec import ACTUATORS, COORDINATOR, Measured, Memory
 MIB = 1024 * 1024
 
 
-def told(ticks_per_s: float, n_children: int = 0, startup: float = 2.0) -> Measured:
+def ran(ticks_per_s: float, n_children: int = 0, startup: float = 2.0) -> Measured:
     """Return a run whose tick is spent half on the actuators, half on the recorder."""
     tick = 1.0 / ticks_per_s
     processor = {COORDINATOR: 0.5 * tick} | ({ACTUATORS: tick} if n_children else {})
