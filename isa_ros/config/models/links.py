@@ -10,26 +10,12 @@ Links of a run file: ``link`` for all actuators, and in an actuator's section fo
 
 from typing import Any
 
-from isa_ros.actuator.link import KINDS, LinkSheet, NO_LINK, NONE
-from isa_ros.config.text.keys import Layer
+from isa_ros.actuator.link import KINDS, NO_LINK, NONE
 from isa_ros.config.text.parameter_sets import as_tree
-from isa_ros.config.text.sections import Entry, merge, Place, refuse_unknown, Section
+from isa_ros.config.text.sections import Entry, merge, Place, Section
 from isa_ros.errors import ConfigError
 
 LINK = 'link'
-
-
-class LinkLayer(Layer):
-    """Keys of a link; those that are left out are those of another section."""
-
-    def __init__(self) -> None:
-        super().__init__(LinkSheet)
-
-    def read(self, tree: Any, place: Place) -> Section:
-        """Return the section; as `Kind.read`."""
-        section = super().read(tree, place)
-        refuse_unknown(section, LinkSheet.__dataclass_fields__, place)
-        return section
 
 
 def link_of(run: Section, own: Section, step_ns: int, place: Place) -> Section:
@@ -45,11 +31,12 @@ def link_of(run: Section, own: Section, step_ns: int, place: Place) -> Section:
 
     """
     given: Section = {**run, **own}
-    if given and 'kind' not in given:
+    default = as_tree(NO_LINK)
+    if given and 'kind' not in given and given.keys() <= default.keys():    # others are unknown
         raise ConfigError((place / LINK).has(f'lacks kind, one of {", ".join(KINDS)}'))
     section = merge(
         {key: Entry(getattr(NO_LINK, key), str(place / LINK / key), 'default')
-         for key in as_tree(NO_LINK)}, given)
+         for key in default}, given)
     if _value(section['kind']) != NONE and _value(section['cycle_ms']) in (0, 0.0):
         section['cycle_ms'] = Entry(step_ns / 1e6, str(place / LINK / 'cycle_ms'), 'default')
     return section

@@ -4,11 +4,12 @@ from dataclasses import dataclass
 import math
 from typing import Any, NamedTuple
 
+from isa_ros.actuator.link import LinkSheet
 from isa_ros.actuator.setpoint_range import BEYOND_RANGE
 from isa_ros.actuator.sheet import ActuatorSheet, refuse_wiring
 from isa_ros.actuator.tunable import refuse_unusable
 from isa_ros.config.models.catalogue import actuator_model, DEFAULT_PRESET, Model
-from isa_ros.config.models.links import LINK, link_of, LinkLayer
+from isa_ros.config.models.links import LINK, link_of
 from isa_ros.config.models.own_load import load_section, refuse_beyond_stops
 from isa_ros.config.models.scaling import scaled_sheet
 from isa_ros.config.runs.body_config import BodyConfig
@@ -53,7 +54,7 @@ ACTUATOR = Table((
     Key('variants', NAMES, 'variants of the model, in their order', [], in_text=InText.NEVER),
     Key('parameters', Layer(ActuatorSheet), 'values of the sheet that replace those of the model',
         {}, in_text=InText.NEVER),
-    Key(LINK, LinkLayer(), 'its own link; what it leaves out is as for all', {},
+    Key(LINK, Layer(LinkSheet), 'its own link; what it leaves out is as for all', {},
         in_text=InText.NEVER),
     number('initial_position_mm', 'mm', 'start of a linear actuator on a load of its own', None,
            meant='mid stroke', in_text=InText.NEVER),

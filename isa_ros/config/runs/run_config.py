@@ -5,8 +5,8 @@ from dataclasses import dataclass, field, replace
 import hashlib
 from typing import Any
 
-from isa_ros.actuator.link import NO_LINK
-from isa_ros.config.models.links import LINK, LinkLayer
+from isa_ros.actuator.link import LinkSheet, NO_LINK
+from isa_ros.config.models.links import LINK
 from isa_ros.config.models.wires import refuse_overfull
 from isa_ros.config.runs.actuator_config import ACTUATOR, actuator_of, ActuatorConfig, Around
 from isa_ros.config.runs.body_config import BODY, BodyConfig
@@ -16,7 +16,8 @@ from isa_ros.config.runs.recording import RECORD, RecordConfig
 from isa_ros.config.runs.supplies import supplies_of, SUPPLY, SUPPLY_KEYS, SupplyConfig
 from isa_ros.config.runs.tick_grid import on_grid
 from isa_ros.config.text.keys import (
-    InText, Key, NAME, Named, NAMES, NANOSECONDS, number, OneOf, ParameterSet, Table, TEXT, Value)
+    InText, Key, Layer, NAME, Named, NAMES, NANOSECONDS, number, OneOf, ParameterSet, Table, TEXT,
+    Value)
 from isa_ros.config.text.names import refuse_bad_name
 from isa_ros.config.text.sections import Place, Section
 from isa_ros.config.text.yaml_text import dump, parse, Tree
@@ -222,7 +223,7 @@ RUN = Table((
     Key('supplies', Named(SUPPLY_KEYS), 'several supplies, instead of `supply`', None,
         in_text=InText.ALWAYS, instead_of=(SUPPLY,)),
     Key('record', RECORD, 'what is recorded', {}, 'everything'),
-    Key(LINK, LinkLayer(), 'the link of all actuators', {}, in_text=InText.NEVER),
+    Key(LINK, Layer(LinkSheet), 'the link of all actuators', {}, in_text=InText.NEVER),
     Key('actuators', Named(ACTUATOR), 'the actuators by name; records have their order'),
     Key('controllers', NAMES, 'nodes, besides the actuators, that every tick waits for', []),
     Key('leg', LegConfig.KEYS, 'a body of the kind leg', None, in_text=InText.NEVER),

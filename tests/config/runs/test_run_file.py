@@ -71,6 +71,8 @@ def test_of_an_inline_sheet_only_the_name_of_the_model_is_used(tmp_path: Path) -
     ({'actuators.ram.initial_position': -0.1}, 'initial_position = -0.1 m, must be >= 0 m'),
     ({'actuators.ram.load': {'kind': 'mass'}}, 'actuators.ram.load lacks inertia, force'),
     ({'actuators.ram.model': 5}, 'actuators.ram.model = 5, must be of type str'),
+    ({'link': {'kynd': 'can'}}, 'inline.yaml: link.kynd is unknown; did you mean kind?'),
+    ({'actuators.ram.link': {'los': 0.1}}, 'actuators.ram.link.los is unknown; did you mean loss'),
     ({'actuators.ram.parameters': None}, 'actuators.ram.parameters = None, must be a section'),
     ({'actuators.ram.sheet': {}}, 'actuators.ram.sheet lacks spool_feedback, plant, reu'),
     ({'actuators.ram.sheet.reu.force.kp': 1.0}, 'actuators.ram: reu.force.kp = 1 m/N, must be'),
