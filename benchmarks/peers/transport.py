@@ -17,8 +17,8 @@ from isa_ros.config.runs.run_config import RunConfig
 from isa_ros.core.signals import Records
 from isa_ros.errors import RunError
 from isa_ros.processes.stopping import PARENT_VARIABLE, StopRequest
-from isa_ros.run.narrator import Outlets
 from isa_ros.run.options import Request
+from isa_ros.run.output import Outlets
 from isa_ros.run.session import prepare, record, Report, Session
 from isa_ros.run.wire.answers import Answer, decode_answer
 from isa_ros.run.wire.cast import Cast

@@ -12,7 +12,7 @@ from isa_ros.config.assembly import group_of, surroundings_of
 from isa_ros.config.paths import CONFIG, find, SCENARIOS
 from isa_ros.config.runs.run_file import load_run
 from isa_ros.core.signals import LOAD_PORT
-from isa_ros.run.narrator import packer_of
+from isa_ros.run.output import packer_of
 from isa_ros.run.provenance import provenance_of
 from isa_ros.run.session import prepare
 from isa_ros.scenario.scenario import load_scenario, Scenario

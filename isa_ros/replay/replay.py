@@ -22,7 +22,7 @@ from isa_ros.replay.installation import differences, refuse_obstacles, topic_dif
 from isa_ros.replay.tolerances import Tolerances
 from isa_ros.run.coordinator import Interrupted
 from isa_ros.run.local_run import LocalRun
-from isa_ros.run.narrator import Recorder
+from isa_ros.run.output import Recorder
 from isa_ros.scenario.faults import ParameterChanges
 from isa_ros.tick.source import ScheduledSource
 from msg_adapters import diagnostics, event

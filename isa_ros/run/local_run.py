@@ -6,7 +6,7 @@ from dataclasses import replace
 from isa_ros.config.runs.run_config import RunConfig
 from isa_ros.core.saved_state import RunState
 from isa_ros.run.coordinator import Interrupted
-from isa_ros.run.narrator import Narrator, packer_of, Recorder
+from isa_ros.run.output import RunOutput, packer_of, Recorder
 from isa_ros.run.thinning import Thinning
 from isa_ros.scenario.scenario import idle
 from isa_ros.simulation import Simulation
@@ -45,7 +45,7 @@ class LocalRun:
 
         """
         self._loop.source = source
-        self._loop.sinks = (Narrator(
+        self._loop.sinks = (RunOutput(
             self._packer, self._run.step_ns,
             self._thinning.recorder(_Stoppable(recorder, should_stop)), has_end=has_end),)
         self._loop.run(n_ticks, state)

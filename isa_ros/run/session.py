@@ -19,8 +19,8 @@ from isa_ros.core.timebase import NS_PER_SECOND
 from isa_ros.core.topic import Topic
 from isa_ros.errors import BagError, ConfigError
 from isa_ros.run.coordinator import Coordinator, Requests
-from isa_ros.run.narrator import Narrator, Outlets, packer_of
 from isa_ros.run.options import Request
+from isa_ros.run.output import RunOutput, Outlets, packer_of
 from isa_ros.run.pacing import JOINING, Pace, Progress, ProgressMeter, STARTING
 from isa_ros.run.provenance import provenance_of
 from isa_ros.run.thinning import Thinning
@@ -173,7 +173,7 @@ def record(
                            overwrite, run.record.storage, session.request.is_synced) as bag:
                 session.bags.append(out)
                 loop.sinks = (
-                    Narrator(packer, run.step_ns, thinning.recorder(bag), published),)
+                    RunOutput(packer, run.step_ns, thinning.recorder(bag), published),)
                 coordinator = Coordinator(
                     loop, n_ticks, pace=session.pace, progress=ProgressMeter(
                         None if n_ticks is None else n_ticks * run.step_ns, report),

@@ -14,7 +14,7 @@ from isa_ros.config.runs.run_config import RunConfig
 from isa_ros.core.kernel_cache import is_kept
 from isa_ros.core.signals import LOAD_PORT, LOAD_REPLY
 from isa_ros.errors import SimulationDiverged
-from isa_ros.run.narrator import packer_of
+from isa_ros.run.output import packer_of
 from isa_ros.scenario.scenario import idle
 from isa_ros.simulation import Simulation
 import numpy as np

@@ -6,7 +6,7 @@ from isa_ros.bag.writer import BagWriter
 from isa_ros.config.assembly import surroundings_of
 from isa_ros.core.topic import Topic
 from isa_ros.errors import BagError
-from isa_ros.run.narrator import Narrator, packer_of, Recorder
+from isa_ros.run.output import RunOutput, packer_of, Recorder
 from isa_ros.run.provenance import provenance_of
 from isa_ros.run.thinning import Thinning
 from isa_ros.scenario.scenario import Scenario
@@ -41,10 +41,10 @@ class ResultMessages:
         """Pass every sample to a recorder."""
         log, rows = self._log, self._rows
         samples = log.samples if log.observed is None else log.observed
-        narrator = Narrator(
+        output = RunOutput(
             self._packer, self._run.step_ns, self._thinning.recorder(recorder))
         for tick in range(len(samples)):
-            narrator.record()
+            output.record()
             rows.samples[:] = samples[tick]
             rows.supplies[:] = log.supplies[tick]
             for name, sample in rows.bodies.items():
@@ -55,5 +55,5 @@ class ResultMessages:
                     into[:] = by_tick[tick]
             rows.tuned = log.tuned.get(tick, {})
             rows.tuned_supplies = log.tuned_supplies.get(tick, {})
-            narrator.take(tick, rows)
-        narrator.end()
+            output.take(tick, rows)
+        output.end()

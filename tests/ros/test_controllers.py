@@ -9,7 +9,7 @@ from isa_ros.config.runs.run_file import load_run
 from isa_ros.controller import Controller
 from isa_ros.examples.sway import Sway
 from isa_ros.replay.replay import replay
-from isa_ros.run.narrator import packer_of
+from isa_ros.run.output import packer_of
 from isa_ros.scenario.scenario import idle
 from isa_ros.simulation import Simulation
 from msg_adapters.cdr_reader import decode

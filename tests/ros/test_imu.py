@@ -2,7 +2,7 @@
 
 import isa_ros
 from isa_ros.nodes.coordinator.node import CoordinatorNode
-from isa_ros.run.narrator import Narrator, packer_of
+from isa_ros.run.output import RunOutput, packer_of
 import pytest
 from rclpy.node import Node
 from sensor_msgs.msg import Imu
@@ -29,10 +29,10 @@ def test_a_unit_publishes_its_readings_at_its_own_rate(observer: Node) -> None:
             return outlets.surroundings.has_subscribers()
 
         spinning.wait_for(is_matched, 'a match')
-        narrator = Narrator(packer, run.step_ns, outlets=outlets)
+        output = RunOutput(packer, run.step_ns, outlets=outlets)
         expected = []
         for _ in range(51):
-            narrator.take(simulation.ticks, simulation.loop.rows)
+            output.take(simulation.ticks, simulation.loop.rows)
             if simulation.ticks % 10 == 0:
                 expected.append(simulation.body_sample.kfe_specific_force.tolist())
             simulation.step()

@@ -8,7 +8,7 @@ from isa_ros.core.saved_state import RunState
 from isa_ros.core.signals import HAS_SETPOINT, Records
 from isa_ros.errors import ConfigError, RunError, SimulationDiverged
 from isa_ros.run.coordinator import Coordinator, Interrupted
-from isa_ros.run.narrator import Narrator, Outlets, packer_of
+from isa_ros.run.output import RunOutput, Outlets, packer_of
 from isa_ros.run.pacing import Pace, ProgressMeter
 from isa_ros.run.packing import Messages
 from isa_ros.scenario.faults import ParameterChanges
@@ -159,7 +159,7 @@ def clock_line(data: bytes) -> str:
 
 
 class Rig:
-    """One coordinator with its fakes, and the narrator of a run."""
+    """One coordinator with its fakes, and the output of a run."""
 
     def __init__(
             self, n_ticks: int | None = 3, pace: Pace | None = None,
@@ -176,12 +176,12 @@ class Rig:
         self.rows = Rows(2, surroundings)
         packer = packer_of(RUN, self.rows.shown)
         self.topics = [topic.name for topic in packer.topics]
-        narrator = Narrator(packer, RUN.step_ns, self.recorder, Outlets(
+        output = RunOutput(packer, RUN.step_ns, self.recorder, Outlets(
             clock=FakeOutlet(self.log, clock_line),
             events=FakeOutlet(self.log, lambda data: f'event {event.text(data)}'),
             surroundings=FakeOutlet(self.log, lambda data: 'publish')))
         self.loop = TickLoop(STEP_NS, self.transport, surroundings, self.rows, self.source)
-        self.loop.sinks = (narrator,)
+        self.loop.sinks = (output,)
         self.coordinator = Coordinator(
             self.loop, n_ticks, **plan, pace=pace or Pace(),
             progress=ProgressMeter(None, None), should_stop=self.should_stop, requests=self.ask)

@@ -10,7 +10,7 @@ from isa_ros.config.runs.supplies import SupplyConfig
 from isa_ros.core.device import ENABLED, FIELDS, IMPEDANCE
 from isa_ros.core.signals import COMMAND, HAS_ENABLE, HAS_GAINS, HAS_SETPOINT, SAMPLE
 from isa_ros.run import packing
-from isa_ros.run.narrator import packer_of
+from isa_ros.run.output import packer_of
 from isa_ros.run.packing import Names, Packer
 from isa_ros.surroundings.messages import JointStates
 from isa_ros.surroundings.supply import ConstantSupply, SUPPLY_SAMPLE

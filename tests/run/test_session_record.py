@@ -6,8 +6,8 @@ from typing import Any
 from isa_ros.bag.reader import Bag
 from isa_ros.config.assembly import group_of, surroundings_of
 from isa_ros.config.paths import CONFIG, find
-from isa_ros.run.narrator import Outlets
 from isa_ros.run.options import Request
+from isa_ros.run.output import Outlets
 from isa_ros.run.packing import Packer
 from isa_ros.run.session import prepare, record
 from isa_ros.tick.in_process import InProcess

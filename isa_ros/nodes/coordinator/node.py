@@ -11,9 +11,9 @@ from isa_ros.nodes.coordinator.services import REAL_TIME_FACTOR, STEP_COUNT
 from isa_ros.nodes.middleware.parameters import declare, refuse_unknown
 from isa_ros.nodes.middleware.publishers import PreparedPublishers
 from isa_ros.nodes.middleware.refusals import refusals
-from isa_ros.run.narrator import Outlet, Outlets
 from isa_ros.run.option import Option
 from isa_ros.run.options import OPTIONS, Request, request_of_parameters
+from isa_ros.run.output import Outlet, Outlets
 from msg_adapters import clock, diagnostics, event
 from rcl_interfaces.msg import ParameterDescriptor
 from rclpy.node import Node

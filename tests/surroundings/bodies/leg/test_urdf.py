@@ -6,7 +6,7 @@ from xml.etree import ElementTree
 from isa_ros.config.assembly import surroundings_of
 from isa_ros.config.paths import CONFIG, find
 from isa_ros.config.runs.run_file import load_run
-from isa_ros.run.narrator import packer_of
+from isa_ros.run.output import packer_of
 from isa_ros.tick.exchange import Rows
 from msg_adapters.cdr_reader import decode, message_class
 import pytest

@@ -3,7 +3,7 @@
 from isa_ros.actuator.group import ActuatorGroup
 from isa_ros.config.assembly import group_of, surroundings_of
 from isa_ros.core.signals import HAS_SETPOINT
-from isa_ros.run.narrator import Narrator, NoOutlet, Outlets, packer_of
+from isa_ros.run.output import RunOutput, NoOutlet, Outlets, packer_of
 from isa_ros.run.packing import Messages, Packer
 from isa_ros.tick.exchange import Rows
 from msg_adapters import clock, event
@@ -31,7 +31,7 @@ class FakeOutlet:
 
 
 class Stage:
-    """A narrator, with outlets of which some have a subscription."""
+    """A run's output, with outlets of which some have a subscription."""
 
     def __init__(self, *heard: str, is_recorded: bool = True) -> None:
         self.log: list[str] = []
@@ -44,16 +44,16 @@ class Stage:
         self.recorder = FakeRecorder(self.log)
         packer = packer_of(RUN, self.rows.shown)
         self.topics = [topic.name for topic in packer.topics]
-        self.narrator = Narrator(
+        self.output = RunOutput(
             packer, RUN.step_ns, self.recorder if is_recorded else None, Outlets(
                 clock=self.outlets['clock'], events=self.outlets['events'],
                 surroundings=self.outlets['surroundings'],
                 actuators=[self.outlets['hip'], self.outlets['knee']]))
 
     def take(self, tick: int, tuned=None) -> None:
-        """Give the narrator the rows before a tick."""
+        """Give the output the rows before a tick."""
         self.rows.tuned = tuned or {}
-        self.narrator.take(tick, self.rows)
+        self.output.take(tick, self.rows)
 
     def expected(self, tick: int, tuned=None) -> Packer:
         """Return a packer of the run that has packed this instant."""
@@ -73,10 +73,10 @@ def test_nothing_is_packed_where_nothing_is_recorded_and_nobody_subscribes(heard
     def pack(*arguments):
         pytest.fail('rows were packed')
     monkeypatch.setattr(Packer, 'pack', pack)
-    stage.narrator.take_time(1)
-    stage.narrator.add_event(1, 'step 1')
+    stage.output.take_time(1)
+    stage.output.add_event(1, 'step 1')
     stage.take(1)
-    stage.narrator.record()
+    stage.output.record()
     assert stage.log == list(heard)
 
 
@@ -135,10 +135,10 @@ def test_outlets_get_the_messages_of_their_own_sources():
 def test_nothing_is_sent_where_nobody_subscribes(heard):
     """The recorder gets all of it nevertheless."""
     stage = Stage(heard)
-    stage.narrator.take_time(1)
-    stage.narrator.add_event(1, 'step 1')
+    stage.output.take_time(1)
+    stage.output.add_event(1, 'step 1')
     stage.take(1)
-    stage.narrator.record()
+    stage.output.record()
     assert stage.log == [heard, 'record 1']
     assert [sequence for _, sequence, _ in stage.recorder.samples] == [1]
 
@@ -146,9 +146,9 @@ def test_nothing_is_sent_where_nobody_subscribes(heard):
 def test_the_time_is_published_before_the_rest_of_its_instant():
     """As a coordinator calls it: time, then the rows, then the record."""
     stage = Stage(*EVERYONE)
-    stage.narrator.take_time(2)
+    stage.output.take_time(2)
     stage.take(2)
-    stage.narrator.record()
+    stage.output.record()
     assert stage.log == ['clock', 'hip', 'knee', 'surroundings', 'record 2']
     assert stage.outlets['clock'].sent == [[clock.pack(2 * STEP_NS)]]
 
@@ -156,13 +156,13 @@ def test_the_time_is_published_before_the_rest_of_its_instant():
 def test_an_instant_is_recorded_once_with_all_its_events():
     """What is noted after the rows were packed is of the same instant; the next one has none."""
     stage = Stage()
-    stage.narrator.add_event(1, 'pause')
+    stage.output.add_event(1, 'pause')
     stage.take(1)
-    stage.narrator.add_event(1, 'step 1')
+    stage.output.add_event(1, 'step 1')
     for _ in range(2):
-        stage.narrator.record()
+        stage.output.record()
     stage.take(2)
-    stage.narrator.record()
+    stage.output.record()
     (t_ns, sequence, first), (_, _, second) = stage.recorder.samples
     assert (t_ns, sequence) == (STEP_NS, 1)
     place = stage.topics.index('/coordinator/events')
@@ -176,17 +176,17 @@ def test_the_recorder_gets_the_packed_instant():
     stage.take(3, {1: {'force.kp': 1e-7}})
     expected = list(stage.expected(3, {1: {'force.kp': 1e-7}}).all_messages())
     stage.rows.samples['position'] += 1.0
-    stage.narrator.record()
+    stage.output.record()
     assert stage.recorder.samples == [(3 * STEP_NS, 3, expected)]
 
 
 def test_where_actuators_publish_for_themselves_the_rest_is_published():
     """Their outlets are left out: they have processes of their own."""
     stage = Stage(*EVERYONE)
-    narrator = Narrator(packer_of(RUN, stage.rows.shown), RUN.step_ns, stage.recorder, Outlets(
+    output = RunOutput(packer_of(RUN, stage.rows.shown), RUN.step_ns, stage.recorder, Outlets(
         surroundings=stage.outlets['surroundings']))
-    narrator.take(1, stage.rows)
-    narrator.record()
+    output.take(1, stage.rows)
+    output.record()
     assert stage.log == ['surroundings', 'record 1']
 
 
@@ -200,8 +200,8 @@ def test_the_end_adds_the_diagnostics_of_the_last_instant():
     """To the bag and to who listens; where it is recorded already, to nothing."""
     stage = Stage('surroundings')
     stage.take(3)
-    stage.narrator.end()
-    stage.narrator.end()
+    stage.output.end()
+    stage.output.end()
     expected = stage.expected(3)
     place, data = stage.topics.index('/diagnostics'), expected.rare.diagnose()
     (_, sequence, messages), = stage.recorder.samples

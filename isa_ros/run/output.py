@@ -61,7 +61,7 @@ class Outlets(NamedTuple):
     """One per actuator, in their order; empty if the actuators' own nodes publish."""
 
 
-class Narrator(RowSink):
+class RunOutput(RowSink):
     """
     Packs the rows of a run at each instant and passes the messages to recorder and outlets.
 
