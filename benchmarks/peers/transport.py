@@ -21,8 +21,8 @@ from isa_ros.run.options import Request
 from isa_ros.run.output import Outlets
 from isa_ros.run.session import prepare, record, Report, Session
 from isa_ros.run.wire.answers import Answer, decode_answer
-from isa_ros.run.wire.cast import Cast
 from isa_ros.run.wire.parts import take_actuator_parts
+from isa_ros.run.wire.roster import Roster
 from isa_ros.run.wire.steps import encode_end, encode_hello, encode_tick
 from isa_ros.tick.exchange import IDLE_S, Rows
 
@@ -44,7 +44,7 @@ class PeerTransport:
             self, link: Link, run: RunConfig, starts: Records,
             lost: Callable[[], str | None]) -> None:
         self._link = link
-        self._cast = Cast(
+        self._roster = Roster(
             [actuator.name for actuator in run.actuators],
             [supply.name for supply in run.supplies], {})
         self._step_ns = run.step_ns
@@ -56,9 +56,9 @@ class PeerTransport:
         """Send hellos until all workers have answered the same one."""
         for count in range(1, JOIN_SLICES + 1):
             self._link.send(
-                encode_hello(RUN_ID, count, self._step_ns, self._starts, self._cast))
+                encode_hello(RUN_ID, count, self._step_ns, self._starts, self._roster))
             answers = self._answers(count, START_PERIOD_S, slices=1)
-            if len(answers) == len(self._cast.names):
+            if len(answers) == len(self._roster.names):
                 self._take(answers, rows)
                 return
         raise RunError(f'{self._missing(answers)}: no answer before tick 0')
@@ -74,7 +74,7 @@ class PeerTransport:
     def receive(self, rows: Rows) -> None:
         """Wait for every worker."""
         answers = self._answers(self._tick, SLICE_S, TICK_SLICES)
-        if len(answers) < len(self._cast.names):
+        if len(answers) < len(self._roster.names):
             raise RunError(f'{self._missing(answers)}: no answer to tick {self._tick}')
         self._take(answers, rows)
 
@@ -99,7 +99,7 @@ class PeerTransport:
     def _answers(self, tick: int, timeout_s: float, slices: int) -> dict[int, Answer]:
         """Return the answers to one step; give up after ``slices`` waits without a message."""
         answers: dict[int, Answer] = {}
-        while len(answers) < len(self._cast.names) and slices:
+        while len(answers) < len(self._roster.names) and slices:
             data = self._link.receive(timeout_s)
             if data is None:
                 slices -= 1
@@ -112,7 +112,7 @@ class PeerTransport:
         return answers
 
     def _missing(self, answers: dict[int, Answer]) -> str:
-        return ', '.join(name for k, name in enumerate(self._cast.names) if k not in answers)
+        return ', '.join(name for k, name in enumerate(self._roster.names) if k not in answers)
 
 
 class Workers:

@@ -12,8 +12,8 @@ from isa_ros.config.runs.run_config import RunConfig
 from isa_ros.config.runs.run_file import load_run
 from isa_ros.errors import ConfigError, RunError
 from isa_ros.run.wire.answers import Answer, AnswerKind, decode_answer, encode_answer
-from isa_ros.run.wire.cast import Cast
 from isa_ros.run.wire.parts import actuator_parts, take_actuator_parts
+from isa_ros.run.wire.roster import Roster
 from isa_ros.run.wire.steps import decode_step, encode_end, encode_hello, encode_tick, StepKind
 from isa_ros.tick.exchange import Rows
 import pytest
@@ -46,8 +46,8 @@ def test_a_worker_does_what_an_actuator_of_the_run_does(leg):
     starts, exchange = surroundings.starts(), Rows(3, surroundings)
     surroundings.ports(exchange.ports)
     exchange.commands[1] = setpoint(position=0.03)
-    index, cast = 1, Cast([own.name for own in leg.actuators], ['supply'], {})
-    link = Script(encode_hello(1, 4, leg.step_ns, starts, cast),
+    index, roster = 1, Roster([own.name for own in leg.actuators], ['supply'], {})
+    link = Script(encode_hello(1, 4, leg.step_ns, starts, roster),
                   encode_tick(1, 0, exchange, False), encode_end(1))
     worker, own = (SmartActuator(leg.actuators[index], timing_of(leg)) for _ in range(2))
     answer_steps(link, worker, index)

@@ -19,8 +19,8 @@ from isa_ros.nodes.lockstep.expected import Expected, Participants
 from isa_ros.nodes.lockstep.participant_end import ParticipantEnd
 from isa_ros.nodes.lockstep.roles import ActuatorRole, ControllerRole
 from isa_ros.run.wire.answers import AnswerKind, encode_answer, FIRST
-from isa_ros.run.wire.cast import Cast
 from isa_ros.run.wire.parts import actuator_parts, take_actuator_parts
+from isa_ros.run.wire.roster import Roster
 from isa_ros.run.wire.steps import (
     encode_begin, encode_change, encode_end, encode_hello, encode_restore, encode_save,
     encode_tick)
@@ -33,7 +33,7 @@ from tests.fuzz.property import refused
 
 RUN = 4711
 NAMES = ['haa', 'kfe', 'sway']
-CAST = Cast(NAMES, ['supply'], {'body': LEG_SAMPLE})
+ROSTER = Roster(NAMES, ['supply'], {'body': LEG_SAMPLE})
 N_ACTUATORS = 2
 
 
@@ -133,8 +133,8 @@ def steps() -> list[bytes]:
     starts, rows = np.zeros(N_ACTUATORS, START), _rows()
     rows.commands['kinds'] = 7
     return [
-        encode_hello(RUN, 2, 1_000_000, starts, CAST),
-        encode_hello(RUN + 1, 1, 1_000_000, starts, CAST), encode_begin(RUN),
+        encode_hello(RUN, 2, 1_000_000, starts, ROSTER),
+        encode_hello(RUN + 1, 1, 1_000_000, starts, ROSTER), encode_begin(RUN),
         encode_tick(RUN, 0, rows, True), encode_tick(RUN, 1, rows, True),
         encode_tick(RUN, 1, rows, True), encode_save(RUN, -1),
         encode_restore(RUN, -2, 5, [b'one', b'two', b'three']),
@@ -186,7 +186,7 @@ class Node:
 
 MAILBOX = SimpleNamespace(count_senders=lambda: 1)
 PARTICIPANTS = Participants(
-    [Expected(name, '') for name in NAMES], CAST, np.zeros(N_ACTUATORS, START), 1_000_000)
+    [Expected(name, '') for name in NAMES], ROSTER, np.zeros(N_ACTUATORS, START), 1_000_000)
 
 
 def participant(dice: random.Random) -> ParticipantEnd:
@@ -195,7 +195,7 @@ def participant(dice: random.Random) -> ParticipantEnd:
     end = ParticipantEnd(
         Node('kfe' if is_actuator else 'sway'),  # type: ignore[arg-type]
         ActuatorRole(StrictActuator()) if is_actuator else ControllerRole(Sway()))
-    end._receive(encode_hello(RUN, 1, 1_000_000, np.zeros(N_ACTUATORS, START), CAST))
+    end._receive(encode_hello(RUN, 1, 1_000_000, np.zeros(N_ACTUATORS, START), ROSTER))
     end._receive(encode_tick(RUN, 0, _rows(), True))
     return end
 

@@ -14,8 +14,8 @@ from isa_ros.nodes.lockstep.coordinator_end import LockstepTransport
 from isa_ros.nodes.lockstep.expected import Expected, Limits, Participants
 from isa_ros.nodes.lockstep.participant_end import ParticipantEnd
 from isa_ros.run.wire.answers import Answer, AnswerKind, decode_answer, encode_answer
-from isa_ros.run.wire.cast import Cast
 from isa_ros.run.wire.parts import actuator_parts, Parts
+from isa_ros.run.wire.roster import Roster
 from isa_ros.run.wire.steps import (
     encode_begin, encode_end, encode_hello, encode_restore, encode_save, encode_tick, Step)
 from isa_ros.tick.exchange import Rows
@@ -29,7 +29,7 @@ pytestmark = pytest.mark.ros
 
 RUN = 4711
 NAMES = ('haa', 'kfe')
-CAST = Cast(NAMES, ['supply'], {})
+ROSTER = Roster(NAMES, ['supply'], {})
 LIMITS = Limits(join_s=DEADLINE_S, tick_s=0.05)
 
 
@@ -100,7 +100,7 @@ class Participant:
         self._end._send = lambda data: self.answers.append(decode_answer(data))
         starts = np.zeros(2, START)
         self.answers_to(
-            encode_hello(RUN, 1, 1_000_000, starts, CAST), encode_begin(RUN))
+            encode_hello(RUN, 1, 1_000_000, starts, ROSTER), encode_begin(RUN))
 
     def answers_to(self, *steps: bytes) -> list[tuple[AnswerKind, int, bool]]:
         """Hand steps over; return (kind, tick, is repeated) of the answers to them."""
@@ -174,7 +174,7 @@ ODD_STEPS = {
     'sixteen bytes': bytes(16), 'nothing': b'', 'kind 99': altered(tick(0), KIND, b'\x63'),
     'cut': tick(0)[:-1], 'not finite': altered(tick(0), BODY_OF_A_STEP + 80, NAN),
     'another version': altered(tick(0), KIND - 2, b'\x63'),
-    'a hello without names': encode_hello(RUN + 1, 1, 1_000_000, np.zeros(2, START), CAST)[:-9],
+    'a hello without names': encode_hello(RUN + 1, 1, 1_000_000, np.zeros(2, START), ROSTER)[:-9],
     'a save of others': encode_restore(RUN, -1, 5, [b'after 5']),
     'a tick of one actuator': encode_tick(RUN, 0, Rows(1, Outside(False)), has_controllers=False)}
 
@@ -188,7 +188,7 @@ def test_an_odd_step_is_discarded_and_the_run_goes_on(member, odd):
 
 def test_a_run_with_this_node_in_another_role_is_not_joined(member):
     """Its row would be read beyond those of the actuators."""
-    others = Cast(['haa', 'hfe', 'kfe'], ['supply'], {})
+    others = Roster(['haa', 'hfe', 'kfe'], ['supply'], {})
     assert member.answers_to(
         encode_end(RUN), encode_hello(RUN + 1, 1, 1_000_000, np.zeros(2, START), others)) == []
 
@@ -208,7 +208,7 @@ class Coordination:
 
     def __init__(self, node: Node, monkeypatch: pytest.MonkeyPatch) -> None:
         self._transport = LockstepTransport(
-            node, Participants([Expected(name, 'same') for name in NAMES], CAST,
+            node, Participants([Expected(name, 'same') for name in NAMES], ROSTER,
                                np.zeros(2, START), 1_000_000),
             LIMITS, watch=lambda: None, should_stop=lambda: False)
         self._post = Post()

@@ -6,9 +6,9 @@ from hypothesis import given, strategies
 from isa_ros.core.signals import COMMAND, LOAD_REPLY, SAMPLE, START
 from isa_ros.errors import RunError
 from isa_ros.run.wire.answers import Answer, AnswerKind, decode_answer, encode_answer
-from isa_ros.run.wire.cast import Cast
 from isa_ros.run.wire.header import WireError
 from isa_ros.run.wire.parts import actuator_parts, take_actuator_parts
+from isa_ros.run.wire.roster import Roster
 from isa_ros.run.wire.steps import (
     decode_step, encode_begin, encode_change, encode_end, encode_hello, encode_restore,
     encode_save, encode_tick, StepKind)
@@ -57,9 +57,9 @@ def filled(n: int, n_supplies: int = 1, bodies: Mapping[str, np.dtype] = LEG) ->
     return made
 
 
-def cast(n_supplies: int = 1, bodies: Mapping[str, np.dtype] = LEG) -> Cast:
+def roster(n_supplies: int = 1, bodies: Mapping[str, np.dtype] = LEG) -> Roster:
     """Return who takes part beside ``n_supplies`` supplies and some bodies."""
-    return Cast(
+    return Roster(
         ['haa', 'kfe', 'controller'], [f'supply_{k}' for k in range(n_supplies)], bodies)
 
 
@@ -79,7 +79,7 @@ def test_controllers_are_shown_samples_supplies_and_bodies(n, n_supplies, bodies
     """In one step with the rows of the actuators; nothing is applied there."""
     sent = filled(n, n_supplies, bodies)
     step = decode_step(encode_tick(1, 2, sent, has_controllers=True))
-    shown = step.shown(cast(n_supplies, bodies))
+    shown = step.shown(roster(n_supplies, bodies))
     assert shown.samples.tobytes() == sent.samples.tobytes()
     assert shown.supplies.tobytes() == sent.supplies.tobytes()
     assert list(shown.bodies) == list(bodies)
@@ -126,10 +126,10 @@ def test_a_change_to_no_finite_number_is_refused(value):
 @pytest.mark.parametrize('bodies', [{}, LEG, TWO])
 def test_hello_round_trip(bodies):
     """More names than actuators: a controller takes part without a row."""
-    starts, everyone = rows(START, 2), cast(2, bodies)
+    starts, everyone = rows(START, 2), roster(2, bodies)
     step = decode_step(encode_hello(7, 3, 2_000_000, starts, everyone))
     assert (step.kind, step.run_id, step.tick) == (StepKind.HELLO, 7, 3)
-    assert step.cast() == everyone
+    assert step.roster() == everyone
     assert (step.rows, step.step_ns()) == (2, 2_000_000)
     assert step.start(1).tobytes() == starts[1].tobytes()
 

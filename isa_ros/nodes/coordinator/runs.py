@@ -23,7 +23,7 @@ from isa_ros.processes.stopping import StopRequest
 from isa_ros.run.output import Outlet
 from isa_ros.run.session import record, Report, save_in_bag, Session
 from isa_ros.run.warm_up import warmed_up
-from isa_ros.run.wire.cast import Cast
+from isa_ros.run.wire.roster import Roster
 from isa_ros.tick.exchange import Transport
 from isa_ros.tick.in_process import InProcess
 import rclpy
@@ -116,9 +116,9 @@ def _participants(session: Session, *, are_here: bool = False) -> Participants:
                 for actuator in warmed_up(run)]
     expected += [Expected(name, '') for name in run.controllers]
     bodies = {name: body.sample.dtype for name, body in surroundings.bodies.items()}
-    cast = Cast([own.name for own in expected], [own.name for own in run.supplies], bodies)
+    roster = Roster([own.name for own in expected], [own.name for own in run.supplies], bodies)
     return Participants(
-        expected, cast, surroundings.starts(), run.step_ns,
+        expected, roster, surroundings.starts(), run.step_ns,
         first_remote=len(run.actuators) if are_here else 0)
 
 

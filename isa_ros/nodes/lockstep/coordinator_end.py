@@ -101,7 +101,7 @@ class LockstepTransport:
         while True:
             count += 1
             self._send(encode_hello(
-                self._run_id, count, self._run.step_ns, self._run.starts, self._run.cast))
+                self._run_id, count, self._run.step_ns, self._run.starts, self._run.roster))
             answers = self._hello_answers(count, is_last=bool(complete))
             refuse_other_coordinator(self._node)
             if complete:

@@ -4,7 +4,7 @@ from collections.abc import Sequence
 from typing import NamedTuple
 
 from isa_ros.core.signals import Records
-from isa_ros.run.wire.cast import Cast
+from isa_ros.run.wire.roster import Roster
 
 
 class Expected(NamedTuple):
@@ -27,7 +27,7 @@ class Participants(NamedTuple):
 
     expected: Sequence[Expected]
     """The actuators first, in file order, then the controllers."""
-    cast: Cast
+    roster: Roster
     starts: Records
     """`START` rows of the actuators, (n_actuators,)."""
     step_ns: int

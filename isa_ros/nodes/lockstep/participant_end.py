@@ -191,7 +191,7 @@ class ParticipantEnd:
     def _bind(self, step: Step) -> bool:
         """Join the run of a hello; return whether it lists this participant."""
         self._unbind()
-        names = list(step.cast().names)
+        names = list(step.roster().names)
         has_role = self._name in (
             names[:step.rows] if self._role.is_actuator else names[step.rows:])
         if not has_role:

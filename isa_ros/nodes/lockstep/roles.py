@@ -12,8 +12,8 @@ from typing import Protocol
 from isa_ros.controller import by_name, Controller, fill_requests, only_rows, State
 from isa_ros.core.signals import COMMAND, Records
 from isa_ros.nodes.actuator.node import ActuatorNode
-from isa_ros.run.wire.cast import Cast
 from isa_ros.run.wire.parts import actuator_parts, Parts
+from isa_ros.run.wire.roster import Roster
 from isa_ros.run.wire.steps import Step
 import numpy as np
 
@@ -139,28 +139,28 @@ class ControllerRole:
         self._controller = controller
         self._names: Sequence[str] = ()
         self._requests: Records = np.zeros(0, COMMAND)
-        self._cast = Cast((), (), {})
+        self._roster = Roster((), (), {})
         self._step_ns = 0
 
     def start(self, step: Step, index: int) -> Parts:
         """Start the controller with the names of the actuators; return no requests yet."""
-        self._cast, self._step_ns = step.cast(), step.step_ns()
-        self._names = self._cast.names[:step.rows]
+        self._roster, self._step_ns = step.roster(), step.step_ns()
+        self._names = self._roster.names[:step.rows]
         self._controller.start(list(self._names))
         self._requests = np.zeros(step.rows, COMMAND)
         return self._parts()
 
     def check(self, step: Step) -> None:
         """Refuse a tick that does not show the state of the run."""
-        step.refuse_shown(len(self._names), self._cast)
+        step.refuse_shown(len(self._names), self._roster)
 
     def advance(self, step: Step) -> Parts:
         """Call the controller with the state before the tick; return commands for the next one."""
-        shown = step.shown(self._cast)
+        shown = step.shown(self._roster)
         self._requests['kinds'] = 0
         state = State(
             step.tick * self._step_ns, by_name(self._names, shown.samples),
-            by_name(self._cast.supplies, shown.supplies), only_rows(shown.bodies))
+            by_name(self._roster.supplies, shown.supplies), only_rows(shown.bodies))
         fill_requests(self._controller.step(state), self._names, self._requests)
         return self._parts()
 

@@ -6,10 +6,10 @@ import struct
 from typing import NamedTuple
 
 from isa_ros.core.signals import COMMAND, LOAD_PORT, Records, SAMPLE, START
-from isa_ros.run.wire.cast import Cast
 from isa_ros.run.wire.header import opened, prefix, VERSION, WireError
 from isa_ros.run.wire.parts import (
     is_finite, joined, refuse_command, split, tuned_of, tuned_part)
+from isa_ros.run.wire.roster import Roster
 from isa_ros.surroundings.supply import SUPPLY_SAMPLE
 from isa_ros.tick.exchange import Rows, Shown
 import numpy as np
@@ -54,9 +54,9 @@ class Step(NamedTuple):
     rows: int
     body: bytes
 
-    def cast(self) -> Cast:
+    def roster(self) -> Roster:
         """Return the participants that a hello calls: ``rows`` actuators first."""
-        return Cast.decode(self.body[_NUMBER.size + self.rows * START.itemsize:])
+        return Roster.decode(self.body[_NUMBER.size + self.rows * START.itemsize:])
 
     def step_ns(self) -> int:
         """Return the length of a tick from a hello."""
@@ -74,15 +74,15 @@ class Step(NamedTuple):
         """Return the `COMMAND` row of one actuator."""
         return self._row(COMMAND, self.rows * LOAD_PORT.itemsize + index * COMMAND.itemsize)
 
-    def shown(self, cast: Cast) -> Shown:
+    def shown(self, roster: Roster) -> Shown:
         """Return the rows that controllers receive: the state before a tick, nothing applied."""
         at = self.rows * (LOAD_PORT.itemsize + COMMAND.itemsize)
         samples = np.frombuffer(self.body, SAMPLE, self.rows, at)
         at += samples.nbytes
-        supplies = np.frombuffer(self.body, SUPPLY_SAMPLE, len(cast.supplies), at)
+        supplies = np.frombuffer(self.body, SUPPLY_SAMPLE, len(roster.supplies), at)
         at += supplies.nbytes
         bodies = {}
-        for name, record in cast.bodies.items():
+        for name, record in roster.bodies.items():
             bodies[name] = np.frombuffer(self.body, record, 1, at)
             at += record.itemsize
         return Shown(samples, np.zeros(self.rows, COMMAND), supplies, bodies)
@@ -121,11 +121,11 @@ class Step(NamedTuple):
             raise WireError('a tick with a number that is not finite')
         refuse_command(self.command(index))
 
-    def refuse_shown(self, n_actuators: int, cast: Cast) -> None:
+    def refuse_shown(self, n_actuators: int, roster: Roster) -> None:
         """Refuse a tick that does not show a controller the state of its run; `refuse_tick`."""
         at = n_actuators * (LOAD_PORT.itemsize + COMMAND.itemsize)
-        size = n_actuators * SAMPLE.itemsize + len(cast.supplies) * SUPPLY_SAMPLE.itemsize + sum(
-            record.itemsize for record in cast.bodies.values())
+        size = n_actuators * SAMPLE.itemsize + len(roster.supplies) * SUPPLY_SAMPLE.itemsize + sum(
+            record.itemsize for record in roster.bodies.values())
         if self.rows != n_actuators or len(self.body) != at + size:
             raise WireError(f'a tick of {len(self.body)} bytes, must be {at + size}')
         if not is_finite(np.frombuffer(self.body, np.float64, size // 8, at)):
@@ -145,11 +145,11 @@ class Step(NamedTuple):
 
 
 def encode_hello(
-        run_id: int, count: int, step_ns: int, starts: Records, cast: Cast) -> bytes:
+        run_id: int, count: int, step_ns: int, starts: Records, roster: Roster) -> bytes:
     """Return the bytes of the ``count``-th hello; ``starts`` are the actuators' `START`, (n,)."""
     return _step(
         StepKind.HELLO, run_id, count, len(starts),
-        _NUMBER.pack(step_ns) + starts.tobytes() + cast.encode())
+        _NUMBER.pack(step_ns) + starts.tobytes() + roster.encode())
 
 
 def encode_tick(run_id: int, tick: int, rows: Rows, has_controllers: bool) -> bytes:
@@ -233,5 +233,5 @@ def _refuse_hello(step: Step) -> None:
     starts = np.frombuffer(
         step.body, np.float64, step.rows * START.itemsize // 8, _NUMBER.size)
     if not (is_finite(starts) and 0 < step.step_ns() <= _LARGEST_STEP_NS
-            and step.rows <= len(step.cast().names)):
+            and step.rows <= len(step.roster().names)):
         raise WireError('a hello with an invalid step, start or number of actuators')

@@ -13,7 +13,7 @@ from isa_ros.nodes.lockstep.coordinator_end import LockstepTransport
 from isa_ros.nodes.lockstep.expected import Expected, Limits, Participants
 from isa_ros.nodes.lockstep.participant_end import ParticipantEnd
 from isa_ros.nodes.lockstep.roles import ActuatorRole, ControllerRole
-from isa_ros.run.wire.cast import Cast
+from isa_ros.run.wire.roster import Roster
 from isa_ros.surroundings.supply import SUPPLY_SAMPLE
 from isa_ros.tick.exchange import Rows
 import numpy as np
@@ -165,10 +165,10 @@ def make_transport(
     starts['position'] = 0.25, 0.5
     expected = [*(Expected(name, 'same') for name in NAMES),
                 *(Expected(name, '') for name in controllers)]
-    cast = Cast([own.name for own in expected], ['supply'],
+    roster = Roster([own.name for own in expected], ['supply'],
                 {'cart': Cart.sample.dtype} if has_body else {})
     return LockstepTransport(
-        node, Participants(expected, cast, starts, 1_000_000, first_remote), limits,
+        node, Participants(expected, roster, starts, 1_000_000, first_remote), limits,
         watch=watch, should_stop=should_stop)
 
 

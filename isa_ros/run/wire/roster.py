@@ -14,7 +14,7 @@ _LARGEST_SHAPE = 4096
 _FLOATS = '<f8'
 
 
-class Cast(NamedTuple):
+class Roster(NamedTuple):
     """The participants of a run, and the supplies and bodies whose samples controllers receive."""
 
     names: Sequence[str]
@@ -31,14 +31,14 @@ class Cast(NamedTuple):
         return json.dumps([list(self.names), list(self.supplies), bodies]).encode()
 
     @classmethod
-    def decode(cls, data: bytes) -> 'Cast':
+    def decode(cls, data: bytes) -> 'Roster':
         """
-        Return the cast from its bytes.
+        Return the roster from its bytes.
 
         Raises
         ------
         WireError
-            The bytes are not a cast.
+            The bytes are not a roster.
 
         """
         try:
