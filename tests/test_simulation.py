@@ -13,7 +13,7 @@ from isa_ros.config.runs.supplies import SupplyConfig
 from isa_ros.controller import Controller, Setpoint, State
 from isa_ros.core.signals import COMMAND, HAS_SETPOINT
 from isa_ros.errors import ConfigError, RunError, SetpointError, SimulationDiverged
-from isa_ros.run.output import RunOutput, packer_of
+from isa_ros.run.output import packer_of, RunOutput
 from isa_ros.scenario.scenario import idle, load_scenario, Scenario, scenario_of
 from isa_ros.simulation import Simulation
 import numpy as np
@@ -90,7 +90,7 @@ def test_its_rows_are_those_of_a_recorded_run(config, scenario):
     run = load_run(find(config, CONFIG))
     fitted = idle(run) if scenario == 'idle' else load_scenario(find(scenario, SCENARIOS), run)
     simulation = Simulation(fitted)
-    packer = packer_of(fitted.run, simulation.loop.rows.shown)
+    packer = packer_of(fitted.run, simulation.loop.rows.published)
     digests = Digests([topic.name for topic in packer.topics])
     simulation.loop.sinks = [RunOutput(packer, fitted.run.step_ns, digests)]
     simulation.loop.begin()

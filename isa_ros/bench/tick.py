@@ -54,7 +54,7 @@ def actuator_parts() -> dict[str, float]:
     simulation = Simulation(leg_drop())
     ports = np.zeros(len(simulation.names), LOAD_PORT)
     simulation.surroundings.ports(ports)
-    packer = packer_of(simulation.scenario.run, simulation.loop.rows.shown)
+    packer = packer_of(simulation.scenario.run, simulation.loop.rows.published)
 
     def plants() -> None:
         for _ in range(TICKS):
@@ -70,7 +70,7 @@ def actuator_parts() -> dict[str, float]:
 def _recorder_seconds(drop: Scenario) -> float:
     """Return the time to record one tick's messages, in s."""
     simulation = Simulation(drop)
-    rows = simulation.loop.rows.shown
+    rows = simulation.loop.rows.published
     simulation.step()
     packer = packer_of(drop.run, rows)
     packer.pack(0, 0, {})

@@ -6,7 +6,7 @@ from dataclasses import replace
 from isa_ros.config.runs.run_config import RunConfig
 from isa_ros.core.saved_state import RunState
 from isa_ros.run.coordinator import Interrupted
-from isa_ros.run.output import RunOutput, packer_of, Recorder
+from isa_ros.run.output import packer_of, Recorder, RunOutput
 from isa_ros.run.thinning import Thinning
 from isa_ros.scenario.scenario import idle
 from isa_ros.simulation import Simulation
@@ -23,7 +23,7 @@ class LocalRun:
     def __init__(self, run: RunConfig) -> None:
         self._run = replace(run, controllers=())
         self._loop = Simulation(idle(self._run)).loop
-        self._packer = packer_of(self._run, self._loop.rows.shown)
+        self._packer = packer_of(self._run, self._loop.rows.published)
         self._thinning = Thinning(run.record, self._packer.topics)
         self.topics = self._thinning.topics
 

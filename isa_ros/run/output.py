@@ -7,7 +7,7 @@ from isa_ros.config.runs.run_config import RunConfig
 from isa_ros.plant.plant import is_heated
 from isa_ros.run.packing import Messages, Names, Packer
 from isa_ros.surroundings.return_line import VolumeReturn
-from isa_ros.tick.exchange import Rows, RowSink, Shown
+from isa_ros.tick.exchange import PublishedRows, Rows, RowSink
 from msg_adapters import clock, diagnostics, event
 
 
@@ -133,7 +133,7 @@ class RunOutput(RowSink):
             tick * self._step_ns, tick, self._packer.all_messages(events))
 
 
-def packer_of(run: RunConfig, shown: Shown) -> Packer:
+def packer_of(run: RunConfig, rows: PublishedRows) -> Packer:
     """Return the packer of the rows of a run; encoding its messages takes about a millisecond."""
     return Packer(
         Names([(actuator.name, actuator.sheet.is_rotary) for actuator in run.actuators],
@@ -141,4 +141,4 @@ def packer_of(run: RunConfig, shown: Shown) -> Packer:
                for supply in run.supplies],
               {body.name: body.messages(run.step_ns) for body in run.bodies},
               [actuator.name for actuator in run.actuators if is_heated(actuator.sheet.plant)],
-              run.linked), shown)
+              run.linked), rows)

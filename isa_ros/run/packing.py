@@ -20,7 +20,7 @@ from isa_ros.run.link_packing import LinkWords
 from isa_ros.run.rare_messages import DEVICE, DIAGNOSTICS, OF_SUPPLIES, PARAMETERS, RareMessages
 from isa_ros.surroundings.messages import BodyMessage
 from isa_ros.surroundings.supply import SUPPLY_SAMPLE
-from isa_ros.tick.exchange import Shown
+from isa_ros.tick.exchange import PublishedRows
 from msg_adapters import (
     actuator_messages, clock, coordinator_messages, diagnostics, event, fluid_pressure,
     temperature)
@@ -114,13 +114,13 @@ class Packer:
     each tick that reaches a full second.
     """
 
-    def __init__(self, names: Names, shown: Shown, is_run: bool = True) -> None:
+    def __init__(self, names: Names, rows: PublishedRows, is_run: bool = True) -> None:
         self._names = names
-        self._shown = shown
+        self._rows = rows
         found: list[tuple[Topic, Prepared | None]] = []
         self._links = LinkWords(
             [row for row, (name, _) in enumerate(names.actuators) if name in names.linked],
-            _n_columns(shown), shown.samples, shown.applied, shown.sent)
+            _n_columns(rows), rows.samples, rows.applied, rows.sent)
         at = 0
         for row, (name, is_rotary) in enumerate(names.actuators):
             own = self._links.messages(row, name, self._actuator(name, is_rotary, at))
@@ -137,7 +137,7 @@ class Packer:
         if names.supplies:
             found.append((Topic(*coordinator_messages.APPLIED_PARAMETERS, KEPT), None))
         of_bodies = [own for messages in names.bodies.values() for own in messages]
-        for body, sample in shown.bodies.items():
+        for body, sample in rows.bodies.items():
             columns = float_columns(sample.dtype, at)
             at += floats(sample).size
             found += [(Topic(own.topic, type_of(own)), prepared(own, columns))
@@ -154,8 +154,8 @@ class Packer:
         self._template = Template([message for _, message in packed])
         self._bytes = self._template.block.view(np.uint8)
         self.rare = RareMessages(
-            [name for name, _ in names.actuators], shown.samples,
-            [name for name, _ in names.supplies], shown.supplies, is_run)
+            [name for name, _ in names.actuators], rows.samples,
+            [name for name, _ in names.supplies], rows.supplies, is_run)
         """The messages that are encoded as they come."""
         self._periods = {own.topic: own.period_ns for own in of_bodies if own.period_ns} | {
             f'/{name}/{TEMPERATURE[0]}': NS_PER_SECOND for name in names.heated}
@@ -176,16 +176,16 @@ class Packer:
 
     def _bind(self) -> None:
         """Store the rows as plain floats, a tenth of the time to pass to the kernel."""
-        shown, template = self._shown, self._template
-        self._samples, self._supplies = floats(shown.samples), floats(shown.supplies)
-        self._bodies = [floats(sample).reshape(-1) for sample in shown.bodies.values()]
+        rows, template = self._rows, self._template
+        self._samples, self._supplies = floats(rows.samples), floats(rows.supplies)
+        self._bodies = [floats(sample).reshape(-1) for sample in rows.bodies.values()]
         self._of_bodies = self._bodies[0] if len(self._bodies) == 1 else np.concatenate(
             [np.zeros(0), *self._bodies])
         self._words = np.zeros(
-            FIRST_VALUE + _n_columns(shown) + self._links.n_words, np.uint64)
+            FIRST_VALUE + _n_columns(rows) + self._links.n_words, np.uint64)
         self._values = self._words.view(np.float64)
         self._target = _Target(template.block, template.places, template.sources)
-        self._kinds, self._sent_kinds = shown.applied['kinds'], self._links.sent_kinds
+        self._kinds, self._sent_kinds = rows.applied['kinds'], self._links.sent_kinds
 
     def pack(
             self, t_ns: int, tick_start_ns: int, tuned: Mapping[int, Mapping[str, float]],
@@ -200,7 +200,7 @@ class Packer:
         if len(self._bodies) > 1:
             np.concatenate(self._bodies, out=self._of_bodies)
         pack(time_word(t_ns), time_word(tick_start_ns), ATMOSPHERE,
-             self._samples, self._shown.applied, self._supplies, self._of_bodies, self._words,
+             self._samples, self._rows.applied, self._supplies, self._of_bodies, self._words,
              self._values, self._target)
         if self._periods:
             self._not_due = frozenset(
@@ -271,11 +271,11 @@ class Packer:
                 if topic.name not in own and topic.name not in (clock.TOPIC[0], event.TOPIC[0])]
 
 
-def _n_columns(shown: Shown) -> int:
+def _n_columns(rows: PublishedRows) -> int:
     """Return the number of values of all rows, without the words of links."""
-    body = sum(floats(sample).size for sample in shown.bodies.values())
+    body = sum(floats(sample).size for sample in rows.bodies.values())
     own = len(_SAMPLE) + len(_PRESSURES) + len(_APPLIED)
-    return len(shown.samples) * own + len(shown.supplies) * len(_SUPPLY_PRESSURES) + body
+    return len(rows.samples) * own + len(rows.supplies) * len(_SUPPLY_PRESSURES) + body
 
 
 _SETPOINT = actuator_messages.APPLIED_SETPOINT[0]

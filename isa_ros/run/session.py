@@ -20,7 +20,7 @@ from isa_ros.core.topic import Topic
 from isa_ros.errors import BagError, ConfigError
 from isa_ros.run.coordinator import Coordinator, Requests
 from isa_ros.run.options import Request
-from isa_ros.run.output import RunOutput, Outlets, packer_of
+from isa_ros.run.output import Outlets, packer_of, RunOutput
 from isa_ros.run.pacing import JOINING, Pace, Progress, ProgressMeter, STARTING
 from isa_ros.run.provenance import provenance_of
 from isa_ros.run.thinning import Thinning
@@ -93,7 +93,7 @@ def prepare(
     if run.record.thins:
         rows = Rows(len(run.actuators), surroundings_of(run))
         run.record.refuse_misfits(
-            [topic.name for topic in packer_of(run, rows.shown).topics], run.source)
+            [topic.name for topic in packer_of(run, rows.published).topics], run.source)
     scenario = planned(request.scenario, run, changes)
     if request.duration_s is not None:
         scenario = scenario.lasting(request.duration_s)
@@ -154,7 +154,7 @@ def record(
     run, laps = session.run, session.request.laps
     lap = ignore if laps is None else laps.lap
     rows = Rows(len(run.actuators), surroundings, transport.group)
-    packer = packer_of(run, rows.shown)
+    packer = packer_of(run, rows.published)
     published = outlets(packer.surroundings)
     thinning = Thinning(run.record, packer.topics)
     n_ticks, state, out = session.scenario.n_ticks, session.state, session.out

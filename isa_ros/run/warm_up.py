@@ -33,7 +33,7 @@ def warmed_up(run: RunConfig) -> list[SmartActuator]:
     simulation = Simulation(idle(run))
     with suppress(SimulationDiverged):
         simulation.step()
-    packer = packer_of(run, simulation.loop.rows.shown)
+    packer = packer_of(run, simulation.loop.rows.published)
     chunk = Chunk(b'', Layouts(), np.empty(0, np.uint8))
     for t_ns in (0, run.step_ns):   # with and without messages that are rare
         packer.pack(t_ns, t_ns, {})

@@ -6,7 +6,7 @@ from isa_ros.bag.writer import BagWriter
 from isa_ros.config.assembly import surroundings_of
 from isa_ros.core.topic import Topic
 from isa_ros.errors import BagError
-from isa_ros.run.output import RunOutput, packer_of, Recorder
+from isa_ros.run.output import packer_of, Recorder, RunOutput
 from isa_ros.run.provenance import provenance_of
 from isa_ros.run.thinning import Thinning
 from isa_ros.scenario.scenario import Scenario
@@ -33,7 +33,7 @@ class ResultMessages:
     def __init__(self, scenario: Scenario, log: Log) -> None:
         self._log, self._run = log, scenario.run
         self._rows = Rows(len(self._run.actuators), surroundings_of(self._run))
-        self._packer = packer_of(self._run, self._rows.shown)
+        self._packer = packer_of(self._run, self._rows.published)
         self._thinning = Thinning(self._run.record, self._packer.topics)
         self.topics: tuple[Topic, ...] = tuple(self._thinning.topics)
 

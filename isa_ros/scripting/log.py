@@ -43,9 +43,9 @@ class LogSink(RowSink):
         n = n_ticks + 1
         is_linked = bool(simulation.scenario.run.linked)
 
-        def log_of(shown: Records, *shape: int) -> Records:
-            log: Records = np.zeros((n, *shape), shown.dtype)
-            self._pairs.append((floats(log), floats(shown).reshape(-1)))
+        def log_of(source: Records, *shape: int) -> Records:
+            log: Records = np.zeros((n, *shape), source.dtype)
+            self._pairs.append((floats(log), floats(source).reshape(-1)))
             return log
         self._pairs: list[tuple[np.ndarray, np.ndarray]] = []
         self._applied: dict[int, Records] = {}
@@ -62,8 +62,8 @@ class LogSink(RowSink):
 
     def take(self, tick: int, rows: Rows) -> None:
         """Copy the rows before ``tick``, which begins the run or follows the last one."""
-        for log, shown in self._pairs:
-            log[tick] = shown
+        for log, source in self._pairs:
+            log[tick] = source
         if self._kinds.any():
             self._applied[tick] = rows.applied.copy()
         if self.log.observed is not None and self._sent_kinds.any():

@@ -14,7 +14,7 @@ IDLE_S = 0.005
 """Host time between two checks for requests while a run is paused."""
 
 
-class Shown(NamedTuple):
+class PublishedRows(NamedTuple):
     """The rows that the messages are packed from; the same memory over a whole run."""
 
     samples: Records
@@ -70,7 +70,8 @@ class Rows:
         self.bodies: Mapping[str, Records] = {
             name: body.sample for name, body in surroundings.bodies.items()}
         """Sample of each body by name, (1,); memory of the bodies."""
-        self.shown = Shown(self.samples, self.applied, self.supplies, self.bodies, self.sent)
+        self.published = PublishedRows(
+            self.samples, self.applied, self.supplies, self.bodies, self.sent)
         """The rows that the messages are packed from."""
         self.reply_values, self.sample_values = floats(self.replies), floats(self.samples)
         """The same memory as plain floats."""

@@ -63,7 +63,7 @@ def simulated(n_ticks: int, controller: Controller) -> list[tuple[int, str, byte
     """Return (sequence, topic, data) of the leg with a controller in memory."""
     run = load_run(LEG)
     simulation, said = Simulation(idle(run), [controller]), []
-    packer = packer_of(run, simulation.loop.rows.shown)
+    packer = packer_of(run, simulation.loop.rows.published)
     while True:
         packer.pack(simulation.t_ns, max(0, simulation.t_ns - run.step_ns), simulation.tuned)
         if simulation.ticks == n_ticks:

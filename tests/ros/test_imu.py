@@ -2,7 +2,7 @@
 
 import isa_ros
 from isa_ros.nodes.coordinator.node import CoordinatorNode
-from isa_ros.run.output import RunOutput, packer_of
+from isa_ros.run.output import packer_of, RunOutput
 import pytest
 from rclpy.node import Node
 from sensor_msgs.msg import Imu
@@ -16,7 +16,7 @@ def test_a_unit_publishes_its_readings_at_its_own_rate(observer: Node) -> None:
     simulation = isa_ros.load('leg').replace(
         {'leg.imus': {'kfe': {'link': 'thigh'}}}).simulation()
     run = simulation.scenario.run
-    packer = packer_of(run, simulation.loop.rows.shown)
+    packer = packer_of(run, simulation.loop.rows.published)
     node = CoordinatorNode(context=observer.context, enable_rosout=False)
     try:
         heard: list[Imu] = []

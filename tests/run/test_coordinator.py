@@ -8,7 +8,7 @@ from isa_ros.core.saved_state import RunState
 from isa_ros.core.signals import HAS_SETPOINT, Records
 from isa_ros.errors import ConfigError, RunError, SimulationDiverged
 from isa_ros.run.coordinator import Coordinator, Interrupted
-from isa_ros.run.output import RunOutput, Outlets, packer_of
+from isa_ros.run.output import Outlets, packer_of, RunOutput
 from isa_ros.run.pacing import Pace, ProgressMeter
 from isa_ros.run.packing import Messages
 from isa_ros.scenario.faults import ParameterChanges
@@ -174,7 +174,7 @@ class Rig:
         self.looks = 0
         surroundings = FakeSurroundings(self.log)
         self.rows = Rows(2, surroundings)
-        packer = packer_of(RUN, self.rows.shown)
+        packer = packer_of(RUN, self.rows.published)
         self.topics = [topic.name for topic in packer.topics]
         output = RunOutput(packer, RUN.step_ns, self.recorder, Outlets(
             clock=FakeOutlet(self.log, clock_line),

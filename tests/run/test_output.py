@@ -3,7 +3,7 @@
 from isa_ros.actuator.group import ActuatorGroup
 from isa_ros.config.assembly import group_of, surroundings_of
 from isa_ros.core.signals import HAS_SETPOINT
-from isa_ros.run.output import RunOutput, NoOutlet, Outlets, packer_of
+from isa_ros.run.output import NoOutlet, Outlets, packer_of, RunOutput
 from isa_ros.run.packing import Messages, Packer
 from isa_ros.tick.exchange import Rows
 from msg_adapters import clock, event
@@ -42,7 +42,7 @@ class Stage:
         self.outlets = {name: FakeOutlet(self.log, name, name in heard) for name in (
             'clock', 'events', 'surroundings', 'hip', 'knee')}
         self.recorder = FakeRecorder(self.log)
-        packer = packer_of(RUN, self.rows.shown)
+        packer = packer_of(RUN, self.rows.published)
         self.topics = [topic.name for topic in packer.topics]
         self.output = RunOutput(
             packer, RUN.step_ns, self.recorder if is_recorded else None, Outlets(
@@ -57,7 +57,7 @@ class Stage:
 
     def expected(self, tick: int, tuned=None) -> Packer:
         """Return a packer of the run that has packed this instant."""
-        packer = packer_of(RUN, self.rows.shown)
+        packer = packer_of(RUN, self.rows.published)
         packer.pack(tick * STEP_NS, max(0, (tick - 1) * STEP_NS), tuned or {})
         return packer
 
@@ -183,7 +183,7 @@ def test_the_recorder_gets_the_packed_instant():
 def test_where_actuators_publish_for_themselves_the_rest_is_published():
     """Their outlets are left out: they have processes of their own."""
     stage = Stage(*EVERYONE)
-    output = RunOutput(packer_of(RUN, stage.rows.shown), RUN.step_ns, stage.recorder, Outlets(
+    output = RunOutput(packer_of(RUN, stage.rows.published), RUN.step_ns, stage.recorder, Outlets(
         surroundings=stage.outlets['surroundings']))
     output.take(1, stage.rows)
     output.record()

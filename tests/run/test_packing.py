@@ -14,7 +14,7 @@ from isa_ros.run.output import packer_of
 from isa_ros.run.packing import Names, Packer
 from isa_ros.surroundings.messages import JointStates
 from isa_ros.surroundings.supply import ConstantSupply, SUPPLY_SAMPLE
-from isa_ros.tick.exchange import Rows, Shown
+from isa_ros.tick.exchange import PublishedRows, Rows
 from msg_adapters import event
 from msg_adapters.actuator_messages import TOPICS
 from msg_adapters.applied_parameters import tuned_values
@@ -32,17 +32,17 @@ SUFFIXES = ('applied_parameters', 'applied_setpoint', 'device', 'joint_states', 
 ATMOSPHERE = 101325.0  # Pa, ISO 2533
 
 
-def shown(n: int = 2, n_supplies: int = 1) -> Shown:
+def some_rows(n: int = 2, n_supplies: int = 1) -> PublishedRows:
     """Return rows whose numbers all differ but those of the device; nothing is applied."""
     samples, supplies = np.zeros(n, SAMPLE), np.zeros(n_supplies, SUPPLY_SAMPLE)
     samples.view(np.float64)[:] = np.arange(1.0, len(SAMPLE.names) * n + 1)
     supplies.view(np.float64)[:] = 1e6 * np.arange(1.0, len(SUPPLY_SAMPLE.names) * n_supplies + 1)
     for field in (*FIELDS, 'age'):
         samples[field] = 0.0
-    return Shown(samples, np.zeros(n, COMMAND), supplies, {})
+    return PublishedRows(samples, np.zeros(n, COMMAND), supplies, {})
 
 
-def applied(rows: Shown, row: int, kinds: int = HAS_SETPOINT, **values: float) -> None:
+def applied(rows: PublishedRows, row: int, kinds: int = HAS_SETPOINT, **values: float) -> None:
     """Let a command have taken effect on one actuator."""
     rows.applied[row]['kinds'] = kinds
     for name, value in values.items():
@@ -65,13 +65,13 @@ def stamp_ns(message: JointState) -> int:
 
 
 @pytest.fixture
-def rows() -> Shown:
+def rows() -> PublishedRows:
     """Return the rows of a hip and a knee."""
-    return shown()
+    return some_rows()
 
 
 @pytest.fixture
-def packer(rows: Shown) -> Packer:
+def packer(rows: PublishedRows) -> Packer:
     """Return what packs them, on one supply."""
     return Packer(Names([('hip', True), ('knee', False)], [('supply', False)]), rows)
 
@@ -79,7 +79,7 @@ def packer(rows: Shown) -> Packer:
 def test_a_leg_has_every_topic_in_canonical_order():
     """Sorted by name, with the types of interface.md."""
     surroundings = surroundings_of(LEG)
-    packer = packer_of(LEG, Rows(3, surroundings).shown)
+    packer = packer_of(LEG, Rows(3, surroundings).published)
     assert [topic.name for topic in packer.topics] == [
         '/clock', '/coordinator/applied_parameters', '/coordinator/events',
         '/coordinator/ground_contact', '/coordinator/supply_pressure', '/diagnostics',
@@ -119,7 +119,7 @@ def test_messages_come_in_the_order_of_the_topics(packer, rows):
           {'body': [JointStates('/coordinator/valve', [], [], [], [])]})])
 def test_a_topic_has_one_source(names):
     """The last: of the same name, and even of the same type."""
-    of_body = shown(2, len(names.supplies))._replace(
+    of_body = some_rows(2, len(names.supplies))._replace(
         bodies={'body': np.zeros(1, [('height', '<f8')])})
     with pytest.raises(ValueError, match='a topic has two sources'):
         Packer(names, of_body)
@@ -199,7 +199,7 @@ def test_the_numbers_of_each_row_are_in_its_own_messages(packer, rows):
 
 def test_only_a_return_line_with_a_volume_shows_its_pressure():
     """A return line that stays at tank pressure has nothing to show."""
-    rows = shown(2, 2)
+    rows = some_rows(2, 2)
     packer = Packer(
         Names([('hip', True), ('knee', False)], [('held', False), ('main', True)]), rows)
     packer.pack(T_NS, TICK_NS, {})
@@ -217,7 +217,7 @@ def test_the_return_lines_of_a_run_decide_which_pressures_there_are():
     def topics(*sheets: ConstantSupply) -> list[str]:
         run = hip_and_knee([SupplyConfig(name, sheet, (fed,)) for (name, fed), sheet in zip(
             (('first', 'hip'), ('second', 'knee')), sheets)])
-        packer = packer_of(run, Rows(2, surroundings_of(run)).shown)
+        packer = packer_of(run, Rows(2, surroundings_of(run)).published)
         return [topic.name for topic in packer.surroundings]
 
     held = ConstantSupply(pressure_mpa=20.7, return_pressure_mpa=0.5)
@@ -235,7 +235,7 @@ def test_a_body_shows_the_floats_of_its_sample():
     messages = [JointStates('/body', ['a', 'b'], ['height', 'angle[1]'], [], [])]
     body = np.zeros(1, [('angle', '<f8', (2,)), ('height', '<f8')])
     packer = Packer(Names([('hip', True)], [('supply', False)], {'cart': messages}),
-                    shown(1)._replace(bodies={'cart': body}))
+                    some_rows(1)._replace(bodies={'cart': body}))
     body['angle'], body['height'] = (0.25, 0.5), 2.0
     packer.pack(T_NS, TICK_NS, {})
     assert list(decode(everything(packer)['/body'], JointState).position) == [2.0, 0.5]
@@ -247,7 +247,7 @@ def test_each_of_several_bodies_shows_its_own_floats():
              for name in ('left', 'right')}
     bodies = {name: np.zeros(1, [('angle', '<f8', (2,)), ('load', '<f8')]) for name in names}
     packer = Packer(Names([('hip', True)], [('supply', False)], names),
-                    shown(1)._replace(bodies=bodies))
+                    some_rows(1)._replace(bodies=bodies))
     for scale in (1.0, 10.0):
         for k, body in enumerate(bodies.values(), start=1):
             body['angle'], body['load'] = (0.0, k * scale), -k * scale
@@ -272,7 +272,7 @@ def test_an_actuator_alone_says_what_it_says_among_others(packer, rows):
     """Its node has neither clock nor events."""
     applied(rows, 1)
     packer.pack(T_NS, TICK_NS, {})
-    own = Shown(rows.samples[1:], rows.applied[1:], np.zeros(0, SUPPLY_SAMPLE), {})
+    own = PublishedRows(rows.samples[1:], rows.applied[1:], np.zeros(0, SUPPLY_SAMPLE), {})
     alone = Packer(Names([('knee', False)]), own, is_run=False)
     alone.pack(T_NS, TICK_NS, {})
     assert [topic.name for topic in alone.topics] == [f'/knee/{suffix}' for suffix in SUFFIXES]
@@ -284,7 +284,7 @@ def test_the_first_messages_are_of_t_0():
     run = hip_and_knee()
     group, surroundings = group_of(run), surroundings_of(run)
     group.start(surroundings.starts())
-    packer = packer_of(run, Shown(group.samples, group.applied, surroundings.supplies, {}))
+    packer = packer_of(run, PublishedRows(group.samples, group.applied, surroundings.supplies, {}))
     packer.pack(0, 0, group.tuned)
     parameters, setpoint, device, joint_states, *_ = packer.of_actuator(1)
     assert parameters is None

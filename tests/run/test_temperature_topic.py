@@ -8,7 +8,7 @@ from isa_ros.core.signals import COMMAND, SAMPLE
 from isa_ros.run.packing import Names, Packer, topics_of_actuator
 from isa_ros.surroundings.supply import SUPPLY_SAMPLE
 from isa_ros.testing import assert_replays
-from isa_ros.tick.exchange import Shown
+from isa_ros.tick.exchange import PublishedRows
 from msg_adapters.cdr_reader import decode
 import numpy as np
 import pytest
@@ -24,7 +24,7 @@ def packer() -> Packer:
     """Return the packer of two actuators, of which the knee is heated to 47 celsius."""
     samples = np.zeros(2, SAMPLE)
     samples['temperature'] = 40.0, 47.0
-    rows = Shown(samples, np.zeros(2, COMMAND), np.zeros(1, SUPPLY_SAMPLE), {})
+    rows = PublishedRows(samples, np.zeros(2, COMMAND), np.zeros(1, SUPPLY_SAMPLE), {})
     return Packer(Names([('hip', True), ('knee', False)], [('supply', False)], heated=['knee']),
                   rows)
 

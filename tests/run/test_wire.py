@@ -79,7 +79,7 @@ def test_controllers_are_shown_samples_supplies_and_bodies(n, n_supplies, bodies
     """In one step with the rows of the actuators; nothing is applied there."""
     sent = filled(n, n_supplies, bodies)
     step = decode_step(encode_tick(1, 2, sent, has_controllers=True))
-    shown = step.shown(roster(n_supplies, bodies))
+    shown = step.state(roster(n_supplies, bodies))
     assert shown.samples.tobytes() == sent.samples.tobytes()
     assert shown.supplies.tobytes() == sent.supplies.tobytes()
     assert list(shown.bodies) == list(bodies)

@@ -163,3 +163,16 @@ def test_a_state_holds_the_requests_of_its_last_tick_alone():
             simulation.step()
         states.append(simulation.loop.save().requests)
     assert states == [bytes(2 * COMMAND.itemsize)] * 2
+
+
+def test_what_the_source_changes_once_may_be_changed_again_and_is_not_given_out_anew():
+    """It is changed at its tick alone; a beginning has changed nothing yet."""
+    simulation = Simulation(idle(RUN))
+    simulation.loop.source = ScheduledSource(
+        at_2, {0: ParameterChanges({1: {'force.kp': 1e-7}}, {})})
+    simulation.step()
+    simulation.tune('knee', {'force.kp': 2e-7})
+    simulation.step()
+    assert simulation.loop.rows.tuned == {1: {'force.kp': 2e-7}}
+    simulation.loop.join()
+    assert simulation.loop.rows.tuned == {}

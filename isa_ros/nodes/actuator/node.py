@@ -19,7 +19,7 @@ from isa_ros.nodes.middleware.servers import open_server
 from isa_ros.plant.plant import is_heated
 from isa_ros.run.packing import Names, Packer, topics_of_actuator
 from isa_ros.surroundings.supply import SUPPLY_SAMPLE
-from isa_ros.tick.exchange import Shown
+from isa_ros.tick.exchange import PublishedRows
 from msg_adapters.joint_state import TYPE as SETPOINT_TYPE
 from msg_adapters.setpoint import msg_to_command
 import numpy as np
@@ -70,8 +70,8 @@ class ActuatorNode(Node):
             Names([(config.name, config.sheet.is_rotary)],
                   heated=[config.name] if heats_up else [],
                   linked=[config.name] if self.actuator.has_link else []),
-            Shown(memory.observed, memory.applied, np.zeros(0, SUPPLY_SAMPLE), {},
-                  memory.sent),
+            PublishedRows(
+                memory.observed, memory.applied, np.zeros(0, SUPPLY_SAMPLE), {}, memory.sent),
             is_run=False)
         self.outlet = PreparedPublishers(
             self, topics_of_actuator('~', heats_up, self.actuator.has_link))

@@ -46,9 +46,9 @@ class CoordinatorNode(Node):
 
         ``actuators`` are those of the actuators in this process; empty if their own nodes publish.
         """
-        shown = PreparedPublishers(
+        published = PreparedPublishers(
             self, [replace(topic, name=_relative(topic.name)) for topic in surroundings])
-        return Outlets(self._time, self._events, shown, actuators)
+        return Outlets(self._time, self._events, published, actuators)
 
     def request(self) -> Request:
         """

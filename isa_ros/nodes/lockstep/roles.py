@@ -152,15 +152,15 @@ class ControllerRole:
 
     def check(self, step: Step) -> None:
         """Refuse a tick that does not show the state of the run."""
-        step.refuse_shown(len(self._names), self._roster)
+        step.refuse_state(len(self._names), self._roster)
 
     def advance(self, step: Step) -> Parts:
         """Call the controller with the state before the tick; return commands for the next one."""
-        shown = step.shown(self._roster)
+        found = step.state(self._roster)
         self._requests['kinds'] = 0
         state = State(
-            step.tick * self._step_ns, by_name(self._names, shown.samples),
-            by_name(self._roster.supplies, shown.supplies), only_rows(shown.bodies))
+            step.tick * self._step_ns, by_name(self._names, found.samples),
+            by_name(self._roster.supplies, found.supplies), only_rows(found.bodies))
         fill_requests(self._controller.step(state), self._names, self._requests)
         return self._parts()
 

@@ -11,7 +11,7 @@ from isa_ros.run.wire.parts import (
     is_finite, joined, refuse_command, split, tuned_of, tuned_part)
 from isa_ros.run.wire.roster import Roster
 from isa_ros.surroundings.supply import SUPPLY_SAMPLE
-from isa_ros.tick.exchange import Rows, Shown
+from isa_ros.tick.exchange import PublishedRows, Rows
 import numpy as np
 
 STEP_TOPIC = '/_isa/step'
@@ -74,7 +74,7 @@ class Step(NamedTuple):
         """Return the `COMMAND` row of one actuator."""
         return self._row(COMMAND, self.rows * LOAD_PORT.itemsize + index * COMMAND.itemsize)
 
-    def shown(self, roster: Roster) -> Shown:
+    def state(self, roster: Roster) -> PublishedRows:
         """Return the rows that controllers receive: the state before a tick, nothing applied."""
         at = self.rows * (LOAD_PORT.itemsize + COMMAND.itemsize)
         samples = np.frombuffer(self.body, SAMPLE, self.rows, at)
@@ -85,7 +85,7 @@ class Step(NamedTuple):
         for name, record in roster.bodies.items():
             bodies[name] = np.frombuffer(self.body, record, 1, at)
             at += record.itemsize
-        return Shown(samples, np.zeros(self.rows, COMMAND), supplies, bodies)
+        return PublishedRows(samples, np.zeros(self.rows, COMMAND), supplies, bodies)
 
     def _row(self, record: np.dtype[np.void], offset: int) -> np.void:
         row: np.void = np.frombuffer(self.body, record, 1, offset)[0]
@@ -121,7 +121,7 @@ class Step(NamedTuple):
             raise WireError('a tick with a number that is not finite')
         refuse_command(self.command(index))
 
-    def refuse_shown(self, n_actuators: int, roster: Roster) -> None:
+    def refuse_state(self, n_actuators: int, roster: Roster) -> None:
         """Refuse a tick that does not show a controller the state of its run; `refuse_tick`."""
         at = n_actuators * (LOAD_PORT.itemsize + COMMAND.itemsize)
         size = n_actuators * SAMPLE.itemsize + len(roster.supplies) * SUPPLY_SAMPLE.itemsize + sum(

@@ -166,7 +166,7 @@ def make_transport(
     expected = [*(Expected(name, 'same') for name in NAMES),
                 *(Expected(name, '') for name in controllers)]
     roster = Roster([own.name for own in expected], ['supply'],
-                {'cart': Cart.sample.dtype} if has_body else {})
+                    {'cart': Cart.sample.dtype} if has_body else {})
     return LockstepTransport(
         node, Participants(expected, roster, starts, 1_000_000, first_remote), limits,
         watch=watch, should_stop=should_stop)

@@ -19,8 +19,8 @@ def published(config: str):
     """Return the URDF of a run's leg and its messages with a header at t = 0, by topic."""
     run = load_run(find(config, CONFIG))
     rows = Rows(len(run.actuators), surroundings_of(run))
-    rows.shown.applied['kinds'] = 1
-    packer = packer_of(run, rows.shown)
+    rows.published.applied['kinds'] = 1
+    packer = packer_of(run, rows.published)
     packer.pack(0, 0, {})
     messages = {}
     for index, data in packer.all_messages():
