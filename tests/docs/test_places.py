@@ -6,7 +6,10 @@ import re
 import textwrap
 
 import isa_ros
+from isa_ros.controller import fill_command
+from isa_ros.core.signals import Records
 from isa_ros.tick.exchange import Rows, RowSink
+from isa_ros.tick.source import ScheduledSource
 import pytest
 from tests.docs.patched_copy import PatchedCopy, ROOT
 
@@ -22,11 +25,12 @@ CASES = {
     'option of a run': 'test_places.test_an_option_of_a_run_is_a_field',
     'output of a run': 'test_places.test_an_output_of_a_run_is_a_sink',
     'fault of the device': 'test_places.test_a_fault_is_a_mark',
+    'source of commands': 'test_places.test_a_source_of_commands_is_a_class',
+    'quantity that values of a model scale with': 'test_places.test_a_quantity_is_a_function',
 }
 """Case by row: a test of this folder that makes the extension in a copy."""
 WITHOUT_CASE = {
-    'sensor', 'sensor on a link of the leg', 'quantity that values of a model scale with',
-    'control block', 'bus', 'source of commands', 'middleware of the bench'}
+    'sensor', 'sensor on a link of the leg', 'control block', 'bus', 'middleware of the bench'}
 """Rows that no test executes."""
 
 RAIL = textwrap.dedent('''\
@@ -372,3 +376,33 @@ def test_a_fault_is_a_mark(copied: PatchedCopy) -> None:
         "o = run.simulation(); [(s.step(), o.step()) for _ in range(50)]; "
         "print(s.supply_samples['supply'].pressure < o.supply_samples['supply'].pressure - 1e4)")
     assert copied.python(program) == 'True\n'
+
+
+def test_a_source_of_commands_is_a_class() -> None:
+    """It commands a tick by its own rule, here that of a function."""
+    simulation = isa_ros.load('rig_linear').simulation()
+
+    def push(tick: int, out: Records) -> None:
+        """Command the third tick."""
+        if tick == 2:
+            fill_command('ram', isa_ros.Setpoint(0.03), out[0])
+    simulation.loop.source = ScheduledSource(push)
+    simulation.loop.run(2)
+    assert simulation.applied['kinds'][0] == 0
+    simulation.loop.advance()
+    assert simulation.applied['kinds'][0] and simulation.applied['position'][0] == 0.03
+
+
+@pytest.mark.slow
+def test_a_quantity_is_a_function(copied: PatchedCopy) -> None:
+    """Values of a model name it, and scale with it."""
+    scales, model = 'isa_ros/actuator/scales.py', 'isa_ros/config/data/models/isa_v5.yaml'
+    function = 'def _swept_volume('
+    copied.replace(scales, function, 'def _half_stroke(sheet: ActuatorSheet, supply: float) -> '
+                   f'float:\n    return 0.5 * sheet.plant.drive.stroke\n\n\n{function}')
+    copied.replace(scales, "'stroke': _stroke,", "'stroke': _stroke, 'half_stroke': _half_stroke,")
+    copied.replace(model, 'stop_low: {value: 0.005, scales_with: stroke,',
+                   'stop_low: {value: 0.005, scales_with: half_stroke,')
+    assert touched(copied) == files_of('quantity that values of a model scale with') - {
+        'docs/own_cylinder.md'} and len(copied.touched) == 2
+    assert re.search(r'stop_low .*scales with half_stroke', copied.isa('params', 'isa_v5'))

@@ -128,6 +128,7 @@ def test_every_simulation_has_a_body_of_its_own() -> None:
     assert simulation.body_sample == first
     simulation.step()
     assert simulation.body_sample == after
+    assert 'body.position' in rig().simulate(0.002, seed=3, body=Slide)
     simulation.reset(seed=3)
     assert simulation.body_sample.position == START and simulation.body_sample.velocity == 0.0
 
