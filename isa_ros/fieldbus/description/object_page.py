@@ -13,6 +13,7 @@ from isa_ros.fieldbus.device.bus_device import BusDevice
 from isa_ros.fieldbus.device.faults import OWN_CODES
 from isa_ros.fieldbus.device.objects import Entry, Kind, Object, ObjectTable
 from isa_ros.fieldbus.device.process_data import is_mapping, RECEIVE, TRANSMIT
+from isa_ros.fieldbus.device.states import Transition
 from isa_ros.text.marked import with_parts
 from isa_ros.text.table import aligned, markdown
 
@@ -104,11 +105,11 @@ def _mapped(device: BusDevice, word: int) -> str:
     return f'{place} {device.table.entry(index, subindex).name}'
 
 
-def states_402() -> Rows:
-    """Return the transitions of CiA 402."""
+def states_of(transitions: Sequence[Transition]) -> Rows:
+    """Return the transitions of a profile."""
     return [('no.', 'state', 'event', 'if', 'next state', 'effect'), *(
         (str(row.number), row.state.words, row.event.value, row.guard, row.following.words,
-         row.does) for row in cia402_states.TRANSITIONS)]
+         row.does) for row in transitions)]
 
 
 def commands_402() -> Rows:
@@ -132,13 +133,6 @@ def modes_402() -> Rows:
     return [('0x6060', 'mode', 'refused because'), *(
         (str(mode), name, '') for mode, name in cia402_objects.MODE_NAMES.items()), *(
         (str(mode), '', reason) for mode, reason in cia402_objects.REFUSED_MODES.items())]
-
-
-def states_408() -> Rows:
-    """Return the transitions of CiA 408."""
-    return [('no.', 'state', 'event', 'if', 'next state', 'effect'), *(
-        (row.number, row.state.words, row.event.value, row.guard, row.following.words, row.does)
-        for row in cia408_states.TRANSITIONS)]
 
 
 def status_408() -> Rows:
@@ -173,12 +167,14 @@ def tables(device_402: BusDevice, device_408: BusDevice) -> Mapping[str, Callabl
     """Return a function for each table of the page by its name."""
     table = device_402.table
     return {
-        'states402': states_402, 'commands402': commands_402, 'status402': status_402,
+        'states402': lambda: states_of(cia402_states.TRANSITIONS),
+        'commands402': commands_402, 'status402': status_402,
         'modes402': modes_402, 'pdos402': lambda: pdo_rows(device_402), 'errors': error_rows,
         'profile402': lambda: object_rows(_in(table, _PROFILE)),
         'communication': lambda: object_rows(_in(table, _COMMUNICATION)),
         'manufacturer': lambda: object_rows(_in(table, _MANUFACTURER)),
-        'states408': states_408, 'status408': status_408, 'modes408': modes_408,
+        'states408': lambda: states_of(cia408_states.TRANSITIONS),
+        'status408': status_408, 'modes408': modes_408,
         'pdos408': lambda: pdo_rows(device_408),
         'profile408': lambda: object_rows(_in(device_408.table, _PROFILE))}
 

@@ -1,7 +1,6 @@
 """One actuator of a run as a `BusDevice`: dictionary, process data, and a drive of a profile."""
 
 from collections.abc import Callable, Mapping, Sequence
-from typing import Protocol
 
 from isa_ros.actuator.tunable import with_changed
 from isa_ros.errors import ConfigError
@@ -9,7 +8,8 @@ from isa_ros.fieldbus.device.abort import OUT_OF_RANGE, SdoAbort
 from isa_ros.fieldbus.device.axis import Axis, FIELDS
 from isa_ros.fieldbus.device.bus_device import Emergency, Identity
 from isa_ros.fieldbus.device.communication_area import ERROR_FIELD
-from isa_ros.fieldbus.device.dictionary import Actuals, Dictionary, Key
+from isa_ros.fieldbus.device.dictionary import Dictionary, Key
+from isa_ros.fieldbus.device.drive import Drive
 from isa_ros.fieldbus.device.faults import delete_errors, Faults, PDO_LENGTH
 from isa_ros.fieldbus.device.manufacturer_area import note_refusal, tunable_keys
 from isa_ros.fieldbus.device.objects import Entry, ObjectTable, Value
@@ -17,32 +17,6 @@ from isa_ros.fieldbus.device.process_data import is_changed_in_preop, ProcessDat
 import numpy as np
 
 _ERROR_REGISTER, _ERROR_CODE, _CONTROL = (0x1001, 0), (0x603F, 0), (0x6040, 0)
-
-
-class Drive(Protocol):
-    """A profile: what control words and targets mean for the REU."""
-
-    @property
-    def actuals(self) -> Actuals:
-        """Return the functions of the values that it computes."""
-
-    def admit(self, entry: Entry, value: Value) -> None:
-        """Refuse a value that is written; raises `SdoAbort`."""
-
-    def received(self) -> None:
-        """Take what the master has written."""
-
-    def begin_operation(self) -> None:
-        """Enter the state operational of the bus."""
-
-    def end_operation(self, is_lost: bool) -> None:
-        """Leave the state operational of the bus."""
-
-    def take_sample(self) -> None:
-        """Follow the new sample of the axis."""
-
-    def fill_command(self, command: np.void) -> None:
-        """Write the `COMMAND` of a tick."""
 
 
 class ActuatorDevice:

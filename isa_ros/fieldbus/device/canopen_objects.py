@@ -44,7 +44,8 @@ def communication_objects(step_ns: int) -> list[Object]:
         variable(Entry(HEARTBEAT_PRODUCED, 0, 'Producer heartbeat time', _U16, 'rw', 0, 's',
                        _MILLISECOND, meaning='wall time; 0: off'), CANOPEN),
         variable(Entry(SYNC_OVERFLOW, 0, 'Synchronous counter overflow value', _U8, 'rw',
-                       meaning='0: SYNC without a counter; 2 to 240: the highest counter'), CANOPEN),
+                       meaning='0: SYNC without a counter; 2 to 240: the highest counter'),
+                 CANOPEN),
         record_of(ERROR_BEHAVIOUR, 'Error behaviour', [
             Entry(ERROR_BEHAVIOUR, 1, 'Communication error', _U8, 'rw', choices=(0, 1, 2),
                   meaning='0: preoperational, 1: no change, 2: stopped')], CANOPEN),

@@ -5,11 +5,10 @@ States above `switch on disabled` are the drive's; the REU is enabled in `operat
 The control word counts at the start of a tick, the sample at its end.
 """
 
-from collections.abc import Callable
 import math
 
 from isa_ros.core.device import ENABLED, FAULT, FAULT_REACTION, INITIALISING, QUICK_STOP
-from isa_ros.core.signals import HAS_CLEAR_FAULT, HAS_ENABLE, HAS_QUICK_STOP
+from isa_ros.core.signals import HAS_ENABLE, HAS_QUICK_STOP
 from isa_ros.core.units import MILLI
 from isa_ros.fieldbus.device import cia402_objects as objects
 from isa_ros.fieldbus.device.abort import INCOMPATIBLE, OUT_OF_RANGE, SdoAbort
@@ -17,12 +16,14 @@ from isa_ros.fieldbus.device.axis import Axis, COUNTS
 from isa_ros.fieldbus.device.cia402_objects import (
     CSP, CST, CSV, IMPEDANCE_MODE, NO_MODE, REFUSED_MODES)
 from isa_ros.fieldbus.device.cia402_states import (
-    command_of, ENDS_OFF, Event, FAULT_RESET, FOLLOWING, REU_DISABLED, State, STAYS)
+    CAUSE_GONE, command_of, ENDS_OFF, Event, FAULT_RESET, FOLLOWING, REU_DISABLED, State, STAYS)
 from isa_ros.fieldbus.device.dictionary import Key
-from isa_ros.fieldbus.device.faults import BUS_LOST, Faults, FOLLOWING_ERROR
+from isa_ros.fieldbus.device.drive import Drive
+from isa_ros.fieldbus.device.faults import Faults, FOLLOWING_ERROR
 from isa_ros.fieldbus.device.manufacturer_area import DAMPING, EFFORT, note_refusal, STIFFNESS
 from isa_ros.fieldbus.device.objects import Entry, Value
-from isa_ros.fieldbus.device.setpoints import change_mode, enable, Gains, Limiter, setpoint
+from isa_ros.fieldbus.device.setpoints import Gains, setpoint
+from isa_ros.fieldbus.device.states import Transition
 import numpy as np
 
 VOLTAGE, WARNING, REMOTE, LIMITED, FOLLOWS, LATE = (1 << bit for bit in (4, 7, 9, 11, 12, 13))
@@ -32,37 +33,34 @@ _STOP_WORD = 0x02
 _NOT_WATCHED = 0xFFFFFFFF
 
 
-class Drive402:
-    """The drive of one actuator; ``values`` are those of its dictionary."""
+class Drive402(Drive):
+    """The drive of one actuator."""
+
+    following = FOLLOWING
+    fault, reaction_ends, reset = Event.FAULT, Event.REACTION_ENDS, Event.RESET
+    faults, control, reset_bit = (State.FAULT,), objects.CONTROL, FAULT_RESET
 
     def __init__(
             self, axis: Axis, values: dict[Key, Value], faults: Faults,
             supply_low: int) -> None:
-        self.state = State.NOT_READY
-        self._axis, self._values, self._faults = axis, values, faults
+        super().__init__(axis, values, faults, State.NOT_READY, objects.MODE,
+                         objects.modes_of(axis), NO_MODE)
         self._supply_low = supply_low
-        self._modes = objects.modes_of(axis)
-        self._mode = NO_MODE
-        self._control = 0
-        self._limiter = Limiter()
         self._gains = Gains(axis, values)
-        self._demand = 0.0
         self._late_s = 0.0
-        self._is_remote = self._was_on = False
-        self._has_start = False
+        self._is_remote = False
         self._setpoints = {
             NO_MODE: self._holding, CSP: self._position, CSV: self._velocity, CST: self._torque,
             IMPEDANCE_MODE: self._impedance}
-        self.actuals: dict[Key, Callable[[], Value]] = {
+        self.actuals = {
             objects.STATUS: self.status, objects.MODE_SHOWN: lambda: self._mode,
             objects.POSITION_DEMAND: lambda: round(self._shown_demand * COUNTS),
             objects.FOLLOWING_ERROR: lambda: round(self._deviation * COUNTS)}
-        """Functions of the values that this drive computes."""
 
     # Side of the bus.
 
     def admit(self, entry: Entry, value: Value) -> None:
-        """Refuse a value that is written; raises `SdoAbort`."""
+        """Refuse modes that do not exist, and a range that is none; raises `SdoAbort`."""
         key = entry.index, entry.subindex
         if key == objects.MODE and value not in self._modes:
             note_refusal(self._values, self._refusal(int(value)))
@@ -75,19 +73,7 @@ class Drive402:
                 raise SdoAbort(INCOMPATIBLE)
 
     def _refusal(self, mode: int) -> str:
-        known = ', '.join(map(str, sorted(self._modes)))
-        return REFUSED_MODES.get(mode, f'mode {mode} does not exist here; there are {known}')
-
-    def received(self) -> None:
-        """Take what the master has written: the mode of operation counts at once."""
-        mode = int(self._values[objects.MODE])
-        if mode == self._mode:
-            return
-        if mode in self._modes:
-            self._mode = mode
-            self._demand = self._axis.position
-        else:
-            note_refusal(self._values, self._refusal(mode))
+        return REFUSED_MODES.get(mode, super()._refusal(mode))
 
     def begin_operation(self) -> None:
         """Enter the state operational."""
@@ -97,10 +83,7 @@ class Drive402:
         """Leave it: stop as by a quick stop, and with a fault if the bus is lost."""
         self._is_remote = False
         self._values[objects.CONTROL] = _STOP_WORD
-        if is_lost:
-            self._faults.add(BUS_LOST)
-            self._happens(Event.FAULT)
-            self._end_reaction()
+        super().end_operation(is_lost)
 
     def status(self) -> int:
         """Return the status word."""
@@ -139,27 +122,11 @@ class Drive402:
                 self._happens(Event.DROPPED)
             self._was_on |= axis.state == ENABLED
 
-    def fill_command(self, command: np.void) -> None:
-        """Write the command of a tick."""
-        control = int(self._values[objects.CONTROL])
-        is_reset = bool(control & ~self._control & FAULT_RESET)
-        self._control = control
-        kinds = 0
-        if self.state is State.FAULT and is_reset:
-            kinds |= self._reset()
-        elif (event := command_of(control)) is not None:
+    def _obey(self, control: int) -> None:
+        if (event := command_of(control)) is not None:
             self._happens(event)
-        command['kinds'] = kinds | self._kinds(command)
-
-    def _reset(self) -> int:
-        """Reset a fault: that of the drive at once, that of the REU by a command."""
-        self._faults.clear()
-        if self._axis.is_disabled:
-            self._happens(Event.RESET)
-        return HAS_CLEAR_FAULT if self._axis.state == FAULT else 0
 
     def _kinds(self, command: np.void) -> int:
-        """Write what the state demands of the REU; return the kinds."""
         axis, state = self._axis, self.state
         if state is State.OPERATION_ENABLED:
             return self._operate(command)
@@ -174,13 +141,7 @@ class Drive402:
         return HAS_ENABLE
 
     def _operate(self, command: np.void) -> int:
-        wanted, kinds = self._modes[self._mode], 0
-        if self._axis.state != ENABLED:
-            self._demand = self._axis.position
-            kinds = enable(command, wanted)
-        elif wanted and int(self._axis.field('device_mode')) != wanted:
-            kinds = change_mode(command, wanted)
-        self._limiter.is_limited = False
+        kinds = self._enabled(command, self._modes[self._mode])
         return kinds | self._setpoints[self._mode](command)
 
     # Setpoints of the modes.
@@ -257,19 +218,8 @@ class Drive402:
 
     # States.
 
-    def _end_reaction(self) -> None:
-        if self._axis.is_off:
-            self._happens(Event.REACTION_ENDS)
-
-    def _happens(self, event: Event) -> None:
-        """Let an event happen; without a row of the table, or its guard, nothing changes."""
-        row = FOLLOWING.get((self.state, event))
-        if row is None or not self._holds(row.guard):
-            return
-        self.state = row.following
+    def _enters(self, row: Transition) -> None:
         self._was_on = False
-        if event is Event.RESET:
-            self._faults.end()
 
     def _holds(self, guard: str) -> bool:
         stays = self._values[objects.QUICK_STOP_OPTION] == objects.QUICK_STOP_STAYS
@@ -277,4 +227,4 @@ class Drive402:
             return not stays
         if guard == STAYS:
             return stays and self._axis.is_disabled
-        return guard != REU_DISABLED or self._axis.is_disabled
+        return guard not in (REU_DISABLED, CAUSE_GONE) or self._axis.is_disabled

@@ -5,15 +5,16 @@ The numbers are those of the profile. One transition happens in a tick, so that 
 state; only what the REU reports by itself (a fault, the end of a stop) may add another one.
 """
 
-from collections.abc import Mapping
 from enum import Enum
 from typing import NamedTuple
+
+from isa_ros.fieldbus.device.states import DeviceState, following, Transition
 
 FAULT_RESET = 1 << 7
 """Bit of the controlword whose rising edge resets a fault."""
 
 
-class State(Enum):
+class State(DeviceState):
     """States by name and status word; `STATE_MASK` are the bits that tell."""
 
     NOT_READY = ('not ready to switch on', 0x00)
@@ -24,10 +25,6 @@ class State(Enum):
     QUICK_STOP = ('quick stop active', 0x07)
     FAULT_REACTION = ('fault reaction active', 0x0F)
     FAULT = ('fault', 0x08)
-
-    def __init__(self, words: str, bits: int) -> None:
-        self.words = words
-        self.bits = bits
 
 
 STATE_MASK = 0x6F
@@ -64,20 +61,9 @@ COMMANDS = (
     Command(0x86, 0x02, Event.STOP))
 """Every pattern; a word that fits none changes nothing."""
 
-REU_DISABLED, ENDS_OFF, STAYS = (
-    'the REU is disabled', 'option code 0 or 2', 'option code 6, and the REU is disabled')
-
-
-class Transition(NamedTuple):
-    """One row of the table of states."""
-
-    number: int
-    state: State
-    event: Event
-    guard: str
-    """A condition besides the event; '': none."""
-    following: State
-    does: str
+REU_DISABLED, ENDS_OFF, STAYS, CAUSE_GONE = (
+    'the REU is disabled', 'option code 0 or 2', 'option code 6, and the REU is disabled',
+    'its cause is gone')
 
 
 _SHOWN, _OFF = 'nothing', 'the REU is disabled: valve to null'
@@ -112,16 +98,14 @@ TRANSITIONS = (
                  'the reaction of the condition; of the bus and of the following error a quick '
                  'stop') for state in _NO_FAULT),
     Transition(14, State.FAULT_REACTION, Event.REACTION_ENDS, '', State.FAULT, _SHOWN),
-    Transition(15, State.FAULT, Event.RESET, 'its cause is gone', State.SWITCH_ON_DISABLED,
+    Transition(15, State.FAULT, Event.RESET, CAUSE_GONE, State.SWITCH_ON_DISABLED,
                'the fault is forgotten'),
     Transition(16, State.QUICK_STOP, Event.ENABLE, STAYS, State.OPERATION_ENABLED,
                'the REU is enabled again'),
 )
 """Every transition after power-on (0); an event without a row for a state is ignored there."""
 
-FOLLOWING: Mapping[tuple[State, Event], Transition] = {
-    (row.state, row.event): row for row in TRANSITIONS}
-"""The row of each state and event."""
+FOLLOWING = following(TRANSITIONS)
 
 
 def command_of(control: int) -> Event | None:

@@ -5,10 +5,8 @@ In HOLD the REU is enabled with the hold setpoint: of an axis the position measu
 entered. In ACTIVE it has the setpoint of the bus.
 """
 
-from collections.abc import Callable
-
 from isa_ros.core.device import ENABLED, FAULT, FAULT_REACTION, INITIALISING, PRESSURE
-from isa_ros.core.signals import HAS_CLEAR_FAULT, HAS_ENABLE
+from isa_ros.core.signals import HAS_ENABLE
 from isa_ros.fieldbus.device import cia408_objects as objects
 from isa_ros.fieldbus.device.axis import Axis, COUNTS, FULL_SCALE
 from isa_ros.fieldbus.device.cia408_objects import AXIS_POSITION, AXIS_VELOCITY, PQ
@@ -16,64 +14,42 @@ from isa_ros.fieldbus.device.cia408_states import (
     control_of, Event, FAULTS, FOLLOWING, HOLDING, HOLDS, level_of, MAY_ENABLE, R, State,
     WAS_DISABLED, WAS_INIT)
 from isa_ros.fieldbus.device.dictionary import Key
-from isa_ros.fieldbus.device.faults import BUS_LOST, Faults
-from isa_ros.fieldbus.device.manufacturer_area import note_refusal
-from isa_ros.fieldbus.device.objects import Entry, Value
-from isa_ros.fieldbus.device.setpoints import change_mode, enable, Limiter, reference, setpoint
+from isa_ros.fieldbus.device.drive import Drive
+from isa_ros.fieldbus.device.faults import Faults
+from isa_ros.fieldbus.device.objects import Value
+from isa_ros.fieldbus.device.setpoints import reference, setpoint
+from isa_ros.fieldbus.device.states import Transition
 import numpy as np
 
 PRESSURE_CONTROLS, LIMITED = 1 << 8, 1 << 10
 """Further bits of the status word."""
 
 
-class Drive408:
-    """The device of one actuator; ``values`` are those of its dictionary."""
+class Drive408(Drive):
+    """The device of one actuator."""
+
+    following = FOLLOWING
+    fault, reaction_ends, reset = Event.FAULT, Event.REACTION_ENDS, Event.RESET
+    faults, control, reset_bit = FAULTS, objects.CONTROL, R
+    mode_words = 'control mode'
 
     def __init__(self, axis: Axis, values: dict[Key, Value], faults: Faults) -> None:
-        self.state = State.NOT_READY
-        self._axis, self._values, self._faults = axis, values, faults
-        self._modes = objects.modes_of(axis)
-        self._mode = int(values[objects.CONTROL_MODE])
-        self._control = 0
-        self._limiter = Limiter()
-        self._demand = 0.0
+        super().__init__(
+            axis, values, faults, State.NOT_READY, objects.CONTROL_MODE, objects.modes_of(axis),
+            int(values[objects.CONTROL_MODE]))
         self._before = 0
-        self._was_on = self._is_blocked = self._has_start = False
-        self.actuals: dict[Key, Callable[[], Value]] = {
+        self._is_blocked = False
+        self.actuals = {
             objects.STATUS: self.status, objects.CONTROL_MODE: lambda: self._mode,
             objects.PRESSURE_ACTUAL: self._pressure,
             objects.POSITION_DEMAND: lambda: round(self._demand * COUNTS)}
-        """Functions of the values that this device computes."""
 
     # Side of the bus.
-
-    def admit(self, entry: Entry, value: Value) -> None:
-        """Refuse a value that is written: here the choices of the table are enough."""
-
-    def received(self) -> None:
-        """Take what the master has written: the control mode counts at once."""
-        mode = int(self._values[objects.CONTROL_MODE])
-        if mode == self._mode:
-            return
-        if mode in self._modes:
-            self._mode = mode
-            self._demand = self._axis.position
-        else:
-            known = ', '.join(map(str, sorted(self._modes)))
-            note_refusal(
-                self._values, f'control mode {mode} does not exist here; there are {known}')
-
-    def begin_operation(self) -> None:
-        """Enter the state operational; nothing depends on it."""
 
     def end_operation(self, is_lost: bool) -> None:
         """Leave it: hold, and with a fault if the bus is lost."""
         self._values[objects.CONTROL] = control_of(min(self.state.level, State.HOLD.level))
-        if is_lost:
-            self._faults.add(BUS_LOST)
-            self._happens(Event.FAULT)
-            if self._axis.is_off:
-                self._happens(Event.REACTION_ENDS)
+        super().end_operation(is_lost)
 
     def status(self) -> int:
         """Return the status word."""
@@ -104,8 +80,7 @@ class Drive408:
                 self._happens(Event.REACTION_ENDS)
         elif has_tripped:
             self._happens(Event.FAULT)
-            if axis.is_off:
-                self._happens(Event.REACTION_ENDS)
+            self._end_reaction()
         if not has_tripped and not self._faults.has_own:
             self._happens(Event.RESET)
         if self.state in (State.HOLD, State.ACTIVE):
@@ -115,30 +90,17 @@ class Drive408:
             self._was_on = axis.state == ENABLED
 
     def fill_command(self, command: np.void) -> None:
-        """Write the command of a tick."""
-        control = int(self._values[objects.CONTROL])
-        is_reset = bool(control & ~self._control & R)
-        self._control = control
-        kinds, wanted = 0, level_of(control)
+        """Write the `COMMAND` of a tick; what dropped may be enabled again once H has fallen."""
+        wanted = level_of(int(self._values[objects.CONTROL]))
         self._is_blocked &= wanted >= State.HOLD.level
-        if self.state in FAULTS and is_reset:
-            kinds |= self._reset()
-        elif wanted > self.state.level:
-            self._happens(Event.RISE)
-        elif wanted < self.state.level:
-            self._happens(Event.FALL)
-        command['kinds'] = kinds | self._kinds(command)
+        super().fill_command(command)
 
-    def _reset(self) -> int:
-        """Reset a fault: that of the bus at once, that of the REU by a command."""
-        self._faults.clear()
-        if self._axis.state == FAULT:
-            return HAS_CLEAR_FAULT
-        self._happens(Event.RESET)
-        return 0
+    def _obey(self, control: int) -> None:
+        wanted = level_of(control)
+        if wanted != self.state.level:
+            self._happens(Event.RISE if wanted > self.state.level else Event.FALL)
 
     def _kinds(self, command: np.void) -> int:
-        """Write what the state demands of the REU; return the kinds."""
         axis = self._axis
         has_tripped = axis.state in (FAULT_REACTION, FAULT)
         is_off_in_reaction = self.state is State.FAULT_REACTION and not axis.is_on
@@ -150,13 +112,8 @@ class Drive408:
         return HAS_ENABLE
 
     def _operate(self, command: np.void) -> int:
-        wanted, kinds = self._modes[self._mode], 0
-        if self._axis.state != ENABLED:
-            self._demand = self._axis.position
-            kinds = enable(command, wanted)
-        elif int(self._axis.field('device_mode')) != wanted:
-            kinds = change_mode(command, wanted)
-        self._limiter.is_limited = False
+        wanted = self._modes[self._mode]
+        kinds = self._enabled(command, wanted)
         if self._mode in (AXIS_VELOCITY, AXIS_POSITION):
             return kinds | self._axis_setpoint(command)
         return kinds | self._valve_reference(command, wanted)
@@ -184,22 +141,13 @@ class Drive408:
 
     # States.
 
-    def _happens(self, event: Event) -> None:
-        """Let an event happen; without a row whose guard holds nothing changes."""
-        for row in FOLLOWING.get((self.state, event), ()):
-            if self._holds(row.guard):
-                break
-        else:
-            return
+    def _enters(self, row: Transition) -> None:
         if row.event is Event.FAULT:
             self._before = self.state.level
         if row.following in (State.HOLD, State.FAULT_REACTION):
             self._demand = self._axis.position
         if row.state is State.DISABLED:
             self._was_on = False
-        self.state = row.following
-        if event is Event.RESET:
-            self._faults.end()
 
     def _holds(self, guard: str) -> bool:
         if guard == MAY_ENABLE:

@@ -5,16 +5,16 @@ The bits D, H and M of the control word name the state that is wanted; the devic
 transition a tick. The numbers are those of public manuals of valves with this profile.
 """
 
-from collections.abc import Mapping
 from enum import Enum
-from typing import NamedTuple
+
+from isa_ros.fieldbus.device.states import DeviceState, following, Transition
 
 D, H, M, R = 1, 2, 4, 8
 """Bits of control word and status word; R is the reset of a fault, and ready."""
 STATE_MASK = D | H | M | R
 
 
-class State(Enum):
+class State(DeviceState):
     """States by name, bits of the status word, and how far they are: see `level_of`."""
 
     NOT_READY = ('NOT READY', 0, 0)
@@ -26,11 +26,6 @@ class State(Enum):
     FAULT_DISABLED = ('FAULT_DISABLED', D, 1)
     FAULT_HOLD = ('FAULT_HOLD', H | D, 2)
     FAULT_REACTION = ('FAULT_REACTION', M | H | D, 3)
-
-    def __init__(self, words: str, bits: int, level: int) -> None:
-        self.words = words
-        self.bits = bits
-        self.level = level
 
 
 FAULTS = (State.FAULT_INIT, State.FAULT_DISABLED, State.FAULT_HOLD)
@@ -54,18 +49,6 @@ class Event(Enum):
 MAY_ENABLE, HOLDS, WAS_DISABLED, WAS_INIT, CAUSE_GONE = (
     'the REU is disabled', 'the REU holds', 'the REU is off, it was DISABLED or above',
     'the REU is off, it was INIT', 'its cause is gone')
-
-
-class Transition(NamedTuple):
-    """One row of the table of states."""
-
-    number: str
-    state: State
-    event: Event
-    guard: str
-    """A condition besides the event; '': none."""
-    following: State
-    does: str
 
 
 _SHOWN, _OFF = 'nothing', 'the REU is disabled: valve to null'
@@ -102,11 +85,7 @@ TRANSITIONS = (
 )
 """Every transition after power-on (0); an event without a row for a state is ignored there."""
 
-FOLLOWING: Mapping[tuple[State, Event], tuple[Transition, ...]] = {
-    (row.state, row.event): tuple(
-        other for other in TRANSITIONS if (other.state, other.event) == (row.state, row.event))
-    for row in TRANSITIONS}
-"""The rows of each state and event; the first whose guard holds counts."""
+FOLLOWING = following(TRANSITIONS)
 
 
 def level_of(control: int) -> int:

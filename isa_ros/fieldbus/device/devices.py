@@ -10,7 +10,7 @@ from isa_ros.core.conditions import BITS
 from isa_ros.core.suggest import alternatives
 from isa_ros.errors import ConfigError
 from isa_ros.fieldbus.device import cia402_objects, cia408_objects
-from isa_ros.fieldbus.device.actuator_device import ActuatorDevice, Drive
+from isa_ros.fieldbus.device.actuator_device import ActuatorDevice
 from isa_ros.fieldbus.device.axis import Axis
 from isa_ros.fieldbus.device.bus_device import BusDevice, Identity, VENDOR
 from isa_ros.fieldbus.device.canopen_objects import communication_objects
@@ -19,6 +19,7 @@ from isa_ros.fieldbus.device.cia408 import Drive408
 from isa_ros.fieldbus.device.communication_area import (
     error_objects, ethercat_objects, identity_objects, pdo_objects)
 from isa_ros.fieldbus.device.dictionary import Key
+from isa_ros.fieldbus.device.drive import Drive
 from isa_ros.fieldbus.device.faults import Faults
 from isa_ros.fieldbus.device.manufacturer_area import manufacturer_objects
 from isa_ros.fieldbus.device.objects import Object, ObjectTable, Value

@@ -1,0 +1,146 @@
+"""What the profiles have in common: a drive on top of the REU's own device, by a table of states."""
+
+from collections.abc import Callable, Mapping
+from enum import Enum
+
+from isa_ros.core.device import ENABLED, FAULT
+from isa_ros.core.signals import HAS_CLEAR_FAULT
+from isa_ros.fieldbus.device.axis import Axis
+from isa_ros.fieldbus.device.dictionary import Key
+from isa_ros.fieldbus.device.faults import BUS_LOST, Faults
+from isa_ros.fieldbus.device.manufacturer_area import note_refusal
+from isa_ros.fieldbus.device.objects import Entry, Value
+from isa_ros.fieldbus.device.setpoints import change_mode, enable, Limiter
+from isa_ros.fieldbus.device.states import DeviceState, Following, Transition
+import numpy as np
+
+
+class Drive:
+    """
+    A profile: what control words and targets mean for the REU.
+
+    ``values`` are those of the dictionary; ``modes`` are those of the actuator, with the mode of
+    the REU for each; ``mode`` is the first.
+    """
+
+    following: Following
+    fault: Enum
+    reaction_ends: Enum
+    reset: Enum
+    """Events of the table."""
+    faults: tuple[DeviceState, ...]
+    """States that a reset ends."""
+    control: Key
+    reset_bit: int
+    """Of the control word; a reset is its rising edge."""
+    mode_words = 'mode'
+
+    def __init__(
+            self, axis: Axis, values: dict[Key, Value], faults: Faults, state: DeviceState,
+            mode_key: Key, modes: Mapping[int, int], mode: int) -> None:
+        self.state = state
+        self.actuals: dict[Key, Callable[[], Value]] = {}
+        """Functions of the values that this drive computes."""
+        self._axis, self._values, self._faults = axis, values, faults
+        self._mode_key, self._modes, self._mode = mode_key, modes, mode
+        self._control = 0
+        self._limiter = Limiter()
+        self._demand = 0.0
+        self._was_on = self._has_start = False
+
+    # Side of the bus.
+
+    def admit(self, entry: Entry, value: Value) -> None:
+        """Refuse a value that is written; raises `SdoAbort`. The choices of the table hold."""
+
+    def received(self) -> None:
+        """Take what the master has written: the mode counts at once."""
+        mode = int(self._values[self._mode_key])
+        if mode == self._mode:
+            return
+        if mode in self._modes:
+            self._mode = mode
+            self._demand = self._axis.position
+        else:
+            note_refusal(self._values, self._refusal(mode))
+
+    def _refusal(self, mode: int) -> str:
+        known = ', '.join(map(str, sorted(self._modes)))
+        return f'{self.mode_words} {mode} does not exist here; there are {known}'
+
+    def begin_operation(self) -> None:
+        """Enter the state operational of the bus."""
+
+    def end_operation(self, is_lost: bool) -> None:
+        """Leave the state operational of the bus, with a fault if it is lost."""
+        if is_lost:
+            self._faults.add(BUS_LOST)
+            self._happens(self.fault)
+            self._end_reaction()
+
+    # Side of the run.
+
+    def take_sample(self) -> None:
+        """Follow the new sample of the axis."""
+        raise NotImplementedError
+
+    def fill_command(self, command: np.void) -> None:
+        """Write the `COMMAND` of a tick."""
+        control = int(self._values[self.control])
+        is_reset = bool(control & ~self._control & self.reset_bit)
+        self._control = control
+        kinds = 0
+        if is_reset and self.state in self.faults:
+            kinds = self._reset()
+        else:
+            self._obey(control)
+        command['kinds'] = kinds | self._kinds(command)
+
+    def _obey(self, control: int) -> None:
+        """Let happen what a control word wants."""
+        raise NotImplementedError
+
+    def _kinds(self, command: np.void) -> int:
+        """Write what the state demands of the REU; return the kinds."""
+        raise NotImplementedError
+
+    def _reset(self) -> int:
+        """Reset a fault: that of the bus at once, that of the REU by a command."""
+        self._faults.clear()
+        if self._axis.state == FAULT:
+            return HAS_CLEAR_FAULT
+        self._happens(self.reset)
+        return 0
+
+    def _enabled(self, command: np.void, wanted: int) -> int:
+        """Enable the REU in a mode, or change to it; 0: any. Return the kinds."""
+        self._limiter.is_limited = False
+        if self._axis.state != ENABLED:
+            self._demand = self._axis.position
+            return enable(command, wanted)
+        if wanted and int(self._axis.field('device_mode')) != wanted:
+            return change_mode(command, wanted)
+        return 0
+
+    # States.
+
+    def _end_reaction(self) -> None:
+        if self._axis.is_off:
+            self._happens(self.reaction_ends)
+
+    def _happens(self, event: Enum) -> None:
+        """Let an event happen; without a row whose guard holds nothing changes."""
+        for row in self.following.get((self.state, event), ()):
+            if self._holds(row.guard):
+                self._enters(row)
+                self.state = row.following
+                if event is self.reset:
+                    self._faults.end()
+                return
+
+    def _holds(self, guard: str) -> bool:
+        """Return whether a guard of the table holds."""
+        raise NotImplementedError
+
+    def _enters(self, row: Transition) -> None:
+        """Note that a row of the table takes place."""
