@@ -5,24 +5,16 @@ Block transfers are refused by their code, as CiA 301 allows: a device without t
 ``unknown command``. A request of other than 8 bytes is no request.
 """
 
-from dataclasses import dataclass, field
-import struct
 from typing import Protocol
 
-from isa_ros.fieldbus.device.abort import (
-    OUT_OF_MEMORY, SdoAbort, TOGGLE_BIT, TOO_LONG, TOO_SHORT, UNKNOWN_COMMAND)
+from isa_ros.fieldbus.device.abort import SdoAbort, UNKNOWN_COMMAND
+from isa_ros.fieldbus.device.sdo_transfer import (
+    ABORT, aborted, COMMAND_BITS, DOWNLOAD, DOWNLOAD_SEGMENT, DOWNLOADED, DOWNLOADED_SEGMENT,
+    EXPEDITED, EXPEDITED_BYTES, HAS_SIZE, HEAD, LEAST_SEGMENT, refuse_size, TOGGLE, Transfer,
+    UPLOAD, UPLOAD_SEGMENT, uploaded)
 
 SIZE = 8                # bytes of every request and answer
 MOST_BYTES = 4096       # of a value that is written
-SEGMENT_BYTES = 7
-
-# Specifiers in bits 5 to 7 of the first byte: of requests | of answers.
-DOWNLOAD_SEGMENT, DOWNLOAD, UPLOAD, UPLOAD_SEGMENT, ABORT = range(5)
-_ANSWER_UPLOAD_SEGMENT, _ANSWER_DOWNLOAD_SEGMENT, _ANSWER_UPLOAD, _ANSWER_DOWNLOAD = range(4)
-_TOGGLE = 0x10
-_EXPEDITED, _HAS_SIZE, _IS_LAST = 0x02, 0x01, 0x01
-_HEAD = struct.Struct('<BHB')
-_ABORT = struct.Struct('<BHBI')
 
 
 class Dictionary(Protocol):
@@ -38,24 +30,12 @@ class Dictionary(Protocol):
         """Return the bytes of an entry's type, 0 for a text; raises `SdoAbort`."""
 
 
-@dataclass
-class _Transfer:
-    """A segmented transfer on its way."""
-
-    index: int
-    subindex: int
-    is_download: bool
-    data: bytearray = field(default_factory=bytearray)  # to send | received
-    expected: int | None = None                         # bytes of a download, if announced
-    toggle: int = 0
-
-
 class SdoServer:
     """Answers the requests of one client."""
 
     def __init__(self, dictionary: Dictionary) -> None:
         self._dictionary = dictionary
-        self._transfer: _Transfer | None = None
+        self._transfer: Transfer | None = None
 
     def reset(self) -> None:
         """Forget a transfer on its way."""
@@ -65,91 +45,70 @@ class SdoServer:
         """Return the answer to a request of 8 bytes; None: there is none."""
         if len(request) != SIZE:
             return None
-        specifier = request[0] >> 5
-        if specifier == ABORT:
+        command = request[0] >> COMMAND_BITS
+        if command == ABORT:
             self._transfer = None
             return None
         try:
-            if specifier == DOWNLOAD:
+            if command == DOWNLOAD:
                 return self._download(request)
-            if specifier == UPLOAD:
+            if command == UPLOAD:
                 return self._upload(request)
-            if specifier == DOWNLOAD_SEGMENT:
-                return self._download_segment(request)
-            if specifier == UPLOAD_SEGMENT:
-                return self._upload_segment(request)
+            if command in (DOWNLOAD_SEGMENT, UPLOAD_SEGMENT):
+                return self._segment(request, command == DOWNLOAD_SEGMENT)
             raise SdoAbort(UNKNOWN_COMMAND)
         except SdoAbort as refused:
-            return self._aborted(request, refused.code)
+            return self._aborted(request, refused)
 
     def _download(self, request: bytes) -> bytes:
-        command, index, subindex = _HEAD.unpack_from(request)
+        command, index, subindex = HEAD.unpack_from(request)
         self._transfer = None
-        if command & _EXPEDITED:
-            if command & _HAS_SIZE:
-                size = 4 - (command >> 2 & 3)
+        if command & EXPEDITED:
+            if command & HAS_SIZE:
+                size = EXPEDITED_BYTES - (command >> 2 & 3)
             else:
-                size = min(4, self._dictionary.size(index, subindex) or 4)
+                size = min(EXPEDITED_BYTES,
+                           self._dictionary.size(index, subindex) or EXPEDITED_BYTES)
             self._dictionary.write(index, subindex, request[4:4 + size])
         else:
             self._dictionary.size(index, subindex)  # refuses what does not exist
-            expected = int.from_bytes(request[4:], 'little') if command & _HAS_SIZE else None
-            if expected is not None and expected > MOST_BYTES:
-                raise SdoAbort(OUT_OF_MEMORY)
-            self._transfer = _Transfer(index, subindex, is_download=True, expected=expected)
-        return _padded(_HEAD.pack(_ANSWER_DOWNLOAD << 5, index, subindex))
-
-    def _download_segment(self, request: bytes) -> bytes:
-        transfer = self._continued(request[0], is_download=True)
-        transfer.data += request[1:SIZE - (request[0] >> 1 & 7)]
-        limit = MOST_BYTES if transfer.expected is None else transfer.expected
-        if len(transfer.data) > limit:
-            raise SdoAbort(OUT_OF_MEMORY if transfer.expected is None else TOO_LONG)
-        if request[0] & _IS_LAST:
-            if transfer.expected is not None and len(transfer.data) < transfer.expected:
-                raise SdoAbort(TOO_SHORT)
-            self._dictionary.write(transfer.index, transfer.subindex, bytes(transfer.data))
-            self._transfer = None
-        return _padded(bytes([_ANSWER_DOWNLOAD_SEGMENT << 5 | request[0] & _TOGGLE]))
+            expected = int.from_bytes(request[4:], 'little') if command & HAS_SIZE else None
+            refuse_size(expected or 0, MOST_BYTES)
+            self._transfer = Transfer(
+                index, subindex, is_download=True, expected=expected, most=MOST_BYTES)
+        return _padded(HEAD.pack(DOWNLOADED << COMMAND_BITS, index, subindex))
 
     def _upload(self, request: bytes) -> bytes:
-        _, index, subindex = _HEAD.unpack_from(request)
+        _, index, subindex = HEAD.unpack_from(request)
         self._transfer = None
         data = self._dictionary.read(index, subindex)
-        if 0 < len(data) <= 4:
-            command = _ANSWER_UPLOAD << 5 | 4 - len(data) << 2 | _EXPEDITED | _HAS_SIZE
-            return _padded(_HEAD.pack(command, index, subindex) + data)
-        self._transfer = _Transfer(index, subindex, is_download=False, data=bytearray(data))
-        return _HEAD.pack(_ANSWER_UPLOAD << 5 | _HAS_SIZE, index, subindex) \
-            + len(data).to_bytes(4, 'little')
+        if not 0 < len(data) <= EXPEDITED_BYTES:
+            self._transfer = Transfer(index, subindex, data, is_download=False)
+        return uploaded(index, subindex, data)
 
-    def _upload_segment(self, request: bytes) -> bytes:
-        transfer = self._continued(request[0], is_download=False)
-        segment = bytes(transfer.data[:SEGMENT_BYTES])
-        del transfer.data[:SEGMENT_BYTES]
-        command = request[0] & _TOGGLE | SEGMENT_BYTES - len(segment) << 1
-        if not transfer.data:
-            command |= _IS_LAST
-            self._transfer = None
-        return _padded(bytes([_ANSWER_UPLOAD_SEGMENT << 5 | command]) + segment)
-
-    def _continued(self, command: int, *, is_download: bool) -> _Transfer:
+    def _segment(self, request: bytes, is_download: bool) -> bytes:
         transfer = self._transfer
-        if transfer is None or transfer.is_download != is_download:
+        if transfer is None:
             raise SdoAbort(UNKNOWN_COMMAND)
-        if command & _TOGGLE != transfer.toggle:
-            raise SdoAbort(TOGGLE_BIT)
-        transfer.toggle ^= _TOGGLE
-        return transfer
+        transfer.refuse_other(request[0])
+        if not is_download:
+            answer = transfer.next(request[0], LEAST_SEGMENT)
+            if not transfer.data:
+                self._transfer = None
+            return answer
+        if transfer.take(request, request[0] >> 1 & 7):
+            self._dictionary.write(transfer.index, transfer.subindex, bytes(transfer.data))
+            self._transfer = None
+        return _padded(bytes([DOWNLOADED_SEGMENT << COMMAND_BITS | request[0] & TOGGLE]))
 
-    def _aborted(self, request: bytes, code: int) -> bytes:
+    def _aborted(self, request: bytes, refused: SdoAbort) -> bytes:
         index, subindex = 0, 0
         if self._transfer is not None:
             index, subindex = self._transfer.index, self._transfer.subindex
-        elif request[0] >> 5 not in (DOWNLOAD_SEGMENT, UPLOAD_SEGMENT):
-            _, index, subindex = _HEAD.unpack_from(request)
+        elif request[0] >> COMMAND_BITS not in (DOWNLOAD_SEGMENT, UPLOAD_SEGMENT):
+            _, index, subindex = HEAD.unpack_from(request)
         self._transfer = None
-        return _ABORT.pack(ABORT << 5, index, subindex, code)
+        return aborted(index, subindex, refused)
 
 
 def _padded(answer: bytes) -> bytes:

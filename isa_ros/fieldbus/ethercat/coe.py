@@ -11,6 +11,10 @@ import struct
 from isa_ros.fieldbus.device import abort
 from isa_ros.fieldbus.device.abort import SdoAbort
 from isa_ros.fieldbus.device.bus_device import BusDevice, Emergency
+from isa_ros.fieldbus.device.sdo_transfer import (
+    ABORT, aborted, COMMAND_BITS, DOWNLOAD, DOWNLOAD_SEGMENT, DOWNLOADED, DOWNLOADED_SEGMENT,
+    EXPEDITED, EXPEDITED_BYTES, HAS_SIZE, INITIATE, LEAST_SEGMENT, refuse_size, TOGGLE, Transfer,
+    UPLOAD, UPLOAD_SEGMENT, uploaded)
 from isa_ros.fieldbus.ethercat.sdo_information import answer_information
 from isa_ros.fieldbus.ethercat.slave_mailbox import (
     CAPACITY, MailError, TOO_SHORT, UNSUPPORTED_SERVICE)
@@ -19,31 +23,10 @@ _SERVICE = struct.Struct('<H')
 _SERVICE_BITS = 12
 EMERGENCY, SDO_REQUEST, SDO_RESPONSE, SDO_INFORMATION = 1, 2, 3, 8
 """Services; those of PDOs by mail (4 to 7) are refused."""
-_INITIATE = struct.Struct('<BHBI')
-_COMMAND_BITS = 5
-_DOWNLOAD_SEGMENT, _DOWNLOAD, _UPLOAD, _UPLOAD_SEGMENT, _ABORT = range(5)
-"""Commands of a master, in the top three bits."""
-_UPLOADED, _DOWNLOADED, _DOWNLOADED_SEGMENT, _UPLOADED_SEGMENT = 2, 3, 1, 0
-"""Answers of a slave, in the top three bits."""
-_COMPLETE, _TOGGLE = 0x10, 0x10
-_EXPEDITED, _HAS_SIZE = 0x02, 0x01
-_LAST_SEGMENT = 0x01
-_EXPEDITED_SIZE, _LEAST_SEGMENT = 4, 7
+_COMPLETE = 0x10
+"""Bit of a command: all entries of an object."""
 MOST_BYTES = 0x10000
 """Longest object that a master can download."""
-
-
-class _Transfer:
-    """A transfer in segments that is under way."""
-
-    def __init__(self, index: int, subindex: int, is_complete: bool, content: bytes,
-                 size: int) -> None:
-        self.index, self.subindex, self.is_complete = index, subindex, is_complete
-        self.content = bytearray(content)
-        """What is still to upload, or has been downloaded so far."""
-        self.size = size
-        """Bytes of a download when it is complete; 0 for an upload."""
-        self.toggle = 0
 
 
 class CanOverEthercat:
@@ -53,7 +36,7 @@ class CanOverEthercat:
         self._device, self._table = device, device.table.on('ethercat')
         self.is_preoperational = True
         """Whether mappings may be written."""
-        self._transfer: _Transfer | None = None
+        self._transfer: Transfer | None = None
 
     def reset(self) -> None:
         """Give up a transfer that is under way."""
@@ -80,23 +63,23 @@ class CanOverEthercat:
         """Return the answer to an SDO: a response, an abort, or nothing to an abort."""
         if not request:
             raise MailError(TOO_SHORT)
-        command = request[0] >> _COMMAND_BITS
-        if command in (_DOWNLOAD_SEGMENT, _UPLOAD_SEGMENT):
-            return [self._segment(command, request)]
-        if len(request) < _INITIATE.size:
+        command = request[0] >> COMMAND_BITS
+        if command in (DOWNLOAD_SEGMENT, UPLOAD_SEGMENT):
+            return [self._segment(request, command == DOWNLOAD_SEGMENT)]
+        if len(request) < INITIATE.size:
             raise MailError(TOO_SHORT)
         self._transfer = None
-        if command == _ABORT:
+        if command == ABORT:
             return []
-        _, index, subindex, size = _INITIATE.unpack_from(request)
+        _, index, subindex, size = INITIATE.unpack_from(request)
         try:
-            if command == _UPLOAD:
+            if command == UPLOAD:
                 return [self._upload(request[0], index, subindex)]
-            if command == _DOWNLOAD:
+            if command == DOWNLOAD:
                 return [self._download(request, index, subindex, size)]
             raise SdoAbort(abort.UNKNOWN_COMMAND)
         except SdoAbort as refused:
-            return [_aborted(index, subindex, refused)]
+            return [_service(SDO_REQUEST) + aborted(index, subindex, refused)]
 
     def _upload(self, command: int, index: int, subindex: int) -> bytes:
         """
@@ -107,16 +90,12 @@ class CanOverEthercat:
         """
         is_complete = bool(command & _COMPLETE)
         content = self._read(index, subindex, is_complete)
-        flags = _UPLOADED << _COMMAND_BITS | (command & _COMPLETE) | _HAS_SIZE
-        if len(content) <= _EXPEDITED_SIZE and content:
-            unused = _EXPEDITED_SIZE - len(content)
-            return _response(struct.pack(
-                '<BHB', flags | _EXPEDITED | unused << 2, index, subindex) + content.ljust(
-                    _EXPEDITED_SIZE, b'\0'))
-        head = _INITIATE.pack(flags, index, subindex, len(content))
+        head = uploaded(index, subindex, content, command & _COMPLETE)
+        if 0 < len(content) <= EXPEDITED_BYTES:
+            return _response(head)
         if _SERVICE.size + len(head) + len(content) <= CAPACITY:
             return _response(head + content)
-        self._transfer = _Transfer(index, subindex, is_complete, content, 0)
+        self._transfer = Transfer(index, subindex, content, is_download=False)
         return _response(head)
 
     def _read(self, index: int, subindex: int, is_complete: bool) -> bytes:
@@ -130,19 +109,20 @@ class CanOverEthercat:
         """Write an entry or object, or begin to collect its segments."""
         command = request[0]
         is_complete = bool(command & _COMPLETE)
-        if command & _EXPEDITED:
-            unused = command >> 2 & 3 if command & _HAS_SIZE else 0
-            content = request[4:_INITIATE.size - unused]
+        if command & EXPEDITED:
+            unused = command >> 2 & 3 if command & HAS_SIZE else 0
+            content = request[4:INITIATE.size - unused]
         else:
-            if size > MOST_BYTES:
-                raise SdoAbort(abort.OUT_OF_MEMORY)
-            content = request[_INITIATE.size:_INITIATE.size + size]
+            refuse_size(size, MOST_BYTES)
+            content = request[INITIATE.size:INITIATE.size + size]
             if len(content) < size:
-                self._transfer = _Transfer(index, subindex, is_complete, content, size)
+                self._transfer = Transfer(
+                    index, subindex, content, is_download=True, expected=size,
+                    is_complete=is_complete)
         if self._transfer is None:
             self._write(index, subindex, is_complete, content)
-        return _response(_INITIATE.pack(
-            _DOWNLOADED << _COMMAND_BITS | command & _COMPLETE, index, subindex, 0))
+        return _response(INITIATE.pack(
+            DOWNLOADED << COMMAND_BITS | command & _COMPLETE, index, subindex, 0))
 
     def _write(self, index: int, subindex: int, is_complete: bool, content: bytes) -> None:
         if not is_complete:
@@ -155,49 +135,36 @@ class CanOverEthercat:
             content = self._device.read_all(index)[:2] + content
         self._device.write_all(index, content, is_preoperational=self.is_preoperational)
 
-    def _segment(self, command: int, request: bytes) -> bytes:
+    def _segment(self, request: bytes, is_download: bool) -> bytes:
         """Answer a segment; one that does not belong to the transfer ends it."""
         transfer = self._transfer
         index, subindex = (transfer.index, transfer.subindex) if transfer else (0, 0)
         try:
-            if transfer is None or (command == _UPLOAD_SEGMENT) != (transfer.size == 0):
+            if transfer is None:
                 raise SdoAbort(abort.UNKNOWN_COMMAND)
-            if request[0] & _TOGGLE != transfer.toggle:
-                raise SdoAbort(abort.TOGGLE_BIT)
-            return (self._next_upload(transfer) if command == _UPLOAD_SEGMENT
-                    else self._next_download(transfer, request))
+            transfer.refuse_other(request[0])
+            return _response(self._taken(transfer, request) if is_download
+                             else self._next(transfer, request))
         except SdoAbort as refused:
             self._transfer = None
-            return _aborted(index, subindex, refused)
+            return _service(SDO_REQUEST) + aborted(index, subindex, refused)
 
-    def _next_upload(self, transfer: _Transfer) -> bytes:
+    def _next(self, transfer: Transfer, request: bytes) -> bytes:
         """Return the next part of an upload."""
-        room = CAPACITY - _SERVICE.size - 1
-        part = bytes(transfer.content[:room])
-        del transfer.content[:room]
-        unused = max(0, _LEAST_SEGMENT - len(part))
-        flags = _UPLOADED_SEGMENT << _COMMAND_BITS | transfer.toggle | unused << 1
-        if not transfer.content:
-            flags |= _LAST_SEGMENT
+        answer = transfer.next(request[0], CAPACITY - _SERVICE.size - 1)
+        if not transfer.data:
             self._transfer = None
-        transfer.toggle ^= _TOGGLE
-        return _response(bytes([flags]) + part.ljust(_LEAST_SEGMENT, b'\0'))
+        return answer
 
-    def _next_download(self, transfer: _Transfer, request: bytes) -> bytes:
+    def _taken(self, transfer: Transfer, request: bytes) -> bytes:
         """Take the next part of a download; the last one is written."""
-        unused = request[0] >> 1 & 7 if len(request) == 1 + _LEAST_SEGMENT else 0
-        transfer.content += request[1:len(request) - unused]
-        if len(transfer.content) > transfer.size:
-            raise SdoAbort(abort.TOO_LONG)
-        if request[0] & _LAST_SEGMENT:
-            if len(transfer.content) < transfer.size:
-                raise SdoAbort(abort.TOO_SHORT)
+        is_least = len(request) == 1 + LEAST_SEGMENT
+        if transfer.take(request, request[0] >> 1 & 7 if is_least else 0):
             self._write(transfer.index, transfer.subindex, transfer.is_complete,
-                        bytes(transfer.content))
+                        bytes(transfer.data))
             self._transfer = None
-        flags = _DOWNLOADED_SEGMENT << _COMMAND_BITS | transfer.toggle
-        transfer.toggle ^= _TOGGLE
-        return _response(bytes([flags]).ljust(_INITIATE.size, b'\0'))
+        flags = DOWNLOADED_SEGMENT << COMMAND_BITS | request[0] & TOGGLE
+        return bytes([flags]).ljust(INITIATE.size, b'\0')
 
 
 def _service(number: int) -> bytes:
@@ -206,9 +173,3 @@ def _service(number: int) -> bytes:
 
 def _response(content: bytes) -> bytes:
     return _service(SDO_RESPONSE) + content
-
-
-def _aborted(index: int, subindex: int, refused: SdoAbort) -> bytes:
-    """Return the abort of a transfer, which is a request in either direction."""
-    return _service(SDO_REQUEST) + _INITIATE.pack(
-        _ABORT << _COMMAND_BITS, index, subindex, refused.code)
