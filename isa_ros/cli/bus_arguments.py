@@ -1,7 +1,7 @@
 """The arguments of `isa bus`: a bus, or `describe`."""
 
 import argparse
-from pathlib import Path
+from typing import Any
 
 from isa_ros.cli.argument_types import count, file_to_write, positive
 from isa_ros.cli.run_arguments import run_options
@@ -14,43 +14,29 @@ DESCRIBE = 'describe'
 def bus(parser: argparse.ArgumentParser) -> None:
     """Add the buses as commands of their own."""
     below = parser.add_subparsers(metavar='BUS', dest='bus', required=True)
-    for name, (add_arguments, summary) in _BUSES.items():
-        own = below.add_parser(name, help=summary, description=summary)
-        add_arguments(own)
-        own.add_argument(
-            '--debug', action='store_true', default=argparse.SUPPRESS,
-            help='show the traceback of an error')
+    for name, row in request.BUSES.items():
+        own = _command(below, name, f'serve {row.serves}')
+        _run(own)
+        for argument in row.arguments:
+            own.add_argument(
+                f'--{argument.name.replace("_", "-")}', metavar=argument.metavar,
+                type=count if argument.kind is int else argument.kind, help=argument.meaning,
+                required=argument.default is None, default=argument.default)
+        _debug(own)
+    own = _command(below, DESCRIBE, 'write what a master wants to know of the devices')
+    _describe(own)
+    _debug(own)
 
 
-def _ethercat(parser: argparse.ArgumentParser) -> None:
-    _run(parser)
-    parser.add_argument(
-        '--interface', required=True, metavar='IF',
-        help='network interface of the ring, for example one end of a veth pair')
+def _command(below: Any, name: str, summary: str) -> argparse.ArgumentParser:
+    added: argparse.ArgumentParser = below.add_parser(name, help=summary, description=summary)
+    return added
 
 
-def _can(parser: argparse.ArgumentParser) -> None:
-    _run(parser)
+def _debug(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
-        '--interface', required=True, metavar='NAME',
-        help='interface of python-can: udp_multicast, socketcan, slcan, ...')
-    parser.add_argument('--channel', required=True, help='of that interface')
-    parser.add_argument(
-        '--bitrate', type=count, default=request.OF_THE_WIRE, metavar='BIT/S',
-        help='of the bus (default: 1000000)')
-    parser.add_argument(
-        '--first-node', type=count, default=1, metavar='N',
-        help='number of the first actuator (default: %(default)s)')
-
-
-def _serial(parser: argparse.ArgumentParser) -> None:
-    _run(parser)
-    parser.add_argument(
-        '--path', type=Path, required=True, metavar='FILE',
-        help='serial device, or a link to make to a pseudo terminal')
-    parser.add_argument(
-        '--baud', type=count, default=request.OF_THE_WIRE, metavar='BIT/S',
-        help='of the line (default: that of docs/link.md)')
+        '--debug', action='store_true', default=argparse.SUPPRESS,
+        help='show the traceback of an error')
 
 
 def _describe(parser: argparse.ArgumentParser) -> None:
@@ -85,12 +71,3 @@ def _profile(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         '--profile', choices=request.PROFILES, default=request.PROFILES[0],
         help='of the devices (default: %(default)s)')
-
-
-_BUSES = {
-    request.ETHERCAT: (_ethercat, 'serve an EtherCAT master on a network interface'),
-    request.CANOPEN: (_can, 'serve a CANopen master on a CAN interface'),
-    request.MIT: (_can, 'serve a master of MIT-mode motors on a CAN interface'),
-    request.SERIAL: (_serial, 'serve a master on a serial line'),
-    DESCRIBE: (_describe, 'write what a master wants to know of the devices'),
-}

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 from isa_ros.cli.bus_arguments import DESCRIBE
 from isa_ros.cli.commands import print_line, recorded, simulating
 from isa_ros.config.paths import CONFIG, find
-from isa_ros.fieldbus.request import BusRequest
+from isa_ros.fieldbus.request import BUSES, BusRequest
 from isa_ros.run.options import request_of_arguments
 
 if TYPE_CHECKING:
@@ -23,13 +23,11 @@ def bus(options: Namespace) -> bool:
 def bus_request_of(options: Namespace) -> BusRequest:
     """Return the request of the command line."""
     values = vars(options)
-    own = {name: values[name] for name in (
-        'interface', 'channel', 'bitrate', 'first_node', 'path', 'baud')
-           if name in values}
+    own = {argument.name: values[argument.name] for argument in BUSES[options.bus].arguments}
     return BusRequest(
         run=request_of_arguments(values, in_process=True, is_alone=options.is_alone),
         bus=options.bus, pace=options.pace, profile=options.profile,
-        watchdog_ms=options.watchdog_ms, has_ros=not options.no_ros, **own)
+        watchdog_ms=options.watchdog_ms, has_ros=not options.no_ros, arguments=own)
 
 
 @simulating

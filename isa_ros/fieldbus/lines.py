@@ -1,30 +1,18 @@
-"""The kinds of buses; add a new one here. A run imports the modules of its own bus only."""
+"""The line of a request: what its bus has under the names that `isa_ros.fieldbus.request` says."""
 
 from collections.abc import Sequence
+from importlib import import_module
+from typing import Any
 
 from isa_ros.fieldbus.device.bus_device import BusDevice
-from isa_ros.fieldbus.request import BusRequest, CANOPEN, ETHERCAT, MIT, SERIAL
+from isa_ros.fieldbus.request import BUSES, BusRequest
 from isa_ros.fieldbus.session import OpenLine
 
 
 def line_of(request: BusRequest) -> OpenLine:
     """Return what opens the line of a request; it raises `ConfigError` where it cannot."""
-    if request.bus == ETHERCAT:
-        from isa_ros.fieldbus.ethercat.line import ethercat_line
-        return lambda devices, step_ns: ethercat_line(devices, request.interface, step_ns)
-    if request.bus == CANOPEN:
-        from isa_ros.fieldbus.canopen.line import canopen_line
-        return lambda devices, step_ns: canopen_line(
-            devices, request.interface, request.channel, step_ns, bitrate=request.bitrate,
-            first_node=request.first_node)
-    if request.bus == MIT:
-        from isa_ros.fieldbus.canopen.mit_line import mit_line
-        return lambda devices, step_ns: mit_line(
-            devices, request.interface, request.channel, step_ns, bitrate=request.bitrate,
-            first_node=request.first_node)
-    from isa_ros.fieldbus.serial.line import serial_line
-    return lambda devices, step_ns: serial_line(
-        devices, request.path, request.baud, step_ns)
+    open_line = getattr(_module(request), f'{request.bus}_line')
+    return lambda devices, step_ns: open_line(devices, step_ns=step_ns, **request.arguments)
 
 
 def refuse_unusable(request: BusRequest, devices: Sequence[BusDevice], step_ns: int) -> None:
@@ -40,23 +28,8 @@ def refuse_unusable(request: BusRequest, devices: Sequence[BusDevice], step_ns: 
         of a tick do not fit.
 
     """
-    if request.bus == ETHERCAT:
-        from isa_ros.fieldbus.ethercat.interface import open_interface
-        open_interface(request.interface).close()
-    elif request.bus == SERIAL:
-        from isa_ros.fieldbus.serial.line import default_baud, refuse_overfull
-        from isa_ros.fieldbus.serial.port import SerialPort
-        refuse_overfull(devices, request.baud or default_baud(), step_ns)
-        SerialPort(request.path, request.baud or default_baud()).close()
-    else:
-        _refuse_can(request, devices, step_ns)
+    _module(request).refuse_unusable(devices, step_ns=step_ns, **request.arguments)
 
 
-def _refuse_can(request: BusRequest, devices: Sequence[BusDevice], step_ns: int) -> None:
-    from isa_ros.fieldbus.canopen.line import default_bitrate, planned_line
-    from isa_ros.fieldbus.canopen.mit_line import refuse_motors
-    from isa_ros.fieldbus.canopen.port import CanPort
-    bitrate = request.bitrate or default_bitrate()
-    refuse = refuse_motors if request.bus == MIT else planned_line
-    refuse(devices, step_ns, bitrate, request.first_node)
-    CanPort(request.interface, request.channel, bitrate).close()
+def _module(request: BusRequest) -> Any:
+    return import_module(f'isa_ros.fieldbus.{BUSES[request.bus].module}')

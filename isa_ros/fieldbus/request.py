@@ -1,15 +1,15 @@
 """
-The options of `isa bus` besides those of a run.
+The buses of `isa bus`, a row each, and its options besides those of a run.
 
 This module imports neither ROS nor numba: `isa --help` imports it.
 """
 
-from dataclasses import dataclass
+from collections.abc import Mapping
+from dataclasses import dataclass, field
 from pathlib import Path
+from typing import Any, NamedTuple
 
 from isa_ros.run.options import Request
-
-ETHERCAT, CANOPEN, MIT, SERIAL = 'ethercat', 'canopen', 'mit', 'serial'
 
 FRAME, REAL_TIME = 'frame', 'real_time'
 PACES = (FRAME, REAL_TIME)
@@ -21,25 +21,62 @@ OF_THE_WIRE = 0
 WATCHDOG_MS = 100.0
 
 
+class Argument(NamedTuple):
+    """An argument of a bus: of the command line, and of its functions under this name."""
+
+    name: str
+    meaning: str
+    metavar: str | None = None
+    kind: type[str] | type[int] | type[Path] = str
+    """Whole numbers are > 0."""
+    default: int | None = None
+    """None: it must be given."""
+
+
+class Bus(NamedTuple):
+    """
+    A kind of bus.
+
+    Its module has two functions, of the devices, ``step_ns`` and its arguments by name: one named
+    after the bus, ``serial_line``, which opens a `Line`, and ``refuse_unusable``, which refuses a
+    line that cannot be opened or is too slow, and sends nothing.
+    """
+
+    module: str
+    """Below `isa_ros.fieldbus`; a run imports that of its own bus only."""
+    serves: str
+    arguments: tuple[Argument, ...]
+
+
+_CAN = (
+    Argument('interface', 'interface of python-can: udp_multicast, socketcan, slcan, ...', 'NAME'),
+    Argument('channel', 'of that interface'),
+    Argument('bitrate', 'of the bus (default: 1000000)', 'BIT/S', int, OF_THE_WIRE),
+    Argument('first_node', 'number of the first actuator (default: %(default)s)', 'N', int, 1))
+
+ETHERCAT, CANOPEN, MIT, SERIAL = 'ethercat', 'canopen', 'mit', 'serial'
+BUSES: Mapping[str, Bus] = {
+    ETHERCAT: Bus('ethercat.line', 'an EtherCAT master on a network interface', (
+        Argument('interface', 'network interface of the ring, for example one end of a veth pair',
+                 'IF'),)),
+    CANOPEN: Bus('canopen.line', 'a CANopen master on a CAN interface', _CAN),
+    MIT: Bus('canopen.mit_line', 'a master of MIT-mode motors on a CAN interface', _CAN),
+    SERIAL: Bus('serial.line', 'a master on a serial line', (
+        Argument('path', 'serial device, or a link to make to a pseudo terminal', 'FILE', Path),
+        Argument('baud', 'of the line (default: that of docs/link.md)', 'BIT/S', int,
+                 OF_THE_WIRE)))}
+"""Every bus by its name."""
+
+
 @dataclass(frozen=True, kw_only=True)
 class BusRequest:
     """A run whose commands come from the master of a bus."""
 
     run: Request
     bus: str
-    """`ETHERCAT`, `CANOPEN`, `MIT` or `SERIAL`."""
-    interface: str = ''
-    """Network interface of EtherCAT; interface of python-can."""
-    channel: str = ''
-    """Of python-can."""
-    bitrate: int = OF_THE_WIRE
-    """Of the CAN bus, bit/s."""
-    first_node: int = 1
-    """Number of the first actuator on the CAN bus."""
-    path: Path = Path()
-    """Of the serial device."""
-    baud: int = OF_THE_WIRE
-    """Of the serial line, bit/s."""
+    """One of `BUSES`."""
+    arguments: Mapping[str, Any] = field(default_factory=dict)
+    """Those of the bus, by name."""
     pace: str = FRAME
     """One of `PACES`."""
     profile: str = PROFILES[0]
@@ -52,4 +89,5 @@ class BusRequest:
     @property
     def place(self) -> str:
         """Return where a master finds the devices."""
-        return str(self.path) if self.bus == SERIAL else f'{self.interface} {self.channel}'.strip()
+        return ' '.join(str(value) for value in self.arguments.values()
+                        if not isinstance(value, int))

@@ -25,22 +25,24 @@ def run_of(**more) -> Request:
 
 def test_a_bus_has_the_options_of_a_run_and_its_own():
     assert asked('ethercat', 'leg', '--interface', 'ecs') == BusRequest(
-        run=run_of(), bus='ethercat', interface='ecs')
+        run=run_of(), bus='ethercat', arguments={'interface': 'ecs'})
     assert asked(
         'ethercat', 'leg', '--interface', 'ecs', '--pace', 'real_time', '--profile', 'cia408',
         '--watchdog-ms', '20', '--no-ros', '--duration', '2', '--out', 'bag', '--seed', '3',
     ) == BusRequest(
-        run=run_of(duration_s=2.0, out=Path('bag'), seed=3), bus='ethercat', interface='ecs',
-        pace='real_time', profile='cia408', watchdog_ms=20.0, has_ros=False)
+        run=run_of(duration_s=2.0, out=Path('bag'), seed=3), bus='ethercat',
+        arguments={'interface': 'ecs'}, pace='real_time', profile='cia408', watchdog_ms=20.0,
+        has_ros=False)
 
 
 def test_buses_on_can_and_on_a_serial_line_have_theirs():
     for bus in ('canopen', 'mit'):
         assert asked(bus, 'leg', '--interface', 'slcan', '--channel', 'c', '--bitrate', '500000',
                      '--first-node', '5') == BusRequest(
-            run=run_of(), bus=bus, interface='slcan', channel='c', bitrate=500_000, first_node=5)
+            run=run_of(), bus=bus, arguments={
+                'interface': 'slcan', 'channel': 'c', 'bitrate': 500_000, 'first_node': 5})
     assert asked('serial', 'leg', '--path', 'line', '--baud', '9600') == BusRequest(
-        run=run_of(), bus='serial', path=Path('line'), baud=9600)
+        run=run_of(), bus='serial', arguments={'path': Path('line'), 'baud': 9600})
 
 
 @pytest.mark.parametrize('arguments, error', [

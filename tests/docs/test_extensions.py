@@ -17,7 +17,7 @@ _CONDITION = '''    Condition(
 )
 """All conditions;'''
 _MEASURED = '    values[BIT.spool_deviation] = spool_deviation(state, protection.evidence)\n'
-_TRIPS = '''
+_TRIPS = """
 import isa_ros
 from isa_ros.fieldbus.device.devices import devices_of
 import isa_ros.fieldbus.lines
@@ -30,7 +30,7 @@ print(isa_ros.conditions(sample['trips']))
 device, = devices_of(run.configuration)
 device.take_sample(sample, 0)
 print(*(f'{one.code:04X} {one.register:02X}' for one in device.emergencies()))
-'''
+"""
 _SEED = "    Key('seed', Value("
 _KEY = f"""    number('room_celsius', 'Celsius', 'the air around the run', 20.0, ge=-50.0),
 {_SEED}"""
@@ -161,3 +161,45 @@ def test_a_sensor_is_a_channel_and_a_row_of_the_sample(copied: PatchedCopy) -> N
     assert 'plant.sensors.tachometer.stuck ' in parameters
     copied.script('scripts/write_signals.py')
     assert '\n| `tachometer` | m/s or rad/s | as sensed |' in copied.read('docs/signals.md')
+
+
+_TOY = '''
+"""A bus that nobody is on."""
+
+
+def toy_line(devices, place, step_ns):
+    """Open nothing."""
+    return place, len(devices), step_ns
+
+
+def refuse_unusable(devices, place, step_ns):
+    """Refuse a place."""
+    if place == 'nowhere':
+        raise ValueError('no such place')
+'''
+_OPENS = """
+import isa_ros
+from isa_ros.cli.bus_commands import bus_request_of
+from isa_ros.cli.main import make_parser
+from isa_ros.fieldbus.lines import line_of, refuse_unusable
+options = make_parser().parse_args(['bus', 'toy', 'rig_linear', '--place', 'nowhere'])
+options.is_alone = True
+request = bus_request_of(options)
+print(request.place, line_of(request)([1, 2], 5))
+try:
+    refuse_unusable(request, [], 5)
+except ValueError as error:
+    print(error)
+"""
+
+
+def test_a_bus_is_a_file_and_a_row(copied: PatchedCopy) -> None:
+    """The row has its module and its arguments of the command line."""
+    copied.add('isa_ros/fieldbus/toy.py', _TOY)
+    copied.replace(
+        'isa_ros/fieldbus/request.py', "    SERIAL: Bus('serial.line'",
+        "    'toy': Bus('toy', 'nobody', (Argument('place', 'any'),)),\n"
+        "    SERIAL: Bus('serial.line'")
+    assert len(copied.touched) == 2
+    assert copied.python(_OPENS) == "nowhere ('nowhere', 2, 5)\nno such place\n"
+    assert 'serve nobody' in ' '.join(copied.isa('bus', '--help').split())

@@ -27,7 +27,7 @@ def prepared(tmp_path: Path, cycles=(), config='rig_linear', pace='frame', **req
     return prepare_bus(
         BusRequest(
             run=Request(config=find(config, CONFIG), out=tmp_path / 'bag', **request),
-            bus=ETHERCAT, interface='toy', pace=pace, watchdog_ms=5.0),
+            bus=ETHERCAT, arguments={'interface': 'toy'}, pace=pace, watchdog_ms=5.0),
         toys_of, lambda devices, step_ns: ToyLine(devices, cycles), lines.append)
 
 
@@ -82,7 +82,7 @@ def test_a_line_that_cannot_be_opened_leaves_no_bag(tmp_path: Path):
         raise ConfigError('--interface ecs: no such interface')
     run = prepare_bus(
         BusRequest(run=Request(config=find('rig_linear', CONFIG), out=tmp_path / 'bag'),
-                   bus=ETHERCAT, interface='ecs'), toys_of, refuse, print)
+                   bus=ETHERCAT, arguments={'interface': 'ecs'}), toys_of, refuse, print)
     with pytest.raises(ConfigError, match='--interface ecs: no such interface'):
         run_without_ros(run.session, None, lambda: False)
     assert not (tmp_path / 'bag').exists()
@@ -115,7 +115,8 @@ def test_a_line_is_closed_however_a_run_ends(tmp_path: Path):
         return lines[-1]
     run = prepare_bus(
         BusRequest(run=Request(config=find('rig_linear', CONFIG), out=tmp_path / 'bag'),
-                   bus=ETHERCAT, interface='toy'), toys_of, opened, lambda line: None)
+                   bus=ETHERCAT, arguments={'interface': 'toy'}),
+        toys_of, opened, lambda line: None)
     with pytest.raises(Interrupted, match='stopped at t = 0.000000 s'):
         run_without_ros(run.session, None, lambda: True)
     assert [line.log[-1:] for line in lines] == [['close']]
@@ -144,7 +145,7 @@ def test_a_gain_written_over_sdo_is_recorded_and_replayed(tmp_path: Path):
     """As one set by a ROS parameter: with the tick at which it took effect."""
     run = prepare_bus(
         BusRequest(run=Request(config=find('rig_linear', CONFIG), out=tmp_path / 'bag',
-                               duration_s=0.03), bus=ETHERCAT, interface='toy'),
+                               duration_s=0.03), bus=ETHERCAT, arguments={'interface': 'toy'}),
         devices_of, lambda devices, step_ns: GainLine(devices, ()), lambda line: None)
     run_without_ros(run.session, None, lambda: False)
     bag = Bag(tmp_path / 'bag')

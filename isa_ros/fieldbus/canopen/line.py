@@ -51,6 +51,15 @@ def canopen_line(
     return line
 
 
+def refuse_unusable(
+        devices: Sequence[BusDevice], interface: str, channel: str, step_ns: int, *,
+        bitrate: int = 0, first_node: int = FIRST_NODE) -> None:
+    """Refuse a bus that cannot be used; parameters and errors as of `canopen_line`."""
+    rate = bitrate or default_bitrate()
+    planned_line(devices, step_ns, rate, first_node)
+    CanPort(interface, channel, rate).close()
+
+
 def planned_line(
         devices: Sequence[BusDevice], step_ns: int, bitrate: int,
         first_node: int) -> 'CanopenLine':

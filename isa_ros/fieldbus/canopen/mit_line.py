@@ -39,6 +39,15 @@ def mit_line(
     return MitLine(devices, CanPort(interface, channel, rate, options), first_node, answer_id)
 
 
+def refuse_unusable(
+        devices: Sequence[BusDevice], interface: str, channel: str, step_ns: int, *,
+        bitrate: int = 0, first_node: int = FIRST_NODE) -> None:
+    """Refuse a bus that cannot be used; parameters and errors as of `canopen_line`."""
+    rate = bitrate or default_bitrate()
+    refuse_motors(devices, step_ns, rate, first_node)
+    CanPort(interface, channel, rate).close()
+
+
 def refuse_motors(
         devices: Sequence[BusDevice], step_ns: int, bitrate: int, first_node: int,
         answer_id: int = 0) -> None:

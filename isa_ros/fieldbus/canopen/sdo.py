@@ -92,7 +92,7 @@ class SdoServer:
             raise SdoAbort(UNKNOWN_COMMAND)
         transfer.refuse_other(request[0])
         if not is_download:
-            answer = transfer.next(request[0], LEAST_SEGMENT)
+            answer = transfer.give(request[0], LEAST_SEGMENT)
             if not transfer.data:
                 self._transfer = None
             return answer

@@ -1,4 +1,4 @@
-"""What the profiles have in common: a drive on top of the REU's own device, by a table of states."""
+"""What the profiles share: a drive on top of the REU's own device, by a table of states."""
 
 from collections.abc import Callable, Mapping
 from enum import Enum

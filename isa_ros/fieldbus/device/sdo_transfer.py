@@ -1,4 +1,4 @@
-"""What SDO transfers of CANopen and EtherCAT have in common: commands, and segments on their way."""
+"""What SDO transfers of CANopen and EtherCAT share: commands, and segments on their way."""
 
 import struct
 
@@ -43,7 +43,7 @@ class Transfer:
             raise SdoAbort(TOO_SHORT)
         return is_last
 
-    def next(self, command: int, room: int) -> bytes:
+    def give(self, command: int, room: int) -> bytes:
         """Return the answer with the next segment, of at most ``room`` bytes."""
         part = bytes(self.data[:room])
         del self.data[:room]

@@ -151,7 +151,7 @@ class CanOverEthercat:
 
     def _next(self, transfer: Transfer, request: bytes) -> bytes:
         """Return the next part of an upload."""
-        answer = transfer.next(request[0], CAPACITY - _SERVICE.size - 1)
+        answer = transfer.give(request[0], CAPACITY - _SERVICE.size - 1)
         if not transfer.data:
             self._transfer = None
         return answer

@@ -33,6 +33,11 @@ def ethercat_line(devices: Sequence[BusDevice], interface: str, step_ns: int) ->
     return EthercatLine(Ring(devices, step_ns), open_interface(interface), interface)
 
 
+def refuse_unusable(devices: Sequence[BusDevice], interface: str, step_ns: int) -> None:
+    """Refuse an interface that cannot be used; parameters and errors as of `ethercat_line`."""
+    open_interface(interface).close()
+
+
 class EthercatLine:
     """Answers the frames that arrive at an interface."""
 

@@ -53,6 +53,14 @@ def serial_line(
     return SerialLine(devices, SerialPort(Path(path), rate))
 
 
+def refuse_unusable(
+        devices: Sequence[BusDevice], path: Path | str, baud: int, step_ns: int) -> None:
+    """Refuse a line that cannot be used; parameters and errors as of `serial_line`."""
+    rate = baud or default_baud()
+    refuse_overfull(devices, rate, step_ns)
+    SerialPort(Path(path), rate).close()
+
+
 def default_baud() -> int:
     """Return the rate (bit/s) of the wire ``serial``."""
     return round(wire('serial')[0].bit_rate_mbit * 1e6)
