@@ -210,7 +210,7 @@ class FallingSupply(Parameters):
 
     pressure_mpa: float = parameter('gauge pressure at t = 0', 'MPa', gt=0.0, le=70.0)
     return_pressure_mpa: float = parameter('gauge return pressure', 'MPa', ge=0.0, le=5.0)
-    fall_mpa_per_s: float = parameter('fall of the pressure', 'MPa/s', ge=0.0, le=100.0)
+    lasts_s: float = parameter('time until it is empty', 's', gt=0.0, le=1e4)
     return_line: ReturnLine = nested(HeldReturn())
 
 
@@ -220,7 +220,7 @@ _FALLS = '''
 import isa_ros
 from isa_ros.config.runs.run_config import RunConfig
 run = isa_ros.load('rig_linear').replace({'supply': {
-    'kind': 'falling', 'pressure_mpa': 20.0, 'return_pressure_mpa': 0.0, 'fall_mpa_per_s': 10.0}})
+    'kind': 'falling', 'pressure_mpa': 20.0, 'return_pressure_mpa': 0.0, 'lasts_s': 2.0}})
 assert RunConfig.from_yaml(run.configuration.to_yaml()) == run.configuration
 result = run.simulate(0.1)
 print(f"{result['supply.pressure'][0] * 1e-6:.3f} {result['supply.pressure'][-1] * 1e-6:.3f}")
@@ -235,16 +235,19 @@ def test_a_supply_is_one_file(copied: PatchedCopy) -> None:
     copied.replace(
         path, '        self._record, self._line = self._records(sheet)\n\n    def change',
         '        self._record, self._line = self._records(sheet)\n'
-        "        self._fall = getattr(sheet, 'fall_mpa_per_s', 0.0) * MPA\n\n    def change")
+        "        self._fall = sheet.pressure_mpa * MPA / getattr(sheet, 'lasts_s', math.inf)\n\n"
+        '    def change')
     copied.replace(
         path, '        add_oil(drawn, returned, self._step, self.state)\n',
         '        add_oil(drawn, returned, self._step, self.state)\n'
         "        self.state['pressure'] -= self._fall * self._step\n")
+    copied.replace(path, 'from dataclasses import dataclass\n',
+                   'from dataclasses import dataclass\nimport math\n')
     assert touched(copied) == files_of('supply') and len(copied.touched) == 1
     assert copied.python(_FALLS) == '20.000 19.000\n'
-    assert 'fall_mpa_per_s' in copied.isa(
+    assert 'lasts_s' in copied.isa(
         'params', 'rig_linear', '--set', 'supply.kind=falling', '--set',
-        'supply.fall_mpa_per_s=1.0')
+        'supply.lasts_s=1.0')
 
 
 _BRAKED = '''@dataclass(frozen=True, kw_only=True)
@@ -252,7 +255,7 @@ class Braked(Parameters):
     """A mass with a drag that grows with the square of its speed."""
 
     inertia: float = parameter('moving mass', 'kg | kg m2', gt=0.0, le=1e4)
-    drag: float = parameter('force per square of the speed', 'Ns2/m2 | Nms2/rad2', ge=0.0, le=1e6)
+    drag: float = parameter('force per square of the speed', 'kg | kg m2', ge=0.0, le=1e6)
 
 
 LocalLoad = Blocked | Wheel | Mass | Pad | DropRig | Braked
