@@ -102,6 +102,7 @@ def one(source: str) -> bytes:
 CALL = '@kernel\ndef f(x):\n    return C'
 MADE = 'def made(c):\n    @kernel\n    def f(x):\n        return x + c\n    return f\nf = made({})'
 CODE = '@kernel\ndef g(x):\n    return x + {}\n'
+LOCAL = '@kernel\ndef f({}):\n    x = 1\n    return x'
 OWN = '@kernel\ndef f({}):\n    return 1'
 TRY = '@kernel\ndef f(x):\n{}    try:\n{}        b = 1\n    except Exception:\n        b = 2\n'
 SUM = '@kernel\ndef f(x):\n    return (' + ', '.join(f'x + {k}.5' for k in range(300)) + ', {})'
@@ -110,7 +111,7 @@ SUM = '@kernel\ndef f(x):\n    return (' + ', '.join(f'x + {k}.5' for k in range
 @pytest.mark.parametrize(('first', 'second'), [
     (MADE.format(1), MADE.format(2)),
     (OWN.format('x, *, b=1'), OWN.format('x, *, b=2')),
-    (OWN.format('x'), OWN.format('y')), (OWN.format('x'), OWN.format('*x')),
+    (OWN.format('x'), OWN.format('y')), (LOCAL.format(''), LOCAL.format('*x')),
     (OWN.format('x'), OWN.format('x').replace('f(', 'g(') + '\nf = g'),
     (f'C = 1\n{CALL.replace("C", "(lambda y: y + C)(x)")}',
      f'C = 2\n{CALL.replace("C", "(lambda y: y + C)(x)")}'),
