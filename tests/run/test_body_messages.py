@@ -23,7 +23,7 @@ TRUNK = Unit('trunk', ImuSheet(
 
 def messages_of_leg(*units: Unit) -> tuple[BodyMessage, ...]:
     """Return the messages of a leg with some inertial units."""
-    return leg_messages('/joint_states', '/coordinator/ground_contact', units)
+    return leg_messages('', units)
 
 
 def packed_leg() -> list[bytes]:
@@ -72,6 +72,12 @@ def test_an_inertial_unit_has_the_frame_of_its_link_and_says_its_noise():
     assert list(message.linear_acceleration_covariance) == pytest.approx(
         [4e-4, 0.0, 0.0, 0.0, 4e-4, 0.0, 0.0, 0.0, 4e-4], abs=1e-18)
     assert list(message.angular_velocity_covariance) == [0.0] * 9
+
+
+def test_a_further_leg_has_topics_and_links_under_its_name() -> None:
+    assert [(own.topic, getattr(own, 'link', '')) for own in leg_messages('left/', [TRUNK])] == [
+        ('/left/joint_states', ''), ('/left/ground_contact', ''),
+        ('/left/trunk/imu', 'left/slider_link')]
 
 
 def test_a_reading_is_due_at_its_own_period() -> None:

@@ -14,9 +14,9 @@ from isa_ros.config.runs.body_kinds import BODY_KINDS
 from isa_ros.config.runs.leg_config import LegConfig
 from isa_ros.config.runs.recording import RECORD, RecordConfig
 from isa_ros.config.runs.supplies import supplies_of, SUPPLY, SUPPLY_KEYS, SupplyConfig
-from isa_ros.config.runs.tick_grid import on_grid
+from isa_ros.config.runs.tick_grid import on_grid, WrittenTime
 from isa_ros.config.text.keys import (
-    InText, Key, Layer, NAME, Named, NAMES, NANOSECONDS, number, OneOf, ParameterSet, Table, TEXT,
+    InText, Key, Layer, NAME, Named, NAMES, nanoseconds, number, OneOf, ParameterSet, Table, TEXT,
     Value)
 from isa_ros.config.text.names import refuse_bad_name
 from isa_ros.config.text.sections import Place, Section
@@ -204,16 +204,16 @@ _STEP = number('step_ms', 'ms', 'macro step H', 1.0, in_text=InText.NEVER, gt=0.
 _OFFSET = number(
     'controller_offset_ms', 'ms', 'offset of the samples of the REU from the ticks', 0.12,
     in_text=InText.NEVER, ge=0.0, le=100.0)
+_STEP_NS = nanoseconds('step_ns', 'the macro step', _STEP, gt=0, le=100_000_000)
+_OFFSET_NS = nanoseconds(
+    'controller_offset_ns', 'the offset', _OFFSET, ge=0, le=100_000_000)
 
 RUN = Table((
     Key('name', NAME, 'the name of the run', in_text=InText.ALWAYS),
     Key('source', TEXT, 'the file that the run was resolved from', None,
         'the name of the file', in_text=InText.ONLY),
     _STEP, _OFFSET,
-    Key('step_ns', NANOSECONDS, 'the macro step instead of `step_ms`', None,
-        in_text=InText.ONLY, instead_of=('step_ms',)),
-    Key('controller_offset_ns', NANOSECONDS, 'the offset instead of `controller_offset_ms`',
-        None, in_text=InText.ONLY, instead_of=('controller_offset_ms',)),
+    _STEP_NS, _OFFSET_NS,
     number('tick_timeout_s', 's', 'host time after which a participant counts as lost', 5.0,
            gt=0.0, le=3600.0),
     Key('seed', Value('whole number', lambda value, place: seed_of(value, str(place))),
@@ -278,10 +278,11 @@ def run_of(tree: Tree, place: Place, is_checked: bool = True) -> tuple[RunConfig
 
 def _times(values: dict[str, Any], place: Place) -> tuple[int, int]:
     """Return macro step and offset of the REU's samples, ns."""
-    def in_ms(key: Key, ns: int | None) -> Any:
-        return values[key.name] if ns is None else key.kind.read(ns / 1e6, place / key.name)
-    return on_grid(in_ms(_STEP, values['step_ns']),
-                   in_ms(_OFFSET, values['controller_offset_ns']), place)
+    def of(in_ms: Key, in_ns: Key) -> WrittenTime:
+        if values[in_ns.name] is None:
+            return WrittenTime(in_ms.name, values[in_ms.name], 'ms', 1_000_000)
+        return WrittenTime(in_ns.name, values[in_ns.name], 'ns', 1)
+    return on_grid(of(_STEP, _STEP_NS), of(_OFFSET, _OFFSET_NS), place)
 
 
 def _bodies(

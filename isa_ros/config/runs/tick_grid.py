@@ -1,5 +1,7 @@
 """The times of a run on its grid: macro steps of whole windows of plant steps, and ticks."""
 
+from typing import NamedTuple
+
 from isa_ros.config.text.sections import Place
 from isa_ros.core.timebase import FORCE_WINDOWS, PLANT_STEP_NS
 from isa_ros.errors import ConfigError
@@ -7,7 +9,33 @@ from isa_ros.errors import ConfigError
 _TICK_GRID_NS = FORCE_WINDOWS * PLANT_STEP_NS
 
 
-def on_grid(step_ms: float, offset_ms: float, place: Place) -> tuple[int, int]:
+class WrittenTime(NamedTuple):
+    """A time as a file has it."""
+
+    key: str
+    value: float
+    unit: str
+    in_ns: int
+    """The unit in ns."""
+
+    @property
+    def ns(self) -> int:
+        """Return the nearest whole number of ns."""
+        return round(self.value * self.in_ns)
+
+    def is_multiple_of(self, period_ns: int) -> bool:
+        """Return whether the time is a whole number of periods."""
+        return self.ns % period_ns == 0 and abs(self.ns - self.value * self.in_ns) <= 1e-3
+
+    def words(self, ns: float) -> str:
+        """Return a time in the unit of this one."""
+        return f'{ns / self.in_ns:.15g} {self.unit}'
+
+    def __str__(self) -> str:
+        return f'{self.key} = {self.value:.15g} {self.unit}'
+
+
+def on_grid(step: WrittenTime, offset: WrittenTime, place: Place) -> tuple[int, int]:
     """
     Return macro step and offset of the REU's samples, ns.
 
@@ -17,22 +45,17 @@ def on_grid(step_ms: float, offset_ms: float, place: Place) -> tuple[int, int]:
         They are not whole numbers of plant steps, or the offset is not within a macro step.
 
     """
-    step_ns = round(step_ms * 1e6)
-    if step_ns % _TICK_GRID_NS or abs(step_ns - step_ms * 1e6) > 1e-3:
+    if not step.is_multiple_of(_TICK_GRID_NS):
         raise ConfigError(
-            f'{place}: step_ms = {step_ms:g} ms, must be a multiple of '
-            f'{_TICK_GRID_NS / 1e6:g} ms ({FORCE_WINDOWS} windows of plant steps of '
-            f'{PLANT_STEP_NS / 1e6:g} ms)')
-    offset_ns = round(offset_ms * 1e6)
-    if offset_ns % PLANT_STEP_NS or abs(offset_ns - offset_ms * 1e6) > 1e-3:
+            f'{place}: {step}, must be a multiple of {step.words(_TICK_GRID_NS)} '
+            f'({FORCE_WINDOWS} windows of plant steps of {step.words(PLANT_STEP_NS)})')
+    if not offset.is_multiple_of(PLANT_STEP_NS):
         raise ConfigError(
-            f'{place}: controller_offset_ms = {offset_ms:g} ms, must be a '
-            f'multiple of the plant step {PLANT_STEP_NS / 1e6:g} ms')
-    if offset_ns >= step_ns:
-        raise ConfigError(
-            f'{place}: controller_offset_ms = {offset_ms:g} ms, must be < '
-            f'step_ms = {step_ms:g} ms')
-    return step_ns, offset_ns
+            f'{place}: {offset}, must be a multiple of the plant step '
+            f'{offset.words(PLANT_STEP_NS)}')
+    if offset.ns >= step.ns:
+        raise ConfigError(f'{place}: {offset}, must be < {step}')
+    return step.ns, offset.ns
 
 
 def ticks_in(seconds: float, step_ns: int, where: str) -> int:

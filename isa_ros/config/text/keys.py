@@ -110,7 +110,6 @@ NAME = Value('name', _name)
 NAMES = Value('list of names', lambda value, place: tuple(names_at(value, place)))
 TEXT = Value('text', lambda value, place: of_type(value, str, place))
 FLAG = Value('true or false', lambda value, place: of_type(value, bool, place))
-NANOSECONDS = Value('whole number', lambda value, place: of_type(value, int, place), 'ns')
 
 
 @dataclass(frozen=True)
@@ -251,6 +250,17 @@ def number(name: str, unit: str, meaning: str, default: float | None, *, meant: 
         return float(value)
     return Key(
         name, Value('number', checked, unit), meaning, default, meant, in_text, instead_of)
+
+
+def nanoseconds(name: str, meaning: str, instead_of: Key, **bounds: float) -> Key:
+    """Return the row of a resolved text for a time of a run file in another unit."""
+    def checked(value: Any, place: Place) -> int:
+        check(str(place), of_type(value, int, place), {
+            'doc': instead_of.meaning, 'unit': 'ns', 'bounds': bounds})
+        return int(value)
+    return Key(
+        name, Value('whole number', checked, 'ns'), f'{meaning} instead of `{instead_of.name}`', None,
+        in_text=InText.ONLY, instead_of=(instead_of.name,))
 
 
 @dataclass(frozen=True)

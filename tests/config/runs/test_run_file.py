@@ -63,7 +63,7 @@ def test_of_an_inline_sheet_only_the_name_of_the_model_is_used(tmp_path: Path) -
 @pytest.mark.parametrize(('changes', 'expected'), [
     ({'step_ms': 2.0}, 'has step_ms and step_ns, must have only one of them'),
     ({'controller_offset_ms': 0.2}, 'has controller_offset_ms and controller_offset_ns, must'),
-    ({'step_ns': 1_000_001}, 'step_ms = 1 ms, must be a multiple of 0.1 ms'),
+    ({'step_ns': 1_000_001}, 'step_ns = 1000001 ns, must be a multiple of 100000 ns'),
     ({'actuators.ram.initial_position_mm': 1.0},
      'actuators.ram has initial_position_mm and initial_position, must have only one of them'),
     ({'actuators.ram.initial_position': 0.101},

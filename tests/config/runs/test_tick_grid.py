@@ -46,12 +46,12 @@ def test_an_offset_within_the_step_is_taken(tmp_path: Path, offset_ns: int) -> N
 
 
 @pytest.mark.parametrize(('offset_ns', 'bound'), [
-    (STEP_NS, '< step_ms'), (STEP_NS + PLANT_STEP_NS, '< step_ms'), (-PLANT_STEP_NS, '>= 0 ms'),
-    (PLANT_STEP_NS + 1, 'a multiple of the plant step 0.02 ms')])
+    (STEP_NS, '< step_ns = 1000000 ns'), (STEP_NS + PLANT_STEP_NS, '< step_ns'),
+    (-PLANT_STEP_NS, '>= 0 ns'), (PLANT_STEP_NS + 1, 'a multiple of the plant step 20000 ns')])
 def test_an_offset_outside_the_step_or_between_plant_steps_is_refused(
         tmp_path: Path, offset_ns: int, bound: str) -> None:
     """At a whole step it would be the next tick's, whose command it must not yet have."""
-    with pytest.raises(ConfigError, match=f'controller_offset_ms = .* ms, must be {bound}'):
+    with pytest.raises(ConfigError, match=f'controller_offset_ns = {offset_ns} ns, must be {bound}'):
         run_of(tmp_path, controller_offset_ns=offset_ns)
 
 
@@ -59,7 +59,7 @@ def test_an_offset_outside_the_step_or_between_plant_steps_is_refused(
 def test_a_step_without_five_windows_of_plant_steps_is_refused(
         tmp_path: Path, step_ns: int) -> None:
     """Five windows of whole plant steps: multiples of 0.1 ms up to 100 ms."""
-    with pytest.raises(ConfigError, match=r'resolved.yaml: step_ms = .* ms, must be'):
+    with pytest.raises(ConfigError, match=r'resolved.yaml: step_ns = .* ns, must be'):
         run_of(tmp_path, step_ns=step_ns, controller_offset_ns=0)
 
 
