@@ -4,13 +4,15 @@ from collections.abc import Sequence
 from pathlib import Path
 import sys
 
+from isa_ros.bench import page
 from isa_ros.bench.groups import Group, groups
 from isa_ros.bench.host import Machine, machine
-from isa_ros.bench.page import as_lines, HEAD, PAGE, Report, Section, write_json, write_page
+from isa_ros.bench.page import as_lines, HEAD, PAGE, Report, Section
 from isa_ros.bench.rounds import Outcomes, outcomes
 from isa_ros.core.suggest import alternatives
 from isa_ros.errors import ConfigError
-from isa_ros.text.page import refuse_a_part
+from isa_ros.text.json_file import write_tree
+from isa_ros.text.page import refuse_a_part, write_wanted_page
 from isa_ros.text.progress import counted, Progress
 
 
@@ -56,10 +58,8 @@ def bench(
     print(f'{here.summary}\n{HEAD}')
     report = measured_report(measured, here, counted(sys.stderr, 'runs'))
     if json_file is not None:
-        write_json(report, json_file)
-    if out is not None:
-        for path in write_page(report, out):
-            print(path)
+        write_tree(page.as_tree(report), json_file)
+    write_wanted_page(page, report, out)
     return report
 
 

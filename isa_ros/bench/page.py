@@ -7,7 +7,6 @@ from typing import Any, NamedTuple
 from isa_ros.bench.host import Machine
 from isa_ros.bench.rounds import Outcomes
 from isa_ros.bench.row import Row
-from isa_ros.text.json_file import write_tree
 from isa_ros.text.page import Page, png_with_palette
 from isa_ros.text.table import digits, padded
 from matplotlib.figure import Figure
@@ -87,11 +86,6 @@ def as_tree(report: Report) -> dict[str, Any]:
         } for section in report.sections for row in section.rows],
         'runs': [{'spec': asdict(spec), **asdict(run)} for spec, run in report.outcomes.runs],
     }
-
-
-def write_json(report: Report, path: Path) -> None:
-    """Write the report as JSON."""
-    write_tree(as_tree(report), path)
 
 
 def write_page(report: Report, directory: Path) -> list[Path]:

@@ -146,15 +146,16 @@ def recover(options: Namespace) -> bool:
 def compare(options: Namespace) -> bool:
     """Compare the configurations and the messages of two bags."""
     from isa_ros.bag.reader import Bag
-    from isa_ros.replay.comparison import compared, write_json
+    from isa_ros.replay.comparison import compared
     from isa_ros.replay.tolerances import load_tolerances
+    from isa_ros.text.json_file import write_tree
     expected, actual = Bag(options.expected), Bag(options.actual)
     tolerances = load_tolerances(options.tolerance, expected.types) if options.tolerance else None
     comparison = compared(expected, actual, tolerances)
     for line in comparison.lines('expected', 'actual'):
         print(one_line(line))
     if options.json:
-        write_json(comparison, options.json)
+        write_tree(comparison.tree(), options.json)
     return comparison.report.is_equal
 
 
@@ -194,11 +195,12 @@ def tune(options: Namespace) -> bool:
 
 def identify(options: Namespace) -> bool:
     """Estimate the parameters of a bag's actuators."""
-    from isa_ros.analysis.identification.identification import identify_bag, table, write_json
+    from isa_ros.analysis.identification.identification import as_tree, identify_bag, table
+    from isa_ros.text.json_file import write_tree
     found = identify_bag(options.bag, options.actuator)
     print(table(found))
     if options.json:
-        write_json(found, options.bag, options.json)
+        write_tree(as_tree(found, options.bag), options.json)
     return True
 
 
@@ -265,12 +267,12 @@ def _sensitivity(options: Namespace) -> bool:
 
 def _show(page: Any, found: Any, options: Namespace) -> None:
     """Print a validation by its module of pages, and write its JSON and its page if wanted."""
+    from isa_ros.text.json_file import write_tree
+    from isa_ros.text.page import write_wanted_page
     print(page.as_text(found))
     if options.json:
-        page.write_json(found, options.json)
-    if options.out:
-        for path in page.write_page(found, options.out):
-            print(path)
+        write_tree(page.as_tree(found), options.json)
+    write_wanted_page(page, found, options.out)
 
 
 @simulating

@@ -2,7 +2,6 @@
 
 from collections.abc import Sequence
 import math
-from pathlib import Path
 from typing import Any, NamedTuple
 
 from isa_ros.bag.reader import Bag
@@ -11,7 +10,6 @@ from isa_ros.replay.compare import compare_bags, recorded_as
 from isa_ros.replay.difference import Report, TopicDifference
 from isa_ros.replay.provenance_differences import provenance_differences, records_of_bag
 from isa_ros.replay.tolerances import Tolerances
-from isa_ros.text.json_file import write_tree
 from isa_ros.text.table import aligned
 
 
@@ -73,11 +71,6 @@ def compared(expected: Bag, actual: Bag, tolerances: Tolerances | None = None) -
         provenance_differences(records_of_bag(expected), records_of_bag(actual)),
         compare_bags(expected, actual, tolerances),
         not recorded_as(expected).thins_like(recorded_as(actual)))
-
-
-def write_json(comparison: Comparison, path: Path) -> None:
-    """Write every difference as JSON."""
-    write_tree(comparison.tree(), path)
 
 
 def _cells(topic: TopicDifference) -> tuple[str, ...]:

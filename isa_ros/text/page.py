@@ -3,6 +3,7 @@
 from collections.abc import Iterable, Sequence
 import io
 from pathlib import Path
+from typing import Any
 
 from isa_ros.errors import ConfigError
 from isa_ros.text.table import Cells, LEFT, markdown
@@ -68,6 +69,13 @@ def png_with_palette(figure: Figure) -> bytes:
         image.convert('RGB').quantize(COLORS, dither=Image.Dither.NONE).save(
             small, format='png', optimize=True)
     return small.getvalue()
+
+
+def write_wanted_page(form: Any, found: Any, directory: Path | None) -> None:
+    """Write the page of a result by its module and print the paths; do nothing without a path."""
+    if directory is not None:
+        for path in form.write_page(found, directory):
+            print(path)
 
 
 def refuse_a_part(page: Path, only: Sequence[str] | None) -> None:

@@ -5,7 +5,6 @@ import math
 from pathlib import Path
 from typing import Any, TypeVar
 
-from isa_ros.text.json_file import write_tree
 from isa_ros.text.page import Page
 from isa_ros.text.table import aligned
 from isa_ros.validation.entry import (
@@ -113,11 +112,6 @@ def as_tree(results: Sequence[Result]) -> list[dict[str, Any]]:
 
 def _finite(value: float) -> float | None:
     return float(value) if math.isfinite(value) else None
-
-
-def write_json(results: Sequence[Result], path: Path) -> None:
-    """Write every entry as JSON."""
-    write_tree(as_tree(results), path)
 
 
 def write_page(results: Sequence[Result], directory: Path) -> list[Path]:

@@ -4,7 +4,6 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
-from isa_ros.text.json_file import write_tree
 from isa_ros.text.page import Page
 from isa_ros.text.table import aligned
 from isa_ros.validation.sensitivity import Noticed
@@ -68,11 +67,6 @@ def as_tree(found: Sequence[Noticed]) -> dict[str, Any]:
         'becomes_reached': list(each.becomes_reached),
         'refused': each.refused,
     } for each in found]}
-
-
-def write_json(found: Sequence[Noticed], path: Path) -> None:
-    """Write every perturbation as JSON."""
-    write_tree(as_tree(found), path)
 
 
 def write_page(found: Sequence[Noticed], directory: Path) -> list[Path]:

@@ -4,9 +4,10 @@ import json
 
 from benchmarks import growth
 from isa_ros.bench.host import Machine
-from isa_ros.bench.page import as_lines, Report, Section, write_json, write_page
+from isa_ros.bench.page import as_lines, as_tree, Report, Section, write_page
 from isa_ros.bench.rounds import Outcomes
 from isa_ros.bench.row import Aim, Row
+from isa_ros.text.json_file import write_tree
 import pytest
 from tests.bench.artificial import ran
 
@@ -45,7 +46,7 @@ def test_the_page_names_machine_aims_and_limits(report, tmp_path):
 
 def test_the_json_holds_every_row_and_every_run(report, tmp_path):
     path = tmp_path / 'bench.json'
-    write_json(report, path)
+    write_tree(as_tree(report), path)
     tree = json.loads(path.read_text(encoding='utf-8'))
     assert tree['machine']['cores'] == 2
     assert [(row['group'], row['is_reached']) for row in tree['rows']] == [

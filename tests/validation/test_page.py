@@ -2,7 +2,8 @@
 
 import json
 
-from isa_ros.validation.page import as_text, as_tree, write_json, write_page
+from isa_ros.text.json_file import write_tree
+from isa_ros.validation.page import as_text, as_tree, write_page
 from isa_ros.validation.runner import run_group
 import pytest
 from tests.validation.groups import GAINS, GOOD, MISSED
@@ -28,7 +29,7 @@ def test_the_table_gives_the_reason_of_what_is_not_reached(results):
 
 
 def test_json_has_every_field_and_no_nan(results, tmp_path):
-    write_json(results, tmp_path / 'v.json')
+    write_tree(as_tree(results), tmp_path / 'v.json')
     entries = json.loads((tmp_path / 'v.json').read_text())
     assert entries == as_tree(results)
     assert all(tuple(entry) == FIELDS for entry in entries)

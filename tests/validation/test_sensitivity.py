@@ -5,12 +5,12 @@ from pathlib import Path
 import re
 
 from isa_ros.cli.main import main
+from isa_ros.text.json_file import write_tree
 from isa_ros.validation.actuators import Actuators, Change, SHIPPED
 from isa_ros.validation.groups import GROUPS
 from isa_ros.validation.sensitivity import (
     is_noticed, Perturbation, PERTURBATIONS, sensitivity)
-from isa_ros.validation.sensitivity_page import (
-    as_text, summary, write_json, write_page)
+from isa_ros.validation.sensitivity_page import as_text, as_tree, summary, write_page
 import pytest
 from tests.validation.groups import MISSED, STIFF
 
@@ -43,7 +43,7 @@ def test_a_hole_is_a_no_and_has_its_name(found):
 
 
 def test_the_json_has_every_entry(found, tmp_path):
-    write_json(found, tmp_path / 's.json')
+    write_tree(as_tree(found), tmp_path / 's.json')
     first, *_ = json.loads((tmp_path / 's.json').read_text())['perturbations']
     assert first == {
         'name': 'stiffness x2', 'key': 'plant.k', 'factor': 2.0, 'flips': ['stiff.bar'],

@@ -6,7 +6,8 @@ import sys
 from isa_ros.analysis.faults import page
 from isa_ros.analysis.faults.measure import outcomes
 from isa_ros.errors import ConfigError
-from isa_ros.text.page import refuse_a_part
+from isa_ros.text.json_file import write_wanted
+from isa_ros.text.page import refuse_a_part, write_wanted_page
 from isa_ros.text.progress import counted
 
 
@@ -30,10 +31,6 @@ def faults(options: Namespace) -> bool:
         refuse_a_part(options.out / page.PAGE, options.only)
     found = outcomes(options.only, counted(sys.stderr, 'faults', stays=True))
     print(page.as_text(found))
-    if options.json is not None:
-        page.write_json(found, options.json)
-        print(options.json)
-    if options.out is not None:
-        for path in page.write_page(found, options.out):
-            print(path)
+    write_wanted(page.as_tree(found), options.json)
+    write_wanted_page(page, found, options.out)
     return not any(own.diverged for own in found)

@@ -7,7 +7,6 @@ from typing import Any
 from isa_ros.analysis.faults.measure import Noticed, Outcome, SOUND, VISIBLE, Visible
 from isa_ros.analysis.faults.rig import BEGIN_S, CLEAR_S, END_S, LINK
 from isa_ros.config.models.fault_catalogue import fault_catalogue, NamedFault
-from isa_ros.text.json_file import write_tree
 from isa_ros.text.page import Page
 from isa_ros.text.table import aligned, digits
 
@@ -93,17 +92,14 @@ def _note(one: Noticed) -> str:
     return f'{one.kind} {one.name} after {one.after_s * 1e3:g} ms'
 
 
-def write_json(found: Sequence[Outcome], path: Path) -> None:
-    """Write every outcome as JSON."""
-    write_tree({'faults': [_tree(own) for own in found]}, path)
-
-
-def _tree(own: Outcome) -> dict[str, Any]:
-    return {
+def as_tree(found: Sequence[Outcome]) -> dict[str, Any]:
+    """Return every outcome for JSON."""
+    return {'faults': [{
         'name': own.fault.name, 'of': own.fault.of, 'set': dict(own.fault.values),
         'visible': [one._asdict() for one in own.visible],
         'noticed': [one._asdict() for one in own.noticed],
-        'recovered_s': own.recovered_s, 'message': own.message, 'diverged': own.diverged}
+        'recovered_s': own.recovered_s, 'message': own.message, 'diverged': own.diverged,
+    } for own in found]}
 
 
 def write_page(found: Sequence[Outcome], directory: Path) -> list[Path]:

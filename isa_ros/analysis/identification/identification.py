@@ -6,9 +6,9 @@ the data do not determine is refused with the reason.
 """
 
 from dataclasses import asdict, dataclass
-import json
 import math
 from pathlib import Path
+from typing import Any
 
 from isa_ros.analysis.identification import force_balance
 from isa_ros.analysis.identification.estimation import CONFIDENCE
@@ -207,11 +207,11 @@ def _cells(estimate: Estimate) -> tuple[str, ...]:
     return head, f'{estimate.value:.5g}', interval, *tail, '' if estimate.holds else 'differs'
 
 
-def write_json(found: Identified, bag: Path, path: Path) -> None:
-    """Write the estimates, null for a refused one."""
-    path.write_text(json.dumps({
+def as_tree(found: Identified, bag: Path) -> dict[str, Any]:
+    """Return the estimates for JSON, null for a refused one."""
+    return {
         'bag': bag.name, 'confidence': CONFIDENCE,
         'actuators': {name: [asdict(estimate) | {'holds': estimate.holds}
                              for estimate in estimates]
                       for name, estimates in found.actuators.items()},
-        'still': found.others}, indent=2) + '\n', encoding='utf-8')
+        'still': found.others}

@@ -1,8 +1,7 @@
 """`isa bode` and `isa step`: measure a response, print, write and draw it."""
 
 from argparse import Namespace
-from collections.abc import Sequence
-import json
+from collections.abc import Callable, Sequence
 from pathlib import Path
 from typing import Any
 
@@ -12,6 +11,7 @@ from isa_ros.analysis.response.rig import Rig
 from isa_ros.analysis.response.series import Member, members, refuse_beside_a_bag
 from isa_ros.analysis.response.sweep import LARGEST_SHARE, Sweep
 from isa_ros.errors import ConfigError
+from isa_ros.text.json_file import write_wanted
 from matplotlib.figure import Figure
 import numpy as np
 
@@ -51,11 +51,9 @@ def bode(options: Namespace) -> bool:
         _print(title, bodes.table(measured), is_first=not responses)
         responses.append(measured)
         found.append(_setting(options, bench, measured, label) | _numbers(measured))
-    _write(options.json, found)
-    if options.out is not None:
-        if len(benches) > 1:
-            title = f'{options.loop}: {_RESPONSES[options.of]}; {method}'
-        _draw(bode_figure(responses, [label for label, _ in benches], title), options.out)
+    _write(options, found, lambda: bode_figure(
+        responses, [label for label, _ in benches], title if len(benches) == 1 else
+        f'{options.loop}: {_RESPONSES[options.of]}; {method}'))
     return not any(measured.rest.hunts for measured in responses)
 
 
@@ -72,11 +70,9 @@ def step(options: Namespace) -> None:
         _print(title, steps.summary(measured), is_first=not responses)
         responses.append(measured)
         found.append(_setting(options, bench, measured, label) | _step_numbers(measured))
-    _write(options.json, found)
-    if options.out is not None:
-        if len(benches) > 1:
-            title = f'{options.loop}: step'
-        _draw(step_figure(responses, [label for label, _ in benches], title), options.out)
+    _write(options, found, lambda: step_figure(
+        responses, [label for label, _ in benches],
+        title if len(benches) == 1 else f'{options.loop}: step'))
 
 
 def _refuse_units(options: Namespace, benches: Sequence[Member]) -> None:
@@ -149,14 +145,10 @@ def _refuse_figure(path: Path | None) -> None:
         raise ConfigError(f'--out {path}: must end in one of .{", .".join(known)}')
 
 
-def _write(path: Path | None, found: list[dict[str, Any]]) -> None:
-    """Write the numbers of one response, or a list of those of several."""
-    if path is not None:
-        content = found[0] if len(found) == 1 else {'responses': found}
-        path.write_text(json.dumps(content, indent=2) + '\n')
-        print(path)
-
-
-def _draw(figure: Figure, path: Path) -> None:
-    figure.savefig(path)
-    print(path)
+def _write(
+        options: Namespace, found: list[dict[str, Any]], figure: Callable[[], Figure]) -> None:
+    """Write the numbers of one response, or a list of those of several, and the figure."""
+    write_wanted(found[0] if len(found) == 1 else {'responses': found}, options.json)
+    if options.out is not None:
+        figure().savefig(options.out)
+        print(options.out)

@@ -3,15 +3,14 @@
 from argparse import Namespace
 from collections.abc import Sequence
 from dataclasses import replace
-import json
 import sys
-from typing import Any
 
-from isa_ros.analysis.studies import temperature, temperature_page
+from isa_ros.analysis.studies import page, temperature, temperature_page
 from isa_ros.analysis.studies.measure import Benches, Result, results
-from isa_ros.analysis.studies.page import as_text, as_tree, write_page
 from isa_ros.analysis.studies.studies import only_model, STUDIES, Study, study_of
 from isa_ros.errors import ConfigError
+from isa_ros.text.json_file import write_wanted
+from isa_ros.text.page import write_wanted_page
 from isa_ros.text.progress import counted
 from isa_ros.text.table import aligned
 
@@ -38,11 +37,9 @@ def study(options: Namespace) -> None:
     for one in chosen:
         found = results(one, benches, counted(sys.stderr, 'values', of=one.name))
         done.append((one, found))
-        print(as_text(one, found), end='\n\n' if one is not chosen[-1] else '\n', flush=True)
-    _write_json(options, [as_tree(*one) for one in done])
-    if options.out is not None:
-        for path in write_page(done, options.out):
-            print(path)
+        print(page.as_text(one, found), end='\n\n' if one is not chosen[-1] else '\n', flush=True)
+    write_wanted([page.as_tree(*one) for one in done], options.json)
+    write_wanted_page(page, done, options.out)
 
 
 def _temperature(options: Namespace) -> None:
@@ -52,16 +49,8 @@ def _temperature(options: Namespace) -> None:
             raise ConfigError(f'--{option} is not used by the study {temperature_page.NAME}')
     found = temperature.results(counted(sys.stderr, 'values', of=temperature_page.NAME))
     print(temperature_page.as_text(found), flush=True)
-    _write_json(options, temperature_page.as_tree(found))
-    if options.out is not None:
-        for path in temperature_page.write_page(found, options.out):
-            print(path)
-
-
-def _write_json(options: Namespace, tree: Any) -> None:
-    if options.json is not None:
-        options.json.write_text(json.dumps(tree, indent=2) + '\n', encoding='utf-8')
-        print(options.json)
+    write_wanted(temperature_page.as_tree(found), options.json)
+    write_wanted_page(temperature_page, found, options.out)
 
 
 def listing() -> str:

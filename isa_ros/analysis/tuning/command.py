@@ -2,7 +2,6 @@
 
 from argparse import Namespace
 from collections.abc import Iterator, Mapping
-import json
 import sys
 from typing import Any
 
@@ -16,6 +15,7 @@ from isa_ros.config.text.parameter_sets import as_tree
 from isa_ros.config.text.yaml_text import dump, Tree
 from isa_ros.errors import ConfigError
 from isa_ros.reu.schedule import Schedule
+from isa_ros.text.json_file import write_wanted
 from isa_ros.text.progress import counted
 from isa_ros.text.table import aligned, Cells, RIGHT
 
@@ -40,9 +40,7 @@ def tune(options: Namespace) -> bool:
         counted(sys.stderr, 'responses'))
     text = table(bench, wanted, found)
     print(text)
-    if options.json is not None:
-        options.json.write_text(json.dumps(_numbers(bench, wanted, found), indent=2) + '\n')
-        print(options.json)
+    write_wanted(_numbers(bench, wanted, found), options.json)
     if not found.is_reached:
         print(_missed(bench, wanted, found, options.out is not None))
     elif options.out is not None:

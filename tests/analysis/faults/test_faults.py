@@ -10,6 +10,7 @@ from isa_ros.cli.main import main
 from isa_ros.config.models.fault_catalogue import fault_catalogue
 from isa_ros.core.signals import CHANNELS
 from isa_ros.errors import ConfigError
+from isa_ros.text.json_file import write_tree
 import pytest
 
 
@@ -104,7 +105,7 @@ def test_the_words_of_diagnostics_are_those_of_the_gravest_level(found):
 
 def test_table_list_page_and_json_have_every_fault(found, tmp_path, capsys):
     text, listed = page.as_text(list(found.values())), page.listing()
-    page.write_json(list(found.values()), tmp_path / 'faults.json')
+    write_tree(page.as_tree(list(found.values())), tmp_path / 'faults.json')
     path, = page.write_page(list(found.values()), tmp_path)
     tree = json.loads((tmp_path / 'faults.json').read_text())['faults']
     assert [one['name'] for one in tree] == list(found)
