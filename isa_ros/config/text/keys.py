@@ -259,8 +259,8 @@ def nanoseconds(name: str, meaning: str, instead_of: Key, **bounds: float) -> Ke
             'doc': instead_of.meaning, 'unit': 'ns', 'bounds': bounds})
         return int(value)
     return Key(
-        name, Value('whole number', checked, 'ns'), f'{meaning} instead of `{instead_of.name}`', None,
-        in_text=InText.ONLY, instead_of=(instead_of.name,))
+        name, Value('whole number', checked, 'ns'), f'{meaning} instead of `{instead_of.name}`',
+        None, in_text=InText.ONLY, instead_of=(instead_of.name,))
 
 
 @dataclass(frozen=True)

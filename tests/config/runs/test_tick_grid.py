@@ -51,7 +51,8 @@ def test_an_offset_within_the_step_is_taken(tmp_path: Path, offset_ns: int) -> N
 def test_an_offset_outside_the_step_or_between_plant_steps_is_refused(
         tmp_path: Path, offset_ns: int, bound: str) -> None:
     """At a whole step it would be the next tick's, whose command it must not yet have."""
-    with pytest.raises(ConfigError, match=f'controller_offset_ns = {offset_ns} ns, must be {bound}'):
+    expected = f'controller_offset_ns = {offset_ns} ns, must be {bound}'
+    with pytest.raises(ConfigError, match=expected):
         run_of(tmp_path, controller_offset_ns=offset_ns)
 
 
