@@ -74,7 +74,7 @@ class Simulation:
         """The actuators, with their samples as rows."""
         self.surroundings = surroundings_of(run, self._factories)
         """Supplies and bodies, with their samples as rows."""
-        supplies = [feed.name for feed in self.surroundings.feeds]
+        supplies = [own.name for own in self.surroundings.circuits]
         transport = InProcess(
             self.group, self.surroundings.starts(), (), self._controllers, supplies)
         self.loop = TickLoop(

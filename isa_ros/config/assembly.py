@@ -12,7 +12,7 @@ from isa_ros.core.signals import START
 from isa_ros.loads.sheets import static_force
 from isa_ros.plant.plant import plant_record
 from isa_ros.plant.servo_valve import largest_flow_slope
-from isa_ros.surroundings.surroundings import Feed, Surroundings
+from isa_ros.surroundings.surroundings import Circuit, Surroundings
 import numpy as np
 
 
@@ -50,18 +50,18 @@ def surroundings_of(
 
     """
     plants = [plant_record(actuator.sheet.plant)[0] for actuator in run.actuators]
-    feeds = []
+    circuits = []
     for supply in run.supplies:
         rows = [run.index(name) for name in supply.feeds]
         slope = 0.0
         for row in rows:  # in this order: `sum` of Python 3.12 rounds differently
             slope += largest_flow_slope(plants[row].valve, supply.span)
-        feeds.append(Feed(supply.name, supply.sheet, rows, slope))
+        circuits.append(Circuit(supply.name, supply.sheet, rows, slope))
     starts = np.zeros(len(run.actuators), START)
     starts['position'] = [actuator.initial_position for actuator in run.actuators]
     starts['force'] = [static_force(actuator.load) for actuator in run.actuators]
     return Surroundings(
-        feeds, {own.name: own.body(Made(
+        circuits, {own.name: own.body(Made(
             run.step_ns, run.seed, [run.index(name) for _, name in own.joints],
             factories.get(own.name))) for own in run.bodies},
         starts, [plant.mechanics.k_s for plant in plants], run.step_ns)

@@ -18,7 +18,7 @@ from isa_ros.tick.source import Source
 OpenLine = Callable[[Sequence[BusDevice], int], Line]
 """Opens a line with the devices of a run, whose tick has a length in ns."""
 
-Tell = Callable[[str], object]
+PrintLine = Callable[[str], object]
 """Prints a line for the user."""
 
 
@@ -76,12 +76,12 @@ def refuse_tracks(scenario: Scenario) -> None:
 
 def prepare_bus(
         request: BusRequest, devices_of: Callable[[RunConfig, str], Sequence[BusDevice]],
-        open_line: OpenLine, tell: Tell) -> BusRun:
+        open_line: OpenLine, print_line: PrintLine) -> BusRun:
     """
     Return a checked session whose commands come from the master on a line.
 
-    The line is opened when the kernels are compiled and the nodes are ready. ``tell`` prints what
-    happens on the bus.
+    The line is opened when the kernels are compiled and the nodes are ready. ``print_line`` prints
+    what happens on the bus.
 
     Raises
     ------
@@ -107,11 +107,11 @@ def prepare_bus(
             names = ', '.join(device.name for device in devices)
             source = FrameSource(
                 line, devices, session.scenario.changes.get,
-                lambda: tell(f'{names} wait for a master on {request.place}'))
+                lambda: print_line(f'{names} wait for a master on {request.place}'))
             if pace is None:
                 yield source
             else:
-                with scheduled_first(tell):
+                with scheduled_first(print_line):
                     yield RealTimeSource(source, line, pace, 1e-3 * request.watchdog_ms)
         finally:
             line.close()

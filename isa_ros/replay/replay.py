@@ -64,12 +64,12 @@ class ReplayReport:
 
 def replay(
         bag: Bag, tolerances: Tolerances | None = None,
-        tell: Callable[[str], None] = lambda line: None) -> ReplayReport:
+        print_line: Callable[[str], None] = lambda line: None) -> ReplayReport:
     """
     Simulate a bag again and compare, up to the first difference.
 
-    ``tell`` is called with each difference between this installation and the bag's before the
-    simulation starts.
+    ``print_line`` is called with each difference between this installation and the bag's before
+    the simulation starts.
 
     Raises
     ------
@@ -84,12 +84,12 @@ def replay(
     found = differences(bag)
     changes = [difference.text for difference in found]
     for line in changes:
-        tell(line)
+        print_line(line)
     refuse_obstacles(bag, found)
     again = Rerun(bag)
     topics = topic_differences(bag, again.topics)
     for line in topics.lines:
-        tell(line)
+        print_line(line)
     comparer = Comparer(
         bag, [topic.name for topic in again.topics], tolerances,
         lambda topic, sequence, t_ns: topic in topics.compared, is_exact=True)

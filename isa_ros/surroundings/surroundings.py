@@ -18,7 +18,7 @@ from isa_ros.surroundings.supply import Supply, SUPPLY_SAMPLE, SupplySheet
 import numpy as np
 
 
-class Feed(NamedTuple):
+class Circuit(NamedTuple):
     """One supply and the actuators it feeds."""
 
     name: str
@@ -40,23 +40,23 @@ class Surroundings:
     """
 
     def __init__(
-            self, feeds: Sequence[Feed], bodies: Mapping[str, Body], starts: Records,
+            self, circuits: Sequence[Circuit], bodies: Mapping[str, Body], starts: Records,
             sensor_stiffness: Sequence[float], step_ns: int) -> None:
-        self.feeds = tuple(feeds)
+        self.circuits = tuple(circuits)
         self.bodies = dict(bodies)
         """By name, in the order of the run."""
-        self.supplies: Records = np.zeros(len(feeds), SUPPLY_SAMPLE)
+        self.supplies: Records = np.zeros(len(circuits), SUPPLY_SAMPLE)
         """`SUPPLY_SAMPLE` of every supply at the end of the last tick; overwritten."""
         self._supplies = [
-            Supply(feed.sheet, step_ns, feed.flow_slope, self.supplies[k:k + 1], feed.name)
-            for k, feed in enumerate(feeds)]
+            Supply(own.sheet, step_ns, own.flow_slope, self.supplies[k:k + 1], own.name)
+            for k, own in enumerate(circuits)]
         self.changing: Mapping[str, Changeable] = {
-            name: own for feed in feeds
-            for name, own in changeables(feed.sheet, f'{feed.name}.').items()}
+            name: own for circuit in circuits
+            for name, own in changeables(circuit.sheet, f'{circuit.name}.').items()}
         """All that may change during a run, by SUPPLY.KEY."""
         self._values = ChangingValues(
             'supplies', list(self.changing), [own.value for own in self.changing.values()])
-        self._rows = [np.array(feed.rows, np.int64) for feed in feeds]
+        self._rows = [np.array(circuit.rows, np.int64) for circuit in circuits]
         self._rest = starts.copy()
         self._sensor_stiffness = sensor_stiffness
 
@@ -121,11 +121,11 @@ class Surroundings:
         return self._values.applied
 
     def _sheets(self, values: Mapping[str, float]) -> Iterator[tuple[Supply, SupplySheet]]:
-        for supply, feed in zip(self._supplies, self.feeds):
-            prefix = f'{feed.name}.'
+        for supply, circuit in zip(self._supplies, self.circuits):
+            prefix = f'{circuit.name}.'
             own = {name: value for name, value in values.items() if name.startswith(prefix)}
             yield supply, with_changes(
-                feed.sheet, changeables(feed.sheet, prefix), own)
+                circuit.sheet, changeables(circuit.sheet, prefix), own)
 
     def _change_supplies(self) -> None:
         for supply, sheet in self._sheets(self._values.in_force):
@@ -144,8 +144,8 @@ class Surroundings:
         for body in self.bodies.values():
             body.advance(replies)
         drawn, returned = replies['supply_volume'].tolist(), replies['return_volume'].tolist()
-        for supply, feed in zip(self._supplies, self.feeds):
-            supply.advance(_sum(drawn, feed.rows), _sum(returned, feed.rows))
+        for supply, circuit in zip(self._supplies, self.circuits):
+            supply.advance(_sum(drawn, circuit.rows), _sum(returned, circuit.rows))
 
     def snapshot(self) -> bytes:
         """
@@ -159,11 +159,11 @@ class Surroundings:
             A number in the state of a body is not finite.
 
         """
-        for k, feed in enumerate(self.feeds):
+        for k, circuit in enumerate(self.circuits):
             broken = broken_number(self.supplies[k:k + 1])
             if broken is not None:
                 raise RunError(
-                    f'{feed.name}: {broken[0]} = {broken[1]}, must be finite to be saved')
+                    f'{circuit.name}: {broken[0]} = {broken[1]}, must be finite to be saved')
         return b''.join([self.supplies.tobytes(), self._values.snapshot(),
                          *(body.snapshot() for body in self.bodies.values())])
 
@@ -185,8 +185,8 @@ class Surroundings:
             raise ConfigError(
                 f'saved state of the surroundings has {len(snapshot)} bytes, must have {expected}')
         supplies = np.concatenate([
-            restored_rows(snapshot, SUPPLY_SAMPLE, 1, k * SUPPLY_SAMPLE.itemsize, feed.name)
-            for k, feed in enumerate(self.feeds)])
+            restored_rows(snapshot, SUPPLY_SAMPLE, 1, k * SUPPLY_SAMPLE.itemsize, circuit.name)
+            for k, circuit in enumerate(self.circuits)])
         self._values.restore(snapshot[supplies_end:values_end])
         list(self._sheets(self._values.accepted))   # refuses what cannot be
         self._change_supplies()

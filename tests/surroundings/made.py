@@ -12,7 +12,7 @@ class Standing(Surroundings):
 
     def tick(self) -> float:
         """Advance one tick; return the supply pressure that the first actuator had, Pa."""
-        n = sum(len(feed.rows) for feed in self.feeds)
+        n = sum(len(own.rows) for own in self.circuits)
         ports = np.zeros(n, LOAD_PORT)
         self.ports(ports)
         self.advance(np.zeros(n, LOAD_REPLY))
