@@ -105,6 +105,18 @@ def test_block_transfers_are_refused(command, name):
     assert answer[1:4] == b'\x00\x20\x01'
 
 
+@pytest.mark.parametrize(('begin', 'segment'), [(0x40, 0x01), (0x21, 0x60)])
+def test_a_segment_of_the_other_direction_ends_the_transfer(begin, segment):
+    """0x40 begins to read a text of 20 bytes, 0x21 to write one."""
+    values = Values()
+    values.content[TEXT] = bytes(20)
+    server = SdoServer(values)
+    server.answer(request(begin, TEXT, (20).to_bytes(4, 'little')))
+    assert code(server.answer(bytes([segment]) + b'written')) == 0x05040001
+    assert values.content[TEXT] == bytes(20)
+    assert code(server.answer(bytes([0x60]) + bytes(7))) == 0x05040001
+
+
 @pytest.mark.parametrize('command', [0x00, 0x60, 0x71])
 def test_a_segment_without_a_transfer_is_refused(command):
     assert code(SdoServer(Values()).answer(bytes([command]) + bytes(7))) == 0x05040001

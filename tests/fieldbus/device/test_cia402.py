@@ -188,6 +188,17 @@ def test_no_mode_holds_the_position(rig):
     assert rig.sample['position'] == pytest.approx(start, abs=0.006)  # 490 N of 1e5 N/m
 
 
+def test_a_mode_begins_at_the_present_position(rig):
+    """Not at the demand of the mode before: here a target 20 mm away."""
+    master = enabled(rig)
+    master.download(0x6065, 0, 0xFFFFFFFF)
+    away = 20000 if master.inputs[POSITION] < 50000 else -20000
+    master.cycle(ENABLE, x607A=master.inputs[POSITION] + away)
+    present = master.inputs[POSITION]
+    master.cycle(ENABLE, x6060=CSV, x60FF=0)
+    assert master.upload(0x6062) == pytest.approx(present, abs=1)
+
+
 def test_modes_change_while_enabled(rig):
     master = enabled(rig, CSP)
     for mode, own in ((CST, 4), (CSV, 6), (IMPEDANCE, 6), (CSP, 6)):
