@@ -115,7 +115,7 @@ def system_step(h, y, w, supply_pressure, is_held, system):
         for i in range(STATE_SIZE):
             states[0, j, i] += h / 6.0 * (
                 k[0, j, i] + 2.0 * (k[1, j, i] + k[2, j, i]) + k[3, j, i])
-        stop_spool(bodies[0][j].plant.valve, system.actuators[j].plant.valve.x_max)
+        stop_spool(bodies[0][j].plant.spool, system.actuators[j].plant.valve.x_max)
     y = shifted(shifted(shifted(shifted(y, h / 6.0, k1), h / 3.0, k2), h / 3.0, k3), h / 6.0, k4)
     w = (w[0] + h / 6.0 * (p1[0] + 2.0 * (p2[0] + p3[0]) + p4[0]),
          w[1] + h / 6.0 * (p1[1] + 2.0 * (p2[1] + p3[1]) + p4[1]),

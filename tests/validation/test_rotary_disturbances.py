@@ -5,7 +5,7 @@ import math
 
 from isa_ros.config.paths import CONFIG, find
 from isa_ros.config.runs.run_file import load_run
-from isa_ros.core.gravity import STANDARD_GRAVITY
+from isa_ros.core.constants import STANDARD_GRAVITY
 from isa_ros.core.signals import COMMAND, SAMPLE
 from isa_ros.scenario.scenario import idle
 from isa_ros.scripting.result import Log, Result
@@ -30,7 +30,7 @@ def result_of(load=None, stiffness: float = 0.0, **signals: np.ndarray) -> Resul
         samples[name][:, 0] = values
     applied['stiffness'] = stiffness
     supplies = np.zeros((n, 1), SUPPLY_SAMPLE)
-    log = Log(samples, supplies, None, {0: np.zeros(1, COMMAND), 5: applied})
+    log = Log(samples, supplies, {}, {0: np.zeros(1, COMMAND), 5: applied})
     return Result(idle(run), log, {})
 
 
