@@ -1,8 +1,9 @@
-"""Energy account of one actuator: what its oil brought and where it went, since t = 0."""
+"""Energy of one actuator: its account since t = 0, and the heat of its losses."""
 
 from isa_ros.core.kernel import kernel
 from isa_ros.plant.energy import elastic_energy
 from isa_ros.plant.servo_valve import tare_flow
+from isa_ros.plant.thermal import heat
 
 
 @kernel
@@ -43,3 +44,17 @@ def add_energies(reply, port, energies, elastic, seconds, sample):
     sample.damping_energy += energies.damping
     sample.work += energies.work
     sample.stored_energy += energies.compression + elastic
+
+
+@kernel
+def take_heat(seconds, reply, energies, thermal, state):
+    """
+    Advance a `THERMAL_STATE` over a tick of ``seconds`` with its `ENERGIES` and volumes  (T4, T5).
+
+    Oil flows in from the supply, and from the return where that refills a chamber.
+    """
+    oil = energies.leakage + energies.throttling + energies.cross_port + energies.relief
+    body = energies.friction + energies.damping + state.coil
+    state.coil = 0.0
+    inflow = max(0.0, reply.supply_volume) + max(0.0, -reply.return_volume)
+    heat(seconds, oil, body, inflow, thermal, state)

@@ -8,8 +8,7 @@ import math
 
 from isa_ros.actuator.body import (
     BODIES, body_step, end_steps, simpson, STAGES, STATE_SIZE, TOTALS_AT)
-from isa_ros.actuator.energy import add_energies, add_tare, stored_elastically
-from isa_ros.actuator.heat import take_heat
+from isa_ros.actuator.energy import add_energies, add_tare, stored_elastically, take_heat
 from isa_ros.actuator.inbox import latch, merge
 from isa_ros.actuator.link import (
     exchange_frames, hand_over, leaves, LINK, receive_samples, send_sample)

@@ -12,15 +12,33 @@ Neglected: the rope's mass and its swinging, air drag, the hand's reaction befor
 
 from dataclasses import dataclass
 
+from isa_ros.core.constants import STANDARD_GRAVITY
 from isa_ros.core.contact import one_sided
-from isa_ros.core.gravity import STANDARD_GRAVITY
 from isa_ros.core.kernel import kernel
-from isa_ros.core.parameter import parameter
+from isa_ros.core.parameter import parameter, Parameters
 from isa_ros.core.record import record
 from isa_ros.core.timebase import NS_PER_SECOND, PLANT_STEP_NS
 from isa_ros.errors import ParameterError
-from isa_ros.loads.wheel import Wheel
 import numpy as np
+
+
+@dataclass(frozen=True, kw_only=True)
+class Wheel(Parameters):
+    """The paper's load wheel with the rig's two end stops."""
+
+    inertia: float = parameter('wheel', 'kg | kg m2', gt=0.0, le=1e4)
+    stop_low: float = parameter('lower end stop of the rig', 'm | rad')
+    stop_high: float = parameter('upper end stop of the rig', 'm | rad')
+    stop_stiffness: float = parameter('end stops', 'N/m | Nm/rad', gt=0.0, le=1e9)
+    stop_damping: float = parameter('end stops', 'Ns/m | Nms/rad', ge=0.0, le=1e6)
+
+    def __post_init__(self) -> None:
+        """Refuse a lower stop that is not below the upper one."""
+        super().__post_init__()
+        if self.stop_low >= self.stop_high:
+            raise ParameterError(
+                f'stop_low = {self.stop_low:g} m | rad, must be < stop_high = '
+                f'{self.stop_high:g} m | rad')
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -10,9 +10,8 @@ from dataclasses import dataclass
 from isa_ros.core.parameter import parameter, Parameters
 from isa_ros.core.record import record
 from isa_ros.core.signals import LOAD_PORT
-from isa_ros.loads.drop_rig import DropRig, rope_record
+from isa_ros.loads.drop_rig import DropRig, rope_record, Wheel
 from isa_ros.loads.forces import OWN_LOAD, PAD, STOPS
-from isa_ros.loads.wheel import Wheel
 import numpy as np
 
 

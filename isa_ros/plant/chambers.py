@@ -11,7 +11,7 @@ that entrained air needs when it expands, but for the bulk modulus; the air does
 from dataclasses import dataclass
 import math
 
-from isa_ros.core.atmosphere import ATMOSPHERE
+from isa_ros.core.constants import ATMOSPHERE
 from isa_ros.core.elementary import exp, log
 from isa_ros.core.kernel import kernel
 from isa_ros.core.parameter import fault, parameter, Parameters

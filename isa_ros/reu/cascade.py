@@ -18,12 +18,12 @@ from isa_ros.reu.bumpless import faded, inner_reference
 from isa_ros.reu.device import DEVICE, device_record, DEVICE_STATE, device_step
 from isa_ros.reu.feedback_linearisation import (
     FeedbackLinearisation, LINEARISATION, linearisation_record, linearising_step)
+from isa_ros.reu.filters import SPEED, speed_record, SPEED_STATE, speed_step
 from isa_ros.reu.impedance import force_reference, IMPEDANCE, Impedance, impedance_record, SETPOINT
 from isa_ros.reu.lead_lag import LEAD_LAG, lead_lag_record, LEAD_LAG_STATE, lead_lag_step, LeadLag
 from isa_ros.reu.protection import PROTECTION, PROTECTION_STATE
 from isa_ros.reu.reactions import is_inhibited, setpoint_in_force
 from isa_ros.reu.schedule import schedule_table
-from isa_ros.reu.speed import SPEED, speed_record, SPEED_STATE, speed_step
 from isa_ros.reu.wiring import (
     delay_steps, IMPEDES, KINDS, LEADS_AND_LAGS, LINEARISES, loop_steps, OFF, PID, Reu)
 import numpy as np

@@ -23,12 +23,11 @@ from isa_ros.core.signals import (
     HAS_CLEAR_FAULT, HAS_ENABLE, HAS_MODE, HAS_QUICK_STOP, HAS_REFERENCE, HAS_SETPOINT)
 from isa_ros.core.timebase import PLANT_STEP
 from isa_ros.reu.bumpless import FADE, start_setpoint, take_over
-from isa_ros.reu.device_sheet import Device
 from isa_ros.reu.impedance import SETPOINT
 from isa_ros.reu.protection import DISABLE as REACTS_BY_DISABLE
 from isa_ros.reu.protection import QUICK_STOP as REACTS_BY_QUICK_STOP, request_clear
 from isa_ros.reu.reactions import is_cause_gone
-from isa_ros.reu.wiring import first_mode, IMPEDES, possible_modes, Reu
+from isa_ros.reu.wiring import Device, first_mode, IMPEDES, possible_modes, Reu
 import numpy as np
 
 

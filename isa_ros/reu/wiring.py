@@ -11,18 +11,41 @@ a block have the unit of its output: switching the next block inwards on or off 
 from dataclasses import dataclass
 
 from isa_ros.core.device import CURRENT, MODES
-from isa_ros.core.parameter import fault, nested, parameter, Parameters, section
+from isa_ros.core.parameter import choice, fault, nested, parameter, Parameters, section
 from isa_ros.core.suggest import alternatives
 from isa_ros.core.timebase import NS_PER_SECOND, PLANT_STEP_NS, steps_in
 from isa_ros.errors import ConfigError
 from isa_ros.reu.block import Pid
 from isa_ros.reu.compensation import DualGain
-from isa_ros.reu.device_sheet import BEFORE, Device
 from isa_ros.reu.feedback_linearisation import FeedbackLinearisation
+from isa_ros.reu.filters import SpeedEstimate
 from isa_ros.reu.impedance import Impedance
 from isa_ros.reu.lead_lag import LeadLag
 from isa_ros.reu.protection_sheet import Protection
-from isa_ros.reu.speed import SpeedEstimate
+
+
+@dataclass(frozen=True, kw_only=True)
+class Device(Parameters):
+    """Times and movements of the device's states."""
+
+    initialisation_ms: float = parameter(
+        'from t = 0 until the outputs may be on', 'ms', ge=0.0, le=60e3)
+    quick_stop: str = choice(
+        'reference of a quick stop: ramp: from the speed to rest; hold: at rest at once',
+        'ramp', 'hold')
+    quick_stop_deceleration: float = parameter(
+        'of the ramp', 'm/s2 | rad/s2', gt=0.0, le=1e4)
+    quick_stop_hold_ms: float = parameter(
+        'at rest, before the outputs are off', 'ms', ge=0.0, le=60e3)
+    fade_ms: float = parameter(
+        'time constant of the rest of a jump between modes or gains', 'ms', gt=0.0, le=1e3)
+
+
+BEFORE = Device(
+    initialisation_ms=0.0, quick_stop='ramp', quick_stop_deceleration=10.0,
+    quick_stop_hold_ms=200.0, fade_ms=5.0)
+"""Of a resolved configuration older than the device, which had none of its states."""
+
 
 BLOCKS = 4  # in the standard firmware (paper section 3)
 NEVER = 1 << 62  # plant steps: the period of a block that is off

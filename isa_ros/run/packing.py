@@ -9,7 +9,7 @@ from collections.abc import Collection, Mapping, Sequence
 from typing import NamedTuple
 
 from isa_ros.bag.packed import Layout, layout, Packed
-from isa_ros.core.atmosphere import ATMOSPHERE
+from isa_ros.core.constants import ATMOSPHERE
 from isa_ros.core.kernel import kernel
 from isa_ros.core.record import float_columns, floats
 from isa_ros.core.signals import SAMPLE

@@ -15,8 +15,8 @@ from dataclasses import dataclass
 import math
 from typing import NamedTuple
 
+from isa_ros.core.constants import STANDARD_GRAVITY
 from isa_ros.core.elementary import acos, atan2, cos, sin
-from isa_ros.core.gravity import STANDARD_GRAVITY
 from isa_ros.core.parameter import parameter, Parameters
 from isa_ros.errors import ConfigError
 from isa_ros.surroundings.bodies.leg.dynamics import leg_terms

@@ -11,7 +11,7 @@ Neglected: length and resistance of the pressure line, heat.
 
 from dataclasses import dataclass
 
-from isa_ros.core.atmosphere import ATMOSPHERE
+from isa_ros.core.constants import ATMOSPHERE
 from isa_ros.core.elementary import exp, log
 from isa_ros.core.fields import Field, record_type
 from isa_ros.core.kernel import kernel

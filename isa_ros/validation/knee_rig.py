@@ -13,7 +13,7 @@ from typing import NamedTuple
 from isa_ros.analysis.report.paper_figures import draw_force, draw_position
 from isa_ros.analysis.signals.signals import signals_of
 from isa_ros.analysis.signals.step_response import step_figures, StepFigures
-from isa_ros.core.gravity import STANDARD_GRAVITY
+from isa_ros.core.constants import STANDARD_GRAVITY
 from isa_ros.paper.printed import statement
 from isa_ros.scripting.result import Result
 from isa_ros.scripting.run import Run

@@ -10,10 +10,9 @@ from typing import NamedTuple
 from isa_ros.analysis.report.paper_figures import draw_force, paper_figure
 from isa_ros.analysis.signals.signals import signals_of
 from isa_ros.analysis.signals.step_response import step_figures
-from isa_ros.core.gravity import STANDARD_GRAVITY
+from isa_ros.core.constants import STANDARD_GRAVITY
 from isa_ros.loads.drop_rig import (
-    DropRig, ROPE, rope_record, rope_tension, weight_acceleration, WEIGHT_STATE)
-from isa_ros.loads.wheel import Wheel
+    DropRig, ROPE, rope_record, rope_tension, weight_acceleration, WEIGHT_STATE, Wheel)
 from isa_ros.paper.printed import statement
 from isa_ros.scripting.result import Result
 from isa_ros.validation.actuators import Actuators, SHIPPED

@@ -10,7 +10,7 @@ from isa_ros.analysis.response.rig import Choice, Rig
 from isa_ros.analysis.signals.signals import signals_of
 from isa_ros.config.runs.changed_parameters import with_parameters
 from isa_ros.core.units import MILLI
-from isa_ros.loads.wheel import Wheel
+from isa_ros.loads.drop_rig import Wheel
 from isa_ros.paper.printed import statement
 from isa_ros.scripting.result import Result
 from isa_ros.scripting.run import Run

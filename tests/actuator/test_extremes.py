@@ -2,7 +2,7 @@
 
 import isa_ros
 from isa_ros.actuator.actuator import SmartActuator
-from isa_ros.core.atmosphere import ATMOSPHERE
+from isa_ros.core.constants import ATMOSPHERE
 from isa_ros.core.units import LPM, MPA
 from isa_ros.loads.sheets import Mass
 import numpy as np

@@ -8,7 +8,7 @@ import time
 from isa_ros.bag.provenance import Provenance
 from isa_ros.bag.reader import Bag
 from isa_ros.bag.writer import BagWriter
-from isa_ros.core.atmosphere import ATMOSPHERE
+from isa_ros.core.constants import ATMOSPHERE
 from isa_ros.core.signals import SAMPLE
 from isa_ros.core.topic import KEPT, Topic
 from msg_adapters import clock

@@ -4,7 +4,7 @@ from dataclasses import replace
 import math
 
 from hypothesis import given, strategies as st
-from isa_ros.core.gravity import STANDARD_GRAVITY
+from isa_ros.core.constants import STANDARD_GRAVITY
 from isa_ros.core.record import record
 from isa_ros.core.timebase import PLANT_STEP
 from isa_ros.errors import ParameterError

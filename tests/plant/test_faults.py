@@ -3,7 +3,7 @@
 from dataclasses import replace
 import math
 
-from isa_ros.core.atmosphere import ATMOSPHERE
+from isa_ros.core.constants import ATMOSPHERE
 from isa_ros.core.parameter import fault, Parameters
 from isa_ros.errors import ParameterError
 from isa_ros.plant import chambers, coil, plant, spool

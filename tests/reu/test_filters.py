@@ -1,9 +1,12 @@
-"""Sampled low-pass."""
+"""Sampled low-pass, and the speed estimate with one."""
 
 import math
 
-from isa_ros.reu.filters import low_pass, low_pass_coefficient
+from isa_ros.reu.filters import (
+    low_pass, low_pass_coefficient, speed_record, SPEED_STATE, speed_step)
+import numpy as np
 import pytest
+from tests.sheets import actuator_sheet
 
 
 def test_step_response_is_the_sampled_exponential():
@@ -13,3 +16,13 @@ def test_step_response_is_the_sampled_exponential():
         y = low_pass(y, 1.0, alpha)
         assert y == pytest.approx(
             1.0 - math.exp(-2.0 * math.pi * 0.1 * n), rel=1e-12, abs=0.0)
+
+
+def test_the_speed_estimate_follows_a_ramp_through_its_filter():
+    """R1: a ramp's difference through 100 Hz at 1 kHz settles exponentially to its slope."""
+    row = speed_record(actuator_sheet('isa_v5').reu.speed)
+    state = np.zeros(1, SPEED_STATE).view(np.recarray)[0]
+    for n in range(1, 30):
+        speed_step(0.3e-3 * n, row, state)
+        expected = 0.3 * (1.0 - math.exp(-2.0 * math.pi * 0.1 * n))
+        assert state.velocity == pytest.approx(expected, rel=1e-9)

@@ -3,7 +3,7 @@
 from dataclasses import replace
 import math
 
-from isa_ros.core.atmosphere import ATMOSPHERE
+from isa_ros.core.constants import ATMOSPHERE
 from isa_ros.core.units import LPM
 from isa_ros.errors import ParameterError
 from isa_ros.surroundings import return_line, supply

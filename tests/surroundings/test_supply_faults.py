@@ -2,7 +2,7 @@
 
 from dataclasses import replace
 
-from isa_ros.core.atmosphere import ATMOSPHERE
+from isa_ros.core.constants import ATMOSPHERE
 from isa_ros.errors import ConfigError
 from isa_ros.surroundings import supply
 import pytest

@@ -10,7 +10,7 @@ from typing import NamedTuple
 
 from isa_ros.analysis.signals.traces import read_traces, seconds, Trace
 from isa_ros.config.runs.run_config import RunConfig
-from isa_ros.core.atmosphere import ATMOSPHERE
+from isa_ros.core.constants import ATMOSPHERE
 from isa_ros.core.fields import units_of
 from isa_ros.core.signals import SAMPLE_FIELDS
 from isa_ros.errors import BagError

@@ -10,8 +10,8 @@ from isa_ros.config.text.parameter_sets import build, build_one_of
 from isa_ros.config.text.sections import Entry, merge, Place, Section, written
 from isa_ros.config.text.yaml_text import Tree
 from isa_ros.errors import ConfigError
+from isa_ros.loads.drop_rig import Wheel
 from isa_ros.loads.sheets import LocalLoad
-from isa_ros.loads.wheel import Wheel
 
 
 def own_load(

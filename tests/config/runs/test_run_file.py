@@ -10,8 +10,8 @@ from isa_ros.config.text.changes import replaced
 from isa_ros.config.text.sections import Place
 from isa_ros.config.text.yaml_text import dump, parse, read
 from isa_ros.errors import ConfigError
+from isa_ros.loads.drop_rig import Wheel
 from isa_ros.loads.sheets import Blocked, Mass
-from isa_ros.loads.wheel import Wheel
 import pytest
 from tests.config.rig_file import rig
 

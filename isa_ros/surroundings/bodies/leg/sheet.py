@@ -9,8 +9,8 @@ scripts/generate_leg.py.
 from dataclasses import dataclass
 import math
 
+from isa_ros.core.constants import STANDARD_GRAVITY
 from isa_ros.core.elementary import cos, sin
-from isa_ros.core.gravity import STANDARD_GRAVITY
 from isa_ros.core.parameter import parameter, Parameters
 from isa_ros.core.record import record, rows_of
 from isa_ros.errors import ParameterError

@@ -3,7 +3,7 @@
 from dataclasses import replace
 import math
 
-from isa_ros.core.gravity import STANDARD_GRAVITY
+from isa_ros.core.constants import STANDARD_GRAVITY
 from isa_ros.core.noise import noise_key
 from isa_ros.core.record import rows_of
 from isa_ros.core.signals import LOAD_REPLY

@@ -1,3 +1,0 @@
-"""The standard atmosphere, between gauge and absolute pressures."""
-
-ATMOSPHERE = 101325.0  # Pa, ISO 2533
