@@ -2,7 +2,7 @@
 
 from benchmarks.peers.catalogue import installed, Peer, PEERS
 from isa_ros.bench.leg import IN_PROCESSES, speed_row
-from isa_ros.bench.limits import profile
+from isa_ros.bench.leg import profile
 from isa_ros.bench.rounds import Outcomes
 from isa_ros.bench.row import Aim, Row
 from isa_ros.bench.spec import Spec, TWELVE

@@ -4,8 +4,7 @@ from statistics import median
 
 from benchmarks.growth_figure import Curve, growth_figure
 from isa_ros.bench.host import available_memory
-from isa_ros.bench.leg import speed_row
-from isa_ros.bench.limits import profile
+from isa_ros.bench.leg import profile, speed_row
 from isa_ros.bench.memory import MIB, total
 from isa_ros.bench.page import Drawing
 from isa_ros.bench.rounds import Outcomes

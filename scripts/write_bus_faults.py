@@ -14,7 +14,7 @@ import re
 import struct
 from typing import NamedTuple
 
-from isa_ros.analysis.faults.rig import BEGIN_S, CONFIG, DURATION_S, END_S, STEP_S
+from isa_ros.analysis.faults.measure import BEGIN_S, CONFIG, DURATION_S, END_S, STEP_S
 from isa_ros.config.models.fault_catalogue import ACTUATOR, fault_catalogue, NamedFault
 from isa_ros.core.signals import COMMAND
 from isa_ros.fieldbus.device.devices import devices_of

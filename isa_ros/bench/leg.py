@@ -1,14 +1,19 @@
-"""The leg's drop, recorded: three actuators in separate processes, and in one."""
+"""
+The leg's drop, recorded: three actuators in separate processes, and in one.
 
-from collections.abc import Sequence
+Limits of a run are found from the laps of its coordinator and the processor time of its processes.
+"""
+
+from collections.abc import Mapping, Sequence
+import os
 from statistics import median
 
 from isa_ros.bench.floor import pipe_exchange, WORKERS
-from isa_ros.bench.limits import busy, cores, in_parts, profile
 from isa_ros.bench.rounds import Outcomes
 from isa_ros.bench.row import Aim, Row
 from isa_ros.bench.spec import LEG, Measured, median_of, ONE_PROCESS, PROCESSES, Spec
 from isa_ros.bench.tick import actuator_parts
+from isa_ros.text.table import digits
 
 IN_PROCESSES = Spec(LEG, PROCESSES, 2000)
 IN_ONE_PROCESS = Spec(LEG, ONE_PROCESS, 3000)
@@ -69,3 +74,31 @@ def tick_rows(runs: Sequence[Measured], pipe: float) -> list[Row]:
              for part, spent in median_of([run.processor for run in runs]).items()]
     share = busy(runs)
     return [*rows, Row(f'{cores()} cores in use', 100.0 * share, '%', 'all of them', share)]
+
+
+def in_parts(parts: Mapping[str, float], scale: float, unit: str) -> str:
+    """Return parts with their values, the largest first."""
+    by_size = sorted(parts.items(), key=lambda part: -part[1])
+    return ', '.join(f'{name} {digits(value * scale, 3)} {unit}' for name, value in by_size)
+
+
+def profile(runs: Sequence[Measured]) -> str:
+    """Return the parts of a tick, in one sentence; medians over the runs."""
+    tick = median(run.tick for run in runs)
+    phases, processor = (
+        median_of([run.phases for run in runs]), median_of([run.processor for run in runs]))
+    return (f'of a tick of {tick * 1e6:.0f} us: {in_parts(phases, 1e6, "us")}; processor time of '
+            f'a tick: {in_parts(processor, 1e6, "us")}, together {busy(runs):.0%} of '
+            f'{cores()} cores')
+
+
+def busy(runs: Sequence[Measured]) -> float:
+    """Return the share of all cores that the processes of a run use."""
+    tick = median(run.tick for run in runs)
+    spent = median_of([run.processor for run in runs])
+    return sum(spent.values()) / (tick * cores())
+
+
+def cores() -> int:
+    """Return the number of processors that this process may use."""
+    return len(os.sched_getaffinity(0))

@@ -1,7 +1,6 @@
 """Start-up time with warm caches: from the start of the command to its first tick."""
 
 from isa_ros.bench import leg
-from isa_ros.bench.limits import startup_profile
 from isa_ros.bench.loading import median_loading
 from isa_ros.bench.rounds import Outcomes
 from isa_ros.bench.row import Aim, Row
@@ -29,11 +28,12 @@ def _rows(spec: Spec, outcomes: Outcomes, floor: float) -> list[Row]:
     runs = outcomes.of(spec)
     if not runs:
         return []
+    parts = median_of([run.startup for run in runs])
     row = Row.of(f'{spec}: to tick 0', [sum(run.startup.values()) for run in runs], 's')
     row = row.against('floor', floor / row.number)
     if spec == leg.IN_PROCESSES:
         row = row.aiming(_AIM)
-        row = row.noting(startup_profile(runs)) if row.is_reached is False else row
-    parts = median_of([run.startup for run in runs])
+        row = row.noting(
+            f'start-up: {leg.in_parts(parts, 1.0, "s")}') if row.is_reached is False else row
     return [row, *(Row(part, spent, 's', 'the whole', spent / row.number).under(row)
                    for part, spent in parts.items())]

@@ -14,8 +14,8 @@ from typing import NoReturn
 
 import isa_ros
 from isa_ros.cli import (
-    bus_arguments, bus_commands, commands, response_arguments, run_arguments, shared_arguments)
-from isa_ros.cli.argument_types import number
+    bus_commands, commands, response_arguments, run_arguments, shared_arguments)
+from isa_ros.cli.shared_arguments import number
 from isa_ros.processes.ending import (
     ANSWER_IS_NO, DEBUG_VARIABLE, DONE, end_of, replaced_handlers, WRONG_INPUT)
 
@@ -195,7 +195,7 @@ def _bench(parser: argparse.ArgumentParser) -> None:
 _COMMANDS = {
     'demo': (_demo, commands.demo, 'drop the leg by 10 cm, record it, and draw a report'),
     'bringup': (run_arguments.bringup, commands.bringup, 'run and record a configuration'),
-    'bus': (bus_arguments.bus, bus_commands.bus,
+    'bus': (run_arguments.bus, bus_commands.bus,
             'serve the master of a real bus: EtherCAT, CANopen or a serial line'),
     'actuators': (_actuators, commands.actuators,
                   'run actuators of a configuration for a coordinator on another host'),

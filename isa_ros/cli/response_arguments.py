@@ -4,7 +4,7 @@ import argparse
 from pathlib import Path
 
 from isa_ros.cli import shared_arguments
-from isa_ros.cli.argument_types import count, file_to_write, number, positive
+from isa_ros.cli.shared_arguments import count, file_to_write, number, positive
 
 LOOPS = ('position', 'force', 'pressure', 'spool', 'current')
 

@@ -256,8 +256,3 @@ class Supply:
             supply_advance(self._substeps, drawn / self._step, self._record, self.state)
         if self._line is not None:
             return_advance(self._substeps, returned / self._step, self._line, self.state)
-
-    @property
-    def is_constant(self) -> bool:
-        """Return whether both pressures are constant over time."""
-        return self._record is None and self._line is None

@@ -84,7 +84,6 @@ def test_a_constant_supply_stays():
     """The ideal supply; it counts the oil nevertheless."""
     plant = supply.Supply(
         supply.ConstantSupply(pressure_mpa=20.7, return_pressure_mpa=0.5), MS, SLOPE)
-    assert plant.is_constant
     for drawn, returned in ((1.0, 0.25), (0.5, 0.125)):
         plant.advance(drawn, returned)
     assert (plant.pressure, plant.return_pressure) == (20.7e6, 0.5e6)
@@ -97,7 +96,6 @@ def test_a_constant_supply_stays():
 def test_a_return_line_settles_where_the_tank_takes_what_comes(sheet):
     """C9: P_tank + Q/G, 0.5 MPa above the tank at 6 l/min; what is drawn does not matter."""
     plant = supply.Supply(sheet, MS, SLOPE)
-    assert not plant.is_constant
     for _ in range(2000):  # 40 time constants: 4e-18 of the step is left
         plant.advance(5.0 * LPM * 1e-3, 6.0 * LPM * 1e-3)
     assert plant.return_pressure == pytest.approx(0.5e6 + 6.0 * LPM / G_TANK, rel=1e-9)

@@ -4,8 +4,8 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
-from isa_ros.analysis.faults.measure import Noticed, Outcome, SOUND, VISIBLE, Visible
-from isa_ros.analysis.faults.rig import BEGIN_S, CLEAR_S, END_S, LINK
+from isa_ros.analysis.faults.measure import (
+    BEGIN_S, CLEAR_S, END_S, LINK, Noticed, Outcome, SOUND, VISIBLE, Visible)
 from isa_ros.config.models.fault_catalogue import fault_catalogue, NamedFault
 from isa_ros.text.page import Page
 from isa_ros.text.table import aligned, digits

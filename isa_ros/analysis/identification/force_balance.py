@@ -53,7 +53,6 @@ class ForceBalance:
 
     values: np.ndarray
     half_widths: np.ndarray
-    n_windows: int
 
 
 def fit_friction(recording: Recording) -> ForceBalance:
@@ -67,7 +66,7 @@ def fit_friction(recording: Recording) -> ForceBalance:
     values = np.full(N_PARAMETERS, math.nan)
     widths = np.full(N_PARAMETERS, math.inf)
     if recording.duration < SHORTEST:
-        return ForceBalance(values, widths, 0)
+        return ForceBalance(values, widths)
     length = round(WINDOW / recording.step)
     windows, shorter = (_Windows(recording, n) for n in (length, length // 2))
     theta = windows.start() if windows.slides_both_ways() else None
@@ -83,7 +82,7 @@ def fit_friction(recording: Recording) -> ForceBalance:
         widths[free] = windows.half_widths(theta, free) + moved[free]
         if free is _WITHOUT_SPEED:
             values[STICTION], widths[STICTION] = math.nan, math.inf
-    return ForceBalance(values, widths, windows.n_good)
+    return ForceBalance(values, widths)
 
 
 class _Windows:
@@ -130,11 +129,6 @@ class _Windows:
         settled: np.ndarray = (is_steady & (path[:-1] - since > way)
                                & (changed < _SAME_SPEED * np.abs(self._speed)))
         return settled
-
-    @property
-    def n_good(self) -> int:
-        """Return the number of windows in use."""
-        return int(np.count_nonzero(self._good))
 
     def slides_both_ways(self) -> bool:
         """Return whether there is sliding in both directions, enough for an interval."""

@@ -4,10 +4,9 @@ import base64
 import html
 from pathlib import Path
 
-from isa_ros.analysis.report.energy import energy_legend, energy_table
+from isa_ros.analysis.report.energy import energy_legend, energy_table, recorded_accounts
 from isa_ros.analysis.report.figures import figures
 from isa_ros.analysis.report.paper_figures import paper_figure
-from isa_ros.analysis.signals.accounts import recorded_accounts
 from isa_ros.analysis.signals.signals import read_signals, Signals
 from isa_ros.bag.provenance import SCENARIO
 from isa_ros.bag.reader import Bag

@@ -147,11 +147,6 @@ def _sourced(path: Path) -> tuple[Section, Place]:
     return sourced(read(path), Place(path.name)), Place(path.name)
 
 
-def material_names() -> list[str]:
-    """Return the names of the packaged materials, sorted."""
-    return _names(_MATERIALS)
-
-
 def material_section(name: object, where: str) -> tuple[Section, Place]:
     """Return a packaged material as the section of a ground; as `actuator_model`."""
     return _sourced(_packaged(_MATERIALS, name, where, 'material'))

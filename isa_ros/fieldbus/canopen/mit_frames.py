@@ -56,20 +56,10 @@ _COMMAND_BITS = (16, 12, 12, 12, 12)
 _ANSWER_BITS = (16, 12, 12)
 
 
-def special_frame(kind: int) -> bytes:
-    """Return the frame of `ENABLE`, `DISABLE` or `SET_ZERO`."""
-    return _SPECIAL + bytes([kind])
-
-
 def special_of(data: bytes) -> int | None:
     """Return which special frame this is, None for a command."""
     is_special = data[:-1] == _SPECIAL and data[-1] in (ENABLE, DISABLE, SET_ZERO)
     return data[-1] if is_special else None
-
-
-def command_frame(command: Command, ranges: Ranges) -> bytes:
-    """Return the frame of a command; values beyond their ranges saturate."""
-    return _packed(command, ranges, _COMMAND_BITS)
 
 
 def command_of(data: bytes, ranges: Ranges) -> Command:
@@ -80,11 +70,6 @@ def command_of(data: bytes, ranges: Ranges) -> Command:
 def answer_frame(answer: Answer, ranges: Ranges) -> bytes:
     """Return the frame of an answer; values beyond their ranges saturate."""
     return bytes([answer.motor]) + _packed(answer[1:], _answered(ranges), _ANSWER_BITS)
-
-
-def answer_of(data: bytes, ranges: Ranges) -> Answer:
-    """Return the answer of a frame of 6 bytes."""
-    return Answer(data[0], *_unpacked(data[1:], _answered(ranges), _ANSWER_BITS))
 
 
 def _answered(ranges: Ranges) -> tuple[Range, Range, Range]:

@@ -4,7 +4,7 @@ from collections.abc import Mapping
 from pathlib import Path
 
 from diagnostic_msgs.msg import DiagnosticStatus
-from isa_ros.analysis.faults.rig import BEGIN_S, CONFIG, LINK, MOTION
+from isa_ros.analysis.faults.measure import BEGIN_S, CONFIG, LINK, MOTION
 from isa_ros.bag.reader import Bag
 from isa_ros.config.models.fault_catalogue import ACTUATOR, fault_catalogue
 from isa_ros.core.conditions import conditions

@@ -4,8 +4,7 @@ import json
 from pathlib import Path
 
 from isa_ros.analysis.faults import page
-from isa_ros.analysis.faults.measure import Outcome, outcomes, VISIBLE
-from isa_ros.analysis.faults.rig import END_S, STEP_S
+from isa_ros.analysis.faults.measure import END_S, Outcome, outcomes, STEP_S, VISIBLE
 from isa_ros.cli.main import main
 from isa_ros.config.models.fault_catalogue import fault_catalogue
 from isa_ros.core.signals import CHANNELS

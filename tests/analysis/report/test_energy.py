@@ -1,9 +1,9 @@
 """The table of oil and energy, from a run in memory and from its bag."""
 
 import isa_ros
-from isa_ros.analysis.report.energy import energy_table, energy_text, HEADER
+from isa_ros.analysis.report.energy import (
+    Accounts, energy_table, energy_text, HEADER, recorded_accounts)
 from isa_ros.analysis.report.report import write_report
-from isa_ros.analysis.signals.accounts import Accounts, recorded_accounts
 from isa_ros.bag.reader import Bag
 import pytest
 

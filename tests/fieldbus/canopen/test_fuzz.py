@@ -7,10 +7,11 @@ import struct
 import can
 import isa_ros
 from isa_ros.fieldbus.canopen.line import CanopenLine
-from isa_ros.fieldbus.canopen.mit_frames import ENABLE, special_frame
+from isa_ros.fieldbus.canopen.mit_frames import ENABLE
 from isa_ros.fieldbus.device.bus_device import BusDevice
 from isa_ros.fieldbus.device.devices import devices_of
 import pytest
+from tests.fieldbus.canopen.mit_master import special_frame
 from tests.fieldbus.canopen.test_mit import motors
 from tests.fieldbus.canopen.toy import ToyDrive
 from tests.fieldbus.canopen.virtual_bus import Master, RESET_NODE, START, virtual_master

@@ -11,12 +11,13 @@ import isa_ros
 from isa_ros.core.signals import COMMAND
 from isa_ros.errors import ConfigError
 from isa_ros.fieldbus.canopen.mit_frames import (
-    Answer, answer_frame, answer_of, Command, command_frame, command_of, DISABLE, ENABLE, Range,
-    Ranges, SET_ZERO, special_frame, special_of)
+    Answer, answer_frame, Command, command_of, DISABLE, ENABLE, Range, Ranges, SET_ZERO,
+    special_of)
 from isa_ros.fieldbus.canopen.mit_line import mit_line, MitLine
 from isa_ros.fieldbus.device.devices import devices_of
 import numpy as np
 import pytest
+from tests.fieldbus.canopen.mit_master import answer_of, command_frame, special_frame
 from tests.fieldbus.canopen.toy import ToyDrive
 from tests.fieldbus.canopen.virtual_bus import STEP_NS
 
