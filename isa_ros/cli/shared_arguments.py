@@ -67,23 +67,21 @@ def number(text: str) -> float:
 
 def count(text: str) -> int:
     """Return a whole number > 0."""
-    try:
-        value = int(text)
-    except ValueError:
-        value = 0
-    if value < 1:
-        raise argparse.ArgumentTypeError(f'{text!r} must be a whole number > 0')
-    return value
+    return _whole(text, 1, '> 0')
 
 
 def seed(text: str) -> int:
     """Return a whole number >= 0; its upper bound is that of the run file's key."""
+    return _whole(text, 0, '>= 0')
+
+
+def _whole(text: str, least: int, bound: str) -> int:
     try:
         value = int(text)
     except ValueError:
-        value = -1
-    if value < 0:
-        raise argparse.ArgumentTypeError(f'{text!r} must be a whole number >= 0')
+        value = least - 1
+    if value < least:
+        raise argparse.ArgumentTypeError(f'{text!r} must be a whole number {bound}')
     return value
 
 

@@ -84,7 +84,8 @@ def identify_bag(bag: Path, actuator: str | None = None) -> Identified:
             found.others[one.name] = 'has the flow curve of a data sheet, which is not estimated'
             continue
         recording = recording_of(signals, one, bag)
-        moved, least = float(np.ptp(recording.position)), _least_motion(recording)
+        moved = float(np.ptp(recording.position))
+        least = float(_LEAST_COUNTS * recording.plant.sensors.encoder)
         if moved < least:
             unit = 'rad' if one.sheet.is_rotary else 'm'
             found.others[one.name] = f'moved {moved:.2g} {unit}, needs at least {least:.2g} {unit}'
@@ -94,10 +95,6 @@ def identify_bag(bag: Path, actuator: str | None = None) -> Identified:
         raise BagError(f'{bag}: nothing to identify: ' + '; '.join(
             f'{name} {why}' for name, why in found.others.items()))
     return found
-
-
-def _least_motion(recording: Recording) -> float:
-    return float(_LEAST_COUNTS * recording.plant.sensors.encoder)
 
 
 def identify(recording: Recording, sheet: LinearPlant | RotaryPlant) -> list[Estimate]:

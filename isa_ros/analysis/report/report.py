@@ -47,7 +47,8 @@ def write_report(bag: Path, page: Path) -> list[Path]:
     page.parent.mkdir(parents=True, exist_ok=True)
     written, images = [page], []
     drawn = figures(signals)
-    name_of_paper = named_figure(bag)
+    name_of_paper = figure_of(
+        parse(Bag(bag).provenance.scenario, SCENARIO), Place(SCENARIO))
     if name_of_paper is not None:
         drawn = {name_of_paper: paper_figure(name_of_paper, signals)} | drawn
     for name, figure in drawn.items():
@@ -72,11 +73,6 @@ def _refuse_others(page: Path) -> None:
             if _GENERATOR.encode() not in file.read(len(_PAGE)):
                 raise BagError(
                     f'{page} already exists and is not a report, so it is not overwritten')
-
-
-def named_figure(bag: Path) -> str | None:
-    """Return the paper's figure set in the scenario of a bag, None if it has none."""
-    return figure_of(parse(Bag(bag).provenance.scenario, SCENARIO), Place(SCENARIO))
 
 
 def extremes(signals: Signals) -> list[tuple[str, float, float, str]]:

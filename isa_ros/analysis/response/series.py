@@ -6,7 +6,6 @@ all of them again with its values in addition.
 """
 
 from argparse import Namespace
-from collections.abc import Iterator
 import re
 from typing import NamedTuple
 
@@ -64,11 +63,5 @@ def _rig(name: str, values: Values, options: Namespace) -> Rig:
 
 def _label(name: str, values: Values, options: Namespace) -> str:
     """Return what differs between the rigs: values, and names if there are several."""
-    return ', '.join(_label_parts(name, values, len(options.names) > 1))
-
-
-def _label_parts(name: str, values: Values, has_names: bool) -> Iterator[str]:
-    if has_names or not values:
-        yield name
-    for key, value in values.items():
-        yield f'{key} = {value}'
+    names = [name] if len(options.names) > 1 or not values else []
+    return ', '.join([*names, *(f'{key} = {value}' for key, value in values.items())])

@@ -44,8 +44,7 @@ class Recording:
     def half_rate(self) -> 'Recording':
         """Return the recording without every second sample."""
         return replace(self, step=2.0 * self.step, **{
-            name: getattr(self, name)[::2] for name in (
-                'position', 'force', 'pressure_a', 'pressure_b', 'spool', 'supply_pressure')})
+            name: getattr(self, name)[::2] for name in (*_SIGNALS, _SUPPLY)})
 
     def is_trapped(self, margin: float) -> np.ndarray:
         """Return where neither relief nor refill passes oil, by ``margin`` (Pa), (n,)."""

@@ -5,7 +5,7 @@ from collections.abc import Sequence
 from dataclasses import replace
 import sys
 
-from isa_ros.analysis.studies import page, temperature, temperature_page
+from isa_ros.analysis.studies import page, temperature
 from isa_ros.analysis.studies.measure import Benches, Result, results
 from isa_ros.analysis.studies.studies import only_model, STUDIES, Study, study_of
 from isa_ros.errors import ConfigError
@@ -25,7 +25,7 @@ def study(options: Namespace) -> None:
         There is no such study or model, or options that do not go together.
 
     """
-    if options.name == temperature_page.NAME:
+    if options.name == temperature.NAME:
         _temperature(options)
         return
     chosen = _chosen(options)
@@ -46,18 +46,18 @@ def _temperature(options: Namespace) -> None:
     """Run the study of the oil's temperature, which has a rig and a page of its own."""
     for option in ('model', 'values', 'all'):
         if getattr(options, option):
-            raise ConfigError(f'--{option} is not used by the study {temperature_page.NAME}')
-    found = temperature.results(counted(sys.stderr, 'values', of=temperature_page.NAME))
-    print(temperature_page.as_text(found), flush=True)
-    write_wanted(temperature_page.as_tree(found), options.json)
-    write_wanted_page(temperature_page, found, options.out)
+            raise ConfigError(f'--{option} is not used by the study {temperature.NAME}')
+    found = temperature.results(counted(sys.stderr, 'values', of=temperature.NAME))
+    print(temperature.as_text(found), flush=True)
+    write_wanted(temperature.as_tree(found), options.json)
+    write_wanted_page(temperature, found, options.out)
 
 
 def listing() -> str:
     """Return every study, a line each."""
     return '\n'.join(aligned([
         *((one.name, one.title) for one in STUDIES),
-        (temperature_page.NAME, temperature_page.TITLE)]))
+        (temperature.NAME, temperature.TITLE)]))
 
 
 def _chosen(options: Namespace) -> tuple[Study, ...]:

@@ -4,7 +4,7 @@ import json
 from pathlib import Path
 
 from isa_ros.analysis.signals.signals import read_signals, Signals
-from isa_ros.analysis.studies import temperature_page
+from isa_ros.analysis.studies import temperature
 from isa_ros.analysis.studies.temperature import (
     Effects, law, measured, Result, results, rig_at, TEMPERATURES)
 from isa_ros.cli import main as cli
@@ -73,7 +73,7 @@ def test_memory_and_bag_show_the_same(
 
 def test_the_page_is_that_of_the_study(
         found: list[Result], tmp_path: Path) -> None:
-    page, = temperature_page.write_page(found, tmp_path)
+    page, = temperature.write_page(found, tmp_path)
     assert page.read_text() == (DOCS / page.name).read_text()
 
 
@@ -84,7 +84,7 @@ def test_the_command_prints_the_table_and_writes_json(
         'isa_ros.analysis.studies.temperature.results', lambda progress: found)
     file = tmp_path / 'study.json'
     assert cli.main(['study', 'temperature', '--json', str(file)]) == 0
-    assert temperature_page.as_text(found) in capsys.readouterr().out
+    assert temperature.as_text(found) in capsys.readouterr().out
     tree = json.loads(file.read_text())
     assert [Effects(**outcome['measured']) for outcome in tree['outcomes']] == [
         result.measured for result in found]
