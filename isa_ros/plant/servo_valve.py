@@ -35,7 +35,7 @@ def signed_sqrt(dp, delta):
 @kernel
 def flow_curve(opening, valve):
     """
-    Return g, the flow of one open land at the reference drop  (V4), in m3/s.
+    Return g, the flow of one open land at the reference drop  (V4, eq 19), in m3/s.
 
     Continuous: k_low u up to x_dg; beyond, with slope k_high, or for a high-response valve
     k_low x_dg + q_rest (1 - exp(-(u - x_dg) k_low/q_rest)). Of a data sheet: straight lines
@@ -158,7 +158,7 @@ def port_flows(x, p_a, p_b, p_s, p_t, valve):
     """
     Return (q_a, q_b, q_p, q_t) in m3/s at spool ``x`` (m) and pressures in Pa  (V7, V9).
 
-    Equations 11 to 18 of the paper as `Q = (g + leakage) sqrt(dP / dP_ref)` for each of the
+    Equations 11 to 18 of the paper (19 is `flow_curve`) as `Q = (g + leakage) sqrt(dP / dP_ref)` for each of the
     four lands, plus the pilot stage's tare flow from supply to return.
     """
     opened, _ = conductances(x, valve)

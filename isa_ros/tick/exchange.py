@@ -173,10 +173,10 @@ class RowSink:
     """Takes the rows of a run at each instant; override `take`, and other methods as needed."""
 
     def take_time(self, tick: int) -> None:
-        """Take the time of the instant before ``tick``, which the run computes next."""
+        """Take the time t = ``tick`` step_ns, before all else of that instant."""
 
     def take(self, tick: int, rows: Rows) -> None:
-        """Take the rows before ``tick``, which the next tick overwrites."""
+        """Take the rows at t = ``tick`` step_ns; the next tick overwrites them."""
 
     def add_event(self, tick: int, text: str) -> None:
         """Take an event before ``tick``: a pause, a step, a reset."""
