@@ -1,59 +1,21 @@
 """
 The flow curve g of V4 for identification: values, slopes and derivatives.
 
-An opening u is in m, > 0 for an open land; a curve is 0 for u <= 0. ``theta`` are the
-curve's own parameters.
+It is the flow of a land at the reference drop over its opening u, in m, > 0 for an open land, and
+0 for u <= 0. ``theta``, (size,), are the curve's own parameters. Each curve gives g (`flow`,
+m3/s), dg/du (`slope`, m2/s) and dg/dtheta_k (`derivative`); for the first fit candidates
+of its bend (`guesses`), the shapes of which g with that bend is a linear combination (`shapes`),
+and the parameters of their factors (`theta`). `excited` are the parameters that a spool with this
+travel, (n,), excites, `bounds` the least and greatest ones, (size,) each.
 """
 
 import math
-from typing import Protocol
 
 import numpy as np
 
 _SHARES = np.linspace(0.05, 0.95, 13)   # of the spool's travels, tried as x_dg
 _BENDS = np.geomspace(0.1, 10.0, 9)     # over the knee, tried as k_low/q_rest
 _LEAST = 0.01                           # share of the samples that excites a parameter
-
-
-class FlowCurve(Protocol):
-    """The flow of an open land at the reference drop over its opening."""
-
-    @property
-    def size(self) -> int:
-        """Return the number of parameters."""
-        ...
-
-    def flow(self, u: np.ndarray, theta: np.ndarray) -> np.ndarray:
-        """Return g, m3/s."""
-        ...
-
-    def slope(self, u: np.ndarray, theta: np.ndarray) -> np.ndarray:
-        """Return dg/du, m2/s."""
-        ...
-
-    def derivative(self, u: np.ndarray, theta: np.ndarray, k: int) -> np.ndarray:
-        """Return dg/dtheta_k."""
-        ...
-
-    def guesses(self, travel: np.ndarray) -> list[float]:
-        """Return candidates for the bend, for a spool with this travel, (n,)."""
-        ...
-
-    def shapes(self, u: np.ndarray, bend: float) -> list[np.ndarray]:
-        """Return the shapes of which g with that bend is a linear combination."""
-        ...
-
-    def theta(self, factors: np.ndarray, bend: float) -> np.ndarray:
-        """Return the parameters of the shapes' factors."""
-        ...
-
-    def excited(self, travel: np.ndarray) -> list[int]:
-        """Return the parameters that a spool with this travel excites."""
-        ...
-
-    def bounds(self, travel: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        """Return the least and greatest parameters, (size,) each."""
-        ...
 
 
 class DualGainCurve:
@@ -171,3 +133,6 @@ def _first(u: np.ndarray, x: float) -> np.ndarray:
 def _beyond(u: np.ndarray, x: float) -> np.ndarray:
     beyond: np.ndarray = np.maximum(u, x) - x if math.isfinite(x) else np.zeros_like(u)
     return beyond
+
+
+FlowCurve = DualGainCurve | HighResponseCurve

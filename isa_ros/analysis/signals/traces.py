@@ -1,6 +1,6 @@
 """The signals of a bag as arrays over time."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -27,17 +27,6 @@ class Trace:
         return self.fields[path]
 
 
-class _Topics(dict[str, Trace]):
-    """The topics of one bag; a missing one raises a `BagError`."""
-
-    def __init__(self, bag: Path, topics: Mapping[str, Trace]) -> None:
-        super().__init__(topics)
-        self._bag = bag
-
-    def __missing__(self, topic: str) -> Trace:
-        raise BagError(f'{self._bag}: {topic} is not in the bag, was it left out?')
-
-
 def read_traces(path: Path) -> tuple[RunConfig, dict[str, Trace]]:
     """
     Return the configuration stored in a bag and every topic of signals in it by name.
@@ -56,10 +45,10 @@ def read_traces(path: Path) -> tuple[RunConfig, dict[str, Trace]]:
             continue
         times.setdefault(message.topic, []).append(message.t_ns)
         messages.setdefault(message.topic, []).append(message.data)
-    return RunConfig.from_yaml(bag.provenance.configuration), _Topics(path, {
+    return RunConfig.from_yaml(bag.provenance.configuration), {
         topic: Trace(seconds(np.array(times[topic])),
                      columns(messages[topic], bag.types[topic], f'{path}: {topic}'))
-        for topic in times})
+        for topic in times}
 
 
 def seconds(t_ns: np.ndarray) -> np.ndarray:
