@@ -13,6 +13,7 @@ from isa_ros.analysis.response.actuator_trace import RATE_HZ
 from isa_ros.analysis.response.rig import Choice, Rig, rig
 from isa_ros.analysis.response.step import Step, step
 from isa_ros.analysis.signals.step_response import step_figures
+from isa_ros.core.parameter import replaced
 from isa_ros.core.signals import LOAD_PORT
 from isa_ros.core.timebase import PLANT_STEP
 from isa_ros.paper.printed import cell, statement
@@ -138,7 +139,7 @@ def _ringing() -> tuple[float, np.ndarray]:
     bare = replace(
         current, kp_v_per_ma=BARE_KP, kpf=1.0, lead_rad_per_s=current.lag_rad_per_s,
         lead_damping=current.lag_damping)
-    sheet = replace(bench.config.sheet, reu=replace(bench.config.sheet.reu, current=bare))
+    sheet = replaced(bench.config.sheet, 'reu.current', bare)
     bench = _rig(sheet)
     n = round(STEP_S * RATE_HZ)
     trace = bench.excite(bench.start(), np.full(n, BARE_STEP))['current']

@@ -12,6 +12,7 @@ from isa_ros.analysis.response.bode import bode
 from isa_ros.analysis.response.rig import Choice, Rig, rig
 from isa_ros.analysis.response.step import step
 from isa_ros.analysis.response.sweep import Sweep
+from isa_ros.core.parameter import replaced
 from isa_ros.paper.printed import statement
 from isa_ros.reu.block import Pid
 from isa_ros.reu.schedule import Constant, OilStiffness
@@ -75,8 +76,8 @@ def _bench(subject: Subject, law: str, place: float) -> Rig:
         reu = config.sheet.reu
         assert isinstance(reu.force, Pid)
         scheduled = isinstance(reu.force.gain_schedule, OilStiffness)
-        force = replace(reu.force, gain_schedule=Constant() if scheduled else OilStiffness())
-        config = replace(config, sheet=replace(config.sheet, reu=replace(reu, force=force)))
+        config = replace(config, sheet=replaced(
+            config.sheet, 'reu.force.gain_schedule', Constant() if scheduled else OilStiffness()))
     return bench.with_config(config)
 
 

@@ -16,6 +16,7 @@ from isa_ros.analysis.response.sweep import LARGEST_SHARE, Sweep
 from isa_ros.analysis.tuning.block_response import parts, responses
 from isa_ros.analysis.tuning.design import (
     DENSE, designed, Gains, Place, plant_of, shares, Wanted)
+from isa_ros.core.parameter import replaced
 from isa_ros.errors import ConfigError, IsaError
 from isa_ros.reu.block import Pid
 from isa_ros.reu.schedule import FivePoints
@@ -193,8 +194,7 @@ class _Bench:
 
 def with_block(rig: Rig, block: Pid, share: float) -> Rig:
     """Return a rig with another force block, at a share of the stroke."""
-    old = rig.config.sheet
-    sheet = replace(old, reu=replace(old.reu, force=block))
+    sheet = replaced(rig.config.sheet, 'reu.force', block)
     return replace(rig, loop=replace(rig.loop, sheet=sheet)).with_config(replace(
         rig.config, sheet=sheet, initial_position=share * sheet.plant.drive.stroke))
 
