@@ -12,7 +12,7 @@ from typing import Any
 from isa_ros.actuator.sheet import actuator_record, ActuatorSheet
 from isa_ros.config.models.catalogue import actuator_model, DEFAULT_PRESET
 from isa_ros.config.text.parameter_sets import build
-from isa_ros.core.conditions import BITS, CONDITIONS, shown
+from isa_ros.core.conditions import BITS, CONDITIONS
 from isa_ros.core.parameter import defaults
 from isa_ros.core.units import of_coordinate
 from isa_ros.reu.protection_sheet import levels_of, Protection
@@ -22,6 +22,14 @@ import numpy as np
 
 PAGE = Path(__file__).resolve().parents[1] / 'docs' / 'protection.md'
 MODELS = ('isa_v2', 'isa_v5', 'smart_manifold')
+SHOWN = {'Pa': ('MPa', 1e6), 'A': ('mA', 1e-3), 'm': ('mm', 1e-3), 's': ('ms', 1e-3)}
+"""Unit and its size in SI, for units whose usual values are not readable in SI."""
+
+
+def shown(value: float, unit: str) -> str:
+    """Return a value in SI with a readable unit: ``23.1 MPa``."""
+    name, size = SHOWN.get(unit, (unit, 1.0))
+    return f'{value / size:.4g} {name}'
 
 
 def conditions() -> list[str]:

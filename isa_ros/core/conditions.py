@@ -3,14 +3,12 @@ The conditions that the REU watches, as data: a row each, from which all else is
 
 A bit set is a whole number, so that it fits into a record of floats. A condition is *above* its
 levels or *below* them. From its row come its parameters (`isa_ros.reu.protection_sheet`), its bit,
-its words, its error on a bus (`isa_ros.fieldbus.device.faults`) and its lines in the pages; a line
+its error on a bus (`isa_ros.fieldbus.device.faults`) and its lines in the pages; a line
 of `measure` in `isa_ros.reu.protection` is its quantity.
 """
 
 from collections.abc import Mapping
 from typing import NamedTuple
-
-from isa_ros.core.units import of_coordinate
 
 REACTIONS = ('none', 'warn', 'limit', 'hold', 'damp', 'quick_stop', 'disable')
 """What a trip may cause, from the weakest to the strongest."""
@@ -188,9 +186,6 @@ CONDITIONS = (
 BITS: Mapping[str, int] = {condition.name: k for k, condition in enumerate(CONDITIONS)}
 """Bit of each condition by name."""
 
-_SHOWN = {'Pa': ('MPa', 1e6), 'A': ('mA', 1e-3), 'm': ('mm', 1e-3), 's': ('ms', 1e-3)}
-"""Unit and its size in SI, for units whose usual values are not readable in SI."""
-
 
 def conditions(value: float) -> list[str]:
     """
@@ -207,26 +202,3 @@ def conditions(value: float) -> list[str]:
             f'{value!r} is not a set of conditions, must be a whole number >= 0 and < '
             f'{1 << len(CONDITIONS)}')
     return [name for name, bit in BITS.items() if int(value) >> bit & 1]
-
-
-def shown(value: float, unit: str) -> str:
-    """Return a value in SI with a readable unit: ``23.1 MPa``."""
-    name, size = _SHOWN.get(unit, (unit, 1.0))
-    return f'{value / size:.4g} {name}'
-
-
-def words(
-        name: str, value: float | None, level: float, delay: float = 0.0, *,
-        is_trip: bool = False, is_rotary: bool = False) -> str:
-    """
-    Return one line about a condition: what, measured value, level and unit.
-
-    ``value`` (None: unknown) and ``level`` are SI, ``delay`` (s) is the time beyond the level.
-    """
-    condition = CONDITIONS[BITS[name]]
-    unit = of_coordinate(condition.unit, is_rotary)
-    measured = '' if value is None else f' {shown(value, unit)},'
-    side = 'above' if condition.is_above else 'below'
-    duration = f' for {shown(delay, "s")}' if delay > 0.0 else ''
-    return (f'{condition.quantity}{measured} {side} its {"trip" if is_trip else "warning"} level '
-            f'{shown(level, unit)}{duration}')

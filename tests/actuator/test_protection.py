@@ -8,7 +8,6 @@ from isa_ros.core.device import ENABLED, FAULT, FAULT_REACTION, FORCE, SPOOL
 from isa_ros.core.signals import (
     COMMAND, HAS_CLEAR_FAULT, HAS_ENABLE, HAS_MODE, HAS_REFERENCE, HAS_SETPOINT)
 from isa_ros.reu.reactions import protect
-from isa_ros.reu.reports import reports
 import numpy as np
 import pytest
 from tests.sheets import actuator_sheet, FINE, override, setpoint, smart_actuator
@@ -144,10 +143,9 @@ def test_a_tripped_actuator_is_in_fault_until_it_is_cleared() -> None:
     assert conditions(actuator.sample.warnings) == [] and actuator.sample.trips == 0.0
     actuator.tick(failed)
     assert conditions(actuator.sample.trips) == ['supply_low']
-    [cause] = reports(actuator.memory.constants.view(np.recarray)[0].reu.protection,
-                      own(actuator))[:1]
-    assert cause.text == (
-        'supply pressure 1 MPa, below its trip level 4.4 MPa for 10 ms')
+    cause = BITS['supply_low']
+    assert own(actuator).first == 1 << cause
+    assert own(actuator).trip_values[cause] == pytest.approx(1e6)
     for _ in range(50):
         actuator.tick(port)
         actuator.accept(setpoint(position=0.06))

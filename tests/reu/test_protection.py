@@ -224,3 +224,18 @@ def test_the_default_watches_all_but_the_ends_and_the_setpoints() -> None:
     is_watched = np.isfinite(constants.quiet)
     assert [name for name, k in BITS.items() if not is_watched[k]] == [
         'setpoint_timeout', 'end_of_stroke', 'link_lost']
+
+
+def test_a_trip_keeps_its_cause() -> None:
+    """A trip has the value that caused it, also when the quantity is back."""
+    watched = Watched(only(
+        'overload', warning=0.4, trip=0.5, delay_ms=0.1, reaction='disable'))
+    watched.convert(3)
+    watched.show('overload', 6e3)
+    watched.convert(2)
+    watched.show('overload', 4500.0)
+    watched.convert(2)
+    bit = BITS['overload']
+    assert watched.own.first == watched.own.trips == watched.own.warnings == 1 << bit
+    assert (watched.own.trip_since[bit], watched.own.warning_since[bit]) == (20, 20)
+    assert (watched.own.trip_values[bit], watched.own.values[bit]) == (6000.0, 4500.0)
