@@ -2,15 +2,16 @@
 
 from collections.abc import Mapping
 
-from msg_adapters import (
-    applied_parameters, device, fluid_pressure, joint_state, setpoint, temperature, wrench)
+from msg_adapters import applied_parameters, device, joint_state, setpoint
+from msg_adapters.sensor_messages import (
+    fluid_pressure, load_cell, PRESSURE_TYPE, TEMPERATURE_TYPE, WRENCH_TYPE)
 from msg_adapters.template import Prepared
 
 STATE_TOPICS = (
     ('joint_states', joint_state.TYPE),
-    ('load_cell', wrench.TYPE),
-    ('pressure_a', fluid_pressure.TYPE),
-    ('pressure_b', fluid_pressure.TYPE),
+    ('load_cell', WRENCH_TYPE),
+    ('pressure_a', PRESSURE_TYPE),
+    ('pressure_b', PRESSURE_TYPE),
     ('references', joint_state.TYPE),
     ('valve', joint_state.TYPE),
 )
@@ -31,7 +32,7 @@ KEPT_TOPICS = (*APPLIED_TOPICS, SENT_SETPOINT, DEVICE)
 
 TOPICS = (*APPLIED_TOPICS, DEVICE, *STATE_TOPICS)
 
-TEMPERATURE = ('temperature', temperature.TYPE)
+TEMPERATURE = ('temperature', TEMPERATURE_TYPE)
 """(topic suffix, type) of the oil's temperature: once a second, of actuators that get warm."""
 
 
@@ -56,9 +57,9 @@ def prepared(
     return {
         'applied_setpoint': setpoint.applied_setpoint(name, applied),
         'joint_states': joint_state.actuator_joint_state(name, sample),
-        'load_cell': wrench.load_cell(name, is_rotary, sample),
-        'pressure_a': fluid_pressure.fluid_pressure(name, absolute['pressure_a']),
-        'pressure_b': fluid_pressure.fluid_pressure(name, absolute['pressure_b']),
+        'load_cell': load_cell(name, is_rotary, sample),
+        'pressure_a': fluid_pressure(name, absolute['pressure_a']),
+        'pressure_b': fluid_pressure(name, absolute['pressure_b']),
         'references': joint_state.references(name, sample),
         'valve': joint_state.valve(name, sample),
     }

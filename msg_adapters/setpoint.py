@@ -1,11 +1,17 @@
-"""Conversion of setpoints and applied setpoints: JointState <-> COMMAND row."""
+"""
+Conversion of setpoints, as commanded, applied and sent: JointState <-> COMMAND row.
+
+``~/applied_setpoint`` is what is in force, ``~/sent_setpoint`` what was handed to the link of an
+actuator at a tick: the same entries, where a value that the command does not have is NaN.
+"""
 
 from collections.abc import Mapping, Sequence
 import math
 
 from isa_ros.core.device import MODES, REFERENCES
 from isa_ros.core.signals import (
-    COMMAND, EVERY_KIND, GAINS_OF_COMMAND, HAS_ENABLE, HAS_GAINS, HAS_REFERENCE, HAS_SETPOINT)
+    COMMAND, EVERY_KIND, GAINS_OF_COMMAND, HAS_ENABLE, HAS_GAINS, HAS_MODE, HAS_REFERENCE,
+    HAS_SETPOINT)
 from isa_ros.core.suggest import listed
 from isa_ros.errors import SetpointError
 from msg_adapters.cdr_reader import decode
@@ -81,13 +87,81 @@ def applied_to_command(data: bytes, name: str) -> np.void:
     command['kinds'] = HAS_SETPOINT | HAS_ENABLE
     values = dict(zip(_APPLIED, message.position[1:]))
     for entry, most in (('enabled', 1), ('mode', len(MODES) - 1), ('changed', EVERY_KIND)):
-        value = values.get(entry, 0.0)
-        if not (0 <= value <= most and value == int(value)):
-            raise SetpointError(f'{name}/{entry} = {value}, must be a whole number <= {most}')
         if entry in values:
-            command[_APPLIED[entry]] = int(value)
+            command[_APPLIED[entry]] = _whole(f'{name}/{entry}', values[entry], most)
     command['reference'] = values.get('reference', 0.0)
     return command
+
+
+def sent_to_command(data: bytes, name: str) -> np.void:
+    """
+    Return the COMMAND row of a recorded sent setpoint; inverse of `applied_setpoint`.
+
+    A mode, a reference and the kinds of what changed are numbers of the entries as they are; three
+    NaN are no position, velocity and effort, and a gain that is NaN keeps the gain in force.
+
+    Raises
+    ------
+    SetpointError
+        the message is not a sent setpoint of ``name``, or a value is invalid.
+    CdrError
+        the bytes are not a JointState.
+
+    """
+    message = decode(data, JointState)
+    names = applied_names(name)
+    if list(message.name) != names or any(
+            len(getattr(message, field)) != len(names) for field in ARRAYS):
+        raise SetpointError(
+            f'{name}: sent setpoint names {listed(message.name)}, must name {listed(names)} with '
+            'all values of each')
+    command: np.void = np.zeros(1, COMMAND)[0]
+    first = {field: getattr(message, field)[0] for field in ARRAYS}
+    if not all(map(math.isnan, first.values())):
+        for field, value in first.items():
+            command[field] = _finite(f'{name}: sent {field}', value)
+        command['kinds'] = HAS_SETPOINT
+    values = dict(zip(_APPLIED, message.position[1:]))
+    for gain in GAINS_OF_COMMAND:
+        if math.isinf(values[gain]) or values[gain] < 0.0:
+            raise SetpointError(
+                f'{name}/{gain} = {values[gain]}, must be finite and >= 0, or NaN')
+        command[gain] = values[gain]
+    enabled = values['enabled']
+    if not math.isnan(enabled):
+        if enabled not in (0.0, 1.0):
+            raise SetpointError(f'{name}/enabled = {enabled}, must be 0.0, 1.0 or NaN')
+        command['kinds'] |= HAS_ENABLE
+        command['is_enabled'] = int(enabled)
+    kinds = _whole(f'{name}/changed', values['changed'], EVERY_KIND)
+    if kinds & (HAS_SETPOINT | HAS_ENABLE) != command['kinds']:
+        raise SetpointError(f'{name}/changed = {kinds}, must name the values that are not NaN')
+    if kinds & (HAS_MODE | HAS_REFERENCE):
+        mode = values['mode']
+        if not (0 < mode < len(MODES) and mode == int(mode)):
+            raise SetpointError(
+                f'{name}/mode = {mode}, must be a whole number > 0 and < {len(MODES)}')
+        command['mode'] = int(mode)
+    if kinds & HAS_REFERENCE:
+        command['reference'] = _finite(f'{name}/reference', values['reference'])
+    if not kinds:
+        raise SetpointError(f'{name}: sent setpoint without a value')
+    command['kinds'] = kinds
+    return command
+
+
+def _whole(what: str, value: float, most: int) -> int:
+    """Return a value that is a whole number >= 0 and <= ``most``."""
+    if not (0 <= value <= most and value == int(value)):
+        raise SetpointError(f'{what} = {value}, must be a whole number <= {most}')
+    return int(value)
+
+
+def _finite(what: str, value: float) -> float:
+    """Return a value that is finite."""
+    if not math.isfinite(value):
+        raise SetpointError(f'{what} = {value}, must be finite')
+    return value
 
 
 def _command(message: JointState, name: str, known: Sequence[str]) -> np.void:
@@ -136,5 +210,4 @@ def _check(message: JointState, name: str, names: list[str], known: Sequence[str
             raise SetpointError(
                 f'{name}: setpoint has {len(values)} values of {field} for {len(names)} names')
         for k, value in enumerate(values):
-            if not math.isfinite(value):
-                raise SetpointError(f'{names[k]}: setpoint {field} = {value}, must be finite')
+            _finite(f'{names[k]}: setpoint {field}', value)

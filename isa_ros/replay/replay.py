@@ -29,8 +29,7 @@ from msg_adapters import diagnostics, event
 from msg_adapters.applied_parameters import tuned_values
 from msg_adapters.cdr import CdrError
 from msg_adapters.coordinator_messages import APPLIED_PARAMETERS, NODE
-from msg_adapters.sent_setpoint import sent_to_command
-from msg_adapters.setpoint import applied_to_command
+from msg_adapters.setpoint import applied_to_command, sent_to_command
 import numpy as np
 
 APPLIED = 'applied_setpoint'

@@ -15,7 +15,7 @@ from isa_ros.replay.difference import Deviation, Difference, TopicDifference
 from isa_ros.replay.tolerances import Tolerances
 from msg_adapters.cdr import CdrError, encode, Message
 from msg_adapters.cdr_reader import decode, flatten, message_class
-from msg_adapters.columns import number_columns
+from msg_adapters.template import number_columns
 import numpy as np
 from numpy.typing import NDArray
 

@@ -3,8 +3,9 @@
 from collections.abc import Iterator, Mapping, Sequence
 
 from isa_ros.surroundings.messages import BodyMessage, Force, Inertial, JointStates
-from msg_adapters import imu, joint_state, wrench
+from msg_adapters import joint_state
 from msg_adapters.coordinator_messages import WORLD_FRAME
+from msg_adapters.sensor_messages import imu, IMU_TYPE, wrench, WRENCH_TYPE
 from msg_adapters.template import Prepared, STAMP
 
 _XYZ = 'xyz'
@@ -19,15 +20,15 @@ def prepared(message: BodyMessage, columns: Mapping[str, int]) -> Prepared:
             len(message.names), position=at(message.position), velocity=at(message.velocity),
             effort=at(message.effort))
     if isinstance(message, Force):
-        return wrench.wrench(WORLD_FRAME), {**STAMP, **{
+        return wrench(WORLD_FRAME), {**STAMP, **{
             field: columns[name] for name, field in fields_of(message)}}
-    return imu.imu(message.link, message.sigmas, at([*message.force, *message.turning]))
+    return imu(message.link, message.sigmas, at([*message.force, *message.turning]))
 
 
 def type_of(message: BodyMessage) -> str:
     """Return the ROS type of a message."""
     return (joint_state.TYPE if isinstance(message, JointStates)
-            else wrench.TYPE if isinstance(message, Force) else imu.TYPE)
+            else WRENCH_TYPE if isinstance(message, Force) else IMU_TYPE)
 
 
 def fields_of(message: BodyMessage) -> Iterator[tuple[str, str]]:

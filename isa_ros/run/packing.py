@@ -21,11 +21,10 @@ from isa_ros.run.rare_messages import DEVICE, DIAGNOSTICS, OF_SUPPLIES, PARAMETE
 from isa_ros.surroundings.messages import BodyMessage
 from isa_ros.surroundings.supply import SUPPLY_SAMPLE
 from isa_ros.tick.exchange import PublishedRows
-from msg_adapters import (
-    actuator_messages, clock, coordinator_messages, diagnostics, event, fluid_pressure,
-    temperature)
+from msg_adapters import actuator_messages, clock, coordinator_messages, diagnostics, event
 from msg_adapters.actuator_messages import (
     KEPT_TOPICS, SENT_SETPOINT, STATE_TOPICS, TEMPERATURE, topics)
+from msg_adapters.sensor_messages import fluid_pressure, oil_temperature, PRESSURE_TYPE
 from msg_adapters.template import FIRST_VALUE, Prepared, Template, time_word
 import numpy as np
 
@@ -130,8 +129,8 @@ class Packer:
                           f'/{name}', name in names.heated, row in self._links.rows)]
         for supply, shows_return in names.supplies:
             for k, suffix in enumerate(_SUPPLY_PRESSURES[:1 + shows_return]):
-                topic = Topic(f'{_COORDINATOR}/{supply}_{suffix}', fluid_pressure.TYPE)
-                found.append((topic, fluid_pressure.fluid_pressure(
+                topic = Topic(f'{_COORDINATOR}/{supply}_{suffix}', PRESSURE_TYPE)
+                found.append((topic, fluid_pressure(
                     coordinator_messages.WORLD_FRAME, at + k)))
             at += len(_SUPPLY_PRESSURES)
         if names.supplies:
@@ -172,7 +171,7 @@ class Packer:
             name, is_rotary, places,
             {field: places[f'{field}, absolute'] for field in _PRESSURES},
             {field: places[f'applied {field}'] for field in _APPLIED})
-        return {**messages, TEMPERATURE[0]: temperature.of_oil(name, places)}
+        return {**messages, TEMPERATURE[0]: oil_temperature(name, places)}
 
     def _bind(self) -> None:
         """Store the rows as plain floats, a tenth of the time to pass to the kernel."""

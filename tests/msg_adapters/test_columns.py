@@ -2,8 +2,8 @@
 
 from msg_adapters.cdr import encode
 from msg_adapters.cdr_reader import decode, flatten
-from msg_adapters.columns import number_columns
 from msg_adapters.joint_state import joint_state
+from msg_adapters.template import number_columns
 import numpy as np
 from sensor_msgs.msg import JointState
 

@@ -1,9 +1,10 @@
 """What the coordinator publishes."""
 
 from hypothesis import given, settings, strategies as st
-from msg_adapters import clock, event, fluid_pressure
+from msg_adapters import clock, event
 from msg_adapters.cdr import encode
 from msg_adapters.cdr_reader import decode
+from msg_adapters.sensor_messages import fluid_pressure
 from msg_adapters.template import stamp
 from rcl_interfaces.msg import Log
 from rosgraph_msgs.msg import Clock
@@ -32,7 +33,7 @@ def test_the_packed_clock_is_the_encoded_one(t_ns):
 
 def test_a_pressure_is_stamped_and_has_the_frame_of_its_source():
     """As prepared for a supply; the packer makes it absolute."""
-    data, = packed([fluid_pressure.fluid_pressure('supply', 1)], [3.0, 20.7e6], T_NS)
+    data, = packed([fluid_pressure('supply', 1)], [3.0, 20.7e6], T_NS)
     message = decode(data, FluidPressure)
     assert message.fluid_pressure == 20.7e6
     assert (message.header.stamp.sec, message.header.stamp.nanosec) == (7, 8)

@@ -10,8 +10,7 @@ from isa_ros.errors import SetpointError
 from isa_ros.run.link_packing import pack_links, WORDS
 from msg_adapters.cdr import encode
 from msg_adapters.cdr_reader import decode
-from msg_adapters.sent_setpoint import sent_to_command
-from msg_adapters.setpoint import applied_setpoint
+from msg_adapters.setpoint import applied_setpoint, sent_to_command
 from msg_adapters.template import FIRST_VALUE, Template, time_word
 import numpy as np
 import pytest

@@ -11,7 +11,7 @@ from isa_ros.controller import Controller, Setpoint, State
 from isa_ros.core.timebase import PLANT_STEP_NS
 from isa_ros.replay.replay import replay
 from msg_adapters.cdr_reader import decode
-from msg_adapters.sent_setpoint import sent_to_command
+from msg_adapters.setpoint import sent_to_command
 import numpy as np
 import pytest
 from scipy import stats

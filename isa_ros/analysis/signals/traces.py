@@ -9,7 +9,7 @@ from isa_ros.config.runs.run_config import RunConfig
 from isa_ros.errors import BagError
 from msg_adapters import applied_parameters, device, diagnostics, event
 from msg_adapters.cdr_reader import message_class
-from msg_adapters.columns import number_columns
+from msg_adapters.template import number_columns
 import numpy as np
 
 _NO_SIGNALS = (  # texts of any length
