@@ -16,7 +16,7 @@ from isa_ros.core.parameter import check
 from isa_ros.core.signals import COMMAND
 from isa_ros.core.timebase import NS_PER_SECOND
 from isa_ros.errors import ConfigError
-from isa_ros.scenario.track import Event, motion_key, Track
+from isa_ros.scenario.track import motion_key, Track, TrackEvent
 import numpy as np
 
 ACCEPT = 'accept'
@@ -64,7 +64,7 @@ def _refuse_far(track: Track, actuator: ActuatorConfig, place: Place) -> None:
                 'bounds': {'ge': -stroke, 'le': 2.0 * stroke}})
 
 
-def _texts(event: Event, following: int | None, own: SetpointRange, step_ns: int,
+def _texts(event: TrackEvent, following: int | None, own: SetpointRange, step_ns: int,
            where: str) -> Iterator[str]:
     """
     Return a line for each value of an event that is limited.
@@ -90,13 +90,13 @@ def _texts(event: Event, following: int | None, own: SetpointRange, step_ns: int
             yield _text(f'{key}: {found.shown} at t = {t:g} s', found, own)
 
 
-def _beyond(event: Event, tick: int, own: SetpointRange, step_ns: int) -> Iterator[Beyond]:
+def _beyond(event: TrackEvent, tick: int, own: SetpointRange, step_ns: int) -> Iterator[Beyond]:
     row = np.zeros(1, COMMAND)[0]
     event.write(tick, step_ns, row)
     return own.beyond(row)
 
 
-def _beyond_ever(event: Event, own: SetpointRange) -> Iterator[Beyond]:
+def _beyond_ever(event: TrackEvent, own: SetpointRange) -> Iterator[Beyond]:
     """Return what leaves its range at the extremes of an event's motion."""
     assert event.setpoint is not None and event.motion is not None
     for excursion in event.motion.reach():

@@ -14,7 +14,7 @@ from isa_ros.core.timebase import NS_PER_SECOND
 from isa_ros.errors import ConfigError
 from isa_ros.scenario.device_steps import (
     DEVICE_KEYS, DeviceStep, mode_before, read_device_step)
-from isa_ros.scenario.track import Event, GAIT, MOTIONS, Setpoint, Track
+from isa_ros.scenario.track import GAIT, MOTIONS, Setpoint, Track, TrackEvent
 from isa_ros.scenario.trot_motion import read_gait
 from isa_ros.scenario.waveforms import Motion, POSITION, WAVEFORMS
 
@@ -39,7 +39,7 @@ def read_track(run: RunConfig, name: str, points: Any, place: Place, n_ticks: in
     """
     if not isinstance(points, list) or not points:
         raise ConfigError(f'{place} = {points!r}, must be a list of setpoints')
-    events: list[Event] = []
+    events: list[TrackEvent] = []
     step_ns, mode = run.step_ns, mode_before(run.actuator(name))
     for k, point in enumerate(points):
         below = Place(place.file, f'{place.key}[{k}]')
@@ -57,8 +57,8 @@ def read_track(run: RunConfig, name: str, points: Any, place: Place, n_ticks: in
     return Track(name, tuple(events))
 
 
-def _event(
-        tree: Tree, place: Place, run: RunConfig, actuator: ActuatorConfig, mode: int) -> Event:
+def _event(tree: Tree, place: Place, run: RunConfig, actuator: ActuatorConfig,
+           mode: int) -> TrackEvent:
     refuse_unknown(tree, (
         't_s', 'position', 'velocity', 'effort', 'stiffness', 'damping', *DEVICE_KEYS, *MOTIONS),
         place)
@@ -76,7 +76,7 @@ def _event(
     gains = {name: _gain(tree, name, place) for name in _GAINS}
     setpoint = _setpoint(tree, place, actuator) if 'position' in tree else None
     motion = None if setpoint is None else _motion(tree, place, run, actuator, setpoint)
-    return Event(tick, setpoint, gains['stiffness'], gains['damping'], motion, device)
+    return TrackEvent(tick, setpoint, gains['stiffness'], gains['damping'], motion, device)
 
 
 def _motion(tree: Tree, place: Place, run: RunConfig, actuator: ActuatorConfig,

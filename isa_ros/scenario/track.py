@@ -33,7 +33,7 @@ class Setpoint(Parameters):
 
 
 @dataclass(frozen=True)
-class Event:
+class TrackEvent:
     """The command to one actuator at one tick; None leaves a value unchanged."""
 
     tick: int
@@ -78,9 +78,9 @@ class Track:
     """The events of one actuator, in ascending order of time."""
 
     actuator: str
-    events: tuple[Event, ...]
+    events: tuple[TrackEvent, ...]
 
-    def at(self, tick: int) -> Event | None:
+    def at(self, tick: int) -> TrackEvent | None:
         """Return the event of ``tick``, or the earlier one whose motion still runs."""
         k = bisect_right(self.events, tick, key=lambda event: event.tick) - 1
         if k < 0:
@@ -89,7 +89,7 @@ class Track:
         return event if event.tick == tick or event.motion is not None else None
 
 
-def event_tree(event: Event, step_ns: int) -> Tree:
+def event_tree(event: TrackEvent, step_ns: int) -> Tree:
     """Return an event as a scenario file has it, with its position as a number."""
     tree: Tree = {'t_s': event.tick * step_ns / NS_PER_SECOND}
     if event.setpoint is not None:

@@ -5,7 +5,8 @@ import struct
 from isa_ros.fieldbus.device import abort
 from isa_ros.fieldbus.device.abort import SdoAbort
 from isa_ros.fieldbus.device.bus_device import Emergency, Identity, VENDOR
-from isa_ros.fieldbus.device.objects import DataType, Entry, Kind, Object, ObjectTable, Value
+from isa_ros.fieldbus.device.objects import (
+    DataType, Object, ObjectCode, ObjectEntry, ObjectTable, Value)
 import numpy as np
 
 LONG_TEXT = ''.join(chr(33 + k % 90) for k in range(700))
@@ -17,16 +18,17 @@ OUTPUTS, INPUTS = struct.Struct('<Hi'), struct.Struct('<Hi')
 
 def _record(index: int, name: str, *entries: tuple[str, DataType, Value, str]) -> Object:
     """Return an object of several entries behind their number."""
-    rows = [Entry(index, 0, 'number of entries', DataType.UNSIGNED8,
-                  'rw' if entries[0][3] == 'rw' else 'ro', len(entries))]
-    rows += [Entry(index, subindex, one, kind, access, value)
+    rows = [ObjectEntry(index, 0, 'number of entries', DataType.UNSIGNED8,
+                        'rw' if entries[0][3] == 'rw' else 'ro', len(entries))]
+    rows += [ObjectEntry(index, subindex, one, kind, access, value)
              for subindex, (one, kind, value, access) in enumerate(entries, 1)]
-    return Object(index, name, Kind.RECORD, tuple(rows))
+    return Object(index, name, ObjectCode.RECORD, tuple(rows))
 
 
 def _single(index: int, name: str, kind: DataType, value: Value = 0, access: str = 'ro',
             pdo: str = '') -> Object:
-    return Object(index, name, Kind.VAR, (Entry(index, 0, name, kind, access, value, pdo=pdo),))
+    return Object(index, name, ObjectCode.VAR, (
+        ObjectEntry(index, 0, name, kind, access, value, pdo=pdo),))
 
 
 def _mapped(index: int, bits: int) -> int:

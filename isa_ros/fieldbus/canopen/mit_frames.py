@@ -33,7 +33,7 @@ class Ranges(NamedTuple):
     effort: Range
 
 
-class Command(NamedTuple):
+class MotorCommand(NamedTuple):
     """What a command frame asks for, SI."""
 
     position: float
@@ -43,7 +43,7 @@ class Command(NamedTuple):
     effort: float
 
 
-class Answer(NamedTuple):
+class MotorAnswer(NamedTuple):
     """What a motor answers, SI."""
 
     motor: int
@@ -62,12 +62,12 @@ def special_of(data: bytes) -> int | None:
     return data[-1] if is_special else None
 
 
-def command_of(data: bytes, ranges: Ranges) -> Command:
+def command_of(data: bytes, ranges: Ranges) -> MotorCommand:
     """Return the command of a frame of 8 bytes."""
-    return Command(*_unpacked(data, ranges, _COMMAND_BITS))
+    return MotorCommand(*_unpacked(data, ranges, _COMMAND_BITS))
 
 
-def answer_frame(answer: Answer, ranges: Ranges) -> bytes:
+def answer_frame(answer: MotorAnswer, ranges: Ranges) -> bytes:
     """Return the frame of an answer; values beyond their ranges saturate."""
     return bytes([answer.motor]) + _packed(answer[1:], _answered(ranges), _ANSWER_BITS)
 

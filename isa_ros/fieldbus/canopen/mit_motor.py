@@ -8,7 +8,7 @@ present position 0 in the frames only: the encoder is absolute, and objects and 
 """
 
 from isa_ros.fieldbus.canopen.mit_frames import (
-    Answer, answer_frame, command_of, DISABLE, ENABLE, Range, Ranges, SET_ZERO)
+    answer_frame, command_of, DISABLE, ENABLE, MotorAnswer, Range, Ranges, SET_ZERO)
 from isa_ros.fieldbus.device.abort import SdoAbort
 from isa_ros.fieldbus.device.bus_device import BusDevice
 from isa_ros.fieldbus.device.manufacturer_area import DAMPING, EFFORT, MIT_RANGES, STIFFNESS
@@ -87,7 +87,7 @@ class MitMotor:
         position = (int(self._value(_POSITION)) - self._zero) * self._scale(_POSITION)
         velocity = int(self._value(_VELOCITY)) * self._scale(_VELOCITY)
         return answer_frame(
-            Answer(self.number & 0xFF, position, velocity, float(self._value(_FORCE))),
+            MotorAnswer(self.number & 0xFF, position, velocity, float(self._value(_FORCE))),
             self.ranges)
 
     def begin_tick(self) -> None:

@@ -17,7 +17,7 @@ SIZE = 8                # bytes of every request and answer
 MOST_BYTES = 4096       # of a value that is written
 
 
-class Dictionary(Protocol):
+class ServedObjects(Protocol):
     """The objects that a server gives access to."""
 
     def read(self, index: int, subindex: int) -> bytes:
@@ -33,7 +33,7 @@ class Dictionary(Protocol):
 class SdoServer:
     """Answers the requests of one client."""
 
-    def __init__(self, dictionary: Dictionary) -> None:
+    def __init__(self, dictionary: ServedObjects) -> None:
         self._dictionary = dictionary
         self._transfer: Transfer | None = None
 

@@ -8,7 +8,7 @@ which the Python package `canopen` reads and other tools ignore.
 from collections.abc import Iterator
 
 from isa_ros.fieldbus.device.bus_device import BusDevice
-from isa_ros.fieldbus.device.objects import DataType, Entry, Kind, Object
+from isa_ros.fieldbus.device.objects import DataType, Object, ObjectCode, ObjectEntry
 from isa_ros.fieldbus.device.process_data import CAN_PDOS
 
 VENDOR_NAME = 'isa_ros (placeholder, no assigned vendor id)'
@@ -19,7 +19,7 @@ _MANDATORY = (0x1000, 0x1001, 0x1018)
 _MANUFACTURER = range(0x2000, 0x6000)
 _ACCESS = {'rx': 'rww', 'tx': 'ro'}
 """Access of mappable entries."""
-_KINDS = {Kind.VAR: '0x7', Kind.ARRAY: '0x8', Kind.RECORD: '0x9'}
+_KINDS = {ObjectCode.VAR: '0x7', ObjectCode.ARRAY: '0x8', ObjectCode.RECORD: '0x9'}
 
 
 def eds_text(device: BusDevice) -> str:
@@ -71,7 +71,7 @@ def _device_information(device: BusDevice, model: str) -> Iterator[str]:
 
 def _object(one: Object) -> Iterator[str]:
     section = f'{one.index:04X}'
-    if one.kind is Kind.VAR:
+    if one.kind is ObjectCode.VAR:
         return _section(section, [('ParameterName', one.name), *_entry(one.entries[0])])
     return _record(section, one)
 
@@ -85,9 +85,9 @@ def _record(section: str, one: Object) -> Iterator[str]:
             ('ParameterName', entry.name), *_entry(entry)])
 
 
-def _entry(entry: Entry) -> list[tuple[str, str]]:
+def _entry(entry: ObjectEntry) -> list[tuple[str, str]]:
     keys = [
-        ('ObjectType', _KINDS[Kind.VAR]), ('DataType', f'0x{entry.data_type.number:04X}'),
+        ('ObjectType', _KINDS[ObjectCode.VAR]), ('DataType', f'0x{entry.data_type.number:04X}'),
         ('AccessType', _ACCESS.get(entry.pdo, entry.access)), ('DefaultValue', _default(entry)),
         ('PDOMapping', str(int(bool(entry.pdo))))]
     if entry.data_type.is_integer and entry.is_writable:
@@ -105,7 +105,7 @@ def _entry(entry: Entry) -> list[tuple[str, str]]:
     return keys
 
 
-def _default(entry: Entry) -> str:
+def _default(entry: ObjectEntry) -> str:
     if entry.adds_node:
         return f'$NODEID+0x{int(entry.default):X}'
     if entry.data_type is DataType.REAL32:

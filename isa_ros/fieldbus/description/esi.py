@@ -11,7 +11,7 @@ from xml.etree.ElementTree import Element, SubElement
 from isa_ros.fieldbus.description.eds import VENDOR_NAME
 from isa_ros.fieldbus.device.bus_device import (
     BusDevice, RECEIVE_ASSIGNMENT, TRANSMIT_ASSIGNMENT, VENDOR)
-from isa_ros.fieldbus.device.objects import Entry, Kind, Object
+from isa_ros.fieldbus.device.objects import Object, ObjectCode, ObjectEntry
 from isa_ros.fieldbus.device.process_data import CAN_PDOS, ETHERCAT_PDO, RECEIVE, TRANSMIT
 from isa_ros.fieldbus.ethercat.layout import AREAS
 from isa_ros.fieldbus.ethercat.sii import build_sii, process_data_sizes
@@ -140,7 +140,7 @@ def _profile(found: Element, device: BusDevice) -> None:
         _object(objects, one)
         for entry in one.entries:
             basic[_type_name(entry)] = entry.bits
-        if one.kind is not Kind.VAR:
+        if one.kind is not ObjectCode.VAR:
             types.append(_record_type(one))
     for name, bits in sorted(basic.items(), reverse=True):
         data_type = Element('DataType')
@@ -149,13 +149,13 @@ def _profile(found: Element, device: BusDevice) -> None:
         types.insert(0, data_type)
 
 
-def _type_name(entry: Entry) -> str:
+def _type_name(entry: ObjectEntry) -> str:
     """Return the name of a type; that of a text has its length."""
     name = entry.data_type.short_name
     return name if entry.data_type.bits else f'{name}({entry.bits >> 3})'
 
 
-def _places(one: Object) -> Iterator[tuple[Entry, int]]:
+def _places(one: Object) -> Iterator[tuple[ObjectEntry, int]]:
     """Yield the entries with their place in bits; subindex 0 fills 16."""
     place = 0
     for entry in one.entries:
@@ -165,7 +165,7 @@ def _places(one: Object) -> Iterator[tuple[Entry, int]]:
 
 def _bits(one: Object) -> int:
     """Return the length of an object in complete access, or of its only entry."""
-    if one.kind is Kind.VAR:
+    if one.kind is ObjectCode.VAR:
         return one.entries[0].bits
     return 16 + sum(entry.bits for entry in one.entries if entry.subindex)
 
@@ -186,7 +186,7 @@ def _record_type(one: Object) -> Element:
 
 
 def _object(objects: Element, one: Object) -> None:
-    found, is_variable = SubElement(objects, 'Object'), one.kind is Kind.VAR
+    found, is_variable = SubElement(objects, 'Object'), one.kind is ObjectCode.VAR
     first = one.entries[0]
     _text(found, 'Index', _hexadecimal(one.index, 4))
     _text(found, 'Name', one.name)
@@ -207,12 +207,12 @@ def _object(objects: Element, one: Object) -> None:
         _text(SubElement(found, 'Flags'), 'Category', category)
 
 
-def _default(information: Element, entry: Entry) -> None:
+def _default(information: Element, entry: ObjectEntry) -> None:
     if data := entry.data_type.pack(entry.default):
         _text(information, 'DefaultData', data.hex().upper())
 
 
-def _flags(parent: Element, entry: Entry, category: str = '') -> None:
+def _flags(parent: Element, entry: ObjectEntry, category: str = '') -> None:
     flags = SubElement(parent, 'Flags')
     _text(flags, 'Access', _ACCESS[entry.access])
     if category:

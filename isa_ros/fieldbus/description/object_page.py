@@ -11,7 +11,7 @@ from isa_ros.fieldbus.device import cia408_objects
 from isa_ros.fieldbus.device import cia408_states
 from isa_ros.fieldbus.device.bus_device import BusDevice
 from isa_ros.fieldbus.device.faults import OWN_CODES
-from isa_ros.fieldbus.device.objects import Entry, Kind, Object, ObjectTable
+from isa_ros.fieldbus.device.objects import Object, ObjectCode, ObjectEntry, ObjectTable
 from isa_ros.fieldbus.device.process_data import is_mapping, RECEIVE, TRANSMIT
 from isa_ros.fieldbus.device.states import Transition
 from isa_ros.text.marked import with_parts
@@ -41,7 +41,7 @@ def object_rows(objects: Sequence[Object]) -> Rows:
 def _alike(place: tuple[int, Object]) -> tuple[object, ...]:
     """Return what consecutive objects have in common that share their rows."""
     k, one = place
-    if one.kind is Kind.VAR:
+    if one.kind is ObjectCode.VAR:
         return one.index,
     return one.index - k, _without_number(one.name), tuple(
         _row('', entry, '') for entry in one.entries)
@@ -57,9 +57,9 @@ def _rows(one: Object, last: int) -> Iterator[tuple[str, ...]]:
     if last != one.index:
         index, name = f'{index}..0x{last:04X}', _without_number(name)
     first, *others = one.entries
-    if one.kind is Kind.VAR:
+    if one.kind is ObjectCode.VAR:
         yield _row(index, first, name)
-    elif one.kind is Kind.ARRAY and len({_row('', entry, '', '') for entry in others}) == 1:
+    elif one.kind is ObjectCode.ARRAY and len({_row('', entry, '', '') for entry in others}) == 1:
         yield _row(index, first, f'{name}: number of entries')
         yield _row(index, others[0], f'{name}: entries', f'1..{others[-1].subindex}')
     else:
@@ -67,7 +67,8 @@ def _rows(one: Object, last: int) -> Iterator[tuple[str, ...]]:
             yield _row(index, entry, name if entry.name == name else f'{name}: {entry.name}')
 
 
-def _row(index: str, entry: Entry, name: str, subindex: str | None = None) -> tuple[str, ...]:
+def _row(
+        index: str, entry: ObjectEntry, name: str, subindex: str | None = None) -> tuple[str, ...]:
     return (
         index, str(entry.subindex) if subindex is None else subindex, name,
         entry.data_type.name, entry.access, entry.pdo, entry.unit,
@@ -100,7 +101,7 @@ def _mapped(device: BusDevice, word: int) -> str:
     index, subindex, bits = word >> 16, word >> 8 & 0xFF, word & 0xFF
     if not index:
         return f'{bits} bits unused'
-    place = f'0x{index:04X}' if device.table.at(index).kind is Kind.VAR else (
+    place = f'0x{index:04X}' if device.table.at(index).kind is ObjectCode.VAR else (
         f'0x{index:04X}:{subindex}')
     return f'{place} {device.table.entry(index, subindex).name}'
 
@@ -125,7 +126,7 @@ def commands_402() -> Rows:
 def status_402() -> Rows:
     """Return the states of CiA 402 with their status word."""
     return [('state', f'status word & 0x{cia402_states.STATE_MASK:02X}'), *(
-        (one.words, f'0x{one.bits:02X}') for one in cia402_states.State)]
+        (one.words, f'0x{one.bits:02X}') for one in cia402_states.State402)]
 
 
 def modes_402() -> Rows:
@@ -139,7 +140,7 @@ def status_408() -> Rows:
     """Return the states of CiA 408 with the bits of their status word."""
     return [('state', 'R M H D'), *(
         (one.words, ' '.join(str(one.bits >> bit & 1) for bit in range(3, -1, -1)))
-        for one in cia408_states.State)]
+        for one in cia408_states.State408)]
 
 
 def modes_408() -> Rows:

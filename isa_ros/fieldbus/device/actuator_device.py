@@ -8,11 +8,11 @@ from isa_ros.fieldbus.device.abort import OUT_OF_RANGE, SdoAbort
 from isa_ros.fieldbus.device.axis import Axis, FIELDS
 from isa_ros.fieldbus.device.bus_device import Emergency, Identity
 from isa_ros.fieldbus.device.communication_area import ERROR_FIELD
-from isa_ros.fieldbus.device.dictionary import Dictionary, Key
+from isa_ros.fieldbus.device.dictionary import Key, ObjectDictionary
 from isa_ros.fieldbus.device.drive import Drive
 from isa_ros.fieldbus.device.faults import delete_errors, Faults, PDO_LENGTH
 from isa_ros.fieldbus.device.manufacturer_area import note_refusal, tunable_keys
-from isa_ros.fieldbus.device.objects import Entry, ObjectTable, Value
+from isa_ros.fieldbus.device.objects import ObjectEntry, ObjectTable, Value
 from isa_ros.fieldbus.device.process_data import is_changed_in_preop, ProcessData
 import numpy as np
 
@@ -33,7 +33,7 @@ class ActuatorDevice:
         self.is_wanted = False
         self._axis = axis
         self._actuals: dict[Key, Callable[[], Value]] = {}
-        self._dictionary = Dictionary(table, self._actuals, self._admit)
+        self._dictionary = ObjectDictionary(table, self._actuals, self._admit)
         values = self._values = self._dictionary.values
         self._faults = Faults(axis.sheet.reu.protection, values)
         self._process_data = ProcessData(table, values)
@@ -81,7 +81,7 @@ class ActuatorDevice:
         """Set an entry on behalf of the bus itself, without checks."""
         self._values[index, subindex] = value
 
-    def _admit(self, entry: Entry, value: Value) -> None:
+    def _admit(self, entry: ObjectEntry, value: Value) -> None:
         """Refuse a value by the rules of the REU or the drive."""
         own = self._tunables.get((entry.index, entry.subindex))
         if own is None:
@@ -168,7 +168,7 @@ class ActuatorDevice:
                 self._values[key] = values[one.name]
 
 
-def _measured(axis: Axis, entry: Entry) -> Callable[[], Value]:
+def _measured(axis: Axis, entry: ObjectEntry) -> Callable[[], Value]:
     """Return a function that returns a field of the sample as the entry counts it."""
     place, scale = FIELDS[entry.source], entry.scale
     if not entry.data_type.is_integer:

@@ -7,7 +7,8 @@ the same; `isa_ros.fieldbus.canopen.communication` keeps their values for one no
 
 from isa_ros.fieldbus.device.can_identifiers import (
     EMERGENCY, INVALID, RECEIVE, SDO_ANSWER, SDO_REQUEST, SYNC, TRANSMIT)
-from isa_ros.fieldbus.device.objects import DataType, Entry, Kind, Object, record_of, variable
+from isa_ros.fieldbus.device.objects import (
+    DataType, Object, ObjectCode, ObjectEntry, record_of, variable)
 
 SYNC_ID, CYCLE_PERIOD, SYNC_OVERFLOW = 0x1005, 0x1006, 0x1019
 EMERGENCY_ID = 0x1014
@@ -30,30 +31,31 @@ def communication_objects(step_ns: int) -> list[Object]:
     """Return the services of CANopen without the PDOs, of a run with this tick."""
     cycle_us = step_ns // _NS_PER_US
     return [
-        variable(Entry(SYNC_ID, 0, 'COB-ID SYNC', _U32, 'rw', SYNC, meaning='the tick'), CANOPEN),
-        variable(Entry(CYCLE_PERIOD, 0, 'Communication cycle period', _U32, 'rw', cycle_us, 's',
-                       _MICROSECOND, choices=(0, cycle_us), meaning='the tick; 0: not checked'),
+        variable(ObjectEntry(SYNC_ID, 0, 'COB-ID SYNC', _U32, 'rw', SYNC, meaning='the tick'),
                  CANOPEN),
-        variable(Entry(EMERGENCY_ID, 0, 'COB-ID EMCY', _U32, 'rw', EMERGENCY, adds_node=True,
-                       meaning='bit 31: off'), CANOPEN),
-        Object(HEARTBEAT_CONSUMED, 'Consumer heartbeat time', Kind.ARRAY, (
-            Entry(HEARTBEAT_CONSUMED, 0, 'Highest subindex', _U8, 'const', CONSUMERS),
-            *(Entry(HEARTBEAT_CONSUMED, k, f'Consumer heartbeat time {k}', _U32, 'rw',
-                    meaning='node << 16 | ms of simulated time; 0: off')
+        variable(ObjectEntry(CYCLE_PERIOD, 0, 'Communication cycle period', _U32, 'rw', cycle_us,
+                             's', _MICROSECOND, choices=(0, cycle_us),
+                             meaning='the tick; 0: not checked'), CANOPEN),
+        variable(ObjectEntry(EMERGENCY_ID, 0, 'COB-ID EMCY', _U32, 'rw', EMERGENCY, adds_node=True,
+                             meaning='bit 31: off'), CANOPEN),
+        Object(HEARTBEAT_CONSUMED, 'Consumer heartbeat time', ObjectCode.ARRAY, (
+            ObjectEntry(HEARTBEAT_CONSUMED, 0, 'Highest subindex', _U8, 'const', CONSUMERS),
+            *(ObjectEntry(HEARTBEAT_CONSUMED, k, f'Consumer heartbeat time {k}', _U32, 'rw',
+                          meaning='node << 16 | ms of simulated time; 0: off')
               for k in range(1, CONSUMERS + 1))), CANOPEN),
-        variable(Entry(HEARTBEAT_PRODUCED, 0, 'Producer heartbeat time', _U16, 'rw', 0, 's',
-                       _MILLISECOND, meaning='wall time; 0: off'), CANOPEN),
-        variable(Entry(SYNC_OVERFLOW, 0, 'Synchronous counter overflow value', _U8, 'rw',
-                       meaning='0: SYNC without a counter; 2 to 240: the highest counter'),
+        variable(ObjectEntry(HEARTBEAT_PRODUCED, 0, 'Producer heartbeat time', _U16, 'rw', 0, 's',
+                             _MILLISECOND, meaning='wall time; 0: off'), CANOPEN),
+        variable(ObjectEntry(SYNC_OVERFLOW, 0, 'Synchronous counter overflow value', _U8, 'rw',
+                             meaning='0: SYNC without a counter; 2 to 240: the highest counter'),
                  CANOPEN),
         record_of(ERROR_BEHAVIOUR, 'Error behaviour', [
-            Entry(ERROR_BEHAVIOUR, 1, 'Communication error', _U8, 'rw', choices=(0, 1, 2),
-                  meaning='0: preoperational, 1: no change, 2: stopped')], CANOPEN),
+            ObjectEntry(ERROR_BEHAVIOUR, 1, 'Communication error', _U8, 'rw', choices=(0, 1, 2),
+                        meaning='0: preoperational, 1: no change, 2: stopped')], CANOPEN),
         record_of(SDO_SERVER, 'SDO server parameter', [
-            Entry(SDO_SERVER, 1, 'COB-ID client to server', _U32, 'const', SDO_REQUEST,
-                  adds_node=True),
-            Entry(SDO_SERVER, 2, 'COB-ID server to client', _U32, 'const', SDO_ANSWER,
-                  adds_node=True)], CANOPEN)]
+            ObjectEntry(SDO_SERVER, 1, 'COB-ID client to server', _U32, 'const', SDO_REQUEST,
+                        adds_node=True),
+            ObjectEntry(SDO_SERVER, 2, 'COB-ID server to client', _U32, 'const', SDO_ANSWER,
+                        adds_node=True)], CANOPEN)]
 
 
 def pdo_parameters(mapping: int, *, is_on: bool) -> Object:
@@ -69,16 +71,16 @@ def pdo_parameters(mapping: int, *, is_on: bool) -> Object:
     index += place
     is_transmit = bases is TRANSMIT
     rows = [
-        Entry(index, COB_ID, 'COB-ID', _U32, 'rw', bases[place] | (0 if is_on else INVALID),
-              adds_node=True, meaning='bit 31: off'),
-        Entry(index, TRANSMISSION, 'Transmission type', _U8, 'rw', 1, meaning=kinds)]
+        ObjectEntry(index, COB_ID, 'COB-ID', _U32, 'rw', bases[place] | (0 if is_on else INVALID),
+                    adds_node=True, meaning='bit 31: off'),
+        ObjectEntry(index, TRANSMISSION, 'Transmission type', _U8, 'rw', 1, meaning=kinds)]
     if is_transmit:
-        rows.append(Entry(index, INHIBIT_TIME, 'Inhibit time', _U16, 'rw', 0, 's', _INHIBIT,
-                          meaning='of types 254 and 255: shortest time between two'))
-    rows.append(Entry(index, EVENT_TIMER, 'Event timer', _U16, 'rw', 0, 's', _MILLISECOND,
-                      meaning=timer))
+        rows.append(ObjectEntry(index, INHIBIT_TIME, 'Inhibit time', _U16, 'rw', 0, 's', _INHIBIT,
+                                meaning='of types 254 and 255: shortest time between two'))
+    rows.append(ObjectEntry(index, EVENT_TIMER, 'Event timer', _U16, 'rw', 0, 's', _MILLISECOND,
+                            meaning=timer))
     if is_transmit:
-        rows.append(Entry(index, SYNC_START, 'SYNC start value', _U8, 'rw',
-                          meaning='counter of the first SYNC; 0: any'))
+        rows.append(ObjectEntry(index, SYNC_START, 'SYNC start value', _U8, 'rw',
+                                meaning='counter of the first SYNC; 0: any'))
     return record_of(index, f'{"TPDO" if is_transmit else "RPDO"} {place + 1} communication '
                      'parameter', rows, CANOPEN)

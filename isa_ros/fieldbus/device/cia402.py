@@ -16,13 +16,13 @@ from isa_ros.fieldbus.device.axis import Axis, COUNTS
 from isa_ros.fieldbus.device.cia402_objects import (
     CSP, CST, CSV, IMPEDANCE_MODE, NO_MODE, REFUSED_MODES)
 from isa_ros.fieldbus.device.cia402_states import (
-    CAUSE_GONE, command_of, ENDS_OFF, Event, FAULT_RESET, FOLLOWING, REU_DISABLED, State, STAYS)
+    CAUSE_GONE, command_of, ENDS_OFF, Event, FAULT_RESET, FOLLOWING, REU_DISABLED, State402, STAYS)
 from isa_ros.fieldbus.device.dictionary import Key
 from isa_ros.fieldbus.device.drive import Drive
 from isa_ros.fieldbus.device.faults import Faults, FOLLOWING_ERROR
 from isa_ros.fieldbus.device.manufacturer_area import DAMPING, EFFORT, note_refusal, STIFFNESS
-from isa_ros.fieldbus.device.objects import Entry, Value
-from isa_ros.fieldbus.device.setpoints import Gains, setpoint
+from isa_ros.fieldbus.device.objects import ObjectEntry, Value
+from isa_ros.fieldbus.device.setpoints import ImpedanceGains, setpoint
 from isa_ros.fieldbus.device.states import Transition
 import numpy as np
 
@@ -38,15 +38,15 @@ class Drive402(Drive):
 
     following = FOLLOWING
     fault, reaction_ends, reset = Event.FAULT, Event.REACTION_ENDS, Event.RESET
-    faults, control, reset_bit = (State.FAULT,), objects.CONTROL, FAULT_RESET
+    faults, control, reset_bit = (State402.FAULT,), objects.CONTROL, FAULT_RESET
 
     def __init__(
             self, axis: Axis, values: dict[Key, Value], faults: Faults,
             supply_low: int) -> None:
-        super().__init__(axis, values, faults, State.NOT_READY, objects.MODE,
+        super().__init__(axis, values, faults, State402.NOT_READY, objects.MODE,
                          objects.modes_of(axis), NO_MODE)
         self._supply_low = supply_low
-        self._gains = Gains(axis, values)
+        self._gains = ImpedanceGains(axis, values)
         self._late_s = 0.0
         self._is_remote = False
         self._setpoints = {
@@ -59,7 +59,7 @@ class Drive402(Drive):
 
     # Side of the bus.
 
-    def admit(self, entry: Entry, value: Value) -> None:
+    def admit(self, entry: ObjectEntry, value: Value) -> None:
         """Refuse modes that do not exist, and a range that is none; raises `SdoAbort`."""
         key = entry.index, entry.subindex
         if key == objects.MODE and value not in self._modes:
@@ -92,7 +92,7 @@ class Drive402(Drive):
         warnings = int(axis.field('warnings'))
         word |= WARNING * bool(warnings)
         word |= VOLTAGE * (not (warnings | int(axis.field('trips'))) & self._supply_low)
-        if state is State.OPERATION_ENABLED:
+        if state is State402.OPERATION_ENABLED:
             word |= LIMITED * self._limiter.is_limited
             word |= FOLLOWS * (axis.state == ENABLED and self._mode != NO_MODE)
             word |= LATE * (self._late_s > 0.0)
@@ -115,7 +115,7 @@ class Drive402(Drive):
             self._happens(Event.STOPPED)
             if not self._faults.has_own:
                 self._happens(Event.RESET)
-        if self.state is State.OPERATION_ENABLED:
+        if self.state is State402.OPERATION_ENABLED:
             if axis.state == QUICK_STOP:
                 self._happens(Event.LOCAL_STOP)
             elif axis.is_disabled and self._was_on:
@@ -128,12 +128,12 @@ class Drive402(Drive):
 
     def _kinds(self, command: np.void) -> int:
         axis, state = self._axis, self.state
-        if state is State.OPERATION_ENABLED:
+        if state is State402.OPERATION_ENABLED:
             return self._operate(command)
-        if state in (State.QUICK_STOP, State.FAULT_REACTION):
+        if state in (State402.QUICK_STOP, State402.FAULT_REACTION):
             if axis.state != ENABLED:
                 return 0
-            if state is State.FAULT_REACTION or self._values[objects.QUICK_STOP_OPTION]:
+            if state is State402.FAULT_REACTION or self._values[objects.QUICK_STOP_OPTION]:
                 return HAS_QUICK_STOP
         elif not (axis.is_on or axis.state == INITIALISING):
             return 0
@@ -195,7 +195,8 @@ class Drive402(Drive):
 
     @property
     def _has_demand(self) -> bool:
-        return self.state is State.OPERATION_ENABLED and self._mode in (CSP, CSV, IMPEDANCE_MODE)
+        return self.state is State402.OPERATION_ENABLED and self._mode in (
+            CSP, CSV, IMPEDANCE_MODE)
 
     @property
     def _shown_demand(self) -> float:

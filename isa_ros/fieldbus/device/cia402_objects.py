@@ -9,7 +9,7 @@ from isa_ros.core.units import MILLI
 from isa_ros.fieldbus.device.axis import Axis, INCREMENT, PER_MILLE
 from isa_ros.fieldbus.device.dictionary import Key
 from isa_ros.fieldbus.device.manufacturer_area import DAMPING, STIFFNESS
-from isa_ros.fieldbus.device.objects import DataType, Entry, Object, record_of, variable
+from isa_ros.fieldbus.device.objects import DataType, Object, ObjectEntry, record_of, variable
 from isa_ros.fieldbus.device.process_data import ETHERCAT_PDO, Mapped, RECEIVE, TRANSMIT
 
 DEVICE_TYPE = 0x00020192
@@ -105,7 +105,7 @@ def _one(
         key: Key, name: str, data_type: DataType, access: str = 'ro', default: int = 0, *,
         unit: str = '', scale: float = 1.0, pdo: str = '', meaning: str = '', source: str = '',
         choices: tuple[int, ...] = (), low: float = -math.inf, high: float = math.inf) -> Object:
-    return variable(Entry(
+    return variable(ObjectEntry(
         *key, name, data_type, access, default, unit, scale, pdo, meaning, low, high, choices,
         source))
 
@@ -152,10 +152,10 @@ def _position_objects(axis: Axis) -> list[Object]:
         position(TARGET_POSITION, 'Target position', 'rw', 'rx',
                  meaning='at first the position at t = 0'),
         record_of(0x607D, 'Software position limit', [
-            Entry(0x607D, 1, 'Least position', _I32, 'rw', 0, length, INCREMENT, low=0,
-                  high=stroke),
-            Entry(0x607D, 2, 'Largest position', _I32, 'rw', stroke, length, INCREMENT, low=0,
-                  high=stroke)]),
+            ObjectEntry(0x607D, 1, 'Least position', _I32, 'rw', 0, length, INCREMENT, low=0,
+                        high=stroke),
+            ObjectEntry(0x607D, 2, 'Largest position', _I32, 'rw', stroke, length, INCREMENT,
+                        low=0, high=stroke)]),
         position(FOLLOWING_ERROR, 'Following error actual value', pdo='tx')]
 
 
@@ -207,6 +207,6 @@ def _unit_objects(axis: Axis) -> list[Object]:
         return units
     value, exponent = period
     return [*units, record_of(0x60C2, 'Interpolation time period', [
-        Entry(0x60C2, 1, 'Value', _U8, 'rw', value, choices=(value,), meaning='of the tick'),
-        Entry(0x60C2, 2, 'Exponent', _I8, 'rw', exponent, choices=(exponent,),
-              meaning='power of ten, s')])]
+        ObjectEntry(0x60C2, 1, 'Value', _U8, 'rw', value, choices=(value,), meaning='of the tick'),
+        ObjectEntry(0x60C2, 2, 'Exponent', _I8, 'rw', exponent, choices=(exponent,),
+                    meaning='power of ten, s')])]

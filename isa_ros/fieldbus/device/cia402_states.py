@@ -14,7 +14,7 @@ FAULT_RESET = 1 << 7
 """Bit of the controlword whose rising edge resets a fault."""
 
 
-class State(DeviceState):
+class State402(DeviceState):
     """States by name and status word; `STATE_MASK` are the bits that tell."""
 
     NOT_READY = ('not ready to switch on', 0x00)
@@ -47,7 +47,7 @@ class Event(Enum):
     RESET = 'fault reset'
 
 
-class Command(NamedTuple):
+class ControlPattern(NamedTuple):
     """A pattern of the control word."""
 
     mask: int
@@ -56,9 +56,9 @@ class Command(NamedTuple):
 
 
 COMMANDS = (
-    Command(0x87, 0x06, Event.SHUTDOWN), Command(0x8F, 0x07, Event.SWITCH_ON),
-    Command(0x8F, 0x0F, Event.ENABLE), Command(0x82, 0x00, Event.DISABLE_VOLTAGE),
-    Command(0x86, 0x02, Event.STOP))
+    ControlPattern(0x87, 0x06, Event.SHUTDOWN), ControlPattern(0x8F, 0x07, Event.SWITCH_ON),
+    ControlPattern(0x8F, 0x0F, Event.ENABLE), ControlPattern(0x82, 0x00, Event.DISABLE_VOLTAGE),
+    ControlPattern(0x86, 0x02, Event.STOP))
 """Every pattern; a word that fits none changes nothing."""
 
 REU_DISABLED, ENDS_OFF, STAYS, CAUSE_GONE = (
@@ -67,40 +67,43 @@ REU_DISABLED, ENDS_OFF, STAYS, CAUSE_GONE = (
 
 
 _SHOWN, _OFF = 'nothing', 'the REU is disabled: valve to null'
-_NO_FAULT = tuple(state for state in State if state not in (State.FAULT_REACTION, State.FAULT))
+_NO_FAULT = tuple(
+    one for one in State402 if one not in (State402.FAULT_REACTION, State402.FAULT))
 
 TRANSITIONS = (
-    Transition(1, State.NOT_READY, Event.INITIALISED, '', State.SWITCH_ON_DISABLED, _SHOWN),
-    Transition(2, State.SWITCH_ON_DISABLED, Event.SHUTDOWN, '', State.READY, _SHOWN),
-    Transition(3, State.READY, Event.SWITCH_ON, '', State.SWITCHED_ON, _SHOWN),
-    Transition(3, State.READY, Event.ENABLE, '', State.SWITCHED_ON, 'then transition 4'),
-    Transition(4, State.SWITCHED_ON, Event.ENABLE, REU_DISABLED, State.OPERATION_ENABLED,
+    Transition(1, State402.NOT_READY, Event.INITIALISED, '', State402.SWITCH_ON_DISABLED, _SHOWN),
+    Transition(2, State402.SWITCH_ON_DISABLED, Event.SHUTDOWN, '', State402.READY, _SHOWN),
+    Transition(3, State402.READY, Event.SWITCH_ON, '', State402.SWITCHED_ON, _SHOWN),
+    Transition(3, State402.READY, Event.ENABLE, '', State402.SWITCHED_ON, 'then transition 4'),
+    Transition(4, State402.SWITCHED_ON, Event.ENABLE, REU_DISABLED, State402.OPERATION_ENABLED,
                'the REU is enabled in the mode of operation'),
-    Transition(5, State.OPERATION_ENABLED, Event.SWITCH_ON, '', State.SWITCHED_ON, _OFF),
-    Transition(6, State.SWITCHED_ON, Event.SHUTDOWN, '', State.READY, _SHOWN),
-    Transition(7, State.READY, Event.DISABLE_VOLTAGE, '', State.SWITCH_ON_DISABLED, _SHOWN),
-    Transition(7, State.READY, Event.STOP, '', State.SWITCH_ON_DISABLED, _SHOWN),
-    Transition(8, State.OPERATION_ENABLED, Event.SHUTDOWN, '', State.READY, _OFF),
-    Transition(9, State.OPERATION_ENABLED, Event.DISABLE_VOLTAGE, '', State.SWITCH_ON_DISABLED,
-               _OFF),
-    Transition(9, State.OPERATION_ENABLED, Event.DROPPED, '', State.SWITCH_ON_DISABLED,
+    Transition(5, State402.OPERATION_ENABLED, Event.SWITCH_ON, '', State402.SWITCHED_ON, _OFF),
+    Transition(6, State402.SWITCHED_ON, Event.SHUTDOWN, '', State402.READY, _SHOWN),
+    Transition(7, State402.READY, Event.DISABLE_VOLTAGE, '', State402.SWITCH_ON_DISABLED, _SHOWN),
+    Transition(7, State402.READY, Event.STOP, '', State402.SWITCH_ON_DISABLED, _SHOWN),
+    Transition(8, State402.OPERATION_ENABLED, Event.SHUTDOWN, '', State402.READY, _OFF),
+    Transition(9, State402.OPERATION_ENABLED, Event.DISABLE_VOLTAGE, '',
+               State402.SWITCH_ON_DISABLED, _OFF),
+    Transition(9, State402.OPERATION_ENABLED, Event.DROPPED, '', State402.SWITCH_ON_DISABLED,
                'it was `~/enable` with false, for example'),
-    Transition(10, State.SWITCHED_ON, Event.DISABLE_VOLTAGE, '', State.SWITCH_ON_DISABLED,
+    Transition(10, State402.SWITCHED_ON, Event.DISABLE_VOLTAGE, '', State402.SWITCH_ON_DISABLED,
                _SHOWN),
-    Transition(10, State.SWITCHED_ON, Event.STOP, '', State.SWITCH_ON_DISABLED, _SHOWN),
-    Transition(11, State.OPERATION_ENABLED, Event.STOP, '', State.QUICK_STOP,
+    Transition(10, State402.SWITCHED_ON, Event.STOP, '', State402.SWITCH_ON_DISABLED, _SHOWN),
+    Transition(11, State402.OPERATION_ENABLED, Event.STOP, '', State402.QUICK_STOP,
                'the quick stop of the REU; with option code 0 it is disabled'),
-    Transition(11, State.OPERATION_ENABLED, Event.LOCAL_STOP, '', State.QUICK_STOP,
+    Transition(11, State402.OPERATION_ENABLED, Event.LOCAL_STOP, '', State402.QUICK_STOP,
                'it was `~/quick_stop`, for example'),
-    Transition(12, State.QUICK_STOP, Event.STOPPED, ENDS_OFF, State.SWITCH_ON_DISABLED, _SHOWN),
-    Transition(12, State.QUICK_STOP, Event.DISABLE_VOLTAGE, '', State.SWITCH_ON_DISABLED, _OFF),
-    *(Transition(13, state, Event.FAULT, '', State.FAULT_REACTION,
+    Transition(12, State402.QUICK_STOP, Event.STOPPED, ENDS_OFF, State402.SWITCH_ON_DISABLED,
+               _SHOWN),
+    Transition(12, State402.QUICK_STOP, Event.DISABLE_VOLTAGE, '', State402.SWITCH_ON_DISABLED,
+               _OFF),
+    *(Transition(13, state, Event.FAULT, '', State402.FAULT_REACTION,
                  'the reaction of the condition; of the bus and of the following error a quick '
                  'stop') for state in _NO_FAULT),
-    Transition(14, State.FAULT_REACTION, Event.REACTION_ENDS, '', State.FAULT, _SHOWN),
-    Transition(15, State.FAULT, Event.RESET, CAUSE_GONE, State.SWITCH_ON_DISABLED,
+    Transition(14, State402.FAULT_REACTION, Event.REACTION_ENDS, '', State402.FAULT, _SHOWN),
+    Transition(15, State402.FAULT, Event.RESET, CAUSE_GONE, State402.SWITCH_ON_DISABLED,
                'the fault is forgotten'),
-    Transition(16, State.QUICK_STOP, Event.ENABLE, STAYS, State.OPERATION_ENABLED,
+    Transition(16, State402.QUICK_STOP, Event.ENABLE, STAYS, State402.OPERATION_ENABLED,
                'the REU is enabled again'),
 )
 """Every transition after power-on (0); an event without a row for a state is ignored there."""

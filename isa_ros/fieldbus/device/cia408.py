@@ -11,7 +11,7 @@ from isa_ros.fieldbus.device import cia408_objects as objects
 from isa_ros.fieldbus.device.axis import Axis, COUNTS, FULL_SCALE
 from isa_ros.fieldbus.device.cia408_objects import AXIS_POSITION, AXIS_VELOCITY, PQ
 from isa_ros.fieldbus.device.cia408_states import (
-    control_of, Event, FAULTS, FOLLOWING, HOLDING, HOLDS, level_of, MAY_ENABLE, R, State,
+    control_of, Event, FAULTS, FOLLOWING, HOLDING, HOLDS, level_of, MAY_ENABLE, R, State408,
     WAS_DISABLED, WAS_INIT)
 from isa_ros.fieldbus.device.dictionary import Key
 from isa_ros.fieldbus.device.drive import Drive
@@ -35,7 +35,7 @@ class Drive408(Drive):
 
     def __init__(self, axis: Axis, values: dict[Key, Value], faults: Faults) -> None:
         super().__init__(
-            axis, values, faults, State.NOT_READY, objects.CONTROL_MODE, objects.modes_of(axis),
+            axis, values, faults, State408.NOT_READY, objects.CONTROL_MODE, objects.modes_of(axis),
             int(values[objects.CONTROL_MODE]))
         self._before = 0
         self._is_blocked = False
@@ -48,13 +48,13 @@ class Drive408(Drive):
 
     def end_operation(self, is_lost: bool) -> None:
         """Leave it: hold, and with a fault if the bus is lost."""
-        self._values[objects.CONTROL] = control_of(min(self.state.level, State.HOLD.level))
+        self._values[objects.CONTROL] = control_of(min(self.state.level, State408.HOLD.level))
         super().end_operation(is_lost)
 
     def status(self) -> int:
         """Return the status word."""
         word = self.state.bits
-        if self.state is State.ACTIVE:
+        if self.state is State408.ACTIVE:
             word |= PRESSURE_CONTROLS * (self._mode == PQ)
             word |= LIMITED * self._limiter.is_limited
         return word
@@ -75,7 +75,7 @@ class Drive408(Drive):
             self._values[objects.POSITION_SETPOINT] = round(axis.position * COUNTS)
         self._happens(Event.INITIALISED)
         has_tripped = axis.state in (FAULT_REACTION, FAULT)
-        if self.state is State.FAULT_REACTION:
+        if self.state is State408.FAULT_REACTION:
             if axis.is_off or axis.state == ENABLED:
                 self._happens(Event.REACTION_ENDS)
         elif has_tripped:
@@ -83,7 +83,7 @@ class Drive408(Drive):
             self._end_reaction()
         if not has_tripped and not self._faults.has_own:
             self._happens(Event.RESET)
-        if self.state in (State.HOLD, State.ACTIVE):
+        if self.state in (State408.HOLD, State408.ACTIVE):
             if self._was_on and axis.state != ENABLED:
                 self._is_blocked = True
                 self._happens(Event.DROPPED)
@@ -92,7 +92,7 @@ class Drive408(Drive):
     def fill_command(self, command: np.void) -> None:
         """Write the `COMMAND` of a tick; what dropped may be enabled again once H has fallen."""
         wanted = level_of(int(self._values[objects.CONTROL]))
-        self._is_blocked &= wanted >= State.HOLD.level
+        self._is_blocked &= wanted >= State408.HOLD.level
         super().fill_command(command)
 
     def _obey(self, control: int) -> None:
@@ -103,7 +103,7 @@ class Drive408(Drive):
     def _kinds(self, command: np.void) -> int:
         axis = self._axis
         has_tripped = axis.state in (FAULT_REACTION, FAULT)
-        is_off_in_reaction = self.state is State.FAULT_REACTION and not axis.is_on
+        is_off_in_reaction = self.state is State408.FAULT_REACTION and not axis.is_on
         if self.state in HOLDING and not has_tripped and not is_off_in_reaction:
             return self._operate(command)
         if has_tripped or not (axis.is_on or axis.state == INITIALISING):
@@ -122,7 +122,7 @@ class Drive408(Drive):
 
     def _axis_setpoint(self, command: np.void) -> int:
         velocity = 0.0
-        if self.state is State.ACTIVE:
+        if self.state is State408.ACTIVE:
             velocity = int(self._values[objects.VELOCITY_SETPOINT]) / COUNTS
             position = int(self._values[objects.POSITION_SETPOINT]) / COUNTS
             if self._mode == AXIS_VELOCITY:
@@ -135,7 +135,7 @@ class Drive408(Drive):
         full = self._axis.references[mode].high
         if mode == PRESSURE:
             keys = (objects.PRESSURE_SETPOINT, objects.PRESSURE_HOLD)
-        key = keys[self.state is not State.ACTIVE]
+        key = keys[self.state is not State408.ACTIVE]
         value = int(self._values[key]) / FULL_SCALE * full
         return reference(command, mode, self._limiter.limited(value, -full, full))
 
@@ -144,9 +144,9 @@ class Drive408(Drive):
     def _enters(self, row: Transition) -> None:
         if row.event is Event.FAULT:
             self._before = self.state.level
-        if row.following in (State.HOLD, State.FAULT_REACTION):
+        if row.following in (State408.HOLD, State408.FAULT_REACTION):
             self._demand = self._axis.position
-        if row.state is State.DISABLED:
+        if row.state is State408.DISABLED:
             self._was_on = False
 
     def _holds(self, guard: str) -> bool:

@@ -10,7 +10,7 @@ from collections.abc import Mapping
 from isa_ros.core.device import CURRENT, PRESSURE, SPOOL
 from isa_ros.fieldbus.device.axis import Axis, FULL_SCALE, INCREMENT
 from isa_ros.fieldbus.device.dictionary import Key
-from isa_ros.fieldbus.device.objects import DataType, Entry, Object, record_of, variable
+from isa_ros.fieldbus.device.objects import DataType, Object, ObjectEntry, record_of, variable
 from isa_ros.fieldbus.device.process_data import ETHERCAT_PDO, Mapped, RECEIVE, TRANSMIT
 
 DEVICE_TYPE = 0x00000198
@@ -71,25 +71,26 @@ def _control_objects(axis: Axis) -> list[Object]:
     modes = tuple(sorted(modes_of(axis)))
     unsigned = DataType.UNSIGNED16
     return [
-        variable(Entry(*ERROR_CODE, 'Error code', unsigned, pdo='tx',
-                       meaning='of the fault; 0: none')),
-        variable(Entry(*CONTROL, 'Control word', unsigned, 'rw', pdo='rx',
-                       meaning='bits 0 D, 1 H, 2 M, 3 R (reset of a fault)')),
-        variable(Entry(*STATUS, 'Status word', unsigned, pdo='tx',
-                       meaning='bits 0 D, 1 H, 2 M, 3 R (ready), 8 pressure controller, '
-                               '10 limited')),
-        variable(Entry(*DEVICE_MODE, 'Device mode', _I8, 'rw', FROM_BUS, choices=(FROM_BUS,),
-                       meaning='1: the setpoint comes from the bus')),
-        variable(Entry(*CONTROL_MODE, 'Control mode', _I8, 'rw', modes[-1], pdo='both',
-                       choices=modes, meaning=', '.join(
-                           f'{mode} {MODE_NAMES[mode]}' for mode in modes)))]
+        variable(ObjectEntry(*ERROR_CODE, 'Error code', unsigned, pdo='tx',
+                             meaning='of the fault; 0: none')),
+        variable(ObjectEntry(*CONTROL, 'Control word', unsigned, 'rw', pdo='rx',
+                             meaning='bits 0 D, 1 H, 2 M, 3 R (reset of a fault)')),
+        variable(ObjectEntry(*STATUS, 'Status word', unsigned, pdo='tx',
+                             meaning='bits 0 D, 1 H, 2 M, 3 R (ready), 8 pressure controller, '
+                                     '10 limited')),
+        variable(ObjectEntry(*DEVICE_MODE, 'Device mode', _I8, 'rw', FROM_BUS, choices=(FROM_BUS,),
+                             meaning='1: the setpoint comes from the bus')),
+        variable(ObjectEntry(*CONTROL_MODE, 'Control mode', _I8, 'rw', modes[-1], pdo='both',
+                             choices=modes, meaning=', '.join(
+                                 f'{mode} {MODE_NAMES[mode]}' for mode in modes)))]
 
 
 def _valve_objects(axis: Axis) -> list[Object]:
-    def value(key: Key, name: str, access: str, pdo: str, source: str = '') -> Entry:
+    def value(key: Key, name: str, access: str, pdo: str, source: str = '') -> ObjectEntry:
         is_pressure = key[0] >= PRESSURE_SETPOINT[0]
         unit, full = ('Pa', axis.pressure_range) if is_pressure else ('m', axis.spool_stop)
-        return Entry(*key, name, _I16, access, 0, unit, full / FULL_SCALE, pdo, source=source)
+        return ObjectEntry(
+            *key, name, _I16, access, 0, unit, full / FULL_SCALE, pdo, source=source)
 
     def only(key: Key, name: str, access: str, pdo: str, source: str = '') -> Object:
         return record_of(key[0], name, [value(key, name, access, pdo, source)])
@@ -110,13 +111,14 @@ def _axis_objects(axis: Axis) -> list[Object]:
             key: Key, name: str, access: str, pdo: str, source: str = '') -> Object:
         index = key[0]
         return record_of(index, name, [
-            Entry(*key, name, _I32, access, 0, length, INCREMENT, pdo, source=source),
-            Entry(index, 2, 'Unit', DataType.UNSIGNED8, 'const', code, meaning='of CiA 303-2'),
-            Entry(index, 3, 'Prefix', _I8, 'const', _MICRO_PREFIX, meaning='power of ten')])
+            ObjectEntry(*key, name, _I32, access, 0, length, INCREMENT, pdo, source=source),
+            ObjectEntry(index, 2, 'Unit', DataType.UNSIGNED8, 'const', code,
+                        meaning='of CiA 303-2'),
+            ObjectEntry(index, 3, 'Prefix', _I8, 'const', _MICRO_PREFIX, meaning='power of ten')])
 
     def velocity(key: Key, name: str, access: str, pdo: str, source: str = '') -> Object:
         return record_of(key[0], name, [
-            Entry(*key, name, _I32, access, 0, speed, INCREMENT, pdo, source=source)])
+            ObjectEntry(*key, name, _I32, access, 0, speed, INCREMENT, pdo, source=source)])
     return [
         velocity(VELOCITY_SETPOINT, 'Velocity setpoint', 'rw', 'rx'),
         velocity(VELOCITY_ACTUAL, 'Velocity actual value', 'ro', 'tx', 'velocity'),

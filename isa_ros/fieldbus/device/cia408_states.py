@@ -14,7 +14,7 @@ D, H, M, R = 1, 2, 4, 8
 STATE_MASK = D | H | M | R
 
 
-class State(DeviceState):
+class State408(DeviceState):
     """States by name, bits of the status word, and how far they are: see `level_of`."""
 
     NOT_READY = ('NOT READY', 0, 0)
@@ -28,9 +28,9 @@ class State(DeviceState):
     FAULT_REACTION = ('FAULT_REACTION', M | H | D, 3)
 
 
-FAULTS = (State.FAULT_INIT, State.FAULT_DISABLED, State.FAULT_HOLD)
+FAULTS = (State408.FAULT_INIT, State408.FAULT_DISABLED, State408.FAULT_HOLD)
 """States that a reset ends."""
-HOLDING = (State.HOLD, State.ACTIVE, State.FAULT_HOLD, State.FAULT_REACTION)
+HOLDING = (State408.HOLD, State408.ACTIVE, State408.FAULT_HOLD, State408.FAULT_REACTION)
 """States in which the outputs of the REU may be on."""
 
 
@@ -55,33 +55,34 @@ _SHOWN, _OFF = 'nothing', 'the REU is disabled: valve to null'
 _HOLDS = 'the REU is enabled in the control mode, with the hold setpoint'
 
 TRANSITIONS = (
-    Transition('1', State.NOT_READY, Event.INITIALISED, '', State.INIT, _SHOWN),
-    Transition('2', State.INIT, Event.RISE, '', State.DISABLED, _SHOWN),
-    Transition('3', State.DISABLED, Event.RISE, MAY_ENABLE, State.HOLD, _HOLDS),
-    Transition('4', State.HOLD, Event.RISE, '', State.ACTIVE, 'the setpoint of the bus'),
-    Transition('5', State.ACTIVE, Event.FALL, '', State.HOLD, 'the hold setpoint'),
-    Transition('6', State.HOLD, Event.FALL, '', State.DISABLED, _OFF),
-    Transition('7', State.DISABLED, Event.FALL, '', State.INIT, _SHOWN),
-    *(Transition('8', state, Event.FAULT, '', State.FAULT_REACTION,
+    Transition('1', State408.NOT_READY, Event.INITIALISED, '', State408.INIT, _SHOWN),
+    Transition('2', State408.INIT, Event.RISE, '', State408.DISABLED, _SHOWN),
+    Transition('3', State408.DISABLED, Event.RISE, MAY_ENABLE, State408.HOLD, _HOLDS),
+    Transition('4', State408.HOLD, Event.RISE, '', State408.ACTIVE, 'the setpoint of the bus'),
+    Transition('5', State408.ACTIVE, Event.FALL, '', State408.HOLD, 'the hold setpoint'),
+    Transition('6', State408.HOLD, Event.FALL, '', State408.DISABLED, _OFF),
+    Transition('7', State408.DISABLED, Event.FALL, '', State408.INIT, _SHOWN),
+    *(Transition('8', state, Event.FAULT, '', State408.FAULT_REACTION,
                  'the reaction of the condition; of a lost bus the hold setpoint')
-      for state in (State.INIT, State.DISABLED, State.HOLD, State.ACTIVE, State.FAULT_HOLD)),
-    Transition('9', State.FAULT_REACTION, Event.REACTION_ENDS, HOLDS, State.FAULT_HOLD,
+      for state in (State408.INIT, State408.DISABLED, State408.HOLD, State408.ACTIVE,
+                    State408.FAULT_HOLD)),
+    Transition('9', State408.FAULT_REACTION, Event.REACTION_ENDS, HOLDS, State408.FAULT_HOLD,
                'the hold setpoint'),
-    Transition('10', State.FAULT_DISABLED, Event.RESET, CAUSE_GONE, State.DISABLED,
+    Transition('10', State408.FAULT_DISABLED, Event.RESET, CAUSE_GONE, State408.DISABLED,
                'the fault is forgotten'),
-    Transition('11', State.FAULT_HOLD, Event.RESET, CAUSE_GONE, State.HOLD,
+    Transition('11', State408.FAULT_HOLD, Event.RESET, CAUSE_GONE, State408.HOLD,
                'the fault is forgotten'),
-    Transition('12', State.FAULT_REACTION, Event.REACTION_ENDS, WAS_DISABLED,
-               State.FAULT_DISABLED, _SHOWN),
-    Transition('13', State.FAULT_REACTION, Event.REACTION_ENDS, WAS_INIT, State.FAULT_INIT,
+    Transition('12', State408.FAULT_REACTION, Event.REACTION_ENDS, WAS_DISABLED,
+               State408.FAULT_DISABLED, _SHOWN),
+    Transition('13', State408.FAULT_REACTION, Event.REACTION_ENDS, WAS_INIT, State408.FAULT_INIT,
                _SHOWN),
-    Transition('14', State.FAULT_INIT, Event.RESET, CAUSE_GONE, State.INIT,
+    Transition('14', State408.FAULT_INIT, Event.RESET, CAUSE_GONE, State408.INIT,
                'the fault is forgotten'),
-    Transition('15', State.FAULT_HOLD, Event.FALL, '', State.FAULT_DISABLED, _OFF),
-    Transition('16', State.FAULT_DISABLED, Event.FALL, '', State.FAULT_INIT, _SHOWN),
-    *(Transition('', state, Event.DROPPED, '', State.DISABLED,
+    Transition('15', State408.FAULT_HOLD, Event.FALL, '', State408.FAULT_DISABLED, _OFF),
+    Transition('16', State408.FAULT_DISABLED, Event.FALL, '', State408.FAULT_INIT, _SHOWN),
+    *(Transition('', state, Event.DROPPED, '', State408.DISABLED,
                  'H must fall before it is enabled again')
-      for state in (State.HOLD, State.ACTIVE)),
+      for state in (State408.HOLD, State408.ACTIVE)),
 )
 """Every transition after power-on (0); an event without a row for a state is ignored there."""
 
@@ -93,7 +94,7 @@ def level_of(control: int) -> int:
     for level, bit in enumerate((D, H, M)):
         if not control & bit:
             return level
-    return State.ACTIVE.level
+    return State408.ACTIVE.level
 
 
 def control_of(level: int) -> int:

@@ -5,7 +5,8 @@ from collections.abc import Mapping
 from isa_ros.fieldbus.device.bus_device import Identity, RECEIVE_ASSIGNMENT, TRANSMIT_ASSIGNMENT
 from isa_ros.fieldbus.device.canopen_objects import pdo_parameters
 from isa_ros.fieldbus.device.dictionary import Key
-from isa_ros.fieldbus.device.objects import DataType, Entry, Kind, Object, record_of, variable
+from isa_ros.fieldbus.device.objects import (
+    DataType, Object, ObjectCode, ObjectEntry, record_of, variable)
 from isa_ros.fieldbus.device.process_data import (
     assignment_object, CAN_PDOS, Mapped, mapping_object, RECEIVE, TRANSMIT)
 
@@ -26,35 +27,36 @@ def identity_objects(
     """Return the objects that say what the device is."""
     text = DataType.VISIBLE_STRING
     return [
-        variable(Entry(0x1000, 0, 'Device type', _U32, 'const', device_type,
-                       meaning='profile number in the low word')),
-        variable(Entry(0x1008, 0, 'Manufacturer device name', text, 'const', name)),
-        variable(Entry(0x1009, 0, 'Manufacturer hardware version', text, 'const', model)),
-        variable(Entry(0x100A, 0, 'Manufacturer software version', text, 'const', version)),
+        variable(ObjectEntry(0x1000, 0, 'Device type', _U32, 'const', device_type,
+                             meaning='profile number in the low word')),
+        variable(ObjectEntry(0x1008, 0, 'Manufacturer device name', text, 'const', name)),
+        variable(ObjectEntry(0x1009, 0, 'Manufacturer hardware version', text, 'const', model)),
+        variable(ObjectEntry(0x100A, 0, 'Manufacturer software version', text, 'const', version)),
         record_of(0x1018, 'Identity', [
-            Entry(0x1018, 1, 'Vendor id', _U32, 'const', identity.vendor,
-                  meaning='placeholder, not assigned'),
-            Entry(0x1018, 2, 'Product code', _U32, 'const', identity.product,
-                  meaning='profile, and a hash of the kind of actuator'),
-            Entry(0x1018, 3, 'Revision number', _U32, 'const', identity.revision),
-            Entry(0x1018, 4, 'Serial number', _U32, 'const', identity.serial,
-                  meaning='place in the run file')])]
+            ObjectEntry(0x1018, 1, 'Vendor id', _U32, 'const', identity.vendor,
+                        meaning='placeholder, not assigned'),
+            ObjectEntry(0x1018, 2, 'Product code', _U32, 'const', identity.product,
+                        meaning='profile, and a hash of the kind of actuator'),
+            ObjectEntry(0x1018, 3, 'Revision number', _U32, 'const', identity.revision),
+            ObjectEntry(0x1018, 4, 'Serial number', _U32, 'const', identity.serial,
+                        meaning='place in the run file')])]
 
 
 def error_objects() -> list[Object]:
     """Return the objects of errors."""
-    count = Entry(ERROR_FIELD, 0, 'Number of errors', _U8, 'rw', meaning='0 deletes them',
-                  choices=(0,))
+    count = ObjectEntry(ERROR_FIELD, 0, 'Number of errors', _U8, 'rw', meaning='0 deletes them',
+                        choices=(0,))
     return [
-        variable(Entry(ERROR_REGISTER, 0, 'Error register', _U8, pdo='tx',
-                       meaning='bits: 0 any, 1 current, 2 voltage, 3 temperature, '
-                               '4 communication, 5 profile, 7 manufacturer')),
-        Object(ERROR_FIELD, 'Pre-defined error field', Kind.ARRAY, (count, *(
-            Entry(ERROR_FIELD, k, f'Error {k}', _U32, meaning='newest first, code in the low word')
+        variable(ObjectEntry(ERROR_REGISTER, 0, 'Error register', _U8, pdo='tx',
+                             meaning='bits: 0 any, 1 current, 2 voltage, 3 temperature, '
+                                     '4 communication, 5 profile, 7 manufacturer')),
+        Object(ERROR_FIELD, 'Pre-defined error field', ObjectCode.ARRAY, (count, *(
+            ObjectEntry(ERROR_FIELD, k, f'Error {k}', _U32,
+                        meaning='newest first, code in the low word')
             for k in range(1, ERRORS_KEPT + 1))))]
 
 
-def pdo_objects(pdos: Mapping[int, Mapped], entries: dict[Key, Entry]) -> list[Object]:
+def pdo_objects(pdos: Mapping[int, Mapped], entries: dict[Key, ObjectEntry]) -> list[Object]:
     """Return mappings, assignments and PDO parameters; ``pdos`` are the mappings by index."""
     return [
         *(mapping_object(pdo, mapped, entries) for pdo, mapped in pdos.items()),
@@ -68,23 +70,23 @@ def ethercat_objects(step_ns: int) -> list[Object]:
     types = ('mailbox from the master', 'mailbox to the master',
              'process data from the master', 'process data to the master')
     return [
-        Object(0x1C00, 'Sync manager types', Kind.ARRAY, (
-            Entry(0x1C00, 0, 'Highest subindex', _U8, 'const', len(types)),
-            *(Entry(0x1C00, k + 1, f'Sync manager {k}', _U8, 'const', k + 1, meaning=meaning)
+        Object(0x1C00, 'Sync manager types', ObjectCode.ARRAY, (
+            ObjectEntry(0x1C00, 0, 'Highest subindex', _U8, 'const', len(types)),
+            *(ObjectEntry(0x1C00, k + 1, f'Sync manager {k}', _U8, 'const', k + 1, meaning=meaning)
               for k, meaning in enumerate(types))), 'ethercat'),
         *(_sync_object(0x1C30 + manager, manager, step_ns) for manager in (2, 3))]
 
 
 def _sync_object(index: int, manager: int, step_ns: int) -> Object:
     return record_of(index, f'Sync manager {manager} synchronisation', [
-        Entry(index, 1, 'Synchronisation type', _U16, 'rw', _SYNC_MANAGER,
-              choices=(_FREE_RUN, _SYNC_MANAGER, _SYNC0),
-              meaning='0 free run, 1 with the sync manager, 2 with SYNC0: all are one tick a '
-                      'frame'),
-        Entry(index, 2, 'Cycle time', _U32, 'rw', step_ns, 's', _NANOSECOND,
-              choices=(0, step_ns), meaning='the tick; another one is refused'),
-        Entry(index, 3, 'Shift time', _U32, 'ro', 0, 's', _NANOSECOND),
-        Entry(index, 4, 'Synchronisation types supported', _U16, 'const', 0b111,
-              meaning='bits by type'),
-        Entry(index, 5, 'Minimum cycle time', _U32, 'const', step_ns, 's', _NANOSECOND)],
+        ObjectEntry(index, 1, 'Synchronisation type', _U16, 'rw', _SYNC_MANAGER,
+                    choices=(_FREE_RUN, _SYNC_MANAGER, _SYNC0),
+                    meaning='0 free run, 1 with the sync manager, 2 with SYNC0: all are one tick '
+                            'a frame'),
+        ObjectEntry(index, 2, 'Cycle time', _U32, 'rw', step_ns, 's', _NANOSECOND,
+                    choices=(0, step_ns), meaning='the tick; another one is refused'),
+        ObjectEntry(index, 3, 'Shift time', _U32, 'ro', 0, 's', _NANOSECOND),
+        ObjectEntry(index, 4, 'Synchronisation types supported', _U16, 'const', 0b111,
+                    meaning='bits by type'),
+        ObjectEntry(index, 5, 'Minimum cycle time', _U32, 'const', step_ns, 's', _NANOSECOND)],
         'ethercat')

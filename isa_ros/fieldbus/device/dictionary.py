@@ -10,7 +10,8 @@ import math
 from isa_ros.fieldbus.device.abort import (
     NO_COMPLETE_ACCESS, OUT_OF_RANGE, READ_ONLY, SdoAbort, TOO_HIGH, TOO_LOW, WRITE_ONLY,
     WRONG_LENGTH)
-from isa_ros.fieldbus.device.objects import DataType, Entry, Kind, Object, ObjectTable, Value
+from isa_ros.fieldbus.device.objects import (
+    DataType, Object, ObjectCode, ObjectEntry, ObjectTable, Value)
 
 Key = tuple[int, int]
 """Index and subindex."""
@@ -18,7 +19,7 @@ Actuals = Mapping[Key, Callable[[], Value]]
 """Functions that return the present value of an entry."""
 
 
-class Dictionary:
+class ObjectDictionary:
     """
     Keeps the values of a table.
 
@@ -28,7 +29,7 @@ class Dictionary:
 
     def __init__(
             self, table: ObjectTable, actuals: Actuals,
-            admit: Callable[[Entry, Value], None]) -> None:
+            admit: Callable[[ObjectEntry, Value], None]) -> None:
         self.table = table
         self.values: dict[Key, Value] = {
             (one.index, one.subindex): one.default for one in table.entries}
@@ -53,7 +54,7 @@ class Dictionary:
         entry = self.table.entry(index, subindex)
         self.values[index, subindex] = self.admitted(entry, data)
 
-    def admitted(self, entry: Entry, data: bytes) -> Value:
+    def admitted(self, entry: ObjectEntry, data: bytes) -> Value:
         """Return the value of bytes that may be written; raises `SdoAbort`."""
         if not entry.is_writable:
             raise SdoAbort(READ_ONLY)
@@ -85,14 +86,14 @@ class Dictionary:
         self.values.update(found)
 
 
-def _complete(found: Object) -> tuple[Entry, ...]:
+def _complete(found: Object) -> tuple[ObjectEntry, ...]:
     """Return the entries of an object that has complete access."""
-    if found.kind is Kind.VAR or any(not entry.data_type.bits for entry in found.entries):
+    if found.kind is ObjectCode.VAR or any(not entry.data_type.bits for entry in found.entries):
         raise SdoAbort(NO_COMPLETE_ACCESS)
     return found.entries
 
 
-def refuse_beyond(entry: Entry, value: Value) -> None:
+def refuse_beyond(entry: ObjectEntry, value: Value) -> None:
     """
     Refuse a value that is not one of the choices or leaves the range of its entry.
 

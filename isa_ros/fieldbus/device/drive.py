@@ -9,7 +9,7 @@ from isa_ros.fieldbus.device.axis import Axis
 from isa_ros.fieldbus.device.dictionary import Key
 from isa_ros.fieldbus.device.faults import BUS_LOST, Faults
 from isa_ros.fieldbus.device.manufacturer_area import note_refusal
-from isa_ros.fieldbus.device.objects import Entry, Value
+from isa_ros.fieldbus.device.objects import ObjectEntry, Value
 from isa_ros.fieldbus.device.setpoints import change_mode, enable, Limiter
 from isa_ros.fieldbus.device.states import DeviceState, Following, Transition
 import numpy as np
@@ -50,7 +50,7 @@ class Drive:
 
     # Side of the bus.
 
-    def admit(self, entry: Entry, value: Value) -> None:
+    def admit(self, entry: ObjectEntry, value: Value) -> None:
         """Refuse a value that is written; raises `SdoAbort`. The choices of the table hold."""
 
     def received(self) -> None:

@@ -9,7 +9,8 @@ from isa_ros.core.fields import units_of
 from isa_ros.core.signals import SAMPLE_FIELDS
 from isa_ros.fieldbus.device.axis import Axis, FULL_SCALE, INCREMENT, PER_MILLE
 from isa_ros.fieldbus.device.dictionary import Key
-from isa_ros.fieldbus.device.objects import DataType, Entry, Object, record_of, Value, variable
+from isa_ros.fieldbus.device.objects import (
+    DataType, Object, ObjectEntry, record_of, Value, variable)
 from isa_ros.reu.wiring import VARIABLES
 
 LAST_REFUSAL = (0x2003, 0)
@@ -55,29 +56,29 @@ def manufacturer_objects(axis: Axis) -> list[Object]:
     units = units_of(SAMPLE_FIELDS, axis.sheet.is_rotary)
     return [
         _increments(axis), _ranges(axis), _mit_ranges(axis),
-        variable(Entry(*LAST_REFUSAL, 'Last refusal', DataType.VISIBLE_STRING, 'ro', '',
-                       meaning='why the last request was refused', longest=_LONGEST)),
+        variable(ObjectEntry(*LAST_REFUSAL, 'Last refusal', DataType.VISIBLE_STRING, 'ro', '',
+                             meaning='why the last request was refused', longest=_LONGEST)),
         _impedance(axis),
         *(record_of(index, name, [
-            Entry(index, subindex, words, _F32, unit=units[field], pdo='tx', source=field)
+            ObjectEntry(index, subindex, words, _F32, unit=units[field], pdo='tx', source=field)
             for subindex, (field, words) in enumerate(signals.items(), 1)])
           for index, name, signals in _SIGNALS),
         record_of(0x2025, 'Conditions', [
-            Entry(0x2025, 1, 'Warnings', DataType.UNSIGNED32, pdo='tx', source='warnings',
-                  meaning=_BITS),
-            Entry(0x2025, 2, 'Trips', DataType.UNSIGNED32, pdo='tx', source='trips',
-                  meaning=_BITS)]),
+            ObjectEntry(0x2025, 1, 'Warnings', DataType.UNSIGNED32, pdo='tx', source='warnings',
+                        meaning=_BITS),
+            ObjectEntry(0x2025, 2, 'Trips', DataType.UNSIGNED32, pdo='tx', source='trips',
+                        meaning=_BITS)]),
         record_of(0x2026, 'Device of the REU', [
-            *(Entry(0x2026, k + 1, name, data_type, pdo='tx', source=field,
-                    meaning='number, see docs/device.md')
+            *(ObjectEntry(0x2026, k + 1, name, data_type, pdo='tx', source=field,
+                          meaning='number, see docs/device.md')
               for k, (field, name, data_type) in enumerate(_STATES)),
-            Entry(0x2026, 4, 'Since', _F32, unit='s', pdo='tx', source='state_since')]),
+            ObjectEntry(0x2026, 4, 'Since', _F32, unit='s', pdo='tx', source='state_since')]),
         *_tunable_objects(axis)]
 
 
 def _increments(axis: Axis) -> Object:
-    def entry(subindex: int, name: str, unit: str, value: float) -> Entry:
-        return Entry(0x2000, subindex, name, _F32, 'const', value, axis.unit(unit))
+    def entry(subindex: int, name: str, unit: str, value: float) -> ObjectEntry:
+        return ObjectEntry(0x2000, subindex, name, _F32, 'const', value, axis.unit(unit))
     return record_of(0x2000, 'Increments', [
         entry(1, 'Position per count', 'm | rad', INCREMENT),
         entry(2, 'Velocity per count', 'm/s | rad/s', INCREMENT),
@@ -87,8 +88,8 @@ def _increments(axis: Axis) -> Object:
 
 
 def _ranges(axis: Axis) -> Object:
-    def entry(subindex: int, name: str, unit: str, value: float) -> Entry:
-        return Entry(0x2001, subindex, name, _F32, 'const', value, axis.unit(unit))
+    def entry(subindex: int, name: str, unit: str, value: float) -> ObjectEntry:
+        return ObjectEntry(0x2001, subindex, name, _F32, 'const', value, axis.unit(unit))
     return record_of(0x2001, 'Ranges', [
         entry(1, 'Stroke', 'm | rad', axis.stroke),
         entry(2, 'Rated force, pushing out', 'N | Nm', axis.force_out),
@@ -97,9 +98,9 @@ def _ranges(axis: Axis) -> Object:
 
 def _mit_ranges(axis: Axis) -> Object:
     """Return the scales of MIT-mode frames, whose 12 bits need ranges near what is used."""
-    def entry(subindex: int, name: str, unit: str, value: float, meaning: str) -> Entry:
-        return Entry(MIT_RANGES, subindex, name, _F32, 'rw', value, axis.unit(unit),
-                     meaning=meaning, low=_LEAST_RANGE)
+    def entry(subindex: int, name: str, unit: str, value: float, meaning: str) -> ObjectEntry:
+        return ObjectEntry(MIT_RANGES, subindex, name, _F32, 'rw', value, axis.unit(unit),
+                           meaning=meaning, low=_LEAST_RANGE)
     stiffness, damping = axis.gains
     return record_of(MIT_RANGES, 'Ranges of MIT-mode frames', [
         entry(1, 'Position', 'm | rad', axis.stroke, 'plus and minus; at first the stroke'),
@@ -115,12 +116,12 @@ def _mit_ranges(axis: Axis) -> Object:
 def _impedance(axis: Axis) -> Object:
     stiffness, damping = axis.gains
     return record_of(0x2010, 'Impedance', [
-        Entry(*STIFFNESS, 'Stiffness', _F32, 'rw', stiffness, axis.unit('N/m | Nm/rad'),
-              pdo='rx', meaning='of mode -1; NaN in a PDO: the one in force'),
-        Entry(*DAMPING, 'Damping', _F32, 'rw', damping, axis.unit('Ns/m | Nms/rad'),
-              pdo='rx', meaning='of mode -1; NaN in a PDO: the one in force'),
-        Entry(*EFFORT, 'Effort', _F32, 'rw', 0.0, axis.unit('N | Nm'), pdo='rx',
-              meaning='added to target torque and torque offset')])
+        ObjectEntry(*STIFFNESS, 'Stiffness', _F32, 'rw', stiffness, axis.unit('N/m | Nm/rad'),
+                    pdo='rx', meaning='of mode -1; NaN in a PDO: the one in force'),
+        ObjectEntry(*DAMPING, 'Damping', _F32, 'rw', damping, axis.unit('Ns/m | Nms/rad'),
+                    pdo='rx', meaning='of mode -1; NaN in a PDO: the one in force'),
+        ObjectEntry(*EFFORT, 'Effort', _F32, 'rw', 0.0, axis.unit('N | Nm'), pdo='rx',
+                    meaning='added to target torque and torque offset')])
 
 
 def tunable_keys(axis: Axis) -> dict[Key, Changeable]:
@@ -133,11 +134,11 @@ def tunable_keys(axis: Axis) -> dict[Key, Changeable]:
 
 
 def _tunable_objects(axis: Axis) -> list[Object]:
-    blocks: dict[int, list[Entry]] = {}
+    blocks: dict[int, list[ObjectEntry]] = {}
     for (index, subindex), one in tunable_keys(axis).items():
         low = one.bounds.get('ge', one.bounds.get('gt', -math.inf))
         high = one.bounds.get('le', one.bounds.get('lt', math.inf))
-        blocks.setdefault(index, []).append(Entry(
+        blocks.setdefault(index, []).append(ObjectEntry(
             index, subindex, one.name, _F32, 'rw', one.value, one.unit, low=low, high=high,
             meaning=one.doc))
     return [record_of(index, f'REU: {VARIABLES[index - _REU]} block', entries)

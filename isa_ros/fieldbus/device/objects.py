@@ -84,7 +84,7 @@ _LARGEST_REAL32: float = struct.unpack('<f', b'\xff\xff\x7f\x7f')[0]
 
 
 @dataclass(frozen=True)
-class Entry:
+class ObjectEntry:
     """One value of the dictionary."""
 
     index: int
@@ -129,7 +129,7 @@ class Entry:
         return self.access in ('rw', 'wo')
 
 
-class Kind(Enum):
+class ObjectCode(Enum):
     """Kinds of objects of CiA 301 and their numbers."""
 
     VAR = 7
@@ -143,8 +143,8 @@ class Object:
 
     index: int
     name: str
-    kind: Kind
-    entries: tuple[Entry, ...]
+    kind: ObjectCode
+    entries: tuple[ObjectEntry, ...]
     """By subindex; without a gap for an array."""
     bus: str = ''
     """The bus it is for: ``ethercat``, ``canopen``; '' for both."""
@@ -155,7 +155,7 @@ class ObjectTable:
 
     def __init__(self, objects: Sequence[Object]) -> None:
         self.objects: tuple[Object, ...] = tuple(sorted(objects, key=lambda one: one.index))
-        self.entries: tuple[Entry, ...] = tuple(
+        self.entries: tuple[ObjectEntry, ...] = tuple(
             entry for one in self.objects for entry in one.entries)
         self._objects = {one.index: one for one in self.objects}
         self._entries = {(entry.index, entry.subindex): entry for entry in self.entries}
@@ -182,7 +182,7 @@ class ObjectTable:
             raise SdoAbort(NO_OBJECT)
         return self._objects[index]
 
-    def entry(self, index: int, subindex: int = 0) -> Entry:
+    def entry(self, index: int, subindex: int = 0) -> ObjectEntry:
         """
         Return an entry.
 
@@ -203,13 +203,13 @@ class ObjectTable:
         return ObjectTable([one for one in self.objects if one.bus in ('', bus)])
 
 
-def variable(entry: Entry, bus: str = '') -> Object:
+def variable(entry: ObjectEntry, bus: str = '') -> Object:
     """Return an object that is one entry."""
-    return Object(entry.index, entry.name, Kind.VAR, (entry,), bus)
+    return Object(entry.index, entry.name, ObjectCode.VAR, (entry,), bus)
 
 
-def record_of(index: int, name: str, entries: Sequence[Entry], bus: str = '') -> Object:
+def record_of(index: int, name: str, entries: Sequence[ObjectEntry], bus: str = '') -> Object:
     """Return a record: entries of subindex 1 on, behind their highest subindex."""
-    count = Entry(
+    count = ObjectEntry(
         index, 0, 'Highest subindex', DataType.UNSIGNED8, 'const', entries[-1].subindex)
-    return Object(index, name, Kind.RECORD, (count, *entries), bus)
+    return Object(index, name, ObjectCode.RECORD, (count, *entries), bus)

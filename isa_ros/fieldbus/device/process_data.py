@@ -14,7 +14,8 @@ from isa_ros.fieldbus.device.abort import (
     WRONG_STATE)
 from isa_ros.fieldbus.device.bus_device import RECEIVE_ASSIGNMENT, TRANSMIT_ASSIGNMENT
 from isa_ros.fieldbus.device.dictionary import Key
-from isa_ros.fieldbus.device.objects import DataType, Entry, Kind, Object, ObjectTable, Value
+from isa_ros.fieldbus.device.objects import (
+    DataType, Object, ObjectCode, ObjectEntry, ObjectTable, Value)
 
 RECEIVE, TRANSMIT = 0x1600, 0x1A00
 """The first mapping of each direction."""
@@ -49,21 +50,21 @@ def is_changed_in_preop(index: int) -> bool:
     return is_mapping(index) or index in (RECEIVE_ASSIGNMENT, TRANSMIT_ASSIGNMENT)
 
 
-def mapping_object(pdo: int, mapped: Mapped, entries: dict[Key, Entry]) -> Object:
+def mapping_object(pdo: int, mapped: Mapped, entries: dict[Key, ObjectEntry]) -> Object:
     """Return the object of a mapping; ``entries`` are those of the device by key."""
     is_can = pdo & 0xFF < CAN_PDOS
     name = f'{"RPDO" if pdo < TRANSMIT else "TPDO"} {(pdo & 0xFF) + 1 if is_can else "EtherCAT"}'
     words = [_word(one, entries) for one in mapped]
     most = CAN_BYTES if is_can else _MOST_ENTRIES
     words += [0] * (most - len(words))
-    count = Entry(pdo, 0, 'Number of mapped objects', DataType.UNSIGNED8, 'rw', len(mapped),
-                  meaning='written in PREOP only', high=most)
-    return Object(pdo, f'{name} mapping', Kind.ARRAY, (count, *(
-        Entry(pdo, k + 1, f'Mapped object {k + 1}', DataType.UNSIGNED32, 'rw', word)
+    count = ObjectEntry(pdo, 0, 'Number of mapped objects', DataType.UNSIGNED8, 'rw', len(mapped),
+                        meaning='written in PREOP only', high=most)
+    return Object(pdo, f'{name} mapping', ObjectCode.ARRAY, (count, *(
+        ObjectEntry(pdo, k + 1, f'Mapped object {k + 1}', DataType.UNSIGNED32, 'rw', word)
         for k, word in enumerate(words))), '' if is_can else 'ethercat')
 
 
-def _word(one: Key | int, entries: dict[Key, Entry]) -> int:
+def _word(one: Key | int, entries: dict[Key, ObjectEntry]) -> int:
     if isinstance(one, int):
         return one
     index, subindex = one
@@ -74,13 +75,13 @@ def assignment_object(index: int) -> Object:
     """Return 0x1C12 or 0x1C13, with the PDO of EtherCAT assigned."""
     first = RECEIVE if index == RECEIVE_ASSIGNMENT else TRANSMIT
     known = (*range(first, first + CAN_PDOS), first + ETHERCAT_PDO)
-    count = Entry(index, 0, 'Number of assigned PDOs', DataType.UNSIGNED8, 'rw', 1,
-                  meaning='written in PREOP only', high=_ASSIGNED)
+    count = ObjectEntry(index, 0, 'Number of assigned PDOs', DataType.UNSIGNED8, 'rw', 1,
+                        meaning='written in PREOP only', high=_ASSIGNED)
     side = 'RxPDO' if first == RECEIVE else 'TxPDO'
-    return Object(index, f'{side} assignment', Kind.ARRAY, (count, *(
-        Entry(index, k + 1, f'Assigned PDO {k + 1}', DataType.UNSIGNED16, 'rw',
-              0 if k else first + ETHERCAT_PDO, choices=known) for k in range(_ASSIGNED))),
-        'ethercat')
+    return Object(index, f'{side} assignment', ObjectCode.ARRAY, (count, *(
+        ObjectEntry(index, k + 1, f'Assigned PDO {k + 1}', DataType.UNSIGNED16, 'rw',
+                    0 if k else first + ETHERCAT_PDO, choices=known) for k in range(_ASSIGNED))),
+                  'ethercat')
 
 
 class ProcessData:

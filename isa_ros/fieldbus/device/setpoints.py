@@ -30,7 +30,7 @@ class Limiter:
         return high if value > high else low
 
 
-class Gains:
+class ImpedanceGains:
     """The gains of an impedance: those of its block, or those that come with each setpoint."""
 
     def __init__(self, axis: Axis, values: Mapping[Key, Value]) -> None:

@@ -13,7 +13,7 @@ from isa_ros.fieldbus.ethercat.registers import (
     AL_CONTROL, AL_STATUS, AL_STATUS_CODE, STATION_ALIAS)
 
 
-class State(IntEnum):
+class AlState(IntEnum):
     """States by their numbers; BOOTSTRAP is refused."""
 
     INIT = 1
@@ -25,16 +25,16 @@ class State(IntEnum):
 
 _STATE, ERROR, _IDENTIFY = 0x0F, 0x10, 0x20
 """Bits of AL control and AL status; ERROR is the acknowledgement in AL control."""
-_ABOVE = {State.INIT: State.PREOP, State.PREOP: State.SAFEOP, State.SAFEOP: State.OP}
+_ABOVE = {AlState.INIT: AlState.PREOP, AlState.PREOP: AlState.SAFEOP, AlState.SAFEOP: AlState.OP}
 
 
 class Application(Protocol):
     """What a change of state is checked by and acts on."""
 
-    def refusal(self, state: State) -> int:
+    def refusal(self, state: AlState) -> int:
         """Return why a state cannot be, as a code of `al_codes`; 0 if it can."""
 
-    def change(self, old: State, new: State, is_lost: bool) -> None:
+    def change(self, old: AlState, new: AlState, is_lost: bool) -> None:
         """Act on a change of state; ``is_lost``: the master did not ask for it."""
 
 
@@ -43,7 +43,7 @@ class ApplicationLayer:
 
     def __init__(self, memory: bytearray, application: Application) -> None:
         self._memory, self._application = memory, application
-        self.state = State.INIT
+        self.state = AlState.INIT
 
     @property
     def has_error(self) -> bool:
@@ -53,13 +53,13 @@ class ApplicationLayer:
     def control(self) -> None:
         """Do what the master has written into AL control."""
         wanted = AL_CONTROL.value(self._memory)
-        if self.has_error and not wanted & ERROR and wanted & _STATE != State.INIT:
+        if self.has_error and not wanted & ERROR and wanted & _STATE != AlState.INIT:
             return
         code = self._refusal(wanted & _STATE)
         if code:
             self._show(code)
             return
-        self._enter(State(wanted & _STATE), is_lost=False)
+        self._enter(AlState(wanted & _STATE), is_lost=False)
         self._show(al_codes.NO_ERROR)
         if wanted & _IDENTIFY:
             self._memory[AL_STATUS.address] |= _IDENTIFY
@@ -67,24 +67,24 @@ class ApplicationLayer:
 
     def _refusal(self, wanted: int) -> int:
         """Return the code by which a requested state is refused, 0 for none."""
-        if wanted == State.BOOTSTRAP:
-            return (al_codes.NO_BOOTSTRAP if self.state == State.INIT
+        if wanted == AlState.BOOTSTRAP:
+            return (al_codes.NO_BOOTSTRAP if self.state == AlState.INIT
                     else al_codes.INVALID_CHANGE)
-        if wanted not in (State.INIT, State.PREOP, State.SAFEOP, State.OP):
+        if wanted not in (AlState.INIT, AlState.PREOP, AlState.SAFEOP, AlState.OP):
             return al_codes.UNKNOWN_STATE
         if wanted <= self.state:
             return al_codes.NO_ERROR
         if wanted != _ABOVE[self.state]:
             return al_codes.INVALID_CHANGE
-        return self._application.refusal(State(wanted))
+        return self._application.refusal(AlState(wanted))
 
-    def fall(self, state: State, code: int) -> None:
+    def fall(self, state: AlState, code: int) -> None:
         """Fall to a lower state with an error, unasked."""
         if state < self.state:
             self._enter(state, is_lost=True)
             self._show(code)
 
-    def _enter(self, state: State, is_lost: bool) -> None:
+    def _enter(self, state: AlState, is_lost: bool) -> None:
         old, self.state = self.state, state
         if old != state:
             self._application.change(old, state, is_lost)

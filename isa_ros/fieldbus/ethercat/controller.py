@@ -35,7 +35,7 @@ def irq_of(memory: bytearray) -> int:
     return EVENT_MASK.value(memory) & EVENTS.value(memory)
 
 
-class Controller:
+class SlaveController:
     """Registers and process memory of one slave."""
 
     def __init__(self, sii: bytearray) -> None:

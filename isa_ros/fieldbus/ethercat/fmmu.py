@@ -48,7 +48,7 @@ class Fmmu(NamedTuple):
         return 8 * (self.length - 1) + self.end_bit - self.start_bit + 1
 
 
-class Window(NamedTuple):
+class FmmuWindow(NamedTuple):
     """The part of an FMMU that a datagram reaches: bits in the datagram, bits in the memory."""
 
     first: int
@@ -76,15 +76,15 @@ def active_fmmus(memory: bytearray) -> list[Fmmu]:
     return found
 
 
-def window(fmmu: Fmmu, logical: int, length: int) -> Window | None:
+def window(fmmu: Fmmu, logical: int, length: int) -> FmmuWindow | None:
     """Return what ``length`` bytes of data at a logical address reach of an FMMU."""
     mapped = 8 * fmmu.logical + fmmu.start_bit
     first = max(8 * logical, mapped)
     last = min(8 * (logical + length), mapped + fmmu.bits)
     if last <= first:
         return None
-    return Window(first - 8 * logical, 8 * fmmu.physical + fmmu.physical_bit + first - mapped,
-                  last - first)
+    return FmmuWindow(first - 8 * logical, 8 * fmmu.physical + fmmu.physical_bit + first - mapped,
+                      last - first)
 
 
 def copy_bits(

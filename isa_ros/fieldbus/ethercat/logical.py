@@ -10,7 +10,7 @@ from collections.abc import Sequence
 from typing import NamedTuple
 
 from isa_ros.fieldbus.ethercat.datagrams import Command, Datagram
-from isa_ros.fieldbus.ethercat.fmmu import copy_bits, Fmmu, Window, window
+from isa_ros.fieldbus.ethercat.fmmu import copy_bits, Fmmu, FmmuWindow, window
 from isa_ros.fieldbus.ethercat.registers import (
     N_SYNC_MANAGERS, SYNC_MANAGER, SYNC_MANAGER_SIZE)
 from isa_ros.fieldbus.ethercat.slave import READ, Slave, WRITTEN
@@ -23,14 +23,14 @@ Copy = tuple[int, int, int, int]
 """Addresses in the slave's memory from and to, offsets in the frame from and to."""
 
 
-class Step(NamedTuple):
+class SlaveAccess(NamedTuple):
     """What a datagram does at one slave."""
 
     slave: Slave
     memory: bytearray
     writes: tuple[Copy, ...]
     reads: tuple[Copy, ...]
-    windows: tuple[tuple[Fmmu, Window], ...]
+    windows: tuple[tuple[Fmmu, FmmuWindow], ...]
     """If any of them needs the controller: all; else none."""
     increment: int
     """What the copies add to the working counter."""
@@ -38,18 +38,18 @@ class Step(NamedTuple):
     """Process data that the copies exchange: bits of `Slave.exchanged`."""
 
 
-def plan(slaves: Sequence[Slave], datagram: Datagram) -> list[Step]:
+def plan(slaves: Sequence[Slave], datagram: Datagram) -> list[SlaveAccess]:
     """Return the steps of a datagram at the slaves that it reaches."""
     steps = []
     for slave in slaves:
         windows = tuple(_windows(slave, datagram))
         if windows:
-            steps.append(_direct(slave, datagram, windows) or Step(
+            steps.append(_direct(slave, datagram, windows) or SlaveAccess(
                 slave, slave.controller.memory, (), (), windows, 0, 0))
     return steps
 
 
-def _windows(slave: Slave, datagram: Datagram) -> list[tuple[Fmmu, Window]]:
+def _windows(slave: Slave, datagram: Datagram) -> list[tuple[Fmmu, FmmuWindow]]:
     found = []
     for fmmu in slave.controller.fmmus:
         reached = window(fmmu, datagram.logical, datagram.end - datagram.data)
@@ -61,7 +61,7 @@ def _windows(slave: Slave, datagram: Datagram) -> list[tuple[Fmmu, Window]]:
 
 
 def _direct(slave: Slave, datagram: Datagram,
-            windows: Sequence[tuple[Fmmu, Window]]) -> Step | None:
+            windows: Sequence[tuple[Fmmu, FmmuWindow]]) -> SlaveAccess | None:
     """Return the copies of whole buffers, None if there is anything else to do."""
     writes: list[Copy] = []
     reads: list[Copy] = []
@@ -78,7 +78,7 @@ def _direct(slave: Slave, datagram: Datagram,
         (writes if fmmu.writes else reads).append((start, end, at, at + end - start))
     count = (_WRITE_COUNT[Command(datagram.command)] if writes else 0) + (
         _READ_COUNT if reads else 0)
-    return Step(
+    return SlaveAccess(
         slave, slave.controller.memory, tuple(writes), tuple(reads), (), count, exchanged)
 
 
@@ -87,7 +87,7 @@ def _is_status(start: int, end: int) -> bool:
     return SYNC_MANAGER <= start and end <= SYNC_MANAGER + N_SYNC_MANAGERS * SYNC_MANAGER_SIZE
 
 
-def execute(steps: Sequence[Step], frame: bytearray, datagram: Datagram) -> int:
+def execute(steps: Sequence[SlaveAccess], frame: bytearray, datagram: Datagram) -> int:
     """Exchange a datagram's data with the slaves; return what to add to the working counter."""
     counter = 0
     for slave, memory, writes, reads, windows, increment, exchanged in steps:
@@ -100,7 +100,7 @@ def execute(steps: Sequence[Step], frame: bytearray, datagram: Datagram) -> int:
     return counter
 
 
-def _by_controller(slave: Slave, windows: Sequence[tuple[Fmmu, Window]], frame: bytearray,
+def _by_controller(slave: Slave, windows: Sequence[tuple[Fmmu, FmmuWindow]], frame: bytearray,
                    datagram: Datagram) -> int:
     """Exchange data through the controller, written before read; return the count."""
     received = bytes(frame[datagram.data:datagram.end])
@@ -115,14 +115,14 @@ def _by_controller(slave: Slave, windows: Sequence[tuple[Fmmu, Window]], frame: 
         _WRITE_COUNT[Command(datagram.command)] if has_written else 0)
 
 
-def _write(slave: Slave, reached: Window, received: bytes) -> bool:
+def _write(slave: Slave, reached: FmmuWindow, received: bytes) -> bool:
     start, end = reached.addresses
     content = bytearray(slave.controller.memory[start:end]).ljust(end - start, b'\0')
     copy_bits(received, reached.first, content, reached.physical & 7, reached.bits)
     return slave.controller.write(start, bytes(content))
 
 
-def _read(slave: Slave, reached: Window, frame: bytearray, datagram: Datagram) -> bool:
+def _read(slave: Slave, reached: FmmuWindow, frame: bytearray, datagram: Datagram) -> bool:
     start, end = reached.addresses
     content = slave.controller.read(start, end - start)
     if content is None:

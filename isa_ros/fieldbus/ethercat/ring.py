@@ -9,13 +9,13 @@ from collections.abc import Sequence
 import struct
 
 from isa_ros.fieldbus.device.bus_device import BusDevice
-from isa_ros.fieldbus.ethercat.application_layer import State
+from isa_ros.fieldbus.ethercat.application_layer import AlState
 from isa_ros.fieldbus.ethercat.clock import SharedClock
 from isa_ros.fieldbus.ethercat.controller import DL_EVENT, irq_of
 from isa_ros.fieldbus.ethercat.cycle import Cycle
 from isa_ros.fieldbus.ethercat.datagrams import (
     Command, Datagram, Datagrams, datagrams, is_ethercat)
-from isa_ros.fieldbus.ethercat.logical import execute, plan, Step
+from isa_ros.fieldbus.ethercat.logical import execute, plan, SlaveAccess
 from isa_ros.fieldbus.ethercat.registers import EVENTS, LOST_LINKS, UNIT_ERRORS
 from isa_ros.fieldbus.ethercat.slave import Slave, WRITTEN
 
@@ -42,10 +42,10 @@ class Ring:
     def __init__(self, devices: Sequence[BusDevice], step_ns: int) -> None:
         self.clock = SharedClock(step_ns)
         self.cycle = Cycle()
-        self._plans: dict[tuple[int, int, int, int], list[Step]] = {}
+        self._plans: dict[tuple[int, int, int, int], list[SlaveAccess]] = {}
         self._taken: Datagrams | None = None
         self._awaited: list[tuple[Slave, int]] = []
-        self._highest = State.INIT
+        self._highest = AlState.INIT
         self._is_operational = self._is_surveyed = False
         self.slaves = [Slave(device, position, len(devices), self.clock, self._replan)
                        for position, device in enumerate(devices)]
@@ -156,7 +156,7 @@ class Ring:
         if not self._is_surveyed:
             self._survey()
         self._is_operational = self._highest >= (
-            State.SAFEOP if self._is_operational else State.OP)
+            AlState.SAFEOP if self._is_operational else AlState.OP)
         for slave in self.slaves:
             slave.end_cycle()
         return self._is_operational

@@ -10,7 +10,7 @@ import struct
 
 from isa_ros.fieldbus.device import abort
 from isa_ros.fieldbus.device.abort import SdoAbort
-from isa_ros.fieldbus.device.objects import Entry, Object, ObjectTable
+from isa_ros.fieldbus.device.objects import Object, ObjectEntry, ObjectTable
 from isa_ros.fieldbus.ethercat.slave_mailbox import MailError, TOO_SHORT
 
 _HEADER = struct.Struct('<BBH')
@@ -87,7 +87,7 @@ def _described(found: Object, room: int) -> bytes:
                         found.kind.value) + found.name.encode('ascii', 'replace'))[:room]
 
 
-def _entry(entry: Entry, room: int) -> bytes:
+def _entry(entry: ObjectEntry, room: int) -> bytes:
     """Return type, bits, access and name of an entry."""
     access = (_READ if entry.is_readable else 0) | (_write_access(entry))
     access |= (_RX if entry.pdo in ('rx', 'both') else 0) | (
@@ -96,7 +96,7 @@ def _entry(entry: Entry, room: int) -> bytes:
                         entry.bits, access) + entry.name.encode('ascii', 'replace'))[:room]
 
 
-def _write_access(entry: Entry) -> int:
+def _write_access(entry: ObjectEntry) -> int:
     """Return in which states an entry can be written."""
     if not entry.is_writable:
         return 0

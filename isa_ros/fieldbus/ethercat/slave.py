@@ -4,15 +4,15 @@ from collections.abc import Callable
 
 from isa_ros.fieldbus.device.bus_device import BusDevice, RECEIVE_ASSIGNMENT, TRANSMIT_ASSIGNMENT
 from isa_ros.fieldbus.ethercat import al_codes
-from isa_ros.fieldbus.ethercat.application_layer import ApplicationLayer, State
+from isa_ros.fieldbus.ethercat.application_layer import AlState, ApplicationLayer
 from isa_ros.fieldbus.ethercat.clock import DistributedClock, SharedClock
 from isa_ros.fieldbus.ethercat.coe import CanOverEthercat
-from isa_ros.fieldbus.ethercat.controller import AL_EVENT, Controller
+from isa_ros.fieldbus.ethercat.controller import AL_EVENT, SlaveController
 from isa_ros.fieldbus.ethercat.fmmu import Fmmu
 from isa_ros.fieldbus.ethercat.layout import AREAS
 from isa_ros.fieldbus.ethercat.registers import DL_STATUS
 from isa_ros.fieldbus.ethercat.sii import build_sii, process_data_sizes
-from isa_ros.fieldbus.ethercat.slave_mailbox import Mailbox
+from isa_ros.fieldbus.ethercat.slave_mailbox import SlaveMailbox
 from isa_ros.fieldbus.ethercat.sync_manager import (
     INPUTS, MAILBOX_IN, MAILBOX_OUT, OUTPUTS, SyncManager)
 from isa_ros.fieldbus.ethercat.watchdog import Watchdog
@@ -30,7 +30,7 @@ class Slave:
     def __init__(self, device: BusDevice, position: int, n_slaves: int, shared: SharedClock,
                  on_change: Callable[[], None]) -> None:
         self.device = device
-        self.controller = Controller(build_sii(device))
+        self.controller = SlaveController(build_sii(device))
         memory = self.controller.memory
         is_last = position == n_slaves - 1
         DL_STATUS.put(memory, _APPLICATION_RUNS | _PORT_0 | _CLOSED_2 | _CLOSED_3 | (
@@ -40,7 +40,7 @@ class Slave:
         self._on_change = on_change
         self._clock = DistributedClock(memory, shared, position, n_slaves)
         self._coe = CanOverEthercat(device)
-        self._mailbox = Mailbox(self._sync[MAILBOX_OUT], self._sync[MAILBOX_IN], self._coe)
+        self._mailbox = SlaveMailbox(self._sync[MAILBOX_OUT], self._sync[MAILBOX_IN], self._coe)
         self._sync[OUTPUTS].lock(True)
         self._sync[INPUTS].lock(True)
         self.watchdog = Watchdog(memory, shared.step_ns)
@@ -54,13 +54,13 @@ class Slave:
             on_setup=self._check_setup)
 
     @property
-    def state(self) -> State:
+    def state(self) -> AlState:
         """Return the state of the slave."""
         return self._al.state
 
-    def refusal(self, state: State) -> int:
+    def refusal(self, state: AlState) -> int:
         """Return why a state cannot be, as a code of `al_codes`; 0 if it can."""
-        if state == State.PREOP:
+        if state == AlState.PREOP:
             is_right = self._fits(MAILBOX_OUT, AREAS[MAILBOX_OUT].length) and self._fits(
                 MAILBOX_IN, AREAS[MAILBOX_IN].length)
             return al_codes.NO_ERROR if is_right else al_codes.INVALID_MAILBOX
@@ -94,24 +94,24 @@ class Slave:
         """Return whether the watchdog watches the outputs."""
         return self._sync[OUTPUTS].setup.has_watchdog and self._sync[OUTPUTS].covers
 
-    def change(self, old: State, new: State, is_lost: bool) -> None:
+    def change(self, old: AlState, new: AlState, is_lost: bool) -> None:
         """Act on a change of state; ``is_lost``: the master did not ask for it."""
-        self._coe.is_preoperational = new == State.PREOP
-        if old == State.OP:
+        self._coe.is_preoperational = new == AlState.PREOP
+        if old == AlState.OP:
             self.device.end_operation(is_lost)
-        if old == State.INIT:
+        if old == AlState.INIT:
             self._mailbox.start()
-        elif new == State.INIT:
+        elif new == AlState.INIT:
             self._mailbox.stop()
-        is_exchanging = new in (State.SAFEOP, State.OP)
-        if is_exchanging and old == State.PREOP:
+        is_exchanging = new in (AlState.SAFEOP, AlState.OP)
+        if is_exchanging and old == AlState.PREOP:
             self._assign()
-        if is_exchanging != (old in (State.SAFEOP, State.OP)):
+        if is_exchanging != (old in (AlState.SAFEOP, AlState.OP)):
             self._sync[OUTPUTS].lock(not is_exchanging)
             self._sync[INPUTS].lock(not is_exchanging)
         if is_exchanging:
             self.put_inputs()
-        if new == State.OP:
+        if new == AlState.OP:
             self.watchdog.feed()
             self.device.begin_operation()
         if is_lost:
@@ -138,7 +138,7 @@ class Slave:
     @property
     def awaited(self) -> int:
         """Return what a cycle exchanges through FMMUs, as bits `WRITTEN` and `READ`."""
-        if self._al.state not in (State.SAFEOP, State.OP):
+        if self._al.state not in (AlState.SAFEOP, AlState.OP):
             return 0
         fmmus = self.controller.fmmus
         return (WRITTEN if any(one.writes and self._reaches(one, OUTPUTS) for one in fmmus) else 0
@@ -156,14 +156,14 @@ class Slave:
 
     def _check_setup(self) -> None:
         """Fall back if sync managers no longer fit the state."""
-        if self._al.state != State.INIT and self.refusal(State.PREOP):
-            self._al.fall(State.INIT, al_codes.INVALID_MAILBOX)
-        elif self._al.state in (State.SAFEOP, State.OP):
+        if self._al.state != AlState.INIT and self.refusal(AlState.PREOP):
+            self._al.fall(AlState.INIT, al_codes.INVALID_MAILBOX)
+        elif self._al.state in (AlState.SAFEOP, AlState.OP):
             sizes = process_data_sizes(self.device)
             if not self._fits(OUTPUTS, sizes[OUTPUTS]):
-                self._al.fall(State.PREOP, al_codes.INVALID_OUTPUTS)
+                self._al.fall(AlState.PREOP, al_codes.INVALID_OUTPUTS)
             elif not self._fits(INPUTS, sizes[INPUTS]):
-                self._al.fall(State.PREOP, al_codes.INVALID_INPUTS)
+                self._al.fall(AlState.PREOP, al_codes.INVALID_INPUTS)
         self._mailbox.repeat()
         self._on_change()
 
@@ -184,27 +184,27 @@ class Slave:
         if exchanged & WRITTEN:
             self.watchdog.feed()
             outputs = self._sync[OUTPUTS].take()
-            if self._al.state == State.OP:
+            if self._al.state == AlState.OP:
                 for pdo, start, end in self._received:
                     self.device.receive(pdo, outputs[start:end])
-        elif self._al.state == State.OP and self._is_watched and self.watchdog.miss():
+        elif self._al.state == AlState.OP and self._is_watched and self.watchdog.miss():
             self._lose()
 
     def miss(self) -> None:
         """Let the watchdog expire: nothing has arrived for its wall time."""
-        if self._al.state == State.OP and self._is_watched and self.watchdog.expire():
+        if self._al.state == AlState.OP and self._is_watched and self.watchdog.expire():
             self._lose()
 
     def _lose(self) -> None:
-        self._al.fall(State.SAFEOP, al_codes.WATCHDOG)
+        self._al.fall(AlState.SAFEOP, al_codes.WATCHDOG)
         self._on_change()
 
     def update(self) -> None:
         """Take the device's new state as inputs, and its emergencies as mails."""
-        if self._al.state in (State.SAFEOP, State.OP):
+        if self._al.state in (AlState.SAFEOP, AlState.OP):
             self.put_inputs()
         for emergency in self.device.emergencies():
-            if self._al.state != State.INIT:
+            if self._al.state != AlState.INIT:
                 self._mailbox.post_emergency(emergency)
 
     def put_inputs(self) -> None:

@@ -51,7 +51,7 @@ class Answering(Protocol):
         """Give up a transfer that is under way."""
 
 
-class Mailbox:
+class SlaveMailbox:
     """Two sync managers in mailbox mode, and the mails that wait between them."""
 
     def __init__(self, out: SyncManager, into: SyncManager, protocol: Answering) -> None:

@@ -23,7 +23,7 @@ _WRITTEN_EVENT, _READ_EVENT, _FULL = 0x01, 0x02, 0x08
 _NO_BUFFER = 0x30
 
 
-class Setup(NamedTuple):
+class SyncManagerSetup(NamedTuple):
     """What a master configures of a sync manager."""
 
     start: int
@@ -34,11 +34,11 @@ class Setup(NamedTuple):
     is_active: bool
 
 
-def read_setup(memory: bytearray, number: int) -> Setup:
+def read_setup(memory: bytearray, number: int) -> SyncManagerSetup:
     """Return how the registers configure a sync manager."""
     at = SYNC_MANAGER + number * SYNC_MANAGER_SIZE
     control = memory[at + 4]
-    return Setup(
+    return SyncManagerSetup(
         memory[at] | memory[at + 1] << 8, memory[at + 2] | memory[at + 3] << 8,
         control & _MODE == _MAILBOX, control & _DIRECTION == _FROM_MASTER,
         bool(control & _WATCHDOG), bool(memory[at + 6] & _ACTIVE))

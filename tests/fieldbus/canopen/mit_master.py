@@ -1,6 +1,6 @@
 """The master's side of MIT-mode frames: those it sends, and what it reads of an answer."""
 
-from isa_ros.fieldbus.canopen.mit_frames import Answer, Command, Ranges
+from isa_ros.fieldbus.canopen.mit_frames import MotorAnswer, MotorCommand, Ranges
 
 
 def special_frame(kind: int) -> bytes:
@@ -8,7 +8,7 @@ def special_frame(kind: int) -> bytes:
     return b'\xff' * 7 + bytes([kind])
 
 
-def command_frame(command: Command, ranges: Ranges) -> bytes:
+def command_frame(command: MotorCommand, ranges: Ranges) -> bytes:
     """Return the frame of a command; values beyond their ranges saturate."""
     digits = ''
     for value, (low, high), width in zip(command, ranges, (16, 12, 12, 12, 12), strict=True):
@@ -18,11 +18,11 @@ def command_frame(command: Command, ranges: Ranges) -> bytes:
     return int(digits, 2).to_bytes(8, 'big')
 
 
-def answer_of(data: bytes, ranges: Ranges) -> Answer:
+def answer_of(data: bytes, ranges: Ranges) -> MotorAnswer:
     """Return the answer of a frame of 6 bytes."""
     digits, values = ''.join(f'{byte:08b}' for byte in data[1:]), []
     scales = ranges.position, ranges.velocity, ranges.effort
     for (low, high), begin, end in zip(scales, (0, 16, 28), (16, 28, 40), strict=True):
         largest = 2 ** (end - begin) - 1
         values.append(low + int(digits[begin:end], 2) * (high - low) / largest)
-    return Answer(data[0], *values)
+    return MotorAnswer(data[0], *values)

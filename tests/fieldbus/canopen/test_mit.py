@@ -11,7 +11,7 @@ import isa_ros
 from isa_ros.core.signals import COMMAND
 from isa_ros.errors import ConfigError
 from isa_ros.fieldbus.canopen.mit_frames import (
-    Answer, answer_frame, Command, command_of, DISABLE, ENABLE, Range, Ranges, SET_ZERO,
+    answer_frame, command_of, DISABLE, ENABLE, MotorAnswer, MotorCommand, Range, Ranges, SET_ZERO,
     special_of)
 from isa_ros.fieldbus.canopen.mit_line import mit_line, MitLine
 from isa_ros.fieldbus.device.devices import devices_of
@@ -23,7 +23,7 @@ from tests.fieldbus.canopen.virtual_bus import STEP_NS
 
 RANGES = Ranges(Range(-0.065535, 0.065535), Range(-0.5, 0.5), Range(0.0, 4095.0),
                 Range(0.0, 40.95), Range(-1023.75, 1023.75))
-REST = Command(0.0, 0.0, 0.0, 0.0, 0.0)
+REST = MotorCommand(0.0, 0.0, 0.0, 0.0, 0.0)
 HALF_STEP = 1.001e-6    # m: of 2 * 0.065535 m in 65535 steps, and the rounding of a float
 PUSH = REST._replace(effort=100.25)
 
@@ -47,7 +47,7 @@ class Master:
             answers.append((message.arbitration_id, bytes(message.data)))
         return answers
 
-    def command(self, motor: int, command: Command) -> Answer:
+    def command(self, motor: int, command: MotorCommand) -> MotorAnswer:
         """Command a motor and return its answer."""
         (identifier, data), = self.send(motor, command_frame(command, RANGES))
         assert identifier == 0
@@ -70,7 +70,7 @@ def number(one: Range) -> st.SearchStrategy[float]:
     return st.floats(one.low, one.high)
 
 
-@given(st.builds(Command, *map(number, RANGES)))
+@given(st.builds(MotorCommand, *map(number, RANGES)))
 def test_a_command_keeps_its_numbers_within_half_a_step(command):
     decoded = command_of(command_frame(command, RANGES), RANGES)
     for value, back, (low, high), bits in zip(command, decoded, RANGES, (16, 12, 12, 12, 12),
@@ -82,13 +82,14 @@ def test_a_command_keeps_its_numbers_within_half_a_step(command):
 def test_the_bits_are_those_of_the_published_frame():
     """Position 0x1234, velocity 0x567, stiffness 0x89A, damping 0xBCD, effort 0xEF0."""
     ranges = Ranges(Range(0, 0xFFFF), *[Range(0, 0xFFF)] * 4)
-    assert command_frame(Command(0x1234, 0x567, 0x89A, 0xBCD, 0xEF0), ranges) == bytes.fromhex(
-        '123456789abcdef0')
-    assert answer_frame(Answer(5, 0x1234, 0x567, 0x89A), ranges) == bytes.fromhex('05123456789a')
+    command, answer = MotorCommand(0x1234, 0x567, 0x89A, 0xBCD, 0xEF0), MotorAnswer(
+        5, 0x1234, 0x567, 0x89A)
+    assert command_frame(command, ranges) == bytes.fromhex('123456789abcdef0')
+    assert answer_frame(answer, ranges) == bytes.fromhex('05123456789a')
 
 
 def test_numbers_beyond_their_range_saturate():
-    far = Command(9.0, -9.0, 1e6, -1.0, 1e6)
+    far = MotorCommand(9.0, -9.0, 1e6, -1.0, 1e6)
     assert command_of(command_frame(far, RANGES), RANGES) == (
         RANGES.position.high, RANGES.velocity.low, RANGES.stiffness.high, 0.0, RANGES.effort.high)
 
@@ -235,7 +236,7 @@ def test_a_real_actuator_follows_a_motor_command():
         ranges = line.motors[1].ranges
         start = float(simulation.group.samples[0]['position'])
         stiffness, damping = (struct.unpack('<f', device.read(0x2010, k))[0] for k in (1, 2))
-        frame = command_frame(Command(start + 2e-3, 0.0, stiffness, damping, 0.0), ranges)
+        frame = command_frame(MotorCommand(start + 2e-3, 0.0, stiffness, damping, 0.0), ranges)
         bus.send(can.Message(arbitration_id=1, data=special_frame(ENABLE), is_extended_id=False))
         for k in range(300):
             bus.send(can.Message(arbitration_id=1, data=frame, is_extended_id=False))

@@ -9,7 +9,8 @@ from isa_ros.fieldbus.device.abort import (
 from isa_ros.fieldbus.device.bus_device import Emergency, Identity, VENDOR
 from isa_ros.fieldbus.device.canopen_objects import communication_objects, pdo_parameters
 from isa_ros.fieldbus.device.communication_area import error_objects
-from isa_ros.fieldbus.device.objects import DataType, Entry, Kind, Object, ObjectTable, Value
+from isa_ros.fieldbus.device.objects import (
+    DataType, Object, ObjectCode, ObjectEntry, ObjectTable, Value)
 import numpy as np
 
 STEP_NS = 1_000_000
@@ -35,24 +36,24 @@ STEPS = {('disabled', 0x6): 'ready', ('ready', 0x7): 'switched on', ('ready', 0x
 
 def _var(index: int, name: str, data_type: DataType, access: str = 'rw', default: Value = 0,
          pdo: str = '', unit: str = '', scale: float = 1.0) -> Object:
-    return Object(index, name, Kind.VAR, (
-        Entry(index, 0, name, data_type, access, default, unit, scale, pdo,
-              low=-LIMITS.get(index, np.inf), high=LIMITS.get(index, np.inf)),))
+    return Object(index, name, ObjectCode.VAR, (
+        ObjectEntry(index, 0, name, data_type, access, default, unit, scale, pdo,
+                    low=-LIMITS.get(index, np.inf), high=LIMITS.get(index, np.inf)),))
 
 
 def _record(index: int, name: str, rows: list[tuple[str, DataType, str, Value, str]],
             access: str = 'const') -> Object:
-    return Object(index, name, Kind.RECORD, (
-        Entry(index, 0, 'Highest subindex', U8, access, len(rows)),
-        *(Entry(index, k, text, data_type, own, default, pdo=pdo)
+    return Object(index, name, ObjectCode.RECORD, (
+        ObjectEntry(index, 0, 'Highest subindex', U8, access, len(rows)),
+        *(ObjectEntry(index, k, text, data_type, own, default, pdo=pdo)
           for k, (text, data_type, own, default, pdo) in enumerate(rows, 1))))
 
 
 def _mapping(index: int) -> Object:
     rows = [entry << 16 | sub << 8 | bits for entry, sub, bits in MAPPINGS[index]]
-    return Object(index, f'Mapping {index:04X}', Kind.RECORD, (
-        Entry(index, 0, 'Number of mapped objects', U8, 'rw', len(rows)),
-        *(Entry(index, k + 1, f'Object {k + 1}', U32, 'rw', rows[k] if k < len(rows) else 0)
+    return Object(index, f'Mapping {index:04X}', ObjectCode.RECORD, (
+        ObjectEntry(index, 0, 'Number of mapped objects', U8, 'rw', len(rows)),
+        *(ObjectEntry(index, k + 1, f'Object {k + 1}', U32, 'rw', rows[k] if k < len(rows) else 0)
           for k in range(SLOTS))))
 
 
@@ -157,7 +158,7 @@ class ToyDrive:
     def assigned(self, assignment: int) -> list[int]:
         return [0x1600, 0x1601] if assignment == 0x1C12 else [0x1A00, 0x1A01]
 
-    def _mapped(self, pdo: int) -> list[Entry]:
+    def _mapped(self, pdo: int) -> list[ObjectEntry]:
         words = [int(self.values[pdo, k + 1]) for k in range(int(self.values[pdo, 0]))]
         return [self.table.entry(word >> 16, word >> 8 & 0xFF) for word in words]
 

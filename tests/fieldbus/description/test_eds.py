@@ -5,7 +5,7 @@ import io
 import isa_ros
 from isa_ros.fieldbus.description.eds import eds_text
 from isa_ros.fieldbus.device.devices import devices_of, PROFILES
-from isa_ros.fieldbus.device.objects import Kind
+from isa_ros.fieldbus.device.objects import ObjectCode
 import pytest
 
 canopen = pytest.importorskip('canopen')
@@ -32,7 +32,7 @@ def test_every_object_of_canopen_is_read_with_type_access_and_default(device):
         read = dictionary[one.index]
         assert read.name == one.name
         for entry in one.entries:
-            variable = read if one.kind is Kind.VAR else read[entry.subindex]
+            variable = read if one.kind is ObjectCode.VAR else read[entry.subindex]
             assert (variable.name, variable.data_type) == (entry.name, entry.data_type.number)
             assert variable.readable == entry.is_readable
             assert variable.writable == entry.is_writable

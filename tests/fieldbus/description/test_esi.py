@@ -5,7 +5,7 @@ from xml.etree import ElementTree
 import isa_ros
 from isa_ros.fieldbus.description.esi import esi_text
 from isa_ros.fieldbus.device.devices import devices_of, PROFILES
-from isa_ros.fieldbus.device.objects import Kind
+from isa_ros.fieldbus.device.objects import ObjectCode
 from isa_ros.fieldbus.ethercat.sii import build_sii
 import pytest
 
@@ -50,7 +50,7 @@ def test_the_dictionary_has_every_object_of_the_table(devices, root):
             own = types[read.findtext('Type')]
             assert read.findtext('Name') == one.name
             assert read.findtext('BitSize') == own.findtext('BitSize')
-            if one.kind is Kind.VAR:
+            if one.kind is ObjectCode.VAR:
                 assert read.findtext('Flags/Access')[:2] in ('ro', 'rw')
                 continue
             items = own.findall('SubItem')

@@ -3,7 +3,7 @@
 import isa_ros
 from isa_ros.fieldbus.description.object_page import object_rows, table_lines, tables
 from isa_ros.fieldbus.device.devices import devices_of
-from isa_ros.fieldbus.device.objects import Kind
+from isa_ros.fieldbus.device.objects import ObjectCode
 
 LEG = isa_ros.load('leg').configuration
 
@@ -18,7 +18,7 @@ def test_every_entry_but_a_constant_subindex_0_is_in_a_row():
             shown |= {(k, j) for j in range(int(low), int(high or low) + 1)}
     entries = {(one.index, one.subindex) for one in device.table.entries}
     hidden = {(one.index, 0) for one in device.table
-              if one.kind is not Kind.VAR and one.entries[0].access == 'const'}
+              if one.kind is not ObjectCode.VAR and one.entries[0].access == 'const'}
     assert entries - hidden <= shown <= entries
 
 

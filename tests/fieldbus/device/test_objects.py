@@ -4,15 +4,15 @@ import math
 
 from hypothesis import given, strategies as st
 from isa_ros.fieldbus.device.abort import NO_OBJECT, NO_SUBINDEX, SdoAbort, TOO_LONG, TOO_SHORT
-from isa_ros.fieldbus.device.objects import DataType, Entry, Kind, Object, ObjectTable
+from isa_ros.fieldbus.device.objects import DataType, Object, ObjectCode, ObjectEntry, ObjectTable
 import pytest
 
 INTEGERS = [one for one in DataType if one.is_integer]
-RECORD = Object(0x2010, 'Impedance', Kind.RECORD, (
-    Entry(0x2010, 0, 'Highest subindex', DataType.UNSIGNED8, 'const', 1),
-    Entry(0x2010, 1, 'Stiffness', DataType.REAL32, 'rw', unit='N/m')))
-DICTIONARY = Object(0x1C12, 'Assignment', Kind.VAR, (
-    Entry(0x1C12, 0, 'Assignment', DataType.UNSIGNED16),), bus='ethercat')
+RECORD = Object(0x2010, 'Impedance', ObjectCode.RECORD, (
+    ObjectEntry(0x2010, 0, 'Highest subindex', DataType.UNSIGNED8, 'const', 1),
+    ObjectEntry(0x2010, 1, 'Stiffness', DataType.REAL32, 'rw', unit='N/m')))
+DICTIONARY = Object(0x1C12, 'Assignment', ObjectCode.VAR, (
+    ObjectEntry(0x1C12, 0, 'Assignment', DataType.UNSIGNED16),), bus='ethercat')
 TABLE = ObjectTable([RECORD, DICTIONARY])
 
 

@@ -3,7 +3,7 @@
 import struct
 
 from hypothesis import given, strategies
-from isa_ros.fieldbus.ethercat.fmmu import active_fmmus, copy_bits, Fmmu, Window, window
+from isa_ros.fieldbus.ethercat.fmmu import active_fmmus, copy_bits, Fmmu, FmmuWindow, window
 from isa_ros.fieldbus.ethercat.registers import power_on
 from tests.fieldbus.ethercat.raw_master import LRD, LRW, LWR, OP, RawMaster, SAFEOP, Sent
 
@@ -32,16 +32,16 @@ def test_one_that_is_off_or_empty_is_left_out():
 
 def test_a_datagram_reaches_the_part_that_overlaps():
     fmmu = Fmmu(100, 10, 0, 7, 0x1200, 0, True, False)
-    assert window(fmmu, 96, 8) == Window(4 * 8, 0x1200 * 8, 4 * 8)
-    assert window(fmmu, 104, 2) == Window(0, 0x1204 * 8, 2 * 8)
+    assert window(fmmu, 96, 8) == FmmuWindow(4 * 8, 0x1200 * 8, 4 * 8)
+    assert window(fmmu, 104, 2) == FmmuWindow(0, 0x1204 * 8, 2 * 8)
     assert window(fmmu, 90, 10) is None
     assert window(fmmu, 110, 10) is None
 
 
 def test_bits_reach_from_the_first_to_the_last():
     fmmu = Fmmu(100, 2, 6, 1, 0x1200, 3, True, False)
-    assert window(fmmu, 100, 2) == Window(6, 0x1200 * 8 + 3, 4)
-    assert window(fmmu, 101, 1) == Window(0, 0x1200 * 8 + 5, 2)
+    assert window(fmmu, 100, 2) == FmmuWindow(6, 0x1200 * 8 + 3, 4)
+    assert window(fmmu, 101, 1) == FmmuWindow(0, 0x1200 * 8 + 5, 2)
 
 
 @given(strategies.binary(min_size=8, max_size=8), strategies.binary(min_size=8, max_size=8),

@@ -17,7 +17,6 @@ from isa_ros.surroundings.bodies.leg.motion import (
     keep_continuous, leg_motion, leg_step, of_joints, shifted, solve, terms_of)
 from isa_ros.surroundings.ground import contact
 from isa_ros.surroundings.port import assumed_force, keep_forces, match_ports, resolved
-import numpy as np
 
 LEG_FIELDS = (
     Field('position', 'rad', 'joint angles', (3,)),
