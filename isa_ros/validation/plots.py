@@ -4,12 +4,6 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 
-def plot(x_label: str, y_label: str) -> tuple[Figure, Axes]:
-    """Return a figure with one pair of axes."""
-    figure, axes = stacked(x_label, y_label)
-    return figure, axes[0]
-
-
 def stacked(x_label: str, *y_labels: str) -> tuple[Figure, list[Axes]]:
     """Return a figure with axes one above the other, one for each y label."""
     rows = len(y_labels)

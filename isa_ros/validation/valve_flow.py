@@ -11,7 +11,7 @@ from isa_ros.paper.printed import cell, statement
 from isa_ros.plant.servo_valve import flow_curve, port_flows
 from isa_ros.validation.entry import (
     around, as_printed, Drawing, Entry, Findings, PAPER)
-from isa_ros.validation.plots import plot
+from isa_ros.validation.plots import stacked
 from isa_ros.validation.sheets import plant_of
 import numpy as np
 from scipy.optimize import brentq
@@ -153,7 +153,7 @@ def _speed_ratio() -> Entry:
 
 
 def _drawing() -> Drawing:
-    figure, ax = plot(CURRENT, 'flow of one land at 3.5 MPa, l/min')
+    figure, (ax,) = stacked(CURRENT, 'flow of one land at 3.5 MPa, l/min')
     currents = np.linspace(-FULL_CURRENT, FULL_CURRENT, 401)
     for model, label, color in VALVES:
         ax.plot(currents, [net_flow(float(i), model) for i in currents], color, label=label)

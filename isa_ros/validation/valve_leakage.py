@@ -10,7 +10,7 @@ from isa_ros.paper.printed import statement
 from isa_ros.plant.servo_valve import port_flows
 from isa_ros.validation.entry import (
     around, as_printed, Drawing, Entry, Findings, PAPER)
-from isa_ros.validation.plots import plot
+from isa_ros.validation.plots import stacked
 from isa_ros.validation.sheets import plant_of
 from isa_ros.validation.valve_flow import (
     CURRENT, FULL_CURRENT, HRV, ISA_V5, spool_at, SUPPLY, ULLV, VALVES)
@@ -94,7 +94,7 @@ def _powers() -> list[Entry]:
 
 
 def _drawing() -> Drawing:
-    figure, ax = plot(CURRENT, 'supply flow with blocked ports, l/min')
+    figure, (ax,) = stacked(CURRENT, 'supply flow with blocked ports, l/min')
     currents = np.linspace(-FULL_CURRENT, FULL_CURRENT, 401)
     for model, label, color in VALVES:
         ax.plot(currents, [leakage(float(i), model) for i in currents], color, label=label)

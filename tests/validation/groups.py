@@ -3,7 +3,7 @@
 from isa_ros.errors import ConfigError, ParameterError, SimulationDiverged
 from isa_ros.validation.actuators import Actuators, SHIPPED
 from isa_ros.validation.entry import around, Drawing, Entry, Findings, Group, OWN, PAPER
-from isa_ros.validation.plots import plot
+from isa_ros.validation.plots import stacked
 
 
 def entry(name: str, ours: float, **more) -> Entry:
@@ -14,7 +14,7 @@ def entry(name: str, ours: float, **more) -> Entry:
 
 
 def good() -> Findings:
-    figure, ax = plot('x', 'y')
+    figure, (ax,) = stacked('x', 'y')
     ax.plot([0.0, 1.0], [0.0, 1.0])
     return Findings((entry('a', 1.0), entry('b', 1.05, source=OWN)),
                     (Drawing('line', 'A line.', figure),))

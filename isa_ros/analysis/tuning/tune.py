@@ -113,7 +113,9 @@ def tune(
             f'--bandwidth = {wanted.bandwidth:g} Hz, must be < {highest:g} Hz: the force loop '
             f'runs at {block.rate_hz:g} Hz')
     bench = _Bench(rig, wanted, tuple(strokes), amplitude, progress)
-    best = quiet = bench.start(replace(block, gain_schedule=_even()))
+    even = FivePoints(
+        retracted=1.0, first_quarter=1.0, middle=1.0, last_quarter=1.0, extended=1.0)
+    best = quiet = bench.start(replace(block, gain_schedule=even))
     aim = wanted
     for _ in range(ROUNDS):
         gains, aim = bench.design(quiet, aim)
@@ -197,11 +199,6 @@ def with_block(rig: Rig, block: Pid, share: float) -> Rig:
     sheet = replaced(rig.config.sheet, 'reu.force', block)
     return replace(rig, loop=replace(rig.loop, sheet=sheet)).with_config(replace(
         rig.config, sheet=sheet, initial_position=share * sheet.plant.drive.stroke))
-
-
-def _even() -> FivePoints:
-    return FivePoints(
-        retracted=1.0, first_quarter=1.0, middle=1.0, last_quarter=1.0, extended=1.0)
 
 
 def factors(block: Pid) -> list[float]:
