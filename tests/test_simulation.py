@@ -357,6 +357,6 @@ def test_parameters_that_changed_are_shown_at_their_tick():
 
 def test_a_state_that_is_not_finite_ends_the_tick_by_name():
     simulation = Simulation(idle(RUN))
-    simulation.group.actuators[1].memory.bodies['plant']['chambers']['p_a'][0] = math.nan
+    simulation.group.actuators[1].memory.continuous['plant']['chambers']['p_a'][0] = math.nan
     with pytest.raises(SimulationDiverged, match=r'^knee: plant\.\S+ = nan at t = 0.001'):
         simulation.step()

@@ -10,10 +10,10 @@ import hashlib
 from typing import NoReturn
 
 from isa_ros.actuator import kernel as kernels
-from isa_ros.actuator.body import state_name
 from isa_ros.actuator.config import ActuatorConfig
 from isa_ros.actuator.device import mode_after, mode_command, refusal_of, start_mode
 from isa_ros.actuator.inbox import merge
+from isa_ros.actuator.integration import state_name
 from isa_ros.actuator.link import link_key, NONE
 from isa_ros.actuator.rest import rest_loops, rest_plant
 from isa_ros.actuator.rows import Memory, memory_of, row_record
@@ -79,7 +79,7 @@ class SmartActuator:
         """Whether commands and samples travel in the frames of a link."""
         self._saved = SavedRows(config.name, self.memory, self.has_link)
         # Rows with their fields as attributes, on the same memory.
-        self._constants, self._body = row_record(constants), row_record(self.memory.bodies)
+        self._constants, self._body = row_record(constants), row_record(self.memory.continuous)
         self._reu, self._pending = row_record(self.memory.reu), row_record(self.memory.pending)
         self._applied, self._reply, self._sample = (
             row_record(rows) for rows in (
@@ -240,7 +240,7 @@ class SmartActuator:
             self._reu.status.fade.begins = 1
 
     def raise_diverged(self, state: int) -> NoReturn:
-        """Raise `SimulationDiverged` for a state, given by its index in `BODY`."""
+        """Raise `SimulationDiverged` for a state, given by its index in `CONTINUOUS`."""
         raise SimulationDiverged(
             self.t_ns, f'{self.name}: {state_name(state)}',
             self.memory.states[0, state])

@@ -17,10 +17,10 @@ def add_tare(seconds, port, valve, totals):
 
 
 @kernel
-def stored_elastically(body, mechanics):
-    """Return the energy of the moving part and of the force sensor of a `BODY`  (E6), in J."""
-    own = body.plant.mechanics
-    return elastic_energy(own.position, own.velocity, body.load.position, mechanics)
+def stored_elastically(state, mechanics):
+    """Return the energy of the moving part and the force sensor of a `CONTINUOUS`  (E6), in J."""
+    own = state.plant.mechanics
+    return elastic_energy(own.position, own.velocity, state.load.position, mechanics)
 
 
 @kernel

@@ -6,8 +6,8 @@ from typing import NamedTuple
 
 from isa_ros.actuator import kernel as kernels
 from isa_ros.actuator.actuator import SmartActuator, Timing
-from isa_ros.actuator.body import STATE_SIZE
 from isa_ros.actuator.config import ActuatorConfig
+from isa_ros.actuator.integration import STATE_SIZE
 from isa_ros.actuator.rows import memory_of, row_of
 from isa_ros.actuator.states import STATES
 from isa_ros.core.signals import COMMAND, Records, SAMPLE

@@ -1,15 +1,15 @@
 """
 One tick of one actuator: the REU's instants and the plant's steps in time order.
 
-Composes plant, REU and load copy (`body`) into one kernel.
+Composes plant, REU and load copy (`integration`) into one kernel.
 """
 
 import math
 
-from isa_ros.actuator.body import (
-    BODIES, body_step, end_steps, simpson, STAGES, STATE_SIZE, TOTALS_AT)
 from isa_ros.actuator.energy import add_energies, add_tare, stored_elastically, take_heat
 from isa_ros.actuator.inbox import latch, merge
+from isa_ros.actuator.integration import (
+    COPIES, end_steps, rk4_step, simpson, STAGES, STATE_SIZE, TOTALS_AT)
 from isa_ros.actuator.link import (
     exchange_frames, hand_over, leaves, LINK, receive_samples, send_sample)
 from isa_ros.actuator.states import write_states
@@ -55,24 +55,24 @@ def write_sample(plant, reu, sample):
 
 @kernel
 def loops_and_plant(
-        step, tau, port, actuator, bodies, rates, y, k, weight, reu_state, channels, thermal):
+        step, tau, port, actuator, continuous, rates, y, k, weight, reu_state, channels, thermal):
     """Run the loops that are due at plant step ``step``, then the plant over that step."""
-    body, reu = bodies[0], actuator.reu
+    state, reu = continuous[0], actuator.reu
     if is_due(step, reu.current_steps, reu.offset_steps):
-        sense(step, reu.current_steps, body.plant, body.load.position, body.load.velocity,
+        sense(step, reu.current_steps, state.plant, state.load.position, state.load.velocity,
               actuator.plant, actuator.noise_key, channels, reu_state.measured)
         if reu.is_frozen == 0.0:  # else references and drive stay
             if reu.protection.is_on:
                 protect(step, port.supply_pressure, thermal.sensed, reu.protection, reu_state)
             cascade_step(step, reu, reu_state)
     if step == actuator.load.rope.release_step:
-        body.load.weight.is_released = 1.0
+        state.load.weight.is_released = 1.0
     if is_due(step, reu.current_steps, reu.offset_steps + reu.delay_steps):
         reu_state.amplifier = reu_state.drive
-    body_step(PLANT_STEP, tau, reu_state.amplifier, port, actuator,
-              bodies, rates, y, k, weight)
+    rk4_step(PLANT_STEP, tau, reu_state.amplifier, port, actuator,
+             continuous, rates, y, k, weight)
     if actuator.plant.thermal.is_on:
-        thermal.coil += PLANT_STEP * coil_heat(body.plant.coil, actuator.plant.coil)
+        thermal.coil += PLANT_STEP * coil_heat(state.plant.coil, actuator.plant.coil)
 
 
 @kernel
@@ -85,7 +85,7 @@ def first_broken(y):
 
 
 @kernel
-def take_port(incoming, is_shared, port, body):
+def take_port(incoming, is_shared, port, state):
     """
     Copy the coordinator's `LOAD_PORT` of this tick.
 
@@ -99,12 +99,12 @@ def take_port(incoming, is_shared, port, body):
         port.inverse_mass = incoming.inverse_mass
         port.a_bias, port.jerk = incoming.a_bias, incoming.jerk
         port.stiffness, port.damping = incoming.stiffness, incoming.damping
-        body.load.position = port.x0
-        body.load.velocity = port.v0
+        state.load.position = port.x0
+        state.load.velocity = port.v0
 
 
 @kernel
-def tick_row(first_step, steps, port, actuator, bodies, rates, y, k, reu_state, channels,
+def tick_row(first_step, steps, port, actuator, continuous, rates, y, k, reu_state, channels,
              reply, sample, thermal, link, memory):
     """
     Advance one actuator by ``steps`` plant steps.
@@ -112,42 +112,43 @@ def tick_row(first_step, steps, port, actuator, bodies, rates, y, k, reu_state, 
     Fills its `LOAD_REPLY` (mean force of each of the tick's windows from its impulse) and its
     `SAMPLE` at the end of the tick. ``link`` is its row where it has a link, else -1.
     """
-    body = bodies[0]
+    state = continuous[0]
     if actuator.plant.thermal.is_on:
         warm(thermal.oil, actuator.plant)
     y[0, TOTALS_AT:] = 0.0
-    elastic = stored_elastically(body, actuator.plant.mechanics)
+    elastic = stored_elastically(state, actuator.plant.mechanics)
     window_steps = steps // FORCE_WINDOWS
     for window in range(FORCE_WINDOWS):
-        body.totals.impulse = 0.0
+        state.totals.impulse = 0.0
         for i in range(window * window_steps, (window + 1) * window_steps):
             if link >= 0:
                 is_sampled = i > 0 and leaves(first_step + i, actuator.link)
                 if is_sampled:
-                    write_sample(body.plant, reu_state, sample)
+                    write_sample(state.plant, reu_state, sample)
                 exchange_frames(first_step + i, is_sampled, link, memory)
             loops_and_plant(first_step + i, i * PLANT_STEP, port, actuator,
-                            bodies, rates, y, k, PLANT_STEP * simpson(i, steps), reu_state,
+                            continuous, rates, y, k, PLANT_STEP * simpson(i, steps), reu_state,
                             channels, thermal)
-        reply.mean_forces[window] = body.totals.impulse / (window_steps * PLANT_STEP)
+        reply.mean_forces[window] = state.totals.impulse / (window_steps * PLANT_STEP)
     end_steps(steps * PLANT_STEP, PLANT_STEP * simpson(steps, steps), reu_state.amplifier, port,
-              actuator, bodies, rates, y, k)
-    add_tare(steps * PLANT_STEP, port, actuator.plant.valve, body.totals)
+              actuator, continuous, rates, y, k)
+    add_tare(steps * PLANT_STEP, port, actuator.plant.valve, state.totals)
     reply.force = exact_force(
-        body.plant, body.load.position, body.load.velocity, actuator.plant)
-    reply.position = body.plant.mechanics.position
-    reply.velocity = body.plant.mechanics.velocity
-    reply.supply_volume = body.totals.supply_volume
-    reply.return_volume = body.totals.return_volume
-    write_sample(body.plant, reu_state, sample)
+        state.plant, state.load.position, state.load.velocity, actuator.plant)
+    reply.position = state.plant.mechanics.position
+    reply.velocity = state.plant.mechanics.velocity
+    reply.supply_volume = state.totals.supply_volume
+    reply.return_volume = state.totals.return_volume
+    write_sample(state.plant, reu_state, sample)
     sample.supply_volume += reply.supply_volume
     sample.supply_flow = reply.supply_volume / (steps * PLANT_STEP)
     sample.supply_pressure = port.supply_pressure
-    add_energies(reply, port, body.totals.energies,
-                 stored_elastically(body, actuator.plant.mechanics) - elastic,
+    add_energies(reply, port, state.totals.energies,
+                 stored_elastically(state, actuator.plant.mechanics) - elastic,
                  steps * PLANT_STEP, sample)
     if actuator.plant.thermal.is_on:
-        take_heat(steps * PLANT_STEP, reply, body.totals.energies, actuator.plant.thermal, thermal)
+        take_heat(steps * PLANT_STEP, reply, state.totals.energies, actuator.plant.thermal,
+                  thermal)
     sample.temperature = thermal.sensed = read_temperature(
         first_step + steps, thermal.oil, actuator.noise_key, actuator.plant.sensors.temperature,
         thermal.sensed)
@@ -165,9 +166,9 @@ def actuator_tick(first_step, steps, incoming, commands, memory):
     effect at its start, (n,) each; ``memory`` is a `Memory` of n actuators.
     """
     for n in range(len(memory.ports)):
-        bodies = memory.bodies[n * BODIES:(n + 1) * BODIES]
+        continuous = memory.continuous[n * COPIES:(n + 1) * COPIES]
         rates = memory.rates[n * STAGES:(n + 1) * STAGES]
-        y = memory.states[n * BODIES:(n + 1) * BODIES]
+        y = memory.states[n * COPIES:(n + 1) * COPIES]
         k = memory.slopes[n * STAGES:(n + 1) * STAGES]
         reu, port = memory.reu[n], memory.ports[n]
         link = n if memory.constants[n].link.is_on else -1
@@ -176,8 +177,8 @@ def actuator_tick(first_step, steps, incoming, commands, memory):
             latch(memory.pending[n], reu, memory.applied[n])
         else:
             hand_over(n, memory)
-        take_port(incoming[n], memory.is_shared[n], port, bodies[0])
-        tick_row(first_step, steps, port, memory.constants[n], bodies, rates, y, k, reu,
+        take_port(incoming[n], memory.is_shared[n], port, continuous[0])
+        tick_row(first_step, steps, port, memory.constants[n], continuous, rates, y, k, reu,
                  memory.channels[n], memory.replies[n], memory.samples[n], memory.thermals[n],
                  link, memory)
         if link < 0:
@@ -196,7 +197,7 @@ def write_log(row, memory, samples, states):
     for n in range(states.shape[1]):
         if row < len(samples):
             samples[row, n] = memory.samples[n]
-        write_states(memory.bodies[n * BODIES], memory.replies[n].force, memory.constants[n],
+        write_states(memory.continuous[n * COPIES], memory.replies[n].force, memory.constants[n],
                      memory.reu[n], states[row, n])
 
 

@@ -18,16 +18,16 @@ def rest_plant(
 
     ``supply`` and ``back`` are the gauge pressures at its ports, Pa.
     """
-    own, body = row_record(memory.constants), row_record(memory.bodies)
+    own, state = row_record(memory.constants), row_record(memory.continuous)
     port, thermal = row_record(memory.ports), row_record(memory.thermals)
     port.supply_pressure, port.return_pressure = supply, back
-    body.plant.mechanics.position = position
-    body.load.position = position - force / own.plant.mechanics.k_s
-    body.plant.chambers.p_a, body.plant.chambers.p_b = rest_pressures(
+    state.plant.mechanics.position = position
+    state.load.position = position - force / own.plant.mechanics.k_s
+    state.plant.chambers.p_a, state.plant.chambers.p_b = rest_pressures(
         own.plant, supply, back, force)
     thermal.oil = thermal.body = own.plant.thermal.start
     reply = row_record(memory.replies)
-    reply.force = exact_force(body.plant, body.load.position, body.load.velocity, own.plant)
+    reply.force = exact_force(state.plant, state.load.position, state.load.velocity, own.plant)
     reply.position = position
 
 
@@ -37,8 +37,9 @@ def rest_loops(memory: Memory, sheet: Reu, mode: int, is_enabled: bool) -> None:
 
     ``is_enabled``: it is enabled once it is initialised.
     """
-    own, body, reu = (row_record(rows) for rows in (memory.constants, memory.bodies, memory.reu))
-    sense(0, own.reu.current_steps, body.plant, body.load.position, body.load.velocity,
+    own, state = row_record(memory.constants), row_record(memory.continuous)
+    reu = row_record(memory.reu)
+    sense(0, own.reu.current_steps, state.plant, state.load.position, state.load.velocity,
           own.plant, own.noise_key, row_record(memory.channels), reu.measured)
     at, reu.speed.position = reu.measured, reu.measured.position
     for block, value in (
@@ -52,7 +53,7 @@ def rest_loops(memory: Memory, sheet: Reu, mode: int, is_enabled: bool) -> None:
     device.mode = device.acting = device.requested_mode = mode
     device.auto_enable = device.requested_enable = int(is_enabled)
     sample = row_record(memory.samples)
-    write_sample(body.plant, reu, sample)
+    write_sample(state.plant, reu, sample)
     sample.supply_pressure = row_record(memory.ports).supply_pressure
     thermal = row_record(memory.thermals)
     sample.temperature = thermal.sensed = read_temperature(

@@ -2,7 +2,7 @@
 
 from typing import NamedTuple
 
-from isa_ros.actuator.body import flat, scratch
+from isa_ros.actuator.integration import flat, scratch
 from isa_ros.actuator.kernel import ACTUATOR
 from isa_ros.actuator.link import LINK_STATE, SLOTS
 from isa_ros.core.signals import COMMAND, LOAD_PORT, LOAD_REPLY, SAMPLE
@@ -16,8 +16,8 @@ class Memory(NamedTuple):
     """
     Memory that the tick kernel reads and writes, for ``n`` actuators.
 
-    One row per actuator, except `body.BODIES` of ``bodies``, `body.STAGES` of ``rates`` and
-    `SLOTS` of the frames on a link.
+    One row per actuator, except `integration.COPIES` of ``continuous``, `integration.STAGES` of
+    ``rates`` and `SLOTS` of the frames on a link.
     """
 
     is_shared: np.ndarray
@@ -26,12 +26,12 @@ class Memory(NamedTuple):
     """`LOAD_PORT` in force, (n,)."""
     constants: np.ndarray
     """`ACTUATOR`, (n,)."""
-    bodies: np.ndarray
-    """`BODY`: the state and a stage of its integration."""
+    continuous: np.ndarray
+    """`CONTINUOUS`: the state and a stage of its integration."""
     rates: np.ndarray
-    """`BODY`: the stages' rates of change."""
+    """`CONTINUOUS`: the stages' rates of change."""
     states: np.ndarray
-    """The same memory as ``bodies``, as floats."""
+    """The same memory as ``continuous``, as floats."""
     slopes: np.ndarray
     """The same memory as ``rates``, as floats."""
     reu: np.ndarray
@@ -64,11 +64,11 @@ class Memory(NamedTuple):
 
 def memory_of(n: int) -> Memory:
     """Return the memory of ``n`` actuators, all zero."""
-    bodies, rates = scratch(n)
+    continuous, rates = scratch(n)
     return Memory(
         is_shared=np.zeros(n, np.bool_), ports=np.zeros(n, LOAD_PORT),
-        constants=np.zeros(n, ACTUATOR), bodies=bodies, rates=rates,
-        states=flat(bodies), slopes=flat(rates), reu=np.zeros(n, REU_STATE),
+        constants=np.zeros(n, ACTUATOR), continuous=continuous, rates=rates,
+        states=flat(continuous), slopes=flat(rates), reu=np.zeros(n, REU_STATE),
         channels=np.zeros(n, CHANNELS_STATE), replies=np.zeros(n, LOAD_REPLY),
         samples=np.zeros(n, SAMPLE), pending=np.zeros(n, COMMAND), applied=np.zeros(n, COMMAND),
         thermals=np.zeros(n, THERMAL_STATE), links=np.zeros(n, LINK_STATE),

@@ -27,7 +27,7 @@ class SavedRows:
         self._owner, self._memory, self._has_link = owner, memory, has_link
         self._names: tuple[str, ...] = _SAVED
         self._rows: list[Records] = [
-            memory.bodies[:1], memory.reu, memory.channels, memory.ports, memory.pending,
+            memory.continuous[:1], memory.reu, memory.channels, memory.ports, memory.pending,
             memory.applied, memory.replies, memory.samples, memory.thermals]
         if has_link:
             self._names += _SAVED_OF_LINK

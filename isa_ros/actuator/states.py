@@ -30,9 +30,9 @@ STATES = np.dtype([
 
 
 @kernel
-def write_states(body, force, actuator, reu_state, row):
-    """Fill one `STATES` row from a `BODY`, its sensor force (N | Nm) and a `REU_STATE`."""
-    plant = body.plant
+def write_states(state, force, actuator, reu_state, row):
+    """Fill one `STATES` row from a `CONTINUOUS`, its sensor force (N | Nm) and a `REU_STATE`."""
+    plant = state.plant
     row.position = plant.mechanics.position
     row.velocity = plant.mechanics.velocity
     row.force = force

@@ -1,6 +1,6 @@
 """The plant alone, the plant with its REU, and a cylinder with a known solution."""
 
-from isa_ros.actuator import body as kernels
+from isa_ros.actuator import integration as kernels
 from isa_ros.actuator.actuator import SmartActuator
 from isa_ros.actuator.sheet import actuator_record
 from isa_ros.analysis.accuracy import cylinder
@@ -33,7 +33,7 @@ def plant_rows() -> list[Row]:
         constants = actuator_record(config.sheet, 0)
         flats = kernels.flat(bodies), kernels.flat(rates)
         step = seconds(
-            lambda: kernels.body_steps(
+            lambda: kernels.rk4_steps(
                 PLANT_STEPS, PLANT_STEP, 0.0, port[0], constants[0], bodies, rates, *flats),
             PLANT_STEPS)
         rows += [

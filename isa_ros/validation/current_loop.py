@@ -7,7 +7,7 @@ equations 1 and 2, sampled at 10 kHz through the 12 bit converter. Currents are 
 
 from dataclasses import replace
 
-from isa_ros.actuator.body import body_step, flat, scratch
+from isa_ros.actuator.integration import flat, rk4_step, scratch
 from isa_ros.actuator.sheet import actuator_record, ActuatorSheet
 from isa_ros.analysis.response.actuator_trace import RATE_HZ
 from isa_ros.analysis.response.rig import Choice, Rig, rig
@@ -83,7 +83,7 @@ def _static_gain() -> tuple[float, np.ndarray]:
     state = bodies.view(np.recarray)[0].plant.coil
     current = np.empty(round(OPEN_LOOP_S / PLANT_STEP))
     for k in range(len(current)):
-        body_step(PLANT_STEP, 0.0, OPEN_LOOP_V, *arguments, PLANT_STEP)
+        rk4_step(PLANT_STEP, 0.0, OPEN_LOOP_V, *arguments, PLANT_STEP)
         current[k] = coil_current(state, coil)
     return float(current[-1] / OPEN_LOOP_V), current
 

@@ -80,7 +80,7 @@ def test_the_account_closes_while_the_oil_boils():
     lowest = 0.0
     for _ in range(2000):
         actuator.tick()
-        lowest = min(lowest, float(actuator.memory.bodies[0]['plant']['chambers']['p_a']))
+        lowest = min(lowest, float(actuator.memory.continuous[0]['plant']['chambers']['p_a']))
     assert lowest < -0.1e6
     assert remainder(account(actuator)) < IMPACTS
 
@@ -117,7 +117,7 @@ def test_compressed_oil_holds_half_of_p_squared_over_k():
     plant = actuator_sheet('isa_v5').plant
 
     def held() -> float:
-        state, oil = actuator.memory.bodies[0]['plant'], plant.oil
+        state, oil = actuator.memory.continuous[0]['plant'], plant.oil
         area_a, area_b = plant.drive.areas
         s, dead = float(state['mechanics']['position']), oil.dead_volume_ml * 1e-6
         v_a, v_b = dead + area_a * s, dead + area_b * (plant.drive.stroke - s)

@@ -15,7 +15,7 @@ VAPOUR = 1e3 - ATMOSPHERE
 
 def chambers(actuator: SmartActuator) -> np.void:
     """Return the `CHAMBERS_STATE`."""
-    state: np.void = actuator.memory.bodies[0]['plant']['chambers']
+    state: np.void = actuator.memory.continuous[0]['plant']['chambers']
     return state
 
 
@@ -42,7 +42,7 @@ def test_friction_of_3_newtons_follows_a_fast_sine():
             position=0.05 + 0.02 * np.sin(omega * k * TICK),
             velocity=0.02 * omega * np.cos(omega * k * TICK)))
         actuator.tick()
-        bristle = float(actuator.memory.bodies[0]['plant']['friction']['bristle'])
+        bristle = float(actuator.memory.continuous[0]['plant']['friction']['bristle'])
         peak = max(peak, abs(bristle))
     # at steady sliding sigma_0 z is the force, 3 N
     assert 0.9 < peak * sheet.plant.friction.bristle_stiffness / 3.0 < 1.001

@@ -68,7 +68,7 @@ def test_an_explicit_coil_heats_with_its_current() -> None:
     for _ in range(100):
         actuator.tick()
     heat = actuator.memory.thermals['heat'][0] - _losses(actuator) - before
-    current = float(actuator.memory.bodies['plant']['coil']['current'][0])
+    current = float(actuator.memory.continuous['plant']['coil']['current'][0])
     assert current > 2e-3
     assert heat == pytest.approx(coil['resistance'] * current * current * 0.1, rel=1e-2)
 

@@ -74,7 +74,7 @@ def test_without_loss_delay_and_jitter_it_changes_no_bit():
                 own.accept(setpoint(position=0.05 + 1e-5 * k))
         for own in (direct, behind):
             own.tick()
-        for name in ('samples', 'observed', 'replies', 'bodies', 'reu'):
+        for name in ('samples', 'observed', 'replies', 'continuous', 'reu'):
             assert getattr(direct.memory, name).tobytes() == getattr(
                 behind.memory, name).tobytes(), (k, name)
 
@@ -135,7 +135,8 @@ def test_a_command_acts_inside_a_tick_as_at_the_start_of_one(cycle_ms, delay):
             short.accept(setpoint(position=0.06))
         short.tick()
     for name in ('plant', 'load'):
-        assert long.memory.bodies[0][name].tobytes() == short.memory.bodies[0][name].tobytes()
+        assert (long.memory.continuous[0][name].tobytes()
+                == short.memory.continuous[0][name].tobytes())
     assert long.sample.force_reference == short.sample.force_reference != 0.0
 
 

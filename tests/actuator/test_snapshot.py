@@ -13,7 +13,7 @@ BROKEN = pytest.mark.parametrize(('path', 'value'), [
     ('port.stiffness', np.nan), ('reu.setpoint.damping', np.nan),
     ('pending.position', np.nan), ('pending.stiffness', np.inf), ('applied.effort', np.nan),
     ('reply.mean_forces', np.inf), ('sample.force', np.nan)])
-ROWS = {'body': 'bodies', 'reu': 'reu', 'port': 'ports', 'pending': 'pending',
+ROWS = {'body': 'continuous', 'reu': 'reu', 'port': 'ports', 'pending': 'pending',
         'applied': 'applied', 'reply': 'replies', 'sample': 'samples'}
 
 

@@ -8,7 +8,7 @@ package; ports, mean forces, ticks and the leg's own step do not occur here.
 
 from typing import NamedTuple
 
-from isa_ros.actuator.body import BODY, STATE_SIZE
+from isa_ros.actuator.integration import CONTINUOUS, STATE_SIZE
 from isa_ros.actuator.kernel import ACTUATOR
 from isa_ros.actuator.sheet import actuator_record
 from isa_ros.core.contact import normal_force
@@ -42,9 +42,9 @@ class System(NamedTuple):
     """What the one ODE is integrated in."""
 
     bodies: np.ndarray
-    """`BODY` of the three actuators and of a stage, (2, 3)."""
+    """`CONTINUOUS` of the three actuators and of a stage, (2, 3)."""
     rates: np.ndarray
-    """`BODY` of the stages' rates, (STAGES, 3)."""
+    """`CONTINUOUS` of the stages' rates, (STAGES, 3)."""
     states: np.ndarray
     """The same memory as ``bodies``, as floats."""
     slopes: np.ndarray
@@ -60,7 +60,7 @@ class System(NamedTuple):
 
 
 def floats(rows):
-    """Return the same memory of `BODY` rows (n, 3) as floats, (n, 3, STATE_SIZE)."""
+    """Return the same memory of `CONTINUOUS` rows (n, 3) as floats, (n, 3, STATE_SIZE)."""
     return rows.view(np.float64).reshape(len(rows), 3, STATE_SIZE)
 
 
@@ -171,13 +171,13 @@ def monolith(rig, actuators, leg, commands, n_rows, release_ns, aside):
 
     Pistons and rotor start ``aside`` (m | rad). Returns the `TRACE`, shape (n_rows,).
     """
-    bodies, rates = np.zeros((2, 3), BODY), np.zeros((STAGES, 3), BODY)
+    bodies, rates = np.zeros((2, 3), CONTINUOUS), np.zeros((STAGES, 3), CONTINUOUS)
     constants, reus = np.zeros(3, ACTUATOR), np.zeros(3, REU_STATE)
     offset_steps = rig.controller_offset_ns // PLANT_STEP_NS
     for j, (actuator, sheet) in enumerate(zip(actuators, rig.sheets)):
         snapshot = actuator.snapshot()
-        bodies[0, j] = np.frombuffer(snapshot, BODY, 1, TIME_BYTES)[0]
-        reus[j] = np.frombuffer(snapshot, REU_STATE, 1, TIME_BYTES + BODY.itemsize)[0]
+        bodies[0, j] = np.frombuffer(snapshot, CONTINUOUS, 1, TIME_BYTES)[0]
+        reus[j] = np.frombuffer(snapshot, REU_STATE, 1, TIME_BYTES + CONTINUOUS.itemsize)[0]
         constants[j] = actuator_record(sheet, offset_steps)[0]
     bodies['plant']['mechanics']['position'][0] += aside
     trace = np.zeros(n_rows, TRACE)

@@ -3,7 +3,7 @@
 import math
 
 from hypothesis import given, strategies as st
-from isa_ros.actuator import body as kernels
+from isa_ros.actuator import integration as kernels
 from isa_ros.actuator.sheet import actuator_record, ActuatorSheet
 from isa_ros.core.signals import LOAD_PORT
 from isa_ros.core.timebase import PLANT_STEP
@@ -35,8 +35,8 @@ class Body:
     def run(self, duration: float, h: float = PLANT_STEP) -> None:
         """Advance by ``duration`` (s)."""
         y, k = kernels.flat(self.bodies), kernels.flat(self.rates)
-        kernels.body_steps(round(duration / h), h, self.current, self.port[0],
-                           self.constants[0], self.bodies, self.rates, y, k)
+        kernels.rk4_steps(round(duration / h), h, self.current, self.port[0],
+                          self.constants[0], self.bodies, self.rates, y, k)
 
     @property
     def states(self) -> np.ndarray:

@@ -25,7 +25,7 @@ from isa_ros.actuator.actuator import SmartActuator
 advance = SmartActuator.tick
 def tick(self, port=None):
     if self.t_ns == 100_000_000:
-        self.memory.bodies['plant']['chambers']['p_a'][0] = float('nan')
+        self.memory.continuous['plant']['chambers']['p_a'][0] = float('nan')
     advance(self, port)
 SmartActuator.tick = tick
 """

@@ -60,7 +60,7 @@ def test_a_run_that_diverges_is_named_with_its_state(ram, workers, monkeypatch):
 
     def broken(self, *args):
         if self.t_ns == 10_000_000:
-            self.actuators[0].memory.bodies['plant']['chambers']['p_a'][0] = np.nan
+            self.actuators[0].memory.continuous['plant']['chambers']['p_a'][0] = np.nan
         return advance(self, *args)
     monkeypatch.setattr(ActuatorGroup, 'advance', broken)
     with pytest.raises(SimulationDiverged, match='ram: plant.'):

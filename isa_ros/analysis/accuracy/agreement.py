@@ -1,7 +1,7 @@
 """
 The plant against another solver: the error of the fixed step in solving the equations.
 
-`scipy`'s adaptive DOP853 integrates the same `body_rates` with a tolerance of 1e-12. It starts
+`scipy`'s adaptive DOP853 integrates the same `write_rates` with a tolerance of 1e-12. It starts
 anew wherever the current reference jumps, and shrinks its steps to pass the kinks: null and the
 dual-gain point, reversals, the amplifier's voltage limit, relief and refill. With a tolerance
 of 1e-13 its solution differs by at most 4e-10 of each state's largest value.
@@ -11,7 +11,7 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 import math
 
-from isa_ros.actuator import body as kernels
+from isa_ros.actuator import integration as kernels
 from isa_ros.actuator.sheet import actuator_record
 from isa_ros.config.models.catalogue import actuator_model
 from isa_ros.config.models.own_load import own_load
@@ -71,7 +71,7 @@ class Difference:
 @kernel
 def rates_of_first(tau, drive, ports, actuators, bodies, rates):
     """Write the derivative of ``bodies[0]`` into ``rates[0]``."""
-    kernels.body_rates(tau, bodies[0], drive, ports[0], actuators[0], rates[0], True)
+    kernels.write_rates(tau, bodies[0], drive, ports[0], actuators[0], rates[0], True)
 
 
 class Bench:
@@ -101,8 +101,8 @@ class Bench:
         self._y[0] = self._start
         rows = []
         for current in piece.currents:
-            kernels.body_steps(round(ROW / h), h, current, self._port[0], self._constants[0],
-                               self._bodies, self._rates, self._y, self._k)
+            kernels.rk4_steps(round(ROW / h), h, current, self._port[0], self._constants[0],
+                              self._bodies, self._rates, self._y, self._k)
             rows.append(self._y[0].copy())
         return np.array(rows)
 
@@ -125,7 +125,7 @@ class Bench:
 
     def with_force(self, rows: np.ndarray) -> np.ndarray:
         """Return the states with the sensor force as one more column."""
-        bodies = np.ascontiguousarray(rows).view(kernels.BODY)[:, 0]
+        bodies = np.ascontiguousarray(rows).view(kernels.CONTINUOUS)[:, 0]
         moving, load = bodies['plant']['mechanics'], bodies['load']
         force = [sensor_force(s, v, x, x_rate, self._plant.mechanics) for s, v, x, x_rate in zip(
             moving['position'], moving['velocity'], load['position'], load['velocity'])]

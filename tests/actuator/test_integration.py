@@ -1,6 +1,6 @@
 """Energies as integrals over the plant steps."""
 
-from isa_ros.actuator.body import simpson
+from isa_ros.actuator.integration import simpson
 import numpy as np
 import pytest
 

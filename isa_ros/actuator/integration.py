@@ -1,9 +1,9 @@
 """
 The continuous states of one actuator with its load copy, and one step of their integration.
 
-They live in one record of floats (`BODY`), so that the integrator sees the same memory as a flat
-array. Energies are integrals of powers that act on nothing: Simpson's rule over the plant steps
-gives them from one evaluation a step, where the states need four.
+They live in one record of floats (`CONTINUOUS`), so that the integrator sees the same memory as a
+flat array. Energies are integrals of powers that act on nothing: Simpson's rule over the plant
+steps gives them from one evaluation a step, where the states need four.
 """
 
 import math
@@ -21,40 +21,40 @@ TOTALS = np.dtype([
     ('return_volume', 'f8'),    # given to the return, m3
     ('energies', ENERGIES),     # by Simpson's rule over the steps, not by their stages
 ])
-BODY = np.dtype([('plant', PLANT_STATE), ('load', LOAD_STATE), ('totals', TOTALS)])
+CONTINUOUS = np.dtype([('plant', PLANT_STATE), ('load', LOAD_STATE), ('totals', TOTALS)])
 """Every continuous state of an actuator and its load copy; floats only."""
 
-STATE_SIZE = BODY.itemsize // 8
+STATE_SIZE = CONTINUOUS.itemsize // 8
 TOTALS_AT = STATE_SIZE - TOTALS.itemsize // 8  # no rate depends on the totals, the last states
 ENERGIES_AT = STATE_SIZE - ENERGIES.itemsize // 8
-BODIES = 2  # the state and a stage of its integration
+COPIES = 2  # the state and a stage of its integration
 STAGES = 4
 NOTHING = 1e-100  # any unit: smaller states are set to zero, since denormal arithmetic is slow
 
 
 def scratch(n: int = 1) -> tuple[np.ndarray, np.ndarray]:
-    """Return the memory of ``n`` actuators: `BODIES` `BODY` rows and `STAGES` rate rows each."""
-    return np.zeros(n * BODIES, BODY), np.zeros(n * STAGES, BODY)
+    """Return the memory of ``n`` actuators: `COPIES` rows of states, `STAGES` of rates each."""
+    return np.zeros(n * COPIES, CONTINUOUS), np.zeros(n * STAGES, CONTINUOUS)
 
 
 def flat(rows: np.ndarray) -> np.ndarray:
-    """Return the same memory of `BODY` rows as floats, shape (rows, STATE_SIZE)."""
+    """Return the same memory of `CONTINUOUS` rows as floats, shape (rows, STATE_SIZE)."""
     return rows.view(np.float64).reshape(len(rows), STATE_SIZE)
 
 
 def state_name(index: int) -> str:
-    """Return the dotted name of one state of `BODY` by its place in the flat array."""
+    """Return the dotted name of one state of `CONTINUOUS` by its place in the flat array."""
     def walk(record: np.dtype, prefix: str) -> list[str]:
         if record.names is None:
             return [prefix]
         return [name for field in record.names
                 for name in walk(record[field], f'{prefix}.{field}' if prefix else field)]
-    return walk(BODY, '')[index]
+    return walk(CONTINUOUS, '')[index]
 
 
 @kernel
-def body_rates(tau, y, drive, port, actuator, rates, counts):
-    """Write the derivative of one `BODY` into ``rates``; its powers only if it ``counts``."""
+def write_rates(tau, y, drive, port, actuator, rates, counts):
+    """Write the derivative of a `CONTINUOUS` into ``rates``; its powers only if it ``counts``."""
     force, q_p, q_t = plant_rates(
         y.plant, y.load.position, y.load.velocity, drive,
         port.supply_pressure, port.return_pressure, actuator.plant, rates.plant,
@@ -95,43 +95,43 @@ def add_powers(weight, y, k):
 
 
 @kernel
-def body_step(h, tau, drive, port, actuator, bodies, rates, y, k, weight):
+def rk4_step(h, tau, drive, port, actuator, continuous, rates, y, k, weight):
     """
-    Advance ``bodies[0]`` by one classical Runge-Kutta step of ``h`` seconds.
+    Advance ``continuous[0]`` by one classical Runge-Kutta step of ``h`` seconds.
 
-    ``bodies[1]`` holds the stage; ``y`` and ``k`` are the flat views of ``bodies``, ``rates``.
+    ``continuous[1]`` holds the stage; ``y`` and ``k`` are flat views of it and ``rates``.
     The powers at the beginning of the step enter the energies with ``weight``, in s.
     """
-    body_rates(tau, bodies[0], drive, port, actuator, rates[0], True)
+    write_rates(tau, continuous[0], drive, port, actuator, rates[0], True)
     add_powers(weight, y, k)
     for j in range(TOTALS_AT):
         y[1, j] = y[0, j] + 0.5 * h * k[0, j]
-    body_rates(tau + 0.5 * h, bodies[1], drive, port, actuator, rates[1], False)
+    write_rates(tau + 0.5 * h, continuous[1], drive, port, actuator, rates[1], False)
     for j in range(TOTALS_AT):
         y[1, j] = y[0, j] + 0.5 * h * k[1, j]
-    body_rates(tau + 0.5 * h, bodies[1], drive, port, actuator, rates[2], False)
+    write_rates(tau + 0.5 * h, continuous[1], drive, port, actuator, rates[2], False)
     for j in range(TOTALS_AT):
         y[1, j] = y[0, j] + h * k[2, j]
-    body_rates(tau + h, bodies[1], drive, port, actuator, rates[3], False)
+    write_rates(tau + h, continuous[1], drive, port, actuator, rates[3], False)
     for j in range(ENERGIES_AT):
         value = y[0, j] + h / 6.0 * (k[0, j] + 2.0 * (k[1, j] + k[2, j]) + k[3, j])
         y[0, j] = 0.0 if abs(value) < NOTHING else value
-    settle(h, bodies[0].plant, port.return_pressure, actuator.plant)
+    settle(h, continuous[0].plant, port.return_pressure, actuator.plant)
 
 
 @kernel
-def end_steps(tau, weight, drive, port, actuator, bodies, rates, y, k):
+def end_steps(tau, weight, drive, port, actuator, continuous, rates, y, k):
     """Add the powers after the last step with their ``weight``, in s."""
-    body_rates(tau, bodies[0], drive, port, actuator, rates[0], True)
+    write_rates(tau, continuous[0], drive, port, actuator, rates[0], True)
     add_powers(weight, y, k)
 
 
 @kernel
-def body_steps(n, h, drive, port, actuator, bodies, rates, y, k):
-    """Take ``n`` steps of `body_step` under a constant drive and port."""
+def rk4_steps(n, h, drive, port, actuator, continuous, rates, y, k):
+    """Take ``n`` steps of `rk4_step` under a constant drive and port."""
     for i in range(n):
-        body_step(h, i * h, drive, port, actuator, bodies, rates, y, k, h * simpson(i, n))
-    end_steps(n * h, h * simpson(n, n), drive, port, actuator, bodies, rates, y, k)
+        rk4_step(h, i * h, drive, port, actuator, continuous, rates, y, k, h * simpson(i, n))
+    end_steps(n * h, h * simpson(n, n), drive, port, actuator, continuous, rates, y, k)
 
 
 @kernel
