@@ -11,10 +11,10 @@ from typing import NoReturn
 
 from isa_ros.actuator import kernel as kernels
 from isa_ros.actuator.config import ActuatorConfig
-from isa_ros.actuator.device import mode_after, mode_command, refusal_of, start_mode
 from isa_ros.actuator.inbox import merge
 from isa_ros.actuator.integration import state_name
 from isa_ros.actuator.link import link_key, NONE
+from isa_ros.actuator.requests import mode_after, mode_command, refusal_of, start_mode
 from isa_ros.actuator.rest import rest_loops, rest_plant
 from isa_ros.actuator.rows import Memory, memory_of, row_record
 from isa_ros.actuator.saved_rows import SavedRows

@@ -4,7 +4,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Any
 
-from isa_ros.actuator.device import start_mode
+from isa_ros.actuator.requests import start_mode
 from isa_ros.actuator.setpoint_range import reference_bounds
 from isa_ros.config.runs.run_config import ActuatorConfig
 from isa_ros.config.text.sections import Place
