@@ -15,7 +15,7 @@ from isa_ros.config.runs.leg_config import LegConfig, LegStart
 from isa_ros.config.runs.recording import RECORD, Storage
 from isa_ros.config.runs.run_config import RUN
 from isa_ros.config.runs.supplies import SUPPLY_KEYS
-from isa_ros.config.text.keys import InText, parameter_rows, REQUIRED, Table
+from isa_ros.config.text.keys import InText, KeyTable, parameter_rows, REQUIRED
 from isa_ros.config.text.parameter_sets import members
 from isa_ros.core.parameter import Parameters
 from isa_ros.surroundings.bodies.leg.inertial import Imu
@@ -29,7 +29,7 @@ _HEADER = ['key', 'value', 'default', 'meaning']
 _IN_TEXT = {InText.NEVER: 'no', InText.IF_ANY: 'yes', InText.ALWAYS: 'yes', InText.ONLY: 'only'}
 
 
-def keys(table: Table) -> list[str]:
+def keys(table: KeyTable) -> list[str]:
     """Return the lines of the table of a section's keys."""
     return markdown([[*_HEADER, 'resolved text'], *(
         [f'`{key.name}`', f'{key.kind.words}, {key.kind.unit}' if key.kind.unit

@@ -8,7 +8,7 @@ from isa_ros.actuator.sheet import ActuatorSheet
 from isa_ros.config.models.catalogue import actuator_model
 from isa_ros.config.runs.run_config import ActuatorConfig
 from isa_ros.config.text.parameter_sets import build, build_one_of
-from isa_ros.config.text.sections import Entry
+from isa_ros.config.text.sections import SourcedValue
 from isa_ros.core.parameter import Parameters
 from isa_ros.core.signals import COMMAND, HAS_SETPOINT
 from isa_ros.loads.sheets import LocalLoad
@@ -30,7 +30,7 @@ def actuator_sheet(model: str, preset: str = 'default', *variants: str) -> Actua
 def own_load(model: str, kind: str) -> LocalLoad:
     """Return one of the model's own loads."""
     found = actuator_model(model, 'test')
-    section = {'kind': Entry(kind, 'test', '')} | found.loads[kind]
+    section = {'kind': SourcedValue(kind, 'test', '')} | found.loads[kind]
     return build_one_of(LocalLoad, section, found.place)
 
 

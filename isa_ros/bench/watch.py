@@ -8,7 +8,7 @@ from isa_ros.bench.host import children_of, memory_of, processor_seconds_of
 from isa_ros.bench.spec import ACTUATORS, COORDINATOR, JOINED, Measured, Memory, PREPARED, RECORDER
 from isa_ros.errors import RunError
 from isa_ros.run.options import Request
-from isa_ros.run.pacing import JOINING, Laps, Progress, STARTING
+from isa_ros.run.pacing import JOINING, Laps, RunProgress, STARTING
 from isa_ros.tick.tick_loop import BEFORE_TICKS
 
 
@@ -44,7 +44,7 @@ class Watch:
         """Return the request with these laps."""
         return replace(request, laps=self._laps)
 
-    def report(self, progress: Progress) -> None:
+    def report(self, progress: RunProgress) -> None:
         """Measure memory and processor time at the end of the run, while its processes exist."""
         if not progress.is_last:
             return

@@ -12,7 +12,7 @@ from isa_ros.core.signals import START
 from isa_ros.loads.sheets import static_force
 from isa_ros.plant.plant import plant_record
 from isa_ros.plant.servo_valve import largest_flow_slope
-from isa_ros.surroundings.surroundings import Circuit, Surroundings
+from isa_ros.surroundings.surroundings import SupplyCircuit, Surroundings
 import numpy as np
 
 
@@ -56,7 +56,7 @@ def surroundings_of(
         slope = 0.0
         for row in rows:  # in this order: `sum` of Python 3.12 rounds differently
             slope += largest_flow_slope(plants[row].valve, supply.span)
-        circuits.append(Circuit(supply.name, supply.sheet, rows, slope))
+        circuits.append(SupplyCircuit(supply.name, supply.sheet, rows, slope))
     starts = np.zeros(len(run.actuators), START)
     starts['position'] = [actuator.initial_position for actuator in run.actuators]
     starts['force'] = [static_force(actuator.load) for actuator in run.actuators]

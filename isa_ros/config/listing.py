@@ -15,7 +15,7 @@ from isa_ros.config.runs.run_config import Origins, RUN, run_of, RunConfig
 from isa_ros.config.text.changes import changed, Values
 from isa_ros.config.text.keys import Leaf
 from isa_ros.config.text.parameter_sets import build, build_one_of, kind_of, members
-from isa_ros.config.text.sections import Entry, merge, Place, Section, section_at, written
+from isa_ros.config.text.sections import merge, Place, Section, section_at, SourcedValue, written
 from isa_ros.config.text.yaml_text import read, Tree
 from isa_ros.core.parameter import Parameters
 from isa_ros.errors import ConfigError
@@ -210,7 +210,7 @@ def sources(section: Section, prefix: str = '') -> dict[str, str]:
     """Return the source of every value by its dotted path."""
     paths: dict[str, str] = {}
     for key, entry in section.items():
-        if isinstance(entry, Entry):
+        if isinstance(entry, SourcedValue):
             scales = f'; scales with {entry.scales_with}' if entry.scales_with else ''
             paths[f'{prefix}{key}'] = entry.source + scales
         else:

@@ -14,7 +14,7 @@ from isa_ros.core.units import LITRE
 Account = Mapping[str, float]
 
 
-class Entry(NamedTuple):
+class AccountEntry(NamedTuple):
     """One entry of an account: a field of a record, its name, and its unit in SI."""
 
     field: str
@@ -28,26 +28,26 @@ class Entry(NamedTuple):
         return f'{self.name} ({self.unit})'
 
 
-MEAN = Entry('', 'mean power', 'W')
+MEAN = AccountEntry('', 'mean power', 'W')
 """The energy over the time; no field."""
-PEAK = Entry('peak_power', 'peak power', 'W')
-OIL = Entry('supply_volume', 'oil drawn', 'l', LITRE)
-ENERGY = Entry('hydraulic_energy', 'hydraulic energy', 'J')
-LEAKAGE = Entry('leakage_energy', 'valve leakage', 'J')
-THROTTLING = Entry('throttling_energy', 'throttling', 'J')
-FRICTION = Entry('friction_energy', 'friction', 'J')
-WORK = Entry('work', 'work', 'J')
-CROSS_PORT = Entry('cross_port_energy', 'cross-port leakage', 'J')
-RELIEF = Entry('relief_energy', 'relief', 'J')
-DAMPING = Entry('damping_energy', 'damping', 'J')
-STORED = Entry('stored_energy', 'stored', 'J')
+PEAK = AccountEntry('peak_power', 'peak power', 'W')
+OIL = AccountEntry('supply_volume', 'oil drawn', 'l', LITRE)
+ENERGY = AccountEntry('hydraulic_energy', 'hydraulic energy', 'J')
+LEAKAGE = AccountEntry('leakage_energy', 'valve leakage', 'J')
+THROTTLING = AccountEntry('throttling_energy', 'throttling', 'J')
+FRICTION = AccountEntry('friction_energy', 'friction', 'J')
+WORK = AccountEntry('work', 'work', 'J')
+CROSS_PORT = AccountEntry('cross_port_energy', 'cross-port leakage', 'J')
+RELIEF = AccountEntry('relief_energy', 'relief', 'J')
+DAMPING = AccountEntry('damping_energy', 'damping', 'J')
+STORED = AccountEntry('stored_energy', 'stored', 'J')
 SHARES = (LEAKAGE, THROTTLING, FRICTION, WORK, CROSS_PORT, RELIEF, DAMPING, STORED)
 """Where the energy of an actuator went; their sum is `ENERGY`."""
 
 SUPPLY_OIL = OIL._replace(field='drawn')
 SUPPLY_ENERGY = ENERGY._replace(field='energy')
-PUMP = Entry('pump_energy', 'pump', 'J')
-SUPPLY_RELIEF = Entry('relief_energy', 'relief', 'J')
+PUMP = AccountEntry('pump_energy', 'pump', 'J')
+SUPPLY_RELIEF = AccountEntry('relief_energy', 'relief', 'J')
 
 _OF_ACTUATOR = (OIL, PEAK, ENERGY, *SHARES)
 FIELDS = tuple(entry.field for entry in _OF_ACTUATOR)
@@ -70,7 +70,7 @@ def accounts_of(
                     for name, row in zip(supplies, supply_samples)}
 
 
-def _account(row: Mapping[str, float], entries: Sequence[Entry], energy: Entry,
+def _account(row: Mapping[str, float], entries: Sequence[AccountEntry], energy: AccountEntry,
              t_ns: int) -> Account:
     account = {entry.key: float(row[entry.field]) / entry.scale for entry in entries}
     seconds = t_ns / NS_PER_SECOND

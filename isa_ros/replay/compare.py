@@ -12,7 +12,7 @@ from isa_ros.bag.reader import Bag, BagMessage, Tick
 from isa_ros.config.runs.recording import RECORD, RecordConfig
 from isa_ros.config.text.sections import Place
 from isa_ros.config.text.yaml_text import parse
-from isa_ros.replay.difference import ABSENT, BAG, Difference, PRESENT, Report, Value
+from isa_ros.replay.difference import ABSENT, BAG, FirstDifference, PRESENT, Report, Value
 from isa_ros.replay.tolerances import Tolerances
 from isa_ros.replay.topic_comparison import TopicComparison
 from isa_ros.run.diagnostics import PERIOD_NS
@@ -58,7 +58,7 @@ class Comparer:
         self._topics: dict[str, TopicComparison] = {}
         self._ticks = self._messages = self._in_block = 0
         self._end_ns: int | None = None
-        self.difference: Difference | None = None
+        self.difference: FirstDifference | None = None
         """The first difference; known some ticks later, at the latest after `finish`."""
 
     def write_tick(
@@ -96,7 +96,7 @@ class Comparer:
         return Report(self._ticks, self._messages, self._end_ns, self.difference,
                       [difference for difference in found if difference is not None])
 
-    def note(self, difference: Difference) -> None:
+    def note(self, difference: FirstDifference) -> None:
         """Add a difference that is not one of the messages' bytes."""
         self._topic(difference.topic).note(difference)
 
@@ -115,7 +115,7 @@ class Comparer:
         return self._topics[name]
 
     def _miss_tick(self, tick: Tick, field: str, expected: Value, actual: Value) -> None:
-        self.note(Difference(tick.sequence, tick.t_ns, BAG, field, expected, actual))
+        self.note(FirstDifference(tick.sequence, tick.t_ns, BAG, field, expected, actual))
 
     def _compare_tick(
             self, tick: Tick, sequence: int, actual: Sequence[tuple[str, bytes]]) -> None:
@@ -136,12 +136,12 @@ class Comparer:
         self._end_ns = tick.t_ns
 
     def _miss_message(self, tick: Tick, topic: str, expected: str, actual: str) -> None:
-        self.note(Difference(tick.sequence, tick.t_ns, topic, 'message', expected, actual))
+        self.note(FirstDifference(tick.sequence, tick.t_ns, topic, 'message', expected, actual))
 
     def _compare_messages(self, message: BagMessage, sequence: int, data: bytes) -> None:
         if self._is_exact and message.sequence != sequence:
-            self.note(Difference(message.sequence, message.t_ns, message.topic, 'sequence',
-                                 message.sequence, sequence))
+            self.note(FirstDifference(message.sequence, message.t_ns, message.topic, 'sequence',
+                                      message.sequence, sequence))
         elif message.data != data:
             self._topic(message.topic).add(message, data)
 
@@ -154,14 +154,14 @@ class Comparer:
         self.difference = min(firsts, key=_place, default=None)
 
 
-def _place(difference: Difference) -> tuple[int, bool, str]:
+def _place(difference: FirstDifference) -> tuple[int, bool, str]:
     """Return the order of differences: by time, ticks before messages, topics by name."""
     return difference.t_ns, difference.topic != BAG, difference.topic
 
 
-def retyped(expected: Bag, types: Mapping[str, str]) -> list[Difference]:
+def retyped(expected: Bag, types: Mapping[str, str]) -> list[FirstDifference]:
     """Return the topics of a bag that have another type among ``types``, by name."""
-    return [Difference(0, expected.start_ns or 0, topic, 'type', type_name, types[topic])
+    return [FirstDifference(0, expected.start_ns or 0, topic, 'type', type_name, types[topic])
             for topic, type_name in sorted(expected.types.items())
             if types.get(topic, type_name) != type_name]
 

@@ -16,7 +16,7 @@ Value = str | int | float | bytes | bool
 
 
 @dataclass(frozen=True)
-class Difference:
+class FirstDifference:
     """First place where two runs, or two topics, differ."""
 
     tick: int
@@ -57,7 +57,7 @@ class TopicDifference(NamedTuple):
     topic: str
     n_messages: int
     """Messages that differ, are absent, or are too many."""
-    first: Difference
+    first: FirstDifference
     largest: Deviation | None
     """The largest deviation in proportion to the values of its field; None: no float differs."""
 
@@ -69,7 +69,7 @@ class Report:
     ticks: int
     messages: int
     end_ns: int | None  # of the last tick compared
-    difference: Difference | None
+    difference: FirstDifference | None
     topics: Sequence[TopicDifference] = ()
     """Every topic that differs, up to the end of the comparison."""
 

@@ -22,7 +22,7 @@ from msg_adapters.definitions import definition
 _NAMED = 3  # obstacles listed in the error message
 
 
-class Difference(NamedTuple):
+class InstallationDifference(NamedTuple):
     """One difference."""
 
     text: str
@@ -30,7 +30,7 @@ class Difference(NamedTuple):
     """The run cannot be simulated by this installation."""
 
 
-def differences(bag: Bag) -> list[Difference]:
+def differences(bag: Bag) -> list[InstallationDifference]:
     """
     Return the differences between the installation that recorded a bag and this one.
 
@@ -43,18 +43,18 @@ def differences(bag: Bag) -> list[Difference]:
 
     """
     attachments, record = bag.provenance_records
-    found = [Difference(line, False) for line in _changed_versions(record)]
+    found = [InstallationDifference(line, False) for line in _changed_versions(record)]
     if record.get('format') != FORMAT:
-        found.append(Difference(
+        found.append(InstallationDifference(
             f'the format of the provenance is {record.get("format")!r}, here {FORMAT!r}', True))
     if CONFIGURATION in attachments:
         text = attachments[CONFIGURATION].decode('utf-8', 'replace')
-        found += [Difference(*difference) for difference in key_differences(
+        found += [InstallationDifference(*difference) for difference in key_differences(
             parse(text, CONFIGURATION), Place(CONFIGURATION))]
     return found
 
 
-def refuse_obstacles(bag: Bag, found: list[Difference]) -> None:
+def refuse_obstacles(bag: Bag, found: list[InstallationDifference]) -> None:
     """
     Refuse a bag that cannot be simulated here.
 

@@ -11,7 +11,7 @@ from typing import Any
 
 from isa_ros.bag.reader import Bag, BagMessage
 from isa_ros.errors import BagError
-from isa_ros.replay.difference import Deviation, Difference, TopicDifference
+from isa_ros.replay.difference import Deviation, FirstDifference, TopicDifference
 from isa_ros.replay.tolerances import Tolerances
 from msg_adapters.cdr import CdrError, encode, Message
 from msg_adapters.cdr_reader import decode, flatten, message_class
@@ -47,7 +47,7 @@ class TopicComparison:
     def __init__(
             self, bag: Bag, topic: str, tolerances: Tolerances, is_exact: bool = False) -> None:
         self.topic = topic
-        self.first: Difference | None = None
+        self.first: FirstDifference | None = None
         self._bag = bag
         self._tolerances = tolerances
         self._is_exact = is_exact
@@ -61,7 +61,7 @@ class TopicComparison:
         self._expected.append(expected)
         self._actual.append(actual)
 
-    def note(self, difference: Difference) -> None:
+    def note(self, difference: FirstDifference) -> None:
         """Count a message that differs, or is absent on one side."""
         self._n_messages += 1
         if self.first is None or difference.t_ns < self.first.t_ns:
@@ -162,7 +162,7 @@ class TopicComparison:
                 return
 
     def _note(self, message: BagMessage, field: str, expected: Any, actual: Any) -> None:
-        self.note(Difference(
+        self.note(FirstDifference(
             message.sequence, message.t_ns, self.topic, field, expected, actual))
 
     def _keep(self, deviation: Deviation, magnitude: float) -> None:

@@ -16,7 +16,7 @@ STARTING, JOINING = 'starting', 'joining'
 """Phases of `Laps` before the ticks: until participants are called, and until all have joined."""
 
 
-class Progress(NamedTuple):
+class RunProgress(NamedTuple):
     """Progress of a run."""
 
     t_ns: int
@@ -108,7 +108,7 @@ class ProgressMeter:
     """Report the progress of a run of ``duration_ns`` (None: open end) periodically."""
 
     def __init__(
-            self, duration_ns: int | None, report: Callable[[Progress], None] | None,
+            self, duration_ns: int | None, report: Callable[[RunProgress], None] | None,
             now: Callable[[], float] = time.monotonic) -> None:
         self._duration_ns = duration_ns
         self._report = report
@@ -134,10 +134,10 @@ class ProgressMeter:
         if self._report is not None:
             self._report(self._progress(t_ns, is_last=True))
 
-    def _progress(self, t_ns: int, is_last: bool) -> Progress:
+    def _progress(self, t_ns: int, is_last: bool) -> RunProgress:
         elapsed = self._now() - self._start
         factor = (t_ns - self._start_ns) / (NS_PER_SECOND * elapsed) if elapsed > 0.0 else 0.0
         left = None
         if self._duration_ns is not None and factor > 0.0:
             left = (self._duration_ns - t_ns) / (NS_PER_SECOND * factor)
-        return Progress(t_ns, factor, left, is_last)
+        return RunProgress(t_ns, factor, left, is_last)

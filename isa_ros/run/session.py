@@ -21,7 +21,7 @@ from isa_ros.errors import BagError, ConfigError
 from isa_ros.run.coordinator import Coordinator, Requests
 from isa_ros.run.options import Request
 from isa_ros.run.output import Outlets, packer_of, RunOutput
-from isa_ros.run.pacing import JOINING, Pace, Progress, ProgressMeter, STARTING
+from isa_ros.run.pacing import JOINING, Pace, ProgressMeter, RunProgress, STARTING
 from isa_ros.run.provenance import provenance_of
 from isa_ros.run.thinning import Thinning
 from isa_ros.scenario.scenario import planned, Scenario
@@ -32,7 +32,7 @@ from isa_ros.tick.tick_loop import ignore, TickLoop
 
 RUNS = Path('runs')
 
-Report = Callable[[Progress], None]
+Report = Callable[[RunProgress], None]
 
 
 @dataclass(frozen=True)

@@ -14,9 +14,9 @@ from isa_ros.core.timebase import NS_PER_SECOND
 from isa_ros.errors import ConfigError
 from isa_ros.scenario.device_steps import (
     DEVICE_KEYS, DeviceStep, mode_before, read_device_step)
-from isa_ros.scenario.track import GAIT, MOTIONS, Setpoint, Track, TrackEvent
+from isa_ros.scenario.track import GAIT, ImpedanceSetpoint, MOTIONS, Track, TrackEvent
 from isa_ros.scenario.trot_motion import read_gait
-from isa_ros.scenario.waveforms import Motion, POSITION, WAVEFORMS
+from isa_ros.scenario.waveforms import POSITION, SetpointMotion, WAVEFORMS
 
 MAX_DURATION = 1e6  # s, a bound against typing errors
 HOLD = 'hold'       # position: the start of the actuator
@@ -80,7 +80,7 @@ def _event(tree: Tree, place: Place, run: RunConfig, actuator: ActuatorConfig,
 
 
 def _motion(tree: Tree, place: Place, run: RunConfig, actuator: ActuatorConfig,
-            setpoint: Setpoint) -> Motion | None:
+            setpoint: ImpedanceSetpoint) -> SetpointMotion | None:
     given = [name for name in MOTIONS if name in tree]
     if not given:
         return None
@@ -97,14 +97,14 @@ def _motion(tree: Tree, place: Place, run: RunConfig, actuator: ActuatorConfig,
     return wave
 
 
-def _setpoint(tree: Tree, place: Place, actuator: ActuatorConfig) -> Setpoint:
+def _setpoint(tree: Tree, place: Place, actuator: ActuatorConfig) -> ImpedanceSetpoint:
     given: Tree = {'velocity': 0.0, 'effort': 0.0}
-    given.update({f.name: tree[f.name] for f in fields(Setpoint) if f.name in tree})
+    given.update({f.name: tree[f.name] for f in fields(ImpedanceSetpoint) if f.name in tree})
     if given['position'] == HOLD:
         given['position'] = actuator.initial_position
     check(f'{place}.position', given['position'], {
         'doc': 'equilibrium', 'unit': 'rad' if actuator.sheet.is_rotary else 'm', 'bounds': {}})
-    return build(Setpoint, written(given, place), place)
+    return build(ImpedanceSetpoint, written(given, place), place)
 
 
 def _gain(tree: Tree, name: str, place: Place) -> float | None:

@@ -15,7 +15,7 @@ from isa_ros.core.parameter import parameter, Parameters
 from isa_ros.core.signals import GAINS_OF_COMMAND, HAS_SETPOINT
 from isa_ros.core.timebase import NS_PER_SECOND
 from isa_ros.scenario.device_steps import DeviceStep
-from isa_ros.scenario.waveforms import Excursion, MAX_EFFORT, Motion, WAVEFORMS
+from isa_ros.scenario.waveforms import Excursion, MAX_EFFORT, SetpointMotion, WAVEFORMS
 import numpy as np
 
 GAIT = 'gait'
@@ -24,7 +24,7 @@ _REST = Excursion(0.0, 0.0, 0.0)
 
 
 @dataclass(frozen=True, kw_only=True)
-class Setpoint(Parameters):
+class ImpedanceSetpoint(Parameters):
     """One impedance setpoint, SI."""
 
     position: float = parameter('equilibrium', 'm | rad', ge=-100.0, le=100.0)
@@ -37,10 +37,10 @@ class TrackEvent:
     """The command to one actuator at one tick; None leaves a value unchanged."""
 
     tick: int
-    setpoint: Setpoint | None
+    setpoint: ImpedanceSetpoint | None
     stiffness: float | None
     damping: float | None
-    motion: Motion | None
+    motion: SetpointMotion | None
     device: DeviceStep
     limits: SetpointRange | None = field(default=None, compare=False, repr=False)
     """Limits each setpoint to this range; None: no setpoint leaves it, or may."""
@@ -103,6 +103,6 @@ def event_tree(event: TrackEvent, step_ns: int) -> Tree:
     return tree
 
 
-def motion_key(motion: Motion) -> str:
+def motion_key(motion: SetpointMotion) -> str:
     """Return the key that a motion has in its event."""
     return next((name for name, cls in WAVEFORMS.items() if isinstance(motion, cls)), GAIT)

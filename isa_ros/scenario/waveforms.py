@@ -33,7 +33,7 @@ class Excursion(NamedTuple):
     effort: float
 
 
-class Motion(Protocol):
+class SetpointMotion(Protocol):
     """A motion of the setpoint after an event."""
 
     def at(self, t_ns: int) -> Excursion:

@@ -18,7 +18,7 @@ from isa_ros.surroundings.supply import Supply, SUPPLY_SAMPLE, SupplySheet
 import numpy as np
 
 
-class Circuit(NamedTuple):
+class SupplyCircuit(NamedTuple):
     """One supply and the actuators it feeds."""
 
     name: str
@@ -40,7 +40,7 @@ class Surroundings:
     """
 
     def __init__(
-            self, circuits: Sequence[Circuit], bodies: Mapping[str, Body], starts: Records,
+            self, circuits: Sequence[SupplyCircuit], bodies: Mapping[str, Body], starts: Records,
             sensor_stiffness: Sequence[float], step_ns: int) -> None:
         self.circuits = tuple(circuits)
         self.bodies = dict(bodies)

@@ -5,7 +5,7 @@ import random
 from types import SimpleNamespace
 
 from isa_ros.config.runs.default_actuator import default_actuator, DEFAULT_TIMING
-from isa_ros.nodes.actuator.node import ActuatorNode, Setup
+from isa_ros.nodes.actuator.node import ActuatorNode, NodeSetup
 from isa_ros.nodes.coordinator.services import RunServices
 from isa_ros.nodes.middleware import parameter_services
 from isa_ros.run.pacing import Pace
@@ -82,7 +82,7 @@ def assert_finite(node: ActuatorNode) -> None:
 @pytest.fixture
 def nodes(observer):  # noqa: F811
     """Return the nodes of an actuator and of a coordinator."""
-    setup = Setup(default_actuator('isa_v5', 'knee'), DEFAULT_TIMING)
+    setup = NodeSetup(default_actuator('isa_v5', 'knee'), DEFAULT_TIMING)
     knee = ActuatorNode(
         lambda _: setup, 'knee', has_mailbox=False, context=observer.context,
         enable_rosout=False)

@@ -3,7 +3,7 @@
 from isa_ros.bag.reader import Bag
 from isa_ros.bag.writer import BagWriter
 from isa_ros.replay.compare import compare_bags, Comparer
-from isa_ros.replay.difference import Difference
+from isa_ros.replay.difference import FirstDifference
 from isa_ros.replay.tolerances import Tolerance, Tolerances
 from mcap.writer import CompressionType, Writer
 from msg_adapters.cdr import encode
@@ -25,7 +25,7 @@ def test_equal_runs_are_reported_with_what_was_compared(bag, tmp_path):
 
 def test_first_difference_names_tick_topic_field_and_both_values(bag):
     found = difference(bag, produced(force=3.0, spool=4.0))
-    assert found == Difference(
+    assert found == FirstDifference(
         7, 7 * STEP_NS, '/hip/joint_states', 'effort[0]', np.sin(0.7 + 2), 3.0)
     assert str(found) == (
         'tick 7 (t = 0.007000 s), /hip/joint_states, effort[0]: '
@@ -67,7 +67,7 @@ def test_missing_message_is_named(bag):
     ticks = produced()
     t_ns, sequence, messages = ticks[7]
     ticks[7] = (t_ns, sequence, [m for m in messages if NAMES[m[0]] != '/hip/pressure_a'])
-    assert difference(bag, ticks) == Difference(
+    assert difference(bag, ticks) == FirstDifference(
         7, 7 * STEP_NS, '/hip/pressure_a', 'message', 'present', 'absent')
 
 
@@ -77,23 +77,23 @@ def test_message_too_many_is_named(bag):
     t_ns, sequence, messages = ticks[7]
     extra = [m for m in tick_messages(0) if NAMES[m[0]] == '/hip/applied_setpoint']
     ticks[7] = (t_ns, sequence, [*messages, *extra])
-    assert difference(bag, ticks) == Difference(
+    assert difference(bag, ticks) == FirstDifference(
         7, 7 * STEP_NS, '/hip/applied_setpoint', 'message', 'absent', 'present')
 
 
 def test_run_that_ends_early_is_named(bag):
-    assert difference(bag, produced(N - 2)) == Difference(
+    assert difference(bag, produced(N - 2)) == FirstDifference(
         N - 2, (N - 2) * STEP_NS, 'bag', 'tick', 'present', 'absent')
 
 
 def test_run_that_goes_on_is_named(bag):
-    assert difference(bag, produced(N + 2)) == Difference(
+    assert difference(bag, produced(N + 2)) == FirstDifference(
         N, N * STEP_NS, 'bag', 'tick', 'absent', 'present')
 
 
 def test_other_time_is_named(bag):
     ticks = [(t_ns + 1 if k == 7 else t_ns, k, messages) for t_ns, k, messages in produced()]
-    assert difference(bag, ticks) == Difference(
+    assert difference(bag, ticks) == FirstDifference(
         7, 7 * STEP_NS, 'bag', 'log_time', 7 * STEP_NS, 7 * STEP_NS + 1)
 
 
@@ -171,7 +171,7 @@ def test_absent_messages_are_counted_by_topic(bag, tmp_path):
     path = tmp_path / 'without'
     rewrite_without(bag, path, '/hip/valve', from_tick=5)
     valve, = compare_bags(bag, Bag(path)).topics
-    assert (valve.n_messages, valve.first, valve.largest) == (N - 5, Difference(
+    assert (valve.n_messages, valve.first, valve.largest) == (N - 5, FirstDifference(
         5, 5 * STEP_NS, '/hip/valve', 'message', 'present', 'absent'), None)
 
 

@@ -4,7 +4,7 @@ from isa_ros.bag.reader import Bag
 from isa_ros.bag.writer import BagWriter
 from isa_ros.errors import BagError
 from isa_ros.replay.compare import compare_bags, Comparer
-from isa_ros.replay.difference import Difference
+from isa_ros.replay.difference import FirstDifference
 from isa_ros.replay.tolerances import Tolerance, Tolerances
 import numpy as np
 import pytest
@@ -45,7 +45,7 @@ def test_padding_is_a_difference_where_bytes_are_compared(tmp_path, tolerances):
     bag = with_valve(tmp_path / 'rig', padded)
     found = exactly(bag, produced(), tolerances)
     at = dict(tick_messages(7))[VALVE].index(b'hip/spool\0') + 10
-    assert found == Difference(7, 7 * STEP_NS, '/hip/valve', f'byte {at}', 0xff, 0)
+    assert found == FirstDifference(7, 7 * STEP_NS, '/hip/valve', f'byte {at}', 0xff, 0)
     assert difference(bag, produced(), tolerances) is None
 
 
@@ -54,7 +54,7 @@ def test_bytes_after_the_last_field_are_a_difference(tmp_path, tolerances):
     bag = with_valve(tmp_path / 'rig', lambda data: data + b'\0')
     found = exactly(bag, produced(), tolerances)
     size = len(dict(tick_messages(7))[VALVE])
-    assert found == Difference(7, 7 * STEP_NS, '/hip/valve', 'bytes', size + 1, size)
+    assert found == FirstDifference(7, 7 * STEP_NS, '/hip/valve', 'bytes', size + 1, size)
 
 
 def test_another_not_a_number_is_a_difference_of_bytes(tmp_path):
@@ -73,7 +73,7 @@ def test_a_tolerance_still_admits_values(tmp_path, bag):
 def test_another_sequence_number_is_a_difference(bag):
     """Bags of other recorders count by themselves, so that comparing two bags ignores it."""
     ticks = [(t_ns, k + (k == 7), messages) for t_ns, k, messages in produced()]
-    assert exactly(bag, ticks) == Difference(7, 7 * STEP_NS, '/clock', 'sequence', 7, 8)
+    assert exactly(bag, ticks) == FirstDifference(7, 7 * STEP_NS, '/clock', 'sequence', 7, 8)
     assert difference(bag, ticks) is None
     assert exactly(bag, produced()) is None
 

@@ -6,7 +6,7 @@ import time
 from diagnostic_msgs.msg import DiagnosticStatus
 from isa_ros.bag.reader import Bag
 from isa_ros.config.runs.default_actuator import default_actuator, DEFAULT_TIMING
-from isa_ros.nodes.actuator.node import ActuatorNode, Setup
+from isa_ros.nodes.actuator.node import ActuatorNode, NodeSetup
 from isa_ros.nodes.middleware.qos import KEPT
 from isa_ros.replay.replay import replay
 from msg_adapters.cdr_reader import decode
@@ -103,7 +103,7 @@ def test_it_is_operated_during_a_run_that_replays(observer, tmp_path, options):
 def test_ten_thousand_bad_setpoints_leave_its_state_and_a_line_a_second(observer, capfd):
     """NaN, wrong names and lengths, beyond the range, of another mode: warnings are throttled."""
     node = ActuatorNode(
-        lambda _: Setup(default_actuator('isa_v5', 'knee'), DEFAULT_TIMING), 'knee',
+        lambda _: NodeSetup(default_actuator('isa_v5', 'knee'), DEFAULT_TIMING), 'knee',
         has_mailbox=False, context=observer.context)
     bad = [
         JointState(name=['knee'], position=[math.nan]),

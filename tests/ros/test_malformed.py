@@ -1,7 +1,7 @@
 """Requests and messages that no tool sends: each is answered or discarded, and the run goes on."""
 
 from isa_ros.config.runs.default_actuator import default_actuator, DEFAULT_TIMING
-from isa_ros.nodes.actuator.node import ActuatorNode, Setup
+from isa_ros.nodes.actuator.node import ActuatorNode, NodeSetup
 from isa_ros.nodes.middleware import servers
 import pytest
 from rcl_interfaces.msg import Parameter, ParameterValue
@@ -20,7 +20,7 @@ def knee(observer, monkeypatch):
     """Return an actuator whose services are served at every call."""
     monkeypatch.setattr(servers, 'SELDOM_PERIOD_S', 0.0)
     monkeypatch.setattr(servers, 'SERVICE_PERIOD_S', 0.0)
-    setup = Setup(default_actuator('isa_v5', 'knee'), DEFAULT_TIMING)
+    setup = NodeSetup(default_actuator('isa_v5', 'knee'), DEFAULT_TIMING)
     node = ActuatorNode(
         lambda _: setup, 'knee', has_mailbox=False, context=observer.context,
         enable_rosout=False)

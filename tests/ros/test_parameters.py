@@ -8,7 +8,7 @@ from isa_ros.bag.reader import Bag
 from isa_ros.bag.writer import BagWriter
 from isa_ros.config.runs.default_actuator import default_actuator, DEFAULT_TIMING
 from isa_ros.core.signals import START
-from isa_ros.nodes.actuator.node import ActuatorNode, Setup
+from isa_ros.nodes.actuator.node import ActuatorNode, NodeSetup
 from isa_ros.replay.replay import replay, Rerun
 from isa_ros.run.packing import Messages, Packer
 from msg_adapters.applied_parameters import tuned_values
@@ -221,7 +221,7 @@ def published(node: ActuatorNode) -> Messages:
 
 
 def test_a_node_packs_nothing_where_nobody_subscribes(observer, monkeypatch):
-    setup = Setup(default_actuator('isa_v5', 'knee'), DEFAULT_TIMING)
+    setup = NodeSetup(default_actuator('isa_v5', 'knee'), DEFAULT_TIMING)
     node = ActuatorNode(
         lambda _: setup, 'knee', has_mailbox=False, context=observer.context,
         enable_rosout=False)
@@ -241,7 +241,7 @@ def test_a_node_packs_nothing_where_nobody_subscribes(observer, monkeypatch):
 
 def test_what_was_set_stays_set_when_another_run_begins(observer):
     """It is recorded at the first tick, since the configuration does not contain it."""
-    setup = Setup(default_actuator('isa_v5', 'knee'), DEFAULT_TIMING)
+    setup = NodeSetup(default_actuator('isa_v5', 'knee'), DEFAULT_TIMING)
     start = np.zeros(1, START)[0]
     start['position'], start['supply_pressure'] = 0.05, 20.7e6
     node = ActuatorNode(

@@ -10,7 +10,7 @@ from isa_ros.bag.reader import Bag
 from isa_ros.config.models.catalogue import model_names
 from isa_ros.config.runs.default_actuator import default_actuator, DEFAULT_TIMING
 from isa_ros.nodes.actuator.alone import ready_text
-from isa_ros.nodes.actuator.node import ActuatorNode, Setup
+from isa_ros.nodes.actuator.node import ActuatorNode, NodeSetup
 from msg_adapters.cdr_reader import decode
 from msg_adapters.setpoint import msg_to_command
 import pytest
@@ -121,7 +121,7 @@ def knee(observer):
     def made(beyond: str | None = None) -> ActuatorNode:
         config = replace(default_actuator('isa_v5', 'knee'), beyond_range=beyond)
         nodes.append(ActuatorNode(
-            lambda _: Setup(config, DEFAULT_TIMING), 'knee', has_mailbox=False,
+            lambda _: NodeSetup(config, DEFAULT_TIMING), 'knee', has_mailbox=False,
             context=context))
         return nodes[-1]
     yield made
@@ -134,7 +134,7 @@ def knee(observer):
 def test_the_command_that_a_lone_actuator_prints_moves_it(observer, model):
     """It is one line, and its setpoint is accepted as it stands."""
     node = ActuatorNode(
-        lambda _: Setup(default_actuator(model, 'knee'), DEFAULT_TIMING), 'knee',
+        lambda _: NodeSetup(default_actuator(model, 'knee'), DEFAULT_TIMING), 'knee',
         has_mailbox=False, context=observer.context, namespace='lab')
     try:
         text = ready_text(node, 1.0)

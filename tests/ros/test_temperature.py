@@ -2,7 +2,7 @@
 
 from isa_ros.config.runs.default_actuator import default_actuator, DEFAULT_TIMING
 from isa_ros.config.runs.run_config import ActuatorConfig
-from isa_ros.nodes.actuator.node import ActuatorNode, Setup
+from isa_ros.nodes.actuator.node import ActuatorNode, NodeSetup
 import pytest
 from rclpy.node import Node
 from sensor_msgs.msg import Temperature
@@ -24,7 +24,7 @@ def test_a_heated_actuator_publishes_its_temperature(
         variants: list[str], observer: Node) -> None:
     """At t = 0 and, of 1.5 s, at 1 s; without the model there is no such topic."""
     heard: list[Temperature] = []
-    setup = Setup(knee(*variants), DEFAULT_TIMING)
+    setup = NodeSetup(knee(*variants), DEFAULT_TIMING)
     node = ActuatorNode(
         lambda _: setup, 'knee', has_mailbox=False, context=observer.context,
         enable_rosout=False)

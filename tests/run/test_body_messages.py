@@ -3,7 +3,7 @@
 from geometry_msgs.msg import WrenchStamped
 from isa_ros.run.body_messages import by_field, prepared, type_of
 from isa_ros.surroundings.bodies.leg.inertial import Imu as ImuSheet
-from isa_ros.surroundings.bodies.leg.leg import Unit
+from isa_ros.surroundings.bodies.leg.leg import InertialUnit
 from isa_ros.surroundings.bodies.leg.messages import leg_messages
 from isa_ros.surroundings.messages import BodyMessage
 from msg_adapters.cdr_reader import decode
@@ -16,12 +16,12 @@ T_NS = 7_000_000_008
 LEG = {f'{field}[{k}]': 3 * place + k for place, field in enumerate(
     ('position', 'velocity', 'torque', 'foot_force')) for k in range(3)} | {
         'height': 12, 'height_velocity': 13}
-TRUNK = Unit('trunk', ImuSheet(
+TRUNK = InertialUnit('trunk', ImuSheet(
     link='slider_link', rate_hz=200.0, x_mm=0.0, y_mm=0.0, z_mm=0.0, accelerometer_sigma=0.02,
     accelerometer_bias=0.0, gyro_sigma=0.0, gyro_bias=0.0), 5_000_000, key=0)
 
 
-def messages_of_leg(*units: Unit) -> tuple[BodyMessage, ...]:
+def messages_of_leg(*units: InertialUnit) -> tuple[BodyMessage, ...]:
     """Return the messages of a leg with some inertial units."""
     return leg_messages('', units)
 

@@ -1,7 +1,7 @@
 """Host time: pace and progress, on a clock of the test's own."""
 
 from isa_ros.errors import ConfigError
-from isa_ros.run.pacing import Laps, Pace, Progress, ProgressMeter, SLICE_S
+from isa_ros.run.pacing import Laps, Pace, ProgressMeter, RunProgress, SLICE_S
 import pytest
 
 
@@ -105,7 +105,7 @@ def test_pace_refuses(factor):
 
 def test_progress_names_factor_and_time_left():
     host = Host()
-    reports: list[Progress] = []
+    reports: list[RunProgress] = []
     meter = ProgressMeter(4_000_000_000, reports.append, host.time)
     meter.start()
     host.now += 0.1
@@ -116,17 +116,17 @@ def test_progress_names_factor_and_time_left():
     host.now += 1.5
     meter.end(4_000_000_000)
     assert reports == [
-        Progress(1_000_000_000, 2.0, 1.5, False), Progress(4_000_000_000, 2.0, 0.0, True)]
+        RunProgress(1_000_000_000, 2.0, 1.5, False), RunProgress(4_000_000_000, 2.0, 0.0, True)]
 
 
 def test_open_end_has_no_time_left():
     host = Host()
-    reports: list[Progress] = []
+    reports: list[RunProgress] = []
     meter = ProgressMeter(None, reports.append, host.time)
     meter.start()
     host.now += 1.0
     meter.update(1_000_000_000)
-    assert reports == [Progress(1_000_000_000, 1.0, None, False)]
+    assert reports == [RunProgress(1_000_000_000, 1.0, None, False)]
 
 
 def test_laps_charge_the_time_since_the_last_one():

@@ -2,7 +2,7 @@
 
 import io
 
-from isa_ros.run.pacing import Progress
+from isa_ros.run.pacing import RunProgress
 from isa_ros.run.terminal import terminal_report
 from tests.text.terminal import Terminal
 
@@ -15,8 +15,8 @@ def test_one_line_is_overwritten_until_the_last():
     stream = Terminal()
     report = terminal_report(stream)
     assert report is not None
-    report(Progress(500_000_000, 1.25, 2.0, False))
-    report(Progress(3_000_000_000, 1.5, 0.0, True))
+    report(RunProgress(500_000_000, 1.25, 2.0, False))
+    report(RunProgress(3_000_000_000, 1.5, 0.0, True))
     assert stream.getvalue() == (
         '\rt = 0.500 s, 1.25 times real time, 2 s left\x1b[K'
         '\rt = 3.000 s, 1.50 times real time\x1b[K\n')

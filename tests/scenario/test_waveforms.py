@@ -4,7 +4,7 @@ import math
 
 from hypothesis import given, strategies as st
 from isa_ros.errors import ConfigError, ParameterError
-from isa_ros.scenario.waveforms import Chirp, Motion, Pulse, Sine
+from isa_ros.scenario.waveforms import Chirp, Pulse, SetpointMotion, Sine
 import pytest
 from scipy.integrate import quad
 
@@ -23,7 +23,7 @@ SINE = Sine(moves='position', amplitude=0.35, frequency_hz=1.7)
 
 @given(motion=st.sampled_from([SINE, chirp('linear'), chirp('exponential')]),
        t_ns=st.integers(STEP, 5_000_000_000))
-def test_the_velocity_is_the_derivative_of_the_position(motion: Motion, t_ns: int) -> None:
+def test_the_velocity_is_the_derivative_of_the_position(motion: SetpointMotion, t_ns: int) -> None:
     """
     Central difference over 1 us, across the end of the sweep too.
 

@@ -13,7 +13,7 @@ from isa_ros.errors import ConfigError, ParameterError, RunError, SimulationDive
 from isa_ros.plant.plant import plant_record
 from isa_ros.surroundings.bodies.leg.motion import ContinuousState
 from isa_ros.surroundings.supply import ConstantSupply
-from isa_ros.surroundings.surroundings import Circuit, Surroundings
+from isa_ros.surroundings.surroundings import SupplyCircuit, Surroundings
 import numpy as np
 import pytest
 from tests.runs import ACCUMULATOR, CONSTANT, hip_and_knee, RETURN_LINE, run_of
@@ -138,7 +138,7 @@ def test_any_body_is_moved_by_its_own_rows():
     """Whatever it is: ports, forces and snapshot are its own; pressures are the supply's."""
     starts = np.zeros(3, START)
     starts['position'] = 0.1
-    circuit = Circuit('supply', CONSTANT, [0, 1, 2], 1e-12)
+    circuit = SupplyCircuit('supply', CONSTANT, [0, 1, 2], 1e-12)
 
     def made() -> Surroundings:
         return Surroundings([circuit], {'cart': Cart(1)}, starts, [1e6, 2e6, 4e6], 1_000_000)

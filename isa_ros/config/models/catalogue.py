@@ -6,7 +6,7 @@ from functools import cache
 from pathlib import Path
 
 from isa_ros.config.text.sections import (
-    Entry, merge, Place, refuse_unknown, Section, section_at, sourced)
+    merge, Place, refuse_unknown, Section, section_at, sourced, SourcedValue)
 from isa_ros.config.text.yaml_text import read, Tree
 from isa_ros.core.suggest import alternatives
 from isa_ros.errors import ConfigError
@@ -108,7 +108,7 @@ def model_of(tree: Tree, file: str) -> Model:
         {key: tree[key] for key in ('spool_feedback', 'plant', 'reu') if key in tree}, place)
     plant = sheet.get('plant')
     if isinstance(plant, dict):
-        plant['kind'] = Entry(str(tree.get('kind')), str(place / 'kind'), '')
+        plant['kind'] = SourcedValue(str(tree.get('kind')), str(place / 'kind'), '')
     loads = section_at(tree.get('loads'), place / 'loads')
     default = loads.pop('default', None)
     if not isinstance(default, str) or default not in loads:
@@ -129,7 +129,7 @@ def _sections(tree: Tree, place: Place) -> dict[str, Section]:
 def _load(name: str, tree: Tree, place: Place) -> Section:
     """Return a load with its kind; without a key ``kind`` that is its name."""
     rest = {key: value for key, value in tree.items() if key != 'material'}
-    section = {'kind': Entry(name, str(place), '')} | sourced(rest, place)
+    section = {'kind': SourcedValue(name, str(place), '')} | sourced(rest, place)
     if 'material' in tree:
         material, _ = material_section(tree['material'], f'{place}.material')
         section = {key: material[key] for key in _PAD_KEYS} | section

@@ -12,7 +12,7 @@ from typing import Any
 
 from isa_ros.actuator.link import KINDS, NO_LINK, NONE
 from isa_ros.config.text.parameter_sets import as_tree
-from isa_ros.config.text.sections import Entry, merge, Place, Section
+from isa_ros.config.text.sections import merge, Place, Section, SourcedValue
 from isa_ros.errors import ConfigError
 
 LINK = 'link'
@@ -35,12 +35,13 @@ def link_of(run: Section, own: Section, step_ns: int, place: Place) -> Section:
     if given and 'kind' not in given and given.keys() <= default.keys():    # others are unknown
         raise ConfigError((place / LINK).has(f'lacks kind, one of {", ".join(KINDS)}'))
     section = merge(
-        {key: Entry(getattr(NO_LINK, key), str(place / LINK / key), 'default')
+        {key: SourcedValue(getattr(NO_LINK, key), str(place / LINK / key), 'default')
          for key in default}, given)
     if _value(section['kind']) != NONE and _value(section['cycle_ms']) in (0, 0.0):
-        section['cycle_ms'] = Entry(step_ns / 1e6, str(place / LINK / 'cycle_ms'), 'default')
+        section['cycle_ms'] = SourcedValue(
+            step_ns / 1e6, str(place / LINK / 'cycle_ms'), 'default')
     return section
 
 
 def _value(entry: Any) -> Any:
-    return entry.value if isinstance(entry, Entry) else entry
+    return entry.value if isinstance(entry, SourcedValue) else entry

@@ -7,7 +7,7 @@ from isa_ros.actuator.sheet import ActuatorSheet
 from isa_ros.config.models.catalogue import DEFAULT_PRESET, Model
 from isa_ros.config.models.scaling import Scaling
 from isa_ros.config.text.parameter_sets import build, build_one_of
-from isa_ros.config.text.sections import Entry, merge, Place, Section, written
+from isa_ros.config.text.sections import merge, Place, Section, SourcedValue, written
 from isa_ros.config.text.yaml_text import Tree
 from isa_ros.errors import ConfigError
 from isa_ros.loads.drop_rig import Wheel
@@ -39,13 +39,13 @@ def load_section(
     """
     rest = dict(own)
     named = rest.pop('kind', None)
-    kind = named.value if isinstance(named, Entry) else named
+    kind = named.value if isinstance(named, SourcedValue) else named
     if not isinstance(kind, str) or kind not in model.loads:
         raise ConfigError(f'{place}.kind = {kind!r}, must be one of {", ".join(model.loads)}')
     base = build(ActuatorSheet, model.with_preset(DEFAULT_PRESET, 'preset'), model.place)
     section = merge(Scaling(base, sheet, supply).section(model.loads[kind], place), rest)
     of_model = section['kind']
-    assert isinstance(of_model, Entry)
+    assert isinstance(of_model, SourcedValue)
     return section | {'kind': replace(of_model, where=str(place / 'kind'))}
 
 

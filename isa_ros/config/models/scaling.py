@@ -13,7 +13,7 @@ from isa_ros.actuator.actuator import PAPER_SUPPLY
 from isa_ros.actuator.scales import SCALES
 from isa_ros.actuator.sheet import ActuatorSheet
 from isa_ros.config.text.parameter_sets import build
-from isa_ros.config.text.sections import Entry, Place, Section
+from isa_ros.config.text.sections import Place, Section, SourcedValue
 from isa_ros.errors import ConfigError
 
 
@@ -48,13 +48,13 @@ class Scaling:
         """Return a section with its values scaled; ``place`` is where a file would have them."""
         scaled: Section = {}
         for key, entry in section.items():
-            if isinstance(entry, Entry):
+            if isinstance(entry, SourcedValue):
                 scaled[key] = self._entry(entry, place / key)
             else:
                 scaled[key] = self.section(entry, place / key)
         return scaled
 
-    def _entry(self, entry: Entry, place: Place) -> Entry:
+    def _entry(self, entry: SourcedValue, place: Place) -> SourcedValue:
         if not entry.scales_with:
             return entry
         try:
@@ -94,7 +94,7 @@ def scaled_sheet(
         return own, section
     for part in ('plant', 'reu'):
         below = section[part]
-        assert not isinstance(below, Entry)
+        assert not isinstance(below, SourcedValue)
         scaling = Scaling(base, own, supply)
         section = section | {part: scaling.section(below, place / part)}
         own = build(ActuatorSheet, section, model_place)

@@ -14,7 +14,7 @@ from isa_ros.config.models.own_load import load_section, refuse_beyond_stops
 from isa_ros.config.models.scaling import scaled_sheet
 from isa_ros.config.runs.body_config import BodyConfig
 from isa_ros.config.text.keys import (
-    ANY_NAME, choice_of, FLAG, InText, Key, Layer, NAMES, number, of_type, Table, TEXT)
+    ANY_NAME, choice_of, FLAG, InText, Key, KeyTable, Layer, NAMES, number, of_type, TEXT)
 from isa_ros.config.text.parameter_sets import build, build_one_of, members
 from isa_ros.config.text.sections import merge, Place, Section
 from isa_ros.core.parameter import check
@@ -48,7 +48,7 @@ class ActuatorConfig:
     """Mode at t = 0; None: the one with every block that is on."""
 
 
-ACTUATOR = Table((
+ACTUATOR = KeyTable((
     Key('model', ANY_NAME, 'the packaged model', None, 'required', InText.ALWAYS),
     Key('preset', TEXT, 'the gains of the model', DEFAULT_PRESET),
     Key('variants', NAMES, 'variants of the model, in their order', [], in_text=InText.NEVER),

@@ -9,7 +9,7 @@ from dataclasses import dataclass
 from typing import ClassVar, NamedTuple
 
 from isa_ros.actuator.sheet import ActuatorSheet
-from isa_ros.config.text.keys import Table
+from isa_ros.config.text.keys import KeyTable
 from isa_ros.config.text.sections import Place, Section
 from isa_ros.config.text.yaml_text import Tree
 from isa_ros.core.fields import Field
@@ -48,7 +48,7 @@ class BodyConfig:
 
     kind: ClassVar[str]
     """Of a section ``{kind: ...}``."""
-    KEYS: ClassVar[Table]
+    KEYS: ClassVar[KeyTable]
     """Of its section, the kind left out."""
     is_given: ClassVar[bool] = False
     """Whether the caller of a simulation makes it."""

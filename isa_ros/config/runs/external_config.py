@@ -4,7 +4,7 @@ from dataclasses import dataclass
 from typing import Any, ClassVar
 
 from isa_ros.config.runs.body_config import BodyConfig, Made
-from isa_ros.config.text.keys import Key, NAMES, Table
+from isa_ros.config.text.keys import Key, KeyTable, NAMES
 from isa_ros.config.text.sections import Place, Section
 from isa_ros.core.timebase import NS_PER_SECOND
 from isa_ros.errors import ConfigError
@@ -18,7 +18,7 @@ class ExternalConfig(BodyConfig):
 
     kind: ClassVar[str] = 'external'
     is_given: ClassVar[bool] = True
-    KEYS: ClassVar[Table] = Table((
+    KEYS: ClassVar[KeyTable] = KeyTable((
         Key('actuators', NAMES, 'the actuators that move it, in the order of its rows',
             of=lambda own: [actuator for _, actuator in own.joints]),))
 

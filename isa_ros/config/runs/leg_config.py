@@ -11,9 +11,9 @@ from isa_ros.config.runs.body_config import BODY, BodyConfig, Made
 from isa_ros.config.runs.coarse_ticks import coarse_ticks
 from isa_ros.config.runs.tick_grid import ticks_in
 from isa_ros.config.text.keys import (
-    ANY_NAME, InText, Key, Layer, NAME, Named, of_type, ParameterSet, Table)
+    ANY_NAME, InText, Key, KeyTable, Layer, NAME, Named, of_type, ParameterSet)
 from isa_ros.config.text.parameter_sets import build
-from isa_ros.config.text.sections import Entry, merge, Place, Section, section_at, written
+from isa_ros.config.text.sections import merge, Place, Section, section_at, SourcedValue, written
 from isa_ros.config.text.yaml_text import Tree
 from isa_ros.core.fields import Field
 from isa_ros.core.noise import noise_key
@@ -22,7 +22,7 @@ from isa_ros.core.timebase import NS_PER_SECOND
 from isa_ros.core.units import MILLI
 from isa_ros.errors import ConfigError
 from isa_ros.surroundings.bodies.leg.inertial import Imu
-from isa_ros.surroundings.bodies.leg.leg import Leg, Pose, sample_fields, Unit
+from isa_ros.surroundings.bodies.leg.leg import InertialUnit, Leg, Pose, sample_fields
 from isa_ros.surroundings.bodies.leg.messages import leg_messages
 from isa_ros.surroundings.bodies.leg.sheet import JOINTS, LegSheet, linkage_record
 from isa_ros.surroundings.linkage import actuator_coordinate
@@ -59,7 +59,7 @@ class ImuConfig:
     sheet: Imu
 
 
-class _ImuKind(Table):
+class _ImuKind(KeyTable):
     """The keys of a unit, in a resolved text below ``sheet``."""
 
     def read(self, tree: Any, place: Place) -> Any:
@@ -81,9 +81,9 @@ class LegConfig(BodyConfig):
     """
 
     kind: ClassVar[str] = 'leg'
-    KEYS: ClassVar[Table] = Table((
+    KEYS: ClassVar[KeyTable] = KeyTable((
         Key('model', ANY_NAME, 'the packaged leg', None, 'required', InText.ALWAYS),
-        Key('joints', Table(tuple(
+        Key('joints', KeyTable(tuple(
             Key(joint, NAME, f'the actuator that moves {joint}') for joint in JOINTS)),
             'the actuator of each joint', of=lambda leg: dict(leg.joints)),
         Key('ground', ANY_NAME, 'the material under the foot', None, 'of the model',
@@ -155,7 +155,7 @@ class LegConfig(BodyConfig):
 
     def started(self, tree: Tree, place: Place, step_ns: int) -> 'LegConfig':
         """Return it with another start; keys missing in the section are as before."""
-        default: Section = {f: Entry(getattr(self.start, f), str(place / f), '')
+        default: Section = {f: SourcedValue(getattr(self.start, f), str(place / f), '')
                             for f in LegStart.__dataclass_fields__}
         leg = replace(self, start=build(LegStart, default | written(tree, place), place))
         leg.refuse_start(step_ns, place)
@@ -183,6 +183,6 @@ class LegConfig(BodyConfig):
                    release_ns=round(self.start.release_s * NS_PER_SECOND),
                    units=self._units(made.step_ns, made.seed))
 
-    def _units(self, step_ns: int, seed: int) -> list[Unit]:
-        return [Unit(imu.name, imu.sheet, imu.sheet.period_ns(step_ns, imu.name),
-                     noise_key(seed, f'{self.prefix}{imu.name}/imu')) for imu in self.imus]
+    def _units(self, step_ns: int, seed: int) -> list[InertialUnit]:
+        return [InertialUnit(imu.name, imu.sheet, imu.sheet.period_ns(step_ns, imu.name),
+                             noise_key(seed, f'{self.prefix}{imu.name}/imu')) for imu in self.imus]

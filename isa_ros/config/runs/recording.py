@@ -16,7 +16,7 @@ from fnmatch import fnmatchcase
 from typing import Any
 
 from isa_ros.bag.storage import PLAIN, Storage
-from isa_ros.config.text.keys import Key, ParameterSet, Table, Value
+from isa_ros.config.text.keys import Key, KeyTable, ParameterSet, Value
 from isa_ros.config.text.parameter_sets import as_tree, build
 from isa_ros.config.text.sections import Place, section_at, written
 from isa_ros.config.text.yaml_text import Tree
@@ -106,7 +106,7 @@ def replay_needs(topic: str) -> bool:
     return topic == _EVENTS or suffix.startswith('applied_') or suffix == _SENT
 
 
-class _RecordKind(Table):
+class _RecordKind(KeyTable):
     """The section; read as a `RecordConfig`."""
 
     def read(self, tree: Any, place: Place) -> Any:

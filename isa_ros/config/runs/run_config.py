@@ -16,8 +16,8 @@ from isa_ros.config.runs.recording import RECORD, RecordConfig
 from isa_ros.config.runs.supplies import supplies_of, SUPPLY, SUPPLY_KEYS, SupplyConfig
 from isa_ros.config.runs.tick_grid import on_grid, WrittenTime
 from isa_ros.config.text.keys import (
-    InText, Key, Layer, NAME, Named, NAMES, nanoseconds, number, OneOf, ParameterSet, Table, TEXT,
-    Value)
+    InText, Key, KeyTable, Layer, NAME, Named, NAMES, nanoseconds, number, OneOf, ParameterSet,
+    TEXT, Value)
 from isa_ros.config.text.names import refuse_bad_name
 from isa_ros.config.text.sections import Place, Section
 from isa_ros.config.text.yaml_text import dump, parse, Tree
@@ -208,7 +208,7 @@ _STEP_NS = nanoseconds('step_ns', 'the macro step', _STEP, gt=0, le=100_000_000)
 _OFFSET_NS = nanoseconds(
     'controller_offset_ns', 'the offset', _OFFSET, ge=0, le=100_000_000)
 
-RUN = Table((
+RUN = KeyTable((
     Key('name', NAME, 'the name of the run', in_text=InText.ALWAYS),
     Key('source', TEXT, 'the file that the run was resolved from', None,
         'the name of the file', in_text=InText.ONLY),

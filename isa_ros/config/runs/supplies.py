@@ -4,7 +4,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any
 
-from isa_ros.config.text.keys import Key, NAMES, ParameterSet, Table
+from isa_ros.config.text.keys import Key, KeyTable, NAMES, ParameterSet
 from isa_ros.config.text.sections import Place
 from isa_ros.core.suggest import alternatives
 from isa_ros.core.units import MPA
@@ -30,7 +30,7 @@ class SupplyConfig:
         return (self.sheet.pressure_mpa - self.sheet.return_pressure_mpa) * MPA
 
 
-SUPPLY_KEYS = Table(
+SUPPLY_KEYS = KeyTable(
     (Key('feeds', NAMES, 'the names of the actuators it feeds'),),
     rest=Key('sheet', ParameterSet(SupplySheet), 'the supply'))
 

@@ -41,7 +41,7 @@ class Leaf(NamedTuple):
     row: 'Key'
 
 
-class Kind:
+class ValueKind:
     """Conversion of the value of one key to a tree and back; written as it is by default."""
 
     words: str
@@ -73,19 +73,19 @@ class Kind:
         yield Leaf(key, value, row)
 
 
-class Value(Kind):
+class Value(ValueKind):
     """One value, or a list of them, which ``check`` returns or refuses at a place."""
 
     def __init__(self, words: str, check: Callable[[Any, Place], Any], unit: str = '') -> None:
         self.words, self.unit, self._check = words, unit, check
 
     def read(self, tree: Any, place: Place) -> Any:
-        """Return the value; as `Kind.read`."""
+        """Return the value; as `ValueKind.read`."""
         return self._check(tree, place)
 
 
 def of_type(value: Any, type_: type, place: Place) -> Any:
-    """Return a value of exactly this type; as `Kind.read`."""
+    """Return a value of exactly this type; as `ValueKind.read`."""
     if type(value) is not type_:
         raise ConfigError(f'{place} = {value!r}, must be of type {type_.__name__}')
     return value
@@ -113,7 +113,7 @@ FLAG = Value('true or false', lambda value, place: of_type(value, bool, place))
 
 
 @dataclass(frozen=True)
-class ParameterSet(Kind):
+class ParameterSet(ValueKind):
     """A parameter set, or one of a union, selected by the kind in its section."""
 
     hint: Any
@@ -124,7 +124,7 @@ class ParameterSet(Kind):
         return as_tree(value, self.hint)
 
     def read(self, tree: Any, place: Place) -> Any:
-        """Return the checked set; as `Kind.read`."""
+        """Return the checked set; as `ValueKind.read`."""
         return build_one_of(self.hint, written(section_at(tree, place), place), place)
 
     def rows(self, tree: Any, place: Place) -> 'Mapping[str, Key] | KeyDifference':
@@ -144,7 +144,7 @@ class Layer(ParameterSet):
     """Values of a parameter set that replace those of a model, each with its place."""
 
     def read(self, tree: Any, place: Place) -> Section:
-        """Return the section; as `Kind.read`."""
+        """Return the section; as `ValueKind.read`."""
         return written(section_at(tree, place), place)
 
 
@@ -171,7 +171,7 @@ def _default(declared: Mapping[str, Any], hint: Any) -> Any:
     return absent
 
 
-def differences(kind: Kind, tree: Any, place: Place) -> Iterator[KeyDifference]:
+def differences(kind: ValueKind, tree: Any, place: Place) -> Iterator[KeyDifference]:
     """Yield the keys below ``place`` that differ from those of this version."""
     if not isinstance(tree, dict):
         return  # refused by `read`
@@ -203,10 +203,10 @@ class InText(Enum):
 
 @dataclass(frozen=True)
 class Key:
-    """One key of a section: one row of a `Table`."""
+    """One key of a section: one row of a `KeyTable`."""
 
     name: str
-    kind: Kind
+    kind: ValueKind
     meaning: str
     default: Any = REQUIRED
     """As a file would have it; None: no value."""
@@ -264,7 +264,7 @@ def nanoseconds(name: str, meaning: str, instead_of: Key, **bounds: float) -> Ke
 
 
 @dataclass(frozen=True)
-class Table(Kind):
+class KeyTable(ValueKind):
     """The keys of a section, in the order in which they are written."""
 
     keys: tuple[Key, ...]
@@ -278,7 +278,7 @@ class Table(Kind):
         return [key.name for key in self.keys]
 
     def read(self, tree: Any, place: Place) -> dict[str, Any]:
-        """Return the values by row; as `Kind.read`."""
+        """Return the values by row; as `ValueKind.read`."""
         section = section_at(tree, place)
         if self.rest is None:
             refuse_unknown(
@@ -330,10 +330,10 @@ class Table(Kind):
 
 
 @dataclass(frozen=True)
-class Named(Kind):
+class Named(ValueKind):
     """Sections by name, each of a configuration that has its name as a field."""
 
-    section: Kind
+    section: ValueKind
     words = 'sections by name'
 
     def tree(self, value: Sequence[Any]) -> Tree:
@@ -341,7 +341,7 @@ class Named(Kind):
         return {item.name: self.section.tree(item) for item in value}
 
     def read(self, tree: Any, place: Place) -> dict[str, Any]:
-        """Return the values by name; as `Kind.read`."""
+        """Return the values by name; as `ValueKind.read`."""
         values = {}
         for name, below in section_at(tree, place).items():
             refuse_bad_name(name, f'{place / name}: the name')
@@ -359,10 +359,10 @@ class Named(Kind):
 
 
 @dataclass(frozen=True)
-class OneOf(Kind):
+class OneOf(ValueKind):
     """One of several sections, selected by its key ``kind``; a configuration has its kind."""
 
-    tables: Mapping[str, Table]
+    tables: Mapping[str, KeyTable]
     words = 'section'
 
     def tree(self, value: Any) -> Tree:
@@ -370,7 +370,7 @@ class OneOf(Kind):
         return {'kind': value.kind} | self.tables[value.kind].tree(value)
 
     def read(self, tree: Any, place: Place) -> dict[str, Any]:
-        """Return the values with their kind; as `Kind.read`."""
+        """Return the values with their kind; as `ValueKind.read`."""
         rest = dict(section_at(tree, place))
         kind = rest.pop('kind', None)
         if not isinstance(kind, str) or kind not in self.tables:

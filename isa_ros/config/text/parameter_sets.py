@@ -10,7 +10,7 @@ from functools import cache
 import re
 from typing import Any, get_args, get_type_hints, TypeVar
 
-from isa_ros.config.text.sections import Entry, KIND_KEYS, Place, Section
+from isa_ros.config.text.sections import KIND_KEYS, Place, Section, SourcedValue
 from isa_ros.config.text.yaml_text import Tree
 from isa_ros.core.parameter import check, Parameters
 from isa_ros.core.suggest import alternatives, listed
@@ -51,7 +51,7 @@ def build(cls: type[P], section: Section, place: Place) -> P:
         entry = section[f.name]
         if 'doc' in f.metadata:
             values[f.name] = _checked(entry, f.metadata, place / f.name)
-        elif isinstance(entry, Entry):
+        elif isinstance(entry, SourcedValue):
             raise ConfigError(f'{entry.where} = {entry.value!r}, must be a section')
         else:
             values[f.name] = build_one_of(hints[f.name], entry, place / f.name)
@@ -64,7 +64,7 @@ def build(cls: type[P], section: Section, place: Place) -> P:
 def _last_written(section: Section, place: Place) -> Place:
     """Return the place of a section in the run file, if that has a value of it or below it."""
     for key, entry in section.items():
-        if isinstance(entry, Entry):
+        if isinstance(entry, SourcedValue):
             file, _, path = entry.where.partition(': ')
             if entry.source == file and path.endswith(f'.{key}'):  # as `written` has it
                 return Place(file, path.removesuffix(f'.{key}'))
@@ -87,14 +87,14 @@ def build_one_of(hint: Any, section: Section, place: Place) -> Any:
         raise ConfigError(place.has(f'lacks kind, one of {", ".join(kinds)}'))
     rest = dict(section)
     kind = rest.pop(key)
-    if not isinstance(kind, Entry) or str(kind.value) not in kinds:
-        value = kind.value if isinstance(kind, Entry) else 'a section'
-        where = kind.where if isinstance(kind, Entry) else str(place / key)
+    if not isinstance(kind, SourcedValue) or str(kind.value) not in kinds:
+        value = kind.value if isinstance(kind, SourcedValue) else 'a section'
+        where = kind.where if isinstance(kind, SourcedValue) else str(place / key)
         raise ConfigError(f'{where} = {value!r}, must be one of {", ".join(kinds)}')
     return build(kinds[str(kind.value)], rest, _place_of(kind, place))
 
 
-def _place_of(kind: Entry, place: Place) -> Place:
+def _place_of(kind: SourcedValue, place: Place) -> Place:
     """Return the place that set the kind: a later layer with another kind must be complete."""
     file, _, key = kind.where.partition(': ')
     return place if file == place.file else Place(file, key.rpartition('.')[0])
@@ -108,9 +108,9 @@ def refuse_unknown_entries(section: Section, names: list[str], place: Place) -> 
             raise ConfigError(f'{where or place / key} is unknown; {alternatives(key, names)}')
 
 
-def _first_where(entry: Entry | Section) -> str:
+def _first_where(entry: SourcedValue | Section) -> str:
     """Return where a value or the first value of a section was written, '' if it is empty."""
-    if isinstance(entry, Entry):
+    if isinstance(entry, SourcedValue):
         return entry.where
     for below in entry.values():
         where = _first_where(below)
@@ -119,8 +119,8 @@ def _first_where(entry: Entry | Section) -> str:
     return ''
 
 
-def _checked(entry: Entry | Section, declared: Mapping[str, Any], place: Place) -> Any:
-    if not isinstance(entry, Entry):
+def _checked(entry: SourcedValue | Section, declared: Mapping[str, Any], place: Place) -> Any:
+    if not isinstance(entry, SourcedValue):
         unit = declared['unit'] if 'unit' in declared else ''
         raise ParameterError(f'{place} is a section, must be one value{unit and f" in {unit}"}')
     check(entry.where, entry.value, declared)

@@ -19,7 +19,7 @@ KIND_KEYS = ('kind', 'linkage')  # keys that may hold the kind of a section
 
 
 @dataclass(frozen=True)
-class Entry:
+class SourcedValue:
     """One value, or a list of them, where it was written (``file: dotted key``), its source."""
 
     value: Scalar | list[Any]
@@ -29,7 +29,7 @@ class Entry:
     """The quantity of `isa_ros.actuator.scales` that it is proportional to, '' for none."""
 
 
-Section = dict[str, 'Entry | Section']
+Section = dict[str, 'SourcedValue | Section']
 
 
 @dataclass(frozen=True)
@@ -106,7 +106,7 @@ def written(tree: Tree, place: Place) -> Section:
         if isinstance(value, dict):
             section[key] = written(value, place / key)
         else:
-            section[key] = Entry(value, str(place / key), place.file)
+            section[key] = SourcedValue(value, str(place / key), place.file)
     return section
 
 
@@ -126,7 +126,7 @@ def sourced(tree: Tree, place: Place) -> Section:
     section: Section = {}
     for key, value in tree.items():
         if key in KIND_KEYS and isinstance(value, str):
-            section[key] = Entry(value, str(place / key), '')
+            section[key] = SourcedValue(value, str(place / key), '')
             continue
         below = section_at(value, place / key)
         if 'value' not in below and 'source' not in below:
@@ -142,7 +142,7 @@ def sourced(tree: Tree, place: Place) -> Section:
         scale = below.get('scales_with', '')
         if scale:
             refuse_unknown([str(scale)], SCALES, place / key / 'scales_with')
-        section[key] = Entry(number, str(place / key), source, str(scale))
+        section[key] = SourcedValue(number, str(place / key), source, str(scale))
     return section
 
 
@@ -166,5 +166,5 @@ def merge(base: Section, over: Section) -> Section:
 def _kind(section: Section) -> Scalar | list[Any]:
     """Return the kind of a section, None for a section without one."""
     named = [entry.value for key in KIND_KEYS
-             if isinstance(entry := section.get(key), Entry)]
+             if isinstance(entry := section.get(key), SourcedValue)]
     return named[0] if named else None

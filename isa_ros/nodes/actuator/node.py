@@ -31,7 +31,7 @@ from std_srvs.srv import SetBool, Trigger
 WARNING_PERIOD_S = 1.0
 
 
-class Setup(NamedTuple):
+class NodeSetup(NamedTuple):
     """The actuator that a node simulates, and its timing."""
 
     config: ActuatorConfig
@@ -54,7 +54,7 @@ class ActuatorNode(Node):
     """
 
     def __init__(
-            self, resolve: Callable[[Node], Setup], name: str = 'actuator', *,
+            self, resolve: Callable[[Node], NodeSetup], name: str = 'actuator', *,
             has_mailbox: bool, **kwargs: Any) -> None:
         self._tunables: TunableParameters | None = None
         with refusals():

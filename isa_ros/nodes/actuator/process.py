@@ -14,7 +14,7 @@ from isa_ros.config.text.changes import changes_of
 from isa_ros.core.without_blas import start_without_blas
 from isa_ros.errors import ConfigError
 from isa_ros.nodes.actuator.alone import run_alone
-from isa_ros.nodes.actuator.node import ActuatorNode, Setup
+from isa_ros.nodes.actuator.node import ActuatorNode, NodeSetup
 from isa_ros.nodes.lockstep.participant_end import ParticipantEnd
 from isa_ros.nodes.lockstep.roles import ActuatorRole
 from isa_ros.nodes.middleware.arguments import init_ros
@@ -69,7 +69,7 @@ def _run(model: str, should_stop: StopRequest) -> None:
         node.destroy_node()
 
 
-def _resolve(node: Node, model: str) -> Setup:
+def _resolve(node: Node, model: str) -> NodeSetup:
     """Declare the node's parameters and return the actuator they describe."""
     for name, default, description in (
             ('lockstep', False, 'advance only with the ticks of a coordinator'),
@@ -94,10 +94,10 @@ def _resolve(node: Node, model: str) -> Setup:
         raise ConfigError(
             f'{node.get_name()}: set the parameter model, one of {", ".join(model_names())}, or '
             'config_file')
-    return Setup(default_actuator(chosen, node.get_name()), DEFAULT_TIMING)
+    return NodeSetup(default_actuator(chosen, node.get_name()), DEFAULT_TIMING)
 
 
-def _from_run(run: RunConfig, name: str, model: str, in_lockstep: bool) -> Setup:
+def _from_run(run: RunConfig, name: str, model: str, in_lockstep: bool) -> NodeSetup:
     config = run.actuator(name)
     if model not in ('', config.model):
         raise ConfigError(
@@ -105,7 +105,7 @@ def _from_run(run: RunConfig, name: str, model: str, in_lockstep: bool) -> Setup
     if config.load is None and not in_lockstep:
         model_of = actuator_model(config.model, name)
         config = replace(config, load=default_load(model_of, config.sheet, run.span_of(name)))
-    return Setup(config, timing_of(run))
+    return NodeSetup(config, timing_of(run))
 
 
 def _text(node: Node, name: str) -> str:

@@ -6,7 +6,7 @@ import gc
 
 from isa_ros.actuator.actuator import participant_digest
 from isa_ros.config.assembly import group_of, surroundings_of, timing_of
-from isa_ros.nodes.actuator.node import ActuatorNode, Setup
+from isa_ros.nodes.actuator.node import ActuatorNode, NodeSetup
 from isa_ros.nodes.actuator.process import run
 from isa_ros.nodes.coordinator.node import CoordinatorNode
 from isa_ros.nodes.coordinator.parameters import SupplyParameters
@@ -152,7 +152,7 @@ def coordinate_locally(
     group = group_of(session.run)
     timing = timing_of(session.run)
     actuators = [
-        ActuatorNode(_resolver(Setup(config, timing, actuator)), config.name,
+        ActuatorNode(_resolver(NodeSetup(config, timing, actuator)), config.name,
                      has_mailbox=False, namespace=session.request.namespace, **_QUIET)
         for config, actuator in zip(configs, group.actuators)]
     controllers = None
@@ -184,5 +184,5 @@ def _record(
            report, should_stop, services.serve, node.get_logger().warning)
 
 
-def _resolver(setup: Setup) -> Callable[[Node], Setup]:
+def _resolver(setup: NodeSetup) -> Callable[[Node], NodeSetup]:
     return lambda node: setup

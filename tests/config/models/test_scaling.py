@@ -13,7 +13,7 @@ from isa_ros.config.models import scaling
 from isa_ros.config.models.catalogue import actuator_model, model_names
 from isa_ros.config.runs.default_actuator import default_actuator
 from isa_ros.config.runs.run_config import run_of, RunConfig
-from isa_ros.config.text.sections import Entry, merge, Place, sourced
+from isa_ros.config.text.sections import merge, Place, sourced, SourcedValue
 from isa_ros.config.text.yaml_text import parse
 from isa_ros.errors import ConfigError
 from isa_ros.plant.chambers import chambers_record, oil_stiffness
@@ -183,5 +183,6 @@ def test_an_unknown_quantity_is_refused(values: dict[str, str], message: str) ->
 
 def test_a_replaced_value_does_not_scale() -> None:
     """A later layer replaces the value with its quantity."""
-    old, new = Entry(1.0, 'm.yaml: a', 'assumed', 'stroke'), Entry(2.0, 'r.yaml: a', 'r.yaml')
+    old = SourcedValue(1.0, 'm.yaml: a', 'assumed', 'stroke')
+    new = SourcedValue(2.0, 'r.yaml: a', 'r.yaml')
     assert merge({'a': old}, {'a': new}) == {'a': new}

@@ -24,7 +24,7 @@ from isa_ros.surroundings.linkage import actuator_coordinate
 import numpy as np
 
 
-class Unit(NamedTuple):
+class InertialUnit(NamedTuple):
     """An inertial measurement unit of a leg."""
 
     name: str
@@ -61,7 +61,7 @@ class Leg:
 
     def __init__(self, sheet: LegSheet, pose: Pose, step_ns: int,
                  rows: Sequence[int] = (0, 1, 2), release_ns: int | None = None,
-                 units: Sequence[Unit] = ()) -> None:
+                 units: Sequence[InertialUnit] = ()) -> None:
         steps_in(step_ns // FORCE_WINDOWS, 'a fifth of step_ms')
         self._refuse_pose(sheet, pose)
         self._step_ns = step_ns

@@ -2,7 +2,7 @@
 
 from collections.abc import Sequence
 
-from isa_ros.surroundings.bodies.leg.leg import fields_of_unit, Unit
+from isa_ros.surroundings.bodies.leg.leg import fields_of_unit, InertialUnit
 from isa_ros.surroundings.bodies.leg.sheet import JOINTS
 from isa_ros.surroundings.messages import BodyMessage, columns, Force, Inertial, JointStates
 
@@ -14,7 +14,7 @@ def joint_name(name: str) -> str:
     return f'{name}_joint'
 
 
-def leg_messages(prefix: str, units: Sequence[Unit]) -> tuple[BodyMessage, ...]:
+def leg_messages(prefix: str, units: Sequence[InertialUnit]) -> tuple[BodyMessage, ...]:
     """
     Return the messages of a leg; ``prefix`` is '' for the only body of a run, else ``NAME/``.
 
@@ -29,7 +29,7 @@ def leg_messages(prefix: str, units: Sequence[Unit]) -> tuple[BodyMessage, ...]:
         *(_inertial(prefix, unit) for unit in units))
 
 
-def _inertial(prefix: str, unit: Unit) -> Inertial:
+def _inertial(prefix: str, unit: InertialUnit) -> Inertial:
     force, turning = fields_of_unit(unit.name)
     return Inertial(
         f'/{prefix}{unit.name}/imu', f'{prefix}{unit.sheet.link}',

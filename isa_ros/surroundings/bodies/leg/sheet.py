@@ -51,7 +51,7 @@ class Link(Parameters):
 
 
 @dataclass(frozen=True, kw_only=True)
-class Body(Parameters):
+class RigidBodies(Parameters):
     """The rigid bodies of one leg."""
 
     mass_scale: float = parameter(
@@ -129,7 +129,7 @@ class FourBar(Joint):
 class LegSheet(Parameters):
     """The data sheet of one leg on its rig."""
 
-    body: Body
+    body: RigidBodies
     haa: Direct | SliderCrank | FourBar
     hfe: Direct | SliderCrank | FourBar
     kfe: Direct | SliderCrank | FourBar
@@ -162,7 +162,7 @@ def linkage_record(joint: Direct | SliderCrank | FourBar | Joint) -> np.record:
     return row
 
 
-def body_record(body: Body) -> np.ndarray:
+def body_record(body: RigidBodies) -> np.ndarray:
     """Return the `LEG_BODY` record of a leg with its mass scale applied, shape (1,)."""
     links = {}
     for name in ('hip', 'thigh', 'calf'):

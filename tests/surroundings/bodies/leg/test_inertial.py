@@ -10,7 +10,7 @@ from isa_ros.core.signals import LOAD_REPLY
 from isa_ros.errors import ParameterError
 from isa_ros.surroundings.bodies.leg import inertial
 from isa_ros.surroundings.bodies.leg.inertial import carried, Imu, link_motion, LINKS
-from isa_ros.surroundings.bodies.leg.leg import Leg, Pose, Unit
+from isa_ros.surroundings.bodies.leg.leg import InertialUnit, Leg, Pose
 from isa_ros.surroundings.bodies.leg.motion import ContinuousState, Coordinates
 from isa_ros.surroundings.bodies.leg.sheet import body_record
 import numpy as np
@@ -27,15 +27,15 @@ POSE = Pose(haa=math.radians(13.0), hfe=math.radians(48.0), kfe=math.radians(-95
 PLACE = {'x_mm': 100.0, 'y_mm': -20.0, 'z_mm': 30.0}
 
 
-def unit(link: str, rate_hz: float = 1000.0, **values: float) -> Unit:
+def unit(link: str, rate_hz: float = 1000.0, **values: float) -> InertialUnit:
     """Return a unit named after its link."""
     sheet = Imu(**{'x_mm': 0.0, 'y_mm': 0.0, 'z_mm': 0.0, 'accelerometer_sigma': 0.0,
                    'accelerometer_bias': 0.0, 'gyro_sigma': 0.0, 'gyro_bias': 0.0}
                 | values, link=link, rate_hz=rate_hz)
-    return Unit(link, sheet, sheet.period_ns(MS, link), noise_key(0, link))
+    return InertialUnit(link, sheet, sheet.period_ns(MS, link), noise_key(0, link))
 
 
-def leg(*units: Unit) -> Leg:
+def leg(*units: InertialUnit) -> Leg:
     """Return the shipped leg with some units."""
     return Leg(SHEET, POSE, MS, units=units)
 
