@@ -29,7 +29,8 @@ import sympy as sp
 from sympy.printing.precedence import PRECEDENCE
 from sympy.printing.pycode import PythonCodePrinter
 
-TARGET = Path(__file__).resolve().parents[1] / 'isa_ros' / 'surroundings' / 'bodies' / 'leg' / 'dynamics.py'
+PACKAGE = Path(__file__).resolve().parents[1] / 'isa_ros'
+TARGET = PACKAGE / 'surroundings' / 'bodies' / 'leg' / 'dynamics.py'
 LINKS = ('hip', 'thigh', 'calf')
 COORDINATES = ('z', 'haa', 'hfe', 'kfe')
 AXES = ('x', 'y', 'z')

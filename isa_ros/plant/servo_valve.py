@@ -158,8 +158,8 @@ def port_flows(x, p_a, p_b, p_s, p_t, valve):
     """
     Return (q_a, q_b, q_p, q_t) in m3/s at spool ``x`` (m) and pressures in Pa  (V7, V9).
 
-    Equations 11 to 18 of the paper (19 is `flow_curve`) as `Q = (g + leakage) sqrt(dP / dP_ref)` for each of the
-    four lands, plus the pilot stage's tare flow from supply to return.
+    Equations 11 to 18 of the paper (19 is `flow_curve`) as `Q = (g + leakage) sqrt(dP / dP_ref)`
+    for each of the four lands, plus the pilot stage's tare flow from supply to return.
     """
     opened, _ = conductances(x, valve)
     q_a, q_b, q_p, q_t = metered(

@@ -187,7 +187,8 @@ def scenario_of(text: str, run: RunConfig, name: str = 'scenario.yaml') -> Scena
 def read_scenario(tree: Tree, place: Place, run: RunConfig) -> Scenario:
     """Return the scenario of a file's tree; as `load_scenario`."""
     refuse_unknown(
-        tree, ('name', 'figure', 'duration_s', BEYOND, 'leg', 'bodies', 'loads', 'tracks', 'faults'), place)
+        tree, ('name', 'figure', 'duration_s', BEYOND, 'leg', 'bodies', 'loads', 'tracks',
+               'faults'), place)
     name = name_of(tree, 'name', place)
     n_ticks = _duration(tree.get('duration_s'), run.step_ns, f'{place}: duration_s')
     run = _with_loads(_with_starts(run, tree, place), tree, place)

@@ -27,9 +27,10 @@ class Result(Mapping[str, NDArray[np.float64]]):
     A run's signals over time: ``result['kfe.force']`` is an array, (n + 1,) for n ticks.
 
     Names are ACTUATOR.FIELD with the fields of `SAMPLE`, SUPPLY.FIELD of `SUPPLY_SAMPLE`, and
-    BODY.FIELD by the name of a body, ``body`` for the only one; of an actuator with a link also ACTUATOR.link.FIELD, the sample that listeners
-    have; a field of several numbers gives an array of as many columns. SI, pressures
-    gauge. The arrays are read-only views of the log; copy them to change values.
+    BODY.FIELD by the name of a body, ``body`` for the only one; of an actuator with a link also
+    ACTUATOR.link.FIELD, the sample that has arrived over it. A field of several numbers gives an
+    array of as many columns. SI, pressures gauge. The arrays are read-only views of the log; copy
+    them to change values.
     """
 
     def __init__(

@@ -4,7 +4,8 @@ The tick of a run, over actuators and controllers in this process or in others; 
 Tick k advances every actuator from t_k to t_k+1 = (k + 1) step_ns, then the surroundings.
 At the same time controllers compute with the state of t_k; their commands take effect at t_k+1.
 The rows of t_k are recorded while actuators in other processes compute tick k: there a recorder
-faster than they are does not lengthen a tick. N ticks give N + 1 samples, including the state at t = 0.
+faster than they are does not lengthen a tick. N ticks give N + 1 samples, including the state
+at t = 0.
 """
 
 from collections.abc import Callable, Sequence

@@ -1,4 +1,4 @@
-"""A copy of the package in which an extension is made, to see what it takes and whether it runs."""
+"""A copy of the package in which an extension is made: what it takes, and whether it runs."""
 
 import os
 from pathlib import Path

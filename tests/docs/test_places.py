@@ -123,7 +123,7 @@ RAIL = textwrap.dedent('''\
         def body(self, made: Made) -> Rail:
             return Rail(self.sheet, made.rows, made.step_ns * 1e-9)
     ''')
-RUN_RAIL = '''
+RUN_RAIL = """
 from pathlib import Path
 import isa_ros
 from isa_ros.analysis.signals.signals import read_signals
@@ -151,7 +151,7 @@ print(sorted(name for name in Bag(bag).types if 'rail' in name), replay(Bag(bag)
 heavy = run.replace({'body.sheet.mass_kg': 50.0})
 heavy.simulate().save('heavy')
 print(*configuration_differences(parse(text, ''), parse(heavy.configuration.to_yaml(), '')))
-'''
+"""
 
 
 @pytest.fixture
@@ -218,7 +218,7 @@ class FallingSupply(Parameters):
 
 SupplySheet = ConstantSupply | AccumulatorSupply | FallingSupply
 '''
-_FALLS = '''
+_FALLS = """
 import isa_ros
 from isa_ros.config.runs.run_config import RunConfig
 run = isa_ros.load('rig_linear').replace({'supply': {
@@ -226,7 +226,7 @@ run = isa_ros.load('rig_linear').replace({'supply': {
 assert RunConfig.from_yaml(run.configuration.to_yaml()) == run.configuration
 result = run.simulate(0.1)
 print(f"{result['supply.pressure'][0] * 1e-6:.3f} {result['supply.pressure'][-1] * 1e-6:.3f}")
-'''
+"""
 
 
 @pytest.mark.slow
@@ -262,7 +262,7 @@ class Braked(Parameters):
 
 LocalLoad = Blocked | Wheel | Mass | Pad | DropRig | Braked
 '''
-_BRAKES = '''
+_BRAKES = """
 import isa_ros
 slow, free = (isa_ros.load('rig_linear', {'name': 'push', 'duration_s': 1.0, 'tracks': {
     'ram': [{'t_s': 0.0, 'position': 0.04, 'effort': 2000.0, 'stiffness': 0.0, 'damping': 0.0}]}}
@@ -270,7 +270,7 @@ slow, free = (isa_ros.load('rig_linear', {'name': 'push', 'duration_s': 1.0, 'tr
     for drag in (1e6, 0.0))
 speeds = [float(abs(own['ram.velocity']).max()) for own in (slow, free)]
 print(speeds[0] < 0.5 * speeds[1], speeds)
-'''
+"""
 
 
 @pytest.mark.slow
@@ -278,8 +278,9 @@ def test_a_load_is_a_set_a_force_and_values(copied: PatchedCopy) -> None:
     """It brakes: -c v abs(v)."""
     sheets, forces = 'isa_ros/loads/sheets.py', 'isa_ros/loads/forces.py'
     copied.replace(sheets, 'LocalLoad = Blocked | Wheel | Mass | Pad | DropRig\n', _BRAKED)
-    copied.replace(sheets, '    elif isinstance(load, Pad):\n', '    elif isinstance(load, Braked):'
-                   "\n        own['drag'] = load.drag\n    elif isinstance(load, Pad):\n")
+    copied.replace(sheets, '    elif isinstance(load, Pad):\n',
+                   "    elif isinstance(load, Braked):\n        own['drag'] = load.drag\n"
+                   '    elif isinstance(load, Pad):\n')
     copied.replace(forces, "('rope', ROPE)])", "('rope', ROPE), ('drag', 'f8')])")
     copied.replace(forces, '    if own.rope.stiffness > 0.0:\n',
                    '    force -= own.drag * y.velocity * abs(y.velocity)\n'
@@ -299,7 +300,8 @@ def test_a_wire_is_its_values_and_a_name(copied: PatchedCopy) -> None:
     """Links may have its kind, and its load is checked."""
     copied.add('isa_ros/config/data/wires/canfd.yaml', '\n'.join([
         "bit_rate_mbit: {value: 5.0, source: 'derived, CAN FD'}",
-        'actuator_bits: {value: 600.0, source: assumed}', 'frame_bits: {value: 0.0, source: assumed}',
+        'actuator_bits: {value: 600.0, source: assumed}',
+        'frame_bits: {value: 0.0, source: assumed}',
         'frame_capacity_bits: {value: 0.0, source: assumed}', '']))
     copied.replace('isa_ros/actuator/link.py', "'can', 'serial')", "'can', 'serial', 'canfd')")
     assert touched(copied) == files_of('wire of a link') and len(copied.touched) == 2
@@ -322,7 +324,7 @@ def test_a_topic_of_an_actuator_is_one_file(copied: PatchedCopy) -> None:
                    "        'wear': joint_state.references(name, sample),\n")
     assert touched(copied) == files_of('topic of an actuator')
     assert copied.python(
-        "import isa_ros; from isa_ros.bag.reader import Bag; from isa_ros.replay.replay import "
+        'import isa_ros; from isa_ros.bag.reader import Bag; from isa_ros.replay.replay import '
         "replay; bag = Bag(isa_ros.load('rig_linear').simulate(0.002).save('bag')); "
         "print(bag.types['/ram/wear'], replay(bag).is_equal)") == (
             'sensor_msgs/msg/JointState True\n')
@@ -341,7 +343,7 @@ def test_an_object_with_a_source_is_one_word(copied: PatchedCopy) -> None:
 def test_an_option_of_a_run_is_a_field(copied: PatchedCopy) -> None:
     """The command has it."""
     path = 'isa_ros/run/options.py'
-    flag = "    is_synced: bool = field(default=False"
+    flag = '    is_synced: bool = field(default=False'
     copied.replace(path, flag, '    is_tried: bool = field(default=False, metadata=_option(\n'
                    f"        Kind.FLAG, 'only an example', name='tried'))\n{flag}")
     assert touched(copied) == files_of('option of a run')
@@ -375,11 +377,11 @@ def test_a_fault_is_a_mark(copied: PatchedCopy) -> None:
     program = (
         "import isa_ros; run = isa_ros.load('rig_linear').replace({'supply': dict(kind="
         "'accumulator', pressure_mpa=20.0, return_pressure_mpa=0.0, gas_volume_l=1.0, "
-        "precharge_mpa=10.0, polytropic_exponent=1.2, line_volume_l=0.5, bulk_modulus=1e9, "
-        "pump_flow_lpm=20.0, pump_lag_s=0.05, pump_band_mpa=1.0, relief_mpa=15.0, "
-        "relief_lpm_per_mpa=1.0)}); s = run.simulation(); "
+        'precharge_mpa=10.0, polytropic_exponent=1.2, line_volume_l=0.5, bulk_modulus=1e9, '
+        'pump_flow_lpm=20.0, pump_lag_s=0.05, pump_band_mpa=1.0, relief_mpa=15.0, '
+        'relief_lpm_per_mpa=1.0)}); s = run.simulation(); '
         "s.tune('supply', {'relief_lpm_per_mpa': 50.0}); "
-        "o = run.simulation(); [(s.step(), o.step()) for _ in range(50)]; "
+        'o = run.simulation(); [(s.step(), o.step()) for _ in range(50)]; '
         "print(s.supply_samples['supply'].pressure < o.supply_samples['supply'].pressure - 1e4)")
     assert copied.python(program) == 'True\n'
 

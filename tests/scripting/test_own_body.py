@@ -16,8 +16,9 @@ MASS, STIFFNESS = 40.0, 2e5     # kg, N/m
 STEP = 1e-3                     # s
 START = 0.04                    # m
 RIG = {
-    'name': 'slide', 'supply': {'kind': 'constant', 'pressure_mpa': 20.7, 'return_pressure_mpa': 0.0,
-                                'return_line': {'kind': 'held'}},
+    'name': 'slide', 'supply': {
+        'kind': 'constant', 'pressure_mpa': 20.7, 'return_pressure_mpa': 0.0,
+        'return_line': {'kind': 'held'}},
     'body': {'kind': 'external', 'actuators': ['pull', 'push']},
     'actuators': {'push': {'model': 'isa_v5'}, 'pull': {'model': 'isa_v5'}}}
 
