@@ -1,9 +1,12 @@
 """The shipped groups: each entry is reached or has a reason, and its references exist."""
 
+from dataclasses import replace
 from pathlib import Path
 import re
 
+from isa_ros.analysis.accuracy.agreement import TOLERANCE
 from isa_ros.cli.main import main
+from isa_ros.validation.entry import Entry
 from isa_ros.validation.groups import GROUPS
 from isa_ros.validation.page import write_page
 from isa_ros.validation.runner import Result, run_group
@@ -21,6 +24,24 @@ def section_of(result: Result, directory: Path) -> str:
     return heading + rest.partition('\n## ')[0].rstrip()
 
 
+def as_shown(result: Result, page: str) -> tuple[Entry, ...]:
+    """
+    Return the entries, those beside an adaptive integration with the number that the page has.
+
+    That integration keeps `TOLERANCE`, and its last digits are those of the host's BLAS: the page
+    and another processor may differ by so much, 1e-12 of 1e-11, and by no more.
+    """
+    entries = []
+    for entry in result.entries:
+        if entry.name.endswith('_smooth'):
+            row = re.search(rf'^\| {result.group}\.{entry.name} \| (.*)', page, re.M)
+            number = float(row[1].split(' | ')[3])
+            assert entry.ours == pytest.approx(number, rel=0.0, abs=TOLERANCE)
+            entry = replace(entry, ours=number)
+        entries.append(entry)
+    return tuple(entries)
+
+
 def check(group, directory: Path) -> None:
     """Check a group against its section of docs/validation.md."""
     result = run_group(group)
@@ -30,7 +51,7 @@ def check(group, directory: Path) -> None:
         cited = re.findall(r'\d+', entry.reading.partition(':')[0])
         assert set(cited) <= errata
     page = (DOCS / 'validation.md').read_text()
-    assert section_of(result, directory) in page
+    assert section_of(replace(result, entries=as_shown(result, page)), directory) in page
     for picture in result.pictures:
         assert f'(figures/validation_{picture.name}.png)' in page
         assert (DOCS / 'figures' / f'validation_{picture.name}.png').is_file()
