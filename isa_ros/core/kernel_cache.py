@@ -34,9 +34,9 @@ from numba.core.compiler import compile_result
 from numba.core.serialize import dumps
 
 _FORM = 2                   # of a file; others are not read
-_DAY = 86400.0
-_KEPT_DAYS = 30             # since a kernel was last loaded
-_KEPT_BYTES = 256 << 20     # about ten times the kernels of this package
+_NOTED_AFTER = 600.0        # s; a use that soon after the one before is not noted
+_KEPT_TIME = 30 * 86400.0   # s, since a kernel was last loaded
+_KEPT_BYTES = 512 << 20     # about thirty times the kernels of this package
 _DIGEST_BYTES = 16
 
 
@@ -113,7 +113,7 @@ def _read(path: Path) -> Any:
     body = memoryview(data)[_DIGEST_BYTES:]
     if _check(path.name, body) != data[:_DIGEST_BYTES]:
         return None
-    if time.time() - used > _DAY:
+    if time.time() - used > _NOTED_AFTER:
         with contextlib.suppress(OSError):
             os.utime(path)      # the time of last use, for `_sweep`
     return pickle.loads(body)
@@ -135,14 +135,14 @@ def _write(path: Path, reduced: Any) -> None:
 
 @cache
 def _sweep(directory: Path) -> None:
-    """Delete, once in a process, files not used for long, and the oldest beyond a total size."""
+    """Delete, once in a process, files not used for long, and the longest unused beyond a size."""
     earlier_form = directory.parent.glob('[0-9a-f]' * 16 + '/*/*.nb[ci]')
     found = []
     for path in (*directory.iterdir(), *earlier_form):
         with contextlib.suppress(OSError):
             status = path.stat()
             found.append((status.st_mtime, status.st_size, path))
-    oldest, total = time.time() - _KEPT_DAYS * _DAY, 0
+    oldest, total = time.time() - _KEPT_TIME, 0
     for used, size, path in sorted(found, reverse=True):
         total += size
         if used < oldest or total > _KEPT_BYTES:

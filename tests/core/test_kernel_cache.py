@@ -167,7 +167,7 @@ def test_what_is_old_or_too_much_is_swept(tmp_path: Path) -> None:
     kernel_cache._sweep.__wrapped__(tmp_path / 'kernels')
     left = {str(path.relative_to(tmp_path)) for path in tmp_path.rglob('*') if path.is_file()}
     assert left == {'kernels/used', 'other/file'}
-    filled(tmp_path, {f'kernels/{days}': (100 << 20, days) for days in (1, 2, 3)})
+    filled(tmp_path, {f'kernels/{days}': (200 << 20, days) for days in (1, 2, 3)})
     kernel_cache._sweep.__wrapped__(tmp_path / 'kernels')
     assert {path.name for path in (tmp_path / 'kernels').iterdir()} == {'1', '2'}
 
@@ -176,8 +176,8 @@ def test_what_is_loaded_counts_as_used(monkeypatch: pytest.MonkeyPatch, tmp_path
     monkeypatch.setattr(kernels, 'CACHE', tmp_path)
     assert kernels.kernel(twice)(3) == 6
     path, = tmp_path.iterdir()
-    for days, is_noted in ((0.9, False), (1.1, True)):
-        used = time.time() - days * 86_400.0
+    for minutes, is_noted in ((9.0, False), (11.0, True)):
+        used = time.time() - minutes * 60.0
         os.utime(path, (used, used))
         assert kernels.kernel(twice)(3) == 6
         assert (path.stat().st_mtime > used + 1.0) == is_noted
