@@ -1,27 +1,26 @@
 """Sweeps: simulate a run with many combinations of values, on all cores; a table of results."""
 
-from collections.abc import Callable, Iterator, Mapping, Sequence
-from dataclasses import dataclass
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass, field
 from itertools import product
-import multiprocessing
-from multiprocessing.connection import Connection, wait
 import os
 import sys
 from typing import Any
+import warnings
 
+from isa_ros.config.differences import section_differences
+from isa_ros.config.runs.run_config import RunConfig
+from isa_ros.config.text.parameter_sets import as_tree
 from isa_ros.core.suggest import alternatives
-from isa_ros.errors import ConfigError, IsaError, RunError
-from isa_ros.scripting.result import Result
+from isa_ros.errors import ConfigError
+from isa_ros.scripting.outcomes import Failure, Measure, outcomes
 from isa_ros.scripting.run import Run
 from isa_ros.text.progress import counted
 from isa_ros.text.table import aligned, RIGHT
 import numpy as np
 
-Measure = Callable[[Result], float]
-
-_Outcome = tuple[int, list[float] | BaseException]
-"""Index of a run, and its measured values or its error."""
 _DIGITS = 6
+_MOST_NAMED = 3     # values that follow a changed one
 
 
 @dataclass(frozen=True)
@@ -30,10 +29,12 @@ class Sweep(Mapping[str, Any]):
     A table with a row for each combination of values; the last key varies fastest.
 
     ``sweep['peak']`` is the column of a measure, ``sweep['supply.pressure_mpa']`` that of a
-    key; (n,) each.
+    key; (n,) each. A value that could not be measured is NaN, and `failures` has the reason.
     """
 
     columns: Mapping[str, np.ndarray]
+    failures: Mapping[int, Sequence[Failure]] = field(default_factory=dict)
+    """By row: each has ``measure`` ('' where the run itself failed) and ``error``."""
 
     def __getitem__(self, name: str) -> np.ndarray:
         if name not in self.columns:
@@ -71,6 +72,10 @@ def sweep(
     number by name, ``duration`` (s) as in `Run.simulate`. ``workers`` is the number of
     processes, -1: one per core. ``progress`` is shown on a terminal only.
 
+    A run that diverges and a measure that raises lose no other value: theirs is NaN in the table,
+    `Sweep.failures` has the errors, and one line, a `UserWarning`, says how many and why. Another
+    one names what follows a changed bore or valve (docs/own_cylinder.md).
+
     On Linux the workers are forked, so that a measure may be any function; on other systems it
     must be defined at the top level of a module.
 
@@ -78,8 +83,8 @@ def sweep(
     ------
     ConfigError
         A key, a value or the number of workers is refused; nothing has been simulated.
-    SimulationDiverged
-        A state of one of the runs is no longer finite.
+    Exception
+        No run has a value: the error of the first one.
 
     """
     if workers != -1 and workers < 1:
@@ -89,78 +94,53 @@ def sweep(
             raise ConfigError(f'{key}: values = {given!r}, must be a list of at least one value')
     cases = [dict(zip(values, combination)) for combination in product(*values.values())]
     runs = [run.replace(case) for case in cases]
+    _name_followers(run.configuration, runs[-1].configuration, list(values))
     n_workers = min(len(cases), os.cpu_count() or 1 if workers == -1 else workers)
     report = counted(sys.stderr, 'runs') if progress else None
-    outcomes = (_serial(runs, duration, measure) if n_workers == 1
-                else _parallel(runs, duration, measure, n_workers))
-    rows: list[list[float]] = [[] for _ in cases]
-    for done, (k, measured) in enumerate(outcomes, start=1):
-        if isinstance(measured, BaseException):
-            raise measured
-        rows[k] = measured
+    measured = {name: np.full(len(cases), np.nan) for name in measure}
+    failures: dict[int, Sequence[Failure]] = {}
+    for done, outcome in enumerate(outcomes(runs, duration, measure, n_workers), start=1):
+        for name, value in outcome.values.items():
+            measured[name][outcome.run] = value
+        if outcome.failures:
+            failures[outcome.run] = outcome.failures
         if report is not None:
             report(done, len(cases))
+    if failures:
+        _name_failures(dict(sorted(failures.items())), cases, measured)
     columns = {key: np.array([case[key] for case in cases]) for key in values}
-    columns |= {name: np.array(column) for name, column in zip(measure, zip(*rows))}
-    return Sweep(columns)
+    return Sweep(columns | measured, dict(sorted(failures.items())))
 
 
-def _measured(
-        run: Run, duration: float | None, measure: Mapping[str, Measure]) -> list[float]:
-    result = run.simulate(duration)
-    return [float(function(result)) for function in measure.values()]
+def _name_failures(
+        failures: Mapping[int, Sequence[Failure]], cases: Sequence[Mapping[str, Any]],
+        measured: Mapping[str, np.ndarray]) -> None:
+    """Warn of failures in one line; raise the first one if there is no value at all."""
+    row, (first, *_) = next(iter(failures.items()))
+    if len(failures) == len(cases) and all(np.isnan(column).all() for column in measured.values()):
+        raise first.error
+    case = ', '.join(f'{key} = {value}' for key, value in cases[row].items())
+    warnings.warn(
+        f'{len(failures)} of {len(cases)} runs lack a value; with {case}: {first}', stacklevel=3)
 
 
-def _serial(
-        runs: Sequence[Run], duration: float | None, measure: Mapping[str, Measure]
-        ) -> Iterator[_Outcome]:
-    for k, run in enumerate(runs):
-        yield k, _measured(run, duration, measure)
-
-
-def _parallel(
-        runs: Sequence[Run], duration: float | None, measure: Mapping[str, Measure],
-        n_workers: int) -> Iterator[_Outcome]:
-    """Yield the outcomes as they arrive; worker w of n does the runs w, w + n, w + 2 n, ..."""
-    runs[0].simulation().step()  # load the kernels once, before the fork
-    context: Any = multiprocessing.get_context(
-        'fork' if 'fork' in multiprocessing.get_all_start_methods() else 'spawn')
-    workers, ends = [], []
-    for w in range(n_workers):
-        ours, theirs = context.Pipe(duplex=False)
-        workers.append(context.Process(
-            target=_work, args=(runs, duration, measure, w, n_workers, theirs), daemon=True))
-        workers[-1].start()
-        theirs.close()
-        ends.append(ours)
-    try:
-        while ends:
-            for end in wait(ends):
-                assert isinstance(end, Connection)
-                try:
-                    outcome: _Outcome = end.recv()
-                except EOFError:
-                    ends.remove(end)
-                    continue
-                yield outcome
-        for worker in workers:
-            worker.join()
-            if worker.exitcode:
-                raise RunError(f'a worker of the sweep ended with exit code {worker.exitcode}')
-    finally:
-        for worker in workers:
-            worker.terminate()
-            worker.join()
-
-
-def _work(
-        runs: Sequence[Run], duration: float | None, measure: Mapping[str, Measure], first: int,
-        stride: int, end: Connection) -> None:
-    """Measure a worker's share of the runs, and send each outcome when it is ready."""
-    for k in range(first, len(runs), stride):
-        try:
-            end.send((k, _measured(runs[k], duration, measure)))
-        except IsaError as error:
-            end.send((k, error))
-            return
-    end.close()
+def _name_followers(run: RunConfig, other: RunConfig, changed: Sequence[str]) -> None:
+    """Warn, in one line, that other values of actuators follow those of changed parameters."""
+    for actuator, own in zip(run.actuators, other.actuators):
+        of_actuator = f'actuators.{actuator.name}.'
+        keys = [key for key in changed if key.startswith(f'{of_actuator}parameters.')]
+        if not keys:
+            continue
+        found = [f'{of_actuator}{part}.{difference.key}'
+                 for part, before, after in (('parameters', actuator.sheet, own.sheet),
+                                             ('load', actuator.load, own.load))
+                 if before is not None and after is not None
+                 for difference in section_differences(as_tree(before), as_tree(after))]
+        follow = [key.removeprefix(of_actuator) for key in found
+                  if not any(f'{key}.'.startswith(f'{one}.') for one in changed)]
+        if follow:
+            named = ', '.join(follow[:_MOST_NAMED])
+            warnings.warn(
+                f'{len(follow)} more values of {actuator.name} follow {", ".join(keys)}: {named}'
+                f'{", ..." if len(follow) > _MOST_NAMED else ""}; `isa params --set` lists them, '
+                'and a value in the run file is kept', stacklevel=3)

@@ -1,5 +1,9 @@
 """Sweeps: every combination once, on any number of workers the same table."""
 
+import os
+import signal
+import warnings
+
 import isa_ros
 from isa_ros.actuator.group import ActuatorGroup
 from isa_ros.errors import ConfigError, SimulationDiverged
@@ -68,5 +72,81 @@ def test_a_run_that_diverges_is_named_with_its_state(ram, workers, monkeypatch):
 
 
 def test_an_error_of_a_measure_is_not_swallowed(ram):
+    """Without a single value the error is that of the measure."""
     with pytest.raises(ZeroDivisionError):
         isa_ros.sweep(ram, {MASS: [20.0]}, measure={'bad': lambda result: 1 / 0}, workers=1)
+
+
+class OfTwo(Exception):
+    """An error that does not survive pickling: its constructor takes two values."""
+
+    def __init__(self, one, two):
+        super().__init__(f'{one} of {two}')
+
+
+def fails_with_35(error):
+    """Return a measure that raises for the run with 35 kg."""
+    def measure(result):
+        if result.scenario.run.actuators[0].load.inertia == 35.0:
+            raise error
+        return result['ram.position'][-1]
+    return measure
+
+
+@pytest.mark.parametrize('workers', [1, 2])
+@pytest.mark.parametrize(('error', 'shown'), [
+    (ValueError('no peak'), 'ValueError: no peak'), (OfTwo(1, 2), 'OfTwo: 1 of 2')])
+def test_an_error_of_a_measure_loses_no_other_value(ram, workers, error, shown):
+    """The worker with the failed run does the others of its share too."""
+    measure = {'odd': fails_with_35(error), **MEASURE}
+    with pytest.warns(UserWarning, match=(
+            f"1 of 5 runs lack a value; with {MASS} = 35.0: measure 'odd': {shown}")) as said:
+        table = isa_ros.sweep(ram, {MASS: [20.0, 35.0, 50.0, 65.0, 80.0]}, 0.01, measure=measure,
+                              workers=workers)
+    assert 'test_sweep.py:' in str(said[0].message) or workers == 2
+    assert np.isnan(table['odd']).tolist() == [False, True, False, False, False]
+    assert np.isfinite(table['last']).all() and np.isfinite(table['largest']).all()
+    assert [failure.measure for failure in table.failures[1]] == ['odd']
+    assert list(table.failures) == [1]
+
+
+def test_a_run_that_diverges_loses_no_other_run(ram, monkeypatch):
+    simulate = isa_ros.Run.simulate
+
+    def broken(self, *args):
+        if self.configuration.actuators[0].load.inertia == 30.0:
+            raise SimulationDiverged(10_000_000, 'ram: plant.p_a', np.nan)
+        return simulate(self, *args)
+    monkeypatch.setattr(isa_ros.Run, 'simulate', broken)
+    with pytest.warns(UserWarning, match=f'1 of 3 runs lack a value; with {MASS} = 30.0: ram: '):
+        table = isa_ros.sweep(ram, {MASS: [20.0, 30.0, 40.0]}, measure=MEASURE, workers=2)
+    assert np.isnan(table['last']).tolist() == [False, True, False]
+    assert isinstance(table.failures[1][0].error, SimulationDiverged)
+
+
+def test_a_worker_that_is_killed_loses_its_own_runs_only(ram):
+    """As by the kernel where memory is short; the second worker has every other run."""
+    def killed(result):
+        if result.scenario.run.actuators[0].load.inertia == 35.0:
+            os.kill(os.getpid(), signal.SIGKILL)
+        return 1.0
+    with pytest.warns(UserWarning, match='2 of 4 runs lack .*: a worker of the sweep ended with '
+                                         'exit code -9'):
+        table = isa_ros.sweep(
+            ram, {MASS: [20.0, 35.0, 50.0, 65.0]}, 0.01, measure={'one': killed}, workers=2)
+    assert np.isnan(table['one']).tolist() == [False, True, False, True]
+
+
+BORE = 'actuators.ram.parameters.plant.drive.bore_mm'
+
+
+def test_values_that_follow_a_changed_bore_are_named_in_one_line(ram):
+    """Of the others no line: nothing follows the supply or the load's mass."""
+    with pytest.warns(UserWarning) as said:
+        isa_ros.sweep(ram, {BORE: [21.5, 25.0]}, 0.002, measure=MEASURE, workers=1)
+    line, = (str(one.message) for one in said)
+    assert f'more values of ram follow {BORE}: parameters.' in line and '\n' not in line
+    with warnings.catch_warnings():
+        warnings.simplefilter('error')
+        isa_ros.sweep(ram, {'supply.pressure_mpa': [20.7, 14.0], MASS: [20.0, 30.0]}, 0.002,
+                      measure=MEASURE, workers=1)
