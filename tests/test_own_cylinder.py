@@ -29,8 +29,8 @@ actuators:
     %s
     parameters:
       plant:
-        drive: {bore_mm: %g, rod_mm: %g, stroke_mm: %g}
-        valve: {flow: {rated_flow_lpm: %g}}
+        drive: {bore_mm: %g, rod_mm: %g, stroke_mm: %g, rated_pressure_mpa: 14.0}
+        valve: {flow: {rated_flow_lpm: %g, rated_current_ma: 10.0}}
 """
 RATED = 20.0 / 60e3  # m3/s at 7 MPa
 SIZES = {'16/12': (16.0, 12.0, 80.0, 5.0), '40/25': (40.0, 25.0, 200.0, 20.0),

@@ -1,16 +1,17 @@
 """
 Quantities that values of a model are proportional to, as in ``scales_with: stall_out``.
 
-Such a value holds for the model's own cylinder, valve and supply. For others it is multiplied by
-the ratio of the quantity, so that a larger bore has larger ratings, too. Quantities are SI; a
-constant factor of a quantity cancels.
+Such a value holds for the model's own cylinder and valve. For others it is multiplied by the
+ratio of the quantity, so that a larger bore has larger ratings, too. Quantities are SI; a constant
+factor of a quantity cancels. They are those of rated data: neither the run's supply nor its oil,
+sensors or rates change them (`isa_ros.config.models.scaling`).
 """
 
 from collections.abc import Callable, Mapping
 import math
 
 from isa_ros.actuator.sheet import ActuatorSheet, output_per_spool, valve_stop
-from isa_ros.core.units import MILLI
+from isa_ros.core.units import MILLI, MPA
 from isa_ros.errors import ConfigError
 from isa_ros.plant.chambers import chambers_record, volumes
 from isa_ros.plant.coil import ClosedLoopCoil
@@ -26,53 +27,58 @@ def _area(sheet: ActuatorSheet) -> float:
     return sheet.plant.drive.areas[0]
 
 
-def _piston_area(sheet: ActuatorSheet, supply: float) -> float:
+def _rated_pressure(sheet: ActuatorSheet) -> float:
+    """Return P_S above return that the actuator is sized for, in Pa; a run may have another."""
+    return sheet.plant.drive.rated_pressure_mpa * MPA
+
+
+def _piston_area(sheet: ActuatorSheet) -> float:
     return _area(sheet)
 
 
-def _stall_out(sheet: ActuatorSheet, supply: float) -> float:
+def _stall_out(sheet: ActuatorSheet) -> float:
     """Return A_A P_S in N | Nm."""
-    return _area(sheet) * supply
+    return _area(sheet) * _rated_pressure(sheet)
 
 
-def _stall_in(sheet: ActuatorSheet, supply: float) -> float:
+def _stall_in(sheet: ActuatorSheet) -> float:
     """Return A_B P_S in N | Nm."""
-    return sheet.plant.drive.areas[1] * supply
+    return sheet.plant.drive.areas[1] * _rated_pressure(sheet)
 
 
-def _stroke(sheet: ActuatorSheet, supply: float) -> float:
+def _stroke(sheet: ActuatorSheet) -> float:
     return sheet.plant.drive.stroke
 
 
-def _swept_volume(sheet: ActuatorSheet, supply: float) -> float:
+def _swept_volume(sheet: ActuatorSheet) -> float:
     return _area(sheet) * sheet.plant.drive.stroke
 
 
-def _seal_length(sheet: ActuatorSheet, supply: float) -> float:
+def _seal_length(sheet: ActuatorSheet) -> float:
     """Return the circumference of the piston in m."""
     return 2.0 * math.sqrt(math.pi * _area(sheet))
 
 
-def _piston_volume(sheet: ActuatorSheet, supply: float) -> float:
+def _piston_volume(sheet: ActuatorSheet) -> float:
     """Return the volume of a piston as long as its bore, on a rod of twice the stroke, in m3."""
     area_a, area_b = sheet.plant.drive.areas
     return (area_a * 2.0 * math.sqrt(area_a / math.pi)
             + (area_a - area_b) * 2.0 * sheet.plant.drive.stroke)
 
 
-def _stall_damping(sheet: ActuatorSheet, supply: float) -> float:
+def _stall_damping(sheet: ActuatorSheet) -> float:
     """Return sqrt(k m) of springs as the stall force and of the piston's mass."""
-    return math.sqrt(_stall_out(sheet, supply) * _piston_volume(sheet, supply))
+    return math.sqrt(_stall_out(sheet) * _piston_volume(sheet))
 
 
-def _stall_stiffness(sheet: ActuatorSheet, supply: float) -> float:
+def _stall_stiffness(sheet: ActuatorSheet) -> float:
     """Return the stall force over the stroke in N/m | Nm/rad."""
-    return _stall_out(sheet, supply) / _stroke(sheet, supply)
+    return _stall_out(sheet) / _stroke(sheet)
 
 
-def _load_damping(sheet: ActuatorSheet, supply: float) -> float:
+def _load_damping(sheet: ActuatorSheet) -> float:
     """Return sqrt(k m) of stall force over stroke and of a load as the stall force."""
-    return math.sqrt(_stall_stiffness(sheet, supply) * _stall_out(sheet, supply))
+    return math.sqrt(_stall_stiffness(sheet) * _stall_out(sheet))
 
 
 def _valve(sheet: ActuatorSheet) -> np.record:
@@ -80,22 +86,22 @@ def _valve(sheet: ActuatorSheet) -> np.record:
     return valve_record(sheet.plant.valve, area_a / area_b)
 
 
-def _valve_current(sheet: ActuatorSheet, supply: float) -> float:
+def _valve_current(sheet: ActuatorSheet) -> float:
     """Return the largest series current in A."""
     valve = sheet.plant.valve
     return valve.spool_stop_mm / valve.spool_gain_mm_per_ma * MILLI
 
 
-def _per_valve_current(sheet: ActuatorSheet, supply: float) -> float:
+def _per_valve_current(sheet: ActuatorSheet) -> float:
     """Return the ohms that have 1 V at full current."""
-    return 1.0 / _valve_current(sheet, supply)
+    return 1.0 / _valve_current(sheet)
 
 
-def _spool_travel(sheet: ActuatorSheet, supply: float) -> float:
+def _spool_travel(sheet: ActuatorSheet) -> float:
     return sheet.plant.valve.spool_stop_mm * MILLI
 
 
-def _spool_frequency(sheet: ActuatorSheet, supply: float) -> float:
+def _spool_frequency(sheet: ActuatorSheet) -> float:
     """Return the speed of the spool in rad/s: K_loop of equation 8, or half w_n over zeta."""
     spool = sheet.plant.spool
     if isinstance(spool, ClosedLoopSpool):
@@ -103,19 +109,19 @@ def _spool_frequency(sheet: ActuatorSheet, supply: float) -> float:
     return spool.natural_frequency_rad_per_s / (2.0 * spool.damping_ratio)
 
 
-def _valve_stop(sheet: ActuatorSheet, supply: float) -> float:
+def _valve_stop(sheet: ActuatorSheet) -> float:
     return valve_stop(sheet)
 
 
-def _valve_conductance(sheet: ActuatorSheet, supply: float) -> float:
+def _valve_conductance(sheet: ActuatorSheet) -> float:
     """Return the full flow of a land over the square root of its drop, m3/s/sqrt(Pa)."""
     valve = _valve(sheet)
     return float(flow_curve(valve.x_max, valve) * valve.per_root_drop)
 
 
-def _full_flow(sheet: ActuatorSheet, supply: float) -> float:
-    """Return the full flow with the supply pressure over one land, in m3/s."""
-    return _valve_conductance(sheet, supply) * math.sqrt(supply)
+def _full_flow(sheet: ActuatorSheet) -> float:
+    """Return the full flow with the rated pressure over one land, in m3/s."""
+    return _valve_conductance(sheet) * math.sqrt(_rated_pressure(sheet))
 
 
 def _bend(sheet: ActuatorSheet) -> tuple[float, float]:
@@ -127,33 +133,33 @@ def _bend(sheet: ActuatorSheet) -> tuple[float, float]:
     return bend
 
 
-def _flow_knee(sheet: ActuatorSheet, supply: float) -> float:
+def _flow_knee(sheet: ActuatorSheet) -> float:
     """Return the end of the flow curve's first line in the unit of the valve's command."""
     valve = sheet.plant.valve
     return _bend(sheet)[0] * valve.spool_gain_mm_per_ma * MILLI * output_per_spool(sheet)
 
 
-def _flow_gain_ratio(sheet: ActuatorSheet, supply: float) -> float:
+def _flow_gain_ratio(sheet: ActuatorSheet) -> float:
     """Return the slope of the flow curve's first line over that of the second one."""
     return _bend(sheet)[1]
 
 
-def _null_flow_gain(sheet: ActuatorSheet, supply: float) -> float:
-    """Return the flow of a land with half the supply pressure per output about null."""
+def _null_flow_gain(sheet: ActuatorSheet) -> float:
+    """Return the flow of a land with half the rated pressure per output about null."""
     valve = _valve(sheet)
-    return float(valve.k_low * valve.per_root_drop * math.sqrt(0.5 * supply)
+    return float(valve.k_low * valve.per_root_drop * math.sqrt(0.5 * _rated_pressure(sheet))
                  / output_per_spool(sheet))
 
 
-def _output_per_speed(sheet: ActuatorSheet, supply: float) -> float:
+def _output_per_speed(sheet: ActuatorSheet) -> float:
     """Return the valve's command for 1 m/s | rad/s, the mean of both directions and areas."""
-    return 0.5 * sum(sheet.plant.drive.areas) / _null_flow_gain(sheet, supply)
+    return 0.5 * sum(sheet.plant.drive.areas) / _null_flow_gain(sheet)
 
 
-def _valve_lag(sheet: ActuatorSheet, supply: float) -> float:
+def _valve_lag(sheet: ActuatorSheet) -> float:
     """Return the sum of the lags of spool, current and sampling, in s."""
     coil = sheet.plant.coil
-    lag = 1.0 / sheet.reu.current.rate_hz + 1.0 / _spool_frequency(sheet, supply)
+    lag = 1.0 / sheet.reu.current.rate_hz + 1.0 / _spool_frequency(sheet)
     if isinstance(coil, ClosedLoopCoil):
         lag += 1.0 / coil.bandwidth_rad_per_s
     if not isinstance(sheet.reu.force, Off):
@@ -161,12 +167,12 @@ def _valve_lag(sheet: ActuatorSheet, supply: float) -> float:
     return lag
 
 
-def _valve_speed(sheet: ActuatorSheet, supply: float) -> float:
+def _valve_speed(sheet: ActuatorSheet) -> float:
     """Return one over the valve's lag, in rad/s."""
-    return 1.0 / _valve_lag(sheet, supply)
+    return 1.0 / _valve_lag(sheet)
 
 
-def _flow_per_force_rate(sheet: ActuatorSheet, supply: float) -> float:
+def _flow_per_force_rate(sheet: ActuatorSheet) -> float:
     """
     Return the flow of a land for 1 N/s | 1 Nm/s of the blocked actuator  (R12).
 
@@ -185,37 +191,33 @@ def _flow_per_force_rate(sheet: ActuatorSheet, supply: float) -> float:
     return float(1.0 / (min(in_loop) * max(rates)))
 
 
-def _output_per_force_rate(sheet: ActuatorSheet, supply: float) -> float:
+def _output_per_force_rate(sheet: ActuatorSheet) -> float:
     """Return the valve's command for 1 N/s | 1 Nm/s of the blocked actuator."""
-    return _flow_per_force_rate(sheet, supply) / _null_flow_gain(sheet, supply)
+    return _flow_per_force_rate(sheet) / _null_flow_gain(sheet)
 
 
-def _force_gain(sheet: ActuatorSheet, supply: float) -> float:
+def _force_gain(sheet: ActuatorSheet) -> float:
     """Return K_p of a force loop whose crossover is one over the valve's lag."""
-    return _output_per_force_rate(sheet, supply) / _valve_lag(sheet, supply)
+    return _output_per_force_rate(sheet) / _valve_lag(sheet)
 
 
-def _force_integral_gain(sheet: ActuatorSheet, supply: float) -> float:
+def _force_integral_gain(sheet: ActuatorSheet) -> float:
     """Return K_i of a force loop with a corner at one over the valve's lag."""
-    return _force_gain(sheet, supply) / _valve_lag(sheet, supply)
+    return _force_gain(sheet) / _valve_lag(sheet)
 
 
-def _position_gain(sheet: ActuatorSheet, supply: float) -> float:
+def _position_gain(sheet: ActuatorSheet) -> float:
     """Return K_p of a position loop whose crossover is one over the valve's lag."""
-    return _output_per_speed(sheet, supply) / _valve_lag(sheet, supply)
+    return _output_per_speed(sheet) / _valve_lag(sheet)
 
 
-def _supply_pressure(sheet: ActuatorSheet, supply: float) -> float:
-    return supply
-
-
-SCALES: Mapping[str, Callable[[ActuatorSheet, float], float]] = {
+SCALES: Mapping[str, Callable[[ActuatorSheet], float]] = {
     'piston_area': _piston_area, 'stall_out': _stall_out, 'stall_in': _stall_in, 'stroke': _stroke,
     'swept_volume': _swept_volume, 'seal_length': _seal_length,
     'piston_volume': _piston_volume,
     'stall_damping': _stall_damping,
     'stall_stiffness': _stall_stiffness, 'load_damping': _load_damping,
-    'supply_pressure': _supply_pressure,
+    'rated_pressure': _rated_pressure,
     'valve_current': _valve_current, 'per_valve_current': _per_valve_current,
     'valve_stop': _valve_stop, 'spool_travel': _spool_travel,
     'spool_frequency': _spool_frequency, 'valve_speed': _valve_speed,
@@ -225,4 +227,4 @@ SCALES: Mapping[str, Callable[[ActuatorSheet, float], float]] = {
     'flow_per_force_rate': _flow_per_force_rate, 'force_gain': _force_gain,
     'force_integral_gain': _force_integral_gain,
 }
-"""The quantities by name, of a sheet and a supply pressure above return (Pa)."""
+"""The quantities by name, of a sheet."""

@@ -10,6 +10,7 @@ that entrained air needs when it expands, but for the bulk modulus; the air does
 
 from dataclasses import dataclass
 import math
+from typing import Any
 
 from isa_ros.core.constants import ATMOSPHERE
 from isa_ros.core.elementary import exp, log
@@ -21,6 +22,13 @@ from isa_ros.errors import ParameterError
 import numpy as np
 
 
+def rated_pressure() -> Any:
+    """Declare the pressure that an actuator is sized for; no equation of the plant has it."""
+    return parameter(
+        'supply above return pressure that ratings, load cell and gains are sized for', 'MPa',
+        absent=20.7, source='paper Table 2', gt=0.0, le=70.0)
+
+
 @dataclass(frozen=True, kw_only=True)
 class Cylinder(Parameters):
     """Differential cylinder."""
@@ -28,6 +36,7 @@ class Cylinder(Parameters):
     bore_mm: float = parameter('piston diameter', 'mm', gt=0.0, le=500.0)
     rod_mm: float = parameter('rod diameter', 'mm', gt=0.0, le=500.0)
     stroke_mm: float = parameter('stroke', 'mm', gt=0.0, le=5000.0)
+    rated_pressure_mpa: float = rated_pressure()
 
     def __post_init__(self) -> None:
         """Refuse a rod that leaves no piston area on its side."""
@@ -55,6 +64,7 @@ class Vane(Parameters):
     displacement_cc_per_rad: float = parameter(
         'displacement D_m', 'cc/rad', ge=1e-3, le=1000.0)
     rotation: float = parameter('angular range L_m', 'rad', gt=0.0, le=6.2)
+    rated_pressure_mpa: float = rated_pressure()
 
     @property
     def areas(self) -> tuple[float, float]:

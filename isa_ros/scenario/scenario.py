@@ -278,8 +278,7 @@ def _with_loads(run: RunConfig, tree: Tree, place: Place) -> RunConfig:
         if body is not None:
             raise ConfigError(f'{below} is not used: the load of {name} is {body.called}')
         model = actuator_model(actuator.model, f'{run.source}: actuators.{name}.model')
-        load = own_load(
-            section_at(section, below), below, model, actuator.sheet, run.span_of(name))
+        load = own_load(section_at(section, below), below, model, actuator.sheet)
         refuse_beyond_stops(load, actuator.initial_position, str(below))
         replaced[name] = replace(actuator, load=load)
     return replace(run, actuators=tuple(replaced.get(a.name, a) for a in run.actuators))

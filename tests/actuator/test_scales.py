@@ -36,7 +36,7 @@ def test_the_force_gain_is_that_of_the_fastest_place(rod_mm):
     sheet = cylinder(rod_mm)
     plant = plant_record(sheet.plant)[0]
     in_loop = force_stiffness(plant)
-    gain, lag = (SCALES[name](sheet, SUPPLY) for name in ('force_gain', 'valve_lag'))
+    gain, lag = (SCALES[name](sheet) for name in ('force_gain', 'valve_lag'))
     u = SMALL * 0.01
     q_a, q_b, _, _ = servo_valve.port_flows(
         u * plant.valve.k_spool, HALF, HALF, SUPPLY, 0.0, plant.valve)
@@ -56,7 +56,7 @@ def test_the_output_per_speed_gives_the_mean_of_the_flows():
     """V7: (A_A + A_B)/2 v at half the supply pressure over a land."""
     sheet = cylinder(25.0)
     plant = plant_record(sheet.plant)[0]
-    u = SCALES['output_per_speed'](sheet, SUPPLY) * 0.01  # for 10 mm/s
+    u = SCALES['output_per_speed'](sheet) * 0.01  # for 10 mm/s
     q_a, q_b, _, _ = servo_valve.port_flows(
         u * plant.valve.k_spool, HALF, HALF, SUPPLY, 0.0, plant.valve)
     swept = 0.5 * (plant.chambers.area_a + plant.chambers.area_b) * 0.01

@@ -127,9 +127,10 @@ def shown(text: str, parameter: str) -> list[str]:
 def test_a_changed_value_is_shown_with_what_follows_from_it() -> None:
     """A_A P_S of 40 mm at 14 MPa is 3.46 times that of 21.5 mm; the stops are the load's."""
     text = describe('isa_v5', values={
-        'plant.drive.bore_mm': 40, 'supply.pressure_mpa': 14.0, 'load.kind': 'wheel'})
+        'plant.drive.bore_mm': 40, 'plant.drive.rated_pressure_mpa': 14.0, 'load.kind': 'wheel'})
     assert shown(text, 'plant.drive.bore_mm') == ['40', '--set']
-    assert shown(text, 'pressure_mpa') == ['14', '--set']
+    assert shown(text, 'plant.drive.rated_pressure_mpa') == ['14', '--set']
+    assert shown(text, 'pressure_mpa')[0] == '20.7'
     value, source = shown(text, 'reu.position.force_out')
     assert float(value) == pytest.approx(7500.0 * 14.0 / 20.7 * (40.0 / 21.5) ** 2, rel=1e-5)
     assert source.endswith('scaled with stall_out')

@@ -22,7 +22,7 @@ def test_the_file_is_the_shipped_one(tmp_path: Path) -> None:
 def test_the_details_of_the_valve_fit_the_file(tmp_path: Path) -> None:
     """The compensation that is printed is that of the curve: 1.25 over 2.1875 l/min/mA."""
     path = tmp_path / 'detailed.yaml'
-    path.write_text(FILE[:FILE.index('      plant:')] + DETAILS)
+    path.write_text(FILE[:FILE.index('        valve:')] + DETAILS.partition('plant:\n')[2])
     sheet = load_run(path).actuators[0].sheet
     assert isinstance(sheet.plant.valve.flow, PointsFlow)
     assert sheet.plant.valve.bend == pytest.approx((2.0, 1.25 / 2.1875), rel=1e-12, abs=0.0)

@@ -149,8 +149,7 @@ def rig_of(named: Chosen, choice: Choice) -> Rig:
         kind = choice.load or (model.default_load if choice.loop == 'position' else BLOCKED)
         place = Place('--load')
         tree = changed({'kind': kind}, named.load_values, place.file)
-        config = replace(config, load=own_load(
-            tree, place, model, config.sheet, named.run.span_of(config.name)))
+        config = replace(config, load=own_load(tree, place, model, config.sheet))
         kind = str(tree['kind'])
     return Rig(named.run.alone(replace(config, sheet=loop.sheet)), loop, kind, choice.values)
 

@@ -6,9 +6,9 @@ from functools import cache
 from pathlib import Path
 
 from isa_ros.config.text.sections import (
-    merge, Place, refuse_unknown, Section, section_at, sourced, SourcedValue)
+    entry_at, merge, names_at, Place, refuse_unknown, Section, section_at, sourced, SourcedValue)
 from isa_ros.config.text.yaml_text import read, Tree
-from isa_ros.core.suggest import alternatives
+from isa_ros.core.suggest import alternatives, listed
 from isa_ros.errors import ConfigError
 
 _DATA = Path(__file__).parents[1] / 'data'
@@ -33,6 +33,8 @@ class Model:
     """Other ways to model or to wire it: sections that replace those of the sheet."""
     loads: dict[str, Section]
     default_load: str
+    stated: tuple[str, ...] = ()
+    """Dotted keys of the sheet that a run file must state: those of the user's data sheets."""
 
     def with_preset(self, preset: str, where: str) -> Section:
         """
@@ -68,6 +70,22 @@ class Model:
             section = merge(section, self.variants[variant])
         return section
 
+    def refuse_unstated(self, own: Section, base: Section, place: Place) -> None:
+        """
+        Refuse a sheet that has values of `stated` from ``base``, of the model, at ``place``.
+
+        Raises
+        ------
+        ConfigError
+            The run file leaves a value out that belongs to its own cylinder or valve.
+
+        """
+        lacking = [key for key in self.stated
+                   if (entry := entry_at(own, key)) is not None and entry is entry_at(base, key)]
+        if lacking:
+            raise ConfigError(place.has(
+                f'lacks {listed(lacking)}: {self.name} has none of its own, see your data sheets'))
+
 
 def model_names() -> list[str]:
     """Return the names of the packaged actuator models, sorted."""
@@ -102,8 +120,8 @@ def model_of(tree: Tree, file: str) -> Model:
     """Return the model of a file's tree; as `actuator_model`."""
     place = Place(file)
     refuse_unknown(
-        tree, ('model', 'kind', 'spool_feedback', 'plant', 'reu', 'presets', 'variants', 'loads'),
-        place)
+        tree, ('model', 'kind', 'stated', 'spool_feedback', 'plant', 'reu', 'presets', 'variants',
+               'loads'), place)
     sheet = sourced(
         {key: tree[key] for key in ('spool_feedback', 'plant', 'reu') if key in tree}, place)
     plant = sheet.get('plant')
@@ -118,7 +136,8 @@ def model_of(tree: Tree, file: str) -> Model:
         _sections(section_at(tree.get('presets'), place / 'presets'), place / 'presets'),
         _sections(section_at(tree.get('variants', {}), place / 'variants'), place / 'variants'),
         {load: _load(load, section_at(below, place / 'loads' / load), place / 'loads' / load)
-         for load, below in loads.items()}, str(default))
+         for load, below in loads.items()}, str(default),
+        tuple(names_at(tree.get('stated', []), place / 'stated')))
 
 
 def _sections(tree: Tree, place: Place) -> dict[str, Section]:

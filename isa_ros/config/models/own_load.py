@@ -2,7 +2,6 @@
 
 from dataclasses import replace
 
-from isa_ros.actuator.actuator import PAPER_SUPPLY
 from isa_ros.actuator.sheet import ActuatorSheet
 from isa_ros.config.models.catalogue import DEFAULT_PRESET, Model
 from isa_ros.config.models.scaling import Scaling
@@ -14,22 +13,18 @@ from isa_ros.loads.drop_rig import Wheel
 from isa_ros.loads.sheets import LocalLoad
 
 
-def own_load(
-        tree: Tree, place: Place, model: Model, sheet: ActuatorSheet,
-        supply: float = PAPER_SUPPLY) -> LocalLoad:
+def own_load(tree: Tree, place: Place, model: Model, sheet: ActuatorSheet) -> LocalLoad:
     """Return a load of one actuator: the model's of that kind with single values replaced."""
-    section = load_section(written(tree, place), place, model, sheet, supply)
+    section = load_section(written(tree, place), place, model, sheet)
     load: LocalLoad = build_one_of(LocalLoad, section, place)
     return load
 
 
-def load_section(
-        own: Section, place: Place, model: Model, sheet: ActuatorSheet, supply: float) -> Section:
+def load_section(own: Section, place: Place, model: Model, sheet: ActuatorSheet) -> Section:
     """
     Return the values of a load: those of ``own``, else those of the model's load of that kind.
 
-    ``sheet`` is that of an actuator made from the model, on ``supply`` Pa above return pressure:
-    the model's values scale with it.
+    ``sheet`` is that of an actuator made from the model: the model's values scale with it.
 
     Raises
     ------
@@ -43,7 +38,7 @@ def load_section(
     if not isinstance(kind, str) or kind not in model.loads:
         raise ConfigError(f'{place}.kind = {kind!r}, must be one of {", ".join(model.loads)}')
     base = build(ActuatorSheet, model.with_preset(DEFAULT_PRESET, 'preset'), model.place)
-    section = merge(Scaling(base, sheet, supply).section(model.loads[kind], place), rest)
+    section = merge(Scaling(base, sheet).section(model.loads[kind], place), rest)
     of_model = section['kind']
     assert isinstance(of_model, SourcedValue)
     return section | {'kind': replace(of_model, where=str(place / 'kind'))}

@@ -1,30 +1,32 @@
 """
-The values of a model that scale with its cylinder, its valve or its supply.
+The values of a model that scale with the rated data of its cylinder and valve.
 
-A value written with ``scales_with`` holds for the model as it is, at `PAPER_SUPPLY`. For a run
-file with another bore, valve or supply it is multiplied by the ratio of that quantity; a value
-that the file has itself is not.
+A value written with ``scales_with`` holds for the model as it is. For a run file with another
+bore, rated pressure or valve it is multiplied by the ratio of that quantity; a value that the file
+has itself is not. Rated data are the sections `RATED` of the plant and which blocks the REU has.
+Nothing follows the supply of the run, its oil, its sensors or the rates of its blocks: a sweep of
+one of them is of the same actuator.
 """
 
 from dataclasses import dataclass, field, replace
 from typing import Any
 
-from isa_ros.actuator.actuator import PAPER_SUPPLY
 from isa_ros.actuator.scales import SCALES
 from isa_ros.actuator.sheet import ActuatorSheet
 from isa_ros.config.text.parameter_sets import build
 from isa_ros.config.text.sections import Place, Section, SourcedValue
 from isa_ros.errors import ConfigError
 
+RATED = ('kind', 'drive', 'coil', 'spool', 'valve')
+"""Entries of the plant with rated data."""
+
 
 @dataclass(frozen=True)
 class Scaling:
-    """A model as it is, and an actuator made from it."""
+    """A model as it is, and one with the rated data of an actuator made from it."""
 
     model: ActuatorSheet
     own: ActuatorSheet
-    supply: float
-    """Supply above return pressure of the actuator, Pa."""
     _factors: dict[str, float] = field(default_factory=dict, init=False, repr=False, compare=False)
     """The ratios so far: several values scale with one quantity, and some take long to compute."""
 
@@ -40,8 +42,7 @@ class Scaling:
         """
         if scale not in self._factors:
             quantity = SCALES[scale]
-            self._factors[scale] = (
-                quantity(self.own, self.supply) / quantity(self.model, PAPER_SUPPLY))
+            self._factors[scale] = quantity(self.own) / quantity(self.model)
         return self._factors[scale]
 
     def section(self, section: Section, place: Place) -> Section:
@@ -74,8 +75,8 @@ def _times(value: Any, factor: float) -> Any:
 
 
 def scaled_sheet(
-        section: Section, model: Section, model_place: Place, place: Place,
-        supply: float) -> tuple[ActuatorSheet, Section]:
+        section: Section, model: Section, model_place: Place, place: Place
+        ) -> tuple[ActuatorSheet, Section]:
     """
     Return the sheet of an actuator, and its section with scaled values.
 
@@ -90,12 +91,35 @@ def scaled_sheet(
     """
     base = build(ActuatorSheet, model, model_place)
     own = base if section == model else build(ActuatorSheet, section, model_place)
-    if own == base and supply == PAPER_SUPPLY:
+    if own == base:
         return own, section
+    rated = _rated(section, model)
     for part in ('plant', 'reu'):
-        below = section[part]
-        assert not isinstance(below, SourcedValue)
-        scaling = Scaling(base, own, supply)
-        section = section | {part: scaling.section(below, place / part)}
-        own = build(ActuatorSheet, section, model_place)
-    return own, section
+        scaling = Scaling(base, build(ActuatorSheet, rated, model_place))
+        section, rated = ({**one, part: scaling.section(_below(one, part), place / part)}
+                          for one in (section, rated))
+    return build(ActuatorSheet, section, model_place), section
+
+
+def _rated(section: Section, model: Section) -> Section:
+    """Return a section with all else than its rated data as the model has it."""
+    plant, reu = _below(section, 'plant'), _below(section, 'reu')
+    return section | {
+        'plant': _below(model, 'plant') | {key: plant[key] for key in RATED if key in plant},
+        'reu': {name: _at_rate_of(own, _below(model, 'reu').get(name))
+                for name, own in reu.items()}}
+
+
+def _at_rate_of(
+        block: SourcedValue | Section,
+        model: SourcedValue | Section | None) -> SourcedValue | Section:
+    """Return a block of the REU at the rate that the model's block in its place has."""
+    if isinstance(block, SourcedValue) or not isinstance(model, dict):
+        return block
+    return block | {key: model[key] for key in ('rate_hz',) if key in block and key in model}
+
+
+def _below(section: Section, part: str) -> Section:
+    below = section[part]
+    assert not isinstance(below, SourcedValue)
+    return below

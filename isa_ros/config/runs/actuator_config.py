@@ -81,8 +81,6 @@ class Around(NamedTuple):
     step_ns: int
     link: Section
     """Of all actuators."""
-    span: float
-    """Supply pressure above return pressure, Pa."""
     moved: tuple[BodyConfig, str] | None
     """The body and its joint that it moves."""
     is_checked: bool
@@ -147,8 +145,10 @@ def _sheet(
     of_model = model.with_variants(
         model.with_preset(values['preset'], f'{place}.preset'), values['variants'],
         f'{place}.variants') | {LINK: link_of(around.link, link, around.step_ns, place)}
+    own = merge(of_model, parameters)
+    model.refuse_unstated(own, of_model, place / 'parameters')
     sheet, section = scaled_sheet(
-        merge(of_model, parameters), of_model, model.place, place / 'parameters', around.span)
+        own, of_model, model.place, place / 'parameters')
     return sheet, {'sheet': section}, model
 
 
@@ -211,7 +211,7 @@ def _load_section(
             f'load: {", ".join(kinds)}')
     load: Section = values['load']
     return load if model is None else load_section(
-        load, place / 'load', model, sheet, around.span)
+        load, place / 'load', model, sheet)
 
 
 def _refuse_sheet(sheet: ActuatorSheet, load: LoadSide, place: Place) -> None:

@@ -2,7 +2,7 @@
 
 from dataclasses import replace
 
-from isa_ros.actuator.actuator import PAPER_SUPPLY, Timing
+from isa_ros.actuator.actuator import Timing
 from isa_ros.actuator.sheet import ActuatorSheet
 from isa_ros.config.models.catalogue import Model
 from isa_ros.config.models.own_load import own_load
@@ -29,8 +29,7 @@ def default_actuator(model: str, name: str) -> ActuatorConfig:
     return replace(run.actuators[0], name=name)
 
 
-def default_load(
-        model: Model, sheet: ActuatorSheet, supply: float = PAPER_SUPPLY) -> LocalLoad:
+def default_load(model: Model, sheet: ActuatorSheet) -> LocalLoad:
     """Return the default load of an actuator made from a model; as `own_load`."""
     place = Place(model.name) / 'load'
-    return own_load({'kind': model.default_load}, place, model, sheet, supply)
+    return own_load({'kind': model.default_load}, place, model, sheet)

@@ -10,6 +10,8 @@ from collections.abc import Sequence
 
 from isa_ros.actuator.actuator import PAPER_SUPPLY
 from isa_ros.config.models.catalogue import actuator_model, DEFAULT_PRESET
+from isa_ros.config.text.changes import replaced
+from isa_ros.config.text.sections import entry_at, SourcedValue
 from isa_ros.config.text.yaml_text import Tree
 from isa_ros.core.units import MPA
 
@@ -35,6 +37,10 @@ def model_run(name: str, preset: str | None = None, variants: Sequence[str] = ()
     actuator: Tree = {'model': model.name, 'preset': preset}
     if variants:
         actuator['variants'] = list(variants)
+    for key in model.stated:
+        entry = entry_at(model.sheet, key)
+        assert isinstance(entry, SourcedValue)
+        actuator = replaced(actuator, f'parameters.{key}', entry.value, model.name)
     return {
         'name': model.name,
         'supply': {'kind': 'constant', 'pressure_mpa': PAPER_SUPPLY / MPA,

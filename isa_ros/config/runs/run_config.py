@@ -82,11 +82,6 @@ class RunConfig:
         fed = self.actuator(name).name
         return next(own.sheet for own in self.supplies if fed in own.feeds)
 
-    def span_of(self, name: str) -> float:
-        """Return the supply pressure above return pressure of an actuator, Pa; as `actuator`."""
-        fed = self.actuator(name).name
-        return next(own.span for own in self.supplies if fed in own.feeds)
-
     def alone(self, actuator: ActuatorConfig) -> 'RunConfig':
         """Return a run of ``actuator`` alone, on the supply of the actuator of its name."""
         supply = SupplyConfig(SUPPLY, self.supply_of(actuator.name), (actuator.name,))
@@ -257,12 +252,11 @@ def run_of(tree: Tree, place: Place, is_checked: bool = True) -> tuple[RunConfig
     supplies = supplies_of(values, list(values['actuators']), place)
     actuators = []
     below, moved = place / 'actuators', _moved(bodies, values['actuators'], place)
-    span_of = {name: supply.span for supply in supplies for name in supply.feeds}
     for name, own in values['actuators'].items():
         if name == COORDINATOR:
             raise ConfigError(f'{below / name}: the name is reserved for the coordinator')
         actuator, layers = actuator_of(name, own, below / name, Around(
-            step_ns, values[LINK], span_of[name], moved.get(name), is_checked))
+            step_ns, values[LINK], moved.get(name), is_checked))
         actuators.append(actuator)
         origins |= {f'actuators.{name}.{key}': layer for key, layer in layers.items()}
     if is_checked:

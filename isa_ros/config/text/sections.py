@@ -163,6 +163,14 @@ def merge(base: Section, over: Section) -> Section:
     return merged
 
 
+def entry_at(section: Section, key: str) -> SourcedValue | Section | None:
+    """Return the value or section at a dotted key, None where there is none."""
+    entry: SourcedValue | Section | None = section
+    for part in key.split('.'):
+        entry = entry.get(part) if isinstance(entry, dict) else None
+    return entry
+
+
 def _kind(section: Section) -> Scalar | list[Any]:
     """Return the kind of a section, None for a section without one."""
     named = [entry.value for key in KIND_KEYS

@@ -104,7 +104,7 @@ def _from_run(run: RunConfig, name: str, model: str, in_lockstep: bool) -> NodeS
             f'{run.source}: {name} has model {config.model}, the parameter model = {model!r}')
     if config.load is None and not in_lockstep:
         model_of = actuator_model(config.model, name)
-        config = replace(config, load=default_load(model_of, config.sheet, run.span_of(name)))
+        config = replace(config, load=default_load(model_of, config.sheet))
     return NodeSetup(config, timing_of(run))
 
 

@@ -1,11 +1,11 @@
-"""Values of a model follow the cylinder, valve and supply of a run file; its own values win."""
+"""Values of a model follow the rated data of a run file and nothing else; its own values win."""
 
-from collections.abc import Callable
-from dataclasses import replace
+from collections.abc import Callable, Iterator
+from dataclasses import fields, replace
 from pathlib import Path
+from typing import Any
 
 import isa_ros
-from isa_ros.actuator.actuator import PAPER_SUPPLY
 from isa_ros.actuator.scales import SCALES
 from isa_ros.actuator.sheet import ActuatorSheet
 from isa_ros.config.listing import describe
@@ -15,12 +15,11 @@ from isa_ros.config.runs.default_actuator import default_actuator
 from isa_ros.config.runs.run_config import run_of, RunConfig
 from isa_ros.config.text.sections import merge, Place, sourced, SourcedValue
 from isa_ros.config.text.yaml_text import parse
+from isa_ros.core.parameter import Parameters
 from isa_ros.errors import ConfigError
-from isa_ros.plant.chambers import chambers_record, oil_stiffness
-import numpy as np
 import pytest
 
-Quantity = Callable[[ActuatorSheet, float], float]
+Quantity = Callable[[ActuatorSheet], float]
 
 HEAD = """
 name: own
@@ -34,7 +33,12 @@ actuators:
     load: {kind: %s}
     parameters:
 """
-OWN = '      plant: {drive: {bore_mm: 40.0, rod_mm: 25.0}}\n'
+OWN = '      plant: {drive: {bore_mm: 40.0, rod_mm: 25.0, rated_pressure_mpa: 14.0}}\n'
+CYLINDER = """
+      plant:
+        drive: {bore_mm: 40.0, rod_mm: 25.0, stroke_mm: 200.0, rated_pressure_mpa: 20.7}
+        valve: {flow: {rated_flow_lpm: 20.0, rated_current_ma: 10.0}}
+"""
 A_A, A_B = 1256.637e-6, 765.763e-6  # m2, of 40/25 mm
 ISA_A, ISA_B = 363.050e-6, 249.953e-6  # m2, of 21.5/12 mm
 ROUNDED = 1e-5  # of the areas above
@@ -84,20 +88,69 @@ def test_a_larger_bore_in_the_isa_s_model_has_its_own_ratings() -> None:
     assert replace(force, kp=isa.reu.force.kp, ki=isa.reu.force.ki) == isa.reu.force
 
 
-@pytest.mark.parametrize('beta', [5e8, 1.4e9])
-def test_default_gains_of_the_isa_scale_with_its_oil(beta: float) -> None:
-    """The loop gain stays: K_p times the force rate per flow of oil and load cell in series."""
-    key = 'actuators.kfe.parameters.plant.oil.effective_bulk_modulus'
-    leg = isa_ros.load('leg')
-    gains, rates = [], []
-    for run in (leg, leg.replace({key: beta})):
-        sheet = run.configuration.actuator('kfe').sheet
-        oil = chambers_record(sheet.plant.drive, sheet.plant.oil)
-        stiffness = np.array([oil_stiffness(s, oil) for s in np.linspace(0.0, oil.stroke, 21)])
-        gains.append(sheet.reu.force.kp)
-        k_s = sheet.plant.mechanics.sensor_stiffness
-        rates.append((stiffness / (1.0 + stiffness / k_s)).min())
-    assert gains[1] * rates[1] == pytest.approx(gains[0] * rates[0], rel=1e-9, abs=0.0)
+def leaves(parameters: Parameters, prefix: str = '') -> Iterator[tuple[str, Any]]:
+    """Yield the dotted key and the value of every parameter of a set."""
+    for f in fields(parameters):
+        value = getattr(parameters, f.name)
+        if isinstance(value, Parameters):
+            yield from leaves(value, f'{prefix}{f.name}.')
+        else:
+            yield f'{prefix}{f.name}', value
+
+
+CHANGES = [
+    'plant.oil.effective_bulk_modulus', 'plant.oil.dead_volume_ml', 'plant.friction.coulomb',
+    'plant.mechanics.sensor_stiffness', 'plant.mechanics.inertia', 'plant.sensors.force_range',
+    'plant.relief.opening_pressure_mpa', 'reu.force.rate_hz', 'reu.current.rate_hz',
+    'reu.speed.rate_hz', 'reu.position.stiffness']
+
+
+@pytest.mark.parametrize('file', ['rig_cylinder', 'rig_linear', 'leg'])
+@pytest.mark.parametrize('key', CHANGES)
+def test_a_changed_value_changes_nothing_else(file: str, key: str) -> None:
+    """A sweep of oil, load cell, friction or a rate is of one and the same actuator."""
+    run = isa_ros.load(file)
+    actuator = run.configuration.actuators[0]
+    before = dict(leaves(actuator.sheet))
+    factor = {'reu.current.rate_hz': 0.5}.get(key, 0.2 if key.endswith('rate_hz') else 1.01)
+    other = run.replace({f'actuators.{actuator.name}.parameters.{key}': before[key] * factor})
+    changed = other.configuration.actuators[0]
+    assert dict(leaves(changed.sheet)) == before | {key: before[key] * factor}
+    assert changed.load == actuator.load
+
+
+@pytest.mark.parametrize('file', ['rig_cylinder', 'leg'])
+def test_the_supply_of_a_run_changes_nothing_of_its_actuators(file: str) -> None:
+    run = isa_ros.load(file)
+    other = run.replace({'supply.pressure_mpa': 9.0, 'supply.return_pressure_mpa': 0.5})
+    assert other.configuration.actuators == run.configuration.actuators
+    assert other.configuration.supplies != run.configuration.supplies
+
+
+def test_what_follows_rated_data_does_not_depend_on_other_changes() -> None:
+    """A bore changed together with oil and load cell has the gains of that bore."""
+    oil = """
+        oil: {effective_bulk_modulus: 1.4e+9}
+        mechanics: {sensor_stiffness: 9.0e+7}
+"""
+    plain, both = (sheet_of(own('      plant:\n        drive: {bore_mm: 40.0}\n' + more))
+                   for more in ('', oil.lstrip('\n')))
+    assert both.reu == plain.reu
+    assert plain.reu.force.kp != default_actuator('isa_v5', 'isa').sheet.reu.force.kp
+
+
+@pytest.mark.parametrize(('drive', 'flow', 'message'), [
+    ('{bore_mm: 40.0, rod_mm: 25.0, rated_pressure_mpa: 14.0}',
+     '{rated_flow_lpm: 20.0, rated_current_ma: 10.0}',
+     'lacks plant.drive.stroke_mm: cylinder has'),
+    ('{bore_mm: 40.0, rod_mm: 25.0, stroke_mm: 200.0}', '{rated_flow_lpm: 20.0}',
+     'lacks plant.drive.rated_pressure_mpa, plant.valve.flow.rated_current_ma: cylinder has'),
+])
+def test_a_number_of_the_data_sheets_is_not_assumed(drive: str, flow: str, message: str) -> None:
+    """A stroke of 200 mm and 10 mA are those of the model, not of the user's cylinder."""
+    text = f'      plant: {{drive: {drive}, valve: {{flow: {flow}}}}}\n'
+    with pytest.raises(ConfigError, match=f'own.yaml: actuators.ram.parameters {message}'):
+        own(text, 'cylinder')
 
 
 def test_limit_and_compensation_follow_a_valve_of_two_lines() -> None:
@@ -118,9 +171,11 @@ def test_a_value_of_the_run_file_is_not_scaled() -> None:
 
 @pytest.mark.parametrize('name', model_names())
 def test_a_model_as_it_is_has_its_values_bit_for_bit(name: str) -> None:
-    """At 20.7 MPa nothing is scaled, and a restated dimension changes nothing."""
-    run = own('      {}\n', name, 20.7, actuator_model(name, 'test').default_load)
+    """Nothing is scaled, and a restated dimension changes nothing."""
+    model = actuator_model(name, 'test')
+    assert bool(model.stated) == (name == 'cylinder')
     alone = default_actuator(name, 'ram')
+    run = own('      {}\n' if name != 'cylinder' else CYLINDER, name, 20.7, model.default_load)
     assert (sheet_of(run), run.actuators[0].load) == (alone.sheet, alone.load)
     restated = own('      plant: {drive: {bore_mm: 21.5}}\n', supply=20.7)
     assert sheet_of(restated) == default_actuator('isa_v5', 'ram').sheet
@@ -152,7 +207,7 @@ def test_every_quantity_is_finite_and_positive_for_every_model_that_has_it() -> 
         sheet = default_actuator(name, name).sheet
         for quantity in SCALES.values():
             try:
-                assert 0.0 < quantity(sheet, PAPER_SUPPLY) < 1e18
+                assert 0.0 < quantity(sheet) < 1e18
             except ConfigError as error:
                 assert 'two straight lines' in str(error)
 
@@ -162,9 +217,9 @@ def test_a_quantity_is_computed_once_for_all_values_that_scale_with_it(monkeypat
     counts: dict[str, int] = {}
 
     def counted(name: str, quantity: Quantity) -> Quantity:
-        def counting(sheet: ActuatorSheet, supply: float) -> float:
+        def counting(sheet: ActuatorSheet) -> float:
             counts[name] = counts.get(name, 0) + 1
-            return quantity(sheet, supply)
+            return quantity(sheet)
         return counting
     monkeypatch.setattr(scaling, 'SCALES', {
         name: counted(name, quantity) for name, quantity in SCALES.items()})
