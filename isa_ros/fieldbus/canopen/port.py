@@ -17,7 +17,7 @@ from isa_ros.errors import ConfigError, RunError
 if TYPE_CHECKING:
     import can
 
-_INSTALL = "pip install 'isa_ros[canopen]'"
+_INSTALL = "pip install -e '.[canopen]'"
 _NEEDED = {'serial module': "pip install 'python-can[serial]'", 'msgpack': _INSTALL}
 """What interfaces need besides python-can, by what its errors say."""
 _SPURIOUS = (ValueError, IndexError)    # of python-can: a frame that it cannot decode

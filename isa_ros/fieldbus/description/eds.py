@@ -1,8 +1,9 @@
 """
 The electronic data sheet (EDS, CiA 306) of a device on CANopen, from its object table.
 
-Besides the keys of the standard it has ``Unit``, ``Factor`` (SI per count) and ``Description``,
-which the Python package `canopen` reads and other tools ignore.
+It has the keys of the standard and no others: strict readers, Lely's ``dcfgen`` among them, refuse
+a file with ``Unit`` or ``Factor``. Unit, SI per count and meaning of an entry are a comment above
+its section. The default of a REAL32 is its IEEE 754 bits in hexadecimal digits (CiA 306, 4.6.3.3).
 """
 
 from collections.abc import Iterator
@@ -57,6 +58,14 @@ def _section(name: str, keys: list[tuple[str, str]]) -> Iterator[str]:
     yield ''
 
 
+def _comment(entry: ObjectEntry) -> Iterator[str]:
+    """Yield unit, scale and meaning of an entry, if it has any; a reader skips the line."""
+    scale = f'{entry.scale:g} {entry.unit} a count' if entry.scale != 1.0 else entry.unit
+    text = ': '.join(filter(None, (scale, entry.meaning)))
+    if text:
+        yield f'; {text}'
+
+
 def _device_information(device: BusDevice, model: str) -> Iterator[str]:
     identity = device.identity
     return _section('DeviceInfo', [
@@ -72,8 +81,10 @@ def _device_information(device: BusDevice, model: str) -> Iterator[str]:
 def _object(one: Object) -> Iterator[str]:
     section = f'{one.index:04X}'
     if one.kind is ObjectCode.VAR:
-        return _section(section, [('ParameterName', one.name), *_entry(one.entries[0])])
-    return _record(section, one)
+        yield from _comment(one.entries[0])
+        yield from _section(section, [('ParameterName', one.name), *_entry(one.entries[0])])
+    else:
+        yield from _record(section, one)
 
 
 def _record(section: str, one: Object) -> Iterator[str]:
@@ -81,6 +92,7 @@ def _record(section: str, one: Object) -> Iterator[str]:
         ('ParameterName', one.name), ('ObjectType', _KINDS[one.kind]),
         ('SubNumber', str(len(one.entries)))])
     for entry in one.entries:
+        yield from _comment(entry)
         yield from _section(f'{section}sub{entry.subindex:X}', [
             ('ParameterName', entry.name), *_entry(entry)])
 
@@ -96,12 +108,6 @@ def _entry(entry: ObjectEntry) -> list[tuple[str, str]]:
             keys.append(('LowLimit', str(int(entry.low))))
         if entry.high < high:
             keys.append(('HighLimit', str(int(entry.high))))
-    if entry.scale != 1.0:
-        keys.append(('Factor', repr(entry.scale)))
-    if entry.unit:
-        keys.append(('Unit', entry.unit))
-    if entry.meaning:
-        keys.append(('Description', entry.meaning.replace(';', ',')))
     return keys
 
 
@@ -109,5 +115,6 @@ def _default(entry: ObjectEntry) -> str:
     if entry.adds_node:
         return f'$NODEID+0x{int(entry.default):X}'
     if entry.data_type is DataType.REAL32:
-        return repr(float(entry.default))
+        bits = int.from_bytes(entry.data_type.pack(entry.default), 'little')
+        return f'0x{bits:08X}'
     return str(entry.default)

@@ -36,7 +36,7 @@ def test_a_channel_that_is_no_group_is_one_line():
 
 def test_a_missing_library_is_named_with_how_to_install_it(monkeypatch):
     monkeypatch.setitem(sys.modules, 'can', None)
-    with pytest.raises(ConfigError, match=r"python-can.*pip install 'isa_ros\[canopen\]'"):
+    with pytest.raises(ConfigError, match=r"python-can.*pip install -e '.\[canopen\]'"):
         CanPort('virtual', 'any', 1_000_000)
 
 
@@ -44,7 +44,7 @@ def test_an_interface_without_its_own_library_is_one_line(monkeypatch):
     monkeypatch.setattr('can.interfaces.slcan.serial', None)
     assert "pip install 'python-can[serial]'" in refusal('slcan', '/dev/null')
     monkeypatch.setattr('can.interfaces.udp_multicast.utils.msgpack', None)
-    assert "pip install 'isa_ros[canopen]'" in refusal('udp_multicast', '239.74.163.2')
+    assert "pip install -e '.[canopen]'" in refusal('udp_multicast', '239.74.163.2')
 
 
 @pytest.mark.parametrize('message', [

@@ -1,12 +1,14 @@
-"""The EDS of a device, read by the package that CANopen masters in Python use."""
+"""The EDS of a device, read by the packages that masters in Python and Lely's C++ use."""
 
+from configparser import ConfigParser
 import io
 
 import isa_ros
 from isa_ros.fieldbus.description.eds import eds_text
 from isa_ros.fieldbus.device.devices import devices_of, PROFILES
-from isa_ros.fieldbus.device.objects import ObjectCode
+from isa_ros.fieldbus.device.objects import DataType, ObjectCode
 import pytest
+from tests.fieldbus.description.dcfgen import dcfgen, needs_dcfgen
 
 canopen = pytest.importorskip('canopen')
 NODE = 5
@@ -38,14 +40,55 @@ def test_every_object_of_canopen_is_read_with_type_access_and_default(device):
             assert variable.writable == entry.is_writable
             assert variable.pdo_mappable == bool(entry.pdo)
             expected = entry.default + NODE if entry.adds_node else entry.default
-            assert variable.default == expected, entry
+            if entry.data_type is DataType.REAL32:
+                found = DataType.REAL32.unpack(
+                    int(variable.default_raw, 16).to_bytes(4, 'little'))
+                assert found == pytest.approx(expected, rel=2.0 ** -24, abs=0.0), entry
+            else:
+                assert variable.default == expected, entry
 
 
-def test_scales_and_units_give_si(device):
-    """0x6064 of CiA 402 and 0x6601 of CiA 408 count micrometres."""
-    dictionary = imported(device)
-    position = dictionary[0x6064] if 0x6064 in dictionary else dictionary[0x6601][1]
-    assert (position.unit, position.decode_phys(50000)) == ('m', 50000 * 1e-6)
+def test_there_are_defaults_of_real_numbers_that_are_not_zero(device):
+    """What the test above compares: the increments and the gains of the REU."""
+    assert sum(entry.data_type is DataType.REAL32 and entry.default not in (0, 1)
+               for entry in device.table.on('canopen').entries) >= 8
+
+
+def test_unit_scale_and_meaning_are_a_comment_above_the_section(device):
+    """0x6064 of CiA 402 and 0x6601 of CiA 408 count micrometres; 0x1017 is a time in ms."""
+    position = '[6064]' if 0x6064 in device.table else '[6601sub1]'
+    lines = eds_text(device).splitlines()
+    assert lines[lines.index(position) - 1].startswith('; 1e-06 m a count')
+    assert lines[lines.index('[1017]') - 1] == '; 0.001 s a count: wall time; 0: off'
+
+
+def test_a_value_has_no_second_equals_sign_and_no_comment(device):
+    """eds-utils splits at each '='; ';' and '#' begin a comment within a value too."""
+    for line in eds_text(device).splitlines():
+        if not line.startswith((';', '[')) and line:
+            assert line.count('=') == 1, line
+            assert not {';', '#'} & set(line), line
+
+
+@needs_dcfgen
+def test_dcfgen_takes_the_files_of_a_leg_in_strict_mode(tmp_path):
+    """It writes what a master expects of each node: product codes in 0x1F86."""
+    names, bus = [], ['master: {node_id: 127, sync_period: 1000}']
+    for profile in PROFILES:
+        for one in devices_of(LEG, profile):
+            name = f'{profile}_{one.name}'
+            names.append(name)
+            (tmp_path / f'{name}.eds').write_text(eds_text(one))
+            bus.append(f'{name}: {{node_id: {len(names)}, dcf: {tmp_path}/{name}.eds, '
+                       'heartbeat_producer: 100}')
+    (tmp_path / 'bus.yml').write_text('\n'.join(bus))
+    assert dcfgen(tmp_path / 'bus.yml') == [
+        f'{name}: writing 2 bytes to 0x1017/0: 64 00' for name in names]
+    master = ConfigParser()
+    master.read(tmp_path / 'master.dcf')
+    products = [int(master['1F86Value'][str(k + 1)], 16) for k in range(len(names))]
+    assert products == [
+        one.identity.product for profile in PROFILES for one in devices_of(LEG, profile)]
 
 
 def test_limits_are_those_of_the_table(device):
