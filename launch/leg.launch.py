@@ -5,13 +5,17 @@ A leg is also shown: by robot_state_publisher where that is installed, and with 
 rviz.
 """
 
+from functools import partial
+import os
+
 from ament_index_python.packages import get_packages_with_prefixes
 from isa_ros.config.paths import CONFIG, find, find_drawing, SCENARIOS
 from isa_ros.config.runs.run_file import load_run, RunConfig
 from isa_ros.errors import ConfigError
+from isa_ros.nodes.middleware.domain import Claim, CLAIMED_BY
 from isa_ros.processes.launching import refuse_failure
 from isa_ros.processes.processes import Process, run_processes
-from isa_ros.run.option import flag
+from isa_ros.run.option import flag, namespace
 from isa_ros.run.options import launched_elsewhere, launched_parameters, OPTIONS
 from launch import Action, LaunchContext, LaunchDescription
 from launch.actions import DeclareLaunchArgument, OpaqueFunction, Shutdown
@@ -19,6 +23,9 @@ from launch.events.process import ProcessExited
 from launch.substitutions import LaunchConfiguration
 from launch_ros.actions import Node
 from launch_ros.parameter_descriptions import ParameterValue
+
+_IN_NAMESPACE = [('/tf', 'tf'), ('/tf_static', 'tf_static'), ('/clock', 'clock')]
+"""Topics of viewers that are absolute, to those of the run's namespace."""
 
 
 def generate_launch_description() -> LaunchDescription:
@@ -36,14 +43,16 @@ def _nodes(context: LaunchContext) -> list[Node]:
               for option in OPTIONS}
     config = find(values['config'], CONFIG)
     scenario = find(values['scenario'], SCENARIOS) if values['scenario'] else None
-    run, namespace = load_run(config), values['namespace']
-    nodes = [_node(process, namespace) for process in run_processes(
-        run, config, scenario, launched_parameters(values), launched_elsewhere(values))]
+    run, own = load_run(config), namespace(values['namespace'])
     has_rviz = flag('rviz', LaunchConfiguration('rviz').perform(context))
-    return [*_viewers(run, namespace, has_rviz), *nodes]
+    processes = run_processes(
+        run, config, scenario, launched_parameters(values), launched_elsewhere(values))
+    viewers = _viewers(run, own, has_rviz)
+    claim = Claim(own)  # before anything starts; refused while another run is there
+    return [*viewers, *(_node(process, own, claim) for process in processes)]
 
 
-def _viewers(run: RunConfig, namespace: str, has_rviz: bool) -> list[Node]:
+def _viewers(run: RunConfig, own: str, has_rviz: bool) -> list[Node]:
     """Return the nodes that show the leg of a run; the time is the simulation's."""
     if run.leg is None:
         if has_rviz:
@@ -55,33 +64,34 @@ def _viewers(run: RunConfig, namespace: str, has_rviz: bool) -> list[Node]:
     if 'robot_state_publisher' in installed:
         nodes.append(Node(
             package='robot_state_publisher', executable='robot_state_publisher',
-            namespace=namespace, parameters=[{
+            namespace=own, parameters=[{
                 'robot_description': ParameterValue(urdf, value_type=str),
-                'use_sim_time': True}]))
+                'use_sim_time': True}], remappings=_IN_NAMESPACE))
     if has_rviz:
         for package in ('robot_state_publisher', 'rviz2'):
             if package not in installed:
                 raise ConfigError(f'rviz:=true needs the package {package}, not installed')
         nodes.append(Node(
-            package='rviz2', executable='rviz2', namespace=namespace,
+            package='rviz2', executable='rviz2', namespace=own,
             arguments=['-d', str(find_drawing('rviz/leg.rviz'))],
-            parameters=[{'use_sim_time': True}]))
+            parameters=[{'use_sim_time': True}], remappings=_IN_NAMESPACE))
     return nodes
 
 
-def _node(process: Process, namespace: str) -> Node:
+def _node(process: Process, own: str, claim: Claim) -> Node:
     is_coordinator = process.executable == 'coordinator'
     return Node(
         package='isa_ros', executable=process.executable, name=process.name,
-        namespace=namespace, output='screen',
+        namespace=own, output='screen', additional_env={CLAIMED_BY: str(os.getpid())},
         parameters=[{
             key: ParameterValue(list(value), value_type=list[str])
             if isinstance(value, (list, tuple)) else ParameterValue(value, value_type=type(value))
             for key, value in process.parameters}],
-        on_exit=_end_of_run if is_coordinator else refuse_failure)
+        on_exit=partial(_end_of_run, claim) if is_coordinator else refuse_failure)
 
 
-def _end_of_run(event: ProcessExited, context: LaunchContext) -> list[Action]:
+def _end_of_run(claim: Claim, event: ProcessExited, context: LaunchContext) -> list[Action]:
     """End the launch, and with it the actuators; fail if the run has failed."""
+    claim.close()
     refuse_failure(event, context)
     return [Shutdown(reason='the run has ended')]

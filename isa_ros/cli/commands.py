@@ -16,6 +16,7 @@ from typing import Any, TYPE_CHECKING
 
 from isa_ros.config.paths import CONFIG, find, SCENARIOS
 from isa_ros.errors import BagError, ConfigError, one_line
+from isa_ros.run.option import namespace
 from isa_ros.run.options import Request, request_of_arguments
 
 if TYPE_CHECKING:
@@ -118,7 +119,8 @@ def actuators(options: Namespace) -> bool:
     """Run actuators of a configuration for a coordinator on another host."""
     from isa_ros.processes.actuator_host import host_actuators
     scenario = None if options.scenario is None else find(options.scenario, SCENARIOS)
-    host_actuators(find(options.config, CONFIG), scenario, options.names, options.set)
+    host_actuators(find(options.config, CONFIG), scenario, options.names, options.set,
+                   namespace(options.namespace))
     return True
 
 

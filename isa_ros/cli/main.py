@@ -96,6 +96,8 @@ def _actuators(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         '--scenario', metavar='FILE',
         help='scenario of the run, which may change loads or initial positions')
+    parser.add_argument(
+        '--namespace', default='', metavar='NAME', help='that of the run (default: the root)')
     shared_arguments.changes(parser, 'the values that are set for the run itself')
 
 

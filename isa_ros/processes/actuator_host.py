@@ -7,6 +7,7 @@ import time
 from isa_ros.config.runs.run_file import load_run
 from isa_ros.config.text.changes import changes_of
 from isa_ros.errors import RunError
+from isa_ros.processes.domain_id import domain_id
 from isa_ros.processes.processes import actuator_processes, Children
 from isa_ros.processes.stopping import StopRequest
 from isa_ros.run.warm_up import warmed_up
@@ -17,17 +18,18 @@ LOOK_PERIOD_S = 0.1
 
 def host_actuators(
         config: Path, scenario: Path | None, names: Sequence[str],
-        texts: Sequence[str] = ()) -> None:
+        texts: Sequence[str] = (), namespace: str = '') -> None:
     """
     Start a process for each named actuator (default: for all) and keep them until a signal.
 
     They take part in one run after the other; a signal is their normal end. ``texts`` are the
-    changes of a `Request`.
+    changes of a `Request`, ``namespace`` is its namespace.
 
     Raises
     ------
     ConfigError
-        A file that cannot be run, or an actuator that it does not declare.
+        A file that cannot be run, an actuator that it does not declare, or a domain that DDS
+        does not have.
     RunError
         One of the processes ended.
 
@@ -36,9 +38,10 @@ def host_actuators(
     run = planned(scenario, load_run(config, changes.run), changes).run
     chosen = [run.actuator(name).name for name in names] or None
     processes = actuator_processes(run, config, scenario, chosen, texts)
+    domain_id()
     with StopRequest() as should_stop:
         warmed_up(run)
-        with Children(processes) as children:
+        with Children(processes, namespace) as children:
             while not should_stop():
                 lost = children.lost()
                 if lost is not None:

@@ -28,7 +28,8 @@ class Kind(Enum):
     """Path of a scenario file, or name of a shipped one."""
     PATH = 'path'
     NEW_FILE = 'new file'
-    TEXT = 'text'
+    NAMESPACE = 'namespace'
+    """Of ROS: names, each below the one before it, separated by slashes."""
     COMPRESSION = 'compression'
     POSITIVE = '> 0'
     NOT_NEGATIVE = '>= 0'
@@ -55,6 +56,7 @@ _UNSET: Mapping[Kind, tuple[RosValue, str]] = {
     Kind.FLAG: (False, 'false')}
 """Value of a ROS parameter that is not set, and its text in help; other kinds: an empty text."""
 _EMPTY: tuple[RosValue, str] = ('', 'empty')
+_NAMESPACE = re.compile(r'/?[A-Za-z_][A-Za-z0-9_]*(/[A-Za-z_][A-Za-z0-9_]*)*/?')
 _FLAGS = {'true': True, '1': True, 'false': False, '0': False}
 
 
@@ -123,6 +125,8 @@ class Option:
         """Return the value for `Request` of a checked command-line argument."""
         if self.kind in SHIPPED:
             return None if value is None else find(value, self.kind.value)
+        if self.kind is Kind.NAMESPACE:
+            return namespace(value)
         return tuple(value) if self.kind in _LISTS else value
 
     def of_parameter(self, value: Any) -> Any:
@@ -160,6 +164,23 @@ class Option:
             except ValueError:
                 raise ConfigError(f'{self.name}:={text}, must be a whole number') from None
         return text
+
+
+def namespace(text: str) -> str:
+    """
+    Return a namespace of nodes without the slashes around it; '': the root.
+
+    Raises
+    ------
+    ConfigError
+        ROS does not accept it.
+
+    """
+    if text.strip('/') and (not _NAMESPACE.fullmatch(text) or '__' in text):
+        raise ConfigError(
+            f'namespace = {text!r}, must be names of letters, digits and single _, separated by '
+            'slashes, none beginning with a digit, for example left or robot1/left')
+    return text.strip('/')
 
 
 def flag(name: str, text: str) -> bool:

@@ -78,7 +78,8 @@ class Request:
     save: Path | None = field(default=None, metadata=_option(
         Kind.NEW_FILE, 'save the state at the end to a file', metavar='FILE'))
     namespace: str = field(default='', metadata=_option(
-        Kind.TEXT, 'of all nodes', is_argument=False, is_parameter=False))
+        Kind.NAMESPACE, 'of all nodes and topics; a domain may have one run in each',
+        metavar='NAME', is_parameter=False))
     is_alone: bool = False
     """Whether this process does nothing but the run: then the loaded objects need no garbage
     collection and, if the process has had no node yet, actuator processes may be forked."""

@@ -103,6 +103,8 @@ def prepare(
             'runs all actuators in this process; leave one out')
     run.names_here(request.elsewhere)
     name = run.name if request.scenario is None else f'{run.name}_{scenario.name}'
+    if request.namespace:
+        name = f'{request.namespace.replace("/", "_")}_{name}'
     out = request.out or _unused(RUNS / name)
     _check_output(out, request.overwrite)
     save = request.save

@@ -1,16 +1,19 @@
 """The launch files: their arguments and the nodes they start."""
 
 from importlib.util import module_from_spec, spec_from_file_location
+import os
 from pathlib import Path
 import sys
 
 from isa_ros.config.paths import CONFIG, find, SCENARIOS
 from isa_ros.errors import ConfigError
+from isa_ros.nodes.middleware.domain import CLAIMED_BY
 from isa_ros.processes.processes import MODULES
 from isa_ros.run.options import OPTIONS
 import pytest
 from tests.launch import stand_ins
 from tests.launch.stand_ins import Context, ProcessExited
+from tests.ros.domains import held_domain
 import yaml
 
 LAUNCH = Path(__file__).parents[2] / 'launch'
@@ -42,14 +45,27 @@ def actions(monkeypatch, installed):
 
 
 @pytest.fixture
-def leg(actions):
-    """Return what gives the nodes of leg.launch.py for the texts of some arguments."""
+def launched(actions, monkeypatch):
+    """Return what gives the nodes of leg.launch.py, all launched at once, in one domain."""
     arguments, (function,) = actions('leg.launch.py')
     defaults = {name: given['default_value'] for name, given in arguments.items()}
+    with held_domain(monkeypatch):
+        yield lambda **texts: function.given['function'](defaults | texts)
 
+
+@pytest.fixture
+def leg(launched):
+    """Return what gives the nodes of leg.launch.py, of one launch after the other."""
     def nodes(**texts: str):
-        return function.given['function'](defaults | texts)
+        found = launched(**texts)
+        ended(found)
+        return found
     return nodes
+
+
+def ended(nodes) -> None:
+    """Release the name that a launch holds, as the end of its coordinator does."""
+    nodes[-1].given['on_exit'](ProcessExited('coordinator-1', 0), Context())
 
 
 def parameters(node) -> dict[str, object]:
@@ -80,6 +96,20 @@ def test_the_leg_is_three_actuators_and_a_coordinator_that_ends_the_launch(leg):
     assert isinstance(done, stand_ins.Shutdown)
     assert all(node.given['on_exit'](ProcessExited('haa-1', 0), Context()) is None
                for node in actuators)
+
+
+def test_a_second_launch_of_a_namespace_is_refused_before_it_starts_anything(launched):
+    """Its actuators would have the names of the first; other namespaces are free."""
+    first, other = launched(), launched(namespace='left')
+    assert first[-1].given['additional_env'] == {CLAIMED_BY: str(os.getpid())}
+    for texts, where in (({}, '/'), ({'namespace': '/left/'}, '/left')):
+        with pytest.raises(ConfigError, match=f'another coordinator runs in .* {where}, must be'):
+            launched(**texts)
+    ended(first)
+    ended(launched())
+    with pytest.raises(ConfigError, match='namespace /left, must be the only one'):
+        launched(namespace='left')
+    ended(other)
 
 
 def test_the_launch_fails_with_the_run_unless_it_ends_already(leg):
@@ -116,6 +146,9 @@ def test_a_leg_is_shown_where_the_packages_are_installed(leg, installed):
     assert '<robot name="hyq_leg">' in description and len(rest) == 4
     assert publisher.given['parameters'][0]['use_sim_time'] is True
     assert publisher.given['namespace'] == rviz.given['namespace'] == 'lab'
+    for node in (publisher, rviz):
+        assert dict(node.given['remappings']) == {
+            '/tf': 'tf', '/tf_static': 'tf_static', '/clock': 'clock'}
     shown = yaml.safe_load(Path(rviz.given['arguments'][1]).read_text())['Visualization Manager']
     assert shown['Global Options']['Fixed Frame'] == 'world'
     assert [node.given['executable'] for node in leg()][:2] == [

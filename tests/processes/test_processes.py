@@ -9,8 +9,8 @@ import subprocess
 import time
 
 from isa_ros.config.runs.run_file import load_run
-from isa_ros.errors import RunError
-from isa_ros.processes import processes
+from isa_ros.errors import ConfigError, RunError
+from isa_ros.processes import actuator_host, processes
 from isa_ros.processes.processes import actuator_processes, Children, Process, run_processes
 import pytest
 
@@ -131,3 +131,11 @@ def test_children_before_one_that_cannot_be_started_are_ended(monkeypatch, sleep
         with Children([sleeper, replace(sleeper, name='kfe')]):
             pytest.fail('it started')
     assert started[0].returncode == -signal.SIGTERM
+
+
+def test_no_domain_is_refused_before_an_actuator_starts(monkeypatch):
+    """Once: each of them would refuse it again, and the middleware in words of its own."""
+    monkeypatch.setenv('ROS_DOMAIN_ID', '300')
+    monkeypatch.setattr(actuator_host, 'Children', None)
+    with pytest.raises(ConfigError, match="^ROS_DOMAIN_ID = '300', must be an integer from 0 to"):
+        actuator_host.host_actuators(CONFIG, None, [])

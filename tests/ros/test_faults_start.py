@@ -114,7 +114,7 @@ def test_a_participant_that_was_never_started_is_named(observer, tmp_path):
             assert run.exit_code() == 3
     assert run.errors == (
         'coordinator: other: no answer before tick 0 after 3 s; start it with lockstep:=true in '
-        'this ROS_DOMAIN_ID\n')
+        'this ROS_DOMAIN_ID and namespace, /\n')
     assert not bag.exists()
 
 

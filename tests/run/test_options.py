@@ -128,6 +128,17 @@ def test_help_says_unit_and_default_in_each_place(field, help_, description):
     assert (option.argument_help, option.description) == (help_, description)
 
 
+@pytest.mark.parametrize('text', ['left', '/left', 'robot_1/left/'])
+def test_a_namespace_may_have_slashes_around_it(text):
+    assert option_of('namespace').of_argument(text) == text.strip('/')
+
+
+@pytest.mark.parametrize('text', ['1eft', 'a//b', 'my-leg', '~/a', 'a__b', '{ns}'])
+def test_a_namespace_that_ros_does_not_accept_is_refused(text):
+    with pytest.raises(ConfigError, match='^namespace = .*, must be names of letters'):
+        option_of('namespace').of_argument(text)
+
+
 def test_the_compressions_are_those_of_a_run_file():
     declared = next(f for f in fields(Storage) if f.name == 'compression')
     assert declared.metadata['names'] == COMPRESSIONS

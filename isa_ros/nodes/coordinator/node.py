@@ -14,7 +14,7 @@ from isa_ros.nodes.middleware.refusals import refusals
 from isa_ros.run.option import Option
 from isa_ros.run.options import OPTIONS, Request, request_of_parameters
 from isa_ros.run.output import Outlet, Outlets
-from msg_adapters import clock, diagnostics, event
+from msg_adapters import clock, event
 from rcl_interfaces.msg import ParameterDescriptor
 from rclpy.node import Node
 from rclpy.parameter import Parameter
@@ -31,7 +31,8 @@ class CoordinatorNode(Node):
         """Parameters of the supplies, once there is a run."""
         with refusals():
             super().__init__(NAME, start_parameter_services=False, **kwargs)
-        self._time = PreparedPublishers(self, [Topic(*clock.TOPIC)])
+        self._time = PreparedPublishers(
+            self, [Topic(_relative(clock.TOPIC[0]), clock.TOPIC[1])])
         self._events = _Events(
             self, [Topic(_relative(event.TOPIC[0]), event.TOPIC[1])])
 
@@ -78,13 +79,7 @@ class CoordinatorNode(Node):
 
 
 def _relative(name: str) -> str:
-    """
-    Return the node's relative name of a topic of the bag, so that namespaces work.
-
-    Diagnostics of all nodes of a robot are on the same topic, as their aggregators expect.
-    """
-    if name == diagnostics.TOPIC[0]:
-        return name
+    """Return the node's relative name of a topic of the bag, so that namespaces work."""
     return f'~/{name.removeprefix(_OWN)}' if name.startswith(_OWN) else name.removeprefix('/')
 
 

@@ -34,7 +34,7 @@ def main(args: Sequence[str] | None = None) -> int:
                 for line in session.warnings:
                     node.get_logger().warning(one_line(line))
                 start = coordinate_locally if session.request.in_process else coordinate
-                with sole_coordinator(), reported_compilation(NAME):
+                with sole_coordinator(node.get_namespace()), reported_compilation(NAME):
                     start(node, session, terminal_report(), should_stop)
                 if session.pace.shortfall:
                     node.get_logger().warning(session.pace.shortfall)

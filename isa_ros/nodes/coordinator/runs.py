@@ -42,7 +42,7 @@ _QUIET = {
 def in_processes(session: Session, report: Report | None, should_stop: StopRequest) -> None:
     """Start one process per actuator, coordinate them from this process, and end them."""
     request = session.request
-    with defaults(), sole_coordinator():
+    with defaults(), sole_coordinator(request.namespace):
         _refuse_undiscovered(session, '; or use --in-process')
         participants = _participants(session)
         processes = actuator_processes(
@@ -72,7 +72,8 @@ def _work(arguments: Sequence[str]) -> int:
 
 def in_one_process(session: Session, report: Report | None, should_stop: StopRequest) -> None:
     """Run the nodes of all actuators in this process."""
-    with defaults(), sole_coordinator(), _node(session.request.namespace) as node:
+    namespace = session.request.namespace
+    with defaults(), sole_coordinator(namespace), _node(namespace) as node:
         coordinate_locally(node, session, report, should_stop)
 
 

@@ -2,7 +2,8 @@
 
 from isa_ros.errors import ConfigError, RunError, SimulationDiverged
 from isa_ros.nodes.lockstep.expected import Participants
-from isa_ros.nodes.middleware.domain import another_coordinator
+from isa_ros.nodes.middleware.domain import another_coordinator_of
+from isa_ros.processes.domain_id import DOMAIN_VARIABLE
 from isa_ros.run.wire.answers import (
     ACKNOWLEDGEMENT_TOPIC, Answer, AnswerKind, decode_answer, DIGEST, DIVERGENCE, FIRST, IDENTITY)
 from isa_ros.run.wire.header import WireError
@@ -23,6 +24,7 @@ class AnswerChecks:
         self._participants = participants.expected
         self._remote = frozenset(
             range(participants.first_remote, len(participants.expected)))
+        self._unreported = {participant.name for participant in self._participants}
         self.identities: dict[int, bytes] = {}
         """Identity of the node of each participant that has answered."""
 
@@ -34,7 +36,8 @@ class AnswerChecks:
                 self._refuse_misfit(answer)
         except WireError as error:
             self._node.get_logger().warning(
-                f'a message on {ACKNOWLEDGEMENT_TOPIC} is discarded: {error}',
+                f'a message on {self._node.resolve_topic_name(ACKNOWLEDGEMENT_TOPIC)} is '
+                f'discarded: {error}',
                 throttle_duration_sec=WARNING_PERIOD_S)
             return None
         return answer
@@ -55,9 +58,7 @@ class AnswerChecks:
     def is_ready(self, answer: Answer, run_id: int) -> bool:
         """Return whether an answer is one to a hello; refuse those that prevent the run."""
         if answer.run_id != run_id or answer.kind is AnswerKind.BUSY:
-            raise another_coordinator(self._node.context.get_domain_id())
-        if answer.kind is AnswerKind.UNBOUND:
-            self.check_unbound(answer)
+            raise another_coordinator_of(self._node)
         if answer.kind is not AnswerKind.READY:
             return False
         name, expected = self._participants[answer.participant]
@@ -71,12 +72,18 @@ class AnswerChecks:
                 'configured; start both with the same file')
         return True
 
-    def check_unbound(self, answer: Answer) -> None:
-        """Refuse a node outside the run with the same name as a participant."""
+    def report_unbound(self, answer: Answer) -> None:
+        """Log once a node outside the run with the name of a participant; the run goes on."""
         name = (answer.parts[0] or b'').decode()
-        names = [participant.name for participant in self._participants]
-        if name in names:
-            raise self.two_nodes(names.index(name))
+        if name in self._unreported:
+            self._unreported.remove(name)
+            self._node.get_logger().warning(
+                f'{name}: a second node of this name waits in {self._where()}; the run goes on '
+                'with the first')
+
+    def _where(self) -> str:
+        domain = self._node.context.get_domain_id()
+        return f'{DOMAIN_VARIABLE} {domain}, namespace {self._node.get_namespace()}'
 
     def refuse_failure(self, answer: Answer, step: str) -> None:
         """
@@ -100,4 +107,4 @@ class AnswerChecks:
     def two_nodes(self, participant: int) -> ConfigError:
         return ConfigError(
             f'{self._participants[participant].name}: two nodes of this name answer in '
-            f'ROS_DOMAIN_ID {self._node.context.get_domain_id()}, must be one')
+            f'{self._where()}, must be one')

@@ -122,7 +122,7 @@ class LockstepTransport:
         how = ' with lockstep:=true' if missing[0] < len(self._run.starts) else ''
         return RunError(
             f'{names}: no answer before tick 0 after {self._limits.join_s:g} s; start it{how} in '
-            'this ROS_DOMAIN_ID')
+            f'this ROS_DOMAIN_ID and namespace, {self._node.get_namespace()}')
 
     def _hello_answers(self, count: int, is_last: bool) -> dict[int, Answer]:
         """Return the answers to the ``count``-th hello; wait the whole period for the last one."""
@@ -269,7 +269,7 @@ class LockstepTransport:
             self._answers.is_ready(answer, self._run_id)
             return False
         if answer.kind is AnswerKind.UNBOUND:
-            self._answers.check_unbound(answer)
+            self._answers.report_unbound(answer)
             return False
         if answer.tick != self._awaited or answer.participant not in missing:
             if answer.is_repeated:

@@ -23,6 +23,9 @@ SILENCE_S = 5.0
 """Time without a message after which a run counts as abandoned; a coordinator sends at least one
 message per second, also while it waits or is paused."""
 
+UNBOUND_PERIOD_S = 1.0
+"""Time between two answers to a run that did not call this participant."""
+
 WARNING_PERIOD_S = 10.0
 
 
@@ -41,11 +44,13 @@ class ParticipantEnd:
         self._log = node.get_logger()
         self._role = role
         self._identity = secrets.token_bytes(8)
+        self._topic = node.resolve_topic_name(STEP_TOPIC)
         self._mailbox = open_mailbox(node, STEP_TOPIC)
         self._publisher = node.create_publisher(UInt8MultiArray, ACKNOWLEDGEMENT_TOPIC, LOCKSTEP)
         handle: Any = self._publisher.handle
         self._send: Callable[[bytes], None] = handle.publish_raw
-        self._foreign_runs: set[int] = set()
+        self._foreign_runs: set[int] = set()  # whose roster does not list this node
+        self._unbound_due = 0.0
         self._wire: LocalWire | None = None
         self._next_check = 0.0
         self._unbind()
@@ -120,7 +125,7 @@ class ParticipantEnd:
                 self._refuse_misfit(step)
         except WireError as error:
             self._log.warning(
-                f'a message on {STEP_TOPIC} is discarded: {error}',
+                f'a message on {self._topic} is discarded: {error}',
                 throttle_duration_sec=WARNING_PERIOD_S)
             return
         self._handle(step)
@@ -181,10 +186,15 @@ class ParticipantEnd:
             (self._identity, self._role.digest, *self._first)))
 
     def _answer_foreign(self, step: Step) -> None:
-        """Send this name once to a run that did not call it: another node may have the name."""
+        """
+        Send this name to a run that did not call it: another node may have the name.
+
+        It is sent again, as the run's coordinator may not have discovered this node yet.
+        """
+        now = time.monotonic()
         if step.kind in (StepKind.TICK, StepKind.BEGIN) and not self._run_id and (
-                step.run_id not in self._foreign_runs):
-            self._foreign_runs.add(step.run_id)
+                now >= self._unbound_due):
+            self._unbound_due = now + UNBOUND_PERIOD_S
             self._send(encode_answer(
                 AnswerKind.UNBOUND, step.run_id, step.tick, 0, (self._name.encode(),)))
 

@@ -4,6 +4,7 @@ from collections.abc import Mapping
 import os
 
 from isa_ros.errors import ConfigError
+from isa_ros.processes.domain_id import domain_id
 
 _RANGE = 'ROS_AUTOMATIC_DISCOVERY_RANGE'
 _RANGES = ('LOCALHOST', 'SUBNET', 'OFF', 'SYSTEM_DEFAULT')
@@ -12,7 +13,9 @@ _LOCALHOST_ONLY = 'ROS_LOCALHOST_ONLY'  # deprecated, but where it is 1 the rang
 
 def refuse_invalid(environment: Mapping[str, str] = os.environ) -> None:
     """
-    Refuse values that ROS would replace by another one; empty ones are as if not set.
+    Refuse values that ROS would replace by another one, and a domain that DDS does not have.
+
+    Empty ones are as if not set.
 
     Raises
     ------
@@ -20,6 +23,7 @@ def refuse_invalid(environment: Mapping[str, str] = os.environ) -> None:
         The message has the valid values.
 
     """
+    domain_id(environment)
     for name, values in ((_RANGE, _RANGES), (_LOCALHOST_ONLY, ('0', '1'))):
         value = environment.get(name, '')
         if value and value not in values:

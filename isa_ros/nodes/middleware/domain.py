@@ -1,5 +1,5 @@
 """
-One coordinator per ROS domain and host.
+One coordinator per namespace of a ROS domain, on one host or on several.
 
 The ROS graph shows another coordinator only after its discovery, 0.1 s to more than a second
 after the start. On one host, to which discovery is limited by default, an abstract socket name
@@ -7,113 +7,137 @@ detects it at once: the name belongs to the network namespace and is released wi
 that holds it. If other hosts are discovered too, a run in one process waits for the graph; a run
 in several processes has to wait for its participants anyway.
 
+A launch file holds the name before it starts anything, so that the actuators of a second launch
+are never started beside those of the first; its coordinator is told which process holds it.
+
 Every user of the host can bind any abstract name, so that a name held by another user proves
 nothing: then the graph decides, as between hosts. The kernel names the user that listens. (A file
 instead of the name would have an owner, but neither belong to the network namespace, as the
-domain does, nor be seen by other users' coordinators.) Who can publish `/clock` in the domain
+domain does, nor be seen by other users' coordinators.) Who can publish the time in the namespace
 can still prevent a run: DDS without security has no users.
 """
 
 from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
 import errno
+from hashlib import sha256
 import os
 import socket
 import struct
 import sys
 import time
+from typing import NamedTuple
 
 from isa_ros.errors import ConfigError
 from isa_ros.nodes.middleware.environment import finds_other_hosts
+from isa_ros.processes.domain_id import domain_id, DOMAIN_VARIABLE
 from rclpy.node import Node
 
-_VARIABLE = 'ROS_DOMAIN_ID'
-_LARGEST = 232  # DDS has no port numbers for larger ones
-_CLOCK_TOPIC = '/clock'
+CLAIMED_BY = 'ISA_ROS_CLAIMED_BY'
+"""Environment variable of a coordinator: the process that holds the name for it, a launch."""
+
+_CLOCK_TOPIC = 'clock'  # relative: of the namespace
 _CHECK_S = 0.05
+_DIGEST_LETTERS = 32
 _CREDENTIALS = struct.Struct('@iII')  # struct ucred: process, user, group
 
 DISCOVERY_S = 2.0
 """Time in which the packaged profile discovers the existing nodes."""
 
 
-def domain_id() -> int:
+class Holder(NamedTuple):
+    """Who listens at a name."""
+
+    process: int
+    user: int
+
+
+class Claim:
     """
-    Return the domain of this process.
+    Holds the name of the only coordinator of a namespace, on this host, until it is closed.
+
+    If another user holds it, it is not held: `look_for_other_coordinator` then waits for the
+    graph. Nor is it where it is held by the process that `CLAIMED_BY` names.
 
     Raises
     ------
     ConfigError
-        ROS_DOMAIN_ID is not a domain.
+        Another coordinator of this user holds it, or ROS_DOMAIN_ID is not a domain.
 
     """
-    text = os.environ.get(_VARIABLE) or '0'
-    if not text.isdecimal() or int(text) > _LARGEST:
-        raise ConfigError(f'{_VARIABLE} = {text!r}, must be an integer from 0 to {_LARGEST}')
-    return int(text)
+
+    def __init__(self, namespace: str = '') -> None:
+        domain = domain_id()
+        self._socket: socket.socket | None = None
+        if sys.platform != 'linux':  # no abstract names; only the graph is checked
+            return
+        made = socket.socket(socket.AF_UNIX, socket.SOCK_STREAM)
+        try:
+            made.bind(claim_address(domain, namespace))
+            made.listen()  # nothing is accepted: who connects reads the user of this process
+        except OSError as error:
+            made.close()
+            if error.errno != errno.EADDRINUSE:
+                raise
+            found = holder(domain, namespace)
+            if found is not None and found.user == os.geteuid() and (
+                    str(found.process) != os.environ.get(CLAIMED_BY)):
+                raise another_coordinator(domain, namespace) from None
+            return
+        self._socket = made
+
+    def close(self) -> None:
+        """Release the name."""
+        if self._socket is not None:
+            self._socket.close()
 
 
 @contextmanager
-def sole_coordinator() -> Iterator[None]:
-    """
-    Hold the name of this domain's only coordinator on this host within the context.
-
-    If another user holds it, do without: `look_for_other_coordinator` then waits for the graph.
-
-    Raises
-    ------
-    ConfigError
-        Another coordinator of this user holds it.
-
-    """
-    domain = domain_id()
-    if sys.platform != 'linux':  # no abstract names; only the graph is checked
+def sole_coordinator(namespace: str = '') -> Iterator[None]:
+    """Hold the `Claim` of a namespace within the context."""
+    claim = Claim(namespace)
+    try:
         yield
-        return
-    with socket.socket(socket.AF_UNIX, socket.SOCK_STREAM) as claim:
-        try:
-            claim.bind(claim_address(domain))
-            claim.listen()  # nothing is accepted: who connects reads the user of this process
-        except OSError as error:
-            if error.errno != errno.EADDRINUSE:
-                raise
-            if holder(domain) == os.geteuid():
-                raise another_coordinator(domain) from None
-        yield
+    finally:
+        claim.close()
 
 
-def claim_address(domain: int) -> str:
-    """Return the abstract socket name that the coordinator of a domain holds."""
-    return f'\0isa_ros/coordinator/{domain}'
+def claim_address(domain: int, namespace: str = '') -> str:
+    """Return the abstract socket name that the coordinator of a namespace holds."""
+    name = namespace.strip('/').encode()
+    # A digest: a namespace of ROS may be longer than the name of a socket.
+    own = f'/{sha256(name).hexdigest()[:_DIGEST_LETTERS]}' if name else ''
+    return f'\0isa_ros/coordinator/{domain}{own}'
 
 
-def holder(domain: int) -> int | None:
-    """Return the user whose process listens as coordinator of a domain; None: no such process."""
+def holder(domain: int, namespace: str = '') -> Holder | None:
+    """Return who listens as coordinator of a namespace; None: nobody."""
     if sys.platform != 'linux':
         return None
     with socket.socket(socket.AF_UNIX, socket.SOCK_STREAM) as end:
         end.setblocking(False)
         try:
-            end.connect(claim_address(domain))
+            end.connect(claim_address(domain, namespace))
         except OSError:  # bound without listening, or too many connections: no coordinator of ours
             return None
         credentials = end.getsockopt(
             socket.SOL_SOCKET, socket.SO_PEERCRED, _CREDENTIALS.size)
-    return int(_CREDENTIALS.unpack(credentials)[1])
+    process, user, _ = _CREDENTIALS.unpack(credentials)
+    return Holder(process, user)
 
 
 def refuse_other_coordinator(node: Node) -> None:
     """
-    Refuse to run if the graph shows a second publisher of the time.
+    Refuse to run if the graph shows a second publisher of the time in the node's namespace.
 
     Raises
     ------
     ConfigError
-        Another node publishes `/clock`.
+        Another node publishes `clock`.
 
     """
     if node.count_publishers(_CLOCK_TOPIC) > 1:
-        raise another_coordinator(node.context.get_domain_id())
+        raise another_coordinator_of(node)
 
 
 def look_for_other_coordinator(
@@ -127,10 +151,11 @@ def look_for_other_coordinator(
     Raises
     ------
     ConfigError
-        Another node publishes `/clock`.
+        Another node publishes `clock` in the same namespace.
 
     """
-    is_sure = holder(node.context.get_domain_id()) == os.geteuid()
+    found = holder(node.context.get_domain_id(), node.get_namespace())
+    is_sure = found is not None and found.user == os.geteuid()
     deadline = time.monotonic() + (
         DISCOVERY_S if finds_other_hosts(environment) or not is_sure else 0.0)
     refuse_other_coordinator(node)
@@ -139,8 +164,14 @@ def look_for_other_coordinator(
         refuse_other_coordinator(node)
 
 
-def another_coordinator(domain: int) -> ConfigError:
-    """Return the error that there is another coordinator."""
+def another_coordinator_of(node: Node) -> ConfigError:
+    """Return the error that there is another coordinator in the namespace of a node."""
+    return another_coordinator(node.context.get_domain_id(), node.get_namespace())
+
+
+def another_coordinator(domain: int, namespace: str) -> ConfigError:
+    """Return the error that there is another coordinator in a namespace."""
     return ConfigError(
-        f'another coordinator runs in {_VARIABLE} {domain}, must be the only one; end it or '
-        f'set another {_VARIABLE}')
+        f'another coordinator runs in {DOMAIN_VARIABLE} {domain}, namespace '
+        f'/{namespace.strip("/")}, must be the only one; end it, or use another namespace or '
+        f'{DOMAIN_VARIABLE}')

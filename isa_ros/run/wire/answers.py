@@ -7,7 +7,8 @@ from typing import NamedTuple
 from isa_ros.run.wire.header import opened, prefix, VERSION, WireError
 from isa_ros.run.wire.parts import joined, Parts, split
 
-ACKNOWLEDGEMENT_TOPIC = '/_isa/acknowledgement'
+ACKNOWLEDGEMENT_TOPIC = '_isa/acknowledgement'
+"""Relative: of the namespace of the nodes."""
 
 _ACKNOWLEDGEMENT = struct.Struct('<IIIIHHIIIQq')
 """Prefix; version, kind, index, number of parts, is_repeated, run id, tick."""
@@ -36,7 +37,7 @@ class AnswerKind(IntEnum):
     REFUSED = 5
     """To a tick, a save or a restore: the reason of its failure."""
     UNBOUND = 6
-    """To the first message of a run that has not called this participant: its name."""
+    """To a message of a run that has not called this participant: its name, once a second."""
     SAVED = 7
     """To a save: the complete state."""
     RESTORED = 8

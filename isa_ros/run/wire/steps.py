@@ -14,7 +14,8 @@ from isa_ros.surroundings.supply import SUPPLY_SAMPLE
 from isa_ros.tick.exchange import PublishedRows, Rows
 import numpy as np
 
-STEP_TOPIC = '/_isa/step'
+STEP_TOPIC = '_isa/step'
+"""Relative: of the namespace of the nodes."""
 
 _STEP = struct.Struct('<IIIIHHIQq')  # prefix; version, kind, rows, run id, tick
 _NUMBER = struct.Struct('<q')

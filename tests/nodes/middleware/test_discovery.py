@@ -11,6 +11,7 @@ RANGE, LOCALHOST_ONLY = 'ROS_AUTOMATIC_DISCOVERY_RANGE', 'ROS_LOCALHOST_ONLY'
 @pytest.mark.parametrize(('name', 'value', 'message'), [
     (RANGE, 'LOCAL', "ROS_AUTOMATIC_DISCOVERY_RANGE = 'LOCAL', must be one of LOCALHOST, SUBNET"),
     (RANGE, 'off', "ROS_AUTOMATIC_DISCOVERY_RANGE = 'off', must be one of"),
+    ('ROS_DOMAIN_ID', '300', "ROS_DOMAIN_ID = '300', must be an integer from 0 to 232"),
     (LOCALHOST_ONLY, 'true', "ROS_LOCALHOST_ONLY = 'true', must be one of 0, 1"),
 ])
 def test_a_value_that_ros_would_replace_is_refused(name, value, message):

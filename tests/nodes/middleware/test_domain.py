@@ -9,7 +9,8 @@ from types import SimpleNamespace
 from isa_ros.errors import ConfigError
 from isa_ros.nodes.middleware import domain
 from isa_ros.nodes.middleware.domain import (
-    claim_address, domain_id, holder, look_for_other_coordinator, sole_coordinator)
+    Claim, claim_address, CLAIMED_BY, holder, look_for_other_coordinator, sole_coordinator)
+from isa_ros.processes.domain_id import domain_id
 import pytest
 from tests.ros.domains import held_domain
 
@@ -25,6 +26,26 @@ def test_a_second_coordinator_is_refused(monkeypatch):
                     pass
         with sole_coordinator():
             pass
+
+
+def test_each_namespace_of_a_domain_has_one(monkeypatch):
+    with held_domain(monkeypatch) as number, sole_coordinator(), sole_coordinator('left'):
+        with pytest.raises(ConfigError, match=f'ROS_DOMAIN_ID {number}, namespace /left, must be'):
+            Claim('/left/')
+        with sole_coordinator('right'), sole_coordinator('left/arm'), sole_coordinator('a' * 250):
+            pass
+
+
+def test_a_coordinator_takes_the_name_that_its_launch_holds(monkeypatch):
+    """And releases nothing: the launch holds it until the run has ended."""
+    with held_domain(monkeypatch) as number, sole_coordinator('left'):
+        monkeypatch.setenv(CLAIMED_BY, str(os.getpid()))
+        with sole_coordinator('left'):
+            pass
+        assert holder(number, 'left').process == os.getpid()
+        monkeypatch.setenv(CLAIMED_BY, str(os.getppid()))
+        with pytest.raises(ConfigError, match='must be the only one'):
+            Claim('left')
 
 
 def test_another_domain_is_free(monkeypatch):
@@ -58,7 +79,7 @@ def test_a_name_that_another_user_holds_proves_nothing(monkeypatch, listens):
             squatter.listen()
             monkeypatch.setattr(os, 'geteuid', lambda: OTHER_USER)
         with sole_coordinator():
-            assert holder(number) != os.geteuid()
+            assert holder(number) is None or holder(number).user != os.geteuid()
 
 
 def test_the_graph_decides_where_the_name_is_held_by_another_user(monkeypatch):
@@ -68,7 +89,8 @@ def test_the_graph_decides_where_the_name_is_held_by_another_user(monkeypatch):
     monkeypatch.setattr(domain, 'DISCOVERY_S', 0.1)
     here = {'ROS_AUTOMATIC_DISCOVERY_RANGE': 'LOCALHOST'}
     with held_domain(monkeypatch) as number, sole_coordinator():
-        node = SimpleNamespace(context=SimpleNamespace(get_domain_id=lambda: number))
+        node = SimpleNamespace(
+            context=SimpleNamespace(get_domain_id=lambda: number), get_namespace=lambda: '/')
         look_for_other_coordinator(node, here)
         assert len(waited) == 1
         monkeypatch.setattr(os, 'geteuid', lambda: OTHER_USER)
@@ -88,7 +110,7 @@ def test_the_kernel_names_the_user_that_listens(monkeypatch):
         with subprocess.Popen([sys.executable, '-c', program], stdin=subprocess.PIPE,
                               stdout=subprocess.PIPE) as squatter:
             squatter.stdout.readline()
-            assert holder(number) == OTHER_USER
+            assert holder(number).user == OTHER_USER
             with sole_coordinator():
                 pass
             squatter.stdin.close()
