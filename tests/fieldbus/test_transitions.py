@@ -71,6 +71,8 @@ def test_every_transition_of_cia_402(monkeypatch):
                   (*TO_402['OPERATION_ENABLED'], VOLTAGE_OFF),
                   (*TO_402['QUICK_STOP'], VOLTAGE_OFF), (*TO_402['QUICK_STOP'], *[STOP] * 30)):
         master_at(words)
+    for words in TO_402.values():
+        master_at(words).device.end_operation(is_lost=False)
     stays = master_at(TO_402['OPERATION_ENABLED'])
     stays.download(0x605A, 0, 6)
     for word in (STOP, *[STOP] * 30, ENABLE):
@@ -93,6 +95,7 @@ def test_every_transition_of_cia_408(monkeypatch):
     lost(master_at(TO_408['ACTIVE'], 'cia408', 9), (HOLD, HOLD | R))
     lost(master_at(TO_408['ACTIVE'], 'cia408', 9), (DISABLED, INIT, R))
     lost(master_at(TO_408['ACTIVE'], 'cia408', 9), (DISABLED, DISABLED | R))
+    master_at(TO_408['ACTIVE'], 'cia408', 9).device.end_operation(is_lost=False)
     for words in (TO_408['HOLD'], TO_408['ACTIVE']):
         master = master_at((*words, words[-1]), 'cia408', 9)
         master.rig.simulation.command('ram', is_enabled=False)

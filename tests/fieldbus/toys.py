@@ -71,6 +71,7 @@ class Toy:
         self.is_wanted = False
         self.is_operational = False
         self.was_lost = False
+        self.restarts: list[bool] = []
         self.received: list[bytes] = []
         self.pending: list[Emergency] = []
         self._values = {(one.index, one.subindex): one.data_type.pack(one.default)
@@ -147,6 +148,10 @@ class Toy:
     def end_operation(self, is_lost: bool) -> None:
         """Note that operation has ended."""
         self.is_operational, self.was_lost = False, is_lost
+
+    def restart(self, *, is_whole: bool) -> None:
+        """Note that power-on is wanted."""
+        self.restarts.append(is_whole)
 
     def emergencies(self) -> list[Emergency]:
         """Return the emergencies since the last call."""

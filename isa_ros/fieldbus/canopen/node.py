@@ -18,7 +18,6 @@ from isa_ros.fieldbus.canopen.errors import (
 from isa_ros.fieldbus.canopen.heartbeat import HeartbeatConsumer, HeartbeatProducer
 from isa_ros.fieldbus.canopen.pdo import Pdo, ReceivePdo, TransmitPdo
 from isa_ros.fieldbus.canopen.sdo import SdoServer
-from isa_ros.fieldbus.canopen.startup import Startup
 from isa_ros.fieldbus.device.bus_device import BusDevice
 from isa_ros.fieldbus.device.can_identifiers import HEARTBEAT, LARGEST, SDO_ANSWER, SDO_REQUEST
 from isa_ros.fieldbus.device.canopen_objects import (
@@ -82,7 +81,6 @@ class Node:
         self._produced, self._consumed = HeartbeatProducer(), HeartbeatConsumer()
         self._counter: int | None = None
         self._has_wrong_sync = False
-        self._startup = Startup(device)
 
     # NMT
 
@@ -102,7 +100,7 @@ class Node:
             self.errors.reset()
             self._sdo.reset()
             self._consumed.set_watched([])
-            self._startup.restore(is_whole=command == NmtCommand.RESET_NODE)
+            self.device.restart(is_whole=command == NmtCommand.RESET_NODE)
             self.boot(now)
         self.report_emergencies()
 

@@ -142,6 +142,16 @@ class ActuatorDevice:
         """Note that the bus has left it."""
         self._drive.end_operation(is_lost)
 
+    def restart(self, *, is_whole: bool) -> None:
+        """Return to power-on; see `BusDevice.restart`."""
+        self._process_data.restart()
+        if is_whole:
+            self._changes |= {one.name: one.value for key, one in self._tunables.items()
+                              if self._values[key] != one.value}
+            self._dictionary.restart()
+            self._faults.restart()
+        self._drive.restart(is_whole)
+
     def emergencies(self) -> list[Emergency]:
         """Return the emergency messages since the last call."""
         return self._faults.emergencies()

@@ -82,6 +82,14 @@ class BusDevice(Protocol):
     def end_operation(self, is_lost: bool) -> None:
         """Note that the bus has left it; ``is_lost``: by a watchdog or a lost bus, unasked."""
 
+    def restart(self, *, is_whole: bool) -> None:
+        """
+        Return to power-on, while not operational: mappings, assignments, and state of the drive.
+
+        With ``is_whole`` (reset of the node) also all other objects and the faults; the outputs
+        are off at once. Without it a fault stays, and a stop that is under way goes on.
+        """
+
     def emergencies(self) -> list[Emergency]:
         """Return the emergency messages since the last call."""
 

@@ -8,7 +8,7 @@ The control word counts at the start of a tick, the sample at its end.
 import math
 
 from isa_ros.core.device import ENABLED, FAULT, FAULT_REACTION, INITIALISING, QUICK_STOP
-from isa_ros.core.signals import HAS_ENABLE, HAS_QUICK_STOP
+from isa_ros.core.signals import HAS_QUICK_STOP
 from isa_ros.core.units import MILLI
 from isa_ros.fieldbus.device import cia402_objects as objects
 from isa_ros.fieldbus.device.abort import INCOMPATIBLE, OUT_OF_RANGE, SdoAbort
@@ -37,8 +37,11 @@ class Drive402(Drive):
     """The drive of one actuator."""
 
     following = FOLLOWING
-    fault, reaction_ends, reset = Event.FAULT, Event.REACTION_ENDS, Event.RESET
+    fault, reaction_ends, reset, left = (
+        Event.FAULT, Event.REACTION_ENDS, Event.RESET, Event.LEFT)
+    first_state = State402.SWITCH_ON_DISABLED
     faults, control, reset_bit = (State402.FAULT,), objects.CONTROL, FAULT_RESET
+    faulty = (*faults, State402.FAULT_REACTION)
 
     def __init__(
             self, axis: Axis, values: dict[Key, Value], faults: Faults,
@@ -48,7 +51,7 @@ class Drive402(Drive):
         self._supply_low = supply_low
         self._gains = ImpedanceGains(axis, values)
         self._late_s = 0.0
-        self._is_remote = False
+        self._has_left = False
         self._setpoints = {
             NO_MODE: self._holding, CSP: self._position, CSV: self._velocity, CST: self._torque,
             IMPEDANCE_MODE: self._impedance}
@@ -75,15 +78,16 @@ class Drive402(Drive):
     def _refusal(self, mode: int) -> str:
         return REFUSED_MODES.get(mode, super()._refusal(mode))
 
-    def begin_operation(self) -> None:
-        """Enter the state operational."""
-        self._is_remote = True
-
     def end_operation(self, is_lost: bool) -> None:
         """Leave it: stop as by a quick stop, and with a fault if the bus is lost."""
-        self._is_remote = False
         self._values[objects.CONTROL] = _STOP_WORD
         super().end_operation(is_lost)
+        self._has_left = self.state is State402.QUICK_STOP
+
+    def _begin_at_position(self) -> None:
+        self._values[objects.TARGET_POSITION] = round(self._axis.position * COUNTS)
+        self._late_s = 0.0
+        self._has_left = False
 
     def status(self) -> int:
         """Return the status word."""
@@ -105,10 +109,11 @@ class Drive402(Drive):
         axis = self._axis
         if not self._has_start:
             self._has_start = True
-            self._values[objects.TARGET_POSITION] = round(axis.position * COUNTS)
+            self._begin_at_position()
         self._happens(Event.INITIALISED)
         self._watch_deviation()
-        if axis.state in (FAULT_REACTION, FAULT) or self._faults.has_own:
+        self._is_stopping &= axis.is_on
+        if axis.state in (FAULT_REACTION, FAULT) and not self._clears or self._faults.has_own:
             self._happens(Event.FAULT)
         self._end_reaction()
         if axis.is_disabled:
@@ -135,10 +140,11 @@ class Drive402(Drive):
                 return 0
             if state is State402.FAULT_REACTION or self._values[objects.QUICK_STOP_OPTION]:
                 return HAS_QUICK_STOP
+        elif self._is_stopping and self._values[objects.QUICK_STOP_OPTION]:
+            return self._stopped(command)
         elif not (axis.is_on or axis.state == INITIALISING):
             return 0
-        command['is_enabled'] = 0
-        return HAS_ENABLE
+        return self._off(command)
 
     def _operate(self, command: np.void) -> int:
         kinds = self._enabled(command, self._modes[self._mode])
@@ -221,9 +227,11 @@ class Drive402(Drive):
 
     def _enters(self, row: Transition) -> None:
         self._was_on = False
+        self._has_left &= row.state is not State402.QUICK_STOP
 
     def _holds(self, guard: str) -> bool:
-        stays = self._values[objects.QUICK_STOP_OPTION] == objects.QUICK_STOP_STAYS
+        stays = (self._values[objects.QUICK_STOP_OPTION] == objects.QUICK_STOP_STAYS
+                 and not self._has_left)
         if guard == ENDS_OFF:
             return not stays
         if guard == STAYS:

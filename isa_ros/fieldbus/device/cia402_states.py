@@ -39,6 +39,7 @@ class Event(Enum):
     ENABLE = 'enable operation'
     DISABLE_VOLTAGE = 'disable voltage'
     STOP = 'quick stop'
+    LEFT = 'the bus leaves operational'
     LOCAL_STOP = 'a quick stop from elsewhere'
     DROPPED = 'disabled from elsewhere'
     STOPPED = 'the REU is disabled'
@@ -62,7 +63,8 @@ COMMANDS = (
 """Every pattern; a word that fits none changes nothing."""
 
 REU_DISABLED, ENDS_OFF, STAYS, CAUSE_GONE = (
-    'the REU is disabled', 'option code 0 or 2', 'option code 6, and the REU is disabled',
+    'the REU is disabled', 'option code 0 or 2, or the bus has left operational',
+    'option code 6, the bus has stayed, and the REU is disabled',
     'its cause is gone')
 
 
@@ -81,6 +83,7 @@ TRANSITIONS = (
     Transition(6, State402.SWITCHED_ON, Event.SHUTDOWN, '', State402.READY, _SHOWN),
     Transition(7, State402.READY, Event.DISABLE_VOLTAGE, '', State402.SWITCH_ON_DISABLED, _SHOWN),
     Transition(7, State402.READY, Event.STOP, '', State402.SWITCH_ON_DISABLED, _SHOWN),
+    Transition(7, State402.READY, Event.LEFT, '', State402.SWITCH_ON_DISABLED, _SHOWN),
     Transition(8, State402.OPERATION_ENABLED, Event.SHUTDOWN, '', State402.READY, _OFF),
     Transition(9, State402.OPERATION_ENABLED, Event.DISABLE_VOLTAGE, '',
                State402.SWITCH_ON_DISABLED, _OFF),
@@ -89,10 +92,13 @@ TRANSITIONS = (
     Transition(10, State402.SWITCHED_ON, Event.DISABLE_VOLTAGE, '', State402.SWITCH_ON_DISABLED,
                _SHOWN),
     Transition(10, State402.SWITCHED_ON, Event.STOP, '', State402.SWITCH_ON_DISABLED, _SHOWN),
+    Transition(10, State402.SWITCHED_ON, Event.LEFT, '', State402.SWITCH_ON_DISABLED, _SHOWN),
     Transition(11, State402.OPERATION_ENABLED, Event.STOP, '', State402.QUICK_STOP,
                'the quick stop of the REU; with option code 0 it is disabled'),
     Transition(11, State402.OPERATION_ENABLED, Event.LOCAL_STOP, '', State402.QUICK_STOP,
                'it was `~/quick_stop`, for example'),
+    Transition(11, State402.OPERATION_ENABLED, Event.LEFT, '', State402.QUICK_STOP,
+               'the same; it ends off, whatever the option code'),
     Transition(12, State402.QUICK_STOP, Event.STOPPED, ENDS_OFF, State402.SWITCH_ON_DISABLED,
                _SHOWN),
     Transition(12, State402.QUICK_STOP, Event.DISABLE_VOLTAGE, '', State402.SWITCH_ON_DISABLED,

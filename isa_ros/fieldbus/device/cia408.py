@@ -6,13 +6,12 @@ entered. In ACTIVE it has the setpoint of the bus.
 """
 
 from isa_ros.core.device import ENABLED, FAULT, FAULT_REACTION, INITIALISING, PRESSURE
-from isa_ros.core.signals import HAS_ENABLE
 from isa_ros.fieldbus.device import cia408_objects as objects
 from isa_ros.fieldbus.device.axis import Axis, COUNTS, FULL_SCALE
 from isa_ros.fieldbus.device.cia408_objects import AXIS_POSITION, AXIS_VELOCITY, PQ
 from isa_ros.fieldbus.device.cia408_states import (
-    control_of, Event, FAULTS, FOLLOWING, HOLDING, HOLDS, level_of, MAY_ENABLE, R, State408,
-    WAS_DISABLED, WAS_INIT)
+    control_of, Event, FAULTS, FOLLOWING, HOLDING, HOLDS, level_of, MAY_ACT, MAY_ENABLE, R,
+    State408, WAS_DISABLED, WAS_INIT)
 from isa_ros.fieldbus.device.dictionary import Key
 from isa_ros.fieldbus.device.drive import Drive
 from isa_ros.fieldbus.device.faults import Faults
@@ -29,8 +28,11 @@ class Drive408(Drive):
     """The device of one actuator."""
 
     following = FOLLOWING
-    fault, reaction_ends, reset = Event.FAULT, Event.REACTION_ENDS, Event.RESET
+    fault, reaction_ends, reset, left = (
+        Event.FAULT, Event.REACTION_ENDS, Event.RESET, Event.LEFT)
+    first_state = State408.INIT
     faults, control, reset_bit = FAULTS, objects.CONTROL, R
+    faulty = (*faults, State408.FAULT_REACTION)
     mode_words = 'control mode'
 
     def __init__(self, axis: Axis, values: dict[Key, Value], faults: Faults) -> None:
@@ -38,7 +40,7 @@ class Drive408(Drive):
             axis, values, faults, State408.NOT_READY, objects.CONTROL_MODE, objects.modes_of(axis),
             int(values[objects.CONTROL_MODE]))
         self._before = 0
-        self._is_blocked = False
+        self._is_blocked = self._is_held = False
         self.actuals = {
             objects.STATUS: self.status, objects.CONTROL_MODE: lambda: self._mode,
             objects.PRESSURE_ACTUAL: self._pressure,
@@ -49,7 +51,18 @@ class Drive408(Drive):
     def end_operation(self, is_lost: bool) -> None:
         """Leave it: hold, and with a fault if the bus is lost."""
         self._values[objects.CONTROL] = control_of(min(self.state.level, State408.HOLD.level))
+        self._is_held |= self.state is State408.ACTIVE and not is_lost
         super().end_operation(is_lost)
+
+    def restart(self, is_whole: bool) -> None:
+        """Enter INIT at once; H must fall before the REU is enabled again."""
+        super().restart(is_whole)
+        if self.state is State408.INIT:
+            self._is_blocked = True
+
+    def _begin_at_position(self) -> None:
+        self._demand = self._axis.position
+        self._values[objects.POSITION_SETPOINT] = round(self._demand * COUNTS)
 
     def status(self) -> int:
         """Return the status word."""
@@ -71,10 +84,10 @@ class Drive408(Drive):
         axis = self._axis
         if not self._has_start:
             self._has_start = True
-            self._demand = axis.position
-            self._values[objects.POSITION_SETPOINT] = round(axis.position * COUNTS)
+            self._begin_at_position()
         self._happens(Event.INITIALISED)
-        has_tripped = axis.state in (FAULT_REACTION, FAULT)
+        self._is_stopping &= axis.is_on
+        has_tripped = axis.state in (FAULT_REACTION, FAULT) and not self._clears
         if self.state is State408.FAULT_REACTION:
             if axis.is_off or axis.state == ENABLED:
                 self._happens(Event.REACTION_ENDS)
@@ -91,8 +104,10 @@ class Drive408(Drive):
 
     def fill_command(self, command: np.void) -> None:
         """Write the `COMMAND` of a tick; what dropped may be enabled again once H has fallen."""
-        wanted = level_of(int(self._values[objects.CONTROL]))
-        self._is_blocked &= wanted >= State408.HOLD.level
+        if self._is_remote:
+            wanted = level_of(int(self._values[objects.CONTROL]))
+            self._is_blocked &= wanted >= State408.HOLD.level
+            self._is_held &= wanted >= State408.ACTIVE.level
         super().fill_command(command)
 
     def _obey(self, control: int) -> None:
@@ -106,10 +121,11 @@ class Drive408(Drive):
         is_off_in_reaction = self.state is State408.FAULT_REACTION and not axis.is_on
         if self.state in HOLDING and not has_tripped and not is_off_in_reaction:
             return self._operate(command)
+        if self._is_stopping:
+            return self._stopped(command)
         if has_tripped or not (axis.is_on or axis.state == INITIALISING):
             return 0
-        command['is_enabled'] = 0
-        return HAS_ENABLE
+        return self._off(command)
 
     def _operate(self, command: np.void) -> int:
         wanted = self._modes[self._mode]
@@ -152,6 +168,8 @@ class Drive408(Drive):
     def _holds(self, guard: str) -> bool:
         if guard == MAY_ENABLE:
             return self._axis.is_disabled and not self._is_blocked
+        if guard == MAY_ACT:
+            return not self._is_held
         if guard == HOLDS:
             return self._axis.state == ENABLED
         if guard in (WAS_DISABLED, WAS_INIT):

@@ -43,11 +43,13 @@ class Event(Enum):
     FAULT = 'a fault'
     REACTION_ENDS = 'the reaction is over'
     RESET = 'R rises'
+    LEFT = 'the bus leaves operational'
     DROPPED = 'disabled or stopped from elsewhere'
 
 
-MAY_ENABLE, HOLDS, WAS_DISABLED, WAS_INIT, CAUSE_GONE = (
-    'the REU is disabled', 'the REU holds', 'the REU is off, it was DISABLED or above',
+MAY_ENABLE, MAY_ACT, HOLDS, WAS_DISABLED, WAS_INIT, CAUSE_GONE = (
+    'the REU is disabled', 'M has fallen since the bus left operational', 'the REU holds',
+    'the REU is off, it was DISABLED or above',
     'the REU is off, it was INIT', 'its cause is gone')
 
 
@@ -58,8 +60,11 @@ TRANSITIONS = (
     Transition('1', State408.NOT_READY, Event.INITIALISED, '', State408.INIT, _SHOWN),
     Transition('2', State408.INIT, Event.RISE, '', State408.DISABLED, _SHOWN),
     Transition('3', State408.DISABLED, Event.RISE, MAY_ENABLE, State408.HOLD, _HOLDS),
-    Transition('4', State408.HOLD, Event.RISE, '', State408.ACTIVE, 'the setpoint of the bus'),
+    Transition('4', State408.HOLD, Event.RISE, MAY_ACT, State408.ACTIVE,
+               'the setpoint of the bus'),
     Transition('5', State408.ACTIVE, Event.FALL, '', State408.HOLD, 'the hold setpoint'),
+    Transition('5', State408.ACTIVE, Event.LEFT, '', State408.HOLD,
+               'the hold setpoint; M must fall before it is active again'),
     Transition('6', State408.HOLD, Event.FALL, '', State408.DISABLED, _OFF),
     Transition('7', State408.DISABLED, Event.FALL, '', State408.INIT, _SHOWN),
     *(Transition('8', state, Event.FAULT, '', State408.FAULT_REACTION,

@@ -15,6 +15,8 @@ from isa_ros.fieldbus.device.objects import (
 
 Key = tuple[int, int]
 """Index and subindex."""
+LAST_OF_COMMUNICATION = 0x1FFF
+"""Objects up to it are those of the bus, CiA 301."""
 Actuals = Mapping[Key, Callable[[], Value]]
 """Functions that return the present value of an entry."""
 
@@ -36,6 +38,12 @@ class ObjectDictionary:
         """Stored values; those of ``actuals`` are not used."""
         self._actuals = actuals
         self._admit = admit
+
+    def restart(self) -> None:
+        """Return to the values of power-on, but for the communication area."""
+        for entry in self.table.entries:
+            if entry.index > LAST_OF_COMMUNICATION and entry.is_writable:
+                self.values[entry.index, entry.subindex] = entry.default
 
     def value(self, key: Key) -> Value:
         """Return the present value of an existing entry."""

@@ -3,8 +3,8 @@
 from collections.abc import Callable, Mapping
 from enum import Enum
 
-from isa_ros.core.device import ENABLED, FAULT
-from isa_ros.core.signals import HAS_CLEAR_FAULT
+from isa_ros.core.device import ENABLED, FAULT, FAULT_REACTION
+from isa_ros.core.signals import HAS_CLEAR_FAULT, HAS_ENABLE, HAS_QUICK_STOP
 from isa_ros.fieldbus.device.axis import Axis
 from isa_ros.fieldbus.device.dictionary import Key
 from isa_ros.fieldbus.device.faults import BUS_LOST, Faults
@@ -13,6 +13,9 @@ from isa_ros.fieldbus.device.objects import ObjectEntry, Value
 from isa_ros.fieldbus.device.setpoints import change_mode, enable, Limiter
 from isa_ros.fieldbus.device.states import DeviceState, Following, Transition
 import numpy as np
+
+_CLEARING = 2
+"""Ticks in which a restart clears a fault: of a reaction the first ends it."""
 
 
 class Drive:
@@ -27,9 +30,14 @@ class Drive:
     fault: Enum
     reaction_ends: Enum
     reset: Enum
+    left: Enum
     """Events of the table."""
+    first_state: DeviceState
+    """After power-on, once there is a sample."""
     faults: tuple[DeviceState, ...]
     """States that a reset ends."""
+    faulty: tuple[DeviceState, ...]
+    """These, and the reaction before them."""
     control: Key
     reset_bit: int
     """Of the control word; a reset is its rising edge."""
@@ -43,10 +51,13 @@ class Drive:
         """Functions of the values that this drive computes."""
         self._axis, self._values, self._faults = axis, values, faults
         self._mode_key, self._modes, self._mode = mode_key, modes, mode
+        self._first_mode = mode
         self._control = 0
         self._limiter = Limiter()
         self._demand = 0.0
         self._was_on = self._has_start = False
+        self._is_remote = self._is_stopping = False
+        self._clears = 0
 
     # Side of the bus.
 
@@ -70,13 +81,45 @@ class Drive:
 
     def begin_operation(self) -> None:
         """Enter the state operational of the bus."""
+        self._is_remote = True
 
     def end_operation(self, is_lost: bool) -> None:
-        """Leave the state operational of the bus, with a fault if it is lost."""
+        """
+        Leave the state operational of the bus, with a fault if it is lost.
+
+        The state changes here and not at the next tick: until then the bus may be operational
+        again, with the control word that it had before.
+        """
+        self._is_remote = False
         if is_lost:
             self._faults.add(BUS_LOST)
             self._happens(self.fault)
             self._end_reaction()
+        else:
+            self._happens(self.left)
+
+    def restart(self, is_whole: bool) -> None:
+        """
+        Enter the state after power-on at once; with ``is_whole`` with outputs off, without faults.
+
+        Otherwise a fault stays, and the REU ends its stop before it can be enabled.
+        """
+        axis = self._axis
+        self._control = 0
+        if is_whole:
+            self._clears = _CLEARING * (axis.state in (FAULT_REACTION, FAULT))
+            self._mode = self._first_mode
+        elif self.state in self.faulty:
+            return
+        self._is_stopping = axis.is_on and not is_whole
+        self._was_on = False
+        if self._has_start:
+            self.state = self.first_state
+            self._begin_at_position()
+
+    def _begin_at_position(self) -> None:
+        """Make the measured position the target."""
+        raise NotImplementedError
 
     # Side of the run.
 
@@ -90,6 +133,10 @@ class Drive:
         is_reset = bool(control & ~self._control & self.reset_bit)
         self._control = control
         kinds = 0
+        if self._clears:
+            self._clears -= 1
+            command['kinds'] = HAS_CLEAR_FAULT | self._off(command)
+            return
         if is_reset and self.state in self.faults:
             kinds = self._reset()
         else:
@@ -103,6 +150,15 @@ class Drive:
     def _kinds(self, command: np.void) -> int:
         """Write what the state demands of the REU; return the kinds."""
         raise NotImplementedError
+
+    def _off(self, command: np.void) -> int:
+        """Switch the REU off at once; return the kinds."""
+        command['is_enabled'] = 0
+        return HAS_ENABLE
+
+    def _stopped(self, command: np.void) -> int:
+        """Let the REU stop before it is off; return the kinds."""
+        return HAS_QUICK_STOP if self._axis.state == ENABLED else 0
 
     def _reset(self) -> int:
         """Reset a fault: that of the bus at once, that of the REU by a command."""

@@ -100,6 +100,13 @@ class Faults:
         """Forget the code: the fault has been reset."""
         self.code = 0
 
+    def restart(self) -> None:
+        """Forget everything, unsent messages too; a trip that lasts is reported anew."""
+        self._trips = self.code = 0
+        self._own.clear()
+        self._new.clear()
+        delete_errors(self._values)
+
     def emergencies(self) -> list[Emergency]:
         """Return the messages since the last call."""
         found, self._new = self._new, []

@@ -92,6 +92,13 @@ class ProcessData:
         self._values = values
         self._layouts: dict[int, _Layout] = {}
 
+    def restart(self) -> None:
+        """Return to the mappings and assignments of power-on."""
+        for entry in self._table.entries:
+            if is_changed_in_preop(entry.index):
+                self._values[entry.index, entry.subindex] = entry.default
+        self._layouts.clear()
+
     def _listed(self, index: int, count: int | None = None) -> list[int]:
         """Return the entries in use of a mapping or assignment."""
         used = self._values[index, 0] if count is None else count

@@ -103,6 +103,7 @@ class Slave:
             self._mailbox.start()
         elif new == AlState.INIT:
             self._mailbox.stop()
+            self.device.restart(is_whole=False)
         is_exchanging = new in (AlState.SAFEOP, AlState.OP)
         if is_exchanging and old == AlState.PREOP:
             self._assign()

@@ -186,6 +186,13 @@ class ToyDrive:
         if is_lost and self.state == 'enabled':
             self._fail(LOST)
 
+    def restart(self, *, is_whole: bool) -> None:
+        for entry in self.table.entries:
+            if entry.is_writable and (is_whole or entry.index in MAPPINGS):
+                self.values[entry.index, entry.subindex] = entry.default
+        if is_whole:
+            self.state = 'disabled'
+
     def emergencies(self) -> list[Emergency]:
         news, self._news = self._news, []
         return news
