@@ -40,8 +40,6 @@ def measure(spec: 'Spec', started: float, entered: float) -> 'Measured':
 
     ``started`` and ``entered``: monotonic clock at the start of this process and at `main`.
     """
-    from isa_ros.core.without_blas import start_without_blas
-    start_without_blas()
     from isa_ros.bench.rigs import request_of
     from isa_ros.bench.spec import IMPORTS, INTERPRETER
     from isa_ros.bench.watch import Watch

@@ -33,13 +33,10 @@ def bus_request_of(options: Namespace) -> BusRequest:
 @simulating
 def serve(options: Namespace) -> bool:
     """Run and record a configuration whose commands come from the master of a bus."""
-    from isa_ros.core.without_blas import start_without_blas
     from isa_ros.fieldbus.device.devices import devices_of
     from isa_ros.fieldbus.lines import line_of, refuse_unusable
     from isa_ros.fieldbus.session import prepare_bus
     request = bus_request_of(options)
-    if request.run.is_alone:
-        start_without_blas()
     prepared = prepare_bus(request, devices_of, line_of(request), print_line)
     run = prepared.session.run
     refuse_unusable(request, devices_of(run, request.profile), run.step_ns)

@@ -58,10 +58,7 @@ def demo(options: Namespace) -> bool:
 
 def _record(request: Request) -> Path:
     """Run, print the paths of its bags, also after an error, and return the first."""
-    from isa_ros.core.without_blas import start_without_blas
     from isa_ros.run.session import prepare
-    if request.is_alone:
-        start_without_blas()
     session = prepare(request)
 
     def run(report: 'Report | None') -> None:

@@ -31,6 +31,7 @@ from llvmlite.binding import parse_bitcode
 from numba.core.caching import _Cache
 from numba.core.codegen import JITCodeLibrary
 from numba.core.compiler import compile_result
+from numba.core.runtime.nrt import rtsys
 from numba.core.serialize import dumps
 
 _FORM = 2                   # of a file; others are not read
@@ -236,8 +237,14 @@ class KernelCache(_Cache):
                 f'{_digest(self._kernel)}')
 
     def load_overload(self, sig: Any, target_context: Any) -> Any:
-        """Return a compiled version, None if no file has it."""
-        target_context.refresh()
+        """
+        Return a compiled version, None if no file has it.
+
+        numba's runtime is what machine code links to. Declaring all that kernels may call, and
+        importing scipy for it, takes half of the processor time of a start; the compiler does
+        it itself where no file has the version.
+        """
+        rtsys.initialize(target_context)
         with contextlib.suppress(UnknownValue):     # not kept either
             name = self._name(sig, target_context.codegen())
             try:

@@ -33,6 +33,10 @@ def twice(x):
 MAIN = (
     'from isa_ros.caller import caller; import numba; '
     'print(caller(1.0), numba.config.CACHE_DIR)')
+LOADED = (
+    'import sys; from isa_ros.callee import twice; '
+    'print(twice(1.0), "numba.np.arraymath" in sys.modules)')
+THEN_COMPILED = f'{LOADED}; from isa_ros.caller import caller; print(caller(2.0))'
 
 
 @pytest.fixture
@@ -46,12 +50,12 @@ def package(tmp_path: Path) -> Path:
     return tmp_path
 
 
-def called(package: Path, **environment: str) -> tuple[str, str]:
-    """Return what `MAIN` prints, and what it says on standard error."""
+def called(package: Path, program: str = MAIN, **environment: str) -> tuple[str, str]:
+    """Return what a program prints, and what it says on standard error."""
     kept = {name: value for name, value in os.environ.items()
             if name not in ('NUMBA_CACHE_DIR', 'XDG_CACHE_HOME', 'HOME')}
     done = subprocess.run(
-        [sys.executable, '-c', MAIN], env=kept | {'PYTHONPATH': str(package)} | environment,
+        [sys.executable, '-c', program], env=kept | {'PYTHONPATH': str(package)} | environment,
         cwd=package, capture_output=True, text=True, timeout=120.0)
     assert done.returncode == 0, done.stderr
     return done.stdout, done.stderr
@@ -64,6 +68,15 @@ def test_an_edit_is_noticed_in_a_directory_of_the_user_too(package: Path) -> Non
     assert [path.name for path in (package / 'own').iterdir()] == ['isa_ros']
     (package / 'isa_ros' / 'callee.py').write_text(CALLEE.format(factor=3.0))
     assert called(package, NUMBA_CACHE_DIR=own) == (f'3.0 {own}\n', '')
+
+
+def test_loading_needs_no_compiler_and_a_later_kernel_is_compiled_with_what_was_loaded(
+        package: Path) -> None:
+    """The compiler's declarations come in only when the second kernel is not kept."""
+    own = str(package / 'own')
+    assert called(package, LOADED, NUMBA_CACHE_DIR=own) == ('2.0 True\n', '')
+    assert called(package, LOADED, NUMBA_CACHE_DIR=own) == ('2.0 False\n', '')
+    assert called(package, THEN_COMPILED, NUMBA_CACHE_DIR=own) == ('2.0 False\n4.0\n', '')
 
 
 @pytest.mark.parametrize('environment', [

@@ -11,7 +11,6 @@ from isa_ros.config.runs.default_actuator import default_actuator, default_load,
 from isa_ros.config.runs.run_config import RunConfig
 from isa_ros.config.runs.run_file import load_run
 from isa_ros.config.text.changes import changes_of
-from isa_ros.core.without_blas import start_without_blas
 from isa_ros.errors import ConfigError
 from isa_ros.nodes.actuator.alone import run_alone
 from isa_ros.nodes.actuator.node import ActuatorNode, NodeSetup
@@ -125,5 +124,4 @@ def _number(node: Node, name: str) -> float:
 
 def main(args: Sequence[str] | None = None, model: str = '') -> int:
     """Run one actuator node; without ``model`` its parameter ``model`` names the model."""
-    start_without_blas()
     return run(args, model)

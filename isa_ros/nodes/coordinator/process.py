@@ -2,7 +2,6 @@
 
 from collections.abc import Sequence
 
-from isa_ros.core.without_blas import start_without_blas
 from isa_ros.errors import one_line
 from isa_ros.nodes.coordinator.node import CoordinatorNode, NAME
 from isa_ros.nodes.coordinator.runs import coordinate, coordinate_locally
@@ -23,7 +22,6 @@ USAGE = (
 
 def main(args: Sequence[str] | None = None) -> int:
     """Coordinate the run that the parameters describe, and return the exit code."""
-    start_without_blas()
     with StopRequest() as should_stop:
         try:
             set_defaults()
