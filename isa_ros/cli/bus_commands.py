@@ -36,10 +36,10 @@ def serve(options: Namespace) -> bool:
     from isa_ros.fieldbus.device.devices import devices_of
     from isa_ros.fieldbus.lines import line_of, refuse_unusable
     from isa_ros.fieldbus.session import prepare_bus
+    from isa_ros.fieldbus.sole_bus import sole_bus
     request = bus_request_of(options)
     prepared = prepare_bus(request, devices_of, line_of(request), print_line)
     run = prepared.session.run
-    refuse_unusable(request, devices_of(run, request.profile), run.step_ns)
     session = prepared.session
 
     def serving(report: 'Report | None') -> None:
@@ -51,11 +51,15 @@ def serve(options: Namespace) -> bool:
         from isa_ros.run.without_ros import run_without_ros
         with StopRequest() as should_stop:
             run_without_ros(session, report, should_stop)
-    try:
-        recorded(session, serving)
-    finally:
-        if prepared.summary is not None:
-            print_line(prepared.summary)
+    with sole_bus(request):
+        said = refuse_unusable(request, devices_of(run, request.profile), run.step_ns)
+        if said:
+            print_line(said)
+        try:
+            recorded(session, serving)
+        finally:
+            if prepared.summary is not None:
+                print_line(prepared.summary)
     return True
 
 

@@ -58,8 +58,12 @@ def bus(parser: argparse.ArgumentParser) -> None:
         own = _command(below, name, f'serve {row.serves}')
         _of_bus(own)
         for argument in row.arguments:
+            flag = f'--{argument.name.replace("_", "-")}'
+            if argument.kind is bool:
+                own.add_argument(flag, action='store_true', help=argument.meaning)
+                continue
             own.add_argument(
-                f'--{argument.name.replace("_", "-")}', metavar=argument.metavar,
+                flag, metavar=argument.metavar,
                 type=count if argument.kind is int else argument.kind, help=argument.meaning,
                 required=argument.default is None, default=argument.default)
         _debug(own)

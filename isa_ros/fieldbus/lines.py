@@ -15,11 +15,11 @@ def line_of(request: BusRequest) -> OpenLine:
     return lambda devices, step_ns: open_line(devices, step_ns=step_ns, **request.arguments)
 
 
-def refuse_unusable(request: BusRequest, devices: Sequence[BusDevice], step_ns: int) -> None:
+def refuse_unusable(request: BusRequest, devices: Sequence[BusDevice], step_ns: int) -> str:
     """
     Refuse a line that cannot be opened or is too slow, before kernels are compiled for it.
 
-    Nothing is sent on it.
+    Nothing is sent on it. Return a line for the user, '' for none.
 
     Raises
     ------
@@ -28,7 +28,9 @@ def refuse_unusable(request: BusRequest, devices: Sequence[BusDevice], step_ns: 
         of a tick do not fit.
 
     """
-    _module(request).refuse_unusable(devices, step_ns=step_ns, **request.arguments)
+    said: str | None = _module(request).refuse_unusable(
+        devices, step_ns=step_ns, **request.arguments)
+    return said or ''
 
 
 def _module(request: BusRequest) -> Any:

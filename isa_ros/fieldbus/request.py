@@ -27,8 +27,8 @@ class Argument(NamedTuple):
     name: str
     meaning: str
     metavar: str | None = None
-    kind: type[str] | type[int] | type[Path] = str
-    """Whole numbers are > 0."""
+    kind: type[str] | type[int] | type[Path] | type[bool] = str
+    """Whole numbers are > 0; a bool is a flag."""
     default: int | None = None
     """None: it must be given."""
 
@@ -39,28 +39,33 @@ class Bus(NamedTuple):
 
     Its module has two functions, of the devices, ``step_ns`` and its arguments by name: one named
     after the bus, ``serial_line``, which opens a `Line`, and ``refuse_unusable``, which refuses a
-    line that cannot be opened or is too slow, and sends nothing.
+    line that cannot be opened or is too slow, and sends nothing; it may return a line for the
+    user.
     """
 
     module: str
     """Below `isa_ros.fieldbus`; a run imports that of its own bus only."""
     serves: str
     arguments: tuple[Argument, ...]
+    medium: str = ''
+    """What it shares with buses at the same place, of which one is served; '': nothing."""
 
 
 _CAN = (
     Argument('interface', 'interface of python-can: udp_multicast, socketcan, slcan, ...', 'NAME'),
     Argument('channel', 'of that interface'),
     Argument('bitrate', 'of the bus (default: 1000000)', 'BIT/S', int, OF_THE_WIRE),
-    Argument('first_node', 'number of the first actuator (default: %(default)s)', 'N', int, 1))
+    Argument('first_node', 'number of the first actuator (default: %(default)s)', 'N', int, 1),
+    Argument('allow_network', 'with udp_multicast: also where other hosts can send frames',
+             kind=bool, default=False))
 
 ETHERCAT, CANOPEN, MIT, SERIAL = 'ethercat', 'canopen', 'mit', 'serial'
 BUSES: Mapping[str, Bus] = {
     ETHERCAT: Bus('ethercat.line', 'an EtherCAT master on a network interface', (
         Argument('interface', 'network interface of the ring, for example one end of a veth pair',
-                 'IF'),)),
-    CANOPEN: Bus('canopen.line', 'a CANopen master on a CAN interface', _CAN),
-    MIT: Bus('canopen.mit_line', 'a master of MIT-mode motors on a CAN interface', _CAN),
+                 'IF'),), 'ethernet'),
+    CANOPEN: Bus('canopen.line', 'a CANopen master on a CAN interface', _CAN, 'can'),
+    MIT: Bus('canopen.mit_line', 'a master of MIT-mode motors on a CAN interface', _CAN, 'can'),
     SERIAL: Bus('serial.line', 'a master on a serial line', (
         Argument('path', 'serial device, or a link to make to a pseudo terminal', 'FILE', Path),
         Argument('baud', 'of the line (default: that of docs/link.md)', 'BIT/S', int,

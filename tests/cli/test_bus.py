@@ -40,7 +40,10 @@ def test_buses_on_can_and_on_a_serial_line_have_theirs():
         assert asked(bus, 'leg', '--interface', 'slcan', '--channel', 'c', '--bitrate', '500000',
                      '--first-node', '5') == BusRequest(
             run=run_of(), bus=bus, arguments={
-                'interface': 'slcan', 'channel': 'c', 'bitrate': 500_000, 'first_node': 5})
+                'interface': 'slcan', 'channel': 'c', 'bitrate': 500_000, 'first_node': 5,
+                'allow_network': False})
+    assert asked(bus, 'leg', '--interface', 'udp_multicast', '--channel', 'c',
+                 '--allow-network').arguments['allow_network'] is True
     assert asked('serial', 'leg', '--path', 'line', '--baud', '9600') == BusRequest(
         run=run_of(), bus='serial', arguments={'path': Path('line'), 'baud': 9600})
 

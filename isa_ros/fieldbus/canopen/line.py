@@ -20,6 +20,7 @@ from isa_ros.errors import ConfigError
 from isa_ros.fieldbus.canopen.capacity import CyclicFrame, refuse_overfull
 from isa_ros.fieldbus.canopen.node import Handler, NmtCommand, NmtState, Node
 from isa_ros.fieldbus.canopen.port import CanPort, Frame, monotonic
+from isa_ros.fieldbus.canopen.udp_reach import reach_of
 from isa_ros.fieldbus.device.bus_device import BusDevice
 from isa_ros.fieldbus.device.can_identifiers import (
     FIRST_NODE, HEARTBEAT, LAST_NODE, NMT, SDO_REQUEST, SYNC)
@@ -30,22 +31,24 @@ _NMT_SIZE = 2
 
 def canopen_line(
         devices: Sequence[BusDevice], interface: str, channel: str, step_ns: int, *,
-        bitrate: int = 0, first_node: int = FIRST_NODE,
+        bitrate: int = 0, first_node: int = FIRST_NODE, allow_network: bool = False,
         options: Mapping[str, object] | None = None) -> 'CanopenLine':
     """
     Open a CAN bus and start a node for each device, ``first_node`` and following.
 
     ``bitrate`` (bit/s; 0: `default_bitrate`) is that of the wire, or the modelled one of a virtual
-    interface; ``options`` are further keywords of the interface of python-can.
+    interface; ``options`` are further keywords of the interface of python-can;
+    ``allow_network``: as of `reach_of`.
 
     Raises
     ------
     ConfigError
         The frames of a tick do not fit the bit rate, python-can is not installed, there is no
-        such interface, or the bus cannot be opened.
+        such interface, or the bus cannot be opened or can be reached from other hosts.
 
     """
     rate = bitrate or default_bitrate()
+    reach_of(interface, channel, allow_network)
     line = planned_line(devices, step_ns, rate, first_node)
     line.begin(CanPort(interface, channel, rate, options))
     return line
@@ -53,11 +56,17 @@ def canopen_line(
 
 def refuse_unusable(
         devices: Sequence[BusDevice], interface: str, channel: str, step_ns: int, *,
-        bitrate: int = 0, first_node: int = FIRST_NODE) -> None:
-    """Refuse a bus that cannot be used; parameters and errors as of `canopen_line`."""
+        bitrate: int = 0, first_node: int = FIRST_NODE, allow_network: bool = False) -> str:
+    """
+    Refuse a bus that cannot be used; parameters and errors as of `canopen_line`.
+
+    Return a line that says who can reach it, '' for none.
+    """
     rate = bitrate or default_bitrate()
     planned_line(devices, step_ns, rate, first_node)
+    said = reach_of(interface, channel, allow_network)
     CanPort(interface, channel, rate).close()
+    return said
 
 
 def planned_line(

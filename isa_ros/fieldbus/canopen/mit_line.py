@@ -17,6 +17,7 @@ from isa_ros.fieldbus.canopen.mit_frames import ANSWER_BYTES, COMMAND_BYTES, spe
 from isa_ros.fieldbus.canopen.mit_motor import has_impedance, MitMotor
 from isa_ros.fieldbus.canopen.port import CanPort, Frame, monotonic
 from isa_ros.fieldbus.canopen.sdo import SdoServer
+from isa_ros.fieldbus.canopen.udp_reach import reach_of
 from isa_ros.fieldbus.device.bus_device import BusDevice
 from isa_ros.fieldbus.device.can_identifiers import FIRST_NODE, LARGEST, SDO_ANSWER, SDO_REQUEST
 
@@ -24,6 +25,7 @@ from isa_ros.fieldbus.device.can_identifiers import FIRST_NODE, LARGEST, SDO_ANS
 def mit_line(
         devices: Sequence[BusDevice], interface: str, channel: str, step_ns: int, *,
         bitrate: int = 0, first_node: int = FIRST_NODE, answer_id: int = 0,
+        allow_network: bool = False,
         options: Mapping[str, object] | None = None) -> 'MitLine':
     """
     Open a CAN bus with a motor for each device; parameters as of `canopen_line`.
@@ -35,17 +37,20 @@ def mit_line(
 
     """
     rate = bitrate or default_bitrate()
+    reach_of(interface, channel, allow_network)
     refuse_motors(devices, step_ns, rate, first_node, answer_id)
     return MitLine(devices, CanPort(interface, channel, rate, options), first_node, answer_id)
 
 
 def refuse_unusable(
         devices: Sequence[BusDevice], interface: str, channel: str, step_ns: int, *,
-        bitrate: int = 0, first_node: int = FIRST_NODE) -> None:
-    """Refuse a bus that cannot be used; parameters and errors as of `canopen_line`."""
+        bitrate: int = 0, first_node: int = FIRST_NODE, allow_network: bool = False) -> str:
+    """Refuse a bus that cannot be used; all as of `isa_ros.fieldbus.canopen.line`."""
     rate = bitrate or default_bitrate()
     refuse_motors(devices, step_ns, rate, first_node)
+    said = reach_of(interface, channel, allow_network)
     CanPort(interface, channel, rate).close()
+    return said
 
 
 def refuse_motors(

@@ -4,6 +4,7 @@ The door to a serial line: a pseudo terminal made here, or a serial device that 
 A pseudo terminal has no rate; the given one is that of the modelled line, and its frames must fit.
 """
 
+import fcntl
 import os
 from pathlib import Path
 import select
@@ -26,8 +27,8 @@ class SerialPort:
         Raises
         ------
         ConfigError
-            The path is something else, cannot be made or opened, or the rate is not one of a
-            serial device.
+            The path is something else, cannot be made or opened, is locked by another program,
+            or the rate is not one of a serial device.
 
         """
         self._path, self._link_target = path, ''
@@ -37,6 +38,7 @@ class SerialPort:
         try:
             if path.exists() and stat.S_ISCHR(path.stat().st_mode) and not path.is_symlink():
                 self._own = os.open(path, os.O_RDWR | os.O_NOCTTY | os.O_NONBLOCK)
+                _refuse_unusable(self._own, path)
                 tty.setraw(self._own)
                 _set_rate(self._own, path, baud)
             else:
@@ -105,6 +107,20 @@ class SerialPort:
             self._link_target = ''
             self.close()
             raise
+
+
+def _refuse_unusable(handle: int, path: Path) -> None:
+    """Refuse what is no serial device; lock it by flock, as other programs for them do."""
+    if not os.isatty(handle):
+        os.close(handle)
+        raise ConfigError(f'serial line {path}: is no serial device')
+    try:
+        fcntl.flock(handle, fcntl.LOCK_EX | fcntl.LOCK_NB)
+    except BlockingIOError:
+        os.close(handle)
+        raise ConfigError(
+            f'serial line {path}: another program uses it (it holds its lock); end that one or '
+            'take another line') from None
 
 
 def _set_rate(handle: int, path: Path, baud: int) -> None:

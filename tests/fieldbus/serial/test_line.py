@@ -189,14 +189,24 @@ def test_a_folder_that_is_missing_is_one_line(tmp_path):
         serial_line([ToyDrive()], tmp_path / 'none' / 'line', 0, STEP_NS)
 
 
+def test_a_device_that_is_no_terminal_is_one_line():
+    with pytest.raises(ConfigError) as refused:
+        serial_line([ToyDrive()], '/dev/null', 0, STEP_NS)
+    assert str(refused.value) == 'serial line /dev/null: is no serial device'
+
+
 def test_a_serial_device_has_its_rate_set(tmp_path):
     own, device = os.openpty()
     tty.setraw(device)
     name = os.ttyname(device)
     line = serial_line([ToyDrive()], name, 1_000_000, STEP_NS)
     assert termios.tcgetattr(device)[4:6] == [termios.B1000000] * 2
+    with pytest.raises(ConfigError, match=f'{name}: another program uses it'):
+        serial_line([ToyDrive()], name, 1_000_000, STEP_NS)
+    line.close()
     with pytest.raises(ConfigError, match='baud = 1234567 is no rate of it; one of 50, 75'):
         serial_line([ToyDrive()], name, 1_234_567, STEP_NS)
+    line = serial_line([ToyDrive()], name, 1_000_000, STEP_NS)
     os.close(own)
     os.close(device)
     with pytest.raises(RunError, match='is lost'):
