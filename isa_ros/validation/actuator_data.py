@@ -12,7 +12,7 @@ from isa_ros.plant.chambers import hydraulic_force, pressure_rates, volumes
 from isa_ros.plant.friction import stribeck
 from isa_ros.plant.relief import relief_flow
 from isa_ros.plant.sensors import convert, encode
-from isa_ros.validation.entry import around, as_printed, Entry, Findings, PAPER
+from isa_ros.validation.entry import around, as_printed, Entry, Findings, INPUT
 from isa_ros.validation.sheets import model_sheet, plant_of
 import numpy as np
 from scipy.optimize import brentq
@@ -45,17 +45,17 @@ def _rotary() -> list[Entry]:
     torque = displacement.number * SUPPLY
     table_2 = cell('table_2', 'Vol. displacement', 'Smart manifold')
     return [
-        Entry.of('manifold_displacement', displacement, swept / oil.stroke,
-                 as_printed(displacement), ROUNDED),
-        Entry.of('manifold_displacement_per_deg', table_2,
-                 math.radians(swept / oil.stroke) / MILLILITRE,
-                 as_printed(table_2), ROUNDED),
-        Entry.of('manifold_range', angle, oil.stroke, as_printed(angle), ROUNDED),
-        Entry.of('manifold_range_deg', cell('table_2', 'Total stroke', 'Smart manifold'),
-                 math.degrees(oil.stroke), around(100.0, by=0.5), ROUNDED),
-        Entry.of('manifold_stall', cell('table_2', 'Stall load', 'Smart manifold'),
-                 stall(ROTARY, 1.0), around(torque, percent=0.5), AREAS, reading=RATING),
-        Entry(name='manifold_total_volume', source=PAPER, where='eqs 3, 4, 22, 23',
+        Entry.given('manifold_displacement', displacement, swept / oil.stroke,
+                    as_printed(displacement), ROUNDED),
+        Entry.given('manifold_displacement_per_deg', table_2,
+                    math.radians(swept / oil.stroke) / MILLILITRE,
+                    as_printed(table_2), ROUNDED),
+        Entry.given('manifold_range', angle, oil.stroke, as_printed(angle), ROUNDED),
+        Entry.given('manifold_range_deg', cell('table_2', 'Total stroke', 'Smart manifold'),
+                    math.degrees(oil.stroke), around(100.0, by=0.5), ROUNDED),
+        Entry.given('manifold_stall', cell('table_2', 'Stall load', 'Smart manifold'),
+                    stall(ROTARY, 1.0), around(torque, percent=0.5), AREAS, reading=RATING),
+        Entry(name='manifold_total_volume', source=INPUT, where='eqs 3, 4, 22, 23',
               paper='2 V_p + D_m L_m', ours=sum(volumes(0.3 * oil.stroke, oil)) / MILLILITRE,
               unit='ml', tolerance=around(
                   2.0 * cell('table_5', 'V_p', 'Value').number
@@ -74,11 +74,11 @@ def _linear(model: str, column: str) -> list[Entry]:
     oil = plant_of(model).chambers
     stroke = cell('table_2', 'Total stroke', column)
     return [
-        Entry.of(f'{model}_stroke', stroke, oil.stroke / MILLI,
-                 as_printed(stroke), ROUNDED),
-        Entry.of(f'{model}_stall_out', rating, stall(model, 1.0), around(out, percent=0.5),
-                 AREAS, reading=RATING),
-        Entry(name=f'{model}_stall_back', source=PAPER, where=f'{rating.where}, eq 5',
+        Entry.given(f'{model}_stroke', stroke, oil.stroke / MILLI,
+                    as_printed(stroke), ROUNDED),
+        Entry.given(f'{model}_stall_out', rating, stall(model, 1.0), around(out, percent=0.5),
+                    AREAS, reading=RATING),
+        Entry(name=f'{model}_stall_back', source=INPUT, where=f'{rating.where}, eq 5',
               paper='one value for both directions', ours=-stall(model, -1.0), unit='N',
               tolerance=around(back, percent=0.5), tolerance_source=AREAS,
               reading='erratum 15: the rod takes its share when retracting'),
@@ -95,13 +95,13 @@ def _oil() -> list[Entry]:
         return float(pressure_rates(flow, 0.0, p_a, 0.0, 0.5 * oil.stroke, 0.0, 0.0, oil)[0])
     beta = rate(LPM, 0.0) * v_a / LPM
     return [
-        Entry.of('manifold_bulk_modulus', modulus, beta, around(modulus.number, percent=7.0),
-                 'half of its one printed digit'),
-        Entry.of('manifold_dead_volume', dead, volumes(0.0, oil)[0] / MILLILITRE,
-                 as_printed(dead), ROUNDED),
-        Entry.of('manifold_cross_port_leakage', leak,
-                 -rate(0.0, LEAK_TEST) * v_a / beta / LPM, as_printed(leak), ROUNDED,
-                 reading='erratum 21: C_li = 1.833e-13 m3/s/Pa'),
+        Entry.given('manifold_bulk_modulus', modulus, beta,
+                    around(modulus.number, percent=7.0), 'half of its one printed digit'),
+        Entry.given('manifold_dead_volume', dead, volumes(0.0, oil)[0] / MILLILITRE,
+                    as_printed(dead), ROUNDED),
+        Entry.given('manifold_cross_port_leakage', leak,
+                    -rate(0.0, LEAK_TEST) * v_a / beta / LPM, as_printed(leak), ROUNDED,
+                    reading='erratum 21: C_li = 1.833e-13 m3/s/Pa'),
     ]
 
 
@@ -109,10 +109,11 @@ def _friction() -> list[Entry]:
     friction = plant_of(ROTARY).friction
     fast = 10.0 * friction.v_s
     return [
-        Entry.of('manifold_stiction', statement('stiction'), float(stribeck(0.0, friction)),
-                 around(2.0, by=0.05), 'half of the digits the Coulomb level is printed with'),
-        Entry.of('manifold_coulomb', statement('coulomb_friction'),
-                 float(stribeck(fast, friction)), around(1.9, by=0.05), ROUNDED),
+        Entry.given('manifold_stiction', statement('stiction'), float(stribeck(0.0, friction)),
+                    around(2.0, by=0.05),
+                    'half of the digits the Coulomb level is printed with'),
+        Entry.given('manifold_coulomb', statement('coulomb_friction'),
+                    float(stribeck(fast, friction)), around(1.9, by=0.05), ROUNDED),
     ]
 
 
@@ -123,7 +124,7 @@ def _reliefs() -> list[Entry]:
         relief = plant_of(model).relief
         trickle = 1e-3 * LPM
         opens = brentq(lambda p: relief_flow(p, 0.0, relief) - trickle, 1.0 * MPA, 40.0 * MPA)
-        entries.append(Entry.of(
+        entries.append(Entry.given(
             f'{model}_relief_opens', limit, opens / MPA, around(limit.number, by=0.5), ROUNDED))
     return entries
 
@@ -139,13 +140,13 @@ def _sensors() -> list[Entry]:
         codes = len({convert(f, -own.force_range, own.force_range, own.force_step)
                      for f in forces})
         entries += [
-            Entry.of(f'{model}_adc', bits, math.log2(codes), around(bits.number), 'exact'),
-            Entry.of(f'{model}_encoder', encoder, _least_step(own.encoder) * to_printed,
-                     around(encoder.number, by=0.05 * encoder.number),
-                     '5 %: half of its last printed digit or less'),
+            Entry.given(f'{model}_adc', bits, math.log2(codes), around(bits.number), 'exact'),
+            Entry.given(f'{model}_encoder', encoder, _least_step(own.encoder) * to_printed,
+                        around(encoder.number, by=0.05 * encoder.number),
+                        '5 %: half of its last printed digit or less'),
         ]
     rate = cell('table_3', 'Sensor sampling frequency', 'ISA')
-    return [*entries, Entry.of(
+    return [*entries, Entry.given(
         'isa_v5_sampling', rate, model_sheet('isa_v5').reu.current.rate_hz * 1e-3,
         around(rate.number, by=0.5), ROUNDED)]
 

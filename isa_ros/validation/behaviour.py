@@ -68,6 +68,13 @@ def pushed(found: Rig, force: float) -> Rig:
         found.config, {'load.force': force}, found.run.source))
 
 
+def light(found: Rig, model: str) -> Rig:
+    """Return a bench with a mass as light as the shipped piston or rotor."""
+    piston = float(plant_of(model).mechanics.inertia)
+    return found.with_config(with_parameters(
+        found.config, {'load.inertia': piston}, found.run.source))
+
+
 def driven(found: Rig, spool: float, seconds: float) -> Trace:
     """Return the trace from rest on with the spool's reference at a position (m)."""
     return found.excite(found.begin(force=0.0), np.full(round(seconds * RATE_HZ), spool))
@@ -141,8 +148,6 @@ def _oil(actuators: Actuators, model: str) -> list[Entry]:
     shipped = bench(SHIPPED, model, 'mass').config.load
     assert isinstance(shipped, Mass)
     piston = float(plant_of(model).mechanics.inertia)
-    light = free.with_config(with_parameters(
-        free.config, {'load.inertia': piston}, free.run.source))
     blocked = bench(actuators, model, 'blocked')
     support = bench(SHIPPED, model, 'blocked').config.load
     assert isinstance(support, Blocked)
@@ -154,7 +159,7 @@ def _oil(actuators: Actuators, model: str) -> list[Entry]:
     low, high = (crossing(t, force, level) for level in levels)
     start = rest_pressures(plant_of(model), PAPER_SUPPLY, 0.0, 0.0)
     return [
-        _entry(f'{model}_light_vibration', 'section 4', _frequency(light, model),
+        _entry(f'{model}_light_vibration', 'section 4', _frequency(light(free, model), model),
                free_frequency(model, NEAR_END, piston), 'Hz',
                'the same springs under a load as light as piston or rotor', 5.0),
         _entry(f'{model}_free_vibration', 'section 4', _frequency(free, model),

@@ -1,10 +1,12 @@
 """
 One value beside ours, and the verdict.
 
-An entry states its source. `PAPER`: a statement of the paper, with an interval from the paper's
-own precision: printed digits, "approximately", a printed bound or range, or the direction of a
-comparison in words. `OWN`: our own target, a regression check, also of a quantity that the paper
-speaks of, where the interval is ours.
+An entry states its source. `PAPER`: a printed number, range or bound, beside what a simulation
+gives, in an interval from the paper's own precision: printed digits, "approximately", the bound.
+`WORDS`: a comparison that the paper has in words, beside a simulation, judged by its direction.
+`INPUT`: a printed value that the actuators are built on, read back through the equations that use
+it; so it guards the equations, and says nothing about the behaviour. `OWN`: our own target, a
+regression check, also of a quantity that the paper speaks of, where the interval is ours.
 """
 
 from collections.abc import Callable
@@ -15,10 +17,10 @@ import re
 from isa_ros.paper.printed import Printed
 from matplotlib.figure import Figure
 
-PAPER, OWN = 'paper', 'own'
-SOURCES = (PAPER, OWN)
+PAPER, WORDS, INPUT, OWN = 'paper', 'words', 'input', 'own'
+SOURCES = (PAPER, WORDS, INPUT, OWN)
 REACHED = 'reached'
-AS_READ = 'reached as read'
+AS_READ = 'as read, not as printed'
 NOT_REACHED = 'not reached'
 VERDICTS = (REACHED, AS_READ, NOT_REACHED)
 REGRESSION = 2.0    # percent
@@ -43,7 +45,7 @@ class Entry:
 
     name: str
     source: str
-    """`PAPER` or `OWN`."""
+    """`PAPER`, `WORDS`, `INPUT` or `OWN`."""
     where: str
     """Place in the paper, or what else the entry is compared with."""
     paper: float | str
@@ -56,6 +58,8 @@ class Entry:
     """The cause, shown only for a value that is not reached."""
     gains: str = ''
     """The preset that was simulated, where an entry is measured with more than one."""
+    is_choice: bool = False
+    """Whether ``reading`` is one of several that the print allows, chosen by this very value."""
 
     def __post_init__(self) -> None:
         lowest, highest = self.tolerance
@@ -67,6 +71,8 @@ class Entry:
             raise ValueError(f'{self.name}: tolerance {self.tolerance} contains every value')
         if self.reading and not _READING.match(self.reading):
             raise ValueError(f'{self.name}: reading {self.reading!r}, must begin with erratum N: ')
+        if self.is_choice and not self.reading:
+            raise ValueError(f'{self.name}: a choice among readings, must have a reading')
         if not self.reading and self._contradicts:
             raise ValueError(
                 f'{self.name}: {self.paper:g} {self.unit} of the paper is outside the tolerance '
@@ -75,15 +81,24 @@ class Entry:
     @classmethod
     def of(
             cls, name: str, printed: Printed, ours: float, tolerance: tuple[float, float],
-            tolerance_source: str, *, unit: str = '', reading: str = '', reason: str = '',
-            gains: str = '') -> 'Entry':
+            tolerance_source: str, *, source: str = PAPER, unit: str = '', reading: str = '',
+            reason: str = '', gains: str = '', is_choice: bool = False) -> 'Entry':
         """Return the entry of a statement in the paper's data; words need the unit of ours."""
         return cls(
-            name=name, source=PAPER, where=printed.where,
+            name=name, source=source, where=printed.where,
             paper=printed.text if printed.value is None or printed.is_bound else printed.value,
             ours=ours,
             unit=unit or printed.unit, tolerance=tolerance, tolerance_source=tolerance_source,
-            reading=reading, reason=reason, gains=gains)
+            reading=reading, reason=reason, gains=gains, is_choice=is_choice)
+
+    @classmethod
+    def given(
+            cls, name: str, printed: Printed, ours: float, tolerance: tuple[float, float],
+            tolerance_source: str, *, unit: str = '', reading: str = '', reason: str = '',
+            gains: str = '') -> 'Entry':
+        """Return the entry of a printed value that the actuators are built on, as `of`."""
+        return cls.of(name, printed, ours, tolerance, tolerance_source, source=INPUT, unit=unit,
+                      reading=reading, reason=reason, gains=gains)
 
     @property
     def key(self) -> str:
@@ -96,6 +111,11 @@ class Entry:
         return isinstance(self.paper, float) and not lowest <= self.paper <= highest
 
     @property
+    def is_read_otherwise(self) -> bool:
+        """Return whether the value is held against a reading, and not against the print."""
+        return self.source != OWN and (self.is_choice or self._contradicts)
+
+    @property
     def is_reached(self) -> bool:
         """Return whether ours lies in the tolerance; a NaN does not."""
         lowest, highest = self.tolerance
@@ -106,7 +126,20 @@ class Entry:
         """Return `REACHED`, `AS_READ` if the value was read otherwise, or `NOT_REACHED`."""
         if not self.is_reached:
             return NOT_REACHED
-        return AS_READ if self._contradicts else REACHED
+        return AS_READ if self.is_read_otherwise else REACHED
+
+
+@dataclass(frozen=True, kw_only=True)
+class Observation:
+    """A value of ours beside words of the paper that name no bar: it has no verdict."""
+
+    name: str
+    where: str
+    paper: str
+    ours: float
+    unit: str
+    how: str
+    """How it was observed."""
 
 
 @dataclass(frozen=True)
@@ -124,6 +157,7 @@ class Findings:
 
     entries: tuple[Entry, ...]
     drawings: tuple[Drawing, ...] = ()
+    observations: tuple[Observation, ...] = ()
 
 
 @dataclass(frozen=True)

@@ -6,6 +6,7 @@ from isa_ros.validation.current_loop import current_loop
 from isa_ros.validation.entry import Group
 from isa_ros.validation.isa_v5 import isa_v5
 from isa_ros.validation.knee_rig import knee_rig
+from isa_ros.validation.limits import limits
 from isa_ros.validation.numerics import numerics
 from isa_ros.validation.reu_statics import reu_statics
 from isa_ros.validation.rotary_disturbances import rotary_disturbances
@@ -24,6 +25,7 @@ GROUPS = (
     Group('actuator_data', 'Data of the actuators (Tables 2, 3, 5)', actuator_data),
     Group('behaviour', 'Friction, oil and valve in simulation', behaviour,
           is_long=True),
+    Group('limits', 'Largest speed and force, end stops and converters in simulation', limits),
     Group('reu_statics', 'Gains and rates of the control blocks (Fig 7, Table 4)', reu_statics),
     Group('rotary_rig', 'Torque control of the rotary rig (Figs 12, 13)', rotary_rig,
           is_long=True),

@@ -9,24 +9,34 @@ from isa_ros.paper.printed import cell, Printed, statement
 from isa_ros.text.page import Page
 from isa_ros.text.table import aligned
 from isa_ros.validation.entry import (
-    AS_READ, Entry, NOT_REACHED, OWN, PAPER, REACHED, SOURCES, VERDICTS)
+    AS_READ, Entry, INPUT, NOT_REACHED, OWN, PAPER, REACHED, WORDS)
 from isa_ros.validation.runner import Result
 
 PAGE = 'validation.md'
 T = TypeVar('T')
+_COUNTED = {PAPER: 'printed number, simulated', WORDS: 'statement in words, simulated',
+            INPUT: 'printed input, read back', AS_READ: AS_READ, OWN: 'own'}
 _DIGITS = 4   # of values
 _BOUND_DIGITS = 6   # of tolerances, which may be narrower than the digits of a value
 _HEAD = f"""# Validation
 
 The statements of the paper, and targets of our own, beside what the shipped actuators give.
 
-- Source `{PAPER}`: a statement of the paper, in an interval from the paper's own precision: half
-  of the last printed digit, a printed bound or range, or the direction of a comparison in words.
+- Source `{PAPER}`: a printed number, range or bound, beside what a simulation gives, in an
+  interval from the paper's own precision: half of the last printed digit, the bound or range.
+- Source `{WORDS}`: a comparison that the paper has in words, beside a simulation; only its
+  direction is judged.
+- Source `{INPUT}`: a printed value that the actuators are built on, read back through the
+  equations that use it. It guards the equations; a value that was put in comes out.
 - Source `{OWN}`: a target of our own, or an independent result; the entry says which. These
   guard against regressions and say nothing about the paper.
 
-`{REACHED}`: inside the tolerance. `{AS_READ}`: inside the tolerance around the reading of a
-printed value that contradicts the paper itself ([paper-errata.md](paper-errata.md)).
+Of the paper its text was read; none of its figures and no measured data were available. A number
+said to be of a figure stands in the caption or in the text.
+
+`{REACHED}`: inside the tolerance. `{AS_READ}`: the printed value is not met, or
+allows more than one reading; ours is inside the tolerance around a reading of it, whose reason is
+in [paper-errata.md](paper-errata.md). The summary counts these apart from the printed ones.
 `{NOT_REACHED}`: outside; the cause is below the table. Where two sets of gains are simulated, each
 has its column: `table_4`, the gains of Table 4 as they are read, and `default`, the retuned ones
 that are shipped. Which parameter is noticed by which entry is in [sensitivity.md](sensitivity.md).
@@ -35,8 +45,8 @@ This page and its figures are written by
 
     ./isa validate --out docs
 
-The command exits with 0 if every entry is reached or reached as read, and with 1 if any of either
-source is not reached. `--only GROUP` or `--only GROUP.ENTRY` runs a part.
+The command exits with 0 if every entry is reached, or reached as it is read, and with 1 if any is
+not reached. `--only GROUP` or `--only GROUP.ENTRY` runs a part.
 """
 
 
@@ -47,24 +57,29 @@ def as_text(results: Sequence[Result]) -> str:
         lines = aligned([('', 'source', 'paper', 'ours', 'unit', 'tolerance', 'verdict'), *(
             (f'{result.group}.{e.key}', e.source, number(e.paper), number(e.ours), unit(e),
              interval(e), e.verdict) for e in result.entries)])
-        blocks.append('\n'.join([result.title, *lines, *_missed(result)]))
+        seen = aligned([('observed', 'paper', 'ours', 'unit', 'how'), *(
+            (f'{result.group}.{o.name}', o.paper, number(o.ours), o.unit, o.how)
+            for o in result.observations)]) if result.observations else []
+        blocks.append('\n'.join([result.title, *lines, *_missed(result), *seen]))
     return '\n\n'.join([*blocks, summary(results)])
 
 
 def summary(results: Sequence[Result]) -> str:
-    """Return how many entries of each source have which verdict, in one line."""
-    return '; '.join(
-        f'{source}: {sum(counts)} entries, ' + ', '.join(
-            f'{count} {verdict}' for count, verdict in zip(counts, VERDICTS, strict=True))
-        for source, counts in _counted(results).items())
+    """Return how many entries of each kind are reached, in one line."""
+    return '; '.join(f'{kind}: {reached} of {reached + missed} reached'
+                     for kind, (reached, missed) in _counted(results).items())
 
 
-def _counted(results: Sequence[Result]) -> dict[str, list[int]]:
-    """Return the number of entries by source and, in the order of `VERDICTS`, by verdict."""
+def _counted(results: Sequence[Result]) -> dict[str, tuple[int, int]]:
+    """Return how many entries are reached and missed, by what an entry can say of the paper."""
     entries = [entry for result in results for entry in result.entries]
-    return {source: [
-        sum(entry.source == source and entry.verdict == verdict for entry in entries)
-        for verdict in VERDICTS] for source in SOURCES}
+    kinds = {kind: [entry.is_reached for entry in entries if _kind(entry) == kind]
+             for kind in _COUNTED.values()}
+    return {kind: (sum(reached), len(reached) - sum(reached)) for kind, reached in kinds.items()}
+
+
+def _kind(entry: Entry) -> str:
+    return _COUNTED[AS_READ if entry.is_read_otherwise else entry.source]
 
 
 def _missed(result: Result) -> list[str]:
@@ -117,13 +132,18 @@ def _finite(value: float) -> float | None:
 def write_page(results: Sequence[Result], directory: Path) -> list[Path]:
     """Write validation.md and figures/validation_*.png into a directory; return their paths."""
     page = Page(PAGE, _HEAD)
-    page.table([('source', 'entries', *VERDICTS), *(
-        (source, str(sum(counts)), *map(str, counts))
-        for source, counts in _counted(results).items())], 'lr')
+    page.table([('', 'entries', 'reached', 'not reached'), *(
+        (kind, str(reached + missed), str(reached), str(missed))
+        for kind, (reached, missed) in _counted(results).items())], 'lr')
     for result in results:
         page.section(result.title)
         page.table(_rows(result))
         page.items(_missed(result))
+        if result.observations:
+            page.paragraph('Observed, and not judged: the paper names no bar.')
+            page.table([('observation', 'where', 'paper', 'ours', 'unit', 'how'), *(
+                (f'{result.group}.{o.name}', o.where, o.paper, number(o.ours), o.unit, o.how)
+                for o in result.observations)])
         for picture in result.pictures:
             page.figure(f'validation_{picture.name}', picture.caption, picture.png)
             page.paragraph(picture.caption)

@@ -14,7 +14,7 @@ from isa_ros.reu.cascade import initial_gains
 from isa_ros.reu.compensation import dual_gain_compensation
 from isa_ros.reu.impedance import force_reference, Impedance, SETPOINT
 from isa_ros.reu.lead_lag import LeadLag
-from isa_ros.validation.entry import around, as_printed, Entry, Findings, PAPER
+from isa_ros.validation.entry import around, as_printed, Entry, Findings, INPUT
 from isa_ros.validation.sheets import model_sheet, plant_of
 import numpy as np
 
@@ -98,8 +98,8 @@ def _force_gains(model: str) -> list[Entry]:
 def _gain(
         name: str, model: str, row: str, ours: float, factor: float, reading: str) -> Entry:
     printed = cell('table_4', row, COLUMNS[model])
-    return Entry.of(name, printed, ours, around(factor * printed.number, percent=0.01), EXACT,
-                    reading=reading)
+    return Entry.given(name, printed, ours, around(factor * printed.number, percent=0.01), EXACT,
+                       reading=reading)
 
 
 def _impedance() -> list[Entry]:
@@ -125,8 +125,8 @@ def _impedance_gain(
     setpoint.stiffness, setpoint.damping = initial_gains(sheet.reu)
     small = SMALL * limits.force_out / printed.number
     force = force_reference(setpoint, moved[0] * small, moved[1] * small, limits)
-    return Entry.of(name, printed, float(force / small), around(printed.number, percent=0.01),
-                    EXACT, reading=reading)
+    return Entry.given(name, printed, float(force / small), around(printed.number, percent=0.01),
+                       EXACT, reading=reading)
 
 
 def _lead_lag(model: str) -> list[Entry]:
@@ -138,8 +138,8 @@ def _lead_lag(model: str) -> list[Entry]:
     def entry(name: str, row: str, ours: float, read_as: str = '', reading: str = '') -> Entry:
         printed = cell('table_4', f'Current {row}', COLUMNS[model])
         meant = cell('table_4', f'Current {read_as or row}', COLUMNS[LINEAR])
-        return Entry.of(f'{model}_{name}', printed, ours, as_printed(meant),
-                        'half of the last printed digit', reading=reading)
+        return Entry.given(f'{model}_{name}', printed, ours, as_printed(meant),
+                           'half of the last printed digit', reading=reading)
     return [
         entry('current_kp', 'K_p', loop.kp_v_per_ma),
         entry('w_lead', 'w_lead', loop.lead_rad_per_s),
@@ -154,10 +154,10 @@ def _rates() -> list[Entry]:
     assert isinstance(reu.position, Impedance), 'the shipped sheet has it'
     position, current = statement('position_loop_rate'), statement('current_loop_rate')
     return [
-        Entry.of('position_rate', position, reu.position.rate_hz * MILLI,
-                 around(position.number, percent=5.0), '~: 5 %'),
-        Entry.of('current_rate', current, reu.current.rate_hz * MILLI,
-                 around(current.number, percent=5.0), '~: 5 %'),
+        Entry.given('position_rate', position, reu.position.rate_hz * MILLI,
+                    around(position.number, percent=5.0), '~: 5 %'),
+        Entry.given('current_rate', current, reu.current.rate_hz * MILLI,
+                    around(current.number, percent=5.0), '~: 5 %'),
     ]
 
 
@@ -173,7 +173,7 @@ def _proportionality(model: str) -> Entry:
              for u in demands]
     line = valve.k_low * to_spool * demands
     return Entry(
-        name=f'{model}_compensation', source=PAPER, where='section 3, Fig 7',
+        name=f'{model}_compensation', source=INPUT, where='section 3, Fig 7',
         paper='DGC compensates the dual gain',
         ours=round(float(100.0 * np.abs(flows / line - 1.0).max()), 6),
         unit='percent', tolerance=(0.0, 0.3),

@@ -17,7 +17,7 @@ from isa_ros.paper.printed import statement
 from isa_ros.scripting.result import Result
 from isa_ros.validation.actuators import Actuators, SHIPPED
 from isa_ros.validation.entry import (
-    around, at_least, at_most, Drawing, Entry, Findings, OWN, PAPER)
+    around, at_least, at_most, Drawing, Entry, Findings, OWN, WORDS)
 from isa_ros.validation.plots import stacked
 from isa_ros.validation.rotary_rig import of_preset, PRESETS, TABLE_4
 import numpy as np
@@ -110,7 +110,7 @@ def _impacts(hit: Result, gains: str) -> tuple[Entry, ...]:
               ours=min((i.after / i.before for i in found), default=math.nan), unit='times',
               tolerance=at_least(2.0), gains=gains,
               tolerance_source='twice the reference before it is seen as a spike'),
-        Entry(name='impact_spike_from_velocity', source=PAPER, where=where,
+        Entry(name='impact_spike_from_velocity', source=WORDS, where=where,
               paper='mainly originated from the velocity',
               ours=min((i.velocity_share for i in found), default=math.nan), unit='percent',
               tolerance=(50.0, 100.0), tolerance_source='mainly: more than half', gains=gains))
@@ -200,7 +200,7 @@ def _position_control(impedance: Drop, position: Drop, gains: str) -> tuple[Entr
         Entry.of('torque_control_oscillation', with_it,
                  impedance.oscillation / position.oscillation, (0.0, 1.0),
                  'lower: rms torque about its final value from the peak on, at 300/20 over '
-                 'position control', unit='1', gains=gains))
+                 'position control', source=WORDS, unit='1', gains=gains))
 
 
 def _blocked(rig: DropRig) -> Entry:

@@ -5,6 +5,8 @@ The wheel follows the shipped scenarios; the torque loop is measured on the same
 blocked. Hunting is in `rotary_hunting`.
 """
 
+from typing import Any
+
 from isa_ros.analysis.report.paper_figures import paper_figure
 from isa_ros.analysis.response.rig import Choice, Rig
 from isa_ros.analysis.signals.signals import signals_of
@@ -16,7 +18,7 @@ from isa_ros.scripting.result import Result
 from isa_ros.scripting.run import Run
 from isa_ros.validation.actuators import Actuators, SHIPPED
 from isa_ros.validation.entry import (
-    around, as_printed, at_least, Drawing, Entry, Findings, OWN, PAPER, regression)
+    around, as_printed, at_least, Drawing, Entry, Findings, OWN, PAPER, regression, WORDS)
 from isa_ros.validation.rotary_hunting import hunting, torque_code
 from isa_ros.validation.torque_step import (
     bandwidths, LEVELS, measured_step, TorqueStep)
@@ -33,6 +35,7 @@ TROT_ERROR, TROT_PEAK = 22.5, 0.169     # percent of the amplitude and rad, with
 # Of the shipped parameters with Table 4: what K_p, K_i, rotor and filters move.
 RISE_MS, BANDS_HZ, SINE_ERROR = 8.15, (56.7, 58.2), 4.25
 UNDEFINED = 'the paper does not define its rise'
+CHOSEN = 'erratum 26: the place of K_f, and 0 to 90 % as the rise'
 # Why the torque follows the motion less closely than our target, by the gains.
 LOOSER = {
     TABLE_4: 'K_f in front of the whole PID holds back the integral too: in the proportional part '
@@ -49,11 +52,12 @@ def rotary_rig(actuators: Actuators = SHIPPED) -> Findings:
     return Findings(
         (*(entry for gains in PRESETS for entry in (
             *_torque_step(actuators, gains), *_tracking(actuators, trots[gains], gains))),
-         *_position(trots[TABLE_4]), _neglected_inertia(actuators), *hunting(actuators)),
+         *_position(trots[TABLE_4]), _neglected_inertia(actuators)),
         (Drawing('fig_12', 'Position and torque of the wheel following a trot at 1 m/s, as '
                  'Fig 12.', paper_figure('position_torque_tracking', signals_of(trots[TABLE_4]))),
          Drawing('fig_13', f'Torque step of {STEP_NM:g} Nm with the wheel blocked, as Fig 13.',
-                 paper_figure('torque_step', signals_of(stepped)))))
+                 paper_figure('torque_step', signals_of(stepped)))),
+        hunting(actuators))
 
 
 def of_preset(actuators: Actuators, scenario: str, gains: str, **changes: float) -> Run:
@@ -77,10 +81,10 @@ def _torque_step(actuators: Actuators, gains: str) -> tuple[Entry, ...]:
     bands = dict(zip(('3_db', '90_deg'), bandwidths(bench, STEP_NM), strict=True))
     return (
         *(Entry.of(f'torque_rise_{name}', printed, found.rise[name] / MILLI, as_printed(printed),
-                   DIGIT, reason=UNDEFINED, gains=gains) for name in LEVELS),
+                   DIGIT, gains=gains, **_reading_of_rise(name, gains)) for name in LEVELS),
         Entry.of('torque_steady_error', statement('torque_steady_error'), found.steady_error,
                  around(0.0, by=torque_code()), 'eliminated: to a code of the torque sensor',
-                 unit='Nm', gains=gains),
+                 source=WORDS, unit='Nm', gains=gains),
         Entry(name='torque_overshoot', source=OWN, where='section 5.1, Fig 13',
               paper='low-amplitude oscillations, in the experiment only', ours=found.overshoot,
               unit='percent', tolerance=(0.0, 5.0),
@@ -92,6 +96,13 @@ def _torque_step(actuators: Actuators, gains: str) -> tuple[Entry, ...]:
                 f'{STEP_NM:g} Nm, 10 % of the rating; the bandwidth is not defined')
           for name, ours in bands.items()),
         *(_step_regressions(found, bands) if gains == TABLE_4 else ()))
+
+
+def _reading_of_rise(definition: str, gains: str) -> dict[str, Any]:
+    """Return what is said of a definition of the rise: with one of them K_f was placed."""
+    if (definition, gains) == ('0_90', TABLE_4):
+        return {'reading': CHOSEN, 'is_choice': True}
+    return {'reason': UNDEFINED}
 
 
 def _step_regressions(found: TorqueStep, bands: dict[str, float]) -> tuple[Entry, ...]:
@@ -113,10 +124,10 @@ def _tracking(actuators: Actuators, trot: Result, gains: str) -> tuple[Entry, ..
                 unit='percent of peak, rms', tolerance=(0.0, 5.0), tolerance_source=seen,
                 reason=LOOSER[gains])
           for name, error in (('trot', torque_error(trot)), ('sine', sine))),
-        Entry(name='sine_torque_error_without_kv', source=OWN, where='section 3, Fig 7',
+        Entry(name='sine_torque_error_without_kv', source=WORDS, where='section 3, Fig 7',
               paper='K_v injects the flow of the motion', ours=uncompensated / sine,
-              unit='times', tolerance=at_least(3.0), gains=gains, reason=LOOSER[gains],
-              tolerance_source='a target: without K_v at least three times as large'),
+              unit='times', tolerance=at_least(1.0), gains=gains,
+              tolerance_source='without K_v the error is larger, one side'),
         *((regression('sine_torque_error', 'section 5.1, Fig 12', sine, SINE_ERROR,
                       'percent of peak, rms', gains),) if gains == TABLE_4 else ()))
 

@@ -8,7 +8,7 @@ from isa_ros.core.suggest import alternatives
 from isa_ros.errors import ConfigError, IsaError
 from isa_ros.text.page import png
 from isa_ros.text.progress import Progress
-from isa_ros.validation.entry import Entry, Group
+from isa_ros.validation.entry import Entry, Group, Observation
 from isa_ros.validation.workers import in_workers
 
 
@@ -29,6 +29,7 @@ class Result:
     title: str
     entries: tuple[Entry, ...]
     pictures: tuple[Picture, ...]
+    observations: tuple[Observation, ...] = ()
 
 
 class GroupFailed(IsaError):
@@ -104,7 +105,7 @@ def run_group(group: Group) -> Result:
         raise ValueError(f'{group.name}: two entries have the same name: {names}')
     return Result(group.name, group.title, findings.entries, tuple(
         Picture(drawing.name, drawing.caption, png(drawing.figure))
-        for drawing in findings.drawings))
+        for drawing in findings.drawings), findings.observations)
 
 
 def only_of(result: Result, only: Sequence[str]) -> Result:
@@ -123,7 +124,8 @@ def only_of(result: Result, only: Sequence[str]) -> Result:
         if name not in known:
             raise ConfigError(f'--only {name}: no such entry; {alternatives(name, known)}')
     return replace(result, entries=tuple(
-        entry for entry, own in zip(result.entries, names) if own.intersection(mine)))
+        entry for entry, own in zip(result.entries, names) if own.intersection(mine)),
+        observations=())
 
 
 def is_reached(results: Sequence[Result]) -> bool:

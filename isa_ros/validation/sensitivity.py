@@ -2,10 +2,10 @@
 `isa validate --sensitivity`: which simulated entry notices which wrong parameter.
 
 Each perturbation is one parameter that a reviewer would try. Groups that simulate run with it:
-`behaviour` for a parameter of the plant, the force loops for one of the REU. Their bars stay those
-of the shipped parameters. An entry that is reached as shipped and missed with the perturbation has
-noticed it. A perturbation without any, unless it is refused, is a hole in the validation: the
-command then exits with 1.
+`behaviour` and `limits` for a parameter of the plant, the force loops for one of the REU,
+`current_loop` for the amplifier. Their bars stay those of the shipped parameters. An entry that is
+reached as shipped and missed with the perturbation has noticed it. A perturbation without any,
+unless it is refused, is a hole in the validation: the command then exits with 1.
 """
 
 from collections.abc import Iterable, Sequence
@@ -20,7 +20,8 @@ from isa_ros.validation.entry import Group
 from isa_ros.validation.groups import GROUPS
 from isa_ros.validation.workers import in_workers
 
-PLANT, LOOPS, RELIEF = ('behaviour',), ('rotary_rig', 'isa_v5'), ('isa_v5',)
+PLANT, LOOPS, RELIEF = ('behaviour', 'limits'), ('rotary_rig', 'isa_v5'), ('isa_v5',)
+AMPLIFIER = ('current_loop',)
 
 
 @dataclass(frozen=True)
@@ -34,11 +35,11 @@ class Perturbation:
 
 
 def _perturbation(name: str, factor: float, *keys: str) -> Perturbation:
-    groups = (LOOPS if keys[0].startswith('reu.') else
-              RELIEF if keys[0].startswith('plant.relief.') else PLANT)
+    groups = next((groups for start, groups in _RUN_WITH if keys[0].startswith(start)), PLANT)
     return Perturbation(name, Change(keys, factor), groups)
 
 
+_RUN_WITH = (('reu.', LOOPS), ('plant.relief.', RELIEF), ('plant.coil.supply', AMPLIFIER))
 MORE, LESS = 1.3, 1.0 / 1.3
 PERTURBATIONS = (
     _perturbation('friction x3', 3.0, 'plant.friction.stiction', 'plant.friction.coulomb'),
@@ -68,6 +69,12 @@ PERTURBATIONS = (
     _perturbation('null leakage x1.3', MORE, 'plant.valve.null_leakage_lpm'),
     _perturbation('null leakage /1.3', LESS, 'plant.valve.null_leakage_lpm'),
     _perturbation('tare leakage x1.3', MORE, 'plant.valve.tare_leakage_lpm'),
+    _perturbation('spool stop -20 %', 0.8, 'plant.valve.spool_stop_mm'),
+    _perturbation('orifice smoothing x10', 10.0, 'plant.valve.orifice_smoothing_kpa'),
+    _perturbation('end-stop stiffness /2', 0.5, 'plant.mechanics.stop_stiffness'),
+    _perturbation('converters of one bit less', 11.0 / 12.0, 'plant.sensors.adc_bits'),
+    _perturbation('encoder x10', 10.0, 'plant.sensors.encoder_resolution'),
+    _perturbation('amplifier of 12 V', 0.5, 'plant.coil.supply_voltage'),
     _perturbation('relief opening x1.3', MORE, 'plant.relief.opening_pressure_mpa'),
     _perturbation('relief slope /1.3', LESS, 'plant.relief.slope_lpm_per_mpa'),
     _perturbation('K_v of the wrong sign', -1.0, 'reu.force.kv'),

@@ -10,7 +10,7 @@ from isa_ros.core.units import LPM, MILLI, MPA
 from isa_ros.paper.printed import cell, statement
 from isa_ros.plant.servo_valve import flow_curve, port_flows
 from isa_ros.validation.entry import (
-    around, as_printed, Drawing, Entry, Findings, PAPER)
+    around, as_printed, Drawing, Entry, Findings, INPUT)
 from isa_ros.validation.plots import stacked
 from isa_ros.validation.sheets import plant_of
 import numpy as np
@@ -55,18 +55,18 @@ def _flows() -> list[Entry]:
 
     def point(name: str, current: float, flow: float) -> Entry:
         return Entry(
-            name=name, source=PAPER, where='Fig 5 caption', paper=SLOPES,
+            name=name, source=INPUT, where='Fig 5 caption', paper=SLOPES,
             ours=net_flow(current, ULLV), unit='l/min', tolerance=around(flow, percent=1.0),
             tolerance_source=f'{flow:g} l/min by these slopes; {LINE}',
             reading='erratum 3: the two gains are slopes of one continuous curve')
     return [
         point('ullv_flow_1_ma', 1.0, low),
         point('ullv_flow_2_ma', 2.0, low * bend + high * (2.0 - bend)),
-        Entry.of('ullv_rated_flow', cell('table_1', 'Rated flow at 7 MPa', 'Moog ISA v5 valve'),
-                 net_flow(FULL_CURRENT, ULLV), around(full, percent=1.0),
-                 f'{full:g} l/min at 5 mA by the slopes of Fig 5; {LINE}',
-                 reading='erratum 5: Fig 5 passes the rated flow before the full current'),
-        Entry(name='ullv_flow_is_odd', source=PAPER, where='Fig 5 caption',
+        Entry.given('ullv_rated_flow', cell('table_1', 'Rated flow at 7 MPa', 'Moog ISA v5 valve'),
+                    net_flow(FULL_CURRENT, ULLV), around(full, percent=1.0),
+                    f'{full:g} l/min at 5 mA by the slopes of Fig 5; {LINE}',
+                    reading='erratum 5: by Fig 5 7.48 l/min pass at 4 mA already'),
+        Entry(name='ullv_flow_is_odd', source=INPUT, where='Fig 5 caption',
               paper='+-2.5 l/min/mA: the same in both directions',
               ours=net_flow(-FULL_CURRENT, ULLV) / net_flow(FULL_CURRENT, ULLV), unit='1',
               tolerance=around(-1.0, by=0.01), tolerance_source=LINE)]
@@ -86,25 +86,26 @@ def _slopes() -> list[Entry]:
         return float(flow_curve((first + 1.0) * milliampere, valve)
                      - flow_curve(first * milliampere, valve))
     return [
-        Entry.of('ullv_k_v_low', statement('low_valve_gain'), per_ma(0.0),
-                 as_printed(statement('low_valve_gain')), ROUNDED, reading=slope),
-        Entry.of('ullv_k_v_high', statement('high_valve_gain'), per_ma(2.0),
-                 as_printed(statement('high_valve_gain')), ROUNDED, reading=slope),
-        Entry(name='ullv_jump_at_x_dg', source=PAPER, where='eq 19, Fig 5', paper='none in Fig 5',
+        Entry.given('ullv_k_v_low', statement('low_valve_gain'), per_ma(0.0),
+                    as_printed(statement('low_valve_gain')), ROUNDED, reading=slope),
+        Entry.given('ullv_k_v_high', statement('high_valve_gain'), per_ma(2.0),
+                    as_printed(statement('high_valve_gain')), ROUNDED, reading=slope),
+        Entry(name='ullv_jump_at_x_dg', source=INPUT, where='eq 19, Fig 5 caption',
+              paper='gains inside and outside of +-1.2 mA',
               ours=float(jump) / LPM, unit='l/min', tolerance=(0.0, gap),
               tolerance_source='two neighbouring floating-point numbers',
               reading='erratum 3: eq 19 with eq 11 would jump from 0.48 to 3.00 l/min'),
-        Entry.of('ullv_gain_change', statement('ullv_gain_change'), valve.x_dg / milliampere,
-                 around(1.2, by=0.05), ROUNDED,
-                 reading='erratum 4: x_dg / K_spool on the scale of coils in series'),
-        Entry.of('ullv_high_gain_stroke', statement('high_gain_stroke'),
-                 100.0 * valve.x_dg / valve.x_max, as_printed(statement('high_gain_stroke')),
-                 'where the high gain begins; half of the last printed digit',
-                 reason='the 1.2 of 5 mA of Fig 5, and x_dg over K_spool 5 mA, are 24 %'),
-        Entry.of('amplifier_current', statement('current_range'),
-                 valve.x_max / milliampere * plant_of(ULLV).coil.parallel,
-                 around(10.0, by=0.5), ROUNDED,
-                 reading='erratum 4: the amplifier drives the coils in parallel'),
+        Entry.given('ullv_gain_change', statement('ullv_gain_change'), valve.x_dg / milliampere,
+                    around(1.2, by=0.05), ROUNDED,
+                    reading='erratum 4: x_dg / K_spool on the scale of coils in series'),
+        Entry.given('ullv_high_gain_stroke', statement('high_gain_stroke'),
+                    100.0 * valve.x_dg / valve.x_max, as_printed(statement('high_gain_stroke')),
+                    'where the high gain begins; half of the last printed digit',
+                    reason='the 1.2 of 5 mA of Fig 5, and x_dg over K_spool 5 mA, are 24 %'),
+        Entry.given('amplifier_current', statement('current_range'),
+                    valve.x_max / milliampere * plant_of(ULLV).coil.parallel,
+                    around(10.0, by=0.5), ROUNDED,
+                    reading='erratum 4: the amplifier drives the coils in parallel'),
     ]
 
 
@@ -115,15 +116,15 @@ def _high_response() -> list[Entry]:
     gains = np.gradient([net_flow(float(i), HRV) for i in steps], steps)
     falls = float(steps[np.argmax(gains < 0.95 * per_ma)])
     return [
-        Entry.of('hrv_flow_gain', gain, net_flow(1.5, HRV) - net_flow(0.5, HRV),
-                 around(per_ma, percent=1.0), LINE),
-        Entry(name='hrv_flow_2_ma', source=PAPER, where=gain.where,
+        Entry.given('hrv_flow_gain', gain, net_flow(1.5, HRV) - net_flow(0.5, HRV),
+                    around(per_ma, percent=1.0), LINE),
+        Entry(name='hrv_flow_2_ma', source=INPUT, where=gain.where,
               paper='2.3 l/min/mA until near 2 mA', ours=net_flow(2.0, HRV), unit='l/min',
               tolerance=around(2.0 * per_ma, percent=1.0),
               tolerance_source=f'{2.0 * per_ma:g} l/min by this slope; {LINE}'),
-        Entry.of('hrv_gain_falls', end, falls, around(end.number, by=0.25),
-                 'near, one printed digit: a gain lower by 5 % within a quarter of a mA'),
-        Entry(name='hrv_gain_at_5_ma', source=PAPER, where=gain.where,
+        Entry.given('hrv_gain_falls', end, falls, around(end.number, by=0.25),
+                    'near, one printed digit: a gain lower by 5 % within a quarter of a mA'),
+        Entry(name='hrv_gain_at_5_ma', source=INPUT, where=gain.where,
               paper='starts decreasing',
               ours=float(gains[-1]), unit='l/min/mA', tolerance=(0.0, 0.9 * per_ma),
               tolerance_source='less than near null: by a tenth or more'),
@@ -146,7 +147,7 @@ def no_load_speed(current: float, model: str) -> float:
 
 def _speed_ratio() -> Entry:
     ratio = -no_load_speed(FULL_CURRENT, ISA_V5) / no_load_speed(-FULL_CURRENT, ISA_V5)
-    return Entry.of(
+    return Entry.given(
         'isa_v5_speed_ratio', statement('speed_ratio'), ratio, around(1.0, by=0.005),
         '1, to 0.25 % smoothing of the orifices at 1 MPa and 0.2 % leakage', unit='1',
         reading='erratum 18: slots matched to the area ratio alone would give 0.830')

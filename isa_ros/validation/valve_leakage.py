@@ -9,7 +9,7 @@ from isa_ros.core.units import LPM
 from isa_ros.paper.printed import statement
 from isa_ros.plant.servo_valve import port_flows
 from isa_ros.validation.entry import (
-    around, as_printed, Drawing, Entry, Findings, PAPER)
+    around, as_printed, Drawing, Entry, Findings, INPUT)
 from isa_ros.validation.plots import stacked
 from isa_ros.validation.sheets import plant_of
 from isa_ros.validation.valve_flow import (
@@ -17,10 +17,10 @@ from isa_ros.validation.valve_flow import (
 import numpy as np
 from scipy.optimize import brentq
 
-PLATEAU = 4.0      # mA from which on figure 6 shows the tare leakage
-HRV_PEAK_BAND = 0.015   # l/min, 3 % of the scale of Fig 6: less than half of the digit of "0.5"
+PLATEAU = 4.0      # mA from which on the lands are wide open and leave the tare leakage
+HRV_PEAK_BAND = 0.015   # l/min, 3 % of the printed 0.5: less than half of its digit
 ROUNDED = 'half of the last printed digit'
-DRAWN = '0.015 l/min, 3 % of the scale of Fig 6: less than half of the last printed digit'
+NARROW = '0.015 l/min, 3 %: less than half of the last printed digit'
 MATCHED = ('the narrower rod-side slots of the ISA v5 (section 2.3) leak less than the equal '
            'slots whose peak is fitted to Fig 6')
 
@@ -51,7 +51,7 @@ def tare(current: float, model: str) -> float:
 
 
 def _leakages() -> list[Entry]:
-    return [*_leakage_of('ullv', ULLV), *_leakage_of('hrv', HRV), Entry.of(
+    return [*_leakage_of('ullv', ULLV), *_leakage_of('hrv', HRV), Entry.given(
         'ullv_null_leakage_isa_v5', statement('ullv_null_leakage'), leakage(0.0, ISA_V5),
         as_printed(statement('ullv_null_leakage')), ROUNDED, reason=MATCHED)]
 
@@ -63,13 +63,13 @@ def _leakage_of(name: str, model: str) -> list[Entry]:
     tares = [tare(float(i), model) for i in currents if abs(i) >= PLATEAU]
     worst = max(tares, key=lambda value: abs(value - plateau.number))
     return [
-        Entry.of(f'{name}_null_leakage', null, leakage(0.0, model),
-                 as_printed(null) if name == 'ullv' else around(null.number, by=HRV_PEAK_BAND),
-                 ROUNDED if name == 'ullv' else DRAWN),
-        Entry(name=f'{name}_leakage_peak', source=PAPER, where='Fig 6', paper='at null',
+        Entry.given(f'{name}_null_leakage', null, leakage(0.0, model),
+                    as_printed(null) if name == 'ullv' else around(null.number, by=HRV_PEAK_BAND),
+                    ROUNDED if name == 'ullv' else NARROW),
+        Entry(name=f'{name}_leakage_peak', source=INPUT, where='Fig 6', paper='at null',
               ours=float(peak), unit='mA', tolerance=(0.0, 0.1),
-              tolerance_source='0.1 mA, 1 % of the scale of Fig 6'),
-        Entry.of(f'{name}_tare', plateau, worst, as_printed(plateau), ROUNDED),
+              tolerance_source='0.1 mA, 1 % of the range of the command'),
+        Entry.given(f'{name}_tare', plateau, worst, as_printed(plateau), ROUNDED),
     ]
 
 
@@ -80,16 +80,16 @@ def _powers() -> list[Entry]:
     watt = SUPPLY * LPM  # per l/min
     tares = statement('hrv_tare').number - statement('ullv_tare').number
     return [
-        Entry.of('null_leakage_share', share, 100.0 * ours / theirs,
-                 around(100.0 * low / high, by=share.half_digit), ROUNDED,
-                 reading='erratum 14: 0.17 of 0.5 l/min are 34 %', reason=MATCHED),
-        Entry.of('null_power_saving', saving, (theirs - ours) * watt,
-                 around((high - low) * watt, by=saving.half_digit), ROUNDED,
-                 reading='erratum 14: 0.33 l/min at 20.7 MPa are 113.9 W', reason=MATCHED),
-        Entry.of('tare_power_saving', statement('tare_power_saving'),
-                 (tare(FULL_CURRENT, HRV) - tare(FULL_CURRENT, ISA_V5)) * watt,
-                 around(tares * watt, by=statement('tare_power_saving').half_digit), ROUNDED,
-                 reading='erratum 13: 0.22 l/min at 20.7 MPa are 75.9 W'),
+        Entry.given('null_leakage_share', share, 100.0 * ours / theirs,
+                    around(100.0 * low / high, by=share.half_digit), ROUNDED,
+                    reading='erratum 14: 0.17 of 0.5 l/min are 34 %', reason=MATCHED),
+        Entry.given('null_power_saving', saving, (theirs - ours) * watt,
+                    around((high - low) * watt, by=saving.half_digit), ROUNDED,
+                    reading='erratum 14: 0.33 l/min at 20.7 MPa are 113.9 W', reason=MATCHED),
+        Entry.given('tare_power_saving', statement('tare_power_saving'),
+                    (tare(FULL_CURRENT, HRV) - tare(FULL_CURRENT, ISA_V5)) * watt,
+                    around(tares * watt, by=statement('tare_power_saving').half_digit), ROUNDED,
+                    reading='erratum 13: 0.22 l/min at 20.7 MPa are 75.9 W'),
     ]
 
 

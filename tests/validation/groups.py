@@ -2,7 +2,8 @@
 
 from isa_ros.errors import ConfigError, ParameterError, SimulationDiverged
 from isa_ros.validation.actuators import Actuators, SHIPPED
-from isa_ros.validation.entry import around, Drawing, Entry, Findings, Group, OWN, PAPER
+from isa_ros.validation.entry import (
+    around, Drawing, Entry, Findings, Group, INPUT, Observation, OWN, PAPER, WORDS)
 from isa_ros.validation.plots import stacked
 
 
@@ -17,13 +18,27 @@ def good() -> Findings:
     figure, (ax,) = stacked('x', 'y')
     ax.plot([0.0, 1.0], [0.0, 1.0])
     return Findings((entry('a', 1.0), entry('b', 1.05, source=OWN)),
-                    (Drawing('line', 'A line.', figure),))
+                    (Drawing('line', 'A line.', figure),),
+                    (Observation(name='seen', where='Fig 2', paper='it hums', ours=0.25, unit='N',
+                                 how='held by hand'),))
 
 
 def missed() -> Findings:
     return Findings((
         entry('far', 2.0, reason='the spring is too soft'),
         entry('lost', float('nan'), source=OWN)))
+
+
+def every_kind() -> Findings:
+    """Return other numbers of entries of each kind, reached and not."""
+    one, five = {'reading': 'erratum 1: one'}, around(5.0, by=0.1)
+    return Findings((
+        entry('p', 1.0), entry('w', 1.0, source=WORDS), entry('w2', 9.0, source=WORDS),
+        *(entry(f'i{k}', 1.0, source=INPUT) for k in range(3)),
+        *(entry(f'r{k}', ours, source=source, tolerance=five, **one) for k, (source, ours) in
+          enumerate(((PAPER, 5.0), (INPUT, 5.0), (INPUT, 5.0), (WORDS, 1.0)))),
+        entry('o', 5.0, source=OWN, tolerance=five, **one),
+        *(entry(f'o{k}', 9.0, source=OWN) for k in range(4))))
 
 
 def both_gains() -> Findings:
@@ -43,6 +58,7 @@ def diverged() -> Findings:
 GOOD = Group('good', 'Good ones', good)
 MISSED = Group('missed', 'Missed ones', missed, is_long=True)
 GAINS = Group('gains', 'Two sets of gains', both_gains)
+KINDS = Group('kinds', 'Every kind', every_kind)
 REFUSED = Group('refused', 'Refused', refused)
 DIVERGED = Group('diverged', 'Diverged', diverged)
 

@@ -4,7 +4,8 @@ import math
 
 from isa_ros.paper.printed import cell, statement
 from isa_ros.validation.entry import (
-    around, as_printed, AS_READ, at_least, at_most, Entry, NOT_REACHED, PAPER, REACHED)
+    around, as_printed, AS_READ, at_least, at_most, Entry, INPUT, NOT_REACHED, OWN, PAPER,
+    REACHED)
 import pytest
 from tests.validation.groups import entry
 
@@ -23,6 +24,18 @@ def test_a_printed_value_outside_the_tolerance_is_read(ours=5.0):
     read = entry('x', ours, tolerance=around(5.0, percent=1.0), reading=READING)
     assert read.verdict == AS_READ
     assert entry('x', 1.0, tolerance=around(5.0), reading=READING).verdict == NOT_REACHED
+    assert read.is_read_otherwise
+    own = entry('x', ours, tolerance=around(5.0, percent=1.0), reading=READING, source=OWN)
+    assert own.verdict == REACHED and not own.is_read_otherwise
+
+
+def test_a_choice_among_readings_is_not_as_printed():
+    """The value itself chose the reading, so that it is met proves nothing of the print."""
+    chosen = entry('x', 1.0, reading=READING, is_choice=True)
+    assert chosen.verdict == AS_READ and chosen.is_read_otherwise
+    assert entry('x', 5.0, reading=READING, is_choice=True).verdict == NOT_REACHED
+    with pytest.raises(ValueError, match='x: a choice among readings, must have a reading'):
+        entry('x', 1.0, is_choice=True)
 
 
 def test_a_contradiction_without_a_reading_is_no_entry():
@@ -60,6 +73,8 @@ def test_an_entry_of_the_paper_copies_place_value_and_unit():
     made = Entry.of('x', statement('stiction'), 2.01, around(2.0, by=0.05), 'rounded')
     assert (made.source, made.where) == (PAPER, 'section 5.1')
     assert (made.paper, made.unit) == (2.0, 'Nm')
+    put_in = Entry.given('x', statement('stiction'), 2.01, around(2.0, by=0.05), 'rounded')
+    assert (put_in.source, put_in.where, put_in.paper) == (INPUT, 'section 5.1', 2.0)
     words = cell('table_2', 'Valve spool feedback', 'ISA v5')
     assert Entry.of('x', words, 1.0, (0.0, 2.0), 'words').paper == 'Electric'
 

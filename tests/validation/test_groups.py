@@ -74,13 +74,16 @@ ROWS = [line.strip('| ').split(' | ') for line in PAGE.splitlines()
         if re.match(r'\| [a-z_0-9]+\.[a-z_0-9]+ \|', line)]
 
 
-def test_each_row_of_the_page_is_of_the_paper_or_of_our_own():
+def test_each_row_of_the_page_has_a_source():
     """The first table counts them apart; a row has a verdict for each set of gains."""
-    assert {row[1] for row in ROWS} == {'paper', 'own'}
-    for source, entries, *verdicts in re.findall(
-            r'^\| (paper|own) \| (\d+) \| (\d+) \| (\d+) \| (\d+) \|', PAGE, re.M):
-        assert int(entries) == sum(map(int, verdicts))
-        assert int(entries) >= sum(row[1] == source for row in ROWS)
+    assert {row[1] for row in ROWS} == {'paper', 'words', 'input', 'own'}
+    counts = re.findall(r'^\| ([a-z, ]+) \| (\d+) \| (\d+) \| (\d+) \|', PAGE, re.M)
+    assert [kind for kind, *_ in counts] == [
+        'printed number, simulated', 'statement in words, simulated', 'printed input, read back',
+        'as read, not as printed', 'own']
+    for _, entries, *verdicts in counts:
+        assert int(entries) == sum(map(int, verdicts)) > 0
+    assert sum(int(entries) for _, entries, *_ in counts) >= len(ROWS)
 
 
 @pytest.mark.parametrize('title', [
@@ -107,8 +110,8 @@ def test_one_entry_by_name(capsys):
     assert main(['validate', '--only', 'actuator_data.manifold_stall']) == 0
     printed = capsys.readouterr().out
     assert printed.endswith(
-        'paper: 1 entries, 0 reached, 1 reached as read, 0 not reached; '
-        'own: 0 entries, 0 reached, 0 reached as read, 0 not reached\n')
+        'printed input, read back: 0 of 0 reached; as read, not as printed: 1 of 1 reached; '
+        'own: 0 of 0 reached\n')
     assert '177.8' in printed
 
 

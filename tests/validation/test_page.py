@@ -1,12 +1,13 @@
 """The table, the JSON and the page."""
 
 import json
+import re
 
 from isa_ros.text.json_file import write_tree
 from isa_ros.validation.page import as_text, as_tree, write_page
 from isa_ros.validation.runner import run_group
 import pytest
-from tests.validation.groups import GAINS, GOOD, MISSED
+from tests.validation.groups import GAINS, GOOD, KINDS, MISSED
 
 FIELDS = ('name', 'source', 'where', 'gains', 'paper', 'ours', 'unit', 'tolerance',
           'tolerance_source', 'reading', 'verdict', 'reason')
@@ -23,9 +24,23 @@ def test_the_table_gives_the_reason_of_what_is_not_reached(results):
     assert 'good.b' in text and '0.9 to 1.1' in text
     assert 'missed.far is not reached: the spring is too soft' in text
     assert 'missed.lost is not reached: for no known reason' in text
+    assert re.search(r'^good.seen +it hums +0.25 +N +held by hand$', text, re.M)
     assert text.endswith(
-        'paper: 2 entries, 1 reached, 0 reached as read, 1 not reached; '
-        'own: 2 entries, 1 reached, 0 reached as read, 1 not reached')
+        'printed number, simulated: 1 of 2 reached; statement in words, simulated: 0 of 0 '
+        'reached; printed input, read back: 0 of 0 reached; as read, not as printed: 0 of 0 '
+        'reached; own: 1 of 2 reached')
+
+
+def test_inputs_and_readings_are_counted_apart(tmp_path):
+    """A printed value that is not met counts with neither numbers nor inputs, our own as own."""
+    page = write_page([run_group(KINDS)], tmp_path)[0].read_text()
+    assert '\n'.join((
+        '| printed number, simulated | 1 | 1 | 0 |',
+        '| statement in words, simulated | 2 | 1 | 1 |',
+        '| printed input, read back | 3 | 3 | 0 |', '| as read, not as printed | 4 | 3 | 1 |',
+        '| own | 5 | 1 | 4 |')) in page
+    assert '| kinds.r0 | paper | Fig 1 | 1 | 5 | m | 4.9 to 5.1 | a tenth | erratum 1: one | ' \
+        'as read, not as printed |' in page
 
 
 def test_json_has_every_field_and_no_nan(results, tmp_path):
@@ -44,7 +59,7 @@ def test_the_page_shows_every_entry_and_figure(results, tmp_path):
     assert [path.name for path in written] == ['validation.md', 'validation_line.png']
     page = written[0].read_text()
     assert '| good.a | paper | Fig 1 | 1 | 1 | m | 0.9 to 1.1 | a tenth |  | reached |' in page
-    assert '| paper | 2 | 1 | 0 | 1 |\n| own | 2 | 1 | 0 | 1 |' in page
+    assert '| good.seen | Fig 2 | it hums | 0.25 | N | held by hand |' in page
     assert '**not reached**' in page and '- missed.far is not reached: the spring' in page
     assert '![A line.](figures/validation_line.png)' in page
     assert (tmp_path / 'docs' / 'figures' / 'validation_line.png').read_bytes()[:4] == b'\x89PNG'
