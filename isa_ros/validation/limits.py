@@ -92,10 +92,10 @@ def _codes(actuators: Actuators, model: str) -> tuple[Entry, Entry]:
 
 
 def steps(actuators: Actuators, model: str, load: str, field: str) -> float:
-    """Return the smallest step between two readings of a ``field`` while it changes slowly."""
+    """Return the smallest step between two readings of a slowly changing field, NaN if none."""
     found = bench(actuators, model, load)
     group = found.begin(force=0.0)
     commands = setpoints(
         group, 'effort', np.full(round(CREEP_S * RATE_HZ), spool_at(model, CREEP_MA)))
     readings = np.unique(group.advance_many(found.ports, commands).samples[field])
-    return float(np.diff(readings).min())
+    return float(np.diff(readings).min()) if len(readings) > 1 else float('nan')
