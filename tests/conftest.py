@@ -83,5 +83,8 @@ def compiled_kernels() -> None:
 @pytest.fixture(autouse=True)
 def kernels_compiled_once(request: pytest.FixtureRequest) -> None:
     """Let one of several workers compile; a process alone compiles what its tests need."""
-    if _is_worker(request.config) and not request.node.get_closest_marker('linter'):
+    if not _is_worker(request.config):
+        return
+    from tests.scheduling import LINTERS
+    if not request.node.nodeid.startswith(LINTERS):
         request.getfixturevalue('compiled_kernels')

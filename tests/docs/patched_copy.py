@@ -1,7 +1,9 @@
 """A copy of the package in which an extension is made: what it takes, and whether it runs."""
 
+from collections.abc import Callable, Iterable
 import os
 from pathlib import Path
+import re
 import shutil
 import subprocess
 import sys
@@ -26,6 +28,14 @@ class PatchedCopy:
     def touched(self) -> list[str]:
         """Return the paths of all files that differ from the package's by hand."""
         return sorted(self._touched)
+
+    def touched_by(self, extension: Callable[['PatchedCopy'], None]) -> list[str]:
+        """Make an extension, beside those made before, and return the paths that it touches."""
+        before, self._touched = self._touched, set()
+        extension(self)
+        own = self.touched
+        self._touched |= before
+        return own
 
     def replace(self, path: str, old: str, new: str) -> None:
         """Replace a text that a file has exactly once."""
@@ -65,3 +75,22 @@ class PatchedCopy:
                 [str(self._root), os.environ.get('PYTHONPATH', '')])})
         assert done.returncode == 0, done.stdout + done.stderr
         return done.stdout
+
+
+def rows_of_the_page() -> dict[str, str]:
+    """Return what the table says by what is new."""
+    page = (ROOT / 'docs' / 'architecture.md').read_text(encoding='utf-8')
+    table = page.partition('## Places for extensions')[2]
+    rows = [line.strip('| ').split(' | ') for line in table.splitlines() if line.startswith('|')]
+    return {row[0]: ' '.join(row[1:]) for row in rows[2:]}
+
+
+def files_of(row: str) -> set[str]:
+    """Return the files that the page names for a row."""
+    return set(re.findall(r'`([a-z_]+/[a-z_/]+(?:\.py|\.yaml)?)`', rows_of_the_page()[row]))
+
+
+def names_of(touched: Iterable[str]) -> set[str]:
+    """Return touched files as the page names them; of data, their folder."""
+    return {re.sub(r'(config/data/\w+)/.*', r'\1', path.removeprefix('isa_ros/'))
+            for path in touched}

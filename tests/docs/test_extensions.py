@@ -6,31 +6,6 @@ import re
 import pytest
 from tests.docs.patched_copy import PatchedCopy
 
-_CONDITION = '''    Condition(
-        'undervoltage', 'The supply sags below what the pumps need.',
-        'supply pressure', 'Pa', 'opening_pressure',
-        ErrorCode(0xFF10, MANUFACTURER, 'manufacturer: undervoltage'),
-        LevelDefaults(
-            'pressure over the opening of the relief valves', 1.0, warning=0.0, trip=0.0,
-            delay_ms=0.0, reaction='disable'),
-        is_above=False),
-)
-"""All conditions;'''
-_MEASURED = '    values[BIT.spool_deviation] = spool_deviation(state, protection.evidence)\n'
-_TRIPS = """
-import isa_ros
-from isa_ros.fieldbus.device.devices import devices_of
-import isa_ros.fieldbus.lines
-run = isa_ros.load('rig_linear').replace({
-    'actuators.ram.parameters.reu.protection.undervoltage.trip': 0.99})
-simulation = run.simulation()
-for _ in range(2):
-    sample = simulation.step()['ram']
-print(isa_ros.conditions(sample['trips']))
-device, = devices_of(run.configuration)
-device.take_sample(sample, 0)
-print(*(f'{one.code:04X} {one.register:02X}' for one in device.emergencies()))
-"""
 _SEED = "    Key('seed', Value("
 _KEY = f"""    number('room_celsius', 'Celsius', 'the air around the run', 20.0, ge=-50.0),
 {_SEED}"""
@@ -54,25 +29,6 @@ try:
 except ConfigError as error:
     print(error)
 """
-_CHANNEL = """
-
-@dataclass(frozen=True, kw_only=True)
-class TachometerChannel(Channel):
-
-    sigma: float = _sigma('m/s | rad/s', 1.0)
-    bias: float = _bias('m/s | rad/s', 10.0)
-    drift_per_s: float = _drift('m/s2 | rad/s2', 1.0)
-
-
-CHANNEL_ERRORS = """
-_SENSES = """
-import isa_ros
-run = isa_ros.load('rig_linear', duration=0.05).replace({
-    'actuators.ram.parameters.plant.sensors.tachometer.bias': 1.0})
-result = run.simulate()
-difference = result['ram.tachometer'][1:] - result['ram.velocity'][1:]
-print(result.units['ram.tachometer'], abs(difference - 1.0).max() < 0.1)
-"""
 
 
 @pytest.fixture
@@ -89,25 +45,6 @@ def test_a_text_that_is_not_there_once_is_refused(copied: PatchedCopy) -> None:
     with pytest.raises(FileExistsError):
         copied.add('package.xml', '')
     assert copied.touched == []
-
-
-@pytest.mark.slow
-def test_a_condition_is_a_row_and_a_line(copied: PatchedCopy) -> None:
-    """Sheet, bit, words, error on a bus and pages are made from the row."""
-    copied.replace(
-        'isa_ros/core/conditions.py', ')\n"""All conditions;', _CONDITION)
-    copied.replace(
-        'isa_ros/reu/protection.py', _MEASURED,
-        f'{_MEASURED}    values[BIT.undervoltage] = supply_pressure\n')
-    assert len(copied.touched) == 2
-    parameters = copied.isa('params', 'isa_v5')
-    assert 'reu.protection.undervoltage.reaction ' in parameters
-    assert copied.python(_TRIPS) == "['undervoltage']\nFF10 81\n"
-    assert '0x2024 ' in copied.isa('bus', 'describe', 'rig_linear', '--table')
-    copied.script('scripts/write_protection.py')
-    assert '\n| 13 | `undervoltage` | supply pressure |' in copied.read('docs/protection.md')
-    copied.script('scripts/write_objects.py')
-    assert '\n| `undervoltage` | 0xFF10 | 0x81 |' in copied.read('docs/objects.md')
 
 
 def test_a_key_of_a_run_file_is_a_row(copied: PatchedCopy) -> None:
@@ -131,36 +68,6 @@ def test_a_key_of_a_run_file_is_a_row(copied: PatchedCopy) -> None:
     copied.script('scripts/write_run_file.py')
     assert ('\n| `room_celsius` | number, Celsius | 20.0 | the air around the run | yes |'
             in copied.read('docs/run_file.md'))
-
-
-@pytest.mark.slow
-def test_a_sensor_is_a_channel_and_a_row_of_the_sample(copied: PatchedCopy) -> None:
-    """Its errors, noise, parameters and faults; result, units and pages."""
-    signals, sensors = 'isa_ros/core/signals.py', 'isa_ros/plant/sensors.py'
-    last = '])\n"""The last readings of the channels'
-    copied.replace(signals, last, f"    ('tachometer', 'f8'),\n{last}")
-    last = ')\n"""The values one actuator reports'
-    copied.replace(
-        signals, last, f"    Field('tachometer', 'm/s | rad/s', 'as sensed'),\n{last}")
-    copied.replace('isa_ros/plant/channels.py', '\nCHANNEL_ERRORS = ', _CHANNEL)
-    last = '    temperature: TemperatureSensor ='
-    copied.replace(
-        sensors, last, '    tachometer: channels.TachometerChannel = section('
-        f'channels.TachometerChannel)\n{last}')
-    for old, new in (
-            ('    if not own.errors.are_ideal:\n', 'measured.tachometer = at.velocity'),
-            ('    channels.disturb(', 'exact[6] = measured.tachometer'),
-            ('\n\n@kernel\ndef read(', 'measured.tachometer = shown[6]')):
-        copied.replace(sensors, old, f'    {new}\n{old}')
-    copied.replace(
-        'isa_ros/actuator/kernel.py', '    sample.current = measured.current\n',
-        '    sample.current = measured.current\n    sample.tachometer = measured.tachometer\n')
-    assert len(copied.touched) == 4
-    assert copied.python(_SENSES) == 'm/s True\n'
-    parameters = copied.isa('params', 'isa_v5')
-    assert 'plant.sensors.tachometer.stuck ' in parameters
-    copied.script('scripts/write_signals.py')
-    assert '\n| `tachometer` | m/s or rad/s | as sensed |' in copied.read('docs/signals.md')
 
 
 _TOY = '''

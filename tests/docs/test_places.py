@@ -11,16 +11,16 @@ from isa_ros.core.signals import Records
 from isa_ros.tick.exchange import Rows, RowSink
 from isa_ros.tick.source import ScheduledSource
 import pytest
-from tests.docs.patched_copy import PatchedCopy, ROOT
+from tests.docs.patched_copy import files_of, names_of, PatchedCopy, rows_of_the_page
 
 CASES = {
-    'condition of the protection': 'test_extensions.test_a_condition_is_a_row_and_a_line',
+    'condition of the protection': 'test_kernel_extensions.test_a_condition_is_a_row_and_a_line',
     'key of a run file': 'test_extensions.test_a_key_of_a_run_file_is_a_row',
-    'sensor': 'test_extensions.test_a_sensor_is_a_channel_and_a_row_of_the_sample',
+    'sensor': 'test_kernel_extensions.test_a_sensor_is_a_channel_and_a_row_of_the_sample',
     'bus': 'test_extensions.test_a_bus_is_a_file_and_a_row',
     'body': 'test_places.test_a_kind_of_bodies_is_a_class_and_a_row',
     'supply': 'test_places.test_a_supply_is_one_file',
-    'load of one actuator': 'test_places.test_a_load_is_a_set_a_force_and_values',
+    'load of one actuator': 'test_kernel_extensions.test_a_load_is_a_set_a_force_and_values',
     'wire of a link': 'test_places.test_a_wire_is_its_values_and_a_name',
     'topic of an actuator': 'test_places.test_a_topic_of_an_actuator_is_one_file',
     'object on a bus': 'test_places.test_an_object_with_a_source_is_one_word',
@@ -160,31 +160,12 @@ def copied(tmp_path: Path) -> PatchedCopy:
     return PatchedCopy(tmp_path)
 
 
-def rows_of_the_page() -> dict[str, str]:
-    """Return what the table says by what is new."""
-    page = (ROOT / 'docs' / 'architecture.md').read_text(encoding='utf-8')
-    table = page.partition('## Places for extensions')[2]
-    rows = [line.strip('| ').split(' | ') for line in table.splitlines() if line.startswith('|')]
-    return {row[0]: ' '.join(row[1:]) for row in rows[2:]}
-
-
-def files_of(row: str) -> set[str]:
-    """Return the files that the page names for a row."""
-    return set(re.findall(r'`([a-z_]+/[a-z_/]+(?:\.py|\.yaml)?)`', rows_of_the_page()[row]))
-
-
 def test_every_row_of_the_page_has_a_case_or_is_known_to_have_none() -> None:
     assert set(CASES) | WITHOUT_CASE == set(rows_of_the_page())
     assert not set(CASES) & WITHOUT_CASE
     for case in CASES.values():
         module, _, name = case.partition('.')
         assert callable(getattr(importlib.import_module(f'tests.docs.{module}'), name))
-
-
-def touched(copied: PatchedCopy) -> set[str]:
-    """Return the touched files as the page names them; of data, their folder."""
-    return {re.sub(r'(config/data/\w+)/.*', r'\1', path.removeprefix('isa_ros/'))
-            for path in copied.touched}
 
 
 @pytest.mark.slow
@@ -196,7 +177,7 @@ def test_a_kind_of_bodies_is_a_class_and_a_row(copied: PatchedCopy) -> None:
     copied.replace(kinds, 'import LegConfig\n', 'import LegConfig\n'
                    'from isa_ros.config.runs.rail_config import RailConfig\n')
     assert len(copied.touched) == 2
-    assert touched(copied) - {'config/runs/rail_config.py'} <= files_of('body')
+    assert names_of(copied.touched) - {'config/runs/rail_config.py'} <= files_of('body')
     topics, compared = copied.python(RUN_RAIL).splitlines()
     assert topics == "['/rail'] True"
     assert compared == (
@@ -245,54 +226,11 @@ def test_a_supply_is_one_file(copied: PatchedCopy) -> None:
         "        self.state['pressure'] -= self._fall * self._step\n")
     copied.replace(path, 'from dataclasses import dataclass\n',
                    'from dataclasses import dataclass\nimport math\n')
-    assert touched(copied) == files_of('supply') and len(copied.touched) == 1
+    assert names_of(copied.touched) == files_of('supply') and len(copied.touched) == 1
     assert copied.python(_FALLS) == '20.000 19.000\n'
     assert 'lasts_s' in copied.isa(
         'params', 'rig_linear', '--set', 'supply.kind=falling', '--set',
         'supply.lasts_s=1.0')
-
-
-_BRAKED = '''@dataclass(frozen=True, kw_only=True)
-class Braked(Parameters):
-    """A mass with a drag that grows with the square of its speed."""
-
-    inertia: float = parameter('moving mass', 'kg | kg m2', gt=0.0, le=1e4)
-    drag: float = parameter('force per square of the speed', 'kg | kg m2', ge=0.0, le=1e6)
-
-
-LocalLoad = Blocked | Wheel | Mass | Pad | DropRig | Braked
-'''
-_BRAKES = """
-import isa_ros
-slow, free = (isa_ros.load('rig_linear', {'name': 'push', 'duration_s': 1.0, 'tracks': {
-    'ram': [{'t_s': 0.0, 'position': 0.04, 'effort': 2000.0, 'stiffness': 0.0, 'damping': 0.0}]}}
-    ).replace({'actuators.ram.load': {'kind': 'braked', 'drag': drag}}).simulate(0.1)
-    for drag in (1e6, 0.0))
-speeds = [float(abs(own['ram.velocity']).max()) for own in (slow, free)]
-print(speeds[0] < 0.5 * speeds[1], speeds)
-"""
-
-
-@pytest.mark.slow
-def test_a_load_is_a_set_a_force_and_values(copied: PatchedCopy) -> None:
-    """It brakes: -c v abs(v)."""
-    sheets, forces = 'isa_ros/loads/sheets.py', 'isa_ros/loads/forces.py'
-    copied.replace(sheets, 'LocalLoad = Blocked | Wheel | Mass | Pad | DropRig\n', _BRAKED)
-    copied.replace(sheets, '    elif isinstance(load, Pad):\n',
-                   "    elif isinstance(load, Braked):\n        own['drag'] = load.drag\n"
-                   '    elif isinstance(load, Pad):\n')
-    copied.replace(forces, "('rope', ROPE)])", "('rope', ROPE), ('drag', 'f8')])")
-    copied.replace(forces, '    if own.rope.stiffness > 0.0:\n',
-                   '    force -= own.drag * y.velocity * abs(y.velocity)\n'
-                   '    if own.rope.stiffness > 0.0:\n')
-    model = 'isa_ros/config/data/models/isa_v5.yaml'
-    copied.replace(model, '\nloads:\n', '\nloads:\n  braked:\n'
-                   '    inertia: {value: 40.0, source: assumed}\n'
-                   '    drag: {value: 0.0, source: assumed}\n')
-    assert touched(copied) == files_of('load of one actuator') - {'docs/equations.md'}
-    assert len(copied.touched) == 3
-    assert copied.python(_BRAKES).startswith('True ')
-    assert 'load braked' in copied.isa('params', 'isa_v5')
 
 
 @pytest.mark.slow
@@ -304,7 +242,7 @@ def test_a_wire_is_its_values_and_a_name(copied: PatchedCopy) -> None:
         'frame_bits: {value: 0.0, source: assumed}',
         'frame_capacity_bits: {value: 0.0, source: assumed}', '']))
     copied.replace('isa_ros/actuator/link.py', "'can', 'serial')", "'can', 'serial', 'canfd')")
-    assert touched(copied) == files_of('wire of a link') and len(copied.touched) == 2
+    assert names_of(copied.touched) == files_of('wire of a link') and len(copied.touched) == 2
     listed = copied.isa('params', 'rig_linear', '--set', 'link.kind=canfd', '--set',
                         'link.cycle_ms=0.2')
     assert re.search(r'^wire of links: canfd\nparameter.*\nbit_rate_mbit +5 ', listed, re.M)
@@ -323,7 +261,7 @@ def test_a_topic_of_an_actuator_is_one_file(copied: PatchedCopy) -> None:
                    "        'valve': joint_state.valve(name, sample),\n"
                    "        'wear': joint_state.references(name, sample),\n")
     others = {'run/packing.py', 'run/rare_messages.py'}     # of slower messages, and texts
-    assert touched(copied) == files_of('topic of an actuator') - others
+    assert names_of(copied.touched) == files_of('topic of an actuator') - others
     assert copied.python(
         'import isa_ros; from isa_ros.bag.reader import Bag; from isa_ros.replay.replay import '
         "replay; bag = Bag(isa_ros.load('rig_linear').simulate(0.002).save('bag')); "
@@ -337,7 +275,7 @@ def test_an_object_with_a_source_is_one_word(copied: PatchedCopy) -> None:
     copied.replace(
         'isa_ros/fieldbus/device/manufacturer_area.py', "{'temperature': 'Oil in the actuator'}",
         "{'temperature': 'Oil in the actuator', 'age': 'Age of this sample'}")
-    assert touched(copied) <= files_of('object on a bus') and len(copied.touched) == 1
+    assert names_of(copied.touched) <= files_of('object on a bus') and len(copied.touched) == 1
     assert 'Age of this sample' in copied.isa('bus', 'describe', 'rig_linear', '--table')
 
 
@@ -347,7 +285,7 @@ def test_an_option_of_a_run_is_a_field(copied: PatchedCopy) -> None:
     flag = '    is_synced: bool = field(default=False'
     copied.replace(path, flag, '    is_tried: bool = field(default=False, metadata=_option(\n'
                    f"        Kind.FLAG, 'only an example', name='tried'))\n{flag}")
-    assert touched(copied) == files_of('option of a run') - {'run/session.py'}
+    assert names_of(copied.touched) == files_of('option of a run') - {'run/session.py'}
     assert re.search(r'--tried +only an example', copied.isa('bringup', '--help'))
 
 
@@ -412,6 +350,6 @@ def test_a_quantity_is_a_function(copied: PatchedCopy) -> None:
     copied.replace(scales, "'stroke': _stroke,", "'stroke': _stroke, 'half_stroke': _half_stroke,")
     copied.replace(model, 'stop_low: {value: 0.005, scales_with: stroke,',
                    'stop_low: {value: 0.005, scales_with: half_stroke,')
-    assert touched(copied) == files_of('quantity that values of a model scale with') - {
+    assert names_of(copied.touched) == files_of('quantity that values of a model scale with') - {
         'docs/own_cylinder.md'} and len(copied.touched) == 2
     assert re.search(r'stop_low .*scales with half_stroke', copied.isa('params', 'isa_v5'))

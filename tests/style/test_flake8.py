@@ -12,7 +12,12 @@ CODE = ('isa_ros', 'msg_adapters', 'benchmarks', 'launch', 'scripts', 'tests', '
 @pytest.mark.linter
 @pytest.mark.flake8
 def test_flake8_finds_nothing(monkeypatch: pytest.MonkeyPatch) -> None:
-    """As ament_flake8 configures it: 99 columns, single quotes, google import order."""
+    """
+    As ament_flake8 configures it: 99 columns, single quotes, google import order.
+
+    But for docstrings: ament_pep257 checks them by the same program, with more of its rules.
+    """
+    monkeypatch.setattr('flake8_docstrings.pep257Checker.run', lambda _: iter(()))
     monkeypatch.chdir(ROOT)
     return_code, errors = main_with_errors(argv=[p for p in CODE if (ROOT / p).exists()])
     assert return_code == 0, '\n'.join(errors)

@@ -1,0 +1,176 @@
+"""
+Rows of "Places for extensions" whose extension changes the kernels, all in one copy.
+
+The kernels of a copy compile for half a minute, so they compile once; and each extension has to
+run beside the others.
+"""
+
+from typing import NamedTuple
+
+from isa_ros.core.conditions import CONDITIONS
+import pytest
+from tests.docs.patched_copy import files_of, names_of, PatchedCopy
+
+_CONDITION = '''    Condition(
+        'undervoltage', 'The supply sags below what the pumps need.',
+        'supply pressure', 'Pa', 'opening_pressure',
+        ErrorCode(0xFF10, MANUFACTURER, 'manufacturer: undervoltage'),
+        LevelDefaults(
+            'pressure over the opening of the relief valves', 1.0, warning=0.0, trip=0.0,
+            delay_ms=0.0, reaction='disable'),
+        is_above=False),
+)
+"""All conditions;'''
+_MEASURED = '    values[BIT.spool_deviation] = spool_deviation(state, protection.evidence)\n'
+_TRIPS = """
+import isa_ros
+from isa_ros.fieldbus.device.devices import devices_of
+import isa_ros.fieldbus.lines
+run = isa_ros.load('rig_linear').replace({
+    'actuators.ram.parameters.reu.protection.undervoltage.trip': 0.99})
+simulation = run.simulation()
+for _ in range(2):
+    sample = simulation.step()['ram']
+print(isa_ros.conditions(sample['trips']))
+device, = devices_of(run.configuration)
+device.take_sample(sample, 0)
+print(*(f'{one.code:04X} {one.register:02X}' for one in device.emergencies()))
+"""
+_CHANNEL = """
+
+@dataclass(frozen=True, kw_only=True)
+class TachometerChannel(Channel):
+
+    sigma: float = _sigma('m/s | rad/s', 1.0)
+    bias: float = _bias('m/s | rad/s', 10.0)
+    drift_per_s: float = _drift('m/s2 | rad/s2', 1.0)
+
+
+CHANNEL_ERRORS = """
+_SENSES = """
+import isa_ros
+run = isa_ros.load('rig_linear', duration=0.05).replace({
+    'actuators.ram.parameters.plant.sensors.tachometer.bias': 1.0})
+result = run.simulate()
+difference = result['ram.tachometer'][1:] - result['ram.velocity'][1:]
+print(result.units['ram.tachometer'], abs(difference - 1.0).max() < 0.1)
+"""
+_BRAKED = '''@dataclass(frozen=True, kw_only=True)
+class Braked(Parameters):
+    """A mass with a drag that grows with the square of its speed."""
+
+    inertia: float = parameter('moving mass', 'kg | kg m2', gt=0.0, le=1e4)
+    drag: float = parameter('force per square of the speed', 'kg | kg m2', ge=0.0, le=1e6)
+
+
+LocalLoad = Blocked | Wheel | Mass | Pad | DropRig | Braked
+'''
+_BRAKES = """
+import isa_ros
+slow, free = (isa_ros.load('rig_linear', {'name': 'push', 'duration_s': 1.0, 'tracks': {
+    'ram': [{'t_s': 0.0, 'position': 0.04, 'effort': 2000.0, 'stiffness': 0.0, 'damping': 0.0}]}}
+    ).replace({'actuators.ram.load': {'kind': 'braked', 'drag': drag}}).simulate(0.1)
+    for drag in (1e6, 0.0))
+speeds = [float(abs(own['ram.velocity']).max()) for own in (slow, free)]
+print(speeds[0] < 0.5 * speeds[1], speeds)
+"""
+
+
+class Extended(NamedTuple):
+    """A copy with all extensions, and the files that each touches."""
+
+    copied: PatchedCopy
+    condition: list[str]
+    sensor: list[str]
+    load: list[str]
+
+
+def _condition(copied: PatchedCopy) -> None:
+    copied.replace(
+        'isa_ros/core/conditions.py', ')\n"""All conditions;', _CONDITION)
+    copied.replace(
+        'isa_ros/reu/protection.py', _MEASURED,
+        f'{_MEASURED}    values[BIT.undervoltage] = supply_pressure\n')
+
+
+def _sensor(copied: PatchedCopy) -> None:
+    signals, sensors = 'isa_ros/core/signals.py', 'isa_ros/plant/sensors.py'
+    last = '])\n"""The last readings of the channels'
+    copied.replace(signals, last, f"    ('tachometer', 'f8'),\n{last}")
+    last = ')\n"""The values one actuator reports'
+    copied.replace(
+        signals, last, f"    Field('tachometer', 'm/s | rad/s', 'as sensed'),\n{last}")
+    copied.replace('isa_ros/plant/channels.py', '\nCHANNEL_ERRORS = ', _CHANNEL)
+    last = '    temperature: TemperatureSensor ='
+    copied.replace(
+        sensors, last, '    tachometer: channels.TachometerChannel = section('
+        f'channels.TachometerChannel)\n{last}')
+    for old, new in (
+            ('    if not own.errors.are_ideal:\n', 'measured.tachometer = at.velocity'),
+            ('    channels.disturb(', 'exact[6] = measured.tachometer'),
+            ('\n\n@kernel\ndef read(', 'measured.tachometer = shown[6]')):
+        copied.replace(sensors, old, f'    {new}\n{old}')
+    copied.replace(
+        'isa_ros/actuator/kernel.py', '    sample.current = measured.current\n',
+        '    sample.current = measured.current\n    sample.tachometer = measured.tachometer\n')
+
+
+def _load(copied: PatchedCopy) -> None:
+    sheets, forces = 'isa_ros/loads/sheets.py', 'isa_ros/loads/forces.py'
+    copied.replace(sheets, 'LocalLoad = Blocked | Wheel | Mass | Pad | DropRig\n', _BRAKED)
+    copied.replace(sheets, '    elif isinstance(load, Pad):\n',
+                   "    elif isinstance(load, Braked):\n        own['drag'] = load.drag\n"
+                   '    elif isinstance(load, Pad):\n')
+    copied.replace(forces, "('rope', ROPE)])", "('rope', ROPE), ('drag', 'f8')])")
+    copied.replace(forces, '    if own.rope.stiffness > 0.0:\n',
+                   '    force -= own.drag * y.velocity * abs(y.velocity)\n'
+                   '    if own.rope.stiffness > 0.0:\n')
+    model = 'isa_ros/config/data/models/isa_v5.yaml'
+    copied.replace(model, '\nloads:\n', '\nloads:\n  braked:\n'
+                   '    inertia: {value: 40.0, source: assumed}\n'
+                   '    drag: {value: 0.0, source: assumed}\n')
+
+
+@pytest.fixture(scope='module')
+def extended(tmp_path_factory: pytest.TempPathFactory) -> Extended:
+    """Return a copy of the package with all extensions."""
+    copied = PatchedCopy(tmp_path_factory.mktemp('extended'))
+    return Extended(copied, *(copied.touched_by(each) for each in (_condition, _sensor, _load)))
+
+
+@pytest.mark.slow
+def test_a_condition_is_a_row_and_a_line(extended: Extended) -> None:
+    """Sheet, bit, words, error on a bus and pages are made from the row."""
+    copied = extended.copied
+    assert len(extended.condition) == 2
+    parameters = copied.isa('params', 'isa_v5')
+    assert 'reu.protection.undervoltage.reaction ' in parameters
+    assert copied.python(_TRIPS) == "['undervoltage']\nFF10 81\n"
+    assert '0x2024 ' in copied.isa('bus', 'describe', 'rig_linear', '--table')
+    copied.script('scripts/write_protection.py')
+    assert (f'\n| {len(CONDITIONS)} | `undervoltage` | supply pressure |'
+            in copied.read('docs/protection.md'))
+    copied.script('scripts/write_objects.py')
+    assert '\n| `undervoltage` | 0xFF10 | 0x81 |' in copied.read('docs/objects.md')
+
+
+@pytest.mark.slow
+def test_a_sensor_is_a_channel_and_a_row_of_the_sample(extended: Extended) -> None:
+    """Its errors, noise, parameters and faults; result, units and pages."""
+    copied = extended.copied
+    assert len(extended.sensor) == 4
+    assert copied.python(_SENSES) == 'm/s True\n'
+    parameters = copied.isa('params', 'isa_v5')
+    assert 'plant.sensors.tachometer.stuck ' in parameters
+    copied.script('scripts/write_signals.py')
+    assert '\n| `tachometer` | m/s or rad/s | as sensed |' in copied.read('docs/signals.md')
+
+
+@pytest.mark.slow
+def test_a_load_is_a_set_a_force_and_values(extended: Extended) -> None:
+    """It brakes: -c v abs(v)."""
+    copied = extended.copied
+    assert names_of(extended.load) == files_of('load of one actuator') - {'docs/equations.md'}
+    assert len(extended.load) == 3
+    assert copied.python(_BRAKES).startswith('True ')
+    assert 'load braked' in copied.isa('params', 'isa_v5')
