@@ -7,8 +7,11 @@ import numpy as np
 import pytest
 
 from .master_402 import (
-    CSV, ENABLE, enabled, is_in, POSITION, RESET, SHUTDOWN, state, SWITCH_ON, VOLTAGE_OFF)
+    CSV, ENABLE, enabled, IMPEDANCE, is_in, POSITION, RESET, SHUTDOWN, state, SWITCH_ON,
+    VOLTAGE_OFF)
 from .rig import Master, Rig
+
+LATE = 1 << 13
 
 
 @pytest.fixture
@@ -22,11 +25,60 @@ def test_a_following_error_beyond_window_and_time_is_a_fault(rig):
     master.download(0x6066, 0, 5)
     target = 100000 if master.inputs[POSITION] < 50000 else 0
     word = master.cycle(ENABLE, x607A=target)
-    assert word & 1 << 13 and state(word) == 'OPERATION_ENABLED'
-    master.cycle_until(is_in('FAULT_REACTION'), ENABLE, most=5)
+    assert not word & LATE and state(word) == 'OPERATION_ENABLED'
+    word = master.cycle_until(is_in('FAULT_REACTION'), ENABLE, most=5)
+    assert word & LATE
+    late = master.upload(0x60F4)
+    assert late == target - master.inputs[POSITION]
+    word = master.cycle_until(is_in('FAULT'), ENABLE)
+    assert word & LATE and master.upload(0x60F4) == late
+    assert not master.cycle(RESET) & LATE
+    assert master.upload(0x60F4) == 0
+    master.cycle(0)
+    for control in (SHUTDOWN, SWITCH_ON, ENABLE, *[ENABLE] * 5):
+        word = master.cycle(control, x607A=master.inputs[POSITION])
+    assert state(word) == 'OPERATION_ENABLED' and not word & LATE
+    rig.emergencies[1:] = []
+    master.cycle(ENABLE, x607A=target)
     master.cycle_until(is_in('FAULT'), ENABLE)
     assert master.upload(0x603F) == FOLLOWING_ERROR.code
     assert rig.emergencies[0].code == FOLLOWING_ERROR.code
+
+
+@pytest.mark.parametrize('timeout_ms', [0, 1, 5, 20, 21])
+def test_a_following_error_is_a_fault_after_its_time_in_whole_ticks(rig, timeout_ms):
+    """Longer than the time: n ms are over at tick n + 1, whatever n times 0.001 s rounds to."""
+    master = enabled(rig)
+    master.download(0x6065, 0, 20000)
+    master.download(0x6066, 0, timeout_ms)
+    target = 100000 if master.inputs[POSITION] < 50000 else 0
+    states = [state(master.cycle(ENABLE, x607A=target)) for _ in range(timeout_ms + 2)]
+    assert states.index('FAULT_REACTION') == timeout_ms + 1 - 1
+
+
+def test_the_time_of_a_following_error_begins_anew_after_the_window(rig):
+    master = enabled(rig)
+    master.download(0x6065, 0, 20000)
+    master.download(0x6066, 0, 5)
+    near = master.inputs[POSITION]
+    far = 100000 if near < 50000 else 0
+    for _ in range(3):
+        for target in (*[far] * 4, near):
+            word = master.cycle(ENABLE, x607A=target)
+    assert state(word) == 'OPERATION_ENABLED' and not word & LATE
+
+
+def test_a_following_error_is_not_watched_without_a_window_or_in_other_modes(rig):
+    master = enabled(rig)
+    target = 100000 if master.inputs[POSITION] < 50000 else 0
+    for _ in range(10):
+        word = master.cycle(ENABLE, x607A=target)
+    assert state(word) == 'OPERATION_ENABLED'
+    master.cycle(ENABLE, x6060=IMPEDANCE)
+    master.download(0x6065, 0, 10)
+    for _ in range(10):
+        word = master.cycle(ENABLE, x607A=target)
+    assert state(word) == 'OPERATION_ENABLED'
 
 
 TRIPS = {

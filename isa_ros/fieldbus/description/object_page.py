@@ -20,8 +20,27 @@ from isa_ros.text.table import aligned, markdown
 Rows = list[tuple[str, ...]]
 HEADER = ('index', 'sub', 'name', 'type', 'access', 'PDO', 'unit', 'SI per count', 'meaning')
 _NUMBER = re.compile(r' \d ')
+_SEVERAL = '..'
 _COMMUNICATION, _MANUFACTURER, _PROFILE = (
     range(0x1000, 0x2000), range(0x2000, 0x6000), range(0x6000, 0xA000))
+
+
+def table_lines(device: BusDevice) -> list[str]:
+    """Return the objects of a device for a terminal, with their values at power-on."""
+    header, *rows = object_rows(device.table.objects)
+    return aligned([
+        (*header[:-1], 'at power-on', header[-1]),
+        *((*row[:-1], _at_power_on(device.table, *row[:2]), row[-1]) for row in rows)])
+
+
+def _at_power_on(table: ObjectTable, index: str, subindex: str) -> str:
+    """Return the value in counts of what a row shows; '': of several, or it changes by itself."""
+    if _SEVERAL in index + subindex:
+        return ''
+    entry = table.entry(int(index, 16), int(subindex))
+    if entry.access == 'ro':
+        return ''
+    return entry.default if isinstance(entry.default, str) else f'{entry.default:.9g}'
 
 
 def object_rows(objects: Sequence[Object]) -> Rows:
@@ -73,11 +92,6 @@ def _row(
         index, str(entry.subindex) if subindex is None else subindex, name,
         entry.data_type.name, entry.access, entry.pdo, entry.unit,
         f'{entry.scale:g}' if entry.scale != 1.0 else '', entry.meaning)
-
-
-def table_lines(device: BusDevice) -> list[str]:
-    """Return the objects of a device for a terminal."""
-    return aligned(object_rows(device.table.objects))
 
 
 def _in(table: ObjectTable, indices: range) -> list[Object]:

@@ -65,7 +65,9 @@ MEANINGS: Mapping[int, str] = {
 class SdoAbort(Exception):
     """An access to the object dictionary that is refused with a code of `MEANINGS`."""
 
-    def __init__(self, code: int) -> None:
+    def __init__(self, code: int, reason: str = '') -> None:
         self.code = code
+        self.reason = reason
+        """What was refused and why, as object 0x2003 says it; '': the meaning says enough."""
         self.meaning = MEANINGS[code]
         super().__init__(f'0x{code:08X}: {self.meaning}')

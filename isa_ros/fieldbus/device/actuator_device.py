@@ -1,6 +1,7 @@
 """One actuator of a run as a `BusDevice`: dictionary, process data, and a drive of a profile."""
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from contextlib import contextmanager
 
 from isa_ros.actuator.tunable import with_changed
 from isa_ros.errors import ConfigError
@@ -51,35 +52,49 @@ class ActuatorDevice:
 
     def read(self, index: int, subindex: int) -> bytes:
         """Return the bytes of an entry; raises `SdoAbort`."""
-        return self._dictionary.read(index, subindex)
+        with self._noting(index, subindex):
+            return self._dictionary.read(index, subindex)
 
     def write(
             self, index: int, subindex: int, data: bytes, *, is_preoperational: bool) -> None:
         """Write an entry; raises `SdoAbort`."""
-        if is_changed_in_preop(index):
-            value = self._dictionary.admitted(self.table.entry(index, subindex), data)
-            self._process_data.write(index, subindex, int(value), is_preoperational)
-            return
-        self._dictionary.write(index, subindex, data)
+        with self._noting(index, subindex):
+            if is_changed_in_preop(index):
+                value = self._dictionary.admitted(self.table.entry(index, subindex), data)
+                self._process_data.write(index, subindex, int(value), is_preoperational)
+                return
+            self._dictionary.write(index, subindex, data)
         self._written([(index, subindex)])
 
     def read_all(self, index: int) -> bytes:
         """Return all entries of an object; raises `SdoAbort`."""
-        if is_changed_in_preop(index) and index in self.table:
-            return self._process_data.read_all(index)
-        return self._dictionary.read_all(index)
+        with self._noting(index):
+            if is_changed_in_preop(index) and index in self.table:
+                return self._process_data.read_all(index)
+            return self._dictionary.read_all(index)
 
     def write_all(self, index: int, data: bytes, *, is_preoperational: bool) -> None:
         """Write all entries of an object; raises `SdoAbort`."""
-        if is_changed_in_preop(index) and index in self.table:
-            self._process_data.write_all(index, data, is_preoperational)
-            return
-        self._dictionary.write_all(index, data)
+        with self._noting(index):
+            if is_changed_in_preop(index) and index in self.table:
+                self._process_data.write_all(index, data, is_preoperational)
+                return
+            self._dictionary.write_all(index, data)
         self._written([(index, entry.subindex) for entry in self.table.at(index).entries])
 
     def store(self, index: int, subindex: int, value: Value) -> None:
         """Set an entry on behalf of the bus itself, without checks."""
         self._values[index, subindex] = value
+
+    @contextmanager
+    def _noting(self, index: int, subindex: int | None = None) -> Iterator[None]:
+        """Keep the reason of a refusal as a text."""
+        try:
+            yield
+        except SdoAbort as refused:
+            place = f'0x{index:04X}' + ('' if subindex is None else f':{subindex}')
+            note_refusal(self._values, refused.reason or f'{place}: {refused.meaning}')
+            raise
 
     def _admit(self, entry: ObjectEntry, value: Value) -> None:
         """Refuse a value by the rules of the REU or the drive."""
@@ -92,8 +107,7 @@ class ActuatorDevice:
         try:
             with_changed(self._axis.sheet, changed | {own.name: float(value)})
         except ConfigError as error:
-            note_refusal(self._values, str(error))
-            raise SdoAbort(OUT_OF_RANGE) from error
+            raise SdoAbort(OUT_OF_RANGE, str(error)) from error
 
     def _written(self, keys: list[Key]) -> None:
         for key in keys:
@@ -118,6 +132,8 @@ class ActuatorDevice:
         layout = self._process_data.layout(pdo)
         if len(data) < layout.packing.size:
             self._faults.note(PDO_LENGTH)
+            note_refusal(self._values, f'0x{pdo:04X}: {len(data)} bytes of process data, must be '
+                         f'>= {layout.packing.size}')
             return
         self._values.update(zip(layout.keys, layout.packing.unpack_from(data)))
         self._take_received(layout.keys)
@@ -169,13 +185,14 @@ class ActuatorDevice:
     def changes(self) -> dict[str, float]:
         """Return gains and limits written since the last call, SI."""
         found, self._changes = self._changes, {}
-        return found
+        return self._drive.limited(found)
 
     def take_changes(self, values: Mapping[str, float]) -> None:
         """Show gains and limits that were changed from elsewhere, SI, by name."""
+        shown = self._drive.foreign(values)
         for key, one in self._tunables.items():
-            if one.name in values:
-                self._values[key] = values[one.name]
+            if one.name in shown:
+                self._values[key] = shown[one.name]
 
 
 def _measured(axis: Axis, entry: ObjectEntry) -> Callable[[], Value]:

@@ -41,7 +41,8 @@ def communication_objects(step_ns: int) -> list[Object]:
         Object(HEARTBEAT_CONSUMED, 'Consumer heartbeat time', ObjectCode.ARRAY, (
             ObjectEntry(HEARTBEAT_CONSUMED, 0, 'Highest subindex', _U8, 'const', CONSUMERS),
             *(ObjectEntry(HEARTBEAT_CONSUMED, k, f'Consumer heartbeat time {k}', _U32, 'rw',
-                          meaning='node << 16 | ms of simulated time; 0: off')
+                          meaning='node in bits 16 to 22, ms of simulated time in the low '
+                                  'word; 0: off')
               for k in range(1, CONSUMERS + 1))), CANOPEN),
         variable(ObjectEntry(HEARTBEAT_PRODUCED, 0, 'Producer heartbeat time', _U16, 'rw', 0, 's',
                              _MILLISECOND, meaning='wall time; 0: off'), CANOPEN),

@@ -5,6 +5,7 @@ States above `switch on disabled` are the drive's; the REU is enabled in `operat
 The control word counts at the start of a tick, the sample at its end.
 """
 
+from collections.abc import Mapping
 import math
 
 from isa_ros.core.device import ENABLED, FAULT, FAULT_REACTION, INITIALISING, QUICK_STOP
@@ -20,7 +21,9 @@ from isa_ros.fieldbus.device.cia402_states import (
 from isa_ros.fieldbus.device.dictionary import Key
 from isa_ros.fieldbus.device.drive import Drive
 from isa_ros.fieldbus.device.faults import Faults, FOLLOWING_ERROR
-from isa_ros.fieldbus.device.manufacturer_area import DAMPING, EFFORT, note_refusal, STIFFNESS
+from isa_ros.fieldbus.device.following_error import FollowingError
+from isa_ros.fieldbus.device.force_limits import ForceLimits
+from isa_ros.fieldbus.device.manufacturer_area import DAMPING, EFFORT, STIFFNESS
 from isa_ros.fieldbus.device.objects import ObjectEntry, Value
 from isa_ros.fieldbus.device.setpoints import ImpedanceGains, setpoint
 from isa_ros.fieldbus.device.states import Transition
@@ -30,7 +33,6 @@ VOLTAGE, WARNING, REMOTE, LIMITED, FOLLOWS, LATE = (1 << bit for bit in (4, 7, 9
 """Further bits of the status word."""
 _STOP_WORD = 0x02
 """Control word of a quick stop."""
-_NOT_WATCHED = 0xFFFFFFFF
 
 
 class Drive402(Drive):
@@ -50,7 +52,8 @@ class Drive402(Drive):
                          objects.modes_of(axis), NO_MODE)
         self._supply_low = supply_low
         self._gains = ImpedanceGains(axis, values)
-        self._late_s = 0.0
+        self._limits = ForceLimits(axis, values)
+        self._following_error = FollowingError(axis.step_ns, values)
         self._has_left = False
         self._setpoints = {
             NO_MODE: self._holding, CSP: self._position, CSV: self._velocity, CST: self._torque,
@@ -58,7 +61,7 @@ class Drive402(Drive):
         self.actuals = {
             objects.STATUS: self.status, objects.MODE_SHOWN: lambda: self._mode,
             objects.POSITION_DEMAND: lambda: round(self._shown_demand * COUNTS),
-            objects.FOLLOWING_ERROR: lambda: round(self._deviation * COUNTS)}
+            objects.FOLLOWING_ERROR: lambda: round(self._following_error.value * COUNTS)}
 
     # Side of the bus.
 
@@ -66,14 +69,14 @@ class Drive402(Drive):
         """Refuse modes that do not exist, and a range that is none; raises `SdoAbort`."""
         key = entry.index, entry.subindex
         if key == objects.MODE and value not in self._modes:
-            note_refusal(self._values, self._refusal(int(value)))
-            raise SdoAbort(OUT_OF_RANGE)
+            raise SdoAbort(OUT_OF_RANGE, self._refusal(int(value)))
         if key in (objects.LEAST_POSITION, objects.LARGEST_POSITION):
             least, largest = (
                 value if key == one else self._values[one]
                 for one in (objects.LEAST_POSITION, objects.LARGEST_POSITION))
             if float(least) > float(largest):
-                raise SdoAbort(INCOMPATIBLE)
+                raise SdoAbort(INCOMPATIBLE, f'0x607D: least position {least} above largest '
+                               f'position {largest}, um | urad')
 
     def _refusal(self, mode: int) -> str:
         return REFUSED_MODES.get(mode, super()._refusal(mode))
@@ -86,7 +89,7 @@ class Drive402(Drive):
 
     def _begin_at_position(self) -> None:
         self._values[objects.TARGET_POSITION] = round(self._axis.position * COUNTS)
-        self._late_s = 0.0
+        self._following_error.forget()
         self._has_left = False
 
     def status(self) -> int:
@@ -99,8 +102,16 @@ class Drive402(Drive):
         if state is State402.OPERATION_ENABLED:
             word |= LIMITED * self._limiter.is_limited
             word |= FOLLOWS * (axis.state == ENABLED and self._mode != NO_MODE)
-            word |= LATE * (self._late_s > 0.0)
+        word |= LATE * self._following_error.is_late
         return word
+
+    def limited(self, changes: dict[str, float]) -> dict[str, float]:
+        """Return changes of the REU with its forces limited by the objects of the drive."""
+        return self._limits.limited(changes)
+
+    def foreign(self, values: Mapping[str, float]) -> Mapping[str, float]:
+        """Return values in force but for limits of the drive's own."""
+        return self._limits.foreign(values)
 
     # Side of the run.
 
@@ -165,9 +176,9 @@ class Drive402(Drive):
         value = sum(int(self._values[key]) for key in keys) * per_mille
         effort = float(self._values[EFFORT])
         value += 0.0 if math.isnan(effort) else effort
-        largest = int(self._values[objects.MAX_TORQUE]) * per_mille
+        out, into = self._limits.sides
         return self._limiter.limited(
-            value, -min(largest, self._axis.force_in), min(largest, self._axis.force_out))
+            value, -min(into, self._axis.force_in), min(out, self._axis.force_out))
 
     def _holding(self, command: np.void) -> int:
         return 0
@@ -208,25 +219,22 @@ class Drive402(Drive):
     def _shown_demand(self) -> float:
         return self._demand if self._has_demand else self._axis.position
 
-    @property
-    def _deviation(self) -> float:
-        return self._shown_demand - self._axis.position
-
     def _watch_deviation(self) -> None:
-        """Count how long the following error is beyond its window; too long is a fault."""
-        window = int(self._values[objects.WINDOW])
-        if (window == _NOT_WATCHED or self._mode not in (CSP, CSV)
-                or abs(self._deviation) <= window / COUNTS):
-            self._late_s = 0.0
+        """Watch the following error, which stays as it was in a fault."""
+        if self.state in self.faulty:
             return
-        self._late_s += self._axis.step
-        if self._late_s > int(self._values[objects.TIMEOUT]) * MILLI:
+        error = self._following_error
+        error.watch(self._shown_demand - self._axis.position,
+                    self._has_demand and self._mode in (CSP, CSV))
+        if error.is_late:
             self._faults.add(FOLLOWING_ERROR)
 
     # States.
 
     def _enters(self, row: Transition) -> None:
         self._was_on = False
+        if row.event is Event.RESET:
+            self._following_error.forget()
         self._has_left &= row.state is not State402.QUICK_STOP
 
     def _holds(self, guard: str) -> bool:

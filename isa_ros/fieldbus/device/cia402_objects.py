@@ -20,6 +20,7 @@ MODE, MODE_SHOWN = (0x6060, 0), (0x6061, 0)
 POSITION_DEMAND, POSITION, FOLLOWING_ERROR = (0x6062, 0), (0x6064, 0), (0x60F4, 0)
 WINDOW, TIMEOUT = (0x6065, 0), (0x6066, 0)
 TARGET_TORQUE, MAX_TORQUE = (0x6071, 0), (0x6072, 0)
+LARGEST_OUT, LARGEST_IN = (0x60E0, 0), (0x60E1, 0)
 TORQUE_DEMAND, TORQUE = (0x6074, 0), (0x6077, 0)
 TARGET_POSITION, LEAST_POSITION, LARGEST_POSITION = (0x607A, 0), (0x607D, 1), (0x607D, 2)
 MAX_SPEED = (0x607F, 0)
@@ -45,7 +46,8 @@ _SUPPORTED_BITS = {CSP: 1 << 7, CSV: 1 << 8, CST: 1 << 9, IMPEDANCE_MODE: 1 << 1
 QUICK_STOP_OFF, QUICK_STOP_ENDS_OFF, QUICK_STOP_STAYS = 0, 2, 6
 _I8, _I16, _I32 = DataType.INTEGER8, DataType.INTEGER16, DataType.INTEGER32
 _U8, _U16, _U32 = DataType.UNSIGNED8, DataType.UNSIGNED16, DataType.UNSIGNED32
-_FOREVER = 0xFFFFFFFF
+NOT_WATCHED = 0xFFFFFFFF
+"""Window that is off, speed without a limit."""
 _MICRO_METRES, _MICRO_RADIANS = 0xFA010000, 0xFA100000
 """Units of CiA 303-2: prefix 10^-6, metre or radian."""
 _PER_SECOND = 0x0300
@@ -146,9 +148,10 @@ def _position_objects(axis: Axis) -> list[Object]:
     return [
         position(POSITION_DEMAND, 'Position demand value', pdo='tx'),
         position(POSITION, 'Position actual value', pdo='tx', source='position'),
-        _one(WINDOW, 'Following error window', _U32, 'rw', _FOREVER, unit=length,
+        _one(WINDOW, 'Following error window', _U32, 'rw', NOT_WATCHED, unit=length,
              scale=INCREMENT, meaning='0xFFFFFFFF: not watched'),
-        _one(TIMEOUT, 'Following error time out', _U16, 'rw', unit='s', scale=MILLI),
+        _one(TIMEOUT, 'Following error time out', _U16, 'rw', unit='s', scale=MILLI,
+             meaning='longer than that beyond the window is a fault'),
         position(TARGET_POSITION, 'Target position', 'rw', 'rx',
                  meaning='at first the position at t = 0'),
         record_of(0x607D, 'Software position limit', [
@@ -156,7 +159,8 @@ def _position_objects(axis: Axis) -> list[Object]:
                         high=stroke),
             ObjectEntry(0x607D, 2, 'Largest position', _I32, 'rw', stroke, length, INCREMENT,
                         low=0, high=stroke)]),
-        position(FOLLOWING_ERROR, 'Following error actual value', pdo='tx')]
+        position(FOLLOWING_ERROR, 'Following error actual value', pdo='tx',
+                 meaning='in a fault that at its begin')]
 
 
 def _velocity_objects(axis: Axis) -> list[Object]:
@@ -165,7 +169,7 @@ def _velocity_objects(axis: Axis) -> list[Object]:
     return [
         _one(VELOCITY, 'Velocity actual value', _I32, unit=speed, scale=INCREMENT, pdo='tx',
              source='velocity'),
-        _one(MAX_SPEED, 'Max profile velocity', _U32, 'rw', _FOREVER, unit=speed,
+        _one(MAX_SPEED, 'Max profile velocity', _U32, 'rw', NOT_WATCHED, unit=speed,
              scale=INCREMENT, meaning='largest velocity of mode 9'),
         _one((0x6085, 0), 'Quick stop deceleration', _U32, 'const',
              round(deceleration / INCREMENT), unit=axis.unit('m/s2 | rad/s2'), scale=INCREMENT),
@@ -180,8 +184,11 @@ def _torque_objects(axis: Axis) -> list[Object]:
     rated_current = round(axis.rated_current / MILLI)
     return [
         _one(TARGET_TORQUE, 'Target torque', _I16, 'rw', unit=force, scale=scale, pdo='rx'),
-        _one(MAX_TORQUE, 'Max torque', _U16, 'rw', 1000, unit=force, scale=scale, high=1000,
-             meaning='limit of all forces that are commanded'),
+        *(_one(key, name, _U16, 'rw', 1000, unit=force, scale=scale, high=1000, pdo='rx',
+               meaning=meaning) for key, name, meaning in (
+            (MAX_TORQUE, 'Max torque', 'of efforts, and of the force towards a position'),
+            (LARGEST_OUT, 'Positive torque limit value', 'the same, pushing out only'),
+            (LARGEST_IN, 'Negative torque limit value', 'the same, pulling in only'))),
         _one(TORQUE_DEMAND, 'Torque demand', _I16, unit=force, scale=scale, pdo='tx',
              source='force_reference'),
         _one((0x6075, 0), 'Motor rated current', _U32, 'const', rated_current, unit='A',

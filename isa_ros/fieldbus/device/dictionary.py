@@ -113,9 +113,13 @@ def refuse_beyond(entry: ObjectEntry, value: Value) -> None:
     """
     if isinstance(value, str):
         return
-    if entry.choices and value not in entry.choices or math.isnan(value):
-        raise SdoAbort(OUT_OF_RANGE)
+    place = f'0x{entry.index:04X}:{entry.subindex} {entry.name} = {value:.9g}'
+    if entry.choices and value not in entry.choices:
+        known = ', '.join(map(str, entry.choices))
+        raise SdoAbort(OUT_OF_RANGE, f'{place}, must be {known}')
+    if not math.isfinite(value):
+        raise SdoAbort(OUT_OF_RANGE, f'{place}, must be finite')
     if value > entry.high:
-        raise SdoAbort(TOO_HIGH)
+        raise SdoAbort(TOO_HIGH, f'{place}, must be <= {entry.high:.9g}')
     if value < entry.low:
-        raise SdoAbort(TOO_LOW)
+        raise SdoAbort(TOO_LOW, f'{place}, must be >= {entry.low:.9g}')

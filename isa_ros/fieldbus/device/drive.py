@@ -79,6 +79,14 @@ class Drive:
         known = ', '.join(map(str, sorted(self._modes)))
         return f'{self.mode_words} {mode} does not exist here; there are {known}'
 
+    def limited(self, changes: dict[str, float]) -> dict[str, float]:
+        """Return changes of the REU's gains and limits, SI, as the profile lets them be."""
+        return changes
+
+    def foreign(self, values: Mapping[str, float]) -> Mapping[str, float]:
+        """Return those of values in force, SI, that `limited` has not put in force."""
+        return values
+
     def begin_operation(self) -> None:
         """Enter the state operational of the bus."""
         self._is_remote = True

@@ -117,9 +117,11 @@ def _impedance(axis: Axis) -> Object:
     stiffness, damping = axis.gains
     return record_of(0x2010, 'Impedance', [
         ObjectEntry(*STIFFNESS, 'Stiffness', _F32, 'rw', stiffness, axis.unit('N/m | Nm/rad'),
-                    pdo='rx', meaning='of mode -1; NaN in a PDO: the one in force'),
+                    pdo='rx', meaning='of mode -1; NaN in a PDO: the one in force', low=0.0,
+                    high=axis.largest_gains[0]),
         ObjectEntry(*DAMPING, 'Damping', _F32, 'rw', damping, axis.unit('Ns/m | Nms/rad'),
-                    pdo='rx', meaning='of mode -1; NaN in a PDO: the one in force'),
+                    pdo='rx', meaning='of mode -1; NaN in a PDO: the one in force', low=0.0,
+                    high=axis.largest_gains[1]),
         ObjectEntry(*EFFORT, 'Effort', _F32, 'rw', 0.0, axis.unit('N | Nm'), pdo='rx',
                     meaning='added to target torque and torque offset')])
 

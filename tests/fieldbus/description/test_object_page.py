@@ -34,6 +34,15 @@ def test_a_table_of_a_device_is_aligned_and_has_its_scale():
         'tx', 'Nm', '0.17']
 
 
+def test_a_table_of_a_device_has_the_numbers_of_the_mit_ranges():
+    """Stroke and rated torque of the HAA; ten times its gains, 300 Nm/rad and 20 Nms/rad."""
+    device = devices_of(LEG)[0]
+    lines = [line.split() for line in table_lines(device) if line.startswith('0x2002')]
+    at = {line[1]: line for line in lines}
+    assert '3000' in at['3'] and '200' in at['4'] and '170' in at['5']
+    assert next(line for line in table_lines(device) if line.startswith('0x6041')).endswith('tx')
+
+
 def test_every_table_of_the_page_has_a_header_and_full_rows():
     for rows in tables(devices_of(LEG)[-1], devices_of(LEG, 'cia408')[-1]).values():
         header, *body = rows()

@@ -216,6 +216,7 @@ def test_other_modes_are_refused_with_a_reason(rig, mode, reason):
         master.download(0x6060, 0, mode)
     assert refused.value.code == OUT_OF_RANGE
     assert master.upload(0x2003) == reason
+    master.download(0x6066, 0, 1)
     other = enabled(Rig())
     other.cycle(ENABLE, x6060=mode)
     assert other.inputs[MODE_SHOWN] == CSP
