@@ -26,17 +26,19 @@ if TYPE_CHECKING:
     from isa_ros.scripting.sweep import sweep as sweep
     from isa_ros.simulation import Simulation as Simulation
     from isa_ros.surroundings.body import Body as Body
+    from isa_ros.tick.trips import TripWarning as TripWarning
     __version__: str
 
 _HOMES = {
     'ActuatorGroup': 'actuator.group', 'Body': 'surroundings.body', 'Controller': 'controller',
     'Result': 'scripting.result', 'Run': 'scripting.run', 'Setpoint': 'controller',
     'Simulation': 'simulation', 'State': 'controller', 'Sweep': 'scripting.sweep',
+    'TripWarning': 'tick.trips',
     'conditions': 'core.conditions', 'load': 'scripting.run', 'sweep': 'scripting.sweep'}
 
 __all__ = [  # noqa: F822, the names are loaded by `__getattr__`
     'ActuatorGroup', 'Body', 'Controller', 'Result', 'Run', 'Setpoint', 'Simulation', 'State',
-    'Sweep', 'conditions', 'load', 'sweep']
+    'Sweep', 'TripWarning', 'conditions', 'load', 'sweep']
 
 
 def __getattr__(name: str) -> Any:

@@ -9,9 +9,13 @@ In a conftest.py: ``pytest_plugins = ['isa_ros.testing']``; in a test::
     def test_the_simulator_still_gives_my_bag(assert_replays):
         assert_replays('bags/drop', 'bags/tolerances.yaml')
 
-`assert_reproduces` simulates the files and controllers as they are today; it fails if one of
-them, or the simulator, gives other messages. `assert_replays` simulates the configuration and
-the inputs that are stored in the bag; only another simulator can fail it.
+    def test_my_drop_trips_nothing(assert_no_trips):
+        assert_no_trips(isa_ros.load('my_leg.yaml', 'my_drop.yaml').simulate())
+
+`assert_no_trips` takes a result or a bag. `assert_reproduces` simulates the files and controllers
+as they are today; it fails if one of them, or the simulator, gives other messages.
+`assert_replays` simulates the configuration and the inputs that are stored in the bag; only
+another simulator can fail it.
 
 Without a tolerance file every bit must be equal. This holds on every x86-64 processor with the
 same versions. Both functions may also be imported and called.
@@ -20,6 +24,7 @@ same versions. Both functions may also be imported and called.
 from collections.abc import Callable
 from pathlib import Path
 
+from isa_ros.analysis.report.events import recorded_events, trips
 from isa_ros.bag.provenance import VERSION
 from isa_ros.bag.reader import Bag
 from isa_ros.config.text.yaml_text import Tree
@@ -35,15 +40,43 @@ from isa_ros.run.provenance import provenance_of
 from isa_ros.scripting.bag import ResultMessages
 from isa_ros.scripting.result import Result, simulated
 from isa_ros.scripting.run import Controllers, load
+from isa_ros.tick.trips import Tripped
 from msg_adapters import event
 import pytest
 
-__all__ = ['assert_replays', 'AssertReplays', 'assert_reproduces', 'AssertReproduces']
+__all__ = ['assert_no_trips', 'AssertNoTrips', 'assert_replays', 'AssertReplays',
+           'assert_reproduces', 'AssertReproduces']
 
+AssertNoTrips = Callable[..., None]
 AssertReplays = Callable[..., None]
 AssertReproduces = Callable[..., None]
 
 _NAMES = ('in the bag', 'now')  # of both runs in a message
+
+
+def assert_no_trips(run: Result | Path | str) -> None:
+    """
+    Assert that no condition of an actuator tripped in a run: its result, or its bag.
+
+    Raises
+    ------
+    AssertionError
+        Has a line for each condition that tripped.
+    BagError
+        The bag cannot be read.
+
+    """
+    __tracebackhide__ = True
+    if isinstance(run, Result):
+        tripped = Tripped()
+        tripped.add(run.trips)
+        lines, name = tripped.lines(), repr(run)
+    else:
+        lines = [f'{own.actuator}: {own.what} tripped at t = {own.t_s:.6f} s'
+                 for own in trips(recorded_events(Bag(Path(run))))]
+        name = str(run)
+    if lines:
+        raise AssertionError('\n'.join([f'{name}: a condition tripped', *lines]))
 
 
 def assert_replays(bag: Path | str, tolerances: Path | str | None = None) -> None:
@@ -114,6 +147,12 @@ def assert_reproduces(
         if tolerances is None and all(key.key.startswith(VERSION) for key in keys or ()):
             lines.append(_why_bits_differ('Controllers are not stored in a bag'))
         raise AssertionError('\n'.join(lines))
+
+
+@pytest.fixture(name='assert_no_trips')
+def _assert_no_trips() -> AssertNoTrips:
+    """Return `assert_no_trips`."""
+    return assert_no_trips
 
 
 @pytest.fixture(name='assert_replays')

@@ -11,6 +11,7 @@ from isa_ros.core.conditions import conditions
 from isa_ros.core.device import (
     event_name, FAULT, FAULT_REACTION, mode_name, QUICK_STOP, state_name)
 from msg_adapters.cdr import encode
+from msg_adapters.cdr_reader import decode
 from msg_adapters.diagnostics import Status
 
 TYPE = 'diagnostic_msgs/msg/DiagnosticStatus'
@@ -64,6 +65,19 @@ def status(name: str, sample: Mapping[str, float]) -> DiagnosticStatus:
 def pack(name: str, sample: Mapping[str, float]) -> bytes:
     """Return the CDR bytes of `status`."""
     return encode(status(name, sample))
+
+
+def values(data: bytes) -> dict[str, str]:
+    """
+    Return the values of a status by key; inverse of `pack`.
+
+    Raises
+    ------
+    CdrError
+        The bytes are not a DiagnosticStatus.
+
+    """
+    return {pair.key: pair.value for pair in decode(data, DiagnosticStatus).values}
 
 
 def joined(name: str, sample: Mapping[str, float]) -> Status:

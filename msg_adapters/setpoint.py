@@ -11,7 +11,7 @@ import math
 from isa_ros.core.device import MODES, REFERENCES
 from isa_ros.core.signals import (
     COMMAND, EVERY_KIND, GAINS_OF_COMMAND, HAS_ENABLE, HAS_GAINS, HAS_MODE, HAS_REFERENCE,
-    HAS_SETPOINT)
+    HAS_SETPOINT, WAS_REFUSED)
 from isa_ros.core.suggest import listed
 from isa_ros.errors import SetpointError
 from msg_adapters.cdr_reader import decode
@@ -36,7 +36,8 @@ def applied_setpoint(name: str, columns: Mapping[str, int]) -> Prepared:
     Return ``~/applied_setpoint`` of an actuator: all values in force from the tick's start on.
 
     ``columns`` are those of a COMMAND row with gains resolved, by field. All but the first entry
-    have a number in ``position``; that of NAME/changed is the sum of the `HAS_*` of what changed.
+    have a number in ``position``; that of NAME/changed is the sum of the `HAS_*` of what changed,
+    and `WAS_REFUSED` where the device refused to enable or disable.
     """
     names = applied_names(name)
     fields = entries(
@@ -86,10 +87,14 @@ def applied_to_command(data: bytes, name: str) -> np.void:
     command = _command(message, name, names)
     command['kinds'] = HAS_SETPOINT | HAS_ENABLE
     values = dict(zip(_APPLIED, message.position[1:]))
-    for entry, most in (('enabled', 1), ('mode', len(MODES) - 1), ('changed', EVERY_KIND)):
+    for entry, most in (('enabled', 1), ('mode', len(MODES) - 1),
+                        ('changed', EVERY_KIND | WAS_REFUSED)):
         if entry in values:
             command[_APPLIED[entry]] = _whole(f'{name}/{entry}', values[entry], most)
     command['reference'] = values.get('reference', 0.0)
+    if int(command['kinds']) & WAS_REFUSED:
+        command['kinds'] = int(command['kinds']) ^ WAS_REFUSED
+        command['is_enabled'] = 1 - int(command['is_enabled'])
     return command
 
 

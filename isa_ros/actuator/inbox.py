@@ -7,11 +7,11 @@ it with `merge`; `latch` applies it at the start of a tick.
 
 import math
 
-from isa_ros.core.device import ENABLED, INITIALISING
+from isa_ros.core.device import ENABLED
 from isa_ros.core.kernel import kernel
 from isa_ros.core.signals import (
-    EVERY_KIND, HAS_ENABLE, HAS_GAINS, HAS_MODE, HAS_REFERENCE, HAS_SETPOINT)
-from isa_ros.reu.device import hold_here
+    EVERY_KIND, HAS_ENABLE, HAS_GAINS, HAS_MODE, HAS_REFERENCE, HAS_SETPOINT, WAS_REFUSED)
+from isa_ros.reu.device import hold_here, is_enabled
 from isa_ros.reu.protection import feed
 
 WITH_GAINS = HAS_SETPOINT | HAS_GAINS
@@ -106,11 +106,27 @@ def write_applied(kinds, reu, applied):
     """
     setpoint, device = reu.setpoint, reu.status
     applied.kinds = kinds
-    applied.is_enabled = int(
-        device.state == ENABLED or (device.state == INITIALISING and device.auto_enable != 0))
+    applied.is_enabled = is_enabled(device)
     if kinds & HAS_ENABLE:
         applied.is_enabled = device.requested_enable
     applied.position, applied.velocity = setpoint.position, setpoint.velocity
     applied.effort = setpoint.effort
     applied.stiffness, applied.damping = setpoint.stiffness, setpoint.damping
     applied.mode, applied.reference = device.requested_mode, setpoint.reference
+
+
+@kernel
+def settle(device, applied):
+    """
+    End a tick: let ``applied`` say whether the device is enabled, after its trips and refusals.
+
+    What a command asked for can be read from it too, for a replay: a request that was refused
+    has `WAS_REFUSED`, and the opposite in ``is_enabled``.
+    """
+    if applied.kinds:
+        if not applied.kinds & HAS_ENABLE:
+            applied.is_enabled = is_enabled(device)
+        elif device.refused & HAS_ENABLE:
+            applied.is_enabled = 1 - device.requested_enable
+            applied.kinds |= WAS_REFUSED
+    device.refused = 0

@@ -7,7 +7,7 @@ Composes plant, REU and load copy (`integration`) into one kernel.
 import math
 
 from isa_ros.actuator.energy import add_energies, add_tare, stored_elastically, take_heat
-from isa_ros.actuator.inbox import latch, merge
+from isa_ros.actuator.inbox import latch, merge, settle
 from isa_ros.actuator.integration import (
     COPIES, end_steps, rk4_step, simpson, STAGES, STATE_SIZE, TOTALS_AT)
 from isa_ros.actuator.link import (
@@ -23,6 +23,7 @@ from isa_ros.plant.temperature_sensor import read_temperature
 from isa_ros.plant.thermal import warm
 from isa_ros.reu.cascade import cascade_step, is_due, REU
 from isa_ros.reu.device import write_device
+from isa_ros.reu.protection import write_trips
 from isa_ros.reu.reactions import protect, setpoint_in_force
 import numpy as np
 
@@ -48,8 +49,7 @@ def write_sample(plant, reu, sample):
     sample.force_reference = reu.force_reference
     sample.spool_reference = reu.spool_reference
     sample.current_reference = reu.current_reference
-    sample.warnings = float(reu.protection.warnings)
-    sample.trips = float(reu.protection.trips)
+    write_trips(reu.protection, sample)
     write_device(reu.status, sample)
 
 
@@ -181,6 +181,7 @@ def actuator_tick(first_step, steps, incoming, commands, memory):
         tick_row(first_step, steps, port, memory.constants[n], continuous, rates, y, k, reu,
                  memory.channels[n], memory.replies[n], memory.samples[n], memory.thermals[n],
                  link, memory)
+        settle(reu.status, memory.applied[n])
         if link < 0:
             memory.observed[n] = memory.samples[n]
         else:

@@ -10,7 +10,7 @@ from typing import Any
 
 from isa_ros.core.conditions import CONDITIONS, REACTIONS
 from isa_ros.core.device import EVENTS, MODES, STATES
-from isa_ros.core.signals import EVERY_KIND, Records
+from isa_ros.core.signals import EVERY_KIND, Records, WAS_REFUSED
 from isa_ros.errors import ConfigError
 from isa_ros.reu.protection import EXTENDING, RETRACTING
 
@@ -22,12 +22,14 @@ LARGEST: Mapping[str, int] = {
     'status.mode': _MODE, 'status.acting': _MODE, 'status.requested_mode': _MODE,
     'status.is_on': _FLAG, 'status.is_stopping': _FLAG, 'status.auto_enable': _FLAG,
     'status.requested_enable': _FLAG, 'status.fade.begins': _FLAG, 'status.fade.is_on': _FLAG,
-    'status.requests': EVERY_KIND, 'status.trips': _BITS, 'status.warnings': _BITS,
+    'status.requests': EVERY_KIND, 'status.refused': EVERY_KIND,
+    'status.trips': _BITS, 'status.warnings': _BITS,
     'protection.trips': _BITS, 'protection.warnings': _BITS, 'protection.first': _BITS,
+    'protection.last': len(CONDITIONS), 'protection.last_warning': len(CONDITIONS),
     'protection.present': _BITS, 'protection.busy': _BITS, 'protection.clears': _FLAG,
     'protection.reaction': len(REACTIONS) - 1, 'protection.inhibited': _DIRECTIONS,
     'link_lost': _FLAG,
-    'kinds': EVERY_KIND, 'is_enabled': _FLAG, 'mode': _MODE}
+    'kinds': EVERY_KIND | WAS_REFUSED, 'is_enabled': _FLAG, 'mode': _MODE}
 """Largest number by field of a `REU_STATE` or of a `COMMAND`; the smallest is 0."""
 
 

@@ -60,7 +60,7 @@ def serve(options: Namespace) -> bool:
         finally:
             if prepared.summary is not None:
                 print_line(prepared.summary)
-    return True
+    return session.is_as_wanted
 
 
 def describe(options: Namespace) -> bool:

@@ -49,15 +49,15 @@ def demo(options: Namespace) -> bool:
         raise BagError(f'{out} already exists; a demo does not overwrite it')
     bag = _record(Request(
         config=find('leg.yaml', CONFIG), scenario=find('drop.yaml', SCENARIOS),
-        out=out / 'bag', is_alone=options.is_alone))
+        out=out / 'bag', is_alone=options.is_alone)).out
     page, *figures = write_report(bag, out / 'report.html')
     print(f'{page}, and {len(figures)} figures beside it\n\n{outcome(read_signals(bag))}\n')
     print(energy_text(bag))
     return True
 
 
-def _record(request: Request) -> Path:
-    """Run, print the paths of its bags, also after an error, and return the first."""
+def _record(request: Request) -> 'Session':
+    """Run, print the paths of its bags and what happened, also after an error."""
     from isa_ros.run.session import prepare
     session = prepare(request)
 
@@ -66,7 +66,7 @@ def _record(request: Request) -> Path:
         from isa_ros.nodes.bringup import run_session
         run_session(session, report)
     recorded(session, run)
-    return session.out
+    return session
 
 
 def recorded(session: 'Session', run: 'Callable[[Report | None], None]') -> None:
@@ -80,6 +80,8 @@ def recorded(session: 'Session', run: 'Callable[[Report | None], None]') -> None
         with _even_without_terminal():
             for bag in session.bags:
                 print(bag)
+            for line in session.lines:
+                print_line(line)
             if session.pace.shortfall:
                 print_line(session.pace.shortfall)
 
@@ -108,8 +110,8 @@ def _demo_directories() -> Iterator[Path]:
 @simulating
 def bringup(options: Namespace) -> bool:
     """Run and record a configuration."""
-    _record(request_of_arguments(vars(options), is_alone=options.is_alone))
-    return True
+    session = _record(request_of_arguments(vars(options), is_alone=options.is_alone))
+    return session.is_as_wanted
 
 
 def actuators(options: Namespace) -> bool:
@@ -159,15 +161,18 @@ def compare(options: Namespace) -> bool:
 
 
 def report(options: Namespace) -> bool:
-    """Draw the figures of a bag, and print where its oil and its energy went."""
+    """Draw the figures of a bag; print what its devices did, and where its energy went."""
     from isa_ros.analysis.report.energy import energy_text
+    from isa_ros.analysis.report.events import events_text
     from isa_ros.analysis.report.report import write_report
+    from isa_ros.bag.reader import Bag
     bag: Path = options.bag
     page = options.out or (bag if bag.is_dir() else bag.parent) / 'report.html'
     for path in write_report(bag, page):
         print(path)
-    if table := energy_text(bag):
-        print(f'\n{table}')
+    for table in (events_text(Bag(bag)), energy_text(bag)):
+        if table:
+            print(f'\n{table}')
     return True
 
 

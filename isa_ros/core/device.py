@@ -19,7 +19,9 @@ EVENTS = ('start', 'ready', 'trip', 'clear fault', 'mode', 'enable', 'disable', 
           'stop ends', 'reaction ends')
 START, READY, TRIP, CLEAR, MODE, ENABLE, DISABLE, STOP, STOP_ENDS, REACTION_ENDS = range(10)
 
-FIELDS = ('device_state', 'device_mode', 'device_event', 'warnings', 'trips', 'state_since')
+FIELDS = ('device_state', 'device_mode', 'device_event', 'warnings', 'trips', 'state_since',
+          'first_trip', 'last_trip', 'trip_time', 'trip_value', 'trip_level', 'warning_time',
+          'unused_setpoints', 'refused_requests')
 """Fields of a `SAMPLE` that describe the device."""
 
 

@@ -24,6 +24,9 @@ HAS_QUICK_STOP = 32
 HAS_REFERENCE = 64
 EVERY_KIND = 127
 """All bits of `COMMAND.kinds`."""
+WAS_REFUSED = 128
+"""Of an applied `COMMAND` only: the device refused to enable or disable, ``is_enabled`` is what
+stayed, and the request was the opposite."""
 
 START = np.dtype([
     ('position', '<f8'),         # m | rad
@@ -97,6 +100,14 @@ SAMPLE_FIELDS = (
     Field('state_since', 's', 'time of the last change of these three or of the bits'),
     Field('age', 's', 'since it was sampled; > 0 behind a link only'),
     Field('supply_pressure', 'Pa', 'measured by the REU, gauge'),
+    Field('first_trip', 'bits', 'of the trips that are there, the first: the cause'),
+    Field('last_trip', 'bits', 'the condition that tripped last, also when it has ended'),
+    Field('trip_time', 's', 'when it tripped'),
+    Field('trip_value', '1', 'its quantity then, SI, in the unit of its condition'),
+    Field('trip_level', '1', 'the level that it was beyond, likewise'),
+    Field('warning_time', 's', 'when the last warning began'),
+    Field('unused_setpoints', '1', 'that came while the device did not follow them, since t = 0'),
+    Field('refused_requests', '1', 'to enable, clear or stop, without effect, since t = 0'),
 )
 """The values one actuator reports at the end of a tick."""
 SAMPLE = record_type(SAMPLE_FIELDS)

@@ -24,7 +24,7 @@ from isa_ros.core.signals import (
 from isa_ros.core.timebase import PLANT_STEP
 from isa_ros.reu.bumpless import FADE, start_setpoint, take_over
 from isa_ros.reu.impedance import SETPOINT
-from isa_ros.reu.protection import DISABLE as REACTS_BY_DISABLE
+from isa_ros.reu.protection import DISABLE as REACTS_BY_DISABLE, HOLD as REACTS_BY_HOLD
 from isa_ros.reu.protection import QUICK_STOP as REACTS_BY_QUICK_STOP, request_clear
 from isa_ros.reu.reactions import is_cause_gone
 from isa_ros.reu.wiring import Device, first_mode, IMPEDES, possible_modes, Reu
@@ -94,6 +94,9 @@ DEVICE_STATE = np.dtype([
     ('auto_enable', 'i8'),
     ('requests', 'i8'),            # kinds of the commands since the last step
     ('requested_mode', 'i8'), ('requested_enable', 'i8'),
+    ('refused', 'i8'),             # kinds of the commands that it refused in this tick
+    ('refused_requests', 'i8'),    # to enable, clear or stop, since t = 0
+    ('unused_setpoints', 'i8'),    # that came while it did not follow them
     ('trips', 'i8'), ('warnings', 'i8'),   # bits of the conditions at the last step
     ('stop_steps', 'f8'),          # periods until the stop ends
     ('stop', SETPOINT),            # of the stopping movement; its gains are those of the start
@@ -155,6 +158,19 @@ def take_conditions(step, reu, state):
 
 
 @kernel
+def is_enabled(own):
+    """Return 1 if a `DEVICE_STATE` is enabled, or will be once it is initialised, else 0."""
+    return int(own.state == ENABLED or (own.state == INITIALISING and own.auto_enable != 0))
+
+
+@kernel
+def refuse(kind, own):
+    """Count a request that the state has no transition for."""
+    own.refused |= kind
+    own.refused_requests += 1
+
+
+@kernel
 def take_requests(step, reu, state):
     """Execute the commands that took effect since the last step."""
     own = state.status
@@ -162,14 +178,22 @@ def take_requests(step, reu, state):
         is_gone = int(is_cause_gone(reu.protection, state))
         if happens(CLEAR, is_gone, step, reu, own):
             request_clear(state.protection)
+        else:
+            refuse(HAS_CLEAR_FAULT, own)
     if own.requests & HAS_MODE and own.requested_mode != own.mode:
         if happens(MODE, reu.rules.modes >> own.requested_mode & 1, step, reu, own):
             own.mode = own.requested_mode
         own.requested_mode = own.mode
     if own.requests & HAS_ENABLE:
+        own.refused &= ~HAS_ENABLE
         happens(ENABLE if own.requested_enable else DISABLE, 0, step, reu, own)
-    if own.requests & HAS_QUICK_STOP:
-        happens(STOP, 0, step, reu, own)
+        if own.requested_enable != is_enabled(own):
+            refuse(HAS_ENABLE, own)
+    if own.requests & HAS_QUICK_STOP and not happens(STOP, 0, step, reu, own):
+        refuse(HAS_QUICK_STOP, own)
+    if own.requests & (HAS_SETPOINT | HAS_REFERENCE) and (
+            not is_enabled(own) or state.protection.reaction >= REACTS_BY_HOLD):
+        own.unused_setpoints += 1
 
 
 @kernel
@@ -251,7 +275,9 @@ def device_step(step, reu, state):
 
 @kernel
 def write_device(own, sample):
-    """Write state, mode, event and since when (s) into a `SAMPLE`."""
+    """Write state, mode, event, since when (s), and counts of a run into a `SAMPLE`."""
     sample.device_state, sample.device_mode = own.state, own.mode
     sample.device_event = own.event
     sample.state_since = own.since_step * PLANT_STEP
+    sample.unused_setpoints = float(own.unused_setpoints)
+    sample.refused_requests = float(own.refused_requests)

@@ -47,6 +47,7 @@ PROTECTION_STATE = np.dtype([
     ('warnings', 'i8'), ('trips', 'i8'),    # bit sets of conditions
     ('reaction', 'i8'),                     # the strongest of the trips
     ('first', 'i8'),                        # bit set: the first of the present trips
+    ('last', 'i8'), ('last_warning', 'i8'),     # place + 1 of the last set of each; 0: none
     ('present', 'i8'),                      # bit set: trips whose condition has not ended
     ('clears', 'i8'),                       # 1: trips whose condition has ended are to be cleared
     ('inhibited', 'i8'),                    # EXTENDING, RETRACTING
@@ -58,6 +59,7 @@ PROTECTION_STATE = np.dtype([
     ('trip_since', 'i8', (N,)),
     ('values', 'f8', (N,)),                 # quantities at the last conversion, SI
     ('trip_values', 'f8', (N,)),            # quantities when the trip was set, SI
+    ('trip_level', 'f8'),                   # what the last trip was beyond, SI
     ('setpoint', SETPOINT),                 # in force instead of the commanded one
     ('evidence', EVIDENCE_STATE),
 ])
@@ -190,14 +192,34 @@ def judge_one(k, step, mode, protection, own):
     trips = met or (
         was_tripped and own.clears == 0 and reaction_of(k, mode, protection) >= QUICK_STOP)
     if warns and not was_warned:
-        own.warning_since[k] = step
+        own.warning_since[k], own.last_warning = step, k + 1
     if trips and not was_tripped:
-        own.trip_since[k], own.trip_values[k] = step, own.values[k]
+        note_trip(k, step, protection.sign[k] * protection.trip[k], own)
     own.warnings = own.warnings | bit if warns else own.warnings & ~bit
     own.present = own.present | bit if met else own.present & ~bit
     own.trips = own.trips | bit if trips else own.trips & ~bit
     is_busy = warns or trips or own.warning_count[k] > 0 or own.trip_count[k] > 0
     own.busy = own.busy | bit if is_busy else own.busy & ~bit
+
+
+@kernel
+def note_trip(k, step, level, own):
+    """Keep when condition ``k`` tripped, its quantity then, and its ``level``, SI."""
+    own.trip_since[k], own.trip_values[k] = step, own.values[k]
+    own.last, own.trip_level = k + 1, level
+
+
+@kernel
+def write_trips(own, sample):
+    """Write warnings and trips, and when and why the last of each was set, into a `SAMPLE`."""
+    sample.warnings, sample.trips = float(own.warnings), float(own.trips)
+    sample.first_trip = float(own.first)
+    if own.last:
+        k = own.last - 1
+        sample.last_trip, sample.trip_time = float(1 << k), own.trip_since[k] * PLANT_STEP
+        sample.trip_value, sample.trip_level = own.trip_values[k], own.trip_level
+    if own.last_warning:
+        sample.warning_time = own.warning_since[own.last_warning - 1] * PLANT_STEP
 
 
 @kernel

@@ -70,6 +70,8 @@ class Request:
         Kind.POSITIVE, 'longest wait for participants',
         otherwise=f'{JOIN_TIMEOUT_S:g} s', unit='s', metavar='S', name='join_timeout',
         parameter='join_timeout_s', is_of_bus=False))
+    fail_on_trip: bool = field(default=False, metadata=_option(
+        Kind.FLAG, 'end with exit code 1 if a condition of an actuator has tripped'))
     is_paused: bool = field(default=False, metadata=_option(
         Kind.FLAG, 'wait before tick 0 for /coordinator/step or the end of the pause',
         name='paused'))

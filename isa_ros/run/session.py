@@ -1,7 +1,7 @@
 """Sessions: read and check the files of a run, then run it and record its bag."""
 
 from collections.abc import Callable, Iterator, Sequence
-from contextlib import AbstractContextManager, nullcontext
+from contextlib import AbstractContextManager, ExitStack, nullcontext
 from dataclasses import dataclass, field
 from itertools import count
 import os
@@ -29,6 +29,7 @@ from isa_ros.surroundings.surroundings import Surroundings
 from isa_ros.tick.exchange import Rows, Transport
 from isa_ros.tick.source import ScheduledSource, Source
 from isa_ros.tick.tick_loop import ignore, TickLoop
+from isa_ros.tick.trips import TripLog
 
 RUNS = Path('runs')
 
@@ -49,6 +50,10 @@ class Session:
     """Opens the source of the commands, once all participants are ready; None: the scenario."""
     bags: list[Path] = field(default_factory=list)
     """Bags of the run so far: `out`, and one more for each reset."""
+    lines: list[str] = field(default_factory=list)
+    """What the devices did by themselves, to print at the end; complete once the run has ended."""
+    tripped: list[str] = field(default_factory=list)
+    """Those of `lines` that are trips."""
 
     @property
     def run(self) -> RunConfig:
@@ -59,6 +64,11 @@ class Session:
     def warnings(self) -> tuple[str, ...]:
         """Return lines to print before the run."""
         return self.scenario.warnings
+
+    @property
+    def is_as_wanted(self) -> bool:
+        """Return whether nothing tripped, or trips are no failure of this run."""
+        return not (self.tripped and self.request.fail_on_trip)
 
     def opened_source(self) -> AbstractContextManager[Source]:
         """Return the source of the commands."""
@@ -160,7 +170,9 @@ def record(
     published = outlets(packer.surroundings)
     thinning = Thinning(run.record, packer.topics)
     n_ticks, state, out = session.scenario.n_ticks, session.state, session.out
-    with session.opened_source() as source:
+    trip_log = TripLog([(own.name, own.sheet.is_rotary) for own in run.actuators])
+    with ExitStack() as at_end, session.opened_source() as source:
+        at_end.callback(_keep, trip_log, session)
         loop = TickLoop(
             run.step_ns, transport, surroundings, rows, source,
             request_range=request_range_of(run) if run.controllers else None, warn=warn,
@@ -175,7 +187,7 @@ def record(
                            overwrite, run.record.storage, session.request.is_synced) as bag:
                 session.bags.append(out)
                 loop.sinks = (
-                    RunOutput(packer, run.step_ns, thinning.recorder(bag), published),)
+                    RunOutput(packer, run.step_ns, thinning.recorder(bag), published), trip_log)
                 coordinator = Coordinator(
                     loop, n_ticks, pace=session.pace, progress=ProgressMeter(
                         None if n_ticks is None else n_ticks * run.step_ns, report),
@@ -187,6 +199,12 @@ def record(
             out, state = _unused(session.out), None
     if session.request.save is not None:
         save(session, coordinator, session.request.save)
+
+
+def _keep(trip_log: TripLog, session: Session) -> None:
+    """Keep in a session what is to be printed at its end."""
+    session.tripped.extend(trip_log.tripped.lines())
+    session.lines.extend(trip_log.lines())
 
 
 def save(session: Session, coordinator: Coordinator, path: Path) -> None:

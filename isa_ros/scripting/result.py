@@ -16,6 +16,7 @@ from isa_ros.scripting.log import Log, LogSink
 from isa_ros.simulation import Simulation
 from isa_ros.surroundings.supply import SUPPLY_FIELDS
 from isa_ros.text.progress import Progress
+from isa_ros.tick.trips import Trip, trips_of
 import numpy as np
 from numpy.typing import NDArray
 
@@ -103,6 +104,12 @@ class Result(Mapping[str, NDArray[np.float64]]):
             [actuator.name for actuator in run.actuators], log.samples[-1],
             [supply.name for supply in run.supplies], log.supplies[-1],
             (len(log.samples) - 1) * run.step_ns)
+
+    @cached_property
+    def trips(self) -> list[Trip]:
+        """Return what tripped, in the order of time: actuator, condition, time, value, level."""
+        return trips_of(self.log.samples, [
+            (own.name, own.sheet.is_rotary) for own in self.scenario.run.actuators])
 
     def _flat(self) -> Iterator[tuple[str, NDArray[np.float64]]]:
         """Yield every column of numbers; ``name[k]`` for those of an array."""

@@ -21,6 +21,7 @@ from isa_ros.scenario.scenario import idle, read_scenario, Scenario
 from isa_ros.scripting.result import Result, simulated
 from isa_ros.simulation import Simulation
 from isa_ros.text.progress import counted
+from isa_ros.tick.trips import counts_of, Tripped, TripWarning
 
 _WORDS = re.compile(r'(?<=[a-z0-9])(?=[A-Z])')
 
@@ -135,6 +136,8 @@ class Run:
         ``faults`` are added to those of the scenario, each as its file would have it:
         ``{'t_s': 0.5, 'actuator': 'kfe', 'fault': 'valve_stuck', 'until_s': 0.8}``.
         ``seed`` of all noise; None: that of the run. ``progress`` is shown on a terminal only.
+        A condition that tripped is a `TripWarning`, one for each actuator and condition, and
+        `Result.trips` has them all.
 
         Raises
         ------
@@ -144,11 +147,9 @@ class Run:
             A state is no longer finite.
 
         """
-        if seed is not None:
-            return self.replace({'seed': seed}).simulate(
-                duration, controllers, faults=faults, progress=progress, body=body)
-        named = self._named(controllers)
-        plan = self._with_names(list(named))
+        own = self if seed is None else self.replace({'seed': seed})
+        named = own._named(controllers)
+        plan = own._with_names(list(named))
         if duration is not None:
             plan = plan.lasting(duration)
         n_ticks = plan.n_ticks
@@ -158,8 +159,13 @@ class Run:
         if faults:
             plan = plan.with_faults(faults)
         report = counted(sys.stderr, 'ticks', of=self._config.name) if progress else None
-        return simulated(
+        result = simulated(
             Simulation(plan, list(named.values()), self._factories(body)), n_ticks, report)
+        happened = Tripped()
+        happened.add(result.trips)
+        for line in (*happened.lines(), *counts_of(self.actuators, result.log.samples[-1])):
+            warnings.warn(line, TripWarning, stacklevel=2)
+        return result
 
     def _named(self, controllers: Controllers) -> dict[str, Controller]:
         if isinstance(controllers, Mapping):

@@ -128,7 +128,7 @@ def test_applied_setpoint_of_another_actuator_is_refused():
     (3, 0.5, 'hip/enabled = 0.5, must be a whole number <= 1'),
     (3, 2.0, 'hip/enabled = 2.0, must be a whole number <= 1'),
     (4, 7.0, 'hip/mode = 7.0, must be a whole number <= 6'),
-    (6, -1.0, 'hip/changed = -1.0, must be a whole number <= 127')])
+    (6, -1.0, 'hip/changed = -1.0, must be a whole number <= 255')])
 def test_numbers_of_an_applied_setpoint_are_whole_and_known(entry, value, message):
     found = decode(applied_setpoint('hip', command(), 0), JointState)
     found.position[entry] = value

@@ -6,10 +6,12 @@ from typing import Any
 from isa_ros.bag.reader import Bag
 from isa_ros.config.assembly import group_of, surroundings_of
 from isa_ros.config.paths import CONFIG, find
+from isa_ros.run.coordinator import Interrupted
 from isa_ros.run.options import Request
 from isa_ros.run.output import Outlets
 from isa_ros.run.packing import Packer
 from isa_ros.run.session import prepare, record
+from isa_ros.run.without_ros import run_without_ros
 from isa_ros.tick.in_process import InProcess
 import pytest
 
@@ -30,3 +32,34 @@ def test_the_packer_of_a_run_is_built_once(tmp_path: Path, monkeypatch: pytest.M
     record(session, transport, surroundings, lambda topics: Outlets(), None, lambda: False)
     assert len(built) == 1
     assert Bag(tmp_path / 'bag').end_ns == 5_000_000
+
+
+TRIPS = {'t_s': 0.0, 'actuator': 'ram', 'set': {'plant.sensors.force.bias': 4000.0}}
+
+
+@pytest.mark.parametrize(('fails', 'faults', 'as_wanted'), [
+    (True, [TRIPS], False), (False, [TRIPS], True), (True, [], True)])
+def test_a_session_keeps_what_tripped_and_may_fail_for_it(
+        tmp_path: Path, fails: bool, faults: list[Any], as_wanted: bool):
+    scenario = tmp_path / 'trips.yaml'
+    scenario.write_text(f'name: trips\nduration_s: 0.07\nfaults: {faults}\n')
+    session = prepare(Request(
+        config=find('rig_linear', CONFIG), scenario=scenario, out=tmp_path / 'bag',
+        fail_on_trip=fails))
+    run_without_ros(session, None, lambda: False)
+    assert session.is_as_wanted == as_wanted
+    assert bool(session.tripped) == bool(faults)
+    assert session.lines == session.tripped
+    for line in session.lines:
+        assert line.startswith('ram: load_cell_implausible tripped at t = 0.05')
+
+
+def test_what_tripped_is_told_also_where_the_run_was_stopped(tmp_path: Path):
+    scenario = tmp_path / 'trips.yaml'
+    scenario.write_text(f'name: trips\nduration_s: 0.2\nfaults: {[TRIPS]}\n')
+    session = prepare(Request(
+        config=find('rig_linear', CONFIG), scenario=scenario, out=tmp_path / 'bag'))
+    ticks = iter(range(100))
+    with pytest.raises(Interrupted):
+        run_without_ros(session, None, lambda: next(ticks) > 80)
+    assert len(session.tripped) == 1

@@ -2,6 +2,7 @@
 
 from collections.abc import Sequence
 
+from isa_ros.analysis.report.events import DeviceEvent
 from isa_ros.analysis.signals.signals import Signal, Signals
 from isa_ros.config.runs.run_config import ActuatorConfig
 from isa_ros.core.units import MPA
@@ -10,14 +11,34 @@ from matplotlib.figure import Figure
 import numpy as np
 
 
-def figures(signals: Signals) -> dict[str, Figure]:
-    """Return the figures of a run by name: the leg first, then every actuator."""
+_TRIP = 'C3'
+_MOST_MARKS = 20
+
+
+def figures(signals: Signals, trips: Sequence[DeviceEvent] = ()) -> dict[str, Figure]:
+    """
+    Return the figures of a run by name: the leg first, then every actuator.
+
+    A line at each of the ``trips`` of an actuator is drawn in its figure.
+    """
     drawn = {}
     if signals.run.leg is not None:
         drawn['leg'] = leg_figure(signals)
     for actuator in signals.run.actuators:
         drawn[actuator.name] = actuator_figure(actuator, signals)
+        _mark(drawn[actuator.name], [own for own in trips if own.actuator == actuator.name])
     return drawn
+
+
+def _mark(figure: Figure, trips: Sequence[DeviceEvent]) -> None:
+    """Draw a line at each trip through all axes of a figure, with its condition in the first."""
+    for k, ax in enumerate(figure.axes):
+        for trip in trips[:_MOST_MARKS]:
+            ax.axvline(trip.t_s, color=_TRIP, linewidth=0.8)
+            if k == 0:
+                ax.annotate(
+                    trip.what, (trip.t_s, 1.0), xycoords=('data', 'axes fraction'), fontsize=7,
+                    rotation=90, va='top', ha='right', color=_TRIP)
 
 
 def actuator_figure(actuator: ActuatorConfig, signals: Signals) -> Figure:

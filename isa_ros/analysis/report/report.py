@@ -5,6 +5,8 @@ import html
 from pathlib import Path
 
 from isa_ros.analysis.report.energy import energy_legend, energy_table, recorded_accounts
+from isa_ros.analysis.report.events import (
+    DeviceEvent, event_rows, recorded_events, trips)
 from isa_ros.analysis.report.figures import figures
 from isa_ros.analysis.report.paper_figures import paper_figure
 from isa_ros.analysis.signals.signals import read_signals, Signals
@@ -28,7 +30,7 @@ td, th {{ padding: 0.2em 0.8em; text-align: right; }}
 td:first-child, th:first-child {{ text-align: left; }}
 img {{ max-width: 100%; }}
 </style></head>
-<body><h1>{title}</h1><p>{summary}</p><table>{rows}</table>{images}{energy}</body></html>
+<body><h1>{title}</h1><p>{summary}</p><table>{rows}</table>{events}{images}{energy}</body></html>
 """
 
 
@@ -46,7 +48,8 @@ def write_report(bag: Path, page: Path) -> list[Path]:
     signals = read_signals(bag)
     page.parent.mkdir(parents=True, exist_ok=True)
     written, images = [page], []
-    drawn = figures(signals)
+    events = recorded_events(Bag(bag))
+    drawn = figures(signals, trips(events))
     name_of_paper = figure_of(
         parse(Bag(bag).provenance.scenario, SCENARIO), Place(SCENARIO))
     if name_of_paper is not None:
@@ -60,7 +63,7 @@ def write_report(bag: Path, page: Path) -> list[Path]:
     page.write_text(_PAGE.format(
         generator=_GENERATOR, title=html.escape(signals.run.name),
         summary=html.escape(_summary(signals)), rows=_rows(extremes(signals)),
-        images=''.join(images), energy=_energy(bag)), encoding='utf-8')
+        events=_events(events), images=''.join(images), energy=_energy(bag)), encoding='utf-8')
     return written
 
 
@@ -96,6 +99,15 @@ def _summary(signals: Signals) -> str:
     run, end = signals.run, float(signals.time[-1])
     return (f'{run.source}: {len(run.actuators)} actuators, {end:.3f} s of simulation time '
             f'in steps of {run.step_ns / 1e6:g} ms.')
+
+
+def _events(events: list[DeviceEvent]) -> str:
+    """Return the table of what the devices did; one line if there is nothing."""
+    if not events:
+        return '<h2>Events</h2><p>No condition warned or tripped, no state changed.</p>'
+    head, *body = [[html.escape(cell) for cell in row] for row in event_rows(events)]
+    rows = ''.join(f'<tr><td>{"</td><td>".join(row)}</td></tr>' for row in body)
+    return f'<h2>Events</h2><table><tr><th>{"</th><th>".join(head)}</th></tr>{rows}</table>'
 
 
 def _energy(bag: Path) -> str:

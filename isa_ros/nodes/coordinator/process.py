@@ -8,7 +8,7 @@ from isa_ros.nodes.coordinator.runs import coordinate, coordinate_locally
 from isa_ros.nodes.middleware.arguments import init_ros
 from isa_ros.nodes.middleware.domain import sole_coordinator
 from isa_ros.nodes.middleware.environment import set_defaults
-from isa_ros.processes.ending import DONE, end_of
+from isa_ros.processes.ending import ANSWER_IS_NO, DONE, end_of
 from isa_ros.processes.stopping import StopRequest
 from isa_ros.run.compiling import reported_compilation
 from isa_ros.run.session import prepare
@@ -33,9 +33,15 @@ def main(args: Sequence[str] | None = None) -> int:
                     node.get_logger().warning(one_line(line))
                 start = coordinate_locally if session.request.in_process else coordinate
                 with sole_coordinator(node.get_namespace()), reported_compilation(NAME):
-                    start(node, session, terminal_report(), should_stop)
+                    try:
+                        start(node, session, terminal_report(), should_stop)
+                    finally:
+                        for line in session.lines:
+                            node.get_logger().warning(one_line(line))
                 if session.pace.shortfall:
                     node.get_logger().warning(session.pace.shortfall)
+                if not session.is_as_wanted:
+                    return ANSWER_IS_NO
             finally:
                 node.destroy_node()
         except Exception as error:

@@ -16,7 +16,7 @@ from isa_ros.actuator.inbox import WITH_GAINS
 from isa_ros.core.device import MODES
 from isa_ros.core.signals import (
     COMMAND, EVERY_KIND, GAINS_OF_COMMAND, HAS_ENABLE, HAS_MODE, HAS_REFERENCE, HAS_SETPOINT,
-    LOAD_REPLY, Records, SAMPLE)
+    LOAD_REPLY, Records, SAMPLE, WAS_REFUSED)
 from isa_ros.run.wire.header import WireError
 from isa_ros.tick.exchange import Rows
 import numpy as np
@@ -67,7 +67,7 @@ def refuse_actuator_parts(parts: Parts) -> None:
         raise WireError('an answer that is not of an actuator')
     if not is_finite(np.frombuffer(rows, np.float64, _APPLIED_AT // _FLOAT)):
         raise WireError('an answer of an actuator with a number that is not finite')
-    refuse_command(np.frombuffer(rows, COMMAND, 1, _APPLIED_AT)[0])
+    refuse_command(np.frombuffer(rows, COMMAND, 1, _APPLIED_AT)[0], EVERY_KIND | WAS_REFUSED)
     if sent is not None:
         if len(sent) != COMMAND.itemsize:
             raise WireError('an answer with a sent setpoint that is not a command')
@@ -134,9 +134,11 @@ def refuse_requests(parts: Parts, n_actuators: int) -> None:
         refuse_command(command)
 
 
-def refuse_command(command: np.void) -> None:
+def refuse_command(command: np.void, known: int = EVERY_KIND) -> None:
     """
     Refuse a `COMMAND` row that no actuator can execute; without a command, all are accepted.
+
+    ``known`` are the bits that its kinds may have.
 
     Raises
     ------
@@ -152,7 +154,7 @@ def refuse_command(command: np.void) -> None:
     if kinds & HAS_REFERENCE:
         numbers.append(float(command['reference']))
     has_mode = kinds & (HAS_MODE | HAS_REFERENCE)
-    if (kinds & ~EVERY_KIND or kinds & HAS_ENABLE and command['is_enabled'] not in (0, 1)
+    if (kinds & ~known or kinds & HAS_ENABLE and command['is_enabled'] not in (0, 1)
             or has_mode and not 0 < command['mode'] < len(MODES)
             or not 0 <= command['due_step'] <= _LAST_STEP
             or not all(map(math.isfinite, numbers))
