@@ -1,6 +1,7 @@
 """The interface of a bus that serves masters; each kind of bus has its own package or file."""
 
-from typing import Protocol
+from collections.abc import Callable
+from typing import Protocol, runtime_checkable
 
 
 class Line(Protocol):
@@ -30,4 +31,17 @@ class Line(Protocol):
 
     def close(self) -> None:
         """Leave the bus."""
+        ...
+
+
+@runtime_checkable
+class ClockedLine(Protocol):
+    """A line whose slaves have clocks that a master reads and steers by."""
+
+    def keep_host_time(self, now_ns: Callable[[], int]) -> None:
+        """Let the clocks run with host time, ns, instead of with ticks."""
+        ...
+
+    def until_sync(self) -> float:
+        """Return the time in s until the clocks demand a tick; 0 if they do not say when."""
         ...

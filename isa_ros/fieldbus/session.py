@@ -97,7 +97,7 @@ def prepare_bus(
     session = prepare(request.run, commanded_by_bus)
     refuse_tracks(session.scenario)
     run = session.run
-    pace = ServedPace(run.step_ns) if is_real_time else None
+    pace = ServedPace(run.step_ns, warn=print_line) if is_real_time else None
 
     @contextmanager
     def opened() -> Iterator[Source]:

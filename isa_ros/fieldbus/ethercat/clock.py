@@ -1,13 +1,16 @@
 """
-Distributed clocks in simulated time.
+Distributed clocks, in simulated time or in that of the host.
 
-All slaves share one local clock, which advances by the interval of a tick when a tick is over and
-stands still otherwise. A frame reaches the slave at position k `HOP_NS` k later than the first, on
-its way back from the last of n slaves 2 (n - 1 - k) `HOP_NS` later at port 1: a master that
-measures delays finds these. System time is local time plus the offset that the master writes, so
-that its epoch is the master's. The clocks do not drift: a time written to 0x0910 by the reference
-clock's datagram takes effect at once and leaves no difference.
+All slaves share one local clock. In frame pace it advances by the interval of a tick when a tick
+is over and stands still otherwise; in real time it is the host's, as it is when a frame arrives. A
+frame reaches the slave at position k `HOP_NS` k later than the first, on its way back from the
+last of n slaves 2 (n - 1 - k) `HOP_NS` later at port 1: a master that measures delays finds these.
+System time is local time plus the offset that the master writes, so that its epoch is the
+master's. The clocks do not drift: a time written to 0x0910 by the reference clock's datagram takes
+effect at once and leaves no difference.
 """
+
+from collections.abc import Callable
 
 from isa_ros.fieldbus.ethercat.registers import (
     ACTIVATION_STATUS, RECEIVE_TIMES, SYNC0_CYCLE, SYNC_ACTIVATION, SYNC_START, SYSTEM_TIME,
@@ -22,15 +25,27 @@ _PENDING_SYNC0, _START_IN_THE_PAST = 1, 4
 
 
 class SharedClock:
-    """Local time of all slaves of a line."""
+    """Local time of all slaves of a line: ``now_ns``, the same for all that a frame reads."""
 
     def __init__(self, step_ns: int) -> None:
         self.step_ns = step_ns
         self.now_ns = 0
+        self._host: Callable[[], int] | None = None
+
+    def run_with(self, host_ns: Callable[[], int]) -> None:
+        """Run with the time of the host, ns, from now on."""
+        start = host_ns() - self.now_ns
+        self._host = lambda: host_ns() - start
+
+    def take(self) -> None:
+        """Take the time at which a frame arrives."""
+        if self._host is not None:
+            self.now_ns = self._host()
 
     def advance(self) -> None:
         """Let one tick pass."""
-        self.now_ns += self.step_ns
+        if self._host is None:
+            self.now_ns += self.step_ns
 
 
 class DistributedClock:
@@ -84,9 +99,16 @@ class DistributedClock:
             status = _PENDING_SYNC0 | (_START_IN_THE_PAST if is_past else 0)
         ACTIVATION_STATUS.put(self._memory, status)
 
-    def is_cycle_right(self) -> bool:
-        """Return whether SYNC0 is off, or comes once per tick."""
+    @property
+    def until_sync_ns(self) -> int | None:
+        """Return the time until SYNC0, ns; None if it is off."""
         activation = self._memory[SYNC_ACTIVATION.address]
         if not (activation & _CYCLIC and activation & _SYNC0):
+            return None
+        return (SYNC_START.value(self._memory) - self.system_ns) % self._shared.step_ns
+
+    def is_cycle_right(self) -> bool:
+        """Return whether SYNC0 is off, or comes once per tick."""
+        if self.until_sync_ns is None:
             return True
         return SYNC0_CYCLE.value(self._memory) == self._shared.step_ns

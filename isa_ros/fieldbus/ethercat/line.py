@@ -1,12 +1,13 @@
 """EtherCAT as a `Line`: a ring of slaves on a raw socket."""
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 import errno
 import os
 import socket
 import struct
 import time
 
+from isa_ros.core.timebase import NS_PER_SECOND
 from isa_ros.errors import RunError
 from isa_ros.fieldbus.device.bus_device import BusDevice
 from isa_ros.fieldbus.ethercat.datagrams import Datagrams
@@ -117,6 +118,14 @@ class EthercatLine:
     def update(self) -> None:
         """Take the devices' new samples as inputs; simulated time has advanced by one tick."""
         self.ring.update()
+
+    def keep_host_time(self, now_ns: Callable[[], int]) -> None:
+        """Let the distributed clocks run with host time, ns."""
+        self.ring.clock.run_with(now_ns)
+
+    def until_sync(self) -> float:
+        """Return the time until SYNC0, s."""
+        return self.ring.until_sync_ns() / NS_PER_SECOND
 
     def miss(self) -> None:
         """Let the watchdog of every slave in operation expire."""

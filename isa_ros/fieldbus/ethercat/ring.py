@@ -78,6 +78,7 @@ class Ring:
     def process(self, frame: bytearray, taken: Datagrams) -> None:
         """Let a frame pass all slaves, in place."""
         frame[_SOURCE] |= _LOCAL
+        self.clock.take()
         irq = self._irq()
         for datagram in taken.found:
             command = datagram.command
@@ -160,6 +161,12 @@ class Ring:
         for slave in self.slaves:
             slave.end_cycle()
         return self._is_operational
+
+    def until_sync_ns(self) -> int:
+        """Return the time until SYNC0 of the first slave that has it, ns; 0 if none has."""
+        self.clock.take()
+        found = (slave.clock.until_sync_ns for slave in self.slaves)
+        return next((one for one in found if one is not None), 0)
 
     def lose_link(self) -> None:
         """Count that the link to the master was lost."""

@@ -38,7 +38,7 @@ class Slave:
         self._sync = self.controller.sync
         self._step_ns = shared.step_ns
         self._on_change = on_change
-        self._clock = DistributedClock(memory, shared, position, n_slaves)
+        self.clock = DistributedClock(memory, shared, position, n_slaves)
         self._coe = CanOverEthercat(device)
         self._mailbox = SlaveMailbox(self._sync[MAILBOX_OUT], self._sync[MAILBOX_IN], self._coe)
         self._sync[OUTPUTS].lock(True)
@@ -50,7 +50,7 @@ class Slave:
         self.exchanged = 0
         """Bits `WRITTEN`, `READ`: what the master has exchanged in this cycle."""
         self.controller.attach(
-            self._clock, on_control=self._take_control, on_buffer=self._take_buffer,
+            self.clock, on_control=self._take_control, on_buffer=self._take_buffer,
             on_setup=self._check_setup)
 
     @property
@@ -75,7 +75,7 @@ class Slave:
                 return code
         if self._is_watched and 0 < self.watchdog.time_ns < self._step_ns:
             return al_codes.INVALID_WATCHDOG
-        if not self._clock.is_cycle_right():
+        if not self.clock.is_cycle_right():
             return al_codes.SYNC0_CYCLE_TIME
         return al_codes.NO_ERROR
 
