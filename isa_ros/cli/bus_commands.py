@@ -1,6 +1,7 @@
 """The command `isa bus`; its modules are imported in the functions, as in `commands`."""
 
 from argparse import Namespace
+from pathlib import Path
 from typing import TYPE_CHECKING
 
 from isa_ros.cli.commands import print_line, recorded, simulating
@@ -66,13 +67,21 @@ def serve(options: Namespace) -> bool:
 def describe(options: Namespace) -> bool:
     """Write the description of the devices for a master."""
     from isa_ros.config.runs.run_file import load_run
-    from isa_ros.fieldbus.description.files import described, tables_of
+    from isa_ros.config.text.changes import values_of
+    from isa_ros.fieldbus.description.files import described, FOLDERS, tables_of
     from isa_ros.fieldbus.device.devices import devices_of
-    devices = devices_of(load_run(find(options.config, CONFIG)), options.profile)
+    run = load_run(find(options.config, CONFIG), values_of(options.set, '--set'))
+    devices = devices_of(run, options.profile)
     if options.table:
         print(tables_of(devices))
         return True
-    for path, text in described(devices, options.esi, options.eds).items():
+    files = described(devices, options.esi, options.eds)
+    for name, files_of in FOLDERS.items():
+        directory: Path | None = vars(options)[name]
+        if directory is not None:
+            files = files_of(devices, run.step_ns, directory)
+            directory.mkdir(parents=True, exist_ok=True)
+    for path, text in files.items():
         path.write_text(text, encoding='utf-8')
         print(path)
     return True

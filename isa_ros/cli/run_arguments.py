@@ -85,6 +85,7 @@ def _debug(parser: argparse.ArgumentParser) -> None:
 
 def _describe(parser: argparse.ArgumentParser) -> None:
     parser.add_argument('config', metavar='CONFIG', help='a run file, or a shipped one by name')
+    shared_arguments.changes(parser, 'replace a value of the run file')
     _profile(parser)
     what = parser.add_mutually_exclusive_group(required=True)
     what.add_argument(
@@ -92,6 +93,12 @@ def _describe(parser: argparse.ArgumentParser) -> None:
     what.add_argument(
         '--eds', type=file_to_write, metavar='FILE.eds',
         help='write the data sheet of CANopen; for each of several actuators a FILE_NAME.eds')
+    what.add_argument(
+        '--ros2-control', type=shared_arguments.directory_to_write, metavar='DIR',
+        help='write the files of ethercat_driver_ros2: slaves, and the tag of ros2_control')
+    what.add_argument(
+        '--ros2-canopen', type=shared_arguments.directory_to_write, metavar='DIR',
+        help='write the files of ros2_canopen: data sheets, bus.yml, and the tag of ros2_control')
     what.add_argument('--table', action='store_true', help='print all objects')
 
 

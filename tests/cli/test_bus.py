@@ -57,7 +57,7 @@ def test_buses_on_can_and_on_a_serial_line_have_theirs():
     (['ethercat', 'leg', '--interface', 'ecs', '--watchdog-ms', '0'], 'must be a number > 0'),
     (['ethercat', 'leg', '--interface', 'ecs', '--in-process'], 'unrecognized arguments'),
     (['ethercat', 'leg', '--interface', 'ecs', '--controller', 'a'], 'unrecognized arguments'),
-    (['describe', 'leg'], 'one of the arguments --esi --eds --table is required')])
+    (['describe', 'leg'], '--eds --ros2-control --ros2-canopen --table is required')])
 def test_a_wrong_command_line_is_answered_in_one_line(arguments, error, capsys):
     with pytest.raises(SystemExit) as ended:
         main(['bus', *arguments])

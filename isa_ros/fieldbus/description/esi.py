@@ -12,7 +12,8 @@ from isa_ros.fieldbus.description.eds import VENDOR_NAME
 from isa_ros.fieldbus.device.bus_device import (
     BusDevice, RECEIVE_ASSIGNMENT, TRANSMIT_ASSIGNMENT, VENDOR)
 from isa_ros.fieldbus.device.objects import Object, ObjectCode, ObjectEntry
-from isa_ros.fieldbus.device.process_data import CAN_PDOS, ETHERCAT_PDO, RECEIVE, TRANSMIT
+from isa_ros.fieldbus.device.process_data import (
+    CAN_PDOS, ETHERCAT_PDO, mapped_words, RECEIVE, TRANSMIT)
 from isa_ros.fieldbus.ethercat.layout import AREAS
 from isa_ros.fieldbus.ethercat.sii import build_sii, process_data_sizes
 
@@ -90,7 +91,7 @@ def _pdo(device: BusDevice, tag: str, pdo: int, manager: int | None) -> Element:
     found = Element(tag, {} if manager is None else {'Sm': str(manager)})
     _text(found, 'Index', _hexadecimal(pdo))
     _text(found, 'Name', device.table.at(pdo).name.removesuffix(' mapping'))
-    for word in _mapped(device, pdo):
+    for word in mapped_words(device, pdo):
         entry = SubElement(found, 'Entry')
         index, subindex, bits = word >> 16, word >> 8 & 0xFF, word & 0xFF
         _text(entry, 'Index', _hexadecimal(index))
@@ -103,12 +104,6 @@ def _pdo(device: BusDevice, tag: str, pdo: int, manager: int | None) -> Element:
         else:
             _text(entry, 'BitLen', bits)
     return found
-
-
-def _mapped(device: BusDevice, pdo: int) -> list[int]:
-    """Return the words of a mapping."""
-    count = device.read(pdo, 0)[0]
-    return [int.from_bytes(device.read(pdo, k + 1), 'little') for k in range(count)]
 
 
 def _clock(found: Element) -> None:

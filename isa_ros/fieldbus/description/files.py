@@ -1,12 +1,20 @@
 """What a master wants to know of the devices of a run, as files or for a terminal."""
 
-from collections.abc import Sequence
+from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
 
 from isa_ros.fieldbus.description.eds import eds_text
 from isa_ros.fieldbus.description.esi import esi_text
 from isa_ros.fieldbus.description.object_page import table_lines
+from isa_ros.fieldbus.description.ros2_canopen import ros2_canopen_files
+from isa_ros.fieldbus.description.ros2_control import ros2_control_files
 from isa_ros.fieldbus.device.bus_device import BusDevice
+
+
+Described = Callable[[Sequence[BusDevice], int, Path], dict[Path, str]]
+FOLDERS: Mapping[str, Described] = {
+    'ros2_control': ros2_control_files, 'ros2_canopen': ros2_canopen_files}
+"""Files for a driver, by its option, of devices with this tick in ns and in this directory."""
 
 
 def described(

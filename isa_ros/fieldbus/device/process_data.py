@@ -12,7 +12,8 @@ from typing import NamedTuple
 from isa_ros.fieldbus.device.abort import (
     NOT_EMPTIED_FIRST, NOT_MAPPABLE, OUT_OF_RANGE, PDO_TOO_LONG, SdoAbort, TOO_HIGH, WRONG_LENGTH,
     WRONG_STATE)
-from isa_ros.fieldbus.device.bus_device import RECEIVE_ASSIGNMENT, TRANSMIT_ASSIGNMENT
+from isa_ros.fieldbus.device.bus_device import (
+    BusDevice, RECEIVE_ASSIGNMENT, TRANSMIT_ASSIGNMENT)
 from isa_ros.fieldbus.device.dictionary import Key
 from isa_ros.fieldbus.device.objects import (
     DataType, Object, ObjectCode, ObjectEntry, ObjectTable, Value)
@@ -69,6 +70,18 @@ def _word(one: Key | int, entries: dict[Key, ObjectEntry]) -> int:
         return one
     index, subindex = one
     return index << 16 | subindex << 8 | entries[one].bits
+
+
+def mapped_words(device: BusDevice, pdo: int) -> list[int]:
+    """Return the entries in use of a mapping, gaps included."""
+    count = device.read(pdo, 0)[0]
+    return [int.from_bytes(device.read(pdo, k + 1), 'little') for k in range(count)]
+
+
+def mapped_keys(device: BusDevice, pdo: int) -> list[Key]:
+    """Return what a PDO holds, without gaps."""
+    return [(word >> 16, word >> 8 & 0xFF) for word in mapped_words(device, pdo)
+            if word >> 16 != _GAP]
 
 
 def assignment_object(index: int) -> Object:
