@@ -9,7 +9,7 @@ from isa_ros.actuator.link import link_record
 from isa_ros.actuator.sheet import actuator_record, ActuatorSheet
 from isa_ros.actuator.tunable import changing, GAINS, named, with_changed
 from isa_ros.core.changeable import Changeable
-from isa_ros.core.changing_values import ChangingValues
+from isa_ros.core.changing_values import bare, ChangingValues
 from isa_ros.core.signals import COMMAND, HAS_GAINS
 from isa_ros.errors import ConfigError
 from isa_ros.plant.plant import plant_record
@@ -49,9 +49,9 @@ class Tuning:
 
     def accept(self, values: Mapping[str, float]) -> Mapping[str, float]:
         """
-        Accept new values by key or `named`, all or none; return them `named`.
+        Accept new values by key or `named`, all or none; return those of the next tick, `named`.
 
-        The last of several before one tick wins.
+        The last of several before one tick wins. A name may begin with `OVER` or `OFF`.
 
         Raises
         ------
@@ -60,12 +60,20 @@ class Tuning:
 
         """
         try:
-            values = named(self._known, values)
+            values = {key[:len(key) - len(bare(key))] + name: value
+                      for key, given in values.items()
+                      for name, value in named(self._known, {bare(key): given}).items()}
         except ConfigError as error:
             raise ConfigError(f'{self._name}: {error}') from error
-        self._changed_by(self.values.accepted | values)
+        self._refuse_unknown(values)
+        for all_values in self.values.with_accepted(values):
+            self._changed_by(all_values)
         self.values.accept(values)
-        return values
+        return {bare(name): self.values.value(bare(name)) for name in values}
+
+    def _refuse_unknown(self, values: Mapping[str, float]) -> None:
+        self._changed_by({bare(name): value for name, value in values.items()
+                          if bare(name) not in self._known})
 
     def known(self, name: str) -> Changeable:
         """Return one of `changing` by its key or its name."""

@@ -1,11 +1,22 @@
-"""Named values that change between two ticks: accepted, in force from the next tick, echoed."""
+"""
+Named values that change between two ticks: accepted, in force from the next tick, echoed.
+
+A fault lies over a value: while it does, a value that is accepted stays beneath it and comes back
+with its end. `OVER` before a name puts a value over it, `OFF` takes it off.
+"""
 
 from collections.abc import Mapping, Sequence
 
 from isa_ros.errors import ConfigError
 import numpy as np
 
-_BEFORE, _IN_FORCE, _ACCEPTED = range(3)
+OVER, OFF = '+', '-'
+_BEFORE, _IN_FORCE, _ACCEPTED, _OVER, _IS_OVER = range(5)
+
+
+def bare(name: str) -> str:
+    """Return a name without `OVER` or `OFF`."""
+    return name[1:] if name[:1] in (OVER, OFF) else name
 
 
 class ChangingValues:
@@ -21,40 +32,78 @@ class ChangingValues:
         self._place = {name: k for k, name in enumerate(names)}
         self._names = list(names)
         self._first = np.array(first, float)
-        self._rows = np.tile(self._first, (3, 1))
+        self._rows = np.tile(self._first, (5, 1))
+        self._rows[_IS_OVER] = 0.0
         self.is_settled = True
         """Whether no value changed at the start of the last tick, or changes at the next."""
 
     def restart(self) -> dict[str, float]:
-        """Put the first values in force until the next tick; return what is accepted for it."""
+        """
+        Put the first values in force until the next tick; return what is accepted for it.
+
+        What lies over values is taken off.
+        """
         self._rows[_BEFORE] = self._rows[_IN_FORCE] = self._first
+        self._rows[_IS_OVER] = 0.0
         self.is_settled = False
         return self.accepted
 
     def accept(self, values: Mapping[str, float]) -> None:
-        """Accept new values of known names; the last of several before one tick wins."""
+        """
+        Accept new values of known names, which may begin with `OVER` or `OFF`.
+
+        The last of several before one tick wins.
+        """
         for name, value in values.items():
-            self._rows[_ACCEPTED, self._place[name]] = value
+            k = self._place[bare(name)]
+            if name[:1] == OVER:
+                self._rows[_OVER, k], self._rows[_IS_OVER, k] = value, 1.0
+            elif name[:1] == OFF:
+                self._rows[_IS_OVER, k] = 0.0
+            else:
+                self._rows[_ACCEPTED, k] = value
         self.is_settled = False
 
+    def with_accepted(self, values: Mapping[str, float]) -> tuple[dict[str, float], ...]:
+        """
+        Return all values that are not the first ones, as they would be after `accept`.
+
+        Those of the next tick, and those beneath, which come back when nothing lies over them.
+        """
+        rows = self._rows.copy()
+        try:
+            self.accept(values)
+            return self.accepted, self._where(
+                _ACCEPTED, self._rows[_ACCEPTED] != self._first)
+        finally:
+            self._rows[:] = rows
+
     def value(self, name: str) -> float:
-        """Return the last accepted value."""
-        return float(self._rows[_ACCEPTED, self._place[name]])
+        """Return the value of the next tick."""
+        return float(self._next()[self._place[name]])
+
+    def _next(self) -> np.ndarray:
+        """Return the values of the next tick."""
+        values: np.ndarray = np.where(
+            self._rows[_IS_OVER] != 0.0, self._rows[_OVER], self._rows[_ACCEPTED])
+        return values
 
     def latch(self) -> bool:
         """Begin a tick: put the accepted values in force; return whether any has changed."""
         if self.is_settled:
             return False
-        before, in_force, accepted = self._rows
+        before, in_force = self._rows[:_ACCEPTED]
         before[:] = in_force
-        in_force[:] = accepted
+        in_force[:] = self._next()
         self.is_settled = bool((before == in_force).all())
         return not self.is_settled
 
     @property
     def accepted(self) -> dict[str, float]:
-        """Return the accepted values that are not the first ones."""
-        return self._where(_ACCEPTED, self._rows[_ACCEPTED] != self._first)
+        """Return the values of the next tick that are not the first ones."""
+        values = self._next()
+        return {self._names[k]: float(values[k])
+                for k in np.flatnonzero(values != self._first)}
 
     @property
     def in_force(self) -> dict[str, float]:

@@ -6,13 +6,14 @@ in it, each at the tick at which it took effect; the scenario is provenance only
 needed.
 """
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from itertools import chain
 from typing import NamedTuple
 
 from isa_ros.bag.reader import Bag
 from isa_ros.config.runs.run_config import RunConfig
+from isa_ros.core.changing_values import OVER
 from isa_ros.core.saved_state import RunState
 from isa_ros.core.signals import Records
 from isa_ros.errors import BagError, SetpointError
@@ -130,11 +131,17 @@ class Rerun:
 
 
 def _changes(inputs: 'Inputs', run: RunConfig) -> dict[int, ParameterChanges]:
-    """Return the recorded changes of parameters by tick."""
+    """
+    Return the recorded changes of parameters by tick.
+
+    They are what was in force, so they lie over all else, also over what a saved state has.
+    """
+    def over(values: Mapping[str, float]) -> dict[str, float]:
+        return {f'{OVER}{name}': value for name, value in values.items()}
     return {
         tick: ParameterChanges(
-            {run.index(name): by_tick[tick] for name, by_tick in inputs.tuned.items()
-             if tick in by_tick}, inputs.tuned_supplies.get(tick, {}))
+            {run.index(name): over(by_tick[tick]) for name, by_tick in inputs.tuned.items()
+             if tick in by_tick}, over(inputs.tuned_supplies.get(tick, {})))
         for tick in {*inputs.tuned_supplies, *chain.from_iterable(inputs.tuned.values())}}
 
 

@@ -5,9 +5,9 @@ Faults of a scenario: changes of declared parameters over time.
     - {t_s: 0.5, actuator: kfe, set: {plant.spool.stuck: 1}, until_s: 0.8}
     - {t_s: 0.6, supply: supply, fault: pump_trip}
 
-Keys and units are those of `isa params`. From ``until_s`` on a parameter has the value that it
-has without the fault: that of another fault that still lasts, the latest first, else of the data
-sheet.
+Keys and units are those of `isa params`. A fault lies over the value of a parameter. From
+``until_s`` on there is what lies beneath: another fault that still lasts, the latest first, else
+what was tuned, before or meanwhile, else the value of the data sheet.
 """
 
 from collections.abc import Callable, Iterator, Mapping, Sequence
@@ -22,6 +22,7 @@ from isa_ros.config.runs.tick_grid import ticks_in
 from isa_ros.config.text.sections import Place, refuse_unknown, section_at
 from isa_ros.config.text.yaml_text import Tree
 from isa_ros.core.changeable import Changeable, changeables
+from isa_ros.core.changing_values import bare, OFF, OVER
 from isa_ros.core.parameter import check
 from isa_ros.core.suggest import alternatives
 from isa_ros.core.timebase import NS_PER_SECOND
@@ -61,9 +62,9 @@ class ParameterChanges(NamedTuple):
     """New values of parameters that take effect at one tick."""
 
     actuators: Mapping[int, Mapping[str, float]]
-    """By row, and name of `isa_ros.actuator.tunable.changing`."""
+    """By row, and name of `isa_ros.actuator.tunable.changing`; `OVER` or `OFF` before a name."""
     supplies: Mapping[str, float]
-    """By SUPPLY.KEY."""
+    """By SUPPLY.KEY, likewise."""
 
 
 def read_faults(
@@ -184,8 +185,12 @@ def _refuse_changes(faults: Sequence[Fault], run: RunConfig) -> None:
         try:
             surroundings.tune(changes.supplies)
             for row, values in changes.actuators.items():
-                in_force[row] = {**in_force.get(row, {}), **values}
-                with_changed(sheets[row], in_force[row])
+                own = in_force.setdefault(row, {})
+                for name, value in values.items():
+                    own.pop(bare(name), None)
+                    if not name.startswith(OFF):
+                        own[bare(name)] = value
+                with_changed(sheets[row], own)
         except ConfigError as error:
             raise ConfigError(
                 f'at {tick * run.step_ns / NS_PER_SECOND:g} s, {error}') from error
@@ -195,37 +200,19 @@ _Key = tuple[str, str, str]     # of, target, name
 
 
 def timetable(faults: Sequence[Fault], run: RunConfig) -> dict[int, ParameterChanges]:
-    """
-    Return the changes by tick.
-
-    At tick 0 every parameter that a fault changes has its first value, so that a run that is
-    reset begins as the first one did.
-    """
-    base = _base(faults, run)
-    ticks = {0, *(fault.tick for fault in faults),
-             *(fault.until for fault in faults if fault.until is not None)} if faults else set()
+    """Return the changes by tick: what the faults lay over a value, and what ends."""
+    ticks = {*(fault.tick for fault in faults),
+             *(fault.until for fault in faults if fault.until is not None)}
     table: dict[int, ParameterChanges] = {}
     before: dict[_Key, float] = {}
     for tick in sorted(ticks):
-        now = base | {key: value for fault in _lasting(faults, tick)
-                      for key, value in _keyed(fault)}
-        table[tick] = _changes(
-            {key: value for key, value in now.items() if before.get(key) != value}, run)
+        now = {key: value for fault in _lasting(faults, tick) for key, value in _keyed(fault)}
+        changed = {key: value for key, value in now.items() if before.get(key) != value}
+        ended = [key for key in before if key not in now]
+        if changed or ended:
+            table[tick] = _changes(changed, ended, run)
         before = now
     return table
-
-
-def _base(faults: Sequence[Fault], run: RunConfig) -> dict[_Key, float]:
-    """Return the values of the data sheets of every parameter that a fault changes."""
-    supplies = {supply.name: supply.sheet for supply in run.supplies}
-    base: dict[_Key, float] = {}
-    for fault in faults:
-        if fault.of == SUPPLY:
-            own: Mapping[str, Any] = changeables(supplies[fault.target])
-        else:
-            own = changing(run.actuator(fault.target).sheet)
-        base |= {key: own[key[2]].value for key, _ in _keyed(fault)}
-    return base
 
 
 def _keyed(fault: Fault) -> Iterator[tuple[_Key, float]]:
@@ -240,12 +227,15 @@ def _lasting(faults: Sequence[Fault], tick: int) -> list[Fault]:
                    and (fault.until is None or tick < fault.until)), key=began)
 
 
-def _changes(values: Mapping[_Key, float], run: RunConfig) -> ParameterChanges:
+def _changes(
+        values: Mapping[_Key, float], ended: Sequence[_Key], run: RunConfig) -> ParameterChanges:
     actuators: dict[int, dict[str, float]] = {}
     supplies = {}
-    for (of, target, name), value in values.items():
+    marked = [*((OVER, key, value) for key, value in values.items()),
+              *((OFF, key, 0.0) for key in ended)]
+    for mark, (of, target, name), value in marked:
         if of == SUPPLY:
-            supplies[f'{target}.{name}'] = value
+            supplies[f'{mark}{target}.{name}'] = value
         else:
-            actuators.setdefault(run.index(target), {})[name] = value
+            actuators.setdefault(run.index(target), {})[f'{mark}{name}'] = value
     return ParameterChanges(actuators, supplies)

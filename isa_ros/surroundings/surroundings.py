@@ -9,7 +9,7 @@ from collections.abc import Iterator, Mapping, Sequence
 from typing import NamedTuple
 
 from isa_ros.core.changeable import Changeable, changeables, with_changes
-from isa_ros.core.changing_values import ChangingValues
+from isa_ros.core.changing_values import bare, ChangingValues
 from isa_ros.core.saved_state import broken_number, restored_rows
 from isa_ros.core.suggest import alternatives
 from isa_ros.errors import ConfigError, RunError
@@ -96,7 +96,8 @@ class Surroundings:
         """
         Accept new values of `changing`, all or none; they take effect at the next tick.
 
-        The last of several before one tick wins; pressures and pump flow are kept.
+        The last of several before one tick wins; pressures and pump flow are kept. A name may
+        begin with `OVER` or `OFF`.
 
         Raises
         ------
@@ -104,11 +105,12 @@ class Surroundings:
             An unknown name, a value out of its range, or a supply too small for the tick.
 
         """
-        for name in values:
+        for name in map(bare, values):
             if name not in self.changing:
                 raise ConfigError(f'{name} is unknown; {alternatives(name, self.changing)}')
-        for supply, sheet in self._sheets(self._values.accepted | dict(values)):
-            supply.refuse(sheet)
+        for all_values in self._values.with_accepted(values):
+            for supply, sheet in self._sheets(all_values):
+                supply.refuse(sheet)
         self._values.accept(values)
 
     def tuned_value(self, name: str) -> float:
@@ -198,9 +200,9 @@ class Surroundings:
 
     def restart(self, beginning: bytes) -> None:
         """Return to the `snapshot` of t = 0; tuned values stay, in force from the first tick."""
-        accepted = self._values.accepted
+        _, beneath = self._values.with_accepted({})
         self.restore(beginning)
-        self._values.accept(accepted)
+        self._values.accept(beneath)
 
 
 def _sum(values: Sequence[float], rows: Sequence[int]) -> float:
