@@ -1,14 +1,15 @@
 """
 The values of the communication objects of a node, 0x1001 to 0x1FFF.
 
-COB-IDs, transmission types and the SYNC are writable while preoperational, and those of a PDO only
-while it is off, as CiA 301 has it.
+COB-IDs, transmission types and the SYNC are writable while preoperational, and those of a PDO
+only while it is off, as CiA 301 has it. An identifier of one service is refused for another: a
+node that took its own frame for an RPDO would command itself.
 """
 
 from collections.abc import Sequence
 
 from isa_ros.fieldbus.device.abort import (
-    OUT_OF_RANGE, READ_ONLY, SdoAbort, WRITE_ONLY, WRONG_STATE)
+    INCOMPATIBLE, OUT_OF_RANGE, READ_ONLY, SdoAbort, WRITE_ONLY, WRONG_STATE)
 from isa_ros.fieldbus.device.can_identifiers import EXTENDED, INVALID, is_restricted, LARGEST
 from isa_ros.fieldbus.device.canopen_objects import (
     CANOPEN, COB_ID, CYCLE_PERIOD, EMERGENCY_ID, INHIBIT_TIME, RECEIVE_MAPPINGS,
@@ -35,6 +36,9 @@ class Communication:
             or one.index in (ERROR_REGISTER, ERROR_FIELD)])
         self._node = node
         self._values: dict[tuple[int, int], Value] = {}
+        self._identifiers = [
+            (one.index, COB_ID if one.index >= RECEIVE_PARAMETERS else 0) for one in self.table
+            if one.index in (SYNC_ID, EMERGENCY_ID) or one.index >= RECEIVE_PARAMETERS]
         self.reset()
 
     def __contains__(self, index: object) -> bool:
@@ -88,6 +92,7 @@ class Communication:
             _refuse_identifier(value)
             if index == SYNC_ID and value & ~LARGEST:  # generates it, or is off
                 raise SdoAbort(OUT_OF_RANGE)
+            self._refuse_taken(index, value)
         elif index == SYNC_OVERFLOW and (value == 1 or value > MOST_SYNCS):
             raise SdoAbort(OUT_OF_RANGE)
         elif index >= RECEIVE_PARAMETERS:
@@ -100,11 +105,24 @@ class Communication:
             _refuse_identifier(value)
             if is_on and not value & INVALID and (value ^ self.value(index, COB_ID)) & LARGEST:
                 raise SdoAbort(WRONG_STATE)
+            self._refuse_taken(index, value)
         elif subindex == TRANSMISSION:
             if value > MOST_SYNCS and value not in _EVENT_TYPES:
                 raise SdoAbort(OUT_OF_RANGE)
         elif subindex in (INHIBIT_TIME, SYNC_START) and is_on and is_transmit:
             raise SdoAbort(WRONG_STATE)
+
+    def _refuse_taken(self, index: int, value: int) -> None:
+        """Refuse an identifier of another object that is on; RPDOs may share one."""
+        if value & INVALID:
+            return
+        is_receive = RECEIVE_PARAMETERS <= index < RECEIVE_MAPPINGS
+        for other, subindex in self._identifiers:
+            cob_id = self.value(other, subindex)
+            is_alike = is_receive and RECEIVE_PARAMETERS <= other < RECEIVE_MAPPINGS
+            if other != index and not is_alike and not cob_id & INVALID \
+                    and not (cob_id ^ value) & LARGEST:
+                raise SdoAbort(INCOMPATIBLE)
 
 
 def _refuse_identifier(value: int) -> None:

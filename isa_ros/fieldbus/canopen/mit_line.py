@@ -144,8 +144,7 @@ class MitLine:
         if motor is not None and len(frame.data) == COMMAND_BYTES:
             return self._take(motor, frame)
         server = self._sdo.get(frame.identifier)
-        answer = None if server is None else server.answer(frame.data)
-        if answer is not None:
+        for answer in () if server is None else server.answers(frame.data):
             self.port.send(frame.identifier - SDO_REQUEST + SDO_ANSWER, answer)
         return False
 

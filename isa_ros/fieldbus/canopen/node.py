@@ -160,9 +160,9 @@ class Node:
 
     def _on_sdo(self, data: bytes) -> bool:
         if self.is_talking:
-            answer = self._sdo.answer(data)
+            answers = self._sdo.answers(data)
             self.report_emergencies()
-            if answer is not None:
+            for answer in answers:
                 self._send(SDO_ANSWER + self.number, answer)
         return False
 

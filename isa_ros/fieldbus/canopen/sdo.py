@@ -1,12 +1,13 @@
 """
-The SDO server of a node: expedited and segmented transfers (CiA 301, 7.2.4).
+The SDO server of a node (CiA 301, 7.2.4): transfers expedited or in segments, uploads in blocks.
 
-Block transfers are refused by their code, as CiA 301 allows: a device without them answers
+Downloads in blocks are refused by their code, as CiA 301 allows: a device without them answers
 ``unknown command``. A request of other than 8 bytes is no request.
 """
 
 from typing import Protocol
 
+from isa_ros.fieldbus.canopen.block_upload import BLOCK_UPLOAD, BlockUpload, INITIATE_BLOCK
 from isa_ros.fieldbus.device.abort import SdoAbort, UNKNOWN_COMMAND
 from isa_ros.fieldbus.device.sdo_transfer import (
     ABORT, aborted, COMMAND_BITS, DOWNLOAD, DOWNLOAD_SEGMENT, DOWNLOADED, DOWNLOADED_SEGMENT,
@@ -36,33 +37,53 @@ class SdoServer:
     def __init__(self, dictionary: ServedObjects) -> None:
         self._dictionary = dictionary
         self._transfer: Transfer | None = None
+        self._block: BlockUpload | None = None
 
     def reset(self) -> None:
         """Forget a transfer on its way."""
-        self._transfer = None
+        self._transfer = self._block = None
 
-    def answer(self, request: bytes) -> bytes | None:
-        """Return the answer to a request of 8 bytes; None: there is none."""
+    def answers(self, request: bytes) -> list[bytes]:
+        """Return the frames that answer a request of 8 bytes: one, several of a block, or none."""
         if len(request) != SIZE:
-            return None
+            return []
         command = request[0] >> COMMAND_BITS
         if command == ABORT:
-            self._transfer = None
-            return None
+            self.reset()
+            return []
         try:
+            if command == BLOCK_UPLOAD:
+                return self._in_blocks(request)
             if command == DOWNLOAD:
-                return self._download(request)
+                return [self._download(request)]
             if command == UPLOAD:
-                return self._upload(request)
+                return [self._upload(request)]
             if command in (DOWNLOAD_SEGMENT, UPLOAD_SEGMENT):
-                return self._segment(request, command == DOWNLOAD_SEGMENT)
+                return [self._segment(request, command == DOWNLOAD_SEGMENT)]
             raise SdoAbort(UNKNOWN_COMMAND)
         except SdoAbort as refused:
-            return self._aborted(request, refused)
+            return [self._aborted(request, refused)]
+
+    def _in_blocks(self, request: bytes) -> list[bytes]:
+        if request[0] & 0x03 != INITIATE_BLOCK:
+            if self._block is None:
+                raise SdoAbort(UNKNOWN_COMMAND)
+            found = self._block.answers(request)
+            if found is None:
+                self._block = None
+            return found or []
+        self.reset()
+        _, index, subindex = HEAD.unpack_from(request)
+        segments, threshold = request[4:6]
+        data = self._dictionary.read(index, subindex)
+        if threshold and len(data) <= threshold:    # the client prefers the other protocol
+            return [self._upload(request)]
+        self._block = BlockUpload(index, subindex, data, segments)
+        return [self._block.initiated()]
 
     def _download(self, request: bytes) -> bytes:
         command, index, subindex = HEAD.unpack_from(request)
-        self._transfer = None
+        self.reset()
         if command & EXPEDITED:
             if command & HAS_SIZE:
                 size = EXPEDITED_BYTES - (command >> 2 & 3)
@@ -80,7 +101,7 @@ class SdoServer:
 
     def _upload(self, request: bytes) -> bytes:
         _, index, subindex = HEAD.unpack_from(request)
-        self._transfer = None
+        self.reset()
         data = self._dictionary.read(index, subindex)
         if not 0 < len(data) <= EXPEDITED_BYTES:
             self._transfer = Transfer(index, subindex, data, is_download=False)
@@ -103,12 +124,21 @@ class SdoServer:
 
     def _aborted(self, request: bytes, refused: SdoAbort) -> bytes:
         index, subindex = 0, 0
-        if self._transfer is not None:
-            index, subindex = self._transfer.index, self._transfer.subindex
-        elif request[0] >> COMMAND_BITS not in (DOWNLOAD_SEGMENT, UPLOAD_SEGMENT):
+        on_its_way = self._transfer or self._block
+        if on_its_way is not None:
+            index, subindex = on_its_way.index, on_its_way.subindex
+        elif not _is_continued(request):
             _, index, subindex = HEAD.unpack_from(request)
-        self._transfer = None
+        self.reset()
         return aborted(index, subindex, refused)
+
+
+def _is_continued(request: bytes) -> bool:
+    """Return whether a request belongs to a transfer that has begun, and names no object."""
+    command = request[0] >> COMMAND_BITS
+    if command == BLOCK_UPLOAD:
+        return request[0] & 0x03 != INITIATE_BLOCK
+    return command in (DOWNLOAD_SEGMENT, UPLOAD_SEGMENT)
 
 
 def _padded(answer: bytes) -> bytes:

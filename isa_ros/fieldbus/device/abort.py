@@ -9,6 +9,8 @@ from collections.abc import Mapping
 TOGGLE_BIT = 0x05030000
 TIMEOUT = 0x05040000
 UNKNOWN_COMMAND = 0x05040001
+INVALID_BLOCK_SIZE = 0x05040002
+INVALID_SEQUENCE = 0x05040003
 OUT_OF_MEMORY = 0x05040005
 UNSUPPORTED_ACCESS = 0x06010000
 WRITE_ONLY = 0x06010001
@@ -36,6 +38,8 @@ MEANINGS: Mapping[int, str] = {
     TOGGLE_BIT: 'toggle bit not alternated',
     TIMEOUT: 'SDO protocol timed out',
     UNKNOWN_COMMAND: 'command specifier not valid or unknown',
+    INVALID_BLOCK_SIZE: 'invalid block size',
+    INVALID_SEQUENCE: 'invalid sequence number',
     OUT_OF_MEMORY: 'out of memory',
     UNSUPPORTED_ACCESS: 'unsupported access to an object',
     WRITE_ONLY: 'attempt to read a write only object',

@@ -1,11 +1,24 @@
-"""The SDO server: expedited and segmented transfers, and each abort code."""
+"""The SDO server: expedited, segmented and block transfers, and each abort code."""
 
+from binascii import crc_hqx
+
+import canopen
 from hypothesis import given, strategies as st
-from isa_ros.fieldbus.canopen.sdo import MOST_BYTES, SdoServer
+from isa_ros.fieldbus.canopen import sdo
+from isa_ros.fieldbus.canopen.sdo import MOST_BYTES
 from isa_ros.fieldbus.device.abort import NO_OBJECT, SdoAbort
 import pytest
 
 NUMBER, TEXT = (0x2000, 1), (0x2001, 0)
+
+
+class SdoServer(sdo.SdoServer):
+    """A server of which every answer is one frame or none."""
+
+    def answer(self, data: bytes) -> bytes | None:
+        frames = self.answers(data)
+        assert len(frames) <= 1
+        return frames[0] if frames else None
 
 
 class Values:
@@ -98,11 +111,126 @@ def test_a_frame_of_other_than_eight_bytes_is_no_request(data):
     assert SdoServer(Values()).answer(data) is None
 
 
-@pytest.mark.parametrize(('command', 'name'), [(0xA0, 'upload'), (0xC6, 'download')])
-def test_block_transfers_are_refused(command, name):
-    answer = SdoServer(Values()).answer(request(command, NUMBER))
+def test_a_download_in_blocks_is_refused():
+    answer = SdoServer(Values()).answer(request(0xC6, NUMBER))
     assert code(answer) == 0x05040001
     assert answer[1:4] == b'\x00\x20\x01'
+
+
+def in_blocks(server: sdo.SdoServer, sizes: list[int], lost: set[int]) -> bytes:
+    """Read the text in blocks of these sizes; segments with these numbers of all are lost."""
+    first, = server.answers(request(0xA4, TEXT, bytes([sizes[0], 0])))
+    assert first[:4] == b'\xc6\x01\x20\0'
+    size, data, sent, k = int.from_bytes(first[4:], 'little'), b'', 0, 0
+    frames = server.answers(bytes([0xA3]) + bytes(7))
+    while True:
+        assert 0 < len(frames) <= sizes[k]
+        assert [frame[0] & 0x7F for frame in frames] == list(range(1, len(frames) + 1))
+        arrived = 0
+        for number, frame in enumerate(frames, 1):
+            sent += 1
+            if sent not in lost and arrived == number - 1:
+                arrived, data = number, data + frame[1:]
+                is_last = bool(frame[0] & 0x80)
+        k = min(k + 1, len(sizes) - 1)
+        frames = server.answers(bytes([0xA2, arrived, sizes[k]]) + bytes(5))
+        if arrived and is_last:
+            end, = frames
+            assert end[0] & 0xE3 == 0xC1
+            assert len(data) - (end[0] >> 2 & 7) == size
+            assert int.from_bytes(end[1:3], 'little') == crc_hqx(data[:size], 0)
+            assert server.answers(bytes([0xA1]) + bytes(7)) == []
+            return data[:size]
+
+
+@given(st.binary(max_size=300), st.lists(st.integers(1, 127), min_size=1, max_size=4),
+       st.sets(st.integers(1, 60), max_size=10))
+def test_what_is_read_in_blocks_is_whole_whatever_is_lost(data, sizes, lost):
+    values = Values()
+    values.content[TEXT] = data
+    server = sdo.SdoServer(values)
+    assert in_blocks(server, sizes, lost) == data
+    assert code(server.answers(bytes([0xA1]) + bytes(7))[0]) == 0x05040001
+
+
+class Wire:
+    """Carries the frames between a client of `canopen` and a server, in one thread."""
+
+    def __init__(self, server: sdo.SdoServer, client: canopen.sdo.SdoClient) -> None:
+        self._server, self._client = server, client
+
+    def send_message(self, identifier: int, data: bytes, remote: bool = False) -> None:
+        for frame in self._server.answers(bytes(data)):
+            self._client.on_response(0x581, bytearray(frame), 0.0)
+
+
+@pytest.mark.parametrize('size', [5, 7, 889, 890, 2000])
+def test_the_client_of_canopen_reads_in_blocks(size):
+    """127 segments of 7 bytes are 889; it checks sequence, length and CRC."""
+    values = Values()
+    values.content[TEXT] = bytes(k % 251 for k in range(size))
+    client = canopen.sdo.SdoClient(0x601, 0x581, canopen.ObjectDictionary())
+    client.network = Wire(sdo.SdoServer(values), client)
+    with client.open(*TEXT, mode='rb', buffering=0, block_transfer=True) as stream:
+        assert stream.readall() == values.content[TEXT]
+
+
+def test_the_crc_is_that_of_cia_301():
+    """CRC-16/XMODEM of "123456789" is 0x31C3; 9 bytes are 2 segments, 5 bytes unused."""
+    values = Values()
+    values.content[TEXT] = b'123456789'
+    server = sdo.SdoServer(values)
+    server.answers(request(0xA4, TEXT, bytes([127, 0])))
+    assert server.answers(bytes([0xA3]) + bytes(7)) == [b'\x011234567', b'\x8289' + bytes(5)]
+    assert server.answers(bytes([0xA2, 2, 127]) + bytes(5)) == [b'\xd5\xc3\x31' + bytes(5)]
+
+
+@pytest.mark.parametrize(('threshold', 'begin'), [(9, 0xC6), (10, 0x41), (255, 0x41), (0, 0xC6)])
+def test_up_to_its_threshold_a_client_gets_the_other_protocol(threshold, begin):
+    values = Values()
+    values.content[TEXT] = b'0123456789'
+    server = SdoServer(values)
+    assert server.answer(request(0xA4, TEXT, bytes([5, threshold])))[0] == begin
+
+
+@pytest.mark.parametrize(('before', 'wrong', 'expected'), [
+    ([], [0xA3], 0x05040001), ([], [0xA2, 0, 5], 0x05040001), ([], [0xA1], 0x05040001),
+    ([[0xA4, 1, 0x20, 0, 5]], [0xA2, 0, 5], 0x05040001),
+    ([[0xA4, 1, 0x20, 0, 5]], [0xA1], 0x05040001),
+    ([[0xA4, 1, 0x20, 0, 5], [0xA3]], [0xA3], 0x05040001),
+    ([[0xA4, 1, 0x20, 0, 5], [0xA3]], [0xA1], 0x05040001),
+    ([[0xA4, 1, 0x20, 0, 5], [0xA3]], [0xA2, 6, 5], 0x05040003),
+    ([[0xA4, 1, 0x20, 0, 5], [0xA3]], [0xA2, 5, 0], 0x05040002),
+    ([[0xA4, 1, 0x20, 0, 5], [0xA3]], [0xA2, 5, 128], 0x05040002),
+    ([[0xA4, 1, 0x20, 0, 5], [0xA3]], [0x60], 0x05040001),
+    ([], [0xA4, 1, 0x20, 0, 0], 0x05040002), ([], [0xA4, 1, 0x20, 0, 128], 0x05040002)])
+def test_a_request_out_of_order_ends_an_upload_in_blocks(before, wrong, expected):
+    values = Values()
+    values.content[TEXT] = bytes(100)
+    server = sdo.SdoServer(values)
+    for one in before:
+        assert server.answers(bytes(one).ljust(8, b'\0'))[0][0] != 0x80
+    assert code(server.answers(bytes(wrong).ljust(8, b'\0'))[0]) == expected
+    assert code(server.answers(bytes([0xA3]) + bytes(7))[0]) == 0x05040001
+
+
+def test_another_request_begins_anew():
+    values = Values()
+    values.content[TEXT] = bytes(100)
+    server = sdo.SdoServer(values)
+    for begin in ([0x80], [0x40, 0, 0x20, 1], [0x23, 0, 0x20, 1, 1, 2, 3, 4]):
+        server.answers(request(0xA4, TEXT, bytes([5, 0])))
+        server.answers(bytes(begin).ljust(8, b'\0'))
+        assert code(server.answers(bytes([0xA3]) + bytes(7))[0]) == 0x05040001
+
+
+def test_a_finished_upload_cannot_be_continued():
+    values = Values()
+    values.content[TEXT] = b'twelve bytes'
+    for toggle in (0x60, 0x70):
+        server = SdoServer(values)
+        assert uploaded(server, TEXT) == b'twelve bytes'
+        assert code(server.answer(bytes([toggle]) + bytes(7))) == 0x05040001
 
 
 @pytest.mark.parametrize(('begin', 'segment'), [(0x40, 0x01), (0x21, 0x60)])

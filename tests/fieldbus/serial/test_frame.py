@@ -87,3 +87,11 @@ def test_the_largest_content_is_a_frame():
     reader.feed(packed(frame))
     assert taken(reader) == [frame]
     assert len(packed(frame)) == MOST_CONTENT + OVERHEAD
+
+
+def test_an_impossible_length_is_not_counted_as_a_discarded_request():
+    """Bytes that look like a start are no request that a master has sent."""
+    reader = FrameReader()
+    reader.feed(START + b'\x01\x00' + (MOST_CONTENT + 1).to_bytes(2, 'little') + packed(FRAME))
+    assert taken(reader) == [FRAME]
+    assert reader.discarded == 0

@@ -105,6 +105,12 @@ def test_a_wrong_check_is_ignored_and_counted(master, toys):
     assert answer is not None and STATUS.unpack_from(answer.content) == (0, 1)
 
 
+def test_a_request_is_answered_once_however_often_samples_are_new(master):
+    assert master.ask(PROCESS_DATA, setpoints(6, 0) * 2)[0] == 0
+    master.line.update()
+    assert master.received() is None
+
+
 def test_objects_are_read_and_written_without_a_tick(master, toys):
     assert master.ask(WRITE, OBJECT.pack(1, 0x2010, 1) + struct.pack('<f', 2.5)) == (0, b'')
     assert toys[1].values[0x2010, 1] == 2.5 and toys[0].values[0x2010, 1] == 0.0
