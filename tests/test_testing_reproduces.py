@@ -223,3 +223,10 @@ def test_what_cannot_be_run_is_refused_in_one_line(project: Project, tmp_path: P
         assert_reproduces('no_such_ram.yaml', None, project.bag)
     with pytest.raises(BagError, match='no such bag'):
         assert_reproduces(project.config, project.scenario, tmp_path / 'none')
+
+
+def test_a_bag_that_continues_a_saved_state_is_refused(project: Project) -> None:
+    """Files say nothing of the state that it began with."""
+    bag = rewrite(Bag(project.bag), project.bag.parent / 'later', state='{}')
+    with pytest.raises(BagError, match='later: continues a saved state, must be a run from t = 0'):
+        assert_reproduces(project.config, project.scenario, bag)

@@ -134,3 +134,18 @@ def test_a_stop_brings_the_load_to_rest_without_a_jump_and_ends_disabled():
     assert abs(float(actuator.sample.velocity)) < 0.05 * speed
     currents(actuator, 200)
     assert actuator.sample.device_state == DISABLED
+
+
+def test_a_jump_that_fades_ends_where_the_actuator_is_disabled():
+    """Enabled again it begins with the current of its setpoint, not with what was left."""
+    actuator = moving('isa_v5')
+    actuator.tune({'force.kp': 0.3 * actuator.parameter('force.kp')})
+    currents(actuator, 1)
+    fade = actuator.memory.reu['status']['fade'][0]
+    assert fade['is_on'] and abs(float(fade['added'])) > 1e-6
+    command = np.zeros(1, COMMAND)[0]
+    fill_command('isa_v5', Setpoint(is_enabled=False), command)
+    actuator.accept(command)
+    currents(actuator, 2)
+    assert actuator.sample.device_state == DISABLED
+    assert (int(fade['is_on']), int(fade['begins'])) == (0, 0)

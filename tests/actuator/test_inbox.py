@@ -199,3 +199,29 @@ def test_compiled_commands_equal_their_python_source(state, commands):
         latch(pending, reu, applied)
         ends.append((waiting, pending.tobytes(), reu.tobytes(), applied.tobytes()))
     assert ends[0] == ends[1]
+
+
+def test_an_effort_of_a_later_tick_clears_the_reference_in_force():
+    """Else the mode would go on with the older of the two."""
+    reu = reu_at(0.03, mode=CURRENT)
+    latched(merged(reference(CURRENT, 2e-3)), reu)
+    assert reu.setpoint.is_reference == 1.0
+    latched(merged(row(HAS_SETPOINT, 0, 0.0, 0.0, 1e-3, math.nan, math.nan)), reu)
+    assert reu.setpoint.is_reference == 0.0
+
+
+@pytest.mark.parametrize(('command', 'feeds'), [
+    (row(HAS_GAINS, 0, 0.0, 0.0, 0.0, 150.0, math.nan), False),
+    (row(HAS_ENABLE, 1, 0.0, 0.0, 0.0, math.nan, math.nan), False),
+    (row(HAS_SETPOINT, 0, 0.02, 0.0, 0.0, math.nan, math.nan), True)])
+def test_only_a_setpoint_or_a_reference_feeds_the_setpoint_timeout(command, feeds):
+    """Who still sends gains may have lost its planner."""
+    reu = reu_at(0.03)
+    reu.protection.setpoint_age = 40
+    latched(merged(command), reu)
+    assert reu.protection.setpoint_age == (1 if feeds else 40)
+    if feeds:
+        reu.protection.setpoint_age = 40
+        reu.status.requested_mode = CURRENT
+        latched(merged(reference(CURRENT, 1e-3)), reu)
+        assert reu.protection.setpoint_age == 1

@@ -1,5 +1,6 @@
 """Tuning an actuator: in force from the next tick on, all values or none, state kept."""
 
+from isa_ros.actuator import tuning
 from isa_ros.errors import ConfigError
 import numpy as np
 import pytest
@@ -198,3 +199,20 @@ def test_a_refused_value_is_named_as_it_was_given(values, message):
         'isa_v5', 'mass', timing=TICK, sheet=actuator_sheet('isa_v5', 'default', 'explicit'))
     with pytest.raises(ConfigError, match=message):
         actuator.tune(values)
+
+
+def test_values_that_are_refused_together_are_refused_in_two_calls_too(monkeypatch):
+    """Before one tick: what waits is checked with what comes."""
+    actuator = smart_actuator('isa_v5', 'mass', timing=TICK)
+    allowed = tuning.with_changed
+
+    def not_both(sheet, values, known):
+        if {'force.kp', 'force.kf'} <= values.keys():
+            raise ConfigError('not both')
+        return allowed(sheet, values, known)
+    monkeypatch.setattr(tuning, 'with_changed', not_both)
+    actuator.tune({'force.kp': 1.1e-7})
+    with pytest.raises(ConfigError, match='isa_v5: not both'):
+        actuator.tune({'force.kf': 1e-3})
+    actuator.tick()
+    assert actuator.applied_parameters == {'force.kp': 1.1e-7}

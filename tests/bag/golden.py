@@ -18,12 +18,14 @@ def rewrite(
         bag: Bag, directory: Path, change: Change = lambda topic, sequence, data: data, *,
         configuration: Callable[[str], str] = lambda text: text,
         versions: Mapping[str, str] | None = None, without: tuple[str, ...] = (),
-        rename: Mapping[str, str] | None = None, storage: Storage = PLAIN) -> Path:
+        rename: Mapping[str, str] | None = None, state: str | None = None,
+        storage: Storage = PLAIN) -> Path:
     """
     Record ``bag`` again with every message passed through ``change``; return its directory.
 
     ``configuration`` changes the attached text, ``versions`` replaces those recorded, topics
-    ``without`` are left out, and those of ``rename`` are called otherwise.
+    ``without`` are left out, and those of ``rename`` are called otherwise; ``state`` is the text
+    of one that the run is to have continued from.
     """
     names = {topic: (rename or {}).get(topic, topic) for topic in bag.types
              if topic not in without}
@@ -33,7 +35,8 @@ def rewrite(
     there = bag.provenance
     provenance = replace(
         there, configuration=configuration(there.configuration),
-        versions=there.versions if versions is None else versions)
+        versions=there.versions if versions is None else versions,
+        state=there.state if state is None else state)
     with BagWriter(directory, topics, provenance, storage=storage) as writer:
         for tick in bag.ticks():
             writer.write_tick(tick.t_ns, tick.sequence, sorted(

@@ -1,9 +1,11 @@
 """A bag cut short is completed: the bytes of a run that ended there, for every reader."""
 
 from collections.abc import Iterator
+import os
 from pathlib import Path
 
 from isa_ros.bag import part_writer
+from isa_ros.bag.metadata import NO_START
 from isa_ros.bag.reader import Bag
 from isa_ros.bag.recovery import recover
 from isa_ros.bag.storage import Storage
@@ -17,6 +19,7 @@ from rosbags.rosbag2 import Reader
 from tests.bag.recorded import NAMES, record, STEP_NS, tick_messages
 from tests.bag.test_checksums import of
 from tests.bag.test_writer import limited_files
+import yaml
 
 CHUNK_TICKS = 50    # instead of 500: a bag of the same parts is written in a tenth of the time
 N = 2 * CHUNK_TICKS + 23
@@ -252,3 +255,41 @@ def test_a_chunk_that_is_hidden_is_noticed(killed: Path) -> None:
         path.write_bytes(data[:start] + bytes([opcode]) + data[start + 1:])
         with pytest.raises(BagError, match='index that is not of the chunk|of a summary among'):
             Bag(killed)
+
+
+@pytest.mark.parametrize('in_place', [False, True])
+def test_lost_bytes_and_times_of_a_split_bag_are_those_of_its_last_file(
+        tmp_path: Path, in_place: bool) -> None:
+    """Which has no chunk: it begins at no time, and what was cut off lies in it."""
+    record(tmp_path / 'rig', N, storage=Storage(compression='none', split_mb=SPLIT_MB))
+    last = last_file(tmp_path / 'rig')
+    chunk, = of(last.read_bytes(), Opcode.CHUNK)
+    cut(last, chunk.start + 777)
+    found = recover(tmp_path / 'rig', in_place=in_place)
+    assert found.lost_bytes == 777
+    files = yaml.safe_load((found.directory / 'metadata.yaml').read_text())[
+        'rosbag2_bagfile_information']['files']
+    starts = [file['starting_time']['nanoseconds_since_epoch'] for file in files]
+    assert starts == [0, CHUNK_TICKS * STEP_NS, NO_START]
+    assert [file['message_count'] for file in files][-1] == 0
+
+
+def test_in_place_the_new_file_is_on_the_disk_before_it_replaces_the_old_one(
+        killed: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Else a loss of power could leave neither."""
+    steps, path = [], killed / 'rig_0.mcap'
+    wait, replace = os.fsync, Path.replace
+
+    def synced(descriptor: int) -> None:
+        wait(descriptor)
+        steps.append(('fsync', os.fstat(descriptor).st_ino))
+
+    def replaced(own: Path, target: Path) -> Path:
+        steps.append(('replace', own.stat().st_ino))
+        return replace(own, target)
+    monkeypatch.setattr(os, 'fsync', synced)
+    monkeypatch.setattr(Path, 'replace', replaced)
+    recover(killed, in_place=True)
+    new = path.stat().st_ino
+    assert steps.index(('fsync', new)) < steps.index(('replace', new))
+    assert steps[steps.index(('replace', new)) + 1] == ('fsync', killed.stat().st_ino)

@@ -19,6 +19,7 @@ ROOT = Path(__file__).parents[2]
     (OSError(errno.ENOSPC, 'No space left on device', 'out'), 3, 'out: No space left on device'),
     (MemoryError(), 3, 'not enough memory'),
     (OSError(errno.ENOMEM, 'Cannot allocate memory'), 3, 'not enough memory'),
+    (OSError(errno.ENOMEM, 'Nicht genug Speicher'), 3, 'not enough memory'),
     (ImportError('x.so: failed to map segment from shared object'), 3, 'not enough memory'),
     (RuntimeError("can't start new thread"), 3, 'not enough memory'),
     (ModuleNotFoundError("No module named 'rclpy'", name='rclpy'), 2, 'package rclpy is missing'),

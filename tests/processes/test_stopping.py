@@ -1,5 +1,6 @@
 """A stop request: the signals that set it, and what they do before and after."""
 
+from collections.abc import Iterator
 import os
 import signal
 
@@ -7,6 +8,14 @@ from isa_ros.processes.stopping import StopRequest
 import pytest
 
 SIGNALS = [signal.SIGINT, signal.SIGTERM, signal.SIGHUP]
+
+
+@pytest.fixture(autouse=True)
+def not_of_nohup() -> Iterator[None]:
+    """Set the default of SIGHUP, which pytest ignores where nohup has started it."""
+    before = signal.signal(signal.SIGHUP, signal.SIG_DFL)
+    yield
+    signal.signal(signal.SIGHUP, before)
 
 
 @pytest.mark.parametrize('number', SIGNALS)

@@ -66,6 +66,18 @@ def test_the_acceleration_is_that_of_the_speed_estimate() -> None:
     assert np.allclose(found, 10.0, rtol=1e-9, atol=0.0)
 
 
+def test_the_acceleration_is_taken_where_the_samples_are_offset() -> None:
+    """Conversions at 7, 12, 17, ... plant steps, of which every tenth ends a period."""
+    watched = Watched(only('load_cell_implausible', trip=0.5))
+    watched.constants.evidence.offset_steps = watched.step = 7
+    found = []
+    for k in range(21):
+        watched.state.speed.velocity = 0.01 * (1 + k // 10)
+        watched.convert()
+        found.append(float(watched.own.evidence.acceleration))
+    assert np.allclose(found, 10.0, rtol=1e-9, atol=0.0)
+
+
 @given(st.floats(-1.0, 1.0))
 def test_a_jump_is_a_speed_over_one_conversion(step: float) -> None:
     watched = Watched(only('encoder_jump', trip=1.0))

@@ -155,6 +155,19 @@ def test_a_cause_that_is_cleared_gives_way_to_a_trip_that_persists() -> None:
     assert watched.own.trips == watched.own.first == 1 << BITS['supply_low']
 
 
+def test_of_two_trips_of_one_conversion_one_is_the_first() -> None:
+    levels = defaults(Protection).supply_low
+    watched = Watched(replace(
+        only('overload', trip=0.5, delay_ms=0.0, reaction='disable'),
+        supply_low=replace(levels, trip=0.5, delay_ms=0.0)))
+    watched.show('overload', 6e3)
+    watched.show('supply_low', 1e6)
+    watched.convert()
+    both = [1 << BITS[name] for name in ('overload', 'supply_low')]
+    assert watched.own.trips == sum(both)
+    assert watched.own.first == min(both)
+
+
 def test_the_first_cause_is_kept_and_the_strongest_reaction_acts() -> None:
     sheet = replace(
         only('overload', trip=0.5, delay_ms=0.0, reaction='hold'),

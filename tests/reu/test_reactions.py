@@ -10,7 +10,7 @@ from isa_ros.reu.protection import feed, NONE, QUICK_STOP, request_clear
 from isa_ros.reu.protection_sheet import levels_of, Protection
 from isa_ros.reu.reactions import is_cause_gone, is_inhibited, setpoint_in_force
 import pytest
-from tests.reu.watched import off, only, Watched
+from tests.reu.watched import off, only, STROKE, Watched
 
 
 def test_hold_keeps_the_position_measured_at_the_trip() -> None:
@@ -74,6 +74,9 @@ def test_limit_inhibits_the_direction_that_makes_it_worse(
     assert is_inhibited(1e-4, watched.own) == extends
     assert is_inhibited(-1e-4, watched.own) == (not extends)
     assert not is_inhibited(0.0, watched.own)
+    watched.show(name, 0.5 * STROKE if name == 'end_of_stroke' else 0.0)
+    watched.convert()
+    assert not is_inhibited(1e-4, watched.own) and not is_inhibited(-1e-4, watched.own)
 
 
 @pytest.mark.parametrize('reaction', ['hold', 'damp', 'disable'])
@@ -124,3 +127,16 @@ def test_a_direction_is_inhibited_only_where_there_is_one() -> None:
             if f.name == 'reaction').metadata['names']
         assert allows == (name in (
             'end_of_stroke', 'overspeed', 'overload', 'overpressure', 'relief_open'))
+
+
+def test_a_quick_stop_of_the_user_is_followed_while_a_trip_holds() -> None:
+    """The stop wins: it brakes, while a hold would go back to where the trip was."""
+    watched = Watched(only('overload', trip=0.5, delay_ms=0.0, reaction='hold'))
+    watched.show('overload', 6e3)
+    watched.convert()
+    status = watched.state.status
+    status.is_stopping, status.stop.position, status.stop.velocity = 1, 0.07, 0.4
+    in_force = setpoint_in_force(watched.state)
+    assert (in_force.position, in_force.velocity) == (0.07, 0.4)
+    status.is_stopping = 0
+    assert setpoint_in_force(watched.state).position == 0.05

@@ -137,7 +137,7 @@ def test_every_gain_is_declared_with_unit_meaning_and_range(observer, tmp_path):
 
 
 def test_a_refused_value_is_answered_with_the_reason_and_changes_nothing(observer, tmp_path):
-    """Beyond its range, beyond the spool's stop, and one bad of two set atomically."""
+    """Beyond its range or the spool's stop; of two set atomically one bad, or a bad mode."""
     with actuator(tmp_path / 'log', 'knee', model='isa_v5') as process:
         tuner = Tuner(observer, 'knee')
         tuner.connect()
@@ -152,6 +152,11 @@ def test_a_refused_value_is_answered_with_the_reason_and_changes_nothing(observe
         result = tuner.call(SetParametersAtomically.Request(parameters=[
             _double('force.kp', 1e-7), _double('force.limit', 1.0)])).result
         assert not result.successful
+        impossible = Parameter(name='mode', value=ParameterValue(
+            type=ParameterType.PARAMETER_STRING, string_value='pressure'))
+        result = tuner.call(SetParametersAtomically.Request(parameters=[
+            _double('force.kp', 1e-7), impossible])).result
+        assert not result.successful and 'pressure' in result.reason
         assert tuner.get('force.kp', 'force.limit') == before
         assert not tuner.events
     assert 'Traceback' not in process.errors

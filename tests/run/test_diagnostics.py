@@ -3,7 +3,7 @@
 from diagnostic_msgs.msg import DiagnosticArray, DiagnosticStatus
 import isa_ros
 from isa_ros.bag.reader import Bag
-from isa_ros.core.accounts import OIL
+from isa_ros.core.accounts import MEAN, OIL, PEAK
 from isa_ros.replay.replay import replay
 from isa_ros.run.diagnostics import ENERGY, energy_statuses
 from msg_adapters import diagnostics
@@ -60,3 +60,9 @@ def test_a_status_says_what_was_drawn(run):
     assert (status.hardware, status.task) == ('rotor', ENERGY)
     assert status.message == '0.00142 l drawn, mean 58.6 W, peak 58.6 W'
     assert result.accounts['rotor'][OIL.key] == pytest.approx(0.00142, abs=5e-6)
+
+
+def test_mean_and_peak_of_the_power_have_their_own_words():
+    """A run of one level has both equal; this one does not."""
+    status, = energy_statuses({'ram': {OIL.key: 0.5, MEAN.key: 50.0, PEAK.key: 80.0}})
+    assert status.message == '0.5 l drawn, mean 50 W, peak 80 W'

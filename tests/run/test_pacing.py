@@ -136,3 +136,28 @@ def test_laps_charge_the_time_since_the_last_one():
     for phase in ('send', 'wait', 'send', 'wait'):
         laps.lap(phase)
     assert laps.spent == {'send': 1.5, 'wait': 6.0}
+
+
+def test_the_factor_counts_from_where_the_meter_was_started():
+    """After a pause, or from a saved state: 1 s simulated in 0.5 s, not 4 s."""
+    host = Host()
+    reports: list[RunProgress] = []
+    meter = ProgressMeter(4_000_000_000, reports.append, host.time)
+    meter.start(3_000_000_000)
+    host.now += 0.5
+    meter.end(4_000_000_000)
+    assert reports == [RunProgress(4_000_000_000, 2.0, 0.0, True)]
+
+
+def test_reports_are_a_period_apart():
+    """Of ticks of 1/16 s every fourth is the first that is 0.2 s after the report before."""
+    host = Host()
+    host.now = 0.0
+    reports: list[RunProgress] = []
+    meter = ProgressMeter(None, reports.append, host.time)
+    meter.start()
+    for tick in range(1, 17):
+        host.now = tick / 16.0
+        meter.update(tick * 62_500_000)
+    assert [report.t_ns for report in reports] == [
+        250_000_000, 500_000_000, 750_000_000, 1_000_000_000]

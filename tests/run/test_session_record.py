@@ -6,11 +6,11 @@ from typing import Any
 from isa_ros.bag.reader import Bag
 from isa_ros.config.assembly import group_of, surroundings_of
 from isa_ros.config.paths import CONFIG, find
-from isa_ros.run.coordinator import Interrupted
+from isa_ros.run.coordinator import Coordinator, Interrupted
 from isa_ros.run.options import Request
 from isa_ros.run.output import Outlets
 from isa_ros.run.packing import Packer
-from isa_ros.run.session import prepare, record
+from isa_ros.run.session import prepare, record, save_in_bag
 from isa_ros.run.without_ros import run_without_ros
 from isa_ros.tick.in_process import InProcess
 import pytest
@@ -63,3 +63,22 @@ def test_what_tripped_is_told_also_where_the_run_was_stopped(tmp_path: Path):
     with pytest.raises(Interrupted):
         run_without_ros(session, None, lambda: next(ticks) > 80)
     assert len(session.tripped) == 1
+
+
+def test_a_state_saved_after_a_reset_lies_in_the_bag_of_that_run(tmp_path: Path):
+    """In the second one: the first has another history."""
+    session = prepare(Request(config=find('rig_linear', CONFIG), out=tmp_path / 'bag',
+                              duration_s=0.005))
+    saved = []
+
+    def serve(coordinator: Coordinator) -> None:
+        if coordinator.ticks == 3 and len(session.bags) == 1:
+            coordinator.reset()
+        elif coordinator.ticks == 2 and len(session.bags) == 2:
+            saved.append(save_in_bag(session, coordinator))
+    surroundings = surroundings_of(session.run)
+    transport = InProcess(group_of(session.run), surroundings.starts())
+    record(session, transport, surroundings, lambda topics: Outlets(), None, lambda: False, serve)
+    second = tmp_path / 'bag_2'
+    assert saved == [str(second / 'state_2.json')] and Path(saved[0]).exists()
+    assert (Bag(tmp_path / 'bag').end_ns, Bag(second).end_ns) == (3_000_000, 5_000_000)

@@ -93,3 +93,20 @@ def test_a_scenario_that_accepts_says_it_in_its_text() -> None:
         read('  - {t_s: 0, position: -50}\n', more=accept)
     with pytest.raises(ConfigError, match="beyond_range = 'limit', must be one of accept"):
         read('  - {t_s: 0, position: 0.0}\n', more='beyond_range: limit\n')
+
+
+def test_a_motion_ends_before_the_tick_of_the_next_setpoint() -> None:
+    """It passes 0.1 m after t = 1.1271 s: at 1.128 s, which is the next one's first tick."""
+    scenario = read(QUARTER + '  - {t_s: 1.128, position: 0.1}\n')
+    assert knee(scenario, 1127)['position'] <= STROKE
+    with pytest.raises(ConfigError, match='at t = 1.128 s'):
+        read(QUARTER + '  - {t_s: 1.129, position: 0.1}\n')
+
+
+def test_an_equilibrium_may_be_a_stroke_beyond_either_end() -> None:
+    accept = 'beyond_range: accept\n'
+    for position in (-0.1, 0.15, 0.2):
+        tracks = f'  - {{t_s: 0, position: {position}}}\n'
+        assert knee(read(tracks, more=accept), 0)['position'] == position
+    with pytest.raises(ConfigError, match=r'position = 0.201 m, must be <= 0.2 m'):
+        read('  - {t_s: 0, position: 0.201}\n', more=accept)

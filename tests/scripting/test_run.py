@@ -199,3 +199,21 @@ def test_a_setpoint_that_is_limited_is_reported_before_the_run():
             r'far.yaml: tracks.kfe\[0\].effort = 10000 N, limited to 7500 N, the rated force')):
         result = isa_ros.load(leg, far).simulate()
     assert result.log.applied[1]['effort'].tolist() == [0.0, 0.0, 7500.0]
+
+
+def test_a_seed_for_one_run_keeps_its_faults(drop):
+    """`simulate(seed=, faults=)` is the run replaced by that seed, with these faults."""
+    fault = {'t_s': 0.005, 'actuator': 'kfe', 'fault': 'valve_stuck'}
+    found = drop.simulate(0.01, seed=7, faults=[fault])
+    expected = drop.replace({'seed': 7}).simulate(0.01, faults=[fault])
+    without = drop.replace({'seed': 7}).simulate(0.01)
+    assert np.array_equal(found['kfe.spool'], expected['kfe.spool'])
+    assert not np.array_equal(found['kfe.spool'], without['kfe.spool'])
+
+
+def test_replace_keeps_duration_compression_and_size_of_files():
+    given = isa_ros.load('leg', duration=0.02, compression='lz4', split_mb=3.0)
+    changed = given.replace({STICTION: 123.0})
+    record = changed.configuration.record
+    assert record == given.configuration.record != isa_ros.load('leg').configuration.record
+    assert changed.scenario.n_ticks == 20

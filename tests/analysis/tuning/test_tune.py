@@ -3,10 +3,12 @@
 import json
 import math
 from pathlib import Path
+from types import SimpleNamespace
 
 from isa_ros.analysis.response.bode import Bode, bode
 from isa_ros.analysis.response.rig import Choice, rig
 from isa_ros.analysis.response.sweep import Sweep
+from isa_ros.analysis.tuning import tune
 from isa_ros.analysis.tuning.design import Gains
 from isa_ros.analysis.tuning.tune import factors, NODES, schedule_through, STROKES, with_gains
 from isa_ros.cli import main as cli
@@ -136,3 +138,31 @@ def test_what_cannot_be_tuned_is_one_line_and_2(arguments, expected, capsys):
     printed = capsys.readouterr()
     assert expected in printed.err and printed.err.count('\n') == 1
     assert printed.out == ''
+
+
+def test_a_schedule_that_extrapolates_is_kept_near_its_values():
+    """Two places: the straight line through them would be negative at the other end."""
+    values = np.array([1.0, 0.1])
+    nodes = schedule_through((0.25, 0.5), values)
+    assert nodes.min() == 0.05      # half of the smallest value; the line ends at -1.7
+    steep = schedule_through((0.5, 0.75), np.array([0.1, 2.0]))
+    assert steep.max() <= 4.0 and steep.min() == 0.05
+
+
+def test_the_first_gains_keep_the_ratio_of_the_block(monkeypatch: pytest.MonkeyPatch):
+    """Each start that hunts is tried again with K_p and K_i a third of what they were."""
+    block = actuator_sheet('isa_v5').reu.force
+    assert isinstance(block, Pid) and block.ki > 0.0
+    tried = []
+
+    def hunting(self, tried_block):
+        tried.append((tried_block.kp, tried_block.ki))
+        return SimpleNamespace(hunts=True, reached=())
+    monkeypatch.setattr(tune._Bench, 'measured', hunting)
+    bench = tune._Bench.__new__(tune._Bench)
+    bench._rig = SimpleNamespace(config=SimpleNamespace(name='isa_v5'))
+    with pytest.raises(tune.NotReached):
+        bench.start(block)
+    assert [ki / kp for kp, ki in tried] == pytest.approx(
+        [block.ki / block.kp] * tune.STARTS, rel=1e-12)
+    assert tried[-1][0] == pytest.approx(block.kp / 3.0 ** (tune.STARTS - 1), rel=1e-12, abs=0.0)

@@ -22,7 +22,7 @@ def test_macro_steps_on_the_grid_are_taken(tmp_path: Path, step: str) -> None:
         assert load_run(path).step_ns == round(float(step) * 1e6)
 
 
-@pytest.mark.parametrize('step', ['0.25', '1.00001', '0.02', '0'])
+@pytest.mark.parametrize('step', ['0.25', '1.00001', '1.0000001', '0.02', '0'])
 def test_macro_steps_off_the_grid_are_refused(tmp_path: Path, step: str) -> None:
     """A tick holds five equal force windows of whole plant steps: 0.1 ms."""
     with pytest.raises(ConfigError, match='rig.yaml: step_ms = '):

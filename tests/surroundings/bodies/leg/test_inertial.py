@@ -197,3 +197,16 @@ def test_compiled_readings_equal_their_python_source(monkeypatch):
     for name in ('hinged', 'about_z', 'cross', 'carried', 'in_hip_axes', 'in_thigh_axes'):
         monkeypatch.setattr(inertial, name, getattr(inertial, name).py_func)
     assert [link_motion.py_func(link, y, a, BODY) for link in range(4)] == compiled
+
+
+def test_gyro_and_accelerometer_have_noise_of_their_own():
+    """Correlations of six axes, fifteen pairs: of independent ones normal, 1/sqrt(n) wide."""
+    n = 4000
+    own = leg(unit('calf', accelerometer_sigma=0.03, gyro_sigma=6e-4))
+    readings = np.empty((n, 6))
+    for k in range(n):
+        own._t_ns += MS
+        own._read_units(own.actuator_forces)
+        readings[k] = np.concatenate(reading(own, 'calf'))
+    pairs = np.corrcoef(readings.T)[np.triu_indices(6, 1)]
+    assert np.abs(pairs).max() < stats.norm.isf(1e-6 / 2 / 15) / math.sqrt(n)
