@@ -25,9 +25,9 @@ from isa_ros.actuator.tuning import gain_after, gains_command, Tuning
 from isa_ros.core.noise import noise_key
 from isa_ros.core.saved_state import TIME_BYTES, time_of
 from isa_ros.core.signals import COMMAND, LOAD_PORT
-from isa_ros.core.timebase import FORCE_WINDOWS, PLANT_STEP_NS, steps_in
+from isa_ros.core.timebase import FORCE_WINDOWS, NS_PER_SECOND, PLANT_STEP_NS, steps_in
 from isa_ros.errors import ConfigError, SimulationDiverged
-from isa_ros.loads.sheets import local_port, own_record, static_force
+from isa_ros.loads.sheets import own_record, static_force
 from isa_ros.reu.cascade import initial_gains
 import numpy as np
 
@@ -89,7 +89,9 @@ class SmartActuator:
         self.digest = self._hash(constants)
         self.setpoint_range = SetpointRange(config.name, config.sheet, config.beyond_range)
         """The range of its setpoints, for those that come from outside."""
-        self.tuning = Tuning(config.name, config.sheet, offset_steps, constants)
+        self.tuning = Tuning(
+            config.name, config.sheet, offset_steps, constants, config.load, self.memory.ports,
+            timing.step_ns / NS_PER_SECOND)
         """Tuned parameters, accepted and in force."""
         self._changed_mode: str | None = None
         self.start(config.initial_position, static_force(config.load), PAPER_SUPPLY, 0.0)
@@ -112,11 +114,9 @@ class SmartActuator:
         """
         self.t_ns = 0
         self._saved.clear()
-        self.accept(gains_command(self.tuning.reset()))
+        self.accept(gains_command(self.tuning.reset(position)))
         if self._changed_mode is not None:
             self.change_mode(self._changed_mode)
-        if self._config.load is not None:
-            self.memory.ports[:] = local_port(self._config.load, position)
         rest_plant(self.memory, position, force, supply_pressure, return_pressure)
         rest_loops(self.memory, self._config.sheet.reu, self._first_mode,
                    self._config.auto_enable)

@@ -135,14 +135,15 @@ class ActuatorGroup:
         n, n_ticks = len(self.actuators), len(commands)
         states: Records = np.empty((n_ticks + 1, n), STATES)
         samples: Records = np.empty((n_ticks + 1 if with_samples else 0, n), SAMPLE)
-        if n_ticks > 0:
-            self._latch()
-        done, broken = kernels.actuator_ticks(
-            self.t_ns // PLANT_STEP_NS, self._steps, ports, commands, self._memory, samples,
-            states)
-        if done > 1:    # changed parameters were new in the first tick only
-            self._latch()
-        self._end(done, broken)
+        is_settled = all(values.is_settled for values in self._values)
+        for first, after in ((0, n_ticks),) if is_settled or n_ticks < 2 else (
+                (0, 1), (1, n_ticks)):      # what has changed is new in the first tick only
+            if after > first:
+                self._latch()
+            done, broken = kernels.actuator_ticks(
+                self.t_ns // PLANT_STEP_NS, self._steps, ports, commands[first:after],
+                self._memory, samples[first:after + 1], states[first:after + 1])
+            self._end(done, broken)
         return TickLog(samples, states)
 
     def _latch(self) -> None:

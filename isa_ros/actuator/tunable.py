@@ -1,8 +1,8 @@
 """
-Parameters that may change during a run: gains of the control blocks, and those that fail.
+Parameters that may change during a run: gains of the control blocks, those that fail, the load.
 
 Users name each by the key and give it in the unit of `isa params`: ``reu.force.kp``,
-``plant.spool.stuck``, ``plant.spool.null_bias.current_ma``. Rates, filters and kinds define the
+``plant.spool.stuck``, ``load.force``. Rates, filters and kinds define the
 structure of the loops and are fixed. The gains of the impedance are part of every setpoint;
 tuning one is a setpoint that changes this gain alone.
 
@@ -11,7 +11,7 @@ unit: ``force.kp``, ``current.kp`` in V/A for ``reu.current.kp_v_per_ma``. `name
 place that translates; such names are also accepted from users, as before.
 """
 
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 import math
 
 from isa_ros.actuator.link import NO_LINK
@@ -21,12 +21,15 @@ from isa_ros.core.changeable import Changeable, changeables, marked, with_change
 from isa_ros.core.parameter import check
 from isa_ros.core.units import in_si, of_coordinate
 from isa_ros.errors import ConfigError
+from isa_ros.loads.sheets import linearised, LocalLoad
 from isa_ros.plant.plant import plant_record
 from isa_ros.plant.step_limits import LoadSide, refuse_too_fast
 from isa_ros.reu.wiring import active, VARIABLES
 
 GAINS = {'position.stiffness': 'stiffness', 'position.damping': 'damping'}
 """The gains that are part of every setpoint, and their names in a `COMMAND`."""
+LOAD = 'load.'
+"""How the names of values of the load begin."""
 _MEASURED = {
     'position': 'm | rad', 'force': 'N | Nm', 'pressure': 'Pa', 'spool': 'm', 'current': 'A'}
 """Unit of what each block controls; the current is that of coils in series."""
@@ -73,9 +76,74 @@ def refuse_unusable(sheet: ActuatorSheet) -> None:
         check(f'reu.{gain.name}', gain.value, gain.declared)
 
 
-def changing(sheet: ActuatorSheet) -> dict[str, Changeable]:
-    """Return all that may change during a run: `tunables` by their names, then all others."""
-    return tunables(sheet) | changeables(sheet)
+def changing(sheet: ActuatorSheet, load: LocalLoad | None = None) -> dict[str, Changeable]:
+    """
+    Return all that may change during a run: `tunables` by their names, then all others.
+
+    Those of a ``load`` of its own have ``load.`` in front; None: it moves a body.
+    """
+    return tunables(sheet) | changeables(sheet) | {
+        name: own._replace(key=name) for name, own in _of_load(load).items()}
+
+
+def _of_load(load: LocalLoad | None) -> dict[str, Changeable]:
+    return {} if load is None else changeables(load, LOAD)
+
+
+def with_changed_load(load: LocalLoad, values: Mapping[str, float]) -> LocalLoad:
+    """
+    Return a load with other values by the names of `changing`; others are left out.
+
+    Raises
+    ------
+    ParameterError
+        A value is out of its range.
+
+    """
+    return with_changes(load, _of_load(load), {
+        name: value for name, value in values.items() if name.startswith(LOAD)})
+
+
+def refuse_load(names: Iterable[str], load: LocalLoad | None) -> None:
+    """
+    Refuse names of values of a load where the actuator has none of its own.
+
+    Raises
+    ------
+    ConfigError
+        It moves a body.
+
+    """
+    if load is None:
+        for name in names:
+            if name.startswith(LOAD):
+                raise ConfigError(f'{name} is not used: the actuator moves a body')
+
+
+def changed_together(
+        sheet: ActuatorSheet, load: LocalLoad | None, values: Mapping[str, float],
+        known: Mapping[str, Changeable]) -> tuple[ActuatorSheet, LocalLoad | None]:
+    """
+    Return sheet and load with other values by the names of `changing`, which is ``known``.
+
+    Raises
+    ------
+    ConfigError
+        As `with_changed`, the load becomes too fast for the plant's step, or the actuator has no
+        load of its own.
+
+    """
+    refuse_load(values, load)
+    of_load = [name for name in values if name.startswith(LOAD)]
+    changed = with_changed(
+        sheet, {name: value for name, value in values.items() if name not in of_load}, known)
+    if load is None or not of_load:
+        return changed, load
+    moved = with_changed_load(load, values)
+    if linearised(moved) != linearised(load):
+        refuse_too_fast(plant_record(changed.plant)[0], changed.plant,
+                        LoadSide(*linearised(moved)))
+    return changed, moved
 
 
 def with_changed(

@@ -7,15 +7,17 @@ from typing import Any
 from isa_ros.actuator.inbox import WITH_GAINS
 from isa_ros.actuator.link import link_record
 from isa_ros.actuator.sheet import actuator_record, ActuatorSheet
-from isa_ros.actuator.tunable import changing, GAINS, named, with_changed
+from isa_ros.actuator.tunable import (
+    changed_together, changing, GAINS, LOAD, named, with_changed_load)
 from isa_ros.core.changeable import Changeable
 from isa_ros.core.changing_values import bare, ChangingValues
 from isa_ros.core.signals import COMMAND, HAS_GAINS
 from isa_ros.errors import ConfigError
+from isa_ros.loads.sheets import Blocked, local_port, LocalLoad, move_support, write_port
 from isa_ros.plant.plant import plant_record
 import numpy as np
 
-_NO_LOOPS = ('plant.', 'link.')
+_NO_LOOPS = ('plant.', 'link.', LOAD)
 """How the names of values that are not of the REU begin."""
 
 
@@ -25,25 +27,35 @@ class Tuning:
 
     ``constants`` is that row, shape (1,), made from ``sheet`` with ``offset_steps``; ``name`` is
     the actuator's. Values of `GAINS` take effect with the setpoints and are only stored here.
-    The REU's own model of its actuator stays that of the sheet when the plant changes.
+    The REU's own model of its actuator stays that of the sheet when the plant changes. ``load`` is
+    its own and ``port`` the `LOAD_PORT` of that, (1,), for ticks of ``tick`` s.
     """
 
     def __init__(
-            self, name: str, sheet: ActuatorSheet, offset_steps: int,
-            constants: np.ndarray) -> None:
+            self, name: str, sheet: ActuatorSheet, offset_steps: int, constants: np.ndarray,
+            load: LocalLoad | None, port: np.ndarray, tick: float) -> None:
         self._name = name
         self._sheet = sheet
         self._offset_steps = offset_steps
         self._constants = constants
         self._written = {part: constants[part].copy() for part in ('plant', 'reu', 'link')}
-        self._known = changing(sheet)
+        self._load, self._port, self._tick = load, port, tick
+        self._rest = 0.0
+        self._known = changing(sheet, load)
         self.values = ChangingValues(
             name, list(self._known), [own.value for own in self._known.values()])
         """All that may change."""
 
-    def reset(self) -> dict[str, float]:
-        """Restore the sheet's values until the next tick; return the `GAINS` accepted for it."""
+    def reset(self, rest: float) -> dict[str, float]:
+        """
+        Restore the sheet's values until the next tick; return the `GAINS` accepted for it.
+
+        The load is at ``rest``, m or rad.
+        """
         accepted = self.values.restart()
+        self._rest = rest
+        if self._load is not None:
+            self._port[:] = local_port(self._load, rest)
         self._write()
         return {name: value for name, value in accepted.items() if name in GAINS}
 
@@ -86,14 +98,27 @@ class Tuning:
 
     def latch(self) -> bool:
         """Begin a tick: put the accepted values in force; return whether one of a loop changed."""
-        if not self.values.latch():
+        if self.values.is_settled:
+            return False
+        is_changed = self.values.latch()
+        self._write_load()
+        if not is_changed:
             return False
         self._write()
         return not all(name.startswith(_NO_LOOPS) for name in self.applied)
 
+    def _write_load(self) -> None:
+        """Fill the port; a support moves in the tick after a change and rests in the next one."""
+        if self._load is None:
+            return
+        write_port(with_changed_load(self._load, self.values.in_force), self._port)
+        if isinstance(self._load, Blocked):
+            before, now = self.values.change(f'{LOAD}displacement')
+            move_support(self._rest, before, now, self._tick, self._port)
+
     def _changed_by(self, values: Mapping[str, float]) -> ActuatorSheet:
         try:
-            return with_changed(self._sheet, values, self._known)
+            return changed_together(self._sheet, self._load, values, self._known)[0]
         except ConfigError as error:
             raise ConfigError(f'{self._name}: {error}') from error
 

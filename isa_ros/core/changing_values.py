@@ -98,6 +98,11 @@ class ChangingValues:
         self.is_settled = bool((before == in_force).all())
         return not self.is_settled
 
+    def change(self, name: str) -> tuple[float, float]:
+        """Return the value in force before the last tick, and the one in force now."""
+        k = self._place[name]
+        return float(self._rows[_BEFORE, k]), float(self._rows[_IN_FORCE, k])
+
     @property
     def accepted(self) -> dict[str, float]:
         """Return the values of the next tick that are not the first ones."""

@@ -25,7 +25,7 @@ def parameter(
 
     ``absent`` is the value where a file has none, such as a resolved configuration older than the
     parameter; ``source`` is that of this value. ``changeable``: it may change during a run, as a
-    fault (`isa_ros.core.changeable`).
+    fault or a push (`isa_ros.core.changeable`).
     """
     declared = _declaration(doc, unit, bounds) | {'source': source}
     if absent is not None:

@@ -11,26 +11,33 @@ Neglected: the rope's mass and its swinging, air drag, the hand's reaction befor
 """
 
 from dataclasses import dataclass
+from typing import Any
 
 from isa_ros.core.constants import STANDARD_GRAVITY
 from isa_ros.core.contact import one_sided
 from isa_ros.core.kernel import kernel
-from isa_ros.core.parameter import parameter, Parameters
+from isa_ros.core.parameter import fault, parameter, Parameters
 from isa_ros.core.record import record
 from isa_ros.core.timebase import NS_PER_SECOND, PLANT_STEP_NS
 from isa_ros.errors import ParameterError
 import numpy as np
 
 
+def external_force() -> Any:
+    """Declare a force from outside on a load, which may change during a run."""
+    return fault('force from outside on it, > 0 pushes out', 'N | Nm', ge=-1e6, le=1e6)
+
+
 @dataclass(frozen=True, kw_only=True)
 class Wheel(Parameters):
     """The paper's load wheel with the rig's two end stops."""
 
-    inertia: float = parameter('wheel', 'kg | kg m2', gt=0.0, le=1e4)
+    inertia: float = parameter('wheel', 'kg | kg m2', changeable=True, gt=0.0, le=1e4)
     stop_low: float = parameter('lower end stop of the rig', 'm | rad')
     stop_high: float = parameter('upper end stop of the rig', 'm | rad')
     stop_stiffness: float = parameter('end stops', 'N/m | Nm/rad', gt=0.0, le=1e9)
     stop_damping: float = parameter('end stops', 'Ns/m | Nms/rad', ge=0.0, le=1e6)
+    force: float = external_force()
 
     def __post_init__(self) -> None:
         """Refuse a lower stop that is not below the upper one."""

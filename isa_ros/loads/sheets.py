@@ -2,15 +2,16 @@
 Loads of a single actuator, integrated in its node with the plant's step.
 
 Each is a constant load port (equation L1), an inertia with or without a spring to ground,
-plus the forces of `isa_ros.loads.forces`. Generalised units: N, m, kg or Nm, rad, kg m2.
+plus the forces of `isa_ros.loads.forces`. Generalised units: N, m, kg or Nm, rad, kg m2. Its
+inertia, the force from outside and the place of a support may change during a run, at a tick.
 """
 
 from dataclasses import dataclass
 
-from isa_ros.core.parameter import parameter, Parameters
+from isa_ros.core.parameter import fault, parameter, Parameters
 from isa_ros.core.record import record
 from isa_ros.core.signals import LOAD_PORT
-from isa_ros.loads.drop_rig import DropRig, rope_record, Wheel
+from isa_ros.loads.drop_rig import DropRig, external_force, rope_record, Wheel
 from isa_ros.loads.forces import OWN_LOAD, PAD, STOPS
 import numpy as np
 
@@ -19,46 +20,68 @@ import numpy as np
 class Blocked(Parameters):
     """The output held by a stiff support: a fixture on a spring to ground."""
 
-    inertia: float = parameter('moving part of the fixture', 'kg | kg m2', gt=0.0, le=1e4)
+    inertia: float = parameter(
+        'moving part of the fixture', 'kg | kg m2', changeable=True, gt=0.0, le=1e4)
     stiffness: float = parameter('support', 'N/m | Nm/rad', gt=0.0, le=1e9)
     damping: float = parameter('support', 'Ns/m | Nms/rad', ge=0.0, le=1e6)
+    force: float = external_force()
+    displacement: float = fault(
+        'of the support, from its place at t = 0; a new one is reached within a tick', 'm | rad',
+        ge=-10.0, le=10.0)
 
 
 @dataclass(frozen=True, kw_only=True)
 class Mass(Parameters):
-    """A free mass or inertia, with a constant force on it."""
+    """A free mass or inertia, with a force on it."""
 
-    inertia: float = parameter('moving mass', 'kg | kg m2', gt=0.0, le=1e4)
-    force: float = parameter('constant force on it, e.g. weight', 'N | Nm', ge=-1e6, le=1e6)
+    inertia: float = parameter('moving mass', 'kg | kg m2', changeable=True, gt=0.0, le=1e4)
+    force: float = parameter(
+        'force on it, e.g. weight; > 0 pushes out', 'N | Nm', changeable=True, ge=-1e6, le=1e6)
 
 
 @dataclass(frozen=True, kw_only=True)
 class Pad(Parameters):
     """A free mass that meets a pad of a given material while it extends."""
 
-    inertia: float = parameter('moving mass', 'kg | kg m2', gt=0.0, le=1e4)
+    inertia: float = parameter('moving mass', 'kg | kg m2', changeable=True, gt=0.0, le=1e4)
     gap: float = parameter('free travel from the start to the pad', 'm | rad', ge=0.0, le=10.0)
     radius: float = parameter(
         '1, or the radius at which a wheel meets the pad', 'm/m | m/rad', gt=0.0, le=10.0)
     stiffness: float = parameter('k of k d^1.5', 'N/m^1.5', gt=0.0, le=1e9)
     damping: float = parameter(
         "c of the factor 1 + c d' of Hunt and Crossley", 's/m', ge=0.0, le=100.0)
+    force: float = external_force()
 
 
 LocalLoad = Blocked | Wheel | Mass | Pad | DropRig
 
 
 def local_port(load: LocalLoad, rest: float) -> np.ndarray:
-    """Return the constant `LOAD_PORT` of a load at rest at ``rest`` (m or rad), shape (1,)."""
+    """Return the `LOAD_PORT` of a load at rest at ``rest`` (m or rad), shape (1,)."""
     port = np.zeros(1, LOAD_PORT)
     port['x0'] = rest
+    write_port(load, port)
+    return port
+
+
+def write_port(load: LocalLoad, port: np.ndarray) -> None:
+    """Write inertia, force and support of a load into its `LOAD_PORT`, shape (1,)  (L1)."""
     port['inverse_mass'] = 1.0 / load.inertia
+    port['a_bias'] = load.force / load.inertia
     if isinstance(load, Blocked):
         port['stiffness'] = load.stiffness / load.inertia
         port['damping'] = load.damping / load.inertia
-    elif isinstance(load, Mass):
-        port['a_bias'] = load.force / load.inertia
-    return port
+
+
+def move_support(rest: float, before: float, now: float, tick: float, port: np.ndarray) -> None:
+    """
+    Write the motion of a support during a tick of ``tick`` s into a `LOAD_PORT`, shape (1,).
+
+    It moves at constant speed from its displacement ``before`` to that of ``now``, m or rad from
+    its place at ``rest``.
+    """
+    port['x0'] = rest + before
+    port['v0'] = (now - before) / tick
 
 
 def own_record(load: LocalLoad | None) -> np.ndarray:

@@ -25,7 +25,8 @@ from isa_ros.core.parameter import check
 from isa_ros.core.suggest import alternatives
 from isa_ros.core.timebase import NS_PER_SECOND
 from isa_ros.errors import ConfigError
-from isa_ros.scenario.faults import Fault, ParameterChanges, read_faults, timetable
+from isa_ros.scenario.fault_reading import read_faults, refuse_changes
+from isa_ros.scenario.faults import Fault, ParameterChanges, timetable
 from isa_ros.scenario.range_check import ACCEPT, within_range
 from isa_ros.scenario.setpoints import MAX_DURATION, read_track
 from isa_ros.scenario.track import event_tree, Track
@@ -188,7 +189,7 @@ def read_scenario(tree: Tree, place: Place, run: RunConfig) -> Scenario:
     """Return the scenario of a file's tree; as `load_scenario`."""
     refuse_unknown(
         tree, ('name', 'figure', 'duration_s', BEYOND, 'leg', 'bodies', 'loads', 'tracks',
-               'faults'), place)
+               'faults', 'changes'), place)
     name = name_of(tree, 'name', place)
     n_ticks = _duration(tree.get('duration_s'), run.step_ns, f'{place}: duration_s')
     run = _with_loads(_with_starts(run, tree, place), tree, place)
@@ -204,9 +205,19 @@ def read_scenario(tree: Tree, place: Place, run: RunConfig) -> Scenario:
             track, run.actuator(name_there), run.step_ns, accepts_beyond, below)
         tracks.append(track)
         limited += lines
-    faults = read_faults(tree.get('faults', []), place / 'faults', run, n_ticks)
+    faults, others = (read_faults(tree.get(key, []), place / key, run, n_ticks)
+                      for key in ('faults', 'changes'))
+    if faults and others:
+        _refuse_together((*faults, *others), run, place)
     return Scenario(name, run, n_ticks, tuple(tracks), figure_of(tree, place), accepts_beyond,
-                    tuple(limited), faults)
+                    tuple(limited), (*faults, *others))
+
+
+def _refuse_together(faults: Sequence[Fault], run: RunConfig, place: Place) -> None:
+    try:
+        refuse_changes(faults, run)
+    except ConfigError as error:
+        raise ConfigError(f'{place}: faults and changes: {error}') from error
 
 
 def _accepts_beyond(tree: Tree, place: Place) -> bool:

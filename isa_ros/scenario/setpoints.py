@@ -16,7 +16,7 @@ from isa_ros.scenario.device_steps import (
     DEVICE_KEYS, DeviceStep, mode_before, read_device_step)
 from isa_ros.scenario.track import GAIT, ImpedanceSetpoint, MOTIONS, Track, TrackEvent
 from isa_ros.scenario.trot_motion import read_gait
-from isa_ros.scenario.waveforms import POSITION, SetpointMotion, WAVEFORMS
+from isa_ros.scenario.waveforms import MOVES, POSITION, SetpointMotion, WAVEFORMS
 
 MAX_DURATION = 1e6  # s, a bound against typing errors
 HOLD = 'hold'       # position: the start of the actuator
@@ -90,7 +90,7 @@ def _motion(tree: Tree, place: Place, run: RunConfig, actuator: ActuatorConfig,
     section = section_at(tree[given[0]], below)
     if given[0] == GAIT:
         return read_gait(section, below, actuator, run.leg, setpoint.position)
-    with_default: Tree = {'moves': POSITION}
+    with_default: Tree = {MOVES: POSITION}
     with_default |= section
     wave = build(WAVEFORMS[given[0]], written(with_default, below), below)
     wave.refuse_step(run.step_ns, str(below))

@@ -19,6 +19,7 @@ from isa_ros.core.timebase import NS_PER_SECOND
 from isa_ros.errors import ConfigError, ParameterError
 
 POSITION, EFFORT = 'position', 'effort'
+MOVES = 'moves'
 MAX_POSITION = 10.0   # m | rad, a bound against typing errors
 MAX_EFFORT = 1e8      # N, Nm or Pa, likewise
 UNITS = 'm | rad | N | Nm'

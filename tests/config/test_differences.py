@@ -67,8 +67,9 @@ def test_another_kind_is_named_with_the_keys_that_only_one_has() -> None:
     found = {key.key: key for key in differences(one.configuration, other.configuration)}
     assert found['actuators.ram.load.kind'][1:3] == ('blocked', 'mass')
     assert found['actuators.ram.load.inertia'][2:] == (20.0, 'kg')
-    assert found['actuators.ram.load.force'] == DifferingKey(
-        'actuators.ram.load.force', None, 0.0, 'N')
+    assert found['actuators.ram.load.displacement'] == DifferingKey(
+        'actuators.ram.load.displacement', 0.0, None, 'm')
+    assert 'actuators.ram.load.force' not in found
 
 
 def test_a_section_that_only_one_has_is_one_line() -> None:

@@ -61,6 +61,7 @@ class Braked(Parameters):
 
     inertia: float = parameter('moving mass', 'kg | kg m2', gt=0.0, le=1e4)
     drag: float = parameter('force per square of the speed', 'kg | kg m2', ge=0.0, le=1e6)
+    force: float = external_force()
 
 
 LocalLoad = Blocked | Wheel | Mass | Pad | DropRig | Braked

@@ -135,6 +135,22 @@ def test_a_run_that_begins_again_has_its_faults_again():
     assert states[0] == states[1]
 
 
+def test_a_load_that_is_pushed_grows_and_whose_support_moves_replays(tmp_path):
+    """A step, a sine at each tick, another inertia; a support that moves."""
+    pushed = load('rig_linear', {'name': 'pushed', 'duration_s': 0.1, 'changes': [
+        {'t_s': 0.01, 'actuator': 'ram', 'set': {'load.force': -300.0}, 'until_s': 0.05,
+         'sine': {'amplitude': 100.0, 'frequency_hz': 50.0}},
+        {'t_s': 0.03, 'actuator': 'ram', 'set': {'load.inertia': 80.0}, 'until_s': 0.08}]})
+    moved = load(pushed.replace({'actuators.ram.load': {'kind': 'blocked'}})._config.tree, {
+        'name': 'moved', 'duration_s': 0.1, 'changes': [
+            {'t_s': 0.02, 'actuator': 'ram', 'set': {'load.displacement': 2e-4}}]})
+    for name, run, changes in (('pushed', pushed, 42), ('moved', moved, 1)):
+        bag = run.simulate().save(tmp_path / name)
+        assert replayed(bag, tmp_path / f'{name} again') == content(bag)
+        tuned = recorded_inputs(Bag(bag), run.configuration).tuned['ram']
+        assert len(tuned) == changes, sorted(tuned)
+
+
 def test_a_link_that_is_lost_for_a_while_replays(tmp_path):
     """Without a frame the sample that listeners have grows old; afterwards it is young again."""
     link = {'kind': 'can', 'cycle_ms': 1.0, 'delay_cycles': 1, 'watchdog_ms': 20.0}

@@ -5,16 +5,20 @@ from dataclasses import replace
 from typing import Any
 
 from isa_ros.config.models.fault_catalogue import ACTUATOR, fault_catalogue, SUPPLY
+from isa_ros.config.paths import CONFIG, find
 from isa_ros.config.runs.run_config import RunConfig
+from isa_ros.config.runs.run_file import load_run
 from isa_ros.config.runs.supplies import SupplyConfig
 from isa_ros.config.text.sections import Place
 from isa_ros.core.timebase import NS_PER_SECOND
 from isa_ros.errors import ConfigError
-from isa_ros.scenario.faults import Fault, read_faults, timetable
+from isa_ros.scenario.fault_reading import read_faults
+from isa_ros.scenario.faults import Fault, timetable
 from isa_ros.scenario.scenario import idle, scenario_of
 import pytest
 from tests.runs import ACCUMULATOR, BUS, hip_and_knee
 
+ALONE = load_run(find('rig_linear', CONFIG))
 RUN = hip_and_knee([SupplyConfig('pump', ACCUMULATOR, ('hip', 'knee'))], BUS)
 STUCK, LEAK = 'plant.spool.stuck', 'plant.oil.cross_port_leakage'
 
@@ -148,3 +152,57 @@ def test_faults_that_are_no_list_are_refused():
 def test_a_fault_is_written_at_its_time():
     one, = faults({'t_s': 0.123, 'actuator': 'knee', 'set': {STUCK: 1}})
     assert one.tree(RUN.step_ns)['t_s'] == 123 * RUN.step_ns / NS_PER_SECOND
+
+
+PUSH = {'t_s': 0.2, 'actuator': 'knee', 'set': {'load.force': -500.0}}
+SINE = {'amplitude': 300.0, 'frequency_hz': 250.0}
+
+
+def test_a_wave_is_added_to_the_value_at_each_tick_until_its_end():
+    """250 Hz at ticks of 1 ms: 0, 1, 0, -1 of the amplitude; then the value of the sheet."""
+    found = timetable(faults({**PUSH, 'actuator': 'ram', 'until_s': 0.205, 'sine': SINE},
+                             run=ALONE), ALONE)
+    values = [found[tick].actuators[0]['+load.force'] for tick in range(200, 205)]
+    # sin() of a multiple of pi is not exactly 0: 1e-15 of 300 N
+    assert values == pytest.approx([-500.0, -200.0, -500.0, -800.0, -500.0], abs=1e-9)
+    assert found[205].actuators[0] == {'-load.force': 0.0}
+    assert sorted(found) == [*range(200, 206)]
+
+
+def test_changes_are_read_as_faults_are_and_written_back():
+    text = ('name: pushed\nduration_s: 1.0\nchanges:\n'
+            '- {t_s: 0.2, actuator: ram, set: {load.force: -500}, until_s: 0.7,\n'
+            '   pulse: {amplitude: 20.0, period_s: 0.01, width_s: 0.002}}\n'
+            'faults:\n- {t_s: 0.3, actuator: ram, fault: valve_stuck}\n')
+    scenario = scenario_of(text, ALONE)
+    assert [fault.tick for fault in scenario.faults] == [300, 200]
+    assert scenario_of(scenario.to_yaml(), ALONE).faults == scenario.faults
+    changed = {tick: scenario.changes[tick].actuators[0]['+load.force'] for tick in (200, 202)}
+    assert changed == {200: -480.0, 202: -500.0} and 201 not in scenario.changes
+
+
+@pytest.mark.parametrize(('tree', 'message'), [
+    ({**PUSH, 'sine': SINE}, r'faults\[0\] has sine: needs one waveform, one value in set, and'),
+    ({**PUSH, 'until_s': 0.5, 'sine': SINE, 'pulse': {}}, r'has sine and pulse: needs one wave'),
+    ({**PUSH, 'until_s': 0.5, 'sine': SINE, 'set': {'load.force': 0, 'load.inertia': 20}},
+     r'has sine: needs one waveform, one value in set'),
+    ({**PUSH, 'until_s': 0.5, 'sine': {**SINE, 'frequency_hz': 600.0}},
+     r'faults\[0\].sine.frequency_hz = 600 Hz, must be <= 500 Hz'),
+    ({**PUSH, 'until_s': 0.5, 'sine': {**SINE, 'moves': 'effort'}},
+     r'faults\[0\].sine.moves is not used: it is added to load.force'),
+    ({**PUSH, 'until_s': 0.5, 'sine': {**SINE, 'amplitude': 2e6}},
+     r'at 0.2 s, load.force = -2.0005e\+06 N \| Nm, must be >= -1e\+06'),
+    ({**PUSH, 'until_s': 0.5, 'set': {'load.force': 9e5}, 'sine': {**SINE, 'amplitude': 2e5}},
+     r'at 0.2 s, load.force = 1.1e\+06 N \| Nm, must be <= 1e\+06'),
+    ({**PUSH, 'set': {'load.inertia': 1e-6}}, r'set: load.inertia = 1e-06, must be >= '),
+])
+def test_a_bad_push_is_refused_in_one_line(tree, message):
+    with pytest.raises(ConfigError, match=message) as raised:
+        faults({**tree, 'actuator': 'ram'}, run=ALONE)
+    assert str(raised.value).startswith('s.yaml: faults') and '\n' not in str(raised.value)
+
+
+def test_the_load_of_an_actuator_that_moves_a_body_cannot_be_changed():
+    with pytest.raises(ConfigError, match=r'faults\[0\].set: load.force is not used: the actuator '
+                                          'moves a body'):
+        faults({**PUSH, 'actuator': 'kfe'}, run=load_run(find('leg', CONFIG)))

@@ -64,7 +64,7 @@ class ActuatorNode(Node):
         self.actuator = actuator or SmartActuator(config, timing)
         """The actuator itself."""
         self._tunables = TunableParameters(
-            self, self.actuator, changing(config.sheet), self._parameter_overrides)
+            self, self.actuator, changing(config.sheet, config.load), self._parameter_overrides)
         memory, heats_up = self.actuator.memory, is_heated(config.sheet.plant)
         self._packer = Packer(
             Names([(config.name, config.sheet.is_rotary)],

@@ -1,0 +1,202 @@
+"""
+Read the lists ``faults`` and ``changes`` of a scenario.
+
+    faults:
+    - {t_s: 0.5, actuator: kfe, set: {plant.spool.stuck: 1}, until_s: 0.8}
+    - {t_s: 0.6, supply: supply, fault: pump_trip}
+    changes:
+    - {t_s: 0.2, actuator: ram, set: {load.force: -500}, until_s: 0.7}
+    - {t_s: 0.2, actuator: ram, set: {load.force: 0}, sine: {amplitude: 200, frequency_hz: 2},
+       until_s: 1.2}
+
+Keys and units are those of `isa params`; both lists have the same form.
+"""
+
+from collections.abc import Mapping, Sequence
+from typing import Any
+
+from isa_ros.actuator.tunable import changed_together, changing, named, refuse_load
+from isa_ros.config.assembly import surroundings_of
+from isa_ros.config.models.fault_catalogue import ACTUATOR, KINDS, named_fault, numbers_at, SUPPLY
+from isa_ros.config.runs.run_config import RunConfig
+from isa_ros.config.runs.tick_grid import ticks_in
+from isa_ros.config.text.parameter_sets import build
+from isa_ros.config.text.sections import Place, refuse_unknown, section_at, written
+from isa_ros.config.text.yaml_text import Tree
+from isa_ros.core.changeable import Changeable, changeables
+from isa_ros.core.changing_values import bare, OFF
+from isa_ros.core.parameter import check
+from isa_ros.core.suggest import alternatives
+from isa_ros.core.timebase import NS_PER_SECOND
+from isa_ros.errors import ConfigError
+from isa_ros.scenario.faults import Fault, timetable
+from isa_ros.scenario.setpoints import MAX_DURATION
+from isa_ros.scenario.waveforms import EFFORT, MOVES, Waveform, WAVEFORMS
+
+LINK = 'link'
+"""Of an actuator: ``link: kfe, set: {loss: 0.1}`` is ``actuator: kfe, set: {link.loss: 0.1}``."""
+_KEYS = ('t_s', *KINDS, LINK, 'fault', 'set', 'until_s', *WAVEFORMS)
+
+
+def read_faults(
+        value: Any, place: Place, run: RunConfig, n_ticks: int | None) -> tuple[Fault, ...]:
+    """
+    Return the faults of a list; ``n_ticks`` is the length of the run, None: without end.
+
+    Raises
+    ------
+    ConfigError
+        A fault is malformed, not on a tick or after the end, its target or a key is unknown, or
+        a value is refused at the time at which it takes effect.
+
+    """
+    if not isinstance(value, (list, tuple)):
+        raise ConfigError(f'{place} = {value!r}, must be a list of faults')
+    faults = []
+    for k, one in enumerate(value):
+        below = Place(place.file, f'{place.key}[{k}]')
+        fault = _fault(section_at(one, below), below, run)
+        _refuse_after_end(fault, below, run.step_ns, n_ticks)
+        faults.append(fault)
+    try:
+        refuse_changes(faults, run)
+    except ConfigError as error:
+        raise ConfigError(f'{place}: {error}') from error
+    return tuple(faults)
+
+
+def _fault(tree: Tree, place: Place, run: RunConfig) -> Fault:
+    refuse_unknown(tree, _KEYS, place)
+    of, target = _target(tree, place)
+    tick = _tick(tree, 't_s', place, run.step_ns)
+    until = _tick(tree, 'until_s', place, run.step_ns) if 'until_s' in tree else None
+    if until is not None and until <= tick:
+        raise ConfigError(
+            f'{place}.until_s = {tree["until_s"]:g} s, must be > t_s = {tree["t_s"]:g} s')
+    values = _values(tree, of, place)
+    where = f'{place}.{"fault" if "fault" in tree else "set"}'
+    try:
+        if of == SUPPLY:
+            _refuse_keys(values, _supply_keys(run, target), where)
+            return Fault(tick, until, SUPPLY, target, values,
+                         _wave(tree, values, run.step_ns, place))
+        prefix = f'{LINK}.' if of == LINK else ''
+        actuator = run.actuator(target)
+        known = changing(actuator.sheet, actuator.load)
+        values = named(known, {f'{prefix}{key}': value for key, value in values.items()})
+        refuse_load(values, actuator.load)
+        _refuse_keys(values, known, where)
+        changed_together(actuator.sheet, actuator.load, values, known)
+    except ConfigError as error:
+        if str(error).startswith(where):
+            raise
+        raise ConfigError(f'{where}: {error}') from error
+    return Fault(tick, until, ACTUATOR, target, values, _wave(tree, values, run.step_ns, place))
+
+
+def _wave(
+        tree: Tree, values: Mapping[str, float], step_ns: int, place: Place) -> Waveform | None:
+    """Return the waveform of a fault, in the unit of messages; None: it has none."""
+    given = [kind for kind in WAVEFORMS if kind in tree]
+    if not given:
+        return None
+    if len(given) > 1 or len(values) != 1 or 'until_s' not in tree:
+        raise ConfigError(place.has(
+            f'has {" and ".join(given)}: needs one waveform, one value in set, and until_s'))
+    kind, below = given[0], place / given[0]
+    section = section_at(tree[kind], below)
+    if MOVES in section:
+        raise ConfigError(f'{below / MOVES} is not used: it is added to {next(iter(values))}')
+    wave = build(WAVEFORMS[kind], written(section | {MOVES: EFFORT}, below), below)
+    wave.refuse_step(step_ns, str(below))
+    return wave
+
+
+def _target(tree: Tree, place: Place) -> tuple[str, str]:
+    given = [name for name in (*KINDS, LINK) if name in tree]
+    if len(given) != 1:
+        raise ConfigError(place.has(
+            f'has {" and ".join(given) or "no target"}, must have one of actuator, supply, link'))
+    return given[0], str(tree[given[0]])
+
+
+def _tick(tree: Tree, key: str, place: Place, step_ns: int) -> int:
+    check(f'{place}.{key}', tree.get(key), {
+        'doc': 'time', 'unit': 's', 'bounds': {'ge': 0.0, 'le': MAX_DURATION}})
+    return ticks_in(float(tree[key]), step_ns, f'{place}.{key}')  # type: ignore[arg-type]
+
+
+def _values(tree: Tree, of: str, place: Place) -> dict[str, float]:
+    """Return the values of a named fault, with those of ``set`` in their place or beside them."""
+    if 'fault' not in tree and 'set' not in tree:
+        raise ConfigError(place.has('needs set, or fault with the name of one'))
+    values: dict[str, float] = {}
+    if 'fault' in tree:
+        named = named_fault(str(tree['fault']), place / 'fault')
+        if named.of != of:
+            raise ConfigError(
+                f'{place}.fault = {named.name!r} is a fault of the {named.of}, must be one of '
+                f'the {of}')
+        values = dict(named.values)
+    if 'set' in tree:
+        values |= numbers_at(tree['set'], place / 'set')
+    return values
+
+
+def _supply_keys(run: RunConfig, name: str) -> Mapping[str, Changeable]:
+    by_name = {supply.name: supply for supply in run.supplies}
+    if name not in by_name:
+        raise ConfigError(f'{name!r} is not a supply; {alternatives(name, by_name)}')
+    return changeables(by_name[name].sheet)
+
+
+def _refuse_keys(values: Mapping[str, float], known: Mapping[str, Changeable], where: str) -> None:
+    for key in values:
+        if key not in known:
+            raise ConfigError(
+                f'{where}: {key} is unknown or does not change during a run; '
+                f'{alternatives(key, [own.key for own in known.values()])}')
+
+
+def _refuse_after_end(fault: Fault, place: Place, step_ns: int, n_ticks: int | None) -> None:
+    if n_ticks is not None and fault.tick >= n_ticks:
+        raise ConfigError(
+            f'{place}.t_s = {fault.tick * step_ns / NS_PER_SECOND:g} s, must be < '
+            f'duration_s = {n_ticks * step_ns / NS_PER_SECOND:g} s')
+
+
+def refuse_changes(faults: Sequence[Fault], run: RunConfig) -> None:
+    """
+    Refuse values that are each in range but not together, at the time of each change.
+
+    Waves are taken at their least, and then at their greatest values.
+
+    Raises
+    ------
+    ConfigError
+        Values do not fit together; the message has the time.
+
+    """
+    for end in (0, -1) if any(fault.wave is not None for fault in faults) else (0,):
+        _refuse_steps([fault.extremes()[end] for fault in faults], run)
+
+
+def _refuse_steps(faults: Sequence[Fault], run: RunConfig) -> None:
+    if not faults:
+        return
+    surroundings = surroundings_of(run)
+    in_force: dict[int, dict[str, float]] = {}
+    for tick, changes in sorted(timetable(faults, run).items()):
+        try:
+            surroundings.tune(changes.supplies)
+            for row, values in changes.actuators.items():
+                now = in_force.setdefault(row, {})
+                for name, value in values.items():
+                    now.pop(bare(name), None)
+                    if not name.startswith(OFF):
+                        now[bare(name)] = value
+                own = run.actuators[row]
+                changed_together(own.sheet, own.load, now, changing(own.sheet, own.load))
+        except ConfigError as error:
+            raise ConfigError(
+                f'at {tick * run.step_ns / NS_PER_SECOND:g} s, {error}') from error
