@@ -12,8 +12,7 @@ from isa_ros.fieldbus.description.eds import VENDOR_NAME
 from isa_ros.fieldbus.device.bus_device import (
     BusDevice, RECEIVE_ASSIGNMENT, TRANSMIT_ASSIGNMENT, VENDOR)
 from isa_ros.fieldbus.device.objects import Object, ObjectCode, ObjectEntry
-from isa_ros.fieldbus.device.process_data import (
-    CAN_PDOS, ETHERCAT_PDO, mapped_words, RECEIVE, TRANSMIT)
+from isa_ros.fieldbus.device.process_data import CAN_PDOS, mapped_words
 from isa_ros.fieldbus.ethercat.layout import AREAS
 from isa_ros.fieldbus.ethercat.sii import build_sii, process_data_sizes
 
@@ -73,11 +72,11 @@ def _device(device: BusDevice) -> Element:
         _text(found, 'Sm', use, DefaultSize=str(sizes.get(number, area.length)),
               StartAddress=_hexadecimal(area.start), ControlByte=_hexadecimal(area.control),
               Enable='1')
-    for first, tag, assignment, manager in (
-            (RECEIVE, 'RxPdo', RECEIVE_ASSIGNMENT, _OUTPUTS),
-            (TRANSMIT, 'TxPdo', TRANSMIT_ASSIGNMENT, _INPUTS)):
+    for tag, assignment, manager in (
+            ('RxPdo', RECEIVE_ASSIGNMENT, _OUTPUTS), ('TxPdo', TRANSMIT_ASSIGNMENT, _INPUTS)):
         assigned = device.assigned(assignment)
-        pdos = [first + ETHERCAT_PDO, *range(first, first + CAN_PDOS)]
+        known = device.table.entry(assignment, 1).choices
+        pdos = sorted(known, key=lambda pdo: (pdo & 0xFF < CAN_PDOS, pdo))
         for pdo in pdos:
             found.append(_pdo(device, tag, pdo, manager if pdo in assigned else None))
     mailbox = SubElement(found, 'Mailbox', DataLinkLayer='1')

@@ -12,6 +12,7 @@ from isa_ros.fieldbus.device.communication_area import ERROR_FIELD
 from isa_ros.fieldbus.device.dictionary import Key, ObjectDictionary
 from isa_ros.fieldbus.device.drive import Drive
 from isa_ros.fieldbus.device.faults import delete_errors, Faults, PDO_LENGTH
+from isa_ros.fieldbus.device.integer_twins import take_twins, twin_actuals, TWINS
 from isa_ros.fieldbus.device.manufacturer_area import note_refusal, tunable_keys
 from isa_ros.fieldbus.device.objects import ObjectEntry, ObjectTable, Value
 from isa_ros.fieldbus.device.process_data import is_changed_in_preop, ProcessData
@@ -41,12 +42,13 @@ class ActuatorDevice:
         self._tunables = tunable_keys(axis)
         self._changes: dict[str, float] = {}
         self._drive = drive_of(axis, values, self._faults)
+        self._twins = {key: table.entry(*key) for key in TWINS}
         self._actuals |= {
             _ERROR_REGISTER: lambda: self._faults.register,
             _ERROR_CODE: lambda: self._faults.code,
             **{(one.index, one.subindex): _measured(axis, one)
                for one in table.entries if one.source},
-            **self._drive.actuals}
+            **twin_actuals(values, self._twins), **self._drive.actuals}
 
     # Objects.
 
@@ -139,6 +141,7 @@ class ActuatorDevice:
         self._take_received(layout.keys)
 
     def _take_received(self, keys: Sequence[Key]) -> None:
+        take_twins(self._values, keys, self._twins)
         self._drive.received()
         if not self.is_wanted and _CONTROL in keys:
             self.is_wanted = self._values[_CONTROL] != 0

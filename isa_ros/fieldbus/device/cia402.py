@@ -23,7 +23,8 @@ from isa_ros.fieldbus.device.drive import Drive
 from isa_ros.fieldbus.device.faults import Faults, FOLLOWING_ERROR
 from isa_ros.fieldbus.device.following_error import FollowingError
 from isa_ros.fieldbus.device.force_limits import ForceLimits
-from isa_ros.fieldbus.device.manufacturer_area import DAMPING, EFFORT, STIFFNESS
+from isa_ros.fieldbus.device.manufacturer_area import (
+    DAMPING, EFFORT, GAINS_OF_CSP, STIFFNESS)
 from isa_ros.fieldbus.device.objects import ObjectEntry, Value
 from isa_ros.fieldbus.device.setpoints import ImpedanceGains, setpoint
 from isa_ros.fieldbus.device.states import Transition
@@ -185,8 +186,9 @@ class Drive402(Drive):
 
     def _position(self, command: np.void) -> int:
         self._demand = self._limited_position(self._si(objects.TARGET_POSITION))
+        gains = self._commanded_gains() if self._values[GAINS_OF_CSP] else self._gains.of_block()
         return setpoint(command, self._demand, self._si(objects.VELOCITY_OFFSET),
-                        self._force(objects.TORQUE_OFFSET), self._gains.of_block())
+                        self._force(objects.TORQUE_OFFSET), gains)
 
     def _velocity(self, command: np.void) -> int:
         largest = self._si(objects.MAX_SPEED)
@@ -203,10 +205,13 @@ class Drive402(Drive):
 
     def _impedance(self, command: np.void) -> int:
         self._demand = self._limited_position(self._si(objects.TARGET_POSITION))
-        gains = self._gains.commanded(
-            float(self._values[STIFFNESS]), float(self._values[DAMPING]), self._limiter)
         return setpoint(command, self._demand, self._si(objects.TARGET_VELOCITY),
-                        self._force(objects.TARGET_TORQUE, objects.TORQUE_OFFSET), gains)
+                        self._force(objects.TARGET_TORQUE, objects.TORQUE_OFFSET),
+                        self._commanded_gains())
+
+    def _commanded_gains(self) -> tuple[float, float]:
+        return self._gains.commanded(
+            float(self._values[STIFFNESS]), float(self._values[DAMPING]), self._limiter)
 
     # Following error.
 

@@ -8,9 +8,12 @@ from isa_ros.core.timebase import NS_PER_SECOND
 from isa_ros.core.units import MILLI
 from isa_ros.fieldbus.device.axis import Axis, INCREMENT, PER_MILLE
 from isa_ros.fieldbus.device.dictionary import Key
+from isa_ros.fieldbus.device.integer_twins import (
+    DAMPING_TWIN, PRESSURE_A_TWIN, PRESSURE_B_TWIN, SPOOL_TWIN, STIFFNESS_TWIN)
 from isa_ros.fieldbus.device.manufacturer_area import DAMPING, STIFFNESS
 from isa_ros.fieldbus.device.objects import DataType, Object, ObjectEntry, record_of, variable
-from isa_ros.fieldbus.device.process_data import ETHERCAT_PDO, Mapped, RECEIVE, TRANSMIT
+from isa_ros.fieldbus.device.process_data import (
+    ETHERCAT_PDO, INTEGER_PDO, Mapped, RECEIVE, TRANSMIT)
 
 DEVICE_TYPE = 0x00020192
 """Profile 402, servo drive."""
@@ -61,13 +64,19 @@ PDOS_402: Mapping[int, Mapped] = {
     RECEIVE + ETHERCAT_PDO: (
         CONTROL, MODE, 8, TARGET_POSITION, TARGET_VELOCITY, VELOCITY_OFFSET, TARGET_TORQUE,
         TORQUE_OFFSET, STIFFNESS, DAMPING),
+    RECEIVE + INTEGER_PDO: (
+        CONTROL, MODE, 8, TARGET_POSITION, TARGET_VELOCITY, VELOCITY_OFFSET, TARGET_TORQUE,
+        TORQUE_OFFSET, STIFFNESS_TWIN, DAMPING_TWIN),
     TRANSMIT: (STATUS, MODE_SHOWN, TORQUE),
     TRANSMIT + 1: (POSITION, VELOCITY),
     TRANSMIT + 2: (PRESSURE_A, PRESSURE_B),
     TRANSMIT + 3: (SPOOL, ERROR_CODE),
     TRANSMIT + ETHERCAT_PDO: (
         STATUS, MODE_SHOWN, 8, POSITION, VELOCITY, TORQUE, ERROR_CODE, PRESSURE_A, PRESSURE_B,
-        SPOOL)}
+        SPOOL),
+    TRANSMIT + INTEGER_PDO: (
+        STATUS, MODE_SHOWN, 8, POSITION, VELOCITY, TORQUE, ERROR_CODE, PRESSURE_A_TWIN,
+        PRESSURE_B_TWIN, SPOOL_TWIN)}
 """Mappings by default."""
 
 

@@ -10,8 +10,10 @@ from collections.abc import Mapping
 from isa_ros.core.device import CURRENT, PRESSURE, SPOOL
 from isa_ros.fieldbus.device.axis import Axis, FULL_SCALE, INCREMENT
 from isa_ros.fieldbus.device.dictionary import Key
+from isa_ros.fieldbus.device.integer_twins import PRESSURE_A_TWIN, PRESSURE_B_TWIN
 from isa_ros.fieldbus.device.objects import DataType, Object, ObjectEntry, record_of, variable
-from isa_ros.fieldbus.device.process_data import ETHERCAT_PDO, Mapped, RECEIVE, TRANSMIT
+from isa_ros.fieldbus.device.process_data import (
+    ETHERCAT_PDO, INTEGER_PDO, Mapped, RECEIVE, TRANSMIT)
 
 DEVICE_TYPE = 0x00000198
 """Profile 408."""
@@ -45,7 +47,10 @@ PDOS_408: Mapping[int, Mapped] = {
     TRANSMIT + 3: (_FORCE, ERROR_CODE),
     TRANSMIT + ETHERCAT_PDO: (
         STATUS, CONTROL_MODE, 8, POSITION_ACTUAL, VELOCITY_ACTUAL, SPOOL_ACTUAL,
-        PRESSURE_ACTUAL, ERROR_CODE, 16, _PRESSURE_A, _PRESSURE_B)}
+        PRESSURE_ACTUAL, ERROR_CODE, 16, _PRESSURE_A, _PRESSURE_B),
+    TRANSMIT + INTEGER_PDO: (
+        STATUS, CONTROL_MODE, 8, POSITION_ACTUAL, VELOCITY_ACTUAL, SPOOL_ACTUAL,
+        PRESSURE_ACTUAL, ERROR_CODE, 16, PRESSURE_A_TWIN, PRESSURE_B_TWIN)}
 """Mappings by default."""
 
 _I8, _I16, _I32 = DataType.INTEGER8, DataType.INTEGER16, DataType.INTEGER32

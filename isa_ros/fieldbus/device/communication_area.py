@@ -60,7 +60,7 @@ def pdo_objects(pdos: Mapping[int, Mapped], entries: dict[Key, ObjectEntry]) -> 
     """Return mappings, assignments and PDO parameters; ``pdos`` are the mappings by index."""
     return [
         *(mapping_object(pdo, mapped, entries) for pdo, mapped in pdos.items()),
-        assignment_object(RECEIVE_ASSIGNMENT), assignment_object(TRANSMIT_ASSIGNMENT),
+        *(assignment_object(one, pdos) for one in (RECEIVE_ASSIGNMENT, TRANSMIT_ASSIGNMENT)),
         *(pdo_parameters(first + place, is_on=place < _PDOS_ON and bool(pdos[first + place]))
           for first in (RECEIVE, TRANSMIT) for place in range(CAN_PDOS))]
 

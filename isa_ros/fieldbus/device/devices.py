@@ -21,6 +21,7 @@ from isa_ros.fieldbus.device.communication_area import (
 from isa_ros.fieldbus.device.dictionary import Key
 from isa_ros.fieldbus.device.drive import Drive
 from isa_ros.fieldbus.device.faults import Faults
+from isa_ros.fieldbus.device.integer_twins import twin_objects
 from isa_ros.fieldbus.device.manufacturer_area import manufacturer_objects
 from isa_ros.fieldbus.device.objects import Object, ObjectTable, Value
 from isa_ros.fieldbus.device.process_data import Mapped
@@ -81,7 +82,7 @@ def _table(axis: Axis, serial: int, profile: Profile) -> tuple[Identity, ObjectT
     """Return identity and table; the product is that of all actuators with equal entries."""
     objects = [
         *error_objects(), *communication_objects(axis.step_ns), *ethercat_objects(axis.step_ns),
-        *manufacturer_objects(axis), *profile.objects(axis)]
+        *manufacturer_objects(axis), *twin_objects(axis), *profile.objects(axis)]
     entries = {(entry.index, entry.subindex): entry for one in objects for entry in one.entries}
     objects += pdo_objects(profile.pdos, entries)
     kind = axis.model + ''.join(

@@ -17,6 +17,8 @@ LAST_REFUSAL = (0x2003, 0)
 """Why the last request of the master was refused, as a text."""
 _LONGEST = 255
 STIFFNESS, DAMPING, EFFORT = (0x2010, 1), (0x2010, 2), (0x2010, 3)
+GAINS_OF_CSP = (0x2012, 0)
+"""Whether mode 8 of CiA 402 takes the gains of mode -1."""
 MIT_RANGES = 0x2002
 """Object with the ranges of MIT-mode frames."""
 _GAIN_RANGE = 10.0
@@ -59,6 +61,9 @@ def manufacturer_objects(axis: Axis) -> list[Object]:
         variable(ObjectEntry(*LAST_REFUSAL, 'Last refusal', DataType.VISIBLE_STRING, 'ro', '',
                              meaning='why the last request was refused', longest=_LONGEST)),
         _impedance(axis),
+        variable(ObjectEntry(*GAINS_OF_CSP, 'Gains of mode 8', DataType.UNSIGNED8, 'rw',
+                             choices=(0, 1), meaning='0: those of the block; 1: those of 0x2010, '
+                             'as in mode -1, for masters without negative modes')),
         *(record_of(index, name, [
             ObjectEntry(index, subindex, words, _F32, unit=units[field], pdo='tx', source=field)
             for subindex, (field, words) in enumerate(signals.items(), 1)])

@@ -5,7 +5,7 @@ CANopen has four PDOs of at most 8 bytes in each direction, EtherCAT one for eve
 or assignment is written as CiA 301 wants it: its number of entries to 0, the entries, the number.
 """
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 import struct
 from typing import NamedTuple
 
@@ -24,9 +24,12 @@ CAN_PDOS, CAN_BYTES = 4, 8
 """PDOs of CANopen in each direction, and the bytes of a frame."""
 ETHERCAT_PDO = 0x10
 """Place of EtherCAT's PDO: 0x1610 and 0x1A10."""
+INTEGER_PDO = 0x11
+"""Place of the same without real numbers: 0x1611 and 0x1A11."""
 _MOST_ENTRIES = 32
 _MOST_BYTES = 128
 _ASSIGNED = 4
+_NAMES = {ETHERCAT_PDO: 'EtherCAT', INTEGER_PDO: 'EtherCAT integers'}
 _GAP = 0
 """Index in a mapping of EtherCAT that stands for unused bits."""
 
@@ -54,7 +57,8 @@ def is_changed_in_preop(index: int) -> bool:
 def mapping_object(pdo: int, mapped: Mapped, entries: dict[Key, ObjectEntry]) -> Object:
     """Return the object of a mapping; ``entries`` are those of the device by key."""
     is_can = pdo & 0xFF < CAN_PDOS
-    name = f'{"RPDO" if pdo < TRANSMIT else "TPDO"} {(pdo & 0xFF) + 1 if is_can else "EtherCAT"}'
+    place = (pdo & 0xFF) + 1 if is_can else _NAMES[pdo & 0xFF]
+    name = f'{"RPDO" if pdo < TRANSMIT else "TPDO"} {place}'
     words = [_word(one, entries) for one in mapped]
     most = CAN_BYTES if is_can else _MOST_ENTRIES
     words += [0] * (most - len(words))
@@ -84,10 +88,10 @@ def mapped_keys(device: BusDevice, pdo: int) -> list[Key]:
             if word >> 16 != _GAP]
 
 
-def assignment_object(index: int) -> Object:
-    """Return 0x1C12 or 0x1C13, with the PDO of EtherCAT assigned."""
+def assignment_object(index: int, pdos: Iterable[int]) -> Object:
+    """Return 0x1C12 or 0x1C13, with the PDO of EtherCAT assigned; ``pdos`` are all there are."""
     first = RECEIVE if index == RECEIVE_ASSIGNMENT else TRANSMIT
-    known = (*range(first, first + CAN_PDOS), first + ETHERCAT_PDO)
+    known = tuple(sorted(pdo for pdo in pdos if (pdo < TRANSMIT) == (first == RECEIVE)))
     count = ObjectEntry(index, 0, 'Number of assigned PDOs', DataType.UNSIGNED8, 'rw', 1,
                         meaning='written in PREOP only', high=_ASSIGNED)
     side = 'RxPDO' if first == RECEIVE else 'TxPDO'

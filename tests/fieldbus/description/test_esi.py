@@ -83,7 +83,10 @@ def test_process_data_are_as_long_as_their_sync_managers(devices, root):
             bits = sum(int(one.text) for pdo in found.findall(f"{tag}[@Sm='{place}']")
                        for one in pdo.iter('BitLen'))
             assert bits == 8 * int(managers[place].get('DefaultSize'))
-            assert len(found.findall(tag)) == 5
+            all_pdos = [one.index for one in device.table if one.index >> 9 == (
+                0x1600 if place == 2 else 0x1A00) >> 9]
+            assert sorted(int(pdo.findtext('Index')[2:], 16)
+                          for pdo in found.findall(tag)) == all_pdos
 
 
 def test_the_eeprom_is_that_of_the_slave(devices, root):
