@@ -135,3 +135,16 @@ def test_the_default_mappings_are_aligned_to_4_bytes():
             bits = master.upload(pdo, k + 1) & 0xFF
             assert offset % bits == 0
             offset += bits
+
+
+@pytest.mark.parametrize('is_complete', [False, True])
+def test_a_mapping_changed_after_its_size_was_asked_for_is_used(master, is_complete):
+    """As on a CAN, whose line asks for the size when it opens."""
+    device = master.device
+    assert device.size(0x1A00) == 5
+    if is_complete:
+        device.write_all(0x1A00, struct.pack('<HII', 2, TEMPERATURE, POSITION),
+                         is_preoperational=True)
+    else:
+        remap(master, 0x1A00, TEMPERATURE, POSITION)
+    assert device.size(0x1A00) == len(device.transmit(0x1A00)) == 8

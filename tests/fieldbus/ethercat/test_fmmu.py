@@ -117,3 +117,16 @@ def test_a_buffer_written_in_two_datagrams_is_passed_on_with_the_second():
     assert master.send(Sent(LWR, 4, outputs[4:]))[0].counter == 1
     master.send(Sent(LRD, 6, bytes(6)))
     assert master.toys[0].received == [outputs]
+
+
+def test_an_fmmu_that_begins_within_a_byte_shifts_its_bits():
+    """Whole logical bytes from bit 3 on: 5 bytes that touch all 6 of the inputs."""
+    master = RawMaster()
+    master.bring_up(OP)
+    master.toys[0].target = 0x5A3C9617
+    master.tick()
+    content = int.from_bytes(master.read(0x1E00, 6), 'little')
+    master.write(0x0620, struct.pack('<IHBBHBBB', 0x9000, 5, 0, 7, 0x1E00, 3, 1, 1))
+    answer, = master.send(Sent(LRD, 0x9000, bytes(5)))
+    assert answer.counter == 1
+    assert int.from_bytes(answer.data, 'little') == content >> 3 & (1 << 40) - 1

@@ -5,7 +5,7 @@ import struct
 from isa_ros.fieldbus.device.bus_device import Emergency
 from isa_ros.fieldbus.ethercat.slave_mailbox import MOST_WAITING
 import pytest
-from tests.fieldbus.ethercat.raw_master import PREOP, RawMaster
+from tests.fieldbus.ethercat.raw_master import INIT, PREOP, RawMaster
 
 UPLOAD = struct.pack('<HBHBI', 0x2000, 0x40, 0x1000, 0, 0)
 
@@ -120,3 +120,13 @@ def test_there_are_no_emergencies_in_init():
     master.tick()
     master.bring_up(PREOP)
     assert master.fetch() is None
+
+
+def test_init_forgets_the_counter_of_the_last_mail(master):
+    """The first mail of a new session may have it, and is no repetition."""
+    master.post(UPLOAD, counter=3)
+    assert master.fetch() is not None
+    master.request(INIT)
+    master.bring_up(PREOP)
+    master.post(UPLOAD, counter=3)
+    assert master.fetch() is not None

@@ -94,3 +94,14 @@ def test_status_tells_who_used_the_buffer_last(preoperational):
     assert preoperational.number(0x080D, 1) == 0x09  # and written the answer
     preoperational.fetch()
     assert preoperational.number(0x080D, 1) == 0x02
+
+
+def test_inputs_that_waited_for_a_read_are_put_once():
+    """Those of the tick between both parts do not come back after newer ones were read."""
+    master = RawMaster()
+    master.bring_up(OP)
+    master.read(0x1E00, 4)
+    master.tick()
+    master.read(0x1E04, 2)
+    master.tick()
+    assert [struct.unpack('<Hi', master.read(0x1E00, 6))[0] for _ in range(3)] == [2, 2, 2]

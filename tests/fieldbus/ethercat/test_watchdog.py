@@ -94,3 +94,12 @@ def test_a_lost_bus_is_counted_once_until_operation(two):
     assert two.number(0x0442, 1) == 2
     two.write(0x0442, b'\0')
     assert two.number(0x0442, 1) == 0
+
+
+def test_it_expires_with_the_cycle_that_completes_its_time(two):
+    """A frame ends the cycle of the one before it: the 101st completes 100 cycles of 1 ms."""
+    for _ in range(100):
+        two.send(Sent(LRW, 0, bytes(12)))
+    assert status(two, 1) == (OP, 0)
+    two.send(Sent(LRW, 0, bytes(12)))
+    assert status(two, 1) == LOST
