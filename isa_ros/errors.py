@@ -5,8 +5,15 @@ LONGEST = 2000
 
 def one_line(text: str) -> str:
     """Return a text, which may quote an untrusted file, as one line safe for a terminal."""
-    shown = ''.join(c if c.isprintable() else repr(c)[1:-1] for c in text)
+    shown = printable(text)
     return shown if len(shown) <= LONGEST else f'{shown[:LONGEST]} ...'
+
+
+def printable(text: str) -> str:
+    """Return a text with the codes of the characters that a terminal would act on."""
+    if text.isprintable():
+        return text
+    return ''.join(c if c.isprintable() else repr(c)[1:-1] for c in text)
 
 
 class IsaError(Exception):

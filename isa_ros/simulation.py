@@ -223,8 +223,11 @@ class Simulation:
 
     def restore(self, snapshot: bytes) -> Mapping[str, np.record]:
         """Continue from a `snapshot` and return its `samples`; raises as `resume`."""
-        self.resume(RunState.from_json(
-            snapshot.decode(), self.scenario.run.digest, _SNAPSHOT))
+        try:
+            text = snapshot.decode()
+        except UnicodeDecodeError:
+            raise ConfigError(f'{_SNAPSHOT} is not a saved state of a run') from None
+        self.resume(RunState.from_json(text, self.scenario.run.digest, _SNAPSHOT))
         return self.samples
 
     @property

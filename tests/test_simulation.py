@@ -206,6 +206,12 @@ def test_a_state_of_another_run_or_of_other_controllers_is_refused():
         Simulation(idle(RUN)).restore(saved)
 
 
+@pytest.mark.parametrize('saved', [b'\xff\xfe', b'', b'{}', bytes(range(256))])
+def test_bytes_that_are_no_state_are_refused(saved: bytes) -> None:
+    with pytest.raises(ConfigError, match='is not a saved state|no saved state|not a state'):
+        Simulation(idle(RUN)).restore(saved)
+
+
 def test_a_controller_that_keeps_its_state_to_itself_cannot_be_saved():
     with pytest.raises(RunError, match=r'Controller has no snapshot\(\)'):
         Simulation(idle(RUN), [Controller()]).snapshot()

@@ -4,7 +4,8 @@ import argparse
 from pathlib import Path
 
 from isa_ros.cli import shared_arguments
-from isa_ros.cli.shared_arguments import count, file_to_write, number, positive
+from isa_ros.cli.shared_arguments import (
+    count, figure_to_write, file_to_write, number, positive)
 
 LOOPS = ('position', 'force', 'pressure', 'spool', 'current')
 
@@ -93,4 +94,4 @@ def _rig(parser: argparse.ArgumentParser, names: str) -> None:
         help='of the reference, in N, Nm, mm, deg, MPa or mA (default: 10 %% of the rated force, '
              '25 %% of spool travel and current, 1 %% of the stroke)')
     shared_arguments.json_file(parser)
-    parser.add_argument('--out', type=file_to_write, metavar='FILE.png', help='draw the figure')
+    parser.add_argument('--out', type=figure_to_write, metavar='FILE.png', help='draw the figure')

@@ -1,9 +1,13 @@
 """Arguments of several commands, and types of arguments; invalid values give one-line errors."""
 
 import argparse
+import json
 import math
 import os
 from pathlib import Path
+
+PNG = b'\x89PNG\r\n\x1a\n'
+"""How a PNG file begins."""
 
 
 def bag(parser: argparse.ArgumentParser, name: str = 'bag') -> None:
@@ -14,7 +18,7 @@ def bag(parser: argparse.ArgumentParser, name: str = 'bag') -> None:
 def json_file(parser: argparse.ArgumentParser, what: str = 'the numbers') -> None:
     """Add the JSON file for the printed numbers."""
     parser.add_argument(
-        '--json', type=file_to_write, metavar='FILE', help=f'also write {what} to a file')
+        '--json', type=json_to_write, metavar='FILE', help=f'also write {what} to a file')
 
 
 def page_directory(parser: argparse.ArgumentParser, page: str) -> None:
@@ -57,7 +61,7 @@ def not_negative(text: str) -> float:
 def number(text: str) -> float:
     """Return a finite number."""
     try:
-        value = float(text)
+        value = math.nan if '_' in text else float(text)    # Python takes 1_0 as 10
     except ValueError:
         value = math.nan
     if not math.isfinite(value):
@@ -77,7 +81,7 @@ def seed(text: str) -> int:
 
 def _whole(text: str, least: int, bound: str) -> int:
     try:
-        value = int(text)
+        value = least - 1 if '_' in text else int(text)
     except ValueError:
         value = least - 1
     if value < least:
@@ -102,6 +106,29 @@ def file_to_write(text: str) -> Path:
         raise argparse.ArgumentTypeError(f'{text}: the directory {path.parent} does not exist')
     if not os.access(path if path.exists() else path.parent, os.W_OK):
         raise argparse.ArgumentTypeError(f'{text} is not writable')
+    return path
+
+
+def json_to_write(text: str) -> Path:
+    """Return the path of a JSON file that can be written; no other file is replaced by it."""
+    path = file_to_write(text)
+    if path.exists():
+        try:
+            json.loads(path.read_bytes() or b'{}')
+        except ValueError:
+            raise argparse.ArgumentTypeError(
+                f'{text} already exists and is not JSON, so it is not overwritten') from None
+    return path
+
+
+def figure_to_write(text: str) -> Path:
+    """Return the path of a figure that can be written; only another figure is replaced by it."""
+    path = file_to_write(text)
+    if path.exists():
+        with path.open('rb') as file:
+            if file.read(len(PNG)) not in (PNG, b''):
+                raise argparse.ArgumentTypeError(
+                    f'{text} already exists and is not a PNG, so it is not overwritten')
     return path
 
 

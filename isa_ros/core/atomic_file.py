@@ -14,7 +14,7 @@ def replace_file(path: Path, data: bytes, *, is_durable: bool) -> None:
     Raises
     ------
     OSError
-        The file cannot be written; the one before is unchanged.
+        The file cannot be written, with its name; the one before is unchanged.
 
     """
     temporary = path.with_name(f'.{path.name}.tmp')
@@ -26,9 +26,9 @@ def replace_file(path: Path, data: bytes, *, is_durable: bool) -> None:
                 file.flush()
                 os.fsync(file.fileno())
         temporary.replace(path)
-    except OSError:
+    except OSError as error:
         temporary.unlink(missing_ok=True)
-        raise
+        raise OSError(error.errno, error.strerror, str(path)) from error
     if is_durable:
         sync_directory(path.parent)
 

@@ -247,7 +247,10 @@ def figure_of(tree: Tree, place: Place) -> str | None:
 def _duration(value: Any, step_ns: int, where: str) -> int:
     check(where, value, {
         'doc': 'duration', 'unit': 's', 'bounds': {'gt': 0.0, 'le': MAX_DURATION}})
-    return ticks_in(float(value), step_ns, where)
+    n_ticks = ticks_in(float(value), step_ns, where)
+    if n_ticks < 1:
+        raise ConfigError(f'{where} = {value:g} s, must be >= step_ms = {step_ns / 1e6:g} ms')
+    return n_ticks
 
 
 def _refuse_stranger(name: str, run: RunConfig, place: Place) -> None:

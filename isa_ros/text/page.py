@@ -5,6 +5,7 @@ import io
 from pathlib import Path
 from typing import Any
 
+from isa_ros.core.atomic_file import replace_file
 from isa_ros.errors import ConfigError
 from isa_ros.text.table import Cells, LEFT, markdown
 from matplotlib.figure import Figure
@@ -49,9 +50,10 @@ class Page:
         """Write the page and its figures into a directory; return their paths, the page first."""
         (directory / FIGURES if self._figures else directory).mkdir(parents=True, exist_ok=True)
         for path, drawn in self._figures.items():
-            (directory / path).write_bytes(drawn)
+            replace_file(directory / path, drawn, is_durable=False)
         page = directory / self._file_name
-        page.write_text('\n\n'.join(self._paragraphs) + '\n', encoding='utf-8')
+        text = '\n\n'.join(self._paragraphs) + '\n'
+        replace_file(page, text.encode(), is_durable=False)
         return [page, *(directory / path for path in self._figures)]
 
 

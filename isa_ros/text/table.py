@@ -8,6 +8,8 @@ columns.
 
 from collections.abc import Sequence
 
+from isa_ros.errors import printable
+
 LEFT, RIGHT = 'l', 'r'
 GAP = '  '      # between two columns
 
@@ -17,7 +19,12 @@ _RULES = {LEFT: '---', RIGHT: '---:'}
 
 
 def aligned(rows: Sequence[Cells], sides: str = LEFT) -> list[str]:
-    """Return a line for each row, every column as wide as its widest cell."""
+    """
+    Return a line for each row, every column as wide as its widest cell.
+
+    Names of an untrusted bag may be in cells: what a terminal would act on is shown as its code.
+    """
+    rows = [[printable(cell) for cell in row] for row in rows]
     widths = [max(map(len, column)) for column in zip(*rows, strict=True)]
     return [padded(row, widths, sides) for row in rows]
 

@@ -1,5 +1,6 @@
 """A file that is replaced: the old content or the new one, at any time and after any error."""
 
+import errno
 import os
 from pathlib import Path
 
@@ -65,3 +66,15 @@ def test_without_durability_the_disk_is_not_waited_for(
     monkeypatch.setattr(atomic_file.os, 'fsync', None)
     replace_file(path, b'new', is_durable=False)
     assert path.read_bytes() == b'new'
+
+
+def test_an_error_has_the_name_of_the_file(path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """A full disk says so at a write, which has no name; the file before stays."""
+    def full(*_: object) -> None:
+        raise OSError(errno.ENOSPC, 'No space left on device')
+    monkeypatch.setattr(atomic_file.os, 'fsync', full)
+    before = path.read_bytes()
+    with pytest.raises(OSError) as raised:
+        replace_file(path, b'new', is_durable=True)
+    assert (raised.value.errno, raised.value.filename) == (errno.ENOSPC, str(path))
+    assert path.read_bytes() == before and list(path.parent.iterdir()) == [path]

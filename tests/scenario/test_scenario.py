@@ -211,6 +211,7 @@ def test_a_start_the_leg_cannot_take_is_refused(text: str, expected: str, leg: R
 
 
 @pytest.mark.parametrize('duration, expected', [
+    (1e-9, 'duration = 1e-09 s, must be >= step_ms = 1 ms'),
     (0.0, 'must be > 0 s'), (1e7, 'must be <= 1e'), (0.0005, 'must be a multiple of step_ms'),
     (math.nan, 'must be finite'),
 ])

@@ -56,3 +56,9 @@ def test_a_bar_does_not_end_a_cell_of_markdown():
     (1000.0, 3, '1000'), (-41712.3, 3, '-41712'), (9999.0, 4, '9999'), (12345.0, 4, '12345')])
 def test_a_large_number_has_no_power_of_ten(value, n, expected):
     assert digits(value, n) == expected
+
+
+def test_what_a_terminal_would_act_on_is_shown_as_its_code():
+    """A name of a bag from elsewhere: a colour, a bell, a new line; as wide as the code."""
+    assert aligned([['\x1b[31mred', 'x'], ['a', '\x07\n']]) == [
+        '\\x1b[31mred  x', 'a            \\x07\\n']

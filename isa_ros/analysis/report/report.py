@@ -1,6 +1,7 @@
 """A run on one page: its figures and its extreme values, from the bag alone."""
 
 import base64
+from collections.abc import Mapping
 import html
 from pathlib import Path
 
@@ -14,6 +15,7 @@ from isa_ros.bag.provenance import SCENARIO
 from isa_ros.bag.reader import Bag
 from isa_ros.config.text.sections import Place
 from isa_ros.config.text.yaml_text import parse
+from isa_ros.core.atomic_file import replace_file
 from isa_ros.core.units import MPA
 from isa_ros.errors import BagError
 from isa_ros.scenario.scenario import figure_of
@@ -54,17 +56,29 @@ def write_report(bag: Path, page: Path) -> list[Path]:
         parse(Bag(bag).provenance.scenario, SCENARIO), Place(SCENARIO))
     if name_of_paper is not None:
         drawn = {name_of_paper: paper_figure(name_of_paper, signals)} | drawn
+    paths = {name: page.with_name(f'{page.stem}_{name}.png') for name in drawn}
+    _refuse_foreign(paths, page)
     for name, figure in drawn.items():
-        path = page.with_name(f'{page.stem}_{name}.png')
-        path.write_bytes(drawing := png(figure))
-        written.append(path)
+        replace_file(paths[name], drawing := png(figure), is_durable=False)
+        written.append(paths[name])
         encoded = base64.b64encode(drawing).decode()
         images.append(f'<img alt="{html.escape(name)}" src="data:image/png;base64,{encoded}">')
-    page.write_text(_PAGE.format(
+    text = _PAGE.format(
         generator=_GENERATOR, title=html.escape(signals.run.name),
         summary=html.escape(_summary(signals)), rows=_rows(extremes(signals)),
-        events=_events(events), images=''.join(images), energy=_energy(bag)), encoding='utf-8')
+        events=_events(events), images=''.join(images), energy=_energy(bag))
+    replace_file(page, text.encode(), is_durable=False)
     return written
+
+
+def _refuse_foreign(paths: Mapping[str, Path], page: Path) -> None:
+    """Refuse to replace figures that are not those of the report there is."""
+    there = page.read_text(encoding='utf-8', errors='replace') if page.exists() else ''
+    for name, path in paths.items():
+        if path.exists() and f'<img alt="{html.escape(name)}"' not in there:
+            raise BagError(
+                f'{path} already exists and is not a figure of {page.name}, so it is not '
+                'overwritten')
 
 
 def _refuse_others(page: Path) -> None:

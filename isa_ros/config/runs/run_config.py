@@ -292,6 +292,8 @@ def _bodies(
     if leg is not None:
         found = {BODY: (BODY, place / 'leg', {'kind': LegConfig.kind} | leg)}
     taken = [COORDINATOR, *values['actuators'], *(values['supplies'] or [SUPPLY])]
+    if is_checked:
+        _refuse_shared_names(values, place)
     bodies, origins = [], {}
     for name, (key, below, own) in found.items():
         if name != BODY and name in taken:
@@ -301,6 +303,18 @@ def _bodies(
         if section:
             origins[f'{key}.sheet'] = section
     return tuple(bodies), origins
+
+
+def _refuse_shared_names(values: dict[str, Any], place: Place) -> None:
+    """Refuse an actuator of the name of a supply or body: columns and topics have these names."""
+    others = dict.fromkeys(values['supplies'] or [SUPPLY], 'a supply')
+    if values['leg'] is not None or values[BODY] is not None:
+        others[BODY] = 'the body'
+    for name in values['actuators']:
+        if name in others:
+            raise ConfigError(
+                f'{place / "actuators" / name}: the name {name!r} is taken by {others[name]}; '
+                'columns and topics have these names')
 
 
 def _moved(

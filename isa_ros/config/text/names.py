@@ -6,9 +6,11 @@ from typing import Any
 
 from isa_ros.config.text.sections import Place
 from isa_ros.config.text.yaml_text import Tree
+from isa_ros.core.suggest import shortened
 from isa_ros.errors import ConfigError
 
-NAME_RULE = 'must be small letters, digits and single underscores'
+LONGEST = 100   # letters; a topic of DDS has at most 255 with namespace and what follows the name
+NAME_RULE = f'must be small letters, digits and single underscores, at most {LONGEST}'
 _NAME = re.compile(r'[a-z](?:_?[a-z0-9])*')
 
 
@@ -19,11 +21,12 @@ def refuse_bad_name(name: Any, where: str) -> None:
     Raises
     ------
     ConfigError
-        It is not text, or has characters other than small letters, digits and single underscores.
+        It is not text, has characters other than small letters, digits and single underscores, or
+        more than `LONGEST`.
 
     """
-    if not isinstance(name, str) or not _NAME.fullmatch(name):
-        raise ConfigError(f'{where} = {name!r}, {NAME_RULE}')
+    if not isinstance(name, str) or not _NAME.fullmatch(name) or len(name) > LONGEST:
+        raise ConfigError(f'{where} = {shortened(repr(name))}, {NAME_RULE}')
 
 
 def name_of(tree: Tree, key: str, place: Place) -> str:

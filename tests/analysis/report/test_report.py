@@ -60,3 +60,20 @@ def test_what_is_no_bag_is_refused(tmp_path, capsys, name):
     (tmp_path / 'empty').mkdir()
     assert main(['report', str(tmp_path / name)]) == 2
     assert capsys.readouterr().err.count('\n') == 1
+
+
+def test_a_foreign_figure_beside_the_page_is_not_replaced(tmp_path):
+    """Neither before the first report nor beside one that does not have it."""
+    foreign = tmp_path / 'report_rotor.png'
+    foreign.write_bytes(b'mine')
+    with pytest.raises(BagError, match='report_rotor.png already exists and is not a figure of'):
+        write_report(GOLDEN / 'rotor_step', tmp_path / 'report.html')
+    assert foreign.read_bytes() == b'mine' and not (tmp_path / 'report.html').exists()
+    foreign.unlink()
+    write_report(GOLDEN / 'rotor_step', tmp_path / 'report.html')
+    other = tmp_path / 'report_leg.png'
+    other.write_bytes(b'mine')
+    with pytest.raises(BagError, match='report_leg.png already exists'):
+        write_report(GOLDEN / 'leg_touchdown', tmp_path / 'report.html')
+    assert other.read_bytes() == b'mine'
+    assert foreign.read_bytes().startswith(PNG)

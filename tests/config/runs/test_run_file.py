@@ -271,3 +271,33 @@ def test_controllers_of_file_and_command_line_take_part(tmp_path):
     run = load_run(path).with_controllers(['sway'])
     assert run.controllers == ('gait', 'balance', 'sway')
     assert RunConfig.from_yaml(run.to_yaml()) == run
+
+
+SUPPLY = {'kind': 'constant', 'pressure_mpa': 20.7, 'return_pressure_mpa': 0.0}
+RAM = {'model': 'isa_v5', 'load': {'kind': 'mass'}}
+
+
+@pytest.mark.parametrize(('tree', 'message'), [
+    ({'supply': SUPPLY, 'actuators': {'supply': RAM}},
+     "actuators.supply: the name 'supply' is taken by a supply; columns"),
+    ({'supplies': {'pump': {**SUPPLY, 'feeds': ['pump']}}, 'actuators': {'pump': RAM}},
+     "actuators.pump: the name 'pump' is taken by a supply"),
+    ({'supply': SUPPLY, 'body': {'kind': 'external', 'actuators': ['body']},
+      'actuators': {'body': {'model': 'isa_v5'}}},
+     "actuators.body: the name 'body' is taken by the body"),
+])
+def test_two_things_of_one_name_are_refused(tree: dict[str, Any], message: str) -> None:
+    """A result would lose columns of the one, and the accounts the other."""
+    with pytest.raises(ConfigError, match=f'rig.yaml: {message}'):
+        run_of({'name': 'rig', **tree}, Place('rig.yaml'))
+
+
+def test_a_name_has_at_most_a_hundred_letters() -> None:
+    for n, is_short in ((100, True), (101, False)):
+        tree = {'name': 'rig', 'supply': SUPPLY, 'actuators': {'a' * n: RAM}}
+        if is_short:
+            assert run_of(tree, Place('rig.yaml'))[0].actuators[0].name == 'a' * n
+            continue
+        with pytest.raises(ConfigError, match="= 'a{20}.*, at most 100") as raised:
+            run_of(tree, Place('rig.yaml'))
+        assert len(str(raised.value)) < 300

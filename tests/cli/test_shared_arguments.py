@@ -1,0 +1,32 @@
+"""Types of arguments: numbers as they are meant, and files that may be replaced."""
+
+from argparse import ArgumentTypeError
+from pathlib import Path
+
+from isa_ros.cli.shared_arguments import (
+    count, figure_to_write, json_to_write, number, PNG, positive, seed)
+import pytest
+
+
+@pytest.mark.parametrize('of', [number, positive, count, seed])
+def test_an_underscore_is_not_a_digit(of) -> None:
+    """Python takes 1_0 as 10."""
+    assert of('10') == 10
+    with pytest.raises(ArgumentTypeError, match="'1_0' must be a "):
+        of('1_0')
+
+
+@pytest.mark.parametrize(('of', 'own', 'foreign', 'what'), [
+    (json_to_write, b'{"a": 1}', b'rosbag2_bagfile_information:\n  version: 9\n', 'is not JSON'),
+    (figure_to_write, PNG + b'...', b'\xff\xd8\xff a photograph', 'is not a PNG')])
+def test_a_file_of_another_kind_is_not_replaced(
+        tmp_path: Path, of, own: bytes, foreign: bytes, what: str) -> None:
+    path = tmp_path / 'out'
+    assert of(str(path)) == path
+    for content in (own, b''):
+        path.write_bytes(content)
+        assert of(str(path)) == path
+    path.write_bytes(foreign)
+    with pytest.raises(ArgumentTypeError, match=f'already exists and {what}, so it is not over'):
+        of(str(path))
+    assert path.read_bytes() == foreign
