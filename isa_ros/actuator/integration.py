@@ -2,8 +2,10 @@
 The continuous states of one actuator with its load copy, and one step of their integration.
 
 They live in one record of floats (`CONTINUOUS`), so that the integrator sees the same memory as a
-flat array. Energies are integrals of powers that act on nothing: Simpson's rule over the plant
-steps gives them from one evaluation a step, where the states need four.
+flat array. A step that touches pressures below the atmosphere integrates the volumes that the
+chambers' oil lacks instead of pressures (C11). Energies are integrals of powers that act on
+nothing: Simpson's rule over the plant steps gives them from one evaluation a step, where the
+states need four.
 """
 
 import math
@@ -11,6 +13,7 @@ import math
 from isa_ros.core.kernel import kernel
 from isa_ros.loads.forces import LOAD_STATE, own_load_force
 from isa_ros.loads.port import load_acceleration
+from isa_ros.plant.chambers import begin_volumes, end_volumes, is_of_volumes
 from isa_ros.plant.energy import ENERGIES
 from isa_ros.plant.plant import plant_rates, PLANT_STATE, settle
 import numpy as np
@@ -53,11 +56,15 @@ def state_name(index: int) -> str:
 
 
 @kernel
-def write_rates(tau, y, drive, port, actuator, rates, counts):
-    """Write the derivative of a `CONTINUOUS` into ``rates``; its powers only if it ``counts``."""
+def write_rates(tau, y, drive, port, actuator, of_volumes, rates, counts):
+    """
+    Write the derivative of a `CONTINUOUS` into ``rates``; its powers only if it ``counts``.
+
+    ``of_volumes``: within a step of volumes, between `begin_volumes` and `end_volumes`.
+    """
     force, q_p, q_t = plant_rates(
         y.plant, y.load.position, y.load.velocity, drive,
-        port.supply_pressure, port.return_pressure, actuator.plant, rates.plant,
+        port.supply_pressure, port.return_pressure, actuator.plant, of_volumes, rates.plant,
         counts, rates.totals.energies)
     own = own_load_force(y.load, port.x0, actuator.load, rates.load)
     rates.load.position = y.load.velocity
@@ -95,34 +102,67 @@ def add_powers(weight, y, k):
 
 
 @kernel
+def stages(h, tau, drive, port, actuator, of_volumes, continuous, rates, y, k):
+    """Write the four rates of a classical Runge-Kutta step of ``h`` seconds."""
+    write_rates(tau, continuous[0], drive, port, actuator, of_volumes, rates[0], True)
+    for j in range(TOTALS_AT):
+        y[1, j] = y[0, j] + 0.5 * h * k[0, j]
+    write_rates(tau + 0.5 * h, continuous[1], drive, port, actuator, of_volumes, rates[1], False)
+    for j in range(TOTALS_AT):
+        y[1, j] = y[0, j] + 0.5 * h * k[1, j]
+    write_rates(tau + 0.5 * h, continuous[1], drive, port, actuator, of_volumes, rates[2], False)
+    for j in range(TOTALS_AT):
+        y[1, j] = y[0, j] + h * k[2, j]
+    write_rates(tau + h, continuous[1], drive, port, actuator, of_volumes, rates[3], False)
+
+
+@kernel
+def is_torn(h, state, rates):
+    """Return whether a pressure is below the atmosphere after a step of pressures of ``h`` s."""
+    k_1, k_2 = rates[0].plant.chambers, rates[1].plant.chambers
+    k_3, k_4 = rates[2].plant.chambers, rates[3].plant.chambers
+    return (state.p_a + h / 6.0 * (k_1.p_a + 2.0 * (k_2.p_a + k_3.p_a) + k_4.p_a) < 0.0
+            or state.p_b + h / 6.0 * (k_1.p_b + 2.0 * (k_2.p_b + k_3.p_b) + k_4.p_b) < 0.0)
+
+
+@kernel
 def rk4_step(h, tau, drive, port, actuator, continuous, rates, y, k, weight):
     """
     Advance ``continuous[0]`` by one classical Runge-Kutta step of ``h`` seconds.
 
     ``continuous[1]`` holds the stage; ``y`` and ``k`` are flat views of it and ``rates``.
-    The powers at the beginning of the step enter the energies with ``weight``, in s.
+    The powers at the beginning of the step enter the energies with ``weight``, in s. A step of
+    pressures that ends below the atmosphere is repeated as one of volumes  (C11).
     """
-    write_rates(tau, continuous[0], drive, port, actuator, rates[0], True)
+    own, oil = continuous[0].plant, actuator.plant.chambers
+    of_volumes = is_of_volumes(
+        h, own.chambers, own.mechanics.position, own.mechanics.velocity, oil)
+    while True:
+        if of_volumes:
+            begin_volumes(own.chambers, own.mechanics.position, oil)
+        stages(h, tau, drive, port, actuator, of_volumes, continuous, rates, y, k)
+        if of_volumes or not is_torn(h, own.chambers, rates):
+            break
+        of_volumes = True
     add_powers(weight, y, k)
-    for j in range(TOTALS_AT):
-        y[1, j] = y[0, j] + 0.5 * h * k[0, j]
-    write_rates(tau + 0.5 * h, continuous[1], drive, port, actuator, rates[1], False)
-    for j in range(TOTALS_AT):
-        y[1, j] = y[0, j] + 0.5 * h * k[1, j]
-    write_rates(tau + 0.5 * h, continuous[1], drive, port, actuator, rates[2], False)
-    for j in range(TOTALS_AT):
-        y[1, j] = y[0, j] + h * k[2, j]
-    write_rates(tau + h, continuous[1], drive, port, actuator, rates[3], False)
     for j in range(ENERGIES_AT):
         value = y[0, j] + h / 6.0 * (k[0, j] + 2.0 * (k[1, j] + k[2, j]) + k[3, j])
         y[0, j] = 0.0 if abs(value) < NOTHING else value
-    settle(h, continuous[0].plant, port.return_pressure, actuator.plant)
+    if of_volumes:
+        end_volumes(own.chambers, own.mechanics.position, oil)
+    settle(own, actuator.plant)
 
 
 @kernel
 def end_steps(tau, weight, drive, port, actuator, continuous, rates, y, k):
     """Add the powers after the last step with their ``weight``, in s."""
-    write_rates(tau, continuous[0], drive, port, actuator, rates[0], True)
+    own, oil = continuous[0].plant, actuator.plant.chambers
+    of_volumes = is_of_volumes(0.0, own.chambers, own.mechanics.position, 0.0, oil)
+    if of_volumes:
+        begin_volumes(own.chambers, own.mechanics.position, oil)
+    write_rates(tau, continuous[0], drive, port, actuator, of_volumes, rates[0], True)
+    if of_volumes:
+        end_volumes(own.chambers, own.mechanics.position, oil)
     add_powers(weight, y, k)
 
 

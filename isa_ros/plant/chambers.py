@@ -3,9 +3,9 @@ The two oil chambers: volumes, pressures, cavities, and the force they make.
 
 Chamber A is the cap side: its pressure extends. ``s`` is the piston position in m (rotor
 angle in rad), 0 at the retracted end, ``area`` the piston area in m2 (displacement D_m in
-m3/rad). Pressures are gauge. Each swept volume is counted once (errata 16). Oil does not fall
-below its vapour pressure: the volume that it lacks is that of a cavity. Neglected: the volume
-that entrained air needs when it expands, but for the bulk modulus; the air does not leave.
+m3/rad). Pressures are gauge. Each swept volume is counted once (errata 16). The state is the
+pressure of each chamber, and while its oil boils the volume of the cavity; a step that touches
+pressures below the atmosphere, or oil with air, is one of volumes (C11, `cavitation`).
 """
 
 from dataclasses import dataclass
@@ -13,12 +13,13 @@ import math
 from typing import Any
 
 from isa_ros.core.constants import ATMOSPHERE
-from isa_ros.core.elementary import exp, log
 from isa_ros.core.kernel import kernel
 from isa_ros.core.parameter import fault, parameter, Parameters
 from isa_ros.core.record import record
+from isa_ros.core.timebase import PLANT_STEP
 from isa_ros.core.units import MILLI, MILLILITRE
 from isa_ros.errors import ParameterError
+from isa_ros.plant.cavitation import contents, lack, LEAST_AIR_PRESSURE, modulus
 import numpy as np
 
 
@@ -87,7 +88,7 @@ class Oil(Parameters):
     cross_port_leakage: float = parameter(
         'C_li', 'm3/s/Pa', changeable=True, ge=0.0, le=1e-11)
     aeration_pressure_kpa: float = parameter(
-        'pressure below return at which released air halves the bulk modulus',
+        'pressure below the atmosphere at which released air halves the bulk modulus',
         'kPa', gt=0.0, le=100.0)
     vapour_pressure_kpa: float = parameter(
         'absolute pressure at which the oil boils', 'kPa', ge=0.0, le=50.0)
@@ -105,24 +106,37 @@ CHAMBERS = np.dtype([
     ('area_a', 'f8'), ('area_b', 'f8'), ('stroke', 'f8'),
     ('dead_volume', 'f8'), ('beta', 'f8'), ('c_li', 'f8'), ('p_air', 'f8'),
     ('p_vapour', 'f8'),     # Pa gauge
-    ('air', 'f8'), ('leaks_out', 'f8'), ('c_le_a', 'f8'), ('c_le_b', 'f8')])
-AIR_EXPONENT = 1.4          # 1, kappa of air: it is compressed without exchange of heat
-LEAST_AIR_PRESSURE = 1e3    # Pa absolute, at which the air of C12 is not thinned any further
+    ('air', 'f8'), ('leaks_out', 'f8'), ('c_le_a', 'f8'), ('c_le_b', 'f8'),
+    ('least_a', 'f8'), ('least_b', 'f8')])  # m3, below which a step is one of volumes
+FASTEST_SPRING = 0.2    # rad in a step: RK4 of pressures loses 1e-10 of the oil at rest in it
+MOST_SWEPT = 0.01       # 1, of a chamber's volume z in a step: RK4 of pressures loses z^5/120
 CHAMBERS_STATE = np.dtype([
     ('p_a', 'f8'), ('p_b', 'f8'),
-    ('cavity_a', 'f8'), ('cavity_b', 'f8')])    # m3 of vapour, 0 above the vapour pressure
+    ('cavity_a', 'f8'), ('cavity_b', 'f8')])    # m3 of vapour; within a step of volumes: `lack`
 
 
-def chambers_record(drive: Cylinder | Vane, oil: Oil) -> np.record:
-    """Return the `CHAMBERS` record."""
+def chambers_record(
+        drive: Cylinder | Vane, oil: Oil, inertia: float = math.inf) -> np.record:
+    """
+    Return the `CHAMBERS` record; air of no pressure would fill any volume  (C12).
+
+    The oil of a smaller chamber than its least is a spring of ``inertia`` (kg | kg m2) that is
+    faster than `FASTEST_SPRING`.
+    """
     area_a, area_b = drive.areas
+    slowest = PLANT_STEP / FASTEST_SPRING
+    least = oil.effective_bulk_modulus / inertia * slowest * slowest
+    vapour = oil.vapour_pressure_kpa * 1e3
+    if oil.entrained_air > 0.0:
+        vapour = max(vapour, LEAST_AIR_PRESSURE)
     return record(
         CHAMBERS, area_a=area_a, area_b=area_b, stroke=drive.stroke,
         dead_volume=oil.dead_volume_ml * MILLILITRE, beta=oil.effective_bulk_modulus,
         c_li=oil.cross_port_leakage, p_air=oil.aeration_pressure_kpa * 1e3,
-        p_vapour=oil.vapour_pressure_kpa * 1e3 - ATMOSPHERE, air=oil.entrained_air,
+        p_vapour=vapour - ATMOSPHERE, air=oil.entrained_air,
         leaks_out=float(oil.external_leakage_a + oil.external_leakage_b > 0.0),
-        c_le_a=oil.external_leakage_a, c_le_b=oil.external_leakage_b)
+        c_le_a=oil.external_leakage_a, c_le_b=oil.external_leakage_b,
+        least_a=least * area_a * area_a, least_b=least * area_b * area_b)
 
 
 @kernel
@@ -130,43 +144,6 @@ def volumes(s, chambers):
     """Return (V_A, V_B) = (V_p + A_A s, V_p + A_B (L - s)) in m3  (C1)."""
     return (chambers.dead_volume + chambers.area_a * s,
             chambers.dead_volume + chambers.area_b * (chambers.stroke - s))
-
-
-@kernel
-def stiffening(p, p_t, chambers):
-    """
-    Return the bulk modulus at pressure ``p``, in Pa  (C5).
-
-    beta_eff above the return pressure; below it released air softens the oil:
-    beta_eff / (1 + (P_T - p)/p_air), down to the vapour pressure.
-    """
-    if p >= p_t:
-        return chambers.beta
-    return chambers.beta / (1.0 + (p_t - max(p, chambers.p_vapour)) / chambers.p_air)
-
-
-@kernel
-def aerated(p, beta, air):
-    """
-    Return the bulk modulus of oil of modulus ``beta`` with entrained air, in Pa  (C12).
-
-    (a r + 1 - a) / (a r/(kappa p) + (1 - a)/beta) with r = (p_0/p)^(1/kappa), p absolute: air of
-    the share a of the volume at atmospheric pressure p_0, in series with the oil. At no less
-    than `LEAST_AIR_PRESSURE`, so that nothing is divided by zero.
-    """
-    absolute = max(p + ATMOSPHERE, LEAST_AIR_PRESSURE)
-    bubbles = air * exp(log(ATMOSPHERE / absolute) / AIR_EXPONENT)
-    return (bubbles + 1.0 - air) / (
-        bubbles / (AIR_EXPONENT * absolute) + (1.0 - air) / beta)
-
-
-@kernel
-def modulus(p, p_t, chambers):
-    """Return `stiffening`, with entrained air `aerated`, in Pa  (C5, C12)."""
-    beta = stiffening(p, p_t, chambers)
-    if chambers.air > 0.0:
-        beta = aerated(max(p, chambers.p_vapour), beta, chambers.air)
-    return beta
 
 
 @kernel
@@ -186,14 +163,14 @@ def leakage_loss(p_a, p_b, chambers):
 
 
 @kernel
-def elastances(p_a, p_b, s, p_t, chambers):
+def elastances(s, chambers):
     """
-    Return (beta/V_A, beta/V_B), the pressures per volume of oil, in Pa/m3  (C1, C5).
+    Return (beta/V_A, beta/V_B) of oil above the atmosphere without air, in Pa/m3  (C1, C2).
 
     The volumes are positive within the range of the end stops.
     """
     v_a, v_b = volumes(s, chambers)
-    return modulus(p_a, p_t, chambers) / v_a, modulus(p_b, p_t, chambers) / v_b
+    return chambers.beta / v_a, chambers.beta / v_b
 
 
 @kernel
@@ -213,41 +190,55 @@ def surpluses(q_a, q_b, p_a, p_b, v, chambers):
 
 
 @kernel
-def pressure_rates(q_a, q_b, p_a, p_b, s, v, p_t, chambers):
-    """Return (dP_A/dt, dP_B/dt) in Pa/s of `surpluses` and `elastances`  (C2)."""
+def pressure_rates(q_a, q_b, p_a, p_b, s, v, chambers):
+    """Return (dP_A/dt, dP_B/dt) in Pa/s of `surpluses`, without cavities  (C2, C5, C12)."""
     in_a, in_b = surpluses(q_a, q_b, p_a, p_b, v, chambers)
-    per_a, per_b = elastances(p_a, p_b, s, p_t, chambers)
-    return per_a * in_a, per_b * in_b
+    v_a, v_b = volumes(s, chambers)
+    return modulus(p_a, chambers) / v_a * in_a, modulus(p_b, chambers) / v_b * in_b
 
 
 @kernel
-def boiled(p, cavity, elastance, p_vapour):
+def is_of_volumes(h, y, s, v, chambers):
     """
-    Return (pressure, cavity) with the pressure not below that of the vapour, in Pa, m3  (C11).
+    Return whether a step of ``h`` s from a `CHAMBERS_STATE` has volumes for its states  (C11).
 
-    The oil lacks cavity + (p_vapour - p)/elastance at the vapour pressure; as long as that is
-    positive it is the cavity, so that no oil is lost.
+    Below the atmosphere, with a cavity or air, and in a chamber that is too small for a step of
+    pressures: by `FASTEST_SPRING`, or because the piston sweeps too much of it.
     """
-    lacking = cavity + (p_vapour - p) / elastance
-    if lacking > 0.0:
-        return p_vapour, lacking
-    return p_vapour - lacking * elastance, 0.0
+    v_a, v_b = volumes(s, chambers)
+    swept = h * abs(v)
+    return (min(y.p_a, y.p_b) < 0.0 or max(y.cavity_a, y.cavity_b) > 0.0 or chambers.air > 0.0
+            or v_a < chambers.least_a or swept * chambers.area_a > MOST_SWEPT * v_a
+            or v_b < chambers.least_b or swept * chambers.area_b > MOST_SWEPT * v_b)
 
 
 @kernel
-def boil(h, y, s, v, p_t, chambers):
-    """
-    Let the oil of one `CHAMBERS_STATE` boil or its cavities close, after a step of ``h`` s  (C11).
+def begin_volumes(y, s, chambers):
+    """Begin a step of volumes: write the `lack` of both chambers in place of their cavities."""
+    v_a, v_b = volumes(s, chambers)
+    y.cavity_a = lack(y.p_a, y.cavity_a, v_a, chambers)
+    y.cavity_b = lack(y.p_b, y.cavity_b, v_b, chambers)
 
-    The elastance is that at the vapour pressure and, to second order, of the step's volume.
+
+@kernel
+def end_volumes(y, s, chambers):
+    """End a step of volumes: write pressures and cavities of what both chambers lack  (C11)."""
+    v_a, v_b = volumes(s, chambers)
+    y.p_a, _, _ = contents(y.cavity_a, v_a, y.p_a, chambers)
+    y.p_b, _, _ = contents(y.cavity_b, v_b, y.p_b, chambers)
+    y.cavity_a, y.cavity_b = max(0.0, y.cavity_a), max(0.0, y.cavity_b)
+
+
+@kernel
+def lack_rates(gained_a, gained_b, more_a, more_b, v, chambers):
     """
-    p_vapour = chambers.p_vapour
-    if min(y.p_a, y.p_b) < p_vapour or max(y.cavity_a, y.cavity_b) > 0.0:
-        a, b = elastances(p_vapour, p_vapour, s - 0.5 * h * v, p_t, chambers)
-        if y.p_a < p_vapour or y.cavity_a > 0.0:
-            y.p_a, y.cavity_a = boiled(y.p_a, y.cavity_a, a, p_vapour)
-        if y.p_b < p_vapour or y.cavity_b > 0.0:
-            y.p_b, y.cavity_b = boiled(y.p_b, y.cavity_b, b, p_vapour)
+    Return the rates of both `lack`, A s' - e Q_A and -A s' - e Q_B, in m3/s  (C11).
+
+    ``gained_a`` is Q_A - A s', the oil that a chamber gains beyond what its piston sweeps; e is
+    1 + ``more_a``, the density of its oil over that at the vapour pressure.
+    """
+    return (-gained_a - more_a * (gained_a + chambers.area_a * v),
+            -gained_b - more_b * (gained_b - chambers.area_b * v))
 
 
 @kernel

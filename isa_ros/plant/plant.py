@@ -13,7 +13,7 @@ from isa_ros.core.record import record
 from isa_ros.plant import (
     chambers, coil, friction, mechanics, relief, sensors, servo_valve, spool, thermal,
     valve_record)
-from isa_ros.plant.chambers import boil
+from isa_ros.plant.cavitation import contents
 from isa_ros.plant.spool import block_spool, stop_spool
 from isa_ros.plant.thermal import LumpedThermal, NoneThermal
 from isa_ros.plant.valve_sheets import DataSheetValve, DualGainValve, HighResponseValve
@@ -80,7 +80,7 @@ def plant_record(sheet: LinearPlant | RotaryPlant) -> np.recarray:
     celsius = sheet.oil.temperature_celsius
     own_spool = spool.spool_record(sheet.spool, celsius)
     lands = valve_record.valve_record(sheet.valve, area_a / area_b)
-    oil = chambers.chambers_record(sheet.drive, sheet.oil)
+    oil = chambers.chambers_record(sheet.drive, sheet.oil, sheet.mechanics.inertia)
     seals = friction.friction_record(sheet.friction)
     return np.array([record(
         PLANT,
@@ -126,7 +126,7 @@ def rest_pressures(
 
 
 @kernel
-def plant_rates(y, x_load, v_load, drive, p_s, p_t, plant, rates, counts, powers):
+def plant_rates(y, x_load, v_load, drive, p_s, p_t, plant, of_volumes, rates, counts, powers):
     """
     Write dy/dt of one `PLANT_STATE` into ``rates``; return (sensor force, q_p, q_t).
 
@@ -134,9 +134,8 @@ def plant_rates(y, x_load, v_load, drive, p_s, p_t, plant, rates, counts, powers
     voltage (V). ``x_load`` and ``v_load`` are the load's side of the force sensor. Forces
     in N or Nm, flows in m3/s (equation M4: inertia * s'' = f_h - f_friction - f_sensor +
     f_stop). ``powers``, an `ENERGIES` record, receives where the power goes, in W, if it
-    ``counts``  (E2 to E6).
+    ``counts``  (E2 to E6). A step ``of_volumes`` has the `lack` of the chambers as their state.
     """
-    p_a, p_b = y.chambers.p_a, y.chambers.p_b
     s, v = y.mechanics.position, y.mechanics.velocity
 
     coil.coil_rates(y.coil, drive, plant.coil, rates.coil)
@@ -144,15 +143,29 @@ def plant_rates(y, x_load, v_load, drive, p_s, p_t, plant, rates, counts, powers
                + spool.null_bias(p_s, p_t, plant.spool))
     spool.spool_rates(y.spool, current, plant.valve.k_spool, plant.spool, rates.spool)
 
-    per_a, per_b = chambers.elastances(p_a, p_b, s, p_t, plant.chambers)
+    if of_volumes:
+        v_a, v_b = chambers.volumes(s, plant.chambers)
+        p_a, per_a, more_a = contents(
+            y.chambers.cavity_a, v_a, y.chambers.p_a, plant.chambers)
+        p_b, per_b, more_b = contents(
+            y.chambers.cavity_b, v_b, y.chambers.p_b, plant.chambers)
+    else:
+        p_a, p_b, more_a, more_b = y.chambers.p_a, y.chambers.p_b, 0.0, 0.0
+        per_a, per_b = chambers.elastances(s, plant.chambers)
     opened, leaks = servo_valve.conductances(y.spool.position, plant.valve)
     roots = servo_valve.root_drops(opened, p_a, p_b, p_s, p_t, per_a, per_b, plant.valve)
     q_a, q_b, q_p, q_t = servo_valve.metered(opened, roots)
     in_a, in_b = chambers.surpluses(q_a, q_b, p_a, p_b, v, plant.chambers)
     out_a = relief.eased_flow(p_a, p_t, in_a, per_a, plant.relief)
     out_b = relief.eased_flow(p_b, p_t, in_b, per_b, plant.relief)
-    rates.chambers.p_a = per_a * (in_a - out_a)
-    rates.chambers.p_b = per_b * (in_b - out_b)
+    if of_volumes:
+        rates.chambers.p_a = rates.chambers.p_b = 0.0
+        rates.chambers.cavity_a, rates.chambers.cavity_b = chambers.lack_rates(
+            in_a - out_a, in_b - out_b, more_a, more_b, v, plant.chambers)
+    else:
+        rates.chambers.p_a = per_a * (in_a - out_a)
+        rates.chambers.p_b = per_b * (in_b - out_b)
+        rates.chambers.cavity_a = rates.chambers.cavity_b = 0.0
 
     z = y.friction.bristle
     z_rate = friction.bristle_rate(v, z, plant.friction)
@@ -178,12 +191,11 @@ def plant_rates(y, x_load, v_load, drive, p_s, p_t, plant, rates, counts, powers
 
 
 @kernel
-def settle(h, y, p_t, plant):
-    """Apply to one `PLANT_STATE` after a step of ``h`` s what no rate can: stop and cavities."""
+def settle(y, plant):
+    """Apply to one `PLANT_STATE` after a step what no rate can: the stop of the spool."""
     stop_spool(y.spool, plant.valve.x_max)
     if plant.spool.is_stuck > 0.0:
         block_spool(y.spool)
-    boil(h, y.chambers, y.mechanics.position, y.mechanics.velocity, p_t, plant.chambers)
 
 
 @kernel

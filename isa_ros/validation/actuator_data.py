@@ -92,7 +92,7 @@ def _oil() -> list[Entry]:
     v_a = volumes(0.5 * oil.stroke, oil)[0]
 
     def rate(flow: float, p_a: float) -> float:
-        return float(pressure_rates(flow, 0.0, p_a, 0.0, 0.5 * oil.stroke, 0.0, 0.0, oil)[0])
+        return float(pressure_rates(flow, 0.0, p_a, 0.0, 0.5 * oil.stroke, 0.0, oil)[0])
     beta = rate(LPM, 0.0) * v_a / LPM
     return [
         Entry.given('manifold_bulk_modulus', modulus, beta,

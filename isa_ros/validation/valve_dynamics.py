@@ -104,7 +104,8 @@ def linearised(model: str) -> tuple[np.ndarray, np.ndarray]:
 
     def rate(state: np.ndarray, drive: float) -> np.ndarray:
         y.coil.current, y.spool.position, y.spool.velocity, y.spool.acceleration = state
-        plant_rates(y, 0.0, 0.0, drive, SUPPLY, 0.0, plant, rates, False, no_powers())
+        plant_rates(
+            y, 0.0, 0.0, drive, SUPPLY, 0.0, plant, False, rates, False, no_powers())
         return np.array([rates.coil.current, rates.spool.position, rates.spool.velocity,
                          rates.spool.acceleration])
     matrix = np.array([rate(SMALL * unit, 0.0) for unit in np.eye(4)]).T / SMALL

@@ -43,7 +43,7 @@ def test_the_force_gain_is_that_of_the_fastest_place(rod_mm):
     crossovers = []
     for place, stiffness in zip(np.linspace(0.0, plant.chambers.stroke, POINTS), in_loop):
         rates = chambers.pressure_rates(
-            q_a, q_b, HALF, HALF, place, 0.0, 0.0, plant.chambers)
+            q_a, q_b, HALF, HALF, place, 0.0, plant.chambers)
         oil = chambers.oil_stiffness(place, plant.chambers)
         force_rate = chambers.hydraulic_force(*rates, plant.chambers) / (
             1.0 + oil / plant.mechanics.k_s)

@@ -81,7 +81,7 @@ def system_rates(bodies, y, supply_pressure, is_held, system, rates):
     for j in range(3):
         force, _, _ = plant_rates(
             bodies[j].plant, x[j], v[j], system.reus[j].amplifier, supply_pressure, 0.0,
-            system.actuators[j].plant, rates[j].plant, False,
+            system.actuators[j].plant, False, rates[j].plant, False,
             rates[j].totals.energies)
         bodies[j].load.position, bodies[j].load.velocity = x[j], v[j]
         rates[j].totals.impulse = force

@@ -82,7 +82,7 @@ def test_the_balance_of_one_instant_closes(model, x, p_a, p_b, v, v_load, place,
     y.spool.position, y.chambers.p_a, y.chambers.p_b = x, p_a, p_b
     y.mechanics.position = s = place * plant.chambers.stroke
     y.mechanics.velocity, y.friction.bristle = v, z
-    _, q_p, q_t = plant_rates(y, s - stretch, v_load, 0.0, SUPPLY, BACK, plant, rates, True,
+    _, q_p, q_t = plant_rates(y, s - stretch, v_load, 0.0, SUPPLY, BACK, plant, False, rates, True,
                               powers)
     own = plant.mechanics
     spring = own.k_s * play(stretch, own.backlash) * (v - v_load)

@@ -6,7 +6,7 @@ import math
 from isa_ros.core.constants import ATMOSPHERE
 from isa_ros.core.parameter import fault, Parameters
 from isa_ros.errors import ParameterError
-from isa_ros.plant import chambers, coil, plant, spool
+from isa_ros.plant import cavitation, chambers, coil, plant, spool
 import numpy as np
 import pytest
 from tests.sheets import actuator_sheet, override, plant_row, setpoint, smart_actuator
@@ -88,28 +88,27 @@ def test_with_one_coil_the_amplifiers_voltage_gives_half_the_current():
 @pytest.mark.parametrize('air', [1e-3, 0.05, 0.2])
 @pytest.mark.parametrize('p', [0.0, 1e5, 2e6, 20.7e6])
 def test_the_modulus_of_oil_with_air_is_that_of_its_volume(p, air):
-    """C12: -V dP/dV of V = a (p_0/p)^(1/kappa) + (1 - a)(1 - (p - p_0)/beta), by differences."""
-    beta = 7e8
+    """C12: -V dP/dV of V = a (p_0/p)^(1/kappa) + (1 - a) exp(-(p - p_0)/beta), by differences."""
+    beta = oil().beta
 
     def volume(at: float) -> float:
         bubbles = (ATMOSPHERE / (at + ATMOSPHERE)) ** (1.0 / 1.4)
-        return air * bubbles + (1.0 - air) * (1.0 - at / beta)
+        return air * bubbles + (1.0 - air) * math.exp(-at / beta)
     h = 1e-4 * (p + ATMOSPHERE)
     expected = -volume(p) * 2.0 * h / (volume(p + h) - volume(p - h))
-    # C12 weighs the oil with its volume at p_0, too much by the share p/beta of it; the
-    # differences are right to (h/p)^2
-    weight = p / beta / (1.0 - p / beta)
-    assert chambers.aerated(p, beta, air) == pytest.approx(expected, rel=weight + 1e-7, abs=0.0)
+    # the differences are right to (h/p)^2
+    assert cavitation.modulus(p, oil(entrained_air=air)) == pytest.approx(
+        expected, rel=1e-7, abs=0.0)
 
 
 def test_without_air_the_modulus_has_the_same_bits():
     for p in (-1e5, -10.0, 0.0, 3e6):
-        assert chambers.modulus(p, 0.0, oil()) == chambers.stiffening(p, 0.0, oil())
+        assert cavitation.modulus(p, oil()) == cavitation.stiffening(p, oil())
 
 
 def test_air_softens_the_oil_most_at_low_pressure_and_never_stiffens_it():
     airy, sound = oil(entrained_air=0.05), oil()
-    shares = [chambers.modulus(p, 0.0, airy) / chambers.modulus(p, 0.0, sound)
+    shares = [cavitation.modulus(p, airy) / cavitation.modulus(p, sound)
               for p in (0.0, 1e6, 5e6, 20e6)]
     assert shares == sorted(shares) and 0.0 < shares[0] < 0.01 and shares[-1] < 1.0
 
@@ -117,7 +116,7 @@ def test_air_softens_the_oil_most_at_low_pressure_and_never_stiffens_it():
 def test_oil_with_air_at_no_pressure_is_soft_and_finite():
     """The guard: at vapour pressure 0 the air would fill everything."""
     airy = oil(entrained_air=0.2, vapour_pressure_kpa=0.0)
-    assert 0.0 < chambers.modulus(-ATMOSPHERE, 0.0, airy) < 1e4
+    assert 0.0 < cavitation.modulus(-ATMOSPHERE, airy) < 1e4
 
 
 def test_a_chamber_leaks_empty_as_an_exponential():
@@ -127,7 +126,7 @@ def test_a_chamber_leaks_empty_as_an_exponential():
     v_a, _ = chambers.volumes(s, row)
 
     def rate(at: float) -> float:
-        return float(chambers.pressure_rates(0.0, 0.0, at, 0.0, s, 0.0, 0.0, row)[0])
+        return float(chambers.pressure_rates(0.0, 0.0, at, 0.0, s, 0.0, row)[0])
     for _ in range(steps):
         k_1 = rate(p)
         k_2 = rate(p + 0.5 * h * k_1)
@@ -225,7 +224,7 @@ def test_a_broken_relief_spring_holds_the_pressure_where_its_flow_is_the_valves(
 
 
 @pytest.mark.parametrize(('function', 'arguments'), [
-    (chambers.aerated, (2e6, 7e8, 0.05)), (chambers.external_leakage, (2e6, 1e-12)),
-    (chambers.modulus, (-3e4, 0.0, oil(entrained_air=0.01)))])
+    (chambers.external_leakage, (2e6, 1e-12)),
+    (cavitation.modulus, (-3e4, oil(entrained_air=0.01)))])
 def test_compiled_equals_python(function, arguments):
     assert function(*arguments) == function.py_func(*arguments)

@@ -101,7 +101,7 @@ def rates_at(
     y.mechanics.position = x = 0.5 * plant.chambers.stroke
     for name, value in chamber.items():
         setattr(y.chambers, name, value)
-    return rates, plant_rates(y, x, 0.0, 0.0, supply, 0.0, plant, rates, False, no_powers())
+    return rates, plant_rates(y, x, 0.0, 0.0, supply, 0.0, plant, False, rates, False, no_powers())
 
 
 @pytest.mark.parametrize(('p_a', 'p_b'), [(9e6, 12e6), (23e6, 5e6), (5e6, 23e6)])
@@ -140,7 +140,7 @@ def test_the_valve_feels_the_resonance_of_its_coil():
     plant = plant_record(sheet.plant)[0]
     y, rates = (np.zeros(1, PLANT_STATE).view(np.recarray)[0] for _ in 'yr')
     y.coil.mode = 1e-3
-    plant_rates(y, 0.0, 0.0, 0.0, SUPPLY, 0.0, plant, rates, False, no_powers())
+    plant_rates(y, 0.0, 0.0, 0.0, SUPPLY, 0.0, plant, False, rates, False, no_powers())
     series = plant.coil.mode_share * 1e-3 / 2.0
     w_n = plant.spool.w_n
     assert rates.spool.acceleration == pytest.approx(w_n * w_n * plant.spool.k_pilot * series)
@@ -153,7 +153,7 @@ def test_hydraulic_power_is_work_storage_and_leakage(x, p_a, p_b, v, fraction):
     plant = plant_row('isa_v5')
     oil, s = plant.chambers, fraction * plant.chambers.stroke
     q_a, q_b, _, _ = servo_valve.port_flows(x, p_a, p_b, SUPPLY, 0.0, plant.valve)
-    rates = chambers.pressure_rates(q_a, q_b, p_a, p_b, s, v, 0.0, oil)
+    rates = chambers.pressure_rates(q_a, q_b, p_a, p_b, s, v, oil)
     volumes = chambers.volumes(s, oil)
     work = chambers.hydraulic_force(p_a, p_b, oil) * v
     stored = sum(vol / oil.beta * p * rate for vol, p, rate in zip(volumes, (p_a, p_b), rates))

@@ -80,7 +80,7 @@ def test_the_opening_gives_the_wanted_force_rate(rate, velocity, place, share_a,
             continue
         q_a, q_b, _, _ = servo_valve.port_flows(x, p_a, p_b, SUPPLY, 0.0, plant.valve)
         piston = speed + wanted / plant.mechanics.k_s
-        rates = chambers.pressure_rates(q_a, q_b, p_a, p_b, s, piston, 0.0, oil)
+        rates = chambers.pressure_rates(q_a, q_b, p_a, p_b, s, piston, oil)
         given_rate = chambers.hydraulic_force(*rates, oil)
         # scale: the terms that cancel
         scale = abs(wanted) + chambers.oil_stiffness(s, oil) * (abs(speed) + abs(piston)) + 1.0
@@ -118,7 +118,7 @@ def test_the_opening_counts_from_the_return_pressure(model, direction):
     assert 0.0 < direction * x < law.model.x_max
     q_a, q_b, _, _ = servo_valve.port_flows(x, p, p, SUPPLY, 2e6, plant.valve)
     rates = chambers.pressure_rates(
-        q_a, q_b, p, p, s, wanted / plant.mechanics.k_s, 2e6, oil)
+        q_a, q_b, p, p, s, wanted / plant.mechanics.k_s, oil)
     # a dozen roundings, and the orifices' smoothing of 1e-3 Pa on 3 MPa: 1e-19
     assert chambers.hydraulic_force(*rates, oil) == pytest.approx(wanted, rel=1e-9, abs=0.0)
 

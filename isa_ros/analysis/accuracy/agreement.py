@@ -3,8 +3,9 @@ The plant against another solver: the error of the fixed step in solving the equ
 
 `scipy`'s adaptive DOP853 integrates the same `write_rates` with a tolerance of 1e-12. It starts
 anew wherever the current reference jumps, and shrinks its steps to pass the kinks: null and the
-dual-gain point, reversals, the amplifier's voltage limit, relief and refill. With a tolerance
-of 1e-13 its solution differs by at most 4e-10 of each state's largest value.
+dual-gain point, reversals, the amplifier's voltage limit, relief and refill. It integrates the
+volumes that the oil lacks (C11), whose rates do not jump where oil begins to boil. With a
+tolerance of 1e-13 its solution differs by at most 4e-10 of each state's largest value.
 """
 
 from collections.abc import Iterator
@@ -20,6 +21,7 @@ from isa_ros.config.text.sections import Place
 from isa_ros.core.kernel import kernel
 from isa_ros.core.timebase import PLANT_STEP
 from isa_ros.loads.sheets import local_port, own_record
+from isa_ros.plant.chambers import begin_volumes, elastances, end_volumes
 from isa_ros.plant.mechanics import sensor_force
 from isa_ros.plant.plant import rest_pressures
 import numpy as np
@@ -71,7 +73,7 @@ class Difference:
 @kernel
 def rates_of_first(tau, drive, ports, actuators, bodies, rates):
     """Write the derivative of ``bodies[0]`` into ``rates[0]``."""
-    kernels.write_rates(tau, bodies[0], drive, ports[0], actuators[0], rates[0], True)
+    kernels.write_rates(tau, bodies[0], drive, ports[0], actuators[0], True, rates[0], True)
 
 
 class Bench:
@@ -108,13 +110,20 @@ class Bench:
 
     def adaptive(self, piece: Piece, scale: np.ndarray, tolerance: float) -> np.ndarray:
         """Return the same states by scipy; ``scale`` is the largest value of each state."""
-        state, rows = self._start, []
+        own, oil = self._bodies.view(np.recarray)[0].plant, self._plant.chambers
+        self._y[0] = scale
+        own.chambers.cavity_a, own.chambers.cavity_b = np.array(
+            (own.chambers.p_a, own.chambers.p_b)) / elastances(0.5 * oil.stroke, oil)
+        absolute, rows = tolerance * self._y[0], []
+        self._y[0] = self._start
         for current in piece.currents:
+            begin_volumes(own.chambers, own.mechanics.position, oil)
             solved = solve_ivp(
-                self._slopes, (0.0, ROW), state, method='DOP853', args=(current,),
-                rtol=tolerance, atol=tolerance * scale)
-            state = solved.y[:, -1]
-            rows.append(state)
+                self._slopes, (0.0, ROW), self._y[0].copy(), method='DOP853', args=(current,),
+                rtol=tolerance, atol=absolute)
+            self._y[0] = solved.y[:, -1]
+            end_volumes(own.chambers, own.mechanics.position, oil)
+            rows.append(self._y[0].copy())
         return np.array(rows)
 
     def _slopes(self, tau: float, state: np.ndarray, current: float) -> np.ndarray:

@@ -71,7 +71,7 @@ def slope(y, command, cylinder):
     q_a, q_b, _, _ = servo_valve.port_flows(
         u, p_a, p_b, cylinder.p_s, cylinder.p_t, cylinder.valve)
     rate_a, rate_b = chambers.pressure_rates(
-        q_a, q_b, p_a, p_b, 0.5 * oil.stroke + x, v, cylinder.p_t, oil)
+        q_a, q_b, p_a, p_b, 0.5 * oil.stroke + x, v, oil)
     force = (chambers.hydraulic_force(p_a, p_b, oil)
              - cylinder.damping * v - cylinder.stiffness * x)
     return (v, force / cylinder.mass, rate_a, rate_b, u_rate,
