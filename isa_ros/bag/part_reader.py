@@ -14,7 +14,7 @@ from typing import NamedTuple
 from isa_ros.bag.message_chunk import MESSAGE_HEADER
 from isa_ros.bag.part_writer import CONTINUES, NUMBER, PART, TYPE_HASH
 from isa_ros.bag.records import (
-    chunk_content, End, parse_record, read_records, Record)
+    chunk_content, End, FREE_RECORDS, parse_record, read_records, Record)
 from isa_ros.errors import BagError
 from mcap.opcode import Opcode
 from mcap.records import Attachment, Channel, Chunk, McapRecord, Metadata, Schema
@@ -137,12 +137,17 @@ class PartReader:
 
     def _chunk_messages(self, chunk: Chunk, where: str) -> Iterator[BagMessage]:
         data = self._content = chunk_content(chunk, where)
-        end = 0
+        end, left = 0, max(FREE_RECORDS, len(chunk.data))
         while end < len(data):  # as `chunk_records`, in a third of the time
             begin, end = end, end + _HEAD_BYTES
             end += int.from_bytes(data[begin + 1:end], 'little')
             if end > len(data):
                 raise BagError(f'{where}: a record reaches beyond its chunk')
+            left -= 1
+            if left < 0:
+                raise BagError(
+                    f'{where}: more records in a chunk than its {len(chunk.data)} compressed '
+                    'bytes, must not be more')
             opcode = data[begin]
             if opcode == _MESSAGE:
                 yield self._message(data, begin, end, where)

@@ -30,6 +30,10 @@ MAX_EXPANSION = 1000
 """Bytes a chunk of more than `FREE_BYTES` may hold for each of its compressed ones."""
 FREE_BYTES = 64 * 1024
 
+FREE_RECORDS = 10_000
+"""Records that a chunk may have in any case; above, one for each compressed byte: a message has a
+time and a number of its own, which take more."""
+
 _HEAD_BYTES = 9  # opcode, length
 _FOOTER_CRC_BYTES = 4
 _PARSED: dict[int, Any] = {

@@ -99,6 +99,24 @@ def test_chunk_of_zeros_is_no_loop_without_end(tmp_path, refused, codec):
     assert 'unknown record 0x00 in a chunk' in refused('replay', path)
 
 
+@pytest.mark.parametrize('opcode', [0x80, 0x05], ids=['private', 'message'])
+def test_a_chunk_of_millions_of_empty_records_is_refused(tmp_path, refused, opcode):
+    """
+    200 000 records of 9 bytes in 1.8 kB, which is within the limit of its expansion.
+
+    Of messages the first is refused before that limit, for it has no channel.
+    """
+    content = (bytes([opcode]) + bytes(8)) * 200_000
+    packed = zstandard.ZstdCompressor().compress(content).ljust(1800, b'\0')
+    path = tmp_path / 'empty.mcap'
+    path.write_bytes(b'\x89MCAP0\r\n' + chunk_record('zstd', packed, len(content)))
+    text = refused('replay', path)
+    if opcode == 0x80:
+        assert 'more records in a chunk than its' in text
+    else:
+        assert 'a message record of 9 bytes' in text
+
+
 def test_messages_without_end_at_one_instant_are_refused(tmp_path, monkeypatch):
     monkeypatch.setattr(reader, 'MAX_TICK_MESSAGES', 50)
     bag = Bag(foreign(tmp_path / 'x.mcap', n=51))

@@ -10,6 +10,7 @@ import time
 from typing import Any, Protocol
 
 from isa_ros.nodes.middleware.handles import has_handles
+from msg_adapters.joint_state import is_whole
 from rclpy.experimental.events_executor import EventsExecutor
 from rclpy.impl.implementation_singleton import rclpy_implementation as _rclpy
 from rclpy.impl.rcutils_logger import RcutilsLogger
@@ -17,6 +18,7 @@ from rclpy.node import Node
 from rclpy.serialization import deserialize_message
 from rclpy.service import Service
 from rclpy.subscription import Subscription
+from sensor_msgs.msg import JointState
 
 SERVICE_PERIOD_S = 0.005
 """Host time between two checks of a node's services; setpoints are checked at every tick."""
@@ -64,6 +66,9 @@ class DirectServer:
         for take_message, message_type, subscription in self._subscriptions:
             # As bytes: otherwise a message object is created even if there is no message.
             while (taken := take_message(message_type, True)) is not None:
+                if message_type is JointState and not is_whole(taken[0]):
+                    self._discard(f'a message on {subscription.topic_name}')
+                    continue
                 try:
                     message = deserialize_message(taken[0], message_type)
                 except _NOT_OF_ITS_TYPE:  # bytes of a publisher of serialised messages
