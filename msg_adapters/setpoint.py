@@ -51,20 +51,54 @@ def msg_to_command(message: JointState, name: str) -> np.void:
     Return the COMMAND row of a setpoint for actuator ``name``.
 
     Entry NAME holds position, velocity and effort; the optional entries NAME/stiffness and
-    NAME/damping a gain in ``position``. Missing velocity or effort is zero, a missing gain
-    is NaN and leaves the gain in force unchanged. The entry NAME/current (amplifier A),
-    NAME/spool (m) or NAME/pressure (Pa of difference) is the setpoint of that mode, and may be
-    the only one.
+    NAME/damping a gain in ``position``. Missing velocity or effort is zero; a missing position is
+    NaN, as are all three where they are NaN in the message: not given, which the mode in force
+    may allow. A missing gain is NaN and leaves the gain in force unchanged. The entry NAME/current
+    (amplifier A), NAME/spool (m) or NAME/pressure (Pa of difference) is the setpoint of that mode,
+    and may be the only one.
 
     Raises
     ------
     SetpointError
-        a name is unknown or occurs twice, a position is missing, a value is not finite, a gain
-        is negative, or there are references of two modes; the whole message is rejected.
+        a name is unknown or occurs twice, the number of another entry than NAME is missing or not
+        finite, a value is infinite, a gain is negative, there are references of two modes, or
+        NAME has no number at all; the whole message is rejected.
 
     """
     return _command(message, name, [
         name, *(f'{name}/{entry}' for entry in (*GAINS_OF_COMMAND, *REFERENCES))])
+
+
+def msg_to_commands(message: JointState, joints: Sequence[str]) -> dict[str, np.void]:
+    """
+    Return the COMMAND row of each of ``joints`` that a message names, by its name.
+
+    The entries of each joint are those of `msg_to_command`.
+
+    Raises
+    ------
+    SetpointError
+        As `msg_to_command`, or the message names no joint or others than ``joints``.
+
+    """
+    names = list(message.name)
+    owners = [name.partition('/')[0] for name in names]
+    unknown = [name for name, owner in zip(names, owners) if owner not in joints]
+    if unknown or not names:
+        raise SetpointError(
+            f'setpoint names {listed(unknown)}, must name joints of {listed(joints)}')
+    for field in ARRAYS:
+        values = getattr(message, field)
+        if len(values) not in (0, len(names)):
+            raise SetpointError(
+                f'setpoint has {len(values)} values of {field} for {len(names)} names')
+    found = {}
+    for joint in dict.fromkeys(owners):
+        places = [k for k, owner in enumerate(owners) if owner == joint]
+        found[joint] = msg_to_command(JointState(name=[names[k] for k in places], **{
+            field: [values[k] for k in places]
+            for field in ARRAYS if (values := getattr(message, field))}), joint)
+    return found
 
 
 def applied_to_command(data: bytes, name: str) -> np.void:
@@ -85,6 +119,8 @@ def applied_to_command(data: bytes, name: str) -> np.void:
         raise SetpointError(
             f'{name}: applied setpoint names {listed(message.name)}, must name {listed(names)}')
     command = _command(message, name, names)
+    for field in ARRAYS:
+        _finite(f'{name}: setpoint {field}', float(command[field]))
     command['kinds'] = HAS_SETPOINT | HAS_ENABLE
     values = dict(zip(_APPLIED, message.position[1:]))
     for entry, most in (('enabled', 1), ('mode', len(MODES) - 1),
@@ -179,9 +215,11 @@ def _command(message: JointState, name: str, known: Sequence[str]) -> np.void:
     if name in names:
         k = names.index(name)
         command['kinds'] = HAS_SETPOINT
-        for field in ARRAYS:
+        if not any(getattr(message, field)[k:k + 1] for field in ARRAYS):
+            raise SetpointError(f'{name}: setpoint has neither position, velocity nor effort')
+        for field, absent in zip(ARRAYS, (math.nan, 0.0, 0.0)):
             values = getattr(message, field)
-            command[field] = values[k] if k < len(values) else 0.0
+            command[field] = values[k] if k < len(values) else absent
     for gain in GAINS_OF_COMMAND:
         entry = f'{name}/{gain}'
         command[gain] = message.position[names.index(entry)] if entry in names else math.nan
@@ -206,13 +244,15 @@ def _check(message: JointState, name: str, names: list[str], known: Sequence[str
             f'{name}: unknown setpoint entries {listed(unknown)}, must be of {listed(known)}')
     if len(set(names)) != len(names):
         raise SetpointError(f'{name}: setpoint names an entry twice: {listed(names)}')
-    if len(message.position) != len(names):
+    n_positions = len(message.position)
+    if n_positions != len(names) and (n_positions or names != [name]):
         raise SetpointError(
-            f'{name}: setpoint has {len(message.position)} positions for {len(names)} names')
+            f'{name}: setpoint has {n_positions} positions for {len(names)} names')
     for field in ARRAYS:
         values = getattr(message, field)
         if len(values) > len(names):
             raise SetpointError(
                 f'{name}: setpoint has {len(values)} values of {field} for {len(names)} names')
         for k, value in enumerate(values):
-            _finite(f'{names[k]}: setpoint {field}', value)
+            if names[k] != name or math.isinf(value):
+                _finite(f'{names[k]}: setpoint {field}', value)

@@ -18,10 +18,10 @@ from isa_ros.actuator.requests import mode_after, mode_command, refusal_of, star
 from isa_ros.actuator.rest import rest_loops, rest_plant
 from isa_ros.actuator.rows import Memory, memory_of, row_record
 from isa_ros.actuator.saved_rows import SavedRows
-from isa_ros.actuator.setpoint_range import SetpointRange
+from isa_ros.actuator.setpoint_range import complete, SetpointRange
 from isa_ros.actuator.sheet import actuator_record
 from isa_ros.actuator.tunable import GAINS
-from isa_ros.actuator.tuning import gain_after, gains_command, Tuning
+from isa_ros.actuator.tuning import gain_after, gains_command, position_after, Tuning
 from isa_ros.core.noise import noise_key
 from isa_ros.core.saved_state import TIME_BYTES, time_of
 from isa_ros.core.signals import COMMAND, LOAD_PORT
@@ -166,6 +166,7 @@ class SmartActuator:
 
         """
         limited = self.setpoint_range.admit(command, self.mode)
+        complete(command, position_after(self._pending, self._reu))
         self.accept(command)
         return limited
 

@@ -10,15 +10,18 @@ from collections.abc import Iterator, Mapping, Sequence
 import math
 from typing import NamedTuple
 
+from isa_ros.actuator.ratings import ratings_of
 from isa_ros.actuator.sheet import ActuatorSheet
 from isa_ros.actuator.tunable import GAINS, tunables
-from isa_ros.core.device import CURRENT, MODES, PRESSURE, SPOOL
+from isa_ros.core.changeable import sound
+from isa_ros.core.device import CURRENT, FORCE, IMPEDANCE, MODES, POSITION, PRESSURE, SPOOL
 from isa_ros.core.record import floats
 from isa_ros.core.signals import COMMAND, HAS_MODE, HAS_REFERENCE, HAS_SETPOINT, Records
 from isa_ros.core.timebase import NS_PER_SECOND
 from isa_ros.core.units import MILLI, MPA
 from isa_ros.errors import ConfigError, SetpointError
 from isa_ros.plant.coil import coil_record
+from isa_ros.plant.plant import plant_record
 from isa_ros.reu.impedance import Impedance
 from isa_ros.reu.wiring import mode_of, Off
 import numpy as np
@@ -28,6 +31,10 @@ BEYOND_RANGE = ('refuse', LIMIT)
 """What happens to a setpoint beyond the range: the first is the default."""
 REPORT_NS = NS_PER_SECOND
 """Simulated time between two reports of requests to one actuator."""
+NUMBERS = {
+    FORCE: ('effort',), POSITION: ('position', 'velocity'),
+    IMPEDANCE: ('position', 'velocity', 'effort')}
+"""What each mode uses of position, velocity and effort; the inner modes may use the effort."""
 _FLOAT_BYTES = 8
 _OF_A_MODE = HAS_MODE | HAS_REFERENCE
 
@@ -47,7 +54,10 @@ def setpoint_bounds(sheet: ActuatorSheet) -> Mapping[str, Bounds]:
     if isinstance(position, Off):
         return {}
     length, force = ('rad', 'Nm') if sheet.is_rotary else ('m', 'N')
-    bounds = {'position': Bounds(0.0, sheet.plant.drive.stroke, length, 'the stroke')}
+    speed = ratings_of(plant_record(sound(sheet.plant))[0]).speed
+    bounds = {
+        'position': Bounds(0.0, sheet.plant.drive.stroke, length, 'the stroke'),
+        'velocity': Bounds(-speed, speed, f'{length}/s', 'the speed at full opening')}
     if isinstance(position, Impedance):
         bounds['effort'] = Bounds(
             -position.force_in, position.force_out, force, 'the rated force')
@@ -136,11 +146,13 @@ class SetpointRange:
         Raises
         ------
         SetpointError
-            A field is beyond its range and is not limited, the wiring does not have the mode, or
-            a reference is of another mode; the whole setpoint is refused.
+            A field is beyond its range and is not limited, the mode needs one that is NaN, the
+            wiring does not have the mode, or a reference is of another mode; the whole setpoint is
+            refused.
 
         """
         self._refuse_mode(command, mode)
+        self._refuse_absent(command, mode)
         limited = []
         for found in self.beyond(command):
             text = f'{self._name}: setpoint {found.shown}'
@@ -163,6 +175,31 @@ class SetpointRange:
             raise SetpointError(
                 f'{self._name}: setpoint {MODES[own]} is not of the mode in force, '
                 f'{MODES[mode]}; change the mode first')
+
+    def _refuse_absent(self, command: np.void, mode: int | None) -> None:
+        """Refuse a setpoint in which a number that its mode uses is NaN: it is not given."""
+        kinds = int(command['kinds'])
+        if not kinds & HAS_SETPOINT:
+            return
+        own = int(command['mode']) if kinds & HAS_MODE else mode
+        needed = NUMBERS[IMPEDANCE] if own is None else NUMBERS.get(own, NUMBERS[FORCE])
+        for field in needed:
+            if math.isnan(command[field]):
+                raise SetpointError(
+                    f'{self._name}: setpoint {field} is missing or NaN, must be given in mode '
+                    f'{MODES[own or IMPEDANCE]}')
+
+
+def complete(command: np.void, position: float) -> None:
+    """
+    Replace the numbers of a setpoint that are NaN, which its mode does not use, in place.
+
+    Its position becomes ``position``, velocity and effort zero.
+    """
+    if int(command['kinds']) & HAS_SETPOINT:
+        for field, value in (('position', position), ('velocity', 0.0), ('effort', 0.0)):
+            if math.isnan(command[field]):
+                command[field] = value
 
 
 def _beyond(field: str, name: str, command: np.void, bounds: Bounds) -> Iterator[Beyond]:

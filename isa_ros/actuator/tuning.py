@@ -11,7 +11,7 @@ from isa_ros.actuator.tunable import (
     changed_together, changing, GAINS, LOAD, named, with_changed_load)
 from isa_ros.core.changeable import Changeable
 from isa_ros.core.changing_values import bare, ChangingValues
-from isa_ros.core.signals import COMMAND, HAS_GAINS
+from isa_ros.core.signals import COMMAND, HAS_GAINS, HAS_SETPOINT
 from isa_ros.errors import ConfigError
 from isa_ros.loads.sheets import Blocked, local_port, LocalLoad, move_support, write_port
 from isa_ros.plant.plant import plant_record
@@ -166,6 +166,11 @@ def gains_command(values: Mapping[str, float]) -> np.void:
     for name, gain in GAINS.items():
         command[gain] = values.get(name, np.nan)
     return command
+
+
+def position_after(pending: np.record, reu: np.record) -> float:
+    """Return the position of the setpoint after the ``pending`` command has taken effect."""
+    return float((pending if int(pending.kinds) & HAS_SETPOINT else reu.setpoint).position)
 
 
 def gain_after(name: str, pending: np.record, reu: np.record) -> float:

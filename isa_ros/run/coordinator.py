@@ -6,6 +6,7 @@ from isa_ros.core.saved_state import RunState
 from isa_ros.core.timebase import NS_PER_SECOND
 from isa_ros.errors import ConfigError, IsaError
 from isa_ros.run.pacing import Pace, ProgressMeter
+from isa_ros.tick.exchange import Rows
 from isa_ros.tick.tick_loop import TickLoop
 
 
@@ -42,6 +43,11 @@ class Coordinator:
         """Whether the run ended by a reset, to start again at t = 0."""
         self.save: Callable[[], RunState] = loop.save
         self.add_event: Callable[[str], None] = loop.add_event
+
+    @property
+    def rows(self) -> Rows:
+        """Return the rows of the run: its samples, and the requests for the next tick."""
+        return self._loop.rows
 
     @property
     def ticks(self) -> int:

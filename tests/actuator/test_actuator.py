@@ -2,7 +2,7 @@
 
 from isa_ros.actuator.actuator import SmartActuator, Timing
 from isa_ros.core.signals import COMMAND, HAS_ENABLE, LOAD_PORT
-from isa_ros.errors import SimulationDiverged
+from isa_ros.errors import SetpointError, SimulationDiverged
 import numpy as np
 import pytest
 from tests.sheets import (
@@ -219,3 +219,22 @@ def test_computational_delay_holds_the_current_back():
     # eq 10 after 100 and 60 us: 1 - exp(-p_c t), p_c = 2000 rad/s, below the voltage limit
     ratio = (1.0 - np.exp(-2000.0 * 60e-6)) / (1.0 - np.exp(-2000.0 * 100e-6))
     assert currents[1] / currents[0] == pytest.approx(ratio, rel=1e-6)
+
+
+def test_in_mode_force_an_effort_alone_is_a_setpoint():
+    """What it does not give is what was: the position in force, or the one that is pending."""
+    actuator = smart_actuator('isa_v5', 'mass', timing=TICK)
+    before = float(actuator.memory.reu['setpoint']['position'][0])
+    effort_alone = {'position': np.nan, 'velocity': np.nan, 'effort': 321.0}
+    with pytest.raises(SetpointError, match='position is missing or NaN, must be given in mode '):
+        actuator.admit(setpoint(**effort_alone))
+    actuator.change_mode('force')
+    assert actuator.admit(setpoint(**effort_alone)) == ''
+    actuator.tick()
+    applied = actuator.memory.applied[0]
+    assert applied[['position', 'velocity', 'effort']].item() == (before, 0.0, 321.0)
+    assert actuator.sample.force_reference == 321.0
+    actuator.accept(setpoint(position=0.0625, effort=1.0))
+    actuator.admit(setpoint(**effort_alone))
+    actuator.tick()
+    assert actuator.memory.applied[0][['position', 'effort']].item() == (0.0625, 321.0)

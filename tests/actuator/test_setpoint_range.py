@@ -1,7 +1,9 @@
 """Setpoints beyond the stroke, the rated force or the usable gains: refused, or limited."""
 
+import math
+
 from isa_ros.actuator.setpoint_range import RequestRange, SetpointRange
-from isa_ros.core.device import CURRENT, IMPEDANCE, PRESSURE, SPOOL
+from isa_ros.core.device import CURRENT, FORCE, IMPEDANCE, POSITION, PRESSURE, SPOOL
 from isa_ros.core.signals import COMMAND, HAS_ENABLE, HAS_MODE, HAS_REFERENCE
 from isa_ros.errors import SetpointError
 import numpy as np
@@ -11,6 +13,8 @@ from tests.sheets import actuator_sheet, MODELS, setpoint
 BEYOND = [
     ({'position': 50.0}, 'knee: setpoint position = 50 m, must be 0 to 0.1 m, the stroke; '),
     ({'position': -1e-6}, 'knee: setpoint position = -1e-06 m, must be 0 to 0.1 m, the stroke; '),
+    ({'position': 0.05, 'velocity': 1e6},
+     'knee: setpoint velocity = 1e+06 m/s, must be -1.66859 to 1.66859 m/s, the '),
     ({'position': 0.05, 'effort': 7501.0},
      'knee: setpoint effort = 7501 N, must be -5174 to 7500 N, the rated force; '),
     ({'position': 0.05, 'stiffness': 1e12},
@@ -49,6 +53,29 @@ def test_a_position_that_no_block_uses_has_no_range():
     """With the valve amplifier the effort is a current."""
     own = SetpointRange('valve', actuator_sheet('isa_v5', 'default', 'valve_amplifier'))
     assert own.admit(setpoint(position=50.0, effort=0.005), CURRENT) == ''
+
+
+NAN = math.nan
+
+
+@pytest.mark.parametrize(('values', 'mode', 'missing'), [
+    ({'position': NAN, 'effort': 9.0}, IMPEDANCE, 'position'),
+    ({'position': NAN}, POSITION, 'position'), ({'position': NAN, 'effort': NAN}, FORCE, 'effort'),
+    ({'position': 0.05, 'velocity': NAN}, IMPEDANCE, 'velocity'),
+    ({'position': 0.05, 'velocity': NAN}, POSITION, 'velocity'),
+    ({'position': 0.05, 'effort': NAN}, IMPEDANCE, 'effort'),
+    ({'position': NAN, 'effort': NAN}, CURRENT, 'effort'), ({'position': NAN}, None, 'position')])
+def test_a_number_that_the_mode_uses_must_be_given(values, mode, missing):
+    own = SetpointRange('knee', actuator_sheet('isa_v5'))
+    with pytest.raises(SetpointError, match=f'^knee: setpoint {missing} is missing or NaN, must '):
+        own.admit(setpoint(**values), mode)
+
+
+@pytest.mark.parametrize(('values', 'mode'), [
+    ({'position': NAN, 'velocity': NAN, 'effort': 9.0}, FORCE),
+    ({'position': 0.05, 'effort': NAN}, POSITION)])
+def test_a_number_that_the_mode_does_not_use_may_be_missing(values, mode):
+    assert SetpointRange('knee', actuator_sheet('isa_v5')).admit(setpoint(**values), mode) == ''
 
 
 def test_enabling_alone_is_no_setpoint():

@@ -68,10 +68,11 @@ def ended(nodes) -> None:
     nodes[-1].given['on_exit'](ProcessExited('coordinator-1', 0), Context())
 
 
-def parameters(node) -> dict[str, object]:
-    """Return the parameters of a node, each of the type that is said to be its own."""
-    values = {}
-    for key, value in node.given['parameters'][0].items():
+def parameters(node, *names: str) -> dict[str, object]:
+    """Return all or some parameters of a node, each of the type that is said to be its own."""
+    values, given = {}, node.given['parameters'][0]
+    for key in names or given:
+        value = given[key]
         declared = value.given['value_type']
         assert declared is type(value.args[0]) or declared == list[str]
         values[key] = value.args[0]
@@ -179,10 +180,23 @@ def test_in_one_process_the_coordinator_is_alone_and_gets_every_argument(leg):
 
 
 def test_one_actuator_runs_its_model_at_real_time(actions):
-    arguments, (node,) = actions('actuator.launch.py')
-    assert {name: given['default_value'] for name, given in arguments.items()} == {
-        'model': 'isa_v5', 'name': 'actuator', 'namespace': '', 'real_time_factor': '1.0'}
+    arguments, (function,) = actions('actuator.launch.py')
+    defaults = {name: given['default_value'] for name, given in arguments.items()}
+    assert defaults == {
+        'model': '', 'name': 'actuator', 'namespace': '', 'real_time_factor': '1.0',
+        'config_file': '', 'scenario_file': ''}
+    node, = function.given['function'](defaults)
     assert node.given['executable'] == 'actuator'
-    assert set(node.given['parameters'][0]) == {'model', 'real_time_factor'}
+    assert set(node.given['parameters'][0]) == {
+        'model', 'real_time_factor', 'config_file', 'scenario_file'}
+    assert parameters(node, 'model', 'config_file') == {'model': 'isa_v5', 'config_file': ''}
     with pytest.raises(RuntimeError, match='actuator-1: ended with exit code 2'):
         node.given['on_exit'](ProcessExited('actuator-1', 2), Context())
+
+
+def test_one_actuator_of_a_run_file_has_its_model(actions):
+    arguments, (function,) = actions('actuator.launch.py')
+    defaults = {name: given['default_value'] for name, given in arguments.items()}
+    node, = function.given['function'](defaults | {'config_file': 'leg', 'scenario_file': 'drop'})
+    assert parameters(node, 'model', 'config_file', 'scenario_file') == {
+        'model': '', 'config_file': 'leg', 'scenario_file': 'drop'}

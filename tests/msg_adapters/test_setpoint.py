@@ -56,12 +56,31 @@ def test_one_gain_alone_keeps_the_other():
 @pytest.mark.parametrize('value', [math.nan, math.inf, -math.inf])
 @pytest.mark.parametrize('array', ['position', 'velocity', 'effort'])
 @pytest.mark.parametrize('entry', [0, 1])
-def test_any_value_that_is_not_finite_rejects_the_whole_message(value, array, entry):
+def test_a_value_that_is_not_finite_rejects_the_whole_message(value, array, entry):
+    """But NaN in the entry of the actuator is a number that is not given."""
+    if math.isnan(value) and not entry:
+        return
     columns = {name: [0.0, 0.0] for name in ('position', 'velocity', 'effort')}
     columns[array][entry] = value
     message = JointState(name=['hip', 'hip/stiffness'], **columns)
     with pytest.raises(SetpointError, match=rf'hip.*: setpoint {array} = -?(nan|inf), must be'):
         msg_to_command(message, 'hip')
+
+
+@pytest.mark.parametrize('absent', [
+    JointState(name=['hip'], effort=[20.0]),
+    JointState(name=['hip'], position=[math.nan], velocity=[0.0], effort=[20.0])])
+def test_an_effort_alone_has_no_position(absent):
+    """As hardware interfaces of ros2_control that have no position interface send it."""
+    row = msg_to_command(absent, 'hip')
+    assert row['kinds'] == HAS_SETPOINT and math.isnan(row['position'])
+    assert (row['velocity'], row['effort']) == (0.0, 20.0)
+
+
+def test_numbers_that_are_not_given_stay_so():
+    row = msg_to_command(JointState(
+        name=['hip'], position=[0.5], velocity=[math.nan], effort=[math.nan]), 'hip')
+    assert row['position'] == 0.5 and math.isnan(row['velocity']) and math.isnan(row['effort'])
 
 
 @pytest.mark.parametrize(('entry', 'mode'), [('current', 1), ('spool', 2), ('pressure', 3)])
@@ -83,7 +102,8 @@ def test_the_reference_of_a_mode_is_an_entry_with_or_without_a_setpoint(entry, m
     (JointState(name=['hip', 'hip/stifness'], position=[0.0, 1.0]),
      'unknown setpoint entries hip/stifness, must'),
     (JointState(name=['hip', 'hip'], position=[0.0, 1.0]), 'names an entry twice'),
-    (JointState(name=['hip']), '0 positions for 1 names'),
+    (JointState(name=['hip']), 'hip: setpoint has neither position, velocity nor effort'),
+    (JointState(name=['hip', 'hip/damping'], effort=[1.0]), '0 positions for 2 names'),
     (JointState(name=['hip'], position=[0.0, 1.0]), '2 positions for 1 names'),
     (JointState(name=['hip'], position=[0.0], effort=[1.0, 2.0]), '2 values of effort for 1'),
     (JointState(name=['hip', 'hip/damping'], position=[0.0, -1.0]),

@@ -18,6 +18,7 @@ class Run:
     """Stands in for a `Coordinator` between two ticks; each request may raise."""
 
     t_ns = ticks = 0
+    is_paused = False
     error: IsaError | None = None
 
     def _maybe_raise(self, *_: object) -> None:

@@ -97,7 +97,7 @@ def test_nan_is_rejected_and_the_last_setpoint_kept(observer, tmp_path):
         user.connect()
         user.go_to(0.03)
         user.command(float('nan'))
-        wait_for(lambda: 'setpoint rejected: knee: setpoint position = nan' in process.errors)
+        wait_for(lambda: 'rejected: knee: setpoint position is missing or NaN' in process.errors)
         user.go_to(0.031)
     echoes = [message.position[0] for message in user.applied]
     assert set(echoes[echoes.index(0.03):]) == {0.03, 0.031}
@@ -132,16 +132,18 @@ def knee(observer):
 
 @pytest.mark.parametrize('model', model_names())
 def test_the_command_that_a_lone_actuator_prints_moves_it(observer, model):
-    """It is one line, and its setpoint is accepted as it stands."""
+    """It is one line with the topics as they are remapped; its setpoint is accepted as it is."""
     node = ActuatorNode(
         lambda _: NodeSetup(default_actuator(model, 'knee'), DEFAULT_TIMING), 'knee',
-        has_mailbox=False, context=observer.context, namespace='lab')
+        has_mailbox=False, context=observer.context, namespace='lab',
+        cli_args=['--ros-args', '-r', '~/setpoint:=/cmd', '-r', '~/joint_states:=states'])
     try:
         text = ready_text(node, 1.0)
         assert text.startswith('ready at 1 times real time: position ') and '\n' not in text
         command = shlex.split(text[text.index('ros2 topic pub'):])
         assert command[:6] == [
-            'ros2', 'topic', 'pub', '--once', '/lab/knee/setpoint', 'sensor_msgs/msg/JointState']
+            'ros2', 'topic', 'pub', '--once', '/cmd', 'sensor_msgs/msg/JointState']
+        assert ' on /lab/states; to move it: ' in text
         message = JointState(**yaml.safe_load(command[6]))
         assert node.actuator.setpoint_range.admit(msg_to_command(message, 'knee')) == ''
         assert message.position[0] != pytest.approx(

@@ -3,12 +3,15 @@
 from collections.abc import Mapping
 
 from isa_ros.errors import ConfigError
-from isa_ros.nodes.actuator.process import run as run_actuator
+from isa_ros.nodes.actuator.node import ActuatorNode
+from isa_ros.nodes.actuator.process import _resolve, run as run_actuator
+from isa_ros.nodes.coordinator.node import CoordinatorNode
 from isa_ros.nodes.coordinator.process import main as run_coordinator
 from isa_ros.nodes.coordinator.services import RunServices
+from isa_ros.nodes.middleware.parameter_services import open_parameter_services
 import pytest
 from rcl_interfaces.msg import Parameter, ParameterType, ParameterValue
-from rcl_interfaces.srv import SetParameters
+from rcl_interfaces.srv import GetParameters, SetParameters
 from rclpy.node import Node
 from rclpy.parameter import Parameter as RosParameter
 from tests.ros.spinning import Spinning
@@ -85,3 +88,22 @@ def test_an_integer_is_accepted_for_a_number_at_the_start_and_later(observer, tm
                 type=ParameterType.PARAMETER_INTEGER, integer_value=50_000))]))
         user.wait_for(future.done, 'the answer')
         assert [result.successful for result in future.result().results] == [True]
+
+
+@pytest.mark.parametrize('of_run', [False, True])
+def test_a_request_for_all_parameters_is_answered_with_each(observer, of_run):
+    """As `ros2 param dump` asks; a list that is not set is empty, also for rclpy."""
+    given = [RosParameter('config_file', value=str(RIG))]
+    common = {'context': observer.context, 'parameter_overrides': given}
+    node = CoordinatorNode(**common) if of_run else ActuatorNode(
+        lambda node: _resolve(node, ''), 'rotor', has_mailbox=False, **common)
+    if of_run:
+        assert node.request().changes == ()
+        open_parameter_services(node)
+    service, = (own for own in node.services if own.srv_type is GetParameters)
+    names = sorted(node.get_parameters_by_prefix(''))
+    answer = service.callback(GetParameters.Request(names=names), GetParameters.Response())
+    values = dict(zip(names, answer.values, strict=True))
+    assert values['set'] == ParameterValue(type=ParameterType.PARAMETER_STRING_ARRAY)
+    assert values['config_file'].string_value == str(RIG)
+    node.destroy_node()

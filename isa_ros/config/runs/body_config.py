@@ -15,6 +15,7 @@ from isa_ros.config.text.yaml_text import Tree
 from isa_ros.core.fields import Field
 from isa_ros.errors import ConfigError
 from isa_ros.surroundings.body import Body
+from isa_ros.surroundings.joint_space import JointSpace
 from isa_ros.surroundings.messages import BodyMessage
 import numpy as np
 from numpy.typing import NDArray
@@ -107,6 +108,11 @@ class BodyConfig:
     def messages(self, step_ns: int) -> Sequence[BodyMessage]:
         """Return what is published and recorded of its sample."""
         return ()
+
+    @property
+    def joint_space(self) -> JointSpace:
+        """Return the joints that may be commanded in joint space, by their names in the URDF."""
+        return {}
 
     def position_of(self, joint: str) -> float | None:
         """Return where a joint's actuator starts, m or rad; None: its section says so."""

@@ -2,6 +2,7 @@
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
+from functools import cached_property
 import math
 from typing import Any, ClassVar
 
@@ -23,8 +24,9 @@ from isa_ros.core.units import MILLI
 from isa_ros.errors import ConfigError
 from isa_ros.surroundings.bodies.leg.inertial import Imu
 from isa_ros.surroundings.bodies.leg.leg import InertialUnit, Leg, Pose, sample_fields
-from isa_ros.surroundings.bodies.leg.messages import leg_messages
+from isa_ros.surroundings.bodies.leg.messages import joint_name, leg_messages
 from isa_ros.surroundings.bodies.leg.sheet import JOINTS, LegSheet, linkage_record
+from isa_ros.surroundings.joint_space import DrivenJoint, JointSpace
 from isa_ros.surroundings.linkage import actuator_coordinate
 from isa_ros.surroundings.messages import BodyMessage
 
@@ -126,6 +128,17 @@ class LegConfig(BodyConfig):
     def label(self) -> str:
         """Return ``leg``, the short form, if it is the body of the run."""
         return self.kind if self.name == BODY else f'bodies.{self.name}'
+
+    @cached_property
+    def joint_space(self) -> JointSpace:
+        """Return HAA, HFE and KFE."""
+        found = {}
+        for joint, actuator in self.joints:
+            sheet = getattr(self.sheet, joint)
+            found[joint_name(joint)] = DrivenJoint(
+                actuator, linkage_record(sheet), math.radians(sheet.low_deg),
+                math.radians(sheet.high_deg), 'position', JOINTS.index(joint))
+        return found
 
     def position_of(self, joint: str) -> float:
         """Return the position of a joint's actuator at the leg's start, m or rad  (L2)."""

@@ -70,13 +70,14 @@ def run_alone(
 def ready_text(node: ActuatorNode, real_time_factor: float) -> str:
     """Return what runs, on which topics, and a command that moves it, in one line."""
     config = node.setup.config
-    name, full_name = config.name, node.get_fully_qualified_name()
+    name = config.name
+    states, setpoint = map(node.resolve_topic_name, ('~/joint_states', '~/setpoint'))
     stroke, unit = config.sheet.plant.drive.stroke, 'rad' if config.sheet.is_rotary else 'm'
     position = float(node.actuator.memory.observed[0]['position'])
     target = position + (EXAMPLE if position < 0.5 * stroke else -EXAMPLE) * stroke
     pace = f'{real_time_factor:g} times real time' if real_time_factor else 'maximum speed'
     text = (f'ready at {pace}: position {position:.4g} of 0 to {stroke:.4g} {unit} on '
-            f'{full_name}/joint_states; to move it: ros2 topic pub --once '
-            f"{full_name}/setpoint sensor_msgs/msg/JointState '{{name: [{name}], position: "
+            f'{states}; to move it: ros2 topic pub --once '
+            f"{setpoint} sensor_msgs/msg/JointState '{{name: [{name}], position: "
             f"[{target:.4g}]}}'")
     return f'{text}; discovery is off, so that only this process can' if is_off() else text

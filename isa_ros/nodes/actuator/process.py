@@ -18,6 +18,7 @@ from isa_ros.nodes.lockstep.participant_end import ParticipantEnd
 from isa_ros.nodes.lockstep.roles import ActuatorRole
 from isa_ros.nodes.middleware.arguments import init_ros
 from isa_ros.nodes.middleware.discovery import refuse_off
+from isa_ros.nodes.middleware.domain import Claim
 from isa_ros.nodes.middleware.environment import set_defaults
 from isa_ros.nodes.middleware.parameters import declare, refuse_unknown
 from isa_ros.processes.ending import DONE, end_of
@@ -63,7 +64,11 @@ def _run(model: str, should_stop: StopRequest) -> None:
             refuse_off(node.get_name())
             ParticipantEnd(node, ActuatorRole(node)).spin(should_stop)
         else:
-            run_alone(node, _number(node, 'real_time_factor'), should_stop)
+            claim = Claim(node.get_namespace(), node.get_name())
+            try:
+                run_alone(node, _number(node, 'real_time_factor'), should_stop)
+            finally:
+                claim.close()
     finally:
         node.destroy_node()
 

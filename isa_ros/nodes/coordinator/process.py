@@ -38,6 +38,8 @@ def main(args: Sequence[str] | None = None) -> int:
                     finally:
                         for line in session.lines:
                             node.get_logger().warning(one_line(line))
+                        for bag in session.bags:
+                            print(bag, flush=True)
                 if session.pace.shortfall:
                     node.get_logger().warning(session.pace.shortfall)
                 if not session.is_as_wanted:

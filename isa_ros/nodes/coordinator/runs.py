@@ -8,6 +8,7 @@ from isa_ros.actuator.actuator import participant_digest
 from isa_ros.config.assembly import group_of, surroundings_of, timing_of
 from isa_ros.nodes.actuator.node import ActuatorNode, NodeSetup
 from isa_ros.nodes.actuator.process import run
+from isa_ros.nodes.coordinator.joint_commands import JointCommands
 from isa_ros.nodes.coordinator.node import CoordinatorNode
 from isa_ros.nodes.coordinator.parameters import SupplyParameters
 from isa_ros.nodes.coordinator.services import RunServices
@@ -180,7 +181,7 @@ def _record(
     supplies = node.supplies = SupplyParameters(node, surroundings)
     services = RunServices(
         node, session.pace.factor, lambda coordinator: save_in_bag(session, coordinator),
-        supplies)
+        supplies, JointCommands(node, session.run))
     record(session, transport, surroundings, lambda topics: node.outlets(topics, actuators),
            report, should_stop, services.serve, node.get_logger().warning)
 

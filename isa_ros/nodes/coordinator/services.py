@@ -4,15 +4,18 @@ from collections.abc import Callable
 from typing import Any
 
 from isa_ros.errors import IsaError
+from isa_ros.nodes.coordinator.joint_commands import JointCommands
 from isa_ros.nodes.coordinator.parameters import SupplyParameters
 from isa_ros.nodes.middleware.handles import has_handles
 from isa_ros.nodes.middleware.parameter_services import open_parameter_services
 from isa_ros.nodes.middleware.parameters import accept_integers, declare
+from isa_ros.nodes.middleware.qos import KEPT
 from isa_ros.nodes.middleware.servers import DirectServer
 from isa_ros.run.coordinator import Coordinator
 from rcl_interfaces.msg import IntegerRange, ParameterDescriptor, SetParametersResult
 from rclpy.node import Node
 from rclpy.parameter import Parameter
+from std_msgs.msg import Bool
 from std_srvs.srv import SetBool, Trigger
 
 STEP_COUNT = 'step_count'
@@ -25,7 +28,7 @@ Save = Callable[[Coordinator], str]
 
 class RunServices:
     """
-    Services and parameters that change a run between two ticks.
+    Services and parameters that change a run between two ticks, and the topic ``~/paused``.
 
     A step is answered when its ticks are finished, other requests at once. This needs the
     handles of `DirectServer`, as an executor would run callbacks during a tick. Without them the
@@ -34,12 +37,15 @@ class RunServices:
 
     def __init__(
             self, node: Node, real_time_factor: float, save: Save,
-            supplies: SupplyParameters | None = None) -> None:
+            supplies: SupplyParameters | None = None,
+            joints: JointCommands | None = None) -> None:
         self._node = node
         self._save = save
-        self._supplies = supplies
+        self._supplies, self._joints = supplies, joints
         self._coordinator: Coordinator | None = None
         self._server: DirectServer | None = None
+        self._is_paused: bool | None = None  # as it was published last
+        self._paused = node.create_publisher(Bool, '~/paused', KEPT)
         if not has_handles():
             node.get_logger().warning(
                 'pause, step, reset and save are not available with this version of rclpy')
@@ -58,13 +64,19 @@ class RunServices:
             node.create_service(Trigger, '~/reset', self._on_reset),
             node.create_service(Trigger, '~/save', self._on_save)]
         parameters = open_parameter_services(node)
-        self._server = DirectServer(node.get_logger(), [], own, parameters)
+        self._server = DirectServer(
+            node.get_logger(), [] if joints is None else joints.subscriptions, own, parameters)
 
     def serve(self, coordinator: Coordinator) -> None:
         """Answer all requests since the last call."""
         if self._server is not None:
             self._coordinator = coordinator
+            if self._joints is not None:
+                self._joints.bind(coordinator)
             self._server.serve()
+        if coordinator.is_paused != self._is_paused:
+            self._is_paused = coordinator.is_paused
+            self._paused.publish(Bool(data=coordinator.is_paused))
 
     @property
     def _run(self) -> Coordinator:

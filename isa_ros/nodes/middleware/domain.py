@@ -36,6 +36,9 @@ from rclpy.node import Node
 CLAIMED_BY = 'ISA_ROS_CLAIMED_BY'
 """Environment variable of a coordinator: the process that holds the name for it, a launch."""
 
+COORDINATOR = 'coordinator'
+"""Name of the node."""
+
 _CLOCK_TOPIC = 'clock'  # relative: of the namespace
 _CHECK_S = 0.05
 _DIGEST_LETTERS = 32
@@ -54,35 +57,37 @@ class Holder(NamedTuple):
 
 class Claim:
     """
-    Holds the name of the only coordinator of a namespace, on this host, until it is closed.
+    Holds a name of the only one in a namespace, on this host, until it is closed.
 
-    If another user holds it, it is not held: `look_for_other_coordinator` then waits for the
-    graph. Nor is it where it is held by the process that `CLAIMED_BY` names.
+    ``node`` is the name of an actuator alone; by default it is that of the coordinator. If another
+    user holds it, it is not held: `look_for_other_coordinator` then waits for the graph. Nor
+    is it where it is held by the process that `CLAIMED_BY` names.
 
     Raises
     ------
     ConfigError
-        Another coordinator of this user holds it, or ROS_DOMAIN_ID is not a domain.
+        Another process of this user holds it, or ROS_DOMAIN_ID is not a domain.
 
     """
 
-    def __init__(self, namespace: str = '') -> None:
+    def __init__(self, namespace: str = '', node: str = COORDINATOR) -> None:
         domain = domain_id()
         self._socket: socket.socket | None = None
         if sys.platform != 'linux':  # no abstract names; only the graph is checked
             return
         made = socket.socket(socket.AF_UNIX, socket.SOCK_STREAM)
         try:
-            made.bind(claim_address(domain, namespace))
+            made.bind(claim_address(domain, namespace, node))
             made.listen()  # nothing is accepted: who connects reads the user of this process
         except OSError as error:
             made.close()
             if error.errno != errno.EADDRINUSE:
                 raise
-            found = holder(domain, namespace)
+            found = holder(domain, namespace, node)
             if found is not None and found.user == os.geteuid() and (
                     str(found.process) != os.environ.get(CLAIMED_BY)):
-                raise another_coordinator(domain, namespace) from None
+                raise (another_coordinator(domain, namespace) if node == COORDINATOR
+                       else _another_node(domain, namespace, node)) from None
             return
         self._socket = made
 
@@ -102,22 +107,22 @@ def sole_coordinator(namespace: str = '') -> Iterator[None]:
         claim.close()
 
 
-def claim_address(domain: int, namespace: str = '') -> str:
-    """Return the abstract socket name that the coordinator of a namespace holds."""
-    name = namespace.strip('/').encode()
-    # A digest: a namespace of ROS may be longer than the name of a socket.
-    own = f'/{sha256(name).hexdigest()[:_DIGEST_LETTERS]}' if name else ''
-    return f'\0isa_ros/coordinator/{domain}{own}'
+def claim_address(domain: int, namespace: str = '', node: str = COORDINATOR) -> str:
+    """Return the abstract socket name that the only node of this name holds."""
+    name = f'{namespace.strip("/")}/{node}'.strip('/')
+    # A digest: a name of ROS may be longer than that of a socket.
+    own = name if name == COORDINATOR else sha256(name.encode()).hexdigest()[:_DIGEST_LETTERS]
+    return f'\0isa_ros/{own}/{domain}'
 
 
-def holder(domain: int, namespace: str = '') -> Holder | None:
-    """Return who listens as coordinator of a namespace; None: nobody."""
+def holder(domain: int, namespace: str = '', node: str = COORDINATOR) -> Holder | None:
+    """Return who listens as the node of a namespace; None: no process."""
     if sys.platform != 'linux':
         return None
     with socket.socket(socket.AF_UNIX, socket.SOCK_STREAM) as end:
         end.setblocking(False)
         try:
-            end.connect(claim_address(domain, namespace))
+            end.connect(claim_address(domain, namespace, node))
         except OSError:  # bound without listening, or too many connections: no coordinator of ours
             return None
         credentials = end.getsockopt(
@@ -175,3 +180,10 @@ def another_coordinator(domain: int, namespace: str) -> ConfigError:
         f'another coordinator runs in {DOMAIN_VARIABLE} {domain}, namespace '
         f'/{namespace.strip("/")}, must be the only one; end it, or use another namespace or '
         f'{DOMAIN_VARIABLE}')
+
+
+def _another_node(domain: int, namespace: str, node: str) -> ConfigError:
+    path = f'{namespace.rstrip("/")}/{node}'
+    return ConfigError(
+        f'{path}: another actuator of this name runs alone in {DOMAIN_VARIABLE} {domain}; end it, '
+        f'or set another name (-r __node:=NAME), namespace or {DOMAIN_VARIABLE}')

@@ -22,7 +22,8 @@ def declare(node: Node, name: str, default: Any, descriptor: ParameterDescriptor
     """
     Declare a parameter and return its value; an integer is accepted for a double.
 
-    ``default``: a value, or the type of a parameter that has none.
+    ``default``: a value, or the type of a list that is empty by default. It is set to the empty
+    list: rclpy answers a request for several values with none if one of them has no value.
 
     Raises
     ------
@@ -39,7 +40,10 @@ def declare(node: Node, name: str, default: Any, descriptor: ParameterDescriptor
                 f'{node.get_name()}: parameter {name} = {given.value!r}, must be '
                 f'{_EXPECTED[type_]} ({descriptor.description})')
     try:
-        return node.declare_parameter(name, default, descriptor).value
+        declared = node.declare_parameter(name, default, descriptor)
+        if declared.type_ is _TYPE.NOT_SET:
+            declared = node._parameters[name] = Parameter(name, type_, [])
+        return declared.value
     except InvalidParameterValueException as error:
         raise ConfigError(f'{node.get_name()}: parameter {name}: {error}') from error
 

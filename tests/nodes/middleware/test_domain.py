@@ -114,3 +114,17 @@ def test_the_kernel_names_the_user_that_listens(monkeypatch):
             with sole_coordinator():
                 pass
             squatter.stdin.close()
+
+
+def test_of_actuators_alone_with_one_name_the_second_is_refused(monkeypatch):
+    """Both would publish on the same topics; in another namespace it is another actuator."""
+    with held_domain(monkeypatch) as number:
+        first, other = Claim('/', 'knee'), Claim('/left', 'knee')
+        with pytest.raises(ConfigError, match=f'^/left/knee: another actuator .* {number}; end'):
+            Claim('/left', 'knee')
+        with pytest.raises(ConfigError, match='^/knee: another actuator of this name runs alone'):
+            Claim('/', 'knee')
+        with sole_coordinator():
+            first.close()
+            Claim('/', 'knee').close()
+        other.close()
