@@ -174,6 +174,8 @@ class Node:
 
     def __init__(self, name: str) -> None:
         self.get_name = lambda: name
+        self.get_namespace = lambda: '/'
+        self.resolve_topic_name = lambda topic: f'/{topic}'
 
     def get_logger(self) -> Any:
         """Return a log that accepts short lines."""
