@@ -94,9 +94,13 @@ class ActuatorGroup:
     @property
     def tuned(self) -> dict[int, Mapping[str, float]]:
         """Return the parameters that changed at the start of the last tick, SI, by row."""
-        return {row: changed for row, values in enumerate(self._values)
-                if not values.is_settled
-                and (changed := self.actuators[row].applied_parameters)}
+        for values in self._values:
+            if not values.is_settled:
+                break
+        else:       # at nearly every tick
+            return {}
+        return {row: changed for row, actuator in enumerate(self.actuators)
+                if (changed := actuator.applied_parameters)}
 
     def start(self, starts: Records) -> None:
         """Put all at rest at t = 0 according to their `START` rows, (n,)."""

