@@ -4,9 +4,10 @@ from collections.abc import Iterator
 from dataclasses import fields
 import random
 
+from isa_ros.actuator.actuator import PAPER_SUPPLY
 from isa_ros.core.parameter import Parameters
 from isa_ros.errors import ConfigError, ParameterError
-from isa_ros.loads.sheets import linearised
+from isa_ros.loads.sheets import linearised, static_force
 from isa_ros.plant.plant import plant_record
 from isa_ros.plant.step_limits import LoadSide, refuse_too_fast
 import pytest
@@ -39,8 +40,9 @@ def run(model: str, changes: dict[str, float]) -> str | None:
     except (ConfigError, ParameterError) as error:
         return str(error)
     stroke = sheet.plant.drive.stroke
+    actuator = smart_actuator(model, load, sheet=sheet)
     for position, goal in ((0.5, 0.6), (0.02, 0.0), (0.98, 1.0)):
-        actuator = smart_actuator(model, load, sheet=sheet, position=position * stroke)
+        actuator.start(position * stroke, static_force(load), PAPER_SUPPLY, 0.0)
         actuator.accept(setpoint(position=goal * stroke))
         for _ in range(TICKS):
             actuator.tick()     # raises when a state is no longer finite

@@ -77,10 +77,10 @@ def test_it_is_limited_where_configured_and_the_scenario_says_so(
     '  - {t_s: 0, position: 0.0, effort: -5174}\n  - {t_s: 1, position: 0.1, effort: 7500}\n'])
 def test_what_stays_within_is_taken_as_it_is(tracks: str) -> None:
     """The ends of the range, and a motion that another setpoint ends before it leaves it."""
-    scenario = read(tracks, limiting())
+    scenario, refusing = read(tracks, limiting()), read(tracks)
     assert not scenario.limited
     for tick in range(2000):
-        assert knee(scenario, tick).tobytes() == knee(read(tracks), tick).tobytes()
+        assert knee(scenario, tick).tobytes() == knee(refusing, tick).tobytes()
 
 
 def test_a_scenario_that_accepts_says_it_in_its_text() -> None:
