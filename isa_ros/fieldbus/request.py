@@ -64,7 +64,9 @@ BUSES: Mapping[str, Bus] = {
     ETHERCAT: Bus('ethercat.line', 'an EtherCAT master on a network interface', (
         Argument('interface', 'network interface of the ring, for example one end of a veth pair',
                  'IF'),), 'ethernet'),
-    CANOPEN: Bus('canopen.line', 'a CANopen master on a CAN interface', _CAN, 'can'),
+    CANOPEN: Bus('canopen.line', 'a CANopen master on a CAN interface', (
+        *_CAN, Argument('unconfigured', 'the nodes have no numbers: a master gives them by LSS',
+                        kind=bool, default=False)), 'can'),
     MIT: Bus('canopen.mit_line', 'a master of MIT-mode motors on a CAN interface', _CAN, 'can'),
     SERIAL: Bus('serial.line', 'a master on a serial line', (
         Argument('path', 'serial device, or a link to make to a pseudo terminal', 'FILE', Path),

@@ -41,7 +41,7 @@ def test_buses_on_can_and_on_a_serial_line_have_theirs():
                      '--first-node', '5') == BusRequest(
             run=run_of(), bus=bus, arguments={
                 'interface': 'slcan', 'channel': 'c', 'bitrate': 500_000, 'first_node': 5,
-                'allow_network': False})
+                'allow_network': False, **({'unconfigured': False} if bus == 'canopen' else {})})
     assert asked(bus, 'leg', '--interface', 'udp_multicast', '--channel', 'c',
                  '--allow-network').arguments['allow_network'] is True
     assert asked('serial', 'leg', '--path', 'line', '--baud', '9600') == BusRequest(

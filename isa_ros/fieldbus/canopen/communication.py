@@ -34,7 +34,8 @@ class Communication:
         self.table = ObjectTable([
             one for one in table if one.bus == CANOPEN and one.index not in _MAPPING_INDICES
             or one.index in (ERROR_REGISTER, ERROR_FIELD)])
-        self._node = node
+        self.node = node
+        """Number that defaults grow by at the next reset."""
         self._values: dict[tuple[int, int], Value] = {}
         self._identifiers = [
             (one.index, COB_ID if one.index >= RECEIVE_PARAMETERS else 0) for one in self.table
@@ -49,7 +50,7 @@ class Communication:
         """Set all values to those at power-on."""
         self._values = {
             (one.index, one.subindex):
-                int(one.default) + self._node if one.adds_node else one.default
+                int(one.default) + self.node if one.adds_node else one.default
             for one in self.table.entries}
 
     def value(self, index: int, subindex: int = 0) -> int:

@@ -18,7 +18,10 @@ from collections.abc import Mapping, Sequence
 from isa_ros.config.models.wires import wire
 from isa_ros.errors import ConfigError
 from isa_ros.fieldbus.canopen.capacity import CyclicFrame, refuse_overfull
-from isa_ros.fieldbus.canopen.node import Handler, NmtCommand, NmtState, Node
+from isa_ros.fieldbus.canopen.lss import (
+    ANSWER as LSS_ANSWER, LssNode, REQUEST as LSS_REQUEST, UNCONFIGURED)
+from isa_ros.fieldbus.canopen.nmt import NmtCommand, NmtState
+from isa_ros.fieldbus.canopen.node import Handler, Node
 from isa_ros.fieldbus.canopen.port import CanPort, Frame, monotonic
 from isa_ros.fieldbus.canopen.udp_reach import reach_of
 from isa_ros.fieldbus.device.bus_device import BusDevice
@@ -32,13 +35,15 @@ _NMT_SIZE = 2
 def canopen_line(
         devices: Sequence[BusDevice], interface: str, channel: str, step_ns: int, *,
         bitrate: int = 0, first_node: int = FIRST_NODE, allow_network: bool = False,
+        unconfigured: bool = False,
         options: Mapping[str, object] | None = None) -> 'CanopenLine':
     """
     Open a CAN bus and start a node for each device, ``first_node`` and following.
 
     ``bitrate`` (bit/s; 0: `default_bitrate`) is that of the wire, or the modelled one of a virtual
     interface; ``options`` are further keywords of the interface of python-can;
-    ``allow_network``: as of `reach_of`.
+    ``allow_network``: as of `reach_of`. ``unconfigured``: the nodes have no numbers until a
+    master gives them some by LSS.
 
     Raises
     ------
@@ -50,13 +55,14 @@ def canopen_line(
     rate = bitrate or default_bitrate()
     reach_of(interface, channel, allow_network)
     line = planned_line(devices, step_ns, rate, first_node)
-    line.begin(CanPort(interface, channel, rate, options))
+    line.begin(CanPort(interface, channel, rate, options), is_configured=not unconfigured)
     return line
 
 
 def refuse_unusable(
         devices: Sequence[BusDevice], interface: str, channel: str, step_ns: int, *,
-        bitrate: int = 0, first_node: int = FIRST_NODE, allow_network: bool = False) -> str:
+        bitrate: int = 0, first_node: int = FIRST_NODE, allow_network: bool = False,
+        unconfigured: bool = False) -> str:
     """
     Refuse a bus that cannot be used; parameters and errors as of `canopen_line`.
 
@@ -114,7 +120,7 @@ class CanopenLine:
 
     def __init__(self, devices: Sequence[BusDevice], step_ns: int, first_node: int,
                  bitrate: int) -> None:
-        self.nodes = [Node(device, number, step_ns, self._send)
+        self.nodes = [Node(device, number, step_ns, self._send, bitrate)
                       for number, device in enumerate(devices, first_node)]
         self.port: CanPort | None = None
         self._step_ns, self._bitrate = step_ns, bitrate
@@ -128,11 +134,13 @@ class CanopenLine:
             {node.device.name: node.cyclic_frames() for node in nodes},
             self._bitrate, self._step_ns)
 
-    def begin(self, port: CanPort) -> None:
-        """Begin on a bus: send the boot-up messages."""
+    def begin(self, port: CanPort, *, is_configured: bool = True) -> None:
+        """Begin on a bus: send the boot-up messages, or wait for LSS without numbers."""
         self.port = port
         for node in self.nodes:
-            node.boot(monotonic())
+            if not is_configured:
+                node.lss = LssNode(node.device.identity, UNCONFIGURED, self._bitrate)
+            node.begin(node.lss.pending, monotonic())
 
     def serve(self, timeout: float) -> bool:
         """
@@ -168,7 +176,7 @@ class CanopenLine:
             node.update()
         waiting, self._waiting = self._waiting, None
         for frame in sorted(waiting, key=lambda one: one.identifier):
-            self._send(*frame)
+            self._send(frame.identifier, frame.data)
         if self._states() != states:
             self._handlers = None
 
@@ -185,8 +193,14 @@ class CanopenLine:
             self.port = None
 
     def _handle(self, frame: Frame) -> bool:
+        if frame.is_remote:
+            self._guard(frame.identifier - HEARTBEAT)
+            return False
         if frame.identifier == NMT:
             self._command(frame.data)
+            return False
+        if frame.identifier == LSS_REQUEST:
+            self._set_layers(frame.data)
             return False
         if self._handlers is None:
             self._handlers = self._all_handlers()
@@ -201,10 +215,27 @@ class CanopenLine:
         if len(data) != _NMT_SIZE:
             return
         command, number = data
-        addressed = [node for node in self.nodes if number in (0, node.number)]
+        addressed = [node for node in self.nodes
+                     if node.is_configured and number in (0, node.number)]
         if command != NmtCommand.START or self._can_start(addressed):
             for node in addressed:
                 node.command(command, monotonic())
+        self._handlers = None
+
+    def _guard(self, number: int) -> None:
+        """Let the node of a remote frame answer; others are ignored, and counted."""
+        asked = [node for node in self.nodes if node.is_configured and node.number == number]
+        for node in asked:
+            node.guard()
+        if self.port is not None and not asked:
+            self.port.ignored += 1
+
+    def _set_layers(self, data: bytes) -> None:
+        """Pass a frame of LSS to all nodes; equal answers are one frame on a wire, and here."""
+        answers = [node.set_layer(data, monotonic()) for node in self.nodes]
+        for answer in dict.fromkeys(answers):
+            if answer is not None:
+                self._send(LSS_ANSWER, answer)
         self._handlers = None
 
     def _can_start(self, addressed: Sequence[Node]) -> bool:

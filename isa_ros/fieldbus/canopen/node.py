@@ -7,7 +7,6 @@ operational, EMCY is sent in both.
 """
 
 from collections.abc import Callable, Iterator
-from enum import IntEnum
 
 from isa_ros.fieldbus.canopen.capacity import CyclicFrame
 from isa_ros.fieldbus.canopen.communication import Communication
@@ -15,40 +14,24 @@ from isa_ros.fieldbus.canopen.dictionary import mappings, NodeDictionary
 from isa_ros.fieldbus.canopen.errors import (
     BUS_OVERFULL, HEARTBEAT_LOST, NodeErrors, PDO_OVERDUE, PDO_TOO_LONG, PDO_TOO_SHORT,
     SYNC_LENGTH)
+from isa_ros.fieldbus.canopen.guarding import Guarding
 from isa_ros.fieldbus.canopen.heartbeat import HeartbeatConsumer, HeartbeatProducer
+from isa_ros.fieldbus.canopen.lss import LssNode, UNCONFIGURED
+from isa_ros.fieldbus.canopen.nmt import NmtCommand, NmtState
 from isa_ros.fieldbus.canopen.pdo import Pdo, ReceivePdo, TransmitPdo
 from isa_ros.fieldbus.canopen.sdo import SdoServer
 from isa_ros.fieldbus.device.bus_device import BusDevice
 from isa_ros.fieldbus.device.can_identifiers import HEARTBEAT, LARGEST, SDO_ANSWER, SDO_REQUEST
 from isa_ros.fieldbus.device.canopen_objects import (
-    ERROR_BEHAVIOUR, HEARTBEAT_CONSUMED, HEARTBEAT_PRODUCED, RECEIVE_MAPPINGS, RECEIVE_PARAMETERS,
-    SYNC_ID, SYNC_OVERFLOW, TRANSMIT_MAPPINGS, TRANSMIT_PARAMETERS)
+    ERROR_BEHAVIOUR, GUARD_TIME, HEARTBEAT_CONSUMED, HEARTBEAT_PRODUCED, LIFE_TIME_FACTOR,
+    RECEIVE_MAPPINGS, RECEIVE_PARAMETERS, SYNC_ID, SYNC_OVERFLOW, TRANSMIT_MAPPINGS,
+    TRANSMIT_PARAMETERS)
 from isa_ros.fieldbus.device.communication_area import ERROR_FIELD
 from isa_ros.fieldbus.device.manufacturer_area import LAST_REFUSAL
 
 Send = Callable[[int, bytes], None]
 Handler = Callable[[bytes], bool]
 """Handles the data of a frame; returns whether a cycle has begun."""
-
-
-class NmtState(IntEnum):
-    """States of a node, as its heartbeat has them."""
-
-    INITIALISING = 0x00
-    STOPPED = 0x04
-    OPERATIONAL = 0x05
-    PREOPERATIONAL = 0x7F
-
-
-class NmtCommand(IntEnum):
-    """Commands of the NMT master."""
-
-    START = 0x01
-    STOP = 0x02
-    ENTER_PREOPERATIONAL = 0x80
-    RESET_NODE = 0x81
-    RESET_COMMUNICATION = 0x82
-
 
 _ENTERED = {
     NmtCommand.START: NmtState.OPERATIONAL, NmtCommand.STOP: NmtState.STOPPED,
@@ -59,8 +42,10 @@ _AFTER_ERROR = (NmtState.PREOPERATIONAL, None, NmtState.STOPPED)
 class Node:
     """One actuator on the bus."""
 
-    def __init__(self, device: BusDevice, node: int, step_ns: int, send: Send) -> None:
+    def __init__(
+            self, device: BusDevice, node: int, step_ns: int, send: Send, bitrate: int) -> None:
         self.device, self.number = device, node
+        self.lss = LssNode(device.identity, node, bitrate)
         self.state = NmtState.INITIALISING
         receive = mappings(device, RECEIVE_MAPPINGS)
         transmit = mappings(device, TRANSMIT_MAPPINGS)
@@ -79,6 +64,7 @@ class Node:
             is_preoperational=lambda: self.state == NmtState.PREOPERATIONAL,
             follow=self._follow))
         self._produced, self._consumed = HeartbeatProducer(), HeartbeatConsumer()
+        self._guarding = Guarding()
         self._counter: int | None = None
         self._has_wrong_sync = False
 
@@ -96,13 +82,44 @@ class Node:
             self._enter(_ENTERED[NmtCommand(command)])
         elif command in (NmtCommand.RESET_NODE, NmtCommand.RESET_COMMUNICATION):
             self._enter(NmtState.INITIALISING)
-            self.communication.reset()
             self.errors.reset()
             self._sdo.reset()
             self._consumed.set_watched([])
             self.device.restart(is_whole=command == NmtCommand.RESET_NODE)
-            self.boot(now)
+            if command == NmtCommand.RESET_NODE:
+                self.lss.restore()
+            self.begin(self.lss.pending, now)
         self.report_emergencies()
+
+    @property
+    def is_configured(self) -> bool:
+        """Return whether it has a number; without one it serves LSS only."""
+        return self.number != UNCONFIGURED
+
+    def begin(self, number: int, now: float) -> None:
+        """Begin with a number and the communication of power-on; without one wait for LSS."""
+        self.number = self.communication.node = number
+        self.communication.reset()
+        self._guarding.reset()
+        self._follow(GUARD_TIME)
+        self._produced.set_period(0, now)
+        if self.is_configured:
+            self.boot(now)
+
+    def set_layer(self, data: bytes, now: float) -> bytes | None:
+        """Return the answer to a frame of the LSS master, which is ignored while operational."""
+        if self.state == NmtState.OPERATIONAL:
+            return None
+        answer = self.lss.answer(data, self.number)
+        if not self.is_configured and self.lss.is_waiting and self.lss.pending != UNCONFIGURED:
+            self.begin(self.lss.pending, now)
+        return answer
+
+    def guard(self) -> None:
+        """Answer a request of node guarding; heartbeats take its place."""
+        if not self.communication.value(HEARTBEAT_PRODUCED):
+            self._send(HEARTBEAT + self.number, self._guarding.answer(self.state))
+            self.errors.end(HEARTBEAT_LOST, self.number, is_sent=self.is_talking)
 
     def refuse_start(self, reason: str) -> None:
         """Stay preoperational, with an emergency and the reason as a text."""
@@ -149,6 +166,8 @@ class Node:
 
     def handlers(self) -> Iterator[tuple[int, Handler]]:
         """Iterate over the identifiers that the node receives, with their handlers."""
+        if not self.is_configured:
+            return
         yield SDO_REQUEST + self.number, self._on_sdo
         yield self.communication.value(SYNC_ID) & LARGEST, self._on_sync
         for node in self._consumed.nodes():
@@ -234,7 +253,10 @@ class Node:
         lost = self._consumed.lost(self._step_ns)
         for node in lost:
             self.errors.begin(HEARTBEAT_LOST, node, is_sent=True)
-        if overdue or lost:
+        is_unguarded = self._guarding.is_lost(self._step_ns)
+        if is_unguarded:
+            self.errors.begin(HEARTBEAT_LOST, self.number, is_sent=True)
+        if overdue or lost or is_unguarded:
             self.lose()
 
     def beat(self, now: float) -> None:
@@ -260,6 +282,9 @@ class Node:
         """Let a communication object that has been written take effect."""
         if index == HEARTBEAT_PRODUCED:
             self._produced.set_period(self.communication.value(index), 0.0)
+        elif index in (GUARD_TIME, LIFE_TIME_FACTOR):
+            self._guarding.set_life_time(
+                self.communication.value(GUARD_TIME), self.communication.value(LIFE_TIME_FACTOR))
         elif index == HEARTBEAT_CONSUMED:
             self._consumed.set_watched(self.communication.values(index))
         elif index == ERROR_FIELD:

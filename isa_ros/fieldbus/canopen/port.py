@@ -1,9 +1,8 @@
 """
 The door to a CAN bus: any interface of python-can, opened, read and written in one thread.
 
-Frames are those of classical CAN with identifiers of 11 bits. Remote, error, extended and FD
-frames are none of CANopen's here; they are counted and ignored, and so is what python-can cannot
-decode.
+Frames are those of classical CAN with identifiers of 11 bits. Error, extended and FD frames are
+none of CANopen's here; they are counted and ignored, and so is what python-can cannot decode.
 """
 
 from collections.abc import Mapping
@@ -24,10 +23,12 @@ _SPURIOUS = (ValueError, IndexError)    # of python-can: a frame that it cannot 
 
 
 class Frame(NamedTuple):
-    """A data frame."""
+    """A data or remote frame."""
 
     identifier: int
     data: bytes
+    is_remote: bool = False
+    """Whether it asks for data."""
 
 
 IGNORED = Frame(-1, b'')
@@ -86,10 +87,9 @@ class CanPort:
             return self._ignored()  # python-can could not decode it
         if message is None:
             return None
-        if message.is_error_frame or message.is_remote_frame or message.is_extended_id \
-                or message.is_fd:
+        if message.is_error_frame or message.is_extended_id or message.is_fd:
             return self._ignored()
-        return Frame(message.arbitration_id, bytes(message.data))
+        return Frame(message.arbitration_id, bytes(message.data), message.is_remote_frame)
 
     def send(self, identifier: int, data: bytes) -> None:
         """Send a frame; one that the bus does not take (full, off) is counted and dropped."""

@@ -75,7 +75,7 @@ def _device_information(device: BusDevice, model: str) -> Iterator[str]:
         *((f'BaudRate_{rate}', '1') for rate in _BAUD_RATES),
         ('SimpleBootUpMaster', '0'), ('SimpleBootUpSlave', '1'), ('Granularity', '8'),
         ('DynamicChannelsSupported', '0'), ('CompactPDO', '0'), ('GroupMessaging', '0'),
-        ('NrOfRXPDO', str(CAN_PDOS)), ('NrOfTXPDO', str(CAN_PDOS)), ('LSS_Supported', '0')])
+        ('NrOfRXPDO', str(CAN_PDOS)), ('NrOfTXPDO', str(CAN_PDOS)), ('LSS_Supported', '1')])
 
 
 def _object(one: Object) -> Iterator[str]:

@@ -12,6 +12,7 @@ from isa_ros.fieldbus.device.objects import (
 
 SYNC_ID, CYCLE_PERIOD, SYNC_OVERFLOW = 0x1005, 0x1006, 0x1019
 EMERGENCY_ID = 0x1014
+GUARD_TIME, LIFE_TIME_FACTOR = 0x100C, 0x100D
 HEARTBEAT_CONSUMED, HEARTBEAT_PRODUCED = 0x1016, 0x1017
 ERROR_BEHAVIOUR = 0x1029
 SDO_SERVER = 0x1200
@@ -36,6 +37,11 @@ def communication_objects(step_ns: int) -> list[Object]:
         variable(ObjectEntry(CYCLE_PERIOD, 0, 'Communication cycle period', _U32, 'rw', cycle_us,
                              's', _MICROSECOND, choices=(0, cycle_us),
                              meaning='the tick; 0: not checked'), CANOPEN),
+        variable(ObjectEntry(GUARD_TIME, 0, 'Guard time', _U16, 'rw', 0, 's', _MILLISECOND,
+                             meaning='times 0x100D without a request is a lost bus, in simulated '
+                                     'time; 0: off'), CANOPEN),
+        variable(ObjectEntry(LIFE_TIME_FACTOR, 0, 'Life time factor', _U8, 'rw',
+                             meaning='0: off'), CANOPEN),
         variable(ObjectEntry(EMERGENCY_ID, 0, 'COB-ID EMCY', _U32, 'rw', EMERGENCY, adds_node=True,
                              meaning='bit 31: off'), CANOPEN),
         Object(HEARTBEAT_CONSUMED, 'Consumer heartbeat time', ObjectCode.ARRAY, (

@@ -48,7 +48,7 @@ def test_an_interface_without_its_own_library_is_one_line(monkeypatch):
 
 
 @pytest.mark.parametrize('message', [
-    can.Message(arbitration_id=0x701, is_remote_frame=True, is_extended_id=False),
+    can.Message(arbitration_id=0x181, is_remote_frame=True, is_extended_id=False),
     can.Message(arbitration_id=0x80, is_extended_id=True),
     can.Message(arbitration_id=0x80, is_fd=True, is_extended_id=False),
     can.Message(is_error_frame=True, is_extended_id=False)])
