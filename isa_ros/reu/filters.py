@@ -33,6 +33,9 @@ class SpeedEstimate(Parameters):
     filter_hz: float = parameter('low-pass on them', 'Hz', gt=0.0, le=5e3)
 
 
+SMALLEST_SPEED = 1e-30
+"""m/s or rad/s: at rest the estimate decays, and would stay at the smallest double, 5e-324."""
+
 SPEED = np.dtype([('rate', 'f8'), ('alpha', 'f8')])
 SPEED_STATE = np.dtype([('position', 'f8'), ('velocity', 'f8')])
 
@@ -45,7 +48,8 @@ def speed_record(sheet: SpeedEstimate) -> np.record:
 
 @kernel
 def speed_step(measured_position, speed, state):
-    """Run one period: difference the encoder, smooth the difference  (R1)."""
+    """Run one period: difference the encoder, smooth the difference  (R1); 0 below the smallest."""
     difference = (measured_position - state.position) * speed.rate
-    state.velocity = low_pass(state.velocity, difference, speed.alpha)
+    velocity = low_pass(state.velocity, difference, speed.alpha)
+    state.velocity = velocity if abs(velocity) >= SMALLEST_SPEED else 0.0
     state.position = measured_position

@@ -37,7 +37,8 @@ def fields_of(message: BodyMessage) -> Iterator[tuple[str, str]]:
         for array in joint_state.ARRAYS:
             yield from ((name, f'{array}[{k}]') for k, name in enumerate(getattr(message, array)))
         return
-    vectors = ({'wrench.force': message.force} if not isinstance(message, Inertial) else {
+    vectors = ({'wrench.force': message.force, 'wrench.torque': message.moment}
+               if not isinstance(message, Inertial) else {
         'linear_acceleration': message.force, 'angular_velocity': message.turning})
     for vector, names in vectors.items():
         yield from ((name, f'{vector}.{axis}') for name, axis in zip(names, _XYZ))

@@ -25,11 +25,13 @@ class JointStates(NamedTuple):
 
 
 class Force(NamedTuple):
-    """A force in the world's axes, N: geometry_msgs/WrenchStamped."""
+    """A force in the world's axes, N, and its moment, Nm: geometry_msgs/WrenchStamped."""
 
     topic: str
     force: Sequence[str]
     """Columns of x, y and z."""
+    moment: Sequence[str] = ()
+    """Columns of its moment about the origin of the world; empty: it acts there."""
     period_ns: int = 0
 
 

@@ -26,3 +26,18 @@ def test_the_speed_estimate_follows_a_ramp_through_its_filter():
         speed_step(0.3e-3 * n, row, state)
         expected = 0.3 * (1.0 - math.exp(-2.0 * math.pi * 0.1 * n))
         assert state.velocity == pytest.approx(expected, rel=1e-9)
+
+
+def test_at_rest_the_estimate_becomes_zero():
+    """Not the smallest double, at which a decay ends by rounding; above 1e-30 nothing is cut."""
+    row = speed_record(actuator_sheet('isa_v5').reu.speed)
+    state = np.zeros(1, SPEED_STATE).view(np.recarray)[0]
+    state.velocity = before = 1.0
+    share = math.exp(-2.0 * math.pi * 0.1)
+    for _ in range(200):
+        speed_step(0.0, row, state)
+        if state.velocity == 0.0:
+            break
+        assert state.velocity == pytest.approx(before * share, rel=1e-15, abs=0.0)
+        before = float(state.velocity)
+    assert state.velocity == 0.0 and before * share < 1e-30 <= before

@@ -15,7 +15,7 @@ from tests.messages import packed
 T_NS = 7_000_000_008
 LEG = {f'{field}[{k}]': 3 * place + k for place, field in enumerate(
     ('position', 'velocity', 'torque', 'foot_force')) for k in range(3)} | {
-        'height': 12, 'height_velocity': 13}
+        'height': 12, 'height_velocity': 13} | {f'foot_moment[{k}]': 14 + k for k in range(3)}
 TRUNK = InertialUnit('trunk', ImuSheet(
     link='slider_link', rate_hz=200.0, x_mm=0.0, y_mm=0.0, z_mm=0.0, accelerometer_sigma=0.02,
     accelerometer_bias=0.0, gyro_sigma=0.0, gyro_bias=0.0), 5_000_000, key=0)
@@ -32,7 +32,7 @@ def packed_leg() -> list[bytes]:
     assert [(own.topic, type_of(own)) for own in messages] == [
         ('/joint_states', 'sensor_msgs/msg/JointState'),
         ('/coordinator/ground_contact', 'geometry_msgs/msg/WrenchStamped')]
-    return packed([prepared(own, LEG) for own in messages], np.arange(1.0, 15.0).tolist(), T_NS)
+    return packed([prepared(own, LEG) for own in messages], np.arange(1.0, 18.0).tolist(), T_NS)
 
 
 def test_leg_joints_come_in_fixed_order_and_the_slider_last():
@@ -46,11 +46,11 @@ def test_leg_joints_come_in_fixed_order_and_the_slider_last():
     assert message.header.frame_id == 'world'
 
 
-def test_ground_contact_is_a_force_in_the_world():
+def test_ground_contact_is_a_wrench_in_the_world():
     message = decode(packed_leg()[1], WrenchStamped)
     force, torque = message.wrench.force, message.wrench.torque
     assert (force.x, force.y, force.z) == (10.0, 11.0, 12.0)
-    assert (torque.x, torque.y, torque.z) == (0.0, 0.0, 0.0)
+    assert (torque.x, torque.y, torque.z) == (15.0, 16.0, 17.0)
     assert (message.header.stamp.sec, message.header.stamp.nanosec) == (7, 8)
     assert message.header.frame_id == 'world'
 
@@ -91,7 +91,8 @@ def test_fields_of_the_sample_are_found_in_their_messages() -> None:
         'position': ['position[0]', 'position[1]', 'position[2]'], 'height': ['position[3]'],
         'velocity': ['velocity[0]', 'velocity[1]', 'velocity[2]'],
         'height_velocity': ['velocity[3]'], 'torque': ['effort[0]', 'effort[1]', 'effort[2]']}
-    assert contact == {'foot_force': [f'wrench.force.{axis}' for axis in 'xyz']}
+    assert contact == {'foot_force': [f'wrench.force.{axis}' for axis in 'xyz'],
+                       'foot_moment': [f'wrench.torque.{axis}' for axis in 'xyz']}
     assert unit == {
         'trunk_specific_force': [f'linear_acceleration.{axis}' for axis in 'xyz'],
         'trunk_angular_velocity': [f'angular_velocity.{axis}' for axis in 'xyz']}

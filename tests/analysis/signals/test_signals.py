@@ -12,7 +12,7 @@ import numpy as np
 import pytest
 
 PUBLISHED = (   # of the leg's sample
-    'position', 'velocity', 'torque', 'foot_force', 'height', 'height_velocity')
+    'position', 'velocity', 'torque', 'foot_force', 'height', 'height_velocity', 'foot_moment')
 GAUGE = 2e-9    # Pa: half a step of a float of 20.7 MPa, added and taken away once each
 
 

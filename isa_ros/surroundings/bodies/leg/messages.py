@@ -25,7 +25,8 @@ def leg_messages(prefix: str, units: Sequence[InertialUnit]) -> tuple[BodyMessag
             f'/{prefix}joint_states', [joint_name(joint) for joint in (*JOINTS, SLIDER)],
             [*columns('position'), 'height'], [*columns('velocity'), 'height_velocity'],
             columns('torque')),
-        Force(f'/{prefix or "coordinator/"}ground_contact', columns('foot_force')),
+        Force(f'/{prefix or "coordinator/"}ground_contact', columns('foot_force'),
+              columns('foot_moment')),
         *(_inertial(prefix, unit) for unit in units))
 
 

@@ -26,6 +26,7 @@ LEG_FIELDS = (
     Field('foot_position', 'm', 'base axes, z above the ground', (3,)),
     Field('height', 'm', 'HAA axis above the ground'),
     Field('height_velocity', 'm/s', 'of the HAA axis'),
+    Field('foot_moment', 'Nm', 'of the foot force about the origin of the base axes', (3,)),
 )
 """The sample of a leg at the end of a tick."""
 LEG_SAMPLE = record_type(LEG_FIELDS)
@@ -141,6 +142,10 @@ def fill_sample(y, f, is_held, leg, sample):
         sample.foot_force[j] = motion.foot_force[j]
         sample.foot_position[j] = motion.foot_position[j]
     sample.height, sample.height_velocity = y.z, y.v_z
+    (p_x, p_y, p_z), (f_x, f_y, f_z) = motion.foot_position, motion.foot_force
+    sample.foot_moment[0] = p_y * f_z - p_z * f_y + 0.0  # no -0.0 in flight
+    sample.foot_moment[1] = p_z * f_x - p_x * f_z + 0.0
+    sample.foot_moment[2] = p_x * f_y - p_y * f_x + 0.0
 
 
 @kernel

@@ -168,6 +168,18 @@ def test_standing_leg_rests_with_its_weight_on_the_ground():
     assert math.hypot(f_x, f_y) < 0.7 * normal
 
 
+def test_the_moment_of_the_ground_is_that_of_its_force_at_the_foot():
+    """It acts beside the origin, so that the wrench in the world has p x F; in flight none."""
+    leg = hanging()
+    assert np.copysign(1.0, leg.sample[0]['foot_moment']).tolist() == [1.0, 1.0, 1.0]
+    assert not leg.sample[0]['foot_moment'].any()
+    sample = moving_leg().sample[0]
+    force, place = sample['foot_force'], sample['foot_position']
+    moment = np.cross(place, force)
+    assert force[2] > 100.0 and np.abs(moment).min() > 0.01
+    assert sample['foot_moment'] == pytest.approx(moment, abs=4e-16 * np.abs(force).max())
+
+
 def moving_leg(step_ns=MS, release=True, ticks=160):
     """Return a leg that has hit the ground and moves on it."""
     leg = hanging(step_ns)
