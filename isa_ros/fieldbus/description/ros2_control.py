@@ -1,9 +1,10 @@
 """
 Files for `ethercat_driver_ros2`: a YAML file of each slave, and the tag of the robot description.
 
-Its plugin ``EcCiA402Drive`` maps whole numbers only and counts channels without gaps, so that
-real numbers of a mapping become their whole-number twins, and gaps are left out; the master writes
-this mapping to the slave. A command interface that is NaN, or not there, leaves the ``default``.
+Its plugin ``EcCiA402Drive`` maps whole numbers only, so that the PDOs without real numbers are
+used, and it counts channels without gaps, so that these are left out; the master writes the
+mapping to the slave. The plugin has no negative modes: 0x2012 gives mode 8 the gains of the process data.
+A command interface that is NaN, or not there, leaves the ``default``.
 """
 
 from collections.abc import Iterator, Mapping, Sequence
@@ -11,23 +12,27 @@ from pathlib import Path
 
 from isa_ros.core.timebase import NS_PER_SECOND
 from isa_ros.fieldbus.description.drive_402 import Drive, drive_of, number
-from isa_ros.fieldbus.device.bus_device import (
-    BusDevice, RECEIVE_ASSIGNMENT, TRANSMIT_ASSIGNMENT)
+from isa_ros.fieldbus.device.bus_device import BusDevice
 from isa_ros.fieldbus.device.cia402_objects import (
-    CONTROL, MODE, POSITION, TARGET_POSITION, TARGET_TORQUE, TARGET_VELOCITY, TORQUE, VELOCITY)
+    MODE, POSITION, TARGET_POSITION, TARGET_TORQUE, TARGET_VELOCITY, TORQUE, VELOCITY)
 from isa_ros.fieldbus.device.dictionary import Key
+from isa_ros.fieldbus.device.integer_twins import DAMPING_TWIN, KEEPS, STIFFNESS_TWIN
+from isa_ros.fieldbus.device.manufacturer_area import GAINS_OF_CSP
 from isa_ros.fieldbus.device.objects import DataType, ObjectEntry
-from isa_ros.fieldbus.device.process_data import mapped_keys
+from isa_ros.fieldbus.device.process_data import INTEGER_PDO, mapped_keys, RECEIVE, TRANSMIT
 
 PLUGIN, SYSTEM = 'ethercat_generic_plugins/EcCiA402Drive', 'ethercat_driver/EthercatDriver'
 _TYPES: Mapping[DataType, str] = {
     DataType.INTEGER8: 'int8', DataType.INTEGER16: 'int16', DataType.INTEGER32: 'int32',
     DataType.UNSIGNED8: 'uint8', DataType.UNSIGNED16: 'uint16', DataType.UNSIGNED32: 'uint32'}
 COMMANDS: Mapping[Key, str] = {
-    TARGET_POSITION: 'position', TARGET_VELOCITY: 'velocity', TARGET_TORQUE: 'effort'}
+    TARGET_POSITION: 'position', TARGET_VELOCITY: 'velocity', TARGET_TORQUE: 'effort',
+    STIFFNESS_TWIN: 'stiffness', DAMPING_TWIN: 'damping'}
 STATES: Mapping[Key, str] = {POSITION: 'position', VELOCITY: 'velocity', TORQUE: 'effort'}
-"""Names of interfaces that ROS 2 controllers know."""
-_NOT_A_NUMBER = '.nan'
+"""Interfaces of the tag; the others of a file are named after their objects."""
+_DEFAULTS: Mapping[Key, str] = {
+    TARGET_POSITION: '.nan', STIFFNESS_TWIN: str(KEEPS), DAMPING_TWIN: str(KEEPS)}
+"""What a master sends without a command: of a position the plugin takes the measured one."""
 
 
 def ros2_control_files(
@@ -61,26 +66,18 @@ def _slave(drive: Drive) -> Iterator[str]:
     yield '  - {index: 1, type: input, watchdog: disable}'
     yield '  - {index: 2, type: output, pdo: rpdo, watchdog: enable}'
     yield '  - {index: 3, type: input, pdo: tpdo, watchdog: disable}'
-    for name, assignment in (('rpdo', RECEIVE_ASSIGNMENT), ('tpdo', TRANSMIT_ASSIGNMENT)):
+    if GAINS_OF_CSP in device.table:
+        index, subindex = GAINS_OF_CSP
+        yield 'sdo:'
+        yield f'  - {{index: 0x{index:04X}, sub_index: {subindex}, type: uint8, value: 1}}'
+    for name, first in (('rpdo', RECEIVE), ('tpdo', TRANSMIT)):
         yield f'{name}:'
-        for pdo in device.assigned(assignment):
-            yield f'  - index: 0x{pdo:04X}'
-            yield '    channels:'
-            for entry in _channels(device, pdo):
-                is_received = assignment == RECEIVE_ASSIGNMENT
-                keys = _received(entry, drive) if is_received else _transmitted(entry)
-                yield f'      - {{{", ".join(keys)}}}  # {_comment(entry)}'
-
-
-def _channels(device: BusDevice, pdo: int) -> Iterator[ObjectEntry]:
-    """Yield the entries of a PDO that are whole numbers, or have a twin that is one."""
-    known = [entry for entry in device.table.entries if entry.data_type in _TYPES and entry.pdo]
-    for key in mapped_keys(device, pdo):
-        entry = device.table.entry(*key)
-        if entry.data_type in _TYPES:
-            yield entry
-        else:
-            yield from (one for one in known if one.twin == key)
+        yield f'  - index: 0x{first + INTEGER_PDO:04X}'
+        yield '    channels:'
+        for key in mapped_keys(device, first + INTEGER_PDO):
+            entry = device.table.entry(*key)
+            keys = _received(entry, drive) if first == RECEIVE else _transmitted(entry)
+            yield f'      - {{{", ".join(keys)}}}  # {_comment(entry)}'
 
 
 def _place(entry: ObjectEntry) -> list[str]:
@@ -90,16 +87,12 @@ def _place(entry: ObjectEntry) -> list[str]:
 
 def _received(entry: ObjectEntry, drive: Drive) -> list[str]:
     key = entry.index, entry.subindex
-    keys, default = _place(entry), str(entry.default)
-    name = COMMANDS.get(key) or (_words(entry) if entry.unit else '')
-    if name:
-        keys.append(f'command_interface: {name}')
+    keys = _place(entry)
+    if entry.unit:
+        keys.append(f'command_interface: {COMMANDS.get(key) or _words(entry)}')
     if entry.scale != 1.0:
         keys.append(f'factor: {number(1.0 / entry.scale)}')
-    if key == TARGET_POSITION:
-        default = _NOT_A_NUMBER     # the plugin takes the measured position for it
-    elif key in (CONTROL, MODE):
-        default = str(drive.mode) if key == MODE else '0'
+    default = str(drive.mode) if key == MODE else _DEFAULTS.get(key, '0')
     return [*keys, f'default: {default}']
 
 
@@ -142,7 +135,9 @@ def _tag(drives: Sequence[Drive], step_ns: int, directory: Path) -> Iterator[str
         yield f'        <param name="min">{low}</param>'
         yield f'        <param name="max">{high}</param>'
         yield '      </command_interface>'
-        for command in ('velocity', 'effort', 'reset_fault'):
+        commands = [words for key, words in COMMANDS.items()
+                    if key in drive.device.table and key != TARGET_POSITION]
+        for command in (*commands, 'reset_fault'):
             yield f'      <command_interface name="{command}"/>'
         yield f'      <ec_module name="{name}">'
         yield f'        <plugin>{PLUGIN}</plugin>'

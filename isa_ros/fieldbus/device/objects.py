@@ -112,8 +112,6 @@ class ObjectEntry:
     """Whether the default grows by the CANopen node id."""
     longest: int = 0
     """Bytes of the longest text, where it is longer than the default."""
-    twin: tuple[int, int] | None = None
-    """Index and subindex of the REAL32 entry that this whole number stands for too."""
 
     @property
     def bits(self) -> int:

@@ -2,6 +2,7 @@
 
 from dataclasses import replace
 import math
+import struct
 
 import isa_ros
 from isa_ros.cli.main import main
@@ -49,9 +50,9 @@ def test_the_driver_enables_a_drive_and_moves_it_in_si(files):
     rig.device.begin_operation()
 
     def cycle():
-        rig.device.receive(0x1610, driver.outputs())
+        rig.device.receive(0x1611, driver.outputs())
         rig.tick()
-        driver.take(rig.device.transmit(0x1A10))
+        driver.take(rig.device.transmit(0x1A11))
     for _ in range(100):
         cycle()
     assert driver.is_enabled
@@ -69,6 +70,23 @@ def test_the_driver_enables_a_drive_and_moves_it_in_si(files):
     assert driver.frequency == 1000.0 and driver.mode == 8
 
 
+def test_gains_are_commanded_in_mode_8(files):
+    """Without a command the stiffness in force stays, which 0x2010 says by NaN."""
+    rig = Rig('rig_linear')
+    driver = EcDriver(files / 'rig_linear' / 'ros2_control.urdf.xacro', rig.device.name)
+    mapped_by_the_master(rig.device, driver)
+    for one in driver.config['sdo']:
+        rig.device.write(one['index'], one['sub_index'], bytes([one['value']]),
+                         is_preoperational=True)
+    driver.commands |= {'stiffness': 40_000.0, 'damping': 500.0}
+    rig.device.receive(0x1611, driver.outputs())
+    gains = [struct.unpack('<f', rig.device.read(0x2010, k))[0] for k in (1, 2)]
+    assert gains == [40_000.0, 500.0] and rig.device.read(0x2012, 0) == b'\1'
+    driver.commands |= {'stiffness': math.nan}
+    rig.device.receive(0x1611, driver.outputs())
+    assert math.isnan(struct.unpack('<f', rig.device.read(0x2010, 1))[0])
+
+
 def test_every_slave_of_a_leg_is_at_its_place_and_takes_its_mapping(files):
     for k, device in enumerate(devices_of(LEG)):
         driver = EcDriver(files / 'leg' / 'ros2_control.urdf.xacro', device.name)
@@ -76,7 +94,7 @@ def test_every_slave_of_a_leg_is_at_its_place_and_takes_its_mapping(files):
         assert driver.config['vendor_id'] == device.identity.vendor
         assert driver.config['product_id'] == device.identity.product
         mapped_by_the_master(device, driver)
-        for side, pdo in (('rpdo', 0x1610), ('tpdo', 0x1A10)):
+        for side, pdo in (('rpdo', 0x1611), ('tpdo', 0x1A11)):
             assert device.size(pdo) == sum(word & 0xFF for word in driver.mapping(side)) // 8
 
 
@@ -97,7 +115,8 @@ def test_a_target_without_a_command_is_no_target(files):
     config = yaml.safe_load((files / 'leg' / 'kfe.yaml').read_text())
     defaults = {one['index']: one['default'] for one in config['rpdo'][0]['channels']}
     assert math.isnan(defaults.pop(0x607A))
-    assert defaults.pop(0x6060) == 8 and set(defaults.values()) == {0}
+    assert defaults.pop(0x6060) == 8 and defaults.pop(0x2011) == 0xFFFFFFFF
+    assert set(defaults.values()) == {0}
 
 
 def test_another_profile_is_refused_in_one_line(tmp_path, capsys):
