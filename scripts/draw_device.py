@@ -13,7 +13,7 @@ from isa_ros.config.runs.default_actuator import default_actuator
 from isa_ros.controller import fill_command, Setpoint
 from isa_ros.core.device import EVENTS, MODES, STATES
 from isa_ros.core.signals import COMMAND
-from isa_ros.reu.device import TRANSITIONS
+from isa_ros.reu.transitions import TRANSITIONS
 from isa_ros.text.marked import with_parts
 from isa_ros.text.table import markdown
 from matplotlib.axes import Axes
@@ -39,7 +39,7 @@ EVENT_WORDS: Mapping[str, str] = {
     'enable': '`~/enable` with true',
     'disable': '`~/enable` with false',
     'quick stop': '`~/quick_stop`',
-    'stop ends': 'the reference was at rest for `quick_stop_hold_ms`',
+    'stop ends': 'at rest for `quick_stop_hold_ms`; at once with `quick_stop: close`',
     'reaction ends': 'the same, or at once if the reaction is disable'}
 """Cause of each event of `isa_ros.core.device.EVENTS`."""
 

@@ -11,8 +11,9 @@ from isa_ros.core.device import ENABLED
 from isa_ros.core.kernel import kernel
 from isa_ros.core.signals import (
     EVERY_KIND, HAS_ENABLE, HAS_GAINS, HAS_MODE, HAS_REFERENCE, HAS_SETPOINT, WAS_REFUSED)
-from isa_ros.reu.device import hold_here, is_enabled
+from isa_ros.reu.device import is_enabled
 from isa_ros.reu.protection import feed
+from isa_ros.reu.stops import stay_here
 
 WITH_GAINS = HAS_SETPOINT | HAS_GAINS
 """Kinds of commands that may contain gains."""
@@ -59,8 +60,8 @@ def latch(pending, reu, applied):
     """
     Apply the pending command to a `REU_STATE` and copy it to ``applied``; without one, kinds is 0.
 
-    An actuator that is enabled again holds its last measured position. The device takes mode,
-    enable and requests at its next step.
+    An actuator that is enabled again holds its last measured position and force. The device takes
+    mode, enable and requests at its next step.
     """
     setpoint, device = reu.setpoint, reu.status
     applied.kinds = 0
@@ -73,7 +74,7 @@ def latch(pending, reu, applied):
     kinds = pending.kinds
     if kinds & HAS_ENABLE:
         if pending.is_enabled and device.state != ENABLED:
-            hold_here(setpoint, reu.measured.position)
+            stay_here(device.requested_mode, reu)
         device.requested_enable = int(pending.is_enabled)
     if kinds & HAS_SETPOINT:
         setpoint.position = pending.position

@@ -62,6 +62,7 @@ def loops_and_plant(
         sense(step, reu.current_steps, state.plant, state.load.position, state.load.velocity,
               actuator.plant, actuator.noise_key, channels, reu_state.measured)
         if reu.is_frozen == 0.0:  # else references and drive stay
+            reu_state.supply_pressure = port.supply_pressure
             if reu.protection.is_on:
                 protect(step, port.supply_pressure, thermal.sensed, reu.protection, reu_state)
             cascade_step(step, reu, reu_state)

@@ -4,14 +4,14 @@ import math
 
 from isa_ros.core.record import record
 from isa_ros.core.timebase import PLANT_STEP
-from isa_ros.core.units import MILLI
+from isa_ros.core.units import MICRO, MILLI
 from isa_ros.plant.servo_valve import flow_curve
 from isa_ros.plant.spool import CLOSED_LOOP, PILOTED
 from isa_ros.reu.block import Pid
 from isa_ros.reu.lead_lag import LeadLag
 from isa_ros.reu.plausibility import EVIDENCE, VALVE_EVIDENCE
 from isa_ros.reu.protection import Ratings
-from isa_ros.reu.wiring import loop_steps, Reu
+from isa_ros.reu.wiring import loop_steps, Off, Reu
 import numpy as np
 
 
@@ -24,6 +24,28 @@ def ratings_of(plant: np.record) -> Ratings:
         force_range=float(sensors.force_range), pressure_range=float(sensors.pressure_range),
         current_range=float(sensors.current_range),
         opening_pressure=float(plant.relief.p_open), spool_stop=float(valve.x_max))
+
+
+def null_speed(plant: np.record) -> float:
+    """
+    Return the speed that the flow curve's slope about null gives over the spool's whole travel.
+
+    Half of the relief valves' opening pressure is over one land.
+    """
+    valve, oil = plant.valve, plant.chambers
+    flow = flow_curve(_NEAR_NULL * valve.x_max, valve) / _NEAR_NULL * valve.per_root_drop
+    return float(flow * math.sqrt(0.5 * plant.relief.p_open) / max(oil.area_a, oil.area_b))
+
+
+_NEAR_NULL = 0.01  # of the travel: on the first line of every flow curve
+
+
+def valve_lag(plant: np.record, reu: Reu) -> float:
+    """Return the lag from a conversion to the spool: sampling, delay, current and spool, in s."""
+    sampling = sum(loop_steps(reu)[name] for name in ('spool', 'current')
+                   if not isinstance(getattr(reu, name), Off)) * PLANT_STEP
+    return (sampling + reu.computation_delay_us * MICRO
+            + _current_lag(plant.coil, reu) + _spool_lag(plant, reu))
 
 
 def evidence_of(
@@ -48,16 +70,23 @@ def _valve_evidence(
     """
     own, lag = plant.spool, _current_lag(plant.coil, reu)
     if own.kind == PILOTED:
-        k_p = reu.spool.kp if isinstance(reu.spool, Pid) else 0.0
-        is_closed, gain = k_p > 0.0, 1.0
-        spool_lag = 1.0 / (own.k_pilot * k_p) if is_closed else 0.0
+        is_closed, gain = isinstance(reu.spool, Pid) and reu.spool.kp > 0.0, 1.0
     else:
         is_closed, gain = True, plant.valve.k_spool / plant.coil.parallel
-        spool_lag = 1.0 / own.k_loop if own.kind == CLOSED_LOOP else 2.0 * own.zeta / own.w_n
+    spool_lag = _spool_lag(plant, reu)
     return record(
         VALVE_EVIDENCE, is_watched=int(has_sensor and is_closed),
         is_piloted=int(own.kind == PILOTED), gain=gain, stop=plant.valve.x_max,
         share=period / (lag + spool_lag + period))
+
+
+def _spool_lag(plant: np.record, reu: Reu) -> float:
+    """Return the lag of the closed spool loop in s; 0 for a piloted spool without a K_p."""
+    own = plant.spool
+    if own.kind == PILOTED:
+        k_p = reu.spool.kp if isinstance(reu.spool, Pid) else 0.0
+        return float(1.0 / (own.k_pilot * k_p)) if k_p > 0.0 else 0.0
+    return float(1.0 / own.k_loop if own.kind == CLOSED_LOOP else 2.0 * own.zeta / own.w_n)
 
 
 def _current_lag(coil: np.record, reu: Reu) -> float:

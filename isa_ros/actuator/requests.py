@@ -1,10 +1,11 @@
 """Mode at the start, and answers to requests: what a device accepts in its state."""
 
 from isa_ros.core.device import (
-    CLEAR, DISABLE, DISABLED, ENABLE, ENABLED, FAULT, INITIALISING, state_name, STOP)
+    CLEAR, DISABLE, DISABLED, ENABLE, ENABLED, FAULT, INITIALISING, QUICK_STOP, state_name, STOP)
 from isa_ros.core.signals import COMMAND, HAS_CLEAR_FAULT, HAS_ENABLE, HAS_MODE, HAS_QUICK_STOP
-from isa_ros.reu.device import TRANSITIONS
+from isa_ros.reu.device import is_held
 from isa_ros.reu.reactions import is_cause_gone
+from isa_ros.reu.transitions import TRANSITIONS
 from isa_ros.reu.wiring import first_mode, mode_of, Reu
 import numpy as np
 
@@ -42,8 +43,8 @@ def refusal_of(
         command: np.void, pending: np.record, constants: np.record, reu: np.record) -> str:
     """Return why a request of enable, clear or stop would change nothing, or ''."""
     kinds, state = int(command['kinds']), int(reu.status.state)
-    if state == INITIALISING and reu.status.auto_enable:
-        state = ENABLED
+    if state == INITIALISING and constants.rules.initialisation == 0.0:
+        state = ENABLED if reu.status.auto_enable else DISABLED
     is_gone = is_cause_gone(constants.protection, reu)
     if int(pending.kinds) & HAS_CLEAR_FAULT and is_gone and state == FAULT:
         state = DISABLED
@@ -59,4 +60,6 @@ def refusal_of(
             return f'the state is {state_name(state)}, {what} needs {" or ".join(states)}'
         if event == CLEAR and not is_gone:
             return 'the cause of the fault is not gone'
+        if event == ENABLE and state == QUICK_STOP and not is_held(constants.rules, reu.status):
+            return 'the quick stop has not ended'
     return ''

@@ -48,6 +48,7 @@ def rest_loops(memory: Memory, sheet: Reu, mode: int, is_enabled: bool) -> None:
         block.measured = value
     reu.setpoint.position = reu.protection.evidence.position = at.position
     device = reu.status
+    device.flow.slow_force = at.force
     for setpoint in (reu.setpoint, device.stop):
         setpoint.stiffness, setpoint.damping = initial_gains(sheet)
     device.mode = device.acting = device.requested_mode = mode

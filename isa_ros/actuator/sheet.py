@@ -4,7 +4,7 @@ from dataclasses import dataclass
 
 from isa_ros.actuator.kernel import ACTUATOR
 from isa_ros.actuator.link import link_record, LinkSheet, NO_LINK
-from isa_ros.actuator.ratings import evidence_of, ratings_of
+from isa_ros.actuator.ratings import evidence_of, null_speed, ratings_of, valve_lag
 from isa_ros.core.changeable import sound
 from isa_ros.core.parameter import choice, nested, Parameters
 from isa_ros.core.record import record
@@ -151,6 +151,7 @@ def actuator_record(sheet: ActuatorSheet, offset_steps: int) -> np.ndarray:
     reu = reu_record(
         sheet.reu, offset_steps, known[0].chambers.stroke, force_stiffness(known[0]),
         known_model(known[0], output_per_spool(sheet)),
+        valve_lag(known[0], sheet.reu), null_speed(known[0]),
         known[0].valve.k_spool, known[0].coil.parallel)
     reu['protection'] = protection_record(
         sheet.reu.protection, ratings_of(known[0]),

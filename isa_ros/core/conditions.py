@@ -54,6 +54,9 @@ class LevelDefaults(NamedTuple):
     reaction: str
     may_limit: bool = False
     """Whether the reaction `limit` is possible: a direction of the valve makes it worse."""
+    refused: tuple[str, ...] = ()
+    """Reactions that are refused."""
+    why_refused: str = ''
     warning_source: str = ASSUMED
     trip_source: str = ASSUMED
 
@@ -87,6 +90,9 @@ class Condition(NamedTuple):
         return '1' if self.rating else self.unit
 
 
+_BY_SENSORS = ('hold', 'damp', 'quick_stop')
+_STOPPING = (*_BY_SENSORS, 'disable')
+
 CONDITIONS = (
     Condition(
         'setpoint_timeout', 'An enabled actuator has had no setpoint for too long.',
@@ -98,7 +104,8 @@ CONDITIONS = (
         ErrorCode(0x8612, PROFILE, 'reference limit'),
         LevelDefaults(
             'distance, part of the stroke', 0.5, warning=0.0, trip=0.0, delay_ms=0.0,
-            reaction='limit', may_limit=True),
+            reaction='limit', may_limit=True, refused=_STOPPING,
+            why_refused='an actuator that stops there could not leave it'),
         is_above=False),
     Condition(
         'overspeed', 'The estimated speed is higher than the valve alone can cause.',
@@ -159,7 +166,8 @@ CONDITIONS = (
         ErrorCode(0x7300, PROFILE, 'sensor: here the load cell'),
         LevelDefaults(
             'force over the range of its sensor', 1.0, warning=0.05, trip=0.1,
-            delay_ms=50.0, reaction='disable')),
+            delay_ms=50.0, reaction='disable', refused=_BY_SENSORS,
+            why_refused='they use the force sensor, which may be wrong then')),
     Condition(
         'encoder_jump',
         'The encoder moves further between two conversions than the piston or rotor can.',
@@ -167,7 +175,8 @@ CONDITIONS = (
         ErrorCode(0x7320, PROFILE, 'position sensor'),
         LevelDefaults(
             'speed over that of the valve, from its rated flow', 1e3, warning=2.0, trip=4.0,
-            delay_ms=0.0, reaction='disable')),
+            delay_ms=0.0, reaction='disable', refused=_BY_SENSORS,
+            why_refused='they use the encoder, which is wrong then')),
     Condition(
         'link_lost', "No frame of the link has arrived for the time of the link's watchdog.",
         'time since the last frame of the link', 's', '',

@@ -19,6 +19,7 @@ from isa_ros.reu.device import DEVICE, device_record, DEVICE_STATE, device_step
 from isa_ros.reu.feedback_linearisation import (
     FeedbackLinearisation, LINEARISATION, linearisation_record, linearising_step)
 from isa_ros.reu.filters import SPEED, speed_record, SPEED_STATE, speed_step
+from isa_ros.reu.flow_stop import flow_stop_record
 from isa_ros.reu.impedance import force_reference, IMPEDANCE, Impedance, impedance_record, SETPOINT
 from isa_ros.reu.lead_lag import LEAD_LAG, lead_lag_record, LEAD_LAG_STATE, lead_lag_step, LeadLag
 from isa_ros.reu.protection import PROTECTION, PROTECTION_STATE
@@ -60,6 +61,7 @@ REU_STATE = np.dtype([
     ('amplifier', 'f8'),           # the drive after the computational delay
     ('protection', PROTECTION_STATE),
     ('status', DEVICE_STATE),
+    ('supply_pressure', 'f8'),     # of the port at the last conversion, Pa
     ('link_silence', 'f8'),        # s since the last frame of a link with a watchdog
     ('link_lost', 'i8'),           # 1: no frame has come for the link's watchdog time
     ('link_lost_step', 'i8'),      # plant step at which it was last lost
@@ -68,12 +70,14 @@ REU_STATE = np.dtype([
 
 def reu_record(
         reu: Reu, offset_steps: int, stroke: float, stiffness: np.ndarray,
-        model: np.record, k_spool: float, parallel: float) -> np.ndarray:
+        model: np.record, lag: float, null_speed: float, k_spool: float,
+        parallel: float) -> np.ndarray:
     """
     Return the `REU` record, shape (1,).
 
     ``stiffness`` (POINTS,) is the stiffness in the force loop over the stroke, ``model`` the
-    `LINEARISED` record, a linearising block's model of the actuator.
+    `LINEARISED` record, a linearising block's and a stop's model of the actuator; ``lag`` of the
+    valve in s, and ``null_speed`` with its slope about null over the whole travel.
     """
     record = np.zeros(1, REU)
     row = record[0]
@@ -95,7 +99,9 @@ def reu_record(
         row[f'{name}_steps'] = period
     row['offset_steps'], row['delay_steps'] = offset_steps, delay_steps(reu, steps['current'])
     row['stroke'], row['k_spool'], row['parallel'] = stroke, k_spool, parallel
-    row['rules'] = device_record(reu.device, reu, steps['current'] * PLANT_STEP)
+    conversion = steps['current'] * PLANT_STEP
+    row['rules'] = device_record(reu.device, reu, conversion, flow_stop_record(
+        model, stiffness, lag, null_speed, conversion, reu.device.quick_stop_deceleration))
     row['is_frozen'] = reu.frozen
     return record
 

@@ -2,20 +2,19 @@
 The device of an actuator: its states, what changes them, and whether the blocks have the valve.
 
 The states follow CiA 402. Only `enabled`, and the movement of a stop, have the outputs on; in all
-other states the valve is commanded to null. A quick stop brings the reference of the position
-block to rest with the declared deceleration (or at once), holds it, and ends disabled. A trip of a
-protection starts its reaction, a quick stop or the outputs off, and ends in `fault`, which is kept
-until it is cleared, and cleared only once its cause is gone. `TRANSITIONS` is the whole table; the
-kernel reads it as numbers, `docs/device.md` shows it.
+other states the valve is commanded to null. A quick stop brings the movement to rest with the
+declared deceleration (`isa_ros.reu.stops`), holds it, and ends disabled; or it closes the valve at
+once, or stays at rest until it is disabled or enabled. A trip of a protection starts its reaction,
+a quick stop or the outputs off, and ends in `fault`, which is kept until it is cleared, and
+cleared only once its cause is gone. A trip whose reaction is hold stops in the same way, but stays
+enabled. `isa_ros.reu.transitions` has the whole table; the kernel reads it as numbers.
 
 Signs and units are those of the cascade.
 """
 
-from typing import NamedTuple
-
 from isa_ros.core.device import (
-    CLEAR, DISABLE, DISABLED, ENABLE, ENABLED, EVENTS, FAULT, FAULT_REACTION, FORCE, INITIALISING,
-    MODE, NO_MODE, QUICK_STOP, REACTION_ENDS, READY, STATES, STOP, STOP_ENDS, TRIP)
+    CLEAR, DISABLE, ENABLE, ENABLED, EVENTS, FAULT_REACTION, INITIALISING, MODE, NO_MODE, POSITION,
+    QUICK_STOP, REACTION_ENDS, READY, SPOOL, STATES, STOP, STOP_ENDS, TRIP)
 from isa_ros.core.elementary import exp
 from isa_ros.core.kernel import kernel
 from isa_ros.core.record import record
@@ -23,74 +22,39 @@ from isa_ros.core.signals import (
     HAS_CLEAR_FAULT, HAS_ENABLE, HAS_MODE, HAS_QUICK_STOP, HAS_REFERENCE, HAS_SETPOINT)
 from isa_ros.core.timebase import PLANT_STEP
 from isa_ros.reu.bumpless import FADE, start_setpoint, take_over
+from isa_ros.reu.flow_stop import FLOW_STOP, FLOW_STOP_STATE, watch_load
 from isa_ros.reu.impedance import SETPOINT
-from isa_ros.reu.protection import DISABLE as REACTS_BY_DISABLE, HOLD as REACTS_BY_HOLD
+from isa_ros.reu.protection import DAMP as REACTS_BY_DAMP, DISABLE as REACTS_BY_DISABLE
+from isa_ros.reu.protection import HOLD as REACTS_BY_HOLD
 from isa_ros.reu.protection import QUICK_STOP as REACTS_BY_QUICK_STOP, request_clear
 from isa_ros.reu.reactions import is_cause_gone
-from isa_ros.reu.wiring import Device, first_mode, IMPEDES, possible_modes, Reu
+from isa_ros.reu.stops import advance_return, advance_stop, begin_return, begin_stop, stay_here
+from isa_ros.reu.transitions import GUARDS, next_states
+from isa_ros.reu.wiring import Device, possible_modes, Reu
 import numpy as np
 
 
-ALWAYS, AUTO_ENABLE = '', 'auto_enable'
-CAUSE_GONE, POSSIBLE = 'its cause is gone', 'it is possible'
-
-
-class Transition(NamedTuple):
-    """One row of the table of states."""
-
-    state: int
-    event: int
-    guard: str
-    """A condition besides the event; '': none."""
-    following: int
-    does: str
-    """Effect on the actuator."""
-
-
-TRANSITIONS = (
-    Transition(INITIALISING, READY, AUTO_ENABLE, ENABLED, 'holds the position measured at t = 0'),
-    Transition(INITIALISING, READY, f'not {AUTO_ENABLE}', DISABLED, 'valve stays at null'),
-    Transition(INITIALISING, TRIP, ALWAYS, FAULT, 'valve stays at null'),
-    Transition(INITIALISING, MODE, POSSIBLE, INITIALISING, 'mode of the next enable'),
-    Transition(DISABLED, ENABLE, ALWAYS, ENABLED,
-               'holds the last measured position, or takes the setpoint of the same command'),
-    Transition(DISABLED, TRIP, ALWAYS, FAULT, 'valve stays at null'),
-    Transition(DISABLED, MODE, POSSIBLE, DISABLED, 'mode of the next enable'),
-    Transition(ENABLED, DISABLE, ALWAYS, DISABLED, 'valve to null, integrals zero'),
-    Transition(ENABLED, STOP, ALWAYS, QUICK_STOP, 'the position block stops the movement'),
-    Transition(ENABLED, TRIP, ALWAYS, FAULT_REACTION, 'the reaction of the condition begins'),
-    Transition(ENABLED, MODE, POSSIBLE, ENABLED, 'the blocks of the mode take over, bumpless'),
-    Transition(QUICK_STOP, STOP_ENDS, ALWAYS, DISABLED, 'valve to null, integrals zero'),
-    Transition(QUICK_STOP, DISABLE, ALWAYS, DISABLED, 'valve to null at once'),
-    Transition(QUICK_STOP, TRIP, ALWAYS, FAULT_REACTION, 'the reaction of the condition begins'),
-    Transition(QUICK_STOP, MODE, POSSIBLE, QUICK_STOP, 'mode of the next enable'),
-    Transition(FAULT_REACTION, REACTION_ENDS, ALWAYS, FAULT, 'valve to null, integrals zero'),
-    Transition(FAULT_REACTION, DISABLE, ALWAYS, FAULT, 'valve to null at once'),
-    Transition(FAULT_REACTION, MODE, POSSIBLE, FAULT_REACTION, 'mode of the next enable'),
-    Transition(FAULT, CLEAR, CAUSE_GONE, DISABLED, 'the fault is forgotten'),
-    Transition(FAULT, MODE, POSSIBLE, FAULT, 'mode of the next enable'),
-)
-"""Every transition; an event without a row for a state is ignored there."""
-
-_GUARDS = (False, True)  # a guard of a row holds or not: two places of the kernel's table
-_IGNORED = -1
+CLOSES, STAYS = 'close', 'ramp_and_hold'  # kinds of a quick stop
 
 DEVICE = np.dtype([
-    ('next', 'i8', (len(STATES) * len(EVENTS) * len(_GUARDS),)),
+    ('next', 'i8', (len(STATES) * len(EVENTS) * len(GUARDS),)),
     ('modes', 'i8'),               # bits 1 << mode of those that the wiring has
-    ('stop_mode', 'i8'),           # mode of the stopping movement; 0: no position block
     ('initialisation', 'f8'),      # s
-    ('ramps', 'f8'),               # 1: a quick stop brakes; 0: it holds at once
-    ('deceleration', 'f8'),        # m/s2 | rad/s2
+    ('ramps', 'i8'),               # 1: a quick stop brakes; 0: it closes the valve
+    ('stays', 'i8'),               # 1: it stays at rest with the outputs on
     ('hold', 'f8'),                # s
     ('period', 'f8'),              # between two steps of the device, s
+    ('return_speed', 'f8'),        # m/s | rad/s
+    ('flow', FLOW_STOP),
     ('fade', 'f8')])               # share of a faded jump that is left after a period
 DEVICE_STATE = np.dtype([
     ('state', 'i8'), ('mode', 'i8'), ('event', 'i8'),
     ('since_step', 'i8'),          # plant step of the last change of state, mode or conditions
     ('acting', 'i8'),              # the mode whose blocks run; another one during a stop
     ('is_on', 'i8'),               # 1: the blocks command the valve; 0: null
-    ('is_stopping', 'i8'),         # 1: the position block follows ``stop``
+    ('is_stopping', 'i8'),         # 1: the valve follows ``stop``
+    ('is_damping', 'i8'),          # 1: the reaction damp acts
+    ('is_returning', 'i8'),        # 1: the position block follows ``back``
     ('auto_enable', 'i8'),
     ('requests', 'i8'),            # kinds of the commands since the last step
     ('requested_mode', 'i8'), ('requested_enable', 'i8'),
@@ -98,40 +62,26 @@ DEVICE_STATE = np.dtype([
     ('refused_requests', 'i8'),    # to enable, clear or stop, since t = 0
     ('unused_setpoints', 'i8'),    # that came while it did not follow them
     ('trips', 'i8'), ('warnings', 'i8'),   # bits of the conditions at the last step
-    ('stop_steps', 'f8'),          # periods until the stop ends
-    ('stop', SETPOINT),            # of the stopping movement; its gains are those of the start
+    ('stop_steps', 'f8'),          # periods at rest until the stop ends
+    ('stop', SETPOINT),            # of the stopping movement: its place, speed, and valve
+    ('flow', FLOW_STOP_STATE),
+    ('back', SETPOINT),            # on the way back to the setpoint,
+    ('return_speed', 'f8'),        # with this speed, m/s | rad/s
     ('fade', FADE)])
 
 
-def next_states() -> np.ndarray:
-    """Return `TRANSITIONS` as numbers: the next state by state, event and guard; -1: ignored."""
-    table = np.full((len(STATES), len(EVENTS), len(_GUARDS)), _IGNORED)
-    for row in TRANSITIONS:
-        for guard in _GUARDS:
-            if row.guard == ALWAYS or row.guard.startswith('not ') != guard:
-                table[row.state, row.event, int(guard)] = row.following
-    return table.reshape(-1)
+def device_record(sheet: Device, reu: Reu, period: float, flow: np.record) -> np.record:
+    """
+    Return the `DEVICE` record of an REU whose current block has a period in s.
 
-
-def device_record(sheet: Device, reu: Reu, period: float) -> np.record:
-    """Return the `DEVICE` record of an REU whose current block has a period in s."""
-    first = first_mode(reu)
+    ``flow`` is the `FLOW_STOP` record of its stops.
+    """
     return record(
         DEVICE, next=next_states(), modes=sum(1 << mode for mode in possible_modes(reu)),
-        stop_mode=first if first > FORCE else NO_MODE,
-        initialisation=sheet.initialisation_ms * 1e-3, ramps=float(sheet.quick_stop == 'ramp'),
-        deceleration=sheet.quick_stop_deceleration, hold=sheet.quick_stop_hold_ms * 1e-3,
-        period=period, fade=exp(-period / (sheet.fade_ms * 1e-3)))
-
-
-@kernel
-def hold_here(setpoint, position):
-    """Set a setpoint at rest at a position, without effort or reference; the gains stay."""
-    setpoint.position = position
-    setpoint.velocity = 0.0
-    setpoint.effort = 0.0
-    setpoint.reference = 0.0
-    setpoint.is_reference = 0.0
+        initialisation=sheet.initialisation_ms * 1e-3, ramps=int(sheet.quick_stop != CLOSES),
+        stays=int(sheet.quick_stop == STAYS), hold=sheet.quick_stop_hold_ms * 1e-3,
+        period=period, return_speed=sheet.return_speed, flow=flow,
+        fade=exp(-period / (sheet.fade_ms * 1e-3)))
 
 
 @kernel
@@ -183,17 +133,32 @@ def take_requests(step, reu, state):
     if own.requests & HAS_MODE and own.requested_mode != own.mode:
         if happens(MODE, reu.rules.modes >> own.requested_mode & 1, step, reu, own):
             own.mode = own.requested_mode
+            own.is_returning = 0
+            if own.is_stopping and not own.requests & (HAS_SETPOINT | HAS_REFERENCE):
+                stay_here(own.mode, state)
         own.requested_mode = own.mode
     if own.requests & HAS_ENABLE:
         own.refused &= ~HAS_ENABLE
-        happens(ENABLE if own.requested_enable else DISABLE, 0, step, reu, own)
+        event = ENABLE if own.requested_enable else DISABLE
+        if happens(event, int(is_held(reu.rules, own)), step, reu, own) and (
+                own.state == INITIALISING):
+            own.auto_enable = own.requested_enable
         if own.requested_enable != is_enabled(own):
             refuse(HAS_ENABLE, own)
-    if own.requests & HAS_QUICK_STOP and not happens(STOP, 0, step, reu, own):
-        refuse(HAS_QUICK_STOP, own)
+    if own.requests & HAS_QUICK_STOP:
+        if not happens(STOP, 0, step, reu, own):
+            refuse(HAS_QUICK_STOP, own)
+        elif own.state == INITIALISING:
+            own.auto_enable = 0
     if own.requests & (HAS_SETPOINT | HAS_REFERENCE) and (
             not is_enabled(own) or state.protection.reaction >= REACTS_BY_HOLD):
         own.unused_setpoints += 1
+
+
+@kernel
+def is_held(rules, own):
+    """Return whether a quick stop of a `DEVICE_STATE` stays at rest and may be left by enable."""
+    return rules.stays == 1 and own.is_stopping == 1 and own.stop.velocity == 0.0
 
 
 @kernel
@@ -203,55 +168,71 @@ def stops(device_state):
 
 
 @kernel
-def begin_stop(reference, reu, state):
-    """
-    Begin to stop; ``reference`` is the force (N | Nm) with which the position block takes over.
-
-    An impedance keeps the effort of the setpoint, which bears the load; without one the force.
-    """
-    own, setup = state.status, reu.rules
-    hold_here(own.stop, state.measured.position)
-    if reu.position_kind == IMPEDES:
-        own.stop.effort = state.setpoint.effort if own.acting >= FORCE else reference
-    if setup.ramps > 0.0:
-        own.stop.velocity = state.speed.velocity
-        own.stop_steps += abs(own.stop.velocity) / (setup.deceleration * setup.period)
-
-
-@kernel
-def stop_is_over(reu, state):
-    """Advance a stop by a period; return whether its reference was at rest long enough."""
-    own, setup = state.status, reu.rules
-    before = own.stop.velocity
-    change = setup.deceleration * setup.period
-    own.stop.velocity = max(0.0, before - change) if before > 0.0 else min(0.0, before + change)
-    own.stop.position += 0.5 * (before + own.stop.velocity) * setup.period
+def is_over(rules, own):
+    """Return whether a stop was at rest long enough; count one period of it."""
+    if own.is_stopping == 1 and own.stop.velocity != 0.0:
+        return False
     own.stop_steps -= 1.0
-    return own.stop_steps <= 0.0
+    return own.stop_steps <= 0.0 and not (
+        rules.stays == 1 and own.state == QUICK_STOP)
 
 
 @kernel
 def let_act(entered, reu, state):
     """Let the blocks of the state and mode act, bumpless; ``entered`` is the state before."""
-    own, setup = state.status, reu.rules
-    is_stop = stops(own.state)
-    begins_stop = is_stop and not stops(entered)
-    acting = setup.stop_mode if is_stop else own.mode
-    was_on = own.is_on
-    own.is_on = int(own.state == ENABLED or is_stop and setup.stop_mode > 0)
-    own.is_stopping = int(is_stop and setup.stop_mode > 0)
-    if begins_stop:
-        own.stop_steps = setup.hold / setup.period
-    if was_on and own.is_on and (begins_stop or acting != own.acting):
-        reference = take_over(own.acting, acting, reu, state)
-        own.fade.begins = 1
-        if begins_stop:
-            begin_stop(reference, reu, state)
-        elif not own.requests & (HAS_SETPOINT | HAS_REFERENCE):
-            start_setpoint(acting, reference, state)
+    own, rules, reaction = state.status, reu.rules, state.protection.reaction
+    was_on, was_stopping, was_damping = own.is_on, own.is_stopping, own.is_damping
+    acts = own.state == ENABLED
+    if stops(own.state) and not stops(entered):
+        own.stop_steps = rules.hold / rules.period if rules.ramps else 0.0
+    own.is_stopping = int(acts and reaction == REACTS_BY_HOLD
+                          or stops(own.state) and rules.ramps == 1)
+    own.is_damping = int(acts and reaction == REACTS_BY_DAMP)
+    own.is_on = int(acts or own.is_stopping == 1)
+    acting = SPOOL if own.is_stopping else own.mode
     if not own.is_on:
-        own.fade.begins = own.fade.is_on = 0
+        if was_on and not was_stopping:
+            own.flow.slow_force = state.measured.force
+        own.fade.begins = own.fade.is_on = own.is_returning = 0
+    elif not was_on and entered == INITIALISING and rules.initialisation == 0.0:
+        pass  # at t = 0 the blocks are at rest already
+    elif not was_on or own.is_stopping != was_stopping or acting != own.acting:
+        take_over_bumpless(acting, was_on, was_stopping, reu, state)
+    if own.is_stopping and not was_stopping:
+        own.is_returning = 0
+        begin_stop(rules, state)
+    elif was_on and own.mode >= POSITION and acts and not own.is_stopping:
+        if was_stopping and not own.is_damping:
+            begin_return(own.flow.slow_force, state)
+        elif was_damping and not own.is_damping:
+            begin_return(0.0, state)
     own.acting = acting
+
+
+@kernel
+def take_over_bumpless(acting, was_on, was_stopping, reu, state):
+    """Start the blocks of a mode at the present references, without a jump of the current."""
+    own = state.status
+    reference = take_over(own.acting if was_on else NO_MODE, acting, reu, state)
+    own.fade.begins = 1
+    if (was_on and not own.is_stopping and not was_stopping
+            and not own.requests & (HAS_SETPOINT | HAS_REFERENCE)):
+        start_setpoint(acting, reference, state)
+
+
+@kernel
+def get_ready(step, reu, state):
+    """
+    End the initialisation.
+
+    After a time in which its load may have moved, an actuator without a setpoint stays where it
+    is; at t = 0 it begins with the position and without effort.
+    """
+    own = state.status
+    happens(READY, own.auto_enable, step, reu, own)
+    if (own.state == ENABLED and reu.rules.initialisation > 0.0
+            and state.protection.setpoint_age == 0):
+        stay_here(own.mode, state)
 
 
 @kernel
@@ -259,17 +240,24 @@ def device_step(step, reu, state):
     """Run the device at one conversion, before the blocks."""
     own, found = state.status, state.protection
     if (own.state == ENABLED and own.requests == 0 and own.warnings == found.warnings
-            and own.trips == found.trips and found.reaction < REACTS_BY_QUICK_STOP):
+            and own.trips == found.trips and found.reaction < REACTS_BY_HOLD
+            and own.is_stopping + own.is_damping + own.is_returning == 0):
         return
     entered = own.state
+    if not own.is_on:
+        watch_load(state.measured.force, reu.rules.flow, own.flow)
     if entered == INITIALISING and step * PLANT_STEP >= reu.rules.initialisation:
-        happens(READY, own.auto_enable, step, reu, own)
+        get_ready(step, reu, state)
     take_conditions(step, reu, state)
     if own.requests:
         take_requests(step, reu, state)
-    if stops(entered) and stops(own.state) and stop_is_over(reu, state):
+    if own.is_stopping:
+        advance_stop(reu.rules, state)
+    if stops(entered) and stops(own.state) and is_over(reu.rules, own):
         happens(STOP_ENDS if own.state == QUICK_STOP else REACTION_ENDS, 0, step, reu, own)
     let_act(entered, reu, state)
+    if own.is_returning:
+        advance_return(reu.rules, state)
     own.requests = 0
 
 

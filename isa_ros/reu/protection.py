@@ -169,10 +169,10 @@ def reaction_of(k, mode, protection):
     """
     Return the reaction to a trip of condition ``k`` in a mode.
 
-    Without a position block there is nothing that holds or damps: then it is a quick stop.
+    Without a position block there is nothing that damps: then it is a quick stop.
     """
     reaction = protection.reaction[k]
-    if HOLD <= reaction <= DAMP and mode < POSITION:
+    if reaction == DAMP and mode < POSITION:
         return QUICK_STOP
     return reaction
 

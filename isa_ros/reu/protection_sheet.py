@@ -92,9 +92,16 @@ class Protection(Parameters):
         absent='hold', source=ASSUMED)
 
     def __post_init__(self) -> None:
-        """Refuse a warning that comes later than its trip."""
+        """Refuse a warning that comes later than its trip, and reactions that make it worse."""
         super().__post_init__()
         for name, levels in levels_of(self).items():
+            own = CONDITIONS[BITS[name]].levels
+            if own is not None and levels.reaction in own.refused:
+                possible = [one for one in REACTIONS if one not in own.refused
+                            and (own.may_limit or one != 'limit')]
+                raise ParameterError(
+                    f'{name}.reaction = {levels.reaction}, must be {" or ".join(possible)}: '
+                    f'{own.why_refused}')
             if not levels.warning or not levels.trip:
                 continue
             condition = CONDITIONS[BITS[name]]

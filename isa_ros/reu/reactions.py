@@ -8,7 +8,7 @@ all trips acts. The device of `isa_ros.reu.device` stops quickly, or disables.
 from isa_ros.core.kernel import kernel
 from isa_ros.reu.plausibility import acceleration_step
 from isa_ros.reu.protection import (
-    BIT, DAMP, EXTENDING, HOLD, judge, LIMIT, measure, N, NONE, QUICK_STOP, reaction_of,
+    BIT, DAMP, EXTENDING, judge, LIMIT, measure, N, NONE, QUICK_STOP, reaction_of,
     RETRACTING)
 
 
@@ -31,10 +31,10 @@ def react(protection, state):
     """
     Take the strongest reaction of the trips of a `REU_STATE`.
 
-    hold: the position measured at the trip is the setpoint. damp: an impedance without
-    stiffness. The device reacts to quick_stop and disable.
+    damp: an impedance without stiffness at the measured position. The device reacts to hold,
+    quick_stop and disable.
     """
-    own, before = state.protection, state.protection.reaction
+    own = state.protection
     own.reaction, own.inhibited = NONE, 0
     for k in range(N):
         if own.trips >> k & 1:
@@ -42,10 +42,8 @@ def react(protection, state):
             if protection.reaction[k] == LIMIT:
                 own.inhibited |= worsening(
                     k, state.speed.velocity, state.measured, protection.stroke)
-    if HOLD <= own.reaction <= DAMP:
-        if own.reaction == DAMP or not HOLD <= before <= DAMP:
-            own.setpoint.position = state.measured.position
-        own.setpoint.stiffness = 0.0 if own.reaction == DAMP else state.setpoint.stiffness
+    if own.reaction == DAMP:
+        own.setpoint.position = state.measured.position
         own.setpoint.damping = state.setpoint.damping
 
 
@@ -62,11 +60,13 @@ def protect(step, supply_pressure, temperature, protection, state):
 
 @kernel
 def setpoint_in_force(state):
-    """Return the setpoint that the blocks of a `REU_STATE` follow: its own, a stop's, a trip's."""
+    """Return the setpoint that the blocks of a `REU_STATE` follow: its own, or one before it."""
     if state.status.is_stopping:
         return state.status.stop
-    if HOLD <= state.protection.reaction <= DAMP:
+    if state.protection.reaction == DAMP:
         return state.protection.setpoint
+    if state.status.is_returning:
+        return state.status.back
     return state.setpoint
 
 

@@ -31,19 +31,24 @@ class Device(Parameters):
     initialisation_ms: float = parameter(
         'from t = 0 until the outputs may be on', 'ms', ge=0.0, le=60e3)
     quick_stop: str = choice(
-        'reference of a quick stop: ramp: from the speed to rest; hold: at rest at once',
-        'ramp', 'hold')
+        'close: the valve to null at once (IEC 60204-1 category 0); ramp: from the speed to rest, '
+        'then off (category 1); ramp_and_hold: stays at rest with the outputs on (category 2)',
+        'close', 'ramp', 'ramp_and_hold')
     quick_stop_deceleration: float = parameter(
-        'of the ramp', 'm/s2 | rad/s2', gt=0.0, le=1e4)
+        'of the ramp of a quick stop or a hold; more before an end of the stroke',
+        'm/s2 | rad/s2', gt=0.0, le=1e4)
     quick_stop_hold_ms: float = parameter(
         'at rest, before the outputs are off', 'ms', ge=0.0, le=60e3)
+    return_speed: float = parameter(
+        'at most, back to the setpoint after a hold or damp has ended', 'm/s | rad/s',
+        absent=0.1, source='assumed', gt=0.0, le=100.0)
     fade_ms: float = parameter(
         'time constant of the rest of a jump between modes or gains', 'ms', gt=0.0, le=1e3)
 
 
 BEFORE = Device(
     initialisation_ms=0.0, quick_stop='ramp', quick_stop_deceleration=10.0,
-    quick_stop_hold_ms=200.0, fade_ms=5.0)
+    quick_stop_hold_ms=200.0, return_speed=0.1, fade_ms=5.0)
 """Of a resolved configuration older than the device, which had none of its states."""
 
 

@@ -3,7 +3,7 @@
 from pathlib import Path
 
 from isa_ros.core.device import EVENTS
-from isa_ros.reu.device import TRANSITIONS
+from isa_ros.reu.transitions import TRANSITIONS
 import pytest
 from scripts import draw_device
 

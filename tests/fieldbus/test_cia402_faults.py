@@ -83,7 +83,6 @@ def test_a_following_error_is_not_watched_without_a_window_or_in_other_modes(rig
 
 TRIPS = {
     'setpoint_timeout': {'setpoint_timeout_ms': 2.0, 'setpoint_timeout_reaction': 'disable'},
-    'end_of_stroke': {'trip': 0.5, 'reaction': 'quick_stop'},
     'overspeed': {'warning': 0.0, 'trip': 1e-6, 'delay_ms': 0.0, 'reaction': 'disable'},
     'overload': {'warning': 0.0, 'trip': 1e-6, 'delay_ms': 0.0},
     'overpressure': {'warning': 0.0, 'trip': 0.01, 'delay_ms': 0.0},

@@ -6,7 +6,7 @@ from isa_ros.actuator.sheet import actuator_record
 from isa_ros.core.device import (
     CURRENT, DISABLED, ENABLED, FAULT, FAULT_REACTION, IMPEDANCE, INITIALISING, QUICK_STOP)
 from isa_ros.core.signals import HAS_CLEAR_FAULT, HAS_ENABLE, HAS_MODE, HAS_QUICK_STOP
-from isa_ros.reu import device
+from isa_ros.reu import device, transitions
 from isa_ros.reu.cascade import REU_STATE
 import numpy as np
 import pytest
@@ -147,11 +147,11 @@ def test_compiled_device_equals_its_python_source():
 
 def test_every_row_of_the_table_happens_once_for_its_state_event_and_guard():
     """No two rows contradict each other."""
-    found = [(row.state, row.event, row.guard) for row in device.TRANSITIONS]
+    found = [(row.state, row.event, row.guard) for row in transitions.TRANSITIONS]
     assert len(set(found)) == len(found)
-    table = device.next_states()
-    assert (table >= 0).sum() == sum(2 if row.guard == device.ALWAYS else 1
-                                     for row in device.TRANSITIONS)
+    table = transitions.next_states()
+    assert (table >= 0).sum() == sum(2 if row.guard == transitions.ALWAYS else 1
+                                     for row in transitions.TRANSITIONS)
 
 
 def test_it_initialises_for_its_time_and_is_enabled_only_if_configured():
@@ -204,29 +204,95 @@ def test_a_quick_stop_brakes_with_the_declared_deceleration(speed):
     while state.status.state == QUICK_STOP:
         n += 1
         device.device_step(n * PERIOD, reu, state)
+        if not state.status.flow.is_held:
+            reached = float(stop.position)
         assert abs(stop.velocity) <= max(0.0, abs(speed) - 10.0 * n * 1e-4) + 1e-12
     # a conversion each 0.1 ms; the sum of 500 decrements is exact to far less than one of them
     assert n == pytest.approx(500 * 2 * abs(speed) + STOP_STEPS, abs=1)
-    assert stop.position - 0.05 == pytest.approx(speed * abs(speed) / 20.0, rel=1e-9, abs=1e-15)
+    assert reached - 0.05 == pytest.approx(speed * abs(speed) / 20.0, rel=1e-9, abs=1e-15)
     assert state.status.state == DISABLED
 
 
-def test_a_quick_stop_that_holds_is_at_rest_at_once():
-    reu, state = constants(quick_stop='hold'), enabled_state(constants())
+def test_a_quick_stop_that_closes_has_the_valve_at_null_at_once_and_ends():
+    reu, state = constants(quick_stop='close'), enabled_state(constants())
     state.speed.velocity, state.measured.position = 0.5, 0.05
     request(state, HAS_QUICK_STOP)
     device.device_step(0, reu, state)
-    assert (state.status.stop.velocity, state.status.stop.position) == (0.0, 0.05)
+    assert (state.status.state, state.status.is_on) == (QUICK_STOP, 0)
+    device.device_step(5, reu, state)
+    assert (state.status.state, state.status.is_on) == (DISABLED, 0)
 
 
-def test_without_a_position_block_a_quick_stop_closes_the_valve():
+def test_a_quick_stop_that_holds_stays_until_it_is_enabled_or_disabled():
+    """Not before it is at rest, which 0.5 m/s at 10 m/s2 need 50 ms for."""
+    for enable, reached in ((1, ENABLED), (0, DISABLED)):
+        reu, state = constants(quick_stop='ramp_and_hold'), enabled_state(constants())
+        state.speed.velocity, state.measured.position = 0.5, 0.05
+        request(state, HAS_QUICK_STOP)
+        for k in range(499):
+            device.device_step(k * PERIOD, reu, state)
+        request(state, HAS_ENABLE, enable=1)
+        device.device_step(499 * PERIOD, reu, state)
+        assert state.status.state == QUICK_STOP
+        state.speed.velocity = 0.0
+        for k in range(500, 5000):
+            device.device_step(k * PERIOD, reu, state)
+        assert (state.status.state, state.status.is_stopping) == (QUICK_STOP, 1)
+        request(state, HAS_ENABLE, enable=enable)
+        device.device_step(5000 * PERIOD, reu, state)
+        assert (state.status.state, state.status.is_stopping) == (reached, 0)
+        assert state.status.is_on == enable
+
+
+def test_a_reaction_that_stops_ends_in_fault_also_where_a_quick_stop_holds():
+    reu, state = constants(quick_stop='ramp_and_hold'), enabled_state(constants())
+    find(state, QUICK_STOPS)
+    for k in range(STOP_STEPS + 1):
+        assert state.status.state == (FAULT_REACTION if k else ENABLED)
+        device.device_step(k * PERIOD, reu, state)
+    assert (state.status.state, state.status.is_on) == (FAULT, 0)
+
+
+@pytest.mark.parametrize('kinds, enable, reached', [
+    (HAS_ENABLE, 0, DISABLED), (HAS_QUICK_STOP, 0, DISABLED), (HAS_ENABLE, 1, ENABLED)])
+def test_what_is_requested_while_it_initialises_is_in_force_when_it_is_ready(
+        kinds, enable, reached):
+    """10 ms of initialisation are 100 conversions; the opposite is configured."""
+    reu, state = constants(initialisation_ms=10.0), starting(auto_enable=1 - enable)
+    request(state, kinds, enable=enable)
+    for k in range(101):
+        assert state.status.state == INITIALISING
+        device.device_step(k * PERIOD, reu, state)
+    assert state.status.state == reached
+
+
+def test_of_requests_while_it_initialises_the_last_counts():
+    reu, state = constants(initialisation_ms=10.0), starting(auto_enable=1)
+    for k in range(101):
+        if k in (10, 20):
+            request(state, HAS_ENABLE if k == 20 else HAS_QUICK_STOP, enable=1)
+        device.device_step(k * PERIOD, reu, state)
+    assert state.status.state == ENABLED
+
+
+def test_without_a_position_block_a_quick_stop_ramps_the_flow_too():
+    """The reference of the valve is that of the flow: at half the speed less than at all of it."""
     sheet = actuator_sheet('isa_v5', 'default', 'valve_amplifier')
     reu = actuator_record(sheet, 0).view(np.recarray)[0].reu
     state = enabled_state(reu)
     assert state.status.mode == CURRENT
+    state.supply_pressure, state.measured.position = 20.7e6, 0.05
+    state.speed.velocity = 0.2
     request(state, HAS_QUICK_STOP)
     device.device_step(0, reu, state)
-    assert (state.status.state, state.status.is_on) == (QUICK_STOP, 0)
+    assert (state.status.state, state.status.is_on) == (QUICK_STOP, 1)
+    first = float(state.status.stop.reference)
+    for k in range(1, 101):
+        device.device_step(k * PERIOD, reu, state)
+    assert 0.0 < state.status.stop.reference < first
+    for k in range(101, 202):
+        device.device_step(k * PERIOD, reu, state)
+    assert state.status.stop.reference == 0.0
 
 
 @pytest.mark.parametrize('model', MODELS)

@@ -252,3 +252,19 @@ def test_a_trip_keeps_its_cause() -> None:
     assert watched.own.first == watched.own.trips == watched.own.warnings == 1 << bit
     assert (watched.own.trip_since[bit], watched.own.warning_since[bit]) == (20, 20)
     assert (watched.own.trip_values[bit], watched.own.values[bit]) == (6000.0, 4500.0)
+
+
+@pytest.mark.parametrize(('name', 'refused', 'left'), [
+    ('end_of_stroke', ('hold', 'damp', 'quick_stop', 'disable'), 'none or warn or limit'),
+    ('load_cell_implausible', ('hold', 'damp', 'quick_stop'), 'none or warn or disable'),
+    ('encoder_jump', ('hold', 'damp', 'quick_stop'), 'none or warn or disable')])
+def test_a_reaction_that_could_not_end_or_uses_what_is_wrong_is_refused(
+        name: str, refused: tuple[str, ...], left: str) -> None:
+    """At the end of the stroke nothing else could be left; a stop needs encoder and load cell."""
+    for reaction in REACTIONS:
+        if reaction in refused:
+            with pytest.raises(ParameterError, match=f'{name}.reaction = {reaction}, must be '
+                                                     f'{left}: '):
+                only(name, reaction=reaction)
+        elif reaction in left:
+            only(name, reaction=reaction)

@@ -4,25 +4,13 @@ from dataclasses import replace
 
 from hypothesis import given, settings, strategies as st
 from isa_ros.core.conditions import BITS
-from isa_ros.core.device import CURRENT, FORCE, PRESSURE, SPOOL
+from isa_ros.core.device import CURRENT, FORCE, IMPEDANCE, PRESSURE, SPOOL
 from isa_ros.core.parameter import defaults
-from isa_ros.reu.protection import feed, NONE, QUICK_STOP, request_clear
+from isa_ros.reu.protection import feed, HOLD, NONE, QUICK_STOP, request_clear
 from isa_ros.reu.protection_sheet import levels_of, Protection
 from isa_ros.reu.reactions import is_cause_gone, is_inhibited, setpoint_in_force
 import pytest
 from tests.reu.watched import off, only, STROKE, Watched
-
-
-def test_hold_keeps_the_position_measured_at_the_trip() -> None:
-    watched = Watched(only('overload', trip=0.5, delay_ms=0.0, reaction='hold'))
-    watched.show('overload', 6e3)
-    watched.convert()
-    watched.state.measured.position = 0.06
-    watched.convert()
-    held = setpoint_in_force(watched.state)
-    assert (held.position, held.velocity, held.effort) == (0.05, 0.0, 0.0)
-    assert (held.stiffness, held.damping) == (1e5, 4e3)
-    assert watched.state.setpoint.position == 0.02
 
 
 def test_damp_is_damping_without_stiffness() -> None:
@@ -38,12 +26,22 @@ def test_damp_is_damping_without_stiffness() -> None:
     assert setpoint_in_force(watched.state).stiffness == 1e5
 
 
+@pytest.mark.parametrize('mode', [CURRENT, SPOOL, PRESSURE, FORCE, IMPEDANCE])
+def test_a_hold_is_a_hold_in_every_mode_and_ends_with_its_condition(mode: int) -> None:
+    watched = Watched(only('overload', trip=0.5, delay_ms=0.0, reaction='hold'))
+    watched.state.status.mode = mode
+    watched.show('overload', 6e3)
+    watched.convert()
+    assert watched.own.reaction == HOLD
+    watched.show('overload', 0.0)
+    watched.convert()
+    assert watched.has('overload') == (False, False) and watched.own.reaction == NONE
+
+
 @pytest.mark.parametrize('mode', [CURRENT, SPOOL, PRESSURE, FORCE])
-@pytest.mark.parametrize('reaction', ['hold', 'damp'])
-def test_without_a_position_block_in_the_mode_both_are_a_quick_stop(
-        reaction: str, mode: int) -> None:
+def test_without_a_position_block_in_the_mode_damp_is_a_quick_stop(mode: int) -> None:
     """Which stays until it is cleared, as any trip that stops the actuator."""
-    watched = Watched(only('overload', trip=0.5, delay_ms=0.0, reaction=reaction))
+    watched = Watched(only('overload', trip=0.5, delay_ms=0.0, reaction='damp'))
     watched.state.status.mode = mode
     watched.show('overload', 6e3)
     watched.convert()
@@ -129,9 +127,9 @@ def test_a_direction_is_inhibited_only_where_there_is_one() -> None:
             'end_of_stroke', 'overspeed', 'overload', 'overpressure', 'relief_open'))
 
 
-def test_a_quick_stop_of_the_user_is_followed_while_a_trip_holds() -> None:
-    """The stop wins: it brakes, while a hold would go back to where the trip was."""
-    watched = Watched(only('overload', trip=0.5, delay_ms=0.0, reaction='hold'))
+def test_a_quick_stop_of_the_user_is_followed_while_a_trip_damps() -> None:
+    """The stop wins: a damped load that hangs would sink."""
+    watched = Watched(only('overload', trip=0.5, delay_ms=0.0, reaction='damp'))
     watched.show('overload', 6e3)
     watched.convert()
     status = watched.state.status

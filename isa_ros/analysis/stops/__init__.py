@@ -1,0 +1,1 @@
+"""Stops under load: situations, and what they need and cause."""

@@ -1,0 +1,178 @@
+"""
+The flow stop: brings the piston or rotor to rest with the flow through the valve  (R16).
+
+Oil that cannot leave a chamber bears any load, so a stop closes the valve along a ramp of the
+speed. The orifice law at the measured force gives the opening for a speed; a share of the fast
+part of the force is taken off the speed and damps the mass on its oil. At rest a slow position
+loop makes up for leakage and a null bias. The load appears in no gain: all of them follow from the
+lag of the valve and the stiffness of the oil.
+
+Chamber A is the cap side; `s > 0` extends; a force > 0 pushes out. Lengths are m | rad, forces N |
+Nm, the output m of spool or series A.
+"""
+
+import math
+
+from isa_ros.core.kernel import kernel
+from isa_ros.core.record import record
+from isa_ros.reu.feedback_linearisation import LINEARISED, opening_of
+from isa_ros.reu.filters import low_pass, low_pass_coefficient
+from isa_ros.reu.schedule import POINTS, scheduled
+import numpy as np
+
+DAMPING = 0.15          # D: crossover of the force feedback when blocked, times the valve's lag
+FORCE_FILTER = 200.0    # rad/s, of the force in the orifice law: below the valve's own damping
+BASE_FILTER = 20.0      # rad/s; faster changes of the force are damped, slower ones are borne
+LEAST_DROP = 0.5        # of the stall force is kept over the lands: opens by at most sqrt(2) more
+HOLD_SHARE = 0.25       # crossover of the position loop over that of the force feedback
+INTEGRAL_SHARE = 0.125  # K_i over K^2 of that loop
+LARGEST_HOLD = 0.25     # of the speed that the null slope would give at full travel
+SETTLING = 0.01         # s at rest before the position that was reached is taken,
+AVERAGING = 0.02        # s, as a mean: a heavy load still swings on its oil
+END_MARGIN = 0.02       # of the stroke, left in front of an end by a stop
+SPEED_MARGIN = 2.0      # a T, by which the ramp may be above the estimated speed
+LEAST_SUPPLY = 1e5      # Pa: below it the lands have no drop to meter with
+
+FLOW_STOP = np.dtype([
+    ('model', LINEARISED),
+    ('extending', 'f8'), ('retracting', 'f8'),   # S, m6 | m9: pressure drop over both lands
+    ('period', 'f8'), ('lag', 'f8'),             # of the conversions and of the valve T, s
+    ('deceleration', 'f8'),                      # m/s2
+    ('force_alpha', 'f8'), ('base_alpha', 'f8'), ('error_alpha', 'f8'),
+    ('damping', 'f8'),                           # C where the oil is softest, m/s per N
+    ('schedule', 'f8', (POINTS,)),               # C over that
+    ('hold', 'f8'), ('integral', 'f8'),          # K in 1/s, K_i in 1/s2
+    ('largest', 'f8')])                          # m/s, of the position loop
+FLOW_STOP_STATE = np.dtype([
+    ('deceleration', 'f8'),                      # of this stop, m/s2
+    ('force', 'f8'), ('slow_force', 'f8'),       # low-passes of the force, N
+    ('place', 'f8'), ('error', 'f8'),            # held position and its filtered error, m
+    ('integral', 'f8'),                          # m/s
+    ('rest', 'f8'),                              # s since the ramp ended
+    ('is_held', 'i8')])                          # 1: ``place`` is held
+
+
+def flow_stop_record(
+        model: np.record, stiffness: np.ndarray, lag: float, null_speed: float, period: float,
+        deceleration: float) -> np.record:
+    """
+    Return the `FLOW_STOP` record of a `LINEARISED` model.
+
+    ``stiffness`` (POINTS,) of the force loop in N/m, ``lag`` of the valve and ``period`` of the
+    conversions in s, ``null_speed`` in m/s: with the slope about null over the whole travel.
+    """
+    a, b = model.area_a, model.area_b
+    least = float(np.min(stiffness))
+    crossover = DAMPING / lag
+    hold = HOLD_SHARE * crossover
+    return record(
+        FLOW_STOP, model=model,
+        extending=a * a * a / (model.f_pa * model.f_pa) + b * b * b / (model.f_bt * model.f_bt),
+        retracting=a * a * a / (model.f_at * model.f_at) + b * b * b / (model.f_pb * model.f_pb),
+        period=period, lag=lag, deceleration=deceleration,
+        force_alpha=_alpha(FORCE_FILTER, period), base_alpha=_alpha(BASE_FILTER, period),
+        error_alpha=_alpha(crossover, period), damping=crossover / least,
+        schedule=least / stiffness, hold=hold, integral=INTEGRAL_SHARE * hold * hold,
+        largest=LARGEST_HOLD * null_speed)
+
+
+def _alpha(corner: float, period: float) -> float:
+    """Return the coefficient of a low-pass with a corner in rad/s  (R1)."""
+    return low_pass_coefficient(corner / (2.0 * math.pi), 1.0 / period)
+
+
+@kernel
+def stop_deceleration(position, velocity, setup):
+    """Return the deceleration of a stop, m/s2: the declared one, or more before an end  (R16)."""
+    stroke = setup.model.stroke
+    room = stroke - position if velocity > 0.0 else position
+    room -= END_MARGIN * stroke + abs(velocity) * setup.lag
+    if room <= 0.0:
+        return max(setup.deceleration, abs(velocity) / setup.period)
+    return max(setup.deceleration, 0.5 * velocity * velocity / room)
+
+
+@kernel
+def begin_flow_stop(position, velocity, force, setup, state):
+    """Begin at a measured position, estimated speed and measured force."""
+    state.deceleration = stop_deceleration(position, velocity, setup)
+    state.force = state.slow_force = force
+    state.place = state.error = state.integral = state.rest = 0.0
+    state.is_held = 0
+
+
+@kernel
+def stopping_speed(reference, velocity, setup, state):
+    """
+    Return the speed of the ramp one period after ``reference``, m/s.
+
+    It stays within 2 a T of the estimated ``velocity``: an estimate that was wrong at the
+    beginning must not be driven.
+    """
+    change = state.deceleration * setup.period
+    most = SPEED_MARGIN * state.deceleration * setup.lag
+    if reference > 0.0:
+        return max(0.0, min(reference - change, max(0.0, velocity) + most))
+    return min(0.0, max(reference + change, min(0.0, velocity) - most))
+
+
+@kernel
+def opening_for_speed(speed, force, supply_pressure, setup):
+    """
+    Return the output at which the piston has ``speed`` (m/s) under ``force`` (N)  (R16).
+
+    The drops of both lands in series, from V7 at rest of pressure without leakage:
+    `F_0 -+ F = v^2 S dp_ref / g^2`, where P_S is gauge and the return pressure neglected.
+    """
+    model = setup.model
+    if speed == 0.0:
+        return 0.0
+    pressure = max(LEAST_SUPPLY, supply_pressure)
+    if speed > 0.0:
+        stall, lands, opposing = model.area_a * pressure, setup.extending, force
+    else:
+        stall, lands, opposing = model.area_b * pressure, setup.retracting, -force
+    left = max(LEAST_DROP * stall, stall - opposing)
+    flow = abs(speed) * math.sqrt(lands / left) / model.per_root_drop
+    opening = model.output_per_spool * opening_of(flow, model)
+    return opening if speed > 0.0 else -opening
+
+
+@kernel
+def holding_speed(position, left, setup, state):
+    """
+    Return the speed with which the position loop at rest holds what was reached, m/s  (R16).
+
+    ``left`` is the way in m that the force feedback still has to go until its base has followed.
+    """
+    state.rest += setup.period
+    if state.rest <= SETTLING + AVERAGING:
+        if state.rest > SETTLING:
+            share = setup.period / (state.rest - SETTLING)
+            state.place += min(1.0, share) * (position + left - state.place)
+        return 0.0
+    state.is_held = 1
+    state.error = low_pass(state.error, state.place - position, setup.error_alpha)
+    state.integral += setup.integral * setup.period * state.error
+    state.integral = max(-setup.largest, min(setup.largest, state.integral))
+    speed = setup.hold * state.error + state.integral
+    return max(-setup.largest, min(setup.largest, speed))
+
+
+@kernel
+def watch_load(force, setup, state):
+    """Follow the load that a stop, or a closed valve, bears: the force without its swinging."""
+    state.slow_force = low_pass(state.slow_force, force, setup.base_alpha)
+
+
+@kernel
+def flow_stop_step(reference, position, force, supply_pressure, setup, state):
+    """Run one period of R16 at a ``reference`` speed (m/s); return the valve's output."""
+    state.force = low_pass(state.force, force, setup.force_alpha)
+    watch_load(force, setup, state)
+    gain = setup.damping * scheduled(position, setup.model.stroke, setup.schedule)
+    speed = reference - gain * (force - state.slow_force)
+    if reference == 0.0:
+        left = gain * (state.slow_force - state.force) / BASE_FILTER
+        speed += holding_speed(position, left, setup, state)
+    return opening_for_speed(speed, state.force, supply_pressure, setup)
