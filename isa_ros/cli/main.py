@@ -8,6 +8,7 @@ import argparse
 from collections.abc import Sequence
 import os
 from pathlib import Path
+import re
 import signal
 from types import FrameType
 from typing import NoReturn
@@ -16,14 +17,24 @@ import isa_ros
 from isa_ros.cli import (
     bus_commands, commands, response_arguments, run_arguments, shared_arguments)
 from isa_ros.cli.shared_arguments import number
+from isa_ros.core.suggest import alternatives
 from isa_ros.processes.ending import (
     ANSWER_IS_NO, DEBUG_VARIABLE, DONE, end_of, replaced_handlers, WRONG_INPUT)
+
+
+_CHOICE = re.compile(
+    r"argument (?P<of>\S+): invalid choice: '(?P<given>[^']*)' \(choose from (?P<valid>.*)\)")
+_NAME = re.compile(r"[^\s',]+")
 
 
 class _Parser(argparse.ArgumentParser):
     """Parser with one-line errors."""
 
     def error(self, message: str) -> NoReturn:
+        chosen = _CHOICE.match(message)
+        if chosen is not None:      # of a dozen commands, name the nearest
+            near = alternatives(chosen['given'], _NAME.findall(chosen['valid']))
+            message = f'argument {chosen["of"]}: invalid choice: {chosen["given"]!r}; {near}'
         self.exit(WRONG_INPUT, f'{self.prog}: {message}; see {self.prog} --help\n')
 
 

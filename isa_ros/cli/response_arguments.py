@@ -37,11 +37,17 @@ def step(parser: argparse.ArgumentParser) -> None:
         '--duration', type=positive, metavar='S', help='time recorded after the step')
 
 
+def loop_name(text: str) -> str:
+    """Return the name of a loop: the torque loop of a rotary actuator is its force loop."""
+    return 'force' if text == 'torque' else text
+
+
 def tune(parser: argparse.ArgumentParser) -> None:
     """Add the arguments of `isa tune`."""
     parser.add_argument('name', metavar='MODEL|CONFIG', help='isa_v5, rig_rotary.yaml, ...')
     parser.add_argument(
-        '--loop', choices=('force',), default='force', help='the loop (default: force, or torque)')
+        '--loop', type=loop_name, choices=('force',), default='force',
+        help='the loop (default: force, or torque)')
     parser.add_argument(
         '--phase-margin', type=positive, default=60.0, metavar='DEG',
         help='of the open loop output/error (default: 60 deg)')
@@ -77,7 +83,7 @@ def _rig(parser: argparse.ArgumentParser, names: str) -> None:
         'names', nargs=names, metavar='MODEL|CONFIG',
         help='isa_v5, rig_rotary.yaml, ...; several are drawn in one figure')
     parser.add_argument(
-        '--loop', choices=LOOPS, default='force',
+        '--loop', type=loop_name, choices=LOOPS, default='force',
         help='the loop to excite; the blocks outside it are off (default: force, or torque)')
     _actuator(parser)
     parser.add_argument(

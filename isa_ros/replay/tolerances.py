@@ -7,6 +7,10 @@ bounds; a field without index stands for every element::
     /haa/joint_states:
       position: 1.0e-6
       effort: {absolute: 1.0e-3, relative: 1.0e-6}
+    '*': {'*': {relative: 1.0e-9}}
+
+A topic ``*`` stands for every topic, a field ``*`` for every float of a message; those that are
+named have their own.
 """
 
 from collections.abc import Mapping
@@ -16,12 +20,15 @@ import re
 from typing import NamedTuple
 
 from isa_ros.config.text import yaml_text as strict_yaml
+from isa_ros.config.text.yaml_text import Tree
 from isa_ros.errors import ConfigError
 from msg_adapters.cdr import field_type, Message
 from msg_adapters.cdr_reader import message_class
 import numpy as np
 from numpy.typing import NDArray
 
+ALL = '*'
+"""A topic or field that stands for all that are not named."""
 FLOATS = ('float', 'double')
 _INDEX = re.compile(r'\[\d+\]')
 
@@ -65,8 +72,13 @@ def load_tolerances(path: Path, types: Mapping[str, str]) -> Tolerances:
         not a finite number >= 0; the message has file, key and value.
 
     """
-    by_field = {}
-    for topic, section in strict_yaml.read(path).items():
+    by_field: dict[tuple[str, str], Tolerance] = {}
+    tree = strict_yaml.read(path)
+    if ALL in tree and (not isinstance(tree[ALL], dict) or list(tree[ALL]) != [ALL]):
+        raise ConfigError(
+            f'{path.name}: {ALL} = {tree[ALL]!r}, must be {{{ALL!r}: BOUND}}, a bound for every '
+            'float')
+    for topic, section in _spread(tree, types).items():
         if topic not in types:
             raise ConfigError(
                 f'{path.name}: {topic}: no such topic in the bag, which has '
@@ -74,11 +86,31 @@ def load_tolerances(path: Path, types: Mapping[str, str]) -> Tolerances:
         if not isinstance(section, dict):
             raise ConfigError(f'{path.name}: {topic} = {section!r}, must be a section of fields')
         fields = _fields(message_class(types[topic]))
-        for field, bound in section.items():
+        for field, bound in _of_every(section, fields).items():
             where = f'{path.name}: {topic}: {field}'
             _check_field(where, field, fields)
             by_field[topic, field] = _tolerance(where, bound)
     return Tolerances(by_field)
+
+
+def _spread(tree: Tree, types: Mapping[str, str]) -> Tree:
+    """Return the sections by topic; those of `ALL` are beneath those of each topic."""
+    below = tree.get(ALL)
+    if not isinstance(below, dict):
+        return tree
+    spread: Tree = dict.fromkeys(types, below)
+    for topic, section in tree.items():
+        if topic != ALL:
+            spread[topic] = {**below, **section} if isinstance(section, dict) else section
+    return spread
+
+
+def _of_every(section: Tree, fields: Mapping[str, str]) -> Tree:
+    """Return the bounds by field; that of `ALL` is the one of every float not named."""
+    if ALL not in section:
+        return section
+    every: Tree = {name: section[ALL] for name, item in fields.items() if item in FLOATS}
+    return every | {name: bound for name, bound in section.items() if name != ALL}
 
 
 def _fields(cls: type[Message], prefix: str = '') -> dict[str, str]:

@@ -38,8 +38,8 @@ class CompilationReport(Listener):
         if not self._is_announced:
             self._is_announced = True
             self._stream.write(
-                f'{self._who}: compiling the simulation, once after an installation; this takes '
-                'a minute or more\n')
+                f'{self._who}: compiling the simulation, once after an installation or an '
+                'edit; seconds for a few kernels, a minute or more for all\n')
             self._stream.flush()
         if self._line is not None:
             name = event.data['dispatcher'].__name__

@@ -3,6 +3,7 @@
 from argparse import ArgumentTypeError
 from pathlib import Path
 
+from isa_ros.cli.main import main, make_parser
 from isa_ros.cli.shared_arguments import (
     count, figure_to_write, json_to_write, number, PNG, positive, seed)
 import pytest
@@ -30,3 +31,20 @@ def test_a_file_of_another_kind_is_not_replaced(
     with pytest.raises(ArgumentTypeError, match=f'already exists and {what}, so it is not over'):
         of(str(path))
     assert path.read_bytes() == foreign
+
+
+@pytest.mark.parametrize(('arguments', 'message'), [
+    (['brngup'], "isa: argument COMMAND: invalid choice: 'brngup'; did you mean bringup?; see isa --help"),
+    (['bode', 'isa_v5', '--loop', 'curent'], "--loop: invalid choice: 'curent'; did you mean current?"),
+])
+def test_a_misspelt_choice_is_answered_with_the_nearest(
+        arguments: list[str], message: str, capsys: pytest.CaptureFixture[str]) -> None:
+    with pytest.raises(SystemExit) as ended:
+        main(arguments)
+    printed = capsys.readouterr().err
+    assert ended.value.code == 2 and message in printed and printed.count('\n') == 1
+
+
+def test_the_torque_loop_is_the_force_loop() -> None:
+    for command in (['bode', 'isa_v5'], ['step', 'isa_v5'], ['tune', 'isa_v5']):
+        assert make_parser().parse_args([*command, '--loop', 'torque']).loop == 'force'

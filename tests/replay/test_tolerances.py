@@ -41,7 +41,24 @@ def test_both_bounds_add_up(load):
     assert tolerance.bound(np.array([-100.0, 0.0])).tolist() == [11.0, 1.0]
 
 
+def test_a_star_stands_for_all_that_is_not_named(load):
+    """A topic and a field of their own come first."""
+    tolerances = load("'*': {'*': {relative: 1.0e-9}}\n"
+                      "/hip/joint_states: {position: 0.5}\n")
+    joints, force = '/hip/joint_states', '/hip/load_cell'
+    assert tolerances.of(joints, 'position[0]') == Tolerance(0.5, 0.0)
+    for topic, field in ((joints, 'velocity[2]'), (force, 'wrench.force.x')):
+        assert tolerances.of(topic, field) == Tolerance(0.0, 1e-9)
+    assert tolerances.of(force, 'header.stamp.sec') is None
+    of_one = load("/hip/load_cell: {'*': 2.0, wrench.force.x: 1.0}")
+    assert of_one.of(force, 'wrench.torque.z') == Tolerance(2.0, 0.0)
+    assert of_one.of(force, 'wrench.force.x') == Tolerance(1.0, 0.0)
+    assert of_one.of(joints, 'position[0]') is None
+
+
 @pytest.mark.parametrize('text, expected', [
+    ("'*': {position: 1.0}", r"tolerance.yaml: \* = \{'position': 1.0\}, must be \{'\*': BOUND\}"),
+    ("'*': 1.0", r'tolerance.yaml: \* = 1.0, must be'),
     ('/knee: {position: 1.0}',
      'tolerance.yaml: /knee: no such topic in the bag, which has /hip/joint_states, /hip/load'),
     ('/hip/load_cell: 1.0', 'tolerance.yaml: /hip/load_cell = 1.0, must be a section of fields'),

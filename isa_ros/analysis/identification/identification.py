@@ -30,6 +30,7 @@ _WIDEST = 0.5         # half of an interval over the estimate, beyond which none
 _TOO_SHORT = 'too short: {:.2g} s of the bag can be used'
 _UNSEPARATED = 'the data do not separate it from the others'
 _WITHIN = 'not in the data: the spool stays near null'
+_DATA_SHEET = 'not estimated with the flow curve of a data sheet'
 _SLIDING = 'not in the data: too little sliding both ways'
 _SLOW = 'not in the data: no slow sliding that shows it'
 
@@ -80,9 +81,6 @@ def identify_bag(bag: Path, actuator: str | None = None) -> Identified:
     run = signals.run
     found = Identified({}, {})
     for one in [run.actuator(actuator)] if actuator else run.actuators:
-        if isinstance(one.sheet.plant.valve, DataSheetValve):
-            found.others[one.name] = 'has the flow curve of a data sheet, which is not estimated'
-            continue
         recording = recording_of(signals, one, bag)
         moved = float(np.ptp(recording.position))
         least = float(_LEAST_COUNTS * recording.plant.sensors.encoder)
@@ -98,14 +96,27 @@ def identify_bag(bag: Path, actuator: str | None = None) -> Identified:
 
 
 def identify(recording: Recording, sheet: LinearPlant | RotaryPlant) -> list[Estimate]:
-    """Return the estimates of one actuator beside the values of its sheet."""
-    return [*_valve_and_oil(recording, sheet), *_friction(recording, sheet)]
+    """
+    Return the estimates of one actuator beside the values of its sheet.
+
+    With the flow curve of a data sheet, which has no few parameters, those of the friction.
+    """
+    if isinstance(sheet.valve, DataSheetValve):
+        oil = sheet.oil
+        valve_and_oil = [
+            Estimate(name, unit, None, None, None, configured, _DATA_SHEET)
+            for name, unit, configured in (
+                ('bulk modulus', 'Pa', oil.effective_bulk_modulus),
+                ('cross-port leakage', 'm3/s/Pa', oil.cross_port_leakage))]
+    else:
+        valve_and_oil = _valve_and_oil(recording, sheet)
+    return [*valve_and_oil, *_friction(recording, sheet)]
 
 
 def _valve_and_oil(
         recording: Recording, sheet: LinearPlant | RotaryPlant) -> list[Estimate]:
     valve, oil = sheet.valve, sheet.oil
-    assert not isinstance(valve, DataSheetValve)  # as `identify_bag` has it
+    assert not isinstance(valve, DataSheetValve)  # as `identify` has it
     curve, names = _curve(recording, valve)
     balance = fit_balance(recording, curve)
     lacks = _TOO_SHORT.format(balance.duration) if balance.duration < SHORTEST else _UNSEPARATED

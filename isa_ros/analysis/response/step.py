@@ -7,11 +7,13 @@ from isa_ros.analysis.response.loops import Loop
 from isa_ros.analysis.response.rig import Rig
 from isa_ros.analysis.signals.step_response import step_figures, StepFigures
 from isa_ros.errors import ConfigError
+from isa_ros.loads.drop_rig import Wheel
 import numpy as np
 
 BEFORE = 0.1                # time before the step over the duration
 SHORTEST_S, LONGEST_S = 0.01, 100.0
 BAND = 0.05                 # settling band over the step
+MOVED = 0.01                # of the travel; an end that is nearer is where it starts
 LOST = 0.5                  # error or ripple at the end over the step; above: it does not follow
 
 
@@ -35,7 +37,7 @@ def step(rig: Rig, duration: float, amplitude: float | None = None) -> Step:
     Raises
     ------
     ConfigError
-        The duration or the amplitude is out of range.
+        The duration or the amplitude is out of range, or the piston runs into an end.
     SimulationDiverged
         A state is no longer finite.
 
@@ -46,7 +48,32 @@ def step(rig: Rig, duration: float, amplitude: float | None = None) -> Step:
     values = np.full(before + round(duration * RATE_HZ), peak)
     values[:before] = 0.0
     trace = rig.excite(rig.start(), values)
+    _refuse_end_stop(rig, trace['position'][before:])
     return evaluate(rig.loop, trace, before, rig.offset, peak, RATE_HZ)
+
+
+def _refuse_end_stop(rig: Rig, position: np.ndarray) -> None:
+    """
+    Refuse a step in which the piston runs into an end of its travel; ``position`` is from it on.
+
+    Raises
+    ------
+    ConfigError
+        It does: what follows is a response of the stop.
+
+    """
+    config = rig.config
+    low, high = 0.0, config.sheet.plant.drive.stroke
+    if isinstance(config.load, Wheel):
+        low, high = max(low, config.load.stop_low), min(high, config.load.stop_high)
+    is_at_end = (position <= low) | (position >= high)
+    moved = np.abs(position - position[0]) > MOVED * (high - low)
+    if np.any(is_at_end & moved):
+        k = int(np.argmax(is_at_end & moved))
+        raise ConfigError(
+            f'{config.name}: runs into the end of its travel {k / RATE_HZ * 1e3:.0f} ms after the '
+            'step, so that there are no figures of the loop; choose a shorter --duration, a '
+            'smaller --amplitude, or --load blocked')
 
 
 def check_duration(duration: float) -> None:

@@ -35,9 +35,13 @@ def tune(options: Namespace) -> bool:
             f'{MARGINS[1]:g} deg')
     named = chosen(choice)
     bench = rig_of(named, choice)
-    found = tuned_block(
-        bench, wanted, _strokes(options.strokes), options.amplitude,
-        counted(sys.stderr, 'responses'))
+    progress = counted(sys.stderr, 'responses')
+    try:
+        found = tuned_block(
+            bench, wanted, _strokes(options.strokes), options.amplitude, progress)
+    finally:
+        if progress is not None:
+            progress(1, 1)      # it may end early: the line goes before the result
     text = table(bench, wanted, found)
     print(text)
     write_wanted(_numbers(bench, wanted, found), options.json)

@@ -166,14 +166,17 @@ def test_a_bag_without_motion_is_refused_in_one_line(
     assert 'bag: nothing to identify: rotor moved' in printed
 
 
-def test_a_flow_curve_of_points_is_refused_in_one_line(
-        tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
-    """There is no curve with few parameters to fit: exit code 2."""
-    load('rig_cylinder').simulate(0.1).save(tmp_path / 'bag')
-    assert main(['identify', str(tmp_path / 'bag')]) == 2
-    printed = capsys.readouterr().err
-    assert printed.count('\n') == 1
-    assert 'nothing to identify: ram has the flow curve of a data sheet, which is not' in printed
+@pytest.mark.slow
+def test_of_an_own_cylinder_the_friction_is_estimated(tmp_path: Path) -> None:
+    """Its valve has the curve of a data sheet, without few parameters to fit."""
+    load('rig_cylinder', 'identify_linear').simulate().save(tmp_path / 'bag')
+    found = {one.parameter: one for one in identify_bag(tmp_path / 'bag').actuators['ram']}
+    for name in ('Coulomb friction', 'viscous friction', 'stiction', 'Stribeck speed'):
+        assert found[name].holds and found[name].high - found[name].low < 0.3 * found[name].value
+    assert found['bulk modulus'].value is None
+    assert found['bulk modulus'].reason == 'not estimated with the flow curve of a data sheet'
+    assert 'low flow gain' not in found
+
 
 
 TWO = """

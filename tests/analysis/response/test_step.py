@@ -1,8 +1,11 @@
 """The step of one loop, from its trace."""
 
 from isa_ros.actuator.sheet import ActuatorSheet
+from isa_ros.analysis.response.choice import Choice
 from isa_ros.analysis.response.loops import Loop, Unit
-from isa_ros.analysis.response.step import evaluate
+from isa_ros.analysis.response.rig import rig
+from isa_ros.analysis.response.step import evaluate, step
+from isa_ros.errors import ConfigError
 import numpy as np
 import pytest
 from tests.sheets import actuator_sheet
@@ -30,3 +33,16 @@ def test_figures_count_from_where_the_step_begins(start: float) -> None:
     assert found.figures.rise_time == pytest.approx(8e-3, rel=1e-9)
     assert found.figures.overshoot == pytest.approx(0.0, abs=1e-12)
     assert found.figures.steady_error == pytest.approx(0.0, abs=1e-15)
+
+
+@pytest.mark.parametrize(('load', 'amplitude', 'is_refused'), [
+    ('mass', None, True), ('mass', 20.0, False), ('blocked', None, False)])
+def test_a_step_into_the_end_of_the_travel_has_no_figures(
+        load: str, amplitude: float | None, is_refused: bool) -> None:
+    """750 N on 50 kg travel the half stroke of 50 mm within 0.1 s: an overshoot of 738 %."""
+    found = rig(Choice(name='isa_v5', loop='force', load=load))
+    if is_refused:
+        with pytest.raises(ConfigError, match='isa_v5: runs into the end of its travel 1[01]'):
+            step(found, 0.15, amplitude)
+        return
+    assert step(found, 0.15, amplitude).figures.overshoot < 1.0
