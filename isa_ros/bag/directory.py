@@ -80,4 +80,5 @@ def _files_of_bag(directory: Path) -> list[Path]:
 
 def _exists(directory: Path) -> BagError:
     return BagError(
-        f'{directory} already exists; --overwrite, in Python overwrite=True, replaces the bag in it')
+        f'{directory} already exists; --overwrite, in Python overwrite=True, replaces the bag '
+        'in it')

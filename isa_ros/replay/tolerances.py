@@ -74,9 +74,10 @@ def load_tolerances(path: Path, types: Mapping[str, str]) -> Tolerances:
     """
     by_field: dict[tuple[str, str], Tolerance] = {}
     tree = strict_yaml.read(path)
-    if ALL in tree and (not isinstance(tree[ALL], dict) or list(tree[ALL]) != [ALL]):
+    every = tree.get(ALL, {ALL: 0.0})
+    if not isinstance(every, dict) or list(every) != [ALL]:
         raise ConfigError(
-            f'{path.name}: {ALL} = {tree[ALL]!r}, must be {{{ALL!r}: BOUND}}, a bound for every '
+            f'{path.name}: {ALL} = {every!r}, must be {{{ALL!r}: BOUND}}, a bound for every '
             'float')
     for topic, section in _spread(tree, types).items():
         if topic not in types:

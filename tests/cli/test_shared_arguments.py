@@ -34,8 +34,9 @@ def test_a_file_of_another_kind_is_not_replaced(
 
 
 @pytest.mark.parametrize(('arguments', 'message'), [
-    (['brngup'], "isa: argument COMMAND: invalid choice: 'brngup'; did you mean bringup?; see isa --help"),
-    (['bode', 'isa_v5', '--loop', 'curent'], "--loop: invalid choice: 'curent'; did you mean current?"),
+    (['brngup'], "isa: argument COMMAND: invalid choice: 'brngup'; did you mean bringup?"),
+    (['bode', 'isa_v5', '--loop', 'curent'],
+     "--loop: invalid choice: 'curent'; did you mean current?"),
 ])
 def test_a_misspelt_choice_is_answered_with_the_nearest(
         arguments: list[str], message: str, capsys: pytest.CaptureFixture[str]) -> None:

@@ -44,7 +44,7 @@ def test_both_bounds_add_up(load):
 def test_a_star_stands_for_all_that_is_not_named(load):
     """A topic and a field of their own come first."""
     tolerances = load("'*': {'*': {relative: 1.0e-9}}\n"
-                      "/hip/joint_states: {position: 0.5}\n")
+                      '/hip/joint_states: {position: 0.5}\n')
     joints, force = '/hip/joint_states', '/hip/load_cell'
     assert tolerances.of(joints, 'position[0]') == Tolerance(0.5, 0.0)
     for topic, field in ((joints, 'velocity[2]'), (force, 'wrench.force.x')):

@@ -178,7 +178,6 @@ def test_of_an_own_cylinder_the_friction_is_estimated(tmp_path: Path) -> None:
     assert 'low flow gain' not in found
 
 
-
 TWO = """
 name: two
 step_ms: 1.0
