@@ -3,8 +3,8 @@ Files for `ethercat_driver_ros2`: a YAML file of each slave, and the tag of the 
 
 Its plugin ``EcCiA402Drive`` maps whole numbers only, so that the PDOs without real numbers are
 used, and it counts channels without gaps, so that these are left out; the master writes the
-mapping to the slave. The plugin has no negative modes: 0x2012 gives mode 8 the gains of the process data.
-A command interface that is NaN, or not there, leaves the ``default``.
+mapping to the slave. The plugin has no negative modes: 0x2012 gives mode 8 the gains of the
+process data. A command interface that is NaN, or not there, leaves the ``default``.
 """
 
 from collections.abc import Iterator, Mapping, Sequence
