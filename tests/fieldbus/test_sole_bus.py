@@ -50,6 +50,12 @@ def test_a_place_is_free_again_after_the_end():
         pass
 
 
+def test_a_serial_line_is_left_to_its_own_lock():
+    line = on(SERIAL, path=Path('line'), baud=0)
+    with sole_bus(line), sole_bus(line):
+        pass
+
+
 def test_the_longest_channel_has_a_name():
     with sole_bus(on(CANOPEN, interface='virtual', channel='x' * 300)):
         pass

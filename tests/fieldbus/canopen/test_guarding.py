@@ -99,3 +99,17 @@ def test_a_reset_ends_the_watch(master):
     asked(master)
     for _ in range(5):
         assert 0x81 not in dict(master.cycle())
+
+
+def test_a_lost_master_is_reported_once_where_the_node_stays_operational(master, toys):
+    master.write(0x100C, 0, 1, 2)
+    master.write(0x100D, 0, 2, 1)
+    master.write(0x1029, 1, 1, 1)
+    master.command(START)
+    for _ in range(2):      # and again after the next request
+        asked(master)
+        emergencies = [data for _ in range(8) for identifier, data in master.cycle()
+                       if identifier == 0x81]
+        assert emergencies == [LOST]
+    assert master.line.nodes[0].state == OPERATIONAL
+    assert toys[0].ended_lost == [True, True]

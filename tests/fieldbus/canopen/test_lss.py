@@ -189,3 +189,48 @@ def test_lss_is_ignored_while_operational():
 def test_frames_of_another_length_are_ignored(master, data):
     master.send(0x7E5, data)
     assert master.received() == []
+
+
+def scanned(master: Master, value: int, bit: int, part: int, following: int) -> int:
+    """Return how many frames answer a step of the fast scan."""
+    return len(asked(master, 0x51, *value.to_bytes(4, 'little'), bit, part, following))
+
+
+def test_a_node_in_configuration_does_not_take_part_in_a_scan(master, lss):
+    for address in ADDRESSES:
+        assert lss.send_switch_state_selective(*address)
+        assert scanned(master, 0, 0x80, 0, 0) == (1 if address == ADDRESSES[0] else 0)
+    lss.send_switch_state_global(WAITING)
+    assert scanned(master, 0, 0x80, 0, 0) == 1
+
+
+def test_the_parts_of_a_scan_come_in_their_order(master):
+    assert scanned(master, 0, 0x80, 0, 0) == 1
+    assert scanned(master, 0, 31, 1, 1) == scanned(master, 0xBAC, 0, 0, 1) == 0
+    assert scanned(master, 0xBAD, 0, 0, 1) == 1
+    assert scanned(master, 0xBAD, 0, 0, 1) == 0     # the next part is awaited
+    assert scanned(master, ADDRESSES[0].product, 0, 1, 2) == 1
+    assert scanned(master, 0, 0x80, 0, 0) == 1      # anew
+    assert scanned(master, ADDRESSES[0].product, 0, 1, 2) == 0
+    assert scanned(master, 0xBAD, 32, 0, 1) == scanned(master, 0, 0, 4, 5) == 0
+
+
+def test_an_address_with_a_wrong_part_within_selects_no_node(master):
+    vendor, product, revision, serial = ADDRESSES[1]
+    for command, value in ((0x40, vendor), (0x41, product + 1), (0x41, product),
+                           (0x42, revision), (0x43, serial), (0x41, product), (0x42, revision)):
+        assert asked(master, command, *value.to_bytes(4, 'little')) == []
+    assert all(node.lss.is_waiting for node in master.line.nodes)
+
+
+@pytest.mark.parametrize('wrong', range(6))
+def test_a_range_that_leaves_one_part_out_finds_no_node(master, wrong):
+    """Also if that part comes again, behind the others."""
+    vendor, product, revision, serial = ADDRESSES[1]
+    frames = list(zip(range(0x46, 0x4C), (
+        vendor, product, revision, revision, serial, serial)))
+    command, value = frames[wrong]
+    beyond = value - 1 if command in (0x49, 0x4B) else value + 1
+    for command, value in (*frames[:wrong], (command, beyond), *frames[wrong + 1:],
+                           frames[wrong]):
+        assert asked(master, command, *value.to_bytes(4, 'little')) == []

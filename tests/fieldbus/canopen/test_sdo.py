@@ -3,7 +3,7 @@
 from binascii import crc_hqx
 
 import canopen
-from hypothesis import given, strategies as st
+from hypothesis import example, given, strategies as st
 from isa_ros.fieldbus.canopen import sdo
 from isa_ros.fieldbus.canopen.sdo import MOST_BYTES
 from isa_ros.fieldbus.device.abort import NO_OBJECT, SdoAbort
@@ -145,6 +145,8 @@ def in_blocks(server: sdo.SdoServer, sizes: list[int], lost: set[int]) -> bytes:
 
 @given(st.binary(max_size=300), st.lists(st.integers(1, 127), min_size=1, max_size=4),
        st.sets(st.integers(1, 60), max_size=10))
+@example(b'', [5], {1})
+@example(b'seven b', [1], {1, 2})
 def test_what_is_read_in_blocks_is_whole_whatever_is_lost(data, sizes, lost):
     values = Values()
     values.content[TEXT] = data

@@ -48,11 +48,12 @@ def test_both_buses_refuse_before_anything_is_opened(exposed, bus):
         refuse_unusable(asked, [], 1_000_000)
 
 
-@pytest.mark.parametrize(('address', 'is_exposed'), [('', False), ('192.0.2.1/24', True)])
-def test_an_interface_with_an_address_is_what_counts(address, is_exposed):
+@pytest.mark.parametrize(('address', 'state', 'is_exposed'), [
+    ('', 'up', False), ('192.0.2.1/24', 'up', True), ('192.0.2.1/24', 'down', False)])
+def test_an_interface_with_an_address_is_what_counts(address, state, is_exposed):
     """In a namespace: the loopback and two virtual interfaces, one with an address or not."""
     commands = [f'ip link {one}' for one in (
-        'set lo up', 'add ecs type veth peer name ecm', 'set ecs up', 'set ecm up')]
+        'set lo up', 'add ecs type veth peer name ecm', 'set ecs up', f'set ecm {state}')]
     if address:
         commands.append(f'ip address add {address} dev ecm')
     commands.append(f'{sys.executable} -c "from isa_ros.fieldbus.canopen.udp_reach import '

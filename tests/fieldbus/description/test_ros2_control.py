@@ -3,6 +3,7 @@
 from dataclasses import replace
 import math
 import struct
+from xml.etree import ElementTree
 
 import isa_ros
 from isa_ros.cli.main import main
@@ -85,6 +86,17 @@ def test_gains_are_commanded_in_mode_8(files):
     driver.commands |= {'stiffness': math.nan}
     rig.device.receive(0x1611, driver.outputs())
     assert math.isnan(struct.unpack('<f', rig.device.read(0x2010, 1))[0])
+
+
+def test_the_range_of_a_joint_is_the_stroke(files):
+    """Of the leg: 0.1 m of a cylinder, 1.745 rad of the rotary one, as 0x2001:1."""
+    root = ElementTree.parse(files / 'leg' / 'ros2_control.urdf.xacro').getroot()
+    for device in devices_of(LEG):
+        own, = (one for one in root.iterfind('ros2_control/joint')
+                if one.get('name') == device.name)
+        ends = [float(one.text) for one in own.iterfind('command_interface/param')]
+        stroke, = struct.unpack('<f', device.read(0x2001, 1))
+        assert ends == [0.0, pytest.approx(stroke, rel=2.0 ** -23, abs=0.0)]
 
 
 def test_every_slave_of_a_leg_is_at_its_place_and_takes_its_mapping(files):
