@@ -15,14 +15,14 @@ import pytest
 
 RUNS = {name: isa_ros.load(name).configuration
         for name in ('rig_linear', 'rig_rotary', 'rig_rotary_position', 'rig_valve')}
-WORDS = {'cia402': (0, 6, 7, 15, 15, 15, 15, 15, 2, 0x80, 0x8F),
+WORDS = {'cia402': (0, 6, 7, 15, 15, 15, 0x1F, 0x7F, 0x10F, 15, 2, 0x80, 0x8F),
          'cia408': (0, 1, 3, 7, 7, 7, 8, 15)}
 SHOWN = {'cia402': {0x00, 0x40, 0x21, 0x23, 0x27, 0x07, 0x0F, 0x08},
          'cia408': {0b0000, 0b1000, 0b1001, 0b1011, 0b1111, 0b0001, 0b0011, 0b0111}}
 MASKS = {'cia402': 0x6F, 'cia408': 0x0F}
 STEPS = st.lists(st.tuples(
     st.integers(0), st.binary(min_size=64, max_size=64), st.sampled_from(range(6)),
-    st.sampled_from((-1, 0, 1, 2, 5, 6, 7, 8, 9, 10)), st.sampled_from('tttttttlbe')),
+    st.sampled_from((-1, 0, 1, 2, 3, 5, 6, 7, 8, 9, 10)), st.sampled_from('tttttttlbe')),
     min_size=1, max_size=40)
 
 

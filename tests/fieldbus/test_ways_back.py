@@ -77,3 +77,19 @@ def test_a_hold_of_cia_408_is_at_the_position_measured_when_it_was_entered():
     for _ in range(5):
         master.cycle(0b0011)
     assert master.upload(0x6610, 1) == before
+
+
+@pytest.mark.parametrize(('profile', 'mode', 'key'), [
+    ('cia402', CSP, (0x60B1, 0)), ('cia402', CSV, (0x60FF, 0)), ('cia402', IMPEDANCE, (0x60FF, 0)),
+    ('cia408', 7, (0x6500, 1))])
+def test_velocities_beyond_full_opening_are_limited_and_say_so(profile, mode, key):
+    rig = Rig(profile=profile)
+    master = enabled(rig, mode) if profile == 'cia402' else Master(rig)
+    master.outputs[key] = -2_000_000_000
+    if profile == 'cia408':
+        master.outputs[0x6043, 0] = mode
+    words = [master.cycle(ENABLE if profile == 'cia402' else 0b0111) for _ in range(4)]
+    assert words[-1] & (1 << 11 if profile == 'cia402' else 1 << 10)
+    # The speed at full opening is that of MIT frames at power-on, as REAL32.
+    assert rig.simulation.applied[0]['velocity'] == pytest.approx(
+        -master.upload(0x2002, 2), rel=2.0 ** -23)

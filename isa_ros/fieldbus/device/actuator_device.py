@@ -5,10 +5,11 @@ from contextlib import contextmanager
 
 from isa_ros.actuator.tunable import with_changed
 from isa_ros.errors import ConfigError
-from isa_ros.fieldbus.device.abort import OUT_OF_RANGE, SdoAbort
+from isa_ros.fieldbus.device.abort import (
+    NOT_TRANSFERABLE, OUT_OF_RANGE, READ_ONLY, SdoAbort)
 from isa_ros.fieldbus.device.axis import Axis, FIELDS
 from isa_ros.fieldbus.device.bus_device import Emergency, Identity
-from isa_ros.fieldbus.device.communication_area import ERROR_FIELD
+from isa_ros.fieldbus.device.communication_area import ERROR_FIELD, LOAD, RESTORE, STORE
 from isa_ros.fieldbus.device.dictionary import Key, ObjectDictionary
 from isa_ros.fieldbus.device.drive import Drive
 from isa_ros.fieldbus.device.faults import delete_errors, Faults, PDO_LENGTH
@@ -65,6 +66,9 @@ class ActuatorDevice:
                 value = self._dictionary.admitted(self.table.entry(index, subindex), data)
                 self._process_data.write(index, subindex, int(value), is_preoperational)
                 return
+            if index in (STORE, RESTORE):
+                self._restore(index, subindex, data)
+                return
             self._dictionary.write(index, subindex, data)
         self._written([(index, subindex)])
 
@@ -87,6 +91,15 @@ class ActuatorDevice:
     def store(self, index: int, subindex: int, value: Value) -> None:
         """Set an entry on behalf of the bus itself, without checks."""
         self._values[index, subindex] = value
+
+    def _restore(self, index: int, subindex: int, data: bytes) -> None:
+        """Accept the signature of 0x1011, and refuse to store; nothing changes."""
+        entry = self.table.entry(index, subindex)
+        if not entry.is_writable:
+            raise SdoAbort(READ_ONLY)
+        word = entry.data_type.unpack(data)
+        if index == STORE or word != LOAD:
+            raise SdoAbort(NOT_TRANSFERABLE)
 
     @contextmanager
     def _noting(self, index: int, subindex: int | None = None) -> Iterator[None]:

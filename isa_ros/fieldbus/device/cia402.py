@@ -6,16 +6,15 @@ The control word counts at the start of a tick, the sample at its end.
 """
 
 from collections.abc import Mapping
-import math
 
 from isa_ros.core.device import ENABLED, FAULT, FAULT_REACTION, INITIALISING, QUICK_STOP
 from isa_ros.core.signals import HAS_QUICK_STOP
-from isa_ros.core.units import MILLI
 from isa_ros.fieldbus.device import cia402_objects as objects
 from isa_ros.fieldbus.device.abort import INCOMPATIBLE, OUT_OF_RANGE, SdoAbort
 from isa_ros.fieldbus.device.axis import Axis, COUNTS
+from isa_ros.fieldbus.device.cia402_motion_objects import DIGITAL_INPUTS
 from isa_ros.fieldbus.device.cia402_objects import (
-    CSP, CST, CSV, IMPEDANCE_MODE, NO_MODE, REFUSED_MODES)
+    CSP, CSV, HOMING, IMPEDANCE_MODE, NO_MODE, PP, PV, REFUSED_MODES)
 from isa_ros.fieldbus.device.cia402_states import (
     CAUSE_GONE, command_of, ENDS_OFF, Event, FAULT_RESET, FOLLOWING, REU_DISABLED, State402, STAYS)
 from isa_ros.fieldbus.device.dictionary import Key
@@ -23,15 +22,16 @@ from isa_ros.fieldbus.device.drive import Drive
 from isa_ros.fieldbus.device.faults import Faults, FOLLOWING_ERROR
 from isa_ros.fieldbus.device.following_error import FollowingError
 from isa_ros.fieldbus.device.force_limits import ForceLimits
-from isa_ros.fieldbus.device.manufacturer_area import (
-    DAMPING, EFFORT, GAINS_OF_CSP, STIFFNESS)
+from isa_ros.fieldbus.device.mode_setpoints import ModeSetpoints
+from isa_ros.fieldbus.device.motions import HALT, Motions
 from isa_ros.fieldbus.device.objects import ObjectEntry, Value
-from isa_ros.fieldbus.device.setpoints import ImpedanceGains, setpoint
 from isa_ros.fieldbus.device.states import Transition
 import numpy as np
 
 VOLTAGE, WARNING, REMOTE, LIMITED, FOLLOWS, LATE = (1 << bit for bit in (4, 7, 9, 11, 12, 13))
 """Further bits of the status word."""
+_HALTED = (PP, PV, CSP, CSV)
+"""Modes with a reference that a halt brakes, and whose following error is watched."""
 _STOP_WORD = 0x02
 """Control word of a quick stop."""
 
@@ -52,16 +52,18 @@ class Drive402(Drive):
         super().__init__(axis, values, faults, State402.NOT_READY, objects.MODE,
                          objects.modes_of(axis), NO_MODE)
         self._supply_low = supply_low
-        self._gains = ImpedanceGains(axis, values)
         self._limits = ForceLimits(axis, values)
         self._following_error = FollowingError(axis.step_ns, values)
         self._has_left = False
-        self._setpoints = {
-            NO_MODE: self._holding, CSP: self._position, CSV: self._velocity, CST: self._torque,
-            IMPEDANCE_MODE: self._impedance}
+        self._motions = Motions(axis, values, self._limiter)
+        self._moved_in: int | None = None
+        self._setpoints = ModeSetpoints(
+            axis, values, self._limiter, self._limits, self._motions)
         self.actuals = {
             objects.STATUS: self.status, objects.MODE_SHOWN: lambda: self._mode,
-            objects.POSITION_DEMAND: lambda: round(self._shown_demand * COUNTS),
+            objects.POSITION: lambda: self._counted(axis.position),
+            objects.POSITION_DEMAND: lambda: self._counted(self._shown_demand),
+            DIGITAL_INPUTS: self._digital_inputs,
             objects.FOLLOWING_ERROR: lambda: round(self._following_error.value * COUNTS)}
 
     # Side of the bus.
@@ -88,10 +90,17 @@ class Drive402(Drive):
         super().end_operation(is_lost)
         self._has_left = self.state is State402.QUICK_STOP
 
+    def restart(self, is_whole: bool) -> None:
+        """Return to power-on, as `Drive.restart`; with ``is_whole`` without a homing."""
+        if is_whole:
+            self._motions.restart()
+        super().restart(is_whole)
+
     def _begin_at_position(self) -> None:
-        self._values[objects.TARGET_POSITION] = round(self._axis.position * COUNTS)
+        self._values[objects.TARGET_POSITION] = self._counted(self._axis.position)
         self._following_error.forget()
         self._has_left = False
+        self._moved_in = None
 
     def status(self) -> int:
         """Return the status word."""
@@ -102,9 +111,34 @@ class Drive402(Drive):
         word |= VOLTAGE * (not (warnings | int(axis.field('trips'))) & self._supply_low)
         if state is State402.OPERATION_ENABLED:
             word |= LIMITED * self._limiter.is_limited
-            word |= FOLLOWS * (axis.state == ENABLED and self._mode != NO_MODE)
+            if axis.state == ENABLED:
+                word |= self._status_of_mode()
         word |= LATE * self._following_error.is_late
         return word
+
+    def _status_of_mode(self) -> int:
+        """Return the bits of the status word whose meaning depends on the mode."""
+        is_halted = self._is_halted
+        if self._mode == PP:
+            return self._motions.status_of_position(is_halted)
+        if self._mode == PV:
+            return self._motions.status_of_velocity(is_halted)
+        if self._mode == HOMING:
+            return self._motions.status_of_homing()
+        return FOLLOWS * (self._mode != NO_MODE and not is_halted)
+
+    @property
+    def _is_halted(self) -> bool:
+        return self._mode in _HALTED and bool(self._control & HALT)
+
+    def _counted(self, position: float) -> int:
+        """Return a position of the encoder as the bus counts it."""
+        return round(position * COUNTS) - self._motions.origin
+
+    def _digital_inputs(self) -> int:
+        position = round(self._axis.position * COUNTS)
+        return (int(position <= int(self._values[objects.LEAST_POSITION]))
+                | int(position >= int(self._values[objects.LARGEST_POSITION])) << 1)
 
     def limited(self, changes: dict[str, float]) -> dict[str, float]:
         """Return changes of the REU with its forces limited by the objects of the drive."""
@@ -124,6 +158,7 @@ class Drive402(Drive):
             self._begin_at_position()
         self._happens(Event.INITIALISED)
         self._watch_deviation()
+        self._motions.watch()
         self._is_stopping &= axis.is_on
         if axis.state in (FAULT_REACTION, FAULT) and not self._clears or self._faults.has_own:
             self._happens(Event.FAULT)
@@ -160,65 +195,21 @@ class Drive402(Drive):
 
     def _operate(self, command: np.void) -> int:
         kinds = self._enabled(command, self._modes[self._mode])
-        return kinds | self._setpoints[self._mode](command)
-
-    # Setpoints of the modes.
-
-    def _si(self, key: Key) -> float:
-        return int(self._values[key]) / COUNTS
-
-    def _limited_position(self, position: float) -> float:
-        return self._limiter.limited(
-            position, self._si(objects.LEAST_POSITION), self._si(objects.LARGEST_POSITION))
-
-    def _force(self, *keys: Key) -> float:
-        """Return the sum of efforts, limited; N or Nm."""
-        per_mille = self._axis.rated_force * MILLI
-        value = sum(int(self._values[key]) for key in keys) * per_mille
-        effort = float(self._values[EFFORT])
-        value += 0.0 if math.isnan(effort) else effort
-        out, into = self._limits.sides
-        return self._limiter.limited(
-            value, -min(into, self._axis.force_in), min(out, self._axis.force_out))
-
-    def _holding(self, command: np.void) -> int:
-        return 0
-
-    def _position(self, command: np.void) -> int:
-        self._demand = self._limited_position(self._si(objects.TARGET_POSITION))
-        gains = self._commanded_gains() if self._values[GAINS_OF_CSP] else self._gains.of_block()
-        return setpoint(command, self._demand, self._si(objects.VELOCITY_OFFSET),
-                        self._force(objects.TORQUE_OFFSET), gains)
-
-    def _velocity(self, command: np.void) -> int:
-        largest = self._si(objects.MAX_SPEED)
-        velocity = self._limiter.limited(
-            self._si(objects.TARGET_VELOCITY) + self._si(objects.VELOCITY_OFFSET),
-            -largest, largest)
-        self._demand = self._limited_position(self._demand + velocity * self._axis.step)
-        return setpoint(command, self._demand, velocity, self._force(objects.TORQUE_OFFSET),
-                        self._gains.of_block())
-
-    def _torque(self, command: np.void) -> int:
-        return setpoint(command, self._axis.position, 0.0,
-                        self._force(objects.TARGET_TORQUE, objects.TORQUE_OFFSET))
-
-    def _impedance(self, command: np.void) -> int:
-        self._demand = self._limited_position(self._si(objects.TARGET_POSITION))
-        return setpoint(command, self._demand, self._si(objects.TARGET_VELOCITY),
-                        self._force(objects.TARGET_TORQUE, objects.TORQUE_OFFSET),
-                        self._commanded_gains())
-
-    def _commanded_gains(self) -> tuple[float, float]:
-        return self._gains.commanded(
-            float(self._values[STIFFNESS]), float(self._values[DAMPING]), self._limiter)
+        if self._axis.state != ENABLED or self._moved_in != self._mode:
+            self._motions.begin(self._demand, self._control)
+            self._moved_in = self._mode
+        if self._is_halted:
+            self._motions.stop()
+        own, self._demand = self._setpoints.write(
+            command, self._mode, self._control, self._demand, self._is_halted)
+        return kinds | own
 
     # Following error.
 
     @property
     def _has_demand(self) -> bool:
         return self.state is State402.OPERATION_ENABLED and self._mode in (
-            CSP, CSV, IMPEDANCE_MODE)
+            *_HALTED, IMPEDANCE_MODE)
 
     @property
     def _shown_demand(self) -> float:
@@ -230,7 +221,7 @@ class Drive402(Drive):
             return
         error = self._following_error
         error.watch(self._shown_demand - self._axis.position,
-                    self._has_demand and self._mode in (CSP, CSV))
+                    self._has_demand and self._mode in _HALTED)
         if error.is_late:
             self._faults.add(FOLLOWING_ERROR)
 

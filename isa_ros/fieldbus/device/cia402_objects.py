@@ -27,25 +27,25 @@ LARGEST_OUT, LARGEST_IN = (0x60E0, 0), (0x60E1, 0)
 TORQUE_DEMAND, TORQUE = (0x6074, 0), (0x6077, 0)
 TARGET_POSITION, LEAST_POSITION, LARGEST_POSITION = (0x607A, 0), (0x607D, 1), (0x607D, 2)
 MAX_SPEED = (0x607F, 0)
-VELOCITY_OFFSET, TORQUE_OFFSET = (0x60B1, 0), (0x60B2, 0)
+POSITION_OFFSET, VELOCITY_OFFSET, TORQUE_OFFSET = (0x60B0, 0), (0x60B1, 0), (0x60B2, 0)
 TARGET_VELOCITY, VELOCITY = (0x60FF, 0), (0x606C, 0)
 PRESSURE_A, PRESSURE_B, SPOOL = (0x2020, 1), (0x2020, 2), (0x2021, 1)
 
-NO_MODE, IMPEDANCE_MODE, HOMING, CSP, CSV, CST = 0, -1, 6, 8, 9, 10
+NO_MODE, IMPEDANCE_MODE, PP, PV, HOMING, CSP, CSV, CST = 0, -1, 1, 3, 6, 8, 9, 10
 MODE_NAMES: Mapping[int, str] = {
     NO_MODE: 'no mode: holds the position', IMPEDANCE_MODE: 'impedance (manufacturer)',
+    PP: 'profile position', PV: 'profile velocity', HOMING: 'homing, methods 35 and 37',
     CSP: 'cyclic synchronous position', CSV: 'cyclic synchronous velocity',
     CST: 'cyclic synchronous torque'}
 REFUSED_MODES: Mapping[int, str] = {
-    1: 'profile position needs a trajectory in the drive: send one in mode 8',
     2: 'velocity is a mode of frequency converters: use mode 9',
-    3: 'profile velocity needs a trajectory in the drive: send one in mode 9',
-    4: 'profile torque needs a trajectory in the drive: send one in mode 10',
-    HOMING: 'homing finds nothing: the encoder is absolute',
+    4: 'profile torque has no ramp in the drive: send one in mode 10',
     7: 'interpolated position needs a buffer in the drive: send every tick in mode 8'}
 """Why the other modes of the profile are refused."""
 
-_SUPPORTED_BITS = {CSP: 1 << 7, CSV: 1 << 8, CST: 1 << 9, IMPEDANCE_MODE: 1 << 16}
+_SUPPORTED_BITS = {
+    PP: 1 << 0, PV: 1 << 2, HOMING: 1 << 5, CSP: 1 << 7, CSV: 1 << 8, CST: 1 << 9,
+    IMPEDANCE_MODE: 1 << 16}
 QUICK_STOP_OFF, QUICK_STOP_ENDS_OFF, QUICK_STOP_STAYS = 0, 2, 6
 _I8, _I16, _I32 = DataType.INTEGER8, DataType.INTEGER16, DataType.INTEGER32
 _U8, _U16, _U32 = DataType.UNSIGNED8, DataType.UNSIGNED16, DataType.UNSIGNED32
@@ -86,7 +86,7 @@ def modes_of(axis: Axis) -> dict[int, int]:
     if axis.position_mode == IMPEDANCE:
         found[IMPEDANCE_MODE] = IMPEDANCE
     if axis.position_mode:
-        found[CSP] = found[CSV] = axis.position_mode
+        found |= dict.fromkeys((PP, PV, HOMING, CSP, CSV), axis.position_mode)
     if FORCE in axis.modes:
         found[CST] = FORCE
     return found
@@ -141,10 +141,8 @@ def _control_objects(axis: Axis) -> list[Object]:
         _one(MODE, 'Modes of operation', _I8, 'rw', pdo='rx',
              meaning='others are refused, with the reason in 0x2003'),
         _one(MODE_SHOWN, 'Modes of operation display', _I8, pdo='tx'),
-        _one((0x6098, 0), 'Homing method', _I8, 'const', 0,
-             meaning='none: the encoder is absolute'),
         _one((0x6502, 0), 'Supported drive modes', _U32, 'const', bits,
-             meaning='bit 7 CSP, 8 CSV, 9 CST, 16 impedance')]
+             meaning='bit 0 PP, 2 PV, 5 HM, 7 CSP, 8 CSV, 9 CST, 16 impedance')]
 
 
 def _position_objects(axis: Axis) -> list[Object]:
@@ -163,9 +161,11 @@ def _position_objects(axis: Axis) -> list[Object]:
              meaning='longer than that beyond the window is a fault'),
         position(TARGET_POSITION, 'Target position', 'rw', 'rx',
                  meaning='at first the position at t = 0'),
+        position(POSITION_OFFSET, 'Position offset', 'rw', 'rx',
+                 meaning='added to the target of modes 8 and -1'),
         record_of(0x607D, 'Software position limit', [
             ObjectEntry(0x607D, 1, 'Least position', _I32, 'rw', 0, length, INCREMENT, low=0,
-                        high=stroke),
+                        high=stroke, meaning='of the encoder: homing does not move it'),
             ObjectEntry(0x607D, 2, 'Largest position', _I32, 'rw', stroke, length, INCREMENT,
                         low=0, high=stroke)]),
         position(FOLLOWING_ERROR, 'Following error actual value', pdo='tx',
@@ -179,7 +179,7 @@ def _velocity_objects(axis: Axis) -> list[Object]:
         _one(VELOCITY, 'Velocity actual value', _I32, unit=speed, scale=INCREMENT, pdo='tx',
              source='velocity'),
         _one(MAX_SPEED, 'Max profile velocity', _U32, 'rw', NOT_WATCHED, unit=speed,
-             scale=INCREMENT, meaning='largest velocity of mode 9'),
+             scale=INCREMENT, meaning='largest velocity of modes 1, 3 and 9'),
         _one((0x6085, 0), 'Quick stop deceleration', _U32, 'const',
              round(deceleration / INCREMENT), unit=axis.unit('m/s2 | rad/s2'), scale=INCREMENT),
         _one(VELOCITY_OFFSET, 'Velocity offset', _I32, 'rw', unit=speed, scale=INCREMENT,

@@ -139,7 +139,9 @@ class Drive408(Drive):
     def _axis_setpoint(self, command: np.void) -> int:
         velocity = 0.0
         if self.state is State408.ACTIVE:
-            velocity = int(self._values[objects.VELOCITY_SETPOINT]) / COUNTS
+            largest = self._axis.rated_speed
+            velocity = self._limiter.limited(
+                int(self._values[objects.VELOCITY_SETPOINT]) / COUNTS, -largest, largest)
             position = int(self._values[objects.POSITION_SETPOINT]) / COUNTS
             if self._mode == AXIS_VELOCITY:
                 position = self._demand + velocity * self._axis.step

@@ -14,6 +14,8 @@ ERROR_REGISTER = 0x1001
 ERROR_FIELD = 0x1003
 """Object with the last errors."""
 ERRORS_KEPT = 8
+STORE, RESTORE, LOAD = 0x1010, 0x1011, int.from_bytes(b'load', 'little')
+"""Objects that store and restore parameters, and the signature of the latter."""
 _U8, _U16, _U32 = DataType.UNSIGNED8, DataType.UNSIGNED16, DataType.UNSIGNED32
 _PDOS_ON = 2
 """PDOs of CANopen in each direction that are on at power-on."""
@@ -40,6 +42,20 @@ def identity_objects(
             ObjectEntry(0x1018, 3, 'Revision number', _U32, 'const', identity.revision),
             ObjectEntry(0x1018, 4, 'Serial number', _U32, 'const', identity.serial,
                         meaning='place in the run file')])]
+
+
+def parameter_objects() -> list[Object]:
+    """Return the objects that store and restore parameters: nothing is stored."""
+    groups = ('All parameters', 'Communication parameters', 'Application parameters')
+
+    def of(index: int, name: str, default: int, meaning: str) -> Object:
+        return record_of(index, name, [
+            ObjectEntry(index, k, group, _U32, 'rw', default, meaning=meaning)
+            for k, group in enumerate(groups, 1)])
+    return [
+        of(STORE, 'Store parameters', 0, 'nothing is stored: what to keep is in the run file'),
+        of(RESTORE, 'Restore default parameters', 1,
+           '"load" (0x64616F6C): accepted, since every reset restores the defaults')]
 
 
 def error_objects() -> list[Object]:

@@ -15,9 +15,10 @@ from isa_ros.fieldbus.device.axis import Axis
 from isa_ros.fieldbus.device.bus_device import BusDevice, Identity, VENDOR
 from isa_ros.fieldbus.device.canopen_objects import communication_objects
 from isa_ros.fieldbus.device.cia402 import Drive402
+from isa_ros.fieldbus.device.cia402_motion_objects import motion_objects
 from isa_ros.fieldbus.device.cia408 import Drive408
 from isa_ros.fieldbus.device.communication_area import (
-    error_objects, ethercat_objects, identity_objects, pdo_objects)
+    error_objects, ethercat_objects, identity_objects, parameter_objects, pdo_objects)
 from isa_ros.fieldbus.device.dictionary import Key
 from isa_ros.fieldbus.device.drive import Drive
 from isa_ros.fieldbus.device.faults import Faults
@@ -41,14 +42,17 @@ class Profile(NamedTuple):
     drive: Callable[[Axis, dict[Key, Value], Faults], Drive]
 
 
+def _objects_402(axis: Axis) -> list[Object]:
+    return [*cia402_objects.cia402_objects(axis), *motion_objects(axis)]
+
+
 def _drive_402(axis: Axis, values: dict[Key, Value], faults: Faults) -> Drive:
     return Drive402(axis, values, faults, 1 << BITS['supply_low'])
 
 
 PROFILES: Mapping[str, Profile] = {
     'cia402': Profile(
-        cia402_objects.DEVICE_TYPE, cia402_objects.cia402_objects, cia402_objects.PDOS_402,
-        _drive_402),
+        cia402_objects.DEVICE_TYPE, _objects_402, cia402_objects.PDOS_402, _drive_402),
     'cia408': Profile(
         cia408_objects.DEVICE_TYPE, cia408_objects.cia408_objects, cia408_objects.PDOS_408,
         Drive408)}
@@ -81,7 +85,8 @@ def _device(
 def _table(axis: Axis, serial: int, profile: Profile) -> tuple[Identity, ObjectTable]:
     """Return identity and table; the product is that of all actuators with equal entries."""
     objects = [
-        *error_objects(), *communication_objects(axis.step_ns), *ethercat_objects(axis.step_ns),
+        *error_objects(), *parameter_objects(), *communication_objects(axis.step_ns),
+        *ethercat_objects(axis.step_ns),
         *manufacturer_objects(axis), *twin_objects(axis), *profile.objects(axis)]
     entries = {(entry.index, entry.subindex): entry for one in objects for entry in one.entries}
     objects += pdo_objects(profile.pdos, entries)
