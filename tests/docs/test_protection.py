@@ -3,6 +3,7 @@
 from pathlib import Path
 import re
 
+from isa_ros.analysis.stops.page import LEG_SITUATIONS, situations
 from isa_ros.config.paths import CONFIG, find
 from isa_ros.config.runs.run_file import load_run
 from isa_ros.core.conditions import REACTIONS
@@ -41,3 +42,11 @@ def test_every_file_it_names_exists() -> None:
     paths = re.findall(r'`((?:isa_ros|tests|scripts)/[a-z_/]+\.py)', PAGE)
     assert len(paths) > 5
     assert all((ROOT / path).exists() for path in paths)
+
+
+def test_every_situation_of_a_stop_has_its_row() -> None:
+    """Else run scripts/write_stops.py; how far stops go is in tests/actuator/test_stops.py."""
+    names = [one.name for one in situations()] + list(LEG_SITUATIONS)
+    assert len(set(names)) == len(names)
+    for name in names:
+        assert PAGE.count(f'\n| {name} |') == 1, name
