@@ -77,15 +77,17 @@ class Tuning:
                       for name, value in named(self._known, {bare(key): given}).items()}
         except ConfigError as error:
             raise ConfigError(f'{self._name}: {error}') from error
-        self._refuse_unknown(values)
+        self._refuse_odd(values)
         for all_values in self.values.with_accepted(values):
             self._changed_by(all_values)
         self.values.accept(values)
         return {bare(name): self.values.value(bare(name)) for name in values}
 
-    def _refuse_unknown(self, values: Mapping[str, float]) -> None:
-        self._changed_by({bare(name): value for name, value in values.items()
-                          if bare(name) not in self._known})
+    def _refuse_odd(self, values: Mapping[str, float]) -> None:
+        """Refuse unknown names, and values that are not numbers, before any of them is kept."""
+        self._changed_by({
+            bare(name): value for name, value in values.items()
+            if bare(name) not in self._known or not isinstance(value, (int, float))})
 
     def known(self, name: str) -> Changeable:
         """Return one of `changing` by its key or its name."""

@@ -48,7 +48,7 @@ def speed_record(sheet: SpeedEstimate) -> np.record:
 
 @kernel
 def speed_step(measured_position, speed, state):
-    """Run one period: difference the encoder, smooth the difference  (R1); 0 below the smallest."""
+    """Run one period: difference the encoder, smooth it  (R1); 0 below `SMALLEST_SPEED`."""
     difference = (measured_position - state.position) * speed.rate
     velocity = low_pass(state.velocity, difference, speed.alpha)
     state.velocity = velocity if abs(velocity) >= SMALLEST_SPEED else 0.0

@@ -156,6 +156,8 @@ class Packer:
             [name for name, _ in names.actuators], rows.samples,
             [name for name, _ in names.supplies], rows.supplies, is_run)
         """The messages that are encoded as they come."""
+        self.epoch_ns = 0
+        """Added to the simulation time in stamps, ns."""
         self._periods = {own.topic: own.period_ns for own in of_bodies if own.period_ns} | {
             f'/{name}/{TEMPERATURE[0]}': NS_PER_SECOND for name in names.heated}
         self._not_due: frozenset[str] = frozenset()
@@ -195,17 +197,18 @@ class Packer:
         ``tuned`` are the parameters that changed at the tick's start, by row, and
         ``tuned_supplies`` those of the supplies.
         """
-        self._links.pack(t_ns, tick_start_ns, self._words, self._values)
+        end, start = t_ns + self.epoch_ns, tick_start_ns + self.epoch_ns
+        self._links.pack(end, start, self._words, self._values)
         if len(self._bodies) > 1:
             np.concatenate(self._bodies, out=self._of_bodies)
-        pack(time_word(t_ns), time_word(tick_start_ns), ATMOSPHERE,
+        pack(time_word(end), time_word(start), ATMOSPHERE,
              self._samples, self._rows.applied, self._supplies, self._of_bodies, self._words,
              self._values, self._target)
         if self._periods:
             self._not_due = frozenset(
                 name for name, period in self._periods.items()
                 if t_ns and t_ns // period == tick_start_ns // period)
-        self.rare.pack(t_ns, tick_start_ns, tuned, tuned_supplies)
+        self.rare.pack(t_ns, tick_start_ns, tuned, tuned_supplies, self.epoch_ns)
 
     def all_messages(self, events: Sequence[bytes] = ()) -> Packed:
         """Return all messages of the packed instant, in the order of `topics`."""

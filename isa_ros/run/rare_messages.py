@@ -43,16 +43,17 @@ class RareMessages:
 
     def pack(
             self, t_ns: int, tick_start_ns: int, tuned: Mapping[int, Mapping[str, float]],
-            tuned_supplies: Mapping[str, float]) -> None:
+            tuned_supplies: Mapping[str, float], epoch_ns: int = 0) -> None:
         """Encode the messages of ``t_ns``; arguments as `isa_ros.run.packing.Packer.pack`."""
         self._t_ns = t_ns
+        start_ns = tick_start_ns + epoch_ns
         self._found = {}
         for row, values in tuned.items():
             name = self._actuators[row]
-            self._found[f'/{name}/{PARAMETERS}'] = applied_parameters(name, values, tick_start_ns)
+            self._found[f'/{name}/{PARAMETERS}'] = applied_parameters(name, values, start_ns)
         if tuned_supplies:
             self._found[OF_SUPPLIES] = applied_parameters(
-                coordinator_messages.NODE, tuned_supplies, tick_start_ns)
+                coordinator_messages.NODE, tuned_supplies, start_ns)
         changed = [row for row in range(len(self._actuators))
                    if self.has_device(row, t_ns, tick_start_ns)]
         for row in changed:

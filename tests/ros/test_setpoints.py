@@ -5,6 +5,7 @@ import io
 from pathlib import Path
 import shlex
 import signal
+import time
 
 from isa_ros.bag.reader import Bag
 from isa_ros.config.models.catalogue import model_names
@@ -73,8 +74,9 @@ class User:
 
 
 def test_actuator_alone_follows_a_setpoint(observer, tmp_path):
-    """One process, 1 kHz topics, and motion to a setpoint."""
-    with actuator(tmp_path / 'log', 'knee', model='isa_v5') as process:
+    """One process, 1 kHz topics stamped with the host's time, and motion to a setpoint."""
+    began = time.time_ns()
+    with actuator(tmp_path / 'log', 'knee', model='isa_v5', ros_time=True) as process:
         user = User(observer, 'knee')
         wait_for(lambda: '[knee]: ready at 1 times real time: ' in process.errors)
         user.connect()
@@ -83,6 +85,8 @@ def test_actuator_alone_follows_a_setpoint(observer, tmp_path):
         user.wait_for(lambda: abs(user.position() - target) < ARRIVAL, 'the arrival')
         stamps = [m.header.stamp.sec * 10**9 + m.header.stamp.nanosec for m in user.state[-5:]]
         assert all(stamp % 1_000_000 == 0 for stamp in stamps)
+        echo = user.applied[-1].header.stamp.sec * 10**9
+        assert all(began < stamp < time.time_ns() for stamp in (*stamps, echo + 10**9))
         response = user.enable(False)
         assert response.success and response.message.startswith('disabled from t = ')
         user.wait_for(lambda: user.applied[-1].position[3] == 0.0, 'the disabling')

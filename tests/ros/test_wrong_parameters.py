@@ -36,6 +36,8 @@ def assert_one_line(errors: str, start: str) -> None:
     ({'model': 5}, 'knee: parameter model = 5, must be a text (one of cylinder, isa_v2, '),
     ({'model': 'isa_v5', 'real_time_factor': 'fast'},
      "knee: parameter real_time_factor = 'fast', must be a number (simulated over host time, "),
+    ({'model': 'isa_v5', 'real_time_factor': 2.0, 'ros_time': True},
+     'knee: real_time_factor = 2, must be 1 with ros_time'),
     ({'model': 'isa_v5', 'lockstep': 1}, 'knee: parameter lockstep = 1, must be true or false ('),
     ({'model': 'isa_v5', 'force.kp': 'stiff'},
      "knee: force.kp = 'stiff', must be a number in m/N"),
@@ -106,4 +108,7 @@ def test_a_request_for_all_parameters_is_answered_with_each(observer, of_run):
     values = dict(zip(names, answer.values, strict=True))
     assert values['set'] == ParameterValue(type=ParameterType.PARAMETER_STRING_ARRAY)
     assert values['config_file'].string_value == str(RIG)
+    if not of_run:   # the node knows that its actuator is rotary
+        described = node.describe_parameter('plant.friction.coulomb').description
+        assert described.endswith(', Nm') and '|' not in described
     node.destroy_node()

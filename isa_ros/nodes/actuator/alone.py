@@ -17,14 +17,18 @@ EXAMPLE = 0.1            # of the stroke: the move in the line that says how to 
 
 
 def run_alone(
-        node: ActuatorNode, real_time_factor: float, should_stop: Callable[[], bool]) -> None:
+        node: ActuatorNode, real_time_factor: float, should_stop: Callable[[], bool],
+        ros_time: bool = False) -> None:
     """
     Advance ``node`` until ``should_stop`` at ``real_time_factor``; 0: as fast as possible.
+
+    ``ros_time``: stamps are of the host's clock, as ROS time is without simulated time; otherwise
+    they are of the simulation time, from 0.
 
     Raises
     ------
     ConfigError
-        The factor is negative or not finite.
+        The factor is negative or not finite, or is not 1 with ``ros_time``.
     SimulationDiverged
         A state is no longer finite.
 
@@ -33,9 +37,14 @@ def run_alone(
         raise ConfigError(
             f'{node.get_name()}: real_time_factor = {real_time_factor:g}, must be finite and '
             '>= 0')
+    if ros_time and real_time_factor != 1.0:
+        raise ConfigError(
+            f'{node.get_name()}: real_time_factor = {real_time_factor:g}, must be 1 with ros_time')
     node.warm_up()
     executor: Any = EventsExecutor(context=node.context)
     executor.add_node(node)
+    if ros_time:
+        node.stamp_from(time.time_ns())
     node.publish()
     node.get_logger().info(ready_text(node, real_time_factor))
     step_s = node.setup.timing.step_ns / NS_PER_SECOND
@@ -50,6 +59,8 @@ def run_alone(
                 lag = elapsed - tick * step_s
                 if lag > LARGEST_LAG_S * real_time_factor:
                     began += lag / real_time_factor
+                    if ros_time:
+                        node.stamp_from(time.time_ns())
                     node.get_logger().warning(
                         f'{lag:.1f} s of simulated time behind real_time_factor = '
                         f'{real_time_factor:g}; the delay is not made up for',

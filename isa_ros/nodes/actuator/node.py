@@ -109,6 +109,11 @@ class ActuatorNode(Node):
         self._packer.pack(t_ns, start_ns, {0: tuned} if tuned else {})
         self.outlet.publish(self._packer.of_actuator(0))
 
+    def stamp_from(self, time_ns: int) -> None:
+        """Stamp messages from now on as if it were ``time_ns``, on whole ticks."""
+        step_ns = self.setup.timing.step_ns
+        self._packer.epoch_ns = time_ns // step_ns * step_ns - self.actuator.t_ns
+
     def serve(self) -> None:
         """Process the setpoints and requests that have arrived; do not wait."""
         self._inputs.serve()

@@ -5,6 +5,7 @@ from collections.abc import Mapping, Sequence
 from isa_ros.actuator.actuator import SmartActuator
 from isa_ros.core.changeable import Changeable
 from isa_ros.core.device import MODES
+from isa_ros.core.units import of_coordinate
 from isa_ros.errors import ConfigError
 from isa_ros.nodes.middleware.parameter_services import open_parameter_services
 from isa_ros.nodes.middleware.parameters import accept_integers, declare, refuse_unknown
@@ -44,7 +45,8 @@ class TunableParameters:
         declared = {one.name: one for own in changing.values() for one in (own.keyed, own)}
         self._names = frozenset(declared)
         for name, own in declared.items():
-            node.declare_parameter(name, own.value, descriptor(own), ignore_override=True)
+            node.declare_parameter(
+                name, own.value, descriptor(own, actuator.sheet.is_rotary), ignore_override=True)
         mode = self._declare_mode(node)
         refuse_unknown(node)
         if mode is not None:
@@ -86,13 +88,17 @@ class TunableParameters:
         return SetParametersResult(successful=True)
 
 
-def descriptor(own: Changeable) -> ParameterDescriptor:
-    """Return unit, meaning and range of a value; excluded bounds are listed as constraints."""
+def descriptor(own: Changeable, is_rotary: bool = False) -> ParameterDescriptor:
+    """
+    Return unit, meaning and range of a value; excluded bounds are listed as constraints.
+
+    The unit is that of a linear or of a rotary actuator.
+    """
     bounds = own.bounds
     relations = {'gt': '>', 'lt': '<'}
     excluded = [f'{sign} {bounds[name]:g}' for name, sign in relations.items() if name in bounds]
     return ParameterDescriptor(
-        description=f'{own.doc}, {own.unit}',
+        description=f'{own.doc}, {of_coordinate(own.unit, is_rotary)}',
         additional_constraints=', '.join(excluded),
         floating_point_range=[FloatingPointRange(
             from_value=bounds.get('ge', bounds.get('gt', 0.0)),

@@ -66,7 +66,8 @@ def _run(model: str, should_stop: StopRequest) -> None:
         else:
             claim = Claim(node.get_namespace(), node.get_name())
             try:
-                run_alone(node, _number(node, 'real_time_factor'), should_stop)
+                run_alone(node, _number(node, 'real_time_factor'), should_stop,
+                          _boolean(node, 'ros_time'))
             finally:
                 claim.close()
     finally:
@@ -81,6 +82,8 @@ def _resolve(node: Node, model: str) -> NodeSetup:
             ('config_file', '', 'run file that declares this actuator'),
             ('scenario_file', '', 'scenario that changes loads or start of that run'),
             ('set', Parameter.Type.STRING_ARRAY, 'other values in these files, each KEY=VALUE'),
+            ('ros_time', False, 'stamps of the clock of the host instead of simulation time, '
+             'if alone'),
             ('real_time_factor', 1.0,
              'simulated over host time, if alone; 0: as fast as possible')):
         declare(node, name, default, ParameterDescriptor(description=description, read_only=True))
