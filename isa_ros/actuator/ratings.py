@@ -42,9 +42,9 @@ _NEAR_NULL = 0.01  # of the travel: on the first line of every flow curve
 
 def valve_lag(plant: np.record, reu: Reu) -> float:
     """Return the lag from a conversion to the spool: sampling, delay, current and spool, in s."""
-    sampling = sum(loop_steps(reu)[name] for name in ('spool', 'current')
-                   if not isinstance(getattr(reu, name), Off)) * PLANT_STEP
-    return (sampling + reu.computation_delay_us * MICRO
+    steps = loop_steps(reu)
+    sampling = steps['current'] + (0 if isinstance(reu.spool, Off) else steps['spool'])
+    return (sampling * PLANT_STEP + reu.computation_delay_us * MICRO
             + _current_lag(plant.coil, reu) + _spool_lag(plant, reu))
 
 

@@ -47,6 +47,9 @@ _SUPPORTED_BITS = {
     PP: 1 << 0, PV: 1 << 2, HOMING: 1 << 5, CSP: 1 << 7, CSV: 1 << 8, CST: 1 << 9,
     IMPEDANCE_MODE: 1 << 16}
 QUICK_STOP_OFF, QUICK_STOP_ENDS_OFF, QUICK_STOP_STAYS = 0, 2, 6
+QUICK_STOP_BY = {
+    'close': QUICK_STOP_OFF, 'ramp': QUICK_STOP_ENDS_OFF, 'ramp_and_hold': QUICK_STOP_STAYS}
+"""The option code that an REU starts with, by its `quick_stop`."""
 _I8, _I16, _I32 = DataType.INTEGER8, DataType.INTEGER16, DataType.INTEGER32
 _U8, _U16, _U32 = DataType.UNSIGNED8, DataType.UNSIGNED16, DataType.UNSIGNED32
 NOT_WATCHED = 0xFFFFFFFF
@@ -129,7 +132,8 @@ def _control_objects(axis: Axis) -> list[Object]:
         _one(ERROR_CODE, 'Error code', _U16, pdo='tx', meaning='of the fault; 0: none'),
         _one(CONTROL, 'Controlword', _U16, 'rw', pdo='rx'),
         _one(STATUS, 'Statusword', _U16, pdo='tx'),
-        _one(QUICK_STOP_OPTION, 'Quick stop option code', _I16, 'rw', QUICK_STOP_ENDS_OFF,
+        _one(QUICK_STOP_OPTION, 'Quick stop option code', _I16, 'rw',
+             QUICK_STOP_BY[axis.sheet.reu.device.quick_stop],
              choices=(QUICK_STOP_OFF, QUICK_STOP_ENDS_OFF, QUICK_STOP_STAYS),
              meaning='0: off at once, 2: quick stop, then switch on disabled, 6: quick stop, '
                      'then quick stop active'),

@@ -95,6 +95,21 @@ def test_a_quick_stop_stays_by_option_6_and_operation_goes_on(rig):
     assert rig.sample['device_state'] == 2
 
 
+@pytest.mark.parametrize(('kind', 'code', 'reached'), [
+    ('close', 0, 'SWITCH_ON_DISABLED'), ('ramp', 2, 'SWITCH_ON_DISABLED'),
+    ('ramp_and_hold', 6, 'QUICK_STOP')])
+def test_the_option_code_begins_with_the_quick_stop_of_the_reu(kind, code, reached):
+    """With the one that holds, the REU bears its load until the master disables it."""
+    rig = Rig(changes={'actuators.ram.parameters.reu.device.quick_stop': kind})
+    master = enabled(rig)
+    assert master.upload(0x605A) == code
+    for _ in range(250):
+        word = master.cycle(STOP)
+    assert state(word) == reached
+    assert rig.sample['device_state'] == (3 if code == 6 else 1)
+    assert state(master.cycle(VOLTAGE_OFF)) == 'SWITCH_ON_DISABLED'
+
+
 def test_a_quick_stop_is_off_at_once_by_option_0(rig):
     master = enabled(rig)
     master.download(0x605A, 0, 0)
