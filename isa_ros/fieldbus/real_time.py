@@ -112,10 +112,10 @@ class ServedPace(Pace):
             self._report(late, t_ns)
 
     def _report(self, late: float, t_ns: int) -> None:
-        """Print a line if the run has fallen further behind since the last one."""
+        """Print a line if the run has lost a tick or more since the last one."""
         if late <= LARGEST_LAG_S:
             self._warned = 0.0
-        elif late > self._warned and self._now() - self._warned_at >= GROWTH_S:
+        elif late > self._warned + self.step and self._now() - self._warned_at >= GROWTH_S:
             self._warned, self._warned_at = late, self._now()
             self._warn(f'real time is not kept: {late:.1f} s behind at t = '
                        f'{t_ns / NS_PER_SECOND:.1f} s')

@@ -102,6 +102,28 @@ def test_a_stall_is_an_event_again_once_ticks_were_in_time():
         (5, 605), 'bus: tick 500 ms late; the host stood still or is too slow')
 
 
+def test_a_stall_is_one_event_until_its_ticks_are_made_up_for():
+    """The host stands still again while half of the ticks are made up for."""
+    bus = Bus((6, 0))
+    bus.line.cycles = cycle([(6, 0), SILENCE])
+    bus.run(5)
+    bus.now += 0.5
+    bus.run(450, first=5)       # 50 ms late, below the watchdog
+    bus.now += 0.2
+    bus.run(300, first=455)
+    assert sum('late' in event for events in bus.events.values() for event in events) == 1
+
+
+def test_a_lag_that_does_not_grow_is_said_once():
+    bus = Bus((6, 0))
+    bus.run(1)
+    bus.now += 0.5
+    for tick in range(1, 3000):
+        bus.run(1, first=tick)
+        bus.now += 0.001
+    assert len(bus.lines) == 1
+
+
 def test_a_run_that_falls_behind_says_so_once_a_second():
     """A tick takes 3 ms: 2 ms a tick are lost, 0.1 s after 50 ticks, then a line each second."""
     bus = Bus(*[(6, 0)] * 4000)
