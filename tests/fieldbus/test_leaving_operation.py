@@ -71,6 +71,34 @@ def test_option_6_does_not_enable_a_drive_again_whose_bus_has_left():
     assert state(master.cycle(ENABLE)) == 'OPERATION_ENABLED'     # by option 6: the bus stayed
 
 
+def test_a_drive_held_by_option_6_is_switched_off_by_whoever_wants_it():
+    rig = Rig()
+    master = enabled(rig)
+    master.download(0x605A, 0, 6)
+    for _ in range(300):
+        master.cycle(STOP)
+    rig.simulation.command('ram', is_enabled=False)
+    rig.commands['kinds'] = 0
+    rig.simulation.step(rig.commands)
+    rig.device.take_sample(rig.sample, rig.simulation.ticks)
+    for _ in range(5):
+        assert state(master.cycle(STOP)) == 'QUICK_STOP'
+        assert rig.sample['device_state'] == OFF
+    other = enabled(Rig())
+    other.download(0x605A, 0, 6)
+    for _ in range(300):
+        other.cycle(STOP)
+    other.device.end_operation(is_lost=False)
+    other.rig.tick()
+    assert other.rig.sample['device_state'] == QUICK_STOP
+    third = enabled(Rig())
+    third.download(0x605A, 0, 6)
+    for _ in range(300):
+        third.cycle(STOP)
+    assert state(third.cycle(VOLTAGE_OFF)) == 'SWITCH_ON_DISABLED'
+    assert third.rig.sample['device_state'] == OFF
+
+
 def test_a_restart_of_the_bus_is_switch_on_disabled_at_once_and_lets_the_stop_end():
     """As by INIT of EtherCAT, or by reset communication."""
     master = moving()

@@ -25,6 +25,7 @@ from isa_ros.fieldbus.device.force_limits import ForceLimits
 from isa_ros.fieldbus.device.mode_setpoints import ModeSetpoints
 from isa_ros.fieldbus.device.motions import HALT, Motions
 from isa_ros.fieldbus.device.objects import ObjectEntry, Value
+from isa_ros.fieldbus.device.setpoints import enable
 from isa_ros.fieldbus.device.states import Transition
 import numpy as np
 
@@ -54,7 +55,7 @@ class Drive402(Drive):
         self._supply_low = supply_low
         self._limits = ForceLimits(axis, values)
         self._following_error = FollowingError(axis.step_ns, values)
-        self._has_left = False
+        self._has_left = self._is_held = False
         self._motions = Motions(axis, values, self._limiter)
         self._moved_in: int | None = None
         self._setpoints = ModeSetpoints(
@@ -184,6 +185,8 @@ class Drive402(Drive):
             return self._operate(command)
         if state in (State402.QUICK_STOP, State402.FAULT_REACTION):
             if axis.state != ENABLED:
+                return self._held(command) if state is State402.QUICK_STOP else 0
+            if self._is_held and self._stays:
                 return 0
             if state is State402.FAULT_REACTION or self._values[objects.QUICK_STOP_OPTION]:
                 return HAS_QUICK_STOP
@@ -192,6 +195,19 @@ class Drive402(Drive):
         elif not (axis.is_on or axis.state == INITIALISING):
             return 0
         return self._off(command)
+
+    def _held(self, command: np.void) -> int:
+        """Let the REU hold once its stop has ended, by option code 6; return the kinds."""
+        if self._is_held or not (self._stays and self._axis.is_disabled
+                                 and self._axis.position_mode):
+            return 0
+        self._is_held = True
+        return enable(command, self._axis.position_mode)
+
+    @property
+    def _stays(self) -> bool:
+        return (self._values[objects.QUICK_STOP_OPTION] == objects.QUICK_STOP_STAYS
+                and not self._has_left)
 
     def _operate(self, command: np.void) -> int:
         kinds = self._enabled(command, self._modes[self._mode])
@@ -231,13 +247,14 @@ class Drive402(Drive):
         self._was_on = False
         if row.event is Event.RESET:
             self._following_error.forget()
-        self._has_left &= row.state is not State402.QUICK_STOP
+        if row.state is State402.QUICK_STOP:
+            self._has_left = self._is_held = False
+            self._demand = self._axis.position
+            self._moved_in = None
 
     def _holds(self, guard: str) -> bool:
-        stays = (self._values[objects.QUICK_STOP_OPTION] == objects.QUICK_STOP_STAYS
-                 and not self._has_left)
         if guard == ENDS_OFF:
-            return not stays
+            return not self._stays
         if guard == STAYS:
-            return stays and self._axis.is_disabled
+            return self._stays and (self._axis.is_disabled or self._is_held)
         return guard not in (REU_DISABLED, CAUSE_GONE) or self._axis.is_disabled

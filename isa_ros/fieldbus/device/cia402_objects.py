@@ -136,7 +136,7 @@ def _control_objects(axis: Axis) -> list[Object]:
              QUICK_STOP_BY[axis.sheet.reu.device.quick_stop],
              choices=(QUICK_STOP_OFF, QUICK_STOP_ENDS_OFF, QUICK_STOP_STAYS),
              meaning='0: off at once, 2: quick stop, then switch on disabled, 6: quick stop, '
-                     'then quick stop active'),
+                     'then quick stop active: it holds'),
         _one((0x605B, 0), 'Shutdown option code', _I16, 'const', 0, meaning='0: off at once'),
         _one((0x605C, 0), 'Disable operation option code', _I16, 'const', 0,
              meaning='0: off at once'),

@@ -64,7 +64,7 @@ COMMANDS = (
 
 REU_DISABLED, ENDS_OFF, STAYS, CAUSE_GONE = (
     'the REU is disabled', 'option code 0 or 2, or the bus has left operational',
-    'option code 6, the bus has stayed, and the REU is disabled',
+    'option code 6, the bus has stayed, and the REU has stopped',
     'its cause is gone')
 
 
