@@ -204,13 +204,13 @@ def test_a_refused_value_is_named_as_it_was_given(values, message):
 def test_values_that_are_refused_together_are_refused_in_two_calls_too(monkeypatch):
     """Before one tick: what waits is checked with what comes."""
     actuator = smart_actuator('isa_v5', 'mass', timing=TICK)
-    allowed = tuning.with_changed
+    allowed = tuning.changed_together
 
-    def not_both(sheet, values, known):
+    def not_both(sheet, load, values, known):
         if {'force.kp', 'force.kf'} <= values.keys():
             raise ConfigError('not both')
-        return allowed(sheet, values, known)
-    monkeypatch.setattr(tuning, 'with_changed', not_both)
+        return allowed(sheet, load, values, known)
+    monkeypatch.setattr(tuning, 'changed_together', not_both)
     actuator.tune({'force.kp': 1.1e-7})
     with pytest.raises(ConfigError, match='isa_v5: not both'):
         actuator.tune({'force.kf': 1e-3})
