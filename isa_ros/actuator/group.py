@@ -33,12 +33,20 @@ class ActuatorGroup:
 
     Their results equal those of single actuators bit for bit. To use them in your own loop::
 
-        group = ActuatorGroup(run.actuators, run.timing)
-        replies = group.advance(ports, commands)
+        from isa_ros.config.assembly import group_of
+        from isa_ros.config.paths import CONFIG, find
+        from isa_ros.config.runs.run_file import load_run
+        from isa_ros.core.signals import LOAD_PORT
+        import numpy as np
 
-    ``ports`` are `LOAD_PORT` rows: the motion of each actuator's load during the tick (equation
-    L1); ``commands`` are `COMMAND` rows, ``replies`` `LOAD_REPLY` rows; (n,) each, in the order
-    of ``configs``.
+        group = group_of(load_run(find('rig_linear', CONFIG)))
+        ports = np.zeros(len(group.actuators), LOAD_PORT)
+        ports['supply_pressure'] = 20.7e6
+        replies = group.advance(ports)
+
+    ``ports`` are `LOAD_PORT` rows: the pressures, and the motion of a load that is not the
+    actuator's own during the tick (equation L1); `advance` takes `COMMAND` rows too, and
+    ``replies`` are `LOAD_REPLY` rows; (n,) each, in the order of ``configs``.
     """
 
     def __init__(self, configs: Sequence[ActuatorConfig], timing: Timing) -> None:

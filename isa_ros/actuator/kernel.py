@@ -35,7 +35,7 @@ ACTUATOR = np.dtype([
 
 @kernel
 def write_sample(plant, reu, sample):
-    """Fill one `SAMPLE` from the last sensor readings of the REU and its loops' references."""
+    """Fill one `SAMPLE` from sensor readings and references of the REU, and exact states."""
     measured = reu.measured
     sample.position = measured.position
     sample.velocity = reu.speed.velocity
@@ -49,6 +49,9 @@ def write_sample(plant, reu, sample):
     sample.force_reference = reu.force_reference
     sample.spool_reference = reu.spool_reference
     sample.current_reference = reu.current_reference
+    oil = plant.chambers
+    sample.chamber_pressure_a, sample.chamber_pressure_b = oil.p_a, oil.p_b
+    sample.cavity_a, sample.cavity_b = oil.cavity_a, oil.cavity_b
     write_trips(reu.protection, sample)
     write_device(reu.status, sample)
 
@@ -142,6 +145,8 @@ def tick_row(first_step, steps, port, actuator, continuous, rates, y, k, reu_sta
     reply.return_volume = state.totals.return_volume
     write_sample(state.plant, reu_state, sample)
     sample.supply_volume += reply.supply_volume
+    sample.return_volume += reply.return_volume
+    sample.largest_cavity = max(sample.largest_cavity, sample.cavity_a, sample.cavity_b)
     sample.supply_flow = reply.supply_volume / (steps * PLANT_STEP)
     sample.supply_pressure = port.supply_pressure
     add_energies(reply, port, state.totals.energies,

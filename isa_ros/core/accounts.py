@@ -1,6 +1,8 @@
 """
 Oil and energy of actuators and supplies since t = 0, as one account each.
 
+That of a supply closes too: pump and pressures held over a tick against its `SUPPLY_SHARES`.
+
 An account maps keys, name and unit as shown, to numbers. `/diagnostics` and the tables show them.
 """
 
@@ -9,7 +11,7 @@ from typing import NamedTuple
 
 from isa_ros.core.signals import Records
 from isa_ros.core.timebase import NS_PER_SECOND
-from isa_ros.core.units import LITRE
+from isa_ros.core.units import LITRE, MILLILITRE, MPA
 
 Account = Mapping[str, float]
 
@@ -32,6 +34,7 @@ MEAN = AccountEntry('', 'mean power', 'W')
 """The energy over the time; no field."""
 PEAK = AccountEntry('peak_power', 'peak power', 'W')
 OIL = AccountEntry('supply_volume', 'oil drawn', 'l', LITRE)
+RETURNED = AccountEntry('return_volume', 'oil returned', 'l', LITRE)
 ENERGY = AccountEntry('hydraulic_energy', 'hydraulic energy', 'J')
 LEAKAGE = AccountEntry('leakage_energy', 'valve leakage', 'J')
 THROTTLING = AccountEntry('throttling_energy', 'throttling', 'J')
@@ -43,16 +46,29 @@ DAMPING = AccountEntry('damping_energy', 'damping', 'J')
 STORED = AccountEntry('stored_energy', 'stored', 'J')
 SHARES = (LEAKAGE, THROTTLING, FRICTION, WORK, CROSS_PORT, RELIEF, DAMPING, STORED)
 """Where the energy of an actuator went; their sum is `ENERGY`."""
+CHAMBERS = (
+    AccountEntry('chamber_pressure_a', 'pressure A', 'MPa', MPA),
+    AccountEntry('chamber_pressure_b', 'pressure B', 'MPa', MPA),
+    AccountEntry('cavity_a', 'cavity A', 'ml', MILLILITRE),
+    AccountEntry('cavity_b', 'cavity B', 'ml', MILLILITRE),
+    AccountEntry('largest_cavity', 'largest cavity', 'ml', MILLILITRE))
+"""What the chambers hold, exact: pressures and cavities of now."""
 
 SUPPLY_OIL = OIL._replace(field='drawn')
+SUPPLY_RETURNED = RETURNED._replace(field='returned')
 SUPPLY_ENERGY = ENERGY._replace(field='energy')
 PUMP = AccountEntry('pump_energy', 'pump', 'J')
+HELD = AccountEntry('held_energy', 'pressures held over a tick', 'J')
 SUPPLY_RELIEF = AccountEntry('relief_energy', 'relief', 'J')
+RETURN = AccountEntry('return_energy', 'return', 'J')
+SUPPLY_SHARES = (SUPPLY_ENERGY, SUPPLY_RELIEF, RETURN, STORED)
+"""Where the energy of a supply went; their sum is that of `PUMP` and `HELD`."""
 
-_OF_ACTUATOR = (OIL, PEAK, ENERGY, *SHARES)
+_OF_ACTUATOR = (OIL, RETURNED, PEAK, ENERGY, *SHARES, *CHAMBERS)
 FIELDS = tuple(entry.field for entry in _OF_ACTUATOR)
 """The fields of a `SAMPLE` in an account."""
-_OF_SUPPLY = (SUPPLY_OIL, PEAK, SUPPLY_ENERGY, PUMP, SUPPLY_RELIEF)
+_OF_SUPPLY = (SUPPLY_OIL, SUPPLY_RETURNED, PEAK, SUPPLY_ENERGY, PUMP, HELD, SUPPLY_RELIEF,
+              RETURN, STORED)
 
 
 def accounts_of(

@@ -194,5 +194,5 @@ def atan2(y: float, x: float) -> float:
 
 @kernel_function
 def acos(x: float) -> float:
-    """Return the angle in [0, pi] whose cosine is x, within 3 ulp; nan for |x| > 1."""
+    """Return the angle in [0, pi] whose cosine is x, within 4 ulp; nan for |x| > 1."""
     return atan2(math.sqrt((1.0 - x) * (1.0 + x)), x) if abs(x) <= 1.0 else math.nan

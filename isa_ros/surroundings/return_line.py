@@ -55,9 +55,16 @@ def return_rate(pressure, returned, line):
 
 
 @kernel
+def tank_power(pressure, line):
+    """Return P G (P - P_tank), what the oil loses on its way to the tank  (E9), in W."""
+    return pressure * line.g * (pressure - line.p_t)
+
+
+@kernel
 def return_advance(steps, returned, lines, states):
     """Advance the return line of ``states[0]`` with the mean flow ``returned``, by RK4."""
     h, line, state = SUPPLY_STEP, lines[0], states[0]
+    held, impulse = state.return_pressure, 0.0
     for _ in range(steps):
         p = state.return_pressure
         p_1 = return_rate(p, returned, line)
@@ -65,3 +72,11 @@ def return_advance(steps, returned, lines, states):
         p_3 = return_rate(p + 0.5 * h * p_2, returned, line)
         p_4 = return_rate(p + h * p_3, returned, line)
         state.return_pressure = p + h / 6.0 * (p_1 + 2.0 * (p_2 + p_3) + p_4)
+        impulse += h * p + h * h / 6.0 * (p_1 + p_2 + p_3)
+        state.return_energy += h / 6.0 * (
+            tank_power(p, line) + 2.0 * (tank_power(p + 0.5 * h * p_1, line)
+                                         + tank_power(p + 0.5 * h * p_2, line))
+            + tank_power(p + h * p_3, line))
+    now = state.return_pressure
+    state.stored_energy += 0.5 * line.c * (now * now - held * held)
+    state.held_energy += returned * (impulse - held * (steps * h))

@@ -2,8 +2,10 @@
 A hydraulic supply: the pump side, and the supply as a whole.
 
 Actuators use both pressures of the tick's start over the whole tick and report the volumes that
-they drew and returned; the supply then advances over the same interval. Pressures are gauge,
-flows leave the supply and enter the return line when positive. Equations C7, C8, E7; the return
+they drew and returned; the supply then advances over the same interval. They pay for the oil what
+it costs at these held pressures, and that is what the supply gives; by what a line gave more or
+less, its pressure having moved meanwhile, is an entry of its own (E9). Pressures are gauge, flows
+leave the supply and enter the return line when positive. Equations C7, C8, E7, E9; the return
 line is `isa_ros.surroundings.return_line`.
 
 Neglected: length and resistance of the pressure line, heat.
@@ -12,7 +14,7 @@ Neglected: length and resistance of the pressure line, heat.
 from dataclasses import dataclass
 
 from isa_ros.core.constants import ATMOSPHERE
-from isa_ros.core.elementary import exp, log
+from isa_ros.core.elementary import exp, expm1, log
 from isa_ros.core.fields import Field, record_type
 from isa_ros.core.kernel import kernel
 from isa_ros.core.parameter import fault, nested, parameter, Parameters
@@ -82,6 +84,9 @@ SUPPLY_FIELDS = (
     Field('energy', 'J', 'integral of the power since t = 0'),
     Field('pump_energy', 'J', 'of the pump since t = 0'),
     Field('relief_energy', 'J', 'lost through the relief valve since t = 0'),
+    Field('return_energy', 'J', 'lost on the way of returned oil to the tank since t = 0'),
+    Field('stored_energy', 'J', 'in accumulator and lines, more than at t = 0'),
+    Field('held_energy', 'J', 'paid at pressures held over a tick, not given by a line'),
 )
 """The state of one supply, which is also its sample at the end of a tick."""
 SUPPLY_SAMPLE = record_type(SUPPLY_FIELDS)
@@ -120,6 +125,24 @@ def capacitance(pressure, supply):
 
 
 @kernel
+def stored_energy(pressure, supply):
+    """
+    Return the integral of P C dP from 0 to ``pressure``  (E9), in J.
+
+    Of the line V P^2/(2 beta); of the gas, above precharge, p_0 V_0 expm1(k x)/(n k) less the
+    atmosphere's share, x = ln(P/p_0), k = (n - 1)/n, P absolute; p_0 V_0 x for n = 1.
+    """
+    line = 0.5 * supply.c_line * pressure * pressure
+    absolute = pressure + ATMOSPHERE
+    if absolute <= supply.p_0:
+        return line
+    x, n = log(absolute / supply.p_0), supply.n
+    k = (n - 1.0) / n
+    grown = expm1(k * x) / k if k > 0.0 else x
+    return line + supply.v_0 * (supply.p_0 * grown / n + ATMOSPHERE * expm1(-x / n))
+
+
+@kernel
 def supply_rates(pressure, pump_flow, drawn, supply):
     """
     Return (dP/dt, dQ_pump/dt) with C dP/dt = Q_pump - Q_drawn - Q_relief - Q_leak  (C8).
@@ -139,6 +162,7 @@ def supply_rates(pressure, pump_flow, drawn, supply):
 def supply_advance(steps, drawn, supplies, states):
     """Advance ``states[0]`` by ``steps`` steps of `SUPPLY_STEP` with the mean flow ``drawn``."""
     h, supply, state = SUPPLY_STEP, supplies[0], states[0]
+    held, impulse, before = state.pressure, 0.0, stored_energy(state.pressure, supply)
     for _ in range(steps):
         p, q = state.pressure, state.pump_flow
         p_1, q_1, e_1, r_1 = supply_rates(p, q, drawn, supply)
@@ -149,6 +173,9 @@ def supply_advance(steps, drawn, supplies, states):
         state.pump_flow = q + h / 6.0 * (q_1 + 2.0 * (q_2 + q_3) + q_4)
         state.pump_energy += h / 6.0 * (e_1 + 2.0 * (e_2 + e_3) + e_4)
         state.relief_energy += h / 6.0 * (r_1 + 2.0 * (r_2 + r_3) + r_4)
+        impulse += h * p + h * h / 6.0 * (p_1 + p_2 + p_3)
+    state.stored_energy += stored_energy(state.pressure, supply) - before
+    state.held_energy += drawn * (held * (steps * h) - impulse)
 
 
 @kernel
@@ -254,5 +281,7 @@ class Supply:
             self.state['pump_energy'] += self.state['pressure'] * drawn
         else:
             supply_advance(self._substeps, drawn / self._step, self._record, self.state)
-        if self._line is not None:
+        if self._line is None:
+            self.state['return_energy'] += self.state['return_pressure'] * returned
+        else:
             return_advance(self._substeps, returned / self._step, self._line, self.state)

@@ -2,10 +2,13 @@
 
 import math
 
+from isa_ros.core.constants import ATMOSPHERE
 from isa_ros.core.timebase import PLANT_STEP
+from isa_ros.loads.sheets import Mass
 import numpy as np
 import pytest
 from tests.actuator.closed_cylinder import by_scipy, ClosedCylinder
+from tests.sheets import smart_actuator
 
 CONSERVED = 1e-9        # of the mass in a chamber
 FILLED = 7e6            # Pa, before the stroke
@@ -108,3 +111,26 @@ def test_a_thrown_piston_moves_as_scipy_says(refill):
     assert apart[1] < fast and apart[0] < fast / ring
     assert max(apart[2], apart[4]) < stiffness * fast / ring
     assert max(apart[3], apart[5]) < area * fast / ring
+
+
+def test_a_sample_has_exact_pressures_and_cavities():
+    """Where the sensor reads 0: at the vapour pressure, and the widest cavity of any tick."""
+    actuator = smart_actuator('isa_v5', Mass(inertia=50.0, force=8000.0), position=0.02)
+    sample, widest, lowest = actuator.sample, 0.0, 0.0
+    returned = drawn = 0.0
+    for _ in range(1000):
+        actuator.tick()
+        own = actuator.memory.continuous[0]['plant']['chambers']
+        for side in 'ab':
+            assert sample[f'chamber_pressure_{side}'] == own[f'p_{side}']
+            assert sample[f'cavity_{side}'] == own[f'cavity_{side}']
+        widest = max(widest, float(own['cavity_a']), float(own['cavity_b']))
+        lowest = min(lowest, float(sample.chamber_pressure_a))
+        if sample.cavity_a > 0.0:
+            assert sample.pressure_a < 1e4
+        returned += float(actuator.reply.return_volume)
+        drawn += float(actuator.reply.supply_volume)
+    assert lowest == 1e3 - ATMOSPHERE
+    assert sample.largest_cavity == widest > float(sample.cavity_a) + 1e-7
+    assert float(sample.return_volume) == pytest.approx(returned, rel=1e-12, abs=0.0)
+    assert float(sample.supply_volume) == pytest.approx(drawn, rel=1e-12, abs=0.0)

@@ -4,11 +4,12 @@ from typing import Any
 
 from isa_ros.actuator.actuator import SmartActuator
 from isa_ros.core.accounts import accounts_of, ENERGY, SHARES
+from isa_ros.core.signals import LOAD_PORT
 from isa_ros.loads.sheets import Mass
 import numpy as np
 import pytest
 from tests.sheets import (
-    actuator_sheet, MODELS, override, own_load, setpoint, smart_actuator)
+    actuator_sheet, MODELS, override, own_load, plant_row, setpoint, smart_actuator)
 
 TICK = 1e-4     # s
 CLOSES = 1e-6   # of the throughput: Simpson's rule over the plant steps
@@ -160,3 +161,21 @@ def test_compressed_oil_holds_half_of_p_squared_over_k():
     assert force > 1500.0
     # The piston sweeps compressed oil while the sensor yields: 1 % of what is stored.
     assert stored == pytest.approx(held() - start + spring, rel=0.02)
+
+
+@pytest.mark.parametrize('model', MODELS)
+def test_the_account_closes_with_pressure_in_the_return(model):
+    """V9, E1: the pilot stage's oil goes to the return too, and its loss is c S(dP) dP."""
+    actuator, back = smart_actuator(model, 'blocked'), 1.5e6
+    port = np.zeros(1, LOAD_PORT)
+    port['supply_pressure'], port['return_pressure'] = 20.7e6, back
+    actuator.start(float(actuator.reply.position), 0.0, 20.7e6, back)
+    drawn = returned = 0.0
+    for _ in range(3000):
+        actuator.tick(port[0])
+        drawn += float(actuator.reply.supply_volume)
+        returned += float(actuator.reply.return_volume)
+    valve = plant_row(model).valve
+    tare = valve.c_tare * (20.7e6 - back) ** 0.5 * 3000 * TICK
+    assert returned == pytest.approx(drawn, rel=0.05) and drawn > tare > 0.1 * drawn
+    assert remainder(account(actuator)) < CLOSES

@@ -1,6 +1,8 @@
 """Actuators of one process, ticked together."""
 
 from dataclasses import replace
+import inspect
+import textwrap
 
 from isa_ros.actuator.actuator import SmartActuator
 from isa_ros.actuator.group import ActuatorGroup
@@ -177,3 +179,15 @@ def test_the_one_that_diverges_is_named():
     given['supply_pressure'][1] = np.nan
     with pytest.raises(SimulationDiverged, match=rf'^{MODELS[1]}: plant\.\S+ = nan at t = 0.001'):
         group.advance(given)
+
+
+def test_the_example_of_the_class_runs():
+    """Its lines as they stand; the actuators then hold what they are on."""
+    text = inspect.getdoc(ActuatorGroup) or ''
+    example = text.split('loop::')[1].split('``ports``')[0]
+    names: dict[str, object] = {}
+    exec(textwrap.dedent(example), names)
+    group, replies = names['group'], names['replies']
+    assert isinstance(group, ActuatorGroup) and isinstance(replies, np.ndarray)
+    assert group.t_ns > 0 and np.isfinite(replies['force']).all()
+    assert len(replies) == len(group.actuators) > 0

@@ -8,6 +8,7 @@ from isa_ros.actuator.sheet import ActuatorSheet
 from isa_ros.config.runs.run_config import ActuatorConfig
 from isa_ros.core.signals import LOAD_PORT
 from isa_ros.errors import ParameterError
+from isa_ros.loads.sheets import Mass
 from isa_ros.plant.plant import plant_record
 from isa_ros.plant.step_limits import LoadSide, refuse_too_fast
 import numpy as np
@@ -71,6 +72,30 @@ def test_an_explicit_coil_heats_with_its_current() -> None:
     current = float(actuator.memory.continuous['plant']['coil']['current'][0])
     assert current > 2e-3
     assert heat == pytest.approx(coil['resistance'] * current * current * 0.1, rel=1e-2)
+
+
+def test_oil_that_is_refilled_from_the_return_cools() -> None:
+    """T4: torn open, the chamber takes oil of the supply's temperature from the return."""
+    sheet = heated('isa_v5', start_celsius=70.0, supply_celsius=20.0, ambient_celsius=70.0)
+    for share in ('plant.valve.null_leakage_lpm', 'plant.valve.tare_leakage_lpm'):
+        sheet = override(sheet, share, 1e-6)
+    actuator = smart_actuator(
+        'isa_v5', Mass(inertia=50.0, force=8000.0), timing=TICK, sheet=sheet, position=0.02)
+    cooled = 0.0
+    state = actuator.memory.thermals[0]
+    for _ in range(60):
+        before = float(state['to_oil']), float(state['oil'])
+        actuator.tick()
+        reply = actuator.reply
+        if reply.return_volume < 0.0:
+            # the mean of the temperature is that of both ends, to the square of a tick
+            mean = 0.5 * (before[1] + float(state['oil']))
+            own = actuator.memory.constants['plant']['thermal'][0]
+            inflow = max(0.0, float(reply.supply_volume)) - float(reply.return_volume)
+            assert float(state['to_oil']) - before[0] == pytest.approx(
+                own['per_volume'] * inflow * (mean - 20.0), rel=1e-3, abs=0.0)
+            cooled += -float(reply.return_volume)
+    assert cooled > 1e-7
 
 
 def _losses(actuator: SmartActuator) -> float:

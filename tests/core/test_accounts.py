@@ -1,9 +1,11 @@
 """Accounts of oil and energy from the rows of a run."""
 
-from isa_ros.core.accounts import accounts_of, ENERGY, MEAN, OIL, PEAK, PUMP, SHARES
+from isa_ros.core.accounts import (
+    accounts_of, ENERGY, HELD, MEAN, OIL, PEAK, PUMP, RETURN, RETURNED, SHARES, SUPPLY_SHARES)
 from isa_ros.core.signals import SAMPLE
 from isa_ros.surroundings.supply import SUPPLY_SAMPLE
 import numpy as np
+import pytest
 
 
 def test_an_account_has_the_fields_of_its_row():
@@ -20,6 +22,23 @@ def test_an_account_has_the_fields_of_its_row():
     assert supply[PUMP.key] == 50.0 and supply[OIL.key] == 1.0
     assert set(found['hip'].values()) == {0.0}
     assert {entry.key for entry in SHARES} < set(knee) and ENERGY.key in knee
+    assert {PUMP.key, HELD.key, *(entry.key for entry in SUPPLY_SHARES)} < set(supply)
+
+
+def test_an_account_has_what_was_returned_and_what_the_chambers_hold():
+    samples, supplies = np.zeros(1, SAMPLE), np.zeros(1, SUPPLY_SAMPLE)
+    samples['return_volume'], samples['chamber_pressure_a'] = 3e-4, -0.1e6
+    samples['chamber_pressure_b'], samples['cavity_a'] = 7e6, 2e-6
+    samples['cavity_b'], samples['largest_cavity'] = 1e-6, 5e-6
+    supplies['returned'], supplies['return_energy'], supplies['held_energy'] = 4e-4, 5.0, 6.0
+    found = accounts_of(['hip'], samples, ['supply'], supplies, 1_000_000_000)
+    hip, supply = found['hip'], found['supply']
+    assert hip[RETURNED.key] == pytest.approx(0.3) and hip['oil returned (l)'] == hip[RETURNED.key]
+    assert (hip['pressure A (MPa)'], hip['pressure B (MPa)']) == (-0.1, 7.0)
+    assert [hip[f'{name} (ml)'] for name in ('cavity A', 'cavity B', 'largest cavity')] == (
+        pytest.approx([2.0, 1.0, 5.0]))
+    assert supply[RETURNED.key] == pytest.approx(0.4)
+    assert (supply[RETURN.key], supply[HELD.key]) == (5.0, 6.0)
 
 
 def test_at_the_start_there_is_no_mean():

@@ -73,6 +73,17 @@ def test_the_coil_resonates_at_1_8_khz():
     assert response(1800.0) == pytest.approx(expected, rel=1e-9, abs=0.0)
 
 
+def test_the_resonance_heats_the_coil_too():
+    """E8: R i^2 of i = i_1 + k (m - i_1), not of the first-order current i_1 alone."""
+    k = EXPLICIT.mode_share
+    assert k > 0.0
+    for first, mode in ((2e-3, 2e-3), (2e-3, -5e-3), (0.0, 4e-3)):
+        current = first + k * (mode - first)
+        assert coil.coil_heat(coil_state(first, mode, 0.0), EXPLICIT) == pytest.approx(
+            EXPLICIT.resistance * current * current, rel=1e-12, abs=0.0)
+    assert coil.coil_heat(coil_state(2e-3, 9.0, 9.0), CLOSED) == CLOSED.resistance * 2e-3 * 2e-3
+
+
 @given(current=st.floats(-1e-2, 1e-2), drive=st.floats(-30.0, 30.0))
 def test_compiled_rates_equal_their_python_source(current, drive):
     """Both kinds of coil."""

@@ -174,6 +174,66 @@ def test_the_energy_of_the_pump_is_used_or_stored():
     assert abs(remainder) < 1e-6 * throughput
 
 
+@pytest.mark.parametrize('exponent', [1.0, 1.0 + 1e-9, 1.4, 1.7])
+@pytest.mark.parametrize(('low', 'high'), [(0.0, 9e6), (13e6, 30e6), (5e6, 20e6)])
+def test_stored_energy_is_the_integral_of_pressure_and_capacitance(exponent, low, high):
+    """E9: of C7, below precharge, above it and through it."""
+    record = supply.supply_record(replace(SHEET, polytropic_exponent=exponent))[0]
+    expected = quad(lambda p: p * supply.capacitance(p, record), low, high, points=[12e6],
+                    epsabs=0.0, epsrel=1e-12)[0]
+    assert supply.stored_energy(high, record) - supply.stored_energy(low, record) == (
+        pytest.approx(expected, rel=1e-9, abs=0.0))
+
+
+def remainder(row: np.void, pump: float) -> float:
+    """Return what is left of the account of a supply, E9, over its throughput."""
+    used = [row[name] for name in ('energy', 'relief_energy', 'return_energy', 'stored_energy')]
+    return float(abs(pump + row['held_energy'] - sum(used)) / (pump + sum(map(abs, used))))
+
+
+def test_the_account_of_a_soft_supply_closes():
+    """E9: with ripple, relief, a leak, a return line with a volume, and a tank under pressure."""
+    sheet = replace(SHEET, return_pressure_mpa=0.2, return_line=LINE,
+                    line_leakage_lpm_per_mpa=0.02)
+    plant = supply.Supply(sheet, MS, SLOPE)
+    for k in range(3300):
+        flow = (14.0 if k % 1000 < 300 else -3.0 if k % 1000 < 700 else 0.5) * LPM
+        plant.advance(flow * 1e-3, (9.0 - k % 7) * LPM * 1e-3)
+    row = plant.state[0]
+    assert abs(row['held_energy']) > 1e-5 * row['energy']
+    for name in ('relief_energy', 'return_energy', 'pump_energy'):
+        assert row[name] > 1.0, name
+    assert abs(row['stored_energy']) > 100.0
+    # RK4 of 0.1 ms across the knees of pump, relief valve and gas
+    assert remainder(row, row['pump_energy']) < 1e-6
+
+
+def test_the_account_of_an_ideal_supply_closes():
+    """E9: what comes back at the return pressure is lost in the tank; nothing is stored."""
+    plant = supply.Supply(
+        supply.ConstantSupply(pressure_mpa=20.7, return_pressure_mpa=0.5), MS, SLOPE)
+    plant.advance(2e-6, 1e-6)
+    plant.advance(1e-6, 1.5e-6)
+    row = plant.state[0]
+    assert row['return_energy'] == pytest.approx(1.25, rel=1e-12, abs=0.0)
+    assert row['stored_energy'] == row['held_energy'] == 0.0
+    assert remainder(row, row['pump_energy']) < 1e-15
+
+
+def test_what_a_pressure_held_over_a_tick_adds_is_booked():
+    """E9: at 20.7 MPa paid, while the line falls by Q H/C: half of that times the volume."""
+    sheet = replace(SHEET, pump_flow_lpm=0.0, gas_volume_l=1e-9)
+    plant = supply.Supply(sheet, MS, 1e-16)
+    drawn, c = 1e-9, 0.2e-3 / 7e8
+    plant.advance(drawn)
+    fallen = 20.7e6 - plant.pressure
+    assert fallen == pytest.approx(drawn / c, rel=1e-5, abs=0.0)
+    # of the gas there is less than 1e-5 of the line's capacitance
+    assert plant.state['held_energy'][0] == pytest.approx(0.5 * fallen * drawn, rel=1e-4, abs=0.0)
+    assert plant.state['stored_energy'][0] == pytest.approx(
+        -(20.7e6 - 0.5 * fallen) * drawn, rel=1e-9, abs=0.0)
+
+
 def test_the_energy_given_is_that_of_the_oil_at_both_pressures():
     """E1 of the actuators: 20.7 MPa drawn, 0.5 MPa returned, in ticks of 1 ms."""
     sheet = supply.ConstantSupply(pressure_mpa=20.7, return_pressure_mpa=0.5)

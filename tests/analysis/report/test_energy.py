@@ -47,3 +47,13 @@ def test_text_and_page_have_it(bag, tmp_path):
     assert text[5].startswith('up to t = 0.300 s')
     page = write_report(bag, tmp_path / 'page.html')[0].read_text()
     assert '<h2>Oil and energy</h2>' in page and '<td>kfe</td>' in page
+
+
+def test_the_shares_close_to_a_ten_millionth(drop: Result) -> None:
+    """E1 to E9: the number of README and docs/equations.md, of every actuator and supply."""
+    for name, account in drop.accounts.items():
+        given, shares = (
+            (account[PUMP.key] + account[HELD.key], SUPPLY_SHARES) if PUMP.key in account
+            else (account[ENERGY.key], SHARES))
+        left = given - sum(account[entry.key] for entry in shares)
+        assert abs(left) < 1e-7 * given, name
