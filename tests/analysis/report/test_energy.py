@@ -5,6 +5,7 @@ from isa_ros.analysis.report.energy import (
     Accounts, energy_table, energy_text, HEADER, recorded_accounts)
 from isa_ros.analysis.report.report import write_report
 from isa_ros.bag.reader import Bag
+from isa_ros.core.accounts import ENERGY, HELD, PUMP, SHARES, SUPPLY_SHARES
 import pytest
 
 
@@ -49,7 +50,7 @@ def test_text_and_page_have_it(bag, tmp_path):
     assert '<h2>Oil and energy</h2>' in page and '<td>kfe</td>' in page
 
 
-def test_the_shares_close_to_a_ten_millionth(drop: Result) -> None:
+def test_the_shares_close_to_a_ten_millionth(drop):
     """E1 to E9: the number of README and docs/equations.md, of every actuator and supply."""
     for name, account in drop.accounts.items():
         given, shares = (
