@@ -8,10 +8,10 @@ from collections.abc import Mapping, Sequence
 import math
 from typing import Any, NamedTuple
 
-from isa_ros.core.device import MODES, REFERENCES
+from isa_ros.core.device import IMPEDANCE, MODES, POSITION, REFERENCES
 from isa_ros.core.signals import (
-    GAINS_OF_COMMAND, HAS_CLEAR_FAULT, HAS_ENABLE, HAS_MODE, HAS_QUICK_STOP, HAS_REFERENCE,
-    HAS_SETPOINT)
+    GAINS_OF_COMMAND, HAS_CLEAR_FAULT, HAS_ENABLE, HAS_GAINS, HAS_MODE, HAS_QUICK_STOP,
+    HAS_REFERENCE, HAS_SETPOINT)
 from isa_ros.core.suggest import listed, shortened
 from isa_ros.errors import RunError, SetpointError
 import numpy as np
@@ -48,10 +48,11 @@ class Setpoint(NamedTuple):
     """
 
     position: float | None = None
-    """None: velocity, effort and gains must not be given either."""
-    velocity: float = 0.0
-    effort: float = 0.0
-    """Feed-forward force or torque."""
+    """None: not needed by gains alone, nor by an effort in mode force or a mode further in."""
+    velocity: float | None = None
+    """None: 0, as an effort of None."""
+    effort: float | None = None
+    """Feed-forward force or torque; the setpoint itself in mode force."""
     stiffness: float | None = None
     """None keeps the gain in force, as does a damping of None."""
     damping: float | None = None
@@ -98,9 +99,12 @@ class Controller:
 
 def fill_requests(
         setpoints: Mapping[str, Setpoint], names: Sequence[str],
-        requests: NDArray[np.void]) -> None:
+        requests: NDArray[np.void], samples: Mapping[str, np.record] | None = None) -> None:
     """
     Write setpoints into the `COMMAND` rows of the actuators ``names``, shape (n_actuators,).
+
+    The position of a setpoint whose mode does not use it becomes that of ``samples``, by actuator;
+    None: it stays NaN.
 
     Raises
     ------
@@ -116,7 +120,20 @@ def fill_requests(
                 f'{_quoted(name)} is not an actuator of the run; valid: {listed(names)}')
         if not isinstance(setpoint, tuple) or len(setpoint) != len(Setpoint._fields):
             raise SetpointError(f'{name}: {_quoted(setpoint)} is not a Setpoint')
-        fill_command(name, Setpoint(*setpoint), requests[names.index(name)])
+        row = requests[names.index(name)]
+        fill_command(name, Setpoint(*setpoint), row)
+        if samples is not None and row['kinds'] & HAS_SETPOINT and math.isnan(row['position']):
+            _complete(name, samples[name], row)
+
+
+def _complete(name: str, sample: np.record, row: np.void) -> None:
+    """Fill the position of a `COMMAND` row without one; refuse it where the mode uses it."""
+    mode = int(row['mode'] if row['kinds'] & HAS_MODE else sample.device_mode)
+    if mode in (POSITION, IMPEDANCE):
+        raise SetpointError(
+            f'{name}: setpoint effort = {row["effort"]:g} needs its position in mode '
+            f'{MODES[mode]}')
+    row['position'] = sample.position
 
 
 def fill_command(name: str, setpoint: Setpoint, row: np.void) -> None:
@@ -142,18 +159,27 @@ def fill_command(name: str, setpoint: Setpoint, row: np.void) -> None:
 
 
 def _fill_setpoint(name: str, setpoint: Setpoint, row: np.void) -> int:
-    """Write the impedance setpoint; return `HAS_SETPOINT`, or 0 without one."""
-    has_position = setpoint.position is not None
+    """
+    Write the numbers of a setpoint; return its kind, or 0 without one.
+
+    Without a position that of an effort is NaN, which the mode in force may allow.
+    """
+    given = [field for field in _NUMBERS if getattr(setpoint, field) is not None]
     for field in _NUMBERS:
-        value = getattr(setpoint, field)
-        if value is None and (field in GAINS_OF_COMMAND or not has_position):
-            row[field] = math.nan if field in GAINS_OF_COMMAND else 0.0
-            continue
-        _check(name, field, value)
-        if not has_position and (field in GAINS_OF_COMMAND or value != 0.0):
-            raise SetpointError(f'{name}: setpoint {field} = {value:g} needs its position')
-        row[field] = value
-    return HAS_SETPOINT if has_position else 0
+        row[field] = math.nan if field in GAINS_OF_COMMAND else 0.0
+    for field in given:
+        _check(name, field, getattr(setpoint, field))
+        row[field] = getattr(setpoint, field)
+    if not given:
+        return 0
+    if set(given) <= set(GAINS_OF_COMMAND):
+        return HAS_GAINS
+    if setpoint.position is None:
+        if setpoint.effort is None:
+            raise SetpointError(
+                f'{name}: setpoint velocity = {setpoint.velocity:g} needs its position')
+        row['position'] = math.nan
+    return HAS_SETPOINT
 
 
 def _fill_mode(name: str, setpoint: Setpoint, row: np.void) -> int:

@@ -3,8 +3,10 @@
 import math
 
 from isa_ros.controller import Controller, fill_requests, merge_requests, Setpoint
+from isa_ros.core.device import FORCE, IMPEDANCE, POSITION
 from isa_ros.core.signals import (
-    COMMAND, HAS_CLEAR_FAULT, HAS_ENABLE, HAS_MODE, HAS_QUICK_STOP, HAS_REFERENCE, HAS_SETPOINT)
+    COMMAND, HAS_CLEAR_FAULT, HAS_ENABLE, HAS_GAINS, HAS_MODE, HAS_QUICK_STOP, HAS_REFERENCE,
+    HAS_SETPOINT, SAMPLE)
 from isa_ros.errors import RunError, SetpointError
 import numpy as np
 import pytest
@@ -47,7 +49,8 @@ def test_the_device_is_commanded_without_a_position(setpoint, kinds, mode, refer
 
 
 @pytest.mark.parametrize(('setpoint', 'message'), [
-    (Setpoint(effort=5.0), 'haa: setpoint effort = 5 needs its position'),
+    (Setpoint(velocity=5.0), 'haa: setpoint velocity = 5 needs its position'),
+    (Setpoint(stiffness=-1.0), 'haa: setpoint stiffness = -1.0, must be >= 0'),
     (Setpoint(mode='speed'), "haa: setpoint mode = 'speed', must be one of current, spool, press"),
     (Setpoint(spool=1e-4, current=1.0), 'haa: setpoint has current and spool, must be the one'),
     (Setpoint(mode='force', spool=1e-4), 'haa: setpoint spool is not of mode force'),
@@ -60,6 +63,30 @@ def test_the_device_is_commanded_without_a_position(setpoint, kinds, mode, refer
 def test_a_value_that_cannot_be_is_refused(setpoint, message):
     with pytest.raises(SetpointError, match=message):
         requests(haa=setpoint)
+
+
+def test_gains_alone_are_a_command_of_their_own():
+    row = requests(haa=Setpoint(stiffness=1e4))[0]
+    assert (row['kinds'], row['stiffness'], row['position']) == (HAS_GAINS, 1e4, 0.0)
+    assert math.isnan(row['damping'])
+
+
+@pytest.mark.parametrize(('mode', 'in_force', 'is_refused'), [
+    (None, FORCE, False), (None, IMPEDANCE, True), (None, POSITION, True),
+    ('force', IMPEDANCE, False), ('impedance', FORCE, True)])
+def test_an_effort_needs_a_position_where_the_mode_uses_it(mode, in_force, is_refused):
+    """Else it becomes the measured one: the position stays where a later mode begins."""
+    sample = np.zeros(1, SAMPLE).view(np.recarray)[0]
+    sample.device_mode, sample.position = in_force, 0.03
+    rows = np.zeros(1, COMMAND)
+    setpoints = {'haa': Setpoint(effort=-50.0, mode=mode)}
+    if is_refused:
+        with pytest.raises(SetpointError, match='haa: setpoint effort = -50 needs its position'):
+            fill_requests(setpoints, ['haa'], rows, {'haa': sample})
+        return
+    fill_requests(setpoints, ['haa'], rows, {'haa': sample})
+    assert rows[0][['position', 'velocity', 'effort']].item() == (0.03, 0.0, -50.0)
+    assert rows['kinds'][0] & HAS_SETPOINT
 
 
 def test_an_unknown_actuator_is_refused_naming_those_there_are():

@@ -248,6 +248,28 @@ def test_a_command_that_cannot_be_is_refused(name, setpoint, message):
     assert stepped(simulation, 2) == stepped(untouched, 2)
 
 
+def test_in_mode_force_an_effort_needs_no_position_and_gains_none_either():
+    """The force follows; back in impedance the setpoint is where the rod was."""
+    simulation = isa_ros.load('rig_linear').replace({
+        'actuators.ram.load': {'kind': 'blocked'}}).simulation()
+    with pytest.raises(SetpointError, match='position is missing or NaN, must be given in'):
+        simulation.command('ram', effort=500.0)
+    simulation.command('ram', mode='force')
+    simulation.command('ram', effort=500.0)
+    for _ in range(200):
+        simulation.step()
+    # a code of the load cell is 8 N
+    assert simulation.samples['ram'].force == pytest.approx(500.0, abs=10.0)
+    position = simulation.samples['ram'].position_reference
+    simulation.command('ram', stiffness=2e4, damping=900.0)
+    simulation.step()
+    applied = simulation.applied[0]
+    assert (applied['stiffness'], applied['damping'], applied['effort']) == (2e4, 900.0, 500.0)
+    assert applied['position'] == position == pytest.approx(0.05, abs=1e-3)
+    with pytest.raises(SetpointError, match='stiffness = 1e[+]12 N/m, must be 0 to'):
+        simulation.command('ram', stiffness=1e12)
+
+
 def test_a_command_beyond_the_range_is_limited_with_a_warning_where_configured():
     limited = replace(RUN, actuators=tuple(
         replace(own, beyond_range='limit') for own in RUN.actuators))

@@ -16,7 +16,8 @@ from isa_ros.actuator.tunable import GAINS, tunables
 from isa_ros.core.changeable import sound
 from isa_ros.core.device import CURRENT, FORCE, IMPEDANCE, MODES, POSITION, PRESSURE, SPOOL
 from isa_ros.core.record import floats
-from isa_ros.core.signals import COMMAND, HAS_MODE, HAS_REFERENCE, HAS_SETPOINT, Records
+from isa_ros.core.signals import (
+    COMMAND, HAS_GAINS, HAS_MODE, HAS_REFERENCE, HAS_SETPOINT, Records)
 from isa_ros.core.timebase import NS_PER_SECOND
 from isa_ros.core.units import MILLI, MPA
 from isa_ros.errors import ConfigError, SetpointError
@@ -130,8 +131,10 @@ class SetpointRange:
     def beyond(self, command: np.void) -> Iterator[Beyond]:
         """Return the fields of a `COMMAND` row that leave their range."""
         kinds = int(command['kinds'])
-        if kinds & HAS_SETPOINT:
+        if kinds & (HAS_SETPOINT | HAS_GAINS):
             for field, bounds in self.bounds.items():
+                if not kinds & HAS_SETPOINT and field not in GAINS.values():
+                    continue
                 yield from _beyond(field, field, command, bounds)
         mode = int(command['mode'])
         if kinds & HAS_REFERENCE and mode in self._references:

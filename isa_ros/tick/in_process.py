@@ -68,7 +68,8 @@ class InProcess:
         if self._controllers:
             state = self._state._replace(t_ns=self.group.t_ns)
             for controller in self._controllers:
-                fill_requests(controller.step(state), self._names, rows.requests)
+                fill_requests(
+                    controller.step(state), self._names, rows.requests, state.actuators)
 
     def receive(self, rows: Rows) -> None:
         """Process the inputs of each actuator and the tick's changes, then advance all."""

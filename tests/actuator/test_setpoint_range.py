@@ -4,7 +4,7 @@ import math
 
 from isa_ros.actuator.setpoint_range import RequestRange, SetpointRange
 from isa_ros.core.device import CURRENT, FORCE, IMPEDANCE, POSITION, PRESSURE, SPOOL
-from isa_ros.core.signals import COMMAND, HAS_ENABLE, HAS_MODE, HAS_REFERENCE
+from isa_ros.core.signals import COMMAND, HAS_ENABLE, HAS_GAINS, HAS_MODE, HAS_REFERENCE
 from isa_ros.errors import SetpointError
 import numpy as np
 import pytest
@@ -176,3 +176,14 @@ def test_a_request_with_a_mode_is_checked_too():
     assert 'refused: knee: setpoint spool = 0.001 m, must be' in line and rows['kinds'][1] == 0
     rows[1] = reference(SPOOL, 1e-5)
     assert request_range().admit(0, rows) == () and rows['kinds'][1] == HAS_REFERENCE
+
+
+def test_gains_alone_beyond_the_range_are_deleted_too():
+    """Their position and effort are not looked at: the command does not have them."""
+    rows = requests_to_the_knee(position=50.0, stiffness=1e12)
+    rows['kinds'][1] = HAS_GAINS
+    line, = request_range().admit(0, rows)
+    assert 'knee: setpoint stiffness = 1e+12 N/m, must be 0 to' in line and not rows['kinds'][1]
+    rows = requests_to_the_knee(position=50.0, stiffness=1e4)
+    rows['kinds'][1] = HAS_GAINS
+    assert request_range().admit(0, rows) == () and rows['kinds'][1] == HAS_GAINS

@@ -7,7 +7,7 @@ from typing import Any
 from isa_ros.actuator.setpoint_range import complete, SetpointRange
 from isa_ros.controller import fill_requests, Setpoint
 from isa_ros.core.device import CURRENT, FORCE, IMPEDANCE, POSITION, SPOOL
-from isa_ros.core.signals import COMMAND, EVERY_KIND
+from isa_ros.core.signals import COMMAND, EVERY_KIND, SAMPLE
 from msg_adapters.setpoint import applied_to_command, msg_to_command
 import numpy as np
 from rclpy.impl.implementation_singleton import rclpy_implementation as _rclpy
@@ -81,8 +81,9 @@ def _of_bag(dice: random.Random) -> None:
 
 
 def _of_controller(dice: random.Random) -> None:
-    requests = np.zeros(1, COMMAND)
-    fill_requests(controlled(dice), [NAME], requests)
+    requests, sample = np.zeros(1, COMMAND), np.zeros(1, SAMPLE).view(np.recarray)[0]
+    sample.device_mode = dice.choice((CURRENT, SPOOL, FORCE, POSITION, IMPEDANCE))
+    fill_requests(controlled(dice), [NAME], requests, {NAME: sample})
     if requests[0]['kinds']:
         assert_valid(requests[0])
 

@@ -161,7 +161,8 @@ class ControllerRole:
         state = State(
             step.tick * self._step_ns, by_name(self._names, found.samples),
             by_name(self._roster.supplies, found.supplies), only_rows(found.bodies))
-        fill_requests(self._controller.step(state), self._names, self._requests)
+        fill_requests(
+            self._controller.step(state), self._names, self._requests, state.actuators)
         return self._parts()
 
     def change(self, values: Mapping[str, float]) -> Parts:
