@@ -3,7 +3,7 @@
 import pytest
 
 from .master_402 import (
-    CSP, CSV, ENABLE, enabled, MODE_SHOWN, POSITION, RESET, SHUTDOWN, state, SWITCH_ON)
+    CSP, CSV, ENABLE, enabled, POSITION, RESET, SHUTDOWN, state, SWITCH_ON)
 from .rig import Master, Rig
 
 PP, PV, HM = 1, 3, 6
@@ -151,7 +151,6 @@ def test_targets_beyond_the_limits_end_there_and_say_so(rig):
     assert master.cycle(ENABLE | NEW) & LIMITED
     assert demands(master, ENABLE, 900)[-1] == 100_000
     assert master.cycle(ENABLE) & REACHED
-    assert master.upload(0x60FD) in (0, 2)      # the axis hangs 1 um lower, or not
 
 
 def test_the_speed_is_that_of_max_profile_velocity_at_most(rig):
@@ -236,10 +235,7 @@ def test_homing_gives_the_present_position_the_home_offset(rig, method):
     word = master.cycle(ENABLE | NEW)
     assert word & (REACHED | ACKNOWLEDGED | FAILED) == REACHED | ACKNOWLEDGED
     assert master.inputs[POSITION] == pytest.approx(-12_345, abs=20)    # of a tick's creeping
-    assert master.inputs[MODE_SHOWN] == HM
     origin = encoder + 12_345
-    assert round(rig.sample['position'] * 1e6) - master.inputs[POSITION] == pytest.approx(
-        origin, abs=20)
     assert master.upload(0x6062) == master.inputs[POSITION]
     target = master.inputs[POSITION]
     master.cycle(ENABLE, x6060=CSP, x607A=target)
