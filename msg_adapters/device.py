@@ -12,7 +12,7 @@ from isa_ros.core.device import (
     event_name, FAULT, FAULT_REACTION, mode_name, QUICK_STOP, state_name)
 from msg_adapters.cdr import encode
 from msg_adapters.cdr_reader import decode
-from msg_adapters.diagnostics import Status
+from msg_adapters.diagnostics import DIGITS, Status
 
 TYPE = 'diagnostic_msgs/msg/DiagnosticStatus'
 TASK = 'device'
@@ -57,9 +57,32 @@ def status(name: str, sample: Mapping[str, float]) -> DiagnosticStatus:
     values = {
         'state': state, 'mode': mode, 'reason': reason, 'warnings': warned, 'faults': tripped,
         'since_s': f'{sample["state_since"]:.6f}'}
+    values |= _more(sample)
     return DiagnosticStatus(
         level=level, name=name, message=message, hardware_id=name,
         values=[KeyValue(key=key, value=value) for key, value in values.items()])
+
+
+def _more(sample: Mapping[str, float]) -> dict[str, str]:
+    """Return what is only told where there is something: trips, counts, and the link."""
+    found = {}
+    if sample.get('last_trip', 0.0):
+        found = {'first_fault': words_of(sample['first_trip']),
+                 'last_fault': words_of(sample['last_trip']),
+                 'last_fault_s': f'{sample["trip_time"]:.6f}',
+                 'last_fault_value': f'{sample["trip_value"]:.{DIGITS}g}',
+                 'last_fault_level': f'{sample["trip_level"]:.{DIGITS}g}'}
+    if sample.get('warning_time', 0.0):
+        found['last_warning_s'] = f'{sample["warning_time"]:.6f}'
+    for field in ('unused_setpoints', 'refused_requests'):
+        if sample.get(field, 0.0):
+            found[field] = f'{sample[field]:.0f}'
+    if sample.get('age', 0.0):
+        found['age_s'] = f'{sample["age"]:.6f}'
+        found['is_stale'] = str(bool(sample['is_stale'])).lower()
+        found |= {field: f'{sample[field]:.0f}' for field in (
+            'frames_lost_down', 'frames_lost_up', 'commands_dropped')}
+    return found
 
 
 def pack(name: str, sample: Mapping[str, float]) -> bytes:

@@ -14,7 +14,8 @@ from isa_ros.actuator.config import ActuatorConfig
 from isa_ros.actuator.inbox import merge
 from isa_ros.actuator.integration import state_name
 from isa_ros.actuator.link import link_key, NONE
-from isa_ros.actuator.requests import mode_after, mode_command, refusal_of, start_mode
+from isa_ros.actuator.requests import (
+    link_answer, mode_after, mode_command, refusal_of, start_mode)
 from isa_ros.actuator.rest import rest_loops, rest_plant
 from isa_ros.actuator.rows import Memory, memory_of, row_record
 from isa_ros.actuator.saved_rows import SavedRows
@@ -202,6 +203,23 @@ class SmartActuator:
         """Return why a request of enable, clear or stop would change nothing, or ''."""
         return refusal_of(
             command, self._pending, self._constants.reu, self._reu)
+
+    def request(self, command: np.void, what: str) -> tuple[bool, str]:
+        """
+        Accept a request to enable, clear or stop where the state of the device allows it.
+
+        Returns whether, and the answer in words; ``what`` is the request in words. Behind a link
+        the state is not known: the request is handed to it, and one to a dead link fails.
+        """
+        if self.has_link:
+            self.accept(command)
+            is_alive, answer = link_answer(self.t_ns, row_record(self.memory.observed))
+            return is_alive, f'{what}: {answer}'
+        refusal = self.refusal(command)
+        if refusal:
+            return False, refusal
+        self.accept(command)
+        return True, f'{what} from t = {self.t_ns * 1e-9:.6f} s'
 
     def parameter(self, name: str) -> float:
         """Return a value as it will be at the next tick, set by `tune` or by a command."""

@@ -99,6 +99,15 @@ def latch(pending, reu, applied):
 
 
 @kernel
+def lose_pending(pending, reu, applied):
+    """Drop the pending command: a program that has stopped takes none."""
+    applied.kinds = 0
+    if pending.kinds & (HAS_SETPOINT | HAS_REFERENCE):
+        reu.status.unused_setpoints += 1
+    pending.kinds = 0
+
+
+@kernel
 def write_applied(kinds, reu, applied):
     """
     Fill a `COMMAND` row with all values in force; ``kinds`` are those that changed.

@@ -7,7 +7,7 @@ Composes plant, REU and load copy (`integration`) into one kernel.
 import math
 
 from isa_ros.actuator.energy import add_energies, add_tare, stored_elastically, take_heat
-from isa_ros.actuator.inbox import latch, merge, settle
+from isa_ros.actuator.inbox import latch, lose_pending, merge, settle
 from isa_ros.actuator.integration import (
     COPIES, end_steps, rk4_step, simpson, STAGES, STATE_SIZE, TOTALS_AT)
 from isa_ros.actuator.link import (
@@ -25,6 +25,7 @@ from isa_ros.reu.cascade import cascade_step, is_due, REU
 from isa_ros.reu.device import write_device
 from isa_ros.reu.protection import write_trips
 from isa_ros.reu.reactions import protect, setpoint_in_force
+from isa_ros.reu.watchdog import stand_still
 import numpy as np
 
 ACTUATOR = np.dtype([
@@ -62,13 +63,18 @@ def loops_and_plant(
     """Run the loops that are due at plant step ``step``, then the plant over that step."""
     state, reu = continuous[0], actuator.reu
     if is_due(step, reu.current_steps, reu.offset_steps):
-        sense(step, reu.current_steps, state.plant, state.load.position, state.load.velocity,
-              actuator.plant, actuator.noise_key, channels, reu_state.measured)
-        if reu.is_frozen == 0.0:  # else references and drive stay
+        if reu.is_frozen == 0.0:
+            sense(step, reu.current_steps, state.plant, state.load.position,
+                  state.load.velocity, actuator.plant, actuator.noise_key, channels,
+                  reu_state.measured)
             reu_state.supply_pressure = port.supply_pressure
             if reu.protection.is_on:
                 protect(step, port.supply_pressure, thermal.sensed, reu.protection, reu_state)
+            else:
+                reu_state.frozen_for = 0.0
             cascade_step(step, reu, reu_state)
+        else:
+            stand_still(step, reu.current_steps * PLANT_STEP, reu, reu_state)
     if step == actuator.load.rope.release_step:
         state.load.weight.is_released = 1.0
     if is_due(step, reu.current_steps, reu.offset_steps + reu.delay_steps):
@@ -148,16 +154,20 @@ def tick_row(first_step, steps, port, actuator, continuous, rates, y, k, reu_sta
     sample.return_volume += reply.return_volume
     sample.largest_cavity = max(sample.largest_cavity, sample.cavity_a, sample.cavity_b)
     sample.supply_flow = reply.supply_volume / (steps * PLANT_STEP)
-    sample.supply_pressure = port.supply_pressure
+    if actuator.reu.is_frozen == 0.0:   # else its last reading stays
+        sample.supply_pressure = port.supply_pressure
     add_energies(reply, port, state.totals.energies,
                  stored_elastically(state, actuator.plant.mechanics) - elastic,
                  steps * PLANT_STEP, sample)
     if actuator.plant.thermal.is_on:
         take_heat(steps * PLANT_STEP, reply, state.totals.energies, actuator.plant.thermal,
                   thermal)
-    sample.temperature = thermal.sensed = read_temperature(
-        first_step + steps, thermal.oil, actuator.noise_key, actuator.plant.sensors.temperature,
-        thermal.sensed)
+    if actuator.reu.is_frozen == 0.0:
+        thermal.sensed = read_temperature(
+            first_step + steps, thermal.oil, actuator.noise_key,
+            actuator.plant.sensors.temperature, thermal.sensed)
+    sample.temperature, sample.age = thermal.sensed, reu_state.frozen_for
+    sample.is_stale = 1.0 if reu_state.frozen_for > 0.0 else 0.0
     if link >= 0:
         send_sample(first_step + steps, link, memory)
 
@@ -179,10 +189,12 @@ def actuator_tick(first_step, steps, incoming, commands, memory):
         reu, port = memory.reu[n], memory.ports[n]
         link = n if memory.constants[n].link.is_on else -1
         merge(commands[n], memory.pending[n])
-        if link < 0:
+        if link < 0 and memory.constants[n].reu.is_frozen:
+            lose_pending(memory.pending[n], reu, memory.applied[n])
+        elif link < 0:
             latch(memory.pending[n], reu, memory.applied[n])
         else:
-            hand_over(n, memory)
+            hand_over(first_step, n, memory)
         take_port(incoming[n], memory.is_shared[n], port, continuous[0])
         tick_row(first_step, steps, port, memory.constants[n], continuous, rates, y, k, reu,
                  memory.channels[n], memory.replies[n], memory.samples[n], memory.thermals[n],

@@ -6,7 +6,9 @@ that is not earlier. Down, it carries the newest command that no frame has broug
 the REU has sensed last. It arrives after the delay and a jitter, uniform from 0 to ``jitter_us``,
 again at the first plant step that is not earlier; a frame never overtakes the one before it. A
 lost frame does not arrive: the REU keeps its setpoint, listeners keep their sample, and the
-command goes with the next frame.
+command goes with the next frame. A command that has waited for the watchdog's time is dropped:
+when a dead link comes back, what was commanded long ago does not act. A frozen REU sends no frames
+and takes none.
 
 Loss and jitter are noise without a state (`isa_ros.core.noise`), by the seed of the run, the name
 of the actuator, the direction and the plant step at which the frame leaves.
@@ -20,7 +22,8 @@ from isa_ros.core.kernel import kernel
 from isa_ros.core.noise import noise_key, uniforms
 from isa_ros.core.parameter import choice, parameter, Parameters
 from isa_ros.core.record import record
-from isa_ros.core.signals import Records
+from isa_ros.core.signals import (
+    EVERY_KIND, HAS_GAINS, HAS_REFERENCE, HAS_SETPOINT, Records)
 from isa_ros.core.timebase import PLANT_STEP, PLANT_STEP_NS
 from isa_ros.errors import ConfigError, ParameterError
 import numpy as np
@@ -31,6 +34,9 @@ MOST_CYCLES = 8     # of delay
 SLOTS = 16          # frames on their way; the delay and the jitter allow 10
 _NS_PER_MS = 1_000_000
 _US_PER_MS = 1000.0
+STALE = MOST_CYCLES + 2  # cycles after which a sample is too old, without a watchdog
+SET = HAS_SETPOINT | HAS_GAINS | HAS_REFERENCE
+ASKED = EVERY_KIND ^ SET
 DOWN, UP = 0, 1     # channels of the noise
 _ASSUMED = 'assumed'
 
@@ -91,6 +97,7 @@ LINE = np.dtype([
     ('first', 'i8'),            # slot of the frame that arrives next
     ('count', 'i8'),            # frames on their way
     ('last_due', 'i8'),         # plant step at which the last one sent arrives
+    ('lost', 'i8'),             # frames that did not arrive, since t = 0
     ('due', 'i8', (SLOTS,)),    # plant step of arrival, by slot
     ('sent', 'i8', (SLOTS,)),   # plant step of departure, by slot
 ])
@@ -100,6 +107,9 @@ LINK_STATE = np.dtype([
     ('down', LINE), ('up', LINE),
     ('last_frame', 'i8'),       # plant step at which the REU last received a frame
     ('sampled', 'i8'),          # plant step of the sample that the listeners have
+    ('set_step', 'i8'),         # plant step at which the setpoint or gains in the outbox were set,
+    ('asked_step', 'i8'),       # and the requests and the mode
+    ('dropped', 'i8'),          # commands that waited too long, since t = 0
 ])
 
 
@@ -155,6 +165,7 @@ def put_frame(step, channel, key, link, line):
     """
     lot, wait = uniforms(key, step, channel)
     if lot < link.loss or line.count >= SLOTS:
+        line.lost += 1
         return -1
     t_ns = step * PLANT_STEP_NS
     arrival = t_ns - t_ns % link.cycle_ns + link.delay_ns + int(link.jitter_ns * wait)
@@ -179,13 +190,30 @@ def take_frame(step, line):
 
 
 @kernel
-def hand_over(n, memory):
+def hand_over(step, n, memory):
     """Begin a tick of actuator ``n``: move its pending command to the outbox; store it as sent."""
     memory.applied[n].kinds = 0
     memory.sent[n] = memory.pending[n]
-    if memory.pending[n].kinds:
+    kinds, state = memory.pending[n].kinds, memory.links[n]
+    if kinds:
         merge(memory.pending[n], memory.outbox[n])
         memory.pending[n].kinds = 0
+        if kinds & SET:
+            state.set_step = step
+        if kinds & ASKED:
+            state.asked_step = step
+    drop_stale(step, memory.constants[n].link, state, memory.outbox[n])
+
+
+@kernel
+def drop_stale(step, link, state, outbox):
+    """Drop what has waited in the outbox for the time of the watchdog."""
+    if link.watchdog_ns == 0 or outbox.kinds == 0:
+        return
+    for kinds, since in ((SET, state.set_step), (ASKED, state.asked_step)):
+        if outbox.kinds & kinds and (step - since) * PLANT_STEP_NS >= link.watchdog_ns:
+            outbox.kinds &= EVERY_KIND ^ kinds
+            state.dropped += 1
 
 
 @kernel
@@ -199,16 +227,17 @@ def exchange_frames(step, is_sampled, n, memory):
         send_sample(step, n, memory)
     link_down(step, memory.constants[n].link_key, memory.constants[n].link, memory.links[n],
               memory.outbox[n:n + 1], memory.commands_sent[n * SLOTS:(n + 1) * SLOTS],
-              memory.reu[n], memory.applied[n])
+              memory.constants[n].reu.is_frozen != 0.0, memory.reu[n], memory.applied[n])
 
 
 @kernel
-def link_down(step, key, link, state, outbox, frames, reu, applied):
+def link_down(step, key, link, state, outbox, frames, is_frozen, reu, applied):
     """
     Send the command in the outbox if a frame leaves at ``step``; apply those that have arrived.
 
     ``outbox`` (1,) and ``frames`` (SLOTS,) are `COMMAND` rows. Of several commands that arrive
-    in a tick ``applied`` has the kinds of all, and the step of the last.
+    in a tick ``applied`` has the kinds of all, and the step of the last. What arrives at a
+    frozen REU is lost.
     """
     if leaves(step, link):
         slot = put_frame(step, DOWN, key, link, state.down)
@@ -218,6 +247,10 @@ def link_down(step, key, link, state, outbox, frames, reu, applied):
             outbox[0].kinds = 0
     slot = take_frame(step, state.down)
     while slot >= 0:
+        if is_frozen:
+            state.down.lost += 1
+            slot = take_frame(step, state.down)
+            continue
         state.last_frame = step
         if frames[slot].kinds:
             kinds = applied.kinds
@@ -225,7 +258,8 @@ def link_down(step, key, link, state, outbox, frames, reu, applied):
             applied.kinds |= kinds
             applied.due_step = step
         slot = take_frame(step, state.down)
-    watch(step, link, state, reu)
+    if not is_frozen:
+        watch(step, link, state, reu)
 
 
 @kernel
@@ -246,7 +280,8 @@ def watch(step, link, state, reu):
 def send_sample(step, n, memory):
     """Send the sample of actuator ``n`` if a frame leaves at ``step``."""
     own, line = memory.constants[n], memory.links[n].up
-    if leaves(step, own.link):
+    if own.reu.is_frozen == 0.0 and leaves(step, own.link):
+        memory.samples[n].frames_lost_down = float(memory.links[n].down.lost)
         slot = put_frame(step, UP, own.link_key, own.link, line)
         if slot >= 0:
             memory.samples_sent[n * SLOTS + slot] = memory.samples[n]
@@ -261,4 +296,15 @@ def receive_samples(step, n, memory):
         memory.observed[n] = memory.samples_sent[n * SLOTS + slot]
         state.sampled = state.up.sent[slot]
         slot = take_frame(step, state.up)
-    memory.observed[n].age = (step - state.sampled) * PLANT_STEP
+    observed = memory.observed[n]
+    observed.age = (step - state.sampled) * PLANT_STEP
+    observed.frames_lost_up = float(state.up.lost)
+    observed.commands_dropped = float(state.dropped)
+    observed.is_stale = 1.0 if is_stale(step - state.sampled, memory.constants[n].link) else 0.0
+
+
+@kernel
+def is_stale(steps, link):
+    """Return whether a sample of this age is too old: the watchdog's time, else `STALE` cycles."""
+    longest = link.watchdog_ns if link.watchdog_ns else STALE * link.cycle_ns
+    return steps * PLANT_STEP_NS >= longest

@@ -11,8 +11,14 @@ from isa_ros.reu.block import Pid
 from isa_ros.reu.lead_lag import LeadLag
 from isa_ros.reu.plausibility import EVIDENCE, VALVE_EVIDENCE
 from isa_ros.reu.protection import Ratings
+from isa_ros.reu.supervision import SUPERVISION
 from isa_ros.reu.wiring import loop_steps, Off, Reu
 import numpy as np
+
+_CERTAIN = 0.2  # of the spool's stop: open whatever the null bias
+_CREEP = 0.02   # of the speed at full opening: slower is no motion towards a reference
+_SLOW = 0.0064  # s, 25 Hz: what is slower is no oscillation of a loop
+_MEAN = 0.05    # s: some periods of such an oscillation
 
 
 def ratings_of(plant: np.record) -> Ratings:
@@ -58,6 +64,22 @@ def evidence_of(
         viscous=plant.friction.sigma2, inertia=plant.mechanics.inertia,
         speed_rate=reu.speed.rate_hz, speed_steps=steps['speed'], offset_steps=offset_steps,
         valve=_valve_evidence(plant, reu, has_spool_sensor, steps['current'] * PLANT_STEP))
+
+
+def supervision_of(plant: np.record, reu: Reu, has_spool_sensor: bool) -> np.record:
+    """Return the `SUPERVISION` record of a `PLANT` record and its REU."""
+    oil, valve, sensors = plant.chambers, plant.valve, plant.sensors
+    period = loop_steps(reu)['current'] * PLANT_STEP
+    speed = ratings_of(plant).speed
+    return record(
+        SUPERVISION, area_a=oil.area_a, area_b=oil.area_b, stroke=oil.stroke,
+        flow_gain=flow_curve(valve.x_max, valve) * valve.per_root_drop,
+        force_range=sensors.force_range, pressure_range=sensors.pressure_range,
+        current_range=sensors.current_range,
+        spool_range=sensors.spool_range if has_spool_sensor else 0.0,
+        spool_gain=valve.k_spool / plant.coil.parallel, opening=_CERTAIN * valve.x_max,
+        follows_force=int(not isinstance(reu.force, Off)), creep=_CREEP * speed,
+        slow_share=period / (_SLOW + period), mean_share=period / (_MEAN + period))
 
 
 def _valve_evidence(

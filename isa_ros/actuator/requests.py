@@ -39,9 +39,25 @@ def mode_after(pending: np.record, reu: np.record) -> int:
     return int(own)
 
 
+def link_answer(t_ns: int, observed: np.record) -> tuple[bool, str]:
+    """
+    Return what a request handed to a link is answered: whether it may arrive, and why.
+
+    ``observed`` is the `SAMPLE` that has arrived; whether the device takes the request shows
+    in a later one.
+    """
+    if observed.is_stale:
+        return False, (f'the link is lost: the last sample is {observed.age:.6f} s old; handed to '
+                       'the link, and dropped if no frame leaves in time')
+    return True, (f'handed to the link at t = {t_ns * 1e-9:.6f} s, its last sample is '
+                  f'{observed.age:.6f} s old')
+
+
 def refusal_of(
         command: np.void, pending: np.record, constants: np.record, reu: np.record) -> str:
     """Return why a request of enable, clear or stop would change nothing, or ''."""
+    if constants.is_frozen:
+        return f'no answer for {reu.frozen_for:.6f} s: the program of the REU has stopped'
     kinds, state = int(command['kinds']), int(reu.status.state)
     if state == INITIALISING and constants.rules.initialisation == 0.0:
         state = ENABLED if reu.status.auto_enable else DISABLED

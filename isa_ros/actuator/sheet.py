@@ -4,7 +4,8 @@ from dataclasses import dataclass
 
 from isa_ros.actuator.kernel import ACTUATOR
 from isa_ros.actuator.link import link_record, LinkSheet, NO_LINK
-from isa_ros.actuator.ratings import evidence_of, null_speed, ratings_of, valve_lag
+from isa_ros.actuator.ratings import (
+    evidence_of, null_speed, ratings_of, supervision_of, valve_lag)
 from isa_ros.core.changeable import sound
 from isa_ros.core.parameter import choice, nested, Parameters
 from isa_ros.core.record import record
@@ -156,7 +157,9 @@ def actuator_record(sheet: ActuatorSheet, offset_steps: int) -> np.ndarray:
     reu['protection'] = protection_record(
         sheet.reu.protection, ratings_of(known[0]),
         evidence_of(known[0], sheet.reu, sheet.spool_feedback == 'electric', offset_steps),
-        loop_steps(sheet.reu)['current'], sheet.link.watchdog_ms * MILLI)
+        supervision_of(known[0], sheet.reu, sheet.spool_feedback == 'electric'),
+        loop_steps(sheet.reu)['current'], sheet.link.watchdog_ms * MILLI,
+        sheet.reu.watchdog_ms * MILLI)
     rows = np.zeros(1, ACTUATOR)
     rows['plant'], rows['reu'] = plant_record(sheet.plant), reu
     rows['link'] = link_record(sheet.link)

@@ -193,9 +193,12 @@ def _study(parser: argparse.ArgumentParser) -> None:
 def _faults(parser: argparse.ArgumentParser) -> None:
     parser.add_argument('--list', action='store_true', help='only list the faults')
     parser.add_argument(
+        '--situations', action='store_true',
+        help='every fault at rest, slow, fast and blocked: what is noticed, and what it costs')
+    parser.add_argument(
         '--only', action='append', metavar='NAME', help='a fault; may be repeated')
     shared_arguments.json_file(parser)
-    shared_arguments.page_directory(parser, 'device_faults.md')
+    shared_arguments.page_directory(parser, 'device_faults.md, or fault_situations.md')
 
 
 def _bench(parser: argparse.ArgumentParser) -> None:

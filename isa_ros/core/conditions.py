@@ -112,7 +112,7 @@ CONDITIONS = (
         'estimated speed', 'm/s | rad/s', 'speed',
         ErrorCode(0x8400, PROFILE, 'velocity speed controller'),
         LevelDefaults(
-            'speed over that of the valve, from its rated flow', 10.0, warning=1.0, trip=1.5,
+            'speed over that of the valve, from its rated flow', 10.0, warning=0.8, trip=1.1,
             delay_ms=10.0, reaction='warn', may_limit=True)),
     Condition(
         'overload', 'The force sensor is near or at its end of range.',
@@ -120,7 +120,7 @@ CONDITIONS = (
         ErrorCode(0x8311, PROFILE, 'excess torque'),
         LevelDefaults(
             'force over the range of its sensor', 1.0, warning=0.95, trip=0.0,
-            delay_ms=50.0, reaction='disable', may_limit=True)),
+            delay_ms=5.0, reaction='disable', may_limit=True)),
     Condition(
         'overpressure', 'A chamber is far above the opening pressure of its relief valve.',
         'higher chamber pressure', 'Pa', 'pressure_range',
@@ -189,6 +189,46 @@ CONDITIONS = (
         LevelDefaults(
             'distance over the stop of the spool', 2.0, warning=0.05, trip=0.15,
             delay_ms=50.0, reaction='disable')),
+    Condition(
+        'watchdog', 'The program of the REU has stopped, and its output was switched off.',
+        'time without the program', 's', '',
+        ErrorCode(0xFF0D, MANUFACTURER, 'manufacturer: watchdog of the REU')),
+    Condition(
+        'sensor_range', 'A reading is outside of the range of its sensor: a broken wire.',
+        'distance of a reading from the range of its sensor, part of it', '1', '',
+        ErrorCode(0x7310, PROFILE, 'sensor: reading out of its range'),
+        LevelDefaults(
+            'distance from the range over the range', 1.0, warning=0.0, trip=0.05,
+            delay_ms=2.0, reaction='disable')),
+    Condition(
+        'position_error',
+        'The piston or rotor is far from its reference, and does not move there (mode position).',
+        'distance from the reference', 'm | rad', 'stroke',
+        ErrorCode(0xFF0F, MANUFACTURER, 'manufacturer: position not reached'),
+        LevelDefaults(
+            'distance over the stroke', 1.0, warning=0.05, trip=0.1, delay_ms=200.0,
+            reaction='disable')),
+    Condition(
+        'force_error', 'The force is far from its reference, which the valve could reach.',
+        'distance of the force from its reference', 'N | Nm', 'force_range',
+        ErrorCode(0x8331, PROFILE, 'torque fault: the force does not follow'),
+        LevelDefaults(
+            'force over the range of its sensor', 2.0, warning=0.1, trip=0.2,
+            delay_ms=100.0, reaction='disable')),
+    Condition(
+        'oscillation', 'The force swings, and its reference does not.',
+        'mean swing of the force beyond that of its reference', 'N | Nm', 'force_range',
+        ErrorCode(0xFF10, MANUFACTURER, 'manufacturer: the force oscillates'),
+        LevelDefaults(
+            'force over the range of its sensor', 1.0, warning=0.03, trip=0.1,
+            delay_ms=100.0, reaction='disable')),
+    Condition(
+        'runaway', 'The piston or rotor moves against the flow that its valve lets through.',
+        'speed against the flow', 'm/s | rad/s', 'speed',
+        ErrorCode(0x8402, PROFILE, 'velocity speed controller: runs away'),
+        LevelDefaults(
+            'speed over that of the valve, from its rated flow', 1.0, warning=0.02, trip=0.05,
+            delay_ms=20.0, reaction='disable')),
 )
 """All conditions; the place of each is its bit. Bags hold bits: a new one goes to the end."""
 

@@ -21,7 +21,8 @@ START, READY, TRIP, CLEAR, MODE, ENABLE, DISABLE, STOP, STOP_ENDS, REACTION_ENDS
 
 FIELDS = ('device_state', 'device_mode', 'device_event', 'warnings', 'trips', 'state_since',
           'first_trip', 'last_trip', 'trip_time', 'trip_value', 'trip_level', 'warning_time',
-          'unused_setpoints', 'refused_requests')
+          'unused_setpoints', 'refused_requests', 'age', 'is_stale', 'frames_lost_down',
+          'frames_lost_up', 'commands_dropped')
 """Fields of a `SAMPLE` that describe the device."""
 
 

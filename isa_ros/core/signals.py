@@ -99,7 +99,7 @@ SAMPLE_FIELDS = (
     Field('device_mode', '1', 'number of `MODES`, in force or for the next enable'),
     Field('device_event', '1', 'number of `EVENTS`: the last that changed the state or mode'),
     Field('state_since', 's', 'time of the last change of these three or of the bits'),
-    Field('age', 's', 'since it was sampled; > 0 behind a link only'),
+    Field('age', 's', 'since it was sampled; > 0 behind a link, or of a frozen REU'),
     Field('supply_pressure', 'Pa', 'measured by the REU, gauge'),
     Field('chamber_pressure_a', 'Pa', 'in chamber A, exact, gauge: down to the vapour pressure'),
     Field('chamber_pressure_b', 'Pa', 'in chamber B, likewise'),
@@ -114,6 +114,10 @@ SAMPLE_FIELDS = (
     Field('warning_time', 's', 'when the last warning began'),
     Field('unused_setpoints', '1', 'that came while the device did not follow them, since t = 0'),
     Field('refused_requests', '1', 'to enable, clear or stop, without effect, since t = 0'),
+    Field('is_stale', '1', '1: older than the watchdog of the link or ten cycles; REU frozen'),
+    Field('frames_lost_down', '1', 'of the link, to the REU, since t = 0'),
+    Field('frames_lost_up', '1', 'likewise, from it'),
+    Field('commands_dropped', '1', 'that waited for a frame for the time of the watchdog'),
 )
 """The values one actuator reports at the end of a tick."""
 SAMPLE = record_type(SAMPLE_FIELDS)

@@ -4,9 +4,11 @@ Channels of the sensors: what stands between a quantity and the converter that r
 At each conversion the exact value x of every channel passes  (S3)
 
     x_d(t) = x(t - delay)                     a delay of whole conversions
-    y(t) = x_d(t) + bias + drift (t - t_0) + sigma n(t)
+    y(t) = scale x_d(t) + bias + drift (t - t_0) + sigma n(t)
 
-and y is what encoder or converter reads. n is white and normal, of `isa_ros.core.noise`; t_0 is
+and y is what encoder or converter reads; a scale of -1 is swapped wires, or a reversed encoder.
+A channel with a converter that is lost, its wire broken, reads `DEAD` of its range below zero,
+where a live zero shows it. n is white and normal, of `isa_ros.core.noise`; t_0 is
 the first conversion of the run, or that at which the channels were no longer ideal. A stuck
 channel keeps its reading; if it is stuck at the first conversion, that one is kept.
 """
@@ -27,6 +29,7 @@ import numpy as np
 
 N_CHANNELS = len(CHANNELS)
 LINE = 128  # conversions that a delay line holds
+DEAD = 0.25     # of a range: 0 mA where 4 to 20 mA are the range
 _MS_PER_STEP = PLANT_STEP_NS * 1e-6
 _IDEAL = 'assumed, ideal'
 
@@ -56,12 +59,30 @@ class Channel(Parameters):
     stuck: float = parameter(
         '1: the reading stays as it is', '1', absent=0.0, source=_IDEAL, changeable=True,
         ge=0.0, le=1.0)
+    scale: float = parameter(
+        'what is read over what is there', '1', absent=1.0, source=_IDEAL, changeable=True,
+        ge=-2.0, le=2.0)
 
     def __post_init__(self) -> None:
         """Refuse a channel that is stuck by a part."""
         super().__post_init__()
         if self.stuck not in (0.0, 1.0):
             raise ParameterError(f'stuck = {self.stuck:g}, must be 0 or 1')
+
+
+@dataclass(frozen=True, kw_only=True)
+class ConvertedChannel(Channel):
+    """Errors of a channel with a converter."""
+
+    lost: float = parameter(
+        '1: the wire is broken', '1', absent=0.0, source=_IDEAL, changeable=True, ge=0.0,
+        le=1.0)
+
+    def __post_init__(self) -> None:
+        """Refuse a wire that is broken by a part."""
+        super().__post_init__()
+        if self.lost not in (0.0, 1.0):
+            raise ParameterError(f'lost = {self.lost:g}, must be 0 or 1')
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -74,7 +95,7 @@ class PositionChannel(Channel):
 
 
 @dataclass(frozen=True, kw_only=True)
-class ForceChannel(Channel):
+class ForceChannel(ConvertedChannel):
     """Errors of the load cell or torque sensor."""
 
     sigma: float = _sigma('N | Nm', 1e5)
@@ -83,7 +104,7 @@ class ForceChannel(Channel):
 
 
 @dataclass(frozen=True, kw_only=True)
-class PressureChannel(Channel):
+class PressureChannel(ConvertedChannel):
     """Errors of a pressure sensor."""
 
     sigma: float = _sigma('Pa', 1e7)
@@ -92,7 +113,7 @@ class PressureChannel(Channel):
 
 
 @dataclass(frozen=True, kw_only=True)
-class SpoolChannel(Channel):
+class SpoolChannel(ConvertedChannel):
     """Errors of the spool sensor."""
 
     sigma: float = _sigma('m', 1e-4)
@@ -101,7 +122,7 @@ class SpoolChannel(Channel):
 
 
 @dataclass(frozen=True, kw_only=True)
-class CurrentChannel(Channel):
+class CurrentChannel(ConvertedChannel):
     """Errors of the current sensor, in A of the amplifier."""
 
     sigma: float = _sigma('A', 0.01)
@@ -116,6 +137,8 @@ CHANNEL_ERRORS = np.dtype([
     ('drift', 'f8', (N_CHANNELS,)),             # per second
     ('delay_steps', 'i8', (N_CHANNELS,)),       # plant steps
     ('is_stuck', 'i8', (N_CHANNELS,)),
+    ('scale', 'f8', (N_CHANNELS,)),
+    ('is_lost', 'i8', (N_CHANNELS,)),
 ])
 CHANNELS_STATE = np.dtype([
     ('step', 'i8'),                             # plant step of the last conversion
@@ -136,9 +159,11 @@ def channel_errors(channels: Mapping[str, Any]) -> np.record:
         'sigma': [channel.sigma for channel in ordered],
         'bias': [channel.bias for channel in ordered],
         'drift': [channel.drift_per_s for channel in ordered],
-        'delay_steps': steps, 'is_stuck': [int(channel.stuck) for channel in ordered]}
-    return record(
-        CHANNEL_ERRORS, are_ideal=not any(any(values) for values in errors.values()), **errors)
+        'delay_steps': steps, 'is_stuck': [int(channel.stuck) for channel in ordered],
+        'is_lost': [int(getattr(channel, 'lost', 0.0)) for channel in ordered]}
+    scale = [channel.scale for channel in ordered]
+    is_ideal = not any(any(values) for values in errors.values()) and set(scale) == {1.0}
+    return record(CHANNEL_ERRORS, are_ideal=is_ideal, scale=scale, **errors)
 
 
 def refuse_delays(channels: Mapping[str, Any], period_steps: int) -> None:
@@ -192,7 +217,7 @@ def disturb(step, period, key, errors, state):
         if errors.is_stuck[k] == 1 and state.filled > 1:
             continue
         age = min(errors.delay_steps[k] // period, state.filled - 1)
-        value = state.line[(state.slot - age) % LINE, k] + errors.bias[k]
+        value = errors.scale[k] * state.line[(state.slot - age) % LINE, k] + errors.bias[k]
         if errors.drift[k] != 0.0:
             value += errors.drift[k] * ((step - state.beginning) * PLANT_STEP)
         if errors.sigma[k] != 0.0:

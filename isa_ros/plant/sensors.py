@@ -109,6 +109,24 @@ def sense(step, period, y, x_load, v_load, plant, key, state, measured):
     if not own.errors.are_ideal:
         disturb(step, period, own.errors, key, state, measured)
     read(own, measured)
+    if not own.errors.are_ideal:
+        lose(own, measured)
+
+
+@kernel
+def lose(own, measured):
+    """Replace the readings of channels whose wire is broken: below the range, by `DEAD` of it."""
+    lost = own.errors.is_lost
+    if lost[1] == 1:
+        measured.force = -(1.0 + channels.DEAD) * own.force_range
+    if lost[2] == 1:
+        measured.pressure_a = -channels.DEAD * own.pressure_range
+    if lost[3] == 1:
+        measured.pressure_b = -channels.DEAD * own.pressure_range
+    if lost[4] == 1:
+        measured.spool = -(1.0 + channels.DEAD) * own.spool_range
+    if lost[5] == 1:
+        measured.current = -(1.0 + channels.DEAD) * own.current_range
 
 
 @kernel

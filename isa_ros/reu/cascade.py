@@ -13,6 +13,7 @@ from isa_ros.core.device import CURRENT, FORCE, POSITION, PRESSURE
 from isa_ros.core.kernel import kernel
 from isa_ros.core.signals import MEASURED
 from isa_ros.core.timebase import PLANT_STEP
+from isa_ros.core.units import MILLI
 from isa_ros.reu.block import BLOCK, block_record, BLOCK_STATE, block_step, Pid, rest
 from isa_ros.reu.bumpless import faded, inner_reference
 from isa_ros.reu.device import DEVICE, device_record, DEVICE_STATE, device_step
@@ -42,6 +43,7 @@ REU = np.dtype([
     ('k_spool', 'f8'),    # m of spool per series-scale A
     ('parallel', 'f8'),   # amplifier A per series-scale A
     ('is_frozen', 'f8'),
+    ('watchdog', 'f8'),   # s; 0: none
     ('protection', PROTECTION),
     ('rules', DEVICE),
 ])
@@ -62,6 +64,7 @@ REU_STATE = np.dtype([
     ('protection', PROTECTION_STATE),
     ('status', DEVICE_STATE),
     ('supply_pressure', 'f8'),     # of the port at the last conversion, Pa
+    ('frozen_for', 'f8'),          # s without the program
     ('link_silence', 'f8'),        # s since the last frame of a link with a watchdog
     ('link_lost', 'i8'),           # 1: no frame has come for the link's watchdog time
     ('link_lost_step', 'i8'),      # plant step at which it was last lost
@@ -102,7 +105,7 @@ def reu_record(
     conversion = steps['current'] * PLANT_STEP
     row['rules'] = device_record(reu.device, reu, conversion, flow_stop_record(
         model, stiffness, lag, null_speed, conversion, reu.device.quick_stop_deceleration))
-    row['is_frozen'] = reu.frozen
+    row['is_frozen'], row['watchdog'] = reu.frozen, reu.watchdog_ms * MILLI
     return record
 
 

@@ -21,6 +21,8 @@ from isa_ros.reu.impedance import SETPOINT
 from isa_ros.reu.plausibility import (
     EVIDENCE, EVIDENCE_STATE, jump_speed, spool_deviation, unexplained_force)
 from isa_ros.reu.protection_sheet import levels_of, Protection
+from isa_ros.reu.supervision import (
+    beyond_range, supervise, SUPERVISION, SUPERVISION_STATE)
 import numpy as np
 
 N = len(CONDITIONS)
@@ -42,6 +44,7 @@ PROTECTION = np.dtype([
     ('delay', 'i8', (N,)),          # conversions
     ('reaction', 'i8', (N,)),
     ('evidence', EVIDENCE),
+    ('supervision', SUPERVISION),
 ])
 PROTECTION_STATE = np.dtype([
     ('warnings', 'i8'), ('trips', 'i8'),    # bit sets of conditions
@@ -62,6 +65,7 @@ PROTECTION_STATE = np.dtype([
     ('trip_level', 'f8'),                   # what the last trip was beyond, SI
     ('setpoint', SETPOINT),                 # in force instead of the commanded one
     ('evidence', EVIDENCE_STATE),
+    ('supervision', SUPERVISION_STATE),
 ])
 
 
@@ -84,12 +88,13 @@ class Ratings(NamedTuple):
 
 
 def protection_record(
-        sheet: Protection, ratings: Ratings, evidence: np.record, conversion_steps: int,
-        link_timeout: float = 0.0) -> np.record:
+        sheet: Protection, ratings: Ratings, evidence: np.record, supervision: np.record,
+        conversion_steps: int, link_timeout: float = 0.0, watchdog: float = 0.0) -> np.record:
     """
     Return the `PROTECTION` record of a sheet; a conversion is every ``conversion_steps``.
 
-    ``link_timeout`` is that of the link's watchdog in s; 0: none.
+    ``link_timeout`` is that of the link's watchdog in s, ``watchdog`` that of the REU's own; 0:
+    none.
     """
     period = conversion_steps * PLANT_STEP
     levels = {name: np.full(N, math.inf) for name in (
@@ -116,11 +121,14 @@ def protection_record(
     if link_timeout:
         set_level('trip', BIT.link_lost, link_timeout)
         reaction[BIT.link_lost] = REACTIONS.index(sheet.link_lost_reaction)
+    if watchdog:
+        set_level('trip', BIT.watchdog, watchdog)
+        reaction[BIT.watchdog] = REACTIONS.index(sheet.watchdog_reaction)
     quiet = np.minimum(levels['warning'], levels['trip'])
     return record(
         PROTECTION, is_on=int(sheet.switch == 'on' and np.isfinite(quiet).any()), period=period,
         stroke=ratings.stroke, **levels, quiet=quiet, sign=sign,
-        delay=delay, reaction=reaction, evidence=evidence)
+        delay=delay, reaction=reaction, evidence=evidence, supervision=supervision)
 
 
 _DIGITS = 9  # a delay of 10 ms is 100 periods of 0.1 ms, not 101
@@ -146,9 +154,18 @@ def measure(supply_pressure, temperature, protection, state):
     values[BIT.relief_open] = max(measured.pressure_a, measured.pressure_b)
     values[BIT.load_cell_implausible] = unexplained_force(
         measured, velocity, protection.stroke, protection.evidence, own.evidence)
+    if state.frozen_for > 0.0:  # it moved while no program read it
+        own.evidence.position = measured.position
     values[BIT.encoder_jump] = jump_speed(measured.position, protection.period, own.evidence)
     values[BIT.link_lost] = state.link_silence
     values[BIT.spool_deviation] = spool_deviation(state, protection.evidence)
+    values[BIT.watchdog] = state.frozen_for
+    state.frozen_for = 0.0
+    own_supervision = protection.supervision
+    values[BIT.sensor_range] = beyond_range(measured, own_supervision)
+    (values[BIT.position_error], values[BIT.force_error], values[BIT.oscillation],
+     values[BIT.runaway]) = supervise(
+        supply_pressure, own_supervision, state, own.supervision)
 
 
 @kernel

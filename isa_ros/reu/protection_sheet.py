@@ -91,6 +91,10 @@ class Protection(Parameters):
         "what follows when the link's watchdog has tripped, until the next frame", *_TIMEOUT,
         absent='hold', source=ASSUMED)
 
+    watchdog_reaction: str = choice(
+        "what follows when the REU's watchdog has switched its output off, until it is cleared",
+        'disable', absent='disable', source=ASSUMED)
+
     def __post_init__(self) -> None:
         """Refuse a warning that comes later than its trip, and reactions that make it worse."""
         super().__post_init__()

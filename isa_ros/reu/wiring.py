@@ -89,7 +89,11 @@ class Reu(Parameters):
     computation_delay_us: float = parameter(
         'from an instant of the loops to its output at the amplifier', 'us', ge=0.0, le=1e3)
     frozen: float = fault(
-        '1: the REU has stopped, and its outputs hold', '1', is_whole=True, ge=0.0, le=1.0)
+        '1: the program of the REU has stopped, and its outputs hold', '1', is_whole=True,
+        ge=0.0, le=1.0)
+    watchdog_ms: float = parameter(
+        'time without the program after which its output is switched off; 0: no watchdog', 'ms',
+        absent=5.0, source='assumed', ge=0.0, le=1e3)
     protection: Protection = section(Protection)
 
 

@@ -19,7 +19,7 @@ PARAMETERS, DEVICE = actuator_messages.APPLIED_PARAMETERS[0], actuator_messages.
 OF_SUPPLIES = coordinator_messages.APPLIED_PARAMETERS[0]
 DIAGNOSTICS = diagnostics.TOPIC[0]
 _FIELDS = tuple(SAMPLE.names or ())
-_SINCE, _AGE = _FIELDS.index('state_since'), _FIELDS.index('age')
+_SINCE, _AGE, _STALE = (_FIELDS.index(name) for name in ('state_since', 'age', 'is_stale'))
 _HALF_STEP_NS = 0.5 * PLANT_STEP_NS
 
 
@@ -69,7 +69,8 @@ class RareMessages:
         It is one in which the status has changed, as far as it has arrived over a link, or a
         second of simulated time ended; t = 0.
         """
-        since = (self._values[row, _SINCE] + self._values[row, _AGE]) * NS_PER_SECOND
+        age = 0.0 if self._values[row, _STALE] else self._values[row, _AGE]
+        since = (self._values[row, _SINCE] + age) * NS_PER_SECOND
         return bool(since > tick_start_ns - _HALF_STEP_NS
                     or t_ns // NS_PER_SECOND != tick_start_ns // NS_PER_SECOND or t_ns == 0)
 

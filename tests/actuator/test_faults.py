@@ -116,21 +116,6 @@ def test_the_reu_does_not_know_the_faults_of_its_plant(model):
             assert faulty['plant'].tobytes() != actuator_record(sheet, 6)['plant'].tobytes()
 
 
-def test_a_frozen_reu_holds_its_outputs_while_its_sensors_go_on():
-    actuator = smart_actuator('isa_v5', 'mass', timing=TICK)
-    run(actuator, 10)
-    actuator.tune({'reu.frozen': 1.0})
-    actuator.tick()
-    held = {name: actuator.sample[name] for name in (
-        'position_reference', 'force_reference', 'spool_reference', 'current_reference')}
-    velocity, measured = actuator.sample.velocity, actuator.sample.pressure_a
-    for _ in range(30):
-        actuator.tick()
-        assert {name: actuator.sample[name] for name in held} == held
-    assert actuator.sample.velocity == velocity != 0.0
-    assert actuator.sample.pressure_a != measured
-
-
 def test_a_sensor_sticks_while_what_it_measures_goes_on_and_comes_free():
     actuator = smart_actuator('isa_v5', 'mass', timing=TICK)
     run(actuator, 10)

@@ -15,6 +15,7 @@ from isa_ros.actuator.sheet import ActuatorSheet
 from isa_ros.config.runs.run_config import ActuatorConfig
 from isa_ros.core.conditions import BITS, conditions
 from isa_ros.core.record import rows_of
+from isa_ros.core.signals import COMMAND, HAS_ENABLE, HAS_QUICK_STOP, HAS_SETPOINT
 from isa_ros.core.timebase import PLANT_STEP
 from isa_ros.errors import ConfigError, ParameterError
 from isa_ros.reu.cascade import REU_STATE
@@ -364,7 +365,7 @@ def exchanged(is_compiled: bool) -> bytes:
         kernels if is_compiled else [kernel.py_func for kernel in kernels])
     for k in range(30):
         own.accept(setpoint(position=0.05 + 1e-4 * k))
-        hand_over(0, memory)
+        hand_over(50 * k, 0, memory)
         for step in range(STEPS * k, STEPS * (k + 1)):
             memory.samples.position[0] = step
             is_sampled = step > STEPS * k and step % (STEPS // 2) == 0
@@ -465,3 +466,91 @@ def test_the_record_is_in_nanoseconds():
 def test_a_cycle_of_the_tick_needs_a_run():
     with pytest.raises(ConfigError, match='link.cycle_ms = 0 ms is the tick of a run'):
         link_record(link_of(cycle_ms=0.0))
+
+
+DEAD = {'link.loss': 1.0}
+
+
+def asked(kinds: int, is_enabled: int = 0) -> np.void:
+    command: np.void = np.zeros(1, COMMAND)[0]
+    command['kinds'], command['is_enabled'] = kinds, is_enabled
+    return command
+
+
+def test_a_dead_link_answers_no_success_and_its_old_commands_do_not_act():
+    """The quick stop of a broken cable does not come 100 ms after it is mended."""
+    own = actuator(linked(cycle_ms=1.0, delay_cycles=1.0, watchdog_ms=10.0))
+    for _ in range(20):
+        own.tick()
+    done, answer = own.request(asked(HAS_ENABLE, 1), 'enabled')
+    assert done and answer.startswith('enabled: handed to the link at t = 0.020000 s')
+    own.tick()
+    own.tick()
+    own.tune(DEAD)
+    for _ in range(12):
+        own.tick()
+    state, observed = own.memory.reu[0]['status']['state'], own.memory.observed[0]
+    assert observed['is_stale'] == 1.0 and observed['age'] >= 0.01
+    done, answer = own.request(asked(HAS_QUICK_STOP), 'quick stop')
+    assert not done and answer.startswith('quick stop: the link is lost: the last sample is 0.01')
+    for _ in range(11):
+        own.tick()
+    assert observed['commands_dropped'] == 1.0 and own.memory.outbox[0]['kinds'] == 0
+    own.tune({'link.loss': 0.0})
+    for _ in range(20):
+        own.tick()
+    assert own.memory.reu[0]['status']['state'] == state, 'no quick stop'
+    assert observed['is_stale'] == 0.0 and observed['age'] < 0.01
+
+
+@pytest.mark.parametrize('fresh', [True, False])
+def test_a_fresh_setpoint_survives_where_an_old_request_is_dropped(fresh):
+    """Each has its own age: a setpoint every tick does not carry an old quick stop along."""
+    own = actuator(linked(cycle_ms=1.0, delay_cycles=1.0, watchdog_ms=10.0))
+    own.tune(DEAD)
+    own.accept(asked(HAS_QUICK_STOP))
+    for k in range(15):
+        if fresh or k == 0:
+            own.accept(setpoint(position=0.05))
+        own.tick()
+    assert int(own.memory.outbox[0]['kinds']) == (HAS_SETPOINT if fresh else 0)
+    assert own.memory.observed[0]['commands_dropped'] == (1.0 if fresh else 2.0)
+
+
+def test_without_a_watchdog_a_command_waits_as_long_as_it_takes():
+    own = actuator(linked(cycle_ms=1.0, delay_cycles=1.0, watchdog_ms=0.0))
+    own.tune(DEAD)
+    own.accept(asked(HAS_QUICK_STOP))
+    for _ in range(40):
+        own.tick()
+    assert int(own.memory.outbox[0]['kinds']) == HAS_QUICK_STOP
+    assert own.memory.observed[0]['is_stale'] == 1.0, 'older than ten cycles'
+
+
+def test_lost_frames_are_counted_each_way():
+    own = actuator(linked(cycle_ms=1.0, delay_cycles=1.0, loss=0.3))
+    for _ in range(200):
+        own.tick()
+    link, observed = own.memory.links[0], own.memory.observed[0]
+    assert 30 < link['up']['lost'] < 90 and 30 < link['down']['lost'] < 90
+    assert observed['frames_lost_up'] == link['up']['lost']
+    assert 0 <= link['down']['lost'] - observed['frames_lost_down'] < 10
+
+
+def test_a_frozen_reu_sends_no_frames_and_takes_none():
+    own = actuator(linked(cycle_ms=1.0, delay_cycles=1.0, watchdog_ms=10.0))
+    for _ in range(10):
+        own.tick()
+    own.tune({'reu.frozen': 1.0})
+    lost = int(own.memory.links[0]['down']['lost'])
+    for _ in range(30):
+        own.accept(setpoint(position=0.03))
+        own.tick()
+    assert own.memory.observed[0]['is_stale'] == 1.0
+    assert own.memory.observed[0]['age'] == pytest.approx(0.03, abs=2e-3)
+    assert own.memory.links[0]['down']['lost'] > lost + 25
+    assert not own.memory.observed[0]['trips'], 'its watchdog has acted, and cannot tell'
+    own.tune({'reu.frozen': 0.0})
+    for _ in range(4):
+        own.tick()
+    assert conditions(own.memory.observed[0]['trips']) == ['watchdog']

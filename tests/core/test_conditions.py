@@ -14,7 +14,8 @@ def test_a_bit_is_the_place_of_its_condition() -> None:
         ('setpoint_timeout', 0), ('end_of_stroke', 1), ('overspeed', 2), ('overload', 3),
         ('overpressure', 4), ('overcurrent', 5), ('overtemperature', 6), ('supply_low', 7),
         ('relief_open', 8), ('load_cell_implausible', 9), ('encoder_jump', 10),
-        ('link_lost', 11), ('spool_deviation', 12)]
+        ('link_lost', 11), ('spool_deviation', 12), ('watchdog', 13), ('sensor_range', 14),
+        ('position_error', 15), ('force_error', 16), ('oscillation', 17), ('runaway', 18)]
 
 
 @given(st.integers(0, ALL))

@@ -30,7 +30,7 @@ def rated(name: str, level: float) -> float:
 
 def test_every_condition_has_levels_or_a_timeout() -> None:
     """Keys, bits and readings of this test name the same conditions."""
-    timeouts = {'setpoint_timeout', 'link_lost'}
+    timeouts = {'setpoint_timeout', 'link_lost', 'watchdog'}
     assert set(levels_of(defaults(Protection))) == set(BITS) - timeouts == set(NAMES)
 
 
@@ -236,7 +236,8 @@ def test_the_default_watches_all_but_the_ends_and_the_setpoints() -> None:
     constants = Watched(defaults(Protection)).constants
     is_watched = np.isfinite(constants.quiet)
     assert [name for name, k in BITS.items() if not is_watched[k]] == [
-        'setpoint_timeout', 'end_of_stroke', 'link_lost']
+        'setpoint_timeout', 'end_of_stroke', 'link_lost', 'watchdog']
+    assert np.isfinite(Watched(defaults(Protection), 5e-3).constants.trip[BITS['watchdog']])
 
 
 def test_a_trip_keeps_its_cause() -> None:

@@ -5,7 +5,7 @@ from dataclasses import replace
 from typing import Any
 
 from isa_ros.core.conditions import BITS
-from isa_ros.core.device import IMPEDANCE
+from isa_ros.core.device import FORCE, IMPEDANCE, POSITION
 from isa_ros.core.parameter import defaults
 from isa_ros.core.record import record
 from isa_ros.reu.cascade import REU_STATE
@@ -13,6 +13,7 @@ from isa_ros.reu.plausibility import EVIDENCE, VALVE_EVIDENCE
 from isa_ros.reu.protection import protection_record, Ratings
 from isa_ros.reu.protection_sheet import levels_of, Protection
 from isa_ros.reu.reactions import protect
+from isa_ros.reu.supervision import SUPERVISION
 import numpy as np
 
 STEPS = 5                   # plant steps of a conversion
@@ -23,6 +24,7 @@ RATINGS = Ratings(
     stroke=STROKE, speed=1.0, force_range=1e4, pressure_range=25e6, current_range=12.5e-3,
     opening_pressure=22e6, spool_stop=2e-4)
 SUPPLY = 20.7e6
+FLOW_GAIN = 1e-7    # m3/s/sqrt(Pa): 0.46 l/s from the supply
 
 
 def off(names: Mapping[str, Any] = BITS) -> Protection:
@@ -43,14 +45,21 @@ def only(name: str, hysteresis: float = 0.0, **levels: Any) -> Protection:
 class Watched:
     """The records of a protection; `convert` is one conversion."""
 
-    def __init__(self, sheet: Protection) -> None:
+    def __init__(self, sheet: Protection, watchdog: float = 0.0) -> None:
         evidence = record(
             EVIDENCE, area_a=AREA_A, area_b=AREA_B, force_range=RATINGS.force_range,
             stiction=100.0, viscous=0.0, inertia=1.0, speed_rate=1000.0, speed_steps=50,
             offset_steps=0, valve=record(
                 VALVE_EVIDENCE, is_watched=1, is_piloted=0, gain=SPOOL_GAIN,
                 stop=RATINGS.spool_stop, share=PERIOD / (SPOOL_LAG + PERIOD)))
-        self.constants = protection_record(sheet, RATINGS, evidence, STEPS)
+        supervision = record(
+            SUPERVISION, area_a=AREA_A, area_b=AREA_B, flow_gain=FLOW_GAIN, stroke=STROKE,
+            force_range=RATINGS.force_range, pressure_range=RATINGS.pressure_range,
+            current_range=RATINGS.current_range, spool_range=3e-4, spool_gain=SPOOL_GAIN,
+            opening=4e-5, follows_force=1, creep=0.02, slow_share=PERIOD / (6.4e-3 + PERIOD),
+            mean_share=PERIOD / (0.05 + PERIOD))
+        self.constants = protection_record(
+            sheet, RATINGS, evidence, supervision, STEPS, watchdog=watchdog)
         self.state = np.zeros(1, REU_STATE).view(np.recarray)[0]
         self.own = self.state.protection
         self.supply, self.temperature, self.step = SUPPLY, 40.0, 0
@@ -87,6 +96,32 @@ def _load_cell(watched: Watched, quantity: float) -> None:
     measured.force = AREA_A * 10e6 - 100.0 - quantity
 
 
+def _position_error(watched: Watched, quantity: float) -> None:
+    """Stand still in mode position, away from the setpoint."""
+    watched.state.status.mode = watched.state.status.acting = POSITION
+    watched.state.setpoint.position = watched.state.measured.position + quantity
+
+
+def _force_error(watched: Watched, quantity: float) -> None:
+    """Measure less than the force block asks for, and the valve can give."""
+    watched.state.status.acting = FORCE
+    watched.state.force_reference = 2000.0
+    watched.state.measured.force = 2000.0 - quantity
+
+
+def _oscillation(watched: Watched, quantity: float) -> None:
+    """Give the mean fast part of the force, which the next conversion hardly changes."""
+    watched.state.status.acting = FORCE
+    watched.own.supervision.force_activity = quantity / (1.0 - PERIOD / (0.05 + PERIOD))
+
+
+def _runaway(watched: Watched, quantity: float) -> None:
+    """Retract although the valve lets oil into chamber A."""
+    measured = watched.state.measured
+    measured.spool, measured.pressure_a, measured.pressure_b = 1e-4, 10e6, 10e6
+    watched.state.speed.velocity = -quantity
+
+
 READINGS: Mapping[str, Callable[[Watched, float], None]] = {
     'end_of_stroke': _measure('position'),
     'overspeed': lambda watched, quantity: setattr(watched.state.speed, 'velocity', -quantity),
@@ -102,4 +137,10 @@ READINGS: Mapping[str, Callable[[Watched, float], None]] = {
         watched.state.measured, 'position',
         watched.own.evidence.position + quantity * PERIOD),
     'spool_deviation': _measure('spool'),
+    'sensor_range': lambda watched, quantity: setattr(
+        watched.state.measured, 'pressure_a', -quantity * RATINGS.pressure_range),
+    'position_error': _position_error,
+    'force_error': _force_error,
+    'oscillation': _oscillation,
+    'runaway': _runaway,
 }

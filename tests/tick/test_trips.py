@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 
 RIG = load('rig_linear', duration=0.2)
-LOST = {'t_s': 0.03, 'actuator': 'ram', 'fault': 'pressure_a_lost'}
+LOST = {'t_s': 0.03, 'actuator': 'ram', 'set': {'plant.sensors.pressure_a.bias': -1e8}}
 NAMES = [('ram', False), ('wheel', True)]
 
 

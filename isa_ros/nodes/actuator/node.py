@@ -162,8 +162,4 @@ class ActuatorNode(Node):
         """Accept a request where the state of the device has a transition for it."""
         command = np.zeros(1, COMMAND)[0]
         fill_command(self.get_name(), request, command)
-        refusal = self.actuator.refusal(command)
-        if not refusal:
-            self.actuator.accept(command)
-        response.success = not refusal
-        response.message = refusal or f'{what} from t = {self.actuator.t_ns * 1e-9:.6f} s'
+        response.success, response.message = self.actuator.request(command, what)

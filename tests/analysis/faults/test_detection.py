@@ -23,11 +23,13 @@ REPORTED: Mapping[str, tuple[str, int]] = {
     'coils_open': ('spool deviation', 85),          # when the motion needs the other direction
     'coil_shorted': ('spool deviation', DELAY + 1),
     'amplifier_weak': ('spool deviation', 84),
-    'reu_frozen': ('encoder jump', 501),            # with its first conversion after 500 ms
+    'relief_stuck_open': ('force error', 283),      # once the motion needs more than they hold
+    'reu_frozen': ('watchdog', 6),
     'supply_relief_stuck_open': ('supply low', 82),     # 11 MPa, and 10 ms
-    'encoder_stuck': ('load cell implausible', 188),    # the loop pushes to the other end
+    'encoder_stuck': ('force error', 104),          # the loop pushes to the other end
     'load_cell_offset': ('load cell implausible', DELAY),
-    'pressure_a_lost': ('load cell implausible', DELAY),
+    'load_cell_late': ('oscillation', 199), 'load_cell_reversed': ('oscillation', 166),
+    'pressure_a_lost': ('load cell implausible', DELAY), 'pressures_lost': ('sensor range', 3),
     'spool_sensor_stuck': ('spool deviation', 102)}
 """First condition that the device warns of or trips, and ms from the begin of the fault."""
 UNREPORTED = [name for name, own in fault_catalogue().items() if own.unreported or own.unseen]

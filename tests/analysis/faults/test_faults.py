@@ -66,7 +66,7 @@ def test_an_actuator_is_sound_again_after_each_fault_that_trips_nothing(found):
 def test_a_low_supply_is_warned_of(found):
     """Half of the 22 MPa at which the relief valves open, below which the open one of 5 MPa is."""
     assert [(one.kind, one.name) for one in found['supply_relief_stuck_open'].noticed] == [
-        ('warning', 'supply_low')]
+        ('warning', 'supply_low'), ('warning', 'force_error')]
 
 
 def noticed(own: Outcome) -> dict[str, float]:

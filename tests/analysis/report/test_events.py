@@ -11,7 +11,8 @@ import pytest
 RIG = load('rig_linear', {'name': 'short', 'duration_s': 0.2, 'tracks': {'ram': [
     {'t_s': 0.0, 'position': 'hold'}, {'t_s': 0.12, 'clear_fault': True},
     {'t_s': 0.15, 'clear_fault': True, 'enabled': True}]}})
-FAULT = {'t_s': 0.03, 'actuator': 'ram', 'fault': 'pressure_a_lost', 'until_s': 0.13}
+FAULT = {'t_s': 0.03, 'actuator': 'ram', 'until_s': 0.13,
+         'set': {'plant.sensors.pressure_a.bias': -1e8}}
 
 
 @pytest.fixture(scope='module')

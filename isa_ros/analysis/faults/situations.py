@@ -1,0 +1,174 @@
+"""
+Which fault is noticed in which situation: every fault of the catalogue, in each of four.
+
+At rest under impedance, in a slow and a fast sine, and against a blocked load with a force that
+swings. The rig and the faults are those of `isa_ros.analysis.faults.measure`.
+"""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+import warnings
+
+from isa_ros.analysis.faults.measure import CONFIG, LINK
+from isa_ros.config.models.fault_catalogue import (
+    ACTUATOR, fault_catalogue, named_fault, NamedFault)
+from isa_ros.config.text.sections import Place
+from isa_ros.config.text.yaml_text import Tree
+from isa_ros.core.conditions import BITS
+from isa_ros.core.units import MILLI
+from isa_ros.errors import SimulationDiverged
+from isa_ros.scripting.result import Result
+from isa_ros.scripting.run import load, Run
+from isa_ros.text.page import Page
+from isa_ros.text.progress import Progress
+from isa_ros.text.table import aligned, digits
+from isa_ros.tick.trips import TripWarning
+import numpy as np
+
+BEGIN_S, DURATION_S = 0.5, 1.2
+PAGE = 'fault_situations.md'
+_GAINS: Tree = {'t_s': 0.0, 'position': 'hold', 'stiffness': 1.0e5, 'damping': 4000.0}
+
+
+def _sine(amplitude: float, hertz: float, moves: str) -> Tree:
+    return {'sine': {'amplitude': amplitude, 'frequency_hz': hertz, 'moves': moves}}
+
+
+SITUATIONS: Mapping[str, tuple[str, Tree]] = {
+    'at rest': ('mass', _GAINS),
+    'slow': ('mass', _GAINS | _sine(0.02, 0.5, 'position')),
+    'fast': ('mass', _GAINS | _sine(0.02, 4.0, 'position')),
+    'blocked force': ('blocked', _GAINS | _sine(3000.0, 2.0, 'effort'))}
+"""Kind of the load, and the entry of its track, by name."""
+
+_HEAD = f"""# Which fault is noticed when
+
+Each fault of the catalogue in four situations of the rig of [device_faults.md](device_faults.md):
+at rest, moving by 20 mm at 0.5 Hz and at 4 Hz, and pushing with 3 kN at 2 Hz against a blocked
+load. It begins at {BEGIN_S:g} s and lasts. A cell has the condition that is noticed first, whether
+it warns or trips, and after how many ms; then the largest errors of position and force while the
+fault lasts, against the same run without it, exact ones. Without a condition there is *nothing*:
+then these errors are what the fault costs unnoticed. Once a trip has disabled the device, they
+are those of a load that nothing holds. Written by
+
+    ./isa faults --situations --out docs
+"""
+
+
+@dataclass(frozen=True)
+class Seen:
+    """What is noticed of one fault in one situation."""
+
+    fault: str
+    situation: str
+    condition: str
+    """The one noticed first; '': none."""
+    kind: str
+    """``warning`` or ``trip``."""
+    after_s: float
+    position_error: float
+    """Largest distance to the run without the fault, m."""
+    force_error: float
+    """Likewise, N."""
+    diverged: str = ''
+
+
+def situations(
+        names: Sequence[str] | None = None, report: Progress | None = None) -> list[Seen]:
+    """
+    Return what is noticed of each fault of the catalogue, or of those named, by situation.
+
+    Raises
+    ------
+    ConfigError
+        A name is unknown.
+
+    """
+    chosen = [named_fault(name, Place('--only')) for name in names] if names else list(
+        fault_catalogue().values())
+    found = []
+    for k, (name, (kind, track)) in enumerate(SITUATIONS.items()):
+        config: Tree = {**CONFIG, 'actuators': {'ram': {
+            'model': 'isa_v5', 'preset': 'default', 'load': {'kind': kind},
+            'initial_position_mm': 50.0}}}
+        scenario: Tree = {
+            'name': 'situation', 'duration_s': DURATION_S, 'tracks': {'ram': [track]}}
+        plain, linked = load(config, scenario), load({**config, 'link': LINK}, scenario)
+        sound = {rig: rig.simulate() for rig in (plain, linked)}
+        for j, fault in enumerate(chosen):
+            if report is not None:
+                report(k * len(chosen) + j, len(SITUATIONS) * len(chosen), fault.name)
+            rig = linked if any(key.startswith('link.') for key in fault.values) else plain
+            found.append(_seen(fault, name, rig, sound[rig]))
+    if report is not None:
+        report(len(found), len(found))
+    return found
+
+
+def _seen(fault: NamedFault, situation: str, rig: Run, sound: Result) -> Seen:
+    target = 'ram' if fault.of == ACTUATOR else 'supply'
+    try:
+        with warnings.catch_warnings():
+            warnings.simplefilter('ignore', TripWarning)
+            faulty = rig.simulate(
+                faults=[{'t_s': BEGIN_S, fault.of: target, 'fault': fault.name}])
+    except SimulationDiverged as error:
+        return Seen(fault.name, situation, '', '', 0.0, 0.0, 0.0, str(error))
+    condition, kind, after_s = _first(faulty, sound)
+    return Seen(fault.name, situation, condition, kind, after_s,
+                _largest(faulty, sound, 'position'), _largest(faulty, sound, 'force'))
+
+
+def _first(faulty: Result, sound: Result) -> tuple[str, str, float]:
+    """Return the condition noticed first, of the same tick the trip, and when."""
+    found = []
+    for order, (field, kind) in enumerate((('trips', 'trip'), ('warnings', 'warning'))):
+        new = faulty[f'ram.{field}'].astype(np.int64) & ~sound[f'ram.{field}'].astype(np.int64)
+        for name, bit in BITS.items():
+            ticks = np.flatnonzero(new >> bit & 1)
+            if len(ticks):
+                found.append((float(faulty.time[ticks[0]]) - BEGIN_S, order, name, kind))
+    if not found:
+        return '', '', 0.0
+    after_s, _, name, kind = min(found)
+    return name, kind, after_s
+
+
+def _largest(faulty: Result, sound: Result, field: str) -> float:
+    return float(np.abs(faulty[f'ram.{field}'] - sound[f'ram.{field}']).max())
+
+
+def _cell(own: Seen) -> str:
+    if own.diverged:
+        return own.diverged
+    noticed = (f'{own.kind} {own.condition}, {own.after_s / MILLI:.0f} ms' if own.condition
+               else 'nothing')
+    return (f'{noticed}; {digits(own.position_error / MILLI, 3)} mm, '
+            f'{digits(own.force_error, 3)} N')
+
+
+def _rows(found: Sequence[Seen]) -> list[tuple[str, ...]]:
+    faults = dict.fromkeys(own.fault for own in found)
+    cells = {(own.fault, own.situation): _cell(own) for own in found}
+    return [('fault', *SITUATIONS), *(
+        (fault, *(cells[fault, name] for name in SITUATIONS)) for fault in faults)]
+
+
+def as_text(found: Sequence[Seen]) -> str:
+    """Return the matrix for a terminal."""
+    return '\n'.join(aligned(_rows(found)))
+
+
+def as_tree(found: Sequence[Seen]) -> dict[str, Any]:
+    """Return the matrix for JSON."""
+    return {'situations': [vars(own) for own in found]}
+
+
+def write_page(found: Sequence[Seen], directory: Path) -> list[Path]:
+    """Write the page; return its path."""
+    page = Page(PAGE, _HEAD)
+    page.section('Matrix')
+    page.table(_rows(found))
+    return page.write(directory)

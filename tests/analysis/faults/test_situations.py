@@ -1,0 +1,44 @@
+"""Which fault is noticed in which situation, and what it costs where none is."""
+
+from isa_ros.analysis.faults.situations import as_text, as_tree, SITUATIONS, situations, write_page
+from isa_ros.cli.main import main
+from isa_ros.errors import ConfigError
+import pytest
+
+
+@pytest.fixture(scope='module')
+def found():
+    return {(own.fault, own.situation): own
+            for own in situations(['pressures_lost', 'relief_stuck_open'])}
+
+
+def test_a_broken_wire_is_noticed_in_every_situation(found):
+    """2 ms of delay, and the tick in which they end."""
+    for name in SITUATIONS:
+        own = found['pressures_lost', name]
+        assert (own.condition, own.kind) == ('sensor_range', 'trip')
+        assert own.after_s == pytest.approx(3e-3, abs=1e-9)
+
+
+def test_open_relief_valves_are_noticed_where_force_is_needed(found):
+    assert found['relief_stuck_open', 'at rest'].condition == ''
+    for name in ('fast', 'blocked force'):
+        assert found['relief_stuck_open', name].condition == 'force_error'
+    fast = found['relief_stuck_open', 'fast']
+    assert fast.position_error > 0.05 > 0.001 > found[
+        'relief_stuck_open', 'at rest'].position_error
+
+
+def test_the_matrix_has_a_row_a_fault_and_a_column_a_situation(found, tmp_path):
+    head, *rows = as_text(list(found.values())).splitlines()
+    assert all(name in head for name in SITUATIONS) and len(rows) == 2
+    assert len(as_tree(list(found.values()))['situations']) == 8
+    page, = write_page(list(found.values()), tmp_path)
+    assert 'trip sensor_range, 3 ms' in page.read_text()
+
+
+def test_an_unknown_fault_and_options_that_do_not_fit_are_refused(capsys):
+    with pytest.raises(ConfigError, match='valve_stck'):
+        situations(['valve_stck'])
+    assert main(['faults', '--list', '--situations']) == 2
+    assert '--situations is not used with --list' in capsys.readouterr().err
