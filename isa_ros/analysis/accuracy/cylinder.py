@@ -65,16 +65,20 @@ def cylinder_record() -> np.recarray:
 
 @kernel
 def slope(y, command, cylinder):
-    """Return dy/dt of the `STATES`; m v' = f_h - d v - c x  (V7, V10, C2, C3)."""
+    """
+    Return dy/dt of the `STATES`; m v' = f_h - d v - c x  (V7, V10, C1, C2, C3).
+
+    No pressure comes near the atmosphere, so that the modulus is constant.
+    """
     x, v, p_a, p_b, u, u_rate = y
     closed, oil = cylinder.spool, cylinder.chambers
     q_a, q_b, _, _ = servo_valve.port_flows(
         u, p_a, p_b, cylinder.p_s, cylinder.p_t, cylinder.valve)
-    rate_a, rate_b = chambers.pressure_rates(
-        q_a, q_b, p_a, p_b, 0.5 * oil.stroke + x, v, oil)
+    in_a, in_b = chambers.surpluses(q_a, q_b, p_a, p_b, v, oil)
+    per_a, per_b = chambers.elastances(0.5 * oil.stroke + x, oil)
     force = (chambers.hydraulic_force(p_a, p_b, oil)
              - cylinder.damping * v - cylinder.stiffness * x)
-    return (v, force / cylinder.mass, rate_a, rate_b, u_rate,
+    return (v, force / cylinder.mass, per_a * in_a, per_b * in_b, u_rate,
             spool.spool_acceleration(command, u, u_rate, closed.w_n, closed.zeta))
 
 

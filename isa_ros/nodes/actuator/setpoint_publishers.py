@@ -8,6 +8,7 @@ from rclpy.subscription import Subscription
 from rclpy.topic_endpoint_info import TopicEndpointInfo
 
 PERIOD_S = 1.0
+_UNKNOWN = '_NODE_NAME_UNKNOWN_'    # of rmw: the graph has a publisher before its node
 
 
 class IncompatiblePublishers:
@@ -34,7 +35,7 @@ class IncompatiblePublishers:
         self._next = now + PERIOD_S
         for publisher in self._node.get_publishers_info_by_topic(self._topic):
             identity = tuple(publisher.endpoint_gid)
-            if identity in self._checked:
+            if identity in self._checked or publisher.node_name == _UNKNOWN:
                 continue
             self._checked.add(identity)
             if reason := self._reason(publisher):
