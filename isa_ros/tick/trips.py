@@ -98,7 +98,7 @@ def counts_of(names: Sequence[str], samples: Records) -> Iterator[str]:
 
 
 class TripFinder:
-    """Finds the trips in successive rows of `SAMPLE`, (n,); ``actuators`` are (name, is_rotary)."""
+    """Finds the trips in successive `SAMPLE` rows, (n,); ``actuators`` are (name, is_rotary)."""
 
     def __init__(self, actuators: Sequence[tuple[str, bool]]) -> None:
         self._actuators = actuators

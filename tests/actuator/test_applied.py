@@ -70,7 +70,7 @@ def test_an_enable_that_a_fault_refuses_is_told_as_refused_and_counted(faulted):
 
 
 def test_once_the_cause_is_gone_the_requests_are_taken(faulted):
-    faulted.tune({name: 0.0 for name in LOST})
+    faulted.tune(dict.fromkeys(LOST, 0.0))
     run(faulted, 2)
     assert applied(faulted, request(HAS_CLEAR_FAULT)) == (HAS_CLEAR_FAULT, 0)
     assert faulted.sample.device_state == DISABLED

@@ -323,11 +323,10 @@ def test_the_watchdog_is_exact_within_a_plant_step():
 
 def test_a_lost_link_trips_until_the_next_frame():
     """
-    Frames to 10 ms, the watchdog at 13.5 ms: it stops until frames come again, then goes on to its
-    setpoint with 0.1 m/s.
+    Frames to 10 ms, the watchdog at 13.5 ms: it stops until frames come again.
 
-    The REU looks at its conversions, every 5 plant steps from step 1 on: the first later than
-    step 675 is 676.
+    Then it goes on to its setpoint with 0.1 m/s. The REU looks at its conversions, every 5 plant
+    steps from step 1 on: the first later than step 675 is 676.
     """
     own = actuator(linked(watchdog_ms=3.5))
     link = own.memory.constants['link']

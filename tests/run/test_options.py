@@ -65,13 +65,14 @@ def test_parameters_that_are_set_ask_for_what_the_command_line_asks_for():
         'real_time_factor': 2.0, 'controller': ['sway', 'hold'], 'paused': True,
         'restore': Path('a.json'), 'save': Path('b.json'), 'overwrite': True,
         'compression': 'lz4', 'split_mb': 3.0, 'in_process': True, 'join_timeout': 7.0,
-        'elsewhere': (), 'sync': True, 'fail_on_trip': True, 'set': ['supply.pressure_mpa=14.0'], 'seed': 7},
-        is_alone=True)
+        'elsewhere': (), 'sync': True, 'fail_on_trip': True,
+        'set': ['supply.pressure_mpa=14.0'], 'seed': 7}, is_alone=True)
     assert by_parameters == by_arguments == Request(
         config=LEG, scenario=find('drop', SCENARIOS), out=Path('bag'), duration_s=0.5,
         real_time_factor=2.0, controllers=('sway', 'hold'), is_paused=True,
         restore=Path('a.json'), save=Path('b.json'), overwrite=True, compression='lz4',
-        split_mb=3.0, is_synced=True, fail_on_trip=True, in_process=True, join_timeout_s=7.0, is_alone=True,
+        split_mb=3.0, is_synced=True, fail_on_trip=True, in_process=True, join_timeout_s=7.0,
+        is_alone=True,
         changes=('supply.pressure_mpa=14.0',), seed=7)
     assert by_arguments.all_changes == ('supply.pressure_mpa=14.0', 'seed=7')
 

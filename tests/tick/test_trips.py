@@ -5,7 +5,7 @@ from isa_ros.core.device import ENABLED, FAULT
 from isa_ros.core.signals import SAMPLE
 from isa_ros.scripting.run import load
 from isa_ros.testing import assert_no_trips
-from isa_ros.tick.trips import counts_of, Trip, Tripped, TripLog, trips_of, TripWarning
+from isa_ros.tick.trips import counts_of, Trip, TripLog, Tripped, trips_of, TripWarning
 import numpy as np
 import pytest
 

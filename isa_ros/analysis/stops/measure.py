@@ -69,8 +69,9 @@ def rig(model: str = 'isa_v5', *, mass: float = 50.0, force: float = 0.0,
     own: dict[str, Any] = {'kind': load_kind}
     if load_kind == 'mass':
         own |= {'inertia': mass, 'force': force}
-    start: Tree = ({'initial_position_deg': float(np.degrees(position * stroke))}
-             if model == 'smart_manifold' else {'initial_position_mm': 1e3 * position * stroke})
+    place = position * stroke
+    start: Tree = ({'initial_position_deg': float(np.degrees(place))}
+                   if model == 'smart_manifold' else {'initial_position_mm': 1e3 * place})
     constant: Tree = {'kind': 'constant', 'pressure_mpa': supply_mpa, 'return_pressure_mpa': 0.0}
     return {
         'name': 'stop_rig', 'step_ms': 1e3 * STEP_S, 'controller_offset_ms': 0.02,
