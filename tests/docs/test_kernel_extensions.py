@@ -107,7 +107,8 @@ def _sensor(copied: PatchedCopy) -> None:
         sensors, last, '    tachometer: channels.TachometerChannel = section('
         f'channels.TachometerChannel)\n{last}')
     for old, new in (
-            ('    if not own.errors.are_ideal:\n', 'measured.tachometer = at.velocity'),
+            ('    if not own.errors.are_ideal:\n        disturb(',
+             'measured.tachometer = at.velocity'),
             ('    channels.disturb(', 'exact[6] = measured.tachometer'),
             ('\n\n@kernel\ndef read(', 'measured.tachometer = shown[6]')):
         copied.replace(sensors, old, f'    {new}\n{old}')
