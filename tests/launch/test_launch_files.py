@@ -176,7 +176,8 @@ def test_in_one_process_the_coordinator_is_alone_and_gets_every_argument(leg):
         'scenario_file': str(find('step', SCENARIOS).resolve()), 'out': 'bag',
         'duration': 0.5, 'in_process': True, 'real_time_factor': 2.0, 'paused': True,
         'compression': 'lz4', 'split_mb': 0.0, 'overwrite': True, 'join_timeout_s': 7.0,
-        'restore': 'a.json', 'save': 'b.json', 'sync': True, 'seed': 7}
+        'restore': 'a.json', 'save': 'b.json', 'sync': True, 'seed': 7,
+        'fail_on_trip': False}
 
 
 def test_one_actuator_runs_its_model_at_real_time(actions):

@@ -38,7 +38,7 @@ def test_every_error_is_one_line_and_its_code(
 
 def test_the_line_of_a_defect_says_where_it_is_and_where_to_report_it(
         capsys: pytest.CaptureFixture[str]) -> None:
-    with pytest.raises(TypeError) as caught:
+    with pytest.raises(AttributeError) as caught:
         one_line(None)  # type: ignore[arg-type]
     assert end_of('coordinator', caught.value) == 70
     line = capsys.readouterr().err
@@ -53,13 +53,13 @@ def test_a_text_of_a_file_cannot_steer_the_terminal(capsys: pytest.CaptureFixtur
 
 def test_debug_shows_the_traceback_of_a_defect(
         monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]) -> None:
-    with pytest.raises(TypeError) as caught:
+    with pytest.raises(AttributeError) as caught:
         one_line(None)  # type: ignore[arg-type]
     monkeypatch.setenv(DEBUG_VARIABLE, '1')
     assert end_of('isa', caught.value) == 70
     printed = capsys.readouterr().err
     assert printed.startswith('Traceback') and 'in one_line' in printed
-    assert printed.splitlines()[-1].startswith('isa: a defect of isa_ros, TypeError')
+    assert printed.splitlines()[-1].startswith('isa: a defect of isa_ros, AttributeError')
 
 
 def test_defects_are_reported_to_the_maintainer() -> None:

@@ -7,6 +7,7 @@ from tests.ros.faults import assert_replays, mcap_file, wait_for_tick_0, WHEEL_S
 from tests.ros.started import bringup, RIG, started, wait_for
 
 pytestmark = [pytest.mark.ros, pytest.mark.slow]
+BEHIND = 's of host time behind real_time_factor = 1 at the end'     # of a busy host
 
 
 def test_runs_of_other_namespaces_go_on_while_others_begin_and_end(
@@ -31,7 +32,8 @@ def test_runs_of_other_namespaces_go_on_while_others_begin_and_end(
             assert left.exit_code() == 130 and root.is_running(), left.errors + root.errors
             root.signal(signal.SIGTERM)
             assert root.exit_code() == 130, root.errors
-    assert left.errors.splitlines()[1:] == root.errors.splitlines()[1:] == [], left.errors
+    assert [line for run in (left, root) for line in run.errors.splitlines()
+            if 'stopped at t = ' not in line and BEHIND not in line] == []
     assert {topic for topic in topics if topic.startswith('/_isa')} == {
         '/_isa/step', '/_isa/acknowledgement'}
     assert assert_replays(lasting) > 0 and assert_replays(after) > 0

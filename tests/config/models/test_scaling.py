@@ -199,7 +199,7 @@ def test_the_table_shows_the_scaled_value_and_its_source(tmp_path: Path) -> None
     assert ' 5174 ' in unchanged and 'derived, A_B P_S; scales with stall_in' in unchanged
     run = own()
     assert RunConfig.from_yaml(run.to_yaml()).actuators == run.actuators
-    assert 'scale' not in run.to_yaml()
+    assert 'scales_with' not in run.to_yaml()
 
 
 def test_every_quantity_is_finite_and_positive_for_every_model_that_has_it() -> None:
