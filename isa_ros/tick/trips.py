@@ -8,7 +8,7 @@ the sample arrives; a trip that no sample has brought is not known.
 from collections.abc import Iterable, Iterator, Sequence
 from typing import NamedTuple
 
-from isa_ros.core.conditions import CONDITIONS, conditions
+from isa_ros.core.conditions import BITS, CONDITIONS, conditions
 from isa_ros.core.device import state_name
 from isa_ros.core.signals import Records
 from isa_ros.core.units import of_coordinate
@@ -39,7 +39,7 @@ class Trip(NamedTuple):
     """Of the device at the end of that tick."""
 
     def __str__(self) -> str:
-        condition = next(own for own in CONDITIONS if own.name == self.condition)
+        condition = CONDITIONS[BITS[self.condition]]
         line = f'{self.actuator}: {self.condition} tripped at t = {self.t_s:.6f} s'
         if self.value is not None and self.level is not None:
             line += (f', {condition.quantity} {digits(self.value, _DIGITS)} {self.unit} '
@@ -124,7 +124,7 @@ class TripFinder:
         new = int(sample['trips']) & ~int(self._trips[row])
         for condition in (*(other for other in conditions(new) if other != last), last):
             is_last = condition == last
-            unit = next(own.unit for own in CONDITIONS if own.name == condition)
+            unit = CONDITIONS[BITS[condition]].unit
             yield Trip(
                 name, condition, t_s, float(sample['trip_value']) if is_last else None,
                 float(sample['trip_level']) if is_last else None,

@@ -108,6 +108,31 @@ class Outcome:
     """The message of a simulation that could not go on."""
 
 
+def chosen_faults(names: Sequence[str] | None) -> list[NamedFault]:
+    """
+    Return the faults of the catalogue, or those named.
+
+    Raises
+    ------
+    ConfigError
+        A name is unknown.
+
+    """
+    if not names:
+        return list(fault_catalogue().values())
+    return [named_fault(name, Place('--only')) for name in names]
+
+
+def is_of_link(fault: NamedFault) -> bool:
+    """Return whether a fault is one of a link, which the rig must have then."""
+    return any(key.startswith('link.') for key in fault.values)
+
+
+def target_of(fault: NamedFault) -> str:
+    """Return the name in `CONFIG` of what has a fault."""
+    return 'ram' if fault.of == ACTUATOR else 'supply'
+
+
 def outcomes(
         names: Sequence[str] | None = None, report: Progress | None = None) -> list[Outcome]:
     """
@@ -119,15 +144,14 @@ def outcomes(
         A name is unknown.
 
     """
-    chosen = [named_fault(name, Place('--only')) for name in names] if names else list(
-        fault_catalogue().values())
+    chosen = chosen_faults(names)
     plain, linked = load(CONFIG, MOTION), load({**CONFIG, 'link': LINK}, MOTION)
     sound = {rig: _recorded(rig, ()) for rig in (plain, linked)}
     found = []
     for k, fault in enumerate(chosen):
         if report is not None:
             report(k, len(chosen))
-        rig = linked if any(key.startswith('link.') for key in fault.values) else plain
+        rig = linked if is_of_link(fault) else plain
         found.append(_outcome(rig, fault, sound[rig]))
     if report is not None:
         report(len(chosen), len(chosen))
@@ -135,8 +159,8 @@ def outcomes(
 
 
 def _outcome(rig: Run, fault: NamedFault, sound: Mapping[str, NDArray[np.float64]]) -> Outcome:
-    target = 'ram' if fault.of == ACTUATOR else 'supply'
-    tree: Tree = {'t_s': BEGIN_S, fault.of: target, 'fault': fault.name, 'until_s': END_S}
+    tree: Tree = {
+        't_s': BEGIN_S, fault.of: target_of(fault), 'fault': fault.name, 'until_s': END_S}
     try:
         faulty = _recorded(rig, (tree,))
     except SimulationDiverged as error:

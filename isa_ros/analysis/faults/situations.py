@@ -11,10 +11,9 @@ from pathlib import Path
 from typing import Any
 import warnings
 
-from isa_ros.analysis.faults.measure import CONFIG, LINK
-from isa_ros.config.models.fault_catalogue import (
-    ACTUATOR, fault_catalogue, named_fault, NamedFault)
-from isa_ros.config.text.sections import Place
+from isa_ros.analysis.faults.measure import (
+    chosen_faults, CONFIG, is_of_link, LINK, target_of)
+from isa_ros.config.models.fault_catalogue import NamedFault
 from isa_ros.config.text.yaml_text import Tree
 from isa_ros.core.conditions import BITS
 from isa_ros.core.units import MILLI
@@ -86,8 +85,7 @@ def situations(
         A name is unknown.
 
     """
-    chosen = [named_fault(name, Place('--only')) for name in names] if names else list(
-        fault_catalogue().values())
+    chosen = chosen_faults(names)
     found = []
     for k, (name, (kind, track)) in enumerate(SITUATIONS.items()):
         config: Tree = {**CONFIG, 'actuators': {'ram': {
@@ -100,7 +98,7 @@ def situations(
         for j, fault in enumerate(chosen):
             if report is not None:
                 report(k * len(chosen) + j, len(SITUATIONS) * len(chosen), fault.name)
-            rig = linked if any(key.startswith('link.') for key in fault.values) else plain
+            rig = linked if is_of_link(fault) else plain
             found.append(_seen(fault, name, rig, sound[rig]))
     if report is not None:
         report(len(found), len(found))
@@ -108,12 +106,11 @@ def situations(
 
 
 def _seen(fault: NamedFault, situation: str, rig: Run, sound: Result) -> Seen:
-    target = 'ram' if fault.of == ACTUATOR else 'supply'
     try:
         with warnings.catch_warnings():
             warnings.simplefilter('ignore', TripWarning)
             faulty = rig.simulate(
-                faults=[{'t_s': BEGIN_S, fault.of: target, 'fault': fault.name}])
+                faults=[{'t_s': BEGIN_S, fault.of: target_of(fault), 'fault': fault.name}])
     except SimulationDiverged as error:
         return Seen(fault.name, situation, '', '', 0.0, 0.0, 0.0, str(error))
     condition, kind, after_s = _first(faulty, sound)
