@@ -3,13 +3,13 @@
 from collections.abc import Callable
 from typing import Any
 
-from isa_ros.analysis.stops.measure import (
-    accelerate, ACCUMULATOR, advance, rig, simulation_of, stop, Stopped)
 from isa_ros.config.text.yaml_text import Tree
 from isa_ros.core.device import ENABLED, QUICK_STOP
 from isa_ros.simulation import Simulation
 import numpy as np
 import pytest
+from scripts.measure_stops import (
+    accelerate, ACCUMULATOR, advance, rig, simulation_of, stop, Stopped)
 
 MOST, BOUNCE = 1.15, 3e-4
 """Of v^2/2a + v T, and back from the farthest place in m: the bounds of masses up to 50 kg."""

@@ -3,11 +3,11 @@
 from pathlib import Path
 import re
 
-from isa_ros.analysis.stops.page import LEG_SITUATIONS, situations
 from isa_ros.config.paths import CONFIG, find
 from isa_ros.config.runs.run_file import load_run
 from isa_ros.core.conditions import REACTIONS
 from scripts import write_protection
+from scripts.write_stops import LEG_SITUATIONS, situations
 
 ROOT = Path(__file__).parents[2]
 PAGE = write_protection.PAGE.read_text(encoding='utf-8')
@@ -45,7 +45,7 @@ def test_every_file_it_names_exists() -> None:
 
 
 def test_every_situation_of_a_stop_has_its_row() -> None:
-    """Else run scripts/write_stops.py; how far stops go is in tests/actuator/test_stops.py."""
+    """Else `python -m scripts.write_stops`; how far stops go is in tests/actuator/test_stops.py."""
     names = [one.name for one in situations()] + list(LEG_SITUATIONS)
     assert len(set(names)) == len(names)
     for name in names:

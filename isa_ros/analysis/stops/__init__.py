@@ -1,1 +1,0 @@
-"""Stops under load: situations, and what they need and cause."""
