@@ -9,7 +9,7 @@ import subprocess
 import sys
 
 ROOT = Path(__file__).parents[2]
-_COPIED = ('isa_ros', 'msg_adapters', 'config', 'docs', 'scripts', 'urdf')
+_COPIED = ('isa_ros', 'msg_adapters', 'benchmarks', 'config', 'docs', 'scripts', 'urdf')
 _SKIPPED = shutil.ignore_patterns('__pycache__')
 
 

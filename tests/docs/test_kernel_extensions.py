@@ -76,6 +76,113 @@ speeds = [float(abs(own['ram.velocity']).max()) for own in (slow, free)]
 print(speeds[0] < 0.5 * speeds[1], speeds)
 """
 
+_CUSHION = '''"""A cushion at each end of the stroke: a throttle for what still moves outwards."""
+
+from dataclasses import dataclass
+
+from isa_ros.core.kernel import kernel
+from isa_ros.core.parameter import parameter, Parameters
+from isa_ros.core.record import record
+import numpy as np
+
+
+@dataclass(frozen=True, kw_only=True)
+class Cushion(Parameters):
+    """Two cushions."""
+
+    length: float = parameter('at each end; 0: none', 'm | rad', ge=0.0, le=0.1)
+    damping: float = parameter('force per speed', 'Ns/m | Nms/rad', ge=0.0, le=1e6)
+
+
+CUSHION = np.dtype([('length', 'f8'), ('damping', 'f8')])
+
+
+def cushion_record(sheet: Cushion) -> np.record:
+    """Return the `CUSHION` record of a sheet."""
+    return record(CUSHION, length=sheet.length, damping=sheet.damping)
+
+
+@kernel
+def cushion_force(s, v, stroke, cushion):
+    """Return the force against a motion towards an end, N or Nm."""
+    if s < cushion.length and v < 0.0 or s > stroke - cushion.length and v > 0.0:
+        return -cushion.damping * v
+    return 0.0
+'''
+_HITS = """
+import isa_ros
+hard, soft = (isa_ros.load('rig_linear', {'name': 'out', 'duration_s': 0.4, 'tracks': {'ram': [
+    {'t_s': 0.0, 'position': 0.05, 'effort': 2000.0, 'stiffness': 0.0, 'damping': 0.0}]}}).replace({
+        'actuators.ram.parameters.plant.cushion': {'length': 0.01, 'damping': damping}}).simulate()
+    for damping in (0.0, 2e4))
+arrivals = [float(own['ram.velocity'][own['ram.position'] > 0.0998][0]) for own in (hard, soft)]
+account = soft.accounts['ram']
+used = sum(account[name] for name in account if name.endswith('(J)')) - (
+    account['hydraulic energy (J)'])
+print(arrivals[0] > 0.8, arrivals[1] < 0.3, abs(used / account['hydraulic energy (J)'] - 1) < 1e-3)
+"""
+_PROPORTIONAL = '''"""Force block without memory: its output is K_p times the error."""
+
+from dataclasses import dataclass
+
+from isa_ros.core.kernel import kernel
+from isa_ros.core.parameter import parameter, Parameters, tunable
+from isa_ros.core.record import record
+import numpy as np
+
+
+@dataclass(frozen=True, kw_only=True)
+class Proportional(Parameters):
+    """One gain."""
+
+    rate_hz: float = parameter('loop rate', 'Hz', gt=0.0, le=50e3)
+    kp: float = tunable('gain K_p', 'output/measured', ge=0.0, le=1e9)
+    limit: float = tunable('largest output', 'output', gt=0.0, le=1e9)
+
+
+PROPORTIONAL = np.dtype([('kp', 'f8'), ('limit', 'f8')])
+
+
+def proportional_record(sheet: Proportional) -> np.record:
+    """Return the `PROPORTIONAL` record of a sheet."""
+    return record(PROPORTIONAL, kp=sheet.kp, limit=sheet.limit)
+
+
+@kernel
+def proportional_step(reference, measured, block, state):
+    """Set the output."""
+    state.output = max(-block.limit, min(block.limit, block.kp * (reference - measured)))
+'''
+_VARIANT = '''
+variants:
+  proportional:
+    reu:
+      force:
+        kind: proportional
+        rate_hz: {value: 5000.0, source: assumed}
+        kp: {value: 1.0e-8, source: assumed}
+        limit: {value: 1.78e-4, scales_with: spool_travel, source: assumed}
+'''
+_PUSHES = """
+import isa_ros
+run = isa_ros.load('rig_linear', {'name': 'push', 'duration_s': 0.2, 'tracks': {'ram': [
+    {'t_s': 0.0, 'effort': 1000.0, 'position': 0.05, 'stiffness': 0.0, 'damping': 0.0}]}}).replace({
+        'actuators.ram.variants': ['proportional'], 'actuators.ram.load': {'kind': 'blocked'}})
+weak, strong = (run.replace({'actuators.ram.parameters.reu.force.kp': kp}).simulate()
+                for kp in (1e-9, 1e-8))
+forces = [own['ram.force'][-1] for own in (weak, strong)]
+spools = [own['ram.spool_reference'][-1] for own in (weak, strong)]
+print(400.0 < forces[0] < 700.0 < 900.0 < forces[1] < 1000.0,
+      [f'{spool / (1000.0 - force):.0e}' for spool, force in zip(spools, forces)])
+simulation = run.simulation()
+for _ in range(50):
+    simulation.step()
+simulation.tune('ram', {'force.kp': 0.0})
+for _ in range(2):
+    simulation.step()
+print(simulation.samples['ram']['spool_reference'])
+"""
+
 
 class Extended(NamedTuple):
     """A copy with all extensions, and the files that each touches."""
@@ -84,6 +191,8 @@ class Extended(NamedTuple):
     condition: list[str]
     sensor: list[str]
     load: list[str]
+    part: list[str]
+    block: list[str]
 
 
 def _condition(copied: PatchedCopy) -> None:
@@ -133,11 +242,60 @@ def _load(copied: PatchedCopy) -> None:
                    '    drag: {value: 0.0, source: assumed}\n')
 
 
+def _part(copied: PatchedCopy) -> None:
+    copied.add('isa_ros/plant/cushion.py', _CUSHION)
+    plant = 'isa_ros/plant/plant.py'
+    copied.replace(plant, 'from isa_ros.plant.spool import',
+                   'from isa_ros.plant.cushion import (\n'
+                   '    Cushion, CUSHION, cushion_force, cushion_record)\n'
+                   'from isa_ros.plant.spool import')
+    copied.replace(plant, "    ('thermal', thermal.THERMAL),\n",
+                   "    ('thermal', thermal.THERMAL),\n    ('cushion', CUSHION),\n")
+    copied.replace(plant, '    thermal: NoneThermal | LumpedThermal',
+                   '    cushion: Cushion = nested(Cushion(length=0.0, damping=0.0))\n'
+                   '    thermal: NoneThermal | LumpedThermal')
+    copied.replace(plant, '        thermal=thermal.thermal_record(',
+                   '        cushion=cushion_record(sheet.cushion),\n'
+                   '        thermal=thermal.thermal_record(')
+    force = 'f_stop = mechanics.stop_force(s, v, plant.chambers.stroke, plant.mechanics)\n'
+    copied.replace(plant, force, f'{force}    f_stop += cushion_force('
+                   's, v, plant.chambers.stroke, plant.cushion)\n')
+
+
+def _block(copied: PatchedCopy) -> None:
+    wiring, cascade = 'isa_ros/reu/wiring.py', 'isa_ros/reu/cascade.py'
+    copied.add('isa_ros/reu/proportional.py', _PROPORTIONAL)
+    for path, names in ((wiring, 'Proportional'), (
+            cascade, 'Proportional, PROPORTIONAL, proportional_record, proportional_step')):
+        after = 'from isa_ros.reu.protection import' if path == cascade else (
+            'from isa_ros.reu.protection_sheet import')
+        copied.replace(path, after, f'from isa_ros.reu.proportional import {names}\n{after}')
+    copied.replace(wiring, 'LEADS_AND_LAGS = range(6)', 'LEADS_AND_LAGS, GAINS = range(7)')
+    copied.replace(wiring, 'LeadLag: LEADS_AND_LAGS}', 'LeadLag: LEADS_AND_LAGS, '
+                   'Proportional: GAINS}')
+    copied.replace(wiring, 'force: Off | Pid | FeedbackLinearisation',
+                   'force: Off | Pid | FeedbackLinearisation | Proportional')
+    copied.replace(cascade, 'delay_steps, IMPEDES,', 'delay_steps, GAINS, IMPEDES,')
+    copied.replace(cascade, "    ('lead_lag', LEAD_LAG),\n",
+                   "    ('lead_lag', LEAD_LAG), ('proportional', PROPORTIONAL),\n")
+    copied.replace(cascade, '    if isinstance(reu.current, LeadLag):\n',
+                   '    if isinstance(reu.force, Proportional):\n'
+                   "        row['proportional'] = proportional_record(reu.force)\n"
+                   '    if isinstance(reu.current, LeadLag):\n')
+    linear = '            if reu.force_kind == LINEARISES:\n'
+    copied.replace(cascade, linear, '            if reu.force_kind == GAINS:\n'
+                   '                proportional_step(reference, state.measured.force,\n'
+                   '                                  reu.proportional, state.force)\n'
+                   f'{linear.replace("if", "elif")}')
+    copied.replace('isa_ros/config/data/models/isa_v5.yaml', '\nvariants:\n', _VARIANT)
+
+
 @pytest.fixture(scope='module')
 def extended(tmp_path_factory: pytest.TempPathFactory) -> Extended:
     """Return a copy of the package with all extensions."""
     copied = PatchedCopy(tmp_path_factory.mktemp('extended'))
-    return Extended(copied, *(copied.touched_by(each) for each in (_condition, _sensor, _load)))
+    return Extended(copied, *(copied.touched_by(each) for each in (
+        _condition, _sensor, _load, _part, _block)))
 
 
 @pytest.mark.slow
@@ -176,3 +334,21 @@ def test_a_load_is_a_set_a_force_and_values(extended: Extended) -> None:
     assert len(extended.load) == 3
     assert copied.python(_BRAKES).startswith('True ')
     assert 'load braked' in copied.isa('params', 'isa_v5')
+
+
+@pytest.mark.slow
+def test_a_part_of_the_plant_is_a_file_and_its_term(extended: Extended) -> None:
+    """A cushion: it lessens the impact at the end; the energy account closes over it."""
+    copied = extended.copied
+    assert len(extended.part) == 2
+    assert copied.python(_HITS) == 'True True True\n'
+    assert 'plant.cushion.damping ' in copied.isa('params', 'isa_v5')
+
+
+@pytest.mark.slow
+def test_a_control_block_is_a_file_a_kind_and_a_branch(extended: Extended) -> None:
+    """It controls, it can be tuned, and its variant is listed."""
+    copied = extended.copied
+    assert len(extended.block) == 4
+    assert copied.python(_PUSHES) == "True ['1e-09', '1e-08']\n0.0\n"
+    assert 'reu.force.kp ' in copied.isa('params', 'isa_v5', '--variant', 'proportional')

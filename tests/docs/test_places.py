@@ -12,8 +12,13 @@ from isa_ros.tick.exchange import Rows, RowSink
 from isa_ros.tick.source import ScheduledSource
 import pytest
 from tests.docs.patched_copy import files_of, names_of, PatchedCopy, rows_of_the_page
+from tests.ros.conftest import domain  # noqa: F401
 
 CASES = {
+    'part of the plant, such as a cushioned end of the stroke':
+        'test_kernel_extensions.test_a_part_of_the_plant_is_a_file_and_its_term',
+    'control block': 'test_kernel_extensions.test_a_control_block_is_a_file_a_kind_and_a_branch',
+    'middleware of the bench': 'test_places.test_a_middleware_is_a_file_and_a_line',
     'condition of the protection': 'test_kernel_extensions.test_a_condition_is_a_row_and_a_line',
     'key of a run file': 'test_extensions.test_a_key_of_a_run_file_is_a_row',
     'sensor': 'test_kernel_extensions.test_a_sensor_is_a_channel_and_a_row_of_the_sample',
@@ -31,9 +36,7 @@ CASES = {
     'quantity that values of a model scale with': 'test_places.test_a_quantity_is_a_function',
 }
 """Case by row: a test of this folder that makes the extension in a copy."""
-WITHOUT_CASE = {
-    'part of the plant, such as a cushioned end of the stroke', 'sensor on a link of the leg',
-    'control block', 'middleware of the bench'}
+WITHOUT_CASE = {'sensor on a link of the leg'}
 """Rows that no test executes; a new row of the page needs a case."""
 
 RAIL = textwrap.dedent('''\
@@ -353,3 +356,65 @@ def test_a_quantity_is_a_function(copied: PatchedCopy) -> None:
     assert names_of(copied.touched) == files_of('quantity that values of a model scale with') - {
         'docs/own_cylinder.md'} and len(copied.touched) == 2
     assert re.search(r'stop_low .*scales with half_stroke', copied.isa('params', 'isa_v5'))
+
+
+_NAMED_PIPES = '''"""Pipes, with a word before each message."""
+
+from pathlib import Path
+
+from benchmarks.peers import multiprocessing_pipes
+from benchmarks.peers.link import Link
+
+_WORD = b'tick'
+
+
+class Worded:
+    """An end that adds the word and takes it off."""
+
+    def __init__(self, end: Link) -> None:
+        self._end = end
+        self.close = end.close
+
+    def send(self, message: bytes) -> None:
+        self._end.send(_WORD + message)
+
+    def receive(self, timeout_s: float) -> bytes | None:
+        message = self._end.receive(timeout_s)
+        return message and message.removeprefix(_WORD)
+
+
+def coordinator_end(directory: Path, n_workers: int) -> Link:
+    return Worded(multiprocessing_pipes.coordinator_end(directory, n_workers))
+
+
+def worker_end(directory: Path, index: int) -> Link:
+    return Worded(multiprocessing_pipes.worker_end(directory, index))
+'''
+_OVER_PIPES = """
+from pathlib import Path
+from benchmarks.peers.catalogue import peer
+from benchmarks.peers.transport import run_over
+from isa_ros.bag.reader import Bag
+from isa_ros.bench.rigs import request_of
+from isa_ros.bench.spec import PROCESSES, Spec
+from isa_ros.processes.stopping import StopRequest
+from isa_ros.replay.replay import replay
+from isa_ros.run.session import prepare
+session = prepare(request_of(Spec('2', PROCESSES, 5), Path('.')))
+with StopRequest() as should_stop:
+    run_over(peer('worded'), session, None, should_stop)
+print(replay(Bag(session.out)).is_equal)
+"""
+
+
+@pytest.mark.ros
+@pytest.mark.slow
+@pytest.mark.usefixtures('domain')
+def test_a_middleware_is_a_file_and_a_line(copied: PatchedCopy) -> None:
+    """A run over it gives a bag that replays."""
+    copied.add('benchmarks/peers/worded_pipes.py', _NAMED_PIPES)
+    copied.replace('benchmarks/peers/catalogue.py', "    Peer('zeromq',",
+                   "    Peer('worded', 'pipes with a word', 'worded_pipes', ''),\n"
+                   "    Peer('zeromq',")
+    assert len(copied.touched) == 2
+    assert copied.python(_OVER_PIPES).splitlines()[-1] == 'True'
