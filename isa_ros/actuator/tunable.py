@@ -82,15 +82,23 @@ def changing(sheet: ActuatorSheet, load: LocalLoad | None = None) -> dict[str, C
 
     Those of a ``load`` of its own have ``load.`` in front; None: it moves a body.
     """
-    return tunables(sheet) | changeables(sheet) | {
-        name: own._replace(key=name) for name, own in _of_load(load).items()}
+    return tunables(sheet) | _of_axis(changeables(sheet), sheet.is_rotary) | {
+        name: own._replace(key=name) for name, own in _of_load(load, sheet.is_rotary).items()}
 
 
-def _of_load(load: LocalLoad | None) -> dict[str, Changeable]:
-    return {} if load is None else changeables(load, LOAD)
+def _of_load(load: LocalLoad | None, is_rotary: bool) -> dict[str, Changeable]:
+    return {} if load is None else _of_axis(changeables(load, LOAD), is_rotary)
 
 
-def with_changed_load(load: LocalLoad, values: Mapping[str, float]) -> LocalLoad:
+def _of_axis(known: dict[str, Changeable], is_rotary: bool) -> dict[str, Changeable]:
+    """Return values with the unit of a linear or a rotary actuator."""
+    return {name: own._replace(declared={
+        **own.declared, 'unit': of_coordinate(own.unit, is_rotary)})
+        for name, own in known.items()}
+
+
+def with_changed_load(
+        load: LocalLoad, values: Mapping[str, float], is_rotary: bool) -> LocalLoad:
     """
     Return a load with other values by the names of `changing`; others are left out.
 
@@ -100,7 +108,7 @@ def with_changed_load(load: LocalLoad, values: Mapping[str, float]) -> LocalLoad
         A value is out of its range.
 
     """
-    return with_changes(load, _of_load(load), {
+    return with_changes(load, _of_load(load, is_rotary), {
         name: value for name, value in values.items() if name.startswith(LOAD)})
 
 
@@ -139,7 +147,7 @@ def changed_together(
         sheet, {name: value for name, value in values.items() if name not in of_load}, known)
     if load is None or not of_load:
         return changed, load
-    moved = with_changed_load(load, values)
+    moved = with_changed_load(load, values, sheet.is_rotary)
     if linearised(moved) != linearised(load):
         refuse_too_fast(plant_record(changed.plant)[0], changed.plant,
                         LoadSide(*linearised(moved)))

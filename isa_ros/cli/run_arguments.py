@@ -16,7 +16,7 @@ DESCRIBE = 'describe'
 
 _TYPES: Mapping[Kind, Callable[[str], Any]] = {
     Kind.PATH: Path, Kind.NEW_FILE: file_to_write, Kind.POSITIVE: positive,
-    Kind.NOT_NEGATIVE: not_negative, Kind.WHOLE: seed, Kind.NAMES: names}
+    Kind.LIMIT: not_negative, Kind.NOT_NEGATIVE: not_negative, Kind.WHOLE: seed, Kind.NAMES: names}
 """Checks of a value by kind; other kinds are texts."""
 
 

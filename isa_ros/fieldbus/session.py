@@ -90,7 +90,7 @@ def prepare_bus(
 
     """
     is_real_time = request.pace == REAL_TIME
-    if is_real_time and request.run.real_time_factor is not None:
+    if is_real_time and request.run.real_time_factor:
         raise ConfigError(
             f'--real-time-factor {request.run.real_time_factor:g} is not used with '
             f'--pace {REAL_TIME}; leave one out')

@@ -33,6 +33,7 @@ class Kind(Enum):
     COMPRESSION = 'compression'
     POSITIVE = '> 0'
     NOT_NEGATIVE = '>= 0'
+    LIMIT = '>= 0, 0: no limit'
     WHOLE = 'whole number >= 0'
     FLAG = 'flag'
     NAMES = 'names'
@@ -52,8 +53,8 @@ _COMMA = {
     kind: re.compile(r',(?=[^,=\[{]+=)' if kind is Kind.CHANGES else ',') for kind in _LISTS}
 """What separates entries in a launch file; the value of a change may have commas too."""
 _UNSET: Mapping[Kind, tuple[RosValue, str]] = {
-    Kind.POSITIVE: (0.0, '0'), Kind.NOT_NEGATIVE: (-1.0, '< 0'), Kind.WHOLE: (-1, '< 0'),
-    Kind.FLAG: (False, 'false')}
+    Kind.POSITIVE: (0.0, '0'), Kind.LIMIT: (0.0, '0'), Kind.NOT_NEGATIVE: (-1.0, '< 0'),
+    Kind.WHOLE: (-1, '< 0'), Kind.FLAG: (False, 'false')}
 """Value of a ROS parameter that is not set, and its text in help; other kinds: an empty text."""
 _EMPTY: tuple[RosValue, str] = ('', 'empty')
 _NAMESPACE = re.compile(r'/?[A-Za-z_][A-Za-z0-9_]*(/[A-Za-z_][A-Za-z0-9_]*)*/?')
@@ -153,7 +154,7 @@ class Option:
             return [entry for entry in _COMMA[self.kind].split(text) if entry]
         if self.kind is Kind.FLAG:
             return flag(self.name, text)
-        if self.kind in (Kind.POSITIVE, Kind.NOT_NEGATIVE):
+        if self.kind in (Kind.POSITIVE, Kind.LIMIT, Kind.NOT_NEGATIVE):
             try:
                 return float(text)
             except ValueError:

@@ -53,7 +53,7 @@ class Request:
         Kind.FLAG, 'wait at each chunk of the bag until the disk has it (fsync): then a failure '
         'of the power loses as little as a killed run', name='sync'))
     real_time_factor: float | None = field(default=None, metadata=_option(
-        Kind.POSITIVE, 'not faster than X times real time', otherwise='as fast as possible',
+        Kind.LIMIT, 'not faster than X times real time', otherwise='as fast as possible',
         metavar='X'))
     in_process: bool = field(default=False, metadata=_option(
         Kind.FLAG, 'all nodes in one process: faster, and the same bytes in the bag',

@@ -20,7 +20,7 @@ from isa_ros.config.assembly import surroundings_of
 from isa_ros.config.models.fault_catalogue import ACTUATOR, KINDS, named_fault, numbers_at, SUPPLY
 from isa_ros.config.runs.run_config import RunConfig
 from isa_ros.config.runs.tick_grid import ticks_in
-from isa_ros.config.text.parameter_sets import build
+from isa_ros.config.text.parameter_sets import build, kind_of
 from isa_ros.config.text.sections import Place, refuse_unknown, section_at, written
 from isa_ros.config.text.yaml_text import Tree
 from isa_ros.core.changeable import Changeable, changeables
@@ -32,9 +32,11 @@ from isa_ros.errors import ConfigError
 from isa_ros.scenario.faults import Fault, timetable
 from isa_ros.scenario.setpoints import MAX_DURATION
 from isa_ros.scenario.waveforms import EFFORT, MOVES, Waveform, WAVEFORMS
+from isa_ros.surroundings.supply import SupplySheet
 
 LINK = 'link'
 """Of an actuator: ``link: kfe, set: {loss: 0.1}`` is ``actuator: kfe, set: {link.loss: 0.1}``."""
+_OF_LINK = f'{LINK}.'
 _KEYS = ('t_s', *KINDS, LINK, 'fault', 'set', 'until_s', *WAVEFORMS)
 
 
@@ -77,10 +79,12 @@ def _fault(tree: Tree, place: Place, run: RunConfig) -> Fault:
     where = f'{place}.{"fault" if "fault" in tree else "set"}'
     try:
         if of == SUPPLY:
-            _refuse_keys(values, _supply_keys(run, target), where)
+            sheet = _supply(run, target)
+            _refuse_keys(values, changeables(sheet), where,
+                         f'of {target}, a supply of kind {kind_of(sheet, SupplySheet)}, ')
             return Fault(tick, until, SUPPLY, target, values,
                          _wave(tree, values, run.step_ns, place))
-        prefix = f'{LINK}.' if of == LINK else ''
+        prefix = _OF_LINK if of == LINK else ''
         actuator = run.actuator(target)
         known = changing(actuator.sheet, actuator.load)
         values = named(known, {f'{prefix}{key}': value for key, value in values.items()})
@@ -121,7 +125,9 @@ def _target(tree: Tree, place: Place) -> tuple[str, str]:
 
 
 def _tick(tree: Tree, key: str, place: Place, step_ns: int) -> int:
-    check(f'{place}.{key}', tree.get(key), {
+    if key not in tree:
+        raise ConfigError(place.has(f'lacks {key}'))
+    check(f'{place}.{key}', tree[key], {
         'doc': 'time', 'unit': 's', 'bounds': {'ge': 0.0, 'le': MAX_DURATION}})
     return ticks_in(float(tree[key]), step_ns, f'{place}.{key}')  # type: ignore[arg-type]
 
@@ -133,28 +139,33 @@ def _values(tree: Tree, of: str, place: Place) -> dict[str, float]:
     values: dict[str, float] = {}
     if 'fault' in tree:
         named = named_fault(str(tree['fault']), place / 'fault')
-        if named.of != of:
+        is_of_link = all(key.startswith(_OF_LINK) for key in named.values)
+        if not (is_of_link if of == LINK else named.of == of):
             raise ConfigError(
                 f'{place}.fault = {named.name!r} is a fault of the {named.of}, must be one of '
                 f'the {of}')
         values = dict(named.values)
+        if of == LINK:
+            values = {key.removeprefix(_OF_LINK): value for key, value in values.items()}
     if 'set' in tree:
         values |= numbers_at(tree['set'], place / 'set')
     return values
 
 
-def _supply_keys(run: RunConfig, name: str) -> Mapping[str, Changeable]:
+def _supply(run: RunConfig, name: str) -> SupplySheet:
     by_name = {supply.name: supply for supply in run.supplies}
     if name not in by_name:
         raise ConfigError(f'{name!r} is not a supply; {alternatives(name, by_name)}')
-    return changeables(by_name[name].sheet)
+    return by_name[name].sheet
 
 
-def _refuse_keys(values: Mapping[str, float], known: Mapping[str, Changeable], where: str) -> None:
+def _refuse_keys(values: Mapping[str, float], known: Mapping[str, Changeable], where: str,
+                 of: str = '') -> None:
+    """Refuse keys that are not ``known``; ``of`` says what has those."""
     for key in values:
         if key not in known:
             raise ConfigError(
-                f'{where}: {key} is unknown or does not change during a run; '
+                f'{where}: {key} {of}is unknown or does not change during a run; '
                 f'{alternatives(key, [own.key for own in known.values()])}')
 
 

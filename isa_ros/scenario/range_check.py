@@ -72,7 +72,7 @@ def _texts(event: TrackEvent, following: int | None, own: SetpointRange, step_ns
     A motion is followed to the next event, that of the last one to the extremes it ever has: the
     run may be longer than the scenario.
     """
-    if event.setpoint is None:
+    if event.setpoint is None and not event.has_gains:
         return
     if event.motion is None:
         for found in _beyond(event, event.tick, own, step_ns):

@@ -93,7 +93,7 @@ class Scenario:
             As `read_faults`.
 
         """
-        place = Place(self.name, 'faults')
+        place = Place(self.run.source, 'faults')
         trees = [*(fault.tree(self.run.step_ns) for fault in self.faults), *faults]
         return replace(self, faults=read_faults(trees, place, self.run, self.n_ticks))
 
@@ -293,6 +293,7 @@ def _with_loads(run: RunConfig, tree: Tree, place: Place) -> RunConfig:
             raise ConfigError(f'{below} is not used: the load of {name} is {body.called}')
         model = actuator_model(actuator.model, f'{run.source}: actuators.{name}.model')
         load = own_load(section_at(section, below), below, model, actuator.sheet)
-        refuse_beyond_stops(load, actuator.initial_position, str(below))
+        refuse_beyond_stops(
+            load, actuator.initial_position, actuator.sheet.is_rotary, str(below))
         replaced[name] = replace(actuator, load=load)
     return replace(run, actuators=tuple(replaced.get(a.name, a) for a in run.actuators))

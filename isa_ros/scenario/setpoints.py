@@ -1,22 +1,30 @@
-"""Reader of tracks: lists of setpoints in a scenario's file."""
+"""
+Reader of tracks: lists of setpoints in a scenario's file.
+
+A point has the numbers that its mode uses: in mode force and further in an effort alone is one.
+Its position is then that of the point before, at first the start of the actuator.
+"""
 
 from collections.abc import Mapping
 from dataclasses import fields
 from typing import Any
 
+from isa_ros.actuator.setpoint_range import NUMBERS
 from isa_ros.config.runs.run_config import ActuatorConfig, RunConfig
 from isa_ros.config.runs.tick_grid import ticks_in
-from isa_ros.config.text.parameter_sets import build
+from isa_ros.config.text.parameter_sets import build, of_axis
 from isa_ros.config.text.sections import Place, refuse_unknown, section_at, written
 from isa_ros.config.text.yaml_text import Tree
+from isa_ros.core.device import FORCE, MODES
 from isa_ros.core.parameter import check
 from isa_ros.core.timebase import NS_PER_SECOND
 from isa_ros.errors import ConfigError
 from isa_ros.scenario.device_steps import (
-    DEVICE_KEYS, DeviceStep, mode_before, read_device_step)
+    DEVICE_KEYS, mode_before, read_device_step)
 from isa_ros.scenario.track import GAIT, ImpedanceSetpoint, MOTIONS, Track, TrackEvent
 from isa_ros.scenario.trot_motion import read_gait
-from isa_ros.scenario.waveforms import MOVES, POSITION, SetpointMotion, WAVEFORMS
+from isa_ros.scenario.waveforms import (
+    EFFORT, MOVES, POSITION, refuse_amplitude, SetpointMotion, WAVEFORMS)
 
 MAX_DURATION = 1e6  # s, a bound against typing errors
 HOLD = 'hold'       # position: the start of the actuator
@@ -40,10 +48,11 @@ def read_track(run: RunConfig, name: str, points: Any, place: Place, n_ticks: in
     if not isinstance(points, list) or not points:
         raise ConfigError(f'{place} = {points!r}, must be a list of setpoints')
     events: list[TrackEvent] = []
-    step_ns, mode = run.step_ns, mode_before(run.actuator(name))
+    actuator, step_ns = run.actuator(name), run.step_ns
+    mode, position = mode_before(actuator), actuator.initial_position
     for k, point in enumerate(points):
         below = Place(place.file, f'{place.key}[{k}]')
-        event = _event(section_at(point, below), below, run, run.actuator(name), mode)
+        event = _event(section_at(point, below), below, run, actuator, mode, position)
         if event.tick >= n_ticks:
             raise ConfigError(
                 f'{below}.t_s = {event.tick * step_ns / NS_PER_SECOND:g} s, must be < '
@@ -54,29 +63,43 @@ def read_track(run: RunConfig, name: str, points: Any, place: Place, n_ticks: in
                 f'one before it, {events[-1].tick * step_ns / NS_PER_SECOND:g} s')
         events.append(event)
         mode = event.device.mode or mode
+        position = position if event.setpoint is None else event.setpoint.position
     return Track(name, tuple(events))
 
 
 def _event(tree: Tree, place: Place, run: RunConfig, actuator: ActuatorConfig,
-           mode: int) -> TrackEvent:
-    refuse_unknown(tree, (
-        't_s', 'position', 'velocity', 'effort', 'stiffness', 'damping', *DEVICE_KEYS, *MOTIONS),
-        place)
-    check(f'{place}.t_s', tree.get('t_s'), {
+           mode: int, position: float) -> TrackEvent:
+    """Return a point after one with this mode and position."""
+    numbers = tuple(own.name for own in fields(ImpedanceSetpoint))
+    refuse_unknown(tree, ('t_s', *numbers, *_GAINS, *DEVICE_KEYS, *MOTIONS), place)
+    if 't_s' not in tree:
+        raise ConfigError(place.has('lacks t_s'))
+    check(f'{place}.t_s', tree['t_s'], {
         'doc': 'time', 'unit': 's', 'bounds': {'ge': 0.0, 'le': MAX_DURATION}})
     tick = ticks_in(float(tree['t_s']), run.step_ns, f'{place}.t_s')  # type: ignore[arg-type]
     device = read_device_step(tree, place, actuator, mode)
-    for name in set(tree) - {'t_s', 'position', *DEVICE_KEYS}:
-        if 'position' not in tree:
-            raise ConfigError(
-                f'{place}.{name} is not used: a setpoint needs its position (or {HOLD!r})')
-    if 'position' not in tree and device == DeviceStep():
+    gains = {name: _gain(tree, name, place, actuator) for name in _GAINS}
+    given = [name for name in tree if name in (*numbers, *MOTIONS)]
+    setpoint = motion = None
+    if given:
+        _refuse_incomplete(tree, given, place, device.mode or mode)
+        setpoint = _setpoint(tree, place, actuator, position)
+        motion = _motion(tree, place, run, actuator, setpoint)
+    elif not set(tree) - {'t_s'}:
         raise ConfigError(
-            place.has('needs a position, or a key of the device such as enabled or mode'))
-    gains = {name: _gain(tree, name, place) for name in _GAINS}
-    setpoint = _setpoint(tree, place, actuator) if 'position' in tree else None
-    motion = None if setpoint is None else _motion(tree, place, run, actuator, setpoint)
+            place.has('needs a setpoint, or a key of the device such as enabled or mode'))
     return TrackEvent(tick, setpoint, gains['stiffness'], gains['damping'], motion, device)
+
+
+def _refuse_incomplete(tree: Tree, given: list[str], place: Place, mode: int) -> None:
+    """Refuse a point without the number that its mode needs."""
+    if 'position' in tree:
+        return
+    needs_position = 'position' in NUMBERS.get(mode, NUMBERS[FORCE])
+    if needs_position or EFFORT not in tree:
+        needed = f'position (or {HOLD!r})' if needs_position else EFFORT
+        raise ConfigError(
+            f'{place}.{given[0]} is not enough: mode {MODES[mode]} needs the {needed}')
 
 
 def _motion(tree: Tree, place: Place, run: RunConfig, actuator: ActuatorConfig,
@@ -88,8 +111,13 @@ def _motion(tree: Tree, place: Place, run: RunConfig, actuator: ActuatorConfig,
         raise ConfigError(place.has(f'has {" and ".join(given)}, must be one motion'))
     below = place / given[0]
     section = section_at(tree[given[0]], below)
+    moves = POSITION if given[0] == GAIT else section.get(MOVES, POSITION)
+    if moves == POSITION and POSITION not in tree:
+        raise ConfigError(
+            f'{below} is not used: it moves the position, which the setpoint does not have')
     if given[0] == GAIT:
         return read_gait(section, below, actuator, run.leg, setpoint.position)
+    refuse_amplitude(section, str(below), actuator.sheet.is_rotary)
     with_default: Tree = {MOVES: POSITION}
     with_default |= section
     wave = build(WAVEFORMS[given[0]], written(with_default, below), below)
@@ -97,18 +125,18 @@ def _motion(tree: Tree, place: Place, run: RunConfig, actuator: ActuatorConfig,
     return wave
 
 
-def _setpoint(tree: Tree, place: Place, actuator: ActuatorConfig) -> ImpedanceSetpoint:
-    given: Tree = {'velocity': 0.0, 'effort': 0.0}
+def _setpoint(tree: Tree, place: Place, actuator: ActuatorConfig,
+              position: float) -> ImpedanceSetpoint:
+    """Return the setpoint of a point; ``position`` is that of one without."""
+    given: Tree = {'position': position, 'velocity': 0.0, 'effort': 0.0}
     given.update({f.name: tree[f.name] for f in fields(ImpedanceSetpoint) if f.name in tree})
     if given['position'] == HOLD:
         given['position'] = actuator.initial_position
-    check(f'{place}.position', given['position'], {
-        'doc': 'equilibrium', 'unit': 'rad' if actuator.sheet.is_rotary else 'm', 'bounds': {}})
-    return build(ImpedanceSetpoint, written(given, place), place)
+    return build(ImpedanceSetpoint, written(given, place), place, actuator.sheet.is_rotary)
 
 
-def _gain(tree: Tree, name: str, place: Place) -> float | None:
+def _gain(tree: Tree, name: str, place: Place, actuator: ActuatorConfig) -> float | None:
     if name not in tree:
         return None
-    check(f'{place}.{name}', tree[name], _GAINS[name])
+    check(f'{place}.{name}', tree[name], of_axis(_GAINS[name], actuator.sheet.is_rotary))
     return float(tree[name])  # type: ignore[arg-type]

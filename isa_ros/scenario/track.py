@@ -12,7 +12,7 @@ from isa_ros.actuator.setpoint_range import SetpointRange
 from isa_ros.config.text.parameter_sets import as_tree
 from isa_ros.config.text.yaml_text import Tree
 from isa_ros.core.parameter import parameter, Parameters
-from isa_ros.core.signals import GAINS_OF_COMMAND, HAS_SETPOINT
+from isa_ros.core.signals import GAINS_OF_COMMAND, HAS_GAINS, HAS_SETPOINT
 from isa_ros.core.timebase import NS_PER_SECOND
 from isa_ros.scenario.device_steps import DeviceStep
 from isa_ros.scenario.waveforms import Excursion, MAX_EFFORT, SetpointMotion, WAVEFORMS
@@ -55,8 +55,11 @@ class TrackEvent:
             motion = self.motion
             self.write_setpoint(
                 _REST if motion is None else motion.at((tick - self.tick) * step_ns), row)
-            if self.limits is not None:
-                self.limits.admit(row)
+        elif tick == self.tick and self.has_gains:
+            row['kinds'] |= HAS_GAINS
+            self._write_gains(row)
+        if self.limits is not None and int(row['kinds']) & (HAS_SETPOINT | HAS_GAINS):
+            self.limits.admit(row)
         if tick == self.tick:
             self.device.write(row)
 
@@ -68,6 +71,14 @@ class TrackEvent:
         row['position'] = own.position + added.position
         row['velocity'] = own.velocity + added.velocity
         row['effort'] = own.effort + added.effort
+        self._write_gains(row)
+
+    @property
+    def has_gains(self) -> bool:
+        """Return whether it gives a gain."""
+        return any(getattr(self, name) is not None for name in GAINS_OF_COMMAND)
+
+    def _write_gains(self, row: np.void) -> None:
         for name in GAINS_OF_COMMAND:
             value = getattr(self, name)
             row[name] = math.nan if value is None else value

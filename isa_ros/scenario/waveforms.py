@@ -16,13 +16,15 @@ from isa_ros.config.text.yaml_text import Tree
 from isa_ros.core.elementary import cos, exp, expm1, log, sin
 from isa_ros.core.parameter import check, choice, parameter, Parameters
 from isa_ros.core.timebase import NS_PER_SECOND
+from isa_ros.core.units import of_coordinate
 from isa_ros.errors import ConfigError, ParameterError
 
 POSITION, EFFORT = 'position', 'effort'
 MOVES = 'moves'
 MAX_POSITION = 10.0   # m | rad, a bound against typing errors
 MAX_EFFORT = 1e8      # N, Nm or Pa, likewise
-UNITS = 'm | rad | N | Nm'
+_MOVED = {POSITION: ('m | rad', MAX_POSITION), EFFORT: ('N | Nm', MAX_EFFORT)}
+"""Unit and largest amplitude of what a waveform moves."""
 TWO_PI = 2.0 * math.pi
 
 
@@ -58,15 +60,7 @@ class Waveform(Parameters, ABC):
     """Least and greatest value, in amplitudes."""
 
     moves: str = choice('quantity it is added to', POSITION, EFFORT)
-    amplitude: float = parameter('amplitude', UNITS, ge=-MAX_EFFORT, le=MAX_EFFORT)
-
-    def __post_init__(self) -> None:
-        """Refuse a position in another unit than m or rad."""
-        super().__post_init__()
-        if self.moves == POSITION:
-            check(f'{type(self).__name__}.amplitude', self.amplitude, {
-                'doc': 'of the position', 'unit': 'm | rad',
-                'bounds': {'ge': -MAX_POSITION, 'le': MAX_POSITION}})
+    amplitude: float = parameter('amplitude', 'm | rad | N | Nm', ge=-MAX_EFFORT, le=MAX_EFFORT)
 
     def tree(self) -> Tree:
         """Return its section of a scenario file."""
@@ -189,6 +183,24 @@ class Pulse(Waveform):
 
 
 WAVEFORMS: dict[str, type[Waveform]] = {'sine': Sine, 'chirp': Chirp, 'pulse': Pulse}
+
+
+def refuse_amplitude(section: Tree, where: str, is_rotary: bool) -> None:
+    """
+    Refuse an amplitude out of the range of what it moves, in the unit of the actuator.
+
+    Raises
+    ------
+    ParameterError
+        It is more than `MAX_POSITION` or `MAX_EFFORT`: most likely in another unit.
+
+    """
+    moves = section.get(MOVES, POSITION)
+    if moves in _MOVED and 'amplitude' in section:
+        unit, largest = _MOVED[moves]
+        check(f'{where}.amplitude', section['amplitude'], {
+            'doc': f'of the {moves}', 'unit': of_coordinate(unit, is_rotary),
+            'bounds': {'ge': -largest, 'le': largest}})
 
 
 def _refuse_alias(frequency_hz: float, step_ns: int, where: str) -> None:

@@ -92,15 +92,7 @@ class Run:
             A key is unknown or malformed, or a value is refused.
 
         """
-        config, scenario = self._config, self._scenario_file
-        for key, value in changes.items():
-            if not key.startswith(SCENARIO):
-                config = config.replaced(key, value)
-            elif scenario is None:
-                raise ConfigError(f'{config.name}: {key} is not used: the run has no scenario')
-            else:
-                scenario = scenario.replaced(key.removeprefix(SCENARIO), value)
-        return Run(config, scenario, **self._options)
+        return Run(*_changed(self._config, self._scenario_file, changes), **self._options)
 
     def simulation(
             self, controllers: Controllers = (), *, body: Factories | None = None) -> Simulation:
@@ -217,13 +209,16 @@ class Run:
 
 def load(
         config: str | Path | Tree, scenario: str | Path | Tree | None = None, *,
-        seed: int | None = None, duration: float | None = None, compression: str | None = None,
+        changes: Mapping[str, Any] | None = None, seed: int | None = None,
+        duration: float | None = None, compression: str | None = None,
         split_mb: float | None = None) -> Run:
     """
     Return the run of a file, or of a shipped one by name, with its scenario.
 
-    Instead of a file its content may be given, as a dictionary. ``seed``, ``duration`` (s),
-    ``compression`` and ``split_mb`` are the options of `isa bringup`.
+    Instead of a file its content may be given, as a dictionary. ``changes`` are those of
+    `Run.replace`, made before anything is checked: ``{'link': {'kind': 'can', ...}}`` for a
+    scenario whose faults need a link. ``seed``, ``duration`` (s), ``compression`` and ``split_mb``
+    are the options of `isa bringup`.
 
     Raises
     ------
@@ -231,9 +226,26 @@ def load(
         A file cannot be read or is invalid; the message has file, key, value and bound.
 
     """
-    run = Run(_file(config, CONFIG), None if scenario is None else _file(scenario, SCENARIOS),
-              duration, compression, split_mb)
-    return run if seed is None else run.replace({'seed': seed})
+    changes = {} if changes is None else dict(changes)
+    if seed is not None:
+        changes['seed'] = seed
+    return Run(
+        *_changed(_file(config, CONFIG), None if scenario is None else _file(scenario, SCENARIOS),
+                  changes), duration, compression, split_mb)
+
+
+def _changed(
+        config: _File, scenario: _File | None, changes: Mapping[str, Any]
+        ) -> tuple[_File, _File | None]:
+    """Return both files with other values; as `Run.replace`."""
+    for key, value in changes.items():
+        if not key.startswith(SCENARIO):
+            config = config.replaced(key, value)
+        elif scenario is None:
+            raise ConfigError(f'{config.name}: {key} is not used: the run has no scenario')
+        else:
+            scenario = scenario.replaced(key.removeprefix(SCENARIO), value)
+    return config, scenario
 
 
 def _file(given: str | Path | Tree, directory: str) -> _File:

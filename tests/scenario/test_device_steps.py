@@ -5,9 +5,11 @@ from dataclasses import replace
 from isa_ros.config.paths import CONFIG, find
 from isa_ros.config.runs.run_file import load_run
 from isa_ros.core.device import CURRENT, DISABLED, ENABLED, FORCE, IMPEDANCE, QUICK_STOP
+from isa_ros.core.signals import COMMAND, HAS_GAINS, HAS_SETPOINT
 from isa_ros.errors import ConfigError
 from isa_ros.scenario.scenario import idle, scenario_of
 from isa_ros.simulation import Simulation
+import numpy as np
 import pytest
 
 RUN = load_run(find('rig_linear.yaml', CONFIG))
@@ -45,6 +47,51 @@ def test_the_text_of_a_scenario_has_its_steps():
     """Written and read again they are the same commands."""
     again = scenario(scenario().to_yaml())
     assert again.tracks == scenario().tracks
+
+
+def test_an_effort_alone_is_a_setpoint_of_mode_force():
+    """At the position of the point before, at first the start; a wave of the effort goes on."""
+    wave = 'sine: {moves: effort, amplitude: 40.0, frequency_hz: 10.0}'
+    track = scenario(f"""
+name: forces
+duration_s: 0.2
+tracks:
+  {NAME}:
+  - {{t_s: 0.0, mode: force, effort: 100.0}}
+  - {{t_s: 0.05, position: 0.031, effort: 50.0}}
+  - {{t_s: 0.1, effort: -60.0, {wave}}}
+  - {{t_s: 0.15, stiffness: 2.0e+5}}
+  - {{t_s: 0.16, spool: 1.0e-5, mode: spool}}
+""").tracks[0]
+    start = RUN.actuators[0].initial_position
+    assert start != 0.031
+    assert [own.setpoint and (own.setpoint.position, own.setpoint.effort)
+            for own in track.events] == [
+        (start, 100.0), (0.031, 50.0), (0.031, -60.0), None, None]
+    row = np.zeros(1, COMMAND)[0]
+    track.events[2].write(125, RUN.step_ns, row)
+    assert (row['kinds'], row['position']) == (HAS_SETPOINT, 0.031)
+    assert row['effort'] == pytest.approx(-20.0, rel=1e-12)     # a quarter of its period
+
+
+def test_gains_alone_keep_the_setpoint():
+    """They take effect at their tick alone, and are limited as those of a setpoint."""
+    text = 'name: gains\nduration_s: 0.02\ntracks:\n  {}:\n  - {{t_s: 0.01, {}}}\n'
+    plan = scenario(text.format(NAME, 'damping: 3000.0'))
+    assert scenario(plan.to_yaml()).tracks == plan.tracks
+    row = np.zeros(1, COMMAND)[0]
+    plan.tracks[0].events[0].write(10, RUN.step_ns, row)
+    assert (row['kinds'], row['damping']) == (HAS_GAINS, 3000.0)
+    assert np.isnan(row['stiffness'])
+    simulation = Simulation(plan)
+    while simulation.ticks < 20:
+        simulation.step()
+    limited = replace(RUN, actuators=tuple(
+        replace(own, beyond_range='limit') for own in RUN.actuators))
+    plan = scenario_of(text.format(NAME, 'stiffness: 1.0e+9'), limited)
+    plan.tracks[0].events[0].write(10, RUN.step_ns, row)
+    assert 0.0 < row['stiffness'] < 1e9
+    assert 'limited to' in plan.limited[0]
 
 
 @pytest.mark.parametrize(('step', 'message'), [

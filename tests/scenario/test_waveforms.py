@@ -72,8 +72,6 @@ def test_a_pulse_is_up_for_its_width_in_every_period() -> None:
 
 
 @pytest.mark.parametrize('make, expected', [
-    (lambda: Sine(moves='position', amplitude=11.0, frequency_hz=1.0),
-     'Sine.amplitude = 11 m | rad, must be <= 10'),
     (lambda: Sine(moves='effort', amplitude=2e8, frequency_hz=1.0), 'must be <= 1e+08'),
     (lambda: Chirp(moves='effort', amplitude=1.0, start_hz=2.0, end_hz=2.0, duration_s=1.0,
                    sweep='linear'), 'Chirp.end_hz = 2 Hz, must differ from start_hz'),

@@ -74,7 +74,7 @@ def test_replace_reaches_the_scenario(drop):
 
 @pytest.mark.parametrize(('changes', 'message'), [
     ({STICTION + 'n': 1.0}, 'leg.yaml: .*stictionn is unknown; did you mean stiction'),
-    ({STICTION: -1.0}, r'leg.yaml: .*stiction = -1 N \| Nm, must be > 0'),
+    ({STICTION: -1.0}, r'leg.yaml: .*stiction = -1 N, must be > 0'),
     ({STICTION: 'much'}, r"leg.yaml: .*stiction = 'much', must be a number in N"),
     ({'supply.pressure_bar': 207.0}, 'leg.yaml: .*the key is pressure_mpa'),
     ({'actuators..kfe': 1}, r"leg.yaml: key 'actuators..kfe' is malformed"),
@@ -217,3 +217,39 @@ def test_replace_keeps_duration_compression_and_size_of_files():
     record = changed.configuration.record
     assert record == given.configuration.record != isa_ros.load('leg').configuration.record
     assert changed.scenario.n_ticks == 20
+
+
+def test_a_fault_of_the_link_is_checked_with_the_link_that_is_given():
+    """Alone the scenario does not fit the run; by both names of the target it is one fault."""
+    plan = {'name': 'cut', 'duration_s': 0.02, 'faults': [
+        {'t_s': 0.005, target: 'ram', 'fault': 'link_lost'} for target in ('link', 'actuator')]}
+    with pytest.raises(ConfigError, match='link.loss is not used: there is no link'):
+        isa_ros.load('rig_linear', plan)
+    link = {'kind': 'ethercat', 'cycle_ms': 1.0, 'watchdog_ms': 4.0}
+    run = isa_ros.load('rig_linear', plan, changes={'link': link, 'scenario.duration_s': 0.03})
+    by_link, by_actuator = run.scenario.faults
+    assert by_link == by_actuator and dict(by_link.values) == {'link.loss': 1.0}
+    with pytest.warns(isa_ros.TripWarning, match='link_lost tripped'):
+        result = run.simulate()
+    assert len(result.time) == 31
+    with pytest.raises(ConfigError, match='scenario.name is not used: the run has no scenario'):
+        isa_ros.load('rig_linear', changes={'scenario.name': 'x'})
+
+
+@pytest.mark.parametrize(('faults', 'message'), [
+    ({}, 'rig_linear.yaml: faults[0] lacks t_s'),
+    ({'t_s': 0.0, 'set': {'load.force': float('nan')}},
+     'faults[0].set.load.force = nan, must be finite'),
+    ({'t_s': 0.0, 'set': {'load.force': 1e9}},
+     'faults[0].set: load.force = 1e+09 N, must be <= 1e+06 N')])
+def test_a_refused_fault_has_the_file_of_the_run_and_one_unit(faults, message):
+    with pytest.raises(ConfigError) as caught:
+        isa_ros.load('rig_linear').simulate(0.01, faults=[{'actuator': 'ram', **faults}])
+    assert message in str(caught.value)
+
+
+def test_a_fault_of_another_kind_of_supply_names_the_kind():
+    with pytest.raises(ConfigError, match='pump_flow_lpm of supply, a supply of kind constant, '
+                                          'is unknown or does not change .* valid: pressure_mpa'):
+        isa_ros.load('rig_linear').simulate(
+            0.01, faults=[{'t_s': 0.0, 'supply': 'supply', 'fault': 'pump_trip'}])

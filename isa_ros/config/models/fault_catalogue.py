@@ -2,6 +2,7 @@
 
 from collections.abc import Mapping
 from functools import cache
+import math
 from pathlib import Path
 from typing import NamedTuple
 
@@ -14,7 +15,6 @@ from isa_ros.errors import ConfigError
 ACTUATOR, SUPPLY = 'actuator', 'supply'
 KINDS = (ACTUATOR, SUPPLY)
 _FILE = Path(__file__).parents[1] / 'data' / 'faults' / 'device.yaml'
-_NUMBER = {'doc': 'value', 'unit': 'the unit of its key', 'bounds': {}}
 
 
 class NamedFault(NamedTuple):
@@ -78,5 +78,9 @@ def numbers_at(value: object, place: Place) -> dict[str, float]:
     if not section:
         raise ConfigError(place.has('is empty, must have a key and its value'))
     for key, number in section.items():
-        check(f'{place}.{key}', number, _NUMBER)
+        if isinstance(number, bool) or not isinstance(number, (int, float)):
+            raise ConfigError(
+                f'{place}.{key} = {number!r}, must be a number in the unit of its key')
+        if not math.isfinite(number):
+            raise ConfigError(f'{place}.{key} = {number}, must be finite')
     return {key: float(number) for key, number in section.items()}  # type: ignore[arg-type]

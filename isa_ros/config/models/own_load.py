@@ -16,7 +16,7 @@ from isa_ros.loads.sheets import LocalLoad
 def own_load(tree: Tree, place: Place, model: Model, sheet: ActuatorSheet) -> LocalLoad:
     """Return a load of one actuator: the model's of that kind with single values replaced."""
     section = load_section(written(tree, place), place, model, sheet)
-    load: LocalLoad = build_one_of(LocalLoad, section, place)
+    load: LocalLoad = build_one_of(LocalLoad, section, place, sheet.is_rotary)
     return load
 
 
@@ -44,7 +44,8 @@ def load_section(own: Section, place: Place, model: Model, sheet: ActuatorSheet)
     return section | {'kind': replace(of_model, where=str(place / 'kind'))}
 
 
-def refuse_beyond_stops(load: LocalLoad, position: float, where: str) -> None:
+def refuse_beyond_stops(
+        load: LocalLoad, position: float, is_rotary: bool, where: str) -> None:
     """
     Refuse a start outside the end stops of the load.
 
@@ -54,7 +55,8 @@ def refuse_beyond_stops(load: LocalLoad, position: float, where: str) -> None:
         The start is outside, where the stops would push the load back with a jolt.
 
     """
+    unit = 'rad' if is_rotary else 'm'
     if isinstance(load, Wheel) and not load.stop_low <= position <= load.stop_high:
         raise ConfigError(
-            f'{where}: starts at {position:.4g} m | rad, must be between the stops of its load, '
-            f'{load.stop_low:g} and {load.stop_high:g}')
+            f'{where}: starts at {position:.4g} {unit}, must be between the stops of its load, '
+            f'{load.stop_low:g} and {load.stop_high:g} {unit}')

@@ -90,7 +90,8 @@ def scaled_sheet(
 
     """
     base = build(ActuatorSheet, model, model_place)
-    own = base if section == model else build(ActuatorSheet, section, model_place)
+    own = base if section == model else build(
+        ActuatorSheet, section, model_place, base.is_rotary)
     if own == base:
         return own, section
     rated = _rated(section, model)
@@ -98,7 +99,7 @@ def scaled_sheet(
         scaling = Scaling(base, build(ActuatorSheet, rated, model_place))
         section, rated = ({**one, part: scaling.section(_below(one, part), place / part)}
                           for one in (section, rated))
-    return build(ActuatorSheet, section, model_place), section
+    return build(ActuatorSheet, section, model_place, own.is_rotary), section
 
 
 def _rated(section: Section, model: Section) -> Section:

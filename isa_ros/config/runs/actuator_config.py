@@ -110,11 +110,11 @@ def actuator_of(
         own = _load_section(values, place, model, sheet, around)
         if own is not None:
             layers['load'] = own
-            load = build_one_of(LocalLoad, own, place / 'load')
+            load = build_one_of(LocalLoad, own, place / 'load', sheet.is_rotary)
             load_side = LoadSide(*linearised(load))
     if around.is_checked:
         if load is not None:
-            refuse_beyond_stops(load, position, str(place))
+            refuse_beyond_stops(load, position, sheet.is_rotary, str(place))
         check(str(place / 'initial_position'), position, {
             'doc': 'within the stroke', 'unit': 'rad' if sheet.is_rotary else 'm',
             'bounds': {'ge': 0.0, 'le': sheet.plant.drive.stroke + _ROUNDING}})

@@ -14,6 +14,7 @@ from isa_ros.config.text.sections import KIND_KEYS, Place, Section, SourcedValue
 from isa_ros.config.text.yaml_text import Tree
 from isa_ros.core.parameter import check, Parameters
 from isa_ros.core.suggest import alternatives, listed
+from isa_ros.core.units import of_coordinate
 from isa_ros.errors import ConfigError, ParameterError
 
 P = TypeVar('P', bound=Parameters)
@@ -22,12 +23,13 @@ _hints: Callable[[Any], dict[str, Any]] = cache(get_type_hints)
 """Types of the fields of a parameter set; to resolve them takes a fifth of the time of `build`."""
 
 
-def build(cls: type[P], section: Section, place: Place) -> P:
+def build(
+        cls: type[P], section: Section, place: Place, is_rotary: bool | None = None) -> P:
     """
     Return the parameter set of a section that must hold every value without `absent`.
 
     If a field may hold one of several sets, its section has a key that selects one:
-    ``kind: wheel``.
+    ``kind: wheel``. ``is_rotary`` of the actuator chooses the units in messages; None: both.
 
     Raises
     ------
@@ -50,11 +52,11 @@ def build(cls: type[P], section: Section, place: Place) -> P:
             continue
         entry = section[f.name]
         if 'doc' in f.metadata:
-            values[f.name] = _checked(entry, f.metadata, place / f.name)
+            values[f.name] = _checked(entry, of_axis(f.metadata, is_rotary), place / f.name)
         elif isinstance(entry, SourcedValue):
             raise ConfigError(f'{entry.where} = {entry.value!r}, must be a section')
         else:
-            values[f.name] = build_one_of(hints[f.name], entry, place / f.name)
+            values[f.name] = build_one_of(hints[f.name], entry, place / f.name, is_rotary)
     try:
         return cls(**values)
     except ParameterError as error:
@@ -75,10 +77,11 @@ def _last_written(section: Section, place: Place) -> Place:
     return place
 
 
-def build_one_of(hint: Any, section: Section, place: Place) -> Any:
+def build_one_of(
+        hint: Any, section: Section, place: Place, is_rotary: bool | None = None) -> Any:
     """Return the set of a class, or of the member of a union that a section selects; `build`."""
     if isinstance(hint, type):
-        return build(hint, section, place)
+        return build(hint, section, place, is_rotary)
     kinds = members(hint)
     for key in KIND_KEYS:
         if key in section:
@@ -91,7 +94,7 @@ def build_one_of(hint: Any, section: Section, place: Place) -> Any:
         value = kind.value if isinstance(kind, SourcedValue) else 'a section'
         where = kind.where if isinstance(kind, SourcedValue) else str(place / key)
         raise ConfigError(f'{where} = {value!r}, must be one of {", ".join(kinds)}')
-    return build(kinds[str(kind.value)], rest, _place_of(kind, place))
+    return build(kinds[str(kind.value)], rest, _place_of(kind, place), is_rotary)
 
 
 def _place_of(kind: SourcedValue, place: Place) -> Place:
@@ -117,6 +120,13 @@ def _first_where(entry: SourcedValue | Section) -> str:
         if where:
             return where.rpartition('.')[0] or where
     return ''
+
+
+def of_axis(declared: Mapping[str, Any], is_rotary: bool | None) -> Mapping[str, Any]:
+    """Return a declaration with the unit of a linear or rotary actuator; None: with both."""
+    if is_rotary is None or 'unit' not in declared:
+        return declared
+    return {**declared, 'unit': of_coordinate(declared['unit'], is_rotary)}
 
 
 def _checked(entry: SourcedValue | Section, declared: Mapping[str, Any], place: Place) -> Any:
