@@ -5,7 +5,7 @@ import os
 from pathlib import Path
 import platform
 
-from isa_ros.bench.spec import Memory
+from isa_ros.bench.spec import ProcessMemory
 
 _PROC = Path('/proc')
 _KIB = 1024
@@ -57,13 +57,13 @@ def available_memory() -> int:
     return os.sysconf('SC_AVPHYS_PAGES') * os.sysconf('SC_PAGE_SIZE')
 
 
-def memory_of(pid: int) -> Memory:
+def memory_of(pid: int) -> ProcessMemory:
     """Return the memory of one process."""
     sizes = {}
     for line in (_PROC / str(pid) / 'smaps_rollup').read_text().splitlines()[1:]:
         name, _, rest = line.partition(':')
         sizes[name] = int(rest.split()[0]) * _KIB
-    return Memory(sizes['Rss'], sizes['Pss'])
+    return ProcessMemory(sizes['Rss'], sizes['Pss'])
 
 
 def processor_seconds_of(pid: int) -> float:

@@ -51,7 +51,7 @@ class Spec:
 TWELVE = Spec('12', PROCESSES, 600, rounds=2)
 
 
-class Memory(NamedTuple):
+class ProcessMemory(NamedTuple):
     """Memory of one process, bytes."""
 
     resident: int
@@ -70,7 +70,7 @@ class Measured:
     """Time of a tick by phase of the coordinator."""
     processor: Mapping[str, float]
     """Processor time of a tick: `COORDINATOR`, and all `ACTUATORS` if in other processes."""
-    memory: Sequence[Memory]
+    memory: Sequence[ProcessMemory]
     """Memory of each process at the end, that of the coordinator first."""
 
     def to_json(self) -> str:
@@ -81,7 +81,7 @@ class Measured:
     def from_json(cls, text: str) -> 'Measured':
         """Return the values from JSON; inverse of `to_json`."""
         tree = json.loads(text)
-        return cls(**tree | {'memory': [Memory(*sizes) for sizes in tree['memory']]})
+        return cls(**tree | {'memory': [ProcessMemory(*sizes) for sizes in tree['memory']]})
 
     @property
     def tick(self) -> float:

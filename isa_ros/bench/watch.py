@@ -5,7 +5,8 @@ import os
 import time
 
 from isa_ros.bench.host import children_of, memory_of, processor_seconds_of
-from isa_ros.bench.spec import ACTUATORS, COORDINATOR, JOINED, Measured, Memory, PREPARED, RECORDER
+from isa_ros.bench.spec import (
+    ACTUATORS, COORDINATOR, JOINED, Measured, PREPARED, ProcessMemory, RECORDER)
 from isa_ros.errors import RunError
 from isa_ros.run.options import Request
 from isa_ros.run.pacing import JOINING, Laps, RunProgress, STARTING
@@ -37,7 +38,7 @@ class Watch:
         self._laps = FirstLaps()
         self._begun = time.monotonic()
         self._factor = 0.0
-        self._memory: list[Memory] = []
+        self._memory: list[ProcessMemory] = []
         self._spent: dict[str, float] = {}
 
     def request(self, request: Request) -> Request:

@@ -8,7 +8,7 @@ from typing import Protocol, TextIO
 _TO_THE_LEFT, _CLEAR_THE_REST = '\r', '\033[K'
 
 
-class Line:
+class TerminalLine:
     """One line of a terminal."""
 
     def __init__(self, terminal: TextIO) -> None:
@@ -32,9 +32,9 @@ class Line:
             self._terminal.flush()
 
 
-def terminal_line(stream: TextIO) -> Line | None:
+def terminal_line(stream: TextIO) -> TerminalLine | None:
     """Return the line to show progress on; None if ``stream`` is not a terminal."""
-    return Line(stream) if stream.isatty() else None
+    return TerminalLine(stream) if stream.isatty() else None
 
 
 class Progress(Protocol):

@@ -12,7 +12,7 @@ from isa_ros.actuator.actuator import PAPER_SUPPLY
 from isa_ros.analysis.response.actuator_trace import RATE_HZ, TIMING, Trace
 from isa_ros.analysis.response.bode import bode
 from isa_ros.analysis.response.rig import Choice, Rig
-from isa_ros.analysis.response.sweep import Sweep
+from isa_ros.analysis.response.sweep import FrequencySweep
 from isa_ros.config.runs.changed_parameters import with_parameters
 from isa_ros.core.units import LPM, MILLI
 from isa_ros.loads.sheets import Blocked, Mass, static_force
@@ -41,7 +41,7 @@ HELD_MA = 0.03          # coils in series: within the leakage of the lands
 RISE_MA = 0.3
 RISE = (0.1, 0.3)       # of the hydraulic stall force
 RISE_S = 0.3
-SWEEP = Sweep(low=20.0, high=300.0, points=16)
+SWEEP = FrequencySweep(low=20.0, high=300.0, points=16)
 SMALL_MM = 0.005        # of spool
 PERCENT = 2.0
 NOTHING = 'no such number'

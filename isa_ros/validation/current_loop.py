@@ -11,7 +11,7 @@ from isa_ros.actuator.integration import flat, rk4_step, scratch
 from isa_ros.actuator.sheet import actuator_record
 from isa_ros.analysis.response.actuator_trace import RATE_HZ
 from isa_ros.analysis.response.rig import Choice, Rig
-from isa_ros.analysis.response.step import Step, step
+from isa_ros.analysis.response.step import step, StepResponse
 from isa_ros.analysis.signals.step_response import step_figures
 from isa_ros.core.parameter import replaced
 from isa_ros.core.signals import LOAD_PORT
@@ -20,8 +20,7 @@ from isa_ros.paper.printed import cell, statement
 from isa_ros.plant.coil import coil_current
 from isa_ros.reu.lead_lag import demand_gain, lead_lag_record, LeadLag
 from isa_ros.validation.actuators import Actuators, SHIPPED
-from isa_ros.validation.entry import (
-    around, as_printed, at_most, Drawing, Entry, Findings, OWN)
+from isa_ros.validation.entry import around, as_printed, at_most, Drawing, Entry, Findings, OWN
 from isa_ros.validation.plots import stacked
 from isa_ros.validation.sheets import model_sheet, PRESET
 import numpy as np
@@ -96,11 +95,11 @@ def _rig(actuators: Actuators = SHIPPED) -> Rig:
         name=MANIFOLD, loop='current', preset=PRESET, variants=(EXPLICIT,)))
 
 
-def _step(actuators: Actuators, amplitude_ma: float) -> Step:
+def _step(actuators: Actuators, amplitude_ma: float) -> StepResponse:
     return step(_rig(actuators), STEP_S, amplitude_ma)
 
 
-def _settled(measured: Step) -> float:
+def _settled(measured: StepResponse) -> float:
     """Return the time from which on the current is within 2 % of its step, ms."""
     after = measured.t >= 0.0
     found = step_figures(
@@ -108,7 +107,7 @@ def _settled(measured: Step) -> float:
     return float('nan') if found.settling_time is None else found.settling_time * 1e3
 
 
-def _small_step(amplitude: float, measured: Step) -> tuple[Entry, ...]:
+def _small_step(amplitude: float, measured: StepResponse) -> tuple[Entry, ...]:
     error = 100.0 * abs(measured.figures.steady_error) / measured.amplitude
     return (
         Entry.of(f'settling_{amplitude:g}_ma', statement('current_response'),
@@ -119,7 +118,7 @@ def _small_step(amplitude: float, measured: Step) -> tuple[Entry, ...]:
               tolerance=(0.0, 1.0), tolerance_source='3 codes of the 12 bit converter'))
 
 
-def _large_step(measured: Step) -> tuple[Entry, ...]:
+def _large_step(measured: StepResponse) -> tuple[Entry, ...]:
     assert measured.inward is not None, 'an explicit coil is given a voltage'
     return (
         Entry(name='settling_5_ma', source=OWN, where='section 3.1',
@@ -150,7 +149,7 @@ def _ringing() -> tuple[float, np.ndarray]:
     return float(frequency[high][spectrum[high].argmax()]) * 1e-3, trace
 
 
-def _drawing(open_loop: np.ndarray, bare: np.ndarray, steps: dict[float, Step]) -> Drawing:
+def _drawing(open_loop: np.ndarray, bare: np.ndarray, steps: dict[float, StepResponse]) -> Drawing:
     figure, (top, middle, bottom) = stacked(
         'time, ms', 'open loop, mA', 'P alone, mA', '2-DOF, mA')
     top.plot(np.arange(1, len(open_loop) + 1) * PLANT_STEP * 1e3, open_loop * 1e3, 'k')

@@ -12,7 +12,7 @@ from dataclasses import replace
 
 from isa_ros.analysis.response.actuator_trace import RATE_HZ
 from isa_ros.analysis.response.rig import Choice, Rig
-from isa_ros.analysis.response.step import Step, step
+from isa_ros.analysis.response.step import step, StepResponse
 from isa_ros.config.paths import CONFIG, find
 from isa_ros.config.runs.run_file import load_run
 from isa_ros.core.units import MILLI, MPA
@@ -22,8 +22,7 @@ from isa_ros.surroundings.bodies.leg.dynamics import leg_terms
 from isa_ros.surroundings.bodies.leg.sheet import body_record, linkage_record
 from isa_ros.surroundings.linkage import actuator_coordinate
 from isa_ros.validation.actuators import Actuators, SHIPPED
-from isa_ros.validation.entry import (
-    around, Drawing, Entry, Findings, OWN, PAPER, regression)
+from isa_ros.validation.entry import around, Drawing, Entry, Findings, OWN, PAPER, regression
 from isa_ros.validation.plots import stacked
 from isa_ros.validation.sheets import model_sheet, plant_of
 from isa_ros.validation.torque_step import bandwidths
@@ -149,7 +148,7 @@ def _relief(actuators: Actuators, model: str) -> Entry:
         tolerance_source='the printed pressure opens them; 10 l/min take 0.5 MPa more')
 
 
-def _drawing(steps: dict[str, Step]) -> Drawing:
+def _drawing(steps: dict[str, StepResponse]) -> Drawing:
     figure, (ax,) = stacked('time, ms', 'force, N')
     for label, measured in steps.items():
         ax.plot(measured.t / MILLI, measured.output, label=label)

@@ -11,7 +11,7 @@ from dataclasses import dataclass, replace
 from isa_ros.analysis.response.bode import bode
 from isa_ros.analysis.response.rig import Choice, Rig, rig
 from isa_ros.analysis.response.step import step
-from isa_ros.analysis.response.sweep import Sweep
+from isa_ros.analysis.response.sweep import FrequencySweep
 from isa_ros.core.parameter import replaced
 from isa_ros.paper.printed import statement
 from isa_ros.reu.block import Pid
@@ -22,7 +22,7 @@ import numpy as np
 
 PLACES = (0.02, 0.10, 0.25, 0.50, 0.75, 0.90, 0.98)  # of the stroke
 STEP_S = 0.3
-SWEEP = Sweep(low=5.0, high=200.0, points=14)
+SWEEP = FrequencySweep(low=5.0, high=200.0, points=14)
 AS_SHIPPED, OTHERWISE, LINEARISED = 'PID as shipped', 'PID otherwise', 'feedback linearisation'
 RISE_SPREAD = 20.0   # percent, allowed about the middle of the range
 LINEARISED_OVERSHOOT = 10.0     # percent

@@ -10,12 +10,12 @@ from dataclasses import dataclass
 from isa_ros.analysis.response.bode import bode
 from isa_ros.analysis.response.rig import Rig
 from isa_ros.analysis.response.step import step
-from isa_ros.analysis.response.sweep import Sweep
+from isa_ros.analysis.response.sweep import FrequencySweep
 from isa_ros.analysis.signals.frequency import Response
 import numpy as np
 
 STEP_S = 0.2
-SWEEP = Sweep(low=5.0, high=200.0, points=30)
+SWEEP = FrequencySweep(low=5.0, high=200.0, points=30)
 QUARTER = -90.0     # deg
 LEVELS = {'10_90': (0.1, 0.9), '0_90': (0.0, 0.9), '0_100': (0.0, 1.0)}
 

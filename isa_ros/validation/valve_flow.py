@@ -9,8 +9,7 @@ import math
 from isa_ros.core.units import LPM, MILLI, MPA
 from isa_ros.paper.printed import cell, statement
 from isa_ros.plant.servo_valve import flow_curve, port_flows
-from isa_ros.validation.entry import (
-    around, as_printed, Drawing, Entry, Findings, INPUT)
+from isa_ros.validation.entry import around, as_printed, Drawing, Entry, Findings, INPUT
 from isa_ros.validation.plots import stacked
 from isa_ros.validation.sheets import plant_of
 import numpy as np

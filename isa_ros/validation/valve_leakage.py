@@ -8,8 +8,7 @@ both coils in series. The tare leakage is the part of it that does not pass the 
 from isa_ros.core.units import LPM
 from isa_ros.paper.printed import statement
 from isa_ros.plant.servo_valve import port_flows
-from isa_ros.validation.entry import (
-    around, as_printed, Drawing, Entry, Findings, INPUT)
+from isa_ros.validation.entry import around, as_printed, Drawing, Entry, Findings, INPUT
 from isa_ros.validation.plots import stacked
 from isa_ros.validation.sheets import plant_of
 from isa_ros.validation.valve_flow import (

@@ -1,6 +1,6 @@
 """Artificial results of runs, for tests of their evaluation."""
 
-from isa_ros.bench.spec import ACTUATORS, COORDINATOR, Measured, Memory
+from isa_ros.bench.spec import ACTUATORS, COORDINATOR, Measured, ProcessMemory
 
 MIB = 1024 * 1024
 
@@ -13,4 +13,5 @@ def ran(ticks_per_s: float, n_children: int = 0, startup: float = 2.0) -> Measur
         ticks_per_s=ticks_per_s,
         startup={'imports': 0.25 * startup, 'waiting for actuators to join': 0.75 * startup},
         phases={'actuators': 0.5 * tick, 'recorder': 0.5 * tick}, processor=processor,
-        memory=[Memory(100 * MIB, 80 * MIB)] + n_children * [Memory(90 * MIB, 50 * MIB)])
+        memory=[ProcessMemory(100 * MIB, 80 * MIB),
+                *n_children * [ProcessMemory(90 * MIB, 50 * MIB)]])

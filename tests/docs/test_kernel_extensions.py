@@ -112,9 +112,9 @@ def cushion_force(s, v, stroke, cushion):
 _HITS = """
 import isa_ros
 hard, soft = (isa_ros.load('rig_linear', {'name': 'out', 'duration_s': 0.4, 'tracks': {'ram': [
-    {'t_s': 0.0, 'position': 0.05, 'effort': 2000.0, 'stiffness': 0.0, 'damping': 0.0}]}}).replace({
-        'actuators.ram.parameters.plant.cushion': {'length': 0.01, 'damping': damping}}).simulate()
-    for damping in (0.0, 2e4))
+    {'t_s': 0.0, 'position': 0.05, 'effort': 2000.0, 'stiffness': 0.0, 'damping': 0.0}]}}
+    ).replace({'actuators.ram.parameters.plant.cushion': {'length': 0.01, 'damping': damping}}
+              ).simulate() for damping in (0.0, 2e4))
 arrivals = [float(own['ram.velocity'][own['ram.position'] > 0.0998][0]) for own in (hard, soft)]
 account = soft.accounts['ram']
 used = sum(account[name] for name in account if name.endswith('(J)')) - (
@@ -153,7 +153,7 @@ def proportional_step(reference, measured, block, state):
     """Set the output."""
     state.output = max(-block.limit, min(block.limit, block.kp * (reference - measured)))
 '''
-_VARIANT = '''
+_VARIANT = """
 variants:
   proportional:
     reu:
@@ -162,12 +162,13 @@ variants:
         rate_hz: {value: 5000.0, source: assumed}
         kp: {value: 1.0e-8, source: assumed}
         limit: {value: 1.78e-4, scales_with: spool_travel, source: assumed}
-'''
+"""
 _PUSHES = """
 import isa_ros
 run = isa_ros.load('rig_linear', {'name': 'push', 'duration_s': 0.2, 'tracks': {'ram': [
-    {'t_s': 0.0, 'effort': 1000.0, 'position': 0.05, 'stiffness': 0.0, 'damping': 0.0}]}}).replace({
-        'actuators.ram.variants': ['proportional'], 'actuators.ram.load': {'kind': 'blocked'}})
+    {'t_s': 0.0, 'effort': 1000.0, 'position': 0.05, 'stiffness': 0.0, 'damping': 0.0}]}}
+    ).replace({'actuators.ram.variants': ['proportional'],
+               'actuators.ram.load': {'kind': 'blocked'}})
 weak, strong = (run.replace({'actuators.ram.parameters.reu.force.kp': kp}).simulate()
                 for kp in (1e-9, 1e-8))
 forces = [own['ram.force'][-1] for own in (weak, strong)]

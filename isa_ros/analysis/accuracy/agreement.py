@@ -76,7 +76,7 @@ def rates_of_first(tau, drive, ports, actuators, bodies, rates):
     kernels.write_rates(tau, bodies[0], drive, ports[0], actuators[0], True, rates[0], True)
 
 
-class Bench:
+class OpenLoopRig:
     """One actuator of a model at rest at mid stroke on one of its own loads, without REU."""
 
     def __init__(self, model: str, load: str) -> None:
@@ -145,7 +145,7 @@ def compare(
         model: str, load: str, piece: Piece, h: float = PLANT_STEP,
         tolerance: float = TOLERANCE) -> Iterator[Difference]:
     """Yield the `Difference` of each state and of the sensor force over one piece."""
-    bench = Bench(model, load)
+    bench = OpenLoopRig(model, load)
     ours = bench.fixed(piece, h)
     size = np.abs(ours).max(axis=0)
     exact = bench.adaptive(piece, np.where(size > 0.0, size, 1.0), tolerance)

@@ -23,7 +23,7 @@ KNEE = 'kfe'
 POSITION, FORCE = 'position', 'force'
 
 
-class Layout(NamedTuple):
+class FigureLayout(NamedTuple):
     """The title and the diagrams of one figure of the paper."""
 
     title: str
@@ -31,14 +31,14 @@ class Layout(NamedTuple):
     """Of `POSITION` and `FORCE`, from top to bottom."""
 
 
-LAYOUTS: Mapping[str, Layout] = {
-    'position_torque_tracking': Layout('Tracking of a trot, as Fig 12', (POSITION, FORCE)),
-    'torque_step': Layout('Torque step, blocked, as Fig 13', (FORCE,)),
-    'force_step': Layout('Force step, as Fig 14', (FORCE,)),
-    'impact': Layout('Impacts on the stop, as Fig 15', (FORCE, POSITION)),
-    'weight': Layout('Dropped weight, as Figs 17 and 18', (FORCE, POSITION)),
-    'knee_sine': Layout('Sine of the knee, as Fig 19', (POSITION,)),
-    'leg_drop': Layout('Drop of the leg, as Fig 20', (FORCE,)),
+LAYOUTS: Mapping[str, FigureLayout] = {
+    'position_torque_tracking': FigureLayout('Tracking of a trot, as Fig 12', (POSITION, FORCE)),
+    'torque_step': FigureLayout('Torque step, blocked, as Fig 13', (FORCE,)),
+    'force_step': FigureLayout('Force step, as Fig 14', (FORCE,)),
+    'impact': FigureLayout('Impacts on the stop, as Fig 15', (FORCE, POSITION)),
+    'weight': FigureLayout('Dropped weight, as Figs 17 and 18', (FORCE, POSITION)),
+    'knee_sine': FigureLayout('Sine of the knee, as Fig 19', (POSITION,)),
+    'leg_drop': FigureLayout('Drop of the leg, as Fig 20', (FORCE,)),
 }
 """By the names of `isa_ros.scenario.scenario.FIGURES`, which also has those of `RESPONSES`."""
 

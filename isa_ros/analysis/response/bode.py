@@ -15,9 +15,9 @@ from dataclasses import dataclass
 
 from isa_ros.analysis.response.actuator_trace import RATE_HZ, Trace
 from isa_ros.analysis.response.at_rest import HUNTS, Rest, rest_of, ticks_at_rest
-from isa_ros.analysis.response.loops import CLOSED, Loop, OPEN, PLANT, Unit
+from isa_ros.analysis.response.loops import CLOSED, Loop, OPEN, PLANT, UserUnit
 from isa_ros.analysis.response.rig import Rig
-from isa_ros.analysis.response.sweep import Answer, excitation, Sweep
+from isa_ros.analysis.response.sweep import Estimator, excitation, FrequencySweep
 from isa_ros.analysis.signals.frequency import (
     bandwidth, HALF_POWER, Margins, margins, Response, TRUSTED)
 from isa_ros.text.table import aligned, RIGHT
@@ -38,7 +38,7 @@ class Bode:
     rest: Rest                  # the loop without excitation
 
 
-def bode(rig: Rig, sweep: Sweep, of: str, amplitude: float | None = None) -> Bode:
+def bode(rig: Rig, sweep: FrequencySweep, of: str, amplitude: float | None = None) -> Bode:
     """
     Measure one response of a rig's loop; ``amplitude`` in the loop's unit.
 
@@ -62,7 +62,8 @@ def bode(rig: Rig, sweep: Sweep, of: str, amplitude: float | None = None) -> Bod
 
 
 def evaluate(
-        loop: Loop, answer: Answer, of: str, amplitude: float, trace: Trace, rest: Rest) -> Bode:
+        loop: Loop, answer: Estimator, of: str, amplitude: float, trace: Trace,
+        rest: Rest) -> Bode:
     """Return a loop's response from the trace of one run, and its ripple after it."""
     reference, y = trace[f'{loop.name}_reference'], trace[loop.name]
     closed, opened, requested = (
@@ -134,6 +135,6 @@ def _ripple(measured: Bode) -> str:
             f'(bound: {HUNTS * 100.0:g} %); bandwidth and margins are not given')
 
 
-def input_unit(measured: Bode) -> Unit:
+def input_unit(measured: Bode) -> UserUnit:
     """Return the unit of the response's input."""
     return measured.loop.inward_unit if measured.of == PLANT else measured.loop.unit

@@ -9,7 +9,7 @@ from isa_ros.analysis.response import bode as bodes, from_bag, step as steps
 from isa_ros.analysis.response.figures import bode_figure, step_figure
 from isa_ros.analysis.response.rig import Rig
 from isa_ros.analysis.response.series import Member, members, refuse_beside_a_bag
-from isa_ros.analysis.response.sweep import LARGEST_SHARE, Sweep
+from isa_ros.analysis.response.sweep import FrequencySweep, LARGEST_SHARE
 from isa_ros.errors import ConfigError
 from isa_ros.text.json_file import write_wanted
 from matplotlib.figure import Figure
@@ -35,7 +35,7 @@ def bode(options: Namespace) -> bool:
         benches = [Member('', recorded.rig)]
         low, high = max(low, recorded.lowest()), min(high, LARGEST_SHARE * recorded.rate)
     _refuse_units(options, benches)
-    sweep = Sweep(
+    sweep = FrequencySweep(
         low=options.low or low, high=options.high or high, points=options.points,
         is_chirp=options.method == 'chirp')
     method = (f'as in {options.bag},' if recorded else 'chirp' if sweep.is_chirp
@@ -62,7 +62,7 @@ def step(options: Namespace) -> None:
     _refuse_figure(options.out)
     benches, duration = members(options), options.duration or DURATIONS[options.loop]
     title, found = '', []
-    responses: list[steps.Step] = []
+    responses: list[steps.StepResponse] = []
     for label, bench in benches:
         measured = steps.step(bench, duration, options.amplitude)
         title = (f'{bench.title}\n{measured.loop.label}: step of '
@@ -87,13 +87,13 @@ def _print(title: str, text: str, is_first: bool) -> None:
     print(f'{title}\n{text}' if is_first else f'\n{title}\n{text}', flush=True)
 
 
-def _amplitude(measured: bodes.Bode | steps.Step) -> str:
+def _amplitude(measured: bodes.Bode | steps.StepResponse) -> str:
     unit = measured.loop.unit
     return f'{measured.amplitude / unit.scale:.4g} {unit.symbol}'
 
 
 def _setting(
-        options: Namespace, bench: Rig, measured: bodes.Bode | steps.Step, label: str
+        options: Namespace, bench: Rig, measured: bodes.Bode | steps.StepResponse, label: str
         ) -> dict[str, Any]:
     config, unit = bench.config, measured.loop.unit
     return ({'label': label} if label else {}) | {
@@ -126,7 +126,7 @@ def _numbers(measured: bodes.Bode) -> dict[str, Any]:
         **(dict.fromkeys(results) if measured.rest.hunts else results)}
 
 
-def _step_numbers(measured: steps.Step) -> dict[str, Any]:
+def _step_numbers(measured: steps.StepResponse) -> dict[str, Any]:
     found, scale = measured.figures, measured.loop.unit.scale
     return {
         'rise_time_s': found.rise_time, 'overshoot': found.overshoot,

@@ -4,7 +4,7 @@ from collections.abc import Sequence
 
 from isa_ros.analysis.response.bode import Bode
 from isa_ros.analysis.response.loops import CLOSED, PLANT
-from isa_ros.analysis.response.step import Step
+from isa_ros.analysis.response.step import StepResponse
 from isa_ros.analysis.signals.frequency import HALF_POWER
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
@@ -70,7 +70,7 @@ def _hunting(responses: Sequence[Bode], labels: Sequence[str]) -> str:
     return '\n'.join(lines)
 
 
-def step_figure(responses: Sequence[Step], labels: Sequence[str], title: str) -> Figure:
+def step_figure(responses: Sequence[StepResponse], labels: Sequence[str], title: str) -> Figure:
     """
     Draw reference and output, and the output of the loop's block, over time.
 
@@ -106,7 +106,7 @@ def step_figure(responses: Sequence[Step], labels: Sequence[str], title: str) ->
     return figure
 
 
-def _shown(measured: Step, values: np.ndarray, in_unit: bool) -> np.ndarray:
+def _shown(measured: StepResponse, values: np.ndarray, in_unit: bool) -> np.ndarray:
     """Return values in the loop's unit, or in percent of the step from where it began."""
     start, unit = (0.0, measured.loop.unit.scale) if in_unit else (
         float(measured.reference[0]), 0.01 * measured.amplitude)

@@ -15,7 +15,7 @@ from isa_ros.analysis.response.actuator_trace import Trace
 from isa_ros.analysis.response.at_rest import RECORDED_S, Rest, rest_of
 from isa_ros.analysis.response.loops import loop_of, PLANT
 from isa_ros.analysis.response.rig import Rig
-from isa_ros.analysis.response.sweep import Answer, chirp_band, SEGMENT_CYCLES, Sweep
+from isa_ros.analysis.response.sweep import chirp_band, Estimator, FrequencySweep, SEGMENT_CYCLES
 from isa_ros.analysis.signals.frequency import SEGMENTS
 from isa_ros.analysis.signals.signals import AT_EVERY_TICK, read_signals
 from isa_ros.config.text.parameter_sets import kind_of
@@ -76,7 +76,7 @@ def recorded(bag: Path, actuator: str | None, loop_name: str) -> Recorded:
                     slice(int(changes[0]), int(changes[-1]) + 2))
 
 
-def bode(found: Recorded, sweep: Sweep, of: str, bag: Path) -> bodes.Bode:
+def bode(found: Recorded, sweep: FrequencySweep, of: str, bag: Path) -> bodes.Bode:
     """
     Evaluate as `bode.bode`; the loop is at rest if its reference is, at the end of the bag.
 
@@ -97,7 +97,7 @@ def bode(found: Recorded, sweep: Sweep, of: str, bag: Path) -> bodes.Bode:
     amplitude = 0.5 * float(np.ptp(excited[f'{loop.name}_reference']))
     output, still = found.trace[loop.name], len(found.trace[loop.name]) - found.excited.stop
     return bodes.evaluate(
-        loop, Answer(found.rate, segment=segment, frequencies=sweep.frequencies), of, amplitude,
+        loop, Estimator(found.rate, segment=segment, frequencies=sweep.frequencies), of, amplitude,
         excited, rest_of(output, amplitude, found.rate) if still >= RECORDED_S * found.rate
         else Rest(math.nan, math.nan, amplitude))
 

@@ -29,7 +29,7 @@ OPEN, PLANT, CLOSED = 'open', 'plant', 'closed'
 
 
 @dataclass(frozen=True)
-class Unit:
+class UserUnit:
     """A unit for the user's values of a quantity; one unit is ``scale`` SI units."""
 
     symbol: str
@@ -43,9 +43,9 @@ class Loop:
     name: str
     label: str                  # the name, but torque for the force loop of a rotary actuator
     sheet: ActuatorSheet        # with the blocks outside the loop off
-    unit: Unit                  # of reference and output
+    unit: UserUnit                  # of reference and output
     inward: str | None          # the output signal of its block
-    inward_unit: Unit
+    inward_unit: UserUnit
     quantity: str               # of the setpoint that is its reference
     per_reference: float        # that quantity per SI unit of the reference
     rate_hz: float              # rate at which it samples its reference
@@ -74,12 +74,12 @@ class Loop:
                 'no output; valid: closed, open')
         return trace[self.inward]
 
-    def response_unit(self, of: str) -> Unit:
+    def response_unit(self, of: str) -> UserUnit:
         """Return the unit of a response, output over input."""
         if of != PLANT:
-            return Unit('1')
-        return Unit(f'{self.unit.symbol}/{self.inward_unit.symbol}',
-                    self.unit.scale / self.inward_unit.scale)
+            return UserUnit('1')
+        return UserUnit(f'{self.unit.symbol}/{self.inward_unit.symbol}',
+                        self.unit.scale / self.inward_unit.scale)
 
 
 def outermost(sheet: ActuatorSheet, name: str) -> ActuatorSheet:
@@ -142,12 +142,13 @@ def _inward(alone: ActuatorSheet, names: list[str], name: str) -> str | None:
     return f'{names[names.index(name) + 1]}_reference'
 
 
-def units_of(sheet: ActuatorSheet) -> dict[str, Unit]:
+def units_of(sheet: ActuatorSheet) -> dict[str, UserUnit]:
     """Return the user's unit of every loop's signals."""
-    place, force = ((Unit('deg', math.radians(1.0)), Unit('Nm')) if sheet.is_rotary
-                    else (Unit('mm', MILLI), Unit('N')))
-    return {'position': place, 'force': force, 'pressure': Unit('MPa', MPA),
-            'spool': Unit('mm', MILLI), 'current': Unit('mA', MILLI), 'drive': Unit('V')}
+    place, force = ((UserUnit('deg', math.radians(1.0)), UserUnit('Nm')) if sheet.is_rotary
+                    else (UserUnit('mm', MILLI), UserUnit('N')))
+    return {'position': place, 'force': force, 'pressure': UserUnit('MPa', MPA),
+            'spool': UserUnit('mm', MILLI), 'current': UserUnit('mA', MILLI),
+            'drive': UserUnit('V')}
 
 
 def rating(sheet: ActuatorSheet) -> float:

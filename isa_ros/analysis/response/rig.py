@@ -8,7 +8,7 @@ from typing import Any
 from isa_ros.actuator.group import ActuatorGroup
 from isa_ros.analysis.response.actuator_trace import RATE_HZ, setpoints, TIMING, Trace, traced
 from isa_ros.analysis.response.choice import Choice, Chosen, chosen
-from isa_ros.analysis.response.loops import Loop, loop_of, Unit, units_of
+from isa_ros.analysis.response.loops import Loop, loop_of, units_of, UserUnit
 from isa_ros.config.models.catalogue import actuator_model
 from isa_ros.config.models.own_load import own_load
 from isa_ros.config.runs.run_config import ActuatorConfig, RunConfig
@@ -154,7 +154,7 @@ def rig_of(named: Chosen, choice: Choice) -> Rig:
     return Rig(named.run.alone(replace(config, sheet=loop.sheet)), loop, kind, choice.values)
 
 
-def _place(given: float | None, config: ActuatorConfig, unit: Unit) -> float:
+def _place(given: float | None, config: ActuatorConfig, unit: UserUnit) -> float:
     if given is None:
         return config.initial_position
     stroke = config.sheet.plant.drive.stroke

@@ -18,7 +18,7 @@ LOST = 0.5                  # error or ripple at the end over the step; above: i
 
 
 @dataclass(frozen=True)
-class Step:
+class StepResponse:
     """A measured step: signals over time from the step on, (n,), SI, and its figures."""
 
     loop: Loop
@@ -30,7 +30,7 @@ class Step:
     figures: StepFigures
 
 
-def step(rig: Rig, duration: float, amplitude: float | None = None) -> Step:
+def step(rig: Rig, duration: float, amplitude: float | None = None) -> StepResponse:
     """
     Measure a step of a loop's reference by ``amplitude`` (in the loop's unit) from rest.
 
@@ -85,17 +85,17 @@ def check_duration(duration: float) -> None:
 
 def evaluate(
         loop: Loop, trace: Trace, before: int, start: float, amplitude: float,
-        rate: float) -> Step:
+        rate: float) -> StepResponse:
     """Return a step from ``start`` at row ``before`` of a trace."""
     output = trace[loop.name]
     t = (np.arange(len(output)) - before) / rate
-    return Step(
+    return StepResponse(
         loop, amplitude, t, trace[f'{loop.name}_reference'], output,
         None if loop.inward is None else trace[loop.inward],
         step_figures(t[before:], output[before:], start, start + amplitude, BAND))
 
 
-def summary(measured: Step) -> str:
+def summary(measured: StepResponse) -> str:
     """Return the figures of a step, a line each."""
     found, unit = measured.figures, measured.loop.unit
 

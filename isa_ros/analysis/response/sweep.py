@@ -28,7 +28,7 @@ TWO_PI = 2.0 * math.pi
 
 
 @dataclass(frozen=True, kw_only=True)
-class Sweep:
+class FrequencySweep:
     """Frequencies of a measurement, Hz, and the kind of excitation."""
 
     low: float
@@ -62,7 +62,7 @@ class Sweep:
                 f'{rate:g} Hz')
 
 
-class Section(NamedTuple):
+class SineSection(NamedTuple):
     """One frequency of a stepped sine, and its times in s: whole periods of the grid."""
 
     frequency: float
@@ -70,7 +70,7 @@ class Section(NamedTuple):
     measured: float
 
 
-def sections(sweep: Sweep, grid: float) -> tuple[Section, ...]:
+def sections(sweep: FrequencySweep, grid: float) -> tuple[SineSection, ...]:
     """Return the sections of a stepped sine, times in multiples of ``grid`` (s)."""
     found = []
     for wanted in sweep.frequencies:
@@ -78,11 +78,11 @@ def sections(sweep: Sweep, grid: float) -> tuple[Section, ...]:
         measured = round(cycles / wanted / grid) * grid
         frequency = cycles / measured
         settle = math.ceil(max(SETTLE_S, SETTLE_CYCLES / frequency) / grid) * grid
-        found.append(Section(float(frequency), settle, measured))
+        found.append(SineSection(float(frequency), settle, measured))
     return tuple(found)
 
 
-def windows(parts: tuple[Section, ...], rate: float, first: int) -> tuple[Window, ...]:
+def windows(parts: tuple[SineSection, ...], rate: float, first: int) -> tuple[Window, ...]:
     """Return the windows of the settled samples; the first section begins at row ``first``."""
     found, at = [], first
     for frequency, settle, measured in parts:
@@ -101,7 +101,7 @@ class ChirpBand(NamedTuple):
     segment: float
 
 
-def chirp_band(sweep: Sweep, rate: float, grid: float) -> ChirpBand:
+def chirp_band(sweep: FrequencySweep, rate: float, grid: float) -> ChirpBand:
     """Return the chirp of a sweep: slightly more than its band, up to half the rate."""
     segment = math.ceil(max(LEAST_SEGMENT_S, SEGMENT_CYCLES / sweep.low) / grid) * grid
     return ChirpBand(
@@ -109,7 +109,7 @@ def chirp_band(sweep: Sweep, rate: float, grid: float) -> ChirpBand:
 
 
 @dataclass(frozen=True)
-class Answer:
+class Estimator:
     """Estimator of the response from the samples of a run."""
 
     rate: float
@@ -129,15 +129,15 @@ class Excitation(NamedTuple):
 
     values: np.ndarray
     rates: np.ndarray
-    answer: Answer
+    answer: Estimator
 
 
-def excitation(sweep: Sweep, rate: float) -> Excitation:
+def excitation(sweep: FrequencySweep, rate: float) -> Excitation:
     """Return the excitation of a sweep, with ``rate`` values per second."""
     return (_chirp if sweep.is_chirp else _stepped)(sweep, rate)
 
 
-def _stepped(sweep: Sweep, rate: float) -> Excitation:
+def _stepped(sweep: FrequencySweep, rate: float) -> Excitation:
     """Return one sine after another, continuous in phase."""
     phases, slopes, phase = [], [], 0.0
     parts = sections(sweep, GRID_S)
@@ -150,10 +150,10 @@ def _stepped(sweep: Sweep, rate: float) -> Excitation:
     angle = np.concatenate(phases)
     return Excitation(
         np.sin(angle), np.concatenate(slopes) * np.cos(angle),
-        Answer(rate, windows(parts, rate, 0)))
+        Estimator(rate, windows(parts, rate, 0)))
 
 
-def _chirp(sweep: Sweep, rate: float) -> Excitation:
+def _chirp(sweep: FrequencySweep, rate: float) -> Excitation:
     """Return f = f_0 (f_1/f_0)^(t/T)."""
     band = chirp_band(sweep, rate, GRID_S)
     t = np.arange(round(band.duration * rate)) / rate
@@ -162,4 +162,4 @@ def _chirp(sweep: Sweep, rate: float) -> Excitation:
     slope = TWO_PI * band.low * np.exp(growth * t)
     return Excitation(
         np.sin(angle), slope * np.cos(angle),
-        Answer(rate, segment=band.segment, frequencies=sweep.frequencies))
+        Estimator(rate, segment=band.segment, frequencies=sweep.frequencies))

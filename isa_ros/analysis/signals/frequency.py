@@ -67,7 +67,7 @@ class Response:
         return Response(*(getattr(self, f.name)[kept] for f in fields(self)))
 
 
-class Sine(NamedTuple):
+class FittedSine(NamedTuple):
     """A sine fitted to a signal: real part of ``amplitude`` exp(j 2 pi f t), and the rest."""
 
     amplitude: complex
@@ -76,7 +76,7 @@ class Sine(NamedTuple):
     """Share of the variance that the sine explains; 0 for a constant signal."""
 
 
-def fit_sine(values: np.ndarray, frequency: float, rate: float) -> Sine:
+def fit_sine(values: np.ndarray, frequency: float, rate: float) -> FittedSine:
     """
     Fit sine, cosine and offset at ``frequency`` by least squares.
 
@@ -105,9 +105,9 @@ def fit_sine(values: np.ndarray, frequency: float, rate: float) -> Sine:
     variance = float(np.var(window))
     # A constant signal is one value up to the rounding of its mean.
     if variance <= np.square(4.0 * np.finfo(float).eps * np.abs(window).max()):
-        return Sine(0j, float(parts[2]), 0.0)
+        return FittedSine(0j, float(parts[2]), 0.0)
     left = float(np.var(window - basis @ parts)) / variance
-    return Sine(complex(parts[0], -parts[1]), float(parts[2]), max(0.0, 1.0 - left))
+    return FittedSine(complex(parts[0], -parts[1]), float(parts[2]), max(0.0, 1.0 - left))
 
 
 class Window(NamedTuple):

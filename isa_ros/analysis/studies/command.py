@@ -6,7 +6,7 @@ from dataclasses import replace
 import sys
 
 from isa_ros.analysis.studies import page, temperature
-from isa_ros.analysis.studies.measure import Benches, Result, results
+from isa_ros.analysis.studies.measure import Benches, results, Studied
 from isa_ros.analysis.studies.studies import only_model, STUDIES, Study, study_of
 from isa_ros.errors import ConfigError
 from isa_ros.text.json_file import write_wanted
@@ -33,7 +33,7 @@ def study(options: Namespace) -> None:
         print(listing())
         return
     benches = Benches()
-    done: list[tuple[Study, Sequence[Result]]] = []
+    done: list[tuple[Study, Sequence[Studied]]] = []
     for one in chosen:
         found = results(one, benches, counted(sys.stderr, 'values', of=one.name))
         done.append((one, found))

@@ -3,7 +3,7 @@
 from collections.abc import Sequence
 
 from isa_ros.analysis.response.actuator_trace import RATE_HZ
-from isa_ros.analysis.studies.measure import Outcome, Result, SMALL
+from isa_ros.analysis.studies.measure import MeasuresAt, SMALL, Studied
 from matplotlib import colormaps
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
@@ -19,7 +19,7 @@ ROOM = 50.0         # above the largest ripple, for the legend
 FLOOR = 2e-4        # of the step: smaller ripples are drawn there
 
 
-def study_figure(title: str, results: Sequence[Result]) -> Figure:
+def study_figure(title: str, results: Sequence[Studied]) -> Figure:
     """Draw the outcomes of a study over its values, equal distances apart."""
     figure = Figure(figsize=(4.6 * len(results), 8.6), dpi=85, layout='constrained')
     figure.suptitle(title, fontsize='medium')
@@ -30,7 +30,7 @@ def study_figure(title: str, results: Sequence[Result]) -> Figure:
     return figure
 
 
-def _column(axes: list[Axes], result: Result) -> None:
+def _column(axes: list[Axes], result: Studied) -> None:
     case, found = result.case, result.outcomes
     axes[0].set_title(f'{case.model}, gains {case.preset}', fontsize='small')
     for ax, label in zip(axes, _ROWS):
@@ -55,7 +55,7 @@ def _column(axes: list[Axes], result: Result) -> None:
     axes[-1].set_xlabel(f'{case.unit.symbol}; dotted: as shipped', fontsize='small')
 
 
-def _steps(ax: Axes, result: Result) -> None:
+def _steps(ax: Axes, result: Studied) -> None:
     colors = colormaps['viridis'](np.linspace(0.0, 0.9, len(result.outcomes)))
     for outcome, color in zip(result.outcomes, colors):
         t = 1e3 / RATE_HZ * np.arange(len(outcome.step))
@@ -68,7 +68,7 @@ def _steps(ax: Axes, result: Result) -> None:
               title_fontsize='xx-small')
 
 
-def _ripples(ax: Axes, places: np.ndarray, result: Result) -> None:
+def _ripples(ax: Axes, places: np.ndarray, result: Studied) -> None:
     floor = FLOOR * result.amplitude
     largest = SMALL * result.amplitude
     for name, label, style in _RIPPLES:
@@ -81,6 +81,6 @@ def _ripples(ax: Axes, places: np.ndarray, result: Result) -> None:
     ax.legend(fontsize='xx-small', ncols=2, loc='upper right')
 
 
-def _values(found: Sequence[Outcome], name: str) -> np.ndarray:
+def _values(found: Sequence[MeasuresAt], name: str) -> np.ndarray:
     """Return one number of every outcome; NaN, which is not drawn, for none."""
     return np.array([getattr(outcome, name) for outcome in found], dtype=float)

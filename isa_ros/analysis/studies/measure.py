@@ -18,7 +18,7 @@ from isa_ros.analysis.response.actuator_trace import RATE_HZ
 from isa_ros.analysis.response.bode import bode
 from isa_ros.analysis.response.loops import loop_of
 from isa_ros.analysis.response.rig import BLOCKED, Choice, Rig, rig
-from isa_ros.analysis.response.sweep import Sweep
+from isa_ros.analysis.response.sweep import FrequencySweep
 from isa_ros.analysis.signals.frequency import ripple, ripple_frequency
 from isa_ros.analysis.signals.step_response import step_figures
 from isa_ros.analysis.studies.studies import Case, Study
@@ -36,7 +36,7 @@ PLACES = (0.5, 0.02)    # of the stroke: steps at mid stroke and near the stop
 STEP_S = 1.2            # up, and as long back
 RIPPLE_S = 0.4          # at the end of each
 SHOWN_S = 0.1           # of a step in a figure
-SWEEP = Sweep(low=10.0, high=160.0, points=9)
+SWEEP = FrequencySweep(low=10.0, high=160.0, points=9)
 WHEEL = 'wheel'
 LOAD = 'load.'          # prefix of a parameter of the blocked output
 TROT_JOINTS = {'smart_manifold': 'hfe', 'isa_v5': 'kfe'}     # joint of the trot by model
@@ -46,7 +46,7 @@ GROWN_S, TROT_S, FADE_S, STAND_S = 0.6, 1.2, 0.3, 0.9   # 0.6 s: start_s of the 
 
 
 @dataclass(frozen=True, kw_only=True)
-class Outcome:
+class MeasuresAt:
     """The measures at one value, in the units of the page."""
 
     value: float
@@ -63,7 +63,7 @@ class Outcome:
 
 
 @dataclass(frozen=True)
-class Bench:
+class StudyRig:
     """The actuator of a case as shipped, on both loads, and the trot it follows."""
 
     blocked: Rig
@@ -76,27 +76,27 @@ class Benches:
     """The benches of several studies: cases that differ only in their values share one."""
 
     def __init__(self) -> None:
-        self._of: dict[tuple[str, tuple[str, ...]], Bench] = {}
+        self._of: dict[tuple[str, tuple[str, ...]], StudyRig] = {}
 
-    def of(self, case: Case) -> Bench:
+    def of(self, case: Case) -> StudyRig:
         """Return the bench of a case."""
         key = case.model, case.variants
         if key not in self._of:
             blocked, wheel = (rig(Choice(
                 name=case.model, loop='position', preset=case.preset, variants=case.variants,
                 load=load)) for load in (BLOCKED, WHEEL))
-            self._of[key] = Bench(blocked, wheel, *_trot(case.model, wheel))
+            self._of[key] = StudyRig(blocked, wheel, *_trot(case.model, wheel))
         return self._of[key]
 
 
 @dataclass(frozen=True)
-class Result:
+class Studied:
     """A case, the value of its shipped actuator, and the outcomes at all values."""
 
     case: Case
     shipped: float
     amplitude: float    # of the step, N | Nm
-    outcomes: tuple[Outcome, ...]
+    outcomes: tuple[MeasuresAt, ...]
     is_rotary: bool
 
     @property
@@ -109,13 +109,13 @@ class Result:
         """Return the unit of positions."""
         return 'mrad' if self.is_rotary else 'mm'
 
-    def is_shipped(self, outcome: Outcome) -> bool:
+    def is_shipped(self, outcome: MeasuresAt) -> bool:
         """Return whether an outcome is that of the shipped actuator, up to rounding."""
         return math.isclose(outcome.value, self.shipped, rel_tol=ROUNDING)
 
 
 def results(
-        study: Study, benches: Benches, progress: Progress | None = None) -> tuple[Result, ...]:
+        study: Study, benches: Benches, progress: Progress | None = None) -> tuple[Studied, ...]:
     """
     Measure all cases of a study.
 
@@ -136,13 +136,13 @@ def results(
             if progress is not None:
                 progress(done, total)
         sheet = on.blocked.config.sheet
-        found.append(Result(
+        found.append(Studied(
             case, shipped(case, on), loop_of(sheet, 'force').amplitude, tuple(outcomes),
             sheet.is_rotary))
     return tuple(found)
 
 
-def shipped(case: Case, on: Bench) -> float:
+def shipped(case: Case, on: StudyRig) -> float:
     """Return the value that the shipped actuator has."""
     path, share = case.paths[0]
     found: object = on.blocked.config if path.startswith(LOAD) else on.blocked.config.sheet
@@ -152,7 +152,7 @@ def shipped(case: Case, on: Bench) -> float:
     return found / (share * case.unit.scale)
 
 
-def measured(case: Case, on: Bench, value: float) -> Outcome:
+def measured(case: Case, on: StudyRig, value: float) -> MeasuresAt:
     """Measure a case at one value; as `results`."""
     parameters = case.parameters(value)
     blocked = changed(on.blocked, 'force', parameters)
@@ -167,7 +167,7 @@ def measured(case: Case, on: Bench, value: float) -> Outcome:
     ripples = [ripple(rest) for rest in rests]
     largest = int(np.argmax(ripples))
     figures = step_figures(np.arange(len(mid[0])) / RATE_HZ, mid[0], 0.0, amplitude)
-    return Outcome(
+    return MeasuresAt(
         value=value,
         rise=None if figures.rise_time is None else figures.rise_time * 1e3,
         overshoot=figures.overshoot * 100.0, bandwidth=bode(blocked, SWEEP, 'closed').bandwidth,

@@ -7,7 +7,7 @@ import textwrap
 from typing import Any
 
 from isa_ros.analysis.studies.figure import study_figure
-from isa_ros.analysis.studies.measure import Outcome, Result, RIPPLE_S
+from isa_ros.analysis.studies.measure import MeasuresAt, RIPPLE_S, Studied
 from isa_ros.analysis.studies.studies import Case, STUDIES, Study
 from isa_ros.text.page import Page, png_with_palette
 from isa_ros.text.table import aligned, digits, RIGHT
@@ -32,7 +32,7 @@ mass of 50 kg on the ISA v5 as the piston of KFE, without feed-forward.
 """
 
 
-def head(result: Result) -> tuple[str, ...]:
+def head(result: Studied) -> tuple[str, ...]:
     """Return the names of the columns."""
     force = result.force_unit
     return (result.case.unit.symbol, 'rise, ms', 'overshoot, %', '-3 dB, Hz',
@@ -40,7 +40,7 @@ def head(result: Result) -> tuple[str, ...]:
             f'error, {force}', f'error, {result.position_unit}')
 
 
-def cells(result: Result, outcome: Outcome) -> tuple[str, ...]:
+def cells(result: Studied, outcome: MeasuresAt) -> tuple[str, ...]:
     """Return a row of the table."""
     at = '-' if outcome.ripple_hz is None else f'{outcome.ripple_hz:.3g}'
     step = (outcome.rise, outcome.overshoot, outcome.bandwidth)
@@ -52,7 +52,7 @@ def cells(result: Result, outcome: Outcome) -> tuple[str, ...]:
             *(digits(value, 3) for value in errors))
 
 
-def as_text(study: Study, results: Sequence[Result]) -> str:
+def as_text(study: Study, results: Sequence[Studied]) -> str:
     """Return what a terminal shows."""
     blocks = [f'{study.title} ({study.source})']
     for result in results:
@@ -60,7 +60,7 @@ def as_text(study: Study, results: Sequence[Result]) -> str:
     return '\n\n'.join(blocks)
 
 
-def _table(result: Result) -> list[tuple[str, ...]]:
+def _table(result: Studied) -> list[tuple[str, ...]]:
     return [head(result), *(cells(result, outcome) for outcome in result.outcomes)]
 
 
@@ -69,9 +69,9 @@ def _name(case: Case) -> str:
     return f'{case.model}, gains {case.preset}{added}: {", ".join(path for path, _ in case.paths)}'
 
 
-def as_tree(study: Study, results: Sequence[Result]) -> dict[str, Any]:
+def as_tree(study: Study, results: Sequence[Studied]) -> dict[str, Any]:
     """Return a study for JSON; null where there is no number."""
-    names = [f.name for f in fields(Outcome) if f.name != 'step']
+    names = [f.name for f in fields(MeasuresAt) if f.name != 'step']
     return {
         'name': study.name, 'title': study.title, 'source': study.source,
         'cases': [{
@@ -86,13 +86,13 @@ def as_tree(study: Study, results: Sequence[Result]) -> dict[str, Any]:
         } for result in results]}
 
 
-class _ByValue(Mapping[str, Outcome]):
+class _ByValue(Mapping[str, MeasuresAt]):
     """The outcomes of a result by their value as it is shown, for `Study.seen`."""
 
-    def __init__(self, result: Result) -> None:
+    def __init__(self, result: Studied) -> None:
         self._of = {f'{outcome.value:g}': outcome for outcome in result.outcomes}
 
-    def __getitem__(self, value: object) -> Outcome:
+    def __getitem__(self, value: object) -> MeasuresAt:
         return self._of[str(value)]
 
     def __iter__(self) -> Any:
@@ -102,7 +102,7 @@ class _ByValue(Mapping[str, Outcome]):
         return len(self._of)
 
 
-def seen(study: Study, results: Sequence[Result]) -> str:
+def seen(study: Study, results: Sequence[Studied]) -> str:
     """Return what one sees in a study, its numbers filled in; '' for a part of it."""
     if study not in STUDIES:
         return ''
@@ -110,7 +110,7 @@ def seen(study: Study, results: Sequence[Result]) -> str:
     return textwrap.fill(' '.join(text.split()), LINE)
 
 
-def write_page(done: Sequence[tuple[Study, Sequence[Result]]], directory: Path) -> list[Path]:
+def write_page(done: Sequence[tuple[Study, Sequence[Studied]]], directory: Path) -> list[Path]:
     """Write studies.md and figures/study_*.png into a directory; return their paths."""
     page = Page(PAGE, _HEAD)
     for study, results in done:

@@ -10,7 +10,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
 import math
 
-from isa_ros.analysis.response.loops import Unit
+from isa_ros.analysis.response.loops import UserUnit
 from isa_ros.analysis.studies import texts as study_texts
 from isa_ros.core.suggest import alternatives
 from isa_ros.errors import ConfigError
@@ -32,7 +32,7 @@ class Case:
 
     model: str
     values: tuple[float, ...]
-    unit: Unit
+    unit: UserUnit
     paths: tuple[tuple[str, float], ...]
     variants: tuple[str, ...] = ()
 
@@ -60,8 +60,8 @@ class Study:
 
 
 def _both(
-        unit: Unit, manifold: Sequence[float], isa: Sequence[float], *paths: str,
-        isa_unit: Unit | None = None, variants: Sequence[str] = ()) -> tuple[Case, Case]:
+        unit: UserUnit, manifold: Sequence[float], isa: Sequence[float], *paths: str,
+        isa_unit: UserUnit | None = None, variants: Sequence[str] = ()) -> tuple[Case, Case]:
     """Return the cases of both actuators whose parameters all get the value itself."""
     whole = tuple((path, 1.0) for path in paths)
     return (Case('smart_manifold', tuple(manifold), unit, whole, tuple(variants)),
@@ -69,18 +69,18 @@ def _both(
 
 
 def _friction(model: str, unit: str, values: Sequence[float]) -> Case:
-    return Case(model, tuple(values), Unit(unit), (
+    return Case(model, tuple(values), UserUnit(unit), (
         ('plant.friction.stiction', 1.0), ('plant.friction.coulomb', COULOMB_SHARE)))
 
 
-_BITS, _HZ, _DEG = Unit('bit'), Unit('Hz'), math.radians(1.0)
+_BITS, _HZ, _DEG = UserUnit('bit'), UserUnit('Hz'), math.radians(1.0)
 _BITS_OF = (6.0, 8.0, 10.0, 12.0, 16.0)
 _FORCE_HZ = (1e3, 2e3, 5e3, 1e4)
 _POSITION_HZ = (100.0, 200.0, 1e3, 5e3)
 _CURRENT_HZ = (5e3, 1e4, 5e4)
 _DELAY_US = (0.0, 40.0, 80.0)
 _LAP_UM = (-20.0, -10.0, -5.0, 0.0, 5.0, 10.0, 20.0, 40.0)
-_KNM, _MNM = Unit('kNm/rad', 1e3), Unit('N/um', 1e6)
+_KNM, _MNM = UserUnit('kNm/rad', 1e3), UserUnit('N/um', 1e6)
 
 STUDIES = (
     Study(
@@ -90,9 +90,9 @@ STUDIES = (
     Study(
         'encoder', 'Resolution of the encoder',
         'section 5.1: quantisation errors can be analysed',
-        _both(Unit('mdeg', 1e-3 * _DEG), (0.069, 0.69, 6.9, 20.7, 69.0),
+        _both(UserUnit('mdeg', 1e-3 * _DEG), (0.069, 0.69, 6.9, 20.7, 69.0),
               (0.1, 1.0, 10.0, 30.0, 100.0), 'plant.sensors.encoder_resolution',
-              isa_unit=Unit('um', 1e-6)), study_texts.ENCODER),
+              isa_unit=UserUnit('um', 1e-6)), study_texts.ENCODER),
     Study(
         'force_rate', 'Rate of the force or torque block',
         'section 5.1: sampling frequencies can be analysed',
@@ -112,20 +112,20 @@ STUDIES = (
     Study(
         'delay', 'Computational delay, with the coil in the loop',
         'section 5.1: sampling frequencies can be analysed',
-        _both(Unit('us'), _DELAY_US, _DELAY_US, 'reu.computation_delay_us',
+        _both(UserUnit('us'), _DELAY_US, _DELAY_US, 'reu.computation_delay_us',
               variants=('explicit',)), study_texts.DELAY),
     Study(
         'lap', 'Overlap of the valve, underlap below zero',
         'section 5.1: hunting from the overlap around null',
-        _both(Unit('um'), _LAP_UM, _LAP_UM,
+        _both(UserUnit('um'), _LAP_UM, _LAP_UM,
               *(f'plant.valve.lap.{land}_um' for land in ('pa', 'at', 'bt', 'pb'))),
         study_texts.LAP),
     Study(
         'backlash', 'Backlash between sensor and load',
         'sections 4 and 6: the impact of backlash on the controller',
-        _both(Unit('mrad', 1e-3), (0.0, 0.2, 0.5, 1.0, 2.0, 5.0),
+        _both(UserUnit('mrad', 1e-3), (0.0, 0.2, 0.5, 1.0, 2.0, 5.0),
               (0.0, 10.0, 20.0, 50.0, 100.0, 200.0), 'plant.mechanics.backlash',
-              isa_unit=Unit('um', 1e-6)), study_texts.BACKLASH),
+              isa_unit=UserUnit('um', 1e-6)), study_texts.BACKLASH),
     Study(
         'friction', 'Friction: stiction, and Coulomb friction 5 % below it',
         'sections 4 and 6: the impact of friction on the controller',

@@ -104,7 +104,7 @@ class Effects:
 
 
 @dataclass(frozen=True)
-class Result:
+class TemperatureEffects:
     """The effects at one temperature (celsius)."""
 
     celsius: float
@@ -119,12 +119,12 @@ def rig_at(celsius: float) -> Run:
         for actuator in (LEAK, RUB, SWING) for place in ('start', 'supply', 'ambient')})
 
 
-def results(progress: Progress | None = None) -> list[Result]:
+def results(progress: Progress | None = None) -> list[TemperatureEffects]:
     """Simulate the rig at each temperature, and measure."""
     found = []
     for k, celsius in enumerate(TEMPERATURES):
         signals = signals_of(rig_at(celsius).simulate())
-        found.append(Result(celsius, measured(signals), law(signals, celsius)))
+        found.append(TemperatureEffects(celsius, measured(signals), law(signals, celsius)))
         if progress is not None:
             progress(k + 1, len(TEMPERATURES))
     return found
@@ -199,17 +199,17 @@ def _plant(run: RunConfig, actuator: str) -> np.record:
     return plant
 
 
-def as_text(found: Sequence[Result]) -> str:
+def as_text(found: Sequence[TemperatureEffects]) -> str:
     """Return the text for a terminal."""
     return '\n'.join([TITLE, *aligned(_table(found), RIGHT)])
 
 
-def as_tree(found: Sequence[Result]) -> dict[str, Any]:
+def as_tree(found: Sequence[TemperatureEffects]) -> dict[str, Any]:
     """Return the study for JSON, SI."""
     return {'name': NAME, 'title': TITLE, 'outcomes': [asdict(result) for result in found]}
 
 
-def write_page(found: Sequence[Result], directory: Path) -> list[Path]:
+def write_page(found: Sequence[TemperatureEffects], directory: Path) -> list[Path]:
     """Write temperature.md into a directory; return its path."""
     page = Page(PAGE, _HEAD)
     page.section('From 30 to 60 celsius')
@@ -221,12 +221,12 @@ def write_page(found: Sequence[Result], directory: Path) -> list[Path]:
     return page.write(directory)
 
 
-def _table(found: Sequence[Result]) -> list[tuple[str, ...]]:
+def _table(found: Sequence[TemperatureEffects]) -> list[tuple[str, ...]]:
     return [('celsius', *(title for title, _ in _COLUMNS.values())),
             *((f'{result.celsius:g}', *_cells(result)) for result in found)]
 
 
-def _cells(result: Result) -> Iterator[str]:
+def _cells(result: TemperatureEffects) -> Iterator[str]:
     for f in fields(Effects):
         of_unit = _COLUMNS[f.name][1]
         shown, expected = (getattr(effects, f.name) / of_unit

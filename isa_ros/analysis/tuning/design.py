@@ -84,7 +84,7 @@ class Prediction:
     """Whether both gain margins are at least `LEAST_GAIN_MARGIN`."""
 
 
-class Place:
+class LoopAtPlace:
     """The loop at one place of the stroke, for any gains."""
 
     def __init__(self, plant: Plant, of_reference: Parts, of_measured: Parts,
@@ -132,7 +132,7 @@ class Place:
 
 
 def designed(
-        places: Sequence[Place], wanted: Wanted, near: Sequence[float]) -> Gains | None:
+        places: Sequence[LoopAtPlace], wanted: Wanted, near: Sequence[float]) -> Gains | None:
     """
     Return the gains whose margins are closest to the wanted one, of all that have the bandwidth.
 
@@ -166,8 +166,8 @@ def designed(
 
 
 def _kps(
-        places: Sequence[Place], wanted: Wanted, near: Sequence[float], corner: float, kf: float
-        ) -> list[tuple[float, float]] | None:
+        places: Sequence[LoopAtPlace], wanted: Wanted, near: Sequence[float], corner: float,
+        kf: float) -> list[tuple[float, float]] | None:
     """Return K_p with the wanted bandwidth, and its margin, at each place; None: not robust."""
     found = []
     for place, start in zip(places, near, strict=True):
@@ -180,9 +180,9 @@ def _kps(
     return found
 
 
-def _shared(places: Sequence[Place], wanted: Wanted, gains: Gains) -> Gains:
+def _shared(places: Sequence[LoopAtPlace], wanted: Wanted, gains: Gains) -> Gains:
     """Return gains that share the error at each place between margin and bandwidth."""
-    def error(place: Place, kp: float) -> float:
+    def error(place: LoopAtPlace, kp: float) -> float:
         predicted = place.predicted(kp, gains.corner, gains.kf)
         if predicted.phase_margin is None or predicted.bandwidth is None:
             return math.inf

@@ -12,10 +12,10 @@ import math
 
 from isa_ros.analysis.response.bode import Bode, bode
 from isa_ros.analysis.response.rig import Rig
-from isa_ros.analysis.response.sweep import LARGEST_SHARE, Sweep
+from isa_ros.analysis.response.sweep import FrequencySweep, LARGEST_SHARE
 from isa_ros.analysis.tuning.block_response import parts, responses
 from isa_ros.analysis.tuning.design import (
-    DENSE, designed, Gains, Place, plant_of, shares, Wanted)
+    DENSE, designed, Gains, LoopAtPlace, plant_of, shares, Wanted)
 from isa_ros.core.parameter import replaced
 from isa_ros.errors import ConfigError, IsaError
 from isa_ros.reu.block import Pid
@@ -140,7 +140,7 @@ class _Bench:
         self._amplitude, self._progress = amplitude, progress
         self._done, self._total = 0, (ROUNDS + 1) * len(strokes)
         high = min(SPAN * wanted.bandwidth, LARGEST_SHARE * rig.loop.rate_hz)
-        self._sweep = Sweep(low=wanted.bandwidth / SPAN, high=high, points=POINTS)
+        self._sweep = FrequencySweep(low=wanted.bandwidth / SPAN, high=high, points=POINTS)
 
     def measured(self, block: Pid) -> Tuned:
         """Return the loops with a block at every place."""
@@ -182,7 +182,7 @@ class _Bench:
             closed = at.measured.response
             factor = float(np.interp(at.share, NODES, factors(sheet)))
             plant = plant_of(closed, *responses(sheet, closed.frequency, factor))
-            places.append(Place(plant, *block_parts, frequency))
+            places.append(LoopAtPlace(plant, *block_parts, frequency))
             near.append(factor * sheet.kp)
         while wanted.bandwidth > 2.0 * self._sweep.low:
             gains = designed(places, wanted, near)

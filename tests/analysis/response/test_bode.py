@@ -8,13 +8,13 @@ from isa_ros.analysis.response.bode import Bode, bode, conclusions, table
 from isa_ros.analysis.response.loops import loop_of
 from isa_ros.analysis.response.rig import Choice, Rig, rig
 from isa_ros.analysis.response.step import step, summary
-from isa_ros.analysis.response.sweep import Sweep
+from isa_ros.analysis.response.sweep import FrequencySweep
 from isa_ros.cli import main as cli
 from isa_ros.reu.wiring import Off
 import numpy as np
 import pytest
 
-FORCE = Sweep(low=2.0, high=150.0, points=24)
+FORCE = FrequencySweep(low=2.0, high=150.0, points=24)
 
 
 @pytest.fixture(scope='module')
@@ -40,7 +40,7 @@ def test_torque_bandwidth_of_table_4_at_17_newton_metres(measured):
 
 def test_stepped_sine_and_chirp_agree(torque, measured):
     """Two excitations and two estimators, one loop at one amplitude."""
-    swept = bode(torque, Sweep(low=2.0, high=150.0, points=24, is_chirp=True), 'closed')
+    swept = bode(torque, FrequencySweep(low=2.0, high=150.0, points=24, is_chirp=True), 'closed')
     log_f = np.log(swept.response.frequency)
     real, imaginary = (np.interp(log_f, np.log(measured.response.frequency), part)
                        for part in (measured.response.value.real, measured.response.value.imag))
@@ -65,7 +65,7 @@ def test_open_and_closed_loop_are_one_run(torque, measured):
 
 def test_small_spool_strokes_have_the_bandwidth_of_equations_8_and_10():
     """The closed spool loop behind the current's pole: 104 Hz without the voltage limit."""
-    sweep = Sweep(low=5.0, high=300.0, points=25)
+    sweep = FrequencySweep(low=5.0, high=300.0, points=25)
     got = bode(rig(Choice(name='isa_v5', loop='spool')), sweep, 'closed', 0.005)
     # physics.md erratum 20: 104.0 Hz, less the hold of 5 kHz: a delay of 0.1 ms has no gain.
     # Interpolation over points a factor 1.19 apart: 0.17^2 / 8 of a slope that changes by about
@@ -165,7 +165,7 @@ def test_a_pressure_loop_is_measured_like_the_others():
     loop = loop_of(sheet, 'pressure')
     config = replace(bench.config, sheet=loop.sheet)
     got = bode(Rig(replace(bench.run, actuators=(config,)), loop, 'blocked'),
-               Sweep(low=1.0, high=150.0, points=12), 'plant')
+               FrequencySweep(low=1.0, high=150.0, points=12), 'plant')
     assert loop.inward == 'spool_reference'
     assert got.response.coherence[0] > 0.99
     # at 1 Hz, a fiftieth of its bandwidth or less, the integral holds it: 1/50 of 1
@@ -206,7 +206,7 @@ def test_a_hunting_loop_has_no_margins(tmp_path: Path, capsys):
 def test_the_ripple_is_that_of_the_step(capsys):
     """The same loop at the same place: a sine has sqrt(2) of its deviation as amplitude."""
     hunting = rig(Choice(name='isa_v5', loop='force', values={'reu.force.kp': 3e-7}))
-    rest = bode(hunting, Sweep(low=10.0, high=150.0, points=2), 'closed').rest
+    rest = bode(hunting, FrequencySweep(low=10.0, high=150.0, points=2), 'closed').rest
     # half of peak to peak against the deviation of a cycle with harmonics
     assert rest.ripple == pytest.approx(np.sqrt(2.0) * step(hunting, 0.5).figures.ripple, rel=0.1)
 
@@ -226,7 +226,7 @@ def test_a_frequency_without_coherence_is_marked_and_left_out(capsys):
         reu.pressure, kp=10.0 * reu.pressure.kp, ki=10.0 * reu.pressure.ki))
     hunting = bench.with_config(
         replace(bench.config, sheet=replace(bench.config.sheet, reu=wild)))
-    sweep = Sweep(low=20.0, high=60.0, points=4)
+    sweep = FrequencySweep(low=20.0, high=60.0, points=4)
     lost = bode(hunting, sweep, 'closed', 0.2)
     assert not lost.response.is_trusted.any() and lost.bandwidth is None
     *rows, ripple, warning = table(lost).splitlines()

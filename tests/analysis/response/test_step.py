@@ -2,7 +2,7 @@
 
 from isa_ros.actuator.sheet import ActuatorSheet
 from isa_ros.analysis.response.choice import Choice
-from isa_ros.analysis.response.loops import Loop, Unit
+from isa_ros.analysis.response.loops import Loop, UserUnit
 from isa_ros.analysis.response.rig import rig
 from isa_ros.analysis.response.step import evaluate, step
 from isa_ros.errors import ConfigError
@@ -15,7 +15,7 @@ RATE, BEFORE, RISES = 1000.0, 20, 10
 
 def loop(sheet: ActuatorSheet) -> Loop:
     """Return a loop of a position."""
-    metre = Unit('m')
+    metre = UserUnit('m')
     return Loop(name='position', label='position', sheet=sheet, unit=metre, inward=None,
                 inward_unit=metre, quantity='position', per_reference=1.0, rate_hz=RATE,
                 amplitude=0.01, largest=0.1)

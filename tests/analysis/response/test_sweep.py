@@ -2,7 +2,7 @@
 
 import math
 
-from isa_ros.analysis.response.sweep import excitation, Sweep
+from isa_ros.analysis.response.sweep import excitation, FrequencySweep
 from isa_ros.errors import ConfigError
 import numpy as np
 import pytest
@@ -11,7 +11,7 @@ RATE_HZ = 10_000.0
 
 
 def test_a_stepped_sine_fills_whole_milliseconds_without_a_jump():
-    sweep = Sweep(low=3.0, high=300.0, points=20)
+    sweep = FrequencySweep(low=3.0, high=300.0, points=20)
     given = excitation(sweep, RATE_HZ)
     for window in given.answer.windows:
         n = window.end - window.start
@@ -26,7 +26,7 @@ def test_a_stepped_sine_fills_whole_milliseconds_without_a_jump():
 
 
 def test_a_chirp_goes_beyond_its_band_at_both_ends():
-    given = excitation(Sweep(low=4.0, high=100.0, points=5, is_chirp=True), RATE_HZ)
+    given = excitation(FrequencySweep(low=4.0, high=100.0, points=5, is_chirp=True), RATE_HZ)
     crossings = np.flatnonzero(np.diff(np.signbit(given.values)))
     # half periods: the first longer than at 4 Hz, the last shorter than at 100 Hz
     assert np.diff(crossings)[0] > 0.5 * RATE_HZ / 4.0
@@ -35,7 +35,7 @@ def test_a_chirp_goes_beyond_its_band_at_both_ends():
 
 @pytest.mark.parametrize('is_chirp', [False, True])
 def test_rates_are_the_derivatives_of_the_values(is_chirp):
-    given = excitation(Sweep(low=4.0, high=40.0, points=5, is_chirp=is_chirp), RATE_HZ)
+    given = excitation(FrequencySweep(low=4.0, high=40.0, points=5, is_chirp=is_chirp), RATE_HZ)
     slope = (given.values[2:] - given.values[:-2]) * 0.5 * RATE_HZ
     kinks = np.abs(np.diff(given.rates)) > (2.0 * math.pi * 50.0) ** 2 / RATE_HZ
     smooth = ~(kinks[1:] | kinks[:-1])
@@ -47,4 +47,4 @@ def test_rates_are_the_derivatives_of_the_values(is_chirp):
 
 def test_a_band_is_refused_at_the_rate_of_what_takes_it():
     with pytest.raises(ConfigError, match=r'--to = 410 Hz, must be <= 400 Hz: nodes at 1000 Hz'):
-        Sweep(low=1.0, high=410.0, points=5).check(1000.0, 'nodes')
+        FrequencySweep(low=1.0, high=410.0, points=5).check(1000.0, 'nodes')

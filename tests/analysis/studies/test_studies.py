@@ -10,7 +10,7 @@ from isa_ros.analysis.response.bode import bode
 from isa_ros.analysis.signals.frequency import ripple
 from isa_ros.analysis.studies import measure as study_run, temperature
 from isa_ros.analysis.studies.measure import (
-    Benches, changed, Outcome, placed, Result, shipped, up_and_back)
+    Benches, changed, MeasuresAt, placed, shipped, Studied, up_and_back)
 from isa_ros.analysis.studies.page import seen
 from isa_ros.analysis.studies.studies import Case, STUDIES, Study, study_of
 from isa_ros.cli import main as cli
@@ -137,9 +137,9 @@ def test_the_trot_moves_its_velocity_along_and_ends_at_rest(benches):
     assert np.all(positions[-900:] == 0.0) and np.all(velocities[-900:] == 0.0)
 
 
-def outcome(value: float) -> Outcome:
+def outcome(value: float) -> MeasuresAt:
     """Return an outcome with made-up numbers."""
-    return Outcome(
+    return MeasuresAt(
         value=value, rise=4.0, overshoot=40.0, bandwidth=60.0, ripple_mid=0.1, ripple_end=0.2,
         ripple_wheel=0.3, ripple_hz=20.0, force_error=3.0, position_error=70.0,
         step=np.zeros(1000))
@@ -148,7 +148,7 @@ def outcome(value: float) -> Outcome:
 @pytest.mark.parametrize('study', STUDIES, ids=lambda study: study.name)
 def test_every_text_takes_its_numbers_from_the_run(study):
     """All braces refer to a value of the study; a part of a study has no text."""
-    results = [Result(case, case.values[0], 17.0, tuple(map(outcome, case.values)), True)
+    results = [Studied(case, case.values[0], 17.0, tuple(map(outcome, case.values)), True)
                for case in study.cases]
     text = seen(study, results)
     assert text and '{' not in text and max(map(len, text.splitlines())) <= 99

@@ -6,7 +6,7 @@ from pathlib import Path
 from isa_ros.analysis.signals.signals import read_signals, Signals
 from isa_ros.analysis.studies import temperature
 from isa_ros.analysis.studies.temperature import (
-    Effects, law, measured, Result, results, rig_at, TEMPERATURES)
+    Effects, law, measured, results, rig_at, TemperatureEffects, TEMPERATURES)
 from isa_ros.cli import main as cli
 import pytest
 
@@ -23,7 +23,7 @@ def bags(tmp_path_factory: pytest.TempPathFactory) -> dict[float, Signals]:
 
 
 @pytest.fixture(scope='module')
-def found() -> list[Result]:
+def found() -> list[TemperatureEffects]:
     """Return the study, run once."""
     return results()
 
@@ -64,7 +64,7 @@ def test_a_bag_has_the_temperature_of_every_second(bags: dict[float, Signals]) -
 
 
 def test_memory_and_bag_show_the_same(
-        found: list[Result], bags: dict[float, Signals]) -> None:
+        found: list[TemperatureEffects], bags: dict[float, Signals]) -> None:
     assert [result.celsius for result in found] == list(TEMPERATURES)
     by_celsius = {result.celsius: result for result in found}
     for celsius, signals in bags.items():
@@ -72,13 +72,13 @@ def test_memory_and_bag_show_the_same(
 
 
 def test_the_page_is_that_of_the_study(
-        found: list[Result], tmp_path: Path) -> None:
+        found: list[TemperatureEffects], tmp_path: Path) -> None:
     page, = temperature.write_page(found, tmp_path)
     assert page.read_text() == (DOCS / page.name).read_text()
 
 
 def test_the_command_prints_the_table_and_writes_json(
-        found: list[Result], monkeypatch: pytest.MonkeyPatch, tmp_path: Path,
+        found: list[TemperatureEffects], monkeypatch: pytest.MonkeyPatch, tmp_path: Path,
         capsys: pytest.CaptureFixture[str]) -> None:
     monkeypatch.setattr(
         'isa_ros.analysis.studies.temperature.results', lambda progress: found)

@@ -6,7 +6,7 @@ import math
 from isa_ros.analysis.signals.frequency import bandwidth, margins, Response
 from isa_ros.analysis.tuning.block_response import parts, responses
 from isa_ros.analysis.tuning.design import (
-    DENSE, designed, Gains, LEAST_GAIN_MARGIN, Place, Plant, plant_of, shares, Wanted)
+    DENSE, designed, Gains, LEAST_GAIN_MARGIN, LoopAtPlace, Plant, plant_of, shares, Wanted)
 from isa_ros.reu.block import Pid
 import numpy as np
 import pytest
@@ -29,10 +29,10 @@ def plant(gain: float, lag_hz: float = 100.0) -> Plant:
     return Plant(FREQUENCY, gain / s / (1.0 + s / (2.0 * math.pi * lag_hz)) * np.exp(-2e-4 * s))
 
 
-def places(*plants: Plant) -> list[Place]:
+def places(*plants: Plant) -> list[LoopAtPlace]:
     """Return the loops of some plants with the ISA v5's block."""
     of_block = parts(force_block(), FREQUENCY)
-    return [Place(own, *of_block, FREQUENCY) for own in plants]
+    return [LoopAtPlace(own, *of_block, FREQUENCY) for own in plants]
 
 
 def measured(value: np.ndarray) -> Response:

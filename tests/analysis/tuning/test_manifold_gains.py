@@ -3,7 +3,7 @@
 import isa_ros
 from isa_ros.analysis.response.bode import Bode, bode
 from isa_ros.analysis.response.rig import Choice, rig
-from isa_ros.analysis.response.sweep import Sweep
+from isa_ros.analysis.response.sweep import FrequencySweep
 from isa_ros.analysis.tuning.tune import STROKES
 from isa_ros.config.runs.default_actuator import default_actuator
 from isa_ros.validation.actuators import SHIPPED
@@ -24,7 +24,7 @@ def loop(beta: float, share: float, amplitude: float) -> Bode:
     bench = rig(Choice(
         name=MODEL, loop='force', values={BETA: beta},
         position=np.degrees(share * SHEET.plant.drive.stroke)))
-    return bode(bench, Sweep(low=5.0, high=400.0, points=20), 'closed', amplitude)
+    return bode(bench, FrequencySweep(low=5.0, high=400.0, points=20), 'closed', amplitude)
 
 
 @pytest.mark.slow

@@ -7,7 +7,7 @@ from types import SimpleNamespace
 
 from isa_ros.analysis.response.bode import Bode, bode
 from isa_ros.analysis.response.rig import Choice, rig
-from isa_ros.analysis.response.sweep import Sweep
+from isa_ros.analysis.response.sweep import FrequencySweep
 from isa_ros.analysis.tuning import tune
 from isa_ros.analysis.tuning.design import Gains
 from isa_ros.analysis.tuning.tune import factors, NODES, schedule_through, STROKES, with_gains
@@ -35,7 +35,7 @@ def measured(file: Path, share: float, factor: float) -> Bode:
     unit = math.radians(1.0) if sheet.is_rotary else 1e-3
     bench = rig(Choice(
         name=str(file), loop='force', position=share * sheet.plant.drive.stroke / unit))
-    return bode(bench, Sweep(low=5.0 * factor, high=250.0 * factor, points=24), 'closed')
+    return bode(bench, FrequencySweep(low=5.0 * factor, high=250.0 * factor, points=24), 'closed')
 
 
 def is_as_wanted(found: Bode, margin: float, bandwidth: float) -> bool:
