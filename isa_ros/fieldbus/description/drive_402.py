@@ -12,7 +12,7 @@ _SUPPORTED = (0x6502, 0)
 _BITS = {CSP: 7, CST: 9}
 
 
-class Drive402(NamedTuple):
+class DescribedDrive(NamedTuple):
     """A device of the profile CiA 402."""
 
     device: BusDevice
@@ -30,7 +30,7 @@ class Drive402(NamedTuple):
         return float(low.default) * low.scale, float(high.default) * high.scale
 
 
-def drive_of(device: BusDevice) -> Drive402:
+def drive_of(device: BusDevice) -> DescribedDrive:
     """
     Return a device as a drive.
 
@@ -48,7 +48,7 @@ def drive_of(device: BusDevice) -> Drive402:
         raise ConfigError(
             f'{device.name}: 0x6502 = 0x{supported:08X}, must have mode {CSP} or {CST}: an '
             'actuator with a position or force block has one')
-    return Drive402(device, modes[0], *(device.table.entry(*key) for key in (
+    return DescribedDrive(device, modes[0], *(device.table.entry(*key) for key in (
         TARGET_POSITION, TARGET_VELOCITY, TARGET_TORQUE)))
 
 

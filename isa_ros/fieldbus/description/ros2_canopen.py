@@ -11,7 +11,7 @@ from pathlib import Path
 
 from isa_ros.errors import ConfigError
 from isa_ros.fieldbus.canopen.line import default_bitrate, planned_line
-from isa_ros.fieldbus.description.drive_402 import Drive402, drive_of, number
+from isa_ros.fieldbus.description.drive_402 import DescribedDrive, drive_of, number
 from isa_ros.fieldbus.description.eds import eds_text
 from isa_ros.fieldbus.device.bus_device import BusDevice
 from isa_ros.fieldbus.device.can_identifiers import FIRST_NODE, LAST_NODE
@@ -49,7 +49,7 @@ def ros2_canopen_files(
         directory / 'ros2_control.urdf.xacro': '\n'.join(_tag(drives, place)) + '\n'}
 
 
-def _bus(drives: Sequence[Drive402], step_ns: int, place: Path) -> Iterator[str]:
+def _bus(drives: Sequence[DescribedDrive], step_ns: int, place: Path) -> Iterator[str]:
     yield '# Simulated by isa_ros; SYNC is the tick. dcfgen -d DIR DIR/bus.yml makes master.dcf.'
     yield 'options:'
     yield f'  dcf_path: "{place}"'
@@ -77,7 +77,7 @@ def _bus(drives: Sequence[Drive402], step_ns: int, place: Path) -> Iterator[str]
         yield f'  scale_eff_from_dev: {number(torque.scale)}  # {torque.unit} per count'
 
 
-def _tag(drives: Sequence[Drive402], place: Path) -> Iterator[str]:
+def _tag(drives: Sequence[DescribedDrive], place: Path) -> Iterator[str]:
     yield '<?xml version="1.0"?>'
     yield '<!-- A joint is the own coordinate of an actuator: m and N of a cylinder. -->'
     yield '<robot xmlns:xacro="http://www.ros.org/wiki/xacro">'

@@ -11,7 +11,7 @@ from collections.abc import Iterator, Mapping, Sequence
 from pathlib import Path
 
 from isa_ros.core.timebase import NS_PER_SECOND
-from isa_ros.fieldbus.description.drive_402 import Drive402, drive_of, number
+from isa_ros.fieldbus.description.drive_402 import DescribedDrive, drive_of, number
 from isa_ros.fieldbus.device.bus_device import BusDevice
 from isa_ros.fieldbus.device.cia402_objects import (
     MODE, POSITION, TARGET_POSITION, TARGET_TORQUE, TARGET_VELOCITY, TORQUE, VELOCITY)
@@ -53,7 +53,7 @@ def ros2_control_files(
     return {**found, directory / 'ros2_control.urdf.xacro': tag}
 
 
-def _slave(drive: Drive402) -> Iterator[str]:
+def _slave(drive: DescribedDrive) -> Iterator[str]:
     device = drive.device
     identity, model = device.identity, device.read(0x1009, 0).decode('ascii')
     yield f'# {device.name}: {model}, simulated by isa_ros; units of the interfaces are SI.'
@@ -85,7 +85,7 @@ def _place(entry: ObjectEntry) -> list[str]:
             f'type: {_TYPES[entry.data_type]}']
 
 
-def _received(entry: ObjectEntry, drive: Drive402) -> list[str]:
+def _received(entry: ObjectEntry, drive: DescribedDrive) -> list[str]:
     key = entry.index, entry.subindex
     keys = _place(entry)
     if entry.unit:
@@ -115,7 +115,7 @@ def _comment(entry: ObjectEntry) -> str:
 
 # The tag.
 
-def _tag(drives: Sequence[Drive402], step_ns: int, directory: Path) -> Iterator[str]:
+def _tag(drives: Sequence[DescribedDrive], step_ns: int, directory: Path) -> Iterator[str]:
     yield '<?xml version="1.0"?>'
     yield '<!-- A joint is the own coordinate of an actuator: m and N of a cylinder. -->'
     yield '<robot xmlns:xacro="http://www.ros.org/wiki/xacro">'
