@@ -20,7 +20,7 @@ from isa_ros.plant.plant import rest_pressures
 from isa_ros.validation.actuators import Actuators, SHIPPED
 from isa_ros.validation.entry import around, Entry, Findings, OWN
 from isa_ros.validation.plant_theory import (
-    blocked_rise, free_frequency, friction, holding_force, presliding, steady)
+    blocked_rise, free_frequency, friction, holding_force, presliding, presliding_decay, steady)
 from isa_ros.validation.sheets import plant_of
 from isa_ros.validation.torque_step import crossing, quarter_turn
 from isa_ros.validation.valve_dynamics import spool_over_reference
@@ -31,6 +31,7 @@ MODELS = (ROTARY, 'isa_v5')
 NEAR_END = 0.1          # of the stroke: dead volume and swept volume are of one order
 PRELOAD = 0.3           # of the hydraulic stall force, released
 RING_S = 0.4
+TINY = 1e-3             # of the Coulomb friction: a ring in which the bristles do not slip
 CYCLES = 3
 STUCK = 0.3             # of the Coulomb friction
 SLIDING = 2.0           # times the stiction
@@ -43,6 +44,7 @@ RISE = (0.1, 0.3)       # of the hydraulic stall force
 RISE_S = 0.3
 SWEEP = FrequencySweep(low=20.0, high=300.0, points=16)
 SMALL_MM = 0.005        # of spool
+SHUT = {'plant.valve.null_leakage_lpm': 0.0, 'plant.oil.cross_port_leakage': 0.0}
 PERCENT = 2.0
 NOTHING = 'no such number'
 
@@ -165,6 +167,9 @@ def _oil(actuators: Actuators, model: str) -> list[Entry]:
         _entry(f'{model}_free_vibration', 'section 4', _frequency(free, model),
                free_frequency(model, NEAR_END, shipped.inertia), 'Hz',
                'the springs of oil and sensor at 10 % of the stroke', 5.0),
+        _entry(f'{model}_presliding_decay', 'section 4', _decay(free, model),
+               presliding_decay(model, NEAR_END, shipped.inertia), '1/s',
+               'the dampers of bristles, seals and sensor, where nothing slips', 5.0),
         _entry(f'{model}_pressure_gain', 'section 2.2',
                _end(oil.area_a * trace['pressure_a'] - oil.area_b * trace['pressure_b']),
                holding_force(model, held), unit, f'the leaking lands at {HELD_MA:g} mA, blocked'),
@@ -182,6 +187,16 @@ def _frequency(free: Rig, model: str) -> float:
         return float('nan')
     at = up - ring[up] / (ring[up + 1] - ring[up])
     return float(CYCLES * RATE_HZ / (at[CYCLES] - at[0]))
+
+
+def _decay(free: Rig, model: str) -> float:
+    """Return the rate (1/s) at which a tiny ring dies out between shut lands and seals."""
+    shut = free.with_config(with_parameters(free.config, SHUT, free.run.source))
+    start = float(TINY * plant_of(model).friction.coulomb)
+    ring = np.abs(shut.excite(
+        shut.begin(force=start), np.zeros(round(RING_S * RATE_HZ)))['force'])
+    peaks = 1 + np.flatnonzero((ring[1:-1] > ring[:-2]) & (ring[1:-1] >= ring[2:]))
+    return float(-np.polyfit(peaks / RATE_HZ, np.log(ring[peaks]), 1)[0])
 
 
 def _valve(actuators: Actuators, model: str) -> list[Entry]:

@@ -2,6 +2,7 @@
 
 from isa_ros.validation.actuator_data import actuator_data
 from isa_ros.validation.behaviour import behaviour
+from isa_ros.validation.cavities import cavities
 from isa_ros.validation.current_loop import current_loop
 from isa_ros.validation.entry import Group
 from isa_ros.validation.isa_v5 import isa_v5
@@ -26,6 +27,7 @@ GROUPS = (
     Group('behaviour', 'Friction, oil and valve in simulation', behaviour,
           is_long=True),
     Group('limits', 'Largest speed and force, end stops and converters in simulation', limits),
+    Group('cavities', 'Cavities in simulation', cavities),
     Group('reu_statics', 'Gains and rates of the control blocks (Fig 7, Table 4)', reu_statics),
     Group('rotary_rig', 'Torque control of the rotary rig (Figs 12, 13)', rotary_rig,
           is_long=True),

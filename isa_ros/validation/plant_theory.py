@@ -105,21 +105,44 @@ def trapped(model: str, place: float) -> tuple[float, float]:
             oil.beta / (oil.dead_volume + oil.area_b * (1.0 - place) * oil.stroke))
 
 
+def oil_spring(model: str, place: float) -> float:
+    """Return the stiffness of the trapped oil at a share of the stroke, N/m or Nm/rad  (C4)."""
+    oil = plant_of(model).chambers
+    a, b = trapped(model, place)
+    return float(oil.area_a * oil.area_a * a + oil.area_b * oil.area_b * b)
+
+
 def free_frequency(model: str, place: float, load: float) -> float:
     """
     Return the frequency (Hz) of a free mass (kg | kg m2) on the trapped oil and the sensor.
 
     Two masses, the piston and the load, on two springs in series, undamped: the lower mode.
     """
-    plant = plant_of(model)
-    oil, mechanics = plant.chambers, plant.mechanics
-    a, b = trapped(model, place)
-    spring = oil.area_a * oil.area_a * a + oil.area_b * oil.area_b * b
+    mechanics, spring = plant_of(model).mechanics, oil_spring(model, place)
     stiffness = np.array([[spring + mechanics.k_s, -mechanics.k_s],
                           [-mechanics.k_s, mechanics.k_s]])
     masses = np.array([mechanics.inertia, load])
     return float(math.sqrt(np.linalg.eigvals(stiffness / masses[:, None]).real.min())
                  / (2.0 * math.pi))
+
+
+def presliding_decay(model: str, place: float, load: float) -> float:
+    """
+    Return the rate (1/s) at which the lower mode of `free_frequency` dies out in presliding.
+
+    Bristles that do not slip (F2, F3) are one more spring and damper on the piston.
+    """
+    own, seals = plant_of(model).mechanics, plant_of(model).friction
+    spring = oil_spring(model, place) + seals.sigma0
+    damping = seals.sigma1 + seals.sigma2
+    system = np.array([
+        [0.0, 1.0, 0.0, 0.0],
+        np.array([-spring - own.k_s, -damping - own.d_s, own.k_s, own.d_s]) / own.inertia,
+        [0.0, 0.0, 0.0, 1.0],
+        np.array([own.k_s, own.d_s, -own.k_s, -own.d_s]) / load])
+    modes = np.linalg.eigvals(system)
+    rings = modes[modes.imag > 0.0]
+    return float(-rings[np.argmin(np.abs(rings))].real)
 
 
 def blocked_rise(
@@ -134,7 +157,7 @@ def blocked_rise(
     oil, valve = plant.chambers, plant.valve
     a, b = trapped(model, place)
     yielding = 1.0 / (1.0 / plant.mechanics.k_s + 1.0 / load.stiffness)
-    spring = oil.area_a * oil.area_a * a + oil.area_b * oil.area_b * b
+    spring = oil_spring(model, place)
 
     def rates(_: float, p: np.ndarray) -> list[float]:
         q_a, q_b, _, _ = port_flows(spool, p[0], p[1], PAPER_SUPPLY, 0.0, valve)

@@ -2,10 +2,10 @@
 `isa validate --sensitivity`: which simulated entry notices which wrong parameter.
 
 Each perturbation is one parameter that a reviewer would try. Groups that simulate run with it:
-`behaviour` and `limits` for a parameter of the plant, the force loops for one of the REU,
-`current_loop` for the amplifier. Their bars stay those of the shipped parameters. An entry that is
-reached as shipped and missed with the perturbation has noticed it. A perturbation without any,
-unless it is refused, is a hole in the validation: the command then exits with 1.
+`behaviour`, `limits` and `cavities` for a parameter of the plant, the force loops for one of the
+REU, `current_loop` for the amplifier. Their bars stay those of the shipped parameters. An entry
+that is reached as shipped and missed with the perturbation has noticed it. A perturbation without
+any, unless it is refused, is a hole in the validation: the command then exits with 1.
 """
 
 from collections.abc import Iterable, Sequence
@@ -20,7 +20,7 @@ from isa_ros.validation.entry import Group
 from isa_ros.validation.groups import GROUPS
 from isa_ros.validation.workers import in_workers
 
-PLANT, LOOPS, RELIEF = ('behaviour', 'limits'), ('rotary_rig', 'isa_v5'), ('isa_v5',)
+PLANT, LOOPS, RELIEF = ('behaviour', 'limits', 'cavities'), ('rotary_rig', 'isa_v5'), ('isa_v5',)
 AMPLIFIER = ('current_loop',)
 
 
@@ -39,7 +39,8 @@ def _perturbation(name: str, factor: float, *keys: str) -> Perturbation:
     return Perturbation(name, Change(keys, factor), groups)
 
 
-_RUN_WITH = (('reu.', LOOPS), ('plant.relief.', RELIEF), ('plant.coil.supply', AMPLIFIER))
+_RUN_WITH = (('reu.', LOOPS), ('plant.relief.refill', PLANT), ('plant.relief.', RELIEF),
+             ('plant.coil.supply', AMPLIFIER))
 MORE, LESS = 1.3, 1.0 / 1.3
 PERTURBATIONS = (
     _perturbation('friction x3', 3.0, 'plant.friction.stiction', 'plant.friction.coulomb'),
@@ -47,11 +48,15 @@ PERTURBATIONS = (
     _perturbation('viscous friction x3', 3.0, 'plant.friction.viscous'),
     _perturbation('Stribeck speed x3', 3.0, 'plant.friction.stribeck_speed'),
     _perturbation('bristle stiffness /2', 0.5, 'plant.friction.bristle_stiffness'),
+    _perturbation('bristle damping x3', 3.0, 'plant.friction.bristle_damping'),
     _perturbation('dead volume x3', 3.0, 'plant.oil.dead_volume_ml'),
     _perturbation('bulk modulus x1.3', MORE, 'plant.oil.effective_bulk_modulus'),
     _perturbation('bulk modulus /1.3', LESS, 'plant.oil.effective_bulk_modulus'),
+    _perturbation('aeration x10', 10.0, 'plant.oil.aeration_pressure_kpa'),
+    _perturbation('vapour pressure 0', 0.0, 'plant.oil.vapour_pressure_kpa'),
     _perturbation('cross-port leakage x1.3', MORE, 'plant.oil.cross_port_leakage'),
     _perturbation('sensor stiffness /2', 0.5, 'plant.mechanics.sensor_stiffness'),
+    _perturbation('sensor damping x3', 3.0, 'plant.mechanics.sensor_damping'),
     _perturbation('rotor inertia x3', 3.0, 'plant.mechanics.inertia'),
     _perturbation('load inertia x1.3', MORE, 'load.inertia'),
     _perturbation('load inertia /1.3', LESS, 'load.inertia'),
@@ -77,6 +82,7 @@ PERTURBATIONS = (
     _perturbation('amplifier of 12 V', 0.5, 'plant.coil.supply_voltage'),
     _perturbation('relief opening x1.3', MORE, 'plant.relief.opening_pressure_mpa'),
     _perturbation('relief slope /1.3', LESS, 'plant.relief.slope_lpm_per_mpa'),
+    _perturbation('refill /10', 0.1, 'plant.relief.refill_lpm'),
     _perturbation('K_v of the wrong sign', -1.0, 'reu.force.kv'),
     _perturbation('K_p x1.3', MORE, 'reu.force.kp'),
     _perturbation('K_i x1.3', MORE, 'reu.force.ki'),

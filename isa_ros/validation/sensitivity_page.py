@@ -15,8 +15,8 @@ _HEAD = """# Sensitivity of the validation
 Which simulated entries of [validation.md](validation.md) notice a wrong parameter. Each row is one
 parameter times a factor, in all actuators, with everything else as shipped; the bars stay. An
 entry that is reached as shipped and missed with the wrong parameter has noticed it. Entries that
-read a parameter back do not count: `behaviour` and `limits` run for a parameter of the plant,
-`rotary_rig` and `isa_v5` for one of the control blocks, `isa_v5` for the relief valves,
+read a parameter back do not count: `behaviour`, `limits` and `cavities` run for a parameter of the
+plant, `rotary_rig` and `isa_v5` for one of the control blocks, `isa_v5` for the relief valves,
 `current_loop` for the amplifier. A perturbation that no entry notices is a hole in the validation;
 a value that the actuators refuse cannot go unnoticed.
 This page is written by
