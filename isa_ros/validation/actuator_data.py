@@ -12,6 +12,7 @@ from isa_ros.plant.chambers import hydraulic_force, pressure_rates, volumes
 from isa_ros.plant.friction import stribeck
 from isa_ros.plant.relief import relief_flow
 from isa_ros.plant.sensors import convert, encode
+from isa_ros.plant.thermal import LumpedThermal
 from isa_ros.validation.entry import around, as_printed, Entry, Findings, INPUT
 from isa_ros.validation.sheets import model_sheet, plant_of
 import numpy as np
@@ -22,14 +23,16 @@ ROTARY = 'smart_manifold'
 LEAK_TEST = 20.0 * MPA  # Table 5: 200 bar
 ROUNDED = 'half of the last printed digit'
 AREAS = '0.5 %: the dimensions are printed to 0.5 mm or three digits'
+HEAT_CAPACITY = 600.0   # J/(kg K), assumed for the bodies (variant `thermal`)
+CAPACITY_DIGIT = 5.0    # J/K, half of the last digit of the least one
 RATING = 'erratum 15: the paper prints a rating; P_S over the piston gives more'
 
 
 def actuator_data() -> Findings:
-    """Compare dimensions, stall, oil, friction, relief and sensors with the tables."""
+    """Compare dimensions, stall, oil, friction, relief, sensors and weights."""
     return Findings((
         *_rotary(), *_linear('isa_v2', 'ISA v2'), *_linear('isa_v5', 'ISA v5'), *_oil(),
-        *_friction(), *_reliefs(), *_sensors()))
+        *_friction(), *_reliefs(), *_sensors(), *_weights()))
 
 
 def stall(model: str, direction: float) -> float:
@@ -149,6 +152,20 @@ def _sensors() -> list[Entry]:
     return [*entries, Entry.given(
         'isa_v5_sampling', rate, model_sheet('isa_v5').reu.current.rate_hz * 1e-3,
         around(rate.number, by=0.5), ROUNDED)]
+
+
+def _weights() -> list[Entry]:
+    """Read the weights back from the heat capacities of the bodies, where alone they act."""
+    entries = []
+    for model, column in (('isa_v2', 'ISA v2'), ('isa_v5', 'ISA v5'), (ROTARY, 'Smart manifold')):
+        weight, heated = cell('table_2', 'Dry weight', column), model_sheet(model, 'thermal')
+        assert isinstance(heated.plant.thermal, LumpedThermal)
+        entries.append(Entry.given(
+            f'{model}_dry_weight', weight,
+            heated.plant.thermal.body_heat_capacity / HEAT_CAPACITY / MILLI,
+            around(weight.number, by=CAPACITY_DIGIT / HEAT_CAPACITY / MILLI),
+            f'half of the last digit of 550 J/K, at {HEAT_CAPACITY:g} J/(kg K)'))
+    return entries
 
 
 def _least_step(resolution: float) -> float:

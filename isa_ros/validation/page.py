@@ -193,14 +193,12 @@ def _left_out() -> tuple[tuple[Printed, str], ...]:
     """Return the printed values that no entry compares, each with the reason."""
     return (
         (cell('table_3', 'Encoder Baud rate', 'ISA'),
-         'not modelled: the time a position takes on the line, some tens of microseconds; '
-         'the encoder is read without delay'),
+         'in the variant `data_sheet_sensors` only: a position takes some tens of microseconds '
+         'on the line, so that it is read one conversion later'),
         (cell('table_3', 'Max current', 'ISA'),
          'not modelled: the supply current of the board (erratum 24)'),
         (cell('table_2', 'Operating temperature (lowest)', 'ISA v5'),
          'not compared: it is the range of the parameters'),
-        (cell('table_2', 'Dry weight', 'ISA v5'),
-         'not modelled: actuators have no mass of their own, the links of a leg have it'),
         (cell('table_4', 'Position K_p', 'ISA V5'),
          'a gain that changes with the task (asterisk, erratum 12): section 5.2 prints the '
          'one of the drop, which is compared'),

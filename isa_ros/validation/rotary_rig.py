@@ -5,20 +5,26 @@ The wheel follows the shipped scenarios; the torque loop is measured on the same
 blocked. Hunting is in `rotary_hunting`.
 """
 
+from dataclasses import fields
 from typing import Any
 
 from isa_ros.analysis.report.paper_figures import paper_figure
 from isa_ros.analysis.response.rig import Choice, Rig
 from isa_ros.analysis.signals.signals import signals_of
+from isa_ros.config.models.catalogue import gait_section
 from isa_ros.config.runs.changed_parameters import with_parameters
+from isa_ros.config.text.parameter_sets import build
+from isa_ros.config.text.sections import Place
+from isa_ros.core.constants import STANDARD_GRAVITY
 from isa_ros.core.units import MILLI
 from isa_ros.loads.drop_rig import Wheel
 from isa_ros.paper.printed import statement
+from isa_ros.scenario.trot import foot_at, Trot
 from isa_ros.scripting.result import Result
 from isa_ros.scripting.run import Run
 from isa_ros.validation.actuators import Actuators, SHIPPED
 from isa_ros.validation.entry import (
-    around, as_printed, at_least, Drawing, Entry, Findings, OWN, PAPER, regression, WORDS)
+    around, as_printed, at_least, Drawing, Entry, Findings, INPUT, OWN, PAPER, regression, WORDS)
 from isa_ros.validation.rotary_hunting import hunting, torque_code
 from isa_ros.validation.torque_step import (
     bandwidths, LEVELS, measured_step, TorqueStep)
@@ -31,6 +37,7 @@ PRESETS = (TABLE_4, RETUNED)
 STEP_NM = 17.0              # 10 % of the rating, section 6
 STRIDE_S = 1.0 / 1.7        # of the trot, and of the sine
 STRIDES = 2.0               # the last ones, after both have settled
+FEET = 4                    # of the trotting robot
 TROT_ERROR, TROT_PEAK = 22.5, 0.169     # percent of the amplitude and rad, with Table 4
 # Of the shipped parameters with Table 4: what K_p, K_i, rotor and filters move.
 RISE_MS, BANDS_HZ, SINE_ERROR = 8.15, (56.7, 58.2), 4.25
@@ -52,7 +59,7 @@ def rotary_rig(actuators: Actuators = SHIPPED) -> Findings:
     return Findings(
         (*(entry for gains in PRESETS for entry in (
             *_torque_step(actuators, gains), *_tracking(actuators, trots[gains], gains))),
-         *_position(trots[TABLE_4]), _neglected_inertia(actuators)),
+         *_position(trots[TABLE_4]), _neglected_inertia(actuators), _carried()),
         (Drawing('fig_12', 'Position and torque of the wheel following a trot at 1 m/s, as '
                  'Fig 12.', paper_figure('position_torque_tracking', signals_of(trots[TABLE_4]))),
          Drawing('fig_13', f'Torque step of {STEP_NM:g} Nm with the wheel blocked, as Fig 13.',
@@ -164,6 +171,20 @@ def _position(trot: Result) -> tuple[Entry, ...]:
               ours=float(np.abs(error).max()), unit='rad',
               tolerance=around(TROT_PEAK, percent=5.0),
               tolerance_source='regression, 5 %: the paper gives no error', gains=TABLE_4))
+
+
+def _carried() -> Entry:
+    """Read the mass of the trotting robot back from the loads of its feet  (G4)."""
+    shipped = gait_section('trot', 'gait')
+    trot = build(Trot, {each.name: shipped[each.name] for each in fields(Trot)}, Place('trot'))
+    low, high = (statement(f'robot_mass_{end}') for end in ('low', 'high'))
+    strides = np.linspace(0.0, 1.0, 200, endpoint=False)
+    loads = [foot_at(trot, float(stride)).load for stride in strides]
+    return Entry(
+        name='trot_robot_mass', source=INPUT, where=low.where, paper=f'{low.text} to {high.text}',
+        ours=float(np.mean(loads)) * FEET / STANDARD_GRAVITY, unit='kg',
+        tolerance=(low.number - low.half_digit, high.number + high.half_digit),
+        tolerance_source='the printed range; half of the last printed digit')
 
 
 def _neglected_inertia(actuators: Actuators) -> Entry:

@@ -2,7 +2,7 @@
 Inertial measurement units on the links of a leg.
 
 A unit reads, in the axes of its link, the specific force f = R^T (a - g) at its place (m/s2) and
-the angular velocity w (rad/s): at rest f points up with 9.81 m/s2, in free fall it is 0. From
+the angular velocity w (rad/s): at rest f points up with 9.80665 m/s2, in free fall it is 0. From
 link to link, with parent's values turned into the own axes  (L22)
 
     w = w_p + q' e_z
