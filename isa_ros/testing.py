@@ -133,7 +133,9 @@ def assert_reproduces(
         raise BagError(f'{bag}: {lacks}, must be a run from t = 0')
     simulation = load(config, scenario, duration=duration).simulation(controllers)
     plan = simulation.scenario
-    n_ticks = recorded.end_ns // plan.run.step_ns if plan.n_ticks is None else plan.n_ticks
+    n_ticks = plan.n_ticks
+    if n_ticks is None:
+        n_ticks = (recorded.end_ns - (recorded.start_ns or 0)) // plan.run.step_ns
     keys = provenance_differences(
         records_of_bag(recorded), records_of(provenance_of(plan), plan.run.source))
     head = f'{bag}: not reproduced by {plan.run.source}, scenario {plan.name}'
@@ -175,7 +177,8 @@ def _compared(bag: Bag, result: Result, tolerances: Tolerances | None) -> Report
     """Return the comparison of a result with a bag; without events, which files do not give."""
     messages = ResultMessages(result.scenario, result.log)
     other = retyped(bag, {topic.name: topic.type_name for topic in messages.topics})
-    end_ns = (len(result.log.samples) - 1) * result.scenario.run.step_ns
+    run = result.scenario.run
+    end_ns = run.start_ns + (len(result.log.samples) - 1) * run.step_ns
     without = {event.TOPIC[0], *(difference.topic for difference in other)}
     comparer = Comparer(
         bag, [topic.name for topic in messages.topics], tolerances,

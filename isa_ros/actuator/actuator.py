@@ -38,11 +38,12 @@ PAPER_SUPPLY = 20.7e6
 
 @dataclass(frozen=True)
 class Timing:
-    """The tick and the offset of the REU's sampling instants from it, ns; the seed of noise."""
+    """Tick, offset of the REU's sampling instants, ns; seed of noise; stamps at t = 0, ns."""
 
     step_ns: int
     controller_offset_ns: int
     seed: int = 0
+    start_ns: int = 0
 
     @property
     def steps(self) -> int:
@@ -301,4 +302,5 @@ class SmartActuator:
 
 def participant_digest(actuator: SmartActuator, timing: Timing) -> str:
     """Return a hash of the parameters and the timing of an actuator."""
-    return f'{actuator.digest}/{timing.step_ns}/{timing.controller_offset_ns}'
+    return (f'{actuator.digest}/{timing.step_ns}/{timing.controller_offset_ns}/'
+            f'{timing.start_ns}')

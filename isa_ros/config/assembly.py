@@ -18,7 +18,7 @@ import numpy as np
 
 def timing_of(run: RunConfig) -> Timing:
     """Return the timing of every actuator of a run."""
-    return Timing(run.step_ns, run.controller_offset_ns, run.seed)
+    return Timing(run.step_ns, run.controller_offset_ns, run.seed, run.start_ns)
 
 
 def group_of(run: RunConfig) -> ActuatorGroup:

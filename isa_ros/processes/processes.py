@@ -15,7 +15,7 @@ from isa_ros.config.runs.run_config import RunConfig
 from isa_ros.errors import RunError
 from isa_ros.processes.forked import can_fork, Forked
 from isa_ros.processes.stopping import PARENT_VARIABLE
-from isa_ros.run.options import OPTION_OF, with_seed
+from isa_ros.run.options import all_changes, OPTION_OF
 
 MODULES = {
     'actuator': 'isa_ros.programs.actuator',
@@ -76,7 +76,7 @@ def run_processes(
     Return every process of a run, the coordinator last.
 
     ``options`` are parameters of the coordinator; with ``in_process`` it is the only process. Its
-    changes and its seed are also those of the actuators.
+    changes, seed and start time are also those of the actuators.
     ``elsewhere`` are the actuators that are started on another host.
     """
     files = [('config_file', str(config.resolve()))]
@@ -90,10 +90,11 @@ def run_processes(
 
 
 def _changes_in(options: Mapping[str, ParameterValue]) -> tuple[str, ...]:
-    """Return the changes and the seed in parameters of the coordinator, as `Request` has them."""
+    """Return the changes in parameters of the coordinator, as those of a `Request`."""
     request = {name: OPTION_OF[name].of_parameter(options[name])
-               for name in ('set', 'seed') if name in options}
-    return with_seed(request.get('set', ()), request.get('seed'))
+               for name in ('set', 'seed', 'start_time') if name in options}
+    return all_changes(
+        request.get('set', ()), request.get('seed'), request.get('start_time'))
 
 
 class Children:

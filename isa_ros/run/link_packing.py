@@ -28,17 +28,19 @@ def time_word_of(t_ns):
 
 
 @kernel
-def pack_links(t_ns, tick_start_ns, at, links, ages, applied, sent, words, values):
+def pack_links(t_ns, tick_start_ns, start_ns, at, links, ages, applied, sent, words, values):
     """
     Write the words of all links from place ``at`` on.
 
     ``links`` are the rows with a link, ``ages`` the age of every sample in s, ``applied`` and
-    ``sent`` `COMMAND` rows.
+    ``sent`` `COMMAND` rows; ``start_ns`` is the time of stamps at t = 0.
     """
     for row in links:
-        words[at] = time_word_of(t_ns - int(ages[row] / PLANT_STEP + 0.5) * PLANT_STEP_NS)
+        words[at] = time_word_of(
+            start_ns + t_ns - int(ages[row] / PLANT_STEP + 0.5) * PLANT_STEP_NS)
         due = applied[row].due_step
-        words[at + 1] = time_word_of(due * PLANT_STEP_NS if due > 0 else tick_start_ns)
+        words[at + 1] = time_word_of(
+            start_ns + (due * PLANT_STEP_NS if due > 0 else tick_start_ns))
         command = sent[row]
         kinds = command.kinds
         for k in range(2, WORDS):
@@ -90,8 +92,10 @@ class LinkWords:
                for suffix, message in messages.items()}
         return own | {'sent_setpoint': applied_setpoint(name, sent)}
 
-    def pack(self, t_ns: int, tick_start_ns: int, words: np.ndarray, values: np.ndarray) -> None:
-        """Write the words; ``values`` is the float view of ``words``."""
+    def pack(
+            self, t_ns: int, tick_start_ns: int, start_ns: int, words: np.ndarray,
+            values: np.ndarray) -> None:
+        """Write the words, stamped from ``start_ns`` on; ``values`` is the float view of them."""
         if self.rows:
-            pack_links(t_ns, tick_start_ns, FIRST_VALUE + self._first, self._numbers, self._ages,
-                       self._applied, self._sent, words, values)
+            pack_links(t_ns, tick_start_ns, start_ns, FIRST_VALUE + self._first, self._numbers,
+                       self._ages, self._applied, self._sent, words, values)

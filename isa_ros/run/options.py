@@ -37,6 +37,9 @@ class Request:
         Kind.CHANGES, SET_HELP, metavar='KEY=VALUE', name='set'))
     seed: int | None = field(default=None, metadata=_option(
         Kind.WHOLE, 'of all noise of the run', otherwise='that of {config}', metavar='N'))
+    start_time_s: int | None = field(default=None, metadata=_option(
+        Kind.WHOLE, 'time of all stamps at t = 0, since 1970', unit='s', metavar='S',
+        otherwise='that of {config}', name='start_time'))
     duration_s: float | None = field(default=None, metadata=_option(
         Kind.POSITIVE, 'simulated time', otherwise='that of the scenario, else until Ctrl-C',
         unit='s', metavar='S', name='duration'))
@@ -90,13 +93,15 @@ class Request:
 
     @property
     def all_changes(self) -> tuple[str, ...]:
-        """Return `changes` and the seed, as one more of them."""
-        return with_seed(self.changes, self.seed)
+        """Return `changes`, then those of options that are keys of a run file."""
+        return all_changes(self.changes, self.seed, self.start_time_s)
 
 
-def with_seed(changes: Sequence[str], seed: int | None) -> tuple[str, ...]:
-    """Return the changes of a request and its seed, if it has one, as the last of them."""
-    return (*changes, *(() if seed is None else (f'seed={seed}',)))
+def all_changes(
+        changes: Sequence[str], seed: int | None, start_time_s: int | None) -> tuple[str, ...]:
+    """Return the changes of a request, then its seed and start, as far as it has them."""
+    keys = {'seed': seed, 'start_time_s': start_time_s}
+    return (*changes, *(f'{key}={value}' for key, value in keys.items() if value is not None))
 
 
 def _declared() -> tuple[Option, ...]:

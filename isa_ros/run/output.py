@@ -84,11 +84,11 @@ class RunOutput(RowSink):
     def take_time(self, tick: int) -> None:
         """Publish the time of a tick, before all other messages of that instant."""
         if self._outlets.clock.has_subscribers():
-            self._outlets.clock.publish((clock.pack(tick * self._step_ns),))
+            self._outlets.clock.publish((clock.pack(self._stamp(tick)),))
 
     def add_event(self, tick: int, text: str) -> None:
         """Publish and record an event before a tick: a pause, a step, a reset."""
-        message = event.pack(tick * self._step_ns, text)
+        message = event.pack(self._stamp(tick), text)
         self._events.append(message)
         if self._outlets.events.has_subscribers():
             self._outlets.events.publish((message,))
@@ -129,8 +129,11 @@ class RunOutput(RowSink):
         if tick is None or self._recorder is None:
             return
         events, self._events = self._events, []
-        self._recorder.write_tick(
-            tick * self._step_ns, tick, self._packer.all_messages(events))
+        self._recorder.write_tick(self._stamp(tick), tick, self._packer.all_messages(events))
+
+    def _stamp(self, tick: int) -> int:
+        """Return the time of a tick in stamps and in the bag, ns."""
+        return self._packer.start_ns + tick * self._step_ns
 
 
 def packer_of(run: RunConfig, rows: PublishedRows) -> Packer:
@@ -141,4 +144,4 @@ def packer_of(run: RunConfig, rows: PublishedRows) -> Packer:
                for supply in run.supplies],
               {body.name: body.messages(run.step_ns) for body in run.bodies},
               [actuator.name for actuator in run.actuators if is_heated(actuator.sheet.plant)],
-              run.linked), rows)
+              run.linked), rows, start_ns=run.start_ns)

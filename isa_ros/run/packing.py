@@ -113,7 +113,9 @@ class Packer:
     each tick that reaches a full second.
     """
 
-    def __init__(self, names: Names, rows: PublishedRows, is_run: bool = True) -> None:
+    def __init__(
+            self, names: Names, rows: PublishedRows, is_run: bool = True,
+            start_ns: int = 0) -> None:
         self._names = names
         self._rows = rows
         found: list[tuple[Topic, Prepared | None]] = []
@@ -156,8 +158,8 @@ class Packer:
             [name for name, _ in names.actuators], rows.samples,
             [name for name, _ in names.supplies], rows.supplies, is_run)
         """The messages that are encoded as they come."""
-        self.epoch_ns = 0
-        """Added to the simulation time in stamps, ns."""
+        self.start_ns = start_ns
+        """Time of stamps at t = 0."""
         self._periods = {own.topic: own.period_ns for own in of_bodies if own.period_ns} | {
             f'/{name}/{TEMPERATURE[0]}': NS_PER_SECOND for name in names.heated}
         self._not_due: frozenset[str] = frozenset()
@@ -197,8 +199,8 @@ class Packer:
         ``tuned`` are the parameters that changed at the tick's start, by row, and
         ``tuned_supplies`` those of the supplies.
         """
-        end, start = t_ns + self.epoch_ns, tick_start_ns + self.epoch_ns
-        self._links.pack(end, start, self._words, self._values)
+        end, start = t_ns + self.start_ns, tick_start_ns + self.start_ns
+        self._links.pack(t_ns, tick_start_ns, self.start_ns, self._words, self._values)
         if len(self._bodies) > 1:
             np.concatenate(self._bodies, out=self._of_bodies)
         pack(time_word(end), time_word(start), ATMOSPHERE,
@@ -208,7 +210,7 @@ class Packer:
             self._not_due = frozenset(
                 name for name, period in self._periods.items()
                 if t_ns and t_ns // period == tick_start_ns // period)
-        self.rare.pack(t_ns, tick_start_ns, tuned, tuned_supplies, self.epoch_ns)
+        self.rare.pack(t_ns, tick_start_ns, tuned, tuned_supplies, self.start_ns)
 
     def all_messages(self, events: Sequence[bytes] = ()) -> Packed:
         """Return all messages of the packed instant, in the order of `topics`."""

@@ -38,22 +38,26 @@ class RareMessages:
         self._supplies, self._supply_samples = supplies, supply_samples
         self._values = floats(samples)
         self._is_run = is_run
-        self._t_ns = 0
+        self._t_ns = self._start_ns = 0
         self._found: dict[str, bytes] = {}
 
     def pack(
             self, t_ns: int, tick_start_ns: int, tuned: Mapping[int, Mapping[str, float]],
-            tuned_supplies: Mapping[str, float], epoch_ns: int = 0) -> None:
-        """Encode the messages of ``t_ns``; arguments as `isa_ros.run.packing.Packer.pack`."""
-        self._t_ns = t_ns
-        start_ns = tick_start_ns + epoch_ns
+            tuned_supplies: Mapping[str, float], start_ns: int = 0) -> None:
+        """
+        Encode the messages of ``t_ns``; arguments as `isa_ros.run.packing.Packer.pack`.
+
+        ``start_ns`` is the time of stamps at t = 0.
+        """
+        self._t_ns, self._start_ns = t_ns, start_ns
+        applied_ns = start_ns + tick_start_ns
         self._found = {}
         for row, values in tuned.items():
             name = self._actuators[row]
-            self._found[f'/{name}/{PARAMETERS}'] = applied_parameters(name, values, start_ns)
+            self._found[f'/{name}/{PARAMETERS}'] = applied_parameters(name, values, applied_ns)
         if tuned_supplies:
             self._found[OF_SUPPLIES] = applied_parameters(
-                coordinator_messages.NODE, tuned_supplies, start_ns)
+                coordinator_messages.NODE, tuned_supplies, applied_ns)
         changed = [row for row in range(len(self._actuators))
                    if self.has_device(row, t_ns, tick_start_ns)]
         for row in changed:
@@ -76,7 +80,7 @@ class RareMessages:
 
     def diagnose(self) -> bytes:
         """Add the diagnostics of all, and return them."""
-        self._found[DIAGNOSTICS] = found = diagnostics.pack(self._t_ns, [
+        self._found[DIAGNOSTICS] = found = diagnostics.pack(self._start_ns + self._t_ns, [
             *(device.joined(name, self._device(row))
               for row, name in enumerate(self._actuators)),
             *energy_statuses(accounts_of(

@@ -31,7 +31,7 @@ def test_the_ros_parameters_of_the_coordinator_keep_their_names():
     assert set(DEFAULTS) == {
         'config_file', 'scenario_file', 'out', 'duration', 'real_time_factor', 'controllers',
         'paused', 'restore', 'save', 'overwrite', 'compression', 'split_mb', 'in_process',
-        'join_timeout_s', 'sync', 'set', 'seed', 'fail_on_trip'}
+        'join_timeout_s', 'sync', 'set', 'seed', 'start_time', 'fail_on_trip'}
 
 
 def test_the_launch_file_has_every_option_as_an_argument():
@@ -41,7 +41,7 @@ def test_the_launch_file_has_every_option_as_an_argument():
         'split_mb': '-1.0', 'namespace': '', 'overwrite': 'false', 'elsewhere': '',
         'controller': '', 'join_timeout': '30.0', 'restore': '', 'save': '', 'sync': 'false',
         'fail_on_trip': 'false',
-        'set': '', 'seed': '-1'}
+        'set': '', 'seed': '-1', 'start_time': '-1'}
 
 
 def test_every_field_with_an_option_is_of_the_request():
@@ -59,22 +59,23 @@ def test_parameters_that_are_set_ask_for_what_the_command_line_asks_for():
         'restore': 'a.json', 'save': 'b.json', 'overwrite': True, 'compression': 'lz4',
         'split_mb': 3.0, 'in_process': True, 'join_timeout_s': 7.0, 'sync': True,
         'fail_on_trip': True,
-        'set': ['supply.pressure_mpa=14.0'], 'seed': 7}, is_alone=True)
+        'set': ['supply.pressure_mpa=14.0'], 'seed': 7, 'start_time': 9}, is_alone=True)
     by_arguments = request_of_arguments({
         'config': 'leg', 'scenario': 'drop', 'out': Path('bag'), 'duration': 0.5,
         'real_time_factor': 2.0, 'controller': ['sway', 'hold'], 'paused': True,
         'restore': Path('a.json'), 'save': Path('b.json'), 'overwrite': True,
         'compression': 'lz4', 'split_mb': 3.0, 'in_process': True, 'join_timeout': 7.0,
         'elsewhere': (), 'sync': True, 'fail_on_trip': True,
-        'set': ['supply.pressure_mpa=14.0'], 'seed': 7}, is_alone=True)
+        'set': ['supply.pressure_mpa=14.0'], 'seed': 7, 'start_time': 9}, is_alone=True)
     assert by_parameters == by_arguments == Request(
         config=LEG, scenario=find('drop', SCENARIOS), out=Path('bag'), duration_s=0.5,
         real_time_factor=2.0, controllers=('sway', 'hold'), is_paused=True,
         restore=Path('a.json'), save=Path('b.json'), overwrite=True, compression='lz4',
         split_mb=3.0, is_synced=True, fail_on_trip=True, in_process=True, join_timeout_s=7.0,
         is_alone=True,
-        changes=('supply.pressure_mpa=14.0',), seed=7)
-    assert by_arguments.all_changes == ('supply.pressure_mpa=14.0', 'seed=7')
+        changes=('supply.pressure_mpa=14.0',), seed=7, start_time_s=9)
+    assert by_arguments.all_changes == (
+        'supply.pressure_mpa=14.0', 'seed=7', 'start_time_s=9')
 
 
 @pytest.mark.parametrize('field, given, expected', [
@@ -92,7 +93,7 @@ def test_a_launch_file_hands_texts_on_as_parameters_of_their_type():
         'out': '', 'duration': 0.0, 'in_process': False, 'real_time_factor': 0.0,
         'paused': False, 'compression': '', 'split_mb': -1.0, 'overwrite': False,
         'join_timeout_s': 30.0, 'restore': '', 'save': '', 'sync': False, 'seed': -1,
-        'fail_on_trip': False}
+        'start_time': -1, 'fail_on_trip': False}
     given = launched_parameters(TEXTS | {
         'duration': '2', 'in_process': 'True', 'paused': '1', 'compression': 'zstd',
         'controller': 'sway,hold', 'elsewhere': 'hip,knee'})

@@ -20,9 +20,9 @@ def test_the_packer_of_a_run_is_built_once(tmp_path: Path, monkeypatch: pytest.M
     """It encodes every message, which takes a millisecond for a leg."""
     make, built = Packer.__init__, []
 
-    def count(self: Packer, *arguments: Any) -> None:
+    def count(self: Packer, *arguments: Any, **more: Any) -> None:
         built.append(self)
-        make(self, *arguments)
+        make(self, *arguments, **more)
 
     monkeypatch.setattr(Packer, '__init__', count)
     session = prepare(Request(config=find('rig_linear', CONFIG), out=tmp_path / 'bag',

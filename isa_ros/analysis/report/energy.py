@@ -5,6 +5,7 @@ from pathlib import Path
 from typing import NamedTuple
 
 from isa_ros.bag.reader import Bag
+from isa_ros.config.runs.run_config import RunConfig
 from isa_ros.core.accounts import (
     Account, CROSS_PORT, DAMPING, ENERGY, FRICTION, LEAKAGE, MEAN, OIL, PEAK, RELIEF, STORED,
     THROTTLING, WORK)
@@ -47,7 +48,8 @@ def recorded_accounts(bag: Bag) -> Accounts | None:
         return None
     try:
         found = diagnostics.values(last.data, run_diagnostics.ENERGY)
-        return Accounts(last.t_ns / NS_PER_SECOND, {
+        start_ns = RunConfig.from_yaml(bag.provenance.configuration).start_ns
+        return Accounts((last.t_ns - start_ns) / NS_PER_SECOND, {
             name: {key: float(value) for key, value in account.items()}
             for name, account in found.items()})
     except (CdrError, ValueError) as error:

@@ -45,8 +45,9 @@ def read_traces(path: Path) -> tuple[RunConfig, dict[str, Trace]]:
             continue
         times.setdefault(message.topic, []).append(message.t_ns)
         messages.setdefault(message.topic, []).append(message.data)
-    return RunConfig.from_yaml(bag.provenance.configuration), {
-        topic: Trace(seconds(np.array(times[topic])),
+    run = RunConfig.from_yaml(bag.provenance.configuration)
+    return run, {
+        topic: Trace(seconds(np.array(times[topic]) - run.start_ns),
                      columns(messages[topic], bag.types[topic], f'{path}: {topic}'))
         for topic in times}
 

@@ -11,6 +11,7 @@ from isa_ros.config.models.wires import refuse_overfull
 from isa_ros.config.runs.actuator_config import ACTUATOR, actuator_of, ActuatorConfig, Around
 from isa_ros.config.runs.body_config import BODY, BodyConfig
 from isa_ros.config.runs.body_kinds import BODY_KINDS
+from isa_ros.config.runs.joined_bodies import bodies_of, moved_by
 from isa_ros.config.runs.leg_config import LegConfig
 from isa_ros.config.runs.recording import RECORD, RecordConfig
 from isa_ros.config.runs.supplies import supplies_of, SUPPLY, SUPPLY_KEYS, SupplyConfig
@@ -18,18 +19,18 @@ from isa_ros.config.runs.tick_grid import on_grid, WrittenTime
 from isa_ros.config.text.keys import (
     InText, Key, KeyTable, Layer, NAME, Named, NAMES, nanoseconds, number, OneOf, ParameterSet,
     TEXT, Value)
-from isa_ros.config.text.names import refuse_bad_name
+from isa_ros.config.text.names import COORDINATOR, refuse_bad_name
 from isa_ros.config.text.sections import Place, Section
 from isa_ros.config.text.yaml_text import dump, parse, Tree
 from isa_ros.core.noise import seed_of
-from isa_ros.core.suggest import alternatives
+from isa_ros.core.timebase import NS_PER_SECOND
 from isa_ros.errors import ConfigError
 from isa_ros.surroundings.supply import SupplySheet
 
 __all__ = ['ActuatorConfig', 'ALL', 'COORDINATOR', 'LegConfig', 'RUN', 'RunConfig', 'run_of']
 
-COORDINATOR = 'coordinator'
-"""Name of the coordinator's node; participants must have other names."""
+LATEST_START_S = 2_000_000_000
+"""Of a run, since 1970: 147,483,647 s before the seconds of a stamp, 32 bits, end."""
 
 ALL = 'all'
 """Stands for every actuator of a run."""
@@ -56,6 +57,13 @@ class RunConfig:
     record: RecordConfig = RecordConfig()
     seed: int = 0
     """Of all noise."""
+    start_time_s: int = 0
+    """Time of all stamps at t = 0; whole, so that both have the same full seconds."""
+
+    @property
+    def start_ns(self) -> int:
+        """Return the time of all stamps at t = 0, ns."""
+        return self.start_time_s * NS_PER_SECOND
 
     @property
     def leg(self) -> LegConfig | None:
@@ -89,8 +97,8 @@ class RunConfig:
 
     @property
     def digest(self) -> str:
-        """Return the sha256 of the resolved text without the section `record`."""
-        text = replace(self, record=RecordConfig()).to_yaml()
+        """Return the sha256 of the resolved text, without what changes no signal."""
+        text = replace(self, record=RecordConfig(), start_time_s=0).to_yaml()
         return hashlib.sha256(text.encode()).hexdigest()
 
     def actuator(self, name: str) -> ActuatorConfig:
@@ -195,6 +203,14 @@ def _only(run: RunConfig) -> BodyConfig | None:
 
 _BODY = OneOf({name: kind.KEYS for name, kind in BODY_KINDS.items()})
 
+
+def _start_time(value: Any, place: Place) -> int:
+    if type(value) is not int or not 0 <= value <= LATEST_START_S:
+        raise ConfigError(
+            f'{place} = {value!r}, must be a whole number of seconds >= 0 and <= {LATEST_START_S}')
+    return value
+
+
 _STEP = number('step_ms', 'ms', 'macro step H', 1.0, in_text=InText.NEVER, gt=0.0, le=100.0)
 _OFFSET = number(
     'controller_offset_ms', 'ms', 'offset of the samples of the REU from the ticks', 0.12,
@@ -213,6 +229,9 @@ RUN = KeyTable((
            gt=0.0, le=3600.0),
     Key('seed', Value('whole number', lambda value, place: seed_of(value, str(place))),
         'of all noise', 0),
+    Key('start_time_s', Value('whole number', _start_time, 's'),
+        'time of all stamps at t = 0, since 1970', None, '0',
+        of=lambda run: run.start_time_s or None),
     Key(SUPPLY, ParameterSet(SupplySheet), 'the supply of all actuators', None,
         'required, or `supplies`', InText.NEVER),
     Key('supplies', Named(SUPPLY_KEYS), 'several supplies, instead of `supply`', None,
@@ -248,10 +267,10 @@ def run_of(tree: Tree, place: Place, is_checked: bool = True) -> tuple[RunConfig
     """
     values = RUN.read(tree, place)
     step_ns, offset_ns = _times(values, place)
-    bodies, origins = _bodies(values, place, step_ns, is_checked)
+    bodies, origins = bodies_of(values, place, step_ns, is_checked)
     supplies = supplies_of(values, list(values['actuators']), place)
     actuators = []
-    below, moved = place / 'actuators', _moved(bodies, values['actuators'], place)
+    below, moved = place / 'actuators', moved_by(bodies, values['actuators'], place)
     for name, own in values['actuators'].items():
         if name == COORDINATOR:
             raise ConfigError(f'{below / name}: the name is reserved for the coordinator')
@@ -263,7 +282,8 @@ def run_of(tree: Tree, place: Place, is_checked: bool = True) -> tuple[RunConfig
         refuse_overfull({own.name: own.sheet.link for own in actuators}, place)
     values |= {
         'step_ns': step_ns, 'controller_offset_ns': offset_ns, 'supplies': supplies,
-        'bodies': bodies, 'actuators': tuple(actuators), 'source': values['source'] or place.file}
+        'bodies': bodies, 'actuators': tuple(actuators), 'source': values['source'] or place.file,
+        'start_time_s': values['start_time_s'] or 0}
     controllers = values.pop('controllers')
     run = RunConfig(**{name: values[name] for name in RunConfig.__dataclass_fields__
                        if name in values})
@@ -277,61 +297,3 @@ def _times(values: dict[str, Any], place: Place) -> tuple[int, int]:
             return WrittenTime(in_ms.name, values[in_ms.name], 'ms', 1_000_000)
         return WrittenTime(in_ns.name, values[in_ns.name], 'ns', 1)
     return on_grid(of(_STEP, _STEP_NS), of(_OFFSET, _OFFSET_NS), place)
-
-
-def _bodies(
-        values: dict[str, Any], place: Place, step_ns: int,
-        is_checked: bool) -> tuple[tuple[BodyConfig, ...], dict[str, Section]]:
-    """Return the bodies that the actuators move, and the sections they were built from."""
-    leg, body, named = values['leg'], values[BODY], values['bodies']
-    if leg is not None and body is not None:
-        raise ConfigError(place.has('has leg and body, must have one; leg is a body of that kind'))
-    found = {BODY: (BODY, place / BODY, body)} if body is not None else {
-        name: (f'bodies.{name}', place / 'bodies' / name, own)
-        for name, own in (named or {}).items()}
-    if leg is not None:
-        found = {BODY: (BODY, place / 'leg', {'kind': LegConfig.kind} | leg)}
-    taken = [COORDINATOR, *values['actuators'], *(values['supplies'] or [SUPPLY])]
-    if is_checked:
-        _refuse_shared_names(values, place)
-    bodies, origins = [], {}
-    for name, (key, below, own) in found.items():
-        if name != BODY and name in taken:
-            raise ConfigError(f'{below}: the name {name!r} is taken; taken: {", ".join(taken)}')
-        config, section = BODY_KINDS[own['kind']].of(name, own, below, step_ns, is_checked)
-        bodies.append(config)
-        if section:
-            origins[f'{key}.sheet'] = section
-    return tuple(bodies), origins
-
-
-def _refuse_shared_names(values: dict[str, Any], place: Place) -> None:
-    """Refuse an actuator of the name of a supply or body: columns and topics have these names."""
-    others = dict.fromkeys(values['supplies'] or [SUPPLY], 'a supply')
-    if values['leg'] is not None or values[BODY] is not None:
-        others[BODY] = 'the body'
-    for name in values['actuators']:
-        if name in others:
-            raise ConfigError(
-                f'{place / "actuators" / name}: the name {name!r} is taken by {others[name]}; '
-                'columns and topics have these names')
-
-
-def _moved(
-        bodies: Sequence[BodyConfig], actuators: Mapping[str, Any],
-        place: Place) -> dict[str, tuple[BodyConfig, str]]:
-    """Return what each actuator on a body moves: the body, and its joint."""
-    if not actuators:
-        raise ConfigError(f'{place / "actuators"} is empty, must name at least one actuator')
-    moved: dict[str, tuple[BodyConfig, str]] = {}
-    for body in bodies:
-        for joint, name in body.joints:
-            where = f'{place}: {body.key_of(joint)} = {name!r}'
-            if name not in actuators:
-                raise ConfigError(f'{where} is not an actuator; {alternatives(name, actuators)}')
-            if name in moved:
-                other, taken = moved[name]
-                raise ConfigError(f'{where} already moves {taken}' + (
-                    '' if other is body else f' of {other.called}'))
-            moved[name] = body, joint
-    return moved

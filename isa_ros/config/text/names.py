@@ -9,6 +9,9 @@ from isa_ros.config.text.yaml_text import Tree
 from isa_ros.core.suggest import shortened
 from isa_ros.errors import ConfigError
 
+COORDINATOR = 'coordinator'
+"""Name of the coordinator's node; participants must have other names."""
+
 LONGEST = 100   # letters; a topic of DDS has at most 255 with namespace and what follows the name
 NAME_RULE = f'must be small letters, digits and single underscores, at most {LONGEST}'
 _NAME = re.compile(r'[a-z](?:_?[a-z0-9])*')

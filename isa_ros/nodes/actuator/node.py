@@ -72,7 +72,7 @@ class ActuatorNode(Node):
                   linked=[config.name] if self.actuator.has_link else []),
             PublishedRows(
                 memory.observed, memory.applied, np.zeros(0, SUPPLY_SAMPLE), {}, memory.sent),
-            is_run=False)
+            is_run=False, start_ns=timing.start_ns)
         self.outlet = PreparedPublishers(
             self, topics_of_actuator('~', heats_up, self.actuator.has_link))
         """The publishers of the actuator's topics."""
@@ -112,7 +112,7 @@ class ActuatorNode(Node):
     def stamp_from(self, time_ns: int) -> None:
         """Stamp messages from now on as if it were ``time_ns``, on whole ticks."""
         step_ns = self.setup.timing.step_ns
-        self._packer.epoch_ns = time_ns // step_ns * step_ns - self.actuator.t_ns
+        self._packer.start_ns = time_ns // step_ns * step_ns - self.actuator.t_ns
 
     def serve(self) -> None:
         """Process the setpoints and requests that have arrived; do not wait."""

@@ -19,11 +19,11 @@ from tests.runs import ACCUMULATOR, hip_and_knee, RETURN_LINE
 
 CONFIG = Path(__file__).parents[3] / 'config'
 LEG = load_run(CONFIG / 'leg.yaml')
-TWO = hip_and_knee([
+TWO = replace(hip_and_knee([
     SupplyConfig('main', replace(ACCUMULATOR, return_line=RETURN_LINE), ('knee',)),
-    SupplyConfig('low', ACCUMULATOR, ('hip',))])
+    SupplyConfig('low', ACCUMULATOR, ('hip',))]), start_time_s=2_000_000_000)
 FULL = replace(
-    LEG, controllers=('sway', 'gait'), record=RecordConfig(
+    LEG, controllers=('sway', 'gait'), start_time_s=1, record=RecordConfig(
         Storage(compression='zstd', split_mb=12.5), ('/*/references',), (('/*/valve', 10),)))
 
 
