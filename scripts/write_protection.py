@@ -14,7 +14,7 @@ from isa_ros.config.models.catalogue import actuator_model, DEFAULT_PRESET
 from isa_ros.config.text.parameter_sets import build
 from isa_ros.core.conditions import BITS, CONDITIONS
 from isa_ros.core.parameter import defaults
-from isa_ros.core.units import of_coordinate
+from isa_ros.core.units import of_coordinate, quantity
 from isa_ros.reu.protection_sheet import levels_of, Protection
 from isa_ros.text.marked import with_parts
 from isa_ros.text.table import markdown
@@ -29,7 +29,7 @@ SHOWN = {'Pa': ('MPa', 1e6), 'A': ('mA', 1e-3), 'm': ('mm', 1e-3), 's': ('ms', 1
 def shown(value: float, unit: str) -> str:
     """Return a value in SI with a readable unit: ``23.1 MPa``."""
     name, size = SHOWN.get(unit, (unit, 1.0))
-    return f'{value / size:.4g} {name}'
+    return quantity(f'{value / size:.4g}', name)
 
 
 def conditions() -> list[str]:

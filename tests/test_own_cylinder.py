@@ -34,7 +34,8 @@ actuators:
 """
 RATED = 20.0 / 60e3  # m3/s at 7 MPa
 SIZES = {'16/12': (16.0, 12.0, 80.0, 5.0), '40/25': (40.0, 25.0, 200.0, 20.0),
-         '63/45': (63.0, 45.0, 300.0, 60.0)}
+         '63/45': (63.0, 45.0, 300.0, 60.0),
+         '320/220': (320.0, 220.0, 4000.0, 1000.0)}     # of a crane
 AREA = math.pi / 4.0 * 0.040 * 0.040
 ROD_SIDE = AREA - math.pi / 4.0 * 0.025 * 0.025
 SUPPLY = 14e6
@@ -168,6 +169,19 @@ def test_its_impedance_steps_and_rests_quietly(own: Own, size: str) -> None:
     assert moved[-1] == pytest.approx(1.0, abs=0.1)
     stall = math.pi / 4.0 * (SIZES[size][0] * 1e-3) ** 2 * SUPPLY
     assert result['ram.force'][-100:].std() < 0.002 * stall
+
+
+def test_the_largest_cylinder_that_is_declared_has_its_scaled_values(own: Own) -> None:
+    """500/360 x 5000 mm at 70 MPa, 1000 l/min: no value that scales is beyond its range."""
+    path = own()
+    path.write_text(path.read_text().replace(
+        'bore_mm: 40, rod_mm: 25, stroke_mm: 200, rated_pressure_mpa: 14.0',
+        'bore_mm: 500, rod_mm: 360, stroke_mm: 5000, rated_pressure_mpa: 70.0').replace(
+        'rated_flow_lpm: 20', 'rated_flow_lpm: 1000'))
+    sheet = load_run(path).actuators[0].sheet
+    swept = sheet.plant.drive.areas[0] * sheet.plant.drive.stroke
+    assert swept == pytest.approx(0.9817, rel=1e-4, abs=0.0)
+    assert sheet.plant.oil.dead_volume_ml * 1e-6 == pytest.approx(0.05 * swept, rel=1e-3, abs=0.0)
 
 
 def test_the_shipped_example_is_as_long_as_it_says() -> None:

@@ -25,7 +25,7 @@ from isa_ros.reu.schedule import POINTS
 from isa_ros.reu.wiring import Held, loop_steps, Off, refuse_nonsense, Reu, valve_block
 import numpy as np
 
-_ROUNDED = 1e-3  # of a limit: a data sheet prints three digits
+ROUNDED = 1e-3  # of a limit: a data sheet prints three digits
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -96,7 +96,7 @@ def _refuse_limit_beyond_stop(sheet: ActuatorSheet) -> None:
         return
     stop, unit = valve_stop(sheet), 'A' if isinstance(sheet.reu.spool, Off) else 'm'
     limit = getattr(sheet.reu, name).limit
-    if limit > stop * (1.0 + _ROUNDED):
+    if limit > stop * (1.0 + ROUNDED):
         raise ConfigError(
             f'reu.{name}.limit = {limit:g} {unit}, must be <= {stop:.4g} {unit}, the stop of the '
             f'spool (reu.spool.kind = {_kind(sheet.reu.spool)}: {name} commands '

@@ -12,11 +12,10 @@ place that translates; such names are also accepted from users, as before.
 """
 
 from collections.abc import Iterable, Mapping
-import math
 
 from isa_ros.actuator.link import NO_LINK
 from isa_ros.actuator.sheet import ActuatorSheet, refuse_wiring
-from isa_ros.actuator.usable import largest_gains, REASON
+from isa_ros.actuator.usable import narrowed, unlinked, usable
 from isa_ros.core.changeable import Changeable, changeables, marked, with_changes
 from isa_ros.core.parameter import check
 from isa_ros.core.units import in_si, of_coordinate
@@ -38,7 +37,7 @@ _VALVE = 'm | A'  # unit, in a sheet, of an output that commands the valve
 
 def tunables(sheet: ActuatorSheet) -> dict[str, Changeable]:
     """Return the gains and limits of the blocks that are on, SI, outermost first."""
-    on, largest = active(sheet.reu), largest_gains(sheet)
+    on, narrower = active(sheet.reu), usable(sheet)
     found = {}
     for variable in on:
         inner = VARIABLES[VARIABLES.index(variable) + 1:]
@@ -49,15 +48,14 @@ def tunables(sheet: ActuatorSheet) -> dict[str, Changeable]:
             unit = si.si.replace(_VALVE, 'output')
             for word, means in (('output', output), ('measured', _MEASURED[variable])):
                 unit = unit.replace(word, of_coordinate(means, sheet.is_rotary))
-            bounds, doc = dict(declared['bounds']), declared['doc']
-            if largest.get(key, math.inf) < bounds.get('le', math.inf):
-                bounds['le'], doc = largest[key], f'{doc}; {REASON}'
+            of_its_own = narrowed(f'reu.{key}', declared, narrower)
             name = key
             if declared['tunable']:
                 name = f'{key.rpartition(".")[0]}.{declared["tunable"]}'
             found[name] = Changeable(name, value * si.scale, {
-                'doc': doc, 'unit': of_coordinate(unit, sheet.is_rotary),
-                'bounds': {bound: limit * si.scale for bound, limit in bounds.items()}},
+                'doc': of_its_own['doc'], 'unit': of_coordinate(unit, sheet.is_rotary),
+                'bounds': {bound: limit * si.scale
+                           for bound, limit in of_its_own['bounds'].items()}},
                 f'reu.{key}', si.scale, declared['unit'] if si.scale != 1.0 else '')
     return found
 
@@ -69,7 +67,7 @@ def refuse_unusable(sheet: ActuatorSheet) -> None:
     Raises
     ------
     ParameterError
-        A gain is greater than `largest_gains`.
+        A gain or limit is beyond what is `usable`.
 
     """
     for gain in tunables(sheet).values():
@@ -82,25 +80,23 @@ def changing(sheet: ActuatorSheet, load: LocalLoad | None = None) -> dict[str, C
 
     Those of a ``load`` of its own have ``load.`` in front; None: it moves a body.
     """
-    return tunables(sheet) | _of_axis(changeables(sheet), sheet.is_rotary) | {
-        name: own._replace(key=name) for name, own in _of_load(load, sheet.is_rotary).items()}
-
-
-def _of_load(load: LocalLoad | None, is_rotary: bool) -> dict[str, Changeable]:
-    return {} if load is None else _of_axis(changeables(load, LOAD), is_rotary)
-
-
-def _of_axis(known: dict[str, Changeable], is_rotary: bool) -> dict[str, Changeable]:
-    """Return values with the unit of a linear or a rotary actuator."""
-    return {name: own._replace(declared={
-        **own.declared, 'unit': of_coordinate(own.unit, is_rotary)})
-        for name, own in known.items()}
+    narrower = {**usable(sheet), **unlinked(sheet)}
+    others = changeables(sheet) | ({} if load is None else {
+        name: own._replace(key=name) for name, own in changeables(load, LOAD).items()})
+    return tunables(sheet) | {
+        name: own._replace(declared={
+            **narrowed(name, own.declared, narrower),
+            'unit': of_coordinate(own.unit, sheet.is_rotary)})
+        for name, own in others.items()}
 
 
 def with_changed_load(
-        load: LocalLoad, values: Mapping[str, float], is_rotary: bool) -> LocalLoad:
+        load: LocalLoad, values: Mapping[str, float], known: Mapping[str, Changeable]
+        ) -> LocalLoad:
     """
-    Return a load with other values by the names of `changing`; others are left out.
+    Return a load with other values by the names of `changing`, which is ``known``.
+
+    Values of others are left out.
 
     Raises
     ------
@@ -108,7 +104,9 @@ def with_changed_load(
         A value is out of its range.
 
     """
-    return with_changes(load, _of_load(load, is_rotary), {
+    return with_changes(load, {
+        name: own._replace(key=name.removeprefix(LOAD)) for name, own in known.items()
+        if name.startswith(LOAD)}, {
         name: value for name, value in values.items() if name.startswith(LOAD)})
 
 
@@ -147,7 +145,7 @@ def changed_together(
         sheet, {name: value for name, value in values.items() if name not in of_load}, known)
     if load is None or not of_load:
         return changed, load
-    moved = with_changed_load(load, values, sheet.is_rotary)
+    moved = with_changed_load(load, values, known)
     if linearised(moved) != linearised(load):
         refuse_too_fast(plant_record(changed.plant)[0], changed.plant,
                         LoadSide(*linearised(moved)))
@@ -167,10 +165,12 @@ def with_changed(
         for its step or does not fit its REU.
 
     """
+    if sheet.link.kind == NO_LINK.kind:
+        for name in values:
+            if name.startswith('link.') and values[name] != 0.0:
+                raise ConfigError(
+                    f'{name} is not used: there is no link, link.kind = {NO_LINK.kind}')
     changed = with_changes(sheet, changing(sheet) if known is None else known, values)
-    if changed.link is not sheet.link and changed.link.kind == NO_LINK.kind:
-        key = next(name for name in values if name.startswith('link.'))
-        raise ConfigError(f'{key} is not used: there is no link, link.kind = {NO_LINK.kind}')
     if changed.reu is not sheet.reu or changed.plant is not sheet.plant:
         refuse_wiring(changed)
     if changed.plant is not sheet.plant:

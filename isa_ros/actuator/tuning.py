@@ -113,8 +113,7 @@ class Tuning:
         """Fill the port; a support moves in the tick after a change and rests in the next one."""
         if self._load is None:
             return
-        write_port(with_changed_load(
-            self._load, self.values.in_force, self._sheet.is_rotary), self._port)
+        write_port(with_changed_load(self._load, self.values.in_force, self._known), self._port)
         if isinstance(self._load, Blocked):
             before, now = self.values.change(f'{LOAD}displacement')
             move_support(self._rest, before, now, self._tick, self._port)

@@ -1,39 +1,143 @@
 """
-Largest gains that a loop can use: those with which one count of a sensor demands its whole output.
+What an actuator can use of the declared range of a value that may change during a run.
 
-With K_p > u_max / q, where u_max is the block's limit and q the smallest step of its measured
-value, a single count saturates the demand: the loop is a relay. The same holds for K_i after one
-period. Gains on speeds have no such bound, since speeds are filtered.
+A declaration holds for every actuator; these are the narrower ends of one of them, so that what
+is described to users is what is accepted.
+
+Gains: with K_p > u_max / q, where u_max is the block's limit and q the smallest step of its
+measured value, one count saturates the demand: the loop is a relay. Likewise with K_i after one
+period, with K_r by one count of the reference, and with a gain on a filtered rate, K_d, K_v and
+the damping of an impedance, where the rate that one count shows is q times the bandwidth of its
+filter. Outputs: a block demands no more than the next one inwards can have.
 """
 
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
+import math
+from typing import Any, NamedTuple
 
-from isa_ros.actuator.sheet import ActuatorSheet
+from isa_ros.actuator.link import NO_LINK
+from isa_ros.actuator.sheet import ActuatorSheet, ROUNDED, valve_stop
+from isa_ros.plant.channels import longest_delay_ms
 from isa_ros.plant.sensors import sensors_record
 from isa_ros.reu.block import Pid
+from isa_ros.reu.feedback_linearisation import FeedbackLinearisation
+from isa_ros.reu.filters import low_pass_coefficient
 from isa_ros.reu.impedance import Impedance
-from isa_ros.reu.wiring import VARIABLES
+from isa_ros.reu.lead_lag import LeadLag
+from isa_ros.reu.wiring import loop_steps, Off, valve_block, VARIABLES
+import numpy as np
 
 _STEPS = {'position': 'encoder', 'force': 'force_step', 'pressure': 'pressure_step',
           'spool': 'spool_step'}
 """Field of `SENSORS` with the smallest step of each measured variable."""
+_RANGES = {'force': 'force_range', 'pressure': 'pressure_range', 'spool': 'spool_range'}
+"""Field of `SENSORS` with the largest value that a block can be asked for."""
 
-REASON = 'with more, one count of its sensor demands the whole output'
+RELAY = 'with more, one count of its sensor demands the whole output'
 
 
-def largest_gains(sheet: ActuatorSheet) -> Mapping[str, float]:
-    """Return the largest usable gains in the units of the sheet, as ``force.kp``."""
-    sensors = sensors_record(sheet.plant.sensors)
-    found: dict[str, float] = {}
+class Usable(NamedTuple):
+    """The narrower ends of a range, in the unit of the sheet, and the reason."""
+
+    bounds: Mapping[str, float]
+    """Any of ``ge``, ``le``, ``lt``; they replace declared ones that are wider."""
+    why: str
+
+    def narrowed(self, declared: Mapping[str, float]) -> dict[str, float]:
+        """Return ``declared`` bounds with those of its own that are narrower."""
+        found = dict(declared)
+        for name, bound in self.bounds.items():
+            lower = name == 'ge'
+            inside = [own for key, own in declared.items() if key.startswith('g') == lower]
+            if all(bound > own if lower else bound < own for own in inside):
+                found = {key: own for key, own in found.items() if key.startswith('g') != lower}
+                found[name] = bound
+        return found
+
+
+def narrowed(
+        key: str, declared: Mapping[str, Any], narrower: Mapping[str, Usable]
+        ) -> Mapping[str, Any]:
+    """Return the declaration of a key with what is ``narrower`` of `usable`, and its reason."""
+    if key not in narrower:
+        return declared
+    own = narrower[key]
+    bounds = own.narrowed(declared['bounds'])
+    if bounds == declared['bounds']:
+        return declared
+    return {**declared, 'bounds': bounds, 'doc': f'{declared["doc"]}; {own.why}'}
+
+
+def usable(sheet: ActuatorSheet) -> Mapping[str, Usable]:
+    """Return what is narrower than its declaration, by the keys of `isa params`."""
+    found: dict[str, Usable] = {}
     for variable in VARIABLES:
         block = getattr(sheet.reu, variable)
-        if isinstance(block, Pid):
-            kp, period = block.limit / sensors[_STEPS[variable]], 1.0 / block.rate_hz
-            gains = {'kp': kp, 'ki': kp / period}
-        elif isinstance(block, Impedance):
-            stiffness = max(block.force_out, block.force_in) / sensors[_STEPS[variable]]
-            gains = {'stiffness': stiffness}
-        else:
-            continue
-        found |= {f'{variable}.{name}': float(gain) for name, gain in gains.items()}
+        if not isinstance(block, Off):
+            found |= {f'reu.{variable}.{name}': own
+                      for name, own in _of_block(sheet, variable).items()}
+    period = loop_steps(sheet.reu)['current']
+    late = Usable({'le': longest_delay_ms(period)}, 'as many as its delay line has')
+    found |= {f'plant.sensors.{name}.delay_ms': late for name in sheet.plant.sensors.channels}
     return found
+
+
+def unlinked(sheet: ActuatorSheet) -> Mapping[str, Usable]:
+    """Return what does not change during a run without a link, by key."""
+    if sheet.link.kind != NO_LINK.kind:
+        return {}
+    return {f'link.{name}': Usable({'ge': value, 'le': value}, 'there is no link')
+            for name, value in vars(sheet.link).items() if isinstance(value, float)}
+
+
+def _of_block(sheet: ActuatorSheet, variable: str) -> dict[str, Usable]:
+    block, sensors = getattr(sheet.reu, variable), sensors_record(sheet.plant.sensors)
+    found: dict[str, Usable] = {}
+    if isinstance(block, (Pid, FeedbackLinearisation)):
+        most, why = _largest_output(sheet, variable, sensors)
+        found['limit'] = Usable({'le': most}, why)
+    if isinstance(block, LeadLag):
+        found['lead_rad_per_s'] = Usable(
+            {'lt': math.pi * block.rate_hz}, 'half of the rate of its block')
+    if isinstance(block, Pid):
+        found['offset'] = Usable({'ge': -most, 'le': most}, why)
+        found |= dict(_gains(sheet, block, float(sensors[_STEPS[variable]]), float(
+            sensors['encoder'])))
+    elif isinstance(block, Impedance):
+        force, count = max(block.force_out, block.force_in), float(sensors['encoder'])
+        sensor = sheet.plant.mechanics.sensor_stiffness
+        found['stiffness'] = (
+            Usable({'le': force / count}, RELAY) if force / count < sensor else
+            Usable({'le': sensor}, 'with more it is stiffer than its force sensor'))
+        found['damping'] = Usable({'le': force / _rate_of(count, sheet)}, RELAY)
+    return found
+
+
+def _gains(
+        sheet: ActuatorSheet, block: Pid, count: float, encoder: float
+        ) -> Iterator[tuple[str, Usable]]:
+    """Yield the largest gains of a block whose sensor has steps of ``count``."""
+    most = block.limit / count
+    per_count = low_pass_coefficient(block.derivative_filter_hz, block.rate_hz) * block.rate_hz
+    for name, gain in (('kp', most), ('ki', most * block.rate_hz), ('kd', most / per_count)):
+        yield name, Usable({'le': gain}, RELAY)
+    for name, gain in (('kr', most), ('kv', block.limit / _rate_of(encoder, sheet))):
+        yield name, Usable({'ge': -gain, 'le': gain}, RELAY)
+
+
+def _rate_of(count: float, sheet: ActuatorSheet) -> float:
+    """Return the speed that one count of the encoder shows, m/s or rad/s."""
+    speed = sheet.reu.speed
+    return float(low_pass_coefficient(speed.filter_hz, speed.rate_hz)) * speed.rate_hz * count
+
+
+def _largest_output(
+        sheet: ActuatorSheet, variable: str, sensors: np.record) -> tuple[float, str]:
+    """Return the largest output of a block in its unit, and what that is."""
+    if variable == valve_block(sheet.reu):
+        return valve_stop(sheet) * (1.0 + ROUNDED), 'the stop of the spool'
+    if variable == 'spool':     # a piloted one commands the current of its pilot stage
+        return float(sensors['current_range']), 'the range of the current sensor'
+    inner = next(name for name in VARIABLES[VARIABLES.index(variable) + 1:]
+                 if not isinstance(getattr(sheet.reu, name), Off))
+    return float(sensors[_RANGES[inner]]), f'the range of the sensor of the {inner} block'

@@ -6,6 +6,7 @@ from types import MappingProxyType
 from typing import Any, get_type_hints, NamedTuple
 
 from isa_ros.actuator.sheet import ActuatorSheet
+from isa_ros.actuator.usable import narrowed, Usable, usable
 from isa_ros.config.models.catalogue import (
     actuator_model, leg_names, leg_section, Model, model_names)
 from isa_ros.config.models.wires import wire
@@ -98,20 +99,24 @@ def _described(tree: Tree, place: Place, values: Values) -> str:
 
 def rows(parameters: Parameters, section: Section) -> list[Row]:
     """Return a row for each parameter of a set and for each kind, in the order declared."""
-    return list(_rows(parameters, sources(section), ''))
+    narrower = usable(parameters) if isinstance(parameters, ActuatorSheet) else {}
+    return list(_rows(parameters, sources(section), '', narrower))
 
 
-def _rows(parameters: Parameters, source_of: Mapping[str, str], prefix: str) -> Iterator[Row]:
+def _rows(
+        parameters: Parameters, source_of: Mapping[str, str], prefix: str,
+        narrower: Mapping[str, Usable]) -> Iterator[Row]:
     hints = get_type_hints(type(parameters))
     for f in fields(parameters):
         value, path = getattr(parameters, f.name), f'{prefix}{f.name}'
         if isinstance(value, Parameters):
             if not isinstance(hints[f.name], type):
                 yield _kind_row(path, value, hints[f.name], source_of)
-            yield from _rows(value, source_of, f'{path}.')
+            yield from _rows(value, source_of, f'{path}.', narrower)
         else:
-            yield Row(path, _value(value), f.metadata.get('unit', ''), _range(f.metadata),
-                      source_of.get(path, f.metadata.get('source', '')), f.metadata['doc'])
+            own = narrowed(path, f.metadata, narrower)
+            yield Row(path, _value(value), own.get('unit', ''), _range(own),
+                      source_of.get(path, own.get('source', '')), own['doc'])
 
 
 def _kind_row(path: str, value: Parameters, union: Any, source_of: Mapping[str, str]) -> Row:

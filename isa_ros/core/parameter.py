@@ -6,7 +6,7 @@ import math
 from typing import Any, TypeVar
 
 from isa_ros.core.suggest import alternatives
-from isa_ros.core.units import in_si
+from isa_ros.core.units import after, in_si, quantity
 from isa_ros.errors import ConfigError, ParameterError
 
 _RELATIONS: dict[str, tuple[str, Callable[[float, float], bool]]] = {
@@ -152,7 +152,8 @@ def check(where: str, value: Any, declared: Any) -> None:
         least, most = declared['length']
         if not isinstance(value, (list, tuple)) or not least <= len(value) <= most:
             raise ParameterError(
-                f'{where} = {value!r}, must be a list of {least} to {most} numbers in {unit}')
+                f'{where} = {value!r}, must be a list of {least} to {most} numbers'
+                f'{after(" in ", unit)}')
         for k, one in enumerate(value):
             _check_number(f'{where}[{k}]', one, declared)
         return
@@ -164,14 +165,14 @@ def _check_number(where: str, value: Any, declared: Any) -> None:
     if isinstance(value, (list, tuple)):
         raise ParameterError(f'{where} = {value!r}, must be one value')
     if isinstance(value, bool) or not isinstance(value, (int, float)):
-        raise ParameterError(f'{where} = {value!r}, must be a number in {unit}')
+        raise ParameterError(f'{where} = {value!r}, must be a number{after(" in ", unit)}')
     if not math.isfinite(value):
-        raise ParameterError(f'{where} = {value} {unit}, must be finite')
+        raise ParameterError(f'{where} = {quantity(str(value), unit)}, must be finite')
     if 'is_whole' in declared and value != int(value):
         raise ParameterError(f'{where} = {value:g}, must be a whole number ({declared["doc"]})')
     for name, bound in declared['bounds'].items():
         symbol, holds = _RELATIONS[name]
         if not holds(value, bound):
             raise ParameterError(
-                f'{where} = {value:g} {unit}, must be {symbol} {bound:g} {unit} '
-                f'({declared["doc"]})')
+                f'{where} = {quantity(f"{value:g}", unit)}, must be {symbol} '
+                f'{quantity(f"{bound:g}", unit)} ({declared["doc"]})')

@@ -63,6 +63,16 @@ def in_si(unit: str) -> Unit:
     return Unit(unit, 1.0)
 
 
+def after(separator: str, unit: str) -> str:
+    """Return a separator and a unit; nothing where there is no dimension: '1' or ''."""
+    return '' if unit in ('', '1') else f'{separator}{unit}'
+
+
+def quantity(value: str, unit: str) -> str:
+    """Return a value with its unit, if it has a dimension."""
+    return f'{value}{after(" ", unit)}'
+
+
 def of_coordinate(unit: str, is_rotary: bool) -> str:
     """Return the linear or the rotary alternative of a unit ``linear | rotary``."""
     linear, _, rotary = unit.partition(' | ')

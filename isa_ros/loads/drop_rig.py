@@ -25,18 +25,18 @@ import numpy as np
 
 def external_force() -> Any:
     """Declare a force from outside on a load, which may change during a run."""
-    return fault('force from outside on it, > 0 pushes out', 'N | Nm', ge=-1e6, le=1e6)
+    return fault('force from outside on it, > 0 pushes out', 'N | Nm', ge=-2e7, le=2e7)
 
 
 @dataclass(frozen=True, kw_only=True)
 class Wheel(Parameters):
     """The paper's load wheel with the rig's two end stops."""
 
-    inertia: float = parameter('wheel', 'kg | kg m2', changeable=True, gt=0.0, le=1e4)
+    inertia: float = parameter('wheel', 'kg | kg m2', changeable=True, gt=0.0, le=1e5)
     stop_low: float = parameter('lower end stop of the rig', 'm | rad')
     stop_high: float = parameter('upper end stop of the rig', 'm | rad')
-    stop_stiffness: float = parameter('end stops', 'N/m | Nm/rad', gt=0.0, le=1e9)
-    stop_damping: float = parameter('end stops', 'Ns/m | Nms/rad', ge=0.0, le=1e6)
+    stop_stiffness: float = parameter('end stops', 'N/m | Nm/rad', gt=0.0, le=1e11)
+    stop_damping: float = parameter('end stops', 'Ns/m | Nms/rad', ge=0.0, le=1e9)
     force: float = external_force()
 
     def __post_init__(self) -> None:

@@ -7,6 +7,7 @@ inertia, the force from outside and the place of a support may change during a r
 """
 
 from dataclasses import dataclass
+from typing import Any
 
 from isa_ros.core.parameter import fault, parameter, Parameters
 from isa_ros.core.record import record
@@ -16,14 +17,20 @@ from isa_ros.loads.forces import OWN_LOAD, PAD, STOPS
 import numpy as np
 
 
+def _moving_mass() -> Any:
+    return parameter(
+        'moving mass; a small one is refused where the plant step cannot follow it', 'kg | kg m2',
+        changeable=True, gt=0.0, le=1e5)
+
+
 @dataclass(frozen=True, kw_only=True)
 class Blocked(Parameters):
     """The output held by a stiff support: a fixture on a spring to ground."""
 
     inertia: float = parameter(
-        'moving part of the fixture', 'kg | kg m2', changeable=True, gt=0.0, le=1e4)
-    stiffness: float = parameter('support', 'N/m | Nm/rad', gt=0.0, le=1e9)
-    damping: float = parameter('support', 'Ns/m | Nms/rad', ge=0.0, le=1e6)
+        'moving part of the fixture', 'kg | kg m2', changeable=True, gt=0.0, le=1e5)
+    stiffness: float = parameter('support', 'N/m | Nm/rad', gt=0.0, le=1e11)
+    damping: float = parameter('support', 'Ns/m | Nms/rad', ge=0.0, le=1e8)
     force: float = external_force()
     displacement: float = fault(
         'of the support, from its place at t = 0; a new one is reached within a tick', 'm | rad',
@@ -34,16 +41,16 @@ class Blocked(Parameters):
 class Mass(Parameters):
     """A free mass or inertia, with a force on it."""
 
-    inertia: float = parameter('moving mass', 'kg | kg m2', changeable=True, gt=0.0, le=1e4)
+    inertia: float = _moving_mass()
     force: float = parameter(
-        'force on it, e.g. weight; > 0 pushes out', 'N | Nm', changeable=True, ge=-1e6, le=1e6)
+        'force on it, e.g. weight; > 0 pushes out', 'N | Nm', changeable=True, ge=-2e7, le=2e7)
 
 
 @dataclass(frozen=True, kw_only=True)
 class Pad(Parameters):
     """A free mass that meets a pad of a given material while it extends."""
 
-    inertia: float = parameter('moving mass', 'kg | kg m2', changeable=True, gt=0.0, le=1e4)
+    inertia: float = _moving_mass()
     gap: float = parameter('free travel from the start to the pad', 'm | rad', ge=0.0, le=10.0)
     radius: float = parameter(
         '1, or the radius at which a wheel meets the pad', 'm/m | m/rad', gt=0.0, le=10.0)

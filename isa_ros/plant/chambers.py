@@ -84,7 +84,7 @@ class Oil(Parameters):
     """The enclosed oil and the leakage past the piston."""
 
     effective_bulk_modulus: float = parameter('beta_eff', 'Pa', gt=0.0, le=2.0e9)
-    dead_volume_ml: float = parameter('V_p of each chamber', 'ml', gt=0.0, le=1000.0)
+    dead_volume_ml: float = parameter('V_p of each chamber', 'ml', gt=0.0, le=1e5)
     cross_port_leakage: float = parameter(
         'C_li', 'm3/s/Pa', changeable=True, ge=0.0, le=1e-11)
     aeration_pressure_kpa: float = parameter(

@@ -98,9 +98,9 @@ class PositionChannel(Channel):
 class ForceChannel(ConvertedChannel):
     """Errors of the load cell or torque sensor."""
 
-    sigma: float = _sigma('N | Nm', 1e5)
-    bias: float = _bias('N | Nm', 1e6)
-    drift_per_s: float = _drift('N/s | Nm/s', 1e6)
+    sigma: float = _sigma('N | Nm', 1e6)
+    bias: float = _bias('N | Nm', 1e7)
+    drift_per_s: float = _drift('N/s | Nm/s', 1e7)
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -166,6 +166,11 @@ def channel_errors(channels: Mapping[str, Any]) -> np.record:
     return record(CHANNEL_ERRORS, are_ideal=is_ideal, scale=scale, **errors)
 
 
+def longest_delay_ms(period_steps: int) -> float:
+    """Return the longest delay in ms, with a conversion every ``period_steps`` plant steps."""
+    return (LINE - 1) * period_steps * _MS_PER_STEP
+
+
 def refuse_delays(channels: Mapping[str, Any], period_steps: int) -> None:
     """
     Refuse delays that are not whole conversions, or longer than the delay line.
@@ -178,8 +183,7 @@ def refuse_delays(channels: Mapping[str, Any], period_steps: int) -> None:
         A delay is refused.
 
     """
-    period_ms = period_steps * _MS_PER_STEP
-    longest = (LINE - 1) * period_ms
+    period_ms, longest = period_steps * _MS_PER_STEP, longest_delay_ms(period_steps)
     for name in CHANNELS:
         delay = channels[name].delay_ms
         conversions = delay / period_ms

@@ -20,11 +20,11 @@ class Friction(Parameters):
     """LuGre friction."""
 
     stiction: float = parameter(
-        'force that breaks away', 'N | Nm', changeable=True, gt=0.0, le=1e5)
+        'force that breaks away', 'N | Nm', changeable=True, gt=0.0, le=1e6)
     coulomb: float = parameter(
-        'force at higher speed', 'N | Nm', changeable=True, gt=0.0, le=1e5)
-    bristle_stiffness: float = parameter('sigma0', 'N/m | Nm/rad', gt=0.0, le=1e9)
-    bristle_damping: float = parameter('sigma1', 'Ns/m | Nms/rad', ge=0.0, le=1e6)
+        'force at higher speed', 'N | Nm', changeable=True, gt=0.0, le=1e6)
+    bristle_stiffness: float = parameter('sigma0', 'N/m | Nm/rad', gt=0.0, le=1e10)
+    bristle_damping: float = parameter('sigma1', 'Ns/m | Nms/rad', ge=0.0, le=1e7)
     viscous: float = parameter('sigma2', 'Ns/m | Nms/rad', ge=0.0, le=1e6)
     stribeck_speed: float = parameter('v_s', 'm/s | rad/s', gt=0.0, le=10.0)
 

@@ -19,13 +19,13 @@ import numpy as np
 class Mechanics(Parameters):
     """Inertia, force sensor and end stops."""
 
-    inertia: float = parameter('moving mass or rotor inertia', 'kg | kg m2', gt=0.0, le=1e3)
-    sensor_stiffness: float = parameter('K_s', 'N/m | Nm/rad', gt=0.0, le=1e9)
-    sensor_damping: float = parameter('D_s', 'Ns/m | Nms/rad', ge=0.0, le=1e6)
+    inertia: float = parameter('moving mass or rotor inertia', 'kg | kg m2', gt=0.0, le=2e4)
+    sensor_stiffness: float = parameter('K_s', 'N/m | Nm/rad', gt=0.0, le=1e11)
+    sensor_damping: float = parameter('D_s', 'Ns/m | Nms/rad', ge=0.0, le=1e8)
     backlash: float = parameter(
         'half play j between sensor and load; 0: none', 'm | rad', ge=0.0, le=0.01)
-    stop_stiffness: float = parameter('end-stop stiffness', 'N/m | Nm/rad', gt=0.0, le=1e9)
-    stop_damping: float = parameter('end-stop damping', 'Ns/m | Nms/rad', ge=0.0, le=1e6)
+    stop_stiffness: float = parameter('end-stop stiffness', 'N/m | Nm/rad', gt=0.0, le=1e11)
+    stop_damping: float = parameter('end-stop damping', 'Ns/m | Nms/rad', ge=0.0, le=1e8)
 
 
 MECHANICS = np.dtype([

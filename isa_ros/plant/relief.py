@@ -19,11 +19,11 @@ class Relief(Parameters):
     """Relief and anti-cavitation valves of one chamber."""
 
     opening_pressure_mpa: float = parameter(
-        'gauge pressure that opens it', 'MPa', changeable=True, gt=0.0, le=70.0)
+        'gauge pressure that opens it', 'MPa', changeable=True, gt=0.0, le=100.0)
     slope_lpm_per_mpa: float = parameter(
-        'relief flow per pressure above opening', 'l/min/MPa', gt=0.0, le=1000.0)
+        'relief flow per pressure above opening', 'l/min/MPa', gt=0.0, le=1e4)
     refill_lpm: float = parameter(
-        'anti-cavitation flow at 0.1 MPa below return', 'l/min', gt=0.0, le=100.0)
+        'anti-cavitation flow at 0.1 MPa below return', 'l/min', gt=0.0, le=1000.0)
 
 
 RELIEF = np.dtype([('p_open', 'f8'), ('slope', 'f8'), ('c_refill', 'f8')])

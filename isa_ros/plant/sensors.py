@@ -28,7 +28,7 @@ class Sensors(Parameters):
 
     adc_bits: float = parameter('resolution of the converters', 'bit', ge=4, le=24)
     encoder_resolution: float = parameter('position resolution', 'm | rad', gt=0.0, le=0.01)
-    force_range: float = parameter('force sensor, +-', 'N | Nm', gt=0.0, le=1e6)
+    force_range: float = parameter('force sensor, +-', 'N | Nm', gt=0.0, le=2e7)
     pressure_range_mpa: float = parameter('pressure sensors, 0 to', 'MPa', gt=0.0, le=100.0)
     spool_range_mm: float = parameter('spool sensor, +-', 'mm', gt=0.0, le=2.0)
     current_range_ma: float = parameter('current sensor, +-', 'mA', gt=0.0, le=200.0)

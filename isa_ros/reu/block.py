@@ -32,7 +32,7 @@ class Pid(Parameters):
     kv: float = tunable(
         'velocity compensation K_v; negative: it brakes', 'output per m/s | output per rad/s',
         ge=-1e6, le=1e6)
-    offset: float = tunable('added to the demand', 'output', ge=-1e6, le=1e6)
+    offset: float = tunable('added to the demand', 'output', ge=-1e9, le=1e9)
     feedback_damping: str = choice(
         "where K_f y' enters: in front of the whole PID, or in its proportional part only",
         'before_pid', 'proportional')

@@ -17,10 +17,10 @@ class Impedance(Parameters):
     """Impedance gains in force before the first setpoint, and the limits of the output."""
 
     rate_hz: float = parameter('loop rate', 'Hz', gt=0.0, le=50e3)
-    stiffness: float = tunable('impedance stiffness', 'N/m | Nm/rad', ge=0.0, le=1e7)
-    damping: float = tunable('impedance damping', 'Ns/m | Nms/rad', ge=0.0, le=1e6)
-    force_out: float = tunable('largest reference, pushing out', 'N | Nm', gt=0.0, le=1e6)
-    force_in: float = tunable('largest reference, pulling in', 'N | Nm', gt=0.0, le=1e6)
+    stiffness: float = tunable('impedance stiffness', 'N/m | Nm/rad', ge=0.0, le=1e9)
+    damping: float = tunable('impedance damping', 'Ns/m | Nms/rad', ge=0.0, le=1e8)
+    force_out: float = tunable('largest reference, pushing out', 'N | Nm', gt=0.0, le=2e7)
+    force_in: float = tunable('largest reference, pulling in', 'N | Nm', gt=0.0, le=2e7)
 
 
 IMPEDANCE = np.dtype([('force_out', 'f8'), ('force_in', 'f8')])

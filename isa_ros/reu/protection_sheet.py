@@ -12,6 +12,7 @@ from typing import Any, Protocol, TypeVar
 from isa_ros.core.conditions import (
     ASSUMED, BITS, Condition, CONDITIONS, LevelDefaults, REACTIONS)
 from isa_ros.core.parameter import choice, parameter, Parameters, section
+from isa_ros.core.units import quantity
 from isa_ros.errors import ParameterError
 
 _TIMEOUT = ('hold', 'damp', 'disable')
@@ -112,8 +113,9 @@ class Protection(Parameters):
             is_above, unit = condition.is_above, condition.level_unit
             if levels.warning > levels.trip if is_above else levels.warning < levels.trip:
                 raise ParameterError(
-                    f'{name}.warning = {levels.warning:g} {unit}, must be '
-                    f'{"<=" if is_above else ">="} {name}.trip = {levels.trip:g} {unit}')
+                    f'{name}.warning = {quantity(f"{levels.warning:g}", unit)}, must be '
+                    f'{"<=" if is_above else ">="} {name}.trip = '
+                    f'{quantity(f"{levels.trip:g}", unit)}')
 
 
 def levels_of(sheet: Protection) -> dict[str, Levels]:

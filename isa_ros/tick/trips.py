@@ -11,7 +11,7 @@ from typing import NamedTuple
 from isa_ros.core.conditions import BITS, CONDITIONS, conditions
 from isa_ros.core.device import state_name
 from isa_ros.core.signals import Records
-from isa_ros.core.units import of_coordinate
+from isa_ros.core.units import of_coordinate, quantity
 from isa_ros.text.table import digits
 from isa_ros.tick.exchange import Rows, RowSink
 import numpy as np
@@ -42,9 +42,9 @@ class Trip(NamedTuple):
         condition = CONDITIONS[BITS[self.condition]]
         line = f'{self.actuator}: {self.condition} tripped at t = {self.t_s:.6f} s'
         if self.value is not None and self.level is not None:
-            line += (f', {condition.quantity} {digits(self.value, _DIGITS)} {self.unit} '
-                     f'{">" if condition.is_above else "<"} {digits(self.level, _DIGITS)} '
-                     f'{self.unit}')
+            value, level = (quantity(digits(number, _DIGITS), self.unit)
+                            for number in (self.value, self.level))
+            line += f', {condition.quantity} {value} {">" if condition.is_above else "<"} {level}'
         return f'{line}: {self.state}'
 
 

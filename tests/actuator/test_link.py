@@ -447,7 +447,7 @@ def test_actuators_of_one_group_have_the_frames_that_they_have_alone():
     ({'delay_cycles': 1.5}, 'delay_cycles = 1.5 cycles, must be a whole number'),
     ({'delay_cycles': 9.0}, 'delay_cycles = 9 cycles, must be <= 8 cycles'),
     ({'jitter_us': 1001.0}, 'jitter_us = 1001 us, must be <= cycle_ms = 1 ms'),
-    ({'loss': 1.1}, 'loss = 1.1 1, must be <= 1'),
+    ({'loss': 1.1}, 'loss = 1.1, must be <= 1'),
     ({'watchdog_ms': 1.0}, 'watchdog_ms = 1 ms, must be > 1 ms, the longest time without'),
     ({'watchdog_ms': 3.2, 'delay_cycles': 3.0, 'jitter_us': 200.0}, 'must be > 3.2 ms')])
 def test_what_no_link_can_have_is_refused(values, message):

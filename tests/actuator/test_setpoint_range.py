@@ -18,7 +18,7 @@ BEYOND = [
     ({'position': 0.05, 'effort': 7501.0},
      'knee: setpoint effort = 7501 N, must be -5174 to 7500 N, the rated force; '),
     ({'position': 0.05, 'stiffness': 1e12},
-     'knee: setpoint stiffness = 1e+12 N/m, must be 0 to 1e+07 N/m, the usable gains; ')]
+     'knee: setpoint stiffness = 1e+12 N/m, must be 0 to 5e+07 N/m, the usable gains; ')]
 
 
 @pytest.mark.parametrize(('values', 'message'), BEYOND)

@@ -80,7 +80,7 @@ def test_of_values_of_which_one_is_refused_none_is_taken():
     """The second value alone is valid, the first is beyond the spool's stop."""
     actuator = smart_actuator('isa_v5', 'mass', timing=TICK)
     kp = actuator.parameter('force.kp')
-    with pytest.raises(ConfigError, match=r'isa_v5: reu.force.limit = 0.001 m, must be <='):
+    with pytest.raises(ConfigError, match=r'isa_v5: force.limit = 0.001 m, must be <='):
         actuator.tune({'position.stiffness': 1e4, 'force.kp': 1.2e-7, 'force.limit': 1e-3})
     actuator.tick()
     assert actuator.applied_parameters == {}

@@ -5,7 +5,7 @@ import math
 
 from isa_ros.config.models.catalogue import actuator_model, model_names
 from isa_ros.core.parameter import parameter, Parameters
-from isa_ros.core.units import in_si, NOT_SI, of_coordinate, Unit
+from isa_ros.core.units import after, in_si, NOT_SI, of_coordinate, quantity, Unit
 import pytest
 from tests.plant.records import numbers, SUPPLY
 from tests.sheets import actuator_sheet
@@ -77,3 +77,9 @@ def _owners(parameters: Parameters) -> list[Parameters]:
     below = [getattr(parameters, f.name) for f in fields(parameters)]
     return [parameters, *(
         each for own in below if isinstance(own, Parameters) for each in _owners(own))]
+
+
+@pytest.mark.parametrize(('unit', 'words'), [
+    ('N', ('2 N', ' in N')), ('1', ('2', '')), ('', ('2', ''))])
+def test_what_has_no_dimension_has_no_unit_in_words(unit, words):
+    assert (quantity('2', unit), after(' in ', unit)) == words

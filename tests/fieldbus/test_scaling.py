@@ -4,10 +4,12 @@ import struct
 
 from hypothesis import given, settings, strategies as st
 import isa_ros
+from isa_ros.actuator.tunable import tunables
 from isa_ros.core.signals import COMMAND, SAMPLE
 from isa_ros.fieldbus.device.devices import devices_of
 import numpy as np
 import pytest
+from tests.sheets import actuator_sheet
 
 from .rig import FORMATS
 
@@ -80,11 +82,14 @@ def test_torques_are_per_mille_of_the_rated_force(torque, offset):
     assert command['effort'] == pytest.approx(expected, rel=1e-12, abs=1e-9)
 
 
+LARGEST_DAMPING = tunables(actuator_sheet('isa_v5'))['position.damping'].bounds['le']
+
+
 @settings(deadline=None)
-@given(stiffness=st.floats(-1e6, 2e7, width=32), damping=st.floats(-1e6, 2e6, width=32))
+@given(stiffness=st.floats(-1e6, 1e8, width=32), damping=st.floats(-1e6, 2.0 ** 25, width=32))
 def test_gains_are_those_that_were_sent_within_their_ranges(stiffness, damping):
     device, _, command = LINEAR
     device.receive(0x1610, TARGETS.pack(15, IMPEDANCE, 0, 0, 0, 0, 0, stiffness, damping))
     device.fill_command(command)
-    assert command['stiffness'] == min(max(stiffness, 0.0), 1e7)
-    assert command['damping'] == min(max(damping, 0.0), 1e6)
+    assert command['stiffness'] == min(max(stiffness, 0.0), 5e7)     # its load cell
+    assert command['damping'] == min(max(damping, 0.0), LARGEST_DAMPING)

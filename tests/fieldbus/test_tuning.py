@@ -55,7 +55,7 @@ def test_the_gain_of_the_impedance_is_a_command(master):
 
 @pytest.mark.parametrize(('name', 'value', 'code'), [
     ('force.kp', -1.0, abort.TOO_LOW), ('force.kp', 1.0, abort.TOO_HIGH),
-    ('force.limit', 0.0, abort.OUT_OF_RANGE), ('force.limit', 0.1, abort.OUT_OF_RANGE)])
+    ('force.limit', 0.0, abort.OUT_OF_RANGE), ('force.limit', 0.1, abort.TOO_HIGH)])
 def test_a_gain_that_the_reu_refuses_is_refused_as_a_whole(master, name, value, code):
     key = place(master, name)
     before = master.upload(*key)

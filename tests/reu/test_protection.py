@@ -221,8 +221,8 @@ def test_a_warning_beyond_its_trip_is_refused(name: str, warning: float, trip: f
 
 @pytest.mark.parametrize(('levels', 'message'), [
     ({'delay_ms': -1.0}, 'Overload.delay_ms = -1 ms, must be >= 0 ms'),
-    ({'trip': -0.1}, 'Overload.trip = -0.1 1, must be >= 0 1'),
-    ({'trip': 1.1}, 'Overload.trip = 1.1 1, must be <= 1 1'),
+    ({'trip': -0.1}, 'Overload.trip = -0.1, must be >= 0 '),
+    ({'trip': 1.1}, 'Overload.trip = 1.1, must be <= 1 '),
     ({'trip': math.nan}, 'Overload.trip = nan 1, must be finite'),
     ({'reaction': 'explode'}, "Overload.reaction = 'explode', must be one of none, warn, limit"),
 ])

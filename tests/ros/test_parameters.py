@@ -117,8 +117,9 @@ def test_every_gain_is_declared_with_unit_meaning_and_range(observer, tmp_path):
     with actuator(tmp_path / 'log', 'knee', model='isa_v5'):
         tuner = Tuner(observer, 'knee')
         tuner.connect()
-        kp, limit, model, old = tuner.call(DescribeParameters.Request(
-            names=['reu.force.kp', 'reu.force.limit', 'model', 'force.kp'])).descriptors
+        kp, limit, model, old, late, stuck = tuner.call(DescribeParameters.Request(
+            names=['reu.force.kp', 'reu.force.limit', 'model', 'force.kp',
+                   'plant.sensors.force.delay_ms', 'plant.spool.stuck'])).descriptors
         old.name = kp.name
         assert old == kp
         assert kp.description == (
@@ -129,6 +130,10 @@ def test_every_gain_is_declared_with_unit_meaning_and_range(observer, tmp_path):
         assert span.from_value == 0.0 and not kp.read_only
         assert span.to_value == pytest.approx(1.78e-4 / (20e3 / 4096), rel=1e-9, abs=0.0)
         assert limit.additional_constraints == '> 0'
+        # the stop of the spool; a data sheet prints three digits
+        assert limit.floating_point_range[0].to_value == 1.78e-4 * 1.001
+        assert late.floating_point_range[0].to_value == pytest.approx(12.7, rel=1e-12)
+        assert stuck.description and not stuck.description.endswith(', 1')
         assert model.read_only
         refused = tuner.call(SetParameters.Request(parameters=[Parameter(
             name='model', value=ParameterValue(
@@ -143,10 +148,10 @@ def test_a_refused_value_is_answered_with_the_reason_and_changes_nothing(observe
         tuner.connect()
         before = tuner.get('force.kp', 'force.limit')
         for name, value, reason in (
-                ('force.limit', 2e-4, 'reu.force.limit = 0.0002 m, must be <= 0.000178 m'),
+                ('force.limit', 2e-4, 'force.limit out of range'),   # rclpy's own words
                 ('force.limit', 0.0, 'force.limit = 0 m, must be > 0 m'),
                 ('force.kp', -1.0, 'force.kp'), ('force.kp', 1e9, 'force.kp'),
-                ('force.kq', 1.0, 'undeclared')):  # rclpy's own words
+                ('force.kq', 1.0, 'knee: parameter force.kq is unknown; did you mean force.k')):
             result = tuner.tune(name, value)
             assert not result.successful and reason in result.reason
         result = tuner.call(SetParametersAtomically.Request(parameters=[
@@ -291,7 +296,7 @@ def test_an_override_on_the_command_line_wins_over_the_file_and_is_recorded_at_t
     ('force.kq', 1.0, 'knee: parameter force.kq is unknown; did you mean force.k'),
     ('force.kp', -1.0, 'knee: force.kp = -1 m/N, must be >= 0 m/N (proportional gain K_p; '),
     ('force.kp', 1e9, 'knee: force.kp = 1e+09 m/N, must be <= 3.64544e-05 m/N (proportional '),
-    ('force.limit', 1, 'knee: reu.force.limit = 1 m, must be <= 0.000178 m'),  # an integer
+    ('force.limit', 1, 'knee: force.limit = 1 m, must be <= 0.000178178 m'),  # an integer
 ])
 def test_a_wrong_override_is_refused_in_one_line(domain, tmp_path, name, value, message):
     """Exit code 2."""

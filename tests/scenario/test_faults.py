@@ -75,6 +75,12 @@ def test_a_named_fault_takes_another_size_and_more_keys():
     assert one.values == {LEAK: 5e-12, STUCK: 1.0}
 
 
+def test_keys_in_sections_are_those_with_dots():
+    one, = faults({'t_s': 0.5, 'actuator': 'knee', 'set': {
+        'plant': {'spool': {'stuck': 1}, 'oil': {'cross_port_leakage': 5e-12}}}})
+    assert one.values == {STUCK: 1.0, LEAK: 5e-12}
+
+
 def test_a_gain_is_given_in_si_by_its_name_or_in_the_unit_of_its_key():
     one, two = faults({'t_s': 0.5, 'actuator': 'knee', 'set': {'force.kp': 1e-7}},
                       {'t_s': 0.5, 'actuator': 'knee', 'set': {'reu.force.kp': 1e-7}})
@@ -112,7 +118,12 @@ def test_a_scenario_is_written_as_it_was_read():
      r'cross_port_leakage = 1 m3/s/Pa, must be <= 1e-11 m3/s/Pa'),
     ({'t_s': 0.1, 'actuator': 'knee', 'set': {STUCK: True}},
      r'set.plant.spool.stuck = True, must be a number'),
-    ({'t_s': 0.1, 'actuator': 'knee', 'set': {STUCK: float('nan')}}, 'must be finite'),
+    ({'t_s': 0.1, 'actuator': 'knee', 'set': {STUCK: float('nan')}},
+     r'set.plant.spool.stuck = nan, must be finite$'),
+    ({'t_s': 0.1, 'actuator': 'knee', 'set': {STUCK: 1, 'plant': {'spool': {'stuck': 1}}}},
+     r'set.plant.spool.stuck stands twice'),
+    ({'t_s': 0.1, 'actuator': 'knee', 'set': {'plant': {'spool': {}}}},
+     r'set.plant.spool is empty'),
     ({'t_s': 0.1, 'actuator': 'knee', 'set': {}}, r'faults\[0\].set is empty'),
     ({'t_s': 0.1, 'actuator': 'knee'}, r'faults\[0\] needs set, or fault'),
     ({'t_s': 0.1, 'fault': 'valve_stuck'}, r'faults\[0\] has no target, must have one of'),
@@ -194,10 +205,10 @@ def test_changes_are_read_as_faults_are_and_written_back():
      r'faults\[0\].sine.frequency_hz = 600 Hz, must be <= 500 Hz'),
     ({**PUSH, 'until_s': 0.5, 'sine': {**SINE, 'moves': 'effort'}},
      r'faults\[0\].sine.moves is not used: it is added to load.force'),
-    ({**PUSH, 'until_s': 0.5, 'sine': {**SINE, 'amplitude': 2e6}},
-     r'at 0.2 s, load.force = -2.0005e\+06 N, must be >= -1e\+06'),
-    ({**PUSH, 'until_s': 0.5, 'set': {'load.force': 9e5}, 'sine': {**SINE, 'amplitude': 2e5}},
-     r'at 0.2 s, load.force = 1.1e\+06 N, must be <= 1e\+06'),
+    ({**PUSH, 'until_s': 0.5, 'sine': {**SINE, 'amplitude': 2e7}},
+     r'at 0.2 s, load.force = -2.00005e\+07 N, must be >= -2e\+07 N '),
+    ({**PUSH, 'until_s': 0.5, 'set': {'load.force': 1.9e7}, 'sine': {**SINE, 'amplitude': 2e6}},
+     r'at 0.2 s, load.force = 2.1e\+07 N, must be <= 2e\+07 N '),
     ({**PUSH, 'set': {'load.inertia': 1e-6}}, r'set: load.inertia = 1e-06, must be >= '),
 ])
 def test_a_bad_push_is_refused_in_one_line(tree, message):

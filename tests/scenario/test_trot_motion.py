@@ -104,7 +104,7 @@ def test_the_feed_forward_is_a_part_of_the_torque(rotary: RunConfig) -> None:
     ('hfe', {'joint': 'kfe'}, "gait.joint = 'kfe', must be hfe: hfe moves it"),
     ('hfe', {}, 'gait lacks joint'),
     ('hfe', {'joint': 'hfe', 'speed': 1.0}, 'gait.speed is unknown'),
-    ('hfe', {'joint': 'hfe', 'duty_factor': 0.5}, 'gait.duty_factor = 0.5 1, must be >= 0.51'),
+    ('hfe', {'joint': 'hfe', 'duty_factor': 0.5}, 'gait.duty_factor = 0.5, must be >= 0.51'),
     ('kfe', {'joint': 'kfe', 'hip_height': 0.2}, 'gait: forward_speed = 1 m/s at step'),
 ])
 def test_a_wrong_gait_is_refused_by_file_and_key(

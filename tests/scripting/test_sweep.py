@@ -36,6 +36,16 @@ def test_each_combination_is_a_row_in_order(ram):
         table['lost']
 
 
+def test_a_fault_is_swept_by_its_key(ram):
+    """One key of `set`, which has dots itself, and one that stands in sections."""
+    leaky = ram.replace({'scenario.faults': [
+        {'t_s': 0.0, 'actuator': 'ram', 'set': {'plant.oil.cross_port_leakage': 0.0}}]})
+    key = 'scenario.faults[0].set.plant.oil.cross_port_leakage'
+    table = isa_ros.sweep(leaky, {key: [0.0, 8e-12]}, measure=MEASURE, workers=1)
+    assert table[key].tolist() == [0.0, 8e-12]
+    assert table['largest'][0] != table['largest'][1]
+
+
 def test_workers_give_the_same_table(ram):
     values = {MASS: [20.0, 35.0, 50.0, 65.0, 80.0]}
     one, three = (isa_ros.sweep(ram, values, 0.01, measure=MEASURE, workers=n) for n in (1, 3))

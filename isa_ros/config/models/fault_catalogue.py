@@ -2,7 +2,6 @@
 
 from collections.abc import Mapping
 from functools import cache
-import math
 from pathlib import Path
 from typing import NamedTuple
 
@@ -15,6 +14,7 @@ from isa_ros.errors import ConfigError
 ACTUATOR, SUPPLY = 'actuator', 'supply'
 KINDS = (ACTUATOR, SUPPLY)
 _FILE = Path(__file__).parents[1] / 'data' / 'faults' / 'device.yaml'
+_NUMBER = {'doc': 'value', 'unit': '', 'bounds': {}}
 
 
 class NamedFault(NamedTuple):
@@ -66,21 +66,26 @@ def named_fault(name: str, place: Place) -> NamedFault:
 
 def numbers_at(value: object, place: Place) -> dict[str, float]:
     """
-    Return a section of numbers by dotted keys.
+    Return a section of numbers by dotted keys; sections in it are parts of the keys.
 
     Raises
     ------
     ConfigError
-        It is empty or not a section, or a value is not a finite number.
+        It is empty or not a section, a key stands twice, or a value is not a finite number.
 
     """
     section = section_at(value, place)
     if not section:
         raise ConfigError(place.has('is empty, must have a key and its value'))
-    for key, number in section.items():
-        if isinstance(number, bool) or not isinstance(number, (int, float)):
-            raise ConfigError(
-                f'{place}.{key} = {number!r}, must be a number in the unit of its key')
-        if not math.isfinite(number):
-            raise ConfigError(f'{place}.{key} = {number}, must be finite')
-    return {key: float(number) for key, number in section.items()}  # type: ignore[arg-type]
+    found: dict[str, float] = {}
+    for key, one in section.items():
+        if isinstance(one, dict):
+            numbers = {f'{key}.{rest}': own for rest, own in numbers_at(one, place / key).items()}
+        else:
+            check(f'{place}.{key}', one, _NUMBER)
+            numbers = {key: float(one)}  # type: ignore[arg-type]
+        for name in numbers:
+            if name in found:
+                raise ConfigError(f'{place}.{name} stands twice')
+        found |= numbers
+    return found

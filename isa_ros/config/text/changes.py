@@ -7,6 +7,7 @@ scenario's file, ``scenario.tracks.kfe[1].t_s``; values have the units of the fi
 
 from collections.abc import Mapping, Sequence
 from copy import deepcopy
+from itertools import takewhile
 import re
 from typing import Any, NamedTuple
 
@@ -81,7 +82,8 @@ def replaced(tree: Tree, key: str, value: Any, where: str) -> Tree:
     """
     Return the tree with one value, or a whole section, replaced or added.
 
-    Missing sections on the path are added; key and value are checked when the tree is read.
+    Missing sections on the path are added; key and value are checked when the tree is read. A key
+    with dots that a section has, such as one in the ``set`` of a fault, is found as it is written.
     ``where`` is the file's name.
 
     Raises
@@ -100,11 +102,25 @@ def replaced(tree: Tree, key: str, value: Any, where: str) -> Tree:
         steps += [match['key'], *map(int, _PLACE.findall(match['places']))]
     changed = deepcopy(tree)
     below: Any = changed
-    for done, step in enumerate(steps[:-1]):
-        below = _entered(below, step, steps[done + 1], f'{where}: {key}')
+    while True:
+        steps = _as_written(below, steps)
+        if len(steps) == 1:
+            break
+        below = _entered(below, steps[0], steps[1], f'{where}: {key}')
+        steps = steps[1:]
     _entered(below, steps[-1], None, f'{where}: {key}')
     below[steps[-1]] = deepcopy(value)
     return changed
+
+
+def _as_written(below: Any, steps: Sequence[str | int]) -> list[str | int]:
+    """Return the steps with those joined that are one key of a section; the longest one wins."""
+    names = list(takewhile(lambda step: isinstance(step, str), steps))
+    for count in range(len(names), 1, -1):
+        joined = '.'.join(map(str, names[:count]))
+        if isinstance(below, dict) and joined in below:
+            return [joined, *steps[count:]]
+    return list(steps)
 
 
 def _entered(below: Any, step: str | int, following: str | int | None, where: str) -> Any:

@@ -14,7 +14,7 @@ from isa_ros.config.text.sections import KIND_KEYS, Place, Section, SourcedValue
 from isa_ros.config.text.yaml_text import Tree
 from isa_ros.core.parameter import check, Parameters
 from isa_ros.core.suggest import alternatives, listed
-from isa_ros.core.units import of_coordinate
+from isa_ros.core.units import after, of_coordinate
 from isa_ros.errors import ConfigError, ParameterError
 
 P = TypeVar('P', bound=Parameters)
@@ -131,8 +131,8 @@ def of_axis(declared: Mapping[str, Any], is_rotary: bool | None) -> Mapping[str,
 
 def _checked(entry: SourcedValue | Section, declared: Mapping[str, Any], place: Place) -> Any:
     if not isinstance(entry, SourcedValue):
-        unit = declared['unit'] if 'unit' in declared else ''
-        raise ParameterError(f'{place} is a section, must be one value{unit and f" in {unit}"}')
+        raise ParameterError(
+            f'{place} is a section, must be one value{after(" in ", declared.get("unit", ""))}')
     check(entry.where, entry.value, declared)
     if 'names' in declared:
         return entry.value

@@ -5,7 +5,7 @@ from collections.abc import Mapping, Sequence
 from isa_ros.actuator.actuator import SmartActuator
 from isa_ros.core.changeable import Changeable
 from isa_ros.core.device import MODES
-from isa_ros.core.units import of_coordinate
+from isa_ros.core.units import after, of_coordinate
 from isa_ros.errors import ConfigError
 from isa_ros.nodes.middleware.parameter_services import open_parameter_services
 from isa_ros.nodes.middleware.parameters import accept_integers, declare, refuse_unknown
@@ -98,7 +98,7 @@ def descriptor(own: Changeable, is_rotary: bool = False) -> ParameterDescriptor:
     relations = {'gt': '>', 'lt': '<'}
     excluded = [f'{sign} {bounds[name]:g}' for name, sign in relations.items() if name in bounds]
     return ParameterDescriptor(
-        description=f'{own.doc}, {of_coordinate(own.unit, is_rotary)}',
+        description=own.doc + after(', ', of_coordinate(own.unit, is_rotary)),
         additional_constraints=', '.join(excluded),
         floating_point_range=[FloatingPointRange(
             from_value=bounds.get('ge', bounds.get('gt', 0.0)),

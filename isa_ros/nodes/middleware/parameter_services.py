@@ -4,6 +4,7 @@ from collections.abc import Callable, Sequence
 from typing import Any
 
 from isa_ros.errors import one_line
+from isa_ros.nodes.middleware.parameters import unknown
 from rcl_interfaces.msg import SetParametersResult
 from rcl_interfaces.srv import SetParameters, SetParametersAtomically
 from rclpy.exceptions import ParameterException
@@ -21,16 +22,17 @@ def open_parameter_services(node: Node) -> Sequence[Service]:
     ParameterService(node)
     own = [service for service in node.services if service not in others]
     for service in own:
-        service.callback = checked(service.srv_type, service.callback)
+        service.callback = checked(node, service.srv_type, service.callback)
     return own
 
 
-def checked(service_type: Any, callback: Callable[..., Any]) -> Callable[..., Any]:
+def checked(
+        node: Node, service_type: Any, callback: Callable[..., Any]) -> Callable[..., Any]:
     """Return a callback that answers a malformed request with its reason, or with nothing."""
     if service_type is SetParameters:
-        return _one_by_one(callback)
+        return _one_by_one(node, callback)
     if service_type is SetParametersAtomically:
-        return _together(callback)
+        return _together(node, callback)
 
     def answer(request: Any, response: Any) -> Any:
         try:
@@ -40,12 +42,20 @@ def checked(service_type: Any, callback: Callable[..., Any]) -> Callable[..., An
     return answer
 
 
-def _one_by_one(callback: Callable[..., Any]) -> Callable[..., Any]:
+def _refuse_undeclared(node: Node, request: Any) -> None:
+    """Raise the sentence for a name that the node does not have: rclpy's is without a name."""
+    for parameter in request.parameters:
+        if not node.has_parameter(parameter.name):
+            raise ValueError(unknown(node, parameter.name))
+
+
+def _one_by_one(node: Node, callback: Callable[..., Any]) -> Callable[..., Any]:
     """Set each parameter on its own: one that is malformed must not hide the result of others."""
     def answer(request: Any, response: Any) -> Any:
         for parameter in request.parameters:
             one = SetParameters.Request(parameters=[parameter])
             try:
+                _refuse_undeclared(node, one)
                 results = callback(one, SetParameters.Response()).results
             except _MALFORMED as error:
                 results = [_refused(error)]
@@ -54,9 +64,10 @@ def _one_by_one(callback: Callable[..., Any]) -> Callable[..., Any]:
     return answer
 
 
-def _together(callback: Callable[..., Any]) -> Callable[..., Any]:
+def _together(node: Node, callback: Callable[..., Any]) -> Callable[..., Any]:
     def answer(request: Any, response: Any) -> Any:
         try:
+            _refuse_undeclared(node, request)
             return callback(request, response)
         except _MALFORMED as error:
             response.result = _refused(error)

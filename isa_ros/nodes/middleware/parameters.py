@@ -79,7 +79,11 @@ def refuse_unknown(node: Node, more: Sequence[str] = ()) -> None:
         if (node.has_parameter(name) or name in (*more, *_OF_RCLPY)
                 or name.startswith(_OF_PUBLISHERS)):
             continue
-        own = [known for known in node.get_parameters_by_prefix('') if known not in _OF_RCLPY]
-        raise ConfigError(
-            f'{node.get_name()}: parameter {name} is unknown; '
+        raise ConfigError(unknown(node, name, more))
+
+
+def unknown(node: Node, name: str, more: Sequence[str] = ()) -> str:
+    """Return that a parameter is unknown, and the names of the node, and ``more``, close to it."""
+    own = [known for known in node.get_parameters_by_prefix('') if known not in _OF_RCLPY]
+    return (f'{node.get_name()}: parameter {name} is unknown; '
             f'{alternatives(name, [*own, *more])}')

@@ -1,6 +1,6 @@
 """Other values by dotted key, from texts KEY=VALUE."""
 
-from isa_ros.config.text.changes import assigned, changed, changes_of, values_of
+from isa_ros.config.text.changes import assigned, changed, changes_of, replaced, values_of
 from isa_ros.errors import ConfigError
 import pytest
 
@@ -36,3 +36,20 @@ def test_keys_of_the_scenario_are_apart():
     found = changes_of(['supply.pressure_mpa=14', 'scenario.tracks.kfe[1].position=0.06'])
     assert found.run == {'supply.pressure_mpa': 14}
     assert found.scenario == {'tracks.kfe[1].position': 0.06}
+
+
+@pytest.mark.parametrize('key', ['faults[0].set.plant.spool.stuck', 'faults[0].set.load.force'])
+def test_a_key_with_dots_that_a_section_has_is_found(key):
+    """The longest one that is there: it is replaced, not set beside in sections."""
+    tree = {'faults': [{'set': {'plant.spool.stuck': 1, 'load': {'force': 2}, 'plant': {}}}]}
+    own = replaced(tree, key, 9, 'x.yaml')['faults'][0]['set']
+    assert own == {'plant.spool.stuck': 9, 'load': {'force': 2}, 'plant': {}} if (
+        'spool' in key) else {'plant.spool.stuck': 1, 'load': {'force': 9}, 'plant': {}}
+    assert tree['faults'][0]['set']['plant.spool.stuck'] == 1
+
+
+def test_of_two_keys_with_dots_the_longer_one_is_meant():
+    tree = {'a.b': {'c': 1}, 'a.b.c': 2, 'a': {'b': {'c': 3}}}
+    assert replaced(tree, 'a.b.c', 9, 'x.yaml') == {
+        'a.b': {'c': 1}, 'a.b.c': 9, 'a': {'b': {'c': 3}}}
+    assert replaced(tree, 'a.b.d', 9, 'x.yaml')['a.b'] == {'c': 1, 'd': 9}

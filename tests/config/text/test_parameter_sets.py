@@ -70,8 +70,8 @@ def test_integers_become_floats_and_names_stay_names() -> None:
      "parameters.drive.bore_mm = '21.5 mm', must be a number in mm"),
     ({'drive': {'kind': 'small', 'bore_mm': None}}, 'bore_mm = None, must be a number in mm'),
     ({'drive': {'kind': 'small', 'bore_mm': True}}, 'bore_mm = True, must be a number in mm'),
-    ({'gain': math.inf}, 'parameters.gain = inf 1, must be finite'),
-    ({'gain': {'a': 1}}, 'run.yaml: parameters.gain is a section, must be one value in 1'),
+    ({'gain': math.inf}, 'parameters.gain = inf, must be finite'),
+    ({'gain': {'a': 1}}, 'run.yaml: parameters.gain is a section, must be one value'),
     ({'gain': [1.0]}, r'run.yaml: parameters.gain = \[1.0\], must be one value'),
     ({'law': 'odd'}, "run.yaml: parameters.law = 'odd', must be one of plain, fancy"),
 ])
