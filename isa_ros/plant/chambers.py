@@ -101,6 +101,21 @@ class Oil(Parameters):
     external_leakage_b: float = fault(
         'C_le, from chamber B to the outside', 'm3/s/Pa', ge=0.0, le=1e-11)
 
+    def __post_init__(self) -> None:
+        """Refuse oil that expands by more than `MOST_EXPANSION` before it boils  (C5)."""
+        super().__post_init__()
+        drop = ATMOSPHERE - self.vapour_pressure_kpa * 1e3
+        stiffest = MOST_EXPANSION * self.effective_bulk_modulus - drop
+        if stiffest <= 0.0:
+            raise ParameterError(
+                f'effective_bulk_modulus = {self.effective_bulk_modulus:g} Pa, must be > '
+                f'{drop / MOST_EXPANSION:g} Pa, or the oil never boils')
+        softest = 0.5e-3 * drop * drop / stiffest
+        if self.aeration_pressure_kpa < softest:
+            raise ParameterError(
+                f'aeration_pressure_kpa = {self.aeration_pressure_kpa:g} kPa, must be >= '
+                f'{softest:.3g} kPa with this bulk modulus, or the oil never boils')
+
 
 CHAMBERS = np.dtype([
     ('area_a', 'f8'), ('area_b', 'f8'), ('stroke', 'f8'),
@@ -108,6 +123,7 @@ CHAMBERS = np.dtype([
     ('p_vapour', 'f8'),     # Pa gauge
     ('air', 'f8'), ('leaks_out', 'f8'), ('c_le_a', 'f8'), ('c_le_b', 'f8'),
     ('least_a', 'f8'), ('least_b', 'f8')])  # m3, below which a step is one of volumes
+MOST_EXPANSION = 100.0  # 1, integral of dp/beta down to the vapour pressure: e^100 is a number
 FASTEST_SPRING = 0.2    # rad in a step: RK4 of pressures loses 1e-10 of the oil at rest in it
 MOST_SWEPT = 0.01       # 1, of a chamber's volume z in a step: RK4 of pressures loses z^5/120
 CHAMBERS_STATE = np.dtype([

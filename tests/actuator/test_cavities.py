@@ -16,6 +16,7 @@ DURATIONS = (0.01, 0.05, 0.2, 1.0)      # s, of a stroke out or back
 EXTREMES: list[dict[str, float]] = [
     {'oil__effective_bulk_modulus': 2e9}, {'oil__effective_bulk_modulus': 1e7},
     {'oil__aeration_pressure_kpa': 1e-3}, {'oil__aeration_pressure_kpa': 100.0},
+    {'oil__aeration_pressure_kpa': 7.3e-5},
     {'oil__vapour_pressure_kpa': 0.0}, {'oil__vapour_pressure_kpa': 50.0},
     {'oil__dead_volume_ml': 0.1}, {'oil__dead_volume_ml': 1000.0},
     {'oil__entrained_air': 1e-4}, {'oil__entrained_air': 0.2},

@@ -1,6 +1,7 @@
 """Chambers: volumes, continuity, stall forces, oil stiffness."""
 
 from dataclasses import replace
+import re
 
 from hypothesis import given, strategies as st
 from isa_ros.errors import ParameterError
@@ -31,6 +32,19 @@ def test_areas_are_table_2():
 def test_strokes_are_those_of_the_tables(model, stroke):
     """Tables 2 and 5: 80 and 100 mm, 100 deg printed as 1.745 rad; a product with 1e-3."""
     assert plant_row(model).chambers.stroke == pytest.approx(stroke, rel=2.3e-16, abs=0.0)
+
+
+@pytest.mark.parametrize('values, message', [
+    ({'aeration_pressure_kpa': 7.1e-5}, 'aeration_pressure_kpa = 7.1e-05 kPa, must be >= 7.19e-05'),
+    ({'aeration_pressure_kpa': 1e-9}, 'or the oil never boils'),
+    ({'effective_bulk_modulus': 1e3}, 'effective_bulk_modulus = 1000 Pa, must be > 1003.25 Pa'),
+    ({'vapour_pressure_kpa': 0.0, 'aeration_pressure_kpa': 7.3e-5}, 'must be >= 7.33e-05 kPa')])
+def test_oil_that_would_never_boil_is_refused(values, message):
+    """C5 to the vapour pressure is 100: 100.325 kPa (1 + 100.325/(2 p_air))/beta_eff."""
+    oil = actuator_sheet('isa_v5').plant.oil
+    with pytest.raises(ParameterError, match=re.escape(message)):
+        replace(oil, **values)
+    replace(oil, aeration_pressure_kpa=7.2e-5)
 
 
 @pytest.mark.parametrize('rod_mm', [21.5, 30.0])
