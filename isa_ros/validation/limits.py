@@ -95,7 +95,8 @@ def steps(actuators: Actuators, model: str, load: str, field: str) -> float:
     """Return the smallest step between two readings of a slowly changing field, NaN if none."""
     found = bench(actuators, model, load)
     group = found.begin(force=0.0)
+    given = found.loop.per_reference * spool_at(model, CREEP_MA)
     commands = setpoints(
-        group, 'effort', np.full(round(CREEP_S * RATE_HZ), spool_at(model, CREEP_MA)))
+        group, found.loop.quantity, np.full(round(CREEP_S * RATE_HZ), given))
     readings = np.unique(group.advance_many(found.ports, commands).samples[field])
     return float(np.diff(readings).min()) if len(readings) > 1 else float('nan')
