@@ -102,7 +102,9 @@ def test_each_goes_on_from_its_own_snapshot():
     transport = make_transport()
     rows = make_rows(transport)
     transport.join(rows)
+    transport.group.actuators[0].tune({'force.kp': 1e-7})
     transport.receive(rows)
+    assert rows.tuned == {0: {'force.kp': 1e-7}}
     then, snapshots = said(rows), transport.snapshots()
     rows.commands['kinds'] = 0
     later = []

@@ -79,6 +79,15 @@ def test_a_trip_that_came_and_went_within_a_tick_is_found_and_others_of_its_tick
     assert str(found[1]) == 'wheel: overload tripped at t = 0.200000 s: fault'
 
 
+def test_a_trip_that_lasts_while_another_trips_is_told_once():
+    lasting, both = ('overload',), ('overload', 'overcurrent')
+    found = trips_of(log(
+        sample(), sample(lasting, 'overload', 0.1), sample(both, 'overcurrent', 0.2),
+        sample((), 'overcurrent', 0.2), sample(lasting, 'overload', 0.3)), NAMES)
+    assert [(trip.condition, trip.t_s) for trip in found] == [
+        ('overload', 0.1), ('overcurrent', 0.2), ('overload', 0.3)]
+
+
 def test_a_condition_below_its_level_is_told_so_and_one_that_comes_again_has_one_line():
     instants = [sample((), 'supply_low', t, trip_value=4e6, trip_level=5e6)
                 for t in (0.1, 0.2, 0.3)]
