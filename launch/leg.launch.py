@@ -1,8 +1,8 @@
 """
 One run in lockstep: the nodes of every actuator of a configuration, and the coordinator.
 
-A leg is also shown: by robot_state_publisher where that is installed, and with ``rviz:=true`` by
-rviz.
+Legs are also shown, with their lengths and sensors: by robot_state_publisher where that is
+installed, one each, and with ``rviz:=true`` the only one by rviz.
 """
 
 from functools import partial
@@ -10,7 +10,10 @@ import os
 
 from ament_index_python.packages import get_packages_with_prefixes
 from isa_ros.config.paths import CONFIG, find, find_drawing, SCENARIOS
-from isa_ros.config.runs.run_file import load_run, RunConfig
+from isa_ros.config.runs.leg_description import urdf_of
+from isa_ros.config.runs.run_config import LegConfig, RunConfig
+from isa_ros.config.runs.run_file import load_run
+from isa_ros.config.text.changes import changes_of
 from isa_ros.errors import ConfigError
 from isa_ros.nodes.middleware.domain import Claim, CLAIMED_BY
 from isa_ros.processes.launching import refuse_failure
@@ -23,9 +26,6 @@ from launch.events.process import ProcessExited
 from launch.substitutions import LaunchConfiguration
 from launch_ros.actions import Node
 from launch_ros.parameter_descriptions import ParameterValue
-
-_IN_NAMESPACE = [('/tf', 'tf'), ('/tf_static', 'tf_static'), ('/clock', 'clock')]
-"""Topics of viewers that are absolute, to those of the run's namespace."""
 
 
 def generate_launch_description() -> LaunchDescription:
@@ -43,30 +43,30 @@ def _nodes(context: LaunchContext) -> list[Node]:
               for option in OPTIONS}
     config = find(values['config'], CONFIG)
     scenario = find(values['scenario'], SCENARIOS) if values['scenario'] else None
-    run, own = load_run(config), namespace(values['namespace'])
+    own, parameters = namespace(values['namespace']), launched_parameters(values)
+    run = load_run(config, changes_of(parameters.get('set', [])).run)
     has_rviz = flag('rviz', LaunchConfiguration('rviz').perform(context))
     processes = run_processes(
-        run, config, scenario, launched_parameters(values), launched_elsewhere(values))
+        run, config, scenario, parameters, launched_elsewhere(values))
     viewers = _viewers(run, own, has_rviz)
     claim = Claim(own)  # before anything starts; refused while another run is there
     return [*viewers, *(_node(process, own, claim) for process in processes)]
 
 
 def _viewers(run: RunConfig, own: str, has_rviz: bool) -> list[Node]:
-    """Return the nodes that show the leg of a run; the time is the simulation's."""
-    if run.leg is None:
-        if has_rviz:
-            raise ConfigError(f'rviz:=true: {run.source} has no leg')
-        return []
-    installed = get_packages_with_prefixes()
-    urdf = find_drawing(f'urdf/{run.leg.model}_leg.urdf').read_text(encoding='utf-8')
-    nodes = []
-    if 'robot_state_publisher' in installed:
+    """Return the nodes that show the legs of a run; topics of viewers are of its namespace."""
+    legs = [body for body in run.bodies if isinstance(body, LegConfig)]
+    if has_rviz and run.leg is None:
+        raise ConfigError(f'rviz:=true: {run.source} has no leg, or several')
+    installed, nodes = get_packages_with_prefixes(), []
+    above = f'/{own}' if own else ''
+    of_run = [(f'/{topic}', f'{above}/{topic}') for topic in ('tf', 'tf_static', 'clock')]
+    for leg in legs if 'robot_state_publisher' in installed else ():
         nodes.append(Node(
             package='robot_state_publisher', executable='robot_state_publisher',
-            namespace=own, parameters=[{
-                'robot_description': ParameterValue(urdf, value_type=str),
-                'use_sim_time': True}], remappings=_IN_NAMESPACE))
+            namespace=f'{own}/{leg.prefix}'.strip('/'), parameters=[{
+                'robot_description': ParameterValue(urdf_of(run, leg), value_type=str),
+                'use_sim_time': True}], remappings=of_run))
     if has_rviz:
         for package in ('robot_state_publisher', 'rviz2'):
             if package not in installed:
@@ -74,7 +74,7 @@ def _viewers(run: RunConfig, own: str, has_rviz: bool) -> list[Node]:
         nodes.append(Node(
             package='rviz2', executable='rviz2', namespace=own,
             arguments=['-d', str(find_drawing('rviz/leg.rviz'))],
-            parameters=[{'use_sim_time': True}], remappings=_IN_NAMESPACE))
+            parameters=[{'use_sim_time': True}], remappings=of_run))
     return nodes
 
 

@@ -43,15 +43,15 @@ def load_cell(
     return wrench(f'{name}_load_cell'), {**STAMP, component: columns['force']}
 
 
-def imu(link: str, sigmas: Sequence[float], columns: Sequence[int]) -> Prepared:
+def imu(frame_id: str, sigmas: Sequence[float], columns: Sequence[int]) -> Prepared:
     """
-    Return the reading of an inertial unit on a link.
+    Return the reading of an inertial unit in its frame.
 
     ``columns`` are those of the specific force (m/s2; at rest it points up) and of the angular
     velocity (rad/s), (6,); ``sigmas`` the standard deviation of either's noise, 0: not known.
     """
     message = Imu()
-    message.header.frame_id = link
+    message.header.frame_id = frame_id
     message.orientation_covariance[0] = UNKNOWN
     for covariance, sigma in zip(
             (message.linear_acceleration_covariance, message.angular_velocity_covariance), sigmas):

@@ -22,7 +22,7 @@ def prepared(message: BodyMessage, columns: Mapping[str, int]) -> Prepared:
     if isinstance(message, Force):
         return wrench(WORLD_FRAME), {**STAMP, **{
             field: columns[name] for name, field in fields_of(message)}}
-    return imu(message.link, message.sigmas, at([*message.force, *message.turning]))
+    return imu(message.frame, message.sigmas, at([*message.force, *message.turning]))
 
 
 def type_of(message: BodyMessage) -> str:

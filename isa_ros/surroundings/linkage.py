@@ -110,3 +110,14 @@ def actuator_coordinate(q, linkage):
     if linkage.kind == FOUR_BAR:
         return four_bar(q, linkage)
     return direct(q, linkage)
+
+
+def rod_eye(q: float, linkage: np.record) -> tuple[float, float]:
+    """Return R of a four-bar, the eye of the rod, in the thigh's frame, m  (L5)."""
+    theta = linkage.sense * q + linkage.offset
+    d_x = linkage.bk * math.cos(theta) - linkage.ak_x
+    d_y = linkage.bk * math.sin(theta) - linkage.ak_y
+    square = d_x * d_x + d_y * d_y
+    u = 0.5 + 0.5 * (linkage.ar * linkage.ar - linkage.br * linkage.br) / square
+    w = math.sqrt(linkage.ar * linkage.ar / square - u * u)
+    return float(linkage.ak_x + u * d_x + w * d_y), float(linkage.ak_y + u * d_y - w * d_x)

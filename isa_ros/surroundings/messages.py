@@ -36,10 +36,10 @@ class Force(NamedTuple):
 
 
 class Inertial(NamedTuple):
-    """Reading of an inertial unit in the axes of its link: sensor_msgs/Imu."""
+    """Reading of an inertial unit in its own frame: sensor_msgs/Imu."""
 
     topic: str
-    link: str
+    frame: str
     sigmas: tuple[float, float]
     """Standard deviation of specific force (m/s2) and angular velocity (rad/s), 0: not known."""
     force: Sequence[str]

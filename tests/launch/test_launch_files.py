@@ -5,6 +5,7 @@ import os
 from pathlib import Path
 import sys
 
+import isa_ros
 from isa_ros.config.paths import CONFIG, find, SCENARIOS
 from isa_ros.errors import ConfigError
 from isa_ros.nodes.middleware.domain import CLAIMED_BY
@@ -14,6 +15,7 @@ import pytest
 from tests.launch import stand_ins
 from tests.launch.stand_ins import Context, ProcessExited
 from tests.ros.domains import held_domain
+from tests.scripting.test_two_bodies import two_legs
 import yaml
 
 LAUNCH = Path(__file__).parents[2] / 'launch'
@@ -149,11 +151,30 @@ def test_a_leg_is_shown_where_the_packages_are_installed(leg, installed):
     assert publisher.given['namespace'] == rviz.given['namespace'] == 'lab'
     for node in (publisher, rviz):
         assert dict(node.given['remappings']) == {
-            '/tf': 'tf', '/tf_static': 'tf_static', '/clock': 'clock'}
+            f'/{topic}': f'/lab/{topic}' for topic in ('tf', 'tf_static', 'clock')}
     shown = yaml.safe_load(Path(rviz.given['arguments'][1]).read_text())['Visualization Manager']
     assert shown['Global Options']['Fixed Frame'] == 'world'
     assert [node.given['executable'] for node in leg()][:2] == [
         'robot_state_publisher', 'actuator']
+
+
+def test_a_leg_is_shown_with_the_lengths_of_its_run(leg, installed):
+    installed |= {'robot_state_publisher': '/opt'}
+    publisher, *_ = leg(set='leg.parameters.body.thigh.length_m=0.4')
+    description = publisher.given['parameters'][0]['robot_description'].args[0]
+    assert '<origin xyz="0.4 0.0 0.0" rpy="0.0 0.0 0.0"/>' in description
+
+
+def test_each_of_several_legs_is_shown_in_its_namespace(leg, installed, tmp_path):
+    """With transforms and time of the run, so that they meet in one tree."""
+    installed |= {'robot_state_publisher': '/opt'}
+    two = isa_ros.load(two_legs()).configuration
+    (tmp_path / 'two.yaml').write_text(two.to_yaml())
+    publishers = leg(config=str(tmp_path / 'two.yaml'), namespace='lab')[:2]
+    assert [own.given['namespace'] for own in publishers] == ['lab/left', 'lab/right']
+    assert all(dict(own.given['remappings'])['/tf'] == '/lab/tf' for own in publishers)
+    with pytest.raises(ConfigError, match='has no leg, or several'):
+        leg(config=str(tmp_path / 'two.yaml'), rviz='true')
 
 
 @pytest.mark.parametrize(('texts', 'message'), [
@@ -170,14 +191,14 @@ def test_in_one_process_the_coordinator_is_alone_and_gets_every_argument(leg):
         config='rig_rotary', scenario='step', out='bag', duration='0.5', in_process='true',
         real_time_factor='2', paused='1', compression='lz4', split_mb='0', overwrite='true',
         join_timeout='7', restore='a.json', save='b.json', sync='true',
-        seed='7')
+        seed='7', start_time='9')
     assert parameters(coordinator) == {
         'config_file': str(find('rig_rotary', CONFIG).resolve()),
         'scenario_file': str(find('step', SCENARIOS).resolve()), 'out': 'bag',
         'duration': 0.5, 'in_process': True, 'real_time_factor': 2.0, 'paused': True,
         'compression': 'lz4', 'split_mb': 0.0, 'overwrite': True, 'join_timeout_s': 7.0,
         'restore': 'a.json', 'save': 'b.json', 'sync': True, 'seed': 7,
-        'fail_on_trip': False}
+        'start_time': 9, 'fail_on_trip': False}
 
 
 def test_one_actuator_runs_its_model_at_real_time(actions):

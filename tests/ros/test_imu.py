@@ -12,7 +12,7 @@ pytestmark = pytest.mark.ros
 
 
 def test_a_unit_publishes_its_readings_at_its_own_rate(observer: Node) -> None:
-    """Of 50 ms: at t = 0 and every 10 ms, in the frame of its link."""
+    """Of 50 ms: at t = 0 and every 10 ms, in its own frame."""
     simulation = isa_ros.load('leg').replace(
         {'leg.imus': {'kfe': {'link': 'thigh'}}}).simulation()
     run = simulation.scenario.run
@@ -39,7 +39,7 @@ def test_a_unit_publishes_its_readings_at_its_own_rate(observer: Node) -> None:
         spinning.wait_for(lambda: len(heard) == len(expected), 'six readings')
         assert [message.header.stamp.nanosec for message in heard] == [
             10_000_000 * k for k in range(6)]
-        assert {message.header.frame_id for message in heard} == {'thigh'}
+        assert {message.header.frame_id for message in heard} == {'kfe_imu'}
         forces = [message.linear_acceleration for message in heard]
         assert [[force.x, force.y, force.z] for force in forces] == expected
     finally:

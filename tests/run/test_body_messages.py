@@ -55,7 +55,7 @@ def test_ground_contact_is_a_wrench_in_the_world():
     assert message.header.frame_id == 'world'
 
 
-def test_an_inertial_unit_has_the_frame_of_its_link_and_says_its_noise():
+def test_an_inertial_unit_has_its_own_frame_and_says_its_noise():
     """The type: no orientation is -1, an unknown covariance 0."""
     unit = messages_of_leg(TRUNK)[2]
     assert (unit.topic, type_of(unit)) == ('/trunk/imu', 'sensor_msgs/msg/Imu')
@@ -66,7 +66,7 @@ def test_an_inertial_unit_has_the_frame_of_its_link_and_says_its_noise():
     force, turning = message.linear_acceleration, message.angular_velocity
     assert (force.x, force.y, force.z) == (15.0, 16.0, 17.0)
     assert (turning.x, turning.y, turning.z) == (18.0, 19.0, 20.0)
-    assert message.header.frame_id == 'slider_link'
+    assert message.header.frame_id == 'trunk_imu'
     assert (message.header.stamp.sec, message.header.stamp.nanosec) == (7, 8)
     assert message.orientation_covariance[0] == -1.0
     assert list(message.linear_acceleration_covariance) == pytest.approx(
@@ -75,9 +75,9 @@ def test_an_inertial_unit_has_the_frame_of_its_link_and_says_its_noise():
 
 
 def test_a_further_leg_has_topics_and_links_under_its_name() -> None:
-    assert [(own.topic, getattr(own, 'link', '')) for own in leg_messages('left/', [TRUNK])] == [
+    assert [(own.topic, getattr(own, 'frame', '')) for own in leg_messages('left/', [TRUNK])] == [
         ('/left/joint_states', ''), ('/left/ground_contact', ''),
-        ('/left/trunk/imu', 'left/slider_link')]
+        ('/left/trunk/imu', 'left/trunk_imu')]
 
 
 def test_a_reading_is_due_at_its_own_period() -> None:

@@ -14,6 +14,11 @@ def joint_name(name: str) -> str:
     return f'{name}_joint'
 
 
+def imu_frame(prefix: str, unit: str) -> str:
+    """Return the frame of an inertial unit, a link of its own in the URDF."""
+    return f'{prefix}{unit}_imu'
+
+
 def leg_messages(prefix: str, units: Sequence[InertialUnit]) -> tuple[BodyMessage, ...]:
     """
     Return the messages of a leg; ``prefix`` is '' for the only body of a run, else ``NAME/``.
@@ -33,6 +38,6 @@ def leg_messages(prefix: str, units: Sequence[InertialUnit]) -> tuple[BodyMessag
 def _inertial(prefix: str, unit: InertialUnit) -> Inertial:
     force, turning = fields_of_unit(unit.name)
     return Inertial(
-        f'/{prefix}{unit.name}/imu', f'{prefix}{unit.sheet.link}',
+        f'/{prefix}{unit.name}/imu', imu_frame(prefix, unit.name),
         (unit.sheet.accelerometer_sigma, unit.sheet.gyro_sigma), columns(force),
         columns(turning), unit.period_ns)
