@@ -222,12 +222,12 @@ class SmartActuator:
         self.accept(command)
         return True, f'{what} from t = {self.t_ns * 1e-9:.6f} s'
 
-    def parameter(self, name: str) -> float:
-        """Return a value as it will be at the next tick, set by `tune` or by a command."""
+    def parameter(self, name: str) -> float | str:
+        """Return a value as it will be at the next tick, set by `tune`, a fault or a command."""
         own = self.tuning.known(name)
         value = (gain_after(own.name, self._pending, self._reu) if own.name in GAINS
                  else self.tuning.value(own.name))
-        return value if name == own.name else value / own.scale
+        return own.shown(value) if name == own.name else value / own.scale
 
     def tick(self, port: np.void | None = None) -> None:
         """

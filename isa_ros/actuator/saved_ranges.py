@@ -27,7 +27,8 @@ LARGEST: Mapping[str, int] = {
     'status.trips': _BITS, 'status.warnings': _BITS,
     'protection.trips': _BITS, 'protection.warnings': _BITS, 'protection.first': _BITS,
     'protection.last': len(CONDITIONS), 'protection.last_warning': len(CONDITIONS),
-    'protection.present': _BITS, 'protection.busy': _BITS, 'protection.clears': _FLAG,
+    'protection.present': _BITS, 'protection.busy': _BITS, 'protection.kept': _BITS,
+    'protection.clears': _FLAG,
     'protection.reaction': len(REACTIONS) - 1, 'protection.inhibited': _DIRECTIONS,
     'link_lost': _FLAG,
     'kinds': EVERY_KIND | WAS_REFUSED, 'is_enabled': _FLAG, 'mode': _MODE}

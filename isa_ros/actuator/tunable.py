@@ -29,6 +29,8 @@ GAINS = {'position.stiffness': 'stiffness', 'position.damping': 'damping'}
 """The gains that are part of every setpoint, and their names in a `COMMAND`."""
 LOAD = 'load.'
 """How the names of values of the load begin."""
+PROTECTION = 'reu.protection.'
+"""How the names of what the conditions of the protection compare, and do, begin."""
 _MEASURED = {
     'position': 'm | rad', 'force': 'N | Nm', 'pressure': 'Pa', 'spool': 'm', 'current': 'A'}
 """Unit of what each block controls; the current is that of coils in series."""
@@ -172,10 +174,19 @@ def with_changed(
                     f'{name} is not used: there is no link, link.kind = {NO_LINK.kind}')
     changed = with_changes(sheet, changing(sheet) if known is None else known, values)
     if changed.reu is not sheet.reu or changed.plant is not sheet.plant:
+        _refuse_unwatched(changed, values)
         refuse_wiring(changed)
     if changed.plant is not sheet.plant:
         refuse_too_fast(plant_record(changed.plant)[0], changed.plant, LoadSide())
     return changed
+
+
+def _refuse_unwatched(sheet: ActuatorSheet, names: Iterable[str]) -> None:
+    """Refuse to change what the protection compares where it is switched off."""
+    if sheet.reu.protection.switch == 'off':
+        for name in names:
+            if name.startswith(PROTECTION):
+                raise ConfigError(f'{name} is not used: {PROTECTION}switch = off')
 
 
 def named(known: Mapping[str, Changeable], values: Mapping[str, float]) -> dict[str, float]:
@@ -197,5 +208,7 @@ def named(known: Mapping[str, Changeable], values: Mapping[str, float]) -> dict[
             own = by_key[name]
             check(name, value, own.keyed.declared)
             name, value = own.name, value * own.scale
+        elif name in known:
+            value = known[name].number(name, value)
         found[name] = value
     return found

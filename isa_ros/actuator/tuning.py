@@ -8,7 +8,7 @@ from isa_ros.actuator.inbox import WITH_GAINS
 from isa_ros.actuator.link import link_record
 from isa_ros.actuator.sheet import actuator_record, ActuatorSheet
 from isa_ros.actuator.tunable import (
-    changed_together, changing, GAINS, LOAD, named, with_changed_load)
+    changed_together, changing, GAINS, LOAD, named, PROTECTION, with_changed_load)
 from isa_ros.core.changeable import Changeable
 from isa_ros.core.changing_values import bare, ChangingValues
 from isa_ros.core.signals import COMMAND, HAS_GAINS, HAS_SETPOINT
@@ -17,8 +17,8 @@ from isa_ros.loads.sheets import Blocked, local_port, LocalLoad, move_support, w
 from isa_ros.plant.plant import plant_record
 import numpy as np
 
-_NO_LOOPS = ('plant.', 'link.', LOAD)
-"""How the names of values that are not of the REU begin."""
+_NO_LOOPS = ('plant.', 'link.', LOAD, PROTECTION)
+"""How the names of values that are not of the REU's loops begin."""
 
 
 class Tuning:

@@ -3,14 +3,15 @@ Parameters that may change during a run: a fault is a change of such a parameter
 
 Those marked ``changeable`` in their declaration, by the dotted key and in the unit of `isa
 params`; a new fault needs such a mark, and nothing else. Declared by `fault`, a parameter is
-changeable and 0 in a sound device.
+changeable and 0 in a sound device. Of a `choice` that may change users give the word; messages
+and saved states have its number.
 """
 
 from collections.abc import Iterator, Mapping
 from dataclasses import fields, replace
 from typing import Any, NamedTuple, TypeVar
 
-from isa_ros.core.parameter import check, Parameters, replaced
+from isa_ros.core.parameter import check, Parameters, replaced_together
 from isa_ros.core.suggest import alternatives
 from isa_ros.errors import ConfigError, ParameterError
 
@@ -23,6 +24,7 @@ class Changeable(NamedTuple):
     name: str
     """That of its values in messages and saved states: its dotted key, of a gain another one."""
     value: float
+    """Of a choice the place of the word in `words`."""
     declared: Mapping[str, Any]
     """Meaning, unit and bounds of its values."""
     key: str
@@ -55,16 +57,54 @@ class Changeable(NamedTuple):
         """Return its meaning."""
         return str(self.declared['doc'])
 
+    @property
+    def words(self) -> tuple[str, ...]:
+        """Return the words that its values number; (): it is a number."""
+        words: tuple[str, ...] = self.declared.get('words', ())
+        return words
+
+    @property
+    def choices(self) -> tuple[str, ...]:
+        """Return those of `words` that it may be."""
+        choices: tuple[str, ...] = self.declared.get('choices', ())
+        return choices
+
+    def shown(self, value: float) -> float | str:
+        """Return a value as users give it: of a choice the word."""
+        return self.words[int(value)] if self.words else value
+
+    def number(self, where: str, given: Any) -> Any:
+        """
+        Return what a user has given as messages have it: of a choice the number of the word.
+
+        Raises
+        ------
+        ParameterError
+            It is not one of the `choices`; ``where`` is its key.
+
+        """
+        if not self.words or not isinstance(given, str):
+            return given
+        check(where, given, {'names': self.choices})
+        return float(self.words.index(given))
+
 
 def changeables(parameters: Parameters, prefix: str = '') -> dict[str, Changeable]:
     """Return the changeable parameters of a set by key; ``prefix`` is in front of each."""
-    return {f'{prefix}{key}': Changeable(f'{prefix}{key}', value, declared, key)
-            for key, value, declared in marked(parameters, 'changeable')}
+    found = {}
+    for key, value, declared in marked(parameters, 'changeable'):
+        if 'names' in declared:
+            words = declared['changeable']
+            value, declared = float(words.index(value)), {
+                'doc': declared['doc'], 'unit': '1', 'is_whole': True, 'words': words,
+                'choices': declared['names'], 'bounds': {'ge': 0.0, 'le': len(words) - 1.0}}
+        found[f'{prefix}{key}'] = Changeable(f'{prefix}{key}', value, declared, key)
+    return found
 
 
 def marked(
         parameters: Parameters, mark: str, prefix: str = ''
-        ) -> Iterator[tuple[str, float, Mapping[str, Any]]]:
+        ) -> Iterator[tuple[str, Any, Mapping[str, Any]]]:
     """Yield dotted key, value and declaration of the parameters with a mark."""
     for f in fields(parameters):
         value, key = getattr(parameters, f.name), f'{prefix}{f.name}'
@@ -93,6 +133,8 @@ def with_changes(
     """
     Return a set with other values by the names of ``known``; equal values are kept as they are.
 
+    Values that have to fit each other are checked together.
+
     Raises
     ------
     ConfigError
@@ -101,17 +143,18 @@ def with_changes(
         A value is out of its range, or contradicts another one.
 
     """
-    changed = parameters
+    changed: dict[str, Any] = {}
     for name, value in values.items():
         if name not in known:
             keys = [one.key for one in known.values()]
             raise ConfigError(f'{name} is unknown; {alternatives(name, keys)}')
         own = known[name]
         check(name, value, own.declared)
-        if value == own.value:
-            continue
-        try:
-            changed = replaced(changed, own.key, value / own.scale)
-        except ParameterError as error:
-            raise ParameterError(f'{name}: {error}') from error
-    return changed
+        if value != own.value:
+            changed[own.key] = own.shown(value / own.scale)
+    if not changed:
+        return parameters
+    try:
+        return replaced_together(parameters, changed)
+    except ParameterError as error:
+        raise ParameterError(f'{", ".join(changed)}: {error}') from error

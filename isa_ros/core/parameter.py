@@ -1,6 +1,6 @@
 """One declaration per parameter: its unit, its range and its meaning."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field, fields, replace
 import math
 from typing import Any, TypeVar
@@ -19,15 +19,18 @@ _RELATIONS: dict[str, tuple[str, Callable[[float, float], bool]]] = {
 
 def parameter(
         doc: str, unit: str, *, absent: float | None = None, source: str = '',
-        changeable: bool = False, **bounds: float) -> Any:
+        changeable: bool = False, is_whole: bool = False, **bounds: float) -> Any:
     """
     Declare one number; ``bounds`` are any of ``gt``, ``ge``, ``lt``, ``le``.
 
     ``absent`` is the value where a file has none, such as a resolved configuration older than the
     parameter; ``source`` is that of this value. ``changeable``: it may change during a run, as a
-    fault or a push (`isa_ros.core.changeable`).
+    fault or a push (`isa_ros.core.changeable`). ``is_whole``: it is a number of things, a yes (1)
+    or no (0), or a bit set.
     """
     declared = _declaration(doc, unit, bounds) | {'source': source}
+    if is_whole:
+        declared['is_whole'] = True
     if absent is not None:
         declared['absent'] = absent
     if changeable:
@@ -39,7 +42,7 @@ def fault(doc: str, unit: str, *, is_whole: bool = False, **bounds: float) -> An
     """
     Declare one number that is 0 in a sound device; sheets leave it out, and faults change it.
 
-    ``is_whole``: it is a number of things, or a yes (1) or no (0).
+    ``is_whole`` as in `parameter`.
     """
     whole = {'is_whole': True} if is_whole else {}
     return field(default=0.0, metadata=_declaration(doc, unit, bounds) | whole | {
@@ -68,10 +71,20 @@ def numbers(doc: str, unit: str, *, least: int, most: int, **bounds: float) -> A
     return field(metadata=_declaration(doc, unit, bounds) | {'length': (least, most)})
 
 
-def choice(doc: str, *names: str, absent: str | None = None, source: str = '') -> Any:
-    """Declare one name out of a fixed list; ``absent`` and ``source`` as in `parameter`."""
-    metadata = {'doc': doc, 'unit': '', 'names': names, 'source': source}
-    return field(metadata=metadata if absent is None else metadata | {'absent': absent})
+def choice(
+        doc: str, *names: str, absent: str | None = None, source: str = '',
+        numbered: tuple[str, ...] = ()) -> Any:
+    """
+    Declare one name out of a fixed list; ``absent`` and ``source`` as in `parameter`.
+
+    ``numbered``: it may change during a run; messages have the place of a name in this list.
+    """
+    metadata: dict[str, Any] = {'doc': doc, 'unit': '', 'names': names, 'source': source}
+    if absent is not None:
+        metadata['absent'] = absent
+    if numbered:
+        metadata['changeable'] = numbered
+    return field(metadata=metadata)
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -118,26 +131,43 @@ def replaced(parameters: _P, key: str, value: Any, where: str = '') -> _P:
     """
     Return a set with another value of one parameter, or section, by its dotted key.
 
-    ``where`` is in front of the key in messages.
+    ``where`` and errors as in `replaced_together`.
+    """
+    return replaced_together(parameters, {key: value}, where)
+
+
+def replaced_together(parameters: _P, values: Mapping[str, Any], where: str = '') -> _P:
+    """
+    Return a set with other values of parameters, or sections, by their dotted keys.
+
+    They are checked together: only what they all make is refused. ``where`` is in front of the
+    keys in messages.
 
     Raises
     ------
     ConfigError
         There is no such parameter.
     ParameterError
-        The value is out of its range, or contradicts another one.
+        A value is out of its range, or contradicts another one.
 
     """
-    head, _, rest = key.partition('.')
     names = [f.name for f in fields(parameters)]
-    if head not in names:
-        raise ConfigError(f'{where}{head} is unknown; {alternatives(head, names)}')
-    if rest:
-        below = getattr(parameters, head)
-        if not isinstance(below, Parameters):
-            raise ConfigError(f'{where}{head} is one value, has no {rest}')
-        value = replaced(below, rest, value, f'{where}{head}.')
-    return replace(parameters, **{head: value})
+    found: dict[str, Any] = {}
+    below: dict[str, dict[str, Any]] = {}
+    for key, value in values.items():
+        head, _, rest = key.partition('.')
+        if head not in names:
+            raise ConfigError(f'{where}{head} is unknown; {alternatives(head, names)}')
+        if rest:
+            below.setdefault(head, {})[rest] = value
+        else:
+            found[head] = value
+    for head, inner in below.items():
+        own = getattr(parameters, head)
+        if not isinstance(own, Parameters):
+            raise ConfigError(f'{where}{head} is one value, has no {next(iter(inner))}')
+        found[head] = replaced_together(own, inner, f'{where}{head}.')
+    return replace(parameters, **found)
 
 
 def check(where: str, value: Any, declared: Any) -> None:

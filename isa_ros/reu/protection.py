@@ -2,8 +2,10 @@
 The REU's protection: measures every condition and judges it; `isa_ros.reu.reactions` reacts.
 
 A condition counts once its quantity has been beyond a level at as many conversions in a row as
-its delay has; it ends when the quantity is back by the hysteresis. A trip whose reaction stops
-the actuator (quick_stop, disable) stays after its condition has ended, until it is cleared.
+its delay has; it ends when the quantity is back by the hysteresis, or is no longer watched. A trip
+whose reaction stopped the actuator (quick_stop, disable) stays after its condition has ended,
+until it is cleared, whatever its reaction has become. Levels, delays, reactions and the mask may
+change at any tick; counts and bits go on from where they are.
 Inputs are what the sensors read, not the exact states.
 """
 
@@ -52,6 +54,7 @@ PROTECTION_STATE = np.dtype([
     ('first', 'i8'),                        # bit set: the first of the present trips
     ('last', 'i8'), ('last_warning', 'i8'),     # place + 1 of the last set of each; 0: none
     ('present', 'i8'),                      # bit set: trips whose condition has not ended
+    ('kept', 'i8'),                         # bit set: trips that have stopped the actuator
     ('clears', 'i8'),                       # 1: trips whose condition has ended are to be cleared
     ('inhibited', 'i8'),                    # EXTENDING, RETRACTING
     ('busy', 'i8'),                         # bit set: is counted, or has a bit
@@ -100,9 +103,12 @@ def protection_record(
     levels = {name: np.full(N, math.inf) for name in (
         'warning', 'trip', 'warning_end', 'trip_end')}
     delay, reaction = np.zeros(N, np.int64), np.zeros(N, np.int64)
+    mask = int(sheet.mask)
     sign = np.array([1.0 if condition.is_above else -1.0 for condition in CONDITIONS])
 
     def set_level(which: str, bit: int, level: float) -> None:
+        if mask >> bit & 1:
+            return
         back = level * (1.0 - sign[bit] * sheet.hysteresis)
         levels[which][bit], levels[f'{which}_end'][bit] = sign[bit] * level, sign[bit] * back
 
@@ -126,7 +132,7 @@ def protection_record(
         reaction[BIT.watchdog] = REACTIONS.index(sheet.watchdog_reaction)
     quiet = np.minimum(levels['warning'], levels['trip'])
     return record(
-        PROTECTION, is_on=int(sheet.switch == 'on' and np.isfinite(quiet).any()), period=period,
+        PROTECTION, is_on=int(sheet.switch == 'on'), period=period,
         stroke=ratings.stroke, **levels, quiet=quiet, sign=sign,
         delay=delay, reaction=reaction, evidence=evidence, supervision=supervision)
 
@@ -206,8 +212,11 @@ def judge_one(k, step, mode, protection, own):
                    own.warning_count[k], protection.delay[k])
     met = is_met(excess, protection.trip[k], protection.trip_end[k], was_met,
                  own.trip_count[k], protection.delay[k])
-    trips = met or (
-        was_tripped and own.clears == 0 and reaction_of(k, mode, protection) >= QUICK_STOP)
+    if met and reaction_of(k, mode, protection) >= QUICK_STOP:
+        own.kept |= bit
+    elif not met and own.clears != 0:
+        own.kept &= ~bit
+    trips = met or own.kept & bit != 0
     if warns and not was_warned:
         own.warning_since[k], own.last_warning = step, k + 1
     if trips and not was_tripped:

@@ -33,7 +33,7 @@ def _levels(condition: Condition, own: LevelDefaults) -> type[Parameters]:
     def level(absent: float, source: str) -> Any:
         return parameter(
             f'{own.compared}; 0: off', condition.level_unit, absent=absent, source=source,
-            ge=0.0, le=own.most)
+            changeable=True, ge=0.0, le=own.most)
 
     return make_dataclass(
         condition.name.title().replace('_', ''), [
@@ -41,11 +41,11 @@ def _levels(condition: Condition, own: LevelDefaults) -> type[Parameters]:
             ('trip', float, level(own.trip, own.trip_source)),
             ('delay_ms', float, parameter(
                 'time beyond a level before it counts, rounded up to whole conversions', 'ms',
-                absent=own.delay_ms, source=ASSUMED, ge=0.0, le=60e3)),
+                absent=own.delay_ms, source=ASSUMED, changeable=True, ge=0.0, le=60e3)),
             ('reaction', str, choice(
                 'what a trip causes; none: the condition is not watched',
                 *(name for name in REACTIONS if own.may_limit or name != 'limit'),
-                absent=own.reaction, source=ASSUMED))],
+                absent=own.reaction, source=ASSUMED, numbered=REACTIONS))],
         bases=(Parameters,), frozen=True, kw_only=True,
         namespace={'__doc__': condition.meaning, '__module__': __name__})
 
@@ -81,17 +81,20 @@ class Protection(Parameters):
         'whether any condition is watched', 'on', 'off', absent='on', source=ASSUMED)
     hysteresis: float = parameter(
         'part of its level by which a quantity must be back before the condition ends', '1',
-        absent=0.02, source=ASSUMED, ge=0.0, le=0.5)
+        absent=0.02, source=ASSUMED, changeable=True, ge=0.0, le=0.5)
+    mask: float = parameter(
+        'conditions that are not watched, the sum of 1 << bit of each; 0: none', '1',
+        absent=0.0, source=ASSUMED, changeable=True, is_whole=True, ge=0.0,
+        le=float((1 << len(CONDITIONS)) - 1))
     setpoint_timeout_ms: float = parameter(
         'longest time between two setpoints of an enabled actuator, counted from its first one '
-        'on; 0: off', 'ms', absent=0.0, source=ASSUMED, ge=0.0,
-        le=3.6e6)
+        'on; 0: off', 'ms', absent=0.0, source=ASSUMED, changeable=True, ge=0.0, le=3.6e6)
     setpoint_timeout_reaction: str = choice(
-        'what follows until the next setpoint', *_TIMEOUT, absent='hold', source=ASSUMED)
+        'what follows until the next setpoint', *_TIMEOUT, absent='hold', source=ASSUMED,
+        numbered=REACTIONS)
     link_lost_reaction: str = choice(
         "what follows when the link's watchdog has tripped, until the next frame", *_TIMEOUT,
-        absent='hold', source=ASSUMED)
-
+        absent='hold', source=ASSUMED, numbered=REACTIONS)
     watchdog_reaction: str = choice(
         "what follows when the REU's watchdog has switched its output off, until it is cleared",
         'disable', absent='disable', source=ASSUMED)

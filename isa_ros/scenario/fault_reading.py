@@ -17,7 +17,7 @@ from typing import Any
 
 from isa_ros.actuator.tunable import changed_together, changing, named, refuse_load
 from isa_ros.config.assembly import surroundings_of
-from isa_ros.config.models.fault_catalogue import ACTUATOR, KINDS, named_fault, numbers_at, SUPPLY
+from isa_ros.config.models.fault_catalogue import ACTUATOR, KINDS, named_fault, SUPPLY, values_at
 from isa_ros.config.runs.run_config import RunConfig
 from isa_ros.config.runs.tick_grid import ticks_in
 from isa_ros.config.text.parameter_sets import build, kind_of
@@ -132,11 +132,11 @@ def _tick(tree: Tree, key: str, place: Place, step_ns: int) -> int:
     return ticks_in(float(tree[key]), step_ns, f'{place}.{key}')  # type: ignore[arg-type]
 
 
-def _values(tree: Tree, of: str, place: Place) -> dict[str, float]:
+def _values(tree: Tree, of: str, place: Place) -> dict[str, Any]:
     """Return the values of a named fault, with those of ``set`` in their place or beside them."""
     if 'fault' not in tree and 'set' not in tree:
         raise ConfigError(place.has('needs set, or fault with the name of one'))
-    values: dict[str, float] = {}
+    values: dict[str, Any] = {}
     if 'fault' in tree:
         named = named_fault(str(tree['fault']), place / 'fault')
         is_of_link = all(key.startswith(_OF_LINK) for key in named.values)
@@ -148,7 +148,7 @@ def _values(tree: Tree, of: str, place: Place) -> dict[str, float]:
         if of == LINK:
             values = {key.removeprefix(_OF_LINK): value for key, value in values.items()}
     if 'set' in tree:
-        values |= numbers_at(tree['set'], place / 'set')
+        values |= values_at(tree['set'], place / 'set')
     return values
 
 

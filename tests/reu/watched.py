@@ -58,8 +58,8 @@ class Watched:
             current_range=RATINGS.current_range, spool_range=3e-4, spool_gain=SPOOL_GAIN,
             opening=4e-5, follows_force=1, creep=0.02, slow_share=PERIOD / (6.4e-3 + PERIOD),
             mean_share=PERIOD / (0.05 + PERIOD))
-        self.constants = protection_record(
-            sheet, RATINGS, evidence, supervision, STEPS, watchdog=watchdog)
+        self._parts = evidence, supervision, STEPS, 0.0, watchdog
+        self.become(sheet)
         self.state = np.zeros(1, REU_STATE).view(np.recarray)[0]
         self.own = self.state.protection
         self.supply, self.temperature, self.step = SUPPLY, 40.0, 0
@@ -68,6 +68,10 @@ class Watched:
         self.state.status.is_on, self.state.status.mode = 1, IMPEDANCE
         setpoint.stiffness, setpoint.damping = 1e5, 4e3
         setpoint.position, setpoint.velocity, setpoint.effort = 0.02, 0.1, 50.0
+
+    def become(self, sheet: Protection) -> None:
+        """Take other levels, delays, reactions or another mask; the state stays."""
+        self.constants = protection_record(sheet, RATINGS, *self._parts)
 
     def convert(self, n: int = 1) -> None:
         """Take ``n`` conversions of the present readings."""

@@ -89,6 +89,11 @@ def _double(name: str, value: float) -> Parameter:
         type=ParameterType.PARAMETER_DOUBLE, double_value=value))
 
 
+def _text(name: str, value: str) -> Parameter:
+    return Parameter(name=name, value=ParameterValue(
+        type=ParameterType.PARAMETER_STRING, string_value=value))
+
+
 def recorded(bag: Path, name: str) -> list[tuple[int, int, dict[str, float]]]:
     """Return (number of the sample, stamp in ns, values) of the applied parameters."""
     found = []
@@ -135,9 +140,12 @@ def test_every_gain_is_declared_with_unit_meaning_and_range(observer, tmp_path):
         assert late.floating_point_range[0].to_value == pytest.approx(12.7, rel=1e-12)
         assert stuck.description and not stuck.description.endswith(', 1')
         assert model.read_only
-        refused = tuner.call(SetParameters.Request(parameters=[Parameter(
-            name='model', value=ParameterValue(
-                type=ParameterType.PARAMETER_STRING, string_value='isa_v2'))])).results[0]
+        words, = tuner.call(DescribeParameters.Request(
+            names=['reu.protection.supply_low.reaction'])).descriptors
+        assert words.type == ParameterType.PARAMETER_STRING
+        assert words.additional_constraints == 'one of none, warn, hold, damp, quick_stop, disable'
+        refused = tuner.call(SetParameters.Request(
+            parameters=[_text('model', 'isa_v2')])).results[0]
         assert not refused.successful and 'read-only' in refused.reason
 
 
@@ -157,13 +165,19 @@ def test_a_refused_value_is_answered_with_the_reason_and_changes_nothing(observe
         result = tuner.call(SetParametersAtomically.Request(parameters=[
             _double('force.kp', 1e-7), _double('force.limit', 1.0)])).result
         assert not result.successful
-        impossible = Parameter(name='mode', value=ParameterValue(
-            type=ParameterType.PARAMETER_STRING, string_value='pressure'))
         result = tuner.call(SetParametersAtomically.Request(parameters=[
-            _double('force.kp', 1e-7), impossible])).result
+            _double('force.kp', 1e-7), _text('mode', 'pressure')])).result
         assert not result.successful and 'pressure' in result.reason
         assert tuner.get('force.kp', 'force.limit') == before
+        reaction = 'reu.protection.supply_low.reaction'
+        result = tuner.call(SetParameters.Request(parameters=[_text(reaction, 'limit')]))
+        assert not result.results[0].successful and 'must be one of none' in (
+            result.results[0].reason)
         assert not tuner.events
+        assert tuner.call(SetParameters.Request(
+            parameters=[_text(reaction, 'warn')])).results[0].successful
+        found, = tuner.call(GetParameters.Request(names=[reaction])).values
+        assert found.string_value == 'warn'
     assert 'Traceback' not in process.errors
 
 

@@ -3,7 +3,7 @@
 from collections.abc import Mapping
 from functools import cache
 from pathlib import Path
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 from isa_ros.config.text.sections import Place, refuse_unknown, section_at
 from isa_ros.config.text.yaml_text import read
@@ -43,7 +43,7 @@ def fault_catalogue() -> Mapping[str, NamedFault]:
         check(str(place / 'of'), section.get('of'), {'names': KINDS})
         faults[name] = NamedFault(
             name, str(section['of']), str(section['meaning']),
-            numbers_at(section.get('set'), place / 'set'), str(section.get('unseen', '')),
+            values_at(section.get('set'), place / 'set'), str(section.get('unseen', '')),
             str(section.get('unreported', '')))
     return faults
 
@@ -64,28 +64,31 @@ def named_fault(name: str, place: Place) -> NamedFault:
     return known[name]
 
 
-def numbers_at(value: object, place: Place) -> dict[str, float]:
+def values_at(value: object, place: Place) -> dict[str, Any]:
     """
-    Return a section of numbers by dotted keys; sections in it are parts of the keys.
+    Return numbers, or words of a choice, by dotted keys; sections in it are parts of the keys.
 
     Raises
     ------
     ConfigError
-        It is empty or not a section, a key stands twice, or a value is not a finite number.
+        It is empty or not a section, a key stands twice, or a value is neither a finite number
+        nor a word.
 
     """
     section = section_at(value, place)
     if not section:
         raise ConfigError(place.has('is empty, must have a key and its value'))
-    found: dict[str, float] = {}
+    found: dict[str, Any] = {}
     for key, one in section.items():
         if isinstance(one, dict):
-            numbers = {f'{key}.{rest}': own for rest, own in numbers_at(one, place / key).items()}
+            values = {f'{key}.{rest}': own for rest, own in values_at(one, place / key).items()}
+        elif isinstance(one, str):
+            values = {key: one}
         else:
             check(f'{place}.{key}', one, _NUMBER)
-            numbers = {key: float(one)}  # type: ignore[arg-type]
-        for name in numbers:
+            values = {key: float(one)}  # type: ignore[arg-type]
+        for name in values:
             if name in found:
                 raise ConfigError(f'{place}.{name} stands twice')
-        found |= numbers
+        found |= values
     return found

@@ -46,7 +46,8 @@ class TunableParameters:
         self._names = frozenset(declared)
         for name, own in declared.items():
             node.declare_parameter(
-                name, own.value, descriptor(own, actuator.sheet.is_rotary), ignore_override=True)
+                name, own.shown(own.value), descriptor(own, actuator.sheet.is_rotary),
+                ignore_override=True)
         mode = self._declare_mode(node)
         refuse_unknown(node)
         if mode is not None:
@@ -92,8 +93,11 @@ def descriptor(own: Changeable, is_rotary: bool = False) -> ParameterDescriptor:
     """
     Return unit, meaning and range of a value; excluded bounds are listed as constraints.
 
-    The unit is that of a linear or of a rotary actuator.
+    The unit is that of a linear or of a rotary actuator. A choice has its words.
     """
+    if own.words:
+        return ParameterDescriptor(
+            description=own.doc, additional_constraints=f'one of {", ".join(own.choices)}')
     bounds = own.bounds
     relations = {'gt': '>', 'lt': '<'}
     excluded = [f'{sign} {bounds[name]:g}' for name, sign in relations.items() if name in bounds]
