@@ -93,7 +93,8 @@ class SmartActuator:
         """The range of its setpoints, for those that come from outside."""
         self.tuning = Tuning(
             config.name, config.sheet, offset_steps, constants, config.load, self.memory.ports,
-            timing.step_ns / NS_PER_SECOND)
+            timing.step_ns / NS_PER_SECOND,
+            row_record(self.memory.links) if self.has_link else None)
         """Tuned parameters, accepted and in force."""
         self._changed_mode: str | None = None
         self.start(config.initial_position, static_force(config.load), PAPER_SUPPLY, 0.0)
@@ -256,7 +257,7 @@ class SmartActuator:
 
     def latch_tuning(self) -> None:
         """Begin a tick: put tuned values in force, without a jump of the valve current."""
-        if self.tuning.latch() and self._reu.status.is_on:
+        if self.tuning.latch(self.t_ns // PLANT_STEP_NS) and self._reu.status.is_on:
             self._reu.status.fade.begins = 1
 
     def raise_diverged(self, state: int) -> NoReturn:

@@ -147,16 +147,19 @@ class ActuatorGroup:
         n, n_ticks = len(self.actuators), len(commands)
         states: Records = np.empty((n_ticks + 1, n), STATES)
         samples: Records = np.empty((n_ticks + 1 if with_samples else 0, n), SAMPLE)
-        is_settled = all(values.is_settled for values in self._values)
-        for first, after in ((0, n_ticks),) if is_settled or n_ticks < 2 else (
-                (0, 1), (1, n_ticks)):      # what has changed is new in the first tick only
-            if after > first:
+        first = 0
+        while True:
+            if n_ticks:
                 self._latch()
+            is_settled = all(values.is_settled for values in self._values)
+            after = n_ticks if is_settled else min(first + 1, n_ticks)
             done, broken = kernels.actuator_ticks(
                 self.t_ns // PLANT_STEP_NS, self._steps, ports, commands[first:after],
                 self._memory, samples[first:after + 1], states[first:after + 1])
             self._end(done, broken)
-        return TickLog(samples, states)
+            first = after
+            if first >= n_ticks:
+                return TickLog(samples, states)
 
     def _latch(self) -> None:
         """Let changed parameters take effect."""

@@ -110,6 +110,7 @@ LINK_STATE = np.dtype([
     ('set_step', 'i8'),         # plant step at which the setpoint or gains in the outbox were set,
     ('asked_step', 'i8'),       # and the requests and the mode
     ('dropped', 'i8'),          # commands that waited too long, since t = 0
+    ('brought', 'i8'),          # departure of the last frame that the REU took, + 1; 0: none yet
 ])
 
 
@@ -251,7 +252,7 @@ def link_down(step, key, link, state, outbox, frames, is_frozen, reu, applied):
             state.down.lost += 1
             slot = take_frame(step, state.down)
             continue
-        state.last_frame = step
+        state.last_frame, state.brought = step, state.down.sent[slot] + 1
         if frames[slot].kinds:
             kinds = applied.kinds
             latch(frames[slot], reu, applied)

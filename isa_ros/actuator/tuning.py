@@ -6,6 +6,8 @@ from typing import Any
 
 from isa_ros.actuator.inbox import WITH_GAINS
 from isa_ros.actuator.link import link_record
+from isa_ros.actuator.rows import row_record
+from isa_ros.actuator.service_channel import ServiceChannel, travels
 from isa_ros.actuator.sheet import actuator_record, ActuatorSheet
 from isa_ros.actuator.tunable import (
     changed_together, changing, GAINS, LOAD, named, PROTECTION, with_changed_load)
@@ -28,12 +30,14 @@ class Tuning:
     ``constants`` is that row, shape (1,), made from ``sheet`` with ``offset_steps``; ``name`` is
     the actuator's. Values of `GAINS` take effect with the setpoints and are only stored here.
     The REU's own model of its actuator stays that of the sheet when the plant changes. ``load`` is
-    its own and ``port`` the `LOAD_PORT` of that, (1,), for ticks of ``tick`` s.
+    its own and ``port`` the `LOAD_PORT` of that, (1,), for ticks of ``tick`` s. ``link`` is the
+    `LINK_STATE` of its link, by whose service channel values of the REU come; None: it has none.
     """
 
     def __init__(
             self, name: str, sheet: ActuatorSheet, offset_steps: int, constants: np.ndarray,
-            load: LocalLoad | None, port: np.ndarray, tick: float) -> None:
+            load: LocalLoad | None, port: np.ndarray, tick: float,
+            link: np.record | None = None) -> None:
         self._name = name
         self._sheet = sheet
         self._offset_steps = offset_steps
@@ -45,6 +49,8 @@ class Tuning:
         self.values = ChangingValues(
             name, list(self._known), [own.value for own in self._known.values()])
         """All that may change."""
+        self._channel = None if link is None else ServiceChannel(
+            row_record(constants).link, link, self.values, travels(self._known))
 
     def reset(self, rest: float) -> dict[str, float]:
         """
@@ -53,6 +59,8 @@ class Tuning:
         The load is at ``rest``, m or rad.
         """
         accepted = self.values.restart()
+        if self._channel is not None:
+            self._channel.clear()
         self._rest = rest
         if self._load is not None:
             self._port[:] = local_port(self._load, rest)
@@ -98,11 +106,17 @@ class Tuning:
         """Return the last accepted value."""
         return self.values.value(name)
 
-    def latch(self) -> bool:
-        """Begin a tick: put the accepted values in force; return whether one of a loop changed."""
+    def latch(self, step: int) -> bool:
+        """
+        Begin the tick at plant step ``step``: put the accepted values in force.
+
+        Behind a link those of the REU are, which a frame has brought. Returns whether one of a
+        loop changed.
+        """
         if self.values.is_settled:
             return False
-        is_changed = self.values.latch()
+        is_changed = (self.values.latch() if self._channel is None
+                      else self._channel.latch(step))
         self._write_load()
         if not is_changed:
             return False
@@ -148,15 +162,18 @@ class Tuning:
     @property
     def nbytes(self) -> int:
         """Return the size of a `snapshot`."""
-        return self.values.nbytes
+        return self.values.nbytes + (0 if self._channel is None else self._channel.nbytes)
 
     def snapshot(self) -> bytes:
         """Return the state as bytes for `restore`."""
-        return self.values.snapshot()
+        return self.values.snapshot() + (
+            b'' if self._channel is None else self._channel.snapshot())
 
     def restore(self, snapshot: bytes) -> None:
         """Continue from a `snapshot`; raises as `accept`, also for a value that is not finite."""
-        self.values.restore(snapshot)
+        self.values.restore(snapshot[:self.values.nbytes])
+        if self._channel is not None:
+            self._channel.restore(snapshot[self.values.nbytes:])
         self._changed_by(self.values.accepted)
         self._write()
 

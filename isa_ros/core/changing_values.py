@@ -2,7 +2,8 @@
 Named values that change between two ticks: accepted, in force from the next tick, echoed.
 
 A fault lies over a value: while it does, a value that is accepted stays beneath it and comes back
-with its end. `OVER` before a name puts a value over it, `OFF` takes it off.
+with its end. `OVER` before a name puts a value over it, `OFF` takes it off; `RECORDED` puts over
+it what a bag has as in force, which is so at once.
 """
 
 from collections.abc import Mapping, Sequence
@@ -10,13 +11,14 @@ from collections.abc import Mapping, Sequence
 from isa_ros.errors import ConfigError
 import numpy as np
 
-OVER, OFF = '+', '-'
+OVER, OFF, RECORDED = '+', '-', '='
 _BEFORE, _IN_FORCE, _ACCEPTED, _OVER, _IS_OVER = range(5)
+_AS_RECORDED = 2.0
 
 
 def bare(name: str) -> str:
-    """Return a name without `OVER` or `OFF`."""
-    return name[1:] if name[:1] in (OVER, OFF) else name
+    """Return a name without `OVER`, `OFF` or `RECORDED`."""
+    return name[1:] if name[:1] in (OVER, OFF, RECORDED) else name
 
 
 class ChangingValues:
@@ -50,14 +52,15 @@ class ChangingValues:
 
     def accept(self, values: Mapping[str, float]) -> None:
         """
-        Accept new values of known names, which may begin with `OVER` or `OFF`.
+        Accept new values of known names, which may begin with `OVER`, `OFF` or `RECORDED`.
 
         The last of several before one tick wins.
         """
         for name, value in values.items():
             k = self._place[bare(name)]
-            if name[:1] == OVER:
-                self._rows[_OVER, k], self._rows[_IS_OVER, k] = value, 1.0
+            if name[:1] in (OVER, RECORDED):
+                self._rows[_OVER, k] = value
+                self._rows[_IS_OVER, k] = _AS_RECORDED if name[:1] == RECORDED else 1.0
             elif name[:1] == OFF:
                 self._rows[_IS_OVER, k] = 0.0
             else:
@@ -80,21 +83,45 @@ class ChangingValues:
 
     def value(self, name: str) -> float:
         """Return the value of the next tick."""
-        return float(self._next()[self._place[name]])
+        return float(self.wanted[self._place[name]])
 
-    def _next(self) -> np.ndarray:
-        """Return the values of the next tick."""
+    @property
+    def wanted(self) -> np.ndarray:
+        """Return the values of the next tick, (n,), in the order of the names."""
         values: np.ndarray = np.where(
             self._rows[_IS_OVER] != 0.0, self._rows[_OVER], self._rows[_ACCEPTED])
         return values
 
-    def latch(self) -> bool:
-        """Begin a tick: put the accepted values in force; return whether any has changed."""
+    @property
+    def now(self) -> np.ndarray:
+        """Return the values in force, (n,)."""
+        values: np.ndarray = self._rows[_IN_FORCE].copy()
+        return values
+
+    @property
+    def recorded(self) -> np.ndarray:
+        """Return which values are in force as a bag has them, (n,)."""
+        found: np.ndarray = self._rows[_IS_OVER] == _AS_RECORDED
+        return found
+
+    def withdraw(self, which: np.ndarray, values: np.ndarray) -> None:
+        """Take back what was accepted of ``which``, (n,): their ``values``, (m,), stay."""
+        differs = self.wanted[which] != values
+        late = np.flatnonzero(which)[differs]
+        self._rows[_ACCEPTED, late] = values[differs]
+        self._rows[_IS_OVER, late] = 0.0
+
+    def latch(self, values: np.ndarray | None = None) -> bool:
+        """
+        Begin a tick: put the accepted values in force; return whether any has changed.
+
+        ``values``, (n,): those instead, where some are on their way.
+        """
         if self.is_settled:
             return False
         before, in_force = self._rows[:_ACCEPTED]
         before[:] = in_force
-        in_force[:] = self._next()
+        in_force[:] = self.wanted if values is None else values
         self.is_settled = bool((before == in_force).all())
         return not self.is_settled
 
@@ -106,7 +133,7 @@ class ChangingValues:
     @property
     def accepted(self) -> dict[str, float]:
         """Return the values of the next tick that are not the first ones."""
-        values = self._next()
+        values = self.wanted
         return {self._names[k]: float(values[k])
                 for k in np.flatnonzero(values != self._first)}
 

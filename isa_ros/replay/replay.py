@@ -13,7 +13,7 @@ from typing import NamedTuple
 
 from isa_ros.bag.reader import Bag
 from isa_ros.config.runs.run_config import RunConfig
-from isa_ros.core.changing_values import OVER
+from isa_ros.core.changing_values import RECORDED
 from isa_ros.core.saved_state import RunState
 from isa_ros.core.signals import Records
 from isa_ros.errors import BagError, SetpointError
@@ -134,10 +134,11 @@ def _changes(inputs: 'Inputs', run: RunConfig) -> dict[int, ParameterChanges]:
     """
     Return the recorded changes of parameters by tick.
 
-    They are what was in force, so they lie over all else, also over what a saved state has.
+    They are what was in force, so they lie over all else, also over what a saved state has, and
+    travel over no link.
     """
     def over(values: Mapping[str, float]) -> dict[str, float]:
-        return {f'{OVER}{name}': value for name, value in values.items()}
+        return {f'{RECORDED}{name}': value for name, value in values.items()}
     return {
         tick: ParameterChanges(
             {run.index(name): over(by_tick[tick]) for name, by_tick in inputs.tuned.items()

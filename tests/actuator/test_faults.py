@@ -1,7 +1,7 @@
 """Faults of an actuator as changed values: in force from a tick on, and as if in the sheet."""
 
 from isa_ros.actuator.sheet import actuator_record
-from isa_ros.actuator.tunable import changing, named, tunables
+from isa_ros.actuator.tunable import changing, named, PROTECTION, tunables
 from isa_ros.core.changeable import changeables
 from isa_ros.errors import ConfigError
 from isa_ros.loads.sheets import Mass
@@ -27,7 +27,7 @@ def test_every_value_that_may_change_is_among_those_tested():
     """A new one is added to `VALUES`."""
     sheet = actuator_sheet('isa_v5')
     found = [name for name in changing(sheet) if name not in tunables(sheet)
-             and not name.startswith(('plant.sensors.', 'link.'))]
+             and not name.startswith(('plant.sensors.', 'link.', PROTECTION))]
     assert sorted(VALUES) == sorted(found)
 
 
@@ -80,7 +80,7 @@ def test_states_are_kept_when_a_fault_begins():
     run(actuator, 10)
     body, reu = actuator._body.tobytes(), actuator._reu.tobytes()
     actuator.tune({'plant.oil.entrained_air': 0.05})
-    actuator.tuning.latch()
+    actuator.tuning.latch(0)
     assert (actuator._body.tobytes(), actuator._reu.tobytes()) == (body, reu)
 
 

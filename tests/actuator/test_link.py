@@ -410,6 +410,8 @@ def test_a_snapshot_has_frames_only_behind_a_link():
     direct, behind = actuator(), actuator(linked())
     frames = sum(getattr(behind.memory, name).nbytes for name in (
         'links', 'sent', 'outbox', 'commands_sent', 'samples_sent', 'observed'))
+    frames += behind.tuning.nbytes - direct.tuning.nbytes   # what is tuned is on its way too
+    assert behind.tuning.nbytes > direct.tuning.nbytes
     assert len(behind.snapshot()) - len(direct.snapshot()) == frames
 
 

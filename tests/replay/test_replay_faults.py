@@ -151,6 +151,40 @@ def test_a_load_that_is_pushed_grows_and_whose_support_moves_replays(tmp_path):
         assert len(tuned) == changes, sorted(tuned)
 
 
+def test_levels_and_reactions_that_change_replay(tmp_path):
+    """A word in the scenario is its number in the bag; a trip in the run comes from it."""
+    own = 'reu.protection.overspeed.'
+    run = load('rig_linear', {'name': 'armed', 'duration_s': 0.1, 'tracks': {
+        'ram': [{'t_s': 0.0, 'position': 0.09}]}, 'changes': [
+        {'t_s': 0.05, 'actuator': 'ram', 'until_s': 0.08, 'set': {
+            f'{own}reaction': 'disable', f'{own}trip': 0.05, f'{own}warning': 0.0}},
+        {'t_s': 0.07, 'actuator': 'ram', 'set': {'reu.protection.mask': 4}}]})
+    result = run.simulate()
+    assert [trip.condition for trip in result.trips] == ['overspeed']
+    bag = result.save(tmp_path / 'armed')
+    assert replayed(bag, tmp_path / 'again') == content(bag)
+    tuned = recorded_inputs(Bag(bag), run.configuration).tuned['ram']
+    assert tuned == {50: {f'{own}warning': 0.0, f'{own}trip': 0.05, f'{own}reaction': 6.0},
+                     70: {'reu.protection.mask': 4.0},
+                     80: {f'{own}warning': 0.8, f'{own}trip': 1.1, f'{own}reaction': 1.0}}
+
+
+def test_a_gain_that_travels_over_a_lossy_link_replays_where_it_was_in_force(tmp_path):
+    """In the bag is the tick after its frame, two cycles late; a dead link passes none."""
+    linked = load('rig_linear').replace({
+        'link': {'kind': 'ethercat', 'cycle_ms': 1.0, 'delay_cycles': 2, 'watchdog_ms': 10.0}})
+    run = load(linked._config.tree, {'name': 'tuned', 'duration_s': 0.1, 'changes': [
+        {'t_s': 0.02, 'actuator': 'ram', 'set': {'reu.force.kp': 1e-7}, 'until_s': 0.04},
+        {'t_s': 0.06, 'actuator': 'ram', 'set': {'link.loss': 1.0}, 'until_s': 0.09},
+        {'t_s': 0.061, 'actuator': 'ram', 'set': {'reu.force.ki': 1e-6}}]})
+    kp = run.configuration.actuators[0].sheet.reu.force.kp
+    bag = run.simulate().save(tmp_path / 'tuned')
+    tuned = recorded_inputs(Bag(bag), run.configuration).tuned['ram']
+    assert tuned == {23: {'force.kp': 1e-7}, 43: {'force.kp': kp}, 60: {'link.loss': 1.0},
+                     90: {'link.loss': 0.0}}
+    assert replayed(bag, tmp_path / 'again') == content(bag)
+
+
 def test_a_link_that_is_lost_for_a_while_replays(tmp_path):
     """Without a frame the sample that listeners have grows old; afterwards it is young again."""
     link = {'kind': 'can', 'cycle_ms': 1.0, 'delay_cycles': 1, 'watchdog_ms': 20.0}
