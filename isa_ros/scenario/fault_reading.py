@@ -8,11 +8,16 @@ Read the lists ``faults`` and ``changes`` of a scenario.
     - {t_s: 0.2, actuator: ram, set: {load.force: -500}, until_s: 0.7}
     - {t_s: 0.2, actuator: ram, set: {load.force: 0}, sine: {amplitude: 200, frequency_hz: 2},
        until_s: 1.2}
+    faults:
+    - {t_s: 0.5, actuator: kfe, set: {plant.sensors.force.bias: 500}, ramp_s: 2.0}
+    - {t_s: 0.5, actuator: kfe, fault: load_cell_stuck, until_s: 1.5,
+       intermittent: {period_s: 0.02, duty: 0.3, seed: 1}}
 
 Keys and units are those of `isa params`; both lists have the same form.
 """
 
 from collections.abc import Mapping, Sequence
+from dataclasses import replace
 from typing import Any
 
 from isa_ros.actuator.tunable import changed_together, changing, named, refuse_load
@@ -25,10 +30,12 @@ from isa_ros.config.text.sections import Place, refuse_unknown, section_at, writ
 from isa_ros.config.text.yaml_text import Tree
 from isa_ros.core.changeable import Changeable, changeables
 from isa_ros.core.changing_values import bare, OFF
+from isa_ros.core.noise import seed_of
 from isa_ros.core.parameter import check
 from isa_ros.core.suggest import alternatives
 from isa_ros.core.timebase import NS_PER_SECOND
 from isa_ros.errors import ConfigError
+from isa_ros.scenario.fault_courses import INTERMITTENT, Intermittent, RAMP, Ramp
 from isa_ros.scenario.faults import Fault, timetable
 from isa_ros.scenario.setpoints import MAX_DURATION
 from isa_ros.scenario.waveforms import EFFORT, MOVES, Waveform, WAVEFORMS
@@ -37,7 +44,9 @@ from isa_ros.surroundings.supply import SupplySheet
 LINK = 'link'
 """Of an actuator: ``link: kfe, set: {loss: 0.1}`` is ``actuator: kfe, set: {link.loss: 0.1}``."""
 _OF_LINK = f'{LINK}.'
-_KEYS = ('t_s', *KINDS, LINK, 'fault', 'set', 'until_s', *WAVEFORMS)
+_KEYS = ('t_s', *KINDS, LINK, 'fault', 'set', 'until_s', RAMP, INTERMITTENT, *WAVEFORMS)
+_COURSE = {'period_s': ('time from one begin to the next', 's', {'gt': 0.0, 'le': MAX_DURATION}),
+           'duty': ('part of the time in which it is on', '1', {'gt': 0.0, 'lt': 1.0})}
 
 
 def read_faults(
@@ -80,22 +89,63 @@ def _fault(tree: Tree, place: Place, run: RunConfig) -> Fault:
     try:
         if of == SUPPLY:
             sheet = _supply(run, target)
-            _refuse_keys(values, changeables(sheet), where,
+            known: Mapping[str, Changeable] = changeables(sheet)
+            _refuse_keys(values, known, where,
                          f'of {target}, a supply of kind {kind_of(sheet, SupplySheet)}, ')
-            return Fault(tick, until, SUPPLY, target, values,
-                         _wave(tree, values, run.step_ns, place))
-        prefix = _OF_LINK if of == LINK else ''
-        actuator = run.actuator(target)
-        known = changing(actuator.sheet, actuator.load)
-        values = named(known, {f'{prefix}{key}': value for key, value in values.items()})
-        refuse_load(values, actuator.load)
-        _refuse_keys(values, known, where)
-        changed_together(actuator.sheet, actuator.load, values, known)
+        else:
+            prefix = _OF_LINK if of == LINK else ''
+            actuator = run.actuator(target)
+            known = changing(actuator.sheet, actuator.load)
+            values = named(known, {f'{prefix}{key}': value for key, value in values.items()})
+            refuse_load(values, actuator.load)
+            _refuse_keys(values, known, where)
+            changed_together(actuator.sheet, actuator.load, values, known)
     except ConfigError as error:
         if str(error).startswith(where):
             raise
         raise ConfigError(f'{where}: {error}') from error
-    return Fault(tick, until, ACTUATOR, target, values, _wave(tree, values, run.step_ns, place))
+    kind = SUPPLY if of == SUPPLY else ACTUATOR
+    return _changing(Fault(tick, until, kind, target, values), tree, known, run.step_ns, place)
+
+
+def _changing(
+        fault: Fault, tree: Tree, known: Mapping[str, Changeable], step_ns: int, place: Place
+        ) -> Fault:
+    """Return the fault with its waveform, its ramp, or its times on and off."""
+    given = [key for key in (RAMP, INTERMITTENT, *WAVEFORMS) if key in tree]
+    if len(given) > 1:
+        raise ConfigError(place.has(f'has {" and ".join(given)}, must have one of them'))
+    if RAMP in tree:
+        ticks = _tick(tree, RAMP, place, step_ns)
+        if ticks == 0:
+            raise ConfigError(f'{place}.{RAMP} = 0 s, must be > 0 s; without it values jump')
+        first = {name: known[name].value for name in fault.values}
+        return replace(fault, course=Ramp(ticks, first))
+    if INTERMITTENT in tree:
+        return replace(fault, course=_intermittent(tree, fault, step_ns, place))
+    return replace(fault, wave=_wave(tree, fault.values, step_ns, place))
+
+
+def _intermittent(tree: Tree, fault: Fault, step_ns: int, place: Place) -> Intermittent:
+    if fault.until is None:
+        raise ConfigError(place.has(f'has {INTERMITTENT}: needs until_s'))
+    below = place / INTERMITTENT
+    section = section_at(tree[INTERMITTENT], below)
+    refuse_unknown(section, (*_COURSE, 'seed'), below)
+    for key, (doc, unit, bounds) in _COURSE.items():
+        if key not in section:
+            raise ConfigError(below.has(f'lacks {key}'))
+        check(f'{below}.{key}', section[key], {'doc': doc, 'unit': unit, 'bounds': bounds})
+    period, duty = _tick(section, 'period_s', below, step_ns), float(
+        section['duty'])    # type: ignore[arg-type]
+    if 'seed' in section:
+        seed = seed_of(section['seed'], f'{below}.seed')
+        return Intermittent(period, duty, seed, fault.target)
+    if not 0 < round(duty * period) < period:
+        raise ConfigError(
+            f'{below}.duty = {duty:g}, must be at least one tick of the {period} ticks of '
+            'period_s, and leave one')
+    return Intermittent(period, duty, None, fault.target)
 
 
 def _wave(
@@ -104,9 +154,9 @@ def _wave(
     given = [kind for kind in WAVEFORMS if kind in tree]
     if not given:
         return None
-    if len(given) > 1 or len(values) != 1 or 'until_s' not in tree:
+    if len(values) != 1 or 'until_s' not in tree:
         raise ConfigError(place.has(
-            f'has {" and ".join(given)}: needs one waveform, one value in set, and until_s'))
+            f'has {given[0]}: needs one value in set, and until_s'))
     kind, below = given[0], place / given[0]
     section = section_at(tree[kind], below)
     if MOVES in section:
@@ -180,7 +230,7 @@ def refuse_changes(faults: Sequence[Fault], run: RunConfig) -> None:
     """
     Refuse values that are each in range but not together, at the time of each change.
 
-    Waves are taken at their least, and then at their greatest values.
+    Waves and ramps are taken at one end of their values, and then at the other.
 
     Raises
     ------
@@ -188,7 +238,7 @@ def refuse_changes(faults: Sequence[Fault], run: RunConfig) -> None:
         Values do not fit together; the message has the time.
 
     """
-    for end in (0, -1) if any(fault.wave is not None for fault in faults) else (0,):
+    for end in (0, -1) if any(len(fault.extremes()) > 1 for fault in faults) else (0,):
         _refuse_steps([fault.extremes()[end] for fault in faults], run)
 
 

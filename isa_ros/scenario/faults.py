@@ -3,7 +3,8 @@ Faults and other changes of a scenario: declared parameters over time.
 
 A fault lies over the value of a parameter. From its end on there is what lies beneath: another
 fault that still lasts, the latest first, else what was tuned, before or meanwhile, else the value
-of the data sheet. A waveform is added to a value anew at each tick.
+of the data sheet. A waveform is added to a value anew at each tick; a ramp leads to it, and an
+intermittent fault comes and goes.
 """
 
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
@@ -15,6 +16,7 @@ from isa_ros.config.runs.run_config import RunConfig
 from isa_ros.config.text.yaml_text import Tree
 from isa_ros.core.changing_values import OFF, OVER
 from isa_ros.core.timebase import NS_PER_SECOND
+from isa_ros.scenario.fault_courses import Course
 from isa_ros.scenario.waveforms import MOVES, Waveform, WAVEFORMS
 
 
@@ -33,22 +35,33 @@ class Fault:
     """By the names that messages have, of `changing`, or by key of the supply."""
     wave: Waveform | None = None
     """What is added to the only value, from ``tick`` on."""
+    course: Course | None = None
+    """A ramp, or on and off; not with a waveform."""
 
     def at(self, tick: int, step_ns: int) -> Mapping[str, float]:
-        """Return the values at a tick at which it lasts."""
+        """Return the values at a tick at which it lasts; none while it is off."""
+        if self.course is not None:
+            return self.course.at(tick - self.tick, self.values)
         if self.wave is None:
             return self.values
         added = self.wave.at((tick - self.tick) * step_ns).effort
         return {name: value + added for name, value in self.values.items()}
 
     def ticks(self) -> Iterable[int]:
-        """Return the ticks at which values change."""
+        """Return the ticks at which values may change."""
+        if self.course is not None:
+            length = None if self.until is None else self.until - self.tick
+            ends = () if self.until is None else (self.until,)
+            return (*(self.tick + k for k in self.course.ticks_of(length)), *ends)
         if self.until is None:
             return (self.tick,)
         return (self.tick, self.until) if self.wave is None else range(self.tick, self.until + 1)
 
     def extremes(self) -> tuple['Fault', ...]:
-        """Return it with its least and with its greatest values; without a wave itself alone."""
+        """Return it with its values at two ends; itself alone if it has one set of values."""
+        if self.course is not None:
+            return tuple(replace(self, course=None, values=values)
+                         for values in self.course.extremes(self.values))
         if self.wave is None:
             return (self,)
         return tuple(replace(self, wave=None, values={
@@ -62,6 +75,8 @@ class Fault:
         tree: Tree = {'t_s': seconds(self.tick), self.of: self.target, 'set': dict(self.values)}
         if self.until is not None:
             tree['until_s'] = seconds(self.until)
+        if self.course is not None:
+            tree |= self.course.tree(step_ns)
         if self.wave is not None:
             kind = next(kind for kind, cls in WAVEFORMS.items() if cls is type(self.wave))
             tree[kind] = {key: value for key, value in self.wave.tree().items() if key != MOVES}

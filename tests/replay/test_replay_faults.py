@@ -87,6 +87,30 @@ def test_what_is_recorded_is_what_changed_at_its_tick(tmp_path):
     assert inputs.tuned_supplies == {30: {'pump.pump_flow_lpm': 0.0}}
 
 
+def test_ramps_and_intermittent_faults_replay_and_continue_byte_for_byte(tmp_path):
+    """With every value recorded at its tick; a run saved in the middle goes on in it."""
+    scenario = idle(RUN, 0.1).with_faults([
+        {'t_s': 0.02, 'actuator': 'knee', 'set': {'plant.sensors.force.bias': 500.0},
+         'ramp_s': 0.03, 'until_s': 0.07},
+        {'t_s': 0.01, 'actuator': 'hip', 'fault': 'load_cell_stuck', 'until_s': 0.09,
+         'intermittent': {'period_s': 0.004, 'duty': 0.5, 'seed': 2}},
+        {'t_s': 0.03, 'supply': 'pump', 'set': {'pressure_mpa': 12.0}, 'ramp_s': 0.02}])
+    bag = result_of(scenario).save(tmp_path / 'bag')
+    assert replayed(bag, tmp_path / 'again') == content(bag)
+    tuned = recorded_inputs(Bag(bag), RUN).tuned
+    assert list(tuned['knee']) == [*range(21, 51), 70]
+    assert tuned['knee'][35] == {'plant.sensors.force.bias': pytest.approx(250.0)}
+    assert len(tuned['hip']) > 5
+    one = Simulation(scenario)
+    for _ in range(40):
+        one.step()
+    two = Simulation(scenario)
+    two.restore(one.snapshot())
+    for _ in range(60):
+        one.step(), two.step()
+    assert one.group.samples.tobytes() == two.group.samples.tobytes()
+
+
 def test_a_value_changed_by_a_program_replays_as_one_of_a_scenario(tmp_path):
     """The same bytes of messages, whether the fault was planned or came from `tune`."""
     planned = idle(RUN, 0.1).with_faults([
