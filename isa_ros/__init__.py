@@ -15,6 +15,7 @@ from typing import Any, TYPE_CHECKING
 
 if TYPE_CHECKING:
     from isa_ros.actuator.group import ActuatorGroup as ActuatorGroup
+    from isa_ros.analysis.signals.recorded_result import read as read
     from isa_ros.controller import Controller as Controller
     from isa_ros.controller import Setpoint as Setpoint
     from isa_ros.controller import State as State
@@ -34,11 +35,12 @@ _HOMES = {
     'Result': 'scripting.result', 'Run': 'scripting.run', 'Setpoint': 'controller',
     'Simulation': 'simulation', 'State': 'controller', 'Sweep': 'scripting.sweep',
     'TripWarning': 'tick.trips',
-    'conditions': 'core.conditions', 'load': 'scripting.run', 'sweep': 'scripting.sweep'}
+    'conditions': 'core.conditions', 'load': 'scripting.run',
+    'read': 'analysis.signals.recorded_result', 'sweep': 'scripting.sweep'}
 
 __all__ = [  # noqa: F822, the names are loaded by `__getattr__`
     'ActuatorGroup', 'Body', 'Controller', 'Result', 'Run', 'Setpoint', 'Simulation', 'State',
-    'Sweep', 'TripWarning', 'conditions', 'load', 'sweep']
+    'Sweep', 'TripWarning', 'conditions', 'load', 'read', 'sweep']
 
 
 def __getattr__(name: str) -> Any:

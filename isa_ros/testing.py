@@ -24,9 +24,9 @@ same versions. Both functions may also be imported and called.
 from collections.abc import Callable
 from pathlib import Path
 
-from isa_ros.analysis.report.events import recorded_events, trips
-from isa_ros.bag.provenance import VERSION
+from isa_ros.bag.provenance import CONFIGURATION, VERSION
 from isa_ros.bag.reader import Bag
+from isa_ros.config.recorded_run import recorded_run
 from isa_ros.config.text.yaml_text import Tree
 from isa_ros.errors import BagError, SimulationDiverged
 from isa_ros.replay.compare import Comparer, is_of_end, retyped
@@ -36,7 +36,9 @@ from isa_ros.replay.provenance_differences import (
     provenance_differences, records_of, records_of_bag)
 from isa_ros.replay.replay import replay
 from isa_ros.replay.tolerances import load_tolerances, Tolerances
+from isa_ros.run.events import trips_in
 from isa_ros.run.provenance import provenance_of
+from isa_ros.run.recorded import history_of
 from isa_ros.scripting.bag import ResultMessages
 from isa_ros.scripting.result import Result, simulated
 from isa_ros.scripting.run import Controllers, load
@@ -67,16 +69,17 @@ def assert_no_trips(run: Result | Path | str) -> None:
 
     """
     __tracebackhide__ = True
+    tripped = Tripped()
     if isinstance(run, Result):
-        tripped = Tripped()
         tripped.add(run.trips)
-        lines, name = tripped.lines(), repr(run)
+        name = repr(run)
     else:
-        lines = [f'{own.actuator}: {own.what} tripped at t = {own.t_s:.6f} s'
-                 for own in trips(recorded_events(Bag(Path(run))))]
+        bag = Bag(Path(run))
+        own = recorded_run(bag.provenance.configuration, f'{run}: {CONFIGURATION}').run
+        tripped.add(trips_in(own, history_of(bag, own)))
         name = str(run)
-    if lines:
-        raise AssertionError('\n'.join([f'{name}: a condition tripped', *lines]))
+    if tripped:
+        raise AssertionError('\n'.join([f'{name}: a condition tripped', *tripped.lines()]))
 
 
 def assert_replays(bag: Path | str, tolerances: Path | str | None = None) -> None:

@@ -7,12 +7,13 @@ It is published on ``~/device`` on change and once a second of simulated time.
 from collections.abc import Mapping
 
 from diagnostic_msgs.msg import DiagnosticStatus, KeyValue
-from isa_ros.core.conditions import conditions
+from isa_ros.core.conditions import BITS, conditions
 from isa_ros.core.device import (
-    event_name, FAULT, FAULT_REACTION, mode_name, QUICK_STOP, state_name)
+    event_name, EVENTS, FAULT, FAULT_REACTION, mode_name, MODES, QUICK_STOP, state_name, STATES)
 from msg_adapters.cdr import encode
 from msg_adapters.cdr_reader import decode
 from msg_adapters.diagnostics import DIGITS, Status
+import numpy as np
 
 TYPE = 'diagnostic_msgs/msg/DiagnosticStatus'
 TASK = 'device'
@@ -25,12 +26,38 @@ REASONS: Mapping[str, str] = {
     'reaction ends': 'the reaction has ended'}
 """Plain words for the event that led to a state."""
 
+_NUMBERS = {
+    'trip_time': 'last_fault_s', 'trip_value': 'last_fault_value',
+    'trip_level': 'last_fault_level', 'warning_time': 'last_warning_s', 'age': 'age_s',
+    **{field: field for field in (
+        'unused_setpoints', 'refused_requests', 'frames_lost_down', 'frames_lost_up',
+        'commands_dropped')}}
+"""The keys of numbers that are only told where there is something, by field of a `SAMPLE`."""
 _REMEDY = 'disabled until ~/clear_fault, which needs its cause to be gone'
 
 
 def words_of(bits: float) -> str:
     """Return the names of the conditions of a bit set in words; '' for none."""
     return ', '.join(name.replace('_', ' ') for name in conditions(bits))
+
+
+def bits_of(words: str) -> float:
+    """
+    Return the bit set of conditions in words; inverse of `words_of`.
+
+    Raises
+    ------
+    ValueError
+        A condition is not one of this version.
+
+    """
+    bits = 0
+    for name in words.split(', ') if words else ():
+        condition = name.replace(' ', '_')
+        if condition not in BITS:
+            raise ValueError(f'condition {name!r} is unknown')
+        bits |= 1 << BITS[condition]
+    return float(bits)
 
 
 def status(name: str, sample: Mapping[str, float]) -> DiagnosticStatus:
@@ -43,14 +70,13 @@ def status(name: str, sample: Mapping[str, float]) -> DiagnosticStatus:
     number = int(sample['device_state'])
     state, mode = state_name(number), mode_name(sample['device_mode'])
     tripped, warned = words_of(sample['trips']), words_of(sample['warnings'])
-    is_fault = number in (FAULT_REACTION, FAULT)
-    reason = tripped if tripped and is_fault else REASONS[event_name(sample['device_event'])]
+    reason = reason_of(sample)
     level, message = DiagnosticStatus.OK, f'{state}, mode {mode}: {reason}'
     if number in (QUICK_STOP, FAULT_REACTION) or warned or tripped:
         level = DiagnosticStatus.WARN
     if number == FAULT:
         level, message = DiagnosticStatus.ERROR, f'{state}: {reason}; {_REMEDY}'
-    if tripped and not is_fault:
+    if tripped and number not in (FAULT_REACTION, FAULT):
         message += f'; reacts to {tripped}'
     if warned:
         message += f'; warning: {warned}'
@@ -61,6 +87,14 @@ def status(name: str, sample: Mapping[str, float]) -> DiagnosticStatus:
     return DiagnosticStatus(
         level=level, name=name, message=message, hardware_id=name,
         values=[KeyValue(key=key, value=value) for key, value in values.items()])
+
+
+def reason_of(sample: Mapping[str, float] | np.void) -> str:
+    """Return in plain words what led to the state of a `SAMPLE`: an event, or what tripped."""
+    tripped = words_of(sample['trips'])
+    if tripped and int(sample['device_state']) in (FAULT_REACTION, FAULT):
+        return tripped
+    return REASONS[event_name(sample['device_event'])]
 
 
 def _more(sample: Mapping[str, float]) -> dict[str, str]:
@@ -101,6 +135,32 @@ def values(data: bytes) -> dict[str, str]:
 
     """
     return {pair.key: pair.value for pair in decode(data, DiagnosticStatus).values}
+
+
+def sample_fields(values_: Mapping[str, str]) -> dict[str, float]:
+    """
+    Return the fields of a `SAMPLE` that a status has, from its `values`.
+
+    Raises
+    ------
+    KeyError, ValueError
+        A value is missing, or is not one of a device of this version.
+
+    """
+    reason = values_['reason']
+    events = [event for event, words in REASONS.items() if words == reason]
+    found = {
+        'device_state': float(STATES.index(values_['state'])),
+        'device_mode': float(MODES.index(values_['mode'])),
+        'device_event': float(EVENTS.index(events[0] if events else 'trip')),
+        'warnings': bits_of(values_['warnings']), 'trips': bits_of(values_['faults']),
+        'state_since': float(values_['since_s']),
+        'first_trip': bits_of(values_.get('first_fault', '')),
+        'last_trip': bits_of(values_.get('last_fault', ''))}
+    for field, key in _NUMBERS.items():
+        found[field] = float(values_.get(key, 0.0))
+    found['is_stale'] = float(values_.get('is_stale') == 'true')
+    return found
 
 
 def joined(name: str, sample: Mapping[str, float]) -> Status:

@@ -163,14 +163,18 @@ def compare(options: Namespace) -> bool:
 def report(options: Namespace) -> bool:
     """Draw the figures of a bag; print what its devices did, and where its energy went."""
     from isa_ros.analysis.report.energy import energy_text
-    from isa_ros.analysis.report.events import events_text
-    from isa_ros.analysis.report.report import write_report
+    from isa_ros.analysis.report.events import events_text, recorded_events
+    from isa_ros.analysis.report.report import another_version, write_report
+    from isa_ros.analysis.signals.signals import read_signals
     from isa_ros.bag.reader import Bag
     bag: Path = options.bag
     page = options.out or (bag if bag.is_dir() else bag.parent) / 'report.html'
     for path in write_report(bag, page):
         print(path)
-    for table in (events_text(Bag(bag)), energy_text(bag)):
+    signals = read_signals(bag, needs_values=False)
+    if signals.problem:
+        print_line(another_version(signals))
+    for table in (events_text(recorded_events(Bag(bag), signals.run)), energy_text(bag)):
         if table:
             print(f'\n{table}')
     return True

@@ -71,6 +71,11 @@ _OF_SUPPLY = (SUPPLY_OIL, SUPPLY_RETURNED, PEAK, SUPPLY_ENERGY, PUMP, HELD, SUPP
               RETURN, STORED)
 
 
+def entries_of(is_supply: bool) -> tuple[AccountEntry, ...]:
+    """Return the entries of the account of an actuator or a supply that are fields of a sample."""
+    return _OF_SUPPLY if is_supply else _OF_ACTUATOR
+
+
 def accounts_of(
         actuators: Sequence[str], samples: Records, supplies: Sequence[str],
         supply_samples: Records, t_ns: int) -> dict[str, Account]:

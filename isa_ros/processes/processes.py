@@ -10,7 +10,6 @@ import subprocess
 import sys
 import time
 
-import isa_ros
 from isa_ros.config.runs.run_config import RunConfig
 from isa_ros.errors import RunError
 from isa_ros.processes.forked import can_fork, Forked
@@ -27,7 +26,7 @@ END_S = 3.0
 """Host time from SIGTERM to SIGKILL."""
 
 _POLL_S = 0.01
-_ROOT = Path(isa_ros.__file__).parents[1]
+_ROOT = Path(__file__).parents[2]
 
 ParameterValue = bool | int | float | str | list[str] | tuple[str, ...]
 

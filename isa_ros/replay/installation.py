@@ -5,7 +5,8 @@ They are versions, the format of the provenance, and keys of the configuration. 
 that prevent a simulation are found before it starts.
 """
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
+import re
 from typing import NamedTuple
 
 from isa_ros.bag.provenance import (
@@ -20,6 +21,7 @@ from isa_ros.run.provenance import recorded_versions
 from msg_adapters.definitions import definition
 
 _NAMED = 3  # obstacles listed in the error message
+_ACTUATOR = re.compile(r'actuators\.[^.]+\.')
 
 
 class InstallationDifference(NamedTuple):
@@ -54,21 +56,35 @@ def differences(bag: Bag) -> list[InstallationDifference]:
     return found
 
 
-def refuse_obstacles(bag: Bag, found: list[InstallationDifference]) -> None:
+def obstacles(found: Sequence[InstallationDifference]) -> list[str]:
+    """Return the lines that say why a bag cannot be simulated here, sorted; [] if it can."""
+    return grouped([difference.text for difference in found if difference.is_obstacle])
+
+
+def refuse_obstacles(bag: Bag, lines: Sequence[str]) -> None:
     """
-    Refuse a bag that cannot be simulated here.
+    Refuse a bag that cannot be simulated here, for these reasons, if there are any.
 
     Raises
     ------
     BagError
-        The bag has obstacles; the message lists the first few.
+        The message has the first few.
 
     """
-    obstacles = [difference.text for difference in found if difference.is_obstacle]
-    if obstacles:
-        more = len(obstacles) - _NAMED
-        reasons = '; '.join(obstacles[:_NAMED]) + (f'; and {more} more' if more > 0 else '')
-        raise BagError(f'{bag.path}: cannot be simulated by this version: {reasons}')
+    if lines:
+        more = len(lines) - _NAMED
+        reasons = '; '.join(lines[:_NAMED]) + (f'; and {more} more' if more > 0 else '')
+        raise BagError(f'{bag.path}: cannot be simulated by this version: {reasons}; `isa report` '
+                       'and isa_ros.read show what it recorded')
+
+
+def grouped(lines: Sequence[str]) -> list[str]:
+    """Return sorted lines, of those that differ by the actuator one that says of how many."""
+    alike: dict[str, list[str]] = {}
+    for line in lines:
+        alike.setdefault(_ACTUATOR.sub('actuators.*.', line), []).append(line)
+    return sorted(f'{line} ({len(own)} times)' if len(own) > 1 else own[0]
+                  for line, own in alike.items())
 
 
 class TopicDifferences(NamedTuple):

@@ -19,7 +19,8 @@ from isa_ros.core.signals import Records
 from isa_ros.errors import BagError, SetpointError
 from isa_ros.replay.compare import Comparer
 from isa_ros.replay.difference import Report
-from isa_ros.replay.installation import differences, refuse_obstacles, topic_differences
+from isa_ros.replay.installation import (
+    differences, obstacles, refuse_obstacles, topic_differences)
 from isa_ros.replay.tolerances import Tolerances
 from isa_ros.run.coordinator import Interrupted
 from isa_ros.run.local_run import LocalRun
@@ -69,7 +70,7 @@ def replay(
     Simulate a bag again and compare, up to the first difference.
 
     ``print_line`` is called with each difference between this installation and the bag's before
-    the simulation starts.
+    the simulation starts, of those that make it impossible with these only.
 
     Raises
     ------
@@ -82,10 +83,11 @@ def replay(
     if bag.number is not None:
         raise BagError(f'{bag.path}: is file {bag.number} of a split bag, replay its directory')
     found = differences(bag)
+    impossible = obstacles(found)
     changes = [difference.text for difference in found]
-    for line in changes:
+    for line in impossible or changes:
         print_line(line)
-    refuse_obstacles(bag, found)
+    refuse_obstacles(bag, impossible)
     again = Rerun(bag)
     topics = topic_differences(bag, again.topics)
     for line in topics.lines:

@@ -3,14 +3,14 @@
 from collections.abc import Iterator, Mapping
 from functools import cached_property
 from pathlib import Path
-from typing import Any
+from typing import Any, TYPE_CHECKING
 
 from isa_ros.core.accounts import Account, accounts_of
 from isa_ros.core.fields import units_of
 from isa_ros.core.signals import SAMPLE_FIELDS
 from isa_ros.core.suggest import alternatives
 from isa_ros.core.timebase import NS_PER_SECOND
-from isa_ros.errors import AnalysisError
+from isa_ros.errors import AnalysisError, BagError
 from isa_ros.scenario.scenario import Scenario
 from isa_ros.scripting.log import Log, LogSink
 from isa_ros.simulation import Simulation
@@ -19,6 +19,9 @@ from isa_ros.text.progress import Progress
 from isa_ros.tick.trips import Trip, trips_of
 import numpy as np
 from numpy.typing import NDArray
+
+if TYPE_CHECKING:
+    from isa_ros.run.events import Event
 
 LINK = 'link'
 
@@ -36,16 +39,22 @@ class Result(Mapping[str, NDArray[np.float64]]):
 
     def __init__(
             self, scenario: Scenario, log: Log,
-            body_units: Mapping[str, Mapping[str, str]]) -> None:
+            body_units: Mapping[str, Mapping[str, str]], bag: Path | None = None,
+            problem: str = '') -> None:
         self.scenario = scenario
         """The simulated scenario."""
+        self.bag = bag
+        """The bag that it was read from; None: it was simulated."""
+        self.problem = problem
+        """The reason why the configuration of a bag cannot be read here; or ''."""
         self.log = log
         """The rows that the columns are views of."""
         run = scenario.run
         self.time: NDArray[np.float64] = (
             np.arange(len(log.samples)) * run.step_ns / NS_PER_SECOND)
         """Time of the samples, s, (n + 1,)."""
-        self.units: Mapping[str, str] = dict(self._units(body_units))
+        self.units: Mapping[str, str] = {
+            name: unit for name, unit in self._units(body_units) if name in self._columns}
         """Unit of every name."""
 
     def _units(
@@ -76,6 +85,9 @@ class Result(Mapping[str, NDArray[np.float64]]):
         for source, rows in sources:
             for field in rows.dtype.names or ():
                 columns[f'{source}.{field}'] = rows[field]
+        if self.bag is not None:    # no message has what is nowhere a number
+            columns = {name: column for name, column in columns.items()
+                       if not np.isnan(column).all()}
         for column in columns.values():
             column.flags.writeable = False
         return columns
@@ -108,8 +120,27 @@ class Result(Mapping[str, NDArray[np.float64]]):
     @cached_property
     def trips(self) -> list[Trip]:
         """Return what tripped, in the order of time: actuator, condition, time, value, level."""
-        return trips_of(self.log.samples, [
+        return trips_of(self.log.samples[self._with_device], [
             (own.name, own.sheet.is_rotary) for own in self.scenario.run.actuators])
+
+    @cached_property
+    def _with_device(self) -> NDArray[np.intp]:
+        """Return the samples that say what the devices do: all, of a bag those from a message."""
+        return np.flatnonzero(~np.isnan(self.log.samples['device_state']).any(axis=1))
+
+    @cached_property
+    def events(self) -> 'list[Event]':
+        """
+        Return what happened, in the order of time: time, source, kind, what.
+
+        Trips, warnings, states, refusals, cavities, and faults and other changes of parameters;
+        those of the bag of the run are the same.
+        """
+        from isa_ros.run.events import events_in, History  # import messages
+        log = self.log
+        return events_in(self.scenario.run, History(
+            self._with_device.tolist(), log.samples[self._with_device], log.tuned,
+            log.tuned_supplies))
 
     def _flat(self) -> Iterator[tuple[str, NDArray[np.float64]]]:
         """Yield every column of numbers; ``name[k]`` for those of an array."""
@@ -160,11 +191,15 @@ class Result(Mapping[str, NDArray[np.float64]]):
         ------
         BagError
             The directory already exists and ``overwrite`` is not set, or it cannot be created; or
-            a body was given by the caller, whose ports a bag does not have.
+            a body was given by the caller, whose ports a bag does not have; or the result was
+            read from a bag.
         RunError
             The bag cannot be written.
 
         """
+        if self.bag is not None:
+            raise BagError(f'{directory}: not written, the result was read from {self.bag}, which '
+                           'is its bag')
         from isa_ros.scripting.bag import save  # imports messages, which only bags need
         return save(self.scenario, self.log, Path(directory), overwrite)
 

@@ -31,21 +31,30 @@ class Trip(NamedTuple):
     t_s: float
     """Time of the conversion at which it tripped."""
     value: float | None
-    """Its quantity then, SI; None: another condition tripped later in the same tick."""
+    """Its quantity then, SI; None: not known, as of all but the last in a tick."""
     level: float | None
     """The level that it was beyond."""
     unit: str
     state: str
     """Of the device at the end of that tick."""
 
-    def __str__(self) -> str:
+    @property
+    def what(self) -> str:
+        """Return the condition, with its quantity and level where they are known."""
+        return f'{self.condition}{self._quantity}'
+
+    @property
+    def _quantity(self) -> str:
+        if self.value is None or self.level is None:
+            return ''
         condition = CONDITIONS[BITS[self.condition]]
-        line = f'{self.actuator}: {self.condition} tripped at t = {self.t_s:.6f} s'
-        if self.value is not None and self.level is not None:
-            value, level = (quantity(digits(number, _DIGITS), self.unit)
-                            for number in (self.value, self.level))
-            line += f', {condition.quantity} {value} {">" if condition.is_above else "<"} {level}'
-        return f'{line}: {self.state}'
+        value, level = (quantity(digits(number, _DIGITS), self.unit)
+                        for number in (self.value, self.level))
+        return f', {condition.quantity} {value} {">" if condition.is_above else "<"} {level}'
+
+    def __str__(self) -> str:
+        return (f'{self.actuator}: {self.condition} tripped at t = {self.t_s:.6f} s'
+                f'{self._quantity}: {self.state}')
 
 
 class _Repeated:
@@ -123,7 +132,7 @@ class TripFinder:
         last, = conditions(float(sample['last_trip']))
         new = int(sample['trips']) & ~int(self._trips[row])
         for condition in (*(other for other in conditions(new) if other != last), last):
-            is_last = condition == last
+            is_last = condition == last and not np.isnan(sample['trip_value'])
             unit = CONDITIONS[BITS[condition]].unit
             yield Trip(
                 name, condition, t_s, float(sample['trip_value']) if is_last else None,
@@ -163,6 +172,8 @@ class TripLog(RowSink):
 def trips_of(samples: Records, actuators: Sequence[tuple[str, bool]]) -> list[Trip]:
     """Return the trips of a log, `SAMPLE` (n + 1, n_actuators), in their order."""
     finder = TripFinder(actuators)
+    if not len(samples):
+        return []
     finder.begin(samples[0])
     times = samples['trip_time']
     changed = np.flatnonzero((times[1:] != times[:-1]).any(axis=1)) + 1

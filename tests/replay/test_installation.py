@@ -96,7 +96,23 @@ def test_key_that_is_unknown_here_is_named_and_not_simulated(here, replayed, tmp
     code, lines, error = replayed(bag)
     expected = 'configuration.yaml: actuators.rotor.sheet.reu.force.magic is unknown here'
     assert (code, lines) == (2, [expected])
-    assert error == f'isa: {bag / "new_0.mcap"}: cannot be simulated by this version: {expected}\n'
+    assert error == (
+        f'isa: {bag / "new_0.mcap"}: cannot be simulated by this version: {expected}; `isa '
+        'report` and isa_ros.read show what it recorded\n')
+
+
+def test_what_is_harmless_is_not_said_of_a_bag_that_cannot_be_simulated(
+        here, replayed, tmp_path):
+    """Keys of several actuators are one line; lines are sorted."""
+    def older(text: str) -> str:
+        text = edited(r'^seed: 0\n', '')(text)     # harmless
+        text = edited(r'^( +)kf: (.*)$', r'\1kf: \2\n\1wonder: 2.0\n\1magic: 1.0')(text)
+        return edited(r'^  rotor:\n((?:    .*\n)+)', r'  left:\n\1  rotor:\n\1')(text)
+    code, lines, error = replayed(rewrite(here, tmp_path / 'old', configuration=older))
+    assert (code, lines) == (2, [
+        'configuration.yaml: actuators.*.sheet.reu.force.magic is unknown here (2 times)',
+        'configuration.yaml: actuators.*.sheet.reu.force.wonder is unknown here (2 times)'])
+    assert 'wonder is unknown here (2 times); `isa report` and isa_ros.read' in error
 
 
 def test_key_that_the_bag_lacks_is_named_and_not_simulated(here, replayed, tmp_path):
@@ -133,7 +149,7 @@ def test_every_difference_has_its_line_and_the_error_names_three(here, replayed,
     bag = rewrite(here, tmp_path / 'new', configuration=lambda text: text + keys)
     code, lines, error = replayed(bag)
     assert (code, len(lines)) == (2, 5)
-    assert error.endswith('new_2 is unknown here; and 2 more\n')
+    assert 'new_2 is unknown here; and 2 more; `isa report`' in error
 
 
 def test_topic_that_the_bag_lacks_is_said_and_the_rest_compared(here, replayed, tmp_path):

@@ -56,8 +56,8 @@ def test_a_run_in_which_none_trips_is_silent(recwarn):
 def test_a_users_test_asserts_that_none_tripped_in_a_result_or_a_bag(result, tmp_path):
     bag = result.save(tmp_path / 'bag')
     for run, line in ((result, 'ram: load_cell_implausible tripped at t = 0.08'),
-                      (bag, 'ram: load cell implausible tripped at t = 0.08'),
-                      (str(bag), 'ram: load cell implausible tripped')):
+                      (bag, 'ram: load_cell_implausible tripped at t = 0.08'),
+                      (str(bag), 'ram: load_cell_implausible tripped')):
         with pytest.raises(AssertionError, match=line):
             assert_no_trips(run)
     assert_no_trips(RIG.simulate(0.02))

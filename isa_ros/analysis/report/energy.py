@@ -4,8 +4,9 @@ from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import NamedTuple
 
+from isa_ros.bag.provenance import CONFIGURATION
 from isa_ros.bag.reader import Bag
-from isa_ros.config.runs.run_config import RunConfig
+from isa_ros.config.recorded_run import recorded_run
 from isa_ros.core.accounts import (
     Account, CROSS_PORT, DAMPING, ENERGY, FRICTION, LEAKAGE, MEAN, OIL, PEAK, RELIEF, STORED,
     THROTTLING, WORK)
@@ -48,7 +49,8 @@ def recorded_accounts(bag: Bag) -> Accounts | None:
         return None
     try:
         found = diagnostics.values(last.data, run_diagnostics.ENERGY)
-        start_ns = RunConfig.from_yaml(bag.provenance.configuration).start_ns
+        start_ns = recorded_run(
+            bag.provenance.configuration, f'{bag.path}: {CONFIGURATION}').run.start_ns
         return Accounts((last.t_ns - start_ns) / NS_PER_SECOND, {
             name: {key: float(value) for key, value in account.items()}
             for name, account in found.items()})

@@ -2,10 +2,10 @@
 
 from collections.abc import Sequence
 
-from isa_ros.analysis.report.events import DeviceEvent
 from isa_ros.analysis.signals.signals import Signal, Signals
 from isa_ros.config.runs.run_config import ActuatorConfig
 from isa_ros.core.units import MPA
+from isa_ros.run.events import Event, TRIP
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 import numpy as np
@@ -13,32 +13,36 @@ import numpy as np
 
 _TRIP = 'C3'
 _MOST_MARKS = 20
+_OF_LEG = ('position', 'torque', 'foot_force')
 
 
-def figures(signals: Signals, trips: Sequence[DeviceEvent] = ()) -> dict[str, Figure]:
+def figures(signals: Signals, events: Sequence[Event] = ()) -> dict[str, Figure]:
     """
     Return the figures of a run by name: the leg first, then every actuator.
 
-    A line at each of the ``trips`` of an actuator is drawn in its figure.
+    A line at each trip of an actuator among ``events`` is drawn in its figure.
     """
     drawn = {}
-    if signals.run.leg is not None:
+    if signals.run.leg is not None and (
+            not signals.problem or {f'body.{name}' for name in _OF_LEG} <= set(signals)):
         drawn['leg'] = leg_figure(signals)
     for actuator in signals.run.actuators:
         drawn[actuator.name] = actuator_figure(actuator, signals)
-        _mark(drawn[actuator.name], [own for own in trips if own.actuator == actuator.name])
+        _mark(drawn[actuator.name], [
+            own for own in events if (own.kind, own.source) == (TRIP, actuator.name)])
     return drawn
 
 
-def _mark(figure: Figure, trips: Sequence[DeviceEvent]) -> None:
+def _mark(figure: Figure, trips: Sequence[Event]) -> None:
     """Draw a line at each trip through all axes of a figure, with its condition in the first."""
     for k, ax in enumerate(figure.axes):
         for trip in trips[:_MOST_MARKS]:
             ax.axvline(trip.t_s, color=_TRIP, linewidth=0.8)
             if k == 0:
                 ax.annotate(
-                    trip.what, (trip.t_s, 1.0), xycoords=('data', 'axes fraction'), fontsize=7,
-                    rotation=90, va='top', ha='right', color=_TRIP)
+                    trip.what.partition(',')[0], (trip.t_s, 1.0),
+                    xycoords=('data', 'axes fraction'), fontsize=7, rotation=90, va='top',
+                    ha='right', color=_TRIP)
 
 
 def actuator_figure(actuator: ActuatorConfig, signals: Signals) -> Figure:
@@ -70,7 +74,7 @@ def leg_figure(signals: Signals) -> Figure:
     """Draw joint angles, joint torques and the ground's force on the foot over time."""
     figure, (angle, torque, contact) = stack(3, 'leg', 6.6)
     angles, torques, ground = (
-        signals.over_time(f'body.{name}') for name in ('position', 'torque', 'foot_force'))
+        signals.over_time(f'body.{name}') for name in _OF_LEG)
     for k, name in enumerate(('HAA', 'HFE', 'KFE')):
         angle.plot(angles.t, np.degrees(angles.values[:, k]), label=name)
         torque.plot(torques.t, torques.values[:, k], label=name)

@@ -6,8 +6,7 @@ import html
 from pathlib import Path
 
 from isa_ros.analysis.report.energy import energy_legend, energy_table, recorded_accounts
-from isa_ros.analysis.report.events import (
-    DeviceEvent, event_rows, recorded_events, trips)
+from isa_ros.analysis.report.events import event_rows, recorded_events
 from isa_ros.analysis.report.figures import figures
 from isa_ros.analysis.report.paper_figures import paper_figure
 from isa_ros.analysis.signals.signals import read_signals, Signals
@@ -18,6 +17,7 @@ from isa_ros.config.text.yaml_text import parse
 from isa_ros.core.atomic_file import replace_file
 from isa_ros.core.units import MPA
 from isa_ros.errors import BagError
+from isa_ros.run.events import Event
 from isa_ros.scenario.scenario import figure_of
 from isa_ros.text.page import png
 import numpy as np
@@ -47,12 +47,12 @@ def write_report(bag: Path, page: Path) -> list[Path]:
 
     """
     _refuse_others(page)
-    signals = read_signals(bag)
+    signals = read_signals(bag, needs_values=False)
     page.parent.mkdir(parents=True, exist_ok=True)
     written, images = [page], []
-    events = recorded_events(Bag(bag))
-    drawn = figures(signals, trips(events))
-    name_of_paper = figure_of(
+    events = recorded_events(Bag(bag), signals.run)
+    drawn = figures(signals, events)
+    name_of_paper = None if signals.problem else figure_of(
         parse(Bag(bag).provenance.scenario, SCENARIO), Place(SCENARIO))
     if name_of_paper is not None:
         drawn = {name_of_paper: paper_figure(name_of_paper, signals)} | drawn
@@ -111,11 +111,19 @@ def extremes(signals: Signals) -> list[tuple[str, float, float, str]]:
 
 def _summary(signals: Signals) -> str:
     run, end = signals.run, float(signals.time[-1])
-    return (f'{run.source}: {len(run.actuators)} actuators, {end:.3f} s of simulation time '
-            f'in steps of {run.step_ns / 1e6:g} ms.')
+    many = 's' if len(run.actuators) > 1 else ''
+    return (f'{run.source}: {len(run.actuators)} actuator{many}, {end:.3f} s of simulation time '
+            f'in steps of {run.step_ns / 1e6:g} ms.'
+            f'{f" {another_version(signals)}" if signals.problem else ""}')
 
 
-def _events(events: list[DeviceEvent]) -> str:
+def another_version(signals: Signals) -> str:
+    """Return a remark on signals whose configuration another version wrote."""
+    return ('Another version recorded this bag: its signals are as recorded, values of its '
+            f'configuration cannot be read here ({signals.problem})')
+
+
+def _events(events: list[Event]) -> str:
     """Return the table of what the devices did; one line if there is nothing."""
     if not events:
         return '<h2>Events</h2><p>No condition warned or tripped, no state changed.</p>'

@@ -13,7 +13,7 @@ from isa_ros.config.runs.run_config import RunConfig
 from isa_ros.core.constants import ATMOSPHERE
 from isa_ros.core.fields import units_of
 from isa_ros.core.signals import SAMPLE_FIELDS
-from isa_ros.errors import BagError
+from isa_ros.errors import BagError, ConfigError
 from isa_ros.run.body_messages import by_field
 from isa_ros.scripting.result import Result
 from isa_ros.surroundings.supply import SUPPLY_FIELDS
@@ -57,8 +57,10 @@ class Signals(Mapping[str, Values]):
 
     def __init__(
             self, run: RunConfig, signals: Mapping[str, Signal], time: Values,
-            source: str) -> None:
+            source: str, problem: str = '') -> None:
         self.run = run
+        self.problem = problem
+        """As `RecordedRun.problem`: if there is one, ``run`` has names and kinds only."""
         self.time = time
         """Every tick, s."""
         self._signals = signals
@@ -114,20 +116,24 @@ def signals_of(result: Result) -> Signals:
         run, {name: Signal(time, result[name]) for name in result}, time, result.scenario.name)
 
 
-def read_signals(bag: Path) -> Signals:
+def read_signals(bag: Path, *, needs_values: bool = True) -> Signals:
     """
-    Return the signals of a bag.
+    Return the signals of a bag; without ``needs_values`` also where only names can be read.
 
     Raises
     ------
     BagError
         As `read_traces`, or the bag has no samples.
+    ConfigError
+        Another version wrote the configuration, and its values are needed.
 
     """
-    run, traces = read_traces(bag)
+    (run, problem), traces = read_traces(bag)
+    if problem and needs_values:
+        raise ConfigError(problem)
     if '/clock' not in traces:
         raise BagError(f'{bag}: has no samples')
-    return Signals(run, dict(_named(run, traces)), traces['/clock'].t, str(bag))
+    return Signals(run, dict(_named(run, traces)), traces['/clock'].t, str(bag), problem)
 
 
 def _named(run: RunConfig, traces: Mapping[str, Trace]) -> Iterator[tuple[str, Signal]]:
@@ -135,7 +141,7 @@ def _named(run: RunConfig, traces: Mapping[str, Trace]) -> Iterator[tuple[str, S
     for actuator in run.actuators:
         for name, (suffix, path) in _ACTUATOR.items():
             trace = traces.get(f'/{actuator.name}/{suffix}')
-            if trace is not None:
+            if trace is not None and trace.has([path]):
                 yield f'{actuator.name}.{name}', _signal(trace, path)
     for supply in run.supplies:
         for name in _SUPPLY:
@@ -148,6 +154,8 @@ def _named(run: RunConfig, traces: Mapping[str, Trace]) -> Iterator[tuple[str, S
             trace = traces.get(message.topic)
             if trace is not None:
                 for name, paths in by_field(message):
+                    if not trace.has(paths):
+                        continue
                     yield f'{body.name}.{name}', (_vector(trace, paths) if fields[name].shape
                                                   else _signal(trace, paths[0]))
 

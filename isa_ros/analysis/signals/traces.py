@@ -4,8 +4,9 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
+from isa_ros.bag.provenance import CONFIGURATION
 from isa_ros.bag.reader import Bag
-from isa_ros.config.runs.run_config import RunConfig
+from isa_ros.config.recorded_run import recorded_run, RecordedRun
 from isa_ros.errors import BagError
 from msg_adapters import applied_parameters, device, diagnostics, event
 from msg_adapters.cdr_reader import message_class
@@ -26,10 +27,14 @@ class Trace:
     def __getitem__(self, path: str) -> np.ndarray:
         return self.fields[path]
 
+    def has(self, paths: Sequence[str]) -> bool:
+        """Return whether its messages have all these fields, as those of this version do."""
+        return set(paths) <= set(self.fields.dtype.names or ())
 
-def read_traces(path: Path) -> tuple[RunConfig, dict[str, Trace]]:
+
+def read_traces(path: Path) -> tuple[RecordedRun, dict[str, Trace]]:
     """
-    Return the configuration stored in a bag and every topic of signals in it by name.
+    Return the run of a bag to read it by, and every topic of signals in it by name.
 
     Raises
     ------
@@ -45,9 +50,9 @@ def read_traces(path: Path) -> tuple[RunConfig, dict[str, Trace]]:
             continue
         times.setdefault(message.topic, []).append(message.t_ns)
         messages.setdefault(message.topic, []).append(message.data)
-    run = RunConfig.from_yaml(bag.provenance.configuration)
-    return run, {
-        topic: Trace(seconds(np.array(times[topic]) - run.start_ns),
+    found = recorded_run(bag.provenance.configuration, f'{path}: {CONFIGURATION}')
+    return found, {
+        topic: Trace(seconds(np.array(times[topic]) - found.run.start_ns),
                      columns(messages[topic], bag.types[topic], f'{path}: {topic}'))
         for topic in times}
 

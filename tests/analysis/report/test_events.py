@@ -1,53 +1,89 @@
-"""The events of a report: what the messages of the devices of a bag show."""
+"""The events of a report: what the bag of a run shows of them, and its result in memory."""
 
-from isa_ros.analysis.report.events import (
-    DeviceEvent, event_rows, events_text, MOST, recorded_events, trips)
+import isa_ros
+from isa_ros.analysis.report.events import event_rows, events_text, MOST, recorded_events
 from isa_ros.analysis.report.report import write_report
 from isa_ros.bag.reader import Bag
+from isa_ros.run.events import Event
 from isa_ros.scripting.run import load
 from isa_ros.tick.trips import TripWarning
 import pytest
 
-RIG = load('rig_linear', {'name': 'short', 'duration_s': 0.2, 'tracks': {'ram': [
-    {'t_s': 0.0, 'position': 'hold'}, {'t_s': 0.12, 'clear_fault': True},
-    {'t_s': 0.15, 'clear_fault': True, 'enabled': True}]}})
+WAVE = {'amplitude': 200.0, 'frequency_hz': 20.0}
+RIG = load('rig_linear', {
+    'name': 'short', 'duration_s': 0.28, 'tracks': {'ram': [
+        {'t_s': 0.0, 'position': 'hold'}, {'t_s': 0.12, 'clear_fault': True},
+        {'t_s': 0.125, 'position': 0.05}, {'t_s': 0.126, 'position': 0.05},
+        {'t_s': 0.15, 'clear_fault': True, 'enabled': True}]},
+    'changes': [
+        {'t_s': 0.2, 'actuator': 'ram', 'set': {'load.force': 0}, 'sine': WAVE, 'until_s': 0.25},
+        {'t_s': 0.26, 'supply': 'supply', 'set': {'pressure_mpa': 19.0}}]})
 FAULT = {'t_s': 0.03, 'actuator': 'ram', 'until_s': 0.13,
          'set': {'plant.sensors.pressure_a.bias': -1e8}}
+HAPPENED = [
+    ('ram', 'state', 'enabled: initialised'),
+    ('ram', 'change', 'plant.sensors.pressure_a.bias = -100000000 Pa'),
+    ('ram', 'trip', 'load_cell_implausible, force that the pressures do not explain 2956 N > '
+     '1000 N'),
+    ('ram', 'warning', 'load_cell_implausible'), ('ram', 'state', 'fault: load cell implausible'),
+    ('ram', 'refused', '1 request to enable, clear or stop refused in its state'),
+    ('ram', 'refused', '2 setpoints not followed: not enabled'),
+    ('ram', 'change', 'plant.sensors.pressure_a.bias = 0 Pa'),
+    ('ram', 'state', 'enabled: enabled by command'),
+    ('ram', 'change', 'load.force = 25.07 N, then at every tick until t = 0.250000 s: 0 N'),
+    ('supply', 'change', 'pressure_mpa = 19 MPa')]
 
 
 @pytest.fixture(scope='module')
-def bag(tmp_path_factory):
+def result():
     with pytest.warns(TripWarning):
-        result = RIG.simulate(faults=[FAULT])
+        return RIG.simulate(faults=[FAULT])
+
+
+@pytest.fixture(scope='module')
+def bag(result, tmp_path_factory):
     return result.save(tmp_path_factory.mktemp('events') / 'bag')
 
 
-def test_trips_warnings_and_states_are_in_their_order(bag):
+def test_a_result_has_all_that_happened_in_the_order_of_time(result):
     """The state at t = 0 is no event; the clear at 0.12 s is refused, its cause is there."""
-    found = recorded_events(Bag(bag))
-    assert [(own.kind, own.what) for own in found] == [
-        ('state', 'enabled: initialised'),
-        ('trip', 'load cell implausible'), ('warning', 'load cell implausible'),
-        ('state', 'fault: load cell implausible'), ('state', 'enabled: enabled by command')]
-    assert [own.t_s for own in trips(found)] == [found[3].t_s]
-    assert 0.08 < found[3].t_s < 0.081 and 0.15 <= found[4].t_s < 0.151
+    assert [(own.source, own.kind, own.what) for own in result.events] == HAPPENED
+    times = [own.t_s for own in result.events]
+    assert times == sorted(times)
+    by_kind = dict(zip([own.what.partition(' ')[0] for own in result.events], times))
+    assert times[1] == 0.03 and times[7] == 0.13 and times[9] == 0.201 and times[10] == 0.26
+    assert times[5] == 0.121 and by_kind['2'] == 0.126
+    assert 0.08 < times[2] == times[4] < 0.081 and 0.15 <= times[8] < 0.151
+
+
+def test_a_bag_has_the_same_events_and_trips_as_the_result(bag, result):
+    """Times in messages have 6 decimals, and numbers 9 digits; counts come with a device's."""
+    recorded = recorded_events(Bag(bag), RIG.configuration)
+    assert sorted(own[1:] for own in recorded) == sorted(HAPPENED)
+    again = isa_ros.read(bag)
+    assert again.events == recorded
+    for one, other in zip(again.trips, result.trips, strict=True):
+        assert str(one) == str(other) and one.t_s == pytest.approx(other.t_s, abs=1e-6)
+    exact = [own for own in result.events if own.kind != 'refused']
+    for one, other in zip([own for own in recorded if own.kind != 'refused'], exact, strict=True):
+        assert one.t_s == pytest.approx(other.t_s, abs=1e-6)
 
 
 def test_a_report_has_them_as_a_table_and_marks_the_trips_in_the_figure(bag, tmp_path):
     page, *_ = write_report(bag, tmp_path / 'report.html')
     text = page.read_text()
-    assert '<h2>Events</h2><table>' in text and '<td>load cell implausible</td>' in text
-    assert events_text(Bag(bag)).splitlines()[0].split() == ['t,', 's', 'actuator', 'what']
+    assert '<h2>Events</h2><table>' in text and '<td>load_cell_implausible, force that' in text
+    assert events_text(isa_ros.read(bag).events).startswith('t, s      of')
 
 
 def test_a_run_without_events_says_so(tmp_path):
-    result = RIG.replace({'scenario.tracks.ram': [{'t_s': 0.0, 'position': 'hold'}]})
-    silent = result.replace({'actuators.ram.auto_enable': False}).simulate(0.01)
+    rig = load('rig_linear', changes={'actuators.ram.auto_enable': False})
+    silent = rig.simulate(0.01)
     bag = silent.save(tmp_path / 'bag')
-    assert [own.what for own in recorded_events(Bag(bag))] == ['disabled: initialised']
-    assert events_text(Bag(bag)).count('\n') == 1
+    assert [own.what for own in isa_ros.read(bag).events] == ['disabled: initialised']
+    assert events_text(silent.events).count('\n') == 1 and events_text([]) == ''
 
 
 def test_a_table_of_very_many_events_is_cut():
-    rows = event_rows([DeviceEvent(0.1, 'ram', 'trip', 'overload')] * (MOST + 3))
+    rows = event_rows([Event(0.1, 'ram', 'trip', 'overload')] * (MOST + 3))
     assert len(rows) == MOST + 2 and rows[-1][-1] == 'and 3 more'

@@ -15,7 +15,8 @@ GOLDEN = Path(__file__).parents[2] / 'golden' / 'leg_touchdown'
 
 def test_arrays_hold_what_the_messages_say():
     """Every value read by its offset equals the decoded message's."""
-    run, traces = read_traces(GOLDEN)
+    (run, problem), traces = read_traces(GOLDEN)
+    assert problem == ''
     assert [actuator.name for actuator in run.actuators] == ['haa', 'hfe', 'kfe']
     messages = [m for m in Bag(GOLDEN).messages() if m.topic == '/kfe/references']
     trace = traces['/kfe/references']

@@ -1,0 +1,146 @@
+"""
+What happened in a run: trips, warnings, states, refusals, cavities, and what was changed.
+
+Found in the samples of a run in memory, and in what its bag has of them, by the same functions;
+behind a link a bag has what has arrived.
+"""
+
+from collections.abc import Iterator, Mapping, Sequence
+from typing import NamedTuple
+
+from isa_ros.actuator.tunable import changing
+from isa_ros.config.runs.run_config import RunConfig
+from isa_ros.core.changeable import Changeable, changeables
+from isa_ros.core.conditions import conditions
+from isa_ros.core.device import state_name
+from isa_ros.core.signals import Records
+from isa_ros.core.timebase import NS_PER_SECOND
+from isa_ros.core.units import MILLILITRE, quantity
+from isa_ros.text.table import digits
+from isa_ros.tick.trips import counts_of, Trip, trips_of
+from msg_adapters.device import reason_of
+import numpy as np
+
+TRIP, WARNING, STATE = 'trip', 'warning', 'state'
+CHANGE, REFUSED, CAVITY = 'change', 'refused', 'cavity'
+SMALL = 1e-9
+"""Cavities below it, m3, are not told of: 1 mm3."""
+_DIGITS = 4
+_GAP = 2        # ticks between two values of a waveform: at an extreme two are equal
+_COUNTS = ('unused_setpoints', 'refused_requests')
+
+
+class Event(NamedTuple):
+    """Something that happened."""
+
+    t_s: float
+    """When: by the device's own time; of a count or cavity, of the first sample that has it."""
+    source: str
+    """The actuator, or the supply."""
+    kind: str
+    """`TRIP`, `WARNING`, `STATE`, `CHANGE`, `REFUSED` or `CAVITY`."""
+    what: str
+
+
+class History(NamedTuple):
+    """What events are found in; of a bag only the ticks at which the devices have messages."""
+
+    ticks: Sequence[int]
+    """Of the samples, ascending, (n,)."""
+    samples: Records
+    """`SAMPLE`, (n, n_actuators)."""
+    tuned: Mapping[int, Mapping[int, Mapping[str, float]]] = {}
+    """Changed parameters by sample, row and name."""
+    tuned_supplies: Mapping[int, Mapping[str, float]] = {}
+    """Those of the supplies, by sample and SUPPLY.KEY."""
+
+
+def trips_in(run: RunConfig, history: History) -> list[Trip]:
+    """Return what tripped, in the order of time."""
+    return trips_of(history.samples, [(own.name, own.sheet.is_rotary) for own in run.actuators])
+
+
+def events_in(run: RunConfig, history: History) -> list[Event]:
+    """Return what happened after the first sample, in the order of time."""
+    found = [*_changes(run, history)]
+    found += (Event(own.t_s, own.actuator, TRIP, own.what) for own in trips_in(run, history))
+    if len(history.ticks):
+        for row, actuator in enumerate(run.actuators):
+            samples = history.samples[:, row]
+            found += _of_device(actuator.name, samples)
+            found += _of_counts(actuator.name, samples, history.ticks, run.step_ns)
+    return sorted(found, key=lambda own: round(own.t_s * NS_PER_SECOND))
+
+
+def _of_device(name: str, samples: Records) -> Iterator[Event]:
+    """Yield new warnings and states of one actuator, its `SAMPLE` (n,)."""
+    changed = (samples['warnings'][1:] != samples['warnings'][:-1]) | (
+        samples['device_state'][1:] != samples['device_state'][:-1])
+    for k in np.flatnonzero(changed) + 1:
+        before, now = samples[k - 1], samples[k]
+        t_s = float(now['state_since'])
+        for condition in conditions(int(now['warnings']) & ~int(before['warnings'])):
+            yield Event(t_s, name, WARNING, condition)
+        if now['device_state'] != before['device_state']:
+            yield Event(
+                t_s, name, STATE, f'{state_name(now["device_state"])}: {reason_of(now)}')
+
+
+def _of_counts(
+        name: str, samples: Records, ticks: Sequence[int], step_ns: int) -> Iterator[Event]:
+    """Yield an event for each count that is not 0 at the end, and for the largest cavity."""
+    last = samples[-1:].copy()
+    for field in _COUNTS:
+        alone = last.copy()
+        for other in _COUNTS:
+            if other != field:
+                alone[other] = 0.0
+        for line in counts_of([name], alone):
+            yield Event(_since(samples[field] > 0.0, ticks, step_ns), name, REFUSED,
+                        line.partition(': ')[2])
+    largest = float(np.nanmax(samples['largest_cavity']))
+    if largest > SMALL:
+        yield Event(_since(samples['largest_cavity'] > SMALL, ticks, step_ns), name, CAVITY,
+                    f'vapour in a chamber, at most {digits(largest / MILLILITRE, _DIGITS)} ml')
+
+
+def _since(holds: np.ndarray, ticks: Sequence[int], step_ns: int) -> float:
+    """Return the time of the first sample for which something holds, s."""
+    return ticks[int(np.argmax(holds))] * step_ns / NS_PER_SECOND
+
+
+def _changes(run: RunConfig, history: History) -> Iterator[Event]:
+    """Yield faults and other changes of parameters; one that goes on at every tick is one."""
+    known: dict[str, Mapping[str, Changeable]] = {
+        own.name: changing(own.sheet, own.load) for own in run.actuators}
+    known |= {own.name: changeables(own.sheet) for own in run.supplies}
+    names = [own.name for own in run.actuators]
+    by_tick: dict[tuple[str, str], dict[int, float]] = {}
+    for tick, rows in history.tuned.items():
+        for row, values in rows.items():
+            for key, value in values.items():
+                by_tick.setdefault((names[row], key), {})[tick] = value
+    for tick, values in history.tuned_supplies.items():
+        for path, value in values.items():
+            supply, _, key = path.partition('.')
+            by_tick.setdefault((supply, key), {})[tick] = value
+    for (source, key), found in by_tick.items():
+        yield from _runs(source, key, found, known[source].get(key), run.step_ns)
+
+
+def _runs(source: str, key: str, values: Mapping[int, float], own: Changeable | None,
+          step_ns: int) -> Iterator[Event]:
+    """Yield the changes of one parameter, by sample; they took effect a tick before it."""
+    shown, scale, unit = (key, 1.0, '') if own is None else (own.key, own.scale, own.keyed.unit)
+    ticks = sorted(tick for tick in values if tick > 0)
+    first = 0
+    for k, tick in enumerate(ticks):
+        if k + 1 < len(ticks) and ticks[k + 1] <= tick + _GAP:
+            continue
+        begins = ticks[first]
+        text = f'{shown} = {quantity(digits(values[begins] / scale, _DIGITS), unit)}'
+        if tick > begins:
+            text += (f', then at every tick until t = {(tick - 1) * step_ns / NS_PER_SECOND:.6f} '
+                     f's: {quantity(digits(values[tick] / scale, _DIGITS), unit)}')
+        yield Event((begins - 1) * step_ns / NS_PER_SECOND, source, CHANGE, text)
+        first = k + 1

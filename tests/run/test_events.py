@@ -1,0 +1,69 @@
+"""Events in samples: cavities, counts and changes, each once."""
+
+from isa_ros.config.paths import CONFIG, find
+from isa_ros.config.runs.run_file import load_run
+from isa_ros.core.signals import SAMPLE
+from isa_ros.run.events import events_in, History, SMALL
+from msg_adapters import device
+import numpy as np
+import pytest
+
+RUN = load_run(find('rig_linear.yaml', CONFIG))
+
+
+def samples(n: int, **fields) -> np.ndarray:
+    """Return n `SAMPLE` rows of the rig's actuator with columns."""
+    rows = np.zeros((n, 1), SAMPLE)
+    for name, values in fields.items():
+        rows[name][:, 0] = values
+    return rows
+
+
+def happened(history: History) -> list[tuple]:
+    return [tuple(own) for own in events_in(RUN, history)]
+
+
+def test_the_largest_cavity_is_one_event_at_its_first_sample():
+    cavity = [0.0, SMALL, 2e-7, 3e-7, 3e-7]
+    assert happened(History([0, 2, 4, 6, 8], samples(5, largest_cavity=cavity))) == [
+        (0.004, 'ram', 'cavity', 'vapour in a chamber, at most 0.3 ml')]
+    assert happened(History(range(5), samples(5, largest_cavity=SMALL))) == []
+
+
+def test_each_count_is_one_event_from_its_first_sample_on():
+    history = History(range(4), samples(
+        4, unused_setpoints=[0, 0, 1, 7], refused_requests=[0, 2, 2, 2]))
+    assert happened(history) == [
+        (0.001, 'ram', 'refused', '2 requests to enable, clear or stop refused in its state'),
+        (0.002, 'ram', 'refused', '7 setpoints not followed: not enabled')]
+
+
+def test_a_value_that_changes_at_every_tick_is_one_event_and_has_the_units_of_its_key():
+    """A change in sample k took effect at tick k - 1; at t = 0 there is no tick before."""
+    forces = {0: 5.0, 1: 10.0, 2: 20.0, 4: 20.5, 9: 0.0}
+    history = History([], samples(0), {tick: {0: {'load.force': value}}
+                                       for tick, value in forces.items()},
+                      {3: {'supply.pressure_mpa': 12.5}})
+    assert happened(history) == [
+        (0.0, 'ram', 'change', 'load.force = 10 N, then at every tick until t = 0.003000 s: '
+         '20.5 N'),
+        (0.002, 'supply', 'change', 'pressure_mpa = 12.5 MPa'),
+        (0.008, 'ram', 'change', 'load.force = 0 N')]
+    gain = History([], samples(0), {1: {0: {'link.delay_cycles': 2.0, 'force.kp': 3e-7}}})
+    assert happened(gain) == [(0.0, 'ram', 'change', 'link.delay_cycles = 2 cycles'),
+                              (0.0, 'ram', 'change', 'reu.force.kp = 3e-07 m/N')]
+
+
+def test_the_fields_of_a_status_are_those_it_was_made_of():
+    """Bits, names and numbers; what a state says in words is its event, of a fault the trip."""
+    given = {
+        'device_state': 2, 'device_mode': 6, 'device_event': 5, 'warnings': 0b10010, 'trips': 4,
+        'state_since': 1.25, 'first_trip': 4, 'last_trip': 8, 'trip_time': 1.125,
+        'trip_value': -2.5, 'trip_level': 3.5, 'warning_time': 0.75, 'unused_setpoints': 3,
+        'refused_requests': 2, 'age': 0.25, 'is_stale': 1, 'frames_lost_down': 5,
+        'frames_lost_up': 6, 'commands_dropped': 7}
+    values = {own.key: own.value for own in device.status('ram', given).values}
+    assert device.sample_fields(values) == given
+    with pytest.raises(ValueError, match="condition 'moon' is unknown"):
+        device.bits_of('overload, moon')
+    assert device.bits_of('') == 0.0
