@@ -16,7 +16,7 @@ from isa_ros.text.marked import with_parts
 from isa_ros.text.table import markdown
 import numpy as np
 from scripts.measure_stops import (
-    accelerate, ACCUMULATOR, advance, rig, simulation_of, stop, Stopped)
+    accelerate, ACCUMULATOR, advance, memory_of, rig, simulation_of, stop, Stopped)
 
 PAGE = Path(__file__).resolve().parents[1] / 'docs' / 'protection.md'
 LEGS = ('haa', 'hfe', 'kfe')
@@ -131,18 +131,21 @@ def trunk(simulation: Simulation, seconds: float) -> tuple[np.ndarray, np.ndarra
 
 
 def _placed(shares: Mapping[str, float], seconds: float) -> tuple[Simulation, float]:
-    """Return the leg some time after its joints were sent by metres, and the trunk's speed."""
+    """Return the leg after its joints have moved by speeds in m/s, and the trunk's speed."""
     simulation = simulation_of('leg')
     starts = {name: float(simulation.samples[name].position) for name in LEGS}
     for name in LEGS:
         simulation.command(name, position=starts[name], **LEG_GAINS[name],
                            effort=float(simulation.samples[name].force))
     trunk(simulation, 1.0)
-    for name, way in shares.items():
-        own = simulation.group.actuators[simulation.names.index(name)].memory.reu['setpoint']
-        simulation.command(name, position=starts[name] + way, effort=float(own['effort'][0]))
-    if shares:
-        trunk(simulation, seconds)
+    efforts = {name: float(memory_of(simulation, name).reu['setpoint']['effort'][0])
+               for name in LEGS}
+    begin = simulation.t
+    while (after := simulation.t - begin) < seconds:
+        for name, speed in shares.items():
+            simulation.command(name, position=starts[name] + speed * after, velocity=speed,
+                               effort=efforts[name])
+        simulation.step()
     return simulation, float(simulation.body_sample.height_velocity)  # type: ignore[union-attr]
 
 
@@ -151,7 +154,7 @@ def _standing() -> tuple[Simulation, float]:
 
 
 def _squatting() -> tuple[Simulation, float]:
-    return _placed({'kfe': -0.01, 'hfe': 0.008}, 0.03)
+    return _placed({'kfe': -0.02, 'hfe': 0.016}, 0.15)
 
 
 def _landing() -> tuple[Simulation, float]:

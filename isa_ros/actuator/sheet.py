@@ -152,7 +152,7 @@ def actuator_record(sheet: ActuatorSheet, offset_steps: int) -> np.ndarray:
     reu = reu_record(
         sheet.reu, offset_steps, known[0].chambers.stroke, force_stiffness(known[0]),
         known_model(known[0], output_per_spool(sheet)),
-        valve_lag(known[0], sheet.reu), null_speed(known[0]),
+        valve_lag(known[0], sheet.reu), null_speed(known[0]), known[0].sensors.encoder,
         known[0].valve.k_spool, known[0].coil.parallel)
     reu['protection'] = protection_record(
         sheet.reu.protection, ratings_of(known[0]),

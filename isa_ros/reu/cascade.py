@@ -73,14 +73,15 @@ REU_STATE = np.dtype([
 
 def reu_record(
         reu: Reu, offset_steps: int, stroke: float, stiffness: np.ndarray,
-        model: np.record, lag: float, null_speed: float, k_spool: float,
+        model: np.record, lag: float, null_speed: float, resolution: float, k_spool: float,
         parallel: float) -> np.ndarray:
     """
     Return the `REU` record, shape (1,).
 
     ``stiffness`` (POINTS,) is the stiffness in the force loop over the stroke, ``model`` the
     `LINEARISED` record, a linearising block's and a stop's model of the actuator; ``lag`` of the
-    valve in s, and ``null_speed`` with its slope about null over the whole travel.
+    valve in s, ``null_speed`` with its slope about null over the whole travel, ``resolution`` of
+    the encoder.
     """
     record = np.zeros(1, REU)
     row = record[0]
@@ -104,7 +105,8 @@ def reu_record(
     row['stroke'], row['k_spool'], row['parallel'] = stroke, k_spool, parallel
     conversion = steps['current'] * PLANT_STEP
     row['rules'] = device_record(reu.device, reu, conversion, flow_stop_record(
-        model, stiffness, lag, null_speed, conversion, reu.device.quick_stop_deceleration))
+        model, stiffness, lag, null_speed, conversion, reu.device.quick_stop_deceleration,
+        resolution))
     row['is_frozen'], row['watchdog'] = reu.frozen, reu.watchdog_ms * MILLI
     return record
 

@@ -7,7 +7,8 @@ declared deceleration (`isa_ros.reu.stops`), holds it, and ends disabled; or it 
 once, or stays at rest until it is disabled or enabled. A trip of a protection starts its reaction,
 a quick stop or the outputs off, and ends in `fault`, which is kept until it is cleared, and
 cleared only once its cause is gone. A trip whose reaction is hold stops in the same way, but stays
-enabled. `isa_ros.reu.transitions` has the whole table; the kernel reads it as numbers.
+enabled; it is over no sooner than the load stands. `isa_ros.reu.transitions` has the whole table;
+the kernel reads it as numbers.
 
 Signs and units are those of the cascade.
 """
@@ -22,7 +23,8 @@ from isa_ros.core.signals import (
     HAS_CLEAR_FAULT, HAS_ENABLE, HAS_MODE, HAS_QUICK_STOP, HAS_REFERENCE, HAS_SETPOINT)
 from isa_ros.core.timebase import PLANT_STEP
 from isa_ros.reu.bumpless import FADE, start_setpoint, take_over
-from isa_ros.reu.flow_stop import FLOW_STOP, FLOW_STOP_STATE, watch_load
+from isa_ros.reu.flow_stop import (
+    FLOW_STOP, FLOW_STOP_STATE, has_stood, stands, watch_load)
 from isa_ros.reu.impedance import SETPOINT
 from isa_ros.reu.protection import DAMP as REACTS_BY_DAMP, DISABLE as REACTS_BY_DISABLE
 from isa_ros.reu.protection import HOLD as REACTS_BY_HOLD
@@ -42,7 +44,7 @@ DEVICE = np.dtype([
     ('initialisation', 'f8'),      # s
     ('ramps', 'i8'),               # 1: a quick stop brakes; 0: it closes the valve
     ('stays', 'i8'),               # 1: it stays at rest with the outputs on
-    ('hold', 'f8'),                # s
+    ('hold', 'f8'),                # conversions at rest until a quick stop ends
     ('period', 'f8'),              # between two steps of the device, s
     ('return_speed', 'f8'),        # m/s | rad/s
     ('flow', FLOW_STOP),
@@ -62,7 +64,6 @@ DEVICE_STATE = np.dtype([
     ('refused_requests', 'i8'),    # to enable, clear or stop, since t = 0
     ('unused_setpoints', 'i8'),    # that came while it did not follow them
     ('trips', 'i8'), ('warnings', 'i8'),   # bits of the conditions at the last step
-    ('stop_steps', 'f8'),          # periods at rest until the stop ends
     ('stop', SETPOINT),            # of the stopping movement: its place, speed, and valve
     ('flow', FLOW_STOP_STATE),
     ('back', SETPOINT),            # on the way back to the setpoint,
@@ -79,7 +80,8 @@ def device_record(sheet: Device, reu: Reu, period: float, flow: np.record) -> np
     return record(
         DEVICE, next=next_states(), modes=sum(1 << mode for mode in possible_modes(reu)),
         initialisation=sheet.initialisation_ms * 1e-3, ramps=int(sheet.quick_stop != CLOSES),
-        stays=int(sheet.quick_stop == STAYS), hold=sheet.quick_stop_hold_ms * 1e-3,
+        stays=int(sheet.quick_stop == STAYS), 
+        hold=max(flow.window, round(sheet.quick_stop_hold_ms * 1e-3 / period)),
         period=period, return_speed=sheet.return_speed, flow=flow,
         fade=exp(-period / (sheet.fade_ms * 1e-3)))
 
@@ -151,14 +153,14 @@ def take_requests(step, reu, state):
         elif own.state == INITIALISING:
             own.auto_enable = 0
     if own.requests & (HAS_SETPOINT | HAS_REFERENCE) and (
-            not is_enabled(own) or state.protection.reaction >= REACTS_BY_HOLD):
+            not is_enabled(own) or own.is_stopping or state.protection.reaction >= REACTS_BY_HOLD):
         own.unused_setpoints += 1
 
 
 @kernel
 def is_held(rules, own):
     """Return whether a quick stop of a `DEVICE_STATE` stays at rest and may be left by enable."""
-    return rules.stays == 1 and own.is_stopping == 1 and own.stop.velocity == 0.0
+    return rules.stays == 1 and own.is_stopping == 1 and stands(rules.flow, own.flow)
 
 
 @kernel
@@ -169,12 +171,10 @@ def stops(device_state):
 
 @kernel
 def is_over(rules, own):
-    """Return whether a stop was at rest long enough; count one period of it."""
-    if own.is_stopping == 1 and own.stop.velocity != 0.0:
+    """Return whether a stop was at rest long enough, or closes the valve."""
+    if rules.stays == 1 and own.state == QUICK_STOP:
         return False
-    own.stop_steps -= 1.0
-    return own.stop_steps <= 0.0 and not (
-        rules.stays == 1 and own.state == QUICK_STOP)
+    return rules.ramps == 0 or has_stood(rules.hold, rules.flow, own.flow)
 
 
 @kernel
@@ -183,9 +183,9 @@ def let_act(entered, reu, state):
     own, rules, reaction = state.status, reu.rules, state.protection.reaction
     was_on, was_stopping, was_damping = own.is_on, own.is_stopping, own.is_damping
     acts = own.state == ENABLED
-    if stops(own.state) and not stops(entered):
-        own.stop_steps = rules.hold / rules.period if rules.ramps else 0.0
-    own.is_stopping = int(acts and reaction == REACTS_BY_HOLD
+    still_moves = (was_stopping == 1 and reaction < REACTS_BY_HOLD
+                   and not stands(rules.flow, own.flow))
+    own.is_stopping = int(acts and (reaction == REACTS_BY_HOLD or still_moves)
                           or stops(own.state) and rules.ramps == 1)
     own.is_damping = int(acts and reaction == REACTS_BY_DAMP)
     own.is_on = int(acts or own.is_stopping == 1)

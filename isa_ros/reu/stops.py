@@ -11,7 +11,8 @@ import math
 from isa_ros.core.device import FORCE, PRESSURE
 from isa_ros.core.kernel import kernel
 from isa_ros.reu.bumpless import start_setpoint
-from isa_ros.reu.flow_stop import begin_flow_stop, flow_stop_step, stopping_speed
+from isa_ros.reu.flow_stop import (
+    begin_flow_stop, flow_stop_step, stopping_speed, watch_rest)
 
 
 @kernel
@@ -47,9 +48,11 @@ def begin_stop(rules, state):
 
 @kernel
 def advance_stop(rules, state):
-    """Advance the ramp of a stop by a period."""
+    """Advance the ramp of a stop by a period; after it, watch whether the load stands."""
     own = state.status
     before = own.stop.velocity
+    if before == 0.0:
+        watch_rest(state.measured.position, rules.flow, own.flow)
     own.stop.velocity = stopping_speed(before, state.speed.velocity, rules.flow, own.flow)
     own.stop.position += 0.5 * (before + own.stop.velocity) * rules.period
     command_stop(rules, state)
@@ -60,8 +63,8 @@ def command_stop(rules, state):
     """Let the law of the stop command the valve."""
     own, measured = state.status, state.measured
     own.stop.reference = flow_stop_step(
-        own.stop.velocity, measured.position, measured.force, state.supply_pressure, rules.flow,
-        own.flow)
+        own.stop.velocity, measured.position, state.speed.velocity, measured.force,
+        state.supply_pressure, rules.flow, own.flow)
     if own.flow.is_held:
         own.stop.position = own.flow.place
 

@@ -130,7 +130,11 @@ def supervise(supply_pressure, own, state, supervised):
         target = force_target(state.force_reference, velocity, supply_pressure, own)
         if room > END * own.stroke:     # else the stop takes a part that no sensor measures
             error = abs(measured.force - target)
-    if status.is_on != 0 and status.acting == POSITION and not status.is_stopping:
+    if status.is_stopping:
+        if status.flow.is_held:
+            distance = position_error(
+                status.flow.place, measured.position, velocity, own)
+    elif status.is_on != 0 and status.acting == POSITION:
         distance = position_error(
             state.setpoint.position, measured.position, velocity, own)
     swing = oscillation(measured.force, target, own, supervised)

@@ -122,7 +122,7 @@ def test_a_setpoint_that_comes_with_the_mode_is_taken():
 
 
 def test_a_stop_brings_the_load_to_rest_without_a_jump_and_ends_disabled():
-    """50 kg at its speed, braked at 10 m/s2, at rest at the end of its 200 ms."""
+    """50 kg at its speed, braked at 10 m/s2; it stands for 200 ms before it ends."""
     actuator = moving('isa_v5')
     command = np.zeros(1, COMMAND)[0]
     fill_command('isa_v5', Setpoint(quick_stop=True), command)
@@ -132,7 +132,8 @@ def test_a_stop_brings_the_load_to_rest_without_a_jump_and_ends_disabled():
     assert speed > 0.05
     currents(actuator, round(speed / 10.0 / 1e-4) + 1900)
     assert abs(float(actuator.sample.velocity)) < 0.05 * speed
-    currents(actuator, 200)
+    assert actuator.sample.device_state == QUICK_STOP
+    currents(actuator, 700)
     assert actuator.sample.device_state == DISABLED
 
 

@@ -45,7 +45,7 @@ def test_every_file_it_names_exists() -> None:
 
 
 def test_every_situation_of_a_stop_has_its_row() -> None:
-    """Else `python -m scripts.write_stops`; how far stops go is in tests/actuator/test_stops.py."""
+    """Else `python -m scripts.write_stops`; how far stops go: tests/actuator/test_stops.py."""
     names = [one.name for one in situations()] + list(LEG_SITUATIONS)
     assert len(set(names)) == len(names)
     for name in names:
