@@ -88,7 +88,8 @@ class Protection(Parameters):
         le=float((1 << len(CONDITIONS)) - 1))
     setpoint_timeout_ms: float = parameter(
         'longest time between two setpoints of an enabled actuator, counted from its first one '
-        'on; 0: off', 'ms', absent=0.0, source=ASSUMED, changeable=True, ge=0.0, le=3.6e6)
+        'on; at least a tick, 0: off', 'ms', absent=0.0, source=ASSUMED, changeable=True,
+        ge=0.0, le=3.6e6)
     setpoint_timeout_reaction: str = choice(
         'what follows until the next setpoint', *_TIMEOUT, absent='hold', source=ASSUMED,
         numbered=REACTIONS)

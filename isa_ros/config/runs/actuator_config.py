@@ -18,6 +18,7 @@ from isa_ros.config.text.keys import (
 from isa_ros.config.text.parameter_sets import build, build_one_of, members
 from isa_ros.config.text.sections import merge, Place, Section
 from isa_ros.core.parameter import check
+from isa_ros.core.timebase import NS_PER_SECOND
 from isa_ros.core.units import MILLI
 from isa_ros.errors import ConfigError, ParameterError
 from isa_ros.loads.sheets import linearised, LocalLoad
@@ -119,6 +120,7 @@ def actuator_of(
             'doc': 'within the stroke', 'unit': 'rad' if sheet.is_rotary else 'm',
             'bounds': {'ge': 0.0, 'le': sheet.plant.drive.stroke + _ROUNDING}})
         _refuse_sheet(sheet, load_side, place)
+        _refuse_timeout(sheet, around.step_ns, place)
     beyond, mode = values['beyond_range'], values['mode']
     if mode is not None:
         mode_of(str(mode), sheet.reu, str(place / 'mode'))
@@ -222,3 +224,12 @@ def _refuse_sheet(sheet: ActuatorSheet, load: LoadSide, place: Place) -> None:
         refuse_too_fast(plant_record(sheet.plant)[0], sheet.plant, load)
     except (ConfigError, ParameterError) as error:
         raise ConfigError(f'{place}: {error}') from error
+
+
+def _refuse_timeout(sheet: ActuatorSheet, step_ns: int, place: Place) -> None:
+    """Refuse a time between two setpoints that is shorter than the tick in which one can come."""
+    timeout_ms, step_ms = sheet.reu.protection.setpoint_timeout_ms, step_ns / (MILLI * NS_PER_SECOND)
+    if 0.0 < timeout_ms < step_ms:
+        raise ConfigError(
+            f'{place}: reu.protection.setpoint_timeout_ms = {timeout_ms:g} ms, must be >= '
+            f'step_ms = {step_ms:g} ms, as setpoints come once a tick; or 0: off')

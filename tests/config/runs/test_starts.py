@@ -29,3 +29,12 @@ def test_initial_positions_are_si_and_mid_stroke_by_default(tmp_path: Path) -> N
     assert run.actuator('ram').initial_position == pytest.approx(
         0.030, rel=1e-15, abs=0.0)
     assert run.actuator('rotor').initial_position == 0.5 * 1.745
+
+
+def test_a_setpoint_may_be_due_every_tick(tmp_path: Path) -> None:
+    """Shorter timeouts are refused, config/bad: one of a tick is met by a setpoint a tick."""
+    ram = ('model: isa_v5, load: {kind: mass}, '
+           'parameters: {reu: {protection: {setpoint_timeout_ms: 1}}}')
+    run = load_run(rig(tmp_path, ram))
+    assert run.step_ns == 1_000_000
+    assert run.actuator('ram').sheet.reu.protection.setpoint_timeout_ms == 1.0
