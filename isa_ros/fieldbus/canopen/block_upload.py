@@ -19,9 +19,11 @@ BLOCK_UPLOAD = 5
 INITIATE_BLOCK, END_BLOCK, CONFIRM_BLOCK, START_BLOCK = range(4)
 """What of it, in the lowest two bits."""
 _ANSWERED = 6 << COMMAND_BITS       # command of the server
-_HAS_CRC, _HAS_SIZE, _ENDS = 0x04, 0x02, 0x01
-_BYTES, _MOST_SEGMENTS = 7, 127
-_IS_LAST = 0x80
+HAS_CRC, HAS_SIZE, _ENDS = 0x04, 0x02, 0x01
+BYTES, MOST_SEGMENTS = 7, 127
+"""In a segment; in a block."""
+IS_LAST = 0x80
+"""Beside the number of a segment."""
 _END = struct.Struct('<BH5x')
 
 
@@ -43,7 +45,7 @@ class BlockUpload:
     def initiated(self) -> bytes:
         """Return the answer to its begin: with a CRC, and the size of the data."""
         return INITIATE.pack(
-            _ANSWERED | _HAS_CRC | _HAS_SIZE, self.index, self.subindex, len(self._data))
+            _ANSWERED | HAS_CRC | HAS_SIZE, self.index, self.subindex, len(self._data))
 
     def answers(self, request: bytes) -> list[bytes] | None:
         """
@@ -67,21 +69,21 @@ class BlockUpload:
     def _block(self) -> list[bytes]:
         """Return the segments of the block at the present place; at least one, if it is empty."""
         self._awaited = _Awaited.CONFIRMATION
-        parts = [self._data[k:k + _BYTES] for k in range(
-            self._place, self._place + self._segments * _BYTES, _BYTES)]
+        parts = [self._data[k:k + BYTES] for k in range(
+            self._place, self._place + self._segments * BYTES, BYTES)]
         sent = [part for part in parts if part] or [b'']
         self._sent = len(sent)
-        is_whole = self._place + self._sent * _BYTES >= len(self._data)
+        is_whole = self._place + self._sent * BYTES >= len(self._data)
         return [
-            bytes([number | (_IS_LAST if is_whole and number == self._sent else 0)])
-            + part.ljust(_BYTES, b'\0') for number, part in enumerate(sent, 1)]
+            bytes([number | (IS_LAST if is_whole and number == self._sent else 0)])
+            + part.ljust(BYTES, b'\0') for number, part in enumerate(sent, 1)]
 
     def _confirmed(self, number: int, segments: int) -> list[bytes]:
         """Return the next block behind the segment that was confirmed, or the end."""
         if number > self._sent:
             raise SdoAbort(INVALID_SEQUENCE)
         self._segments = _admitted(segments)
-        self._place += number * _BYTES
+        self._place += number * BYTES
         if self._place < len(self._data) or not number:
             return self._block()
         self._awaited = _Awaited.END
@@ -90,6 +92,6 @@ class BlockUpload:
 
 
 def _admitted(segments: int) -> int:
-    if not 0 < segments <= _MOST_SEGMENTS:
+    if not 0 < segments <= MOST_SEGMENTS:
         raise SdoAbort(INVALID_BLOCK_SIZE)
     return segments

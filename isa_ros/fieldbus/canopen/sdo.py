@@ -1,12 +1,13 @@
 """
-The SDO server of a node (CiA 301, 7.2.4): transfers expedited or in segments, uploads in blocks.
+The SDO server of a node (CiA 301, 7.2.4): transfers expedited, in segments or in blocks.
 
-Downloads in blocks are refused by their code, as CiA 301 allows: a device without them answers
-``unknown command``. A request of other than 8 bytes is no request.
+A request of other than 8 bytes is no request.
 """
 
 from typing import Protocol
 
+from isa_ros.fieldbus.canopen.block_download import (
+    BLOCK_DOWNLOAD, BlockDownload, END_DOWNLOAD)
 from isa_ros.fieldbus.canopen.block_upload import BLOCK_UPLOAD, BlockUpload, INITIATE_BLOCK
 from isa_ros.fieldbus.device.abort import SdoAbort, UNKNOWN_COMMAND
 from isa_ros.fieldbus.device.sdo_transfer import (
@@ -37,7 +38,7 @@ class SdoServer:
     def __init__(self, dictionary: ServedObjects) -> None:
         self._dictionary = dictionary
         self._transfer: Transfer | None = None
-        self._block: BlockUpload | None = None
+        self._block: BlockUpload | BlockDownload | None = None
 
     def reset(self) -> None:
         """Forget a transfer on its way."""
@@ -48,10 +49,14 @@ class SdoServer:
         if len(request) != SIZE:
             return []
         command = request[0] >> COMMAND_BITS
-        if command == ABORT:
-            self.reset()
-            return []
         try:
+            if isinstance(self._block, BlockDownload) and self._block.takes(request):
+                return self._block.take(request)
+            if command == ABORT:
+                self.reset()
+                return []
+            if command == BLOCK_DOWNLOAD:
+                return [self._into_blocks(request)]
             if command == BLOCK_UPLOAD:
                 return self._in_blocks(request)
             if command == DOWNLOAD:
@@ -66,7 +71,7 @@ class SdoServer:
 
     def _in_blocks(self, request: bytes) -> list[bytes]:
         if request[0] & 0x03 != INITIATE_BLOCK:
-            if self._block is None:
+            if not isinstance(self._block, BlockUpload):
                 raise SdoAbort(UNKNOWN_COMMAND)
             found = self._block.answers(request)
             if found is None:
@@ -80,6 +85,21 @@ class SdoServer:
             return [self._upload(request)]
         self._block = BlockUpload(index, subindex, data, segments)
         return [self._block.initiated()]
+
+    def _into_blocks(self, request: bytes) -> bytes:
+        """Begin a download in blocks, or write what it has brought."""
+        if not request[0] & END_DOWNLOAD:
+            self.reset()
+            begun = BlockDownload(request, MOST_BYTES)
+            self._dictionary.size(begun.index, begun.subindex)  # refuses what does not exist
+            self._block = begun
+            return begun.initiated()
+        if not isinstance(self._block, BlockDownload):
+            raise SdoAbort(UNKNOWN_COMMAND)
+        ended = self._block
+        self._dictionary.write(ended.index, ended.subindex, ended.content(request))
+        self._block = None
+        return ended.ended()
 
     def _download(self, request: bytes) -> bytes:
         command, index, subindex = HEAD.unpack_from(request)
@@ -138,6 +158,8 @@ def _is_continued(request: bytes) -> bool:
     command = request[0] >> COMMAND_BITS
     if command == BLOCK_UPLOAD:
         return request[0] & 0x03 != INITIATE_BLOCK
+    if command == BLOCK_DOWNLOAD:
+        return bool(request[0] & END_DOWNLOAD)
     return command in (DOWNLOAD_SEGMENT, UPLOAD_SEGMENT)
 
 

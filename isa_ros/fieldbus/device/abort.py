@@ -11,6 +11,7 @@ TIMEOUT = 0x05040000
 UNKNOWN_COMMAND = 0x05040001
 INVALID_BLOCK_SIZE = 0x05040002
 INVALID_SEQUENCE = 0x05040003
+CRC_ERROR = 0x05040004
 OUT_OF_MEMORY = 0x05040005
 UNSUPPORTED_ACCESS = 0x06010000
 WRITE_ONLY = 0x06010001
@@ -40,6 +41,7 @@ MEANINGS: Mapping[int, str] = {
     UNKNOWN_COMMAND: 'command specifier not valid or unknown',
     INVALID_BLOCK_SIZE: 'invalid block size',
     INVALID_SEQUENCE: 'invalid sequence number',
+    CRC_ERROR: 'CRC error',
     OUT_OF_MEMORY: 'out of memory',
     UNSUPPORTED_ACCESS: 'unsupported access to an object',
     WRITE_ONLY: 'attempt to read a write only object',

@@ -111,12 +111,6 @@ def test_a_frame_of_other_than_eight_bytes_is_no_request(data):
     assert SdoServer(Values()).answer(data) is None
 
 
-def test_a_download_in_blocks_is_refused():
-    answer = SdoServer(Values()).answer(request(0xC6, NUMBER))
-    assert code(answer) == 0x05040001
-    assert answer[1:4] == b'\x00\x20\x01'
-
-
 def in_blocks(server: sdo.SdoServer, sizes: list[int], lost: set[int]) -> bytes:
     """Read the text in blocks of these sizes; segments with these numbers of all are lost."""
     first, = server.answers(request(0xA4, TEXT, bytes([sizes[0], 0])))
@@ -185,6 +179,111 @@ def test_the_crc_is_that_of_cia_301():
     server.answers(request(0xA4, TEXT, bytes([127, 0])))
     assert server.answers(bytes([0xA3]) + bytes(7)) == [b'\x011234567', b'\x8289' + bytes(5)]
     assert server.answers(bytes([0xA2, 2, 127]) + bytes(5)) == [b'\xd5\xc3\x31' + bytes(5)]
+
+
+@pytest.mark.parametrize('size', [1, 7, 889, 890, 4096])
+def test_the_client_of_canopen_writes_in_blocks(size):
+    """It announces the size, and its CRC is that of the library."""
+    values = Values()
+    client = canopen.sdo.SdoClient(0x601, 0x581, canopen.ObjectDictionary())
+    client.network = Wire(sdo.SdoServer(values), client)
+    content = bytes(k % 251 for k in range(size))
+    with client.open(*TEXT, mode='wb', size=size, block_transfer=True) as stream:
+        stream.write(content)
+    assert values.content[TEXT] == content
+
+
+def into_blocks(server: sdo.SdoServer, data: bytes, flags: int, lost: set[int],
+                crc: int | None = None) -> bytes:
+    """Write the text in blocks; segments with these numbers of all are lost; return the end."""
+    first, = server.answers(request(0xC0 | flags, TEXT, len(data).to_bytes(4, 'little')))
+    assert first == request(0xA4, TEXT, bytes([127]))
+    parts = [data[k:k + 7] for k in range(0, len(data), 7)] or [b'']
+    place, sent = 0, 0
+    while place < len(parts):
+        block = parts[place:place + 127]
+        for number, part in enumerate(block, 1):
+            is_last = place + number == len(parts)
+            sent += 1
+            ends = number == len(block)
+            if sent in lost and not ends:   # a client waits for the answer to the end of a block
+                continue
+            answers = server.answers(
+                bytes([number | 0x80 * is_last]) + part.ljust(7, b'\0'))
+            assert len(answers) == ends
+        (confirmed,) = answers
+        assert (confirmed[0], confirmed[2]) == (0xA2, 127)
+        place += confirmed[1]
+    unused = 7 - len(parts[-1])
+    own = crc_hqx(data, 0) if crc is None else crc
+    (end,) = server.answers(
+        bytes([0xC1 | unused << 2]) + own.to_bytes(2, 'little') + bytes(5))
+    return end
+
+
+@given(st.binary(max_size=2000), st.sampled_from([0, 2, 4, 6]),
+       st.sets(st.integers(1, 300), max_size=10))
+@example(b'', 6, set())
+@example(bytes(range(250)) * 4, 6, {1})
+def test_what_is_written_in_blocks_is_whole_whatever_is_lost(data, flags, lost):
+    values = Values()
+    server = sdo.SdoServer(values)
+    assert into_blocks(server, data, flags, lost) == bytes([0xA1]) + bytes(7)
+    assert values.content[TEXT] == data
+    assert code(server.answers(bytes([0xC1]) + bytes(7))[0]) == 0x05040001
+
+
+def test_a_wrong_crc_is_refused_where_the_client_has_one():
+    values = Values()
+    server = sdo.SdoServer(values)
+    assert code(into_blocks(server, b'123456789', 6, set(), crc=0x31C2)) == 0x05040004
+    assert values.content[TEXT] == b''
+    assert into_blocks(server, b'123456789', 2, set(), crc=0x31C2)[0] == 0xA1
+    assert values.content[TEXT] == b'123456789'
+
+
+def block(number: int) -> list[int]:
+    """Return a segment of sevens."""
+    return [number, *([7] * 7)]
+
+
+@pytest.mark.parametrize(('size', 'frames', 'expected'), [
+    (MOST_BYTES + 1, [], 0x05040005), (9, [block(0)], 0x05040003),
+    (7, [block(1), block(2), block(3)], 0x06070012),
+    (7, [block(1), block(0x82), [0xC1]], 0x06070012),
+    (8, [block(0x81), [0xC1]], 0x06070013), (6, [block(0x81), [0xC1]], 0x06070012),
+    (9, [block(0x81), block(1)], 0x05040001), (9, [block(0x81), [0xA1]], 0x05040001)])
+def test_a_download_in_blocks_is_refused_by_its_length_and_order(size, frames, expected):
+    """A segment behind the last one belongs to no transfer."""
+    values = Values()
+    server = sdo.SdoServer(values)
+    answers = server.answers(request(0xC2, TEXT, size.to_bytes(4, 'little')))
+    for one in frames:
+        answers = server.answers(bytes(one).ljust(8, b'\0'))
+    assert code(answers[0]) == expected
+    assert answers[0][1:4] == b'\x01\x20\0'
+    assert values.content[TEXT] == b''
+    assert code(server.answers(bytes([0xC1]) + bytes(7))[0]) == 0x05040001
+
+
+def test_a_download_in_blocks_without_a_size_ends_where_there_is_no_room():
+    """4096 bytes are 585 segments and one of a byte; the last may be empty, but no further one."""
+    server = sdo.SdoServer(Values())
+    server.answers(request(0xC0, TEXT))
+    for sent in range(586):
+        answers = server.answers(bytes(block(sent % 127 + 1)))
+        assert [one[0] for one in answers] == ([0xA2] if sent % 127 == 126 else [])
+    assert code(server.answers(bytes(block(586 % 127 + 1)))[0]) == 0x05040005
+
+
+def test_a_download_in_blocks_is_refused_by_what_does_not_exist_and_ended_by_an_abort():
+    values = Values()
+    server = sdo.SdoServer(values)
+    assert code(server.answers(request(0xC0, (0x1234, 5)))[0]) == 0x06020000
+    server.answers(request(0xC0, TEXT))
+    assert server.answers(bytes(block(1))) == []
+    assert server.answers(bytes([0x80]) + bytes(7)) == []
+    assert server.answers(request(0x40, TEXT))[0][0] == 0x41
 
 
 @pytest.mark.parametrize(('threshold', 'begin'), [(9, 0xC6), (10, 0x41), (255, 0x41), (0, 0xC6)])
