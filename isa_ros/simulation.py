@@ -66,6 +66,7 @@ class Simulation:
 
     def _assemble(self, scenario: Scenario) -> None:
         """Create actuators and surroundings, and the views on their rows."""
+        scenario.refuse_bus()
         self.scenario = scenario
         run = scenario.run
         self.names = tuple(actuator.name for actuator in run.actuators)

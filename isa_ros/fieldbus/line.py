@@ -34,6 +34,14 @@ class Line(Protocol):
         ...
 
 
+class PortLine(Line, Protocol):
+    """A line whose devices can lose their connection each."""
+
+    def set_port(self, device: str, fault: str, is_on: bool) -> None:
+        """Begin or end a fault of a device's connection; ``fault`` is a value of `BusPort`."""
+        ...
+
+
 @runtime_checkable
 class ClockedLine(Protocol):
     """A line whose slaves have clocks that a master reads and steers by."""

@@ -103,6 +103,11 @@ class ServedPace(Pace):
         super().start(t_ns)
         self._start += self.phase()
 
+    def end(self, t_ns: int) -> None:
+        """Measure how far the run is behind, if its time has begun."""
+        if self.times.n_ticks:
+            super().end(t_ns)
+
     def wait(self, t_ns: int, should_stop: Callable[[], bool]) -> None:
         """Serve until ``t_ns`` is due; return early when a stop is requested."""
         super().wait(t_ns, should_stop)
@@ -196,8 +201,8 @@ class RealTimeSource:
         self._is_behind = late > (self._pace.step if self._is_behind else self._watchdog)
 
     def events(self, tick: int) -> Sequence[str]:
-        """Return the trips of the watchdog since the last tick."""
-        events, self._events = self._events, []
+        """Return the trips of the watchdog and the faults of connections since the last tick."""
+        events, self._events = [*self._frames.events(tick), *self._events], []
         return events
 
 

@@ -9,6 +9,7 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any, NamedTuple
 
+from isa_ros.config.models.bus_port import BUS_OFF, POWERLESS, PULLED
 from isa_ros.run.options import Request
 
 FRAME, REAL_TIME = 'frame', 'real_time'
@@ -29,7 +30,7 @@ class Argument(NamedTuple):
     metavar: str | None = None
     kind: type[str] | type[int] | type[Path] | type[bool] = str
     """Whole numbers are > 0; a bool is a flag."""
-    default: int | None = None
+    default: int | str | None = None
     """None: it must be given."""
 
 
@@ -49,8 +50,12 @@ class Bus(NamedTuple):
     arguments: tuple[Argument, ...]
     medium: str = ''
     """What it shares with buses at the same place, of which one is served; '': nothing."""
+    port_faults: tuple[str, ...] = ()
+    """Values of `BusPort` that its line, a `PortLine`, has."""
 
 
+_PLACE = ('interface', 'channel', 'path')
+"""Arguments that say where a master finds the devices."""
 _CAN = (
     Argument('interface', 'interface of python-can: udp_multicast, socketcan, slcan, ...', 'NAME'),
     Argument('channel', 'of that interface'),
@@ -63,10 +68,13 @@ ETHERCAT, CANOPEN, MIT, SERIAL = 'ethercat', 'canopen', 'mit', 'serial'
 BUSES: Mapping[str, Bus] = {
     ETHERCAT: Bus('ethercat.line', 'an EtherCAT master on a network interface', (
         Argument('interface', 'network interface of the ring, for example one end of a veth pair',
-                 'IF'),), 'ethernet'),
+                 'IF'),
+        Argument('order', 'actuators in the order of the cables, from the master on (default: '
+                 'that of the run file)', 'NAME,NAME', default='')), 'ethernet',
+        (PULLED, POWERLESS)),
     CANOPEN: Bus('canopen.line', 'a CANopen master on a CAN interface', (
         *_CAN, Argument('unconfigured', 'the nodes have no numbers: a master gives them by LSS',
-                        kind=bool, default=False)), 'can'),
+                        kind=bool, default=False)), 'can', (PULLED, POWERLESS, BUS_OFF)),
     MIT: Bus('canopen.mit_line', 'a master of MIT-mode motors on a CAN interface', _CAN, 'can'),
     SERIAL: Bus('serial.line', 'a master on a serial line', (
         Argument('path', 'serial device, or a link to make to a pseudo terminal', 'FILE', Path),
@@ -96,5 +104,4 @@ class BusRequest:
     @property
     def place(self) -> str:
         """Return where a master finds the devices."""
-        return ' '.join(str(value) for value in self.arguments.values()
-                        if not isinstance(value, int))
+        return ' '.join(str(self.arguments[name]) for name in _PLACE if name in self.arguments)

@@ -9,9 +9,10 @@ from isa_ros.errors import ConfigError
 from isa_ros.fieldbus.device.bus_device import BusDevice
 from isa_ros.fieldbus.line import Line
 from isa_ros.fieldbus.real_time import RealTimeSource, scheduled_first, ServedPace
-from isa_ros.fieldbus.request import BusRequest, REAL_TIME
+from isa_ros.fieldbus.request import BUSES, BusRequest, REAL_TIME
 from isa_ros.fieldbus.source import FrameSource
 from isa_ros.run.session import prepare, Session
+from isa_ros.scenario.faults import BUS
 from isa_ros.scenario.scenario import Scenario
 from isa_ros.tick.source import Source
 
@@ -74,6 +75,25 @@ def refuse_tracks(scenario: Scenario) -> None:
             'commands the actuators; its faults, loads and start are')
 
 
+def refuse_ports(scenario: Scenario, bus: str) -> None:
+    """
+    Refuse faults of connections that a bus, one of `BUSES`, does not have.
+
+    Raises
+    ------
+    ConfigError
+        The scenario has one.
+
+    """
+    known = BUSES[bus].port_faults
+    for fault in scenario.faults:
+        for name in fault.values if fault.of == BUS else ():
+            if name not in known:
+                raise ConfigError(
+                    f'scenario {scenario.name}: fault {name} of bus: {fault.target} is not one '
+                    f'of isa bus {bus}, which has {", ".join(known) or "none"}')
+
+
 def prepare_bus(
         request: BusRequest, devices_of: Callable[[RunConfig, str], Sequence[BusDevice]],
         open_line: OpenLine, print_line: PrintLine) -> BusRun:
@@ -94,8 +114,9 @@ def prepare_bus(
         raise ConfigError(
             f'--real-time-factor {request.run.real_time_factor:g} is not used with '
             f'--pace {REAL_TIME}; leave one out')
-    session = prepare(request.run, commanded_by_bus)
+    session = prepare(request.run, commanded_by_bus, has_bus=True)
     refuse_tracks(session.scenario)
+    refuse_ports(session.scenario, request.bus)
     run = session.run
     pace = ServedPace(run.step_ns, warn=print_line) if is_real_time else None
 

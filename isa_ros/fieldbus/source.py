@@ -2,17 +2,19 @@
 The master of a bus as the source of a run's commands, in frame pace: a cycle is a tick.
 
 Before tick k the devices have the sample of t_k; the line is then served until a cycle begins, and
-what the master has sent by then are the commands of tick k. Simulated time begins with the first
-control word that is not 0; cycles before it are served without ticks, so that a bag does not
-depend on how long a master needs to come up. Host time is not read.
+what the master has sent by then are the commands of tick k. Connections that a fault breaks from
+tick k on are broken before. Simulated time begins with the first control word that is not 0;
+cycles before it are served without ticks, so that a bag does not depend on how long a master needs
+to come up. Host time is not read.
 """
 
 from collections.abc import Callable, Mapping, Sequence
 import time
+from typing import cast
 
 from isa_ros.core.signals import Records
 from isa_ros.fieldbus.device.bus_device import BusDevice
-from isa_ros.fieldbus.line import Line
+from isa_ros.fieldbus.line import Line, PortLine
 from isa_ros.run.pacing import SLICE_S
 from isa_ros.scenario.faults import ParameterChanges
 
@@ -34,6 +36,8 @@ class FrameSource:
         self._line, self._devices, self._faults = line, devices, faults
         self._ready = ready
         self._shown: int | None = None
+        self._plugged, self._unplugged = -1, set[tuple[str, str]]()
+        self._events: list[str] = []
         self.has_begun = False
         """Whether simulated time has begun."""
 
@@ -57,6 +61,7 @@ class FrameSource:
         if self._shown is None:
             self._ready()
         self._shown = tick
+        self._plug(tick)
         for device, sample in zip(self._devices, samples):
             device.take_sample(sample, tick)
         self._line.update()
@@ -83,8 +88,28 @@ class FrameSource:
             device.fill_command(command)
 
     def events(self, tick: int) -> Sequence[str]:
-        """Return no events."""
-        return ()
+        """Return the faults of connections since the last tick."""
+        events, self._events = self._events, []
+        return events
+
+    def _plug(self, until: int) -> None:
+        """Begin and end faults of connections up to a tick; a run that is reset begins anew."""
+        if until < self._plugged:
+            for device, fault in [*self._unplugged]:
+                self._set_port(device, fault, False)
+            self._plugged = -1
+        for tick in range(self._plugged + 1, until + 1):
+            faults = self._faults(tick)
+            for device, values in ({} if faults is None else faults.ports).items():
+                for fault, value in values.items():
+                    self._set_port(device, fault, value != 0.0)
+                    self._events.append(
+                        f'bus: {device} {fault} {"begins" if value else "ends"}')
+        self._plugged = until
+
+    def _set_port(self, device: str, fault: str, is_on: bool) -> None:
+        (self._unplugged.add if is_on else self._unplugged.discard)((device, fault))
+        cast(PortLine, self._line).set_port(device, fault, is_on)
 
     def changes(self, tick: int) -> ParameterChanges | None:
         """Return the faults of the tick, and what the master has written over SDO."""

@@ -83,11 +83,13 @@ def _unchanged(run: RunConfig) -> RunConfig:
 
 
 def prepare(
-        request: Request, adapted: Callable[[RunConfig], RunConfig] = _unchanged) -> Session:
+        request: Request, adapted: Callable[[RunConfig], RunConfig] = _unchanged, *,
+        has_bus: bool = False) -> Session:
     """
     Read the files of a run and check that its bag can be made.
 
-    ``adapted`` returns the run of the file as it is simulated and recorded.
+    ``adapted`` returns the run of the file as it is simulated and recorded; ``has_bus``: whether
+    the master of a bus commands it.
 
     Raises
     ------
@@ -105,6 +107,8 @@ def prepare(
         run.record.refuse_misfits(
             [topic.name for topic in packer_of(run, rows.published).topics], run.source)
     scenario = planned(request.scenario, run, changes)
+    if not has_bus:
+        scenario.refuse_bus()
     if request.duration_s is not None:
         scenario = scenario.lasting(request.duration_s)
     if request.in_process and request.elsewhere:

@@ -4,6 +4,7 @@ Read the lists ``faults`` and ``changes`` of a scenario.
     faults:
     - {t_s: 0.5, actuator: kfe, set: {plant.spool.stuck: 1}, until_s: 0.8}
     - {t_s: 0.6, supply: supply, fault: pump_trip}
+    - {t_s: 0.6, bus: hfe, set: {pulled: 1}, until_s: 0.7}
     changes:
     - {t_s: 0.2, actuator: ram, set: {load.force: -500}, until_s: 0.7}
     - {t_s: 0.2, actuator: ram, set: {load.force: 0}, sine: {amplitude: 200, frequency_hz: 2},
@@ -22,13 +23,14 @@ from typing import Any
 
 from isa_ros.actuator.tunable import changed_together, changing, named, refuse_load
 from isa_ros.config.assembly import surroundings_of
+from isa_ros.config.models.bus_port import SOUND_PORT
 from isa_ros.config.models.fault_catalogue import ACTUATOR, KINDS, named_fault, SUPPLY, values_at
 from isa_ros.config.runs.run_config import RunConfig
 from isa_ros.config.runs.tick_grid import ticks_in
 from isa_ros.config.text.parameter_sets import build, kind_of
 from isa_ros.config.text.sections import Place, refuse_unknown, section_at, written
 from isa_ros.config.text.yaml_text import Tree
-from isa_ros.core.changeable import Changeable, changeables
+from isa_ros.core.changeable import Changeable, changeables, with_changes
 from isa_ros.core.changing_values import bare, OFF
 from isa_ros.core.noise import seed_of
 from isa_ros.core.parameter import check
@@ -36,7 +38,7 @@ from isa_ros.core.suggest import alternatives
 from isa_ros.core.timebase import NS_PER_SECOND
 from isa_ros.errors import ConfigError
 from isa_ros.scenario.fault_courses import INTERMITTENT, Intermittent, RAMP, Ramp
-from isa_ros.scenario.faults import Fault, timetable
+from isa_ros.scenario.faults import BUS, Fault, timetable
 from isa_ros.scenario.setpoints import MAX_DURATION
 from isa_ros.scenario.waveforms import EFFORT, MOVES, Waveform, WAVEFORMS
 from isa_ros.surroundings.supply import SupplySheet
@@ -44,7 +46,8 @@ from isa_ros.surroundings.supply import SupplySheet
 LINK = 'link'
 """Of an actuator: ``link: kfe, set: {loss: 0.1}`` is ``actuator: kfe, set: {link.loss: 0.1}``."""
 _OF_LINK = f'{LINK}.'
-_KEYS = ('t_s', *KINDS, LINK, 'fault', 'set', 'until_s', RAMP, INTERMITTENT, *WAVEFORMS)
+_TARGETS = (*KINDS, LINK, BUS)
+_KEYS = ('t_s', *_TARGETS, 'fault', 'set', 'until_s', RAMP, INTERMITTENT, *WAVEFORMS)
 _COURSE = {'period_s': ('time from one begin to the next', 's', {'gt': 0.0, 'le': MAX_DURATION}),
            'duty': ('part of the time in which it is on', '1', {'gt': 0.0, 'lt': 1.0})}
 
@@ -92,6 +95,10 @@ def _fault(tree: Tree, place: Place, run: RunConfig) -> Fault:
             known: Mapping[str, Changeable] = changeables(sheet)
             _refuse_keys(values, known, where,
                          f'of {target}, a supply of kind {kind_of(sheet, SupplySheet)}, ')
+        elif of == BUS:
+            known = changeables(SOUND_PORT)
+            run.actuator(target)    # refuses another name
+            _refuse_port(values, known, tree, where)
         else:
             prefix = _OF_LINK if of == LINK else ''
             actuator = run.actuator(target)
@@ -104,7 +111,7 @@ def _fault(tree: Tree, place: Place, run: RunConfig) -> Fault:
         if str(error).startswith(where):
             raise
         raise ConfigError(f'{where}: {error}') from error
-    kind = SUPPLY if of == SUPPLY else ACTUATOR
+    kind = of if of in (SUPPLY, BUS) else ACTUATOR
     return _changing(Fault(tick, until, kind, target, values), tree, known, run.step_ns, place)
 
 
@@ -148,6 +155,16 @@ def _intermittent(tree: Tree, fault: Fault, step_ns: int, place: Place) -> Inter
     return Intermittent(period, duty, None, fault.target)
 
 
+def _refuse_port(values: Mapping[str, float], known: Mapping[str, Changeable], tree: Tree,
+                 where: str) -> None:
+    """Refuse what is no fault of a connection to a bus, or anything between on and off."""
+    _refuse_keys(values, known, where)
+    with_changes(SOUND_PORT, known, values)
+    for key in (RAMP, *WAVEFORMS):
+        if key in tree:
+            raise ConfigError(f'{key} is not used with a bus')
+
+
 def _wave(
         tree: Tree, values: Mapping[str, float], step_ns: int, place: Place) -> Waveform | None:
     """Return the waveform of a fault, in the unit of messages; None: it has none."""
@@ -167,10 +184,10 @@ def _wave(
 
 
 def _target(tree: Tree, place: Place) -> tuple[str, str]:
-    given = [name for name in (*KINDS, LINK) if name in tree]
+    given = [name for name in _TARGETS if name in tree]
     if len(given) != 1:
         raise ConfigError(place.has(
-            f'has {" and ".join(given) or "no target"}, must have one of actuator, supply, link'))
+            f'has {" and ".join(given) or "no target"}, must have one of {", ".join(_TARGETS)}'))
     return given[0], str(tree[given[0]])
 
 

@@ -19,16 +19,19 @@ from isa_ros.core.timebase import NS_PER_SECOND
 from isa_ros.scenario.fault_courses import Course
 from isa_ros.scenario.waveforms import MOVES, Waveform, WAVEFORMS
 
+BUS = 'bus'
+"""Of an actuator's connection to the bus of `isa bus`, beside `KINDS`."""
+
 
 @dataclass(frozen=True)
 class Fault:
-    """A change of parameters of one actuator or supply."""
+    """A change of parameters of one actuator, its connection to a bus, or a supply."""
 
     tick: int
     until: int | None
     """The tick from which on the values are restored; None: never."""
     of: str
-    """One of `KINDS`."""
+    """One of `KINDS`, or `BUS`."""
     target: str
     """Name of the actuator or supply."""
     values: Mapping[str, float]
@@ -90,6 +93,8 @@ class ParameterChanges(NamedTuple):
     """By row, and name of `isa_ros.actuator.tunable.changing`; `OVER` or `OFF` before a name."""
     supplies: Mapping[str, float]
     """By SUPPLY.KEY, likewise."""
+    ports: Mapping[str, Mapping[str, float]] = {}
+    """By name of an actuator and of a value of `BusPort`, which is 0 where nothing is wrong."""
 
 
 _Key = tuple[str, str, str]     # of, target, name
@@ -126,11 +131,14 @@ def _changes(
         values: Mapping[_Key, float], ended: Sequence[_Key], run: RunConfig) -> ParameterChanges:
     actuators: dict[int, dict[str, float]] = {}
     supplies = {}
+    ports: dict[str, dict[str, float]] = {}
     marked = [*((OVER, key, value) for key, value in values.items()),
               *((OFF, key, 0.0) for key in ended)]
     for mark, (of, target, name), value in marked:
         if of == SUPPLY:
             supplies[f'{mark}{target}.{name}'] = value
+        elif of == BUS:
+            ports.setdefault(target, {})[name] = value
         else:
             actuators.setdefault(run.index(target), {})[f'{mark}{name}'] = value
-    return ParameterChanges(actuators, supplies)
+    return ParameterChanges(actuators, supplies, ports)

@@ -26,7 +26,7 @@ from isa_ros.core.suggest import alternatives
 from isa_ros.core.timebase import NS_PER_SECOND
 from isa_ros.errors import ConfigError
 from isa_ros.scenario.fault_reading import read_faults, refuse_changes
-from isa_ros.scenario.faults import Fault, ParameterChanges, timetable
+from isa_ros.scenario.faults import BUS, Fault, ParameterChanges, timetable
 from isa_ros.scenario.range_check import ACCEPT, within_range
 from isa_ros.scenario.setpoints import MAX_DURATION, read_track
 from isa_ros.scenario.track import event_tree, Track
@@ -96,6 +96,22 @@ class Scenario:
         place = Place(self.run.source, 'faults')
         trees = [*(fault.tree(self.run.step_ns) for fault in self.faults), *faults]
         return replace(self, faults=read_faults(trees, place, self.run, self.n_ticks))
+
+    def refuse_bus(self) -> None:
+        """
+        Refuse faults of connections to a bus, in a run without one.
+
+        Raises
+        ------
+        ConfigError
+            There are some.
+
+        """
+        for fault in self.faults:
+            if fault.of == BUS:
+                raise ConfigError(
+                    f'{self.name}: a fault of bus: {fault.target} is used under isa bus only; '
+                    'link: has those of a modelled link')
 
     @cached_property
     def changes(self) -> Mapping[int, ParameterChanges]:

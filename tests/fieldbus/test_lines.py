@@ -7,8 +7,9 @@ import isa_ros
 from isa_ros.config.paths import CONFIG, find
 from isa_ros.errors import ConfigError
 from isa_ros.fieldbus.device.devices import devices_of
+from isa_ros.fieldbus.ethercat.line import cabled
 from isa_ros.fieldbus.lines import refuse_unusable
-from isa_ros.fieldbus.request import BusRequest, CANOPEN, MIT, SERIAL
+from isa_ros.fieldbus.request import BusRequest, CANOPEN, ETHERCAT, MIT, SERIAL
 from isa_ros.run.options import Request
 import pytest
 
@@ -61,6 +62,20 @@ def test_what_cannot_be_opened_is_refused(request_, words):
 def test_a_master_finds_the_devices_by_the_arguments_that_are_no_numbers():
     assert with_arguments(REQUEST, bitrate=5, first_node=2).place == 'virtual lines'
     assert with_arguments(LINE, path=Path('a/line')).place == 'a/line'
+
+
+def test_cables_connect_the_slaves_in_another_order():
+    devices = devices_of(LEG)
+    assert cabled(devices, '') == devices
+    assert [one.name for one in cabled(devices, 'kfe,haa,hfe')] == ['kfe', 'haa', 'hfe']
+
+
+@pytest.mark.parametrize('order', ['kfe', 'haa,hfe,kfe,kfe', 'haa,hfe,knee', 'haa, hfe, kfe'])
+def test_an_order_without_each_slave_once_is_refused(order):
+    """Before the interface is looked at."""
+    ring = BusRequest(run=RUN, bus=ETHERCAT, arguments={'interface': 'none', 'order': order})
+    assert refused(ring, names=3) == f'--order {order}: must have each of haa, hfe, kfe once'
+    assert ring.place == 'none'
 
 
 def test_a_profile_without_impedance_is_refused_for_mit_frames():

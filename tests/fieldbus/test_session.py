@@ -14,6 +14,7 @@ from isa_ros.fieldbus.session import BusRun, prepare_bus
 from isa_ros.replay.replay import recorded_events, recorded_inputs, replay
 from isa_ros.run.coordinator import Interrupted
 from isa_ros.run.options import Request
+from isa_ros.run.session import prepare
 from isa_ros.run.without_ros import run_without_ros
 import pytest
 from tests.fieldbus.toy_line import ENABLE, SILENCE, ToyLine, toys_of
@@ -99,6 +100,36 @@ def test_tracks_are_refused(tmp_path: Path):
     with pytest.raises(ConfigError, match=(
             'scenario .*: tracks of .*: not used under isa bus, whose master commands')):
         prepared(tmp_path, config='leg', scenario=find('drop', SCENARIOS))
+
+
+def broken(tmp_path: Path, fault: str) -> Path:
+    """Return a scenario with a fault of the connection of the ram from 5 to 9 ms."""
+    path = tmp_path / 'broken.yaml'
+    path.write_text('name: broken\nduration_s: 0.02\nfaults:\n'
+                    f'- {{t_s: 0.005, bus: ram, set: {{{fault}: 1}}, until_s: 0.009}}\n')
+    return path
+
+
+def test_a_broken_connection_is_an_event_that_is_replayed(tmp_path: Path):
+    run = prepared(tmp_path, MASTER, scenario=broken(tmp_path, 'pulled'))
+    run_without_ros(run.session, None, lambda: False)
+    bag = Bag(tmp_path / 'bag')
+    assert recorded_events(bag) == {
+        5: ['bus: ram pulled begins'], 9: ['bus: ram pulled ends']}
+    assert replay(bag).is_equal
+
+
+def test_a_fault_that_a_bus_does_not_have_is_refused(tmp_path: Path):
+    with pytest.raises(ConfigError, match=(
+            'scenario broken: fault bus_off of bus: ram is not one of isa bus ethercat, which has '
+            'pulled, powerless')):
+        prepared(tmp_path, scenario=broken(tmp_path, 'bus_off'))
+
+
+def test_without_a_bus_a_broken_connection_is_refused(tmp_path: Path):
+    with pytest.raises(ConfigError, match='broken: a fault of bus: ram is used under isa bus'):
+        prepare(Request(config=find('rig_linear', CONFIG), out=tmp_path / 'bag',
+                        scenario=broken(tmp_path, 'pulled')))
 
 
 def test_real_time_has_no_factor(tmp_path: Path):

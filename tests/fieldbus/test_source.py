@@ -98,3 +98,47 @@ def test_what_is_tuned_elsewhere_reaches_its_device():
     bus = Bus((6, 0))
     bus.source.take_tuned({1: {'force.kp': 2e-7}})
     assert [device.shown for device in bus.devices] == [{}, {'force.kp': 2e-7}]
+
+
+PULL, UNPLUG = {'hip': {'pulled': 1.0}}, {'hip': {'pulled': 0.0}, 'knee': {'powerless': 1.0}}
+
+
+def cut(faults=((1, PULL), (3, UNPLUG))) -> Bus:
+    """Return a bus with faults of its connections by tick."""
+    by_tick = {tick: ParameterChanges({}, {}, ports) for tick, ports in faults}
+    return Bus(*[(6, 0)] * 9, faults=by_tick.get)
+
+
+def test_a_connection_fails_before_the_cycle_of_its_tick():
+    bus = cut()
+    found = []
+    for tick in range(5):
+        bus.is_due(tick)
+        bus.source.commands(tick, bus.rows)
+        found.append(bus.source.events(tick))
+    assert found == [
+        [], ['bus: hip pulled begins'], [], ['bus: hip pulled ends', 'bus: knee powerless begins'],
+        []]
+    assert bus.line.log[:5] == ['update', 'cycle 6', 'hip pulled True', 'update', 'cycle 6']
+    assert bus.line.ports == [
+        ('hip', 'pulled', True), ('hip', 'pulled', False), ('knee', 'powerless', True)]
+
+
+def test_what_is_missing_at_the_start_is_missing_before_the_first_frame():
+    bus = cut(faults=((0, PULL),))
+    bus.is_due(0)
+    assert bus.line.log[:2] == ['hip pulled True', 'update']
+    assert bus.source.events(0) == ['bus: hip pulled begins']
+
+
+def test_a_run_that_continues_has_the_faults_that_last():
+    bus = cut()
+    bus.is_due(2)
+    assert bus.line.ports == [('hip', 'pulled', True)]
+
+
+def test_a_run_that_is_reset_is_connected_again():
+    bus = cut()
+    for tick in (0, 1, 2, 3, 0, 1):
+        bus.is_due(tick)
+    assert bus.line.ports[3:] == [('knee', 'powerless', False), ('hip', 'pulled', True)]

@@ -60,6 +60,7 @@ class ToyLine:
         self.devices, self.sleep = devices, sleep
         self.cycles = iter(cycles)
         self.log: list[str] = []
+        self.ports: list[tuple[str, str, bool]] = []
 
     def serve(self, timeout: float) -> bool:
         cycle = next(self.cycles, SILENCE)
@@ -70,6 +71,10 @@ class ToyLine:
         for device in self.devices:
             device.receive(RECEIVE, OUTPUT.pack(*cycle))
         return True
+
+    def set_port(self, device: str, fault: str, is_on: bool) -> None:
+        self.log.append(f'{device} {fault} {is_on}')
+        self.ports.append((device, fault, is_on))
 
     def update(self) -> None:
         self.log.append('update')

@@ -15,6 +15,7 @@ from isa_ros.errors import ConfigError
 from isa_ros.scenario.fault_reading import read_faults
 from isa_ros.scenario.faults import Fault, timetable
 from isa_ros.scenario.scenario import idle, scenario_of
+from isa_ros.simulation import Simulation
 import pytest
 from tests.runs import ACCUMULATOR, BUS, hip_and_knee
 
@@ -90,10 +91,11 @@ def test_a_gain_is_given_in_si_by_its_name_or_in_the_unit_of_its_key():
 def test_a_scenario_is_written_as_it_was_read():
     text = ('name: broken\nduration_s: 1.0\nfaults:\n'
             '- {t_s: 0.5, actuator: knee, fault: valve_stuck, until_s: 0.8}\n'
-            '- {t_s: 0.25, supply: pump, set: {pump_flow_lpm: 0}}\n')
+            '- {t_s: 0.25, supply: pump, set: {pump_flow_lpm: 0}}\n'
+            '- {t_s: 0.25, bus: hip, set: {pulled: 1}, until_s: 0.5}\n')
     scenario = scenario_of(text, RUN)
     again = scenario_of(scenario.to_yaml(), RUN)
-    assert again.faults == scenario.faults and len(again.faults) == 2
+    assert again.faults == scenario.faults and len(again.faults) == 3
     assert [tick for tick in range(1000) if tick in scenario.changes] == [
         250, 500, 800]
     assert 'faults' not in idle(RUN, 1.0).to_yaml()
@@ -144,6 +146,16 @@ def test_a_scenario_is_written_as_it_was_read():
      r"faults\[0\].fault = 'reu_frozen' is a fault of the actuator, must be one of the link"),
     ({'t_s': 0.1, 'supply': 'pump', 'set': {'gas_volume_l': 1.0}},
      r'gas_volume_l of pump, a supply of kind accumulator, is unknown or does not change'),
+    ({'t_s': 0.1, 'bus': 'knee', 'set': {'puled': 1}}, 'set: puled is unknown .*; did you'),
+    ({'t_s': 0.1, 'bus': 'knee', 'set': {'pulled': 2}}, 'pulled = 2, must be <= 1'),
+    ({'t_s': 0.1, 'bus': 'knee', 'set': {'pulled': 0.5}}, 'pulled = 0.5, must be a whole number'),
+    ({'t_s': 0.1, 'bus': 'elbow', 'set': {'pulled': 1}}, "no actuator 'elbow'; valid: hip, knee"),
+    ({'t_s': 0.1, 'bus': 'knee', 'fault': 'valve_stuck'}, 'is a fault of the actuator, must be'),
+    ({'t_s': 0.1, 'bus': 'knee', 'set': {'pulled': 1}, 'until_s': 0.2,
+      'sine': {'amplitude': 1, 'frequency_hz': 2}}, r'faults\[0\].set: sine is not used with a bus'),
+    ({'t_s': 0.1, 'bus': 'knee', 'set': {'pulled': 1}, 'ramp_s': 0.1},
+     r'faults\[0\].set: ramp_s is not used with a bus'),
+    ({'t_s': 0.1, 'bus': 'knee', 'set': {'pulled': 'on'}}, "pulled = 'on', must be a number"),
     ('valve_stuck', r"faults\[0\] = 'valve_stuck', must be a section")])
 def test_a_bad_fault_is_refused_in_one_line_with_its_place(tree, message):
     with pytest.raises(ConfigError, match=message) as raised:
@@ -221,3 +233,27 @@ def test_the_load_of_an_actuator_that_moves_a_body_cannot_be_changed():
     with pytest.raises(ConfigError, match=r'faults\[0\].set: load.force is not used: the actuator '
                                           'moves a body'):
         faults({**PUSH, 'actuator': 'kfe'}, run=load_run(find('leg', CONFIG)))
+
+
+def test_faults_of_a_bus_are_by_name_of_the_actuator_and_0_where_they_end():
+    found = timetable(faults(
+        {'t_s': 0.1, 'bus': 'knee', 'set': {'pulled': 1}, 'until_s': 0.3},
+        {'t_s': 0.2, 'bus': 'hip', 'set': {'powerless': 1, 'bus_off': 1}}), RUN)
+    assert {tick: own.ports for tick, own in found.items()} == {
+        100: {'knee': {'pulled': 1.0}}, 200: {'hip': {'powerless': 1.0, 'bus_off': 1.0}},
+        300: {'knee': {'pulled': 0.0}}}
+    assert not any(own.actuators or own.supplies for own in found.values())
+
+
+def test_a_loose_contact_of_a_cable_comes_and_goes():
+    found = timetable(faults({
+        't_s': 0.1, 'bus': 'knee', 'set': {'pulled': 1}, 'until_s': 0.3,
+        'intermittent': {'period_s': 0.1, 'duty': 0.5}}), RUN)
+    assert {tick: own.ports['knee']['pulled'] for tick, own in found.items()} == {
+        100: 1.0, 150: 0.0, 200: 1.0, 250: 0.0}
+
+
+def test_without_a_bus_its_faults_are_refused():
+    scenario = idle(RUN, 1.0).with_faults([{'t_s': 0.1, 'bus': 'knee', 'set': {'pulled': 1}}])
+    with pytest.raises(ConfigError, match='fault of bus: knee is used under isa bus only; link:'):
+        Simulation(scenario)

@@ -228,7 +228,8 @@ def _refuse_sheet(sheet: ActuatorSheet, load: LoadSide, place: Place) -> None:
 
 def _refuse_timeout(sheet: ActuatorSheet, step_ns: int, place: Place) -> None:
     """Refuse a time between two setpoints that is shorter than the tick in which one can come."""
-    timeout_ms, step_ms = sheet.reu.protection.setpoint_timeout_ms, step_ns / (MILLI * NS_PER_SECOND)
+    timeout_ms = sheet.reu.protection.setpoint_timeout_ms
+    step_ms = step_ns / (MILLI * NS_PER_SECOND)
     if 0.0 < timeout_ms < step_ms:
         raise ConfigError(
             f'{place}: reu.protection.setpoint_timeout_ms = {timeout_ms:g} ms, must be >= '

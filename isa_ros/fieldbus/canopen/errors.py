@@ -13,6 +13,7 @@ from isa_ros.fieldbus.device.communication_area import ERRORS_KEPT
 NO_ERROR = 0x0000
 BUS_OVERFULL = 0x8100       # communication, generic: NMT start refused
 HEARTBEAT_LOST = 0x8130
+RECOVERED = 0x8140          # from bus off
 PDO_TOO_SHORT = 0x8210
 PDO_TOO_LONG = 0x8220
 SYNC_LENGTH = 0x8240

@@ -21,7 +21,8 @@ from isa_ros.fieldbus.canopen.capacity import CyclicFrame, refuse_overfull
 from isa_ros.fieldbus.canopen.lss import (
     ANSWER as LSS_ANSWER, LssNode, REQUEST as LSS_REQUEST, UNCONFIGURED)
 from isa_ros.fieldbus.canopen.nmt import NmtCommand, NmtState
-from isa_ros.fieldbus.canopen.node import Handler, Node
+from isa_ros.fieldbus.canopen.node import Node
+from isa_ros.fieldbus.canopen.pdo_handler import Handler
 from isa_ros.fieldbus.canopen.port import CanPort, Frame, monotonic
 from isa_ros.fieldbus.canopen.udp_reach import reach_of
 from isa_ros.fieldbus.device.bus_device import BusDevice
@@ -180,6 +181,12 @@ class CanopenLine:
         if self._states() != states:
             self._handlers = None
 
+    def set_port(self, device: str, fault: str, is_on: bool) -> None:
+        """Begin or end a fault of a device's connection."""
+        node = next(one for one in self.nodes if one.device.name == device)
+        node.set_port(fault, is_on, monotonic())
+        self._handlers = None
+
     def miss(self) -> None:
         """Take the bus as lost: the nodes leave operation, by their object 0x1029."""
         for node in self.nodes:
@@ -215,7 +222,7 @@ class CanopenLine:
         if len(data) != _NMT_SIZE:
             return
         command, number = data
-        addressed = [node for node in self.nodes
+        addressed = [node for node in self._present()
                      if node.is_configured and number in (0, node.number)]
         if command != NmtCommand.START or self._can_start(addressed):
             for node in addressed:
@@ -224,7 +231,8 @@ class CanopenLine:
 
     def _guard(self, number: int) -> None:
         """Let the node of a remote frame answer; others are ignored, and counted."""
-        asked = [node for node in self.nodes if node.is_configured and node.number == number]
+        asked = [
+            node for node in self._present() if node.is_configured and node.number == number]
         for node in asked:
             node.guard()
         if self.port is not None and not asked:
@@ -232,7 +240,7 @@ class CanopenLine:
 
     def _set_layers(self, data: bytes) -> None:
         """Pass a frame of LSS to all nodes; equal answers are one frame on a wire, and here."""
-        answers = [node.set_layer(data, monotonic()) for node in self.nodes]
+        answers = [node.set_layer(data, monotonic()) for node in self._present()]
         for answer in dict.fromkeys(answers):
             if answer is not None:
                 self._send(LSS_ANSWER, answer)
@@ -249,6 +257,10 @@ class CanopenLine:
             return False
         return True
 
+    def _present(self) -> list[Node]:
+        """Return the nodes that receive frames."""
+        return [node for node in self.nodes if not node.is_away]
+
     def _states(self) -> list[int]:
         return [node.state for node in self.nodes]
 
@@ -263,8 +275,7 @@ class CanopenLine:
         """Send the heartbeats that are due; return the wall time (s) of the next."""
         soonest = float('inf')
         for node in self.nodes:
-            node.beat(now)
-            wait = node.next_beat(now)
+            wait = node.beat(now)
             if wait is not None:
                 soonest = min(soonest, now + wait)
         return soonest

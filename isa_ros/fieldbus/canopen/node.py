@@ -8,17 +8,18 @@ operational, EMCY is sent in both.
 
 from collections.abc import Callable, Iterator
 
+from isa_ros.config.models.bus_port import BUS_OFF, POWERLESS
 from isa_ros.fieldbus.canopen.capacity import CyclicFrame
 from isa_ros.fieldbus.canopen.communication import Communication
 from isa_ros.fieldbus.canopen.dictionary import mappings, NodeDictionary
 from isa_ros.fieldbus.canopen.errors import (
-    BUS_OVERFULL, HEARTBEAT_LOST, NodeErrors, PDO_OVERDUE, PDO_TOO_LONG, PDO_TOO_SHORT,
-    SYNC_LENGTH)
+    BUS_OVERFULL, HEARTBEAT_LOST, NodeErrors, PDO_OVERDUE, RECOVERED, SYNC_LENGTH)
 from isa_ros.fieldbus.canopen.guarding import Guarding
 from isa_ros.fieldbus.canopen.heartbeat import HeartbeatConsumer, HeartbeatProducer
 from isa_ros.fieldbus.canopen.lss import LssNode, UNCONFIGURED
 from isa_ros.fieldbus.canopen.nmt import NmtCommand, NmtState
 from isa_ros.fieldbus.canopen.pdo import Pdo, ReceivePdo, TransmitPdo
+from isa_ros.fieldbus.canopen.pdo_handler import Handler, pdo_handler
 from isa_ros.fieldbus.canopen.sdo import SdoServer
 from isa_ros.fieldbus.device.bus_device import BusDevice
 from isa_ros.fieldbus.device.can_identifiers import HEARTBEAT, LARGEST, SDO_ANSWER, SDO_REQUEST
@@ -30,8 +31,6 @@ from isa_ros.fieldbus.device.communication_area import ERROR_FIELD
 from isa_ros.fieldbus.device.manufacturer_area import LAST_REFUSAL
 
 Send = Callable[[int, bytes], None]
-Handler = Callable[[bytes], bool]
-"""Handles the data of a frame; returns whether a cycle has begun."""
 
 _ENTERED = {
     NmtCommand.START: NmtState.OPERATIONAL, NmtCommand.STOP: NmtState.STOPPED,
@@ -50,7 +49,8 @@ class Node:
         receive = mappings(device, RECEIVE_MAPPINGS)
         transmit = mappings(device, TRANSMIT_MAPPINGS)
         self.communication = Communication(device.table, node)
-        self.errors = NodeErrors(self.communication, send)
+        self._bus, self._faults = send, set[str]()
+        self.errors = NodeErrors(self.communication, self._send)
         self.receive = [ReceivePdo(one - RECEIVE_MAPPINGS + RECEIVE_PARAMETERS, one)
                         for one in receive]
         self.transmit = [TransmitPdo(one - TRANSMIT_MAPPINGS + TRANSMIT_PARAMETERS, one)
@@ -58,7 +58,6 @@ class Node:
         self.is_synced = False
         """Whether a SYNC has begun a cycle that `update` has not ended yet."""
         self._step_ns = step_ns
-        self._send = send
         self._sdo = SdoServer(NodeDictionary(
             device, self.communication, self.errors,
             is_preoperational=lambda: self.state == NmtState.PREOPERATIONAL,
@@ -67,6 +66,30 @@ class Node:
         self._guarding = Guarding()
         self._counter: int | None = None
         self._has_wrong_sync = False
+
+    # Connection
+
+    @property
+    def is_away(self) -> bool:
+        """Return whether it neither sends nor receives frames."""
+        return bool(self._faults)
+
+    def set_port(self, fault: str, is_on: bool, now: float) -> None:
+        """Begin or end a fault of the connection, a value of `BusPort`; ``now`` in s."""
+        (self._faults.add if is_on else self._faults.discard)(fault)
+        if fault == POWERLESS and is_on:
+            self._reset(is_whole=True)
+        elif fault == POWERLESS:
+            self.begin(self.lss.pending, now)
+        elif fault == BUS_OFF and is_on:
+            self.lose()
+        elif fault == BUS_OFF:
+            self.errors.begin(RECOVERED, self.number, is_sent=self.is_talking)
+            self.errors.end(RECOVERED, self.number, is_sent=self.is_talking)
+
+    def _send(self, identifier: int, data: bytes) -> None:
+        if not self._faults:
+            self._bus(identifier, data)
 
     # NMT
 
@@ -81,15 +104,18 @@ class Node:
         if command in _ENTERED:
             self._enter(_ENTERED[NmtCommand(command)])
         elif command in (NmtCommand.RESET_NODE, NmtCommand.RESET_COMMUNICATION):
-            self._enter(NmtState.INITIALISING)
-            self.errors.reset()
-            self._sdo.reset()
-            self._consumed.set_watched([])
-            self.device.restart(is_whole=command == NmtCommand.RESET_NODE)
-            if command == NmtCommand.RESET_NODE:
-                self.lss.restore()
+            self._reset(is_whole=command == NmtCommand.RESET_NODE)
             self.begin(self.lss.pending, now)
         self.report_emergencies()
+
+    def _reset(self, *, is_whole: bool) -> None:
+        self._enter(NmtState.INITIALISING)
+        self.errors.reset()
+        self._sdo.reset()
+        self._consumed.set_watched([])
+        self.device.restart(is_whole=is_whole)
+        if is_whole:
+            self.lss.restore()
 
     @property
     def is_configured(self) -> bool:
@@ -166,6 +192,9 @@ class Node:
 
     def handlers(self) -> Iterator[tuple[int, Handler]]:
         """Iterate over the identifiers that the node receives, with their handlers."""
+        if self.is_away:    # time goes on, for the fault has an end
+            yield self.communication.value(SYNC_ID) & LARGEST, lambda data: True
+            return
         if not self.is_configured:
             return
         yield SDO_REQUEST + self.number, self._on_sdo
@@ -175,7 +204,7 @@ class Node:
         if self.state == NmtState.OPERATIONAL:
             for pdo in self.receive:
                 if pdo.is_on:
-                    yield pdo.identifier, self._on_pdo(pdo)
+                    yield pdo.identifier, pdo_handler(pdo, self.device, self.errors)
 
     def _on_sdo(self, data: bytes) -> bool:
         if self.is_talking:
@@ -189,26 +218,6 @@ class Node:
         def take(data: bytes) -> bool:
             self._consumed.take(node)
             self.errors.end(HEARTBEAT_LOST, node, is_sent=self.is_talking)
-            return False
-        return take
-
-    def _on_pdo(self, pdo: ReceivePdo) -> Handler:
-        number = pdo.mapping - RECEIVE_MAPPINGS + 1
-
-        def take(data: bytes) -> bool:
-            if len(data) != pdo.size:
-                if not pdo.has_wrong_length:
-                    code = PDO_TOO_SHORT if len(data) < pdo.size else PDO_TOO_LONG
-                    self.errors.begin(code, number, is_sent=True)
-                pdo.has_wrong_length = True
-                if len(data) < pdo.size:
-                    return False
-            elif pdo.has_wrong_length:
-                pdo.has_wrong_length = False
-                for code in (PDO_TOO_SHORT, PDO_TOO_LONG):
-                    self.errors.end(code, number, is_sent=True)
-            self.errors.end(PDO_OVERDUE, number, is_sent=True)
-            pdo.take(data, self.device)
             return False
         return take
 
@@ -236,6 +245,8 @@ class Node:
     def update(self) -> None:
         """End a cycle: the device has its new sample. Report errors, send process data."""
         self.report_emergencies()
+        if self.is_away and self.state == NmtState.OPERATIONAL:
+            self._watch()
         if not self.is_synced:
             return
         self.is_synced = False
@@ -259,13 +270,10 @@ class Node:
         if overdue or lost or is_unguarded:
             self.lose()
 
-    def beat(self, now: float) -> None:
-        """Send a heartbeat if one is due at the wall time ``now`` (s)."""
+    def beat(self, now: float) -> float | None:
+        """Send a heartbeat if it is due at ``now``; return the wall time until the next one, s."""
         if self._produced.is_due(now):
             self._send(HEARTBEAT + self.number, bytes([self.state]))
-
-    def next_beat(self, now: float) -> float | None:
-        """Return the wall time (s) until the next heartbeat, None without any."""
         return self._produced.wait(now)
 
     @property

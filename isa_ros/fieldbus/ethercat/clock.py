@@ -54,10 +54,14 @@ class DistributedClock:
     def __init__(
             self, memory: bytearray, shared: SharedClock, position: int, n_slaves: int) -> None:
         self._memory, self._shared = memory, shared
-        self._arrival_ns = position * HOP_NS
-        self._return_ns = self._arrival_ns + 2 * (n_slaves - 1 - position) * HOP_NS
+        self._position, self._arrival_ns = position, position * HOP_NS
+        self.end_at(n_slaves)
         self._offset_ns, self._delay_ns = self._arrival_ns, 0
         """From the shared clock to system time at the slave, with what the loop has corrected."""
+
+    def end_at(self, n_slaves: int) -> None:
+        """Let frames return from the last of so many slaves."""
+        self._return_ns = self._arrival_ns + 2 * (n_slaves - 1 - self._position) * HOP_NS
 
     @property
     def system_ns(self) -> int:

@@ -118,6 +118,11 @@ class SlaveController:
         at = register.address + offset
         self.memory[at] = min(self.memory[at] + 1, _MOST)
 
+    def lose_link(self, port: int) -> None:
+        """Count that the link of a port was lost."""
+        self.count(LOST_LINKS, port)
+        self.note_event(DL_EVENT)
+
     def _write_masked(self, address: int, content: bytes, mask: bytes) -> None:
         """Write the bytes of registers that can be written."""
         for at, (byte, access) in enumerate(zip(content, mask), address):

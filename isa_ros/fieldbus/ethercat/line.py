@@ -8,7 +8,7 @@ import struct
 import time
 
 from isa_ros.core.timebase import NS_PER_SECOND
-from isa_ros.errors import RunError
+from isa_ros.errors import ConfigError, RunError
 from isa_ros.fieldbus.device.bus_device import BusDevice
 from isa_ros.fieldbus.ethercat.datagrams import Datagrams
 from isa_ros.fieldbus.ethercat.interface import open_interface
@@ -21,22 +21,37 @@ _TIME = struct.Struct('@ll')
 _MICROSECONDS = 1_000_000
 
 
-def ethercat_line(devices: Sequence[BusDevice], interface: str, step_ns: int) -> Line:
+def ethercat_line(
+        devices: Sequence[BusDevice], interface: str, step_ns: int, order: str = '') -> Line:
     """
     Return the slaves of devices on a network interface; a tick takes ``step_ns``.
+
+    ``order`` has their names, with commas, as the cables connect them; '': as they are given.
 
     Raises
     ------
     ConfigError
-        The interface cannot be used.
+        The interface cannot be used, or the order has not each name once.
 
     """
-    return EthercatLine(Ring(devices, step_ns), open_interface(interface), interface)
+    return EthercatLine(
+        Ring(cabled(devices, order), step_ns), open_interface(interface), interface)
 
 
-def refuse_unusable(devices: Sequence[BusDevice], interface: str, step_ns: int) -> None:
+def refuse_unusable(
+        devices: Sequence[BusDevice], interface: str, step_ns: int, order: str = '') -> None:
     """Refuse an interface that cannot be used; parameters and errors as of `ethercat_line`."""
+    cabled(devices, order)
     open_interface(interface).close()
+
+
+def cabled(devices: Sequence[BusDevice], order: str) -> list[BusDevice]:
+    """Return devices in the order of their cables; all as of `ethercat_line`."""
+    by_name = {device.name: device for device in devices}
+    names = order.split(',') if order else list(by_name)
+    if sorted(names) != sorted(by_name):
+        raise ConfigError(f"--order {order}: must have each of {', '.join(by_name)} once")
+    return [by_name[name] for name in names]
 
 
 class EthercatLine:
@@ -68,7 +83,8 @@ class EthercatLine:
             return True  # the frame belongs to the cycle after this tick
         self._held = None
         self.ring.process(self._frame, taken)
-        self._send(size)
+        if self.ring.reached:   # else the cable of the master is pulled
+            self._send(size)
         return self.ring.is_complete and self.ring.end_cycle()
 
     def _receive(self, timeout: float) -> bool:
@@ -118,6 +134,10 @@ class EthercatLine:
     def update(self) -> None:
         """Take the devices' new samples as inputs; simulated time has advanced by one tick."""
         self.ring.update()
+
+    def set_port(self, device: str, fault: str, is_on: bool) -> None:
+        """Begin or end a fault of a device's connection."""
+        self.ring.set_port(device, fault, is_on)
 
     def keep_host_time(self, now_ns: Callable[[], int]) -> None:
         """Let the distributed clocks run with host time, ns."""

@@ -8,15 +8,17 @@ was written; by 2 for a write of a datagram that also reads.
 from collections.abc import Sequence
 import struct
 
+from isa_ros.config.models.bus_port import POWERLESS
 from isa_ros.fieldbus.device.bus_device import BusDevice
 from isa_ros.fieldbus.ethercat.application_layer import AlState
+from isa_ros.fieldbus.ethercat.cabling import Cabling
 from isa_ros.fieldbus.ethercat.clock import SharedClock
-from isa_ros.fieldbus.ethercat.controller import DL_EVENT, irq_of
+from isa_ros.fieldbus.ethercat.controller import irq_of
 from isa_ros.fieldbus.ethercat.cycle import Cycle
 from isa_ros.fieldbus.ethercat.datagrams import (
     Command, Datagram, Datagrams, datagrams, is_ethercat)
 from isa_ros.fieldbus.ethercat.logical import execute, plan, SlaveAccess
-from isa_ros.fieldbus.ethercat.registers import EVENTS, LOST_LINKS, UNIT_ERRORS
+from isa_ros.fieldbus.ethercat.registers import EVENTS, UNIT_ERRORS
 from isa_ros.fieldbus.ethercat.slave import Slave, WRITTEN
 
 _WORD = struct.Struct('<H')
@@ -49,7 +51,41 @@ class Ring:
         self._is_operational = self._is_surveyed = False
         self.slaves = [Slave(device, position, len(devices), self.clock, self._replan)
                        for position, device in enumerate(devices)]
+        self._cabling = Cabling(len(devices))
+        self.reached = self.slaves
+        """Those that the frames of the master reach."""
+        self._is_cut = False
         self._memories = [slave.controller.memory for slave in self.slaves]
+
+    def set_port(self, device: str, fault: str, is_on: bool) -> None:
+        """Pull the cable of a device towards the master, cut its power, or end that."""
+        position = next(k for k, slave in enumerate(self.slaves) if slave.device.name == device)
+        if fault == POWERLESS:
+            if is_on:
+                self._cut_power(position)
+            self._cabling.is_powered[position] = not is_on
+        else:
+            self._cabling.pull(position, is_on)
+        links, powered = self._cabling.links, self._cabling.is_powered
+        for k, slave in enumerate(self.slaves):
+            if powered[k]:
+                for port in range(2):
+                    slave.link(port, links[k + port])
+        n_reached = self._cabling.n_reached
+        for slave in self.slaves:
+            slave.clock.end_at(n_reached)
+        self.reached = self.slaves[:n_reached]
+        self._is_cut = n_reached < len(self.slaves)
+        self._memories = [slave.controller.memory for slave in self.reached]
+        self._replan()
+
+    def _cut_power(self, position: int) -> None:
+        """Put a slave that has just been switched on in the place of one that loses its power."""
+        lost = self.slaves[position]
+        lost.cut_power()
+        self.slaves[position] = Slave(
+            lost.device, position, len(self.slaves), self.clock, self._replan,
+            lost.controller.eeprom.image)
 
     def _replan(self) -> None:
         """Forget what was planned: a master has configured a slave."""
@@ -59,7 +95,7 @@ class Ring:
 
     def _survey(self) -> None:
         """Note what a cycle exchanges, and the highest state."""
-        self._awaited = [(slave, slave.awaited) for slave in self.slaves]
+        self._awaited = [(slave, slave.awaited) for slave in self.reached]
         self._highest = max(slave.state for slave in self.slaves)
         self._is_surveyed = True
 
@@ -90,9 +126,10 @@ class Ring:
                 at = datagram.at + _IRQ
                 _WORD.pack_into(frame, at, _WORD.unpack_from(frame, at)[0] | irq)
         if not taken.is_whole:
-            for slave in self.slaves:
+            for slave in self.reached:
                 slave.controller.count(UNIT_ERRORS)
-        if taken.writes and any(slave.exchanged & WRITTEN for slave in self.slaves):
+        if taken.writes and (self._is_cut or any(
+                slave.exchanged & WRITTEN for slave in self.reached)):
             self.cycle.add(taken.writes)
 
     def _add(self, frame: bytearray, at: int, count: int) -> None:
@@ -112,7 +149,7 @@ class Ring:
         key = (datagram.command, datagram.logical, datagram.data, datagram.end)
         steps = self._plans.get(key)
         if steps is None:
-            steps = self._plans[key] = plan(self.slaves, datagram)
+            steps = self._plans[key] = plan(self.reached, datagram)
         return execute(steps, frame, datagram)
 
     def _physical(self, frame: bytearray, datagram: Datagram) -> int:
@@ -121,7 +158,7 @@ class Ring:
         reads, writes, is_multiple = command in _READS, command in _WRITES, command in _MULTIPLE
         is_station, is_position = command in _STATION, command in _POSITION
         is_broadcast = command in _BROADCAST
-        for position, slave in enumerate(self.slaves):
+        for position, slave in enumerate(self.reached):
             if is_station:
                 is_addressed = wanted in slave.controller.addresses
             else:
@@ -131,7 +168,7 @@ class Ring:
             elif is_addressed:
                 count += _access(slave, frame, datagram, reads, writes)
         if is_position or is_broadcast:
-            _WORD.pack_into(frame, datagram.at + _SLAVE, wanted + len(self.slaves) & _WRAP)
+            _WORD.pack_into(frame, datagram.at + _SLAVE, wanted + len(self.reached) & _WRAP)
         return count
 
     @property
@@ -151,13 +188,15 @@ class Ring:
         Hand the outputs of a cycle to the devices; return whether it is a tick.
 
         It is from the first cycle in the state operational on, until all slaves are in INIT or
-        PREOP: a slave that has fallen to SAFEOP still moves.
+        PREOP: a slave that has fallen to SAFEOP still moves. While one is not reached, time goes
+        on, for its fault has an end.
         """
         self.cycle.end()
         if not self._is_surveyed:
             self._survey()
         self._is_operational = self._highest >= (
-            AlState.SAFEOP if self._is_operational else AlState.OP)
+            AlState.SAFEOP if self._is_operational else AlState.OP
+            ) or self._is_operational and self._is_cut
         for slave in self.slaves:
             slave.end_cycle()
         return self._is_operational
@@ -170,9 +209,7 @@ class Ring:
 
     def lose_link(self) -> None:
         """Count that the link to the master was lost."""
-        controller = self.slaves[0].controller
-        controller.count(LOST_LINKS)
-        controller.note_event(DL_EVENT)
+        self.slaves[0].controller.lose_link(port=0)
 
     def miss(self) -> None:
         """Let the watchdogs of all slaves expire."""

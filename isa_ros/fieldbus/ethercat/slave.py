@@ -7,7 +7,7 @@ from isa_ros.fieldbus.ethercat import al_codes
 from isa_ros.fieldbus.ethercat.application_layer import AlState, ApplicationLayer
 from isa_ros.fieldbus.ethercat.clock import DistributedClock, SharedClock
 from isa_ros.fieldbus.ethercat.coe import CanOverEthercat
-from isa_ros.fieldbus.ethercat.controller import AL_EVENT, SlaveController
+from isa_ros.fieldbus.ethercat.controller import AL_EVENT, DL_EVENT, SlaveController
 from isa_ros.fieldbus.ethercat.fmmu import Fmmu
 from isa_ros.fieldbus.ethercat.layout import AREAS
 from isa_ros.fieldbus.ethercat.registers import DL_STATUS
@@ -19,22 +19,26 @@ from isa_ros.fieldbus.ethercat.watchdog import Watchdog
 
 WRITTEN, READ = 1, 2
 _FROM_MASTER = {MAILBOX_OUT: True, MAILBOX_IN: False, OUTPUTS: True, INPUTS: False}
-_APPLICATION_RUNS, _PORT_0, _PORT_1 = 0x0001, 0x0210, 0x0820
-_CLOSED_1, _CLOSED_2, _CLOSED_3 = 0x0400, 0x1000, 0x4000
-"""DL status: link and communication of a port, or its loop closed."""
+_WITHOUT_LINKS, _OPEN, _CLOSED = 0x5001, (0x0210, 0x0820), (0x0100, 0x0400)
+"""DL status: the application runs, loops 2 and 3 are closed; link and communication of ports 0 and
+1; their loops closed."""
 
 
 class Slave:
-    """One device at its position in the ring."""
+    """
+    One device at its position in the ring.
+
+    ``sii`` is its memory of that name as it was before its power was lost, and with it the links;
+    None: a new one, which is linked.
+    """
 
     def __init__(self, device: BusDevice, position: int, n_slaves: int, shared: SharedClock,
-                 on_change: Callable[[], None]) -> None:
+                 on_change: Callable[[], None], sii: bytearray | None = None) -> None:
         self.device = device
-        self.controller = SlaveController(build_sii(device))
+        self.controller = SlaveController(build_sii(device) if sii is None else sii)
         memory = self.controller.memory
-        is_last = position == n_slaves - 1
-        DL_STATUS.put(memory, _APPLICATION_RUNS | _PORT_0 | _CLOSED_2 | _CLOSED_3 | (
-            _CLOSED_1 if is_last else _PORT_1))
+        self._is_linked = [sii is None, sii is None and position < n_slaves - 1]
+        self._show_links()
         self._sync = self.controller.sync
         self._step_ns = shared.step_ns
         self._on_change = on_change
@@ -57,6 +61,27 @@ class Slave:
     def state(self) -> AlState:
         """Return the state of the slave."""
         return self._al.state
+
+    def link(self, port: int, is_linked: bool) -> None:
+        """Note that a port has lost its link or has it again."""
+        if self._is_linked[port] != is_linked:
+            self._is_linked[port] = is_linked
+            self._show_links()
+            if is_linked:
+                self.controller.note_event(DL_EVENT)
+            else:
+                self.controller.lose_link(port)
+
+    def _show_links(self) -> None:
+        DL_STATUS.put(self.controller.memory, _WITHOUT_LINKS | sum(
+            _OPEN[port] if is_linked else _CLOSED[port]
+            for port, is_linked in enumerate(self._is_linked)))
+
+    def cut_power(self) -> None:
+        """Switch the device off: it is that of power-on when it has power again."""
+        if self.state == AlState.OP:
+            self.device.end_operation(is_lost=False)
+        self.device.restart(is_whole=True)
 
     def refusal(self, state: AlState) -> int:
         """Return why a state cannot be, as a code of `al_codes`; 0 if it can."""

@@ -1,27 +1,11 @@
 """Node guarding: answers to remote frames, and a master that no longer asks."""
 
-from collections.abc import Iterator
-
 import can
 import pytest
-from tests.fieldbus.canopen.toy import ToyDrive
 from tests.fieldbus.canopen.virtual_bus import (
-    Master, OPERATIONAL, PREOPERATIONAL, RESET_COMMUNICATION, START, STOP, STOPPED,
-    virtual_master)
+    Master, OPERATIONAL, PREOPERATIONAL, RESET_COMMUNICATION, START, STOP, STOPPED)
 
 LOST, ENDED = b'\x30\x81\x11\x01\0\0\0\0', bytes(8)
-
-
-@pytest.fixture
-def toys() -> list[ToyDrive]:
-    return [ToyDrive('hfe'), ToyDrive('kfe')]
-
-
-@pytest.fixture
-def master(toys: list[ToyDrive]) -> Iterator[Master]:
-    with virtual_master(toys) as one:
-        one.received()
-        yield one
 
 
 def asked(master: Master, identifier: int = 0x701) -> list[tuple[int, bytes]]:

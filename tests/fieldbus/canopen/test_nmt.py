@@ -1,26 +1,12 @@
 """NMT: states, boot-up messages, heartbeats, and what a node does in each state."""
 
-from collections.abc import Iterator
-
 import isa_ros
 from isa_ros.fieldbus.device.devices import devices_of
 from isa_ros.fieldbus.device.manufacturer_area import tunable_keys
 import pytest
-from tests.fieldbus.canopen.toy import ToyDrive
 from tests.fieldbus.canopen.virtual_bus import (
     Master, OPERATIONAL, PREOPERATIONAL, Refused, RESET_COMMUNICATION, RESET_NODE, START, STOP,
     STOPPED, TO_PREOPERATIONAL, virtual_master)
-
-
-@pytest.fixture
-def toys() -> list[ToyDrive]:
-    return [ToyDrive('hfe'), ToyDrive('kfe')]
-
-
-@pytest.fixture
-def master(toys: list[ToyDrive]) -> Iterator[Master]:
-    with virtual_master(toys) as one:
-        yield one
 
 
 def states(master: Master) -> list[int]:

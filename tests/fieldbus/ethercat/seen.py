@@ -10,6 +10,8 @@ class Row(NamedTuple):
     event: str
     seen: str
     recovery: str
+    module: str
+    """Of the test, the order of the table."""
 
 
 ROWS: dict[str, Row] = {}
@@ -19,7 +21,7 @@ ROWS: dict[str, Row] = {}
 def row(event: str, seen: str, recovery: str = '') -> Callable[[Any], Any]:
     """Note the row that a test asserts."""
     def note(test: Any) -> Any:
-        ROWS[test.__name__] = Row(event, seen, recovery)
+        ROWS[test.__name__] = Row(event, seen, recovery, test.__module__)
         return test
     return note
 
@@ -28,5 +30,5 @@ def table() -> Iterator[str]:
     """Yield the lines of the table in docs/ethercat.md."""
     yield '| what happens | what a master sees | what it does then |'
     yield '|---|---|---|'
-    for one in ROWS.values():
+    for one in sorted(ROWS.values(), key=lambda one: one.module):
         yield f'| {one.event} | {one.seen} | {one.recovery} |'
