@@ -54,8 +54,6 @@ class Bus(NamedTuple):
     """Values of `BusPort` that its line, a `PortLine`, has."""
 
 
-_PLACE = ('interface', 'channel', 'path')
-"""Arguments that say where a master finds the devices."""
 _CAN = (
     Argument('interface', 'interface of python-can: udp_multicast, socketcan, slcan, ...', 'NAME'),
     Argument('channel', 'of that interface'),
@@ -103,5 +101,6 @@ class BusRequest:
 
     @property
     def place(self) -> str:
-        """Return where a master finds the devices."""
-        return ' '.join(str(self.arguments[name]) for name in _PLACE if name in self.arguments)
+        """Return where a master finds the devices: the arguments that must be given."""
+        return ' '.join(str(self.arguments[one.name]) for one in BUSES[self.bus].arguments
+                        if one.default is None and one.name in self.arguments)

@@ -25,14 +25,14 @@ def run_of(**more) -> Request:
 
 def test_a_bus_has_the_options_of_a_run_and_its_own():
     assert asked('ethercat', 'leg', '--interface', 'ecs') == BusRequest(
-        run=run_of(), bus='ethercat', arguments={'interface': 'ecs'})
+        run=run_of(), bus='ethercat', arguments={'interface': 'ecs', 'order': ''})
     assert asked(
         'ethercat', 'leg', '--interface', 'ecs', '--pace', 'real_time', '--profile', 'cia408',
         '--watchdog-ms', '20', '--no-ros', '--duration', '2', '--out', 'bag', '--seed', '3',
     ) == BusRequest(
         run=run_of(duration_s=2.0, out=Path('bag'), seed=3), bus='ethercat',
-        arguments={'interface': 'ecs'}, pace='real_time', profile='cia408', watchdog_ms=20.0,
-        has_ros=False)
+        arguments={'interface': 'ecs', 'order': ''}, pace='real_time', profile='cia408',
+        watchdog_ms=20.0, has_ros=False)
 
 
 def test_buses_on_can_and_on_a_serial_line_have_theirs():

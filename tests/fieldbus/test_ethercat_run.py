@@ -129,11 +129,12 @@ def test_a_plant_slower_than_the_masters_timeout_changes_nothing(tmp_path: Path)
 def test_a_master_sees_a_pulled_cable_for_its_ticks(tmp_path: Path):
     """The cables connect the knee first and the hip last, which is away from tick 30 to 60."""
     scenario = tmp_path / 'pulled.yaml'
-    scenario.write_text('name: pulled\nfaults:\n'
+    scenario.write_text('name: pulled\n'
+                        f'duration_s: {on_a_ring.CYCLES * 1e-3:g}\nfaults:\n'
                         '- {t_s: 0.03, bus: hfe, set: {pulled: 1}, until_s: 0.06}\n')
     ended = ran(tmp_path, Plan(
-        str(tmp_path / 'bag'), ('--duration', f'{on_a_ring.CYCLES * 1e-3:g}', '--scenario',
-                                str(scenario), '--order', 'kfe,haa,hfe'), is_blind=True))
+        str(tmp_path / 'bag'), ('--scenario', str(scenario), '--order', 'kfe,haa,hfe'),
+        is_blind=True))
     assert (ended.code, ended.lost) == (0, 30)
     assert recorded_events(Bag(ended.bag)) == {
         30: ['bus: hfe pulled begins'], 60: ['bus: hfe pulled ends']}

@@ -31,7 +31,8 @@ def open_line(devices, step_ns):
 with tempfile.TemporaryDirectory() as directory:
     request = Request(
         config=find('rig_linear', CONFIG), out=Path(directory) / 'bag', duration_s=0.04)
-    session = prepare_bus(BusRequest(run=request, bus='toy'), toys_of, open_line, print).session
+    session = prepare_bus(BusRequest(
+        run=request, bus='ethercat'), toys_of, open_line, print).session
     run_without_ros(session, None, lambda: False)
 print('late:', *late)
 """

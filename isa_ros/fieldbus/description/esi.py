@@ -11,6 +11,7 @@ from xml.etree.ElementTree import Element, SubElement
 from isa_ros.fieldbus.description.eds import VENDOR_NAME
 from isa_ros.fieldbus.device.bus_device import (
     BusDevice, RECEIVE_ASSIGNMENT, TRANSMIT_ASSIGNMENT, VENDOR)
+from isa_ros.fieldbus.device.diagnosis import TEXTS
 from isa_ros.fieldbus.device.objects import Object, ObjectCode, ObjectEntry
 from isa_ros.fieldbus.device.process_data import CAN_PDOS, mapped_words
 from isa_ros.fieldbus.ethercat.layout import AREAS
@@ -141,6 +142,11 @@ def _profile(found: Element, device: BusDevice) -> None:
         _text(data_type, 'Name', name)
         _text(data_type, 'BitSize', bits)
         types.insert(0, data_type)
+    messages = SubElement(profile, 'DiagMessages')
+    for number, error in enumerate(TEXTS, 1):
+        message = SubElement(messages, 'DiagMessage')
+        _text(message, 'TextId', _hexadecimal(number, 4))
+        _text(message, 'MessageText', error.words, LcId=_ENGLISH)
 
 
 def _type_name(entry: ObjectEntry) -> str:
@@ -149,19 +155,24 @@ def _type_name(entry: ObjectEntry) -> str:
     return name if entry.data_type.bits else f'{name}({entry.bits >> 3})'
 
 
+def _filled(entry: ObjectEntry) -> int:
+    """Return the bits of an entry in complete access, whole bytes."""
+    return entry.bits + 7 & ~7
+
+
 def _places(one: Object) -> Iterator[tuple[ObjectEntry, int]]:
     """Yield the entries with their place in bits; subindex 0 fills 16."""
     place = 0
     for entry in one.entries:
         yield entry, place
-        place += entry.bits if entry.subindex else 16
+        place += _filled(entry) if entry.subindex else 16
 
 
 def _bits(one: Object) -> int:
     """Return the length of an object in complete access, or of its only entry."""
     if one.kind is ObjectCode.VAR:
         return one.entries[0].bits
-    return 16 + sum(entry.bits for entry in one.entries if entry.subindex)
+    return 16 + sum(_filled(entry) for entry in one.entries if entry.subindex)
 
 
 def _record_type(one: Object) -> Element:

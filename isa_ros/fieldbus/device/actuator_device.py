@@ -10,6 +10,8 @@ from isa_ros.fieldbus.device.abort import (
 from isa_ros.fieldbus.device.axis import Axis, FIELDS
 from isa_ros.fieldbus.device.bus_device import Emergency, Identity
 from isa_ros.fieldbus.device.communication_area import ERROR_FIELD, LOAD, RESTORE, STORE
+from isa_ros.fieldbus.device.diagnosis import (
+    ACKNOWLEDGED, delete_messages, note_message, refuse_acknowledgement, take_acknowledgement)
 from isa_ros.fieldbus.device.dictionary import Key, ObjectDictionary
 from isa_ros.fieldbus.device.drive import Drive
 from isa_ros.fieldbus.device.faults import delete_errors, Faults, PDO_LENGTH
@@ -38,7 +40,9 @@ class ActuatorDevice:
         self._actuals: dict[Key, Callable[[], Value]] = {}
         self._dictionary = ObjectDictionary(table, self._actuals, self._admit)
         values = self._values = self._dictionary.values
-        self._faults = Faults(axis.sheet.reu.protection, values)
+        self._t_ns = 0
+        self._faults = Faults(axis.sheet.reu.protection, values, lambda error: note_message(
+            values, error, self._t_ns))
         self._process_data = ProcessData(table, values)
         self._tunables = tunable_keys(axis)
         self._changes: dict[str, float] = {}
@@ -113,6 +117,8 @@ class ActuatorDevice:
 
     def _admit(self, entry: ObjectEntry, value: Value) -> None:
         """Refuse a value by the rules of the REU or the drive."""
+        if (entry.index, entry.subindex) == ACKNOWLEDGED:
+            refuse_acknowledgement(self._values, int(value))
         own = self._tunables.get((entry.index, entry.subindex))
         if own is None:
             self._drive.admit(entry, value)
@@ -130,6 +136,8 @@ class ActuatorDevice:
                 self._changes[self._tunables[key].name] = float(self._values[key])
             elif key == (ERROR_FIELD, 0):
                 delete_errors(self._values)
+            elif key == ACKNOWLEDGED:
+                take_acknowledgement(self._values)
         self._take_received(keys)
 
     # Process data.
@@ -182,6 +190,7 @@ class ActuatorDevice:
                               if self._values[key] != one.value}
             self._dictionary.restart()
             self._faults.restart()
+            delete_messages(self._values)
         self._drive.restart(is_whole)
 
     def emergencies(self) -> list[Emergency]:
@@ -191,6 +200,7 @@ class ActuatorDevice:
     def take_sample(self, sample: np.void, tick: int) -> None:
         """Take the sample at the start of a tick."""
         self._axis.take_sample(sample)
+        self._t_ns = tick * self._axis.step_ns
         self._faults.take_trips(int(self._axis.field('trips')))
         self._drive.take_sample()
 

@@ -19,6 +19,7 @@ from isa_ros.fieldbus.device.cia402_motion_objects import motion_objects
 from isa_ros.fieldbus.device.cia408 import Drive408
 from isa_ros.fieldbus.device.communication_area import (
     error_objects, ethercat_objects, identity_objects, parameter_objects, pdo_objects)
+from isa_ros.fieldbus.device.diagnosis import diagnosis_object
 from isa_ros.fieldbus.device.dictionary import Key
 from isa_ros.fieldbus.device.drive import Drive
 from isa_ros.fieldbus.device.faults import Faults
@@ -98,4 +99,5 @@ def _table(axis: Axis, serial: int, profile: Profile) -> tuple[Identity, ObjectT
     own = identity_objects(
         profile.device_type, identity, axis.name, axis.model,
         installed_versions()[_PACKAGE])
+    own.append(diagnosis_object())  # equal in all devices: no part of their kind
     return identity, ObjectTable([*own, *objects])

@@ -81,14 +81,14 @@ class ObjectDictionary:
     def write_all(self, index: int, data: bytes) -> None:
         """Write all entries of an object or none, subindex 0 as 16 bit; raises `SdoAbort`."""
         first, *others = _complete(self.table.at(index))
-        if len(data) != 2 + sum(entry.bits >> 3 for entry in others):
+        if len(data) != 2 + sum(entry.bits + 7 >> 3 for entry in others):
             raise SdoAbort(WRONG_LENGTH)
         if int.from_bytes(data[:2], 'little') != self.value((index, first.subindex)):
             raise SdoAbort(OUT_OF_RANGE)
         found: dict[Key, Value] = {}
         offset = 2
         for entry in others:
-            size = entry.bits >> 3
+            size = entry.bits + 7 >> 3
             found[index, entry.subindex] = self.admitted(entry, data[offset:offset + size])
             offset += size
         self.values.update(found)

@@ -5,6 +5,8 @@ A trip whose reaction stops the actuator is a fault: its code stays in 0x603F un
 reset. Every trip sends an emergency message, and one with code 0 follows when the last is gone.
 """
 
+from collections.abc import Callable
+
 from isa_ros.core.conditions import BITS, COMMUNICATION, CONDITIONS, ErrorCode, PROFILE
 from isa_ros.fieldbus.device.bus_device import Emergency
 from isa_ros.fieldbus.device.communication_area import ERROR_FIELD, ERRORS_KEPT
@@ -17,6 +19,7 @@ _GENERIC = 1
 BUS_LOST = ErrorCode(0x8180, COMMUNICATION, 'communication: the bus is lost')
 FOLLOWING_ERROR = ErrorCode(0x8611, PROFILE, 'following error')
 PDO_LENGTH = ErrorCode(0x8210, COMMUNICATION, 'PDO not processed due to length error')
+NO_ERROR = ErrorCode(0, 0, 'no error')
 OWN_CODES = (BUS_LOST, FOLLOWING_ERROR, PDO_LENGTH)
 """Errors that the bus interface finds by itself."""
 
@@ -38,9 +41,16 @@ def reaction_of(sheet: Protection, condition: str) -> str:
 
 
 class Faults:
-    """The errors of one device; ``values`` are those of its dictionary, with the error field."""
+    """
+    The errors of one device.
 
-    def __init__(self, sheet: Protection, values: dict[Key, Value]) -> None:
+    ``values`` are those of its dictionary, with the error field; ``note`` is called with each
+    error that begins.
+    """
+
+    def __init__(self, sheet: Protection, values: dict[Key, Value],
+                 note: Callable[[ErrorCode], object] = lambda error: None) -> None:
+        self._note = note
         self._stopping = stopping_bits(sheet)
         self._values = values
         self._trips = 0
@@ -74,27 +84,27 @@ class Faults:
             if new >> bit & 1:
                 if not self.code and self._stopping >> bit & 1:
                     self.code = condition.error.code
-                self._report(condition.error.code)
+                self._report(condition.error)
         if not (new or trips or self._own):
-            self._report(0)
+            self._report(NO_ERROR)
 
     def add(self, error: ErrorCode) -> None:
         """Add an error of the bus interface, which lasts until `clear`."""
         if error not in self._own:
             self._own.append(error)
             self.code = self.code or error.code
-            self._report(error.code)
+            self._report(error)
 
     def note(self, error: ErrorCode) -> None:
         """Report an error that does not last."""
-        self._report(error.code, error.register | _GENERIC)
+        self._report(error, error.register | _GENERIC)
 
     def clear(self) -> None:
         """Forget the errors of the bus interface; those of the device stay."""
         if self._own:
             self._own.clear()
             if not self._trips:
-                self._report(0)
+                self._report(NO_ERROR)
 
     def end(self) -> None:
         """Forget the code: the fault has been reset."""
@@ -112,10 +122,11 @@ class Faults:
         found, self._new = self._new, []
         return found
 
-    def _report(self, code: int, register: int = 0) -> None:
-        data = self._trips.to_bytes(_DATA_BYTES, 'little')
+    def _report(self, error: ErrorCode, register: int = 0) -> None:
+        code, data = error.code, self._trips.to_bytes(_DATA_BYTES, 'little')
         self._new.append(Emergency(code, self.register | register, data))
         if code:
+            self._note(error)
             kept = [int(self._values[ERROR_FIELD, k]) for k in range(1, ERRORS_KEPT)]
             for k, value in enumerate([code | (self._trips & _WORD) << 16, *kept]):
                 self._values[ERROR_FIELD, k + 1] = value

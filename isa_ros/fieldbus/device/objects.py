@@ -14,7 +14,7 @@ import struct
 from isa_ros.fieldbus.device.abort import NO_OBJECT, NO_SUBINDEX, SdoAbort, TOO_LONG, TOO_SHORT
 
 Value = int | float | str
-"""Content of an entry: an integer, a real number or a text."""
+"""Content of an entry: an integer, a real number or a text, in which an octet is a letter."""
 
 
 class DataType(Enum):
@@ -29,6 +29,7 @@ class DataType(Enum):
     UNSIGNED32 = (0x07, 'UDINT', 32, 'I')
     REAL32 = (0x08, 'REAL', 32, 'f')
     VISIBLE_STRING = (0x09, 'STRING', 0, '')
+    OCTETS_16 = (0x0A, 'OCTET_STRING(16)', 128, '')
 
     def __init__(self, number: int, short_name: str, bits: int, code: str) -> None:
         self.number = number
@@ -40,6 +41,11 @@ class DataType(Enum):
         self.code = code
 
     @property
+    def encoding(self) -> str:
+        """Return that of a text."""
+        return 'latin-1' if self is DataType.OCTETS_16 else 'ascii'
+
+    @property
     def is_integer(self) -> bool:
         """Return whether values are whole numbers."""
         return self.code not in ('f', '')
@@ -47,7 +53,7 @@ class DataType(Enum):
     def pack(self, value: Value) -> bytes:
         """Return the bytes of a value; an integer or a real number beyond the range saturates."""
         if isinstance(value, str):
-            return value.encode('ascii', errors='replace')
+            return value.encode(self.encoding, errors='replace')
         if self.code == 'f':
             return struct.pack('<f', min(max(float(value), -_LARGEST_REAL32), _LARGEST_REAL32)
                                if math.isfinite(value) else value)
@@ -65,7 +71,7 @@ class DataType(Enum):
 
         """
         if not self.code:
-            return data.decode('ascii', errors='replace')
+            return data.decode(self.encoding, errors='replace')
         size = self.bits + 7 >> 3
         if len(data) != size:
             raise SdoAbort(TOO_LONG if len(data) > size else TOO_SHORT)

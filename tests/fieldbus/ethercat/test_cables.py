@@ -117,8 +117,8 @@ def frame(size: int) -> bytes:
     return frame_of([Sent(LRW, 0, bytes(size))])
 
 
-@row('a slave has no supply voltage', 'it and the slaves behind it are missing; with voltage again '
-     'it is in INIT without station address, its drive as at power-on',
+@row('a slave has no supply voltage', 'it and the slaves behind it are missing; with voltage '
+     'again it is in INIT without station address, its drive as at power-on',
      'configures it anew, as `slave.reconfig` of pysoem does')
 def test_a_slave_without_power_begins_anew_and_hides_those_behind_it(master):
     knee = master.toys[1]
