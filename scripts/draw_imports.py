@@ -11,13 +11,14 @@ down, where rooms that import each other in a circle are on one floor. *Circles*
 between rooms, and between all modules of the folder. An arrow points *upward* if the layers of
 the import contract in pyproject.toml forbid it; within a folder, if it is part of a circle.
 
-In the drawing of the whole, the rows are those layers; in others, the floors. The width of an
-arrow grows with the number of importing modules, which its title shows.
+In the drawing of the whole, the rows are those layers; in others, the floors. An arrow that others
+make up is left out, so that a room imports from rooms that it reaches only; which, and in how many
+modules, is in the title of its box.
 """
 
 import ast
 from collections import Counter
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable, Iterator, Mapping
 from functools import cache
 from pathlib import Path
 import re
@@ -123,6 +124,15 @@ def circles(edges: Iterable[Edge]) -> set[frozenset[str]]:
             for name, found in ways.items() if name in found}
 
 
+def reduced(edges: Iterable[Edge]) -> list[Edge]:
+    """Return the arrows that no way over another room makes up, sorted; without circles."""
+    edges = set(edges)
+    ways = reached(edges)
+    return sorted(edge for edge in edges if not any(
+        (edge[0], other) in edges and edge[1] in ways.get(other, ())
+        for other in ways[edge[0]] - {edge[1]}))
+
+
 def floors(folder: str, root: Path = ROOT) -> list[list[str]]:
     """Return the rooms of a folder by floor, from the top down, each below all that import it."""
     names, edges = rooms(folder, root), set(imports(folder, root))
@@ -176,26 +186,32 @@ def picture(folder: str = WHOLE) -> str:
         f'<rect width="{WIDTH}" height="{height}" fill="white"/>',
         '<marker id="tip" viewBox="0 0 8 8" refX="7" refY="4" markerWidth="7" markerHeight="7" '
         'orient="auto"><path d="M0,0 L8,4 L0,8 z" fill="#6b87a8"/></marker>']
-    for (upper, lower), count in sorted(imports(folder).items()):
-        if folder == WHOLE and lower in EVERYWHERE or upper not in at or lower not in at:
-            continue
+    found = imports(folder)
+    for upper, lower in reduced(
+            (upper, lower) for upper, lower in found if upper in at and lower in at
+            and not (folder == WHOLE and lower in EVERYWHERE)):
         (x_0, y_0), (x_1, y_1) = at[upper], at[lower]
         y_0, y_1 = y_0 + 0.5 * BOX_HEIGHT, y_1 - 0.5 * BOX_HEIGHT
         bend = 0.5 * (y_1 - y_0)
         lines.append(
             f'<path d="M{x_0:.0f},{y_0:.0f} C{x_0:.0f},{y_0 + bend:.0f} '
             f'{x_1:.0f},{y_1 - bend:.0f} {x_1:.0f},{y_1:.0f}" fill="none" stroke="#6b87a8" '
-            f'stroke-width="{0.6 + 0.12 * min(count, 20):.2f}" stroke-opacity="0.65" '
-            f'marker-end="url(#tip)"><title>{upper} imports {lower}: {count} modules</title>'
-            '</path>')
+            'stroke-width="1.6" marker-end="url(#tip)"/>')
     for name, (x, y) in at.items():
         width = LETTER * len(name) + 2 * PADDING
         lines.append(
             f'<rect x="{x - 0.5 * width:.0f}" y="{y - 0.5 * BOX_HEIGHT:.0f}" '
             f'width="{width:.0f}" height="{BOX_HEIGHT}" rx="5" fill="#eef3f8" '
-            'stroke="#35506e"/>')
-        lines.append(f'<text x="{x:.0f}" y="{y + 5:.0f}">{name}</text>')
+            f'stroke="#35506e"><title>{_title(name, found)}</title></rect>')
+        lines.append(f'<text x="{x:.0f}" y="{y + 5:.0f}" pointer-events="none">{name}</text>')
     return '\n'.join([*lines, '</svg>', ''])
+
+
+def _title(name: str, edges: Mapping[Edge, int]) -> str:
+    """Return which rooms a room imports from, and in how many of its modules."""
+    below = [f'{lower} ({count})' for (upper, lower), count in sorted(edges.items())
+             if upper == name]
+    return f'{name} imports {", ".join(below) or "nothing"}'
 
 
 def drawing(folder: str) -> Path:

@@ -194,6 +194,13 @@ class _Function(NamedTuple):
     calls: list[Any]
 
 
+class _Reached(NamedTuple):
+    """A kernel or function that a kernel reaches, and its own text."""
+
+    value: Any
+    text: bytes
+
+
 def _read(function: Any, options: str) -> _Function:
     """Read the code of a function and what it names."""
     code = function.__code__
@@ -219,9 +226,10 @@ def _functions(values: Iterable[Any]) -> Iterator[Any]:
 _read_once = cache(_read)
 
 
-def _digest(kernels: Iterable[Any], read: Callable[[Any, str], _Function]) -> bytes:
-    """Return the digest of the functions that kernels reach, in the order of finding them."""
-    reached: dict[Any, bytes] = {}      # so that calls in a circle end
+def _reached(
+        kernels: Iterable[Any], read: Callable[[Any, str], _Function]) -> dict[Any, _Reached]:
+    """Return the functions that kernels reach, in the order of finding them."""
+    reached: dict[Any, _Reached] = {}   # so that calls in a circle end
     waiting = list(kernels)
     while waiting:
         value = waiting.pop()
@@ -229,9 +237,30 @@ def _digest(kernels: Iterable[Any], read: Callable[[Any, str], _Function]) -> by
         if function not in reached:
             is_kernel = isinstance(value, Dispatcher)
             options = repr(sorted(value.targetoptions.items())) if is_kernel else ''
-            reached[function], calls = read(function, options)
+            text, calls = read(function, options)
+            reached[function] = _Reached(value, text)
             waiting += reversed(calls)
-    return hashlib.sha256(b'\0'.join(reached.values())).digest()
+    return reached
+
+
+def _digest(kernels: Iterable[Any], read: Callable[[Any, str], _Function]) -> bytes:
+    """Return the digest of the functions that kernels reach."""
+    texts = (own.text for own in _reached(kernels, read).values())
+    return hashlib.sha256(b'\0'.join(texts)).digest()
+
+
+def kernels_of(kernel: Any) -> list[Any]:
+    """
+    Return a kernel and all that it calls, each once.
+
+    Raises
+    ------
+    UnknownValue
+        One names a value that is not known.
+
+    """
+    return [own.value for own in _reached([kernel], _read_once).values()
+            if isinstance(own.value, Dispatcher)]
 
 
 def digest_of(kernels: Iterable[Any]) -> bytes:

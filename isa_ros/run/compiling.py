@@ -4,8 +4,10 @@ from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 import sys
 import time
-from typing import TextIO
+from typing import Any, TextIO
 
+from isa_ros.core.kernel_cache import is_kept
+from isa_ros.core.kernel_key import kernels_of, UnknownValue
 from isa_ros.text.progress import terminal_line
 from numba.core.event import Event, install_listener, Listener
 
@@ -16,7 +18,8 @@ class CompilationReport(Listener):
     """
     Prints one line when kernels have been compiled for `SILENT_S`; counts them on a terminal.
 
-    Kernels are compiled when the kernel that calls them is, so that reports follow each other.
+    Kernels are compiled when the kernel that calls them is, so that reports follow each other;
+    the outermost one says how many there are.
     """
 
     def __init__(self, who: str, stream: TextIO, clock: Callable[[], float]) -> None:
@@ -24,6 +27,8 @@ class CompilationReport(Listener):
         self._line = terminal_line(stream)
         self._began: float | None = None
         self._is_announced = False
+        self._outermost: Any = None
+        self._total: int | None = None
         self._depth = self._finished = 0
 
     def on_start(self, event: Event) -> None:
@@ -31,19 +36,25 @@ class CompilationReport(Listener):
         now = self._clock()
         if self._began is None:
             self._began = now
+        kernel = event.data['dispatcher']
+        if not self._depth:
+            self._outermost, self._total = kernel, None
         self._depth += 1
         spent = now - self._began
         if spent < SILENT_S:
             return
+        if self._total is None:
+            self._total = self._finished + to_compile(self._outermost)
         if not self._is_announced:
             self._is_announced = True
             self._stream.write(
-                f'{self._who}: compiling the simulation, once after an installation or an '
-                'edit; seconds for a few kernels, a minute or more for all\n')
+                f'{self._who}: compiling the simulation, {self._total} kernels, once after an '
+                'installation or an edit\n')
             self._stream.flush()
         if self._line is not None:
-            name = event.data['dispatcher'].__name__
-            self._line.show(f'{self._finished} kernels compiled, {spent:.0f} s: {name}')
+            self._line.show(
+                f'compiling kernels, {self._finished} of {max(self._total, self._finished + 1)}, '
+                f'{spent:.0f} s: {kernel.__name__}')
 
     def on_end(self, event: Event) -> None:
         """Count a kernel; clear the terminal's line when the outermost one is finished."""
@@ -51,6 +62,15 @@ class CompilationReport(Listener):
         self._finished += 1
         if self._line is not None and self._is_announced and not self._depth:
             self._line.erase()
+
+
+def to_compile(kernel: Any) -> int:
+    """Return how many of a kernel and those it calls are neither loaded nor kept; at least 1."""
+    try:
+        missing = [own for own in kernels_of(kernel) if not own.overloads and not is_kept(own)]
+    except UnknownValue:
+        return 1
+    return max(len(missing), 1)
 
 
 @contextmanager

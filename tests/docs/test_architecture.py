@@ -59,6 +59,16 @@ def test_rooms_floors_arrows_and_circles_are_counted(tmp_path: Path) -> None:
         'upward arrows': 2}
 
 
+def test_an_arrow_that_others_make_up_is_not_drawn() -> None:
+    """Over one room or over two; two ways to one room are both drawn."""
+    edges = [('a', 'b'), ('b', 'c'), ('c', 'd'), ('a', 'c'), ('a', 'd'), ('a', 'e'), ('e', 'd')]
+    assert draw_imports.reduced(edges) == [
+        ('a', 'b'), ('a', 'e'), ('b', 'c'), ('c', 'd'), ('e', 'd')]
+    drawn = draw_imports.picture().count('<path d="M') - 1      # the tip is one
+    assert 20 < drawn < len(draw_imports.imports()) / 2
+    assert '<title>text imports core (' in draw_imports.picture()
+
+
 def test_an_init_is_a_room_where_it_imports(tmp_path: Path) -> None:
     root = tree(tmp_path, {
         'isa_ros/__init__': 'from isa_ros.f import g', 'isa_ros/f/__init__': '',

@@ -2,7 +2,12 @@
 
 import io
 
-from isa_ros.run.compiling import reported_compilation, SILENT_S
+from isa_ros.actuator.kernel import actuator_tick
+from isa_ros.config.assembly import group_of
+from isa_ros.core.kernel_cache import is_kept
+from isa_ros.core.kernel_key import kernels_of
+from isa_ros.run.compiling import reported_compilation, SILENT_S, to_compile
+from isa_ros.scripting.run import load
 import numba
 import pytest
 
@@ -44,9 +49,9 @@ def test_a_long_compilation_is_announced_once(stream):
         assert outer(1.0) == 3.0
         assert kernels()(2.0) == 5.0
     text = said.getvalue()
-    assert text.count('isa: compiling the simulation, once') == text.count('\n') == 1
+    assert text.count('isa: compiling the simulation, 2 kernels, once') == text.count('\n') == 1
     if stream is Terminal:
-        assert '0 kernels compiled, 2 s: inner' in text and text.endswith('\r\033[K')
+        assert 'compiling kernels, 0 of 2, 2 s: inner' in text and text.endswith('\r\033[K')
     else:
         assert '\r' not in text
 
@@ -66,3 +71,34 @@ def test_outside_the_context_nothing_is_reported():
         pass
     kernels()(1.0)
     assert said.getvalue() == ''
+
+
+def test_the_total_is_of_what_is_not_compiled_yet():
+    """A kernel that two call is one; those before are counted with what is finished."""
+    @numba.njit
+    def shared(x):
+        return x + 1.0
+
+    @numba.njit
+    def left(x):
+        return shared(x)
+
+    @numba.njit
+    def right(x):
+        return shared(x) + left(x)
+    assert to_compile(right) == 3 and to_compile(shared) == 1
+    said = Terminal()
+    with reported_compilation('isa', said, Clock(SILENT_S)):
+        left(1.0)
+        assert to_compile(right) == 1
+        right(1.0)
+    text = said.getvalue()
+    assert '2 of 3, ' in text and text.count('compiling the simulation, 2 kernels') == 1
+
+
+def test_kernels_that_are_kept_are_not_counted():
+    """The tick of the actuators has been compiled by other tests, or is now."""
+    group_of(load('rig_linear').configuration)
+    kept = [own for own in kernels_of(actuator_tick) if is_kept(own)]
+    assert len(kernels_of(actuator_tick)) > 50
+    assert to_compile(actuator_tick) <= max(1, len(kernels_of(actuator_tick)) - len(kept))

@@ -11,7 +11,7 @@ from matplotlib.figure import Figure
 import numpy as np
 
 
-_TRIP = 'C3'
+_TRIP = 'black'     # no curve has it
 _MOST_MARKS = 20
 _OF_LEG = ('position', 'torque', 'foot_force')
 
@@ -37,7 +37,7 @@ def _mark(figure: Figure, trips: Sequence[Event]) -> None:
     """Draw a line at each trip through all axes of a figure, with its condition in the first."""
     for k, ax in enumerate(figure.axes):
         for trip in trips[:_MOST_MARKS]:
-            ax.axvline(trip.t_s, color=_TRIP, linewidth=0.8)
+            ax.axvline(trip.t_s, color=_TRIP, linewidth=0.8, linestyle=':')
             if k == 0:
                 ax.annotate(
                     trip.what.partition(',')[0], (trip.t_s, 1.0),
@@ -63,7 +63,7 @@ def actuator_figure(actuator: ActuatorConfig, signals: Signals) -> Figure:
         _measured(ax, of(field), factor)
         ax.set_ylabel(label)
     for name, signal, color in (
-            ('A', of('pressure_a'), 'C0'), ('B', of('pressure_b'), 'C3'),
+            ('A', of('pressure_a'), 'C2'), ('B', of('pressure_b'), 'C4'),
             ('supply', signals.supply_pressure(actuator.name), 'gray')):
         pressure.plot(signal.t, signal.values / MPA, label=name, color=color)
     pressure.set_ylabel('pressure, MPa gauge')
@@ -106,7 +106,7 @@ def finish(figure: Figure, axes: Sequence[Axes]) -> Figure:
     """Add grids, legends and the time axis."""
     for ax in axes:
         ax.grid(visible=True, linewidth=0.4)
-        ax.legend(loc='upper right', fontsize='small')
+        ax.legend(loc='center left', bbox_to_anchor=(1.0, 0.5), fontsize='small')
         ax.margins(x=0.0)
     axes[-1].set_xlabel('simulation time, s')
     return figure
