@@ -249,9 +249,9 @@ def _digest(kernels: Iterable[Any], read: Callable[[Any, str], _Function]) -> by
     return hashlib.sha256(b'\0'.join(texts)).digest()
 
 
-def kernels_of(kernel: Any) -> list[Any]:
+def kernels_of(*kernels: Any) -> list[Any]:
     """
-    Return a kernel and all that it calls, each once.
+    Return kernels and all that they call, each once.
 
     Raises
     ------
@@ -259,7 +259,7 @@ def kernels_of(kernel: Any) -> list[Any]:
         One names a value that is not known.
 
     """
-    return [own.value for own in _reached([kernel], _read_once).values()
+    return [own.value for own in _reached(kernels, _read_once).values()
             if isinstance(own.value, Dispatcher)]
 
 

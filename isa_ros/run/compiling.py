@@ -1,6 +1,6 @@
 """Report the compilation of kernels, which takes minutes after an installation or an edit."""
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
 import sys
 import time
@@ -18,8 +18,8 @@ class CompilationReport(Listener):
     """
     Prints one line when kernels have been compiled for `SILENT_S`; counts them on a terminal.
 
-    Kernels are compiled when the kernel that calls them is, so that reports follow each other;
-    the outermost one says how many there are.
+    Kernels are compiled when the kernel that calls them is, so that reports follow each other.
+    They are counted among those of a tick, where that is loaded, and of the outermost one.
     """
 
     def __init__(self, who: str, stream: TextIO, clock: Callable[[], float]) -> None:
@@ -38,13 +38,13 @@ class CompilationReport(Listener):
             self._began = now
         kernel = event.data['dispatcher']
         if not self._depth:
-            self._outermost, self._total = kernel, None
+            self._outermost = kernel
         self._depth += 1
         spent = now - self._began
         if spent < SILENT_S:
             return
         if self._total is None:
-            self._total = self._finished + to_compile(self._outermost)
+            self._total = self._finished + to_compile(self._outermost, *_of_tick())
         if not self._is_announced:
             self._is_announced = True
             self._stream.write(
@@ -64,10 +64,18 @@ class CompilationReport(Listener):
             self._line.erase()
 
 
-def to_compile(kernel: Any) -> int:
-    """Return how many of a kernel and those it calls are neither loaded nor kept; at least 1."""
+def _of_tick() -> Sequence[Any]:
+    """Return the kernel of a tick, which needs nearly all, if it is loaded and not kept."""
+    module = sys.modules.get('isa_ros.actuator.kernel')
+    tick = getattr(module, 'actuator_tick', None)
+    return [] if tick is None or tick.overloads or is_kept(tick) else [tick]
+
+
+def to_compile(*kernels: Any) -> int:
+    """Return how many of kernels and those they call are neither loaded nor kept; at least 1."""
     try:
-        missing = [own for own in kernels_of(kernel) if not own.overloads and not is_kept(own)]
+        missing = [own for own in kernels_of(*kernels)
+                   if not own.overloads and not is_kept(own)]
     except UnknownValue:
         return 1
     return max(len(missing), 1)

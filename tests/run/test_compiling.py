@@ -6,9 +6,12 @@ from isa_ros.actuator.kernel import actuator_tick
 from isa_ros.config.assembly import group_of
 from isa_ros.core.kernel_cache import is_kept
 from isa_ros.core.kernel_key import kernels_of
+from isa_ros.core.signals import LOAD_PORT
+from isa_ros.run import compiling
 from isa_ros.run.compiling import reported_compilation, SILENT_S, to_compile
 from isa_ros.scripting.run import load
 import numba
+import numpy as np
 import pytest
 
 
@@ -28,6 +31,12 @@ class Clock:
     def __call__(self) -> float:
         self._now += self._step_s
         return self._now
+
+
+@pytest.fixture(autouse=True)
+def _is_kept(monkeypatch):
+    """Assume that the tick is kept, as where the suite has run before."""
+    monkeypatch.setattr(compiling, '_of_tick', lambda: [])
 
 
 def kernels():
@@ -98,7 +107,21 @@ def test_the_total_is_of_what_is_not_compiled_yet():
 
 def test_kernels_that_are_kept_are_not_counted():
     """The tick of the actuators has been compiled by other tests, or is now."""
-    group_of(load('rig_linear').configuration)
+    group_of(load('rig_linear').configuration).advance(np.zeros(1, LOAD_PORT))
     kept = [own for own in kernels_of(actuator_tick) if is_kept(own)]
     assert len(kernels_of(actuator_tick)) > 50
     assert to_compile(actuator_tick) <= max(1, len(kernels_of(actuator_tick)) - len(kept))
+
+
+def test_a_tick_that_is_neither_loaded_nor_kept_is_in_the_total(monkeypatch):
+    """So that the first of many small kernels already knows of nearly all."""
+    monkeypatch.undo()
+    assert compiling._of_tick() == []       # another test has compiled it
+    monkeypatch.setattr(compiling, 'is_kept', lambda kernel: False)
+    before = [own for own in kernels_of(actuator_tick) if not own.overloads]
+    assert compiling._of_tick() == ([] if actuator_tick.overloads else [actuator_tick])
+    said = io.StringIO()
+    monkeypatch.setattr(compiling, '_of_tick', lambda: [actuator_tick])
+    with reported_compilation('isa', said, Clock(SILENT_S)):
+        kernels()(1.0)
+    assert f'the simulation, {len(before) + 2} kernels, once' in said.getvalue()

@@ -36,7 +36,10 @@ def load_section(own: Section, place: Place, model: Model, sheet: ActuatorSheet)
     named = rest.pop('kind', None)
     kind = named.value if isinstance(named, SourcedValue) else named
     if not isinstance(kind, str) or kind not in model.loads:
-        raise ConfigError(f'{place}.kind = {kind!r}, must be one of {", ".join(model.loads)}')
+        instead = ('; a load that a program gives is body: {kind: external, actuators: [NAME]}'
+                   if kind == 'external' else '')
+        raise ConfigError(
+            f'{place}.kind = {kind!r}, must be one of {", ".join(model.loads)}{instead}')
     base = build(ActuatorSheet, model.with_preset(DEFAULT_PRESET, 'preset'), model.place)
     section = merge(Scaling(base, sheet).section(model.loads[kind], place), rest)
     of_model = section['kind']

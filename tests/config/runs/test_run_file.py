@@ -177,6 +177,8 @@ def test_own_loads_take_the_values_of_the_model_but_for_those_given(tmp_path: Pa
     ('model: isa_v5, load: {kind: mass}, initial_position_mm: 100.5', 'must be <= 100 mm'),
     ('model: isa_v5, load: {kind: mass, inertia: 0}',
      'rig.yaml: actuators.ram.load.inertia = 0 kg, must be > 0'),
+    ('model: isa_v5, load: {kind: external}',
+     'wood; a load that a program gives is body: {kind: external, actuators: [NAME]}'),
     ('load: {kind: mass}', 'rig.yaml: actuators.ram.model = None is not a model; valid: cylinder'),
     ('model: [isa_v5], load: {kind: mass}', "actuators.ram.model = ['isa_v5'] is not a model"),
     ('model: isa_v5, load: mass', "actuators.ram.load = 'mass', must be a section"),
