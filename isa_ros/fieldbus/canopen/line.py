@@ -29,7 +29,6 @@ from isa_ros.fieldbus.device.bus_device import BusDevice
 from isa_ros.fieldbus.device.can_identifiers import (
     FIRST_NODE, HEARTBEAT, LAST_NODE, NMT, SDO_REQUEST, SYNC)
 
-MOST_FRAMES = 1000     # handled beyond the time of a call of `serve`
 _NMT_SIZE = 2
 
 
@@ -156,18 +155,7 @@ class CanopenLine:
 
         """
         assert self.port is not None, 'the line has been opened'
-        now = monotonic()
-        deadline, handled = now + timeout, 0
-        while handled < MOST_FRAMES or now < deadline:
-            frame = self.port.receive(min(deadline, self._beat(now)) - now)
-            now = monotonic()
-            if frame is None:
-                if now >= deadline:
-                    return False
-            elif self._handle(frame):
-                return True
-            handled += 1
-        return False
+        return self.port.serve(timeout, self._handle, self._beat)
 
     def update(self) -> None:
         """Send EMCY and process data: the devices have a new sample."""

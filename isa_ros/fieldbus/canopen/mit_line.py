@@ -12,10 +12,10 @@ from collections.abc import Mapping, Sequence
 
 from isa_ros.errors import ConfigError
 from isa_ros.fieldbus.canopen.capacity import CyclicFrame, refuse_overfull
-from isa_ros.fieldbus.canopen.line import default_bitrate, MOST_FRAMES, refuse_nodes
+from isa_ros.fieldbus.canopen.line import default_bitrate, refuse_nodes
 from isa_ros.fieldbus.canopen.mit_frames import ANSWER_BYTES, COMMAND_BYTES, special_of
 from isa_ros.fieldbus.canopen.mit_motor import has_impedance, MitMotor
-from isa_ros.fieldbus.canopen.port import CanPort, Frame, monotonic
+from isa_ros.fieldbus.canopen.port import CanPort, Frame
 from isa_ros.fieldbus.canopen.sdo import SdoServer
 from isa_ros.fieldbus.canopen.udp_reach import reach_of
 from isa_ros.fieldbus.device.bus_device import BusDevice
@@ -115,17 +115,7 @@ class MitLine:
         held, self._held = self._held, None
         if held is not None and self._handle(held):
             return True
-        now = monotonic()
-        deadline, handled = now + timeout, 0
-        while handled < MOST_FRAMES or now < deadline:
-            frame = self.port.receive(deadline - now)
-            now = monotonic()
-            if frame is None:
-                return False
-            if self._handle(frame):
-                return True
-            handled += 1
-        return False
+        return self.port.serve(timeout, self._handle)
 
     def update(self) -> None:
         """Do nothing: the next frames are answered with the new samples."""

@@ -5,9 +5,10 @@ Frames are those of classical CAN with identifiers of 11 bits. Error, extended a
 none of CANopen's here; they are counted and ignored, and so is what python-can cannot decode.
 """
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 import errno
 import logging
+import math
 import time
 from typing import NamedTuple, TYPE_CHECKING
 
@@ -33,6 +34,7 @@ class Frame(NamedTuple):
 
 IGNORED = Frame(-1, b'')
 """Stands for a received frame of another kind."""
+MOST_FRAMES = 1000     # handled beyond the time of a call of `CanPort.serve`
 
 
 class CanPort:
@@ -90,6 +92,27 @@ class CanPort:
         if message.is_error_frame or message.is_extended_id or message.is_fd:
             return self._ignored()
         return Frame(message.arbitration_id, bytes(message.data), message.is_remote_frame)
+
+    def serve(self, timeout: float, handle: Callable[[Frame], bool],
+              due: Callable[[float], float] = lambda now: math.inf) -> bool:
+        """
+        Handle the frames that arrive within ``timeout`` seconds until one begins a tick: then True.
+
+        0: those that are there. ``due`` is called with the wall time before each wait, and returns
+        the one at which it is to be called again, s. Raises as `receive`.
+        """
+        now = monotonic()
+        deadline, handled = now + timeout, 0
+        while handled < MOST_FRAMES or now < deadline:
+            frame = self.receive(min(deadline, due(now)) - now)
+            now = monotonic()
+            if frame is None:
+                if now >= deadline:
+                    return False
+            elif handle(frame):
+                return True
+            handled += 1
+        return False
 
     def send(self, identifier: int, data: bytes) -> None:
         """Send a frame; one that the bus does not take (full, off) is counted and dropped."""

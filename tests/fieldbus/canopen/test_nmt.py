@@ -75,7 +75,8 @@ def test_a_reset_boots_with_the_communication_of_power_on(master, toys, command)
 
 def test_heartbeats_have_the_state_and_follow_the_wall_clock(master, monkeypatch):
     now = [100.0]
-    monkeypatch.setattr('isa_ros.fieldbus.canopen.line.monotonic', lambda: now[0])
+    for module in ('line', 'port'):
+        monkeypatch.setattr(f'isa_ros.fieldbus.canopen.{module}.monotonic', lambda: now[0])
     master.write(0x1017, 0, 20, 2)
     master.line.serve(0.0)
     assert master.received() == [(0x701, bytes([PREOPERATIONAL]))]
