@@ -5,10 +5,12 @@ import math
 from isa_ros.bag.reader import Bag
 from isa_ros.config.assembly import surroundings_of
 from isa_ros.config.paths import CONFIG, find
+from isa_ros.config.runs.acceptance import ACCEPT_ALL
 from isa_ros.config.runs.run_file import load_run
 from isa_ros.core.device import FORCE, IMPEDANCE
 from isa_ros.core.signals import HAS_SETPOINT
 from isa_ros.nodes.coordinator.joint_commands import JointCommands
+from isa_ros.nodes.middleware.acceptance import Acceptance
 from isa_ros.surroundings.linkage import actuator_coordinate
 from isa_ros.tick.exchange import Rows
 from msg_adapters.cdr_reader import decode
@@ -41,7 +43,8 @@ class Run:
 @pytest.fixture
 def commanded(observer, monkeypatch):
     """Return a run, the warnings about it, and what hands a message over."""
-    commands, run, lines = JointCommands(observer, RUN), Run(), []
+    commands, run, lines = JointCommands(
+        observer, RUN, Acceptance(observer, ACCEPT_ALL)), Run(), []
     commands.bind(run)
     monkeypatch.setattr(observer.get_logger(), 'warning', lambda line, **_: lines.append(line))
     return run, lines, lambda message: commands._on_message(message, RUN.leg)

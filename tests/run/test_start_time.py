@@ -7,7 +7,7 @@ import isa_ros
 from isa_ros.analysis.report.energy import recorded_accounts
 from isa_ros.analysis.signals.signals import read_signals
 from isa_ros.bag.reader import Bag
-from isa_ros.config.runs.run_config import LATEST_START_S
+from isa_ros.config.runs.tick_grid import LATEST_START_S
 from isa_ros.errors import ConfigError
 from isa_ros.replay.replay import replay
 from isa_ros.run.options import Request

@@ -8,6 +8,7 @@ from typing import Any
 from isa_ros.actuator.link import LinkSheet, NO_LINK
 from isa_ros.config.models.links import LINK
 from isa_ros.config.models.wires import refuse_overfull
+from isa_ros.config.runs.acceptance import ACCEPT, ACCEPT_ALL
 from isa_ros.config.runs.actuator_config import ACTUATOR, actuator_of, ActuatorConfig, Around
 from isa_ros.config.runs.body_config import BODY, BodyConfig
 from isa_ros.config.runs.body_kinds import BODY_KINDS
@@ -15,7 +16,7 @@ from isa_ros.config.runs.joined_bodies import bodies_of, moved_by
 from isa_ros.config.runs.leg_config import LegConfig
 from isa_ros.config.runs.recording import RECORD, RecordConfig
 from isa_ros.config.runs.supplies import supplies_of, SUPPLY, SUPPLY_KEYS, SupplyConfig
-from isa_ros.config.runs.tick_grid import on_grid, WrittenTime
+from isa_ros.config.runs.tick_grid import on_grid, START_TIME, WrittenTime
 from isa_ros.config.text.keys import (
     InText, Key, KeyTable, Layer, NAME, Named, NAMES, nanoseconds, number, OneOf, ParameterSet,
     TEXT, Value)
@@ -28,9 +29,6 @@ from isa_ros.errors import ConfigError
 from isa_ros.surroundings.supply import SupplySheet
 
 __all__ = ['ActuatorConfig', 'ALL', 'COORDINATOR', 'LegConfig', 'RUN', 'RunConfig', 'run_of']
-
-LATEST_START_S = 2_000_000_000
-"""Of a run, since 1970: 147,483,647 s before the seconds of a stamp, 32 bits, end."""
 
 ALL = 'all'
 """Stands for every actuator of a run."""
@@ -55,6 +53,8 @@ class RunConfig:
     source: str = field(default='')
     """Name of the file it was read from, without its directory."""
     record: RecordConfig = RecordConfig()
+    accept: str = ACCEPT_ALL
+    """Who commands: also topics, services and parameters, or the scenario of the run only."""
     seed: int = 0
     """Of all noise."""
     start_time_s: int = 0
@@ -98,7 +98,7 @@ class RunConfig:
     @property
     def digest(self) -> str:
         """Return the sha256 of the resolved text, without what changes no signal."""
-        text = replace(self, record=RecordConfig(), start_time_s=0).to_yaml()
+        text = replace(self, record=RecordConfig(), start_time_s=0, accept=ACCEPT_ALL).to_yaml()
         return hashlib.sha256(text.encode()).hexdigest()
 
     def actuator(self, name: str) -> ActuatorConfig:
@@ -203,14 +203,6 @@ def _only(run: RunConfig) -> BodyConfig | None:
 
 _BODY = OneOf({name: kind.KEYS for name, kind in BODY_KINDS.items()})
 
-
-def _start_time(value: Any, place: Place) -> int:
-    if type(value) is not int or not 0 <= value <= LATEST_START_S:
-        raise ConfigError(
-            f'{place} = {value!r}, must be a whole number of seconds >= 0 and <= {LATEST_START_S}')
-    return value
-
-
 _STEP = number('step_ms', 'ms', 'macro step H', 1.0, in_text=InText.NEVER, gt=0.0, le=100.0)
 _OFFSET = number(
     'controller_offset_ms', 'ms', 'offset of the samples of the REU from the ticks', 0.12,
@@ -229,9 +221,7 @@ RUN = KeyTable((
            gt=0.0, le=3600.0),
     Key('seed', Value('whole number', lambda value, place: seed_of(value, str(place))),
         'of all noise', 0),
-    Key('start_time_s', Value('whole number', _start_time, 's'),
-        'time of all stamps at t = 0, since 1970', None, '0',
-        of=lambda run: run.start_time_s or None),
+    ACCEPT, START_TIME,
     Key(SUPPLY, ParameterSet(SupplySheet), 'the supply of all actuators', None,
         'required, or `supplies`', InText.NEVER),
     Key('supplies', Named(SUPPLY_KEYS), 'several supplies, instead of `supply`', None,
@@ -283,7 +273,7 @@ def run_of(tree: Tree, place: Place, is_checked: bool = True) -> tuple[RunConfig
     values |= {
         'step_ns': step_ns, 'controller_offset_ns': offset_ns, 'supplies': supplies,
         'bodies': bodies, 'actuators': tuple(actuators), 'source': values['source'] or place.file,
-        'start_time_s': values['start_time_s'] or 0}
+        'start_time_s': values['start_time_s'] or 0, 'accept': values['accept'] or ACCEPT_ALL}
     controllers = values.pop('controllers')
     run = RunConfig(**{name: values[name] for name in RunConfig.__dataclass_fields__
                        if name in values})

@@ -1,12 +1,15 @@
 """The times of a run on its grid: macro steps of whole windows of plant steps, and ticks."""
 
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
+from isa_ros.config.text.keys import Key, Value
 from isa_ros.config.text.sections import Place
 from isa_ros.core.timebase import FORCE_WINDOWS, PLANT_STEP_NS
 from isa_ros.errors import ConfigError
 
 _TICK_GRID_NS = FORCE_WINDOWS * PLANT_STEP_NS
+LATEST_START_S = 2_000_000_000
+"""Of a run, since 1970: 147,483,647 s before the seconds of a stamp, 32 bits, end."""
 
 
 class WrittenTime(NamedTuple):
@@ -73,3 +76,15 @@ def ticks_in(seconds: float, step_ns: int, where: str) -> int:
         raise ConfigError(
             f'{where} = {seconds:g} s, must be a multiple of step_ms = {step_ns / 1e6:g} ms')
     return ticks
+
+
+def _start_time(value: Any, place: Place) -> int:
+    if type(value) is not int or not 0 <= value <= LATEST_START_S:
+        raise ConfigError(
+            f'{place} = {value!r}, must be a whole number of seconds >= 0 and <= {LATEST_START_S}')
+    return value
+
+
+START_TIME = Key(
+    'start_time_s', Value('whole number', _start_time, 's'),
+    'time of all stamps at t = 0, since 1970', None, '0', of=lambda run: run.start_time_s or None)

@@ -7,11 +7,13 @@ from typing import Any, NamedTuple
 from isa_ros.actuator.actuator import participant_digest, SmartActuator, Timing
 from isa_ros.actuator.config import ActuatorConfig
 from isa_ros.actuator.tunable import changing
+from isa_ros.config.runs.acceptance import ACCEPT_ALL
 from isa_ros.controller import fill_command, Setpoint
 from isa_ros.core.signals import COMMAND
 from isa_ros.errors import one_line, SetpointError, SimulationDiverged
 from isa_ros.nodes.actuator.parameters import TunableParameters
 from isa_ros.nodes.actuator.setpoint_publishers import IncompatiblePublishers
+from isa_ros.nodes.middleware.acceptance import Acceptance, WARNING_PERIOD_S
 from isa_ros.nodes.middleware.publishers import PreparedPublishers
 from isa_ros.nodes.middleware.qos import SETPOINT
 from isa_ros.nodes.middleware.refusals import refusals
@@ -28,8 +30,6 @@ from rclpy.parameter import Parameter
 from sensor_msgs.msg import JointState
 from std_srvs.srv import SetBool, Trigger
 
-WARNING_PERIOD_S = 1.0
-
 
 class NodeSetup(NamedTuple):
     """The actuator that a node simulates, and its timing."""
@@ -38,6 +38,8 @@ class NodeSetup(NamedTuple):
     timing: Timing
     actuator: SmartActuator | None = None
     """One of a group of actuators; None: the node makes its own."""
+    accept: str = ACCEPT_ALL
+    """Of its run."""
 
 
 class ActuatorNode(Node):
@@ -60,11 +62,13 @@ class ActuatorNode(Node):
         with refusals():
             super().__init__(name, start_parameter_services=False, **kwargs)
         self.setup = resolve(self)
-        config, timing, actuator = self.setup
+        config, timing, actuator, accept = self.setup
         self.actuator = actuator or SmartActuator(config, timing)
         """The actuator itself."""
         self._tunables = TunableParameters(
             self, self.actuator, changing(config.sheet, config.load), self._parameter_overrides)
+        self._acceptance = Acceptance(self, accept)
+        self._acceptance.guard_parameters()
         memory, heats_up = self.actuator.memory, is_heated(config.sheet.plant)
         self._packer = Packer(
             Names([(config.name, config.sheet.is_rotary)],
@@ -129,6 +133,8 @@ class ActuatorNode(Node):
         self._incompatible.check()
 
     def _on_setpoint(self, message: JointState) -> None:
+        if not self._acceptance.takes_setpoint():
+            return
         try:
             command = msg_to_command(message, self.get_name())
             limited = self.actuator.admit(command)
@@ -160,6 +166,9 @@ class ActuatorNode(Node):
 
     def _request(self, response: Any, what: str, request: Setpoint) -> None:
         """Accept a request where the state of the device has a transition for it."""
+        if not self._acceptance.is_open:
+            response.success, response.message = False, self._acceptance.reason
+            return
         command = np.zeros(1, COMMAND)[0]
         fill_command(self.get_name(), request, command)
         response.success, response.message = self.actuator.request(command, what)

@@ -7,6 +7,7 @@ import gc
 from isa_ros.config.assembly import timing_of
 from isa_ros.config.models.catalogue import actuator_model, model_names
 from isa_ros.config.paths import CONFIG, find, SCENARIOS
+from isa_ros.config.runs.acceptance import ACCEPT_ALL
 from isa_ros.config.runs.default_actuator import default_actuator, default_load, DEFAULT_TIMING
 from isa_ros.config.runs.run_config import RunConfig
 from isa_ros.config.runs.run_file import load_run
@@ -112,7 +113,9 @@ def _from_run(run: RunConfig, name: str, model: str, in_lockstep: bool) -> NodeS
     if config.load is None and not in_lockstep:
         model_of = actuator_model(config.model, name)
         config = replace(config, load=default_load(model_of, config.sheet))
-    return NodeSetup(config, timing_of(run))
+    # Alone it has no scenario that could command it.
+    return NodeSetup(
+        config, timing_of(run), accept=run.accept if in_lockstep else ACCEPT_ALL)
 
 
 def _text(node: Node, name: str) -> str:

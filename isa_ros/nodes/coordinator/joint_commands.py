@@ -6,6 +6,7 @@ from isa_ros.actuator.setpoint_range import complete, SetpointRange
 from isa_ros.config.runs.body_config import BodyConfig
 from isa_ros.config.runs.run_config import RunConfig
 from isa_ros.errors import one_line, SetpointError
+from isa_ros.nodes.middleware.acceptance import Acceptance, WARNING_PERIOD_S
 from isa_ros.nodes.middleware.qos import SETPOINT
 from isa_ros.run.coordinator import Coordinator
 from isa_ros.surroundings.joint_space import to_actuator
@@ -17,7 +18,6 @@ from rclpy.subscription import Subscription
 from sensor_msgs.msg import JointState
 
 TOPIC = 'joint_command'
-WARNING_PERIOD_S = 1.0
 
 
 class JointCommands:
@@ -29,7 +29,8 @@ class JointCommands:
     commands the same actuator.
     """
 
-    def __init__(self, node: Node, run: RunConfig) -> None:
+    def __init__(self, node: Node, run: RunConfig, acceptance: Acceptance) -> None:
+        self._acceptance = acceptance
         self._log = node.get_logger()
         self._run = run
         self._ranges = [SetpointRange(own.name, own.sheet, own.beyond_range)
@@ -51,6 +52,8 @@ class JointCommands:
 
     def _on_message(self, message: JointState, body: BodyConfig) -> None:
         assert self._coordinator is not None, 'messages are taken during a run'
+        if not self._acceptance.takes_setpoint():
+            return
         rows = self._coordinator.rows
         try:
             commands, limited = self.commands(message, body, rows)

@@ -15,6 +15,7 @@ from isa_ros.nodes.coordinator.services import RunServices
 from isa_ros.nodes.lockstep.coordinator_end import LockstepTransport
 from isa_ros.nodes.lockstep.expected import Expected, Limits, Participants
 from isa_ros.nodes.lockstep.mixed_transport import MixedTransport
+from isa_ros.nodes.middleware.acceptance import Acceptance
 from isa_ros.nodes.middleware.discovery import refuse_off
 from isa_ros.nodes.middleware.domain import look_for_other_coordinator, sole_coordinator
 from isa_ros.nodes.middleware.environment import defaults
@@ -154,8 +155,8 @@ def coordinate_locally(
     group = group_of(session.run)
     timing = timing_of(session.run)
     actuators = [
-        ActuatorNode(_resolver(NodeSetup(config, timing, actuator)), config.name,
-                     has_mailbox=False, namespace=session.request.namespace, **_QUIET)
+        ActuatorNode(_resolver(NodeSetup(config, timing, actuator, session.run.accept)),
+                     config.name, has_mailbox=False, namespace=session.request.namespace, **_QUIET)
         for config, actuator in zip(configs, group.actuators)]
     controllers = None
     try:
@@ -179,9 +180,10 @@ def _record(
     """Record the run and serve its requests."""
     surroundings = surroundings_of(session.run)
     supplies = node.supplies = SupplyParameters(node, surroundings)
+    acceptance = Acceptance(node, session.run.accept)
     services = RunServices(
         node, session.pace.factor, lambda coordinator: save_in_bag(session, coordinator),
-        supplies, JointCommands(node, session.run))
+        supplies, JointCommands(node, session.run, acceptance), acceptance)
     record(session, transport, surroundings, lambda topics: node.outlets(topics, actuators),
            report, should_stop, services.serve, node.get_logger().warning)
 

@@ -3,9 +3,10 @@
 from collections.abc import Callable
 from typing import Any
 
-from isa_ros.errors import IsaError
+from isa_ros.errors import ConfigError, IsaError
 from isa_ros.nodes.coordinator.joint_commands import JointCommands
 from isa_ros.nodes.coordinator.parameters import SupplyParameters
+from isa_ros.nodes.middleware.acceptance import Acceptance
 from isa_ros.nodes.middleware.handles import has_handles
 from isa_ros.nodes.middleware.parameter_services import open_parameter_services
 from isa_ros.nodes.middleware.parameters import accept_integers, declare
@@ -38,10 +39,10 @@ class RunServices:
     def __init__(
             self, node: Node, real_time_factor: float, save: Save,
             supplies: SupplyParameters | None = None,
-            joints: JointCommands | None = None) -> None:
+            joints: JointCommands | None = None, acceptance: Acceptance | None = None) -> None:
         self._node = node
         self._save = save
-        self._supplies, self._joints = supplies, joints
+        self._supplies, self._joints, self._acceptance = supplies, joints, acceptance
         self._coordinator: Coordinator | None = None
         self._server: DirectServer | None = None
         self._is_paused: bool | None = None  # as it was published last
@@ -58,6 +59,8 @@ class RunServices:
                 description='largest real-time factor; 0: as fast as possible'))
         accept_integers(node)
         node.add_on_set_parameters_callback(self._on_parameters)
+        if acceptance is not None:
+            acceptance.guard_parameters((STEP_COUNT, REAL_TIME_FACTOR))
         own = [
             node.create_service(SetBool, '~/pause', self._on_pause),
             node.create_service(Trigger, '~/step', self._on_step),
@@ -117,6 +120,8 @@ class RunServices:
         return f'{self._run.ticks - before} ticks to {self._instant()}'
 
     def _reset(self) -> str:
+        if self._acceptance is not None and not self._acceptance.is_open:
+            raise ConfigError(self._acceptance.reason)
         instant = self._instant()
         self._run.reset()
         return f'reset at {instant}, starts again at t = 0'

@@ -21,9 +21,9 @@ CONFIG = Path(__file__).parents[3] / 'config'
 LEG = load_run(CONFIG / 'leg.yaml')
 TWO = replace(hip_and_knee([
     SupplyConfig('main', replace(ACCUMULATOR, return_line=RETURN_LINE), ('knee',)),
-    SupplyConfig('low', ACCUMULATOR, ('hip',))]), start_time_s=2_000_000_000)
+    SupplyConfig('low', ACCUMULATOR, ('hip',))]), start_time_s=2_000_000_000, accept='scenario')
 FULL = replace(
-    LEG, controllers=('sway', 'gait'), start_time_s=1, record=RecordConfig(
+    LEG, controllers=('sway', 'gait'), accept='scenario', start_time_s=1, record=RecordConfig(
         Storage(compression='zstd', split_mb=12.5), ('/*/references',), (('/*/valve', 10),)))
 
 
