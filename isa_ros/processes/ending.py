@@ -30,7 +30,8 @@ STOPPING = (signal.SIGINT, signal.SIGTERM, signal.SIGHUP)
 _AGAIN_S = 0.02  # the callback has returned by then
 _DISK_IS_FULL = (errno.ENOSPC, errno.EDQUOT)
 _OWN_PACKAGES = ('isa_ros', 'msg_adapters')
-_OUT_OF_MEMORY = ('cannot allocate memory', 'failed to map segment', "can't start new thread")
+_OUT_OF_MEMORY = ('cannot allocate memory', 'failed to map segment', "can't start new thread",
+                  'pthread_create failed')
 _ROOT = os.path.dirname(os.path.dirname(os.path.dirname(os.path.abspath(__file__))))
 
 

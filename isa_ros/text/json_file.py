@@ -4,10 +4,23 @@ import json
 from pathlib import Path
 from typing import Any
 
+from isa_ros.core.atomic_file import replace_file
+
 
 def write_tree(tree: Any, path: Path) -> None:
-    """Write dictionaries and lists; raises ValueError for a number that is not finite."""
-    path.write_text(json.dumps(tree, indent=2, allow_nan=False) + '\n', encoding='utf-8')
+    """
+    Write dictionaries and lists, whole or not at all: after an error the file is as before.
+
+    Raises
+    ------
+    ValueError
+        A number is not finite.
+    OSError
+        The file cannot be written.
+
+    """
+    text = json.dumps(tree, indent=2, allow_nan=False) + '\n'
+    replace_file(path, text.encode(), is_durable=False)
 
 
 def write_wanted(tree: Any, path: Path | None) -> None:

@@ -22,6 +22,8 @@ ROOT = Path(__file__).parents[2]
     (OSError(errno.ENOMEM, 'Nicht genug Speicher'), 3, 'not enough memory'),
     (ImportError('x.so: failed to map segment from shared object'), 3, 'not enough memory'),
     (RuntimeError("can't start new thread"), 3, 'not enough memory'),
+    (RuntimeError('pthread_create failed: Resource temporarily unavailable'), 3,
+     'not enough memory'),
     (ModuleNotFoundError("No module named 'rclpy'", name='rclpy'), 2, 'package rclpy is missing'),
     (ModuleNotFoundError("No module named 'isa_ros.x'", name='isa_ros.x'), 70, 'a defect'),
     (KeyError('none'), 70, "a defect of isa_ros, KeyError: 'none'"),
