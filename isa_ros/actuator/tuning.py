@@ -11,6 +11,7 @@ from isa_ros.actuator.service_channel import ServiceChannel, travels
 from isa_ros.actuator.sheet import actuator_record, ActuatorSheet
 from isa_ros.actuator.tunable import (
     changed_together, changing, GAINS, LOAD, named, PROTECTION, with_changed_load)
+from isa_ros.actuator.usable import refuse_timeout
 from isa_ros.core.changeable import Changeable
 from isa_ros.core.changing_values import bare, ChangingValues
 from isa_ros.core.signals import COMMAND, HAS_GAINS, HAS_SETPOINT
@@ -134,7 +135,10 @@ class Tuning:
 
     def _changed_by(self, values: Mapping[str, float]) -> ActuatorSheet:
         try:
-            return changed_together(self._sheet, self._load, values, self._known)[0]
+            sheet = changed_together(self._sheet, self._load, values, self._known)[0]
+            if sheet.reu.protection is not self._sheet.reu.protection:
+                refuse_timeout(sheet, self._tick)
+            return sheet
         except ConfigError as error:
             raise ConfigError(f'{self._name}: {error}') from error
 

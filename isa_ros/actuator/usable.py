@@ -17,6 +17,8 @@ from typing import Any, NamedTuple
 
 from isa_ros.actuator.link import NO_LINK
 from isa_ros.actuator.sheet import ActuatorSheet, ROUNDED, valve_stop
+from isa_ros.core.units import MILLI
+from isa_ros.errors import ConfigError
 from isa_ros.plant.channels import longest_delay_ms
 from isa_ros.plant.sensors import sensors_record
 from isa_ros.reu.block import Pid
@@ -33,6 +35,7 @@ _STEPS = {'position': 'encoder', 'force': 'force_step', 'pressure': 'pressure_st
 _RANGES = {'force': 'force_range', 'pressure': 'pressure_range', 'spool': 'spool_range'}
 """Field of `SENSORS` with the largest value that a block can be asked for."""
 
+_DIGITS = 9     # of a tick in ms: 0.3, not 0.30000000000000004
 RELAY = 'with more, one count of its sensor demands the whole output'
 
 
@@ -80,6 +83,23 @@ def usable(sheet: ActuatorSheet) -> Mapping[str, Usable]:
     late = Usable({'le': longest_delay_ms(period)}, 'as many as its delay line has')
     found |= {f'plant.sensors.{name}.delay_ms': late for name in sheet.plant.sensors.channels}
     return found
+
+
+def refuse_timeout(sheet: ActuatorSheet, tick: float) -> None:
+    """
+    Refuse a time between two setpoints that is shorter than the tick, s, in which one can come.
+
+    Raises
+    ------
+    ConfigError
+        It would trip whatever is commanded.
+
+    """
+    timeout_ms, tick_ms = sheet.reu.protection.setpoint_timeout_ms, round(tick / MILLI, _DIGITS)
+    if 0.0 < timeout_ms < tick_ms:
+        raise ConfigError(
+            f'reu.protection.setpoint_timeout_ms = {timeout_ms:g} ms, must be >= '
+            f'step_ms = {tick_ms:g} ms, as setpoints come once a tick; or 0: off')
 
 
 def unlinked(sheet: ActuatorSheet) -> Mapping[str, Usable]:

@@ -22,6 +22,7 @@ from dataclasses import replace
 from typing import Any
 
 from isa_ros.actuator.tunable import changed_together, changing, named, refuse_load
+from isa_ros.actuator.usable import refuse_timeout
 from isa_ros.config.assembly import surroundings_of
 from isa_ros.config.models.bus_port import SOUND_PORT
 from isa_ros.config.models.fault_catalogue import ACTUATOR, KINDS, named_fault, SUPPLY, values_at
@@ -106,7 +107,9 @@ def _fault(tree: Tree, place: Place, run: RunConfig) -> Fault:
             values = named(known, {f'{prefix}{key}': value for key, value in values.items()})
             refuse_load(values, actuator.load)
             _refuse_keys(values, known, where)
-            changed_together(actuator.sheet, actuator.load, values, known)
+            changed, _ = changed_together(actuator.sheet, actuator.load, values, known)
+            if changed.reu.protection is not actuator.sheet.reu.protection:
+                refuse_timeout(changed, run.step_ns / NS_PER_SECOND)
     except ConfigError as error:
         if str(error).startswith(where):
             raise

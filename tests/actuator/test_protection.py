@@ -7,6 +7,7 @@ from isa_ros.core.conditions import BITS, conditions
 from isa_ros.core.device import ENABLED, FAULT, FAULT_REACTION, FORCE, SPOOL
 from isa_ros.core.signals import (
     COMMAND, HAS_CLEAR_FAULT, HAS_ENABLE, HAS_MODE, HAS_REFERENCE, HAS_SETPOINT)
+from isa_ros.errors import ConfigError
 from isa_ros.reu.reactions import protect
 import numpy as np
 import pytest
@@ -241,6 +242,16 @@ def test_a_snapshot_in_the_middle_of_a_delay_continues_it() -> None:
     ticks(twin, 40)
     assert actuator.sample.trips == 1.0
     assert twin.snapshot() == actuator.snapshot()
+
+
+def test_a_timeout_shorter_than_a_tick_is_refused_during_a_run_too() -> None:
+    actuator, key = protected(), 'reu.protection.setpoint_timeout_ms'
+    with pytest.raises(ConfigError, match=(
+            'setpoint_timeout_ms = 0.9 ms, must be >= step_ms = 1 ms, as setpoints come once')):
+        actuator.tune({key: 0.9})
+    for accepted in (1.0, 0.0):
+        actuator.tune({key: accepted})
+        assert actuator.tuning.value(key) == accepted
 
 
 def test_a_start_forgets_what_has_tripped() -> None:

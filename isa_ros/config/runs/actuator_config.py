@@ -8,6 +8,7 @@ from isa_ros.actuator.link import LinkSheet
 from isa_ros.actuator.setpoint_range import BEYOND_RANGE
 from isa_ros.actuator.sheet import ActuatorSheet, refuse_wiring
 from isa_ros.actuator.tunable import refuse_unusable
+from isa_ros.actuator.usable import refuse_timeout
 from isa_ros.config.models.catalogue import actuator_model, DEFAULT_PRESET, Model
 from isa_ros.config.models.links import LINK, link_of
 from isa_ros.config.models.own_load import load_section, refuse_beyond_stops
@@ -119,8 +120,7 @@ def actuator_of(
         check(str(place / 'initial_position'), position, {
             'doc': 'within the stroke', 'unit': 'rad' if sheet.is_rotary else 'm',
             'bounds': {'ge': 0.0, 'le': sheet.plant.drive.stroke + _ROUNDING}})
-        _refuse_sheet(sheet, load_side, place)
-        _refuse_timeout(sheet, around.step_ns, place)
+        _refuse_sheet(sheet, load_side, place, around.step_ns)
     beyond, mode = values['beyond_range'], values['mode']
     if mode is not None:
         mode_of(str(mode), sheet.reu, str(place / 'mode'))
@@ -216,21 +216,12 @@ def _load_section(
         load, place / 'load', model, sheet)
 
 
-def _refuse_sheet(sheet: ActuatorSheet, load: LoadSide, place: Place) -> None:
-    """Refuse blocks that do not fit, unusable gains, and a plant too fast for its step."""
+def _refuse_sheet(sheet: ActuatorSheet, load: LoadSide, place: Place, step_ns: int) -> None:
+    """Refuse blocks that do not fit, unusable values, and a plant too fast for its step."""
     try:
         refuse_wiring(sheet)
         refuse_unusable(sheet)
+        refuse_timeout(sheet, step_ns / NS_PER_SECOND)
         refuse_too_fast(plant_record(sheet.plant)[0], sheet.plant, load)
     except (ConfigError, ParameterError) as error:
         raise ConfigError(f'{place}: {error}') from error
-
-
-def _refuse_timeout(sheet: ActuatorSheet, step_ns: int, place: Place) -> None:
-    """Refuse a time between two setpoints that is shorter than the tick in which one can come."""
-    timeout_ms = sheet.reu.protection.setpoint_timeout_ms
-    step_ms = step_ns / (MILLI * NS_PER_SECOND)
-    if 0.0 < timeout_ms < step_ms:
-        raise ConfigError(
-            f'{place}: reu.protection.setpoint_timeout_ms = {timeout_ms:g} ms, must be >= '
-            f'step_ms = {step_ms:g} ms, as setpoints come once a tick; or 0: off')

@@ -96,7 +96,7 @@ class CanPort:
     def serve(self, timeout: float, handle: Callable[[Frame], bool],
               due: Callable[[float], float] = lambda now: math.inf) -> bool:
         """
-        Handle the frames that arrive within ``timeout`` seconds until one begins a tick: then True.
+        Handle frames for ``timeout`` seconds, or until one begins a tick: then True.
 
         0: those that are there. ``due`` is called with the wall time before each wait, and returns
         the one at which it is to be called again, s. Raises as `receive`.
