@@ -1,6 +1,7 @@
 """A bus that leaves operational stops the drive, although no tick passes until it is back."""
 
 from isa_ros.core.device import DISABLED as OFF, ENABLED, FAULT, QUICK_STOP
+from isa_ros.fieldbus.device.abort import SdoAbort
 from isa_ros.fieldbus.device.cia402_states import State402
 from isa_ros.fieldbus.device.devices import devices_of
 import pytest
@@ -53,6 +54,56 @@ def test_below_operation_enabled_the_drive_is_switched_off_at_once(words):
         master.cycle(word)
     rig.device.end_operation(is_lost=False)
     assert state(master.upload(0x6041)) == 'SWITCH_ON_DISABLED'
+
+
+@pytest.mark.parametrize(('control', 'option', 'reached'), [
+    (SHUTDOWN, 0x605B, 'READY'), (SWITCH_ON, 0x605C, 'SWITCHED_ON')])
+def test_shutdown_and_disable_operation_stop_before_they_are_off_by_option_1(
+        control, option, reached):
+    """By option 0 they are off at once, whatever the other two options are."""
+    for code, own in ((0, OFF), (1, QUICK_STOP)):
+        master = moving()
+        master.download(0x605A, 0, 0)
+        master.download(0x605B, 0, code if option == 0x605B else 1 - code)
+        master.download(0x605C, 0, code if option == 0x605C else 1 - code)
+        assert state(master.cycle(control)) == reached
+        assert master.rig.sample['device_state'] == own
+        for _ in range(60):
+            word = master.cycle(control)
+        assert (state(word), master.rig.sample['device_state']) == (reached, OFF)
+
+
+def test_a_stop_before_it_is_off_is_cut_by_disable_voltage():
+    master = moving()
+    master.download(0x605C, 0, 1)
+    master.cycle(SWITCH_ON)
+    assert state(master.cycle(VOLTAGE_OFF)) == 'SWITCH_ON_DISABLED'
+    assert master.rig.sample['device_state'] == OFF
+
+
+@pytest.mark.parametrize(('code', 'own'), [(0, OFF), (2, QUICK_STOP)])
+def test_a_lost_bus_stops_the_drive_by_the_fault_reaction_code(code, own):
+    master = moving()
+    master.download(0x605E, 0, code)
+    master.device.end_operation(is_lost=True)
+    master.rig.tick()
+    assert master.rig.sample['device_state'] == own
+    for _ in range(60):
+        master.rig.tick()
+    assert (state(master.upload(0x6041)), master.rig.sample['device_state']) == ('FAULT', OFF)
+
+
+@pytest.mark.parametrize(('kind', 'refused'), [('close', True), ('ramp_and_hold', True),
+                                               ('ramp', False)])
+def test_a_quick_stop_that_does_not_ramp_and_end_cannot_come_before_off(kind, refused):
+    """One that closes does not ramp; one that holds would never be off."""
+    master = enabled(Rig(changes={'actuators.ram.parameters.reu.device.quick_stop': kind}), CSP)
+    for option in (0x605B, 0x605C):
+        if refused:
+            with pytest.raises(SdoAbort, match='0x06090030'):
+                master.download(option, 0, 1)
+        else:
+            master.download(option, 0, 1)
 
 
 def test_option_6_does_not_enable_a_drive_again_whose_bus_has_left():

@@ -33,6 +33,8 @@ VOLTAGE, WARNING, REMOTE, LIMITED, FOLLOWS, LATE = (1 << bit for bit in (4, 7, 9
 """Further bits of the status word."""
 _HALTED = (PP, PV, CSP, CSV)
 """Modes with a reference that a halt brakes, and whose following error is watched."""
+_LEAVING = {Event.SHUTDOWN: objects.SHUTDOWN_OPTION, Event.SWITCH_ON: objects.DISABLE_OPTION}
+"""Option codes by the command that leaves operation."""
 _STOP_WORD = 0x02
 """Control word of a quick stop."""
 
@@ -96,6 +98,7 @@ class Drive402(Drive):
         if is_whole:
             self._motions.restart()
         super().restart(is_whole)
+        self._is_stopping &= self._values[objects.QUICK_STOP_OPTION] != objects.OFF_AT_ONCE
 
     def _begin_at_position(self) -> None:
         self._values[objects.TARGET_POSITION] = self._counted(self._axis.position)
@@ -188,9 +191,11 @@ class Drive402(Drive):
                 return self._held(command) if state is State402.QUICK_STOP else 0
             if self._is_held and self._stays:
                 return 0
-            if state is State402.FAULT_REACTION or self._values[objects.QUICK_STOP_OPTION]:
+            option = (objects.FAULT_OPTION if state is State402.FAULT_REACTION
+                      else objects.QUICK_STOP_OPTION)
+            if self._values[option] != objects.OFF_AT_ONCE:
                 return HAS_QUICK_STOP
-        elif self._is_stopping and self._values[objects.QUICK_STOP_OPTION]:
+        elif self._is_stopping:
             return self._stopped(command)
         elif not (axis.is_on or axis.state == INITIALISING):
             return 0
@@ -245,6 +250,11 @@ class Drive402(Drive):
 
     def _enters(self, row: Transition) -> None:
         self._was_on = False
+        if row.event in _LEAVING and row.state is State402.OPERATION_ENABLED:
+            option = self._values[_LEAVING[row.event]]
+            self._is_stopping = option == objects.STOPS_THEN_OFF
+        elif row.event is Event.DISABLE_VOLTAGE:
+            self._is_stopping = False
         if row.event is Event.RESET:
             self._following_error.forget()
         if row.state is State402.QUICK_STOP:

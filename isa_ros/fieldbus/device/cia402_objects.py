@@ -18,7 +18,8 @@ from isa_ros.fieldbus.device.process_data import (
 DEVICE_TYPE = 0x00020192
 """Profile 402, servo drive."""
 ERROR_CODE, CONTROL, STATUS = (0x603F, 0), (0x6040, 0), (0x6041, 0)
-QUICK_STOP_OPTION = (0x605A, 0)
+QUICK_STOP_OPTION, SHUTDOWN_OPTION, DISABLE_OPTION = (0x605A, 0), (0x605B, 0), (0x605C, 0)
+FAULT_OPTION = (0x605E, 0)
 MODE, MODE_SHOWN = (0x6060, 0), (0x6061, 0)
 POSITION_DEMAND, POSITION, FOLLOWING_ERROR = (0x6062, 0), (0x6064, 0), (0x60F4, 0)
 WINDOW, TIMEOUT = (0x6065, 0), (0x6066, 0)
@@ -50,6 +51,8 @@ QUICK_STOP_OFF, QUICK_STOP_ENDS_OFF, QUICK_STOP_STAYS = 0, 2, 6
 QUICK_STOP_BY = {
     'close': QUICK_STOP_OFF, 'ramp': QUICK_STOP_ENDS_OFF, 'ramp_and_hold': QUICK_STOP_STAYS}
 """The option code that an REU starts with, by its `quick_stop`."""
+OFF_AT_ONCE, STOPS_THEN_OFF, FAULT_STOPS = 0, 1, 2
+"""Option codes of shutdown, of disable operation and of a fault."""
 _I8, _I16, _I32 = DataType.INTEGER8, DataType.INTEGER16, DataType.INTEGER32
 _U8, _U16, _U32 = DataType.UNSIGNED8, DataType.UNSIGNED16, DataType.UNSIGNED32
 NOT_WATCHED = 0xFFFFFFFF
@@ -126,6 +129,9 @@ def _one(
 
 def _control_objects(axis: Axis) -> list[Object]:
     bits = sum(_SUPPORTED_BITS.get(mode, 0) for mode in modes_of(axis))
+    leaving = ((OFF_AT_ONCE, STOPS_THEN_OFF)
+               if QUICK_STOP_BY[axis.sheet.reu.device.quick_stop] == QUICK_STOP_ENDS_OFF
+               else (OFF_AT_ONCE,))
     return [
         _one((0x6007, 0), 'Abort connection option code', _I16, 'const', 3,
              meaning='3: quick stop, then fault 0x8180'),
@@ -137,11 +143,14 @@ def _control_objects(axis: Axis) -> list[Object]:
              choices=(QUICK_STOP_OFF, QUICK_STOP_ENDS_OFF, QUICK_STOP_STAYS),
              meaning='0: off at once, 2: quick stop, then switch on disabled, 6: quick stop, '
                      'then quick stop active: it holds'),
-        _one((0x605B, 0), 'Shutdown option code', _I16, 'const', 0, meaning='0: off at once'),
-        _one((0x605C, 0), 'Disable operation option code', _I16, 'const', 0,
-             meaning='0: off at once'),
-        _one((0x605E, 0), 'Fault reaction option code', _I16, 'const', 2,
-             meaning='2: quick stop; of a trip the reaction of its condition'),
+        *(_one(key, f'{name} option code', _I16, 'rw', OFF_AT_ONCE, choices=leaving,
+               meaning='0: off at once, 1: quick stop, then off; not 1 where the REU\'s '
+                       'quick_stop is not ramp')
+          for key, name in ((SHUTDOWN_OPTION, 'Shutdown'), (DISABLE_OPTION, 'Disable operation'))),
+        _one(FAULT_OPTION, 'Fault reaction option code', _I16, 'rw', FAULT_STOPS,
+             choices=(OFF_AT_ONCE, FAULT_STOPS),
+             meaning='of a bus that is lost and of the following error; 0: off at once, 2: quick '
+                     'stop; of a trip the reaction of its condition'),
         _one(MODE, 'Modes of operation', _I8, 'rw', pdo='rx',
              meaning='others are refused, with the reason in 0x2003'),
         _one(MODE_SHOWN, 'Modes of operation display', _I8, pdo='tx'),

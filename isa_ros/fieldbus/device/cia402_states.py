@@ -69,6 +69,7 @@ REU_DISABLED, ENDS_OFF, STAYS, CAUSE_GONE = (
 
 
 _SHOWN, _OFF = 'nothing', 'the REU is disabled: valve to null'
+_OFF_BY_CODE = f'{_OFF}; with option code 1 its quick stop first'
 _NO_FAULT = tuple(
     one for one in State402 if one not in (State402.FAULT_REACTION, State402.FAULT))
 
@@ -79,12 +80,14 @@ TRANSITIONS = (
     Transition(3, State402.READY, Event.ENABLE, '', State402.SWITCHED_ON, 'then transition 4'),
     Transition(4, State402.SWITCHED_ON, Event.ENABLE, REU_DISABLED, State402.OPERATION_ENABLED,
                'the REU is enabled in the mode of operation'),
-    Transition(5, State402.OPERATION_ENABLED, Event.SWITCH_ON, '', State402.SWITCHED_ON, _OFF),
+    Transition(5, State402.OPERATION_ENABLED, Event.SWITCH_ON, '', State402.SWITCHED_ON,
+               _OFF_BY_CODE),
     Transition(6, State402.SWITCHED_ON, Event.SHUTDOWN, '', State402.READY, _SHOWN),
     Transition(7, State402.READY, Event.DISABLE_VOLTAGE, '', State402.SWITCH_ON_DISABLED, _SHOWN),
     Transition(7, State402.READY, Event.STOP, '', State402.SWITCH_ON_DISABLED, _SHOWN),
     Transition(7, State402.READY, Event.LEFT, '', State402.SWITCH_ON_DISABLED, _SHOWN),
-    Transition(8, State402.OPERATION_ENABLED, Event.SHUTDOWN, '', State402.READY, _OFF),
+    Transition(8, State402.OPERATION_ENABLED, Event.SHUTDOWN, '', State402.READY,
+               _OFF_BY_CODE),
     Transition(9, State402.OPERATION_ENABLED, Event.DISABLE_VOLTAGE, '',
                State402.SWITCH_ON_DISABLED, _OFF),
     Transition(9, State402.OPERATION_ENABLED, Event.DROPPED, '', State402.SWITCH_ON_DISABLED,
@@ -105,7 +108,7 @@ TRANSITIONS = (
                _OFF),
     *(Transition(13, state, Event.FAULT, '', State402.FAULT_REACTION,
                  'the reaction of the condition; of the bus and of the following error a quick '
-                 'stop') for state in _NO_FAULT),
+                 'stop, or by option code 0 off at once') for state in _NO_FAULT),
     Transition(14, State402.FAULT_REACTION, Event.REACTION_ENDS, '', State402.FAULT, _SHOWN),
     Transition(15, State402.FAULT, Event.RESET, CAUSE_GONE, State402.SWITCH_ON_DISABLED,
                'the fault is forgotten'),
