@@ -222,16 +222,12 @@ def take_over_bumpless(acting, was_on, was_stopping, reu, state):
 
 @kernel
 def get_ready(step, reu, state):
-    """
-    End the initialisation.
-
-    After a time in which its load may have moved, an actuator without a setpoint stays where it
-    is; at t = 0 it begins with the position and without effort.
-    """
+    """End the initialisation; an actuator without a setpoint stays and bears its load."""
     own = state.status
     happens(READY, own.auto_enable, step, reu, own)
-    if (own.state == ENABLED and reu.rules.initialisation > 0.0
-            and state.protection.setpoint_age == 0):
+    if own.state == ENABLED and state.protection.setpoint_age == 0:
+        if reu.rules.initialisation == 0.0:
+            own.flow.slow_force = state.measured.force
         stay_here(own.mode, state)
 
 

@@ -30,7 +30,7 @@ class Transition(NamedTuple):
 
 TRANSITIONS = (
     Transition(INITIALISING, READY, AUTO_ENABLE, ENABLED,
-               'at t = 0 holds the position measured there; later as from disabled'),
+               'holds the measured position and force, or takes the setpoint of that tick'),
     Transition(INITIALISING, READY, f'not {AUTO_ENABLE}', DISABLED, 'valve stays at null'),
     Transition(INITIALISING, TRIP, ALWAYS, FAULT, 'valve stays at null'),
     Transition(INITIALISING, ENABLE, ALWAYS, INITIALISING, 'will be enabled when it is ready'),
