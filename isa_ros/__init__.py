@@ -20,6 +20,7 @@ if TYPE_CHECKING:
     from isa_ros.controller import Setpoint as Setpoint
     from isa_ros.controller import State as State
     from isa_ros.core.conditions import conditions as conditions
+    from isa_ros.scripting.actuators import Actuators as Actuators
     from isa_ros.scripting.result import Result as Result
     from isa_ros.scripting.run import load as load
     from isa_ros.scripting.run import Run as Run
@@ -27,11 +28,18 @@ if TYPE_CHECKING:
     from isa_ros.scripting.sweep import sweep as sweep
     from isa_ros.simulation import Simulation as Simulation
     from isa_ros.surroundings.body import Body as Body
+    from isa_ros.surroundings.mechanism import Mechanism as Mechanism
+    from isa_ros.surroundings.mechanism import MechanismBody as MechanismBody
+    from isa_ros.surroundings.mechanism import Motion as Motion
+    from isa_ros.surroundings.mechanism import Mounting as Mounting
     from isa_ros.tick.trips import TripWarning as TripWarning
     __version__: str
 
 _HOMES = {
-    'ActuatorGroup': 'actuator.group', 'Body': 'surroundings.body', 'Controller': 'controller',
+    'ActuatorGroup': 'actuator.group', 'Actuators': 'scripting.actuators',
+    'Body': 'surroundings.body', 'Controller': 'controller',
+    'Mechanism': 'surroundings.mechanism', 'MechanismBody': 'surroundings.mechanism',
+    'Motion': 'surroundings.mechanism', 'Mounting': 'surroundings.mechanism',
     'Result': 'scripting.result', 'Run': 'scripting.run', 'Setpoint': 'controller',
     'Simulation': 'simulation', 'State': 'controller', 'Sweep': 'scripting.sweep',
     'TripWarning': 'tick.trips',
@@ -39,8 +47,9 @@ _HOMES = {
     'read': 'analysis.signals.recorded_result', 'sweep': 'scripting.sweep'}
 
 __all__ = [  # noqa: F822, the names are loaded by `__getattr__`
-    'ActuatorGroup', 'Body', 'Controller', 'Result', 'Run', 'Setpoint', 'Simulation', 'State',
-    'Sweep', 'TripWarning', 'conditions', 'load', 'read', 'sweep']
+    'ActuatorGroup', 'Actuators', 'Body', 'Controller', 'Mechanism', 'MechanismBody', 'Motion',
+    'Mounting', 'Result', 'Run', 'Setpoint', 'Simulation', 'State', 'Sweep', 'TripWarning',
+    'conditions', 'load', 'read', 'sweep']
 
 
 def __getattr__(name: str) -> Any:

@@ -48,7 +48,7 @@ class Simulation:
     depend on the state of a tick and take effect one tick later. At the same tick the scenario
     wins over a controller, and both over `command`. A request of a controller beyond the range of
     its actuator is refused or limited, with a `UserWarning`. ``factories`` make the bodies of the
-    kind external, by name.
+    kind external, by name; None: the class in the run file.
 
     Raises
     ------

@@ -3,6 +3,7 @@
 from collections.abc import Mapping, Sequence
 import struct
 
+from msg_adapters.cdr_reader import decode
 from msg_adapters.template import Fields, STAMP
 from sensor_msgs.msg import JointState
 
@@ -62,6 +63,12 @@ def is_whole(data: bytes) -> bool:
     except struct.error:
         return False
     return True
+
+
+def arrays_of(data: bytes) -> tuple[Sequence[float], ...]:
+    """Return position, velocity and effort of a recorded message; raises `CdrError`."""
+    message = decode(data, JointState)
+    return tuple(getattr(message, array) for array in ARRAYS)
 
 
 def actuator_joint_state(name: str, columns: Mapping[str, int]) -> tuple[JointState, Fields]:

@@ -5,7 +5,7 @@ It has no data of the host: no wall time, path, user, process mode or number of 
 """
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 import hashlib
 from importlib.metadata import PackageNotFoundError, version
 from pathlib import Path
@@ -23,6 +23,7 @@ RECORD = 'isa_ros'
 FORMAT = '1'
 
 VERSION = 'version.'
+_BODY = 'body.'
 PYTHON = 'python'
 KERNELS = 'kernels'
 """Among the versions: a digest of the kernels of a tick (`isa_ros.run.provenance`)."""
@@ -39,6 +40,8 @@ class Provenance:
     versions: Mapping[str, str]
     state: str | None = None
     """The saved state that the run continued from (JSON text); None: it began at t = 0."""
+    bodies: Mapping[str, str] = field(default_factory=dict)
+    """What external bodies say of themselves, by BODY.KEY: their simulator, its version."""
 
     def attachments(self) -> dict[str, bytes]:
         """Return the attachments by name."""
@@ -49,7 +52,8 @@ class Provenance:
         """Return the key-value metadata record, in fixed order."""
         digests = {f'{name}.sha256': _sha256(data) for name, data in self.attachments().items()}
         versions = {f'{VERSION}{name}': self.versions[name] for name in sorted(self.versions)}
-        return {'format': FORMAT, 'seed': str(self.seed), **digests, **versions}
+        bodies = {f'{_BODY}{name}': self.bodies[name] for name in sorted(self.bodies)}
+        return {'format': FORMAT, 'seed': str(self.seed), **digests, **versions, **bodies}
 
     @classmethod
     def of_records(
@@ -84,7 +88,9 @@ class Provenance:
             scenario=attachments[SCENARIO].decode(),
             seed=seed,
             versions=versions_of(record),
-            state=attachments[STATE].decode() if has_state else None)
+            state=attachments[STATE].decode() if has_state else None,
+            bodies={key.removeprefix(_BODY): value for key, value in record.items()
+                    if key.startswith(_BODY)})
 
 
 def _refuse_undecodable(name: str, data: bytes, where: str) -> None:

@@ -7,6 +7,7 @@ from isa_ros.actuator.actuator import Timing
 from isa_ros.actuator.group import ActuatorGroup
 from isa_ros.actuator.setpoint_range import RequestRange, SetpointRange
 from isa_ros.config.runs.body_config import BodyFactory, Made
+from isa_ros.config.runs.external_config import at_rest
 from isa_ros.config.runs.run_config import RunConfig
 from isa_ros.core.signals import START
 from isa_ros.loads.sheets import static_force
@@ -60,8 +61,20 @@ def surroundings_of(
     starts = np.zeros(len(run.actuators), START)
     starts['position'] = [actuator.initial_position for actuator in run.actuators]
     starts['force'] = [static_force(actuator.load) for actuator in run.actuators]
+    bodies = {}
+    for own in run.bodies:
+        rows = [run.index(name) for _, name in own.joints]
+        bodies[own.name] = own.body(Made(
+            run.step_ns, run.seed, rows, factories.get(own.name),
+            [run.actuators[row] for row in rows]))
     return Surroundings(
-        circuits, {own.name: own.body(Made(
-            run.step_ns, run.seed, [run.index(name) for _, name in own.joints],
-            factories.get(own.name))) for own in run.bodies},
-        starts, [plant.mechanics.k_s for plant in plants], run.step_ns)
+        circuits, bodies, starts, [plant.mechanics.k_s for plant in plants], run.step_ns)
+
+
+def surroundings_in_form(run: RunConfig) -> Surroundings:
+    """
+    Return surroundings whose external bodies are at rest at zero, without their simulators.
+
+    Raises as `surroundings_of`, but for external bodies.
+    """
+    return surroundings_of(run, {own.name: at_rest for own in run.bodies if own.is_given})

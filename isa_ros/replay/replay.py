@@ -8,10 +8,12 @@ needed.
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
+from functools import partial
 from itertools import chain
 from typing import NamedTuple
 
 from isa_ros.bag.reader import Bag
+from isa_ros.config.runs.body_config import BodyConfig
 from isa_ros.config.runs.run_config import RunConfig
 from isa_ros.core.changing_values import RECORDED
 from isa_ros.core.saved_state import RunState
@@ -26,8 +28,11 @@ from isa_ros.run.coordinator import Interrupted
 from isa_ros.run.local_run import LocalRun
 from isa_ros.run.output import Recorder
 from isa_ros.scenario.faults import ParameterChanges
+from isa_ros.surroundings.kept_ports import (
+    FORMAT, GivenBody, LOAD_PORT_TOPIC, port_of_message)
+from isa_ros.surroundings.mechanism import Mounting
 from isa_ros.tick.source import ScheduledSource
-from msg_adapters import diagnostics, event
+from msg_adapters import diagnostics, event, joint_state
 from msg_adapters.applied_parameters import tuned_values
 from msg_adapters.cdr import CdrError
 from msg_adapters.coordinator_messages import APPLIED_PARAMETERS, NODE
@@ -89,6 +94,8 @@ def replay(
         print_line(line)
     refuse_obstacles(bag, impossible)
     again = Rerun(bag)
+    for line in again.external_bodies:
+        print_line(line)
     topics = topic_differences(bag, again.topics)
     for line in topics.lines:
         print_line(line)
@@ -114,7 +121,11 @@ class Rerun:
         self._source = ScheduledSource(
             self._fill, _changes(self._inputs, self._run), recorded_events(bag))
         self._state = _recorded_state(bag, self._run)
-        self._local = LocalRun(self._run)
+        self.external_bodies = [_not_simulated(body, bag.provenance.bodies)
+                                for body in self._run.bodies if body.is_given]
+        """A line for each body that is not simulated again."""
+        self._local = LocalRun(self._run, {
+            body: partial(_given, bag, ports) for body, ports in self._inputs.ports.items()})
         self.topics = self._local.topics
 
     def simulate(
@@ -130,6 +141,24 @@ class Rerun:
     def _fill(self, tick: int, rows: Records) -> None:
         for row, command in self._inputs.commands.get(tick, ()):
             rows[row] = command
+
+
+def _not_simulated(body: BodyConfig, bodies: Mapping[str, str]) -> str:
+    said = ', '.join(f'{key.partition(".")[2]} {value}' for key, value in bodies.items()
+                     if key.startswith(f'{body.name}.'))
+    return (f'{body.called}{said and f" ({said})"}: its load ports are inputs of this replay, it '
+            'is not simulated again')
+
+
+def _given(bag: Bag, ports: Mapping[int, Records], mounting: Mounting) -> GivenBody:
+    """Return a body with the ports of a bag; a run that continued has no start of its own."""
+    first = min(ports)
+
+    def of_sample(number: int) -> Records:
+        if number not in ports and number:
+            raise BagError(f'{bag.path}: has no load ports of tick {number - 1}')
+        return ports[number or first]
+    return GivenBody(mounting.rows, of_sample)
 
 
 def _changes(inputs: 'Inputs', run: RunConfig) -> dict[int, ParameterChanges]:
@@ -189,6 +218,8 @@ class Inputs(NamedTuple):
     """Actuator -> tick -> applied parameters by name."""
     tuned_supplies: dict[int, dict[str, float]]
     """Tick -> applied parameters of the supplies by SUPPLY.KEY."""
+    ports: dict[str, dict[int, Records]]
+    """External body -> number of a sample -> load ports of its actuators, `FORMAT` rows (k,)."""
     n_ticks: int
     has_end: bool
     """Whether the last sample has diagnostics, as that of a run that came to its end."""
@@ -198,7 +229,8 @@ def recorded_inputs(bag: Bag, run: RunConfig) -> Inputs:
     """
     Return the applied setpoints and parameters of a bag by their ticks; behind a link the sent.
 
-    Sample k + 1 holds the inputs that took effect at tick k; that of t = 0 is the start.
+    Sample k + 1 holds the inputs that took effect at tick k; that of t = 0 is the start. Load
+    ports of external bodies are inputs too.
 
     Raises
     ------
@@ -210,7 +242,10 @@ def recorded_inputs(bag: Bag, run: RunConfig) -> Inputs:
         f'/{a.name}/{SENT}' if a.name in run.linked else f'/{a.name}/{APPLIED}': (k, a.name)
         for k, a in enumerate(run.actuators)}
     parameters = {f'/{a.name}/{TUNED}': a.name for a in run.actuators}
-    inputs = Inputs({}, {}, {}, -1, False)
+    external = [body for body in run.bodies if body.is_given]
+    ports = {f'/{name}/{LOAD_PORT_TOPIC}': (body.name, j, len(body.joints))
+             for body in external for j, (_, name) in enumerate(body.joints)}
+    inputs = Inputs({}, {}, {}, {body.name: {} for body in external}, -1, False)
     last = diagnosed = -1
     for message in bag.messages():
         last = message.sequence
@@ -223,6 +258,10 @@ def recorded_inputs(bag: Bag, run: RunConfig) -> Inputs:
             elif topic in parameters:
                 name = parameters[topic]
                 inputs.tuned.setdefault(name, {})[tick] = tuned_values(message.data, name)
+            elif topic in ports:
+                name, j, k = ports[topic]
+                inputs.ports[name].setdefault(last, np.zeros(k, FORMAT))[j] = port_of_message(
+                    joint_state.arrays_of(message.data))
             elif topic == APPLIED_PARAMETERS[0]:
                 inputs.tuned_supplies[tick] = tuned_values(message.data, NODE)
             elif topic == diagnostics.TOPIC[0]:
@@ -231,4 +270,7 @@ def recorded_inputs(bag: Bag, run: RunConfig) -> Inputs:
             raise BagError(f'{bag.place_of(message)}: {error}') from error
     if last < 0:
         raise BagError(f'{bag.path}: has no samples, so there is nothing to replay')
+    for name, by_sample in inputs.ports.items():
+        if not by_sample:
+            raise BagError(f'{bag.path}: has no load ports of the external body {name}')
     return inputs._replace(n_ticks=last, has_end=diagnosed == last)

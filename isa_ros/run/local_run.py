@@ -1,8 +1,10 @@
 """A whole run in this process, without ROS: its ticks with a recorder."""
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
+from types import MappingProxyType
 
+from isa_ros.config.runs.body_config import BodyFactory
 from isa_ros.config.runs.run_config import RunConfig
 from isa_ros.core.saved_state import RunState
 from isa_ros.run.coordinator import Interrupted
@@ -17,12 +19,15 @@ class LocalRun:
     """
     A run ready to be simulated and recorded; ``topics`` are the recorded ones, in order.
 
-    Its controllers do not take part: their requests are among the commands.
+    Its controllers do not take part: their requests are among the commands. ``factories`` make the
+    external bodies, by name.
     """
 
-    def __init__(self, run: RunConfig) -> None:
+    def __init__(
+            self, run: RunConfig,
+            factories: Mapping[str, BodyFactory] = MappingProxyType({})) -> None:
         self._run = replace(run, controllers=())
-        self._loop = Simulation(idle(self._run)).loop
+        self._loop = Simulation(idle(self._run), (), factories).loop
         self._packer = packer_of(self._run, self._loop.rows.published)
         self._thinning = Thinning(run.record, self._packer.topics)
         self.topics = self._thinning.topics

@@ -1,9 +1,10 @@
 """The provenance of a run's bag: what its result depends on."""
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from functools import cache
 from importlib import import_module
 from pkgutil import walk_packages
+from types import MappingProxyType
 from typing import Any
 
 from isa_ros.bag.provenance import installed_versions, KERNELS, Provenance
@@ -17,13 +18,20 @@ _OF_TICK = ('actuator', 'loads', 'plant', 'reu', 'surroundings')
 _PACKING = ('run.packing', 'run.link_packing')
 
 
-def provenance_of(scenario: Scenario, state: RunState | None = None) -> Provenance:
-    """Return what the bag of a run says about its making; ``state`` is where it goes on from."""
+def provenance_of(
+        scenario: Scenario, state: RunState | None = None,
+        bodies: Mapping[str, str] = MappingProxyType({})) -> Provenance:
+    """
+    Return what the bag of a run says about its making.
+
+    ``state`` is where it goes on from, ``bodies`` the `Surroundings.provenance`.
+    """
     run = scenario.run
     return Provenance(
         configuration=run.to_yaml(), scenario=scenario.to_yaml(), seed=run.seed,
         versions=recorded_versions(),
-        state=None if state is None else state.to_json(run.digest, installed_versions()))
+        state=None if state is None else state.to_json(run.digest, installed_versions()),
+        bodies=bodies)
 
 
 def recorded_versions() -> dict[str, str]:

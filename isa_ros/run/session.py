@@ -10,7 +10,7 @@ from pathlib import Path
 from isa_ros.bag.directory import files_to_replace
 from isa_ros.bag.provenance import installed_versions
 from isa_ros.bag.writer import BagWriter
-from isa_ros.config.assembly import request_range_of, surroundings_of
+from isa_ros.config.assembly import request_range_of, surroundings_in_form
 from isa_ros.config.runs.run_config import RunConfig
 from isa_ros.config.runs.run_file import load_run
 from isa_ros.config.text.changes import changes_of
@@ -102,8 +102,10 @@ def prepare(
     changes = changes_of(request.all_changes)
     run = adapted(load_run(request.config, changes.run)).with_controllers(
         request.controllers).stored(request.compression, request.split_mb, 'record options')
+    for body in run.bodies:
+        body.refuse_absent()
     if run.record.thins:
-        rows = Rows(len(run.actuators), surroundings_of(run))
+        rows = Rows(len(run.actuators), surroundings_in_form(run))
         run.record.refuse_misfits(
             [topic.name for topic in packer_of(run, rows.published).topics], run.source)
     scenario = planned(request.scenario, run, changes)
@@ -187,8 +189,9 @@ def record(
             lap(JOINING)
             # Only the first bag may replace one: a reset uses a directory that does not exist.
             overwrite = session.request.overwrite and not session.bags
-            with BagWriter(out, thinning.topics, provenance_of(session.scenario, state),
-                           overwrite, run.record.storage, session.request.is_synced) as bag:
+            provenance = provenance_of(session.scenario, state, surroundings.provenance)
+            with BagWriter(out, thinning.topics, provenance, overwrite,
+                           run.record.storage, session.request.is_synced) as bag:
                 session.bags.append(out)
                 loop.sinks = (
                     RunOutput(packer, run.step_ns, thinning.recorder(bag), published), trip_log)

@@ -9,7 +9,7 @@ import sys
 from isa_ros.actuator.actuator import SmartActuator
 from isa_ros.actuator.kernel import actuator_tick
 from isa_ros.bag.message_chunk import Chunk, Layouts
-from isa_ros.config.assembly import group_of, surroundings_of
+from isa_ros.config.assembly import group_of, surroundings_in_form
 from isa_ros.config.runs.run_config import RunConfig
 from isa_ros.core.kernel_cache import is_kept
 from isa_ros.core.signals import LOAD_PORT, LOAD_REPLY
@@ -65,7 +65,7 @@ def _other_process(configuration: str) -> Iterator['subprocess.Popen[str]']:
 def compile_surroundings() -> None:
     """Compile body and supplies of the configuration on standard input, of actuators at rest."""
     run = RunConfig.from_yaml(sys.stdin.read())
-    surroundings = surroundings_of(run)
+    surroundings = surroundings_in_form(run)
     surroundings.starts()
     surroundings.ports(np.zeros(len(run.actuators), LOAD_PORT))
     with suppress(SimulationDiverged):

@@ -23,7 +23,7 @@ from typing import Any
 
 from isa_ros.actuator.tunable import changed_together, changing, named, refuse_load
 from isa_ros.actuator.usable import refuse_timeout
-from isa_ros.config.assembly import surroundings_of
+from isa_ros.config.assembly import surroundings_in_form
 from isa_ros.config.models.bus_port import SOUND_PORT
 from isa_ros.config.models.fault_catalogue import ACTUATOR, KINDS, named_fault, SUPPLY, values_at
 from isa_ros.config.runs.run_config import RunConfig
@@ -265,7 +265,7 @@ def refuse_changes(faults: Sequence[Fault], run: RunConfig) -> None:
 def _refuse_steps(faults: Sequence[Fault], run: RunConfig) -> None:
     if not faults:
         return
-    surroundings = surroundings_of(run)
+    surroundings = surroundings_in_form(run)
     in_force: dict[int, dict[str, float]] = {}
     for tick, changes in sorted(timetable(faults, run).items()):
         try:

@@ -1,11 +1,11 @@
 """Write the messages of a result: to its bag, or to another recorder."""
 
+from collections.abc import Mapping
 from pathlib import Path
 
 from isa_ros.bag.writer import BagWriter
-from isa_ros.config.assembly import surroundings_of
+from isa_ros.config.assembly import surroundings_in_form
 from isa_ros.core.topic import Topic
-from isa_ros.errors import BagError
 from isa_ros.run.output import packer_of, Recorder, RunOutput
 from isa_ros.run.provenance import provenance_of
 from isa_ros.run.thinning import Thinning
@@ -14,14 +14,13 @@ from isa_ros.scripting.log import Log
 from isa_ros.tick.exchange import Rows
 
 
-def save(scenario: Scenario, log: Log, directory: Path, overwrite: bool) -> Path:
+def save(
+        scenario: Scenario, log: Log, bodies: Mapping[str, str], directory: Path,
+        overwrite: bool) -> Path:
     """Write the bag of a result; as `Result.save`."""
-    for body in scenario.run.bodies:
-        if body.is_given:
-            raise BagError(f'{directory}: cannot be saved: {body.label} is external, and its '
-                           'load ports are not recorded, so that the bag could not be replayed')
     messages = ResultMessages(scenario, log)
-    with BagWriter(directory, messages.topics, provenance_of(scenario), overwrite,
+    with BagWriter(directory, messages.topics, provenance_of(scenario, bodies=bodies),
+                   overwrite,
                    scenario.run.record.storage) as bag:
         messages.record(bag)
     return directory
@@ -32,7 +31,7 @@ class ResultMessages:
 
     def __init__(self, scenario: Scenario, log: Log) -> None:
         self._log, self._run = log, scenario.run
-        self._rows = Rows(len(self._run.actuators), surroundings_of(self._run))
+        self._rows = Rows(len(self._run.actuators), surroundings_in_form(self._run))
         self._packer = packer_of(self._run, self._rows.published)
         self._thinning = Thinning(self._run.record, self._packer.topics)
         self.topics: tuple[Topic, ...] = tuple(self._thinning.topics)
@@ -48,7 +47,8 @@ class ResultMessages:
             rows.samples[:] = samples[tick]
             rows.supplies[:] = log.supplies[tick]
             for name, sample in rows.bodies.items():
-                sample[0] = log.bodies[name][tick]
+                for field in sample.dtype.names or ():
+                    sample[field] = log.bodies[name][tick][field]
             for into, by_tick in ((rows.applied, log.applied), (rows.sent, log.sent)):
                 into['kinds'] = 0
                 if tick in by_tick:

@@ -34,39 +34,63 @@ class Log(NamedTuple):
     """Those of the supplies, by sample and SUPPLY.KEY."""
 
 
+class _Column:
+    """The rows of one source by sample, in an array that grows."""
+
+    def __init__(self, source: Records, n: int, *shape: int) -> None:
+        self._source = floats(source).reshape(-1)
+        self.rows: Records = np.zeros((n, *shape), source.dtype)
+        self._floats = floats(self.rows)
+
+    def take(self, tick: int) -> None:
+        """Copy the source of a sample."""
+        if tick >= len(self.rows):
+            larger: Records = np.zeros((2 * tick, *self.rows.shape[1:]), self.rows.dtype)
+            larger[:len(self.rows)] = self.rows
+            self.rows, self._floats = larger, floats(larger)
+        self._floats[tick] = self._source
+
+
 class LogSink(RowSink):
-    """Writes the rows of the first ``n_ticks`` of a simulation into `log`."""
+    """Writes the rows of a simulation into `log`; ``n_ticks`` of them without growing."""
 
     def __init__(
             self, simulation: Simulation, n_ticks: int, report: Progress | None = None) -> None:
         rows, samples = simulation.loop.rows, simulation.group.samples
         n = n_ticks + 1
-        is_linked = bool(simulation.scenario.run.linked)
-
-        def log_of(source: Records, *shape: int) -> Records:
-            log: Records = np.zeros((n, *shape), source.dtype)
-            self._pairs.append((floats(log), floats(source).reshape(-1)))
-            return log
-        self._pairs: list[tuple[np.ndarray, np.ndarray]] = []
+        self._samples = _Column(samples, n, len(samples))
+        self._supplies = _Column(rows.supplies, n, len(rows.supplies))
+        self._bodies = {name: _Column(sample, n) for name, sample in rows.bodies.items()}
+        self._observed = (_Column(rows.samples, n, len(samples))
+                          if simulation.scenario.run.linked else None)
+        self._all = [self._samples, self._supplies, *self._bodies.values()]
+        if self._observed is not None:
+            self._all.append(self._observed)
         self._applied: dict[int, Records] = {}
         self._sent: dict[int, Records] = {}
         self._tuned: dict[int, Mapping[int, Mapping[str, float]]] = {}
         self._tuned_supplies: dict[int, Mapping[str, float]] = {}
-        self.log = Log(
-            log_of(samples, len(samples)), log_of(rows.supplies, len(rows.supplies)),
-            {name: log_of(sample) for name, sample in rows.bodies.items()}, self._applied,
-            log_of(rows.samples, len(samples)) if is_linked else None, self._sent, self._tuned,
-            self._tuned_supplies)
         self._kinds, self._sent_kinds = rows.applied['kinds'], rows.sent['kinds']
-        self._n_ticks, self._report = n_ticks, report
+        self._n_ticks, self._report, self._taken = n_ticks, report, 0
+
+    @property
+    def log(self) -> Log:
+        """Return what was taken so far."""
+        n = self._taken
+        return Log(
+            self._samples.rows[:n], self._supplies.rows[:n],
+            {name: column.rows[:n] for name, column in self._bodies.items()}, self._applied,
+            None if self._observed is None else self._observed.rows[:n], self._sent, self._tuned,
+            self._tuned_supplies)
 
     def take(self, tick: int, rows: Rows) -> None:
         """Copy the rows before ``tick``, which begins the run or follows the last one."""
-        for log, source in self._pairs:
-            log[tick] = source
+        for column in self._all:
+            column.take(tick)
+        self._taken = tick + 1
         if self._kinds.any():
             self._applied[tick] = rows.applied.copy()
-        if self.log.observed is not None and self._sent_kinds.any():
+        if self._observed is not None and self._sent_kinds.any():
             self._sent[tick] = rows.sent.copy()
         if rows.tuned:
             self._tuned[tick] = rows.tuned

@@ -3,6 +3,7 @@
 from collections.abc import Iterator, Mapping
 from functools import cached_property
 from pathlib import Path
+from types import MappingProxyType
 from typing import Any, TYPE_CHECKING
 
 from isa_ros.core.accounts import Account, accounts_of
@@ -40,7 +41,8 @@ class Result(Mapping[str, NDArray[np.float64]]):
     def __init__(
             self, scenario: Scenario, log: Log,
             body_units: Mapping[str, Mapping[str, str]], bag: Path | None = None,
-            problem: str = '') -> None:
+            problem: str = '', *,
+            bodies: Mapping[str, str] = MappingProxyType({})) -> None:
         self.scenario = scenario
         """The simulated scenario."""
         self.bag = bag
@@ -49,6 +51,7 @@ class Result(Mapping[str, NDArray[np.float64]]):
         """The reason why the configuration of a bag cannot be read here; or ''."""
         self.log = log
         """The rows that the columns are views of."""
+        self._provenance = bodies
         run = scenario.run
         self.time: NDArray[np.float64] = (
             np.arange(len(log.samples)) * run.step_ns / NS_PER_SECOND)
@@ -191,8 +194,7 @@ class Result(Mapping[str, NDArray[np.float64]]):
         ------
         BagError
             The directory already exists and ``overwrite`` is not set, or it cannot be created; or
-            a body was given by the caller, whose ports a bag does not have; or the result was
-            read from a bag.
+            the result was read from a bag.
         RunError
             The bag cannot be written.
 
@@ -201,7 +203,7 @@ class Result(Mapping[str, NDArray[np.float64]]):
             raise BagError(f'{directory}: not written, the result was read from {self.bag}, which '
                            'is its bag')
         from isa_ros.scripting.bag import save  # imports messages, which only bags need
-        return save(self.scenario, self.log, Path(directory), overwrite)
+        return save(self.scenario, self.log, self._provenance, Path(directory), overwrite)
 
 
 def optional(package: str) -> Any:
@@ -227,5 +229,12 @@ def simulated(
     log = LogSink(simulation, n_ticks, report)
     simulation.loop.sinks = (log,)
     simulation.loop.run(n_ticks)
+    return result_of(simulation, log)
+
+
+def result_of(simulation: Simulation, log: LogSink) -> Result:
+    """Return the result of what a simulation has logged."""
+    surroundings = simulation.surroundings
     return Result(simulation.scenario, log.log, {
-        name: body.units for name, body in simulation.surroundings.bodies.items()})
+        name: body.units for name, body in surroundings.bodies.items()},
+        bodies=surroundings.provenance)

@@ -1,7 +1,7 @@
 """Interface of the body that several actuators move: a leg, a robot, another simulator."""
 
 from collections.abc import Mapping
-from typing import Protocol
+from typing import Protocol, runtime_checkable
 
 import numpy as np
 from numpy.typing import NDArray
@@ -69,4 +69,13 @@ class Body(Protocol):
 
     def restore(self, snapshot: bytes) -> None:
         """Continue from a `snapshot` of a body of the same configuration."""
+        ...
+
+
+@runtime_checkable
+class SizedBody(Protocol):
+    """A body whose snapshots say their size, which is not that of its own at present."""
+
+    def saved_size(self, snapshot: bytes) -> int:
+        """Return how many bytes of a snapshot, which begins with this body's, are its own."""
         ...

@@ -13,7 +13,7 @@ from isa_ros.core.changing_values import bare, ChangingValues
 from isa_ros.core.saved_state import broken_number, restored_rows
 from isa_ros.core.suggest import alternatives
 from isa_ros.errors import ConfigError, RunError
-from isa_ros.surroundings.body import Body, Records
+from isa_ros.surroundings.body import Body, Records, SizedBody
 from isa_ros.surroundings.supply import Supply, SUPPLY_SAMPLE, SupplySheet
 import numpy as np
 
@@ -59,6 +59,12 @@ class Surroundings:
         self._fed = [_index(circuit.rows) for circuit in circuits]
         self._rest = starts.copy()
         self._sensor_stiffness = sensor_stiffness
+
+    @property
+    def provenance(self) -> dict[str, str]:
+        """Return what external bodies say of themselves, by BODY.KEY."""
+        return {f'{name}.{key}': value for name, body in self.bodies.items()
+                for key, value in getattr(body, 'provenance', {}).items()}
 
     def starts(self) -> Records:
         """
@@ -181,11 +187,14 @@ class Surroundings:
         """
         supplies_end = self.supplies.nbytes
         values_end = supplies_end + self._values.nbytes
-        sizes = [len(body.snapshot()) for body in self.bodies.values()]
-        expected = values_end + sum(sizes)
-        if len(snapshot) != expected:
+        sizes, end = [], values_end
+        for body in self.bodies.values():
+            sizes.append(body.saved_size(snapshot[end:]) if isinstance(body, SizedBody)
+                         else len(body.snapshot()))
+            end += sizes[-1]
+        if len(snapshot) != end:
             raise ConfigError(
-                f'saved state of the surroundings has {len(snapshot)} bytes, must have {expected}')
+                f'saved state of the surroundings has {len(snapshot)} bytes, must have {end}')
         supplies = np.concatenate([
             restored_rows(snapshot, SUPPLY_SAMPLE, 1, k * SUPPLY_SAMPLE.itemsize, circuit.name)
             for k, circuit in enumerate(self.circuits)])

@@ -11,7 +11,7 @@ from isa_ros.core.topic import Topic
 
 GOLDEN = Path(__file__).parents[1] / 'golden'
 
-Change = Callable[[str, int, bytes], bytes]
+Change = Callable[[str, int, bytes], bytes | None]
 
 
 def rewrite(
@@ -22,6 +22,8 @@ def rewrite(
         storage: Storage = PLAIN) -> Path:
     """
     Record ``bag`` again with every message passed through ``change``; return its directory.
+
+    A message of which ``change`` returns None is left out.
 
     ``configuration`` changes the attached text, ``versions`` replaces those recorded, topics
     ``without`` are left out, and those of ``rename`` are called otherwise; ``state`` is the text
@@ -40,6 +42,6 @@ def rewrite(
     with BagWriter(directory, topics, provenance, storage=storage) as writer:
         for tick in bag.ticks():
             writer.write_tick(tick.t_ns, tick.sequence, sorted(
-                (index[names[m.topic]], change(m.topic, tick.sequence, m.data))
-                for m in tick.messages if m.topic in names))
+                (index[names[m.topic]], data) for m in tick.messages if m.topic in names
+                and (data := change(m.topic, tick.sequence, m.data)) is not None))
     return directory

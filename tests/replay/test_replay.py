@@ -44,8 +44,8 @@ def test_recorded_commands_take_effect_at_their_ticks():
     """The applied setpoints of sample k + 1 are the commands of tick k."""
     bag = Bag(GOLDEN)
     run = RunConfig.from_yaml(bag.provenance.configuration)
-    commands, tuned, supplies, n_ticks, has_end = recorded_inputs(bag, run)
-    assert (tuned, supplies, n_ticks, has_end) == ({}, {}, 80, True)
+    commands, tuned, supplies, ports, n_ticks, has_end = recorded_inputs(bag, run)
+    assert (tuned, supplies, ports, n_ticks, has_end) == ({}, {}, {}, 80, True)
     assert sorted(commands) == [0, EFFORT_TICK]
     assert [row for row, _ in commands[0]] == [0, 1, 2]
     (row, command), = commands[EFFORT_TICK]

@@ -7,7 +7,7 @@ import re
 import isa_ros
 from isa_ros.config.runs.run_config import RunConfig
 from isa_ros.core.timebase import FORCE_WINDOWS
-from isa_ros.errors import BagError, ConfigError
+from isa_ros.errors import ConfigError
 from isa_ros.run.local_run import LocalRun
 import numpy as np
 import pytest
@@ -26,8 +26,8 @@ RIG = {
 class Slide:
     """A mass on a spring between two cylinders: x'' = (F_0 + F_1 - k (x - x_0))/m."""
 
-    def __init__(self, rows: np.ndarray, step: float) -> None:
-        self.rows, self.step = rows, step
+    def __init__(self, mounting: isa_ros.Mounting) -> None:
+        self.rows, self.step = mounting.rows, mounting.step
         self.sample = np.zeros(1, [('position', '<f8'), ('velocity', '<f8')])
         self.sample['position'] = START
         self.forces: list[np.ndarray] = []
@@ -97,8 +97,10 @@ def test_a_body_of_the_caller_is_moved_by_the_forces_of_its_actuators() -> None:
     """
     made: list[Slide] = []
 
-    def factory(rows: np.ndarray, step: float) -> Slide:
-        made.append(Slide(rows, step))
+    def factory(mounting: isa_ros.Mounting) -> Slide:
+        assert mounting.names == ['pull', 'push'] and mounting.are_rotary == [False, False]
+        assert mounting.positions.tolist() == [0.05, 0.05] and mounting.seed == 0
+        made.append(Slide(mounting))
         return made[-1]
     result = rig().simulate(body=factory)
     slide, = made
@@ -145,20 +147,17 @@ def test_two_bodies_of_the_caller_are_given_by_name() -> None:
         run.simulate(0.002, body=Slide)
     with pytest.raises(ConfigError, match="'on' is not a body of the kind external; .*one"):
         run.simulate(0.002, body={'on': Slide})
-    with pytest.raises(ConfigError, match='bodies.two is external: it exists in Python only'):
+    with pytest.raises(ConfigError, match='bodies.two is external and has no class'):
         run.simulate(0.002, body={'one': Slide})
 
 
-def test_a_bag_of_it_is_refused(tmp_path: Path) -> None:
-    """Its ports are not recorded, so that the bag could not be replayed."""
-    result = rig().simulate(0.002, body=Slide)
-    with pytest.raises(BagError, match='bag: cannot be saved: body is external, and its load'):
-        result.save(tmp_path / 'bag')
-    assert not (tmp_path / 'bag').exists()
-    with pytest.raises(ConfigError, match='body is external: it exists in Python only'):
+def test_a_run_without_its_body_is_refused() -> None:
+    with pytest.raises(ConfigError, match='body is external and has no class: only a run in Py'):
         LocalRun(rig().configuration)
     with pytest.raises(ConfigError, match='body is one factory, the run has 0 bodies'):
         isa_ros.load('leg').simulate(0.001, body=Slide)
+    with pytest.raises(ConfigError, match='body: its factory returned a dict, must be an isa_ros'):
+        rig().simulate(0.001, body=lambda mounting: {})
 
 
 def test_its_text_is_read_back() -> None:
@@ -193,7 +192,8 @@ def test_a_section_that_cannot_be_is_refused(changes: dict[str, object], message
 def test_the_program_of_the_page_runs(capsys: pytest.CaptureFixture[str]) -> None:
     """It prints place and force: the piston holds its start at mid stroke, 10 mm ahead."""
     page = (Path(__file__).parents[2] / 'docs' / 'bodies.md').read_text(encoding='utf-8')
-    program, = re.findall(r'```python\n(.*?)```', page, re.DOTALL)
+    program = next(text for text in re.findall(r'```python\n(.*?)```', page, re.DOTALL)
+                   if 'class Cart' in text)
     exec(program, {})
     place, force = map(float, capsys.readouterr().out.split())
     assert place == pytest.approx(0.05, abs=0.01) and abs(force) < 1e4

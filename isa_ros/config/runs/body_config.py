@@ -8,6 +8,7 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from typing import ClassVar, NamedTuple
 
+from isa_ros.actuator.config import ActuatorConfig
 from isa_ros.actuator.sheet import ActuatorSheet
 from isa_ros.config.text.keys import KeyTable
 from isa_ros.config.text.sections import Place, Section
@@ -16,19 +17,14 @@ from isa_ros.core.fields import Field
 from isa_ros.errors import ConfigError
 from isa_ros.surroundings.body import Body
 from isa_ros.surroundings.joint_space import JointSpace
+from isa_ros.surroundings.mechanism import Mechanism, Mounting
 from isa_ros.surroundings.messages import BodyMessage
-import numpy as np
-from numpy.typing import NDArray
 
 BODY = 'body'
 """Name of the body of a run file with ``body`` or ``leg``: its topics have no name in front."""
 
-BodyFactory = Callable[[NDArray[np.int64], float], Body]
-"""
-Returns a new body at t = 0, called once for every simulation.
-
-The arguments are the rows of its actuators, (k,), in the order of the run file, and the tick in s.
-"""
+BodyFactory = Callable[[Mounting], Body | Mechanism]
+"""Returns a new body at t = 0, or the mechanism of one; called once for every simulation."""
 
 
 class Made(NamedTuple):
@@ -41,6 +37,8 @@ class Made(NamedTuple):
     """Of its actuators, in the order of its joints."""
     factory: BodyFactory | None
     """Given by the caller of a simulation."""
+    actuators: Sequence[ActuatorConfig]
+    """In the same order."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -132,6 +130,9 @@ class BodyConfig:
 
         """
         raise ConfigError(f'{place} is not used: a scenario cannot start {self.called}')
+
+    def refuse_absent(self) -> None:
+        """Raise `ConfigError` if nodes and the command line cannot make the body."""
 
     def warnings(self, step_ns: int) -> Sequence[str]:
         """Return lines that are printed before a run."""

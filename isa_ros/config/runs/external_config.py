@@ -1,43 +1,124 @@
-"""A body that the caller of a simulation gives: any object with the Protocol `Body`."""
+"""A body of any simulator: its actuators, and the Python that makes it."""
 
+from collections.abc import Sequence
 from dataclasses import dataclass
+from importlib import import_module
+import os
+import sys
 from typing import Any, ClassVar
 
-from isa_ros.config.runs.body_config import BodyConfig, Made
-from isa_ros.config.text.keys import Key, KeyTable, NAMES
+from isa_ros.config.runs.body_config import BodyConfig, BodyFactory, Made
+from isa_ros.config.text.keys import Key, KeyTable, NAMES, TEXT
 from isa_ros.config.text.sections import Place, Section
+from isa_ros.core.fields import Field
 from isa_ros.core.timebase import NS_PER_SECOND
 from isa_ros.errors import ConfigError
 from isa_ros.surroundings.body import Body
+from isa_ros.surroundings.kept_ports import (
+    GivenBody, port_fields, port_message, RecordedBody, zeros_given)
+from isa_ros.surroundings.mechanism import Mechanism, MechanismBody, Mounting
+from isa_ros.surroundings.messages import BodyMessage
 import numpy as np
 
 
 @dataclass(frozen=True, kw_only=True)
 class ExternalConfig(BodyConfig):
-    """A body that is made by ``body`` of `isa_ros.scripting.run.Run.simulate`, in memory only."""
+    """
+    A body that Python makes: ``body`` of `isa_ros.scripting.run.Run.simulate`, or ``class``.
+
+    Its load ports are recorded, and are inputs of a replay.
+    """
 
     kind: ClassVar[str] = 'external'
     is_given: ClassVar[bool] = True
     KEYS: ClassVar[KeyTable] = KeyTable((
         Key('actuators', NAMES, 'the actuators that move it, in the order of its rows',
-            of=lambda own: [actuator for _, actuator in own.joints]),))
+            of=lambda own: [actuator for _, actuator in own.joints]),
+        Key('class', TEXT, 'module:factory that makes it; a run in Python may give another', None,
+            of=lambda own: own.maker)))
+    maker: str | None = None
+    """``module:factory``."""
 
     @classmethod
     def of(cls, name: str, values: dict[str, Any], place: Place, step_ns: int,
            is_checked: bool) -> tuple[BodyConfig, Section]:
         """Return the body; as `BodyConfig.of`."""
-        actuators = values['actuators']
+        actuators, maker = values['actuators'], values['class']
         if not actuators:
             raise ConfigError(f'{place / "actuators"} is empty, must name at least one actuator')
-        return cls(name=name, joints=tuple((own, own) for own in actuators)), {}
+        if maker is not None and not _is_path(maker):
+            raise ConfigError(
+                f'{place / "class"} = {maker!r}, must be module:factory, as crane:crane')
+        return cls(
+            name=name, joints=tuple((own, own) for own in actuators), maker=maker), {}
 
     def key_of(self, joint: str) -> str:
         """Return the list of its actuators."""
         return f'{self.label}.actuators'
 
-    def body(self, made: Made) -> Body:
-        """Return what the caller's factory makes; as `BodyConfig.body`."""
-        if made.factory is None:
+    @property
+    def fields(self) -> Sequence[Field]:
+        """Return the ports, which every external body has in its sample."""
+        return port_fields(len(self.joints))
+
+    def messages(self, step_ns: int) -> Sequence[BodyMessage]:
+        """Return the port of each actuator."""
+        return [port_message(actuator, j) for j, (_, actuator) in enumerate(self.joints)]
+
+    def refuse_absent(self) -> None:
+        """Refuse a body without ``class``, or whose class cannot be imported."""
+        if self.maker is None:
             raise ConfigError(
-                f'{self.label} is external: it exists in Python only, by simulate(body=...)')
-        return made.factory(np.array(made.rows, np.int64), made.step_ns / NS_PER_SECOND)
+                f'{self.label} is external and has no class: only a run in Python can make it, '
+                'by simulate(body=...); or give class: module:factory')
+        self._imported()
+
+    def body(self, made: Made) -> Body:
+        """Return what the factory makes, with its ports in its sample; as `BodyConfig.body`."""
+        factory = made.factory
+        if factory is None:
+            self.refuse_absent()
+            factory = self._imported()
+        mounting = Mounting(
+            [actuator for _, actuator in self.joints], np.array(made.rows, np.int64),
+            np.array([own.initial_position for own in made.actuators]),
+            [own.sheet.is_rotary for own in made.actuators], made.step_ns / NS_PER_SECOND,
+            made.seed)
+        own = factory(mounting)
+        if isinstance(own, GivenBody):
+            return own
+        if isinstance(own, Mechanism):
+            own = MechanismBody(own, mounting)
+        elif not hasattr(own, 'ports'):
+            raise ConfigError(
+                f'{self.label}: its factory returned a {type(own).__name__}, must be an '
+                'isa_ros.Body or an isa_ros.Mechanism')
+        return RecordedBody(own)
+
+    def _imported(self) -> BodyFactory:
+        """Return the factory of ``class``, of an installed module or a file in this folder."""
+        assert self.maker is not None
+        module, _, name = self.maker.partition(':')
+        if (here := os.getcwd()) not in sys.path:
+            sys.path.append(here)
+        try:
+            found = import_module(module)
+        except ImportError as error:
+            raise ConfigError(f'{self.label}.class = {self.maker}: {error}') from error
+        factory = getattr(found, name, None)
+        if not callable(factory):
+            raise ConfigError(
+                f'{self.label}.class = {self.maker}: {module} has no function {name}')
+        checked: BodyFactory = factory
+        return checked
+
+
+def at_rest(mounting: Mounting) -> Body:
+    """Return a body at rest at zero, of which only the form of its sample is wanted."""
+    return GivenBody(mounting.rows, zeros_given(len(mounting.rows)))
+
+
+def _is_path(maker: str) -> bool:
+    module, colon, name = maker.partition(':')
+    return bool(colon) and name.isidentifier() and all(
+        part.isidentifier() for part in module.split('.'))

@@ -21,13 +21,14 @@ from isa_ros.config.text.parameter_sets import as_tree, build
 from isa_ros.config.text.sections import Place, section_at, written
 from isa_ros.config.text.yaml_text import Tree
 from isa_ros.errors import ConfigError
+from isa_ros.surroundings.kept_ports import LOAD_PORT_TOPIC
 
 MAX_PERIOD = 10_000    # ticks between two samples of a topic
 MAX_PATTERNS = 100
 MAX_PATTERN_LENGTH = 256
 
 _EVENTS = '/coordinator/events'
-_SENT = 'sent_setpoint'
+_INPUTS = ('sent_setpoint', LOAD_PORT_TOPIC)
 
 
 @dataclass(frozen=True)
@@ -103,7 +104,7 @@ class RecordConfig:
 def replay_needs(topic: str) -> bool:
     """Return whether a topic holds inputs of a run, which are the inputs of its replay."""
     suffix = topic.rpartition('/')[2]
-    return topic == _EVENTS or suffix.startswith('applied_') or suffix == _SENT
+    return topic == _EVENTS or suffix.startswith('applied_') or suffix in _INPUTS
 
 
 class _RecordKind(KeyTable):

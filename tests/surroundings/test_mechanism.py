@@ -1,0 +1,176 @@
+"""Ports of a mechanism by probing, against its equations."""
+
+import isa_ros
+from isa_ros.core.signals import LOAD_PORT, LOAD_REPLY, START
+from isa_ros.errors import ConfigError, SimulationDiverged
+from isa_ros.surroundings.mechanism import holding_forces, MechanismBody, Mounting
+import numpy as np
+import pytest
+from tests.surroundings.mass_on_spring import (
+    DAMPING, LEVERS, MASS, MassOnSpring, OFFSETS, STIFFNESS, WEIGHT)
+
+STEP = 1e-3
+ROWS = np.array([3, 1])
+N = 5
+
+
+def mounting(step: float = STEP) -> Mounting:
+    return Mounting(['out', 'back'], ROWS, OFFSETS, [False, True], step, 0)
+
+
+def moving_body(has_response: bool) -> MechanismBody:
+    """Return a body that has moved for some ticks under changing forces."""
+    body = MechanismBody(MassOnSpring(), mounting(), has_response=has_response)
+    for tick in range(4):
+        body.advance(replies_of(np.array([[500.0 + 90.0 * tick], [200.0]])
+                                + np.array([[3.0], [-5.0]]) * np.arange(5)))
+    return body
+
+
+def replies_of(means: np.ndarray) -> np.ndarray:
+    replies = np.zeros(N, LOAD_REPLY)
+    replies['mean_forces'][ROWS], replies['force'][ROWS] = means, means[:, -1]
+    return replies
+
+
+def state_of(body: MechanismBody) -> np.ndarray:
+    return np.frombuffer(body.snapshot()[-16:])
+
+
+def test_the_smallest_forces_hold_the_load_at_rest() -> None:
+    """J^T f = W, f = J W / J^T J; piston or rotor of each is then where the run file puts it."""
+    body = MechanismBody(MassOnSpring(), mounting())
+    starts = np.zeros(N, START)
+    body.starts(starts)
+    assert starts['position'][ROWS] == pytest.approx(OFFSETS, rel=1e-15, abs=0.0)
+    assert starts['force'][ROWS] == pytest.approx(LEVERS * WEIGHT / (LEVERS @ LEVERS), rel=1e-9)
+    assert not starts['position'][[0, 2, 4]].any()
+    assert body.sample['out_force'] == starts['force'][3]
+    assert body.units == {
+        'out_position': 'm', 'out_velocity': 'm/s', 'out_force': 'N',
+        'back_position': 'rad', 'back_velocity': 'rad/s', 'back_force': 'Nm'}
+
+
+def test_a_load_that_no_actuator_holds_is_refused() -> None:
+    class Free(MassOnSpring):
+        """Its second actuator has no lever, and falls."""
+
+        def motion(self, state: np.ndarray, forces: np.ndarray) -> isa_ros.Motion:
+            """Return it."""
+            own = super().motion(state, forces)
+            return own._replace(acceleration=np.array([own.acceleration[0], -9.8]))
+    with pytest.raises(ConfigError, match=r'no forces .* accelerate by .*, -9.8 m/s2 \| rad/s2'):
+        holding_forces(Free(), 2)
+
+
+@pytest.mark.parametrize('has_response', [False, True])
+def test_ports_are_those_of_the_equation(has_response: bool) -> None:
+    """
+    1/m_eff = J_i^2/m, k = k/m, d = c/m along the motion of each actuator; rest is 0.
+
+    Probes of 1 N are exact but for rounding; those of 1e-7 m and 1e-5 m/s leave 1e-8 and 1e-10.
+    """
+    body = moving_body(has_response)
+    ports = np.full(N, -1.0, LOAD_PORT)
+    body.ports(ports)
+    own, (q, v) = ports[ROWS], state_of(body)
+    assert own['x0'] == pytest.approx(OFFSETS + LEVERS * q, rel=1e-14, abs=0.0)
+    assert own['v0'] == pytest.approx(LEVERS * v, rel=1e-14, abs=0.0)
+    assert own['inverse_mass'] == pytest.approx(LEVERS ** 2 / MASS, rel=1e-9)
+    assert own['stiffness'] == pytest.approx(
+        [STIFFNESS / MASS * has_response] * 2, rel=1e-6, abs=1e-12)
+    assert own['damping'] == pytest.approx(
+        [DAMPING / MASS * has_response] * 2, rel=1e-6, abs=1e-12)
+    assert (ports[[0, 2, 4]] == np.full(3, -1.0, LOAD_PORT)).all()
+
+
+@pytest.mark.parametrize('has_response', [False, True])
+def test_a_copy_ends_the_tick_where_the_mechanism_does(has_response: bool) -> None:
+    """
+    Under the assumed forces, F + F' t (L16), both give the same place and speed  (L15).
+
+    The copy is integrated here in 2000 steps (RK4: below 1e-12 m), the mechanism exactly, with
+    five constant forces for the line: equal means, so 1e-8 m at 5 mm/ms, 1e-6 m/s at 1 m/s.
+    """
+    body = moving_body(has_response)
+    ports = np.zeros(N, LOAD_PORT)
+    body.ports(ports)
+    kept = body._kept[0]
+    later = body._mechanism.stepped(
+        state_of(body), kept['force'][:, None].T + np.outer(
+            (np.arange(5) + 0.5) * STEP / 5, kept['slope']), STEP)
+    end = body._mechanism.motion(later, kept['force'])
+    for j, row in enumerate(ROWS):
+        port, y, h = ports[row], np.array([ports[row]['x0'], ports[row]['v0']]), STEP / 2000
+
+        def rate(t: float, y: np.ndarray) -> np.ndarray:
+            e = y - [port['x0'] + t * (port['v0'] + 0.5 * t * port['a0']),  # noqa: B023
+                     port['v0'] + t * port['a0']]  # noqa: B023
+            force = kept['force'][j] + t * kept['slope'][j]  # noqa: B023
+            return np.array([y[1], port['a_bias'] + t * port['jerk']  # noqa: B023
+                             + port['inverse_mass'] * force  # noqa: B023
+                             - port['stiffness'] * e[0] - port['damping'] * e[1]])  # noqa: B023
+        for n in range(2000):
+            t = n * h
+            k_1 = rate(t, y)
+            k_2 = rate(t + h / 2, y + h / 2 * k_1)
+            k_3 = rate(t + h / 2, y + h / 2 * k_2)
+            y = y + h / 6 * (k_1 + 2 * k_2 + 2 * k_3 + rate(t + h, y + h * k_3))
+        assert y[0] == pytest.approx(end.position[j], rel=0.0, abs=1e-8)
+        assert y[1] == pytest.approx(end.velocity[j], rel=0.0, abs=1e-6)
+
+
+def test_at_a_dead_centre_the_port_stays_bounded() -> None:
+    """A lever of 1e-7: k and d per its metre are without bounds, and cut to those of a tick."""
+    class DeadCentre(MassOnSpring):
+        """Its first actuator hardly moves the cart, and its lever changes with the place."""
+
+        def motion(self, state: np.ndarray, forces: np.ndarray) -> isa_ros.Motion:
+            """Return it."""
+            own, (q, v) = super().motion(state, forces), state
+            lever = 1e-7 + 0.5 * q
+            return own._replace(
+                position=np.array([own.position[0], own.position[1]]),
+                acceleration=np.array([lever * own.generalised[0] - 40.0 * q - 9e3 * v,
+                                       own.acceleration[1]]))
+    mechanism = DeadCentre()
+    mechanism.state = np.array([0.0, 0.1])
+    body = MechanismBody.__new__(MechanismBody)
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr('isa_ros.surroundings.mechanism.holding_forces',
+                      lambda mechanism, k: np.zeros(k))
+        body.__init__(mechanism, mounting(), has_response=True)  # type: ignore[misc]
+    ports = np.zeros(N, LOAD_PORT)
+    body.ports(ports)
+    first = ports[ROWS[0]]
+    assert abs(first['stiffness']) == pytest.approx(np.pi ** 2 / STEP ** 2, rel=1e-12)
+    assert abs(first['damping']) == pytest.approx(1.0 / STEP, rel=1e-12)
+    assert abs(ports[ROWS[1]]['stiffness']) < 1e5
+
+
+def test_it_advances_by_its_own_step_and_goes_on_from_a_snapshot() -> None:
+    body, twin = moving_body(False), moving_body(False)
+    kept = body.snapshot()
+    means = np.array([[900.0] * 5, [-100.0] * 5])
+    before = state_of(body).copy()
+    body.advance(replies_of(means))
+    assert state_of(body).tolist() == MassOnSpring().stepped(before, means.T, STEP).tolist()
+    assert body.sample['out_force'] == 900.0 and body.sample['back_force'] == -100.0
+    after = body.snapshot()
+    body.restore(kept)
+    assert body.snapshot() == kept != after
+    assert body.sample == twin.sample
+    body.advance(replies_of(means))
+    assert body.snapshot() == after
+    ports = np.zeros((2, N), LOAD_PORT)
+    twin.advance(replies_of(means))
+    body.ports(ports[0])
+    twin.ports(ports[1])
+    assert ports[0].tobytes() == ports[1].tobytes()
+
+
+def test_a_state_that_is_not_finite_ends_the_run() -> None:
+    body = moving_body(False)
+    with pytest.raises(SimulationDiverged, match='body.out_position') as caught:
+        body.advance(replies_of(np.full((2, 5), np.nan)))
+    assert caught.value.t_ns == 5_000_000
