@@ -16,8 +16,9 @@ ACCUMULATOR = AccumulatorSupply(
     pressure_mpa=20.7, return_pressure_mpa=0.0, gas_volume_l=0.32, precharge_mpa=12.0,
     polytropic_exponent=1.3, line_volume_l=0.5, bulk_modulus=1.0e9, pump_flow_lpm=12.0,
     pump_lag_s=0.03, pump_band_mpa=0.5, relief_mpa=22.5, relief_lpm_per_mpa=10.0)
-BUS = LinkSheet(
-    kind='ethercat', cycle_ms=1.0, delay_cycles=1.0, jitter_us=200.0, loss=0.1, watchdog_ms=10.0)
+BUS = replace(
+    NO_LINK, kind='ethercat', cycle_ms=1.0, delay_cycles=1.0, jitter_us=200.0, loss=0.1,
+    watchdog_ms=10.0)
 
 
 def run_of(

@@ -7,11 +7,11 @@ Composes plant, REU and load copy (`integration`) into one kernel.
 import math
 
 from isa_ros.actuator.energy import add_energies, add_tare, stored_elastically, take_heat
+from isa_ros.actuator.frames import leaves
 from isa_ros.actuator.inbox import latch, lose_pending, merge, settle
 from isa_ros.actuator.integration import (
     COPIES, end_steps, rk4_step, simpson, STAGES, STATE_SIZE, TOTALS_AT)
-from isa_ros.actuator.link import (
-    exchange_frames, hand_over, leaves, LINK, receive_samples, send_sample)
+from isa_ros.actuator.link import exchange_frames, hand_over, LINK, receive_samples, send_sample
 from isa_ros.actuator.states import write_states
 from isa_ros.core.kernel import kernel
 from isa_ros.core.timebase import FORCE_WINDOWS, PLANT_STEP

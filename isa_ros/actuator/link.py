@@ -4,22 +4,25 @@ The link of an actuator: frames from the commander to the REU, and back to the l
 A frame leaves in each direction when a cycle begins, the first at t = 0, at the first plant step
 that is not earlier. Down, it carries the newest command that no frame has brought yet; up, what
 the REU has sensed last. It arrives after the delay and a jitter, uniform from 0 to ``jitter_us``,
-again at the first plant step that is not earlier; a frame never overtakes the one before it. A
-lost frame does not arrive: the REU keeps its setpoint, listeners keep their sample, and the
-command goes with the next frame. A command that has waited for the watchdog's time is dropped:
-when a dead link comes back, what was commanded long ago does not act. A frozen REU sends no frames
-and takes none.
+again at the first plant step that is not earlier; `isa_ros.actuator.frames` has this and what else
+may happen to a frame. A lost one does not arrive: the REU keeps its setpoint, listeners keep their
+sample, and the command goes with the next frame. A command that has waited for the watchdog's time
+is dropped: when a dead link comes back, what was commanded long ago does not act. A frozen REU
+sends no frames and takes none.
 
-Loss and jitter are noise without a state (`isa_ros.core.noise`), by the seed of the run, the name
-of the actuator, the direction and the plant step at which the frame leaves.
+Whatever happens to frames is noise by the seed of the run, the name of the actuator, the direction
+and the plant step at which the frame leaves.
 """
 
 from dataclasses import dataclass
 from typing import Any
 
+from isa_ros.actuator.frames import (
+    burst_odds, burst_rates, copy_frame, DOWN, HELD_BACK, leaves, LINE, put_frame, SLOTS,
+    take_frame, UP)
 from isa_ros.actuator.inbox import latch, merge
 from isa_ros.core.kernel import kernel
-from isa_ros.core.noise import noise_key, uniforms
+from isa_ros.core.noise import noise_key
 from isa_ros.core.parameter import choice, parameter, Parameters
 from isa_ros.core.record import record
 from isa_ros.core.signals import (
@@ -31,13 +34,11 @@ import numpy as np
 NONE = 'none'
 KINDS = (NONE, 'ethercat', 'can', 'serial')
 MOST_CYCLES = 8     # of delay
-SLOTS = 16          # frames on their way; the delay and the jitter allow 10
 _NS_PER_MS = 1_000_000
 _US_PER_MS = 1000.0
 STALE = MOST_CYCLES + 2  # cycles after which a sample is too old, without a watchdog
 SET = HAS_SETPOINT | HAS_GAINS | HAS_REFERENCE
 ASKED = EVERY_KIND ^ SET
-DOWN, UP = 0, 1     # channels of the noise
 _ASSUMED = 'assumed'
 
 
@@ -59,6 +60,17 @@ class LinkSheet(Parameters):
         'largest additional time on the way, uniform from 0', 'us', 1e5, changeable=True)
     loss: float = _off(
         'probability that a frame is lost, each way', '1', 1.0, changeable=True)
+    burst_loss: float = _off(
+        'share of the frames lost in bursts, each way, besides those of loss', '1', 1.0,
+        changeable=True)
+    burst_frames: float = _off(
+        'mean number of frames of a burst; 0: no bursts', 'frames', 1e6, changeable=True)
+    duplicates: float = _off(
+        'probability that a frame arrives a second time, a cycle later, each way', '1', 1.0,
+        changeable=True)
+    reordered: float = _off(
+        'probability that a frame is a cycle and a half late, so that the next overtakes it, '
+        'each way', '1', 1.0, changeable=True)
     watchdog_ms: float = _off(
         'time without a frame after which the REU takes the link as lost; 0: off', 'ms', 1e5)
 
@@ -77,7 +89,14 @@ class LinkSheet(Parameters):
             raise ParameterError(
                 f'jitter_us = {self.jitter_us:g} us, must be <= cycle_ms = {self.cycle_ms:g} ms: '
                 'a frame arrives before the next one')
+        least = max(1.0, burst_odds(self.burst_loss))
+        if 0.0 < self.burst_loss < 1.0 and self.burst_frames < least:
+            raise ParameterError(
+                f'burst_frames = {self.burst_frames:g} frames, must be >= {least:g} frames with '
+                f'burst_loss = {self.burst_loss:g}: a good line loses no frame between two bursts')
         longest = max(1.0, self.delay_cycles) * self.cycle_ms + jitter_ms
+        if self.reordered:
+            longest += HELD_BACK * self.cycle_ms
         if 0.0 < self.watchdog_ms <= longest:
             raise ParameterError(
                 f'watchdog_ms = {self.watchdog_ms:g} ms, must be > {longest:g} ms, the longest '
@@ -85,24 +104,17 @@ class LinkSheet(Parameters):
 
 
 NO_LINK = LinkSheet(
-    kind=NONE, cycle_ms=0.0, delay_cycles=0.0, jitter_us=0.0, loss=0.0, watchdog_ms=0.0)
+    kind=NONE, cycle_ms=0.0, delay_cycles=0.0, jitter_us=0.0, loss=0.0, burst_loss=0.0,
+    burst_frames=0.0, duplicates=0.0, reordered=0.0, watchdog_ms=0.0)
 
 LINK = np.dtype([
     ('is_on', 'i8'),
     ('cycle_ns', 'i8'), ('delay_ns', 'i8'), ('watchdog_ns', 'i8'),
     ('jitter_ns', 'f8'),
     ('loss', 'f8'),
+    ('burst_begins', 'f8'), ('burst_ends', 'f8'),   # probabilities at a frame
+    ('duplicates', 'f8'), ('reordered', 'f8'),
 ])
-LINE = np.dtype([
-    ('first', 'i8'),            # slot of the frame that arrives next
-    ('count', 'i8'),            # frames on their way
-    ('last_due', 'i8'),         # plant step at which the last one sent arrives
-    ('lost', 'i8'),             # frames that did not arrive, since t = 0
-    ('due', 'i8', (SLOTS,)),    # plant step of arrival, by slot
-    ('sent', 'i8', (SLOTS,)),   # plant step of departure, by slot
-])
-"""One direction of a link. The contents of its frames lie beside it, in `SLOTS` rows."""
-
 LINK_STATE = np.dtype([
     ('down', LINE), ('up', LINE),
     ('last_frame', 'i8'),       # plant step at which the REU last received a frame
@@ -121,10 +133,13 @@ def link_record(sheet: LinkSheet) -> np.record:
     cycle = round(sheet.cycle_ms * _NS_PER_MS)
     if not cycle:
         raise ConfigError('link.cycle_ms = 0 ms is the tick of a run, must be > 0 ms without one')
+    begins, ends = burst_rates(sheet.burst_loss, sheet.burst_frames)
     return record(
         LINK, is_on=1, cycle_ns=cycle, delay_ns=round(sheet.delay_cycles) * cycle,
         watchdog_ns=round(sheet.watchdog_ms * _NS_PER_MS),
-        jitter_ns=sheet.jitter_us / _US_PER_MS * _NS_PER_MS, loss=sheet.loss)
+        jitter_ns=sheet.jitter_us / _US_PER_MS * _NS_PER_MS, loss=sheet.loss,
+        burst_begins=begins, burst_ends=ends, duplicates=sheet.duplicates,
+        reordered=sheet.reordered)
 
 
 def link_key(seed: int, name: str) -> int:
@@ -143,51 +158,11 @@ def refuse_states(states: Records, owner: str) -> None:
 
     """
     for line in (states['down'], states['up']):
-        for name, least, most in (('first', 0, SLOTS - 1), ('count', 0, SLOTS)):
+        for name, least, most in (('first', 0, SLOTS - 1), ('count', 0, SLOTS), ('is_bad', 0, 1)):
             if not ((line[name] >= least) & (line[name] <= most)).all():
                 raise ConfigError(
                     f'{owner}: saved state has {name} = {line[name][0]} of a link, must be '
                     f'{least} to {most}')
-
-
-@kernel
-def leaves(step, link):
-    """Return whether a frame leaves at plant step ``step``, the first since a cycle began."""
-    return (step * PLANT_STEP_NS) % link.cycle_ns < PLANT_STEP_NS
-
-
-@kernel
-def put_frame(step, channel, key, link, line):
-    """
-    Send a frame at plant step ``step``: return its slot in the `LINE`, or -1 if it is lost.
-
-    It arrives the delay and the jitter after its cycle began, rounded up to plant steps, and not
-    before the last one sent. A line whose slots are all taken loses it.
-    """
-    lot, wait = uniforms(key, step, channel)
-    if lot < link.loss or line.count >= SLOTS:
-        line.lost += 1
-        return -1
-    t_ns = step * PLANT_STEP_NS
-    arrival = t_ns - t_ns % link.cycle_ns + link.delay_ns + int(link.jitter_ns * wait)
-    due = (arrival + PLANT_STEP_NS - 1) // PLANT_STEP_NS
-    slot = (line.first + line.count) % SLOTS
-    line.last_due = max(due, line.last_due)
-    line.due[slot] = line.last_due
-    line.sent[slot] = step
-    line.count += 1
-    return slot
-
-
-@kernel
-def take_frame(step, line):
-    """Return the slot of the next frame that has arrived at plant step ``step``, or -1."""
-    if line.count <= 0 or line.due[line.first] > step:
-        return -1
-    slot = line.first
-    line.first = (slot + 1) % SLOTS
-    line.count -= 1
-    return slot
 
 
 @kernel
@@ -246,13 +221,17 @@ def link_down(step, key, link, state, outbox, frames, is_frozen, reu, applied):
             frames[slot] = outbox[0]
             frames[slot].due_step = state.down.due[slot]
             outbox[0].kinds = 0
+            copy = copy_frame(step, DOWN, key, link, state.down, slot)
+            if copy >= 0:
+                frames[copy] = frames[slot]
     slot = take_frame(step, state.down)
     while slot >= 0:
         if is_frozen:
             state.down.lost += 1
             slot = take_frame(step, state.down)
             continue
-        state.last_frame, state.brought = step, state.down.sent[slot] + 1
+        state.last_frame = step
+        state.brought = max(state.brought, state.down.sent[slot] + 1)
         if frames[slot].kinds:
             kinds = applied.kinds
             latch(frames[slot], reu, applied)
@@ -286,11 +265,14 @@ def send_sample(step, n, memory):
         slot = put_frame(step, UP, own.link_key, own.link, line)
         if slot >= 0:
             memory.samples_sent[n * SLOTS + slot] = memory.samples[n]
+            copy = copy_frame(step, UP, own.link_key, own.link, line, slot)
+            if copy >= 0:
+                memory.samples_sent[n * SLOTS + copy] = memory.samples[n]
 
 
 @kernel
 def receive_samples(step, n, memory):
-    """Update the sample that listeners of actuator ``n`` have at ``step``: the newest arrived."""
+    """Update the sample that listeners of actuator ``n`` have at ``step``: the last arrived."""
     state = memory.links[n]
     slot = take_frame(step, state.up)
     while slot >= 0:

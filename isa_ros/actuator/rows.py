@@ -2,9 +2,10 @@
 
 from typing import NamedTuple
 
+from isa_ros.actuator.frames import SLOTS
 from isa_ros.actuator.integration import flat, scratch
 from isa_ros.actuator.kernel import ACTUATOR
-from isa_ros.actuator.link import LINK_STATE, SLOTS
+from isa_ros.actuator.link import LINK_STATE
 from isa_ros.core.signals import COMMAND, LOAD_PORT, LOAD_REPLY, SAMPLE
 from isa_ros.plant.channels import CHANNELS_STATE
 from isa_ros.plant.thermal import THERMAL_STATE

@@ -10,7 +10,7 @@ the plant, the load and the link itself change at once: they are no commands.
 
 from collections.abc import Mapping
 
-from isa_ros.actuator.link import SLOTS
+from isa_ros.actuator.frames import SLOTS
 from isa_ros.actuator.tunable import GAINS, LOAD
 from isa_ros.core.changeable import Changeable
 from isa_ros.core.changing_values import ChangingValues

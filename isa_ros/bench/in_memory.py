@@ -35,6 +35,7 @@ def in_memory_rows() -> list[Row]:
     alone = _simulated(Simulation(drop))
     return [
         Row(f'floor: {_KERNEL}', kernels * 1e6, 'us'),
+        Row.of('the protection adds to that kernel', _watching_percent(), '%'),
         Row('a tick of the leg', alone * 1e6, 'us', _KERNEL, kernels / alone),
         Row('a tick of the leg over the kernel', alone / kernels, '1').aiming(Aim(2.0, True)),
         Row('a controller adds to a tick', _added_seconds(drop) * 1e6, 'us').aiming(
@@ -66,8 +67,28 @@ def _added_seconds(drop: Scenario) -> float:
     return median(differences[1:]) / TICKS
 
 
+def _watching_percent() -> list[float]:
+    """Return what watching all conditions adds to the kernel, in %, with and without in turn."""
+    watched, off = (_kernel_work(load('leg', 'drop').replace({
+        f'actuators.{joint}.parameters.reu.protection.switch': switch
+        for joint in ('haa', 'hfe', 'kfe')}).scenario) for switch in ('on', 'off'))
+    found = []
+    for _ in range(1 + 3 * REPEATS):
+        start = time.process_time()
+        watched()
+        between = time.process_time()
+        off()
+        found.append(100.0 * ((between - start) / (time.process_time() - between) - 1.0))
+    return found[1:]
+
+
 def _kernel_seconds(drop: Scenario) -> float:
     """Return the time of the actuators' kernel alone, with the ports of the real ticks, in s."""
+    return seconds(_kernel_work(drop), TICKS, of_cpu=True)
+
+
+def _kernel_work(drop: Scenario) -> Callable[[], None]:
+    """Return what runs the actuators' kernel alone for `TICKS` ticks."""
     simulation = Simulation(drop)
     ports: list[np.ndarray] = []
     take: Callable[[np.ndarray], None] = simulation.surroundings.ports
@@ -82,7 +103,7 @@ def _kernel_seconds(drop: Scenario) -> float:
         group.start(starts)
         for port in ports:
             group.advance(port)
-    return seconds(work, TICKS, of_cpu=True)
+    return work
 
 
 def _sweep_rows() -> list[Row]:

@@ -39,7 +39,8 @@ NOT_SI = {
 _SI = frozenset((
     '1', '1/K', '1/s', '1/s2', 'A', 'A/s', 'H', 'Hz', 'J', 'J/(kg K)', 'J/K', 'K', 'K/s', 'N',
     'N s/m', 'N/m', 'N/m^1.5', 'N/s', 'Nm', 'Nm/rad', 'Nm/s', 'Nms/rad', 'Ns/m', 'Pa', 'Pa/s',
-    'V', 'W', 'W/K', 'bit', 'celsius', 'bits', 'cycles', 'kg', 'kg m2', 'kg/m3', 'm', 'm/m',
+    'V', 'W', 'W/K', 'bit', 'celsius', 'bits', 'cycles', 'frames', 'kg', 'kg m2', 'kg/m3', 'm',
+    'm/m',
     'm/rad', 'm/s', 'm/s2', 'm3', 'm3/s', 'm3/s/Pa', 'ohm', 'rad', 'rad/s', 'rad/s2', 's', 's/m',
     'output', 'output per m/s', 'output per rad/s', 'output s/measured', 'output/(measured s)',
     'output/measured'))

@@ -7,9 +7,9 @@ from typing import Any
 from hypothesis import given, strategies as st
 from isa_ros.actuator import link as links
 from isa_ros.actuator.actuator import SmartActuator, Timing
+from isa_ros.actuator.frames import DOWN, leaves, LINE, put_frame, SLOTS, take_frame
 from isa_ros.actuator.group import ActuatorGroup
-from isa_ros.actuator.link import (
-    DOWN, LINE, link_key, link_record, LINK_STATE, LinkSheet, put_frame, SLOTS, take_frame)
+from isa_ros.actuator.link import link_key, link_record, LINK_STATE, LinkSheet
 from isa_ros.actuator.rows import Memory
 from isa_ros.actuator.sheet import ActuatorSheet
 from isa_ros.config.runs.run_config import ActuatorConfig
@@ -35,7 +35,8 @@ N = 20_000
 def link_of(**values: float) -> LinkSheet:
     """Return the sheet of a link with a cycle of a tick, unless given otherwise."""
     absent = dict.fromkeys(
-        ('delay_cycles', 'jitter_us', 'loss', 'watchdog_ms'), 0.0) | {'cycle_ms': 1.0}
+        ('delay_cycles', 'jitter_us', 'loss', 'burst_loss', 'burst_frames', 'duplicates',
+         'reordered', 'watchdog_ms'), 0.0) | {'cycle_ms': 1.0}
     return LinkSheet(kind='ethercat', **(absent | values))
 
 
@@ -110,8 +111,8 @@ def test_a_command_waits_for_the_next_cycle():
 def test_cycles_need_not_be_whole_plant_steps():
     """Every 0.25 ms, 12.5 steps: frames leave at the first step since; delays are exact."""
     link, own = link_record(link_of(cycle_ms=0.25, delay_cycles=1)), line()
-    for leaves in (links.leaves, links.leaves.py_func):
-        assert [step for step in range(101) if leaves(step, link)] == [
+    for leaves_at in (leaves, leaves.py_func):
+        assert [step for step in range(101) if leaves_at(step, link)] == [
             0, 13, 25, 38, 50, 63, 75, 88, 100]
     for step in (0, 13, 25, 38):
         put_frame(step, DOWN, np.uint64(0), link, own)
@@ -246,8 +247,9 @@ def test_no_frame_overtakes_another_one_and_kernels_equal_their_source(changes):
             link = link_record(link_of(delay_cycles=delay, jitter_us=1000.0 * jitter, loss=loss))
             log.append((put(k * STEPS, DOWN, key, link, own), int(own.count)))
             for step in range(k * STEPS, (k + 1) * STEPS, 10):
+                due = own.due.copy()
                 while (slot := take(step, own)) >= 0:
-                    log.append((int(own.sent[slot]), int(own.due[slot]), step))
+                    log.append((int(own.sent[slot]), int(due[slot]), step))
         logs.append(log)
     assert logs[0] == logs[1]
     assert lines[0].tobytes() == lines[1].tobytes()
@@ -462,8 +464,10 @@ def test_what_no_link_can_have_is_refused(values, message):
 
 def test_the_record_is_in_nanoseconds():
     record = link_record(link_of(
-        cycle_ms=0.5, delay_cycles=3, jitter_us=50.0, loss=0.25, watchdog_ms=10.0))
-    assert record.item() == (1, 500_000, 1_500_000, 10_000_000, 50_000.0, 0.25)
+        cycle_ms=0.5, delay_cycles=3, jitter_us=50.0, loss=0.25, burst_loss=0.2, burst_frames=5.0,
+        duplicates=0.3, reordered=0.4, watchdog_ms=10.0))
+    assert record.item() == (
+        1, 500_000, 1_500_000, 10_000_000, 50_000.0, 0.25, 0.05, 0.2, 0.3, 0.4)
 
 
 def test_a_cycle_of_the_tick_needs_a_run():

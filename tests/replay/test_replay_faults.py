@@ -232,3 +232,18 @@ def test_the_shipped_scenario_of_faults_replays(tmp_path):
     bag = result_of(scenario).save(tmp_path / 'bag')
     assert len(recorded_inputs(Bag(bag), run).tuned['kfe']) == 4
     assert replayed(bag, tmp_path / 'again' / 'bag') == content(bag)
+
+
+def test_bursts_duplicates_and_frames_out_of_order_replay(tmp_path):
+    """They follow from the seed; another seed has others."""
+    run = load('rig_linear', {'name': 'rough', 'duration_s': 0.2, 'tracks': {'ram': [
+        {'t_s': 0.0, 'position': 'hold', 'sine': {'amplitude': 0.01, 'frequency_hz': 5.0}}]}}
+               ).replace({'link': {
+                   'kind': 'ethercat', 'cycle_ms': 1.0, 'delay_cycles': 2, 'burst_loss': 0.2,
+                   'burst_frames': 4.0, 'duplicates': 0.2, 'reordered': 0.2}})
+    result = run.simulate()
+    assert result['ram.link.age'].max() > 0.004
+    bag = result.save(tmp_path / 'rough')
+    assert replayed(bag, tmp_path / 'again') == content(bag)
+    other = run.simulate(seed=7)
+    assert (other['ram.link.age'] != result['ram.link.age']).any()

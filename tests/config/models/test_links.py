@@ -1,6 +1,7 @@
 """Links of run files: for all or for one, what they default to, and what fits on a wire."""
 
 from collections.abc import Mapping
+from dataclasses import replace
 from typing import Any
 
 from isa_ros.actuator.link import LinkSheet, NO_LINK
@@ -28,8 +29,7 @@ def link_of(run: RunConfig, name: str) -> LinkSheet:
 
 def on(kind: str, n: int, cycle_ms: float = 1.0) -> Mapping[str, LinkSheet]:
     """Return the links of ``n`` actuators on one wire."""
-    link = LinkSheet(kind=kind, cycle_ms=cycle_ms, delay_cycles=0.0, jitter_us=0.0, loss=0.0,
-                     watchdog_ms=0.0)
+    link = replace(NO_LINK, kind=kind, cycle_ms=cycle_ms)
     return {f'a{k}': link for k in range(n)}
 
 
@@ -56,9 +56,7 @@ def test_a_link_is_for_all_and_an_actuator_changes_single_keys():
 
 def test_what_is_not_given_is_zero_and_the_cycle_then_the_tick():
     run = leg(link={'kind': 'ethercat'}, step_ms=2.0)
-    assert link_of(run, 'kfe') == LinkSheet(
-        kind='ethercat', cycle_ms=2.0, delay_cycles=0.0, jitter_us=0.0, loss=0.0,
-        watchdog_ms=0.0)
+    assert link_of(run, 'kfe') == replace(NO_LINK, kind='ethercat', cycle_ms=2.0)
 
 
 def test_the_keys_of_isa_params_are_taken_too():
