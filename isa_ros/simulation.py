@@ -25,6 +25,7 @@ from isa_ros.core.suggest import alternatives
 from isa_ros.core.timebase import NS_PER_SECOND
 from isa_ros.errors import ConfigError
 from isa_ros.scenario.scenario import Scenario
+from isa_ros.tick.emergency_stop import emergency_stops_of
 from isa_ros.tick.exchange import Rows
 from isa_ros.tick.in_process import InProcess
 from isa_ros.tick.source import ScheduledSource
@@ -82,6 +83,7 @@ class Simulation:
             run.step_ns, transport, self.surroundings,
             Rows(len(self.names), self.surroundings, self.group),
             ScheduledSource(scenario.commands, scenario.changes),
+            stops=emergency_stops_of(run, self.surroundings),
             request_range=request_range_of(run) if self._controllers else None, warn=_warn)
         """The ticks of the run; its sinks take the rows of each instant."""
         self.samples: Mapping[str, np.record] = by_name(self.names, self.group.samples)
@@ -178,6 +180,22 @@ class Simulation:
                 raise ConfigError(
                     f'{name!r} is not an actuator or a supply; {alternatives(name, known)}')
             self.group.actuators[self.names.index(name)].tune(values)
+
+    def emergency_stop(self, is_open: bool = True, group: str | None = None) -> None:
+        """
+        Open the line of an emergency stop, or close it again, from the next tick on.
+
+        ``group`` is one of the run file's `emergency_stops`; None: all of them. What has stopped
+        is enabled by `command`.
+
+        Raises
+        ------
+        ConfigError
+            There is no such group, or a trip would open the line again: clear it first.
+
+        """
+        assert self.loop.stops is not None, 'given by _assemble'
+        self.loop.stops.request(is_open, self.loop.rows.samples, group)
 
     def step(self, commands: Records | None = None) -> Mapping[str, np.record]:
         """

@@ -23,7 +23,7 @@ REASONS: Mapping[str, str] = {
     'clear fault': 'the fault was cleared', 'mode': 'the mode was changed',
     'enable': 'enabled by command', 'disable': 'disabled by command',
     'quick stop': 'quick stop by command', 'stop ends': 'the quick stop has ended',
-    'reaction ends': 'the reaction has ended'}
+    'reaction ends': 'the reaction has ended', 'emergency stop': 'emergency stop'}
 """Plain words for the event that led to a state."""
 
 _NUMBERS = {

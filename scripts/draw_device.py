@@ -33,14 +33,15 @@ GAIN_MS, GAIN_SHARE = 10.0, 0.5
 EVENT_WORDS: Mapping[str, str] = {
     'start': 'start of the run',
     'ready': '`initialisation_ms` are over',
-    'trip': 'a condition trips whose reaction is quick stop or disable',
+    'trip': 'a condition trips whose reaction is quick stop, disable or block',
     'clear fault': '`~/clear_fault`',
     'mode': 'parameter `mode`',
     'enable': '`~/enable` with true',
     'disable': '`~/enable` with false',
     'quick stop': '`~/quick_stop`',
     'stop ends': 'at rest for `quick_stop_hold_ms`; at once with `quick_stop: close`',
-    'reaction ends': 'the same, or at once if the reaction is disable'}
+    'reaction ends': 'the same, or at once if the reaction is disable or block',
+    'emergency stop': '`reu.device.emergency_stop` is 1: [emergency stop](#emergency-stop)'}
 """Cause of each event of `isa_ros.core.device.EVENTS`."""
 
 _BLOCKS = {

@@ -10,6 +10,7 @@ from pathlib import Path
 
 from isa_ros.actuator.link import LinkSheet
 from isa_ros.config.runs.actuator_config import ACTUATOR
+from isa_ros.config.runs.emergency_stops import GROUP
 from isa_ros.config.runs.external_config import ExternalConfig
 from isa_ros.config.runs.leg_config import LegConfig, LegStart
 from isa_ros.config.runs.recording import RECORD, Storage
@@ -19,6 +20,7 @@ from isa_ros.config.text.keys import InText, KeyTable, parameter_rows, REQUIRED
 from isa_ros.config.text.parameter_sets import members
 from isa_ros.core.parameter import Parameters
 from isa_ros.surroundings.bodies.leg.inertial import Imu
+from isa_ros.surroundings.dump import LagDump, NoneDump, ValveDump
 from isa_ros.surroundings.return_line import ReturnLine
 from isa_ros.surroundings.supply import SupplySheet
 from isa_ros.text.marked import with_parts
@@ -67,7 +69,8 @@ def page(text: str) -> str:
     """Return the text of the page with the tables of today."""
     return with_parts(text, {
         'run': keys(RUN), 'supplies': keys(SUPPLY_KEYS), 'supply': by_kind(SupplySheet),
-        'return line': by_kind(ReturnLine), 'record': keys(RECORD),
+        'return line': by_kind(ReturnLine), 'dump': by_kind(NoneDump | LagDump | ValveDump),
+        'emergency stop': keys(GROUP), 'record': keys(RECORD),
         'storage': parameters(Storage), 'link': parameters(LinkSheet),
         'actuator': keys(ACTUATOR), 'leg': keys(LegConfig.KEYS), 'start': parameters(LegStart),
         'imu': parameters(Imu), 'external': keys(ExternalConfig.KEYS)})

@@ -16,6 +16,7 @@ from isa_ros.actuator.states import write_states
 from isa_ros.core.kernel import kernel
 from isa_ros.core.timebase import FORCE_WINDOWS, PLANT_STEP
 from isa_ros.loads.forces import OWN_LOAD
+from isa_ros.plant.block_valve import drive_block
 from isa_ros.plant.coil import coil_heat
 from isa_ros.plant.plant import exact_force, PLANT
 from isa_ros.plant.sensors import sense
@@ -79,6 +80,10 @@ def loops_and_plant(
         state.load.weight.is_released = 1.0
     if is_due(step, reu.current_steps, reu.offset_steps + reu.delay_steps):
         reu_state.amplifier = reu_state.drive
+    if actuator.plant.block.is_on > 0.0:
+        device = reu_state.status
+        drive_block(device.is_energised, (step - device.switched) * PLANT_STEP,
+                    state.plant.block.lift, actuator.plant.block)
     rk4_step(PLANT_STEP, tau, reu_state.amplifier, port, actuator,
              continuous, rates, y, k, weight)
     if actuator.plant.thermal.is_on:

@@ -76,6 +76,8 @@ def refusal_of(
             return f'the state is {state_name(state)}, {what} needs {" or ".join(states)}'
         if event == CLEAR and not is_gone:
             return 'the cause of the fault is not gone'
+        if event == ENABLE and constants.rules.emergency_stop > 0.0:
+            return 'the emergency stop is not released'
         if event == ENABLE and state == QUICK_STOP and not is_held(constants.rules, reu.status):
             return 'the quick stop has not ended'
     return ''

@@ -7,6 +7,7 @@ from isa_ros.core.signals import HAS_ENABLE, HAS_SETPOINT
 from isa_ros.plant.plant import exact_force, rest_pressures
 from isa_ros.plant.sensors import sense
 from isa_ros.plant.temperature_sensor import read_temperature
+from isa_ros.reu.block_drive import LONG_AGO
 from isa_ros.reu.cascade import initial_gains
 from isa_ros.reu.wiring import Reu
 
@@ -53,6 +54,10 @@ def rest_loops(memory: Memory, sheet: Reu, mode: int, is_enabled: bool) -> None:
         setpoint.stiffness, setpoint.damping = initial_gains(sheet)
     device.mode = device.acting = device.requested_mode = mode
     device.auto_enable = device.requested_enable = int(is_enabled)
+    rules = own.reu.rules
+    device.is_energised = int(rules.opening > 0.0 and (
+        is_enabled and rules.initialisation == 0.0 or not rules.closes_when_off))
+    device.switched, state.plant.block.lift = LONG_AGO, float(device.is_energised)
     sample = row_record(memory.samples)
     write_sample(state.plant, reu, sample)
     sample.supply_pressure = row_record(memory.ports).supply_pressure

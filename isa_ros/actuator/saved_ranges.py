@@ -21,6 +21,7 @@ LARGEST: Mapping[str, int] = {
     'status.state': len(STATES) - 1, 'status.event': len(EVENTS) - 1,
     'status.mode': _MODE, 'status.acting': _MODE, 'status.requested_mode': _MODE,
     'status.is_on': _FLAG, 'status.is_stopping': _FLAG, 'status.auto_enable': _FLAG,
+    'status.is_energised': _FLAG,
     'status.is_damping': _FLAG, 'status.is_returning': _FLAG, 'status.flow.is_held': _FLAG,
     'status.requested_enable': _FLAG, 'status.fade.begins': _FLAG, 'status.fade.is_on': _FLAG,
     'status.requests': EVERY_KIND, 'status.refused': EVERY_KIND,
@@ -28,7 +29,7 @@ LARGEST: Mapping[str, int] = {
     'protection.trips': _BITS, 'protection.warnings': _BITS, 'protection.first': _BITS,
     'protection.last': len(CONDITIONS), 'protection.last_warning': len(CONDITIONS),
     'protection.present': _BITS, 'protection.busy': _BITS, 'protection.kept': _BITS,
-    'protection.clears': _FLAG,
+    'protection.clears': _FLAG, 'protection.supply_taken': _FLAG,
     'protection.reaction': len(REACTIONS) - 1, 'protection.inhibited': _DIRECTIONS,
     'link_lost': _FLAG,
     'kinds': EVERY_KIND | WAS_REFUSED, 'is_enabled': _FLAG, 'mode': _MODE}

@@ -11,16 +11,19 @@ from isa_ros.core.parameter import choice, nested, Parameters
 from isa_ros.core.record import record
 from isa_ros.core.units import MILLI
 from isa_ros.errors import ConfigError
+from isa_ros.plant.block_valve import NoneBlock, time_to_open, WHEN_OFF
 from isa_ros.plant.chambers import oil_stiffness
 from isa_ros.plant.channels import refuse_delays
 from isa_ros.plant.coil import ClosedLoopCoil, ExplicitCoil
 from isa_ros.plant.plant import LinearPlant, plant_record, RotaryPlant
 from isa_ros.plant.spool import DataSheetSpool, DirectSpool, PilotedSpool
 from isa_ros.reu.block import Pid
+from isa_ros.reu.block_drive import BlockWiring
 from isa_ros.reu.cascade import reu_record
 from isa_ros.reu.feedback_linearisation import LINEARISED
 from isa_ros.reu.lead_lag import LeadLag
 from isa_ros.reu.protection import protection_record
+from isa_ros.reu.protection_sheet import reactions_of
 from isa_ros.reu.schedule import POINTS
 from isa_ros.reu.wiring import Held, loop_steps, Off, refuse_nonsense, Reu, valve_block
 import numpy as np
@@ -78,6 +81,12 @@ def refuse_wiring(sheet: ActuatorSheet) -> None:
             f'reu.current.kind = {_kind(reu.current)} and plant.coil.kind = '
             f'{_kind(plant.coil)}: lead_lag needs an explicit coil, held the closed_loop one')
     _refuse_limit_beyond_stop(sheet)
+    if isinstance(plant.block_valve, NoneBlock):
+        for key, reaction in reactions_of(reu.protection).items():
+            if reaction == 'block':
+                raise ConfigError(
+                    f'reu.protection.{key} = block: there are no block valves; set '
+                    'plant.block_valve.kind: poppet, or the reaction disable')
 
 
 _KINDS: dict[type, str] = {
@@ -142,6 +151,13 @@ def known_model(plant: np.record, per_spool: float) -> np.record:
         has_points=valve.has_points, flow=valve.flow)
 
 
+def block_wiring(sheet: ActuatorSheet) -> BlockWiring:
+    """Return what the REU knows of the block valves of a sheet."""
+    own = sheet.plant.block_valve
+    return BlockWiring() if isinstance(own, NoneBlock) else BlockWiring(
+        time_to_open(own), own.closes == WHEN_OFF)
+
+
 def actuator_record(sheet: ActuatorSheet, offset_steps: int) -> np.ndarray:
     """
     Return the `ACTUATOR` record of a sheet without a load of its own, shape (1,).
@@ -153,7 +169,7 @@ def actuator_record(sheet: ActuatorSheet, offset_steps: int) -> np.ndarray:
         sheet.reu, offset_steps, known[0].chambers.stroke, force_stiffness(known[0]),
         known_model(known[0], output_per_spool(sheet)),
         valve_lag(known[0], sheet.reu), null_speed(known[0]), known[0].sensors.encoder,
-        known[0].valve.k_spool, known[0].coil.parallel)
+        known[0].valve.k_spool, known[0].coil.parallel, block_wiring(sheet))
     reu['protection'] = protection_record(
         sheet.reu.protection, ratings_of(known[0]),
         evidence_of(known[0], sheet.reu, sheet.spool_feedback == 'electric', offset_steps),

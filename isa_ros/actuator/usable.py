@@ -17,8 +17,10 @@ from typing import Any, NamedTuple
 
 from isa_ros.actuator.link import NO_LINK
 from isa_ros.actuator.sheet import ActuatorSheet, ROUNDED, valve_stop
+from isa_ros.core.conditions import REACTIONS
 from isa_ros.core.units import MILLI
 from isa_ros.errors import ConfigError
+from isa_ros.plant.block_valve import NoneBlock
 from isa_ros.plant.channels import longest_delay_ms
 from isa_ros.plant.sensors import sensors_record
 from isa_ros.reu.block import Pid
@@ -26,6 +28,7 @@ from isa_ros.reu.feedback_linearisation import FeedbackLinearisation
 from isa_ros.reu.filters import low_pass_coefficient
 from isa_ros.reu.impedance import Impedance
 from isa_ros.reu.lead_lag import LeadLag
+from isa_ros.reu.protection_sheet import reactions_of
 from isa_ros.reu.wiring import loop_steps, Off, valve_block, VARIABLES
 import numpy as np
 
@@ -79,6 +82,9 @@ def usable(sheet: ActuatorSheet) -> Mapping[str, Usable]:
         if not isinstance(block, Off):
             found |= {f'reu.{variable}.{name}': own
                       for name, own in _of_block(sheet, variable).items()}
+    if isinstance(sheet.plant.block_valve, NoneBlock):
+        weaker = Usable({'le': float(REACTIONS.index('disable'))}, 'block needs block valves')
+        found |= {f'reu.protection.{key}': weaker for key in reactions_of(sheet.reu.protection)}
     period = loop_steps(sheet.reu)['current']
     late = Usable({'le': longest_delay_ms(period)}, 'as many as its delay line has')
     found |= {f'plant.sensors.{name}.delay_ms': late for name in sheet.plant.sensors.channels}

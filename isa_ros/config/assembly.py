@@ -68,7 +68,8 @@ def surroundings_of(
             run.step_ns, run.seed, rows, factories.get(own.name),
             [run.actuators[row] for row in rows]))
     return Surroundings(
-        circuits, bodies, starts, [plant.mechanics.k_s for plant in plants], run.step_ns)
+        circuits, bodies, starts, [plant.mechanics.k_s for plant in plants], run.step_ns,
+        [group.name for group in run.stop_groups])
 
 
 def surroundings_in_form(run: RunConfig) -> Surroundings:

@@ -10,8 +10,10 @@ of `measure` in `isa_ros.reu.protection` is its quantity.
 from collections.abc import Mapping
 from typing import NamedTuple
 
-REACTIONS = ('none', 'warn', 'limit', 'hold', 'damp', 'quick_stop', 'disable')
+REACTIONS = ('none', 'warn', 'limit', 'hold', 'damp', 'quick_stop', 'disable', 'block')
 """What a trip may cause, from the weakest to the strongest."""
+FAULTS = ('quick_stop', 'disable', 'block')
+"""Those that end in the state fault, until it is cleared."""
 
 ASSUMED = 'assumed'
 RATINGS: Mapping[str, str] = {
@@ -91,7 +93,7 @@ class Condition(NamedTuple):
 
 
 _BY_SENSORS = ('hold', 'damp', 'quick_stop')
-_STOPPING = (*_BY_SENSORS, 'disable')
+_STOPPING = (*_BY_SENSORS, 'disable', 'block')
 
 CONDITIONS = (
     Condition(

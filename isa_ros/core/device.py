@@ -16,8 +16,9 @@ REFERENCES = {'current': CURRENT, 'spool': SPOOL, 'pressure': PRESSURE}
 """The modes whose setpoint is one number: amplifier A, m of spool, Pa of pressure difference."""
 
 EVENTS = ('start', 'ready', 'trip', 'clear fault', 'mode', 'enable', 'disable', 'quick stop',
-          'stop ends', 'reaction ends')
-START, READY, TRIP, CLEAR, MODE, ENABLE, DISABLE, STOP, STOP_ENDS, REACTION_ENDS = range(10)
+          'stop ends', 'reaction ends', 'emergency stop')
+(START, READY, TRIP, CLEAR, MODE, ENABLE, DISABLE, STOP, STOP_ENDS, REACTION_ENDS,
+ EMERGENCY_STOP) = range(11)
 
 FIELDS = ('device_state', 'device_mode', 'device_event', 'warnings', 'trips', 'state_since',
           'first_trip', 'last_trip', 'trip_time', 'trip_value', 'trip_level', 'warning_time',

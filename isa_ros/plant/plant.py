@@ -11,8 +11,9 @@ from isa_ros.core.kernel import kernel
 from isa_ros.core.parameter import nested, Parameters
 from isa_ros.core.record import record
 from isa_ros.plant import (
-    chambers, coil, friction, mechanics, relief, sensors, servo_valve, spool, thermal,
+    block_valve, chambers, coil, friction, mechanics, relief, sensors, servo_valve, spool, thermal,
     valve_record)
+from isa_ros.plant.block_valve import NoneBlock, PoppetBlock
 from isa_ros.plant.cavitation import contents
 from isa_ros.plant.spool import block_spool, stop_spool
 from isa_ros.plant.thermal import LumpedThermal, NoneThermal
@@ -29,6 +30,7 @@ PLANT = np.dtype([
     ('mechanics', mechanics.MECHANICS),
     ('sensors', sensors.SENSORS),
     ('thermal', thermal.THERMAL),
+    ('block', block_valve.BLOCK),
 ])
 PLANT_STATE = np.dtype([
     ('coil', coil.COIL_STATE),
@@ -36,6 +38,7 @@ PLANT_STATE = np.dtype([
     ('chambers', chambers.CHAMBERS_STATE),
     ('friction', friction.FRICTION_STATE),
     ('mechanics', mechanics.MECHANICS_STATE),
+    ('block', block_valve.BLOCK_STATE),
 ])
 
 
@@ -53,6 +56,7 @@ class PlantSheet(Parameters):
     mechanics: mechanics.Mechanics
     sensors: sensors.Sensors
     thermal: NoneThermal | LumpedThermal = nested(NoneThermal())
+    block_valve: NoneBlock | PoppetBlock = nested(NoneBlock())
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -95,6 +99,7 @@ def plant_record(sheet: LinearPlant | RotaryPlant) -> np.recarray:
         thermal=thermal.thermal_record(
             sheet.thermal, celsius, spool.bias_per_k(sheet.spool), oil, lands, seals,
             own_spool),
+        block=block_valve.block_record(sheet.block_valve),
         )], PLANT).view(np.recarray)
 
 
@@ -153,7 +158,17 @@ def plant_rates(y, x_load, v_load, drive, p_s, p_t, plant, of_volumes, rates, co
         p_a, p_b, more_a, more_b = y.chambers.p_a, y.chambers.p_b, 0.0, 0.0
         per_a, per_b = chambers.elastances(s, plant.chambers)
     opened, leaks = servo_valve.conductances(y.spool.position, plant.valve)
-    roots = servo_valve.root_drops(opened, p_a, p_b, p_s, p_t, per_a, per_b, plant.valve)
+    line_a, line_b = p_a, p_b   # between servo valve and poppets, where there are any
+    if plant.block.is_on > 0.0:
+        z, delta = y.block.lift, plant.valve.delta
+        line_a, delta_a = block_valve.blocked_line(
+            opened[0], opened[1], z, p_s, p_t, p_a, per_a, delta, plant.block)
+        line_b, delta_b = block_valve.blocked_line(
+            opened[3], opened[2], z, p_s, p_t, p_b, per_b, delta, plant.block)
+        roots = servo_valve.smoothed_roots(line_a, line_b, p_s, p_t, delta_a, delta_b)
+        rates.block.lift = plant.block.slew
+    else:
+        roots = servo_valve.root_drops(opened, p_a, p_b, p_s, p_t, per_a, per_b, plant.valve)
     q_a, q_b, q_p, q_t = servo_valve.metered(opened, roots)
     in_a, in_b = chambers.surpluses(q_a, q_b, p_a, p_b, v, plant.chambers)
     out_a = relief.eased_flow(p_a, p_t, in_a, per_a, plant.relief)
@@ -179,7 +194,9 @@ def plant_rates(y, x_load, v_load, drive, p_s, p_t, plant, of_volumes, rates, co
     ) / plant.mechanics.inertia
     if counts:
         powers.leakage, powers.throttling = servo_valve.land_losses(
-            opened, leaks, roots, p_a, p_b, p_s, p_t)
+            opened, leaks, roots, line_a, line_b, p_s, p_t)
+        if plant.block.is_on > 0.0:
+            powers.throttling += q_a * (line_a - p_a) + q_b * (line_b - p_b)
         powers.cross_port = chambers.leakage_loss(p_a, p_b, plant.chambers)
         powers.relief = (p_a - p_t) * out_a + (p_b - p_t) * out_b
         powers.compression = p_a * (in_a - out_a) + p_b * (in_b - out_b)
@@ -192,10 +209,12 @@ def plant_rates(y, x_load, v_load, drive, p_s, p_t, plant, of_volumes, rates, co
 
 @kernel
 def settle(y, plant):
-    """Apply to one `PLANT_STATE` after a step what no rate can: the stop of the spool."""
+    """Apply to one `PLANT_STATE` after a step what no rate can: stops of spool and poppets."""
     stop_spool(y.spool, plant.valve.x_max)
     if plant.spool.is_stuck > 0.0:
         block_spool(y.spool)
+    if plant.block.is_on > 0.0:
+        y.block.lift = min(max(y.block.lift, 0.0), 1.0)
 
 
 @kernel

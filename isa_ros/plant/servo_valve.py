@@ -10,6 +10,7 @@ import math
 
 from isa_ros.core.elementary import exp
 from isa_ros.core.kernel import kernel
+from isa_ros.core.orifice import signed_sqrt
 from isa_ros.core.piecewise import y_on_lines
 from isa_ros.core.timebase import FASTEST_RATE
 import numpy as np
@@ -19,17 +20,6 @@ def largest_flow_slope(valve: np.record, span: float) -> float:
     """Return dQ/dP of the wide-open valve with ``span`` (Pa) over two lands, in m3/s/Pa."""
     flow = flow_curve(valve.x_max, valve) * math.sqrt(0.5 * span) * valve.per_root_drop
     return float(0.5 * flow / span)
-
-
-@kernel
-def signed_sqrt(dp, delta):
-    """
-    Return dp / (dp^2 + delta^2)^(1/4)  (V5), in sqrt(Pa).
-
-    Regularised sgn(dp) sqrt(|dp|) with the finite slope 1/sqrt(delta) at dp = 0; 0.25 % low
-    at ten times delta.
-    """
-    return dp / math.sqrt(math.sqrt(dp * dp + delta * delta))
 
 
 @kernel
@@ -124,6 +114,12 @@ def root_drops(opened, p_a, p_b, p_s, p_t, per_a, per_b, valve):
     pa, at, bt, pb = opened
     delta_a = smoothing(pa + at, per_a, valve.delta)
     delta_b = smoothing(pb + bt, per_b, valve.delta)
+    return smoothed_roots(p_a, p_b, p_s, p_t, delta_a, delta_b)
+
+
+@kernel
+def smoothed_roots(p_a, p_b, p_s, p_t, delta_a, delta_b):
+    """Return S(dP) of the lands P-A, A-T, B-T, P-B  (V5), in sqrt(Pa); each delta in Pa."""
     return (signed_sqrt(p_s - p_a, delta_a), signed_sqrt(p_a - p_t, delta_a),
             signed_sqrt(p_b - p_t, delta_b), signed_sqrt(p_s - p_b, delta_b))
 

@@ -15,6 +15,7 @@ from isa_ros.core.signals import MEASURED
 from isa_ros.core.timebase import PLANT_STEP
 from isa_ros.core.units import MILLI
 from isa_ros.reu.block import BLOCK, block_record, BLOCK_STATE, block_step, Pid, rest
+from isa_ros.reu.block_drive import BlockWiring
 from isa_ros.reu.bumpless import faded, inner_reference
 from isa_ros.reu.device import DEVICE, device_record, DEVICE_STATE, device_step
 from isa_ros.reu.feedback_linearisation import (
@@ -74,7 +75,7 @@ REU_STATE = np.dtype([
 def reu_record(
         reu: Reu, offset_steps: int, stroke: float, stiffness: np.ndarray,
         model: np.record, lag: float, null_speed: float, resolution: float, k_spool: float,
-        parallel: float) -> np.ndarray:
+        parallel: float, block: BlockWiring = BlockWiring()) -> np.ndarray:
     """
     Return the `REU` record, shape (1,).
 
@@ -106,7 +107,7 @@ def reu_record(
     conversion = steps['current'] * PLANT_STEP
     row['rules'] = device_record(reu.device, reu, conversion, flow_stop_record(
         model, stiffness, lag, null_speed, conversion, reu.device.quick_stop_deceleration,
-        resolution))
+        resolution), block)
     row['is_frozen'], row['watchdog'] = reu.frozen, reu.watchdog_ms * MILLI
     return record
 

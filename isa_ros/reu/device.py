@@ -14,14 +14,15 @@ Signs and units are those of the cascade.
 """
 
 from isa_ros.core.device import (
-    CLEAR, DISABLE, ENABLE, ENABLED, EVENTS, FAULT_REACTION, INITIALISING, MODE, NO_MODE, POSITION,
-    QUICK_STOP, REACTION_ENDS, READY, SPOOL, STATES, STOP, STOP_ENDS, TRIP)
+    CLEAR, DISABLE, EMERGENCY_STOP, ENABLE, ENABLED, EVENTS, FAULT_REACTION, INITIALISING, MODE,
+    NO_MODE, POSITION, QUICK_STOP, REACTION_ENDS, READY, SPOOL, STATES, STOP, STOP_ENDS, TRIP)
 from isa_ros.core.elementary import exp
 from isa_ros.core.kernel import kernel
 from isa_ros.core.record import record
 from isa_ros.core.signals import (
     HAS_CLEAR_FAULT, HAS_ENABLE, HAS_MODE, HAS_QUICK_STOP, HAS_REFERENCE, HAS_SETPOINT)
 from isa_ros.core.timebase import PLANT_STEP
+from isa_ros.reu.block_drive import BlockWiring, open_lines
 from isa_ros.reu.bumpless import FADE, start_setpoint, take_over
 from isa_ros.reu.flow_stop import (
     FLOW_STOP, FLOW_STOP_STATE, has_stood, stands, watch_load)
@@ -48,6 +49,9 @@ DEVICE = np.dtype([
     ('period', 'f8'),              # between two steps of the device, s
     ('return_speed', 'f8'),        # m/s | rad/s
     ('flow', FLOW_STOP),
+    ('opening', 'f8'),             # of the block valves, from their current on, s; 0: none
+    ('closes_when_off', 'i8'),     # 1: they have no current while the outputs are off
+    ('emergency_stop', 'f8'),      # 1: its line is open
     ('fade', 'f8')])               # share of a faded jump that is left after a period
 DEVICE_STATE = np.dtype([
     ('state', 'i8'), ('mode', 'i8'), ('event', 'i8'),
@@ -68,10 +72,14 @@ DEVICE_STATE = np.dtype([
     ('flow', FLOW_STOP_STATE),
     ('back', SETPOINT),            # on the way back to the setpoint,
     ('return_speed', 'f8'),        # with this speed, m/s | rad/s
+    ('is_energised', 'i8'),        # 1: the block valves have current, which opens them
+    ('switched', 'i8'),            # plant step at which that changed
     ('fade', FADE)])
 
 
-def device_record(sheet: Device, reu: Reu, period: float, flow: np.record) -> np.record:
+def device_record(
+        sheet: Device, reu: Reu, period: float, flow: np.record,
+        block: BlockWiring = BlockWiring()) -> np.record:
     """
     Return the `DEVICE` record of an REU whose current block has a period in s.
 
@@ -83,6 +91,8 @@ def device_record(sheet: Device, reu: Reu, period: float, flow: np.record) -> np
         stays=int(sheet.quick_stop == STAYS), 
         hold=max(flow.window, round(sheet.quick_stop_hold_ms * 1e-3 / period)),
         period=period, return_speed=sheet.return_speed, flow=flow,
+        opening=block.opening, closes_when_off=int(block.closes_when_off),
+        emergency_stop=sheet.emergency_stop,
         fade=exp(-period / (sheet.fade_ms * 1e-3)))
 
 
@@ -105,7 +115,7 @@ def take_conditions(step, reu, state):
     if found.reaction < REACTS_BY_QUICK_STOP:
         return
     happens(TRIP, 0, step, reu, own)
-    if own.state == FAULT_REACTION and found.reaction == REACTS_BY_DISABLE:
+    if own.state == FAULT_REACTION and found.reaction >= REACTS_BY_DISABLE:
         happens(REACTION_ENDS, 0, step, reu, own)
 
 
@@ -142,7 +152,7 @@ def take_requests(step, reu, state):
     if own.requests & HAS_ENABLE:
         own.refused &= ~HAS_ENABLE
         event = ENABLE if own.requested_enable else DISABLE
-        if happens(event, int(is_held(reu.rules, own)), step, reu, own) and (
+        if happens(event, int(may_enable(reu.rules, own)), step, reu, own) and (
                 own.state == INITIALISING):
             own.auto_enable = own.requested_enable
         if own.requested_enable != is_enabled(own):
@@ -155,6 +165,12 @@ def take_requests(step, reu, state):
     if own.requests & (HAS_SETPOINT | HAS_REFERENCE) and (
             not is_enabled(own) or own.is_stopping or state.protection.reaction >= REACTS_BY_HOLD):
         own.unused_setpoints += 1
+
+
+@kernel
+def may_enable(rules, own):
+    """Return whether a `DEVICE_STATE` may be enabled: no emergency stop, a quick stop at rest."""
+    return rules.emergency_stop == 0.0 and (own.state != QUICK_STOP or is_held(rules, own))
 
 
 @kernel
@@ -172,23 +188,30 @@ def stops(device_state):
 @kernel
 def is_over(rules, own):
     """Return whether a stop was at rest long enough, or closes the valve."""
-    if rules.stays == 1 and own.state == QUICK_STOP:
+    if rules.stays == 1 and own.state == QUICK_STOP and rules.emergency_stop == 0.0:
         return False
-    return rules.ramps == 0 or has_stood(rules.hold, rules.flow, own.flow)
+    return (rules.ramps == 0 or own.is_stopping == 0
+            or has_stood(rules.hold, rules.flow, own.flow))
 
 
 @kernel
-def let_act(entered, reu, state):
-    """Let the blocks of the state and mode act, bumpless; ``entered`` is the state before."""
+def let_act(step, entered, reu, state):
+    """
+    Let the blocks of the state and mode act, bumpless; ``entered`` is the state before.
+
+    The valve gets no current before the block valves are open.
+    """
     own, rules, reaction = state.status, reu.rules, state.protection.reaction
     was_on, was_stopping, was_damping = own.is_on, own.is_stopping, own.is_damping
     acts = own.state == ENABLED
     still_moves = (was_stopping == 1 and reaction < REACTS_BY_HOLD
                    and not stands(rules.flow, own.flow))
-    own.is_stopping = int(acts and (reaction == REACTS_BY_HOLD or still_moves)
-                          or stops(own.state) and rules.ramps == 1)
+    brakes = stops(own.state) and rules.ramps == 1
+    is_open = open_lines(acts or brakes, reaction, step, rules, own)
+    own.is_stopping = int(is_open and (
+        acts and (reaction == REACTS_BY_HOLD or still_moves) or brakes))
     own.is_damping = int(acts and reaction == REACTS_BY_DAMP)
-    own.is_on = int(acts or own.is_stopping == 1)
+    own.is_on = int(is_open and (acts or brakes))
     acting = SPOOL if own.is_stopping else own.mode
     if not own.is_on:
         if was_on and not was_stopping:
@@ -235,13 +258,19 @@ def get_ready(step, reu, state):
 def device_step(step, reu, state):
     """Run the device at one conversion, before the blocks."""
     own, found = state.status, state.protection
-    if (own.state == ENABLED and own.requests == 0 and own.warnings == found.warnings
+    if (own.state == ENABLED and own.is_on == 1 and own.requests == 0
+            and reu.rules.emergency_stop == 0.0 and own.warnings == found.warnings
             and own.trips == found.trips and found.reaction < REACTS_BY_HOLD
             and own.is_stopping + own.is_damping + own.is_returning == 0):
         return
     entered = own.state
     if not own.is_on:
         watch_load(state.measured.force, reu.rules.flow, own.flow)
+    if reu.rules.emergency_stop > 0.0:
+        found.supply_taken = 1
+        if is_enabled(own) == 1:
+            happens(EMERGENCY_STOP, 0, step, reu, own)
+            own.auto_enable = 0
     if entered == INITIALISING and step * PLANT_STEP >= reu.rules.initialisation:
         get_ready(step, reu, state)
     take_conditions(step, reu, state)
@@ -251,7 +280,7 @@ def device_step(step, reu, state):
         advance_stop(reu.rules, state)
     if stops(entered) and stops(own.state) and is_over(reu.rules, own):
         happens(STOP_ENDS if own.state == QUICK_STOP else REACTION_ENDS, 0, step, reu, own)
-    let_act(entered, reu, state)
+    let_act(step, entered, reu, state)
     if own.is_returning:
         advance_return(reu.rules, state)
     own.requests = 0

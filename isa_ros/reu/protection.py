@@ -3,9 +3,9 @@ The REU's protection: measures every condition and judges it; `isa_ros.reu.react
 
 A condition counts once its quantity has been beyond a level at as many conversions in a row as
 its delay has; it ends when the quantity is back by the hysteresis, or is no longer watched. A trip
-whose reaction stopped the actuator (quick_stop, disable) stays after its condition has ended,
-until it is cleared, whatever its reaction has become. Levels, delays, reactions and the mask may
-change at any tick; counts and bits go on from where they are.
+whose reaction stopped the actuator (quick_stop, disable, block) stays after its condition has
+ended, until it is cleared, whatever its reaction has become. Levels, delays, reactions and the
+mask may change at any tick; counts and bits go on from where they are.
 Inputs are what the sensors read, not the exact states.
 """
 
@@ -28,7 +28,7 @@ from isa_ros.reu.supervision import (
 import numpy as np
 
 N = len(CONDITIONS)
-NONE, WARN, LIMIT, HOLD, DAMP, QUICK_STOP, DISABLE = range(len(REACTIONS))
+NONE, WARN, LIMIT, HOLD, DAMP, QUICK_STOP, DISABLE, BLOCK = range(len(REACTIONS))
 _Bits = namedtuple('_Bits', BITS)  # type: ignore[misc]
 BIT: Any = _Bits(*BITS.values())  # for kernels, which read it by name: BIT.overload
 EXTENDING, RETRACTING = 1, 2  # bits of the directions that are inhibited
@@ -57,6 +57,7 @@ PROTECTION_STATE = np.dtype([
     ('kept', 'i8'),                         # bit set: trips that have stopped the actuator
     ('clears', 'i8'),                       # 1: trips whose condition has ended are to be cleared
     ('inhibited', 'i8'),                    # EXTENDING, RETRACTING
+    ('supply_taken', 'i8'),                 # 1: an emergency stop has taken the supply pressure
     ('busy', 'i8'),                         # bit set: is counted, or has a bit
     ('setpoint_age', 'i8'),                 # conversions + 1 since the last one; 0: none yet
     ('warning_count', 'i8', (N,)),          # conversions in a row beyond the level
@@ -137,6 +138,7 @@ def protection_record(
         delay=delay, reaction=reaction, evidence=evidence, supervision=supervision)
 
 
+_ENOUGH = 1e9   # Pa: above any level
 _DIGITS = 9  # a delay of 10 ms is 100 periods of 0.1 ms, not 101
 
 
@@ -156,7 +158,7 @@ def measure(supply_pressure, temperature, protection, state):
     values[BIT.overpressure] = max(measured.pressure_a, measured.pressure_b)
     values[BIT.overcurrent] = abs(measured.current)
     values[BIT.overtemperature] = temperature
-    values[BIT.supply_low] = supply_pressure
+    values[BIT.supply_low] = wanted_pressure(supply_pressure, protection, state)
     values[BIT.relief_open] = max(measured.pressure_a, measured.pressure_b)
     values[BIT.load_cell_implausible] = unexplained_force(
         measured, velocity, protection.stroke, protection.evidence, own.evidence)
@@ -172,6 +174,21 @@ def measure(supply_pressure, temperature, protection, state):
     (values[BIT.position_error], values[BIT.force_error], values[BIT.oscillation],
      values[BIT.runaway]) = supervise(
         supply_pressure, own_supervision, state, own.supervision)
+
+
+@kernel
+def wanted_pressure(supply_pressure, protection, state):
+    """
+    Return the supply pressure as it is judged, Pa.
+
+    What an emergency stop has dumped does not count as low, until it is back or the outputs are
+    on: its members could neither be cleared nor enabled otherwise.
+    """
+    own = state.protection
+    if own.supply_taken == 1 and (
+            state.status.is_on == 1 or -supply_pressure <= protection.quiet[BIT.supply_low]):
+        own.supply_taken = 0
+    return _ENOUGH if own.supply_taken == 1 else supply_pressure
 
 
 @kernel

@@ -15,7 +15,7 @@ from isa_ros.core.parameter import choice, parameter, Parameters, section
 from isa_ros.core.units import quantity
 from isa_ros.errors import ParameterError
 
-_TIMEOUT = ('hold', 'damp', 'disable')
+_TIMEOUT = ('hold', 'damp', 'disable', 'block')
 _P = TypeVar('_P', bound=Parameters)
 
 
@@ -125,3 +125,17 @@ class Protection(Parameters):
 def levels_of(sheet: Protection) -> dict[str, Levels]:
     """Return the levels of every condition but the timeouts of setpoint and link, by its name."""
     return {name: getattr(sheet, name) for name in LEVELS}
+
+
+def reactions_of(sheet: Protection) -> dict[str, str]:
+    """Return the reaction of every condition by its key below ``reu.protection``."""
+    keys = {name: f'{name}.reaction' if name in LEVELS else f'{name}_reaction' for name in BITS}
+    return {keys[name]: reaction_of(sheet, name) for name in BITS}
+
+
+def reaction_of(sheet: Protection, condition: str) -> str:
+    """Return the reaction to the trip of a condition."""
+    if condition in LEVELS:
+        return levels_of(sheet)[condition].reaction
+    found: str = getattr(sheet, f'{condition}_reaction')
+    return found

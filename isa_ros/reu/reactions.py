@@ -32,7 +32,7 @@ def react(protection, state):
     Take the strongest reaction of the trips of a `REU_STATE`.
 
     damp: an impedance without stiffness at the measured position. The device reacts to hold,
-    quick_stop and disable.
+    quick_stop, disable and block.
     """
     own = state.protection
     own.reaction, own.inhibited = NONE, 0

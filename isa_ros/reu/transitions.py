@@ -7,13 +7,14 @@ The states follow CiA 402; `isa_ros.reu.device` lets the events happen.
 from typing import NamedTuple
 
 from isa_ros.core.device import (
-    CLEAR, DISABLE, DISABLED, ENABLE, ENABLED, EVENTS, FAULT, FAULT_REACTION, INITIALISING, MODE,
-    QUICK_STOP, REACTION_ENDS, READY, STATES, STOP, STOP_ENDS, TRIP)
+    CLEAR, DISABLE, DISABLED, EMERGENCY_STOP, ENABLE, ENABLED, EVENTS, FAULT, FAULT_REACTION,
+    INITIALISING, MODE, QUICK_STOP, REACTION_ENDS, READY, STATES, STOP, STOP_ENDS, TRIP)
 import numpy as np
 
 ALWAYS, AUTO_ENABLE = '', 'auto_enable'
 CAUSE_GONE, POSSIBLE = 'its cause is gone', 'it is possible'
 AT_REST = 'at rest, quick_stop: ramp_and_hold'
+RELEASED = 'no emergency stop'
 
 
 class Transition(NamedTuple):
@@ -33,17 +34,21 @@ TRANSITIONS = (
                'holds the measured position and force, or takes the setpoint of that tick'),
     Transition(INITIALISING, READY, f'not {AUTO_ENABLE}', DISABLED, 'valve stays at null'),
     Transition(INITIALISING, TRIP, ALWAYS, FAULT, 'valve stays at null'),
-    Transition(INITIALISING, ENABLE, ALWAYS, INITIALISING, 'will be enabled when it is ready'),
+    Transition(INITIALISING, ENABLE, RELEASED, INITIALISING, 'will be enabled when it is ready'),
     Transition(INITIALISING, DISABLE, ALWAYS, INITIALISING, 'will be disabled when it is ready'),
     Transition(INITIALISING, STOP, ALWAYS, INITIALISING, 'will be disabled when it is ready'),
+    Transition(INITIALISING, EMERGENCY_STOP, ALWAYS, INITIALISING,
+               'will be disabled when it is ready'),
     Transition(INITIALISING, MODE, POSSIBLE, INITIALISING, 'mode of the next enable'),
-    Transition(DISABLED, ENABLE, ALWAYS, ENABLED,
+    Transition(DISABLED, ENABLE, RELEASED, ENABLED,
                'holds the last measured position and force, or takes the setpoint of the same '
                'command'),
     Transition(DISABLED, TRIP, ALWAYS, FAULT, 'valve stays at null'),
     Transition(DISABLED, MODE, POSSIBLE, DISABLED, 'mode of the next enable'),
     Transition(ENABLED, DISABLE, ALWAYS, DISABLED, 'valve to null, integrals zero'),
     Transition(ENABLED, STOP, ALWAYS, QUICK_STOP, 'the movement stops, the load is borne'),
+    Transition(ENABLED, EMERGENCY_STOP, ALWAYS, QUICK_STOP,
+               'as quick stop, and ends disabled also with ramp_and_hold'),
     Transition(ENABLED, TRIP, ALWAYS, FAULT_REACTION, 'the reaction of the condition begins'),
     Transition(ENABLED, MODE, POSSIBLE, ENABLED, 'the blocks of the mode take over, bumpless'),
     Transition(QUICK_STOP, STOP_ENDS, ALWAYS, DISABLED, 'valve to null, integrals zero'),

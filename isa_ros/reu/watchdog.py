@@ -9,6 +9,7 @@ line of the circuit; over a link nothing arrives, and the age of the sample grow
 """
 
 from isa_ros.core.kernel import kernel
+from isa_ros.reu.block_drive import switch_block
 from isa_ros.reu.device import device_step
 from isa_ros.reu.protection import BIT, judge_one
 from isa_ros.reu.reactions import react
@@ -22,6 +23,8 @@ def stand_still(step, period, reu, state):
     ``reu`` is its `REU` record, ``state`` a `REU_STATE`.
     """
     state.frozen_for += period
+    if reu.rules.emergency_stop > 0.0:
+        cut_off(step, reu, state)
     if reu.watchdog == 0.0 or state.frozen_for < reu.watchdog:
         return
     own, protection = state.protection, reu.protection
@@ -31,4 +34,13 @@ def stand_still(step, period, reu, state):
         own.first = own.first if own.first else own.trips & -own.trips
         react(protection, state)
         device_step(step, reu, state)
+    cut_off(step, reu, state)
+
+
+@kernel
+def cut_off(step, reu, state):
+    """Switch the amplifier's output and the block valves off; the program does not know it."""
     state.drive = 0.0
+    if reu.rules.opening > 0.0:
+        state.status.is_on = 0
+        switch_block(0, step, state.status)

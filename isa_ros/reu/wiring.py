@@ -44,6 +44,8 @@ class Device(Parameters):
         absent=0.1, source='assumed', gt=0.0, le=100.0)
     fade_ms: float = parameter(
         'time constant of the rest of a jump between modes or gains', 'ms', gt=0.0, le=1e3)
+    emergency_stop: float = fault(
+        '1: the line of the emergency stop is open', '1', is_whole=True, ge=0.0, le=1.0)
 
 
 BEFORE = Device(

@@ -133,6 +133,11 @@ class Coordinator:
                 pass
             self._advance()
 
+    def emergency_stop(self, is_open: bool) -> None:
+        """Open or close the lines of all emergency stops; raises as `EmergencyStops.request`."""
+        if self._loop.stops is not None:
+            self._loop.stops.request(is_open, self.rows.samples)
+
     def reset(self) -> None:
         """End this run, to start again at t = 0 with a new bag."""
         self.add_event('reset')

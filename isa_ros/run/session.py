@@ -26,6 +26,7 @@ from isa_ros.run.provenance import provenance_of
 from isa_ros.run.thinning import Thinning
 from isa_ros.scenario.scenario import planned, Scenario
 from isa_ros.surroundings.surroundings import Surroundings
+from isa_ros.tick.emergency_stop import emergency_stops_of
 from isa_ros.tick.exchange import Rows, Transport
 from isa_ros.tick.source import ScheduledSource, Source
 from isa_ros.tick.tick_loop import ignore, TickLoop
@@ -181,6 +182,7 @@ def record(
         at_end.callback(_keep, trip_log, session)
         loop = TickLoop(
             run.step_ns, transport, surroundings, rows, source,
+            stops=emergency_stops_of(run, surroundings),
             request_range=request_range_of(run) if run.controllers else None, warn=warn,
             lap=lap)
         while True:

@@ -5,6 +5,7 @@ Read the lists ``faults`` and ``changes`` of a scenario.
     - {t_s: 0.5, actuator: kfe, set: {plant.spool.stuck: 1}, until_s: 0.8}
     - {t_s: 0.6, supply: supply, fault: pump_trip}
     - {t_s: 0.6, bus: hfe, set: {pulled: 1}, until_s: 0.7}
+    - {t_s: 0.7, emergency_stop: all, until_s: 0.9}
     changes:
     - {t_s: 0.2, actuator: ram, set: {load.force: -500}, until_s: 0.7}
     - {t_s: 0.2, actuator: ram, set: {load.force: 0}, sine: {amplitude: 200, frequency_hz: 2},
@@ -43,11 +44,12 @@ from isa_ros.scenario.faults import BUS, Fault, timetable
 from isa_ros.scenario.setpoints import MAX_DURATION
 from isa_ros.scenario.waveforms import EFFORT, MOVES, Waveform, WAVEFORMS
 from isa_ros.surroundings.supply import SupplySheet
+from isa_ros.surroundings.surroundings import EMERGENCY_STOP, OPEN
 
 LINK = 'link'
 """Of an actuator: ``link: kfe, set: {loss: 0.1}`` is ``actuator: kfe, set: {link.loss: 0.1}``."""
 _OF_LINK = f'{LINK}.'
-_TARGETS = (*KINDS, LINK, BUS)
+_TARGETS = (*KINDS, LINK, BUS, EMERGENCY_STOP)
 _KEYS = ('t_s', *_TARGETS, 'fault', 'set', 'until_s', RAMP, INTERMITTENT, *WAVEFORMS)
 _COURSE = {'period_s': ('time from one begin to the next', 's', {'gt': 0.0, 'le': MAX_DURATION}),
            'duty': ('part of the time in which it is on', '1', {'gt': 0.0, 'lt': 1.0})}
@@ -88,6 +90,8 @@ def _fault(tree: Tree, place: Place, run: RunConfig) -> Fault:
     if until is not None and until <= tick:
         raise ConfigError(
             f'{place}.until_s = {tree["until_s"]:g} s, must be > t_s = {tree["t_s"]:g} s')
+    if of == EMERGENCY_STOP:
+        return _emergency_stop(tree, target, tick, until, place, run)
     values = _values(tree, of, place)
     where = f'{place}.{"fault" if "fault" in tree else "set"}'
     try:
@@ -166,6 +170,20 @@ def _refuse_port(values: Mapping[str, float], known: Mapping[str, Changeable], t
     for key in (RAMP, *WAVEFORMS):
         if key in tree:
             raise ConfigError(f'{key} is not used with a bus')
+
+
+def _emergency_stop(
+        tree: Tree, group: str, tick: int, until: int | None, place: Place,
+        run: RunConfig) -> Fault:
+    """Return the emergency stop of a group, which `until` releases."""
+    names = [own.name for own in run.stop_groups]
+    if group not in names:
+        raise ConfigError(
+            f'{place / EMERGENCY_STOP} = {group!r} is not a group; {alternatives(group, names)}')
+    for key in ('fault', 'set', RAMP, INTERMITTENT, *WAVEFORMS):
+        if key in tree:
+            raise ConfigError(f'{place / key} is not used: an emergency stop has no values')
+    return Fault(tick, until, EMERGENCY_STOP, group, {OPEN: 1.0})
 
 
 def _wave(

@@ -18,6 +18,7 @@ from isa_ros.core.changing_values import OFF, OVER
 from isa_ros.core.timebase import NS_PER_SECOND
 from isa_ros.scenario.fault_courses import Course
 from isa_ros.scenario.waveforms import MOVES, Waveform, WAVEFORMS
+from isa_ros.surroundings.surroundings import EMERGENCY_STOP, line_of
 
 BUS = 'bus'
 """Of an actuator's connection to the bus of `isa bus`, beside `KINDS`."""
@@ -25,15 +26,15 @@ BUS = 'bus'
 
 @dataclass(frozen=True)
 class Fault:
-    """A change of parameters of one actuator, its connection to a bus, or a supply."""
+    """A change of parameters of an actuator, its port on a bus, or a supply; or a group's stop."""
 
     tick: int
     until: int | None
     """The tick from which on the values are restored; None: never."""
     of: str
-    """One of `KINDS`, or `BUS`."""
+    """One of `KINDS`, `BUS` or `EMERGENCY_STOP`."""
     target: str
-    """Name of the actuator or supply."""
+    """Name of the actuator, supply or group."""
     values: Mapping[str, float]
     """By the names that messages have, of `changing`, or by key of the supply."""
     wave: Waveform | None = None
@@ -75,7 +76,9 @@ class Fault:
         """Return the fault as a scenario file has it."""
         def seconds(tick: int) -> float:
             return tick * step_ns / NS_PER_SECOND
-        tree: Tree = {'t_s': seconds(self.tick), self.of: self.target, 'set': dict(self.values)}
+        tree: Tree = {'t_s': seconds(self.tick), self.of: self.target}
+        if self.of != EMERGENCY_STOP:
+            tree['set'] = dict(self.values)
         if self.until is not None:
             tree['until_s'] = seconds(self.until)
         if self.course is not None:
@@ -92,7 +95,7 @@ class ParameterChanges(NamedTuple):
     actuators: Mapping[int, Mapping[str, float]]
     """By row, and name of `isa_ros.actuator.tunable.changing`; `OVER` or `OFF` before a name."""
     supplies: Mapping[str, float]
-    """By SUPPLY.KEY, likewise."""
+    """By SUPPLY.KEY or line of a group, likewise."""
     ports: Mapping[str, Mapping[str, float]] = {}
     """By name of an actuator and of a value of `BusPort`, which is 0 where nothing is wrong."""
 
@@ -139,6 +142,8 @@ def _changes(
             supplies[f'{mark}{target}.{name}'] = value
         elif of == BUS:
             ports.setdefault(target, {})[name] = value
+        elif of == EMERGENCY_STOP:
+            supplies[f'{mark}{line_of(target)}.{name}'] = value
         else:
             actuators.setdefault(run.index(target), {})[f'{mark}{name}'] = value
     return ParameterChanges(actuators, supplies, ports)

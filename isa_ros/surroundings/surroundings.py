@@ -6,16 +6,37 @@ configuration; `isa_ros.config.assembly` makes them from a run.
 """
 
 from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass
 from typing import NamedTuple
 
 from isa_ros.core.changeable import Changeable, changeables, with_changes
 from isa_ros.core.changing_values import bare, ChangingValues
+from isa_ros.core.parameter import fault, Parameters
 from isa_ros.core.saved_state import broken_number, restored_rows
 from isa_ros.core.suggest import alternatives
 from isa_ros.errors import ConfigError, RunError
 from isa_ros.surroundings.body import Body, Records, SizedBody
 from isa_ros.surroundings.supply import Supply, SUPPLY_SAMPLE, SupplySheet
 import numpy as np
+
+
+EMERGENCY_STOP = 'emergency_stop'
+"""Begins the names of the lines of groups; a supply does not have this name."""
+OPEN = 'opened'
+"""Name of the only value of a line."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class _EmergencyStop(Parameters):
+    """The line of a group of actuators that stop together."""
+
+    opened: float = fault(
+        '1: the line of the emergency stop is open', '1', is_whole=True, ge=0.0, le=1.0)
+
+
+def line_of(group: str) -> str:
+    """Return what the names of a group's values begin with."""
+    return f'{EMERGENCY_STOP}.{group}'
 
 
 class SupplyCircuit(NamedTuple):
@@ -36,12 +57,12 @@ class Surroundings:
 
     ``starts`` are `START` rows, (n_actuators,), with position and force at t = 0 of the
     actuators that do not move a body; ``sensor_stiffness`` is that of all actuators, N/m or
-    Nm/rad, (n_actuators,).
+    Nm/rad, (n_actuators,). ``lines`` are the names of the groups with an emergency stop.
     """
 
     def __init__(
             self, circuits: Sequence[SupplyCircuit], bodies: Mapping[str, Body], starts: Records,
-            sensor_stiffness: Sequence[float], step_ns: int) -> None:
+            sensor_stiffness: Sequence[float], step_ns: int, lines: Sequence[str] = ()) -> None:
         self.circuits = tuple(circuits)
         self.bodies = dict(bodies)
         """By name, in the order of the run."""
@@ -52,8 +73,10 @@ class Surroundings:
             for k, own in enumerate(circuits)]
         self.changing: Mapping[str, Changeable] = {
             name: own for circuit in circuits
-            for name, own in changeables(circuit.sheet, f'{circuit.name}.').items()}
-        """All that may change during a run, by SUPPLY.KEY."""
+            for name, own in changeables(circuit.sheet, f'{circuit.name}.').items()} | {
+            name: own for line in lines
+            for name, own in changeables(_EmergencyStop(), f'{line_of(line)}.').items()}
+        """All that may change during a run, by SUPPLY.KEY, and the lines of `line_of`."""
         self._values = ChangingValues(
             'supplies', list(self.changing), [own.value for own in self.changing.values()])
         self._fed = [_index(circuit.rows) for circuit in circuits]
@@ -118,6 +141,11 @@ class Surroundings:
             for supply, sheet in self._sheets(all_values):
                 supply.refuse(sheet)
         self._values.accept(values)
+
+    @property
+    def is_settled(self) -> bool:
+        """Return whether no value changed at the last tick, or changes at the next."""
+        return self._values.is_settled
 
     def tuned_value(self, name: str) -> float:
         """Return the last accepted value of one of `changing`."""

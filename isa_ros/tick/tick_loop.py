@@ -15,6 +15,7 @@ from isa_ros.controller import merge_requests
 from isa_ros.core.saved_state import RunState
 from isa_ros.core.signals import Records
 from isa_ros.surroundings.surroundings import Surroundings
+from isa_ros.tick.emergency_stop import EmergencyStops
 from isa_ros.tick.exchange import Rows, RowSink, Transport
 from isa_ros.tick.source import Source
 
@@ -30,13 +31,15 @@ class TickLoop:
     """
     Advances a run tick by tick and gives its rows to ``sinks`` at each instant.
 
-    ``request_range`` refuses or limits the requests of controllers (None: without controllers)
-    and reports by ``warn``; ``lap`` measures the host time of each phase of a tick.
+    ``stops`` are the emergency stops of the run (None: it has none). ``request_range`` refuses or
+    limits the requests of controllers (None: without controllers) and reports by ``warn``; ``lap``
+    measures the host time of each phase of a tick.
     """
 
     def __init__(
             self, step_ns: int, transport: Transport, surroundings: Surroundings, rows: Rows,
-            source: Source, *, request_range: RequestRange | None = None,
+            source: Source, *, stops: EmergencyStops | None = None,
+            request_range: RequestRange | None = None,
             warn: Callable[[str], object] = ignore,
             lap: Callable[[str], None] = ignore) -> None:
         self._step_ns = step_ns
@@ -52,6 +55,8 @@ class TickLoop:
         """Take the rows of each instant."""
         self.ticks = 0
         """Number of finished ticks: t = ticks step_ns."""
+        self.stops = stops
+        """The emergency stops."""
         self._request_range, self._warn, self._lap = request_range, warn, lap
 
     @property
@@ -64,6 +69,8 @@ class TickLoop:
         self.ticks = 0
         self.rows.clear_requests()
         self._surroundings.restart(self._beginning)
+        if self.stops is not None:
+            self.stops.restart()
         self.transport.join(self.rows)
 
     def begin(self, state: RunState | None = None) -> None:
@@ -133,6 +140,8 @@ class TickLoop:
         rows.changes = {} if changes is None else changes.actuators
         if changes is not None:
             self._surroundings.tune(changes.supplies)
+        if self.stops is not None:
+            rows.changes = self.stops.act(rows.samples, rows.changes)
 
     def add_event(self, text: str) -> None:
         """Give out an event at this instant."""
@@ -183,6 +192,8 @@ class TickLoop:
         """
         requests = state.rows_of_requests(len(self.rows.requests))
         self._surroundings.restore(state.load)
+        if self.stops is not None:
+            self.stops.restart(is_restored=True)
         self.transport.restore(state.tick, state.participants, self.rows)
         self.rows.requests[:] = requests
         self.ticks = state.tick

@@ -18,7 +18,7 @@ VALUES = {
     'plant.oil.cross_port_leakage': 2e-12, 'plant.oil.external_leakage_a': 1e-12,
     'plant.oil.external_leakage_b': 1e-12, 'plant.oil.entrained_air': 0.02,
     'plant.relief.opening_pressure_mpa': 3.0, 'plant.friction.stiction': 120.0,
-    'plant.friction.coulomb': 90.0, 'reu.frozen': 1.0}
+    'plant.friction.coulomb': 90.0, 'reu.frozen': 1.0, 'reu.device.emergency_stop': 1.0}
 FAULTS = [{'plant.spool.stuck': 1.0}, {'plant.coil.shorted_turns': 0.5, 'reu.frozen': 1.0},
           {'plant.oil.entrained_air': 0.05, 'force.kp': 1.2e-7}]
 

@@ -61,4 +61,4 @@ def test_every_place_and_bit_of_the_reu_has_a_range():
     assert left == {
         'since_step', 'setpoint_age', 'warning_count', 'trip_count', 'warning_since',
         'refused_requests', 'unused_setpoints',
-        'trip_since', 'link_lost_step'}
+        'trip_since', 'link_lost_step', 'switched'}

@@ -198,6 +198,7 @@ class FallingSupply(Parameters):
     return_pressure_mpa: float = parameter('gauge return pressure', 'MPa', ge=0.0, le=5.0)
     lasts_s: float = parameter('time until it is empty', 's', gt=0.0, le=1e4)
     return_line: ReturnLine = nested(HeldReturn())
+    dump: NoneDump = nested(NoneDump())
 
 
 SupplySheet = ConstantSupply | AccumulatorSupply | FallingSupply
@@ -312,7 +313,7 @@ def test_an_output_of_a_run_is_a_sink() -> None:
 @pytest.mark.slow
 def test_a_fault_is_a_mark(copied: PatchedCopy) -> None:
     """A parameter that is marked can change in a run, by its key and in its unit."""
-    copied.replace('isa_ros/surroundings/supply.py', "'relief flow per pressure above opening', "
+    copied.replace('isa_ros/surroundings/accumulator.py', "'relief flow per pressure above opening', "
                    "'l/min/MPa', gt=0.0", "'relief flow per pressure above opening', "
                    "'l/min/MPa', changeable=True, gt=0.0")
     assert len(copied.touched) == 1

@@ -115,7 +115,7 @@ def test_only_a_reaction_that_stops_is_kept_until_it_is_cleared(reaction: str) -
     for force in (6e3, 0.0):
         watched.show('overload', force)
         watched.convert(3)
-    stops = reaction in ('quick_stop', 'disable')
+    stops = reaction in ('quick_stop', 'disable', 'block')
     assert watched.has('overload') == (False, stops)
     assert watched.own.reaction == (REACTIONS.index(reaction) if stops else 0)
     request_clear(watched.own)
@@ -256,9 +256,10 @@ def test_a_trip_keeps_its_cause() -> None:
 
 
 @pytest.mark.parametrize(('name', 'refused', 'left'), [
-    ('end_of_stroke', ('hold', 'damp', 'quick_stop', 'disable'), 'none or warn or limit'),
-    ('load_cell_implausible', ('hold', 'damp', 'quick_stop'), 'none or warn or disable'),
-    ('encoder_jump', ('hold', 'damp', 'quick_stop'), 'none or warn or disable')])
+    ('end_of_stroke', ('hold', 'damp', 'quick_stop', 'disable', 'block'),
+     'none or warn or limit'),
+    ('load_cell_implausible', ('hold', 'damp', 'quick_stop'), 'none or warn or disable or block'),
+    ('encoder_jump', ('hold', 'damp', 'quick_stop'), 'none or warn or disable or block')])
 def test_a_reaction_that_could_not_end_or_uses_what_is_wrong_is_refused(
         name: str, refused: tuple[str, ...], left: str) -> None:
     """At the end of the stroke nothing else could be left; a stop needs encoder and load cell."""

@@ -7,6 +7,7 @@ from isa_ros.core.constants import ATMOSPHERE
 from isa_ros.core.units import LPM
 from isa_ros.errors import ParameterError
 from isa_ros.surroundings import return_line, supply
+from isa_ros.surroundings.accumulator import stored_energy, SUPPLY, supply_rates
 import numpy as np
 import pytest
 from scipy.integrate import quad
@@ -139,10 +140,10 @@ def test_a_supply_too_small_for_the_tick_is_refused_with_both_numbers():
 def test_compiled_rates_equal_their_python_source():
     """The logarithm and exponential included."""
     record = supply.supply_record(SHEET)[0].tolist()
-    row = np.array([record], supply.SUPPLY).view(np.recarray)[0]
+    row = np.array([record], SUPPLY).view(np.recarray)[0]
     for pressure in np.linspace(1e6, 23e6, 200):
-        assert supply.supply_rates(pressure, 1e-4, 5e-5, row) == \
-            supply.supply_rates.py_func(pressure, 1e-4, 5e-5, row)
+        assert supply_rates(pressure, 1e-4, 5e-5, 0.0, row) == \
+            supply_rates.py_func(pressure, 1e-4, 5e-5, 0.0, row)
 
 
 def test_a_compiled_return_line_equals_its_python_source():
@@ -181,7 +182,7 @@ def test_stored_energy_is_the_integral_of_pressure_and_capacitance(exponent, low
     record = supply.supply_record(replace(SHEET, polytropic_exponent=exponent))[0]
     expected = quad(lambda p: p * supply.capacitance(p, record), low, high, points=[12e6],
                     epsabs=0.0, epsrel=1e-12)[0]
-    assert supply.stored_energy(high, record) - supply.stored_energy(low, record) == (
+    assert stored_energy(high, record) - stored_energy(low, record) == (
         pytest.approx(expected, rel=1e-9, abs=0.0))
 
 

@@ -12,6 +12,8 @@ from isa_ros.config.runs.acceptance import ACCEPT, ACCEPT_ALL
 from isa_ros.config.runs.actuator_config import ACTUATOR, actuator_of, ActuatorConfig, Around
 from isa_ros.config.runs.body_config import BODY, BodyConfig
 from isa_ros.config.runs.body_kinds import BODY_KINDS
+from isa_ros.config.runs.emergency_stops import (
+    ALL as EVERY, emergency_stops_of, EmergencyStopConfig, GROUPS, KEY as EMERGENCY_STOPS)
 from isa_ros.config.runs.joined_bodies import bodies_of, moved_by
 from isa_ros.config.runs.leg_config import LegConfig
 from isa_ros.config.runs.recording import RECORD, RecordConfig
@@ -59,6 +61,8 @@ class RunConfig:
     """Of all noise."""
     start_time_s: int = 0
     """Time of all stamps at t = 0; whole, so that both have the same full seconds."""
+    emergency_stops: tuple[EmergencyStopConfig, ...] = ()
+    """Groups of actuators that stop together, as given; see `stop_groups`."""
 
     @property
     def start_ns(self) -> int:
@@ -81,6 +85,12 @@ class RunConfig:
                      if any(actuator == name for _, name in own.joints)), None)
 
     @property
+    def stop_groups(self) -> tuple[EmergencyStopConfig, ...]:
+        """Return the groups that stop together: one of all actuators if none is given."""
+        return self.emergency_stops or (
+            EmergencyStopConfig(EVERY, tuple(own.name for own in self.actuators)),)
+
+    @property
     def linked(self) -> tuple[str, ...]:
         """Return the actuators with a link."""
         return tuple(own.name for own in self.actuators if own.sheet.link.kind != NO_LINK.kind)
@@ -93,7 +103,8 @@ class RunConfig:
     def alone(self, actuator: ActuatorConfig) -> 'RunConfig':
         """Return a run of ``actuator`` alone, on the supply of the actuator of its name."""
         supply = SupplyConfig(SUPPLY, self.supply_of(actuator.name), (actuator.name,))
-        return replace(self, actuators=(actuator,), supplies=(supply,), bodies=())
+        return replace(
+            self, actuators=(actuator,), supplies=(supply,), bodies=(), emergency_stops=())
 
     @property
     def digest(self) -> str:
@@ -229,6 +240,8 @@ RUN = KeyTable((
     Key('record', RECORD, 'what is recorded', {}, 'everything'),
     Key(LINK, Layer(LinkSheet), 'the link of all actuators', {}, in_text=InText.NEVER),
     Key('actuators', Named(ACTUATOR), 'the actuators by name; records have their order'),
+    Key(EMERGENCY_STOPS, GROUPS, 'groups of actuators that stop together, by name', None,
+        'all, by request alone', of=lambda run: run.emergency_stops or None),
     Key('controllers', NAMES, 'nodes, besides the actuators, that every tick waits for', []),
     Key('leg', LegConfig.KEYS, 'a body of the kind leg', None, in_text=InText.NEVER),
     Key(BODY, _BODY, 'what several actuators move together', None, of=_only),
@@ -272,6 +285,8 @@ def run_of(tree: Tree, place: Place, is_checked: bool = True) -> tuple[RunConfig
         refuse_overfull({own.name: own.sheet.link for own in actuators}, place)
     values |= {
         'step_ns': step_ns, 'controller_offset_ns': offset_ns, 'supplies': supplies,
+        EMERGENCY_STOPS: emergency_stops_of(
+            values[EMERGENCY_STOPS], list(values['actuators']), place / EMERGENCY_STOPS),
         'bodies': bodies, 'actuators': tuple(actuators), 'source': values['source'] or place.file,
         'start_time_s': values['start_time_s'] or 0, 'accept': values['accept'] or ACCEPT_ALL}
     controllers = values.pop('controllers')

@@ -11,6 +11,7 @@ from isa_ros.core.units import MPA
 from isa_ros.errors import ConfigError
 from isa_ros.surroundings.return_line import VolumeReturn
 from isa_ros.surroundings.supply import SupplySheet
+from isa_ros.surroundings.surroundings import EMERGENCY_STOP
 
 SUPPLY = 'supply'
 """Name of the supply of a run with only one."""
@@ -70,6 +71,9 @@ def refuse_misfed(
     """
     names = {supply.name for supply in supplies}
     for supply in supplies:
+        if supply.name == EMERGENCY_STOP:
+            raise ConfigError(f'{place / EMERGENCY_STOP}: the name is taken by the lines of '
+                              'emergency stops')
         taken = f'{supply.name}_return'
         if taken in names and isinstance(supply.sheet.return_line, VolumeReturn):
             raise ConfigError(

@@ -7,12 +7,12 @@ reset. Every trip sends an emergency message, and one with code 0 follows when t
 
 from collections.abc import Callable
 
-from isa_ros.core.conditions import BITS, COMMUNICATION, CONDITIONS, ErrorCode, PROFILE
+from isa_ros.core.conditions import BITS, COMMUNICATION, CONDITIONS, ErrorCode, FAULTS, PROFILE
 from isa_ros.fieldbus.device.bus_device import Emergency
 from isa_ros.fieldbus.device.communication_area import ERROR_FIELD, ERRORS_KEPT
 from isa_ros.fieldbus.device.dictionary import Key
 from isa_ros.fieldbus.device.objects import Value
-from isa_ros.reu.protection_sheet import Protection
+from isa_ros.reu.protection_sheet import Protection, reaction_of
 
 _GENERIC = 1
 
@@ -23,21 +23,13 @@ NO_ERROR = ErrorCode(0, 0, 'no error')
 OWN_CODES = (BUS_LOST, FOLLOWING_ERROR, PDO_LENGTH)
 """Errors that the bus interface finds by itself."""
 
-_STOPPING = ('quick_stop', 'disable')
 _WORD = 0xFFFF
 _DATA_BYTES = 5
 
 
 def stopping_bits(sheet: Protection) -> int:
     """Return the conditions whose trip stops the actuator, as a bit set."""
-    return sum(1 << bit for name, bit in BITS.items() if reaction_of(sheet, name) in _STOPPING)
-
-
-def reaction_of(sheet: Protection, condition: str) -> str:
-    """Return the reaction to the trip of a condition."""
-    levels = getattr(sheet, condition, None)
-    found: str = getattr(sheet, f'{condition}_reaction') if levels is None else levels.reaction
-    return found
+    return sum(1 << bit for name, bit in BITS.items() if reaction_of(sheet, name) in FAULTS)
 
 
 class Faults:

@@ -65,7 +65,8 @@ class RunServices:
             node.create_service(SetBool, '~/pause', self._on_pause),
             node.create_service(Trigger, '~/step', self._on_step),
             node.create_service(Trigger, '~/reset', self._on_reset),
-            node.create_service(Trigger, '~/save', self._on_save)]
+            node.create_service(Trigger, '~/save', self._on_save),
+            node.create_service(SetBool, 'emergency_stop', self._on_emergency_stop)]
         parameters = open_parameter_services(node)
         self._server = DirectServer(
             node.get_logger(), [] if joints is None else joints.subscriptions, own, parameters)
@@ -88,6 +89,9 @@ class RunServices:
 
     def _on_pause(self, request: SetBool.Request, response: SetBool.Response) -> Any:
         return self._answer(response, lambda: self._pause(request.data))
+
+    def _on_emergency_stop(self, request: SetBool.Request, response: SetBool.Response) -> Any:
+        return self._answer(response, lambda: self._emergency_stop(request.data))
 
     def _on_step(self, request: Trigger.Request, response: Trigger.Response) -> Any:
         return self._answer(response, self._step)
@@ -112,6 +116,10 @@ class RunServices:
     def _pause(self, is_paused: bool) -> str:
         self._run.pause(is_paused)
         return f'{"paused" if is_paused else "running"} from {self._instant()}'
+
+    def _emergency_stop(self, is_open: bool) -> str:
+        self._run.emergency_stop(is_open)
+        return f'emergency stop {"from" if is_open else "released at"} {self._instant()}'
 
     def _step(self) -> str:
         count = self._node.get_parameter(STEP_COUNT).value

@@ -6,6 +6,7 @@ import re
 
 from isa_ros.bag.storage import Storage
 from isa_ros.config.differences import key_differences, modern
+from isa_ros.config.runs.emergency_stops import EmergencyStopConfig
 from isa_ros.config.runs.recording import RecordConfig
 from isa_ros.config.runs.run_config import RUN, RunConfig
 from isa_ros.config.runs.run_file import load_run
@@ -23,7 +24,8 @@ TWO = replace(hip_and_knee([
     SupplyConfig('main', replace(ACCUMULATOR, return_line=RETURN_LINE), ('knee',)),
     SupplyConfig('low', ACCUMULATOR, ('hip',))]), start_time_s=2_000_000_000, accept='scenario')
 FULL = replace(
-    LEG, controllers=('sway', 'gait'), accept='scenario', start_time_s=1, record=RecordConfig(
+    LEG, emergency_stops=(EmergencyStopConfig('legs', ('haa', 'kfe'), ('block',)),),
+    controllers=('sway', 'gait'), accept='scenario', start_time_s=1, record=RecordConfig(
         Storage(compression='zstd', split_mb=12.5), ('/*/references',), (('/*/valve', 10),)))
 
 

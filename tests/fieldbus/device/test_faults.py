@@ -4,7 +4,8 @@ import isa_ros
 from isa_ros.core.conditions import BITS, CONDITIONS
 from isa_ros.core.signals import SAMPLE
 from isa_ros.fieldbus.device.devices import devices_of
-from isa_ros.fieldbus.device.faults import OWN_CODES, reaction_of, stopping_bits
+from isa_ros.fieldbus.device.faults import OWN_CODES, stopping_bits
+from isa_ros.reu.protection_sheet import reaction_of
 import numpy as np
 import pytest
 
@@ -54,7 +55,8 @@ def test_each_trip_is_reported_once_and_its_end_too(condition):
     fed, bit = Fed(), 1 << BITS[condition]
     own = CONDITIONS[BITS[condition]].error
     is_stopping = bool(stopping_bits(PROTECTION) & bit)
-    assert is_stopping == (reaction_of(PROTECTION, condition) in ('quick_stop', 'disable'))
+    assert is_stopping == (
+        reaction_of(PROTECTION, condition) in ('quick_stop', 'disable', 'block'))
     state = FAULT if is_stopping else 1
     assert fed.take(bit, state) == [own.code]
     assert fed.take(bit, state) == []

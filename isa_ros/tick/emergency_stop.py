@@ -1,0 +1,158 @@
+"""
+The emergency stop of groups of actuators: one trips or somebody asks, all stop.
+
+The line of a group is a value of the surroundings, 0 or 1, so that scenarios, services, bags and
+saved states have it as any other. At the beginning of a tick it is opened by the trips of its
+members, and what hangs on it follows in that tick: `reu.device.emergency_stop` of each actuator,
+and the dump valves of the supplies, at once or when the movements have ended. All of it depends
+on the samples and values at the tick's start alone, wherever the actuators compute.
+"""
+
+from collections.abc import Mapping, Sequence
+from typing import NamedTuple
+
+from isa_ros.config.runs.emergency_stops import AT_REST, NEVER
+from isa_ros.config.runs.run_config import RunConfig
+from isa_ros.core.conditions import BITS, conditions
+from isa_ros.core.device import DISABLED, FAULT
+from isa_ros.core.signals import Records
+from isa_ros.core.suggest import alternatives
+from isa_ros.errors import ConfigError
+from isa_ros.reu.protection_sheet import reaction_of
+from isa_ros.surroundings.dump import NoneDump
+from isa_ros.surroundings.surroundings import line_of, OPEN, Surroundings
+
+LINE = 'reu.device.emergency_stop'
+"""Of an actuator."""
+DUMP = 'dump.opened'
+"""Of a supply with a dump valve."""
+
+
+class StopGroup(NamedTuple):
+    """One group, as a run needs it."""
+
+    line: str
+    """Name of its line in `Surroundings.changing`."""
+    trips: Mapping[int, int]
+    """By row of each actuator: bits of the conditions whose trip opens the line."""
+    supplies: Sequence[str]
+    """Those whose dump valves open."""
+    waits: bool
+    """Whether these wait until the actuators are off."""
+
+
+class EmergencyStops:
+    """
+    The lines of the groups over a run; ``names`` of the actuators by row are for its errors.
+
+    ``surroundings`` have the lines and the dump valves among their values.
+    """
+
+    def __init__(
+            self, groups: Sequence[StopGroup], names: Sequence[str],
+            surroundings: Surroundings) -> None:
+        self._groups, self._names, self._surroundings = tuple(groups), names, surroundings
+        self._watched = any(any(group.trips.values()) for group in groups)
+        self._told: dict[int | str, bool | None] = {}
+        self.restart()
+
+    def restart(self, is_restored: bool = False) -> None:
+        """Begin at t = 0, or with participants from a saved state: they are told anew."""
+        every = [*self._told]
+        for group in self._groups if is_restored else ():
+            every += [*group.trips, *group.supplies]
+        self._told = dict.fromkeys(every)
+        self._is_idle = False
+
+    def cause(self, group: StopGroup, samples: Records) -> str:
+        """Return the trips that open the line of a group, or ''."""
+        found = []
+        for row, bits in group.trips.items():
+            tripped = int(samples[row]['trips']) & bits
+            if tripped:
+                found.append(f'{self._names[row]} {" ".join(conditions(tripped))}')
+        return ', '.join(found)
+
+    def request(self, is_open: bool, samples: Records, group: str | None = None) -> None:
+        """
+        Open or close the line of a group from the next tick on; None: of all groups.
+
+        Raises
+        ------
+        ConfigError
+            There is no such group, or a trip in ``samples`` would open its line again.
+
+        """
+        lines = {own.line: own for own in self._groups}
+        if group is not None:
+            line = f'{line_of(group)}.{OPEN}'
+            if line not in lines:
+                names = [name.split('.')[1] for name in lines]
+                raise ConfigError(f'{group!r} is not a group; {alternatives(group, names)}')
+            lines = {line: lines[line]}
+        if not is_open:
+            for own in lines.values():
+                if cause := self.cause(own, samples):
+                    raise ConfigError(f'{own.line} stays open: {cause}; clear the fault first')
+        self._surroundings.tune(dict.fromkeys(lines, float(is_open)))
+
+    def act(
+            self, samples: Records, changes: Mapping[int, Mapping[str, float]]
+            ) -> Mapping[int, Mapping[str, float]]:
+        """
+        Open lines whose members have tripped, and let all follow their lines.
+
+        ``samples`` are those of the tick's start, (n,); ``changes`` of its parameters by row are
+        returned with those of the lines.
+        """
+        is_settled = self._surroundings.is_settled
+        if self._is_idle and is_settled and not (self._watched and samples['trips'].any()):
+            return changes
+        self._is_idle = True
+        lines: dict[int, bool] = {row: False for group in self._groups for row in group.trips}
+        dumps: dict[str, bool] = {name: False for group in self._groups
+                                  for name in group.supplies}
+        for group in self._groups:
+            if self.cause(group, samples):
+                self._surroundings.tune({group.line: 1.0})
+            if self._surroundings.tuned_value(group.line) == 0.0:
+                continue
+            self._is_idle = False
+            lines.update(dict.fromkeys(group.trips, True))
+            if not group.waits or all(_is_off(samples[row]) for row in group.trips):
+                dumps.update(dict.fromkeys(group.supplies, True))
+        self._surroundings.tune({
+            f'{name}.{DUMP}': float(is_open) for name, is_open in dumps.items()
+            if self._is_new(name, is_open)})
+        new = {row: float(is_open) for row, is_open in lines.items()
+               if self._is_new(row, is_open)}
+        return {**changes, **{
+            row: {**changes.get(row, {}), LINE: value} for row, value in new.items()}}
+
+    def _is_new(self, of: int | str, is_open: bool) -> bool:
+        """Note what an actuator or a supply is told; return whether it was told otherwise."""
+        was, self._told[of] = self._told.get(of, False), is_open
+        return was != is_open
+
+
+def _is_off(sample: Records) -> bool:
+    """Return whether an actuator moves by itself no more, or cannot be asked."""
+    return bool(sample['device_state'] in (DISABLED, FAULT) or sample['is_stale'])
+
+
+def emergency_stops_of(run: RunConfig, surroundings: Surroundings) -> EmergencyStops:
+    """Return the emergency stops of a run, for its ticks."""
+    groups = []
+    for group in run.stop_groups:
+        sheets = {run.index(name): run.actuator(name).sheet for name in group.actuators}
+        groups.append(StopGroup(
+            f'{line_of(group.name)}.{OPEN}', {
+                row: sum(1 << bit for condition, bit in BITS.items()
+                         if reaction_of(sheet.reu.protection, condition) in group.reactions)
+                for row, sheet in sheets.items()},
+            [] if group.dumps == NEVER else [
+                supply.name for supply in run.supplies
+                if not isinstance(supply.sheet.dump, NoneDump)
+                and set(supply.feeds) & set(group.actuators)],
+            group.dumps == AT_REST))
+    return EmergencyStops(groups, [own.name for own in run.actuators], surroundings)

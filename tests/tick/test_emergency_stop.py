@@ -1,0 +1,338 @@
+"""An emergency stop: one trips or somebody asks, all of its group stop, and what leads back."""
+
+from dataclasses import replace
+from pathlib import Path
+
+import isa_ros
+from isa_ros.bag.reader import Bag
+from isa_ros.config.runs.run_config import RunConfig
+from isa_ros.config.text.yaml_text import Tree
+from isa_ros.core.device import DISABLED, ENABLED, FAULT, QUICK_STOP
+from isa_ros.errors import ConfigError
+from isa_ros.replay.replay import recorded_inputs
+from isa_ros.scripting.run import Run
+from isa_ros.simulation import Simulation
+import pytest
+from tests.replay.test_replay_faults import content, replayed
+
+SHIFTED = {'plant.spool.null_bias.current_ma': 2.0}
+SUPPLY = {
+    'kind': 'accumulator', 'pressure_mpa': 20.7, 'return_pressure_mpa': 0.0, 'gas_volume_l': 0.32,
+    'precharge_mpa': 12.0, 'polytropic_exponent': 1.3, 'line_volume_l': 0.5,
+    'bulk_modulus': 1e9, 'pump_flow_lpm': 12.0, 'pump_lag_s': 0.03, 'pump_band_mpa': 0.5,
+    'relief_mpa': 22.5, 'relief_lpm_per_mpa': 10.0, 'dump': {'kind': 'valve'}}
+ENDED_MS = 300  # ramp, 200 ms at rest, and closing poppets
+
+
+def tree(group: Tree | None = None, **more: object) -> Tree:
+    """Return a run file of three actuators with block valves; ``left`` and ``right`` stop both."""
+    protection = {'spool_deviation': {'delay_ms': 10.0, 'reaction': 'block'}}
+    actuator: Tree = {
+        'model': 'isa_v5', 'load': {'kind': 'mass'}, 'initial_position_mm': 50.0,
+        'parameters': {'plant': {'block_valve': {'kind': 'poppet'}},
+                       'reu': {'protection': protection}}}
+    return {
+        'name': 'three', 'supply': SUPPLY,
+        'actuators': {name: actuator for name in ('left', 'right', 'other')},
+        'emergency_stops': {'pair': {'actuators': ['left', 'right']} | (group or {})}} | more
+
+
+def run(group: Tree | None = None, **more: object) -> Run:
+    return isa_ros.load(tree(group, **more))
+
+
+def advance(simulation: Simulation, n_ticks: int) -> None:
+    for _ in range(n_ticks):
+        simulation.step()
+
+
+def states(simulation: Simulation) -> list[int]:
+    return [int(simulation.samples[name].device_state) for name in simulation.names]
+
+
+def lifts(simulation: Simulation) -> list[float]:
+    return [float(own._body.plant.block.lift) for own in simulation.group.actuators]
+
+
+def dumped(simulation: Simulation) -> float:
+    return float(simulation.supply_samples['supply'].dump_opening)
+
+
+def moving(group: Tree | None = None, **more: object) -> Simulation:
+    """Return a run in which all three move."""
+    simulation = run(group, **more).simulation()
+    for name in simulation.names:
+        simulation.command(name, position=0.07)
+    advance(simulation, 40)
+    return simulation
+
+
+def test_one_trips_and_its_group_stops_by_category_blocks_and_is_dumped():
+    """The other actuator of the same supply is not in the group: it misses the pressure."""
+    simulation = moving()
+    simulation.tune('left', SHIFTED)
+    advance(simulation, 13)
+    assert states(simulation) == [FAULT, QUICK_STOP, ENABLED]
+    advance(simulation, 100)
+    assert lifts(simulation) == [0.0, 1.0, 1.0] and dumped(simulation) == 0.0
+    advance(simulation, ENDED_MS)
+    assert states(simulation) == [FAULT, DISABLED, FAULT]
+    assert [isa_ros.conditions(simulation.samples[name].trips) for name in simulation.names] == [
+        ['spool_deviation'], [], ['supply_low']]
+    assert lifts(simulation) == [0.0] * 3 and dumped(simulation) > 0.9
+    assert simulation.supply_samples['supply'].pressure < 1e6
+    at = [float(simulation.samples[name].position) for name in ('left', 'right')]
+    advance(simulation, 100)
+    for name, before in zip(('left', 'right'), at):     # neither drives on, nor sinks
+        assert abs(float(simulation.samples[name].position) - before) < 1e-4
+
+
+@pytest.mark.parametrize(('dumps', 'after', 'later'), [
+    ('at_once', True, True), ('at_rest', False, True), ('never', False, False)])
+def test_the_dump_waits_for_the_end_of_the_movements_if_it_is_to(dumps, after, later):
+    simulation = moving({'dumps': dumps})
+    simulation.emergency_stop()
+    advance(simulation, 60)
+    assert (dumped(simulation) > 0.5) == after
+    advance(simulation, ENDED_MS)
+    assert (dumped(simulation) > 0.5) == later
+
+
+def test_only_trips_with_the_chosen_reactions_stop_the_group():
+    simulation = moving({'reactions': ['quick_stop']})
+    simulation.tune('left', SHIFTED)
+    advance(simulation, 50)
+    assert states(simulation) == [FAULT, ENABLED, ENABLED]
+    simulation = moving({'reactions': ['quick_stop', 'block']})
+    simulation.tune('right', SHIFTED)
+    advance(simulation, 50)
+    assert states(simulation) == [QUICK_STOP, FAULT, ENABLED]
+
+
+def test_the_way_back_is_clear_release_enable_in_this_order():
+    """What its own stop took does not count as a low supply, else there were no way back."""
+    simulation = moving({'actuators': ['left', 'right', 'other']})
+    simulation.tune('left', SHIFTED)
+    advance(simulation, ENDED_MS + 60)
+    simulation.command('right', is_enabled=True)    # refused while the line is open
+    advance(simulation, 5)
+    assert states(simulation) == [FAULT, DISABLED, DISABLED]
+    with pytest.raises(ConfigError, match='emergency_stop.pair.opened stays open: left '
+                                          'spool_deviation; clear the fault first'):
+        simulation.emergency_stop(False)
+    simulation.tune('left', {'plant.spool.null_bias.current_ma': 0.0})
+    advance(simulation, 5)
+    simulation.command('left', clear_fault=True)
+    advance(simulation, 2)
+    assert states(simulation) == [DISABLED] * 3 and dumped(simulation) > 0.9
+    simulation.emergency_stop(False, 'pair')
+    advance(simulation, 400)
+    assert states(simulation) == [DISABLED] * 3     # nothing starts by itself
+    assert dumped(simulation) < 1e-6
+    assert simulation.supply_samples['supply'].pressure > 15e6
+    for name in simulation.names:
+        simulation.command(name, is_enabled=True)
+    advance(simulation, 60)
+    assert states(simulation) == [ENABLED] * 3 and lifts(simulation) == [1.0] * 3
+    simulation.command('right', position=0.055)
+    advance(simulation, 200)
+    assert abs(float(simulation.samples['right'].position) - 0.055) < 2e-3
+    simulation.tune('right', SHIFTED)       # and it stops a second time
+    advance(simulation, 13)
+    assert states(simulation)[:2] == [QUICK_STOP, FAULT]
+
+
+def test_without_the_key_all_stop_by_request_and_no_trip_does_it():
+    everything = tree()
+    del everything['emergency_stops']
+    simulation = isa_ros.load(everything).simulation()
+    simulation.tune('left', SHIFTED)
+    advance(simulation, 60)
+    assert states(simulation) == [FAULT, ENABLED, ENABLED]
+    simulation.emergency_stop()
+    advance(simulation, 60)
+    assert states(simulation) == [FAULT, QUICK_STOP, QUICK_STOP]
+    simulation.emergency_stop(False)    # a trip that does not stop the group does not hold it
+    advance(simulation, ENDED_MS)
+    assert states(simulation) == [FAULT, DISABLED, DISABLED]
+
+
+def test_an_actuator_in_two_groups_is_released_when_both_are():
+    both = tree(emergency_stops={
+        'pair': {'actuators': ['left', 'right'], 'dumps': 'never'}, 'cell': {'dumps': 'never'}})
+    simulation = isa_ros.load(both).simulation()
+    simulation.emergency_stop(group='pair')
+    advance(simulation, 1)
+    simulation.emergency_stop(group='cell')
+    advance(simulation, ENDED_MS)
+    assert states(simulation) == [DISABLED] * 3
+    simulation.emergency_stop(False, 'pair')
+    advance(simulation, 1)
+    for name in simulation.names:
+        simulation.command(name, is_enabled=True)
+    advance(simulation, 60)
+    assert states(simulation) == [DISABLED] * 3
+    simulation.emergency_stop(False, 'cell')
+    advance(simulation, 1)
+    for name in simulation.names:
+        simulation.command(name, is_enabled=True)
+    advance(simulation, 60)
+    assert states(simulation) == [ENABLED] * 3
+
+
+def test_it_reaches_an_actuator_whose_link_is_lost():
+    """The line is a wire of its own: the frames of the bus do not carry it."""
+    linked = {'kind': 'ethercat', 'cycle_ms': 1.0, 'delay_cycles': 1.0, 'jitter_us': 0.0,
+              'loss': 0.0, 'watchdog_ms': 8.0}
+    simulation = moving(link=linked)
+    simulation.tune('right', {'link.loss': 1.0})
+    advance(simulation, 30)
+    simulation.emergency_stop()
+    advance(simulation, ENDED_MS + 60)
+    exact = [int(own.sample.device_state) for own in simulation.group.actuators]
+    assert exact[:2] == [DISABLED, DISABLED] and lifts(simulation)[:2] == [0.0, 0.0]
+    assert dumped(simulation) > 0.9     # a sample that is stale is not waited for
+
+
+def test_a_frozen_program_is_blocked_too():
+    simulation = moving()
+    simulation.tune('right', {'reu.frozen': 1.0})
+    simulation.emergency_stop()
+    advance(simulation, 60)
+    assert lifts(simulation)[1] == 0.0
+
+
+SCENARIO: Tree = {
+    'name': 'stopped', 'duration_s': 0.6,
+    'tracks': {'right': [{'t_s': 0.0, 'position': 0.07},
+                         {'t_s': 0.5, 'enabled': True, 'position': 'hold'}]},
+    'faults': [{'t_s': 0.04, 'emergency_stop': 'pair', 'until_s': 0.45},
+               {'t_s': 0.2, 'actuator': 'left', 'set': SHIFTED}]}
+
+
+def test_a_scenario_stops_and_releases_and_its_bag_replays_byte_for_byte(tmp_path: Path):
+    """With a trip in the middle, which keeps the line open beyond the scenario's release."""
+    scenario = isa_ros.load(tree(), SCENARIO)
+    result = scenario.simulate()
+    assert result['right.device_state'][60] == QUICK_STOP
+    assert result['right.device_state'][-1] == DISABLED     # the trip of the other one holds it
+    assert result['supply.dump_opening'][-1] > 0.9
+    bag = result.save(tmp_path / 'bag')
+    assert replayed(bag, tmp_path / 'again') == content(bag)
+    found = recorded_inputs(Bag(bag), scenario.configuration)
+    opened = {tick: values for tick, values in found.tuned_supplies.items()
+              if 'emergency_stop.pair.opened' in values}
+    assert opened == {40: {'emergency_stop.pair.opened': 1.0}}
+    assert found.tuned['left'][40] == found.tuned['right'][40] == {
+        'reu.device.emergency_stop': 1.0}
+    assert 40 not in found.tuned.get('other', {})
+
+
+def test_without_that_trip_the_scenario_comes_back():
+    alone = SCENARIO | {'faults': SCENARIO['faults'][:1]}   # type: ignore[index]
+    result = isa_ros.load(tree(), alone).simulate()
+    assert result['right.device_state'][-1] == ENABLED
+    assert result['supply.dump_opening'][-1] < 0.01
+    text = isa_ros.load(tree(), alone).scenario.to_yaml()
+    assert 'emergency_stop: pair' in text
+    again = isa_ros.load(tree(), alone).scenario.with_faults([])
+    assert again.faults == isa_ros.load(tree(), alone).scenario.faults
+
+
+@pytest.mark.parametrize('at', [20, 200, 380])
+def test_a_run_that_is_saved_and_restored_goes_on_byte_for_byte(at: int):
+    """While they brake, while all is off, and while the line waits for its release."""
+    simulation, twin = moving(), moving()
+    for own in (simulation, twin):
+        own.tune('left', SHIFTED)
+        advance(own, at)
+    restored = run().simulation()
+    restored.restore(simulation.snapshot())
+    for own in (restored, twin):
+        own.tune('left', {'plant.spool.null_bias.current_ma': 0.0})
+        advance(own, 2)
+        own.command('left', clear_fault=True)
+        advance(own, 2)
+        own.emergency_stop(False)
+        advance(own, 2)
+        own.command('right', is_enabled=True)
+        advance(own, 60)
+    assert restored.snapshot() == twin.snapshot()
+    assert states(twin)[0] == DISABLED
+
+
+def test_a_released_line_is_told_before_the_first_tick_of_a_restored_run():
+    simulation = moving()
+    simulation.emergency_stop()
+    advance(simulation, ENDED_MS)
+    restored = run().simulation()
+    restored.restore(simulation.snapshot())
+    restored.emergency_stop(False)
+    advance(restored, 200)
+    restored.command('right', is_enabled=True)
+    advance(restored, 60)
+    assert states(restored)[1] == ENABLED and dumped(restored) < 1e-3
+
+
+def test_what_is_enabled_before_the_pressure_is_back_trips():
+    simulation = moving()
+    simulation.emergency_stop()
+    advance(simulation, ENDED_MS)
+    simulation.emergency_stop(False)
+    advance(simulation, 2)
+    simulation.command('right', is_enabled=True)
+    advance(simulation, 60)
+    assert isa_ros.conditions(simulation.samples['right'].trips) == ['supply_low']
+
+
+def test_a_reset_keeps_the_line_as_it_keeps_all_tuned_values():
+    simulation = moving()
+    simulation.emergency_stop()
+    advance(simulation, 10)
+    simulation.reset()
+    advance(simulation, 5)
+    assert states(simulation) == [DISABLED, DISABLED, ENABLED]
+    simulation.emergency_stop(False)
+    simulation.reset()
+    advance(simulation, 5)
+    assert states(simulation) == [ENABLED] * 3
+
+
+def test_the_configuration_comes_back_from_its_text():
+    own = run().configuration
+    assert RunConfig.from_yaml(own.to_yaml()) == own
+    plain = replace(own, emergency_stops=())
+    assert 'emergency_stops' not in plain.to_yaml()
+    assert [group.actuators for group in plain.stop_groups] == [('left', 'right', 'other')]
+
+
+@pytest.mark.parametrize(('group', 'words'), [
+    ({'actuators': []}, 'emergency_stops.pair.actuators is empty'),
+    ({'actuators': ['left', 'rigth']}, "'rigth' is not an actuator; did you mean right"),
+    ({'reactions': ['hold']}, "reactions: 'hold', must be of quick_stop, disable, block"),
+    ({'dumps': 'later'}, 'must be one of at_rest, at_once, never')])
+def test_a_group_that_cannot_be_is_refused(group, words):
+    with pytest.raises(ConfigError, match=words):
+        run(group)
+
+
+@pytest.mark.parametrize(('fault', 'words'), [
+    ({'emergency_stop': 'par'}, "'par' is not a group; did you mean pair"),
+    ({'emergency_stop': 'pair', 'set': {'opened': 1}}, 'set is not used'),
+    ({'emergency_stop': 'pair', 'supply': 'supply'}, 'must have one of')])
+def test_a_row_of_a_scenario_that_stops_no_group_is_refused(fault, words):
+    with pytest.raises(ConfigError, match=words):
+        isa_ros.load(tree(), {'name': 'bad', 'duration_s': 0.1, 'faults': [{'t_s': 0.0} | fault]})
+
+
+def test_a_request_for_a_group_that_is_not_there_is_refused():
+    with pytest.raises(ConfigError, match="'legs' is not a group; valid: pair"):
+        run().simulation().emergency_stop(group='legs')
+
+
+def test_no_supply_has_the_name_of_the_lines():
+    named = tree()
+    named['supplies'] = {'emergency_stop': named.pop('supply') | {  # type: ignore[operator]
+        'feeds': ['left', 'right', 'other']}}
+    with pytest.raises(ConfigError, match='the name is taken by the lines of emergency stops'):
+        isa_ros.load(named)
