@@ -2,8 +2,11 @@
 
 from isa_ros.config.paths import CONFIG, find
 from isa_ros.config.runs.run_file import load_run
+from isa_ros.core.changeable import Changeable
+from isa_ros.core.conditions import BITS
 from isa_ros.core.signals import SAMPLE
-from isa_ros.run.events import events_in, History, SMALL
+from isa_ros.run.events import _runs, events_in, History, SMALL
+from isa_ros.run.recorded import _last_trip
 from msg_adapters import device
 import numpy as np
 import pytest
@@ -52,6 +55,30 @@ def test_a_value_that_changes_at_every_tick_is_one_event_and_has_the_units_of_it
     gain = History([], samples(0), {1: {0: {'link.delay_cycles': 2.0, 'force.kp': 3e-7}}})
     assert happened(gain) == [(0.0, 'ram', 'change', 'link.delay_cycles = 2 cycles'),
                               (0.0, 'ram', 'change', 'reu.force.kp = 3e-07 m/N')]
+
+
+def test_a_value_is_in_the_unit_of_its_key():
+    own = Changeable('current.kp', 1e3, {'unit': 'V/A', 'bounds': {}, 'doc': ''},
+                     'reu.current.kp_v_per_ma', 1e3, 'V/mA')
+    found, = _runs('ram', 'current.kp', {1: 3000.0}, own, 1_000_000)
+    assert found.what == 'reu.current.kp_v_per_ma = 3 V/mA'
+
+
+def test_a_warning_that_is_there_already_is_not_new():
+    """The second sample has one more, the third the same without the first."""
+    overload, overspeed = (1 << BITS[name] for name in ('overload', 'overspeed'))
+    history = History(range(4), samples(
+        4, warnings=[0, overload, overload | overspeed, overspeed], state_since=[0, 1, 2, 3]))
+    assert happened(history) == [(1.0, 'ram', 'warning', 'overload'),
+                                 (2.0, 'ram', 'warning', 'overspeed')]
+
+
+def test_a_trip_without_a_time_is_that_of_the_message_that_is_the_first_to_name_it():
+    before = samples(1, trips=4, last_trip=4, trip_time=0.5)[0, 0]
+    kept = _last_trip(before, {'trips': 4.0, 'state_since': 0.75})
+    assert (kept['last_trip'], kept['trip_time']) == (4.0, 0.5)
+    new = _last_trip(before, {'trips': 6.0, 'state_since': 0.75})
+    assert (new['last_trip'], new['trip_time']) == (2.0, 0.75) and np.isnan(new['trip_value'])
 
 
 def test_the_fields_of_a_status_are_those_it_was_made_of():

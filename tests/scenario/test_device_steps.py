@@ -83,6 +83,9 @@ def test_gains_alone_keep_the_setpoint():
     plan.tracks[0].events[0].write(10, RUN.step_ns, row)
     assert (row['kinds'], row['damping']) == (HAS_GAINS, 3000.0)
     assert np.isnan(row['stiffness'])
+    later = np.zeros(1, COMMAND)[0]
+    plan.tracks[0].events[0].write(11, RUN.step_ns, later)
+    assert later['kinds'] == 0
     simulation = Simulation(plan)
     while simulation.ticks < 20:
         simulation.step()

@@ -5,11 +5,15 @@ import re
 
 import isa_ros
 from isa_ros.analysis.report.report import write_report
+from isa_ros.analysis.signals import recorded_result
 from isa_ros.bag.reader import Bag
 from isa_ros.config.recorded_run import recorded_run
 from isa_ros.config.runs.run_config import RunConfig
 from isa_ros.errors import BagError, ConfigError
+from isa_ros.run.diagnostics import ENERGY
+from isa_ros.run.recorded import history_of
 from isa_ros.testing import assert_no_trips
+from msg_adapters import diagnostics
 import numpy as np
 import pytest
 from tests.bag.golden import GOLDEN, rewrite
@@ -81,8 +85,9 @@ def older(text: str) -> str:
     """Return a configuration as another version might have written it."""
     text, count = re.subn(r'^( +)kf: (.*)$', r'\1kf: \2\n\1magic: 1.0', text, flags=re.MULTILINE)
     text, models = re.subn('model: isa_v5', 'model: isa_v9', text)
+    text, rotary = re.subn('model: smart_manifold', 'model: manifold_9', text)
     text, legs = re.subn('model: hyq_real', 'model: hyq_next', text)
-    assert count and models == 2 and legs == 1
+    assert count and models == 2 and legs == rotary == 1
     return text
 
 
@@ -105,6 +110,31 @@ def test_a_configuration_without_actuators_is_refused_with_its_own_reason():
     text = Bag(GOLDEN / 'rotor_step').provenance.configuration
     own = recorded_run(text, 'own')
     assert own.problem == '' and own.run == RunConfig.from_yaml(text)
+
+
+def test_a_cavity_in_the_diagnostics_of_a_bag_is_an_event(tmp_path):
+    """One row for each tick, though devices and diagnostics have messages at the same."""
+    run = isa_ros.load('rig_linear', duration=0.02)
+    plain = Bag(run.simulate().save(tmp_path / 'plain'))
+    ticks = history_of(plain, run.configuration).ticks
+    assert list(ticks) == sorted(set(ticks)) and len(ticks) > 1
+
+    def with_cavity(topic: str, sequence: int, data: bytes) -> bytes:
+        if topic != diagnostics.TOPIC[0]:
+            return data
+        return diagnostics.pack(sequence * 1_000_000, [
+            diagnostics.Status('ram', ENERGY, '', {'largest cavity (ml)': 0.5})])
+    found = isa_ros.read(rewrite(plain, tmp_path / 'cavity', with_cavity)).events
+    assert ('ram', 'cavity', 'vapour in a chamber, at most 0.5 ml') in [own[1:] for own in found]
+
+
+def test_a_scenario_that_cannot_be_read_leaves_the_signals(bag, drop, monkeypatch):
+    def refuse(*given: object) -> None:
+        raise ConfigError('of another version')
+    monkeypatch.setattr(recorded_result, 'scenario_of', refuse)
+    read = isa_ros.read(bag)
+    assert read.scenario.tracks == () and read.scenario.n_ticks == 50
+    assert (read['kfe.force'] == drop['kfe.force']).all()
 
 
 def test_a_trip_of_a_bag_without_values_of_trips_is_found(tmp_path):
