@@ -22,7 +22,7 @@ from isa_ros.surroundings.bodies.leg.dynamics import leg_terms
 from isa_ros.surroundings.bodies.leg.sheet import body_record, linkage_record
 from isa_ros.surroundings.linkage import actuator_coordinate
 from isa_ros.validation.actuators import Actuators, SHIPPED
-from isa_ros.validation.entry import around, Drawing, Entry, Findings, OWN, PAPER, regression
+from isa_ros.validation.entry import around, Drawing, Entry, Findings, OWN, PAPER
 from isa_ros.validation.plots import stacked
 from isa_ros.validation.sheets import model_sheet, plant_of
 from isa_ros.validation.torque_step import bandwidths
@@ -35,7 +35,6 @@ ENDS = (0.02, 0.98)       # of the stroke
 STIFFEST = 1e9            # N/m, the end of the load's range: 20 times the load cell
 FOOT_STIFFNESS = 1e6      # N/m
 AS_READ = 17.0            # ms, by an independent model
-BLOCKED_HZ = 66.6, 57.3   # -3 dB and -90 deg of the shipped parameters, retuned
 CODE = 'a code of the load cell, its 20 kN over 4096'
 OPENING = statement('relief_pressure').number * MPA
 FULL_RELIEF = 22.5 * MPA  # at 10 l/min
@@ -124,9 +123,6 @@ def _bandwidths(actuators: Actuators, gains: str) -> list[Entry]:
                 tolerance=(low.number, high.number), tolerance_source='the printed range',
                 reading=UNITS if gains == PRINTED else '',
                 reason=SLOW if gains == PRINTED else ''))
-    if gains == RETUNED:
-        entries += [regression(each.name, low.where, each.ours, expected, 'Hz', gains)
-                    for each, expected in zip(entries[:2], BLOCKED_HZ, strict=True)]
     return entries
 
 

@@ -95,7 +95,7 @@ def test_both_sets_of_gains_have_their_column(title):
 
 
 @pytest.mark.parametrize('name', [
-    'rotary_rig.trot_position_error', 'valve_dynamics.smart_manifold_current_pole',
+    'rotary_rig.trot_robot_mass', 'valve_dynamics.smart_manifold_current_pole',
     'valve_dynamics.isa_v5_spool_damping', 'reu_statics.isa_v5_w_lag',
     'rotary_disturbances.torque_control_oscillation', 'rotary_rig.sensor_inertia',
     'behaviour.smart_manifold_presliding', 'rotary_rig.torque_bandwidth_90_deg'])
@@ -104,7 +104,7 @@ def test_what_the_paper_says_has_an_entry(name):
 
 
 def test_what_has_no_bar_is_observed():
-    assert 'rotary_rig.hunting_gains_2_5' in OBSERVED
+    assert {'rotary_rig.hunting_gains_2_5', 'rotary_rig.trot_position_error'} <= set(OBSERVED)
     assert not set(OBSERVED) & {row[0] for row in ROWS}
 
 
