@@ -7,12 +7,16 @@ import isa_ros
 from isa_ros.analysis.report.energy import recorded_accounts
 from isa_ros.analysis.signals.signals import read_signals
 from isa_ros.bag.reader import Bag
+from isa_ros.config.assembly import surroundings_of, timing_of
 from isa_ros.config.runs.tick_grid import LATEST_START_S
 from isa_ros.errors import ConfigError
 from isa_ros.replay.replay import replay
 from isa_ros.run.options import Request
+from isa_ros.run.output import Outlets, packer_of, RunOutput
 from isa_ros.run.session import prepare
 from isa_ros.testing import assert_reproduces
+from isa_ros.tick.exchange import Rows
+from msg_adapters import clock, event
 from msg_adapters.cdr import encode
 from msg_adapters.cdr_reader import decode, message_class
 import pytest
@@ -114,3 +118,27 @@ def test_a_start_that_no_stamp_has_is_refused(value):
     bound = f'a whole number of seconds >= 0 and <= {LATEST_START_S}'
     with pytest.raises(ConfigError, match=f'start_time_s = {value!r}, must be {bound}'):
         isa_ros.load({**RUN, 'start_time_s': value})
+
+
+def test_the_clock_events_and_an_actuator_s_own_node_begin_there_too():
+    """What a run publishes beside its bag, and the time that each node gets."""
+    class Kept:
+        def __init__(self):
+            self.messages = []
+
+        def has_subscribers(self):
+            return True
+
+        def publish(self, messages):
+            self.messages += messages
+
+    run = isa_ros.load(RUN | {'start_time_s': START_S}).configuration
+    assert timing_of(run).start_ns == START_S * 10**9
+    rows = Rows(len(run.actuators), surroundings_of(run))
+    kept = Kept(), Kept()
+    output = RunOutput(packer_of(run, rows.published), run.step_ns, outlets=Outlets(*kept))
+    output.take_time(3)
+    output.add_event(2, 'pause')
+    for own, topic, seconds in zip(kept, (clock.TOPIC, event.TOPIC), (0.003, 0.002)):
+        time, = stamps(decode(own.messages[0], message_class(topic[1])))
+        assert (time.sec, time.nanosec) == (START_S, round(seconds * 1e9))

@@ -122,4 +122,7 @@ def test_two_legs_have_links_of_their_own():
         joints.append({joint.get('name') for joint in robot.iter('joint')
                        if joint.get('type') != 'fixed'})
         assert f'{leg.name}/calf' in links[-1]
+        children = [joint.find('child').get('link') for joint in robot.iter('joint')]
+        assert {'world', *children} == links[-1] and len(set(children)) == len(children)
+        assert {joint.find('parent').get('link') for joint in robot.iter('joint')} <= links[-1]
     assert links[0] & links[1] == {'world'} and joints[0] == joints[1]
