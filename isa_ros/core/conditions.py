@@ -196,7 +196,8 @@ CONDITIONS = (
         'time without the program', 's', '',
         ErrorCode(0xFF0D, MANUFACTURER, 'manufacturer: watchdog of the REU')),
     Condition(
-        'sensor_range', 'A reading is outside of the range of its sensor: a broken wire.',
+        'sensor_range',
+        'A reading is outside of its range (a broken wire), or both pressures are zero.',
         'distance of a reading from the range of its sensor, part of it', '1', '',
         ErrorCode(0x7310, PROFILE, 'sensor: reading out of its range'),
         LevelDefaults(

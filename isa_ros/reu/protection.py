@@ -170,7 +170,8 @@ def measure(supply_pressure, temperature, protection, state):
     values[BIT.watchdog] = state.frozen_for
     state.frozen_for = 0.0
     own_supervision = protection.supervision
-    values[BIT.sensor_range] = beyond_range(measured, own_supervision)
+    values[BIT.sensor_range] = beyond_range(
+        measured, supply_pressure, own_supervision)
     (values[BIT.position_error], values[BIT.force_error], values[BIT.oscillation],
      values[BIT.runaway]) = supervise(
         supply_pressure, own_supervision, state, own.supervision)

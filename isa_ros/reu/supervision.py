@@ -4,6 +4,7 @@ What a drive supervises of itself beside its ratings: whether it follows, and mo
 All from what the sensors read, the references of its blocks, and the supply pressure:
 
 - whether each reading is within the range of its sensor (a live zero: a broken wire reads below),
+  and not both pressures are at zero,
 - how far position and force are from their references, where the valve could bring them there,
 - whether the force oscillates by itself,
 - whether the piston or rotor moves against the flow that its valve lets through.
@@ -17,6 +18,8 @@ import numpy as np
 
 END = 0.005     # of the stroke: nearer, the stop may take a force
 MARGIN = 0.05   # of the range of the pressure sensors: a drop that drives a flow for certain
+ZERO = 0.01     # of that range: the lands of a fed valve do not leave both chambers as empty
+FED = 0.1       # of that range: a supply that feeds it
 
 SUPERVISION = np.dtype([
     ('area_a', 'f8'), ('area_b', 'f8'),     # m2 | m3/rad
@@ -37,14 +40,21 @@ SUPERVISION_STATE = np.dtype([
 
 
 @kernel
-def beyond_range(measured, own):
-    """Return how far a converter's reading is beyond its range, as a part of the range."""
+def beyond_range(measured, supply_pressure, own):
+    """
+    Return how far a converter's reading is beyond its range, as a part of the range.
+
+    Both pressures at zero under a supply are such a reading, too: 1 at zero, 0 from `ZERO` on.
+    """
     most = max(-measured.pressure_a, measured.pressure_a - own.pressure_range,
                -measured.pressure_b, measured.pressure_b - own.pressure_range)
     part = max(most / own.pressure_range, abs(measured.force) / own.force_range - 1.0,
                abs(measured.current) / own.current_range - 1.0)
     if own.spool_range > 0.0:
         part = max(part, abs(measured.spool) / own.spool_range - 1.0)
+    if supply_pressure > FED * own.pressure_range:
+        higher = max(measured.pressure_a, measured.pressure_b)
+        part = max(part, 1.0 - higher / (ZERO * own.pressure_range))
     return max(0.0, part)
 
 

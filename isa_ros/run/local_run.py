@@ -53,6 +53,8 @@ class LocalRun:
         self._loop.sinks = (RunOutput(
             self._packer, self._run.step_ns,
             self._thinning.recorder(_Stoppable(recorder, should_stop)), has_end=has_end),)
+        if state is not None:
+            self._packer.rare.announce()
         self._loop.run(n_ticks, state)
 
 

@@ -40,6 +40,11 @@ class RareMessages:
         self._is_run = is_run
         self._t_ns = self._start_ns = 0
         self._found: dict[str, bytes] = {}
+        self._announces = False
+
+    def announce(self) -> None:
+        """Let the next tick have a message of every device: it continues a saved state."""
+        self._announces = True
 
     def pack(
             self, t_ns: int, tick_start_ns: int, tuned: Mapping[int, Mapping[str, float]],
@@ -60,6 +65,7 @@ class RareMessages:
                 coordinator_messages.NODE, tuned_supplies, applied_ns)
         changed = [row for row in range(len(self._actuators))
                    if self.has_device(row, t_ns, tick_start_ns)]
+        self._announces = False
         for row in changed:
             name = self._actuators[row]
             self._found[f'/{name}/{DEVICE}'] = device.pack(name, self._device(row))
@@ -71,12 +77,13 @@ class RareMessages:
         Return whether a tick has a message of an actuator's device.
 
         It is one in which the status has changed, as far as it has arrived over a link, or a
-        second of simulated time ended; t = 0.
+        second of simulated time ended; t = 0; `announce`.
         """
         age = 0.0 if self._values[row, _STALE] else self._values[row, _AGE]
         since = (self._values[row, _SINCE] + age) * NS_PER_SECOND
         return bool(since > tick_start_ns - _HALF_STEP_NS
-                    or t_ns // NS_PER_SECOND != tick_start_ns // NS_PER_SECOND or t_ns == 0)
+                    or t_ns // NS_PER_SECOND != tick_start_ns // NS_PER_SECOND or t_ns == 0
+                    or self._announces)
 
     def diagnose(self) -> bytes:
         """Add the diagnostics of all, and return them."""

@@ -177,6 +177,8 @@ def record(
     published = outlets(packer.surroundings)
     thinning = Thinning(run.record, packer.topics)
     n_ticks, state, out = session.scenario.n_ticks, session.state, session.out
+    if state is not None:
+        packer.rare.announce()
     trip_log = TripLog([(own.name, own.sheet.is_rotary) for own in run.actuators])
     with ExitStack() as at_end, session.opened_source() as source:
         at_end.callback(_keep, trip_log, session)

@@ -208,22 +208,22 @@ def test_a_trip_is_the_same_in_plain_python() -> None:
 def test_a_warning_beyond_its_trip_is_refused(name: str, warning: float, trip: float) -> None:
     """With one line that names both, their values and their unit."""
     is_above = CONDITIONS[BITS[name]].is_above
-    unit = 'celsius' if name == 'overtemperature' else '1'
+    unit = ' celsius' if name == 'overtemperature' else ''
     if warning <= trip if is_above else warning >= trip:
         only(name, warning=warning, trip=trip)
         return
     with pytest.raises(ParameterError) as refused:
         only(name, warning=warning, trip=trip)
     assert str(refused.value) == (
-        f'{name}.warning = {warning:g} {unit}, must be {"<=" if is_above else ">="} '
-        f'{name}.trip = {trip:g} {unit}')
+        f'{name}.warning = {warning:g}{unit}, must be {"<=" if is_above else ">="} '
+        f'{name}.trip = {trip:g}{unit}')
 
 
 @pytest.mark.parametrize(('levels', 'message'), [
     ({'delay_ms': -1.0}, 'Overload.delay_ms = -1 ms, must be >= 0 ms'),
     ({'trip': -0.1}, 'Overload.trip = -0.1, must be >= 0 '),
     ({'trip': 1.1}, 'Overload.trip = 1.1, must be <= 1 '),
-    ({'trip': math.nan}, 'Overload.trip = nan 1, must be finite'),
+    ({'trip': math.nan}, 'Overload.trip = nan, must be finite'),
     ({'reaction': 'explode'}, "Overload.reaction = 'explode', must be one of none, warn, limit"),
 ])
 def test_bad_levels_are_refused(levels: dict[str, float], message: str) -> None:

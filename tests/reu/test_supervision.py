@@ -24,14 +24,24 @@ def measured(**values):
     ('spool', 3.6e-4, 0.2)])
 def test_a_reading_beyond_its_range_is_told_as_a_part_of_it(name, reading, part):
     """A live zero: 0 mA of a 4 to 20 mA sensor reads a quarter of the range below zero."""
-    found = own.beyond_range(measured(**{name: reading}), CONSTANTS)
+    found = own.beyond_range(measured(**{'pressure_b': 5e6, name: reading}), SUPPLY, CONSTANTS)
     assert found == pytest.approx(part, abs=1e-12)
 
 
 def test_a_valve_without_a_spool_sensor_has_no_range_of_it():
     constants = CONSTANTS.copy().view(np.recarray)
     constants.spool_range = 0.0
-    assert own.beyond_range(measured(spool=1.0), constants) == 0.0
+    assert own.beyond_range(measured(spool=1.0, pressure_a=5e6), SUPPLY, constants) == 0.0
+
+
+@pytest.mark.parametrize(('p_a', 'p_b', 'supply', 'part'), [
+    (0.0, 0.0, SUPPLY, 1.0), (0.1e6, 0.0, SUPPLY, 0.6), (0.0, 0.2e6, SUPPLY, 0.2),
+    (0.25e6, 0.0, SUPPLY, 0.0), (0.0, 5e6, SUPPLY, 0.0), (0.0, 0.0, 2.5e6, 0.0),
+    (0.0, 0.0, 2.6e6, 1.0), (0.0, 0.0, 0.0, 0.0)])
+def test_both_pressures_at_zero_under_a_supply_are_beyond_a_range(p_a, p_b, supply, part):
+    """Sensors of 25 MPa: within 1 % of it both; a supply of 10 % of it feeds the valve."""
+    found = own.beyond_range(measured(pressure_a=p_a, pressure_b=p_b), supply, CONSTANTS)
+    assert found == pytest.approx(part, abs=1e-12)
 
 
 def test_the_force_is_compared_with_what_the_valve_can_reach():

@@ -100,6 +100,12 @@ def _load_cell(watched: Watched, quantity: float) -> None:
     measured.force = AREA_A * 10e6 - 100.0 - quantity
 
 
+def _sensor_range(watched: Watched, quantity: float) -> None:
+    """Read a pressure below its range; the other chamber has oil."""
+    measured = watched.state.measured
+    measured.pressure_a, measured.pressure_b = -quantity * RATINGS.pressure_range, 5e6
+
+
 def _position_error(watched: Watched, quantity: float) -> None:
     """Stand still in mode position, away from the setpoint."""
     watched.state.status.mode = watched.state.status.acting = POSITION
@@ -141,8 +147,7 @@ READINGS: Mapping[str, Callable[[Watched, float], None]] = {
         watched.state.measured, 'position',
         watched.own.evidence.position + quantity * PERIOD),
     'spool_deviation': _measure('spool'),
-    'sensor_range': lambda watched, quantity: setattr(
-        watched.state.measured, 'pressure_a', -quantity * RATINGS.pressure_range),
+    'sensor_range': _sensor_range,
     'position_error': _position_error,
     'force_error': _force_error,
     'oscillation': _oscillation,

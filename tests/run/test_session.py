@@ -2,14 +2,18 @@
 
 from pathlib import Path
 
+from isa_ros.bag.reader import Bag
+from isa_ros.cli.main import main
 from isa_ros.config.paths import CONFIG, find
 from isa_ros.config.runs.run_file import load_run
 from isa_ros.core.saved_state import RunState
 from isa_ros.errors import BagError, ConfigError
+from isa_ros.replay.replay import replay
 from isa_ros.run.options import Request
 from isa_ros.run.session import prepare
 import pytest
 from tests.bag.recorded import record
+from tests.ros.domains import held_domain
 
 RIG = find('rig_rotary.yaml', CONFIG)
 
@@ -71,3 +75,18 @@ def test_a_stranger_beside_a_bag_is_refused_before_anything_starts(
         prepare(Request(config=RIG, out=tmp_path / 'bag', overwrite=overwrite))
     assert sorted(path.name for path in (tmp_path / 'bag').iterdir()) == [
         'bag_0.mcap', 'metadata.yaml', 'thesis.mcap']
+
+
+def test_a_continued_run_and_its_replay_begin_with_every_device(
+        tmp_path: Path, monkeypatch: pytest.MonkeyPatch):
+    """Nothing changes then, and no second ends: without it `~/device` is not known for long."""
+    whole, rest = tmp_path / 'whole', tmp_path / 'rest'
+    state = tmp_path / 'state.json'
+    in_process = ['bringup', str(RIG), '--in-process', '--duration', '0.03']
+    with held_domain(monkeypatch):
+        assert main([*in_process, '--out', str(whole), '--save', str(state)]) == 0
+        assert main([*in_process[:-1], '0.06', '--out', str(rest), '--restore', str(state)]) == 0
+    ticks = [message.sequence for message in Bag(rest).messages()
+             if message.topic.endswith('/device')]
+    assert ticks == [next(Bag(rest).messages()).sequence]
+    assert replay(Bag(rest)).is_equal

@@ -70,6 +70,7 @@ class ActuatorNode(Node):
         self._acceptance = Acceptance(self, accept)
         self._acceptance.guard_parameters()
         memory, heats_up = self.actuator.memory, is_heated(config.sheet.plant)
+        self._published_ns = 0
         self._packer = Packer(
             Names([(config.name, config.sheet.is_rotary)],
                   heated=[config.name] if heats_up else [],
@@ -107,6 +108,9 @@ class ActuatorNode(Node):
         has_subscribers = self.outlet.has_subscribers()
         t_ns = self.actuator.t_ns
         start_ns = max(0, t_ns - self.setup.timing.step_ns)
+        if start_ns != self._published_ns:     # a state was restored
+            self._packer.rare.announce()
+        self._published_ns = t_ns
         if not (has_subscribers or tuned or self._packer.has_applied(0)
                 or self._packer.rare.has_device(0, t_ns, start_ns)):
             return
