@@ -142,6 +142,8 @@ def test_a_change_of_levels_fades_nothing_in_the_loops():
     """The outputs are those of an actuator that nothing was changed of."""
     changed, untouched = fast(), fast()
     changed.tune({f'{OVERSPEED}trip': 2.0, MASK: 4.0})
+    changed.latch_tuning()
+    assert changed._reu.status.fade.begins == 0
     for actuator in (changed, untouched):
         ticks(actuator, 5)
     assert changed.sample.tobytes() == untouched.sample.tobytes()

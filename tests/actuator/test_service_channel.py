@@ -112,6 +112,16 @@ def test_a_fault_on_a_gain_comes_and_ends_by_the_link():
     assert changes(own, 4) == {2: {KP: kp}}
 
 
+def test_a_fault_on_a_gain_that_a_dead_link_dropped_is_not_sent_again():
+    own = actuator(linked(watchdog_ms=20.0))
+    own.tune({DEAD: 1.0})
+    changes(own, 1)
+    own.tune({f'+{KP}': 1.2e-7})
+    assert changes(own, 30) == {}
+    own.tune({DEAD: 0.0})
+    assert changes(own, 10) == {0: {DEAD: 0.0}}
+
+
 def test_what_a_bag_has_is_in_force_at_once():
     """A replay puts in force what was in force: it has travelled already."""
     own = actuator(linked(delay_cycles=3.0, loss=1.0))
