@@ -22,7 +22,8 @@ CONFIG = Path(__file__).parents[3] / 'config'
 LEG = load_run(CONFIG / 'leg.yaml')
 TWO = replace(hip_and_knee([
     SupplyConfig('main', replace(ACCUMULATOR, return_line=RETURN_LINE), ('knee',)),
-    SupplyConfig('low', ACCUMULATOR, ('hip',))]), start_time_s=2_000_000_000, accept='scenario')
+    SupplyConfig('low', ACCUMULATOR, ('hip',))]), start_time_s=2_000_000_000, accept='scenario',
+    emergency_stops=(EmergencyStopConfig('both', ('hip', 'knee')),))
 FULL = replace(
     LEG, emergency_stops=(EmergencyStopConfig('legs', ('haa', 'kfe'), ('block',)),),
     controllers=('sway', 'gait'), accept='scenario', start_time_s=1, record=RecordConfig(
