@@ -67,6 +67,8 @@ def test_what_is_described_is_what_is_accepted(model, variant):
     sheet = actuator_sheet(model, 'default', *([variant] if variant else []))
     known = changing(sheet)
     for name, own in known.items():
+        if name.endswith('reaction'):
+            continue    # one of some names, of which each condition has its own
         for end, bound in own.bounds.items():
             inwards = -1.0 if end.startswith('l') else 1.0
             step = 1e-6 * max(abs(bound), abs(own.value))
