@@ -115,8 +115,8 @@ def actuator_coordinate(q, linkage):
 def rod_eye(q: float, linkage: np.record) -> tuple[float, float]:
     """Return R of a four-bar, the eye of the rod, in the thigh's frame, m  (L5)."""
     theta = linkage.sense * q + linkage.offset
-    d_x = linkage.bk * math.cos(theta) - linkage.ak_x
-    d_y = linkage.bk * math.sin(theta) - linkage.ak_y
+    d_x = linkage.bk * cos(theta) - linkage.ak_x
+    d_y = linkage.bk * sin(theta) - linkage.ak_y
     square = d_x * d_x + d_y * d_y
     u = 0.5 + 0.5 * (linkage.ar * linkage.ar - linkage.br * linkage.br) / square
     w = math.sqrt(linkage.ar * linkage.ar / square - u * u)

@@ -63,21 +63,28 @@ def test_shipped_gains_are_far_below(model):
 
 @pytest.mark.parametrize(('model', 'variant'), EVERY)
 def test_what_is_described_is_what_is_accepted(model, variant):
-    """Each value that may change, at each end of its range: in force there, refused beyond."""
+    """
+    Each value that may change, at each end of its range: in force there, refused beyond.
+
+    A level of the protection has its range with the other one off: a warning is before its trip.
+    """
     sheet = actuator_sheet(model, 'default', *([variant] if variant else []))
     known = changing(sheet)
     for name, own in known.items():
         if name.endswith('reaction'):
             continue    # one of some names, of which each condition has its own
+        part, _, level = name.rpartition('.')
+        other = {'warning': 'trip', 'trip': 'warning'}.get(level)
+        off = {} if other is None else {f'{part}.{other}': 0.0}
         for end, bound in own.bounds.items():
             inwards = -1.0 if end.startswith('l') else 1.0
             step = 1e-6 * max(abs(bound), abs(own.value))
             if end in ('ge', 'le'):
-                with_changed(sheet, {name: bound}, known)
+                with_changed(sheet, off | {name: bound}, known)
             else:
-                with_changed(sheet, {name: bound + inwards * step}, known)
+                with_changed(sheet, off | {name: bound + inwards * step}, known)
             with pytest.raises(ConfigError, match=name.rpartition('.')[2]):
-                with_changed(sheet, {name: bound - inwards * (step or 1e-6)}, known)
+                with_changed(sheet, off | {name: bound - inwards * (step or 1e-6)}, known)
 
 
 def test_the_output_of_a_block_is_what_the_next_one_inwards_can_have():
@@ -110,7 +117,9 @@ def test_a_gain_on_a_speed_has_the_bound_of_one_count_through_its_filter():
 
 def test_without_a_link_its_values_do_not_change():
     known = changing(actuator_sheet('isa_v5'))
-    assert [own.bounds for name, own in known.items() if name.startswith('link.')] == [
-        {'ge': 0.0, 'le': 0.0}] * 3
+    values = ('delay_cycles', 'jitter_us', 'loss', 'burst_loss', 'burst_frames', 'duplicates',
+              'reordered')
+    assert {name: own.bounds for name, own in known.items() if name.startswith('link.')} == {
+        f'link.{value}': {'ge': 0.0, 'le': 0.0} for value in values}
     linked = replace(actuator_sheet('isa_v5'), link=replace(NO_LINK, kind='ethercat'))
     assert changing(linked)['link.loss'].bounds == {'ge': 0.0, 'le': 1.0}

@@ -108,7 +108,7 @@ def test_every_one_of_many_requests_is_answered(nodes):
 
 def test_a_guard_that_is_missing_is_found(observer, monkeypatch):  # noqa: F811
     """Without it a value of type 99 raises in rclpy."""
-    monkeypatch.setattr(parameter_services, 'checked', lambda type_, callback: callback)
+    monkeypatch.setattr(parameter_services, 'checked', lambda node, type_, callback: callback)
     other = Node('coordinator', context=observer.context, enable_rosout=False,
                  start_parameter_services=False)
     RunServices(other, 1.0, lambda coordinator: '')

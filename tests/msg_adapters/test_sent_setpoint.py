@@ -18,7 +18,8 @@ from sensor_msgs.msg import JointState
 
 NUMBER = st.floats(-1e6, 1e6)
 GAIN = st.just(math.nan) | st.floats(0.0, 1e6)
-T_NS, START_NS = 3_000_000_007, 2_999_000_007
+T_NS, TICK_START_NS = 3_000_000_007, 2_999_000_007
+STAMPS_NS = 1_700_000_000_000_000_000   # of stamps at t = 0
 OTHERS = (math.nan, math.nan, float(HAS_SETPOINT | HAS_ENABLE))
 """Entries mode, reference and changed of a setpoint with enable."""
 
@@ -29,7 +30,7 @@ def words_of(command: np.ndarray, age: float = 0.0, due_step: int = 0, compiled:
     applied['due_step'] = due_step
     words = np.zeros(WORDS, np.uint64)
     pack = pack_links if compiled else pack_links.py_func
-    pack(T_NS, START_NS, 0, np.array([0]), np.array([age]), applied,
+    pack(T_NS, TICK_START_NS, STAMPS_NS, 0, np.array([0]), np.array([age]), applied,
          command.view(np.recarray), words, words.view(np.float64))
     return words
 
@@ -82,8 +83,9 @@ def test_the_times_are_those_of_sampling_and_of_effect():
     none = np.zeros(1, COMMAND)
     for compiled in (True, False):
         words = words_of(none, 0.003, 149_975, compiled)
-        assert words[:2].tolist() == [time_word(T_NS - 3_000_000), time_word(2_999_500_000)]
-        assert words_of(none, compiled=compiled)[1] == time_word(START_NS)
+        assert words[:2].tolist() == [
+            time_word(STAMPS_NS + T_NS - 3_000_000), time_word(STAMPS_NS + 2_999_500_000)]
+        assert words_of(none, compiled=compiled)[1] == time_word(STAMPS_NS + TICK_START_NS)
 
 
 @pytest.mark.parametrize('changes, message', [

@@ -241,7 +241,7 @@ def test_a_fault_of_the_link_is_checked_with_the_link_that_is_given():
     ({'t_s': 0.0, 'set': {'load.force': float('nan')}},
      'faults[0].set.load.force = nan, must be finite'),
     ({'t_s': 0.0, 'set': {'load.force': 1e9}},
-     'faults[0].set: load.force = 1e+09 N, must be <= 1e+06 N')])
+     'faults[0].set: load.force = 1e+09 N, must be <= 2e+07 N')])
 def test_a_refused_fault_has_the_file_of_the_run_and_one_unit(faults, message):
     with pytest.raises(ConfigError) as caught:
         isa_ros.load('rig_linear').simulate(0.01, faults=[{'actuator': 'ram', **faults}])

@@ -19,6 +19,7 @@ from isa_ros.actuator.setpoint_range import setpoint_bounds
 from isa_ros.actuator.sheet import ActuatorSheet
 from isa_ros.config.runs.leg_config import LegConfig
 from isa_ros.config.runs.run_config import RunConfig
+from isa_ros.core.elementary import atan2
 from isa_ros.core.units import MILLI
 from isa_ros.plant.plant import plant_record
 from isa_ros.surroundings.bodies.leg.messages import imu_frame, joint_name, SLIDER
@@ -117,7 +118,7 @@ def _cylinder(sheet: FourBar, knee: Vector) -> tuple[Vector, Vector]:
     eye_x, eye_y = rod_eye(math.radians(0.5 * (sheet.low_deg + sheet.high_deg)), linkage)
     pin_x, pin_y = float(linkage['c_x']), float(linkage['c_y'])
     # The axes of the four-bar: towards the hip, -x of the thigh, and to the side of the flexion.
-    angle = math.atan2(-sheet.sense * (eye_y - pin_y), -(eye_x - pin_x))
+    angle = atan2(-sheet.sense * (eye_y - pin_y), -(eye_x - pin_x))
     return (knee[0] - pin_x, knee[1] - sheet.sense * pin_y, knee[2]), (0.0, 0.0, angle)
 
 
