@@ -57,6 +57,7 @@ def rest_loops(memory: Memory, sheet: Reu, mode: int, is_enabled: bool) -> None:
     rules = own.reu.rules
     device.is_energised = int(rules.opening > 0.0 and (
         is_enabled and rules.initialisation == 0.0 or not rules.closes_when_off))
+    device.is_open = int(rules.opening == 0.0 or device.is_energised == 1)
     device.switched, state.plant.block.lift = LONG_AGO, float(device.is_energised)
     sample = row_record(memory.samples)
     write_sample(state.plant, reu, sample)

@@ -21,7 +21,7 @@ LARGEST: Mapping[str, int] = {
     'status.state': len(STATES) - 1, 'status.event': len(EVENTS) - 1,
     'status.mode': _MODE, 'status.acting': _MODE, 'status.requested_mode': _MODE,
     'status.is_on': _FLAG, 'status.is_stopping': _FLAG, 'status.auto_enable': _FLAG,
-    'status.is_energised': _FLAG,
+    'status.is_energised': _FLAG, 'status.is_open': _FLAG,
     'status.is_damping': _FLAG, 'status.is_returning': _FLAG, 'status.flow.is_held': _FLAG,
     'status.requested_enable': _FLAG, 'status.fade.begins': _FLAG, 'status.fade.is_on': _FLAG,
     'status.requests': EVERY_KIND, 'status.refused': EVERY_KIND,

@@ -74,6 +74,7 @@ DEVICE_STATE = np.dtype([
     ('return_speed', 'f8'),        # with this speed, m/s | rad/s
     ('is_energised', 'i8'),        # 1: the block valves have current, which opens them
     ('switched', 'i8'),            # plant step at which that changed
+    ('is_open', 'i8'),             # 1: they are open, or there are none
     ('fade', FADE)])
 
 
@@ -208,6 +209,7 @@ def let_act(step, entered, reu, state):
                    and not stands(rules.flow, own.flow))
     brakes = stops(own.state) and rules.ramps == 1
     is_open = open_lines(acts or brakes, reaction, step, rules, own)
+    own.is_open = int(is_open)
     own.is_stopping = int(is_open and (
         acts and (reaction == REACTS_BY_HOLD or still_moves) or brakes))
     own.is_damping = int(acts and reaction == REACTS_BY_DAMP)

@@ -24,7 +24,7 @@ from isa_ros.reu.plausibility import (
     EVIDENCE, EVIDENCE_STATE, jump_speed, spool_deviation, unexplained_force)
 from isa_ros.reu.protection_sheet import levels_of, Protection
 from isa_ros.reu.supervision import (
-    beyond_range, supervise, SUPERVISION, SUPERVISION_STATE)
+    beyond_range, supervise, SUPERVISION, SUPERVISION_STATE, watch_feeding)
 import numpy as np
 
 N = len(CONDITIONS)
@@ -170,8 +170,10 @@ def measure(supply_pressure, temperature, protection, state):
     values[BIT.watchdog] = state.frozen_for
     state.frozen_for = 0.0
     own_supervision = protection.supervision
+    watch_feeding(supply_pressure, state.status.is_open, protection.period, own_supervision,
+                  own.supervision)
     values[BIT.sensor_range] = beyond_range(
-        measured, supply_pressure, own_supervision)
+        measured, own.supervision.fed_for, own_supervision)
     (values[BIT.position_error], values[BIT.force_error], values[BIT.oscillation],
      values[BIT.runaway]) = supervise(
         supply_pressure, own_supervision, state, own.supervision)

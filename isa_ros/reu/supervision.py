@@ -20,6 +20,7 @@ END = 0.005     # of the stroke: nearer, the stop may take a force
 MARGIN = 0.05   # of the range of the pressure sensors: a drop that drives a flow for certain
 ZERO = 0.01     # of that range: the lands of a fed valve do not leave both chambers as empty
 FED = 0.1       # of that range: a supply that feeds it
+FILLING = 0.1   # s, until leakage at null has filled at least one of them from there
 
 SUPERVISION = np.dtype([
     ('area_a', 'f8'), ('area_b', 'f8'),     # m2 | m3/rad
@@ -36,15 +37,26 @@ SUPERVISION = np.dtype([
 SUPERVISION_STATE = np.dtype([
     ('force', 'f8'), ('force_activity', 'f8'),      # slow part of it, N | Nm; mean of the rest
     ('target', 'f8'), ('target_activity', 'f8'),    # likewise, of the reference
+    ('fed_for', 'f8'),                              # s that supply and lines have fed the valve
 ])
 
 
 @kernel
-def beyond_range(measured, supply_pressure, own):
+def watch_feeding(supply_pressure, is_open, period, own, supervised):
+    """Count for how long a supply has fed the chambers, through lines that are open."""
+    if is_open == 1 and supply_pressure > FED * own.pressure_range:
+        supervised.fed_for += period
+    else:
+        supervised.fed_for = 0.0
+
+
+@kernel
+def beyond_range(measured, fed_for, own):
     """
     Return how far a converter's reading is beyond its range, as a part of the range.
 
-    Both pressures at zero under a supply are such a reading, too: 1 at zero, 0 from `ZERO` on.
+    Both pressures at zero are such a reading, too, once they have been fed for `FILLING`: 1 at
+    zero, 0 from `ZERO` on.
     """
     most = max(-measured.pressure_a, measured.pressure_a - own.pressure_range,
                -measured.pressure_b, measured.pressure_b - own.pressure_range)
@@ -52,7 +64,7 @@ def beyond_range(measured, supply_pressure, own):
                abs(measured.current) / own.current_range - 1.0)
     if own.spool_range > 0.0:
         part = max(part, abs(measured.spool) / own.spool_range - 1.0)
-    if supply_pressure > FED * own.pressure_range:
+    if fed_for > FILLING:
         higher = max(measured.pressure_a, measured.pressure_b)
         part = max(part, 1.0 - higher / (ZERO * own.pressure_range))
     return max(0.0, part)

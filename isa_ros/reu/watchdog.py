@@ -42,5 +42,5 @@ def cut_off(step, reu, state):
     """Switch the amplifier's output and the block valves off; the program does not know it."""
     state.drive = 0.0
     if reu.rules.opening > 0.0:
-        state.status.is_on = 0
+        state.status.is_on = state.status.is_open = 0
         switch_block(0, step, state.status)

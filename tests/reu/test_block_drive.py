@@ -56,10 +56,12 @@ def test_the_outputs_wait_for_the_valves_to_open_and_both_go_off_together():
     driven = Driven(auto_enable=0)
     driven.ask(HAS_ENABLE, 1)
     assert driven.seen == (ENABLED, False, True)
+    assert driven.own.is_open == 0
     assert driven.until(lambda: driven.own.is_on) == pytest.approx(OPENING, abs=1.1e-4)
     assert driven.own.fade.begins == 1      # the blocks take over without a jump
+    assert driven.own.is_open == 1
     driven.ask(HAS_ENABLE, 0)
-    assert driven.seen == (DISABLED, False, False)
+    assert driven.seen == (DISABLED, False, False) and driven.own.is_open == 0
 
 
 def test_what_is_disabled_while_its_valves_open_begins_anew():

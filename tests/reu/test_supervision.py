@@ -5,7 +5,7 @@ from isa_ros.core.signals import MEASURED
 from isa_ros.reu import supervision as own
 import numpy as np
 import pytest
-from tests.reu.watched import AREA_A, AREA_B, FLOW_GAIN, off, STROKE, SUPPLY, Watched
+from tests.reu.watched import AREA_A, AREA_B, FLOW_GAIN, off, only, STROKE, SUPPLY, Watched
 
 CONSTANTS = Watched(off()).constants.supervision
 
@@ -24,24 +24,37 @@ def measured(**values):
     ('spool', 3.6e-4, 0.2)])
 def test_a_reading_beyond_its_range_is_told_as_a_part_of_it(name, reading, part):
     """A live zero: 0 mA of a 4 to 20 mA sensor reads a quarter of the range below zero."""
-    found = own.beyond_range(measured(**{'pressure_b': 5e6, name: reading}), SUPPLY, CONSTANTS)
+    found = own.beyond_range(measured(**{'pressure_b': 5e6, name: reading}), 0.0, CONSTANTS)
     assert found == pytest.approx(part, abs=1e-12)
 
 
 def test_a_valve_without_a_spool_sensor_has_no_range_of_it():
     constants = CONSTANTS.copy().view(np.recarray)
     constants.spool_range = 0.0
-    assert own.beyond_range(measured(spool=1.0, pressure_a=5e6), SUPPLY, constants) == 0.0
+    assert own.beyond_range(measured(spool=1.0, pressure_a=5e6), 1.0, constants) == 0.0
 
 
-@pytest.mark.parametrize(('p_a', 'p_b', 'supply', 'part'), [
-    (0.0, 0.0, SUPPLY, 1.0), (0.1e6, 0.0, SUPPLY, 0.6), (0.0, 0.2e6, SUPPLY, 0.2),
-    (0.25e6, 0.0, SUPPLY, 0.0), (0.0, 5e6, SUPPLY, 0.0), (0.0, 0.0, 2.5e6, 0.0),
-    (0.0, 0.0, 2.6e6, 1.0), (0.0, 0.0, 0.0, 0.0)])
-def test_both_pressures_at_zero_under_a_supply_are_beyond_a_range(p_a, p_b, supply, part):
-    """Sensors of 25 MPa: within 1 % of it both; a supply of 10 % of it feeds the valve."""
-    found = own.beyond_range(measured(pressure_a=p_a, pressure_b=p_b), supply, CONSTANTS)
+@pytest.mark.parametrize(('p_a', 'p_b', 'fed_for', 'part'), [
+    (0.0, 0.0, 0.11, 1.0), (0.1e6, 0.0, 0.11, 0.6), (0.0, 0.2e6, 9.0, 0.2),
+    (0.25e6, 0.0, 0.11, 0.0), (0.0, 5e6, 0.11, 0.0), (0.0, 0.0, 0.09, 0.0), (0.0, 0.0, 0.0, 0.0)])
+def test_both_pressures_at_zero_under_a_supply_are_beyond_a_range(p_a, p_b, fed_for, part):
+    """Sensors of 25 MPa: within 1 % of it both, of chambers that had 0.1 s to fill."""
+    found = own.beyond_range(measured(pressure_a=p_a, pressure_b=p_b), fed_for, CONSTANTS)
     assert found == pytest.approx(part, abs=1e-12)
+
+
+@pytest.mark.parametrize('change', [{'supply': 2.5e6}, {'is_open': 0}])
+def test_chambers_are_fed_by_a_supply_through_open_lines_without_a_break(change):
+    """Sensors of 25 MPa: a supply of 10 % of it. Each break begins the time anew."""
+    watched = Watched(only('sensor_range', trip=0.05, delay_ms=2.0, reaction='disable'))
+    state, begun = watched.state, 1000 + 19     # 0.1 s, and the delay
+    state.measured.pressure_a = state.measured.pressure_b = 0.0
+    fed = {'supply': 2.6e6, 'is_open': 1}
+    for values, n, trips in ((fed, begun, False), (fed | change, 1, False), (fed, begun, False),
+                             (fed, 3, True), (fed | change, 1, True)):
+        watched.supply, state.status.is_open = values['supply'], values['is_open']
+        watched.convert(n)
+        assert watched.has('sensor_range')[1] == trips
 
 
 def test_the_force_is_compared_with_what_the_valve_can_reach():

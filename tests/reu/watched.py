@@ -66,6 +66,7 @@ class Watched:
         measured, setpoint = self.state.measured, self.state.setpoint
         measured.position = self.own.evidence.position = 0.5 * STROKE
         self.state.status.is_on, self.state.status.mode = 1, IMPEDANCE
+        self.state.status.is_open = 1
         setpoint.stiffness, setpoint.damping = 1e5, 4e3
         setpoint.position, setpoint.velocity, setpoint.effort = 0.02, 0.1, 50.0
 

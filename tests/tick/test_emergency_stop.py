@@ -142,6 +142,32 @@ def test_the_way_back_is_clear_release_enable_in_this_order():
     assert states(simulation)[:2] == [QUICK_STOP, FAULT]
 
 
+@pytest.mark.parametrize('block_valve', [
+    {'kind': 'none'}, {'kind': 'poppet', 'leakage_lpm': 1.0}], ids=['none', 'leaky'])
+def test_chambers_that_a_dump_has_emptied_are_no_broken_sensors_when_the_pressure_is_back(
+        block_valve: Tree):
+    """At once, with lines that are shut, or opened to chambers that have to be filled first."""
+    supply = {'kind': 'constant', 'pressure_mpa': 20.7, 'return_pressure_mpa': 0.0,
+              'dump': {'kind': 'lag', 'time_constant_ms': 1.0}}
+    actuator = tree()['actuators']['left'] | {  # type: ignore[index]
+        'parameters': {'plant': {'block_valve': block_valve}}}
+    simulation = isa_ros.load(tree({'actuators': ['left']}, supply=supply, actuators={
+        'left': actuator})).simulation()
+    simulation.command('left', position=0.07)
+    advance(simulation, 40)
+    simulation.emergency_stop()
+    advance(simulation, 700)
+    sample = simulation.samples['left']
+    assert max(sample.pressure_a, sample.pressure_b) < 1e5
+    simulation.emergency_stop(False)
+    advance(simulation, 150)
+    simulation.command('left', is_enabled=True)
+    advance(simulation, 200)
+    sample = simulation.samples['left']
+    assert isa_ros.conditions(sample.trips) == [] and sample.device_state == ENABLED
+    assert min(sample.pressure_a, sample.pressure_b) > 1e6
+
+
 def test_without_the_key_all_stop_by_request_and_no_trip_does_it():
     everything = tree()
     del everything['emergency_stops']
