@@ -81,12 +81,15 @@ def begin_return(effort, state):
 @kernel
 def advance_return(rules, state):
     """
-    Advance the way back by a period; end it where the setpoint is reached.
+    Advance the way back by a period; end it where the setpoint is reached, or comes by.
 
     Position and effort go the same share of their ways, so that forces which cancel at both ends
     cancel in between. That share is such that neither shifts the rest of the impedance, which the
     effort does by itself over the stiffness, faster than the declared speed; it is gained and lost
     with the declared deceleration. The speed that the damping sees is that of the rest.
+
+    A setpoint that moves faster than that comes by between two periods: the rest changes its sign.
+    Its own step was larger than what is left then.
     """
     own, setpoint, period = state.status, state.setpoint, rules.period
     back, deceleration = own.back, rules.flow.deceleration
@@ -100,7 +103,7 @@ def advance_return(rules, state):
     own.return_speed = min(own.return_speed + deceleration * period, rules.return_speed,
                            math.sqrt(2.0 * deceleration * way))
     change = max(own.return_speed, deceleration * period) * period
-    if way <= change:
+    if way <= change or back.velocity * rest < 0.0:
         own.is_returning = 0
     else:
         share = change / way

@@ -254,6 +254,27 @@ def test_setpoints_that_are_back_wait_until_a_hold_has_stopped_the_load() -> Non
     assert status['is_returning'] and simulation.samples['ram'].device_state == ENABLED
 
 
+def test_a_setpoint_that_moves_faster_than_the_way_back_ends_it_where_it_comes_by() -> None:
+    """It was followed at 0.1 m/s for ever; what is left then is less than its own steps."""
+    simulation = simulation_of(rig(parameters={'reu': {
+        'protection': {'setpoint_timeout_ms': 60.0}}}))
+    status = memory_of(simulation, 'ram').reu['status'][0]
+    simulation.command('ram', **STIFF | {'position': 0.05})
+    advance(simulation, 0.4)
+    assert simulation.samples['ram'].trips and status['is_stopping']
+    ways = []
+    for tick in range(400):     # 30 mm at 2 Hz, 0.38 m/s at most; a setpoint each ms
+        place = 0.05 + 0.03 * np.sin(4.0 * np.pi * (1e-3 * tick + 0.1))
+        simulation.command('ram', **STIFF | {'position': place})
+        advance(simulation, 1e-3)
+        if not (status['is_returning'] or status['is_stopping']):
+            break
+        ways.append(place - float(status['back']['position']))
+    assert not simulation.samples['ram'].trips
+    assert 50 < len(ways) < 200 and max(ways) > 0.02
+    assert abs(ways[-1]) < 8e-4
+
+
 @pytest.mark.parametrize('force', [3000.0, -4000.0])
 @pytest.mark.parametrize(('mode', 'variants'), [
     ('impedance', ()), ('force', ()), ('position', ('position_control',)),
