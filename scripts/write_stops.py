@@ -1,26 +1,26 @@
 """
 Write the tables of stops in docs/protection.md: every situation, run and measured.
 
-About half a minute:
+About a minute:
 
     python -m scripts.write_stops
 """
 
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Iterator, Mapping
 from pathlib import Path
 from typing import Any, NamedTuple
 
 from isa_ros.config.text.yaml_text import Tree
-from isa_ros.simulation import Simulation
 from isa_ros.text.marked import with_parts
 from isa_ros.text.table import markdown
-import numpy as np
+from scripts.measure_leg_stops import LEG_SITUATIONS, LEGS, trunk
 from scripts.measure_stops import (
-    accelerate, ACCUMULATOR, advance, memory_of, rig, simulation_of, stop, Stopped)
+    accelerate, ACCUMULATOR, advance, rig, simulation_of, stop, Stopped)
+from scripts.measure_valve_faults import alone_table, knee_table
 
 PAGE = Path(__file__).resolve().parents[1] / 'docs' / 'protection.md'
-LEGS = ('haa', 'hfe', 'kfe')
-HEADER = ('situation', 'v', 'v^2/2a + v T', 'travel', 'back', 'largest force', 'swing at rest')
+HEADER = ('situation', 'v', 'largest v', 'v^2/2a + v T', 'of the largest', 'travel', 'back',
+          'largest force', 'swing at rest')
 MM, NEWTON = ('mm', 1e3, 'm/s', 'N'), ('mrad', 1e3, 'rad/s', 'Nm')
 STIFF: Mapping[str, Any] = {'position': 0.07, 'stiffness': 3e5, 'damping': 4000.0}
 FORCE: Mapping[str, Any] = {'mode': 'force', 'position': 0.05}
@@ -94,13 +94,10 @@ def table() -> list[str]:
 
 def _cells(one: Situation, found: Stopped) -> tuple[str, ...]:
     unit, size, speed, force = NEWTON if one.is_rotary else MM
-    return (one.name, f'{abs(found.speed):.2f} {speed}', f'{size * found.expected:.1f} {unit}',
+    return (one.name, f'{abs(found.speed):.2f} {speed}', f'{found.peak_speed:.2f} {speed}',
+            f'{size * found.expected:.1f} {unit}', f'{size * found.expected_of_peak:.1f} {unit}',
             f'{size * found.travel:.1f} {unit}', f'{size * found.bounce:.2f} {unit}',
             f'{found.peak_force:.0f} {force}', f'{found.swing:.0f} {force}')
-
-
-LEG_GAINS = {name: ({'stiffness': 300.0, 'damping': 10.0} if name == 'haa' else
-                    {'stiffness': 1e5, 'damping': 4e3}) for name in LEGS}
 
 
 def leg_table() -> list[str]:
@@ -119,65 +116,12 @@ def leg_table() -> list[str]:
     return markdown(rows)
 
 
-def trunk(simulation: Simulation, seconds: float) -> tuple[np.ndarray, np.ndarray]:
-    """Advance; return the trunk's height (m) and the vertical force on the foot (N), (n,) each."""
-    heights, forces = [], []
-    for _ in range(round(seconds * 1e9 / simulation.scenario.run.step_ns)):
-        simulation.step()
-        own: Any = simulation.body_sample
-        heights.append(float(own.height))
-        forces.append(float(own.foot_force[-1]))
-    return np.array(heights), np.array(forces)
-
-
-def _placed(shares: Mapping[str, float], seconds: float) -> tuple[Simulation, float]:
-    """Return the leg after its joints have moved by speeds in m/s, and the trunk's speed."""
-    simulation = simulation_of('leg')
-    starts = {name: float(simulation.samples[name].position) for name in LEGS}
-    for name in LEGS:
-        simulation.command(name, position=starts[name], **LEG_GAINS[name],
-                           effort=float(simulation.samples[name].force))
-    trunk(simulation, 1.0)
-    efforts = {name: float(memory_of(simulation, name).reu['setpoint']['effort'][0])
-               for name in LEGS}
-    begin = simulation.t
-    while (after := simulation.t - begin) < seconds:
-        for name, speed in shares.items():
-            simulation.command(name, position=starts[name] + speed * after, velocity=speed,
-                               effort=efforts[name])
-        simulation.step()
-    return simulation, float(simulation.body_sample.height_velocity)  # type: ignore[union-attr]
-
-
-def _standing() -> tuple[Simulation, float]:
-    return _placed({}, 0.0)
-
-
-def _squatting() -> tuple[Simulation, float]:
-    return _placed({'kfe': -0.02, 'hfe': 0.016}, 0.15)
-
-
-def _landing() -> tuple[Simulation, float]:
-    """Return the leg 16 ms after the impact of a drop by 10 cm."""
-    simulation = simulation_of('leg', {'leg.start.foot_height_mm': 100.0})
-    for name in LEGS:
-        simulation.command(name, position=float(simulation.samples[name].position),
-                           **LEG_GAINS[name])
-    while simulation.body_sample.foot_force[-1] <= 0.0:  # type: ignore[union-attr]
-        simulation.step()
-    trunk(simulation, 0.016)
-    return simulation, float(simulation.body_sample.height_velocity)  # type: ignore[union-attr]
-
-
-LEG_SITUATIONS: Mapping[str, Callable[[], tuple[Simulation, float]]] = {
-    'stands': _standing, 'squats': _squatting, 'lands, from 10 cm': _landing}
-
-
 def main() -> None:
     """Write the page."""
     text = PAGE.read_text(encoding='utf-8')
-    PAGE.write_text(with_parts(text, {'stops': table(), 'leg stops': leg_table()}),
-                    encoding='utf-8')
+    PAGE.write_text(with_parts(text, {
+        'stops': table(), 'leg stops': leg_table(), 'valve faults': alone_table(),
+        'knee faults': knee_table()}), encoding='utf-8')
     print(PAGE)
 
 
