@@ -38,6 +38,7 @@ setup(
         ('bin', ['bin/isa']),
         shared('config', '*.yaml'),
         shared('config/bad', '*.yaml'),
+        shared('config/controllers', '*.yaml'),
         shared('config/scenarios', '*.yaml'),
         shared('launch', '*.launch.py'),
         shared('rviz', '*.rviz'),

@@ -2,14 +2,18 @@
 One run in lockstep: the nodes of every actuator of a configuration, and the coordinator.
 
 Legs are also shown, with their lengths and sensors: by robot_state_publisher where that is
-installed, one each, and with ``rviz:=true`` the only one by rviz.
+installed, one each, and with ``rviz:=true`` the only one by rviz. ``ros2_control:=FILE`` starts
+the controllers of a parameter file for the only leg.
 """
 
+from collections.abc import Container, Iterable
 from functools import partial
 import os
+from pathlib import Path
 
 from ament_index_python.packages import get_packages_with_prefixes
-from isa_ros.config.paths import CONFIG, find, find_drawing, SCENARIOS
+from isa_ros.config.paths import CONFIG, CONTROLLERS, find, find_drawing, SCENARIOS
+from isa_ros.config.runs.leg_control import control_tag, Controllers, controllers_of, MANAGER
 from isa_ros.config.runs.leg_description import urdf_of
 from isa_ros.config.runs.run_config import LegConfig, RunConfig
 from isa_ros.config.runs.run_file import load_run
@@ -27,6 +31,8 @@ from launch.substitutions import LaunchConfiguration
 from launch_ros.actions import Node
 from launch_ros.parameter_descriptions import ParameterValue
 
+PUBLISHER = 'robot_state_publisher'
+
 
 def generate_launch_description() -> LaunchDescription:
     """Return the arguments and the nodes."""
@@ -35,6 +41,9 @@ def generate_launch_description() -> LaunchDescription:
                                 description=option.description) for option in OPTIONS),
         DeclareLaunchArgument(
             'rviz', default_value='false', description='true: show the leg in rviz'),
+        DeclareLaunchArgument(
+            'ros2_control', default_value='',
+            description='parameter file of the controllers to start, or a shipped one by name'),
         OpaqueFunction(function=_nodes)])
 
 
@@ -46,36 +55,68 @@ def _nodes(context: LaunchContext) -> list[Node]:
     own, parameters = namespace(values['namespace']), launched_parameters(values)
     run = load_run(config, changes_of(parameters.get('set', [])).run)
     has_rviz = flag('rviz', LaunchConfiguration('rviz').perform(context))
+    named = LaunchConfiguration('ros2_control').perform(context)
+    controllers = find(named, CONTROLLERS) if named else None
     processes = run_processes(
         run, config, scenario, parameters, launched_elsewhere(values))
-    viewers = _viewers(run, own, has_rviz)
+    viewers = _viewers(run, own, has_rviz, controllers)
     claim = Claim(own)  # before anything starts; refused while another run is there
     return [*viewers, *(_node(process, own, claim) for process in processes)]
 
 
-def _viewers(run: RunConfig, own: str, has_rviz: bool) -> list[Node]:
-    """Return the nodes that show the legs of a run; topics of viewers are of its namespace."""
+def _viewers(
+        run: RunConfig, own: str, has_rviz: bool, controllers: Path | None) -> list[Node]:
+    """Return the nodes that show and control legs; their topics are of the run's namespace."""
     legs = [body for body in run.bodies if isinstance(body, LegConfig)]
-    if has_rviz and run.leg is None:
-        raise ConfigError(f'rviz:=true: {run.source} has no leg, or several')
-    installed, nodes = get_packages_with_prefixes(), []
     above = f'/{own}' if own else ''
     of_run = [(f'/{topic}', f'{above}/{topic}') for topic in ('tf', 'tf_static', 'clock')]
-    for leg in legs if 'robot_state_publisher' in installed else ():
+    installed, nodes, tag = get_packages_with_prefixes(), [], []
+    if controllers is not None:
+        given = f'ros2_control:={controllers.name}'
+        leg = _only_leg(run, given)
+        claimed = controllers_of(controllers, leg)
+        _refuse_missing(installed, given, [PUBLISHER, *claimed.packages])
+        tag = [*control_tag(leg, claimed.commands, own)]
+        nodes += _control(controllers, claimed, own, of_run)
+    for leg in legs if PUBLISHER in installed else ():
         nodes.append(Node(
-            package='robot_state_publisher', executable='robot_state_publisher',
+            package=PUBLISHER, executable=PUBLISHER,
             namespace=f'{own}/{leg.prefix}'.strip('/'), parameters=[{
-                'robot_description': ParameterValue(urdf_of(run, leg), value_type=str),
+                'robot_description': ParameterValue(urdf_of(run, leg, tag), value_type=str),
                 'use_sim_time': True}], remappings=of_run))
     if has_rviz:
-        for package in ('robot_state_publisher', 'rviz2'):
-            if package not in installed:
-                raise ConfigError(f'rviz:=true needs the package {package}, not installed')
+        _only_leg(run, 'rviz:=true')
+        _refuse_missing(installed, 'rviz:=true', [PUBLISHER, 'rviz2'])
         nodes.append(Node(
             package='rviz2', executable='rviz2', namespace=own,
             arguments=['-d', str(find_drawing('rviz/leg.rviz'))],
             parameters=[{'use_sim_time': True}], remappings=of_run))
     return nodes
+
+
+def _only_leg(run: RunConfig, given: str) -> LegConfig:
+    if run.leg is None:
+        raise ConfigError(f'{given}: {run.source} has no leg, or several')
+    return run.leg
+
+
+def _refuse_missing(installed: Container[str], given: str, packages: Iterable[str]) -> None:
+    for package in packages:
+        if package not in installed:
+            raise ConfigError(f'{given} needs the package {package}, not installed')
+
+
+def _control(
+        path: Path, controllers: Controllers, own: str, of_run: list[tuple[str, str]]
+        ) -> list[Node]:
+    """Return the controller manager, and what loads and activates its controllers, then ends."""
+    return [
+        Node(package=MANAGER, executable='ros2_control_node', namespace=own, output='screen',
+             parameters=[str(path.resolve()), {'use_sim_time': True}], remappings=of_run,
+             on_exit=refuse_failure),
+        Node(package=MANAGER, executable='spawner', namespace=own, output='screen',
+             arguments=[*controllers.types, '--controller-manager', MANAGER],
+             on_exit=refuse_failure)]
 
 
 def _node(process: Process, own: str, claim: Claim) -> Node:

@@ -13,6 +13,7 @@ from isa_ros.errors import ConfigError
 _SHARE = Path('share') / 'isa_ros'
 CONFIG = 'config'
 SCENARIOS = 'config/scenarios'
+CONTROLLERS = 'config/controllers'
 
 
 def share_directories() -> list[Path]:
@@ -29,7 +30,7 @@ def share_directories() -> list[Path]:
 
 
 def shipped(directory: str) -> dict[str, Path]:
-    """Return the shipped YAML files of ``config`` or ``config/scenarios`` by name, sorted."""
+    """Return the shipped YAML files of a directory below the share by name, sorted."""
     files: dict[str, Path] = {}
     for share in share_directories():
         for path in (share / directory).glob('*.yaml'):

@@ -4,9 +4,11 @@ from importlib.util import module_from_spec, spec_from_file_location
 import os
 from pathlib import Path
 import sys
+from xml.etree import ElementTree
 
 import isa_ros
-from isa_ros.config.paths import CONFIG, find, SCENARIOS
+from isa_ros.config.paths import CONFIG, CONTROLLERS, find, SCENARIOS
+from isa_ros.config.runs.leg_control import controllers_of
 from isa_ros.errors import ConfigError
 from isa_ros.nodes.middleware.domain import CLAIMED_BY
 from isa_ros.processes.processes import MODULES
@@ -19,6 +21,7 @@ from tests.scripting.test_two_bodies import two_legs
 import yaml
 
 LAUNCH = Path(__file__).parents[2] / 'launch'
+LEG = isa_ros.load('leg').configuration.leg
 
 
 @pytest.fixture
@@ -83,7 +86,7 @@ def parameters(node, *names: str) -> dict[str, object]:
 
 def test_the_leg_has_every_argument_of_a_bring_up(actions):
     arguments, _ = actions('leg.launch.py')
-    assert set(arguments) == {'rviz', *(option.name for option in OPTIONS)}
+    assert set(arguments) == {'rviz', 'ros2_control', *(option.name for option in OPTIONS)}
     assert arguments['config']['default_value'] == 'leg.yaml'
     assert all(given['description'] for given in arguments.values())
 
@@ -175,6 +178,49 @@ def test_each_of_several_legs_is_shown_in_its_namespace(leg, installed, tmp_path
     assert all(dict(own.given['remappings'])['/tf'] == '/lab/tf' for own in publishers)
     with pytest.raises(ConfigError, match='has no leg, or several'):
         leg(config=str(tmp_path / 'two.yaml'), rviz='true')
+
+
+@pytest.mark.parametrize(('file', 'commands'), [
+    ('leg_trajectory', ['position', 'velocity']), ('leg_torque', ['effort'])])
+def test_ros2_control_has_the_leg_of_the_run_and_the_controllers_of_the_file(
+        leg, installed, file, commands):
+    """A manager with the file and the time of the run, and a spawner of all its controllers."""
+    path = find(file, CONTROLLERS)
+    installed |= dict.fromkeys(
+        ['robot_state_publisher', *controllers_of(path, LEG).packages], '/opt')
+    manager, spawner, publisher, *rest = leg(
+        ros2_control=file, namespace='lab', set='leg.parameters.body.thigh.length_m=0.4')
+    assert len(rest) == 4
+    description = publisher.given['parameters'][0]['robot_description'].args[0]
+    assert '<origin xyz="0.4 0.0 0.0"' in description
+    tag, = ElementTree.fromstring(description).iterfind('ros2_control')
+    assert [one.get('name') for one in tag.iterfind('joint[@name="kfe_joint"]/command_interface')
+            ] == commands
+    assert tag.findtext('hardware/param[@name="joint_commands_topic"]') == '/lab/joint_command'
+    assert (manager.given['package'], manager.given['executable']) == (
+        'controller_manager', 'ros2_control_node')
+    assert manager.given['parameters'] == [str(path.resolve()), {'use_sim_time': True}]
+    assert dict(manager.given['remappings'])['/clock'] == '/lab/clock'
+    assert (spawner.given['package'], spawner.given['executable']) == (
+        'controller_manager', 'spawner')
+    assert spawner.given['arguments'] == [
+        *controllers_of(path, LEG).types, '--controller-manager', 'controller_manager']
+    for node in (manager, spawner):
+        assert node.given['namespace'] == 'lab'
+        with pytest.raises(RuntimeError, match='spawner-5: ended with exit code 1'):
+            node.given['on_exit'](ProcessExited('spawner-5', 1), Context())
+    assert 'ros2_control' not in leg()[0].given['parameters'][0]['robot_description'].args[0]
+
+
+@pytest.mark.parametrize(('texts', 'message'), [
+    ({}, 'ros2_control:=leg_torque.yaml needs the package controller_manager, not installed'),
+    ({'config': 'rig_rotary'}, 'ros2_control:=leg_torque.yaml: rig_rotary.yaml has no leg'),
+    ({'ros2_control': 'leg_sway'}, 'leg_sway: no such file; shipped: leg_torque.yaml, leg_traj')])
+def test_ros2_control_without_its_packages_a_leg_or_a_file_is_refused(
+        leg, installed, texts, message):
+    installed |= {'robot_state_publisher': '/opt'}
+    with pytest.raises(ConfigError, match=message):
+        leg(**{'ros2_control': 'leg_torque'} | texts)
 
 
 @pytest.mark.parametrize(('texts', 'message'), [

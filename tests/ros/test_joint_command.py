@@ -1,11 +1,13 @@
 """One topic for the joints of a leg: taken as a whole, converted, recorded and replayed."""
 
 import math
+from xml.etree import ElementTree
 
 from isa_ros.bag.reader import Bag
 from isa_ros.config.assembly import surroundings_of
-from isa_ros.config.paths import CONFIG, find
+from isa_ros.config.paths import CONFIG, CONTROLLERS, find, shipped
 from isa_ros.config.runs.acceptance import ACCEPT_ALL
+from isa_ros.config.runs.leg_control import control_tag, controllers_of, MANAGER
 from isa_ros.config.runs.run_file import load_run
 from isa_ros.core.device import FORCE, IMPEDANCE
 from isa_ros.core.signals import HAS_SETPOINT
@@ -15,6 +17,7 @@ from isa_ros.surroundings.linkage import actuator_coordinate
 from isa_ros.tick.exchange import Rows
 from msg_adapters.cdr_reader import decode
 import pytest
+from rclpy.node import Node
 from rclpy.qos import DurabilityPolicy, QoSProfile
 from sensor_msgs.msg import JointState
 from std_msgs.msg import Bool
@@ -26,6 +29,10 @@ from tests.ros.started import bringup, wait_for
 pytestmark = pytest.mark.ros
 RUN = load_run(find('leg', CONFIG))
 JOINTS = RUN.leg.joint_space
+TOPICS_OF_CONTROL = [
+    one.text for one in ElementTree.fromstringlist(control_tag(RUN.leg, ('position',), ''))
+    .iterfind('hardware/param') if one.get('name').endswith('_topic')]
+"""Of the tag of ros2_control: commands, states."""
 
 
 class Run:
@@ -73,6 +80,62 @@ def test_in_mode_force_torques_alone_are_a_setpoint(commanded):
     take(torques)
     assert run.rows.requests['kinds'].all()
     assert run.rows.requests['position'].tolist() == run.rows.samples['position'].tolist()
+
+
+def test_joints_without_a_number_are_not_commanded(commanded):
+    """As ros2_control sends joints that no controller has claimed: NaN in each array."""
+    run, lines, take = commanded
+    nan = [math.nan] * 2
+    take(JointState(name=list(JOINTS), position=[*nan, -1.5], velocity=[*nan, 0.5]))
+    requests = run.rows.requests
+    assert requests['kinds'].tolist() == [0, 0, HAS_SETPOINT] and not lines
+    position, lever, _ = actuator_coordinate(-1.5, JOINTS['kfe_joint'].linkage)
+    assert requests['position'][2] == position
+    assert requests['velocity'][2] == 0.5 * lever
+    run.rows.samples['device_mode'] = FORCE
+    take(JointState(name=list(JOINTS), effort=[math.nan, 2.0, math.nan]))
+    assert requests['kinds'].tolist() == [0, HAS_SETPOINT, HAS_SETPOINT] and not lines
+    assert requests['effort'][1] != 0.0 and requests['effort'][2] == 0.0
+    for ends in ({'position': [math.nan] * 3}, {'effort': [math.nan] * 3}):
+        run.rows.requests[:] = 0
+        take(JointState(name=list(JOINTS), **ends))
+        assert lines.pop() == 'setpoint rejected: setpoint gives no joint a number, all are NaN'
+        assert not run.rows.requests['kinds'].any()
+
+
+def test_a_joint_with_a_gain_or_an_effort_is_not_without_a_number(commanded):
+    """In impedance its position has to be there."""
+    run, lines, take = commanded
+    for message in (
+            JointState(name=['kfe_joint', 'kfe_joint/damping'], position=[math.nan, 2.0]),
+            JointState(name=['kfe_joint'], position=[math.nan], effort=[1.0]),
+            JointState(name=['kfe_joint'], position=[math.nan], velocity=[0.0])):
+        take(message)
+        assert 'setpoint position is missing or NaN, must be given in mode imp' in lines.pop()
+    assert not run.rows.requests['kinds'].any()
+
+
+@pytest.mark.parametrize('namespace', ['', 'lab'])
+@pytest.mark.parametrize('file', shipped(CONTROLLERS).values(), ids=lambda path: path.stem)
+def test_ros_finds_the_nodes_of_the_shipped_controllers_in_any_namespace(
+        observer, file, namespace):
+    controllers = controllers_of(file, RUN.leg)
+    for name in (MANAGER, *controllers.types):
+        node = Node(
+            name, namespace=namespace, context=observer.context, use_global_arguments=False,
+            cli_args=['--ros-args', '--params-file', str(file)],
+            automatically_declare_parameters_from_overrides=True)
+        value = {key: own.value for key, own in node.get_parameters_by_prefix('').items()}
+        node.destroy_node()
+        if name == MANAGER:
+            assert value['update_rate'] == 500
+            assert {own: value[f'{own}.type'] for own in controllers.types} == controllers.types
+        elif name == 'joint_state_broadcaster':
+            assert value['use_local_topics'] is True
+        else:
+            assert value['joints'] == list(JOINTS)
+            assert tuple(value.get('command_interfaces', [value.get('interface_name')])
+                         ) == controllers.commands
 
 
 def test_a_controller_of_this_tick_is_not_overwritten(commanded):
@@ -123,6 +186,11 @@ def test_a_paused_leg_is_commanded_for_its_next_tick_and_replays(observer, tmp_p
         applied: list[JointState] = []
         observer.create_subscription(
             JointState, '/hfe/applied_setpoint', applied.append, 10)
+        of_leg = dict(observer.get_topic_names_and_types())
+        for topic in TOPICS_OF_CONTROL:
+            assert of_leg[topic] == ['sensor_msgs/msg/JointState']
+        assert observer.count_subscribers(TOPICS_OF_CONTROL[0]) == 1
+        assert observer.count_publishers(TOPICS_OF_CONTROL[1]) == 1
 
         def is_applied() -> bool:
             publisher.publish(JointState(name=['hfe_joint'], position=[0.6]))

@@ -22,6 +22,8 @@ from isa_ros.surroundings.messages import BodyMessage
 
 BODY = 'body'
 """Name of the body of a run file with ``body`` or ``leg``: its topics have no name in front."""
+JOINT_COMMAND = 'joint_command'
+"""Topic of the setpoints of its joints, after its prefix."""
 
 BodyFactory = Callable[[Mounting], Body | Mechanism]
 """Returns a new body at t = 0, or the mechanism of one; called once for every simulation."""

@@ -11,7 +11,7 @@ has the places of its pins: of a four-bar. A slider-crank has their distances on
 cylinder and load cell are at the joint, in the axes of the link. Bodies are plain rods.
 """
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 import math
 
 from isa_ros.actuator.ratings import ratings_of
@@ -46,17 +46,17 @@ _ALONG_X = (0.0, _HALF, 0.0)            # from the axis of a drawn cylinder, z
 _ALONG_Y = (_HALF, 0.0, 0.0)
 
 
-def urdf_of(run: RunConfig, leg: LegConfig) -> str:
+def urdf_of(run: RunConfig, leg: LegConfig, control: Iterable[str] = ()) -> str:
     """
     Return the URDF of a leg of a run.
 
     Links are the frames of its messages: with the name of the leg and a slash in front, but for
     `WORLD` and the frames of actuators, whose names differ in a run. Joints have the names of
-    its joint states.
+    its joint states. ``control`` is a tag of ros2_control.
     """
     return '\n'.join(['<?xml version="1.0"?>', f'<robot name="{leg.model}_leg">',
                       f'  <link name="{WORLD}"/>', *_bodies(run, leg), *_mounts(leg),
-                      *_units(leg), '</robot>', ''])
+                      *_units(leg), *control, '</robot>', ''])
 
 
 def _bodies(run: RunConfig, leg: LegConfig) -> Iterator[str]:

@@ -1,10 +1,12 @@
 """Setpoints in joint space, on one topic for each body: ``joint_command``."""
 
 from collections.abc import Mapping
+import math
 
 from isa_ros.actuator.setpoint_range import complete, SetpointRange
-from isa_ros.config.runs.body_config import BodyConfig
+from isa_ros.config.runs.body_config import BodyConfig, JOINT_COMMAND
 from isa_ros.config.runs.run_config import RunConfig
+from isa_ros.core.signals import GAINS_OF_COMMAND, HAS_SETPOINT
 from isa_ros.errors import one_line, SetpointError
 from isa_ros.nodes.middleware.acceptance import Acceptance, WARNING_PERIOD_S
 from isa_ros.nodes.middleware.qos import SETPOINT
@@ -17,16 +19,15 @@ from rclpy.node import Node
 from rclpy.subscription import Subscription
 from sensor_msgs.msg import JointState
 
-TOPIC = 'joint_command'
-
 
 class JointCommands:
     """
     Receives the setpoints for the joints of the bodies of a run, as messages on ``node``.
 
     A message has any of the joints of its body; it is taken as a whole or refused as a whole, with
-    a warning. It takes effect at the next tick, where neither the scenario nor a controller
-    commands the same actuator.
+    a warning; a joint whose numbers are all NaN is not named by it, as hardware interfaces of
+    ros2_control send one that no controller has claimed. It takes effect at the next tick, where
+    neither the scenario nor a controller commands the same actuator.
     """
 
     def __init__(self, node: Node, run: RunConfig, acceptance: Acceptance) -> None:
@@ -43,7 +44,7 @@ class JointCommands:
 
     def _subscribed(self, node: Node, body: BodyConfig) -> Subscription:
         return node.create_subscription(
-            JointState, f'{body.prefix}{TOPIC}',
+            JointState, f'{body.prefix}{JOINT_COMMAND}',
             lambda message: self._on_message(message, body), SETPOINT)
 
     def bind(self, coordinator: Coordinator) -> None:
@@ -81,11 +82,14 @@ class JointCommands:
         Raises
         ------
         SetpointError
-            The message is not a setpoint of joints of the body, or a value is beyond its range.
+            The message is not a setpoint of joints of the body, a value is beyond its range, or
+            all are NaN.
 
         """
         found, limited = {}, []
         for name, command in msg_to_commands(message, list(body.joint_space)).items():
+            if _is_empty(message, name, command):
+                continue
             joint = body.joint_space[name]
             row = self._run.index(joint.actuator)
             sample = rows.samples[row]
@@ -93,4 +97,16 @@ class JointCommands:
             limited.append(self._ranges[row].admit(command, int(sample['device_mode'])))
             complete(command, float(sample['position']))
             found[row] = command
+        if not found:
+            raise SetpointError('setpoint gives no joint a number, all are NaN')
         return found, '; '.join(filter(None, limited))
+
+
+def _is_empty(message: JointState, name: str, command: np.void) -> bool:
+    """Return whether a joint has an entry of its own, with nothing but NaN, and no gain."""
+    if command['kinds'] != HAS_SETPOINT or not all(
+            math.isnan(command[gain]) for gain in GAINS_OF_COMMAND):
+        return False
+    place = message.name.index(name)
+    return all(math.isnan(values[place]) for values in (
+        message.position, message.velocity, message.effort) if len(values) > place)

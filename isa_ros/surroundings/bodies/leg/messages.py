@@ -7,6 +7,8 @@ from isa_ros.surroundings.bodies.leg.sheet import JOINTS
 from isa_ros.surroundings.messages import BodyMessage, columns, Force, Inertial, JointStates
 
 SLIDER = 'slider'
+JOINT_STATES = 'joint_states'
+"""Topic, after the prefix of a leg."""
 
 
 def joint_name(name: str) -> str:
@@ -27,7 +29,7 @@ def leg_messages(prefix: str, units: Sequence[InertialUnit]) -> tuple[BodyMessag
     """
     return (
         JointStates(
-            f'/{prefix}joint_states', [joint_name(joint) for joint in (*JOINTS, SLIDER)],
+            f'/{prefix}{JOINT_STATES}', [joint_name(joint) for joint in (*JOINTS, SLIDER)],
             [*columns('position'), 'height'], [*columns('velocity'), 'height_velocity'],
             columns('torque')),
         Force(f'/{prefix or "coordinator/"}ground_contact', columns('foot_force'),
