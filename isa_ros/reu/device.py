@@ -89,7 +89,7 @@ def device_record(
     return record(
         DEVICE, next=next_states(), modes=sum(1 << mode for mode in possible_modes(reu)),
         initialisation=sheet.initialisation_ms * 1e-3, ramps=int(sheet.quick_stop != CLOSES),
-        stays=int(sheet.quick_stop == STAYS), 
+        stays=int(sheet.quick_stop == STAYS),
         hold=max(flow.window, round(sheet.quick_stop_hold_ms * 1e-3 / period)),
         period=period, return_speed=sheet.return_speed, flow=flow,
         opening=block.opening, closes_when_off=int(block.closes_when_off),

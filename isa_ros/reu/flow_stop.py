@@ -29,8 +29,7 @@ BASE_FILTER = 22.0      # rad/s; faster changes of the force are damped, slower 
 LEAST_DROP = 0.5        # of the stall force is kept over the lands: opens by at most sqrt(2) more
 HOLD_SHARE = 0.25       # crossover of the position loop over that of the force feedback
 INTEGRAL_SHARE = 0.125  # K_i over K^2 of that loop
-ROUNDING = 1.6          # length of the ramp's end over the time constant of the damping: a period
-                        # of 200 kg on the oil of an ISA v5, which then does not swing back
+ROUNDING = 1.6          # end of the ramp over the damping's time constant: 200 kg then stay
 TURNING = 0.1           # s after the ramp, at most, until a load that it left behind turns
 SETTLING = 0.01         # s from then on before the position that was reached is taken,
 AVERAGING = 0.02        # s, as a mean: it still swings on its oil

@@ -144,8 +144,8 @@ def _control_objects(axis: Axis) -> list[Object]:
              meaning='0: off at once, 2: quick stop, then switch on disabled, 6: quick stop, '
                      'then quick stop active: it holds'),
         *(_one(key, f'{name} option code', _I16, 'rw', OFF_AT_ONCE, choices=leaving,
-               meaning='0: off at once, 1: quick stop, then off; not 1 where the REU\'s '
-                       'quick_stop is not ramp')
+               meaning='0: off at once, 1: quick stop, then off; not 1 where quick_stop of '
+                       'the REU is not ramp')
           for key, name in ((SHUTDOWN_OPTION, 'Shutdown'), (DISABLE_OPTION, 'Disable operation'))),
         _one(FAULT_OPTION, 'Fault reaction option code', _I16, 'rw', FAULT_STOPS,
              choices=(OFF_AT_ONCE, FAULT_STOPS),

@@ -2,8 +2,8 @@
 The diagnosis history of EtherCAT (ETG.1020), object 0x10F3: the last errors with their times.
 
 A message is 16 bytes: diagnosis code, flags, text and time stamp. The code is that of an
-emergency, the text one of `TEXTS`, which the ESI has. The oldest message is overwritten; the master
-acknowledges by the subindex of a message, and deletes all by 0.
+emergency, the text one of `TEXTS`, which the ESI has. The oldest message is overwritten; the
+master acknowledges by the subindex of a message, and deletes all by 0.
 """
 
 import struct
