@@ -9,6 +9,12 @@ from isa_ros.core.suggest import alternatives
 from isa_ros.core.units import after, in_si, quantity
 from isa_ros.errors import ConfigError, ParameterError
 
+SMALLEST = 1e-60
+"""
+Least magnitude of a number that is not 0, in any unit: far below whatever a machine has, and such
+that squares and reciprocals of it are finite and not 0 in double precision.
+"""
+
 _RELATIONS: dict[str, tuple[str, Callable[[float, float], bool]]] = {
     'gt': ('>', lambda value, bound: value > bound),
     'ge': ('>=', lambda value, bound: value >= bound),
@@ -98,7 +104,7 @@ class Parameters:
     Raises
     ------
     ParameterError
-        A value is not finite, outside its range or not in its list.
+        A value is not finite, below `SMALLEST`, outside its range or not in its list.
 
     """
 
@@ -200,6 +206,10 @@ def _check_number(where: str, value: Any, declared: Any) -> None:
         raise ParameterError(f'{where} = {quantity(str(value), unit)}, must be finite')
     if 'is_whole' in declared and value != int(value):
         raise ParameterError(f'{where} = {value:g}, must be a whole number ({declared["doc"]})')
+    if 0.0 < abs(value) < SMALLEST:
+        raise ParameterError(
+            f'{where} = {quantity(f"{value:g}", unit)}, must be 0 or at least '
+            f'{quantity(f"{SMALLEST:g}", unit)} in magnitude ({declared["doc"]})')
     for name, bound in declared['bounds'].items():
         symbol, holds = _RELATIONS[name]
         if not holds(value, bound):

@@ -12,7 +12,11 @@ from isa_ros.core.kernel import kernel
 from isa_ros.core.parameter import parameter, Parameters
 from isa_ros.core.record import record
 from isa_ros.core.timebase import FASTEST_RATE
+from isa_ros.errors import ParameterError
 import numpy as np
+
+
+LEAST_STICTION = 1e-12  # of the Coulomb force: 1e4 of its roundings, so that g(v) > 0
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -27,6 +31,14 @@ class Friction(Parameters):
     bristle_damping: float = parameter('sigma1', 'Ns/m | Nms/rad', ge=0.0, le=1e7)
     viscous: float = parameter('sigma2', 'Ns/m | Nms/rad', ge=0.0, le=1e6)
     stribeck_speed: float = parameter('v_s', 'm/s | rad/s', gt=0.0, le=10.0)
+
+    def __post_init__(self) -> None:
+        """Refuse a stiction that g(0) of F1 would lose in the rounding of F_c."""
+        super().__post_init__()
+        if self.stiction < LEAST_STICTION * self.coulomb:
+            raise ParameterError(
+                f'stiction = {self.stiction:g}, must be >= {LEAST_STICTION:g} coulomb = '
+                f'{LEAST_STICTION * self.coulomb:g} (N | Nm)')
 
 
 FRICTION = np.dtype([

@@ -39,7 +39,7 @@ class Pid(Parameters):
     setpoint_weight: float = tunable('weight b of the reference', '1', ge=0.0, le=2.0)
     measured_filter_hz: float = parameter(
         'low-pass on the measured value; 0: none', 'Hz', ge=0.0, le=25e3)
-    derivative_filter_hz: float = parameter('low-pass on derivatives', 'Hz', gt=0.0, le=25e3)
+    derivative_filter_hz: float = parameter('low-pass on derivatives', 'Hz', ge=1e-3, le=25e3)
     limit: float = tunable('largest output', 'output', gt=0.0, le=1e9)
     anti_windup: str = choice(
         'clamped: the integral is held while the output is saturated', 'clamped', 'none')

@@ -28,7 +28,7 @@ class FeedbackLinearisation(Parameters):
         'pole of the force on its reference', 'rad/s', named='bandwidth', gt=0.0, le=1e4)
     ki_per_s2: float = tunable('integral of the force error', '1/s2', named='ki', ge=0.0, le=1e7)
     kf: float = tunable('force damping K_f', 's', ge=0.0, le=0.1)
-    derivative_filter_hz: float = parameter('low-pass on dF/dt', 'Hz', gt=0.0, le=25e3)
+    derivative_filter_hz: float = parameter('low-pass on dF/dt', 'Hz', ge=1e-3, le=25e3)
     velocity_share: float = tunable(
         'share of the swept flow that is compensated', '1', ge=0.0, le=1.5)
     least_drop_kpa: float = tunable(

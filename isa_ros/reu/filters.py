@@ -30,7 +30,7 @@ class SpeedEstimate(Parameters):
     """Rate and smoothing of the speed that damping and compensation use."""
 
     rate_hz: float = parameter('rate of the differences', 'Hz', gt=0.0, le=50e3)
-    filter_hz: float = parameter('low-pass on them', 'Hz', gt=0.0, le=5e3)
+    filter_hz: float = parameter('low-pass on them', 'Hz', ge=1e-3, le=5e3)
 
 
 SMALLEST_SPEED = 1e-30

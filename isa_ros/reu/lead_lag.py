@@ -30,7 +30,7 @@ class LeadLag(Parameters):
     lag_damping: float = tunable('zeta_lag', '1', gt=0.0, le=2.0)
     ki_v_per_ma_s: float = tunable('integral gain K_i', 'V/(mA s)', named='ki', ge=0.0, le=1e6)
     kd_v_s_per_ma: float = tunable('derivative gain K_d', 'V s/mA', named='kd', ge=0.0, le=10.0)
-    derivative_filter_hz: float = parameter('low-pass on the derivative', 'Hz', gt=0.0, le=25e3)
+    derivative_filter_hz: float = parameter('low-pass on the derivative', 'Hz', ge=1e-3, le=25e3)
     offset_v: float = tunable('added to the voltage', 'V', named='offset', ge=-100.0, le=100.0)
     limit_v: float = tunable('largest voltage', 'V', named='limit', gt=0.0, le=100.0)
     anti_windup: str = choice(
