@@ -64,8 +64,12 @@ class Usable(NamedTuple):
 def narrowed(
         key: str, declared: Mapping[str, Any], narrower: Mapping[str, Usable]
         ) -> Mapping[str, Any]:
-    """Return the declaration of a key with what is ``narrower`` of `usable`, and its reason."""
-    if key not in narrower:
+    """
+    Return the declaration of a key with what is ``narrower`` of `usable`, and its reason.
+
+    A choice keeps its names: those that do not fit are refused where they are chosen.
+    """
+    if key not in narrower or 'bounds' not in declared:
         return declared
     own = narrower[key]
     bounds = own.narrowed(declared['bounds'])
