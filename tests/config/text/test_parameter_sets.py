@@ -6,7 +6,7 @@ import math
 from hypothesis import given, strategies as st
 from isa_ros.config.text.parameter_sets import as_tree, build, build_one_of, members
 from isa_ros.config.text.sections import merge, Place, written
-from isa_ros.core.parameter import choice, parameter, Parameters
+from isa_ros.core.parameter import choice, parameter, Parameters, SMALLEST
 from isa_ros.core.suggest import alternatives
 from isa_ros.errors import ConfigError, ParameterError
 import pytest
@@ -97,7 +97,8 @@ def test_a_later_layer_is_blamed_at_its_own_file(
         build(Sheet, section, MODEL)
 
 
-@given(gain=st.floats(0.0, 1e300), low=st.floats(-1e6, 0.0), span=st.floats(1e-3, 1e6))
+@given(gain=st.just(0.0) | st.floats(SMALLEST, 1e300),
+       low=st.floats(-1e6, -SMALLEST) | st.just(0.0), span=st.floats(1e-3, 1e6))
 def test_a_set_survives_its_tree_bit_for_bit(gain: float, low: float, span: float) -> None:
     sheet = Sheet(law='fancy', gain=gain, drive=BigDrive(low=low, high=low + span))
     assert build(Sheet, written(as_tree(sheet), RUN), RUN) == sheet
