@@ -72,6 +72,8 @@ def narrowed(
     if key not in narrower or 'bounds' not in declared:
         return declared
     own = narrower[key]
+    if 'names' in declared:
+        return {**declared, 'doc': f'{declared["doc"]}; {own.why}'}
     bounds = own.narrowed(declared['bounds'])
     if bounds == declared['bounds']:
         return declared
