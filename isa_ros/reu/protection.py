@@ -234,7 +234,7 @@ def judge_one(k, step, mode, protection, own):
                  own.trip_count[k], protection.delay[k])
     if met and reaction_of(k, mode, protection) >= QUICK_STOP:
         own.kept |= bit
-    elif not met and own.clears != 0:
+    elif own.clears != 0:       # over, or its reaction has become weaker
         own.kept &= ~bit
     trips = met or own.kept & bit != 0
     if warns and not was_warned:

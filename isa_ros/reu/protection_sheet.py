@@ -127,10 +127,14 @@ def levels_of(sheet: Protection) -> dict[str, Levels]:
     return {name: getattr(sheet, name) for name in LEVELS}
 
 
+CONDITION_OF = {
+    f'{name}.reaction' if name in LEVELS else f'{name}_reaction': name for name in BITS}
+"""Condition by the key of its reaction below ``reu.protection``."""
+
+
 def reactions_of(sheet: Protection) -> dict[str, str]:
     """Return the reaction of every condition by its key below ``reu.protection``."""
-    keys = {name: f'{name}.reaction' if name in LEVELS else f'{name}_reaction' for name in BITS}
-    return {keys[name]: reaction_of(sheet, name) for name in BITS}
+    return {key: reaction_of(sheet, name) for key, name in CONDITION_OF.items()}
 
 
 def reaction_of(sheet: Protection, condition: str) -> str:

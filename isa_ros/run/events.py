@@ -125,7 +125,7 @@ def _changes(run: RunConfig, history: History) -> Iterator[Event]:
             supply, _, key = path.partition('.')
             by_tick.setdefault((supply, key), {})[tick] = value
     for (source, key), found in by_tick.items():
-        yield from _runs(source, key, found, known[source].get(key), run.step_ns)
+        yield from _runs(source, key, found, known.get(source, {}).get(key), run.step_ns)
 
 
 def _runs(source: str, key: str, values: Mapping[int, float], own: Changeable | None,

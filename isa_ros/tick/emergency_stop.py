@@ -13,12 +13,13 @@ from typing import NamedTuple
 
 from isa_ros.config.runs.emergency_stops import AT_REST, NEVER
 from isa_ros.config.runs.run_config import RunConfig
-from isa_ros.core.conditions import BITS, conditions
+from isa_ros.core.conditions import BITS, conditions, REACTIONS
 from isa_ros.core.device import DISABLED, FAULT
 from isa_ros.core.signals import Records
 from isa_ros.core.suggest import alternatives
+from isa_ros.core.timebase import NS_PER_SECOND
 from isa_ros.errors import ConfigError
-from isa_ros.reu.protection_sheet import reaction_of
+from isa_ros.reu.protection_sheet import CONDITION_OF, reaction_of
 from isa_ros.surroundings.dump import NoneDump
 from isa_ros.surroundings.surroundings import line_of, OPEN, Surroundings
 
@@ -26,6 +27,7 @@ LINE = 'reu.device.emergency_stop'
 """Of an actuator."""
 DUMP = 'dump.opened'
 """Of a supply with a dump valve."""
+LONGEST_STOP = 2.0      # s that a dump waits for an actuator from which nothing comes
 
 
 class StopGroup(NamedTuple):
@@ -33,8 +35,10 @@ class StopGroup(NamedTuple):
 
     line: str
     """Name of its line in `Surroundings.changing`."""
-    trips: Mapping[int, int]
+    trips: dict[int, int]
     """By row of each actuator: bits of the conditions whose trip opens the line."""
+    reactions: Sequence[str]
+    """Of these conditions."""
     supplies: Sequence[str]
     """Those whose dump valves open."""
     waits: bool
@@ -45,14 +49,14 @@ class EmergencyStops:
     """
     The lines of the groups over a run; ``names`` of the actuators by row are for its errors.
 
-    ``surroundings`` have the lines and the dump valves among their values.
+    ``surroundings`` have the lines and the dump valves among their values; ``step`` is the tick, s.
     """
 
     def __init__(
             self, groups: Sequence[StopGroup], names: Sequence[str],
-            surroundings: Surroundings) -> None:
+            surroundings: Surroundings, step: float) -> None:
         self._groups, self._names, self._surroundings = tuple(groups), names, surroundings
-        self._watched = any(any(group.trips.values()) for group in groups)
+        self._step = step
         self._told: dict[int | str, bool | None] = {}
         self.restart()
 
@@ -63,6 +67,19 @@ class EmergencyStops:
             every += [*group.trips, *group.supplies]
         self._told = dict.fromkeys(every)
         self._is_idle = False
+        self._waited = dict.fromkeys((group.line for group in self._groups), 0)
+
+    def take_tuned(self, tuned: Mapping[int, Mapping[str, float]]) -> None:
+        """Take the parameters that changed, by row: a reaction in force decides what opens a line."""
+        for row, values in tuned.items():
+            for key, value in values.items():
+                condition = CONDITION_OF.get(key.partition('protection.')[2])
+                for group in self._groups if condition else ():
+                    if row in group.trips:
+                        bit = 1 << BITS[condition]
+                        group.trips[row] = (
+                            group.trips[row] | bit if REACTIONS[int(value)] in group.reactions
+                            else group.trips[row] & ~bit)
 
     def cause(self, group: StopGroup, samples: Records) -> str:
         """Return the trips that open the line of a group, or ''."""
@@ -106,7 +123,7 @@ class EmergencyStops:
         returned with those of the lines.
         """
         is_settled = self._surroundings.is_settled
-        if self._is_idle and is_settled and not (self._watched and samples['trips'].any()):
+        if self._is_idle and is_settled and not samples['trips'].any():
             return changes
         self._is_idle = True
         lines: dict[int, bool] = {row: False for group in self._groups for row in group.trips}
@@ -116,10 +133,14 @@ class EmergencyStops:
             if self.cause(group, samples):
                 self._surroundings.tune({group.line: 1.0})
             if self._surroundings.tuned_value(group.line) == 0.0:
+                self._waited[group.line] = 0
                 continue
+            self._waited[group.line] += 1
             self._is_idle = False
             lines.update(dict.fromkeys(group.trips, True))
-            if not group.waits or all(_is_off(samples[row]) for row in group.trips):
+            are_asked = self._waited[group.line] * self._step < LONGEST_STOP
+            if not group.waits or all(
+                    _is_off(samples[row], are_asked) for row in group.trips):
                 dumps.update(dict.fromkeys(group.supplies, True))
         self._surroundings.tune({
             f'{name}.{DUMP}': float(is_open) for name, is_open in dumps.items()
@@ -135,9 +156,11 @@ class EmergencyStops:
         return was != is_open
 
 
-def _is_off(sample: Records) -> bool:
-    """Return whether an actuator moves by itself no more, or cannot be asked."""
-    return bool(sample['device_state'] in (DISABLED, FAULT) or sample['is_stale'])
+def _is_off(sample: Records, is_asked: bool) -> bool:
+    """Return whether an actuator moves by itself no more; one that is silent is, after a time."""
+    if sample['is_stale']:
+        return not is_asked
+    return bool(sample['device_state'] in (DISABLED, FAULT))
 
 
 def emergency_stops_of(run: RunConfig, surroundings: Surroundings) -> EmergencyStops:
@@ -150,9 +173,10 @@ def emergency_stops_of(run: RunConfig, surroundings: Surroundings) -> EmergencyS
                 row: sum(1 << bit for condition, bit in BITS.items()
                          if reaction_of(sheet.reu.protection, condition) in group.reactions)
                 for row, sheet in sheets.items()},
-            [] if group.dumps == NEVER else [
+            group.reactions, [] if group.dumps == NEVER else [
                 supply.name for supply in run.supplies
                 if not isinstance(supply.sheet.dump, NoneDump)
                 and set(supply.feeds) & set(group.actuators)],
             group.dumps == AT_REST))
-    return EmergencyStops(groups, [own.name for own in run.actuators], surroundings)
+    return EmergencyStops(groups, [own.name for own in run.actuators], surroundings,
+                          run.step_ns / NS_PER_SECOND)

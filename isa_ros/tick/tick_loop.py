@@ -110,6 +110,8 @@ class TickLoop:
         self.transport.receive(rows)
         if rows.tuned:
             self.source.take_tuned(rows.tuned)
+            if self.stops is not None:
+                self.stops.take_tuned(rows.tuned)
         self._lap('actuators')
         self._surroundings.advance(rows.replies)
         rows.tuned_supplies = self._surroundings.tuned
