@@ -69,7 +69,7 @@ def narrowed(
 
     A choice keeps its names: those that do not fit are refused where they are chosen.
     """
-    if key not in narrower or 'bounds' not in declared:
+    if key not in narrower:
         return declared
     own = narrower[key]
     if 'names' in declared:

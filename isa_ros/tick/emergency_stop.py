@@ -49,7 +49,8 @@ class EmergencyStops:
     """
     The lines of the groups over a run; ``names`` of the actuators by row are for its errors.
 
-    ``surroundings`` have the lines and the dump valves among their values; ``step`` is the tick, s.
+    ``surroundings`` have the lines and the dump valves among their values; ``step`` is the tick
+    in s.
     """
 
     def __init__(
@@ -70,11 +71,13 @@ class EmergencyStops:
         self._waited = dict.fromkeys((group.line for group in self._groups), 0)
 
     def take_tuned(self, tuned: Mapping[int, Mapping[str, float]]) -> None:
-        """Take the parameters that changed, by row: a reaction in force decides what opens a line."""
+        """Take the parameters that changed, by row: reactions in force open the lines."""
         for row, values in tuned.items():
             for key, value in values.items():
                 condition = CONDITION_OF.get(key.partition('protection.')[2])
-                for group in self._groups if condition else ():
+                if condition is None:
+                    continue
+                for group in self._groups:
                     if row in group.trips:
                         bit = 1 << BITS[condition]
                         group.trips[row] = (

@@ -12,6 +12,7 @@ from isa_ros.errors import ConfigError
 from isa_ros.replay.replay import recorded_inputs
 from isa_ros.scripting.run import Run
 from isa_ros.simulation import Simulation
+from isa_ros.tick.emergency_stop import LONGEST_STOP
 import pytest
 from tests.replay.test_replay_faults import content, replayed
 
@@ -217,7 +218,72 @@ def test_it_reaches_an_actuator_whose_link_is_lost():
     advance(simulation, ENDED_MS + 60)
     exact = [int(own.sample.device_state) for own in simulation.group.actuators]
     assert exact[:2] == [DISABLED, DISABLED] and lifts(simulation)[:2] == [0.0, 0.0]
-    assert dumped(simulation) > 0.9     # a sample that is stale is not waited for
+    assert dumped(simulation) == 0.0    # nobody knows that it is at rest
+    while simulation.t < 0.25 + LONGEST_STOP:
+        simulation.step()
+    assert dumped(simulation) > 0.9     # no stop lasts longer
+
+
+def test_a_dump_waits_for_one_that_brakes_behind_a_lost_link():
+    """The other is off at once: silence alone is no rest."""
+    linked = {'kind': 'ethercat', 'cycle_ms': 1.0, 'delay_cycles': 1.0, 'jitter_us': 0.0,
+              'loss': 0.0, 'watchdog_ms': 8.0}
+    simulation = moving(link=linked)
+    simulation.tune('right', {'link.loss': 1.0})
+    simulation.step()
+    simulation.emergency_stop()
+    right = simulation.group.actuators[1]
+    while int(right.sample.device_state) != DISABLED:
+        simulation.step()
+        assert dumped(simulation) == 0.0
+    assert simulation.t > 0.1
+
+
+def test_reactions_in_force_open_the_line():
+    """One that has become weaker does not, one that has become stronger does, at that tick."""
+    simulation = run({'reactions': ['disable']}).simulation()
+    reaction = 'reu.protection.load_cell_implausible.reaction'
+    advance(simulation, 30)
+    simulation.tune('left', {reaction: 'warn'})
+    simulation.tune('right', {reaction: 'warn'})
+    simulation.tune('left', {'plant.sensors.force.bias': 2000.0})
+    advance(simulation, 100)
+    assert isa_ros.conditions(simulation.samples['left'].trips) == ['load_cell_implausible']
+    assert states(simulation) == [ENABLED] * 3
+    simulation.tune('right', {reaction: 'disable'})     # of the one that is sound
+    advance(simulation, 10)
+    assert states(simulation) == [ENABLED] * 3
+    simulation.tune('left', {reaction: 'disable'})
+    advance(simulation, 400)
+    assert states(simulation)[:2] == [FAULT, DISABLED]
+
+
+def test_a_fault_whose_reaction_has_become_weaker_is_gone_once_it_is_cleared():
+    """Also while its cause lasts: then the line can be released."""
+    simulation = run({'reactions': ['disable']}).simulation()
+    reaction = 'reu.protection.load_cell_implausible.reaction'
+    advance(simulation, 30)
+    simulation.tune('left', {'plant.sensors.force.bias': 2000.0})
+    advance(simulation, 400)
+    assert states(simulation)[:2] == [FAULT, DISABLED]
+    simulation.tune('left', {reaction: 'warn'})
+    advance(simulation, 2)
+    simulation.command('left', clear_fault=True)
+    advance(simulation, 2)
+    assert states(simulation)[0] == DISABLED
+    assert isa_ros.conditions(simulation.samples['left'].trips) == ['load_cell_implausible']
+    simulation.tune('left', {'plant.sensors.force.bias': 0.0})
+    advance(simulation, 100)
+    assert isa_ros.conditions(simulation.samples['left'].trips) == []
+    simulation.emergency_stop(False)
+    advance(simulation, 2)
+    assert simulation.surroundings.tuned_value('emergency_stop.pair.opened') == 0.0
+
+
+def test_events_of_a_run_name_its_emergency_stop():
+    result = isa_ros.load(tree(), SCENARIO).simulate(0.1)
+    assert (0.04, 'emergency_stop', 'pair.opened = 1') in [
+        (event.t_s, event.source, event.what) for event in result.events]
 
 
 def test_a_frozen_program_is_blocked_too():
