@@ -53,8 +53,8 @@ class MujocoBody:
         self._are_tendons = (model.actuator_trntype[self._motors]
                              == int(mujoco.mjtTrn.mjTRN_TENDON))
         self._at = model.actuator_trnid[self._motors, 0]
-        for name, motor in zip(mounting.names, self._motors):
-            _refuse_motor(model, name, int(motor))
+        for name, motor, is_rotary in zip(mounting.names, self._motors, mounting.are_rotary):
+            _refuse_motor(model, name, int(motor), is_rotary)
         self._windows = _windows_of(model.opt.timestep, mounting.step)
         self.state = np.empty(mujoco.mj_stateSize(model, _STATE))
         mujoco.mj_getState(model, data, self.state, _STATE)
@@ -158,16 +158,18 @@ def _motor(model: Any, name: str) -> int:
     return int(found)
 
 
-def _refuse_motor(model: Any, name: str, motor: int) -> None:
+def _refuse_motor(model: Any, name: str, motor: int, is_rotary: bool) -> None:
     kind = mujoco.mjtTrn(model.actuator_trntype[motor])
     if kind == mujoco.mjtTrn.mjTRN_JOINT:
         joint = mujoco.mjtJoint(model.jnt_type[model.actuator_trnid[motor, 0]])
-        is_possible = joint in (mujoco.mjtJoint.mjJNT_HINGE, mujoco.mjtJoint.mjJNT_SLIDE)
+        is_possible = joint == (
+            mujoco.mjtJoint.mjJNT_HINGE if is_rotary else mujoco.mjtJoint.mjJNT_SLIDE)
     else:
-        is_possible = kind == mujoco.mjtTrn.mjTRN_TENDON
+        is_possible = kind == mujoco.mjtTrn.mjTRN_TENDON and not is_rotary
     if not is_possible:
-        raise ConfigError(
-            f'motor {name}: {kind.name}, must act on a spatial tendon, or a hinge or slide joint')
+        wanted = 'hinge joint' if is_rotary else 'spatial tendon or a slide joint'
+        raise ConfigError(f'motor {name}: {kind.name}, must act on a {wanted}, as its actuator is '
+                          f'{"rotary" if is_rotary else "linear"}')
     gear = model.actuator_gear[motor]
     if gear[0] != 1.0 or gear[1:].any():
         raise ConfigError(f'motor {name}: gear = {gear[0]:g}, must be 1: its force is that of the '

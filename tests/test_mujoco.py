@@ -129,7 +129,7 @@ def test_stiffness_and_damping_of_a_joint() -> None:
      'motor jib: must be a <motor> without limits'),
     (('motor name="jib"', 'motor name="jib" ctrlrange="-1 1"'), 'motor jib: must be a <motor>'),
     (('<motor name="jib" tendon="jib"/>', '<motor name="jib" site="jib_rod"/>'),
-     'motor jib: mjTRN_SITE, must act on a spatial tendon'),
+     'motor jib: mjTRN_SITE, must act on a spatial tendon or a slide joint, as its act'),
     (('timestep="0.0002"', 'timestep="0.0003"'), 'timestep = 0.0003 s of the MuJoCo model, must'),
     (('timestep="0.0002"', 'timestep="0.00025"'), 'must divide a fifth of the tick of 0.001 s')])
 def test_models_that_do_not_fit_are_refused(change: tuple[str, str], message: str) -> None:

@@ -270,7 +270,7 @@ def recorded_inputs(bag: Bag, run: RunConfig) -> Inputs:
             raise BagError(f'{bag.place_of(message)}: {error}') from error
     if last < 0:
         raise BagError(f'{bag.path}: has no samples, so there is nothing to replay')
-    for name, by_sample in inputs.ports.items():
-        if not by_sample:
-            raise BagError(f'{bag.path}: has no load ports of the external body {name}')
+    for body in external:
+        if not inputs.ports[body.name]:
+            raise BagError(f'{bag.path}: has no load ports of {body.called}')
     return inputs._replace(n_ticks=last, has_end=diagnosed == last)

@@ -130,6 +130,9 @@ class Actuators:
                 ('damping', damping)):
             port[name] = 0.0 if given is None else self._numbers(
                 {'x0': 'position', 'v0': 'velocity', 'a0': 'acceleration'}.get(name, name), given)
+        for name, mass in zip(self.names, port['inverse_mass'].tolist()):
+            if mass < 0.0:
+                raise ConfigError(f'{name}: inverse_mass = {mass:g}, must be >= 0')
         port['a_bias'] = (port['a0'] - port['inverse_mass'] * self.forces if a_bias is None
                           else self._numbers('a_bias', a_bias))
         simulation.step()

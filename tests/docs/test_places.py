@@ -314,7 +314,8 @@ def test_an_output_of_a_run_is_a_sink() -> None:
 def test_a_fault_is_a_mark(copied: PatchedCopy) -> None:
     """A parameter that is marked can change in a run, by its key and in its unit."""
     copied.replace('isa_ros/surroundings/accumulator.py',
-                   "'relief flow per pressure above opening', 'l/min/MPa', gt=0.0", "'relief flow per pressure above opening', "
+                   "'relief flow per pressure above opening', 'l/min/MPa', gt=0.0",
+                   "'relief flow per pressure above opening', "
                    "'l/min/MPa', changeable=True, gt=0.0")
     assert len(copied.touched) == 1
     program = (

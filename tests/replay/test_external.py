@@ -87,8 +87,8 @@ def test_a_bag_replays_without_the_body(
     monkeypatch.setattr('tests.surroundings.mass_on_spring.Turned', fail)
     assert main(['replay', str(bag)]) == 0
     lines = capsys.readouterr().out.splitlines()
-    assert lines[0] == ('the external (simulator by hand 1.0): its load ports are inputs of this '
-                        'replay, it is not simulated again')
+    assert lines[0] == ('the external body (simulator by hand 1.0): its load ports are inputs '
+                        'of this replay, it is not simulated again')
     assert lines[-1].startswith(f'equal: {TICKS + 1} ticks, ')
     inputs = recorded_inputs(Bag(bag), result.scenario.run)
     assert sorted(inputs.ports['body']) == list(range(TICKS + 1))
@@ -137,7 +137,7 @@ def test_a_bag_without_a_port_is_refused(
         replay(Bag(tmp_path / 'lost'))
     rewrite(Bag(bag), tmp_path / 'none', lambda topic, sequence, data: (
         None if topic.endswith('load_port') else data))
-    with pytest.raises(BagError, match='has no load ports of the external body body'):
+    with pytest.raises(BagError, match='has no load ports of the external body$'):
         recorded_inputs(Bag(tmp_path / 'none'), result.scenario.run)
 
 

@@ -160,6 +160,32 @@ def test_a_run_without_its_body_is_refused() -> None:
         rig().simulate(0.001, body=lambda mounting: {})
 
 
+def test_a_factory_that_fails_or_gives_one_body_twice_is_named() -> None:
+    def fails(mounting: isa_ros.Mounting) -> Slide:
+        raise OSError('licence expired')
+    with pytest.raises(ConfigError, match=r'^body: its factory: OSError: licence expired \(test_'):
+        rig().simulate(0.001, body=fails)
+    kept: list[Slide] = []
+
+    def one(mounting: isa_ros.Mounting) -> Slide:
+        kept.append(kept[0] if kept else Slide(mounting))
+        return kept[0]
+    rig().simulate(0.001, body=one)
+    with pytest.raises(ConfigError, match='body: its factory returned the same Slide twice'):
+        rig().simulate(0.001, body=one)
+
+
+def test_a_start_outside_the_stroke_is_refused() -> None:
+    class Far(Slide):
+        """It starts 0.3 m away."""
+
+        def starts(self, starts: np.ndarray) -> None:
+            """Fill it."""
+            starts['position'][self.rows] = 0.3
+    with pytest.raises(ConfigError, match='body: pull starts at 0.3 m, must be within its stroke'):
+        rig().simulate(0.001, body=Far)
+
+
 def test_its_text_is_read_back() -> None:
     """The actuators in their order; the start is that of the actuators' own keys."""
     run = rig(actuators={
@@ -178,12 +204,12 @@ def test_its_text_is_read_back() -> None:
     ({'body': {'kind': 'internal', 'actuators': ['push']}}, 'must be one of leg, external'),
     ({'actuators': {'push': {'model': 'isa_v5', 'load': {'kind': 'locked'}},
                     'pull': {'model': 'isa_v5'}}},
-     'push.load is not used: the actuator moves push of the external, which gives its load'),
+     'push.load is not used: the actuator moves push of the external body, which gives its load'),
     ({'bodies': {'push': {'kind': 'external', 'actuators': ['push', 'pull']}}, 'body': None},
      "the name 'push' is taken"),
     ({'bodies': {'one': {'kind': 'external', 'actuators': ['push', 'pull']},
                  'two': {'kind': 'external', 'actuators': ['push']}}, 'body': None},
-     'bodies.two.actuators = .push. already moves push of the external one')])
+     'bodies.two.actuators = .push. already moves push of the external body one')])
 def test_a_section_that_cannot_be_is_refused(changes: dict[str, object], message: str) -> None:
     with pytest.raises(ConfigError, match=message):
         rig(**changes)

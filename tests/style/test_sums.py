@@ -14,7 +14,6 @@ EXACT = {
     ('reu/device.py', '(1 << mode for mode in possible_modes(reu))'),
     ('run/packing.py', '(floats(sample).size for sample in rows.bodies.values())'),
     ('run/wire/steps.py', '(record.itemsize for record in roster.bodies.values())'),
-    ('surroundings/surroundings.py', 'sizes'),
     ('scenario/device_steps.py', '(kind for name, kind in _REQUESTS.items() if tree.get(name))')}
 """Sums of integers, or of two numbers."""
 

@@ -2,7 +2,7 @@
 
 import isa_ros
 from isa_ros.core.signals import LOAD_PORT, LOAD_REPLY, START
-from isa_ros.errors import ConfigError, SimulationDiverged
+from isa_ros.errors import ConfigError, RunError, SimulationDiverged
 from isa_ros.surroundings.mechanism import holding_forces, MechanismBody, Mounting
 import numpy as np
 import pytest
@@ -174,3 +174,67 @@ def test_a_state_that_is_not_finite_ends_the_run() -> None:
     with pytest.raises(SimulationDiverged, match='body.out_position') as caught:
         body.advance(replies_of(np.full((2, 5), np.nan)))
     assert caught.value.t_ns == 5_000_000
+
+
+def changed(name: str, function: object) -> MechanismBody:
+    """Return a body whose mechanism has another function."""
+    mechanism = MassOnSpring()
+    setattr(mechanism, name, function)
+    return MechanismBody(mechanism, mounting())
+
+
+def motion_of(*arrays: object) -> object:
+    return lambda state, forces: isa_ros.Motion(*arrays)
+
+
+@pytest.mark.parametrize(('motion', 'message'), [
+    (motion_of([0.04, 0.06], [0.0], [0.0, 0.0]),
+     r'MassOnSpring: velocity of its motion has the shape \(1,\), must have \(2,\): .*out, back'),
+    (motion_of([0.04, 0.06], [0.0, 0.0], 1.0), r'acceleration of its motion has the shape \(\)'),
+    (motion_of([0.04, np.nan], [0.0, 0.0], [0.0, 0.0]),
+     r'position of its motion at t = 0 is \[0.04, nan\], must be finite'),
+    (lambda state, forces: MassOnSpring().motion(state, -forces),
+     'out accelerates by -0.025 m/s2 . rad/s2 under 1 N . Nm at t = 0, must be >= 0')])
+def test_a_motion_that_cannot_be_is_refused_at_the_start(motion, message: str) -> None:
+    with pytest.raises(ConfigError, match=message):
+        changed('motion', motion)
+
+
+def test_lists_will_do() -> None:
+    own = MassOnSpring()
+    body = changed('motion', lambda state, forces: tuple(
+        part.tolist() for part in own.motion(state, forces)))
+    assert body.snapshot() == MechanismBody(MassOnSpring(), mounting()).snapshot()
+
+
+def test_what_the_caller_wrote_wrong_is_named_with_its_place() -> None:
+    def fails(*arguments: object) -> None:
+        raise KeyError('no licence')
+    with pytest.raises(RunError, match=r"^MassOnSpring.motion: KeyError: 'no licence' \(test_"):
+        changed('motion', fails)
+    body = changed('stepped', fails)
+    with pytest.raises(RunError, match='^MassOnSpring.stepped: KeyError'):
+        body.advance(replies_of(np.zeros((2, 5))))
+    body = changed('stepped', lambda state, forces, seconds: np.zeros(3))
+    with pytest.raises(ConfigError, match=r'its state has the shape \(3,\), must have \(2,\)'):
+        body.advance(replies_of(np.zeros((2, 5))))
+
+
+def test_a_state_cannot_be_changed_in_place() -> None:
+    def in_place(state: np.ndarray, forces: np.ndarray, seconds: float) -> np.ndarray:
+        state += 1.0
+        return state
+    body = changed('stepped', in_place)
+    with pytest.raises(RunError, match='stepped: .*read-only'):
+        body.advance(replies_of(np.zeros((2, 5))))
+    body.restore(body.snapshot())
+    with pytest.raises(RunError, match='stepped: .*read-only'):
+        body.advance(replies_of(np.zeros((2, 5))))
+
+
+def test_a_response_needs_what_it_is_made_of() -> None:
+    mechanism = MassOnSpring()
+    own = mechanism.motion
+    mechanism.motion = lambda state, forces: own(state, forces)._replace(generalised=None)
+    with pytest.raises(ConfigError, match='has_response needs generalised accelerations'):
+        MechanismBody(mechanism, mounting(), has_response=True)

@@ -6,19 +6,24 @@ from importlib import import_module
 import os
 import sys
 from typing import Any, ClassVar
+from weakref import WeakSet
 
-from isa_ros.config.runs.body_config import BodyConfig, BodyFactory, Made
+from isa_ros.config.runs.body_config import BODY, BodyConfig, BodyFactory, Made
 from isa_ros.config.text.keys import Key, KeyTable, NAMES, TEXT
 from isa_ros.config.text.sections import Place, Section
 from isa_ros.core.fields import Field
+from isa_ros.core.signals import START
 from isa_ros.core.timebase import NS_PER_SECOND
-from isa_ros.errors import ConfigError
+from isa_ros.errors import ConfigError, IsaError
 from isa_ros.surroundings.body import Body
 from isa_ros.surroundings.kept_ports import (
     GivenBody, port_fields, port_message, RecordedBody, zeros_given)
-from isa_ros.surroundings.mechanism import Mechanism, MechanismBody, Mounting
+from isa_ros.surroundings.mechanism import cause_of, Mechanism, MechanismBody, Mounting
 from isa_ros.surroundings.messages import BodyMessage
 import numpy as np
+
+_USED: WeakSet[Any] = WeakSet()
+"""What factories have returned."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -52,6 +57,11 @@ class ExternalConfig(BodyConfig):
         return cls(
             name=name, joints=tuple((own, own) for own in actuators), maker=maker), {}
 
+    @property
+    def called(self) -> str:
+        """Return how messages call it."""
+        return 'the external body' if self.name == BODY else f'the external body {self.name}'
+
     def key_of(self, joint: str) -> str:
         """Return the list of its actuators."""
         return f'{self.label}.actuators'
@@ -84,16 +94,47 @@ class ExternalConfig(BodyConfig):
             np.array([own.initial_position for own in made.actuators]),
             [own.sheet.is_rotary for own in made.actuators], made.step_ns / NS_PER_SECOND,
             made.seed)
-        own = factory(mounting)
-        if isinstance(own, GivenBody):
-            return own
-        if isinstance(own, Mechanism):
-            own = MechanismBody(own, mounting)
-        elif not hasattr(own, 'ports'):
+        try:
+            given = factory(mounting)
+        except IsaError:
+            raise
+        except Exception as error:
+            raise ConfigError(f'{self.label}: its factory: {cause_of(error)}') from error
+        if isinstance(given, GivenBody):
+            return given
+        self._refuse_again(given)
+        own = MechanismBody(given, mounting) if isinstance(given, Mechanism) else given
+        if not hasattr(own, 'ports'):
             raise ConfigError(
                 f'{self.label}: its factory returned a {type(own).__name__}, must be an '
                 'isa_ros.Body or an isa_ros.Mechanism')
-        return RecordedBody(own)
+        recorded = RecordedBody(own)
+        self._refuse_start(recorded, made)
+        return recorded
+
+    def _refuse_again(self, given: object) -> None:
+        """Refuse an object that another simulation has: it is no longer at t = 0."""
+        try:
+            is_used = given in _USED
+            _USED.add(given)
+        except TypeError:   # without hash or weak references
+            return
+        if is_used:
+            raise ConfigError(
+                f'{self.label}: its factory returned the same {type(given).__name__} twice, must '
+                'make a new one at t = 0 for every simulation')
+
+    def _refuse_start(self, body: Body, made: Made) -> None:
+        """Refuse a start outside the stroke of an actuator."""
+        starts = np.zeros(max(made.rows) + 1, START)
+        body.starts(starts)
+        for row, own in zip(made.rows, made.actuators):
+            place, stroke = float(starts[row]['position']), own.sheet.plant.drive.stroke
+            if not 0.0 <= place <= stroke:
+                unit = 'rad' if own.sheet.is_rotary else 'm'
+                raise ConfigError(
+                    f'{self.label}: {own.name} starts at {place:g} {unit}, must be within its '
+                    f'stroke, 0 to {stroke:g} {unit}')
 
     def _imported(self) -> BodyFactory:
         """Return the factory of ``class``, of an installed module or a file in this folder."""
@@ -105,6 +146,8 @@ class ExternalConfig(BodyConfig):
             found = import_module(module)
         except ImportError as error:
             raise ConfigError(f'{self.label}.class = {self.maker}: {error}') from error
+        except Exception as error:
+            raise ConfigError(f'{self.label}.class = {self.maker}: {cause_of(error)}') from error
         factory = getattr(found, name, None)
         if not callable(factory):
             raise ConfigError(
