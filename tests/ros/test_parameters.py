@@ -143,7 +143,8 @@ def test_every_gain_is_declared_with_unit_meaning_and_range(observer, tmp_path):
         words, = tuner.call(DescribeParameters.Request(
             names=['reu.protection.supply_low.reaction'])).descriptors
         assert words.type == ParameterType.PARAMETER_STRING
-        assert words.additional_constraints == 'one of none, warn, hold, damp, quick_stop, disable'
+        assert words.additional_constraints == (
+            'one of none, warn, hold, damp, quick_stop, disable, block')
         refused = tuner.call(SetParameters.Request(
             parameters=[_text('model', 'isa_v2')])).results[0]
         assert not refused.successful and 'read-only' in refused.reason
@@ -250,14 +251,16 @@ def test_a_node_packs_nothing_where_nobody_subscribes(observer, monkeypatch):
         lambda _: setup, 'knee', has_mailbox=False, context=observer.context,
         enable_rosout=False)
     try:
-        for _ in range(2):     # in the first tick the device is ready, which it says
-            node.actuator.tick()
+        node.actuator.tick()    # the device is ready, which it says
+        node.publish()
+        node.actuator.tick()
         expected = published(node)
         assert expected[:3] == [None] * 3 and all(expected[3:])
 
         def pack(*arguments):
             pytest.fail('rows were packed')
         monkeypatch.setattr(Packer, 'pack', pack)
+        node.actuator.tick()
         node.publish()
     finally:
         node.destroy_node()
