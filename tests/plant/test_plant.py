@@ -52,7 +52,7 @@ def lossless(model: str) -> ActuatorSheet:
     sheet = actuator_sheet(model)
     for path, value in (
             ('plant.valve.null_leakage_lpm', 0.0), ('plant.oil.cross_port_leakage', 0.0),
-            ('plant.friction.stiction', 1e-12), ('plant.friction.coulomb', 1e-12),
+            ('plant.friction.coulomb', 1e-12), ('plant.friction.stiction', 1e-12),
             ('plant.friction.bristle_stiffness', 1e-9), ('plant.friction.bristle_damping', 0.0),
             ('plant.friction.viscous', 0.0), ('plant.mechanics.sensor_damping', 0.0)):
         sheet = override(sheet, path, value)
