@@ -22,9 +22,10 @@ LEG = TrottingLeg(TROT, SHEET)
 
 strides = st.floats(0.0, 10.0)
 trots = st.builds(
-    Trot, forward_speed=st.floats(0.0, 3.0), step_frequency_hz=st.floats(0.5, 4.0),
-    duty_factor=st.floats(0.51, 0.9), step_height=st.floats(0.0, 0.2),
-    hip_height=st.floats(0.3, 0.7), robot_mass=st.floats(0.0, 200.0))
+    Trot, forward_speed=st.just(0.0) | st.floats(1e-9, 3.0),
+    step_frequency_hz=st.floats(0.5, 4.0),
+    duty_factor=st.floats(0.51, 0.9), step_height=st.just(0.0) | st.floats(1e-9, 0.2),
+    hip_height=st.floats(0.3, 0.7), robot_mass=st.just(0.0) | st.floats(1e-9, 200.0))
 
 
 def foot_of(stride: float) -> tuple[float, float, float, float]:
