@@ -19,6 +19,7 @@ from isa_ros.plant.plant import plant_rates
 from isa_ros.plant.sensors import sense
 from isa_ros.plant.spool import stop_spool
 from isa_ros.reu.cascade import cascade_step, is_due, REU_STATE
+from isa_ros.reu.protection import feed
 from isa_ros.surroundings.bodies.leg.motion import (
     continuous, joint_angles, leg_rates, LEG_STATE, shifted, terms_of)
 from isa_ros.surroundings.bodies.leg.sheet import leg_record
@@ -134,6 +135,7 @@ def sample_reus(step, y, commands, is_commanded, system):
             c, setpoint = commands[j], state.setpoint
             setpoint.position, setpoint.velocity, setpoint.effort = c[0], c[1], c[2]
             setpoint.stiffness, setpoint.damping = c[3], c[4]
+            feed(state.protection)
         if is_due(step, reu.current_steps, reu.offset_steps):
             sense(step, reu.current_steps, system.bodies[0][j].plant, x[j], v[j],
                   actuator.plant, actuator.noise_key, system.channels[j], state.measured)

@@ -17,9 +17,6 @@ from tests.oracle.rig import hanging, Rig
 from tests.sheets import actuator_sheet, override
 
 MS = 1_000_000
-pytestmark = pytest.mark.xfail(
-    strict=False, reason='since actuators enabled at t = 0 bear their load (78648e0) the bounds, '
-    'measured before, do not hold for the first milliseconds: the rig is to begin anew')
 NEVER = 1_000_000 * MS
 RELEASE = 20 * MS
 DROP = 300 * MS
