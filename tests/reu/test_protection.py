@@ -4,11 +4,12 @@ from dataclasses import replace
 import math
 
 from hypothesis import given, settings, strategies as st
-from isa_ros.core.conditions import BITS, CONDITIONS, REACTIONS
+from isa_ros.core.conditions import BITS, CONDITIONS, conditions, REACTIONS
 from isa_ros.core.parameter import defaults
+from isa_ros.core.signals import SAMPLE
 from isa_ros.errors import ParameterError
 from isa_ros.reu import protection
-from isa_ros.reu.protection import request_clear
+from isa_ros.reu.protection import request_clear, write_trips
 from isa_ros.reu.protection_sheet import levels_of, Protection
 from isa_ros.reu.reactions import protect
 import numpy as np
@@ -271,3 +272,21 @@ def test_a_reaction_that_could_not_end_or_uses_what_is_wrong_is_refused(
                 only(name, reaction=reaction)
         elif reaction in left:
             only(name, reaction=reaction)
+
+
+def test_the_sample_names_the_last_trip_its_time_and_its_quantity() -> None:
+    """And the first one; overload is bit 3 and supply_low bit 7, both in this REU."""
+    levels = levels_of(defaults(Protection))
+    watched = Watched(replace(
+        only('overload', trip=0.5, delay_ms=0.0, reaction='disable'),
+        supply_low=replace(levels['supply_low'], trip=0.2, delay_ms=0.0)))
+    watched.show('overload', 6e3)
+    watched.convert(2)
+    watched.show('supply_low', 3e6)
+    watched.convert(2)
+    sample = np.zeros(1, SAMPLE).view(np.recarray)[0]
+    write_trips(watched.own, sample)
+    assert conditions(sample.last_trip) == ['supply_low']
+    assert conditions(sample.first_trip) == ['overload']
+    assert (sample.trip_time, sample.trip_value) == (pytest.approx(2 * PERIOD), 3e6)
+    assert sample.trip_level == pytest.approx(0.2 * RATINGS.opening_pressure)

@@ -137,3 +137,24 @@ def test_a_block_that_does_not_act_has_no_error(acting, is_on, expected):
     state.force_reference, state.measured.force = 1500.0, 500.0
     found = own.supervise(SUPPLY, CONSTANTS, state, watched.own.supervision)
     assert found[:2] == pytest.approx(expected, abs=1e-9)
+
+
+def test_outputs_that_are_off_do_not_let_the_force_oscillate():
+    """What pushes the piston of a disabled actuator to and fro is no loop of it."""
+    watched = Watched(off())
+    state, supervised = watched.state, watched.own.supervision
+    for is_on, swings in ((1, True), (0, False)):
+        supervised.force_activity, state.status.is_on = 2000.0, is_on
+        assert (own.supervise(SUPPLY, CONSTANTS, state, supervised)[2] > 1500.0) is swings
+
+
+def test_a_stop_has_a_position_error_only_once_it_holds_a_place():
+    """Its place is 0 before, and the piston at mid stroke."""
+    watched = Watched(off())
+    state = watched.state
+    state.status.is_on = state.status.is_stopping = 1
+    state.status.acting = SPOOL
+    assert own.supervise(SUPPLY, CONSTANTS, state, watched.own.supervision)[0] == 0.0
+    state.status.flow.is_held, state.status.flow.place = 1, state.measured.position - 2e-3
+    found = own.supervise(SUPPLY, CONSTANTS, state, watched.own.supervision)[0]
+    assert found == pytest.approx(2e-3, abs=1e-12)
