@@ -20,8 +20,9 @@ from isa_ros.core.timebase import NS_PER_SECOND
 from isa_ros.errors import ConfigError
 from isa_ros.scenario.trot import CHECKED_INSTANTS, smooth_step, Trot, TrottingLeg
 from isa_ros.scenario.waveforms import Excursion
-from isa_ros.surroundings.bodies.leg.sheet import Direct, JOINTS, LegSheet, linkage_record
+from isa_ros.surroundings.bodies.leg.sheet import JOINTS, LegSheet
 from isa_ros.surroundings.linkage import actuator_coordinate
+from isa_ros.surroundings.linkage_sheet import Direct, linkage_record
 import numpy as np
 
 LEG = 'hyq_real'  # leg of the trot in a run without one

@@ -19,8 +19,9 @@ from isa_ros.core.units import MILLI, MPA
 from isa_ros.loads.sheets import Blocked, Mass
 from isa_ros.paper.printed import statement
 from isa_ros.surroundings.bodies.leg.dynamics import leg_terms
-from isa_ros.surroundings.bodies.leg.sheet import body_record, linkage_record
+from isa_ros.surroundings.bodies.leg.sheet import body_record
 from isa_ros.surroundings.linkage import actuator_coordinate
+from isa_ros.surroundings.linkage_sheet import linkage_record
 from isa_ros.validation.actuators import Actuators, SHIPPED
 from isa_ros.validation.entry import around, Drawing, Entry, Findings, OWN, PAPER
 from isa_ros.validation.plots import stacked

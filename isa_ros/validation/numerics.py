@@ -18,8 +18,8 @@ from isa_ros.config.runs.run_file import load_run
 from isa_ros.core.timebase import PLANT_STEP
 from isa_ros.core.units import MILLI
 from isa_ros.plant.chambers import volumes
-from isa_ros.surroundings.bodies.leg.sheet import linkage_record
 from isa_ros.surroundings.linkage import actuator_coordinate
+from isa_ros.surroundings.linkage_sheet import linkage_record
 from isa_ros.validation.entry import at_most, Entry, Findings, OWN
 from isa_ros.validation.sheets import plant_of
 

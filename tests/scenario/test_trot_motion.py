@@ -10,8 +10,8 @@ from isa_ros.core.signals import COMMAND
 from isa_ros.errors import ConfigError
 from isa_ros.scenario.scenario import load_scenario
 from isa_ros.scenario.trot_motion import GaitMotion, read_gait
-from isa_ros.surroundings.bodies.leg.sheet import linkage_record
 from isa_ros.surroundings.linkage import actuator_coordinate
+from isa_ros.surroundings.linkage_sheet import linkage_record
 import numpy as np
 import pytest
 from tests.legs import leg_sheet

@@ -25,9 +25,10 @@ from isa_ros.errors import ConfigError
 from isa_ros.surroundings.bodies.leg.inertial import Imu
 from isa_ros.surroundings.bodies.leg.leg import InertialUnit, Leg, Pose, sample_fields
 from isa_ros.surroundings.bodies.leg.messages import joint_name, leg_messages
-from isa_ros.surroundings.bodies.leg.sheet import JOINTS, LegSheet, linkage_record
+from isa_ros.surroundings.bodies.leg.sheet import JOINTS, LegSheet
 from isa_ros.surroundings.joint_space import DrivenJoint, JointSpace
 from isa_ros.surroundings.linkage import actuator_coordinate
+from isa_ros.surroundings.linkage_sheet import linkage_record
 from isa_ros.surroundings.messages import BodyMessage
 
 

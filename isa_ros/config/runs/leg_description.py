@@ -23,9 +23,9 @@ from isa_ros.core.elementary import atan2
 from isa_ros.core.units import MILLI
 from isa_ros.plant.plant import plant_record
 from isa_ros.surroundings.bodies.leg.messages import imu_frame, joint_name, SLIDER
-from isa_ros.surroundings.bodies.leg.sheet import (
-    Direct, FourBar, Joint, JOINTS, Link, linkage_record)
+from isa_ros.surroundings.bodies.leg.sheet import JOINTS, Link
 from isa_ros.surroundings.linkage import actuator_coordinate, rod_eye
+from isa_ros.surroundings.linkage_sheet import Direct, FourBar, Joint, linkage_record
 import numpy as np
 
 WORLD = 'world'

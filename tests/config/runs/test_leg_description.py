@@ -8,8 +8,9 @@ from isa_ros.config.runs.leg_description import urdf_of
 from isa_ros.core.constants import STANDARD_GRAVITY
 from isa_ros.surroundings.bodies.leg.inertial import carried, link_motion, LINKS
 from isa_ros.surroundings.bodies.leg.motion import ContinuousState, Coordinates
-from isa_ros.surroundings.bodies.leg.sheet import body_record, linkage_record
+from isa_ros.surroundings.bodies.leg.sheet import body_record
 from isa_ros.surroundings.linkage import actuator_coordinate
+from isa_ros.surroundings.linkage_sheet import linkage_record
 from isa_ros.surroundings.messages import Inertial
 import numpy as np
 import pytest

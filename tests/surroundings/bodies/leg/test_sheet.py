@@ -7,7 +7,8 @@ from pathlib import Path
 from isa_ros.config.models.catalogue import leg_names
 from isa_ros.errors import ParameterError
 from isa_ros.surroundings import linkage
-from isa_ros.surroundings.bodies.leg.sheet import body_record, leg_record, linkage_record
+from isa_ros.surroundings.bodies.leg.sheet import body_record, leg_record
+from isa_ros.surroundings.linkage_sheet import linkage_record
 import pytest
 from tests.legs import leg_sheet
 import yaml

@@ -1,0 +1,1 @@
+"""Robots from a URDF: the reader, and the tree made of it."""

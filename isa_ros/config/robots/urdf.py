@@ -1,0 +1,313 @@
+"""
+Links and joints of a URDF, as they are written: https://wiki.ros.org/urdf/XML.
+
+Read are names, parents, places, axes, ranges and inertias; shapes, colours and extensions are
+skipped. A document type, and with it every entity, is refused, so that a file cannot expand.
+"""
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+import math
+from pathlib import Path
+import re
+from typing import NamedTuple
+from xml.etree.ElementTree import Element, TreeBuilder
+from xml.parsers import expat
+
+from isa_ros.core.elementary import cos, sin
+from isa_ros.core.suggest import alternatives
+from isa_ros.errors import ConfigError
+from isa_ros.surroundings.bodies.robot.sheet import ORIGIN
+import numpy as np
+from numpy.typing import NDArray
+
+Floats = NDArray[np.float64]
+
+MAX_BYTES = 16 << 20    # of one file; meshes are in files of their own
+JOINT_KINDS = ('revolute', 'continuous', 'prismatic', 'fixed', 'floating')
+_NAME = re.compile('[A-Za-z][A-Za-z0-9_]*')
+_ROUNDING = 1e-15       # of the sine of pi, of which a turn by 90 deg is free
+_IMPOSSIBLE = 1e-3      # by which a principal moment may exceed the sum of the two others
+
+
+class Pose(NamedTuple):
+    """A frame in the axes of another one."""
+
+    place: Floats
+    """m, (3,)."""
+    rotation: Floats
+    """Its axes in the columns, (3, 3)."""
+
+
+@dataclass(frozen=True, eq=False)
+class UrdfLink:
+    """A link: its mass and inertia, 0 without ``<inertial>``."""
+
+    name: str
+    mass: float
+    """kg."""
+    com: Floats
+    """Centre of mass, m, link axes, (3,)."""
+    inertia: Floats
+    """About the centre of mass, kg m2, link axes, (3, 3)."""
+
+
+@dataclass(frozen=True, eq=False)
+class UrdfJoint:
+    """A joint: the frame of ``child`` in that of ``parent`` at coordinate 0."""
+
+    name: str
+    kind: str
+    """One of `JOINT_KINDS`."""
+    parent: str
+    child: str
+    origin: Pose
+    axis: Floats
+    """Of length 1, axes of the child, (3,)."""
+    low: float
+    """rad or m; infinite for a continuous joint."""
+    high: float
+
+
+@dataclass(frozen=True, eq=False)
+class Urdf:
+    """A URDF: every link but ``root`` is the child of one joint."""
+
+    name: str
+    links: dict[str, UrdfLink]
+    joints: tuple[UrdfJoint, ...]
+    """In the order of the file."""
+    root: str
+
+
+def load_urdf(path: Path) -> Urdf:
+    """Return the content of a file; as `read_urdf`."""
+    try:
+        with path.open('rb') as file:
+            raw = file.read(MAX_BYTES + 1)
+    except OSError as error:
+        raise ConfigError(f'{path}: cannot be read: {error.strerror}') from error
+    if len(raw) > MAX_BYTES:
+        raise ConfigError(f'{path.name}: larger than {MAX_BYTES} bytes, must be smaller')
+    return read_urdf(raw, path.name)
+
+
+def read_urdf(text: str | bytes, name: str) -> Urdf:
+    """
+    Return the links and joints of a URDF; messages begin with ``name``.
+
+    Raises
+    ------
+    ConfigError
+        The text is not a URDF of one tree, or has a joint or an inertia that no robot has; the
+        message names link or joint.
+
+    """
+    top = _parsed(text, name)
+    if top.tag != 'robot':
+        raise ConfigError(f'{name}: its element is <{top.tag}>, must be <robot>')
+    links: dict[str, UrdfLink] = {}
+    for element in top.findall('link'):
+        where = f'{name}: link {_named(element, "link", name)}'
+        if element.get('name') in links:
+            raise ConfigError(f'{where} is there twice')
+        links[element.attrib['name']] = _link(element, where)
+    joints: dict[str, UrdfJoint] = {}
+    for element in top.findall('joint'):
+        where = f'{name}: joint {_named(element, "joint", name)}'
+        if element.get('name') in joints:
+            raise ConfigError(f'{where} is there twice')
+        joints[element.attrib['name']] = _joint(element, where, links)
+    root = _root(links, tuple(joints.values()), name)
+    return Urdf(top.get('name', ''), links, tuple(joints.values()), root)
+
+
+def _parsed(text: str | bytes, name: str) -> Element:
+    """Return the element of a document without a document type."""
+    builder = TreeBuilder()
+    parser = expat.ParserCreate()
+    parser.buffer_text = True
+    parser.StartElementHandler = builder.start
+    parser.EndElementHandler = builder.end
+
+    def refuse(*declared: object) -> None:
+        raise ConfigError(
+            f'{name}: line {parser.CurrentLineNumber}: has a document type, <!DOCTYPE '
+            f'{declared[0]}>, which is not read: a URDF has no entities')
+    parser.StartDoctypeDeclHandler = refuse
+    try:
+        parser.Parse(text, True)
+    except expat.ExpatError as error:
+        raise ConfigError(
+            f'{name}: line {error.lineno}: is not XML: {expat.ErrorString(error.code)}') from error
+    except (ValueError, LookupError) as error:  # its encoding
+        raise ConfigError(f'{name}: is not XML: {error}') from error
+    return builder.close()
+
+
+def _named(element: Element, what: str, name: str) -> str:
+    """Return the name of a link or joint, which columns and topics have too."""
+    own = element.get('name', '')
+    if not _NAME.fullmatch(own):
+        raise ConfigError(
+            f'{name}: a {what} has the name {own!r}, must be letters, digits and underscores, a '
+            'letter first')
+    return own
+
+
+def _root(links: dict[str, UrdfLink], joints: tuple[UrdfJoint, ...], name: str) -> str:
+    """Return the link without a parent, and refuse what is not one tree."""
+    parents: dict[str, UrdfJoint] = {}
+    for joint in joints:
+        if joint.child in parents:
+            raise ConfigError(
+                f'{name}: link {joint.child} is the child of {parents[joint.child].name} and '
+                f'{joint.name}, must be of one joint: a closed loop is a linkage of a drive')
+        parents[joint.child] = joint
+    roots = [own for own in links if own not in parents]
+    if not links or len(roots) > 1:
+        raise ConfigError(
+            f'{name}: has {len(roots)} links without a parent'
+            f'{": " if roots else ""}{", ".join(roots)}; must have one, the root')
+    for link in links:
+        seen = [link]
+        while seen[-1] in parents:
+            seen.append(parents[seen[-1]].parent)
+            if seen[-1] in seen[:-1]:
+                raise ConfigError(f'{name}: link {link} is its own parent, by the joints of '
+                                  f'{", ".join(seen[:-1])}')
+    return roots[0]
+
+
+def _link(element: Element, where: str) -> UrdfLink:
+    inertial = element.find('inertial')
+    if inertial is None:
+        return UrdfLink(element.attrib['name'], 0.0, np.zeros(3), np.zeros((3, 3)))
+    mass = _number(_below(inertial, 'mass', where), 'value', f'{where}: mass')
+    if mass < 0.0:
+        raise ConfigError(f'{where}: mass value = {mass:g} kg, must be >= 0 kg')
+    given = _below(inertial, 'inertia', where)
+    xx, xy, xz, yy, yz, zz = (_number(given, key, f'{where}: inertia') for key in (
+        'ixx', 'ixy', 'ixz', 'iyy', 'iyz', 'izz'))
+    inertia = np.array([[xx, xy, xz], [xy, yy, yz], [xz, yz, zz]])
+    moments = np.linalg.eigvalsh(inertia)
+    if moments[0] < 0.0 or (mass == 0.0 and moments[2] > 0.0):
+        raise ConfigError(
+            f'{where}: inertia has the principal moments {_numbers(moments)} kg m2, must be >= 0'
+            f'{", and 0 without mass" if mass == 0.0 else ""}')
+    if moments[2] > (1.0 + _IMPOSSIBLE) * (moments[0] + moments[1]):
+        raise ConfigError(
+            f'{where}: inertia has the principal moments {_numbers(moments)} kg m2, the largest '
+            'must be <= the sum of the two others, as of any rigid body')
+    origin = _origin(inertial, where)
+    return UrdfLink(element.attrib['name'], mass, origin.place,
+                    origin.rotation @ inertia @ origin.rotation.T)
+
+
+def _joint(element: Element, where: str, links: dict[str, UrdfLink]) -> UrdfJoint:
+    kind = element.get('type', '')
+    if kind not in JOINT_KINDS:
+        raise ConfigError(
+            f'{where}: type = {kind!r}, must be one of {", ".join(JOINT_KINDS)}')
+    if element.find('mimic') is not None:
+        raise ConfigError(
+            f'{where}: has <mimic>, which is not read: a joint that follows another one is part '
+            'of a linkage of a drive')
+    parent, child = (_below(element, side, where).get('link', '')
+                     for side in ('parent', 'child'))
+    for side, link in (('parent', parent), ('child', child)):
+        if link not in links:
+            raise ConfigError(f'{where}: {side} = {link!r} is not a link; '
+                              f'{alternatives(link, list(links))}')
+    axis = np.array([1.0, 0.0, 0.0])
+    given = element.find('axis')
+    if given is not None and kind not in ('fixed', 'floating'):
+        axis = _vector(given, 'xyz', f'{where}: axis')
+        length = math.sqrt(float(axis @ axis))
+        if length == 0.0:
+            raise ConfigError(f'{where}: axis xyz = 0 0 0, must have a direction')
+        axis = axis / length
+    low, high = _range(element, kind, where)
+    return UrdfJoint(
+        element.attrib['name'], kind, parent, child, _origin(element, where), axis, low, high)
+
+
+def _range(element: Element, kind: str, where: str) -> tuple[float, float]:
+    """Return the range of a joint, rad or m."""
+    if kind not in ('revolute', 'prismatic'):
+        return -math.inf, math.inf
+    limit = element.find('limit')
+    if limit is None:
+        raise ConfigError(
+            f'{where}: has no <limit lower upper>, which a {kind} joint needs'
+            f'{"; without a range its type is continuous" if kind == "revolute" else ""}')
+    low, high = (_number(limit, key, f'{where}: limit', 0.0) for key in ('lower', 'upper'))
+    if not low < high:
+        unit = 'rad' if kind == 'revolute' else 'm'
+        raise ConfigError(
+            f'{where}: limit lower = {low:g} {unit}, must be < upper = {high:g} {unit}')
+    return low, high
+
+
+def _below(element: Element, tag: str, where: str) -> Element:
+    found = element.find(tag)
+    if found is None:
+        raise ConfigError(f'{where}: <{element.tag}> lacks <{tag}>')
+    return found
+
+
+def _origin(element: Element, where: str) -> Pose:
+    """Return the ``<origin>`` below an element; the frame itself without one."""
+    found = element.find('origin')
+    if found is None:
+        return Pose(np.zeros(3), np.eye(3))
+    return Pose(_vector(found, 'xyz', f'{where}: origin', ORIGIN),
+                turned(*_vector(found, 'rpy', f'{where}: origin', ORIGIN)))
+
+
+def turned(roll: float, pitch: float, yaw: float) -> Floats:
+    """Return R_z(yaw) R_y(pitch) R_x(roll), (3, 3), with exact zeros in turns by 90 deg."""
+    (s_r, c_r), (s_p, c_p), (s_y, c_y) = (
+        (sin(angle), cos(angle)) for angle in map(float, (roll, pitch, yaw)))
+    rotation = np.array([
+        [c_y * c_p, c_y * s_p * s_r - s_y * c_r, c_y * s_p * c_r + s_y * s_r],
+        [s_y * c_p, s_y * s_p * s_r + c_y * c_r, s_y * s_p * c_r - c_y * s_r],
+        [-s_p, c_p * s_r, c_p * c_r]])
+    return np.where(np.abs(rotation) < _ROUNDING, 0.0, rotation)
+
+
+def _vector(
+        element: Element, key: str, where: str,
+        default: tuple[float, float, float] | None = None) -> Floats:
+    text = element.get(key)
+    if text is None and default is not None:
+        return np.array(default)
+    numbers = list(_finite(text or '', f'{where} {key}'))
+    if len(numbers) != 3:
+        raise ConfigError(f'{where} {key} = {text!r}, must be three numbers')
+    return np.array(numbers)
+
+
+def _number(element: Element, key: str, where: str, default: float | None = None) -> float:
+    text = element.get(key)
+    if text is None and default is not None:
+        return default
+    numbers = list(_finite(text or '', f'{where} {key}'))
+    if len(numbers) != 1:
+        raise ConfigError(f'{where} {key} = {text!r}, must be a number')
+    return numbers[0]
+
+
+def _finite(text: str, where: str) -> Iterator[float]:
+    for word in text.split():
+        try:
+            value = float(word)
+        except ValueError:
+            value = math.nan
+        if not math.isfinite(value):
+            raise ConfigError(f'{where} = {text!r}, must be finite numbers')
+        yield value
+
+
+def _numbers(values: Floats) -> str:
+    return ', '.join(f'{value:.3g}' for value in values)
