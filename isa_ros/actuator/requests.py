@@ -3,7 +3,9 @@
 from isa_ros.core.device import (
     CLEAR, DISABLE, DISABLED, ENABLE, ENABLED, FAULT, INITIALISING, QUICK_STOP, state_name, STOP)
 from isa_ros.core.signals import COMMAND, HAS_CLEAR_FAULT, HAS_ENABLE, HAS_MODE, HAS_QUICK_STOP
+from isa_ros.core.units import MPA
 from isa_ros.reu.device import is_held
+from isa_ros.reu.protection import GONE
 from isa_ros.reu.reactions import is_cause_gone
 from isa_ros.reu.transitions import TRANSITIONS
 from isa_ros.reu.wiring import first_mode, mode_of, Reu
@@ -78,6 +80,9 @@ def refusal_of(
             return 'the cause of the fault is not gone'
         if event == ENABLE and constants.rules.emergency_stop > 0.0:
             return 'the emergency stop is not released'
+        if event == ENABLE and reu.protection.supply_taken == GONE:
+            return (f'the supply pressure is {reu.supply_pressure / MPA:.2f} MPa: what the '
+                    'emergency stop took is not back')
         if event == ENABLE and state == QUICK_STOP and not is_held(constants.rules, reu.status):
             return 'the quick stop has not ended'
     return ''

@@ -12,7 +12,7 @@ from isa_ros.core.conditions import CONDITIONS, REACTIONS
 from isa_ros.core.device import EVENTS, MODES, STATES
 from isa_ros.core.signals import EVERY_KIND, Records, WAS_REFUSED
 from isa_ros.errors import ConfigError
-from isa_ros.reu.protection import EXTENDING, RETRACTING
+from isa_ros.reu.protection import EXTENDING, GONE, RETRACTING
 
 _FLAG, _BITS, _MODE = 1, (1 << len(CONDITIONS)) - 1, len(MODES) - 1
 _DIRECTIONS = EXTENDING | RETRACTING
@@ -29,7 +29,7 @@ LARGEST: Mapping[str, int] = {
     'protection.trips': _BITS, 'protection.warnings': _BITS, 'protection.first': _BITS,
     'protection.last': len(CONDITIONS), 'protection.last_warning': len(CONDITIONS),
     'protection.present': _BITS, 'protection.busy': _BITS, 'protection.kept': _BITS,
-    'protection.clears': _FLAG, 'protection.supply_taken': _FLAG,
+    'protection.clears': _FLAG, 'protection.supply_taken': GONE,
     'protection.reaction': len(REACTIONS) - 1, 'protection.inhibited': _DIRECTIONS,
     'link_lost': _FLAG,
     'kinds': EVERY_KIND | WAS_REFUSED, 'is_enabled': _FLAG, 'mode': _MODE}

@@ -27,6 +27,16 @@ def travels(known: Mapping[str, Changeable]) -> np.ndarray:
         for name, own in known.items()], bool)
 
 
+def nothing(travels: np.ndarray) -> np.ndarray:
+    """
+    Return the rows of a channel with nothing on its way, (n, 1 + number that travel).
+
+    A row has the plant step (-1: none) and the values; between two rows a frame is on its way that
+    has left with the first, so that there are at most SLOTS + 1.
+    """
+    return np.full((SLOTS + 1, 1 + int(travels.sum())), -1.0)
+
+
 class ServiceChannel:
     """
     What is on its way to the REU: the values as they were handed over at some plant steps.
@@ -39,9 +49,7 @@ class ServiceChannel:
             self, link: np.record, state: np.record, values: ChangingValues,
             travels: np.ndarray) -> None:
         self._link, self._state, self._values, self._travels = link, state, values, travels
-        # A row has the plant step (-1: none) and the values; between two rows a frame is on its
-        # way that has left with the first, so that there are at most SLOTS + 1.
-        self._rows = np.full((SLOTS + 1, 1 + int(travels.sum())), -1.0)
+        self._rows = nothing(travels)
 
     def clear(self) -> None:
         """Begin a run with nothing on its way."""

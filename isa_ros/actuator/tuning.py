@@ -5,9 +5,9 @@ from dataclasses import replace
 from typing import Any
 
 from isa_ros.actuator.inbox import WITH_GAINS
-from isa_ros.actuator.link import link_record
+from isa_ros.actuator.link import link_record, NONE
 from isa_ros.actuator.rows import row_record
-from isa_ros.actuator.service_channel import ServiceChannel, travels
+from isa_ros.actuator.service_channel import nothing, ServiceChannel, travels
 from isa_ros.actuator.sheet import actuator_record, ActuatorSheet
 from isa_ros.actuator.tunable import (
     changed_together, changing, GAINS, LOAD, named, PROTECTION, with_changed_load)
@@ -96,7 +96,8 @@ class Tuning:
         """Refuse unknown names, and values that are not numbers, before any of them is kept."""
         self._changed_by({
             bare(name): value for name, value in values.items()
-            if bare(name) not in self._known or not isinstance(value, (int, float))})
+            if bare(name) not in self._known or isinstance(value, bool)
+            or not isinstance(value, (int, float))})
 
     def known(self, name: str) -> Changeable:
         """Return one of `changing` by its key or its name."""
@@ -180,6 +181,25 @@ class Tuning:
             self._channel.restore(snapshot[self.values.nbytes:])
         self._changed_by(self.values.accepted)
         self._write()
+
+
+def values_in_force(
+        sheet: ActuatorSheet, load: LocalLoad | None, snapshot: bytes) -> dict[str, float]:
+    """
+    Return the values in force that are not those of the sheet, from a `SmartActuator.snapshot`.
+
+    Raises
+    ------
+    ConfigError
+        A value is not finite.
+
+    """
+    known = changing(sheet, load)
+    values = ChangingValues('saved state', list(known), [own.value for own in known.values()])
+    channel = 0 if sheet.link.kind == NONE else nothing(travels(known)).nbytes
+    end = len(snapshot) - channel
+    values.restore(snapshot[end - values.nbytes:end])
+    return values.in_force
 
 
 def gains_command(values: Mapping[str, float]) -> np.void:

@@ -28,8 +28,8 @@ from isa_ros.reu.flow_stop import (
     FLOW_STOP, FLOW_STOP_STATE, has_stood, stands, watch_load)
 from isa_ros.reu.impedance import SETPOINT
 from isa_ros.reu.protection import DAMP as REACTS_BY_DAMP, DISABLE as REACTS_BY_DISABLE
-from isa_ros.reu.protection import HOLD as REACTS_BY_HOLD
-from isa_ros.reu.protection import QUICK_STOP as REACTS_BY_QUICK_STOP, request_clear
+from isa_ros.reu.protection import GONE, HOLD as REACTS_BY_HOLD
+from isa_ros.reu.protection import QUICK_STOP as REACTS_BY_QUICK_STOP, request_clear, TAKEN
 from isa_ros.reu.reactions import is_cause_gone
 from isa_ros.reu.stops import advance_return, advance_stop, begin_return, begin_stop, stay_here
 from isa_ros.reu.transitions import GUARDS, next_states
@@ -153,8 +153,8 @@ def take_requests(step, reu, state):
     if own.requests & HAS_ENABLE:
         own.refused &= ~HAS_ENABLE
         event = ENABLE if own.requested_enable else DISABLE
-        if happens(event, int(may_enable(reu.rules, own)), step, reu, own) and (
-                own.state == INITIALISING):
+        is_possible = may_enable(reu.rules, state.protection, own)
+        if happens(event, int(is_possible), step, reu, own) and own.state == INITIALISING:
             own.auto_enable = own.requested_enable
         if own.requested_enable != is_enabled(own):
             refuse(HAS_ENABLE, own)
@@ -169,9 +169,15 @@ def take_requests(step, reu, state):
 
 
 @kernel
-def may_enable(rules, own):
-    """Return whether a `DEVICE_STATE` may be enabled: no emergency stop, a quick stop at rest."""
-    return rules.emergency_stop == 0.0 and (own.state != QUICK_STOP or is_held(rules, own))
+def may_enable(rules, found, own):
+    """
+    Return whether a `DEVICE_STATE` may be enabled.
+
+    No emergency stop is open, what it took of the supply's pressure is back, and a quick stop is
+    at rest. ``found`` is a `PROTECTION_STATE`.
+    """
+    return (rules.emergency_stop == 0.0 and found.supply_taken != GONE
+            and (own.state != QUICK_STOP or is_held(rules, own)))
 
 
 @kernel
@@ -269,7 +275,7 @@ def device_step(step, reu, state):
     if not own.is_on:
         watch_load(state.measured.force, reu.rules.flow, own.flow)
     if reu.rules.emergency_stop > 0.0:
-        found.supply_taken = 1
+        found.supply_taken = max(found.supply_taken, TAKEN)
         if is_enabled(own) == 1:
             happens(EMERGENCY_STOP, 0, step, reu, own)
             own.auto_enable = 0

@@ -32,6 +32,7 @@ NONE, WARN, LIMIT, HOLD, DAMP, QUICK_STOP, DISABLE, BLOCK = range(len(REACTIONS)
 _Bits = namedtuple('_Bits', BITS)  # type: ignore[misc]
 BIT: Any = _Bits(*BITS.values())  # for kernels, which read it by name: BIT.overload
 EXTENDING, RETRACTING = 1, 2  # bits of the directions that are inhibited
+TAKEN, GONE = 1, 2  # of the supply pressure: it may fall, it has fallen
 
 PROTECTION = np.dtype([
     ('is_on', 'i8'),
@@ -57,7 +58,7 @@ PROTECTION_STATE = np.dtype([
     ('kept', 'i8'),                         # bit set: trips that have stopped the actuator
     ('clears', 'i8'),                       # 1: trips whose condition has ended are to be cleared
     ('inhibited', 'i8'),                    # EXTENDING, RETRACTING
-    ('supply_taken', 'i8'),                 # 1: an emergency stop has taken the supply pressure
+    ('supply_taken', 'i8'),                 # TAKEN, GONE: by an emergency stop; 0: by none
     ('busy', 'i8'),                         # bit set: is counted, or has a bit
     ('setpoint_age', 'i8'),                 # conversions + 1 since the last one; 0: none yet
     ('warning_count', 'i8', (N,)),          # conversions in a row beyond the level
@@ -138,7 +139,6 @@ def protection_record(
         delay=delay, reaction=reaction, evidence=evidence, supervision=supervision)
 
 
-_ENOUGH = 1e9   # Pa: above any level
 _DIGITS = 9  # a delay of 10 ms is 100 periods of 0.1 ms, not 101
 
 
@@ -158,7 +158,9 @@ def measure(supply_pressure, temperature, protection, state):
     values[BIT.overpressure] = max(measured.pressure_a, measured.pressure_b)
     values[BIT.overcurrent] = abs(measured.current)
     values[BIT.overtemperature] = temperature
-    values[BIT.supply_low] = wanted_pressure(supply_pressure, protection, state)
+    values[BIT.supply_low] = supply_pressure
+    if own.supply_taken != 0:
+        await_supply(supply_pressure, protection, state)
     values[BIT.relief_open] = max(measured.pressure_a, measured.pressure_b)
     values[BIT.load_cell_implausible] = unexplained_force(
         measured, velocity, protection.stroke, protection.evidence, own.evidence)
@@ -180,18 +182,20 @@ def measure(supply_pressure, temperature, protection, state):
 
 
 @kernel
-def wanted_pressure(supply_pressure, protection, state):
+def await_supply(supply_pressure, protection, state):
     """
-    Return the supply pressure as it is judged, Pa.
+    Follow the supply pressure, Pa, that an emergency stop has taken.
 
-    What an emergency stop has dumped does not count as low, until it is back or the outputs are
-    on: its members could neither be cleared nor enabled otherwise.
+    Until it has fallen and is back, or the outputs are on, `supply_low` does not trip: the group's
+    members could neither be cleared nor released otherwise. After a release it may fall on.
     """
-    own = state.protection
-    if own.supply_taken == 1 and (
-            state.status.is_on == 1 or -supply_pressure <= protection.quiet[BIT.supply_low]):
+    own, excess = state.protection, -supply_pressure
+    if excess > protection.trip[BIT.supply_low]:
+        own.supply_taken = GONE
+    elif own.supply_taken == GONE and excess <= protection.trip_end[BIT.supply_low]:
         own.supply_taken = 0
-    return _ENOUGH if own.supply_taken == 1 else supply_pressure
+    if state.status.is_on == 1:
+        own.supply_taken = 0
 
 
 @kernel
@@ -230,8 +234,10 @@ def judge_one(k, step, mode, protection, own):
         own.warnings & bit != 0, own.present & bit != 0, own.trips & bit != 0)
     warns = is_met(excess, protection.warning[k], protection.warning_end[k], was_warned,
                    own.warning_count[k], protection.delay[k])
-    met = is_met(excess, protection.trip[k], protection.trip_end[k], was_met,
-                 own.trip_count[k], protection.delay[k])
+    rests = k == BIT.supply_low and own.supply_taken != 0
+    met = not rests and is_met(
+        excess, protection.trip[k], protection.trip_end[k], was_met, own.trip_count[k],
+        protection.delay[k])
     if met and reaction_of(k, mode, protection) >= QUICK_STOP:
         own.kept |= bit
     elif own.clears != 0:       # over, or its reaction has become weaker

@@ -14,7 +14,7 @@ import numpy as np
 ALWAYS, AUTO_ENABLE = '', 'auto_enable'
 CAUSE_GONE, POSSIBLE = 'its cause is gone', 'it is possible'
 AT_REST = 'at rest, quick_stop: ramp_and_hold'
-RELEASED = 'no emergency stop'
+RELEASED = 'no emergency stop, the supply is back'
 
 
 class Transition(NamedTuple):

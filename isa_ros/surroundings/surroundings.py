@@ -10,8 +10,8 @@ from dataclasses import dataclass
 from typing import NamedTuple
 
 from isa_ros.core.changeable import Changeable, changeables, with_changes
-from isa_ros.core.changing_values import bare, ChangingValues
-from isa_ros.core.parameter import fault, Parameters
+from isa_ros.core.changing_values import bare, ChangingValues, OFF
+from isa_ros.core.parameter import check, fault, Parameters
 from isa_ros.core.saved_state import broken_number, restored_rows
 from isa_ros.core.suggest import alternatives
 from isa_ros.errors import ConfigError, RunError
@@ -134,9 +134,12 @@ class Surroundings:
             An unknown name, a value out of its range, or a supply too small for the tick.
 
         """
-        for name in map(bare, values):
+        for given, value in values.items():
+            name = bare(given)
             if name not in self.changing:
                 raise ConfigError(f'{name} is unknown; {alternatives(name, self.changing)}')
+            if not given.startswith(OFF):
+                check(name, value, self.changing[name].declared)
         for all_values in self._values.with_accepted(values):
             for supply, sheet in self._sheets(all_values):
                 supply.refuse(sheet)

@@ -11,8 +11,9 @@ on the samples and values at the tick's start alone, wherever the actuators comp
 from collections.abc import Mapping, Sequence
 from typing import NamedTuple
 
+from isa_ros.actuator.tuning import values_in_force
 from isa_ros.config.runs.emergency_stops import AT_REST, NEVER
-from isa_ros.config.runs.run_config import RunConfig
+from isa_ros.config.runs.run_config import ActuatorConfig, RunConfig
 from isa_ros.core.conditions import BITS, conditions, REACTIONS
 from isa_ros.core.device import DISABLED, FAULT
 from isa_ros.core.signals import Records
@@ -35,8 +36,8 @@ class StopGroup(NamedTuple):
 
     line: str
     """Name of its line in `Surroundings.changing`."""
-    trips: dict[int, int]
-    """By row of each actuator: bits of the conditions whose trip opens the line."""
+    trips: Mapping[int, int]
+    """By row of each actuator: bits of the conditions whose trip opens the line, by its sheet."""
     reactions: Sequence[str]
     """Of these conditions."""
     supplies: Sequence[str]
@@ -47,28 +48,34 @@ class StopGroup(NamedTuple):
 
 class EmergencyStops:
     """
-    The lines of the groups over a run; ``names`` of the actuators by row are for its errors.
+    The lines of the groups over a run of ``actuators``, by row.
 
     ``surroundings`` have the lines and the dump valves among their values; ``step`` is the tick
     in s.
     """
 
     def __init__(
-            self, groups: Sequence[StopGroup], names: Sequence[str],
+            self, groups: Sequence[StopGroup], actuators: Sequence[ActuatorConfig],
             surroundings: Surroundings, step: float) -> None:
-        self._groups, self._names, self._surroundings = tuple(groups), names, surroundings
-        self._step = step
+        self._groups, self._actuators = tuple(groups), actuators
+        self._surroundings, self._step = surroundings, step
         self._told: dict[int | str, bool | None] = {}
         self.restart()
 
-    def restart(self, is_restored: bool = False) -> None:
-        """Begin at t = 0, or with participants from a saved state: they are told anew."""
-        every = [*self._told]
-        for group in self._groups if is_restored else ():
-            every += [*group.trips, *group.supplies]
-        self._told = dict.fromkeys(every)
+    def restart(self) -> None:
+        """Begin at t = 0, with the reactions of the sheets; participants are told anew."""
+        self._told = dict.fromkeys(self._told)
         self._is_idle = False
         self._waited = dict.fromkeys((group.line for group in self._groups), 0)
+        self._trips = {group.line: dict(group.trips) for group in self._groups}
+
+    def restore(self, participants: Sequence[bytes]) -> None:
+        """Go on with ``participants`` of a saved state, actuators first, and their reactions."""
+        for group in self._groups:
+            self._told |= dict.fromkeys([*group.trips, *group.supplies])
+        self.restart()
+        self.take_tuned({row: values_in_force(own.sheet, own.load, state) for row, (own, state)
+                         in enumerate(zip(self._actuators, participants))})
 
     def take_tuned(self, tuned: Mapping[int, Mapping[str, float]]) -> None:
         """Take the parameters that changed, by row: reactions in force open the lines."""
@@ -78,19 +85,18 @@ class EmergencyStops:
                 if condition is None:
                     continue
                 for group in self._groups:
-                    if row in group.trips:
-                        bit = 1 << BITS[condition]
-                        group.trips[row] = (
-                            group.trips[row] | bit if REACTIONS[int(value)] in group.reactions
-                            else group.trips[row] & ~bit)
+                    trips, bit = self._trips[group.line], 1 << BITS[condition]
+                    if row in trips:
+                        opens = REACTIONS[int(value)] in group.reactions
+                        trips[row] = trips[row] | bit if opens else trips[row] & ~bit
 
     def cause(self, group: StopGroup, samples: Records) -> str:
         """Return the trips that open the line of a group, or ''."""
         found = []
-        for row, bits in group.trips.items():
+        for row, bits in self._trips[group.line].items():
             tripped = int(samples[row]['trips']) & bits
             if tripped:
-                found.append(f'{self._names[row]} {" ".join(conditions(tripped))}')
+                found.append(f'{self._actuators[row].name} {" ".join(conditions(tripped))}')
         return ', '.join(found)
 
     def request(self, is_open: bool, samples: Records, group: str | None = None) -> None:
@@ -100,9 +106,13 @@ class EmergencyStops:
         Raises
         ------
         ConfigError
-            There is no such group, or a trip in ``samples`` would open its line again.
+            There is no such group, ``is_open`` is neither of both, or a trip in ``samples`` would
+            open its line again.
 
         """
+        if is_open not in (False, True):
+            raise ConfigError(
+                f'emergency_stop = {is_open!r}, must be True (open) or False (released)')
         lines = {own.line: own for own in self._groups}
         if group is not None:
             line = f'{line_of(group)}.{OPEN}'
@@ -181,5 +191,5 @@ def emergency_stops_of(run: RunConfig, surroundings: Surroundings) -> EmergencyS
                 if not isinstance(supply.sheet.dump, NoneDump)
                 and set(supply.feeds) & set(group.actuators)],
             group.dumps == AT_REST))
-    return EmergencyStops(groups, [own.name for own in run.actuators], surroundings,
-                          run.step_ns / NS_PER_SECOND)
+    return EmergencyStops(
+        groups, run.actuators, surroundings, run.step_ns / NS_PER_SECOND)

@@ -194,8 +194,8 @@ class TickLoop:
         """
         requests = state.rows_of_requests(len(self.rows.requests))
         self._surroundings.restore(state.load)
-        if self.stops is not None:
-            self.stops.restart(is_restored=True)
         self.transport.restore(state.tick, state.participants, self.rows)
+        if self.stops is not None:
+            self.stops.restore(state.participants)
         self.rows.requests[:] = requests
         self.ticks = state.tick

@@ -216,3 +216,14 @@ def test_values_that_are_refused_together_are_refused_in_two_calls_too(monkeypat
         actuator.tune({'force.kf': 1e-3})
     actuator.tick()
     assert actuator.applied_parameters == {'force.kp': 1.1e-7}
+
+
+@pytest.mark.parametrize('key', ['plant.spool.stuck', 'reu.force.kp', 'force.kp'])
+def test_a_truth_is_no_number(key):
+    """It was taken as 1."""
+    actuator = smart_actuator('isa_v5', 'mass', timing=TICK)
+    before = actuator.parameter(key)
+    with pytest.raises(ConfigError, match=f'{key} = True, must be a number'):
+        actuator.tune({key: True})
+    actuator.tick()
+    assert actuator.parameter(key) == before

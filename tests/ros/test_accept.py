@@ -96,7 +96,7 @@ def test_the_supply_and_a_reset_are_refused_while_time_stays_free(observer, acce
         is_open = accept == ACCEPT_ALL
         assert pressure.successful is is_open and count.successful
         assert surroundings.tuned_value('supply.pressure_mpa') == (15.0 if is_open else 20.7)
-        calls = []
+        calls, stops = [], []
 
         class Run:
             t_ns = ticks = 0
@@ -107,10 +107,17 @@ def test_the_supply_and_a_reset_are_refused_while_time_stays_free(observer, acce
 
             def step(self, n_ticks):
                 calls.append(n_ticks)
+
+            def emergency_stop(self, is_open):
+                stops.append(is_open)
         services._coordinator = Run()
         answer = services._on_reset(Trigger.Request(), Trigger.Response())
         assert answer.success is is_open and (is_open or answer.message == REASON)
         assert services._on_step(Trigger.Request(), Trigger.Response()).success
         assert calls == (['reset', 7] if is_open else [7])
+        for wanted in (True, False):    # whoever sees a machine go wrong may stop it
+            assert services._on_emergency_stop(
+                SetBool.Request(data=wanted), SetBool.Response()).success
+        assert stops == [True, False]
     finally:
         node.destroy_node()

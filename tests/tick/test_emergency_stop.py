@@ -1,18 +1,23 @@
 """An emergency stop: one trips or somebody asks, all of its group stop, and what leads back."""
 
 from dataclasses import replace
+import math
 from pathlib import Path
+import re
 
 import isa_ros
 from isa_ros.bag.reader import Bag
 from isa_ros.config.runs.run_config import RunConfig
 from isa_ros.config.text.yaml_text import Tree
+from isa_ros.core.conditions import BITS
 from isa_ros.core.device import DISABLED, ENABLED, FAULT, QUICK_STOP
+from isa_ros.core.signals import COMMAND, HAS_ENABLE
 from isa_ros.errors import ConfigError
 from isa_ros.replay.replay import recorded_inputs
 from isa_ros.scripting.run import Run
 from isa_ros.simulation import Simulation
 from isa_ros.tick.emergency_stop import LONGEST_STOP
+import numpy as np
 import pytest
 from tests.replay.test_replay_faults import content, replayed
 
@@ -297,7 +302,7 @@ def test_a_frozen_program_is_blocked_too():
 SCENARIO: Tree = {
     'name': 'stopped', 'duration_s': 0.6,
     'tracks': {'right': [{'t_s': 0.0, 'position': 0.07},
-                         {'t_s': 0.5, 'enabled': True, 'position': 'hold'}]},
+                         {'t_s': 0.56, 'enabled': True, 'position': 'hold'}]},
     'faults': [{'t_s': 0.04, 'emergency_stop': 'pair', 'until_s': 0.45},
                {'t_s': 0.2, 'actuator': 'left', 'set': SHIFTED}]}
 
@@ -366,15 +371,118 @@ def test_a_released_line_is_told_before_the_first_tick_of_a_restored_run():
     assert states(restored)[1] == ENABLED and dumped(restored) < 1e-3
 
 
-def test_what_is_enabled_before_the_pressure_is_back_trips():
+def test_what_is_enabled_before_the_pressure_is_back_is_refused_with_the_reason():
+    """It tripped by supply_low, which opened the line of the whole group again."""
     simulation = moving()
     simulation.emergency_stop()
-    advance(simulation, ENDED_MS)
+    advance(simulation, ENDED_MS + 50)
     simulation.emergency_stop(False)
     advance(simulation, 2)
+    right = simulation.group.actuators[1]
+    row = np.zeros(1, COMMAND)[0]
+    row['kinds'], row['is_enabled'] = HAS_ENABLE, 1
+    is_taken, answer = right.request(row, 'enable')
+    assert not is_taken
+    assert re.search(r'the supply pressure is \d\.\d\d MPa: what the emergency stop took is not '
+                     'back$', answer)
+    simulation.command('right', is_enabled=True)
+    advance(simulation, 5)
+    sample = simulation.samples['right']
+    assert (sample.device_state, sample.trips, sample.refused_requests) == (DISABLED, 0.0, 1.0)
+    assert isa_ros.conditions(sample.warnings) == ['supply_low']
+    advance(simulation, 400)
     simulation.command('right', is_enabled=True)
     advance(simulation, 60)
-    assert isa_ros.conditions(simulation.samples['right'].trips) == ['supply_low']
+    assert states(simulation)[1] == ENABLED
+    assert isa_ros.conditions(simulation.samples['right'].warnings) == []
+
+
+@pytest.mark.parametrize('dump', [
+    SUPPLY, {'kind': 'constant', 'pressure_mpa': 20.7, 'return_pressure_mpa': 0.0,
+             'dump': {'kind': 'lag', 'time_constant_ms': 100.0}}], ids=['valve', 'lag'])
+def test_a_release_while_the_pressure_still_falls_ends_with_the_pressure_back(dump: Tree):
+    """Supply_low tripped 10 ms after it fell below 4.4 MPa, and the line was open again."""
+    simulation = moving({'dumps': 'at_once', 'actuators': ['left', 'right', 'other']},
+                        supply=dump)
+    for name in simulation.names:   # off before the pressure falls: nothing of them trips
+        simulation.command(name, is_enabled=False)
+    advance(simulation, 1)
+    simulation.emergency_stop()
+    supply = simulation.supply_samples['supply']
+    while supply.pressure > 14e6:
+        simulation.step()
+    simulation.emergency_stop(False)
+    lowest = float(supply.pressure)
+    for _ in range(500):
+        simulation.step()
+        lowest = min(lowest, float(supply.pressure))
+        assert simulation.surroundings.tuned_value('emergency_stop.pair.opened') == 0.0
+    assert supply.pressure > 15e6
+    assert states(simulation) == [DISABLED] * 3
+    if dump is SUPPLY:
+        assert lowest < 4.4e6
+    for name in simulation.names:
+        simulation.command(name, is_enabled=True)
+    advance(simulation, 60)
+    assert states(simulation) == [ENABLED] * 3
+    simulation.tune('supply', {'pressure_mpa': 2.0} if dump is not SUPPLY else {
+        'dump.opened': 1.0})    # and a supply that is lost later trips
+    advance(simulation, 400)
+    assert isa_ros.conditions(simulation.samples['left'].trips)[0] == 'supply_low'
+
+
+@pytest.mark.parametrize('value', [0.5, 2, math.nan, 'on', None])
+def test_what_is_neither_open_nor_released_is_refused(value):
+    simulation = run().simulation()
+    with pytest.raises(ConfigError, match=rf'emergency_stop = {value!r}, must be True \(open\) '
+                                          r'or False \(released\)$'):
+        simulation.emergency_stop(value)
+
+
+@pytest.mark.parametrize(('value', 'words'), [
+    (0.5, '= 0.5, must be a whole number'), (2.0, '= 2, must be <= 1'),
+    (math.nan, '= nan, must be finite'), (True, '= True, must be a number')])
+def test_a_line_that_is_set_as_a_parameter_is_open_or_not(value, words):
+    simulation = run().simulation()
+    with pytest.raises(ConfigError, match=f'emergency_stop.pair.opened {words}'):
+        simulation.surroundings.tune({'emergency_stop.pair.opened': value})
+    assert simulation.surroundings.tuned_value('emergency_stop.pair.opened') == 0.0
+
+
+@pytest.mark.parametrize('link', [None, {
+    'kind': 'ethercat', 'cycle_ms': 1.0, 'delay_cycles': 1.0, 'jitter_us': 0.0, 'loss': 0.0,
+    'watchdog_ms': 8.0}], ids=['direct', 'link'])
+def test_a_restored_run_has_the_reactions_in_force(link: Tree | None):
+    """It had those of the sheets until a reaction changed again."""
+    more = {} if link is None else {'link': link}
+    reaction = 'reu.protection.load_cell_implausible.reaction'
+    saved = run({'reactions': ['disable']}, **more).simulation()
+    saved.tune('left', {reaction: 'warn'})
+    saved.tune('right', {'reu.protection.spool_deviation.reaction': 'disable'})
+    advance(saved, 30)
+    for actuator, fault, states_then in (
+            ('left', {'plant.sensors.force.bias': 2000.0}, [ENABLED] * 3),
+            ('right', SHIFTED, [QUICK_STOP, FAULT, ENABLED])):
+        restored = run({'reactions': ['disable']}, **more).simulation()
+        restored.restore(saved.snapshot())
+        restored.tune(actuator, fault)
+        advance(restored, 100)
+        assert restored.samples[actuator].trips
+        assert states(restored) == states_then
+
+
+def test_a_reset_forgets_the_reactions_of_a_fault_that_is_taken_off():
+    weak = {'t_s': 0.0, 'actuator': 'left', 'until_s': 0.5,
+            'set': {'reu.protection.spool_deviation.reaction': 'warn'}}
+    simulation = isa_ros.load(tree(), {
+        'name': 'weak', 'duration_s': 1.0, 'faults': [weak]}).simulation()
+    advance(simulation, 20)
+    assert simulation.loop.stops is not None
+    simulation.loop.stops.restart()
+    sample = simulation.group.samples.copy()
+    sample['trips'][0] = 1 << BITS['spool_deviation']
+    simulation.loop.stops.act(sample, {})
+    assert simulation.surroundings.tuned_value('emergency_stop.pair.opened') == 1.0
 
 
 def test_a_reset_keeps_the_line_as_it_keeps_all_tuned_values():
