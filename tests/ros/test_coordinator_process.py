@@ -82,7 +82,11 @@ def test_second_coordinator_is_refused_and_the_first_goes_on(domain, tmp_path, i
 
 
 def test_two_nodes_of_one_name_are_refused(domain, tmp_path, observer):
-    """The coordinator cannot decide which of the two is the actuator."""
+    """
+    The coordinator cannot decide which of the two is the actuator.
+
+    The run goes on with the first if the second answers after the last hello (a busy host).
+    """
     arguments = {'config_file': RIG, 'lockstep': True}
     with actuator(tmp_path / 'a.log', 'rotor', **arguments) as a, \
             actuator(tmp_path / 'b.log', 'rotor', **arguments) as b:

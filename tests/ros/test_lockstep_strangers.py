@@ -100,7 +100,8 @@ class Participant:
         self._end._send = lambda data: self.answers.append(decode_answer(data))
         starts = np.zeros(2, START)
         self.answers_to(
-            encode_hello(RUN, 1, 1_000_000, starts, ROSTER), encode_begin(RUN))
+            encode_hello(RUN, 1, 1_000_000, starts, ROSTER),
+            encode_begin(RUN, [None, self._end._identity]))
 
     def answers_to(self, *steps: bytes) -> list[tuple[AnswerKind, int, bool]]:
         """Hand steps over; return (kind, tick, is repeated) of the answers to them."""
@@ -175,6 +176,7 @@ ODD_STEPS = {
     'cut': tick(0)[:-1], 'not finite': altered(tick(0), BODY_OF_A_STEP + 80, NAN),
     'another version': altered(tick(0), KIND - 2, b'\x63'),
     'a hello without names': encode_hello(RUN + 1, 1, 1_000_000, np.zeros(2, START), ROSTER)[:-9],
+    'a begin of others': encode_begin(RUN, [b'another']),
     'a save of others': encode_restore(RUN, -1, 5, [b'after 5']),
     'a tick of one actuator': encode_tick(RUN, 0, Rows(1, Outside(False)), has_controllers=False)}
 
@@ -184,6 +186,16 @@ def test_an_odd_step_is_discarded_and_the_run_goes_on(member, odd):
     assert member.answers_to(ODD_STEPS[odd], tick(0), ODD_STEPS[odd], tick(1)) == [
         done(0), done(1)]
     assert member.role.ticks == 2
+
+
+def test_a_second_node_of_a_name_leaves_the_run_that_begins_with_the_first(member):
+    """Its answer to the hello was lost or late; it gives its name, and advances with no tick."""
+    assert member.answers_to(
+        encode_end(RUN), encode_hello(RUN + 1, 1, 1_000_000, np.zeros(2, START), ROSTER),
+        encode_begin(RUN + 1, [None, b'the first']), tick(0, RUN + 1)) == [
+            (AnswerKind.READY, 1, False), (AnswerKind.UNBOUND, 0, False)]
+    assert member.answers[-1].parts == [b'kfe']
+    assert member.role.ticks == 0
 
 
 def test_a_run_with_this_node_in_another_role_is_not_joined(member):

@@ -168,7 +168,7 @@ def test_answer_round_trip(run_id, tick, parts, is_repeated):
 
 @pytest.mark.parametrize('data', [
     encode_end(5),
-    encode_begin(5),
+    encode_begin(5, [b'node', None]),
     encode_save(5, -1),
     encode_tick(5, 1, filled(3), True),
     encode_answer(AnswerKind.DONE, 5, 1, 0, [b'abc', None])])
@@ -184,5 +184,5 @@ def test_bytes_are_a_uint8_multi_array(data):
     (decode_step, encode_end(5)),
     (decode_answer, encode_answer(AnswerKind.BUSY, 5, 1, 0, ()))])
 def test_another_version_is_refused(decode, data):
-    with pytest.raises(RunError, match='wire version = 9, must be'):
-        decode(data[:16] + b'\x09' + data[17:])
+    with pytest.raises(RunError, match='wire version = 10, must be'):
+        decode(data[:16] + b'\x0a' + data[17:])

@@ -150,7 +150,12 @@ class LockstepTransport:
     def begin(self) -> None:
         """Make every participant publish its first messages."""
         self._wires.connect(self._answers.identities)
-        self._send(encode_begin(self._run_id))
+        self._announce()
+
+    def _announce(self) -> None:
+        """Tell nodes that are not part of the run, and second nodes of a name, that it goes on."""
+        self._send(encode_begin(self._run_id, [
+            self._answers.identities.get(k) for k in range(len(self._participants))]))
 
     def send(self, tick: int, rows: Rows) -> None:
         """Broadcast the changes of parameters, if there are any, and the step of a tick."""
@@ -184,7 +189,7 @@ class LockstepTransport:
         """Announce that the run continues, and check for lost participants and second nodes."""
         if time.monotonic() >= self._begin_due:
             self._begin_due = time.monotonic() + REPEAT_S
-            self._send(encode_begin(self._run_id))
+            self._announce()
         self._refuse_lost(f'while waiting before tick {self._tick}')
         data = self._mailbox.wait(seconds)
         if data is not None:
@@ -255,7 +260,7 @@ class LockstepTransport:
             if (data := self._mailbox.take()) is not None:
                 return data
             self._next_check = time.monotonic() + TOPIC_CHECK_S
-            self._send(encode_begin(self._run_id))  # announces the run to other nodes
+            self._announce()
         data = self._wires.wait(SLICE_S)
         if data is None and not self._wires.is_open:
             self._send(self._step)  # repeated: an answer may have been lost with the sockets

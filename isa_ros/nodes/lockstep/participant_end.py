@@ -137,6 +137,8 @@ class ParticipantEnd:
             step.refuse_restore(self._n_participants)
         elif step.kind is StepKind.CHANGE:
             step.refuse_change(self._n_participants)
+        elif step.kind is StepKind.BEGIN:
+            step.refuse_begin(self._n_participants)
 
     def _handle(self, step: Step) -> None:
         if step.run_id == self._run_id:
@@ -152,7 +154,7 @@ class ParticipantEnd:
         elif step.kind is StepKind.TICK:
             self._answer_tick(step)
         elif step.kind is StepKind.BEGIN:
-            self._begin()
+            self._begin_with(step)
         elif step.kind is StepKind.SAVE:
             self._answer_to(step, AnswerKind.SAVED, lambda: (self._role.snapshot(),))
         elif step.kind is StepKind.CHANGE:
@@ -219,6 +221,14 @@ class ParticipantEnd:
         self._role.serve()
         self._first = self._role.start(step, self._index)
         return True
+
+    def _begin_with(self, step: Step) -> None:
+        """Begin, or leave the run if another node of this name has answered its hellos first."""
+        if step.identity(self._index) == self._identity:
+            self._begin()
+        else:
+            self._unbind()
+            self._answer_foreign(step)
 
     def _begin(self) -> None:
         if not self._has_begun:

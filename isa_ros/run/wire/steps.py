@@ -8,7 +8,7 @@ from typing import NamedTuple
 from isa_ros.core.signals import COMMAND, LOAD_PORT, Records, SAMPLE, START
 from isa_ros.run.wire.header import opened, prefix, VERSION, WireError
 from isa_ros.run.wire.parts import (
-    is_finite, joined, refuse_command, split, tuned_of, tuned_part)
+    is_finite, joined, Parts, refuse_command, split, tuned_of, tuned_part)
 from isa_ros.run.wire.roster import Roster
 from isa_ros.surroundings.supply import SUPPLY_SAMPLE
 from isa_ros.tick.exchange import PublishedRows, Rows
@@ -32,7 +32,8 @@ class StepKind(IntEnum):
     """The run has ended; the next hello may begin another."""
     BEGIN = 4
     """Publish the first messages: all participants are ready and `/clock` is published. Sent again
-    while the run continues without ticks on the topic. Not answered."""
+    while the run continues without ticks on the topic. It names the nodes that are the
+    participants, by their identities; answered by others of their names only."""
     SAVE = 5
     """Answer with the complete state before the next tick; ``tick`` is a number below 0, different
     for each request, so that answers can be assigned to their request."""
@@ -100,6 +101,10 @@ class Step(NamedTuple):
         """Return the state from which one participant continues."""
         return split(self.body[_NUMBER.size:], self.rows)[index] or b''
 
+    def identity(self, index: int) -> bytes | None:
+        """Return which node is a participant of a run that begins."""
+        return split(self.body, self.rows)[index]
+
     def changes(self, index: int) -> dict[str, float]:
         """Return the parameters of one actuator that change at the next tick."""
         part = split(self.body, self.rows)[index]
@@ -138,6 +143,12 @@ class Step(NamedTuple):
             raise WireError(
                 f'changes of {self.rows} participants, must be of {n_participants}')
 
+    def refuse_begin(self, n_participants: int) -> None:
+        """Refuse a begin of another number of participants; as `refuse_tick`."""
+        if self.rows != n_participants:
+            raise WireError(
+                f'a begin of {self.rows} participants, must be of {n_participants}')
+
     def refuse_restore(self, n_participants: int) -> None:
         """Refuse a request to restore another number of participants; as `refuse_tick`."""
         if self.rows != n_participants or self.restored_tick() < 0:
@@ -162,9 +173,9 @@ def encode_tick(run_id: int, tick: int, rows: Rows, has_controllers: bool) -> by
     return _step(StepKind.TICK, run_id, tick, len(rows.ports), body)
 
 
-def encode_begin(run_id: int) -> bytes:
-    """Return the bytes of a begin; see `StepKind.BEGIN`."""
-    return _step(StepKind.BEGIN, run_id, 0, 0, b'')
+def encode_begin(run_id: int, identities: Parts) -> bytes:
+    """Return the bytes of a begin, with the identity of each participant of another process."""
+    return _step(StepKind.BEGIN, run_id, 0, len(identities), joined(identities))
 
 
 def encode_save(run_id: int, number: int) -> bytes:
@@ -223,6 +234,8 @@ def decode_step(data: bytes) -> Step:
         _refuse_hello(step)
     elif step.kind is StepKind.RESTORE:
         split(body[_NUMBER.size:], rows)
+    elif step.kind is StepKind.BEGIN:
+        split(body, rows)
     elif step.kind is StepKind.CHANGE:
         for part in split(body, rows):
             if part is not None:
