@@ -29,16 +29,16 @@ if TYPE_CHECKING:
     from isa_ros.simulation import Simulation as Simulation
     from isa_ros.surroundings.body import Body as Body
     from isa_ros.surroundings.mechanism import Mechanism as Mechanism
-    from isa_ros.surroundings.mechanism import MechanismBody as MechanismBody
     from isa_ros.surroundings.mechanism import Motion as Motion
     from isa_ros.surroundings.mechanism import Mounting as Mounting
+    from isa_ros.surroundings.mechanism_body import MechanismBody as MechanismBody
     from isa_ros.tick.trips import TripWarning as TripWarning
     __version__: str
 
 _HOMES = {
     'ActuatorGroup': 'actuator.group', 'Actuators': 'scripting.actuators',
     'Body': 'surroundings.body', 'Controller': 'controller',
-    'Mechanism': 'surroundings.mechanism', 'MechanismBody': 'surroundings.mechanism',
+    'Mechanism': 'surroundings.mechanism', 'MechanismBody': 'surroundings.mechanism_body',
     'Motion': 'surroundings.mechanism', 'Mounting': 'surroundings.mechanism',
     'Result': 'scripting.result', 'Run': 'scripting.run', 'Setpoint': 'controller',
     'Simulation': 'simulation', 'State': 'controller', 'Sweep': 'scripting.sweep',

@@ -161,7 +161,8 @@ def compare(options: Namespace) -> bool:
 
 
 def report(options: Namespace) -> bool:
-    """Draw the figures of a bag; print what its devices did, and where its energy went."""
+    """Draw the figures of a bag; print how it ended, what its devices did, where energy went."""
+    from isa_ros.analysis.report.ending import ending
     from isa_ros.analysis.report.energy import energy_text
     from isa_ros.analysis.report.events import events_text, recorded_events
     from isa_ros.analysis.report.report import another_version, write_report
@@ -169,7 +170,10 @@ def report(options: Namespace) -> bool:
     from isa_ros.bag.reader import Bag
     bag: Path = options.bag
     page = options.out or (bag if bag.is_dir() else bag.parent) / 'report.html'
-    for path in write_report(bag, page):
+    paths = write_report(bag, page)
+    if ended := ending(Bag(bag)):
+        print_line(ended)
+    for path in paths:
         print(path)
     signals = read_signals(bag, needs_values=False)
     if signals.problem:

@@ -78,4 +78,9 @@ def surroundings_in_form(run: RunConfig) -> Surroundings:
 
     Raises as `surroundings_of`, but for external bodies.
     """
-    return surroundings_of(run, {own.name: at_rest for own in run.bodies if own.is_given})
+    return surroundings_of(run, bodies_in_form(run))
+
+
+def bodies_in_form(run: RunConfig) -> dict[str, BodyFactory]:
+    """Return what makes the external bodies of a run at rest at zero, without simulators."""
+    return {own.name: at_rest for own in run.bodies if own.is_given}

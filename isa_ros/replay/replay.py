@@ -18,7 +18,7 @@ from isa_ros.config.runs.run_config import RunConfig
 from isa_ros.core.changing_values import RECORDED
 from isa_ros.core.saved_state import RunState
 from isa_ros.core.signals import Records
-from isa_ros.errors import BagError, SetpointError
+from isa_ros.errors import BagError, ConfigError, SetpointError
 from isa_ros.replay.compare import Comparer
 from isa_ros.replay.difference import Report
 from isa_ros.replay.installation import (
@@ -266,7 +266,7 @@ def recorded_inputs(bag: Bag, run: RunConfig) -> Inputs:
                 inputs.tuned_supplies[tick] = tuned_values(message.data, NODE)
             elif topic == diagnostics.TOPIC[0]:
                 diagnosed = last
-        except (SetpointError, CdrError) as error:
+        except (ConfigError, SetpointError, CdrError) as error:
             raise BagError(f'{bag.place_of(message)}: {error}') from error
     if last < 0:
         raise BagError(f'{bag.path}: has no samples, so there is nothing to replay')

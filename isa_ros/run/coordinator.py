@@ -10,6 +10,10 @@ from isa_ros.tick.exchange import Rows
 from isa_ros.tick.tick_loop import TickLoop
 
 
+ENDED = 'ended by an error: '
+"""Begins the event of a run that did not come to its end."""
+
+
 class Interrupted(IsaError):
     """A run that was stopped before its end."""
 
@@ -63,7 +67,8 @@ class Coordinator:
         """
         Run to the end, after `TickLoop.join`, from t = 0 or from a saved state.
 
-        However the run ends, every sample of a finished tick is passed to the recorder.
+        However the run ends, every sample of a finished tick is passed to the recorder; after an
+        error also an event that begins with `ENDED`.
 
         Raises
         ------
@@ -91,6 +96,11 @@ class Coordinator:
                         self._start_clocks()    # host time before the first tick does not count
                     self._pace.wait(self.t_ns, self._should_stop)
                     self._advance()
+        except Interrupted:
+            raise
+        except Exception as error:
+            self.add_event(f'{ENDED}{error}')
+            raise
         finally:
             self._loop.end()
             if not self.is_paused:  # a paused run has no due time

@@ -80,6 +80,7 @@ class RunOutput(RowSink):
         self._surroundings = packer.surroundings
         self._events: list[bytes] = []
         self._unrecorded: int | None = None
+        self._recorded = 0
 
     def take_time(self, tick: int) -> None:
         """Publish the time of a tick, before all other messages of that instant."""
@@ -87,7 +88,7 @@ class RunOutput(RowSink):
             self._outlets.clock.publish((clock.pack(self._stamp(tick)),))
 
     def add_event(self, tick: int, text: str) -> None:
-        """Publish and record an event before a tick: a pause, a step, a reset."""
+        """Publish and record an event before a tick: a pause, a step, a reset, an error."""
         message = event.pack(self._stamp(tick), text)
         self._events.append(message)
         if self._outlets.events.has_subscribers():
@@ -114,7 +115,11 @@ class RunOutput(RowSink):
             outlets.surroundings.publish(self._packer.of(self._surroundings))
 
     def end(self) -> None:
-        """Add the diagnostics to the last instant if it is not recorded yet, and record it."""
+        """
+        Add the diagnostics to the last instant if it is not recorded yet, and record it.
+
+        Events after an instant that is recorded already, as an error in its tick, follow it.
+        """
         if self._unrecorded is not None and self._has_end:
             diagnosed = self._packer.rare.diagnose()
             if self._outlets.surroundings.has_subscribers():
@@ -122,12 +127,17 @@ class RunOutput(RowSink):
                     [diagnosed if topic.name == diagnostics.TOPIC[0] else None
                      for topic in self._surroundings])
         self.record()
+        if self._events and self._recorder is not None:
+            events, self._events = self._events, []
+            self._recorder.write_tick(
+                self._stamp(self._recorded), self._recorded, self._packer.of_events(events))
 
     def record(self) -> None:
         """Pass the last packed instant to the recorder, once."""
         tick, self._unrecorded = self._unrecorded, None
         if tick is None or self._recorder is None:
             return
+        self._recorded = tick
         events, self._events = self._events, []
         self._recorder.write_tick(self._stamp(tick), tick, self._packer.all_messages(events))
 

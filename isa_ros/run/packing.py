@@ -220,10 +220,14 @@ class Packer:
             where = self._layouts[key] = self._layout()
         packed = Packed(self._bytes, where)
         extra = [(self._index[topic], data) for topic, data in self.rare.items()]
-        extra += [(self._index[event.TOPIC[0]], data) for data in events]
+        extra += self.of_events(events)
         if not extra:
             return packed
         return Packed.of(sorted([*packed, *extra], key=lambda message: message[0]))
+
+    def of_events(self, events: Sequence[bytes]) -> Packed:
+        """Return messages of events alone."""
+        return Packed.of([(self._index[event.TOPIC[0]], data) for data in events])
 
     def _layout(self) -> Layout:
         """Return the layout of this tick's messages: of applied setpoints, and of what is due."""

@@ -3,12 +3,14 @@
 from collections.abc import Sequence
 from typing import Any
 
+from isa_ros.config.runs.external_config import refuse_start
 from isa_ros.core.signals import Records
 from isa_ros.errors import ConfigError
 from isa_ros.scripting.log import LogSink
 from isa_ros.scripting.result import Result, result_of
 from isa_ros.scripting.run import Controllers, Run
 from isa_ros.simulation import Simulation
+from isa_ros.surroundings.callers import numbers_of
 from isa_ros.surroundings.kept_ports import FORMAT, GivenBody
 from isa_ros.surroundings.mechanism import Mounting
 import numpy as np
@@ -69,15 +71,11 @@ class Actuators:
         own = [configured[name] for name in self.names]
         self._port[:] = np.zeros((), FORMAT)
         self._port['x0'] = ([each.initial_position for each in own] if position is None
-                            else self._numbers('position', position))
-        self._port['force'] = 0.0 if force is None else self._numbers('force', force)
+                            else numbers_of(self.names, 'position', position))
+        self._port['force'] = 0.0 if force is None else numbers_of(
+            self.names, 'force', force)
         for each, place in zip(own, self._port['x0'].tolist()):
-            stroke = each.sheet.plant.drive.stroke
-            if not 0.0 <= place <= stroke:
-                unit = 'rad' if each.sheet.is_rotary else 'm'
-                raise ConfigError(
-                    f'{each.name}: position = {place:g} {unit} at t = 0, must be within its '
-                    f'stroke, 0 to {stroke:g} {unit}')
+            refuse_start(each, place)
         simulation = self._run.simulation(self._controllers, body=self._body)
         self._log = LogSink(simulation, _FIRST_TICKS)
         simulation.loop.sinks = (self._log,)
@@ -87,18 +85,6 @@ class Actuators:
     def _body(self, mounting: Mounting) -> GivenBody:
         self._rows = mounting.rows
         return GivenBody(mounting.rows, lambda number: self._port)
-
-    def _numbers(self, name: str, given: ArrayLike) -> NDArray[np.float64]:
-        values = np.asarray(given, float)
-        if values.shape != (len(self.names),):
-            raise ConfigError(
-                f'{name} has the shape {values.shape}, must have ({len(self.names)},): one number '
-                f'for each of {", ".join(self.names)}')
-        if not np.isfinite(values).all():
-            broken = int(np.flatnonzero(~np.isfinite(values))[0])
-            raise ConfigError(
-                f'{self.names[broken]}: {name} = {values[broken]}, must be finite')
-        return values
 
     def advance(
             self, position: ArrayLike, velocity: ArrayLike, acceleration: ArrayLike, *,
@@ -128,13 +114,14 @@ class Actuators:
                 ('x0', position), ('v0', velocity), ('a0', acceleration),
                 ('inverse_mass', inverse_mass), ('jerk', jerk), ('stiffness', stiffness),
                 ('damping', damping)):
-            port[name] = 0.0 if given is None else self._numbers(
-                {'x0': 'position', 'v0': 'velocity', 'a0': 'acceleration'}.get(name, name), given)
+            port[name] = 0.0 if given is None else numbers_of(
+                self.names, {'x0': 'position', 'v0': 'velocity', 'a0': 'acceleration'}.get(
+                    name, name), given)
         for name, mass in zip(self.names, port['inverse_mass'].tolist()):
             if mass < 0.0:
                 raise ConfigError(f'{name}: inverse_mass = {mass:g}, must be >= 0')
         port['a_bias'] = (port['a0'] - port['inverse_mass'] * self.forces if a_bias is None
-                          else self._numbers('a_bias', a_bias))
+                          else numbers_of(self.names, 'a_bias', a_bias))
         simulation.step()
         means: NDArray[np.float64] = simulation.loop.rows.replies['mean_forces'][self._rows]
         return means.T.copy()

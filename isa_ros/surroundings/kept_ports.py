@@ -6,10 +6,14 @@ bag, or from the loop of somebody else.
 """
 
 from collections.abc import Callable, Mapping, Sequence
+import math
 
 from isa_ros.core.fields import Field, record_type
+from isa_ros.core.record import first_not_finite
 from isa_ros.core.signals import START
+from isa_ros.errors import ConfigError, SimulationDiverged
 from isa_ros.surroundings.body import Body, Records
+from isa_ros.surroundings.callers import failures_of
 from isa_ros.surroundings.messages import JointStates
 import numpy as np
 from numpy.typing import NDArray
@@ -42,6 +46,11 @@ def port_fields(k: int) -> list[Field]:
             Field(f'{_PREFIX}{_FORCE}', 'N | Nm', 'in the sensor at the end of the tick', (k,))]
 
 
+def has_ports(record: np.dtype[np.void]) -> bool:
+    """Return whether a record is the sample of an external body."""
+    return f'{_PREFIX}{_FORCE}' in (record.names or ())
+
+
 def _port_units() -> dict[str, str]:
     """Return the units of `port_fields`; actuators of a body may be linear and rotary."""
     return {field.name: field.unit for field in port_fields(1)}
@@ -69,10 +78,23 @@ _RECORDED = (('x0', 'a0', 'stiffness'), ('v0', 'jerk', 'damping'),
 
 
 def port_of_message(arrays: Sequence[Sequence[float]]) -> np.void:
-    """Return the `FORMAT` row of the position, velocity and effort of a message."""
+    """
+    Return the `FORMAT` row of the position, velocity and effort of a message.
+
+    Raises
+    ------
+    ConfigError
+        An array has not three numbers, or a number is not finite.
+
+    """
     rows: Records = np.zeros(1, FORMAT)
-    for names, values in zip(_RECORDED, arrays):
-        for name, value in zip(names, values, strict=True):
+    for names, values in zip(_RECORDED, arrays, strict=True):
+        if len(values) != len(names):
+            raise ConfigError(
+                f'{len(values)} numbers, must be {len(names)}: {", ".join(names)}')
+        for name, value in zip(names, values):
+            if not math.isfinite(value):
+                raise ConfigError(f'{name} = {value}, must be finite')
             rows[name] = value
     row: np.void = rows[0]
     return row
@@ -130,12 +152,13 @@ class RecordedBody(_Ports):
     A sample has the port of the tick that it ends; that of t = 0 place and force at rest.
     """
 
-    def __init__(self, own: Body) -> None:
+    def __init__(
+            self, own: Body, name: str, actuators: Sequence[str], step_ns: int) -> None:
         super().__init__(own.rows, own.sample.dtype)
-        self._own = own
+        self._own, self._name, self._actuators, self._step_ns = own, name, actuators, step_ns
         self._names = own.sample.dtype.names or ()
         starts: Records = np.zeros(int(own.rows.max()) + 1, START)
-        own.starts(starts)
+        self.starts(starts)
         self._begin(starts[own.rows])
         self._copy()
 
@@ -156,27 +179,64 @@ class RecordedBody(_Ports):
 
     def starts(self, starts: Records) -> None:
         """Fill the starts; as `Body.starts`."""
-        self._own.starts(starts)
+        with failures_of(self._own, 'starts'):
+            self._own.starts(starts)
 
     def ports(self, ports: Records) -> None:
-        """Fill the ports and keep them; as `Body.ports`."""
-        self._own.ports(ports)
+        """
+        Fill the ports and keep them; as `Body.ports`.
+
+        Raises
+        ------
+        RunError
+            The body fails.
+        SimulationDiverged
+            A number of a port is not finite.
+
+        """
+        with failures_of(self._own, 'ports'):
+            self._own.ports(ports)
         for name in PORT:
             self._ports[name] = ports[name][self.rows]
+        if first_not_finite(self._ports) is not None:
+            name, j = next((name, j) for name in PORT for j, value in enumerate(self._ports[name])
+                           if not math.isfinite(value))
+            raise self._diverged(
+                f'{_PREFIX}{name}[{j}] ({self._actuators[j]})', self._ports[name][j])
 
     def advance(self, replies: Records) -> None:
-        """Advance; as `Body.advance`."""
-        self._own.advance(replies)
+        """
+        Advance; as `Body.advance`.
+
+        Raises
+        ------
+        RunError
+            The body fails.
+        SimulationDiverged
+            A number of its sample is not finite.
+
+        """
+        with failures_of(self._own, 'advance'):
+            self._own.advance(replies)
         self._copy()
         self._advance(replies)
+        broken = first_not_finite(self._own.sample)
+        if broken is not None:
+            raise self._diverged(*broken)
+
+    def _diverged(self, field: str, value: float) -> SimulationDiverged:
+        return SimulationDiverged(
+            self._ticks * self._step_ns, f'{self._name}.{field}', float(value))
 
     def snapshot(self) -> bytes:
         """Return the complete state; as `Body.snapshot`."""
-        return self._snapshot(self._own.snapshot())
+        with failures_of(self._own, 'snapshot'):
+            return self._snapshot(self._own.snapshot())
 
     def restore(self, snapshot: bytes) -> None:
         """Continue from a `snapshot`; as `Body.restore`."""
-        self._own.restore(self._restore(snapshot))
+        with failures_of(self._own, 'restore'):
+            self._own.restore(self._restore(snapshot))
         self._copy()
 
 

@@ -2,6 +2,7 @@
 
 from dataclasses import replace
 from functools import partial
+import math
 from pathlib import Path
 
 import isa_ros
@@ -12,7 +13,10 @@ from isa_ros.replay.replay import recorded_inputs, replay
 from isa_ros.run.options import Request
 from isa_ros.run.session import prepare
 from isa_ros.run.without_ros import run_without_ros
+from msg_adapters.cdr import encode
+from msg_adapters.cdr_reader import decode
 import pytest
+from sensor_msgs.msg import JointState
 from tests.bag.golden import rewrite
 from tests.surroundings.mass_on_spring import MassOnSpring, OFFSETS
 
@@ -139,6 +143,25 @@ def test_a_bag_without_a_port_is_refused(
         None if topic.endswith('load_port') else data))
     with pytest.raises(BagError, match='has no load ports of the external body$'):
         recorded_inputs(Bag(tmp_path / 'none'), result.scenario.run)
+
+
+@pytest.mark.parametrize(('at', 'number', 'message'), [
+    ('position', math.nan, 'stiffness = nan, must be finite'),
+    ('effort', -math.inf, 'inverse_mass = -inf, must be finite'),
+    ('velocity', None, '2 numbers, must be 3: v0, jerk, damping')])
+def test_a_port_that_cannot_be_is_refused_with_its_place(
+        bag: Path, result: isa_ros.Result, tmp_path: Path, at: str, number: float | None,
+        message: str) -> None:
+    def broken(topic: str, sequence: int, data: bytes) -> bytes:
+        if topic != '/back/load_port' or sequence != 9:
+            return data
+        port = decode(data, JointState)
+        values = [*getattr(port, at)[:2], *([] if number is None else [number])]
+        setattr(port, at, values)
+        return encode(port)
+    rewrite(Bag(bag), tmp_path / 'broken', broken)
+    with pytest.raises(BagError, match=rf'/back/load_port, tick 9 \(t = 0.009000 s\): {message}'):
+        recorded_inputs(Bag(tmp_path / 'broken'), result.scenario.run)
 
 
 @pytest.mark.parametrize(('record', 'message'), [

@@ -254,7 +254,7 @@ def test_stop_finishes_the_tick_and_records_it():
     with pytest.raises(Interrupted, match=r't = 0\.002000 s after 2 ticks') as raised:
         rig.run()
     assert raised.value.exit_code == 130
-    assert rig.sequences == [0, 1, 2]
+    assert rig.sequences == [0, 1, 2] and not rig.events
     assert rig.log[-2:] == ['publish', 'record 2']
 
 
@@ -266,7 +266,24 @@ def test_finished_ticks_are_recorded_when_an_actuator_fails(failure):
     with pytest.raises(type(failure)) as raised:
         rig.run()
     assert raised.value is failure
+    assert rig.sequences == [0, 1, 2, 2]    # its samples, which are recorded already; the event
+    assert rig.events == {2: [f'ended by an error: {failure}']}
+
+
+def test_an_error_between_two_ticks_is_recorded_with_the_last_one():
+    """One of the body: what it gives is not sent."""
+    rig = Rig(9)
+
+    def ports(ports):
+        if rig.loop.ticks == 2:
+            raise SimulationDiverged(2_000_000, 'body.port_x0[0] (hip)', np.nan)
+        ports['x0'] = 0.0
+    rig.loop._surroundings.ports = ports
+    with pytest.raises(SimulationDiverged):
+        rig.run()
     assert rig.sequences == [0, 1, 2]
+    assert rig.events[2][0].startswith('ended by an error: body.port_x0[0] (hip) = nan at t = 0.0')
+    assert rig.log[-2].startswith('event ended by an error') and rig.log[-1] == 'record 2'
 
 
 def test_lost_recorder_ends_the_run():

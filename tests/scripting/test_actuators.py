@@ -133,7 +133,7 @@ def test_commands_controllers_and_a_log_that_grows() -> None:
     (lambda own: own.advance([0.0, 0.0], [0.0, 0.0], [0.0, 0.0], inverse_mass=[0.0, -1.0]),
      'out: inverse_mass = -1, must be >= 0'),
     (lambda own: own.start([0.04, 0.5]),
-     'out: position = 0.5 m at t = 0, must be within its stroke, 0 to 0.1 m')])
+     '^out starts at 0.5 m, must be within its stroke, 0 to 0.1 m')])
 def test_what_cannot_be_is_refused(call, message: str) -> None:
     actuators = isa_ros.Actuators(run_with())
     with pytest.raises(ConfigError, match='call start before'):

@@ -7,7 +7,7 @@ import re
 import isa_ros
 from isa_ros.config.runs.run_config import RunConfig
 from isa_ros.core.timebase import FORCE_WINDOWS
-from isa_ros.errors import ConfigError
+from isa_ros.errors import ConfigError, RunError, SimulationDiverged
 from isa_ros.run.local_run import LocalRun
 import numpy as np
 import pytest
@@ -184,6 +184,45 @@ def test_a_start_outside_the_stroke_is_refused() -> None:
             starts['position'][self.rows] = 0.3
     with pytest.raises(ConfigError, match='body: pull starts at 0.3 m, must be within its stroke'):
         rig().simulate(0.001, body=Far)
+
+
+class Broken(Slide):
+    """At its third tick a number that it gives is none, or it fails."""
+
+    field, what, ticks = 'jerk', np.nan, 0
+
+    def ports(self, ports: np.ndarray) -> None:
+        """Fill them; a number of the second actuator is broken."""
+        super().ports(ports)
+        if self.ticks == 3 and self.field:
+            ports[self.field][self.rows[1]] = self.what
+
+    def advance(self, replies: np.ndarray) -> None:
+        """Count."""
+        super().advance(replies)
+        self.ticks += 1
+        if self.ticks == 3 and not self.field:
+            self.sample['velocity'] = self.what
+
+
+@pytest.mark.parametrize(('field', 'value', 'message'), [
+    ('jerk', np.nan, r'^body.port_jerk\[1\] \(push\) = nan at t = 0.003000 s, must be finite'),
+    ('x0', -np.inf, r'^body.port_x0\[1\] \(push\) = -inf at t = 0.003000 s'),
+    ('', np.nan, '^body.velocity = nan at t = 0.003000 s')])
+def test_a_number_that_is_none_is_named_as_the_bodys(
+        field: str, value: float, message: str) -> None:
+    """In the tick in which it is given, before an actuator has it."""
+    kind = type('Own', (Broken,), {'field': field, 'what': value})
+    with pytest.raises(SimulationDiverged, match=message):
+        rig().simulate(body=kind)
+
+
+@pytest.mark.parametrize('function', ['starts', 'ports', 'advance', 'snapshot', 'restore'])
+def test_a_body_that_fails_is_named_with_its_place(function: str) -> None:
+    def fails(*given: object) -> None:
+        raise KeyError('no licence')
+    with pytest.raises(RunError, match=rf"Own.{function}: KeyError: 'no licence' \(test_own_body"):
+        rig().simulate(0.002, body=type('Own', (Slide,), {function: fails}))
 
 
 def test_its_text_is_read_back() -> None:

@@ -5,6 +5,7 @@ from collections.abc import Mapping
 import html
 from pathlib import Path
 
+from isa_ros.analysis.report.ending import ending
 from isa_ros.analysis.report.energy import energy_legend, energy_table, recorded_accounts
 from isa_ros.analysis.report.events import event_rows, recorded_events
 from isa_ros.analysis.report.figures import figures
@@ -32,7 +33,8 @@ td, th {{ padding: 0.2em 0.8em; text-align: right; }}
 td:first-child, th:first-child {{ text-align: left; }}
 img {{ max-width: 100%; }}
 </style></head>
-<body><h1>{title}</h1><p>{summary}</p><table>{rows}</table>{events}{images}{energy}</body></html>
+<body><h1>{title}</h1>{ending}<p>{summary}</p><table>{rows}</table>{events}{images}{energy}
+</body></html>
 """
 
 
@@ -65,6 +67,7 @@ def write_report(bag: Path, page: Path) -> list[Path]:
         images.append(f'<img alt="{html.escape(name)}" src="data:image/png;base64,{encoded}">')
     text = _PAGE.format(
         generator=_GENERATOR, title=html.escape(signals.run.name),
+        ending=f'<p><b>{html.escape(ended)}</b></p>' if (ended := ending(Bag(bag))) else '',
         summary=html.escape(_summary(signals)), rows=_rows(extremes(signals)),
         events=_events(events), images=''.join(images), energy=_energy(bag))
     replace_file(page, text.encode(), is_durable=False)

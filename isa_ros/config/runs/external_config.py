@@ -8,6 +8,7 @@ import sys
 from typing import Any, ClassVar
 from weakref import WeakSet
 
+from isa_ros.actuator.config import ActuatorConfig
 from isa_ros.config.runs.body_config import BODY, BodyConfig, BodyFactory, Made
 from isa_ros.config.text.keys import Key, KeyTable, NAMES, TEXT
 from isa_ros.config.text.sections import Place, Section
@@ -16,9 +17,11 @@ from isa_ros.core.signals import START
 from isa_ros.core.timebase import NS_PER_SECOND
 from isa_ros.errors import ConfigError, IsaError
 from isa_ros.surroundings.body import Body
+from isa_ros.surroundings.callers import cause_of
 from isa_ros.surroundings.kept_ports import (
     GivenBody, port_fields, port_message, RecordedBody, zeros_given)
-from isa_ros.surroundings.mechanism import cause_of, Mechanism, MechanismBody, Mounting
+from isa_ros.surroundings.mechanism import Mechanism, Mounting
+from isa_ros.surroundings.mechanism_body import MechanismBody
 from isa_ros.surroundings.messages import BodyMessage
 import numpy as np
 
@@ -108,7 +111,7 @@ class ExternalConfig(BodyConfig):
             raise ConfigError(
                 f'{self.label}: its factory returned a {type(own).__name__}, must be an '
                 'isa_ros.Body or an isa_ros.Mechanism')
-        recorded = RecordedBody(own)
+        recorded = RecordedBody(own, self.name, mounting.names, made.step_ns)
         self._refuse_start(recorded, made)
         return recorded
 
@@ -129,12 +132,7 @@ class ExternalConfig(BodyConfig):
         starts = np.zeros(max(made.rows) + 1, START)
         body.starts(starts)
         for row, own in zip(made.rows, made.actuators):
-            place, stroke = float(starts[row]['position']), own.sheet.plant.drive.stroke
-            if not 0.0 <= place <= stroke:
-                unit = 'rad' if own.sheet.is_rotary else 'm'
-                raise ConfigError(
-                    f'{self.label}: {own.name} starts at {place:g} {unit}, must be within its '
-                    f'stroke, 0 to {stroke:g} {unit}')
+            refuse_start(own, float(starts[row]['position']), f'{self.label}: ')
 
     def _imported(self) -> BodyFactory:
         """Return the factory of ``class``, of an installed module or a file in this folder."""
@@ -154,6 +152,16 @@ class ExternalConfig(BodyConfig):
                 f'{self.label}.class = {self.maker}: {module} has no function {name}')
         checked: BodyFactory = factory
         return checked
+
+
+def refuse_start(own: ActuatorConfig, place: float, where: str = '') -> None:
+    """Raise `ConfigError` if an actuator starts outside its stroke; ``place`` in m or rad."""
+    stroke = own.sheet.plant.drive.stroke
+    if not 0.0 <= place <= stroke:
+        unit = 'rad' if own.sheet.is_rotary else 'm'
+        raise ConfigError(
+            f'{where}{own.name} starts at {place:g} {unit}, must be within its stroke, 0 to '
+            f'{stroke:g} {unit}')
 
 
 def at_rest(mounting: Mounting) -> Body:

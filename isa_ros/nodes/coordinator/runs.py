@@ -26,6 +26,7 @@ from isa_ros.run.output import Outlet
 from isa_ros.run.session import record, Report, save_in_bag, Session
 from isa_ros.run.warm_up import warmed_up
 from isa_ros.run.wire.roster import Roster
+from isa_ros.surroundings.surroundings import Surroundings
 from isa_ros.tick.exchange import Transport
 from isa_ros.tick.in_process import InProcess
 import rclpy
@@ -46,7 +47,8 @@ def in_processes(session: Session, report: Report | None, should_stop: StopReque
     request = session.request
     with defaults(), sole_coordinator(request.namespace):
         _refuse_undiscovered(session, '; or use --in-process')
-        participants = _participants(session)
+        surroundings = surroundings_of(session.run)
+        participants = _participants(session, surroundings)
         processes = actuator_processes(
             session.run, request.config, request.scenario,
             session.run.names_here(request.elsewhere), request.all_changes)
@@ -54,7 +56,8 @@ def in_processes(session: Session, report: Report | None, should_stop: StopReque
                 processes, request.namespace, _work if request.is_alone else None) as children:
             _freeze_objects(session)
             with _node(request.namespace) as node:
-                _coordinate(node, session, participants, report, should_stop, children.lost)
+                _coordinate(node, session, surroundings, participants, report, should_stop,
+                            children.lost)
 
 
 def _refuse_undiscovered(session: Session, otherwise: str = '') -> None:
@@ -98,23 +101,24 @@ def coordinate(
         should_stop: StopRequest) -> None:
     """Run with participants that are started separately."""
     _refuse_undiscovered(session, '; or set in_process:=true')
-    participants = _participants(session)
+    surroundings = surroundings_of(session.run)
+    participants = _participants(session, surroundings)
     _freeze_objects(session)
-    _coordinate(node, session, participants, report, should_stop, _none_lost)
+    _coordinate(node, session, surroundings, participants, report, should_stop, _none_lost)
 
 
 def _none_lost() -> None:
     """Return None: the participants are not child processes."""
 
 
-def _participants(session: Session, *, are_here: bool = False) -> Participants:
+def _participants(
+        session: Session, surroundings: Surroundings, *, are_here: bool = False) -> Participants:
     """
     Return the participants, with the digests that the actuators must have.
 
     This compiles the kernels, so that not every child process does at the same time.
     """
     run, timing = session.run, timing_of(session.run)
-    surroundings = surroundings_of(run)
     expected = [Expected(actuator.name, '' if are_here else participant_digest(actuator, timing))
                 for actuator in warmed_up(run)]
     expected += [Expected(name, '') for name in run.controllers]
@@ -126,12 +130,12 @@ def _participants(session: Session, *, are_here: bool = False) -> Participants:
 
 
 def _coordinate(
-        node: CoordinatorNode, session: Session, participants: Participants,
-        report: Report | None, should_stop: StopRequest,
+        node: CoordinatorNode, session: Session, surroundings: Surroundings,
+        participants: Participants, report: Report | None, should_stop: StopRequest,
         lost: Callable[[], str | None]) -> None:
     transport = _lockstep(node, session, participants, should_stop, lost)
     try:
-        _record(node, session, transport, (), report, should_stop)
+        _record(node, session, transport, surroundings, (), report, should_stop)
     finally:
         transport.close()
 
@@ -150,7 +154,8 @@ def coordinate_locally(
     configs = session.run.actuators
     if session.run.controllers:
         refuse_off(', '.join(session.run.controllers))
-    participants = _participants(session, are_here=True)
+    surroundings = surroundings_of(session.run)
+    participants = _participants(session, surroundings, are_here=True)
     _freeze_objects(session)
     group = group_of(session.run)
     timing = timing_of(session.run)
@@ -166,7 +171,8 @@ def coordinate_locally(
         if session.run.controllers:
             controllers = _lockstep(node, session, participants, should_stop, _none_lost)
             transport = MixedTransport(local, controllers)
-        _record(node, session, transport, [own.outlet for own in actuators], report, should_stop)
+        _record(node, session, transport, surroundings, [own.outlet for own in actuators], report,
+                should_stop)
     finally:
         if controllers is not None:
             controllers.close()
@@ -175,10 +181,9 @@ def coordinate_locally(
 
 
 def _record(
-        node: CoordinatorNode, session: Session, transport: Transport,
+        node: CoordinatorNode, session: Session, transport: Transport, surroundings: Surroundings,
         actuators: Sequence[Outlet], report: Report | None, should_stop: StopRequest) -> None:
     """Record the run and serve its requests."""
-    surroundings = surroundings_of(session.run)
     supplies = node.supplies = SupplyParameters(node, surroundings)
     acceptance = Acceptance(node, session.run.accept)
     services = RunServices(

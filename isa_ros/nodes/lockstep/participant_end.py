@@ -1,6 +1,6 @@
 """A participant's end of the private wire."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 import secrets
 import time
 from typing import Any
@@ -16,6 +16,7 @@ from isa_ros.run.wire.answers import (
 from isa_ros.run.wire.header import WireError
 from isa_ros.run.wire.parts import Parts
 from isa_ros.run.wire.steps import decode_step, Step, STEP_TOPIC, StepKind
+from isa_ros.surroundings.kept_ports import has_ports
 from rclpy.node import Node
 from std_msgs.msg import UInt8MultiArray
 
@@ -58,6 +59,7 @@ class ParticipantEnd:
     def _unbind(self) -> None:
         self._close_wire()
         self._run_id = 0  # 0: bound to no run
+        self._external: Sequence[str] = ()  # bodies of the run that any simulator may compute
         self._index = self._n_participants = 0
         self._next_tick = 0
         self._request = 0  # number of the last request; they decrease
@@ -85,9 +87,10 @@ class ParticipantEnd:
             is_abandoned = bool(self._run_id) and not self._has_coordinator(
                 self._mailbox.count_senders())
             if is_abandoned and not self._is_abandoned:
-                self._log.warning(
-                    f'the coordinator has ended or sent nothing for {SILENCE_S:g} s, after '
-                    f'{self._next_tick} ticks; waiting for it or for another one')
+                computed = ''.join(f', or still computes body {name!r}' for name in self._external)
+                self._log.warning(one_line(
+                    f'the coordinator has ended or sent nothing for {SILENCE_S:g} s{computed}, '
+                    f'after {self._next_tick} ticks; waiting for it or for another one'))
             self._is_abandoned = is_abandoned
 
     def _next_step(self) -> bytes | None:
@@ -203,7 +206,8 @@ class ParticipantEnd:
     def _bind(self, step: Step) -> bool:
         """Join the run of a hello; return whether it lists this participant."""
         self._unbind()
-        names = list(step.roster().names)
+        roster = step.roster()
+        names = list(roster.names)
         has_role = self._name in (
             names[:step.rows] if self._role.is_actuator else names[step.rows:])
         if not has_role:
@@ -217,6 +221,7 @@ class ParticipantEnd:
             return False
         self._run_id, self._last_message = step.run_id, time.monotonic()
         self._index, self._n_participants = names.index(self._name), len(names)
+        self._external = [name for name, record in roster.bodies.items() if has_ports(record)]
         self._wire = LocalWire.to_run(self._run_id, self._identity, SLICE_S)
         self._role.serve()
         self._first = self._role.start(step, self._index)

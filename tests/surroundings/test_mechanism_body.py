@@ -3,7 +3,8 @@
 import isa_ros
 from isa_ros.core.signals import LOAD_PORT, LOAD_REPLY, START
 from isa_ros.errors import ConfigError, RunError, SimulationDiverged
-from isa_ros.surroundings.mechanism import holding_forces, MechanismBody, Mounting
+from isa_ros.surroundings.mechanism import Mounting
+from isa_ros.surroundings.mechanism_body import holding_forces, MechanismBody
 import numpy as np
 import pytest
 from tests.surroundings.mass_on_spring import (
@@ -137,7 +138,7 @@ def test_at_a_dead_centre_the_port_stays_bounded() -> None:
     mechanism.state = np.array([0.0, 0.1])
     body = MechanismBody.__new__(MechanismBody)
     with pytest.MonkeyPatch.context() as patch:
-        patch.setattr('isa_ros.surroundings.mechanism.holding_forces',
+        patch.setattr('isa_ros.surroundings.mechanism_body.holding_forces',
                       lambda mechanism, k: np.zeros(k))
         body.__init__(mechanism, mounting(), has_response=True)  # type: ignore[misc]
     ports = np.zeros(N, LOAD_PORT)
@@ -171,9 +172,23 @@ def test_it_advances_by_its_own_step_and_goes_on_from_a_snapshot() -> None:
 
 def test_a_state_that_is_not_finite_ends_the_run() -> None:
     body = moving_body(False)
-    with pytest.raises(SimulationDiverged, match='body.out_position') as caught:
+    with pytest.raises(SimulationDiverged, match=r'MassOnSpring: state\[0\] = nan') as caught:
         body.advance(replies_of(np.full((2, 5), np.nan)))
     assert caught.value.t_ns == 5_000_000
+
+
+def test_a_look_ahead_that_is_not_finite_ends_the_run() -> None:
+    """At the start of the tick for which it is made; a state at t = 0 likewise."""
+    body = moving_body(False)
+    own = MassOnSpring.stepped
+    body._mechanism.stepped = lambda *given: np.array([own(body._mechanism, *given)[0], np.inf])
+    with pytest.raises(SimulationDiverged, match=r'MassOnSpring: state\[1\] = inf') as caught:
+        body.ports(np.zeros(N, LOAD_PORT))
+    assert caught.value.t_ns == 4_000_000
+    mechanism = MassOnSpring()
+    mechanism.state = np.array([0.0, np.nan])
+    with pytest.raises(SimulationDiverged, match=r'state\[1\] = nan at t = 0.000000 s'):
+        MechanismBody(mechanism, mounting())
 
 
 def changed(name: str, function: object) -> MechanismBody:
@@ -189,10 +204,11 @@ def motion_of(*arrays: object) -> object:
 
 @pytest.mark.parametrize(('motion', 'message'), [
     (motion_of([0.04, 0.06], [0.0], [0.0, 0.0]),
-     r'MassOnSpring: velocity of its motion has the shape \(1,\), must have \(2,\): .*out, back'),
-    (motion_of([0.04, 0.06], [0.0, 0.0], 1.0), r'acceleration of its motion has the shape \(\)'),
+     r'^velocity of the motion of MassOnSpring at t = 0 has the shape \(1,\), must have \(2,\): '
+     'one number for each of out, back'),
+    (motion_of([0.04, 0.06], [0.0, 0.0], 1.0), r'acceleration of the motion .* shape \(\)'),
     (motion_of([0.04, np.nan], [0.0, 0.0], [0.0, 0.0]),
-     r'position of its motion at t = 0 is \[0.04, nan\], must be finite'),
+     '^back: position of the motion of MassOnSpring at t = 0 = nan, must be finite'),
     (lambda state, forces: MassOnSpring().motion(state, -forces),
      'out accelerates by -0.025 m/s2 . rad/s2 under 1 N . Nm at t = 0, must be >= 0')])
 def test_a_motion_that_cannot_be_is_refused_at_the_start(motion, message: str) -> None:
@@ -212,11 +228,13 @@ def test_what_the_caller_wrote_wrong_is_named_with_its_place() -> None:
         raise KeyError('no licence')
     with pytest.raises(RunError, match=r"^MassOnSpring.motion: KeyError: 'no licence' \(test_"):
         changed('motion', fails)
-    body = changed('stepped', fails)
     with pytest.raises(RunError, match='^MassOnSpring.stepped: KeyError'):
-        body.advance(replies_of(np.zeros((2, 5))))
-    body = changed('stepped', lambda state, forces, seconds: np.zeros(3))
+        changed('stepped', fails)   # its look-ahead is tried before the run
     with pytest.raises(ConfigError, match=r'its state has the shape \(3,\), must have \(2,\)'):
+        changed('stepped', lambda state, forces, seconds: np.zeros(3))
+    body = changed('displaced', fails)
+    body._mechanism.stepped = fails
+    with pytest.raises(RunError, match='^MassOnSpring.stepped: KeyError'):
         body.advance(replies_of(np.zeros((2, 5))))
 
 
@@ -224,10 +242,11 @@ def test_a_state_cannot_be_changed_in_place() -> None:
     def in_place(state: np.ndarray, forces: np.ndarray, seconds: float) -> np.ndarray:
         state += 1.0
         return state
-    body = changed('stepped', in_place)
     with pytest.raises(RunError, match='stepped: .*read-only'):
-        body.advance(replies_of(np.zeros((2, 5))))
+        changed('stepped', in_place)
+    body = moving_body(False)
     body.restore(body.snapshot())
+    body._mechanism.stepped = in_place
     with pytest.raises(RunError, match='stepped: .*read-only'):
         body.advance(replies_of(np.zeros((2, 5))))
 

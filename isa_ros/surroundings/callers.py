@@ -1,0 +1,49 @@
+"""Code and numbers of a caller: failures with their place, arrays with a number per actuator."""
+
+from collections.abc import Iterator, Sequence
+from contextlib import contextmanager
+from pathlib import Path
+import traceback
+
+from isa_ros.errors import ConfigError, IsaError, RunError
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+
+@contextmanager
+def failures_of(owner: object, function: str) -> Iterator[None]:
+    """Raise `RunError` with the place in the caller's code where it fails."""
+    try:
+        yield
+    except IsaError:
+        raise
+    except Exception as error:
+        raise RunError(f'{type(owner).__name__}.{function}: {cause_of(error)}') from error
+
+
+def cause_of(error: Exception) -> str:
+    """Return an error as one line, with the place where it was raised."""
+    place = traceback.extract_tb(error.__traceback__)[-1]
+    said = ' '.join(str(error).split())
+    return f'{type(error).__name__}: {said} ({Path(place.filename).name}:{place.lineno})'
+
+
+def numbers_of(names: Sequence[str], what: str, given: ArrayLike) -> NDArray[np.float64]:
+    """
+    Return an array with a finite number for each of k actuators, (k,).
+
+    Raises
+    ------
+    ConfigError
+        It has another shape, or a number is not finite; ``what`` says what is given.
+
+    """
+    values = np.asarray(given, float)
+    if values.shape != (len(names),):
+        raise ConfigError(
+            f'{what} has the shape {values.shape}, must have ({len(names)},): one number for each '
+            f'of {", ".join(names)}')
+    if not np.isfinite(values).all():
+        broken = int(np.flatnonzero(~np.isfinite(values))[0])
+        raise ConfigError(f'{names[broken]}: {what} = {values[broken]}, must be finite')
+    return values
