@@ -4,7 +4,8 @@ from collections.abc import Sequence
 
 from isa_ros.core.fields import Field
 from isa_ros.surroundings.bodies.leg.leg import fields_of_unit
-from isa_ros.surroundings.bodies.robot.sheet import RobotSheet
+from isa_ros.surroundings.bodies.robot.sheet import JointLinkage, RobotDrive, RobotSheet
+from isa_ros.surroundings.linkage import DIRECT
 
 ROOT_FIELDS = (
     Field('position', 'm', "of the root's origin in the world", (3,)),
@@ -39,7 +40,7 @@ def sample_fields(sheet: RobotSheet, units: Sequence[str] = ()) -> tuple[Field, 
                    Field(f'{joint.name}_torque', effort, 'of all its actuators')]
     for drive in sheet.drives:
         n = len(sheet.driven(drive))
-        fields.append(Field(f'{drive.actuator}_lever', 'm/rad',
+        fields.append(Field(f'{drive.actuator}_lever', _unit_of_lever(drive),
                             "change of the actuator's coordinate with the joint's",
                             () if n == 1 else (n,)))
     for contact in sheet.contacts:
@@ -52,3 +53,9 @@ def sample_fields(sheet: RobotSheet, units: Sequence[str] = ()) -> tuple[Field, 
         fields += [Field(force, 'm/s2', "specific force, the unit's axes", (3,)),
                    Field(turning, 'rad/s', "the unit's axes", (3,))]
     return tuple(fields)
+
+
+def _unit_of_lever(drive: RobotDrive) -> str:
+    own = drive.linkage
+    is_direct = isinstance(own, JointLinkage) and own.linkage['kind'] == DIRECT
+    return '1' if is_direct else 'm/rad'

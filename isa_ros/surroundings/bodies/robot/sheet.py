@@ -151,7 +151,10 @@ class RobotSheet:
     @property
     def mass(self) -> float:
         """Return the mass of all links, kg."""
-        return math.fsum(link.mass for link in self.links)
+        total = 0.0
+        for link in self.links:
+            total += link.mass
+        return total
 
     def link(self, name: str) -> int:
         """Return the index of a link by its name; raises `ValueError` if there is none."""

@@ -1,0 +1,229 @@
+"""
+A robot as the shared load of its actuators: ports down, forces up.
+
+``x`` of a port is the load's side of the force sensor in the actuator's own coordinate: piston
+position (m) or shaft angle (rad). Force > 0 pushes the actuator out.
+"""
+
+from collections.abc import Mapping, Sequence
+import math
+
+from isa_ros.core.fields import record_type, units_of
+from isa_ros.core.record import rows_of
+from isa_ros.core.saved_state import restored_rows, TIME_BYTES, time_of
+from isa_ros.core.timebase import FORCE_WINDOWS, NS_PER_SECOND, PLANT_STEP_NS, steps_in
+from isa_ros.errors import ConfigError, SimulationDiverged
+from isa_ros.surroundings.bodies.leg.inertial import AXES
+from isa_ros.surroundings.bodies.robot import port_kernel as kernels
+from isa_ros.surroundings.bodies.robot.holding import holding_forces
+from isa_ros.surroundings.bodies.robot.motion import scratch_size, state_names
+from isa_ros.surroundings.bodies.robot.records import (
+    contact_records, drive_records, link_records, speed_records, unit_records)
+from isa_ros.surroundings.bodies.robot.sample import sample_fields
+from isa_ros.surroundings.bodies.robot.sampling import fill_sample, read_unit
+from isa_ros.surroundings.bodies.robot.sheet import (
+    JointLinkage, RobotSheet, RobotStart, RobotUnit)
+import numpy as np
+
+ROUNDING = 1e-9     # of the length of a quaternion in a sheet
+
+
+class Robot:
+    """
+    A tree of links on the ground under its actuators, advanced tick by tick: a `Body`.
+
+    At t = 0 it is at rest, what the start holds is held, and the actuators carry the rest
+    (`actuator_forces`). It is released before the tick that begins at ``release_ns``; None: by
+    `release` alone. ``rows`` are those of its actuators, in the order of the sheet's drives. Each
+    of the ``units`` keeps its reading in the sample until the next one.
+
+    Raises
+    ------
+    ConfigError
+        The start does not fit the sheet, or an actuator moves nothing there.
+
+    """
+
+    def __init__(self, sheet: RobotSheet, start: RobotStart, step_ns: int,
+                 rows: Sequence[int] | None = None, release_ns: int | None = None,
+                 units: Sequence[RobotUnit] = ()) -> None:
+        steps_in(step_ns // FORCE_WINDOWS, 'a fifth of step_ms')
+        _refuse_start(sheet, start)
+        k = len(sheet.drives)
+        self._step_ns, self._step = step_ns, step_ns / NS_PER_SECOND
+        self.rows = np.array(range(k) if rows is None else rows, np.int64)
+        """Rows of its actuators, (k,)."""
+        self._release_ns, self._is_to_be_released = release_ns, release_ns is not None
+        self._t_ns = 0
+        self._names = state_names(sheet)
+        self._records = (link_records(sheet), speed_records(sheet, start), *drive_records(sheet),
+                         contact_records(sheet))
+        n = len(self._names)
+        self._arrays = (*self._records, np.zeros(scratch_size(len(self._records[1]), k, n)))
+        self._state = np.zeros(n + 4 * k + 1)
+        self._fields = sample_fields(sheet, [unit.name for unit in units])
+        self._sample = rows_of(1, record_type(self._fields))
+        self._values = self._sample.view(np.float64)
+        self._units, self._unit_records = tuple(units), unit_records(units)
+        self._readings = self._values[len(self._values) - AXES * len(units):].reshape(-1, AXES)
+        self._start(sheet, start)
+
+    def _start(self, sheet: RobotSheet, start: RobotStart) -> None:
+        y = self._motion
+        at = 0
+        if sheet.is_free:
+            y[:3], y[3:7], at = start.position, start.quaternion, 7
+        y[at:at + len(start.joints)] = start.joints
+        self._state[-1] = 1.0
+        forces = holding_forces(y, self._arrays, [own.actuator for own in sheet.drives])
+        kept = kernels.kept_part(self._state, len(forces))
+        kept.force[:] = kept.mean_force[:] = kept.older_mean[:] = forces
+        kernels.robot_instant(self._state, forces, *self._arrays)
+        self._take(forces)
+
+    @property
+    def _motion(self) -> np.ndarray:
+        """Return y of the state, a view."""
+        return self._state[:len(self._names)]
+
+    def _take(self, forces: np.ndarray) -> None:
+        """Fill the sample, and read the units that are due, under the sensor forces of now."""
+        fill_sample(self._motion, forces, *self._records, self._values)
+        for unit, own, reading in zip(self._units, self._unit_records, self._readings):
+            if self._t_ns % unit.period_ns == 0:
+                read_unit(self._t_ns // PLANT_STEP_NS, self._motion, *self._arrays, own, reading)
+
+    @property
+    def t_ns(self) -> int:
+        """Return the time the robot has reached, ns."""
+        return self._t_ns
+
+    @property
+    def actuator_forces(self) -> np.ndarray:
+        """Return the sensor forces (k,) the ports assume now; at t = 0 they hold the robot."""
+        forces: np.ndarray = kernels.kept_part(self._state, len(self.rows)).force.copy()
+        return forces
+
+    @property
+    def sample(self) -> np.ndarray:
+        """
+        Return the sample at the end of the last tick, (1,); overwritten by the next.
+
+        Its fields are `isa_ros.surroundings.bodies.robot.sample.sample_fields`.
+        """
+        return self._sample
+
+    @property
+    def units(self) -> Mapping[str, str]:
+        """Return the unit of each field of the sample."""
+        return units_of(self._fields)
+
+    @property
+    def is_held(self) -> bool:
+        """Return whether it has not been released."""
+        return bool(self._state[-1])
+
+    def starts(self, starts: np.ndarray) -> None:
+        """Fill position (m | rad) and force (N | Nm) of its actuators' rows of `START`."""
+        starts['position'][self.rows] = self._records[2]['position']
+        starts['force'][self.rows] = self.actuator_forces
+
+    def release(self) -> None:
+        """Let everything go from the next tick on."""
+        self._state[-1] = 0.0
+
+    def ports(self, ports: np.ndarray) -> None:
+        """
+        Fill its rows of ``ports`` (`LOAD_PORT`, shape (n_actuators,)) for the next tick.
+
+        The pressures in them are left as they are.
+        """
+        if self._is_to_be_released and self._t_ns >= (self._release_ns or 0):
+            self._is_to_be_released = False
+            self.release()
+        kernels.robot_ports(self._state, self._step, self.rows, *self._arrays, ports)
+
+    def advance(self, replies: np.ndarray) -> None:
+        """
+        Advance by one tick under ``replies`` (`LOAD_REPLY`, shape (n_actuators,)).
+
+        Raises
+        ------
+        SimulationDiverged
+            A state is no longer finite.
+
+        """
+        broken = kernels.robot_tick(
+            self._state, self._step_ns, self.rows, *self._arrays, replies)
+        self._t_ns += self._step_ns
+        self._refuse_broken(int(broken))
+        self._take(replies['force'][self.rows])
+
+    def _refuse_broken(self, at: int) -> None:
+        """Raise `SimulationDiverged` for a place in the state that is not finite; -1: none is."""
+        if at >= 0:
+            name = (*self._names, 'force')[min(at, len(self._names))]
+            raise SimulationDiverged(self._t_ns, f'robot.{name}', float(self._state[at]))
+
+    def snapshot(self) -> bytes:
+        """
+        Return the whole state; `restore` continues from it byte for byte.
+
+        Raises
+        ------
+        SimulationDiverged
+            A number of the state is not finite.
+
+        """
+        self._refuse_broken(int(kernels.first_broken(self._state)))
+        return (self._t_ns.to_bytes(TIME_BYTES, 'little') + self._state.tobytes()
+                + self._sample.tobytes())
+
+    def restore(self, snapshot: bytes) -> None:
+        """
+        Continue from a `snapshot` of a robot with the same sheet and step.
+
+        Raises
+        ------
+        ConfigError
+            A number is not finite, or the time is not that of a tick.
+
+        """
+        t_ns = time_of(snapshot, self._step_ns, 'robot')
+        state = restored_rows(
+            snapshot, self._saved_state, 1, TIME_BYTES, 'robot')
+        sample = restored_rows(
+            snapshot, self._sample.dtype, 1, TIME_BYTES + self._state.nbytes, 'robot')
+        self._t_ns, self._sample[:] = t_ns, sample
+        self._state[:] = state['state'][0]
+        self._is_to_be_released = self._release_ns is not None and self.is_held
+
+    @property
+    def _saved_state(self) -> np.dtype[np.void]:
+        return np.dtype([('state', '<f8', self._state.shape)])
+
+
+def _refuse_start(sheet: RobotSheet, start: RobotStart) -> None:
+    """Refuse a start of another number of joints, outside a range, or with a driven joint held."""
+    if len(start.joints) != len(sheet.joints):
+        raise ConfigError(f'the start has {len(start.joints)} joint coordinates, must have '
+                          f'{len(sheet.joints)}')
+    for joint, q in zip(sheet.joints, start.joints):
+        if not (math.isfinite(q) and joint.low <= q <= joint.high):
+            raise ConfigError(f'start of {joint.name} = {q:g}, must be within {joint.low:g}..'
+                              f'{joint.high:g}')
+    if sheet.is_free:
+        w, x, y, z = start.quaternion
+        length = math.sqrt(w * w + x * x + y * y + z * z)
+        if not abs(length - 1.0) < ROUNDING:
+            raise ConfigError(f'the quaternion of the start has length {length:g}, must be 1')
+    names = [joint.name for joint in sheet.joints]
+    for name in start.held_joints:
+        if name not in names:
+            raise ConfigError(f'held joint {name}, must be one of {", ".join(names)}')
+    for drive in sheet.drives:
+        if isinstance(drive.linkage, JointLinkage):
+            name = names[drive.linkage.link - 1]
+            if name in start.held_joints:
+                raise ConfigError(f'{name} is held at the start, must have no actuator: '
+                                  f'{drive.actuator} moves it')
