@@ -6,6 +6,9 @@ In a conftest.py: ``pytest_plugins = ['isa_ros.testing']``; in a test::
     def test_my_leg_drops_as_recorded(assert_reproduces):
         assert_reproduces('my_leg.yaml', 'my_drop.yaml', 'bags/drop')
 
+    def test_my_crane_swings_as_recorded(assert_reproduces):
+        assert_reproduces('crane.yaml', 'swing.yaml', 'bags/swing', body='crane:crane')
+
     def test_the_simulator_still_gives_my_bag(assert_replays):
         assert_replays('bags/drop', 'bags/tolerances.yaml')
 
@@ -41,7 +44,7 @@ from isa_ros.run.provenance import provenance_of
 from isa_ros.run.recorded import history_of
 from isa_ros.scripting.bag import ResultMessages
 from isa_ros.scripting.result import Result, simulated
-from isa_ros.scripting.run import Controllers, load
+from isa_ros.scripting.run import Controllers, Factories, load
 from isa_ros.tick.trips import Tripped
 from msg_adapters import event
 import pytest
@@ -110,22 +113,25 @@ def assert_replays(bag: Path | str, tolerances: Path | str | None = None) -> Non
 def assert_reproduces(
         config: str | Path | Tree, scenario: str | Path | Tree | None, bag: Path | str,
         tolerances: Path | str | None = None, controllers: Controllers = (), *,
-        duration: float | None = None) -> None:
+        duration: float | None = None, body: Factories | None = None) -> None:
     """
-    Simulate files and controllers as they are today and compare every message with a bag.
+    Simulate files, controllers and bodies as they are today; compare every message with a bag.
 
-    ``config``, ``scenario`` and ``duration`` (s) are those of `isa_ros.load`, ``controllers``
-    those of `Run.simulate`. Without a scenario the run lasts as long as the bag. Recorded events,
-    such as pauses, are not compared.
+    ``config``, ``scenario`` and ``duration`` (s) are those of `isa_ros.load`, ``controllers`` and
+    ``body`` those of `Run.simulate`. Without a scenario the run lasts as long as the bag. Recorded
+    events, such as pauses, are not compared.
 
     Raises
     ------
     AssertionError
-        The run differs; the message has first the keys of configuration, scenario and versions
-        that differ, with both values and unit, then the first difference, then the largest
-        deviation of each topic with field, tick, values and tolerance.
+        The run differs; the message has first what external bodies say of themselves (a digest
+        of the model), and the keys of configuration, scenario and versions, where they differ,
+        with both values and unit, then the first difference, then the largest deviation of each
+        topic with field, tick, values and tolerance.
     BagError, ConfigError
         A file cannot be read or run, or the bag does not begin at t = 0.
+    RunError
+        The caller's body fails.
 
     """
     __tracebackhide__ = True
@@ -134,13 +140,15 @@ def assert_reproduces(
     if recorded.end_ns is None or recorded.provenance.state is not None:
         lacks = 'has no samples' if recorded.end_ns is None else 'continues a saved state'
         raise BagError(f'{bag}: {lacks}, must be a run from t = 0')
-    simulation = load(config, scenario, duration=duration).simulation(controllers)
+    simulation = load(config, scenario, duration=duration).simulation(
+        controllers, body=body)
     plan = simulation.scenario
     n_ticks = plan.n_ticks
     if n_ticks is None:
         n_ticks = (recorded.end_ns - (recorded.start_ns or 0)) // plan.run.step_ns
     keys = provenance_differences(
-        records_of_bag(recorded), records_of(provenance_of(plan), plan.run.source))
+        records_of_bag(recorded), records_of(
+            provenance_of(plan, None, simulation.surroundings.provenance), plan.run.source))
     head = f'{bag}: not reproduced by {plan.run.source}, scenario {plan.name}'
     try:
         result = simulated(simulation, n_ticks)
@@ -150,7 +158,8 @@ def assert_reproduces(
     if not report.is_equal:
         lines = [head, *Comparison(keys, report).lines(*_NAMES)]
         if tolerances is None and all(key.key.startswith(VERSION) for key in keys or ()):
-            lines.append(_why_bits_differ('Controllers are not stored in a bag'))
+            lines.append(_why_bits_differ(
+                'Controllers and external bodies are not stored in a bag'))
         raise AssertionError('\n'.join(lines))
 
 

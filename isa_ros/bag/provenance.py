@@ -23,7 +23,8 @@ RECORD = 'isa_ros'
 FORMAT = '1'
 
 VERSION = 'version.'
-_BODY = 'body.'
+BODY = 'body.'
+"""Begins what external bodies say of themselves: BODY.NAME.KEY."""
 PYTHON = 'python'
 KERNELS = 'kernels'
 """Among the versions: a digest of the kernels of a tick (`isa_ros.run.provenance`)."""
@@ -52,7 +53,7 @@ class Provenance:
         """Return the key-value metadata record, in fixed order."""
         digests = {f'{name}.sha256': _sha256(data) for name, data in self.attachments().items()}
         versions = {f'{VERSION}{name}': self.versions[name] for name in sorted(self.versions)}
-        bodies = {f'{_BODY}{name}': self.bodies[name] for name in sorted(self.bodies)}
+        bodies = {f'{BODY}{name}': self.bodies[name] for name in sorted(self.bodies)}
         return {'format': FORMAT, 'seed': str(self.seed), **digests, **versions, **bodies}
 
     @classmethod
@@ -89,8 +90,8 @@ class Provenance:
             seed=seed,
             versions=versions_of(record),
             state=attachments[STATE].decode() if has_state else None,
-            bodies={key.removeprefix(_BODY): value for key, value in record.items()
-                    if key.startswith(_BODY)})
+            bodies={key.removeprefix(BODY): value for key, value in record.items()
+                    if key.startswith(BODY)})
 
 
 def _refuse_undecodable(name: str, data: bytes, where: str) -> None:

@@ -4,7 +4,8 @@ from collections.abc import Mapping
 from typing import NamedTuple
 
 from isa_ros.bag.provenance import (
-    CONFIGURATION, have_comparable_kernels, KERNELS, Provenance, SCENARIO, VERSION, versions_of)
+    BODY, CONFIGURATION, have_comparable_kernels, KERNELS, Provenance, SCENARIO, VERSION,
+    versions_of)
 from isa_ros.bag.reader import Bag
 from isa_ros.config.differences import (
     configuration_differences, DifferingKey, section_differences)
@@ -41,8 +42,8 @@ def provenance_differences(
     """
     Return the keys in which the provenance of two runs differs, None if neither has one.
 
-    Keys of the configuration come first, then those of the scenario after ``scenario.``, then
-    versions and other entries of the record.
+    What external bodies say of themselves comes first, then keys of the configuration, those of
+    the scenario after ``scenario.``, versions and other entries of the record.
 
     Raises
     ------
@@ -60,5 +61,7 @@ def provenance_differences(
     left_out = set(_DIGESTS)
     if not have_comparable_kernels(versions_of(expected.record), versions_of(actual.record)):
         left_out.add(VERSION + KERNELS)
-    return found + [key for key in section_differences(expected.record, actual.record)
-                    if key.key not in left_out]
+    other = [key for key in section_differences(expected.record, actual.record)
+             if key.key not in left_out]
+    bodies = [key for key in other if key.key.startswith(BODY)]
+    return [*bodies, *found, *(key for key in other if key not in bodies)]

@@ -10,6 +10,7 @@ import warnings
 
 from isa_ros.config.paths import CONFIG, find, SCENARIOS
 from isa_ros.config.runs.body_config import BodyFactory
+from isa_ros.config.runs.external_config import imported_factory
 from isa_ros.config.runs.run_config import run_of, RunConfig
 from isa_ros.config.text.changes import replaced, SCENARIO
 from isa_ros.config.text.sections import Place
@@ -26,7 +27,8 @@ from isa_ros.tick.trips import counts_of, Tripped, TripWarning
 _WORDS = re.compile(r'(?<=[a-z0-9])(?=[A-Z])')
 
 Controllers = Sequence[Controller] | Mapping[str, Controller]
-Factories = BodyFactory | Mapping[str, BodyFactory]
+Factories = BodyFactory | str | Mapping[str, BodyFactory | str]
+"""What makes external bodies: a function, or its module:factory; a mapping by bodies' names."""
 
 
 @dataclass(frozen=True)
@@ -103,8 +105,8 @@ class Run:
         nodes; otherwise a controller is named after its class: sway for `Sway`.
 
         ``body`` makes the body of a run with ``body: {kind: external, actuators: [...]}``: it is
-        called with the rows of these k actuators, (k,), and the tick in s, and returns an object
-        with the Protocol `isa_ros.Body` at t = 0. A mapping has one for each external body.
+        called with an `isa_ros.Mounting` and returns an `isa_ros.Mechanism`, or an `isa_ros.Body`,
+        at t = 0; or its ``module:factory``. A mapping has one for each external body.
 
         Raises
         ------
@@ -124,7 +126,7 @@ class Run:
         Simulate from t = 0 and return every sample, in memory.
 
         ``duration`` in s; None: that of the scenario. ``controllers`` and ``body`` as in
-        `simulation`; a result with a body that was given cannot be saved as a bag.
+        `simulation`.
         ``faults`` are added to those of the scenario, each as its file would have it:
         ``{'t_s': 0.5, 'actuator': 'kfe', 'fault': 'valve_stuck', 'until_s': 0.8}``.
         ``seed`` of all noise; None: that of the run. ``progress`` is shown on a terminal only.
@@ -181,13 +183,14 @@ class Run:
                 raise ConfigError(
                     f'{self._config.name}: body is one factory, the run has {len(external)} '
                     'bodies of the kind external')
-            return {external[0]: body}
+            body = {external[0]: body}
         for name in body:
             if name not in external:
                 raise ConfigError(
                     f'{self._config.name}: {name!r} is not a body of the kind external; '
                     f'{alternatives(name, external)}')
-        return body
+        return {name: imported_factory(own, 'body') if isinstance(own, str) else own
+                for name, own in body.items()}
 
     def _with_names(self, names: Sequence[str]) -> Scenario:
         """

@@ -86,6 +86,10 @@ class ExternalConfig(BodyConfig):
                 'by simulate(body=...); or give class: module:factory')
         self._imported()
 
+    def _imported(self) -> BodyFactory:
+        assert self.maker is not None
+        return imported_factory(self.maker, f'{self.label}.class')
+
     def body(self, made: Made) -> Body:
         """Return what the factory makes, with its ports in its sample; as `BodyConfig.body`."""
         factory = made.factory
@@ -134,24 +138,33 @@ class ExternalConfig(BodyConfig):
         for row, own in zip(made.rows, made.actuators):
             refuse_start(own, float(starts[row]['position']), f'{self.label}: ')
 
-    def _imported(self) -> BodyFactory:
-        """Return the factory of ``class``, of an installed module or a file in this folder."""
-        assert self.maker is not None
-        module, _, name = self.maker.partition(':')
-        if (here := os.getcwd()) not in sys.path:
-            sys.path.append(here)
-        try:
-            found = import_module(module)
-        except ImportError as error:
-            raise ConfigError(f'{self.label}.class = {self.maker}: {error}') from error
-        except Exception as error:
-            raise ConfigError(f'{self.label}.class = {self.maker}: {cause_of(error)}') from error
-        factory = getattr(found, name, None)
-        if not callable(factory):
-            raise ConfigError(
-                f'{self.label}.class = {self.maker}: {module} has no function {name}')
-        checked: BodyFactory = factory
-        return checked
+
+def imported_factory(maker: str, where: str) -> BodyFactory:
+    """
+    Return the factory ``module:factory``, of an installed module or a file in this folder.
+
+    Raises
+    ------
+    ConfigError
+        There is none; ``where`` says who names it.
+
+    """
+    if not _is_path(maker):
+        raise ConfigError(f'{where} = {maker!r}, must be module:factory, as crane:crane')
+    module, _, name = maker.partition(':')
+    if (here := os.getcwd()) not in sys.path:
+        sys.path.append(here)
+    try:
+        found = import_module(module)
+    except ImportError as error:
+        raise ConfigError(f'{where} = {maker}: {error}') from error
+    except Exception as error:
+        raise ConfigError(f'{where} = {maker}: {cause_of(error)}') from error
+    factory = getattr(found, name, None)
+    if not callable(factory):
+        raise ConfigError(f'{where} = {maker}: {module} has no function {name}')
+    checked: BodyFactory = factory
+    return checked
 
 
 def refuse_start(own: ActuatorConfig, place: float, where: str = '') -> None:
