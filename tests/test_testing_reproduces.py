@@ -186,7 +186,7 @@ def test_a_controller_that_changed_is_found(project: Project) -> None:
     lines = str(caught.value).splitlines()
     assert lines[1] == 'configuration, scenario and versions are equal'
     assert '/ram/applied_setpoint' in [line.split()[0] for line in lines]
-    assert 'Controllers are not stored in a bag' in lines[-1]
+    assert 'Controllers and external bodies are not stored in a bag' in lines[-1]
     assert_replays(bag)
 
 
