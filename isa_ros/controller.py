@@ -76,6 +76,22 @@ _NUMBERS = ('position', 'velocity', 'effort', *GAINS_OF_COMMAND)
 class Controller:
     """Base of a user's controller; override `step`, and the other methods as needed."""
 
+    @classmethod
+    def of(cls, run: Any, values: Mapping[str, Any], where: str) -> 'Controller':
+        """
+        Return the controller of a section ``{class: module:Class, ...}`` of a run file.
+
+        ``values`` are its other keys, by default the arguments of the class; ``run`` is the
+        `isa_ros.config.runs.run_config.RunConfig`, ``where`` file and key for messages.
+
+        Raises
+        ------
+        ConfigError
+            A value is refused.
+
+        """
+        return cls(**values)
+
     def start(self, names: Sequence[str]) -> None:
         """Begin anew at t = 0 with actuators of these names, in the order of the run."""
 

@@ -25,8 +25,9 @@ from isa_ros.core.suggest import alternatives
 from isa_ros.core.timebase import NS_PER_SECOND
 from isa_ros.errors import ConfigError
 from isa_ros.scenario.scenario import Scenario
+from isa_ros.tick.calling import CallingTransport
 from isa_ros.tick.emergency_stop import emergency_stops_of
-from isa_ros.tick.exchange import Rows
+from isa_ros.tick.exchange import Rows, Transport
 from isa_ros.tick.in_process import InProcess
 from isa_ros.tick.source import ScheduledSource
 from isa_ros.tick.tick_loop import TickLoop
@@ -45,11 +46,11 @@ class Simulation:
     """
     A run in memory, advanced tick by tick; it begins at t = 0.
 
-    Commands come from the scenario, from `command`, and from ``controllers``, whose commands
-    depend on the state of a tick and take effect one tick later. At the same tick the scenario
-    wins over a controller, and both over `command`. A request of a controller beyond the range of
-    its actuator is refused or limited, with a `UserWarning`. ``factories`` make the bodies of the
-    kind external, by name; None: the class in the run file.
+    Commands come from the scenario, from `command`, and from ``controllers`` and those of the run,
+    whose commands depend on the state of a tick and take effect one tick later. At the same tick
+    the scenario wins over a controller, and both over `command`. A request of a controller beyond
+    the range of its actuator is refused or limited, with a `UserWarning`. ``factories`` make the
+    bodies of the kind external, by name; None: the class in the run file.
 
     Raises
     ------
@@ -77,14 +78,17 @@ class Simulation:
         self.surroundings = surroundings_of(run, self._factories)
         """Supplies and bodies, with their samples as rows."""
         supplies = [own.name for own in self.surroundings.circuits]
-        transport = InProcess(
-            self.group, self.surroundings.starts(), (), self._controllers, supplies)
+        transport: Transport = InProcess(self.group, self.surroundings.starts())
+        controllers = [*self._controllers, *(own.made(run) for own in run.called)]
+        if controllers:
+            transport = CallingTransport(
+                transport, controllers, self.names, supplies, run.step_ns)
         self.loop = TickLoop(
             run.step_ns, transport, self.surroundings,
             Rows(len(self.names), self.surroundings, self.group),
             ScheduledSource(scenario.commands, scenario.changes),
             stops=emergency_stops_of(run, self.surroundings),
-            request_range=request_range_of(run) if self._controllers else None, warn=_warn)
+            request_range=request_range_of(run) if controllers else None, warn=_warn)
         """The ticks of the run; its sinks take the rows of each instant."""
         self.samples: Mapping[str, np.record] = by_name(self.names, self.group.samples)
         """`SAMPLE` by actuator at the end of the last tick; the next one overwrites them."""

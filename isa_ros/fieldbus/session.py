@@ -50,9 +50,9 @@ def commanded_by_bus(run: RunConfig) -> RunConfig:
         raise ConfigError(
             f'{run.source}: link of {", ".join(run.linked)}: must be none under isa bus, whose '
             'bus is the link')
-    if run.controllers:
+    if names := [*run.controllers, *(own.name for own in run.called)]:
         raise ConfigError(
-            f'{run.source}: controllers = {", ".join(run.controllers)}: not used under isa bus, '
+            f'{run.source}: controllers = {", ".join(names)}: not used under isa bus, '
             'whose master commands the actuators')
     return replace(run, actuators=tuple(
         replace(actuator, auto_enable=False) for actuator in run.actuators))

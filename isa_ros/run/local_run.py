@@ -26,7 +26,7 @@ class LocalRun:
     def __init__(
             self, run: RunConfig,
             factories: Mapping[str, BodyFactory] = MappingProxyType({})) -> None:
-        self._run = replace(run, controllers=())
+        self._run = replace(run, controllers=(), called=())
         self._loop = Simulation(idle(self._run), (), factories).loop
         self._packer = packer_of(self._run, self._loop.rows.published)
         self._thinning = Thinning(run.record, self._packer.topics)

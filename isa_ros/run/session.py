@@ -112,6 +112,8 @@ def prepare(
     scenario = planned(request.scenario, run, changes)
     if not has_bus:
         scenario.refuse_bus()
+    for controller in scenario.run.called:
+        controller.made(scenario.run)   # refuses what the run could not begin with
     if request.duration_s is not None:
         scenario = scenario.lasting(request.duration_s)
     if request.in_process and request.elsewhere:
@@ -185,7 +187,8 @@ def record(
         loop = TickLoop(
             run.step_ns, transport, surroundings, rows, source,
             stops=emergency_stops_of(run, surroundings),
-            request_range=request_range_of(run) if run.controllers else None, warn=warn,
+            request_range=(
+                request_range_of(run) if run.controllers or run.called else None), warn=warn,
             lap=lap)
         while True:
             lap(STARTING)

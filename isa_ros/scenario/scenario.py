@@ -2,7 +2,8 @@
 Scenarios: the commands of each actuator by tick, faults, and changes of the rig for them.
 
 Values are SI with the names of the setpoint topic. A scenario that replaces loads or the start
-of the leg gives its own `run`: the configuration to simulate, record and replay.
+of a body, or has controllers, gives its own `run`: the configuration to simulate, record and
+replay.
 """
 
 from collections.abc import Mapping, Sequence
@@ -15,6 +16,7 @@ from typing import Any
 from isa_ros.config.models.catalogue import actuator_model
 from isa_ros.config.models.own_load import own_load, refuse_beyond_stops
 from isa_ros.config.runs.body_config import BodyConfig
+from isa_ros.config.runs.controller_config import CONTROLLERS, controllers_at
 from isa_ros.config.runs.run_config import ActuatorConfig, RunConfig
 from isa_ros.config.runs.tick_grid import ticks_in
 from isa_ros.config.text.changes import changed, Changes, SCENARIO
@@ -204,11 +206,14 @@ def scenario_of(text: str, run: RunConfig, name: str = 'scenario.yaml') -> Scena
 def read_scenario(tree: Tree, place: Place, run: RunConfig) -> Scenario:
     """Return the scenario of a file's tree; as `load_scenario`."""
     refuse_unknown(
-        tree, ('name', 'figure', 'duration_s', BEYOND, 'leg', 'bodies', 'loads', 'tracks',
-               'faults', 'changes'), place)
+        tree, ('name', 'figure', 'duration_s', BEYOND, 'leg', 'bodies', 'loads', CONTROLLERS,
+               'tracks', 'faults', 'changes'), place)
     name = name_of(tree, 'name', place)
     n_ticks = _duration(tree.get('duration_s'), run.step_ns, f'{place}: duration_s')
     run = _with_loads(_with_starts(run, tree, place), tree, place)
+    if CONTROLLERS in tree:
+        run = run.calling(controllers_at(
+            tree[CONTROLLERS], place / CONTROLLERS, run.called))
     sections = section_at(tree.get('tracks', {}), place / 'tracks')
     accepts_beyond = _accepts_beyond(tree, place)
     tracks: list[Track] = []

@@ -101,8 +101,9 @@ class Run:
         """
         Return the run as an object to advance step by step; see `Simulation`.
 
-        ``controllers`` take part in every step, in their order. A mapping gives them the names of
-        nodes; otherwise a controller is named after its class: sway for `Sway`.
+        ``controllers`` take part in every step, in their order, and those with a class in the
+        run, unless one of the same name is given. A mapping gives them the names
+        of nodes; otherwise a controller is named after its class: sway for `Sway`.
 
         ``body`` makes the body of a run with ``body: {kind: external, actuators: [...]}``: it is
         called with an `isa_ros.Mounting` and returns an `isa_ros.Mechanism`, or an `isa_ros.Body`,
@@ -206,6 +207,7 @@ class Run:
                     'as one of the controllers')
         for line in self.scenario.warnings:
             warnings.warn(line, stacklevel=3)
+        run = run.calling([own for own in run.called if own.name not in names])
         added = [name for name in names if name not in run.controllers]
         return replace(self.scenario, run=run.with_controllers(added))
 

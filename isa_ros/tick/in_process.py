@@ -1,12 +1,10 @@
-"""All actuators of a run in this process, and controllers that are called directly."""
+"""All actuators of a run in this process."""
 
 from collections.abc import Sequence
 import time
 from typing import Protocol
 
-from isa_ros.actuator.actuator import SmartActuator
 from isa_ros.actuator.group import ActuatorGroup
-from isa_ros.controller import by_name, Controller, fill_requests, only_rows, State
 from isa_ros.core.signals import Records
 from isa_ros.errors import ConfigError
 from isa_ros.tick.exchange import IDLE_S, Rows
@@ -24,52 +22,36 @@ class InProcess:
     """
     A `Transport` to the actuators of a group, which advance together.
 
-    ``starts`` are their `START` rows, (n,); ``inputs`` has one entry per actuator, or none.
-    ``controllers`` get the state with the names of ``supplies``. The rows of the run are those
-    of the group.
+    ``starts`` are their `START` rows, (n,); ``inputs`` has one entry per actuator, or none. The
+    rows of the run are those of the group.
     """
 
     def __init__(
-            self, group: ActuatorGroup, starts: Records, inputs: Sequence[Input] = (),
-            controllers: Sequence[Controller] = (), supplies: Sequence[str] = ()) -> None:
+            self, group: ActuatorGroup, starts: Records, inputs: Sequence[Input] = ()) -> None:
         self.group = group
         self._starts = starts
         self._inputs = inputs
-        self._names = [actuator.name for actuator in group.actuators]
-        self._controllers, self._supplies = tuple(controllers), supplies
-        self._participants: Sequence[SmartActuator | Controller] = (
-            *group.actuators, *controllers)
 
     def join(self, rows: Rows) -> None:
         """Start all at t = 0."""
         self.group.start(self._starts)
         rows.tuned = {}
-        self._state = State(
-            0, by_name(self._names, rows.samples), by_name(self._supplies, rows.supplies),
-            only_rows(rows.bodies))
-        for controller in self._controllers:
-            controller.start(list(self._names))
 
     def restore(self, tick: int, snapshots: Sequence[bytes], rows: Rows) -> None:
-        """Restore all participants from their snapshots."""
-        if len(snapshots) != len(self._participants):
+        """Restore all actuators from their snapshots."""
+        if len(snapshots) != len(self.group.actuators):
             raise ConfigError(
                 f'the saved state has {len(snapshots)} participants, the run has '
-                f'{len(self._participants)}')
-        for participant, own in zip(self._participants, snapshots):
-            participant.restore(own)
+                f'{len(self.group.actuators)}')
+        for actuator, own in zip(self.group.actuators, snapshots):
+            actuator.restore(own)
         rows.tuned = self.group.tuned
 
     def begin(self) -> None:
         """Do nothing: a sink of the rows publishes for all actuators."""
 
     def send(self, tick: int, rows: Rows) -> None:
-        """Call the controllers with the state before the tick."""
-        if self._controllers:
-            state = self._state._replace(t_ns=self.group.t_ns)
-            for controller in self._controllers:
-                fill_requests(
-                    controller.step(state), self._names, rows.requests, state.actuators)
+        """Do nothing: the actuators advance in `receive`."""
 
     def receive(self, rows: Rows) -> None:
         """Process the inputs of each actuator and the tick's changes, then advance all."""
@@ -88,5 +70,5 @@ class InProcess:
         time.sleep(seconds)
 
     def snapshots(self) -> list[bytes]:
-        """Return the state of every participant."""
-        return [participant.snapshot() for participant in self._participants]
+        """Return the state of every actuator."""
+        return [actuator.snapshot() for actuator in self.group.actuators]

@@ -4,6 +4,7 @@ import hashlib
 from pathlib import Path
 import signal
 
+import isa_ros
 from isa_ros.bag.reader import Bag
 from isa_ros.config.runs.run_file import load_run
 from isa_ros.controller import Controller
@@ -140,3 +141,20 @@ def test_a_controller_that_follows_the_clock_replays_exactly(domain, tmp_path):
     assert len(applied) > 20
     assert all(later[0] - tick >= 1 for (tick, _), later in zip(applied, applied[1:]))
     assert replay(Bag(bag)).is_equal
+
+
+def test_a_class_in_the_run_file_needs_no_node(domain, tmp_path):
+    """In processes, in one and in Python: the same bytes."""
+    bags = [tmp_path / name / 'bag' for name in ('several', 'one', 'python')]
+    wanted = isa_ros.load('leg', changes={
+        'controllers': {'sway': {'class': f'{SWAY}:Sway'}}}, duration=0.05)
+    wanted.simulate().save(bags[2])
+    for bag, way in zip(bags, ((), ('--in-process',))):
+        bag.parent.mkdir()
+        with bringup(bag, '--set', f'controllers.sway.class={SWAY}:Sway', '--duration', '0.05',
+                     *way) as run:
+            assert run.exit_code() == 0, run.errors
+    several, one, python = (
+        hashlib.sha256((bag / 'bag_0.mcap').read_bytes()).hexdigest() for bag in bags)
+    assert several == one == python
+    assert [tick for tick, _ in setpoints(bags[0])] == list(range(1, 50))

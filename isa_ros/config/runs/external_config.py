@@ -54,7 +54,7 @@ class ExternalConfig(BodyConfig):
         actuators, maker = values['actuators'], values['class']
         if not actuators:
             raise ConfigError(f'{place / "actuators"} is empty, must name at least one actuator')
-        if maker is not None and not _is_path(maker):
+        if maker is not None and not is_path(maker):
             raise ConfigError(
                 f'{place / "class"} = {maker!r}, must be module:factory, as crane:crane')
         return cls(
@@ -149,7 +149,7 @@ def imported_factory(maker: str, where: str) -> BodyFactory:
         There is none; ``where`` says who names it.
 
     """
-    if not _is_path(maker):
+    if not is_path(maker):
         raise ConfigError(f'{where} = {maker!r}, must be module:factory, as crane:crane')
     module, _, name = maker.partition(':')
     if (here := os.getcwd()) not in sys.path:
@@ -182,7 +182,7 @@ def at_rest(mounting: Mounting) -> Body:
     return GivenBody(mounting.rows, zeros_given(len(mounting.rows)))
 
 
-def _is_path(maker: str) -> bool:
+def is_path(maker: str) -> bool:
     module, colon, name = maker.partition(':')
     return bool(colon) and name.isidentifier() and all(
         part.isidentifier() for part in module.split('.'))

@@ -12,6 +12,8 @@ from isa_ros.config.runs.acceptance import ACCEPT, ACCEPT_ALL
 from isa_ros.config.runs.actuator_config import ACTUATOR, actuator_of, ActuatorConfig, Around
 from isa_ros.config.runs.body_config import BODY, BodyConfig
 from isa_ros.config.runs.body_kinds import BODY_KINDS
+from isa_ros.config.runs.controller_config import (
+    ControllerConfig, CONTROLLERS, Controllers, Named as NamedControllers)
 from isa_ros.config.runs.emergency_stops import (
     ALL as EVERY, emergency_stops_of, EmergencyStopConfig, GROUPS, KEY as EMERGENCY_STOPS)
 from isa_ros.config.runs.joined_bodies import bodies_of, moved_by
@@ -20,7 +22,7 @@ from isa_ros.config.runs.recording import RECORD, RecordConfig
 from isa_ros.config.runs.supplies import supplies_of, SUPPLY, SUPPLY_KEYS, SupplyConfig
 from isa_ros.config.runs.tick_grid import on_grid, START_TIME, WrittenTime
 from isa_ros.config.text.keys import (
-    InText, Key, KeyTable, Layer, NAME, Named, NAMES, nanoseconds, number, OneOf, ParameterSet,
+    InText, Key, KeyTable, Layer, NAME, Named, nanoseconds, number, OneOf, ParameterSet,
     TEXT, Value)
 from isa_ros.config.text.names import COORDINATOR, refuse_bad_name
 from isa_ros.config.text.sections import Place, Section
@@ -63,6 +65,8 @@ class RunConfig:
     """Time of all stamps at t = 0; whole, so that both have the same full seconds."""
     emergency_stops: tuple[EmergencyStopConfig, ...] = ()
     """Groups of actuators that stop together, as given; see `stop_groups`."""
+    called: tuple[ControllerConfig, ...] = ()
+    """Controllers that the run makes and calls by itself."""
 
     @property
     def start_ns(self) -> int:
@@ -160,13 +164,21 @@ class RunConfig:
         for name in names:
             refuse_bad_name(name, f'{self.source}: controllers')
         every = (*self.controllers, *names)
-        taken = [COORDINATOR, *(actuator.name for actuator in self.actuators)]
+        taken = [COORDINATOR, *(actuator.name for actuator in self.actuators),
+                 *(own.name for own in self.called)]
         for k, name in enumerate(every):
             if name in (*taken, *every[:k]):
                 raise ConfigError(
                     f'{self.source}: controllers: the name {name!r} is taken; '
                     f'taken: {", ".join([*taken, *every[:k]])}')
         return replace(self, controllers=every)
+
+    def calling(self, called: Sequence[ControllerConfig]) -> 'RunConfig':
+        """Return the run with these controllers of its own; as `with_controllers`."""
+        nodes = self.controllers
+        named = replace(self, controllers=(), called=())
+        named.with_controllers([*nodes, *(own.name for own in called)])
+        return replace(self, called=tuple(called))
 
     def with_body(self, body: BodyConfig) -> 'RunConfig':
         """Return the run with another start of a body and of the actuators on it."""
@@ -242,7 +254,9 @@ RUN = KeyTable((
     Key('actuators', Named(ACTUATOR), 'the actuators by name; records have their order'),
     Key(EMERGENCY_STOPS, GROUPS, 'groups of actuators that stop together, by name', None,
         'all, by request alone', of=lambda run: run.emergency_stops or None),
-    Key('controllers', NAMES, 'nodes, besides the actuators, that every tick waits for', []),
+    Key(CONTROLLERS, Controllers(), 'nodes, besides the actuators, that every tick waits for; or '
+        'by name sections with a `class` that the run makes and calls', [],
+        of=lambda run: NamedControllers(run.controllers, run.called)),
     Key('leg', LegConfig.KEYS, 'a body of the kind leg', None, in_text=InText.NEVER),
     Key(BODY, _BODY, 'what several actuators move together', None, of=_only),
     Key('bodies', Named(_BODY), 'several bodies by name, instead of `body`', None,
@@ -289,10 +303,10 @@ def run_of(tree: Tree, place: Place, is_checked: bool = True) -> tuple[RunConfig
             values[EMERGENCY_STOPS], list(values['actuators']), place / EMERGENCY_STOPS),
         'bodies': bodies, 'actuators': tuple(actuators), 'source': values['source'] or place.file,
         'start_time_s': values['start_time_s'] or 0, 'accept': values['accept'] or ACCEPT_ALL}
-    controllers = values.pop('controllers')
+    controllers = values.pop(CONTROLLERS)
     run = RunConfig(**{name: values[name] for name in RunConfig.__dataclass_fields__
                        if name in values})
-    return run.with_controllers(controllers), origins
+    return run.with_controllers(controllers.nodes).calling(controllers.called), origins
 
 
 def _times(values: dict[str, Any], place: Place) -> tuple[int, int]:

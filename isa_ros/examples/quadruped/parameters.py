@@ -1,10 +1,12 @@
 """Numbers of the trot: how the trunk is held, how feet step, and what is wanted over time."""
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, fields
+from dataclasses import dataclass
+from typing import Any
 
 from isa_ros.config.text.parameter_sets import build
 from isa_ros.config.text.sections import Place, section_at, written
+from isa_ros.config.text.yaml_text import Tree
 from isa_ros.core.parameter import parameter, Parameters
 from isa_ros.errors import ConfigError
 import numpy as np
@@ -20,7 +22,8 @@ class TrotGains(Parameters):
     frequency: float = parameter('strides a second of a foot', 'Hz', absent=1.7, ge=0.5, le=4.0)
     duty: float = parameter(
         'part of a stride in which a foot stands', '1', absent=0.55, ge=0.5, le=0.9)
-    lift: float = parameter('of a foot in the middle of its swing', 'm', absent=0.08, ge=0.0, le=0.3)
+    lift: float = parameter(
+        'of a foot in the middle of its swing', 'm', absent=0.08, ge=0.0, le=0.3)
     press: float = parameter(
         'depth below the ground at which a swing ends', 'm', absent=0.004, ge=0.0, le=0.05)
     capture: float = parameter(
@@ -79,7 +82,7 @@ class Program:
         return self._rows[k] + part * (self._rows[k + 1] - self._rows[k]), self._steps[k]
 
 
-def program_of(trees: object, place: Place) -> Program:
+def program_of(trees: Any, place: Place) -> Program:
     """
     Return the program of a list of points; a point has what differs from the one before.
 
@@ -92,7 +95,7 @@ def program_of(trees: object, place: Place) -> Program:
     if not isinstance(trees, list) or not trees:
         raise ConfigError(f'{place} = {trees!r}, must be a list of points')
     points: list[Point] = []
-    so_far: dict[str, object] = {}
+    so_far: Tree = {}
     for k, tree in enumerate(trees):
         below = Place(place.file, f'{place.key}[{k}]')
         so_far = {**so_far, **section_at(tree, below)}
@@ -105,9 +108,6 @@ def program_of(trees: object, place: Place) -> Program:
     return Program(points)
 
 
-def gains_of(tree: Mapping[str, object], place: Place) -> TrotGains:
+def gains_of(tree: Mapping[str, Any], place: Place) -> TrotGains:
     """Return the gains of a section; raises `ConfigError` where one is refused."""
     return build(TrotGains, written(dict(tree), place), place)
-
-
-GAIN_NAMES = tuple(own.name for own in fields(TrotGains))

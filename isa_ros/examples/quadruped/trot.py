@@ -55,7 +55,7 @@ class Trot(Controller):
         self._sheet, self._gains, self._program, self._body = sheet, gains, program, body
         self._legs = Legs(sheet)
         drives = {sheet.driven(drive)[0]: drive.actuator for drive in sheet.drives}
-        self._drives = [drives[link] for link in self._legs.paths.ravel()]
+        self._drives = [drives[link] for link in self._legs.paths.ravel().tolist()]
         self._names = [names[drive] for drive in self._drives]
         self._least, self._most = np.array([efforts[drive] for drive in self._drives]).T
         self._joints = self._legs.paths.ravel() - 1
@@ -104,18 +104,16 @@ class Trot(Controller):
             position=state.actuators[name].position, effort=effort, stiffness=0.0, damping=0.0)
             for name, effort in zip(self._names, efforts)}
 
-    def _find(self, dtype: np.dtype) -> None:
+    def _find(self, dtype: np.dtype[np.void]) -> None:
         """Find the numbers of the robot's sample that `step` reads."""
         joints = [joint.name for joint in self._sheet.joints]
         fields = ['position', 'orientation', 'velocity', 'angular_velocity',
                   *(f'{name}_position' for name in joints),
                   *(f'{name}_velocity' for name in joints),
                   *(f'{drive}_lever' for drive in self._drives)]
-        columns: list[int] = []
-        for field in fields:
-            type_, offset = dtype.fields[field][:2]
-            columns += range(offset // 8, (offset + type_.itemsize) // 8)
-        self._columns = np.array(columns)
+        places = np.arange(dtype.itemsize // 8, dtype=np.float64).view(dtype)[0]
+        self._columns = np.concatenate(
+            [np.atleast_1d(places[field]) for field in fields]).astype(np.int64)
 
     def _begin(self, place: np.ndarray, root: np.ndarray) -> None:
         """Take the stance of t = 0 as that of the robot at rest."""
@@ -188,8 +186,8 @@ class Trot(Controller):
 
     def snapshot(self) -> bytes:
         """Return the whole state."""
-        numbers = [float(self._is_begun), *self._gait.state(), *self._heading, *self._anchor, *self._drag,
-                   *self._lifted.ravel(), *self._home.ravel(), *self._inertia.ravel()]
+        numbers = [float(self._is_begun), *self._gait.state(), *self._heading, *self._anchor,
+                   *self._drag, *self._lifted.ravel(), *self._home.ravel(), *self._inertia.ravel()]
         return struct.pack(f'<q{len(numbers)}d', self._t_ns, *numbers)
 
     def restore(self, snapshot: bytes) -> None:
@@ -231,7 +229,7 @@ def attitude_error(root: np.ndarray, heading: np.ndarray) -> np.ndarray:
     """
     Return the turn from level at a heading to ``root``, rad for small ones, (3,), world axes.
 
-    It is half the sum of d_k x r_k over the axes: the axis of the turn times the sine of its angle.
+    Half the sum of d_k x r_k over the axes: the axis of the turn times the sine of its angle.
     """
     x, y = heading.tolist()
     (xx, yx, zx), (xy, yy, zy), (xz, yz, zz) = root.tolist()

@@ -27,6 +27,7 @@ from isa_ros.run.session import record, Report, save_in_bag, Session
 from isa_ros.run.warm_up import warmed_up
 from isa_ros.run.wire.roster import Roster
 from isa_ros.surroundings.surroundings import Surroundings
+from isa_ros.tick.calling import calling
 from isa_ros.tick.exchange import Transport
 from isa_ros.tick.in_process import InProcess
 import rclpy
@@ -136,6 +137,7 @@ def _coordinate(
     transport = _lockstep(node, session, participants, should_stop, lost)
     try:
         _record(node, session, transport, surroundings, (), report, should_stop)
+        _record(node, session, calling(session.run, transport), (), report, should_stop)
     finally:
         transport.close()
 
@@ -173,6 +175,8 @@ def coordinate_locally(
             transport = MixedTransport(local, controllers)
         _record(node, session, transport, surroundings, [own.outlet for own in actuators], report,
                 should_stop)
+        _record(node, session, calling(session.run, transport),
+                [own.outlet for own in actuators], report, should_stop)
     finally:
         if controllers is not None:
             controllers.close()

@@ -1,0 +1,140 @@
+"""Controllers of a run: nodes that every tick waits for, and those that the run itself calls."""
+
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from typing import Any, NamedTuple, TYPE_CHECKING
+
+from isa_ros.config.runs.external_config import imported_factory, is_path
+from isa_ros.config.text.keys import ANY_NAME, Key, KeyDifference, Leaf, of_type, ValueKind
+from isa_ros.config.text.names import refuse_bad_name
+from isa_ros.config.text.sections import names_at, Place, section_at
+from isa_ros.controller import Controller
+from isa_ros.errors import ConfigError, IsaError
+from isa_ros.surroundings.callers import cause_of
+
+if TYPE_CHECKING:
+    from isa_ros.config.runs.run_config import RunConfig
+
+CONTROLLERS = 'controllers'
+"""Key of a run file, and of a scenario."""
+CLASS = 'class'
+"""Key of a section."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class ControllerConfig:
+    """A controller that the run makes and calls: the section of its name."""
+
+    name: str
+    maker: str
+    """``module:Class``; its `Controller.of` makes it."""
+    values: Mapping[str, Any]
+    """The other keys, for the class to check."""
+
+    @property
+    def label(self) -> str:
+        """Return the key of its section."""
+        return f'{CONTROLLERS}.{self.name}'
+
+    def made(self, run: 'RunConfig') -> Controller:
+        """
+        Return a new controller: each simulation has its own.
+
+        Raises
+        ------
+        ConfigError
+            Its class cannot be imported, or refuses its values.
+
+        """
+        made: object = imported_factory(self.maker, f'{self.label}.{CLASS}')
+        if not (isinstance(made, type) and issubclass(made, Controller)):
+            raise ConfigError(
+                f'{self.label}.{CLASS} = {self.maker}: must be a class derived from '
+                'isa_ros.Controller')
+        try:
+            return made.of(run, self.values, f'{run.source}: {self.label}')
+        except IsaError:
+            raise
+        except Exception as error:
+            raise ConfigError(f'{self.label}: {cause_of(error)}') from error
+
+
+class Named(NamedTuple):
+    """The controllers of a file, as far as it has them."""
+
+    nodes: Sequence[str] = ()
+    called: Sequence[ControllerConfig] = ()
+
+
+class Controllers(ValueKind):
+    """A list of nodes; or sections by name, of which an empty one is a node."""
+
+    words = 'list of names, or sections by name'
+
+    def read(self, tree: Any, place: Place) -> Named:
+        """Return the controllers; as `ValueKind.read`."""
+        if isinstance(tree, list):
+            return Named(tuple(names_at(tree, place)))
+        return Named(
+            tuple(name for name, below in section_at(tree, place).items() if not below),
+            controllers_at({name: below for name, below in tree.items() if below}, place))
+
+    def tree(self, value: Named) -> Any:
+        """Return the list, or the sections."""
+        if not value.called:
+            return list(value.nodes)
+        return {name: {} for name in value.nodes} | {
+            own.name: {CLASS: own.maker, **own.values} for own in value.called}
+
+    def rows(self, tree: Any, place: Place) -> 'Mapping[str, Key] | KeyDifference':
+        """Return a row for each section, whose values are those of its class."""
+        return {name: Key(name, ValueKind(), '') for name in tree}
+
+    def leaves(self, value: Named, key: str, row: Key) -> Iterator[Leaf]:
+        """Yield the nodes, and each value of the others."""
+        if value.nodes or not value.called:
+            yield Leaf(key, value.nodes, row)
+        for own in value.called:
+            tree = {CLASS: own.maker, **own.values}
+            yield from _leaves(tree, f'{key}.{own.name}')
+
+
+def _leaves(tree: Any, key: str) -> Iterator[Leaf]:
+    below = (((f'.{name}', value) for name, value in tree.items()) if isinstance(tree, dict) else
+             ((f'[{k}]', value) for k, value in enumerate(tree)) if isinstance(tree, list) else
+             None)
+    if below is None:
+        yield Leaf(key, tree, Key(key.rpartition('.')[2], ANY_NAME, ''))
+        return
+    for end, value in below:
+        yield from _leaves(value, f'{key}{end}')
+
+
+def controllers_at(
+        tree: Any, place: Place, before: Sequence[ControllerConfig] = ()
+        ) -> tuple[ControllerConfig, ...]:
+    """
+    Return the controllers of sections by name; values there win over those ``before``.
+
+    Raises
+    ------
+    ConfigError
+        A section is malformed, or has no class.
+
+    """
+    found = {own.name: own for own in before}
+    for name, own in section_at(tree, place).items():
+        below = place / name
+        refuse_bad_name(name, f'{below}: the name')
+        values = dict(section_at(own, below))
+        known = found.get(name)
+        if known is not None:
+            values = {CLASS: known.maker, **known.values, **values}
+        if CLASS not in values:
+            raise ConfigError(f'{below} lacks {CLASS}, module:Class of the controller')
+        maker = of_type(values.pop(CLASS), str, below / CLASS)
+        if not is_path(maker):
+            raise ConfigError(
+                f'{below / CLASS} = {maker!r}, must be module:Class, as my_trot:MyTrot')
+        found[name] = ControllerConfig(name=name, maker=maker, values=values)
+    return tuple(found.values())

@@ -1,0 +1,36 @@
+"""A controller for tests of sections with a class."""
+
+from isa_ros.controller import Controller, Setpoint
+from isa_ros.errors import ConfigError
+
+
+class Puller(Controller):
+    """Requests a force of one actuator where it is, without stiffness and damping."""
+
+    def __init__(self, force: float, actuator: str) -> None:
+        self._force, self._actuator = force, actuator
+
+    @classmethod
+    def of(cls, run, values, where):
+        """Refuse a force below 0."""
+        if values.get('force', 0.0) < 0.0:
+            raise ConfigError(f'{where}: force = {values["force"]:g} N, must be >= 0 N')
+        return super().of(run, values, where)
+
+    def step(self, state):
+        """Return the force."""
+        return {self._actuator: Setpoint(
+            state.actuators[self._actuator].position, effort=self._force, stiffness=0.0,
+            damping=0.0)}
+
+    def snapshot(self) -> bytes:
+        """Return nothing."""
+        return b''
+
+    def restore(self, snapshot: bytes) -> None:
+        """Do nothing."""
+
+
+def pull(run, values, where):
+    """Return a controller, but not as a class."""
+    return Puller(**values)

@@ -1,0 +1,116 @@
+"""Controllers that a run makes and calls: their sections in run files and scenarios."""
+
+import isa_ros
+from isa_ros.config.runs.run_config import RunConfig
+from isa_ros.config.text.yaml_text import parse
+from isa_ros.controller import Controller
+from isa_ros.errors import ConfigError
+import numpy as np
+import pytest
+from tests.config.runs.pullers import Puller
+
+PULLER = 'tests.config.runs.pullers:Puller'
+HFE = {'force': 200.0, 'actuator': 'hfe'}
+
+
+def leg(**controllers):
+    return isa_ros.load('leg', changes={'controllers': controllers})
+
+
+def test_a_section_with_a_class_is_called_and_an_empty_one_is_a_node():
+    run = leg(pull={'class': PULLER, **HFE}, sway={}).configuration
+    assert run.controllers == ('sway',)
+    own, = run.called
+    assert (own.name, own.maker, dict(own.values)) == ('pull', PULLER, HFE)
+
+
+def test_the_resolved_text_has_all_of_it():
+    run = leg(pull={'class': PULLER, **HFE}, sway={}).configuration
+    assert RunConfig.from_yaml(run.to_yaml()) == run
+    assert parse(run.to_yaml(), '')['controllers'] == {
+        'sway': {}, 'pull': {'class': PULLER, **HFE}}
+    assert isa_ros.load('leg').configuration.digest != run.digest
+
+
+def test_the_class_gives_what_the_object_gives():
+    """The same requests at the same ticks, with the arguments that the section has."""
+    made = leg(pull={'class': PULLER, **HFE}).simulate(0.02)
+    given = isa_ros.load('leg').simulate(0.02, controllers=[Puller(200.0, 'hfe')])
+    assert np.array_equal(made['hfe.force'], given['hfe.force'])
+    assert made['hfe.force_reference'][-1] == pytest.approx(200.0, rel=0.2)
+    idle = isa_ros.load('leg').simulate(0.02)
+    assert not np.array_equal(made['hfe.force'], idle['hfe.force'])
+
+
+def test_a_given_object_stands_in_for_the_class_of_its_name():
+    run = leg(pull={'class': PULLER, **HFE})
+    found = run.simulate(0.02, controllers={'pull': Puller(200.0, 'kfe')})
+    alone = isa_ros.load('leg').simulate(0.02, controllers=[Puller(200.0, 'kfe')])
+    assert np.array_equal(found['hfe.force'], alone['hfe.force'])
+    assert np.array_equal(found['kfe.force'], alone['kfe.force'])
+
+
+def test_a_scenario_changes_values_and_adds_controllers():
+    """What it leaves out is as in the run file."""
+    run = isa_ros.load(
+        'leg', {'name': 'pulled', 'duration_s': 0.02, 'controllers': {
+            'pull': {'force': 300.0}, 'other': {'class': PULLER, 'force': 1.0,
+                                                'actuator': 'kfe'}}},
+        changes={'controllers': {'pull': {'class': PULLER, **HFE}}}).configuration
+    assert {own.name: dict(own.values) for own in run.called} == {
+        'pull': {'force': 300.0, 'actuator': 'hfe'},
+        'other': {'force': 1.0, 'actuator': 'kfe'}}
+
+
+def test_a_saved_simulation_continues_with_its_controllers():
+    run = leg(pull={'class': PULLER, **HFE})
+    first, second = run.simulation(), run.simulation()
+    for _ in range(6):
+        first.step()
+    second.restore(first.snapshot())
+    for _ in range(4):
+        first.step()
+        second.step()
+    assert first.snapshot() == second.snapshot()
+    assert first.samples['hfe'].tobytes() == second.samples['hfe'].tobytes()
+
+
+@pytest.mark.parametrize('controllers, message', [
+    ({'pull': {'force': 1.0}}, 'leg.yaml: controllers.pull lacks class, module:Class'),
+    ({'pull': {'class': 'pullers'}},
+     "leg.yaml: controllers.pull.class = 'pullers', must be module:Class, as my_trot:MyTrot"),
+    ({'pull': {'class': 3}}, 'leg.yaml: controllers.pull.class = 3, must be of type str'),
+    ({'pull': 3}, 'leg.yaml: controllers.pull = 3, must be a section'),
+    ({'hfe': {'class': PULLER}}, "leg.yaml: controllers: the name 'hfe' is taken"),
+    ({'hfe': {}}, "leg.yaml: controllers: the name 'hfe' is taken"),
+    ({'Pull': {'class': PULLER}}, 'leg.yaml: controllers.Pull: the name'),
+    (3, 'leg.yaml: controllers = 3, must be a section')])
+def test_refused_as_the_file_is_read(controllers, message):
+    with pytest.raises(ConfigError) as refused:
+        isa_ros.load('leg', changes={'controllers': controllers})
+    assert message in str(refused.value)
+
+
+@pytest.mark.parametrize('section, message', [
+    ({'class': 'no_such_module:Pull'}, 'no_such_module'),
+    ({'class': 'tests.config.runs.pullers:Missing'}, 'has no function Missing'),
+    ({'class': 'tests.config.runs.pullers:pull'}, 'must be a class derived from'),
+    ({'class': PULLER, 'farce': 2.0}, 'farce'),
+    ({'class': PULLER, 'force': -1.0, 'actuator': 'hfe'},
+     'leg.yaml: controllers.pull: force = -1 N, must be >= 0 N')])
+def test_refused_before_the_run_begins(section, message):
+    with pytest.raises(ConfigError) as refused:
+        leg(pull=section).simulation()
+    assert 'controllers.pull' in str(refused.value)
+    assert message in str(refused.value)
+
+
+def test_two_classes_may_request_the_same_actuator_the_last_wins():
+    run = leg(one={'class': PULLER, **HFE}, two={'class': PULLER, 'force': 0.0,
+                                                 'actuator': 'hfe'})
+    alone = leg(two={'class': PULLER, 'force': 0.0, 'actuator': 'hfe'})
+    assert np.array_equal(run.simulate(0.01)['hfe.force'], alone.simulate(0.01)['hfe.force'])
+
+
+def test_the_class_is_a_controller():
+    assert issubclass(Puller, Controller)

@@ -1,0 +1,1 @@
+"""The trot of a quadruped."""
