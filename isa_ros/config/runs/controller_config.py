@@ -93,7 +93,7 @@ class Controllers(ValueKind):
     def leaves(self, value: Named, key: str, row: Key) -> Iterator[Leaf]:
         """Yield the nodes, and each value of the others."""
         if value.nodes or not value.called:
-            yield Leaf(key, value.nodes, row)
+            yield Leaf(key, Named(value.nodes), row)
         for own in value.called:
             tree = {CLASS: own.maker, **own.values}
             yield from _leaves(tree, f'{key}.{own.name}')
