@@ -183,6 +183,7 @@ def at_rest(mounting: Mounting) -> Body:
 
 
 def is_path(maker: str) -> bool:
+    """Return whether a text is module:name."""
     module, colon, name = maker.partition(':')
     return bool(colon) and name.isidentifier() and all(
         part.isidentifier() for part in module.split('.'))
