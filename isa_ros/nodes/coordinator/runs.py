@@ -137,7 +137,6 @@ def _coordinate(
     transport = _lockstep(node, session, participants, should_stop, lost)
     try:
         _record(node, session, transport, surroundings, (), report, should_stop)
-        _record(node, session, calling(session.run, transport), (), report, should_stop)
     finally:
         transport.close()
 
@@ -175,8 +174,6 @@ def coordinate_locally(
             transport = MixedTransport(local, controllers)
         _record(node, session, transport, surroundings, [own.outlet for own in actuators], report,
                 should_stop)
-        _record(node, session, calling(session.run, transport),
-                [own.outlet for own in actuators], report, should_stop)
     finally:
         if controllers is not None:
             controllers.close()
@@ -193,8 +190,9 @@ def _record(
     services = RunServices(
         node, session.pace.factor, lambda coordinator: save_in_bag(session, coordinator),
         supplies, JointCommands(node, session.run, acceptance), acceptance)
-    record(session, transport, surroundings, lambda topics: node.outlets(topics, actuators),
-           report, should_stop, services.serve, node.get_logger().warning)
+    record(session, calling(session.run, transport), surroundings,
+           lambda topics: node.outlets(topics, actuators), report, should_stop, services.serve,
+           node.get_logger().warning)
 
 
 def _resolver(setup: NodeSetup) -> Callable[[Node], NodeSetup]:
