@@ -52,6 +52,8 @@ def main(arguments: Sequence[str]) -> None:
         network.connect(interface=interface, channel=channel)
         nodes = [network.add_node(k + 1, sheet) for k, sheet in enumerate(sheets)]
         for node in nodes:
+            node.sdo.MAX_RETRIES = 200  # of 0.3 s, while they start
+            node.sdo.upload(0x1000, 0)
             node.rpdo.read(from_od=True)
             node.tpdo.read(from_od=True)
             node.tpdo[2].add_callback(answers.put)

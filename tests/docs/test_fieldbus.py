@@ -41,3 +41,25 @@ def test_an_example_is_of_at_most_60_lines(example: ModuleType):
     """Without empty ones."""
     lines = Path(str(example.__file__)).read_text(encoding='utf-8').splitlines()
     assert sum(bool(line.strip()) for line in lines) <= 60
+
+
+def test_the_ethercat_example_waits_for_slaves_that_start(monkeypatch: pytest.MonkeyPatch):
+    """Pasted as the README has it, the master is there before the slaves."""
+    found, slept = [0, -1, 3], list[float]()
+    begun = type('Begun', (Exception,), {})
+
+    class Late:
+        def open(self, interface: str) -> None:     # noqa: A003
+            assert interface == 'ecm'
+
+        def config_init(self) -> int:
+            return found.pop(0)
+
+        def config_map(self) -> None:
+            raise begun
+
+    monkeypatch.setattr(ethercat_master.pysoem, 'Master', Late)
+    monkeypatch.setattr(ethercat_master, 'sleep', slept.append)
+    with pytest.raises(begun):
+        ethercat_master.main(['ecm'])
+    assert (found, len(slept)) == ([], 2)

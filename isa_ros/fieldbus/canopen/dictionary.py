@@ -4,7 +4,8 @@ from collections.abc import Callable
 
 from isa_ros.fieldbus.canopen.communication import Communication
 from isa_ros.fieldbus.canopen.errors import NodeErrors
-from isa_ros.fieldbus.device.abort import PDO_TOO_LONG, SdoAbort, UNSUPPORTED_ACCESS
+from isa_ros.fieldbus.device.abort import (
+    PDO_TOO_LONG, SdoAbort, UNSUPPORTED_ACCESS, WRONG_STATE)
 from isa_ros.fieldbus.device.bus_device import BusDevice
 from isa_ros.fieldbus.device.can_identifiers import INVALID, MOST_BYTES
 from isa_ros.fieldbus.device.canopen_objects import COB_ID
@@ -52,6 +53,8 @@ class NodeDictionary:
 
     def _write_mapping(self, index: int, subindex: int, data: bytes) -> None:
         """Write an entry of a mapping, whose PDO must be off, and no longer than a frame."""
+        if not self._is_preoperational():
+            raise SdoAbort(WRONG_STATE)
         parameters = index - _MAPPINGS
         if parameters in self._communication \
                 and not self._communication.value(parameters, COB_ID) & INVALID:

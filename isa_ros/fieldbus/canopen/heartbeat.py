@@ -34,7 +34,8 @@ class HeartbeatProducer:
         """Return whether one is to be sent now; missed ones are left out."""
         if not self._period or now < self._next:
             return False
-        self._next = max(self._next + self._period, now)
+        following = self._next + self._period
+        self._next = following if following > now else now + self._period
         return True
 
 

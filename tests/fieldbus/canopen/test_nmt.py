@@ -1,6 +1,7 @@
 """NMT: states, boot-up messages, heartbeats, and what a node does in each state."""
 
 import isa_ros
+from isa_ros.fieldbus.canopen.heartbeat import HeartbeatProducer
 from isa_ros.fieldbus.device.devices import devices_of
 from isa_ros.fieldbus.device.manufacturer_area import tunable_keys
 import pytest
@@ -77,9 +78,9 @@ def test_heartbeats_have_the_state_and_follow_the_wall_clock(master, monkeypatch
     now = [100.0]
     for module in ('line', 'port'):
         monkeypatch.setattr(f'isa_ros.fieldbus.canopen.{module}.monotonic', lambda: now[0])
-    master.write(0x1017, 0, 20, 2)
-    master.line.serve(0.0)
-    assert master.received() == [(0x701, bytes([PREOPERATIONAL]))]
+    master.send(0x601, b'\x2B\x17\x10\0\x14\0\0\0')
+    assert master.received()[2:] == [
+        (0x581, b'\x60\x17\x10\0\0\0\0\0'), (0x701, bytes([PREOPERATIONAL]))]
     now[0] += 0.019
     master.line.serve(0.0)
     assert master.received() == []
@@ -157,3 +158,12 @@ def test_an_unknown_error_behaviour_is_refused(master):
     with pytest.raises(Refused) as refused:
         master.write(0x1029, 1, 3, 1)
     assert refused.value.code == 0x06090030
+
+
+def test_a_late_poll_sends_one_heartbeat():
+    """Written over SDO, at once; the next one a period after it, however late that is asked."""
+    produced = HeartbeatProducer()
+    produced.set_period(100, now=0.0)
+    sent = [round(now, 3) for now in (7.0, 7.001, 7.099, 7.101, 7.102, 7.4, 7.401, 7.499, 7.51)
+            if produced.is_due(now)]
+    assert sent == [7.0, 7.101, 7.4, 7.51]

@@ -250,6 +250,14 @@ def test_what_configures_the_bus_is_refused_while_operational(master, index, sub
     master.write(index, subindex, value, size)
 
 
+@pytest.mark.parametrize('mapping', [0x1600, 0x1602, 0x1A00, 0x1A02])
+def test_a_mapping_is_refused_while_operational_whether_its_pdo_is_on_or_off(master, mapping):
+    master.command(START)
+    with pytest.raises(Refused) as refused:
+        master.write(mapping, 0, 0, 1)
+    assert code(refused) == 0x08000022
+
+
 def test_another_sync_identifier_is_the_tick(master):
     master.write(0x1005, 0, 0x90, 4)
     master.command(START)
