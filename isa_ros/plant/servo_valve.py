@@ -45,7 +45,9 @@ def flow_curve(opening, valve):
 @kernel
 def leakage(travel, valve):
     """
-    Return q_0 x_l / (x_l + u), a land's leakage at the reference drop  (V6), in m3/s.
+    Return q_0 x_l / (x_l + abs(u)), a land's leakage at the reference drop  (V6), in m3/s.
+
+    ``travel`` is abs(u): how far it is open or closed, in m.
 
     Of a data sheet: straight lines between the leakages of V16, times a factor  (T3).
     """

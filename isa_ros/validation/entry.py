@@ -17,6 +17,7 @@ import re
 from isa_ros.paper.printed import Printed
 from matplotlib.figure import Figure
 
+TABLE_4, RETUNED = 'table_4', 'default'     # gains
 PAPER, WORDS, INPUT, OWN = 'paper', 'words', 'input', 'own'
 SOURCES = (PAPER, WORDS, INPUT, OWN)
 REACHED = 'reached'

@@ -23,14 +23,14 @@ from isa_ros.surroundings.bodies.leg.sheet import body_record
 from isa_ros.surroundings.linkage import actuator_coordinate
 from isa_ros.surroundings.linkage_sheet import linkage_record
 from isa_ros.validation.actuators import Actuators, SHIPPED
-from isa_ros.validation.entry import around, Drawing, Entry, Findings, OWN, PAPER
+from isa_ros.validation.entry import (
+    around, Drawing, Entry, Findings, OWN, PAPER, RETUNED, TABLE_4)
 from isa_ros.validation.plots import stacked
 from isa_ros.validation.sheets import model_sheet, plant_of
 from isa_ros.validation.torque_step import bandwidths
 import numpy as np
 
 MODEL = 'isa_v5'
-PRINTED, RETUNED = 'table_4', 'default'
 STEP_S = 0.4
 ENDS = (0.02, 0.98)       # of the stroke
 STIFFEST = 1e9            # N/m, the end of the load's range: 20 times the load cell
@@ -48,13 +48,13 @@ SLOW = ('no reading of Table 4 that settles is above 30 Hz at -3 dB (paper-errat
 def isa_v5(actuators: Actuators = SHIPPED) -> Findings:
     """Measure the ISA v5 with both sets of gains, and the relief valves of all actuators."""
     steps = {label: step(bench, STEP_S) for label, bench in (
-        ('printed gains, blocked', blocked(actuators, PRINTED)),
+        ('printed gains, blocked', blocked(actuators, TABLE_4)),
         ('retuned, blocked', blocked(actuators, RETUNED)),
         ('retuned, rigid stop', rigid(actuators, RETUNED)),
         ('retuned, foot on 1e6 N/m', foot(actuators, RETUNED)))}
     return Findings(
         (*_printed_gains(actuators),
-         *(entry for gains in (PRINTED, RETUNED) for entry in _bandwidths(actuators, gains)),
+         *(entry for gains in (TABLE_4, RETUNED) for entry in _bandwidths(actuators, gains)),
          *(_relief(actuators, model) for model in ('smart_manifold', 'isa_v2', MODEL))),
         (_drawing(steps),))
 
@@ -96,12 +96,12 @@ def cell_code() -> float:
 
 
 def _printed_gains(actuators: Actuators) -> tuple[Entry, ...]:
-    rise = step(blocked(actuators, PRINTED), STEP_S).figures.rise_time
+    rise = step(blocked(actuators, TABLE_4), STEP_S).figures.rise_time
     hunting = max(
-        step(blocked(actuators, PRINTED, place), STEP_S).figures.ripple for place in ENDS)
+        step(blocked(actuators, TABLE_4, place), STEP_S).figures.ripple for place in ENDS)
     return (
         Entry(name='printed_gains_rise', source=OWN, where='Table 4',
-              paper='none for the ISA v5', gains=PRINTED,
+              paper='none for the ISA v5', gains=TABLE_4,
               ours=float('nan') if rise is None else rise / MILLI, unit='ms',
               tolerance=around(AS_READ, percent=20.0), reading=UNITS,
               tolerance_source='17 by an independent model; 20 % for the assumed stiffness of '
@@ -109,7 +109,7 @@ def _printed_gains(actuators: Actuators) -> tuple[Entry, ...]:
         Entry(name='printed_gains_hunting_at_the_ends', source=OWN, where='sections 5.1, 6',
               paper='high gains might lead to limit cycles', ours=hunting, unit='N',
               tolerance=(0.0, cell_code()), reading=UNITS, tolerance_source=CODE,
-              gains=PRINTED))
+              gains=TABLE_4))
 
 
 def _bandwidths(actuators: Actuators, gains: str) -> list[Entry]:
@@ -122,8 +122,8 @@ def _bandwidths(actuators: Actuators, gains: str) -> list[Entry]:
                 name=f'{place}_bandwidth_{name}', source=PAPER, where=low.where,
                 paper=f'{low.text} to {high.text}', ours=ours, unit='Hz', gains=gains,
                 tolerance=(low.number, high.number), tolerance_source='the printed range',
-                reading=UNITS if gains == PRINTED else '',
-                reason=SLOW if gains == PRINTED else ''))
+                reading=UNITS if gains == TABLE_4 else '',
+                reason=SLOW if gains == TABLE_4 else ''))
     return entries
 
 

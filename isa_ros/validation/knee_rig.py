@@ -19,8 +19,9 @@ from isa_ros.scripting.result import Result
 from isa_ros.scripting.run import Run
 from isa_ros.validation.actuators import Actuators, SHIPPED
 from isa_ros.validation.entry import (
-    around, as_printed, at_least, at_most, Drawing, Entry, Findings, INPUT, OWN, WORDS)
-from isa_ros.validation.isa_v5 import cell_code, CODE, PRINTED, RETUNED
+    around, as_printed, at_least, at_most, Drawing, Entry, Findings, INPUT, OWN, RETUNED, TABLE_4,
+    WORDS)
+from isa_ros.validation.isa_v5 import cell_code, CODE
 from isa_ros.validation.plots import stacked
 import numpy as np
 
@@ -44,7 +45,7 @@ AS_READ = ('K_v of Table 4, read as 0.24 mm per m/s, is a quarter of the flow th
 def knee_rig(actuators: Actuators = SHIPPED) -> Findings:
     """Compare force steps, sine and drop of the knee with figures 14, 19 and 20."""
     found: list[Entry] = []
-    for gains in (PRINTED, RETUNED):
+    for gains in (TABLE_4, RETUNED):
         steps = {(level, ground): on_ground(actuators, ground, f'force_step_{level}', gains
                                             ).simulate()
                  for level in FORCE_STEPS for ground in (WOOD, RUBBER)}

@@ -87,8 +87,8 @@ def _codes(actuators: Actuators, model: str) -> tuple[Entry, Entry]:
     return (
         _own(f'{model}_force_code', bits.where, steps(actuators, model, 'blocked', 'force'), code,
              'Nm' if rotary else 'N', 'the range of the sensor over 2^12', 0.1),
-        Entry.of(f'{model}_position_code', encoder, place, around(encoder.number, percent=5.0),
-                 '5 %: half of its last printed digit or less'))
+        Entry.given(f'{model}_position_code', encoder, place, around(encoder.number, percent=5.0),
+                    '5 %: half of its last printed digit or less'))
 
 
 def steps(actuators: Actuators, model: str, load: str, field: str) -> float:

@@ -17,9 +17,9 @@ from isa_ros.paper.printed import statement
 from isa_ros.scripting.result import Result
 from isa_ros.validation.actuators import Actuators, SHIPPED
 from isa_ros.validation.entry import (
-    around, at_least, at_most, Drawing, Entry, Findings, OWN, WORDS)
+    around, at_least, at_most, Drawing, Entry, Findings, OWN, TABLE_4, WORDS)
 from isa_ros.validation.plots import stacked
-from isa_ros.validation.rotary_rig import of_preset, PRESETS, TABLE_4
+from isa_ros.validation.rotary_rig import of_preset, PRESETS
 import numpy as np
 from scipy.integrate import solve_ivp
 

@@ -25,7 +25,7 @@ from isa_ros.scripting.run import Run
 from isa_ros.validation.actuators import Actuators, SHIPPED
 from isa_ros.validation.entry import (
     around, as_printed, at_least, Drawing, Entry, Findings, INPUT, Observation, OWN, PAPER,
-    regression, WORDS)
+    regression, RETUNED, TABLE_4, WORDS)
 from isa_ros.validation.rotary_hunting import hunting, torque_code
 from isa_ros.validation.torque_step import (
     bandwidths, LEVELS, measured_step, TorqueStep)
@@ -33,7 +33,6 @@ import numpy as np
 
 RIG, ROTOR = 'rig_rotary', 'rotor'
 MANIFOLD = 'smart_manifold'
-TABLE_4, RETUNED = 'table_4', 'default'
 PRESETS = (TABLE_4, RETUNED)
 STEP_NM = 17.0              # 10 % of the rating, section 6
 STRIDE_S = 1.0 / 1.7        # of the trot, and of the sine

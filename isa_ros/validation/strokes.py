@@ -16,7 +16,8 @@ from isa_ros.core.parameter import replaced
 from isa_ros.paper.printed import statement
 from isa_ros.reu.block import Pid
 from isa_ros.reu.schedule import Constant, OilStiffness
-from isa_ros.validation.entry import Drawing, Entry, Findings, OWN, PAPER
+from isa_ros.validation.entry import (
+    Drawing, Entry, Findings, OWN, PAPER, RETUNED, TABLE_4)
 from isa_ros.validation.plots import stacked
 import numpy as np
 
@@ -37,7 +38,7 @@ class Subject:
     largest_ripple: float   # N | Nm at rest
 
 
-SUBJECTS = (Subject('isa_v5', 'default', 5.0), Subject('smart_manifold', 'table_4', 0.3))
+SUBJECTS = (Subject('isa_v5', RETUNED, 5.0), Subject('smart_manifold', TABLE_4, 0.3))
 
 
 @dataclass(frozen=True)

@@ -80,8 +80,9 @@ def test_each_row_of_the_page_has_a_source():
     assert {row[1] for row in ROWS} == {'paper', 'words', 'input', 'own'}
     counts = re.findall(r'^\| ([a-z, ]+) \| (\d+) \| (\d+) \| (\d+) \|', PAGE, re.M)
     assert [kind for kind, *_ in counts] == [
-        'printed number, simulated', 'statement in words, simulated', 'printed input, read back',
-        'as read, not as printed', 'own']
+        'printed number, simulated', 'printed number, simulated with retuned gains',
+        'statement in words, simulated', 'statement in words, simulated with retuned gains',
+        'printed input, read back', 'as read, not as printed', 'own']
     for _, entries, *verdicts in counts:
         assert int(entries) == sum(map(int, verdicts)) > 0
     assert sum(int(entries) for _, entries, *_ in counts) >= len(ROWS)

@@ -26,9 +26,10 @@ def test_the_table_gives_the_reason_of_what_is_not_reached(results):
     assert 'missed.lost is not reached: for no known reason' in text
     assert re.search(r'^good.seen +it hums +0.25 +N +held by hand$', text, re.M)
     assert text.endswith(
-        'printed number, simulated: 1 of 2 reached; statement in words, simulated: 0 of 0 '
-        'reached; printed input, read back: 0 of 0 reached; as read, not as printed: 0 of 0 '
-        'reached; own: 1 of 2 reached')
+        'printed number, simulated: 1 of 2 reached; printed number, simulated with retuned '
+        'gains: 0 of 0 reached; statement in words, simulated: 0 of 0 reached; statement in '
+        'words, simulated with retuned gains: 0 of 0 reached; printed input, read '
+        'back: 0 of 0 reached; as read, not as printed: 0 of 0 reached; own: 1 of 2 reached')
 
 
 def test_inputs_and_readings_are_counted_apart(tmp_path):
@@ -36,7 +37,9 @@ def test_inputs_and_readings_are_counted_apart(tmp_path):
     page = write_page([run_group(KINDS)], tmp_path)[0].read_text()
     assert '\n'.join((
         '| printed number, simulated | 1 | 1 | 0 |',
+        '| printed number, simulated with retuned gains | 0 | 0 | 0 |',
         '| statement in words, simulated | 2 | 1 | 1 |',
+        '| statement in words, simulated with retuned gains | 0 | 0 | 0 |',
         '| printed input, read back | 3 | 3 | 0 |', '| as read, not as printed | 4 | 3 | 1 |',
         '| own | 5 | 1 | 4 |')) in page
     assert '| kinds.r0 | paper | Fig 1 | 1 | 5 | m | 4.9 to 5.1 | a tenth | erratum 1: one | ' \
@@ -73,6 +76,8 @@ def test_each_set_of_gains_has_its_column(tmp_path):
     assert row + 'table_4: reached, default: **not reached** |' in page
     assert '| gains.alone | paper | Fig 1 | 1 |  | 1 |  | m |' in page
     assert '- gains.rise.default is not reached: slower' in page
+    assert '| printed number, simulated | 2 | 2 | 0 |' in page
+    assert '| printed number, simulated with retuned gains | 1 | 0 | 1 |' in page
 
 
 def test_what_is_not_compared_is_listed(results, tmp_path):
