@@ -10,7 +10,7 @@ from collections.abc import Iterator, Sequence
 import math
 import struct
 import sys
-from time import sleep
+from threading import Event
 from typing import Any
 
 import pysoem
@@ -53,11 +53,7 @@ def main(arguments: Sequence[str]) -> None:
     """Run `CYCLES` cycles on the slaves of an interface, as fast as they answer."""
     master = pysoem.Master()
     master.open(arguments[0])
-    for _ in range(60):     # s, while they start
-        if master.config_init() > 0:
-            break
-        sleep(1)
-    else:
+    if not any(master.config_init() > 0 or Event().wait(1) for _ in range(60)):     # s: they start
         raise SystemExit(f'no slaves on {arguments[0]}')
     master.config_map()
     names = [slave.sdo_read(0x1008, 0).decode() for slave in master.slaves]
