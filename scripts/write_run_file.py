@@ -9,11 +9,15 @@ from dataclasses import fields
 from pathlib import Path
 
 from isa_ros.actuator.link import LinkSheet
+from isa_ros.config.robots.contacts import CONTACT
+from isa_ros.config.robots.drives import Cylinder, DRIVE
+from isa_ros.config.robots.start import RobotStartValues, START
 from isa_ros.config.runs.actuator_config import ACTUATOR
 from isa_ros.config.runs.emergency_stops import GROUP
 from isa_ros.config.runs.external_config import ExternalConfig
 from isa_ros.config.runs.leg_config import LegConfig, LegStart
 from isa_ros.config.runs.recording import RECORD, Storage
+from isa_ros.config.runs.robot_config import RobotConfig
 from isa_ros.config.runs.run_config import RUN
 from isa_ros.config.runs.supplies import SUPPLY_KEYS
 from isa_ros.config.text.keys import InText, KeyTable, parameter_rows, REQUIRED
@@ -21,6 +25,7 @@ from isa_ros.config.text.parameter_sets import members
 from isa_ros.core.parameter import Parameters
 from isa_ros.surroundings.bodies.leg.inertial import Imu
 from isa_ros.surroundings.dump import LagDump, NoneDump, ValveDump
+from isa_ros.surroundings.linkage_sheet import Direct, FourBar, SliderCrank
 from isa_ros.surroundings.return_line import ReturnLine
 from isa_ros.surroundings.supply import SupplySheet
 from isa_ros.text.marked import with_parts
@@ -51,7 +56,7 @@ def _parameters(cls: type[Parameters]) -> Iterator[list[str]]:
         row = rows[f.name]
         if 'doc' in f.metadata:
             value = ' or '.join(f.metadata['names']) if 'names' in f.metadata else (
-                f'number, {f.metadata["unit"]}')
+                f'number{"s" if "length" in f.metadata else ""}, {f.metadata["unit"]}')
             yield [f'`{f.name}`', value, _default(row.default, row.default_words), row.meaning]
 
 
@@ -73,7 +78,10 @@ def page(text: str) -> str:
         'emergency stop': keys(GROUP), 'record': keys(RECORD),
         'storage': parameters(Storage), 'link': parameters(LinkSheet),
         'actuator': keys(ACTUATOR), 'leg': keys(LegConfig.KEYS), 'start': parameters(LegStart),
-        'imu': parameters(Imu), 'external': keys(ExternalConfig.KEYS)})
+        'imu': parameters(Imu), 'external': keys(ExternalConfig.KEYS),
+        'robot': keys(RobotConfig.KEYS), 'drive': keys(DRIVE),
+        'linkage': by_kind(Direct | SliderCrank | FourBar | Cylinder), 'contact': keys(CONTACT),
+        'joints': keys(START), 'root': parameters(RobotStartValues)})
 
 
 if __name__ == '__main__':

@@ -85,7 +85,7 @@ def describe(name: str, preset: str | None = None, variants: Sequence[str] = (),
     except ConfigError as error:
         known = ', '.join([*model_names(), *leg_names()])
         raise ConfigError(f'{error}; models and legs: {known}') from error
-    return _described(read(path), Place(path.name), values)
+    return _described(read(path), Place.of(path), values)
 
 
 def _described(tree: Tree, place: Place, values: Values) -> str:

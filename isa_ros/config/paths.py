@@ -54,6 +54,12 @@ def find_drawing(name: str) -> Path:
     raise ConfigError(f'{name}: no such shipped file')
 
 
+def drawings(directory: str) -> list[str]:
+    """Return the names of the shipped files below ``urdf`` or ``rviz``, sorted."""
+    return sorted({path.name for share in share_directories()
+                   for path in (share / directory).glob('*.*')})
+
+
 def find(name: str, directory: str) -> Path:
     """
     Return the user's file ``name``, or else the shipped file of that name.

@@ -37,13 +37,14 @@ class _File:
 
     tree: Tree
     name: str
+    folder: Path = Path()
 
     def replaced(self, key: str, value: Any) -> '_File':
         return replace(self, tree=replaced(self.tree, key, value, self.name))
 
     @property
     def place(self) -> Place:
-        return Place(self.name)
+        return Place(self.name, folder=self.folder)
 
 
 class Run:
@@ -258,4 +259,4 @@ def _file(given: str | Path | Tree, directory: str) -> _File:
         name = given.get('name')
         return _File(given, f'{name}.yaml' if isinstance(name, str) else 'the dictionary')
     path = find(str(given), directory)
-    return _File(read(path), path.name)
+    return _File(read(path), path.name, path.parent)

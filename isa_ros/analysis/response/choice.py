@@ -98,7 +98,7 @@ def _of_file(choice: Choice) -> tuple[Tree, Place]:
         if choice.name.endswith('.yaml'):
             raise
         raise ConfigError(f'{error}; models: {", ".join(model_names())}') from error
-    return read(path), Place(path.name)
+    return read(path), Place.of(path)
 
 
 def _actuator(run: RunConfig, choice: Choice) -> str:

@@ -4,7 +4,7 @@ A body of a run: what a kind of bodies declares, and all that others need to kno
 A kind is one class, derived from `BodyConfig`, and one row in `isa_ros.config.runs.body_kinds`.
 """
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from typing import ClassVar, NamedTuple
 
@@ -63,9 +63,11 @@ class BodyConfig:
 
     @classmethod
     def of(cls, name: str, values: dict[str, object], place: Place, step_ns: int,
-           is_checked: bool) -> 'tuple[BodyConfig, Section]':
+           is_checked: bool) -> 'tuple[BodyConfig, Mapping[str, Section]]':
         """
-        Return the body of the values of `KEYS`, and the section that its sheet was built from.
+        Return the body of the values of `KEYS`, and the sections that its sheets were built from.
+
+        They have the keys of the sheets in the resolved text of the body.
 
         ``is_checked`` as in `isa_ros.config.runs.run_config.run_of`.
 

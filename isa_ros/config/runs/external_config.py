@@ -1,6 +1,6 @@
 """A body of any simulator: its actuators, and the Python that makes it."""
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from importlib import import_module
 import os
@@ -49,7 +49,7 @@ class ExternalConfig(BodyConfig):
 
     @classmethod
     def of(cls, name: str, values: dict[str, Any], place: Place, step_ns: int,
-           is_checked: bool) -> tuple[BodyConfig, Section]:
+           is_checked: bool) -> tuple[BodyConfig, Mapping[str, Section]]:
         """Return the body; as `BodyConfig.of`."""
         actuators, maker = values['actuators'], values['class']
         if not actuators:

@@ -28,14 +28,14 @@ def bodies_of(
     taken = [COORDINATOR, *values['actuators'], *(values['supplies'] or [SUPPLY])]
     if is_checked:
         _refuse_shared_names(values, place)
-    bodies, origins = [], {}
+    bodies: list[BodyConfig] = []
+    origins: dict[str, Section] = {}
     for name, (key, below, own) in found.items():
         if name != BODY and name in taken:
             raise ConfigError(f'{below}: the name {name!r} is taken; taken: {", ".join(taken)}')
-        config, section = BODY_KINDS[own['kind']].of(name, own, below, step_ns, is_checked)
+        config, sections = BODY_KINDS[own['kind']].of(name, own, below, step_ns, is_checked)
         bodies.append(config)
-        if section:
-            origins[f'{key}.sheet'] = section
+        origins |= {f'{key}.{own_key}': section for own_key, section in sections.items()}
     return tuple(bodies), origins
 
 

@@ -1,6 +1,6 @@
 """A leg as the body of a run: its keys, its sheet, its actuators, its initial pose."""
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
 import math
@@ -104,7 +104,7 @@ class LegConfig(BodyConfig):
 
     @classmethod
     def of(cls, name: str, values: dict[str, Any], place: Place, step_ns: int,
-           is_checked: bool) -> tuple[BodyConfig, Section]:
+           is_checked: bool) -> tuple[BodyConfig, Mapping[str, Section]]:
         """Return a leg, and the section that its sheet was built from; as `BodyConfig.of`."""
         model = values['model']
         if values['sheet'] is not None:
@@ -123,7 +123,7 @@ class LegConfig(BodyConfig):
             leg.refuse_start(step_ns, place / 'start')
             for imu in leg.imus:
                 imu.sheet.period_ns(step_ns, str(place / 'imus' / imu.name))
-        return leg, section
+        return leg, {'sheet': section}
 
     @property
     def label(self) -> str:

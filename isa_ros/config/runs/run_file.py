@@ -23,4 +23,4 @@ def load_run(path: Path | str, changes: Values | None = None) -> RunConfig:
 
     """
     path = Path(path)
-    return run_of(changed(read(path), changes or {}, path.name), Place(path.name))[0]
+    return run_of(changed(read(path), changes or {}, path.name), Place.of(path))[0]

@@ -6,7 +6,8 @@ A later layer (preset, run file) replaces single values of an earlier one (the m
 """
 
 from collections.abc import Iterable
-from dataclasses import dataclass
+from dataclasses import dataclass, field
+from pathlib import Path
 from typing import Any
 
 from isa_ros.actuator.scales import SCALES
@@ -38,9 +39,16 @@ class Place:
 
     file: str
     key: str = ''
+    folder: Path = field(default=Path(), compare=False)
+    """In which the file names others; the current one if it is unknown."""
+
+    @classmethod
+    def of(cls, path: Path) -> 'Place':
+        """Return the place of a file."""
+        return cls(path.name, folder=path.parent)
 
     def __truediv__(self, key: str) -> 'Place':
-        return Place(self.file, f'{self.key}.{key}' if self.key else key)
+        return Place(self.file, f'{self.key}.{key}' if self.key else key, self.folder)
 
     def __str__(self) -> str:
         return f'{self.file}: {self.key}' if self.key else self.file

@@ -1,0 +1,278 @@
+"""The drives of a robot in a run file: which actuator moves which joint, by which linkage."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
+import math
+from typing import Any
+
+from isa_ros.config.models.catalogue import leg_names, leg_section
+from isa_ros.config.robots.patterns import sections_by_name
+from isa_ros.config.robots.tree import Tree
+from isa_ros.config.text.keys import (
+    FLAG, InText, Key, KeyTable, NAME, Named, ParameterSet, TEXT, Value)
+from isa_ros.config.text.names import refuse_bad_name
+from isa_ros.config.text.parameter_sets import build_one_of
+from isa_ros.config.text.sections import (
+    KIND_KEYS, merge, Place, refuse_unknown, Section, section_at, SourcedValue, written)
+from isa_ros.config.text.yaml_text import Tree as YamlTree
+from isa_ros.core.parameter import check, numbers, parameter, Parameters
+from isa_ros.core.suggest import alternatives
+from isa_ros.core.units import MILLI
+from isa_ros.errors import ConfigError
+from isa_ros.surroundings.bodies.robot.sheet import (
+    JointLinkage, Points, RobotDrive, RobotFrame, RobotLink, vector)
+from isa_ros.surroundings.linkage_sheet import (
+    Direct, FourBar, Joint, linkage_record, SliderCrank)
+import numpy as np
+
+_RANGE_DIGITS = 9       # of the range of a joint in deg: 1e-9 deg
+_RANGE_ROUNDING = 1e-6  # deg or mm by which a range may exceed that of the URDF
+
+
+@dataclass(frozen=True, kw_only=True)
+class Cylinder(Parameters):
+    """A cylinder between a point of one link and a point of another one."""
+
+    base_mm: tuple[float, ...] = numbers(
+        'pin of its cap end, axes of the link `base`', 'mm', least=3, most=3, ge=-1e5, le=1e5)
+    rod_mm: tuple[float, ...] = numbers(
+        'pin of its rod, axes of the link `rod`', 'mm', least=3, most=3, ge=-1e5, le=1e5)
+    retracted_length_mm: float = parameter('pin to pin at piston 0', 'mm', gt=0.0, le=1e5)
+
+
+Linkage = Direct | SliderCrank | FourBar | Cylinder
+
+
+@dataclass(frozen=True, kw_only=True)
+class DriveConfig:
+    """A drive: a linkage of one joint, or a cylinder between two links."""
+
+    name: str
+    actuator: str
+    linkage: Linkage
+    joint: str | None = None
+    """None of a cylinder."""
+    base: str | None = None
+    """Link of the URDF; None of a linkage of one joint."""
+    rod: str | None = None
+    joint_range: tuple[float, float] | None = None
+    """deg or mm of the joint that a cylinder moves; None: that of the URDF."""
+
+
+def _range(value: Any, place: Place) -> tuple[float, float]:
+    check(str(place), value, {'doc': 'lower and upper end', 'unit': 'deg | mm',
+                              'length': (2, 2), 'bounds': {'ge': -1e5, 'le': 1e5}})
+    low, high = map(float, value)
+    if not low < high:
+        raise ConfigError(f'{place} = {value!r}, its first number must be < its second one')
+    return low, high
+
+
+DRIVE = KeyTable((
+    Key('actuator', NAME, 'the actuator', None, 'of its name'),
+    Key('joint', TEXT, 'the joint of the URDF that its linkage drives', None, 'of its name'),
+    Key('base', TEXT, "link of the pin of a cylinder's cap end", None,
+        'required of a cylinder'),
+    Key('rod', TEXT, 'link of the pin of its rod', None, 'required of a cylinder'),
+    Key('range', Value('two numbers', _range, 'deg | mm'),
+        'of the joint that a cylinder moves, within that of the URDF', None, 'that of the URDF',
+        of=lambda own: own.joint_range),
+    Key('like', TEXT, 'one of `linkages`, or LEG.JOINT of a packaged leg, whose values the drive '
+        'has where it has none of its own', None, in_text=InText.NEVER),
+    Key('mirrored', FLAG, 'whether the joint turns the other way than the one it is like', False,
+        in_text=InText.NEVER)),
+    rest=Key('linkage', ParameterSet(Linkage), 'its linkage'))
+
+
+class Drives(Named):
+    """Drives by name, or by patterns of the joints they move, which `drives_of` resolves."""
+
+    words = 'sections by name or pattern'
+
+    def read(self, tree: Any, place: Place) -> Any:
+        """Return the sections as they are; as `ValueKind.read`."""
+        return section_at(tree, place)
+
+
+def drives_of(
+        given: YamlTree, linkages: Mapping[str, Section], tree: Tree,
+        place: Place) -> tuple[tuple[DriveConfig, ...], dict[str, Section]]:
+    """
+    Return the drives of a file, and the section that each linkage was built from, by name.
+
+    Those with the name of a joint are in the order of the joints, and before the others.
+
+    ``linkages`` are those that ``like`` may name.
+
+    Raises
+    ------
+    ConfigError
+        A drive moves nothing, or lacks something.
+    ParameterError
+        A value is out of its range, or a linkage is not regular in the range of its joint.
+
+    """
+    joints = {link.joint.name: link for link in tree.links[1:]}
+    drives, origins = [], {}
+    sections = sections_by_name(given, list(joints), place)
+    order = {name: k for k, name in enumerate(joints)}
+    for name in sorted(sections, key=lambda name: order.get(name, len(order))):
+        own, below = sections[name], place / name
+        section = _linkage_section(own, linkages, below)
+        kind = next((entry.value for key in KIND_KEYS
+                     if isinstance(entry := section.get(key), SourcedValue)), None)
+        actuator = own.get('actuator', name)
+        refuse_bad_name(actuator, str(below / 'actuator'))
+        if kind == 'cylinder':
+            drive = _cylinder(name, str(actuator), own, section, tree, below)
+        else:
+            for key in ('base', 'rod', 'range'):
+                if key in own:
+                    raise ConfigError(f'{below / key} is not used: only a cylinder has it')
+            joint = _joint_of(own, name, joints, below)
+            section = _with_range(section, joint, below)
+            drive = DriveConfig(name=name, actuator=str(actuator), joint=joint.joint.name,
+                                linkage=build_one_of(Linkage, section, below))
+            _refuse_range(drive, joint, below)
+        drives.append(drive)
+        origins[name] = section
+    return tuple(drives), origins
+
+
+def _linkage_section(
+        own: YamlTree, linkages: Mapping[str, Section], place: Place) -> Section:
+    """Return the values of a drive's linkage, over those of the one that it is like."""
+    values = written({key: value for key, value in own.items() if key not in DRIVE.names}, place)
+    if 'like' not in own:
+        if 'mirrored' in own:
+            raise ConfigError(f'{place / "mirrored"} is not used: the drive is like no other')
+        return values
+    base = dict(_like(own['like'], linkages, place / 'like'))
+    mirrored = own.get('mirrored', False)
+    if not isinstance(mirrored, bool):
+        raise ConfigError(f'{place / "mirrored"} = {mirrored!r}, must be true or false')
+    return merge(_mirrored(base, place) if mirrored else base, values)
+
+
+def _mirrored(base: Section, place: Place) -> Section:
+    """Return a linkage of a joint whose angle is the negative one."""
+    def negative(key: str) -> SourcedValue | None:
+        entry = base.pop(key, None)
+        if not isinstance(entry, SourcedValue) or not isinstance(entry.value, (int, float)):
+            return None
+        return replace(entry, value=-entry.value)
+    sense, low, high = (negative(key) for key in ('sense', 'low_deg', 'high_deg'))
+    if sense is None:
+        raise ConfigError(
+            f'{place / "mirrored"} is not used: the linkage has no sense that it changes')
+    ends = {'sense': sense, 'low_deg': high, 'high_deg': low}
+    return base | {key: entry for key, entry in ends.items() if entry is not None}
+
+
+def _like(name: Any, linkages: Mapping[str, Section], place: Place) -> Section:
+    """Return a linkage of the file, or LEG.JOINT of a packaged leg without its range."""
+    if isinstance(name, str) and name in linkages:
+        return linkages[name]
+    leg, _, joint = str(name).partition('.')
+    if leg in leg_names():
+        section, _ = leg_section(leg, str(place))
+        refuse_unknown([joint], ('haa', 'hfe', 'kfe'), Place(place.file, f'{place.key}.{leg}'))
+        found = section[joint]
+        assert isinstance(found, dict)
+        return {key: value for key, value in found.items() if key not in ('low_deg', 'high_deg')}
+    raise ConfigError(
+        f'{place} = {name!r} is not a linkage of the file, nor LEG.JOINT of a packaged leg; '
+        f'{alternatives(str(name), [*linkages, *(f"{own}.kfe" for own in leg_names())])}')
+
+
+def _joint_of(
+        own: YamlTree, name: str, joints: Mapping[str, RobotLink], place: Place) -> RobotLink:
+    """Return the link whose joint a drive moves."""
+    joint = own.get('joint', name)
+    if not isinstance(joint, str) or joint not in joints:
+        raise ConfigError(
+            f'{place / "joint" if "joint" in own else place}: {joint!r} moves nothing: it is not '
+            f'a joint of the URDF that turns or slides; {alternatives(str(joint), list(joints))}')
+    if joints[joint].joint.kind == 'prismatic':
+        raise ConfigError(
+            f'{place}: the joint {joint} slides, its drive must be of the linkage cylinder, '
+            'between two points')
+    return joints[joint]
+
+
+def _with_range(section: Section, link: RobotLink, place: Place) -> Section:
+    """Return the values of a linkage with the range of the URDF where they have none."""
+    joint, found = link.joint, dict(section)
+    for key, end in (('low_deg', joint.low), ('high_deg', joint.high)):
+        if key not in found:
+            if not math.isfinite(end):
+                raise ConfigError(place.has(
+                    f'lacks low_deg and high_deg, the range of its linkage: the joint '
+                    f'{joint.name} of the URDF is continuous'))
+            found[key] = SourcedValue(
+                round(math.degrees(end), _RANGE_DIGITS), str(place / key), 'the URDF')
+    return found
+
+
+def _refuse_range(drive: DriveConfig, link: RobotLink, place: Place) -> None:
+    """Refuse a range that is wider than that of the joint."""
+    assert isinstance(drive.linkage, Joint)
+    low, high = drive.linkage.low_deg, drive.linkage.high_deg
+    ends = [math.degrees(end) for end in (link.joint.low, link.joint.high)]
+    if low < ends[0] - _RANGE_ROUNDING or high > ends[1] + _RANGE_ROUNDING:
+        raise ConfigError(
+            f'{place} has the range {low:g} to {high:g} deg, must be within that of the joint '
+            f'{link.joint.name} in the URDF, {ends[0]:g} to {ends[1]:g} deg')
+
+
+def _cylinder(
+        name: str, actuator: str, own: YamlTree, section: Section, tree: Tree,
+        place: Place) -> DriveConfig:
+    """Return a cylinder between two links that move against each other."""
+    if 'joint' in own:
+        raise ConfigError(f'{place / "joint"} is not used: a cylinder moves all joints between '
+                          'the links base and rod')
+    frames = {frame.name: frame for frame in tree.frames}
+    ends = []
+    for key in ('base', 'rod'):
+        link = own.get(key)
+        if not isinstance(link, str):
+            raise ConfigError(place.has(f'lacks {key}, the link of a pin of the cylinder'))
+        if link not in frames:
+            raise ConfigError(f'{place / key} = {link!r} is not a link of the URDF; '
+                              f'{alternatives(link, list(frames))}')
+        ends.append(link)
+    if frames[ends[0]].link == frames[ends[1]].link:
+        raise ConfigError(
+            f'{place} moves nothing: no joint that turns or slides is between its links base = '
+            f'{ends[0]} and rod = {ends[1]}')
+    return DriveConfig(
+        name=name, actuator=actuator, linkage=build_one_of(Linkage, section, place),
+        base=ends[0], rod=ends[1],
+        joint_range=None if own.get('range') is None else _range(own['range'], place / 'range'))
+
+
+def robot_drive(own: DriveConfig, tree: Tree) -> RobotDrive:
+    """Return a drive of the sheet of a robot, SI."""
+    if not isinstance(own.linkage, Cylinder):
+        names = [link.joint.name for link in tree.links]
+        assert own.joint is not None
+        return RobotDrive(actuator=own.name, linkage=JointLinkage(
+            link=names.index(own.joint), linkage=linkage_record(own.linkage)))
+    (a, point_a), (b, point_b) = (
+        in_link(frame_named(tree, link), [MILLI * one for one in place]) for link, place in (
+            (own.base, own.linkage.base_mm), (own.rod, own.linkage.rod_mm)))
+    return RobotDrive(actuator=own.name, linkage=Points(
+        link_a=a, point_a=vector(point_a), link_b=b, point_b=vector(point_b),
+        retracted_length=MILLI * own.linkage.retracted_length_mm))
+
+
+def frame_named(tree: Tree, name: str | None) -> RobotFrame:
+    """Return the frame of a link of the URDF, which there is."""
+    return next(frame for frame in tree.frames if frame.name == name)
+
+
+def in_link(frame: RobotFrame, place: list[float]) -> tuple[int, list[float]]:
+    """Return the link of the tree that a frame is fixed to, and a point (m) in its axes."""
+    found = np.array(frame.place) + np.array(frame.rotation) @ np.array(place)
+    return frame.link, found.tolist()

@@ -1,0 +1,43 @@
+"""Data sheet of an inertial measurement unit: rate, place on its link, and errors."""
+
+from dataclasses import dataclass
+
+from isa_ros.core.parameter import parameter, Parameters
+from isa_ros.core.timebase import NS_PER_SECOND
+from isa_ros.errors import ParameterError
+
+
+@dataclass(frozen=True, kw_only=True)
+class InertialUnitSheet(Parameters):
+    """An inertial measurement unit, whatever link it is on."""
+
+    rate_hz: float = parameter('rate of the readings', 'Hz', absent=100.0, gt=0.0, le=10e3)
+    x_mm: float = parameter("place in the link's frame", 'mm', absent=0.0, ge=-2e3, le=2e3)
+    y_mm: float = parameter("place in the link's frame", 'mm', absent=0.0, ge=-2e3, le=2e3)
+    z_mm: float = parameter("place in the link's frame", 'mm', absent=0.0, ge=-2e3, le=2e3)
+    accelerometer_sigma: float = parameter(
+        'white noise of a reading, standard deviation', 'm/s2', absent=0.0, ge=0.0, le=100.0)
+    accelerometer_bias: float = parameter(
+        'constant error of each axis', 'm/s2', absent=0.0, ge=-100.0, le=100.0)
+    gyro_sigma: float = parameter(
+        'white noise of a reading, standard deviation', 'rad/s', absent=0.0, ge=0.0, le=10.0)
+    gyro_bias: float = parameter(
+        'constant error of each axis', 'rad/s', absent=0.0, ge=-10.0, le=10.0)
+
+    def period_ns(self, step_ns: int, where: str) -> int:
+        """
+        Return the period of the readings in ns.
+
+        Raises
+        ------
+        ParameterError
+            It is not a whole number of ticks of ``step_ns``; ``where`` names the unit.
+
+        """
+        period = NS_PER_SECOND / self.rate_hz
+        ticks = round(period / step_ns)
+        if ticks < 1 or abs(ticks * step_ns - period) > 1.0:    # 1 ns, far above a rounding
+            raise ParameterError(
+                f'{where}.rate_hz = {self.rate_hz:g} Hz, its period must be a multiple of '
+                f'step_ms = {step_ns / 1e6:g} ms')
+        return ticks * step_ns

@@ -1,0 +1,245 @@
+"""Robots of run files: their resolved text, their linkages, and what is refused."""
+
+from pathlib import Path
+import shutil
+
+from isa_ros.config.differences import key_differences
+from isa_ros.config.robots.geometry import motion_of, point, poses, quaternion
+from isa_ros.config.robots.start import coordinates, root_pose
+from isa_ros.config.runs.run_config import RunConfig
+from isa_ros.config.runs.run_file import load_run
+from isa_ros.config.text.sections import Place
+from isa_ros.config.text.yaml_text import parse
+from isa_ros.errors import ConfigError
+import numpy as np
+import pytest
+
+ROOT = Path(__file__).parents[3]
+NAMES = ('quadruped', 'hyq_quadruped', 'crane', 'two_joint_leg')
+
+
+@pytest.fixture(scope='module')
+def runs():
+    """Return the shipped runs with a robot."""
+    return {name: load_run(ROOT / 'config' / f'{name}.yaml') for name in NAMES}
+
+
+def robot(run):
+    return run.bodies[0]
+
+
+@pytest.mark.parametrize('name', NAMES)
+def test_the_resolved_text_needs_no_urdf(runs, name, tmp_path, monkeypatch):
+    """Every value bit for bit, and the same text and sheet of it."""
+    text = runs[name].to_yaml()
+    monkeypatch.chdir(tmp_path)
+    monkeypatch.setattr('isa_ros.config.runs.robot_config.find_drawing', None)
+    found = RunConfig.from_yaml(text)
+    assert found == runs[name]
+    assert found.to_yaml() == text
+    first, second = robot(found).sheet, robot(runs[name]).sheet
+    assert (first.links, first.contacts, first.frames) == (
+        second.links, second.contacts, second.frames)
+    for one, other in zip(first.drives, second.drives, strict=True):
+        assert getattr(one.linkage, 'linkage', one.linkage) == getattr(
+            other.linkage, 'linkage', other.linkage)
+    assert list(key_differences(parse(text, 'text'), Place('text'))) == []
+
+
+def test_a_urdf_is_beside_its_run_file(tmp_path):
+    """The user's own file has precedence over a shipped one of its name."""
+    path = tmp_path / 'crane.yaml'
+    shutil.copy(ROOT / 'config' / 'crane.yaml', path)
+    text = (ROOT / 'urdf' / 'crane.urdf').read_text()
+    (tmp_path / 'crane.urdf').write_text(text.replace('value="100"', 'value="90"'))
+    assert robot(load_run(path)).sheet.mass == pytest.approx(
+        robot(load_run(ROOT / 'config' / 'crane.yaml')).sheet.mass - 10.0)
+
+
+def test_a_robot_stands_on_its_lowest_contact(runs):
+    """All feet of the quadrupeds are on the ground; height_mm lifts the lowest."""
+    for name, height in (('quadruped', 0.0), ('hyq_quadruped', 0.0), ('quadruped', 50.0)):
+        own = robot(load_run(ROOT / 'config' / f'{name}.yaml', {'body.start.height_mm': height}))
+        sheet = own.sheet
+        at = poses(sheet.links, coordinates(own.start, own.tree),
+                   root_pose(own.start, own.tree, sheet.contacts))
+        heights = [point(at[one.link], one.point)[2] for one in sheet.contacts]
+        feet = [z for z, one in zip(heights, sheet.contacts) if one.is_foot]
+        assert len(feet) == 4 and feet == pytest.approx([1e-3 * height] * 4, abs=1e-12)
+        assert min(heights) == min(feet)
+
+
+def test_a_start_turns_the_root(runs):
+    """Roll, pitch and yaw about fixed axes, as in a URDF."""
+    own = robot(load_run(ROOT / 'config' / 'quadruped.yaml', {
+        'body.start.roll_deg': 10.0, 'body.start.pitch_deg': -20.0, 'body.start.yaw_deg': 120.0}))
+    pose = root_pose(own.start, own.tree, own.sheet.contacts)
+    w, x, y, z = quaternion(*np.radians([10.0, -20.0, 120.0]))
+    turned = np.array([
+        [1 - 2 * (y * y + z * z), 2 * (x * y - w * z), 2 * (x * z + w * y)],
+        [2 * (x * y + w * z), 1 - 2 * (x * x + z * z), 2 * (y * z - w * x)],
+        [2 * (x * z - w * y), 2 * (y * z + w * x), 1 - 2 * (x * x + y * y)]])
+    assert np.abs(turned - pose.rotation).max() < 1e-15
+    assert pose.rotation[2, 0] == pytest.approx(np.sin(np.radians(20.0)))
+
+
+def test_left_and_right_are_like_the_leg(runs):
+    """A quadruped's pistons are those of the leg that its drives are like."""
+    leg = load_run(ROOT / 'config' / 'leg.yaml').bodies[0]
+    for joint, _ in leg.joints:
+        for side in ('lf', 'rf', 'lh', 'rh'):
+            found = robot(runs['quadruped']).position_of(f'{side}_{joint}')
+            assert found == leg.position_of(joint)
+
+
+def test_a_mirrored_linkage_is_that_of_the_opposite_angle(runs):
+    """In HyQ's hind legs: x(q) of a front leg is x(-q), its lever the negative one."""
+    sheet = robot(runs['hyq_quadruped']).sheet
+    drives = {own.actuator: own for own in sheet.drives}
+    index = {joint.name: k for k, joint in enumerate(sheet.joints)}
+    for joint in ('hfe', 'kfe'):
+        for angle in (-0.8, -0.5, -0.35):
+            found = []
+            for leg, sign in (('lf', 1.0), ('lh', -1.0)):
+                q = [0.0] * len(sheet.joints)
+                q[index[f'{leg}_{joint}']] = sign * angle
+                found.append(motion_of(sheet, drives[f'{leg}_{joint}'], q))
+            assert found[0][0] == found[1][0]
+            assert found[0][1][0] == -found[1][1][0] != 0.0
+
+
+def test_a_cylinder_pushes_as_the_crank_of_its_pins(runs):
+    """The knee of the two-joint leg: pins a and b from the joint, law of cosines  (L4)."""
+    own = robot(runs['two_joint_leg'])
+    drive = own.sheet.drives[1]
+    base, rod = np.array([45.0, -31.4 + 350.0]), np.array([4.7, -44.8])     # x, z from the knee
+    a, b = np.hypot(*base), np.hypot(*rod)
+    for q in (-2.3, -1.0, -0.4):
+        start = np.arctan2(base[0], base[1]) - np.arctan2(rod[0], rod[1])
+        length = np.sqrt(a * a + b * b - 2 * a * b * np.cos(q - start))
+        x, levers = motion_of(own.sheet, drive, [0.0, 0.3, q])
+        assert 1e3 * x == pytest.approx(length - 281.0, abs=1e-9)
+        by = 1e-6
+        low, high = (motion_of(own.sheet, drive, [0.0, 0.3, q + dq])[0] for dq in (-by, by))
+        assert levers == [pytest.approx((high - low) / (2.0 * by), rel=1e-8)]
+
+
+def test_a_cylinder_over_several_joints_has_a_lever_on_each(runs):
+    """From the carriage to the calf: hip and knee; the levers are derivatives."""
+    own = robot(load_run(ROOT / 'config' / 'two_joint_leg.yaml', {
+        'body.drives.knee.base': 'carriage', 'body.drives.knee.base_mm': [60.0, 0.0, 0.0],
+        'body.drives.knee.retracted_length_mm': 340.0}))
+    drive = own.sheet.drives[1]
+    at = [0.1, 0.3, -1.0]
+    assert [own.sheet.links[k].joint.name for k in own.sheet.driven(drive)] == ['hip', 'knee']
+    _, levers = motion_of(own.sheet, drive, at)
+    for k, lever in zip((1, 2), levers):
+        ends = [motion_of(own.sheet, drive, [
+            q + (sign * 1e-6 if j == k else 0.0) for j, q in enumerate(at)])[0]
+            for sign in (-1, 1)]
+        assert lever == pytest.approx((ends[1] - ends[0]) / 2e-6, rel=1e-7)
+
+
+def test_the_crane_moves_as_it_was_published(runs):
+    """
+    Lengths of its cylinders from the published pins, brackets and booms, in their own axes.
+
+    The eye of the tilt cylinder is where circles about the ends of both brackets meet, 0.459 m
+    about (2.69, -0.0066) of the lift boom and 0.475 m about (-0.095, 0.2404) of the tilt boom.
+    """
+    def turned(deg, x, y):
+        c, s = np.cos(np.radians(deg)), np.sin(np.radians(deg))
+        return np.array([c * x - s * y, s * x + c * y])
+    own = robot(runs['crane'])
+    for lift, tilt in ((-20.0, -1.0), (30.0, -60.0), (80.0, -160.0)):
+        pin = np.array([-0.09, 1.4261]) + turned(lift, 0.3025, -0.105)
+        expected = [np.hypot(*(pin - [0.17, 0.386113249])) - 0.82]
+        a = np.array([2.69, -0.006592554])
+        b = [2.881080943, 0.021592554] + turned(tilt, -0.095, 0.24043237)
+        first, second, apart = np.hypot(0.457227402, 0.0425), 0.475, np.hypot(*(b - a))
+        along = (apart * apart + first * first - second * second) / (2.0 * apart)
+        across = np.sqrt(first * first - along * along)
+        e_x, e_y = (b - a) / apart
+        eye = a + along * np.array([e_x, e_y]) + across * np.array([-e_y, e_x])
+        expected.append(np.hypot(*(eye - [1.263, 0.206702194])) - 1.05)
+        at = [np.radians(lift), np.radians(tilt), 0.0, 0.0]
+        assert [motion_of(own.sheet, drive, at)[0] for drive in own.sheet.drives] == (
+            pytest.approx(expected, abs=1e-9))
+
+
+CRANE = 'body.drives.lift'
+LEG = 'body.drives.knee'
+
+
+@pytest.mark.parametrize('name, changes, message', [
+    ('crane', {f'{CRANE}.retracted_length_mm': 900.0},
+     'body.drives.lift: the range of lift, -24.0642 to 89.9544 deg, takes it from -78.8 to 451.3 '
+     'mm, must be within its stroke, 0 to 535 mm; it reaches -6.7 to 90.0 deg'),
+    ('crane', {f'{CRANE}.retracted_length_mm': 1200.0},
+     'actuators.lift: the start of the robot puts it at -98.35 mm, must be within its stroke, 0 '
+     'to 535 mm: its retracted_length_mm = 1200 mm'),
+    ('crane', {'actuators.lift.parameters.plant.drive.stroke_mm': 450.0},
+     'takes it from 1.196 to 531.3 mm, must be within its stroke, 0 to 450 mm; it reaches -24.1 '),
+    ('crane', {f'{CRANE}.base_mm': [1037.0, 0.0, 1836.0]},
+     'body.drives.lift: its lever is'),
+    ('crane', {f'{CRANE}.rod': 'pillar'},
+     'body.drives.lift moves nothing: no joint that turns or slides is between its links base = '
+     'pillar and rod = pillar'),
+    ('crane', {f'{CRANE}.rod': 'bracket_3'},
+     "body.drives.lift.rod = 'bracket_3' is not a link of the URDF; did you mean bracket_2"),
+    ('crane', {f'{CRANE}.joint': 'lift'}, 'body.drives.lift.joint is not used: a cylinder moves '),
+    ('crane', {'body.drives.tilt.range': [-90.0, 0.0]},
+     'body.drives.tilt.range is not used: only a cylinder has it'),
+    ('crane', {f'{CRANE}.range': [-30.0, 60.0]},
+     'body.drives.lift.range = -30 to 60, must be within the -24.0642 to 89.9544 deg of '),
+    ('crane', {'body.drives.tilt.high_deg': 5.0},
+     'body.drives.tilt has the range -166.158 to 5 deg, must be within that of the joint '),
+    ('crane', {'body.passive': ['swing_pitch']},
+     'body: no actuator moves the joint swing_roll: give it a drive, or name it in passive'),
+    ('crane', {'body.passive': ['*']}, 'body.passive has lift, which lift moves'),
+    ('crane', {'body.passive': ['swing']}, 'body.passive.swing is unknown; did you mean swing_'),
+    ('crane', {'body.drives.tilt.joint': 'bracket_1_mount'},
+     "body.drives.tilt.joint: 'bracket_1_mount' moves nothing: it is not a joint of the URDF"),
+    ('crane', {'body.drives.tilt.joint': 'swing_roll'},
+     'body.drives.tilt lacks low_deg and high_deg, the range of its linkage: '),
+    ('crane', {'body.drives.tilt.linkage': 'direct'}, 'body.drives.tilt'),
+    ('crane', {'body.drives.tilt.ar_mm': 200.0, 'body.drives.tilt.br_mm': 200.0},
+     'cannot be assembled at joint angle'),
+    ('crane', {'body.drives.tilt.like': 'tilt'},
+     "body.drives.tilt.like = 'tilt' is not a linkage of the file, nor LEG.JOINT of a packaged "),
+    ('crane', {'body.drives.tilt.like': 'hyq.knee'}, 'body.drives.tilt.like.hyq.knee is unknown'),
+    ('crane', {'body.drives.tilt.mirrored': True},
+     'body.drives.tilt.mirrored is not used: the drive is like no other'),
+    ('crane', {'body.urdf': 'derrick.urdf'},
+     'body.urdf = derrick.urdf: there is no such file in the folder of the run file; shipped: '),
+    ('crane', {'body.start.joints_deg': {'lift': 91.0}},
+     'body.start.joints_deg.lift = 91 deg, must be within its range -24.0642 to 89.9544 deg'),
+    ('crane', {'body.start.joints_mm': {'lift': 91.0}},
+     'body.start.joints_mm.lift: this joint belongs to joints_deg'),
+    ('crane', {'body.start.joints_deg': {'*_yaw': 0.0}}, 'body.start.joints_deg.*_yaw means none'),
+    ('crane', {'body.start.joints_deg.lift': 10.0},
+     'body.start: the contact load_bottom is '),
+    ('crane', {'body.contacts.load_bottom.link': 'log'},
+     "body.contacts.load_bottom.link: 'log' is not a link of the URDF"),
+    ('crane', {'body.contacts.load_bottom.ground': 'mud'},
+     "body.contacts.load_bottom.ground = 'mud' is not a material; "),
+    ('two_joint_leg', {'body.contacts': {'foot': {}}},
+     'body.contacts.foot lacks ground, and the robot has none: name a material'),
+    ('two_joint_leg', {'body.contacts': {'knee': {'link': 'calf', 'ground': 'wood'}}},
+     "body.contacts.knee: the name 'knee' is that of a joint; both have columns"),
+    ('two_joint_leg', {'body.imus': {'top': {'link': 'lid'}}},
+     "body.imus.top.link = 'lid' is not a link of the URDF"),
+    ('two_joint_leg', {'body.imus': {'top': {'link': 'rail', 'rate_hz': 300.0}}},
+     'body.imus.top.rate_hz = 300 Hz, its period must be a multiple of step_ms = 1 ms'),
+    ('two_joint_leg', {'body.start.release_s': 0.0005}, 'body.start.release_s = 0.0005'),
+    ('two_joint_leg', {'actuators.hip.model': 'smart_manifold'},
+     'body.drives.hip: its actuator hip is rotary, must be of a linkage direct'),
+    ('two_joint_leg', {f'{LEG}.actuator': 'hip'}, "body.drives.knee.actuator = 'hip' already mov"),
+    ('quadruped', {'body.root': 'floating'}, "body.root = 'floating', must be one of free, fixed"),
+    ('quadruped', {'body.start.height_mm': -1.0}, 'is 1 mm below the ground'),
+])
+def test_what_cannot_work_is_refused_by_a_line(name, changes, message):
+    with pytest.raises(ConfigError) as error:
+        load_run(ROOT / 'config' / f'{name}.yaml', changes)
+    assert message in str(error.value)
+    assert str(error.value).startswith(f'{name}.yaml: ') and '\n' not in str(error.value)
