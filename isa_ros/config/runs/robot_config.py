@@ -3,7 +3,6 @@
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
-from importlib import import_module
 import math
 from pathlib import Path
 from typing import Any, ClassVar
@@ -34,9 +33,9 @@ from isa_ros.core.suggest import alternatives
 from isa_ros.core.timebase import NS_PER_SECOND
 from isa_ros.core.units import MILLI
 from isa_ros.errors import ConfigError
+from isa_ros.surroundings.bodies.robot.robot import Robot
 from isa_ros.surroundings.bodies.robot.sample import sample_fields
 from isa_ros.surroundings.bodies.robot.sheet import matrix, RobotSheet, RobotUnit, vector
-from isa_ros.surroundings.body import Body
 from isa_ros.surroundings.inertial_unit import InertialUnitSheet
 from isa_ros.surroundings.linkage_sheet import Direct, Joint
 
@@ -221,14 +220,13 @@ class RobotConfig(BodyConfig):
                 noise_key(seed, f'{self.prefix}{own.name}/imu')))
         return found
 
-    def body(self, made: Made) -> Body:
+    def body(self, made: Made) -> Robot:
         """Return the robot; as `BodyConfig.body`."""
         start = robot_start(self.start, self.tree, self.sheet.contacts, self.passive)
-        body: Body = import_module('isa_ros.surroundings.bodies.robot.robot').Robot(
+        return Robot(
             self.sheet, start, made.step_ns, made.rows,
             release_ns=round(self.start.root.release_s * NS_PER_SECOND),
             units=self.units(made.step_ns, made.seed))
-        return body
 
 
 def _length(own: DriveConfig) -> str:
