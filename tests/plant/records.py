@@ -80,8 +80,8 @@ def _sheets() -> Iterator[tuple[str, Any, Builder, Mapping[str, Any]]]:
             yield f'{model}, load {kind}', own_load(model, kind), own_record, {}
     for leg in leg_names():
         yield f'leg {leg}', build(LegSheet, *leg_section(leg, 'records')), leg_record, {}
-    imu = Imu(link='thigh', **{f.name: f.metadata['absent'] for f in fields(Imu)
-                              if 'absent' in f.metadata})
+    absent = {f.name: f.metadata['absent'] for f in fields(Imu) if 'absent' in f.metadata}
+    imu = Imu(link='thigh', **absent)
     yield 'imu', imu, lambda sheet: imu_record(sheet, 0), {}
     yield 'supply', SUPPLY, supply_record, {}
     line = VolumeReturn(oil_volume_l=0.5, bulk_modulus=1e9, tank_lpm_per_mpa=40.0)

@@ -67,8 +67,8 @@ def reach_of(
         if low < joint.low - 1e-9 or high > joint.high + 1e-9:
             raise ConfigError(
                 f'{place / "range"} = {own.joint_range[0]:g} to {own.joint_range[1]:g}, must be '
-                f'within the {joint.low / scale:g} to {joint.high / scale:g} {"deg" if turns else "mm"} of '
-                f'the joint {joint.name} in the URDF')
+                f'within the {joint.low / scale:g} to {joint.high / scale:g} '
+                f'{"deg" if turns else "mm"} of the joint {joint.name} in the URDF')
     if not math.isfinite(high - low):
         raise ConfigError(place.has(
             f'lacks range, which it needs: the joint {joint.name} of the URDF is continuous'))
