@@ -1,8 +1,9 @@
 """Interface of the body that several actuators move: a leg, a robot, another simulator."""
 
 from collections.abc import Mapping
-from typing import Protocol, runtime_checkable
+from typing import Any, Protocol, runtime_checkable
 
+from isa_ros.core.parameter import Parameters
 import numpy as np
 from numpy.typing import NDArray
 
@@ -78,4 +79,18 @@ class SizedBody(Protocol):
 
     def saved_size(self, snapshot: bytes) -> int:
         """Return how many bytes of a snapshot, which begins with this body's, are its own."""
+        ...
+
+
+@runtime_checkable
+class ChangingBody(Protocol):
+    """A body with values that may change during a run, as a push."""
+
+    @property
+    def changing(self) -> Parameters:
+        """Return the values as they are at its start."""
+        ...
+
+    def change(self, values: Any) -> None:
+        """Take other values of the same set from the next tick on."""
         ...

@@ -7,7 +7,7 @@ configuration; `isa_ros.config.assembly` makes them from a run.
 
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
-from typing import NamedTuple
+from typing import NamedTuple, TypeVar
 
 from isa_ros.core.changeable import Changeable, changeables, with_changes
 from isa_ros.core.changing_values import bare, ChangingValues, OFF
@@ -15,10 +15,12 @@ from isa_ros.core.parameter import check, fault, Parameters
 from isa_ros.core.saved_state import broken_number, restored_rows
 from isa_ros.core.suggest import alternatives
 from isa_ros.errors import ConfigError, RunError
-from isa_ros.surroundings.body import Body, Records, SizedBody
+from isa_ros.surroundings.body import Body, ChangingBody, Records, SizedBody
 from isa_ros.surroundings.supply import Supply, SUPPLY_SAMPLE, SupplySheet
 import numpy as np
 
+
+_P = TypeVar('_P', bound=Parameters)
 
 EMERGENCY_STOP = 'emergency_stop'
 """Begins the names of the lines of groups; a supply does not have this name."""
@@ -75,8 +77,10 @@ class Surroundings:
             name: own for circuit in circuits
             for name, own in changeables(circuit.sheet, f'{circuit.name}.').items()} | {
             name: own for line in lines
-            for name, own in changeables(_EmergencyStop(), f'{line_of(line)}.').items()}
-        """All that may change during a run, by SUPPLY.KEY, and the lines of `line_of`."""
+            for name, own in changeables(_EmergencyStop(), f'{line_of(line)}.').items()} | {
+            name: own for body, given in self._changing_bodies()
+            for name, own in changeables(given.changing, f'{body}.').items()}
+        """All that may change during a run, by SUPPLY.KEY or BODY.KEY, and the lines of groups."""
         self._values = ChangingValues(
             'supplies', list(self.changing), [own.value for own in self.changing.values()])
         self._fed = [_index(circuit.rows) for circuit in circuits]
@@ -111,7 +115,7 @@ class Surroundings:
         The tick begins: values that were tuned take effect.
         """
         if self._values.latch():
-            self._change_supplies()
+            self._change()
         self._fill_pressures(ports)
         for body in self.bodies.values():
             body.ports(ports)
@@ -161,14 +165,20 @@ class Surroundings:
 
     def _sheets(self, values: Mapping[str, float]) -> Iterator[tuple[Supply, SupplySheet]]:
         for supply, circuit in zip(self._supplies, self.circuits):
-            prefix = f'{circuit.name}.'
-            own = {name: value for name, value in values.items() if name.startswith(prefix)}
-            yield supply, with_changes(
-                circuit.sheet, changeables(circuit.sheet, prefix), own)
+            yield supply, _changed(circuit.sheet, circuit.name, values)
 
-    def _change_supplies(self) -> None:
-        for supply, sheet in self._sheets(self._values.in_force):
+    def _changing_bodies(self) -> Iterator[tuple[str, ChangingBody]]:
+        for name, body in self.bodies.items():
+            if isinstance(body, ChangingBody):
+                yield name, body
+
+    def _change(self) -> None:
+        """Let the values in force take effect in supplies and bodies."""
+        values = self._values.in_force
+        for supply, sheet in self._sheets(values):
             supply.change(sheet)
+        for name, body in self._changing_bodies():
+            body.change(_changed(body.changing, name, values))
 
     def advance(self, replies: Records) -> None:
         """
@@ -231,7 +241,7 @@ class Surroundings:
             for k, circuit in enumerate(self.circuits)])
         self._values.restore(snapshot[supplies_end:values_end])
         list(self._sheets(self._values.accepted))   # refuses what cannot be
-        self._change_supplies()
+        self._change()
         self.supplies[:] = supplies
         at = values_end
         for body, size in zip(self.bodies.values(), sizes):
@@ -243,6 +253,13 @@ class Surroundings:
         _, beneath = self._values.with_accepted({})
         self.restore(beginning)
         self._values.accept(beneath)
+
+
+def _changed(sheet: _P, owner: str, values: Mapping[str, float]) -> _P:
+    """Return the sheet of a supply or body with those of the values that are its own."""
+    prefix = f'{owner}.'
+    own = {name: value for name, value in values.items() if name.startswith(prefix)}
+    return with_changes(sheet, changeables(sheet, prefix), own)
 
 
 def _index(rows: Sequence[int]) -> slice | np.ndarray:

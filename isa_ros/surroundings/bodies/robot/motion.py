@@ -3,7 +3,7 @@ The motion of a robot: accelerations under its actuators, rates of its state, Ru
 
 A state y is a row of floats: place and quaternion of a free root (7), coordinates of the joints
 (n); speeds of the root (6) and of the joints; the shear of each contact (2); work of the
-actuators and energy given to the ground since t = 0.
+actuators, energy given to the ground and work of forces from outside since t = 0.
 
 Neglected: friction and stops of joints (the actuators have theirs), compliance of links.
 """
@@ -12,7 +12,7 @@ import math
 from typing import Any, NamedTuple
 
 from isa_ros.core.kernel import kernel
-from isa_ros.surroundings.bodies.robot.reach import add_drives, reach, touch
+from isa_ros.surroundings.bodies.robot.reach import add_drives, push, reach, touch
 from isa_ros.surroundings.bodies.robot.sheet import RobotSheet
 from isa_ros.surroundings.bodies.robot.tree import (
     assemble, coordinates, factor, hold, root_speeds, solve, sweep)
@@ -51,7 +51,7 @@ def state_names(sheet: RobotSheet) -> list[str]:
     return [*place, *(f'{name}_position' for name in joints),
             *speed, *(f'{name}_velocity' for name in joints),
             *(f'{own.name}_shear[{k}]' for own in sheet.contacts for k in range(2)),
-            'drive_work', 'ground_energy']
+            'drive_work', 'ground_energy', 'push_work']
 
 
 def scratch_size(n_speeds: int, n_drives: int, n_state: int) -> int:
@@ -79,10 +79,11 @@ def tree_of(links, speeds, drives, levers, contacts, scratch, n_state):
 
 @kernel
 def look(y, tree):
-    """Fill motion, contacts and drives at a state, whatever the forces."""
+    """Fill motion, contacts and drives at a state, whatever the forces; return a push's power."""
     sweep(y, tree.links, tree.speeds)
     touch(y, tree.links, tree.speeds, tree.contacts)
     reach(y, tree.links, tree.speeds, tree.drives, tree.levers)
+    return push(tree.links)
 
 
 @kernel
@@ -96,8 +97,12 @@ def let_go(speeds, is_held, x):
 
 @kernel
 def move(y, f, is_held, tree):
-    """Fill the accelerations under actuator forces f, and the factor of the mass matrix  (L24)."""
-    look(y, tree)
+    """
+    Fill the accelerations under actuator forces f, and the factor of the mass matrix  (L24).
+
+    Return the power of the forces from outside, W.
+    """
+    pushed = look(y, tree)
     assemble(tree.links, tree.speeds, tree.mass, tree.bias)
     if is_held:
         hold(tree.speeds, tree.mass)
@@ -108,6 +113,7 @@ def move(y, f, is_held, tree):
     add_drives(f, tree.drives, tree.levers, a)
     let_go(tree.speeds, is_held, a)
     solve(tree.speeds, tree.mass, a)
+    return pushed
 
 
 @kernel
@@ -124,7 +130,7 @@ def turn_rate(y, v, out):
 @kernel
 def fill_rates(y, f, is_held, tree):
     """Fill ``tree.rates``, the rate of change of a state  (L24, L28, L29)."""
-    move(y, f, is_held, tree)
+    pushed = move(y, f, is_held, tree)
     out, v, n = tree.rates, coordinates(tree.links, tree.speeds), len(tree.links) - 1
     if root_speeds(tree.links, tree.speeds) > 0:
         for k in range(3):
@@ -143,7 +149,7 @@ def fill_rates(y, f, is_held, tree):
     work = 0.0
     for j in range(len(tree.drives)):
         work += f[j] * tree.drives[j].velocity
-    out[len(y) - 2], out[len(y) - 1] = work, power
+    out[len(y) - 3], out[len(y) - 2], out[len(y) - 1] = work, power, pushed
 
 
 @kernel

@@ -14,7 +14,7 @@ from isa_ros.core.timebase import FORCE_WINDOWS, NS_PER_SECOND
 from isa_ros.surroundings.bodies.robot.motion import (
     let_go, look, move, robot_step, tree_of)
 from isa_ros.surroundings.bodies.robot.reach import along, motion_by
-from isa_ros.surroundings.bodies.robot.tree import root_speeds, solve
+from isa_ros.surroundings.bodies.robot.tree import coordinates, root_speeds, solve
 from isa_ros.surroundings.ground import contact
 from isa_ros.surroundings.port import assumed_force, keep_forces, match_ports
 from isa_ros.surroundings.vectors import dot, plus, scaled, three, ZERO
@@ -85,7 +85,7 @@ def contact_response(y, tree):
     The shear follows a displacement as in the leg  (L14).
     """
     k, c = 0.0, 0.0
-    z = len(y) - 2 - 2 * len(tree.contacts)
+    z = coordinates(tree.links, tree.speeds) + len(tree.speeds)
     up = y[2] if root_speeds(tree.links, tree.speeds) > 0 else 0.0
     for i in range(len(tree.contacts)):
         own = tree.contacts[i]

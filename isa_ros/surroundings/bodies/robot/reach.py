@@ -65,6 +65,23 @@ def touch(y, links, speeds, contacts):
 
 
 @kernel
+def push(links):
+    """Take the forces from outside off the links' bias forces, and return their power, W."""
+    power = 0.0
+    for i in range(len(links)):
+        link = links[i]
+        if link.is_pushed:
+            place, force, moment = (
+                three(link.origin), three(link.push_force), three(link.push_moment))
+            power += dot(force, velocity_of(link, place)) + dot(moment, three(link.turning))
+            moment = plus(moment, cross(place, force))
+            for k in range(3):
+                link.sum_force[k] -= force[k]
+                link.sum_moment[k] -= moment[k]
+    return power
+
+
+@kernel
 def pull_between(drive, links, speeds, levers):
     """
     Fill a cylinder between two points p_a and p_b of two links  (L23).

@@ -22,6 +22,10 @@ LINK = np.dtype([
     ('place', '<f8', (3,)), ('rotation', '<f8', (9,)),  # of the joint's frame in the parent
     ('mass', '<f8'), ('com', '<f8', (3,)),
     ('inertia', '<f8', (6,)),           # at the centre of mass: xx yy zz xy xz yz
+    # From outside, changed during a run:
+    ('is_pushed', '<i8'),
+    ('push_force', '<f8', (3,)),        # at its frame's origin
+    ('push_moment', '<f8', (3,)),
     # Of an instant:
     ('axes', '<f8', (9,)),              # rotation from link axes
     ('origin', '<f8', (3,)),            # of its frame, from O

@@ -12,7 +12,7 @@ from isa_ros.core.fields import record_type, units_of
 from isa_ros.core.record import rows_of
 from isa_ros.core.saved_state import restored_rows, TIME_BYTES, time_of
 from isa_ros.core.timebase import FORCE_WINDOWS, NS_PER_SECOND, PLANT_STEP_NS, steps_in
-from isa_ros.errors import ConfigError, SimulationDiverged
+from isa_ros.errors import ConfigError, RunError, SimulationDiverged
 from isa_ros.surroundings.bodies.leg.inertial import AXES
 from isa_ros.surroundings.bodies.robot import port_kernel as kernels
 from isa_ros.surroundings.bodies.robot.holding import holding_forces
@@ -22,7 +22,7 @@ from isa_ros.surroundings.bodies.robot.records import (
 from isa_ros.surroundings.bodies.robot.sample import sample_fields
 from isa_ros.surroundings.bodies.robot.sampling import fill_sample, read_unit
 from isa_ros.surroundings.bodies.robot.sheet import (
-    JointLinkage, RobotSheet, RobotStart, RobotUnit)
+    JointLinkage, Push, RobotSheet, RobotStart, RobotUnit)
 import numpy as np
 
 ROUNDING = 1e-9     # of the length of a quaternion in a sheet
@@ -56,6 +56,7 @@ class Robot:
         self._release_ns, self._is_to_be_released = release_ns, release_ns is not None
         self._t_ns = 0
         self._names = state_names(sheet)
+        self._ends_run = [own.name for own in sheet.contacts if own.ends_run]
         self._records = (link_records(sheet), speed_records(sheet, start), *drive_records(sheet),
                          contact_records(sheet))
         n = len(self._names)
@@ -132,6 +133,18 @@ class Robot:
         """Let everything go from the next tick on."""
         self._state[-1] = 0.0
 
+    @property
+    def changing(self) -> Push:
+        """Return what may change during a run, as it is at its start."""
+        return Push()
+
+    def change(self, push: Push) -> None:
+        """Push the root from the next tick on."""
+        root = self._records[0][0]
+        root['push_force'] = push.push_x, push.push_y, push.push_z
+        root['push_moment'] = push.push_roll, push.push_pitch, push.push_yaw
+        root['is_pushed'] = push != Push()
+
     def ports(self, ports: np.ndarray) -> None:
         """
         Fill its rows of ``ports`` (`LOAD_PORT`, shape (n_actuators,)) for the next tick.
@@ -151,6 +164,8 @@ class Robot:
         ------
         SimulationDiverged
             A state is no longer finite.
+        RunError
+            A contact that ends the run touches the ground.
 
         """
         broken = kernels.robot_tick(
@@ -158,6 +173,10 @@ class Robot:
         self._t_ns += self._step_ns
         self._refuse_broken(int(broken))
         self._take(replies['force'][self.rows])
+        for name in self._ends_run:
+            if self._sample[f'{name}_touches'][0]:
+                raise RunError(f'{name} touches the ground at t = {self._t_ns / 1e9:g} s: '
+                               'with ends_run the robot has fallen')
 
     def _refuse_broken(self, at: int) -> None:
         """Raise `SimulationDiverged` for a place in the state that is not finite; -1: none is."""

@@ -20,8 +20,9 @@ ENERGY_FIELDS = (
     Field('elastic_energy', 'J', 'stored in ground and soles'),
     Field('ground_loss', 'J', 'lost in ground and soles since t = 0'),
     Field('drive_work', 'J', 'of the forces of the actuators on the links since t = 0'),
+    Field('push_work', 'J', 'of forces from outside on the links since t = 0'),
 )
-"""The account of a robot: the first four less the last are constant while it moves."""
+"""The account of a robot: the first four less the last two are constant while it moves."""
 
 
 def sample_fields(sheet: RobotSheet, units: Sequence[str] = ()) -> tuple[Field, ...]:

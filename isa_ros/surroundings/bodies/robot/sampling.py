@@ -71,7 +71,8 @@ def fill_sample(y, f, links, speeds, drives, levers, contacts, out):
         kinetic += moving
         potential += lifted
     out[at], out[at + 1], out[at + 2] = kinetic, potential, elastic
-    out[at + 3], out[at + 4] = y[len(y) - 1] - elastic, y[len(y) - 2]
+    out[at + 3], out[at + 4] = y[len(y) - 2] - elastic, y[len(y) - 3]
+    out[at + 5] = y[len(y) - 1]
 
 
 @kernel

@@ -16,6 +16,7 @@ from dataclasses import dataclass, field
 import math
 from typing import Literal, NamedTuple
 
+from isa_ros.core.parameter import fault, Parameters
 from isa_ros.surroundings.ground import Ground
 import numpy as np
 
@@ -190,6 +191,18 @@ class RobotStart:
     """Whether a free root is held until the release."""
     held_joints: tuple[str, ...] = field(default=())
     """Joints without a drive that are held until the release."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class Push(Parameters):
+    """What pushes a robot's root from outside, at its origin along the world's axes."""
+
+    push_x: float = fault('force from outside on the root, forwards', 'N', ge=-1e5, le=1e5)
+    push_y: float = fault('force from outside on the root, to the left', 'N', ge=-1e5, le=1e5)
+    push_z: float = fault('force from outside on the root, upwards', 'N', ge=-1e5, le=1e5)
+    push_roll: float = fault('moment from outside on the root about x', 'Nm', ge=-1e5, le=1e5)
+    push_pitch: float = fault('moment from outside on the root about y', 'Nm', ge=-1e5, le=1e5)
+    push_yaw: float = fault('moment from outside on the root about z', 'Nm', ge=-1e5, le=1e5)
 
 
 class RobotUnit(NamedTuple):

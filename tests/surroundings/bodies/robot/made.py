@@ -1,5 +1,6 @@
 """Robots for tests: the leg as a tree, and trees drawn at random."""
 
+from dataclasses import replace
 import math
 
 from isa_ros.surroundings.bodies.leg.sheet import JOINTS, LegSheet, linkage_record
@@ -74,3 +75,25 @@ def random_tree(rng: np.random.Generator, is_free: bool, n: int) -> RobotSheet:
             com=vector(0.3 * rng.normal(size=3)), inertia=inertia()))
         branch.append(k + 1)
     return RobotSheet(links=tuple(links))
+
+
+def quadruped(sheet: LegSheet, ends_run: bool = False) -> RobotSheet:
+    """Return a trunk of 60 kg on four legs of a sheet, all turned alike; four trunk corners."""
+    one = leg_as_tree(sheet)
+    links = [RobotLink(name='trunk', parent=-1, mass=60.0, inertia=(0.9, 6.3, 6.6, 0.0, 0.0, 0.0),
+                       joint=RobotJoint(name='base', kind='free'))]
+    drives, contacts = [], []
+    for leg, x, y in (('lf', 0.44, 0.14), ('rf', 0.44, -0.14), ('lh', -0.44, 0.14),
+                      ('rh', -0.44, -0.14)):
+        at = len(links)
+        for k, (link, drive) in enumerate(zip(one.links[2:], one.drives)):
+            joint = replace(link.joint, name=f'{leg}_{link.joint.name}')
+            links.append(replace(
+                link, name=f'{leg}_{link.name}', parent=at + k - 1 if k else 0,
+                joint=joint if k else replace(joint, place=(x, y, 0.0))))
+            drives.append(RobotDrive(actuator=f'{leg}_{drive.actuator}_drive', linkage=replace(
+                drive.linkage, link=at + k)))
+        contacts += [replace(one.contacts[0], name=f'{leg}_foot', link=at + 2),
+                     RobotContact(name=f'{leg}_corner', link=0, point=(1.2 * x, y, -0.12),
+                                  ground=sheet.ground, is_foot=False, ends_run=ends_run)]
+    return RobotSheet(links=tuple(links), drives=tuple(drives), contacts=tuple(contacts))

@@ -3,10 +3,12 @@
 from functools import cache
 import math
 
+from isa_ros.core.noise import noise_key
 from isa_ros.core.signals import LOAD_PORT, LOAD_REPLY, START
-from isa_ros.surroundings.bodies.leg.leg import Leg, Pose
+from isa_ros.surroundings.bodies.leg.inertial import Imu
+from isa_ros.surroundings.bodies.leg.leg import InertialUnit, Leg, Pose
 from isa_ros.surroundings.bodies.robot.robot import Robot
-from isa_ros.surroundings.bodies.robot.sheet import RobotStart
+from isa_ros.surroundings.bodies.robot.sheet import RobotStart, RobotUnit, UPRIGHT
 import numpy as np
 from tests.legs import leg_sheet
 from tests.surroundings.bodies.robot.made import leg_as_tree
@@ -23,10 +25,15 @@ PORT = ('x0', 'v0', 'a0', 'inverse_mass', 'a_bias', 'jerk', 'stiffness', 'dampin
 @cache
 def drop() -> tuple[Leg, Robot, np.ndarray, np.ndarray, list[np.void], list[np.void]]:
     """Return both after the drop, their ports (ticks, 3), and their samples."""
-    leg = Leg(SHEET, POSE, TICK_NS, release_ns=RELEASE * TICK_NS)
+    key = noise_key(0, 'calf/imu')
+    imu = Imu(link='calf', rate_hz=1000.0, x_mm=100.0, y_mm=-20.0, z_mm=30.0, gyro_bias=0.1,
+              gyro_sigma=0.01, accelerometer_bias=-0.2, accelerometer_sigma=0.3)
+    leg = Leg(SHEET, POSE, TICK_NS, release_ns=RELEASE * TICK_NS,
+              units=[InertialUnit('calf', imu, 2 * TICK_NS, key)])
     robot = Robot(leg_as_tree(SHEET), RobotStart(
         joints=(float(leg.sample[0]['height']), *POSE.joints), held_joints=('slider',)),
-        TICK_NS, release_ns=RELEASE * TICK_NS)
+        TICK_NS, release_ns=RELEASE * TICK_NS, units=[RobotUnit(
+            'calf', 4, (0.1, -0.02, 0.03), UPRIGHT, 0.3, -0.2, 0.01, 0.1, 2 * TICK_NS, key)])
     start, hold = np.array(leg.actuator_positions), np.array(leg.actuator_forces)
     ports, samples = np.zeros((2, TICKS, 3), LOAD_PORT), ([], [])
     replies = np.zeros(3, LOAD_REPLY)
@@ -65,7 +72,8 @@ def test_they_fall_and_land_alike() -> None:
         np.testing.assert_allclose(tree, leg, rtol=0.0, atol=1e-10 * np.abs(leg).max())
     for leg_field, field in (('foot_force', 'foot_force'), ('foot_position', 'foot_position'),
                              ('height', 'slider_position'),
-                             ('height_velocity', 'slider_velocity')):
+                             ('height_velocity', 'slider_velocity'),
+                             ('calf_specific_force',) * 2, ('calf_angular_velocity',) * 2):
         leg = np.array([own[leg_field] for own in of_leg])
         tree = np.array([own[field] for own in of_tree])
         np.testing.assert_allclose(tree, leg, rtol=0.0, atol=1e-10 * np.abs(leg).max())
