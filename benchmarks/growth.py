@@ -6,7 +6,7 @@ from benchmarks.growth_figure import Curve, growth_figure
 from isa_ros.bench.host import available_memory
 from isa_ros.bench.leg import profile, speed_row
 from isa_ros.bench.memory import MIB, total
-from isa_ros.bench.page import Drawing
+from isa_ros.bench.page import BenchDrawing
 from isa_ros.bench.rounds import Outcomes
 from isa_ros.bench.row import Aim, Row
 from isa_ros.bench.spec import ONE_PROCESS, PROCESSES, Spec
@@ -32,12 +32,12 @@ def growth_rows(outcomes: Outcomes) -> list[Row]:
             *(_added_row(way, curve) for way, curve in curves(outcomes).items())]
 
 
-def drawing(outcomes: Outcomes) -> Drawing | None:
+def drawing(outcomes: Outcomes) -> BenchDrawing | None:
     """Return the figure of both curves, None if one of them was not run."""
     found = curves(outcomes)
     if not all(len(curve) > 1 for curve in found.values()):
         return None
-    return Drawing('Ticks per second over the number of actuators', growth_figure(found))
+    return BenchDrawing('Ticks per second over the number of actuators', growth_figure(found))
 
 
 def curves(outcomes: Outcomes) -> dict[str, Curve]:

@@ -34,7 +34,7 @@ from isa_ros.config.text.yaml_text import Tree
 from isa_ros.errors import BagError, SimulationDiverged
 from isa_ros.replay.compare import Comparer, is_of_end, retyped
 from isa_ros.replay.comparison import Comparison, key_lines
-from isa_ros.replay.difference import Report
+from isa_ros.replay.difference import RunDifference
 from isa_ros.replay.provenance_differences import (
     provenance_differences, records_of, records_of_bag)
 from isa_ros.replay.replay import replay
@@ -185,7 +185,7 @@ def _tolerances(bag: Bag, tolerances: Path | str | None) -> Tolerances | None:
     return None if tolerances is None else load_tolerances(Path(tolerances), bag.types)
 
 
-def _compared(bag: Bag, result: Result, tolerances: Tolerances | None) -> Report:
+def _compared(bag: Bag, result: Result, tolerances: Tolerances | None) -> RunDifference:
     """Return the comparison of a result with a bag; without events, which files do not give."""
     messages = ResultMessages(result.scenario, result.log)
     other = retyped(bag, {topic.name: topic.type_name for topic in messages.topics})

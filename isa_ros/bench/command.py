@@ -5,7 +5,7 @@ from pathlib import Path
 import sys
 
 from isa_ros.bench import page
-from isa_ros.bench.groups import Group, groups
+from isa_ros.bench.groups import BenchGroup, groups
 from isa_ros.bench.host import Machine, machine
 from isa_ros.bench.page import as_lines, HEAD, PAGE, Report, Section
 from isa_ros.bench.rounds import Outcomes, outcomes
@@ -16,7 +16,7 @@ from isa_ros.text.page import refuse_a_part, write_wanted_page
 from isa_ros.text.progress import counted, Progress
 
 
-def chosen(only: Sequence[str] | None) -> tuple[Group, ...]:
+def chosen(only: Sequence[str] | None) -> tuple[BenchGroup, ...]:
     """
     Return the groups named in ``only``, in their own order; for None all that can be measured.
 
@@ -64,7 +64,7 @@ def bench(
 
 
 def measured_report(
-        groups: Sequence[Group], here: Machine, progress: Progress | None = None) -> Report:
+        groups: Sequence[BenchGroup], here: Machine, progress: Progress | None = None) -> Report:
     """Measure the groups without runs, then do all runs and evaluate the other groups."""
     sections: dict[str, Section] = {}
     done = Outcomes({})

@@ -9,7 +9,7 @@ import sys
 import isa_ros
 from isa_ros.bench import leg, memory, startup
 from isa_ros.bench.in_memory import in_memory_rows
-from isa_ros.bench.page import Drawing
+from isa_ros.bench.page import BenchDrawing
 from isa_ros.bench.plant import cylinder_rows, plant_rows
 from isa_ros.bench.rounds import Outcomes
 from isa_ros.bench.row import Row
@@ -24,14 +24,14 @@ OF_BENCHMARKS = ('growth', 'peers', 'bus')
 
 
 @dataclass(frozen=True)
-class Group:
+class BenchGroup:
     """A group of rows, and the runs it evaluates."""
 
     name: str
     title: str
     rows: Callable[[Outcomes], list[Row]]
     specs: Callable[[], tuple[Spec, ...]] = tuple
-    drawing: Callable[[Outcomes], Drawing | None] = lambda _: None
+    drawing: Callable[[Outcomes], BenchDrawing | None] = lambda _: None
     missing: Callable[[], str] = str
     """Returns why the group cannot be measured here; '' if it can."""
 
@@ -42,24 +42,24 @@ def alone(rows: Callable[[], list[Row]]) -> Callable[[Outcomes], list[Row]]:
 
 
 GROUPS = (
-    Group('plant', 'One actuator, one core', alone(plant_rows)),
-    Group('cylinder', 'A valve-driven cylinder with a known solution', alone(cylinder_rows)),
-    Group('tick', 'Parts of a tick of the leg, without ROS', alone(tick_parts)),
-    Group('in_memory', 'The leg in memory, without a bag', alone(in_memory_rows)),
-    Group('leg', 'The leg, recording', leg.leg_rows, lambda: leg.SPECS),
-    Group('startup', 'Start-up, caches warm', startup.startup_rows, lambda: startup.SPECS),
-    Group('memory', 'Memory', memory.memory_rows, lambda: leg.SPECS),
+    BenchGroup('plant', 'One actuator, one core', alone(plant_rows)),
+    BenchGroup('cylinder', 'A valve-driven cylinder with a known solution', alone(cylinder_rows)),
+    BenchGroup('tick', 'Parts of a tick of the leg, without ROS', alone(tick_parts)),
+    BenchGroup('in_memory', 'The leg in memory, without a bag', alone(in_memory_rows)),
+    BenchGroup('leg', 'The leg, recording', leg.leg_rows, lambda: leg.SPECS),
+    BenchGroup('startup', 'Start-up, caches warm', startup.startup_rows, lambda: startup.SPECS),
+    BenchGroup('memory', 'Memory', memory.memory_rows, lambda: leg.SPECS),
 )
 
 
-def groups() -> tuple[Group, ...]:
+def groups() -> tuple[BenchGroup, ...]:
     """Return all groups, those of this package first."""
     if not (CHECKOUT / BENCHMARKS / 'peers').is_dir():
         return GROUPS + tuple(
-            Group(name, '', alone(list), missing=_needs_a_checkout) for name in OF_BENCHMARKS)
+            BenchGroup(name, '', alone(list), missing=_needs_a_checkout) for name in OF_BENCHMARKS)
     if str(CHECKOUT) not in sys.path:  # an editable installation puts its packages there only
         sys.path.append(str(CHECKOUT))
-    added: tuple[Group, ...] = import_module(f'{BENCHMARKS}.groups').GROUPS
+    added: tuple[BenchGroup, ...] = import_module(f'{BENCHMARKS}.groups').GROUPS
     return GROUPS + added
 
 

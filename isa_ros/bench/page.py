@@ -33,7 +33,7 @@ setpoints, requests and subscriptions. In processes, the phase *actuators* is th
 """
 
 
-class Drawing(NamedTuple):
+class BenchDrawing(NamedTuple):
     """A figure of a group."""
 
     caption: str
@@ -47,7 +47,7 @@ class Section:
     name: str
     title: str
     rows: tuple[Row, ...]
-    drawing: Drawing | None = None
+    drawing: BenchDrawing | None = None
 
 
 @dataclass(frozen=True)

@@ -29,7 +29,7 @@ SET = '--set'
 _SYMBOLS = {'gt': '>', 'ge': '>=', 'lt': '<', 'le': '<='}
 
 
-class Row(NamedTuple):
+class ListedValue(NamedTuple):
     """One parameter, as text."""
 
     parameter: str
@@ -40,7 +40,7 @@ class Row(NamedTuple):
     meaning: str
 
 
-HEADER = Row('parameter', 'value', 'unit', 'range', 'source', 'meaning')
+HEADER = ListedValue('parameter', 'value', 'unit', 'range', 'source', 'meaning')
 
 
 def describe(name: str, preset: str | None = None, variants: Sequence[str] = (),
@@ -97,7 +97,7 @@ def _described(tree: Tree, place: Place, values: Values) -> str:
     return '\n\n'.join(_run_tables(run, origins, tuple(values)))
 
 
-def rows(parameters: Parameters, section: Section) -> list[Row]:
+def rows(parameters: Parameters, section: Section) -> list[ListedValue]:
     """Return a row for each parameter of a set and for each kind, in the order declared."""
     narrower = usable(parameters) if isinstance(parameters, ActuatorSheet) else {}
     return list(_rows(parameters, sources(section), '', narrower))
@@ -105,7 +105,7 @@ def rows(parameters: Parameters, section: Section) -> list[Row]:
 
 def _rows(
         parameters: Parameters, source_of: Mapping[str, str], prefix: str,
-        narrower: Mapping[str, Usable]) -> Iterator[Row]:
+        narrower: Mapping[str, Usable]) -> Iterator[ListedValue]:
     hints = get_type_hints(type(parameters))
     for f in fields(parameters):
         value, path = getattr(parameters, f.name), f'{prefix}{f.name}'
@@ -115,14 +115,15 @@ def _rows(
             yield from _rows(value, source_of, f'{path}.', narrower)
         else:
             own = narrowed(path, f.metadata, narrower)
-            yield Row(path, _value(value), own.get('unit', ''), _range(own),
-                      source_of.get(path, own.get('source', '')), own['doc'])
+            yield ListedValue(path, _value(value), own.get('unit', ''), _range(own),
+                              source_of.get(path, own.get('source', '')), own['doc'])
 
 
-def _kind_row(path: str, value: Parameters, union: Any, source_of: Mapping[str, str]) -> Row:
+def _kind_row(
+        path: str, value: Parameters, union: Any, source_of: Mapping[str, str]) -> ListedValue:
     doc = (type(value).__doc__ or '').strip().splitlines()[0].rstrip('.')
-    return Row(f'{path}.kind', kind_of(value, union), '', ' | '.join(members(union)),
-               source_of.get(f'{path}.kind', ''), doc)
+    return ListedValue(f'{path}.kind', kind_of(value, union), '', ' | '.join(members(union)),
+                       source_of.get(f'{path}.kind', ''), doc)
 
 
 def _run_tables(run: RunConfig, origins: Origins, changes: Sequence[str]) -> Iterator[str]:
@@ -148,12 +149,12 @@ def _run_tables(run: RunConfig, origins: Origins, changes: Sequence[str]) -> Ite
             for row in found])
 
 
-def _single(leaf: Leaf, source: str) -> Row:
+def _single(leaf: Leaf, source: str) -> ListedValue:
     """Return the row of a single value that is the default, or else from ``source``."""
     row = leaf.row
     if row.kind.tree(leaf.value) == row.default:
-        return Row(leaf.key, row.default_words, row.kind.unit, '', 'default', row.meaning)
-    return Row(leaf.key, _value(leaf.value), row.kind.unit, '', source, row.meaning)
+        return ListedValue(leaf.key, row.default_words, row.kind.unit, '', 'default', row.meaning)
+    return ListedValue(leaf.key, _value(leaf.value), row.kind.unit, '', source, row.meaning)
 
 
 def _title(run: RunConfig, key: str, parameters: Parameters) -> tuple[str, str]:
@@ -207,7 +208,7 @@ def _range(declared: Any) -> str:
     return ', '.join(f'{_SYMBOLS[name]} {bound:g}' for name, bound in declared['bounds'].items())
 
 
-def _table(title: str, body: list[Row]) -> str:
+def _table(title: str, body: list[ListedValue]) -> str:
     return '\n'.join([title, *aligned([HEADER, *body])])
 
 

@@ -12,7 +12,7 @@ from isa_ros.bag.reader import Bag, BagMessage, Tick
 from isa_ros.config.runs.recording import RECORD, RecordConfig
 from isa_ros.config.text.sections import Place
 from isa_ros.config.text.yaml_text import parse
-from isa_ros.replay.difference import ABSENT, BAG, FirstDifference, PRESENT, Report, Value
+from isa_ros.replay.difference import ABSENT, BAG, FirstDifference, PRESENT, RunDifference, Value
 from isa_ros.replay.tolerances import Tolerances
 from isa_ros.replay.topic_comparison import TopicComparison
 from isa_ros.run.diagnostics import PERIOD_NS
@@ -85,7 +85,7 @@ class Comparer:
         if self._in_block >= _BLOCK or (BAG in self._topics and self.difference is None):
             self._compare_block()
 
-    def finish(self) -> Report:
+    def finish(self) -> RunDifference:
         """Return the report; ticks left over in the bag are a difference."""
         while self._next is not None and (self.difference is None or self._is_to_end):
             self._miss_tick(self._next, 'tick', PRESENT, ABSENT)
@@ -93,8 +93,8 @@ class Comparer:
         self._compare_block()
         found = [self._topics[name].difference for name in sorted(
             self._topics, key=lambda name: (name != BAG, name))]
-        return Report(self._ticks, self._messages, self._end_ns, self.difference,
-                      [difference for difference in found if difference is not None])
+        return RunDifference(self._ticks, self._messages, self._end_ns, self.difference,
+                             [difference for difference in found if difference is not None])
 
     def note(self, difference: FirstDifference) -> None:
         """Add a difference that is not one of the messages' bytes."""
@@ -172,7 +172,8 @@ def is_of_end(topic: str, t_ns: int, *ends_ns: int | None) -> bool:
             and t_ns in ends_ns and any(end_ns != t_ns for end_ns in ends_ns))
 
 
-def compare_bags(expected: Bag, actual: Bag, tolerances: Tolerances | None = None) -> Report:
+def compare_bags(
+        expected: Bag, actual: Bag, tolerances: Tolerances | None = None) -> RunDifference:
     """
     Return the comparison of two bags to their end, for the messages both were to record.
 

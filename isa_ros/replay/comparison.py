@@ -7,7 +7,7 @@ from typing import Any, NamedTuple
 from isa_ros.bag.reader import Bag
 from isa_ros.config.differences import DifferingKey
 from isa_ros.replay.compare import compare_bags, recorded_as
-from isa_ros.replay.difference import Report, TopicDifference
+from isa_ros.replay.difference import RunDifference, TopicDifference
 from isa_ros.replay.provenance_differences import provenance_differences, records_of_bag
 from isa_ros.replay.tolerances import Tolerances
 from isa_ros.text.table import aligned
@@ -18,7 +18,7 @@ class Comparison(NamedTuple):
 
     keys: Sequence[DifferingKey] | None
     """None: neither run has a provenance."""
-    report: Report
+    report: RunDifference
     is_thinned: bool = False
     """Whether the bags were to record different samples; only those of both are compared."""
 

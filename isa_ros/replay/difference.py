@@ -63,7 +63,7 @@ class TopicDifference(NamedTuple):
 
 
 @dataclass(frozen=True)
-class Report:
+class RunDifference:
     """Extent of the comparison, and the first difference, None for equal runs."""
 
     ticks: int

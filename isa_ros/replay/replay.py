@@ -20,7 +20,7 @@ from isa_ros.core.saved_state import RunState
 from isa_ros.core.signals import Records
 from isa_ros.errors import BagError, ConfigError, SetpointError
 from isa_ros.replay.compare import Comparer
-from isa_ros.replay.difference import Report
+from isa_ros.replay.difference import RunDifference
 from isa_ros.replay.installation import (
     differences, obstacles, refuse_obstacles, topic_differences)
 from isa_ros.replay.tolerances import Tolerances
@@ -48,7 +48,7 @@ TUNED = 'applied_parameters'
 class ReplayReport:
     """The comparison of a replay with its bag."""
 
-    report: Report
+    report: RunDifference
     is_whole: bool
     changes: Sequence[str]
     """Differences from the installation that recorded the bag, one line each."""

@@ -142,7 +142,7 @@ def ground_force(result: Result) -> np.ndarray:
     return force
 
 
-class Drop(NamedTuple):
+class LegDrop(NamedTuple):
     """The knee's force in a drop."""
 
     fall: float
@@ -157,14 +157,14 @@ class Drop(NamedTuple):
     """Deviation of the force at the end, N."""
 
 
-def drop_figures(drop: Result) -> Drop:
+def drop_figures(drop: Result) -> LegDrop:
     """Return the figures of a drop of `DROP_S`."""
     t, force, reference = drop.time, drop[FORCE], drop[f'{FORCE}_reference']
     fall = touchdown(t, ground_force(drop))
     after = t > RELEASE + fall + 0.05
     peak, highest = float(force.max()), float(reference.max())
-    return Drop(fall, peak, peak / highest, 100.0 * _rms((force - reference)[after]) / highest,
-                float(force[t > DROP_S - STANDING].std()))
+    return LegDrop(fall, peak, peak / highest, 100.0 * _rms((force - reference)[after]) / highest,
+                   float(force[t > DROP_S - STANDING].std()))
 
 
 def _drop(config: str, drop: Result, gains: str) -> tuple[Entry, ...]:

@@ -10,7 +10,7 @@ from isa_ros.text.page import Page
 from isa_ros.text.table import aligned
 from isa_ros.validation.entry import (
     AS_READ, Entry, INPUT, NOT_REACHED, OWN, PAPER, REACHED, RETUNED, WORDS)
-from isa_ros.validation.runner import Result
+from isa_ros.validation.runner import GroupResult
 
 PAGE = 'validation.md'
 T = TypeVar('T')
@@ -55,7 +55,7 @@ not reached. `--only GROUP` or `--only GROUP.ENTRY` runs a part.
 """
 
 
-def as_text(results: Sequence[Result]) -> str:
+def as_text(results: Sequence[GroupResult]) -> str:
     """Return the table a terminal shows."""
     blocks = []
     for result in results:
@@ -69,13 +69,13 @@ def as_text(results: Sequence[Result]) -> str:
     return '\n\n'.join([*blocks, summary(results)])
 
 
-def summary(results: Sequence[Result]) -> str:
+def summary(results: Sequence[GroupResult]) -> str:
     """Return how many entries of each kind are reached, in one line."""
     return '; '.join(f'{kind}: {reached} of {reached + missed} reached'
                      for kind, (reached, missed) in _counted(results).items())
 
 
-def _counted(results: Sequence[Result]) -> dict[str, tuple[int, int]]:
+def _counted(results: Sequence[GroupResult]) -> dict[str, tuple[int, int]]:
     """Return how many entries are reached and missed, by what an entry can say of the paper."""
     entries = [entry for result in results for entry in result.entries]
     kinds = {kind: [entry.is_reached for entry in entries if _kind(entry) == kind]
@@ -89,7 +89,7 @@ def _kind(entry: Entry) -> str:
     return _COUNTED[entry.source, entry.source in (PAPER, WORDS) and entry.gains == RETUNED]
 
 
-def _missed(result: Result) -> list[str]:
+def _missed(result: GroupResult) -> list[str]:
     return [f'{result.group}.{e.key} is not reached: {e.reason or "for no known reason"}'
             for e in result.entries if not e.is_reached]
 
@@ -114,7 +114,7 @@ def interval(entry: Entry) -> str:
     return f'{lowest:.{_BOUND_DIGITS}g} to {highest:.{_BOUND_DIGITS}g}'
 
 
-def as_tree(results: Sequence[Result]) -> list[dict[str, Any]]:
+def as_tree(results: Sequence[GroupResult]) -> list[dict[str, Any]]:
     """Return every entry for JSON; a bound that is not there, and NaN, is null."""
     return [{
         'name': f'{result.group}.{entry.key}',
@@ -136,7 +136,7 @@ def _finite(value: float) -> float | None:
     return float(value) if math.isfinite(value) else None
 
 
-def write_page(results: Sequence[Result], directory: Path) -> list[Path]:
+def write_page(results: Sequence[GroupResult], directory: Path) -> list[Path]:
     """Write validation.md and figures/validation_*.png into a directory; return their paths."""
     page = Page(PAGE, _HEAD)
     page.table([('', 'entries', 'reached', 'not reached'), *(
@@ -161,7 +161,7 @@ def write_page(results: Sequence[Result], directory: Path) -> list[Path]:
     return page.write(directory)
 
 
-def _rows(result: Result) -> list[tuple[str, ...]]:
+def _rows(result: GroupResult) -> list[tuple[str, ...]]:
     """Return the table of a group: a row a check, with a column for each set of gains."""
     sets = _in_order(entry.gains for entry in result.entries)
     checks = _in_order(_same(entry) for entry in result.entries)

@@ -115,7 +115,7 @@ def _impacts(hit: Result, gains: str) -> tuple[Entry, ...]:
               tolerance=(50.0, 100.0), tolerance_source='mainly: more than half', gains=gains))
 
 
-class Drop(NamedTuple):
+class WeightDrop(NamedTuple):
     """The response of the wheel to the weight."""
 
     deflection: float
@@ -135,7 +135,7 @@ def drop_rig(result: Result) -> DropRig:
     return rig
 
 
-def dropped(result: Result) -> Drop:
+def dropped(result: Result) -> WeightDrop:
     """Return the response from such a run."""
     rig, t, angle = drop_rig(result), result.time, result[ANGLE]
     turned = angle[0] - angle
@@ -145,8 +145,8 @@ def dropped(result: Result) -> Drop:
         after[after >= 0.0], turned[after >= 0.0], 0.0, final, BAND).settling_time
     torque = result[TORQUE]
     about = torque[np.abs(torque).argmax():] - torque[t > t[-1] - REST_S].mean()
-    return Drop(final, math.nan if settled is None else settled, float(np.abs(torque).max()),
-                float(np.sqrt(np.mean(about * about))))
+    return WeightDrop(final, math.nan if settled is None else settled, float(np.abs(torque).max()),
+                      float(np.sqrt(np.mean(about * about))))
 
 
 def fall_time(rig: DropRig) -> float:
@@ -154,7 +154,7 @@ def fall_time(rig: DropRig) -> float:
     return math.sqrt(2.0 * rig.slack / STANDARD_GRAVITY)
 
 
-def _weights(found: dict[str, Drop], gains: str) -> tuple[Entry, ...]:
+def _weights(found: dict[str, WeightDrop], gains: str) -> tuple[Entry, ...]:
     peaks = [found[name].peak for name, _ in WEIGHTS]
     where = 'section 5.1, Fig 18'
     return (
@@ -170,7 +170,7 @@ def _weights(found: dict[str, Drop], gains: str) -> tuple[Entry, ...]:
               tolerance_source='stiffer gains bear the higher peak', gains=gains))
 
 
-def _deflection(name: str, found: Drop, stiffness: float, gains: str) -> Entry:
+def _deflection(name: str, found: WeightDrop, stiffness: float, gains: str) -> Entry:
     pull = statement('weight').number * STANDARD_GRAVITY * 0.2
     return Entry(
         name=name, source=OWN, where='section 5.1, Fig 18', paper='steady-state is reached',
@@ -179,7 +179,8 @@ def _deflection(name: str, found: Drop, stiffness: float, gains: str) -> Entry:
         tolerance_source=f'm g 0.2 m / {stiffness:g} Nm/rad; 5 %: the torque loop settles within')
 
 
-def _position_control(impedance: Drop, position: Drop, gains: str) -> tuple[Entry, ...]:
+def _position_control(
+        impedance: WeightDrop, position: WeightDrop, gains: str) -> tuple[Entry, ...]:
     without, with_it = (statement(f'{name}_torque_control') for name in ('without', 'with'))
     return (
         Entry(name='position_control_settling', source=OWN, where=without.where,

@@ -22,7 +22,7 @@ class Picture:
 
 
 @dataclass(frozen=True)
-class Result:
+class GroupResult:
     """The result of a group, as a worker process returns it."""
 
     group: str
@@ -66,7 +66,7 @@ def chosen(groups: Sequence[Group], only: Sequence[str] | None) -> tuple[Group, 
 
 def validated(
         groups: Sequence[Group], only: Sequence[str] | None = None,
-        progress: Progress | None = None) -> tuple[Result, ...]:
+        progress: Progress | None = None) -> tuple[GroupResult, ...]:
     """
     Run the groups and return their results in order, of the entries ``only`` names.
 
@@ -86,7 +86,7 @@ def validated(
     return tuple(only_of(results[group.name], only or ()) for group in groups)
 
 
-def run_group(group: Group) -> Result:
+def run_group(group: Group) -> GroupResult:
     """
     Run one group in this process and draw its figures.
 
@@ -103,12 +103,12 @@ def run_group(group: Group) -> Result:
     names = [entry.key for entry in findings.entries]
     if len(set(names)) != len(names):
         raise ValueError(f'{group.name}: two entries have the same name: {names}')
-    return Result(group.name, group.title, findings.entries, tuple(
+    return GroupResult(group.name, group.title, findings.entries, tuple(
         Picture(drawing.name, drawing.caption, png(drawing.figure))
         for drawing in findings.drawings), findings.observations)
 
 
-def only_of(result: Result, only: Sequence[str]) -> Result:
+def only_of(result: GroupResult, only: Sequence[str]) -> GroupResult:
     """
     Return a result with the entries that ``only`` names; all where it names the group.
 
@@ -128,6 +128,6 @@ def only_of(result: Result, only: Sequence[str]) -> Result:
         observations=())
 
 
-def is_reached(results: Sequence[Result]) -> bool:
+def is_reached(results: Sequence[GroupResult]) -> bool:
     """Tell whether every entry is reached."""
     return all(entry.is_reached for result in results for entry in result.entries)

@@ -92,7 +92,7 @@ PERTURBATIONS = (
 )
 
 
-class Noticed(NamedTuple):
+class PerturbationEffect(NamedTuple):
     """A perturbation, and the entries whose verdict it changes."""
 
     perturbation: Perturbation
@@ -107,7 +107,7 @@ class Noticed(NamedTuple):
 def sensitivity(
         perturbations: Sequence[Perturbation] = PERTURBATIONS,
         groups: Sequence[Group] = GROUPS,
-        progress: Progress | None = None) -> tuple[Noticed, ...]:
+        progress: Progress | None = None) -> tuple[PerturbationEffect, ...]:
     """
     Run groups as shipped and each perturbation in its own, in two worker processes.
 
@@ -129,14 +129,14 @@ def sensitivity(
                  for perturbation, found in zip(perturbations, changed, strict=True))
 
 
-class Outcome(NamedTuple):
+class Verdicts(NamedTuple):
     """Verdicts by the names of the entries, and the error where the parameter is refused."""
 
     verdicts: dict[str, bool]
     refused: str = ''
 
 
-def outcome(groups: Sequence[Group], change: Change | None) -> Outcome:
+def outcome(groups: Sequence[Group], change: Change | None) -> Verdicts:
     """Return whether each entry is reached; those of a group that diverges are missing."""
     found: dict[str, bool] = {}
     for group in groups:
@@ -146,19 +146,19 @@ def outcome(groups: Sequence[Group], change: Change | None) -> Outcome:
             if change is None:
                 raise
             if isinstance(error, ParameterError):
-                return Outcome({}, str(error))
+                return Verdicts({}, str(error))
             continue
         found |= {f'{group.name}.{entry.key}': entry.is_reached for entry in entries}
-    return Outcome(found)
+    return Verdicts(found)
 
 
 def _noticed(
-        perturbation: Perturbation, shipped: Outcome, changed: Outcome) -> Noticed:
+        perturbation: Perturbation, shipped: Verdicts, changed: Verdicts) -> PerturbationEffect:
     if changed.refused:
-        return Noticed(perturbation, (), (), changed.refused)
+        return PerturbationEffect(perturbation, (), (), changed.refused)
     ran = {name: is_reached for name, is_reached in shipped.verdicts.items()
            if name.partition('.')[0] in perturbation.groups}
-    return Noticed(
+    return PerturbationEffect(
         perturbation,
         tuple(name for name, is_reached in ran.items()
               if is_reached and not changed.verdicts.get(name, False)),
@@ -166,6 +166,6 @@ def _noticed(
               if not is_reached and changed.verdicts.get(name, False)))
 
 
-def is_noticed(found: Sequence[Noticed]) -> bool:
+def is_noticed(found: Sequence[PerturbationEffect]) -> bool:
     """Return whether every perturbation flips at least one entry, or is refused."""
     return all(each.flips or each.refused for each in found)

@@ -6,7 +6,7 @@ from typing import Any
 
 from isa_ros.text.page import Page
 from isa_ros.text.table import aligned
-from isa_ros.validation.sensitivity import Noticed
+from isa_ros.validation.sensitivity import PerturbationEffect
 
 PAGE = 'sensitivity.md'
 _SHOWN = 4      # entries in a cell of the page; the JSON has all
@@ -27,14 +27,14 @@ and exits with 1 if a perturbation is not noticed. `--json FILE` writes every en
 """
 
 
-def as_text(found: Sequence[Noticed]) -> str:
+def as_text(found: Sequence[PerturbationEffect]) -> str:
     """Return the table a terminal shows."""
     rows = [(each.perturbation.name, str(len(each.flips)), _first(each, 2)) for each in found]
     return '\n'.join([*aligned([('perturbation', 'missed', 'among them'), *rows]), '',
                       summary(found)])
 
 
-def summary(found: Sequence[Noticed]) -> str:
+def summary(found: Sequence[PerturbationEffect]) -> str:
     """Return how many perturbations are noticed, and the names of those that are not."""
     holes = [each.perturbation.name for each in found if not each.flips and not each.refused]
     refused = sum(bool(each.refused) for each in found)
@@ -43,7 +43,7 @@ def summary(found: Sequence[Noticed]) -> str:
             + (f': {", ".join(holes)}' if holes else ''))
 
 
-def _first(each: Noticed, shown: int = _SHOWN) -> str:
+def _first(each: PerturbationEffect, shown: int = _SHOWN) -> str:
     """Return the first entries of each group in turn, as many as are shown."""
     if each.refused:
         return f'refused: {each.refused}'
@@ -58,7 +58,7 @@ def _first(each: Noticed, shown: int = _SHOWN) -> str:
     return ', '.join(in_turn[:shown]) + (f', and {left} more' if left > 0 else '')
 
 
-def as_tree(found: Sequence[Noticed]) -> dict[str, Any]:
+def as_tree(found: Sequence[PerturbationEffect]) -> dict[str, Any]:
     """Return the object of the JSON file."""
     return {'perturbations': [{
         'name': each.perturbation.name,
@@ -70,7 +70,7 @@ def as_tree(found: Sequence[Noticed]) -> dict[str, Any]:
     } for each in found]}
 
 
-def write_page(found: Sequence[Noticed], directory: Path) -> list[Path]:
+def write_page(found: Sequence[PerturbationEffect], directory: Path) -> list[Path]:
     """Write sensitivity.md into a directory; return its path."""
     page = Page(PAGE, _HEAD)
     page.paragraph(f'{summary(found)}.')

@@ -4,7 +4,7 @@ import sys
 
 from isa_ros.bench import command, groups, rounds
 from isa_ros.bench.command import chosen
-from isa_ros.bench.groups import alone, Group, GROUPS
+from isa_ros.bench.groups import alone, BenchGroup, GROUPS
 from isa_ros.bench.row import Row
 from isa_ros.bench.spec import LEG, ONE_PROCESS, Spec
 from isa_ros.cli.main import main
@@ -36,7 +36,7 @@ def test_without_a_checkout_the_groups_of_benchmarks_are_left_out(monkeypatch, t
 
 
 def test_a_group_that_cannot_be_measured_is_left_out_or_says_why(monkeypatch, capsys):
-    absent = Group('bus', 'A bus', alone(list), missing=lambda: 'unshare is not installed')
+    absent = BenchGroup('bus', 'A bus', alone(list), missing=lambda: 'unshare is not installed')
     monkeypatch.setattr(command, 'groups', lambda: (*GROUPS, absent))
     assert chosen(None) == GROUPS
     assert main(['bench', '--only', 'bus']) == 2
@@ -51,7 +51,7 @@ def test_a_part_does_not_replace_the_page(tmp_path, capsys):
 
 
 def test_rows_are_printed_and_written(monkeypatch, tmp_path, capsys):
-    group = Group('own', 'A group', lambda _: [Row('a row', 2.0, 'us', 'floor', 0.5)])
+    group = BenchGroup('own', 'A group', lambda _: [Row('a row', 2.0, 'us', 'floor', 0.5)])
     monkeypatch.setattr(command, 'chosen', lambda only: (group,))
     assert main(['bench', '--json', str(tmp_path / 'b.json'), '--out', str(tmp_path)]) == 0
     printed = capsys.readouterr().out
@@ -69,7 +69,7 @@ def test_a_place_that_cannot_be_written_is_refused_before_anything(option, tmp_p
 
 def test_a_terminal_shows_the_next_run_and_nothing_is_left_at_the_end(monkeypatch):
     spec = Spec(LEG, ONE_PROCESS, 10, rounds=2)
-    group = Group('own', 'A group', lambda _: [], lambda: (spec,))
+    group = BenchGroup('own', 'A group', lambda _: [], lambda: (spec,))
     monkeypatch.setattr(command, 'chosen', lambda only: (group,))
     monkeypatch.setattr(rounds, 'measured', lambda spec: ran(1000.0))
     monkeypatch.setattr(sys, 'stderr', Terminal())

@@ -4,7 +4,7 @@ from itertools import product
 import re
 
 from isa_ros.actuator.sheet import ActuatorSheet
-from isa_ros.config.listing import describe, Row, rows
+from isa_ros.config.listing import describe, ListedValue, rows
 from isa_ros.config.models.catalogue import actuator_model, leg_names, leg_section, model_names
 from isa_ros.config.text.parameter_sets import build, build_one_of
 from isa_ros.errors import ConfigError, IsaError
@@ -16,7 +16,7 @@ import pytest
 SOURCES = ('paper', 'derived', 'assumed', 'public model')
 
 
-def is_kind(row: Row) -> bool:
+def is_kind(row: ListedValue) -> bool:
     """Return whether a row is a kind of model, which has no number and no source."""
     return row.parameter.endswith('.kind')
 

@@ -9,7 +9,7 @@ from isa_ros.cli.main import main
 from isa_ros.validation.entry import Entry
 from isa_ros.validation.groups import GROUPS
 from isa_ros.validation.page import write_page
-from isa_ros.validation.runner import Result, run_group
+from isa_ros.validation.runner import GroupResult, run_group
 import pytest
 
 DOCS = Path(__file__).parents[2] / 'docs'
@@ -17,14 +17,14 @@ QUICK = [group for group in GROUPS if not group.is_long]
 LONG = [group for group in GROUPS if group.is_long]
 
 
-def section_of(result: Result, directory: Path) -> str:
+def section_of(result: GroupResult, directory: Path) -> str:
     """Return the part of a page that is about one group."""
     page, *_ = write_page([result], directory)
     _, heading, rest = page.read_text().partition(f'## {result.title}\n')
     return heading + rest.partition('\n## ')[0].rstrip()
 
 
-def as_shown(result: Result, page: str) -> tuple[Entry, ...]:
+def as_shown(result: GroupResult, page: str) -> tuple[Entry, ...]:
     """
     Return the entries, those beside an adaptive integration with the number that the page has.
 

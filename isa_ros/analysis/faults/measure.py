@@ -81,7 +81,7 @@ class Visible(NamedTuple):
     """Largest difference from the sound run while the fault lasts, signed."""
 
 
-class Noticed(NamedTuple):
+class DeviceReport(NamedTuple):
     """Reports of the device on a fault, without those of the sound run."""
 
     kind: str
@@ -93,13 +93,13 @@ class Noticed(NamedTuple):
 
 
 @dataclass(frozen=True)
-class Outcome:
+class FaultEffect:
     """The effect of one fault."""
 
     fault: NamedFault
     visible: tuple[Visible, ...]
     """The earliest first."""
-    noticed: tuple[Noticed, ...]
+    noticed: tuple[DeviceReport, ...]
     recovered_s: float | None
     """From the end of the fault, and a clear-fault, until all is within `SOUND`; None: never."""
     message: str
@@ -134,7 +134,7 @@ def target_of(fault: NamedFault) -> str:
 
 
 def outcomes(
-        names: Sequence[str] | None = None, report: Progress | None = None) -> list[Outcome]:
+        names: Sequence[str] | None = None, report: Progress | None = None) -> list[FaultEffect]:
     """
     Return the outcome of each fault of the catalogue, or of those named, in their order.
 
@@ -158,13 +158,13 @@ def outcomes(
     return found
 
 
-def _outcome(rig: Run, fault: NamedFault, sound: Mapping[str, NDArray[np.float64]]) -> Outcome:
+def _outcome(rig: Run, fault: NamedFault, sound: Mapping[str, NDArray[np.float64]]) -> FaultEffect:
     tree: Tree = {
         't_s': BEGIN_S, fault.of: target_of(fault), 'fault': fault.name, 'until_s': END_S}
     try:
         faulty = _recorded(rig, (tree,))
     except SimulationDiverged as error:
-        return Outcome(fault, (), (), None, '', str(error))
+        return FaultEffect(fault, (), (), None, '', str(error))
     begin, end = round(BEGIN_S / STEP_S), round(END_S / STEP_S)
     resolution, units = _resolution(rig), _units(rig)
     visible, last = [], end
@@ -179,7 +179,7 @@ def _outcome(rig: Run, fault: NamedFault, sound: Mapping[str, NDArray[np.float64
         far = np.flatnonzero(np.abs(difference) > SOUND * step)
         if len(far):
             last = max(last, int(far[-1]) + 1)
-    return Outcome(
+    return FaultEffect(
         fault, tuple(sorted(visible, key=lambda own: own.after_s)),
         tuple(_noticed(faulty, sound, begin)),
         None if last >= len(faulty[_SUPPLY]) else (last - end) * STEP_S, _message(faulty))
@@ -196,17 +196,17 @@ def _message(faulty: Mapping[str, NDArray[np.float64]]) -> str:
 
 def _noticed(
         faulty: Mapping[str, NDArray[np.float64]], sound: Mapping[str, NDArray[np.float64]],
-        begin: int) -> list[Noticed]:
+        begin: int) -> list[DeviceReport]:
     found = []
     for field, kind in _BIT_SETS.items():
         new = faulty[field].astype(np.int64) & ~sound[field].astype(np.int64)
         for name, bit in BITS.items():
             ticks = np.flatnonzero(new >> bit & 1)
             if len(ticks):
-                found.append(Noticed(kind, name, (int(ticks[0]) - begin) * STEP_S))
+                found.append(DeviceReport(kind, name, (int(ticks[0]) - begin) * STEP_S))
     ticks = np.flatnonzero(faulty[_STATE] != sound[_STATE])
     if len(ticks):
-        found.append(Noticed(
+        found.append(DeviceReport(
             'state', STATES[int(faulty[_STATE][ticks[0]])], (int(ticks[0]) - begin) * STEP_S))
     return sorted(found, key=lambda own: own.after_s)
 

@@ -5,7 +5,7 @@ from pathlib import Path
 from typing import Any
 
 from isa_ros.analysis.faults.measure import (
-    BEGIN_S, CLEAR_S, END_S, LINK, Noticed, Outcome, SOUND, VISIBLE, Visible)
+    BEGIN_S, CLEAR_S, DeviceReport, END_S, FaultEffect, LINK, SOUND, VISIBLE, Visible)
 from isa_ros.config.models.fault_catalogue import fault_catalogue, NamedFault
 from isa_ros.text.page import Page
 from isa_ros.text.table import aligned, digits
@@ -49,17 +49,17 @@ def _set(fault: NamedFault) -> str:
     return ', '.join(f'{key}: {value:g}' for key, value in fault.values.items())
 
 
-def as_text(found: Sequence[Outcome]) -> str:
+def as_text(found: Sequence[FaultEffect]) -> str:
     """Return the tables for a terminal: effects, and messages if there is one."""
     tables = [_rows(found), _messages(found)]
     return '\n\n'.join('\n'.join(aligned(rows)) for rows in tables if len(rows) > 1)
 
 
-def _rows(found: Sequence[Outcome]) -> list[tuple[str, ...]]:
+def _rows(found: Sequence[FaultEffect]) -> list[tuple[str, ...]]:
     return [HEADER, *(_cells(own) for own in found)]
 
 
-def _cells(own: Outcome) -> tuple[str, ...]:
+def _cells(own: FaultEffect) -> tuple[str, ...]:
     if own.diverged:
         return (own.fault.name, own.diverged, '', '', '', '')
     first = own.visible[0] if own.visible else None
@@ -74,11 +74,11 @@ def _nothing(fault: NamedFault) -> str:
     return f'nothing: {fault.unreported}' if fault.unreported else 'nothing'
 
 
-def _messages(found: Sequence[Outcome]) -> list[tuple[str, ...]]:
+def _messages(found: Sequence[FaultEffect]) -> list[tuple[str, ...]]:
     return [MESSAGE_HEADER, *((own.fault.name, own.message) for own in found if own.message)]
 
 
-def _largest(own: Outcome) -> Sequence[Visible]:
+def _largest(own: FaultEffect) -> Sequence[Visible]:
     """Return the signals that a person would look at first: the earliest ones."""
     return own.visible[:_LARGEST]
 
@@ -88,11 +88,11 @@ def _difference(one: Visible) -> str:
     return f'{one.signal} {digits(one.largest * scale, 3)} {unit}'
 
 
-def _note(one: Noticed) -> str:
+def _note(one: DeviceReport) -> str:
     return f'{one.kind} {one.name} after {one.after_s * 1e3:g} ms'
 
 
-def as_tree(found: Sequence[Outcome]) -> dict[str, Any]:
+def as_tree(found: Sequence[FaultEffect]) -> dict[str, Any]:
     """Return every outcome for JSON."""
     return {'faults': [{
         'name': own.fault.name, 'of': own.fault.of, 'set': dict(own.fault.values),
@@ -102,7 +102,7 @@ def as_tree(found: Sequence[Outcome]) -> dict[str, Any]:
     } for own in found]}
 
 
-def write_page(found: Sequence[Outcome], directory: Path) -> list[Path]:
+def write_page(found: Sequence[FaultEffect], directory: Path) -> list[Path]:
     """Write the page; return its path."""
     page = Page(PAGE, _HEAD)
     page.section('Effects')

@@ -16,7 +16,8 @@ from isa_ros.fieldbus.device.cia402_motion_objects import DIGITAL_INPUTS
 from isa_ros.fieldbus.device.cia402_objects import (
     CSP, CSV, HOMING, IMPEDANCE_MODE, NO_MODE, PP, PV, REFUSED_MODES)
 from isa_ros.fieldbus.device.cia402_states import (
-    CAUSE_GONE, command_of, ENDS_OFF, Event, FAULT_RESET, FOLLOWING, REU_DISABLED, State402, STAYS)
+    CAUSE_GONE, command_of, ENDS_OFF, Event402, FAULT_RESET, FOLLOWING, REU_DISABLED, State402,
+    STAYS)
 from isa_ros.fieldbus.device.dictionary import Key
 from isa_ros.fieldbus.device.drive import Drive
 from isa_ros.fieldbus.device.faults import Faults, FOLLOWING_ERROR
@@ -33,7 +34,7 @@ VOLTAGE, WARNING, REMOTE, LIMITED, FOLLOWS, LATE = (1 << bit for bit in (4, 7, 9
 """Further bits of the status word."""
 _HALTED = (PP, PV, CSP, CSV)
 """Modes with a reference that a halt brakes, and whose following error is watched."""
-_LEAVING = {Event.SHUTDOWN: objects.SHUTDOWN_OPTION, Event.SWITCH_ON: objects.DISABLE_OPTION}
+_LEAVING = {Event402.SHUTDOWN: objects.SHUTDOWN_OPTION, Event402.SWITCH_ON: objects.DISABLE_OPTION}
 """Option codes by the command that leaves operation."""
 _STOP_WORD = 0x02
 """Control word of a quick stop."""
@@ -44,7 +45,7 @@ class Drive402(Drive):
 
     following = FOLLOWING
     fault, reaction_ends, reset, left = (
-        Event.FAULT, Event.REACTION_ENDS, Event.RESET, Event.LEFT)
+        Event402.FAULT, Event402.REACTION_ENDS, Event402.RESET, Event402.LEFT)
     first_state = State402.SWITCH_ON_DISABLED
     faults, control, reset_bit = (State402.FAULT,), objects.CONTROL, FAULT_RESET
     faulty = (*faults, State402.FAULT_REACTION)
@@ -160,22 +161,22 @@ class Drive402(Drive):
         if not self._has_start:
             self._has_start = True
             self._begin_at_position()
-        self._happens(Event.INITIALISED)
+        self._happens(Event402.INITIALISED)
         self._watch_deviation()
         self._motions.watch()
         self._is_stopping &= axis.is_on
         if axis.state in (FAULT_REACTION, FAULT) and not self._clears or self._faults.has_own:
-            self._happens(Event.FAULT)
+            self._happens(Event402.FAULT)
         self._end_reaction()
         if axis.is_disabled:
-            self._happens(Event.STOPPED)
+            self._happens(Event402.STOPPED)
             if not self._faults.has_own:
-                self._happens(Event.RESET)
+                self._happens(Event402.RESET)
         if self.state is State402.OPERATION_ENABLED:
             if axis.state == QUICK_STOP:
-                self._happens(Event.LOCAL_STOP)
+                self._happens(Event402.LOCAL_STOP)
             elif axis.is_disabled and self._was_on:
-                self._happens(Event.DROPPED)
+                self._happens(Event402.DROPPED)
             self._was_on |= axis.state == ENABLED
 
     def _obey(self, control: int) -> None:
@@ -253,9 +254,9 @@ class Drive402(Drive):
         if row.event in _LEAVING and row.state is State402.OPERATION_ENABLED:
             option = self._values[_LEAVING[row.event]]
             self._is_stopping = option == objects.STOPS_THEN_OFF
-        elif row.event is Event.DISABLE_VOLTAGE:
+        elif row.event is Event402.DISABLE_VOLTAGE:
             self._is_stopping = False
-        if row.event is Event.RESET:
+        if row.event is Event402.RESET:
             self._following_error.forget()
         if row.state is State402.QUICK_STOP:
             self._has_left = self._is_held = False

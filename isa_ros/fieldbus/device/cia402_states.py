@@ -30,7 +30,7 @@ class State402(DeviceState):
 STATE_MASK = 0x6F
 
 
-class Event(Enum):
+class Event402(Enum):
     """What may change the state: commands of the control word, and what the REU reports."""
 
     INITIALISED = 'the first sample'
@@ -53,13 +53,14 @@ class ControlPattern(NamedTuple):
 
     mask: int
     value: int
-    event: Event
+    event: Event402
 
 
 COMMANDS = (
-    ControlPattern(0x87, 0x06, Event.SHUTDOWN), ControlPattern(0x8F, 0x07, Event.SWITCH_ON),
-    ControlPattern(0x8F, 0x0F, Event.ENABLE), ControlPattern(0x82, 0x00, Event.DISABLE_VOLTAGE),
-    ControlPattern(0x86, 0x02, Event.STOP))
+    ControlPattern(0x87, 0x06, Event402.SHUTDOWN), ControlPattern(0x8F, 0x07, Event402.SWITCH_ON),
+    ControlPattern(0x8F, 0x0F, Event402.ENABLE),
+    ControlPattern(0x82, 0x00, Event402.DISABLE_VOLTAGE),
+    ControlPattern(0x86, 0x02, Event402.STOP))
 """Every pattern; a word that fits none changes nothing."""
 
 REU_DISABLED, ENDS_OFF, STAYS, CAUSE_GONE = (
@@ -74,45 +75,47 @@ _NO_FAULT = tuple(
     one for one in State402 if one not in (State402.FAULT_REACTION, State402.FAULT))
 
 TRANSITIONS = (
-    Transition(1, State402.NOT_READY, Event.INITIALISED, '', State402.SWITCH_ON_DISABLED, _SHOWN),
-    Transition(2, State402.SWITCH_ON_DISABLED, Event.SHUTDOWN, '', State402.READY, _SHOWN),
-    Transition(3, State402.READY, Event.SWITCH_ON, '', State402.SWITCHED_ON, _SHOWN),
-    Transition(3, State402.READY, Event.ENABLE, '', State402.SWITCHED_ON, 'then transition 4'),
-    Transition(4, State402.SWITCHED_ON, Event.ENABLE, REU_DISABLED, State402.OPERATION_ENABLED,
+    Transition(1, State402.NOT_READY, Event402.INITIALISED, '', State402.SWITCH_ON_DISABLED,
+               _SHOWN),
+    Transition(2, State402.SWITCH_ON_DISABLED, Event402.SHUTDOWN, '', State402.READY, _SHOWN),
+    Transition(3, State402.READY, Event402.SWITCH_ON, '', State402.SWITCHED_ON, _SHOWN),
+    Transition(3, State402.READY, Event402.ENABLE, '', State402.SWITCHED_ON, 'then transition 4'),
+    Transition(4, State402.SWITCHED_ON, Event402.ENABLE, REU_DISABLED, State402.OPERATION_ENABLED,
                'the REU is enabled in the mode of operation'),
-    Transition(5, State402.OPERATION_ENABLED, Event.SWITCH_ON, '', State402.SWITCHED_ON,
+    Transition(5, State402.OPERATION_ENABLED, Event402.SWITCH_ON, '', State402.SWITCHED_ON,
                _OFF_BY_CODE),
-    Transition(6, State402.SWITCHED_ON, Event.SHUTDOWN, '', State402.READY, _SHOWN),
-    Transition(7, State402.READY, Event.DISABLE_VOLTAGE, '', State402.SWITCH_ON_DISABLED, _SHOWN),
-    Transition(7, State402.READY, Event.STOP, '', State402.SWITCH_ON_DISABLED, _SHOWN),
-    Transition(7, State402.READY, Event.LEFT, '', State402.SWITCH_ON_DISABLED, _SHOWN),
-    Transition(8, State402.OPERATION_ENABLED, Event.SHUTDOWN, '', State402.READY,
+    Transition(6, State402.SWITCHED_ON, Event402.SHUTDOWN, '', State402.READY, _SHOWN),
+    Transition(7, State402.READY, Event402.DISABLE_VOLTAGE, '', State402.SWITCH_ON_DISABLED,
+               _SHOWN),
+    Transition(7, State402.READY, Event402.STOP, '', State402.SWITCH_ON_DISABLED, _SHOWN),
+    Transition(7, State402.READY, Event402.LEFT, '', State402.SWITCH_ON_DISABLED, _SHOWN),
+    Transition(8, State402.OPERATION_ENABLED, Event402.SHUTDOWN, '', State402.READY,
                _OFF_BY_CODE),
-    Transition(9, State402.OPERATION_ENABLED, Event.DISABLE_VOLTAGE, '',
+    Transition(9, State402.OPERATION_ENABLED, Event402.DISABLE_VOLTAGE, '',
                State402.SWITCH_ON_DISABLED, _OFF),
-    Transition(9, State402.OPERATION_ENABLED, Event.DROPPED, '', State402.SWITCH_ON_DISABLED,
+    Transition(9, State402.OPERATION_ENABLED, Event402.DROPPED, '', State402.SWITCH_ON_DISABLED,
                'it was `~/enable` with false, for example'),
-    Transition(10, State402.SWITCHED_ON, Event.DISABLE_VOLTAGE, '', State402.SWITCH_ON_DISABLED,
+    Transition(10, State402.SWITCHED_ON, Event402.DISABLE_VOLTAGE, '', State402.SWITCH_ON_DISABLED,
                _SHOWN),
-    Transition(10, State402.SWITCHED_ON, Event.STOP, '', State402.SWITCH_ON_DISABLED, _SHOWN),
-    Transition(10, State402.SWITCHED_ON, Event.LEFT, '', State402.SWITCH_ON_DISABLED, _SHOWN),
-    Transition(11, State402.OPERATION_ENABLED, Event.STOP, '', State402.QUICK_STOP,
+    Transition(10, State402.SWITCHED_ON, Event402.STOP, '', State402.SWITCH_ON_DISABLED, _SHOWN),
+    Transition(10, State402.SWITCHED_ON, Event402.LEFT, '', State402.SWITCH_ON_DISABLED, _SHOWN),
+    Transition(11, State402.OPERATION_ENABLED, Event402.STOP, '', State402.QUICK_STOP,
                'the quick stop of the REU; with option code 0 it is disabled'),
-    Transition(11, State402.OPERATION_ENABLED, Event.LOCAL_STOP, '', State402.QUICK_STOP,
+    Transition(11, State402.OPERATION_ENABLED, Event402.LOCAL_STOP, '', State402.QUICK_STOP,
                'it was `~/quick_stop`, for example'),
-    Transition(11, State402.OPERATION_ENABLED, Event.LEFT, '', State402.QUICK_STOP,
+    Transition(11, State402.OPERATION_ENABLED, Event402.LEFT, '', State402.QUICK_STOP,
                'the same; it ends off, whatever the option code'),
-    Transition(12, State402.QUICK_STOP, Event.STOPPED, ENDS_OFF, State402.SWITCH_ON_DISABLED,
+    Transition(12, State402.QUICK_STOP, Event402.STOPPED, ENDS_OFF, State402.SWITCH_ON_DISABLED,
                _SHOWN),
-    Transition(12, State402.QUICK_STOP, Event.DISABLE_VOLTAGE, '', State402.SWITCH_ON_DISABLED,
+    Transition(12, State402.QUICK_STOP, Event402.DISABLE_VOLTAGE, '', State402.SWITCH_ON_DISABLED,
                _OFF),
-    *(Transition(13, state, Event.FAULT, '', State402.FAULT_REACTION,
+    *(Transition(13, state, Event402.FAULT, '', State402.FAULT_REACTION,
                  'the reaction of the condition; of the bus and of the following error a quick '
                  'stop, or by option code 0 off at once') for state in _NO_FAULT),
-    Transition(14, State402.FAULT_REACTION, Event.REACTION_ENDS, '', State402.FAULT, _SHOWN),
-    Transition(15, State402.FAULT, Event.RESET, CAUSE_GONE, State402.SWITCH_ON_DISABLED,
+    Transition(14, State402.FAULT_REACTION, Event402.REACTION_ENDS, '', State402.FAULT, _SHOWN),
+    Transition(15, State402.FAULT, Event402.RESET, CAUSE_GONE, State402.SWITCH_ON_DISABLED,
                'the fault is forgotten'),
-    Transition(16, State402.QUICK_STOP, Event.ENABLE, STAYS, State402.OPERATION_ENABLED,
+    Transition(16, State402.QUICK_STOP, Event402.ENABLE, STAYS, State402.OPERATION_ENABLED,
                'the REU is enabled again'),
 )
 """Every transition after power-on (0); an event without a row for a state is ignored there."""
@@ -120,7 +123,7 @@ TRANSITIONS = (
 FOLLOWING = following(TRANSITIONS)
 
 
-def command_of(control: int) -> Event | None:
+def command_of(control: int) -> Event402 | None:
     """Return the command of a control word; None: it has none."""
     for mask, value, event in COMMANDS:
         if control & mask == value:

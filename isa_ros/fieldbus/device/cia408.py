@@ -10,7 +10,7 @@ from isa_ros.fieldbus.device import cia408_objects as objects
 from isa_ros.fieldbus.device.axis import Axis, COUNTS, FULL_SCALE
 from isa_ros.fieldbus.device.cia408_objects import AXIS_POSITION, AXIS_VELOCITY, PQ
 from isa_ros.fieldbus.device.cia408_states import (
-    control_of, Event, FAULTS, FOLLOWING, HOLDING, HOLDS, level_of, MAY_ACT, MAY_ENABLE, R,
+    control_of, Event408, FAULTS, FOLLOWING, HOLDING, HOLDS, level_of, MAY_ACT, MAY_ENABLE, R,
     State408, WAS_DISABLED, WAS_INIT)
 from isa_ros.fieldbus.device.dictionary import Key
 from isa_ros.fieldbus.device.drive import Drive
@@ -29,7 +29,7 @@ class Drive408(Drive):
 
     following = FOLLOWING
     fault, reaction_ends, reset, left = (
-        Event.FAULT, Event.REACTION_ENDS, Event.RESET, Event.LEFT)
+        Event408.FAULT, Event408.REACTION_ENDS, Event408.RESET, Event408.LEFT)
     first_state = State408.INIT
     faults, control, reset_bit = FAULTS, objects.CONTROL, R
     faulty = (*faults, State408.FAULT_REACTION)
@@ -85,21 +85,21 @@ class Drive408(Drive):
         if not self._has_start:
             self._has_start = True
             self._begin_at_position()
-        self._happens(Event.INITIALISED)
+        self._happens(Event408.INITIALISED)
         self._is_stopping &= axis.is_on
         has_tripped = axis.state in (FAULT_REACTION, FAULT) and not self._clears
         if self.state is State408.FAULT_REACTION:
             if axis.is_off or axis.state == ENABLED:
-                self._happens(Event.REACTION_ENDS)
+                self._happens(Event408.REACTION_ENDS)
         elif has_tripped:
-            self._happens(Event.FAULT)
+            self._happens(Event408.FAULT)
             self._end_reaction()
         if not has_tripped and not self._faults.has_own:
-            self._happens(Event.RESET)
+            self._happens(Event408.RESET)
         if self.state in (State408.HOLD, State408.ACTIVE):
             if self._was_on and axis.state != ENABLED:
                 self._is_blocked = True
-                self._happens(Event.DROPPED)
+                self._happens(Event408.DROPPED)
             self._was_on = axis.state == ENABLED
 
     def fill_command(self, command: np.void) -> None:
@@ -113,7 +113,7 @@ class Drive408(Drive):
     def _obey(self, control: int) -> None:
         wanted = level_of(control)
         if wanted != self.state.level:
-            self._happens(Event.RISE if wanted > self.state.level else Event.FALL)
+            self._happens(Event408.RISE if wanted > self.state.level else Event408.FALL)
 
     def _kinds(self, command: np.void) -> int:
         axis = self._axis
@@ -160,7 +160,7 @@ class Drive408(Drive):
     # States.
 
     def _enters(self, row: Transition) -> None:
-        if row.event is Event.FAULT:
+        if row.event is Event408.FAULT:
             self._before = self.state.level
         if row.following in (State408.HOLD, State408.FAULT_REACTION):
             self._demand = self._axis.position

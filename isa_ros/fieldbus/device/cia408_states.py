@@ -34,7 +34,7 @@ HOLDING = (State408.HOLD, State408.ACTIVE, State408.FAULT_HOLD, State408.FAULT_R
 """States in which the outputs of the REU may be on."""
 
 
-class Event(Enum):
+class Event408(Enum):
     """What may change the state."""
 
     INITIALISED = 'the first sample'
@@ -57,35 +57,35 @@ _SHOWN, _OFF = 'nothing', 'the REU is disabled: valve to null'
 _HOLDS = 'the REU is enabled in the control mode, with the hold setpoint'
 
 TRANSITIONS = (
-    Transition('1', State408.NOT_READY, Event.INITIALISED, '', State408.INIT, _SHOWN),
-    Transition('2', State408.INIT, Event.RISE, '', State408.DISABLED, _SHOWN),
-    Transition('3', State408.DISABLED, Event.RISE, MAY_ENABLE, State408.HOLD, _HOLDS),
-    Transition('4', State408.HOLD, Event.RISE, MAY_ACT, State408.ACTIVE,
+    Transition('1', State408.NOT_READY, Event408.INITIALISED, '', State408.INIT, _SHOWN),
+    Transition('2', State408.INIT, Event408.RISE, '', State408.DISABLED, _SHOWN),
+    Transition('3', State408.DISABLED, Event408.RISE, MAY_ENABLE, State408.HOLD, _HOLDS),
+    Transition('4', State408.HOLD, Event408.RISE, MAY_ACT, State408.ACTIVE,
                'the setpoint of the bus'),
-    Transition('5', State408.ACTIVE, Event.FALL, '', State408.HOLD, 'the hold setpoint'),
-    Transition('5', State408.ACTIVE, Event.LEFT, '', State408.HOLD,
+    Transition('5', State408.ACTIVE, Event408.FALL, '', State408.HOLD, 'the hold setpoint'),
+    Transition('5', State408.ACTIVE, Event408.LEFT, '', State408.HOLD,
                'the hold setpoint; M must fall before it is active again'),
-    Transition('6', State408.HOLD, Event.FALL, '', State408.DISABLED, _OFF),
-    Transition('7', State408.DISABLED, Event.FALL, '', State408.INIT, _SHOWN),
-    *(Transition('8', state, Event.FAULT, '', State408.FAULT_REACTION,
+    Transition('6', State408.HOLD, Event408.FALL, '', State408.DISABLED, _OFF),
+    Transition('7', State408.DISABLED, Event408.FALL, '', State408.INIT, _SHOWN),
+    *(Transition('8', state, Event408.FAULT, '', State408.FAULT_REACTION,
                  'the reaction of the condition; of a lost bus the hold setpoint')
       for state in (State408.INIT, State408.DISABLED, State408.HOLD, State408.ACTIVE,
                     State408.FAULT_HOLD)),
-    Transition('9', State408.FAULT_REACTION, Event.REACTION_ENDS, HOLDS, State408.FAULT_HOLD,
+    Transition('9', State408.FAULT_REACTION, Event408.REACTION_ENDS, HOLDS, State408.FAULT_HOLD,
                'the hold setpoint'),
-    Transition('10', State408.FAULT_DISABLED, Event.RESET, CAUSE_GONE, State408.DISABLED,
+    Transition('10', State408.FAULT_DISABLED, Event408.RESET, CAUSE_GONE, State408.DISABLED,
                'the fault is forgotten'),
-    Transition('11', State408.FAULT_HOLD, Event.RESET, CAUSE_GONE, State408.HOLD,
+    Transition('11', State408.FAULT_HOLD, Event408.RESET, CAUSE_GONE, State408.HOLD,
                'the fault is forgotten'),
-    Transition('12', State408.FAULT_REACTION, Event.REACTION_ENDS, WAS_DISABLED,
+    Transition('12', State408.FAULT_REACTION, Event408.REACTION_ENDS, WAS_DISABLED,
                State408.FAULT_DISABLED, _SHOWN),
-    Transition('13', State408.FAULT_REACTION, Event.REACTION_ENDS, WAS_INIT, State408.FAULT_INIT,
-               _SHOWN),
-    Transition('14', State408.FAULT_INIT, Event.RESET, CAUSE_GONE, State408.INIT,
+    Transition('13', State408.FAULT_REACTION, Event408.REACTION_ENDS, WAS_INIT,
+               State408.FAULT_INIT, _SHOWN),
+    Transition('14', State408.FAULT_INIT, Event408.RESET, CAUSE_GONE, State408.INIT,
                'the fault is forgotten'),
-    Transition('15', State408.FAULT_HOLD, Event.FALL, '', State408.FAULT_DISABLED, _OFF),
-    Transition('16', State408.FAULT_DISABLED, Event.FALL, '', State408.FAULT_INIT, _SHOWN),
-    *(Transition('', state, Event.DROPPED, '', State408.DISABLED,
+    Transition('15', State408.FAULT_HOLD, Event408.FALL, '', State408.FAULT_DISABLED, _OFF),
+    Transition('16', State408.FAULT_DISABLED, Event408.FALL, '', State408.FAULT_INIT, _SHOWN),
+    *(Transition('', state, Event408.DROPPED, '', State408.DISABLED,
                  'H must fall before it is enabled again')
       for state in (State408.HOLD, State408.ACTIVE)),
 )

@@ -4,7 +4,7 @@ import json
 from pathlib import Path
 
 from isa_ros.analysis.faults import page
-from isa_ros.analysis.faults.measure import END_S, Outcome, outcomes, STEP_S, VISIBLE
+from isa_ros.analysis.faults.measure import END_S, FaultEffect, outcomes, STEP_S, VISIBLE
 from isa_ros.cli.main import main
 from isa_ros.config.models.fault_catalogue import fault_catalogue
 from isa_ros.core.signals import CHANNELS
@@ -14,12 +14,12 @@ import pytest
 
 
 @pytest.fixture(scope='module')
-def found() -> dict[str, Outcome]:
+def found() -> dict[str, FaultEffect]:
     """Return the outcome of every fault."""
     return {own.fault.name: own for own in outcomes()}
 
 
-def signals(own: Outcome) -> list[str]:
+def signals(own: FaultEffect) -> list[str]:
     return [one.signal for one in own.visible]
 
 
@@ -69,7 +69,7 @@ def test_a_low_supply_is_warned_of(found):
         ('warning', 'supply_low'), ('warning', 'force_error')]
 
 
-def noticed(own: Outcome) -> dict[str, float]:
+def noticed(own: FaultEffect) -> dict[str, float]:
     """Return what the device itself reports, with the time of each in ms, rounded."""
     return {f'{one.kind} {one.name}': round(one.after_s * 1e3) for one in own.noticed}
 

@@ -3,7 +3,7 @@
 import math
 
 from isa_ros.fieldbus.device.abort import INCOMPATIBLE, OUT_OF_RANGE, SdoAbort
-from isa_ros.fieldbus.device.cia402_states import Event, State402, TRANSITIONS
+from isa_ros.fieldbus.device.cia402_states import Event402, State402, TRANSITIONS
 from isa_ros.fieldbus.device.devices import devices_of
 import pytest
 
@@ -137,7 +137,7 @@ def test_what_is_disabled_or_stopped_from_elsewhere_is_followed(rig):
 def test_every_transition_has_a_row_and_every_state_a_way_out():
     assert {row.number for row in TRANSITIONS} == set(range(1, 17))
     assert {row.state for row in TRANSITIONS} == set(State402)
-    assert {row.event for row in TRANSITIONS} == set(Event)
+    assert {row.event for row in TRANSITIONS} == set(Event402)
 
 
 # Modes.

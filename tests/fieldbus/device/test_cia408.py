@@ -2,7 +2,7 @@
 
 from isa_ros.core.conditions import BITS, CONDITIONS
 from isa_ros.fieldbus.device.abort import OUT_OF_RANGE, SdoAbort
-from isa_ros.fieldbus.device.cia408_states import Event, State408, TRANSITIONS
+from isa_ros.fieldbus.device.cia408_states import Event408, State408, TRANSITIONS
 from isa_ros.fieldbus.device.devices import devices_of
 from isa_ros.fieldbus.device.faults import BUS_LOST
 import pytest
@@ -67,7 +67,7 @@ def test_control_words_lead_through_the_states(rig, words, states):
 
 def test_every_state_and_event_is_in_the_table():
     assert {row.state for row in TRANSITIONS} == set(State408)
-    assert {row.event for row in TRANSITIONS} == set(Event)
+    assert {row.event for row in TRANSITIONS} == set(Event408)
     assert {row.number for row in TRANSITIONS} == {'', *map(str, range(1, 17))}
 
 
