@@ -121,9 +121,10 @@ def _control(
 
 def _node(process: Process, own: str, claim: Claim) -> Node:
     is_coordinator = process.executable == 'coordinator'
+    namespace, name = process.placed(own)
     return Node(
-        package='isa_ros', executable=process.executable, name=process.name,
-        namespace=own, output='screen', additional_env={CLAIMED_BY: str(os.getpid())},
+        package='isa_ros', executable=process.executable, name=name,
+        namespace=namespace, output='screen', additional_env={CLAIMED_BY: str(os.getpid())},
         parameters=[{
             key: ParameterValue(list(value), value_type=list[str])
             if isinstance(value, (list, tuple)) else ParameterValue(value, value_type=type(value))

@@ -12,7 +12,8 @@ from isa_ros.config.models.catalogue import (
 from isa_ros.config.models.wires import wire
 from isa_ros.config.paths import CONFIG, find
 from isa_ros.config.runs.model_run import full_key, model_run
-from isa_ros.config.runs.run_config import Origins, RUN, run_of, RunConfig
+from isa_ros.config.runs.robots import run_with_robots
+from isa_ros.config.runs.run_config import Origins, RUN, RunConfig
 from isa_ros.config.text.changes import changed, Values
 from isa_ros.config.text.keys import Leaf
 from isa_ros.config.text.parameter_sets import build, build_one_of, kind_of, members
@@ -93,7 +94,7 @@ def _described(tree: Tree, place: Place, values: Values) -> str:
     names = list(section_at(tree.get('actuators', {}), place / 'actuators'))
     if len(names) == 1:
         values = {full_key(key, names[0]): value for key, value in values.items()}
-    run, origins = run_of(changed(tree, values, place.file), place)
+    run, origins = run_with_robots(changed(tree, values, place.file), place)
     return '\n\n'.join(_run_tables(run, origins, tuple(values)))
 
 

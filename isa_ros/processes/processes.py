@@ -11,6 +11,7 @@ import sys
 import time
 
 from isa_ros.config.runs.run_config import RunConfig
+from isa_ros.config.text.names import parted, placed
 from isa_ros.errors import RunError
 from isa_ros.processes.forked import can_fork, Forked
 from isa_ros.processes.stopping import PARENT_VARIABLE
@@ -39,11 +40,16 @@ class Process:
     executable: str
     parameters: tuple[tuple[str, ParameterValue], ...]
 
+    def placed(self, namespace: str) -> tuple[str, str]:
+        """Return namespace and name of the node of a run in a namespace, without a slash at it."""
+        return parted(placed(namespace.strip('/'), self.name))
+
     def ros_arguments(self, namespace: str = '') -> list[str]:
         """Return the arguments that set name, namespace and parameters."""
-        arguments = ['--ros-args', '-r', f'__node:={self.name}']
-        if namespace:
-            arguments += ['-r', f'__ns:=/{namespace.strip("/")}']
+        above, name = self.placed(namespace)
+        arguments = ['--ros-args', '-r', f'__node:={name}']
+        if above:
+            arguments += ['-r', f'__ns:=/{above}']
         for key, value in self.parameters:
             arguments += ['-p', f'{key}:={json.dumps(value)}']
         return arguments

@@ -37,7 +37,6 @@ _APPLIED = ('is_enabled', 'position', 'velocity', 'effort', 'stiffness', 'dampin
 _PRESSURES = ('pressure_a', 'pressure_b')
 _FIRST_PRESSURE = _SAMPLE.index(_PRESSURES[0])
 _SUPPLY_PRESSURES = ('pressure', 'return_pressure')
-_COORDINATOR = '/coordinator'
 
 
 class Names(NamedTuple):
@@ -131,7 +130,7 @@ class Packer:
                           f'/{name}', name in names.heated, row in self._links.rows)]
         for supply, shows_return in names.supplies:
             for k, suffix in enumerate(_SUPPLY_PRESSURES[:1 + shows_return]):
-                topic = Topic(f'{_COORDINATOR}/{supply}_{suffix}', PRESSURE_TYPE)
+                topic = Topic(coordinator_messages.supply_topic(supply, suffix), PRESSURE_TYPE)
                 found.append((topic, fluid_pressure(
                     coordinator_messages.WORLD_FRAME, at + k)))
             at += len(_SUPPLY_PRESSURES)

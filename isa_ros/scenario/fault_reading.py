@@ -49,8 +49,8 @@ from isa_ros.surroundings.surroundings import EMERGENCY_STOP, OPEN
 LINK = 'link'
 """Of an actuator: ``link: kfe, set: {loss: 0.1}`` is ``actuator: kfe, set: {link.loss: 0.1}``."""
 _OF_LINK = f'{LINK}.'
-_TARGETS = (*KINDS, LINK, BUS, EMERGENCY_STOP)
-_KEYS = ('t_s', *_TARGETS, 'fault', 'set', 'until_s', RAMP, INTERMITTENT, *WAVEFORMS)
+TARGETS = (*KINDS, LINK, BUS, EMERGENCY_STOP)
+_KEYS = ('t_s', *TARGETS, 'fault', 'set', 'until_s', RAMP, INTERMITTENT, *WAVEFORMS)
 _COURSE = {'period_s': ('time from one begin to the next', 's', {'gt': 0.0, 'le': MAX_DURATION}),
            'duty': ('part of the time in which it is on', '1', {'gt': 0.0, 'lt': 1.0})}
 
@@ -205,10 +205,10 @@ def _wave(
 
 
 def _target(tree: Tree, place: Place) -> tuple[str, str]:
-    given = [name for name in _TARGETS if name in tree]
+    given = [name for name in TARGETS if name in tree]
     if len(given) != 1:
         raise ConfigError(place.has(
-            f'has {" and ".join(given) or "no target"}, must have one of {", ".join(_TARGETS)}'))
+            f'has {" and ".join(given) or "no target"}, must have one of {", ".join(TARGETS)}'))
     return given[0], str(tree[given[0]])
 
 

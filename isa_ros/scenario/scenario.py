@@ -30,6 +30,7 @@ from isa_ros.errors import ConfigError
 from isa_ros.scenario.fault_reading import read_faults, refuse_changes
 from isa_ros.scenario.faults import BUS, Fault, ParameterChanges, timetable
 from isa_ros.scenario.range_check import ACCEPT, within_range
+from isa_ros.scenario.robots import with_robots
 from isa_ros.scenario.setpoints import MAX_DURATION, read_track
 from isa_ros.scenario.track import event_tree, Track
 import numpy as np
@@ -177,7 +178,7 @@ def load_scenario(path: Path | str, run: RunConfig) -> Scenario:
 
     """
     path = Path(path)
-    return read_scenario(read(path), Place(path.name), run)
+    return read_scenario(read(path), Place.of(path), run)
 
 
 def planned(path: Path | None, run: RunConfig, changes: Changes) -> Scenario:
@@ -192,7 +193,7 @@ def planned(path: Path | None, run: RunConfig, changes: Changes) -> Scenario:
     """
     if path is not None:
         return read_scenario(
-            changed(read(path), changes.scenario, path.name), Place(path.name), run)
+            changed(read(path), changes.scenario, path.name), Place.of(path), run)
     for key in changes.scenario:
         raise ConfigError(f'--set {SCENARIO}{key} is not used: the run has no scenario')
     return idle(run)
@@ -205,6 +206,7 @@ def scenario_of(text: str, run: RunConfig, name: str = 'scenario.yaml') -> Scena
 
 def read_scenario(tree: Tree, place: Place, run: RunConfig) -> Scenario:
     """Return the scenario of a file's tree; as `load_scenario`."""
+    tree = with_robots(tree, place)
     refuse_unknown(
         tree, ('name', 'figure', 'duration_s', BEYOND, 'leg', 'bodies', 'loads', CONTROLLERS,
                'tracks', 'faults', 'changes'), place)

@@ -10,6 +10,7 @@ from dataclasses import fields
 from typing import Any
 
 from isa_ros.actuator.setpoint_range import NUMBERS
+from isa_ros.config.runs.leg_config import LegConfig
 from isa_ros.config.runs.run_config import ActuatorConfig, RunConfig
 from isa_ros.config.runs.tick_grid import ticks_in
 from isa_ros.config.text.parameter_sets import build, of_axis
@@ -116,7 +117,9 @@ def _motion(tree: Tree, place: Place, run: RunConfig, actuator: ActuatorConfig,
         raise ConfigError(
             f'{below} is not used: it moves the position, which the setpoint does not have')
     if given[0] == GAIT:
-        return read_gait(section, below, actuator, run.leg, setpoint.position)
+        body = run.body_of(actuator.name)
+        return read_gait(section, below, actuator, body if isinstance(body, LegConfig) else None,
+                         setpoint.position)
     refuse_amplitude(section, str(below), actuator.sheet.is_rotary)
     with_default: Tree = {MOVES: POSITION}
     with_default |= section

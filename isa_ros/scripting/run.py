@@ -11,7 +11,8 @@ import warnings
 from isa_ros.config.paths import CONFIG, find, SCENARIOS
 from isa_ros.config.runs.body_config import BodyFactory
 from isa_ros.config.runs.external_config import imported_factory
-from isa_ros.config.runs.run_config import run_of, RunConfig
+from isa_ros.config.runs.robots import run_with_robots
+from isa_ros.config.runs.run_config import RunConfig
 from isa_ros.config.text.changes import replaced, SCENARIO
 from isa_ros.config.text.sections import Place
 from isa_ros.config.text.yaml_text import read, Tree
@@ -60,7 +61,7 @@ class Run:
         self._config, self._scenario_file = config, scenario
         self._options: dict[str, Any] = {
             'duration': duration, 'compression': compression, 'split_mb': split_mb}
-        run = run_of(config.tree, config.place)[0].stored(
+        run = run_with_robots(config.tree, config.place)[0].stored(
             compression, split_mb, 'record options')
         plan = idle(run) if scenario is None else read_scenario(
             scenario.tree, scenario.place, run)

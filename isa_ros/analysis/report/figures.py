@@ -1,8 +1,10 @@
-"""Figures of a run: one for each actuator, one for the leg."""
+"""Figures of a run: one for each actuator, one for each leg."""
 
 from collections.abc import Sequence
 
 from isa_ros.analysis.signals.signals import Signal, Signals
+from isa_ros.config.runs.body_config import BODY
+from isa_ros.config.runs.leg_config import LegConfig
 from isa_ros.config.runs.run_config import ActuatorConfig
 from isa_ros.core.units import MPA
 from isa_ros.run.events import Event, TRIP
@@ -18,14 +20,14 @@ _OF_LEG = ('position', 'torque', 'foot_force')
 
 def figures(signals: Signals, events: Sequence[Event] = ()) -> dict[str, Figure]:
     """
-    Return the figures of a run by name: the leg first, then every actuator.
+    Return the figures of a run by name: the legs first, then every actuator.
 
     A line at each trip of an actuator among ``events`` is drawn in its figure.
     """
     drawn = {}
-    if signals.run.leg is not None and (
-            not signals.problem or {f'body.{name}' for name in _OF_LEG} <= set(signals)):
-        drawn['leg'] = leg_figure(signals)
+    for leg in signals.run.legs:
+        if not signals.problem or {f'{leg.name}.{name}' for name in _OF_LEG} <= set(signals):
+            drawn[leg.kind if leg.name == BODY else leg.name] = leg_figure(leg, signals)
     for actuator in signals.run.actuators:
         drawn[actuator.name] = actuator_figure(actuator, signals)
         _mark(drawn[actuator.name], [
@@ -70,11 +72,11 @@ def actuator_figure(actuator: ActuatorConfig, signals: Signals) -> Figure:
     return finish(figure, (position, force, pressure, valve))
 
 
-def leg_figure(signals: Signals) -> Figure:
+def leg_figure(leg: LegConfig, signals: Signals) -> Figure:
     """Draw joint angles, joint torques and the ground's force on the foot over time."""
-    figure, (angle, torque, contact) = stack(3, 'leg', 6.6)
+    figure, (angle, torque, contact) = stack(3, leg.called.removeprefix('the '), 6.6)
     angles, torques, ground = (
-        signals.over_time(f'body.{name}') for name in _OF_LEG)
+        signals.over_time(f'{leg.name}.{name}') for name in _OF_LEG)
     for k, name in enumerate(('HAA', 'HFE', 'KFE')):
         angle.plot(angles.t, np.degrees(angles.values[:, k]), label=name)
         torque.plot(torques.t, torques.values[:, k], label=name)

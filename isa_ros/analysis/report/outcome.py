@@ -25,11 +25,11 @@ def settling_time(t: np.ndarray, x: np.ndarray) -> float | None:
 
 
 def outcome(signals: Signals) -> str:
-    """Return a line for each actuator, and one for the ground's force."""
+    """Return a line for each actuator, and one for each ground's force."""
     lines = aligned([_HEADER, *(_row(signals, own) for own in signals.run.actuators)], 'lrrlrlrrr')
-    if signals.run.leg is not None:
-        ground = signals['body.foot_force'][:, 2]
-        lines.append(f'ground: at most {digits(float(ground.max()), 3)} N, '
+    for leg in signals.run.legs:
+        ground = signals[f'{leg.name}.foot_force'][:, 2]
+        lines.append(f'{leg.prefix}ground: at most {digits(float(ground.max()), 3)} N, '
                      f't = {float(signals.time[int(ground.argmax())]):.3f} s')
     lines.append('settled: within 2 % of the motion; pressure: gauge; oil: drawn from the supply')
     return '\n'.join(lines)

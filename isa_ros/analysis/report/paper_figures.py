@@ -67,8 +67,8 @@ def paper_figure(name: str, signals: Signals) -> Figure:
 
 
 def shown(run: RunConfig) -> ActuatorConfig:
-    """Return the actuator that a figure shows: the knee, or the first one."""
-    joints = dict(run.leg.joints) if run.leg is not None else {}
+    """Return the actuator that a figure shows: the knee of the first leg, or the first one."""
+    joints = dict(run.legs[0].joints) if run.legs else {}
     return run.actuator(joints[KNEE]) if KNEE in joints else run.actuators[0]
 
 

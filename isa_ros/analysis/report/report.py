@@ -13,6 +13,7 @@ from isa_ros.analysis.report.paper_figures import paper_figure
 from isa_ros.analysis.signals.signals import read_signals, Signals
 from isa_ros.bag.provenance import SCENARIO
 from isa_ros.bag.reader import Bag
+from isa_ros.config.text.names import flat
 from isa_ros.config.text.sections import Place
 from isa_ros.config.text.yaml_text import parse
 from isa_ros.core.atomic_file import replace_file
@@ -58,7 +59,7 @@ def write_report(bag: Path, page: Path) -> list[Path]:
         parse(Bag(bag).provenance.scenario, SCENARIO), Place(SCENARIO))
     if name_of_paper is not None:
         drawn = {name_of_paper: paper_figure(name_of_paper, signals)} | drawn
-    paths = {name: page.with_name(f'{page.stem}_{name}.png') for name in drawn}
+    paths = {name: page.with_name(f'{page.stem}_{flat(name)}.png') for name in drawn}
     _refuse_foreign(paths, page)
     for name, figure in drawn.items():
         replace_file(paths[name], drawing := png(figure), is_durable=False)
@@ -96,7 +97,7 @@ def _refuse_others(page: Path) -> None:
 
 
 def extremes(signals: Signals) -> list[tuple[str, float, float, str]]:
-    """Return (signal, least, greatest, unit) of every actuator, and of the ground's force."""
+    """Return (signal, least, greatest, unit) of every actuator and ground's force."""
     values = []
     for actuator in signals.run.actuators:
         name = actuator.name
@@ -106,9 +107,10 @@ def extremes(signals: Signals) -> list[tuple[str, float, float, str]]:
                   for field in ('position', 'force')),
                 ('pressure', np.concatenate(pressures), 'MPa gauge')):
             values.append((f'{name} {signal}', float(series.min()), float(series.max()), unit))
-    if signals.run.leg is not None:
-        ground = signals['body.foot_force'][:, 2]
-        values.append(('ground force', float(ground.min()), float(ground.max()), 'N'))
+    for leg in signals.run.legs:
+        ground = signals[f'{leg.name}.foot_force'][:, 2]
+        values.append((
+            f'{leg.prefix}ground force', float(ground.min()), float(ground.max()), 'N'))
     return values
 
 

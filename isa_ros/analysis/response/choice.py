@@ -12,7 +12,8 @@ from typing import Any, NamedTuple
 from isa_ros.config.models.catalogue import model_names
 from isa_ros.config.paths import CONFIG, find
 from isa_ros.config.runs.model_run import full_key, LOAD, model_run
-from isa_ros.config.runs.run_config import run_of, RunConfig
+from isa_ros.config.runs.robots import run_with_robots
+from isa_ros.config.runs.run_config import RunConfig
 from isa_ros.config.text.changes import changed
 from isa_ros.config.text.sections import Place
 from isa_ros.config.text.yaml_text import read, Tree
@@ -67,7 +68,7 @@ def chosen(choice: Choice) -> Chosen:
         tree, place, name = _of_model(choice), Place(choice.name), choice.name
     else:
         tree, place = _of_file(choice)
-        name = _actuator(run_of(tree, place)[0], choice)
+        name = _actuator(run_with_robots(tree, place)[0], choice)
     values, load_values = {}, {}
     for key, value in choice.values.items():
         head, _, rest = key.partition('.')
@@ -76,7 +77,7 @@ def chosen(choice: Choice) -> Chosen:
         else:
             values[full_key(key, name)] = value
     tree = changed(tree, values, place.file)
-    return Chosen(tree, place, run_of(tree, place)[0], name, load_values)
+    return Chosen(tree, place, run_with_robots(tree, place)[0], name, load_values)
 
 
 def _of_model(choice: Choice) -> Tree:

@@ -17,6 +17,7 @@ from isa_ros.errors import BagError, ConfigError
 from isa_ros.run.body_messages import by_field
 from isa_ros.scripting.result import Result
 from isa_ros.surroundings.supply import SUPPLY_FIELDS
+from msg_adapters.coordinator_messages import supply_topic
 import numpy as np
 from numpy.typing import NDArray
 
@@ -145,7 +146,7 @@ def _named(run: RunConfig, traces: Mapping[str, Trace]) -> Iterator[tuple[str, S
                 yield f'{actuator.name}.{name}', _signal(trace, path)
     for supply in run.supplies:
         for name in _SUPPLY:
-            trace = traces.get(f'/coordinator/{supply.name}_{name}')
+            trace = traces.get(supply_topic(supply.name, name))
             if trace is not None:
                 yield f'{supply.name}.{name}', _signal(trace, 'fluid_pressure')
     for body in run.bodies:

@@ -45,7 +45,7 @@ GROUP = KeyTable((
         'disable, block', ['disable', 'block']),
     Key('dumps', choice_of((AT_REST, AT_ONCE, NEVER)),
         'when the dump valves of the supplies that feed them open', AT_REST)))
-GROUPS = Named(GROUP)
+GROUPS = Named(GROUP, are_placed=True)
 
 
 def emergency_stops_of(

@@ -11,6 +11,7 @@ from weakref import WeakSet
 from isa_ros.actuator.config import ActuatorConfig
 from isa_ros.config.runs.body_config import BODY, BodyConfig, BodyFactory, Made
 from isa_ros.config.text.keys import Key, KeyTable, NAMES, TEXT
+from isa_ros.config.text.names import parted
 from isa_ros.config.text.sections import Place, Section
 from isa_ros.core.fields import Field
 from isa_ros.core.signals import START
@@ -57,8 +58,11 @@ class ExternalConfig(BodyConfig):
         if maker is not None and not is_path(maker):
             raise ConfigError(
                 f'{place / "class"} = {maker!r}, must be module:factory, as crane:crane')
-        return cls(
-            name=name, joints=tuple((own, own) for own in actuators), maker=maker), {}
+        joints = tuple((parted(own)[1], own) for own in actuators)
+        if len(dict(joints)) < len(joints) and len(set(actuators)) == len(actuators):
+            raise ConfigError(f'{place / "actuators"} = {", ".join(actuators)}: two have the same '
+                              'name in their namespaces, which the columns of a body do not have')
+        return cls(name=name, joints=joints, maker=maker), {}
 
     @property
     def called(self) -> str:
@@ -97,7 +101,7 @@ class ExternalConfig(BodyConfig):
             self.refuse_absent()
             factory = self._imported()
         mounting = Mounting(
-            [actuator for _, actuator in self.joints], np.array(made.rows, np.int64),
+            [joint for joint, _ in self.joints], np.array(made.rows, np.int64),
             np.array([own.initial_position for own in made.actuators]),
             [own.sheet.is_rotary for own in made.actuators], made.step_ns / NS_PER_SECOND,
             made.seed)

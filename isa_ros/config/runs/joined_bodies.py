@@ -7,7 +7,7 @@ from isa_ros.config.runs.body_config import BODY, BodyConfig
 from isa_ros.config.runs.body_kinds import BODY_KINDS
 from isa_ros.config.runs.leg_config import LegConfig
 from isa_ros.config.runs.supplies import SUPPLY
-from isa_ros.config.text.names import COORDINATOR
+from isa_ros.config.text.names import COORDINATOR, flat
 from isa_ros.config.text.sections import Place, Section
 from isa_ros.core.suggest import alternatives
 from isa_ros.errors import ConfigError
@@ -49,6 +49,13 @@ def _refuse_shared_names(values: dict[str, Any], place: Place) -> None:
             raise ConfigError(
                 f'{place / "actuators" / name}: the name {name!r} is taken by {others[name]}; '
                 'columns and topics have these names')
+    flat_names: dict[str, str] = {}
+    for name in (*values['actuators'], *others, *(values['bodies'] or ())):
+        other = flat_names.setdefault(flat(name), name)
+        if other != name:
+            raise ConfigError(
+                f'{place}: the names {other!r} and {name!r} must differ in more than the '
+                'slash, which names of files do not have')
 
 
 def moved_by(

@@ -12,7 +12,7 @@ from isa_ros.config.runs.body_config import BODY, BodyConfig, Made
 from isa_ros.config.runs.coarse_ticks import coarse_ticks
 from isa_ros.config.runs.tick_grid import ticks_in
 from isa_ros.config.text.keys import (
-    ANY_NAME, InText, Key, KeyTable, Layer, NAME, Named, of_type, ParameterSet)
+    ANY_NAME, InText, Key, KeyTable, Layer, Named, of_type, ParameterSet, PLACED_NAME)
 from isa_ros.config.text.parameter_sets import build
 from isa_ros.config.text.sections import merge, Place, Section, section_at, SourcedValue, written
 from isa_ros.config.text.yaml_text import Tree
@@ -87,7 +87,7 @@ class LegConfig(BodyConfig):
     KEYS: ClassVar[KeyTable] = KeyTable((
         Key('model', ANY_NAME, 'the packaged leg', None, 'required', InText.ALWAYS),
         Key('joints', KeyTable(tuple(
-            Key(joint, NAME, f'the actuator that moves {joint}') for joint in JOINTS)),
+            Key(joint, PLACED_NAME, f'the actuator that moves {joint}') for joint in JOINTS)),
             'the actuator of each joint', of=lambda leg: dict(leg.joints)),
         Key('ground', ANY_NAME, 'the material under the foot', None, 'of the model',
             in_text=InText.NEVER),

@@ -36,6 +36,8 @@ __all__ = ['ActuatorConfig', 'ALL', 'COORDINATOR', 'LegConfig', 'RUN', 'RunConfi
 
 ALL = 'all'
 """Stands for every actuator of a run."""
+ROBOTS = 'robots'
+"""Key of the robots of a run file, which `isa_ros.config.runs.robots` resolves."""
 
 
 @dataclass(frozen=True)
@@ -74,10 +76,14 @@ class RunConfig:
         return self.start_time_s * NS_PER_SECOND
 
     @property
+    def legs(self) -> tuple[LegConfig, ...]:
+        """Return the legs of the run."""
+        return tuple(own for own in self.bodies if isinstance(own, LegConfig))
+
+    @property
     def leg(self) -> LegConfig | None:
         """Return the leg of the run; None without one, or with several."""
-        legs = [own for own in self.bodies if isinstance(own, LegConfig)]
-        return legs[0] if len(legs) == 1 else None
+        return self.legs[0] if len(self.legs) == 1 else None
 
     def body(self, name: str) -> BodyConfig | None:
         """Return the body of a name; None: the run has none."""
@@ -224,6 +230,11 @@ def _only(run: RunConfig) -> BodyConfig | None:
     return run.body(BODY) if len(run.bodies) == 1 else None
 
 
+def refuse_nested(value: Any, place: Place) -> Any:
+    """Refuse robots in the file of a robot; raises `ConfigError`."""
+    raise ConfigError(f'{place} is not used here: a robot has no robots of its own')
+
+
 _BODY = OneOf({name: kind.KEYS for name, kind in BODY_KINDS.items()})
 
 _STEP = number('step_ms', 'ms', 'macro step H', 1.0, in_text=InText.NEVER, gt=0.0, le=100.0)
@@ -247,19 +258,22 @@ RUN = KeyTable((
     ACCEPT, START_TIME,
     Key(SUPPLY, ParameterSet(SupplySheet), 'the supply of all actuators', None,
         'required, or `supplies`', InText.NEVER),
-    Key('supplies', Named(SUPPLY_KEYS), 'several supplies, instead of `supply`', None,
-        in_text=InText.ALWAYS, instead_of=(SUPPLY,)),
+    Key('supplies', Named(SUPPLY_KEYS, are_placed=True), 'several supplies, instead of `supply`',
+        None, in_text=InText.ALWAYS, instead_of=(SUPPLY,)),
     Key('record', RECORD, 'what is recorded', {}, 'everything'),
     Key(LINK, Layer(LinkSheet), 'the link of all actuators', {}, in_text=InText.NEVER),
-    Key('actuators', Named(ACTUATOR), 'the actuators by name; records have their order'),
+    Key('actuators', Named(ACTUATOR, are_placed=True),
+        'the actuators by name; records have their order'),
     Key(EMERGENCY_STOPS, GROUPS, 'groups of actuators that stop together, by name', None,
         'all, by request alone', of=lambda run: run.emergency_stops or None),
     Key(CONTROLLERS, Controllers(), 'nodes, besides the actuators, that every tick waits for; or '
         'by name sections with a `class` that the run makes and calls', [],
         of=lambda run: NamedControllers(run.controllers, run.called)),
+    Key(ROBOTS, Value('sections by name', refuse_nested),
+        'several robots by name, each from a run file of its own', None, in_text=InText.NEVER),
     Key('leg', LegConfig.KEYS, 'a body of the kind leg', None, in_text=InText.NEVER),
     Key(BODY, _BODY, 'what several actuators move together', None, of=_only),
-    Key('bodies', Named(_BODY), 'several bodies by name, instead of `body`', None,
+    Key('bodies', Named(_BODY, are_placed=True), 'several bodies by name, instead of `body`', None,
         instead_of=('leg', BODY),
         of=lambda run: run.bodies if run.bodies and _only(run) is None else None)))
 """Every key of a run file, and of a resolved text."""

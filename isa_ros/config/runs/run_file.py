@@ -6,7 +6,8 @@ Every error is one line with file, key, value, unit and bound.
 
 from pathlib import Path
 
-from isa_ros.config.runs.run_config import run_of, RunConfig
+from isa_ros.config.runs.robots import run_with_robots
+from isa_ros.config.runs.run_config import RunConfig
 from isa_ros.config.text.changes import changed, Values
 from isa_ros.config.text.sections import Place
 from isa_ros.config.text.yaml_text import read
@@ -23,4 +24,4 @@ def load_run(path: Path | str, changes: Values | None = None) -> RunConfig:
 
     """
     path = Path(path)
-    return run_of(changed(read(path), changes or {}, path.name), Place.of(path))[0]
+    return run_with_robots(changed(read(path), changes or {}, path.name), Place.of(path))[0]

@@ -91,9 +91,11 @@ def of_type(value: Any, type_: type, place: Place) -> Any:
     return value
 
 
-def _name(value: Any, place: Place) -> Any:
-    refuse_bad_name(value, str(place))
-    return value
+def _named(is_placed: bool) -> Callable[[Any, Place], Any]:
+    def checked(value: Any, place: Place) -> Any:
+        refuse_bad_name(value, str(place), is_placed=is_placed)
+        return value
+    return checked
 
 
 def choice_of(names: Sequence[str]) -> Value:
@@ -106,7 +108,9 @@ def choice_of(names: Sequence[str]) -> Value:
 
 ANY_NAME = Value('name', lambda value, place: value)
 """A name that is checked with the data that it names."""
-NAME = Value('name', _name)
+NAME = Value('name', _named(is_placed=False))
+PLACED_NAME = Value('name', _named(is_placed=True))
+"""A name that may begin with a namespace and a slash."""
 NAMES = Value('list of names', lambda value, place: tuple(names_at(value, place)))
 TEXT = Value('text', lambda value, place: of_type(value, str, place))
 FLAG = Value('true or false', lambda value, place: of_type(value, bool, place))
@@ -334,6 +338,8 @@ class Named(ValueKind):
     """Sections by name, each of a configuration that has its name as a field."""
 
     section: ValueKind
+    are_placed: bool = False
+    """Whether the names may begin with a namespace and a slash."""
     words = 'sections by name'
 
     def tree(self, value: Sequence[Any]) -> Tree:
@@ -344,7 +350,7 @@ class Named(ValueKind):
         """Return the values by name; as `ValueKind.read`."""
         values = {}
         for name, below in section_at(tree, place).items():
-            refuse_bad_name(name, f'{place / name}: the name')
+            refuse_bad_name(name, f'{place / name}: the name', is_placed=self.are_placed)
             values[name] = self.section.read(below, place / name)
         return values
 

@@ -171,6 +171,17 @@ def merge(base: Section, over: Section) -> Section:
     return merged
 
 
+def overlaid(base: Tree, over: Tree) -> Tree:
+    """Return the tree of a file with other values; as `merge`, of values as they are written."""
+    found = dict(base)
+    for key, value in over.items():
+        below = found.get(key)
+        is_same = isinstance(value, dict) and isinstance(below, dict) and not any(
+            kind in value and value[kind] != below.get(kind) for kind in KIND_KEYS)
+        found[key] = overlaid(below, value) if is_same else value  # type: ignore[arg-type]
+    return found
+
+
 def entry_at(section: Section, key: str) -> SourcedValue | Section | None:
     """Return the value or section at a dotted key, None where there is none."""
     entry: SourcedValue | Section | None = section

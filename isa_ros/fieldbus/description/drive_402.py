@@ -2,6 +2,7 @@
 
 from typing import NamedTuple
 
+from isa_ros.config.text.names import flat
 from isa_ros.errors import ConfigError
 from isa_ros.fieldbus.device.bus_device import BusDevice
 from isa_ros.fieldbus.device.cia402_objects import (
@@ -21,6 +22,11 @@ class DescribedDrive(NamedTuple):
     position: ObjectEntry
     velocity: ObjectEntry
     torque: ObjectEntry
+
+    @property
+    def name(self) -> str:
+        """Return the name of its driver, its joint and its file, which have no slash."""
+        return flat(self.device.name)
 
     @property
     def positions(self) -> tuple[float, float]:

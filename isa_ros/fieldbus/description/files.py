@@ -3,6 +3,7 @@
 from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
 
+from isa_ros.config.text.names import flat
 from isa_ros.fieldbus.description.eds import eds_text
 from isa_ros.fieldbus.description.esi import esi_text
 from isa_ros.fieldbus.description.object_page import table_lines
@@ -25,7 +26,7 @@ def described(
         found[esi] = esi_text(devices)
     if eds is not None:
         for device in devices:
-            own = eds if len(devices) == 1 else eds.with_stem(f'{eds.stem}_{device.name}')
+            own = eds if len(devices) == 1 else eds.with_stem(f'{eds.stem}_{flat(device.name)}')
             found[own] = eds_text(device)
     return found
 

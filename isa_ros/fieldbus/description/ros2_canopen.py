@@ -44,7 +44,7 @@ def ros2_canopen_files(
     planned_line(devices, step_ns, default_bitrate(), FIRST_NODE)
     place = directory.resolve()
     return {
-        **{directory / f'{device.name}.eds': eds_text(device) for device in devices},
+        **{directory / f'{drive.name}.eds': eds_text(drive.device) for drive in drives},
         directory / 'bus.yml': '\n'.join(_bus(drives, step_ns, place)) + '\n',
         directory / 'ros2_control.urdf.xacro': '\n'.join(_tag(drives, place)) + '\n'}
 
@@ -60,7 +60,7 @@ def _bus(drives: Sequence[DescribedDrive], step_ns: int, place: Path) -> Iterato
     yield '  package: "canopen_master_driver"'
     yield f'  sync_period: {step_ns // _NS_PER_US}  # us'
     for node, drive in enumerate(drives, FIRST_NODE):
-        name = drive.device.name
+        name = drive.name
         position, velocity, torque = drive.position, drive.velocity, drive.torque
         yield ''
         yield f'{name}:'
@@ -90,7 +90,7 @@ def _tag(drives: Sequence[DescribedDrive], place: Path) -> Iterator[str]:
     yield f'      <param name="master_bin">{place}/master.bin</param>'
     yield '    </hardware>'
     for node, drive in enumerate(drives, FIRST_NODE):
-        yield f'    <joint name="{drive.device.name}">'
+        yield f'    <joint name="{drive.name}">'
         yield f'      <param name="node_id">{node}</param>'
         yield '    </joint>'
     yield '  </ros2_control>'

@@ -47,7 +47,7 @@ def ros2_control_files(
 
     """
     drives = [drive_of(device) for device in devices]
-    found = {directory / f'{one.device.name}.yaml': '\n'.join(_slave(one)) + '\n'
+    found = {directory / f'{one.name}.yaml': '\n'.join(_slave(one)) + '\n'
              for one in drives}
     tag = '\n'.join(_tag(drives, step_ns, directory)) + '\n'
     return {**found, directory / 'ros2_control.urdf.xacro': tag}
@@ -126,7 +126,7 @@ def _tag(drives: Sequence[DescribedDrive], step_ns: int, directory: Path) -> Ite
     yield f'      <param name="control_frequency">{NS_PER_SECOND / step_ns:.12g}</param>'
     yield '    </hardware>'
     for place, drive in enumerate(drives):
-        name = drive.device.name
+        name = drive.name
         low, high = map(number, drive.positions)
         yield f'    <joint name="{name}">'
         for state in STATES.values():

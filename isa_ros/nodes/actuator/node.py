@@ -44,7 +44,7 @@ class NodeSetup(NamedTuple):
 
 class ActuatorNode(Node):
     """
-    One actuator on ROS topics; the node's name is the actuator's.
+    One actuator on ROS topics; the node's name is the actuator's, without its namespace.
 
     It contains neither physics nor clock: a `ParticipantEnd`, an `InProcess` transport or the
     loop of `run_alone` advances its `actuator`. Setpoints, parameters and requests that
@@ -140,7 +140,7 @@ class ActuatorNode(Node):
         if not self._acceptance.takes_setpoint():
             return
         try:
-            command = msg_to_command(message, self.get_name())
+            command = msg_to_command(message, self.setup.config.name)
             limited = self.actuator.admit(command)
         except SetpointError as error:
             self.get_logger().warning(
@@ -174,5 +174,5 @@ class ActuatorNode(Node):
             response.success, response.message = False, self._acceptance.reason
             return
         command = np.zeros(1, COMMAND)[0]
-        fill_command(self.get_name(), request, command)
+        fill_command(self.setup.config.name, request, command)
         response.success, response.message = self.actuator.request(command, what)

@@ -12,6 +12,7 @@ from isa_ros.config.runs.default_actuator import default_actuator, default_load,
 from isa_ros.config.runs.run_config import RunConfig
 from isa_ros.config.runs.run_file import load_run
 from isa_ros.config.text.changes import changes_of
+from isa_ros.config.text.names import placed
 from isa_ros.errors import ConfigError
 from isa_ros.nodes.actuator.alone import run_alone
 from isa_ros.nodes.actuator.node import ActuatorNode, NodeSetup
@@ -62,8 +63,8 @@ def _run(model: str, should_stop: StopRequest) -> None:
     try:
         gc.freeze()  # garbage collection of the loaded objects would delay a tick by 60 ms
         if _boolean(node, 'lockstep'):
-            refuse_off(node.get_name())
-            ParticipantEnd(node, ActuatorRole(node)).spin(should_stop)
+            refuse_off(node.setup.config.name)
+            ParticipantEnd(node, ActuatorRole(node), node.setup.config.name).spin(should_stop)
         else:
             claim = Claim(node.get_namespace(), node.get_name())
             try:
@@ -94,7 +95,7 @@ def _resolve(node: Node, model: str) -> NodeSetup:
         run = load_run(find(path, CONFIG), changes.run)
         scenario = _text(node, 'scenario_file')
         run = planned(find(scenario, SCENARIOS) if scenario else None, run, changes).run
-        return _from_run(run, node.get_name(), chosen, _boolean(node, 'lockstep'))
+        return _from_run(run, _name_in(run, node), chosen, _boolean(node, 'lockstep'))
     if _boolean(node, 'lockstep'):
         raise ConfigError(f'{node.get_name()}: lockstep needs the parameter config_file')
     if not chosen:
@@ -103,6 +104,13 @@ def _resolve(node: Node, model: str) -> NodeSetup:
             f'{node.get_name()}: set the parameter model, one of {", ".join(model_names())}, or '
             'config_file')
     return NodeSetup(default_actuator(chosen, node.get_name()), DEFAULT_TIMING)
+
+
+def _name_in(run: RunConfig, node: Node) -> str:
+    """Return the name of a node in a run, with its namespace if that is a robot's."""
+    name: str = node.get_name()
+    robot = placed(node.get_namespace().rpartition('/')[2], name)
+    return robot if any(own.name == robot for own in run.actuators) else name
 
 
 def _from_run(run: RunConfig, name: str, model: str, in_lockstep: bool) -> NodeSetup:

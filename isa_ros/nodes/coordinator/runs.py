@@ -6,6 +6,7 @@ import gc
 
 from isa_ros.actuator.actuator import participant_digest
 from isa_ros.config.assembly import group_of, surroundings_of, timing_of
+from isa_ros.config.text.names import parted, placed
 from isa_ros.nodes.actuator.node import ActuatorNode, NodeSetup
 from isa_ros.nodes.actuator.process import run
 from isa_ros.nodes.coordinator.joint_commands import JointCommands
@@ -160,10 +161,12 @@ def coordinate_locally(
     _freeze_objects(session)
     group = group_of(session.run)
     timing = timing_of(session.run)
-    actuators = [
-        ActuatorNode(_resolver(NodeSetup(config, timing, actuator, session.run.accept)),
-                     config.name, has_mailbox=False, namespace=session.request.namespace, **_QUIET)
-        for config, actuator in zip(configs, group.actuators)]
+    actuators = []
+    for config, actuator in zip(configs, group.actuators):
+        namespace, name = parted(placed(session.request.namespace, config.name))
+        actuators.append(ActuatorNode(
+            _resolver(NodeSetup(config, timing, actuator, session.run.accept)), name,
+            has_mailbox=False, namespace=namespace, **_QUIET))
     controllers = None
     try:
         look_for_other_coordinator(node)

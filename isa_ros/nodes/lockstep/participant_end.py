@@ -34,20 +34,25 @@ class ParticipantEnd:
     """
     Receives the steps of a coordinator, executes them with ``role`` and sends the answers.
 
-    The coordinator identifies a participant by the name of its node and waits for it at every
-    tick. A participant that is bound to a run refuses other coordinators until that run ends or
+    The coordinator identifies a participant by ``name``, by default that of its node, and waits
+    for it at every tick. An actuator ``r1/kfe`` is the node kfe in r1, below the run's namespace.
+
+    A participant that is bound to a run refuses other coordinators until that run ends or
     its coordinator has sent nothing for `SILENCE_S`; a later message of the same coordinator
     continues the run. The middleware's graph is not enough: it lists a killed node for a lease.
     """
 
-    def __init__(self, node: Node, role: Role) -> None:
-        self._name = node.get_name()
+    def __init__(self, node: Node, role: Role, name: str = '') -> None:
+        self._name = name or node.get_name()
         self._log = node.get_logger()
         self._role = role
         self._identity = secrets.token_bytes(8)
-        self._topic = node.resolve_topic_name(STEP_TOPIC)
-        self._mailbox = open_mailbox(node, STEP_TOPIC)
-        self._publisher = node.create_publisher(UInt8MultiArray, ACKNOWLEDGEMENT_TOPIC, LOCKSTEP)
+        path = f'{node.get_namespace().rstrip("/")}/{node.get_name()}'
+        of_run = path.removesuffix(f'/{self._name}')
+        self._topic = node.resolve_topic_name(f'{of_run}/{STEP_TOPIC}')
+        self._mailbox = open_mailbox(node, self._topic)
+        self._publisher = node.create_publisher(
+            UInt8MultiArray, f'{of_run}/{ACKNOWLEDGEMENT_TOPIC}', LOCKSTEP)
         handle: Any = self._publisher.handle
         self._send: Callable[[bytes], None] = handle.publish_raw
         self._foreign_runs: set[int] = set()  # whose roster does not list this node
