@@ -59,6 +59,7 @@ setup(
     extras_require={
         'canopen': ['canopen>=2.3', 'msgpack>=1.0', 'python-can>=4.3'],
         'mujoco': ['mujoco>=3.2'],  # another simulator as the body of a run
+        'pinocchio': ['pin>=3.0'],  # of the example isa_ros.examples.pinocchio_crane
         'test': ['hypothesis', 'pytest']},
     zip_safe=False,
     entry_points={
