@@ -2,9 +2,10 @@
 
 from pathlib import Path
 import re
+import textwrap
 
 import pytest
-from tests.docs.patched_copy import PatchedCopy
+from tests.docs.patched_copy import files_of, names_of, PatchedCopy
 
 _SEED = "    Key('seed', Value("
 _KEY = f"""    number('room_celsius', 'Celsius', 'the air around the run', 20.0, ge=-50.0),
@@ -110,3 +111,80 @@ def test_a_bus_is_a_file_and_a_row(copied: PatchedCopy) -> None:
     assert len(copied.touched) == 2
     assert copied.python(_OPENS) == "nowhere ('nowhere', 2, 5)\nno such place\n"
     assert 'serve nobody' in ' '.join(copied.isa('bus', '--help').split())
+
+
+def with_inclinometer(copied: PatchedCopy) -> None:
+    """Add the angle of the calf in the plane of the leg, with a key, a topic and a field."""
+    leg = 'isa_ros/surroundings/bodies/leg/'
+    copied.replace(f'{leg}inertial.py', '\n\n\n@kernel\ndef read_imu(', textwrap.dedent('''
+
+
+        @kernel
+        def calf_angle(states):
+            """Return the angle between calf and hip, rad, of one `LEG_STATE`, (1,)."""
+            return states[0].q_hfe + states[0].q_kfe
+
+
+        @kernel
+        def read_imu(''').rstrip(' '))
+    path = f'{leg}leg.py'
+    copied.replace(path, 'import AXES, Imu,', 'import AXES, calf_angle, Imu,')
+    copied.replace(path, 'units: Sequence[InertialUnit] = ()) -> None:',
+                   'units: Sequence[InertialUnit] = (), has_calf: bool = False) -> None:')
+    copied.replace(path, 'sample_fields([unit.name for unit in units])\n',
+                   'sample_fields([unit.name for unit in units], has_calf)\n'
+                   '        self._has_calf = has_calf\n')
+    copied.replace(path, 'self._motion.nbytes:].view(\n            np.float64).reshape(-1, AXES)',
+                   'self._motion.nbytes:].view(\n            np.float64)[:AXES * len(units)]'
+                   '.reshape(-1, AXES)')
+    copied.replace(path, '        for unit, imu, reading in zip(',
+                   '        if self._has_calf:\n'
+                   "            self._sample['calf_angle'] = calf_angle(self._state)\n"
+                   '        for unit, imu, reading in zip(')
+    copied.replace(path, '        if self._units:\n',
+                   '        if self._units or self._has_calf:\n')
+    copied.replace(path, 'sample_fields(names: Sequence[str])',
+                   'sample_fields(names: Sequence[str], has_calf: bool = False)')
+    copied.replace(path, 'zip(fields_of_unit(name), readings)))',
+                   'zip(fields_of_unit(name), readings)),\n'
+                   "        *[Field('calf_angle', 'rad', 'to the hip')] * has_calf)")
+    path = f'{leg}messages.py'
+    copied.replace(path, 'Sequence[InertialUnit]) -> tuple[BodyMessage, ...]:',
+                   'Sequence[InertialUnit],\n                 has_calf: bool = False)'
+                   ' -> tuple[BodyMessage, ...]:')
+    copied.replace(path, '        *(_inertial(prefix, unit) for unit in units))',
+                   '        *(_inertial(prefix, unit) for unit in units),\n'
+                   "        *[JointStates(f'/{prefix}calf_angle', ['calf'], ['calf_angle'], [],"
+                   ' [])] * has_calf)')
+    path = 'isa_ros/config/runs/leg_config.py'
+    copied.replace(path, "        Key('parameters', Layer(LegSheet),",
+                   "        Key('calf_angle', FLAG, 'inclinometer of the calf', False),\n"
+                   "        Key('parameters', Layer(LegSheet),")
+    copied.replace(path, 'ANY_NAME, InText,', 'ANY_NAME, FLAG, InText,')
+    copied.replace(path, 'imus: tuple[ImuConfig, ...] = ()\n',
+                   'imus: tuple[ImuConfig, ...] = ()\n    calf_angle: bool = False\n')
+    copied.replace(path, "imu in values['imus'].items()))\n",
+                   "imu in values['imus'].items()),\n"
+                   "                  calf_angle=values['calf_angle'])\n")
+    copied.replace(path, 'sample_fields([imu.name for imu in self.imus])',
+                   'sample_fields([imu.name for imu in self.imus], self.calf_angle)')
+    copied.replace(path, 'self._units(step_ns, seed=0))', 'self._units(step_ns, seed=0), '
+                   'self.calf_angle)')
+    copied.replace(path, 'units=self._units(made.step_ns, made.seed))',
+                   'units=self._units(made.step_ns, made.seed), has_calf=self.calf_angle)')
+
+
+@pytest.mark.slow
+def test_a_sensor_on_a_link_is_of_four_files(copied: PatchedCopy) -> None:
+    """Beside an inertial unit: file, field, unit, topic, bag and replay have it."""
+    with_inclinometer(copied)
+    assert names_of(copied.touched) == files_of('sensor on a link of the leg')
+    topic, unit, error = copied.python(
+        'import isa_ros; from isa_ros.bag.reader import Bag; '
+        "run = isa_ros.load('leg').replace({'leg.calf_angle': True, 'leg.imus.trunk.link': "
+        "'slider_link'}); result = run.simulate(0.02); "
+        "print(Bag(result.save('bag')).types['/calf_angle'], result.units['body.calf_angle'], "
+        "abs(result['body.calf_angle'] - result['body.position'][:, 1:].sum(axis=1)).max())"
+        ).split()
+    assert (topic, unit, float(error)) == ('sensor_msgs/msg/JointState', 'rad', 0.0)
+    assert 'equal' in copied.isa('replay', 'bag')
