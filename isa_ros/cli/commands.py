@@ -232,6 +232,17 @@ def faults(options: Namespace) -> bool:
 
 
 @simulating
+def draw(options: Namespace) -> bool:
+    """Draw the linkages of the bodies of a run file."""
+    from isa_ros.analysis.linkages.command import draw as draw_linkages
+    from isa_ros.config.listing import SET
+    from isa_ros.config.text.changes import values_of
+    print(draw_linkages(find(options.config, CONFIG), values_of(options.set, SET), options.out))
+    print(options.out)
+    return True
+
+
+@simulating
 def params(options: Namespace) -> bool:
     """List every parameter of a model, a leg or a run."""
     from isa_ros.config.text.changes import values_of

@@ -152,6 +152,13 @@ def _identify(parser: argparse.ArgumentParser) -> None:
     shared_arguments.json_file(parser)
 
 
+def _draw(parser: argparse.ArgumentParser) -> None:
+    parser.add_argument('config', metavar='CONFIG', help='a run file, or a shipped one by name')
+    parser.add_argument(
+        '--out', type=Path, metavar='FILE', required=True, help='the figure: .png, .svg or .pdf')
+    shared_arguments.changes(parser, 'draw with another value, by its key and in its unit')
+
+
 def _params(parser: argparse.ArgumentParser) -> None:
     parser.add_argument('name', metavar='MODEL|CONFIG', help='isa_v5, hyq_real, leg.yaml, ...')
     shared_arguments.gains(parser, 'NAME')
@@ -233,6 +240,7 @@ _COMMANDS = {
     'faults': (_faults, commands.faults,
                'inject every fault of the device into a rig and show its effect'),
     'params': (_params, commands.params, 'list every parameter with unit, range and source'),
+    'draw': (_draw, commands.draw, 'draw the linkages of a body and their levers over the stroke'),
     'paper': (_paper, commands.paper, 'show values and statements of the paper, with their place'),
     'validate': (_validate, commands.validate,
                  'compare the actuators with the numbers of the paper'),

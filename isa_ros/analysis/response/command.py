@@ -2,9 +2,9 @@
 
 from argparse import Namespace
 from collections.abc import Callable, Sequence
-from pathlib import Path
 from typing import Any
 
+from isa_ros.analysis.figure_file import refuse_figure
 from isa_ros.analysis.response import bode as bodes, from_bag, step as steps
 from isa_ros.analysis.response.figures import bode_figure, step_figure
 from isa_ros.analysis.response.rig import Rig
@@ -25,7 +25,7 @@ _RESPONSES = {'closed': 'closed loop, output/reference', 'plant': 'plant, output
 
 def bode(options: Namespace) -> bool:
     """Measure frequency responses; return whether all are results: none of the loops hunts."""
-    _refuse_figure(options.out)
+    refuse_figure(options.out)
     low, high = BANDS[options.loop]
     if options.bag is None:
         recorded, benches = None, members(options)
@@ -59,7 +59,7 @@ def bode(options: Namespace) -> bool:
 
 def step(options: Namespace) -> None:
     """Measure step responses."""
-    _refuse_figure(options.out)
+    refuse_figure(options.out)
     benches, duration = members(options), options.duration or DURATIONS[options.loop]
     title, found = '', []
     responses: list[steps.StepResponse] = []
@@ -134,15 +134,6 @@ def _step_numbers(measured: steps.StepResponse) -> dict[str, Any]:
         'steady_error': found.steady_error / scale, 'ripple': found.ripple / scale,
         't_s': measured.t.tolist(), 'reference': (measured.reference / scale).tolist(),
         'output': (measured.output / scale).tolist()}
-
-
-def _refuse_figure(path: Path | None) -> None:
-    """Refuse, before the measurement, a figure in an unknown format."""
-    if path is None:
-        return
-    known = sorted(Figure().canvas.get_supported_filetypes())
-    if path.suffix[1:] not in known:
-        raise ConfigError(f'--out {path}: must end in one of .{", .".join(known)}')
 
 
 def _write(

@@ -115,7 +115,7 @@ class RobotConfig(BodyConfig):
             robot._refuse_start(step_ns, place / 'start')
             for drive, own in zip(robot.sheet.drives, drives):
                 refuse_lever(
-                    robot.sheet, drive, own, robot._coordinates, place / 'drives' / own.name)
+                    robot.sheet, drive, own, robot.coordinates, place / 'drives' / own.name)
         return robot, {f'drives.{own}': section for own, section in origins.items()}
 
     def key_of(self, joint: str) -> str:
@@ -137,7 +137,8 @@ class RobotConfig(BodyConfig):
                           frames=self.tree.frames)
 
     @cached_property
-    def _coordinates(self) -> tuple[float, ...]:
+    def coordinates(self) -> tuple[float, ...]:
+        """Return the coordinates of the joints at the start, rad or m, (n,)."""
         return coordinates(self.start, self.tree)
 
     def _drive(self, name: str) -> int:
@@ -146,7 +147,7 @@ class RobotConfig(BodyConfig):
     def position_of(self, joint: str) -> float:
         """Return the position of a drive's actuator at the start, m or rad."""
         return motion_of(
-            self.sheet, self.sheet.drives[self._drive(joint)], self._coordinates)[0]
+            self.sheet, self.sheet.drives[self._drive(joint)], self.coordinates)[0]
 
     def refuse_reach(self, joint: str, sheet: ActuatorSheet, where: str) -> None:
         """Refuse an actuator whose stroke does not cover the start, or the range of its joint."""
@@ -164,7 +165,7 @@ class RobotConfig(BodyConfig):
             raise ConfigError(
                 f'{where}: the start of {self.called} puts it at {position / scale:.4g} {unit}, '
                 f'must be within its stroke, 0 to {stroke / scale:.4g} {unit}: {_length(own)}')
-        reach = reach_of(self.sheet, drive, own, self._coordinates, place)
+        reach = reach_of(self.sheet, drive, own, self.coordinates, place)
         if reach is not None:
             refuse_stroke(reach, stroke, sheet.is_rotary, str(place))
 

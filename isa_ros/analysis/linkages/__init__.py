@@ -1,0 +1,1 @@
+"""Linkages of the bodies of a run: drawn, and their lever arms over the stroke."""
