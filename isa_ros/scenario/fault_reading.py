@@ -8,6 +8,7 @@ Read the lists ``faults`` and ``changes`` of a scenario.
     - {t_s: 0.7, emergency_stop: all, until_s: 0.9}
     changes:
     - {t_s: 0.2, actuator: ram, set: {load.force: -500}, until_s: 0.7}
+    - {t_s: 0.2, body: body, set: {push_y: 500}, until_s: 0.3}
     - {t_s: 0.2, actuator: ram, set: {load.force: 0}, sine: {amplitude: 200, frequency_hz: 2},
        until_s: 1.2}
     faults:
@@ -40,7 +41,7 @@ from isa_ros.core.suggest import alternatives
 from isa_ros.core.timebase import NS_PER_SECOND
 from isa_ros.errors import ConfigError
 from isa_ros.scenario.fault_courses import INTERMITTENT, Intermittent, RAMP, Ramp
-from isa_ros.scenario.faults import BUS, Fault, timetable
+from isa_ros.scenario.faults import BODY, BUS, Fault, timetable
 from isa_ros.scenario.setpoints import MAX_DURATION
 from isa_ros.scenario.waveforms import EFFORT, MOVES, Waveform, WAVEFORMS
 from isa_ros.surroundings.supply import SupplySheet
@@ -49,7 +50,7 @@ from isa_ros.surroundings.surroundings import EMERGENCY_STOP, OPEN
 LINK = 'link'
 """Of an actuator: ``link: kfe, set: {loss: 0.1}`` is ``actuator: kfe, set: {link.loss: 0.1}``."""
 _OF_LINK = f'{LINK}.'
-TARGETS = (*KINDS, LINK, BUS, EMERGENCY_STOP)
+TARGETS = (*KINDS, LINK, BUS, BODY, EMERGENCY_STOP)
 _KEYS = ('t_s', *TARGETS, 'fault', 'set', 'until_s', RAMP, INTERMITTENT, *WAVEFORMS)
 _COURSE = {'period_s': ('time from one begin to the next', 's', {'gt': 0.0, 'le': MAX_DURATION}),
            'duty': ('part of the time in which it is on', '1', {'gt': 0.0, 'lt': 1.0})}
@@ -100,6 +101,9 @@ def _fault(tree: Tree, place: Place, run: RunConfig) -> Fault:
             known: Mapping[str, Changeable] = changeables(sheet)
             _refuse_keys(values, known, where,
                          f'of {target}, a supply of kind {kind_of(sheet, SupplySheet)}, ')
+        elif of == BODY:
+            known = _of_body(run, target)
+            _refuse_keys(values, known, where, f'of {target} ')
         elif of == BUS:
             known = changeables(SOUND_PORT)
             run.actuator(target)    # refuses another name
@@ -118,7 +122,7 @@ def _fault(tree: Tree, place: Place, run: RunConfig) -> Fault:
         if str(error).startswith(where):
             raise
         raise ConfigError(f'{where}: {error}') from error
-    kind = of if of in (SUPPLY, BUS) else ACTUATOR
+    kind = of if of in (SUPPLY, BUS, BODY) else ACTUATOR
     return _changing(Fault(tick, until, kind, target, values), tree, known, run.step_ns, place)
 
 
@@ -245,6 +249,14 @@ def _supply(run: RunConfig, name: str) -> SupplySheet:
     if name not in by_name:
         raise ConfigError(f'{name!r} is not a supply; {alternatives(name, by_name)}')
     return by_name[name].sheet
+
+
+def _of_body(run: RunConfig, name: str) -> Mapping[str, Changeable]:
+    """Return what may change of a body, by key."""
+    known = {body.name: body.changing for body in run.bodies if body.changing is not None}
+    if name not in known:
+        raise ConfigError(f'{name!r} is not a body that may be pushed; {alternatives(name, known)}')
+    return changeables(known[name])
 
 
 def _refuse_keys(values: Mapping[str, float], known: Mapping[str, Changeable], where: str,

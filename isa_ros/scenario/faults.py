@@ -22,21 +22,23 @@ from isa_ros.surroundings.surroundings import EMERGENCY_STOP, line_of
 
 BUS = 'bus'
 """Of an actuator's connection to the bus of `isa bus`, beside `KINDS`."""
+BODY = 'body'
+"""Of a body, such as a push of a robot."""
 
 
 @dataclass(frozen=True)
 class Fault:
-    """A change of parameters of an actuator, its port on a bus, or a supply; or a group's stop."""
+    """A change of parameters of an actuator, its port on a bus, a supply or a body; or a stop."""
 
     tick: int
     until: int | None
     """The tick from which on the values are restored; None: never."""
     of: str
-    """One of `KINDS`, `BUS` or `EMERGENCY_STOP`."""
+    """One of `KINDS`, `BUS`, `BODY` or `EMERGENCY_STOP`."""
     target: str
-    """Name of the actuator, supply or group."""
+    """Name of the actuator, supply, body or group."""
     values: Mapping[str, float]
-    """By the names that messages have, of `changing`, or by key of the supply."""
+    """By the names that messages have, of `changing`, or by key of the supply or body."""
     wave: Waveform | None = None
     """What is added to the only value, from ``tick`` on."""
     course: Course | None = None
@@ -95,7 +97,7 @@ class ParameterChanges(NamedTuple):
     actuators: Mapping[int, Mapping[str, float]]
     """By row, and name of `isa_ros.actuator.tunable.changing`; `OVER` or `OFF` before a name."""
     supplies: Mapping[str, float]
-    """By SUPPLY.KEY or line of a group, likewise."""
+    """By SUPPLY.KEY, BODY.KEY or line of a group, likewise."""
     ports: Mapping[str, Mapping[str, float]] = {}
     """By name of an actuator and of a value of `BusPort`, which is 0 where nothing is wrong."""
 
@@ -138,7 +140,7 @@ def _changes(
     marked = [*((OVER, key, value) for key, value in values.items()),
               *((OFF, key, 0.0) for key in ended)]
     for mark, (of, target, name), value in marked:
-        if of == SUPPLY:
+        if of in (SUPPLY, BODY):
             supplies[f'{mark}{target}.{name}'] = value
         elif of == BUS:
             ports.setdefault(target, {})[name] = value

@@ -14,6 +14,7 @@ from isa_ros.config.text.keys import KeyTable
 from isa_ros.config.text.sections import Place, Section
 from isa_ros.config.text.yaml_text import Tree
 from isa_ros.core.fields import Field
+from isa_ros.core.parameter import Parameters
 from isa_ros.errors import ConfigError
 from isa_ros.surroundings.body import Body
 from isa_ros.surroundings.joint_space import JointSpace
@@ -106,6 +107,11 @@ class BodyConfig:
     def fields(self) -> Sequence[Field]:
         """Return the fields of its sample, as far as the configuration knows them."""
         return ()
+
+    @property
+    def changing(self) -> Parameters | None:
+        """Return what scenarios may change of it during a run, as it starts; None: nothing."""
+        return None
 
     def messages(self, step_ns: int) -> Sequence[BodyMessage]:
         """Return what is published and recorded of its sample."""
