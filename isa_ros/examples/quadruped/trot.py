@@ -21,13 +21,19 @@ Positions, speeds and forces that the actuators measure are not used.
 from collections.abc import Mapping, Sequence
 import math
 import struct
+from typing import Any
 
+from isa_ros.actuator.setpoint_range import setpoint_bounds
+from isa_ros.config.runs.robot_config import RobotConfig
+from isa_ros.config.text.sections import Place
 from isa_ros.controller import Controller, Setpoint, State
 from isa_ros.core.constants import STANDARD_GRAVITY
 from isa_ros.core.elementary import cos, sin
+from isa_ros.errors import ConfigError
 from isa_ros.examples.quadruped.gait import Gait
 from isa_ros.examples.quadruped.legs import Legs
-from isa_ros.examples.quadruped.parameters import Program, TrotGains
+from isa_ros.examples.quadruped.parameters import (
+    gains_of, Program, PROGRAM, program_of, TrotGains)
 from isa_ros.examples.quadruped.stance import (
     limit_forces, REGULARISATION, share_wrench, WEIGHTS)
 from isa_ros.surroundings.bodies.robot.sheet import RobotSheet
@@ -60,6 +66,29 @@ class Trot(Controller):
         self._least, self._most = np.array([efforts[drive] for drive in self._drives]).T
         self._joints = self._legs.paths.ravel() - 1
         self.start([])
+
+    @classmethod
+    def of(cls, run: Any, values: Mapping[str, Any], where: str) -> 'Trot':
+        """
+        Return the controller of a section of a run file or scenario; as `Controller.of`.
+
+        ``values`` are `TrotGains`, ``program``, a list of `Point`, and ``body``, the name of the
+        robot where the run has several.
+        """
+        file, _, key = where.partition(': ')
+        place, gains = Place(file, key), dict(values)
+        program = program_of(gains.pop(PROGRAM, None), place / PROGRAM)
+        robots = {own.name: own for own in run.bodies if isinstance(own, RobotConfig)}
+        name = gains.pop('body', next(iter(robots), None))
+        if name not in robots:
+            raise ConfigError(f'{place / "body"} = {name!r}, must be a robot of the run: '
+                              f'{", ".join(robots) or "it has none"}')
+        robot = robots[name]
+        names = {drive.actuator: actuator
+                 for drive, (_, actuator) in zip(robot.sheet.drives, robot.joints)}
+        efforts = {drive: setpoint_bounds(run.actuator(own).sheet)['effort'][:2]
+                   for drive, own in names.items()}
+        return cls(robot.sheet, names, efforts, gains_of(gains, place), program, name)
 
     def start(self, names: Sequence[str]) -> None:
         """Begin anew at t = 0."""
