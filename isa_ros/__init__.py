@@ -18,6 +18,7 @@ if TYPE_CHECKING:
     from isa_ros.analysis.signals.recorded_result import read as read
     from isa_ros.controller import Controller as Controller
     from isa_ros.controller import Setpoint as Setpoint
+    from isa_ros.controller import Setpoints as Setpoints
     from isa_ros.controller import State as State
     from isa_ros.core.conditions import conditions as conditions
     from isa_ros.scripting.actuators import Actuators as Actuators
@@ -41,15 +42,15 @@ _HOMES = {
     'Mechanism': 'surroundings.mechanism', 'MechanismBody': 'surroundings.mechanism_body',
     'Motion': 'surroundings.mechanism', 'Mounting': 'surroundings.mechanism',
     'Result': 'scripting.result', 'Run': 'scripting.run', 'Setpoint': 'controller',
-    'Simulation': 'simulation', 'State': 'controller', 'Sweep': 'scripting.sweep',
-    'TripWarning': 'tick.trips',
+    'Setpoints': 'controller', 'Simulation': 'simulation', 'State': 'controller',
+    'Sweep': 'scripting.sweep', 'TripWarning': 'tick.trips',
     'conditions': 'core.conditions', 'load': 'scripting.run',
     'read': 'analysis.signals.recorded_result', 'sweep': 'scripting.sweep'}
 
 __all__ = [  # noqa: F822, the names are loaded by `__getattr__`
     'ActuatorGroup', 'Actuators', 'Body', 'Controller', 'Mechanism', 'MechanismBody', 'Motion',
-    'Mounting', 'Result', 'Run', 'Setpoint', 'Simulation', 'State', 'Sweep', 'TripWarning',
-    'conditions', 'load', 'read', 'sweep']
+    'Mounting', 'Result', 'Run', 'Setpoint', 'Setpoints', 'Simulation', 'State', 'Sweep',
+    'TripWarning', 'conditions', 'load', 'read', 'sweep']
 
 
 def __getattr__(name: str) -> Any:

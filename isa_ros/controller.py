@@ -10,12 +10,12 @@ from typing import Any, NamedTuple
 
 from isa_ros.core.device import IMPEDANCE, MODES, POSITION, REFERENCES
 from isa_ros.core.signals import (
-    GAINS_OF_COMMAND, HAS_CLEAR_FAULT, HAS_ENABLE, HAS_GAINS, HAS_MODE, HAS_QUICK_STOP,
-    HAS_REFERENCE, HAS_SETPOINT)
+    COMMAND, GAINS_OF_COMMAND, HAS_CLEAR_FAULT, HAS_ENABLE, HAS_GAINS, HAS_MODE, HAS_QUICK_STOP,
+    HAS_REFERENCE, HAS_SETPOINT, Records, SAMPLE)
 from isa_ros.core.suggest import listed, shortened
 from isa_ros.errors import RunError, SetpointError
 import numpy as np
-from numpy.typing import NDArray
+from numpy.typing import ArrayLike, NDArray
 
 
 class State(NamedTuple):
@@ -32,6 +32,8 @@ class State(NamedTuple):
 
     Of a leg: ``position``, ``velocity``, ``torque`` of its joints, ``foot_force``, ... (3,).
     """
+    rows: Records = np.zeros(0, SAMPLE)
+    """The same of all actuators, (n_actuators,): ``state.rows['position']`` in their order."""
 
     @property
     def body(self) -> np.record | None:
@@ -73,6 +75,31 @@ class Setpoint(NamedTuple):
 _NUMBERS = ('position', 'velocity', 'effort', *GAINS_OF_COMMAND)
 
 
+class Setpoints(NamedTuple):
+    """
+    The commands to n actuators at once, as numbers or arrays (n,); meaning and units as `Setpoint`.
+
+    A tenth of the time of a mapping from names to `Setpoint`.
+    """
+
+    names: Sequence[str]
+    position: ArrayLike
+    velocity: ArrayLike = 0.0
+    effort: ArrayLike = 0.0
+    stiffness: ArrayLike | None = None
+    """None keeps the gains in force, as does a damping of None."""
+    damping: ArrayLike | None = None
+
+    def of(self, k: int) -> Setpoint:
+        """Return the setpoint of the k-th actuator."""
+        def own(values: ArrayLike | None) -> float | None:
+            if values is None:
+                return None
+            return float(np.broadcast_to(values, len(self.names))[k])
+        return Setpoint(own(self.position), own(self.velocity), own(self.effort),
+                        own(self.stiffness), own(self.damping))
+
+
 class Controller:
     """Base of a user's controller; override `step`, and the other methods as needed."""
 
@@ -95,7 +122,7 @@ class Controller:
     def start(self, names: Sequence[str]) -> None:
         """Begin anew at t = 0 with actuators of these names, in the order of the run."""
 
-    def step(self, state: State) -> Mapping[str, Setpoint]:
+    def step(self, state: State) -> Mapping[str, Setpoint] | Setpoints:
         """
         Return the setpoints that take effect one tick after ``state``, by actuator.
 
@@ -114,7 +141,7 @@ class Controller:
 
 
 def fill_requests(
-        setpoints: Mapping[str, Setpoint], names: Sequence[str],
+        setpoints: Mapping[str, Setpoint] | Setpoints, names: Sequence[str],
         requests: NDArray[np.void], samples: Mapping[str, np.record] | None = None) -> None:
     """
     Write setpoints into the `COMMAND` rows of the actuators ``names``, shape (n_actuators,).
@@ -128,6 +155,9 @@ def fill_requests(
         An actuator that the run does not have, or an invalid value.
 
     """
+    if isinstance(setpoints, Setpoints):
+        _fill_rows(setpoints, names, requests)
+        return
     if not isinstance(setpoints, Mapping):
         raise SetpointError(f'{_quoted(setpoints)} are no setpoints by actuator')
     for name, setpoint in setpoints.items():
@@ -140,6 +170,43 @@ def fill_requests(
         fill_command(name, Setpoint(*setpoint), row)
         if samples is not None and row['kinds'] & HAS_SETPOINT and math.isnan(row['position']):
             _complete(name, samples[name], row)
+
+
+def _fill_rows(
+        setpoints: Setpoints, names: Sequence[str], requests: NDArray[np.void]) -> None:
+    """Write setpoints of several actuators into their `COMMAND` rows; as `fill_requests`."""
+    try:
+        rows = [names.index(name) for name in setpoints.names]
+        values = np.full((len(_NUMBERS), len(rows)), math.nan)
+        for k, field in enumerate(_NUMBERS):
+            given = getattr(setpoints, field)
+            if given is not None:
+                values[k] = given
+                if not (np.isfinite(values[k]).all()
+                        and (field not in GAINS_OF_COMMAND or values[k].min() >= 0.0)):
+                    raise ValueError
+    except (TypeError, ValueError):
+        _refuse_rows(setpoints, names)
+        raise
+    for k, field in enumerate(_NUMBERS):
+        requests[field][rows] = values[k]
+    requests['kinds'][rows] = HAS_SETPOINT
+
+
+def _refuse_rows(setpoints: Setpoints, names: Sequence[str]) -> None:
+    """Refuse the first of several setpoints that is invalid."""
+    fields = setpoints._asdict()
+    for field in _NUMBERS:
+        given = fields[field]
+        try:
+            if given is not None:
+                np.broadcast_to(np.asarray(given, np.float64), len(setpoints.names))
+        except (TypeError, ValueError):
+            raise SetpointError(
+                f'setpoint {field} = {_quoted(given)}, must be a number or '
+                f'{len(setpoints.names)} numbers') from None
+    row = np.zeros(len(names), COMMAND)
+    fill_requests({name: setpoints.of(k) for k, name in enumerate(setpoints.names)}, names, row)
 
 
 def _complete(name: str, sample: np.record, row: np.void) -> None:

@@ -33,7 +33,7 @@ class CallingTransport:
         self._transport.join(rows)
         self._state = State(
             0, by_name(self._names, rows.samples), by_name(self._supplies, rows.supplies),
-            only_rows(rows.bodies))
+            only_rows(rows.bodies), rows.samples)
         for controller in self._controllers:
             controller.start(list(self._names))
 

@@ -6,11 +6,55 @@ the ground it swings to the foothold, by a polynomial of fifth order, and up and
 parabola, so that speed and acceleration are 0 at both ends of the swing.
 """
 
+from isa_ros.core.kernel import kernel
 from isa_ros.examples.quadruped.parameters import TrotGains
 import numpy as np
 
 _SIXTY_FOUR = 64.0
 """4^3: the cubed parabola (u (1 - u))^3 times it has the height 1."""
+
+
+@kernel
+def swing_way(u, seconds, lift, start, end, place, speed):
+    """
+    Fill place, m, and speed, m/s, of a foot at the part ``u`` of its way from ``start`` to ``end``.
+
+    The swing takes ``seconds``. Along all axes s = u^3 (10 - 15 u + 6 u^2), and upwards
+    64 lift (u (1 - u))^3.
+    """
+    part = u * u * u * (10.0 + u * (6.0 * u - 15.0))
+    rate = 30.0 * u * u * (1.0 - u) * (1.0 - u) / seconds
+    for a in range(3):
+        place[a] = start[a] + part * (end[a] - start[a])
+        speed[a] = rate * (end[a] - start[a])
+    arc = u * (1.0 - u)
+    place[2] += _SIXTY_FOUR * lift * arc * arc * arc
+    speed[2] += 3.0 * _SIXTY_FOUR * lift * arc * arc * (1.0 - 2.0 * u) / seconds
+
+
+@kernel
+def swing_feet(trunk, progress, seconds, holds, gains, feet, velocities, lifted, forces):
+    """
+    Fill the forces that pull swinging feet along their ways to their footholds, (f, 3).
+
+    ``trunk`` is its place and velocity, (6,), ``holds`` the footholds at the end of the swing as
+    seen now, (f, 2), ``gains`` lift, press, stiffness and damping, ``feet`` and ``velocities`` as
+    in `isa_ros.examples.quadruped.legs.Legs`, ``lifted`` where each foot left the ground.
+    """
+    lift, press, stiffness, damping = gains
+    end, place, speed = np.empty(3), np.empty(3), np.empty(3)
+    for i in range(len(feet)):
+        if progress[i] <= 0.0:
+            continue
+        left = (1.0 - progress[i]) * seconds
+        end[0] = holds[i, 0] + trunk[3] * left
+        end[1] = holds[i, 1] + trunk[4] * left
+        end[2] = -press
+        swing_way(progress[i], seconds, lift, lifted[i], end, place, speed)
+        for a in range(3):
+            forces[i, a] = (
+                stiffness * (place[a] - trunk[a] - feet[i, a])
+                + damping * (speed[a] - trunk[3 + a] - velocities[i, a]))
 
 
 class Gait:
@@ -33,7 +77,7 @@ class Gait:
         self.is_standing = np.ones(4, bool)
         """Of each foot."""
         self.progress = np.zeros(4)
-        """Of each swing, 0 to 1; 0 of a foot that stands."""
+        """Of each swing, 0 to 1; 0 of a foot that stands, above 0 of one that swings."""
 
     def advance(self, seconds: float, wants_steps: bool) -> None:
         """Advance by a time; `is_standing` and `progress` are those of its end."""
@@ -49,22 +93,9 @@ class Gait:
 
     def _place(self) -> None:
         phases = (self.stride + self.OFFSETS) % 1.0
-        self.is_standing = phases < self._gains.duty
-        self.progress = np.where(
-            self.is_standing, 0.0, (phases - self._gains.duty) / (1.0 - self._gains.duty))
-
-    def swing(self, progress: float, start: np.ndarray, end: np.ndarray) -> tuple[
-            np.ndarray, np.ndarray]:
-        """Return place, m, and speed, m/s, of a foot on its way from ``start`` to ``end``."""
-        u, rest = progress, 1.0 - progress
-        part = u * u * u * (10.0 + u * (6.0 * u - 15.0))
-        rate = 30.0 * u * u * rest * rest / self.swing_s
-        arc = u * rest
-        place, speed = start + part * (end - start), rate * (end - start)
-        lift = _SIXTY_FOUR * self._gains.lift
-        place[2] += lift * arc * arc * arc
-        speed[2] += 3.0 * lift * arc * arc * (1.0 - 2.0 * u) / self.swing_s
-        return place, speed
+        swings = (phases - self._gains.duty) / (1.0 - self._gains.duty)
+        self.is_standing = swings <= 0.0
+        self.progress = np.where(self.is_standing, 0.0, swings)
 
     def state(self) -> list[float]:
         """Return what `restore` needs."""

@@ -158,6 +158,11 @@ class Legs:
         """
         update_legs(root, turning, angles, speeds, self._tree, self._legs, self._out)
 
+    def torques(self, forces: np.ndarray) -> np.ndarray:
+        """Return J^T f of forces on the feet, N, (f, 3): of each leg's joints, (3 f,), Nm."""
+        found: np.ndarray = np.einsum('fam,fa->fm', self.jacobians, forces).ravel()
+        return found
+
     def inertia(self, sheet: RobotSheet) -> np.ndarray:
         """Return the inertia about the centre of mass after an `update`, kg m2, (3, 3)."""
         total = np.zeros((3, 3))

@@ -26,11 +26,11 @@ from typing import Any
 from isa_ros.actuator.setpoint_range import setpoint_bounds
 from isa_ros.config.runs.robot_config import RobotConfig
 from isa_ros.config.text.sections import Place
-from isa_ros.controller import Controller, Setpoint, State
+from isa_ros.controller import Controller, Setpoints, State
 from isa_ros.core.constants import STANDARD_GRAVITY
 from isa_ros.core.elementary import cos, sin
 from isa_ros.errors import ConfigError
-from isa_ros.examples.quadruped.gait import Gait
+from isa_ros.examples.quadruped.gait import Gait, swing_feet
 from isa_ros.examples.quadruped.legs import Legs
 from isa_ros.examples.quadruped.parameters import (
     gains_of, Program, PROGRAM, program_of, TrotGains)
@@ -65,7 +65,9 @@ class Trot(Controller):
         self._names = [names[drive] for drive in self._drives]
         self._least, self._most = np.array([efforts[drive] for drive in self._drives]).T
         self._joints = self._legs.paths.ravel() - 1
-        self.start([])
+        self._swing_gains = (
+            gains.lift, gains.press, gains.swing_stiffness, gains.swing_damping)
+        self.start(self._names)
 
     @classmethod
     def of(cls, run: Any, values: Mapping[str, Any], where: str) -> 'Trot':
@@ -92,6 +94,7 @@ class Trot(Controller):
 
     def start(self, names: Sequence[str]) -> None:
         """Begin anew at t = 0."""
+        self._rows = [names.index(name) for name in self._names]
         self._gait = Gait(self._gains)
         self._t_ns = 0
         self._is_begun = False
@@ -105,9 +108,9 @@ class Trot(Controller):
         self._inertia = np.eye(3)
         self._columns: np.ndarray | None = None
 
-    def step(self, state: State) -> Mapping[str, Setpoint]:
+    def step(self, state: State) -> Setpoints:
         """Return the efforts of all actuators of the robot."""
-        sample = np.frombuffer(state.bodies[self._body].data, np.float64)
+        sample = np.frombuffer(state.bodies[self._body], np.float64)
         if self._columns is None:
             self._find(state.bodies[self._body].dtype)
         assert self._columns is not None
@@ -125,13 +128,12 @@ class Trot(Controller):
         self._turn(seconds * wanted[3])
         self._gait.advance(seconds, wants_steps)
         self._share(seconds, place, velocity, turning, root, wanted)
-        self._swing(place, velocity, root, wanted, was_standing)
-        torques = self._legs.holding[self._joints] + np.einsum(
-            'fam,fa->fm', self._legs.jacobians, self._forces).ravel()
-        efforts = np.clip(torques / levers, self._least, self._most).tolist()
-        return {name: Setpoint(
-            position=state.actuators[name].position, effort=effort, stiffness=0.0, damping=0.0)
-            for name, effort in zip(self._names, efforts)}
+        self._swing(own, root, wanted, was_standing)
+        torques = self._legs.holding[self._joints] + self._legs.torques(self._forces)
+        efforts = np.minimum(np.maximum(torques / levers, self._least), self._most)
+        return Setpoints(
+            self._names, state.rows['position'][self._rows], effort=efforts, stiffness=0.0,
+            damping=0.0)
 
     def _find(self, dtype: np.dtype[np.void]) -> None:
         """Find the numbers of the robot's sample that `step` reads."""
@@ -148,12 +150,14 @@ class Trot(Controller):
         """Take the stance of t = 0 as that of the robot at rest."""
         self._is_begun = True
         self._inertia = root.T @ self._legs.inertia(self._sheet) @ root
-        ahead = root[:2, 0]
-        self._heading = ahead / math.sqrt(float(ahead @ ahead))
+        self._heading = _heading(root)
         self._home = self._legs.feet[:, :2] @ level(self._heading)
         self._anchor = place[:2] + self._legs.com[:2]
 
     def _turn(self, angle: float) -> None:
+        """Turn the heading that is wanted."""
+        if angle == 0.0:
+            return
         x, y = self._heading.tolist()
         c, s = cos(angle), sin(angle)
         self._heading[:] = c * x - s * y, s * x + c * y
@@ -189,29 +193,23 @@ class Trot(Controller):
             gait.is_standing, gains.least_force, gains.most_force, gains.friction, self._forces)
         np.negative(self._forces, out=self._forces)
 
-    def _swing(self, place: np.ndarray, velocity: np.ndarray, root: np.ndarray,
-               wanted: np.ndarray, was_standing: np.ndarray) -> None:
+    def _swing(self, own: np.ndarray, root: np.ndarray, wanted: np.ndarray,
+               was_standing: np.ndarray) -> None:
         """Fill the forces of the swinging feet."""
         gains, legs, gait = self._gains, self._legs, self._gait
         if gait.is_standing.all():
             return
-        ahead = level(self._heading)
-        speed = velocity[:2]
-        wanted_speed = ahead @ wanted[1:3]
+        place, speed = own[:2], own[7:9]
+        left_ground = was_standing & ~gait.is_standing
+        if left_ground.any():
+            self._lifted[left_ground] = own[:3] + legs.feet[left_ground]
+        wanted_speed = level(self._heading) @ wanted[1:3]
         offset = (0.5 * gait.stand_s * wanted_speed + gains.capture * math.sqrt(
             wanted[0] / STANDARD_GRAVITY) * (speed - wanted_speed))
-        facing = root[:2, 0] / math.sqrt(float(root[:2, 0] @ root[:2, 0]))
-        homes = place[:2] + self._home @ level(facing).T
-        for i in np.flatnonzero(~gait.is_standing):
-            foot = place + legs.feet[i]
-            if was_standing[i]:
-                self._lifted[i] = foot
-            left = (1.0 - gait.progress[i]) * gait.swing_s
-            end = np.append(homes[i] + speed * left + offset, -gains.press)
-            there, at_speed = gait.swing(gait.progress[i], self._lifted[i], end)
-            self._forces[i] = (
-                gains.swing_stiffness * (there - foot)
-                + gains.swing_damping * (at_speed - velocity - legs.velocities[i]))
+        holds = place + offset + self._home @ level(_heading(root)).T
+        swing_feet(
+            np.concatenate([own[:3], own[7:10]]), gait.progress, gait.swing_s, holds,
+            self._swing_gains, legs.feet, legs.velocities, self._lifted, self._forces)
 
     def snapshot(self) -> bytes:
         """Return the whole state."""
@@ -239,6 +237,12 @@ def rotation(quaternion: np.ndarray) -> np.ndarray:
         [1.0 - 2.0 * (y * y + z * z), 2.0 * (x * y - w * z), 2.0 * (x * z + w * y)],
         [2.0 * (x * y + w * z), 1.0 - 2.0 * (x * x + z * z), 2.0 * (y * z - w * x)],
         [2.0 * (x * z - w * y), 2.0 * (y * z + w * x), 1.0 - 2.0 * (x * x + y * y)]])
+
+
+def _heading(root: np.ndarray) -> np.ndarray:
+    """Return the direction of the trunk's x axis on the ground, (2,), of length 1."""
+    x, y = float(root[0, 0]), float(root[1, 0])
+    return np.array([x, y]) / math.sqrt(x * x + y * y)
 
 
 def level(heading: np.ndarray) -> np.ndarray:

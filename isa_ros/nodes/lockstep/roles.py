@@ -160,7 +160,8 @@ class ControllerRole:
         self._requests['kinds'] = 0
         state = State(
             step.tick * self._step_ns, by_name(self._names, found.samples),
-            by_name(self._roster.supplies, found.supplies), only_rows(found.bodies))
+            by_name(self._roster.supplies, found.supplies), only_rows(found.bodies),
+            found.samples)
         fill_requests(
             self._controller.step(state), self._names, self._requests, state.actuators)
         return self._parts()

@@ -1,7 +1,7 @@
 """Phases of the feet, and their way through the air."""
 
 from isa_ros.core.parameter import defaults
-from isa_ros.examples.quadruped.gait import Gait
+from isa_ros.examples.quadruped.gait import Gait, swing_feet, swing_way
 from isa_ros.examples.quadruped.parameters import TrotGains
 import numpy as np
 import pytest
@@ -54,26 +54,45 @@ def test_it_stops_only_while_all_feet_stand():
     assert gait.is_stepping and gait.stride == 0.0
 
 
+START, END = np.array([0.1, 0.2, 0.0]), np.array([0.3, 0.1, -0.004])
+
+
+def way(u: float) -> tuple[np.ndarray, np.ndarray]:
+    place, speed = np.empty(3), np.empty(3)
+    swing_way(u, 0.26, GAINS.lift, START, END, place, speed)
+    return place, speed
+
+
 def test_the_way_of_a_swing_begins_and_ends_at_rest_and_is_lifted_in_the_middle():
-    gait = Gait(GAINS)
-    start, end = np.array([0.1, 0.2, 0.0]), np.array([0.3, 0.1, -0.004])
-    for u, place in ((0.0, start), (1.0, end)):
-        there, speed = gait.swing(u, start, end)
-        assert there == pytest.approx(place, abs=1e-12)
+    for u, wanted in ((0.0, START), (1.0, END)):
+        place, speed = way(u)
+        assert place == pytest.approx(wanted, abs=1e-12)
         assert speed == pytest.approx(np.zeros(3), abs=1e-12)
-    there, _ = gait.swing(0.5, start, end)
-    assert there == pytest.approx([0.2, 0.15, -0.002 + GAINS.lift], abs=1e-12)
+    assert way(0.5)[0] == pytest.approx([0.2, 0.15, -0.002 + GAINS.lift], abs=1e-12)
 
 
 def test_the_speed_of_a_swing_is_the_slope_of_its_way():
-    gait = Gait(GAINS)
-    start, end = np.array([0.1, 0.2, 0.0]), np.array([0.3, 0.1, -0.004])
     for u in (0.1, 0.37, 0.5, 0.8):
-        step = 1e-6
-        before, after = (gait.swing(u + d, start, end)[0] for d in (-step, step))
-        _, speed = gait.swing(u, start, end)
         # Central difference: error of second order, 1e-12 / step of rounding.
-        assert speed == pytest.approx((after - before) / (2.0 * step * gait.swing_s), abs=1e-6)
+        slope = (way(u + 1e-6)[0] - way(u - 1e-6)[0]) / (2e-6 * 0.26)
+        assert way(u)[1] == pytest.approx(slope, abs=1e-6)
+
+
+def test_a_swinging_foot_is_pulled_to_its_way_and_a_standing_one_is_not():
+    trunk = np.array([1.0, 2.0, 0.5, 0.3, -0.2, 0.1])
+    feet = np.array([[0.4, 0.2, -0.5], [0.4, -0.2, -0.4]])
+    velocities = np.array([[0.0, 0.0, 0.0], [0.5, 0.0, 1.0]])
+    lifted, holds = np.array([START, [1.3, 1.8, 0.0]]), np.array([[0.0, 0.0], [1.5, 1.7]])
+    forces = np.full((2, 3), 7.0)
+    swing_feet(trunk, np.array([0.0, 0.6]), 0.26, holds, (0.08, 0.004, 1500.0, 60.0), feet,
+               velocities, lifted, forces)
+    assert forces[0].tolist() == [7.0, 7.0, 7.0]
+    end = np.array([1.5 + 0.3 * 0.4 * 0.26, 1.7 - 0.2 * 0.4 * 0.26, -0.004])
+    place, speed = np.empty(3), np.empty(3)
+    swing_way(0.6, 0.26, 0.08, lifted[1], end, place, speed)
+    wanted = (1500.0 * (place - trunk[:3] - feet[1])
+              + 60.0 * (speed - trunk[3:] - velocities[1]))
+    assert forces[1] == pytest.approx(wanted, rel=1e-12, abs=0.0)
 
 
 def test_a_state_is_restored():
