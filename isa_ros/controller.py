@@ -77,7 +77,7 @@ _NUMBERS = ('position', 'velocity', 'effort', *GAINS_OF_COMMAND)
 
 class Setpoints(NamedTuple):
     """
-    The commands to n actuators at once, as numbers or arrays (n,); meaning and units as `Setpoint`.
+    The commands to n actuators at once, numbers or arrays (n,); meaning and units as `Setpoint`.
 
     A tenth of the time of a mapping from names to `Setpoint`.
     """

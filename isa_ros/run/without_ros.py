@@ -6,6 +6,7 @@ from isa_ros.config.assembly import group_of, surroundings_of
 from isa_ros.run.output import Outlets
 from isa_ros.run.session import record, Report, Session
 from isa_ros.run.warm_up import warmed_up
+from isa_ros.tick.calling import calling
 from isa_ros.tick.in_process import InProcess
 
 
@@ -14,5 +15,6 @@ def run_without_ros(
     """Run and record; raises as `isa_ros.nodes.bringup.bringup`."""
     warmed_up(session.run)
     surroundings = surroundings_of(session.run)
-    transport = InProcess(group_of(session.run), surroundings.starts())
+    transport = calling(
+        session.run, InProcess(group_of(session.run), surroundings.starts()))
     record(session, transport, surroundings, lambda topics: Outlets(), report, should_stop)

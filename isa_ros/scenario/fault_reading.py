@@ -255,7 +255,8 @@ def _of_body(run: RunConfig, name: str) -> Mapping[str, Changeable]:
     """Return what may change of a body, by key."""
     known = {body.name: body.changing for body in run.bodies if body.changing is not None}
     if name not in known:
-        raise ConfigError(f'{name!r} is not a body that may be pushed; {alternatives(name, known)}')
+        raise ConfigError(
+            f'{name!r} is not a body that may be pushed; {alternatives(name, known)}')
     return changeables(known[name])
 
 

@@ -17,7 +17,7 @@ _SIXTY_FOUR = 64.0
 @kernel
 def swing_way(u, seconds, lift, start, end, place, speed):
     """
-    Fill place, m, and speed, m/s, of a foot at the part ``u`` of its way from ``start`` to ``end``.
+    Fill place, m, and speed, m/s, of a foot at the part u of its way from ``start`` to ``end``.
 
     The swing takes ``seconds``. Along all axes s = u^3 (10 - 15 u + 6 u^2), and upwards
     64 lift (u (1 - u))^3.

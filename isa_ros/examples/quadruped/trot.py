@@ -33,7 +33,7 @@ from isa_ros.errors import ConfigError
 from isa_ros.examples.quadruped.gait import Gait, swing_feet
 from isa_ros.examples.quadruped.legs import Legs
 from isa_ros.examples.quadruped.parameters import (
-    gains_of, Program, PROGRAM, program_of, TrotGains)
+    gains_of, PROGRAM, Program, program_of, TrotGains)
 from isa_ros.examples.quadruped.stance import (
     limit_forces, REGULARISATION, share_wrench, WEIGHTS)
 from isa_ros.surroundings.bodies.robot.sheet import RobotSheet
