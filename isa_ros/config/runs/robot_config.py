@@ -35,7 +35,7 @@ from isa_ros.core.units import MILLI
 from isa_ros.errors import ConfigError
 from isa_ros.surroundings.bodies.robot.robot import Robot
 from isa_ros.surroundings.bodies.robot.sample import sample_fields
-from isa_ros.surroundings.bodies.robot.sheet import matrix, RobotSheet, RobotUnit, vector
+from isa_ros.surroundings.bodies.robot.sheet import matrix, Push, RobotSheet, RobotUnit, vector
 from isa_ros.surroundings.inertial_unit import InertialUnitSheet
 from isa_ros.surroundings.linkage_sheet import Direct, Joint
 
@@ -206,6 +206,11 @@ class RobotConfig(BodyConfig):
     def fields(self) -> Sequence[Field]:
         """Return the fields of its sample."""
         return sample_fields(self.sheet, [own.name for own in self.imus])
+
+    @property
+    def changing(self) -> Push:
+        """Return the forces from outside on its root, as scenarios may change them."""
+        return Push()
 
     def units(self, step_ns: int, seed: int) -> list[RobotUnit]:
         """Return its inertial units."""
