@@ -9,7 +9,7 @@ import numpy as np
 
 MOST_NAMES = 1000
 LONGEST_NAME = 256
-_MOST_FIELDS = 100
+_MOST_FIELDS = 10_000    # a quadruped with 16 contacts has 108
 _LARGEST_SHAPE = 4096
 _FLOATS = '<f8'
 
