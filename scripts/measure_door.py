@@ -19,6 +19,8 @@ import sys
 from typing import Any, NamedTuple
 
 import isa_ros
+from isa_ros.bench.crane import crane, CRANE_NAMES, crane_run
+from isa_ros.bench.door import crane_rows
 from isa_ros.config.paths import CONFIG, find, SCENARIOS
 from isa_ros.config.text.yaml_text import read, Tree
 from isa_ros.core.timebase import FORCE_WINDOWS, NS_PER_SECOND
@@ -26,8 +28,7 @@ from isa_ros.errors import SimulationDiverged
 from isa_ros.text.marked import with_parts
 from isa_ros.text.table import markdown
 import numpy as np
-from scripts.measure_door_cost import costs
-from scripts.mechanisms import crane, CRANE_NAMES, crane_run, LegMechanism
+from scripts.leg_mechanism import LegMechanism
 
 PAGE = Path(__file__).resolve().parents[1] / 'docs' / 'door.md'
 MEAN_S = 2e-4           # of the compared forces
@@ -240,7 +241,8 @@ def tables() -> dict[str, list[str]]:
         lifted += [[name, f'{step:g}', port, f'{integrator}, {1e3 * timestep:g} ms',
                     *_cells(own)] for (step, port, timestep, integrator), own in crane_errors(
                         cell, CASES if cell is None else CASES[:4])]
-    cost = [['', 'us'], *([name, f'{us:.1f}'] for name, us in costs())]
+    cost = [['', 'us'], *([row.name.partition(': ')[2], f'{row.number:.1f}']
+                          for row in crane_rows())]
     return {'leg': markdown(leg, 'llr'), 'crane': markdown(lifted, 'lrllr'),
             'cost': markdown(cost, 'lr')}
 

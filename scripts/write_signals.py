@@ -10,6 +10,8 @@ from pathlib import Path
 from isa_ros.core.fields import Field
 from isa_ros.core.signals import SAMPLE_FIELDS
 from isa_ros.surroundings.bodies.leg.leg import sample_fields
+from isa_ros.surroundings.kept_ports import port_fields
+from isa_ros.surroundings.mechanism_body import motion_fields
 from isa_ros.surroundings.supply import SUPPLY_FIELDS
 from isa_ros.text.marked import with_parts
 from isa_ros.text.table import markdown
@@ -24,11 +26,19 @@ def lines(fields: Sequence[Field]) -> list[str]:
          field.unit.replace(' | ', ' or '), field.meaning] for field in fields)])
 
 
+def external_lines() -> list[str]:
+    """Return the table of an external body: of a mechanism's actuators, and the ports of all."""
+    motion = [Field(linear.name, f'{linear.unit} | {rotary.unit}', linear.meaning)
+              for linear, rotary in zip(motion_fields('NAME', False), motion_fields('NAME', True))]
+    return [line.replace(', 1 values', ', k values')
+            for line in lines([*motion, *port_fields(1)])]
+
+
 def page(text: str) -> str:
     """Return the text of the page with the tables of today."""
     return with_parts(text, {
         'actuator': lines(SAMPLE_FIELDS), 'supply': lines(SUPPLY_FIELDS),
-        'leg': lines(sample_fields(['UNIT']))})
+        'leg': lines(sample_fields(['UNIT'])), 'external': external_lines()})
 
 
 if __name__ == '__main__':

@@ -8,6 +8,7 @@ import sys
 
 import isa_ros
 from isa_ros.bench import leg, memory, startup
+from isa_ros.bench.door import door_rows
 from isa_ros.bench.in_memory import in_memory_rows
 from isa_ros.bench.page import BenchDrawing
 from isa_ros.bench.plant import cylinder_rows, plant_rows
@@ -46,6 +47,7 @@ GROUPS = (
     BenchGroup('cylinder', 'A valve-driven cylinder with a known solution', alone(cylinder_rows)),
     BenchGroup('tick', 'Parts of a tick of the leg, without ROS', alone(tick_parts)),
     BenchGroup('in_memory', 'The leg in memory, without a bag', alone(in_memory_rows)),
+    BenchGroup('door', 'A tick with an external body', alone(door_rows)),
     BenchGroup('leg', 'The leg, recording', leg.leg_rows, lambda: leg.SPECS),
     BenchGroup('startup', 'Start-up, caches warm', startup.startup_rows, lambda: startup.SPECS),
     BenchGroup('memory', 'Memory', memory.memory_rows, lambda: leg.SPECS),

@@ -57,6 +57,14 @@ def holding_forces(mechanism: Mechanism, k: int) -> Floats:
     return forces
 
 
+def motion_fields(name: str, is_rotary: bool) -> list[Field]:
+    """Return the fields of an actuator in the sample of a `MechanismBody`."""
+    return [Field(f'{name}_{what}', units[is_rotary], meaning) for what, units, meaning in (
+        ('position', ('m', 'rad'), "of the load's side of the force sensor"),
+        ('velocity', ('m/s', 'rad/s'), 'likewise'),
+        ('force', ('N', 'Nm'), 'in the sensor at the end of the tick'))]
+
+
 class MechanismBody:
     """
     A `isa_ros.Body` made of a mechanism: ports by probing, steps by its own integrator.
@@ -73,11 +81,8 @@ class MechanismBody:
         self._has_response = has_response
         self.rows = mounting.rows
         k, step = len(mounting.rows), mounting.step
-        self._fields = [
-            Field(f'{name}_{what}', units[is_rotary], '')
-            for name, is_rotary in zip(mounting.names, mounting.are_rotary)
-            for what, units in (('position', ('m', 'rad')), ('velocity', ('m/s', 'rad/s')),
-                                ('force', ('N', 'Nm')))]
+        self._fields = [field for name, is_rotary in zip(mounting.names, mounting.are_rotary)
+                        for field in motion_fields(name, is_rotary)]
         self.sample: Records = np.zeros(1, record_type(self._fields))
         self._values = self.sample.view(np.float64).reshape(k, 3)
         self._t_ns = 0
