@@ -164,25 +164,26 @@ class Simulation:
 
     def tune(self, name: str, values: Mapping[str, float]) -> None:
         """
-        Change parameters of an actuator or a supply; they take effect at the next tick.
+        Change parameters of an actuator, a supply or a body; they take effect at the next tick.
 
         Values by the keys and in the units of `isa params`: ``tune('kfe', {'reu.force.kp': 1e-7,
-        'plant.spool.stuck': 1})``, ``tune('supply', {'pressure_mpa': 10.0})``. All values are
-        accepted, or none.
+        'plant.spool.stuck': 1})``, ``tune('supply', {'pressure_mpa': 10.0})``, ``tune('body',
+        {'push_y': 500.0})``. All values are accepted, or none.
 
         Raises
         ------
         ConfigError
-            There is no such actuator or supply, a key is unknown, or a value is refused.
+            There is no such actuator, supply or body, a key is unknown, or a value is refused.
 
         """
-        if name in self.supply_samples:
+        if name in self.supply_samples or name in self.surroundings.bodies:
             self.surroundings.tune({f'{name}.{key}': value for key, value in values.items()})
         else:
             if name not in self.names:
-                known = [*self.names, *self.supply_samples]
+                known = [*self.names, *self.supply_samples, *self.surroundings.bodies]
                 raise ConfigError(
-                    f'{name!r} is not an actuator or a supply; {alternatives(name, known)}')
+                    f'{name!r} is not an actuator, a supply or a body; '
+                    f'{alternatives(name, known)}')
             self.group.actuators[self.names.index(name)].tune(values)
 
     def emergency_stop(self, is_open: bool = True, group: str | None = None) -> None:

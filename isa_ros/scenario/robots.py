@@ -15,6 +15,7 @@ none; figures are those of a run of one robot.
 from typing import Any
 
 from isa_ros.config.paths import SCENARIOS
+from isa_ros.config.runs.body_config import BODY
 from isa_ros.config.runs.emergency_stops import ALL
 from isa_ros.config.runs.robots import agreed, robot_files, Sections
 from isa_ros.config.runs.run_config import ROBOTS
@@ -80,7 +81,8 @@ def _target_there(fault: Tree, robot: str) -> Tree:
     def there(key: str, value: Any) -> Any:
         if key not in TARGETS or not isinstance(value, str):
             return value
-        return robot if key == EMERGENCY_STOP and value == ALL else placed(robot, value)
+        is_whole = (key, value) in ((EMERGENCY_STOP, ALL), (BODY, BODY))
+        return robot if is_whole else placed(robot, value)
     return {key: there(key, value) for key, value in fault.items()}
 
 

@@ -208,9 +208,9 @@ class RobotConfig(BodyConfig):
         return sample_fields(self.sheet, [own.name for own in self.imus])
 
     @property
-    def changing(self) -> Push:
-        """Return the forces from outside on its root, as scenarios may change them."""
-        return Push()
+    def changing(self) -> Push | None:
+        """Return the forces from outside on a free root, as scenarios may change them."""
+        return Push() if self.sheet.is_free else None
 
     def units(self, step_ns: int, seed: int) -> list[RobotUnit]:
         """Return its inertial units."""

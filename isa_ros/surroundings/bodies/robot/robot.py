@@ -9,6 +9,7 @@ from collections.abc import Mapping, Sequence
 import math
 
 from isa_ros.core.fields import record_type, units_of
+from isa_ros.core.parameter import Parameters
 from isa_ros.core.record import rows_of
 from isa_ros.core.saved_state import restored_rows, TIME_BYTES, time_of
 from isa_ros.core.timebase import FORCE_WINDOWS, NS_PER_SECOND, PLANT_STEP_NS, steps_in
@@ -54,7 +55,7 @@ class Robot:
         self.rows = np.array(range(k) if rows is None else rows, np.int64)
         """Rows of its actuators, (k,)."""
         self._release_ns, self._is_to_be_released = release_ns, release_ns is not None
-        self._t_ns = 0
+        self._t_ns, self._is_free = 0, sheet.is_free
         self._names = state_names(sheet)
         self._ends_run = [own.name for own in sheet.contacts if own.ends_run]
         self._records = (link_records(sheet), speed_records(sheet, start), *drive_records(sheet),
@@ -134,12 +135,14 @@ class Robot:
         self._state[-1] = 0.0
 
     @property
-    def changing(self) -> Push:
-        """Return what may change during a run, as it is at its start."""
-        return Push()
+    def changing(self) -> Parameters:
+        """Return what may change during a run, as it is at its start: pushes on a free root."""
+        return Push() if self._is_free else Parameters()
 
-    def change(self, push: Push) -> None:
+    def change(self, push: Parameters) -> None:
         """Push the root from the next tick on."""
+        if not isinstance(push, Push):
+            return
         root = self._records[0][0]
         root['push_force'] = push.push_x, push.push_y, push.push_z
         root['push_moment'] = push.push_roll, push.push_pitch, push.push_yaw

@@ -1,0 +1,58 @@
+"""The exchange of a whole quadruped with its twelve actuators, against ticks of a tenth."""
+
+import json
+from pathlib import Path
+
+import isa_ros
+from isa_ros.config.paths import find
+from isa_ros.surroundings.bodies.robot.robot import Robot
+import numpy as np
+import pytest
+import yaml
+
+DURATION = 0.3      # s: a fall of 5 cm takes 0.10 s
+WINDOW = 0.2e-3     # s, of a tick of 1 ms a fifth
+FINE = {'adc_bits': 24, 'encoder_resolution': 1e-9}
+LIGHT = {'mechanics': {'sensor_damping': 200.0}}    # a damping ratio of 0.01
+
+
+def drop(folder: Path, step_ms: float, is_light: bool) -> np.ndarray:
+    """Return the mean force of every actuator in each `WINDOW` of a tilted drop, (n, 12)."""
+    tree = yaml.safe_load(find('quadruped.yaml', 'config').read_text())
+    tree |= {'step_ms': step_ms, 'controller_offset_ms': 0.08}
+    tree.pop('controllers', None)
+    for name, actuator in tree['actuators'].items():
+        light = LIGHT if is_light and not name.endswith('haa') else {}
+        actuator['parameters'] = {'plant': {'sensors': FINE, **light}}
+    tree['body']['start'] |= {'height_mm': 50.0, 'roll_deg': 3.0, 'pitch_deg': 4.0}
+    path = folder / f'drop_{step_ms}.yaml'
+    path.write_text(json.dumps(tree))
+    means, advance = [], Robot.advance
+
+    def advanced(robot: Robot, replies: np.ndarray) -> None:
+        means.append(replies['mean_forces'][robot.rows].T.copy())
+        advance(robot, replies)
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(Robot, 'advance', advanced)
+        isa_ros.load(path).simulate(DURATION)
+    return np.concatenate(means).reshape(round(DURATION / WINDOW), -1, 12).mean(axis=1)
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize(('is_light', 'most'), [(False, 5e-3), (True, 7e-3)])
+def test_a_quadruped_lands_as_with_ticks_of_a_tenth(
+        tmp_path: Path, is_light: bool, most: float) -> None:
+    """
+    Forces at every joint within 0.5 % rms, their peaks within 1 %.
+
+    With load cells of a damping ratio of 0.01 all but one are below 0.35 %; one hip of a hind leg
+    has 0.6 %, and 1.1 % in its peak. The sensors are 4000 times as fine as the shipped ones: with
+    those a fall from 1 um higher changes the small forces at HAA by 0.4 % already, by where the
+    converters round.
+    """
+    reference, own = (drop(tmp_path, step_ms, is_light) for step_ms in (0.1, 1.0))
+    assert reference.shape[1] == 12 and np.abs(reference).max() > 1500.0
+    rms = np.sqrt(np.square(own - reference).mean(axis=0) / np.square(reference).mean(axis=0))
+    assert rms.max() < most and np.sort(rms)[-2] < 5e-3
+    peaks = np.abs(own).max(axis=0) / np.abs(reference).max(axis=0) - 1.0
+    assert np.abs(peaks).max() < 2.0 * most
