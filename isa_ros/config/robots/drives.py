@@ -9,9 +9,9 @@ from isa_ros.config.models.catalogue import leg_names, leg_section
 from isa_ros.config.robots.patterns import sections_by_name
 from isa_ros.config.robots.tree import Tree
 from isa_ros.config.text.keys import (
-    FLAG, InText, Key, KeyTable, NAME, Named, ParameterSet, TEXT, Value)
+    FLAG, InText, Key, KeyTable, Named, ParameterSet, PLACED_NAME, TEXT, Value)
 from isa_ros.config.text.names import refuse_bad_name
-from isa_ros.config.text.parameter_sets import build_one_of
+from isa_ros.config.text.parameter_sets import build_one_of, members
 from isa_ros.config.text.sections import (
     KIND_KEYS, merge, Place, refuse_unknown, Section, section_at, SourcedValue, written)
 from isa_ros.config.text.yaml_text import Tree as YamlTree
@@ -22,7 +22,7 @@ from isa_ros.errors import ConfigError
 from isa_ros.surroundings.bodies.robot.sheet import (
     JointLinkage, Points, RobotDrive, RobotFrame, RobotLink, vector)
 from isa_ros.surroundings.linkage_sheet import (
-    Direct, FourBar, Joint, linkage_record, SliderCrank)
+    Joint, linkage_record, OneJointLinkage)
 import numpy as np
 
 _RANGE_DIGITS = 9       # of the range of a joint in deg: 1e-9 deg
@@ -40,7 +40,7 @@ class Cylinder(Parameters):
     retracted_length_mm: float = parameter('pin to pin at piston 0', 'mm', gt=0.0, le=1e5)
 
 
-Linkage = Direct | SliderCrank | FourBar | Cylinder
+Linkage = OneJointLinkage | Cylinder
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -69,7 +69,7 @@ def _range(value: Any, place: Place) -> tuple[float, float]:
 
 
 DRIVE = KeyTable((
-    Key('actuator', NAME, 'the actuator', None, 'of its name'),
+    Key('actuator', PLACED_NAME, 'the actuator', None, 'of its name'),
     Key('joint', TEXT, 'the joint of the URDF that its linkage drives', None, 'of its name'),
     Key('base', TEXT, "link of the pin of a cylinder's cap end", None,
         'required of a cylinder'),
@@ -121,8 +121,11 @@ def drives_of(
         section = _linkage_section(own, linkages, below)
         kind = next((entry.value for key in KIND_KEYS
                      if isinstance(entry := section.get(key), SourcedValue)), None)
+        if kind is None:
+            raise ConfigError(below.has(
+                f'lacks linkage, one of {", ".join(members(Linkage))}, or like'))
         actuator = own.get('actuator', name)
-        refuse_bad_name(actuator, str(below / 'actuator'))
+        refuse_bad_name(actuator, str(below / 'actuator'), is_placed=True)
         if kind == 'cylinder':
             drive = _cylinder(name, str(actuator), own, section, tree, below)
         else:

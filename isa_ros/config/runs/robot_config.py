@@ -93,6 +93,12 @@ class RobotConfig(BodyConfig):
     start: RobotStartConfig
     imus: tuple[UnitConfig, ...] = ()
 
+    def __post_init__(self) -> None:
+        """Give the drives the actuators of ``joints``, which a namespace renames."""
+        moved = dict(self.joints)
+        object.__setattr__(self, 'drives', tuple(
+            replace(own, actuator=moved[own.name]) for own in self.drives))
+
     @classmethod
     def of(cls, name: str, values: dict[str, Any], place: Place, step_ns: int,
            is_checked: bool) -> tuple[BodyConfig, Mapping[str, Section]]:
