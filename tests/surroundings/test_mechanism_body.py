@@ -149,6 +149,23 @@ def test_at_a_dead_centre_the_port_stays_bounded() -> None:
     assert abs(ports[ROWS[1]]['stiffness']) < 1e5
 
 
+def test_where_a_force_moves_nothing_the_port_has_no_response() -> None:
+    """At the dead centre itself: 1/m = 0, and no direction to probe along."""
+    class Blocked(MassOnSpring):
+        """Its first actuator has no lever and stands."""
+
+        def motion(self, state: np.ndarray, forces: np.ndarray) -> isa_ros.Motion:
+            """Return it."""
+            own = super().motion(state, np.array([0.0, forces[1]]))
+            return own._replace(acceleration=np.array([0.0, own.acceleration[1]]))
+    body = MechanismBody(Blocked(), mounting(), has_response=True)
+    ports = np.zeros(N, LOAD_PORT)
+    body.ports(ports)
+    first, second = ports[ROWS]
+    assert [first['inverse_mass'], first['stiffness'], first['damping']] == [0.0, 0.0, 0.0]
+    assert second['stiffness'] == pytest.approx(STIFFNESS / MASS, rel=1e-6)
+
+
 def test_it_advances_by_its_own_step_and_goes_on_from_a_snapshot() -> None:
     body, twin = moving_body(False), moving_body(False)
     kept = body.snapshot()
