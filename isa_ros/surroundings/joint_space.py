@@ -7,7 +7,7 @@ actuator times r^2, all three with the lever r at the joint's present angle. Neg
 by which a joint is stiffer or softer under load.
 """
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 import math
 from typing import NamedTuple
 
@@ -18,17 +18,30 @@ import numpy as np
 
 
 class DrivenJoint(NamedTuple):
-    """A joint that one actuator moves."""
+    """A joint that one actuator moves, which moves no other."""
 
     actuator: str
-    linkage: np.record
-    """`LINKAGE`."""
+    linkage: np.record | Callable[[float], tuple[float, float]]
+    """`LINKAGE`, or what returns x and the lever at an angle."""
     low: float
-    """Lower end of its range, rad."""
+    """Lower end of its range, rad | m."""
     high: float
     angle: str
-    """Field of the body's sample that has its angle, and the place in it."""
-    place: int
+    """Field of the body's sample that has its angle, and the place in it; None: all of it."""
+    place: int | None = None
+    unit: str = 'rad'
+
+    def at(self, angle: float) -> tuple[float, float]:
+        """Return the actuator's coordinate and the lever dx/dq at an angle  (L2)."""
+        if callable(self.linkage):
+            return self.linkage(angle)
+        x, lever, _ = actuator_coordinate(angle, self.linkage)
+        return x, lever
+
+    def measured(self, sample: np.void) -> float:
+        """Return its angle in a sample of the body."""
+        found = sample[self.angle]
+        return float(found if self.place is None else found[self.place])
 
 
 JointSpace = Mapping[str, DrivenJoint]
@@ -51,11 +64,11 @@ def to_actuator(name: str, joint: DrivenJoint, sample: np.void, command: np.void
     if not math.isnan(angle):
         if not joint.low <= angle <= joint.high:
             raise SetpointError(
-                f'{name}: setpoint position = {angle:g} rad, must be {joint.low:g} to '
-                f'{joint.high:g} rad, the range of the joint')
-        command['position'], lever, _ = actuator_coordinate(angle, joint.linkage)
+                f'{name}: setpoint position = {angle:g} {joint.unit}, must be {joint.low:g} to '
+                f'{joint.high:g} {joint.unit}, the range of the joint')
+        command['position'], lever = joint.at(angle)
         command['velocity'] *= lever
-    _, lever, _ = actuator_coordinate(float(sample[joint.angle][joint.place]), joint.linkage)
+    _, lever = joint.at(joint.measured(sample))
     command['effort'] /= lever
     for gain in GAINS_OF_COMMAND:
         command[gain] /= lever * lever

@@ -25,14 +25,16 @@ class JointStates(NamedTuple):
 
 
 class Force(NamedTuple):
-    """A force in the world's axes, N, and its moment, Nm: geometry_msgs/WrenchStamped."""
+    """A force, N, and its moment, Nm, in the axes of a frame: geometry_msgs/WrenchStamped."""
 
     topic: str
     force: Sequence[str]
     """Columns of x, y and z."""
     moment: Sequence[str] = ()
-    """Columns of its moment about the origin of the world; empty: it acts there."""
+    """Columns of its moment about the origin of the frame; empty: it acts there."""
     period_ns: int = 0
+    frame: str = ''
+    """'': the world."""
 
 
 class Inertial(NamedTuple):
@@ -49,7 +51,24 @@ class Inertial(NamedTuple):
     period_ns: int = 0
 
 
-BodyMessage = JointStates | Force | Inertial
+class Odometry(NamedTuple):
+    """Pose of a frame in the world, its velocities in its own axes: nav_msgs/Odometry."""
+
+    topic: str
+    frame: str
+    """The frame that moves, ``child_frame_id``."""
+    position: Sequence[str]
+    """Columns of x, y and z, m."""
+    orientation: Sequence[str]
+    """Columns of the quaternion, w, x, y, z."""
+    velocity: Sequence[str]
+    """Columns, m/s."""
+    turning: Sequence[str]
+    """Columns, rad/s."""
+    period_ns: int = 0
+
+
+BodyMessage = JointStates | Force | Inertial | Odometry
 
 
 def columns(field: str, n: int = 3) -> list[str]:

@@ -17,7 +17,7 @@ from std_msgs.msg import UInt8
 
 STORE = get_typestore(Stores.ROS2_JAZZY)
 TYPES = (
-    'sensor_msgs/msg/JointState', 'geometry_msgs/msg/WrenchStamped',
+    'sensor_msgs/msg/JointState', 'geometry_msgs/msg/WrenchStamped', 'nav_msgs/msg/Odometry',
     'sensor_msgs/msg/FluidPressure', 'rosgraph_msgs/msg/Clock',
     'diagnostic_msgs/msg/DiagnosticArray', 'sensor_msgs/msg/Imu',
     'sensor_msgs/msg/Temperature', 'sensor_msgs/msg/BatteryState',

@@ -7,7 +7,7 @@ import pytest
 from rosbags.typesys import get_types_from_msg, get_typestore, Stores
 
 TYPES = (
-    'sensor_msgs/msg/JointState', 'geometry_msgs/msg/WrenchStamped',
+    'sensor_msgs/msg/JointState', 'geometry_msgs/msg/WrenchStamped', 'nav_msgs/msg/Odometry',
     'sensor_msgs/msg/FluidPressure', 'rosgraph_msgs/msg/Clock',
     'diagnostic_msgs/msg/DiagnosticArray', 'sensor_msgs/msg/Imu',
 )

@@ -111,5 +111,5 @@ def robot_contact(own: ContactConfig, tree: Tree) -> RobotContact:
     """Return a contact of the sheet of a robot, SI."""
     link, place = in_link(frame_named(tree, own.link), [MILLI * one for one in own.at_mm])
     return RobotContact(
-        name=own.name, link=link, point=vector(place), ground=own.ground, is_foot=own.is_foot,
-        ends_run=own.ends_run)
+        name=own.name, link=link, point=vector(place), ground=own.ground, frame=own.link,
+        is_foot=own.is_foot, ends_run=own.ends_run)

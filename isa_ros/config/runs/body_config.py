@@ -5,12 +5,13 @@ A kind is one class, derived from `BodyConfig`, and one row in `isa_ros.config.r
 """
 
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import ClassVar, NamedTuple
 
 from isa_ros.actuator.config import ActuatorConfig
 from isa_ros.actuator.sheet import ActuatorSheet
 from isa_ros.config.text.keys import KeyTable
+from isa_ros.config.text.names import placed
 from isa_ros.config.text.sections import Place, Section
 from isa_ros.config.text.yaml_text import Tree
 from isa_ros.core.fields import Field
@@ -83,6 +84,12 @@ class BodyConfig:
     def body(self, made: Made) -> Body:
         """Return the body itself at t = 0; raises `ConfigError` if its start is not possible."""
         raise NotImplementedError
+
+    def in_namespace(self, namespace: str) -> 'BodyConfig':
+        """Return it with its name, and those of its actuators, in the namespace of a robot."""
+        return replace(
+            self, name=namespace if self.name == BODY else placed(namespace, self.name),
+            joints=tuple((joint, placed(namespace, name)) for joint, name in self.joints))
 
     @property
     def label(self) -> str:

@@ -1,10 +1,10 @@
 """
-A leg under ros2_control: what a file of controllers claims, and the tag of its hardware.
+A body under ros2_control: what a file of controllers claims, and the tag of its hardware.
 
 The hardware is `JointStateTopicSystem` of the package ``joint_state_topic_hardware_interface``
 1.1.0. It publishes one JointState with all joints of the tag and an array for each kind of
 command interface, NaN where no controller has claimed one. An array is without gaps, so that all
-joints of the tag have the same command interfaces, and the slider, which has none, is left out.
+joints of the tag have the same command interfaces, and joints without a drive are left out.
 Each of them is compared with the state interface of the same name.
 """
 
@@ -12,8 +12,7 @@ from collections.abc import Iterator
 from pathlib import Path
 from typing import NamedTuple
 
-from isa_ros.config.runs.body_config import JOINT_COMMAND
-from isa_ros.config.runs.leg_config import LegConfig
+from isa_ros.config.runs.body_config import BodyConfig, JOINT_COMMAND
 from isa_ros.config.text.sections import names_at, Place, refuse_unknown, section_at
 from isa_ros.config.text.yaml_text import read, Tree
 from isa_ros.errors import ConfigError
@@ -43,14 +42,14 @@ class Controllers(NamedTuple):
         return [MANAGER, *dict.fromkeys(plugin.partition('/')[0] for plugin in plugins)]
 
 
-def controllers_of(path: Path, leg: LegConfig) -> Controllers:
+def controllers_of(path: Path, body: BodyConfig) -> Controllers:
     """
-    Return the controllers of a parameter file of ros2_control, checked against the leg.
+    Return the controllers of a parameter file of ros2_control, checked against a body.
 
     Raises
     ------
     ConfigError
-        There are no controllers; a joint or an interface is not the leg's; or two controllers
+        There are no controllers; a joint or an interface is not the body's; or two controllers
         command different interfaces.
 
     """
@@ -65,7 +64,7 @@ def controllers_of(path: Path, leg: LegConfig) -> Controllers:
     claims = {}
     for name in types:
         own, below = nodes.get(name, {}), place / name
-        _refuse_others(own, 'joints', tuple(leg.joint_space), below)
+        _refuse_others(own, 'joints', tuple(body.joint_space), below)
         _refuse_others(own, 'state_interfaces', INTERFACES, below)
         if claimed := {*_refuse_others(own, 'command_interfaces', INTERFACES, below),
                        *_refuse_others(own, 'interface_name', INTERFACES, below)}:
@@ -87,12 +86,12 @@ def _refuse_others(
     return names
 
 
-def control_tag(leg: LegConfig, commands: tuple[str, ...], namespace: str) -> Iterator[str]:
+def control_tag(body: BodyConfig, commands: tuple[str, ...], namespace: str) -> Iterator[str]:
     """Yield the lines of the tag, for a run in a namespace or in none, ''."""
     above = f'/{namespace}' if namespace else ''
     parameters = {
-        'joint_commands_topic': f'{above}/{leg.prefix}{JOINT_COMMAND}',
-        'joint_states_topic': f'{above}/{leg.prefix}{JOINT_STATES}',
+        'joint_commands_topic': f'{above}/{body.prefix}{JOINT_COMMAND}',
+        'joint_states_topic': f'{above}/{body.prefix}{JOINT_STATES}',
         'trigger_joint_command_threshold': _ALWAYS}
     yield '  <ros2_control name="isa_ros" type="system">'
     yield '    <hardware>'
@@ -100,7 +99,7 @@ def control_tag(leg: LegConfig, commands: tuple[str, ...], namespace: str) -> It
     for name, value in parameters.items():
         yield f'      <param name="{name}">{value}</param>'
     yield '    </hardware>'
-    for joint in leg.joint_space:
+    for joint in body.joint_space:
         yield f'    <joint name="{joint}">'
         for name in commands:
             yield f'      <command_interface name="{name}"/>'

@@ -1,6 +1,7 @@
 """A robot as the body of a run: the tree of a URDF, and a table of what moves and touches it."""
 
-from collections.abc import Mapping, Sequence
+from collections import Counter
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
 import math
@@ -25,6 +26,7 @@ from isa_ros.config.runs.body_config import BodyConfig, Made
 from isa_ros.config.runs.tick_grid import ticks_in
 from isa_ros.config.text.keys import (
     choice_of, InText, Key, KeyTable, Layer, Named, ParameterSet, TEXT, Value)
+from isa_ros.config.text.names import placed
 from isa_ros.config.text.sections import names_at, Place, Section
 from isa_ros.config.text.yaml_text import Tree as YamlTree
 from isa_ros.core.fields import Field
@@ -33,11 +35,15 @@ from isa_ros.core.suggest import alternatives
 from isa_ros.core.timebase import NS_PER_SECOND
 from isa_ros.core.units import MILLI
 from isa_ros.errors import ConfigError
+from isa_ros.surroundings.bodies.robot.messages import robot_messages
 from isa_ros.surroundings.bodies.robot.robot import Robot
 from isa_ros.surroundings.bodies.robot.sample import sample_fields
-from isa_ros.surroundings.bodies.robot.sheet import matrix, Push, RobotSheet, RobotUnit, vector
+from isa_ros.surroundings.bodies.robot.sheet import (
+    JointLinkage, matrix, Push, RobotDrive, RobotSheet, RobotUnit, vector)
 from isa_ros.surroundings.inertial_unit import InertialUnitSheet
+from isa_ros.surroundings.joint_space import DrivenJoint, JointSpace
 from isa_ros.surroundings.linkage_sheet import Direct, Joint
+from isa_ros.surroundings.messages import BodyMessage
 
 FREE, FIXED = 'free', 'fixed'
 
@@ -92,12 +98,6 @@ class RobotConfig(BodyConfig):
     contacts: tuple[ContactConfig, ...]
     start: RobotStartConfig
     imus: tuple[UnitConfig, ...] = ()
-
-    def __post_init__(self) -> None:
-        """Give the drives the actuators of ``joints``, which a namespace renames."""
-        moved = dict(self.joints)
-        object.__setattr__(self, 'drives', tuple(
-            replace(own, actuator=moved[own.name]) for own in self.drives))
 
     @classmethod
     def of(cls, name: str, values: dict[str, Any], place: Place, step_ns: int,
@@ -231,6 +231,45 @@ class RobotConfig(BodyConfig):
                 sheet.period_ns(step_ns, own.name),
                 noise_key(seed, f'{self.prefix}{own.name}/imu')))
         return found
+
+    @cached_property
+    def joint_space(self) -> JointSpace:
+        """Return the joints that one actuator moves which moves no other, as those of the URDF."""
+        drives = [(drive, own, self.sheet.driven(drive))
+                  for drive, own in zip(self.sheet.drives, self.drives)]
+        moved = Counter(link for _, _, links in drives for link in links)
+        found = {}
+        for drive, own, links in drives:
+            joint = self.tree.links[links[0]].joint
+            if len(links) == 1 and moved[links[0]] == 1:
+                found[joint.name] = DrivenJoint(
+                    own.actuator, drive.linkage.linkage if isinstance(
+                        drive.linkage, JointLinkage) else self._at(drive, links[0]),
+                    joint.low, joint.high, f'{joint.name}_position',
+                    unit='rad' if joint.kind == 'revolute' else 'm')
+        return dict(sorted(found.items(), key=lambda item: list(
+            link.joint.name for link in self.tree.links).index(item[0])))
+
+    def _at(self, drive: RobotDrive, link: int) -> Callable[[float], tuple[float, float]]:
+        """Return what gives coordinate and lever of a cylinder over one joint."""
+        def at(angle: float) -> tuple[float, float]:
+            joints = [0.0] * len(self.sheet.joints)
+            joints[link - 1] = angle
+            x, levers = motion_of(self.sheet, drive, joints)
+            return x, levers[0]
+        return at
+
+    def messages(self, step_ns: int) -> Sequence[BodyMessage]:
+        """Return joints, pose of a free root, forces on the feet, readings of its units."""
+        return robot_messages(self.prefix, self.sheet, list(zip(
+            self.units(step_ns, seed=0), [own.link for own in self.imus])))
+
+    def in_namespace(self, namespace: str) -> 'RobotConfig':
+        """Return it in the namespace of a robot; as `BodyConfig.in_namespace`."""
+        robot = super().in_namespace(namespace)
+        assert isinstance(robot, RobotConfig)
+        return replace(robot, drives=tuple(replace(
+            own, actuator=placed(namespace, own.actuator)) for own in self.drives))
 
     def body(self, made: Made) -> Robot:
         """Return the robot; as `BodyConfig.body`."""

@@ -175,16 +175,12 @@ def _robots(tree: Tree, place: Place) -> Iterator[tuple[str, RunConfig, Origins]
 
 def _in_namespace(run: RunConfig, robot: str) -> RunConfig:
     """Return the run of a robot with the names of its parts in its namespace."""
-    def there(name: str) -> str:
-        return robot if name == BODY else placed(robot, name)
-
     def all_there(names: Sequence[str]) -> tuple[str, ...]:
         return tuple(placed(robot, name) for name in names)
     return replace(
         run,
         actuators=tuple(replace(own, name=placed(robot, own.name)) for own in run.actuators),
-        bodies=tuple(replace(own, name=there(own.name), joints=tuple(
-            (joint, placed(robot, name)) for joint, name in own.joints)) for own in run.bodies),
+        bodies=tuple(own.in_namespace(robot) for own in run.bodies),
         supplies=tuple(replace(own, name=placed(robot, own.name), feeds=all_there(own.feeds))
                        for own in run.supplies),
         emergency_stops=tuple(

@@ -63,7 +63,9 @@ LEVER = np.dtype([
     ('lever', '<f8'),                   # of an instant: dx/dq
 ])
 CONTACT = np.dtype([
-    ('link', '<i8'), ('point', '<f8', (3,)), ('ground', GROUND),
+    ('link', '<i8'), ('point', '<f8', (3,)), ('ground', GROUND), ('is_foot', '<i8'),
+    ('rotation', '<f8', (9,)),          # of its frame in the link
+    ('arm', '<f8', (3,)),               # from the frame's origin, axes of the frame
     # Of an instant:
     ('position', '<f8', (3,)),          # from O
     ('velocity', '<f8', (3,)),
@@ -140,7 +142,10 @@ def contact_records(sheet: RobotSheet) -> np.ndarray:
     rows = rows_of(len(sheet.contacts), CONTACT)
     for row, contact in zip(rows, sheet.contacts):
         row['link'], row['point'] = contact.link, contact.point
-        row['ground'] = ground_record(contact.ground)
+        row['ground'], row['is_foot'] = ground_record(contact.ground), contact.is_foot
+        frame = sheet.frame_of(contact)
+        row['rotation'] = _nine(frame.rotation)
+        row['arm'] = np.array(frame.rotation).T @ np.subtract(contact.point, frame.place)
     return rows
 
 

@@ -12,6 +12,7 @@ ROOT_FIELDS = (
     Field('orientation', '1', 'w, x, y, z of the root in the world', (4,)),
     Field('velocity', 'm/s', "of the root's origin, world axes", (3,)),
     Field('angular_velocity', 'rad/s', 'of the root, world axes', (3,)),
+    Field('twist', 'm/s, rad/s', "velocity and angular velocity, the root's axes", (6,)),
 )
 """Only of a free root."""
 ENERGY_FIELDS = (
@@ -31,7 +32,7 @@ def sample_fields(sheet: RobotSheet, units: Sequence[str] = ()) -> tuple[Field, 
 
     Per joint ``NAME_position``, ``NAME_velocity``, ``NAME_torque``; per actuator ``NAME_lever``,
     an array where it acts on several joints (`RobotSheet.driven`); per contact ``NAME_force``,
-    ``NAME_position``, ``NAME_touches``.
+    ``NAME_position``, ``NAME_touches``, of a foot ``NAME_wrench``.
     """
     fields: list[Field] = [*ROOT_FIELDS] if sheet.is_free else []
     for joint in sheet.joints:
@@ -48,6 +49,10 @@ def sample_fields(sheet: RobotSheet, units: Sequence[str] = ()) -> tuple[Field, 
         fields += [Field(f'{contact.name}_force', 'N', 'from the ground, world axes', (3,)),
                    Field(f'{contact.name}_position', 'm', 'in the world', (3,)),
                    Field(f'{contact.name}_touches', '1', '1: pushes the ground')]
+        if contact.is_foot:
+            fields.append(Field(f'{contact.name}_wrench', 'N, Nm',
+                                'force, and moment about its frame, in the axes of the frame',
+                                (6,)))
     fields += ENERGY_FIELDS
     for unit in units:
         force, turning = fields_of_unit(unit)

@@ -45,7 +45,10 @@ def fill_sample(y, f, links, speeds, drives, levers, contacts, out):
             out[i] = y[i]
         for i in range(6):
             out[7 + i] = y[v + i]
-        at = 13
+        axes = nine(links[0].axes)
+        put(turned_back(axes, three(out[7:10])), out[13:16])
+        put(turned_back(axes, three(out[10:13])), out[16:19])
+        at = 19
     torques = at + 2
     for i in range(n):
         out[at], out[at + 1], out[at + 2] = y[v - n + i], y[v + d - n + i], 0.0
@@ -65,6 +68,14 @@ def fill_sample(y, f, links, speeds, drives, levers, contacts, out):
         out[at + 6] = 1.0 if own.force[2] > 0.0 else 0.0
         elastic += stored_in(own, own.position[2] + height, y[z + 2 * i], y[z + 2 * i + 1])
         at += 7
+        if own.is_foot:
+            axes = product(nine(links[own.link].axes), nine(own.rotation))
+            force = turned_back(axes, three(own.force))
+            put(force, out[at:at + 3])
+            put(cross(three(own.arm), force), out[at + 3:at + 6])
+            for k in range(6):
+                out[at + k] += 0.0
+            at += 6
     kinetic, potential = 0.0, 0.0
     for i in range(len(links)):
         moving, lifted = link_energies(links[i], height)

@@ -124,6 +124,8 @@ class RobotContact:
     point: Vector
     """m, link axes."""
     ground: Ground
+    frame: str = ''
+    """The frame, fixed to the link, in whose axes a foot's force is published; '': its own."""
     is_foot: bool = True
     """Feet carry the robot; trunk corners and knees are reported where they touch."""
     ends_run: bool = False
@@ -156,6 +158,12 @@ class RobotSheet:
         for link in self.links:
             total += link.mass
         return total
+
+    def frame_of(self, contact: RobotContact) -> RobotFrame:
+        """Return the frame of a contact: the named one, or one at its point, axes of the link."""
+        if not contact.frame:
+            return RobotFrame(name=contact.name, link=contact.link, place=contact.point)
+        return next(own for own in self.frames if own.name == contact.frame)
 
     def link(self, name: str) -> int:
         """Return the index of a link by its name; raises `ValueError` if there is none."""
